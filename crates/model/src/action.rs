@@ -1,0 +1,267 @@
+//! Actions of steps, and the Structured Text inside them.
+
+use crate::{Arg, Expr, Name, Path, Place, Type};
+
+/// One action of a step.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Action {
+    /// What it does and when.
+    pub kind: ActionKind,
+    /// Where it stands.
+    pub at: Place,
+}
+
+/// The kinds of action.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum ActionKind {
+    /// `N motor`, `L 5s lamp`, `P1 n := n + 1`, `N motor if a`.
+    Qualified {
+        /// The qualifier.
+        qualifier: Qualifier,
+        /// Its time, for L, D, SD, DS, SL.
+        time: Option<Expr>,
+        /// A Boolean variable, a named action or a body.
+        target: Target,
+        /// `if …`: the assignation condition.
+        condition: Option<Expr>,
+    },
+    /// `on ↑e: …` (IEC 60848:2013, 4.8.3: stored action on event).
+    OnEvent {
+        /// The event, with an edge in it.
+        event: Expr,
+        /// What is done.
+        work: Work,
+    },
+    /// `each scan: …`, while the step is active.
+    EachScan {
+        /// What is done.
+        work: Work,
+        /// `if …`.
+        condition: Option<Expr>,
+    },
+    /// `force`, `enable`, `mask`, `call`, `enclose`.
+    Order(Order),
+    /// A comment to be drawn.
+    Comment(Box<str>),
+}
+
+/// What a step orders of another chart.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Order {
+    /// A forcing order (IEC 60848:2013, 4.9).
+    Force(Name, Situation),
+    /// The named chart evolves only while some step enables it.
+    Enable(Name),
+    /// The continuous actions of a chart, or one output, are held back.
+    Mask(Name),
+    /// The task is run; the transitions behind the step wait for its exit step.
+    Call(Name),
+    /// The chart is enclosed by this step (IEC 60848:2013, 4.10).
+    Enclose(Name),
+}
+
+/// The situation that a forcing order imposes.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Situation {
+    /// `INIT`: the initial situation.
+    Init,
+    /// `{*}`: the present one (freeze).
+    Current,
+    /// `{…}`: just these steps; `{}` none.
+    Steps(Vec<Name>),
+}
+
+/// The action qualifiers of IEC 61131-3 (2003, table 45).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Qualifier {
+    /// Non-stored: follows the step.
+    N,
+    /// Set (stored).
+    S,
+    /// Overriding reset.
+    R,
+    /// Time limited.
+    L,
+    /// Time delayed.
+    D,
+    /// Pulse.
+    P,
+    /// Pulse on deactivation.
+    P0,
+    /// Pulse on activation.
+    P1,
+    /// Stored and time delayed.
+    SD,
+    /// Delayed and stored.
+    DS,
+    /// Stored and time limited.
+    SL,
+}
+
+impl Qualifier {
+    /// All eleven.
+    pub const ALL: [Qualifier; 11] = [
+        Qualifier::N,
+        Qualifier::S,
+        Qualifier::R,
+        Qualifier::L,
+        Qualifier::D,
+        Qualifier::P,
+        Qualifier::P0,
+        Qualifier::P1,
+        Qualifier::SD,
+        Qualifier::DS,
+        Qualifier::SL,
+    ];
+
+    /// As written.
+    pub fn name(self) -> &'static str {
+        match self {
+            Qualifier::N => "N",
+            Qualifier::S => "S",
+            Qualifier::R => "R",
+            Qualifier::L => "L",
+            Qualifier::D => "D",
+            Qualifier::P => "P",
+            Qualifier::P0 => "P0",
+            Qualifier::P1 => "P1",
+            Qualifier::SD => "SD",
+            Qualifier::DS => "DS",
+            Qualifier::SL => "SL",
+        }
+    }
+
+    /// Whether a time stands behind it.
+    pub fn timed(self) -> bool {
+        matches!(self, Qualifier::L | Qualifier::D | Qualifier::SD | Qualifier::DS | Qualifier::SL)
+    }
+}
+
+/// What a qualifier governs.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Target {
+    /// A Boolean variable or a named action.
+    Path(Path),
+    /// `%Q0.1`, without the `%`.
+    Direct(Box<str>, Place),
+    /// An assignment or a block, an action without a name.
+    Work(Work),
+}
+
+/// Something done: one statement, or a block in braces.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Work {
+    /// One assignment or call, written without braces.
+    Single(Box<Stmt>),
+    /// `{ … }`.
+    Block(Block),
+}
+
+impl Work {
+    /// The statements.
+    pub fn statements(&self) -> &[Stmt] {
+        match self {
+            Work::Single(s) => std::slice::from_ref(s),
+            Work::Block(b) => &b.statements,
+        }
+    }
+}
+
+/// `{ var …; statements }`.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Block {
+    /// Variables of the block's own (functions, actions, sections only).
+    pub locals: Vec<Local>,
+    /// The statements.
+    pub statements: Vec<Stmt>,
+    /// The braces and all between.
+    pub at: Place,
+}
+
+/// A variable of a block's own; takes its initial value at each run.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Local {
+    /// The names declared together.
+    pub names: Vec<Name>,
+    /// Their type.
+    pub ty: Type,
+    /// Initial value.
+    pub init: Option<Expr>,
+    /// Where it stands.
+    pub at: Place,
+}
+
+/// The language of a body.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum BodyLang {
+    /// Instruction List.
+    Il,
+    /// Ladder Diagram, as text.
+    Ld,
+}
+
+/// The body of a named action or of a PRE or POST section.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Body {
+    /// Structured Text.
+    St(Block),
+    /// Another language, kept as the text between the braces.
+    Other(BodyLang, Box<str>, Place),
+}
+
+/// A statement of Structured Text.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Stmt {
+    /// What it is.
+    pub kind: StmtKind,
+    /// Where it stands.
+    pub at: Place,
+}
+
+/// The statements of Structured Text.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum StmtKind {
+    /// `target := value`; the target is a path or a direct name.
+    Assign {
+        /// A `Path` or `Direct` expression.
+        target: Expr,
+        /// The value.
+        value: Expr,
+    },
+    /// `c1(CU := x)`, `INITCHART(G1)`, `Belt.enter(1)`.
+    Call(Path, Vec<Arg>),
+    /// Conditions with their statements, then ELSE.
+    If(Vec<(Expr, Vec<Stmt>)>, Vec<Stmt>),
+    /// CASE selector, arms, ELSE.
+    Case(Expr, Vec<CaseArm>, Vec<Stmt>),
+    /// FOR.
+    For {
+        /// The loop variable.
+        var: Name,
+        /// Its first value.
+        from: Expr,
+        /// Its last value.
+        to: Expr,
+        /// The step, 1 when absent.
+        by: Option<Expr>,
+        /// What is repeated.
+        body: Vec<Stmt>,
+    },
+    /// WHILE.
+    While(Expr, Vec<Stmt>),
+    /// REPEAT … UNTIL.
+    Repeat(Vec<Stmt>, Expr),
+    /// Leaves the innermost loop.
+    Exit,
+    /// Leaves the body.
+    Return,
+}
+
+/// One arm of a CASE.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct CaseArm {
+    /// Single values, or ranges with both ends included.
+    pub labels: Vec<(Expr, Option<Expr>)>,
+    /// The statements.
+    pub body: Vec<Stmt>,
+}

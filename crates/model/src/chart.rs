@@ -1,0 +1,435 @@
+//! Documents, charts, steps and transitions.
+
+use crate::{Action, Block, Body, Expr, Place, Plant, Property, Scenario, Span, Type};
+
+/// A name with its place. Text without back-ticks.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Name {
+    /// As the author wrote it.
+    pub text: Box<str>,
+    /// Where it stands.
+    pub at: Place,
+}
+
+/// All of one file.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Document {
+    /// In the order of the text.
+    pub items: Vec<Item>,
+    /// Notes to the reader (`//`, `/* */`, `(* *)`) in the order of the text.
+    pub notes: Vec<Note>,
+}
+
+/// A note to the reader, kept by the formatter and by nothing else.
+#[derive(Clone, Debug, Eq)]
+pub struct Note {
+    /// With its delimiters.
+    pub text: Box<str>,
+    /// Where it stands.
+    pub at: Span,
+}
+
+impl PartialEq for Note {
+    fn eq(&self, other: &Note) -> bool {
+        self.text == other.text
+    }
+}
+
+/// What can stand at the outermost level of a file.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Item {
+    /// `profile …`.
+    Profile(Profile),
+    /// `scan 10ms`: nominal scan time, nanoseconds.
+    Cycle(i64, Place),
+    /// `target tsx57`.
+    Target(TargetPlc, Place),
+    /// A variable of the file.
+    Var(VarDecl),
+    /// A chart, an expansion or a task.
+    Chart(Chart),
+    /// `action Pump { … }`.
+    Action(NamedAction),
+    /// `transition section …`.
+    Section(Section),
+    /// `function …`.
+    Function(Function),
+    /// Preliminary processing.
+    Pre(Body, Place),
+    /// Posterior processing.
+    Post(Body, Place),
+    /// A model of the process.
+    Plant(Plant),
+    /// `test "…" { … }`.
+    Test(Scenario),
+    /// `prove …`.
+    Prove(Property),
+    /// `layout …`.
+    Layout(Layout),
+}
+
+/// `profile iec61131 { multi-token }`.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Profile {
+    /// The set of switches to start from.
+    pub name: ProfileName,
+    /// Switches set one by one.
+    pub switches: Vec<(Switch, Place)>,
+    /// Where it stands.
+    pub at: Place,
+}
+
+/// The five sets of evolution rules.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum ProfileName {
+    /// IEC 60848, with search for stability.
+    #[default]
+    Iec60848,
+    /// IEC 61131-3 SFC.
+    Iec61131,
+    /// PL7 (TSX Micro and Premium).
+    Pl7,
+    /// Unity Pro, Control Expert.
+    Unity,
+    /// JGrafchart.
+    Jgrafchart,
+}
+
+impl ProfileName {
+    /// All five.
+    pub const ALL: [ProfileName; 5] = [
+        ProfileName::Iec60848,
+        ProfileName::Iec61131,
+        ProfileName::Pl7,
+        ProfileName::Unity,
+        ProfileName::Jgrafchart,
+    ];
+
+    /// As written.
+    pub fn name(self) -> &'static str {
+        match self {
+            ProfileName::Iec60848 => "iec60848",
+            ProfileName::Iec61131 => "iec61131",
+            ProfileName::Pl7 => "pl7",
+            ProfileName::Unity => "unity",
+            ProfileName::Jgrafchart => "jgrafchart",
+        }
+    }
+}
+
+/// One switch of a profile; `docs/book/src/language/profiles.md` explains each.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Switch {
+    /// `stable` (true) or `one-pass`.
+    Stable(bool),
+    /// `multi-token` (true) or `single-token`.
+    MultiToken(bool),
+    /// `sequential` (true, one transition after the other) or `simultaneous`.
+    Sequential(bool),
+    /// `parallel-actions` (true, stored actions read the values from before
+    /// the pass) or `ordered-actions`.
+    ParallelActions(bool),
+    /// `final-scan` (true) or `no-final-scan`.
+    FinalScan(bool),
+    /// `keep-step-time` (true) or `zero-step-time`.
+    KeepStepTime(bool),
+    /// `scan-clock` (true, step times count scans) or `time-clock`.
+    ScanClock(bool),
+    /// `pulse-first` (true, P1 first and P0 last) or `text-order`.
+    PulseFirst(bool),
+    /// `bound n`: most passes in a scan.
+    Bound(u32),
+}
+
+/// PLCs whose limits can be checked.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum TargetPlc {
+    /// TSX 37-10.
+    Tsx3710,
+    /// TSX 37-20.
+    Tsx3720,
+    /// TSX 57.
+    Tsx57,
+}
+
+impl TargetPlc {
+    /// All of them.
+    pub const ALL: [TargetPlc; 3] = [TargetPlc::Tsx3710, TargetPlc::Tsx3720, TargetPlc::Tsx57];
+
+    /// As written.
+    pub fn name(self) -> &'static str {
+        match self {
+            TargetPlc::Tsx3710 => "tsx3710",
+            TargetPlc::Tsx3720 => "tsx3720",
+            TargetPlc::Tsx57 => "tsx57",
+        }
+    }
+}
+
+/// What a variable is for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum VarKind {
+    /// Read from the plant.
+    Input,
+    /// Written to the plant.
+    Output,
+    /// Internal.
+    Var,
+    /// Never changes.
+    Const,
+}
+
+/// A declaration of variables.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct VarDecl {
+    /// What they are for.
+    pub kind: VarKind,
+    /// The names declared together, at least one.
+    pub names: Vec<Name>,
+    /// Their type.
+    pub ty: Type,
+    /// Initial value; the type's zero when absent.
+    pub init: Option<Expr>,
+    /// Address (`%I0.0`, with its `%`) or channel, as written.
+    pub address: Option<Name>,
+    /// The channel carries the complement.
+    pub inverted: bool,
+    /// Kept over a restart.
+    pub retain: bool,
+    /// Value of an output after a fault; the type's zero when absent.
+    pub safe: Option<Expr>,
+    /// `"…"`.
+    pub comment: Option<Box<str>>,
+    /// Where it stands.
+    pub at: Place,
+}
+
+/// What a chart is for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum ChartKind {
+    /// A partial chart with a life of its own.
+    Chart,
+    /// The expansion of a macro-step.
+    Expansion,
+    /// A task, called from steps.
+    Task,
+}
+
+/// A chart.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Chart {
+    /// What it is for.
+    pub kind: ChartKind,
+    /// Its name.
+    pub name: Name,
+    /// `"…"`.
+    pub comment: Option<Box<str>>,
+    /// `every 20ms`: period of its evolutions, nanoseconds.
+    pub every: Option<i64>,
+    /// In the order of the text.
+    pub items: Vec<ChartItem>,
+    /// Where it stands.
+    pub at: Place,
+}
+
+/// What can stand in a chart.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum ChartItem {
+    /// A variable of the chart.
+    Var(VarDecl),
+    /// A step.
+    Step(Step),
+    /// A transition.
+    Transition(Transition),
+    /// Preliminary processing of this chart.
+    Pre(Body, Place),
+    /// Posterior processing of this chart.
+    Post(Body, Place),
+    /// A named action of this chart.
+    Action(NamedAction),
+    /// A transition section of this chart.
+    Section(Section),
+}
+
+/// What sort of step.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum StepKind {
+    /// A plain step.
+    Plain,
+    /// The first step of an expansion or task.
+    Entry,
+    /// The last step of an expansion or task.
+    Exit,
+    /// A macro-step, with the name of its expansion.
+    Macro(Name),
+    /// An enclosing step; its `enclose` orders name the enclosed charts.
+    Enclosing,
+}
+
+/// A step or macro-step.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Step {
+    /// Its name or number.
+    pub name: Name,
+    /// What sort.
+    pub kind: StepKind,
+    /// Active in the initial situation.
+    pub initial: bool,
+    /// Carries the activation link `*`.
+    pub linked: bool,
+    /// `"…"`.
+    pub comment: Option<Box<str>>,
+    /// Its actions, in the order of the text.
+    pub actions: Vec<Action>,
+    /// Whether braces were written (an empty action block is kept).
+    pub braces: bool,
+    /// Where it stands.
+    pub at: Place,
+}
+
+/// A transition.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Transition {
+    /// `t7:`.
+    pub label: Option<Name>,
+    /// Preceding steps; none for a source transition.
+    pub from: Vec<Name>,
+    /// Succeeding steps; none for a sink transition.
+    pub to: Vec<Name>,
+    /// The receptivity.
+    pub receptivity: Expr,
+    /// `priority n`, 1 first.
+    pub priority: Option<u32>,
+    /// `"…"`.
+    pub comment: Option<Box<str>>,
+    /// Stored action on clearing.
+    pub on_clearing: Option<Block>,
+    /// Follows the transition before it in one chain (`1 -> 2 when a -> 3 when b`);
+    /// then `from` repeats that transition's `to`. Kept for the printer.
+    pub chained: bool,
+    /// Where it stands.
+    pub at: Place,
+}
+
+/// `action Pump { … }`.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct NamedAction {
+    /// Its name.
+    pub name: Name,
+    /// `"…"`.
+    pub comment: Option<Box<str>>,
+    /// What it does.
+    pub body: Body,
+    /// Where it stands.
+    pub at: Place,
+}
+
+/// `transition section Ready { … }` (Unity Pro).
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Section {
+    /// Its name, which is also that of its one BOOL output.
+    pub name: Name,
+    /// Statements that assign the output; `:= e` is kept as one assignment.
+    pub body: Block,
+    /// Written as `:= e`.
+    pub short: bool,
+    /// Where it stands.
+    pub at: Place,
+}
+
+/// `function Full(level : REAL) : BOOL { … }`.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Function {
+    /// Its name, which is also that of its result.
+    pub name: Name,
+    /// Its inputs.
+    pub params: Vec<Param>,
+    /// The type of its result.
+    pub result: Type,
+    /// What it computes.
+    pub body: Block,
+    /// Where it stands.
+    pub at: Place,
+}
+
+/// A parameter of a function, or an attribute of a part.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Param {
+    /// Its name.
+    pub name: Name,
+    /// Its type.
+    pub ty: Type,
+}
+
+/// `layout Conveyor { … }`.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Layout {
+    /// The chart.
+    pub chart: Name,
+    /// The places.
+    pub places: Vec<PlaceAt>,
+    /// Where it stands.
+    pub at: Place,
+}
+
+/// One symbol's place on the drawing.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct PlaceAt {
+    /// The symbol.
+    pub what: Placed,
+    /// To the right, in hundredths of the drawing's unit.
+    pub x: i32,
+    /// Downward, in hundredths of the drawing's unit.
+    pub y: i32,
+    /// Where it stands.
+    pub at: Place,
+}
+
+/// What a layout places.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Placed {
+    /// A step by name.
+    Step(Name),
+    /// A transition by label.
+    Transition(Name),
+    /// A transition by its place in the text of the chart, from 0.
+    TransitionNumber(u32),
+    /// A comment by its text.
+    Comment(Box<str>),
+}
+
+impl Name {
+    /// A name at a place.
+    pub fn new(text: impl Into<Box<str>>, at: Span) -> Name {
+        Name { text: text.into(), at: at.into() }
+    }
+}
+
+impl Document {
+    /// The charts, expansions and tasks, in the order of the text.
+    pub fn charts(&self) -> impl Iterator<Item = &Chart> {
+        self.items.iter().filter_map(|i| if let Item::Chart(c) = i { Some(c) } else { None })
+    }
+
+    /// The profile, the first if there are several, else the default.
+    pub fn profile(&self) -> Option<&Profile> {
+        self.items.iter().find_map(|i| if let Item::Profile(p) = i { Some(p) } else { None })
+    }
+}
+
+impl Chart {
+    /// Its steps, in the order of the text.
+    pub fn steps(&self) -> impl Iterator<Item = &Step> {
+        self.items.iter().filter_map(|i| if let ChartItem::Step(s) = i { Some(s) } else { None })
+    }
+
+    /// Its transitions, in the order of the text.
+    pub fn transitions(&self) -> impl Iterator<Item = &Transition> {
+        self.items.iter().filter_map(|i| if let ChartItem::Transition(t) = i { Some(t) } else { None })
+    }
+
+    /// Its variables, in the order of the text.
+    pub fn vars(&self) -> impl Iterator<Item = &VarDecl> {
+        self.items.iter().filter_map(|i| if let ChartItem::Var(v) = i { Some(v) } else { None })
+    }
+}

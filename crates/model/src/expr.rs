@@ -1,0 +1,131 @@
+//! Expressions as written: receptivities, conditions, right-hand sides.
+
+use crate::{Name, Place, Type};
+
+/// An expression with its place.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Expr {
+    /// What it is.
+    pub kind: ExprKind,
+    /// Where it stands.
+    pub at: Place,
+}
+
+/// The forms of an expression.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum ExprKind {
+    /// A constant.
+    Literal(Literal),
+    /// A name, resolved by `compile`: `a`, `X12`, `Fill.T`, `Chart.v`, `c.Q`.
+    Path(Path),
+    /// `%I0.1`, `%X12.T`: without the `%`, upper case.
+    Direct(Box<str>),
+    /// `not e`, `-e`, `↑e`, `↓e`.
+    Unary(UnaryOp, Box<Expr>),
+    /// `a op b`.
+    Binary(BinaryOp, Box<Expr>, Box<Expr>),
+    /// `t1/e/t2` (IEC 60848:2013, 4.8): true once `e` has been true for `t1`,
+    /// until it has been false for `t2` (0 when absent).
+    Timer {
+        /// The delay after which it comes true.
+        t1: Box<Expr>,
+        /// The condition watched.
+        e: Box<Expr>,
+        /// The delay after which it ends.
+        t2: Option<Box<Expr>>,
+    },
+    /// `f(x, n := y)`.
+    Call(Path, Vec<Arg>),
+    /// Something that could not be read; a problem has been reported.
+    Bad,
+}
+
+/// A constant as written.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Literal {
+    /// `TRUE` or `FALSE`.
+    Bool(bool),
+    /// A whole number, with the type written before `#`, if any.
+    Int(i128, Option<Type>),
+    /// A number with a point or exponent, kept as written (without `_`).
+    Real(Box<str>, Option<Type>),
+    /// A duration in nanoseconds.
+    Time(i64),
+    /// Text, escapes undone.
+    Str(Box<str>),
+}
+
+/// Names joined by dots; at least one.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Path {
+    /// The names.
+    pub names: Vec<Name>,
+}
+
+/// An argument of a call.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Arg {
+    /// `n := …` or `n => …`.
+    pub name: Option<Name>,
+    /// Whether it is an output, `n => v`; then `value` is a path.
+    pub output: bool,
+    /// The value.
+    pub value: Expr,
+}
+
+/// Operators before an operand.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum UnaryOp {
+    /// Boolean complement.
+    Not,
+    /// Arithmetic minus.
+    Neg,
+    /// Rising edge, `↑e`.
+    Rise,
+    /// Falling edge, `↓e`.
+    Fall,
+}
+
+/// Operators between operands.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum BinaryOp {
+    /// `or`.
+    Or,
+    /// `xor`.
+    Xor,
+    /// `and`, `&`.
+    And,
+    /// `·`: AND with the precedence of a product.
+    Dot,
+    /// `=`.
+    Eq,
+    /// `<>`.
+    Ne,
+    /// `<`.
+    Lt,
+    /// `<=`.
+    Le,
+    /// `>`.
+    Gt,
+    /// `>=`.
+    Ge,
+    /// `+`: OR between Booleans.
+    Add,
+    /// `-`.
+    Sub,
+    /// `*`: AND between Booleans.
+    Mul,
+    /// `/`.
+    Div,
+    /// `mod`.
+    Mod,
+    /// `**`.
+    Pow,
+}
+
+impl Path {
+    /// The names joined by dots, as in messages.
+    pub fn text(&self) -> String {
+        self.names.iter().map(|n| &*n.text).collect::<Vec<_>>().join(".")
+    }
+}

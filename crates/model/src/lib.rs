@@ -1,0 +1,44 @@
+//! The chart as data, and how we talk about what is wrong with it.
+//!
+//! # Where this sits
+//!
+//! ```text
+//! .g7 text, XML -> syntax -> model::Document -> compile -> engine::Program
+//! ```
+//!
+//! A [`Document`] is what an author wrote, in the author's order, with names
+//! still names: nothing is resolved, typed or lowered here. Everything carries a
+//! [`Span`], so that text, drawing and message can point at the same thing.
+//! No I/O, no parser, no meaning.
+//!
+//! # Invariants
+//!
+//! - Two documents that differ only in spans and notes are equal: `Place` never
+//!   takes part in a comparison, so `parse(print(d)) == d` can be tested as is.
+//! - A [`Problem`]'s code is one of [`codes::ALL`], each with a page in the book.
+#![forbid(unsafe_code)]
+
+mod action;
+mod chart;
+pub mod codes;
+mod expr;
+mod plant;
+mod problem;
+mod scenario;
+mod span;
+mod types;
+
+pub use action::{
+    Action, ActionKind, Block, Body, BodyLang, CaseArm, Local, Order, Qualifier, Situation, Stmt, StmtKind,
+    Target, Work,
+};
+pub use chart::{
+    Chart, ChartItem, ChartKind, Document, Function, Item, Layout, Name, NamedAction, Note, Param, PlaceAt,
+    Placed, Profile, ProfileName, Section, Step, StepKind, Switch, TargetPlc, Transition, VarDecl, VarKind,
+};
+pub use expr::{Arg, BinaryOp, Expr, ExprKind, Literal, Path, UnaryOp};
+pub use plant::{Arrivals, Binding, Drive, Parts, Plant, PlantItem, Rate, StateVar, View};
+pub use problem::{Problem, Severity};
+pub use scenario::{Property, PropertyKind, Scenario, TestStmt, TestStmtKind};
+pub use span::{FileId, Place, Span};
+pub use types::{FbKind, Type};
