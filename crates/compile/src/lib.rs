@@ -1,1 +1,4 @@
-//! compile
+//! From a document to a program.
+#![forbid(unsafe_code)]
+
+pub mod ir;
