@@ -184,8 +184,8 @@ pub struct Transition {
     pub on_clearing: u32,
     /// Shares a preceding step with another transition.
     pub shares: bool,
-    /// Carries a written priority.
-    pub numbered: bool,
+    /// The written priority, 1 first; `NONE` without one.
+    pub priority: u32,
     /// The step watched has only transitions with that one preceding step, so
     /// that under single-token the first clearable one settles it.
     pub simple: bool,
@@ -218,9 +218,11 @@ pub struct Action {
     pub condition: Code,
     /// What it does.
     pub body: Code,
+    /// It runs only in scans in which this row of [`Tables::periods`] is due.
+    pub period: u32,
 }
 
-/// A stored action on event.
+/// A stored action on event; of its action's period.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Event {
     /// Pushes one BOOL.
@@ -241,8 +243,11 @@ pub struct Contribution {
     pub input: u8,
     /// `if …`; empty when there is none. Pushes one BOOL.
     pub condition: Code,
-    /// TIME of a timed qualifier; empty when there is none. Pushes I64.
+    /// TIME of a timed qualifier; empty when there is none. Pushes I64; taken
+    /// when the input comes true.
     pub time: Code,
+    /// The condition is looked at only when this row of [`Tables::periods`] is due.
+    pub period: u32,
 }
 
 /// A control block (IEC 61131-3:2003, 2.6.4.5; SEMANTICS section 5).
@@ -252,10 +257,13 @@ pub struct ControlBlock {
     pub output: Addr,
     /// Runs while A holds: row of [`Tables::actions`], or `NONE`.
     pub action: u32,
-    /// Only N comes in: Q is "some N is true".
+    /// Only N comes in, and there is no body: Q is "some N is true".
     pub plain: bool,
     /// Holds Q back while false; empty when there is none. Pushes one BOOL.
     pub gate: Code,
+    /// Evaluated only when this row of [`Tables::periods`] is due; 0 where its
+    /// inputs come from charts of several periods.
+    pub period: u32,
 }
 
 /// A watched expression.
@@ -420,4 +428,14 @@ pub struct Program {
     pub(crate) has_orders: bool,
     pub(crate) has_hierarchy: bool,
     pub(crate) has_periods: bool,
+    /// Some transitions share a preceding step and are not settled by their place.
+    pub(crate) has_contests: bool,
+    /// Number of references to stored actions.
+    pub(crate) stored: usize,
+    /// Most words that the stored actions of one pass can write.
+    pub(crate) commit_room: usize,
+    /// Room for strings at work, in bytes.
+    pub(crate) text_room: usize,
+    /// Watches looked at in every scan.
+    pub(crate) always: Box<[u32]>,
 }

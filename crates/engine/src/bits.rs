@@ -1,0 +1,264 @@
+//! Sets of small numbers as bits with summaries, inside a flat word array.
+//!
+//! Level 0 has a bit a member; each further level has a bit a word of the level
+//! below, set while that word is not zero. So a set is walked in ascending
+//! order in time that follows its members, and its words depend on nothing but
+//! the members: two equal sets are equal bytes.
+
+/// Most levels: `64^5` members.
+pub(crate) const LEVELS: usize = 5;
+
+/// Where a set lies in the word array.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Tree {
+    /// First word of each level.
+    at: [u32; LEVELS],
+    /// Levels in use, at least 1 unless the set can have no member.
+    levels: u32,
+}
+
+/// The word, or 0 where there is none (checked tables never get there).
+#[inline(always)]
+pub(crate) fn word(words: &[u64], at: usize) -> u64 {
+    words.get(at).copied().unwrap_or(0)
+}
+
+#[inline(always)]
+fn or(words: &mut [u64], at: usize, mask: u64) -> u64 {
+    match words.get_mut(at) {
+        Some(w) => {
+            let old = *w;
+            *w = old | mask;
+            old
+        }
+        None => u64::MAX,
+    }
+}
+
+#[inline(always)]
+fn and_not(words: &mut [u64], at: usize, mask: u64) -> u64 {
+    match words.get_mut(at) {
+        Some(w) => {
+            *w &= !mask;
+            *w
+        }
+        None => u64::MAX,
+    }
+}
+
+/// A plain bit of a plain bit array that begins at word `base`.
+#[inline(always)]
+pub(crate) fn bit(words: &[u64], base: u32, i: u32) -> bool {
+    word(words, base as usize + (i / 64) as usize) & (1 << (i % 64)) != 0
+}
+
+/// Writes a plain bit; tells the old one.
+#[inline(always)]
+pub(crate) fn set_bit(words: &mut [u64], base: u32, i: u32, on: bool) -> bool {
+    let Some(w) = words.get_mut(base as usize + (i / 64) as usize) else { return on };
+    let mask = 1u64 << (i % 64);
+    let old = *w & mask != 0;
+    if on {
+        *w |= mask;
+    } else {
+        *w &= !mask;
+    }
+    old
+}
+
+impl Tree {
+    /// Reserves room for members `0..n` from `next` on.
+    pub(crate) fn reserve(n: u32, next: &mut u32) -> Tree {
+        let mut tree = Tree::default();
+        let mut count = n;
+        while count > 0 && (tree.levels as usize) < LEVELS {
+            let words = count.div_ceil(64);
+            if let Some(at) = tree.at.get_mut(tree.levels as usize) {
+                *at = *next;
+            }
+            *next += words;
+            tree.levels += 1;
+            if words == 1 {
+                break;
+            }
+            count = words;
+        }
+        tree
+    }
+
+    /// First word of level 0.
+    pub(crate) fn base(&self) -> u32 {
+        self.at[0]
+    }
+
+    #[inline(always)]
+    pub(crate) fn contains(&self, words: &[u64], i: u32) -> bool {
+        bit(words, self.at[0], i)
+    }
+
+    #[inline(always)]
+    pub(crate) fn insert(&self, words: &mut [u64], i: u32) {
+        let mut i = i;
+        for at in self.at.iter().take(self.levels as usize) {
+            let old = or(words, *at as usize + (i / 64) as usize, 1 << (i % 64));
+            if old != 0 {
+                return;
+            }
+            i /= 64;
+        }
+    }
+
+    #[inline(always)]
+    pub(crate) fn remove(&self, words: &mut [u64], i: u32) {
+        let mut i = i;
+        for at in self.at.iter().take(self.levels as usize) {
+            let left = and_not(words, *at as usize + (i / 64) as usize, 1 << (i % 64));
+            if left != 0 {
+                return;
+            }
+            i /= 64;
+        }
+    }
+
+    #[inline(always)]
+    pub(crate) fn is_empty(&self, words: &[u64]) -> bool {
+        match self.levels {
+            0 => true,
+            n => word(words, self.at.get(n as usize - 1).copied().unwrap_or(0) as usize) == 0,
+        }
+    }
+
+    /// The smallest member `>= from`. Members may come and go between calls.
+    pub(crate) fn next(&self, words: &[u64], from: u32) -> Option<u32> {
+        let mut i = from;
+        let mut level = 0usize;
+        // Climb until a word has a member at or behind `i`.
+        while level < self.levels as usize {
+            let at = *self.at.get(level)? as usize + (i / 64) as usize;
+            let end = self.at.get(level + 1).filter(|_| level + 1 < self.levels as usize);
+            if level + 1 == self.levels as usize && i >= 64 || end.is_some_and(|e| at >= *e as usize) {
+                return None;
+            }
+            let rest = word(words, at) & (u64::MAX << (i % 64));
+            if rest != 0 {
+                let mut found = (i / 64) * 64 + rest.trailing_zeros();
+                // Descend to the first member below that bit.
+                while level > 0 {
+                    level -= 1;
+                    let w = word(words, *self.at.get(level)? as usize + found as usize);
+                    if w == 0 {
+                        return None;
+                    }
+                    found = found * 64 + w.trailing_zeros();
+                }
+                return Some(found);
+            }
+            i = i / 64 + 1;
+            level += 1;
+        }
+        None
+    }
+
+    /// Members in a range of members, counted.
+    pub(crate) fn count(&self, words: &[u64], n: u32) -> u32 {
+        let base = self.at[0] as usize;
+        (0..n.div_ceil(64) as usize).map(|k| word(words, base + k).count_ones()).sum()
+    }
+}
+
+/// Walks a set that does not change meanwhile, in ascending order.
+pub(crate) struct Walk {
+    /// What is left of the current word of each level.
+    rest: [u64; LEVELS],
+    /// Index of the current word of each level.
+    index: [u32; LEVELS],
+}
+
+impl Walk {
+    #[inline(always)]
+    pub(crate) fn new(tree: &Tree, words: &[u64]) -> Walk {
+        let mut walk = Walk { rest: [0; LEVELS], index: [0; LEVELS] };
+        if tree.levels > 0 {
+            let top = tree.levels as usize - 1;
+            if let (Some(rest), Some(at)) = (walk.rest.get_mut(top), tree.at.get(top)) {
+                *rest = word(words, *at as usize);
+            }
+        }
+        walk
+    }
+
+    #[inline(always)]
+    pub(crate) fn next(&mut self, tree: &Tree, words: &[u64]) -> Option<u32> {
+        let r0 = self.rest[0];
+        if r0 != 0 {
+            self.rest[0] = r0 & (r0 - 1);
+            return Some(self.index[0] * 64 + r0.trailing_zeros());
+        }
+        self.climb(tree, words)
+    }
+
+    fn climb(&mut self, tree: &Tree, words: &[u64]) -> Option<u32> {
+        let levels = tree.levels as usize;
+        let mut level = 1;
+        while level < levels {
+            let rest = *self.rest.get(level)?;
+            if rest != 0 {
+                *self.rest.get_mut(level)? = rest & (rest - 1);
+                let mut member = *self.index.get(level)? * 64 + rest.trailing_zeros();
+                while level > 0 {
+                    level -= 1;
+                    let w = word(words, *tree.at.get(level)? as usize + member as usize);
+                    *self.index.get_mut(level)? = member;
+                    *self.rest.get_mut(level)? = w & w.wrapping_sub(1);
+                    member = member * 64 + w.trailing_zeros();
+                }
+                return Some(member);
+            }
+            level += 1;
+        }
+        None
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Tree, Walk};
+    use alloc::collections::BTreeSet;
+    use alloc::vec;
+    use alloc::vec::Vec;
+
+    #[test]
+    fn a_tree_is_a_set() {
+        for n in [1u32, 63, 64, 65, 4096, 4097, 300_000] {
+            let mut next = 3;
+            let tree = Tree::reserve(n, &mut next);
+            let mut words = vec![0; next as usize];
+            let mut set = BTreeSet::new();
+            let mut x = 12345u64;
+            for _ in 0..2000 {
+                x = x.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+                let i = (x >> 33) as u32 % n;
+                if x & 4096 == 0 {
+                    tree.remove(&mut words, i);
+                    set.remove(&i);
+                } else {
+                    tree.insert(&mut words, i);
+                    set.insert(i);
+                }
+                assert_eq!(tree.next(&words, i), set.range(i..).next().copied());
+                assert_eq!(tree.is_empty(&words), set.is_empty());
+            }
+            let mut walk = Walk::new(&tree, &words);
+            let mut seen = Vec::new();
+            while let Some(i) = walk.next(&tree, &words) {
+                seen.push(i);
+            }
+            assert_eq!(seen, set.iter().copied().collect::<Vec<_>>());
+            assert_eq!(tree.next(&words, n), None);
+            for i in set {
+                tree.remove(&mut words, i);
+            }
+            assert!(words.iter().all(|w| *w == 0), "no summary is left behind");
+        }
+    }
+}

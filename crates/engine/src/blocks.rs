@@ -1,0 +1,165 @@
+//! Control blocks (IEC 61131-3:2003, 2.6.4.5): the inputs of all the actions
+//! that name one variable or body, and its Q.
+
+use crate::bits::{bit, set_bit, word};
+use crate::fault::Fault;
+use crate::run::{condition, value, write};
+use crate::state::{MEMORY, STARTS, State, TIMES, head};
+use crate::watch::is_due;
+use crate::{ControlBlock, NONE, Program};
+
+// Inputs, in the order of `INPUTS`.
+const N: u32 = 0;
+const S: u32 = 1;
+const R: u32 = 2;
+const L: u32 = 3;
+const D: u32 = 4;
+const P: u32 = 5;
+const P1: u32 = 6;
+const P0: u32 = 7;
+const SD: u32 = 8;
+const DS: u32 = 9;
+const SL: u32 = 10;
+
+/// The timed inputs, each with a start and a time.
+const TIMED: [u32; 5] = [L, D, SD, DS, SL];
+
+// Bits of the memory word. The low 11 are the inputs at the last evaluation.
+const S_FF: u64 = 1 << 16;
+const SD_FF: u64 = 1 << 17;
+const DS_FF: u64 = 1 << 18;
+const SL_FF: u64 = 1 << 19;
+/// Q, pulses P1 and P0 left out, at the last evaluation.
+const Q_BEFORE: u64 = 1 << 20;
+
+fn base(p: &Program, block: u32) -> u32 {
+    p.layout.block_at.get(block as usize).copied().unwrap_or(0)
+}
+
+/// Adds an input to a block or takes it away.
+#[inline]
+pub(crate) fn count(p: &Program, s: &mut State, block: u32, input: u8, on: bool) {
+    let plain = p.t.blocks.get(block as usize).is_some_and(|b| b.plain);
+    let at = base(p, block) as usize + if plain { 0 } else { usize::from(input) };
+    let old = word(&s.w, at);
+    s.set(at, if on { old.wrapping_add(1) } else { old.saturating_sub(1) });
+    p.layout.blocks.insert(&mut s.w, block);
+}
+
+/// Looks at the conditions of the active steps' actions.
+pub(crate) fn conditions(p: &Program, s: &mut State) -> Result<(), Fault> {
+    let l = &p.layout;
+    let mut from = 0;
+    while let Some(row) = l.conditions.next(&s.w, from) {
+        from = row + 1;
+        let Some(c) = p.t.contributions.get(row as usize) else { break };
+        if !is_due(p, s, c.period) {
+            continue;
+        }
+        let now = condition(p, s, c.condition)?;
+        if now == bit(&s.w, l.counted, row) {
+            continue;
+        }
+        if now
+            && !c.time.is_empty()
+            && let Some(k) = TIMED.iter().position(|i| *i == u32::from(c.input))
+        {
+            let time = value(p, s, c.time)?;
+            s.set((base(p, c.block) + TIMES) as usize + k, time);
+        }
+        set_bit(&mut s.w, l.counted, row, now);
+        count(p, s, c.block, c.input, now);
+    }
+    Ok(())
+}
+
+/// Evaluates the blocks whose inputs changed or whose timers run, in order.
+pub(crate) fn evaluate(p: &Program, s: &mut State) -> Result<(), Fault> {
+    let l = &p.layout;
+    let mut from = 0;
+    while let Some(i) = l.blocks.next(&s.w, from) {
+        from = i + 1;
+        let Some(b) = p.t.blocks.get(i as usize) else { break };
+        if !is_due(p, s, b.period) {
+            continue;
+        }
+        l.blocks.remove(&mut s.w, i);
+        let gate = condition(p, s, b.gate)?;
+        let at = base(p, i);
+        let (q, run, live) = if b.plain { plain(s, at, b, gate) } else { full(p, s, at, gate) };
+        if b.output.0 != NONE {
+            write(p, s, b.output, u64::from(q));
+        }
+        if run && b.action != NONE {
+            set_bit(&mut s.x.late, 0, b.action, true);
+            s.x.late_any = true;
+        }
+        if live || !b.gate.is_empty() || (b.action != NONE && q) {
+            l.blocks.insert(&mut s.w, i);
+        }
+    }
+    Ok(())
+}
+
+/// Q, whether a body runs, whether to look again at the next scan.
+fn plain(s: &State, at: u32, b: &ControlBlock, gate: bool) -> (bool, bool, bool) {
+    let q = word(&s.w, at as usize) != 0 && gate;
+    (q, q, b.action != NONE && q)
+}
+
+fn full(p: &Program, s: &mut State, at: u32, gate: bool) -> (bool, bool, bool) {
+    let now = word(&s.w, head::NOW) as i64;
+    let input = |s: &State, i: u32| word(&s.w, (at + i) as usize) != 0;
+    let inputs: [bool; 11] = core::array::from_fn(|i| input(s, i as u32));
+    let on = |i: u32| inputs.get(i as usize).copied().unwrap_or(false);
+    let memory = word(&s.w, (at + MEMORY) as usize);
+    let before = |i: u32| memory & (1 << i) != 0;
+    let r = on(R);
+    let s_ff = !r && (on(S) || memory & S_FF != 0);
+    let sd_ff = !r && (on(SD) || memory & SD_FF != 0);
+    let sl_ff = !r && (on(SL) || memory & SL_FF != 0);
+    // TON: (its input now, its input at the last evaluation) -> done, still running.
+    let mut live = false;
+    let mut ton = |s: &mut State, k: u32, e: bool, e_before: bool| {
+        let start = (at + STARTS + k) as usize;
+        if e && !e_before {
+            s.set(start, now as u64);
+        } else if !e {
+            s.set(start, 0);
+        }
+        let time = word(&s.w, (at + TIMES + k) as usize) as i64;
+        let done = e && now.wrapping_sub(word(&s.w, start) as i64) >= time;
+        live |= e && !done;
+        done
+    };
+    let l_done = ton(s, 0, on(L), before(L));
+    let d_done = ton(s, 1, on(D), before(D));
+    let sd_done = ton(s, 2, sd_ff, memory & SD_FF != 0);
+    let ds_done = ton(s, 3, on(DS), before(DS));
+    let sl_done = ton(s, 4, sl_ff, memory & SL_FF != 0);
+    let ds_ff = !r && (ds_done || memory & DS_FF != 0);
+    let p_trig = on(P) && !before(P);
+    let p1 = on(P1) && !before(P1) && !r && gate;
+    let p0 = !on(P0) && before(P0) && !r && gate;
+    let level = !r
+        && gate
+        && (on(N)
+            || s_ff
+            || (on(L) && !l_done)
+            || d_done
+            || p_trig
+            || sd_done
+            || ds_ff
+            || (sl_ff && !sl_done));
+    let fell = memory & Q_BEFORE != 0 && !level;
+    let mut keep = inputs.iter().enumerate().fold(0u64, |m, (i, v)| m | u64::from(*v) << i);
+    for (flag, v) in [(S_FF, s_ff), (SD_FF, sd_ff), (DS_FF, ds_ff), (SL_FF, sl_ff), (Q_BEFORE, level)] {
+        if v {
+            keep |= flag;
+        }
+    }
+    s.set((at + MEMORY) as usize, keep);
+    let q = level || p1 || p0;
+    let run = q || (p.t.rules.final_scan && fell);
+    (q, run, live || p_trig || p1 || p0)
+}

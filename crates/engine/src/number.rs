@@ -1,0 +1,187 @@
+//! Arithmetic on words, with overflow judged in the type of the result.
+
+use crate::fault::FaultKind;
+use crate::{Arith, Builtin, Cmp, Num};
+
+/// Smallest and largest value of an integer kind (BOOL counts as 0..1).
+fn bounds(n: Num) -> (i128, i128) {
+    match n {
+        Num::Bool => (0, 1),
+        Num::I8 => (i8::MIN.into(), i8::MAX.into()),
+        Num::I16 => (i16::MIN.into(), i16::MAX.into()),
+        Num::I32 => (i32::MIN.into(), i32::MAX.into()),
+        Num::I64 | Num::F32 | Num::F64 => (i64::MIN.into(), i64::MAX.into()),
+        Num::U8 => (0, u8::MAX.into()),
+        Num::U16 => (0, u16::MAX.into()),
+        Num::U32 => (0, u32::MAX.into()),
+        Num::U64 => (0, u64::MAX.into()),
+    }
+}
+
+/// A word of an integer kind as a number.
+fn whole(n: Num, v: u64) -> i128 {
+    match n {
+        Num::Bool | Num::U8 | Num::U16 | Num::U32 | Num::U64 => i128::from(v),
+        Num::I8 | Num::I16 | Num::I32 | Num::I64 | Num::F32 | Num::F64 => i128::from(v as i64),
+    }
+}
+
+fn fit(n: Num, v: i128) -> Result<u64, FaultKind> {
+    let (least, most) = bounds(n);
+    if v < least || v > most { Err(FaultKind::Overflow) } else { Ok(v as u64) }
+}
+
+/// A word of a real kind as a number; REAL is exact in LREAL.
+pub(crate) fn real(n: Num, v: u64) -> f64 {
+    if n == Num::F32 { f64::from(f32::from_bits(v as u32)) } else { f64::from_bits(v) }
+}
+
+pub(crate) fn from_real(n: Num, v: f64) -> u64 {
+    if n == Num::F32 { u64::from((v as f32).to_bits()) } else { v.to_bits() }
+}
+
+fn is_real(n: Num) -> bool {
+    matches!(n, Num::F32 | Num::F64)
+}
+
+pub(crate) fn compare(c: Cmp, n: Num, a: u64, b: u64) -> bool {
+    if is_real(n) {
+        return ordered(c, real(n, a).partial_cmp(&real(n, b)));
+    }
+    let order = match n {
+        Num::Bool | Num::U8 | Num::U16 | Num::U32 | Num::U64 => a.cmp(&b),
+        Num::I8 | Num::I16 | Num::I32 | Num::I64 | Num::F32 | Num::F64 => (a as i64).cmp(&(b as i64)),
+    };
+    ordered(c, Some(order))
+}
+
+/// `None` is "not a number": only `<>` holds.
+pub(crate) fn ordered(c: Cmp, order: Option<core::cmp::Ordering>) -> bool {
+    let Some(o) = order else { return c == Cmp::Ne };
+    match c {
+        Cmp::Eq => o.is_eq(),
+        Cmp::Ne => o.is_ne(),
+        Cmp::Lt => o.is_lt(),
+        Cmp::Le => o.is_le(),
+        Cmp::Gt => o.is_gt(),
+        Cmp::Ge => o.is_ge(),
+    }
+}
+
+pub(crate) fn negate(n: Num, v: u64) -> Result<u64, FaultKind> {
+    if is_real(n) { Ok(from_real(n, -real(n, v))) } else { fit(n, -whole(n, v)) }
+}
+
+pub(crate) fn arith(op: Arith, n: Num, a: u64, b: u64) -> Result<u64, FaultKind> {
+    match n {
+        Num::F32 => arith_f32(op, f32::from_bits(a as u32), f32::from_bits(b as u32)),
+        Num::F64 => arith_f64(op, f64::from_bits(a), f64::from_bits(b)),
+        Num::Bool | Num::I8 | Num::I16 | Num::I32 | Num::I64 | Num::U8 | Num::U16 | Num::U32 | Num::U64 => {
+            let (x, y) = (whole(n, a), whole(n, b));
+            let v = match op {
+                Arith::Add => x + y,
+                Arith::Sub => x - y,
+                Arith::Mul => x.checked_mul(y).ok_or(FaultKind::Overflow)?,
+                Arith::Div => x.checked_div(y).ok_or(FaultKind::DivisionByZero)?,
+                Arith::Mod => x.checked_rem(y).ok_or(FaultKind::DivisionByZero)?,
+                Arith::Pow => return Err(FaultKind::Range),
+            };
+            fit(n, v)
+        }
+    }
+}
+
+fn arith_f32(op: Arith, a: f32, b: f32) -> Result<u64, FaultKind> {
+    let v = match op {
+        Arith::Add => a + b,
+        Arith::Sub => a - b,
+        Arith::Mul => a * b,
+        Arith::Div | Arith::Mod if b == 0.0 => return Err(FaultKind::DivisionByZero),
+        Arith::Div => a / b,
+        Arith::Mod => libm::fmodf(a, b),
+        Arith::Pow => libm::powf(a, b),
+    };
+    Ok(u64::from(v.to_bits()))
+}
+
+fn arith_f64(op: Arith, a: f64, b: f64) -> Result<u64, FaultKind> {
+    let v = match op {
+        Arith::Add => a + b,
+        Arith::Sub => a - b,
+        Arith::Mul => a * b,
+        Arith::Div | Arith::Mod if b == 0.0 => return Err(FaultKind::DivisionByZero),
+        Arith::Div => a / b,
+        Arith::Mod => libm::fmod(a, b),
+        Arith::Pow => libm::pow(a, b),
+    };
+    Ok(v.to_bits())
+}
+
+/// To another kind; reals round half to even (IEC 61131-3:2003, 2.5.1.5.1).
+pub(crate) fn convert(from: Num, to: Num, v: u64) -> Result<u64, FaultKind> {
+    if to == Num::Bool {
+        let truth = if is_real(from) { real(from, v) != 0.0 } else { v != 0 };
+        return Ok(u64::from(truth));
+    }
+    match (is_real(from), is_real(to)) {
+        (true, true) => Ok(from_real(to, real(from, v))),
+        (true, false) => to_whole(to, libm::rint(real(from, v))),
+        (false, true) => {
+            let x = whole(from, v);
+            // Straight to the width of the result: rounding twice could differ.
+            Ok(if to == Num::F32 { u64::from((x as f32).to_bits()) } else { (x as f64).to_bits() })
+        }
+        (false, false) => fit(to, whole(from, v)),
+    }
+}
+
+pub(crate) fn truncate(from: Num, to: Num, v: u64) -> Result<u64, FaultKind> {
+    to_whole(to, libm::trunc(real(from, v)))
+}
+
+fn to_whole(to: Num, x: f64) -> Result<u64, FaultKind> {
+    // Every f64 beyond this is beyond every kind; NaN fails the comparison.
+    if x.abs() < 1e30 { fit(to, x as i128) } else { Err(FaultKind::Overflow) }
+}
+
+/// Functions of numbers; `args` in the order of the call.
+pub(crate) fn call(f: Builtin, n: Num, args: &[u64]) -> Result<u64, FaultKind> {
+    let arg = |i: usize| args.get(i).copied().unwrap_or(0);
+    let less = |a: u64, b: u64| compare(Cmp::Lt, n, a, b);
+    let on_real = |f64: fn(f64) -> f64| Ok(from_real(n, f64(real(n, arg(0)))));
+    match f {
+        Builtin::Abs if is_real(n) => Ok(from_real(n, real(n, arg(0)).abs())),
+        Builtin::Abs => fit(n, whole(n, arg(0)).abs()),
+        Builtin::Sqrt => on_real(libm::sqrt),
+        Builtin::Ln => on_real(libm::log),
+        Builtin::Log => on_real(libm::log10),
+        Builtin::Exp => on_real(libm::exp),
+        Builtin::Sin => on_real(libm::sin),
+        Builtin::Cos => on_real(libm::cos),
+        Builtin::Tan => on_real(libm::tan),
+        Builtin::Asin => on_real(libm::asin),
+        Builtin::Acos => on_real(libm::acos),
+        Builtin::Atan => on_real(libm::atan),
+        Builtin::Min => Ok(args.iter().copied().reduce(|a, b| if less(b, a) { b } else { a }).unwrap_or(0)),
+        Builtin::Max => Ok(args.iter().copied().reduce(|a, b| if less(a, b) { b } else { a }).unwrap_or(0)),
+        Builtin::Limit => {
+            // MIN(MAX(in, mn), mx), as the standard defines it.
+            let low = if less(arg(1), arg(0)) { arg(0) } else { arg(1) };
+            Ok(if less(arg(2), low) { arg(2) } else { low })
+        }
+        Builtin::Sel => Ok(if arg(0) == 0 { arg(1) } else { arg(2) }),
+        Builtin::Mux => {
+            let k = usize::try_from(arg(0) as i64).map_err(|_| FaultKind::Range)?;
+            args.get(1..).unwrap_or(&[]).get(k).copied().ok_or(FaultKind::Range)
+        }
+        Builtin::Len
+        | Builtin::Left
+        | Builtin::Right
+        | Builtin::Mid
+        | Builtin::Concat
+        | Builtin::Insert
+        | Builtin::Delete
+        | Builtin::Replace
+        | Builtin::Find => Err(FaultKind::Range),
+    }
+}

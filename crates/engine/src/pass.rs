@@ -1,0 +1,381 @@
+//! One pass of the evolution (SEMANTICS section 3): judge all, then change all.
+
+use crate::bits::{Walk, bit, set_bit};
+use crate::change::{
+    activate, add_runs, commit, deactivate, extra, mark_off, mark_on, marked, run_action, run_ordered,
+};
+use crate::fault::{Fault, FaultKind};
+use crate::run::{guard, value};
+use crate::state::State;
+use crate::{NONE, Program, Rows, Situation, StepId, Transition};
+
+/// Makes one pass; whether it changed a step or a variable.
+pub(crate) fn evolve(p: &Program, s: &mut State) -> Result<bool, Fault> {
+    s.x.changed = false;
+    s.x.passes += 1;
+    s.x.fired.clear();
+    if p.has_periods || p.has_orders {
+        block(p, s);
+    }
+    collect(p, s)?;
+    if !p.t.events.is_empty() {
+        events(p, s)?;
+    }
+    if p.has_orders {
+        force(s)?;
+    }
+    if s.x.fired.is_empty() && s.x.on.is_empty() && s.x.off.is_empty() && s.x.runs.is_empty() {
+        return Ok(false);
+    }
+    resolve(p, s);
+    report(s);
+    if p.t.rules.sequential {
+        in_turn(p, s)?;
+    } else {
+        mark(p, s);
+        commit(p, s)?;
+    }
+    Ok(s.x.changed)
+}
+
+/// Which charts stand still in this pass: those not due, and those forced.
+fn block(p: &Program, s: &mut State) {
+    s.x.any_blocked = false;
+    for (i, chart) in p.t.charts.iter().enumerate() {
+        let due = crate::watch::is_due(p, s, chart.period);
+        if let Some(b) = s.x.blocked.get_mut(i) {
+            *b = !due;
+            s.x.any_blocked |= !due;
+        }
+    }
+    s.x.forced_by.fill(NONE);
+    if !p.has_orders || p.layout.orders.is_empty(&s.w) {
+        return;
+    }
+    // A forced chart's steps may give orders themselves: whether those act
+    // depends on what is imposed on them, so orders go down the partial order.
+    for i in 0..p.t.orders.len() as u32 {
+        let Some(o) = p.t.orders.get(i as usize) else { break };
+        if acts(s, o.step) {
+            impose(p, s, i);
+        }
+    }
+}
+
+/// Whether a step gives its orders in this pass: active, and not forced off by
+/// an order above; or just forced on.
+fn acts(s: &State, step: StepId) -> bool {
+    marked(&s.x.on_mark, step.0) || (s.steps.contains(&s.w, step.0) && !marked(&s.x.off_mark, step.0))
+}
+
+/// Marks what an order imposes. A disagreement is kept for [`force`] to tell.
+fn impose(p: &Program, s: &mut State, i: u32) {
+    let Some(o) = p.t.orders.get(i as usize) else { return };
+    let chart = o.chart as usize;
+    let Some(first) = s.x.forced_by.get_mut(chart) else { return };
+    if *first != NONE {
+        let same = p.t.orders.get(*first as usize).is_some_and(|f| agree(p, f.situation, o.situation));
+        if !same {
+            *first = CONFLICT;
+        }
+        return;
+    }
+    *first = i;
+    if let Some(b) = s.x.blocked.get_mut(chart) {
+        *b = true;
+        s.x.any_blocked = true;
+    }
+    let Situation::Steps(rows) = o.situation else { return };
+    for step in arcs(p, rows) {
+        mark_on(s, *step);
+    }
+    let Some(group) = p.t.charts.get(chart).and_then(|c| p.t.groups.get(c.group.0 as usize)) else { return };
+    let mut from = group.steps.start;
+    while let Some(k) = s.steps.next(&s.w, from).filter(|k| *k < group.steps.end) {
+        mark_off(s, StepId(k));
+        from = k + 1;
+    }
+    // An imposed step that is active already is neither activated nor deactivated.
+    for step in arcs(p, rows) {
+        unmark_kept(s, step.0);
+    }
+}
+
+/// Takes both marks off a step that an order leaves as it is. The lists keep
+/// the number; without a mark it has no effect.
+fn unmark_kept(s: &mut State, step: u32) {
+    if s.steps.contains(&s.w, step) {
+        set_bit(&mut s.x.on_mark, 0, step, false);
+        set_bit(&mut s.x.off_mark, 0, step, false);
+        s.x.on.retain(|k| *k != step);
+        s.x.off.retain(|k| *k != step);
+    }
+}
+
+/// Stands in `forced_by` for "two orders disagree".
+const CONFLICT: u32 = NONE - 1;
+
+fn agree(p: &Program, a: Situation, b: Situation) -> bool {
+    match (a, b) {
+        (Situation::Current, Situation::Current) => true,
+        (Situation::Steps(a), Situation::Steps(b)) => {
+            let (a, b) = (arcs(p, a), arcs(p, b));
+            a.iter().all(|x| b.contains(x)) && b.iter().all(|x| a.contains(x))
+        }
+        (Situation::Current, Situation::Steps(_)) | (Situation::Steps(_), Situation::Current) => false,
+    }
+}
+
+pub(crate) fn arcs(p: &Program, rows: Rows) -> &[StepId] {
+    p.t.arcs.get(rows.start as usize..rows.end as usize).unwrap_or(&[])
+}
+
+/// Tells of two orders that disagree.
+fn force(s: &mut State) -> Result<(), Fault> {
+    match s.x.forced_by.iter().position(|f| *f == CONFLICT) {
+        Some(chart) => Err(FaultKind::Forcing { chart: chart as u32 }.nowhere()),
+        None => Ok(()),
+    }
+}
+
+/// Every clearable transition, as far as it can be told without the others.
+fn collect(p: &Program, s: &mut State) -> Result<(), Fault> {
+    for &t in &p.t.sources {
+        let Some(row) = p.t.transitions.get(t as usize) else { break };
+        if !(s.x.any_blocked && is_blocked(s, row.chart)) && guard(p, s, row.guard)? {
+            s.x.fired.push(t);
+        }
+    }
+    let tree = s.steps;
+    let single = !p.t.rules.multi_token;
+    let mut walk = Walk::new(&tree, &s.w);
+    while let Some(step) = walk.next(&tree, &s.w) {
+        let Some(row) = p.t.steps.get(step as usize) else { break };
+        if s.x.any_blocked && is_blocked(s, row.chart) {
+            continue;
+        }
+        for &t in p.t.outs.get(row.out.start as usize..row.out.end as usize).unwrap_or(&[]) {
+            let Some(tr) = p.t.transitions.get(t as usize) else { break };
+            if rest_active(p, s, tr) && guard(p, s, tr.guard)? {
+                s.x.fired.push(t);
+                if single && tr.simple {
+                    break;
+                }
+            }
+        }
+    }
+    Ok(())
+}
+
+fn is_blocked(s: &State, chart: u32) -> bool {
+    s.x.blocked.get(chart as usize).copied().unwrap_or(false)
+}
+
+/// Whether the preceding steps behind the first are active.
+#[inline(always)]
+pub(crate) fn rest_active(p: &Program, s: &State, t: &Transition) -> bool {
+    t.more_from.is_empty() || arcs(p, t.more_from).iter().all(|f| s.steps.contains(&s.w, f.0))
+}
+
+/// Event actions of the steps that are active as the pass begins.
+fn events(p: &Program, s: &mut State) -> Result<(), Fault> {
+    let tree = p.layout.events;
+    let mut from = 0;
+    while let Some(i) = tree.next(&s.w, from) {
+        from = i + 1;
+        let Some(e) = p.t.events.get(i as usize) else { break };
+        let due = p.t.actions.get(e.action as usize).is_some_and(|a| crate::watch::is_due(p, s, a.period));
+        if due && value(p, s, e.event)? != 0 {
+            s.x.runs.push(e.action);
+        }
+    }
+    Ok(())
+}
+
+/// All preceding steps of a transition.
+fn from_steps<'a>(p: &'a Program, t: &Transition) -> impl Iterator<Item = StepId> + 'a {
+    let first = (t.from.0 != NONE).then_some(t.from);
+    first.into_iter().chain(arcs(p, t.more_from).iter().copied())
+}
+
+/// All succeeding steps of a transition.
+fn to_steps<'a>(p: &'a Program, t: &Transition) -> impl Iterator<Item = StepId> + 'a {
+    let first = (t.to.0 != NONE).then_some(t.to);
+    first.into_iter().chain(arcs(p, t.more_to).iter().copied())
+}
+
+/// Drops what priority drops, and puts the rest in order of rank where order matters.
+fn resolve(p: &Program, s: &mut State) {
+    let rules = &p.t.rules;
+    if !rules.multi_token && p.has_contests {
+        s.x.fired.sort_unstable();
+        exclude(p, s, |_| true);
+    } else if rules.multi_token && rules.numbered_exclusive && p.has_contests {
+        // By number first; equal numbers by rank.
+        let t = &p.t.transitions;
+        s.x.fired.sort_unstable_by_key(|i| (t.get(*i as usize).map_or(NONE, |t| t.priority), *i));
+        exclude(p, s, |t| t.priority != NONE);
+        s.x.fired.sort_unstable();
+    } else if rules.sequential {
+        s.x.fired.sort_unstable();
+    }
+}
+
+/// Going through the fired transitions in their present order, drops those
+/// (among the ones that `takes` names) that share a step with an earlier one.
+fn exclude(p: &Program, s: &mut State, takes: impl Fn(&Transition) -> bool) {
+    let mut fired = core::mem::take(&mut s.x.fired);
+    fired.retain(|i| {
+        let Some(t) = p.t.transitions.get(*i as usize) else { return false };
+        if !t.shares || !takes(t) {
+            return true;
+        }
+        let free = from_steps(p, t).all(|f| !bit(&s.x.taken, 0, f.0));
+        if free {
+            for f in from_steps(p, t) {
+                set_bit(&mut s.x.taken, 0, f.0, true);
+            }
+        }
+        free
+    });
+    for i in &fired {
+        if let Some(t) = p.t.transitions.get(*i as usize) {
+            for f in from_steps(p, t) {
+                set_bit(&mut s.x.taken, 0, f.0, false);
+            }
+        }
+    }
+    s.x.fired = fired;
+}
+
+/// Notes what clears, for coverage and traces.
+fn report(s: &mut State) {
+    s.x.cleared_count = s.x.cleared_count.saturating_add(s.x.fired.len() as u32);
+    let room = s.x.cleared.capacity() - s.x.cleared.len();
+    let n = s.x.fired.len().min(room);
+    s.x.cleared.extend_from_slice(s.x.fired.get(..n).unwrap_or(&[]));
+}
+
+/// Marks the steps of the transitions that clear, all at once (rules 3 and 4).
+fn mark(p: &Program, s: &mut State) {
+    for k in 0..s.x.fired.len() {
+        let Some(t) = s.x.fired.get(k).and_then(|i| p.t.transitions.get(*i as usize)) else { break };
+        if t.from.0 != NONE {
+            mark_off(s, t.from);
+        }
+        if t.to.0 != NONE {
+            mark_on(s, t.to);
+        }
+        if !t.more_from.is_empty() {
+            for f in arcs(p, t.more_from) {
+                mark_off(s, *f);
+            }
+        }
+        if !t.more_to.is_empty() {
+            for f in arcs(p, t.more_to) {
+                mark_on(s, *f);
+            }
+        }
+        if t.on_clearing != NONE {
+            s.x.runs.push(t.on_clearing);
+        }
+    }
+}
+
+/// Transitions clear one after the other, in order of rank, with their actions
+/// at once: a step that one activates and a later one deactivates ends inactive.
+/// What forcing orders impose comes first, event actions behind.
+fn in_turn(p: &Program, s: &mut State) -> Result<(), Fault> {
+    for k in 0..s.x.off.len() {
+        let Some(&step) = s.x.off.get(k) else { break };
+        set_bit(&mut s.x.off_mark, 0, step, false);
+        if !marked(&s.x.on_mark, step) {
+            leave(p, s, step)?;
+        }
+    }
+    s.x.off.clear();
+    for k in 0..s.x.on.len() {
+        let Some(&step) = s.x.on.get(k) else { break };
+        set_bit(&mut s.x.on_mark, 0, step, false);
+        enter(p, s, step)?;
+    }
+    s.x.on.clear();
+    for k in 0..s.x.fired.len() {
+        let Some(t) = s.x.fired.get(k).and_then(|i| p.t.transitions.get(*i as usize)).copied() else { break };
+        if t.on_clearing != NONE {
+            now_or_late(p, s, t.on_clearing)?;
+        }
+        for f in from_steps(p, &t) {
+            leave(p, s, f.0)?;
+        }
+        for f in to_steps(p, &t) {
+            enter(p, s, f.0)?;
+        }
+    }
+    run_ordered(p, s)
+}
+
+fn now_or_late(p: &Program, s: &mut State, action: u32) -> Result<(), Fault> {
+    if p.t.rules.late_actions {
+        s.x.runs.push(action);
+        Ok(())
+    } else {
+        run_action(p, s, action)
+    }
+}
+
+fn run_list(p: &Program, s: &mut State, rows: Rows) -> Result<(), Fault> {
+    if p.t.rules.late_actions {
+        add_runs(p, s, rows);
+        return Ok(());
+    }
+    for i in rows.start..rows.end {
+        if let Some(&action) = p.t.action_lists.get(i as usize) {
+            run_action(p, s, action)?;
+        }
+    }
+    Ok(())
+}
+
+/// Deactivates a step; its exit actions come first, its enclosed charts with it.
+fn leave(p: &Program, s: &mut State, step: u32) -> Result<(), Fault> {
+    s.x.chain.clear();
+    s.x.chain.push(step);
+    let mut k = 0;
+    while let Some(&step) = s.x.chain.get(k) {
+        k += 1;
+        if !s.steps.contains(&s.w, step) {
+            continue;
+        }
+        let e = extra(p, step).copied().unwrap_or_default();
+        run_list(p, s, e.off)?;
+        deactivate(p, s, step);
+        for g in p.t.group_lists.get(e.encloses.start as usize..e.encloses.end as usize).unwrap_or(&[]) {
+            let Some(group) = p.t.groups.get(g.0 as usize) else { continue };
+            let mut from = group.steps.start;
+            while let Some(i) = s.steps.next(&s.w, from).filter(|i| *i < group.steps.end) {
+                s.x.chain.push(i);
+                from = i + 1;
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Activates a step; its entry actions run at once, its linked steps come with it.
+fn enter(p: &Program, s: &mut State, step: u32) -> Result<(), Fault> {
+    s.x.chain.clear();
+    s.x.chain.push(step);
+    let mut k = 0;
+    while let Some(&step) = s.x.chain.get(k) {
+        k += 1;
+        if s.steps.contains(&s.w, step) {
+            continue;
+        }
+        activate(p, s, step);
+        let e = extra(p, step).copied().unwrap_or_default();
+        run_list(p, s, e.on)?;
+        s.x.chain.extend(arcs(p, e.links).iter().map(|l| l.0));
+    }
+    Ok(())
+}

@@ -1,0 +1,377 @@
+//! One scan: inputs in, evolution, actions, outputs (SEMANTICS section 4).
+
+use crate::bits::{Walk, bit, set_bit, word};
+use crate::change::{activate, commit, mark_off, mark_on, run_action};
+use crate::fault::{Fault, FaultKind};
+use crate::pass::{arcs, evolve, rest_active};
+use crate::run::{self, write};
+use crate::state::{REQUESTS, STARTED, STOPPED, State, head};
+use crate::watch;
+use crate::{Addr, Code, NONE, Program, StepId, blocks};
+
+/// What a scan did.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Report {
+    /// Passes made, the last and unchanging one included.
+    pub passes: u32,
+    /// Transitions cleared.
+    pub cleared: u32,
+    /// A variable that stored actions of one pass gave different values
+    /// (`parallel_actions` only); the first of this scan.
+    pub conflict: Option<Addr>,
+}
+
+/// Passes before cycles are looked for: most searches are shorter, and looking
+/// costs a copy of the image.
+const PATIENCE: u32 = 48;
+
+/// Runs one scan.
+///
+/// `inputs` has a word for each word of [`crate::Tables::inputs`]; `now` is
+/// monotonic, in nanoseconds. After it the outputs stand in the variable area.
+///
+/// # Errors
+///
+/// A [`Fault`]; then the outputs have their safe values and every further scan
+/// is refused with [`FaultKind::Stopped`].
+///
+/// # Source
+///
+/// IEC 60848:2013, 4.5 (evolution rules) and 4.6 (interpretation);
+/// IEC 61131-3:2003, 2.6.5.
+pub fn scan(p: &Program, s: &mut State, inputs: &[u64], now: i64) -> Result<Report, Fault> {
+    let done = begin(p, s, inputs, now).and_then(|()| search(p, s)).and_then(|()| finish(p, s));
+    match done {
+        Ok(()) => Ok(report(s)),
+        Err(fault) => {
+            stop(p, s);
+            Err(fault)
+        }
+    }
+}
+
+fn report(s: &State) -> Report {
+    Report { passes: s.x.passes, cleared: s.x.cleared_count, conflict: s.x.conflict }
+}
+
+/// Passes until nothing changes, or just one.
+fn search(p: &Program, s: &mut State) -> Result<(), Fault> {
+    let rules = &p.t.rules;
+    if !rules.stable {
+        return pass(p, s).map(|_| ());
+    }
+    // Brent's cycle search: a saved image, renewed at doubling distances. Within
+    // a scan time and inputs stand still, so a recurring image recurs for ever.
+    let (mut power, mut distance) = (1u32, 0u32);
+    let mut made = 0u32;
+    while pass(p, s)? {
+        made += 1;
+        if made >= rules.bound {
+            return Err(FaultKind::Bound.nowhere());
+        }
+        if made < PATIENCE {
+            continue;
+        }
+        if made > PATIENCE {
+            distance += 1;
+            if s.x.saved.as_slice() == &*s.w {
+                return Err(FaultKind::Unstable { cycle: distance }.nowhere());
+            }
+        }
+        if made == PATIENCE || distance == power {
+            let State { w, x, .. } = s;
+            x.saved.clear();
+            x.saved.extend_from_slice(w);
+            power = if made == PATIENCE { 1 } else { power.saturating_mul(2) };
+            distance = 0;
+        }
+    }
+    Ok(())
+}
+
+/// The first part of a scan: inputs, time, watches, PRE, services.
+///
+/// # Errors
+///
+/// [`FaultKind::Inputs`] where the inputs are not as many as the program's or
+/// `now` lies before the scan before; nothing was changed then. Other faults
+/// come from PRE.
+pub fn begin(p: &Program, s: &mut State, inputs: &[u64], now: i64) -> Result<(), Fault> {
+    let t = &p.t;
+    if s.has_flag(STOPPED) {
+        return Err(FaultKind::Stopped.nowhere());
+    }
+    let fresh = !s.has_flag(STARTED);
+    if inputs.len() != (t.inputs.end - t.inputs.start) as usize || (!fresh && now < s.now()) {
+        return Err(FaultKind::Inputs.nowhere());
+    }
+    reset_scratch(s);
+    let before = if fresh { now } else { s.now() };
+    s.set(head::DT, now.wrapping_sub(before) as u64);
+    s.set(head::NOW, now as u64);
+    if p.has_periods {
+        periods(p, s, now, fresh);
+    }
+    for (i, v) in (t.inputs.start..).zip(inputs) {
+        if word(&s.w, (s.vars + i) as usize) != *v {
+            s.set((s.vars + i) as usize, *v);
+            run::notice(p, s, Addr(i));
+        }
+    }
+    if fresh {
+        s.flag(STARTED, true);
+        for step in &t.initial {
+            mark_on(s, *step);
+        }
+        initial(p, s)?;
+    }
+    watch::update(p, s, true, fresh)?;
+    run::run(p, s, t.pre)?;
+    run::run(p, s, t.services)?;
+    if s.has_flag(REQUESTS) {
+        requests(p, s)?;
+    }
+    if t.counts.is_some() {
+        enabled(p, s, false)?;
+    }
+    s.x.moved = 0;
+    if t.rules.periodic_after_activation {
+        let base = p.layout.periodics.base() as usize;
+        let State { w, x, .. } = s;
+        for (i, b) in x.before.iter_mut().enumerate() {
+            *b = word(w, base + i);
+        }
+    }
+    s.x.first_pass = true;
+    Ok(())
+}
+
+/// The initial situation (rule 1). Under `sequential` its actions run at once as well.
+fn initial(p: &Program, s: &mut State) -> Result<(), Fault> {
+    commit(p, s)
+}
+
+fn reset_scratch(s: &mut State) {
+    let x = &mut s.x;
+    x.stack.clear();
+    x.fired.clear();
+    x.runs.clear();
+    x.commits.clear();
+    x.cleared.clear();
+    x.ran.clear();
+    x.log.clear();
+    x.logging = false;
+    x.cleared_count = 0;
+    x.passes = 0;
+    x.conflict = None;
+    x.work = 0;
+    x.late_any = false;
+}
+
+/// Which periods are due; instants missed are skipped, not queued.
+fn periods(p: &Program, s: &mut State, now: i64, fresh: bool) {
+    for (i, period) in p.t.periods.iter().enumerate() {
+        let at = p.layout.periods as usize + i;
+        let next = word(&s.w, at) as i64;
+        let due = *period <= 0 || fresh || now >= next;
+        if let Some(d) = s.x.due.get_mut(i) {
+            *d = due;
+        }
+        if due && *period > 0 {
+            let from = if fresh { now } else { next };
+            let missed = now.saturating_sub(from) / period;
+            s.set(at, from.saturating_add(period.saturating_mul(missed + 1)) as u64);
+        }
+    }
+}
+
+/// Carries out the requests of services, with the stored actions of the steps
+/// that change.
+fn requests(p: &Program, s: &mut State) -> Result<(), Fault> {
+    s.flag(REQUESTS, false);
+    let [init, clear, set, reset] = p.layout.requests;
+    for (i, group) in p.t.groups.iter().enumerate() {
+        let i = i as u32;
+        let initialise = set_bit(&mut s.w, init, i, false);
+        let empty = set_bit(&mut s.w, clear, i, false);
+        if initialise || empty {
+            let mut from = group.steps.start;
+            while let Some(k) = s.steps.next(&s.w, from).filter(|k| *k < group.steps.end) {
+                mark_off(s, StepId(k));
+                from = k + 1;
+            }
+        }
+        if initialise {
+            for step in arcs(p, group.initial) {
+                mark_on(s, *step);
+            }
+        }
+    }
+    for i in 0..p.t.steps.len() as u32 {
+        if set_bit(&mut s.w, set, i, false) {
+            mark_on(s, StepId(i));
+        }
+        if set_bit(&mut s.w, reset, i, false) {
+            mark_off(s, StepId(i));
+        }
+    }
+    commit(p, s)
+}
+
+/// One pass of the evolution, between [`begin`] and [`finish`].
+///
+/// Whether it changed a step or a variable: under search for stability, whether
+/// another is needed.
+///
+/// # Errors
+///
+/// A [`Fault`] of a receptivity, an action or a forcing order.
+pub fn pass(p: &Program, s: &mut State) -> Result<bool, Fault> {
+    if s.x.first_pass {
+        s.x.first_pass = false;
+    } else {
+        watch::update(p, s, false, false)?;
+    }
+    evolve(p, s)
+}
+
+/// The last part of a scan: control blocks, bodies, POST.
+///
+/// # Errors
+///
+/// A [`Fault`] of a condition, a body or POST.
+pub fn finish(p: &Program, s: &mut State) -> Result<(), Fault> {
+    let t = &p.t;
+    let moved = s.x.moved;
+    if !t.contributions.is_empty() {
+        blocks::conditions(p, s)?;
+    }
+    if !t.blocks.is_empty() {
+        blocks::evaluate(p, s)?;
+    }
+    if !t.periodics.is_empty() {
+        periodics(p, s);
+    }
+    if s.x.late_any {
+        late(p, s)?;
+    }
+    run::run(p, s, t.post)?;
+    run::run(p, s, t.tail)?;
+    if let Some((steps, transitions)) = t.counts {
+        count(p, s, moved, steps, transitions)?;
+    }
+    if let Some((flag, limits)) = t.limits {
+        let active = s.steps.count(&s.w, t.steps.len() as u32);
+        if active > limits.active || enabled_now(p, s) > limits.enabled {
+            write(p, s, flag, 1);
+            return Err(FaultKind::Table.nowhere());
+        }
+    }
+    let scans = s.scans().wrapping_add(1);
+    s.set(head::SCANS, scans);
+    Ok(())
+}
+
+/// Actions of each scan of the active steps.
+fn periodics(p: &Program, s: &mut State) {
+    let mut walk = Walk::new(&p.layout.periodics, &s.w);
+    while let Some(i) = walk.next(&p.layout.periodics, &s.w) {
+        if p.t.rules.periodic_after_activation && !bit(&s.x.before, 0, i) {
+            continue;
+        }
+        let Some(&action) = p.t.periodics.get(i as usize) else { break };
+        set_bit(&mut s.x.late, 0, action, true);
+        s.x.late_any = true;
+    }
+}
+
+/// Runs what was put aside for the end of the scan, in order.
+fn late(p: &Program, s: &mut State) -> Result<(), Fault> {
+    for k in 0..s.x.late.len() {
+        while let Some(w) = s.x.late.get(k).copied().filter(|w| *w != 0) {
+            let i = w.trailing_zeros();
+            if let Some(w) = s.x.late.get_mut(k) {
+                *w &= !(1u64 << i);
+            }
+            run_action(p, s, k as u32 * 64 + i)?;
+        }
+    }
+    Ok(())
+}
+
+/// Outputs to their safe values; no further scan.
+fn stop(p: &Program, s: &mut State) {
+    s.flag(STOPPED, true);
+    s.x.on_mark.fill(0);
+    s.x.off_mark.fill(0);
+    s.x.on.clear();
+    s.x.off.clear();
+    s.x.late.fill(0);
+    for (i, v) in (p.t.outputs.start..p.t.outputs.end).zip(&p.t.safe) {
+        s.set((s.vars + i) as usize, *v);
+    }
+}
+
+/// Runs code that pushes one value, on the state as it is: a condition of a
+/// test, a watch expression of the debugger.
+///
+/// # Errors
+///
+/// A [`Fault`] of its arithmetic.
+pub fn eval(p: &Program, s: &mut State, code: Code) -> Result<u64, Fault> {
+    s.x.work = 0;
+    s.x.stack.clear();
+    run::value(p, s, code)
+}
+
+/// Whether a transition is enabled.
+fn is_enabled(p: &Program, s: &State, i: usize) -> bool {
+    p.t.transitions
+        .get(i)
+        .is_some_and(|t| (t.from.0 == NONE || s.steps.contains(&s.w, t.from.0)) && rest_active(p, s, t))
+}
+
+fn enabled_now(p: &Program, s: &State) -> u32 {
+    (0..p.t.transitions.len()).filter(|i| is_enabled(p, s, *i)).count() as u32
+}
+
+/// Notes which transitions are enabled, before or after the evolution.
+fn enabled(p: &Program, s: &mut State, after: bool) -> Result<(), Fault> {
+    for i in 0..p.t.transitions.len() {
+        let on = is_enabled(p, s, i);
+        let x = &mut s.x;
+        set_bit(if after { &mut x.enabled_after } else { &mut x.enabled }, 0, i as u32, on);
+    }
+    if !after {
+        s.x.active_before = s.steps.count(&s.w, p.t.steps.len() as u32);
+    }
+    Ok(())
+}
+
+/// `%SW20` and `%SW21`: what was, and what changed in this scan.
+fn count(p: &Program, s: &mut State, moved: u32, steps: Addr, transitions: Addr) -> Result<(), Fault> {
+    enabled(p, s, true)?;
+    let (mut was, mut changed) = (0, 0);
+    for (b, a) in s.x.enabled.iter().zip(s.x.enabled_after.iter()) {
+        was += b.count_ones();
+        changed += (b ^ a).count_ones();
+    }
+    let total = |n: u32| u64::from(n.min(32767));
+    let active = s.x.active_before;
+    write(p, s, steps, total(active.saturating_add(moved)));
+    write(p, s, transitions, total(was + changed));
+    Ok(())
+}
+
+/// Sets a step from outside, as a debugger does: without its stored actions.
+/// Enclosed charts do not follow; use the services for that.
+pub fn set_step(p: &Program, s: &mut State, step: StepId, on: bool) {
+    if step.0 as usize >= p.t.steps.len() || s.is_active(step) == on {
+        return;
+    }
+    if on {
+        activate(p, s, step.0);
+    } else {
+        crate::change::deactivate(p, s, step.0);
+    }
+}
