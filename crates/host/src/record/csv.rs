@@ -1,0 +1,73 @@
+//! A recording as comma-separated values (RFC 4180).
+
+use std::io::{self, Write};
+
+use super::{Kind, Recording, Value, format_seconds};
+
+/// One row for each instant at which something changed, all signals in each.
+///
+/// The first column is the time in seconds. BOOL is 0 or 1, TIME in seconds.
+///
+/// # Errors
+///
+/// The writer's own.
+pub fn write_csv(recording: &Recording, out: &mut dyn Write) -> io::Result<()> {
+    write!(out, "time")?;
+    for signal in recording.signals() {
+        write!(out, ",{}", quote(&signal.name))?;
+    }
+    writeln!(out)?;
+    let mut instants = recording.instants();
+    if instants.last().is_some_and(|last| *last < recording.end()) {
+        instants.push(recording.end()); // so that the file says how long it lasted
+    }
+    for instant in instants {
+        write!(out, "{}", format_seconds(instant))?;
+        for (i, signal) in recording.signals().iter().enumerate() {
+            let value = recording.value_at(i, instant);
+            write!(out, ",{}", value.map_or_else(String::new, |v| cell(v, signal.kind)))?;
+        }
+        writeln!(out)?;
+    }
+    Ok(())
+}
+
+fn cell(value: &Value, kind: Kind) -> String {
+    match kind {
+        Kind::Bool => value.word().to_string(),
+        Kind::Time => format_seconds(value.word() as i64),
+        Kind::Int { .. } | Kind::Real | Kind::Lreal | Kind::Text => quote(&value.show(kind)),
+    }
+}
+
+fn quote(text: &str) -> String {
+    if text.contains(['"', ',', '\n', '\r']) || text.starts_with(' ') || text.ends_with(' ') {
+        format!("\"{}\"", text.replace('"', "\"\""))
+    } else {
+        text.to_owned()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Signal;
+
+    #[test]
+    fn rows_at_changes_with_quoting() {
+        let mut r = Recording::new(vec![
+            Signal { group: "inputs", name: "a".into(), kind: Kind::Bool },
+            Signal { group: "variables", name: "say, \"it\"".into(), kind: Kind::Text },
+            Signal { group: "variables", name: "t".into(), kind: Kind::Time },
+        ]);
+        let text = |t: &str| Value::Text(t.into());
+        r.sample(0, [Value::Word(0), text("x"), Value::Word(0)]);
+        r.sample(10_000_000, [Value::Word(1), text("y,\"z\""), Value::Word(1_500_000_000)]);
+        r.sample(20_000_000, [Value::Word(1), text("y,\"z\""), Value::Word(1_500_000_000)]);
+        let mut out = Vec::new();
+        write_csv(&r, &mut out).unwrap();
+        let expected = "time,a,\"say, \"\"it\"\"\",t\n0,0,x,0\n0.01,1,\"y,\"\"z\"\"\",1.5\n\
+                        0.02,1,\"y,\"\"z\"\"\",1.5\n";
+        assert_eq!(String::from_utf8(out).unwrap(), expected);
+    }
+}

@@ -1,0 +1,275 @@
+//! What the signals did: a list of changes for each, and the forms it is shown in.
+
+pub(crate) mod chronogram;
+pub(crate) mod csv;
+pub(crate) mod vcd;
+
+use std::collections::VecDeque;
+use std::sync::Arc;
+
+/// How the values of a signal are to be read.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// 0 or 1.
+    Bool,
+    /// A whole number of so many bits, sign- or zero-extended.
+    Int {
+        /// 8, 16, 32 or 64.
+        bits: u8,
+        /// Two's complement.
+        signed: bool,
+    },
+    /// The bits of an `f32`.
+    Real,
+    /// The bits of an `f64`.
+    Lreal,
+    /// Signed nanoseconds.
+    Time,
+    /// UTF-8 text.
+    Text,
+}
+
+/// A value at an instant.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Value {
+    /// As the engine keeps it.
+    Word(u64),
+    /// Of a text.
+    Text(Arc<str>),
+}
+
+impl Value {
+    /// The word; 0 for a text.
+    pub fn word(&self) -> u64 {
+        match self {
+            Value::Word(w) => *w,
+            Value::Text(_) => 0,
+        }
+    }
+
+    /// The value as a number, for curves.
+    pub fn number(&self, kind: Kind) -> f64 {
+        let w = self.word();
+        match kind {
+            Kind::Bool => w as f64,
+            Kind::Int { signed: true, .. } => w as i64 as f64,
+            Kind::Int { signed: false, .. } => w as f64,
+            Kind::Real => f64::from(f32::from_bits(w as u32)),
+            Kind::Lreal => f64::from_bits(w),
+            Kind::Time => w as i64 as f64 / 1e9,
+            Kind::Text => 0.0,
+        }
+    }
+
+    /// The value as people read it: `TRUE`, `-3`, `2.5`, `1s500ms`, `text`.
+    pub fn show(&self, kind: Kind) -> String {
+        let w = self.word();
+        match (self, kind) {
+            (Value::Text(t), _) => t.to_string(),
+            (_, Kind::Bool) => if w == 0 { "FALSE" } else { "TRUE" }.to_owned(),
+            (_, Kind::Int { signed: true, .. }) => (w as i64).to_string(),
+            (_, Kind::Int { signed: false, .. }) => w.to_string(),
+            (_, Kind::Real) => f32::from_bits(w as u32).to_string(),
+            (_, Kind::Lreal) => f64::from_bits(w).to_string(),
+            (_, Kind::Time) => format_time(w as i64),
+            (_, Kind::Text) => String::new(),
+        }
+    }
+}
+
+/// A duration as the language writes it: `1h30m`, `2s500ms`, `-40us`, `0s`.
+pub fn format_time(ns: i64) -> String {
+    if ns == 0 {
+        return "0s".to_owned();
+    }
+    let mut out = String::new();
+    if ns < 0 {
+        out.push('-');
+    }
+    let mut left = ns.unsigned_abs();
+    let units = [
+        (86_400_000_000_000, "d"),
+        (3_600_000_000_000, "h"),
+        (60_000_000_000, "m"),
+        (1_000_000_000, "s"),
+        (1_000_000, "ms"),
+        (1_000, "us"),
+        (1, "ns"),
+    ];
+    for (unit, name) in units {
+        if left >= unit {
+            out.push_str(&format!("{}{name}", left / unit));
+            left %= unit;
+        }
+    }
+    out
+}
+
+/// Seconds with as many decimals as needed: `0.01`, `12`, `-0.000000001`.
+pub fn format_seconds(ns: i64) -> String {
+    let sign = if ns < 0 { "-" } else { "" };
+    let (whole, part) = (ns.unsigned_abs() / 1_000_000_000, ns.unsigned_abs() % 1_000_000_000);
+    if part == 0 {
+        return format!("{sign}{whole}");
+    }
+    let decimals = format!("{part:09}");
+    format!("{sign}{whole}.{}", decimals.trim_end_matches('0'))
+}
+
+/// Something whose values are kept.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Signal {
+    /// Where it belongs: `inputs`, `outputs`, `steps`, …
+    pub group: &'static str,
+    /// As people call it.
+    pub name: String,
+    /// How its values are read.
+    pub kind: Kind,
+}
+
+/// The changes of some signals over a time.
+#[derive(Clone, Debug, Default)]
+pub struct Recording {
+    signals: Vec<Signal>,
+    changes: Vec<VecDeque<(i64, Value)>>,
+    start: Option<i64>,
+    end: i64,
+    /// Most changes kept of one signal, 0 for all.
+    limit: usize,
+}
+
+impl Recording {
+    /// An empty recording of these signals.
+    pub fn new(signals: Vec<Signal>) -> Recording {
+        let changes = signals.iter().map(|_| VecDeque::new()).collect();
+        Recording { signals, changes, start: None, end: 0, limit: 0 }
+    }
+
+    /// Forgets the oldest changes of a signal beyond so many.
+    #[must_use]
+    pub fn with_limit(mut self, limit: usize) -> Recording {
+        self.limit = limit;
+        self
+    }
+
+    /// Takes the values of all signals at an instant, in their order.
+    /// Only what differs from before is kept; a later sample of the same
+    /// instant replaces the earlier one.
+    pub fn sample(&mut self, now: i64, values: impl IntoIterator<Item = Value>) {
+        self.start.get_or_insert(now);
+        self.end = self.end.max(now);
+        for (list, value) in self.changes.iter_mut().zip(values) {
+            if list.back().is_some_and(|(at, _)| *at == now) {
+                list.pop_back();
+            }
+            if list.back().is_some_and(|(_, last)| *last == value) {
+                continue;
+            }
+            list.push_back((now, value));
+            if self.limit > 0 && list.len() > self.limit {
+                list.pop_front();
+            }
+        }
+    }
+
+    /// The signals.
+    pub fn signals(&self) -> &[Signal] {
+        &self.signals
+    }
+
+    /// The changes of a signal, in the order of time.
+    pub fn changes(&self, signal: usize) -> impl DoubleEndedIterator<Item = &(i64, Value)> {
+        self.changes.get(signal).into_iter().flatten()
+    }
+
+    /// The number of values that a signal took.
+    pub fn count(&self, signal: usize) -> usize {
+        self.changes.get(signal).map_or(0, VecDeque::len)
+    }
+
+    /// The value of a signal at an instant; `None` before its first.
+    pub fn value_at(&self, signal: usize, instant: i64) -> Option<&Value> {
+        let list = self.changes.get(signal)?;
+        let after = list.partition_point(|(at, _)| *at <= instant);
+        list.get(after.checked_sub(1)?).map(|(_, v)| v)
+    }
+
+    /// Time of the first sample; 0 without one.
+    pub fn start(&self) -> i64 {
+        self.start.unwrap_or(0)
+    }
+
+    /// Time of the last sample.
+    pub fn end(&self) -> i64 {
+        self.end
+    }
+
+    /// Every instant at which some signal changed, ascending, each once.
+    pub fn instants(&self) -> Vec<i64> {
+        let mut all: Vec<i64> = self.changes.iter().flatten().map(|(at, _)| *at).collect();
+        all.sort_unstable();
+        all.dedup();
+        all
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn bool_signal(name: &str) -> Signal {
+        Signal { group: "inputs", name: name.to_owned(), kind: Kind::Bool }
+    }
+
+    #[test]
+    fn only_changes_are_kept_and_values_between_them_found() {
+        let mut r = Recording::new(vec![bool_signal("a")]);
+        for (t, v) in [(0, 0), (10, 0), (20, 1), (30, 1), (40, 0)] {
+            r.sample(t, [Value::Word(v)]);
+        }
+        assert_eq!(r.count(0), 3);
+        assert_eq!(r.instants(), [0, 20, 40]);
+        assert_eq!(r.value_at(0, 39), Some(&Value::Word(1)));
+        assert_eq!(r.value_at(0, -1), None);
+        assert_eq!((r.start(), r.end()), (0, 40));
+    }
+
+    #[test]
+    fn a_second_sample_of_an_instant_replaces_the_first() {
+        let mut r = Recording::new(vec![bool_signal("a")]);
+        r.sample(0, [Value::Word(0)]);
+        r.sample(5, [Value::Word(1)]);
+        r.sample(5, [Value::Word(0)]);
+        assert_eq!(r.count(0), 1, "at 5 nothing differs from before");
+    }
+
+    #[test]
+    fn the_limit_drops_the_oldest() {
+        let mut r = Recording::new(vec![bool_signal("a")]).with_limit(2);
+        for t in 0..5 {
+            r.sample(t, [Value::Word((t % 2) as u64)]);
+        }
+        assert_eq!(r.changes(0).map(|c| c.0).collect::<Vec<_>>(), [3, 4]);
+    }
+
+    #[test]
+    fn durations_and_seconds_are_written_exactly() {
+        assert_eq!(format_time(5_400_000_000_000), "1h30m");
+        assert_eq!(format_time(2_500_000_000), "2s500ms");
+        assert_eq!(format_time(-40_000), "-40us");
+        assert_eq!(format_time(0), "0s");
+        assert_eq!(format_seconds(10_000_000), "0.01");
+        assert_eq!(format_seconds(12_000_000_000), "12");
+        assert_eq!(format_seconds(-1), "-0.000000001");
+        assert_eq!(format_seconds(i64::MIN), "-9223372036.854775808");
+    }
+
+    #[test]
+    fn values_read_by_their_kind() {
+        let int = Kind::Int { bits: 16, signed: true };
+        assert_eq!(Value::Word(-3i64 as u64).show(int), "-3");
+        assert_eq!(Value::Word(2.5f64.to_bits()).show(Kind::Lreal), "2.5");
+        assert_eq!(Value::Word(u64::from(0.1f32.to_bits())).show(Kind::Real), "0.1");
+        assert_eq!(Value::Text("hi".into()).show(Kind::Text), "hi");
+    }
+}

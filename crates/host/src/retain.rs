@@ -1,0 +1,244 @@
+//! Retained variables over a restart, and files that are whole or not there.
+
+use std::fs::{self, File};
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+
+/// Names and types of the retained variables, with the words of each.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Layout {
+    /// Qualified name, type as written, words.
+    pub variables: Vec<(String, String, u32)>,
+}
+
+impl Layout {
+    /// FNV-1a over the names, types and sizes: a file written under another
+    /// layout is refused.
+    pub fn hash(&self) -> u64 {
+        let mut hash = Fnv::default();
+        for (name, ty, words) in &self.variables {
+            hash.add(name.as_bytes());
+            hash.add(&[0]);
+            hash.add(ty.as_bytes());
+            hash.add(&[0]);
+            hash.add(&words.to_le_bytes());
+        }
+        hash.0
+    }
+
+    fn words(&self) -> usize {
+        self.variables.iter().map(|v| v.2 as usize).sum()
+    }
+}
+
+struct Fnv(u64);
+
+impl Default for Fnv {
+    fn default() -> Fnv {
+        Fnv(0xcbf2_9ce4_8422_2325)
+    }
+}
+
+impl Fnv {
+    fn add(&mut self, bytes: &[u8]) {
+        for b in bytes {
+            self.0 = (self.0 ^ u64::from(*b)).wrapping_mul(0x0000_0100_0000_01b3);
+        }
+    }
+}
+
+/// Why retained variables could not be had.
+#[derive(Debug)]
+pub enum RetainError {
+    /// The file cannot be read or written.
+    Io(io::Error),
+    /// The file is of other variables.
+    Layout,
+    /// The file is damaged.
+    Damaged,
+}
+
+impl std::fmt::Display for RetainError {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            RetainError::Io(e) => write!(f, "{e}"),
+            RetainError::Layout => f.write_str("it was written by a chart with other retained variables"),
+            RetainError::Damaged => f.write_str("it is damaged"),
+        }
+    }
+}
+
+impl std::error::Error for RetainError {}
+
+/// The words of the retained variables, in the order of the layout.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Retained {
+    /// All words.
+    pub words: Vec<u64>,
+}
+
+const MAGIC: &[u8; 8] = b"g7retain";
+
+impl Retained {
+    /// Writes them, whole or not at all.
+    ///
+    /// # Errors
+    ///
+    /// The file cannot be written; the one before it is untouched.
+    pub fn save(&self, layout: &Layout, path: &Path) -> io::Result<()> {
+        let mut bytes = MAGIC.to_vec();
+        bytes.extend(layout.hash().to_le_bytes());
+        self.words.iter().for_each(|w| bytes.extend(w.to_le_bytes()));
+        let mut check = Fnv::default();
+        check.add(&bytes);
+        bytes.extend(check.0.to_le_bytes());
+        write_whole(path, &bytes)
+    }
+
+    /// Reads them; `None` where there is no file yet.
+    ///
+    /// # Errors
+    ///
+    /// Unreadable, of another layout, or damaged.
+    pub fn load(layout: &Layout, path: &Path) -> Result<Option<Retained>, RetainError> {
+        let bytes = match fs::read(path) {
+            Ok(bytes) => bytes,
+            Err(e) if e.kind() == io::ErrorKind::NotFound => return Ok(None),
+            Err(e) => return Err(RetainError::Io(e)),
+        };
+        let Some((body, check)) = bytes.split_last_chunk::<8>() else { return Err(RetainError::Damaged) };
+        let mut sum = Fnv::default();
+        sum.add(body);
+        let body = body.strip_prefix(MAGIC).ok_or(RetainError::Damaged)?;
+        if sum.0 != u64::from_le_bytes(*check) {
+            return Err(RetainError::Damaged);
+        }
+        let (hash, body) = body.split_first_chunk::<8>().ok_or(RetainError::Damaged)?;
+        if u64::from_le_bytes(*hash) != layout.hash() {
+            return Err(RetainError::Layout);
+        }
+        let (words, rest) = body.as_chunks::<8>();
+        if !rest.is_empty() || words.len() != layout.words() {
+            return Err(RetainError::Damaged);
+        }
+        Ok(Some(Retained { words: words.iter().map(|w| u64::from_le_bytes(*w)).collect() }))
+    }
+}
+
+/// Writes a file aside, syncs it and puts it in place: a full disk or a lost
+/// power supply leaves the file as it was. What is no plain file (a pipe, a
+/// device) is written to directly.
+///
+/// # Errors
+///
+/// Nothing half written is left behind.
+pub fn write_whole(path: &Path, bytes: &[u8]) -> io::Result<()> {
+    let meta = fs::metadata(path).ok();
+    if let Some(meta) = &meta {
+        if meta.is_dir() {
+            return Err(io::Error::from(io::ErrorKind::IsADirectory));
+        }
+        if !meta.is_file() {
+            let mut file = File::options().write(true).open(path)?;
+            file.write_all(bytes)?;
+            return file.flush();
+        }
+        // Renaming over it would get round a protection that the user has set.
+        File::options().write(true).open(path)?;
+    }
+    // A link stays a link: what it points to is replaced.
+    let path = fs::canonicalize(path).unwrap_or_else(|_| path.to_path_buf());
+    let aside = beside(&path)?;
+    let written = write_aside(&aside, bytes, meta.as_ref()).and_then(|()| fs::rename(&aside, &path));
+    if written.is_err() {
+        fs::remove_file(&aside).ok();
+        return written;
+    }
+    if let Some(folder) = path.parent().filter(|p| !p.as_os_str().is_empty()) {
+        // The name is on the disk when the folder is; not every system can do it.
+        File::open(folder).and_then(|f| f.sync_all()).ok();
+    }
+    Ok(())
+}
+
+fn beside(path: &Path) -> io::Result<PathBuf> {
+    let name = path.file_name().ok_or(io::ErrorKind::InvalidInput)?;
+    let mut aside = std::ffi::OsString::from(".");
+    aside.push(name);
+    aside.push(format!(".{}.new", std::process::id()));
+    Ok(path.with_file_name(aside))
+}
+
+fn write_aside(aside: &Path, bytes: &[u8], like: Option<&fs::Metadata>) -> io::Result<()> {
+    let mut file = File::options().write(true).create_new(true).open(aside)?;
+    if let Some(meta) = like {
+        file.set_permissions(meta.permissions())?;
+    }
+    file.write_all(bytes)?;
+    file.sync_all()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn folder(name: &str) -> PathBuf {
+        let path = std::env::temp_dir().join(format!("g7-retain-{name}-{}", std::process::id()));
+        fs::create_dir_all(&path).unwrap();
+        path
+    }
+
+    fn layout(ty: &str) -> Layout {
+        Layout { variables: vec![("count".into(), ty.into(), 1), ("say".into(), "STRING".into(), 2)] }
+    }
+
+    #[test]
+    fn what_was_saved_is_loaded_under_the_same_layout_only() {
+        let folder = folder("load");
+        let path = folder.join("kept");
+        assert_eq!(Retained::load(&layout("INT"), &path).unwrap(), None);
+        let kept = Retained { words: vec![7, 8, 9] };
+        kept.save(&layout("INT"), &path).unwrap();
+        assert_eq!(Retained::load(&layout("INT"), &path).unwrap(), Some(kept));
+        assert!(matches!(Retained::load(&layout("DINT"), &path), Err(RetainError::Layout)));
+        fs::remove_dir_all(folder).unwrap();
+    }
+
+    #[test]
+    fn every_damaged_byte_and_every_cut_is_noticed() {
+        let folder = folder("damage");
+        let path = folder.join("kept");
+        Retained { words: vec![1, 2, 3] }.save(&layout("INT"), &path).unwrap();
+        let good = fs::read(&path).unwrap();
+        for i in 0..good.len() {
+            let mut bad = good.clone();
+            bad[i] ^= 0x10;
+            fs::write(&path, &bad).unwrap();
+            assert!(Retained::load(&layout("INT"), &path).is_err(), "byte {i}");
+            fs::write(&path, &good[..i]).unwrap();
+            assert!(Retained::load(&layout("INT"), &path).is_err(), "cut at {i}");
+        }
+        fs::remove_dir_all(folder).unwrap();
+    }
+
+    #[test]
+    fn a_full_disk_leaves_the_old_file_and_nothing_beside_it() {
+        let folder = folder("full");
+        let path = folder.join("a");
+        fs::write(&path, "old").unwrap();
+        write_whole(&path, b"new").unwrap();
+        assert_eq!(fs::read(&path).unwrap(), b"new");
+        assert!(write_whole(&folder.join("missing/a"), b"x").is_err());
+        assert!(write_whole(&folder, b"x").is_err());
+        let names: Vec<_> = fs::read_dir(&folder).unwrap().map(|e| e.unwrap().file_name()).collect();
+        assert_eq!(names, ["a"]);
+        fs::remove_dir_all(folder).unwrap();
+    }
+
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn a_device_that_is_full_says_so() {
+        let error = write_whole(Path::new("/dev/full"), b"x").unwrap_err();
+        assert_eq!(error.kind(), io::ErrorKind::StorageFull);
+    }
+}

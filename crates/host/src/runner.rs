@@ -1,0 +1,432 @@
+//! The loop: plant, inputs, scan, outputs, one instant after the other.
+
+use std::collections::BTreeMap;
+use std::ops::Range;
+
+use g7_engine::{Addr, Fault, Program, Report, State, scan};
+
+use crate::clock::Clock;
+use crate::io::{Io, IoError};
+use crate::tape::Tape;
+
+/// Which words of charts and plant belong together, counted from the first
+/// input and output word of each.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Coupling {
+    /// Output word of the charts, input word of the plant.
+    pub to_plant: Vec<(u32, u32)>,
+    /// Output word of the plant, input word of the charts.
+    pub to_charts: Vec<(u32, u32)>,
+}
+
+/// What a restart keeps.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Start {
+    /// Nothing: `%S0` is true in the first scan.
+    Cold,
+    /// Retained variables: `%S1` is true in the first scan.
+    Warm,
+}
+
+/// What is held at a value from outside.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Force {
+    /// An input word, counted from the first: the charts read this value.
+    Input(u32),
+    /// An output: the plant and the devices get this value, the charts go on
+    /// with their own.
+    Output(Addr),
+    /// Any other variable: written before and after each scan.
+    Variable(Addr),
+}
+
+/// Who had the fault.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Halt {
+    /// The charts.
+    Charts(Fault),
+    /// The plant.
+    Plant(Fault),
+}
+
+struct Plant<'p> {
+    program: &'p Program,
+    state: State,
+    inputs: Vec<u64>,
+    coupling: Coupling,
+}
+
+/// A program at work, with its plant if it has one.
+pub struct Runner<'p> {
+    program: &'p Program,
+    state: State,
+    /// As set from outside or by the plant; forces lie over them.
+    inputs: Vec<u64>,
+    /// What the latest scan read.
+    read: Vec<u64>,
+    plant: Option<Plant<'p>>,
+    forces: BTreeMap<Force, u64>,
+    /// The charts' own values of forced outputs.
+    own: BTreeMap<Addr, u64>,
+    period: i64,
+    due: i64,
+    missed: u64,
+    halt: Option<Halt>,
+    report: Report,
+    retained: Vec<Range<u32>>,
+    flags: Option<(Addr, Addr)>,
+    tape: Option<Tape>,
+}
+
+impl<'p> Runner<'p> {
+    /// Charts before their first scan, which is due at 0; cold.
+    pub fn new(program: &'p Program, period: i64) -> Runner<'p> {
+        let rows = program.tables().inputs;
+        let mut runner = Runner {
+            program,
+            state: State::new(program),
+            inputs: Vec::new(),
+            read: Vec::new(),
+            plant: None,
+            forces: BTreeMap::new(),
+            own: BTreeMap::new(),
+            period: period.max(1),
+            due: 0,
+            missed: 0,
+            halt: None,
+            report: Report::default(),
+            retained: Vec::new(),
+            flags: None,
+            tape: None,
+        };
+        runner.inputs = (rows.start..rows.end).map(|a| runner.state.word(Addr(a))).collect();
+        runner.read = runner.inputs.clone();
+        runner
+    }
+
+    /// Runs against this plant.
+    #[must_use]
+    pub fn with_plant(mut self, program: &'p Program, coupling: Coupling) -> Runner<'p> {
+        let rows = program.tables().inputs;
+        let state = State::new(program);
+        let inputs = (rows.start..rows.end).map(|a| state.word(Addr(a))).collect();
+        self.plant = Some(Plant { program, state, inputs, coupling });
+        self
+    }
+
+    /// The words kept over a warm restart.
+    #[must_use]
+    pub fn with_retained(mut self, words: Vec<Range<u32>>) -> Runner<'p> {
+        self.retained = words;
+        self
+    }
+
+    /// The words of `%S0` and `%S1`.
+    #[must_use]
+    pub fn with_flags(mut self, flags: Option<(Addr, Addr)>) -> Runner<'p> {
+        self.flags = flags;
+        self.set_flags(Start::Cold);
+        self
+    }
+
+    /// Keeps a tape from here on.
+    #[must_use]
+    pub fn with_tape(mut self) -> Runner<'p> {
+        self.tape = Some(Tape::new(self.program));
+        if let (Some(flags), Some(tape)) = (self.flags, &mut self.tape) {
+            tape.write(flags.0, self.state.word(flags.0));
+            tape.write(flags.1, self.state.word(flags.1));
+        }
+        self
+    }
+
+    /// The tape, if one is kept.
+    pub fn tape(&self) -> Option<&Tape> {
+        self.tape.as_ref()
+    }
+
+    /// The program.
+    pub fn program(&self) -> &'p Program {
+        self.program
+    }
+
+    /// The state of the charts.
+    pub fn state(&self) -> &State {
+        &self.state
+    }
+
+    /// The state of the charts, to evaluate expressions on.
+    pub fn state_mut(&mut self) -> &mut State {
+        &mut self.state
+    }
+
+    /// The plant's program and state.
+    pub fn plant(&self) -> Option<(&'p Program, &State)> {
+        self.plant.as_ref().map(|p| (p.program, &p.state))
+    }
+
+    /// The plant's state, to evaluate expressions on.
+    pub fn plant_mut(&mut self) -> Option<(&'p Program, &mut State)> {
+        self.plant.as_mut().map(|p| (p.program, &mut p.state))
+    }
+
+    /// Instant of the next scan.
+    pub fn due(&self) -> i64 {
+        self.due
+    }
+
+    /// Time between scans.
+    pub fn period(&self) -> i64 {
+        self.period
+    }
+
+    /// Scans that were left out because they came too late.
+    pub fn missed(&self) -> u64 {
+        self.missed
+    }
+
+    /// What the latest scan did.
+    pub fn report(&self) -> Report {
+        self.report
+    }
+
+    /// What stopped it.
+    pub fn halt(&self) -> Option<Halt> {
+        self.halt
+    }
+
+    /// The inputs as the latest scan read them.
+    pub fn read(&self) -> &[u64] {
+        &self.read
+    }
+
+    /// The output words as the plant and the devices get them.
+    pub fn outputs(&self) -> Vec<u64> {
+        let rows = self.program.tables().outputs;
+        (rows.start..rows.end).map(|a| self.state.word(Addr(a))).collect()
+    }
+
+    /// Sets an input word, counted from the first. A plant that drives it
+    /// overwrites it at its next tick.
+    pub fn set_input(&mut self, index: u32, value: u64) {
+        if let Some(word) = self.inputs.get_mut(index as usize) {
+            *word = value;
+        }
+    }
+
+    /// An input word as it will be read, but for what the plant changes.
+    pub fn input(&self, index: u32) -> u64 {
+        let held = self.forces.get(&Force::Input(index));
+        held.or(self.inputs.get(index as usize)).copied().unwrap_or(0)
+    }
+
+    /// Whether the plant drives this input.
+    pub fn is_driven(&self, index: u32) -> bool {
+        self.plant.as_ref().is_some_and(|p| p.coupling.to_charts.iter().any(|(_, to)| *to == index))
+    }
+
+    /// Writes a variable of the charts, once.
+    pub fn set_word(&mut self, addr: Addr, value: u64) {
+        self.state.set_word(self.program, addr, value);
+        if let Some(tape) = &mut self.tape {
+            tape.write(addr, value);
+        }
+    }
+
+    /// Writes a variable of the plant, once.
+    pub fn set_plant_word(&mut self, addr: Addr, value: u64) {
+        if let Some(p) = &mut self.plant {
+            p.state.set_word(p.program, addr, value);
+        }
+    }
+
+    /// Holds something at a value, at once and until released.
+    pub fn force(&mut self, what: Force, value: u64) {
+        if let Force::Output(addr) = what {
+            self.own.entry(addr).or_insert_with(|| self.state.word(addr));
+        }
+        self.forces.insert(what, value);
+        if let Force::Output(addr) | Force::Variable(addr) = what {
+            self.set_word(addr, value);
+        }
+    }
+
+    /// Lets go; whether it was held. An output takes the charts' own value again.
+    pub fn release(&mut self, what: Force) -> bool {
+        if let Force::Output(addr) = what
+            && let Some(value) = self.own.remove(&addr)
+        {
+            self.set_word(addr, value);
+        }
+        self.forces.remove(&what).is_some()
+    }
+
+    /// Whether it is held.
+    pub fn is_forced(&self, what: Force) -> bool {
+        self.forces.contains_key(&what)
+    }
+
+    /// Leaves out the scans that should have been made before `now`, but for
+    /// the latest of them.
+    pub fn catch_up(&mut self, now: i64) {
+        let late = now.saturating_sub(self.due) / self.period;
+        if late > 0 {
+            self.missed = self.missed.saturating_add(late as u64);
+            self.due = self.due.saturating_add(late.saturating_mul(self.period));
+        }
+    }
+
+    /// The next scan, at the instant it is due: the plant moves, then the
+    /// charts read and evolve.
+    ///
+    /// # Errors
+    ///
+    /// A fault of the charts or the plant; the same again until [`Runner::restart`].
+    pub fn scan(&mut self) -> Result<Report, Halt> {
+        if let Some(halt) = self.halt {
+            return Err(halt);
+        }
+        let now = self.due;
+        self.due = now.saturating_add(self.period);
+        let done = self.move_plant(now).map_err(Halt::Plant).and_then(|()| self.evolve(now));
+        match done {
+            Ok(report) => self.report = report,
+            Err(halt) => self.halt = Some(halt),
+        }
+        done
+    }
+
+    fn move_plant(&mut self, now: i64) -> Result<(), Fault> {
+        let Some(p) = &mut self.plant else { return Ok(()) };
+        let outputs = self.program.tables().outputs.start;
+        for (from, to) in &p.coupling.to_plant {
+            if let Some(word) = p.inputs.get_mut(*to as usize) {
+                *word = self.state.word(Addr(outputs.saturating_add(*from)));
+            }
+        }
+        scan(p.program, &mut p.state, &p.inputs, now)?;
+        let driven = p.program.tables().outputs.start;
+        for (from, to) in &p.coupling.to_charts {
+            if let Some(word) = self.inputs.get_mut(*to as usize) {
+                *word = p.state.word(Addr(driven.saturating_add(*from)));
+            }
+        }
+        Ok(())
+    }
+
+    fn evolve(&mut self, now: i64) -> Result<Report, Halt> {
+        self.read.clone_from(&self.inputs);
+        for (what, value) in self.forces.clone() {
+            match what {
+                Force::Input(index) => {
+                    if let Some(word) = self.read.get_mut(index as usize) {
+                        *word = value;
+                    }
+                }
+                Force::Output(addr) => {
+                    let own = self.own.get(&addr).copied().unwrap_or(value);
+                    self.set_word(addr, own);
+                }
+                Force::Variable(addr) => self.set_word(addr, value),
+            }
+        }
+        let done = scan(self.program, &mut self.state, &self.read, now);
+        if let Some(tape) = &mut self.tape {
+            tape.scan(now, &self.read, &self.state);
+        }
+        if done.is_ok() {
+            for (what, value) in self.forces.clone() {
+                if let Force::Output(addr) = what {
+                    self.own.insert(addr, self.state.word(addr));
+                }
+                if let Force::Output(addr) | Force::Variable(addr) = what {
+                    self.set_word(addr, value);
+                }
+            }
+        }
+        done.map_err(Halt::Charts)
+    }
+
+    /// Starts the charts anew; inputs, forces and the plant stay as they are.
+    pub fn restart(&mut self, start: Start) {
+        let kept = match start {
+            Start::Cold => Vec::new(),
+            Start::Warm => self.retained(),
+        };
+        self.state = State::new(self.program);
+        self.halt = None;
+        self.own.clear();
+        if let Some(tape) = &mut self.tape {
+            tape.restart();
+        }
+        self.retain(&kept);
+        self.set_flags(start);
+        for (what, value) in self.forces.clone() {
+            if let Force::Output(addr) = what {
+                self.own.insert(addr, self.state.word(addr));
+                self.set_word(addr, value);
+            }
+        }
+    }
+
+    /// The words kept over a warm restart, now.
+    pub fn retained(&self) -> Vec<u64> {
+        self.retained.iter().cloned().flatten().map(|a| self.state.word(Addr(a))).collect()
+    }
+
+    /// Takes over words that were kept; fewer leave the rest as it is.
+    pub fn retain(&mut self, words: &[u64]) {
+        let all: Vec<u32> = self.retained.iter().cloned().flatten().collect();
+        for (addr, value) in all.into_iter().zip(words) {
+            self.set_word(Addr(addr), *value);
+        }
+    }
+
+    fn set_flags(&mut self, start: Start) {
+        if let Some((cold, warm)) = self.flags {
+            self.set_word(cold, u64::from(start == Start::Cold));
+            self.set_word(warm, u64::from(start == Start::Warm));
+        }
+    }
+}
+
+/// Why [`serve`] ended.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Served {
+    /// It was told to.
+    Stopped,
+    /// A fault; the outputs have their safe values.
+    Halted(Halt),
+    /// A device failed; the outputs were set to their safe values where it still let us.
+    Io(IoError),
+}
+
+/// Runs on devices until told to stop, asked before each scan.
+pub fn serve(
+    runner: &mut Runner<'_>,
+    clock: &mut dyn Clock,
+    io: &mut dyn Io,
+    stop: &mut dyn FnMut(&Runner<'_>) -> bool,
+) -> Served {
+    loop {
+        if stop(runner) {
+            return Served::Stopped;
+        }
+        clock.wait_until(runner.due());
+        runner.catch_up(clock.now());
+        let safe = &runner.program.tables().safe;
+        if let Err(e) = io.read(&mut runner.inputs) {
+            io.write(safe).ok();
+            return Served::Io(e);
+        }
+        let done = runner.scan();
+        let outputs = if done.is_ok() { runner.outputs() } else { safe.clone() };
+        if let Err(e) = io.write(&outputs) {
+            io.write(safe).ok();
+            return Served::Io(e);
+        }
+        if let Err(halt) = done {
+            return Served::Halted(halt);
+        }
+    }
+}

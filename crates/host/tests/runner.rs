@@ -1,0 +1,207 @@
+//! The loop on small programs made by hand.
+#![allow(missing_docs, reason = "a test")]
+
+use g7_engine::{Addr, Arith, Code, FaultKind, Num, Op, Program, Rows, Rules, Tables};
+use g7_host::{
+    Channels, Clock, Coupling, Force, Halt, Io, IoError, Runner, Served, Start, Tape, VirtualClock, serve,
+};
+
+/// Words: input, output, kept, other; each scan `output := input`,
+/// `kept := kept + 1`, `other := other + 1`; `kept` is an INT up to 32767.
+fn counter() -> Program {
+    let add = |a| [Op::Load(Addr(a)), Op::Push(1), Op::Arith(Arith::Add, Num::I16), Op::Store(Addr(a))];
+    let mut code = vec![Op::Load(Addr(0)), Op::Store(Addr(1))];
+    code.extend(add(2));
+    code.extend(add(3));
+    program(code, vec![0, 0, 0, 0], 1)
+}
+
+/// `output := input + 10`, with 3 at the start.
+fn adder() -> Program {
+    let code = vec![Op::Load(Addr(0)), Op::Push(10), Op::Arith(Arith::Add, Num::I64), Op::Store(Addr(1))];
+    program(code, vec![0, 3], 0)
+}
+
+fn program(code: Vec<Op>, init: Vec<u64>, safe: u64) -> Program {
+    let post = Code { start: 0, end: code.len() as u32 };
+    Program::new(Tables {
+        rules: Rules::PL7,
+        init,
+        inputs: Rows { start: 0, end: 1 },
+        outputs: Rows { start: 1, end: 2 },
+        safe: vec![safe],
+        periods: vec![0],
+        post,
+        code,
+        ..Tables::default()
+    })
+    .expect("tables are sound")
+}
+
+#[test]
+fn scans_come_at_the_period_with_the_inputs_of_then() {
+    let program = counter();
+    let mut runner = Runner::new(&program, 10);
+    for (scan, input) in [(0, 0), (1, 1), (2, 0)] {
+        assert_eq!(runner.due(), scan * 10);
+        runner.set_input(0, input);
+        runner.scan().unwrap();
+        assert_eq!((runner.state().now(), runner.outputs()), (scan * 10, vec![input]));
+    }
+}
+
+#[test]
+fn the_plant_moves_before_the_charts_read() {
+    let (charts, plant) = (counter(), adder());
+    let coupling = Coupling { to_plant: vec![(0, 0)], to_charts: vec![(0, 0)] };
+    let mut runner = Runner::new(&charts, 10).with_plant(&plant, coupling);
+    assert!(runner.is_driven(0));
+    // The charts' output is 0 before the first scan: the plant answers 10, read at once.
+    for expected in [10, 20, 30] {
+        runner.scan().unwrap();
+        assert_eq!(runner.outputs(), [expected]);
+    }
+}
+
+#[test]
+fn missed_scans_are_left_out_and_counted() {
+    let program = counter();
+    let mut runner = Runner::new(&program, 10);
+    runner.scan().unwrap();
+    runner.catch_up(9);
+    assert_eq!((runner.due(), runner.missed()), (10, 0));
+    runner.catch_up(45);
+    assert_eq!((runner.due(), runner.missed()), (40, 3));
+    runner.scan().unwrap();
+    assert_eq!((runner.state().scans(), runner.due()), (2, 50));
+}
+
+#[test]
+fn a_forced_input_goes_over_plant_and_user_until_released() {
+    let (charts, plant) = (counter(), adder());
+    let coupling = Coupling { to_plant: Vec::new(), to_charts: vec![(0, 0)] };
+    let mut runner = Runner::new(&charts, 10).with_plant(&plant, coupling);
+    runner.force(Force::Input(0), 7);
+    runner.scan().unwrap();
+    assert_eq!(runner.outputs(), [7]);
+    assert!(runner.release(Force::Input(0)));
+    assert!(!runner.release(Force::Input(0)));
+    runner.scan().unwrap();
+    assert_eq!(runner.outputs(), [10]);
+}
+
+#[test]
+fn a_forced_output_is_seen_outside_and_falls_back_when_released() {
+    let program = counter();
+    let mut runner = Runner::new(&program, 10);
+    runner.set_input(0, 5);
+    runner.force(Force::Output(Addr(1)), 9);
+    assert_eq!(runner.outputs(), [9], "at once");
+    runner.scan().unwrap();
+    assert_eq!(runner.outputs(), [9]);
+    runner.release(Force::Output(Addr(1)));
+    assert_eq!(runner.outputs(), [5], "the charts' own");
+}
+
+#[test]
+fn a_warm_restart_keeps_what_is_retained_and_a_cold_one_nothing() {
+    let program = counter();
+    let mut runner =
+        Runner::new(&program, 10).with_retained(std::iter::once(2..3).collect()).with_flags(None);
+    runner.scan().unwrap();
+    runner.scan().unwrap();
+    runner.restart(Start::Warm);
+    assert_eq!(runner.state().words(), [0, 0, 2, 0]);
+    runner.restart(Start::Cold);
+    assert_eq!(runner.state().words(), [0, 0, 0, 0]);
+    assert_eq!(runner.due(), 20, "time goes on");
+}
+
+#[test]
+fn after_a_fault_outputs_are_safe_and_scans_refused_until_restart() {
+    let program = counter();
+    let mut runner = Runner::new(&program, 10);
+    runner.set_word(Addr(2), 32767);
+    let halt = runner.scan().unwrap_err();
+    assert!(matches!(halt, Halt::Charts(f) if f.kind == FaultKind::Overflow));
+    assert_eq!(runner.outputs(), [1], "declared safe");
+    assert_eq!(runner.scan(), Err(halt));
+    runner.restart(Start::Cold);
+    assert!(runner.scan().is_ok());
+}
+
+#[test]
+fn a_tape_plays_back_to_the_same_bytes_and_notices_another_program() {
+    let program = counter();
+    let mut runner = Runner::new(&program, 10).with_tape();
+    for i in 0..50 {
+        runner.set_input(0, i % 3);
+        if i == 20 {
+            runner.set_word(Addr(3), 77);
+        }
+        if i == 30 {
+            runner.restart(Start::Cold);
+        }
+        runner.scan().unwrap();
+    }
+    let tape = runner.tape().unwrap();
+    let read = Tape::from_text(&tape.to_text()).unwrap();
+    assert_eq!(read.to_text(), tape.to_text());
+    assert_eq!(read.scans(), 50);
+    let mut seen = 0;
+    let state = read.replay(&program, |_, _| seen += 1).unwrap();
+    assert_eq!((state.to_bytes(), seen), (runner.state().to_bytes(), 50));
+    let other = adder();
+    assert_eq!(read.replay(&other, |_, _| {}).unwrap_err().scan, 0);
+    for bad in ["", "g7 tape 1 x", "g7 tape 1 1\nz", "g7 tape 1 1\ns 1", "g7 tape 1 1\nw 1"] {
+        assert!(Tape::from_text(bad).is_none(), "{bad:?}");
+    }
+}
+
+#[derive(Default)]
+struct Wires {
+    written: Vec<Vec<u64>>,
+    fail_at: usize,
+}
+
+impl Io for Wires {
+    fn read(&mut self, inputs: &mut [u64]) -> Result<(), IoError> {
+        if self.written.len() == self.fail_at {
+            return Err(IoError { channel: Some(0), what: "gone".into() });
+        }
+        inputs.fill(0);
+        Ok(())
+    }
+    fn write(&mut self, outputs: &[u64]) -> Result<(), IoError> {
+        self.written.push(outputs.to_vec());
+        Ok(())
+    }
+}
+
+#[test]
+fn a_device_that_fails_gets_the_safe_outputs() {
+    let program = counter();
+    let mut runner = Runner::new(&program, 10);
+    let mut io = Channels::new(Wires { fail_at: 2, ..Wires::default() }, vec![0], Vec::new());
+    let mut clock = VirtualClock::default();
+    let ended = serve(&mut runner, &mut clock, &mut io, &mut |_| false);
+    assert!(matches!(ended, Served::Io(e) if e.to_string() == "channel 0: gone"));
+    // The input is inverted: the wire's 0 is read as 1. Then the safe value, also 1.
+    assert_eq!(io.device().written, [[1], [1], [1]]);
+    assert_eq!(clock.now(), 20);
+}
+
+#[test]
+fn serving_ends_when_told_and_at_a_fault() {
+    let program = counter();
+    let mut io = Wires { fail_at: usize::MAX, ..Wires::default() };
+    let mut clock = VirtualClock::default();
+    let mut runner = Runner::new(&program, 10);
+    let ended = serve(&mut runner, &mut clock, &mut io, &mut |r| r.due() >= 30);
+    assert_eq!(ended, Served::Stopped);
+    assert_eq!(io.written, [[0], [0], [0]]);
+    runner.set_word(Addr(2), 32767);
+    let ended = serve(&mut runner, &mut clock, &mut io, &mut |_| false);
+    assert!(matches!(ended, Served::Halted(Halt::Charts(_))));
+    assert_eq!(io.written.last(), Some(&vec![1]), "safe");
+}
