@@ -60,10 +60,10 @@ pub struct Unit {
     pub transitions: Vec<Transition>,
     /// Named actions.
     pub bodies: Vec<Body>,
-    /// Preliminary processing, in text order.
-    pub pre: Vec<Stmt>,
-    /// Posterior processing, in text order.
-    pub post: Vec<Stmt>,
+    /// Preliminary processing, a body each section, in text order; RETURN ends its own section only.
+    pub pre: Vec<Body>,
+    /// Posterior processing, likewise.
+    pub post: Vec<Body>,
     /// Transition sections.
     pub sections: Vec<Section>,
     /// Functions.
@@ -390,8 +390,11 @@ pub enum ExprKind {
         /// TIME.
         t2: Option<Box<Expr>>,
     },
-    /// To the type of this expression, from that of the operand.
+    /// To the type of this expression, from that of the operand; TIME counts
+    /// as its nanoseconds (LINT), what the user's `TIME_TO_DINT` scales stands beside it.
     Convert(Box<Expr>),
+    /// TRUNC: a real toward zero, to the integer type of this expression.
+    Trunc(Box<Expr>),
     /// A standard function.
     Builtin(Builtin, Vec<Expr>),
     /// A function of the document.

@@ -41,6 +41,38 @@ codes! {
     TOO_LARGE = "G0008" Error "the file is too large" "the .g7 format";
     UNKNOWN_WORD = "G0009" Error "a word the language does not have" "the .g7 format";
     TOO_MANY_PROBLEMS = "G0010" Error "too many problems to list" "the .g7 format";
+
+    // Names and types
+    DEFINED_TWICE = "G0201" Error "one name is defined twice" "IEC 61131-3:2003, 2.7.1";
+    UNKNOWN_NAME = "G0202" Error "a name that nothing has" "IEC 61131-3:2003, 2.4";
+    AMBIGUOUS_STEP = "G0203" Error "a step name that several charts have" "IEC 60848:2013, 4.2";
+    UNKNOWN_STEP = "G0204" Error "a step that is not there" "IEC 60848:2013, 4.2";
+    UNKNOWN_CHART = "G0205" Error "a chart that is not there" "IEC 60848:2013, 4.9";
+    UNKNOWN_MEMBER = "G0206" Error "a member that is not there" "IEC 61131-3:2003, 2.5.2";
+    UNKNOWN_DIRECT = "G0207" Error "a direct address at which nothing is declared" "IEC 61131-3:2003, 2.4.1.1";
+    WRONG_KIND = "G0208" Error "a name used as what it is not" "IEC 61131-3:2003, 2.5";
+    WRONG_TYPE = "G0209" Error "a value of the wrong type" "IEC 61131-3:2003, 2.3.1";
+    WRONG_OPERANDS = "G0210" Error "operands that do not go together" "IEC 61131-3:2003, 2.5.1.5";
+    OUT_OF_RANGE = "G0211" Error "a constant that its type cannot hold" "IEC 61131-3:2003, 2.3.1, table 10";
+    CONSTANT_FAULT = "G0212" Error "constant arithmetic without a result" "IEC 61131-3:2003, 2.5.1.5.2";
+    NOT_CONSTANT = "G0213" Error "a constant is needed here" "IEC 61131-3:2003, 2.4.2";
+    NOT_WRITABLE = "G0214" Error "something that cannot be written" "IEC 61131-3:2003, 2.4.3";
+    WRONG_ARGUMENTS = "G0215" Error "a call with the wrong arguments" "IEC 61131-3:2003, 2.5.1.1";
+    RECURSION = "G0216" Error "functions that call each other in a circle" "IEC 61131-3:2003, 2.5";
+    NOT_HERE = "G0217" Error "something that cannot stand in this place" "IEC 61131-3:2003, 2.5.1";
+    EXPANSION_SHARED = "G0218" Error "one expansion for two macro-steps" "IEC 60848:2013, 4.11";
+    NESTED_IN_ITSELF = "G0219" Error "a chart nested in itself" "IEC 60848:2013, 4.10 and 4.11";
+    ENCLOSED_TWICE = "G0220" Error "a chart enclosed by two steps" "IEC 60848:2013, 4.10";
+    EXIT_OUTSIDE = "G0221" Error "EXIT outside a loop" "IEC 61131-3:2003, 3.3.2.4";
+    LABELS_OVERLAP = "G0222" Warning "CASE labels that overlap" "IEC 61131-3:2003, 3.3.2.3";
+    EMPTY_RANGE = "G0223" Error "a range that ends before it starts" "IEC 61131-3:2003, 3.3.2.3";
+    SECTION_SHARED = "G0224" Error "one transition section for two transitions" "Unity Pro, transition sections";
+    SECTION_UNUSED = "G0225" Warning "a transition section that no transition uses" "Unity Pro, transition sections";
+    QUALIFIER_TIME = "G0226" Error "a qualifier without its time, or with one too many" "IEC 61131-3:2003, 2.6.4.4, table 45";
+    BODY_LANGUAGE = "G0227" Error "a body in a language that does not run yet" "the .g7 format";
+    BAD_DECLARATION = "G0228" Error "a declaration that does not fit its type" "IEC 61131-3:2003, 2.4.3";
+    ADDRESS_TWICE = "G0229" Error "one address for two variables" "IEC 61131-3:2003, 2.4.1.1";
+    NESTED_TOO_DEEPLY = "G0230" Error "macro-steps nested too deeply" "the .g7 format";
 }
 
 /// The code with this id (`G0101`, in any case), if there is one.
