@@ -1,0 +1,203 @@
+//! The standard functions (decision 19).
+
+use g7_model::{BinaryOp, Type};
+
+use super::value::{NaiveFault, Run, Typed, Value, bad, binary, common, cut, negate};
+
+/// Calls a standard function or a conversion by its name, in any case.
+pub(super) fn call(name: &str, args: &[Typed]) -> Run<Typed> {
+    let name = name.to_ascii_uppercase();
+    if let Some((from, to)) = name.split_once("_TO_")
+        && let (Some(from), Some(to)) = (type_named(from), type_named(to))
+    {
+        return match args {
+            [x] => convert(from, to, x),
+            _ => bad(format!("{name} takes one argument")),
+        };
+    }
+    match (&*name, args) {
+        ("ABS", [x]) => {
+            let zero = Typed { ty: None, v: Value::Int(0) };
+            if matches!(x.v, Value::Time(t) if t >= 0) {
+                return Ok(x.clone());
+            }
+            let negative = match x.v {
+                Value::Real(r) => r.is_sign_negative(),
+                Value::Lreal(r) => r.is_sign_negative(),
+                Value::Time(_) => true,
+                _ => binary(BinaryOp::Lt, x, &zero)?.truth()?,
+            };
+            if negative { negate(x) } else { Ok(x.clone()) }
+        }
+        ("SQRT", [x]) => real(x, libm::sqrtf, libm::sqrt),
+        ("LN", [x]) => real(x, libm::logf, libm::log),
+        ("LOG", [x]) => real(x, libm::log10f, libm::log10),
+        ("EXP", [x]) => real(x, libm::expf, libm::exp),
+        ("SIN", [x]) => real(x, libm::sinf, libm::sin),
+        ("COS", [x]) => real(x, libm::cosf, libm::cos),
+        ("TAN", [x]) => real(x, libm::tanf, libm::tan),
+        ("ASIN", [x]) => real(x, libm::asinf, libm::asin),
+        ("ACOS", [x]) => real(x, libm::acosf, libm::acos),
+        ("ATAN", [x]) => real(x, libm::atanf, libm::atan),
+        ("MOVE", [x]) => Ok(x.clone()),
+        ("MIN", [first, rest @ ..]) => extreme(BinaryOp::Lt, first, rest),
+        ("MAX", [first, rest @ ..]) => extreme(BinaryOp::Gt, first, rest),
+        ("LIMIT", [least, x, most]) => {
+            let raised = extreme(BinaryOp::Gt, x, std::slice::from_ref(least))?;
+            extreme(BinaryOp::Lt, &raised, std::slice::from_ref(most))
+        }
+        ("SEL", [choice, no, yes]) => {
+            alike(if choice.truth()? { yes } else { no }, &[no.clone(), yes.clone()])
+        }
+        ("MUX", [k, rest @ ..]) => match usize::try_from(k.whole()?).ok().and_then(|k| rest.get(k)) {
+            Some(x) => alike(x, rest),
+            None => Err(NaiveFault::Index),
+        },
+        ("TRUNC", [x]) => rounded(&truncated(x)?, Type::Dint),
+        _ => text(&name, args),
+    }
+}
+
+fn type_named(name: &str) -> Option<Type> {
+    use Type as T;
+    let all = [T::Bool, T::Sint, T::Int, T::Dint, T::Lint, T::Usint, T::Uint, T::Udint, T::Ulint];
+    let more = [T::Real, T::Lreal, T::Time, T::String(80)];
+    all.into_iter().chain(more).find(|t| t.to_string() == name)
+}
+
+fn real(x: &Typed, single: fn(f32) -> f32, double: fn(f64) -> f64) -> Run<Typed> {
+    match &x.v {
+        Value::Real(r) => Ok(Typed::of(Type::Real, Value::Real(single(*r)))),
+        Value::Lreal(r) => Ok(Typed { ty: x.ty, v: Value::Lreal(double(*r)) }),
+        Value::Int(n) => Ok(Typed::of(Type::Real, Value::Real(single(*n as f32)))),
+        v => bad(format!("a real function of {v:?}")),
+    }
+}
+
+/// A value in the type common to all of a list.
+fn alike(x: &Typed, all: &[Typed]) -> Run<Typed> {
+    let mut so_far = x.clone();
+    for other in all {
+        if let Some(ty) = common(&so_far, other)? {
+            so_far = Typed::of(ty, so_far.to(ty)?);
+        }
+    }
+    Ok(so_far)
+}
+
+fn extreme(better: BinaryOp, first: &Typed, rest: &[Typed]) -> Run<Typed> {
+    let mut best = first.clone();
+    for x in rest {
+        if binary(better, x, &best)?.truth()? {
+            best = x.clone();
+        }
+    }
+    let mut all = rest.to_vec();
+    all.push(first.clone());
+    alike(&best, &all)
+}
+
+fn truncated(x: &Typed) -> Run<f64> {
+    match &x.v {
+        Value::Real(r) => Ok(libm::trunc(f64::from(*r))),
+        Value::Lreal(r) => Ok(libm::trunc(*r)),
+        v => bad(format!("TRUNC of {v:?}")),
+    }
+}
+
+/// A whole floating-point number as an integer of a type.
+fn rounded(x: &f64, to: Type) -> Run<Typed> {
+    if x.is_nan() || x.abs() > 1e30 {
+        return Err(NaiveFault::Overflow);
+    }
+    let whole = Typed { ty: None, v: Value::Int(*x as i128) };
+    Ok(Typed::of(to, whole.to(to)?))
+}
+
+fn convert(from: Type, to: Type, x: &Typed) -> Run<Typed> {
+    let v = x.to(from)?;
+    let done = match (&v, to) {
+        (Value::Str(s), _) => return from_text(s, to),
+        (_, Type::String(n)) => Value::Str(cut(&as_text(&v)?, usize::from(n))),
+        (Value::Bool(b), t) if t.is_integer() => Value::Int(i128::from(*b)),
+        (Value::Bool(b), Type::Real) => Value::Real(if *b { 1.0 } else { 0.0 }),
+        (Value::Bool(b), Type::Lreal) => Value::Lreal(if *b { 1.0 } else { 0.0 }),
+        (Value::Int(n), Type::Bool) => Value::Bool(*n != 0),
+        (Value::Real(r), Type::Bool) => Value::Bool(*r != 0.0),
+        (Value::Lreal(r), Type::Bool) => Value::Bool(*r != 0.0),
+        (Value::Real(r), t) if t.is_integer() => return rounded(&libm::rint(f64::from(*r)), t),
+        (Value::Lreal(r), t) if t.is_integer() => return rounded(&libm::rint(*r), t),
+        (Value::Lreal(r), Type::Real) => Value::Real(*r as f32),
+        (Value::Int(_), _) => Typed { ty: None, v: v.clone() }.to(to)?,
+        (v, t) => Typed::of(from, v.clone()).to(t)?,
+    };
+    Ok(Typed::of(to, done))
+}
+
+fn as_text(v: &Value) -> Run<String> {
+    Ok(match v {
+        Value::Bool(b) => if *b { "TRUE" } else { "FALSE" }.to_owned(),
+        Value::Int(n) => n.to_string(),
+        v => return bad(format!("{v:?} as text")),
+    })
+}
+
+fn from_text(s: &str, to: Type) -> Run<Typed> {
+    match s.trim().parse::<i128>() {
+        Ok(n) if to.is_integer() => Ok(Typed::of(to, Typed { ty: None, v: Value::Int(n) }.to(to)?)),
+        _ if to.is_integer() => Err(NaiveFault::Overflow),
+        _ => bad("a text as this type"),
+    }
+}
+
+/// Functions of character strings; positions count from 1.
+fn text(name: &str, args: &[Typed]) -> Run<Typed> {
+    let s = |i: usize| match args.get(i) {
+        Some(t) => t.text(),
+        None => bad(format!("{name} lacks arguments")),
+    };
+    let n = |i: usize| match args.get(i).map(Typed::whole) {
+        Some(Ok(n)) => Ok(usize::try_from(n.max(0)).unwrap_or(usize::MAX)),
+        Some(Err(e)) => Err(e),
+        None => bad(format!("{name} lacks arguments")),
+    };
+    let out = |text: String| Ok(Typed::of(Type::String(u16::MAX), Value::Str(text)));
+    let split = |text: &str, at: usize| -> (String, String) {
+        let chars: Vec<char> = text.chars().collect();
+        let at = at.min(chars.len());
+        (chars[..at].iter().collect(), chars[at..].iter().collect())
+    };
+    match name {
+        "LEN" => Ok(Typed::int(s(0)?.chars().count() as i128)),
+        "FIND" => {
+            let place = s(0)?.find(s(1)?).map_or(0, |b| s(0).map_or(0, |t| t[..b].chars().count() + 1));
+            Ok(Typed::int(place as i128))
+        }
+        "LEFT" => out(split(s(0)?, n(1)?).0),
+        "RIGHT" => {
+            let length = s(0)?.chars().count();
+            out(split(s(0)?, length.saturating_sub(n(1)?)).1)
+        }
+        "MID" => out(split(&split(s(0)?, n(2)?.saturating_sub(1)).1, n(1)?).0),
+        "CONCAT" => {
+            let mut all = String::new();
+            for i in 0..args.len() {
+                all.push_str(s(i)?);
+            }
+            out(all)
+        }
+        "INSERT" => {
+            let (left, right) = split(s(0)?, n(2)?);
+            out(left + s(1)? + &right)
+        }
+        "DELETE" => {
+            let (left, right) = split(s(0)?, n(2)?.saturating_sub(1));
+            out(left + &split(&right, n(1)?).1)
+        }
+        "REPLACE" => {
+            let (left, right) = split(s(0)?, n(3)?.saturating_sub(1));
+            out(left + s(1)? + &split(&right, n(2)?).1)
+        }
+        _ => bad(format!("no function {name}")),
+    }
+}

@@ -1,0 +1,335 @@
+//! The end of a scan: control blocks, continuous actions, bodies, POST.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use g7_model::{ActionKind, Body, Expr, ProfileName, Qualifier, Target, Type};
+
+use super::exec::Exec;
+use super::model::{FILE, Model, ScopeId, StepId, VarId};
+use super::names::Ref;
+use super::state::{Control, Owner, State};
+use super::value::{Run, Value, bad};
+
+/// What a qualified action governs.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Goal {
+    Var(VarId),
+    Named(ScopeId, String),
+    Own,
+}
+
+/// One qualified action that acts at the end of a scan.
+struct Block<'m> {
+    step: StepId,
+    place: usize,
+    owner: Owner,
+    qualifier: Qualifier,
+    time: Option<&'m Expr>,
+    condition: Option<&'m Expr>,
+}
+
+pub(super) fn goal(m: &Model, scope: ScopeId, target: &Target) -> Run<Goal> {
+    let found = match target {
+        Target::Work(_) => return Ok(Goal::Own),
+        Target::Path(p) => {
+            if let [one] = &p.names[..] {
+                for s in [scope, FILE] {
+                    if m.scopes[s].actions.contains_key(&*one.text) {
+                        return Ok(Goal::Named(s, one.text.to_string()));
+                    }
+                }
+            }
+            m.resolve(scope, p)
+        }
+        Target::Direct(d, _) => m.resolve_direct(d),
+    };
+    match found {
+        Some(Ref::Var(v)) if m.vars[v].ty == Type::Bool => Ok(Goal::Var(v)),
+        _ => bad(format!("{target:?} cannot be governed")),
+    }
+}
+
+/// All qualified actions with their goals.
+fn qualified(m: &Model) -> Run<Vec<(Block<'_>, Goal)>> {
+    let mut all = Vec::new();
+    for scope in FILE + 1..m.scopes.len() {
+        for &step in &m.scopes[scope].steps {
+            for (place, action) in m.steps[step].actions.iter().enumerate() {
+                let ActionKind::Qualified { qualifier, time, target, condition } = &action.kind else {
+                    continue;
+                };
+                let goal = goal(m, scope, target)?;
+                let owner = match &goal {
+                    Goal::Var(v) => Owner::Var(*v),
+                    Goal::Named(s, name) => Owner::Named(*s, name.clone()),
+                    Goal::Own => Owner::Own(step, place),
+                };
+                let (time, condition) = (time.as_ref(), condition.as_ref());
+                all.push((Block { step, place, owner, qualifier: *qualifier, time, condition }, goal));
+            }
+        }
+    }
+    Ok(all)
+}
+
+/// Whether an association acts at the end of the scan (decisions 7 and 8), and
+/// not as a stored action.
+pub(super) fn through_block(m: &Model, goal: &Goal, q: Qualifier) -> bool {
+    let Goal::Var(v) = goal else {
+        return !(m.rules.stored_pulses() && matches!(q, Qualifier::P1 | Qualifier::P0));
+    };
+    if !m.rules.stored_pulses() || !matches!(q, Qualifier::S | Qualifier::R) {
+        return true;
+    }
+    m.blocked_vars.contains(v)
+}
+
+/// Variables whose associations all go through a control block.
+pub(super) fn blocked_vars(m: &Model) -> Run<BTreeSet<VarId>> {
+    use Qualifier as Q;
+    let mut vars = BTreeSet::new();
+    for (block, goal) in qualified(m)? {
+        let needs = match m.rules.profile {
+            ProfileName::Iec60848 => {
+                matches!(block.qualifier, Q::SD | Q::DS | Q::SL | Q::P | Q::P1 | Q::P0)
+            }
+            ProfileName::Pl7 | ProfileName::Jgrafchart => !matches!(block.qualifier, Q::S | Q::R),
+            ProfileName::Iec61131 | ProfileName::Unity => true,
+        };
+        if let (Goal::Var(v), true) = (goal, needs) {
+            vars.insert(v);
+        }
+    }
+    Ok(vars)
+}
+
+/// What a control block says.
+struct Verdict {
+    q: bool,
+    /// Its action's body runs in this scan.
+    runs: bool,
+    /// P1 (0) or P0 (2) runs it, or anything else (1).
+    pulse: i8,
+}
+
+/// Evaluates all control blocks and continuous actions, then runs the bodies.
+pub(super) fn end_of_scan(m: &Model, s: &mut State, due: &[bool], start: &BTreeSet<StepId>) -> Run<()> {
+    let blocks: Vec<Block<'_>> = qualified(m)?
+        .into_iter()
+        .filter(|(b, goal)| through_block(m, goal, b.qualifier))
+        .map(|(b, _)| b)
+        .collect();
+    let mut owners: Vec<&Owner> = Vec::new();
+    for b in &blocks {
+        if !owners.contains(&&b.owner) {
+            owners.push(&b.owner);
+        }
+    }
+    let mut verdicts: BTreeMap<&Owner, Verdict> = BTreeMap::new();
+    for owner in owners {
+        let mine: Vec<&Block<'_>> = blocks.iter().filter(|b| b.owner == *owner).collect();
+        if mine.iter().any(|b| due[m.steps[b.step].scope]) {
+            let verdict = judge(m, s, owner, &mine)?;
+            verdicts.insert(owner, verdict);
+        }
+    }
+    for (owner, verdict) in &verdicts {
+        if let Owner::Var(v) = owner {
+            let control = s.control.entry((*owner).clone()).or_default();
+            if control.written != verdict.q {
+                control.written = verdict.q;
+                s.vars[*v] = Value::Bool(verdict.q);
+            }
+        }
+    }
+    bodies(m, s, due, start, &blocks, &verdicts)
+}
+
+/// The inputs of a block, and what comes of them.
+fn judge(m: &Model, s: &mut State, owner: &Owner, blocks: &[&Block<'_>]) -> Run<Verdict> {
+    let continuous = match owner {
+        Owner::Var(v) => m.rules.profile == ProfileName::Iec60848 && !m.blocked_vars.contains(v),
+        Owner::Named(..) | Owner::Own(..) => false,
+    };
+    let masked_var = match owner {
+        Owner::Var(v) => m.var_masks.iter().any(|(by, var)| var == v && s.is_active(m, *by)),
+        Owner::Named(..) | Owner::Own(..) => false,
+    };
+    let mut inputs = [false; Qualifier::ALL.len()];
+    let mut control = s.control.get(owner).cloned().unwrap_or_default();
+    let mut any = false;
+    let mut timed = [false; 5];
+    for b in blocks {
+        let scope = m.steps[b.step].scope;
+        let active = s.active.contains(&b.step) && !masked(m, s, scope);
+        let mut exec = Exec::new(m, s);
+        let mut input = active;
+        if let (true, Some(c)) = (active, b.condition) {
+            input = exec.truth(scope, c)?;
+        }
+        if !active {
+            continue;
+        }
+        let time = match b.time {
+            Some(e) => exec.eval(scope, e)?.duration()?,
+            None => 0,
+        };
+        if continuous {
+            let run = s.now - s.timing[b.step].since;
+            any |= input
+                && match b.qualifier {
+                    Qualifier::D => run >= time,
+                    Qualifier::L => run < time,
+                    _ => true,
+                };
+        }
+        if input {
+            inputs[b.qualifier as usize] = true;
+            if let Some(i) = timer_of(b.qualifier)
+                && !timed[i]
+            {
+                timed[i] = true;
+                control.times[i] = time;
+            }
+        }
+    }
+    if continuous {
+        return Ok(Verdict { q: any && !masked_var, runs: false, pulse: 1 });
+    }
+    let level_before = control.level;
+    let (level, p1, p0) = control.step(&inputs, s.now);
+    let q = level || p1 || p0;
+    s.control.insert(owner.clone(), control);
+    let pulse = if level || (m.rules.final_scan && level_before) {
+        1
+    } else if p1 {
+        0
+    } else {
+        2
+    };
+    Ok(Verdict { q: q && !masked_var, runs: q || (m.rules.final_scan && level_before), pulse })
+}
+
+/// Whether a step with an active order masks the chart that a scope is in.
+fn masked(m: &Model, s: &State, scope: ScopeId) -> bool {
+    m.chart_masks.iter().any(|(by, chart)| *chart == m.scopes[scope].root && s.is_active(m, *by))
+}
+
+/// The place of a timed qualifier among the timers.
+fn timer_of(q: Qualifier) -> Option<usize> {
+    [Qualifier::L, Qualifier::D, Qualifier::SD, Qualifier::DS, Qualifier::SL].iter().position(|t| *t == q)
+}
+
+impl Control {
+    /// The equations of SEMANTICS section 5: Q without P1 and P0, then these.
+    fn step(&mut self, inputs: &[bool], now: i64) -> (bool, bool, bool) {
+        use Qualifier as Q;
+        let on = |q: Q| inputs[q as usize];
+        let r = on(Q::R);
+        let rs = |ff: bool, set: bool| !r && (set || ff);
+        self.s_ff = rs(self.s_ff, on(Q::S));
+        let l_tmr = self.ton(0, on(Q::L), now);
+        let d_tmr = self.ton(1, on(Q::D), now);
+        self.sd_ff = rs(self.sd_ff, on(Q::SD));
+        let sd_tmr = self.ton(2, self.sd_ff, now);
+        let ds_tmr = self.ton(3, on(Q::DS), now);
+        self.ds_ff = rs(self.ds_ff, ds_tmr);
+        self.sl_ff = rs(self.sl_ff, on(Q::SL));
+        let sl_tmr = self.ton(4, self.sl_ff, now);
+        let [p_last, p1_last, p0_last] = self.last;
+        self.last = [on(Q::P), on(Q::P1), on(Q::P0)];
+        let p_trig = on(Q::P) && !p_last;
+        let p1 = on(Q::P1) && !p1_last;
+        let p0 = !on(Q::P0) && p0_last;
+        let level = !r
+            && (on(Q::N)
+                || self.s_ff
+                || (on(Q::L) && !l_tmr)
+                || d_tmr
+                || p_trig
+                || sd_tmr
+                || self.ds_ff
+                || (self.sl_ff && !sl_tmr));
+        self.level = level;
+        (level, p1 && !r, p0 && !r)
+    }
+
+    fn ton(&mut self, i: usize, input: bool, now: i64) -> bool {
+        if !input {
+            self.starts[i] = None;
+            return false;
+        }
+        now - *self.starts[i].get_or_insert(now) >= self.times[i]
+    }
+}
+
+/// A body that runs at the end of the scan.
+enum Run1<'m> {
+    Named(ScopeId, &'m g7_model::Block),
+    Work(ScopeId, &'m g7_model::Work),
+    Each(ScopeId, &'m g7_model::Work, Option<&'m Expr>),
+}
+
+/// Bodies and each-scan actions in the order of the text; a named action stands
+/// where it is first named.
+fn bodies(
+    m: &Model,
+    s: &mut State,
+    due: &[bool],
+    start: &BTreeSet<StepId>,
+    blocks: &[Block<'_>],
+    verdicts: &BTreeMap<&Owner, Verdict>,
+) -> Run<()> {
+    let mut todo: Vec<(i8, Run1<'_>)> = Vec::new();
+    let mut done: BTreeSet<&Owner> = BTreeSet::new();
+    for scope in FILE + 1..m.scopes.len() {
+        for &step in &m.scopes[scope].steps {
+            for (place, action) in m.steps[step].actions.iter().enumerate() {
+                if let ActionKind::EachScan { work, condition } = &action.kind {
+                    let was = m.rules.profile != ProfileName::Jgrafchart || start.contains(&step);
+                    if due[scope] && s.active.contains(&step) && was {
+                        todo.push((1, Run1::Each(scope, work, condition.as_ref())));
+                    }
+                }
+                let Some(block) = blocks.iter().find(|b| (b.step, b.place) == (step, place)) else {
+                    continue;
+                };
+                let Some(v) = verdicts.get(&block.owner).filter(|v| v.runs) else { continue };
+                if !done.insert(&block.owner) {
+                    continue;
+                }
+                match (&block.owner, &action.kind) {
+                    (Owner::Named(owner, name), _) => {
+                        if let Body::St(b) = &m.scopes[*owner].actions[name].body {
+                            todo.push((v.pulse, Run1::Named(*owner, b)));
+                        }
+                    }
+                    (Owner::Own(..), ActionKind::Qualified { target: Target::Work(work), .. }) => {
+                        todo.push((v.pulse, Run1::Work(scope, work)));
+                    }
+                    _ => {}
+                }
+            }
+        }
+    }
+    if m.rules.pulse_first {
+        todo.sort_by_key(|(pulse, _)| *pulse);
+    }
+    for (_, what) in todo {
+        let mut exec = Exec::new(m, s);
+        match what {
+            Run1::Named(scope, block) => exec.body(scope, block)?,
+            Run1::Work(scope, work) => exec.work(scope, work)?,
+            Run1::Each(scope, work, condition) => {
+                let holds = match condition {
+                    Some(c) => exec.truth(scope, c)?,
+                    None => true,
+                };
+                if holds {
+                    exec.work(scope, work)?;
+                }
+            }
+        }
+    }
+    Ok(())
+}

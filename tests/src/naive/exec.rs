@@ -1,0 +1,238 @@
+//! Expressions, evaluated recursively on the state as it is.
+
+use std::collections::BTreeMap;
+
+use g7_model::{Arg, Expr, ExprKind, Function, Literal, Path, Type, UnaryOp};
+
+use super::builtin;
+use super::model::{Model, ScopeId, StepId, VarId, is_name};
+use super::names::Ref;
+use super::state::State;
+use super::value::{NaiveFault, Run, Typed, Value, bad, binary, negate, zero};
+
+/// The locals of a running function, section or action body.
+pub(super) type Frame = BTreeMap<String, (Type, Value)>;
+
+/// Runs expressions and statements on a state.
+pub(super) struct Exec<'a> {
+    pub(super) m: &'a Model,
+    pub(super) s: &'a mut State,
+    pub(super) frames: Vec<Frame>,
+    /// Variables assigned, whether or not their value changed.
+    pub(super) written: Vec<VarId>,
+}
+
+/// Most loop iterations of a scan.
+const WORK: u32 = 1_000_000;
+
+impl<'a> Exec<'a> {
+    pub(super) fn new(m: &'a Model, s: &'a mut State) -> Exec<'a> {
+        Exec { m, s, frames: Vec::new(), written: Vec::new() }
+    }
+
+    pub(super) fn truth(&mut self, scope: ScopeId, e: &Expr) -> Run<bool> {
+        self.eval(scope, e)?.truth()
+    }
+
+    pub(super) fn eval_for(&mut self, scope: ScopeId, e: &Expr, ty: Type) -> Run<Value> {
+        self.eval(scope, e)?.to(ty)
+    }
+
+    pub(super) fn eval(&mut self, scope: ScopeId, e: &Expr) -> Run<Typed> {
+        match &e.kind {
+            ExprKind::Literal(l) => literal(l),
+            ExprKind::Path(p) => self.path(scope, p),
+            ExprKind::Direct(d) => match self.m.resolve_direct(d) {
+                Some(r) => self.read(&r),
+                None => bad(format!("%{d} is nothing")),
+            },
+            ExprKind::Unary(UnaryOp::Not, x) => Ok(Typed::bool(!self.truth(scope, x)?)),
+            ExprKind::Unary(UnaryOp::Neg, x) => negate(&self.eval(scope, x)?),
+            ExprKind::Unary(UnaryOp::Rise, _) => Ok(Typed::bool(self.edge(e).is_some_and(|(b, h)| !b && h))),
+            ExprKind::Unary(UnaryOp::Fall, _) => Ok(Typed::bool(self.edge(e).is_some_and(|(b, h)| b && !h))),
+            ExprKind::Binary(op, a, b) => {
+                let a = self.eval(scope, a)?;
+                let b = self.eval(scope, b)?;
+                binary(*op, &a, &b)
+            }
+            ExprKind::Timer { t1, e: watched, t2 } => match self.watched_step(scope, watched, t2.is_some()) {
+                Some(step) => {
+                    let t1 = self.eval(scope, t1)?.duration()?;
+                    Ok(Typed::bool(self.s.is_active(self.m, step) && self.s.time(self.m, step) >= t1))
+                }
+                None => Ok(Typed::bool(self.s.timers.get(&key(e)).is_some_and(|t| t.q))),
+            },
+            ExprKind::Call(path, args) => self.call(scope, path, args),
+            ExprKind::Bad => bad("an unreadable expression"),
+        }
+    }
+
+    /// The step of `t/X12` (decision 12): a literal activity, no second time.
+    pub(super) fn watched_step(&self, scope: ScopeId, e: &Expr, second: bool) -> Option<StepId> {
+        if second || !is_name(e) {
+            return None;
+        }
+        let found = match &e.kind {
+            ExprKind::Path(p) => self.m.resolve(scope, p),
+            ExprKind::Direct(d) => self.m.resolve_direct(d),
+            _ => None,
+        };
+        if let Some(Ref::Active(step)) = found { Some(step) } else { None }
+    }
+
+    fn edge(&self, e: &Expr) -> Option<(bool, bool)> {
+        self.s.edges.get(&key(e)).map(|m| (m.before, m.here))
+    }
+
+    fn path(&mut self, scope: ScopeId, p: &Path) -> Run<Typed> {
+        if let Some(local) = self.local(p) {
+            return local;
+        }
+        match self.m.resolve(scope, p) {
+            Some(r) => self.read(&r),
+            None => bad(format!("{} is nothing", p.text())),
+        }
+    }
+
+    fn local(&self, p: &Path) -> Option<Run<Typed>> {
+        let (first, rest) = p.names.split_first()?;
+        let (ty, v) = self.frames.last()?.get(&*first.text)?;
+        match (rest, v) {
+            ([], _) => Some(Ok(Typed::of(*ty, v.clone()))),
+            ([member], Value::Fb(f)) => Some(member_of(f, &member.text)),
+            _ => None,
+        }
+    }
+
+    pub(super) fn read(&mut self, r: &Ref) -> Run<Typed> {
+        Ok(match r {
+            Ref::Var(v) => Typed::of(self.m.vars[*v].ty, self.s.vars[*v].clone()),
+            Ref::Member(v, member) => match &self.s.vars[*v] {
+                Value::Fb(f) => return member_of(f, member),
+                _ => return bad("a member of no block"),
+            },
+            Ref::Active(step) => Typed::bool(self.s.is_active(self.m, *step)),
+            Ref::Time(step) if self.m.rules.scan_clock => Typed::int(self.s.scans(self.m, *step).into()),
+            Ref::Time(step) => Typed::time(self.s.time(self.m, *step)),
+            Ref::Seconds(step) => {
+                let seconds = self.s.scans(self.m, *step) as f64 * (self.m.cycle as f64 / 1e9);
+                Typed::of(Type::Real, Value::Real(seconds as f32))
+            }
+            Ref::Tenths(step) => {
+                let tenths = self.s.time(self.m, *step) / 100_000_000;
+                Typed::int(tenths.clamp(0, 9999).into())
+            }
+            Ref::Section(scope, name) => return self.section(*scope, name),
+        })
+    }
+
+    /// A transition section: its statements, then its output.
+    fn section(&mut self, scope: ScopeId, name: &str) -> Run<Typed> {
+        let Some(section) = self.m.scopes[scope].sections.get(name) else { return bad("no such section") };
+        let mut frame = Frame::from([(name.to_owned(), (Type::Bool, Value::Bool(false)))]);
+        self.locals(scope, &section.body, &mut frame)?;
+        self.frames.push(frame);
+        let ran = self.block(scope, &section.body.statements);
+        let frame = self.frames.pop().unwrap_or_default();
+        ran?;
+        Ok(Typed::bool(frame.get(name).is_some_and(|(_, v)| *v == Value::Bool(true))))
+    }
+
+    pub(super) fn call(&mut self, scope: ScopeId, path: &Path, args: &[Arg]) -> Run<Typed> {
+        let name = path.text();
+        if let Some(function) = self.m.functions.get(&name) {
+            return self.function(scope, function, args);
+        }
+        if let Some(Ref::Section(s, section)) = self.m.resolve(scope, path) {
+            return self.section(s, &section);
+        }
+        let mut values = Vec::new();
+        for arg in args {
+            values.push(self.eval(scope, &arg.value)?);
+        }
+        builtin::call(&name, &values)
+    }
+
+    fn function(&mut self, scope: ScopeId, f: &Function, args: &[Arg]) -> Run<Typed> {
+        let mut frame = Frame::new();
+        for (i, param) in f.params.iter().enumerate() {
+            let by_name = args.iter().find(|a| a.name.as_ref().is_some_and(|n| n.text == param.name.text));
+            let by_place = args.get(i).filter(|a| a.name.is_none());
+            let value = match by_name.or(by_place) {
+                Some(arg) => self.eval_for(scope, &arg.value, param.ty)?,
+                None => zero(param.ty),
+            };
+            frame.insert(param.name.text.to_string(), (param.ty, value));
+        }
+        let name = f.name.text.to_string();
+        frame.insert(name.clone(), (f.result, zero(f.result)));
+        self.locals(scope, &f.body, &mut frame)?;
+        self.frames.push(frame);
+        let ran = self.block(super::model::FILE, &f.body.statements);
+        let mut frame = self.frames.pop().unwrap_or_default();
+        ran?;
+        match frame.remove(&name) {
+            Some((ty, v)) => Ok(Typed::of(ty, v)),
+            None => bad("a function without result"),
+        }
+    }
+
+    /// Declares the variables of a block's own, with their initial values.
+    pub(super) fn locals(&mut self, scope: ScopeId, block: &g7_model::Block, frame: &mut Frame) -> Run<()> {
+        for local in &block.locals {
+            let value = match &local.init {
+                Some(e) => {
+                    self.frames.push(frame.clone());
+                    let value = self.eval_for(scope, e, local.ty);
+                    self.frames.pop();
+                    value?
+                }
+                None => zero(local.ty),
+            };
+            for name in &local.names {
+                frame.insert(name.text.to_string(), (local.ty, value.clone()));
+            }
+        }
+        Ok(())
+    }
+
+    /// Counts one jump back.
+    pub(super) fn jump(&mut self) -> Run<()> {
+        self.s.work += 1;
+        if self.s.work > WORK { Err(NaiveFault::Work) } else { Ok(()) }
+    }
+}
+
+/// An expression's memories are found by its address in the model.
+pub(super) fn key(e: &Expr) -> usize {
+    std::ptr::from_ref(e) as usize
+}
+
+fn member_of(f: &super::fb::FbState, member: &str) -> Run<Typed> {
+    match (super::fb::FbState::member_type(f.kind, member), f.get(member)) {
+        (Some(ty), Some(v)) => Ok(Typed::of(ty, v.clone())),
+        _ => bad(format!("{} has no {member}", f.kind.name())),
+    }
+}
+
+pub(super) fn literal(l: &Literal) -> Run<Typed> {
+    let (ty, plain) = match l {
+        Literal::Bool(b) => return Ok(Typed::bool(*b)),
+        Literal::Time(t) => return Ok(Typed::time(*t)),
+        Literal::Str(s) => return Ok(Typed::of(Type::String(u16::MAX), Value::Str(s.to_string()))),
+        Literal::Int(n, ty) => (*ty, Value::Int(*n)),
+        Literal::Real(text, Some(Type::Real)) => match text.parse() {
+            Ok(x) => return Ok(Typed::of(Type::Real, Value::Real(x))),
+            Err(_) => return bad(format!("{text} is no number")),
+        },
+        Literal::Real(text, ty) => match text.parse() {
+            Ok(x) => (*ty, Value::Lreal(x)),
+            Err(_) => return bad(format!("{text} is no number")),
+        },
+    };
+    let literal = Typed { ty: None, v: plain };
+    match ty {
+        Some(t) => Ok(Typed::of(t, literal.to(t)?)),
+        None => Ok(literal),
+    }
+}

@@ -1,0 +1,136 @@
+//! Forcing orders (decision 13), and the requests of services.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use g7_model::{Situation, StepKind};
+
+use super::evolve::{Changes, settle};
+use super::model::{FILE, Model, ScopeId, StepId};
+use super::state::{Request, State};
+use super::value::{NaiveFault, Run, Value};
+
+/// The charts that orders act on in this pass, each with the situation that it
+/// is forced to; `None` where it is only kept as it is.
+pub(super) fn forced_situations(m: &Model, s: &State) -> Run<BTreeMap<ScopeId, Option<BTreeSet<StepId>>>> {
+    let mut forced = BTreeMap::new();
+    // What forcing has made of the situation so far.
+    let mut active = s.active.clone();
+    let is_active = |active: &BTreeSet<StepId>, step: StepId| match m.steps[step].expansion {
+        None => active.contains(&step),
+        Some((inner, ..)) => m.steps_within(inner).iter().any(|x| active.contains(x)),
+    };
+    for &chart in &m.order {
+        let mut order: Option<Option<BTreeSet<StepId>>> = None;
+        for f in m.forcings.iter().filter(|f| f.chart == chart && is_active(&active, f.step)) {
+            let situation = situation(m, chart, &f.situation)?;
+            match &order {
+                Some(first) if *first != situation => {
+                    return Err(NaiveFault::Forcing(m.scopes[chart].name.clone()));
+                }
+                _ => order = Some(situation),
+            }
+        }
+        let Some(order) = order else { continue };
+        if let Some(set) = &order {
+            let before = active.clone();
+            impose(m, chart, set, &mut active);
+            for &x in before.difference(&active.clone()) {
+                active.retain(|y| !m.subordinates(x).contains(y));
+            }
+        }
+        forced.insert(chart, order);
+    }
+    Ok(forced)
+}
+
+fn situation(m: &Model, chart: ScopeId, written: &Situation) -> Run<Option<BTreeSet<StepId>>> {
+    let steps = match written {
+        Situation::Current => return Ok(None),
+        Situation::Init => m.initial_of(chart),
+        Situation::Steps(names) => m.named_steps(chart, names)?,
+    };
+    let mut all = BTreeSet::new();
+    for step in steps {
+        m.activate(step, &mut all);
+    }
+    Ok(Some(all))
+}
+
+/// Puts a chart and its expansions into a situation; what its enclosing steps
+/// bring and take follows with the hierarchy.
+pub(super) fn impose(m: &Model, chart: ScopeId, set: &BTreeSet<StepId>, next: &mut BTreeSet<StepId>) {
+    let mine: BTreeSet<StepId> = m.steps_within(chart).into_iter().collect();
+    next.retain(|x| !mine.contains(x));
+    next.extend(set.intersection(&mine));
+}
+
+/// The service point between PRE and the evolution (decision 17).
+pub(super) fn services(m: &Model, s: &mut State) -> Changes {
+    let mut next = s.active.clone();
+    for request in std::mem::take(&mut s.requests) {
+        match request {
+            Request::Init(chart) => {
+                clear(m, chart, &mut next);
+                for step in m.initial_of(chart) {
+                    m.activate(step, &mut next);
+                }
+            }
+            Request::Clear(chart) => clear(m, chart, &mut next),
+            Request::Freeze(chart, true) => {
+                s.frozen.insert(chart);
+            }
+            Request::Freeze(chart, false) => {
+                s.frozen.remove(&chart);
+            }
+            Request::Set(step) => {
+                if !s.is_active(m, step) || !next.contains(&step) {
+                    m.activate(step, &mut next);
+                }
+            }
+            Request::Reset(step) => {
+                next.remove(&step);
+                next.retain(|x| !m.subordinates(step).contains(x));
+            }
+        }
+    }
+    system_bits(m, s, &mut next);
+    settle(m, s, next, &BTreeSet::new())
+}
+
+fn clear(m: &Model, chart: ScopeId, next: &mut BTreeSet<StepId>) {
+    let mut all = BTreeSet::new();
+    m.everything_in(chart, &mut all);
+    next.retain(|x| !all.contains(x));
+}
+
+fn system_bits(m: &Model, s: &mut State, next: &mut BTreeSet<StepId>) {
+    if s.system(m, "S21") {
+        *next = m.initial_steps();
+        s.owners.clear();
+        s.set_system(m, "S21", Value::Bool(false));
+    }
+    if s.system(m, "S22") {
+        next.clear();
+        s.owners.clear();
+        s.set_system(m, "S22", Value::Bool(false));
+    }
+    if s.system(m, "S24") {
+        for (word, name) in ["SW22", "SW23", "SW24", "SW25"].iter().enumerate() {
+            let Some(Value::Int(bits)) = m.addresses.get(*name).map(|&v| &s.vars[v]) else { continue };
+            for bit in (0..16).filter(|b| bits >> b & 1 == 1) {
+                empty_macro(m, word * 16 + bit, next);
+            }
+        }
+        s.set_system(m, "S24", Value::Bool(false));
+    }
+}
+
+fn empty_macro(m: &Model, number: usize, next: &mut BTreeSet<StepId>) {
+    for scope in FILE + 1..m.scopes.len() {
+        let Some(step) = m.numbered_macro(scope, &number.to_string()) else { continue };
+        if matches!(m.steps[step].kind, StepKind::Macro(_)) {
+            next.remove(&step);
+            next.retain(|x| !m.subordinates(step).contains(x));
+        }
+    }
+}

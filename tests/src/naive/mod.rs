@@ -1,0 +1,207 @@
+//! A second engine, written straight from SEMANTICS and its decisions: it walks
+//! the document as the author wrote it, looks names up when it meets them and
+//! computes everything anew in each pass. Slow on purpose, and independent: it
+//! uses neither `g7-compile` nor `g7-engine`, so that an error would have to be
+//! made twice to stay unseen.
+
+mod builtin;
+mod control;
+mod evolve;
+mod exec;
+mod fb;
+mod force;
+mod model;
+mod names;
+mod sample;
+mod scan;
+mod state;
+mod stmt;
+mod stored;
+mod value;
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::rc::Rc;
+
+use g7_model::{Document, Expr, ProfileName, Type, VarKind};
+
+use exec::Exec;
+use model::{FILE, Model};
+use state::State;
+
+pub use fb::FbState;
+pub use value::{NaiveFault, Value};
+
+/// Variables that stored actions wrote with different values in one pass, each
+/// named once a run.
+#[derive(Clone, Debug, Default)]
+pub struct Diagnostics {
+    seen: BTreeSet<String>,
+    latest: Vec<String>,
+}
+
+impl Diagnostics {
+    fn conflict(&mut self, variable: &str) {
+        if self.seen.insert(variable.to_owned()) {
+            self.latest.push(variable.to_owned());
+        }
+    }
+}
+
+/// What a scan went through, for statistics.
+#[derive(Clone, Debug, Default)]
+pub struct Marks {
+    /// Transitions cleared, by their place in the text.
+    pub cleared: Vec<usize>,
+    /// Passes made.
+    pub passes: usize,
+}
+
+/// A program under the naive engine.
+#[derive(Clone)]
+pub struct Naive {
+    model: Rc<Model>,
+    state: State,
+    first: bool,
+    warm: bool,
+    fault: Option<NaiveFault>,
+    diagnostics: Diagnostics,
+    marks: Marks,
+    safe: BTreeMap<String, Value>,
+}
+
+impl Naive {
+    /// Reads a document; `profile` takes the place of the one written in it.
+    ///
+    /// # Errors
+    ///
+    /// Says why the document has no meaning.
+    pub fn new(doc: &Document, profile: Option<ProfileName>) -> Result<Naive, String> {
+        let words = |f: NaiveFault| if let NaiveFault::Bad(w) = f { w } else { format!("{f:?}") };
+        let mut model = Model::new(doc, profile).map_err(words)?;
+        model.blocked_vars = control::blocked_vars(&model).map_err(words)?;
+        let mut state = State::new(&model, &BTreeMap::new()).map_err(words)?;
+        let mut safe = BTreeMap::new();
+        for var in model.vars.iter().filter(|v| v.kind == VarKind::Output) {
+            let value = match &var.safe {
+                Some(e) => Exec::new(&model, &mut state).eval_for(var.scope, e, var.ty).map_err(words)?,
+                None => value::zero(var.ty),
+            };
+            safe.insert(var.qualified.clone(), value);
+        }
+        Ok(Naive {
+            model: Rc::new(model),
+            state,
+            first: true,
+            warm: false,
+            fault: None,
+            diagnostics: Diagnostics::default(),
+            marks: Marks::default(),
+            safe,
+        })
+    }
+
+    /// The active steps, macro-steps left out: `G.5`, `G.M3.E`.
+    pub fn active(&self) -> BTreeSet<String> {
+        self.situation_of(&self.state)
+    }
+
+    fn situation_of(&self, s: &State) -> BTreeSet<String> {
+        let m = &self.model;
+        let plain = s.active.iter().filter(|&&x| m.steps[x].expansion.is_none());
+        plain.map(|&x| m.steps[x].qualified.clone()).collect()
+    }
+
+    /// Every variable, constants left out, members of blocks as `fb.Q`.
+    pub fn variables(&self) -> Vec<(String, Type, Value)> {
+        let mut all = Vec::new();
+        for (var, value) in self.model.vars.iter().zip(&self.state.vars) {
+            match value {
+                _ if var.kind == VarKind::Const => {}
+                Value::Fb(f) => {
+                    for (member, value) in f.members() {
+                        let ty = FbState::member_type(f.kind, member).unwrap_or(Type::Bool);
+                        all.push((format!("{}.{member}", var.qualified), ty, value.clone()));
+                    }
+                }
+                _ => all.push((var.qualified.clone(), var.ty, value.clone())),
+            }
+        }
+        all
+    }
+
+    /// The value of one variable: `v`, `G.v`, `fb.Q`.
+    pub fn variable(&self, name: &str) -> Option<Value> {
+        self.variables().into_iter().find(|(n, ..)| n == name).map(|(.., v)| v)
+    }
+
+    /// What goes to the plant: after a fault the safe values.
+    pub fn outputs(&self) -> BTreeMap<String, Value> {
+        if self.fault.is_some() {
+            return self.safe.clone();
+        }
+        let vars = self.model.vars.iter().zip(&self.state.vars);
+        vars.filter(|(v, _)| v.kind == VarKind::Output)
+            .map(|(v, x)| (v.qualified.clone(), x.clone()))
+            .collect()
+    }
+
+    /// Steps and macro-steps, each with its time in nanoseconds, or in scans
+    /// where the profile counts those.
+    pub fn step_times(&self) -> Vec<(String, i64)> {
+        let m = &self.model;
+        let live = |scope: usize| {
+            let s = &m.scopes[scope];
+            s.macro_step.is_some() || s.kind != g7_model::ChartKind::Expansion
+        };
+        let steps = (0..m.steps.len()).filter(|&s| live(m.steps[s].scope));
+        steps
+            .map(|x| {
+                let t = if m.rules.scan_clock { self.state.scans(m, x) } else { self.state.time(m, x) };
+                (m.steps[x].qualified.clone(), t)
+            })
+            .collect()
+    }
+
+    /// The time of one step.
+    pub fn step_time(&self, qualified: &str) -> Option<i64> {
+        self.step_times().into_iter().find(|(n, _)| n == qualified).map(|(_, t)| t)
+    }
+
+    /// An expression in the state as it is; edges and timers of its own are false.
+    ///
+    /// # Errors
+    ///
+    /// Where it has no value.
+    pub fn eval(&self, e: &Expr) -> Result<Value, NaiveFault> {
+        let mut state = self.state.clone();
+        // Expressions of tests see the first chart as their own where names are free.
+        let scope = if self.model.scopes.len() == 2 { 1 } else { FILE };
+        Ok(Exec::new(&self.model, &mut state).eval(scope, e)?.v)
+    }
+
+    /// Variables with a diagnostic "conflicting assignment" from the last scan.
+    pub fn conflicts(&self) -> &[String] {
+        &self.diagnostics.latest
+    }
+
+    /// What the last scan went through.
+    pub fn marks(&self) -> &Marks {
+        &self.marks
+    }
+
+    /// What ended the run, if anything did.
+    pub fn fault(&self) -> Option<&NaiveFault> {
+        self.fault.as_ref()
+    }
+
+    /// Number of transitions in the document.
+    pub fn transitions(&self) -> usize {
+        self.model.transitions.len()
+    }
+
+    /// The type of an input by its name.
+    pub fn inputs(&self) -> Vec<(String, Type)> {
+        let inputs = self.model.vars.iter().filter(|v| v.kind == VarKind::Input);
+        inputs.map(|v| (v.qualified.clone(), v.ty)).collect()
+    }
+}

@@ -1,0 +1,215 @@
+//! One scan from inputs to outputs, and restarts.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use g7_model::{TargetPlc, VarKind};
+
+use super::evolve::{self, Changes};
+use super::exec::Exec;
+use super::force::services;
+use super::model::{FILE, StepId};
+use super::sample::sample;
+use super::state::State;
+use super::stored::{self, Happened};
+use super::value::{NaiveFault, Run, Typed, Value, bad};
+use super::{Diagnostics, Marks, Naive};
+
+/// A run that makes so many passes in a scan without bound is not waited for.
+const RUNAWAY: usize = 20_000;
+
+impl Naive {
+    /// One scan.
+    ///
+    /// # Errors
+    ///
+    /// The fault that ended it; after that every scan is refused until [`Naive::restart`].
+    pub fn scan(&mut self, inputs: &BTreeMap<String, Value>, now: i64) -> Result<(), NaiveFault> {
+        if self.fault.is_some() {
+            return Err(NaiveFault::Stopped);
+        }
+        self.diagnostics.latest.clear();
+        self.marks = Marks::default();
+        let done = self.try_scan(inputs, now);
+        if let Err(fault) = &done {
+            if *fault == NaiveFault::Table {
+                let model = std::rc::Rc::clone(&self.model);
+                self.state.set_system(&model, "S25", Value::Bool(true));
+            }
+            self.fault = Some(fault.clone());
+        }
+        self.first = false;
+        done
+    }
+
+    /// Starts again: warm with the retained variables kept, cold without.
+    ///
+    /// # Errors
+    ///
+    /// Where an initial value has no value.
+    pub fn restart(&mut self, cold: bool) -> Result<(), NaiveFault> {
+        let kept = if cold { BTreeMap::new() } else { self.state.retained(&self.model) };
+        self.state = State::new(&self.model, &kept)?;
+        self.first = true;
+        self.warm = !cold;
+        self.fault = None;
+        self.diagnostics = Diagnostics::default();
+        Ok(())
+    }
+
+    fn try_scan(&mut self, inputs: &BTreeMap<String, Value>, now: i64) -> Run<()> {
+        let model = std::rc::Rc::clone(&self.model);
+        let m = &*model;
+        self.state.now = now;
+        self.state.scan += 1;
+        self.state.work = 0;
+        self.read(inputs)?;
+        let due = self.due();
+        let s = &mut self.state;
+        s.set_system(m, "S0", Value::Bool(self.first && !self.warm));
+        s.set_system(m, "S1", Value::Bool(self.first && self.warm));
+        if self.first {
+            // Steps are active from the load on; their times run from the first scan.
+            let initial = std::mem::take(&mut s.active);
+            evolve::settle(m, s, initial, &BTreeSet::new());
+        }
+        sample(m, s, &due)?;
+        self.sections(true, &due)?;
+        let requested = services(m, &mut self.state);
+        if self.first {
+            self.initialise()?;
+        }
+        let start = self.state.active.clone();
+        let counted = self.evolve(&due, requested)?;
+        self.count(counted);
+        super::control::end_of_scan(m, &mut self.state, &due, &start)?;
+        self.sections(false, &due)
+    }
+
+    fn read(&mut self, inputs: &BTreeMap<String, Value>) -> Run<()> {
+        for (name, value) in inputs {
+            let found = self.model.vars.iter().position(|v| v.qualified == *name && v.kind == VarKind::Input);
+            let Some(id) = found else { return bad(format!("no input {name}")) };
+            let value = Typed { ty: None, v: value.clone() }.to(self.model.vars[id].ty)?;
+            self.state.vars[id] = value;
+        }
+        Ok(())
+    }
+
+    /// Which scopes take part in this scan (decision 20).
+    fn due(&mut self) -> Vec<bool> {
+        let now = self.state.now;
+        let mut due = Vec::new();
+        for (id, scope) in self.model.scopes.iter().enumerate() {
+            let Some(period) = scope.every else {
+                due.push(true);
+                continue;
+            };
+            let next = self.state.due_next.entry(id).or_insert(now);
+            due.push(now >= *next);
+            while *next <= now {
+                *next += period.max(1);
+            }
+        }
+        self.model.scopes.iter().map(|scope| due[scope.root]).collect()
+    }
+
+    /// PRE or POST bodies, in the order of the text.
+    fn sections(&mut self, pre: bool, due: &[bool]) -> Run<()> {
+        let model = std::rc::Rc::clone(&self.model);
+        for (scope, is_pre, block) in &model.bodies {
+            let live = *scope == FILE
+                || model.scopes[*scope].kind != g7_model::ChartKind::Expansion
+                || model.scopes[*scope].macro_step.is_some();
+            if *is_pre == pre && due[*scope] && live {
+                Exec::new(&model, &mut self.state).body(*scope, block)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// The activation stored actions of the initial situation.
+    fn initialise(&mut self) -> Run<()> {
+        let m = &*std::rc::Rc::clone(&self.model);
+        let changes = Changes { on: self.state.active.clone(), off: BTreeSet::new() };
+        let happened =
+            Happened { cleared: &[], changes: &changes, events: &BTreeSet::new(), clearing: false };
+        let before = self.state.clone();
+        stored::run(m, &mut self.state, &before, &happened, &mut self.diagnostics)
+    }
+
+    /// The passes; gives the steps turned on and off, and the transitions that
+    /// were enabled at the start.
+    fn evolve(&mut self, due: &[bool], requested: Changes) -> Run<Counted> {
+        let model = std::rc::Rc::clone(&self.model);
+        let m = &*model;
+        let plain = |set: &BTreeSet<StepId>| set.iter().filter(|&&x| m.steps[x].expansion.is_none()).count();
+        let enabled = |s: &State| -> BTreeSet<usize> {
+            (0..m.transitions.len()).filter(|&t| evolve::enabled(m, s, t)).collect()
+        };
+        let mut counted =
+            Counted { steps: plain(&self.state.active), enabled: enabled(&self.state), moved: 0 };
+        let mut earlier = requested;
+        let mut history: Vec<State> = Vec::new();
+        loop {
+            self.marks.passes += 1;
+            if self.marks.passes > 1 {
+                sample(m, &mut self.state, due)?;
+            }
+            let before = self.state.clone();
+            let extra = std::mem::take(&mut earlier);
+            let passed =
+                evolve::pass(m, &mut self.state, due, extra.clone(), &mut self.diagnostics, &mut self.marks)?;
+            let own = |set: &BTreeSet<StepId>, earlier: &BTreeSet<StepId>| plain(&(set - earlier));
+            counted.moved += own(&passed.on, &extra.on) + own(&passed.off, &extra.off);
+            self.check_tables(enabled(&self.state).len())?;
+            let s = &self.state;
+            if !m.rules.stable || (before.active == s.active && before.vars == s.vars) {
+                return Ok(counted);
+            }
+            let mut seen = self.state.clone();
+            seen.work = 0;
+            if let Some(at) = history.iter().position(|h| *h == seen) {
+                history.push(seen);
+                let cycle = history[at + 1..].iter().map(|h| self.situation_of(h).into_iter().collect());
+                return Err(NaiveFault::Unstable(cycle.collect()));
+            }
+            history.push(seen);
+            if m.rules.bound.is_some_and(|b| self.marks.passes >= b as usize) {
+                return Err(NaiveFault::Passes);
+            }
+            if self.marks.passes > RUNAWAY {
+                return bad("runs away");
+            }
+        }
+    }
+
+    /// %SW20 and %SW21.
+    fn count(&mut self, counted: Counted) {
+        let m = &*std::rc::Rc::clone(&self.model);
+        let enabled: BTreeSet<usize> =
+            (0..m.transitions.len()).filter(|&t| evolve::enabled(m, &self.state, t)).collect();
+        let steps = counted.steps + counted.moved;
+        let transitions = counted.enabled.len() + counted.enabled.symmetric_difference(&enabled).count();
+        self.state.set_system(m, "SW20", Value::Int(steps as i128));
+        self.state.set_system(m, "SW21", Value::Int(transitions as i128));
+    }
+
+    /// The limits of the target PLC.
+    fn check_tables(&self, enabled: usize) -> Run<()> {
+        let (steps, transitions) = match self.model.target {
+            None => return Ok(()),
+            Some(TargetPlc::Tsx3710) => (96, 192),
+            Some(TargetPlc::Tsx3720) => (128, 256),
+            Some(TargetPlc::Tsx57) => (250, 400),
+        };
+        let active = self.active().len();
+        if active > steps || enabled > transitions { Err(NaiveFault::Table) } else { Ok(()) }
+    }
+}
+
+/// What %SW20 and %SW21 count.
+struct Counted {
+    steps: usize,
+    enabled: BTreeSet<usize>,
+    moved: usize,
+}
