@@ -98,22 +98,56 @@ impl Tree {
 
     #[inline(always)]
     pub(crate) fn insert(&self, words: &mut [u64], i: u32) {
-        let mut i = i;
-        for at in self.at.iter().take(self.levels as usize) {
-            let old = or(words, *at as usize + (i / 64) as usize, 1 << (i % 64));
-            if old != 0 {
+        self.add(words, i);
+    }
+
+    #[inline(always)]
+    pub(crate) fn remove(&self, words: &mut [u64], i: u32) {
+        self.take(words, i);
+    }
+
+    /// Inserts a member; whether it is new.
+    #[inline(always)]
+    pub(crate) fn add(&self, words: &mut [u64], i: u32) -> bool {
+        let Some(w) = words.get_mut((self.at[0] + i / 64) as usize) else { return false };
+        let mask = 1u64 << (i % 64);
+        let old = *w;
+        *w = old | mask;
+        if old == 0 && self.levels > 1 {
+            self.summarise(words, i);
+        }
+        old & mask == 0
+    }
+
+    /// Removes a member; whether it was there.
+    #[inline(always)]
+    pub(crate) fn take(&self, words: &mut [u64], i: u32) -> bool {
+        let Some(w) = words.get_mut((self.at[0] + i / 64) as usize) else { return false };
+        let mask = 1u64 << (i % 64);
+        let old = *w;
+        *w = old & !mask;
+        if old == mask && self.levels > 1 {
+            self.forget(words, i);
+        }
+        old & mask != 0
+    }
+
+    /// Sets the summaries above a word that has its first member.
+    fn summarise(&self, words: &mut [u64], i: u32) {
+        let mut i = i / 64;
+        for at in self.at.iter().take(self.levels as usize).skip(1) {
+            if or(words, *at as usize + (i / 64) as usize, 1 << (i % 64)) != 0 {
                 return;
             }
             i /= 64;
         }
     }
 
-    #[inline(always)]
-    pub(crate) fn remove(&self, words: &mut [u64], i: u32) {
-        let mut i = i;
-        for at in self.at.iter().take(self.levels as usize) {
-            let left = and_not(words, *at as usize + (i / 64) as usize, 1 << (i % 64));
-            if left != 0 {
+    /// Clears the summaries above a word that lost its last member.
+    fn forget(&self, words: &mut [u64], i: u32) {
+        let mut i = i / 64;
+        for at in self.at.iter().take(self.levels as usize).skip(1) {
+            if and_not(words, *at as usize + (i / 64) as usize, 1 << (i % 64)) != 0 {
                 return;
             }
             i /= 64;

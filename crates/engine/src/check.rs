@@ -2,6 +2,7 @@
 //! there, every code takes and leaves what it should. After that no scan can
 //! meet a bad index, whoever made the tables.
 
+use alloc::boxed::Box;
 use alloc::vec;
 use alloc::vec::Vec;
 
@@ -67,10 +68,40 @@ impl Program {
         let stored = t.action_lists.len()
             + t.events.len()
             + t.transitions.iter().filter(|t| t.on_clearing != NONE).count();
+        let frame = [t.pre, t.services, t.post, t.tail].iter().any(|c| !c.is_empty());
+        let has_hierarchy = t.extras.iter().any(|e| !e.encloses.is_empty() || !e.links.is_empty());
+        let has_periods = t.periods.iter().any(|p| *p > 0);
+        let reads_time = |op: &Op| {
+            matches!(op, Op::StepTime(_) | Op::StepTenths(_) | Op::ScanTime | Op::Random(_) | Op::Fb(..))
+        };
+        let bare = t.orders.is_empty()
+                && !has_hierarchy
+                && stored == 0
+                && !t.rules.sequential
+                && !frame
+                && !t.code.iter().any(|op| writes(op) > 0)
+                && !has_periods
+                && t.watches.is_empty()
+                && t.contributions.is_empty()
+                && t.blocks.is_empty()
+                && t.periodics.is_empty()
+                && t.counts.is_none()
+                && t.limits.is_none()
+                // Steps under the scan clock count from a scan that is not over yet.
+                && !t.rules.scan_clock;
         Program {
+            bare,
+            hot: if bare { crate::bare::hot(&t, &layout) } else { Box::default() },
+            moves: if bare { crate::bare::moves(&t, &layout) } else { Box::default() },
+            timeless: !frame
+                && !has_periods
+                && t.counts.is_none()
+                && t.limits.is_none()
+                && !t.code.iter().any(reads_time),
+            frame,
             has_orders: !t.orders.is_empty(),
-            has_hierarchy: t.extras.iter().any(|e| !e.encloses.is_empty() || !e.links.is_empty()),
-            has_periods: t.periods.iter().any(|p| *p > 0),
+            has_hierarchy,
+            has_periods,
             has_contests: t
                 .transitions
                 .iter()

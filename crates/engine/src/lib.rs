@@ -35,6 +35,7 @@
 
 extern crate alloc;
 
+mod bare;
 mod bits;
 mod blocks;
 mod change;

@@ -24,7 +24,8 @@ pub(crate) fn evolve(p: &Program, s: &mut State) -> Result<bool, Fault> {
     if p.has_orders {
         force(s)?;
     }
-    if s.x.fired.is_empty() && s.x.on.is_empty() && s.x.off.is_empty() && s.x.runs.is_empty() {
+    s.x.idle = s.x.fired.is_empty() && s.x.on.is_empty() && s.x.off.is_empty() && s.x.runs.is_empty();
+    if s.x.idle {
         return Ok(false);
     }
     resolve(p, s);
@@ -140,27 +141,49 @@ fn force(s: &mut State) -> Result<(), Fault> {
 
 /// Every clearable transition, as far as it can be told without the others.
 fn collect(p: &Program, s: &mut State) -> Result<(), Fault> {
+    sources(p, s)?;
+    let tree = s.steps;
+    let mut walk = Walk::new(&tree, &s.w);
+    while let Some(step) = walk.next(&tree, &s.w) {
+        outs(p, s, step)?;
+    }
+    Ok(())
+}
+
+/// The same for the steps that `bare` leaves over.
+pub(crate) fn collect_slow(p: &Program, s: &mut State) -> Result<(), Fault> {
+    sources(p, s)?;
+    for k in 0..s.x.slow.len() {
+        if let Some(&step) = s.x.slow.get(k) {
+            outs(p, s, step)?;
+        }
+    }
+    Ok(())
+}
+
+fn sources(p: &Program, s: &mut State) -> Result<(), Fault> {
     for &t in &p.t.sources {
         let Some(row) = p.t.transitions.get(t as usize) else { break };
         if !(s.x.any_blocked && is_blocked(s, row.chart)) && guard(p, s, row.guard)? {
             s.x.fired.push(t);
         }
     }
-    let tree = s.steps;
-    let single = !p.t.rules.multi_token;
-    let mut walk = Walk::new(&tree, &s.w);
-    while let Some(step) = walk.next(&tree, &s.w) {
-        let Some(row) = p.t.steps.get(step as usize) else { break };
-        if s.x.any_blocked && is_blocked(s, row.chart) {
-            continue;
-        }
-        for &t in p.t.outs.get(row.out.start as usize..row.out.end as usize).unwrap_or(&[]) {
-            let Some(tr) = p.t.transitions.get(t as usize) else { break };
-            if rest_active(p, s, tr) && guard(p, s, tr.guard)? {
-                s.x.fired.push(t);
-                if single && tr.simple {
-                    break;
-                }
+    Ok(())
+}
+
+/// The transitions watched by an active step.
+#[inline]
+fn outs(p: &Program, s: &mut State, step: u32) -> Result<(), Fault> {
+    let Some(row) = p.t.steps.get(step as usize) else { return Ok(()) };
+    if s.x.any_blocked && is_blocked(s, row.chart) {
+        return Ok(());
+    }
+    for &t in p.t.outs.get(row.out.start as usize..row.out.end as usize).unwrap_or(&[]) {
+        let Some(tr) = p.t.transitions.get(t as usize) else { break };
+        if rest_active(p, s, tr) && guard(p, s, tr.guard)? {
+            s.x.fired.push(t);
+            if tr.simple && !p.t.rules.multi_token {
+                break;
             }
         }
     }
@@ -192,20 +215,8 @@ fn events(p: &Program, s: &mut State) -> Result<(), Fault> {
     Ok(())
 }
 
-/// All preceding steps of a transition.
-fn from_steps<'a>(p: &'a Program, t: &Transition) -> impl Iterator<Item = StepId> + 'a {
-    let first = (t.from.0 != NONE).then_some(t.from);
-    first.into_iter().chain(arcs(p, t.more_from).iter().copied())
-}
-
-/// All succeeding steps of a transition.
-fn to_steps<'a>(p: &'a Program, t: &Transition) -> impl Iterator<Item = StepId> + 'a {
-    let first = (t.to.0 != NONE).then_some(t.to);
-    first.into_iter().chain(arcs(p, t.more_to).iter().copied())
-}
-
 /// Drops what priority drops, and puts the rest in order of rank where order matters.
-fn resolve(p: &Program, s: &mut State) {
+pub(crate) fn resolve(p: &Program, s: &mut State) {
     let rules = &p.t.rules;
     if !rules.multi_token && p.has_contests {
         s.x.fired.sort_unstable();
@@ -230,55 +241,71 @@ fn exclude(p: &Program, s: &mut State, takes: impl Fn(&Transition) -> bool) {
         if !t.shares || !takes(t) {
             return true;
         }
-        let free = from_steps(p, t).all(|f| !bit(&s.x.taken, 0, f.0));
+        let mut free = true;
+        each_from(p, t, |f| free &= !bit(&s.x.taken, 0, f));
         if free {
-            for f in from_steps(p, t) {
-                set_bit(&mut s.x.taken, 0, f.0, true);
-            }
+            each_from(p, t, |f| {
+                set_bit(&mut s.x.taken, 0, f, true);
+            });
         }
         free
     });
     for i in &fired {
         if let Some(t) = p.t.transitions.get(*i as usize) {
-            for f in from_steps(p, t) {
-                set_bit(&mut s.x.taken, 0, f.0, false);
-            }
+            each_from(p, t, |f| {
+                set_bit(&mut s.x.taken, 0, f, false);
+            });
         }
     }
     s.x.fired = fired;
 }
 
 /// Notes what clears, for coverage and traces.
-fn report(s: &mut State) {
-    s.x.cleared_count = s.x.cleared_count.saturating_add(s.x.fired.len() as u32);
-    let room = s.x.cleared.capacity() - s.x.cleared.len();
-    let n = s.x.fired.len().min(room);
-    s.x.cleared.extend_from_slice(s.x.fired.get(..n).unwrap_or(&[]));
+#[inline(always)]
+pub(crate) fn report(s: &mut State) {
+    let x = &mut s.x;
+    x.cleared_count = x.cleared_count.saturating_add(x.fired.len() as u32);
+    for i in &x.fired {
+        if x.cleared.len() < x.cleared.capacity() {
+            x.cleared.push(*i);
+        }
+    }
 }
 
 /// Marks the steps of the transitions that clear, all at once (rules 3 and 4).
 fn mark(p: &Program, s: &mut State) {
     for k in 0..s.x.fired.len() {
         let Some(t) = s.x.fired.get(k).and_then(|i| p.t.transitions.get(*i as usize)) else { break };
-        if t.from.0 != NONE {
-            mark_off(s, t.from);
-        }
-        if t.to.0 != NONE {
-            mark_on(s, t.to);
-        }
-        if !t.more_from.is_empty() {
-            for f in arcs(p, t.more_from) {
-                mark_off(s, *f);
-            }
-        }
-        if !t.more_to.is_empty() {
-            for f in arcs(p, t.more_to) {
-                mark_on(s, *f);
-            }
-        }
+        each_from(p, t, |from| mark_off(s, StepId(from)));
+        each_to(p, t, |to| mark_on(s, StepId(to)));
         if t.on_clearing != NONE {
             s.x.runs.push(t.on_clearing);
         }
+    }
+}
+
+#[inline(always)]
+pub(crate) fn one_to_one(t: &Transition) -> bool {
+    t.more_from.is_empty() && t.more_to.is_empty() && t.from.0 != NONE && t.to.0 != NONE
+}
+
+#[inline(always)]
+pub(crate) fn each_from(p: &Program, t: &Transition, mut f: impl FnMut(u32)) {
+    if t.from.0 != NONE {
+        f(t.from.0);
+    }
+    if !t.more_from.is_empty() {
+        arcs(p, t.more_from).iter().for_each(|s| f(s.0));
+    }
+}
+
+#[inline(always)]
+pub(crate) fn each_to(p: &Program, t: &Transition, mut f: impl FnMut(u32)) {
+    if t.to.0 != NONE {
+        f(t.to.0);
+    }
+    if !t.more_to.is_empty() {
+        arcs(p, t.more_to).iter().for_each(|s| f(s.0));
     }
 }
 
@@ -305,12 +332,18 @@ fn in_turn(p: &Program, s: &mut State) -> Result<(), Fault> {
         if t.on_clearing != NONE {
             now_or_late(p, s, t.on_clearing)?;
         }
-        for f in from_steps(p, &t) {
-            leave(p, s, f.0)?;
-        }
-        for f in to_steps(p, &t) {
-            enter(p, s, f.0)?;
-        }
+        let mut done = Ok(());
+        each_from(p, &t, |f| {
+            if done.is_ok() {
+                done = leave(p, s, f);
+            }
+        });
+        each_to(p, &t, |f| {
+            if done.is_ok() {
+                done = enter(p, s, f);
+            }
+        });
+        done?;
     }
     run_ordered(p, s)
 }

@@ -430,12 +430,22 @@ pub struct Program {
     pub(crate) has_periods: bool,
     /// Some transitions share a preceding step and are not settled by their place.
     pub(crate) has_contests: bool,
+    /// Nothing but steps, transitions and outputs that follow one step.
+    pub(crate) bare: bool,
+    /// No code reads a time, and nothing runs in every scan.
+    pub(crate) timeless: bool,
+    /// There is PRE, POST or code for system bits.
+    pub(crate) frame: bool,
     /// Number of references to stored actions.
     pub(crate) stored: usize,
     /// Most words that the stored actions of one pass can write.
     pub(crate) commit_room: usize,
     /// Room for strings at work, in bytes.
     pub(crate) text_room: usize,
+    /// For bare programs, what their passes need of steps.
+    pub(crate) hot: Box<[crate::bare::Hot]>,
+    /// For bare programs, what their passes need of transitions.
+    pub(crate) moves: Box<[crate::bare::Move]>,
     /// Watches looked at in every scan.
     pub(crate) always: Box<[u32]>,
 }

@@ -40,7 +40,16 @@ const PATIENCE: u32 = 48;
 /// IEC 60848:2013, 4.5 (evolution rules) and 4.6 (interpretation);
 /// IEC 61131-3:2003, 2.6.5.
 pub fn scan(p: &Program, s: &mut State, inputs: &[u64], now: i64) -> Result<Report, Fault> {
-    let done = begin(p, s, inputs, now).and_then(|()| search(p, s)).and_then(|()| finish(p, s));
+    if s.x.quiet && still(p, s, inputs, now) {
+        return Ok(Report { passes: 1, cleared: 0, conflict: None });
+    }
+    let done = if p.bare && s.has_only_flag(STARTED) && begin_bare(p, s, inputs, now) {
+        let done = search(p, s, crate::bare::evolve);
+        s.x.quiet = p.timeless && s.x.idle;
+        done
+    } else {
+        begin(p, s, inputs, now).and_then(|()| search(p, s, pass)).and_then(|()| finish(p, s))
+    };
     match done {
         Ok(()) => Ok(report(s)),
         Err(fault) => {
@@ -50,12 +59,67 @@ pub fn scan(p: &Program, s: &mut State, inputs: &[u64], now: i64) -> Result<Repo
     }
 }
 
+/// [`begin`] for programs that consist of steps, transitions and outputs that
+/// follow one step. False where the inputs do not fit; then nothing was done.
+#[inline]
+fn begin_bare(p: &Program, s: &mut State, inputs: &[u64], now: i64) -> bool {
+    let (from, to) = ((s.vars + p.t.inputs.start) as usize, (s.vars + p.t.inputs.end) as usize);
+    let before = s.now();
+    let Some(area) = s.w.get_mut(from..to) else { return false };
+    if area.len() != inputs.len() || now < before {
+        return false;
+    }
+    for (a, i) in area.iter_mut().zip(inputs) {
+        *a = *i;
+    }
+    tick(s, now.wrapping_sub(before), now);
+    let x = &mut s.x;
+    x.cleared.clear();
+    x.cleared_count = 0;
+    x.passes = 0;
+    x.conflict = None;
+    x.work = 0;
+    true
+}
+
+/// Time goes on by a scan.
+#[inline(always)]
+fn tick(s: &mut State, dt: i64, now: i64) {
+    if let Some(head) = s.w.first_chunk_mut::<{ head::WORDS as usize }>() {
+        head[head::DT] = dt as u64;
+        head[head::NOW] = now as u64;
+        head[head::SCANS] = head[head::SCANS].wrapping_add(1);
+    }
+}
+
+/// A scan in which nothing can happen: the one before ended in a situation that
+/// a further pass does not change, no input differs, and nothing waits for the
+/// time. Then only the time goes on.
+#[inline]
+fn still(p: &Program, s: &mut State, inputs: &[u64], now: i64) -> bool {
+    let (from, to) = ((s.vars + p.t.inputs.start) as usize, (s.vars + p.t.inputs.end) as usize);
+    let before = s.now();
+    let Some(area) = s.w.get(from..to) else { return false };
+    if area.len() != inputs.len() || now < before || area.iter().zip(inputs).any(|(a, i)| a != i) {
+        return false;
+    }
+    tick(s, now.wrapping_sub(before), now);
+    s.x.cleared.clear();
+    s.x.ran.clear();
+    true
+}
+
 fn report(s: &State) -> Report {
     Report { passes: s.x.passes, cleared: s.x.cleared_count, conflict: s.x.conflict }
 }
 
 /// Passes until nothing changes, or just one.
-fn search(p: &Program, s: &mut State) -> Result<(), Fault> {
+#[inline]
+fn search(
+    p: &Program,
+    s: &mut State,
+    pass: impl Fn(&Program, &mut State) -> Result<bool, Fault>,
+) -> Result<(), Fault> {
     let rules = &p.t.rules;
     if !rules.stable {
         return pass(p, s).map(|_| ());
@@ -106,6 +170,8 @@ pub fn begin(p: &Program, s: &mut State, inputs: &[u64], now: i64) -> Result<(),
         return Err(FaultKind::Inputs.nowhere());
     }
     reset_scratch(s);
+    s.x.quiet = false;
+    s.x.lone = NONE;
     let before = if fresh { now } else { s.now() };
     s.set(head::DT, now.wrapping_sub(before) as u64);
     s.set(head::NOW, now as u64);
@@ -126,8 +192,10 @@ pub fn begin(p: &Program, s: &mut State, inputs: &[u64], now: i64) -> Result<(),
         initial(p, s)?;
     }
     watch::update(p, s, true, fresh)?;
-    run::run(p, s, t.pre)?;
-    run::run(p, s, t.services)?;
+    if p.frame {
+        run::run(p, s, t.pre)?;
+        run::run(p, s, t.services)?;
+    }
     if s.has_flag(REQUESTS) {
         requests(p, s)?;
     }
@@ -255,8 +323,10 @@ pub fn finish(p: &Program, s: &mut State) -> Result<(), Fault> {
     if s.x.late_any {
         late(p, s)?;
     }
-    run::run(p, s, t.post)?;
-    run::run(p, s, t.tail)?;
+    if p.frame {
+        run::run(p, s, t.post)?;
+        run::run(p, s, t.tail)?;
+    }
     if let Some((steps, transitions)) = t.counts {
         count(p, s, moved, steps, transitions)?;
     }
@@ -269,7 +339,16 @@ pub fn finish(p: &Program, s: &mut State) -> Result<(), Fault> {
     }
     let scans = s.scans().wrapping_add(1);
     s.set(head::SCANS, scans);
+    s.x.quiet = p.timeless && s.x.idle && !s.x.changed && !waits(p, s);
     Ok(())
+}
+
+/// Whether an edge, a timer or a control block wants the next scan.
+fn waits(p: &Program, s: &State) -> bool {
+    let l = &p.layout;
+    let watched = !p.t.watches.is_empty()
+        && !(l.edged.is_empty(&s.w) && l.dirty.is_empty(&s.w) && l.running.is_empty(&s.w));
+    watched || s.has_flag(REQUESTS) || !l.blocks.is_empty(&s.w) || !l.periodics.is_empty(&s.w)
 }
 
 /// Actions of each scan of the active steps.
@@ -369,6 +448,8 @@ pub fn set_step(p: &Program, s: &mut State, step: StepId, on: bool) {
     if step.0 as usize >= p.t.steps.len() || s.is_active(step) == on {
         return;
     }
+    s.x.quiet = false;
+    s.x.lone = NONE;
     if on {
         activate(p, s, step.0);
     } else {

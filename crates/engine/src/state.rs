@@ -137,6 +137,10 @@ impl Layout {
 pub(crate) struct Scratch {
     pub(crate) stack: Vec<u64>,
     pub(crate) fired: Vec<u32>,
+    /// The only active step, where that is known; else `NONE` (`bare`).
+    pub(crate) lone: u32,
+    /// Active steps whose transitions need a closer look (`bare`).
+    pub(crate) slow: Vec<u32>,
     pub(crate) on: Vec<u32>,
     /// Steps that follow one another through enclosures (`sequential`).
     pub(crate) chain: Vec<u32>,
@@ -171,6 +175,10 @@ pub(crate) struct Scratch {
     pub(crate) moved: u32,
     pub(crate) active_before: u32,
     pub(crate) first_pass: bool,
+    /// The latest pass cleared, imposed and ran nothing.
+    pub(crate) idle: bool,
+    /// Nothing can happen before an input changes or somebody writes from outside.
+    pub(crate) quiet: bool,
     pub(crate) text: [Vec<u8>; 3],
     // Reports of the last scan.
     pub(crate) cleared: Vec<u32>,
@@ -227,6 +235,8 @@ impl State {
         let x = Scratch {
             stack: Vec::with_capacity(STACK),
             fired: Vec::with_capacity(t.transitions.len()),
+            lone: crate::NONE,
+            slow: Vec::with_capacity(if p.bare { steps } else { 0 }),
             on: Vec::with_capacity(2 * steps),
             off: Vec::with_capacity(2 * steps),
             chain: Vec::with_capacity(if t.rules.sequential { 2 * steps + 1 } else { 0 }),
@@ -298,6 +308,7 @@ impl State {
     /// variable). Watches notice at the next scan.
     pub fn set_word(&mut self, p: &Program, addr: Addr, value: u64) {
         if addr.0 < self.var_words {
+            self.x.quiet = false;
             crate::run::write(p, self, addr, value);
         }
     }
@@ -362,6 +373,10 @@ impl State {
 
     pub(crate) fn has_flag(&self, flag: u64) -> bool {
         word(&self.w, head::FLAGS) & flag != 0
+    }
+
+    pub(crate) fn has_only_flag(&self, flag: u64) -> bool {
+        word(&self.w, head::FLAGS) == flag
     }
 
     pub(crate) fn flag(&mut self, flag: u64, on: bool) {
