@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::ops::Range;
 
-use g7_engine::{Addr, Fault, Program, Report, State, scan};
+use g7_engine::{Addr, Fault, Program, Report, State, begin, pass, scan};
 
 use crate::clock::Clock;
 use crate::io::{Io, IoError};
@@ -76,6 +76,10 @@ pub struct Runner<'p> {
     retained: Vec<Range<u32>>,
     flags: Option<(Addr, Addr)>,
     tape: Option<Tape>,
+    /// A scan that is looked at pass by pass.
+    slow: Option<State>,
+    /// Plant and inputs are those of the scan that is due.
+    ready: bool,
 }
 
 impl<'p> Runner<'p> {
@@ -98,6 +102,8 @@ impl<'p> Runner<'p> {
             retained: Vec::new(),
             flags: None,
             tape: None,
+            slow: None,
+            ready: false,
         };
         runner.inputs = (rows.start..rows.end).map(|a| runner.state.word(Addr(a))).collect();
         runner.read = runner.inputs.clone();
@@ -287,13 +293,69 @@ impl<'p> Runner<'p> {
             return Err(halt);
         }
         let now = self.due;
+        let done = self.prepare(now).and_then(|()| self.evolve(now));
         self.due = now.saturating_add(self.period);
-        let done = self.move_plant(now).map_err(Halt::Plant).and_then(|()| self.evolve(now));
+        (self.ready, self.slow) = (false, None);
         match done {
             Ok(report) => self.report = report,
             Err(halt) => self.halt = Some(halt),
         }
         done
+    }
+
+    /// One pass of the scan that is due; whether it was the last, and the scan
+    /// is done. Until then [`Runner::shown`] has the state between two passes.
+    ///
+    /// # Errors
+    ///
+    /// As [`Runner::scan`].
+    pub fn pass(&mut self) -> Result<bool, Halt> {
+        if let Some(halt) = self.halt {
+            return Err(halt);
+        }
+        let now = self.due;
+        let mut state = match self.slow.take() {
+            Some(state) => state,
+            None => {
+                if self.prepare(now).is_err() {
+                    return self.scan().map(|_| true);
+                }
+                let mut state = self.state.clone();
+                if begin(self.program, &mut state, &self.read, now).is_err() {
+                    return self.scan().map(|_| true);
+                }
+                state
+            }
+        };
+        // The passes are made on a copy: at the end, or at a fault, the whole
+        // scan is made on the state itself, so that it is made in one way only.
+        match pass(self.program, &mut state) {
+            Ok(true) if self.program.tables().rules.stable => {
+                self.slow = Some(state);
+                Ok(false)
+            }
+            Ok(_) | Err(_) => self.scan().map(|_| true),
+        }
+    }
+
+    /// The state between two passes, else that of the charts.
+    pub fn shown(&self) -> &State {
+        self.slow.as_ref().unwrap_or(&self.state)
+    }
+
+    /// Whether a scan is being made pass by pass.
+    pub fn is_within_scan(&self) -> bool {
+        self.slow.is_some()
+    }
+
+    /// Moves the plant and takes the inputs of the scan due at `now`, once.
+    fn prepare(&mut self, now: i64) -> Result<(), Halt> {
+        if !self.ready {
+            self.move_plant(now).map_err(Halt::Plant)?;
+            self.take_inputs();
+            self.ready = true;
+        }
+        Ok(())
     }
 
     fn move_plant(&mut self, now: i64) -> Result<(), Fault> {
@@ -314,7 +376,7 @@ impl<'p> Runner<'p> {
         Ok(())
     }
 
-    fn evolve(&mut self, now: i64) -> Result<Report, Halt> {
+    fn take_inputs(&mut self) {
         self.read.clone_from(&self.inputs);
         for (what, value) in self.forces.clone() {
             match what {
@@ -330,6 +392,9 @@ impl<'p> Runner<'p> {
                 Force::Variable(addr) => self.set_word(addr, value),
             }
         }
+    }
+
+    fn evolve(&mut self, now: i64) -> Result<Report, Halt> {
         let done = scan(self.program, &mut self.state, &self.read, now);
         if let Some(tape) = &mut self.tape {
             tape.scan(now, &self.read, &self.state);
@@ -354,7 +419,7 @@ impl<'p> Runner<'p> {
             Start::Warm => self.retained(),
         };
         self.state = State::new(self.program);
-        self.halt = None;
+        (self.halt, self.ready, self.slow) = (None, false, None);
         self.own.clear();
         if let Some(tape) = &mut self.tape {
             tape.restart();

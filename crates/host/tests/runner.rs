@@ -205,3 +205,54 @@ fn serving_ends_when_told_and_at_a_fault() {
     assert!(matches!(ended, Served::Halted(Halt::Charts(_))));
     assert_eq!(io.written.last(), Some(&vec![1]), "safe");
 }
+
+/// 1 -> 2 -> 3, both always true, searched until stable.
+fn transient() -> Program {
+    use g7_engine::{Guard, NONE, Step, StepId, Transition};
+    let none = Rows::default();
+    let step = |out: u32| Step {
+        out: Rows { start: out.min(2), end: (out + 1).min(2) },
+        direct: Addr(NONE),
+        extra: NONE,
+        chart: 0,
+    };
+    let go = |from, to| Transition {
+        guard: Guard::True,
+        from: StepId(from),
+        to: StepId(to),
+        more_from: none,
+        more_to: none,
+        chart: 0,
+        on_clearing: NONE,
+        shares: false,
+        priority: NONE,
+        simple: true,
+    };
+    Program::new(Tables {
+        steps: vec![step(0), step(1), step(2)],
+        transitions: vec![go(0, 1), go(1, 2)],
+        outs: vec![0, 1],
+        initial: vec![StepId(0)],
+        charts: vec![g7_engine::Chart { group: g7_engine::GroupId(0), period: 0 }],
+        groups: vec![g7_engine::Group { steps: Rows { start: 0, end: 3 }, initial: none, watches: none }],
+        periods: vec![0],
+        ..Tables::default()
+    })
+    .expect("tables are sound")
+}
+
+#[test]
+fn a_scan_made_pass_by_pass_is_the_same_scan() {
+    let program = transient();
+    let active = |r: &Runner<'_>| r.shown().active().map(|s| s.0).collect::<Vec<_>>();
+    let mut slow = Runner::new(&program, 10).with_tape();
+    assert_eq!((slow.pass(), active(&slow)), (Ok(false), vec![1]));
+    assert!(slow.is_within_scan());
+    assert_eq!((slow.pass(), active(&slow)), (Ok(false), vec![2]));
+    assert_eq!((slow.pass(), active(&slow)), (Ok(true), vec![2]), "a pass that changes nothing ends it");
+    assert_eq!(slow.due(), 10);
+    let mut fast = Runner::new(&program, 10).with_tape();
+    fast.scan().unwrap();
+    assert_eq!(slow.state().to_bytes(), fast.state().to_bytes());
+    assert_eq!(slow.tape().unwrap().to_text(), fast.tape().unwrap().to_text());
+}
