@@ -346,8 +346,8 @@ pub fn finish(p: &Program, s: &mut State) -> Result<(), Fault> {
 /// Whether an edge, a timer or a control block wants the next scan.
 fn waits(p: &Program, s: &State) -> bool {
     let l = &p.layout;
-    let watched = !p.t.watches.is_empty()
-        && !(l.edged.is_empty(&s.w) && l.dirty.is_empty(&s.w) && l.running.is_empty(&s.w));
+    let watched =
+        !p.t.watches.is_empty() && [&l.edged, &l.dirty, &l.running].iter().any(|tree| !tree.is_empty(&s.w));
     watched || s.has_flag(REQUESTS) || !l.blocks.is_empty(&s.w) || !l.periodics.is_empty(&s.w)
 }
 

@@ -360,8 +360,8 @@ impl State {
         word(&self.w, head::FLAGS) & STOPPED != 0
     }
 
-    /// Ranks of the transitions cleared in the latest scan, in the order of
-    /// clearing; a long search for stability may be cut.
+    /// Ranks of the transitions cleared in the latest scan, pass by pass (within
+    /// a pass they clear at once, in no order); a long search may be cut.
     pub fn cleared(&self) -> &[u32] {
         &self.x.cleared
     }

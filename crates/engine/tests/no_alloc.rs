@@ -1,0 +1,62 @@
+//! A scan allocates nothing. The compiler cannot see that; this test can.
+#![allow(unsafe_code, reason = "counting allocations needs a GlobalAlloc")]
+
+mod common;
+
+use std::alloc::{GlobalAlloc, Layout, System};
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use common::{Arc, chart};
+use g7_engine::{Program, Rules, State, scan};
+
+struct Counting;
+static COUNT: AtomicUsize = AtomicUsize::new(0);
+
+// SAFETY: forwards to `System`, which upholds the contract.
+unsafe impl GlobalAlloc for Counting {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        COUNT.fetch_add(1, Ordering::Relaxed);
+        unsafe { System.alloc(layout) }
+    }
+    unsafe fn dealloc(&self, ptr: *mut u8, layout: Layout) {
+        unsafe { System.dealloc(ptr, layout) }
+    }
+    unsafe fn realloc(&self, ptr: *mut u8, layout: Layout, new: usize) -> *mut u8 {
+        COUNT.fetch_add(1, Ordering::Relaxed);
+        unsafe { System.realloc(ptr, layout, new) }
+    }
+}
+
+#[global_allocator]
+static ALLOC: Counting = Counting;
+
+/// A fork into three, a join, an OR divergence and a self-loop.
+fn arcs() -> Vec<Arc> {
+    vec![
+        (vec![0], vec![1, 2, 3], Some(0)),
+        (vec![1, 2, 3], vec![4], Some(1)),
+        (vec![4], vec![0], Some(0)),
+        (vec![4], vec![5], Some(1)),
+        (vec![5], vec![5], None),
+        (vec![5], vec![0], Some(-1)),
+    ]
+}
+
+#[test]
+fn scan_allocates_nothing() {
+    for rules in [Rules::IEC60848, Rules::IEC61131, Rules::PL7, Rules::UNITY, Rules::JGRAFCHART] {
+        let program = Program::new(chart(rules, 6, 2, &[0], &arcs())).expect("tables are sound");
+        let mut state = State::new(&program);
+        let before = COUNT.load(Ordering::Relaxed);
+        let mut cleared = 0;
+        for k in 0..200i64 {
+            let inputs = [(k % 3 == 0) as u64, (k % 3 == 1) as u64];
+            // An unstable chart stops; that must not allocate either.
+            if let Ok(report) = scan(&program, &mut state, &inputs, k * 1_000_000) {
+                cleared += report.cleared;
+            }
+        }
+        assert_eq!(COUNT.load(Ordering::Relaxed), before, "{rules:?}");
+        assert!(cleared > 2, "{rules:?}: nothing moved");
+    }
+}

@@ -1,0 +1,89 @@
+//! The short way for bare programs and the general way agree, scan by scan.
+
+mod common;
+
+use common::{Arc, Chance, chart};
+use g7_engine::{Code, FaultKind, Op, Program, Rules, State, Tables, scan};
+
+/// Up to `n` different steps.
+fn some(chance: &mut Chance, n: u32) -> Vec<u32> {
+    let mut list: Vec<u32> =
+        (0..chance.below(3) + u32::from(chance.below(8) > 0)).map(|_| chance.below(n)).collect();
+    list.sort_unstable();
+    list.dedup();
+    list
+}
+
+fn random(chance: &mut Chance, rules: Rules) -> Tables {
+    let most = if chance.below(4) == 0 { 200 } else { 9 };
+    let steps = 1 + chance.below(most);
+    let count = 1 + chance.below(2 * steps);
+    let arcs: Vec<Arc> = (0..count)
+        .map(|_| {
+            let lone = chance.below(2) == 0;
+            let (pre, post) = if lone {
+                (vec![chance.below(steps)], vec![chance.below(steps)])
+            } else {
+                (some(chance, steps), some(chance, steps))
+            };
+            let guard = match chance.below(6) {
+                0 => None,
+                1 => Some(-1 - chance.below(3) as i32),
+                _ => Some(chance.below(3) as i32),
+            };
+            (pre, post, guard)
+        })
+        .collect();
+    let initial = some(chance, steps);
+    chart(rules, steps, 3, &initial, &arcs)
+}
+
+/// The same tables with a PRE that does nothing: enough to leave the short way.
+fn with_frame(t: &Tables) -> Tables {
+    let mut t = t.clone();
+    let start = t.code.len() as u32;
+    t.code.extend([Op::Push(0), Op::Drop]);
+    t.pre = Code { start, end: start + 2 };
+    t
+}
+
+#[test]
+fn both_ways_reach_the_same_situations() {
+    let mut chance = Chance(7);
+    let mut moved = 0u64;
+    for round in 0..3000 {
+        let rules = if round % 3 == 0 { Rules::IEC60848 } else { Rules::IEC61131 };
+        let rules =
+            Rules { multi_token: chance.below(2) == 0, keep_step_time: chance.below(2) == 0, ..rules };
+        let tables = random(&mut chance, rules);
+        let long = Program::new(with_frame(&tables)).expect("tables are sound");
+        let short = Program::new(tables).expect("tables are sound");
+        let (mut a, mut b) = (State::new(&short), State::new(&long));
+        for k in 0..30 {
+            let inputs: Vec<u64> = (0..3).map(|_| u64::from(chance.below(2))).collect();
+            let (x, y) = (scan(&short, &mut a, &inputs, k * 7), scan(&long, &mut b, &inputs, k * 7));
+            assert_eq!(x.is_ok(), y.is_ok(), "round {round}, scan {k}: {x:?} {y:?}");
+            assert_eq!(a.image(), b.image(), "round {round}, scan {k}");
+            match (x, y) {
+                (Ok(x), Ok(y)) => {
+                    assert_eq!(x.cleared, y.cleared, "round {round}, scan {k}");
+                    // What clears in one pass clears at once: no order to compare.
+                    let sorted = |s: &State| {
+                        let mut list = s.cleared().to_vec();
+                        list.sort_unstable();
+                        list
+                    };
+                    assert_eq!(sorted(&a), sorted(&b), "round {round}, scan {k}");
+                    moved += u64::from(x.cleared);
+                }
+                (Err(x), Err(y)) => {
+                    assert!(matches!(x.kind, FaultKind::Unstable { .. }), "{x:?}");
+                    assert_eq!(x, y, "round {round}, scan {k}");
+                    break;
+                }
+                _ => {}
+            }
+        }
+    }
+    assert!(moved > 50_000, "only {moved} clearings: the charts stand still and show nothing");
+}
