@@ -46,6 +46,9 @@ pub fn scan(p: &Program, s: &mut State, inputs: &[u64], now: i64) -> Result<Repo
     let done = if p.bare && s.has_only_flag(STARTED) && begin_bare(p, s, inputs, now) {
         let done = search(p, s, crate::bare::evolve);
         s.x.quiet = p.timeless && s.x.idle;
+        if done.is_ok() {
+            tock(s);
+        }
         done
     } else {
         begin(p, s, inputs, now).and_then(|()| search(p, s, pass)).and_then(|()| finish(p, s))
@@ -82,13 +85,20 @@ fn begin_bare(p: &Program, s: &mut State, inputs: &[u64], now: i64) -> bool {
     true
 }
 
-/// Time goes on by a scan.
+/// A scan is over.
+#[inline(always)]
+fn tock(s: &mut State) {
+    if let Some(w) = s.w.get_mut(head::SCANS) {
+        *w = w.wrapping_add(1);
+    }
+}
+
+/// Time goes on.
 #[inline(always)]
 fn tick(s: &mut State, dt: i64, now: i64) {
     if let Some(head) = s.w.first_chunk_mut::<{ head::WORDS as usize }>() {
         head[head::DT] = dt as u64;
         head[head::NOW] = now as u64;
-        head[head::SCANS] = head[head::SCANS].wrapping_add(1);
     }
 }
 
@@ -104,6 +114,7 @@ fn still(p: &Program, s: &mut State, inputs: &[u64], now: i64) -> bool {
         return false;
     }
     tick(s, now.wrapping_sub(before), now);
+    tock(s);
     s.x.cleared.clear();
     s.x.ran.clear();
     true
@@ -337,8 +348,7 @@ pub fn finish(p: &Program, s: &mut State) -> Result<(), Fault> {
             return Err(FaultKind::Table.nowhere());
         }
     }
-    let scans = s.scans().wrapping_add(1);
-    s.set(head::SCANS, scans);
+    tock(s);
     s.x.quiet = p.timeless && s.x.idle && !s.x.changed && !waits(p, s);
     Ok(())
 }
