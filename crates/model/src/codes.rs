@@ -73,6 +73,23 @@ codes! {
     BAD_DECLARATION = "G0228" Error "a declaration that does not fit its type" "IEC 61131-3:2003, 2.4.3";
     ADDRESS_TWICE = "G0229" Error "one address for two variables" "IEC 61131-3:2003, 2.4.1.1";
     NESTED_TOO_DEEPLY = "G0230" Error "macro-steps nested too deeply" "the .g7 format";
+
+    // Imported files
+    BAD_XML = "G0601" Error "a file that is no well-formed XML" "XML 1.0";
+    NOT_JGRAFCHART = "G0602" Error "a file that is no chart of JGrafchart" "JGrafchart 2.6.1, files";
+    UNKNOWN_ELEMENT = "G0603" Warning "an element that is not known" "JGrafchart 2.6.1, files";
+    NOT_CARRIED = "G0604" Error "a part with a meaning that cannot be carried over" "JGrafchart 2.6.1, language reference";
+    LEFT_OUT = "G0605" Warning "a part that is left out; the rest runs" "JGrafchart 2.6.1, language reference";
+    BAD_TEXT = "G0606" Error "an action or condition that cannot be read" "JGrafchart 2.6.1, textual language";
+    UNKNOWN_OBJECT = "G0607" Error "a name that nothing in the file has" "JGrafchart 2.6.1, name references";
+    UNKNOWN_FUNCTION = "G0608" Error "a function or method that is not known" "JGrafchart 2.6.1, textual language";
+    BAD_LINK = "G0609" Error "a line that cannot be in a chart" "IEC 60848:2013, 4.4";
+    OPEN_LINK = "G0610" Warning "a line or transition that leads nowhere" "IEC 60848:2013, 4.4";
+    RENAMED = "G0611" Warning "a name that had to be changed" "JGrafchart 2.6.1, files";
+    BAD_VALUE = "G0612" Error "a value that cannot be read" "JGrafchart 2.6.1, files";
+    BAD_MACRO = "G0613" Error "a macro-step without its inside" "JGrafchart 2.6.1, macro steps";
+    DIFFERENT = "G0614" Warning "a part that is carried over with a difference" "JGrafchart 2.6.1, language reference";
+    TWICE = "G0615" Error "two variables of one name in a workspace" "JGrafchart 2.6.1, name references";
 }
 
 /// The code with this id (`G0101`, in any case), if there is one.

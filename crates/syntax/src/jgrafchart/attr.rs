@@ -1,0 +1,92 @@
+//! The text of an attribute with the place of each of its characters.
+
+use std::ops::Range;
+
+use roxmltree::Node;
+
+/// A decoded attribute value that still knows where each part of it stands.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Text {
+    /// The value, entities undone.
+    pub(super) text: String,
+    /// The value in the file, between its quotes.
+    pub(super) at: Range<usize>,
+    /// Where text and file go apart: from this byte of the text on, the file is there.
+    jumps: Vec<(usize, usize)>,
+}
+
+impl Text {
+    /// The place in the file of a range of bytes of the text.
+    pub(super) fn place(&self, part: &Range<usize>) -> Range<usize> {
+        let start = self.offset(part.start);
+        let end = if part.end > part.start { self.offset(part.end - 1) + 1 } else { start };
+        start..end.clamp(start, self.at.end.max(start))
+    }
+
+    fn offset(&self, byte: usize) -> usize {
+        let next = self.jumps.partition_point(|(text, _)| *text <= byte);
+        match next.checked_sub(1).and_then(|i| self.jumps.get(i)) {
+            Some((text, file)) => (file + (byte - text)).min(self.at.end),
+            None => (self.at.start + byte).min(self.at.end),
+        }
+    }
+}
+
+/// An attribute's value with its places.
+pub(super) fn text(node: Node, name: &str) -> Option<Text> {
+    let attribute = node.attribute_node(name)?;
+    let at = attribute.range_value();
+    let raw = node.document().input_text().get(at.clone())?;
+    Some(decode(raw, at))
+}
+
+/// Undoes the entities of a value; unknown ones cannot stand in a well-formed file.
+fn decode(raw: &str, at: Range<usize>) -> Text {
+    let mut text = String::with_capacity(raw.len());
+    let mut jumps = Vec::new();
+    let mut rest = raw;
+    while let Some(c) = rest.chars().next() {
+        let here = at.end - rest.len();
+        let entity = if c == '&' { rest.split_once(';') } else { None };
+        if let Some((name, behind)) = entity {
+            jumps.push((text.len(), here));
+            text.push(entity_char(name).unwrap_or('\u{FFFD}'));
+            rest = behind;
+            jumps.push((text.len(), at.end - rest.len()));
+        } else {
+            // XML: a line end or tab written as such in an attribute is a blank.
+            text.push(if matches!(c, '\n' | '\r' | '\t') { ' ' } else { c });
+            rest = rest.get(c.len_utf8()..).unwrap_or("");
+        }
+    }
+    Text { text, at, jumps }
+}
+
+/// The character that `&name` stands for.
+fn entity_char(name: &str) -> Option<char> {
+    match name.strip_prefix('&')? {
+        "lt" => Some('<'),
+        "gt" => Some('>'),
+        "amp" => Some('&'),
+        "quot" => Some('"'),
+        "apos" => Some('\''),
+        number => {
+            let number = number.strip_prefix('#')?;
+            let code = match number.strip_prefix('x') {
+                Some(hex) => u32::from_str_radix(hex, 16).ok()?,
+                None => number.parse().ok()?,
+            };
+            char::from_u32(code)
+        }
+    }
+}
+
+/// The start tag of an element: what a message underlines.
+pub(super) fn head(node: Node) -> Range<usize> {
+    let whole = node.range();
+    let from = node.attributes().map(|a| a.range().end).max().unwrap_or(whole.start);
+    let input = node.document().input_text();
+    let tail = input.get(from..whole.end).unwrap_or("");
+    let end = tail.find('>').map_or(whole.end, |i| from + i + 1);
+    whole.start..end
+}

@@ -1,0 +1,311 @@
+//! From lines to the steps before and behind each transition.
+//!
+//! A transition's preceding steps are found by going against the lines through
+//! joins and posts, its succeeding ones by going along them through splits and
+//! posts. Lines that cannot be in a chart are reported and not followed.
+
+use std::collections::{HashMap, HashSet};
+
+use g7_model::codes;
+
+use super::names::Names;
+use super::read::shown;
+use super::report::Report;
+use super::sheet::{Node, Plan, Sheet};
+
+/// Steps of the walk through a workspace's lines; a file of nothing but joins
+/// would otherwise cost their number squared.
+const MOST_WORK: usize = 4_000_000;
+
+/// The steps before and behind a transition, by number in their workspace.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub(super) struct Ends {
+    pub(super) from: Vec<usize>,
+    pub(super) to: Vec<usize>,
+}
+
+/// The ends of each transition of a workspace.
+pub(super) fn ends(plan: &Plan, index: usize, names: &Names, report: &mut Report) -> Vec<Ends> {
+    let Some(sheet) = plan.sheets.get(index) else { return Vec::new() };
+    let mut web = Web::new(sheet, index, names);
+    web.lines(report);
+    web.posts(plan, report);
+    let all: Vec<Ends> = (0..sheet.transitions.len()).map(|t| web.ends_of(t, report)).collect();
+    if web.work == 0 {
+        report.say(&codes::TOO_LARGE, &sheet.at, "the lines of this workspace are too many to follow");
+    }
+    all
+}
+
+/// The lines of one workspace, both ways.
+struct Web<'a> {
+    sheet: &'a Sheet,
+    index: usize,
+    names: &'a Names,
+    out: HashMap<Node, Vec<Node>>,
+    into: HashMap<Node, Vec<Node>>,
+    /// Ends of lines that are not followed, with the way they would have led; reported.
+    cut: HashSet<(Node, bool)>,
+    work: usize,
+}
+
+/// One end of a line: what it is at, and the letter or number of the port.
+struct End {
+    node: Node,
+    port: String,
+}
+
+impl<'a> Web<'a> {
+    fn new(sheet: &'a Sheet, index: usize, names: &'a Names) -> Web<'a> {
+        Web {
+            sheet,
+            index,
+            names,
+            out: HashMap::new(),
+            into: HashMap::new(),
+            cut: HashSet::new(),
+            work: MOST_WORK,
+        }
+    }
+
+    fn join(&mut self, from: Node, to: Node) {
+        self.out.entry(from).or_default().push(to);
+        self.into.entry(to).or_default().push(from);
+    }
+
+    /// What an end of a line is at. Ports stand behind the identifier: `L` and `R`
+    /// of a bar, `_1` the second port of a macro-step, `H` history, `E` exception.
+    fn end(&self, id: &str) -> Option<End> {
+        if let Some(&node) = self.sheet.ids.get(id) {
+            return Some(End { node, port: String::new() });
+        }
+        let letter = id.char_indices().last().filter(|(_, c)| matches!(c, 'L' | 'R' | 'N' | 'H' | 'E'));
+        let cut = letter.map(|(i, _)| (i, i)).or_else(|| id.rfind('_').map(|i| (i, i + 1)))?;
+        let node = *self.sheet.ids.get(id.get(..cut.0)?)?;
+        Some(End { node, port: id.get(cut.1..)?.to_string() })
+    }
+
+    /// Reads the lines, left ports of a bar before right ones.
+    fn lines(&mut self, report: &mut Report) {
+        let sheet = self.sheet;
+        let mut later = Vec::new();
+        for link in &sheet.links {
+            let (from, to) = (self.end(&link.from.text), self.end(&link.to.text));
+            let lost = [(&from, &link.from, "comes from"), (&to, &link.to, "leads to")];
+            for (end, text, way) in lost {
+                if end.is_none() {
+                    let what =
+                        format!("a line {way} `{}`, which is nothing in this workspace", shown(&text.text));
+                    let place = if text.text.is_empty() { &link.at } else { &text.at };
+                    report.say(&codes::OPEN_LINK, place, what);
+                }
+            }
+            let dropped = match (&from, &to) {
+                (Some(from), Some(to)) => {
+                    self.special_port(from, to, &link.at, report)
+                        || !self.fits(from.node, to.node, &link.at, report)
+                }
+                _ => true,
+            };
+            if dropped {
+                self.cut.extend(from.map(|end| (end.node, true)));
+                self.cut.extend(to.map(|end| (end.node, false)));
+                continue;
+            }
+            let (Some(from), Some(to)) = (from, to) else { continue };
+            if from.port == "R" || to.port == "R" {
+                later.push((from.node, to.node));
+            } else {
+                self.join(from.node, to.node);
+            }
+        }
+        for (from, to) in later {
+            self.join(from, to);
+        }
+    }
+
+    /// Lines at the history or a further port of a macro-step.
+    fn special_port(&self, from: &End, to: &End, at: &std::ops::Range<usize>, report: &mut Report) -> bool {
+        let step = |end: &End| matches!(end.node, Node::Step(_));
+        let what = if to.port == "H" && step(to) {
+            "a line to the history port of a macro-step; resuming it is not carried over"
+        } else if from.port == "E" && step(from) {
+            "a line from the exception port of a macro-step is not carried over"
+        } else if (step(from) && !matches!(&*from.port, "" | "0" | "N"))
+            || (step(to) && !matches!(&*to.port, "" | "0" | "N"))
+        {
+            "a line to a further port of a macro-step; only one way in and one way out are carried over"
+        } else {
+            return false;
+        };
+        // The exception transition itself has been reported.
+        if from.node != Node::Stranger && to.node != Node::Stranger {
+            report.say(&codes::NOT_CARRIED, at, what);
+        }
+        true
+    }
+
+    /// Whether a line may lead from one to the other.
+    fn fits(&self, from: Node, to: Node, at: &std::ops::Range<usize>, report: &mut Report) -> bool {
+        if from == Node::Stranger || to == Node::Stranger {
+            return false;
+        }
+        let fits = allowed(from, to);
+        if !fits {
+            let what = match (from, to) {
+                (Node::Step(_), Node::Step(_)) => {
+                    format!(
+                        "a line from {} to {} without a transition between",
+                        self.called(from),
+                        self.called(to)
+                    )
+                }
+                (Node::Transition(_), Node::Transition(_)) => {
+                    "a line from a transition to a transition without a step between".to_string()
+                }
+                _ => format!("a line cannot lead from {} to {}", self.called(from), self.called(to)),
+            };
+            report.say(&codes::BAD_LINK, at, what);
+        }
+        fits
+    }
+
+    fn called(&self, node: Node) -> String {
+        match node {
+            Node::Step(step) => format!("step `{}`", shown(self.names.step(self.index, step))),
+            Node::Transition(_) => "a transition".to_string(),
+            Node::Split(_) => "a parallel split".to_string(),
+            Node::Join(_) => "a parallel join".to_string(),
+            Node::PostIn(_) | Node::PostOut(_) => "a connection post".to_string(),
+            Node::Stranger => "an element that is not carried over".to_string(),
+        }
+    }
+
+    /// Ties each pair of connection posts together.
+    fn posts(&mut self, plan: &Plan, report: &mut Report) {
+        let sheet = self.sheet;
+        let prefix = full_name(plan, self.index);
+        let mut at: HashMap<(bool, String), usize> = HashMap::new();
+        for (index, post) in sheet.posts.iter().enumerate() {
+            at.entry((post.inward, post.name.clone())).or_insert(index);
+        }
+        let mut paired: HashSet<(usize, usize)> = HashSet::new();
+        for (index, post) in sheet.posts.iter().enumerate() {
+            let name = post.remote.strip_prefix(&prefix).unwrap_or(&post.remote);
+            if let Some(&other) = at.get(&(!post.inward, name.to_string())) {
+                paired.insert(if post.inward { (index, other) } else { (other, index) });
+            }
+        }
+        let mut pairs: Vec<(usize, usize)> = paired.into_iter().collect();
+        pairs.sort_unstable();
+        let mut tied = HashSet::new();
+        for (inward, outward) in pairs {
+            tied.extend([Node::PostIn(inward), Node::PostOut(outward)]);
+            self.tie(inward, outward, report);
+        }
+        for (index, post) in sheet.posts.iter().enumerate() {
+            let node = if post.inward { Node::PostIn(index) } else { Node::PostOut(index) };
+            if tied.contains(&node) {
+                continue;
+            }
+            if post.remote.contains('.') {
+                let what = format!("a connection post to `{}` in another workspace", shown(&post.remote));
+                report.say(&codes::NOT_CARRIED, &post.at, what);
+            } else {
+                let what = format!("the connection post `{}` has no other end", shown(&post.name));
+                report.say(&codes::OPEN_LINK, &post.at, what);
+            }
+        }
+    }
+
+    /// Joins what leads into one post with what leads out of the other.
+    fn tie(&mut self, inward: usize, outward: usize, report: &mut Report) {
+        let into = self.into.get(&Node::PostIn(inward)).cloned().unwrap_or_default();
+        let out = self.out.get(&Node::PostOut(outward)).cloned().unwrap_or_default();
+        let place = self.sheet.posts.get(inward).map_or(0..0, |p| p.at.clone());
+        for from in &into {
+            for to in &out {
+                if self.work == 0 {
+                    return;
+                }
+                self.work -= 1;
+                if !self.fits(*from, *to, &place, report) {
+                    return;
+                }
+            }
+        }
+        self.join(Node::PostIn(inward), Node::PostOut(outward));
+    }
+
+    fn ends_of(&mut self, transition: usize, report: &mut Report) -> Ends {
+        let start = Node::Transition(transition);
+        let (from, from_cut) = self.walk(start, false);
+        let (to, to_cut) = self.walk(start, true);
+        let Some(node) = self.sheet.transitions.get(transition) else { return Ends::default() };
+        let lost = match (from.is_empty() && !from_cut, to.is_empty() && !to_cut) {
+            (true, true) => "a transition without any step",
+            (true, false) => "a transition without a step before it; it is always enabled",
+            (false, true) => "a transition without a step behind it",
+            (false, false) => "",
+        };
+        if !lost.is_empty() {
+            report.say(&codes::OPEN_LINK, &node.at, lost);
+        }
+        Ends { from, to }
+    }
+
+    /// The steps that are reached through bars and posts, in the order of the
+    /// lines, and whether a line was cut on the way.
+    fn walk(&mut self, start: Node, forward: bool) -> (Vec<usize>, bool) {
+        let mut steps = Vec::new();
+        let mut seen = HashSet::from([start]);
+        let mut stack = vec![start];
+        let mut touched = false;
+        while let Some(node) = stack.pop() {
+            touched |= self.cut.contains(&(node, forward));
+            if let Node::Step(step) = node {
+                steps.push(step);
+                continue;
+            }
+            let next = if forward { self.out.get(&node) } else { self.into.get(&node) };
+            for &other in next.into_iter().flatten().rev() {
+                if self.work == 0 {
+                    return (steps, true);
+                }
+                self.work -= 1;
+                if !matches!(other, Node::Transition(_)) && seen.insert(other) {
+                    stack.push(other);
+                }
+            }
+        }
+        (steps, touched)
+    }
+}
+
+/// What a line may lead from and to.
+fn allowed(from: Node, to: Node) -> bool {
+    use Node::{Join, PostIn, PostOut, Split, Step, Transition};
+    match (from, to) {
+        (PostIn(_), _) | (_, PostOut(_)) => false,
+        (PostOut(_), _) | (_, PostIn(_)) => true,
+        (Step(_), Transition(_) | Join(_)) => true,
+        (Transition(_), Step(_) | Split(_)) => true,
+        (Split(_), Step(_) | Split(_)) => true,
+        (Join(_), Transition(_) | Join(_)) => true,
+        _ => false,
+    }
+}
+
+/// `J1.M1.`: what stands before the names of a workspace when told in full.
+fn full_name(plan: &Plan, index: usize) -> String {
+    let mut parts = Vec::new();
+    let mut here = Some(index);
+    while let Some(sheet) = here.and_then(|i| plan.sheets.get(i)) {
+        parts.push(sheet.name.text.as_str());
+        here = sheet.parent;
+    }
+    parts.reverse();
+    let mut name = parts.join(".");
+    name.push('.');
+    name
+}

@@ -1,0 +1,160 @@
+//! A workspace of the file, in the file's own names and with its own links.
+
+use std::collections::HashMap;
+use std::ops::Range;
+
+use g7_model::{Type, VarKind};
+
+use super::attr::Text;
+
+/// All workspaces of a file; a nested one stands behind the one that holds it.
+#[derive(Default)]
+pub(super) struct Plan {
+    pub(super) sheets: Vec<Sheet>,
+    /// The file's first element.
+    pub(super) at: Range<usize>,
+}
+
+/// What a workspace belongs to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum SheetKind {
+    /// A chart of its own.
+    Top,
+    /// The inside of a macro-step.
+    Macro,
+    /// The inside of a workspace object: a name space whose steps run by themselves.
+    Object,
+}
+
+/// One workspace.
+pub(super) struct Sheet {
+    pub(super) kind: SheetKind,
+    /// Its name, or that of the object that holds it; may be empty.
+    pub(super) name: Text,
+    /// The workspace that holds it.
+    pub(super) parent: Option<usize>,
+    /// Time between two scans, in milliseconds, of a top workspace.
+    pub(super) speed: Option<i64>,
+    pub(super) at: Range<usize>,
+    pub(super) vars: Vec<Var>,
+    pub(super) steps: Vec<StepNode>,
+    pub(super) transitions: Vec<TransitionNode>,
+    pub(super) posts: Vec<Post>,
+    /// Number of parallel splits and joins.
+    pub(super) bars: usize,
+    pub(super) links: Vec<Link>,
+    pub(super) texts: Vec<Text>,
+    /// Workspace objects: name, index of their workspace.
+    pub(super) objects: Vec<(String, usize)>,
+    /// Named objects that are not carried over: name to element.
+    pub(super) strangers: HashMap<String, String>,
+    /// What an identifier stands for.
+    pub(super) ids: HashMap<String, Node>,
+}
+
+impl Sheet {
+    pub(super) fn new(kind: SheetKind, name: Text, parent: Option<usize>, at: Range<usize>) -> Sheet {
+        Sheet {
+            kind,
+            name,
+            parent,
+            speed: None,
+            at,
+            vars: Vec::new(),
+            steps: Vec::new(),
+            transitions: Vec::new(),
+            posts: Vec::new(),
+            bars: 0,
+            links: Vec::new(),
+            texts: Vec::new(),
+            objects: Vec::new(),
+            strangers: HashMap::new(),
+            ids: HashMap::new(),
+        }
+    }
+}
+
+/// What a link can start or end at.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub(super) enum Node {
+    Step(usize),
+    Transition(usize),
+    /// A parallel split, by its number among the bars.
+    Split(usize),
+    /// A parallel join, by its number among the bars.
+    Join(usize),
+    /// The connection post that lines lead into, by its number among the posts.
+    PostIn(usize),
+    /// The connection post that lines lead out of.
+    PostOut(usize),
+    /// Something that is not carried over; it has been reported.
+    Stranger,
+}
+
+/// What sort of step.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum StepSort {
+    Plain,
+    Initial,
+    Enter,
+    Exit,
+    /// A macro-step, with its workspace.
+    Macro(Option<usize>),
+}
+
+/// A step, macro-step, enter step or exit step.
+pub(super) struct StepNode {
+    pub(super) sort: StepSort,
+    pub(super) name: Text,
+    pub(super) actions: Text,
+    pub(super) at: Range<usize>,
+    pub(super) x: i32,
+    pub(super) y: i32,
+}
+
+/// A transition.
+pub(super) struct TransitionNode {
+    pub(super) condition: Text,
+    pub(super) priority: Option<u32>,
+    pub(super) at: Range<usize>,
+    pub(super) x: i32,
+    pub(super) y: i32,
+}
+
+/// A connection post.
+pub(super) struct Post {
+    pub(super) name: String,
+    /// The name of the post at the other end, from the top workspace on.
+    pub(super) remote: String,
+    /// Lines lead into it.
+    pub(super) inward: bool,
+    pub(super) at: Range<usize>,
+}
+
+/// A line.
+pub(super) struct Link {
+    pub(super) from: Text,
+    pub(super) to: Text,
+    pub(super) at: Range<usize>,
+}
+
+/// A variable, input or output.
+pub(super) struct Var {
+    pub(super) name: Text,
+    pub(super) kind: VarKind,
+    pub(super) ty: Type,
+    pub(super) init: Option<Value>,
+    pub(super) channel: Option<Text>,
+    pub(super) inverted: bool,
+    pub(super) retain: bool,
+    pub(super) at: Range<usize>,
+}
+
+/// A value as the file gives it.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Value {
+    Bool(bool),
+    Int(i32),
+    Real(f64),
+    Str(String),
+}
