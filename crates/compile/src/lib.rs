@@ -2,3 +2,6 @@
 #![forbid(unsafe_code)]
 
 pub mod ir;
+pub mod lower;
+pub mod resolve;
+pub mod symbols;

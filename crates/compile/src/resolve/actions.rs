@@ -1,0 +1,305 @@
+//! Actions of steps, and the transitions between steps.
+
+use g7_model::{
+    Action as WrittenAction, ActionKind as Written, Chart as WrittenChart, Expr as WrittenExpr,
+    ExprKind as Form, Name, Order, Path, Problem, Qualifier, Situation as WrittenSituation, Span,
+    Target as WrittenTarget, Transition as WrittenTransition, Type, codes,
+};
+
+use super::refer::Ref;
+use super::resolver::Resolver;
+use super::scopes::Entity;
+use crate::ir::{
+    Action, ActionKind, BodyId, ChartId, ChartRole, Expr, ExprKind, SectionId, Situation, StepId, Transition,
+    Value, VarClass, VarId,
+};
+
+/// What a qualifier governs by name.
+enum Governed {
+    Var(VarId),
+    Body(BodyId),
+}
+
+impl Resolver<'_, '_> {
+    /// Actions of all steps and all transitions of a chart.
+    pub(super) fn fill_chart(&mut self, id: ChartId, chart: &WrittenChart) {
+        let first = self.unit.charts.get(id.index()).map_or(0, |c| c.steps.start);
+        for (step, written) in (first..).map(StepId).zip(chart.steps()) {
+            let mut actions = Vec::new();
+            for a in &written.actions {
+                if let Some(kind) = self.action(step, a) {
+                    actions.push(Action { kind, at: a.at.0 });
+                }
+            }
+            if let Some(s) = self.unit.steps.get_mut(step.index()) {
+                s.actions = actions;
+            }
+        }
+        let start = self.unit.transitions.len() as u32;
+        let mut labels = std::collections::HashMap::new();
+        for t in chart.transitions() {
+            if let Some(label) = &t.label {
+                if let Some(first) = labels.insert(&*label.text, label.at.0) {
+                    self.defined_twice(label, first);
+                }
+            }
+            if let Some(t) = self.transition(id, t) {
+                self.unit.transitions.push(t);
+            }
+        }
+        let end = self.unit.transitions.len() as u32;
+        if let Some(c) = self.unit.charts.get_mut(id.index()) {
+            c.transitions = start..end;
+        }
+    }
+
+    /// A transition whose steps are all there; a receptivity that has no
+    /// meaning is never true, so that the structure can still be judged.
+    fn transition(&mut self, chart: ChartId, t: &WrittenTransition) -> Option<Transition> {
+        // In a chain the preceding steps stand in the text once, as those that the transition before leads to.
+        let from = if t.chained {
+            t.from.iter().map(|n| self.scopes.step(chart, &n.text)).collect()
+        } else {
+            self.steps_named(chart, &t.from)
+        };
+        let to = self.steps_named(chart, &t.to);
+        let receptivity = self.receptivity(&t.receptivity);
+        let on_clearing = t.on_clearing.as_ref().map(|b| self.block(b, "")).unwrap_or_default();
+        if t.priority == Some(0) {
+            let problem = Problem::new(&codes::OUT_OF_RANGE, t.at.0, "priorities start at 1, the first");
+            self.problems.push(problem);
+        }
+        Some(Transition {
+            label: t.label.as_ref().map(|l| l.text.clone()),
+            chart,
+            from: from?,
+            to: to?,
+            receptivity: receptivity.unwrap_or(Expr {
+                kind: ExprKind::Const(Value::Bool(false)),
+                ty: Type::Bool,
+                at: t.receptivity.at.0,
+            }),
+            priority: t.priority,
+            on_clearing,
+            at: t.at.0,
+        })
+    }
+
+    fn steps_named(&mut self, chart: ChartId, names: &[Name]) -> Option<Vec<StepId>> {
+        let found: Vec<Option<StepId>> = names.iter().map(|n| self.step_named(chart, n)).collect();
+        found.into_iter().collect()
+    }
+
+    /// A BOOL, or a transition section by its name.
+    fn receptivity(&mut self, e: &WrittenExpr) -> Option<Expr> {
+        let section = match &e.kind {
+            Form::Path(p) => self.section_named(p),
+            _ => None,
+        };
+        let Some(section) = section else { return self.condition(e) };
+        let at = e.at.0;
+        if let Some(first) = self.section_uses.get(&section).copied() {
+            let what = "this transition section stands at two transitions";
+            return self.report(
+                Problem::new(&codes::SECTION_SHARED, at, what)
+                    .related(first, "it stands here first")
+                    .help("read its output in an expression, or write a section for each"),
+            );
+        }
+        self.section_uses.insert(section, at);
+        Some(Expr { kind: ExprKind::Section(section), ty: Type::Bool, at })
+    }
+
+    fn section_named(&self, p: &Path) -> Option<SectionId> {
+        let entity = match p.names.as_slice() {
+            [name] => self.entity(&name.text),
+            [chart, name] => self.scopes.chart(&chart.text).and_then(|c| self.scopes.of_chart(c, &name.text)),
+            _ => None,
+        };
+        match entity {
+            Some(Entity::Section(s)) => Some(s),
+            _ => None,
+        }
+    }
+
+    fn action(&mut self, step: StepId, action: &WrittenAction) -> Option<ActionKind> {
+        match &action.kind {
+            Written::Qualified { qualifier, time, target, condition } => {
+                self.qualified_action(*qualifier, time.as_ref(), target, condition.as_ref(), action.at.0)
+            }
+            Written::OnEvent { event, work } => {
+                let event = self.condition(event);
+                let work = self.work(work);
+                Some(ActionKind::OnEvent { event: event?, work })
+            }
+            Written::EachScan { work, condition } => {
+                let work = self.work(work);
+                let condition = self.optional(condition.as_ref(), Type::Bool);
+                Some(ActionKind::EachScan { work, condition: condition? })
+            }
+            Written::Order(order) => self.order(step, order, action.at.0),
+            Written::Comment(_) => None,
+        }
+    }
+
+    /// `None` where an expression is written but has no meaning.
+    #[allow(clippy::option_option, reason = "absent, or present and wrong")]
+    fn optional(&mut self, e: Option<&WrittenExpr>, ty: Type) -> Option<Option<Expr>> {
+        match e {
+            None => Some(None),
+            Some(e) => self.value(e, ty).map(Some),
+        }
+    }
+
+    fn qualified_action(
+        &mut self,
+        qualifier: Qualifier,
+        time: Option<&WrittenExpr>,
+        target: &WrittenTarget,
+        condition: Option<&WrittenExpr>,
+        at: Span,
+    ) -> Option<ActionKind> {
+        let timed = self.fitting_time(qualifier, time, at);
+        let time = self.optional(time, Type::Time);
+        let condition = self.optional(condition, Type::Bool);
+        let governed = match target {
+            WrittenTarget::Path(p) => self.governed(p)?,
+            WrittenTarget::Direct(text, place) => {
+                let Ref::Var(v) = self.refer_direct(text, place.0)? else {
+                    let what = "the state of a step cannot be assigned";
+                    return self.report(Problem::new(&codes::NOT_WRITABLE, place.0, what));
+                };
+                self.boolean_target(v, place.0)?
+            }
+            WrittenTarget::Work(work) => {
+                let work = self.work(work);
+                timed?;
+                let (time, condition) = (time?, condition?);
+                return Some(ActionKind::Work { qualifier, time, work, condition });
+            }
+        };
+        timed?;
+        let (time, condition) = (time?, condition?);
+        Some(match governed {
+            Governed::Var(var) => ActionKind::Variable { qualifier, time, var, condition },
+            Governed::Body(body) => ActionKind::Named { qualifier, time, body, condition },
+        })
+    }
+
+    /// L, D, SD, DS and SL stand with a time, the others without.
+    fn fitting_time(&mut self, q: Qualifier, time: Option<&WrittenExpr>, at: Span) -> Option<()> {
+        let name = q.name();
+        match time {
+            None if q.timed() => self.report(
+                Problem::new(&codes::QUALIFIER_TIME, at, format!("`{name}` needs a time"))
+                    .help(format!("as in `{name} 5s …`")),
+            ),
+            Some(time) if !q.timed() => {
+                let what = format!("`{name}` takes no time");
+                let problem = Problem::new(&codes::QUALIFIER_TIME, time.at.0, what);
+                self.report(match q {
+                    Qualifier::N => problem.help("`L` limits an action, `D` delays it"),
+                    Qualifier::S => problem.help("`SD` and `DS` delay a set, `SL` limits it"),
+                    _ => problem,
+                })
+            }
+            _ => Some(()),
+        }
+    }
+
+    /// A Boolean variable or a named action.
+    fn governed(&mut self, p: &Path) -> Option<Governed> {
+        let entity = match p.names.as_slice() {
+            [name] => self.entity(&name.text),
+            [chart, name] => self.scopes.chart(&chart.text).and_then(|c| self.scopes.of_chart(c, &name.text)),
+            _ => None,
+        };
+        if let Some(Entity::Body(b)) = entity {
+            return Some(Governed::Body(b));
+        }
+        let at = p.names.iter().map(|n| n.at.0).reduce(Span::to).unwrap_or_default();
+        match self.refer(&p.names)? {
+            Ref::Var(v) => self.boolean_target(v, at),
+            Ref::Member(..) => {
+                let what = format!("`{}` is part of a function block; an action needs a variable", p.text());
+                self.report(
+                    Problem::new(&codes::WRONG_KIND, at, what)
+                        .help("assign it: `N member := TRUE`, or call the block"),
+                )
+            }
+            Ref::Active(_) | Ref::Time(..) => {
+                let what = "the state of a step cannot be assigned";
+                let problem = Problem::new(&codes::NOT_WRITABLE, at, what);
+                self.report(problem.help("transitions and forcing orders change it"))
+            }
+        }
+    }
+
+    fn boolean_target(&mut self, v: VarId, at: Span) -> Option<Governed> {
+        let var = self.var(v)?;
+        let (class, ty, name, declared) = (var.class, var.ty, var.name.clone(), var.at);
+        if ty != Type::Bool {
+            let what = format!("`{name}` is {ty}; without an assignment an action needs a BOOL");
+            let problem = Problem::new(&codes::WRONG_TYPE, at, what).related(declared, "declared here");
+            return self.report(problem.help(format!("assign a value: `{name} := …`")));
+        }
+        self.may_write(v, class, at)?;
+        if class == VarClass::Local {
+            let what = format!("`{name}` ends with its block; an action needs a variable of the chart");
+            return self.report(Problem::new(&codes::NOT_WRITABLE, at, what));
+        }
+        Some(Governed::Var(v))
+    }
+
+    fn order(&mut self, step: StepId, order: &Order, at: Span) -> Option<ActionKind> {
+        match order {
+            Order::Force(name, situation) => {
+                let chart = self.chart_named(name)?;
+                Some(ActionKind::Force(chart, self.situation(chart, situation)?))
+            }
+            Order::Enable(name) => self.chart_named(name).map(ActionKind::Enable),
+            Order::Mask(name) => self.mask(name),
+            Order::Call(name) => {
+                let chart = self.chart_named(name)?;
+                let (role, declared) = self.unit.charts.get(chart.index()).map(|c| (c.role.clone(), c.at))?;
+                if role != ChartRole::Task {
+                    let what = format!("`{}` is not a task", name.text);
+                    return self.report(
+                        Problem::new(&codes::WRONG_KIND, name.at.0, what)
+                            .related(declared, "declared here")
+                            .help(format!("a task is written `task {} {{ … }}`", name.text)),
+                    );
+                }
+                if let Some(s) = self.unit.steps.get_mut(step.index()) {
+                    s.calls.push((chart, at));
+                }
+                None
+            }
+            // Done when charts were linked.
+            Order::Enclose(_) => None,
+        }
+    }
+
+    fn situation(&mut self, chart: ChartId, situation: &WrittenSituation) -> Option<Situation> {
+        Some(match situation {
+            WrittenSituation::Init => Situation::Init,
+            WrittenSituation::Current => Situation::Current,
+            WrittenSituation::Steps(names) => Situation::Steps(self.steps_named(chart, names)?),
+        })
+    }
+
+    /// A chart, else a variable.
+    fn mask(&mut self, name: &Name) -> Option<ActionKind> {
+        if let Some(chart) = self.scopes.chart(&name.text) {
+            return Some(ActionKind::MaskChart(chart));
+        }
+        let Ref::Var(v) = self.refer(std::slice::from_ref(name))? else {
+            let what = format!("`{}` is no chart and no output", name.text);
+            return self.report(Problem::new(&codes::WRONG_KIND, name.at.0, what));
+        };
+        match self.boolean_target(v, name.at.0)? {
+            Governed::Var(v) => Some(ActionKind::MaskVar(v)),
+            Governed::Body(_) => None,
+        }
+    }
+}

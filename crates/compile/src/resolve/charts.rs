@@ -1,0 +1,342 @@
+//! Charts and steps: their rows and names, and how charts nest.
+
+use g7_model::{
+    Action, ActionKind as Written, Chart as WrittenChart, ChartKind, Name, Order, Problem, Span, StepKind,
+    codes,
+};
+
+use super::resolver::Resolver;
+use super::scopes::{ChartScope, Home};
+use crate::ir::{Chart, ChartId, ChartRole, Step, StepId, StepSort};
+
+/// Deepest nesting of expansions and enclosed charts.
+const DEEPEST: u32 = 64;
+
+impl<'d> Resolver<'_, 'd> {
+    /// Rows and names of all charts and steps.
+    pub(super) fn declare_charts(&mut self, charts: &[&'d WrittenChart]) {
+        for (k, chart) in charts.iter().enumerate() {
+            let id = ChartId(k as u32);
+            match self.scopes.chart(&chart.name.text).and_then(|c| self.unit.charts.get(c.index())) {
+                Some(before) => {
+                    let first = before.at;
+                    self.defined_twice(&chart.name, first);
+                }
+                None => {
+                    self.scopes.chart_names.insert(&chart.name.text, id);
+                }
+            }
+            self.scopes.charts.push(ChartScope::default());
+            let start = self.unit.steps.len() as u32;
+            self.unit.charts.push(Chart {
+                name: chart.name.text.clone(),
+                path: chart.name.text.clone(),
+                role: match chart.kind {
+                    ChartKind::Chart => ChartRole::Chart,
+                    ChartKind::Expansion => ChartRole::Unused,
+                    ChartKind::Task => ChartRole::Task,
+                },
+                every: chart.every.unwrap_or(0),
+                steps: start..start,
+                transitions: 0..0,
+                entry: None,
+                exit: None,
+                enclosed_by: None,
+                at: chart.name.at.0,
+            });
+            self.declare_steps(id, chart);
+        }
+    }
+
+    fn declare_steps(&mut self, chart: ChartId, written: &'d WrittenChart) {
+        for step in written.steps() {
+            let id = StepId(self.unit.steps.len() as u32);
+            self.unit.steps.push(Step {
+                name: step.name.text.clone(),
+                chart,
+                sort: if step.kind == StepKind::Enclosing {
+                    StepSort::Enclosing(Vec::new())
+                } else {
+                    StepSort::Plain
+                },
+                initial: step.initial,
+                linked: step.linked,
+                actions: Vec::new(),
+                calls: Vec::new(),
+                at: step.name.at.0,
+            });
+            self.name_step(chart, &step.name, id);
+            match step.kind {
+                StepKind::Entry => self.mark_end(chart, &step.name, id, true),
+                StepKind::Exit => self.mark_end(chart, &step.name, id, false),
+                StepKind::Plain | StepKind::Macro(_) | StepKind::Enclosing => {}
+            }
+        }
+        let end = self.unit.steps.len() as u32;
+        if let Some(c) = self.unit.charts.get_mut(chart.index()) {
+            c.steps.end = end;
+        }
+    }
+
+    fn name_step(&mut self, chart: ChartId, name: &'d Name, id: StepId) {
+        let before = self.scopes.step(chart, &name.text).and_then(|s| self.unit.steps.get(s.index()));
+        if let Some(first) = before.map(|s| s.at) {
+            let what = format!("step `{}` is defined twice", name.text);
+            let problem = Problem::new(&codes::DEFINED_TWICE, name.at.0, what);
+            self.problems.push(problem.related(first, "defined here first"));
+            return;
+        }
+        if let Some(scope) = self.scopes.charts.get_mut(chart.index()) {
+            scope.steps.insert(&name.text, id);
+        }
+        self.scopes
+            .step_homes
+            .entry(&name.text)
+            .and_modify(|h| {
+                if let Home::One(first) = *h {
+                    *h = Home::Several(first, id);
+                }
+            })
+            .or_insert(Home::One(id));
+    }
+
+    /// An expansion or task has one entry step and one exit step.
+    fn mark_end(&mut self, chart: ChartId, name: &Name, id: StepId, entry: bool) {
+        let Some(c) = self.unit.charts.get_mut(chart.index()) else { return };
+        let slot = if entry { &mut c.entry } else { &mut c.exit };
+        let Some(first) = *slot else {
+            *slot = Some(id);
+            return;
+        };
+        let word = if entry { "entry" } else { "exit" };
+        let what = format!("`{}` has two {word} steps", c.name);
+        let at = self.unit.steps.get(first.index()).map(|s| s.at).unwrap_or_default();
+        self.problems.push(
+            Problem::new(&codes::DEFINED_TWICE, name.at.0, what).related(at, format!("the {word} step")),
+        );
+    }
+
+    /// Joins macro-steps with their expansions, enclosing steps with their charts.
+    pub(super) fn link_charts(&mut self, charts: &[&WrittenChart]) {
+        for (k, chart) in charts.iter().enumerate() {
+            let first = self.unit.charts.get(k).map_or(0, |c| c.steps.start);
+            for (id, step) in (first..).map(StepId).zip(chart.steps()) {
+                if let StepKind::Macro(expansion) = &step.kind {
+                    self.link_expansion(id, expansion);
+                }
+                for action in &step.actions {
+                    self.link_enclosed(id, action);
+                }
+            }
+        }
+        self.cut_circles();
+        self.name_paths();
+    }
+
+    fn link_expansion(&mut self, step: StepId, name: &Name) {
+        let Some(c) = self.chart_named(name) else { return };
+        let Some(chart) = self.unit.charts.get(c.index()) else { return };
+        let declared = chart.at;
+        match chart.role {
+            ChartRole::Chart | ChartRole::Task => {
+                let what = format!("`{}` is not the expansion of a macro-step", name.text);
+                self.problems.push(
+                    Problem::new(&codes::WRONG_KIND, name.at.0, what)
+                        .related(declared, "declared here")
+                        .help(format!("an expansion is written `macrochart {} {{ … }}`", name.text)),
+                );
+                return;
+            }
+            ChartRole::Expansion(first) => {
+                if self.is_within(step, c) {
+                    self.nested_in_itself(name.at.0, &name.text);
+                    return;
+                }
+                let at = self.unit.steps.get(first.index()).map(|s| s.at).unwrap_or_default();
+                let what = format!("`{}` is the expansion of two macro-steps", name.text);
+                self.problems.push(
+                    Problem::new(&codes::EXPANSION_SHARED, name.at.0, what)
+                        .related(at, "this macro-step has it already")
+                        .help("give each macro-step an expansion of its own, or make it a task"),
+                );
+                return;
+            }
+            ChartRole::Unused => {}
+        }
+        if self.unit.steps.get(step.index()).map(|s| s.chart) == Some(c) {
+            self.nested_in_itself(name.at.0, &name.text);
+            return;
+        }
+        if let Some(chart) = self.unit.charts.get_mut(c.index()) {
+            chart.role = ChartRole::Expansion(step);
+        }
+        if let Some(s) = self.unit.steps.get_mut(step.index()) {
+            s.sort = StepSort::Macro(c);
+        }
+    }
+
+    fn link_enclosed(&mut self, step: StepId, action: &Action) {
+        let Written::Order(Order::Enclose(name)) = &action.kind else { return };
+        let Some(s) = self.unit.steps.get(step.index()) else { return };
+        let enclosing = matches!(s.sort, StepSort::Enclosing(_));
+        let own = s.chart;
+        if !enclosing {
+            let what = format!("step `{}` is not an enclosing step", s.name);
+            let help = format!("write `enclosing step {}`", s.name);
+            self.problems.push(Problem::new(&codes::NOT_HERE, name.at.0, what).help(help));
+            return;
+        }
+        let Some(c) = self.chart_named(name) else { return };
+        let Some(chart) = self.unit.charts.get(c.index()) else { return };
+        if chart.role != ChartRole::Chart {
+            let what = format!("`{}` is not a chart that can be enclosed", name.text);
+            let problem =
+                Problem::new(&codes::WRONG_KIND, name.at.0, what).related(chart.at, "declared here");
+            self.problems.push(problem);
+            return;
+        }
+        if let Some(first) = chart.enclosed_by {
+            let at = self.unit.steps.get(first.index()).map(|s| s.at).unwrap_or_default();
+            let what = format!("`{}` is enclosed twice", name.text);
+            self.problems.push(
+                Problem::new(&codes::ENCLOSED_TWICE, name.at.0, what).related(at, "enclosed by this step"),
+            );
+            return;
+        }
+        if own == c {
+            self.nested_in_itself(name.at.0, &name.text);
+            return;
+        }
+        if let Some(chart) = self.unit.charts.get_mut(c.index()) {
+            chart.enclosed_by = Some(step);
+        }
+        if let Some(StepSort::Enclosing(charts)) = self.unit.steps.get_mut(step.index()).map(|s| &mut s.sort)
+        {
+            charts.push(c);
+        }
+    }
+
+    fn nested_in_itself(&mut self, at: Span, chart: &str) {
+        let what = format!("`{chart}` would contain itself");
+        self.problems.push(Problem::new(&codes::NESTED_IN_ITSELF, at, what));
+    }
+
+    /// The step in which a chart lies.
+    fn outer_step(&self, chart: ChartId) -> Option<StepId> {
+        let c = self.unit.charts.get(chart.index())?;
+        match c.role {
+            ChartRole::Expansion(s) => Some(s),
+            ChartRole::Chart | ChartRole::Unused | ChartRole::Task => c.enclosed_by,
+        }
+    }
+
+    fn outer(&self, chart: ChartId) -> Option<ChartId> {
+        self.unit.steps.get(self.outer_step(chart)?.index()).map(|s| s.chart)
+    }
+
+    /// Whether a step lies in a chart, at most as deep as charts may nest.
+    fn is_within(&self, step: StepId, chart: ChartId) -> bool {
+        let mut at = self.unit.steps.get(step.index()).map(|s| s.chart);
+        for _ in 0..=DEEPEST {
+            match at {
+                Some(c) if c == chart => return true,
+                Some(c) => at = self.outer(c),
+                None => return false,
+            }
+        }
+        false
+    }
+
+    /// Cuts nestings that close a circle or go too deep, so that whoever climbs
+    /// from chart to chart comes to an end.
+    fn cut_circles(&mut self) {
+        /// Depth not known yet; on the way that is being climbed.
+        const UNKNOWN: u32 = u32::MAX;
+        const CLIMBING: u32 = u32::MAX - 1;
+        let mut depth = vec![UNKNOWN; self.unit.charts.len()];
+        for start in 0..depth.len() {
+            let mut way = vec![ChartId(start as u32)];
+            let mut level = loop {
+                let Some(c) = way.last().copied() else { break 0 };
+                match depth.get(c.index()).copied() {
+                    Some(CLIMBING) => {
+                        way.pop();
+                        if let Some(c) = way.last().copied() {
+                            self.cut(c, true);
+                        }
+                        break 0;
+                    }
+                    Some(UNKNOWN) => {
+                        if let Some(d) = depth.get_mut(c.index()) {
+                            *d = CLIMBING;
+                        }
+                        match self.outer(c) {
+                            Some(o) => way.push(o),
+                            None => break 0,
+                        }
+                    }
+                    Some(known) => {
+                        way.pop();
+                        break known + 1;
+                    }
+                    None => break 0,
+                }
+            };
+            while let Some(c) = way.pop() {
+                if level > DEEPEST {
+                    self.cut(c, false);
+                    level = 0;
+                }
+                if let Some(d) = depth.get_mut(c.index()) {
+                    *d = level;
+                }
+                level += 1;
+            }
+        }
+    }
+
+    /// Takes a chart out of the step in which it lies.
+    fn cut(&mut self, chart: ChartId, circle: bool) {
+        let Some(step) = self.outer_step(chart) else { return };
+        let at = self.unit.steps.get(step.index()).map(|s| s.at).unwrap_or_default();
+        let Some(c) = self.unit.charts.get_mut(chart.index()) else { return };
+        let name = c.name.clone();
+        c.enclosed_by = None;
+        if matches!(c.role, ChartRole::Expansion(_)) {
+            c.role = ChartRole::Unused;
+        }
+        if let Some(s) = self.unit.steps.get_mut(step.index()) {
+            match &mut s.sort {
+                StepSort::Enclosing(charts) => charts.retain(|c| *c != chart),
+                StepSort::Macro(_) | StepSort::Plain => s.sort = StepSort::Plain,
+            }
+        }
+        if circle {
+            self.nested_in_itself(at, &name);
+        } else {
+            let what = format!("`{name}` lies more than {DEEPEST} charts deep");
+            self.problems.push(Problem::new(&codes::NESTED_TOO_DEEPLY, at, what));
+        }
+    }
+
+    /// `G.M3`: how steps of an expansion are called in traces. Circles are cut.
+    fn name_paths(&mut self) {
+        for k in 0..self.unit.charts.len() {
+            let mut parts: Vec<Box<str>> = Vec::new();
+            let mut chart = ChartId(k as u32);
+            while let Some(c) = self.unit.charts.get(chart.index()) {
+                let ChartRole::Expansion(s) = c.role else {
+                    parts.push(c.name.clone());
+                    break;
+                };
+                let Some(step) = self.unit.steps.get(s.index()) else { break };
+                parts.push(step.name.clone());
+                chart = step.chart;
+            }
+            parts.reverse();
+            if let Some(c) = self.unit.charts.get_mut(k) {
+                c.path = parts.join(".").into();
+            }
+        }
+    }
+}

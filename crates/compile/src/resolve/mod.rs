@@ -1,0 +1,149 @@
+//! From a document to its typed form: every name to a row, every expression to a type.
+//!
+//! ```text
+//! model::Document -> resolve -> ir::Unit -> check, lower
+//! ```
+//!
+//! Order of work: rules; charts and steps; variables, with their values;
+//! nesting of charts; functions, sections and bodies; actions and transitions.
+//!
+//! # What must hold
+//!
+//! - It never fails: what has no meaning is left out and reported, once.
+//! - Whatever is in the [`Unit`] is well typed (see [`crate::ir`]), charts nest
+//!   without circles, functions call without circles.
+//! - The work is linear in the document: every lookup is by hash.
+
+mod actions;
+mod bodies;
+mod call;
+mod charts;
+mod constant;
+mod expr;
+mod fb;
+mod operator;
+mod refer;
+mod resolver;
+mod rules;
+mod scopes;
+mod stmt;
+#[cfg(test)]
+mod tests;
+mod types;
+mod vars;
+
+use g7_model::{Chart, ChartItem, Document, Expr as Written, Item, Problem, ProfileName, Type, codes};
+
+use crate::ir::{ChartId, Expr, Unit};
+use resolver::{Frame, Resolver, Role};
+pub use rules::of_profile;
+pub use scopes::Scopes;
+
+/// Nominal scan time where none is written: 10 ms.
+const CYCLE: i64 = 10_000_000;
+
+/// The typed form of a document, and what was wrong with it. A profile given
+/// here stands in the place of the document's, switches included.
+pub fn resolve(doc: &Document, profile: Option<ProfileName>) -> (Unit, Vec<Problem>) {
+    let (unit, _, problems) = resolve_open(doc, profile);
+    (unit, problems)
+}
+
+/// The same, with the names kept for later questions ([`resolve_query`]).
+pub fn resolve_open(doc: &Document, profile: Option<ProfileName>) -> (Unit, Scopes<'_>, Vec<Problem>) {
+    let mut unit = Unit::default();
+    let mut scopes = Scopes::default();
+    let mut problems = Vec::new();
+    (unit.profile, unit.rules) = rules::of_document(doc, profile, &mut problems);
+    settings(doc, &mut unit, &mut problems);
+    let charts: Vec<&Chart> = doc.charts().collect();
+    let mut r = Resolver::new(&mut unit, &mut scopes);
+    r.declare_charts(&charts);
+    declare_names(&mut r, doc, &charts);
+    r.link_charts(&charts);
+    r.fill_bodies(doc);
+    for (k, chart) in charts.iter().enumerate() {
+        let id = ChartId(k as u32);
+        r.in_chart(Some(id), |r| r.fill_chart(id, chart));
+    }
+    r.unused_sections();
+    problems.append(&mut r.problems);
+    problems.sort_by_key(|p| p.at);
+    (unit, scopes, problems)
+}
+
+/// An expression of a test or of the debugger, seen from a chart or from the
+/// file; of whatever type it has, or of the one given. It can read any variable
+/// and any step, but has no edges and no delays: they need a scan before.
+pub fn resolve_query<'d>(
+    unit: &mut Unit,
+    scopes: &mut Scopes<'d>,
+    e: &Written,
+    chart: Option<ChartId>,
+    ty: Option<Type>,
+) -> (Option<Expr>, Vec<Problem>) {
+    let mut r = Resolver::new(unit, scopes);
+    r.frame = Frame { chart, role: Role::Query, ..Frame::default() };
+    let expr = match ty {
+        Some(ty) => r.value(e, ty),
+        None => r.any_value(e),
+    };
+    (expr, r.problems)
+}
+
+/// Scan time and target.
+fn settings(doc: &Document, unit: &mut Unit, problems: &mut Vec<Problem>) {
+    let (mut cycle, mut target) = (None, None);
+    for item in &doc.items {
+        let (what, at, before) = match item {
+            Item::Cycle(ns, at) => {
+                unit.cycle = if cycle.is_none() { *ns } else { unit.cycle };
+                if *ns <= 0 {
+                    problems.push(Problem::new(&codes::OUT_OF_RANGE, at.0, "a scan takes more than no time"));
+                }
+                ("the scan time", at.0, cycle.replace(at.0))
+            }
+            Item::Target(plc, at) => {
+                unit.target = unit.target.or(Some(*plc));
+                ("the target", at.0, target.replace(at.0))
+            }
+            _ => continue,
+        };
+        if let Some(before) = before {
+            let problem = Problem::new(&codes::DEFINED_TWICE, at, format!("{what} is given twice"));
+            problems.push(problem.related(before, "given here first"));
+        }
+    }
+    if unit.cycle <= 0 {
+        unit.cycle = CYCLE;
+    }
+}
+
+/// All names but those of charts and steps; then the values of the variables,
+/// those of the file first.
+fn declare_names<'d>(r: &mut Resolver<'_, 'd>, doc: &'d Document, charts: &[&'d Chart]) {
+    let mut declared = Vec::new();
+    for item in &doc.items {
+        match item {
+            Item::Var(d) => declared.push((None, d, r.declare(None, d))),
+            Item::Action(a) => r.declare_action(None, a),
+            Item::Section(s) => r.declare_section(None, s),
+            Item::Function(f) => r.declare_function(f),
+            _ => {}
+        }
+    }
+    for (k, chart) in charts.iter().enumerate() {
+        let id = Some(ChartId(k as u32));
+        for item in &chart.items {
+            match item {
+                ChartItem::Var(d) => declared.push((id, d, r.declare(id, d))),
+                ChartItem::Action(a) => r.declare_action(id, a),
+                ChartItem::Section(s) => r.declare_section(id, s),
+                ChartItem::Step(_) | ChartItem::Transition(_) | ChartItem::Pre(..) | ChartItem::Post(..) => {}
+            }
+        }
+    }
+    for (chart, decl, ids) in declared {
+        r.give_values(chart, decl, &ids);
+    }
+}

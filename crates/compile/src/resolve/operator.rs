@@ -1,0 +1,251 @@
+//! Operators between two typed operands.
+
+use g7_model::{BinaryOp as Sign, Problem, Span, Type, codes};
+
+use super::constant;
+use super::resolver::Resolver;
+use super::types::{Typed, common, converted, is_number};
+use crate::ir::{BinaryOp, Expr, ExprKind, Value};
+
+/// Whether the result has the type of the operands, so that a hint goes down to them.
+pub(super) fn keeps_type(sign: Sign) -> bool {
+    matches!(sign, Sign::Add | Sign::Sub | Sign::Mul | Sign::Div | Sign::Mod | Sign::Pow)
+}
+
+/// As written in messages.
+fn symbol(sign: Sign) -> &'static str {
+    match sign {
+        Sign::Or => "or",
+        Sign::Xor => "xor",
+        Sign::And => "and",
+        Sign::Dot => "·",
+        Sign::Eq => "=",
+        Sign::Ne => "<>",
+        Sign::Lt => "<",
+        Sign::Le => "<=",
+        Sign::Gt => ">",
+        Sign::Ge => ">=",
+        Sign::Add => "+",
+        Sign::Sub => "-",
+        Sign::Mul => "*",
+        Sign::Div => "/",
+        Sign::Mod => "mod",
+        Sign::Pow => "**",
+    }
+}
+
+/// The operator between numbers; `None` for those of BOOL alone.
+fn numeric(sign: Sign) -> BinaryOp {
+    match sign {
+        Sign::Or => BinaryOp::Or,
+        Sign::Xor => BinaryOp::Xor,
+        Sign::And | Sign::Dot => BinaryOp::And,
+        Sign::Eq => BinaryOp::Eq,
+        Sign::Ne => BinaryOp::Ne,
+        Sign::Lt => BinaryOp::Lt,
+        Sign::Le => BinaryOp::Le,
+        Sign::Gt => BinaryOp::Gt,
+        Sign::Ge => BinaryOp::Ge,
+        Sign::Add => BinaryOp::Add,
+        Sign::Sub => BinaryOp::Sub,
+        Sign::Mul => BinaryOp::Mul,
+        Sign::Div => BinaryOp::Div,
+        Sign::Mod => BinaryOp::Mod,
+        Sign::Pow => BinaryOp::Pow,
+    }
+}
+
+fn compares(sign: Sign) -> bool {
+    matches!(sign, Sign::Eq | Sign::Ne | Sign::Lt | Sign::Le | Sign::Gt | Sign::Ge)
+}
+
+impl Resolver<'_, '_> {
+    /// `a sign b`.
+    pub(super) fn combine(&mut self, sign: Sign, a: Typed, b: Typed, at: Span) -> Option<Typed> {
+        let a_bool = !a.literal && a.expr.ty == Type::Bool;
+        let b_bool = !b.literal && b.expr.ty == Type::Bool;
+        match sign {
+            Sign::Or | Sign::Xor | Sign::And | Sign::Dot => self.logic(sign, numeric(sign), a, b, at),
+            Sign::Add if a_bool || b_bool => self.logic(sign, BinaryOp::Or, a, b, at),
+            Sign::Mul if a_bool || b_bool => self.logic(sign, BinaryOp::And, a, b, at),
+            _ if a.literal && b.literal => self.literals(sign, a, b, at),
+            _ if compares(sign) => self.comparison(sign, a, b, at),
+            _ if a_bool || b_bool => self.wrong_operands(sign, &a, &b, at),
+            _ if a.expr.ty == Type::Time || b.expr.ty == Type::Time => self.with_time(sign, a, b, at),
+            Sign::Pow => self.power(a, b, at),
+            _ => self.arithmetic(sign, a, b, at),
+        }
+    }
+
+    /// Of BOOL; 0 and 1 count as FALSE and TRUE.
+    fn logic(&mut self, sign: Sign, op: BinaryOp, a: Typed, b: Typed, at: Span) -> Option<Typed> {
+        let logical = |t: &Typed| t.expr.ty == Type::Bool || t.whole_literal();
+        if sign == Sign::Dot && !logical(&a) && !logical(&b) {
+            return self.wrong_operands(sign, &a, &b, at);
+        }
+        if !logical(&a) && !logical(&b) && is_number(a.expr.ty) && is_number(b.expr.ty) {
+            return self.wrong_operands(sign, &a, &b, at);
+        }
+        let a = self.coerce(a, Type::Bool);
+        let b = self.coerce(b, Type::Bool);
+        self.finish(op, a?, b?, Type::Bool, at)
+    }
+
+    /// Two untyped literals stay one, but for comparisons.
+    fn literals(&mut self, sign: Sign, a: Typed, b: Typed, at: Span) -> Option<Typed> {
+        let (Some(x), Some(y)) = (a.value(), b.value()) else { return None };
+        match constant::literals(numeric(sign), x, y) {
+            Ok(Some((v, true))) => Some(Typed::untyped(v, at)),
+            Ok(Some((v, false))) => Some(Typed::constant(v, Type::Bool, at)),
+            Ok(None) => self.wrong_operands(sign, &a, &b, at),
+            Err(fault) => self.constant_fault(fault, Type::Lint, at),
+        }
+    }
+
+    fn comparison(&mut self, sign: Sign, a: Typed, b: Typed, at: Span) -> Option<Typed> {
+        let Some(ty) = meeting(&a, &b) else { return self.wrong_operands(sign, &a, &b, at) };
+        let a = self.coerce(a, ty);
+        let b = self.coerce(b, ty);
+        self.finish(numeric(sign), a?, b?, Type::Bool, at)
+    }
+
+    fn arithmetic(&mut self, sign: Sign, a: Typed, b: Typed, at: Span) -> Option<Typed> {
+        let Some(ty) = meeting(&a, &b).filter(|t| is_number(*t)) else {
+            return self.wrong_operands(sign, &a, &b, at);
+        };
+        if sign == Sign::Mod && !ty.is_integer() {
+            return self.wrong_operands(sign, &a, &b, at);
+        }
+        let a = self.coerce(a, ty);
+        let b = self.coerce(b, ty);
+        self.finish(numeric(sign), a?, b?, ty, at)
+    }
+
+    /// `a ** b` is computed in LREAL; the result is REAL unless LREAL goes in.
+    fn power(&mut self, a: Typed, b: Typed, at: Span) -> Option<Typed> {
+        let fine = |t: &Typed| t.literal || is_number(t.expr.ty);
+        if !fine(&a) || !fine(&b) {
+            return self.wrong_operands(Sign::Pow, &a, &b, at);
+        }
+        let long = |t: &Typed| !t.literal && t.expr.ty == Type::Lreal;
+        let short = !(long(&a) || long(&b));
+        let a = self.coerce(a, Type::Lreal);
+        let b = self.coerce(b, Type::Lreal);
+        let result = self.finish(BinaryOp::Pow, a?, b?, Type::Lreal, at)?;
+        if !short {
+            return Some(result);
+        }
+        let expr = converted(result.expr, Type::Real);
+        Some(Typed { expr, literal: false })
+    }
+
+    /// Sums of TIME; TIME times and by a number.
+    fn with_time(&mut self, sign: Sign, a: Typed, b: Typed, at: Span) -> Option<Typed> {
+        let time = |t: &Typed| !t.literal && t.expr.ty == Type::Time;
+        let number = |t: &Typed| t.literal || is_number(t.expr.ty);
+        match sign {
+            Sign::Add | Sign::Sub if time(&a) && time(&b) => {
+                self.finish(numeric(sign), a.expr, b.expr, Type::Time, at)
+            }
+            Sign::Mul if number(&a) && time(&b) => self.scale(BinaryOp::Mul, b, a, at),
+            Sign::Mul | Sign::Div if time(&a) && number(&b) => self.scale(numeric(sign), a, b, at),
+            _ => self.wrong_operands(sign, &a, &b, at),
+        }
+    }
+
+    fn scale(&mut self, op: BinaryOp, time: Typed, by: Typed, at: Span) -> Option<Typed> {
+        let real = match by.value() {
+            Some(Value::Real(_)) => true,
+            _ => by.expr.ty.is_real(),
+        };
+        let by = self.coerce(by, if real { Type::Lreal } else { Type::Lint })?;
+        if let (ExprKind::Const(t), ExprKind::Const(n)) = (&time.expr.kind, &by.kind) {
+            match constant::scaled(op, t, n) {
+                Ok(Some(v)) => return Some(Typed::constant(v, Type::Time, at)),
+                Ok(None) => {}
+                Err(fault) => return self.constant_fault(fault, Type::Time, at),
+            }
+        }
+        self.sure_division(op, &by)?;
+        let kind = ExprKind::Binary(op, Box::new(time.expr), Box::new(by));
+        Some(Typed::of(kind, Type::Time, at))
+    }
+
+    /// Operands of one type; constants are computed at once.
+    fn finish(&mut self, op: BinaryOp, a: Expr, b: Expr, ty: Type, at: Span) -> Option<Typed> {
+        if let (ExprKind::Const(x), ExprKind::Const(y)) = (&a.kind, &b.kind) {
+            match constant::binary(op, a.ty, x, y) {
+                Ok(Some(v)) => return Some(Typed::constant(v, ty, at)),
+                Ok(None) => {}
+                Err(fault) => return self.constant_fault(fault, ty, at),
+            }
+        }
+        self.sure_division(op, &b)?;
+        Some(Typed::of(ExprKind::Binary(op, Box::new(a), Box::new(b)), ty, at))
+    }
+
+    /// A division by a written zero fails whatever is divided.
+    fn sure_division(&mut self, op: BinaryOp, b: &Expr) -> Option<()> {
+        let zero = match &b.kind {
+            ExprKind::Const(Value::Int(n)) => *n == 0,
+            ExprKind::Const(Value::Real(x)) => *x == 0.0,
+            _ => false,
+        };
+        if zero && matches!(op, BinaryOp::Div | BinaryOp::Mod) {
+            return self.constant_fault(constant::Fault::Division, b.ty, b.at);
+        }
+        Some(())
+    }
+
+    fn wrong_operands<T>(&mut self, sign: Sign, a: &Typed, b: &Typed, at: Span) -> Option<T> {
+        let name = |t: &Typed| match t.value() {
+            Some(Value::Real(_)) if t.literal => "a real number".to_owned(),
+            Some(_) if t.literal => "a whole number".to_owned(),
+            _ => t.expr.ty.to_string(),
+        };
+        let what = format!("`{}` cannot stand between {} and {}", symbol(sign), name(a), name(b));
+        let problem = Problem::new(&codes::WRONG_OPERANDS, at, what);
+        self.report(match help(sign, a, b) {
+            Some(h) => problem.help(h),
+            None => problem,
+        })
+    }
+}
+
+/// The type in which two values are compared or added.
+fn meeting(a: &Typed, b: &Typed) -> Option<Type> {
+    let (literal, other) = match (a.literal, b.literal) {
+        (true, _) => (a, b.expr.ty),
+        (_, true) => (b, a.expr.ty),
+        _ => return common(a.expr.ty, b.expr.ty),
+    };
+    match literal.value()? {
+        Value::Int(_) if is_number(other) || other == Type::Bool => Some(other),
+        Value::Real(_) if other.is_integer() => common(other, Type::Real),
+        Value::Real(_) if other.is_real() => Some(other),
+        _ => None,
+    }
+}
+
+fn help(sign: Sign, a: &Typed, b: &Typed) -> Option<String> {
+    let has = |ty: Type| [a, b].iter().any(|t| !t.literal && t.expr.ty == ty);
+    let numbers = [a, b].iter().all(|t| t.literal || is_number(t.expr.ty));
+    if has(Type::Time) && (a.literal || b.literal) {
+        return Some("write a duration, as in `5s`".to_owned());
+    }
+    match sign {
+        Sign::Dot if numbers => Some("`·` is AND; a product of numbers is written `*`".to_owned()),
+        Sign::Or | Sign::Xor | Sign::And if numbers => {
+            Some("it joins conditions; compare each number first".to_owned())
+        }
+        Sign::Mod if a.expr.ty.is_real() || b.expr.ty.is_real() => {
+            Some("`mod` is for whole numbers".to_owned())
+        }
+        _ if numbers => {
+            let long = if has(Type::Lint) { Type::Lint } else { Type::Ulint };
+            let other = if a.expr.ty == long { b.expr.ty } else { a.expr.ty };
+            Some(format!("convert one of them, as in `{long}_TO_{other}(…)`"))
+        }
+        _ => None,
+    }
+}

@@ -1,0 +1,456 @@
+//! Structured Text: statements, targets and blocks with their own variables.
+
+use g7_model::{
+    Arg, Block, CaseArm, Expr as Written, ExprKind as Form, Name, Path, Problem, Span, Stmt as WrittenStmt,
+    StmtKind as Statement, Type, Work, codes,
+};
+
+use super::refer::Ref;
+use super::resolver::{Resolver, Role};
+use super::scopes::Entity;
+use crate::ir::{Expr, ExprKind, Service, Stmt, StmtKind, Target, Value, VarClass, VarId};
+
+impl Resolver<'_, '_> {
+    /// One statement or a block.
+    pub(super) fn work(&mut self, work: &Work) -> Vec<Stmt> {
+        match work {
+            Work::Single(s) => self.statements(std::slice::from_ref(s)),
+            Work::Block(b) => self.block(b, ""),
+        }
+    }
+
+    /// A block; its variables are set anew at the start of each run.
+    pub(super) fn block(&mut self, block: &Block, owner: &str) -> Vec<Stmt> {
+        let outer = (!block.locals.is_empty()).then(|| self.frame.locals.clone());
+        let mut statements = Vec::new();
+        for local in &block.locals {
+            let value = match &local.init {
+                // Read before its names are known, so it cannot mean one of them.
+                Some(e) => self.value(e, local.ty),
+                None => {
+                    let kind = ExprKind::Const(super::resolver::zero(local.ty));
+                    Some(Expr { kind, ty: local.ty, at: local.at.0 })
+                }
+            };
+            for name in &local.names {
+                let v = self.declare_local(name, local.ty, owner);
+                if let (Some(v), Some(value)) = (v, &value) {
+                    let kind = StmtKind::Assign(Target::Var(v), value.clone());
+                    statements.push(Stmt { kind, at: name.at.0 });
+                }
+            }
+        }
+        statements.append(&mut self.statements(&block.statements));
+        if let Some(outer) = outer {
+            self.frame.locals = outer;
+        }
+        statements
+    }
+
+    fn declare_local(&mut self, name: &Name, ty: Type, owner: &str) -> Option<VarId> {
+        if let Type::Fb(kind) = ty {
+            let what = format!("a {} remembers; a local variable does not", kind.name());
+            return self.report(
+                Problem::new(&codes::BAD_DECLARATION, name.at.0, what)
+                    .help("declare the instance in the chart or in the file"),
+            );
+        }
+        self.fitting_string(ty, name.at.0)?;
+        let before = self.frame.locals.get(&name.text).and_then(|v| self.var(*v));
+        if let Some(first) = before.map(|v| v.at) {
+            self.defined_twice(name, first);
+            return None;
+        }
+        let qualified =
+            if owner.is_empty() { name.text.clone() } else { format!("{owner}.{}", name.text).into() };
+        let v = self.add_var(qualified, VarClass::Local, ty, name.at.0);
+        self.frame.locals.insert(name.text.clone(), v);
+        Some(v)
+    }
+
+    /// The statements that could be resolved, in order.
+    pub(super) fn statements(&mut self, list: &[WrittenStmt]) -> Vec<Stmt> {
+        list.iter().filter_map(|s| self.statement(s)).collect()
+    }
+
+    fn statement(&mut self, s: &WrittenStmt) -> Option<Stmt> {
+        let at = s.at.0;
+        let kind = match &s.kind {
+            Statement::Assign { target, value } => self.assignment(target, value)?,
+            Statement::Call(path, args) => self.call_statement(path, args, at)?,
+            Statement::If(arms, otherwise) => self.if_statement(arms, otherwise),
+            Statement::Case(selector, arms, otherwise) => self.case(selector, arms, otherwise)?,
+            Statement::For { var, from, to, by, body } => self.for_loop(var, from, to, by.as_ref(), body)?,
+            Statement::While(condition, body) => {
+                let condition = self.condition(condition);
+                let body = self.loop_body(body);
+                StmtKind::While(condition?, body)
+            }
+            Statement::Repeat(body, until) => {
+                let body = self.loop_body(body);
+                StmtKind::Repeat(body, self.condition(until)?)
+            }
+            Statement::Exit if self.frame.loops == 0 => {
+                let problem = Problem::new(&codes::EXIT_OUTSIDE, at, "EXIT stands in no loop");
+                return self.report(problem.help("RETURN leaves the whole body"));
+            }
+            Statement::Exit => StmtKind::Exit,
+            Statement::Return => StmtKind::Return,
+        };
+        Some(Stmt { kind, at })
+    }
+
+    fn assignment(&mut self, target: &Written, value: &Written) -> Option<StmtKind> {
+        match self.target(target) {
+            Some((target, ty)) => Some(StmtKind::Assign(target, self.value(value, ty)?)),
+            None => {
+                let _ = self.infer(value, None);
+                None
+            }
+        }
+    }
+
+    fn if_statement(&mut self, arms: &[(Written, Vec<WrittenStmt>)], otherwise: &[WrittenStmt]) -> StmtKind {
+        let mut resolved = Vec::new();
+        for (condition, body) in arms {
+            let condition = self.condition(condition);
+            let body = self.statements(body);
+            if let Some(c) = condition {
+                resolved.push((c, body));
+            }
+        }
+        StmtKind::If(resolved, self.statements(otherwise))
+    }
+
+    fn loop_body(&mut self, body: &[WrittenStmt]) -> Vec<Stmt> {
+        self.frame.loops += 1;
+        let body = self.statements(body);
+        self.frame.loops -= 1;
+        body
+    }
+
+    fn for_loop(
+        &mut self,
+        var: &Name,
+        from: &Written,
+        to: &Written,
+        by: Option<&Written>,
+        body: &[WrittenStmt],
+    ) -> Option<StmtKind> {
+        let looped = self.loop_variable(var);
+        let ty = looped.map_or(Type::Lint, |(_, ty)| ty);
+        let from = self.value(from, ty);
+        let to = self.value(to, ty);
+        let by = match by {
+            Some(by) => Some(self.value(by, ty)),
+            None => None,
+        };
+        if let Some(Some(Expr { kind: ExprKind::Const(Value::Int(0)), at, .. })) = &by {
+            let problem = Problem::new(&codes::OUT_OF_RANGE, *at, "a loop by 0 never ends");
+            self.problems.push(problem);
+        }
+        let body = self.loop_body(body);
+        let by = match by {
+            Some(by) => Some(by?),
+            None => None,
+        };
+        Some(StmtKind::For { var: looped?.0, from: from?, to: to?, by, body })
+    }
+
+    fn loop_variable(&mut self, var: &Name) -> Option<(VarId, Type)> {
+        let r = self.refer(std::slice::from_ref(var))?;
+        let (target, ty) = self.writable(r, var.at.0)?;
+        match target {
+            Target::Var(v) if ty.is_integer() => Some((v, ty)),
+            _ => {
+                let what = format!("a FOR loop counts in a whole number; `{}` is {ty}", var.text);
+                self.report(Problem::new(&codes::WRONG_TYPE, var.at.0, what))
+            }
+        }
+    }
+
+    fn case(&mut self, selector: &Written, arms: &[CaseArm], otherwise: &[WrittenStmt]) -> Option<StmtKind> {
+        let selector = self.any_value(selector).and_then(|e| self.selector(e));
+        let ty = selector.as_ref().map_or(Type::Lint, |e| e.ty);
+        let mut ranges = Vec::new();
+        let mut resolved = Vec::new();
+        for arm in arms {
+            let mut labels = Vec::new();
+            for (first, last) in &arm.labels {
+                if let Some(range) = self.label(first, last.as_ref(), ty) {
+                    labels.push((range.0, range.1));
+                    ranges.push(range);
+                }
+            }
+            resolved.push((labels, self.statements(&arm.body)));
+        }
+        self.overlaps(ranges);
+        let otherwise = self.statements(otherwise);
+        let selector = super::types::converted(selector?, Type::Lint);
+        Some(StmtKind::Case(selector, resolved, otherwise))
+    }
+
+    fn selector(&mut self, e: Expr) -> Option<Expr> {
+        if e.ty.is_integer() && e.ty != Type::Ulint {
+            return Some(e);
+        }
+        let what = format!("CASE selects by a whole number up to LINT; this is {}", e.ty);
+        let problem = Problem::new(&codes::WRONG_TYPE, e.at, what);
+        self.report(match e.ty {
+            Type::Bool => problem.help("use IF for a BOOL"),
+            _ => problem,
+        })
+    }
+
+    fn label(&mut self, first: &Written, last: Option<&Written>, ty: Type) -> Option<(i64, i64, Span)> {
+        let low = self.label_value(first, ty);
+        let high = last.map(|e| self.label_value(e, ty));
+        let at = last.map_or(first.at.0, |l| first.at.0.to(l.at.0));
+        let low = low?;
+        let high = match high {
+            Some(h) => h?,
+            None => low,
+        };
+        if low > high {
+            let what = format!("the range {low} .. {high} holds nothing");
+            return self
+                .report(Problem::new(&codes::EMPTY_RANGE, at, what).help(format!("write {high} .. {low}")));
+        }
+        Some((low, high, at))
+    }
+
+    fn label_value(&mut self, e: &Written, ty: Type) -> Option<i64> {
+        let role = std::mem::replace(&mut self.frame.role, Role::Constant);
+        let value = self.value(e, ty);
+        self.frame.role = role;
+        let value = value?;
+        match value.kind {
+            ExprKind::Const(Value::Int(n)) => i64::try_from(n).ok(),
+            _ => self.report(Problem::new(&codes::NOT_CONSTANT, value.at, "a label must be a constant")),
+        }
+    }
+
+    /// Of two labels that overlap only the first arm can run for the values they share.
+    fn overlaps(&mut self, mut ranges: Vec<(i64, i64, Span)>) {
+        ranges.sort_by_key(|r| (r.0, r.2));
+        let mut widest: Option<(i64, Span)> = None;
+        for (low, high, at) in ranges {
+            if let Some((end, before)) = widest.filter(|(end, _)| *end >= low) {
+                let (first, second) = if before < at { (before, at) } else { (at, before) };
+                let shared = if low == end.min(high) {
+                    format!("{low} is selected twice")
+                } else {
+                    format!("{low} .. {} is selected twice", end.min(high))
+                };
+                self.problems.push(
+                    Problem::new(&codes::LABELS_OVERLAP, second, shared).related(first, "this arm runs"),
+                );
+            }
+            if widest.is_none_or(|(end, _)| high > end) {
+                widest = Some((high, at));
+            }
+        }
+    }
+
+    /// Where an assignment goes, with its type.
+    pub(super) fn target(&mut self, e: &Written) -> Option<(Target, Type)> {
+        let at = e.at.0;
+        let r = match &e.kind {
+            Form::Path(p) => match p.names.as_slice() {
+                [name] => self.own_output(name).or_else(|| self.refer(&p.names))?,
+                names => self.refer(names)?,
+            },
+            Form::Direct(text) => self.refer_direct(text, at)?,
+            Form::Bad => return None,
+            _ => {
+                let what = "only a variable can be assigned";
+                return self.report(Problem::new(&codes::NOT_WRITABLE, at, what));
+            }
+        };
+        self.writable(r, at)
+    }
+
+    /// The output of the section at hand.
+    fn own_output(&self, name: &Name) -> Option<Ref> {
+        match (self.frame.role, self.entity(&name.text)) {
+            (Role::Section(own), Some(Entity::Section(s))) if s == own => {
+                self.unit.sections.get(s.index()).map(|s| Ref::Var(s.output))
+            }
+            _ => None,
+        }
+    }
+
+    /// A reference as a target, unless it is read-only here.
+    fn writable(&mut self, r: Ref, at: Span) -> Option<(Target, Type)> {
+        match r {
+            Ref::Var(v) => {
+                let (class, ty) = self.var(v).map(|v| (v.class, v.ty))?;
+                if let Type::Fb(kind) = ty {
+                    let what = format!("an instance of {} cannot be assigned", kind.name());
+                    return self.report(
+                        Problem::new(&codes::NOT_WRITABLE, at, what)
+                            .help("call it, or assign one of its inputs"),
+                    );
+                }
+                self.may_write(v, class, at)?;
+                Some((Target::Var(v), ty))
+            }
+            Ref::Member(v, m) => {
+                let Type::Fb(kind) = self.var(v)?.ty else { return None };
+                let (name, ty, input) = *kind.members().get(usize::from(m))?;
+                if !input {
+                    let what = format!("`{name}` is an output of the {}", kind.name());
+                    return self.report(Problem::new(&codes::NOT_WRITABLE, at, what));
+                }
+                self.may_write(v, VarClass::Internal, at)?;
+                Some((Target::Member(v, m), ty))
+            }
+            Ref::Active(_) | Ref::Time(..) => {
+                let problem =
+                    Problem::new(&codes::NOT_WRITABLE, at, "the state of a step cannot be assigned");
+                self.report(problem.help("transitions, forcing orders and SETSTEP change it"))
+            }
+        }
+    }
+
+    /// Whether this code may write this variable; reports where not.
+    pub(super) fn may_write(&mut self, v: VarId, class: VarClass, at: Span) -> Option<()> {
+        let name = self.var(v).map(|v| v.name.clone())?;
+        let refused = |what: &str| Problem::new(&codes::NOT_WRITABLE, at, format!("`{name}` is {what}"));
+        let declared = self.var(v).map(|v| v.at)?;
+        match class {
+            VarClass::Input => return self.report(refused("an input").related(declared, "declared here")),
+            VarClass::Const => return self.report(refused("a constant").related(declared, "declared here")),
+            VarClass::System if read_only(&name) => {
+                return self.report(refused("kept by the system"));
+            }
+            VarClass::Output | VarClass::Internal | VarClass::Local | VarClass::System => {}
+        }
+        match self.frame.role {
+            Role::Function(f) => {
+                let input = self.unit.functions.get(f.index()).is_some_and(|f| f.params.contains(&v));
+                if input {
+                    return self.report(refused("an input of the function"));
+                }
+                if class != VarClass::Local {
+                    let problem = refused("not the function's own");
+                    return self.report(problem.help("a function only computes its result"));
+                }
+            }
+            Role::Section(s) => {
+                let own = self.unit.sections.get(s.index()).map(|s| s.output) == Some(v);
+                if !own && class != VarClass::Local {
+                    let problem = refused("not the output of this transition section");
+                    return self.report(problem.help("a section assigns only the BOOL that has its name"));
+                }
+            }
+            Role::Code | Role::Query | Role::Constant => {
+                if self.scopes.section_outputs.contains(&v) {
+                    let problem = refused("the output of a transition section");
+                    return self.report(problem.related(declared, "only this section assigns it"));
+                }
+            }
+        }
+        Some(())
+    }
+
+    fn call_statement(&mut self, path: &Path, args: &[Arg], at: Span) -> Option<StmtKind> {
+        if let Some(kind) = self.instance_call(path, args) {
+            return kind;
+        }
+        if let [name] = path.names.as_slice() {
+            if self.entity(&name.text).is_none() {
+                if let Some(kind) = self.service(name, args, at) {
+                    return kind.map(StmtKind::Service);
+                }
+            }
+        }
+        // A function as a statement: its arguments are judged, its result is lost.
+        self.call(path, args, None, at)?;
+        let what = format!("nothing takes the result of `{}`", path.text());
+        self.report(Problem::new(&codes::WRONG_KIND, at, what).help("assign it: `n := …`"))
+    }
+
+    /// The call of a function block; outer `None` where the path names none.
+    #[allow(clippy::option_option, reason = "no instance, or an instance called wrongly")]
+    fn instance_call(&mut self, path: &Path, args: &[Arg]) -> Option<Option<StmtKind>> {
+        let last = path.names.last()?;
+        let entity = match path.names.as_slice() {
+            [name] => self.entity(&name.text),
+            [chart, name] => self.scopes.chart(&chart.text).and_then(|c| self.scopes.of_chart(c, &name.text)),
+            _ => None,
+        };
+        let Some(Entity::Var(v)) = entity else { return None };
+        let Type::Fb(kind) = self.var(v)?.ty else { return None };
+        Some(self.fb_call(v, kind, last, args))
+    }
+
+    /// A service of the controller; outer `None` where the name is none.
+    #[allow(clippy::option_option, reason = "no service, or a service called wrongly")]
+    fn service(&mut self, name: &Name, args: &[Arg], at: Span) -> Option<Option<Service>> {
+        let wanted = match name.text.to_ascii_uppercase().as_str() {
+            "INITCHART" | "CLEARCHART" | "SETSTEP" | "RESETSTEP" => 1,
+            "FREEZECHART" => 2,
+            "RESET_XIT" => 0,
+            _ => return None,
+        };
+        Some(self.service_call(name, wanted, args, at))
+    }
+
+    fn service_call(&mut self, name: &Name, wanted: usize, args: &[Arg], at: Span) -> Option<Service> {
+        if self.frame.role != Role::Code {
+            let what = format!("the service `{}` cannot be called here", name.text);
+            return self.report(
+                Problem::new(&codes::NOT_HERE, name.at.0, what).help("call it in an action or a PRE section"),
+            );
+        }
+        if args.len() != wanted || args.iter().any(|a| a.name.is_some()) {
+            let what = format!("`{}` takes {wanted} arguments by position", name.text);
+            return self.report(Problem::new(&codes::WRONG_ARGUMENTS, at, what));
+        }
+        let first = args.first().map(|a| &a.value);
+        match name.text.to_ascii_uppercase().as_str() {
+            "INITCHART" => self.chart_argument(first?).map(Service::InitChart),
+            "CLEARCHART" => self.chart_argument(first?).map(Service::ClearChart),
+            "SETSTEP" => self.step_argument(first?).map(Service::SetStep),
+            "RESETSTEP" => self.step_argument(first?).map(Service::ResetStep),
+            "FREEZECHART" => {
+                let chart = self.chart_argument(first?);
+                let freeze = self.condition(&args.get(1)?.value);
+                Some(Service::FreezeChart(chart?, Box::new(freeze?)))
+            }
+            _ => Some(Service::ResetTimes),
+        }
+    }
+
+    fn chart_argument(&mut self, e: &Written) -> Option<crate::ir::ChartId> {
+        if let Form::Path(p) = &e.kind {
+            if let [name] = p.names.as_slice() {
+                return self.chart_named(name);
+            }
+        }
+        self.report(Problem::new(&codes::WRONG_ARGUMENTS, e.at.0, "the name of a chart is needed here"))
+    }
+
+    fn step_argument(&mut self, e: &Written) -> Option<crate::ir::StepId> {
+        let r = match &e.kind {
+            Form::Path(p) => self.refer(&p.names)?,
+            Form::Direct(text) => self.refer_direct(text, e.at.0)?,
+            _ => return self.no_step(e.at.0),
+        };
+        match r {
+            Ref::Active(s) => Some(s),
+            _ => self.no_step(e.at.0),
+        }
+    }
+
+    fn no_step<T>(&mut self, at: Span) -> Option<T> {
+        let what = "a step is needed here";
+        self.report(Problem::new(&codes::WRONG_ARGUMENTS, at, what).help("write its activity, as in `G.X12`"))
+    }
+}
+
+/// `%S0`, `%S1` and the counts are written by the system alone.
+fn read_only(system: &str) -> bool {
+    matches!(system, "%S0" | "%S1" | "%SW20" | "%SW21")
+}

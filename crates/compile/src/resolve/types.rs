@@ -1,0 +1,303 @@
+//! How types widen, and how a value takes the type that its place needs.
+
+use g7_model::{Problem, Span, Type, codes};
+
+use super::constant::{self, Fault};
+use super::resolver::Resolver;
+use crate::ir::{Expr, ExprKind, Value};
+
+/// An expression, and whether it is an untyped literal: then it is a constant
+/// that adapts to whatever type is needed.
+#[derive(Clone, Debug)]
+pub(super) struct Typed {
+    pub(super) expr: Expr,
+    pub(super) literal: bool,
+}
+
+impl Typed {
+    /// An expression with a type of its own.
+    pub(super) fn of(kind: ExprKind, ty: Type, at: Span) -> Typed {
+        Typed { expr: Expr { kind, ty, at }, literal: false }
+    }
+
+    /// A constant with a type of its own.
+    pub(super) fn constant(value: Value, ty: Type, at: Span) -> Typed {
+        Typed::of(ExprKind::Const(value), ty, at)
+    }
+
+    /// An untyped literal; the type written here is only for messages.
+    pub(super) fn untyped(value: Value, at: Span) -> Typed {
+        let ty = if matches!(value, Value::Real(_)) { Type::Lreal } else { Type::Lint };
+        Typed { expr: Expr { kind: ExprKind::Const(value), ty, at }, literal: true }
+    }
+
+    /// Its value, if it is a constant.
+    pub(super) fn value(&self) -> Option<&Value> {
+        match &self.expr.kind {
+            ExprKind::Const(v) => Some(v),
+            _ => None,
+        }
+    }
+
+    /// Whether it is an untyped whole number.
+    pub(super) fn whole_literal(&self) -> bool {
+        self.literal && matches!(self.value(), Some(Value::Int(_)))
+    }
+}
+
+/// Numbers, from narrow to wide.
+const NUMBERS: [Type; 10] = [
+    Type::Sint,
+    Type::Usint,
+    Type::Int,
+    Type::Uint,
+    Type::Dint,
+    Type::Udint,
+    Type::Lint,
+    Type::Ulint,
+    Type::Real,
+    Type::Lreal,
+];
+
+/// Whether it is a number: whole or real.
+pub(super) fn is_number(ty: Type) -> bool {
+    ty.is_integer() || ty.is_real()
+}
+
+/// Whether every value of `from` is taken over by `to` without being asked for.
+pub(super) fn widens(from: Type, to: Type) -> bool {
+    if let (Some((a, b)), Some((c, d))) = (from.bounds(), to.bounds()) {
+        return c <= a && b <= d;
+    }
+    match to {
+        Type::Real => matches!(
+            from,
+            Type::Real | Type::Sint | Type::Int | Type::Dint | Type::Usint | Type::Uint | Type::Udint
+        ),
+        Type::Lreal => from == Type::Lreal || widens(from, Type::Real),
+        Type::String(_) => matches!(from, Type::String(_)),
+        _ => from == to,
+    }
+}
+
+/// The narrowest type that both widen to.
+pub(super) fn common(a: Type, b: Type) -> Option<Type> {
+    match (a, b) {
+        (Type::String(m), Type::String(n)) => Some(Type::String(m.max(n))),
+        (Type::Fb(_), _) | (_, Type::Fb(_)) => None,
+        _ if a == b => Some(a),
+        _ if !is_number(a) || !is_number(b) => None,
+        _ => NUMBERS.into_iter().find(|t| widens(a, *t) && widens(b, *t)),
+    }
+}
+
+/// The type with this name, in upper or lower case.
+pub(super) fn named(name: &str) -> Option<Type> {
+    let all = NUMBERS.into_iter().chain([Type::Bool, Type::Time, Type::String(80)]);
+    all.into_iter().find(|t| t.to_string().eq_ignore_ascii_case(name))
+}
+
+impl Resolver<'_, '_> {
+    /// The expression in the type that is needed.
+    pub(super) fn coerce(&mut self, t: Typed, want: Type) -> Option<Expr> {
+        if t.literal {
+            return self.adapt(t, want);
+        }
+        let e = t.expr;
+        if e.ty == want {
+            return Some(e);
+        }
+        if let (Type::String(_), Type::String(most)) = (e.ty, want) {
+            return self.fitting_text(e, most);
+        }
+        if widens(e.ty, want) {
+            return Some(converted(e, want));
+        }
+        let problem = wrong_type(&e, want);
+        self.report(problem)
+    }
+
+    /// A constant text must fit; a variable one is cut when it is copied.
+    fn fitting_text(&mut self, e: Expr, most: u16) -> Option<Expr> {
+        if let ExprKind::Const(Value::Str(s)) = &e.kind {
+            if s.len() > usize::from(most) {
+                let what = format!("this text has {} bytes, at most {most} fit", s.len());
+                return self.report(Problem::new(&codes::OUT_OF_RANGE, e.at, what));
+            }
+        }
+        Some(e)
+    }
+
+    /// An untyped literal takes the type that is needed.
+    fn adapt(&mut self, t: Typed, want: Type) -> Option<Expr> {
+        let at = t.expr.at;
+        let ExprKind::Const(value) = &t.expr.kind else { return Some(t.expr) };
+        let adapted = match (value, want) {
+            (Value::Int(n @ (0 | 1)), Type::Bool) => Value::Bool(*n == 1),
+            (Value::Int(n), _) if want.is_integer() => match constant::fit(want, *n) {
+                Ok(n) => Value::Int(n),
+                Err(_) => return self.out_of_range(n, want, at),
+            },
+            (Value::Int(n), Type::Lreal) => Value::Real(*n as f64),
+            (Value::Int(n), Type::Real) => Value::Real(f64::from(*n as f32)),
+            (Value::Real(x), Type::Real | Type::Lreal) => {
+                let narrow = constant::narrow(want, *x);
+                if !narrow.is_finite() {
+                    return self.out_of_range(x, want, at);
+                }
+                Value::Real(narrow)
+            }
+            _ => {
+                let problem = wrong_literal(value, want, at);
+                return self.report(problem);
+            }
+        };
+        Some(Expr { kind: ExprKind::Const(adapted), ty: want, at })
+    }
+
+    fn out_of_range<T>(&mut self, value: impl std::fmt::Display, ty: Type, at: Span) -> Option<T> {
+        let mut problem = Problem::new(&codes::OUT_OF_RANGE, at, format!("{value} does not fit into {ty}"));
+        if let Some((least, most)) = ty.bounds() {
+            problem.help = Some(format!("{ty} goes from {least} to {most}"));
+        }
+        self.report(problem)
+    }
+
+    /// The type that a literal takes where nothing asks for one.
+    pub(super) fn settle(&mut self, t: Typed) -> Option<Expr> {
+        if !t.literal {
+            return Some(t.expr);
+        }
+        let want = match t.value() {
+            Some(Value::Int(n)) => {
+                let fits = |ty: Type| constant::fit(ty, *n).is_ok();
+                [Type::Dint, Type::Lint].into_iter().find(|t| fits(*t)).unwrap_or(Type::Ulint)
+            }
+            _ => Type::Lreal,
+        };
+        self.coerce(t, want)
+    }
+
+    /// Reports constant arithmetic that has no result.
+    pub(super) fn constant_fault<T>(&mut self, fault: Fault, ty: Type, at: Span) -> Option<T> {
+        self.report(match fault {
+            Fault::Overflow => {
+                let what = format!("the result does not fit into {ty}");
+                Problem::new(&codes::CONSTANT_FAULT, at, what)
+            }
+            Fault::Division => Problem::new(&codes::CONSTANT_FAULT, at, "division by zero"),
+        })
+    }
+}
+
+/// The same value in a wider type; constants at once.
+pub(super) fn converted(e: Expr, to: Type) -> Expr {
+    let at = e.at;
+    if let ExprKind::Const(v) = &e.kind {
+        if let Ok(Some(v)) = constant::convert(v, to) {
+            return Expr { kind: ExprKind::Const(v), ty: to, at };
+        }
+    }
+    Expr { kind: ExprKind::Convert(Box::new(e)), ty: to, at }
+}
+
+/// In messages about types the length of a text does not matter.
+fn plain(ty: Type) -> Type {
+    if matches!(ty, Type::String(_)) { Type::String(80) } else { ty }
+}
+
+fn wrong_type(e: &Expr, want: Type) -> Problem {
+    let problem = Problem::new(
+        &codes::WRONG_TYPE,
+        e.at,
+        format!("this is {}, but {} is needed here", plain(e.ty), plain(want)),
+    );
+    match (e.ty, want) {
+        (Type::Fb(kind), _) => {
+            let outputs = kind.members().iter().filter(|m| !m.2 && m.1 == want);
+            match outputs.map(|m| m.0).next() {
+                Some(q) => problem.help(format!("its output is `.{q}`")),
+                None => problem,
+            }
+        }
+        (_, Type::Fb(_)) => problem,
+        (from, Type::Bool) if is_number(from) => problem.help("compare it, as in `n <> 0`"),
+        (from, to) if is_number(from) && is_number(to) => {
+            problem.help(format!("convert it with `{from}_TO_{to}(…)`; a value that does not fit is a fault"))
+        }
+        (Type::Time, to) if is_number(to) => {
+            problem.help(format!("convert it with `TIME_TO_{to}(…)`, in milliseconds"))
+        }
+        (from, Type::Time) if is_number(from) => {
+            problem.help(format!("convert it with `{from}_TO_TIME(…)`, in milliseconds"))
+        }
+        _ => problem,
+    }
+}
+
+fn wrong_literal(value: &Value, want: Type, at: Span) -> Problem {
+    let what = match value {
+        Value::Real(_) => "a real number",
+        _ => "a whole number",
+    };
+    let problem =
+        Problem::new(&codes::WRONG_TYPE, at, format!("this is {what}, but {} is needed here", plain(want)));
+    match (value, want) {
+        (_, Type::Time) => problem.help("write a duration, as in `5s` or `200ms`"),
+        (Value::Int(_), Type::Bool) => problem.help("of the numbers only 0 and 1 stand for FALSE and TRUE"),
+        (Value::Int(n), Type::String(_)) => problem.help(format!("write it as a text: '{n}'")),
+        _ => problem,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Type, common, widens};
+
+    #[test]
+    fn a_type_widens_only_where_no_value_is_lost() {
+        use Type::{Bool, Dint, Int, Lint, Lreal, Real, Sint, Time, Udint, Uint, Ulint, Usint};
+        let wider: &[(Type, &[Type])] = &[
+            (Sint, &[Int, Dint, Lint, Real, Lreal]),
+            (Int, &[Dint, Lint, Real, Lreal]),
+            (Dint, &[Lint, Real, Lreal]),
+            (Lint, &[]),
+            (Usint, &[Int, Dint, Lint, Uint, Udint, Ulint, Real, Lreal]),
+            (Uint, &[Dint, Lint, Udint, Ulint, Real, Lreal]),
+            (Udint, &[Lint, Ulint, Real, Lreal]),
+            (Ulint, &[]),
+            (Real, &[Lreal]),
+            (Lreal, &[]),
+            (Bool, &[]),
+            (Time, &[]),
+        ];
+        for (from, to) in wider {
+            for (other, _) in wider {
+                assert_eq!(widens(*from, *other), from == other || to.contains(other), "{from} {other}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_common_type_is_the_narrowest_that_holds_both() {
+        use Type::{Bool, Dint, Int, Lint, Lreal, Real, Sint, Time, Udint, Uint, Ulint, Usint};
+        for (a, b, want) in [
+            (Int, Int, Some(Int)),
+            (Int, Dint, Some(Dint)),
+            (Int, Uint, Some(Dint)),
+            (Sint, Usint, Some(Int)),
+            (Dint, Udint, Some(Lint)),
+            (Lint, Ulint, None),
+            (Dint, Real, Some(Real)),
+            (Real, Lreal, Some(Lreal)),
+            (Lint, Real, None),
+            (Bool, Int, None),
+            (Time, Int, None),
+            (Time, Time, Some(Time)),
+            (Type::String(5), Type::String(9), Some(Type::String(9))),
+        ] {
+            assert_eq!(common(a, b), want, "{a} {b}");
+            assert_eq!(common(b, a), want, "{b} {a}");
+        }
+    }
+}

@@ -1,0 +1,172 @@
+//! Variables: their place in the name spaces, their types, their first values.
+
+use g7_model::{Expr as Written, Name, Problem, Span, Type, VarDecl, VarKind, codes};
+
+use super::resolver::{Frame, Resolver, Role};
+use super::scopes::{Entity, normal_address};
+use crate::ir::{ChartId, ExprKind, Value, VarClass, VarId};
+
+impl<'d> Resolver<'_, 'd> {
+    /// Gives a name its meaning, unless it has one in the same name space.
+    pub(super) fn define(&mut self, chart: Option<ChartId>, name: &'d Name, entity: Entity) -> bool {
+        let names = match chart {
+            None => &mut self.scopes.names,
+            Some(c) => match self.scopes.charts.get_mut(c.index()) {
+                Some(scope) => &mut scope.names,
+                None => return false,
+            },
+        };
+        if let Some(before) = names.get(&*name.text).copied() {
+            let first = self.defined_at(before);
+            self.defined_twice(name, first);
+            return false;
+        }
+        names.insert(&name.text, entity);
+        true
+    }
+
+    /// Where something was declared.
+    fn defined_at(&self, entity: Entity) -> Span {
+        match entity {
+            Entity::Var(v) => self.var(v).map(|v| v.at),
+            Entity::Body(b) => self.unit.bodies.get(b.index()).map(|b| b.at),
+            Entity::Section(s) => self.unit.sections.get(s.index()).map(|s| s.at),
+            Entity::Function(f) => self.unit.functions.get(f.index()).map(|f| f.at),
+        }
+        .unwrap_or_default()
+    }
+
+    /// The names of a declaration; values come when all names are known.
+    pub(super) fn declare(&mut self, chart: Option<ChartId>, decl: &'d VarDecl) -> Vec<VarId> {
+        if !self.sensible(decl) {
+            return Vec::new();
+        }
+        let class = match decl.kind {
+            VarKind::Input => VarClass::Input,
+            VarKind::Output => VarClass::Output,
+            VarKind::Var => VarClass::Internal,
+            VarKind::Const => VarClass::Const,
+        };
+        let mut ids = Vec::new();
+        for name in &decl.names {
+            let qualified = self.qualified(chart, &name.text);
+            let id = VarId(self.unit.vars.len() as u32);
+            if !self.define(chart, name, Entity::Var(id)) {
+                continue;
+            }
+            self.add_var(qualified, class, decl.ty, name.at.0);
+            if class == VarClass::Const {
+                self.pending.insert(id);
+            }
+            self.place_at_address(id, decl);
+            if let Some(v) = self.unit.vars.get_mut(id.index()) {
+                v.retain = decl.retain;
+                v.inverted = decl.inverted;
+                v.comment.clone_from(&decl.comment);
+                v.address = decl.address.as_ref().map(|a| a.text.clone());
+            }
+            ids.push(id);
+        }
+        ids
+    }
+
+    /// Function blocks are variables of a chart with nothing to start from.
+    fn sensible(&mut self, decl: &VarDecl) -> bool {
+        let at = decl.names.first().map_or(decl.at.0, |n| n.at.0);
+        if let Type::Fb(kind) = decl.ty {
+            let wrong = match decl.kind {
+                VarKind::Input => Some("an input"),
+                VarKind::Output => Some("an output"),
+                VarKind::Const => Some("a constant"),
+                VarKind::Var if decl.init.is_some() => Some("given an initial value"),
+                VarKind::Var if decl.address.is_some() => Some("placed at an address"),
+                VarKind::Var => None,
+            };
+            if let Some(wrong) = wrong {
+                let what = format!("an instance of {} cannot be {wrong}", kind.name());
+                self.problems.push(
+                    Problem::new(&codes::BAD_DECLARATION, at, what)
+                        .help(format!("declare it plainly: `var name : {}`", kind.name())),
+                );
+                return false;
+            }
+        }
+        self.fitting_string(decl.ty, at).is_some()
+    }
+
+    /// A text holds at least one byte, and at most what the engine carries.
+    pub(super) fn fitting_string(&mut self, ty: Type, at: Span) -> Option<()> {
+        match ty {
+            Type::String(n) if n == 0 || n > g7_engine::TEXT => {
+                let what = format!("a STRING holds 1 to {} bytes, not {n}", g7_engine::TEXT);
+                self.report(Problem::new(&codes::BAD_DECLARATION, at, what))
+            }
+            _ => Some(()),
+        }
+    }
+
+    /// A direct address is known by that name too.
+    fn place_at_address(&mut self, id: VarId, decl: &VarDecl) {
+        let Some(address) = decl.address.as_ref().filter(|a| a.text.starts_with('%')) else { return };
+        let normal = normal_address(&address.text);
+        let area = match normal.as_bytes().first() {
+            Some(b'I') => Some((VarKind::Input, "an input")),
+            Some(b'Q') => Some((VarKind::Output, "an output")),
+            Some(b'X' | b'S') => None,
+            _ => Some((decl.kind, "")),
+        };
+        let written = &address.text;
+        match area {
+            None => {
+                let what = format!("`{written}` belongs to the system; no variable can stand there");
+                self.problems.push(Problem::new(&codes::BAD_DECLARATION, address.at.0, what));
+            }
+            Some((kind, area)) if kind != decl.kind => {
+                let what = format!("`{written}` is the address of {area}");
+                self.problems.push(Problem::new(&codes::BAD_DECLARATION, address.at.0, what));
+            }
+            Some(_) => match self.scopes.addresses.get(&normal).copied() {
+                Some(before) => {
+                    let what = format!("`{written}` is the address of two variables");
+                    let mut problem = Problem::new(&codes::ADDRESS_TWICE, address.at.0, what);
+                    if let Some(v) = self.var(before) {
+                        problem = problem.related(v.at, format!("`{}` is there already", v.name));
+                    }
+                    self.problems.push(problem);
+                }
+                None => {
+                    self.scopes.addresses.insert(normal, id);
+                }
+            },
+        }
+    }
+
+    /// The values that a declaration gives to its names.
+    pub(super) fn give_values(&mut self, chart: Option<ChartId>, decl: &VarDecl, ids: &[VarId]) {
+        let init = decl.init.as_ref().and_then(|e| self.constant(chart, e, decl.ty));
+        let safe = decl.safe.as_ref().and_then(|e| self.constant(chart, e, decl.ty));
+        for id in ids {
+            self.pending.remove(id);
+            let Some(v) = self.unit.vars.get_mut(id.index()) else { continue };
+            if let Some(value) = &init {
+                v.init = value.clone();
+            }
+            if let Some(value) = &safe {
+                v.safe = value.clone();
+            }
+        }
+    }
+
+    /// A value that is known before the chart runs.
+    fn constant(&mut self, chart: Option<ChartId>, e: &Written, ty: Type) -> Option<Value> {
+        let frame = Frame { chart, role: Role::Constant, ..Frame::default() };
+        let value = self.within(frame, |r| r.value(e, ty))?;
+        match value.kind {
+            ExprKind::Const(v) => Some(v),
+            _ => {
+                let what = "a value that is known before the chart runs is needed here";
+                self.report(Problem::new(&codes::NOT_CONSTANT, value.at, what))
+            }
+        }
+    }
+}
