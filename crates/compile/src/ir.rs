@@ -462,6 +462,9 @@ pub struct Stmt {
     pub at: Span,
 }
 
+/// The ranges of an arm of CASE, ends included, and its statements.
+pub type CaseArm = (Vec<(i64, i64)>, Vec<Stmt>);
+
 /// The statements.
 #[derive(Clone, Debug)]
 pub enum StmtKind {
@@ -481,7 +484,7 @@ pub enum StmtKind {
     /// Conditions with their statements, then ELSE.
     If(Vec<(Expr, Vec<Stmt>)>, Vec<Stmt>),
     /// Selector (an integer type, widened to LINT), arms of inclusive ranges, ELSE.
-    Case(Expr, Vec<(Vec<(i64, i64)>, Vec<Stmt>)>, Vec<Stmt>),
+    Case(Expr, Vec<CaseArm>, Vec<Stmt>),
     /// FOR; all of the variable's type.
     For {
         /// The loop variable.

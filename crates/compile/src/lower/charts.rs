@@ -1,0 +1,327 @@
+//! Charts as groups of steps: initial situations, enclosures, and what steps
+//! order of other charts.
+
+use g7_engine::{Addr, Chart, Group, GroupId, Order, Rows, Situation, StepId as Number};
+
+use super::Lower;
+use super::lists::Lists;
+use super::plan::parent;
+use crate::ir::{self, ActionKind, ChartId, ChartRole, StepId, StepSort};
+
+/// `FREEZECHART`: what the call writes, and what holds back the transitions
+/// from the service point on.
+#[derive(Clone, Copy)]
+pub(super) struct Freeze {
+    pub(super) asked: Addr,
+    pub(super) holds: Addr,
+}
+
+impl Lower<'_> {
+    /// Finds who enables, masks and calls what, and gives tasks and frozen
+    /// charts their words.
+    pub(super) fn look_at_orders(&mut self) {
+        let unit = self.unit;
+        let charts = unit.charts.len();
+        self.enabling = vec![Vec::new(); charts];
+        self.masked_charts = vec![Vec::new(); charts];
+        self.callers = vec![Vec::new(); charts];
+        for (i, step) in unit.steps.iter().enumerate() {
+            let id = StepId(i as u32);
+            if self.plan.own(id).is_none() {
+                continue;
+            }
+            for action in &step.actions {
+                match action.kind {
+                    ActionKind::Enable(chart) => enlist(&mut self.enabling, chart, id),
+                    ActionKind::MaskChart(chart) => enlist(&mut self.masked_charts, chart, id),
+                    ActionKind::MaskVar(var) => {
+                        let steps = self.masked_vars.entry(var).or_default();
+                        if steps.last() != Some(&id) {
+                            steps.push(id);
+                        }
+                    }
+                    _ => {}
+                }
+            }
+            for (task, _) in &step.calls {
+                enlist(&mut self.callers, *task, id);
+            }
+        }
+        self.has_masks = self.masked_charts.iter().any(|m| !m.is_empty());
+        if unit.charts.iter().any(|c| c.role == ChartRole::Task) {
+            self.owners = unit
+                .charts
+                .iter()
+                .map(|c| (c.role == ChartRole::Task).then(|| self.words.hidden(0)))
+                .collect();
+        }
+        let words = &mut self.words;
+        self.freezes = self
+            .uses
+            .frozen
+            .iter()
+            .map(|f| f.then(|| Freeze { asked: words.hidden(0), holds: words.hidden(0) }))
+            .collect();
+        self.has_blockers = self.stop_all.is_some()
+            || self.freezes.iter().any(Option::is_some)
+            || self.enabling.iter().any(|e| !e.is_empty());
+    }
+
+    /// The row of a chart's period.
+    pub(super) fn period(&self, chart: ChartId) -> u32 {
+        self.periods.get(chart.index()).copied().unwrap_or(0)
+    }
+
+    /// Period rows, equal periods sharing one; an expansion has its chart's.
+    pub(super) fn look_at_periods(&mut self) {
+        self.t.periods = vec![0];
+        self.periods = vec![0; self.unit.charts.len()];
+        for i in 0..self.unit.charts.len() {
+            let row = self.plan.chart(ChartId(i as u32));
+            let outer = row.and_then(|r| self.plan.outer.get(r as usize));
+            let every = outer.and_then(|c| self.unit.charts.get(c.index())).map_or(0, |c| c.every.max(0));
+            let known = self.t.periods.iter().position(|p| *p == every);
+            let row = known.unwrap_or_else(|| {
+                self.t.periods.push(every);
+                self.t.periods.len() - 1
+            });
+            if let Some(p) = self.periods.get_mut(i) {
+                *p = row as u32;
+            }
+        }
+    }
+
+    /// Groups and charts, with their initial situations, and the steps active
+    /// at the start.
+    pub(super) fn groups(&mut self) {
+        let live = self.live_charts();
+        let rows = self.plan.groups.clone();
+        for (i, (chart, start, end)) in rows.iter().enumerate() {
+            let is_live = live.get(chart.index()).copied().unwrap_or(false);
+            let steps = self.initial(GroupId(i as u32), is_live);
+            if is_live && parent(self.unit, *chart).is_none() {
+                self.t.initial.extend_from_slice(&steps);
+            }
+            let initial = self.list(&steps);
+            let steps = Rows { start: *start, end: *end };
+            self.t.groups.push(Group { steps, initial, watches: Rows::default() });
+        }
+        self.t.initial.sort_unstable();
+        self.t.initial.dedup();
+        for (i, chart) in self.plan.outer.clone().into_iter().enumerate() {
+            let Some(group) = self.plan.group(chart) else { continue };
+            debug_assert_eq!(self.plan.chart(chart), Some(i as u32));
+            self.t.charts.push(Chart { group, period: self.period(chart) });
+        }
+    }
+
+    /// The charts whose groups lie within a group, its own first.
+    fn within(&self, group: GroupId) -> impl Iterator<Item = ChartId> + '_ {
+        let from = group.0 as usize;
+        let end = self.plan.groups.get(from).map_or(0, |g| g.2);
+        let rows = self.plan.groups.get(from..).unwrap_or(&[]);
+        let own = rows.iter().take(1);
+        let nested = rows.iter().skip(1).take_while(move |g| g.1 < end && g.2 <= end);
+        own.chain(nested).map(|g| g.0)
+    }
+
+    /// The steps of a group that a test names, with all that goes on with them.
+    fn steps_where(
+        &self,
+        group: GroupId,
+        test: impl Fn(&ir::Chart, StepId, &ir::Step) -> bool,
+    ) -> Vec<Number> {
+        let mut found = Vec::new();
+        for chart in self.within(group) {
+            let Some(row) = self.unit.charts.get(chart.index()) else { continue };
+            for i in row.steps.clone() {
+                let Some(step) = self.unit.steps.get(i as usize) else { continue };
+                if test(row, StepId(i), step) {
+                    let mut steps = Vec::new();
+                    self.plan.entering(self.unit, StepId(i), &mut steps);
+                    self.plan.around(self.unit, StepId(i), &mut steps);
+                    found.extend(steps);
+                }
+            }
+        }
+        found.sort_unstable();
+        found.dedup();
+        found
+    }
+
+    /// The initial situation of a group: initial steps, of a task its entry
+    /// step, of a chart enclosed by a step active at the start its linked steps.
+    fn initial(&self, group: GroupId, is_live: bool) -> Vec<Number> {
+        self.steps_where(group, |chart, id, step| {
+            step.initial
+                || (chart.role == ChartRole::Task && chart.entry == Some(id))
+                || (step.linked && is_live && chart.enclosed_by.is_some())
+        })
+    }
+
+    /// By chart: whether it has a situation at the start. An enclosed chart has
+    /// one where the step that encloses it is active at the start.
+    fn live_charts(&self) -> Vec<bool> {
+        let unit = self.unit;
+        let mut known: Vec<Option<bool>> = vec![None; unit.charts.len()];
+        for first in 0..unit.charts.len() {
+            // Up the enclosures until something known; a circle is not live.
+            let (mut path, mut at) = (Vec::new(), Some(ChartId(first as u32)));
+            let mut live = true;
+            while let Some(chart) = at {
+                let Some(slot) = known.get_mut(chart.index()) else { break };
+                if let Some(k) = *slot {
+                    live = k;
+                    break;
+                }
+                *slot = Some(false);
+                let row = unit.charts.get(chart.index());
+                let by = row.and_then(|c| c.enclosed_by).and_then(|s| unit.steps.get(s.index()));
+                let starts = by.is_none_or(|s| s.initial || s.linked);
+                path.push((chart, starts));
+                at = by.map(|s| self.outermost(s.chart));
+            }
+            for (chart, starts) in path.into_iter().rev() {
+                live = live && starts;
+                if let Some(slot) = known.get_mut(chart.index()) {
+                    *slot = Some(live);
+                }
+            }
+        }
+        known.into_iter().map(|k| k.unwrap_or(false)).collect()
+    }
+
+    /// The outermost chart round a chart.
+    pub(super) fn outermost(&self, chart: ChartId) -> ChartId {
+        let row = self.plan.chart(chart).and_then(|r| self.plan.outer.get(r as usize));
+        row.copied().unwrap_or(chart)
+    }
+
+    /// By step: the groups it counts in. Only those of expansions are counted,
+    /// since only macro-steps have an activity of their own.
+    pub(super) fn counted_groups(&self) -> Lists<GroupId> {
+        let mut lists = Lists::default();
+        if self.plan.groups.len() == self.plan.outer.len() {
+            return lists;
+        }
+        for (i, (chart, start, end)) in self.plan.groups.iter().enumerate() {
+            if parent(self.unit, *chart).is_some() {
+                (*start..*end).for_each(|s| lists.add(s, GroupId(i as u32)));
+            }
+        }
+        lists.sort_unique();
+        lists
+    }
+
+    /// By enclosing step: the groups it encloses, and the steps it activates.
+    pub(super) fn enclosures(&self) -> (Lists<GroupId>, Lists<Number>) {
+        let (mut groups, mut links) = (Lists::default(), Lists::default());
+        for (i, step) in self.unit.steps.iter().enumerate() {
+            let StepSort::Enclosing(charts) = &step.sort else { continue };
+            let Some(number) = self.plan.own(StepId(i as u32)) else { continue };
+            for chart in charts {
+                let Some(group) = self.plan.group(*chart) else { continue };
+                groups.add(number.0, group);
+                let linked = self.steps_where(group, |_, _, s| s.linked);
+                linked.into_iter().for_each(|s| links.add(number.0, s));
+            }
+        }
+        groups.sort_unique();
+        links.sort_unique();
+        (groups, links)
+    }
+
+    /// Fills the table of forcing orders, in the partial order of the charts.
+    /// Returns the rows of each step that gives any, by step.
+    pub(super) fn orders(&mut self) -> Vec<(u32, Rows)> {
+        let unit = self.unit;
+        let mut found: Vec<(u32, ChartId, &ir::Situation)> = Vec::new();
+        for (i, step) in unit.steps.iter().enumerate() {
+            let Some(number) = self.plan.own(StepId(i as u32)) else { continue };
+            for action in &step.actions {
+                if let ActionKind::Force(chart, situation) = &action.kind {
+                    found.push((number.0, *chart, situation));
+                }
+            }
+        }
+        let mut rows: Vec<(u32, Order)> = Vec::new();
+        for (step, chart, situation) in found {
+            let Some(forced) = self.plan.chart(chart) else { continue };
+            let situation = match situation {
+                ir::Situation::Current => Situation::Current,
+                ir::Situation::Init => {
+                    let group = self.plan.group(chart).and_then(|g| self.t.groups.get(g.0 as usize));
+                    Situation::Steps(group.map(|g| g.initial).unwrap_or_default())
+                }
+                ir::Situation::Steps(steps) => {
+                    let mut imposed = Vec::new();
+                    for s in steps {
+                        self.plan.entering(unit, *s, &mut imposed);
+                        self.plan.around(unit, *s, &mut imposed);
+                    }
+                    Situation::Steps(self.list(&imposed))
+                }
+            };
+            rows.push((step, Order { step: Number(step), chart: forced, situation }));
+        }
+        let depth = self.depths(&rows);
+        let level = |o: &Order| {
+            let chart = self.t.steps.get(o.step.0 as usize).map_or(0, |s| s.chart);
+            depth.get(chart as usize).copied().unwrap_or(0)
+        };
+        rows.sort_by_key(|(step, o)| (level(o), *step));
+        let mut by_step: Vec<(u32, Rows)> = Vec::new();
+        for (step, order) in rows {
+            let at = self.t.orders.len() as u32;
+            self.t.orders.push(order);
+            match by_step.last_mut() {
+                Some((last, rows)) if *last == step => rows.end = at + 1,
+                _ => by_step.push((step, Rows { start: at, end: at + 1 })),
+            }
+        }
+        by_step.sort_unstable_by_key(|(step, _)| *step);
+        by_step
+    }
+
+    /// By chart: the longest way down the forcing orders to it.
+    fn depths(&self, rows: &[(u32, Order)]) -> Vec<u32> {
+        let mut arcs: Vec<(u32, u32)> = rows
+            .iter()
+            .filter_map(|(_, o)| self.t.steps.get(o.step.0 as usize).map(|s| (s.chart, o.chart)))
+            .collect();
+        arcs.sort_unstable();
+        arcs.dedup();
+        let mut depth = vec![0u32; self.t.charts.len()];
+        let mut waits = vec![0u32; self.t.charts.len()];
+        for (_, to) in &arcs {
+            if let Some(w) = waits.get_mut(*to as usize) {
+                *w += 1;
+            }
+        }
+        // Charts that nothing forces first; a circle (reported) stays where it is.
+        let mut ready: Vec<u32> =
+            (0..waits.len() as u32).filter(|c| waits.get(*c as usize) == Some(&0)).collect();
+        while let Some(chart) = ready.pop() {
+            let below = depth.get(chart as usize).copied().unwrap_or(0) + 1;
+            let from = arcs.partition_point(|a| a.0 < chart);
+            for (_, to) in arcs.iter().skip(from).take_while(|a| a.0 == chart) {
+                if let (Some(d), Some(w)) = (depth.get_mut(*to as usize), waits.get_mut(*to as usize)) {
+                    *d = (*d).max(below);
+                    *w -= 1;
+                    if *w == 0 {
+                        ready.push(*to);
+                    }
+                }
+            }
+        }
+        depth
+    }
+}
+
+fn enlist(lists: &mut [Vec<StepId>], chart: ChartId, step: StepId) {
+    if let Some(list) = lists.get_mut(chart.index())
+        && list.last() != Some(&step)
+    {
+        list.push(step);
+    }
+}

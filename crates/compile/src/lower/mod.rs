@@ -1,0 +1,269 @@
+//! From a resolved unit to the tables of a program.
+//!
+//! ```text
+//! ir::Unit -> uses (one look at everything)
+//!          -> plan (which step is which) -> words (which word is which)
+//!          -> charts, actions, transitions, system bits
+//!          -> watches' readers -> Tables, Symbols
+//! ```
+//!
+//! Macro-steps, tasks, `enable`, `mask` and freezing end here: they become arcs,
+//! guards and conditions. So do the profiles: what follows knows only
+//! [`g7_engine::Rules`] and the tables. Nothing here depends on the profile's
+//! name, on the clock, or on the order of a hash.
+
+mod actions;
+mod associations;
+mod charts;
+mod code;
+mod lists;
+mod names;
+mod plan;
+mod stmts;
+mod system;
+mod transitions;
+mod uses;
+mod watches;
+mod words;
+
+use std::collections::BTreeMap;
+
+use g7_engine::{Addr, Code, Extra, LoadError, NONE, Program, Step, Tables};
+use g7_model::{Problem, Span, codes};
+
+use crate::ir::{ChartId, Expr, StepId, Unit, VarId};
+use crate::symbols::Symbols;
+use charts::Freeze;
+use plan::Plan;
+use uses::Uses;
+use watches::Watches;
+use words::Words;
+
+pub use words::{words_for, words_of};
+
+/// The tables of a unit and what their rows are called.
+#[derive(Clone, Debug)]
+pub struct Lowered {
+    /// The tables.
+    pub tables: Tables,
+    /// Names and places.
+    pub symbols: Symbols,
+    /// A code for each query, in their order.
+    pub queries: Vec<Code>,
+}
+
+/// Why a unit that is right in itself does not become a program.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Refusal {
+    /// It would be too large.
+    Large,
+    /// Something is nested too deeply.
+    Deep,
+}
+
+/// The work in hand.
+struct Lower<'a> {
+    unit: &'a Unit,
+    uses: Uses,
+    plan: Plan,
+    words: Words,
+    t: Tables,
+    /// Beside `t.code`.
+    places: Vec<Span>,
+    watches: Watches,
+    /// Nesting of the expression or statement in hand.
+    depth: u32,
+    refused: Option<(Refusal, Span)>,
+    /// The generator's word.
+    random: Option<Addr>,
+    /// `%S23`: while TRUE no transition clears.
+    stop_all: Option<Addr>,
+    /// By chart: its period's row.
+    periods: Vec<u32>,
+    /// By chart: the steps that enable it.
+    enabling: Vec<Vec<StepId>>,
+    /// By chart: the steps that mask it.
+    masked_charts: Vec<Vec<StepId>>,
+    masked_vars: BTreeMap<VarId, Vec<StepId>>,
+    /// By task: the steps that call it, in text order.
+    callers: Vec<Vec<StepId>>,
+    /// By task: the word with the number (from 1) of the caller it works for.
+    /// Empty where there is no task.
+    owners: Vec<Option<Addr>>,
+    freezes: Vec<Option<Freeze>>,
+    /// Some chart is enabled, frozen or can be stopped.
+    has_blockers: bool,
+    has_masks: bool,
+}
+
+/// Lowers a unit, and queries on it, to a program with its symbols.
+///
+/// # Errors
+///
+/// A problem with its place where the unit is too large or nested too deeply
+/// for the engine.
+pub fn program(unit: &Unit, queries: &[Expr]) -> Result<(Program, Symbols, Vec<Code>), Problem> {
+    let Lowered { tables, symbols, queries } = lower(unit, queries)?;
+    match Program::new(tables) {
+        Ok(program) => Ok((program, symbols, queries)),
+        Err(error) => Err(refused_by_engine(error, &symbols)),
+    }
+}
+
+fn refused_by_engine(error: LoadError, symbols: &Symbols) -> Problem {
+    match error {
+        LoadError::Deep { at } => deep(symbols.place(at)),
+        LoadError::Large { table } => Problem::new(
+            &codes::TOO_LARGE,
+            Span::default(),
+            format!("the program would be too large ({table})"),
+        ),
+        // The tables made here are right; this says which are not, should one be wrong.
+        other => Problem::new(
+            &codes::TOO_LARGE,
+            Span::default(),
+            format!("the program cannot be loaded: {other:?}"),
+        ),
+    }
+}
+
+fn deep(at: Span) -> Problem {
+    Problem::new(&codes::TOO_DEEP, at, "this is nested too deeply to be run")
+        .help("give a part of it a variable of its own")
+}
+
+/// Lowers a unit, and queries on it, to tables.
+///
+/// # Errors
+///
+/// A problem with its place where the unit is too large or nested too deeply.
+pub fn lower(unit: &Unit, queries: &[Expr]) -> Result<Lowered, Problem> {
+    let uses = uses::uses(unit, queries);
+    let plan = Plan::new(unit, &uses);
+    let words = Words::new(unit);
+    if let Some(step) = plan.too_deep {
+        return Err(deep(unit.steps.get(step.index()).map(|s| s.at).unwrap_or_default()));
+    }
+    if let Some(var) = words.full {
+        let at = unit.vars.get(var.index()).map(|v| v.at).unwrap_or_default();
+        return Err(Problem::new(&codes::TOO_LARGE, at, "the variables take too much room"));
+    }
+    let mut l = Lower {
+        unit,
+        uses,
+        plan,
+        words,
+        t: Tables { rules: unit.rules, ..Tables::default() },
+        places: Vec::new(),
+        watches: Watches::default(),
+        depth: 0,
+        refused: None,
+        random: None,
+        stop_all: None,
+        periods: Vec::new(),
+        enabling: Vec::new(),
+        masked_charts: Vec::new(),
+        masked_vars: BTreeMap::new(),
+        callers: Vec::new(),
+        owners: Vec::new(),
+        freezes: Vec::new(),
+        has_blockers: false,
+        has_masks: false,
+    };
+    let (mut symbols, queries) = l.all(queries);
+    if let Some((refusal, at)) = l.refused {
+        return Err(match refusal {
+            Refusal::Deep => deep(at),
+            Refusal::Large => {
+                Problem::new(&codes::TOO_LARGE, at, "the program would have too many instructions")
+                    .help("functions are written out at each call: call fewer of them from each other")
+            }
+        });
+    }
+    l.t.init = l.words.init;
+    symbols.places = l.places;
+    Ok(Lowered { tables: l.t, symbols, queries })
+}
+
+impl Lower<'_> {
+    fn refuse(&mut self, why: Refusal, at: Span) {
+        self.refused.get_or_insert((why, at));
+    }
+
+    fn all(&mut self, queries: &[Expr]) -> (Symbols, Vec<Code>) {
+        if self.uses.random {
+            self.random = Some(self.words.hidden(0));
+        }
+        self.stop_all = self.stop_bit();
+        self.look_at_periods();
+        self.look_at_orders();
+        self.groups();
+        self.t.steps = self.steps();
+        let mut actions = self.actions();
+        let ranks = self.ranks();
+        self.transitions(&ranks, &actions.clearing);
+        self.system();
+        let queries: Vec<Code> = queries.iter().map(|q| self.code_of(0, q)).collect();
+        self.extras(&mut actions);
+        let symbols = self.symbols(&ranks, &mut actions);
+        self.t.inputs = self.words.inputs;
+        self.t.outputs = self.words.outputs;
+        self.t.safe = std::mem::take(&mut self.words.safe);
+        (symbols, queries)
+    }
+
+    /// The steps, as far as their charts.
+    fn steps(&self) -> Vec<Step> {
+        let chart_of = |id: &StepId| {
+            let chart: Option<ChartId> = self.unit.steps.get(id.index()).map(|s| s.chart);
+            chart.and_then(|c| self.plan.chart(c)).unwrap_or(0)
+        };
+        let row = |id| Step { out: Default::default(), direct: Addr(NONE), extra: NONE, chart: chart_of(id) };
+        self.plan.source.iter().map(row).collect()
+    }
+
+    /// Gives each step what only few have.
+    fn extras(&mut self, a: &mut actions::Actions) {
+        let mut groups = self.counted_groups();
+        let orders = self.orders();
+        let (mut encloses, mut links) = self.enclosures();
+        let mut watches = self.readers();
+        for i in 0..self.t.steps.len() as u32 {
+            let e = Extra {
+                on: a.on.take(i, &mut self.t.action_lists),
+                off: a.off.take(i, &mut self.t.action_lists),
+                events: a.events.take(i, &mut self.t.events),
+                periodics: a.periodics.take(i, &mut self.t.periodics),
+                contributions: a.contributions.take(i, &mut self.t.contributions),
+                groups: groups.take(i, &mut self.t.group_lists),
+                orders: orders
+                    .binary_search_by_key(&i, |o| o.0)
+                    .ok()
+                    .and_then(|k| orders.get(k))
+                    .map(|o| o.1)
+                    .unwrap_or_default(),
+                encloses: encloses.take(i, &mut self.t.group_lists),
+                links: links.take(i, &mut self.t.arcs),
+                watches: watches.take(i, &mut self.t.watch_lists),
+            };
+            let lists = [
+                e.on,
+                e.off,
+                e.events,
+                e.periodics,
+                e.contributions,
+                e.groups,
+                e.orders,
+                e.encloses,
+                e.links,
+                e.watches,
+            ];
+            let Some(step) = self.t.steps.get_mut(i as usize) else { break };
+            step.direct = a.direct.get(i as usize).copied().unwrap_or(Addr(NONE));
+            if lists.iter().any(|r| !r.is_empty()) {
+                step.extra = self.t.extras.len() as u32;
+                self.t.extras.push(e);
+            }
+        }
+    }
+}

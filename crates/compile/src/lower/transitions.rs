@@ -1,0 +1,314 @@
+//! Transitions: their order, their arcs, their receptivities.
+//!
+//! What a task, an `enable` order or a freeze asks of a transition is ANDed to
+//! its receptivity; what a call needs of the task's steps is added to its arcs.
+
+use g7_engine::{Addr, Cmp, Guard, NONE, Num, Op, Rows, StepId as Number, Transition};
+use g7_model::Span;
+
+use super::Lower;
+use super::code::Buf;
+use super::lists::Lists;
+use super::plan::{add, parent};
+use crate::ir::{self, ChartId, ChartRole, Expr, ExprKind, StepId, TransitionId, Value, VarClass, VarId};
+
+/// Where a transition of the program comes from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Origin {
+    /// The text.
+    Written(TransitionId),
+    /// A task whose caller has gone: its exit step gives way to its entry step.
+    Return(ChartId),
+}
+
+/// What must hold besides the receptivity.
+enum Extra {
+    /// One of the steps is active.
+    Any(Vec<StepId>),
+    /// The word is FALSE.
+    Off(Addr),
+    /// The task works for its caller of this number.
+    OwnedBy(Addr, u64),
+    /// The task's owner is no longer active.
+    Orphaned(Addr, Vec<StepId>),
+}
+
+impl Lower<'_> {
+    /// The transitions by rank.
+    pub(super) fn ranks(&self) -> Vec<Origin> {
+        let rules = &self.unit.rules;
+        let mut order: Vec<(u32, u32, TransitionId)> = Vec::with_capacity(self.unit.transitions.len());
+        for (i, t) in self.unit.transitions.iter().enumerate() {
+            if self.plan.chart(t.chart).is_none() {
+                continue;
+            }
+            let level = if rules.sequential { self.plan.level(t.chart) } else { 0 };
+            // One after the other, all that clear take their turns in the order
+            // of the document; a number only excludes.
+            let by_number = !rules.sequential || !rules.multi_token;
+            let number = if by_number { t.priority.unwrap_or(NONE) } else { NONE };
+            order.push((level, number, TransitionId(i as u32)));
+        }
+        if !order.is_sorted() {
+            order.sort_unstable();
+        }
+        let returns = (0..self.unit.charts.len() as u32)
+            .map(ChartId)
+            .filter(|c| self.owners.get(c.index()).copied().flatten().is_some())
+            .map(Origin::Return);
+        order.into_iter().map(|(_, _, id)| Origin::Written(id)).chain(returns).collect()
+    }
+
+    /// Fills the tables of transitions. `clearing`: by transition of the unit,
+    /// the rank of its stored action.
+    pub(super) fn transitions(&mut self, ranks: &[Origin], clearing: &[u32]) {
+        let steps = self.plan.source.len();
+        let (mut uses, mut joint) = (vec![0u8; steps], vec![false; steps]);
+        let (mut from, mut to) = (Vec::new(), Vec::new());
+        let mut extras = Vec::new();
+        let mut outs = Lists::default();
+        for (rank, origin) in ranks.iter().enumerate() {
+            from.clear();
+            to.clear();
+            extras.clear();
+            let (chart, mut row) = match *origin {
+                Origin::Written(id) => {
+                    let Some(t) = self.unit.transitions.get(id.index()) else { continue };
+                    self.written(t, &mut from, &mut to, &mut extras);
+                    let row = self.row(&t.receptivity, &extras, t.chart);
+                    let on_clearing = clearing.get(id.index()).copied().unwrap_or(NONE);
+                    (t.chart, Transition { on_clearing, priority: t.priority.unwrap_or(NONE), ..row })
+                }
+                Origin::Return(task) => {
+                    self.returning(task, &mut from, &mut to, &mut extras);
+                    let at = self.unit.charts.get(task.index()).map(|c| c.at).unwrap_or_default();
+                    let always =
+                        Expr { kind: ExprKind::Const(Value::Bool(true)), ty: g7_model::Type::Bool, at };
+                    (task, self.row(&always, &extras, task))
+                }
+            };
+            row.chart = self.plan.chart(chart).unwrap_or(0);
+            (row.from, row.more_from) = self.arcs(&from);
+            (row.to, row.more_to) = self.arcs(&to);
+            for s in &from {
+                if let (Some(n), Some(j)) = (uses.get_mut(s.0 as usize), joint.get_mut(s.0 as usize)) {
+                    *n = n.saturating_add(1);
+                    *j |= from.len() > 1;
+                }
+            }
+            match from.first() {
+                Some(s) => outs.add(s.0, rank as u32),
+                None => self.t.sources.push(rank as u32),
+            }
+            self.t.transitions.push(row);
+        }
+        let shared = |s: Number| uses.get(s.0 as usize).is_some_and(|n| *n > 1);
+        let arcs = &self.t.arcs;
+        for row in &mut self.t.transitions {
+            let more = arcs.get(row.more_from.start as usize..row.more_from.end as usize).unwrap_or(&[]);
+            row.shares = shared(row.from) || more.iter().any(|s| shared(*s));
+            row.simple = joint.get(row.from.0 as usize).is_some_and(|j| !j);
+        }
+        outs.sort();
+        for (i, step) in self.t.steps.iter_mut().enumerate() {
+            step.out = outs.take(i as u32, &mut self.t.outs);
+        }
+    }
+
+    /// The first step, and the rest as rows of arcs.
+    fn arcs(&mut self, steps: &[Number]) -> (Number, Rows) {
+        let Some((first, rest)) = steps.split_first() else { return (Number(NONE), Rows::default()) };
+        (*first, self.list(rest))
+    }
+
+    /// A list of steps as rows of arcs.
+    pub(super) fn list(&mut self, steps: &[Number]) -> Rows {
+        if steps.is_empty() {
+            return Rows::default();
+        }
+        let start = self.t.arcs.len() as u32;
+        self.t.arcs.extend_from_slice(steps);
+        Rows { start, end: self.t.arcs.len() as u32 }
+    }
+
+    fn written(
+        &self,
+        t: &ir::Transition,
+        from: &mut Vec<Number>,
+        to: &mut Vec<Number>,
+        extras: &mut Vec<Extra>,
+    ) {
+        t.from.iter().for_each(|s| self.plan.leaving(self.unit, *s, from));
+        t.to.iter().for_each(|s| self.plan.entering(self.unit, *s, to));
+        if self.owners.is_empty() {
+            return;
+        }
+        for step in &t.from {
+            let Some(s) = self.unit.steps.get(step.index()) else { continue };
+            for (task, _) in &s.calls {
+                self.hand_back(*task, *step, from, to, extras);
+            }
+        }
+        let chart = self.unit.charts.get(t.chart.index());
+        if let Some(chart) = chart.filter(|c| c.role == ChartRole::Task)
+            && chart.entry.is_some_and(|e| t.from.contains(&e))
+        {
+            extras.push(Extra::Any(self.callers(t.chart).to_vec()));
+        }
+    }
+
+    /// A caller is left when the task's exit step is active on its behalf; the
+    /// task then stands at its entry step again.
+    fn hand_back(
+        &self,
+        task: ChartId,
+        caller: StepId,
+        from: &mut Vec<Number>,
+        to: &mut Vec<Number>,
+        extras: &mut Vec<Extra>,
+    ) {
+        let Some(owner) = self.owners.get(task.index()).copied().flatten() else { return };
+        let Some(number) = self.callers(task).iter().position(|c| *c == caller) else { return };
+        let Some(chart) = self.unit.charts.get(task.index()) else { return };
+        if let Some(exit) = chart.exit {
+            let mut steps = Vec::new();
+            self.plan.leaving(self.unit, exit, &mut steps);
+            steps.into_iter().for_each(|s| add(from, s));
+        }
+        if let Some(entry) = chart.entry {
+            let mut steps = Vec::new();
+            self.plan.entering(self.unit, entry, &mut steps);
+            steps.into_iter().for_each(|s| add(to, s));
+        }
+        extras.push(Extra::OwnedBy(owner, number as u64 + 1));
+    }
+
+    fn returning(
+        &self,
+        task: ChartId,
+        from: &mut Vec<Number>,
+        to: &mut Vec<Number>,
+        extras: &mut Vec<Extra>,
+    ) {
+        let Some(chart) = self.unit.charts.get(task.index()) else { return };
+        if let Some(exit) = chart.exit {
+            self.plan.leaving(self.unit, exit, from);
+        }
+        if let Some(entry) = chart.entry {
+            self.plan.entering(self.unit, entry, to);
+        }
+        if let Some(owner) = self.owners.get(task.index()).copied().flatten() {
+            extras.push(Extra::Orphaned(owner, self.callers(task).to_vec()));
+        }
+    }
+
+    /// The steps that call a task, in text order.
+    pub(super) fn callers(&self, task: ChartId) -> &[StepId] {
+        self.callers.get(task.index()).map_or(&[], Vec::as_slice)
+    }
+
+    fn row(&mut self, receptivity: &Expr, extras: &[Extra], chart: ChartId) -> Transition {
+        Transition {
+            guard: self.guard(receptivity, extras, chart),
+            from: Number(NONE),
+            to: Number(NONE),
+            more_from: Rows::default(),
+            more_to: Rows::default(),
+            chart: 0,
+            on_clearing: NONE,
+            shares: false,
+            priority: NONE,
+            simple: false,
+        }
+    }
+
+    fn guard(&mut self, receptivity: &Expr, extras: &[Extra], chart: ChartId) -> Guard {
+        let blockers = if self.has_blockers { self.blockers(chart) } else { Vec::new() };
+        if extras.is_empty()
+            && blockers.is_empty()
+            && let Some(guard) = self.plain_guard(receptivity)
+        {
+            return guard;
+        }
+        let at = receptivity.at;
+        let mut b = Buf::new(self.period(chart));
+        let mut any = !is_true(receptivity);
+        if any {
+            self.expr(&mut b, receptivity);
+        }
+        for e in extras.iter().chain(&blockers) {
+            self.extra(&mut b, e, at);
+            if std::mem::replace(&mut any, true) {
+                b.op(Op::And, at);
+            }
+        }
+        Guard::Code(self.place(b))
+    }
+
+    /// Receptivities that need no code.
+    fn plain_guard(&self, e: &Expr) -> Option<Guard> {
+        if is_true(e) {
+            return Some(Guard::True);
+        }
+        let word = |var: VarId| {
+            let v = self.unit.vars.get(var.index())?;
+            (v.class != VarClass::Const).then(|| self.words.addr(var))
+        };
+        match &e.kind {
+            ExprKind::Var(v) => word(*v).map(Guard::Word),
+            ExprKind::Not(x) => match x.kind {
+                ExprKind::Var(v) => word(v).map(Guard::NotWord),
+                _ => None,
+            },
+            _ => None,
+        }
+    }
+
+    /// What holds back every transition of a chart and of the charts round it.
+    fn blockers(&self, chart: ChartId) -> Vec<Extra> {
+        let mut found: Vec<Extra> = self.stop_all.map(Extra::Off).into_iter().collect();
+        let mut at = Some(chart);
+        for _ in 0..=super::plan::NESTING {
+            let Some(c) = at else { break };
+            if let Some(steps) = self.enabling.get(c.index()).filter(|s| !s.is_empty()) {
+                found.push(Extra::Any(steps.clone()));
+            }
+            if let Some(freeze) = self.freezes.get(c.index()).copied().flatten() {
+                found.push(Extra::Off(freeze.holds));
+            }
+            at = parent(self.unit, c).and_then(|m| self.unit.steps.get(m.index())).map(|s| s.chart);
+        }
+        found
+    }
+
+    fn extra(&mut self, b: &mut Buf, e: &Extra, at: Span) {
+        match e {
+            Extra::Any(steps) => self.any_acting(b, steps, at),
+            Extra::Off(word) => {
+                b.op(Op::Load(*word), at);
+                b.op(Op::Not, at);
+            }
+            Extra::OwnedBy(owner, number) => owned_by(b, *owner, *number, at),
+            Extra::Orphaned(owner, callers) => {
+                b.op(Op::Push(0), at);
+                for (i, caller) in callers.iter().enumerate() {
+                    owned_by(b, *owner, i as u64 + 1, at);
+                    self.acting(b, *caller, at);
+                    b.op(Op::And, at);
+                    b.op(Op::Or, at);
+                }
+                b.op(Op::Not, at);
+            }
+        }
+    }
+}
+
+fn is_true(e: &Expr) -> bool {
+    matches!(e.kind, ExprKind::Const(Value::Bool(true)))
+}
+
+fn owned_by(b: &mut Buf, owner: Addr, number: u64, at: Span) {
+    b.op(Op::Load(owner), at);
+    b.op(Op::Push(number), at);
+    b.op(Op::Compare(Cmp::Eq, Num::I64), at);
+}

@@ -1,0 +1,287 @@
+//! What the unit does with its variables, steps and charts, found in one walk
+//! before anything is emitted.
+//!
+//! The walk decides what costs something at run time: which macro-steps need a
+//! time of their own, which outputs may be written with their step at once,
+//! which charts can be frozen.
+
+use crate::ir::{
+    ActionKind, ChartId, Expr, ExprKind, Service, StepId, Stmt, StmtKind, Target, Unit, Value, VarId,
+};
+use g7_model::Qualifier;
+
+/// Nesting beyond which a chart is refused; see [`super::Lower::expr`].
+pub(super) const DEPTH: u32 = 1000;
+
+/// What is done with what.
+pub(super) struct Uses {
+    /// By variable: read by a receptivity, watch, condition or stored action,
+    /// which may run before the end of the scan.
+    pub(super) early: Vec<bool>,
+    /// By variable: written by a statement.
+    pub(super) written: Vec<bool>,
+    /// By variable: named anywhere.
+    pub(super) named: Vec<bool>,
+    /// By step: its time is read.
+    pub(super) timed: Vec<bool>,
+    /// By chart: `FREEZECHART` names it.
+    pub(super) frozen: Vec<bool>,
+    /// By step: `enable`, `mask` or `call` stands in it, or other actions.
+    pub(super) acts: Vec<bool>,
+    /// Something asks for a random number.
+    pub(super) random: bool,
+}
+
+struct Walk<'a> {
+    unit: &'a Unit,
+    uses: Uses,
+    /// What is read now is read before the end of the scan.
+    early: bool,
+    depth: u32,
+}
+
+/// Looks through the unit and the queries on it.
+pub(super) fn uses(unit: &Unit, queries: &[Expr]) -> Uses {
+    let vars = unit.vars.len();
+    let uses = Uses {
+        early: vec![false; vars],
+        written: vec![false; vars],
+        named: vec![false; vars],
+        timed: vec![false; unit.steps.len()],
+        frozen: vec![false; unit.charts.len()],
+        acts: unit.steps.iter().map(|s| !s.actions.is_empty() || !s.calls.is_empty()).collect(),
+        random: false,
+    };
+    let mut walk = Walk { unit, uses, early: true, depth: 0 };
+    for t in &unit.transitions {
+        walk.expr(&t.receptivity);
+        walk.stmts(&t.on_clearing);
+    }
+    // Inlined wherever they are called, so they may run at any time.
+    for f in &unit.functions {
+        walk.stmts(&f.statements);
+    }
+    for s in &unit.sections {
+        walk.stmts(&s.statements);
+    }
+    walk.actions();
+    walk.early = false;
+    for body in unit.pre.iter().chain(&unit.post) {
+        walk.stmts(&body.statements);
+    }
+    for e in queries {
+        walk.expr(e);
+    }
+    walk.uses
+}
+
+impl Walk<'_> {
+    fn actions(&mut self) {
+        let unit = self.unit;
+        // Pulses of bodies run within the pass in some profiles.
+        let mut early_bodies = vec![false; unit.bodies.len()];
+        for action in unit.steps.iter().flat_map(|s| &s.actions) {
+            match &action.kind {
+                ActionKind::Variable { time, var, condition, .. } => {
+                    self.name(*var);
+                    self.conditions(time, condition);
+                }
+                ActionKind::Named { qualifier, time, body, condition } => {
+                    self.conditions(time, condition);
+                    if let Some(early) = early_bodies.get_mut(body.index()) {
+                        *early |= self.within_pass(*qualifier);
+                    }
+                }
+                ActionKind::Work { qualifier, time, work, condition } => {
+                    self.conditions(time, condition);
+                    self.early = self.within_pass(*qualifier);
+                    self.stmts(work);
+                    self.early = true;
+                }
+                ActionKind::OnEvent { event, work } => {
+                    self.expr(event);
+                    self.stmts(work);
+                }
+                ActionKind::EachScan { work, condition } => {
+                    self.conditions(&None, condition);
+                    self.early = false;
+                    self.stmts(work);
+                    self.early = true;
+                }
+                ActionKind::MaskVar(var) => self.name(*var),
+                ActionKind::Force(..) | ActionKind::Enable(_) | ActionKind::MaskChart(_) => {}
+            }
+        }
+        for (body, early) in unit.bodies.iter().zip(early_bodies) {
+            self.early = early;
+            self.stmts(&body.statements);
+        }
+        self.early = true;
+    }
+
+    fn within_pass(&self, qualifier: Qualifier) -> bool {
+        !self.unit.rules.late_actions && matches!(qualifier, Qualifier::P1 | Qualifier::P0)
+    }
+
+    fn conditions(&mut self, time: &Option<Expr>, condition: &Option<Expr>) {
+        for e in [time, condition].into_iter().flatten() {
+            self.expr(e);
+        }
+    }
+
+    fn name(&mut self, var: VarId) {
+        if let Some(n) = self.uses.named.get_mut(var.index()) {
+            *n = true;
+        }
+    }
+
+    fn read(&mut self, var: VarId) {
+        self.name(var);
+        if self.early
+            && let Some(e) = self.uses.early.get_mut(var.index())
+        {
+            *e = true;
+        }
+    }
+
+    fn write(&mut self, var: VarId) {
+        self.name(var);
+        if let Some(w) = self.uses.written.get_mut(var.index()) {
+            *w = true;
+        }
+    }
+
+    fn time_of(&mut self, step: StepId) {
+        if let Some(t) = self.uses.timed.get_mut(step.index()) {
+            *t = true;
+        }
+    }
+
+    fn watched(&mut self, e: &Expr) {
+        let early = std::mem::replace(&mut self.early, true);
+        self.expr(e);
+        self.early = early;
+    }
+
+    fn expr(&mut self, e: &Expr) {
+        if self.depth > DEPTH {
+            return; // the emitter reports it
+        }
+        self.depth += 1;
+        // Long sums lean to the left; go down them without recursion.
+        let mut e = e;
+        while let ExprKind::Binary(_, left, right) = &e.kind {
+            self.expr(right);
+            e = left;
+        }
+        match &e.kind {
+            ExprKind::Const(_) | ExprKind::StepActive(_) | ExprKind::ScanTime | ExprKind::Section(_) => {}
+            ExprKind::Random => self.uses.random = true,
+            ExprKind::Var(v) | ExprKind::Member(v, _) => self.read(*v),
+            ExprKind::Element(v, index) => {
+                self.read(*v);
+                self.expr(index);
+            }
+            ExprKind::StepTime(s)
+            | ExprKind::StepTenths(s)
+            | ExprKind::StepScans(s)
+            | ExprKind::StepSeconds(s) => self.time_of(*s),
+            ExprKind::Not(x) | ExprKind::Neg(x) | ExprKind::Convert(x) | ExprKind::Trunc(x) => self.expr(x),
+            ExprKind::Rise(x) | ExprKind::Fall(x) => self.watched(x),
+            ExprKind::Timer { t1, e, t2 } => {
+                if let Some((step, _)) = activity_time(t1, e, t2.as_deref()) {
+                    self.time_of(step);
+                }
+                self.expr(t1);
+                self.watched(e);
+                if let Some(t2) = t2 {
+                    self.expr(t2);
+                }
+            }
+            ExprKind::Builtin(_, args) | ExprKind::Call(_, args) => {
+                for a in args {
+                    self.expr(a);
+                }
+            }
+            ExprKind::Binary(..) => {} // gone down above
+        }
+        self.depth -= 1;
+    }
+
+    fn target(&mut self, t: &Target) {
+        match t {
+            Target::Var(v) | Target::Member(v, _) => self.write(*v),
+            Target::Element(v, index) => {
+                self.write(*v);
+                self.expr(index);
+            }
+        }
+    }
+
+    fn stmts(&mut self, list: &[Stmt]) {
+        if self.depth > DEPTH {
+            return; // the emitter reports it
+        }
+        self.depth += 1;
+        for s in list {
+            self.stmt(s);
+        }
+        self.depth -= 1;
+    }
+
+    fn stmt(&mut self, s: &Stmt) {
+        match &s.kind {
+            StmtKind::Assign(target, e) => {
+                self.target(target);
+                self.expr(e);
+            }
+            StmtKind::Fb { var, inputs, outputs, .. } => {
+                self.write(*var);
+                inputs.iter().for_each(|(_, e)| self.expr(e));
+                outputs.iter().for_each(|(_, t)| self.target(t));
+            }
+            StmtKind::If(arms, other) => {
+                for (condition, then) in arms {
+                    self.expr(condition);
+                    self.stmts(then);
+                }
+                self.stmts(other);
+            }
+            StmtKind::Case(selector, arms, other) => {
+                self.expr(selector);
+                arms.iter().for_each(|(_, then)| self.stmts(then));
+                self.stmts(other);
+            }
+            StmtKind::For { var, from, to, by, body } => {
+                self.write(*var);
+                self.read(*var);
+                self.expr(from);
+                self.expr(to);
+                if let Some(by) = by {
+                    self.expr(by);
+                }
+                self.stmts(body);
+            }
+            StmtKind::While(e, body) | StmtKind::Repeat(body, e) => {
+                self.expr(e);
+                self.stmts(body);
+            }
+            StmtKind::Service(Service::FreezeChart(chart, e)) => {
+                if let Some(f) = self.uses.frozen.get_mut(ChartId::index(*chart)) {
+                    *f = true;
+                }
+                self.expr(e);
+            }
+            StmtKind::Exit | StmtKind::Return | StmtKind::Service(_) => {}
+        }
+    }
+}
+
+/// `t/X12` with a written time and no second one: the step and the time. It is
+/// not a timer but a look at the step's own time (decision 12 of the semantics).
+pub(super) fn activity_time(t1: &Expr, e: &Expr, t2: Option<&Expr>) -> Option<(StepId, i64)> {
+    let (ExprKind::Const(Value::Int(t)), ExprKind::StepActive(step), None) = (&t1.kind, &e.kind, t2) else {
+        return None;
+    };
+    Some((*step, i64::try_from(*t).ok()?))
+}

@@ -1,0 +1,318 @@
+//! What the rows of a program are called, and where they stand in the text.
+//!
+//! The engine knows numbers only. Everything that talks about a running program
+//! (traces, tests, coverage, the terminal view, faults with a place) goes
+//! through here and back. Names lie one behind the other in one text, so that a
+//! hundred thousand steps cost two allocations.
+
+use g7_engine::{Addr, Duration, GroupId, State, StepId};
+use g7_model::{Span, Type};
+
+use crate::ir::VarClass;
+
+/// Many short texts, one behind the other.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Names {
+    text: String,
+    ends: Vec<u32>,
+}
+
+impl Names {
+    /// Adds a text.
+    pub fn push(&mut self, name: &str) {
+        self.text.push_str(name);
+        self.end();
+    }
+
+    /// Adds a text that `write` appends to what is there.
+    pub(crate) fn push_with(&mut self, write: impl FnOnce(&mut String)) {
+        write(&mut self.text);
+        self.end();
+    }
+
+    fn end(&mut self) {
+        self.ends.push(u32::try_from(self.text.len()).unwrap_or(u32::MAX));
+    }
+
+    /// How many there are.
+    pub fn len(&self) -> usize {
+        self.ends.len()
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.ends.is_empty()
+    }
+
+    /// The text at a place; empty where there is none.
+    pub fn get(&self, i: usize) -> &str {
+        let start = if i == 0 { Some(0) } else { self.ends.get(i - 1).copied() };
+        let (Some(start), Some(end)) = (start, self.ends.get(i)) else { return "" };
+        self.text.get(start as usize..*end as usize).unwrap_or("")
+    }
+
+    /// All of them.
+    pub fn iter(&self) -> impl Iterator<Item = &str> {
+        (0..self.len()).map(|i| self.get(i))
+    }
+}
+
+/// A variable.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Variable {
+    /// As users write it from elsewhere: `motor`, `Fill.count`; a member of an
+    /// instance `c.Q`.
+    pub name: Box<str>,
+    /// What it is for. Members of an instance have the class of the instance.
+    pub class: VarClass,
+    /// Its type.
+    pub ty: Type,
+    /// Its first word.
+    pub addr: Addr,
+    /// Number of elements, 1 but for tables.
+    pub elements: u32,
+    /// Kept over a restart.
+    pub retain: bool,
+    /// The channel carries the complement.
+    pub inverted: bool,
+    /// Address or channel, as written.
+    pub address: Option<Box<str>>,
+    /// The words that it takes after a fault (outputs).
+    pub safe: Box<[u64]>,
+    /// `"…"`.
+    pub comment: Option<Box<str>>,
+    /// Its declaration.
+    pub at: Span,
+}
+
+impl Variable {
+    /// Words of all its elements together.
+    pub fn words(&self) -> u32 {
+        crate::lower::words_of(self.ty).saturating_mul(self.elements)
+    }
+
+    /// Its words in a state.
+    pub fn value<'a>(&self, state: &'a State) -> &'a [u64] {
+        let from = self.addr.0 as usize;
+        state.words().get(from..from + self.words() as usize).unwrap_or(&[])
+    }
+}
+
+/// A chart, as the engine counts them: outermost ones.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ChartSymbol {
+    /// Its name.
+    pub name: Box<str>,
+    /// Its steps, expansions included.
+    pub group: GroupId,
+    /// Its name in the text.
+    pub at: Span,
+}
+
+/// A macro-step.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct MacroSymbol {
+    /// As in traces: `M3`, or `G.M3`.
+    pub name: Box<str>,
+    /// The same with its chart: `G.M3`.
+    pub path: Box<str>,
+    /// The steps of its expansion: it is active while one of them is.
+    pub group: GroupId,
+    /// The step that carries its actions and its time, where it has one.
+    pub step: Option<StepId>,
+    /// Its name in the text.
+    pub at: Span,
+}
+
+/// An action, by rank.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ActionSymbol {
+    /// Where it stands.
+    pub at: Span,
+    /// Made by the lowering: nothing of the text.
+    pub hidden: bool,
+}
+
+/// A control block.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct BlockSymbol {
+    /// The variable or named action that it drives; empty for work without a name.
+    pub name: Box<str>,
+    /// Its first association, or the named action.
+    pub at: Span,
+}
+
+/// Names and places of everything in a program.
+#[derive(Clone, Debug, Default)]
+pub struct Symbols {
+    /// Variables, constants, locals and system bits, in text order; behind each
+    /// instance its members.
+    pub variables: Vec<Variable>,
+    /// Outermost charts.
+    pub charts: Vec<ChartSymbol>,
+    /// Macro-steps, in text order.
+    pub macro_steps: Vec<MacroSymbol>,
+    /// By step: its name in traces.
+    pub(crate) step_names: Names,
+    /// By step: chart and name.
+    pub(crate) step_paths: Names,
+    /// By step: where its name stands.
+    pub(crate) step_places: Vec<Span>,
+    /// By step: it stands for a macro-step.
+    pub(crate) pseudo: Vec<bool>,
+    /// By transition: label, or empty.
+    pub(crate) labels: Names,
+    /// By transition: `1 -> 2`.
+    pub(crate) arrows: Names,
+    /// By transition: all of it in the text.
+    pub(crate) transition_places: Vec<Span>,
+    /// By transition: made by the lowering.
+    pub(crate) hidden: Vec<bool>,
+    /// Actions, by rank.
+    pub actions: Vec<ActionSymbol>,
+    /// Control blocks.
+    pub blocks: Vec<BlockSymbol>,
+    /// By instruction: the place to name in a fault.
+    pub(crate) places: Vec<Span>,
+    /// `%S0`, TRUE in the first scan after a cold start.
+    pub s0: Option<Addr>,
+    /// `%S1`, to be set by the host before the first scan after a warm restart
+    /// (and `%S0` taken back).
+    pub s1: Option<Addr>,
+    /// The word of the random generator, to be set before the first scan.
+    pub seed: Option<Addr>,
+    /// Nominal scan time, ns.
+    pub cycle: i64,
+}
+
+impl Symbols {
+    /// The variable of this name (`motor`, `Fill.count`, `c.Q`).
+    pub fn variable(&self, name: &str) -> Option<&Variable> {
+        self.variables.iter().find(|v| &*v.name == name)
+    }
+
+    /// The variable whose first word this is, instances before their members.
+    pub fn variable_at(&self, addr: Addr) -> Option<&Variable> {
+        self.variables.iter().find(|v| v.addr <= addr && addr.0 < v.addr.0.saturating_add(v.words()))
+    }
+
+    /// Number of steps, pseudo-steps included.
+    pub fn steps(&self) -> u32 {
+        self.step_names.len() as u32
+    }
+
+    /// A step's name in traces: `5`, `G.5` where another chart has a step 5,
+    /// `M3.E` in an expansion.
+    pub fn step_name(&self, step: StepId) -> &str {
+        self.step_names.get(step.0 as usize)
+    }
+
+    /// A step's name with its chart: `G.5`, `G.M3.E`.
+    pub fn step_path(&self, step: StepId) -> &str {
+        self.step_paths.get(step.0 as usize)
+    }
+
+    /// Where a step's name stands.
+    pub fn step_place(&self, step: StepId) -> Span {
+        self.step_places.get(step.0 as usize).copied().unwrap_or_default()
+    }
+
+    /// Whether a step is one of the text, and not the stand-in of a macro-step
+    /// (which situations do not list).
+    pub fn is_listed(&self, step: StepId) -> bool {
+        !self.pseudo.get(step.0 as usize).copied().unwrap_or(true)
+    }
+
+    /// The step of this name: as in traces, with its chart, or the end of that
+    /// where only one step ends so.
+    pub fn step(&self, name: &str) -> Option<StepId> {
+        let listed = |i: &usize| self.is_listed(StepId(*i as u32));
+        let exact = |names: &Names| (0..names.len()).filter(listed).find(|i| names.get(*i) == name);
+        let by_end = || {
+            let mut ends = (0..self.step_paths.len()).filter(listed).filter(|i| {
+                let rest = self.step_paths.get(*i).strip_suffix(name);
+                rest.is_some_and(|r| r.ends_with('.'))
+            });
+            let first = ends.next();
+            // A chart's own step before those of expansions.
+            match (first, ends.next()) {
+                (Some(i), None) => Some(i),
+                _ => None,
+            }
+        };
+        let i = exact(&self.step_names).or_else(|| exact(&self.step_paths)).or_else(by_end)?;
+        Some(StepId(i as u32))
+    }
+
+    /// The active steps by name, in the order of the program.
+    pub fn situation<'a>(&'a self, state: &'a State) -> impl Iterator<Item = &'a str> {
+        state.active().filter(|s| self.is_listed(*s)).map(|s| self.step_name(s))
+    }
+
+    /// Number of transitions, those made by the lowering included.
+    pub fn transitions(&self) -> u32 {
+        self.arrows.len() as u32
+    }
+
+    /// A transition's label, by rank.
+    pub fn label(&self, rank: u32) -> Option<&str> {
+        Some(self.labels.get(rank as usize)).filter(|l| !l.is_empty())
+    }
+
+    /// A transition as `1 -> 2`, by rank.
+    pub fn transition_text(&self, rank: u32) -> &str {
+        self.arrows.get(rank as usize)
+    }
+
+    /// Where a transition stands, by rank.
+    pub fn transition_place(&self, rank: u32) -> Span {
+        self.transition_places.get(rank as usize).copied().unwrap_or_default()
+    }
+
+    /// Whether a transition is one of the text, by rank. The others take a task
+    /// whose caller has gone back to its start.
+    pub fn is_written(&self, rank: u32) -> bool {
+        !self.hidden.get(rank as usize).copied().unwrap_or(true)
+    }
+
+    /// The place in the text behind an instruction.
+    pub fn place(&self, at: u32) -> Span {
+        self.places.get(at as usize).copied().unwrap_or_default()
+    }
+
+    /// A value as one writes it: `TRUE`, `5`, `2.5`, `T#1s500ms`, `'text'`.
+    /// `words` are those of one element; of an instance nothing is written.
+    pub fn value_text(ty: Type, words: &[u64]) -> String {
+        let word = words.first().copied().unwrap_or(0);
+        match ty {
+            Type::Bool => (if word == 0 { "FALSE" } else { "TRUE" }).into(),
+            Type::Sint | Type::Int | Type::Dint | Type::Lint => (word as i64).to_string(),
+            Type::Usint | Type::Uint | Type::Udint | Type::Ulint => word.to_string(),
+            Type::Real => format!("{:?}", f32::from_bits(word as u32)),
+            Type::Lreal => format!("{:?}", f64::from_bits(word)),
+            Type::Time => Duration(word as i64).to_string(),
+            Type::String(_) => quoted(words),
+            Type::Fb(_) => String::new(),
+        }
+    }
+}
+
+/// A STRING's words as a literal (IEC 61131-3:2003, 2.2.2).
+fn quoted(words: &[u64]) -> String {
+    let len = words.first().map_or(0, |w| usize::try_from(*w).unwrap_or(usize::MAX));
+    let bytes: Vec<u8> = words.iter().skip(1).flat_map(|w| w.to_le_bytes()).take(len).collect();
+    let mut text = String::from("'");
+    for c in String::from_utf8_lossy(&bytes).chars() {
+        match c {
+            '\'' => text.push_str("$'"),
+            '$' => text.push_str("$$"),
+            '\n' => text.push_str("$n"),
+            '\r' => text.push_str("$r"),
+            '\t' => text.push_str("$t"),
+            c if (c as u32) < 0x20 => text.push_str(&format!("${:02X}", c as u32)),
+            c => text.push(c),
+        }
+    }
+    text.push('\'');
+    text
+}
