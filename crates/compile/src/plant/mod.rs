@@ -1,0 +1,380 @@
+//! A model of the process becomes a program of its own, run by the same engine.
+//!
+//! # Where this sits
+//!
+//! ```text
+//! model::Plant -> here: a document without charts -> compile -> Program
+//! ```
+//!
+//! The document made here has the charts' outputs as inputs, the driven inputs
+//! as outputs, the states as variables, and one PRE that makes a tick: arrivals,
+//! then rates, then the rest in the order of the text, then the drives. Host
+//! runs it before each scan of the charts.
+//!
+//! What must hold: every node carries the place of the author's text that it
+//! comes from, so that problems found later point there.
+
+mod build;
+mod parts;
+mod program;
+mod rewrite;
+
+pub use program::{Binding, Link, PlantProgram, compile_plant};
+
+use std::collections::{HashMap, HashSet};
+
+use g7_model::{
+    BinaryOp, Block, Body, Document, Expr, Item, Name, Place, Plant, PlantItem, Problem, Stmt, Type, VarDecl, VarKind,
+    codes,
+};
+
+use crate::ir::{Unit, VarClass};
+use build::At;
+use parts::Table;
+use rewrite::Rewrite;
+
+/// Most parts that one queue or track holds.
+const MOST_PARTS: u32 = 48;
+
+/// A plant as a document of its own.
+struct PlantDocument {
+    /// To be compiled.
+    document: Document,
+    /// Outputs of the charts that the plant reads, by qualified name.
+    reads: Vec<Box<str>>,
+    /// Inputs of the charts that it drives, by qualified name.
+    drives: Vec<Box<str>>,
+    /// Expressions of its picture: element, attribute, value.
+    bindings: Vec<(Box<str>, Box<str>, Expr)>,
+    /// Its picture, as written.
+    view: Option<Box<str>>,
+    /// The questions, as the document understands them.
+    queries: Vec<Expr>,
+}
+
+/// Makes the document of a plant; `unit` is that of the charts it answers.
+fn document(doc: &Document, plant: &Plant, unit: &Unit, queries: &[Expr]) -> (PlantDocument, Vec<Problem>) {
+    let mut maker = Maker {
+        rewrite: Rewrite {
+            tables: HashMap::new(),
+            charts: unit.charts.iter().map(|c| &*c.name).collect(),
+            problems: Vec::new(),
+        },
+        vars: Vec::new(),
+        own: HashSet::new(),
+        arrivals: Vec::new(),
+        rates: Vec::new(),
+        rest: Vec::new(),
+        drives: Vec::new(),
+        driven: HashMap::new(),
+        hidden: 0,
+        unit,
+    };
+    let mut made = maker.make(doc, plant);
+    made.queries = queries.iter().map(|e| maker.rewrite.expr(e)).collect();
+    (made, maker.rewrite.problems)
+}
+
+struct Maker<'d> {
+    rewrite: Rewrite<'d>,
+    vars: Vec<VarDecl>,
+    /// Names that the plant declares itself.
+    own: HashSet<&'d str>,
+    arrivals: Vec<Stmt>,
+    rates: Vec<Stmt>,
+    rest: Vec<Stmt>,
+    drives: Vec<Stmt>,
+    driven: HashMap<&'d str, Place>,
+    hidden: u32,
+    unit: &'d Unit,
+}
+
+/// The first tick is over.
+const STARTED: &str = "@started";
+/// Seconds since the tick before, for REAL and for LREAL.
+const STEP_REAL: &str = "@step";
+const STEP_LREAL: &str = "@stepl";
+
+impl<'d> Maker<'d> {
+    fn make(&mut self, doc: &'d Document, plant: &'d Plant) -> PlantDocument {
+        let at = At(plant.name.at);
+        for item in &plant.items {
+            self.declare(item);
+        }
+        let mut limits = Vec::new();
+        let mut bindings = Vec::new();
+        let mut view = None;
+        for item in &plant.items {
+            match item {
+                PlantItem::Const { .. } | PlantItem::Parts(_) => {}
+                PlantItem::State(s) => limits.append(&mut self.limits(s)),
+                PlantItem::Rate(r) => self.rate(plant, r),
+                PlantItem::Drive(d) => self.drive(d),
+                PlantItem::On(e, block, place) => self.on(e, block, *place),
+                PlantItem::Each(block, _) => {
+                    let mut body = self.rewrite.block(block);
+                    self.rest.append(&mut body);
+                }
+                PlantItem::Arrivals(a) => self.arrival(a),
+                PlantItem::View(v) => {
+                    view = Some(v.file.clone());
+                    for b in &v.bindings {
+                        let value = self.rewrite.expr(&b.value);
+                        bindings.push((b.element.text.clone(), b.attribute.text.clone(), value));
+                    }
+                }
+            }
+        }
+        let reads = self.chart_outputs(at);
+        let mut tick = vec![
+            at.assign(STEP_LREAL, at.call(rewrite::DT, Vec::new())),
+            at.assign(STEP_REAL, at.call("LREAL_TO_REAL", vec![at.var(STEP_LREAL)])),
+        ];
+        tick.append(&mut self.arrivals);
+        tick.append(&mut self.rates);
+        tick.extend(limits.iter().cloned());
+        tick.append(&mut self.rest);
+        tick.append(&mut limits);
+        tick.append(&mut self.drives);
+        tick.push(at.assign(STARTED, at.bool(true)));
+        let mut document = Document::default();
+        // Functions and constants of the file are the plant's as well.
+        for item in &doc.items {
+            match item {
+                Item::Function(_) => document.items.push(item.clone()),
+                Item::Var(v) if v.kind == VarKind::Const => document.items.push(item.clone()),
+                _ => {}
+            }
+        }
+        for (name, ty) in [(STARTED, Type::Bool), (STEP_REAL, Type::Real), (STEP_LREAL, Type::Lreal)] {
+            document.items.push(Item::Var(at.declare(VarKind::Var, name, ty, None)));
+        }
+        document.items.extend(self.vars.drain(..).map(Item::Var));
+        let block = Block { locals: Vec::new(), statements: tick, at: plant.at };
+        document.items.push(Item::Pre(Body::St(block), plant.at));
+        PlantDocument {
+            document,
+            reads,
+            drives: plant
+                .items
+                .iter()
+                .filter_map(|i| if let PlantItem::Drive(d) = i { Some(d.input.text.clone()) } else { None })
+                .collect(),
+            bindings,
+            view,
+            queries: Vec::new(),
+        }
+    }
+
+    /// The charts' outputs that no name of the plant hides.
+    fn chart_outputs(&mut self, at: At) -> Vec<Box<str>> {
+        let unit = self.unit;
+        let outputs = unit.vars.iter().filter(|v| v.class == VarClass::Output && !matches!(v.ty, Type::Fb(_)));
+        let mut names = Vec::new();
+        for v in outputs.filter(|v| !self.own.contains(&*v.name)) {
+            let mut decl = At(v.at.into()).declare(VarKind::Input, &v.name, v.ty, None);
+            decl.at = at.0;
+            self.vars.push(decl);
+            names.push(v.name.clone());
+        }
+        names
+    }
+
+    fn declare(&mut self, item: &'d PlantItem) {
+        match item {
+            PlantItem::Const { names, ty, value, comment, at } => {
+                self.own.extend(names.iter().map(|n| &*n.text));
+                self.vars.push(VarDecl {
+                    names: names.clone(),
+                    init: Some(value.clone()),
+                    comment: comment.clone(),
+                    ..At(*at).declare(VarKind::Const, "", *ty, None)
+                });
+            }
+            PlantItem::State(s) => {
+                self.own.extend(s.names.iter().map(|n| &*n.text));
+                self.vars.push(VarDecl {
+                    names: s.names.clone(),
+                    init: s.init.clone(),
+                    comment: s.comment.clone(),
+                    ..At(s.at).declare(VarKind::Var, "", s.ty, None)
+                });
+            }
+            PlantItem::Parts(p) => self.parts(p),
+            PlantItem::Rate(_)
+            | PlantItem::Drive(_)
+            | PlantItem::On(..)
+            | PlantItem::Each(..)
+            | PlantItem::Arrivals(_)
+            | PlantItem::View(_) => {}
+        }
+    }
+
+    fn parts(&mut self, p: &'d g7_model::Parts) {
+        let at = p.name.at.0;
+        let mut bad = |what: String| self.rewrite.problems.push(Problem::new(&codes::BAD_PARTS, at, what));
+        if p.max == 0 || p.max > MOST_PARTS {
+            return bad(format!("`{}` holds {} parts: 1 to {MOST_PARTS} are possible", p.name.text, p.max));
+        }
+        if p.init.len() > p.max as usize {
+            bad(format!("`{}` begins with {} parts but holds {}", p.name.text, p.init.len(), p.max));
+        }
+        if p.init.iter().any(|part| part.len() != p.attributes.len()) {
+            bad(format!("each part of `{}` has {} attribute(s)", p.name.text, p.attributes.len()));
+        }
+        if let Some(a) = p.attributes.iter().find(|a| matches!(a.ty, Type::String(_) | Type::Fb(_))) {
+            return bad(format!("a part cannot carry a {}", a.ty));
+        }
+        let table = Table { parts: p };
+        self.vars.extend(table.declare());
+        self.own.insert(&p.name.text);
+        self.rewrite.tables.insert(&p.name.text, table);
+    }
+
+    fn limits(&mut self, s: &g7_model::StateVar) -> Vec<Stmt> {
+        let Some((least, most)) = &s.limits else { return Vec::new() };
+        let at = At(s.at);
+        s.names
+            .iter()
+            .map(|n| {
+                let held = at.call("LIMIT", vec![least.clone(), at.var(&n.text), most.clone()]);
+                at.assign(&n.text, held)
+            })
+            .collect()
+    }
+
+    fn rate(&mut self, plant: &Plant, r: &g7_model::Rate) {
+        let at = At(r.at);
+        let value = self.rewrite.expr(&r.value);
+        let name = &*r.state.text;
+        let body = if let Some(t) = self.rewrite.tables.get(name) {
+            let Some(length) = t.parts.length.clone() else {
+                let what = format!("the parts of `{name}` have no positions");
+                self.rewrite.problems.push(
+                    Problem::new(&codes::BAD_RATE, r.state.at.0, what).help("give the parts a `length` to move along"),
+                );
+                return;
+            };
+            let way = at.binary(BinaryOp::Mul, value, at.var(STEP_LREAL));
+            t.advance(r.at, &way, &length)
+        } else {
+            let ty = plant.items.iter().find_map(|i| match i {
+                PlantItem::State(s) if s.names.iter().any(|n| *n.text == *name) => Some(s.ty),
+                _ => None,
+            });
+            let step = match ty {
+                Some(Type::Real) => STEP_REAL,
+                Some(Type::Lreal) => STEP_LREAL,
+                Some(_) | None => {
+                    let what = format!("`{name}` is no state of type REAL or LREAL, nor a track");
+                    self.rewrite.problems.push(Problem::new(&codes::BAD_RATE, r.state.at.0, what));
+                    return;
+                }
+            };
+            let way = at.binary(BinaryOp::Mul, value, at.var(step));
+            let mut target = at.var(name);
+            if let g7_model::ExprKind::Path(p) = &mut target.kind {
+                p.names = vec![r.state.clone()];
+            }
+            let sum = at.binary(BinaryOp::Add, target.clone(), way);
+            vec![at.stmt(g7_model::StmtKind::Assign { target, value: sum })]
+        };
+        let body = match &r.when {
+            Some(when) => vec![at.when(self.rewrite.expr(when), body)],
+            None => body,
+        };
+        self.rates.extend(body);
+    }
+
+    fn drive(&mut self, d: &'d g7_model::Drive) {
+        let name = &d.input;
+        if let Some(first) = self.driven.insert(&name.text, name.at) {
+            let what = format!("input `{}` is driven twice", name.text);
+            self.rewrite
+                .problems
+                .push(Problem::new(&codes::BAD_DRIVE, name.at.0, what).related(first.0, "driven here first"));
+            return;
+        }
+        let input = self.unit.vars.iter().find(|v| v.class == VarClass::Input && *v.name == *name.text);
+        let Some(input) = input else {
+            let what = format!("`{}` is no input of the charts", name.text);
+            self.rewrite.problems.push(Problem::new(&codes::BAD_DRIVE, name.at.0, what));
+            return;
+        };
+        let hidden = driven(&name.text);
+        let value = self.rewrite.expr(&d.value);
+        self.vars.push(At(d.at).declare(VarKind::Output, &hidden, input.ty, None));
+        self.drives.push(At(d.at).assign(&hidden, value));
+    }
+
+    /// Runs a block each time a condition becomes true; not at the first tick.
+    fn on(&mut self, e: &Expr, block: &Block, place: Place) {
+        let at = At(place);
+        let (now, before) = (self.hide(place), self.hide(place));
+        let condition = self.rewrite.expr(e);
+        let body = self.rewrite.block(block);
+        self.rest.push(at.assign(&now, condition));
+        let rose = at.binary(BinaryOp::And, at.var(&now), at.not(at.var(&before)));
+        self.rest.push(at.when(at.binary(BinaryOp::And, rose, at.var(STARTED)), body));
+        self.rest.push(at.assign(&before, at.var(&now)));
+    }
+
+    fn hide(&mut self, place: Place) -> String {
+        self.hidden += 1;
+        let name = format!("@{}", self.hidden);
+        self.vars.push(At(place).declare(VarKind::Var, &name, Type::Bool, None));
+        name
+    }
+
+    /// Counts down a waiting time, which chance lengthens from `least` to `most`.
+    fn arrival(&mut self, a: &g7_model::Arrivals) {
+        let at = At(a.at);
+        let left = format!("{}.wait", a.name.text);
+        self.vars.push(at.declare(VarKind::Var, &left, Type::Time, None));
+        let least = self.rewrite.expr(&a.least);
+        let wait = match &a.most {
+            None => least,
+            Some(most) => {
+                let most = self.rewrite.expr(most);
+                let spread = at.binary(BinaryOp::Sub, most, least.clone());
+                let part = at.binary(BinaryOp::Mul, spread, at.call(rewrite::RANDOM, Vec::new()));
+                at.binary(BinaryOp::Add, least, part)
+            }
+        };
+        let step = at.call("@tick", Vec::new());
+        let less = at.assign(&left, at.binary(BinaryOp::Sub, at.var(&left), step));
+        let zero = parts::zero(at, Type::Time);
+        let mut body = self.rewrite.block(&a.body);
+        let again = at.binary(BinaryOp::Add, at.var(&left), wait.clone());
+        body.insert(0, at.assign(&left, again));
+        let due = at.when(at.binary(BinaryOp::Le, at.var(&left), zero), body);
+        let going = match &a.when {
+            Some(when) => vec![at.when(self.rewrite.expr(when), vec![less, due])],
+            None => vec![less, due],
+        };
+        let first = vec![at.assign(&left, wait)];
+        self.arrivals.push(at.stmt(g7_model::StmtKind::If(vec![(at.var(STARTED), going)], first)));
+    }
+}
+
+/// How the plant's output behind an input of the charts is called: the plant may
+/// have a state of the input's own name.
+fn driven(input: &str) -> String {
+    format!("@drive.{input}")
+}
+
+/// Plants of a document, in the order of the text.
+pub fn plants(doc: &Document) -> impl Iterator<Item = &Plant> {
+    doc.items.iter().filter_map(|i| if let Item::Plant(p) = i { Some(p) } else { None })
+}
+
+/// The plant with a name, or the only one.
+pub fn find<'d>(doc: &'d Document, name: Option<&Name>) -> Option<&'d Plant> {
+    match name {
+        Some(n) => plants(doc).find(|p| p.name.text == n.text),
+        None => {
+            let mut all = plants(doc);
+            all.next().filter(|_| all.next().is_none())
+        }
+    }
+}

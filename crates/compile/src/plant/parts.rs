@@ -1,0 +1,195 @@
+//! Queues and tracks of parts, as plain variables: `max` places, each with its
+//! attributes and, on a track, its position. Place 0 is the part that came
+//! first; what leaves in the middle is closed up.
+
+use g7_model::{BinaryOp, Expr, Parts, Place, Stmt, StmtKind, Type, VarDecl, VarKind};
+
+use super::build::At;
+
+/// What is known of one queue or track.
+pub(super) struct Table<'d> {
+    pub(super) parts: &'d Parts,
+}
+
+impl<'d> Table<'d> {
+    pub(super) fn name(&self) -> &'d str {
+        &self.parts.name.text
+    }
+
+    pub(super) fn is_track(&self) -> bool {
+        self.parts.length.is_some()
+    }
+
+    fn places(&self) -> u32 {
+        self.parts.max
+    }
+
+    pub(super) fn attributes(&self) -> impl Iterator<Item = (&'d str, Type)> {
+        self.parts.attributes.iter().map(|a| (&*a.name.text, a.ty))
+    }
+
+    /// Everything a part has: its attributes, and its position on a track.
+    fn columns(&self) -> Vec<(&'d str, Type)> {
+        let position = self.is_track().then_some(("position", Type::Lreal));
+        self.attributes().chain(position).collect()
+    }
+
+    pub(super) fn has(&self, column: &str) -> bool {
+        self.columns().iter().any(|(name, _)| *name == column)
+    }
+
+    fn cell(&self, column: &str, place: u32) -> String {
+        format!("{}.{column}.{place}", self.name())
+    }
+
+    pub(super) fn count(&self) -> String {
+        format!("{}.count", self.name())
+    }
+
+    pub(super) fn lost(&self) -> String {
+        format!("{}.lost", self.name())
+    }
+
+    /// The variables of the table, filled as the author says.
+    pub(super) fn declare(&self) -> Vec<VarDecl> {
+        let at = At(self.parts.name.at);
+        let full = self.parts.init.len().min(self.places() as usize);
+        let mut list = vec![
+            at.declare(VarKind::Var, &self.count(), Type::Int, Some(at.int(full as i128))),
+            at.declare(VarKind::Var, &self.lost(), Type::Int, None),
+        ];
+        for place in 0..self.places() {
+            for (k, (column, ty)) in self.columns().into_iter().enumerate() {
+                let init = self.parts.init.get(place as usize).and_then(|part| part.get(k)).cloned();
+                list.push(at.declare(VarKind::Var, &self.cell(column, place), ty, init));
+            }
+        }
+        list
+    }
+
+    /// Whether there is a part at a place.
+    fn taken(&self, at: At, place: u32) -> Expr {
+        at.binary(BinaryOp::Gt, at.var(&self.count()), at.int(i128::from(place)))
+    }
+
+    /// Whether the part at a place stands in `from .. to` (the end not included).
+    fn stands(&self, at: At, place: u32, range: &(Expr, Expr)) -> Expr {
+        let position = at.var(&self.cell("position", place));
+        let behind = at.binary(BinaryOp::Ge, position.clone(), range.0.clone());
+        let before = at.binary(BinaryOp::Lt, position, range.1.clone());
+        let inside = at.binary(BinaryOp::And, behind, before);
+        at.binary(BinaryOp::And, self.taken(at, place), inside)
+    }
+
+    /// `T.at(from, to)`: some part stands there.
+    pub(super) fn any(&self, at: At, range: &(Expr, Expr)) -> Expr {
+        (0..self.places())
+            .map(|place| self.stands(at, place, range))
+            .reduce(|a, b| at.binary(BinaryOp::Or, a, b))
+            .unwrap_or_else(|| at.bool(false))
+    }
+
+    /// `T.colour(from, to)`: that of the first part there, the type's zero when none.
+    pub(super) fn seen(&self, at: At, column: &str, range: &(Expr, Expr)) -> Expr {
+        let ty = self.columns().into_iter().find(|(name, _)| *name == column).map_or(Type::Int, |(_, ty)| ty);
+        (0..self.places()).rev().fold(zero(at, ty), |rest, place| {
+            let here = at.var(&self.cell(column, place));
+            at.call("SEL", vec![self.stands(at, place, range), rest, here])
+        })
+    }
+
+    /// `T.first.colour`.
+    pub(super) fn first(&self, at: At, column: &str) -> Expr {
+        at.var(&self.cell(column, 0))
+    }
+
+    /// `T.last.colour`: of the part that came last; the type's zero when none.
+    pub(super) fn last(&self, at: At, column: &str) -> Expr {
+        let ty = self.columns().into_iter().find(|(name, _)| *name == column).map_or(Type::Int, |(_, ty)| ty);
+        (0..self.places()).fold(zero(at, ty), |rest, place| {
+            at.call("SEL", vec![self.taken(at, place), rest, at.var(&self.cell(column, place))])
+        })
+    }
+
+    /// `T.enter(…)`: a part joins at the back; where there is no room it is lost.
+    pub(super) fn enter(&self, at: At, values: &[Expr]) -> Vec<Stmt> {
+        let arms = (0..self.places())
+            .map(|place| {
+                let mut body: Vec<Stmt> = self
+                    .attributes()
+                    .zip(values)
+                    .map(|((column, _), v)| at.assign(&self.cell(column, place), v.clone()))
+                    .collect();
+                if self.is_track() {
+                    body.push(at.assign(&self.cell("position", place), at.real("0.0")));
+                }
+                body.push(at.assign(&self.count(), at.int(i128::from(place) + 1)));
+                g7_model::CaseArm { labels: vec![(at.int(i128::from(place)), None)], body }
+            })
+            .collect();
+        let lost = at.binary(BinaryOp::Add, at.var(&self.lost()), at.int(1));
+        vec![at.stmt(StmtKind::Case(at.var(&self.count()), arms, vec![at.assign(&self.lost(), lost)]))]
+    }
+
+    /// Takes the part at a place away; those behind move up.
+    fn remove(&self, at: At, place: u32) -> Vec<Stmt> {
+        let mut body = Vec::new();
+        for to in place..self.places().saturating_sub(1) {
+            for (column, _) in self.columns() {
+                body.push(at.assign(&self.cell(column, to), at.var(&self.cell(column, to + 1))));
+            }
+        }
+        if let Some(last) = self.places().checked_sub(1) {
+            for (column, ty) in self.columns() {
+                body.push(at.assign(&self.cell(column, last), zero(at, ty)));
+            }
+        }
+        body.push(at.assign(&self.count(), at.binary(BinaryOp::Sub, at.var(&self.count()), at.int(1))));
+        body
+    }
+
+    /// `T.leave()`: the part that came first goes.
+    pub(super) fn leave(&self, at: At) -> Vec<Stmt> {
+        vec![at.when(self.taken(at, 0), self.remove(at, 0))]
+    }
+
+    /// `T.take(from, to)`: the first part there goes.
+    pub(super) fn take(&self, at: At, range: &(Expr, Expr)) -> Vec<Stmt> {
+        let arms = (0..self.places()).map(|k| (self.stands(at, k, range), self.remove(at, k))).collect();
+        vec![at.stmt(StmtKind::If(arms, Vec::new()))]
+    }
+
+    /// `T.clear()`.
+    pub(super) fn clear(&self, at: At) -> Vec<Stmt> {
+        let mut body = vec![at.assign(&self.count(), at.int(0))];
+        for place in 0..self.places() {
+            for (column, ty) in self.columns() {
+                body.push(at.assign(&self.cell(column, place), zero(at, ty)));
+            }
+        }
+        body
+    }
+
+    /// Moves every part of a track by a way, held within its length.
+    pub(super) fn advance(&self, place: Place, way: &Expr, length: &Expr) -> Vec<Stmt> {
+        let at = At(place);
+        (0..self.places())
+            .map(|k| {
+                let cell = self.cell("position", k);
+                let moved = at.binary(BinaryOp::Add, at.var(&cell), way.clone());
+                let held = at.call("LIMIT", vec![at.real("0.0"), moved, length.clone()]);
+                at.when(self.taken(at, k), vec![at.assign(&cell, held)])
+            })
+            .collect()
+    }
+}
+
+/// The zero of a type, as a literal.
+pub(super) fn zero(at: At, ty: Type) -> Expr {
+    match ty {
+        Type::Bool => at.bool(false),
+        Type::Real | Type::Lreal => at.real("0.0"),
+        Type::Time => at.expr(g7_model::ExprKind::Literal(g7_model::Literal::Time(0))),
+        _ => at.int(0),
+    }
+}

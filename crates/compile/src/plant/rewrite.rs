@@ -1,0 +1,212 @@
+//! Putting plain variables for what the plant language has of its own.
+
+use std::collections::HashMap;
+
+use g7_model::{Arg, Block, Expr, ExprKind, Path, Place, Problem, Stmt, StmtKind, codes};
+
+use super::build::At;
+use super::parts::Table;
+
+/// Names of the functions that only plants have, as the resolver knows them.
+pub(super) const RANDOM: &str = "@random";
+/// Time since the tick before, in seconds (LREAL).
+pub(super) const DT: &str = "@dt";
+
+/// Rewrites expressions and statements of one plant.
+pub(super) struct Rewrite<'d> {
+    pub(super) tables: HashMap<&'d str, Table<'d>>,
+    pub(super) charts: Vec<&'d str>,
+    pub(super) problems: Vec<Problem>,
+}
+
+impl Rewrite<'_> {
+    fn report(&mut self, code: &'static codes::Code, at: Place, what: String) -> Expr {
+        self.problems.push(Problem::new(code, at.0, what));
+        At(at).expr(ExprKind::Bad)
+    }
+
+    pub(super) fn expr(&mut self, e: &Expr) -> Expr {
+        let at = At(e.at);
+        let kind = match &e.kind {
+            ExprKind::Path(path) => return self.path(at, path),
+            ExprKind::Call(path, args) => return self.call(at, path, args),
+            ExprKind::Unary(op, a) => ExprKind::Unary(*op, Box::new(self.expr(a))),
+            ExprKind::Binary(op, a, b) => ExprKind::Binary(*op, Box::new(self.expr(a)), Box::new(self.expr(b))),
+            ExprKind::Timer { t1, e, t2 } => ExprKind::Timer {
+                t1: Box::new(self.expr(t1)),
+                e: Box::new(self.expr(e)),
+                t2: t2.as_ref().map(|t| Box::new(self.expr(t))),
+            },
+            ExprKind::Literal(_) | ExprKind::Direct(_) | ExprKind::Bad => e.kind.clone(),
+        };
+        at.expr(kind)
+    }
+
+    fn path(&mut self, at: At, path: &Path) -> Expr {
+        let names: Vec<&str> = path.names.iter().map(|n| &*n.text).collect();
+        match names[..] {
+            [table, ..] if self.tables.contains_key(table) => self.member(at, table, &names[1..]),
+            // An output of a chart: one name in the plant's own document.
+            [chart, name] if self.charts.contains(&chart) => at.var(&format!("{chart}.{name}")),
+            _ => at.expr(ExprKind::Path(path.clone())),
+        }
+    }
+
+    /// `T.count`, `T.first.colour`, …
+    fn member(&mut self, at: At, table: &str, rest: &[&str]) -> Expr {
+        let Some(t) = self.tables.get(table) else { return at.expr(ExprKind::Bad) };
+        match rest {
+            ["count"] => at.var(&t.count()),
+            ["lost"] => at.var(&t.lost()),
+            ["empty"] => at.binary(g7_model::BinaryOp::Eq, at.var(&t.count()), at.int(0)),
+            ["full"] => {
+                at.binary(g7_model::BinaryOp::Ge, at.var(&t.count()), at.int(i128::from(t.parts.max)))
+            }
+            ["first", column] if t.has(column) => t.first(at, column),
+            ["last", column] if t.has(column) => t.last(at, column),
+            _ => {
+                let known: Vec<&str> = t.attributes().map(|(n, _)| n).collect();
+                let what = format!("parts `{table}` have no `{}`", rest.join("."));
+                self.problems.push(Problem::new(&codes::UNKNOWN_PART_MEMBER, at.0.0, what).help(format!(
+                    "there are count, empty, full, lost, first.… and last.… with {}",
+                    if known.is_empty() { "position".to_owned() } else { known.join(", ") }
+                )));
+                at.expr(ExprKind::Bad)
+            }
+        }
+    }
+
+    /// Two arguments: where a look at a track begins and ends.
+    fn range(&mut self, args: &[Arg]) -> Option<(Expr, Expr)> {
+        match args {
+            [a, b] => Some((self.expr(&a.value), self.expr(&b.value))),
+            _ => None,
+        }
+    }
+
+    fn call(&mut self, at: At, path: &Path, args: &[Arg]) -> Expr {
+        let names: Vec<&str> = path.names.iter().map(|n| &*n.text).collect();
+        if let [table, what] = names[..]
+            && self.tables.contains_key(table)
+        {
+            let range = self.range(args);
+            let Some(t) = self.tables.get(table) else { return at.expr(ExprKind::Bad) };
+            return match range {
+                Some(range) if t.is_track() && what == "at" => t.any(at, &range),
+                Some(range) if t.is_track() && t.has(what) => t.seen(at, what, &range),
+                _ => {
+                    let what = format!("`{table}.{what}(…)` is nothing that parts can tell");
+                    self.report(&codes::UNKNOWN_PART_MEMBER, at.0, what)
+                }
+            };
+        }
+        let args: Vec<Arg> = args
+            .iter()
+            .map(|a| Arg { name: a.name.clone(), output: a.output, value: self.expr(&a.value) })
+            .collect();
+        if let ["random"] = names[..] {
+            return self.random(at, args);
+        }
+        at.expr(ExprKind::Call(path.clone(), args))
+    }
+
+    /// `random()` in 0..1, `random(a, b)` in a..b.
+    fn random(&mut self, at: At, args: Vec<Arg>) -> Expr {
+        let dice = at.call(RANDOM, Vec::new());
+        let mut values = args.into_iter().map(|a| a.value);
+        match (values.next(), values.next(), values.next()) {
+            (None, ..) => dice,
+            (Some(a), Some(b), None) => {
+                use g7_model::BinaryOp::{Add, Mul, Sub};
+                let width = at.binary(Sub, b, a.clone());
+                at.binary(Add, a, at.binary(Mul, width, dice))
+            }
+            _ => self.report(
+                &codes::BAD_PARTS,
+                at.0,
+                "`random` takes no argument, or the least and the largest value".into(),
+            ),
+        }
+    }
+
+    pub(super) fn block(&mut self, block: &Block) -> Vec<Stmt> {
+        self.statements(&block.statements)
+    }
+
+    pub(super) fn statements(&mut self, list: &[Stmt]) -> Vec<Stmt> {
+        let mut out = Vec::with_capacity(list.len());
+        for s in list {
+            self.statement(s, &mut out);
+        }
+        out
+    }
+
+    fn statement(&mut self, s: &Stmt, out: &mut Vec<Stmt>) {
+        let kind = match &s.kind {
+            StmtKind::Call(path, args) => {
+                if let Some(mut done) = self.action(At(s.at), path, args) {
+                    out.append(&mut done);
+                    return;
+                }
+                let args = args
+                    .iter()
+                    .map(|a| Arg { name: a.name.clone(), output: a.output, value: self.expr(&a.value) })
+                    .collect();
+                StmtKind::Call(path.clone(), args)
+            }
+            StmtKind::Assign { target, value } => {
+                StmtKind::Assign { target: self.expr(target), value: self.expr(value) }
+            }
+            StmtKind::If(arms, rest) => StmtKind::If(
+                arms.iter().map(|(c, body)| (self.expr(c), self.statements(body))).collect(),
+                self.statements(rest),
+            ),
+            StmtKind::Case(selector, arms, rest) => StmtKind::Case(
+                self.expr(selector),
+                arms.iter()
+                    .map(|arm| g7_model::CaseArm { labels: arm.labels.clone(), body: self.statements(&arm.body) })
+                    .collect(),
+                self.statements(rest),
+            ),
+            StmtKind::For { var, from, to, by, body } => StmtKind::For {
+                var: var.clone(),
+                from: self.expr(from),
+                to: self.expr(to),
+                by: by.as_ref().map(|e| self.expr(e)),
+                body: self.statements(body),
+            },
+            StmtKind::While(c, body) => StmtKind::While(self.expr(c), self.statements(body)),
+            StmtKind::Repeat(body, c) => StmtKind::Repeat(self.statements(body), self.expr(c)),
+            StmtKind::Exit | StmtKind::Return => s.kind.clone(),
+        };
+        out.push(Stmt { kind, at: s.at });
+    }
+
+    /// `T.enter(…)`, `T.leave()`, `T.take(…)`, `T.clear()`; `None` for other calls.
+    fn action(&mut self, at: At, path: &Path, args: &[Arg]) -> Option<Vec<Stmt>> {
+        let names: Vec<&str> = path.names.iter().map(|n| &*n.text).collect();
+        let [table, what] = names[..] else { return None };
+        let wanted = self.tables.get(table)?.attributes().count();
+        let values: Vec<Expr> = args.iter().map(|a| self.expr(&a.value)).collect();
+        let range = match &values[..] {
+            [a, b] => Some((a.clone(), b.clone())),
+            _ => None,
+        };
+        let t = self.tables.get(table)?;
+        let done = match (what, range) {
+            ("enter", _) if values.len() == wanted => Some(t.enter(at, &values)),
+            ("leave", _) if values.is_empty() => Some(t.leave(at)),
+            ("clear", _) if values.is_empty() => Some(t.clear(at)),
+            ("take", Some(range)) if t.is_track() => Some(t.take(at, &range)),
+            _ => None,
+        };
+        if done.is_none() {
+            let what = format!("`{table}.{what}` with {} argument(s) is nothing that parts can do", values.len());
+            self.problems.push(Problem::new(&codes::UNKNOWN_PART_MEMBER, at.0.0, what).help(format!(
+                "`{table}.enter` takes {wanted} value(s); `leave` and `clear` take none; \
+                 `take` a range of a track"
+            )));
+        }
+        Some(done.unwrap_or_default())
+    }
+}
