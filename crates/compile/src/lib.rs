@@ -1,7 +1,87 @@
 //! From a document to a program.
+//!
+//! ```text
+//! model::Document -> resolve (names, types) -> ir::Unit -> check (rules of GRAFCET and SFC)
+//!                                                       -> lower -> engine::Program + Symbols
+//! ```
+//!
+//! What an author did wrong is a [`Problem`], never an `Err` and never a panic;
+//! a document with problems still gives all the others that it has.
 #![forbid(unsafe_code)]
 
 pub mod ir;
 pub mod lower;
+pub mod plant;
 pub mod resolve;
 pub mod symbols;
+
+use g7_engine::{Code, Program};
+use g7_model::{Document, Expr, Problem, ProfileName, Severity, Type};
+
+use symbols::Symbols;
+
+/// A document that can be run.
+#[derive(Clone, Debug)]
+pub struct Compiled {
+    /// Its typed form.
+    pub unit: ir::Unit,
+    /// Its program.
+    pub program: Program,
+    /// Names and places of everything in the program.
+    pub symbols: Symbols,
+    /// A code for each query, in their order, for `engine::eval`.
+    pub queries: Vec<Code>,
+    /// The type of each query.
+    pub query_types: Vec<Type>,
+}
+
+/// What is wrong with a document, in the order of the text.
+pub fn check(doc: &Document) -> Vec<Problem> {
+    compile(doc).1
+}
+
+/// The program of a document; none if a problem is an error.
+pub fn compile(doc: &Document) -> (Option<Compiled>, Vec<Problem>) {
+    compile_with(doc, None, &[])
+}
+
+/// The same under another profile than the document's, without its switches.
+pub fn compile_as(doc: &Document, profile: ProfileName) -> (Option<Compiled>, Vec<Problem>) {
+    compile_with(doc, Some(profile), &[])
+}
+
+/// The same with questions that can be put to a state of the program: any
+/// expression without edges and delays, names as seen from outside of all charts.
+pub fn compile_with(
+    doc: &Document,
+    profile: Option<ProfileName>,
+    queries: &[Expr],
+) -> (Option<Compiled>, Vec<Problem>) {
+    let (mut unit, mut scopes, mut problems) = resolve::resolve_open(doc, profile);
+    let mut questions = Vec::new();
+    for query in queries {
+        let (expr, mut wrong) = resolve::resolve_query(&mut unit, &mut scopes, query, None, None);
+        questions.extend(expr);
+        problems.append(&mut wrong);
+    }
+    let failed = problems.iter().any(|p| p.severity() == Severity::Error);
+    if failed || questions.len() < queries.len() {
+        return (None, sorted(problems));
+    }
+    match lower::program(&unit, &questions) {
+        Ok((program, symbols, queries)) => {
+            let query_types = questions.iter().map(|q| q.ty).collect();
+            (Some(Compiled { unit, program, symbols, queries, query_types }), sorted(problems))
+        }
+        Err(problem) => {
+            problems.push(problem);
+            (None, sorted(problems))
+        }
+    }
+}
+
+/// By place, and at one place as they were found.
+fn sorted(mut problems: Vec<Problem>) -> Vec<Problem> {
+    problems.sort_by_key(|p| p.at);
+    problems
+}
