@@ -1,0 +1,252 @@
+//! The actions of a step.
+
+use super::Parser;
+use crate::lexer::Tok;
+use crate::words;
+use g7_model::{
+    Action, ActionKind, Expr, ExprKind, Name, Order, Path, Problem, Qualifier, Situation, Span, Stmt, Target,
+    Work, codes,
+};
+
+impl Parser<'_> {
+    /// Actions up to the closing brace, which is read too; the opening one stands at `open`.
+    pub(super) fn actions(&mut self, open: Span) -> Vec<Action> {
+        let mut actions = Vec::new();
+        loop {
+            self.skip_semis();
+            if self.eat(Tok::RBrace) {
+                return actions;
+            }
+            if self.at(Tok::End) || self.cur.newline && self.at_next_item() {
+                self.close(Tok::RBrace, "`}` after the actions of the step", open);
+                return actions;
+            }
+            let start = self.cur.start;
+            let kind = match self.action() {
+                None if self.correct(words::ACTION) => self.action(),
+                kind => kind,
+            };
+            match kind {
+                Some(kind) => actions.push(Action { kind, at: self.since(start).into() }),
+                None => actions.extend(self.lost_action(start)),
+            }
+        }
+    }
+
+    /// Whether something begins here that cannot stand among actions.
+    fn at_next_item(&mut self) -> bool {
+        self.at_chart_start() || self.at_file_start() || self.var_kind().is_some()
+    }
+
+    fn action(&mut self) -> Option<ActionKind> {
+        if self.at(Tok::Comment) {
+            return self.comment_if().map(ActionKind::Comment);
+        }
+        let word = self.word();
+        if word.is_empty() || self.misplaced_assignment() {
+            return None;
+        }
+        let order = match word {
+            "on" => return Some(self.on_event()),
+            "each" => return Some(self.each_scan()),
+            "force" => self.force(),
+            "enable" => {
+                self.bump();
+                Order::Enable(self.name("the name of a chart"))
+            }
+            "mask" => {
+                self.bump();
+                Order::Mask(self.name("the name of a chart or of an output"))
+            }
+            "call" => {
+                self.bump();
+                Order::Call(self.name("the name of a task"))
+            }
+            "enclose" => {
+                self.bump();
+                Order::Enclose(self.name("the name of a chart"))
+            }
+            _ => return self.qualified(),
+        };
+        Some(ActionKind::Order(order))
+    }
+
+    /// Whether an assignment without a qualifier stands here, to a variable
+    /// that may be called like a word of an action.
+    fn misplaced_assignment(&mut self) -> bool {
+        matches!(self.peek().kind, Tok::Assign | Tok::PathDot)
+    }
+
+    /// `on e: …`.
+    fn on_event(&mut self) -> ActionKind {
+        self.bump();
+        let event = self.condition();
+        self.expect(Tok::Colon, "`:` after the event");
+        ActionKind::OnEvent { event, work: self.work() }
+    }
+
+    /// `each scan: …`.
+    fn each_scan(&mut self) -> ActionKind {
+        self.bump();
+        if !self.eat_word("scan") {
+            self.expected_help("`scan`", Some("write `each scan: n := n + 1`"));
+        }
+        self.expect(Tok::Colon, "`:`");
+        let work = self.work();
+        ActionKind::EachScan { work, condition: self.if_condition() }
+    }
+
+    fn if_condition(&mut self) -> Option<Expr> {
+        self.eat_word("if").then(|| self.condition())
+    }
+
+    /// `force G := …`.
+    fn force(&mut self) -> Order {
+        self.bump();
+        let chart = self.name("the name of a chart");
+        self.assign_sign();
+        if self.eat_word("INIT") {
+            return Order::Force(chart, Situation::Init);
+        }
+        let open = self.here();
+        if !self.expect(Tok::LBrace, "a situation: `{8, 11}`, `{}`, `{*}` or `INIT`") {
+            return Order::Force(chart, Situation::Current);
+        }
+        if self.eat(Tok::Star) {
+            self.close(Tok::RBrace, "`}`", open);
+            return Order::Force(chart, Situation::Current);
+        }
+        let bare_init = self.at_word("INIT") && self.peek().kind == Tok::RBrace;
+        let mut steps: Vec<Name> = Vec::new();
+        while !matches!(self.cur.kind, Tok::RBrace | Tok::End) {
+            let start = self.cur.start;
+            let name = self.name("the name of a step");
+            if self.cur.start == start {
+                break;
+            }
+            steps.push(name);
+            if !self.eat(Tok::Comma) {
+                break;
+            }
+        }
+        self.close(Tok::RBrace, "`}` or `,`", open);
+        Order::Force(chart, if bare_init { Situation::Init } else { Situation::Steps(steps) })
+    }
+
+    /// `P1 n := n + 1`, `L 5s lamp`.
+    fn qualified(&mut self) -> Option<ActionKind> {
+        let word = self.word();
+        let qualifier = Qualifier::ALL.into_iter().find(|q| q.name() == word)?;
+        let at = self.here();
+        self.bump();
+        let time = self.action_time(qualifier, at);
+        let target = self.target_of_action();
+        Some(ActionKind::Qualified { qualifier, time, target, condition: self.if_condition() })
+    }
+
+    /// The time of L, D, SD, DS and SL.
+    fn action_time(&mut self, qualifier: Qualifier, at: Span) -> Option<Expr> {
+        let name = qualifier.name();
+        let time = match self.cur.kind {
+            Tok::Time => {
+                let token = self.bump();
+                Some(self.time_of(token))
+            }
+            Tok::LParen => Some(self.expr_in_parens()),
+            _ => None,
+        };
+        match &time {
+            None if qualifier.timed() => {
+                let next = self.peek();
+                let named = self.at_name() && !next.newline && matches!(next.kind, Tok::Word | Tok::Ticked);
+                if named && self.slice(next) != "if" {
+                    self.slip(self.here(), "a time that is no number stands in parentheses", "write `(t)`");
+                    return Some(self.expr());
+                }
+                self.slip(at, &format!("`{name}` needs a time"), format!("write `{name} 5s …`"));
+            }
+            Some(e) if !qualifier.timed() => {
+                let place = e.at.0;
+                let help = "the qualifiers L, D, SD, DS and SL take a time";
+                self.slip(place, &format!("`{name}` takes no time"), help);
+            }
+            _ => {}
+        }
+        time
+    }
+
+    fn expr_in_parens(&mut self) -> Expr {
+        let open = self.here();
+        self.bump();
+        let e = self.expr();
+        self.close(Tok::RParen, "`)`", open);
+        e
+    }
+
+    /// A Boolean variable, a named action, an assignment, a call or a block.
+    fn target_of_action(&mut self) -> Target {
+        let start = self.cur.start;
+        if self.at(Tok::LBrace) {
+            return Target::Work(Work::Block(self.block("`{`")));
+        }
+        if self.at(Tok::Direct) {
+            let token = self.bump();
+            let name = self.direct_name(token);
+            let at = self.since(start).into();
+            if !matches!(self.cur.kind, Tok::Assign | Tok::Eq) {
+                return Target::Direct(name, at);
+            }
+            return self.assigned(Expr { kind: ExprKind::Direct(name), at }, start);
+        }
+        if !self.at_name() {
+            self.expected("a variable, the name of an action, an assignment or `{`");
+            return Target::Path(Path { names: vec![Name::new("", self.behind())] });
+        }
+        let path = self.path();
+        if self.at_call() {
+            let kind = g7_model::StmtKind::Call(path, self.call_args());
+            return Target::Work(Work::Single(Box::new(Stmt { kind, at: self.since(start).into() })));
+        }
+        if !matches!(self.cur.kind, Tok::Assign | Tok::Eq) {
+            return Target::Path(path);
+        }
+        let at = self.since(start).into();
+        self.assigned(Expr { kind: ExprKind::Path(path), at }, start)
+    }
+
+    fn assigned(&mut self, target: Expr, start: u32) -> Target {
+        let kind = self.assignment(target);
+        Target::Work(Work::Single(Box::new(Stmt { kind, at: self.since(start).into() })))
+    }
+
+    /// Something that begins no action. A variable or an assignment alone is
+    /// taken for the action that was probably meant.
+    fn lost_action(&mut self, start: u32) -> Option<Action> {
+        let at = self.here();
+        if self.at(Tok::Direct) || self.at_name() && !self.at(Tok::Int) {
+            let target = self.target_of_action();
+            let assigned = matches!(target, Target::Work(_));
+            let text = self.text.get(start as usize..self.prev.end as usize).unwrap_or_default();
+            let short: String = text.chars().take(40).collect();
+            let qualifier = if assigned { Qualifier::P1 } else { Qualifier::N };
+            self.lexer.problems.add(at, || {
+                let problem = Problem::new(&codes::EXPECTED, at, "an action begins with its qualifier");
+                problem.help(if assigned {
+                    format!("write `P1 {short}` (once, on activation) or `each scan: {short}`")
+                } else {
+                    format!("write `N {short}` (while the step is active) or `S {short}` (until reset)")
+                })
+            });
+            self.told = Some(self.cur.start);
+            let condition = self.if_condition();
+            let kind = ActionKind::Qualified { qualifier, time: None, target, condition };
+            return Some(Action { kind, at: self.since(start).into() });
+        }
+        self.expected("an action or `}`");
+        if self.cur.start == start {
+            self.bump();
+        }
+        self.recover(|p| words::ACTION.contains(&p.word()) || p.at_next_item());
+        None
+    }
+}

@@ -1,0 +1,355 @@
+//! Charts: steps and transitions.
+
+use super::Parser;
+use crate::lexer::Tok;
+use crate::words;
+use g7_model::{
+    Chart, ChartItem, ChartKind, Expr, ExprKind, Name, Place, Span, Step, StepKind, Transition,
+};
+
+impl Parser<'_> {
+    /// A chart, an expansion or a task; its first word is in hand.
+    pub(super) fn chart(&mut self) -> Chart {
+        let kind = match self.word() {
+            "macrochart" => ChartKind::Expansion,
+            "task" => ChartKind::Task,
+            _ => ChartKind::Chart,
+        };
+        let start = self.bump().start;
+        let name = self.name("the name of the chart");
+        let comment = self.comment_if();
+        let every = self.period(kind);
+        let open = self.here();
+        let mut items = Vec::new();
+        if self.expect(Tok::LBrace, "`{` and the steps of the chart") || self.at_chart_start() {
+            self.chart_items(&mut items, open);
+        }
+        Chart { kind, name, comment, every, items, at: self.since(start).into() }
+    }
+
+    /// `every 20ms`.
+    fn period(&mut self, kind: ChartKind) -> Option<i64> {
+        let at = self.here();
+        if !self.eat_word("every") {
+            return None;
+        }
+        if kind != ChartKind::Chart {
+            self.slip(at, "only a `chart` has a period", "write `every` at the chart that uses this one");
+        }
+        Some(self.duration("the period, a duration")).filter(|_| kind == ChartKind::Chart)
+    }
+
+    fn chart_items(&mut self, items: &mut Vec<ChartItem>, open: Span) {
+        loop {
+            self.skip_semis();
+            match self.cur.kind {
+                Tok::RBrace => {
+                    self.bump();
+                    return;
+                }
+                Tok::End => {
+                    self.close(Tok::RBrace, "`}` after the last item of the chart", open);
+                    return;
+                }
+                _ => {}
+            }
+            if self.cur.newline && self.at_file_start() {
+                self.close(Tok::RBrace, "`}` before the next item of the file", open);
+                return;
+            }
+            let start = self.cur.start;
+            if !self.chart_item(items) && !(self.correct(words::CHART) && self.chart_item(items)) {
+                self.lost_chart_item(start);
+            }
+        }
+    }
+
+    fn chart_item(&mut self, items: &mut Vec<ChartItem>) -> bool {
+        if self.at_transition() {
+            self.transitions(items);
+            return true;
+        }
+        if let Some(kind) = self.var_kind() {
+            items.push(ChartItem::Var(self.variable(kind)));
+            return true;
+        }
+        let start = self.cur.start;
+        let item = match self.word() {
+            "initial" | "entry" | "exit" | "enclosing" | "step" | "macro" => ChartItem::Step(self.step()),
+            "pre" => {
+                self.bump();
+                let body = self.body();
+                ChartItem::Pre(body, self.since(start).into())
+            }
+            "post" => {
+                self.bump();
+                let body = self.body();
+                ChartItem::Post(body, self.since(start).into())
+            }
+            "action" => ChartItem::Action(self.named_action()),
+            "transition" => ChartItem::Section(self.section()),
+            _ => return false,
+        };
+        items.push(item);
+        true
+    }
+
+    /// Whether a step or a transition begins here.
+    pub(super) fn at_chart_start(&mut self) -> bool {
+        match self.word() {
+            "step" | "initial" | "enclosing" | "macro" => true,
+            "entry" | "exit" => self.peek_word("step") || self.peek_word("initial"),
+            "transition" => self.peek_word("section"),
+            _ => (self.at_name() || self.at(Tok::LParen)) && self.arrow_ahead(),
+        }
+    }
+
+    /// Whether a transition begins here: a name before `->` or `:`, or a bracket before an arrow.
+    fn at_transition(&mut self) -> bool {
+        match self.cur.kind {
+            Tok::LParen | Tok::Arrow => true,
+            Tok::Int | Tok::Ticked | Tok::Word => {
+                matches!(self.peek().kind, Tok::Arrow | Tok::Colon | Tok::Comma)
+            }
+            _ => false,
+        }
+    }
+
+    /// Whether `name ->` or `( … ) ->` stands here; at most a few names are looked at.
+    fn arrow_ahead(&mut self) -> bool {
+        if !self.at(Tok::LParen) {
+            return self.peek().kind == Tok::Arrow;
+        }
+        let mut ahead = self.lexer.ahead(self.cur);
+        for _ in 0..64 {
+            match ahead.token().kind {
+                Tok::RParen => return ahead.token().kind == Tok::Arrow,
+                Tok::Int | Tok::Word | Tok::Ticked | Tok::Comma => {}
+                _ => return false,
+            }
+        }
+        false
+    }
+
+    /// Something that begins no item of a chart.
+    fn lost_chart_item(&mut self, start: u32) {
+        if self.at_name() {
+            self.bump();
+            let name = self.text.get(start as usize..self.prev.end as usize).unwrap_or_default();
+            let what = format!("`->` after the preceding step `{name}`");
+            self.expected_help(&what, Some("a transition is written `1 -> 2 when …`, a step `step 1`"));
+        } else {
+            self.expected("a step, a transition or another item of the chart");
+        }
+        if self.cur.start == start {
+            self.bump();
+        }
+        self.recover(|p| p.at_chart_start() || p.var_kind().is_some());
+    }
+
+    // Steps
+
+    /// A step or macro-step; one of its words is in hand.
+    fn step(&mut self) -> Step {
+        let start = self.cur.start;
+        let mut initial = false;
+        let mut kind = StepKind::Plain;
+        loop {
+            let at = self.here();
+            let sort = match self.word() {
+                "initial" => {
+                    initial = true;
+                    self.bump();
+                    continue;
+                }
+                "entry" => StepKind::Entry,
+                "exit" => StepKind::Exit,
+                "enclosing" => StepKind::Enclosing,
+                _ => break,
+            };
+            if kind != StepKind::Plain {
+                self.slip(at, "a step is only one of entry, exit and enclosing", "leave out one of the words");
+            }
+            kind = sort;
+            self.bump();
+        }
+        if self.eat_word("macro") {
+            return self.macro_step(start, initial, &kind);
+        }
+        if !self.eat_word("step") {
+            self.expected_help("`step`", Some("for example `initial step 0`"));
+        }
+        let name = self.name("the name or number of the step");
+        self.step_rest(start, name, kind, initial)
+    }
+
+    fn macro_step(&mut self, start: u32, initial: bool, kind: &StepKind) -> Step {
+        if *kind != StepKind::Plain {
+            let at = self.since(start);
+            self.slip(at, "a macro-step is neither entry, exit nor enclosing", "leave out that word");
+        }
+        self.eat_word("step");
+        let name = self.name("the name of the macro-step");
+        if self.at(Tok::Assign) {
+            self.slip(self.here(), "a macro-step's expansion stands behind `=`", "write `macro M3 = Dose`");
+            self.bump();
+        } else {
+            self.expect(Tok::Eq, "`=` and the name of the expansion");
+        }
+        let expansion = self.name("the name of the expansion, a `macrochart`");
+        self.step_rest(start, name, StepKind::Macro(expansion), initial)
+    }
+
+    fn step_rest(&mut self, start: u32, name: Name, kind: StepKind, initial: bool) -> Step {
+        let linked = self.eat(Tok::Star);
+        let comment = self.comment_if();
+        let open = self.here();
+        let braces = self.eat(Tok::LBrace);
+        let actions = if braces { self.actions(open) } else { Vec::new() };
+        Step { name, kind, initial, linked, comment, actions, braces, at: self.since(start).into() }
+    }
+
+    // Transitions
+
+    /// A transition and those chained to it.
+    fn transitions(&mut self, items: &mut Vec<ChartItem>) {
+        let start = self.cur.start;
+        let label = if self.peek().kind == Tok::Colon { self.name_if() } else { None };
+        if label.is_some() {
+            self.bump();
+        }
+        let from = if self.at(Tok::Arrow) {
+            let at = self.here();
+            self.slip(at, "the preceding steps are missing", "a source transition is written `() -> 1 when …`");
+            Vec::new()
+        } else {
+            self.step_list("the preceding steps")
+        };
+        if !self.expect(Tok::Arrow, "`->` after the preceding steps") {
+            self.recover(|p| p.at_chart_start() || p.var_kind().is_some());
+            return;
+        }
+        let mut last = self.transition(start, label, from, false);
+        while self.at(Tok::Arrow) {
+            let start = self.bump().start;
+            let from = last.to.clone();
+            let next = self.transition(start, None, from, true);
+            items.push(ChartItem::Transition(std::mem::replace(&mut last, next)));
+        }
+        items.push(ChartItem::Transition(last));
+    }
+
+    /// What follows the arrow.
+    fn transition(&mut self, start: u32, label: Option<Name>, from: Vec<Name>, chained: bool) -> Transition {
+        let to = if self.at_word("when") {
+            let at = self.behind();
+            self.slip(at, "the succeeding steps are missing", "a sink transition is written `1 -> () when …`");
+            Vec::new()
+        } else {
+            self.step_list("the succeeding steps")
+        };
+        let receptivity = self.receptivity(&from, &to);
+        let at = Place::default();
+        let mut t = Transition {
+            label,
+            from,
+            to,
+            receptivity,
+            priority: None,
+            comment: None,
+            on_clearing: None,
+            chained,
+            at,
+        };
+        while self.transition_clause(&mut t) {}
+        t.at = self.since(start).into();
+        t
+    }
+
+    /// One of the words behind the receptivity.
+    fn transition_clause(&mut self, t: &mut Transition) -> bool {
+        if t.comment.is_none() && self.at(Tok::Comment) {
+            t.comment = self.comment_if();
+        } else if t.priority.is_none() && self.eat_word("priority") {
+            t.priority = Some(self.integer_u32("a number, 1 is first"));
+        } else if t.on_clearing.is_none() && self.at_word("on") && self.peek_word("clearing") {
+            self.bump();
+            self.bump();
+            self.eat(Tok::Colon);
+            t.on_clearing = Some(self.block("`{` and the statements"));
+        } else {
+            return false;
+        }
+        true
+    }
+
+    /// `when e`, and what is written for it by mistake.
+    fn receptivity(&mut self, from: &[Name], to: &[Name]) -> Expr {
+        if self.eat_word("when") {
+            return self.condition();
+        }
+        let same_line = !self.cur.newline;
+        if same_line && (self.at_word("if") || self.at(Tok::Colon)) {
+            self.slip(self.here(), "a receptivity stands behind `when`", "write `when`");
+            self.bump();
+            return self.condition();
+        }
+        if same_line && self.at_expr() {
+            self.slip(self.here(), "`when` is missing before the receptivity", "write `1 -> 2 when …`");
+            return self.condition();
+        }
+        let help = if self.at(Tok::Arrow) {
+            let (a, b) = (shown(from), shown(to));
+            format!(
+                "a step cannot follow a step: write a transition `{a} -> {b} when …` between them; \
+                 `when =1` is always true"
+            )
+        } else {
+            "`when =1` is always true".into()
+        };
+        self.expected_help("`when` and the receptivity", Some(&help));
+        Expr { kind: ExprKind::Bad, at: self.behind().into() }
+    }
+
+    /// `5`, `(3, 5)` or `()`.
+    fn step_list(&mut self, what: &str) -> Vec<Name> {
+        let open = self.here();
+        let mut names = Vec::new();
+        if self.eat(Tok::LParen) {
+            while !matches!(self.cur.kind, Tok::RParen | Tok::End) {
+                names.extend(self.step_name("the name of a step"));
+                if !self.eat(Tok::Comma) {
+                    break;
+                }
+            }
+            self.close(Tok::RParen, "`)` after the steps", open);
+            return names;
+        }
+        names.extend(self.step_name(what));
+        if self.at(Tok::Comma) {
+            self.slip(self.here(), "several steps stand in parentheses", "write `(1, 2)`");
+            while self.eat(Tok::Comma) {
+                names.extend(self.step_name("the name of a step"));
+            }
+        }
+        names
+    }
+
+    fn step_name(&mut self, what: &str) -> Option<Name> {
+        if self.at_word("step") && self.peek().kind != Tok::Arrow {
+            self.slip(self.here(), "only the name of the step stands in a transition", "leave out `step`");
+            self.bump();
+        }
+        let at = self.cur.start;
+        let name = self.name(what);
+        (self.cur.start != at).then_some(name)
+    }
+}
+
+/// Steps as a transition names them.
+fn shown(names: &[Name]) -> String {
+    match names {
+        [one] => one.text.to_string(),
+        _ => format!("({})", names.iter().map(|n| &*n.text).collect::<Vec<_>>().join(", ")),
+    }
+}

@@ -1,0 +1,428 @@
+//! Expressions: operators by binding strength, loosest 1.
+//!
+//! The height of every tree is bounded, long chains (`a or b or …`) included, so
+//! that all later stages may recurse over it.
+
+use super::Parser;
+use crate::lexer::{Tok, Token};
+use crate::{number, words};
+use g7_model::{Arg, BinaryOp, Expr, ExprKind, Literal, Name, Path, Problem, Span, UnaryOp, codes};
+
+/// The largest height of an expression's tree.
+const MOST_HIGH: u32 = 500;
+
+/// An expression with the height of its tree.
+struct Tree {
+    expr: Expr,
+    height: u32,
+}
+
+/// Binding strength of the operators between operands.
+pub(crate) fn strength(op: BinaryOp) -> u8 {
+    match op {
+        BinaryOp::Or => 1,
+        BinaryOp::Xor => 2,
+        BinaryOp::And => 3,
+        BinaryOp::Eq | BinaryOp::Ne => 4,
+        BinaryOp::Lt | BinaryOp::Le | BinaryOp::Gt | BinaryOp::Ge => 5,
+        BinaryOp::Add | BinaryOp::Sub => 6,
+        BinaryOp::Mul | BinaryOp::Div | BinaryOp::Mod | BinaryOp::Dot => 7,
+        BinaryOp::Pow => 8,
+    }
+}
+
+impl Parser<'_> {
+    /// An expression; `Bad` with a problem where none stands.
+    pub(crate) fn expr(&mut self) -> Expr {
+        self.tree(1).expr
+    }
+
+    /// An expression that says whether: `:=` in it is a slip for `=`.
+    pub(super) fn condition(&mut self) -> Expr {
+        let left = self.tree(1);
+        if !self.at(Tok::Assign) {
+            return left.expr;
+        }
+        self.slip(self.here(), "`:=` assigns; a comparison is written `=`", "write `=`");
+        self.bump();
+        let right = self.tree(1);
+        self.join(BinaryOp::Eq, left, right).expr
+    }
+
+    /// Whether an expression can begin here.
+    pub(super) fn at_expr(&self) -> bool {
+        match self.cur.kind {
+            Tok::Word => {
+                let word = self.word();
+                !words::is_reserved(word)
+                    || matches!(
+                        word,
+                        "not" | "NOT" | "TRUE" | "FALSE" | "true" | "false" | "rise" | "fall" | "delay"
+                    )
+            }
+            Tok::Ticked
+            | Tok::Int
+            | Tok::Real
+            | Tok::Time
+            | Tok::Typed
+            | Tok::Str
+            | Tok::Direct
+            | Tok::LParen
+            | Tok::LBracket
+            | Tok::Bang
+            | Tok::Slash
+            | Tok::Minus
+            | Tok::Rise
+            | Tok::Fall
+            | Tok::Eq => true,
+            _ => false,
+        }
+    }
+
+    fn tree(&mut self, least: u8) -> Tree {
+        let left = self.unary();
+        self.operators(left, least)
+    }
+
+    fn operators(&mut self, mut left: Tree, least: u8) -> Tree {
+        while let Some(op) = self.operator() {
+            if strength(op) < least {
+                break;
+            }
+            self.operator_slip();
+            self.bump();
+            let right = self.tree(strength(op) + 1);
+            left = self.join(op, left, right);
+        }
+        left
+    }
+
+    fn operator(&self) -> Option<BinaryOp> {
+        Some(match self.cur.kind {
+            Tok::Word => match self.word() {
+                "and" | "AND" => BinaryOp::And,
+                "or" | "OR" => BinaryOp::Or,
+                "xor" | "XOR" => BinaryOp::Xor,
+                "mod" | "MOD" => BinaryOp::Mod,
+                _ => return None,
+            },
+            Tok::Amp | Tok::AmpAmp => BinaryOp::And,
+            Tok::Bars => BinaryOp::Or,
+            Tok::Eq => BinaryOp::Eq,
+            Tok::Ne => BinaryOp::Ne,
+            Tok::Lt => BinaryOp::Lt,
+            Tok::Le => BinaryOp::Le,
+            Tok::Gt => BinaryOp::Gt,
+            Tok::Ge => BinaryOp::Ge,
+            Tok::Plus => BinaryOp::Add,
+            Tok::Minus => BinaryOp::Sub,
+            Tok::Star => BinaryOp::Mul,
+            Tok::Slash => BinaryOp::Div,
+            Tok::Dot => BinaryOp::Dot,
+            Tok::Power => BinaryOp::Pow,
+            _ => return None,
+        })
+    }
+
+    /// Signs that other languages have.
+    fn operator_slip(&mut self) {
+        let (sign, word) = match self.cur.kind {
+            Tok::AmpAmp => ("&&", "and"),
+            Tok::Bars => ("||", "or"),
+            _ => return,
+        };
+        self.slip(self.here(), &format!("`{sign}` is no operator here"), format!("write `{word}`"));
+    }
+
+    /// `a op b`; a tree that grows too high is cut.
+    fn join(&mut self, op: BinaryOp, left: Tree, right: Tree) -> Tree {
+        let at = left.expr.at.0.to(right.expr.at.0);
+        let height = left.height.max(right.height) + 1;
+        let kind = ExprKind::Binary(op, Box::new(left.expr), Box::new(right.expr));
+        self.checked(kind, at, height)
+    }
+
+    fn checked(&mut self, kind: ExprKind, at: Span, height: u32) -> Tree {
+        if height <= MOST_HIGH {
+            return Tree { expr: Expr { kind, at: at.into() }, height };
+        }
+        let place = Span { start: at.end, ..at };
+        self.report(place, || {
+            let what = format!("this expression is more than {MOST_HIGH} operators deep");
+            Problem::new(&codes::TOO_DEEP, place, what).help("put parts of it in parentheses or in variables")
+        });
+        Tree { expr: Expr { kind: ExprKind::Bad, at: at.into() }, height: 1 }
+    }
+
+    fn unary(&mut self) -> Tree {
+        let mut ops: Vec<(Option<UnaryOp>, u32)> = Vec::new();
+        loop {
+            let op = match self.cur.kind {
+                Tok::Bang | Tok::Slash => Some(UnaryOp::Not),
+                Tok::Minus => Some(UnaryOp::Neg),
+                Tok::Plus => None,
+                Tok::Rise => Some(UnaryOp::Rise),
+                Tok::Fall => Some(UnaryOp::Fall),
+                Tok::Word if matches!(self.word(), "not" | "NOT") => Some(UnaryOp::Not),
+                _ => break,
+            };
+            ops.push((op, self.cur.start));
+            self.bump();
+        }
+        let mut tree = self.postfix();
+        for (op, start) in ops.into_iter().rev() {
+            let at = Span { start, ..tree.expr.at.0 };
+            tree = match op {
+                Some(op) => self.checked(ExprKind::Unary(op, Box::new(tree.expr)), at, tree.height + 1),
+                None => Tree { expr: Expr { at: at.into(), ..tree.expr }, ..tree },
+            };
+        }
+        tree
+    }
+
+    fn postfix(&mut self) -> Tree {
+        let mut tree = self.primary();
+        while matches!(self.cur.kind, Tok::Prime | Tok::Overline) {
+            self.bump();
+            let at = Span { end: self.prev.end, ..tree.expr.at.0 };
+            tree = self.checked(ExprKind::Unary(UnaryOp::Not, Box::new(tree.expr)), at, tree.height + 1);
+        }
+        tree
+    }
+
+    fn primary(&mut self) -> Tree {
+        let token = self.cur;
+        match token.kind {
+            Tok::Int if self.peek().kind == Tok::PathDot => self.path_or_call(),
+            Tok::Int | Tok::Real | Tok::Typed | Tok::Str => {
+                self.bump();
+                let literal = self.literal(token);
+                self.leaf(literal.map_or(ExprKind::Bad, ExprKind::Literal), token.start)
+            }
+            Tok::Time => self.timed(),
+            Tok::Ticked => self.path_or_call(),
+            Tok::Direct => {
+                self.bump();
+                let name = self.direct_name(token);
+                self.leaf(ExprKind::Direct(name), token.start)
+            }
+            Tok::LParen => self.grouped(Tok::RParen, "`)`"),
+            Tok::LBracket => self.grouped(Tok::RBracket, "`]`"),
+            Tok::Eq => self.always_true(),
+            Tok::Word => self.word_operand(),
+            _ => self.no_operand(),
+        }
+    }
+
+    fn leaf(&self, kind: ExprKind, start: u32) -> Tree {
+        Tree { expr: Expr { kind, at: self.since(start).into() }, height: 1 }
+    }
+
+    fn no_operand(&mut self) -> Tree {
+        self.expected("an expression");
+        Tree { expr: Expr { kind: ExprKind::Bad, at: self.here().into() }, height: 1 }
+    }
+
+    fn word_operand(&mut self) -> Tree {
+        let token = self.cur;
+        let literal = match self.slice(token) {
+            "TRUE" | "true" => true,
+            "FALSE" | "false" => false,
+            "rise" => return self.edge(UnaryOp::Rise),
+            "fall" => return self.edge(UnaryOp::Fall),
+            "delay" => return self.delay(),
+            word if words::is_reserved(word) => return self.no_operand(),
+            _ => return self.path_or_call(),
+        };
+        self.bump();
+        self.leaf(ExprKind::Literal(Literal::Bool(literal)), token.start)
+    }
+
+    /// A literal of one token; a problem if it cannot be read.
+    fn literal(&mut self, token: Token) -> Option<Literal> {
+        let text = self.slice(token);
+        let read = match token.kind {
+            Tok::Int => number::integer(text).map(|v| Literal::Int(v, None)),
+            Tok::Real => number::real(text).map(|v| Literal::Real(v, None)),
+            Tok::Typed => number::typed(text),
+            Tok::Str => Ok(Literal::Str(self.string(token))),
+            _ => return None,
+        };
+        read.map_err(|what| {
+            let at = self.span_of(token);
+            self.lexer.problems.add(at, || Problem::new(&codes::BAD_NUMBER, at, what));
+        })
+        .ok()
+    }
+
+    /// `%I0.1` without the `%`, in upper case.
+    pub(super) fn direct_name(&self, token: Token) -> Box<str> {
+        self.slice(token).trim_start_matches('%').to_ascii_uppercase().into()
+    }
+
+    /// `( … )` or `[ … ]`.
+    fn grouped(&mut self, close: Tok, sign: &str) -> Tree {
+        let open = self.here();
+        if !self.enter() {
+            return self.leaf(ExprKind::Bad, open.start);
+        }
+        self.bump();
+        let mut tree = self.tree(1);
+        self.close(close, sign, open);
+        self.leave();
+        tree.expr.at = self.since(open.start).into();
+        tree
+    }
+
+    /// `=1`.
+    fn always_true(&mut self) -> Tree {
+        let start = self.bump().start;
+        if self.at(Tok::Int) && self.slice(self.cur) == "1" {
+            self.bump();
+            return self.leaf(ExprKind::Literal(Literal::Bool(true)), start);
+        }
+        self.expected_help("`1` after `=`", Some("`=1` is always true; a comparison has two sides"));
+        self.leaf(ExprKind::Bad, start)
+    }
+
+    /// A duration, or `t1/e/t2`.
+    fn timed(&mut self) -> Tree {
+        let token = self.bump();
+        let t1 = self.time_of(token);
+        if !self.at(Tok::Slash) {
+            return Tree { expr: t1, height: 1 };
+        }
+        if !self.enter() {
+            return self.leaf(ExprKind::Bad, token.start);
+        }
+        self.bump();
+        let e = self.unary();
+        self.leave();
+        let mut t2 = None;
+        if self.at(Tok::Slash) && self.peek().kind == Tok::Time {
+            self.bump();
+            let token = self.bump();
+            t2 = Some(Box::new(self.time_of(token)));
+        }
+        let at = self.since(token.start);
+        self.checked(ExprKind::Timer { t1: Box::new(t1), e: Box::new(e.expr), t2 }, at, e.height + 1)
+    }
+
+    /// The expression of a duration token just read.
+    pub(super) fn time_of(&mut self, token: Token) -> Expr {
+        let ns = self.duration_of(token);
+        Expr { kind: ExprKind::Literal(Literal::Time(ns)), at: self.span_of(token).into() }
+    }
+
+    /// `rise(e)` and `fall(e)`.
+    fn edge(&mut self, op: UnaryOp) -> Tree {
+        let start = self.bump().start;
+        if !self.at(Tok::LParen) {
+            self.expected("`(`");
+            return self.leaf(ExprKind::Bad, start);
+        }
+        let inner = self.grouped(Tok::RParen, "`)`");
+        let at = self.since(start);
+        self.checked(ExprKind::Unary(op, Box::new(inner.expr)), at, inner.height + 1)
+    }
+
+    /// `delay(t1, e, t2)`.
+    fn delay(&mut self) -> Tree {
+        let start = self.bump().start;
+        let open = self.here();
+        if !self.at(Tok::LParen) || !self.enter() {
+            self.expected("`(`");
+            return self.leaf(ExprKind::Bad, start);
+        }
+        self.bump();
+        let t1 = self.tree(1);
+        if !self.expect(Tok::Comma, "`,` and the condition") {
+            self.leave();
+            self.close(Tok::RParen, "`)`", open);
+            return self.leaf(ExprKind::Bad, start);
+        }
+        let e = self.tree(1);
+        let t2 = self.eat(Tok::Comma).then(|| self.tree(1));
+        self.close(Tok::RParen, "`)`", open);
+        self.leave();
+        let height = t1.height.max(e.height).max(t2.as_ref().map_or(0, |t| t.height)) + 1;
+        let t2 = t2.map(|t| Box::new(t.expr));
+        let kind = ExprKind::Timer { t1: Box::new(t1.expr), e: Box::new(e.expr), t2 };
+        let at = self.since(start);
+        self.checked(kind, at, height)
+    }
+
+    /// `a.b.c`. The caller has seen that a name stands here.
+    pub(super) fn path(&mut self) -> Path {
+        let mut names = vec![self.name("a name")];
+        while self.eat(Tok::PathDot) {
+            names.push(self.member());
+        }
+        Path { names }
+    }
+
+    /// The name behind a dot: any word will do there.
+    fn member(&mut self) -> Name {
+        if self.at(Tok::Word) {
+            let token = self.bump();
+            return Name::new(self.slice(token), self.span_of(token));
+        }
+        self.name("a name after the dot")
+    }
+
+    /// Whether the `(` of a call stands here.
+    pub(super) fn at_call(&self) -> bool {
+        self.at(Tok::LParen) && !self.cur.newline
+    }
+
+    fn path_or_call(&mut self) -> Tree {
+        let start = self.cur.start;
+        let path = self.path();
+        if !self.at_call() {
+            return self.leaf(ExprKind::Path(path), start);
+        }
+        let (args, height) = self.args();
+        let at = self.since(start);
+        self.checked(ExprKind::Call(path, args), at, height + 1)
+    }
+
+    /// `(a, n := b, m => c)`, with the height of the highest argument.
+    fn args(&mut self) -> (Vec<Arg>, u32) {
+        let open = self.here();
+        let mut args = Vec::new();
+        let mut height = 0;
+        if !self.enter() {
+            return (args, height);
+        }
+        self.bump();
+        while !matches!(self.cur.kind, Tok::RParen | Tok::End) {
+            let name = match self.peek().kind {
+                Tok::Assign | Tok::Output => self.name_if(),
+                _ => None,
+            };
+            let output = name.is_some() && self.at(Tok::Output);
+            if name.is_some() {
+                self.bump();
+            }
+            let value = self.tree(1);
+            height = height.max(value.height);
+            let is_path = matches!(value.expr.kind, ExprKind::Path(_) | ExprKind::Bad);
+            if output && !is_path {
+                let at = value.expr.at.0;
+                self.slip(at, "the result of an output goes to a variable", "write the name of a variable");
+            }
+            args.push(Arg { name, output, value: value.expr });
+            if !self.eat(Tok::Comma) {
+                break;
+            }
+        }
+        self.close(Tok::RParen, "`)`", open);
+        self.leave();
+        (args, height)
+    }
+
+    /// The arguments of a call statement.
+    pub(super) fn call_args(&mut self) -> Vec<Arg> {
+        self.args().0
+    }
+}

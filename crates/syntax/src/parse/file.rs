@@ -1,0 +1,251 @@
+//! A file and its items.
+
+use super::Parser;
+use crate::lexer::Tok;
+use crate::words;
+use g7_model::{
+    Block, Document, Expr, ExprKind, Function, Item, Name, NamedAction, Path, Problem, Profile, ProfileName,
+    Section, Stmt, StmtKind, Switch, TargetPlc, codes,
+};
+
+impl Parser<'_> {
+    /// The whole file.
+    pub(crate) fn document(&mut self) -> Document {
+        let mut items = Vec::new();
+        loop {
+            self.skip_semis();
+            if self.at(Tok::End) {
+                break;
+            }
+            let start = self.cur.start;
+            match self.item() {
+                Some(item) => items.push(item),
+                None if self.correct(words::FILE) => items.extend(self.item()),
+                None => self.lost_item(start),
+            }
+        }
+        Document { items, notes: Vec::new() }
+    }
+
+    fn item(&mut self) -> Option<Item> {
+        if let Some(kind) = self.var_kind() {
+            return Some(Item::Var(self.variable(kind)));
+        }
+        let start = self.cur.start;
+        Some(match self.word() {
+            "profile" => self.profile(),
+            "scan" => {
+                self.bump();
+                let time = self.duration("a duration");
+                Item::Cycle(time, self.since(start).into())
+            }
+            "target" => self.target(),
+            "chart" | "macrochart" | "task" => Item::Chart(self.chart()),
+            "action" => Item::Action(self.named_action()),
+            "transition" => Item::Section(self.section()),
+            "function" => Item::Function(self.function()),
+            "pre" => {
+                self.bump();
+                let body = self.body();
+                Item::Pre(body, self.since(start).into())
+            }
+            "post" => {
+                self.bump();
+                let body = self.body();
+                Item::Post(body, self.since(start).into())
+            }
+            "plant" => Item::Plant(self.plant()),
+            "test" => Item::Test(self.test()),
+            "prove" => Item::Prove(self.property()),
+            "layout" => Item::Layout(self.layout()),
+            _ => return None,
+        })
+    }
+
+    /// Something that begins no item: tells what it may have been, and skips it.
+    fn lost_item(&mut self, start: u32) {
+        let at = self.here();
+        let word = self.word();
+        if self.at(Tok::RBrace) {
+            self.problem(&codes::UNCLOSED, at, "this `}` closes nothing");
+            self.bump();
+            return;
+        }
+        if self.at_chart_start() {
+            let help = "write it between the braces of a chart: `chart Main { … }`";
+            self.problem_help(&codes::EXPECTED, at, "steps and transitions stand in a chart", help);
+        } else if !word.is_empty() {
+            let what = format!("no item of a file begins with `{word}`");
+            self.problem_help(&codes::UNKNOWN_WORD, at, &what, "items are variables, charts, plants, tests, …");
+        } else {
+            self.expected("a variable, a chart or another item of a file");
+        }
+        if self.cur.start == start {
+            self.bump();
+        }
+        self.recover(|p| p.at_file_start() || p.var_kind().is_some());
+        // A brace that closes what was skipped.
+        if self.at(Tok::RBrace) {
+            self.bump();
+        }
+    }
+
+    fn profile(&mut self) -> Item {
+        let start = self.bump().start;
+        let word = self.word();
+        let name = ProfileName::ALL.into_iter().find(|p| p.name() == word);
+        if name.is_some() {
+            self.bump();
+        } else {
+            let names = ProfileName::ALL.map(ProfileName::name);
+            self.unknown(word, "a profile", &names);
+        }
+        let open = self.here();
+        let mut switches = Vec::new();
+        if self.eat(Tok::LBrace) {
+            while !matches!(self.cur.kind, Tok::RBrace | Tok::End) && !self.at_file_start() {
+                let at = self.cur.start;
+                if let Some(switch) = self.switch() {
+                    switches.push((switch, self.since(at).into()));
+                }
+                if !self.eat(Tok::Comma) {
+                    self.skip_semis();
+                }
+            }
+            self.close(Tok::RBrace, "`}` after the switches", open);
+        }
+        let at = self.since(start).into();
+        Item::Profile(Profile { name: name.unwrap_or_default(), switches, at })
+    }
+
+    /// An unknown word where one of a list belongs; the word is skipped.
+    pub(super) fn unknown(&mut self, word: &str, what: &str, list: &[&str]) {
+        if word.is_empty() {
+            self.expected(&format!("{what}: {}", list.join(", ")));
+            return;
+        }
+        let at = self.here();
+        let near = words::similar(word, list);
+        self.report(at, || {
+            let problem = Problem::new(&codes::UNKNOWN_WORD, at, format!("`{word}` is not {what}"));
+            problem.help(match near {
+                Some(near) => format!("did you mean `{near}`?"),
+                None => format!("there are {}", list.join(", ")),
+            })
+        });
+        self.bump();
+    }
+
+    /// A switch: words joined by `-`.
+    fn switch(&mut self) -> Option<Switch> {
+        let start = self.cur.start;
+        if !self.at(Tok::Word) {
+            self.expected("a switch, such as `multi-token`");
+            self.bump();
+            return None;
+        }
+        self.bump();
+        while self.at(Tok::Minus) && self.cur.start == self.prev.end && self.peek().kind == Tok::Word {
+            self.bump();
+            self.bump();
+        }
+        let at = self.since(start);
+        let text = self.text.get(start as usize..at.end as usize).unwrap_or_default();
+        if text == "bound" {
+            return Some(Switch::Bound(self.integer_u32("the largest number of passes in a scan")));
+        }
+        let found = SWITCHES.iter().find(|(name, _)| *name == text);
+        if found.is_none() {
+            let names = SWITCHES.map(|(name, _)| name);
+            let near = words::similar(text, &names);
+            self.lexer.problems.add(at, || {
+                let problem = Problem::new(&codes::UNKNOWN_WORD, at, format!("there is no switch `{text}`"));
+                problem.help(match near {
+                    Some(near) => format!("did you mean `{near}`?"),
+                    None => format!("there are {} and bound", names.join(", ")),
+                })
+            });
+        }
+        found.map(|(_, switch)| *switch)
+    }
+
+    fn target(&mut self) -> Item {
+        let start = self.bump().start;
+        let word = self.word();
+        let found = TargetPlc::ALL.into_iter().find(|t| t.name() == word);
+        if found.is_some() {
+            self.bump();
+        } else {
+            self.unknown(word, "a PLC whose limits are known", &TargetPlc::ALL.map(TargetPlc::name));
+        }
+        Item::Target(found.unwrap_or(TargetPlc::Tsx57), self.since(start).into())
+    }
+
+    /// `action Pump { … }`.
+    pub(super) fn named_action(&mut self) -> NamedAction {
+        let start = self.bump().start;
+        let name = self.name("the name of the action");
+        let comment = self.comment_if();
+        let body = self.body();
+        NamedAction { name, comment, body, at: self.since(start).into() }
+    }
+
+    /// `transition section Ready …`.
+    pub(super) fn section(&mut self) -> Section {
+        let start = self.bump().start;
+        if !self.eat_word("section") {
+            self.expected_help(
+                "`section`",
+                Some("a transition is written `1 -> 2 when …`, without the word `transition`"),
+            );
+        }
+        let name = self.name("the name of the section");
+        let from = self.cur.start;
+        let short = self.at(Tok::Assign) || self.at(Tok::Eq);
+        let body = if short {
+            self.assign_sign();
+            let value = self.condition();
+            short_section(&name, value, self.since(from).into())
+        } else {
+            self.block("`{` or `:=`")
+        };
+        Section { name, body, short, at: self.since(start).into() }
+    }
+
+    fn function(&mut self) -> Function {
+        let start = self.bump().start;
+        let name = self.name("the name of the function");
+        let params = self.params();
+        let result = self.typed();
+        let body = self.block("`{` and the statements");
+        Function { name, params, result, body, at: self.since(start).into() }
+    }
+}
+
+/// `:= e` as the one assignment that it stands for.
+fn short_section(name: &Name, value: Expr, at: g7_model::Place) -> Block {
+    let kind = ExprKind::Path(Path { names: vec![name.clone()] });
+    let target = Expr { kind, at: name.at };
+    let stmt = Stmt { kind: StmtKind::Assign { target, value }, at };
+    Block { locals: Vec::new(), statements: vec![stmt], at }
+}
+
+/// The switches by name, `bound` aside.
+pub(crate) const SWITCHES: [(&str, Switch); 16] = [
+    ("stable", Switch::Stable(true)),
+    ("one-pass", Switch::Stable(false)),
+    ("multi-token", Switch::MultiToken(true)),
+    ("single-token", Switch::MultiToken(false)),
+    ("simultaneous", Switch::Sequential(false)),
+    ("sequential", Switch::Sequential(true)),
+    ("parallel-actions", Switch::ParallelActions(true)),
+    ("ordered-actions", Switch::ParallelActions(false)),
+    ("final-scan", Switch::FinalScan(true)),
+    ("no-final-scan", Switch::FinalScan(false)),
+    ("keep-step-time", Switch::KeepStepTime(true)),
+    ("zero-step-time", Switch::KeepStepTime(false)),
+    ("time-clock", Switch::ScanClock(false)),
+    ("scan-clock", Switch::ScanClock(true)),
+    ("pulse-first", Switch::PulseFirst(true)),
+    ("text-order", Switch::PulseFirst(false)),
+];

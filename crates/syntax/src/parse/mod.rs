@@ -1,0 +1,524 @@
+//! Recursive descent over the tokens: grammar rules are functions of [`Parser`].
+//!
+//! Each rule reads as much as it can, reports what is wrong and goes on, so that
+//! one run tells many problems. What must hold: every loop moves on by a token or
+//! ends (linear time), and every recursion passes [`Parser::enter`] (no overflow).
+
+mod action;
+mod chart;
+mod expr;
+mod file;
+mod plant;
+mod scenario;
+mod st;
+mod variable;
+
+use crate::lexer::{Lexer, Tok, Token};
+use crate::{number, words};
+use g7_model::codes::{self, Code};
+use g7_model::{FileId, Name, Problem, Span};
+
+/// Brackets, blocks and operands may be nested this deep.
+const MOST_NESTED: u32 = 128;
+
+/// The parser: one token in hand, one looked at.
+pub(crate) struct Parser<'a> {
+    lexer: Lexer<'a>,
+    text: &'a str,
+    file: FileId,
+    cur: Token,
+    next: Option<Token>,
+    prev: Token,
+    nested: u32,
+    /// Where the token stood at which a problem was told last.
+    told: Option<u32>,
+    /// A misspelt word, by where it stands, and the word it is read as.
+    corrected: Option<(u32, &'static str)>,
+}
+
+impl<'a> Parser<'a> {
+    pub(crate) fn new(text: &'a str, file: FileId) -> Parser<'a> {
+        let start = if text.starts_with('\u{feff}') { 3 } else { 0 };
+        let mut lexer = Lexer::new(text, file, start);
+        let cur = lexer.token();
+        let prev = Token { kind: Tok::Bad, start: cur.start, end: cur.start, newline: true };
+        Parser { lexer, text, file, cur, next: None, prev, nested: 0, told: None, corrected: None }
+    }
+
+    /// What was found wrong, and the notes.
+    pub(crate) fn finish(self) -> (Vec<Problem>, Vec<g7_model::Note>) {
+        (self.lexer.problems.finish(), self.lexer.notes)
+    }
+
+    // Tokens
+
+    fn bump(&mut self) -> Token {
+        let token = self.cur;
+        if token.kind != Tok::End {
+            self.prev = token;
+            self.cur = match self.next.take() {
+                Some(next) => next,
+                None => self.lexer.token(),
+            };
+        }
+        token
+    }
+
+    fn peek(&mut self) -> Token {
+        match self.next {
+            Some(next) => next,
+            None => {
+                let next = self.lexer.token();
+                self.next = Some(next);
+                next
+            }
+        }
+    }
+
+    fn at(&self, kind: Tok) -> bool {
+        self.cur.kind == kind
+    }
+
+    fn eat(&mut self, kind: Tok) -> bool {
+        let here = self.at(kind);
+        if here {
+            self.bump();
+        }
+        here
+    }
+
+    fn slice(&self, token: Token) -> &'a str {
+        self.text.get(token.start as usize..token.end as usize).unwrap_or_default()
+    }
+
+    /// The word in hand; empty for any other token.
+    fn word(&self) -> &'a str {
+        match self.corrected {
+            Some((start, word)) if start == self.cur.start => word,
+            _ if self.at(Tok::Word) => self.slice(self.cur),
+            _ => "",
+        }
+    }
+
+    /// Reads a misspelt word in hand as the word of the list that was most
+    /// likely meant, if there is one; tells so. Only before something that
+    /// such a word can have behind it.
+    fn correct(&mut self, list: &[&'static str]) -> bool {
+        let word = self.word();
+        let at = self.here();
+        if word.is_empty() || list.contains(&word) || self.told == Some(at.start) {
+            return false;
+        }
+        let follows = matches!(
+            self.peek().kind,
+            Tok::Word
+                | Tok::Int
+                | Tok::Ticked
+                | Tok::Comment
+                | Tok::Str
+                | Tok::Time
+                | Tok::LBrace
+                | Tok::Direct
+                | Tok::Rise
+                | Tok::Fall
+        );
+        let Some(near) = words::similar(word, list).filter(|_| follows) else { return false };
+        self.report(at, || {
+            let what = format!("`{word}` is no word of the language here");
+            Problem::new(&codes::UNKNOWN_WORD, at, what).help(format!("did you mean `{near}`?"))
+        });
+        self.corrected = Some((at.start, near));
+        true
+    }
+
+    fn at_word(&self, word: &str) -> bool {
+        self.word() == word
+    }
+
+    fn eat_word(&mut self, word: &str) -> bool {
+        let here = self.at_word(word);
+        if here {
+            self.bump();
+        }
+        here
+    }
+
+    /// The Structured Text word in hand.
+    fn st_word(&self) -> Option<words::St> {
+        words::st(self.word())
+    }
+
+    fn eat_st(&mut self, word: words::St) -> bool {
+        let here = self.st_word() == Some(word);
+        if here {
+            self.bump();
+        }
+        here
+    }
+
+    fn peek_word(&mut self, word: &str) -> bool {
+        let next = self.peek();
+        next.kind == Tok::Word && self.slice(next) == word
+    }
+
+    // Places
+
+    fn here(&self) -> Span {
+        self.span_of(self.cur)
+    }
+
+    fn span_of(&self, token: Token) -> Span {
+        Span { file: self.file, start: token.start, end: token.end }
+    }
+
+    /// From a byte to the end of the last token read.
+    fn since(&self, start: u32) -> Span {
+        Span { file: self.file, start, end: self.prev.end.max(start) }
+    }
+
+    /// Just behind the last token read.
+    fn behind(&self) -> Span {
+        Span { file: self.file, start: self.prev.end, end: self.prev.end }
+    }
+
+    // Problems
+
+    /// Reports a problem, unless one was told at the token in hand already.
+    fn report(&mut self, at: Span, make: impl FnOnce() -> Problem) {
+        if self.told != Some(self.cur.start) {
+            self.told = Some(self.cur.start);
+            self.lexer.problems.add(at, make);
+        }
+    }
+
+    fn problem(&mut self, code: &'static Code, at: Span, what: impl Into<String>) {
+        self.report(at, || Problem::new(code, at, what));
+    }
+
+    fn problem_help(&mut self, code: &'static Code, at: Span, what: &str, help: &str) {
+        self.report(at, || Problem::new(code, at, what).help(help));
+    }
+
+    /// A slip whose meaning is clear: it is told, and reading goes on as if it were right.
+    fn slip(&mut self, at: Span, what: &str, help: impl Into<String>) {
+        self.lexer.problems.add(at, || Problem::new(&codes::EXPECTED, at, what).help(help));
+    }
+
+    /// The token in hand, in words.
+    fn found(&self) -> String {
+        match self.cur.kind {
+            Tok::End => "the end of the text".into(),
+            Tok::Comment => "a comment".into(),
+            Tok::Str => "a text in quotes".into(),
+            _ => {
+                let text = self.slice(self.cur);
+                let short: String = text.chars().take(24).collect();
+                let dots = if short.len() < text.len() { "…" } else { "" };
+                format!("`{short}{dots}`")
+            }
+        }
+    }
+
+    /// Reports that something else was expected at the token in hand.
+    fn expected(&mut self, what: &str) {
+        self.expected_help(what, None);
+    }
+
+    fn expected_help(&mut self, what: &str, help: Option<&str>) {
+        let (at, words) = self.expected_words(what);
+        self.report(at, || {
+            let problem = Problem::new(&codes::EXPECTED, at, words);
+            help.map_or_else(|| problem.clone(), |h| problem.clone().help(h))
+        });
+    }
+
+    /// Where the line ended before the token in hand, the place is that end.
+    fn expected_words(&self, what: &str) -> (Span, String) {
+        let ended = self.cur.newline && self.prev.kind != Tok::Bad || self.at(Tok::End);
+        if ended {
+            (self.behind(), format!("expected {what}"))
+        } else {
+            (self.here(), format!("expected {what}, found {}", self.found()))
+        }
+    }
+
+    fn expect(&mut self, kind: Tok, what: &str) -> bool {
+        let here = self.eat(kind);
+        if !here {
+            self.expected(what);
+        }
+        here
+    }
+
+    /// Expects that nothing follows.
+    pub(crate) fn expect_end(&mut self) {
+        if !self.at(Tok::End) {
+            self.expected("nothing more");
+        }
+    }
+
+    /// Expects the bracket that closes the one at `open`.
+    fn close(&mut self, kind: Tok, sign: &str, open: Span) -> bool {
+        let here = self.eat(kind);
+        if !here {
+            let (at, words) = self.expected_words(sign);
+            let open_sign = self.text.get(open.start as usize..open.end as usize).unwrap_or_default();
+            self.report(at, || {
+                Problem::new(&codes::UNCLOSED, at, words).related(open, format!("`{open_sign}` stands here"))
+            });
+        }
+        here
+    }
+
+    // Nesting
+
+    /// Goes one level deeper, if that is allowed; else skips what is nested here.
+    fn enter(&mut self) -> bool {
+        if self.nested < MOST_NESTED {
+            self.nested += 1;
+            return true;
+        }
+        let at = self.here();
+        self.report(at, || {
+            let what = format!("brackets or blocks are nested more than {MOST_NESTED} levels deep");
+            Problem::new(&codes::TOO_DEEP, at, what)
+        });
+        self.skip_nested();
+        false
+    }
+
+    fn leave(&mut self) {
+        self.nested -= 1;
+    }
+
+    /// Skips to the bracket that closes the one around the token in hand.
+    fn skip_nested(&mut self) {
+        let mut depth = 0u32;
+        loop {
+            match self.cur.kind {
+                Tok::End => return,
+                Tok::LBrace | Tok::LParen | Tok::LBracket => depth += 1,
+                Tok::RBrace | Tok::RParen | Tok::RBracket if depth == 0 => return,
+                Tok::RBrace | Tok::RParen | Tok::RBracket => depth -= 1,
+                _ => {}
+            }
+            self.bump();
+        }
+    }
+
+    /// After a problem: skips to a token that `stop` accepts at the start of a
+    /// line, to a `;`, or to the brace that closes what we are in.
+    fn recover(&mut self, stop: impl Fn(&mut Parser<'a>) -> bool) {
+        let mut depth = 0u32;
+        loop {
+            let kind = self.cur.kind;
+            match kind {
+                Tok::End => return,
+                Tok::RBrace if depth == 0 => return,
+                Tok::RBrace => depth -= 1,
+                Tok::LBrace => depth += 1,
+                Tok::Semi if depth == 0 => return,
+                _ if depth == 0 && self.cur.newline && stop(self) => return,
+                _ if self.cur.newline && self.at_file_start() => return,
+                _ => {}
+            }
+            self.bump();
+        }
+    }
+
+    /// Whether something begins here that stands only outside of all braces.
+    fn at_file_start(&mut self) -> bool {
+        match self.word() {
+            "chart" | "macrochart" | "task" | "plant" | "layout" | "function" => {
+                matches!(self.peek().kind, Tok::Word | Tok::Ticked | Tok::Int)
+            }
+            "profile" => self.peek().kind == Tok::Word,
+            "test" => self.peek().kind == Tok::Comment,
+            "prove" => self.peek().kind == Tok::Word,
+            _ => false,
+        }
+    }
+
+    // Names
+
+    /// A name; without one a problem, and an empty name.
+    fn name(&mut self, what: &str) -> Name {
+        let token = self.cur;
+        if token.kind == Tok::Word && words::is_reserved(self.slice(token)) {
+            return self.reserved_name(what);
+        }
+        self.name_if().unwrap_or_else(|| {
+            self.expected(what);
+            Name::new("", self.here())
+        })
+    }
+
+    /// A name, if one stands here.
+    fn name_if(&mut self) -> Option<Name> {
+        let token = self.cur;
+        let at = self.span_of(token);
+        let text = self.slice(token);
+        let name = match token.kind {
+            Tok::Word if words::is_reserved(text) => return None,
+            Tok::Word => Name::new(text, at),
+            Tok::Ticked => Name::new(number::unquote(text, '`'), at),
+            Tok::Int if text.bytes().all(|b| b.is_ascii_digit()) => Name::new(text, at),
+            _ => return None,
+        };
+        self.bump();
+        if name.text.is_empty() {
+            self.slip(at, "a name cannot be empty", "write something between the back-ticks");
+        }
+        Some(name)
+    }
+
+    /// A word of the language where a name belongs: taken as the name if what follows fits one.
+    fn reserved_name(&mut self, what: &str) -> Name {
+        let at = self.here();
+        let word = self.slice(self.cur);
+        let fits = matches!(
+            self.peek().kind,
+            Tok::Colon
+                | Tok::Comma
+                | Tok::Arrow
+                | Tok::LBrace
+                | Tok::RBrace
+                | Tok::RParen
+                | Tok::Assign
+                | Tok::Comment
+        );
+        if !fits || self.cur.newline && self.prev.kind != Tok::Bad {
+            self.expected(what);
+            return Name::new("", at);
+        }
+        self.slip(
+            at,
+            &format!("`{word}` is a word of the language, not a name"),
+            format!("write it in back-ticks: `` `{word}` ``"),
+        );
+        self.bump();
+        Name::new(word, at)
+    }
+
+    /// `a, b, c`.
+    fn names(&mut self, what: &str) -> Vec<Name> {
+        let mut names = vec![self.name(what)];
+        while self.eat(Tok::Comma) {
+            names.push(self.name(what));
+        }
+        names
+    }
+
+    /// Whether a name stands here.
+    fn at_name(&self) -> bool {
+        match self.cur.kind {
+            Tok::Word => !words::is_reserved(self.slice(self.cur)),
+            Tok::Ticked | Tok::Int => true,
+            _ => false,
+        }
+    }
+
+    /// `"…"`, if it stands here.
+    fn comment_if(&mut self) -> Option<Box<str>> {
+        self.at(Tok::Comment).then(|| {
+            let token = self.bump();
+            number::unquote(self.slice(token), '"').into()
+        })
+    }
+
+    /// A text in either kind of quotes.
+    fn text_if(&mut self) -> Option<Box<str>> {
+        if self.at(Tok::Str) {
+            let token = self.bump();
+            return Some(self.string(token));
+        }
+        self.comment_if()
+    }
+
+    /// The text of a string token.
+    fn string(&mut self, token: Token) -> Box<str> {
+        let (text, wrong) = number::unquote_st(self.slice(token));
+        if let Some(wrong) = wrong {
+            let at = self.span_of(token);
+            self.lexer.problems.add(at, || Problem::new(&codes::BAD_CHARACTER, at, wrong));
+        }
+        text.into()
+    }
+
+    // Numbers
+
+    /// A duration as written, if one stands here.
+    fn duration_if(&mut self) -> Option<i64> {
+        self.at(Tok::Time).then(|| {
+            let token = self.bump();
+            self.duration_of(token)
+        })
+    }
+
+    fn duration_of(&mut self, token: Token) -> i64 {
+        let at = self.span_of(token);
+        let text = self.slice(token);
+        match number::duration(text) {
+            Ok(ns) => ns,
+            Err(what) => {
+                let name_like = !text.contains('#');
+                self.lexer.problems.add(at, || {
+                    let problem = Problem::new(&codes::BAD_DURATION, at, what);
+                    if name_like {
+                        problem.help(
+                            "a duration is `5s` or `1h30m`; a name that begins with a digit stands in back-ticks",
+                        )
+                    } else {
+                        problem
+                    }
+                });
+                0
+            }
+        }
+    }
+
+    /// A duration; without one a problem, and 0.
+    fn duration(&mut self, what: &str) -> i64 {
+        if let Some(ns) = self.duration_if() {
+            return ns;
+        }
+        if matches!(self.cur.kind, Tok::Int | Tok::Real) {
+            self.expected_help(what, Some("write the unit: `10ms`, `5s`, `1m30s`"));
+            self.bump();
+        } else {
+            self.expected(what);
+        }
+        0
+    }
+
+    /// A whole number that fits into `most`, if one stands here.
+    fn integer_if(&mut self, most: u64) -> Option<u64> {
+        self.at(Tok::Int).then(|| {
+            let token = self.bump();
+            let at = self.span_of(token);
+            let value = number::integer(self.slice(token)).and_then(|v| {
+                u64::try_from(v).ok().filter(|v| *v <= most).ok_or_else(|| format!("at most {most} here"))
+            });
+            value.unwrap_or_else(|what| {
+                self.lexer.problems.add(at, || Problem::new(&codes::BAD_NUMBER, at, what));
+                0
+            })
+        })
+    }
+
+    fn integer_u32(&mut self, what: &str) -> u32 {
+        match self.integer_if(u64::from(u32::MAX)) {
+            Some(n) => u32::try_from(n).unwrap_or(u32::MAX),
+            None => {
+                self.expected(what);
+                0
+            }
+        }
+    }
+
+    // Separators
+
+    fn skip_semis(&mut self) {
+        while self.eat(Tok::Semi) {}
+    }
+}

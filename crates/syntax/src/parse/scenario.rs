@@ -1,0 +1,291 @@
+//! Tests, properties and the layout.
+
+use super::Parser;
+use crate::lexer::Tok;
+use crate::words::{self, St};
+use crate::number;
+use g7_model::{
+    Expr, Layout, Path, PlaceAt, Placed, Problem, Property, PropertyKind, Scenario, TestStmt, TestStmtKind,
+    codes,
+};
+
+impl Parser<'_> {
+    /// `test "…" { … }`.
+    pub(super) fn test(&mut self) -> Scenario {
+        let start = self.bump().start;
+        let title = self.text_if().unwrap_or_else(|| {
+            self.expected("the title of the test in double quotes");
+            "".into()
+        });
+        let plant = self.eat_word("with").then(|| self.name("the name of a plant"));
+        let seed = if self.eat_word("seed") {
+            let seed = self.integer_if(u64::MAX);
+            if seed.is_none() {
+                self.expected("a whole number");
+            }
+            seed
+        } else {
+            None
+        };
+        let body = self.test_block();
+        Scenario { title, plant, seed, body, at: self.since(start).into() }
+    }
+
+    fn test_block(&mut self) -> Vec<TestStmt> {
+        let open = self.here();
+        let mut list = Vec::new();
+        if !self.at(Tok::LBrace) {
+            self.expected("`{` and what happens in the test");
+            return list;
+        }
+        if !self.enter() {
+            return list;
+        }
+        self.bump();
+        loop {
+            self.skip_semis();
+            if self.eat(Tok::RBrace) {
+                break;
+            }
+            if self.at(Tok::End) || self.cur.newline && self.at_file_start() {
+                self.close(Tok::RBrace, "`}` after the statements of the test", open);
+                break;
+            }
+            let start = self.cur.start;
+            let kind = match self.test_statement() {
+                None if self.correct(words::TEST) => self.test_statement(),
+                kind => kind,
+            };
+            match kind {
+                Some(kind) => list.push(TestStmt { kind, at: self.since(start).into() }),
+                None => self.lost_test_statement(start),
+            }
+        }
+        self.leave();
+        list
+    }
+
+    fn lost_test_statement(&mut self, start: u32) {
+        if self.at_name() && matches!(self.peek().kind, Tok::Assign | Tok::Eq) {
+            self.expected_help("a statement of a test", Some("inputs are moved by `set a := TRUE`"));
+        } else {
+            let list = words::TEST.join(", ");
+            self.expected(&format!("a statement of a test: {list}"));
+        }
+        if self.cur.start == start {
+            self.bump();
+        }
+        self.recover(|p| words::TEST.contains(&p.word()));
+    }
+
+    fn test_statement(&mut self) -> Option<TestStmtKind> {
+        if self.at(Tok::Comment) {
+            return self.comment_if().map(TestStmtKind::Comment);
+        }
+        Some(match self.word() {
+            "set" => self.set(),
+            "pulse" => {
+                self.bump();
+                let path = self.path_or_empty("the name of an input");
+                let time = self.eat_st(St::For).then(|| self.duration("a duration"));
+                TestStmtKind::Pulse(path, time)
+            }
+            "wait" => self.wait(),
+            "scan" => {
+                self.bump();
+                let n = self.integer_if(u64::from(u32::MAX)).map_or(1, |n| u32::try_from(n).unwrap_or(u32::MAX));
+                TestStmtKind::Scan(n)
+            }
+            "expect" => self.expectation(),
+            "always" => {
+                self.bump();
+                let list = self.conditions();
+                TestStmtKind::Always(list, self.test_block())
+            }
+            "force" => {
+                self.bump();
+                let (path, value) = self.path_and_value();
+                TestStmtKind::Force(path, value)
+            }
+            "release" => {
+                self.bump();
+                TestStmtKind::Release(self.path_or_empty("the name of a variable"))
+            }
+            "restart" => {
+                self.bump();
+                TestStmtKind::Restart { cold: self.eat_word("cold") }
+            }
+            "repeat" => {
+                self.bump();
+                let n = self.integer_u32("how many times");
+                TestStmtKind::Repeat(n, self.test_block())
+            }
+            _ => return None,
+        })
+    }
+
+    fn path_and_value(&mut self) -> (Path, Expr) {
+        let path = self.path_or_empty("the name of a variable");
+        let value = if self.assign_sign() { self.expr() } else { self.bad() };
+        (path, value)
+    }
+
+    fn set(&mut self) -> TestStmtKind {
+        self.bump();
+        let mut list = vec![self.path_and_value()];
+        while self.eat(Tok::Comma) {
+            list.push(self.path_and_value());
+        }
+        TestStmtKind::Set(list)
+    }
+
+    fn wait(&mut self) -> TestStmtKind {
+        self.bump();
+        if !self.eat_st(St::Until) {
+            return TestStmtKind::Wait(self.duration("a duration or `until`"));
+        }
+        let e = self.condition();
+        let within = self.eat_word("within").then(|| self.duration("a duration"));
+        TestStmtKind::WaitUntil(e, within)
+    }
+
+    /// `expect fault unstable`, or `expect a, not b`.
+    fn expectation(&mut self) -> TestStmtKind {
+        self.bump();
+        if !self.at_word("fault") {
+            return TestStmtKind::Expect(self.conditions());
+        }
+        self.bump();
+        let named = match self.cur.kind {
+            Tok::Word => !words::TEST.contains(&self.word()) && self.at_name(),
+            kind => kind == Tok::Ticked,
+        };
+        TestStmtKind::ExpectFault(if named { self.name_if() } else { None })
+    }
+
+    fn conditions(&mut self) -> Vec<Expr> {
+        let mut list = vec![self.condition()];
+        while self.eat(Tok::Comma) {
+            list.push(self.condition());
+        }
+        list
+    }
+
+    /// `prove …`.
+    pub(super) fn property(&mut self) -> Property {
+        let start = self.bump().start;
+        let word = self.word();
+        let kind = match word {
+            "always" => {
+                self.bump();
+                PropertyKind::Always(self.condition())
+            }
+            "never" => {
+                self.bump();
+                PropertyKind::Never(self.condition())
+            }
+            "reachable" => {
+                self.bump();
+                PropertyKind::Reachable(self.condition())
+            }
+            "after" => self.response(),
+            _ => {
+                self.unknown(word, "a form of property", &["always", "never", "reachable", "after"]);
+                PropertyKind::Always(if self.at_expr() { self.condition() } else { self.bad() })
+            }
+        };
+        let comment = self.comment_if();
+        Property { kind, comment, at: self.since(start).into() }
+    }
+
+    /// `after a within 5s expect b`.
+    fn response(&mut self) -> PropertyKind {
+        self.bump();
+        let first = self.condition();
+        if !self.eat_word("within") {
+            self.expected("`within` and a duration");
+        }
+        let time = self.duration("a duration");
+        if !self.eat_word("expect") {
+            self.expected("`expect` and a condition");
+        }
+        let second = if self.at_expr() { self.condition() } else { self.bad() };
+        PropertyKind::After(first, time, second)
+    }
+
+    /// `layout Main { … }`.
+    pub(super) fn layout(&mut self) -> Layout {
+        let start = self.bump().start;
+        let chart = self.name("the name of a chart");
+        let open = self.here();
+        let mut places = Vec::new();
+        if self.expect(Tok::LBrace, "`{` and the places") {
+            self.skip_semis();
+            while let Some(place) = self.place_at() {
+                places.push(place);
+                self.skip_semis();
+            }
+            self.close(Tok::RBrace, "`}` after the places", open);
+        }
+        Layout { chart, places, at: self.since(start).into() }
+    }
+
+    fn place_at(&mut self) -> Option<PlaceAt> {
+        let start = self.cur.start;
+        let what = match self.word() {
+            "step" => {
+                self.bump();
+                Placed::Step(self.name("the name of a step"))
+            }
+            "transition" => {
+                self.bump();
+                if self.eat(Tok::Hash) {
+                    Placed::TransitionNumber(self.integer_u32("the transition's place in the text, from 0"))
+                } else {
+                    Placed::Transition(self.name("the label of a transition, or `#` and its place in the text"))
+                }
+            }
+            "comment" => {
+                self.bump();
+                let text = self.text_if();
+                if text.is_none() {
+                    self.expected("the text of the comment in double quotes");
+                }
+                Placed::Comment(text.unwrap_or_default())
+            }
+            _ => return None,
+        };
+        if !self.eat_word("at") {
+            self.expected("`at` and a place such as `(0, 1.5)`");
+        }
+        let open = self.here();
+        self.expect(Tok::LParen, "`(`");
+        let x = self.hundredths();
+        self.expect(Tok::Comma, "`,`");
+        let y = self.hundredths();
+        self.close(Tok::RParen, "`)`", open);
+        Some(PlaceAt { what, x, y, at: self.since(start).into() })
+    }
+
+    /// A number in hundredths, rounded.
+    fn hundredths(&mut self) -> i32 {
+        let negative = self.eat(Tok::Minus);
+        if !matches!(self.cur.kind, Tok::Int | Tok::Real) {
+            self.expected("a number");
+            return 0;
+        }
+        let token = self.bump();
+        let at = self.span_of(token);
+        let value = number::real(self.slice(token)).ok().and_then(|t| t.parse::<f64>().ok());
+        let value = value.map(|v| (v * 100.0).round()).filter(|v| *v <= f64::from(i32::MAX));
+        let Some(value) = value else {
+            self.lexer.problems.add(at, || {
+                Problem::new(&codes::BAD_NUMBER, at, "a place is a decimal number of at most 21474836.47")
+            });
+            return 0;
+        };
+        #[allow(clippy::cast_possible_truncation, reason = "bounded above by the filter, and not negative")]
+        let value = value as i32;
+        if negative { -value } else { value }
+    }
+}

@@ -1,0 +1,363 @@
+//! Blocks and statements of Structured Text.
+
+use super::Parser;
+use crate::lexer::Tok;
+use crate::words::St;
+use g7_model::{
+    Block, Body, BodyLang, CaseArm, Expr, ExprKind, Local, Path, Problem, Stmt, StmtKind, Work, codes,
+};
+
+impl Parser<'_> {
+    /// `{ … }`; without a brace a problem, and an empty block.
+    pub(super) fn block(&mut self, what: &str) -> Block {
+        let open = self.here();
+        if !self.at(Tok::LBrace) {
+            self.expected(what);
+            return Block { at: open.into(), ..Block::default() };
+        }
+        if !self.enter() {
+            return Block { at: open.into(), ..Block::default() };
+        }
+        self.bump();
+        let locals = self.locals();
+        let statements = self.statements(false);
+        self.close(Tok::RBrace, "`}` after the statements", open);
+        self.leave();
+        Block { locals, statements, at: self.since(open.start).into() }
+    }
+
+    fn locals(&mut self) -> Vec<Local> {
+        let mut locals = Vec::new();
+        self.skip_semis();
+        while self.at_word("var") {
+            let start = self.bump().start;
+            let names = self.names("the name of a variable");
+            let ty = self.typed();
+            let init = self.initial_value();
+            locals.push(Local { names, ty, init, at: self.since(start).into() });
+            self.skip_semis();
+        }
+        locals
+    }
+
+    /// `st { … }`, `{ … }`, `il { … }` or `ld { … }`.
+    pub(super) fn body(&mut self) -> Body {
+        let start = self.cur.start;
+        let lang = match self.word() {
+            "il" => Some(BodyLang::Il),
+            "ld" => Some(BodyLang::Ld),
+            _ => None,
+        };
+        let Some(lang) = lang else {
+            self.eat_word("st");
+            return Body::St(self.block("`{` and the statements"));
+        };
+        self.bump();
+        if !self.at(Tok::LBrace) || self.next.is_some() {
+            self.expected("`{`");
+            return Body::Other(lang, "".into(), self.since(start).into());
+        }
+        let open = self.here();
+        let text = self.lexer.raw_body(self.cur.end);
+        let text = if text.contains('\r') { text.replace("\r\n", "\n").into() } else { text.into() };
+        self.bump();
+        self.close(Tok::RBrace, "`}`", open);
+        Body::Other(lang, text, self.since(start).into())
+    }
+
+    /// An assignment, a call or a block, as an action does them.
+    pub(super) fn work(&mut self) -> Work {
+        if self.at(Tok::LBrace) {
+            return Work::Block(self.block("`{`"));
+        }
+        let start = self.cur.start;
+        let kind = match self.simple_statement() {
+            Some(kind) => kind,
+            None => {
+                self.expected("an assignment, a call or `{`");
+                StmtKind::Assign { target: self.bad(), value: self.bad() }
+            }
+        };
+        Work::Single(Box::new(Stmt { kind, at: self.since(start).into() }))
+    }
+
+    pub(super) fn bad(&self) -> Expr {
+        Expr { kind: ExprKind::Bad, at: self.behind().into() }
+    }
+
+    /// Statements up to a word or brace that closes them; in an arm of a CASE up to the next label as well.
+    pub(crate) fn statements(&mut self, in_case: bool) -> Vec<Stmt> {
+        let mut list = Vec::new();
+        loop {
+            self.skip_semis();
+            if matches!(self.cur.kind, Tok::End | Tok::RBrace) || self.at_closing_word() {
+                return list;
+            }
+            if in_case && self.at_label() || self.cur.newline && self.at_outer_start() {
+                return list;
+            }
+            let start = self.cur.start;
+            match self.statement() {
+                Some(kind) => list.push(Stmt { kind, at: self.since(start).into() }),
+                None => self.lost_statement(start),
+            }
+        }
+    }
+
+    /// Words that end the statements of some construct, whichever it is.
+    fn at_closing_word(&self) -> bool {
+        matches!(
+            self.st_word(),
+            Some(
+                St::Elsif
+                    | St::Else
+                    | St::EndIf
+                    | St::EndCase
+                    | St::EndFor
+                    | St::EndWhile
+                    | St::Until
+                    | St::EndRepeat
+            )
+        )
+    }
+
+    /// Whether something begins here that cannot stand among statements.
+    fn at_outer_start(&mut self) -> bool {
+        self.at_file_start() || self.at_chart_start()
+    }
+
+    fn lost_statement(&mut self, start: u32) {
+        self.expected("a statement");
+        if self.cur.start == start {
+            self.bump();
+        }
+        self.recover(|p| {
+            p.at_closing_word()
+                || matches!(
+                    p.st_word(),
+                    Some(St::If | St::Case | St::For | St::While | St::Repeat | St::Exit | St::Return)
+                )
+                || p.at(Tok::Direct)
+                || p.at_name()
+        });
+    }
+
+    fn statement(&mut self) -> Option<StmtKind> {
+        let Some(word) = self.st_word() else { return self.simple_statement() };
+        let nesting = matches!(word, St::If | St::Case | St::For | St::While | St::Repeat);
+        if !nesting {
+            self.bump();
+            return match word {
+                St::Exit => Some(StmtKind::Exit),
+                St::Return => Some(StmtKind::Return),
+                _ => None,
+            };
+        }
+        if !self.enter() {
+            return Some(StmtKind::Return);
+        }
+        let kind = match word {
+            St::If => self.if_statement(),
+            St::Case => self.case_statement(),
+            St::For => self.for_statement(),
+            St::While => self.while_statement(),
+            _ => self.repeat_statement(),
+        };
+        self.leave();
+        Some(kind)
+    }
+
+    fn then_word(&mut self, word: St, text: &str) {
+        if !self.eat_st(word) {
+            self.expected(&format!("`{text}`"));
+            // The braces of other languages.
+            self.eat(Tok::LBrace);
+        }
+    }
+
+    fn end_word(&mut self, word: St, text: &str, open: g7_model::Span) {
+        if !self.eat_st(word) {
+            let (at, words) = self.expected_words(&format!("`{text}`"));
+            self.report(at, || {
+                Problem::new(&codes::UNCLOSED, at, words).related(open, "the statement begins here")
+            });
+        }
+    }
+
+    fn if_statement(&mut self) -> StmtKind {
+        let open = self.here();
+        let mut arms = Vec::new();
+        let mut otherwise = Vec::new();
+        self.bump();
+        loop {
+            let condition = self.condition();
+            self.then_word(St::Then, "THEN");
+            arms.push((condition, self.statements(false)));
+            if !self.eat_st(St::Elsif) {
+                break;
+            }
+        }
+        if self.eat_st(St::Else) {
+            otherwise = self.statements(false);
+        }
+        self.end_word(St::EndIf, "END_IF", open);
+        StmtKind::If(arms, otherwise)
+    }
+
+    fn case_statement(&mut self) -> StmtKind {
+        let open = self.here();
+        self.bump();
+        let selector = self.expr();
+        self.then_word(St::Of, "OF");
+        let mut arms = Vec::new();
+        loop {
+            self.skip_semis();
+            if !self.at_label() {
+                break;
+            }
+            let before = self.cur.start;
+            arms.push(self.case_arm());
+            if self.cur.start == before {
+                break;
+            }
+        }
+        let mut otherwise = Vec::new();
+        if self.eat_st(St::Else) {
+            self.eat(Tok::Colon);
+            otherwise = self.statements(false);
+        }
+        self.end_word(St::EndCase, "END_CASE", open);
+        StmtKind::Case(selector, arms, otherwise)
+    }
+
+    fn case_arm(&mut self) -> CaseArm {
+        let mut labels = Vec::new();
+        loop {
+            let first = self.expr();
+            let last = self.eat(Tok::DotDot).then(|| self.expr());
+            labels.push((first, last));
+            if !self.eat(Tok::Comma) {
+                break;
+            }
+        }
+        self.expect(Tok::Colon, "`:` after the values");
+        CaseArm { labels, body: self.statements(true) }
+    }
+
+    /// Whether the values of a CASE's arm stand here, and not a statement.
+    fn at_label(&self) -> bool {
+        match self.cur.kind {
+            Tok::Word if matches!(self.word(), "TRUE" | "FALSE" | "true" | "false") => true,
+            Tok::Word | Tok::Ticked | Tok::Int if self.at_name() => self.at_path_label(),
+            Tok::Int | Tok::Real | Tok::Typed | Tok::Time | Tok::Str | Tok::Minus | Tok::Plus | Tok::LParen => {
+                true
+            }
+            _ => false,
+        }
+    }
+
+    fn at_path_label(&self) -> bool {
+        if self.at(Tok::Int) {
+            return true;
+        }
+        let mut ahead = self.lexer.ahead(self.cur);
+        loop {
+            match ahead.token().kind {
+                Tok::PathDot => ahead.token(),
+                kind => return matches!(kind, Tok::Comma | Tok::Colon | Tok::DotDot),
+            };
+        }
+    }
+
+    fn for_statement(&mut self) -> StmtKind {
+        let open = self.here();
+        self.bump();
+        let var = self.name("the loop's variable");
+        self.assign_sign();
+        let from = self.expr();
+        self.then_word(St::To, "TO");
+        let to = self.expr();
+        let by = self.eat_st(St::By).then(|| self.expr());
+        self.then_word(St::Do, "DO");
+        let body = self.statements(false);
+        self.end_word(St::EndFor, "END_FOR", open);
+        StmtKind::For { var, from, to, by, body }
+    }
+
+    fn while_statement(&mut self) -> StmtKind {
+        let open = self.here();
+        self.bump();
+        let condition = self.condition();
+        self.then_word(St::Do, "DO");
+        let body = self.statements(false);
+        self.end_word(St::EndWhile, "END_WHILE", open);
+        StmtKind::While(condition, body)
+    }
+
+    fn repeat_statement(&mut self) -> StmtKind {
+        let open = self.here();
+        self.bump();
+        let body = self.statements(false);
+        let condition = if self.eat_st(St::Until) {
+            self.condition()
+        } else {
+            self.expected("`UNTIL` and a condition");
+            self.bad()
+        };
+        self.end_word(St::EndRepeat, "END_REPEAT", open);
+        StmtKind::Repeat(body, condition)
+    }
+
+    /// `:=`, or `=` with a problem.
+    pub(super) fn assign_sign(&mut self) -> bool {
+        if self.at(Tok::Eq) {
+            self.slip(self.here(), "`=` compares; an assignment is written `:=`", "write `:=`");
+            self.bump();
+            return true;
+        }
+        self.expect(Tok::Assign, "`:=`")
+    }
+
+    /// An assignment or a call, if a target stands here.
+    pub(super) fn simple_statement(&mut self) -> Option<StmtKind> {
+        let start = self.cur.start;
+        if self.at(Tok::Direct) {
+            let token = self.bump();
+            let kind = ExprKind::Direct(self.direct_name(token));
+            return Some(self.assignment(Expr { kind, at: self.since(start).into() }));
+        }
+        if !self.at_name() || self.at(Tok::Int) && self.peek().kind != Tok::PathDot {
+            return None;
+        }
+        let path = self.path();
+        if self.at_call() {
+            return Some(StmtKind::Call(path, self.call_args()));
+        }
+        let at = self.since(start).into();
+        Some(self.assignment(Expr { kind: ExprKind::Path(path), at }))
+    }
+
+    /// The rest of `target := value`.
+    pub(super) fn assignment(&mut self, target: Expr) -> StmtKind {
+        if matches!(self.cur.kind, Tok::Plus | Tok::Minus) && matches!(self.peek().kind, Tok::Eq | Tok::Plus) {
+            let sign = self.slice(self.cur);
+            let name = if let ExprKind::Path(p) = &target.kind { p.text() } else { "n".into() };
+            let help = format!("write `{name} := {name} {sign} 1`");
+            self.expected_help("`:=`", Some(&help));
+            self.bump();
+            self.bump();
+            let value = if self.at_expr() && !self.cur.newline { self.expr() } else { self.bad() };
+            return StmtKind::Assign { target, value };
+        }
+        let value = if self.assign_sign() { self.expr() } else { self.bad() };
+        StmtKind::Assign { target, value }
+    }
+
+    /// The path of an expression that must be one.
+    pub(super) fn path_or_empty(&mut self, what: &str) -> Path {
+        if self.at_name() {
+            return self.path();
+        }
+        Path { names: vec![self.name(what)] }
+    }
+}

@@ -1,0 +1,197 @@
+//! Declarations of variables, and types.
+
+use super::Parser;
+use crate::lexer::Tok;
+use crate::{number, words};
+use g7_model::{Expr, FbKind, Name, Param, Problem, Type, VarDecl, VarKind, codes};
+
+/// Every name of a type, for the nearest one to a misspelt name.
+const TYPES: &[&str] = &[
+    "BOOL", "SINT", "INT", "DINT", "LINT", "USINT", "UINT", "UDINT", "ULINT", "REAL", "LREAL", "TIME", "STRING",
+    "CTU", "CTD", "CTUD", "TON", "TOF", "TP", "R_TRIG", "F_TRIG", "SR", "RS",
+];
+
+impl Parser<'_> {
+    /// What sort of variable is declared here, if one is.
+    pub(super) fn var_kind(&self) -> Option<VarKind> {
+        Some(match self.word() {
+            "input" => VarKind::Input,
+            "output" => VarKind::Output,
+            "var" => VarKind::Var,
+            "const" => VarKind::Const,
+            _ => return None,
+        })
+    }
+
+    /// A declaration; its first word is in hand.
+    pub(super) fn variable(&mut self, kind: VarKind) -> VarDecl {
+        let start = self.bump().start;
+        let names = self.names("the name of a variable");
+        let ty = self.typed();
+        let at = self.since(start).into();
+        let mut decl = VarDecl {
+            kind,
+            names,
+            ty,
+            init: self.initial_value(),
+            address: None,
+            inverted: false,
+            retain: false,
+            safe: None,
+            comment: None,
+            at,
+        };
+        if kind == VarKind::Const && decl.init.is_none() {
+            self.expected("`:=` and the value of the constant");
+        }
+        while self.clause(&mut decl) {}
+        decl.at = self.since(start).into();
+        decl
+    }
+
+    /// One of the words behind the type.
+    fn clause(&mut self, decl: &mut VarDecl) -> bool {
+        if decl.comment.is_none() && self.at(Tok::Comment) {
+            decl.comment = self.comment_if();
+            return true;
+        }
+        // In a chart, a step may be called like one of these words.
+        let word = self.word();
+        if !matches!(word, "at" | "inverted" | "retain" | "safe") || self.before_transition() {
+            return false;
+        }
+        let at = self.here();
+        let (fits, where_to) = match word {
+            "at" => (decl.kind != VarKind::Const, "`input`, `output` or `var`"),
+            "inverted" => (matches!(decl.kind, VarKind::Input | VarKind::Output), "`input` or `output`"),
+            "retain" => (decl.kind == VarKind::Var, "`var`"),
+            _ => (decl.kind == VarKind::Output, "`output`"),
+        };
+        if !fits {
+            let what = format!("`{word}` belongs to {where_to}");
+            self.lexer.problems.add(at, || Problem::new(&codes::EXPECTED, at, what));
+        }
+        self.bump();
+        match word {
+            "at" => decl.address = self.address(),
+            "inverted" => decl.inverted = fits,
+            "retain" => decl.retain = fits,
+            _ => decl.safe = Some(self.expr()).filter(|_| fits),
+        }
+        true
+    }
+
+    fn before_transition(&mut self) -> bool {
+        matches!(self.peek().kind, Tok::Arrow | Tok::Colon)
+    }
+
+    /// `%I0.0`, a number, a name or a text.
+    fn address(&mut self) -> Option<Name> {
+        let at = self.here();
+        if self.at(Tok::Direct) {
+            let token = self.bump();
+            return Some(Name::new(self.slice(token).to_ascii_uppercase(), at));
+        }
+        if self.at(Tok::Str) {
+            let token = self.bump();
+            return Some(Name::new(self.string(token), at));
+        }
+        let name = self.name_if();
+        if name.is_none() {
+            self.expected("an address such as `%I0.0`, or the name of a channel");
+        }
+        name
+    }
+
+    /// `: type`; BOOL where it is missing.
+    pub(super) fn typed(&mut self) -> Type {
+        if self.eat(Tok::Colon) {
+            return self.ty();
+        }
+        if self.at(Tok::Word) && !self.cur.newline && self.known_type().is_some() {
+            self.slip(self.here(), "`:` is missing before the type", "write `name : type`");
+            return self.ty();
+        }
+        self.expected_help("`:` and a type", Some("for example `a : BOOL`"));
+        Type::Bool
+    }
+
+    /// `:= expr`, if it stands here; `=` is taken for it.
+    pub(super) fn initial_value(&mut self) -> Option<Expr> {
+        if !matches!(self.cur.kind, Tok::Assign | Tok::Eq) {
+            return None;
+        }
+        self.assign_sign();
+        Some(self.expr())
+    }
+
+    fn known_type(&self) -> Option<Type> {
+        let word = self.word();
+        number::elementary(word).or_else(|| {
+            let fits = |k: &&FbKind| k.name() == word || k.name().to_ascii_lowercase() == word;
+            FbKind::ALL.iter().find(fits).map(|k| Type::Fb(*k))
+        })
+    }
+
+    /// A type; BOOL where none can be read.
+    pub(super) fn ty(&mut self) -> Type {
+        let Some(ty) = self.known_type() else {
+            self.unknown_type();
+            return Type::Bool;
+        };
+        self.bump();
+        let bracketed = matches!(self.cur.kind, Tok::LParen | Tok::LBracket) && !self.cur.newline;
+        if !bracketed || !matches!(ty, Type::String(_)) {
+            return ty;
+        }
+        let open = self.here();
+        let (close, sign) = if self.at(Tok::LParen) { (Tok::RParen, "`)`") } else { (Tok::RBracket, "`]`") };
+        self.bump();
+        let length = self.integer_if(u64::from(u16::MAX));
+        if length.is_none() {
+            self.expected("the number of bytes of the text");
+        }
+        self.close(close, sign, open);
+        Type::String(length.and_then(|n| u16::try_from(n).ok()).unwrap_or(80))
+    }
+
+    fn unknown_type(&mut self) {
+        if !self.at(Tok::Word) || words::is_reserved(self.word()) {
+            self.expected_help("a type", Some("for example BOOL, INT, REAL, TIME or TON"));
+            return;
+        }
+        let word = self.word();
+        let at = self.here();
+        self.report(at, || {
+            let problem = Problem::new(&codes::UNKNOWN_WORD, at, format!("there is no type `{word}`"));
+            match (words::similar(word, TYPES), word.to_ascii_uppercase().as_str()) {
+                (_, "BYTE" | "WORD" | "DWORD" | "LWORD") => {
+                    problem.help("there are no bit strings; USINT, UINT, UDINT and ULINT hold as many bits")
+                }
+                (Some(near), _) => problem.help(format!("did you mean `{near}`?")),
+                _ => problem,
+            }
+        });
+        self.bump();
+    }
+
+    /// `(a : INT, b : REAL)`.
+    pub(super) fn params(&mut self) -> Vec<Param> {
+        let open = self.here();
+        let mut params = Vec::new();
+        if !self.expect(Tok::LParen, "`(`") {
+            return params;
+        }
+        while !matches!(self.cur.kind, Tok::RParen | Tok::End) {
+            let start = self.cur.start;
+            let name = self.name("the name of a parameter");
+            let ty = self.typed();
+            params.push(Param { name, ty });
+            if !self.eat(Tok::Comma) && !self.eat(Tok::Semi) || self.cur.start == start {
+                break;
+            }
+        }
+        self.close(Tok::RParen, "`)`", open);
+        params
+    }
+}

@@ -1,0 +1,76 @@
+//! The charts in the book and in the conformance cases are read without a problem.
+#![allow(clippy::disallowed_methods, reason = "a test reads the files that it is about")]
+
+use g7_model::FileId;
+use g7_syntax::{LineIndex, parse};
+use std::path::{Path, PathBuf};
+
+fn pages(folder: &Path, into: &mut Vec<PathBuf>) {
+    for entry in std::fs::read_dir(folder).expect("the folder is there") {
+        let path = entry.expect("an entry").path();
+        if path.is_dir() {
+            pages(&path, into);
+        } else if path.extension().is_some_and(|e| e == "md") {
+            into.push(path);
+        }
+    }
+}
+
+/// The blocks marked just `g7`, each with the line it begins on.
+fn blocks(page: &str) -> Vec<(usize, String)> {
+    let mut found = Vec::new();
+    let mut fence = "";
+    let mut block: Option<(usize, String)> = None;
+    for (i, line) in page.lines().enumerate() {
+        let ticks = line.len() - line.trim_start_matches('`').len();
+        if fence.is_empty() && ticks >= 3 {
+            fence = &line[..ticks];
+            block = (&line[ticks..] == "g7").then(|| (i + 2, String::new()));
+        } else if !fence.is_empty() && line == fence {
+            fence = "";
+            found.extend(block.take());
+        } else if let Some((_, text)) = &mut block {
+            text.push_str(line);
+            text.push('\n');
+        }
+    }
+    found
+}
+
+fn wrong_blocks(folder: &str, at_least: usize) -> Vec<String> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..").join(folder);
+    let mut files = Vec::new();
+    pages(&root, &mut files);
+    let mut seen = 0;
+    let mut wrong = Vec::new();
+    for file in files {
+        let page = std::fs::read_to_string(&file).expect("a readable page");
+        for (line, text) in blocks(&page) {
+            seen += 1;
+            let (document, problems) = parse(&text, FileId(0));
+            if document.items.is_empty() {
+                wrong.push(format!("{}:{line}: nothing in the block", file.display()));
+            }
+            let lines = LineIndex::new(&text);
+            for p in problems {
+                let place = lines.place(p.at.start);
+                let at = line as u32 + place.line - 1;
+                wrong.push(format!("{}:{at}:{}: {} {p} ({:?})", file.display(), place.column, p.code.id, p.help));
+            }
+        }
+    }
+    assert!(seen >= at_least, "only {seen} blocks in {folder}");
+    wrong
+}
+
+#[test]
+fn charts_of_the_book_are_read() {
+    let wrong = wrong_blocks("docs/book", 0);
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+#[test]
+fn charts_of_the_cases_are_read() {
+    let wrong = wrong_blocks("tests/spec", 50);
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
