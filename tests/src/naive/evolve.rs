@@ -1,7 +1,7 @@
 //! One pass of the evolution: enabled, clearable, chosen, cleared all at once
 //! (or, `sequential`, one after the other), then hierarchy and forcing.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use g7_model::{ActionKind, ChartKind, ProfileName};
 
@@ -56,8 +56,11 @@ pub(super) fn pass(
     let chosen = choose(m, &clearable);
     marks.cleared.extend(&chosen);
 
+    if m.rules.sequential && !m.rules.parallel_actions {
+        return one_after_the_other(m, s, due, &chosen, &forced, &events, earlier, diagnostics);
+    }
     let mut flow = Flow { next: s.active.clone(), left: BTreeSet::new() };
-    let steps = chosen.iter().map(|&t| (leaving(m, t), arriving(m, t)));
+    let steps = chosen.iter().map(|&t| (flat(leaving(m, t)), flat(arriving(m, t))));
     if m.rules.sequential {
         for (off, on) in steps {
             flow.turn(&off, &on);
@@ -83,9 +86,77 @@ pub(super) fn pass(
     let mut changes = settle(m, s, flow.next, &again);
     changes.on.extend(earlier.on);
     changes.off.extend(earlier.off);
-    let happened = Happened { cleared: &chosen, changes: &changes, events: &events, clearing: true };
+    let happened = Happened { cleared: &chosen, changes: &changes, events: &events };
     stored::run(m, s, &before, &happened, diagnostics)?;
     Ok(changes)
+}
+
+/// JGrafchart's way: each transition in its turn runs the exit actions of its
+/// preceding steps, turns them off, turns the succeeding ones on and runs their
+/// entry actions, before the next one does. Hierarchy and forcing follow, with
+/// the other stored actions.
+#[expect(clippy::too_many_arguments, reason = "what a pass knows by then")]
+fn one_after_the_other(
+    m: &Model,
+    s: &mut State,
+    due: &[bool],
+    chosen: &[TransId],
+    forced: &BTreeMap<ScopeId, Option<BTreeSet<StepId>>>,
+    events: &BTreeSet<(StepId, usize)>,
+    earlier: Changes,
+    diagnostics: &mut Diagnostics,
+) -> Run<Changes> {
+    let before = s.active.clone();
+    let mut all = Changes::default();
+    let nothing = BTreeSet::new();
+    // Owners of tasks are settled by the situation in which the pass began.
+    let mut flow = Flow { next: before.clone(), left: BTreeSet::new() };
+    let by_themselves = tasks(m, s, due, chosen, &mut flow);
+    for &t in chosen {
+        if let Some(block) = &m.transitions[t].on_clearing {
+            Exec::new(m, s).body(m.transitions[t].scope, block)?;
+        }
+        for group in leaving(m, t) {
+            for &x in &group {
+                if !s.active.contains(&x) {
+                    continue;
+                }
+                stored::at_once(m, s, x, false)?;
+            }
+            let next = &s.active - &group.into_iter().collect();
+            let changes = settle(m, s, next, &nothing);
+            all.off.extend(changes.off);
+        }
+        for group in arriving(m, t) {
+            let next = &s.active | &group.iter().copied().collect();
+            let changes = settle(m, s, next, &nothing);
+            for x in group.into_iter().filter(|x| changes.on.contains(x)) {
+                stored::at_once(m, s, x, true)?;
+            }
+            all.on.extend(changes.on);
+        }
+    }
+    let mut next = s.active.clone();
+    for (exit, entry) in by_themselves {
+        next.remove(&exit);
+        next.insert(entry);
+    }
+    for (chart, situation) in forced {
+        if let Some(set) = situation {
+            impose(m, *chart, set, &mut next);
+        }
+    }
+    let again: BTreeSet<StepId> = all.off.intersection(&all.on).copied().collect();
+    hierarchy(m, &before, &again, &mut next);
+    let mut changes = settle(m, s, next, &nothing);
+    all.on.extend(&changes.on);
+    all.off.extend(&changes.off);
+    changes.on.extend(earlier.on);
+    changes.off.extend(earlier.off);
+    let so_far = s.clone();
+    let happened = Happened { cleared: &[], changes: &changes, events };
+    stored::run(m, s, &so_far, &happened, diagnostics)?;
+    Ok(all)
 }
 
 /// The situation that the clearings so far lead to.
@@ -106,22 +177,35 @@ impl Flow {
     }
 }
 
-fn leaving(m: &Model, t: TransId) -> BTreeSet<StepId> {
-    let mut off = BTreeSet::new();
+/// The steps that a transition turns off, each with what goes with it: an exit
+/// step before its macro-step, the exit step of a task behind its caller.
+fn leaving(m: &Model, t: TransId) -> Vec<Vec<StepId>> {
+    let mut groups = Vec::new();
     for &p in &m.transitions[t].pre {
-        off.insert(p);
-        off.extend(m.steps[p].expansion.map(|(_, _, exit)| exit));
+        groups.push(m.steps[p].expansion.map(|(_, _, exit)| exit).into_iter().chain([p]).collect());
+        groups.extend(
+            m.steps[p].calls.iter().filter_map(|&task| m.ends(task).ok()).map(|(_, exit)| vec![exit]),
+        );
     }
-    off
+    groups
 }
 
-fn arriving(m: &Model, t: TransId) -> BTreeSet<StepId> {
-    let mut on = BTreeSet::new();
-    for &p in &m.transitions[t].post {
-        on.insert(p);
-        on.extend(m.steps[p].expansion.map(|(_, entry, _)| entry));
+/// The steps that a transition turns on: a macro-step before its entry step.
+fn arriving(m: &Model, t: TransId) -> Vec<Vec<StepId>> {
+    let mut groups: Vec<Vec<StepId>> = Vec::new();
+    for &p in &m.transitions[t].pre {
+        groups.extend(
+            m.steps[p].calls.iter().filter_map(|&task| m.ends(task).ok()).map(|(entry, _)| vec![entry]),
+        );
     }
-    on
+    for &p in &m.transitions[t].post {
+        groups.push([p].into_iter().chain(m.steps[p].expansion.map(|(_, entry, _)| entry)).collect());
+    }
+    groups
+}
+
+fn flat(groups: Vec<Vec<StepId>>) -> BTreeSet<StepId> {
+    groups.into_iter().flatten().collect()
 }
 
 /// Frozen, or not enabled by any step although some step enables it.
@@ -152,8 +236,17 @@ fn task_allows(m: &Model, s: &State, t: TransId) -> bool {
     })
 }
 
-/// Hands tasks to their callers, back from them, and back by themselves.
-fn tasks(m: &Model, s: &mut State, due: &[bool], chosen: &[TransId], flow: &mut Flow) {
+/// Hands tasks to their callers and back; gives the exit and entry steps of
+/// those that go back by themselves.
+fn tasks(
+    m: &Model,
+    s: &mut State,
+    due: &[bool],
+    chosen: &[TransId],
+    flow: &mut Flow,
+) -> Vec<(StepId, StepId)> {
+    let mut by_themselves = Vec::new();
+    let begun = s.clone();
     for task in 0..m.scopes.len() {
         if m.scopes[task].kind != ChartKind::Task {
             continue;
@@ -161,20 +254,24 @@ fn tasks(m: &Model, s: &mut State, due: &[bool], chosen: &[TransId], flow: &mut 
         let Ok((entry, exit)) = m.ends(task) else { continue };
         let handed_back =
             chosen.iter().any(|&t| m.transitions[t].pre.iter().any(|&p| m.steps[p].calls.contains(&task)));
-        let owner_gone = !s.owners.get(&task).is_some_and(|&o| s.is_active(m, o));
-        let by_itself = due[task] && s.active.contains(&exit) && owner_gone;
+        let owner_gone = !begun.owners.get(&task).is_some_and(|&o| begun.is_active(m, o));
+        let by_itself = due[task] && begun.active.contains(&exit) && owner_gone;
         if handed_back || by_itself {
             s.owners.remove(&task);
+        }
+        if by_itself {
             flow.turn(&BTreeSet::from([exit]), &BTreeSet::from([entry]));
+            by_themselves.push((exit, entry));
         }
         let begins =
             chosen.iter().any(|&t| m.transitions[t].scope == task && m.transitions[t].pre.contains(&entry));
         if begins && !s.owners.contains_key(&task) {
-            if let Some(first) = callers(m, task).find(|&c| s.is_active(m, c)) {
+            if let Some(first) = callers(m, task).find(|&c| begun.is_active(m, c)) {
                 s.owners.insert(task, first);
             }
         }
     }
+    by_themselves
 }
 
 /// Which of the clearable transitions clear.

@@ -179,6 +179,16 @@ impl Naive {
         Ok(Exec::new(&self.model, &mut state).eval(scope, e)?.v)
     }
 
+    /// A constant expression as a value of a type.
+    ///
+    /// # Errors
+    ///
+    /// Where it is none.
+    pub fn constant(&self, e: &Expr, ty: Type) -> Result<Value, NaiveFault> {
+        let mut state = self.state.clone();
+        Exec::new(&self.model, &mut state).eval_for(FILE, e, ty)
+    }
+
     /// Variables with a diagnostic "conflicting assignment" from the last scan.
     pub fn conflicts(&self) -> &[String] {
         &self.diagnostics.latest

@@ -131,8 +131,7 @@ impl Naive {
     fn initialise(&mut self) -> Run<()> {
         let m = &*std::rc::Rc::clone(&self.model);
         let changes = Changes { on: self.state.active.clone(), off: BTreeSet::new() };
-        let happened =
-            Happened { cleared: &[], changes: &changes, events: &BTreeSet::new(), clearing: false };
+        let happened = Happened { cleared: &[], changes: &changes, events: &BTreeSet::new() };
         let before = self.state.clone();
         stored::run(m, &mut self.state, &before, &happened, &mut self.diagnostics)
     }

@@ -17,8 +17,6 @@ pub(super) struct Happened<'a> {
     pub(super) cleared: &'a [TransId],
     pub(super) changes: &'a Changes,
     pub(super) events: &'a BTreeSet<(StepId, usize)>,
-    /// False at initialisation, where only activations count.
-    pub(super) clearing: bool,
 }
 
 /// The kinds, in their order within a pass with parallel actions.
@@ -64,6 +62,22 @@ pub(super) fn run(
     for t in &todo {
         let mut exec = Exec::new(m, s);
         perform(&mut exec, t)?;
+    }
+    Ok(())
+}
+
+/// Runs the entry or the exit actions of one step, with the state as it is.
+pub(super) fn at_once(m: &Model, s: &mut State, step: StepId, on: bool) -> Run<()> {
+    let mut changes = Changes::default();
+    let set = if on { &mut changes.on } else { &mut changes.off };
+    set.insert(step);
+    let happened = Happened { cleared: &[], changes: &changes, events: &BTreeSet::new() };
+    let mut todo = Vec::new();
+    for (i, action) in m.steps[step].actions.iter().enumerate() {
+        of_action(m, (step, i), action, &happened, &mut todo)?;
+    }
+    for t in &todo {
+        perform(&mut Exec::new(m, s), t)?;
     }
     Ok(())
 }
@@ -119,7 +133,7 @@ fn parallel(
 fn collect<'m>(m: &'m Model, h: &Happened<'_>) -> Run<Vec<Todo<'m>>> {
     let mut todo = Vec::new();
     for scope in FILE + 1..m.scopes.len() {
-        for t in m.scopes[scope].transitions.iter().filter(|t| h.clearing && h.cleared.contains(t)) {
+        for t in m.scopes[scope].transitions.iter().filter(|t| h.cleared.contains(t)) {
             if let Some(block) = &m.transitions[*t].on_clearing {
                 let what = What::Body(scope, block);
                 todo.push(Todo { kind: Kind::Clearing, pulse: 1, scope, what, condition: None });

@@ -1,0 +1,403 @@
+//! A random document as .g7 text: declarations, then the skeleton with its
+//! conditions and actions.
+
+use g7_model::{ProfileName, Type};
+
+use super::body::{self, Driven, Targets};
+use super::plan::{Plan, PlanChart, plan};
+use super::rng::Rng;
+use super::sight::{Sight, duration};
+
+/// What the text is put together from.
+struct World {
+    profile: ProfileName,
+    stable: bool,
+    sight: Sight,
+    targets: Targets,
+    driven: Vec<Driven>,
+    /// Named actions with the qualifiers each may stand behind.
+    named: Vec<(String, String)>,
+    sections: Vec<String>,
+}
+
+pub(super) fn document(rng: &mut Rng, profile: ProfileName) -> String {
+    let mut out = String::new();
+    let mut world = World {
+        profile,
+        stable: profile == ProfileName::Iec60848,
+        sight: Sight {
+            edges: true,
+            timers: true,
+            risk: if rng.percent(35) { 25 } else { 0 },
+            ..Sight::default()
+        },
+        targets: Targets::default(),
+        driven: Vec::new(),
+        named: Vec::new(),
+        sections: Vec::new(),
+    };
+    world.sight.scans = profile == ProfileName::Jgrafchart;
+    header(rng, &mut world, &mut out);
+    variables(rng, &mut world, &mut out);
+    driven(rng, &mut world, &mut out);
+    let names: Vec<String> = world.driven.iter().map(|d| d.name.clone()).collect();
+    let plan = plan(rng, profile, &names);
+    functions(rng, &mut world, &mut out);
+    let outside = outside(&world, &plan);
+    named_actions(rng, &mut world, &outside, &mut out);
+    if rng.percent(25) {
+        let name = "Ready".to_owned();
+        out += &format!("transition section {name} := {}\n", outside.plain().boolean(rng, 2));
+        world.sections.push(name);
+    }
+    if rng.percent(35) {
+        out += &format!("pre {}\n", pre(rng, &mut world, &outside, &plan));
+    }
+    if rng.percent(35) {
+        let text = body::block(rng, &outside, &mut world.targets);
+        out += &format!("post {text}\n");
+    }
+    for at in 0..plan.charts.len() {
+        chart(rng, &mut world, &plan, at, &mut out);
+    }
+    out
+}
+
+fn header(rng: &mut Rng, world: &mut World, out: &mut String) {
+    let mut switches: Vec<&str> = Vec::new();
+    if rng.percent(25) {
+        let pairs = [
+            ["multi-token", "single-token"],
+            ["parallel-actions", "ordered-actions"],
+            ["final-scan", "no-final-scan"],
+            ["keep-step-time", "zero-step-time"],
+            ["pulse-first", "text-order"],
+            ["simultaneous", "sequential"],
+            ["stable", "one-pass"],
+        ];
+        for pair in pairs {
+            if rng.percent(25) {
+                let switch = rng.one(pair);
+                switches.push(switch);
+                if pair[0] == "stable" {
+                    world.stable = switch == "stable";
+                }
+            }
+        }
+    }
+    if world.stable {
+        switches.push("bound 60");
+    }
+    let all = if switches.is_empty() { String::new() } else { format!(" {{ {} }}", switches.join(", ")) };
+    out.push_str(&format!("profile {}{all}\nscan 10ms\n", world.profile.name()));
+}
+
+fn variables(rng: &mut Rng, world: &mut World, out: &mut String) {
+    let (s, t) = (&mut world.sight, &mut world.targets);
+    let count = rng.between(2, 4);
+    for name in ["a", "b", "c", "d"].into_iter().take(count) {
+        s.inputs.push(name.to_owned());
+    }
+    out.push_str(&format!("input {} : BOOL\n", s.inputs.join(", ")));
+    if rng.percent(40) {
+        out.push_str("input n : INT\n");
+        s.ints.push(("n".to_owned(), Type::Int));
+    }
+    if rng.percent(10) {
+        out.push_str("input r : REAL\n");
+        s.reals.push(("r".to_owned(), Type::Real));
+    }
+    for i in 0..rng.between(1, 3) {
+        let word = rng.one(["var", "output", "var"]);
+        let init = if rng.percent(20) { " := TRUE" } else { "" };
+        let tail = match word {
+            "output" if rng.percent(40) => " safe TRUE",
+            "var" if rng.percent(25) => " retain",
+            _ => "",
+        };
+        out.push_str(&format!("{word} m{i} : BOOL{init}{tail}\n"));
+        s.bools.push(format!("m{i}"));
+        t.bools.push(format!("m{i}"));
+    }
+    for i in 0..rng.between(1, 4) {
+        let ty = rng.one([
+            Type::Int,
+            Type::Int,
+            Type::Int,
+            Type::Sint,
+            Type::Dint,
+            Type::Uint,
+            Type::Usint,
+            Type::Lint,
+        ]);
+        let word = rng.one(["var", "var", "var", "output"]);
+        let init = if rng.percent(30) { format!(" := {}", rng.below(6)) } else { String::new() };
+        let tail = if word == "var" && rng.percent(20) { " retain" } else { "" };
+        out.push_str(&format!("{word} k{i} : {ty}{init}{tail}\n"));
+        s.ints.push((format!("k{i}"), ty));
+        t.ints.push((format!("k{i}"), ty));
+    }
+    if rng.percent(25) {
+        let ty = rng.one([Type::Real, Type::Lreal]);
+        out.push_str(&format!("var x : {ty} := 1.5\n"));
+        s.reals.push(("x".to_owned(), ty));
+        t.reals.push(("x".to_owned(), ty));
+    }
+    if rng.percent(30) {
+        out.push_str("var w : TIME := 20ms\n");
+        s.times.push("w".to_owned());
+        t.times.push("w".to_owned());
+    }
+    if rng.percent(15) {
+        out.push_str("var s : STRING(20) := 'ab'\n");
+        s.strings.push("s".to_owned());
+        t.strings.push("s".to_owned());
+    }
+    if rng.percent(20) {
+        out.push_str("const K : INT := 4\n");
+        s.ints.push(("K".to_owned(), Type::Int));
+    }
+    for i in 0..rng.weighted(&[60, 25, 15]) {
+        let kind = rng.one(["TON", "TOF", "TP", "CTU", "CTD", "CTUD", "R_TRIG", "F_TRIG", "SR", "RS"]);
+        out.push_str(&format!("var f{i} : {kind}\n"));
+        t.blocks.push((format!("f{i}"), kind));
+        s.bools.push(match kind {
+            "CTUD" => format!("f{i}.QU"),
+            "SR" | "RS" => format!("f{i}.Q1"),
+            _ => format!("f{i}.Q"),
+        });
+        if kind.starts_with("CT") {
+            s.ints.push((format!("f{i}.CV"), Type::Int));
+        }
+    }
+}
+
+/// Outputs of qualified actions, in the classes that each profile keeps apart.
+fn driven(rng: &mut Rng, world: &mut World, out: &mut String) {
+    for i in 0..rng.between(2, 5) {
+        let name = format!("Q{i}");
+        let t = duration(rng);
+        let timed = rng.one(["L", "D", "SD", "DS", "SL"]);
+        let text = |list: &[&str]| list.iter().map(|q| (*q).to_owned()).collect::<Vec<_>>();
+        let qualifiers = if world.profile == ProfileName::Iec60848 {
+            match rng.weighted(&[40, 25, 35]) {
+                0 => {
+                    let mut all = text(&["N", "N"]);
+                    all.push(format!("L {t}"));
+                    all.push(format!("D {}", duration(rng)));
+                    all
+                }
+                1 => text(&["S", "R"]),
+                _ => {
+                    let mut all = text(&["P", "P1", "P0", "S", "R"]);
+                    if matches!(timed, "SD" | "DS" | "SL") {
+                        all.push(format!("{timed} {t}"));
+                    }
+                    all
+                }
+            }
+        } else {
+            let mut all = text(&["N", "N"]);
+            for q in ["S", "R", "R", "P", "P1", "P0"] {
+                if rng.percent(35) {
+                    all.push(q.to_owned());
+                }
+            }
+            if rng.percent(60) {
+                all.push(format!("{timed} {t}"));
+            }
+            all
+        };
+        let safe = if rng.percent(20) { " safe TRUE" } else { "" };
+        out.push_str(&format!("output {name} : BOOL{safe}\n"));
+        // What is driven at the end of a scan is read like any other variable.
+        world.sight.bools.push(name.clone());
+        world.driven.push(Driven { name, qualifiers });
+    }
+}
+
+fn functions(rng: &mut Rng, world: &mut World, out: &mut String) {
+    if rng.percent(20) {
+        out.push_str("function Sum(p : INT, q : INT) : INT { var h : INT := 1 ");
+        out.push_str(rng.one([
+            "h := h + p; Sum := h + q; }\n",
+            "IF p > q THEN Sum := p - q; RETURN; END_IF; Sum := h; }\n",
+            "FOR h := 1 TO 3 DO Sum := Sum + q; END_FOR; }\n",
+        ]));
+        world.sight.int_functions.push("Sum".to_owned());
+    }
+    if rng.percent(20) {
+        out.push_str("function Odd(p : INT) : BOOL { Odd := p mod 2 = 1; }\n");
+        world.sight.bool_functions.push("Odd".to_owned());
+    }
+}
+
+fn named_actions(rng: &mut Rng, world: &mut World, sight: &Sight, out: &mut String) {
+    for i in 0..rng.weighted(&[55, 30, 15]) {
+        let name = format!("Act{i}");
+        let text = body::block(rng, sight, &mut world.targets);
+        out.push_str(&format!("action {name} {text}\n"));
+        let t = duration(rng);
+        let qualifiers = match rng.below(7) {
+            0 => "P1".to_owned(),
+            1 => "P0".to_owned(),
+            2 => "N,S,R".to_owned(),
+            3 => format!("N,L {t},R"),
+            4 => format!("N,SD {t},R"),
+            5 => format!("P,D {t}"),
+            _ => "N".to_owned(),
+        };
+        world.named.push((name, qualifiers));
+    }
+}
+
+/// What can be read outside of all charts: steps by `Chart.X`.
+fn outside(world: &World, plan: &Plan) -> Sight {
+    let mut sight = world.sight.clone();
+    for chart in plan.charts.iter().filter(|c| c.word == "chart") {
+        see_steps(&mut sight, chart, &format!("{}.", chart.name));
+    }
+    sight
+}
+
+fn see_steps(sight: &mut Sight, chart: &PlanChart, prefix: &str) {
+    for step in &chart.steps {
+        sight.steps.push(format!("{prefix}X{}", step.name));
+        // With a period the time may count other scans than the chart's own.
+        if chart.every.is_none() {
+            sight.step_times.push(format!("{prefix}X{}.t", step.name));
+        }
+    }
+}
+
+fn pre(rng: &mut Rng, world: &mut World, sight: &Sight, plan: &Plan) -> String {
+    let mut text = body::block(rng, sight, &mut world.targets);
+    let services = match world.profile {
+        ProfileName::Pl7 => pl7(rng, sight),
+        ProfileName::Unity => unity(rng, sight, plan),
+        ProfileName::Iec60848 | ProfileName::Iec61131 | ProfileName::Jgrafchart => return text,
+    };
+    text.truncate(text.len() - 1);
+    format!("{text}{services} }}")
+}
+
+fn pl7(rng: &mut Rng, sight: &Sight) -> String {
+    let when = sight.boolean(rng, 1);
+    match rng.below(7) {
+        0 => format!("IF rise({when}) THEN %S21 := TRUE; END_IF"),
+        1 => format!("IF rise({when}) THEN %S22 := TRUE; END_IF"),
+        2 => format!("%S23 := {when};"),
+        3 => format!("IF {when} THEN %SW22 := {}; %S24 := TRUE; END_IF", rng.below(32_000)),
+        4 => format!("IF {when} THEN RESET_XIT(); END_IF"),
+        5 => format!("IF %SW20 > 3 and {when} THEN %S21 := TRUE; END_IF"),
+        _ => String::new(),
+    }
+}
+
+fn unity(rng: &mut Rng, sight: &Sight, plan: &Plan) -> String {
+    let charts: Vec<&PlanChart> =
+        plan.charts.iter().filter(|c| c.word == "chart" && c.every.is_none() && !c.enclosed).collect();
+    let Some(chart) = rng.pick(&charts) else { return String::new() };
+    let when = sight.boolean(rng, 1);
+    let name = &chart.name;
+    let step = rng.pick(&chart.steps).map_or("1", |s| &s.name);
+    match rng.below(6) {
+        0 => format!("IF rise({when}) THEN INITCHART({name}); END_IF"),
+        1 => format!("IF rise({when}) THEN CLEARCHART({name}); END_IF"),
+        2 => format!("FREEZECHART({name}, {when});"),
+        3 => format!("IF rise({when}) THEN SETSTEP({name}.X{step}); END_IF"),
+        4 => format!("IF rise({when}) THEN RESETSTEP({name}.X{step}); END_IF"),
+        _ => String::new(),
+    }
+}
+
+fn chart(rng: &mut Rng, world: &mut World, plan: &Plan, at: usize, out: &mut String) {
+    let chart = &plan.charts[at];
+    let mut sight = world.sight.clone();
+    see_steps(&mut sight, chart, "");
+    for (i, other) in plan.charts.iter().enumerate() {
+        if i != at && other.word == "chart" {
+            see_steps(&mut sight, other, &format!("{}.", other.name));
+        }
+    }
+    let every = chart.every.map(|ms| format!(" every {ms}ms")).unwrap_or_default();
+    out.push_str(&format!("{} {}{every} {{\n", chart.word, chart.name));
+    // A chart with a period drives outputs of its own only.
+    let mut driven = world.driven.clone();
+    let mut named = world.named.clone();
+    if chart.every.is_some() {
+        named.clear();
+        driven.clear();
+        out.push_str("  var own : BOOL\n");
+        sight.bools.push("own".to_owned());
+        driven.push(Driven { name: "own".to_owned(), qualifiers: vec!["N".to_owned()] });
+    } else if rng.percent(25) {
+        out.push_str("  var j : INT\n");
+        sight.ints.push(("j".to_owned(), Type::Int));
+        world.targets.ints.push(("j".to_owned(), Type::Int));
+    }
+    for step in &chart.steps {
+        let star = if step.linked { " *" } else { "" };
+        let expansion = step.expansion.as_ref().map(|e| format!(" = {e}")).unwrap_or_default();
+        out.push_str(&format!("  {} {}{expansion}{star} {{\n", step.head, step.name));
+        for order in &step.orders {
+            out.push_str(&format!("    {order}\n"));
+        }
+        let actions =
+            if step.expansion.is_some() { rng.weighted(&[75, 25]) } else { rng.weighted(&[30, 40, 22, 8]) };
+        for _ in 0..actions {
+            let profile = world.profile;
+            if let Some(a) = body::action(rng, profile, &sight, &mut world.targets, &driven, &named) {
+                out.push_str(&format!("    {a}\n"));
+            }
+        }
+        out.push_str("  }\n");
+    }
+    if rng.percent(8) {
+        let text = body::block(rng, &sight, &mut world.targets);
+        out.push_str(&format!("  {} {text}\n", rng.one(["pre", "post"])));
+    }
+    for (from, to) in &chart.arcs {
+        let names = |list: &[usize]| match list {
+            [one] => chart.steps[*one].name.clone(),
+            all => {
+                let names: Vec<&str> = all.iter().map(|i| &*chart.steps[*i].name).collect();
+                format!("({})", names.join(", "))
+            }
+        };
+        let when = receptivity(rng, world, &sight, from.is_empty());
+        out.push_str(&format!("  {} -> {} when {when}", names(from), names(to)));
+        if rng.percent(12) {
+            out.push_str(&format!(" priority {}", rng.between(1, 3)));
+        }
+        if rng.percent(10) {
+            out.push_str(&format!(" on clearing {}", body::block(rng, &sight, &mut world.targets)));
+        }
+        out.push('\n');
+    }
+    out.push_str("}\n");
+    world.targets.ints.retain(|(n, _)| n != "j");
+}
+
+/// Where the search for stability goes on while anything clears, a receptivity
+/// that stays true makes most charts run in circles: events are more common.
+fn receptivity(rng: &mut Rng, world: &mut World, sight: &Sight, source: bool) -> String {
+    if rng.percent(30)
+        && let Some(section) = world.sections.pop()
+    {
+        return if world.stable { format!("{section} and {}", sight.edge(rng, 0)) } else { section };
+    }
+    let input = rng.pick(&sight.inputs).cloned().unwrap_or_else(|| "TRUE".to_owned());
+    if source {
+        return format!("↑{input} and {}", sight.boolean(rng, 1));
+    }
+    let calm = if world.stable { [46, 20, 8, 8, 16, 2] } else { [20, 15, 20, 25, 12, 8] };
+    match rng.weighted(&calm) {
+        0 => sight.edge(rng, 1),
+        1 => format!("({} and {})", sight.edge(rng, 0), sight.boolean(rng, 1)),
+        2 => input,
+        3 => sight.boolean(rng, 2),
+        4 => sight.timer(rng, 1),
+        _ => "=1".to_owned(),
+    }
+}
