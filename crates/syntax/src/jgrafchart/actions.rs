@@ -112,7 +112,11 @@ fn action(express: &mut Express, statement: &Statement) -> Option<Action> {
             qualified(Qualifier::N, Target::Path(path))
         }
         Deed::Assign { target: (names, place), value } => {
-            let (path, ty) = target(express, names, place)?;
+            let Some((path, ty)) = target(express, names, place) else {
+                // Its other mistakes are worth hearing of at once.
+                express.value(value, Type::Dint);
+                return None;
+            };
             let target = Expr { kind: ExprKind::Path(path), at: express.span(place).into() };
             let value = express.value(value, ty);
             let work =

@@ -19,8 +19,7 @@ impl Text {
     /// The place in the file of a range of bytes of the text.
     pub(super) fn place(&self, part: &Range<usize>) -> Range<usize> {
         let start = self.offset(part.start);
-        let end = if part.end > part.start { self.offset(part.end - 1) + 1 } else { start };
-        start..end.clamp(start, self.at.end.max(start))
+        start..self.offset(part.end).max(start)
     }
 
     fn offset(&self, byte: usize) -> usize {

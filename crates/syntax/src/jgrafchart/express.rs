@@ -255,11 +255,11 @@ impl Express<'_> {
             let expr = call("CONCAT", vec![left.expr, right.expr], at);
             return self.convert(Typed { expr, ty: Some(Type::String(0)) }, wanted, at);
         }
-        if !logic || op_compares_scans(&left, &right) {
+        if !logic || beyond_scans(&left, &right) {
             (left, right) = (self.counted(left), self.counted(right));
         }
-        if !logic && sort == Sort::Real {
-            left = as_real(left, &right);
+        if sort == Sort::Real {
+            (left, right) = as_real(left, right);
         }
         let ty =
             if logic { Some(Type::Bool) } else { wider(left.ty, right.ty).or(Some(constant_type(sort))) };
@@ -339,7 +339,7 @@ impl Express<'_> {
 }
 
 /// Whether a count of scans meets a constant that does not fit its 16 bits.
-fn op_compares_scans(left: &Typed, right: &Typed) -> bool {
+fn beyond_scans(left: &Typed, right: &Typed) -> bool {
     let wide = |t: &Typed| match &t.expr.kind {
         ExprKind::Literal(Literal::Int(n, _)) => i16::try_from(*n).is_err(),
         _ => false,
@@ -347,16 +347,20 @@ fn op_compares_scans(left: &Typed, right: &Typed) -> bool {
     wide(left) || wide(right)
 }
 
-/// Makes one of two whole numbers a real one, so that `1 / 2` is a half where that is wanted.
-fn as_real(left: Typed, right: &Typed) -> Typed {
-    let whole = |t: Option<Type>| t.is_some_and(Type::is_integer);
-    match left.ty {
-        Some(ty) if whole(left.ty) && (whole(right.ty) || right.ty.is_none()) => {
-            let at = left.expr.at.0;
-            Typed { expr: call(&format!("{ty}_TO_LREAL"), vec![left.expr], at), ty: Some(Type::Lreal) }
-        }
-        _ => left,
+/// Makes a real number of one side where no side has a real type, so that `1 / n`
+/// is a fraction where a fraction is wanted.
+fn as_real(left: Typed, right: Typed) -> (Typed, Typed) {
+    let real = |t: &Typed| t.ty.is_some_and(Type::is_real);
+    if real(&left) || real(&right) {
+        return (left, right);
     }
+    if left.ty.is_some() { (widened(left), right) } else { (left, widened(right)) }
+}
+
+fn widened(typed: Typed) -> Typed {
+    let Some(ty) = typed.ty.filter(|t| t.is_integer()) else { return typed };
+    let at = typed.expr.at.0;
+    Typed { expr: call(&format!("{ty}_TO_LREAL"), vec![typed.expr], at), ty: Some(Type::Lreal) }
 }
 
 /// The type of a result of two; a constant takes the other's.

@@ -208,19 +208,22 @@ fn wide(bytes: &[u8]) -> Option<fn([u8; 2]) -> u16> {
 /// The name of the first element, from the first part of any file.
 pub(super) fn root_name(bytes: &[u8]) -> Option<String> {
     const HEAD: usize = 1 << 16;
+    /// Stands for what is beyond Latin letters, a byte order mark above all.
+    const MARK: u8 = 0x1A;
     let head = bytes.get(..bytes.len().min(HEAD))?;
     let narrow: Vec<u8> = match wide(head) {
         Some(join) => head
             .chunks_exact(2)
             .filter_map(|pair| <[u8; 2]>::try_from(pair).ok())
-            .map(|pair| u8::try_from(join(pair)).unwrap_or(b'?'))
+            .map(|pair| u8::try_from(join(pair)).unwrap_or(MARK))
             .collect(),
         None => head.to_vec(),
     };
-    let mut i = 0;
+    let mut i =
+        if narrow.starts_with(b"\xEF\xBB\xBF") { 3 } else { usize::from(narrow.first() == Some(&MARK)) };
     loop {
-        let open = find(&narrow, i, b"<")?;
-        let rest = narrow.get(open..)?;
+        let open = i + narrow.get(i..)?.iter().position(|b| !b.is_ascii_whitespace())?;
+        let rest = narrow.get(open..).filter(|r| r.starts_with(b"<"))?;
         i = if rest.starts_with(b"<!--") {
             find(&narrow, open + 4, b"-->")? + 3
         } else if rest.starts_with(b"<?") {

@@ -125,10 +125,12 @@ pub(super) fn actions(text: &str, most: usize) -> (Vec<Statement>, Vec<Fault>) {
         if reader.peek().kind == Kind::End || list.len() + faults.len() > most {
             return (list, faults);
         }
+        let start = reader.next;
         match reader.statement() {
             Ok(statement) => list.push(statement),
             Err(fault) => {
                 faults.push(fault);
+                reader.next += usize::from(reader.next == start);
                 reader.recover();
             }
         }
@@ -183,7 +185,6 @@ impl Reader<'_> {
 
     /// Goes behind the next `;`, or to the next line that begins with a letter.
     fn recover(&mut self) {
-        self.next += usize::from(self.peek().kind != Kind::End && self.sign() != ";");
         while self.peek().kind != Kind::End && self.sign() != ";" && self.letter_ahead().is_none() {
             self.next += 1;
         }
@@ -212,7 +213,11 @@ impl Reader<'_> {
     fn statement(&mut self) -> Result<Statement, Fault> {
         let start = self.peek().at.start;
         let Some(letter) = self.letter() else {
-            return Err(self.fault("`S`, `P`, `X`, `N` or `A` and then a name"));
+            let lone =
+                matches!(&self.peek().kind, Kind::Name(n) if matches!(&**n, "S" | "P" | "X" | "N" | "A"));
+            self.next += usize::from(lone);
+            let wanted = if lone { "a name" } else { "`S`, `P`, `X`, `N` or `A` and then a name" };
+            return Err(self.fault(wanted));
         };
         self.next += 1;
         let target = self.name()?;
@@ -341,6 +346,10 @@ impl Reader<'_> {
             Kind::Int(n) => PhraseKind::Int(n),
             Kind::Real(n) => PhraseKind::Real(n),
             Kind::Str(text) => PhraseKind::Str(text),
+            // The letter of the next action: this one lacks its end.
+            Kind::Name(_) if self.letter_ahead().is_some() => {
+                return Err(self.fault("a name, a number or `(`"));
+            }
             Kind::Name(_) => {
                 let (names, at) = self.name()?;
                 if self.sign() == "(" {

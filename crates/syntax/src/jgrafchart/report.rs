@@ -4,9 +4,9 @@ use std::collections::HashMap;
 use std::ops::Range;
 
 use g7_model::codes::{self, Code};
-use g7_model::{FileId, Note, Problem, Span};
+use g7_model::{FileId, Note, Problem, Severity, Span};
 
-/// More problems than anyone reads; the rest is only counted.
+/// More warnings, or errors, than anyone reads; the rest is only counted.
 const MOST: usize = 500;
 /// Places listed with one grouped problem.
 const MOST_PLACES: usize = 100;
@@ -17,6 +17,9 @@ const LONGEST_NOTE: usize = 300;
 pub(super) struct Report {
     file: FileId,
     problems: Vec<Problem>,
+    /// Room for more errors and warnings.
+    errors: usize,
+    warnings: usize,
     /// Elements of one sort are one problem with many places.
     groups: HashMap<(&'static str, String), (usize, usize)>,
     left_out: usize,
@@ -25,7 +28,15 @@ pub(super) struct Report {
 
 impl Report {
     pub(super) fn new(file: FileId) -> Report {
-        Report { file, problems: Vec::new(), groups: HashMap::new(), left_out: 0, notes: Vec::new() }
+        Report {
+            file,
+            problems: Vec::new(),
+            errors: MOST,
+            warnings: MOST,
+            groups: HashMap::new(),
+            left_out: 0,
+            notes: Vec::new(),
+        }
     }
 
     /// The span of a range of bytes of the file.
@@ -39,10 +50,13 @@ impl Report {
     }
 
     pub(super) fn put(&mut self, problem: Problem) {
-        if self.problems.len() < MOST {
-            self.problems.push(problem);
-        } else {
-            self.left_out += 1;
+        let room = if problem.severity() == Severity::Error { &mut self.errors } else { &mut self.warnings };
+        match room.checked_sub(1) {
+            Some(left) => {
+                *room = left;
+                self.problems.push(problem);
+            }
+            None => self.left_out += 1,
         }
     }
 
@@ -59,10 +73,11 @@ impl Report {
             }
             return;
         }
-        if self.problems.len() < MOST {
-            self.groups.insert(key, (self.problems.len(), 1));
-        }
+        let before = self.problems.len();
         self.put(Problem::new(code, span, what));
+        if self.problems.len() > before {
+            self.groups.insert(key, (before, 1));
+        }
     }
 
     /// Keeps the text of an element that has no counterpart as a note to the reader.

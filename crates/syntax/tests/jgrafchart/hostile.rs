@@ -1,0 +1,247 @@
+//! Files made to break a reader: it ends soon, with words, never with a panic.
+
+use std::time::{Duration, Instant};
+
+use g7_model::{Document, FileId, Problem};
+use g7_syntax::jgrafchart;
+use proptest::prelude::*;
+
+use crate::show::bytes;
+
+const FILES: [&str; 6] =
+    ["bead-sorter.xml", "lines.xml", "texts.xml", "workspaces.xml", "not-carried.xml", "wrong.xml"];
+
+fn import(file: &[u8]) -> (Document, Vec<Problem>) {
+    jgrafchart::looks_like(file);
+    let (document, problems) = jgrafchart::import(file, FileId(0));
+    for p in &problems {
+        assert!(p.at.start <= p.at.end, "{p:?}");
+        assert!(p.at.end as usize <= file.len().max(1), "{p:?}");
+    }
+    (document, problems)
+}
+
+/// Runs something that has to end within so many seconds.
+#[allow(clippy::disallowed_methods, reason = "how long the machine takes is what is asked here")]
+fn within<T>(seconds: u64, work: impl FnOnce() -> T) -> T {
+    let start = Instant::now();
+    let result = work();
+    assert!(start.elapsed() < Duration::from_secs(seconds));
+    result
+}
+
+/// The codes of a file that gives no chart, within a time that no bound lets pass.
+fn refused(file: &[u8]) -> Vec<&'static str> {
+    let (document, problems) = within(20, || import(file));
+    assert_eq!(document.charts().count(), 0);
+    problems.iter().map(|p| p.code.id).collect()
+}
+
+#[test]
+fn entities_are_neither_defined_nor_fetched() {
+    let bomb = r#"<?xml version="1.0"?><!DOCTYPE l [<!ENTITY a "aaaaaaaaaa"><!ENTITY b "&a;&a;&a;&a;">]>
+        <GCDocument name="&b;"/>"#;
+    assert_eq!(refused(bomb.as_bytes()), ["G0601"]);
+    let fetch = r#"<!DOCTYPE x SYSTEM "file:///etc/passwd"><GCDocument/>"#;
+    assert_eq!(refused(fetch.as_bytes()), ["G0601"]);
+    assert_eq!(refused(br#"<GCDocument name="&who;"/>"#), ["G0601"]);
+}
+
+#[test]
+fn encodings_other_than_utf_8_are_named() {
+    let text = "<?xml version=\"1.0\" encoding=\"UTF-16\"?><GCDocument name=\"J1\"/>";
+    let wide = |join: fn(u16) -> [u8; 2]| text.encode_utf16().flat_map(join).collect::<Vec<u8>>();
+    for body in [wide(u16::to_le_bytes), wide(u16::to_be_bytes)] {
+        assert!(jgrafchart::looks_like(&body));
+        let (_, problems) = import(&body);
+        assert_eq!(
+            problems.iter().map(|p| &*p.what).collect::<Vec<_>>(),
+            ["the file is UTF-16; save it as UTF-8"]
+        );
+    }
+    let mut marked = vec![0xFF, 0xFE];
+    marked.extend(wide(u16::to_le_bytes));
+    assert!(jgrafchart::looks_like(&marked));
+    assert_eq!(refused(&marked), ["G0001"]);
+    let latin = b"<?xml version=\"1.0\" encoding=\"ISO-8859-1\"?><GCDocument name=\"\xE5\"/>";
+    let (_, problems) = import(latin);
+    assert_eq!(problems[0].code.id, "G0001");
+    assert!(problems[0].what.contains("ISO-8859-1"), "{}", problems[0].what);
+    // The same without a letter beyond ASCII is UTF-8 as well.
+    let (document, _) = import(b"<?xml version=\"1.0\" encoding=\"ISO-8859-1\"?><GCDocument name=\"J1\"/>");
+    assert_eq!(document.charts().count(), 1);
+    // With a mark of UTF-8, places count the mark.
+    let (document, problems) = import(b"\xEF\xBB\xBF<GCDocument name=\"J1\"/>");
+    assert_eq!((document.charts().count(), problems.len()), (1, 0));
+}
+
+#[test]
+fn depth_and_size_are_bounded() {
+    let deep = format!("{}{}", "<GCDocument>".repeat(100_000), "</GCDocument>".repeat(100_000));
+    assert_eq!(refused(deep.as_bytes()), ["G0007"]);
+    let macros = "<MacroStep><GCDocument>".repeat(49) + &"</GCDocument></MacroStep>".repeat(49);
+    let (document, _) = import(format!("<GCDocument>{macros}</GCDocument>").as_bytes());
+    assert_eq!(document.charts().count(), 50);
+    assert_eq!(refused(&vec![b'<'; 7 << 20]), ["G0007"]);
+    assert_eq!(refused(&vec![b'<'; 10 << 20]), ["G0008"]);
+    assert_eq!(refused(&vec![0; 1 << 20]), ["G0601"]);
+    let wide: String = (0..100_000).map(|n| format!(" a{n}=''")).collect();
+    assert_eq!(refused(format!("<GCDocument{wide}/>").as_bytes()), ["G0008"]);
+    let many = format!("<GCDocument>{}</GCDocument>", "<a/>".repeat(900_000));
+    assert_eq!(refused(many.as_bytes()), ["G0008"]);
+}
+
+#[test]
+fn work_is_bounded_too() {
+    within(60, heavy_files);
+}
+
+fn heavy_files() {
+    // A chain of joins with a transition at each: every walk goes back to its start.
+    let mut joins = String::from("<GCDocument><GCStep id='s'/>");
+    for n in 0..8000 {
+        joins += &format!("<ParallelJoin id='j{n}'/><GCTransition id='t{n}' actionText='1'/>");
+    }
+    for n in 1..8000 {
+        joins += &format!(
+            "<GCLink fromObject='j{}' toObject='j{n}L'/><GCLink fromObject='j{n}' toObject='t{n}'/>",
+            n - 1
+        );
+    }
+    let (_, problems) = import((joins + "</GCDocument>").as_bytes());
+    assert!(problems.iter().any(|p| p.code.id == "G0008"));
+    // Long chains and deep brackets in a text.
+    for text in [
+        "a|".repeat(20_000) + "a",
+        "(".repeat(60_000),
+        "!".repeat(60_000) + "a",
+        "/".repeat(60_000),
+        "a.".repeat(30_000) + "a",
+        "a?".repeat(30_000),
+        "a".repeat(70_000),
+    ] {
+        let file = format!("<GCDocument><GCTransition id='t' actionText='{text}'/></GCDocument>");
+        let (_, problems) = import(file.as_bytes());
+        assert!(problems.iter().any(|p| matches!(p.code.id, "G0606" | "G0008")), "{}", &text[..20]);
+    }
+    // More actions than anyone writes, many steps of one name.
+    let step = format!("<GCStep name='x' actionText='{}'/>", "S a=1;".repeat(10_000));
+    let (_, problems) = import(
+        format!("<GCDocument><IntegerVariable name='a'/>{}</GCDocument>", step.repeat(100)).as_bytes(),
+    );
+    assert!(problems.iter().any(|p| p.code.id == "G0008"));
+    let names = "<GCStep name='x'/>".repeat(50_000);
+    let (document, problems) = import(format!("<GCDocument>{names}</GCDocument>").as_bytes());
+    assert_eq!(document.charts().map(|c| c.steps().count()).sum::<usize>(), 50_000);
+    assert!(problems.iter().any(|p| p.code.id == "G0010"));
+}
+
+/// One change of a file.
+#[derive(Clone, Debug)]
+enum Change {
+    Set(usize, u8),
+    Cut(usize, usize),
+    Copy(usize, usize, usize),
+    Put(usize, &'static str),
+}
+
+fn change() -> impl Strategy<Value = Change> {
+    let words = prop::sample::select(vec![
+        "<",
+        ">",
+        "/>",
+        "\"",
+        "&",
+        "&#0;",
+        "&#10;",
+        "<!--",
+        "<![CDATA[",
+        "]]>",
+        "<?",
+        "&#x10FFFF;",
+        "é",
+        "\u{202e}",
+        "<GCDocument>",
+        "</GCDocument>",
+        "<GCGroup>",
+        "<MacroStep>",
+        "S",
+        "S x=",
+        "(",
+        "!",
+        "/",
+        "\\",
+        "?",
+        ":",
+        "1e999",
+        "99999999999999999999",
+        "-",
+        ".",
+        "`",
+        "\0",
+    ]);
+    let place = any::<prop::sample::Index>().prop_map(|i| i.index(1 << 20));
+    prop_oneof![
+        (place.clone(), any::<u8>()).prop_map(|(i, b)| Change::Set(i, b)),
+        (place.clone(), 0usize..200).prop_map(|(i, n)| Change::Cut(i, n)),
+        (place.clone(), place.clone(), 0usize..400).prop_map(|(i, j, n)| Change::Copy(i, j, n)),
+        (place, words).prop_map(|(i, w)| Change::Put(i, w)),
+    ]
+}
+
+fn apply(file: &mut Vec<u8>, change: &Change) {
+    let len = file.len().max(1);
+    match change {
+        Change::Set(i, b) => {
+            if let Some(byte) = file.get_mut(i % len) {
+                *byte = *b;
+            }
+        }
+        Change::Cut(i, n) => {
+            let from = (i % len).min(file.len());
+            let to = (from + n).min(file.len());
+            file.drain(from..to);
+        }
+        Change::Copy(i, j, n) => {
+            let from = (i % len).min(file.len());
+            let piece = file[from..(from + n).min(file.len())].to_vec();
+            let at = (j % len).min(file.len());
+            file.splice(at..at, piece);
+        }
+        Change::Put(i, word) => {
+            let at = (i % len).min(file.len());
+            file.splice(at..at, word.bytes());
+        }
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 400, failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn a_changed_file_never_panics(
+        file in prop::sample::select(FILES.to_vec()),
+        changes in prop::collection::vec(change(), 1..12),
+    ) {
+        let mut file = bytes(file);
+        for change in &changes {
+            apply(&mut file, change);
+        }
+        import(&file);
+    }
+
+    #[test]
+    fn any_text_of_an_action_or_condition_never_panics(text in "[a-zA-Z0-9_.;=!&|<>+*/%()?:\\\\ \n\"'#åø-]{0,80}") {
+        let quoted = text.replace('&', "&amp;").replace('<', "&lt;").replace('"', "&quot;").replace('\n', "&#10;");
+        let file = format!(
+            "<GCDocument><IntegerVariable name=\"a\"/><RealVariable name=\"b\"/><StringVariable name=\"c\"/>\
+             <GCStep name=\"s\" actionText=\"S {quoted}\"/><GCTransition actionText=\"{quoted}\"/></GCDocument>"
+        );
+        import(file.as_bytes());
+    }
+
+    #[test]
+    fn any_bytes_never_panic(file in prop::collection::vec(any::<u8>(), 0..300)) {
+        import(&file);
+    }
+}

@@ -1,0 +1,11 @@
+//! Charts saved by JGrafchart become documents that mean the same.
+//!
+//! The files stand in `tests/interchange/jgrafchart`; what is expected of them
+//! is written here from JGrafchart's language reference, not from a run.
+
+mod corpus;
+mod hostile;
+mod plants;
+mod problems;
+mod show;
+mod typed;
