@@ -13,7 +13,7 @@ use super::associations::{Associations, Way};
 use super::code::Buf;
 use super::lists::Lists;
 use super::plan::parent;
-use crate::ir::{ActionKind, BodyId, ChartId, ChartRole, Expr, ExprKind, StepId, Stmt, Value, VarId};
+use crate::ir::{ActionKind, BodyId, ChartId, Expr, ExprKind, StepId, Stmt, TransitionId, Value, VarId};
 use crate::symbols::ActionSymbol;
 
 /// When an action runs, as far as its rank depends on it.
@@ -37,8 +37,7 @@ struct Pending {
 #[derive(Default)]
 pub(super) struct Actions {
     pending: Vec<Pending>,
-    /// By transition of the unit: its action, by number, then by rank.
-    pub(super) clearing: Vec<u32>,
+    pub(super) clearing: Clearing,
     pub(super) on: Lists<u32>,
     pub(super) off: Lists<u32>,
     pub(super) periodics: Lists<u32>,
@@ -52,6 +51,24 @@ pub(super) struct Actions {
     block_of_var: Vec<u32>,
     block_of_body: Vec<u32>,
     code_of_body: Vec<Option<Code>>,
+}
+
+/// The stored actions of transitions, by number, then by rank.
+#[derive(Default)]
+pub(super) struct Clearing {
+    transitions: Vec<u32>,
+    /// Of the hidden transitions of tasks, by chart.
+    returns: Vec<u32>,
+}
+
+impl Clearing {
+    pub(super) fn written(&self, id: TransitionId) -> u32 {
+        self.transitions.get(id.index()).copied().unwrap_or(NONE)
+    }
+
+    pub(super) fn returning(&self, task: ChartId) -> u32 {
+        self.returns.get(task.index()).copied().unwrap_or(NONE)
+    }
 }
 
 /// What a control block drives.
@@ -85,7 +102,10 @@ impl Lower<'_> {
         let unit = self.unit;
         let all = self.associations();
         let mut a = Actions {
-            clearing: vec![NONE; unit.transitions.len()],
+            clearing: Clearing {
+                transitions: vec![NONE; unit.transitions.len()],
+                returns: vec![NONE; unit.charts.len()],
+            },
             direct: vec![Addr(NONE); self.plan.source.len()],
             block_of_var: vec![NONE; unit.vars.len()],
             block_of_body: vec![NONE; unit.bodies.len()],
@@ -98,6 +118,7 @@ impl Lower<'_> {
                 continue;
             }
             let period = self.period(id);
+            self.sets_free(&mut a, id);
             for t in chart.transitions.clone() {
                 self.clearing(&mut a, t, period);
             }
@@ -130,7 +151,7 @@ impl Lower<'_> {
         }
         a.pending.clear();
         let to = |i: u32| rank.get(i as usize).copied().unwrap_or(NONE);
-        a.clearing.iter_mut().for_each(|c| *c = to(*c));
+        a.clearing.transitions.iter_mut().chain(&mut a.clearing.returns).for_each(|c| *c = to(*c));
         for list in [&mut a.on, &mut a.off, &mut a.periodics] {
             list.map(to);
             list.sort_unique();
@@ -193,20 +214,24 @@ impl Lower<'_> {
         code
     }
 
-    /// A stored action on clearing; in a task, the transitions out of its entry
-    /// step also note for whom it works.
+    /// A stored action on clearing. A transition out of a calling step gives the
+    /// task free, one out of a task's entry step notes for whom it works.
     fn clearing(&mut self, a: &mut Actions, transition: u32, period: u32) {
         let unit = self.unit;
         let Some(t) = unit.transitions.get(transition as usize) else { return };
         let chart = unit.charts.get(t.chart.index());
-        let task = chart.filter(|c| c.role == ChartRole::Task);
-        let owner = task
-            .filter(|c| c.entry.is_some_and(|e| t.from.contains(&e)))
-            .and_then(|_| self.owners.get(t.chart.index()).copied().flatten());
-        if t.on_clearing.is_empty() && owner.is_none() {
+        let begins = chart.is_some_and(|c| c.entry.is_some_and(|e| t.from.contains(&e)));
+        let owner = self.owner(t.chart).filter(|_| begins);
+        let ended: Vec<Addr> =
+            t.from.iter().flat_map(|s| self.tasks_of(*s)).filter_map(|task| self.owner(task)).collect();
+        if t.on_clearing.is_empty() && owner.is_none() && ended.is_empty() {
             return;
         }
         let mut b = Buf::new(period);
+        for owner in ended {
+            b.op(Op::Push(0), Span::default());
+            b.op(Op::Store(owner), Span::default());
+        }
         if let Some(owner) = owner {
             self.take_over(&mut b, t.chart, owner);
         }
@@ -215,16 +240,34 @@ impl Lower<'_> {
         let at = if t.on_clearing.is_empty() { Span::default() } else { t.at };
         let row = Action { condition: Code::default(), body, period };
         let action = self.add(a, Moment::Clearing, row, at);
-        if let Some(slot) = a.clearing.get_mut(transition as usize) {
+        if let Some(slot) = a.clearing.transitions.get_mut(transition as usize) {
             *slot = action;
         }
     }
 
-    /// Notes the first caller, in text order, that was active as the pass began.
+    /// A task that goes back by itself is free.
+    fn sets_free(&mut self, a: &mut Actions, task: ChartId) {
+        let Some(owner) = self.owner(task) else { return };
+        let mut b = Buf::new(0);
+        b.op(Op::Push(0), Span::default());
+        b.op(Op::Store(owner), Span::default());
+        let body = self.place(b);
+        let row = Action { condition: Code::default(), body, period: 0 };
+        let action = self.add(a, Moment::Clearing, row, Span::default());
+        if let Some(slot) = a.clearing.returns.get_mut(task.index()) {
+            *slot = action;
+        }
+    }
+
+    /// Unless the task works for somebody already, notes the first caller, in
+    /// text order, that was active as the pass began.
     fn take_over(&mut self, b: &mut Buf, task: ChartId, owner: Addr) {
         let at = Span::default();
         let callers = self.callers(task).to_vec();
-        let mut ends = Vec::new();
+        b.op(Op::Load(owner), at);
+        b.op(Op::Push(0), at);
+        b.op(Op::Compare(Cmp::Eq, Num::I64), at);
+        let mut ends = vec![b.jump(Op::JumpUnless, at)];
         for (i, caller) in callers.iter().enumerate() {
             self.active_before(b, *caller, at);
             let next = b.jump(Op::JumpUnless, at);
@@ -259,11 +302,12 @@ impl Lower<'_> {
                 let terms =
                     Terms { qualifier: *qualifier, time: time.as_ref(), condition: condition.as_ref() };
                 let code = self.work(place.period, work);
-                if self.is_stored_pulse(*qualifier) {
+                if self.is_stored_pulse(*qualifier) && !self.needs_block(place, terms) {
                     self.pulse(a, place, terms, code);
                 } else {
+                    let pulse = self.is_stored_pulse(*qualifier).then_some(*qualifier);
                     let row = Action { condition: none, body: code, period: place.period };
-                    let action = self.add(a, Moment::End(None), row, place.at);
+                    let action = self.add(a, Moment::End(pulse), row, place.at);
                     let block = self.block(a, (Addr(NONE), action), place.period, Drives::Work, place.at);
                     self.contribute(a, place, terms, Way::Block, block);
                 }
@@ -292,6 +336,16 @@ impl Lower<'_> {
 
     fn is_stored_pulse(&self, qualifier: Qualifier) -> bool {
         matches!(qualifier, Qualifier::P1 | Qualifier::P0)
+    }
+
+    /// Whether a pulse without a name differs from its control block, of which
+    /// it is the short form in profiles with `late_actions`: where the input of
+    /// the block is more than the step, or a step can come and go within a scan.
+    fn needs_block(&self, place: In, terms: Terms<'_>) -> bool {
+        let chart = self.unit.steps.get(place.step.index()).map(|s| s.chart);
+        let masked = || chart.is_some_and(|c| !self.masking_chart(c).is_empty());
+        let rules = &self.unit.rules;
+        rules.late_actions && (rules.stable || terms.condition.is_some() || masked())
     }
 
     /// The code of a condition; empty where it is always true.

@@ -16,7 +16,8 @@ pub(super) struct Association {
     period: Option<u32>,
     /// Their charts differ in period.
     mixed: bool,
-    /// One of P P1 P0 SD DS SL, which only a control block can do.
+    /// One of P P1 P0 SD DS SL (and N D L where they are no continuous actions),
+    /// which only a control block can do.
     block_only: bool,
     /// An input other than N comes into its control block.
     full: bool,
@@ -46,12 +47,18 @@ impl Association {
         !self.full
     }
 
-    fn add(&mut self, qualifier: Qualifier, period: u32) {
-        use Qualifier::{DS, P, P0, P1, SD, SL};
+    /// `continuous`: N, D and L are continuous actions of their own, not inputs
+    /// of a control block.
+    fn add(&mut self, qualifier: Qualifier, period: u32, continuous: bool) {
+        use Qualifier::{D, DS, L, N, P, P0, P1, SD, SL};
         self.count += 1;
         self.mixed |= self.period.is_some_and(|p| p != period);
         self.period = Some(period);
-        self.block_only |= matches!(qualifier, P | P0 | P1 | SD | DS | SL);
+        self.block_only |= match qualifier {
+            P | P0 | P1 | SD | DS | SL => true,
+            N | D | L => !continuous,
+            Qualifier::S | Qualifier::R => false,
+        };
         self.others_than_p1 |= qualifier != P1;
         self.others_than_p0 |= qualifier != P0;
     }
@@ -89,6 +96,7 @@ impl Associations {
 impl Lower<'_> {
     /// Looks at all actions of the steps that run.
     pub(super) fn associations(&self) -> Associations {
+        let continuous = self.has_continuous_actions();
         let mut a = Associations {
             vars: vec![Association::default(); self.unit.vars.len()],
             bodies: vec![Association::default(); self.unit.bodies.len()],
@@ -98,12 +106,12 @@ impl Lower<'_> {
                 match action.kind {
                     ActionKind::Variable { qualifier, var, .. } => {
                         if let Some(v) = a.vars.get_mut(var.index()) {
-                            v.add(qualifier, period);
+                            v.add(qualifier, period, continuous);
                         }
                     }
                     ActionKind::Named { qualifier, body, .. } => {
                         if let Some(b) = a.bodies.get_mut(body.index()) {
-                            b.add(qualifier, period);
+                            b.add(qualifier, period, continuous);
                         }
                     }
                     ActionKind::Work { .. }
@@ -139,10 +147,15 @@ impl Lower<'_> {
         })
     }
 
+    /// N, D and L on Boolean variables are continuous actions (IEC 60848).
+    fn has_continuous_actions(&self) -> bool {
+        self.unit.rules.stable && self.unit.rules.parallel_actions
+    }
+
     /// What becomes of a qualifier on a variable with these associations.
     pub(super) fn way(&self, qualifier: Qualifier, all: Association) -> Way {
         let rules = &self.unit.rules;
-        let continuous = rules.stable && rules.parallel_actions;
+        let continuous = self.has_continuous_actions() && !all.block_only;
         match qualifier {
             Qualifier::S if rules.stored_set_reset && !all.block_only => Way::Store(true),
             Qualifier::R if rules.stored_set_reset && !all.block_only => Way::Store(false),

@@ -94,24 +94,17 @@ impl Lower<'_> {
     /// Groups and charts, with their initial situations, and the steps active
     /// at the start.
     pub(super) fn groups(&mut self) {
-        let live = self.live_charts();
         let rows = self.plan.groups.clone();
-        for (i, (chart, start, end)) in rows.iter().enumerate() {
-            let is_live = live.get(chart.index()).copied().unwrap_or(false);
-            let steps = self.initial(GroupId(i as u32), is_live);
-            if is_live && parent(self.unit, *chart).is_none() {
-                self.t.initial.extend_from_slice(&steps);
-            }
-            let initial = self.list(&steps);
+        for (i, (_, start, end)) in rows.iter().enumerate() {
+            let initial = self.initial(GroupId(i as u32));
+            let initial = self.list(&initial);
             let steps = Rows { start: *start, end: *end };
             self.t.groups.push(Group { steps, initial, watches: Rows::default() });
         }
-        self.t.initial.sort_unstable();
-        self.t.initial.dedup();
-        for (i, chart) in self.plan.outer.clone().into_iter().enumerate() {
-            let Some(group) = self.plan.group(chart) else { continue };
-            debug_assert_eq!(self.plan.chart(chart), Some(i as u32));
-            self.t.charts.push(Chart { group, period: self.period(chart) });
+        self.t.initial = self.start();
+        for chart in &self.plan.outer {
+            let Some(group) = self.plan.group(*chart) else { continue };
+            self.t.charts.push(Chart { group, period: self.period(*chart) });
         }
     }
 
@@ -149,52 +142,54 @@ impl Lower<'_> {
         found
     }
 
-    /// The initial situation of a group: initial steps, of a task its entry
-    /// step, of a chart enclosed by a step active at the start its linked steps.
-    fn initial(&self, group: GroupId, is_live: bool) -> Vec<Number> {
-        self.steps_where(group, |chart, id, step| {
-            step.initial
-                || (chart.role == ChartRole::Task && chart.entry == Some(id))
-                || (step.linked && is_live && chart.enclosed_by.is_some())
-        })
+    /// The initial situation of a group: initial steps, of a task its entry step.
+    fn initial(&self, group: GroupId) -> Vec<Number> {
+        self.steps_where(group, is_initial)
     }
 
-    /// By chart: whether it has a situation at the start. An enclosed chart has
-    /// one where the step that encloses it is active at the start.
-    fn live_charts(&self) -> Vec<bool> {
+    /// The situation at the start. A chart that no step encloses starts in its
+    /// initial situation; what an enclosing step active at the start encloses
+    /// starts with the linked steps, and with the initial ones too where that
+    /// step is itself initial.
+    fn start(&self) -> Vec<Number> {
         let unit = self.unit;
-        let mut known: Vec<Option<bool>> = vec![None; unit.charts.len()];
-        for first in 0..unit.charts.len() {
-            // Up the enclosures until something known; a circle is not live.
-            let (mut path, mut at) = (Vec::new(), Some(ChartId(first as u32)));
-            let mut live = true;
-            while let Some(chart) = at {
-                let Some(slot) = known.get_mut(chart.index()) else { break };
-                if let Some(k) = *slot {
-                    live = k;
-                    break;
-                }
-                *slot = Some(false);
-                let row = unit.charts.get(chart.index());
-                let by = row.and_then(|c| c.enclosed_by).and_then(|s| unit.steps.get(s.index()));
-                let starts = by.is_none_or(|s| s.initial || s.linked);
-                path.push((chart, starts));
-                at = by.map(|s| self.outermost(s.chart));
+        let mut found = Vec::new();
+        let mut done = vec![false; self.plan.groups.len()];
+        let mut todo: Vec<(GroupId, bool, bool)> = Vec::new();
+        for chart in &self.plan.outer {
+            let row = unit.charts.get(chart.index());
+            if let (Some(group), true) =
+                (self.plan.group(*chart), row.is_some_and(|c| c.enclosed_by.is_none()))
+            {
+                todo.push((group, true, false));
             }
-            for (chart, starts) in path.into_iter().rev() {
-                live = live && starts;
-                if let Some(slot) = known.get_mut(chart.index()) {
-                    *slot = Some(live);
+        }
+        while let Some((group, with_initial, with_linked)) = todo.pop() {
+            match done.get_mut(group.0 as usize) {
+                Some(d) if !*d => *d = true,
+                _ => continue, // enclosed twice, or in a circle: reported
+            }
+            let starts = |chart: &ir::Chart, id: StepId, step: &ir::Step| {
+                (with_initial && is_initial(chart, id, step)) || (with_linked && step.linked)
+            };
+            found.extend(self.steps_where(group, starts));
+            for chart in self.within(group) {
+                let Some(row) = unit.charts.get(chart.index()) else { continue };
+                for i in row.steps.clone() {
+                    let Some(step) = unit.steps.get(i as usize) else { continue };
+                    if let StepSort::Enclosing(charts) = &step.sort
+                        && starts(row, StepId(i), step)
+                    {
+                        let initial = with_initial && step.initial;
+                        let groups = charts.iter().filter_map(|c| self.plan.group(*c));
+                        todo.extend(groups.map(|g| (g, initial, true)));
+                    }
                 }
             }
         }
-        known.into_iter().map(|k| k.unwrap_or(false)).collect()
-    }
-
-    /// The outermost chart round a chart.
-    pub(super) fn outermost(&self, chart: ChartId) -> ChartId {
-        let row = self.plan.chart(chart).and_then(|r| self.plan.outer.get(r as usize));
-        row.copied().unwrap_or(chart)
+        found.sort_unstable();
+        found.dedup();
+        found
     }
 
     /// By step: the groups it counts in. Only those of expansions are counted,
@@ -316,6 +311,10 @@ impl Lower<'_> {
         }
         depth
     }
+}
+
+fn is_initial(chart: &ir::Chart, id: StepId, step: &ir::Step) -> bool {
+    step.initial || (chart.role == ChartRole::Task && chart.entry == Some(id))
 }
 
 fn enlist(lists: &mut [Vec<StepId>], chart: ChartId, step: StepId) {

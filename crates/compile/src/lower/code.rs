@@ -8,7 +8,7 @@
 use g7_engine::{Addr, Arith, Builtin, Cmp, Code, GroupId, Num, Op, StepId as Number, WatchId};
 use g7_model::{Span, Type};
 
-use super::uses::{DEPTH, activity_time};
+use super::uses::{DEPTH, timed_step};
 use super::words::{capacity, num, word_of};
 use super::{Lower, Refusal};
 use crate::ir::{BinaryOp, Expr, ExprKind, FunctionId, SectionId, StepId, Value, VarClass, VarId};
@@ -157,10 +157,12 @@ impl Lower<'_> {
             ExprKind::Rise(x) => self.edge(b, x, Op::Rise, at),
             ExprKind::Fall(x) => self.edge(b, x, Op::Fall, at),
             ExprKind::Binary(..) => self.binary(b, e),
-            ExprKind::Timer { t1, e: x, t2 } => match activity_time(t1, x, t2.as_deref()) {
-                Some((step, t)) => {
+            ExprKind::Timer { t1, e: x, t2 } => match timed_step(x, t2.as_deref()) {
+                Some(step) => {
                     self.active(b, step, at);
-                    self.older(b, step, t, at);
+                    self.step_time(b, step, at);
+                    self.expr(b, t1);
+                    b.op(Op::Compare(Cmp::Ge, Num::I64), at);
                     b.op(Op::And, at);
                 }
                 None => self.timer(b, t1, x, t2.as_deref(), at),
@@ -291,13 +293,6 @@ impl Lower<'_> {
             b.op(Op::Push(self.unit.cycle.max(1) as u64), at);
             b.op(Op::Arith(Arith::Div, Num::I64), at);
         }
-    }
-
-    /// Pushes whether a step's time has reached `t`.
-    pub(super) fn older(&mut self, b: &mut Buf, step: StepId, t: i64, at: Span) {
-        self.step_time(b, step, at);
-        b.op(Op::Push(t as u64), at);
-        b.op(Op::Compare(Cmp::Ge, Num::I64), at);
     }
 
     /// Operators between operands. Long sums lean to the left and are gone

@@ -187,10 +187,13 @@ impl Plan {
             let Some(end) = end else { break };
             at = end;
         }
-        if let Some(n) = self.step.get(at.index()).copied().filter(|n| *n != NONE) {
-            add(to, g7_engine::StepId(n));
+        // A macro-step comes on before its entry step and goes off behind its exit step.
+        let end = self.step.get(at.index()).copied().filter(|n| *n != NONE).map(g7_engine::StepId);
+        if entry {
+            pseudos.into_iter().chain(end).for_each(|s| add(to, s));
+        } else {
+            end.into_iter().chain(pseudos.into_iter().rev()).for_each(|s| add(to, s));
         }
-        pseudos.into_iter().for_each(|p| add(to, p));
     }
 
     /// The pseudo-steps of the macro-steps round a step.

@@ -80,26 +80,17 @@ impl Lower<'_> {
     /// `%S21`: all charts to their initial situation. `%S22`: all steps off.
     fn chart_bits(&mut self, b: &mut Buf) {
         let at = Span::default();
-        let charts: Vec<(g7_engine::GroupId, bool)> = self
-            .t
-            .charts
-            .iter()
-            .map(|c| {
-                let steps = self.t.groups.get(c.group.0 as usize).map(|g| g.steps).unwrap_or_default();
-                let first = self.t.initial.partition_point(|s| s.0 < steps.start);
-                let starts = self.t.initial.get(first).is_some_and(|s| s.0 < steps.end);
-                (c.group, starts)
-            })
-            .collect();
+        let charts: Vec<g7_engine::GroupId> = self.t.charts.iter().map(|c| c.group).collect();
         for (name, to_initial) in [("%S21", true), ("%S22", false)] {
             let Some(bit) = self.system_var(name) else { continue };
             b.op(Op::Load(bit), at);
             let skip = b.jump(Op::JumpUnless, at);
-            for (group, starts) in &charts {
-                let request =
-                    if to_initial && *starts { Service::Init(*group) } else { Service::Clear(*group) };
-                b.op(Op::Service(request), at);
+            charts.iter().for_each(|g| b.op(Op::Service(Service::Clear(*g)), at));
+            if to_initial {
+                // What is asked to go off and to come on stays.
+                self.t.initial.iter().for_each(|s| b.op(Op::Service(Service::Set(*s)), at));
             }
+            self.owners.iter().flatten().for_each(|owner| fall(b, *owner));
             fall(b, bit);
             b.land(skip);
         }
@@ -132,19 +123,19 @@ impl Lower<'_> {
         b.land(skip);
     }
 
-    /// Macro-steps called `3` or `M3`, the first of each number.
+    /// Macro-steps called `3` or `M3`, the first of each number in each chart.
     fn numbered_macro_steps(&self) -> Vec<(u32, ChartId)> {
-        let mut found: Vec<(u32, ChartId)> = Vec::new();
+        let mut found: Vec<(u32, ChartId, ChartId)> = Vec::new();
         for (i, step) in self.unit.steps.iter().enumerate() {
             let StepSort::Macro(chart) = step.sort else { continue };
             let digits = step.name.strip_prefix(['M', 'm']).unwrap_or(&step.name);
             let Ok(number) = digits.parse::<u32>() else { continue };
             let runs = self.plan.expansion(self.unit, StepId(i as u32)).is_some();
-            if runs && number < 4 * BITS && found.iter().all(|f| f.0 != number) {
-                found.push((number, chart));
+            if runs && number < 4 * BITS && found.iter().all(|f| (f.0, f.1) != (number, step.chart)) {
+                found.push((number, step.chart, chart));
             }
         }
-        found
+        found.into_iter().map(|(number, _, expansion)| (number, expansion)).collect()
     }
 }
 

@@ -7,6 +7,7 @@ use g7_engine::{Addr, Cmp, Guard, NONE, Num, Op, Rows, StepId as Number, Transit
 use g7_model::Span;
 
 use super::Lower;
+use super::actions::Clearing;
 use super::code::Buf;
 use super::lists::Lists;
 use super::plan::{add, parent};
@@ -54,14 +55,13 @@ impl Lower<'_> {
         }
         let returns = (0..self.unit.charts.len() as u32)
             .map(ChartId)
-            .filter(|c| self.owners.get(c.index()).copied().flatten().is_some())
+            .filter(|c| self.owner(*c).is_some())
             .map(Origin::Return);
         order.into_iter().map(|(_, _, id)| Origin::Written(id)).chain(returns).collect()
     }
 
-    /// Fills the tables of transitions. `clearing`: by transition of the unit,
-    /// the rank of its stored action.
-    pub(super) fn transitions(&mut self, ranks: &[Origin], clearing: &[u32]) {
+    /// Fills the tables of transitions.
+    pub(super) fn transitions(&mut self, ranks: &[Origin], clearing: &Clearing) {
         let steps = self.plan.source.len();
         let (mut uses, mut joint) = (vec![0u8; steps], vec![false; steps]);
         let (mut from, mut to) = (Vec::new(), Vec::new());
@@ -75,8 +75,11 @@ impl Lower<'_> {
                 Origin::Written(id) => {
                     let Some(t) = self.unit.transitions.get(id.index()) else { continue };
                     self.written(t, &mut from, &mut to, &mut extras);
+                    if self.has_blockers {
+                        extras.extend(self.blockers(t.chart));
+                    }
                     let row = self.row(&t.receptivity, &extras, t.chart);
-                    let on_clearing = clearing.get(id.index()).copied().unwrap_or(NONE);
+                    let on_clearing = clearing.written(id);
                     (t.chart, Transition { on_clearing, priority: t.priority.unwrap_or(NONE), ..row })
                 }
                 Origin::Return(task) => {
@@ -84,7 +87,8 @@ impl Lower<'_> {
                     let at = self.unit.charts.get(task.index()).map(|c| c.at).unwrap_or_default();
                     let always =
                         Expr { kind: ExprKind::Const(Value::Bool(true)), ty: g7_model::Type::Bool, at };
-                    (task, self.row(&always, &extras, task))
+                    let on_clearing = clearing.returning(task);
+                    (task, Transition { on_clearing, ..self.row(&always, &extras, task) })
                 }
             };
             row.chart = self.plan.chart(chart).unwrap_or(0);
@@ -138,16 +142,15 @@ impl Lower<'_> {
         to: &mut Vec<Number>,
         extras: &mut Vec<Extra>,
     ) {
-        t.from.iter().for_each(|s| self.plan.leaving(self.unit, *s, from));
+        for step in &t.from {
+            self.plan.leaving(self.unit, *step, from);
+            for task in self.tasks_of(*step) {
+                self.hand_back(task, *step, from, to, extras);
+            }
+        }
         t.to.iter().for_each(|s| self.plan.entering(self.unit, *s, to));
         if self.owners.is_empty() {
             return;
-        }
-        for step in &t.from {
-            let Some(s) = self.unit.steps.get(step.index()) else { continue };
-            for (task, _) in &s.calls {
-                self.hand_back(*task, *step, from, to, extras);
-            }
         }
         let chart = self.unit.charts.get(t.chart.index());
         if let Some(chart) = chart.filter(|c| c.role == ChartRole::Task)
@@ -167,7 +170,7 @@ impl Lower<'_> {
         to: &mut Vec<Number>,
         extras: &mut Vec<Extra>,
     ) {
-        let Some(owner) = self.owners.get(task.index()).copied().flatten() else { return };
+        let Some(owner) = self.owner(task) else { return };
         let Some(number) = self.callers(task).iter().position(|c| *c == caller) else { return };
         let Some(chart) = self.unit.charts.get(task.index()) else { return };
         if let Some(exit) = chart.exit {
@@ -197,9 +200,20 @@ impl Lower<'_> {
         if let Some(entry) = chart.entry {
             self.plan.entering(self.unit, entry, to);
         }
-        if let Some(owner) = self.owners.get(task.index()).copied().flatten() {
+        if let Some(owner) = self.owner(task) {
             extras.push(Extra::Orphaned(owner, self.callers(task).to_vec()));
         }
+    }
+
+    /// The tasks that a step calls.
+    pub(super) fn tasks_of(&self, step: StepId) -> impl Iterator<Item = ChartId> + '_ {
+        let calls = self.unit.steps.get(step.index()).map_or(&[][..], |s| &s.calls);
+        calls.iter().map(|c| c.0).filter(|t| self.owner(*t).is_some())
+    }
+
+    /// The word with the number of the caller that a task works for, 0 for none.
+    pub(super) fn owner(&self, task: ChartId) -> Option<Addr> {
+        self.owners.get(task.index()).copied().flatten()
     }
 
     /// The steps that call a task, in text order.
@@ -223,9 +237,7 @@ impl Lower<'_> {
     }
 
     fn guard(&mut self, receptivity: &Expr, extras: &[Extra], chart: ChartId) -> Guard {
-        let blockers = if self.has_blockers { self.blockers(chart) } else { Vec::new() };
         if extras.is_empty()
-            && blockers.is_empty()
             && let Some(guard) = self.plain_guard(receptivity)
         {
             return guard;
@@ -236,7 +248,7 @@ impl Lower<'_> {
         if any {
             self.expr(&mut b, receptivity);
         }
-        for e in extras.iter().chain(&blockers) {
+        for e in extras {
             self.extra(&mut b, e, at);
             if std::mem::replace(&mut any, true) {
                 b.op(Op::And, at);

@@ -5,9 +5,7 @@
 //! time of their own, which outputs may be written with their step at once,
 //! which charts can be frozen.
 
-use crate::ir::{
-    ActionKind, ChartId, Expr, ExprKind, Service, StepId, Stmt, StmtKind, Target, Unit, Value, VarId,
-};
+use crate::ir::{ActionKind, ChartId, Expr, ExprKind, Service, StepId, Stmt, StmtKind, Target, Unit, VarId};
 use g7_model::Qualifier;
 
 /// Nesting beyond which a chart is refused; see [`super::Lower::expr`].
@@ -189,7 +187,7 @@ impl Walk<'_> {
             ExprKind::Not(x) | ExprKind::Neg(x) | ExprKind::Convert(x) | ExprKind::Trunc(x) => self.expr(x),
             ExprKind::Rise(x) | ExprKind::Fall(x) => self.watched(x),
             ExprKind::Timer { t1, e, t2 } => {
-                if let Some((step, _)) = activity_time(t1, e, t2.as_deref()) {
+                if let Some(step) = timed_step(e, t2.as_deref()) {
                     self.time_of(step);
                 }
                 self.expr(t1);
@@ -277,11 +275,11 @@ impl Walk<'_> {
     }
 }
 
-/// `t/X12` with a written time and no second one: the step and the time. It is
-/// not a timer but a look at the step's own time (decision 12 of the semantics).
-pub(super) fn activity_time(t1: &Expr, e: &Expr, t2: Option<&Expr>) -> Option<(StepId, i64)> {
-    let (ExprKind::Const(Value::Int(t)), ExprKind::StepActive(step), None) = (&t1.kind, &e.kind, t2) else {
-        return None;
-    };
-    Some((*step, i64::try_from(*t).ok()?))
+/// `t/X12` without a second time: the step. It is not a timer but a look at the
+/// step's own time.
+pub(super) fn timed_step(e: &Expr, t2: Option<&Expr>) -> Option<StepId> {
+    match (&e.kind, t2) {
+        (ExprKind::StepActive(step), None) => Some(*step),
+        _ => None,
+    }
 }
