@@ -68,11 +68,15 @@ codes! {
     EMPTY_RANGE = "G0223" Error "a range that ends before it starts" "IEC 61131-3:2003, 3.3.2.3";
     SECTION_SHARED = "G0224" Error "one transition section for two transitions" "Unity Pro, transition sections";
     SECTION_UNUSED = "G0225" Warning "a transition section that no transition uses" "Unity Pro, transition sections";
-    QUALIFIER_TIME = "G0226" Error "a qualifier without its time, or with one too many" "IEC 61131-3:2003, 2.6.4.4, table 45";
+    NESTED_TOO_DEEPLY = "G0226" Error "macro-steps nested too deeply" "the .g7 format";
     BODY_LANGUAGE = "G0227" Error "a body in a language that does not run yet" "the .g7 format";
     BAD_DECLARATION = "G0228" Error "a declaration that does not fit its type" "IEC 61131-3:2003, 2.4.3";
     ADDRESS_TWICE = "G0229" Error "one address for two variables" "IEC 61131-3:2003, 2.4.1.1";
-    NESTED_TOO_DEEPLY = "G0230" Error "macro-steps nested too deeply" "the .g7 format";
+
+    // Tests
+    TEST_PLANT = "G0550" Error "a test with a plant that is not there" "the .g7 format";
+    TEST_NAME = "G0551" Error "a test that sets, holds or expects something it cannot" "the .g7 format";
+    TEST_TYPE = "G0552" Error "a value or condition of the wrong type in a test" "the .g7 format";
 
     // Imported files
     BAD_XML = "G0601" Error "a file that is no well-formed XML" "XML 1.0";
@@ -90,6 +94,12 @@ codes! {
     BAD_MACRO = "G0613" Error "a macro-step without its inside" "JGrafchart 2.6.1, macro steps";
     DIFFERENT = "G0614" Warning "a part that is carried over with a difference" "JGrafchart 2.6.1, language reference";
     TWICE = "G0615" Error "two variables of one name in a workspace" "JGrafchart 2.6.1, name references";
+
+    // Plants and tests
+    BAD_DRIVE = "G0501" Error "a plant drives what is no free input" "the plant language";
+    BAD_RATE = "G0502" Error "a rate on what cannot move" "the plant language";
+    BAD_PARTS = "G0503" Error "parts or chance that are not well described" "the plant language";
+    UNKNOWN_PART_MEMBER = "G0504" Error "something that parts do not have" "the plant language";
 }
 
 /// The code with this id (`G0101`, in any case), if there is one.

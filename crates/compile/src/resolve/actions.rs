@@ -125,7 +125,7 @@ impl Resolver<'_, '_> {
     fn action(&mut self, step: StepId, action: &WrittenAction) -> Option<ActionKind> {
         match &action.kind {
             Written::Qualified { qualifier, time, target, condition } => {
-                self.qualified_action(*qualifier, time.as_ref(), target, condition.as_ref(), action.at.0)
+                self.qualified_action(*qualifier, time.as_ref(), target, condition.as_ref())
             }
             Written::OnEvent { event, work } => {
                 let event = self.condition(event);
@@ -157,9 +157,9 @@ impl Resolver<'_, '_> {
         time: Option<&WrittenExpr>,
         target: &WrittenTarget,
         condition: Option<&WrittenExpr>,
-        at: Span,
     ) -> Option<ActionKind> {
-        let timed = self.fitting_time(qualifier, time, at);
+        // A time that is missing or one too many was reported when the text was read.
+        let timed = (time.is_some() == qualifier.timed()).then_some(());
         let time = self.optional(time, Type::Time);
         let condition = self.optional(condition, Type::Bool);
         let governed = match target {
@@ -184,27 +184,6 @@ impl Resolver<'_, '_> {
             Governed::Var(var) => ActionKind::Variable { qualifier, time, var, condition },
             Governed::Body(body) => ActionKind::Named { qualifier, time, body, condition },
         })
-    }
-
-    /// L, D, SD, DS and SL stand with a time, the others without.
-    fn fitting_time(&mut self, q: Qualifier, time: Option<&WrittenExpr>, at: Span) -> Option<()> {
-        let name = q.name();
-        match time {
-            None if q.timed() => self.report(
-                Problem::new(&codes::QUALIFIER_TIME, at, format!("`{name}` needs a time"))
-                    .help(format!("as in `{name} 5s …`")),
-            ),
-            Some(time) if !q.timed() => {
-                let what = format!("`{name}` takes no time");
-                let problem = Problem::new(&codes::QUALIFIER_TIME, time.at.0, what);
-                self.report(match q {
-                    Qualifier::N => problem.help("`L` limits an action, `D` delays it"),
-                    Qualifier::S => problem.help("`SD` and `DS` delay a set, `SL` limits it"),
-                    _ => problem,
-                })
-            }
-            _ => Some(()),
-        }
     }
 
     /// A Boolean variable or a named action.

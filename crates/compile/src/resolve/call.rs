@@ -108,7 +108,16 @@ impl Resolver<'_, '_> {
             self.read_all(args);
             return self.not_a_function(path);
         };
-        let called = match self.entity(&name.text) {
+        if let Some(own) = super::process::function(&name.text, at) {
+            return Some(own);
+        }
+        // Inside a function its name is also that of its result.
+        let own = self.scopes.names.get(&*name.text).copied();
+        let entity = match self.entity(&name.text) {
+            Some(Entity::Var(_)) if matches!(own, Some(Entity::Function(_))) => own,
+            entity => entity,
+        };
+        let called = match entity {
             Some(Entity::Function(f)) => return self.call_function(f, name, args, at),
             Some(_) => None,
             None => Some(&name.text),

@@ -12,19 +12,32 @@ use crate::ir::{Chart, ChartId, ChartRole, Step, StepId, StepSort};
 /// Deepest nesting of expansions and enclosed charts.
 const DEEPEST: u32 = 64;
 
+/// How deep a chart lies.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Depth {
+    /// Not known yet.
+    Unknown,
+    /// On the way that is being climbed.
+    Climbing,
+    /// In so many others.
+    Known(u32),
+}
+
 impl<'d> Resolver<'_, 'd> {
     /// Rows and names of all charts and steps.
     pub(super) fn declare_charts(&mut self, charts: &[&'d WrittenChart]) {
         for (k, chart) in charts.iter().enumerate() {
             let id = ChartId(k as u32);
+            let named = !chart.name.text.is_empty();
             match self.scopes.chart(&chart.name.text).and_then(|c| self.unit.charts.get(c.index())) {
                 Some(before) => {
                     let first = before.at;
                     self.defined_twice(&chart.name, first);
                 }
-                None => {
+                None if named => {
                     self.scopes.chart_names.insert(&chart.name.text, id);
                 }
+                None => {} // The name could not be read, and was reported then.
             }
             self.scopes.charts.push(ChartScope::default());
             let start = self.unit.steps.len() as u32;
@@ -79,6 +92,9 @@ impl<'d> Resolver<'_, 'd> {
     }
 
     fn name_step(&mut self, chart: ChartId, name: &'d Name, id: StepId) {
+        if name.text.is_empty() {
+            return; // Could not be read, and was reported then.
+        }
         let before = self.scopes.step(chart, &name.text).and_then(|s| self.unit.steps.get(s.index()));
         if let Some(first) = before.map(|s| s.at) {
             let what = format!("step `{}` is defined twice", name.text);
@@ -250,47 +266,53 @@ impl<'d> Resolver<'_, 'd> {
     /// Cuts nestings that close a circle or go too deep, so that whoever climbs
     /// from chart to chart comes to an end.
     fn cut_circles(&mut self) {
-        /// Depth not known yet; on the way that is being climbed.
-        const UNKNOWN: u32 = u32::MAX;
-        const CLIMBING: u32 = u32::MAX - 1;
-        let mut depth = vec![UNKNOWN; self.unit.charts.len()];
+        let mut depth = vec![Depth::Unknown; self.unit.charts.len()];
         for start in 0..depth.len() {
-            let mut way = vec![ChartId(start as u32)];
-            let mut level = loop {
-                let Some(c) = way.last().copied() else { break 0 };
-                match depth.get(c.index()).copied() {
-                    Some(CLIMBING) => {
-                        way.pop();
-                        if let Some(c) = way.last().copied() {
-                            self.cut(c, true);
-                        }
-                        break 0;
-                    }
-                    Some(UNKNOWN) => {
-                        if let Some(d) = depth.get_mut(c.index()) {
-                            *d = CLIMBING;
-                        }
-                        match self.outer(c) {
-                            Some(o) => way.push(o),
-                            None => break 0,
-                        }
-                    }
-                    Some(known) => {
-                        way.pop();
-                        break known + 1;
-                    }
-                    None => break 0,
-                }
-            };
-            while let Some(c) = way.pop() {
+            let (way, mut level) = self.climb(ChartId(start as u32), &mut depth);
+            for c in way.into_iter().rev() {
                 if level > DEEPEST {
                     self.cut(c, false);
                     level = 0;
                 }
                 if let Some(d) = depth.get_mut(c.index()) {
-                    *d = level;
+                    *d = Depth::Known(level);
                 }
                 level += 1;
+            }
+        }
+    }
+
+    /// The charts from this one outward whose depth is not known, and the depth
+    /// of the last of them. A circle on the way is cut where it closes in the text.
+    fn climb(&mut self, start: ChartId, depth: &mut [Depth]) -> (Vec<ChartId>, u32) {
+        let mut way = Vec::new();
+        let mut at = start;
+        loop {
+            match depth.get(at.index()).copied() {
+                Some(Depth::Known(level)) => return (way, level + 1),
+                Some(Depth::Climbing) => {
+                    let circle = way.iter().skip_while(|c| **c != at);
+                    if let Some(last) = circle.copied().max_by_key(|c| self.outer_step(*c)) {
+                        self.cut(last, true);
+                    }
+                    for c in way.drain(..) {
+                        if let Some(d) = depth.get_mut(c.index()) {
+                            *d = Depth::Unknown;
+                        }
+                    }
+                    at = start;
+                }
+                Some(Depth::Unknown) => {
+                    if let Some(d) = depth.get_mut(at.index()) {
+                        *d = Depth::Climbing;
+                    }
+                    way.push(at);
+                    match self.outer(at) {
+                        Some(outer) => at = outer,
+                        None => return (way, 0),
+                    }
+                }
+                None => return (way, 0),
             }
         }
     }

@@ -22,6 +22,7 @@ mod constant;
 mod expr;
 mod fb;
 mod operator;
+mod process;
 mod refer;
 mod resolver;
 mod rules;

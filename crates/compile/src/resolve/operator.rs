@@ -79,10 +79,7 @@ impl Resolver<'_, '_> {
 
     /// Of BOOL; 0 and 1 count as FALSE and TRUE.
     fn logic(&mut self, sign: Sign, op: BinaryOp, a: Typed, b: Typed, at: Span) -> Option<Typed> {
-        let logical = |t: &Typed| t.expr.ty == Type::Bool || t.whole_literal();
-        if sign == Sign::Dot && !logical(&a) && !logical(&b) {
-            return self.wrong_operands(sign, &a, &b, at);
-        }
+        let logical = |t: &Typed| t.expr.ty == Type::Bool || t.truth_literal();
         if !logical(&a) && !logical(&b) && is_number(a.expr.ty) && is_number(b.expr.ty) {
             return self.wrong_operands(sign, &a, &b, at);
         }

@@ -58,6 +58,9 @@ enum Miss {
 impl Resolver<'_, '_> {
     /// What the names stand for; reports where they stand for nothing.
     pub(super) fn refer(&mut self, names: &[Name]) -> Option<Ref> {
+        if names.iter().any(|n| n.text.is_empty()) {
+            return None; // Could not be read, and was reported then.
+        }
         match self.lookup(names) {
             Ok(r) => Some(r),
             Err(miss) => {

@@ -135,6 +135,9 @@ impl<'u, 'd> Resolver<'u, 'd> {
         if let Some(c) = self.scopes.chart(&name.text) {
             return Some(c);
         }
+        if name.text.is_empty() {
+            return None; // Could not be read, and was reported then.
+        }
         let mut problem =
             Problem::new(&codes::UNKNOWN_CHART, name.at.0, format!("there is no chart `{}`", name.text));
         if self.may_guess() {
@@ -148,6 +151,9 @@ impl<'u, 'd> Resolver<'u, 'd> {
     pub(super) fn step_named(&mut self, chart: ChartId, name: &Name) -> Option<crate::ir::StepId> {
         if let Some(s) = self.scopes.step(chart, &name.text) {
             return Some(s);
+        }
+        if name.text.is_empty() {
+            return None; // Could not be read, and was reported then.
         }
         let home = self.unit.charts.get(chart.index()).map(|c| (c.name.clone(), c.steps.clone()));
         let (chart_name, steps) = home?;

@@ -39,9 +39,9 @@ impl Typed {
         }
     }
 
-    /// Whether it is an untyped whole number.
-    pub(super) fn whole_literal(&self) -> bool {
-        self.literal && matches!(self.value(), Some(Value::Int(_)))
+    /// Whether it is a plain 0 or 1, which count as FALSE and TRUE.
+    pub(super) fn truth_literal(&self) -> bool {
+        self.literal && matches!(self.value(), Some(Value::Int(0 | 1)))
     }
 }
 

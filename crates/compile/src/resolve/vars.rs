@@ -9,6 +9,9 @@ use crate::ir::{ChartId, ExprKind, Value, VarClass, VarId};
 impl<'d> Resolver<'_, 'd> {
     /// Gives a name its meaning, unless it has one in the same name space.
     pub(super) fn define(&mut self, chart: Option<ChartId>, name: &'d Name, entity: Entity) -> bool {
+        if name.text.is_empty() {
+            return false; // Could not be read, and was reported then.
+        }
         let names = match chart {
             None => &mut self.scopes.names,
             Some(c) => match self.scopes.charts.get_mut(c.index()) {
@@ -143,6 +146,9 @@ impl<'d> Resolver<'_, 'd> {
 
     /// The values that a declaration gives to its names.
     pub(super) fn give_values(&mut self, chart: Option<ChartId>, decl: &VarDecl, ids: &[VarId]) {
+        if matches!(decl.ty, Type::Fb(_)) {
+            return;
+        }
         let init = decl.init.as_ref().and_then(|e| self.constant(chart, e, decl.ty));
         let safe = decl.safe.as_ref().and_then(|e| self.constant(chart, e, decl.ty));
         for id in ids {
