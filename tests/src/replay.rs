@@ -14,7 +14,7 @@ use crate::subject::{Backend, Fault, Subject};
 ///
 /// The first disagreement.
 pub fn replay(doc: &Document, profile: ProfileName, trace: &Trace, backend: Backend) -> Result<(), String> {
-    let mut subject = backend(doc, Some(profile))?;
+    let mut subject = backend(doc, Some(profile), &queries(trace)?)?;
     // The naive engine knows the declarations: types of inputs and literals.
     let names = Naive::new(doc, Some(profile))?;
     let inputs = names.inputs();
@@ -30,11 +30,28 @@ pub fn replay(doc: &Document, profile: ProfileName, trace: &Trace, backend: Back
                 let values = input_values(row, &inputs, &names)?;
                 let verdict = subject.scan(&values, row.at);
                 ended = verdict.is_err();
-                check(row, verdict, &mut *subject).map_err(|why| format!("line {}: {why}", row.line))?;
+                check(row, verdict, &mut *subject, &names)
+                    .map_err(|why| format!("line {}: {why}", row.line))?;
             }
         }
     }
     Ok(())
+}
+
+/// Every expression that the rows ask for.
+fn queries(trace: &Trace) -> Result<Vec<g7_model::Expr>, String> {
+    let mut all = Vec::new();
+    for line in &trace.lines {
+        let Line::Row(row) = line else { continue };
+        let out = row.out.iter().flatten().filter(|item| item.contains('='));
+        for item in row.vars.iter().chain(out) {
+            let e = demand(item)?;
+            if !all.contains(&e) {
+                all.push(e);
+            }
+        }
+    }
+    Ok(all)
 }
 
 fn input_values(
@@ -68,7 +85,12 @@ fn matches(qualified: &str, meant: &str) -> bool {
     qualified == meant || qualified.strip_suffix(meant).is_some_and(|rest| rest.ends_with('.'))
 }
 
-fn check(row: &Row, verdict: Result<(), Fault>, subject: &mut dyn Subject) -> Result<(), String> {
+fn check(
+    row: &Row,
+    verdict: Result<(), Fault>,
+    subject: &mut dyn Subject,
+    names: &Naive,
+) -> Result<(), String> {
     match (&row.end, &verdict) {
         (End::Situation(want), Ok(())) => situation(want, &subject.active())?,
         (End::Situation(_), Err(fault)) => return Err(format!("fault {fault:?}")),
@@ -87,7 +109,7 @@ fn check(row: &Row, verdict: Result<(), Fault>, subject: &mut dyn Subject) -> Re
         }
     }
     if let Some(want) = &row.out {
-        outputs(want, subject)?;
+        outputs(want, subject, names)?;
     }
     for item in &row.vars {
         if !subject.holds(&demand(item)?)? {
@@ -130,17 +152,24 @@ fn same_cycle(want: &[Vec<String>], got: &[BTreeSet<String>]) -> Result<(), Stri
     }
 }
 
-fn outputs(want: &[String], subject: &mut dyn Subject) -> Result<(), String> {
+fn outputs(want: &[String], subject: &dyn Subject, names: &Naive) -> Result<(), String> {
+    let all = subject.outputs();
     let mut left: BTreeSet<String> =
-        subject.outputs().into_iter().filter(|(_, v)| *v == Value::Bool(true)).map(|(n, _)| n).collect();
+        all.iter().filter(|(_, v)| **v == Value::Bool(true)).map(|(n, _)| n.clone()).collect();
     let on = left.clone();
     for item in want {
-        if item.contains('=') {
-            if !subject.holds(&demand(item)?)? {
-                return Err(format!("`{item}` does not hold"));
+        if let Some((name, value)) = item.split_once('=') {
+            // What goes to the plant, which after a fault is not what the chart holds.
+            let Some((full, got)) = all.iter().find(|(n, _)| matches(n, name)) else {
+                return Err(format!("no output `{name}`"));
+            };
+            let ty = names.variables().into_iter().find(|(n, ..)| n == full).map(|(_, ty, _)| ty);
+            let ty = ty.ok_or_else(|| format!("no type of `{name}`"))?;
+            let want = names.constant(&expression(value)?, ty).map_err(|f| format!("{f:?}"))?;
+            if *got != want {
+                return Err(format!("output `{item}` wanted, got {got:?}"));
             }
-            let name = item.split_once('=').map_or(&**item, |(n, _)| n).to_owned();
-            left.retain(|n| !matches(n, &name));
+            left.remove(full);
             continue;
         }
         let Some(name) = left.iter().find(|n| matches(n, item)).cloned() else {

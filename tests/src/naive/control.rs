@@ -114,6 +114,11 @@ struct Verdict {
 
 /// Evaluates all control blocks and continuous actions, then runs the bodies.
 pub(super) fn end_of_scan(m: &Model, s: &mut State, due: &[bool], start: &BTreeSet<StepId>) -> Run<()> {
+    // JGrafchart: the periodic actions, and after them the level actions.
+    let level_last = m.rules.profile == ProfileName::Jgrafchart;
+    if level_last {
+        bodies(m, s, due, start, &[], &BTreeMap::new(), true)?;
+    }
     let blocks: Vec<Block<'_>> = qualified(m)?
         .into_iter()
         .filter(|(b, goal)| through_block(m, goal, b.qualifier))
@@ -142,7 +147,7 @@ pub(super) fn end_of_scan(m: &Model, s: &mut State, due: &[bool], start: &BTreeS
             }
         }
     }
-    bodies(m, s, due, start, &blocks, &verdicts)
+    bodies(m, s, due, start, &blocks, &verdicts, !level_last)
 }
 
 /// The inputs of a block, and what comes of them.
@@ -279,6 +284,7 @@ fn bodies(
     start: &BTreeSet<StepId>,
     blocks: &[Block<'_>],
     verdicts: &BTreeMap<&Owner, Verdict>,
+    each_scan: bool,
 ) -> Run<()> {
     let mut todo: Vec<(i8, Run1<'_>)> = Vec::new();
     let mut done: BTreeSet<&Owner> = BTreeSet::new();
@@ -287,7 +293,7 @@ fn bodies(
             for (place, action) in m.steps[step].actions.iter().enumerate() {
                 if let ActionKind::EachScan { work, condition } = &action.kind {
                     let was = m.rules.profile != ProfileName::Jgrafchart || start.contains(&step);
-                    if due[scope] && s.active.contains(&step) && was {
+                    if each_scan && due[scope] && s.active.contains(&step) && was {
                         todo.push((1, Run1::Each(scope, work, condition.as_ref())));
                     }
                 }
