@@ -7,6 +7,7 @@ use g7_model::{
 };
 
 use super::actions::{MOST_WORK, Texts};
+use super::express::written;
 use super::links::{self, Ends};
 use super::names::{self, Names, writable};
 use super::read::name_place;
@@ -295,7 +296,7 @@ fn literal(value: &Value, at: Span) -> Expr {
     let (literal, negative) = match value {
         Value::Bool(b) => (Literal::Bool(*b), false),
         Value::Int(n) => (Literal::Int(i128::from(*n).abs(), None), *n < 0),
-        Value::Real(r) => (Literal::Real(format!("{:?}", r.abs()).into(), None), *r < 0.0),
+        Value::Real(r) => (Literal::Real(written(r.abs()).into(), None), *r < 0.0),
         Value::Str(s) => (Literal::Str(s.as_str().into()), false),
     };
     let expr = Expr { kind: ExprKind::Literal(literal), at: at.into() };

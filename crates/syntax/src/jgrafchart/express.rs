@@ -395,7 +395,7 @@ fn real(r: f64, wanted: Sort, at: Span) -> Typed {
             Sort::Bool => Literal::Bool(whole == 1.0),
             // As the cast there: beyond 32 bits the nearest whole number.
             Sort::Int => Literal::Int(i128::from(whole as i32), None),
-            Sort::Real => Literal::Real(format!("{r:?}").into(), None),
+            Sort::Real => Literal::Real(written(r).into(), None),
             Sort::Text => Literal::Str(format!("{r:?}").into()),
         },
         at,
@@ -409,9 +409,18 @@ fn text_value(text: &str, wanted: Sort) -> Literal {
         Sort::Int => Literal::Int(text.parse::<u32>().unwrap_or(0).into(), None),
         Sort::Real => {
             let value = text.parse::<f64>().ok().filter(|v| v.is_finite() && *v >= 0.0).unwrap_or(0.0);
-            Literal::Real(format!("{value:?}").into(), None)
+            Literal::Real(written(value).into(), None)
         }
         Sort::Text => Literal::Str(text.into()),
+    }
+}
+
+/// A real number as the language writes it: always with a point.
+pub(super) fn written(r: f64) -> String {
+    let text = format!("{r:?}");
+    match text.split_once('e') {
+        Some((digits, power)) if !digits.contains('.') => format!("{digits}.0e{power}"),
+        _ => text,
     }
 }
 

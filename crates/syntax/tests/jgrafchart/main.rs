@@ -5,6 +5,7 @@
 
 mod corpus;
 mod hostile;
+mod pages;
 mod plants;
 mod problems;
 mod show;
