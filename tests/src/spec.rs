@@ -8,11 +8,12 @@ use std::path::{Path, PathBuf};
 
 use g7_model::ProfileName;
 use g7_tests::case::{self, Case};
+use g7_tests::engine;
 use g7_tests::replay::replay;
 use g7_tests::subject::{self, Backend};
 use libtest_mimic::{Arguments, Failed, Trial};
 
-const BACKENDS: &[(&str, Backend)] = &[("naive", subject::naive)];
+const BACKENDS: &[(&str, Backend)] = &[("engine", engine::engine), ("naive", subject::naive)];
 
 fn main() {
     let args = Arguments::from_args();

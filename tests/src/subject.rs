@@ -12,7 +12,7 @@ use crate::naive::{Naive, NaiveFault, Value};
 pub enum Fault {
     /// A state recurred; the situations of the cycle, step names qualified.
     Unstable(Vec<BTreeSet<String>>),
-    /// `forcing`, `overflow`, `division`, `bound`, `table`.
+    /// `forcing`, `overflow`, `division`, `range`, `bound`, `table`.
     Kind(&'static str),
     /// Anything that is not the chart's own doing.
     Other(String),
@@ -45,9 +45,10 @@ pub trait Subject {
     fn outputs(&self) -> BTreeMap<String, Value>;
     /// Every variable but constants, members of blocks too.
     fn variables(&self) -> BTreeMap<String, Value>;
-    /// Step times: nanoseconds, or scans where the profile counts those.
+    /// Times of the steps that are no macro-steps: nanoseconds, or scans where the profile counts those.
     fn step_times(&self) -> BTreeMap<String, i64>;
-    /// Variables with a new diagnostic "conflicting assignment".
+    /// Variables with a diagnostic "conflicting assignment" in the last scan; the
+    /// engine tells the first one only.
     fn conflicts(&self) -> Vec<String>;
     /// An expression on the state as it is.
     ///
@@ -57,15 +58,16 @@ pub trait Subject {
     fn holds(&mut self, e: &Expr) -> Result<bool, String>;
 }
 
-/// Makes a subject of a document under a profile.
-pub type Backend = fn(&Document, Option<ProfileName>) -> Result<Box<dyn Subject>, String>;
+/// Makes a subject of a document under a profile, with the expressions that
+/// [`Subject::holds`] will be asked for.
+pub type Backend = fn(&Document, Option<ProfileName>, &[Expr]) -> Result<Box<dyn Subject>, String>;
 
 /// The naive engine.
 ///
 /// # Errors
 ///
 /// Where the document has no meaning.
-pub fn naive(doc: &Document, profile: Option<ProfileName>) -> Result<Box<dyn Subject>, String> {
+pub fn naive(doc: &Document, profile: Option<ProfileName>, _: &[Expr]) -> Result<Box<dyn Subject>, String> {
     Ok(Box::new(Naive::new(doc, profile)?))
 }
 
@@ -79,7 +81,8 @@ impl From<NaiveFault> for Fault {
             NaiveFault::Forcing(_) => Fault::Kind("forcing"),
             NaiveFault::Overflow => Fault::Kind("overflow"),
             NaiveFault::Division => Fault::Kind("division"),
-            NaiveFault::Index | NaiveFault::Work => Fault::Kind("bound"),
+            NaiveFault::Work => Fault::Kind("bound"),
+            NaiveFault::Index => Fault::Kind("range"),
             NaiveFault::Table => Fault::Kind("table"),
             NaiveFault::Stopped => Fault::Other("stopped".into()),
             NaiveFault::Bad(what) => Fault::Other(what),
@@ -110,7 +113,7 @@ impl Subject for Naive {
     }
 
     fn step_times(&self) -> BTreeMap<String, i64> {
-        Naive::step_times(self).into_iter().collect()
+        Naive::step_times(self).into_iter().filter(|(_, _, plain)| *plain).map(|(n, t, _)| (n, t)).collect()
     }
 
     fn conflicts(&self) -> Vec<String> {

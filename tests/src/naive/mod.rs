@@ -31,19 +31,16 @@ use state::State;
 pub use fb::FbState;
 pub use value::{NaiveFault, Value};
 
-/// Variables that stored actions wrote with different values in one pass, each
-/// named once a run.
+/// Variables that stored actions wrote with different values in one pass of the
+/// last scan. Whoever shows them does so once a run for each.
 #[derive(Clone, Debug, Default)]
 pub struct Diagnostics {
-    seen: BTreeSet<String>,
     latest: Vec<String>,
 }
 
 impl Diagnostics {
     fn conflict(&mut self, variable: &str) {
-        if self.seen.insert(variable.to_owned()) {
-            self.latest.push(variable.to_owned());
-        }
+        self.latest.push(variable.to_owned());
     }
 }
 
@@ -146,8 +143,8 @@ impl Naive {
     }
 
     /// Steps and macro-steps, each with its time in nanoseconds, or in scans
-    /// where the profile counts those.
-    pub fn step_times(&self) -> Vec<(String, i64)> {
+    /// where the profile counts those, and whether it is no macro-step.
+    pub fn step_times(&self) -> Vec<(String, i64, bool)> {
         let m = &self.model;
         let live = |scope: usize| {
             let s = &m.scopes[scope];
@@ -157,14 +154,14 @@ impl Naive {
         steps
             .map(|x| {
                 let t = if m.rules.scan_clock { self.state.scans(m, x) } else { self.state.time(m, x) };
-                (m.steps[x].qualified.clone(), t)
+                (m.steps[x].qualified.clone(), t, m.steps[x].expansion.is_none())
             })
             .collect()
     }
 
     /// The time of one step.
     pub fn step_time(&self, qualified: &str) -> Option<i64> {
-        self.step_times().into_iter().find(|(n, _)| n == qualified).map(|(_, t)| t)
+        self.step_times().into_iter().find(|(n, ..)| n == qualified).map(|(_, t, _)| t)
     }
 
     /// An expression in the state as it is; edges and timers of its own are false.

@@ -35,6 +35,12 @@ impl Naive {
                 let model = std::rc::Rc::clone(&self.model);
                 self.state.set_system(&model, "S25", Value::Bool(true));
             }
+            let model = std::rc::Rc::clone(&self.model);
+            for (id, var) in model.vars.iter().enumerate() {
+                if let Some(value) = self.safe.get(&var.qualified) {
+                    self.state.vars[id] = value.clone();
+                }
+            }
             self.fault = Some(fault.clone());
         }
         self.first = false;

@@ -197,7 +197,7 @@ pub(super) fn common(a: &Typed, b: &Typed) -> Run<Option<Type>> {
         (Some(t), None) | (None, Some(t)) => {
             let other = if a.ty.is_none() { a } else { b };
             match (t, &other.v) {
-                (t, Value::Lreal(_)) if t.is_integer() && literal_real(other) => Ok(Some(Type::Lreal)),
+                (t, Value::Lreal(_)) if t.is_integer() && literal_real(other) => Ok(Some(Type::Real)),
                 _ => Ok(Some(t)),
             }
         }
