@@ -292,7 +292,8 @@ impl<'a> Lexer<'a> {
     fn dot(&mut self, glued: bool) -> Tok {
         let before = glued && matches!(self.last, Tok::Word | Tok::Ticked | Tok::Int);
         self.pos += 1;
-        let after = self.rest().chars().next().is_some_and(|c| name_start(c) || c.is_ascii_digit() || c == '`');
+        let after =
+            self.rest().chars().next().is_some_and(|c| name_start(c) || c.is_ascii_digit() || c == '`');
         if before && after { Tok::PathDot } else { Tok::Dot }
     }
 

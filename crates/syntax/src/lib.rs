@@ -26,11 +26,13 @@ mod lexer;
 mod lines;
 mod number;
 mod parse;
+mod print;
 mod problems;
 mod words;
 
 pub use decode::decode;
 pub use lines::{LineColumn, LineIndex};
+pub use print::{print, print_expr};
 
 use g7_model::{Document, Expr, ExprKind, FileId, Place, Problem, Span, Stmt};
 use parse::Parser;

@@ -24,6 +24,11 @@ impl<'a> LineIndex<'a> {
         LineIndex { text, starts }
     }
 
+    /// The text itself.
+    pub fn text(&self) -> &'a str {
+        self.text
+    }
+
     /// How many lines there are, at least one.
     pub fn count(&self) -> u32 {
         clamp(self.starts.len())

@@ -100,7 +100,10 @@ pub(crate) fn st(word: &str) -> Option<St> {
 pub(crate) fn is_contextual(word: &str) -> bool {
     FILE.contains(&word)
         || CHART.contains(&word)
-        || matches!(word, "at" | "retain" | "inverted" | "safe" | "every" | "on" | "st" | "il" | "ld" | "INIT")
+        || matches!(
+            word,
+            "at" | "retain" | "inverted" | "safe" | "every" | "on" | "st" | "il" | "ld" | "INIT"
+        )
 }
 
 /// What a file's item can begin with.
@@ -146,8 +149,8 @@ pub(crate) const CHART: &[&str] = &[
 
 /// What an action can begin with.
 pub(crate) const ACTION: &[&str] = &[
-    "N", "S", "R", "L", "D", "P", "P0", "P1", "SD", "DS", "SL", "on", "each", "force", "enable", "mask", "call",
-    "enclose",
+    "N", "S", "R", "L", "D", "P", "P0", "P1", "SD", "DS", "SL", "on", "each", "force", "enable", "mask",
+    "call", "enclose",
 ];
 
 /// What a plant's item can begin with.
@@ -175,7 +178,8 @@ fn slips(a: &str, b: &str) -> usize {
         let mut row = vec![i + 1];
         for (j, y) in b.iter().enumerate() {
             let at = |r: &Vec<usize>, k: usize| r.get(k).copied().unwrap_or(usize::MAX / 2);
-            let mut n = (at(&rows[1], j) + usize::from(x != y)).min(at(&rows[1], j + 1) + 1).min(at(&row, j) + 1);
+            let mut n =
+                (at(&rows[1], j) + usize::from(x != y)).min(at(&rows[1], j + 1) + 1).min(at(&row, j) + 1);
             let swapped = i > 0 && j > 0 && a.get(i - 1) == Some(y) && b.get(j - 1) == Some(x);
             if swapped {
                 n = n.min(at(&rows[0], j - 1) + 1);

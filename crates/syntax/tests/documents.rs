@@ -1,8 +1,8 @@
 //! The charts in the book and in the conformance cases are read without a problem.
 #![allow(clippy::disallowed_methods, reason = "a test reads the files that it is about")]
 
-use g7_model::FileId;
-use g7_syntax::{LineIndex, parse};
+use g7_model::{Document, FileId};
+use g7_syntax::{LineIndex, parse, print};
 use std::path::{Path, PathBuf};
 
 fn pages(folder: &Path, into: &mut Vec<PathBuf>) {
@@ -37,6 +37,22 @@ fn blocks(page: &str) -> Vec<(usize, String)> {
     found
 }
 
+/// What is wrong with the canonical form of a document, if anything is.
+fn misprint(text: &str, document: &Document) -> Option<String> {
+    for source in [None, Some(text)] {
+        let printed = print(document, source);
+        let (again, problems) = parse(&printed, FileId(0));
+        if !problems.is_empty() || again != *document {
+            return Some(format!("reads otherwise when printed: {problems:?}\n{printed}"));
+        }
+        let twice = print(&again, source.map(|_| &*printed));
+        if twice != printed {
+            return Some(format!("printed twice is not the same:\n{printed}\n-- and --\n{twice}"));
+        }
+    }
+    None
+}
+
 fn wrong_blocks(folder: &str, at_least: usize) -> Vec<String> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..").join(folder);
     let mut files = Vec::new();
@@ -51,11 +67,20 @@ fn wrong_blocks(folder: &str, at_least: usize) -> Vec<String> {
             if document.items.is_empty() {
                 wrong.push(format!("{}:{line}: nothing in the block", file.display()));
             }
+            if problems.is_empty() {
+                wrong.extend(misprint(&text, &document).map(|w| format!("{}:{line}: {w}", file.display())));
+            }
             let lines = LineIndex::new(&text);
             for p in problems {
                 let place = lines.place(p.at.start);
                 let at = line as u32 + place.line - 1;
-                wrong.push(format!("{}:{at}:{}: {} {p} ({:?})", file.display(), place.column, p.code.id, p.help));
+                wrong.push(format!(
+                    "{}:{at}:{}: {} {p} ({:?})",
+                    file.display(),
+                    place.column,
+                    p.code.id,
+                    p.help
+                ));
             }
         }
     }

@@ -3,9 +3,7 @@
 use super::Parser;
 use crate::lexer::Tok;
 use crate::words;
-use g7_model::{
-    Chart, ChartItem, ChartKind, Expr, ExprKind, Name, Place, Span, Step, StepKind, Transition,
-};
+use g7_model::{Chart, ChartItem, ChartKind, Expr, ExprKind, Name, Place, Span, Step, StepKind, Transition};
 
 impl Parser<'_> {
     /// A chart, an expansion or a task; its first word is in hand.
@@ -168,7 +166,11 @@ impl Parser<'_> {
                 _ => break,
             };
             if kind != StepKind::Plain {
-                self.slip(at, "a step is only one of entry, exit and enclosing", "leave out one of the words");
+                self.slip(
+                    at,
+                    "a step is only one of entry, exit and enclosing",
+                    "leave out one of the words",
+                );
             }
             kind = sort;
             self.bump();
@@ -220,7 +222,11 @@ impl Parser<'_> {
         }
         let from = if self.at(Tok::Arrow) {
             let at = self.here();
-            self.slip(at, "the preceding steps are missing", "a source transition is written `() -> 1 when …`");
+            self.slip(
+                at,
+                "the preceding steps are missing",
+                "a source transition is written `() -> 1 when …`",
+            );
             Vec::new()
         } else {
             self.step_list("the preceding steps")
@@ -243,7 +249,11 @@ impl Parser<'_> {
     fn transition(&mut self, start: u32, label: Option<Name>, from: Vec<Name>, chained: bool) -> Transition {
         let to = if self.at_word("when") {
             let at = self.behind();
-            self.slip(at, "the succeeding steps are missing", "a sink transition is written `1 -> () when …`");
+            self.slip(
+                at,
+                "the succeeding steps are missing",
+                "a sink transition is written `1 -> () when …`",
+            );
             Vec::new()
         } else {
             self.step_list("the succeeding steps")

@@ -76,7 +76,12 @@ impl Parser<'_> {
             self.problem_help(&codes::EXPECTED, at, "steps and transitions stand in a chart", help);
         } else if !word.is_empty() {
             let what = format!("no item of a file begins with `{word}`");
-            self.problem_help(&codes::UNKNOWN_WORD, at, &what, "items are variables, charts, plants, tests, …");
+            self.problem_help(
+                &codes::UNKNOWN_WORD,
+                at,
+                &what,
+                "items are variables, charts, plants, tests, …",
+            );
         } else {
             self.expected("a variable, a chart or another item of a file");
         }

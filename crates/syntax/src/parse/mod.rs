@@ -13,6 +13,9 @@ mod scenario;
 mod st;
 mod variable;
 
+pub(crate) use expr::strength;
+pub(crate) use file::SWITCHES;
+
 use crate::lexer::{Lexer, Tok, Token};
 use crate::{number, words};
 use g7_model::codes::{self, Code};

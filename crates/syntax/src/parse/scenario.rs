@@ -2,8 +2,8 @@
 
 use super::Parser;
 use crate::lexer::Tok;
-use crate::words::{self, St};
 use crate::number;
+use crate::words::{self, St};
 use g7_model::{
     Expr, Layout, Path, PlaceAt, Placed, Problem, Property, PropertyKind, Scenario, TestStmt, TestStmtKind,
     codes,
@@ -93,7 +93,8 @@ impl Parser<'_> {
             "wait" => self.wait(),
             "scan" => {
                 self.bump();
-                let n = self.integer_if(u64::from(u32::MAX)).map_or(1, |n| u32::try_from(n).unwrap_or(u32::MAX));
+                let n =
+                    self.integer_if(u64::from(u32::MAX)).map_or(1, |n| u32::try_from(n).unwrap_or(u32::MAX));
                 TestStmtKind::Scan(n)
             }
             "expect" => self.expectation(),
@@ -242,7 +243,9 @@ impl Parser<'_> {
                 if self.eat(Tok::Hash) {
                     Placed::TransitionNumber(self.integer_u32("the transition's place in the text, from 0"))
                 } else {
-                    Placed::Transition(self.name("the label of a transition, or `#` and its place in the text"))
+                    Placed::Transition(
+                        self.name("the label of a transition, or `#` and its place in the text"),
+                    )
                 }
             }
             "comment" => {

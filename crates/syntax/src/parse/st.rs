@@ -249,9 +249,14 @@ impl Parser<'_> {
         match self.cur.kind {
             Tok::Word if matches!(self.word(), "TRUE" | "FALSE" | "true" | "false") => true,
             Tok::Word | Tok::Ticked | Tok::Int if self.at_name() => self.at_path_label(),
-            Tok::Int | Tok::Real | Tok::Typed | Tok::Time | Tok::Str | Tok::Minus | Tok::Plus | Tok::LParen => {
-                true
-            }
+            Tok::Int
+            | Tok::Real
+            | Tok::Typed
+            | Tok::Time
+            | Tok::Str
+            | Tok::Minus
+            | Tok::Plus
+            | Tok::LParen => true,
             _ => false,
         }
     }
@@ -339,7 +344,8 @@ impl Parser<'_> {
 
     /// The rest of `target := value`.
     pub(super) fn assignment(&mut self, target: Expr) -> StmtKind {
-        if matches!(self.cur.kind, Tok::Plus | Tok::Minus) && matches!(self.peek().kind, Tok::Eq | Tok::Plus) {
+        if matches!(self.cur.kind, Tok::Plus | Tok::Minus) && matches!(self.peek().kind, Tok::Eq | Tok::Plus)
+        {
             let sign = self.slice(self.cur);
             let name = if let ExprKind::Path(p) = &target.kind { p.text() } else { "n".into() };
             let help = format!("write `{name} := {name} {sign} 1`");

@@ -7,8 +7,8 @@ use g7_model::{Expr, FbKind, Name, Param, Problem, Type, VarDecl, VarKind, codes
 
 /// Every name of a type, for the nearest one to a misspelt name.
 const TYPES: &[&str] = &[
-    "BOOL", "SINT", "INT", "DINT", "LINT", "USINT", "UINT", "UDINT", "ULINT", "REAL", "LREAL", "TIME", "STRING",
-    "CTU", "CTD", "CTUD", "TON", "TOF", "TP", "R_TRIG", "F_TRIG", "SR", "RS",
+    "BOOL", "SINT", "INT", "DINT", "LINT", "USINT", "UINT", "UDINT", "ULINT", "REAL", "LREAL", "TIME",
+    "STRING", "CTU", "CTD", "CTUD", "TON", "TOF", "TP", "R_TRIG", "F_TRIG", "SR", "RS",
 ];
 
 impl Parser<'_> {

@@ -1,0 +1,270 @@
+//! Charts, steps, actions and transitions.
+
+use super::Printer;
+use super::item::starts;
+use g7_model::{
+    Action, ActionKind, Chart, ChartItem, ChartKind, ExprKind, Literal, Name, Order, Situation, Span, Step,
+    StepKind, Target, Transition,
+};
+
+impl Printer<'_> {
+    pub(super) fn chart(&mut self, chart: &Chart) {
+        self.push(match chart.kind {
+            ChartKind::Chart => "chart ",
+            ChartKind::Expansion => "macrochart ",
+            ChartKind::Task => "task ",
+        });
+        self.name(&chart.name.text);
+        self.comment(chart.comment.as_deref());
+        if let Some(ns) = chart.every {
+            self.push(" every ");
+            self.push(&crate::number::show_duration(ns));
+        }
+        self.push(" ");
+        let first = starts(chart.items.first().map(place));
+        self.braces(chart.at.0, first, |p| p.chart_items(&chart.items));
+    }
+
+    fn chart_items(&mut self, items: &[ChartItem]) {
+        let mut before: Option<&ChartItem> = None;
+        for item in items {
+            let apart = self.source.is_none()
+                && before.is_some_and(|b| family(b) != family(item) || family(item) == 3);
+            self.chart_item(item, before, apart);
+            before = Some(item);
+        }
+    }
+
+    fn chart_item(&mut self, item: &ChartItem, before: Option<&ChartItem>, apart: bool) {
+        let at = place(item);
+        match item {
+            ChartItem::Var(v) => self.line(at, apart, |p| p.variable(v)),
+            ChartItem::Step(s) if !s.braces && s.actions.is_empty() => self.line(at, apart, |p| p.step(s)),
+            ChartItem::Step(s) => self.group(at, apart, |p| p.step(s)),
+            ChartItem::Transition(t) => {
+                let chained = before.is_some_and(|b| follows(t, b));
+                self.indent += usize::from(chained);
+                if t.on_clearing.is_some() {
+                    self.group(at, apart, |p| p.transition(t, chained));
+                } else {
+                    self.line(at, apart, |p| p.transition(t, chained));
+                }
+                self.indent -= usize::from(chained);
+            }
+            ChartItem::Pre(body, _) => self.group(at, apart, |p| {
+                p.push("pre ");
+                p.body(body);
+            }),
+            ChartItem::Post(body, _) => self.group(at, apart, |p| {
+                p.push("post ");
+                p.body(body);
+            }),
+            ChartItem::Action(a) => self.group(at, apart, |p| p.named_action(a)),
+            ChartItem::Section(s) => self.section_item(s, apart),
+        }
+    }
+
+    fn step(&mut self, step: &Step) {
+        self.push(if step.initial { "initial " } else { "" });
+        self.push(match step.kind {
+            StepKind::Plain => "step ",
+            StepKind::Entry => "entry step ",
+            StepKind::Exit => "exit step ",
+            StepKind::Enclosing => "enclosing step ",
+            StepKind::Macro(_) => "macro ",
+        });
+        self.name(&step.name.text);
+        if let StepKind::Macro(expansion) = &step.kind {
+            self.push(" = ");
+            self.name(&expansion.text);
+        }
+        self.push(if step.linked { "*" } else { "" });
+        self.comment(step.comment.as_deref());
+        if step.actions.is_empty() && !step.braces {
+            return;
+        }
+        self.push(" ");
+        self.actions(step);
+    }
+
+    /// The actions in braces: a single short one within the line.
+    fn actions(&mut self, step: &Step) {
+        let at = step.at.0;
+        let alone = match step.actions.as_slice() {
+            [one] => Some(one).filter(|_| !self.notes_in(at)),
+            _ => None,
+        };
+        let inline = alone.is_some_and(|action| {
+            self.try_inline(|p| {
+                p.push("{ ");
+                p.action(action);
+                p.push(" }");
+            })
+        });
+        if inline {
+            return;
+        }
+        let first = step.actions.first().map(|a| a.at.0.start);
+        self.braces(at, first, |p| {
+            for action in &step.actions {
+                if has_block(action) {
+                    p.group(action.at.0, false, |p| p.action(action));
+                } else {
+                    p.line(action.at.0, false, |p| p.action(action));
+                }
+            }
+        });
+    }
+
+    fn action(&mut self, action: &Action) {
+        match &action.kind {
+            ActionKind::Qualified { qualifier, time, target, condition } => {
+                self.push(qualifier.name());
+                self.push(" ");
+                if let Some(time) = time {
+                    if matches!(time.kind, ExprKind::Literal(Literal::Time(_))) {
+                        self.expr(time);
+                        self.push(" ");
+                    } else {
+                        self.push("(");
+                        self.expr(time);
+                        self.push(") ");
+                    }
+                }
+                self.action_target(target);
+                self.if_condition(condition.as_ref());
+            }
+            ActionKind::OnEvent { event, work } => {
+                self.push("on ");
+                self.expr(event);
+                self.push(": ");
+                self.work(work);
+            }
+            ActionKind::EachScan { work, condition } => {
+                self.push("each scan: ");
+                self.work(work);
+                self.if_condition(condition.as_ref());
+            }
+            ActionKind::Order(order) => self.order(order),
+            ActionKind::Comment(text) => self.push(&crate::number::quote(text, '"')),
+        }
+    }
+
+    fn action_target(&mut self, target: &Target) {
+        match target {
+            Target::Path(path) => self.path(path),
+            Target::Direct(name, _) => {
+                self.push("%");
+                self.push(name);
+            }
+            Target::Work(work) => self.work(work),
+        }
+    }
+
+    fn if_condition(&mut self, condition: Option<&g7_model::Expr>) {
+        if let Some(condition) = condition {
+            self.push(" if ");
+            self.expr(condition);
+        }
+    }
+
+    fn order(&mut self, order: &Order) {
+        let (word, name) = match order {
+            Order::Force(name, _) => ("force ", name),
+            Order::Enable(name) => ("enable ", name),
+            Order::Mask(name) => ("mask ", name),
+            Order::Call(name) => ("call ", name),
+            Order::Enclose(name) => ("enclose ", name),
+        };
+        self.push(word);
+        self.name(&name.text);
+        let Order::Force(_, situation) = order else { return };
+        self.push(" := ");
+        match situation {
+            Situation::Init => self.push("INIT"),
+            Situation::Current => self.push("{*}"),
+            Situation::Steps(steps) => {
+                self.push("{");
+                self.step_names(steps);
+                self.push("}");
+            }
+        }
+    }
+
+    fn step_names(&mut self, names: &[Name]) {
+        for (i, name) in names.iter().enumerate() {
+            self.push(if i > 0 { ", " } else { "" });
+            self.first_name(&name.text);
+        }
+    }
+
+    fn transition(&mut self, t: &Transition, chained: bool) {
+        if !chained {
+            if let Some(label) = &t.label {
+                self.first_name(&label.text);
+                self.push(": ");
+            }
+            self.step_list(&t.from);
+            self.push(" ");
+        }
+        self.push("-> ");
+        self.step_list(&t.to);
+        self.push(" when ");
+        self.expr(&t.receptivity);
+        if let Some(n) = t.priority {
+            self.push(&format!(" priority {n}"));
+        }
+        self.comment(t.comment.as_deref());
+        if let Some(block) = &t.on_clearing {
+            self.push(" on clearing ");
+            self.block(block);
+        }
+    }
+
+    fn step_list(&mut self, names: &[Name]) {
+        if let [one] = names {
+            return self.first_name(&one.text);
+        }
+        self.push("(");
+        self.step_names(names);
+        self.push(")");
+    }
+}
+
+/// Whether a transition goes on where the one before it ended.
+fn follows(t: &Transition, before: &ChartItem) -> bool {
+    let ChartItem::Transition(b) = before else { return false };
+    t.chained && t.label.is_none() && t.from == b.to
+}
+
+/// Whether a block stands in the action, with notes of its own.
+fn has_block(action: &Action) -> bool {
+    use g7_model::Work;
+    match &action.kind {
+        ActionKind::Qualified { target: Target::Work(work), .. }
+        | ActionKind::OnEvent { work, .. }
+        | ActionKind::EachScan { work, .. } => matches!(work, Work::Block(_)),
+        _ => false,
+    }
+}
+
+fn place(item: &ChartItem) -> Span {
+    match item {
+        ChartItem::Var(v) => v.at.0,
+        ChartItem::Step(s) => s.at.0,
+        ChartItem::Transition(t) => t.at.0,
+        ChartItem::Pre(_, at) | ChartItem::Post(_, at) => at.0,
+        ChartItem::Action(a) => a.at.0,
+        ChartItem::Section(s) => s.at.0,
+    }
+}
+
+/// Items that stand together without a blank line; 3 for those that never do.
+fn family(item: &ChartItem) -> u8 {
+    match item {
+        ChartItem::Var(_) => 0,
+        ChartItem::Step(_) => 1,
+        ChartItem::Transition(_) => 2,
+        ChartItem::Pre(..) | ChartItem::Post(..) | ChartItem::Action(_) | ChartItem::Section(_) => 3,
+    }
+}

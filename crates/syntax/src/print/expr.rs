@@ -1,0 +1,212 @@
+//! Expressions, with the fewest parentheses that keep their meaning.
+
+use super::Printer;
+use crate::number;
+use crate::parse::strength;
+use g7_model::{Arg, BinaryOp, Expr, ExprKind, Literal, Path, UnaryOp};
+
+/// Binding strength of what stands alone.
+const OPERAND: u8 = 9;
+
+impl<'a> Printer<'a> {
+    pub(super) fn expr(&mut self, e: &Expr) {
+        self.operand(e, 1);
+    }
+
+    /// An expression where one of at least this binding strength is wanted.
+    fn operand(&mut self, e: &Expr, least: u8) {
+        let own = match &e.kind {
+            ExprKind::Binary(op, ..) => strength(*op),
+            _ => OPERAND,
+        };
+        if own < least {
+            self.in_parens(e);
+        } else {
+            self.bare(e);
+        }
+    }
+
+    fn in_parens(&mut self, e: &Expr) {
+        self.push("(");
+        self.bare(e);
+        self.push(")");
+    }
+
+    fn bare(&mut self, e: &Expr) {
+        match &e.kind {
+            ExprKind::Literal(l) => self.literal(l, e),
+            ExprKind::Path(path) => self.path(path),
+            ExprKind::Direct(name) => {
+                self.push("%");
+                self.push(name);
+            }
+            ExprKind::Unary(op, inner) => self.unary(*op, inner),
+            ExprKind::Binary(op, left, right) => self.binary(*op, left, right),
+            ExprKind::Timer { t1, e, t2 } => self.timer(t1, e, t2.as_deref()),
+            ExprKind::Call(path, args) => self.call(path, args),
+            ExprKind::Bad => self.push("?"),
+        }
+    }
+
+    fn unary(&mut self, op: UnaryOp, inner: &Expr) {
+        let again = matches!(&inner.kind, ExprKind::Unary(UnaryOp::Not | UnaryOp::Rise | UnaryOp::Fall, _));
+        self.push(match op {
+            UnaryOp::Not => "not ",
+            UnaryOp::Neg => "-",
+            UnaryOp::Rise => "↑",
+            UnaryOp::Fall => "↓",
+        });
+        if is_simple(inner) || op == UnaryOp::Not && again {
+            self.bare(inner);
+        } else {
+            self.in_parens(inner);
+        }
+    }
+
+    fn binary(&mut self, op: BinaryOp, left: &Expr, right: &Expr) {
+        let own = strength(op);
+        if op == BinaryOp::Div && ends_with_time(left) {
+            self.in_parens(left);
+        } else {
+            self.operand(left, own);
+        }
+        self.push(match op {
+            BinaryOp::Or => " or ",
+            BinaryOp::Xor => " xor ",
+            BinaryOp::And => " and ",
+            BinaryOp::Dot => " · ",
+            BinaryOp::Eq => " = ",
+            BinaryOp::Ne => " <> ",
+            BinaryOp::Lt => " < ",
+            BinaryOp::Le => " <= ",
+            BinaryOp::Gt => " > ",
+            BinaryOp::Ge => " >= ",
+            BinaryOp::Add => " + ",
+            BinaryOp::Sub => " - ",
+            BinaryOp::Mul => " * ",
+            BinaryOp::Div => " / ",
+            BinaryOp::Mod => " mod ",
+            BinaryOp::Pow => " ** ",
+        });
+        self.operand(right, own + 1);
+    }
+
+    /// `3s/X2/1s` where the times are written ones, else `delay(…)`.
+    fn timer(&mut self, t1: &Expr, e: &Expr, t2: Option<&Expr>) {
+        if is_time(t1) && t2.is_none_or(is_time) {
+            self.bare(t1);
+            self.push("/");
+            let plain = matches!(&e.kind, ExprKind::Path(_) | ExprKind::Direct(_) | ExprKind::Call(..));
+            if plain {
+                self.bare(e);
+            } else {
+                self.in_parens(e);
+            }
+            if let Some(t2) = t2 {
+                self.push("/");
+                self.bare(t2);
+            }
+            return;
+        }
+        self.push("delay(");
+        for (i, part) in [Some(t1), Some(e), t2].into_iter().flatten().enumerate() {
+            self.push(if i > 0 { ", " } else { "" });
+            self.expr(part);
+        }
+        self.push(")");
+    }
+
+    pub(super) fn path(&mut self, path: &Path) {
+        for (i, name) in path.names.iter().enumerate() {
+            if i > 0 {
+                self.push(".");
+                self.name(&name.text);
+            } else if name.text.starts_with(|c: char| c.is_ascii_digit()) {
+                // A number alone would be read as one.
+                self.push(&number::quote(&name.text, '`'));
+            } else {
+                self.name(&name.text);
+            }
+        }
+    }
+
+    pub(super) fn call(&mut self, path: &Path, args: &[Arg]) {
+        self.path(path);
+        self.push("(");
+        for (i, arg) in args.iter().enumerate() {
+            self.push(if i > 0 { ", " } else { "" });
+            if let Some(name) = &arg.name {
+                self.name(&name.text);
+                self.push(if arg.output { " => " } else { " := " });
+            }
+            self.expr(&arg.value);
+        }
+        self.push(")");
+    }
+
+    fn literal(&mut self, literal: &Literal, e: &Expr) {
+        if let Some(text) = self.as_written(literal, e) {
+            self.out.push_str(text);
+            return;
+        }
+        let text = match literal {
+            Literal::Bool(true) => "TRUE".into(),
+            Literal::Bool(false) => "FALSE".into(),
+            Literal::Int(v, None) => v.to_string(),
+            Literal::Int(v, Some(ty)) => format!("{ty}#{v}"),
+            Literal::Real(text, None) => text.to_string(),
+            Literal::Real(text, Some(ty)) => format!("{ty}#{text}"),
+            Literal::Time(ns) => number::show_duration(*ns),
+            Literal::Str(text) => number::quote_st(text),
+        };
+        self.push(&text);
+    }
+
+    /// How the source spells a number, if that is this number.
+    fn as_written(&self, literal: &Literal, e: &Expr) -> Option<&'a str> {
+        let source = self.source.as_ref()?;
+        let at = e.at.0;
+        let text = source.text().get(at.start as usize..at.end as usize)?;
+        if !text.starts_with(|c: char| c.is_ascii_alphanumeric()) {
+            return None;
+        }
+        let same = match literal {
+            Literal::Int(v, None) => number::integer(text).as_ref() == Ok(v),
+            Literal::Int(_, Some(_)) | Literal::Real(_, Some(_)) => {
+                number::typed(text).as_ref() == Ok(literal)
+            }
+            Literal::Real(v, None) => number::real(text).as_ref() == Ok(v),
+            Literal::Time(v) => number::duration(text).as_ref() == Ok(v),
+            Literal::Bool(_) | Literal::Str(_) => false,
+        };
+        same.then_some(text)
+    }
+}
+
+/// Whether it binds so closely that a sign before it can only mean all of it.
+fn is_simple(e: &Expr) -> bool {
+    match &e.kind {
+        ExprKind::Literal(Literal::Int(v, None)) => *v >= 0,
+        ExprKind::Literal(Literal::Time(_)) => false,
+        ExprKind::Literal(_)
+        | ExprKind::Path(_)
+        | ExprKind::Direct(_)
+        | ExprKind::Call(..)
+        | ExprKind::Bad => true,
+        ExprKind::Unary(..) | ExprKind::Binary(..) | ExprKind::Timer { .. } => false,
+    }
+}
+
+fn is_time(e: &Expr) -> bool {
+    matches!(e.kind, ExprKind::Literal(Literal::Time(_)))
+}
+
+/// Whether a `/` behind it would be read as that of a time operator.
+fn ends_with_time(e: &Expr) -> bool {
+    match &e.kind {
+        ExprKind::Literal(Literal::Time(_)) | ExprKind::Timer { .. } => true,
+        ExprKind::Unary(_, inner) => ends_with_time(inner),
+        ExprKind::Binary(_, _, right) => ends_with_time(right),
+        _ => false,
+    }
+}

@@ -1,0 +1,243 @@
+//! The canonical form of a document: what `g7 fmt` writes.
+//!
+//! Two blanks a level, one statement, action or item a line, at most one blank
+//! line between them. Notes keep their place before, behind or after what they
+//! stand at. What must hold: what is printed reads as the same document, and
+//! printing that again changes nothing.
+
+mod chart;
+mod expr;
+mod item;
+mod st;
+mod world;
+
+use crate::lexer::{name_continue, name_start};
+use crate::{LineIndex, number, words};
+use g7_model::{Document, Expr, Note, Span};
+
+/// Lines that are put together from several parts are no longer than this.
+const WIDTH: usize = 100;
+
+/// The canonical text of a document without `Bad` expressions.
+///
+/// `source` is the text that it was read from. With it blank lines, notes at
+/// the end of a line and the spelling of numbers (`16#FF`) are kept; a document
+/// made by a program has none, and is spaced by what its items are.
+pub fn print(document: &Document, source: Option<&str>) -> String {
+    let mut printer = Printer::new(&document.notes, source);
+    printer.document(document);
+    printer.out
+}
+
+/// The canonical text of an expression.
+pub fn print_expr(expr: &Expr) -> String {
+    let mut printer = Printer::new(&[], None);
+    printer.expr(expr);
+    printer.out
+}
+
+/// What has been written, and what is still to come of the notes.
+struct Printer<'a> {
+    out: String,
+    indent: usize,
+    notes: &'a [Note],
+    source: Option<LineIndex<'a>>,
+    /// Where, in the source, the last thing of this block ended; none at its start.
+    last_end: Option<u32>,
+}
+
+impl<'a> Printer<'a> {
+    fn new(notes: &'a [Note], source: Option<&'a str>) -> Printer<'a> {
+        let source = source.map(LineIndex::new);
+        Printer { out: String::new(), indent: 0, notes, source, last_end: None }
+    }
+
+    fn push(&mut self, text: &str) {
+        self.out.push_str(text);
+    }
+
+    fn start_line(&mut self) {
+        for _ in 0..self.indent {
+            self.out.push_str("  ");
+        }
+    }
+
+    /// How many characters the line in hand has.
+    fn column(&self) -> usize {
+        let line = self.out.rsplit('\n').next().unwrap_or_default();
+        line.chars().count()
+    }
+
+    // Lines and notes
+
+    /// A thing on a line of its own that has no other things in it.
+    fn line(&mut self, at: Span, apart: bool, write: impl FnOnce(&mut Self)) {
+        self.group_from(at, at.end, apart, write);
+    }
+
+    /// A thing that begins a line and has other things in it, which
+    /// print themselves with their notes.
+    fn group(&mut self, at: Span, apart: bool, write: impl FnOnce(&mut Self)) {
+        self.group_from(at, at.start, apart, write);
+    }
+
+    fn group_from(&mut self, at: Span, notes_to: u32, apart: bool, write: impl FnOnce(&mut Self)) {
+        let waiting = self.notes.len();
+        self.notes_before(notes_to, apart);
+        // The blank line stands before the notes.
+        self.gap(at.start, apart && self.notes.len() == waiting);
+        self.start_line();
+        write(self);
+        self.end_line(at);
+    }
+
+    /// Ends a line, behind the notes that stood at the end of the line in the source.
+    fn end_line(&mut self, at: Span) {
+        self.last_end = Some(at.end);
+        self.notes_behind(at.end, None);
+        self.push("\n");
+    }
+
+    /// The blank line before a thing, where the source has one or its kind asks for one.
+    fn gap(&mut self, start: u32, apart: bool) {
+        let Some(end) = self.last_end else { return };
+        if apart || self.source_blank(end, start) {
+            self.push("\n");
+        }
+    }
+
+    fn source_blank(&self, end: u32, start: u32) -> bool {
+        let Some(source) = &self.source else { return false };
+        let between = source.text().get(end as usize..start as usize).unwrap_or_default();
+        // The first part is the rest of a line, the last one the start of one.
+        let whole = between.matches('\n').count().saturating_sub(1);
+        between.split('\n').skip(1).take(whole).any(|line| line.trim().is_empty())
+    }
+
+    /// The notes that begin before a byte, each on a line of its own.
+    fn notes_before(&mut self, byte: u32, apart: bool) {
+        let mut apart = apart;
+        while let Some((note, rest)) = self.notes.split_first() {
+            if note.at.start >= byte && note.at.end > 0 {
+                return;
+            }
+            self.notes = rest;
+            self.gap(note.at.start, apart);
+            apart = false;
+            self.start_line();
+            self.push(&note.text);
+            self.push("\n");
+            self.last_end = Some(note.at.end);
+        }
+    }
+
+    /// The notes on the same line of the source behind a byte, with nothing in between.
+    fn notes_behind(&mut self, byte: u32, limit: Option<u32>) {
+        let Some(source) = self.source.take() else { return };
+        let mut end = byte;
+        while let Some((note, rest)) = self.notes.split_first() {
+            let between = source.text().get(end as usize..note.at.start as usize);
+            let close = match limit {
+                Some(limit) => note.at.start < limit && source.line(note.at.start) == source.line(byte),
+                None => between.is_some_and(|b| b.chars().all(|c| matches!(c, ' ' | '\t' | ';' | ','))),
+            };
+            if !close {
+                break;
+            }
+            self.notes = rest;
+            self.push(" ");
+            self.push(&note.text);
+            end = note.at.end;
+            self.last_end = Some(end);
+            if note.text.starts_with("//") || note.text.contains('\n') {
+                break;
+            }
+        }
+        self.source = Some(source);
+    }
+
+    /// Whether a note begins in these bytes.
+    fn notes_in(&self, at: Span) -> bool {
+        self.notes.first().is_some_and(|n| n.at.start < at.end && n.at.start >= at.start)
+    }
+
+    /// What stands in braces, a thing a line; `first` is where the first one begins.
+    fn braces(&mut self, at: Span, first: Option<u32>, write: impl FnOnce(&mut Self)) {
+        self.push("{");
+        if first.is_none() && !self.notes_in(at) {
+            self.push("}");
+            return;
+        }
+        self.notes_behind(at.start, Some(first.unwrap_or(at.end)));
+        self.push("\n");
+        self.inside(at, write);
+        self.start_line();
+        self.push("}");
+    }
+
+    /// Things of a block, one level deeper, and the notes after the last of them.
+    fn inside(&mut self, at: Span, write: impl FnOnce(&mut Self)) {
+        self.indent += 1;
+        self.last_end = None;
+        write(self);
+        self.notes_before(at.end, false);
+        self.indent -= 1;
+    }
+
+    /// Tries to write something within the line; takes it back and says no if it does not fit.
+    fn try_inline(&mut self, write: impl FnOnce(&mut Self)) -> bool {
+        let (length, last_end) = (self.out.len(), self.last_end);
+        write(self);
+        let fits = !self.out.get(length..).unwrap_or_default().contains('\n') && self.column() <= WIDTH;
+        if !fits {
+            self.out.truncate(length);
+            self.last_end = last_end;
+        }
+        fits
+    }
+
+    // Words
+
+    /// A name where no word of the language can stand.
+    fn name(&mut self, name: &str) {
+        if is_plain(name) {
+            self.push(name);
+        } else {
+            self.push(&number::quote(name, '`'));
+        }
+    }
+
+    /// A name where words of the language can stand.
+    fn first_name(&mut self, name: &str) {
+        if is_plain(name) && !words::is_contextual(name) {
+            self.push(name);
+        } else {
+            self.push(&number::quote(name, '`'));
+        }
+    }
+
+    fn names(&mut self, names: &[g7_model::Name]) {
+        for (i, name) in names.iter().enumerate() {
+            self.push(if i > 0 { ", " } else { "" });
+            self.name(&name.text);
+        }
+    }
+
+    /// ` "…"`, if there is a comment.
+    fn comment(&mut self, comment: Option<&str>) {
+        if let Some(comment) = comment {
+            self.push(" ");
+            self.push(&number::quote(comment, '"'));
+        }
+    }
+}
+
+/// Whether a name needs no back-ticks.
+fn is_plain(name: &str) -> bool {
+    let mut chars = name.chars();
+    let Some(first) = chars.next() else { return false };
+    if first.is_ascii_digit() {
+        return chars.all(|c| c.is_ascii_digit());
+    }
+    name_start(first) && chars.all(name_continue) && !words::is_reserved(name)
+}

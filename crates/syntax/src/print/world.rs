@@ -1,0 +1,324 @@
+//! Plants, tests, properties and the layout.
+
+use super::{Printer, item::starts};
+use crate::number;
+use g7_model::{
+    Expr, Layout, Path, PlaceAt, Placed, Plant, PlantItem, Property, PropertyKind, Scenario, Span, TestStmt,
+    TestStmtKind,
+};
+
+impl Printer<'_> {
+    // Plants
+
+    pub(super) fn plant(&mut self, plant: &Plant) {
+        self.push("plant ");
+        self.name(&plant.name.text);
+        self.comment(plant.comment.as_deref());
+        self.push(" ");
+        let first = starts(plant.items.first().map(plant_place));
+        self.braces(plant.at.0, first, |p| {
+            for item in &plant.items {
+                p.plant_item(item);
+            }
+        });
+    }
+
+    fn plant_item(&mut self, item: &PlantItem) {
+        let at = plant_place(item);
+        match item {
+            PlantItem::On(event, block, _) => self.group(at, false, |p| {
+                p.push("on ");
+                p.expr(event);
+                p.push(" ");
+                p.block(block);
+            }),
+            PlantItem::Each(block, _) => self.group(at, false, |p| {
+                p.push("each ");
+                p.block(block);
+            }),
+            PlantItem::Arrivals(a) => self.group(at, false, |p| {
+                p.push("arrivals ");
+                p.name(&a.name.text);
+                p.push(" every ");
+                p.expr(&a.least);
+                if let Some(most) = &a.most {
+                    p.push(" .. ");
+                    p.expr(most);
+                }
+                p.when(a.when.as_ref());
+                p.push(" ");
+                p.block(&a.body);
+            }),
+            PlantItem::View(v) => self.group(at, false, |p| p.view(v)),
+            _ => self.line(at, false, |p| p.plant_line(item)),
+        }
+    }
+
+    fn plant_line(&mut self, item: &PlantItem) {
+        match item {
+            PlantItem::Const { names, ty, value, comment, .. } => {
+                self.push("const ");
+                self.names(names);
+                self.push(&format!(" : {ty}"));
+                self.initial(Some(value));
+                self.comment(comment.as_deref());
+            }
+            PlantItem::State(s) => {
+                self.push("state ");
+                self.names(&s.names);
+                self.push(&format!(" : {}", s.ty));
+                self.initial(s.init.as_ref());
+                if let Some((least, most)) = &s.limits {
+                    self.push(" in ");
+                    self.expr(least);
+                    self.push(" .. ");
+                    self.expr(most);
+                }
+                self.comment(s.comment.as_deref());
+            }
+            PlantItem::Rate(r) => {
+                self.push("rate ");
+                self.name(&r.state.text);
+                self.initial(Some(&r.value));
+                self.when(r.when.as_ref());
+            }
+            PlantItem::Drive(d) => {
+                self.push("drive ");
+                self.name(&d.input.text);
+                self.initial(Some(&d.value));
+            }
+            PlantItem::Parts(parts) => self.parts(parts),
+            PlantItem::On(..) | PlantItem::Each(..) | PlantItem::Arrivals(_) | PlantItem::View(_) => {}
+        }
+    }
+
+    fn when(&mut self, condition: Option<&Expr>) {
+        if let Some(condition) = condition {
+            self.push(" when ");
+            self.expr(condition);
+        }
+    }
+
+    fn parts(&mut self, parts: &g7_model::Parts) {
+        self.push("parts ");
+        self.name(&parts.name.text);
+        self.params(&parts.attributes);
+        self.push(&format!(" max {}", parts.max));
+        if let Some(length) = &parts.length {
+            self.push(" length ");
+            self.expr(length);
+        }
+        for (i, part) in parts.init.iter().enumerate() {
+            self.push(if i > 0 { ", (" } else { " := (" });
+            self.list(part);
+            self.push(")");
+        }
+    }
+
+    fn list(&mut self, list: &[Expr]) {
+        for (i, e) in list.iter().enumerate() {
+            self.push(if i > 0 { ", " } else { "" });
+            self.expr(e);
+        }
+    }
+
+    fn view(&mut self, view: &g7_model::View) {
+        self.push("view ");
+        self.push(&number::quote_st(&view.file));
+        let Some(first) = view.bindings.first() else { return };
+        self.push(" ");
+        self.braces(view.at.0, Some(first.element.at.0.start), |p| {
+            for b in &view.bindings {
+                let at = b.element.at.0.to(b.value.at.0);
+                p.line(at, false, |p| {
+                    let names = vec![b.element.clone(), b.attribute.clone()];
+                    p.path(&Path { names });
+                    p.initial(Some(&b.value));
+                });
+            }
+        });
+    }
+
+    // Tests and properties
+
+    pub(super) fn test(&mut self, test: &Scenario) {
+        self.push("test");
+        self.comment(Some(&test.title));
+        if let Some(plant) = &test.plant {
+            self.push(" with ");
+            self.name(&plant.text);
+        }
+        if let Some(seed) = test.seed {
+            self.push(&format!(" seed {seed}"));
+        }
+        self.push(" ");
+        self.test_block(test.at.0, &test.body);
+    }
+
+    fn test_block(&mut self, at: Span, body: &[TestStmt]) {
+        let first = body.first().map(|s| s.at.0.start);
+        self.braces(at, first, |p| {
+            for s in body {
+                if matches!(s.kind, TestStmtKind::Always(..) | TestStmtKind::Repeat(..)) {
+                    p.group(s.at.0, false, |p| p.test_statement(s));
+                } else {
+                    p.line(s.at.0, false, |p| p.test_statement(s));
+                }
+            }
+        });
+    }
+
+    fn test_statement(&mut self, s: &TestStmt) {
+        match &s.kind {
+            TestStmtKind::Set(list) => {
+                for (i, (path, value)) in list.iter().enumerate() {
+                    self.push(if i > 0 { ", " } else { "set " });
+                    self.path(path);
+                    self.initial(Some(value));
+                }
+            }
+            TestStmtKind::Pulse(path, time) => {
+                self.push("pulse ");
+                self.path(path);
+                self.time_clause(" for ", *time);
+            }
+            TestStmtKind::Wait(ns) => self.time_clause("wait ", Some(*ns)),
+            TestStmtKind::WaitUntil(e, within) => {
+                self.push("wait until ");
+                self.expr(e);
+                self.time_clause(" within ", *within);
+            }
+            TestStmtKind::Scan(1) => self.push("scan"),
+            TestStmtKind::Scan(n) => self.push(&format!("scan {n}")),
+            TestStmtKind::Expect(list) => self.expect(list),
+            TestStmtKind::ExpectFault(name) => {
+                self.push("expect fault");
+                if let Some(name) = name {
+                    self.push(" ");
+                    if crate::words::TEST.contains(&&*name.text)
+                        || !name.text.starts_with(crate::lexer::name_start)
+                    {
+                        self.push(&number::quote(&name.text, '`'));
+                    } else {
+                        self.name(&name.text);
+                    }
+                }
+            }
+            TestStmtKind::Always(list, body) => {
+                self.push("always ");
+                self.list(list);
+                self.push(" ");
+                self.test_block(s.at.0, body);
+            }
+            TestStmtKind::Force(path, value) => {
+                self.push("force ");
+                self.path(path);
+                self.initial(Some(value));
+            }
+            TestStmtKind::Release(path) => {
+                self.push("release ");
+                self.path(path);
+            }
+            TestStmtKind::Restart { cold } => self.push(if *cold { "restart cold" } else { "restart" }),
+            TestStmtKind::Repeat(n, body) => {
+                self.push(&format!("repeat {n} "));
+                self.test_block(s.at.0, body);
+            }
+            TestStmtKind::Comment(text) => self.push(&number::quote(text, '"')),
+        }
+    }
+
+    /// `expect …`; a variable called `fault` must not be read as the word.
+    fn expect(&mut self, list: &[Expr]) {
+        self.push("expect ");
+        let length = self.out.len();
+        self.list(list);
+        let text = self.out.get(length..).unwrap_or_default();
+        let word: String = text.chars().take_while(|c| crate::lexer::name_continue(*c)).collect();
+        if word == "fault" {
+            self.out.truncate(length);
+            for (i, e) in list.iter().enumerate() {
+                self.push(if i > 0 { ", " } else { "(" });
+                self.expr(e);
+                self.push(if i == 0 { ")" } else { "" });
+            }
+        }
+    }
+
+    fn time_clause(&mut self, word: &str, ns: Option<i64>) {
+        if let Some(ns) = ns {
+            self.push(word);
+            self.push(&number::show_duration(ns));
+        }
+    }
+
+    pub(super) fn property(&mut self, property: &Property) {
+        let (word, e) = match &property.kind {
+            PropertyKind::Always(e) => ("prove always ", e),
+            PropertyKind::Never(e) => ("prove never ", e),
+            PropertyKind::Reachable(e) => ("prove reachable ", e),
+            PropertyKind::After(e, ..) => ("prove after ", e),
+        };
+        self.push(word);
+        self.expr(e);
+        if let PropertyKind::After(_, ns, then) = &property.kind {
+            self.time_clause(" within ", Some(*ns));
+            self.push(" expect ");
+            self.expr(then);
+        }
+        self.comment(property.comment.as_deref());
+    }
+
+    // Layout
+
+    pub(super) fn layout(&mut self, layout: &Layout) {
+        self.push("layout ");
+        self.name(&layout.chart.text);
+        self.push(" ");
+        let first = layout.places.first().map(|p| p.at.0.start);
+        self.braces(layout.at.0, first, |p| {
+            for place in &layout.places {
+                p.line(place.at.0, false, |p| p.place_at(place));
+            }
+        });
+    }
+
+    fn place_at(&mut self, place: &PlaceAt) {
+        match &place.what {
+            Placed::Step(name) => {
+                self.push("step ");
+                self.name(&name.text);
+            }
+            Placed::Transition(name) => {
+                self.push("transition ");
+                self.name(&name.text);
+            }
+            Placed::TransitionNumber(n) => self.push(&format!("transition #{n}")),
+            Placed::Comment(text) => {
+                self.push("comment ");
+                self.push(&number::quote(text, '"'));
+            }
+        }
+        self.push(&format!(" at ({}, {})", hundredths(place.x), hundredths(place.y)));
+    }
+}
+
+/// `150` as `1.5`.
+fn hundredths(n: i32) -> String {
+    let sign = if n < 0 { "-" } else { "" };
+    let n = n.unsigned_abs();
+    let text = format!("{sign}{}.{:02}", n / 100, n % 100);
+    text.trim_end_matches('0').trim_end_matches('.').into()
+}
+
+fn plant_place(item: &PlantItem) -> Span {
+    match item {
+        PlantItem::Const { at, .. } | PlantItem::On(_, _, at) | PlantItem::Each(_, at) => at.0,
+        PlantItem::State(s) => s.at.0,
+        PlantItem::Rate(r) => r.at.0,
+        PlantItem::Drive(d) => d.at.0,
+        PlantItem::Parts(p) => p.at.0,
+        PlantItem::Arrivals(a) => a.at.0,
+        PlantItem::View(v) => v.at.0,
+    }
+}
