@@ -1,5 +1,6 @@
 //! Each code of imported files has a page, and the examples of the page are as
 //! wrong as they say.
+#![allow(clippy::disallowed_methods, reason = "the pages are read")]
 
 use std::path::PathBuf;
 
