@@ -148,3 +148,25 @@ fn names_are_looked_up_from_the_inside_out() {
     assert_eq!(chart(&document, "W2").every, Some(40_000_000));
     assert_eq!(problems(&bytes("workspaces.xml"), &found), Vec::<String>::new());
 }
+
+#[test]
+fn what_is_read_can_be_written_as_text_and_read_again() {
+    for name in ["bead-sorter.xml", "lines.xml", "texts.xml", "workspaces.xml"] {
+        let (document, _) = import(name);
+        let text = g7_syntax::print(&document, None);
+        let (again, found) = g7_syntax::parse(&text, g7_model::FileId(0));
+        assert!(found.is_empty(), "{name}: {found:?}\n{text}");
+        assert_eq!(again, document, "{name}:\n{text}");
+    }
+}
+
+#[test]
+fn notes_on_what_is_left_out_stand_at_the_head_of_the_text() {
+    let file = "<GCDocument name='J1'><GCInitialStep id='a' name='Idle'/><GCRectangle name='*/ frame'/></GCDocument>";
+    let (document, _) = g7_syntax::jgrafchart::import(file.as_bytes(), g7_model::FileId(0));
+    let text = g7_syntax::print(&document, None);
+    assert!(text.starts_with("// not carried over: <GCRectangle name='*/ frame'/>\n"), "{text}");
+    let (again, found) = g7_syntax::parse(&text, g7_model::FileId(0));
+    assert!(found.is_empty(), "{found:?}");
+    assert_eq!(again, document, "{text}");
+}
