@@ -1,1 +1,81 @@
-fn main() {}
+//! The command line: files, arguments, the terminal; ids back to names.
+//!
+//! # Where this sits
+//!
+//! ```text
+//! arguments -> files -> syntax -> compile -> host::Runner -> view, traces, test reports
+//! ```
+//!
+//! # Invariants
+//!
+//! - Data goes to the standard output, talk to the standard error.
+//! - Exit code 0 fine, 1 problems or failed tests, 2 bad usage or environment.
+//! - Files are written whole or not at all; a broken pipe ends in silence.
+#![forbid(unsafe_code)]
+
+mod bench;
+mod check;
+mod cli;
+mod explain;
+mod failure;
+mod files;
+mod fmt;
+mod import;
+mod new;
+mod progress;
+mod report;
+mod run;
+mod shell;
+mod sources;
+mod style;
+mod testing;
+mod values;
+mod view;
+
+use std::process::ExitCode;
+
+use clap::Parser;
+
+use crate::cli::{Cli, Color, Command};
+use crate::failure::{Failure, Verdict};
+
+/// Says something on the standard error; where nobody listens, nobody minds.
+#[macro_export]
+macro_rules! talk {
+    ($($arg:tt)*) => {{
+        use std::io::Write as _;
+        writeln!(anstream::stderr(), $($arg)*).ok();
+    }};
+}
+
+fn main() -> ExitCode {
+    let cli = Cli::parse();
+    match cli.color {
+        Color::Auto => {}
+        Color::Always => anstream::ColorChoice::Always.write_global(),
+        Color::Never => anstream::ColorChoice::Never.write_global(),
+    }
+    match run(&cli.command) {
+        Ok(Verdict::Fine) => ExitCode::SUCCESS,
+        Ok(Verdict::Found) => ExitCode::from(1),
+        Err(failure) if failure.is_quiet() => ExitCode::SUCCESS,
+        Err(failure) => {
+            talk!("{}error:{:#} {failure}", style::BAD, style::BAD);
+            ExitCode::from(2)
+        }
+    }
+}
+
+fn run(command: &Command) -> Result<Verdict, Failure> {
+    match command {
+        Command::New(args) => new::new(args),
+        Command::Check(args) => check::check(args),
+        Command::Fmt(args) => fmt::fmt(args),
+        Command::Run(args) => run::run(args),
+        Command::Test(args) => testing::test(args),
+        Command::Import(args) => import::import(args),
+        Command::Explain(args) => explain::explain(args),
+        Command::Completions(args) => shell::completions(args),
+        Command::Man(args) => shell::man(args),
+    }
+}

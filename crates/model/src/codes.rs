@@ -42,6 +42,16 @@ codes! {
     UNKNOWN_WORD = "G0009" Error "a word the language does not have" "the .g7 format";
     TOO_MANY_PROBLEMS = "G0010" Error "too many problems to list" "the .g7 format";
 
+    // Structure
+    NEVER_STARTS = "G0101" Warning "a chart that never starts" "IEC 60848:2013, 4.5.2, rule 1";
+    NO_ENDS = "G0102" Error "an expansion or task without its ends" "IEC 60848:2013, 4.11";
+    UNREACHABLE = "G0103" Warning "a step that no way leads to" "IEC 60848:2013, 4.4";
+    NO_STEPS = "G0104" Error "a transition without any step" "IEC 60848:2013, 4.4";
+    STEP_TWICE = "G0105" Warning "a step twice on one side of a transition" "IEC 60848:2013, 4.4";
+    SAME_TRANSITION = "G0106" Warning "a transition that stands there twice" "IEC 60848:2013, 4.4";
+    TASK_END_ACTS = "G0107" Warning "an end of a task with an action" "Actions, counters, macro-steps and tasks";
+    NEVER_CLEARS = "G0108" Warning "a receptivity that is never true" "IEC 60848:2013, 4.7";
+
     // Names and types
     DEFINED_TWICE = "G0201" Error "one name is defined twice" "IEC 61131-3:2003, 2.7.1";
     UNKNOWN_NAME = "G0202" Error "a name that nothing has" "IEC 61131-3:2003, 2.4";
@@ -72,6 +82,28 @@ codes! {
     BODY_LANGUAGE = "G0227" Error "a body in a language that does not run yet" "the .g7 format";
     BAD_DECLARATION = "G0228" Error "a declaration that does not fit its type" "IEC 61131-3:2003, 2.4.3";
     ADDRESS_TWICE = "G0229" Error "one address for two variables" "IEC 61131-3:2003, 2.4.1.1";
+
+    // Evolution and actions
+    CONFLICT = "G0301" Warning "branches that can be true together" "GRAFCET course, conflicts";
+    EVENT_WITHOUT_EDGE = "G0302" Error "a stored action on an event without an edge" "IEC 60848:2013, 4.8.3";
+    EDGE_IN_CONDITION = "G0303" Error "a continuous action with an edge in its condition" "IEC 60848:2013, 4.8.2";
+    FORCING_CIRCLE = "G0304" Error "charts that force each other in a circle" "IEC 60848:2013, 4.9";
+    FORCED_AND_ENCLOSED = "G0305" Warning "a chart that is forced and enclosed" "IEC 60848:2013, 4.9 and 4.10";
+    TWO_CLASSES = "G0306" Error "an output both continuous and stored" "IEC 60848:2013, 4.8";
+    TWO_VALUES = "G0307" Error "two values for one variable at one moment" "IEC 60848:2013, 4.8.3";
+    TWO_TIMES = "G0308" Error "two timed qualifiers on one action" "IEC 61131-3:2003, 2.6.4.4";
+    PULSE_TWICE = "G0309" Warning "a pulse body that runs twice" "IEC 61131-3:2003, 2.6.4.5";
+    RESTLESS_LOOP = "G0310" Warning "a loop that never rests" "IEC 60848:2013, 4.6";
+    MACRO_ACTS = "G0311" Warning "a macro-step with actions of its own" "IEC 60848:2013, 4.11";
+    PRIORITY_IGNORED = "G0312" Warning "a priority without effect" "IEC 61131-3:2003, 2.6.5";
+    ALSO_WRITTEN = "G0313" Warning "a variable that an action drives and a statement writes" "IEC 61131-3:2003, 2.6.4.5";
+
+    // Limits of a target
+    TARGET_STEPS = "G0401" Error "more steps than the target holds" "GRAFCET course, TSX 37 and 57, characteristics";
+    TARGET_MACROS = "G0402" Error "more macro-steps than the target holds" "GRAFCET course, TSX 37 and 57, characteristics";
+    TARGET_TRANSITIONS = "G0403" Error "more transitions than the target holds" "GRAFCET course, TSX 37 and 57, transitions";
+    TARGET_BRANCHES = "G0404" Error "more branches than the target draws" "GRAFCET course, TSX 37 and 57, transitions";
+    TARGET_WORDS = "G0405" Warning "something the target has no word for" "GRAFCET course, TSX 37 and 57";
 
     // Tests
     TEST_PLANT = "G0550" Error "a test with a plant that is not there" "the .g7 format";

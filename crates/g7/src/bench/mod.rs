@@ -1,0 +1,354 @@
+//! The test bench: charts, plant and names, ready to be run by hand or by a test.
+
+mod names;
+
+use std::ops::Range;
+
+use g7_engine::{Addr, GroupId, State, StepId};
+use g7_host::{Coupling, Force, Halt, Kind, Runner, Signal, Value, format_time, read_text, write_text};
+use g7_model::{Span, Type};
+
+pub(crate) use names::{Answer, Ask, Options, build};
+
+/// What a variable is to the bench.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Role {
+    /// An input of the charts: its first word counted from the first input.
+    Input(u32),
+    /// An output.
+    Output,
+    /// A variable of the charts.
+    Variable,
+    /// A state of the plant.
+    Plant,
+}
+
+/// Something with a value and a name.
+#[derive(Clone, Debug)]
+pub(crate) struct Item {
+    pub(crate) name: String,
+    pub(crate) kind: Kind,
+    pub(crate) role: Role,
+    /// First word, in the charts' or the plant's variable area.
+    pub(crate) addr: u32,
+    pub(crate) words: u32,
+    /// Kept over a restart; its type as written.
+    pub(crate) retain: Option<String>,
+    pub(crate) comment: Option<String>,
+    pub(crate) ty: Type,
+}
+
+/// A step or macro-step with its name.
+#[derive(Clone, Debug)]
+pub(crate) struct StepItem {
+    pub(crate) name: String,
+    pub(crate) comment: Option<String>,
+    pub(crate) id: Activity,
+}
+
+impl StepItem {
+    /// The variable of its activity, as the language has it: `X12`, `G.X12`,
+    /// `XM3`, `Fill.X`.
+    pub(crate) fn activity(&self) -> String {
+        let (before, last) = match self.name.rsplit_once('.') {
+            Some((before, last)) => (format!("{before}."), last),
+            None => (String::new(), self.name.as_str()),
+        };
+        let digits = match self.id {
+            Activity::Step(_) => last,
+            Activity::Macro(_) => last.strip_prefix('M').unwrap_or(last),
+        };
+        if digits.starts_with(|c: char| c.is_ascii_digit()) {
+            format!("{before}X{last}")
+        } else {
+            format!("{before}{last}.X")
+        }
+    }
+}
+
+/// Whose activity.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Activity {
+    Step(StepId),
+    Macro(GroupId),
+}
+
+/// A plant made ready.
+#[derive(Debug)]
+pub(crate) struct PlantSide {
+    pub(crate) name: String,
+    pub(crate) compiled: g7_compile::Compiled,
+    pub(crate) coupling: Coupling,
+    /// Of the expressions asked of it.
+    pub(crate) queries: Vec<g7_engine::Code>,
+}
+
+/// Charts with names, and a plant if there is one.
+pub(crate) struct Bench {
+    pub(crate) compiled: g7_compile::Compiled,
+    pub(crate) items: Vec<Item>,
+    pub(crate) steps: Vec<StepItem>,
+    pub(crate) plant: Option<PlantSide>,
+    /// Of the expressions asked for.
+    pub(crate) answers: Vec<Answer>,
+    pub(crate) period: i64,
+}
+
+impl Bench {
+    /// The charts before their first scan, coupled to the plant.
+    pub(crate) fn runner(&self, seed: u64) -> Runner<'_> {
+        let symbols = &self.compiled.symbols;
+        let flags = symbols.s0.zip(symbols.s1);
+        let kept = self.retained().map(|i| i.addr..i.addr + i.words).collect::<Vec<Range<u32>>>();
+        let mut runner =
+            Runner::new(&self.compiled.program, self.period).with_retained(kept).with_flags(flags);
+        if let Some(plant) = &self.plant {
+            runner = runner.with_plant(&plant.compiled.program, plant.coupling.clone());
+            if let Some(addr) = plant.compiled.symbols.seed {
+                runner.set_plant_word(addr, seed);
+            }
+        }
+        runner
+    }
+
+    /// The variables kept over a restart.
+    pub(crate) fn retained(&self) -> impl Iterator<Item = &Item> {
+        self.items.iter().filter(|i| i.retain.is_some())
+    }
+
+    /// The variable of this name.
+    pub(crate) fn item(&self, name: &str) -> Option<&Item> {
+        let plain = |i: &&Item| i.name == name;
+        let cased = |i: &&Item| i.name.eq_ignore_ascii_case(name);
+        self.items.iter().find(plain).or_else(|| self.items.iter().find(cased))
+    }
+
+    /// The names nearest to a name that is not there, for a message.
+    pub(crate) fn suggestions(&self, name: &str) -> String {
+        let mut near: Vec<(usize, &str)> = self
+            .items
+            .iter()
+            .map(|i| (distance(name, &i.name), i.name.as_str()))
+            .filter(|(d, n)| *d <= (name.chars().count() + 1) / 3 || n.rsplit('.').next() == Some(name))
+            .collect();
+        near.sort_unstable();
+        near.truncate(3);
+        let near: Vec<String> = near.into_iter().map(|(_, n)| format!("`{n}`")).collect();
+        if near.is_empty() { String::new() } else { format!("; is it {}?", near.join(" or ")) }
+    }
+
+    /// The value of an item as it stands.
+    pub(crate) fn value(&self, runner: &Runner<'_>, item: &Item) -> Value {
+        match item.role {
+            // Before the first scan the variable area has not read them yet.
+            Role::Input(index) if item.words == 1 && !runner.state().is_started() => {
+                Value::Word(runner.input(index))
+            }
+            Role::Input(_) | Role::Output | Role::Variable => read(runner.shown(), item),
+            Role::Plant => runner.plant().map_or(Value::Word(0), |(_, state)| read(state, item)),
+        }
+    }
+
+    /// Sets an item once: an input, a variable or a state of the plant.
+    pub(crate) fn set(&self, runner: &mut Runner<'_>, item: &Item, value: &Value) {
+        for (at, word) in words(item, value) {
+            match item.role {
+                Role::Input(first) => runner.set_input(first + at, word),
+                Role::Output | Role::Variable => runner.set_word(Addr(item.addr + at), word),
+                Role::Plant => runner.set_plant_word(Addr(item.addr + at), word),
+            }
+        }
+    }
+
+    /// Holds an item at a value; a state of the plant is only set.
+    pub(crate) fn force(&self, runner: &mut Runner<'_>, item: &Item, value: &Value) {
+        for (at, word) in words(item, value) {
+            match force(item, at) {
+                Some(what) => runner.force(what, word),
+                None => runner.set_plant_word(Addr(item.addr + at), word),
+            }
+        }
+    }
+
+    /// Lets go of an item.
+    pub(crate) fn release(&self, runner: &mut Runner<'_>, item: &Item) {
+        for at in 0..item.words {
+            if let Some(what) = force(item, at) {
+                runner.release(what);
+            }
+        }
+    }
+
+    /// Whether an item is held.
+    pub(crate) fn is_forced(&self, runner: &Runner<'_>, item: &Item) -> bool {
+        force(item, 0).is_some_and(|what| runner.is_forced(what))
+    }
+
+    /// Whether a step or macro-step is active.
+    pub(crate) fn is_active(&self, state: &State, step: &StepItem) -> bool {
+        match step.id {
+            Activity::Step(id) => state.is_active(id),
+            Activity::Macro(group) => state.group_active(&self.compiled.program, group),
+        }
+    }
+
+    /// Time since a step was activated: nanoseconds, or scans where those are counted.
+    pub(crate) fn step_time(&self, state: &State, step: &StepItem) -> Option<String> {
+        let id = match step.id {
+            Activity::Step(id) => id,
+            Activity::Macro(_) => return None,
+        };
+        let time = state.step_time(&self.compiled.program, id);
+        Some(if self.compiled.unit.rules.scan_clock {
+            format!("{time} scans")
+        } else {
+            format_time(time / 10_000_000 * 10_000_000)
+        })
+    }
+
+    /// The active steps by name, macro-steps left out.
+    pub(crate) fn situation<'a>(&'a self, state: &'a State) -> Vec<&'a str> {
+        self.compiled.symbols.situation(state).collect()
+    }
+
+    /// What can be recorded: all items and all steps.
+    pub(crate) fn signals(&self) -> Vec<Signal> {
+        let item = |i: &Item| Signal { group: group(i.role), name: i.name.clone(), kind: i.kind };
+        let step = |s: &StepItem| Signal { group: "steps", name: s.activity(), kind: Kind::Bool };
+        self.items.iter().map(item).chain(self.steps.iter().map(step)).collect()
+    }
+
+    /// The values of [`Bench::signals`], in their order.
+    pub(crate) fn sample<'a>(&'a self, runner: &'a Runner<'_>) -> impl Iterator<Item = Value> + 'a {
+        let state = runner.shown();
+        let items = self.items.iter().map(move |i| self.value(runner, i));
+        items.chain(self.steps.iter().map(move |s| Value::Word(u64::from(self.is_active(state, s)))))
+    }
+
+    /// The same of a state of the charts alone; the plant's are 0.
+    pub(crate) fn sample_state<'a>(&'a self, state: &'a State) -> impl Iterator<Item = Value> + 'a {
+        let items = self.items.iter().map(move |i| match i.role {
+            Role::Input(_) | Role::Output | Role::Variable => read(state, i),
+            Role::Plant => Value::Word(0),
+        });
+        items.chain(self.steps.iter().map(move |s| Value::Word(u64::from(self.is_active(state, s)))))
+    }
+
+    /// Whether the plant drives it.
+    pub(crate) fn is_driven(&self, runner: &Runner<'_>, item: &Item) -> bool {
+        matches!(item.role, Role::Input(index) if runner.is_driven(index))
+    }
+
+    /// What stopped the run, in a sentence.
+    pub(crate) fn halt(&self, runner: &Runner<'_>, halt: Halt) -> String {
+        let (who, fault) = match halt {
+            Halt::Charts(fault) => ("", fault),
+            Halt::Plant(fault) => ("the plant: ", fault),
+        };
+        let mut text = format!("{who}{}", fault.kind);
+        if let (Halt::Charts(_), g7_engine::FaultKind::Forcing { chart }) = (halt, fault.kind)
+            && let Some(chart) = self.compiled.symbols.charts.get(chart as usize)
+        {
+            text.push_str(&format!(" (chart {})", chart.name));
+        }
+        if let (Halt::Charts(_), g7_engine::FaultKind::Unstable { cycle }) = (halt, fault.kind) {
+            let cycle: Vec<String> = self.cycle(runner, cycle).iter().map(|s| format!("{{{s}}}")).collect();
+            text.push_str(&format!(": {}", cycle.join(" -> ")));
+        }
+        text
+    }
+
+    /// The place in the text at which a run was stopped, where there is one.
+    pub(crate) fn halt_place(&self, halt: Halt) -> Option<Span> {
+        let (symbols, fault) = match halt {
+            Halt::Charts(fault) => (&self.compiled.symbols, fault),
+            Halt::Plant(fault) => (&self.plant.as_ref()?.compiled.symbols, fault),
+        };
+        fault.at.map(|at| symbols.place(at))
+    }
+
+    /// The situations of an unstable cycle, from where the state stands in it.
+    fn cycle(&self, runner: &Runner<'_>, length: u32) -> Vec<String> {
+        let mut state = runner.state().clone();
+        let mut seen = Vec::new();
+        for _ in 0..length.min(16) {
+            seen.push(self.situation(&state).join(", "));
+            if g7_engine::pass(&self.compiled.program, &mut state).is_err() {
+                break;
+            }
+        }
+        if length > 16 {
+            seen.push("…".to_owned());
+        }
+        seen
+    }
+}
+
+fn group(role: Role) -> &'static str {
+    match role {
+        Role::Input(_) => "inputs",
+        Role::Output => "outputs",
+        Role::Variable => "variables",
+        Role::Plant => "plant",
+    }
+}
+
+fn read(state: &State, item: &Item) -> Value {
+    match item.kind {
+        Kind::Text => Value::Text(read_text(state.words(), item.addr).into()),
+        Kind::Bool | Kind::Int { .. } | Kind::Real | Kind::Lreal | Kind::Time => {
+            Value::Word(state.word(Addr(item.addr)))
+        }
+    }
+}
+
+fn words(item: &Item, value: &Value) -> Vec<(u32, u64)> {
+    let words = match value {
+        Value::Word(w) => vec![*w],
+        Value::Text(t) => write_text(t, item.words),
+    };
+    (0u32..).zip(words).collect()
+}
+
+fn force(item: &Item, at: u32) -> Option<Force> {
+    match item.role {
+        Role::Input(first) => Some(Force::Input(first + at)),
+        Role::Output => Some(Force::Output(Addr(item.addr + at))),
+        Role::Variable => Some(Force::Variable(Addr(item.addr + at))),
+        Role::Plant => None,
+    }
+}
+
+/// Edit distance, for suggestions.
+fn distance(a: &str, b: &str) -> usize {
+    let b: Vec<char> = b.chars().flat_map(char::to_lowercase).take(64).collect();
+    let mut row: Vec<usize> = (0..=b.len()).collect();
+    for (i, x) in a.chars().flat_map(char::to_lowercase).take(64).enumerate() {
+        let mut last = i;
+        if let Some(first) = row.first_mut() {
+            *first = i + 1;
+        }
+        for (j, y) in b.iter().enumerate() {
+            let (here, left) = (row.get(j + 1).copied().unwrap_or(0), row.get(j).copied().unwrap_or(0));
+            let best = (last + usize::from(x != *y)).min(here + 1).min(left + 1);
+            last = here;
+            if let Some(cell) = row.get_mut(j + 1) {
+                *cell = best;
+            }
+        }
+    }
+    row.last().copied().unwrap_or(0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn distances_count_edits() {
+        assert_eq!(distance("start", "start"), 0);
+        assert_eq!(distance("strat", "start"), 2);
+        assert_eq!(distance("Start", "start"), 0);
+        assert_eq!(distance("", "abc"), 3);
+    }
+}

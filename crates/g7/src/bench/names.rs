@@ -1,0 +1,225 @@
+//! From a document to a bench: compiled, coupled to its plant, with names for all.
+
+use g7_compile::Compiled;
+use g7_compile::ir::VarClass;
+use g7_compile::plant::{self, Link};
+use g7_compile::symbols::{Symbols, Variable};
+use g7_engine::{Code, StepId};
+use g7_host::{Coupling, Kind};
+use g7_model::{Document, Expr, Plant, Problem, ProfileName, Step, Type};
+
+use super::{Activity, Bench, Item, PlantSide, Role, StepItem};
+use crate::failure::Failure;
+use crate::sources::Source;
+
+/// What a bench is made for.
+#[derive(Clone, Copy, Default)]
+pub(crate) struct Options<'a> {
+    /// In place of the file's own.
+    pub(crate) profile: Option<ProfileName>,
+    /// In place of the file's own, nanoseconds.
+    pub(crate) scan: Option<i64>,
+    /// The plant; the only one unless said, `none` for none.
+    pub(crate) plant: Option<&'a str>,
+    /// Expressions to be evaluated on it.
+    pub(crate) asks: &'a [Ask],
+}
+
+/// An expression to be evaluated, and where.
+#[derive(Clone, Debug)]
+pub(crate) struct Ask {
+    pub(crate) expr: Expr,
+    /// Names are those of the plant.
+    pub(crate) of_plant: bool,
+}
+
+/// What became of an [`Ask`].
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Answer {
+    pub(crate) code: Code,
+    pub(crate) ty: Type,
+    pub(crate) of_plant: bool,
+}
+
+/// Elements of a table that get a name each.
+const ELEMENTS: u32 = 32;
+/// Parts of a queue that get a name each.
+const PARTS: u32 = 6;
+
+/// Compiles a document and its plant. `None` where a problem forbids it.
+///
+/// # Errors
+///
+/// The plant asked for is not there.
+pub(crate) fn build(
+    source: &Source,
+    options: &Options<'_>,
+) -> Result<(Option<Bench>, Vec<Problem>), Failure> {
+    let mut problems = source.problems.clone();
+    if source.has_errors() {
+        return Ok((None, problems));
+    }
+    let plant = plant_of(source, options.plant)?;
+    let asks = |of_plant| -> Vec<Expr> {
+        options.asks.iter().filter(|a| a.of_plant == of_plant).map(|a| a.expr.clone()).collect()
+    };
+    let (charts, found) = g7_compile::compile_with(&source.document, options.profile, &asks(false));
+    problems.extend(found);
+    let Some(charts) = charts else { return Ok((None, problems)) };
+    let mut items = Vec::new();
+    variables(&charts.symbols, &mut items);
+    let mut side = None;
+    if let Some(plant) = plant {
+        let (made, found) = plant_side(&source.document, plant, &charts, &asks(true));
+        problems.extend(found);
+        let Some(made) = made else { return Ok((None, problems)) };
+        states(&made.compiled.symbols, &mut items);
+        side = Some(made);
+    }
+    let answers = answers(options.asks, &charts, side.as_ref());
+    let steps = steps(&source.document, &charts.symbols);
+    let period = options.scan.unwrap_or(charts.symbols.cycle).max(1);
+    Ok((Some(Bench { items, steps, plant: side, period, answers, compiled: charts }), problems))
+}
+
+/// The plant as a program of its own, coupled to the charts.
+fn plant_side(
+    document: &Document,
+    plant: &Plant,
+    charts: &Compiled,
+    asks: &[Expr],
+) -> (Option<PlantSide>, Vec<Problem>) {
+    let (made, problems) = plant::compile_plant(document, plant, charts, asks);
+    let side = made.map(|made| {
+        let (c, p) = (charts.program.tables(), made.compiled.program.tables());
+        let coupling = Coupling {
+            to_plant: words(&made.to_plant, c.outputs.start, p.inputs.start),
+            to_charts: words(&made.to_charts, p.outputs.start, c.inputs.start),
+        };
+        PlantSide { name: made.name.to_string(), coupling, queries: made.queries, compiled: made.compiled }
+    });
+    (side, problems)
+}
+
+/// Links word by word, counted from the first output and input.
+fn words(links: &[Link], outputs: u32, inputs: u32) -> Vec<(u32, u32)> {
+    let pair =
+        |link: &Link, k: u32| (link.from.0.saturating_sub(outputs) + k, link.to.0.saturating_sub(inputs) + k);
+    links.iter().flat_map(|link| (0..link.words).map(move |k| pair(link, k))).collect()
+}
+
+/// The codes of the asks, in their order.
+fn answers(asks: &[Ask], charts: &Compiled, plant: Option<&PlantSide>) -> Vec<Answer> {
+    let of = |queries: &[Code], c: &Compiled| -> Vec<(Code, Type)> {
+        queries.iter().copied().zip(c.query_types.iter().copied()).collect()
+    };
+    let mut of_charts = of(&charts.queries, charts).into_iter();
+    let mut of_plant = plant.map(|p| of(&p.queries, &p.compiled)).unwrap_or_default().into_iter();
+    let answer = |ask: &Ask| {
+        let (code, ty) = if ask.of_plant { of_plant.next() } else { of_charts.next() }?;
+        Some(Answer { code, ty, of_plant: ask.of_plant })
+    };
+    asks.iter().map_while(answer).collect()
+}
+
+/// Steps and macro-steps with their comments.
+fn steps(document: &Document, symbols: &Symbols) -> Vec<StepItem> {
+    let written: std::collections::BTreeMap<g7_model::Span, &Step> =
+        document.charts().flat_map(g7_model::Chart::steps).map(|s| (s.name.at.0, s)).collect();
+    let item = |name: &str, at: g7_model::Span, id| StepItem {
+        name: name.to_owned(),
+        comment: written.get(&at).and_then(|s| s.comment.as_deref()).map(str::to_owned),
+        id,
+    };
+    let macros = symbols.macro_steps.iter().map(|m| item(&m.name, m.at, Activity::Macro(m.group)));
+    let listed = (0..symbols.steps()).map(StepId).filter(|s| symbols.is_listed(*s));
+    let plain = listed.map(|s| item(symbols.step_name(s), symbols.step_place(s), Activity::Step(s)));
+    plain.chain(macros).collect()
+}
+
+/// The plant meant: the named one, the only one, or none.
+fn plant_of<'a>(source: &'a Source, name: Option<&str>) -> Result<Option<&'a Plant>, Failure> {
+    let plants: Vec<&Plant> = plant::plants(&source.document).collect();
+    let names = || plants.iter().map(|p| p.name.text.to_string()).collect::<Vec<_>>().join(", ");
+    match name {
+        Some("none") => Ok(None),
+        Some(name) => match plants.iter().find(|p| *p.name.text == *name) {
+            Some(plant) => Ok(Some(plant)),
+            None if plants.is_empty() => {
+                Err(Failure::Usage(format!("{} has no plant `{name}`, nor any other", source.name())))
+            }
+            None => {
+                Err(Failure::Usage(format!("{} has no plant `{name}`; it has {}", source.name(), names())))
+            }
+        },
+        None => match plants.as_slice() {
+            [] => Ok(None),
+            [one] => Ok(Some(one)),
+            _ => Err(Failure::Usage(format!(
+                "{} has several plants: choose with --plant one of {}, or none",
+                source.name(),
+                names()
+            ))),
+        },
+    }
+}
+
+pub(super) fn kind(ty: Type) -> Option<Kind> {
+    let int = |bits, signed| Some(Kind::Int { bits, signed });
+    match ty {
+        Type::Bool => Some(Kind::Bool),
+        Type::Sint => int(8, true),
+        Type::Int => int(16, true),
+        Type::Dint => int(32, true),
+        Type::Lint => int(64, true),
+        Type::Usint => int(8, false),
+        Type::Uint => int(16, false),
+        Type::Udint => int(32, false),
+        Type::Ulint => int(64, false),
+        Type::Real => Some(Kind::Real),
+        Type::Lreal => Some(Kind::Lreal),
+        Type::Time => Some(Kind::Time),
+        Type::String(_) => Some(Kind::Text),
+        Type::Fb(_) => None,
+    }
+}
+
+/// The charts' variables, each with its role.
+fn variables(symbols: &Symbols, items: &mut Vec<Item>) {
+    let mut first_input = None;
+    for v in &symbols.variables {
+        let role = match v.class {
+            VarClass::Input => {
+                let first = *first_input.get_or_insert(v.addr.0);
+                Role::Input(v.addr.0.saturating_sub(first))
+            }
+            VarClass::Output => Role::Output,
+            VarClass::Internal => Role::Variable,
+            VarClass::Local | VarClass::Const | VarClass::System => continue,
+        };
+        push(v, role, items);
+    }
+}
+
+/// The plant's states; what it drives and reads has its name in the charts.
+fn states(symbols: &Symbols, items: &mut Vec<Item>) {
+    for v in symbols.variables.iter().filter(|v| v.class == VarClass::Internal) {
+        // A name with an `@` is none of the author's; of a queue the first parts are shown.
+        let place = v.name.rsplit_once('.').and_then(|(_, last)| last.parse::<u32>().ok());
+        if !v.name.starts_with('@') && place.is_none_or(|p| p < PARTS) {
+            push(v, Role::Plant, items);
+        }
+    }
+}
+
+fn push(v: &Variable, role: Role, items: &mut Vec<Item>) {
+    let Some(kind) = kind(v.ty) else { return };
+    let words = v.words().checked_div(v.elements.max(1)).unwrap_or(1).max(1);
+    let retain = v.retain.then(|| v.ty.to_string());
+    let comment = v.comment.as_deref().map(str::to_owned);
+    for k in 0..v.elements.min(ELEMENTS) {
+        let name = if v.elements == 1 { v.name.to_string() } else { format!("{}[{k}]", v.name) };
+        let (addr, retain, comment) = (v.addr.0 + k * words, retain.clone(), comment.clone());
+        items.push(Item { name, kind, role, addr, words, retain, comment, ty: v.ty });
+    }
+}

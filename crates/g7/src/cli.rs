@@ -1,0 +1,282 @@
+//! What can be typed: commands, options, and the examples that teach them.
+
+use std::path::PathBuf;
+
+use clap::{Args, Parser, Subcommand, ValueEnum};
+use g7_model::{ProfileName, TargetPlc};
+
+use crate::values::{self, Assign};
+
+const EXIT_CODES: &str = "\
+Exit codes:
+  0  fine
+  1  problems were found, or a test failed
+  2  bad usage, or something outside the chart: no such file, a full disk";
+
+const FIRST_STEPS: &str = "\
+First steps:
+  g7 new tank            a folder with a small chart, its plant and a test
+  g7 run tank            see it work: steps, inputs, outputs, chronogram
+  g7 test tank           its tests, in virtual time
+  g7 check tank          what is wrong with it, and the way out
+
+Exit codes:
+  0  fine
+  1  problems were found, or a test failed
+  2  bad usage, or something outside the chart: no such file, a full disk
+
+Data goes to the standard output, talk to the standard error.
+NO_COLOR=1 or --color never turns colours off.";
+
+/// GRAFCET charts: check them, run them against simulated plants, test them.
+#[derive(Debug, Parser)]
+#[command(name = "g7", version, arg_required_else_help = true, after_help = FIRST_STEPS)]
+pub(crate) struct Cli {
+    /// When to use colours.
+    #[arg(long, global = true, value_enum, default_value_t = Color::Auto, value_name = "WHEN")]
+    pub(crate) color: Color,
+    #[command(subcommand)]
+    pub(crate) command: Command,
+}
+
+/// When to use colours.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Color {
+    /// On a terminal, unless NO_COLOR is set.
+    Auto,
+    /// Also in a pipe or a file.
+    Always,
+    /// Never.
+    Never,
+}
+
+/// The form of what is printed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Format {
+    /// For people.
+    Text,
+    /// For programs: one JSON object.
+    Json,
+}
+
+/// The commands.
+#[derive(Debug, Subcommand)]
+pub(crate) enum Command {
+    /// Make a folder with a small chart, its plant and a test.
+    New(New),
+    /// Say what is wrong with charts, where, and the way out.
+    Check(Check),
+    /// Write charts in the one canonical form; notes are kept.
+    Fmt(Fmt),
+    /// Run a chart against its plant, in the terminal or headless.
+    Run(Run),
+    /// Run the tests of charts in virtual time.
+    Test(Test),
+    /// Turn a JGrafchart XML file into a .g7 file.
+    Import(Import),
+    /// Explain a problem code, or list them all.
+    Explain(Explain),
+    /// Print the completions for a shell.
+    Completions(Completions),
+    /// Print the manual page, or write those of all commands to a folder.
+    Man(Man),
+}
+
+#[derive(Args, Debug)]
+#[command(after_help = "\
+Examples:
+  g7 new tank
+  g7 new ~/plants/conveyor && g7 run ~/plants/conveyor
+
+A folder that holds something already is left alone.")]
+pub(crate) struct New {
+    /// The folder to make.
+    pub(crate) folder: PathBuf,
+}
+
+#[derive(Args, Debug)]
+#[command(after_help = format!("\
+Examples:
+  g7 check                          every .g7 file in this folder and below
+  g7 check tank/chart.g7            one file
+  g7 check --target tsx3720 tank    against the limits of a PLC as well
+  g7 check --format json tank       for a program to read
+  g7 check - < chart.g7             the standard input
+
+{EXIT_CODES}"))]
+pub(crate) struct Check {
+    /// Files or folders; `-` is the standard input.
+    #[arg(default_value = ".")]
+    pub(crate) paths: Vec<PathBuf>,
+    /// The PLC whose limits must hold.
+    #[arg(long, value_parser = values::target, value_name = "PLC")]
+    pub(crate) target: Option<TargetPlc>,
+    /// The rules of evolution, in place of the file's own.
+    #[arg(long, value_parser = values::profile)]
+    pub(crate) profile: Option<ProfileName>,
+    /// For people or for programs.
+    #[arg(long, value_enum, default_value_t = Format::Text)]
+    pub(crate) format: Format,
+    /// Warnings count as errors.
+    #[arg(long)]
+    pub(crate) strict: bool,
+}
+
+#[derive(Args, Debug)]
+#[command(after_help = format!("\
+Examples:
+  g7 fmt                    every .g7 file in this folder and below
+  g7 fmt --check tank       only say which files would change
+  g7 fmt - < chart.g7       from the standard input to the standard output
+
+A file with syntax errors is left as it is. A file is written whole or not at all.
+
+{EXIT_CODES}"))]
+pub(crate) struct Fmt {
+    /// Files or folders; `-` reads the standard input.
+    #[arg(default_value = ".")]
+    pub(crate) paths: Vec<PathBuf>,
+    /// Write nothing; exit with 1 where something would change.
+    #[arg(long)]
+    pub(crate) check: bool,
+}
+
+#[derive(Args, Debug)]
+#[command(after_help = format!("\
+Examples:
+  g7 run examples/bead-sorter                      in the terminal; ? shows the keys
+  g7 run tank --headless --for 60s                 no terminal: prints a chronogram
+  g7 run tank --headless --for 60s --trace out.vcd for GTKWave; .csv for a spreadsheet
+  g7 run tank --headless --set start=1@2s --set start=0@2.5s
+  g7 run tank --profile iec61131 --scan 40ms       under other rules of evolution
+  g7 run Sorter.xml                                a JGrafchart file
+
+{EXIT_CODES}"))]
+pub(crate) struct Run {
+    /// A file, or a folder with a chart.g7.
+    #[arg(default_value = ".")]
+    pub(crate) path: PathBuf,
+    /// Do not open the terminal view; print a chronogram at the end.
+    #[arg(long)]
+    pub(crate) headless: bool,
+    /// How long to run; 10s unless said, without end in the terminal view.
+    #[arg(long = "for", value_parser = values::duration, value_name = "TIME")]
+    pub(crate) duration: Option<i64>,
+    /// Write what every signal did, as .csv or .vcd by the name.
+    #[arg(long, value_name = "FILE")]
+    pub(crate) trace: Option<PathBuf>,
+    /// Set an input (or a state of the plant) at a time: `start=1@2s`.
+    #[arg(long = "set", value_parser = values::assign, value_name = "NAME=VALUE@TIME")]
+    pub(crate) set: Vec<Assign>,
+    /// The rules of evolution, in place of the file's own.
+    #[arg(long, value_parser = values::profile)]
+    pub(crate) profile: Option<ProfileName>,
+    /// Time between scans, in place of the file's own (10ms).
+    #[arg(long, value_parser = values::duration, value_name = "TIME")]
+    pub(crate) scan: Option<i64>,
+    /// The plant to run against, where there are several; `none` for none.
+    #[arg(long, value_name = "NAME")]
+    pub(crate) plant: Option<String>,
+    /// What the plant's chance starts from: the same seed, the same run.
+    #[arg(long, default_value_t = 0, value_name = "NUMBER")]
+    pub(crate) seed: u64,
+    /// Headless: as fast as the wall clock and no faster.
+    #[arg(long)]
+    pub(crate) real_time: bool,
+    /// Headless: the signals of the chronogram; all that move unless said.
+    #[arg(long, value_delimiter = ',', value_name = "NAMES")]
+    pub(crate) show: Vec<String>,
+    /// Keep retained variables in this file from run to run.
+    #[arg(long, value_name = "FILE")]
+    pub(crate) retain: Option<PathBuf>,
+    /// Headless: write all that entered the charts, to be played again.
+    #[arg(long, value_name = "FILE")]
+    pub(crate) record: Option<PathBuf>,
+    /// Play a record; every state must come out the same.
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["record", "set", "duration", "retain"])]
+    pub(crate) replay: Option<PathBuf>,
+}
+
+#[derive(Args, Debug)]
+#[command(after_help = format!("\
+Examples:
+  g7 test                         the tests of every .g7 file in this folder and below
+  g7 test tank --filter bottles   only tests with `bottles` in the title
+  g7 test tank --coverage         which steps, transitions, actions no test reached
+  g7 test tank --junit out.xml    for a build server
+
+{EXIT_CODES}"))]
+pub(crate) struct Test {
+    /// Files or folders.
+    #[arg(default_value = ".")]
+    pub(crate) paths: Vec<PathBuf>,
+    /// Only tests whose title has this in it.
+    #[arg(long, short, value_name = "TEXT")]
+    pub(crate) filter: Option<String>,
+    /// Say which steps, transitions, actions and branches no test reached.
+    #[arg(long)]
+    pub(crate) coverage: bool,
+    /// Write a JUnit report.
+    #[arg(long, value_name = "FILE")]
+    pub(crate) junit: Option<PathBuf>,
+    /// For people or for programs.
+    #[arg(long, value_enum, default_value_t = Format::Text)]
+    pub(crate) format: Format,
+    /// The rules of evolution, in place of the file's own.
+    #[arg(long, value_parser = values::profile)]
+    pub(crate) profile: Option<ProfileName>,
+    /// Time between scans, in place of the file's own (10ms).
+    #[arg(long, value_parser = values::duration, value_name = "TIME")]
+    pub(crate) scan: Option<i64>,
+}
+
+#[derive(Args, Debug)]
+#[command(after_help = format!("\
+Examples:
+  g7 import Sorter.xml                  to the standard output
+  g7 import Sorter.xml -o sorter.g7     to a file, which must not be there yet
+
+What the importer does not know is reported with its line, never dropped in silence.
+
+{EXIT_CODES}"))]
+pub(crate) struct Import {
+    /// The XML file.
+    pub(crate) file: PathBuf,
+    /// Where to; the standard output unless said.
+    #[arg(long, short, value_name = "FILE")]
+    pub(crate) output: Option<PathBuf>,
+    /// Replace the output file if it is there.
+    #[arg(long)]
+    pub(crate) force: bool,
+}
+
+#[derive(Args, Debug)]
+#[command(after_help = "\
+Examples:
+  g7 explain G0101
+  g7 explain            every code with its title")]
+pub(crate) struct Explain {
+    /// The code, as in `error[G0101]`.
+    pub(crate) code: Option<String>,
+}
+
+#[derive(Args, Debug)]
+#[command(after_help = "\
+Examples:
+  g7 completions bash > ~/.local/share/bash-completion/completions/g7
+  g7 completions fish > ~/.config/fish/completions/g7.fish")]
+pub(crate) struct Completions {
+    /// The shell.
+    pub(crate) shell: clap_complete::Shell,
+}
+
+#[derive(Args, Debug)]
+#[command(after_help = "\
+Examples:
+  g7 man | man -l -
+  g7 man --out /usr/local/share/man/man1")]
+pub(crate) struct Man {
+    /// A folder that takes a page for each command.
+    #[arg(long, value_name = "FOLDER")]
+    pub(crate) out: Option<PathBuf>,
+}

@@ -1,0 +1,49 @@
+//! What the environment can do to us, in one line each; exit code 2.
+
+use std::io;
+use std::path::{Path, PathBuf};
+
+/// Why a command could not do its work.
+#[derive(Debug, thiserror::Error)]
+pub(crate) enum Failure {
+    /// A file that cannot be read.
+    #[error("cannot read {}: {}", show(.0), plain(.1))]
+    Read(PathBuf, io::Error),
+    /// A file that cannot be written.
+    #[error("cannot write {}: {}; nothing was changed", show(.0), plain(.1))]
+    Write(PathBuf, io::Error),
+    /// The standard output cannot be written.
+    #[error("cannot write to the standard output: {}", plain(.0))]
+    Output(#[from] io::Error),
+    /// Something else that the user can mend.
+    #[error("{0}")]
+    Usage(String),
+}
+
+impl Failure {
+    /// The reader of a pipe has gone: no reason to speak.
+    pub(crate) fn is_quiet(&self) -> bool {
+        matches!(self, Failure::Output(e) if e.kind() == io::ErrorKind::BrokenPipe)
+    }
+}
+
+/// A path as the user wrote it, on one line.
+fn show(path: &Path) -> String {
+    path.display().to_string().chars().map(|c| if c.is_control() { '?' } else { c }).collect()
+}
+
+/// The system's words without the number behind them.
+fn plain(error: &io::Error) -> String {
+    let text = error.to_string();
+    let end = text.find(" (os error").unwrap_or(text.len());
+    text.get(..end).unwrap_or(&text).to_lowercase()
+}
+
+/// What a command came to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Verdict {
+    /// Exit code 0.
+    Fine,
+    /// Exit code 1: problems were found, or a test failed.
+    Found,
+}

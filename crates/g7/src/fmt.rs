@@ -1,0 +1,51 @@
+//! `g7 fmt`: the one canonical form.
+
+use std::io::Write;
+use std::path::Path;
+
+use crate::cli::Fmt;
+use crate::failure::{Failure, Verdict};
+use crate::report::{self, Tally};
+use crate::sources::Source;
+use crate::{files, style, talk};
+
+pub(crate) fn fmt(args: &Fmt) -> Result<Verdict, Failure> {
+    let paths = files::all(&args.paths)?;
+    let (mut changed, mut refused) = (0, 0);
+    let mut out = anstream::stdout().lock();
+    for path in &paths {
+        let source = Source::load(path, 0)?;
+        if source.imported {
+            return Err(Failure::Usage(format!(
+                "{} is a JGrafchart file; `g7 import` makes a .g7 file of it",
+                source.name()
+            )));
+        }
+        if source.has_errors() {
+            talk!("{}", report::text(&source, &source.problems).trim_end());
+            talk!("{}: left as it is: {}", source.name(), Tally::of(&source.problems));
+            refused += 1;
+            continue;
+        }
+        let text = g7_syntax::print(&source.document, Some(&source.text));
+        let same = text.as_bytes() == source.bytes;
+        if !same {
+            changed += 1;
+        }
+        match (args.check, path == Path::new("-")) {
+            (true, _) if same => {}
+            (true, _) => writeln!(out, "{}", source.name())?,
+            (false, true) => write!(out, "{text}")?,
+            (false, false) if same => {}
+            (false, false) => {
+                files::write(path, text.as_bytes())?;
+                talk!("{}formatted{:#} {}", style::GOOD, style::GOOD, source.name());
+            }
+        }
+    }
+    out.flush()?;
+    if args.check && changed > 0 {
+        talk!("{changed} of {} files would change", paths.len());
+    }
+    Ok(if refused > 0 || (args.check && changed > 0) { Verdict::Found } else { Verdict::Fine })
+}

@@ -1,0 +1,161 @@
+//! Problems as people and programs read them.
+
+use annotate_snippets::{Annotation, AnnotationKind, Element, Group, Level, Origin, Renderer, Snippet};
+use g7_model::{Problem, Severity, Span};
+use serde_json::{Value, json};
+
+use crate::sources::Source;
+
+/// Lines shown in one excerpt, folded ones included.
+const EXCERPT: usize = 400;
+/// Longest line that is shown.
+const WIDE: usize = 2_000;
+/// Most problems printed of one file.
+const MANY: usize = 100;
+
+/// The count of each severity.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Tally {
+    pub(crate) errors: usize,
+    pub(crate) warnings: usize,
+}
+
+impl Tally {
+    /// Counts problems.
+    pub(crate) fn of(problems: &[Problem]) -> Tally {
+        let errors = problems.iter().filter(|p| p.severity() == Severity::Error).count();
+        Tally { errors, warnings: problems.len() - errors }
+    }
+
+    /// Counts more.
+    pub(crate) fn add(&mut self, other: Tally) {
+        self.errors += other.errors;
+        self.warnings += other.warnings;
+    }
+}
+
+impl std::fmt::Display for Tally {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let some = |n: usize, what: &str| match n {
+            0 => String::new(),
+            1 => format!("1 {what}"),
+            n => format!("{n} {what}s"),
+        };
+        let parts = [some(self.errors, "error"), some(self.warnings, "warning")];
+        f.write_str(&parts.iter().filter(|p| !p.is_empty()).cloned().collect::<Vec<_>>().join(", "))
+    }
+}
+
+/// All problems of a file with excerpts, in the order of the text; with styles.
+pub(crate) fn text(source: &Source, problems: &[Problem]) -> String {
+    let mut sorted: Vec<&Problem> = problems.iter().collect();
+    sorted.sort_by_key(|p| (p.at.start, p.at.end));
+    let mut out = String::new();
+    for problem in sorted.iter().take(MANY) {
+        out.push_str(&one(source, problem));
+        out.push_str("\n\n");
+    }
+    if sorted.len() > MANY {
+        out.push_str(&format!("… and {} more problems in {}\n\n", sorted.len() - MANY, source.name()));
+    }
+    out
+}
+
+fn one(source: &Source, problem: &Problem) -> String {
+    let level = match problem.severity() {
+        Severity::Error => Level::ERROR,
+        Severity::Warning => Level::WARNING,
+    };
+    let mut elements: Vec<Element<'_>> = Vec::new();
+    excerpts(source, problem, &mut elements);
+    let help = problem.help.as_deref().map(|h| Level::HELP.message(h));
+    let group: Group<'_> =
+        level.primary_title(problem.what.as_str()).id(problem.code.id).elements(elements).elements(help);
+    Renderer::styled().render(&[group])
+}
+
+/// The place itself and those related, together where they stand close by.
+fn excerpts<'a>(source: &'a Source, problem: &'a Problem, out: &mut Vec<Element<'a>>) {
+    let mut near: Vec<(Span, Option<&str>)> = vec![(problem.at, None)];
+    let mut far = Vec::new();
+    let line = |span: Span| source.line(source.range(span).start);
+    for (span, there) in &problem.related {
+        let place = (*span, Some(there.as_str()));
+        if line(*span).abs_diff(line(problem.at)) < EXCERPT / 2 {
+            near.push(place)
+        } else {
+            far.push(vec![place])
+        }
+    }
+    for places in std::iter::once(near).chain(far) {
+        out.push(excerpt(source, &places));
+    }
+}
+
+fn excerpt<'a>(source: &'a Source, places: &[(Span, Option<&'a str>)]) -> Element<'a> {
+    let ranges: Vec<_> = places.iter().map(|(span, _)| clip(source, *span)).collect();
+    let first = ranges.iter().map(|r| source.line(r.start)).min().unwrap_or(0);
+    let last = ranges.iter().map(|r| source.line(r.end)).max().unwrap_or(first);
+    let region = source.lines(first, last);
+    let text = source.text.get(region.clone()).unwrap_or("");
+    if text.lines().any(|l| l.len() > WIDE) {
+        let (line, column) = source.position(ranges.first().map_or(0, |r| r.start));
+        return Origin::path(source.name()).line(line).char_column(column).into();
+    }
+    let annotations: Vec<Annotation<'a>> = ranges
+        .iter()
+        .zip(places)
+        .map(|(range, (_, there))| {
+            let kind = if there.is_none() { AnnotationKind::Primary } else { AnnotationKind::Context };
+            kind.span(range.start - region.start..range.end - region.start).label(*there)
+        })
+        .collect();
+    Snippet::source(text).path(source.name()).line_start(first + 1).annotations(annotations).into()
+}
+
+/// A span over many lines is marked at its first.
+fn clip(source: &Source, span: Span) -> std::ops::Range<usize> {
+    let range = source.range(span);
+    let (first, last) = (source.line(range.start), source.line(range.end));
+    if last - first < 6 {
+        return range;
+    }
+    let line = source.lines(first, first);
+    let text = source.text.get(range.start..line.end).unwrap_or("").trim_end();
+    range.start..range.start + text.len()
+}
+
+/// A problem for programs.
+pub(crate) fn json(source: &Source, problem: &Problem) -> Value {
+    let severity = match problem.severity() {
+        Severity::Error => "error",
+        Severity::Warning => "warning",
+    };
+    let related: Vec<Value> = problem
+        .related
+        .iter()
+        .map(|(span, there)| {
+            let mut place = place(source, *span);
+            place["message"] = json!(there);
+            place
+        })
+        .collect();
+    let mut out = place(source, problem.at);
+    out["code"] = json!(problem.code.id);
+    out["severity"] = json!(severity);
+    out["title"] = json!(problem.code.title);
+    out["message"] = json!(problem.what);
+    out["source"] = json!(problem.code.source);
+    out["help"] = json!(problem.help);
+    out["related"] = json!(related);
+    out
+}
+
+fn place(source: &Source, span: Span) -> Value {
+    let range = source.range(span);
+    let point = |byte: usize| {
+        let (line, column) = source.position(byte);
+        json!({ "line": line, "column": column, "byte": byte })
+    };
+    json!({ "file": source.name(), "start": point(range.start), "end": point(range.end) })
+}

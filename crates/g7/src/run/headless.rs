@@ -1,0 +1,226 @@
+//! Runs without a terminal: virtual time, traces, a printed chronogram.
+
+use std::io::Write;
+use std::path::Path;
+
+use g7_host::{
+    Chronogram, Clock, Recording, Runner, Style, Tape, Value, VirtualClock, WallClock, format_time,
+    write_csv, write_vcd,
+};
+
+use super::keep;
+use crate::bench::{Bench, Item};
+use crate::cli::Run;
+use crate::failure::{Failure, Verdict};
+use crate::progress::Progress;
+use crate::sources::Source;
+use crate::{files, style, talk, values};
+
+/// How long it runs where nothing is said.
+const UNSAID: i64 = 10_000_000_000;
+/// Most lanes of a chronogram.
+const LANES: usize = 40;
+
+/// A trace file's form.
+#[derive(Clone, Copy)]
+enum Form {
+    Csv,
+    Vcd,
+}
+
+fn form(path: &Path) -> Result<Form, Failure> {
+    match path.extension().and_then(|e| e.to_str()).map(str::to_ascii_lowercase).as_deref() {
+        Some("csv") => Ok(Form::Csv),
+        Some("vcd") => Ok(Form::Vcd),
+        _ => Err(Failure::Usage(format!(
+            "cannot tell the form of {} by its name: end it in .csv or .vcd",
+            path.display()
+        ))),
+    }
+}
+
+pub(super) fn run(bench: &Bench, source: &Source, args: &Run) -> Result<Verdict, Failure> {
+    let trace = args.trace.as_deref().map(|path| form(path).map(|form| (path, form))).transpose()?;
+    let script = script(bench, args)?;
+    let shown = shown(bench, args)?;
+    let mut runner = bench.runner(args.seed);
+    if args.record.is_some() {
+        runner = runner.with_tape();
+    }
+    keep::load(bench, &mut runner, args.retain.as_deref())?;
+    let mut recording = Recording::new(bench.signals());
+    let length = args.duration.unwrap_or(UNSAID);
+    let mut clock: Box<dyn Clock> =
+        if args.real_time { Box::new(WallClock::default()) } else { Box::new(VirtualClock::default()) };
+    let halt = play(bench, &mut runner, &mut recording, &script, length, &mut *clock);
+    let verdict = if let Some(halt) = halt {
+        let place = bench.halt_place(halt).map_or_else(String::new, |at| format!("{}: ", source.place(at)));
+        let (bad, now) = (style::BAD, format_time(runner.state().now()));
+        talk!("{place}{bad}fault{bad:#} at {now}: {}", bench.halt(&runner, halt));
+        Verdict::Found
+    } else {
+        Verdict::Fine
+    };
+    if runner.missed() > 0 {
+        talk!("{} scans came too late and were left out", runner.missed());
+    }
+    if let Some((path, form)) = trace {
+        write_trace(&recording, path, form)?;
+    }
+    if let (Some(path), Some(tape)) = (&args.record, runner.tape()) {
+        files::write(path, tape.to_text().as_bytes())?;
+    }
+    keep::save(bench, &runner, args.retain.as_deref())?;
+    print(bench, &runner, &recording, source, &shown)?;
+    Ok(verdict)
+}
+
+/// What is set when: by time, then in the order of the arguments.
+fn script<'b>(bench: &'b Bench, args: &Run) -> Result<Vec<(i64, &'b Item, Value)>, Failure> {
+    let mut script = Vec::new();
+    for assign in &args.set {
+        let Some(item) = bench.item(&assign.name) else {
+            let near = bench.suggestions(&assign.name);
+            return Err(Failure::Usage(format!("--set: there is no `{}`{near}", assign.name)));
+        };
+        let value = values::read(&assign.value, item.kind)
+            .map_err(|e| Failure::Usage(format!("--set {}: {e}", assign.name)))?;
+        script.push((assign.at, item, value));
+    }
+    script.sort_by_key(|(at, ..)| *at);
+    Ok(script)
+}
+
+fn shown(bench: &Bench, args: &Run) -> Result<Vec<usize>, Failure> {
+    let signals = bench.signals();
+    let find = |name: &String| {
+        signals.iter().position(|s| s.name == *name).ok_or_else(|| {
+            let near = bench.suggestions(name);
+            Failure::Usage(format!("--show: there is no `{name}`{near}"))
+        })
+    };
+    args.show.iter().map(find).collect()
+}
+
+/// Scans until `length` has passed, the scan at its end included.
+fn play(
+    bench: &Bench,
+    runner: &mut Runner<'_>,
+    recording: &mut Recording,
+    script: &[(i64, &Item, Value)],
+    length: i64,
+    clock: &mut dyn Clock,
+) -> Option<g7_host::Halt> {
+    let mut progress = Progress::new("running", length.max(1) as u64);
+    let mut script = script.iter().peekable();
+    while runner.due() <= length {
+        clock.wait_until(runner.due());
+        runner.catch_up(clock.now());
+        while let Some((_, item, value)) = script.next_if(|(at, ..)| *at <= runner.due()) {
+            if bench.is_driven(runner, item) {
+                bench.force(runner, item, value);
+            } else {
+                bench.set(runner, item, value);
+            }
+        }
+        let done = runner.scan();
+        recording.sample(runner.state().now(), bench.sample(runner));
+        if let Err(halt) = done {
+            progress.end();
+            return Some(halt);
+        }
+        if runner.state().scans() % 256 == 0 {
+            progress.at(runner.due().max(0) as u64);
+        }
+    }
+    progress.end();
+    None
+}
+
+fn write_trace(recording: &Recording, path: &Path, form: Form) -> Result<(), Failure> {
+    let mut bytes = Vec::new();
+    match form {
+        Form::Csv => write_csv(recording, &mut bytes),
+        Form::Vcd => write_vcd(recording, &mut bytes),
+    }
+    .map_err(|e| Failure::Write(path.to_path_buf(), e))?;
+    files::write(path, &bytes)?;
+    talk!("wrote {}", path.display());
+    Ok(())
+}
+
+/// The end of the run, and how it came to it.
+fn print(
+    bench: &Bench,
+    runner: &Runner<'_>,
+    recording: &Recording,
+    source: &Source,
+    shown: &[usize],
+) -> Result<(), Failure> {
+    let mut out = anstream::stdout().lock();
+    let state = runner.state();
+    let situation = bench.situation(state).join(", ");
+    let plant = bench.plant.as_ref().map_or_else(String::new, |p| format!(" with plant {}", p.name));
+    writeln!(
+        out,
+        "{}{}{:#}{plant}: {} in {} scans of {}, now in {{{situation}}}\n",
+        style::STRONG,
+        source.name(),
+        style::STRONG,
+        format_time(state.now()),
+        state.scans(),
+        format_time(bench.period),
+    )?;
+    let mut lanes: Vec<usize> = shown.to_vec();
+    if lanes.is_empty() {
+        lanes = (0..recording.signals().len()).filter(|i| recording.count(*i) > 1).collect();
+    }
+    let left = lanes.len().saturating_sub(LANES);
+    lanes.truncate(LANES);
+    let columns = columns(recording, &lanes);
+    let to = recording.end().saturating_add(bench.period);
+    let style = Style { columns, from: recording.start(), to };
+    write!(out, "{}", Chronogram::new(recording, lanes, style))?;
+    if left > 0 {
+        writeln!(out, "… and {left} more signals that move; --show picks, --trace keeps them all")?;
+    }
+    Ok(out.flush()?)
+}
+
+/// Columns for the lanes: the terminal's width less labels and notes.
+fn columns(recording: &Recording, lanes: &[usize]) -> usize {
+    let width = crossterm::terminal::size().map_or(100, |(columns, _)| usize::from(columns));
+    let width = if width == 0 { 100 } else { width.min(160) };
+    let labels = lanes.iter().filter_map(|i| recording.signals().get(*i));
+    let label = labels.map(|s| s.name.chars().count().min(24)).max().unwrap_or(0);
+    width.saturating_sub(label + 20).max(20)
+}
+
+/// Plays a record and holds every state against it.
+pub(super) fn replay(bench: &Bench, args: &Run, path: &Path) -> Result<Verdict, Failure> {
+    let text = String::from_utf8(files::read(path)?).unwrap_or_default();
+    let Some(tape) = Tape::from_text(&text) else {
+        return Err(Failure::Usage(format!("{} is no record of a run", path.display())));
+    };
+    let trace = args.trace.as_deref().map(|path| form(path).map(|form| (path, form))).transpose()?;
+    let mut recording = Recording::new(bench.signals());
+    let played = tape.replay(&bench.compiled.program, |now, state| {
+        recording.sample(now, bench.sample_state(state));
+    });
+    if let Some((path, form)) = trace {
+        write_trace(&recording, path, form)?;
+    }
+    match played {
+        Ok(state) => {
+            talk!("{} scans, every state as recorded", tape.scans());
+            let mut out = anstream::stdout().lock();
+            writeln!(out, "{{{}}}", bench.situation(&state).join(", "))?;
+            out.flush()?;
+            Ok(Verdict::Fine)
+        }
+        Err(d) => {
+            talk!("differs from the record at scan {} ({})", d.scan, format_time(d.now));
+            Ok(Verdict::Found)
+        }
+    }
+}

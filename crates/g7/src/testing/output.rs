@@ -1,0 +1,179 @@
+//! Outcomes as people, programs and build servers read them.
+
+use std::io::{self, Write};
+
+use g7_host::{format_seconds, format_time};
+use serde_json::{Value, json};
+
+use super::Outcome;
+use super::coverage::Coverage;
+use super::exec::Defect;
+use crate::style;
+
+/// A line for each test.
+pub(super) fn progress_lines(out: &mut dyn Write, outcomes: &[Outcome]) -> io::Result<()> {
+    for o in outcomes {
+        let (style, word) = if o.defect.is_some() { (style::BAD, "FAILED") } else { (style::GOOD, "ok") };
+        let (faint, time) = (style::FAINT, format_time(o.simulated));
+        writeln!(out, "{style}{word:>6}{style:#} {}: {} {faint}({time}){faint:#}", o.file, o.title)?;
+    }
+    Ok(())
+}
+
+/// Each failure with its place, what was expected, what was there, and how it came.
+pub(super) fn failures(out: &mut dyn Write, outcomes: &[Outcome]) -> io::Result<()> {
+    for o in outcomes {
+        let Some(d) = &o.defect else { continue };
+        writeln!(out, "\n{}{}{:#}: {}", style::BAD, o.title, style::BAD, sentence(d))?;
+        writeln!(out, "  at {}, {} after the start", d.place, format_time(d.time))?;
+        if !d.got.is_empty() {
+            let got: Vec<String> = d.got.iter().map(|(name, value)| format!("{name} = {value}")).collect();
+            writeln!(out, "  got {}", got.join(", "))?;
+        }
+        writeln!(out, "  situation {}", d.situation)?;
+        if !d.chronogram.is_empty() {
+            writeln!(out)?;
+            for line in d.chronogram.lines() {
+                writeln!(out, "  {line}")?;
+            }
+        }
+    }
+    Ok(())
+}
+
+fn sentence(d: &Defect) -> String {
+    if d.expected.is_empty() { d.what.clone() } else { format!("{}: {}", d.what, d.expected) }
+}
+
+/// The closing line.
+pub(super) fn summary(out: &mut dyn Write, outcomes: &[Outcome]) -> io::Result<()> {
+    let failed = outcomes.iter().filter(|o| o.defect.is_some()).count();
+    writeln!(out, "\n{} passed, {failed} failed", outcomes.len() - failed)
+}
+
+/// What was reached of each sort, and every row that was not.
+pub(super) fn coverage(out: &mut dyn Write, files: &[(String, Coverage)]) -> io::Result<()> {
+    for (file, coverage) in files {
+        writeln!(out, "\n{}{file}{:#}", style::STRONG, style::STRONG)?;
+        for (sort, rows) in coverage.sorts() {
+            let reached = rows.values().filter(|r| r.hits > 0).count();
+            let style = if reached == rows.len() { style::GOOD } else { style::WARN };
+            writeln!(out, "  {style}{reached:>5} of {:<5}{style:#} {sort}", rows.len())?;
+        }
+        for (sort, rows) in coverage.sorts() {
+            for row in rows.values().filter(|r| r.hits == 0) {
+                let one = match sort {
+                    "branches" => "branch",
+                    other => other.trim_end_matches('s'),
+                };
+                writeln!(out, "  not reached: {one} {} ({})", row.name, row.place)?;
+            }
+        }
+    }
+    Ok(())
+}
+
+/// One object with all of it.
+pub(super) fn json(
+    out: &mut dyn Write,
+    outcomes: &[Outcome],
+    coverage: Option<&[(String, Coverage)]>,
+) -> io::Result<()> {
+    let failed = outcomes.iter().filter(|o| o.defect.is_some()).count();
+    let tests: Vec<Value> = outcomes.iter().map(test_json).collect();
+    let mut all = json!({ "passed": outcomes.len() - failed, "failed": failed, "tests": tests });
+    if let Some(files) = coverage {
+        all["coverage"] = files.iter().map(|(file, c)| coverage_json(file, c)).collect();
+    }
+    writeln!(out, "{all:#}")
+}
+
+fn test_json(o: &Outcome) -> Value {
+    let mut test = json!({
+        "file": o.file, "title": o.title, "place": o.place, "passed": o.defect.is_none(),
+        "simulated_seconds": o.simulated as f64 / 1e9, "scans": o.scans, "seconds": o.took as f64 / 1e9,
+    });
+    if let Some(d) = &o.defect {
+        let got: serde_json::Map<String, Value> = d.got.iter().map(|(n, v)| (n.clone(), json!(v))).collect();
+        test["failure"] = json!({
+            "what": d.what, "expected": d.expected, "got": got, "place": d.place,
+            "time_seconds": d.time as f64 / 1e9, "situation": d.situation, "chronogram": d.chronogram,
+        });
+    }
+    test
+}
+
+fn coverage_json(file: &str, coverage: &Coverage) -> Value {
+    let mut all = json!({ "file": file });
+    for (sort, rows) in coverage.sorts() {
+        let list: Vec<Value> =
+            rows.values().map(|r| json!({ "name": r.name, "place": r.place, "hits": r.hits })).collect();
+        all[sort] = json!({
+            "total": rows.len(), "reached": rows.values().filter(|r| r.hits > 0).count(), "rows": list,
+        });
+    }
+    all
+}
+
+/// The XML that build servers read: a suite for each file.
+pub(super) fn junit(outcomes: &[Outcome]) -> String {
+    let failed = |list: &[&Outcome]| list.iter().filter(|o| o.defect.is_some()).count();
+    let took = |list: &[&Outcome]| format_seconds(list.iter().map(|o| o.took).sum());
+    let all: Vec<&Outcome> = outcomes.iter().collect();
+    let mut files: Vec<&str> = outcomes.iter().map(|o| o.file.as_str()).collect();
+    files.dedup();
+    let mut out = String::from("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n");
+    out.push_str(&format!(
+        "<testsuites name=\"g7\" tests=\"{}\" failures=\"{}\" time=\"{}\">\n",
+        all.len(),
+        failed(&all),
+        took(&all)
+    ));
+    for file in files {
+        let mine: Vec<&Outcome> = outcomes.iter().filter(|o| o.file == file).collect();
+        let name = escape(file);
+        out.push_str(&format!(
+            "  <testsuite name=\"{name}\" tests=\"{}\" failures=\"{}\" time=\"{}\">\n",
+            mine.len(),
+            failed(&mine),
+            took(&mine)
+        ));
+        for o in mine {
+            let (title, time) = (escape(&o.title), format_seconds(o.took));
+            out.push_str(&format!("    <testcase classname=\"{name}\" name=\"{title}\" time=\"{time}\""));
+            match &o.defect {
+                None => out.push_str("/>\n"),
+                Some(d) => {
+                    let mut text = Vec::new();
+                    failures(&mut text, std::slice::from_ref(o)).ok();
+                    let text = anstream::adapter::strip_str(&String::from_utf8_lossy(&text)).to_string();
+                    out.push_str(&format!(
+                        ">\n      <failure message=\"{}\">{}</failure>\n    </testcase>\n",
+                        escape(&sentence(d)),
+                        escape(text.trim())
+                    ));
+                }
+            }
+        }
+        out.push_str("  </testsuite>\n");
+    }
+    out.push_str("</testsuites>\n");
+    out
+}
+
+/// Text for XML: what it does not allow at all becomes U+FFFD.
+fn escape(text: &str) -> String {
+    let mut out = String::with_capacity(text.len());
+    for c in text.chars() {
+        match c {
+            '&' => out.push_str("&amp;"),
+            '<' => out.push_str("&lt;"),
+            '>' => out.push_str("&gt;"),
+            '"' => out.push_str("&quot;"),
+            '\n' | '\t' => out.push(c),
+            c if (c as u32) < 0x20 || matches!(c, '\u{fffe}' | '\u{ffff}') => out.push('\u{fffd}'),
+            c => out.push(c),
+        }
+    }
+    out
+}

@@ -1,0 +1,286 @@
+//! From the statements of a test to what is done: names become items,
+//! expressions become asks.
+
+use g7_model::{Expr, ExprKind, Literal, Path, Problem, Scenario, Span, TestStmt, TestStmtKind, Type, codes};
+
+use crate::bench::{Answer, Ask, Bench, Role};
+use crate::sources::Source;
+
+/// A test made ready.
+#[derive(Debug, Default)]
+pub(super) struct Plan {
+    pub(super) lines: Vec<Line>,
+}
+
+/// A statement.
+#[derive(Debug)]
+pub(super) struct Line {
+    pub(super) does: Does,
+    pub(super) at: Span,
+}
+
+/// An item by its place in [`Bench::items`].
+type ItemId = usize;
+/// An ask by its place among all.
+type AskId = usize;
+
+#[derive(Debug)]
+pub(super) enum Does {
+    Set(Vec<(ItemId, AskId)>),
+    Pulse(ItemId, Option<i64>),
+    Wait(i64),
+    WaitUntil(Check, i64),
+    Scan(u32),
+    Expect(Vec<Check>),
+    ExpectFault(Option<String>),
+    Always(Vec<Check>, Vec<Line>),
+    Force(ItemId, AskId),
+    Release(ItemId),
+    Restart { cold: bool },
+    Repeat(u32, Vec<Line>),
+    Nothing,
+}
+
+/// A condition, and what it mentions: for the report of a failure.
+#[derive(Debug)]
+pub(super) struct Check {
+    pub(super) ask: AskId,
+    pub(super) at: Span,
+    pub(super) mentions: Vec<(String, AskId)>,
+}
+
+/// How long `wait until` waits where nothing is said.
+const PATIENCE: i64 = 10_000_000_000;
+/// Most mentions shown of one condition.
+const MENTIONS: usize = 8;
+
+/// The problem of a test whose plant is not there.
+pub(super) fn unknown_plant(source: &Source, test: &Scenario) -> Option<Problem> {
+    let name = test.plant.as_ref()?;
+    let there: Vec<String> =
+        g7_compile::plant::plants(&source.document).map(|p| format!("`{}`", p.name.text)).collect();
+    if g7_compile::plant::plants(&source.document).any(|p| p.name.text == name.text) {
+        return None;
+    }
+    let problem = Problem::new(&codes::TEST_PLANT, name.at.0, format!("there is no plant `{}`", name.text));
+    Some(if there.is_empty() { problem } else { problem.help(format!("there is {}", there.join(", "))) })
+}
+
+/// Makes a test ready.
+pub(super) fn plan(test: &Scenario, bench: &Bench, asks: &mut Vec<Ask>) -> (Plan, Vec<Problem>) {
+    let mut planner = Planner { bench, asks, problems: Vec::new() };
+    let lines = planner.lines(&test.body);
+    (Plan { lines }, planner.problems)
+}
+
+struct Planner<'a> {
+    bench: &'a Bench,
+    asks: &'a mut Vec<Ask>,
+    problems: Vec<Problem>,
+}
+
+impl Planner<'_> {
+    fn lines(&mut self, body: &[TestStmt]) -> Vec<Line> {
+        body.iter().map(|s| Line { does: self.does(s), at: s.at.0 }).collect()
+    }
+
+    fn does(&mut self, s: &TestStmt) -> Does {
+        match &s.kind {
+            TestStmtKind::Set(list) => Does::Set(list.iter().filter_map(|(p, e)| self.put(p, e)).collect()),
+            TestStmtKind::Pulse(path, time) => self.pulse(path, *time),
+            TestStmtKind::Wait(time) => Does::Wait(*time),
+            TestStmtKind::WaitUntil(e, within) => Does::WaitUntil(self.check(e), within.unwrap_or(PATIENCE)),
+            TestStmtKind::Scan(n) => Does::Scan(*n),
+            TestStmtKind::Expect(list) => Does::Expect(list.iter().map(|e| self.check(e)).collect()),
+            TestStmtKind::ExpectFault(name) => self.fault(name.as_ref()),
+            TestStmtKind::Always(list, body) => {
+                Does::Always(list.iter().map(|e| self.check(e)).collect(), self.lines(body))
+            }
+            TestStmtKind::Force(path, e) => match self.item(path, true) {
+                Some(item) => Does::Force(item, self.ask(e)),
+                None => Does::Nothing,
+            },
+            TestStmtKind::Release(path) => self.item(path, true).map_or(Does::Nothing, Does::Release),
+            TestStmtKind::Restart { cold } => Does::Restart { cold: *cold },
+            TestStmtKind::Repeat(n, body) => Does::Repeat(*n, self.lines(body)),
+            TestStmtKind::Comment(_) => Does::Nothing,
+        }
+    }
+
+    fn put(&mut self, path: &Path, e: &Expr) -> Option<(ItemId, AskId)> {
+        let item = self.item(path, false)?;
+        Some((item, self.ask(e)))
+    }
+
+    fn pulse(&mut self, path: &Path, time: Option<i64>) -> Does {
+        let Some(item) = self.item(path, false) else { return Does::Nothing };
+        if self.bench.items.get(item).is_some_and(|i| i.ty != Type::Bool) {
+            self.wrong(path, format!("`{}` is no BOOL: it cannot be pulsed", path.text()), None);
+        }
+        Does::Pulse(item, time)
+    }
+
+    fn fault(&mut self, name: Option<&g7_model::Name>) -> Does {
+        let words = ["unstable", "bound", "overflow", "division", "range", "forcing", "table"];
+        if let Some(name) = name.filter(|n| !words.contains(&&*n.text)) {
+            let what = format!("there is no fault `{}`", name.text);
+            let problem = Problem::new(&codes::TEST_NAME, name.at.0, what);
+            self.problems.push(problem.help(format!("there are {}", words.join(", "))));
+        }
+        Does::ExpectFault(name.map(|n| n.text.to_string()))
+    }
+
+    /// The item that a path names, to be set or held.
+    fn item(&mut self, path: &Path, hold: bool) -> Option<ItemId> {
+        let name = path.text();
+        let Some(at) = self.bench.items.iter().position(|i| i.name == name) else {
+            let near = self.bench.suggestions(&name);
+            self.wrong(path, format!("there is nothing called `{name}` to be set"), Some(near));
+            return None;
+        };
+        let item = self.bench.items.get(at)?;
+        match item.role {
+            Role::Output if !hold => {
+                let help = format!("`force {name} := …` holds an output");
+                self.wrong(path, format!("`{name}` is an output: the charts set it"), Some(help));
+            }
+            Role::Plant if hold => {
+                self.wrong(path, format!("`{name}` is a state of the plant: it can be set, not held"), None);
+            }
+            Role::Input(index) if !hold && self.is_driven(index) => {
+                let help = format!("`force {name} := …` holds it against the plant");
+                self.wrong(path, format!("`{name}` is driven by the plant"), Some(help));
+            }
+            Role::Input(_) | Role::Output | Role::Variable | Role::Plant => {}
+        }
+        Some(at)
+    }
+
+    fn is_driven(&self, index: u32) -> bool {
+        let plant = self.bench.plant.as_ref();
+        plant.is_some_and(|p| p.coupling.to_charts.iter().any(|(_, to)| *to == index))
+    }
+
+    fn wrong(&mut self, path: &Path, what: String, help: Option<String>) {
+        let at = path.names.first().zip(path.names.last()).map(|(a, b)| a.at.0.to(b.at.0));
+        let mut problem = Problem::new(&codes::TEST_NAME, at.unwrap_or_default(), what);
+        problem.help = help.map(|h| h.trim_start_matches("; ").to_owned()).filter(|h| !h.is_empty());
+        self.problems.push(problem);
+    }
+
+    fn ask(&mut self, e: &Expr) -> AskId {
+        let mut paths = Vec::new();
+        collect(e, &mut paths);
+        // A condition on the plant's own states is put to the plant.
+        let of_plant = paths.iter().any(|p| {
+            let name = p.text();
+            self.bench.items.iter().any(|i| i.role == Role::Plant && i.name == name)
+        });
+        self.asks.push(Ask { expr: e.clone(), of_plant });
+        self.asks.len() - 1
+    }
+
+    fn check(&mut self, e: &Expr) -> Check {
+        let ask = self.ask(e);
+        let of_plant = self.asks.get(ask).is_some_and(|a| a.of_plant);
+        let mut paths: Vec<&Path> = Vec::new();
+        collect(e, &mut paths);
+        let mut mentions: Vec<(String, AskId)> = Vec::new();
+        for path in paths {
+            let name = path.text();
+            if mentions.len() < MENTIONS && mentions.iter().all(|(n, _)| *n != name) {
+                let at = path.names.first().map(|n| n.at).unwrap_or_default();
+                let expr = Expr { kind: ExprKind::Path(path.clone()), at };
+                self.asks.push(Ask { expr, of_plant });
+                mentions.push((name, self.asks.len() - 1));
+            }
+        }
+        Check { ask, at: e.at.0, mentions }
+    }
+}
+
+/// Every path of an expression, in the order of the text.
+fn collect<'e>(e: &'e Expr, to: &mut Vec<&'e Path>) {
+    match &e.kind {
+        ExprKind::Path(path) => to.push(path),
+        ExprKind::Unary(_, a) => collect(a, to),
+        ExprKind::Binary(_, a, b) => {
+            collect(a, to);
+            collect(b, to);
+        }
+        ExprKind::Timer { t1, e, t2 } => {
+            collect(t1, to);
+            collect(e, to);
+            t2.iter().for_each(|t| collect(t, to));
+        }
+        ExprKind::Call(_, args) => args.iter().for_each(|a| collect(&a.value, to)),
+        ExprKind::Literal(_) | ExprKind::Direct(_) | ExprKind::Bad => {}
+    }
+}
+
+/// Whether an expression is `0` or `1`, which do for a BOOL.
+fn is_bit(e: &Expr) -> bool {
+    matches!(&e.kind, ExprKind::Literal(Literal::Int(0 | 1, _)))
+}
+
+/// The problems of types, known once the asks are answered.
+pub(super) fn judge(plans: &[(usize, &Scenario, Plan)], bench: &Bench) -> Vec<Problem> {
+    let mut problems = Vec::new();
+    for (_, scenario, plan) in plans {
+        // The statements stand beside their lines: the expressions are there.
+        judge_lines(&scenario.body, &plan.lines, bench, &mut problems);
+    }
+    problems
+}
+
+fn judge_lines(body: &[TestStmt], lines: &[Line], bench: &Bench, problems: &mut Vec<Problem>) {
+    let ty = |ask: AskId| bench.answers.get(ask).map(|a: &Answer| a.ty);
+    let condition = |e: &Expr, check: &Check, problems: &mut Vec<Problem>| {
+        if let Some(ty) = ty(check.ask).filter(|t| *t != Type::Bool && !is_bit(e)) {
+            problems.push(Problem::new(
+                &codes::TEST_TYPE,
+                e.at.0,
+                format!("this is {ty}, a condition is BOOL"),
+            ));
+        }
+    };
+    let value = |item: ItemId, ask: AskId, e: &Expr, problems: &mut Vec<Problem>| {
+        let (Some(item), Some(from)) = (bench.items.get(item), ty(ask)) else { return };
+        if !fits(from, item.ty, e) {
+            let what = format!("this is {from}, `{}` is {}", item.name, item.ty);
+            problems.push(Problem::new(&codes::TEST_TYPE, e.at.0, what));
+        }
+    };
+    for (s, line) in body.iter().zip(lines) {
+        match (&s.kind, &line.does) {
+            (TestStmtKind::Set(list), Does::Set(puts)) if list.len() == puts.len() => {
+                for ((_, e), (item, ask)) in list.iter().zip(puts) {
+                    value(*item, *ask, e, problems);
+                }
+            }
+            (TestStmtKind::Force(_, e), Does::Force(item, ask)) => value(*item, *ask, e, problems),
+            (TestStmtKind::WaitUntil(e, _), Does::WaitUntil(check, _)) => condition(e, check, problems),
+            (TestStmtKind::Expect(list), Does::Expect(checks)) => {
+                list.iter().zip(checks).for_each(|(e, c)| condition(e, c, problems));
+            }
+            (TestStmtKind::Always(list, body), Does::Always(checks, lines)) => {
+                list.iter().zip(checks).for_each(|(e, c)| condition(e, c, problems));
+                judge_lines(body, lines, bench, problems);
+            }
+            (TestStmtKind::Repeat(_, body), Does::Repeat(_, lines)) => {
+                judge_lines(body, lines, bench, problems);
+            }
+            _ => {}
+        }
+    }
+}
+
+fn fits(from: Type, to: Type, e: &Expr) -> bool {
+    let number = |t: Type| t.is_integer() || t.is_real();
+    match (from, to) {
+        (Type::Bool, Type::Bool) | (Type::Time, Type::Time) | (Type::String(_), Type::String(_)) => true,
+        (from, Type::Bool) => from.is_integer() && is_bit(e),
+        (from, to) if from.is_real() => to.is_real(),
+        (from, to) => number(from) && number(to),
+    }
+}

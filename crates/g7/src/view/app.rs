@@ -1,0 +1,344 @@
+//! What is looked at, and what can be done with it.
+
+use g7_host::{Clock, Halt, Kind, Recording, Runner, Start, Value, WallClock, format_time};
+
+use crate::bench::{Bench, Item, Role};
+use crate::cli::Run;
+use crate::failure::Failure;
+use crate::values::{self, Assign};
+
+/// The keys that stand for inputs: those that no command needs.
+pub(super) const INPUT_KEYS: &str = "1234567890abcdefghijklmnoprstuvwxyz";
+/// Speeds that `+` and `-` go through.
+const SPEEDS: [f64; 13] = [0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0];
+/// Changes kept of a signal: an hour of a fast one.
+const KEPT: usize = 50_000;
+/// Wall time that one advance may take before the picture is due, ns.
+const BUDGET: i64 = 30_000_000;
+/// Spans of time that the chronogram can show, ns.
+const SPANS: [i64; 12] = [
+    100_000_000,
+    200_000_000,
+    500_000_000,
+    1_000_000_000,
+    2_000_000_000,
+    5_000_000_000,
+    10_000_000_000,
+    20_000_000_000,
+    60_000_000_000,
+    300_000_000_000,
+    1_800_000_000_000,
+    7_200_000_000_000,
+];
+
+/// A list that can be selected in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Panel {
+    Inputs,
+    Outputs,
+    Variables,
+    Plant,
+}
+
+impl Panel {
+    pub(super) const ALL: [Panel; 4] = [Panel::Inputs, Panel::Outputs, Panel::Variables, Panel::Plant];
+
+    fn holds(self, item: &Item) -> bool {
+        match item.role {
+            Role::Input(_) => self == Panel::Inputs,
+            Role::Output => self == Panel::Outputs,
+            Role::Variable => self == Panel::Variables,
+            Role::Plant => self == Panel::Plant,
+        }
+    }
+}
+
+/// A value being typed.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Edit {
+    /// Place in [`Bench::items`].
+    pub(super) item: usize,
+    pub(super) text: String,
+}
+
+pub(super) struct App<'b> {
+    pub(super) bench: &'b Bench,
+    pub(super) runner: Runner<'b>,
+    pub(super) title: String,
+    pub(super) recording: Recording,
+    pub(super) clock: WallClock,
+    pub(super) panel: Panel,
+    pub(super) selected: [usize; 4],
+    pub(super) edit: Option<Edit>,
+    pub(super) help: bool,
+    pub(super) message: String,
+    /// Time that the chronogram shows: place in [`SPANS`].
+    span: usize,
+    /// How far its right end lies behind now; 0 follows.
+    pub(super) back: i64,
+    /// First lane shown.
+    pub(super) lane: usize,
+    speed: usize,
+    script: Vec<Assign>,
+    until: i64,
+    over: bool,
+}
+
+impl<'b> App<'b> {
+    pub(super) fn new(
+        bench: &'b Bench,
+        runner: Runner<'b>,
+        title: &str,
+        args: &Run,
+    ) -> Result<App<'b>, Failure> {
+        let mut script = args.set.clone();
+        script.sort_by_key(|a| std::cmp::Reverse(a.at));
+        for assign in &script {
+            let Some(item) = bench.item(&assign.name) else {
+                let near = bench.suggestions(&assign.name);
+                return Err(Failure::Usage(format!("--set: there is no `{}`{near}", assign.name)));
+            };
+            values::read(&assign.value, item.kind)
+                .map_err(|e| Failure::Usage(format!("--set {}: {e}", assign.name)))?;
+        }
+        Ok(App {
+            bench,
+            runner,
+            title: title.to_owned(),
+            recording: Recording::new(bench.signals()).with_limit(KEPT),
+            clock: WallClock::default(),
+            panel: Panel::Inputs,
+            selected: [0; 4],
+            edit: None,
+            help: false,
+            message: String::new(),
+            span: 6,
+            back: 0,
+            lane: 0,
+            speed: 6,
+            script,
+            until: args.duration.unwrap_or(i64::MAX),
+            over: false,
+        })
+    }
+
+    pub(super) fn into_runner(self) -> Runner<'b> {
+        self.runner
+    }
+
+    pub(super) fn is_over(&self) -> bool {
+        self.over
+    }
+
+    pub(super) fn quit(&mut self) {
+        self.over = true;
+    }
+
+    pub(super) fn is_running(&self) -> bool {
+        !self.clock.is_held() && self.runner.halt().is_none()
+    }
+
+    pub(super) fn speed(&self) -> f64 {
+        SPEEDS.get(self.speed).copied().unwrap_or(1.0)
+    }
+
+    pub(super) fn span(&self) -> i64 {
+        SPANS.get(self.span).copied().unwrap_or(10_000_000_000)
+    }
+
+    /// Makes the scans that are due by the clock; where the machine is too
+    /// slow for the speed, time slows down: no scan is left out.
+    pub(super) fn advance(&mut self) {
+        if !self.is_running() {
+            return;
+        }
+        let mut watch = WallClock::default();
+        while self.runner.due() <= self.clock.now() && self.is_running() {
+            if self.runner.due() > self.until {
+                self.pause(true);
+                self.message = format!("{} are over", format_time(self.until));
+                return;
+            }
+            self.one_scan();
+            if watch.now() > BUDGET {
+                self.clock.set(self.runner.due());
+                return;
+            }
+        }
+    }
+
+    fn one_scan(&mut self) {
+        self.apply_script();
+        let done = self.runner.scan().map(|_| ());
+        self.after(done);
+    }
+
+    fn after(&mut self, done: Result<(), Halt>) {
+        let now = self.runner.shown().now();
+        self.recording.sample(now, self.bench.sample(&self.runner));
+        if let Err(halt) = done {
+            self.message = format!("fault: {}; R restarts", self.bench.halt(&self.runner, halt));
+        }
+    }
+
+    fn apply_script(&mut self) {
+        while self.script.last().is_some_and(|a| a.at <= self.runner.due()) {
+            let Some(assign) = self.script.pop() else { return };
+            let Some(item) = self.bench.item(&assign.name) else { continue };
+            if let Ok(value) = values::read(&assign.value, item.kind) {
+                self.put(item, &value);
+            }
+        }
+    }
+
+    /// Sets, or holds what would be overwritten.
+    fn put(&mut self, item: &Item, value: &Value) {
+        let held = self.bench.is_driven(&self.runner, item) || self.bench.is_forced(&self.runner, item);
+        if held || item.role == Role::Output {
+            self.bench.force(&mut self.runner, item, value);
+        } else {
+            self.bench.set(&mut self.runner, item, value);
+        }
+    }
+
+    pub(super) fn pause(&mut self, held: bool) {
+        self.clock.hold(held);
+        self.message.clear();
+        if !held {
+            self.clock.set(self.runner.due());
+        }
+    }
+
+    /// Stops, and makes one scan, or ends the one that is being made pass by pass.
+    pub(super) fn scan_once(&mut self) {
+        self.pause(true);
+        if self.runner.halt().is_none() {
+            self.one_scan();
+        }
+    }
+
+    /// Stops, and makes one pass of a scan.
+    pub(super) fn pass_once(&mut self) {
+        self.pause(true);
+        if self.runner.halt().is_some() {
+            return;
+        }
+        self.apply_script();
+        let done = self.runner.pass();
+        self.after(done.map(|_| ()));
+        if let Ok(last) = done {
+            let word = if last { "the last pass: the scan is done" } else { "between two passes of a scan" };
+            self.message = word.to_owned();
+        }
+    }
+
+    pub(super) fn faster(&mut self, by: isize) {
+        self.speed = self.speed.saturating_add_signed(by).min(SPEEDS.len() - 1);
+        self.clock.set_speed(self.speed());
+    }
+
+    pub(super) fn zoom(&mut self, by: isize) {
+        self.span = self.span.saturating_add_signed(by).min(SPANS.len() - 1);
+    }
+
+    /// Moves the chronogram by a quarter of its width; to the left is back in time.
+    pub(super) fn move_time(&mut self, by: i64) {
+        let length = self.recording.end().saturating_sub(self.recording.start());
+        self.back = (self.back - by * (self.span() / 4)).clamp(0, length.max(0));
+    }
+
+    pub(super) fn restart(&mut self, start: Start) {
+        self.runner.restart(start);
+        self.clock.set(self.runner.due());
+        self.message = match start {
+            Start::Warm => "restarted: retained variables kept",
+            Start::Cold => "restarted cold",
+        }
+        .to_owned();
+    }
+
+    /// Places of a panel's items in [`Bench::items`].
+    pub(super) fn listed(&self, panel: Panel) -> Vec<usize> {
+        let items = self.bench.items.iter().enumerate();
+        items.filter(|(_, i)| panel.holds(i)).map(|(at, _)| at).collect()
+    }
+
+    pub(super) fn next_panel(&mut self, by: usize) {
+        let count = Panel::ALL.len();
+        let now = Panel::ALL.iter().position(|p| *p == self.panel).unwrap_or(0);
+        let filled = (1..=count).filter_map(|k| Panel::ALL.get((now + k * by) % count).copied());
+        if let Some(panel) = filled.clone().find(|p| !self.listed(*p).is_empty()) {
+            self.panel = panel;
+        }
+    }
+
+    pub(super) fn select(&mut self, by: isize) {
+        let last = self.listed(self.panel).len().saturating_sub(1);
+        if let Some(at) = self.selected.get_mut(self.panel as usize) {
+            *at = at.saturating_add_signed(by).min(last);
+        }
+    }
+
+    /// The item selected in the panel in focus.
+    pub(super) fn current(&self) -> Option<usize> {
+        let at = self.selected.get(self.panel as usize)?;
+        self.listed(self.panel).get(*at).copied()
+    }
+
+    /// The key of an input, where it has one.
+    pub(super) fn input_key(&self, number: usize) -> Option<char> {
+        INPUT_KEYS.chars().nth(number)
+    }
+
+    /// An input's key: a BOOL turns, anything else is typed.
+    pub(super) fn press_input(&mut self, key: char) {
+        let number = INPUT_KEYS.chars().position(|c| c == key);
+        if let Some(at) = number.and_then(|n| self.listed(Panel::Inputs).get(n).copied()) {
+            self.change(at);
+        }
+    }
+
+    /// Turns a BOOL, or asks for a value.
+    pub(super) fn change(&mut self, at: usize) {
+        let Some(item) = self.bench.items.get(at) else { return };
+        if item.kind == Kind::Bool {
+            let value = Value::Word(self.next_value(item) ^ 1);
+            self.put(item, &value);
+        } else {
+            self.edit = Some(Edit { item: at, ..Edit::default() });
+        }
+    }
+
+    /// The value that the next scan will find.
+    fn next_value(&self, item: &Item) -> u64 {
+        match item.role {
+            Role::Input(index) => self.runner.input(index),
+            Role::Output | Role::Variable | Role::Plant => self.bench.value(&self.runner, item).word(),
+        }
+    }
+
+    /// Holds the selected item at its present value, or lets it go.
+    pub(super) fn toggle_force(&mut self) {
+        let Some(item) = self.current().and_then(|at| self.bench.items.get(at)) else { return };
+        if self.bench.is_forced(&self.runner, item) {
+            self.bench.release(&mut self.runner, item);
+            self.message = format!("{} released", item.name);
+        } else if item.role == Role::Plant {
+            self.message = "a state of the plant can be set (Enter), not held".to_owned();
+        } else {
+            let value = self.bench.value(&self.runner, item);
+            self.bench.force(&mut self.runner, item, &value);
+            self.message = format!("{} held", item.name);
+        }
+    }
+
+    /// Ends typing: takes the value, or says what is wrong with it.
+    pub(super) fn accept(&mut self) {
+        let Some(edit) = self.edit.take() else { return };
+        let Some(item) = self.bench.items.get(edit.item) else { return };
+        match values::read(&edit.text, item.kind) {
+            Ok(value) => self.put(item, &value),
+            Err(why) => self.message = why,
+        }
+    }
+}

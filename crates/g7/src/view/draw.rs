@@ -1,0 +1,256 @@
+//! From the app to cells, at any size.
+
+use g7_host::{Chronogram, Kind, Style as Window, format_time};
+use ratatui::Frame;
+use ratatui::layout::{Constraint, Layout, Rect};
+use ratatui::style::{Color, Modifier, Style};
+use ratatui::text::{Line, Span};
+use ratatui::widgets::{Block, Borders, Clear, Paragraph};
+
+use super::app::{App, Panel};
+use super::keys::HELP;
+use crate::bench::{Item, Role};
+
+const ON: Style = Style::new().fg(Color::Green).add_modifier(Modifier::BOLD);
+const DIM: Style = Style::new().add_modifier(Modifier::DIM);
+const TITLE: Style = Style::new().add_modifier(Modifier::BOLD);
+const HELD: Style = Style::new().fg(Color::Yellow);
+const FAULT: Style = Style::new().fg(Color::Red).add_modifier(Modifier::BOLD);
+
+/// Draws everything.
+pub(super) fn draw(frame: &mut Frame<'_>, app: &mut App<'_>) {
+    let area = frame.area();
+    if area.width < 24 || area.height < 6 {
+        let text = format!("{} - enlarge the window; q quits", format_time(app.runner.state().now()));
+        frame.render_widget(Paragraph::new(text), area);
+        return;
+    }
+    // The lists take what they need, up to half; the chronogram has the rest.
+    let longest = Panel::ALL.into_iter().map(|p| app.listed(p).len()).chain([app.bench.steps.len()]).max();
+    let lists = u16::try_from(longest.unwrap_or(0)).unwrap_or(u16::MAX).saturating_add(2);
+    let lists = lists.clamp(3, (area.height / 2).max(3));
+    let rows = [Constraint::Length(1), Constraint::Length(lists), Constraint::Min(0), Constraint::Length(2)];
+    let [head, lists, chronogram, foot] = Layout::vertical(rows).areas(area);
+    frame.render_widget(Paragraph::new(headline(app)), head);
+    draw_lists(frame, app, lists);
+    draw_chronogram(frame, app, chronogram);
+    draw_foot(frame, app, foot);
+    if app.help {
+        draw_help(frame, area);
+    }
+}
+
+fn headline(app: &App<'_>) -> Line<'static> {
+    let (word, style) = if app.runner.halt().is_some() {
+        (" FAULT ", FAULT)
+    } else if app.runner.is_within_scan() {
+        (" WITHIN A SCAN ", HELD)
+    } else if app.is_running() {
+        (" RUNS ", ON)
+    } else {
+        (" PAUSED ", HELD)
+    };
+    let plant = app.bench.plant.as_ref().map_or_else(String::new, |p| format!(" with {}", p.name));
+    let profile = app.bench.compiled.unit.profile.name();
+    Line::from(vec![
+        Span::styled(word, style),
+        Span::styled(format!("{}{plant}", app.title), TITLE),
+        Span::raw(format!("  {profile}  t = {}", clock(app.runner.shown().now()))),
+        Span::raw(format!("  scan {}", app.runner.state().scans())),
+        Span::raw(format!("  {} each", format_time(app.runner.period()))),
+        Span::raw(format!("  ×{}", app.speed())),
+    ])
+}
+
+/// Time to the hundredth of a second, so that it does not jump about.
+fn clock(ns: i64) -> String {
+    let hundredths = ns / 10_000_000;
+    let (minutes, seconds) = (hundredths / 6000, hundredths % 6000);
+    if minutes > 0 {
+        format!("{minutes}m{:02}.{:02}s", seconds / 100, seconds % 100)
+    } else {
+        format!("{}.{:02}s", seconds / 100, seconds % 100)
+    }
+}
+
+fn draw_lists(frame: &mut Frame<'_>, app: &App<'_>, area: Rect) {
+    let mut panels: Vec<Option<Panel>> = vec![None];
+    panels.extend(Panel::ALL.into_iter().filter(|p| !app.listed(*p).is_empty()).map(Some));
+    // Too narrow for all: the steps and the list in focus.
+    let room = usize::from(area.width / 22).max(1);
+    if panels.len() > room {
+        panels.retain(|p| p.is_none() || *p == Some(app.panel));
+        panels.truncate(room.max(if area.width >= 40 { 2 } else { 1 }));
+    }
+    let columns = Layout::horizontal(vec![Constraint::Fill(1); panels.len()]).split(area);
+    for (panel, area) in panels.into_iter().zip(columns.iter()) {
+        match panel {
+            None => draw_steps(frame, app, *area),
+            Some(panel) => draw_panel(frame, app, panel, *area),
+        }
+    }
+}
+
+fn draw_steps(frame: &mut Frame<'_>, app: &App<'_>, area: Rect) {
+    let state = app.runner.shown();
+    let room = usize::from(area.height.saturating_sub(2));
+    let (active, rest): (Vec<_>, Vec<_>) =
+        app.bench.steps.iter().partition(|s| app.bench.is_active(state, s));
+    // Where all have room they keep their places; else the active ones come first.
+    let all = app.bench.steps.len() <= room;
+    let listed = if all { app.bench.steps.iter().collect() } else { [active, rest].concat() };
+    let lines: Vec<Line<'_>> = listed
+        .into_iter()
+        .take(room)
+        .map(|step| {
+            let on = app.bench.is_active(state, step);
+            let time = app.bench.step_time(state, step).filter(|_| on).unwrap_or_default();
+            let comment = step.comment.as_deref().unwrap_or("");
+            let mark = if on { "■" } else { "□" };
+            Line::styled(format!("{mark} {} {time} {comment}", step.name), if on { ON } else { DIM })
+        })
+        .collect();
+    frame.render_widget(Paragraph::new(lines).block(framed("Steps", false)), area);
+}
+
+fn framed(title: &str, focus: bool) -> Block<'_> {
+    let style = if focus { Style::new().fg(Color::Cyan) } else { DIM };
+    Block::new().borders(Borders::ALL).border_style(style).title(Span::styled(title, TITLE))
+}
+
+fn draw_panel(frame: &mut Frame<'_>, app: &App<'_>, panel: Panel, area: Rect) {
+    let title = match panel {
+        Panel::Inputs => "Inputs",
+        Panel::Outputs => "Outputs",
+        Panel::Variables => "Variables",
+        Panel::Plant => "Plant",
+    };
+    let focus = app.panel == panel;
+    let listed = app.listed(panel);
+    let selected = app.selected.get(panel as usize).copied().unwrap_or(0);
+    let room = usize::from(area.height.saturating_sub(2)).max(1);
+    let first = selected.saturating_sub(room.saturating_sub(1));
+    let lines: Vec<Line<'_>> = listed
+        .iter()
+        .enumerate()
+        .skip(first)
+        .take(room)
+        .filter_map(|(number, at)| {
+            let item = app.bench.items.get(*at)?;
+            let line = item_line(app, item, (panel == Panel::Inputs).then_some(number));
+            Some(if focus && number == selected { line.patch_style(Modifier::REVERSED) } else { line })
+        })
+        .collect();
+    frame.render_widget(Paragraph::new(lines).block(framed(title, focus)), area);
+}
+
+fn item_line<'a>(app: &App<'_>, item: &'a Item, number: Option<usize>) -> Line<'a> {
+    let value = match item.role {
+        // What will be read next: a key shows at once, even while paused.
+        Role::Input(index) if item.words == 1 => g7_host::Value::Word(app.runner.input(index)),
+        _ => app.bench.value(&app.runner, item),
+    };
+    let mut spans = Vec::new();
+    if let Some(number) = number {
+        let key = app.input_key(number).map_or_else(|| "   ".to_owned(), |k| format!("[{k}]"));
+        spans.push(Span::styled(format!("{key} "), TITLE));
+    }
+    if item.kind == Kind::Bool {
+        let on = value.word() != 0;
+        spans.push(Span::styled(if on { "● " } else { "○ " }, if on { ON } else { DIM }));
+        spans.push(Span::styled(item.name.as_str(), if on { ON } else { Style::new() }));
+    } else {
+        spans.push(Span::raw(format!("{} = {}", item.name, short(&value.show(item.kind)))));
+    }
+    if app.bench.is_forced(&app.runner, item) {
+        spans.push(Span::styled(" held", HELD));
+    } else if app.bench.is_driven(&app.runner, item) {
+        spans.push(Span::styled(" plant", DIM));
+    }
+    if let Some(comment) = &item.comment {
+        spans.push(Span::styled(format!(" {comment}"), DIM));
+    }
+    Line::from(spans)
+}
+
+/// A number without the last dozen of its decimals; control characters shown.
+fn short(text: &str) -> String {
+    let text: String = text.chars().take(40).map(|c| if c.is_control() { '␀' } else { c }).collect();
+    match text.split_once('.') {
+        Some((whole, decimals))
+            if whole.parse::<i64>().is_ok() && decimals.bytes().all(|b| b.is_ascii_digit()) =>
+        {
+            format!("{whole}.{}", decimals.get(..3).unwrap_or(decimals))
+        }
+        _ => text,
+    }
+}
+
+fn draw_chronogram(frame: &mut Frame<'_>, app: &mut App<'_>, area: Rect) {
+    let title = if app.back == 0 {
+        "Chronogram".to_owned()
+    } else {
+        format!("Chronogram, {} ago (End follows)", format_time(app.back))
+    };
+    let block = framed(&title, false);
+    let inner = block.inner(area);
+    let signals = app.recording.signals();
+    let moving: Vec<usize> = (0..signals.len()).filter(|i| app.recording.count(*i) > 1).collect();
+    let room = usize::from(inner.height.saturating_sub(1));
+    app.lane = app.lane.min(moving.len().saturating_sub(room));
+    let shown: Vec<usize> = moving.into_iter().skip(app.lane).take(room).collect();
+    let labels = shown.iter().filter_map(|i| signals.get(*i)).map(|s| s.name.chars().count().min(24));
+    let label = labels.max().unwrap_or(0);
+    let columns = usize::from(inner.width).saturating_sub(label + 14).max(1);
+    let to = app.recording.end().saturating_sub(app.back).max(app.span());
+    let window = Window { columns, from: to.saturating_sub(app.span()), to };
+    let drawn = Chronogram::new(&app.recording, shown, window);
+    let mut lines: Vec<Line<'_>> = drawn
+        .lanes
+        .iter()
+        .map(|lane| {
+            let kind = signals.get(lane.signal).map_or(Kind::Bool, |s| s.kind);
+            let style =
+                if kind == Kind::Bool { Style::new().fg(Color::Green) } else { Style::new().fg(Color::Cyan) };
+            Line::from(vec![
+                Span::raw(format!("{:>label$} ", lane.label)),
+                Span::styled(lane.cells.clone(), style),
+                Span::styled(format!(" {}", short(&lane.note)), DIM),
+            ])
+        })
+        .collect();
+    if lines.is_empty() {
+        lines.push(Line::styled("nothing has moved yet", DIM));
+    } else {
+        lines.push(Line::styled(format!("{:>label$} {}", "", drawn.axis), DIM));
+    }
+    frame.render_widget(Paragraph::new(lines).block(block), area);
+}
+
+fn draw_foot(frame: &mut Frame<'_>, app: &App<'_>, area: Rect) {
+    let first = match &app.edit {
+        Some(edit) => {
+            let name = app.bench.items.get(edit.item).map_or("", |i| i.name.as_str());
+            Line::styled(format!("{name} := {}_   (Enter takes it, Esc does not)", edit.text), HELD)
+        }
+        None => {
+            let style = if app.runner.halt().is_some() { FAULT } else { HELD };
+            Line::styled(app.message.clone(), style)
+        }
+    };
+    let keys = "1-9 a-z inputs  Space run/pause  . scan  , pass  + - speed  Tab Up Down Enter change  ? help  q quit";
+    frame.render_widget(Paragraph::new(vec![first, Line::styled(keys, DIM)]), area);
+}
+
+fn draw_help(frame: &mut Frame<'_>, area: Rect) {
+    let width = area.width.min(56);
+    let height = area.height.min(HELP.len() as u16 + 2);
+    let popup =
+        Rect { x: area.x + (area.width - width) / 2, y: area.y + (area.height - height) / 2, width, height };
+    let lines: Vec<Line<'_>> = HELP
+        .iter()
+        .map(|(key, what)| Line::from(vec![Span::styled(format!(" {key:<11} "), TITLE), Span::raw(*what)]))
+        .collect();
+    frame.render_widget(Clear, popup);
+    frame.render_widget(Paragraph::new(lines).block(framed("Keys", true)), popup);
+}

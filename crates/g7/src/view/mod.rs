@@ -1,0 +1,54 @@
+//! The terminal view of a running chart.
+//!
+//! `app` is what is looked at and what can be done with it, `keys` turns a key
+//! into a doing, `draw` turns the app into cells. Only this file touches the
+//! terminal: the rest is tested without one.
+
+mod app;
+mod draw;
+mod keys;
+
+use std::time::Duration;
+
+use crossterm::event::{self, Event};
+use g7_host::Runner;
+
+use crate::bench::Bench;
+use crate::cli::Run;
+use crate::failure::Failure;
+use app::App;
+
+/// Time between two pictures at most.
+const FRAME: Duration = Duration::from_millis(40);
+
+/// Shows the chart at work until the user ends it; gives back the runner.
+pub(crate) fn run<'b>(
+    bench: &'b Bench,
+    runner: Runner<'b>,
+    title: &str,
+    args: &Run,
+) -> Result<Runner<'b>, Failure> {
+    let mut app = App::new(bench, runner, title, args)?;
+    // `try_init` also puts the terminal back should we panic.
+    let mut terminal = ratatui::try_init()?;
+    let ended = turn(&mut terminal, &mut app);
+    ratatui::restore();
+    ended?;
+    Ok(app.into_runner())
+}
+
+fn turn(terminal: &mut ratatui::DefaultTerminal, app: &mut App<'_>) -> std::io::Result<()> {
+    while !app.is_over() {
+        app.advance();
+        terminal.draw(|frame| draw::draw(frame, app))?;
+        let mut patience = FRAME;
+        while event::poll(patience)? {
+            if let Event::Key(key) = event::read()? {
+                keys::press(app, key);
+            }
+            // Resizes need nothing: the next picture is drawn to the new size.
+            patience = Duration::ZERO;
+        }
+    }
+    Ok(())
+}
