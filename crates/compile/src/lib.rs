@@ -9,6 +9,7 @@
 //! a document with problems still gives all the others that it has.
 #![forbid(unsafe_code)]
 
+pub mod check;
 pub mod ir;
 pub mod lower;
 pub mod plant;
@@ -64,6 +65,7 @@ pub fn compile_with(
         questions.extend(expr);
         problems.append(&mut wrong);
     }
+    problems.append(&mut check::check(&unit));
     let failed = problems.iter().any(|p| p.severity() == Severity::Error);
     if failed || questions.len() < queries.len() {
         return (None, sorted(problems));

@@ -1,0 +1,92 @@
+//! Looking into expressions.
+
+use std::fmt::Write;
+
+use crate::ir::{Expr, ExprKind};
+
+/// The operands of an expression.
+pub(super) fn operands(e: &Expr) -> Vec<&Expr> {
+    match &e.kind {
+        ExprKind::Const(_)
+        | ExprKind::Var(_)
+        | ExprKind::Member(..)
+        | ExprKind::StepActive(_)
+        | ExprKind::StepTime(_)
+        | ExprKind::StepTenths(_)
+        | ExprKind::StepScans(_)
+        | ExprKind::StepSeconds(_)
+        | ExprKind::Section(_)
+        | ExprKind::ScanTime
+        | ExprKind::Random => Vec::new(),
+        ExprKind::Element(_, a)
+        | ExprKind::Not(a)
+        | ExprKind::Neg(a)
+        | ExprKind::Rise(a)
+        | ExprKind::Fall(a)
+        | ExprKind::Convert(a)
+        | ExprKind::Trunc(a) => vec![a],
+        ExprKind::Binary(_, a, b) => vec![a, b],
+        ExprKind::Timer { t1, e, t2 } => {
+            let mut list: Vec<&Expr> = vec![t1, e];
+            list.extend(t2.as_deref());
+            list
+        }
+        ExprKind::Builtin(_, args) | ExprKind::Call(_, args) => args.iter().collect(),
+    }
+}
+
+/// Whether some part of an expression is an edge.
+pub(super) fn has_edge(e: &Expr) -> bool {
+    let mut pending = vec![e];
+    while let Some(e) = pending.pop() {
+        if matches!(e.kind, ExprKind::Rise(_) | ExprKind::Fall(_)) {
+            return true;
+        }
+        pending.extend(operands(e));
+    }
+    false
+}
+
+/// The same text for the same expression, wherever it stands.
+pub(super) fn key(e: &Expr) -> String {
+    let mut text = String::new();
+    write_key(e, &mut text);
+    text
+}
+
+fn write_key(e: &Expr, out: &mut String) {
+    // The head of each form, then its operands in brackets; writing to a String cannot fail.
+    let _ = match &e.kind {
+        ExprKind::Const(v) => write!(out, "{v:?}"),
+        ExprKind::Var(v) => write!(out, "v{}", v.0),
+        ExprKind::Element(v, _) => write!(out, "v{}@", v.0),
+        ExprKind::Member(v, m) => write!(out, "v{}.{m}", v.0),
+        ExprKind::StepActive(s) => write!(out, "x{}", s.0),
+        ExprKind::StepTime(s) => write!(out, "t{}", s.0),
+        ExprKind::StepTenths(s) => write!(out, "T{}", s.0),
+        ExprKind::StepScans(s) => write!(out, "n{}", s.0),
+        ExprKind::StepSeconds(s) => write!(out, "s{}", s.0),
+        ExprKind::Not(_) => write!(out, "!"),
+        ExprKind::Neg(_) => write!(out, "-"),
+        ExprKind::Rise(_) => write!(out, "rise"),
+        ExprKind::Fall(_) => write!(out, "fall"),
+        ExprKind::Binary(op, ..) => write!(out, "{op:?}"),
+        ExprKind::Timer { .. } => write!(out, "timer"),
+        ExprKind::Convert(_) => write!(out, "to {:?}", e.ty),
+        ExprKind::Trunc(_) => write!(out, "trunc {:?}", e.ty),
+        ExprKind::Builtin(f, _) => write!(out, "{f:?}"),
+        ExprKind::Call(f, _) => write!(out, "f{}", f.0),
+        ExprKind::Section(s) => write!(out, "section{}", s.0),
+        ExprKind::ScanTime => write!(out, "dt"),
+        ExprKind::Random => write!(out, "random"),
+    };
+    let list = operands(e);
+    if !list.is_empty() {
+        out.push('(');
+        for e in list {
+            write_key(e, out);
+            out.push(',');
+        }
+        out.push(')');
+    }
+}
