@@ -1,0 +1,238 @@
+//! Decisions 18 and 19: literals adapt, values widen, operators and functions
+//! have the types that IEC 61131-3 gives them.
+
+use super::{ask, outcome, read, resolved};
+
+const DOCUMENT: &str = "
+input a, b : BOOL
+var s : SINT  var n, m : INT  var d : DINT  var l : LINT
+var us : USINT  var u : UINT  var ud : UDINT  var ul : ULINT
+var x, y : REAL  var z : LREAL  var t : TIME  var w : STRING  var v : STRING(10)
+var c : CTU
+const five : INT := 5
+const half : REAL := 0.5
+const on : BOOL := TRUE
+function Twice(k : INT) : DINT { Twice := k + k }
+function Pick(first : BOOL, p : REAL, q : REAL) : REAL { Pick := SEL(first, p, q) }
+chart G { initial step 1  step 2  1 -> 2 when a -> 1 when b }
+";
+
+fn check(table: &[(&str, &str)]) {
+    let doc = read(DOCUMENT);
+    let (mut unit, mut scopes) = resolved(&doc);
+    for (text, want) in table {
+        let got = ask(&mut unit, &mut scopes, text, None);
+        assert_eq!(outcome(&unit, got), *want, "{text}");
+    }
+}
+
+#[test]
+fn literals_take_the_type_of_the_other_side() {
+    check(&[
+        ("n + 1", "(n Add 1) : INT"),
+        ("1 + us", "(1 Add us) : USINT"),
+        ("us + 256", "G0211"),
+        ("n < 40000", "G0211"),
+        ("x + 1", "(x Add 1.0) : REAL"),
+        ("z * 0.1", "(z Mul 0.1) : LREAL"),
+        ("n * 0.5", "(REAL(n) Mul 0.5) : REAL"),
+        ("l * 0.5", "G0210"),
+        ("a = 1", "(a Eq true) : BOOL"),
+        ("0 <> a", "(false Ne a) : BOOL"),
+        ("a = 2", "G0209"),
+        ("1", "1 : DINT"),
+        ("3000000000", "3000000000 : LINT"),
+        ("10000000000000000000", "10000000000000000000 : ULINT"),
+        ("2.5", "2.5 : LREAL"),
+        ("INT#5 + d", "(5 Add d) : DINT"),
+        ("(2 + 3) * n", "(5 Mul n) : INT"),
+        ("7 / 2 + n", "(3 Add n) : INT"),
+        ("7 / 2.0 + x", "(3.5 Add x) : REAL"),
+        ("five + n", "(5 Add n) : INT"),
+        ("five + 1", "6 : INT"),
+        ("five * 10000", "G0212"),
+        ("half + x", "(0.5 Add x) : REAL"),
+    ]);
+}
+
+#[test]
+fn values_widen_where_none_is_lost() {
+    check(&[
+        ("s + n", "(INT(s) Add n) : INT"),
+        ("n + d", "(DINT(n) Add d) : DINT"),
+        ("n + u", "(DINT(n) Add DINT(u)) : DINT"),
+        ("us + u", "(UINT(us) Add u) : UINT"),
+        ("d + ud", "(LINT(d) Add LINT(ud)) : LINT"),
+        ("l + ul", "G0210"),
+        ("n / x", "(REAL(n) Div x) : REAL"),
+        ("x - z", "(LREAL(x) Sub z) : LREAL"),
+        ("l + x", "G0210"),
+        ("n mod 7", "(n Mod 7) : INT"),
+        ("x mod 2.0", "G0210"),
+        ("-n", "-n : INT"),
+        ("-t", "-t : TIME"),
+        ("-us", "G0210"),
+        ("-a", "G0210"),
+        ("x ** 2", "REAL((LREAL(x) Pow 2.0)) : REAL"),
+        ("n ** m", "REAL((LREAL(n) Pow LREAL(m))) : REAL"),
+        ("z ** 0.5", "(z Pow 0.5) : LREAL"),
+    ]);
+}
+
+#[test]
+fn boolean_operators_and_their_algebra_signs() {
+    check(&[
+        ("a + b", "(a Or b) : BOOL"),
+        ("a * b", "(a And b) : BOOL"),
+        ("a · b", "(a And b) : BOOL"),
+        ("a + b * a", "(a Or (b And a)) : BOOL"),
+        ("a or b and not a", "(a Or (b And not a)) : BOOL"),
+        ("a xor on", "(a Xor true) : BOOL"),
+        ("a + 1", "(a Or true) : BOOL"),
+        ("0 * a", "(false And a) : BOOL"),
+        ("a + 2", "G0209"),
+        ("not on", "false : BOOL"),
+        ("not n", "G0209"),
+        ("a - b", "G0210"),
+        ("a / b", "G0210"),
+        ("n and m", "G0210"),
+        ("n · m", "G0210"),
+        ("a and n", "G0209"),
+        ("a + n", "G0209"),
+        ("a < b", "(a Lt b) : BOOL"),
+        ("n = m and a", "((n Eq m) And a) : BOOL"),
+        ("a and q and r", "G0202 G0202"),
+    ]);
+}
+
+#[test]
+fn durations() {
+    check(&[
+        ("t + 5s", "(t Add 5000000000) : TIME"),
+        ("5s - 200ms", "4800000000 : TIME"),
+        ("t * 2", "(t Mul 2) : TIME"),
+        ("n * t", "(t Mul LINT(n)) : TIME"),
+        ("t * 0.5", "(t Mul 0.5) : TIME"),
+        ("t / x", "(t Div LREAL(x)) : TIME"),
+        ("t / (2)", "(t Div 2) : TIME"),
+        ("t / (0)", "G0212"),
+        ("n / t", "G0210"),
+        ("t / t", "G0210"),
+        ("t + 5", "G0210"),
+        ("t > 5", "G0210"),
+        ("t >= 5s", "(t Ge 5000000000) : BOOL"),
+        ("ul * t", "G0209"),
+        ("t + a", "G0209"),
+    ]);
+}
+
+#[test]
+fn standard_functions() {
+    check(&[
+        ("ABS(n)", "Abs(n) : INT"),
+        ("abs(x)", "Abs(x) : REAL"),
+        ("ABS(a)", "G0209"),
+        ("SQRT(x)", "Sqrt(x) : REAL"),
+        ("SQRT(n)", "Sqrt(REAL(n)) : REAL"),
+        ("SQRT(2)", "Sqrt(2.0) : LREAL"),
+        ("MIN(n, d)", "Min(DINT(n), d) : DINT"),
+        ("MAX(n, 3, m)", "Max(Max(n, 3), m) : INT"),
+        ("MIN(t, 5s)", "Min(t, 5000000000) : TIME"),
+        ("MIN(a, b)", "G0209"),
+        ("MIN(n, t)", "G0209"),
+        ("LIMIT(0, n, 10)", "Limit(0, n, 10) : INT"),
+        ("LIMIT(IN := n, MN := 0, MX := 10)", "Limit(0, n, 10) : INT"),
+        ("SEL(a, n, d)", "Sel(a, DINT(n), d) : DINT"),
+        ("SEL(a, w, v)", "Sel(a, w, v) : STRING"),
+        ("SEL(1, a, b)", "Sel(true, a, b) : BOOL"),
+        ("MUX(n, x, 1, 2.5)", "Mux(LINT(n), x, 1.0, 2.5) : REAL"),
+        ("MUX(K := 0, IN1 := x, IN0 := y)", "Mux(0, y, x) : REAL"),
+        ("MOVE(n)", "n : INT"),
+        ("TRUNC(x)", "trunc DINT(x) : DINT"),
+        ("TRUNC(-2.7)", "-2 : DINT"),
+        ("TRUNC(a)", "G0209"),
+        ("LEN(w)", "Len(w) : INT"),
+        ("LEFT(w, n)", "Left(w, LINT(n)) : STRING"),
+        ("CONCAT(v, v)", "Concat(v, v) : STRING(20)"),
+        ("CONCAT(v, 'ab', v)", "Concat(Concat(v, 'ab'), v) : STRING(22)"),
+        ("REPLACE(w, v, 1, 2)", "Replace(w, v, 1, 2) : STRING(90)"),
+        ("FIND(w, 'x')", "Find(w, 'x') : INT"),
+        ("LEN(n)", "G0209"),
+        ("LIMIT(0, n)", "G0215"),
+        ("ABS()", "G0215"),
+        ("MIN(1)", "G0215"),
+        ("SQRT(OUT => n)", "G0215"),
+        ("SINUS(x)", "G0202"),
+        ("n(5)", "G0208"),
+        ("c(CU := a)", "G0208"),
+    ]);
+}
+
+#[test]
+fn conversions() {
+    check(&[
+        ("DINT_TO_INT(d)", "INT(d) : INT"),
+        ("DINT_TO_INT(n)", "INT(DINT(n)) : INT"),
+        ("INT_TO_INT(n)", "n : INT"),
+        ("REAL_TO_INT(2.5)", "2 : INT"),
+        ("REAL_TO_INT(3.5)", "4 : INT"),
+        ("BOOL_TO_INT(a)", "INT(a) : INT"),
+        ("INT_TO_BOOL(n)", "BOOL(n) : BOOL"),
+        ("INT_TO_STRING(n)", "STRING(n) : STRING"),
+        ("STRING_TO_REAL(w)", "REAL(w) : REAL"),
+        ("TIME_TO_DINT(t)", "DINT((t Div 1000000)) : DINT"),
+        ("TIME_TO_INT(1500ms)", "1500 : INT"),
+        ("DINT_TO_TIME(d)", "(1000000 Mul LINT(d)) : TIME"),
+        ("INT_TO_TIME(5)", "5000000 : TIME"),
+        ("TIME_TO_STRING(t)", "STRING(t) : STRING"),
+        ("DINT_TO_INT(x)", "G0209"),
+        ("DINT_TO_INT(70000)", "G0212"),
+        ("DINT_TO_WORD(d)", "G0202"),
+        ("dint_to_int(d)", "INT(d) : INT"),
+    ]);
+}
+
+#[test]
+fn functions_of_the_document() {
+    check(&[
+        ("Twice(n)", "Twice(n) : DINT"),
+        ("Twice(s) + 1", "(Twice(INT(s)) Add 1) : DINT"),
+        ("Twice(d)", "G0209"),
+        ("Pick(a, 1, x)", "Pick(a, 1.0, x) : REAL"),
+        ("Pick(q := x, first := a, p := n)", "Pick(a, REAL(n), x) : REAL"),
+        ("Pick(a, q := x)", "G0215"),
+        ("Pick(a, x, y, x)", "G0215"),
+        ("Pick(a, x, r := y)", "G0215"),
+        ("Twice", "G0208"),
+    ]);
+}
+
+#[test]
+fn questions_have_no_memory() {
+    check(&[("↑a", "G0217"), ("5s/a", "G0217"), ("not ↓a or b", "G0217")]);
+}
+
+#[test]
+fn what_is_needed_reaches_functions_that_ask_for_it() {
+    let doc = read(
+        "var n : INT  var x : REAL  var us : USINT
+         chart G { initial step 1 { P1 n := 1 + TRUNC(x)  P1 us := MAX(TRUNC(x), 2)  P1 x := 2 * SQRT(2) }
+         step 2  1 -> 2 when =1 -> 1 when n > 2 }",
+    );
+    let (unit, _) = resolved(&doc);
+    let crate::ir::ActionKind::Work { work, .. } = &unit.steps[0].actions[0].kind else { panic!() };
+    let crate::ir::StmtKind::Assign(_, value) = &work[0].kind else { panic!() };
+    assert_eq!(super::show(&unit, value), "(1 Add trunc INT(x))");
+}
+
+#[test]
+fn the_longest_row_and_the_deepest_nesting_are_resolved() {
+    let row = vec!["a"; 400].join(" or ");
+    let nest = format!("{}a{}", "(".repeat(100), ")".repeat(100));
+    let not = format!("{}a", "not ".repeat(100));
+    let doc = read(DOCUMENT);
+    let (mut unit, mut scopes) = resolved(&doc);
+    for text in [row, nest, not] {
+        assert!(ask(&mut unit, &mut scopes, &text, None).is_ok());
+    }
+}
