@@ -6,7 +6,7 @@ use crate::fault::Fault;
 use crate::run::{condition, value, write};
 use crate::state::{MEMORY, STARTS, State, TIMES, head};
 use crate::watch::is_due;
-use crate::{ControlBlock, NONE, Program};
+use crate::{Addr, ControlBlock, NONE, Program};
 
 // Inputs, in the order of `INPUTS`.
 const N: u32 = 0;
@@ -29,6 +29,8 @@ const S_FF: u64 = 1 << 16;
 const SD_FF: u64 = 1 << 17;
 const DS_FF: u64 = 1 << 18;
 const SL_FF: u64 = 1 << 19;
+/// Q as it was written last (of a plain block, in the word of its count).
+const WRITTEN: u64 = 1 << 63;
 /// Q, pulses P1 and P0 left out, at the last evaluation.
 const Q_BEFORE: u64 = 1 << 20;
 
@@ -42,7 +44,8 @@ pub(crate) fn count(p: &Program, s: &mut State, block: u32, input: u8, on: bool)
     let plain = p.t.blocks.get(block as usize).is_some_and(|b| b.plain);
     let at = base(p, block) as usize + if plain { 0 } else { usize::from(input) };
     let old = word(&s.w, at);
-    s.set(at, if on { old.wrapping_add(1) } else { old.saturating_sub(1) });
+    // The count of a plain block shares its word with the Q written last.
+    s.set(at, if on { old.wrapping_add(1) } else { old.wrapping_sub(u64::from(old & !WRITTEN != 0)) });
     p.layout.blocks.insert(&mut s.w, block);
 }
 
@@ -88,7 +91,7 @@ pub(crate) fn evaluate(p: &Program, s: &mut State) -> Result<(), Fault> {
         let at = base(p, i);
         let (q, run, live) = if b.plain { plain(s, at, b, gate) } else { full(p, s, at, gate) };
         if b.output.0 != NONE {
-            write(p, s, b.output, u64::from(q));
+            put(p, s, (at + if b.plain { 0 } else { MEMORY }) as usize, b.output, q);
         }
         if run && b.action != NONE {
             set_bit(&mut s.x.late, 0, b.action, true);
@@ -101,9 +104,18 @@ pub(crate) fn evaluate(p: &Program, s: &mut State) -> Result<(), Fault> {
     Ok(())
 }
 
+/// Writes Q where it has changed: between two changes the variable is free.
+fn put(p: &Program, s: &mut State, at: usize, output: Addr, q: bool) {
+    let memory = word(&s.w, at);
+    if (memory & WRITTEN != 0) != q {
+        s.set(at, memory ^ WRITTEN);
+        write(p, s, output, u64::from(q));
+    }
+}
+
 /// Q, whether a body runs, whether to look again at the next scan.
 fn plain(s: &State, at: u32, b: &ControlBlock, gate: bool) -> (bool, bool, bool) {
-    let q = word(&s.w, at as usize) != 0 && gate;
+    let q = word(&s.w, at as usize) & !WRITTEN != 0 && gate;
     (q, q, b.action != NONE && q)
 }
 
@@ -152,7 +164,8 @@ fn full(p: &Program, s: &mut State, at: u32, gate: bool) -> (bool, bool, bool) {
             || ds_ff
             || (sl_ff && !sl_done));
     let fell = memory & Q_BEFORE != 0 && !level;
-    let mut keep = inputs.iter().enumerate().fold(0u64, |m, (i, v)| m | u64::from(*v) << i);
+    let written = memory & WRITTEN;
+    let mut keep = written | inputs.iter().enumerate().fold(0u64, |m, (i, v)| m | u64::from(*v) << i);
     for (flag, v) in [(S_FF, s_ff), (SD_FF, sd_ff), (DS_FF, ds_ff), (SL_FF, sl_ff), (Q_BEFORE, level)] {
         if v {
             keep |= flag;

@@ -81,9 +81,12 @@ pub(crate) fn call(p: &Program, s: &mut State, block: Block, base: Addr) -> Resu
             w.set(1, u64::from(q));
         }
         Block::FTrig => {
-            let (clk, before) = (w.get(0), w.get(2));
-            w.set(2, clk);
-            w.set(1, u64::from(clk == 0 && before != 0));
+            // The memory is that of the standard's body, NOT CLK, and starts FALSE:
+            // a first call with CLK false is an edge.
+            let low = w.get(0) == 0;
+            let before = w.get(2) != 0;
+            w.set(2, u64::from(low));
+            w.set(1, u64::from(low && !before));
         }
         Block::Sr => {
             let q = w.get(0) != 0 || (w.get(1) == 0 && w.get(2) != 0);

@@ -220,44 +220,75 @@ pub(crate) fn resolve(p: &Program, s: &mut State) {
     let rules = &p.t.rules;
     if !rules.multi_token && p.has_contests {
         s.x.fired.sort_unstable();
-        exclude(p, s, |_| true);
+        exclude(p, s);
     } else if rules.multi_token && rules.numbered_exclusive && p.has_contests {
-        // By number first; equal numbers by rank.
-        let t = &p.t.transitions;
-        s.x.fired.sort_unstable_by_key(|i| (t.get(*i as usize).map_or(NONE, |t| t.priority), *i));
-        exclude(p, s, |t| t.priority != NONE);
+        by_number(p, s);
         s.x.fired.sort_unstable();
     } else if rules.sequential {
         s.x.fired.sort_unstable();
     }
 }
 
-/// Going through the fired transitions in their present order, drops those
-/// (among the ones that `takes` names) that share a step with an earlier one.
-fn exclude(p: &Program, s: &mut State, takes: impl Fn(&Transition) -> bool) {
+/// Going through the fired transitions in order of rank, drops those that share
+/// a step with one that was kept.
+fn exclude(p: &Program, s: &mut State) {
     let mut fired = core::mem::take(&mut s.x.fired);
     fired.retain(|i| {
         let Some(t) = p.t.transitions.get(*i as usize) else { return false };
-        if !t.shares || !takes(t) {
-            return true;
-        }
-        let mut free = true;
-        each_from(p, t, |f| free &= !bit(&s.x.taken, 0, f));
-        if free {
+        let free = !t.shares || is_free(p, s, t);
+        if free && t.shares {
             each_from(p, t, |f| {
                 set_bit(&mut s.x.taken, 0, f, true);
             });
         }
         free
     });
-    for i in &fired {
-        if let Some(t) = p.t.transitions.get(*i as usize) {
-            each_from(p, t, |f| {
-                set_bit(&mut s.x.taken, 0, f, false);
-            });
-        }
-    }
+    s.x.taken.fill(0);
     s.x.fired = fired;
+}
+
+/// Marks a rank that does not clear; tables are far smaller.
+const DROPPED: u32 = 1 << 31;
+
+/// Drops each transition that shares a step with one of a better number; one
+/// without a number has the worst. Equal ones do not exclude each other.
+fn by_number(p: &Program, s: &mut State) {
+    let t = &p.t.transitions;
+    let number = |i: u32| t.get(i as usize).map_or(NONE, |t| t.priority);
+    let mut fired = core::mem::take(&mut s.x.fired);
+    fired.sort_unstable_by_key(|i| (number(*i), *i));
+    let mut at = 0;
+    while let Some(&first) = fired.get(at) {
+        let end =
+            at + fired.get(at..).unwrap_or(&[]).iter().take_while(|i| number(**i) == number(first)).count();
+        // All of one number are judged before any of them takes its steps; a
+        // dropped one takes them as well.
+        for j in at..end {
+            let Some(t) = fired.get(j).and_then(|i| t.get(*i as usize)) else { continue };
+            if !is_free(p, s, t)
+                && let Some(i) = fired.get_mut(j)
+            {
+                *i |= DROPPED;
+            }
+        }
+        for i in fired.get(at..end).unwrap_or(&[]) {
+            if let Some(t) = t.get((*i & !DROPPED) as usize) {
+                each_from(p, t, |f| {
+                    set_bit(&mut s.x.taken, 0, f, true);
+                });
+            }
+        }
+        at = end;
+    }
+    fired.retain(|i| i & DROPPED == 0);
+    s.x.taken.fill(0);
+    s.x.fired = fired;
+}
+
+fn is_free(p: &Program, s: &State, t: &Transition) -> bool {
+    let mut free = true;
+    each_from(p, t, |f| free &= !bit(&s.x.taken, 0, f));
+    free
 }
 
 /// Notes what clears, for coverage and traces.

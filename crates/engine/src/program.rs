@@ -18,8 +18,8 @@ pub struct Rules {
     pub stable: bool,
     /// Every clearable transition is cleared, else by priority.
     pub multi_token: bool,
-    /// Under `multi_token`: among clearable transitions that share a step and
-    /// carry written priorities only the best clears.
+    /// Under `multi_token`: a clearable transition with a written priority keeps
+    /// those of a worse one, or of none, that share a step with it from clearing.
     pub numbered_exclusive: bool,
     /// Transitions clear one after the other, actions at once (JGrafchart).
     pub sequential: bool,
@@ -39,8 +39,9 @@ pub struct Rules {
     /// Boolean S and R are stored actions, else inputs of control blocks
     /// (used by `compile` alone).
     pub stored_set_reset: bool,
-    /// `each scan` actions skip the scan in which their step was activated.
-    pub periodic_after_activation: bool,
+    /// `each scan` actions run before the control blocks, and not in the scan in
+    /// which their step was activated.
+    pub periodic_first: bool,
     /// Most passes in a scan.
     pub bound: u32,
 }
@@ -65,7 +66,7 @@ impl Rules {
         scan_clock: false,
         pulse_first: false,
         stored_set_reset: true,
-        periodic_after_activation: false,
+        periodic_first: false,
         bound: 1_000_000,
     };
     /// IEC 61131-3.
@@ -88,7 +89,7 @@ impl Rules {
         sequential: true,
         keep_step_time: false,
         scan_clock: true,
-        periodic_after_activation: true,
+        periodic_first: true,
         ..Rules::PL7
     };
 }

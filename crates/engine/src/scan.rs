@@ -46,9 +46,6 @@ pub fn scan(p: &Program, s: &mut State, inputs: &[u64], now: i64) -> Result<Repo
     let done = if p.bare && s.has_only_flag(STARTED) && begin_bare(p, s, inputs, now) {
         let done = search(p, s, crate::bare::evolve);
         s.x.quiet = p.timeless && s.x.idle;
-        if done.is_ok() {
-            tock(s);
-        }
         done
     } else {
         begin(p, s, inputs, now).and_then(|()| search(p, s, pass)).and_then(|()| finish(p, s))
@@ -85,20 +82,13 @@ fn begin_bare(p: &Program, s: &mut State, inputs: &[u64], now: i64) -> bool {
     true
 }
 
-/// A scan is over.
-#[inline(always)]
-fn tock(s: &mut State) {
-    if let Some(w) = s.w.get_mut(head::SCANS) {
-        *w = w.wrapping_add(1);
-    }
-}
-
-/// Time goes on.
+/// A scan begins: time goes on.
 #[inline(always)]
 fn tick(s: &mut State, dt: i64, now: i64) {
     if let Some(head) = s.w.first_chunk_mut::<{ head::WORDS as usize }>() {
         head[head::DT] = dt as u64;
         head[head::NOW] = now as u64;
+        head[head::SCANS] = head[head::SCANS].wrapping_add(1);
     }
 }
 
@@ -114,7 +104,6 @@ fn still(p: &Program, s: &mut State, inputs: &[u64], now: i64) -> bool {
         return false;
     }
     tick(s, now.wrapping_sub(before), now);
-    tock(s);
     s.x.cleared.clear();
     s.x.ran.clear();
     true
@@ -184,8 +173,7 @@ pub fn begin(p: &Program, s: &mut State, inputs: &[u64], now: i64) -> Result<(),
     s.x.quiet = false;
     s.x.lone = NONE;
     let before = if fresh { now } else { s.now() };
-    s.set(head::DT, now.wrapping_sub(before) as u64);
-    s.set(head::NOW, now as u64);
+    tick(s, now.wrapping_sub(before), now);
     if p.has_periods {
         periods(p, s, now, fresh);
     }
@@ -214,7 +202,7 @@ pub fn begin(p: &Program, s: &mut State, inputs: &[u64], now: i64) -> Result<(),
         enabled(p, s, false)?;
     }
     s.x.moved = 0;
-    if t.rules.periodic_after_activation {
+    if t.rules.periodic_first {
         let base = p.layout.periodics.base() as usize;
         let State { w, x, .. } = s;
         for (i, b) in x.before.iter_mut().enumerate() {
@@ -322,18 +310,20 @@ pub fn pass(p: &Program, s: &mut State) -> Result<bool, Fault> {
 pub fn finish(p: &Program, s: &mut State) -> Result<(), Fault> {
     let t = &p.t;
     let moved = s.x.moved;
+    if t.rules.periodic_first {
+        periodics(p, s);
+        late(p, s)?;
+    }
     if !t.contributions.is_empty() {
         blocks::conditions(p, s)?;
     }
     if !t.blocks.is_empty() {
         blocks::evaluate(p, s)?;
     }
-    if !t.periodics.is_empty() {
+    if !t.rules.periodic_first {
         periodics(p, s);
     }
-    if s.x.late_any {
-        late(p, s)?;
-    }
+    late(p, s)?;
     if p.frame {
         run::run(p, s, t.post)?;
         run::run(p, s, t.tail)?;
@@ -348,7 +338,6 @@ pub fn finish(p: &Program, s: &mut State) -> Result<(), Fault> {
             return Err(FaultKind::Table.nowhere());
         }
     }
-    tock(s);
     s.x.quiet = p.timeless && s.x.idle && !s.x.changed && !waits(p, s);
     Ok(())
 }
@@ -365,7 +354,7 @@ fn waits(p: &Program, s: &State) -> bool {
 fn periodics(p: &Program, s: &mut State) {
     let mut walk = Walk::new(&p.layout.periodics, &s.w);
     while let Some(i) = walk.next(&p.layout.periodics, &s.w) {
-        if p.t.rules.periodic_after_activation && !bit(&s.x.before, 0, i) {
+        if p.t.rules.periodic_first && !bit(&s.x.before, 0, i) {
             continue;
         }
         let Some(&action) = p.t.periodics.get(i as usize) else { break };
@@ -376,6 +365,9 @@ fn periodics(p: &Program, s: &mut State) {
 
 /// Runs what was put aside for the end of the scan, in order.
 fn late(p: &Program, s: &mut State) -> Result<(), Fault> {
+    if !core::mem::take(&mut s.x.late_any) {
+        return Ok(());
+    }
     for k in 0..s.x.late.len() {
         while let Some(w) = s.x.late.get(k).copied().filter(|w| *w != 0) {
             let i = w.trailing_zeros();

@@ -29,7 +29,7 @@ pub(crate) mod head {
     pub(crate) const NOW: usize = 0;
     /// Time since the scan before, ns.
     pub(crate) const DT: usize = 1;
-    /// Scans finished.
+    /// Scans begun.
     pub(crate) const SCANS: usize = 2;
     /// Bit 0: started. Bit 1: stopped by a fault. Bit 2: requests wait.
     pub(crate) const FLAGS: usize = 3;
@@ -67,8 +67,8 @@ pub(crate) struct Layout {
     pub(crate) dirty: Tree,
     /// Timers running.
     pub(crate) running: Tree,
-    /// A word a watch: when its timer is due.
-    pub(crate) due: u32,
+    /// A word a watch: when its timer was started.
+    pub(crate) start: u32,
     /// A word a group: its active steps.
     pub(crate) groups: u32,
     /// A bit a contribution: it counts at present (those with a condition or time).
@@ -114,7 +114,7 @@ impl Layout {
         l.edged = Tree::reserve(watches, &mut next);
         l.dirty = Tree::reserve(watches, &mut next);
         l.running = Tree::reserve(watches, &mut next);
-        l.due = take(&mut next, watches);
+        l.start = take(&mut next, watches);
         l.groups = take(&mut next, n(t.groups.len()));
         let contributions = n(t.contributions.len());
         l.counted = take(&mut next, contributions.div_ceil(64));
@@ -245,10 +245,7 @@ impl State {
             taken: bits(steps),
             runs: Vec::with_capacity(t.actions.len() + t.events.len()),
             late: bits(t.actions.len()),
-            before: vec![
-                0;
-                if t.rules.periodic_after_activation { t.periodics.len().div_ceil(64) } else { 0 }
-            ],
+            before: vec![0; if t.rules.periodic_first { t.periodics.len().div_ceil(64) } else { 0 }],
             blocked: vec![false; t.charts.len()],
             forced_by: vec![crate::NONE; if p.has_orders { t.charts.len() } else { 0 }],
             due: vec![true; t.periods.len()],
@@ -345,7 +342,7 @@ impl State {
         word(&self.w, head::NOW) as i64
     }
 
-    /// Scans finished.
+    /// Scans begun.
     pub fn scans(&self) -> u64 {
         word(&self.w, head::SCANS)
     }

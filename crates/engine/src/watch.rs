@@ -94,16 +94,21 @@ fn timer(p: &Program, s: &mut State, i: u32, w: &Watch, e: bool, times: (Code, C
     if e != before {
         if e == q {
             l.running.remove(&mut s.w, i);
-            s.set((l.due + i) as usize, 0);
+            s.set((l.start + i) as usize, 0);
         } else {
-            let t = value(p, s, if e { times.0 } else { times.1 })? as i64;
-            s.set((l.due + i) as usize, now.saturating_add(t.max(0)) as u64);
+            s.set((l.start + i) as usize, now as u64);
             l.running.insert(&mut s.w, i);
         }
     }
-    if l.running.contains(&s.w, i) && now >= word(&s.w, (l.due + i) as usize) as i64 {
+    if !l.running.contains(&s.w, i) {
+        return Ok(());
+    }
+    // The time is taken as it is now, like PT of a TON.
+    let t = value(p, s, if e { times.0 } else { times.1 })? as i64;
+    let start = word(&s.w, (l.start + i) as usize) as i64;
+    if now >= start.saturating_add(t.max(0)) {
         l.running.remove(&mut s.w, i);
-        s.set((l.due + i) as usize, 0);
+        s.set((l.start + i) as usize, 0);
         set_bit(&mut s.w, l.q, i, e);
         mark(p, s, w.watches);
     }

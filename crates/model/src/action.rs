@@ -48,7 +48,7 @@ pub enum ActionKind {
 /// What a step orders of another chart.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Order {
-    /// A forcing order (IEC 60848:2013, 4.9).
+    /// A forcing order (IEC 60848:2013, 7.3).
     Force(Name, Situation),
     /// The named chart evolves only while some step enables it.
     Enable(Name),
@@ -56,7 +56,7 @@ pub enum Order {
     Mask(Name),
     /// The task is run; the transitions behind the step wait for its exit step.
     Call(Name),
-    /// The chart is enclosed by this step (IEC 60848:2013, 4.10).
+    /// The chart is enclosed by this step (IEC 60848:2013, 7.4).
     Enclose(Name),
 }
 

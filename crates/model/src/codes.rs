@@ -44,7 +44,7 @@ codes! {
 
     // Structure
     NEVER_STARTS = "G0101" Warning "a chart that never starts" "IEC 60848:2013, 4.5.2, rule 1";
-    NO_ENDS = "G0102" Error "an expansion or task without its ends" "IEC 60848:2013, 4.11";
+    NO_ENDS = "G0102" Error "an expansion or task without its ends" "IEC 60848:2013, 7.5";
     UNREACHABLE = "G0103" Warning "a step that no way leads to" "IEC 60848:2013, 4.4";
     NO_STEPS = "G0104" Error "a transition without any step" "IEC 60848:2013, 4.4";
     STEP_TWICE = "G0105" Warning "a step twice on one side of a transition" "IEC 60848:2013, 4.4";
@@ -57,7 +57,7 @@ codes! {
     UNKNOWN_NAME = "G0202" Error "a name that nothing has" "IEC 61131-3:2003, 2.4";
     AMBIGUOUS_STEP = "G0203" Error "a step name that several charts have" "IEC 60848:2013, 4.2";
     UNKNOWN_STEP = "G0204" Error "a step that is not there" "IEC 60848:2013, 4.2";
-    UNKNOWN_CHART = "G0205" Error "a chart that is not there" "IEC 60848:2013, 4.9";
+    UNKNOWN_CHART = "G0205" Error "a chart that is not there" "IEC 60848:2013, 7.3";
     UNKNOWN_MEMBER = "G0206" Error "a member that is not there" "IEC 61131-3:2003, 2.5.2";
     UNKNOWN_DIRECT = "G0207" Error "a direct address at which nothing is declared" "IEC 61131-3:2003, 2.4.1.1";
     WRONG_KIND = "G0208" Error "a name used as what it is not" "IEC 61131-3:2003, 2.5";
@@ -70,9 +70,9 @@ codes! {
     WRONG_ARGUMENTS = "G0215" Error "a call with the wrong arguments" "IEC 61131-3:2003, 2.5.1.1";
     RECURSION = "G0216" Error "functions that call each other in a circle" "IEC 61131-3:2003, 2.5";
     NOT_HERE = "G0217" Error "something that cannot stand in this place" "IEC 61131-3:2003, 2.5.1";
-    EXPANSION_SHARED = "G0218" Error "one expansion for two macro-steps" "IEC 60848:2013, 4.11";
-    NESTED_IN_ITSELF = "G0219" Error "a chart nested in itself" "IEC 60848:2013, 4.10 and 4.11";
-    ENCLOSED_TWICE = "G0220" Error "a chart enclosed by two steps" "IEC 60848:2013, 4.10";
+    EXPANSION_SHARED = "G0218" Error "one expansion for two macro-steps" "IEC 60848:2013, 7.5";
+    NESTED_IN_ITSELF = "G0219" Error "a chart nested in itself" "IEC 60848:2013, 7.4 and 7.5";
+    ENCLOSED_TWICE = "G0220" Error "a chart enclosed by two steps" "IEC 60848:2013, 7.4";
     EXIT_OUTSIDE = "G0221" Error "EXIT outside a loop" "IEC 61131-3:2003, 3.3.2.4";
     LABELS_OVERLAP = "G0222" Warning "CASE labels that overlap" "IEC 61131-3:2003, 3.3.2.3";
     EMPTY_RANGE = "G0223" Error "a range that ends before it starts" "IEC 61131-3:2003, 3.3.2.3";
@@ -87,14 +87,14 @@ codes! {
     CONFLICT = "G0301" Warning "branches that can be true together" "GRAFCET course, conflicts";
     EVENT_WITHOUT_EDGE = "G0302" Error "a stored action on an event without an edge" "IEC 60848:2013, 4.8.3";
     EDGE_IN_CONDITION = "G0303" Error "a continuous action with an edge in its condition" "IEC 60848:2013, 4.8.2";
-    FORCING_CIRCLE = "G0304" Error "charts that force each other in a circle" "IEC 60848:2013, 4.9";
-    FORCED_AND_ENCLOSED = "G0305" Warning "a chart that is forced and enclosed" "IEC 60848:2013, 4.9 and 4.10";
+    FORCING_CIRCLE = "G0304" Error "charts that force each other in a circle" "IEC 60848:2013, 7.3";
+    FORCED_AND_ENCLOSED = "G0305" Warning "a chart that is forced and enclosed" "IEC 60848:2013, 7.3 and 7.4";
     TWO_CLASSES = "G0306" Error "an output both continuous and stored" "IEC 60848:2013, 4.8";
     TWO_VALUES = "G0307" Error "two values for one variable at one moment" "IEC 60848:2013, 4.8.3";
     TWO_TIMES = "G0308" Error "two timed qualifiers on one action" "IEC 61131-3:2003, 2.6.4.4";
     PULSE_TWICE = "G0309" Warning "a pulse body that runs twice" "IEC 61131-3:2003, 2.6.4.5";
     RESTLESS_LOOP = "G0310" Warning "a loop that never rests" "IEC 60848:2013, 4.6";
-    MACRO_ACTS = "G0311" Warning "a macro-step with actions of its own" "IEC 60848:2013, 4.11";
+    MACRO_ACTS = "G0311" Warning "a macro-step with actions of its own" "IEC 60848:2013, 7.5";
     PRIORITY_IGNORED = "G0312" Warning "a priority without effect" "IEC 61131-3:2003, 2.6.5";
     ALSO_WRITTEN = "G0313" Warning "a variable that an action drives and a statement writes" "IEC 61131-3:2003, 2.6.4.5";
 
