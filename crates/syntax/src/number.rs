@@ -200,25 +200,19 @@ pub(crate) fn show_duration(ns: i64) -> String {
             }
         }
     }
-    // The rest in the largest unit that leaves at most three digits behind the point.
-    let unit = UNITS.iter().skip(3).find(|(_, size)| rest >= *size && (rest * 1000) % size == 0);
-    match unit {
-        Some((unit, size)) if rest % size == 0 => {
-            let _ = write!(out, "{}{unit}", rest / size);
+    for (unit, size) in UNITS.iter().skip(3) {
+        if rest == 0 || rest < *size {
+            continue;
         }
-        Some((unit, size)) => {
-            let digits = format!("{:03}", rest % size * 1000 / size);
-            let _ = write!(out, "{}.{}{unit}", rest / size, digits.trim_end_matches('0'));
+        let _ = write!(out, "{}", rest / size);
+        rest %= size;
+        // Up to three digits behind the point read better than a smaller unit.
+        if rest > 0 && rest * 1000 % size == 0 {
+            let digits = format!("{:03}", rest * 1000 / size);
+            let _ = write!(out, ".{}", digits.trim_end_matches('0'));
+            rest = 0;
         }
-        None if rest > 0 => {
-            for (unit, size) in UNITS.iter().skip(3) {
-                if rest >= *size {
-                    let _ = write!(out, "{}{unit}", rest / size);
-                    rest %= size;
-                }
-            }
-        }
-        None => {}
+        out.push_str(unit);
     }
     out
 }

@@ -1,0 +1,256 @@
+//! Random documents.
+
+use crate::expressions::{block, direct, duration, expr, name, path, simple_stmt, text, ty};
+use crate::world;
+use g7_model::{
+    Action, ActionKind, Block, Body, BodyLang, Chart, ChartItem, ChartKind, Document, Expr, ExprKind, Function,
+    Item, Name, NamedAction, Note, Order, Param, Path, Place, Profile, ProfileName, Qualifier, Section,
+    Situation, Span, Step, StepKind, Stmt, StmtKind, Switch, Target, TargetPlc, Transition, VarDecl, VarKind,
+    Work,
+};
+use proptest::prelude::*;
+
+pub(crate) fn at() -> Place {
+    Place::default()
+}
+
+pub(crate) fn comment() -> impl Strategy<Value = Option<Box<str>>> {
+    prop::option::of(text())
+}
+
+fn names(range: std::ops::Range<usize>) -> impl Strategy<Value = Vec<Name>> {
+    prop::collection::vec(name(), range)
+}
+
+fn switch() -> impl Strategy<Value = Switch> {
+    (any::<bool>(), 0usize..9, any::<u32>()).prop_map(|(b, i, n)| match i {
+        0 => Switch::Stable(b),
+        1 => Switch::MultiToken(b),
+        2 => Switch::Sequential(b),
+        3 => Switch::ParallelActions(b),
+        4 => Switch::FinalScan(b),
+        5 => Switch::KeepStepTime(b),
+        6 => Switch::ScanClock(b),
+        7 => Switch::PulseFirst(b),
+        _ => Switch::Bound(n),
+    })
+}
+
+fn variable() -> impl Strategy<Value = VarDecl> {
+    let kind = prop::sample::select(vec![VarKind::Input, VarKind::Output, VarKind::Var, VarKind::Const]);
+    let address = prop_oneof![
+        direct().prop_map(|d| Name::new(format!("%{d}"), Span::default())),
+        name(),
+        text().prop_map(|t| Name::new(t, Span::default())),
+    ];
+    let rest = (prop::option::of(address), any::<bool>(), prop::option::of(expr()), comment());
+    (kind, names(1..4), ty(), prop::option::of(expr()), expr(), rest).prop_map(
+        |(kind, names, ty, init, value, (address, flag, safe, comment))| VarDecl {
+            kind,
+            names,
+            ty,
+            init: if kind == VarKind::Const { Some(value) } else { init },
+            address: address.filter(|_| kind != VarKind::Const),
+            inverted: flag && matches!(kind, VarKind::Input | VarKind::Output),
+            retain: flag && kind == VarKind::Var,
+            safe: safe.filter(|_| kind == VarKind::Output),
+            comment,
+            at: at(),
+        },
+    )
+}
+
+fn body() -> impl Strategy<Value = Body> {
+    prop_oneof![
+        3 => block().prop_map(Body::St),
+        1 => (any::<bool>(), "[a-z \n{]{0,8}").prop_map(|(il, text)| {
+            let closing = "}".repeat(text.matches('{').count());
+            let lang = if il { BodyLang::Il } else { BodyLang::Ld };
+            Body::Other(lang, format!("{text}{closing}").into(), at())
+        }),
+    ]
+}
+
+fn work() -> impl Strategy<Value = Work> {
+    prop_oneof![
+        2 => simple_stmt().prop_map(|s| Work::Single(Box::new(s))),
+        1 => block().prop_map(Work::Block),
+    ]
+}
+
+fn order() -> impl Strategy<Value = Order> {
+    let situation = prop_oneof![
+        Just(Situation::Init),
+        Just(Situation::Current),
+        names(0..3).prop_map(Situation::Steps),
+    ];
+    prop_oneof![
+        (name(), situation).prop_map(|(n, s)| Order::Force(n, s)),
+        name().prop_map(Order::Enable),
+        name().prop_map(Order::Mask),
+        name().prop_map(Order::Call),
+        name().prop_map(Order::Enclose),
+    ]
+}
+
+fn action() -> impl Strategy<Value = Action> {
+    let target = prop_oneof![
+        2 => path().prop_map(Target::Path),
+        1 => direct().prop_map(|d| Target::Direct(d, at())),
+        2 => work().prop_map(Target::Work),
+    ];
+    let qualified = (prop::sample::select(Qualifier::ALL.to_vec()), expr(), target, prop::option::of(expr()))
+        .prop_map(|(qualifier, time, target, condition)| ActionKind::Qualified {
+            qualifier,
+            time: Some(time).filter(|_| qualifier.timed()),
+            target,
+            condition,
+        });
+    prop_oneof![
+        5 => qualified,
+        1 => (expr(), work()).prop_map(|(event, work)| ActionKind::OnEvent { event, work }),
+        1 => (work(), prop::option::of(expr())).prop_map(|(work, condition)| ActionKind::EachScan { work, condition }),
+        2 => order().prop_map(ActionKind::Order),
+        1 => text().prop_map(ActionKind::Comment),
+    ]
+    .prop_map(|kind| Action { kind, at: at() })
+}
+
+fn step() -> impl Strategy<Value = Step> {
+    let kind = prop_oneof![
+        3 => Just(StepKind::Plain),
+        1 => Just(StepKind::Entry),
+        1 => Just(StepKind::Exit),
+        1 => Just(StepKind::Enclosing),
+        1 => name().prop_map(StepKind::Macro),
+    ];
+    let flags = (any::<bool>(), any::<bool>(), any::<bool>());
+    (name(), kind, flags, comment(), prop::collection::vec(action(), 0..4)).prop_map(
+        |(name, kind, (initial, linked, braces), comment, actions)| Step {
+            name,
+            kind,
+            initial,
+            linked,
+            comment,
+            braces: braces || !actions.is_empty(),
+            actions,
+            at: at(),
+        },
+    )
+}
+
+fn transition() -> impl Strategy<Value = Transition> {
+    let rest = (prop::option::of(any::<u32>()), comment(), prop::option::of(block()), any::<bool>());
+    (prop::option::of(name()), names(0..3), names(0..3), expr(), rest).prop_map(
+        |(label, from, to, receptivity, (priority, comment, on_clearing, chained))| Transition {
+            label,
+            from,
+            to,
+            receptivity,
+            priority,
+            comment,
+            on_clearing,
+            chained,
+            at: at(),
+        },
+    )
+}
+
+fn named_action() -> impl Strategy<Value = NamedAction> {
+    (name(), comment(), body()).prop_map(|(name, comment, body)| NamedAction { name, comment, body, at: at() })
+}
+
+fn section() -> impl Strategy<Value = Section> {
+    (name(), block(), prop::option::of(expr())).prop_map(|(name, block, value)| match value {
+        None => Section { name, body: block, short: false, at: at() },
+        Some(value) => {
+            let kind = ExprKind::Path(Path { names: vec![name.clone()] });
+            let kind = StmtKind::Assign { target: Expr { kind, at: at() }, value };
+            let statements = vec![Stmt { kind, at: at() }];
+            Section { name, body: Block { locals: Vec::new(), statements, at: at() }, short: true, at: at() }
+        }
+    })
+}
+
+fn chart_item() -> impl Strategy<Value = ChartItem> {
+    prop_oneof![
+        1 => variable().prop_map(ChartItem::Var),
+        4 => step().prop_map(ChartItem::Step),
+        4 => transition().prop_map(ChartItem::Transition),
+        1 => body().prop_map(|b| ChartItem::Pre(b, at())),
+        1 => body().prop_map(|b| ChartItem::Post(b, at())),
+        1 => named_action().prop_map(ChartItem::Action),
+        1 => section().prop_map(ChartItem::Section),
+    ]
+}
+
+fn chart() -> impl Strategy<Value = Chart> {
+    let kind = prop::sample::select(vec![ChartKind::Chart, ChartKind::Expansion, ChartKind::Task]);
+    let items = prop::collection::vec(chart_item(), 0..6);
+    (kind, name(), comment(), prop::option::of(duration()), items).prop_map(
+        |(kind, name, comment, every, mut items)| {
+            chain(&mut items);
+            let every = every.filter(|_| kind == ChartKind::Chart);
+            Chart { kind, name, comment, every, items, at: at() }
+        },
+    )
+}
+
+/// Makes what claims to be chained follow the transition before it.
+fn chain(items: &mut [ChartItem]) {
+    let mut before: Option<Vec<Name>> = None;
+    for item in items {
+        let ChartItem::Transition(t) = item else {
+            before = None;
+            continue;
+        };
+        match before.filter(|_| t.chained) {
+            Some(from) => {
+                t.from = from;
+                t.label = None;
+            }
+            None => t.chained = false,
+        }
+        before = Some(t.to.clone());
+    }
+}
+
+pub(crate) fn param() -> impl Strategy<Value = Param> {
+    (name(), ty()).prop_map(|(name, ty)| Param { name, ty })
+}
+
+fn item() -> impl Strategy<Value = Item> {
+    let profile = (prop::sample::select(ProfileName::ALL.to_vec()), prop::collection::vec(switch(), 0..3)).prop_map(
+        |(name, switches)| {
+            let switches = switches.into_iter().map(|s| (s, at())).collect();
+            Item::Profile(Profile { name, switches, at: at() })
+        },
+    );
+    let function = (name(), prop::collection::vec(param(), 0..3), ty(), block()).prop_map(
+        |(name, params, result, body)| Item::Function(Function { name, params, result, body, at: at() }),
+    );
+    prop_oneof![
+        1 => profile,
+        1 => duration().prop_map(|ns| Item::Cycle(ns, at())),
+        1 => prop::sample::select(TargetPlc::ALL.to_vec()).prop_map(|t| Item::Target(t, at())),
+        3 => variable().prop_map(Item::Var),
+        4 => chart().prop_map(Item::Chart),
+        1 => named_action().prop_map(Item::Action),
+        1 => section().prop_map(Item::Section),
+        1 => function,
+        1 => body().prop_map(|b| Item::Pre(b, at())),
+        1 => body().prop_map(|b| Item::Post(b, at())),
+        2 => world::plant().prop_map(Item::Plant),
+        2 => world::test().prop_map(Item::Test),
+        1 => world::property().prop_map(Item::Prove),
+        1 => world::layout().prop_map(Item::Layout),
+    ]
+}
+
+/// Any document without `Bad` expressions.
+pub(crate) fn document() -> impl Strategy<Value = Document> {
+    let note = prop_oneof!["//[a-z]{0,5}", "/\\*[a-z\n]{0,5}\\*/"]
+        .prop_map(|text| Note { text: text.into(), at: Span::default() });
+    (prop::collection::vec(item(), 0..4), prop::collection::vec(note, 0..2))
+        .prop_map(|(items, notes)| Document { items, notes })
+}

@@ -1,0 +1,178 @@
+//! Random names, expressions and statements.
+
+use g7_model::{
+    Arg, BinaryOp, Block, CaseArm, Expr, ExprKind, FbKind, Literal, Local, Name, Path, Place, Span, Stmt,
+    StmtKind, Type, UnaryOp,
+};
+use proptest::prelude::*;
+
+/// Names of all sorts: plain, numbers, words of the language, and those that need back-ticks.
+pub(crate) fn name() -> impl Strategy<Value = Name> {
+    let awkward = prop::sample::select(vec![
+        "at", "retain", "on", "fault", "INIT", "every", "scan", "when", "not", "IF", "exit", "step", "TRUE",
+        "delay", "st", "il", "N", "S", "cold", "set", "wait", "within", "in", "max", "length", "t", "T", "priority",
+        "Vent på start", "a`b", "a\\b", "\\", "x y\nz", "2x", "1_0", "%I0.0", "ä", "e\u{301}", "a·b", "a.b", "'",
+        "X12", "_", "12s", "entry", "BOOL", "//", "(*",
+    ]);
+    prop_oneof![
+        4 => "[a-zA-Z_][a-zA-Z0-9_]{0,5}",
+        2 => "[0-9]{1,4}",
+        3 => awkward.prop_map(String::from),
+    ]
+    .prop_map(|text| Name::new(text, Span::default()))
+}
+
+pub(crate) fn path() -> impl Strategy<Value = Path> {
+    prop::collection::vec(name(), 1..4).prop_map(|names| Path { names })
+}
+
+pub(crate) fn text() -> impl Strategy<Value = Box<str>> {
+    "[a-z \"'$\\\\`{}/*\n\r\té–%&0-9]{0,12}".prop_map(Box::from)
+}
+
+pub(crate) fn ty() -> impl Strategy<Value = Type> {
+    prop_oneof![
+        Just(Type::Bool),
+        Just(Type::Int),
+        Just(Type::Ulint),
+        Just(Type::Lreal),
+        Just(Type::Time),
+        (0u16..300).prop_map(Type::String),
+        prop::sample::select(FbKind::ALL.to_vec()).prop_map(Type::Fb),
+    ]
+}
+
+pub(crate) fn duration() -> impl Strategy<Value = i64> {
+    prop_oneof![
+        0..10_000i64,
+        (0..100_000i64).prop_map(|ms| ms * 1_000_000),
+        (0..1_000_000i64).prop_map(|s| s * 1_000_000_000),
+        any::<i64>(),
+    ]
+}
+
+fn literal() -> impl Strategy<Value = Literal> {
+    prop_oneof![
+        any::<bool>().prop_map(Literal::Bool),
+        (0..100i128).prop_map(|v| Literal::Int(v, None)),
+        any::<u64>().prop_map(|v| Literal::Int(v.into(), None)),
+        any::<i8>().prop_map(|v| Literal::Int(v.into(), Some(Type::Sint))),
+        any::<i64>().prop_map(|v| Literal::Int(v.into(), Some(Type::Lint))),
+        any::<u64>().prop_map(|v| Literal::Int(v.into(), Some(Type::Ulint))),
+        "[0-9]{1,4}\\.[0-9]{1,4}([eE][-+]?[0-9]{1,2})?".prop_map(|t| Literal::Real(t.into(), None)),
+        "[0-9]{1,4}[eE][-+]?[0-9]{1,2}".prop_map(|t| Literal::Real(t.into(), None)),
+        "-?[0-9]{1,4}(\\.[0-9]{1,4})?".prop_map(|t| Literal::Real(t.into(), Some(Type::Real))),
+        duration().prop_map(Literal::Time),
+        text().prop_map(Literal::Str),
+    ]
+}
+
+fn at() -> Place {
+    Place::default()
+}
+
+fn of(kind: ExprKind) -> Expr {
+    Expr { kind, at: at() }
+}
+
+const UNARY: [UnaryOp; 4] = [UnaryOp::Not, UnaryOp::Neg, UnaryOp::Rise, UnaryOp::Fall];
+const BINARY: [BinaryOp; 16] = [
+    BinaryOp::Or,
+    BinaryOp::Xor,
+    BinaryOp::And,
+    BinaryOp::Dot,
+    BinaryOp::Eq,
+    BinaryOp::Ne,
+    BinaryOp::Lt,
+    BinaryOp::Le,
+    BinaryOp::Gt,
+    BinaryOp::Ge,
+    BinaryOp::Add,
+    BinaryOp::Sub,
+    BinaryOp::Mul,
+    BinaryOp::Div,
+    BinaryOp::Mod,
+    BinaryOp::Pow,
+];
+
+pub(crate) fn direct() -> impl Strategy<Value = Box<str>> {
+    "[IQMXS][A-Z]{0,1}[0-9]{1,2}(\\.[0-9T]{1,2}){0,2}".prop_map(Box::from)
+}
+
+/// Any expression without `Bad`.
+pub(crate) fn expr() -> impl Strategy<Value = Expr> {
+    let leaf = prop_oneof![
+        literal().prop_map(|l| of(ExprKind::Literal(l))),
+        path().prop_map(|p| of(ExprKind::Path(p))),
+        direct().prop_map(|d| of(ExprKind::Direct(d))),
+    ];
+    leaf.prop_recursive(5, 24, 3, |inner| {
+        let boxed = inner.clone().prop_map(Box::new);
+        let time = duration().prop_map(|ns| Box::new(of(ExprKind::Literal(Literal::Time(ns)))));
+        let t = prop_oneof![2 => time, 1 => boxed.clone()];
+        prop_oneof![
+            2 => (prop::sample::select(UNARY.to_vec()), boxed.clone()).prop_map(|(op, e)| of(ExprKind::Unary(op, e))),
+            5 => (prop::sample::select(BINARY.to_vec()), boxed.clone(), boxed.clone())
+                .prop_map(|(op, a, b)| of(ExprKind::Binary(op, a, b))),
+            2 => (t.clone(), boxed, prop::option::of(t))
+                .prop_map(|(t1, e, t2)| of(ExprKind::Timer { t1, e, t2 })),
+            1 => (path(), args(inner)).prop_map(|(p, a)| of(ExprKind::Call(p, a))),
+        ]
+    })
+}
+
+fn args(value: impl Strategy<Value = Expr>) -> impl Strategy<Value = Vec<Arg>> {
+    let plain = (prop::option::of(name()), value).prop_map(|(name, value)| Arg { name, output: false, value });
+    let output = (name(), path()).prop_map(|(n, p)| Arg { name: Some(n), output: true, value: of(ExprKind::Path(p)) });
+    prop::collection::vec(prop_oneof![3 => plain, 1 => output], 0..4)
+}
+
+fn small_expr() -> impl Strategy<Value = Expr> {
+    expr()
+}
+
+pub(crate) fn simple_stmt() -> impl Strategy<Value = Stmt> {
+    let target = prop_oneof![
+        3 => path().prop_map(|p| of(ExprKind::Path(p))),
+        1 => direct().prop_map(|d| of(ExprKind::Direct(d))),
+    ];
+    prop_oneof![
+        3 => (target, small_expr()).prop_map(|(target, value)| StmtKind::Assign { target, value }),
+        1 => (path(), args(small_expr())).prop_map(|(p, a)| StmtKind::Call(p, a)),
+    ]
+    .prop_map(|kind| Stmt { kind, at: at() })
+}
+
+fn stmt() -> impl Strategy<Value = Stmt> {
+    let leaf = prop_oneof![
+        6 => simple_stmt(),
+        1 => Just(Stmt { kind: StmtKind::Exit, at: at() }),
+        1 => Just(Stmt { kind: StmtKind::Return, at: at() }),
+    ];
+    leaf.prop_recursive(3, 12, 3, |inner| {
+        let list = prop::collection::vec(inner, 0..3);
+        let e = small_expr;
+        prop_oneof![
+            (prop::collection::vec((e(), list.clone()), 1..3), list.clone()).prop_map(|(a, o)| StmtKind::If(a, o)),
+            (e(), prop::collection::vec(arm(list.clone()), 0..3), list.clone())
+                .prop_map(|(s, a, o)| StmtKind::Case(s, a, o)),
+            (name(), e(), e(), prop::option::of(e()), list.clone())
+                .prop_map(|(var, from, to, by, body)| StmtKind::For { var, from, to, by, body }),
+            (e(), list.clone()).prop_map(|(c, b)| StmtKind::While(c, b)),
+            (list, e()).prop_map(|(b, c)| StmtKind::Repeat(b, c)),
+        ]
+        .prop_map(|kind| Stmt { kind, at: at() })
+    })
+}
+
+fn arm(body: impl Strategy<Value = Vec<Stmt>>) -> impl Strategy<Value = CaseArm> {
+    let label = (small_expr(), prop::option::of(small_expr()));
+    (prop::collection::vec(label, 1..3), body).prop_map(|(labels, body)| CaseArm { labels, body })
+}
+
+pub(crate) fn block() -> impl Strategy<Value = Block> {
+    let local = (prop::collection::vec(name(), 1..3), ty(), prop::option::of(small_expr()))
+        .prop_map(|(names, ty, init)| Local { names, ty, init, at: at() });
+    (prop::collection::vec(local, 0..2), prop::collection::vec(stmt(), 0..4))
+        .prop_map(|(locals, statements)| Block { locals, statements, at: at() })
+}
