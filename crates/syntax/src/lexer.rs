@@ -106,10 +106,15 @@ impl<'a> Lexer<'a> {
 
     /// The next token; `End` for ever at the end.
     pub(crate) fn token(&mut self) -> Token {
-        let newline = self.blanks();
-        let start = self.pos;
-        let glued = start == self.last_end;
-        let kind = self.scan(glued);
+        let mut newline = self.blanks();
+        let mut start = self.pos;
+        let mut kind = self.scan(start == self.last_end);
+        // What has no meaning has been told; the rest may well be right.
+        while kind == Tok::Bad {
+            newline |= self.blanks();
+            start = self.pos;
+            kind = self.scan(false);
+        }
         self.last = kind;
         self.last_end = self.pos;
         Token { kind, start: offset(start), end: offset(self.pos), newline }

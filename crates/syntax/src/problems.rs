@@ -22,6 +22,11 @@ impl Problems {
         }
     }
 
+    /// Whether more problems would change nothing.
+    pub(crate) fn is_full(&self) -> bool {
+        self.overflow.is_some()
+    }
+
     /// All of them in the order of the text.
     pub(crate) fn finish(mut self) -> Vec<Problem> {
         self.list.sort_by_key(|p| p.at.start);

@@ -109,7 +109,7 @@ impl<'a> Parser<'a> {
     fn correct(&mut self, list: &[&'static str]) -> bool {
         let word = self.word();
         let at = self.here();
-        if word.is_empty() || list.contains(&word) || self.told == Some(at.start) {
+        if word.is_empty() || list.contains(&word) || self.silent() {
             return false;
         }
         let follows = matches!(
@@ -186,9 +186,14 @@ impl<'a> Parser<'a> {
 
     // Problems
 
-    /// Reports a problem, unless one was told at the token in hand already.
+    /// Whether a problem was told at the token in hand already, or too many elsewhere.
+    fn silent(&self) -> bool {
+        self.told == Some(self.cur.start) || self.lexer.problems.is_full()
+    }
+
+    /// Reports a problem, if it is not to be silent.
     fn report(&mut self, at: Span, make: impl FnOnce() -> Problem) {
-        if self.told != Some(self.cur.start) {
+        if !self.silent() {
             self.told = Some(self.cur.start);
             self.lexer.problems.add(at, make);
         }
@@ -228,6 +233,9 @@ impl<'a> Parser<'a> {
     }
 
     fn expected_help(&mut self, what: &str, help: Option<&str>) {
+        if self.silent() {
+            return;
+        }
         let (at, words) = self.expected_words(what);
         self.report(at, || {
             let problem = Problem::new(&codes::EXPECTED, at, words);
@@ -263,7 +271,7 @@ impl<'a> Parser<'a> {
     /// Expects the bracket that closes the one at `open`.
     fn close(&mut self, kind: Tok, sign: &str, open: Span) -> bool {
         let here = self.eat(kind);
-        if !here {
+        if !here && !self.silent() {
             let (at, words) = self.expected_words(sign);
             let open_sign = self.text.get(open.start as usize..open.end as usize).unwrap_or_default();
             self.report(at, || {

@@ -3,10 +3,10 @@
 use crate::expressions::{block, direct, duration, expr, name, path, simple_stmt, text, ty};
 use crate::world;
 use g7_model::{
-    Action, ActionKind, Block, Body, BodyLang, Chart, ChartItem, ChartKind, Document, Expr, ExprKind, Function,
-    Item, Name, NamedAction, Note, Order, Param, Path, Place, Profile, ProfileName, Qualifier, Section,
-    Situation, Span, Step, StepKind, Stmt, StmtKind, Switch, Target, TargetPlc, Transition, VarDecl, VarKind,
-    Work,
+    Action, ActionKind, Block, Body, BodyLang, Chart, ChartItem, ChartKind, Document, Expr, ExprKind,
+    Function, Item, Name, NamedAction, Note, Order, Param, Path, Place, Profile, ProfileName, Qualifier,
+    Section, Situation, Span, Step, StepKind, Stmt, StmtKind, Switch, Target, TargetPlc, Transition, VarDecl,
+    VarKind, Work,
 };
 use proptest::prelude::*;
 
@@ -79,11 +79,8 @@ fn work() -> impl Strategy<Value = Work> {
 }
 
 fn order() -> impl Strategy<Value = Order> {
-    let situation = prop_oneof![
-        Just(Situation::Init),
-        Just(Situation::Current),
-        names(0..3).prop_map(Situation::Steps),
-    ];
+    let situation =
+        prop_oneof![Just(Situation::Init), Just(Situation::Current), names(0..3).prop_map(Situation::Steps),];
     prop_oneof![
         (name(), situation).prop_map(|(n, s)| Order::Force(n, s)),
         name().prop_map(Order::Enable),
@@ -157,7 +154,12 @@ fn transition() -> impl Strategy<Value = Transition> {
 }
 
 fn named_action() -> impl Strategy<Value = NamedAction> {
-    (name(), comment(), body()).prop_map(|(name, comment, body)| NamedAction { name, comment, body, at: at() })
+    (name(), comment(), body()).prop_map(|(name, comment, body)| NamedAction {
+        name,
+        comment,
+        body,
+        at: at(),
+    })
 }
 
 fn section() -> impl Strategy<Value = Section> {
@@ -220,12 +222,11 @@ pub(crate) fn param() -> impl Strategy<Value = Param> {
 }
 
 fn item() -> impl Strategy<Value = Item> {
-    let profile = (prop::sample::select(ProfileName::ALL.to_vec()), prop::collection::vec(switch(), 0..3)).prop_map(
-        |(name, switches)| {
+    let profile = (prop::sample::select(ProfileName::ALL.to_vec()), prop::collection::vec(switch(), 0..3))
+        .prop_map(|(name, switches)| {
             let switches = switches.into_iter().map(|s| (s, at())).collect();
             Item::Profile(Profile { name, switches, at: at() })
-        },
-    );
+        });
     let function = (name(), prop::collection::vec(param(), 0..3), ty(), block()).prop_map(
         |(name, params, result, body)| Item::Function(Function { name, params, result, body, at: at() }),
     );

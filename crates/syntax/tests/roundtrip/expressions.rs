@@ -9,10 +9,54 @@ use proptest::prelude::*;
 /// Names of all sorts: plain, numbers, words of the language, and those that need back-ticks.
 pub(crate) fn name() -> impl Strategy<Value = Name> {
     let awkward = prop::sample::select(vec![
-        "at", "retain", "on", "fault", "INIT", "every", "scan", "when", "not", "IF", "exit", "step", "TRUE",
-        "delay", "st", "il", "N", "S", "cold", "set", "wait", "within", "in", "max", "length", "t", "T", "priority",
-        "Vent på start", "a`b", "a\\b", "\\", "x y\nz", "2x", "1_0", "%I0.0", "ä", "e\u{301}", "a·b", "a.b", "'",
-        "X12", "_", "12s", "entry", "BOOL", "//", "(*",
+        "at",
+        "retain",
+        "on",
+        "fault",
+        "INIT",
+        "every",
+        "scan",
+        "when",
+        "not",
+        "IF",
+        "exit",
+        "step",
+        "TRUE",
+        "delay",
+        "st",
+        "il",
+        "N",
+        "S",
+        "cold",
+        "set",
+        "wait",
+        "within",
+        "in",
+        "max",
+        "length",
+        "t",
+        "T",
+        "priority",
+        "Vent på start",
+        "a`b",
+        "a\\b",
+        "\\",
+        "x y\nz",
+        "2x",
+        "1_0",
+        "%I0.0",
+        "ä",
+        "e\u{301}",
+        "a·b",
+        "a.b",
+        "'",
+        "X12",
+        "_",
+        "12s",
+        "entry",
+        "BOOL",
+        "//",
+        "(*",
     ]);
     prop_oneof![
         4 => "[a-zA-Z_][a-zA-Z0-9_]{0,5}",
@@ -122,8 +166,10 @@ pub(crate) fn expr() -> impl Strategy<Value = Expr> {
 }
 
 fn args(value: impl Strategy<Value = Expr>) -> impl Strategy<Value = Vec<Arg>> {
-    let plain = (prop::option::of(name()), value).prop_map(|(name, value)| Arg { name, output: false, value });
-    let output = (name(), path()).prop_map(|(n, p)| Arg { name: Some(n), output: true, value: of(ExprKind::Path(p)) });
+    let plain =
+        (prop::option::of(name()), value).prop_map(|(name, value)| Arg { name, output: false, value });
+    let output =
+        (name(), path()).prop_map(|(n, p)| Arg { name: Some(n), output: true, value: of(ExprKind::Path(p)) });
     prop::collection::vec(prop_oneof![3 => plain, 1 => output], 0..4)
 }
 
@@ -153,7 +199,8 @@ fn stmt() -> impl Strategy<Value = Stmt> {
         let list = prop::collection::vec(inner, 0..3);
         let e = small_expr;
         prop_oneof![
-            (prop::collection::vec((e(), list.clone()), 1..3), list.clone()).prop_map(|(a, o)| StmtKind::If(a, o)),
+            (prop::collection::vec((e(), list.clone()), 1..3), list.clone())
+                .prop_map(|(a, o)| StmtKind::If(a, o)),
             (e(), prop::collection::vec(arm(list.clone()), 0..3), list.clone())
                 .prop_map(|(s, a, o)| StmtKind::Case(s, a, o)),
             (name(), e(), e(), prop::option::of(e()), list.clone())

@@ -10,11 +10,10 @@ use proptest::prelude::*;
 
 fn plant_item() -> impl Strategy<Value = PlantItem> {
     let names = || prop::collection::vec(name(), 1..3);
-    let state = (names(), ty(), prop::option::of(expr()), prop::option::of((expr(), expr())), comment()).prop_map(
-        |(names, ty, init, limits, comment)| {
+    let state = (names(), ty(), prop::option::of(expr()), prop::option::of((expr(), expr())), comment())
+        .prop_map(|(names, ty, init, limits, comment)| {
             PlantItem::State(StateVar { names, ty, init, limits, comment, at: at() })
-        },
-    );
+        });
     let constant = (names(), ty(), expr(), comment())
         .prop_map(|(names, ty, value, comment)| PlantItem::Const { names, ty, value, comment, at: at() });
     let init = prop::collection::vec(prop::collection::vec(expr(), 0..3), 0..3);
@@ -27,15 +26,22 @@ fn plant_item() -> impl Strategy<Value = PlantItem> {
             PlantItem::Arrivals(Arrivals { name, least, most, when, body, at: at() })
         },
     );
-    let binding =
-        (name(), name(), expr()).prop_map(|(element, attribute, value)| Binding { element, attribute, value });
+    let binding = (name(), name(), expr()).prop_map(|(element, attribute, value)| Binding {
+        element,
+        attribute,
+        value,
+    });
     let view = (text(), prop::collection::vec(binding, 0..3))
         .prop_map(|(file, bindings)| PlantItem::View(View { file, bindings, at: at() }));
     prop_oneof![
         state,
         constant,
-        (name(), expr(), prop::option::of(expr()))
-            .prop_map(|(state, value, when)| PlantItem::Rate(Rate { state, value, when, at: at() })),
+        (name(), expr(), prop::option::of(expr())).prop_map(|(state, value, when)| PlantItem::Rate(Rate {
+            state,
+            value,
+            when,
+            at: at()
+        })),
         (name(), expr()).prop_map(|(input, value)| PlantItem::Drive(Drive { input, value, at: at() })),
         (expr(), block()).prop_map(|(e, b)| PlantItem::On(e, b, at())),
         block().prop_map(|b| PlantItem::Each(b, at())),
@@ -46,8 +52,12 @@ fn plant_item() -> impl Strategy<Value = PlantItem> {
 }
 
 pub(crate) fn plant() -> impl Strategy<Value = Plant> {
-    (name(), comment(), prop::collection::vec(plant_item(), 0..4))
-        .prop_map(|(name, comment, items)| Plant { name, comment, items, at: at() })
+    (name(), comment(), prop::collection::vec(plant_item(), 0..4)).prop_map(|(name, comment, items)| Plant {
+        name,
+        comment,
+        items,
+        at: at(),
+    })
 }
 
 fn test_stmt() -> impl Strategy<Value = TestStmt> {
@@ -98,8 +108,15 @@ pub(crate) fn layout() -> impl Strategy<Value = Layout> {
         any::<u32>().prop_map(Placed::TransitionNumber),
         text().prop_map(Placed::Comment),
     ];
-    let place = (what, -1_000_000..=1_000_000i32, any::<i32>())
-        .prop_map(|(what, x, y)| PlaceAt { what, x, y: y.max(-i32::MAX), at: at() });
-    (name(), prop::collection::vec(place, 0..4))
-        .prop_map(|(chart, places)| Layout { chart, places, at: at() })
+    let place = (what, -1_000_000..=1_000_000i32, any::<i32>()).prop_map(|(what, x, y)| PlaceAt {
+        what,
+        x,
+        y: y.max(-i32::MAX),
+        at: at(),
+    });
+    (name(), prop::collection::vec(place, 0..4)).prop_map(|(chart, places)| Layout {
+        chart,
+        places,
+        at: at(),
+    })
 }
