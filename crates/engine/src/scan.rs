@@ -309,7 +309,10 @@ pub fn pass(p: &Program, s: &mut State) -> Result<bool, Fault> {
 /// A [`Fault`] of a condition, a body or POST.
 pub fn finish(p: &Program, s: &mut State) -> Result<(), Fault> {
     let t = &p.t;
-    let moved = s.x.moved;
+    if let Some((steps, transitions)) = t.counts {
+        let moved = s.x.moved;
+        count(p, s, moved, steps, transitions)?;
+    }
     if t.rules.periodic_first {
         periodics(p, s);
         late(p, s)?;
@@ -327,9 +330,6 @@ pub fn finish(p: &Program, s: &mut State) -> Result<(), Fault> {
     if p.frame {
         run::run(p, s, t.post)?;
         run::run(p, s, t.tail)?;
-    }
-    if let Some((steps, transitions)) = t.counts {
-        count(p, s, moved, steps, transitions)?;
     }
     if let Some((flag, limits)) = t.limits {
         let active = s.steps.count(&s.w, t.steps.len() as u32);

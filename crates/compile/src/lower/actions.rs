@@ -165,9 +165,9 @@ impl Lower<'_> {
     fn class(&self, moment: Moment) -> u8 {
         let rules = &self.unit.rules;
         let pulse = |q: Option<Qualifier>| match q {
-            Some(Qualifier::P1) if rules.pulse_first => 0,
-            Some(Qualifier::P0) if rules.pulse_first => 2,
-            _ => 1,
+            Some(Qualifier::P1) if rules.pulse_first => 1,
+            Some(Qualifier::P0) if rules.pulse_first => 3,
+            _ => 2,
         };
         let as_pulse = match moment {
             Moment::Activation => Some(Qualifier::P1),
@@ -177,9 +177,9 @@ impl Lower<'_> {
         };
         let at_end = rules.late_actions || matches!(moment, Moment::End(_));
         match moment {
+            Moment::Clearing => 0,
             _ if !rules.parallel_actions => pulse(as_pulse),
             _ if at_end => 10 + pulse(as_pulse),
-            Moment::Clearing => 0,
             Moment::Deactivation => 1,
             Moment::Activation => 2,
             Moment::Event => 3,
@@ -196,7 +196,7 @@ impl Lower<'_> {
 
     /// The code of statements that stand for themselves.
     fn work(&mut self, period: u32, work: &[Stmt]) -> Code {
-        let mut b = Buf::new(period);
+        let mut b = self.buf(period);
         self.stmts(&mut b, work);
         self.place(b)
     }
@@ -227,7 +227,7 @@ impl Lower<'_> {
         if t.on_clearing.is_empty() && owner.is_none() && ended.is_empty() {
             return;
         }
-        let mut b = Buf::new(period);
+        let mut b = self.buf(period);
         for owner in ended {
             b.op(Op::Push(0), Span::default());
             b.op(Op::Store(owner), Span::default());
@@ -248,7 +248,7 @@ impl Lower<'_> {
     /// A task that goes back by itself is free.
     fn sets_free(&mut self, a: &mut Actions, task: ChartId) {
         let Some(owner) = self.owner(task) else { return };
-        let mut b = Buf::new(0);
+        let mut b = self.buf(0);
         b.op(Op::Push(0), Span::default());
         b.op(Op::Store(owner), Span::default());
         let body = self.place(b);
@@ -370,7 +370,7 @@ impl Lower<'_> {
         let together = all.var(var);
         match self.way(terms.qualifier, together) {
             Way::Store(value) => {
-                let mut b = Buf::new(place.period);
+                let mut b = self.buf(place.period);
                 b.op(Op::Push(u64::from(value)), place.at);
                 self.store(&mut b, var, place.at);
                 let body = self.place(b);
@@ -410,7 +410,7 @@ impl Lower<'_> {
         let gate = if masks.is_empty() {
             Code::default()
         } else {
-            let mut b = Buf::new(together.period());
+            let mut b = self.buf(together.period());
             self.any_acting(&mut b, &masks, place.at);
             b.op(Op::Not, place.at);
             self.place(b)
@@ -462,7 +462,7 @@ impl Lower<'_> {
     fn contribute(&mut self, a: &mut Actions, place: In, terms: Terms<'_>, way: Way, block: u32) {
         let masks =
             self.unit.steps.get(place.step.index()).map(|s| self.masking_chart(s.chart)).unwrap_or_default();
-        let mut b = Buf::new(place.period);
+        let mut b = self.buf(place.period);
         let mut any = false;
         let mut and = |b: &mut Buf| {
             if std::mem::replace(&mut any, true) {

@@ -28,6 +28,16 @@ pub(super) struct Reads {
     pub(super) time: bool,
 }
 
+impl Reads {
+    fn clear(&mut self) {
+        self.words.clear();
+        self.steps.clear();
+        self.groups.clear();
+        self.watches.clear();
+        self.time = false;
+    }
+}
+
 /// Code being written.
 #[derive(Default)]
 pub(super) struct Buf {
@@ -43,10 +53,6 @@ pub(super) struct Buf {
 }
 
 impl Buf {
-    pub(super) fn new(period: u32) -> Buf {
-        Buf { period, ..Buf::default() }
-    }
-
     pub(super) fn op(&mut self, op: Op, at: Span) {
         self.ops.push(op);
         self.places.push(at);
@@ -74,21 +80,35 @@ impl Buf {
 }
 
 impl Lower<'_> {
+    /// An empty buffer for code of a period.
+    pub(super) fn buf(&mut self, period: u32) -> Buf {
+        Buf { period, ..self.spare.pop().unwrap_or_default() }
+    }
+
     /// Moves code to its place in the table.
-    pub(super) fn place(&mut self, b: Buf) -> Code {
+    pub(super) fn place(&mut self, mut b: Buf) -> Code {
         let start = self.t.code.len() as u32;
-        self.t.code.extend(b.ops.into_iter().map(|op| match op {
+        self.t.code.extend(b.ops.drain(..).map(|op| match op {
             Op::Jump(to) => Op::Jump(to + start),
             Op::JumpUnless(to) => Op::JumpUnless(to + start),
             other => other,
         }));
-        self.places.extend(b.places);
+        self.places.append(&mut b.places);
+        self.drop_buf(b);
         Code { start, end: self.t.code.len() as u32 }
+    }
+
+    /// Keeps the room of a buffer for the next one.
+    pub(super) fn drop_buf(&mut self, mut b: Buf) {
+        b.ops.clear();
+        b.places.clear();
+        b.reads.clear();
+        self.spare.push(b);
     }
 
     /// The code of one expression.
     pub(super) fn code_of(&mut self, period: u32, e: &Expr) -> Code {
-        let mut b = Buf::new(period);
+        let mut b = self.buf(period);
         self.expr(&mut b, e);
         self.place(b)
     }

@@ -71,6 +71,8 @@ struct Lower<'a> {
     /// Beside `t.code`.
     places: Vec<Span>,
     watches: Watches,
+    /// Buffers to be used again.
+    spare: Vec<code::Buf>,
     /// Nesting of the expression or statement in hand.
     depth: u32,
     refused: Option<(Refusal, Span)>,
@@ -156,6 +158,7 @@ pub fn lower(unit: &Unit, queries: &[Expr]) -> Result<Lowered, Problem> {
         t: Tables { rules: unit.rules, ..Tables::default() },
         places: Vec::new(),
         watches: Watches::default(),
+        spare: Vec::new(),
         depth: 0,
         refused: None,
         random: None,

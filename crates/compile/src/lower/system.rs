@@ -32,12 +32,12 @@ impl Lower<'_> {
         let unit = self.unit;
         self.t.pre = self.sections(&unit.pre);
         self.t.post = self.sections(&unit.post);
-        let mut services = Buf::new(0);
+        let mut services = self.buf(0);
         self.freeze(&mut services);
         self.chart_bits(&mut services);
         self.macro_bits(&mut services);
         self.t.services = self.place(services);
-        let mut tail = Buf::new(0);
+        let mut tail = self.buf(0);
         for name in ["%S0", "%S1"] {
             if let Some(bit) = self.system_var(name) {
                 fall(&mut tail, bit);
@@ -62,7 +62,7 @@ impl Lower<'_> {
 
     /// Sections one behind the other, a RETURN ending only its own.
     fn sections(&mut self, bodies: &[Body]) -> g7_engine::Code {
-        let mut b = Buf::new(0);
+        let mut b = self.buf(0);
         for body in bodies {
             self.inline(&mut b, &body.statements);
         }

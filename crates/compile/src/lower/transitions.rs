@@ -243,7 +243,7 @@ impl Lower<'_> {
             return guard;
         }
         let at = receptivity.at;
-        let mut b = Buf::new(self.period(chart));
+        let mut b = self.buf(self.period(chart));
         let mut any = !is_true(receptivity);
         if any {
             self.expr(&mut b, receptivity);

@@ -102,7 +102,8 @@ impl Walk<'_> {
                 }
                 ActionKind::EachScan { work, condition } => {
                     self.conditions(&None, condition);
-                    self.early = false;
+                    // JGrafchart's periodic actions still see the outputs of the scan before.
+                    self.early = unit.rules.periodic_first;
                     self.stmts(work);
                     self.early = true;
                 }

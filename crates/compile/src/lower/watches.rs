@@ -27,6 +27,8 @@ struct Key {
 #[derive(Default)]
 pub(super) struct Watches {
     known: HashMap<Key, WatchId>,
+    /// Edges of a single word, by far the most.
+    of_words: HashMap<(u32, Addr), WatchId>,
     /// By watch.
     reads: Vec<Reads>,
 }
@@ -37,7 +39,7 @@ impl Lower<'_> {
         if matches!(e.kind, ExprKind::Const(_)) {
             return b.op(Op::Push(0), at); // it never changes
         }
-        let mut code = Buf::new(b.period);
+        let mut code = self.buf(b.period);
         self.expr(&mut code, e);
         let watch = self.watch(code, None);
         b.reads.watches.push(watch);
@@ -46,11 +48,11 @@ impl Lower<'_> {
 
     /// Pushes the output of a timer.
     pub(super) fn timer(&mut self, b: &mut Buf, t1: &Expr, e: &Expr, t2: Option<&Expr>, at: Span) {
-        let mut code = Buf::new(b.period);
+        let mut code = self.buf(b.period);
         self.expr(&mut code, e);
-        let mut on = Buf::new(b.period);
+        let mut on = self.buf(b.period);
         self.expr(&mut on, t1);
-        let mut off = Buf::new(b.period);
+        let mut off = self.buf(b.period);
         match t2 {
             Some(t2) => self.expr(&mut off, t2),
             None => off.op(Op::Push(0), at),
@@ -61,14 +63,12 @@ impl Lower<'_> {
     /// Pushes the activity of a step as it was at the start of the pass: a timer
     /// without times. Code that runs behind the change of steps needs it.
     pub(super) fn active_before(&mut self, b: &mut Buf, step: StepId, at: Span) {
-        let mut code = Buf::new(b.period);
+        let mut code = self.buf(b.period);
         self.acting(&mut code, step, at);
-        let zero = || {
-            let mut t = Buf::new(0);
-            t.op(Op::Push(0), at);
-            t
-        };
-        self.timer_of(b, code, (zero(), zero()), at);
+        let (mut on, mut off) = (self.buf(0), self.buf(0));
+        on.op(Op::Push(0), at);
+        off.op(Op::Push(0), at);
+        self.timer_of(b, code, (on, off), at);
     }
 
     fn timer_of(&mut self, b: &mut Buf, code: Buf, times: (Buf, Buf), at: Span) {
@@ -78,16 +78,20 @@ impl Lower<'_> {
     }
 
     fn watch(&mut self, code: Buf, times: Option<(Buf, Buf)>) -> WatchId {
-        let key = Key {
-            period: code.period,
-            code: code.ops.clone(),
-            times: times.as_ref().map(|(on, off)| (on.ops.clone(), off.ops.clone())),
-        };
-        if let Some(w) = self.watches.known.get(&key) {
-            return *w;
-        }
         let id = WatchId(self.t.watches.len() as u32);
-        self.watches.known.insert(key, id);
+        let known = match (code.ops.as_slice(), &times) {
+            ([Op::Load(word)], None) => *self.watches.of_words.entry((code.period, *word)).or_insert(id),
+            (ops, _) => {
+                let times = times.as_ref().map(|(on, off)| (on.ops.clone(), off.ops.clone()));
+                let key = Key { period: code.period, code: ops.to_vec(), times };
+                *self.watches.known.entry(key).or_insert(id)
+            }
+        };
+        if known != id {
+            let (on, off) = times.unzip();
+            [Some(code), on, off].into_iter().flatten().for_each(|b| self.drop_buf(b));
+            return known;
+        }
         let mut code = code;
         let reads = std::mem::take(&mut code.reads);
         let period = code.period;
