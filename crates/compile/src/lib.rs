@@ -17,7 +17,7 @@ pub mod resolve;
 pub mod symbols;
 
 use g7_engine::{Code, Program};
-use g7_model::{Document, Expr, Problem, ProfileName, Severity, Type};
+use g7_model::{Document, Expr, Problem, ProfileName, Severity, Span, Type};
 
 use symbols::Symbols;
 
@@ -65,7 +65,8 @@ pub fn compile_with(
         questions.extend(expr);
         problems.append(&mut wrong);
     }
-    problems.append(&mut check::check(&unit));
+    let unclear = problems.iter().filter(|p| p.severity() == Severity::Error).map(|p| p.at).collect();
+    problems.append(&mut clear(check::check(&unit), unclear));
     let failed = problems.iter().any(|p| p.severity() == Severity::Error);
     if failed || questions.len() < queries.len() {
         return (None, sorted(problems));
@@ -80,6 +81,17 @@ pub fn compile_with(
             (None, sorted(problems))
         }
     }
+}
+
+/// The problems that are none of something that has no meaning yet: what could
+/// not be resolved stands for FALSE, and is not to be judged as that.
+fn clear(mut found: Vec<Problem>, mut unclear: Vec<Span>) -> Vec<Problem> {
+    unclear.sort_unstable();
+    found.retain(|p| {
+        let from = unclear.partition_point(|e| (e.file, e.start) < (p.at.file, p.at.start));
+        unclear.get(from).is_none_or(|e| e.file != p.at.file || e.end > p.at.end)
+    });
+    found
 }
 
 /// By place, and at one place as they were found.

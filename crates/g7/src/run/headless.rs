@@ -175,6 +175,10 @@ fn print(
     if lanes.is_empty() {
         lanes = (0..recording.signals().len()).filter(|i| recording.count(*i) > 1).collect();
     }
+    if lanes.is_empty() {
+        writeln!(out, "nothing moved")?;
+        return Ok(out.flush()?);
+    }
     let left = lanes.len().saturating_sub(LANES);
     lanes.truncate(LANES);
     let columns = columns(recording, &lanes);

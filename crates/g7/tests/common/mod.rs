@@ -1,0 +1,128 @@
+//! A folder of its own for each test, and the program under test.
+#![allow(dead_code, reason = "each test file uses a part")]
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicU32, Ordering};
+
+use snapbox::cmd::{Command, OutputAssert, cargo_bin};
+
+static NEXT: AtomicU32 = AtomicU32::new(0);
+
+/// A folder that goes away with the test.
+pub struct Folder(PathBuf);
+
+impl Folder {
+    pub fn new() -> Folder {
+        let number = NEXT.fetch_add(1, Ordering::Relaxed);
+        let path = std::env::temp_dir().join(format!("g7-test-{}-{number}", std::process::id()));
+        fs::create_dir_all(&path).expect("a folder for the test");
+        Folder(path)
+    }
+
+    /// With one file `chart.g7`.
+    pub fn with(chart: &str) -> Folder {
+        let folder = Folder::new();
+        folder.write("chart.g7", chart);
+        folder
+    }
+
+    pub fn path(&self, name: &str) -> PathBuf {
+        self.0.join(name)
+    }
+
+    pub fn write(&self, name: &str, text: impl AsRef<[u8]>) {
+        let path = self.path(name);
+        fs::create_dir_all(path.parent().expect("in the folder")).expect("a folder");
+        fs::write(path, text).expect("a file for the test");
+    }
+
+    pub fn read(&self, name: &str) -> String {
+        fs::read_to_string(self.path(name)).unwrap_or_else(|e| panic!("{name}: {e}"))
+    }
+
+    /// Names in the folder, sorted.
+    pub fn names(&self) -> Vec<String> {
+        let list = fs::read_dir(&self.0).expect("the folder");
+        let mut names: Vec<String> =
+            list.map(|e| e.expect("an entry").file_name().to_string_lossy().into_owned()).collect();
+        names.sort();
+        names
+    }
+
+    /// Runs `g7` in the folder.
+    pub fn g7(&self, args: &[&str]) -> Ran {
+        self.command(args).assert().into()
+    }
+
+    pub fn command(&self, args: &[&str]) -> Command {
+        Command::new(cargo_bin!("g7"))
+            .args(args)
+            .current_dir(&self.0)
+            .env_remove("CLICOLOR_FORCE")
+            .env("COLUMNS", "100")
+    }
+
+    pub fn root(&self) -> &Path {
+        &self.0
+    }
+}
+
+impl Drop for Folder {
+    fn drop(&mut self) {
+        fs::remove_dir_all(&self.0).ok();
+    }
+}
+
+/// What a run of `g7` came to.
+pub struct Ran {
+    pub code: i32,
+    pub out: String,
+    pub err: String,
+}
+
+impl From<OutputAssert> for Ran {
+    fn from(ran: OutputAssert) -> Ran {
+        let output = ran.get_output();
+        Ran {
+            code: output.status.code().expect("an exit code"),
+            out: String::from_utf8_lossy(&output.stdout).into_owned(),
+            err: String::from_utf8_lossy(&output.stderr).into_owned(),
+        }
+    }
+}
+
+impl Ran {
+    /// Exit code 2, nothing on the standard output, one line that says all of this.
+    #[track_caller]
+    pub fn is_refused(&self, parts: &[&str]) {
+        assert_eq!((self.code, self.out.as_str()), (2, ""), "{}", self.err);
+        assert_eq!(self.err.lines().count(), 1, "one line: {}", self.err);
+        for part in parts {
+            assert!(self.err.contains(part), "`{part}` in: {}", self.err);
+        }
+    }
+
+    #[track_caller]
+    pub fn is(&self, code: i32) -> &Ran {
+        assert_eq!(self.code, code, "out: {}\nerr: {}", self.out, self.err);
+        self
+    }
+}
+
+/// Two steps; `a` sets out, `not a` comes back; counts.
+pub const PINGPONG: &str = "\
+input a : BOOL
+output m : BOOL
+var n : INT
+
+chart G {
+  initial step 1
+  step 2 {
+    N m
+    P1 n := n + 1
+  }
+  1 -> 2 when a
+  2 -> 1 when not a
+}
+";
