@@ -7,6 +7,8 @@
 mod app;
 mod draw;
 mod keys;
+#[cfg(test)]
+mod tests;
 
 use std::time::Duration;
 

@@ -1,0 +1,247 @@
+//! The view without a terminal: keys in, cells out.
+
+use clap::Parser;
+use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
+use ratatui::Terminal;
+use ratatui::backend::TestBackend;
+
+use super::app::App;
+use super::{draw, keys};
+use crate::bench::{self, Bench};
+use crate::cli::{Cli, Command};
+use crate::sources::Source;
+
+const CHART: &str = "\
+input a : BOOL \"push button\"
+input count : INT
+input full : BOOL
+output m : BOOL
+var n : INT retain
+chart G {
+  initial step 1
+  step 2
+  step 3 {
+    N m
+    P1 n := n + 1
+  }
+  1 -> 2 when a
+  2 -> 3 when a
+  3 -> 1 when not a
+}
+plant P {
+  state level : REAL := 0.0 in 0.0 .. 10.0
+  rate level := 1.0 when m
+  drive full := level > 5.0
+}
+";
+
+fn bench(chart: &str) -> Bench {
+    let source = Source::new("a.g7".as_ref(), chart.as_bytes().to_vec(), 0);
+    let (bench, problems) = bench::build(&source, &bench::Options::default()).expect("one plant");
+    bench.unwrap_or_else(|| panic!("{problems:?}"))
+}
+
+fn app<'b>(bench: &'b Bench, more: &[&str]) -> App<'b> {
+    let cli = Cli::parse_from([&["g7", "run"][..], more].concat());
+    let Command::Run(args) = cli.command else { panic!("run was asked for") };
+    let mut app = App::new(bench, bench.runner(0), "a.g7", &args).expect("good arguments");
+    app.pause(true);
+    app
+}
+
+fn press(app: &mut App<'_>, keys: &str) {
+    for c in keys.chars() {
+        let code = match c {
+            '\n' => KeyCode::Enter,
+            '\t' => KeyCode::Tab,
+            c => KeyCode::Char(c),
+        };
+        keys::press(app, KeyEvent::new(code, KeyModifiers::NONE));
+    }
+}
+
+fn picture(app: &mut App<'_>, width: u16, height: u16) -> String {
+    let mut terminal = Terminal::new(TestBackend::new(width, height)).expect("a test backend");
+    terminal.draw(|frame| draw::draw(frame, app)).expect("it draws");
+    let buffer = terminal.backend().buffer();
+    let cell = |x, y| buffer.cell((x, y)).map_or(" ", |c| c.symbol());
+    (0..height).map(|y| (0..width).map(|x| cell(x, y)).collect::<String>() + "\n").collect()
+}
+
+#[track_caller]
+fn shows(app: &mut App<'_>, part: &str) {
+    let picture = picture(app, 130, 30);
+    assert!(picture.contains(part), "`{part}` in:\n{picture}");
+}
+
+#[test]
+fn keys_turn_inputs_and_a_dot_makes_a_scan() {
+    let bench = bench(CHART);
+    let mut app = app(&bench, &[]);
+    press(&mut app, ".");
+    shows(&mut app, "■ 1");
+    shows(&mut app, "[1] ○ a push button");
+    press(&mut app, "1");
+    shows(&mut app, "[1] ● a");
+    shows(&mut app, "■ 1");
+    press(&mut app, ".");
+    shows(&mut app, "■ 3");
+    shows(&mut app, "● m");
+    shows(&mut app, "n = 1");
+}
+
+#[test]
+fn a_comma_makes_a_pass_and_shows_the_situation_in_between() {
+    let bench = bench(CHART);
+    let mut app = app(&bench, &[]);
+    press(&mut app, ".1,");
+    shows(&mut app, "WITHIN A SCAN");
+    shows(&mut app, "■ 2");
+    press(&mut app, ",");
+    shows(&mut app, "■ 3");
+    press(&mut app, ",");
+    shows(&mut app, "the scan is done");
+    assert_eq!(app.runner.due(), 20_000_000);
+}
+
+#[test]
+fn values_are_typed_and_refused_with_a_reason() {
+    let bench = bench(CHART);
+    let mut app = app(&bench, &[]);
+    press(&mut app, "2");
+    shows(&mut app, "count := _");
+    press(&mut app, "70000\n");
+    shows(&mut app, "outside -32768 .. 32767");
+    press(&mut app, "2-5\n.");
+    shows(&mut app, "count = -5");
+}
+
+#[test]
+fn what_the_plant_drives_is_held_when_turned_and_let_go_again() {
+    let bench = bench(CHART);
+    let mut app = app(&bench, &[]);
+    shows(&mut app, "[3] ○ full plant");
+    press(&mut app, "3.");
+    shows(&mut app, "[3] ● full held");
+    app.select(2);
+    press(&mut app, "F.");
+    shows(&mut app, "[3] ○ full plant");
+}
+
+#[test]
+fn lists_are_gone_through_and_changed() {
+    let bench = bench(CHART);
+    let mut app = app(&bench, &[]);
+    press(&mut app, ".\t\n");
+    shows(&mut app, "● m held");
+    press(&mut app, "\t\n5\n");
+    shows(&mut app, "n = 5");
+    press(&mut app, "\t\n2.5\n");
+    shows(&mut app, "level = 2.5");
+    press(&mut app, "F");
+    shows(&mut app, "can be set (Enter), not held");
+}
+
+#[test]
+fn a_restart_keeps_what_is_retained_and_a_cold_one_nothing() {
+    let bench = bench(CHART);
+    let mut app = app(&bench, &[]);
+    press(&mut app, ".1..1.R.");
+    shows(&mut app, "n = 1");
+    press(&mut app, "C.");
+    shows(&mut app, "n = 0");
+}
+
+#[test]
+fn a_fault_is_shown_with_its_cycle_and_restarts() {
+    let bench = bench("input a : BOOL\nchart G { initial step 1 step 2 1 -> 2 when a 2 -> 1 when a }");
+    let mut app = app(&bench, &[]);
+    press(&mut app, ".1.");
+    shows(&mut app, " FAULT ");
+    shows(&mut app, "unstable");
+    press(&mut app, "1R.");
+    shows(&mut app, "■ 1");
+}
+
+#[test]
+fn a_script_and_an_end_work_as_headless() {
+    let bench = bench(CHART);
+    let mut app = app(&bench, &["--set", "a=1@20ms", "--for", "50ms"]);
+    press(&mut app, "..");
+    shows(&mut app, "■ 1");
+    press(&mut app, ".");
+    shows(&mut app, "■ 3");
+    press(&mut app, "++++++ ");
+    for _ in 0..200 {
+        app.advance();
+        std::thread::sleep(std::time::Duration::from_millis(1));
+    }
+    shows(&mut app, "50ms are over");
+    assert_eq!(app.runner.state().now(), 50_000_000);
+}
+
+#[test]
+fn the_chronogram_follows_goes_back_and_zooms() {
+    let bench = bench(CHART);
+    let mut app = app(&bench, &[]);
+    press(&mut app, ".1.1.");
+    shows(&mut app, "Chronogram");
+    shows(&mut app, "╳");
+    press(&mut app, "[[[[[[[");
+    assert_eq!(app.span(), 100_000_000);
+    for _ in 0..50 {
+        press(&mut app, ".");
+    }
+    app.move_time(-4);
+    shows(&mut app, "100ms ago");
+    app.move_time(9);
+    assert_eq!(app.back, 0);
+}
+
+#[test]
+fn any_size_of_window_can_be_drawn() {
+    let bench = bench(CHART);
+    let mut app = app(&bench, &[]);
+    press(&mut app, ".1.?");
+    for width in [0, 1, 5, 23, 24, 39, 40, 80, 300] {
+        for height in [0, 1, 3, 5, 6, 7, 10, 40, 100] {
+            for help in [false, true] {
+                app.help = help;
+                picture(&mut app, width, height);
+            }
+        }
+    }
+}
+
+#[test]
+fn any_key_in_any_order_does_no_harm() {
+    let bench = bench(CHART);
+    let mut app = app(&bench, &[]);
+    let codes = [
+        KeyCode::Enter,
+        KeyCode::Backspace,
+        KeyCode::Up,
+        KeyCode::Down,
+        KeyCode::PageDown,
+        KeyCode::Left,
+        KeyCode::End,
+        KeyCode::BackTab,
+        KeyCode::Char('F'),
+        KeyCode::Char('9'),
+        KeyCode::Char('2'),
+        KeyCode::Char('ø'),
+        KeyCode::Char(','),
+        KeyCode::Char('R'),
+        KeyCode::F(1),
+        KeyCode::Delete,
+    ];
+    let mut chance = 1u32;
+    for _ in 0..3000 {
+        chance = chance.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        let code = codes[(chance >> 16) as usize % codes.len()];
+        keys::press(&mut app, KeyEvent::new(code, KeyModifiers::NONE));
+    }
+    picture(&mut app, 100, 30);
+    keys::press(&mut app, KeyEvent::new(KeyCode::Char('c'), KeyModifiers::CONTROL));
+    assert!(app.is_over());
+}
