@@ -27,8 +27,10 @@ impl Parser<'_> {
                 kind => kind,
             };
             match kind {
-                Some(kind) => actions.push(Action { kind, at: self.since(start).into() }),
-                None => actions.extend(self.lost_action(start)),
+                Some(kind) if self.cur.start > start => {
+                    actions.push(Action { kind, at: self.since(start).into() });
+                }
+                _ => actions.extend(self.lost_action(start)),
             }
         }
     }

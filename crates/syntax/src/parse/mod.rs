@@ -424,7 +424,8 @@ impl<'a> Parser<'a> {
     fn at_name(&self) -> bool {
         match self.cur.kind {
             Tok::Word => !words::is_reserved(self.slice(self.cur)),
-            Tok::Ticked | Tok::Int => true,
+            Tok::Ticked => true,
+            Tok::Int => self.slice(self.cur).bytes().all(|b| b.is_ascii_digit()),
             _ => false,
         }
     }

@@ -178,7 +178,9 @@ impl Parser<'_> {
         let mut bindings = Vec::new();
         if self.eat(Tok::LBrace) {
             self.skip_semis();
-            while self.at_name() {
+            let mut before = None;
+            while self.at_name() && before != Some(self.cur.start) {
+                before = Some(self.cur.start);
                 bindings.push(self.binding());
                 self.skip_semis();
             }

@@ -98,8 +98,10 @@ impl Parser<'_> {
             }
             let start = self.cur.start;
             match self.statement() {
-                Some(kind) => list.push(Stmt { kind, at: self.since(start).into() }),
-                None => self.lost_statement(start),
+                Some(kind) if self.cur.start > start => {
+                    list.push(Stmt { kind, at: self.since(start).into() });
+                }
+                _ => self.lost_statement(start),
             }
         }
     }
