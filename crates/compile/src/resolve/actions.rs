@@ -25,7 +25,7 @@ impl Resolver<'_, '_> {
     pub(super) fn fill_chart(&mut self, id: ChartId, chart: &WrittenChart) {
         let first = self.unit.charts.get(id.index()).map_or(0, |c| c.steps.start);
         for (step, written) in (first..).map(StepId).zip(chart.steps()) {
-            let mut actions = Vec::new();
+            let mut actions = Vec::with_capacity(written.actions.len());
             for a in &written.actions {
                 if let Some(kind) = self.action(step, a) {
                     actions.push(Action { kind, at: a.at.0 });
@@ -36,6 +36,7 @@ impl Resolver<'_, '_> {
             }
         }
         let start = self.unit.transitions.len() as u32;
+        self.unit.transitions.reserve(chart.transitions().count());
         let mut labels = std::collections::HashMap::new();
         for t in chart.transitions() {
             if let Some(label) = &t.label {
@@ -86,8 +87,10 @@ impl Resolver<'_, '_> {
     }
 
     fn steps_named(&mut self, chart: ChartId, names: &[Name]) -> Option<Vec<StepId>> {
-        let found: Vec<Option<StepId>> = names.iter().map(|n| self.step_named(chart, n)).collect();
-        found.into_iter().collect()
+        let mut found = Vec::with_capacity(names.len());
+        // All of them are looked at: each unknown one is a problem.
+        names.iter().for_each(|n| found.extend(self.step_named(chart, n)));
+        (found.len() == names.len()).then_some(found)
     }
 
     /// A BOOL, or a transition section by its name.

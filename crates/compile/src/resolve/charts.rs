@@ -6,7 +6,7 @@ use g7_model::{
 };
 
 use super::resolver::Resolver;
-use super::scopes::{ChartScope, Home};
+use super::scopes::ChartScope;
 use crate::ir::{Chart, ChartId, ChartRole, Step, StepId, StepSort};
 
 /// Deepest nesting of expansions and enclosed charts.
@@ -26,6 +26,9 @@ enum Depth {
 impl<'d> Resolver<'_, 'd> {
     /// Rows and names of all charts and steps.
     pub(super) fn declare_charts(&mut self, charts: &[&'d WrittenChart]) {
+        let steps = charts.iter().map(|c| c.steps().count()).sum();
+        self.unit.steps.reserve(steps);
+        self.scopes.step_homes.reserve(steps);
         for (k, chart) in charts.iter().enumerate() {
             let id = ChartId(k as u32);
             let named = !chart.name.text.is_empty();
@@ -95,25 +98,12 @@ impl<'d> Resolver<'_, 'd> {
         if name.text.is_empty() {
             return; // Could not be read, and was reported then.
         }
-        let before = self.scopes.step(chart, &name.text).and_then(|s| self.unit.steps.get(s.index()));
-        if let Some(first) = before.map(|s| s.at) {
+        let before = self.scopes.name_step(chart, &name.text, id);
+        if let Some(first) = before.and_then(|s| self.unit.steps.get(s.index())) {
             let what = format!("step `{}` is defined twice", name.text);
             let problem = Problem::new(&codes::DEFINED_TWICE, name.at.0, what);
-            self.problems.push(problem.related(first, "defined here first"));
-            return;
+            self.problems.push(problem.related(first.at, "defined here first"));
         }
-        if let Some(scope) = self.scopes.charts.get_mut(chart.index()) {
-            scope.steps.insert(&name.text, id);
-        }
-        self.scopes
-            .step_homes
-            .entry(&name.text)
-            .and_modify(|h| {
-                if let Home::One(first) = *h {
-                    *h = Home::Several(first, id);
-                }
-            })
-            .or_insert(Home::One(id));
     }
 
     /// An expansion or task has one entry step and one exit step.

@@ -53,6 +53,13 @@ impl Resolver<'_, '_> {
     /// Operators in a row, `a or b or c …`: a loop over the left operands, so
     /// that a long row costs no stack.
     fn chain(&mut self, e: &Written, hint: Option<Type>) -> Option<Typed> {
+        let Form::Binary(op, left, right) = &e.kind else { return None };
+        if !matches!(left.kind, Form::Binary(..)) {
+            let hint = hint.filter(|_| operator::keeps_type(*op));
+            let a = self.infer(left, hint);
+            let b = self.infer(right, hint);
+            return self.combine(*op, a?, b?, e.at.0);
+        }
         let mut rest = Vec::new();
         let (mut left, mut hint) = (e, hint);
         while let Form::Binary(op, l, r) = &left.kind {

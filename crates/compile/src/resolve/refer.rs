@@ -98,12 +98,12 @@ impl Resolver<'_, '_> {
             return self.value_of(e, 0);
         }
         match self.activity(None, name) {
-            Some(Home::One(s)) => return Ok(Ref::Active(s)),
+            Some(Home::One(_, s)) => return Ok(Ref::Active(s)),
             Some(Home::Several(a, b)) => return Err(Miss::Ambiguous(0, a, b)),
             None => {}
         }
         match self.scopes.home(self.frame.chart, name) {
-            Some(Home::One(s) | Home::Several(s, _)) => Err(Miss::BareStep(0, s)),
+            Some(Home::One(_, s) | Home::Several(s, _)) => Err(Miss::BareStep(0, s)),
             None if self.scopes.chart(name).is_some() => Err(Miss::NoValue(0, "a chart")),
             None if step_number(name).is_some() => Err(Miss::Step(0, None)),
             None => Err(Miss::Name(0, None)),
@@ -148,7 +148,7 @@ impl Resolver<'_, '_> {
             return self.value_of(e, k);
         }
         match self.activity(Some(chart), &name.text) {
-            Some(Home::One(s)) => Ok(Ref::Active(s)),
+            Some(Home::One(_, s)) => Ok(Ref::Active(s)),
             Some(Home::Several(a, b)) => Err(Miss::Ambiguous(k, a, b)),
             None => match self.scopes.step(chart, &name.text) {
                 Some(s) => Err(Miss::BareStep(k, s)),
@@ -165,7 +165,7 @@ impl Resolver<'_, '_> {
         };
         let last = k + 2 == names.len();
         let by_name = match chart {
-            Some(c) => self.scopes.step(c, &first.text).map(Home::One),
+            Some(c) => self.scopes.step(c, &first.text).map(|s| Home::One(c, s)),
             None => self.scopes.home(self.frame.chart, &first.text),
         };
         let (home, bare) = match by_name {
@@ -177,7 +177,7 @@ impl Resolver<'_, '_> {
             },
         };
         let step = match home {
-            Home::One(s) => s,
+            Home::One(_, s) => s,
             Home::Several(a, b) => return Err(Miss::Ambiguous(k, a, b)),
         };
         if last {
@@ -207,12 +207,12 @@ impl Resolver<'_, '_> {
     fn activity(&self, chart: Option<ChartId>, name: &str) -> Option<Home> {
         let step = name.strip_prefix('X').filter(|s| !s.is_empty())?;
         let find = |name: &str| match chart {
-            Some(c) => self.scopes.step(c, name).map(Home::One),
+            Some(c) => self.scopes.step(c, name).map(|s| Home::One(c, s)),
             None => self.scopes.home(self.frame.chart, name),
         };
         find(step).or_else(|| {
             let home = find(step.strip_prefix('M').filter(|s| !s.is_empty())?)?;
-            let Home::One(s) = home else { return Some(home) };
+            let Home::One(_, s) = home else { return Some(home) };
             self.expansion(s).map(|_| home)
         })
     }
@@ -333,7 +333,7 @@ impl Resolver<'_, '_> {
     /// How the activity of a step is written from anywhere.
     pub(super) fn activity_path(&self, step: StepId) -> String {
         let Some(s) = self.unit.steps.get(step.index()) else { return String::new() };
-        let unique = matches!(self.scopes.step_homes.get(&*s.name), Some(Home::One(_)));
+        let unique = matches!(self.scopes.step_homes.get(&*s.name), Some(Home::One(..)));
         let number = s.name.bytes().all(|b| b.is_ascii_digit());
         let own = if number { format!("X{}", s.name) } else { format!("{}.X", s.name) };
         match self.unit.charts.get(s.chart.index()) {
@@ -411,7 +411,7 @@ impl Resolver<'_, '_> {
         [number.to_owned(), format!("M{number}")].iter().find_map(|name| {
             let own = self.first_chart().and_then(|c| self.scopes.step(c, name));
             let step = own.or_else(|| match self.scopes.step_homes.get(&**name) {
-                Some(Home::One(s)) => Some(*s),
+                Some(Home::One(_, s)) => Some(*s),
                 _ => None,
             })?;
             self.expansion(step).map(|_| step)

@@ -5,6 +5,7 @@
 //! chart. All lookups are by hash; nothing here is ever iterated, so no order
 //! depends on hashing.
 
+use std::collections::hash_map::Entry;
 use std::collections::{HashMap, HashSet};
 
 use crate::ir::{BodyId, ChartId, FunctionId, SectionId, StepId, VarId};
@@ -26,8 +27,8 @@ pub(super) enum Entity {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Home {
     /// In one chart of the document.
-    One(StepId),
-    /// In several; the first two.
+    One(ChartId, StepId),
+    /// In several; the first two. Each of their charts has it in its own table.
     Several(StepId, StepId),
 }
 
@@ -35,6 +36,8 @@ pub(super) enum Home {
 #[derive(Clone, Debug, Default)]
 pub(super) struct ChartScope<'d> {
     pub(super) names: HashMap<&'d str, Entity>,
+    /// Steps whose names several charts have; most charts have none of these,
+    /// so that a large chart needs one table, not two.
     pub(super) steps: HashMap<&'d str, StepId>,
 }
 
@@ -61,7 +64,10 @@ impl Scopes<'_> {
 
     /// A step of a chart by its name.
     pub fn step(&self, chart: ChartId, name: &str) -> Option<StepId> {
-        self.charts.get(chart.index())?.steps.get(name).copied()
+        match self.step_homes.get(name)? {
+            Home::One(home, step) => (*home == chart).then_some(*step),
+            Home::Several(..) => self.charts.get(chart.index())?.steps.get(name).copied(),
+        }
     }
 
     /// A name seen from a chart: the chart's own, then the file's.
@@ -76,9 +82,38 @@ impl Scopes<'_> {
 
     /// A step by its bare name: of the chart itself, else the only one of the document.
     pub(super) fn home(&self, chart: Option<ChartId>, name: &str) -> Option<Home> {
-        match chart.and_then(|c| self.step(c, name)) {
-            Some(s) => Some(Home::One(s)),
-            None => self.step_homes.get(name).copied(),
+        let home = *self.step_homes.get(name)?;
+        let (Home::Several(..), Some(c)) = (home, chart) else { return Some(home) };
+        let own = self.charts.get(c.index()).and_then(|c| c.steps.get(name));
+        Some(own.map_or(home, |s| Home::One(c, *s)))
+    }
+}
+
+impl<'d> Scopes<'d> {
+    /// Gives a step its name; the one that has it in this chart already, else nothing.
+    pub(super) fn name_step(&mut self, chart: ChartId, name: &'d str, step: StepId) -> Option<StepId> {
+        let before = match self.step_homes.entry(name) {
+            Entry::Vacant(free) => {
+                free.insert(Home::One(chart, step));
+                return None;
+            }
+            Entry::Occupied(taken) => taken.into_mut(),
+        };
+        if let Home::One(home, first) = *before {
+            if home == chart {
+                return Some(first);
+            }
+            *before = Home::Several(first, step);
+            if let Some(c) = self.charts.get_mut(home.index()) {
+                c.steps.insert(name, first);
+            }
+        }
+        match self.charts.get_mut(chart.index())?.steps.entry(name) {
+            Entry::Vacant(free) => {
+                free.insert(step);
+                None
+            }
+            Entry::Occupied(taken) => Some(*taken.get()),
         }
     }
 }

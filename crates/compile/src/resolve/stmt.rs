@@ -40,7 +40,11 @@ impl Resolver<'_, '_> {
                 }
             }
         }
-        statements.append(&mut self.statements(&block.statements));
+        if statements.is_empty() {
+            statements = self.statements(&block.statements);
+        } else {
+            statements.append(&mut self.statements(&block.statements));
+        }
         if let Some(outer) = outer {
             self.frame.locals = outer;
         }
@@ -70,7 +74,9 @@ impl Resolver<'_, '_> {
 
     /// The statements that could be resolved, in order.
     pub(super) fn statements(&mut self, list: &[WrittenStmt]) -> Vec<Stmt> {
-        list.iter().filter_map(|s| self.statement(s)).collect()
+        let mut resolved = Vec::with_capacity(list.len());
+        list.iter().for_each(|s| resolved.extend(self.statement(s)));
+        resolved
     }
 
     fn statement(&mut self, s: &WrittenStmt) -> Option<Stmt> {
