@@ -1,6 +1,9 @@
 //! Pieces of a document, made by hand, each with the place of what it comes from.
 
-use g7_model::{Arg, BinaryOp, Expr, ExprKind, Literal, Name, Path, Place, Stmt, StmtKind, Type, UnaryOp, VarDecl, VarKind};
+use g7_model::{
+    Arg, BinaryOp, Expr, ExprKind, Literal, Name, Path, Place, Stmt, StmtKind, Type, UnaryOp, VarDecl,
+    VarKind,
+};
 
 /// Makes nodes that all stand at one place.
 #[derive(Clone, Copy)]

@@ -24,8 +24,8 @@ pub use program::{Binding, Link, PlantProgram, compile_plant};
 use std::collections::{HashMap, HashSet};
 
 use g7_model::{
-    BinaryOp, Block, Body, Document, Expr, Item, Name, Place, Plant, PlantItem, Problem, Stmt, Type, VarDecl, VarKind,
-    codes,
+    BinaryOp, Block, Body, Document, Expr, Item, Name, Place, Plant, PlantItem, Problem, Stmt, Type, VarDecl,
+    VarKind, codes,
 };
 
 use crate::ir::{Unit, VarClass};
@@ -169,7 +169,8 @@ impl<'d> Maker<'d> {
     /// The charts' outputs that no name of the plant hides.
     fn chart_outputs(&mut self, at: At) -> Vec<Box<str>> {
         let unit = self.unit;
-        let outputs = unit.vars.iter().filter(|v| v.class == VarClass::Output && !matches!(v.ty, Type::Fb(_)));
+        let outputs =
+            unit.vars.iter().filter(|v| v.class == VarClass::Output && !matches!(v.ty, Type::Fb(_)));
         let mut names = Vec::new();
         for v in outputs.filter(|v| !self.own.contains(&*v.name)) {
             let mut decl = At(v.at.into()).declare(VarKind::Input, &v.name, v.ty, None);
@@ -251,7 +252,8 @@ impl<'d> Maker<'d> {
             let Some(length) = t.parts.length.clone() else {
                 let what = format!("the parts of `{name}` have no positions");
                 self.rewrite.problems.push(
-                    Problem::new(&codes::BAD_RATE, r.state.at.0, what).help("give the parts a `length` to move along"),
+                    Problem::new(&codes::BAD_RATE, r.state.at.0, what)
+                        .help("give the parts a `length` to move along"),
                 );
                 return;
             };

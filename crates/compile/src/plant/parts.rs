@@ -153,6 +153,21 @@ impl<'d> Table<'d> {
         vec![at.when(self.taken(at, 0), self.remove(at, 0))]
     }
 
+    /// `T.leave_last()`: the part that came last goes.
+    pub(super) fn leave_last(&self, at: At) -> Vec<Stmt> {
+        let left = at.binary(BinaryOp::Sub, at.var(&self.count()), at.int(1));
+        let mut body = vec![at.assign(&self.count(), left)];
+        let arms = (0..self.places())
+            .map(|place| {
+                let empty = self.columns().into_iter();
+                let body = empty.map(|(column, ty)| at.assign(&self.cell(column, place), zero(at, ty)));
+                g7_model::CaseArm { labels: vec![(at.int(i128::from(place)), None)], body: body.collect() }
+            })
+            .collect();
+        body.push(at.stmt(StmtKind::Case(at.var(&self.count()), arms, Vec::new())));
+        vec![at.when(self.taken(at, 0), body)]
+    }
+
     /// `T.take(from, to)`: the first part there goes.
     pub(super) fn take(&self, at: At, range: &(Expr, Expr)) -> Vec<Stmt> {
         let arms = (0..self.places()).map(|k| (self.stands(at, k, range), self.remove(at, k))).collect();

@@ -69,10 +69,11 @@ pub fn compile_plant(
     let compiled = compiled.filter(|_| !problems.iter().any(|p| p.severity() == Severity::Error));
     let program = compiled.map(|compiled| {
         let (own, others) = (&compiled.symbols, &charts.symbols);
-        let link = |giver: &crate::symbols::Symbols, from: &str, taker: &crate::symbols::Symbols, to: &str| {
-            let (from, to) = (giver.variable(from)?, taker.variable(to)?);
-            Some(Link { from: from.addr, to: to.addr, words: from.words().min(to.words()) })
-        };
+        let link =
+            |giver: &crate::symbols::Symbols, from: &str, taker: &crate::symbols::Symbols, to: &str| {
+                let (from, to) = (giver.variable(from)?, taker.variable(to)?);
+                Some(Link { from: from.addr, to: to.addr, words: from.words().min(to.words()) })
+            };
         let to_plant = made.reads.iter().filter_map(|n| link(others, n, own, n)).collect();
         let to_charts = made.drives.iter().filter_map(|n| link(own, &driven(n), others, n)).collect();
         let (first, last) = compiled.queries.split_at(queries.len().min(compiled.queries.len()));

@@ -31,7 +31,9 @@ impl Rewrite<'_> {
             ExprKind::Path(path) => return self.path(at, path),
             ExprKind::Call(path, args) => return self.call(at, path, args),
             ExprKind::Unary(op, a) => ExprKind::Unary(*op, Box::new(self.expr(a))),
-            ExprKind::Binary(op, a, b) => ExprKind::Binary(*op, Box::new(self.expr(a)), Box::new(self.expr(b))),
+            ExprKind::Binary(op, a, b) => {
+                ExprKind::Binary(*op, Box::new(self.expr(a)), Box::new(self.expr(b)))
+            }
             ExprKind::Timer { t1, e, t2 } => ExprKind::Timer {
                 t1: Box::new(self.expr(t1)),
                 e: Box::new(self.expr(e)),
@@ -164,7 +166,10 @@ impl Rewrite<'_> {
             StmtKind::Case(selector, arms, rest) => StmtKind::Case(
                 self.expr(selector),
                 arms.iter()
-                    .map(|arm| g7_model::CaseArm { labels: arm.labels.clone(), body: self.statements(&arm.body) })
+                    .map(|arm| g7_model::CaseArm {
+                        labels: arm.labels.clone(),
+                        body: self.statements(&arm.body),
+                    })
                     .collect(),
                 self.statements(rest),
             ),
@@ -182,7 +187,8 @@ impl Rewrite<'_> {
         out.push(Stmt { kind, at: s.at });
     }
 
-    /// `T.enter(…)`, `T.leave()`, `T.take(…)`, `T.clear()`; `None` for other calls.
+    /// `T.enter(…)`, `T.leave()`, `T.leave_last()`, `T.take(…)`, `T.clear()`;
+    /// `None` for other calls.
     fn action(&mut self, at: At, path: &Path, args: &[Arg]) -> Option<Vec<Stmt>> {
         let names: Vec<&str> = path.names.iter().map(|n| &*n.text).collect();
         let [table, what] = names[..] else { return None };
@@ -196,14 +202,16 @@ impl Rewrite<'_> {
         let done = match (what, range) {
             ("enter", _) if values.len() == wanted => Some(t.enter(at, &values)),
             ("leave", _) if values.is_empty() => Some(t.leave(at)),
+            ("leave_last", _) if values.is_empty() => Some(t.leave_last(at)),
             ("clear", _) if values.is_empty() => Some(t.clear(at)),
             ("take", Some(range)) if t.is_track() => Some(t.take(at, &range)),
             _ => None,
         };
         if done.is_none() {
-            let what = format!("`{table}.{what}` with {} argument(s) is nothing that parts can do", values.len());
+            let what =
+                format!("`{table}.{what}` with {} argument(s) is nothing that parts can do", values.len());
             self.problems.push(Problem::new(&codes::UNKNOWN_PART_MEMBER, at.0.0, what).help(format!(
-                "`{table}.enter` takes {wanted} value(s); `leave` and `clear` take none; \
+                "`{table}.enter` takes {wanted} value(s); `leave`, `leave_last` and `clear` take none; \
                  `take` a range of a track"
             )));
         }
