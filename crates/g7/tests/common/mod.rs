@@ -1,5 +1,6 @@
 //! A folder of its own for each test, and the program under test.
 #![allow(dead_code, reason = "each test file uses a part")]
+#![allow(clippy::disallowed_methods, reason = "tests look at what was written")]
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -10,10 +11,10 @@ use snapbox::cmd::{Command, OutputAssert, cargo_bin};
 static NEXT: AtomicU32 = AtomicU32::new(0);
 
 /// A folder that goes away with the test.
-pub struct Folder(PathBuf);
+pub(crate) struct Folder(PathBuf);
 
 impl Folder {
-    pub fn new() -> Folder {
+    pub(crate) fn new() -> Folder {
         let number = NEXT.fetch_add(1, Ordering::Relaxed);
         let path = std::env::temp_dir().join(format!("g7-test-{}-{number}", std::process::id()));
         fs::create_dir_all(&path).expect("a folder for the test");
@@ -21,28 +22,28 @@ impl Folder {
     }
 
     /// With one file `chart.g7`.
-    pub fn with(chart: &str) -> Folder {
+    pub(crate) fn with(chart: &str) -> Folder {
         let folder = Folder::new();
         folder.write("chart.g7", chart);
         folder
     }
 
-    pub fn path(&self, name: &str) -> PathBuf {
+    pub(crate) fn path(&self, name: &str) -> PathBuf {
         self.0.join(name)
     }
 
-    pub fn write(&self, name: &str, text: impl AsRef<[u8]>) {
+    pub(crate) fn write(&self, name: &str, text: impl AsRef<[u8]>) {
         let path = self.path(name);
         fs::create_dir_all(path.parent().expect("in the folder")).expect("a folder");
         fs::write(path, text).expect("a file for the test");
     }
 
-    pub fn read(&self, name: &str) -> String {
+    pub(crate) fn read(&self, name: &str) -> String {
         fs::read_to_string(self.path(name)).unwrap_or_else(|e| panic!("{name}: {e}"))
     }
 
     /// Names in the folder, sorted.
-    pub fn names(&self) -> Vec<String> {
+    pub(crate) fn names(&self) -> Vec<String> {
         let list = fs::read_dir(&self.0).expect("the folder");
         let mut names: Vec<String> =
             list.map(|e| e.expect("an entry").file_name().to_string_lossy().into_owned()).collect();
@@ -51,11 +52,11 @@ impl Folder {
     }
 
     /// Runs `g7` in the folder.
-    pub fn g7(&self, args: &[&str]) -> Ran {
+    pub(crate) fn g7(&self, args: &[&str]) -> Ran {
         self.command(args).assert().into()
     }
 
-    pub fn command(&self, args: &[&str]) -> Command {
+    pub(crate) fn command(&self, args: &[&str]) -> Command {
         Command::new(cargo_bin!("g7"))
             .args(args)
             .current_dir(&self.0)
@@ -63,7 +64,7 @@ impl Folder {
             .env("COLUMNS", "100")
     }
 
-    pub fn root(&self) -> &Path {
+    pub(crate) fn root(&self) -> &Path {
         &self.0
     }
 }
@@ -75,10 +76,10 @@ impl Drop for Folder {
 }
 
 /// What a run of `g7` came to.
-pub struct Ran {
-    pub code: i32,
-    pub out: String,
-    pub err: String,
+pub(crate) struct Ran {
+    pub(crate) code: i32,
+    pub(crate) out: String,
+    pub(crate) err: String,
 }
 
 impl From<OutputAssert> for Ran {
@@ -95,7 +96,7 @@ impl From<OutputAssert> for Ran {
 impl Ran {
     /// Exit code 2, nothing on the standard output, one line that says all of this.
     #[track_caller]
-    pub fn is_refused(&self, parts: &[&str]) {
+    pub(crate) fn is_refused(&self, parts: &[&str]) {
         assert_eq!((self.code, self.out.as_str()), (2, ""), "{}", self.err);
         assert_eq!(self.err.lines().count(), 1, "one line: {}", self.err);
         for part in parts {
@@ -104,14 +105,14 @@ impl Ran {
     }
 
     #[track_caller]
-    pub fn is(&self, code: i32) -> &Ran {
+    pub(crate) fn is(&self, code: i32) -> &Ran {
         assert_eq!(self.code, code, "out: {}\nerr: {}", self.out, self.err);
         self
     }
 }
 
 /// Two steps; `a` sets out, `not a` comes back; counts.
-pub const PINGPONG: &str = "\
+pub(crate) const PINGPONG: &str = "\
 input a : BOOL
 output m : BOOL
 var n : INT
