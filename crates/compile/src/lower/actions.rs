@@ -165,9 +165,9 @@ impl Lower<'_> {
     fn class(&self, moment: Moment) -> u8 {
         let rules = &self.unit.rules;
         let pulse = |q: Option<Qualifier>| match q {
-            Some(Qualifier::P1) if rules.pulse_first => 1,
-            Some(Qualifier::P0) if rules.pulse_first => 3,
-            _ => 2,
+            Some(Qualifier::P1) if rules.pulse_first => 0,
+            Some(Qualifier::P0) if rules.pulse_first => 2,
+            _ => 1,
         };
         let as_pulse = match moment {
             Moment::Activation => Some(Qualifier::P1),
@@ -175,15 +175,14 @@ impl Lower<'_> {
             Moment::End(q) => q,
             Moment::Clearing | Moment::Event => None,
         };
-        let at_end = rules.late_actions || matches!(moment, Moment::End(_));
         match moment {
-            Moment::Clearing => 0,
             _ if !rules.parallel_actions => pulse(as_pulse),
-            _ if at_end => 10 + pulse(as_pulse),
+            Moment::Activation | Moment::Deactivation if rules.late_actions => 10 + pulse(as_pulse),
+            Moment::End(_) => 10 + pulse(as_pulse),
+            Moment::Clearing => 0,
             Moment::Deactivation => 1,
             Moment::Activation => 2,
             Moment::Event => 3,
-            Moment::End(_) => 10,
         }
     }
 

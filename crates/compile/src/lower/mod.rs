@@ -194,6 +194,8 @@ impl Lower<'_> {
     }
 
     fn all(&mut self, queries: &[Expr]) -> (Symbols, Vec<Code>) {
+        self.t.code.reserve(self.uses.size);
+        self.places.reserve(self.uses.size);
         if self.uses.random {
             self.random = Some(self.words.hidden(0));
         }

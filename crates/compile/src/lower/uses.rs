@@ -28,6 +28,8 @@ pub(super) struct Uses {
     pub(super) acts: Vec<bool>,
     /// Something asks for a random number.
     pub(super) random: bool,
+    /// Operands and operators written, about as many as there will be instructions.
+    pub(super) size: usize,
 }
 
 struct Walk<'a> {
@@ -49,6 +51,7 @@ pub(super) fn uses(unit: &Unit, queries: &[Expr]) -> Uses {
         frozen: vec![false; unit.charts.len()],
         acts: unit.steps.iter().map(|s| !s.actions.is_empty() || !s.calls.is_empty()).collect(),
         random: false,
+        size: 0,
     };
     let mut walk = Walk { unit, uses, early: true, depth: 0 };
     for t in &unit.transitions {
@@ -167,10 +170,12 @@ impl Walk<'_> {
             return; // the emitter reports it
         }
         self.depth += 1;
+        self.uses.size += 1;
         // Long sums lean to the left; go down them without recursion.
         let mut e = e;
         while let ExprKind::Binary(_, left, right) = &e.kind {
             self.expr(right);
+            self.uses.size += 1;
             e = left;
         }
         match &e.kind {
@@ -229,6 +234,7 @@ impl Walk<'_> {
     }
 
     fn stmt(&mut self, s: &Stmt) {
+        self.uses.size += 1;
         match &s.kind {
             StmtKind::Assign(target, e) => {
                 self.target(target);

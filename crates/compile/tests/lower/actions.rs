@@ -20,7 +20,7 @@ fn an_output_of_one_step_alone_is_written_with_the_step() {
         "input a : BOOL chart G { initial step 1 { N V if a } }",
         "chart G { initial step 1 { N V } } chart H { initial step 2 { mask V } }",
         "chart G { initial step 1 { N V } } chart H { initial step 2 { mask G } }",
-        "chart G { initial step 1 { N V } } post { V := FALSE }",
+        "profile pl7 chart G { initial step 1 { N V } } post { V := FALSE }",
         "profile iec61131 chart G { initial step 1 { N V } step 2 { S V } 1 -> 2 when TRUE }",
         // Somebody may look at it within the evolution.
         "chart G { initial step 1 { N V } step 2 1 -> 2 when V }",
