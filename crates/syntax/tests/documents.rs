@@ -99,3 +99,31 @@ fn charts_of_the_cases_are_read() {
     let wrong = wrong_blocks("tests/spec", 50);
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
+
+/// Texts that are wrong in one place: the start of a chart, a chart without a
+/// line, a chart without a word. All end, with or without a problem.
+#[test]
+fn broken_charts_of_the_cases_are_survived() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests/spec");
+    let mut files = Vec::new();
+    pages(&root, &mut files);
+    files.sort();
+    let mut broken = 0;
+    for file in files.iter().step_by(5) {
+        let page = std::fs::read_to_string(file).expect("a readable page");
+        for (_, text) in blocks(&page) {
+            for cut in (0..text.len()).step_by(7).filter(|i| text.is_char_boundary(*i)) {
+                let (start, rest) = text.split_at(cut);
+                let after = rest.split_once(|c: char| !c.is_alphanumeric()).map_or("", |(_, after)| after);
+                for wrong in [start, rest, &format!("{start} {after}"), &format!("{start} }} {rest}")] {
+                    let (document, problems) = parse(wrong, FileId(0));
+                    let printed = print(&document, Some(wrong));
+                    broken += usize::from(!problems.is_empty());
+                    let (again, more) = parse(&printed, FileId(0));
+                    assert!(!problems.is_empty() || more.is_empty() && again == document, "{wrong}");
+                }
+            }
+        }
+    }
+    assert!(broken > 500, "only {broken} broken texts");
+}

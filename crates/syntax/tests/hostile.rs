@@ -79,7 +79,10 @@ fn ten_megabytes_of_beginnings() {
         "@",
         "\n",
         "a(b)\n",
-        "(1, 2", "16#FF2.5 ", "16#F : ", "1_0 -> ",
+        "(1, 2",
+        "16#FF2.5 ",
+        "16#F : ",
+        "1_0 -> ",
     ];
     for head in heads {
         for piece in pieces {

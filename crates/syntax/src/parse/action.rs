@@ -221,10 +221,31 @@ impl Parser<'_> {
         Target::Work(Work::Single(Box::new(Stmt { kind, at: self.since(start).into() })))
     }
 
+    /// An unknown word before a target, taken for `N`.
+    fn unknown_qualifier(&mut self, start: u32) -> Option<Action> {
+        let next = self.peek();
+        let before_target = match next.kind {
+            Tok::Word => !words::is_reserved(self.slice(next)),
+            kind => matches!(kind, Tok::Ticked | Tok::Direct | Tok::Time),
+        };
+        if !self.at(Tok::Word) || !self.at_name() || next.newline || !before_target {
+            return None;
+        }
+        self.unknown(self.word(), "a qualifier", words::ACTION);
+        self.duration_if();
+        let target = self.target_of_action();
+        let condition = self.if_condition();
+        let kind = ActionKind::Qualified { qualifier: Qualifier::N, time: None, target, condition };
+        Some(Action { kind, at: self.since(start).into() })
+    }
+
     /// Something that begins no action. A variable or an assignment alone is
     /// taken for the action that was probably meant.
     fn lost_action(&mut self, start: u32) -> Option<Action> {
         let at = self.here();
+        if let Some(action) = self.unknown_qualifier(start) {
+            return Some(action);
+        }
         if self.at(Tok::Direct) || self.at_name() && !self.at(Tok::Int) {
             let target = self.target_of_action();
             let assigned = matches!(target, Target::Work(_));
@@ -244,7 +265,7 @@ impl Parser<'_> {
             let kind = ActionKind::Qualified { qualifier, time: None, target, condition };
             return Some(Action { kind, at: self.since(start).into() });
         }
-        self.expected("an action or `}`");
+        self.unexpected("an action or `}`", None);
         if self.cur.start == start {
             self.bump();
         }

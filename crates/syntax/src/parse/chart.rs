@@ -107,7 +107,7 @@ impl Parser<'_> {
         match self.cur.kind {
             Tok::LParen | Tok::Arrow => true,
             Tok::Int | Tok::Ticked | Tok::Word => {
-                matches!(self.peek().kind, Tok::Arrow | Tok::Colon | Tok::Comma)
+                matches!(self.peek().kind, Tok::Arrow | Tok::Colon | Tok::Comma | Tok::Output)
             }
             _ => false,
         }
@@ -137,12 +137,12 @@ impl Parser<'_> {
             let what = format!("`->` after the preceding step `{name}`");
             self.expected_help(&what, Some("a transition is written `1 -> 2 when …`, a step `step 1`"));
         } else {
-            self.expected("a step, a transition or another item of the chart");
+            self.unexpected("a step, a transition or another item of the chart", None);
         }
         if self.cur.start == start {
             self.bump();
         }
-        self.recover(|p| p.at_chart_start() || p.var_kind().is_some());
+        self.recover(|p| p.at_chart_start() || p.var_kind().is_some() || p.at_name());
     }
 
     // Steps
@@ -231,6 +231,10 @@ impl Parser<'_> {
         } else {
             self.step_list("the preceding steps")
         };
+        if self.at(Tok::Output) {
+            self.slip(self.here(), "a transition is written with `->`", "write `1 -> 2 when …`");
+            self.cur.kind = Tok::Arrow;
+        }
         if !self.expect(Tok::Arrow, "`->` after the preceding steps") {
             self.recover(|p| p.at_chart_start() || p.var_kind().is_some());
             return;

@@ -83,7 +83,7 @@ impl Parser<'_> {
                 "items are variables, charts, plants, tests, …",
             );
         } else {
-            self.expected("a variable, a chart or another item of a file");
+            self.unexpected("a variable, a chart or another item of a file", None);
         }
         if self.cur.start == start {
             self.bump();

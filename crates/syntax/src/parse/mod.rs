@@ -209,6 +209,9 @@ impl<'a> Parser<'a> {
 
     /// A slip whose meaning is clear: it is told, and reading goes on as if it were right.
     fn slip(&mut self, at: Span, what: &str, help: impl Into<String>) {
+        if self.silent() {
+            return;
+        }
         self.lexer.problems.add(at, || Problem::new(&codes::EXPECTED, at, what).help(help));
     }
 
@@ -239,7 +242,23 @@ impl<'a> Parser<'a> {
         let (at, words) = self.expected_words(what);
         self.report(at, || {
             let problem = Problem::new(&codes::EXPECTED, at, words);
-            help.map_or_else(|| problem.clone(), |h| problem.clone().help(h))
+            match help {
+                Some(help) => problem.help(help),
+                None => problem,
+            }
+        });
+    }
+
+    /// Reports that what stands here cannot begin what was expected.
+    fn unexpected(&mut self, what: &str, help: Option<&str>) {
+        if self.silent() {
+            return;
+        }
+        let at = self.here();
+        let problem = Problem::new(&codes::EXPECTED, at, format!("expected {what}, found {}", self.found()));
+        self.report(at, || match help {
+            Some(help) => problem.help(help),
+            None => problem,
         });
     }
 
@@ -399,7 +418,8 @@ impl<'a> Parser<'a> {
                 | Tok::Comment
         );
         if !fits || self.cur.newline && self.prev.kind != Tok::Bad {
-            self.expected(what);
+            let help = format!("`{word}` is a word of the language; as a name it stands in back-ticks");
+            self.expected_help(what, Some(&help));
             return Name::new("", at);
         }
         self.slip(

@@ -35,11 +35,14 @@ impl Parser<'_> {
     }
 
     fn lost_plant_item(&mut self, start: u32) {
-        self.expected("an item of a plant: const, state, rate, drive, on, each, parts, arrivals or view");
+        self.unexpected(
+            "an item of a plant: const, state, rate, drive, on, each, parts, arrivals or view",
+            None,
+        );
         if self.cur.start == start {
             self.bump();
         }
-        self.recover(|p| words::PLANT.contains(&p.word()));
+        self.recover(|p| p.at(Tok::Word));
     }
 
     fn plant_item(&mut self) -> Option<PlantItem> {

@@ -67,15 +67,15 @@ impl Parser<'_> {
 
     fn lost_test_statement(&mut self, start: u32) {
         if self.at_name() && matches!(self.peek().kind, Tok::Assign | Tok::Eq) {
-            self.expected_help("a statement of a test", Some("inputs are moved by `set a := TRUE`"));
+            self.unexpected("a statement of a test", Some("inputs are moved by `set a := TRUE`"));
         } else {
             let list = words::TEST.join(", ");
-            self.expected(&format!("a statement of a test: {list}"));
+            self.unexpected(&format!("a statement of a test: {list}"), None);
         }
         if self.cur.start == start {
             self.bump();
         }
-        self.recover(|p| words::TEST.contains(&p.word()));
+        self.recover(|p| p.at(Tok::Word));
     }
 
     fn test_statement(&mut self) -> Option<TestStmtKind> {

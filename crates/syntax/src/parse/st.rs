@@ -129,7 +129,7 @@ impl Parser<'_> {
     }
 
     fn lost_statement(&mut self, start: u32) {
-        self.expected("a statement");
+        self.unexpected("a statement", None);
         if self.cur.start == start {
             self.bump();
         }
