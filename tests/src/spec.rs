@@ -4,6 +4,7 @@
 //! add a file. To add a backend, add a line to `BACKENDS`.
 #![allow(clippy::disallowed_methods, reason = "the runner reads the cases")]
 
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use g7_model::ProfileName;
@@ -50,6 +51,9 @@ fn trials(root: &Path, file: &Path) -> Vec<Trial> {
     };
     let case = std::sync::Arc::new(case);
     let mut all = Vec::new();
+    let checked = std::sync::Arc::clone(&case);
+    let home = folder.clone();
+    all.push(Trial::test(format!("{title} [check]"), move || check(&checked, &home).map_err(Failed::from)));
     for number in 0..case.traces.len() {
         for (backend, make) in BACKENDS {
             let case = std::sync::Arc::clone(&case);
@@ -71,4 +75,31 @@ fn trials(root: &Path, file: &Path) -> Vec<Trial> {
 fn run(case: &Case, trace: usize, profile: Result<ProfileName, String>, make: Backend) -> Result<(), String> {
     let doc = case::document(&case.chart)?;
     replay(&doc, profile?, &case.traces[trace], make)
+}
+
+/// The checker reports the codes that the case names, no more and no less:
+/// under the profiles of its traces taken together.
+fn check(case: &Case, folder: &str) -> Result<(), String> {
+    let doc = case::document(&case.chart)?;
+    let mut profiles: Vec<ProfileName> = case.traces.iter().filter_map(|t| t.profile).collect();
+    if profiles.len() < case.traces.len().max(1) {
+        profiles.push(case::profile_named(folder)?);
+    }
+    let own = doc.profile().map(|d| d.name).unwrap_or_default();
+    let mut reported = BTreeSet::new();
+    let mut words = String::new();
+    for profile in profiles {
+        // Under its own profile a document keeps its switches.
+        let (_, problems) = g7_compile::compile_with(&doc, Some(profile).filter(|p| *p != own), &[]);
+        for p in problems {
+            if reported.insert(p.code.id) {
+                words.push_str(&format!("\n  {} {}", p.code.id, p.what));
+            }
+        }
+    }
+    let named: BTreeSet<&str> = case.problems.iter().map(String::as_str).collect();
+    if reported == named {
+        return Ok(());
+    }
+    Err(format!("`problems:` names {named:?}, the checker reports {reported:?}{words}"))
 }

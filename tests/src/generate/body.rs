@@ -169,7 +169,7 @@ pub(super) fn action(
     profile: ProfileName,
     sight: &Sight,
     to: &mut Targets,
-    driven: &[Driven],
+    driven: &mut Vec<Driven>,
     named: &[(String, String)],
 ) -> Option<String> {
     let condition = |rng: &mut Rng, sight: &Sight| {
@@ -177,7 +177,12 @@ pub(super) fn action(
     };
     Some(match rng.weighted(&[40, 14, 7, 12, 10, 6, 5]) {
         0 => {
-            let variable = rng.pick(driven)?.clone();
+            // A variable stands once in a step: it can take one value at a time.
+            let at = rng.below(driven.len());
+            if driven.is_empty() {
+                return None;
+            }
+            let variable = driven.remove(at);
             let q = rng.pick(&variable.qualifiers)?.clone();
             format!("{q} {}{}", variable.name, condition(rng, sight))
         }

@@ -162,8 +162,9 @@ impl Sight {
         let d = depth - 1;
         if rng.percent(self.risk) {
             return match rng.below(5) {
-                0 => format!("({name} / {})", self.int(rng, ty, d)),
-                1 => format!("({name} mod {})", self.int(rng, ty, d)),
+                // A divisor that may be zero, but is not written as one.
+                0 => format!("({small} / {name})"),
+                1 => format!("({small} mod ({name} - 1))"),
                 2 => format!("({name} * {})", self.int(rng, ty, d)),
                 3 => format!("({name} - {})", self.int(rng, ty, d)),
                 _ => format!("({name} + {})", self.int(rng, ty, d)),

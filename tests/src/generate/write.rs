@@ -47,7 +47,8 @@ pub(super) fn document(rng: &mut Rng, profile: ProfileName) -> String {
     named_actions(rng, &mut world, &outside, &mut out);
     if rng.percent(25) {
         let name = "Ready".to_owned();
-        out += &format!("transition section {name} := {}\n", outside.plain().boolean(rng, 2));
+        let value = if world.stable { outside.edge(rng, 1) } else { outside.boolean(rng, 2) };
+        out += &format!("transition section {name} := {value}\n");
         world.sections.push(name);
     }
     if rng.percent(35) {
@@ -78,6 +79,17 @@ fn header(rng: &mut Rng, world: &mut World, out: &mut String) {
         for pair in pairs {
             if rng.percent(25) {
                 let switch = rng.one(pair);
+                // Actions cannot wait for the end of the pass and run at once.
+                let at_once = switch == "sequential"
+                    && matches!(world.profile, ProfileName::Iec60848 | ProfileName::Pl7)
+                    || switch == "parallel-actions" && world.profile == ProfileName::Jgrafchart
+                    || switch == "sequential" && switches.contains(&"parallel-actions")
+                    // Where all actions wait for the end of the scan nothing is read before.
+                    || switch == "parallel-actions"
+                        && matches!(world.profile, ProfileName::Iec61131 | ProfileName::Unity);
+                if at_once {
+                    continue;
+                }
                 switches.push(switch);
                 if pair[0] == "stable" {
                     world.stable = switch == "stable";
@@ -273,6 +285,8 @@ fn see_steps(sight: &mut Sight, chart: &PlanChart, prefix: &str) {
 fn pre(rng: &mut Rng, world: &mut World, sight: &Sight, plan: &Plan) -> String {
     let mut text = body::block(rng, sight, &mut world.targets);
     let services = match world.profile {
+        // Services that reach a chart with a period wait for no instant of it.
+        _ if plan.charts.iter().any(|c| c.every.is_some()) => return text,
         ProfileName::Pl7 => pl7(rng, sight),
         ProfileName::Unity => unity(rng, sight, plan),
         ProfileName::Iec60848 | ProfileName::Iec61131 | ProfileName::Jgrafchart => return text,
@@ -345,9 +359,10 @@ fn chart(rng: &mut Rng, world: &mut World, plan: &Plan, at: usize, out: &mut Str
         }
         let actions =
             if step.expansion.is_some() { rng.weighted(&[75, 25]) } else { rng.weighted(&[30, 40, 22, 8]) };
+        let mut driven = driven.clone();
         for _ in 0..actions {
             let profile = world.profile;
-            if let Some(a) = body::action(rng, profile, &sight, &mut world.targets, &driven, &named) {
+            if let Some(a) = body::action(rng, profile, &sight, &mut world.targets, &mut driven, &named) {
                 out.push_str(&format!("    {a}\n"));
             }
         }
@@ -365,7 +380,7 @@ fn chart(rng: &mut Rng, world: &mut World, plan: &Plan, at: usize, out: &mut Str
                 format!("({})", names.join(", "))
             }
         };
-        let when = receptivity(rng, world, &sight, from.is_empty());
+        let when = receptivity(rng, world, &sight, from.is_empty(), chart.every.is_some());
         out.push_str(&format!("  {} -> {} when {when}", names(from), names(to)));
         if rng.percent(12) {
             out.push_str(&format!(" priority {}", rng.between(1, 3)));
@@ -381,11 +396,14 @@ fn chart(rng: &mut Rng, world: &mut World, plan: &Plan, at: usize, out: &mut Str
 
 /// Where the search for stability goes on while anything clears, a receptivity
 /// that stays true makes most charts run in circles: events are more common.
-fn receptivity(rng: &mut Rng, world: &mut World, sight: &Sight, source: bool) -> String {
-    if rng.percent(30)
+fn receptivity(rng: &mut Rng, world: &mut World, sight: &Sight, source: bool, periodic: bool) -> String {
+    // A section of the file samples its edges in every scan.
+    if !periodic
+        && rng.percent(30)
         && let Some(section) = world.sections.pop()
     {
-        return if world.stable { format!("{section} and {}", sight.edge(rng, 0)) } else { section };
+        // Its output is computed where it is the whole receptivity, and only there.
+        return section;
     }
     let input = rng.pick(&sight.inputs).cloned().unwrap_or_else(|| "TRUE".to_owned());
     if source {

@@ -2,8 +2,9 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use g7_model::{ActionKind, Body, Expr, ProfileName, Qualifier, Target, Type};
+use g7_model::{Action, ActionKind, Body, Expr, ProfileName, Qualifier, Target, Type};
 
+use super::evolve::Changes;
 use super::exec::Exec;
 use super::model::{FILE, Model, ScopeId, StepId, VarId};
 use super::names::Ref;
@@ -103,6 +104,14 @@ pub(super) fn blocked_vars(m: &Model) -> Run<BTreeSet<VarId>> {
     Ok(vars)
 }
 
+/// What the evolution of a scan did.
+pub(super) struct Went {
+    /// Active steps at its start.
+    pub(super) start: BTreeSet<StepId>,
+    /// Steps that came on or went off in it, those of the initialisation too.
+    pub(super) changes: Changes,
+}
+
 /// What a control block says.
 struct Verdict {
     q: bool,
@@ -113,15 +122,16 @@ struct Verdict {
 }
 
 /// Evaluates all control blocks and continuous actions, then runs the bodies.
-pub(super) fn end_of_scan(m: &Model, s: &mut State, due: &[bool], start: &BTreeSet<StepId>) -> Run<()> {
+pub(super) fn end_of_scan(m: &Model, s: &mut State, due: &[bool], went: &Went) -> Run<()> {
     // JGrafchart: the periodic actions, and after them the level actions.
     let level_last = m.rules.profile == ProfileName::Jgrafchart;
     if level_last {
-        bodies(m, s, due, start, &[], &BTreeMap::new(), true)?;
+        bodies(m, s, due, went, &[], &BTreeMap::new(), true)?;
     }
     let blocks: Vec<Block<'_>> = qualified(m)?
         .into_iter()
         .filter(|(b, goal)| through_block(m, goal, b.qualifier))
+        .filter(|(b, _)| !is_late_pulse(m, b.step, &m.steps[b.step].actions[b.place]))
         .map(|(b, _)| b)
         .collect();
     let mut owners: Vec<&Owner> = Vec::new();
@@ -147,7 +157,7 @@ pub(super) fn end_of_scan(m: &Model, s: &mut State, due: &[bool], start: &BTreeS
             }
         }
     }
-    bodies(m, s, due, start, &blocks, &verdicts, !level_last)
+    bodies(m, s, due, went, &blocks, &verdicts, !level_last)
 }
 
 /// The inputs of a block, and what comes of them.
@@ -275,13 +285,42 @@ enum Run1<'m> {
     Each(ScopeId, &'m g7_model::Work, Option<&'m Expr>),
 }
 
+/// Whether a P1 or P0 body acts on the activation or deactivation itself. With a
+/// condition or a mask its control block sees the step at the end of the scan.
+fn is_late_pulse(m: &Model, step: StepId, action: &Action) -> bool {
+    let ActionKind::Qualified { qualifier, target: Target::Work(_), condition: None, .. } = &action.kind
+    else {
+        return false;
+    };
+    // A step that comes and goes within a scan is not seen either.
+    let through_block = m.rules.stable || m.chart_masks.iter().any(|(_, chart)| *chart == m.root_of(step));
+    let pulse = matches!(qualifier, Qualifier::P1 | Qualifier::P0);
+    pulse && m.rules.late_actions() && !through_block
+}
+
+/// A P1 or P0 body of a step's own where such bodies wait for the end of the
+/// scan: it runs once where the step was activated or deactivated in this scan,
+/// an initial step at the start too.
+fn late_pulse<'m>(m: &'m Model, went: &Went, step: StepId, action: &'m Action) -> Option<(i8, Run1<'m>)> {
+    let ActionKind::Qualified { qualifier, target: Target::Work(work), .. } = &action.kind else {
+        return None;
+    };
+    let (pulse, happened) = match qualifier {
+        Qualifier::P1 => (0, &went.changes.on),
+        Qualifier::P0 => (2, &went.changes.off),
+        _ => return None,
+    };
+    let late = is_late_pulse(m, step, action) && happened.contains(&step);
+    late.then(|| (pulse, Run1::Each(m.steps[step].scope, work, None)))
+}
+
 /// Bodies and each-scan actions in the order of the text; a named action stands
 /// where it is first named.
 fn bodies(
     m: &Model,
     s: &mut State,
     due: &[bool],
-    start: &BTreeSet<StepId>,
+    went: &Went,
     blocks: &[Block<'_>],
     verdicts: &BTreeMap<&Owner, Verdict>,
     each_scan: bool,
@@ -289,13 +328,28 @@ fn bodies(
     let mut todo: Vec<(i8, Run1<'_>)> = Vec::new();
     let mut done: BTreeSet<&Owner> = BTreeSet::new();
     for scope in FILE + 1..m.scopes.len() {
+        for t in m.scopes[scope]
+            .transitions
+            .iter()
+            .filter(|t| m.rules.late_actions() && went.changes.cleared.contains(t))
+        {
+            todo.extend(m.transitions[*t].on_clearing.as_ref().map(|b| (-1, Run1::Named(scope, b))));
+        }
         for &step in &m.scopes[scope].steps {
             for (place, action) in m.steps[step].actions.iter().enumerate() {
+                if let ActionKind::OnEvent { work, .. } = &action.kind {
+                    if m.rules.late_actions() && went.changes.events.contains(&(step, place)) {
+                        todo.push((1, Run1::Work(scope, work)));
+                    }
+                }
                 if let ActionKind::EachScan { work, condition } = &action.kind {
-                    let was = m.rules.profile != ProfileName::Jgrafchart || start.contains(&step);
+                    let was = m.rules.profile != ProfileName::Jgrafchart || went.start.contains(&step);
                     if each_scan && due[scope] && s.active.contains(&step) && was {
                         todo.push((1, Run1::Each(scope, work, condition.as_ref())));
                     }
+                }
+                if due[scope] {
+                    todo.extend(late_pulse(m, went, step, action));
                 }
                 let Some(block) = blocks.iter().find(|b| (b.step, b.place) == (step, place)) else {
                     continue;
@@ -318,9 +372,8 @@ fn bodies(
             }
         }
     }
-    if m.rules.pulse_first {
-        todo.sort_by_key(|(pulse, _)| *pulse);
-    }
+    // What cleared comes before what the steps do; then P1 and P0 where they have a place.
+    todo.sort_by_key(|(pulse, _)| if m.rules.pulse_first { *pulse } else { (*pulse).min(0) });
     for (_, what) in todo {
         let mut exec = Exec::new(m, s);
         match what {

@@ -9,7 +9,7 @@ use super::exec::Exec;
 use super::force::{forced_situations, impose};
 use super::model::{Model, ScopeId, StepId, TransId};
 use super::state::{State, Timing};
-use super::stored::{self, Happened};
+use super::stored;
 use super::value::Run;
 use super::{Diagnostics, Marks};
 
@@ -18,6 +18,19 @@ use super::{Diagnostics, Marks};
 pub(super) struct Changes {
     pub(super) on: BTreeSet<StepId>,
     pub(super) off: BTreeSet<StepId>,
+    /// Transitions that cleared.
+    pub(super) cleared: BTreeSet<TransId>,
+    /// Steps and actions whose event happened.
+    pub(super) events: BTreeSet<(StepId, usize)>,
+}
+
+impl Changes {
+    pub(super) fn add(&mut self, more: &Changes) {
+        self.on.extend(&more.on);
+        self.off.extend(&more.off);
+        self.cleared.extend(&more.cleared);
+        self.events.extend(&more.events);
+    }
 }
 
 /// Every step of `pre` is active, of a macro-step its exit step.
@@ -43,7 +56,8 @@ pub(super) fn pass(
     let mut clearable = Vec::new();
     for t in 0..m.transitions.len() {
         let scope = m.transitions[t].scope;
-        if enabled(m, s, t)
+        if m.is_live(scope)
+            && enabled(m, s, t)
             && due[scope]
             && !forced.contains_key(&m.scopes[scope].root)
             && !held(m, s, scope)
@@ -57,10 +71,12 @@ pub(super) fn pass(
     marks.cleared.extend(&chosen);
 
     if m.rules.sequential && !m.rules.parallel_actions {
-        return one_after_the_other(m, s, due, &chosen, &forced, &events, earlier, diagnostics);
+        return one_after_the_other(m, s, due, &chosen, &forced, events, earlier, diagnostics);
     }
     let mut flow = Flow { next: s.active.clone(), left: BTreeSet::new() };
-    let steps = chosen.iter().map(|&t| (flat(leaving(m, t)), flat(arriving(m, t))));
+    let back = tasks(m, s, due, &chosen);
+    let back = back.into_iter().map(|(exit, entry)| (BTreeSet::from([exit]), BTreeSet::from([entry])));
+    let steps = chosen.iter().map(|&t| (flat(leaving(m, t)), flat(arriving(m, t)))).chain(back);
     if m.rules.sequential {
         for (off, on) in steps {
             flow.turn(&off, &on);
@@ -74,7 +90,6 @@ pub(super) fn pass(
         off.retain(|x| !on.contains(x));
         flow.turn(&off, &on);
     }
-    tasks(m, s, due, &chosen, &mut flow);
     for (chart, situation) in &forced {
         if let Some(set) = situation {
             impose(m, *chart, set, &mut flow.next);
@@ -84,10 +99,10 @@ pub(super) fn pass(
         flow.left.iter().copied().filter(|x| before.active.contains(x) && flow.next.contains(x)).collect();
     hierarchy(m, &before.active, &again, &mut flow.next);
     let mut changes = settle(m, s, flow.next, &again);
-    changes.on.extend(earlier.on);
-    changes.off.extend(earlier.off);
-    let happened = Happened { cleared: &chosen, changes: &changes, events: &events };
-    stored::run(m, s, &before, &happened, diagnostics)?;
+    changes.add(&earlier);
+    changes.cleared.extend(chosen);
+    changes.events = events;
+    stored::run(m, s, &before, &changes, diagnostics)?;
     Ok(changes)
 }
 
@@ -102,7 +117,7 @@ fn one_after_the_other(
     due: &[bool],
     chosen: &[TransId],
     forced: &BTreeMap<ScopeId, Option<BTreeSet<StepId>>>,
-    events: &BTreeSet<(StepId, usize)>,
+    events: BTreeSet<(StepId, usize)>,
     earlier: Changes,
     diagnostics: &mut Diagnostics,
 ) -> Run<Changes> {
@@ -110,10 +125,10 @@ fn one_after_the_other(
     let mut all = Changes::default();
     let nothing = BTreeSet::new();
     // Owners of tasks are settled by the situation in which the pass began.
-    let mut flow = Flow { next: before.clone(), left: BTreeSet::new() };
-    let by_themselves = tasks(m, s, due, chosen, &mut flow);
+    let by_themselves = tasks(m, s, due, chosen);
     for &t in chosen {
-        if let Some(block) = &m.transitions[t].on_clearing {
+        all.cleared.insert(t);
+        if let (Some(block), false) = (&m.transitions[t].on_clearing, m.rules.late_actions()) {
             Exec::new(m, s).body(m.transitions[t].scope, block)?;
         }
         for group in leaving(m, t) {
@@ -149,13 +164,11 @@ fn one_after_the_other(
     let again: BTreeSet<StepId> = all.off.intersection(&all.on).copied().collect();
     hierarchy(m, &before, &again, &mut next);
     let mut changes = settle(m, s, next, &nothing);
-    all.on.extend(&changes.on);
-    all.off.extend(&changes.off);
-    changes.on.extend(earlier.on);
-    changes.off.extend(earlier.off);
+    changes.add(&earlier);
+    changes.events = events;
     let so_far = s.clone();
-    let happened = Happened { cleared: &[], changes: &changes, events };
-    stored::run(m, s, &so_far, &happened, diagnostics)?;
+    stored::run(m, s, &so_far, &changes, diagnostics)?;
+    all.add(&changes);
     Ok(all)
 }
 
@@ -238,13 +251,7 @@ fn task_allows(m: &Model, s: &State, t: TransId) -> bool {
 
 /// Hands tasks to their callers and back; gives the exit and entry steps of
 /// those that go back by themselves.
-fn tasks(
-    m: &Model,
-    s: &mut State,
-    due: &[bool],
-    chosen: &[TransId],
-    flow: &mut Flow,
-) -> Vec<(StepId, StepId)> {
+fn tasks(m: &Model, s: &mut State, due: &[bool], chosen: &[TransId]) -> Vec<(StepId, StepId)> {
     let mut by_themselves = Vec::new();
     let begun = s.clone();
     for task in 0..m.scopes.len() {
@@ -260,12 +267,11 @@ fn tasks(
             s.owners.remove(&task);
         }
         if by_itself {
-            flow.turn(&BTreeSet::from([exit]), &BTreeSet::from([entry]));
             by_themselves.push((exit, entry));
         }
         let begins =
             chosen.iter().any(|&t| m.transitions[t].scope == task && m.transitions[t].pre.contains(&entry));
-        if begins && !s.owners.contains_key(&task) {
+        if begins && !begun.owners.contains_key(&task) {
             if let Some(first) = callers(m, task).find(|&c| begun.is_active(m, c)) {
                 s.owners.insert(task, first);
             }
@@ -294,8 +300,9 @@ fn choose(m: &Model, clearable: &[TransId]) -> Vec<TransId> {
         return clearable.to_vec();
     }
     let beaten = |t: TransId| {
-        let Some(mine) = m.transitions[t].priority else { return false };
-        clearable.iter().any(|&o| shares(o, t) && m.transitions[o].priority.is_some_and(|p| p < mine))
+        // Without a number it has the lowest priority.
+        let number = |t: TransId| m.transitions[t].priority.unwrap_or(u32::MAX);
+        clearable.iter().any(|&o| shares(o, t) && number(o) < number(t))
     };
     clearable.iter().copied().filter(|&t| !beaten(t)).collect()
 }
@@ -352,7 +359,7 @@ pub(super) fn settle(m: &Model, s: &mut State, next: BTreeSet<StepId>, again: &B
             t.since_scan = scan;
         }
     }
-    Changes { on, off }
+    Changes { on, off, ..Changes::default() }
 }
 
 /// Steps and actions whose `on e:` is due: the step is active and `e` true at

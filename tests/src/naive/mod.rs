@@ -146,11 +146,7 @@ impl Naive {
     /// where the profile counts those, and whether it is no macro-step.
     pub fn step_times(&self) -> Vec<(String, i64, bool)> {
         let m = &self.model;
-        let live = |scope: usize| {
-            let s = &m.scopes[scope];
-            s.macro_step.is_some() || s.kind != g7_model::ChartKind::Expansion
-        };
-        let steps = (0..m.steps.len()).filter(|&s| live(m.steps[s].scope));
+        let steps = (0..m.steps.len()).filter(|&s| m.is_live(m.steps[s].scope));
         steps
             .map(|x| {
                 let t = if m.rules.scan_clock { self.state.scans(m, x) } else { self.state.time(m, x) };

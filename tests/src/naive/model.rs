@@ -67,7 +67,13 @@ impl Rules {
 
     /// P1 and P0 assignments and bodies are stored actions (decision 8).
     pub(super) fn stored_pulses(self) -> bool {
-        !matches!(self.profile, ProfileName::Iec61131 | ProfileName::Unity)
+        !self.late_actions()
+    }
+
+    /// All actions run at the end of the scan, those on clearing and on event
+    /// too: evolution first, then actions.
+    pub(super) fn late_actions(self) -> bool {
+        matches!(self.profile, ProfileName::Iec61131 | ProfileName::Unity)
     }
 }
 
@@ -408,6 +414,11 @@ impl Model {
         for step in &mut self.steps {
             step.qualified = format!("{}.{}", self.scopes[step.scope].qualified, step.name);
         }
+    }
+
+    /// Whether a scope takes part: an expansion does where a macro-step has it.
+    pub(super) fn is_live(&self, scope: ScopeId) -> bool {
+        self.scopes[scope].kind != ChartKind::Expansion || self.scopes[scope].macro_step.is_some()
     }
 
     pub(super) fn root_of(&self, step: StepId) -> ScopeId {

@@ -4,13 +4,14 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use g7_model::{TargetPlc, VarKind};
 
+use super::control::Went;
 use super::evolve::{self, Changes};
 use super::exec::Exec;
 use super::force::services;
-use super::model::{FILE, StepId};
+use super::model::StepId;
 use super::sample::sample;
 use super::state::State;
-use super::stored::{self, Happened};
+use super::stored;
 use super::value::{NaiveFault, Run, Typed, Value, bad};
 use super::{Diagnostics, Marks, Naive};
 
@@ -73,21 +74,14 @@ impl Naive {
         let s = &mut self.state;
         s.set_system(m, "S0", Value::Bool(self.first && !self.warm));
         s.set_system(m, "S1", Value::Bool(self.first && self.warm));
-        if self.first {
-            // Steps are active from the load on; their times run from the first scan.
-            let initial = std::mem::take(&mut s.active);
-            evolve::settle(m, s, initial, &BTreeSet::new());
-        }
-        sample(m, s, &due)?;
+        let mut changes = if self.first { self.initialise()? } else { Changes::default() };
+        sample(m, &mut self.state, &due)?;
         self.sections(true, &due)?;
         let requested = services(m, &mut self.state);
-        if self.first {
-            self.initialise()?;
-        }
         let start = self.state.active.clone();
-        let counted = self.evolve(&due, requested)?;
+        let counted = self.evolve(&due, requested, &mut changes)?;
         self.count(counted);
-        super::control::end_of_scan(m, &mut self.state, &due, &start)?;
+        super::control::end_of_scan(m, &mut self.state, &due, &Went { start, changes })?;
         self.sections(false, &due)
     }
 
@@ -123,28 +117,26 @@ impl Naive {
     fn sections(&mut self, pre: bool, due: &[bool]) -> Run<()> {
         let model = std::rc::Rc::clone(&self.model);
         for (scope, is_pre, block) in &model.bodies {
-            let live = *scope == FILE
-                || model.scopes[*scope].kind != g7_model::ChartKind::Expansion
-                || model.scopes[*scope].macro_step.is_some();
-            if *is_pre == pre && due[*scope] && live {
+            if *is_pre == pre && due[*scope] && model.is_live(*scope) {
                 Exec::new(&model, &mut self.state).body(*scope, block)?;
             }
         }
         Ok(())
     }
 
-    /// The activation stored actions of the initial situation.
-    fn initialise(&mut self) -> Run<()> {
+    /// The initial situation, with its stored actions, before all else: no
+    /// action finds a step active before it.
+    fn initialise(&mut self) -> Run<Changes> {
         let m = &*std::rc::Rc::clone(&self.model);
-        let changes = Changes { on: self.state.active.clone(), off: BTreeSet::new() };
-        let happened = Happened { cleared: &[], changes: &changes, events: &BTreeSet::new() };
         let before = self.state.clone();
-        stored::run(m, &mut self.state, &before, &happened, &mut self.diagnostics)
+        let changes = evolve::settle(m, &mut self.state, m.initial_steps(), &BTreeSet::new());
+        stored::run(m, &mut self.state, &before, &changes, &mut self.diagnostics)?;
+        Ok(changes)
     }
 
     /// The passes; gives the steps turned on and off, and the transitions that
     /// were enabled at the start.
-    fn evolve(&mut self, due: &[bool], requested: Changes) -> Run<Counted> {
+    fn evolve(&mut self, due: &[bool], requested: Changes, changes: &mut Changes) -> Run<Counted> {
         let model = std::rc::Rc::clone(&self.model);
         let m = &*model;
         let plain = |set: &BTreeSet<StepId>| set.iter().filter(|&&x| m.steps[x].expansion.is_none()).count();
@@ -164,11 +156,14 @@ impl Naive {
             let extra = std::mem::take(&mut earlier);
             let passed =
                 evolve::pass(m, &mut self.state, due, extra.clone(), &mut self.diagnostics, &mut self.marks)?;
-            let own = |set: &BTreeSet<StepId>, earlier: &BTreeSet<StepId>| plain(&(set - earlier));
-            counted.moved += own(&passed.on, &extra.on) + own(&passed.off, &extra.off);
+            changes.add(&passed);
+            let [on, off] = [&passed.on - &extra.on, &passed.off - &extra.off];
+            counted.moved += plain(&on) + plain(&off);
             self.check_tables(enabled(&self.state).len())?;
             let s = &self.state;
-            if !m.rules.stable || (before.active == s.active && before.vars == s.vars) {
+            let still = on.is_empty() && off.is_empty() && before.active == s.active;
+            let same = still && before.vars == s.vars && before.owners == s.owners;
+            if !m.rules.stable || same {
                 return Ok(counted);
             }
             let mut seen = self.state.clone();

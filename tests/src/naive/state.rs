@@ -98,13 +98,13 @@ pub(super) struct State {
 }
 
 impl State {
-    /// The state before the first scan; `kept` are retained values.
+    /// The state before the first scan, with no step active; `kept` are retained values.
     pub(super) fn new(m: &Model, kept: &BTreeMap<VarId, Value>) -> Run<State> {
         let mut state = State {
             now: 0,
             scan: 0,
             vars: m.vars.iter().map(|v| zero(v.ty)).collect(),
-            active: m.initial_steps(),
+            active: BTreeSet::new(),
             timing: vec![Timing::default(); m.steps.len()],
             macro_timing: BTreeMap::new(),
             due_next: BTreeMap::new(),

@@ -1,6 +1,6 @@
 //! Stored actions of a pass (decision 5).
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 
 use g7_model::{Action, ActionKind, Block, Body, Expr, Qualifier, Target, Work};
 
@@ -11,13 +11,6 @@ use super::exec::Exec;
 use super::model::{FILE, Model, ScopeId, StepId, TransId, VarId};
 use super::state::State;
 use super::value::{Run, Value};
-
-/// What stored actions react to.
-pub(super) struct Happened<'a> {
-    pub(super) cleared: &'a [TransId],
-    pub(super) changes: &'a Changes,
-    pub(super) events: &'a BTreeSet<(StepId, usize)>,
-}
 
 /// The kinds, in their order within a pass with parallel actions.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -48,9 +41,12 @@ pub(super) fn run(
     m: &Model,
     s: &mut State,
     before: &State,
-    happened: &Happened<'_>,
+    happened: &Changes,
     diagnostics: &mut Diagnostics,
 ) -> Run<()> {
+    if m.rules.late_actions() {
+        return Ok(()); // see the end of the scan
+    }
     let mut todo = collect(m, happened)?;
     if m.rules.parallel_actions {
         todo.sort_by_key(|t| t.kind);
@@ -68,13 +64,15 @@ pub(super) fn run(
 
 /// Runs the entry or the exit actions of one step, with the state as it is.
 pub(super) fn at_once(m: &Model, s: &mut State, step: StepId, on: bool) -> Run<()> {
+    if m.rules.late_actions() {
+        return Ok(());
+    }
     let mut changes = Changes::default();
     let set = if on { &mut changes.on } else { &mut changes.off };
     set.insert(step);
-    let happened = Happened { cleared: &[], changes: &changes, events: &BTreeSet::new() };
     let mut todo = Vec::new();
     for (i, action) in m.steps[step].actions.iter().enumerate() {
-        of_action(m, (step, i), action, &happened, &mut todo)?;
+        of_action(m, (step, i), action, &changes, &mut todo)?;
     }
     for t in &todo {
         perform(&mut Exec::new(m, s), t)?;
@@ -130,7 +128,7 @@ fn parallel(
 }
 
 /// The actions that run, in the order of the text.
-fn collect<'m>(m: &'m Model, h: &Happened<'_>) -> Run<Vec<Todo<'m>>> {
+fn collect<'m>(m: &'m Model, h: &Changes) -> Run<Vec<Todo<'m>>> {
     let mut todo = Vec::new();
     for scope in FILE + 1..m.scopes.len() {
         for t in m.scopes[scope].transitions.iter().filter(|t| h.cleared.contains(t)) {
@@ -152,7 +150,7 @@ fn of_action<'m>(
     m: &'m Model,
     (step, place): (StepId, usize),
     action: &'m Action,
-    h: &Happened<'_>,
+    h: &Changes,
     todo: &mut Vec<Todo<'m>>,
 ) -> Run<()> {
     let scope = m.steps[step].scope;
@@ -166,7 +164,7 @@ fn of_action<'m>(
             if control::through_block(m, &goal, *qualifier) {
                 return Ok(());
             }
-            let (on, off) = (h.changes.on.contains(&step), h.changes.off.contains(&step));
+            let (on, off) = (h.on.contains(&step), h.off.contains(&step));
             let (kind, pulse, happens) = match qualifier {
                 Qualifier::P1 => (Kind::Activation, 0, on),
                 Qualifier::P0 => (Kind::Deactivation, 2, off),
