@@ -218,6 +218,14 @@ impl Bench {
         self.items.iter().map(item).chain(self.steps.iter().map(step)).collect()
     }
 
+    /// The order in which signals are shown: from cause to effect.
+    pub(crate) fn order(signals: &[Signal]) -> Vec<usize> {
+        let groups = ["inputs", "steps", "outputs", "variables", "plant"];
+        let mut order: Vec<usize> = (0..signals.len()).collect();
+        order.sort_by_key(|i| signals.get(*i).and_then(|s| groups.iter().position(|g| *g == s.group)));
+        order
+    }
+
     /// The values of [`Bench::signals`], in their order.
     pub(crate) fn sample<'a>(&'a self, runner: &'a Runner<'_>) -> impl Iterator<Item = Value> + 'a {
         let state = runner.shown();

@@ -173,7 +173,8 @@ fn print(
     )?;
     let mut lanes: Vec<usize> = shown.to_vec();
     if lanes.is_empty() {
-        lanes = (0..recording.signals().len()).filter(|i| recording.count(*i) > 1).collect();
+        lanes = Bench::order(recording.signals());
+        lanes.retain(|i| recording.count(*i) > 1);
     }
     if lanes.is_empty() {
         writeln!(out, "nothing moved")?;

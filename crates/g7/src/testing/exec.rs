@@ -323,29 +323,38 @@ impl<'b> Exec<'b, '_> {
         format!("{{{}}}", self.bench.situation(self.runner.state()).join(", "))
     }
 
-    /// What the condition mentions, then what moved lately.
+    /// What the condition mentions, then what moved lately: steps before
+    /// outputs, inputs and variables. Curves and the plant's own affairs only
+    /// where they are mentioned: they move all the time.
     fn chronogram(&self, names: &[&str]) -> String {
         let Some(recording) = &self.recording else { return String::new() };
-        let named = |name: &str| names.contains(&name);
-        let mut instants: Vec<i64> = recording.instants();
-        instants.reverse();
+        let all = || recording.signals().iter().enumerate();
+        let mut lanes: BTreeSet<usize> =
+            all().filter(|(_, s)| names.contains(&s.name.as_str())).map(|(i, _)| i).collect();
+        let mut others: Vec<(usize, usize)> = all()
+            .filter(|(_, s)| !matches!(s.kind, Kind::Real | Kind::Lreal))
+            .filter_map(|(i, s)| Some((GROUPS.iter().position(|g| *g == s.group)?, i)))
+            .collect();
+        others.sort_unstable();
+        let moves = |i: usize| recording.changes(i).skip(1).map(|(at, _)| *at);
+        let mut instants: Vec<i64> = others.iter().flat_map(|(_, i)| moves(*i)).collect();
+        instants.sort_unstable_by(|a, b| b.cmp(a));
+        instants.dedup();
         let least = self.now().saturating_sub(self.bench.period.saturating_mul(20));
         let from = instants.get(12).copied().unwrap_or(recording.start()).min(least).max(recording.start());
-        let mut lanes = BTreeSet::new();
-        let signals = recording.signals().iter().enumerate();
-        lanes.extend(signals.filter(|(_, s)| named(&s.name)).map(|(i, _)| i));
-        for i in 0..recording.signals().len() {
-            if lanes.len() < LANES && recording.changes(i).skip(1).any(|(at, _)| *at >= from) {
+        for (_, i) in others {
+            if lanes.len() < LANES && moves(i).any(|at| at >= from) {
                 lanes.insert(i);
             }
         }
         // One scan more than there was, so that the last one has room.
         let to = recording.end().saturating_add(self.bench.period);
-        let style = Style { columns: 60, from, to };
-        Chronogram::new(recording, lanes, style).to_string()
+        Chronogram::new(recording, lanes, Style { columns: 60, from, to }).to_string()
     }
 }
 
+/// Which signals matter first.
+const GROUPS: [&str; 4] = ["steps", "outputs", "inputs", "variables"];
 /// Most lanes of a failure's chronogram.
 const LANES: usize = 14;
 

@@ -9,7 +9,7 @@ use ratatui::widgets::{Block, Borders, Clear, Paragraph};
 
 use super::app::{App, Panel};
 use super::keys::HELP;
-use crate::bench::{Item, Role};
+use crate::bench::{Bench, Item, Role};
 
 const ON: Style = Style::new().fg(Color::Green).add_modifier(Modifier::BOLD);
 const DIM: Style = Style::new().add_modifier(Modifier::DIM);
@@ -195,7 +195,8 @@ fn draw_chronogram(frame: &mut Frame<'_>, app: &mut App<'_>, area: Rect) {
     let block = framed(&title, false);
     let inner = block.inner(area);
     let signals = app.recording.signals();
-    let moving: Vec<usize> = (0..signals.len()).filter(|i| app.recording.count(*i) > 1).collect();
+    let mut moving = Bench::order(signals);
+    moving.retain(|i| app.recording.count(*i) > 1);
     let room = usize::from(inner.height.saturating_sub(1));
     app.lane = app.lane.min(moving.len().saturating_sub(room));
     let shown: Vec<usize> = moving.into_iter().skip(app.lane).take(room).collect();
