@@ -141,9 +141,16 @@ fn gather(p: &Program, s: &mut State) {
     }
 }
 
+/// Gathers actions of a step that comes on or goes off, for this pass or, with
+/// `late_actions`, for the end of the scan.
 pub(crate) fn add_runs(p: &Program, s: &mut State, rows: Rows) {
     for &action in p.t.action_lists.get(rows.start as usize..rows.end as usize).unwrap_or(&[]) {
-        s.x.runs.push(action);
+        if p.t.rules.late_actions {
+            set_bit(&mut s.x.late, 0, action, true);
+            s.x.late_any = true;
+        } else {
+            s.x.runs.push(action);
+        }
     }
 }
 
@@ -283,23 +290,9 @@ pub(crate) fn run_action(p: &Program, s: &mut State, action: u32) -> Result<(), 
     Ok(())
 }
 
-/// Puts the actions of this pass aside for the end of the scan.
-fn postpone(s: &mut State) {
-    for k in 0..s.x.runs.len() {
-        let Some(&action) = s.x.runs.get(k) else { break };
-        set_bit(&mut s.x.late, 0, action, true);
-        s.x.late_any = true;
-    }
-    s.x.runs.clear();
-}
-
 /// Runs the gathered actions one after the other, each seeing the earlier ones.
 pub(crate) fn run_ordered(p: &Program, s: &mut State) -> Result<(), Fault> {
     if s.x.runs.is_empty() {
-        return Ok(());
-    }
-    if p.t.rules.late_actions {
-        postpone(s);
         return Ok(());
     }
     s.x.runs.sort_unstable();
@@ -314,10 +307,6 @@ pub(crate) fn run_ordered(p: &Program, s: &mut State) -> Result<(), Fault> {
 /// Runs the gathered actions on the values from before the pass: each one's
 /// writes are taken back and noted, to be made by [`write_commits`].
 fn run_parallel(p: &Program, s: &mut State) -> Result<(), Fault> {
-    if p.t.rules.late_actions {
-        postpone(s);
-        return Ok(());
-    }
     s.x.runs.sort_unstable();
     for k in 0..s.x.runs.len() {
         let Some(&action) = s.x.runs.get(k) else { break };

@@ -361,7 +361,7 @@ fn in_turn(p: &Program, s: &mut State) -> Result<(), Fault> {
     for k in 0..s.x.fired.len() {
         let Some(t) = s.x.fired.get(k).and_then(|i| p.t.transitions.get(*i as usize)).copied() else { break };
         if t.on_clearing != NONE {
-            now_or_late(p, s, t.on_clearing)?;
+            run_action(p, s, t.on_clearing)?;
         }
         let mut done = Ok(());
         each_from(p, &t, |f| {
@@ -377,15 +377,6 @@ fn in_turn(p: &Program, s: &mut State) -> Result<(), Fault> {
         done?;
     }
     run_ordered(p, s)
-}
-
-fn now_or_late(p: &Program, s: &mut State, action: u32) -> Result<(), Fault> {
-    if p.t.rules.late_actions {
-        s.x.runs.push(action);
-        Ok(())
-    } else {
-        run_action(p, s, action)
-    }
 }
 
 fn run_list(p: &Program, s: &mut State, rows: Rows) -> Result<(), Fault> {
