@@ -92,6 +92,22 @@ fn ten_megabytes_of_beginnings() {
     }
 }
 
+/// A large chart is ordinary work: about 0.1 s in a release build.
+#[test]
+fn a_hundred_thousand_steps() {
+    let mut text = String::from("input a : BOOL\noutput V : BOOL\nvar n : INT\nchart G {\n");
+    for i in 0..100_000 {
+        text.push_str(&format!("  step {i} {{ N V }}\n  {i} -> {} when a and X{i}.t >= 5s\n", i + 1));
+    }
+    text.push_str("}\n");
+    let start = Instant::now();
+    let (document, problems) = parse(&text, FileId(0));
+    let took = start.elapsed();
+    assert!(problems.is_empty());
+    assert_eq!(document.charts().map(|c| c.items.len()).sum::<usize>(), 200_000);
+    assert!(took < Duration::from_secs(10), "{took:?}");
+}
+
 #[test]
 fn case_with_many_words() {
     let text = format!("action A {{ CASE n OF 1:\n{}", "a a\n".repeat(MEGABYTES / 16));

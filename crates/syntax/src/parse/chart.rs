@@ -56,7 +56,8 @@ impl Parser<'_> {
                 return;
             }
             let start = self.cur.start;
-            if !self.chart_item(items) && !(self.correct(words::CHART) && self.chart_item(items)) {
+            let read = self.chart_item(items) || self.correct(words::CHART) && self.chart_item(items);
+            if !read {
                 self.lost_chart_item(start);
             }
         }
