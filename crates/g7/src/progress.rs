@@ -22,6 +22,11 @@ impl Progress {
         Progress { what, total, done: 0, clock: WallClock::default(), bar: None, on: stderr().is_terminal() }
     }
 
+    /// So many more are to be done.
+    pub(crate) fn more(&mut self, count: u64) {
+        self.total += count;
+    }
+
     /// One more is done.
     pub(crate) fn step(&mut self) {
         self.at(self.done + 1);
@@ -42,10 +47,11 @@ impl Progress {
                 Err(_) => bar,
             }
         });
+        bar.set_length(total);
         bar.set_position(done);
     }
 
-    /// Clears the line.
+    /// Clears the line; it comes back with the next step.
     pub(crate) fn end(&mut self) {
         if let Some(bar) = self.bar.take() {
             bar.finish_and_clear();

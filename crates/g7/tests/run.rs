@@ -169,6 +169,38 @@ fn a_fault_ends_the_run_with_its_place_and_code_1() {
     assert!(folder.read("out.csv").lines().last().is_some_and(|l| l.starts_with("0.03,")));
 }
 
+/// Two actions of one pass give `k` different values, each time `a` comes.
+const CONFLICT: &str = "\
+input a : BOOL
+var k, i, j : INT
+chart G {
+  initial step 1
+  step 2 {
+    P1 k := i
+  }
+  step 3 {
+    P1 k := j + 1
+  }
+  1 -> (2, 3) when a
+  (2, 3) -> 1 when not a
+}
+";
+
+#[test]
+fn a_conflicting_assignment_is_told_once_a_run() {
+    let folder = Folder::with(CONFLICT);
+    let sets = ["--set", "a=1@10ms", "--set", "a=0@20ms", "--set", "a=1@30ms"];
+    let ran = folder.g7(&[&["run", "--headless", "--for", "50ms"][..], &sets].concat());
+    assert_eq!(ran.is(0).err.matches("conflicting assignment").count(), 1, "{}", ran.err);
+    assert!(ran.err.contains("`k` different values at 10ms"), "{}", ran.err);
+    folder.write("chart.g7", format!("{CONFLICT}\ntest \"t\" {{ pulse a pulse a }}"));
+    let ran = folder.g7(&["test"]);
+    assert_eq!(ran.is(0).out.matches("`k` different values").count(), 1, "{}", ran.out);
+    let other = CONFLICT.replace("j + 1", "j");
+    folder.write("chart.g7", format!("{other}\ntest \"t\" {{ pulse a }}"));
+    assert!(!folder.g7(&["test"]).is(0).out.contains("note"), "the same value is no conflict");
+}
+
 #[test]
 fn an_unstable_chart_names_its_cycle() {
     let folder = Folder::with(
@@ -228,6 +260,34 @@ fn the_same_seed_gives_the_same_run_and_another_another() {
     assert!(one == again, "the same seed");
     assert!(one != two, "another seed");
     assert!(one.lines().count() > 20, "parts arrive: {one}");
+}
+
+#[test]
+fn a_run_that_is_cut_short_has_kept_what_it_had() {
+    let chart =
+        "var n : INT retain\nchart G {\n  initial step 1 {\n    each scan: n := (n + 1) mod 1000\n  }\n}\n";
+    let folder = Folder::with(chart);
+    let mut child = std::process::Command::new(snapbox::cmd::cargo_bin!("g7"))
+        .args(["run", "--real-time", "--for", "1h", "--retain", "kept"])
+        .current_dir(folder.root())
+        .stdout(std::process::Stdio::null())
+        .stderr(std::process::Stdio::null())
+        .spawn()
+        .expect("it starts");
+    let there = || folder.names().contains(&"kept".to_owned());
+    for _ in 0..500 {
+        if there() {
+            break;
+        }
+        std::thread::sleep(std::time::Duration::from_millis(20));
+    }
+    child.kill().expect("it is ended");
+    child.wait().expect("it has ended");
+    folder.g7(&["run", "--headless", "--for", "0s", "--retain", "kept", "--trace", "out.csv"]).is(0);
+    let row = folder.read("out.csv");
+    let n: i32 =
+        row.lines().last().and_then(|l| l.split(',').nth(1)).and_then(|n| n.parse().ok()).expect("n");
+    assert!(n > 50, "a second of scans were counted: {row}");
 }
 
 #[test]

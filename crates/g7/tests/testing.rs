@@ -125,7 +125,10 @@ fn a_fault_is_expected_by_the_next_statement_or_fails_the_test() {
     passes(&format!("test \"t\" {{ {OVERFLOW} set a := TRUE  expect fault }}"));
     passes(&format!("test \"t\" {{ {OVERFLOW} wait 1s  pulse a  expect fault overflow  expect not m }}"));
     passes(&format!("test \"t\" {{ {OVERFLOW} set a := TRUE  expect fault  restart  expect n = 1 }}"));
-    fails(&format!("test \"t\" {{ {OVERFLOW} set a := TRUE  expect m }}"), &["fault: overflow", "chart.g7:"]);
+    fails(
+        &format!("test \"t\" {{ {OVERFLOW} set a := TRUE  expect m }}"),
+        &["fault: overflow", "it came up at ./chart.g7:9:"],
+    );
     fails(
         &format!("test \"t\" {{ {OVERFLOW} pulse a  expect fault division }}"),
         &["expected fault division, got overflow"],

@@ -2,6 +2,7 @@
 
 mod names;
 
+use std::collections::BTreeSet;
 use std::ops::Range;
 
 use g7_engine::{Addr, GroupId, State, StepId};
@@ -289,6 +290,21 @@ impl Bench {
             seen.push("…".to_owned());
         }
         seen
+    }
+}
+
+/// Variables that stored actions of one pass gave different values, each told
+/// once in a run.
+#[derive(Debug, Default)]
+pub(crate) struct Conflicts(BTreeSet<Addr>);
+
+impl Conflicts {
+    /// What the latest scan says of it, in a sentence.
+    pub(crate) fn of(&mut self, bench: &Bench, runner: &Runner<'_>) -> Option<String> {
+        let addr = runner.report().conflict.filter(|a| self.0.insert(*a))?;
+        let name = bench.compiled.symbols.variable_at(addr).map_or("a variable", |v| &v.name);
+        let now = format_time(runner.state().now());
+        Some(format!("conflicting assignment: actions of one pass gave `{name}` different values at {now}"))
     }
 }
 

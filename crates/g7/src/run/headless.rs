@@ -8,8 +8,8 @@ use g7_host::{
     write_csv, write_vcd,
 };
 
-use super::keep;
-use crate::bench::{Bench, Item};
+use super::keep::{self, Keeper};
+use crate::bench::{Bench, Conflicts, Item};
 use crate::cli::Run;
 use crate::failure::{Failure, Verdict};
 use crate::progress::Progress;
@@ -52,7 +52,9 @@ pub(super) fn run(bench: &Bench, source: &Source, args: &Run) -> Result<Verdict,
     let length = args.duration.unwrap_or(UNSAID);
     let mut clock: Box<dyn Clock> =
         if args.real_time { Box::new(WallClock::default()) } else { Box::new(VirtualClock::default()) };
-    let halt = play(bench, &mut runner, &mut recording, &script, length, &mut *clock);
+    let mut keeper = Keeper::new(bench, &runner, args.retain.as_deref());
+    let mut live = args.real_time.then_some(&mut keeper);
+    let halt = play(bench, &mut runner, &mut recording, &script, length, &mut *clock, &mut live)?;
     let verdict = if let Some(halt) = halt {
         let place = bench.halt_place(halt).map_or_else(String::new, |at| format!("{}: ", source.place(at)));
         let (bad, now) = (style::BAD, format_time(runner.state().now()));
@@ -70,7 +72,7 @@ pub(super) fn run(bench: &Bench, source: &Source, args: &Run) -> Result<Verdict,
     if let (Some(path), Some(tape)) = (&args.record, runner.tape()) {
         files::write(path, tape.to_text().as_bytes())?;
     }
-    keep::save(bench, &runner, args.retain.as_deref())?;
+    keeper.save(&runner)?;
     print(bench, &runner, &recording, source, &shown)?;
     Ok(verdict)
 }
@@ -110,9 +112,11 @@ fn play(
     script: &[(i64, &Item, Value)],
     length: i64,
     clock: &mut dyn Clock,
-) -> Option<g7_host::Halt> {
+    live: &mut Option<&mut Keeper<'_>>,
+) -> Result<Option<g7_host::Halt>, Failure> {
     let mut progress = Progress::new("running", length.max(1) as u64);
     let mut script = script.iter().peekable();
+    let mut conflicts = Conflicts::default();
     while runner.due() <= length {
         clock.wait_until(runner.due());
         runner.catch_up(clock.now());
@@ -127,14 +131,20 @@ fn play(
         recording.sample(runner.state().now(), bench.sample(runner));
         if let Err(halt) = done {
             progress.end();
-            return Some(halt);
+            return Ok(Some(halt));
+        }
+        if let Some(conflict) = conflicts.of(bench, runner) {
+            talk!("{}note:{:#} {conflict}", style::WARN, style::WARN);
+        }
+        if let Some(keeper) = live {
+            keeper.tick(runner)?;
         }
         if runner.state().scans() % 256 == 0 {
             progress.at(runner.due().max(0) as u64);
         }
     }
     progress.end();
-    None
+    Ok(None)
 }
 
 fn write_trace(recording: &Recording, path: &Path, form: Form) -> Result<(), Failure> {

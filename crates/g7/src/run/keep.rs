@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use g7_host::{Layout, RetainError, Retained, Runner, Start};
+use g7_host::{Clock, Layout, RetainError, Retained, Runner, Start, WallClock};
 
 use crate::bench::Bench;
 use crate::failure::Failure;
@@ -27,10 +27,41 @@ pub(super) fn load(bench: &Bench, runner: &mut Runner<'_>, path: Option<&Path>) 
     }
 }
 
-/// Keeps the retained variables as they are now.
-pub(super) fn save(bench: &Bench, runner: &Runner<'_>, path: Option<&Path>) -> Result<(), Failure> {
-    let Some(path) = path else { return Ok(()) };
-    Retained { words: runner.retained() }
-        .save(&layout(bench), path)
-        .map_err(|e| Failure::Write(path.to_path_buf(), e))
+/// Writes the retained variables while the charts run, and at the end.
+pub(crate) struct Keeper<'a> {
+    layout: Layout,
+    path: Option<&'a Path>,
+    written: Vec<u64>,
+    clock: WallClock,
+}
+
+/// Between two writes: each waits for the disk, nanoseconds.
+const PAUSE: i64 = 1_000_000_000;
+
+impl<'a> Keeper<'a> {
+    pub(super) fn new(bench: &Bench, runner: &Runner<'_>, path: Option<&'a Path>) -> Keeper<'a> {
+        Keeper { layout: layout(bench), path, written: runner.retained(), clock: WallClock::default() }
+    }
+
+    /// Writes what has changed, once a second at most: no more is lost where
+    /// the run is cut short.
+    pub(crate) fn tick(&mut self, runner: &Runner<'_>) -> Result<(), Failure> {
+        if self.path.is_none() || self.clock.now() < PAUSE {
+            return Ok(());
+        }
+        self.clock = WallClock::default();
+        if runner.retained() == self.written {
+            return Ok(());
+        }
+        self.save(runner)
+    }
+
+    /// Writes them as they are now.
+    pub(crate) fn save(&mut self, runner: &Runner<'_>) -> Result<(), Failure> {
+        let Some(path) = self.path else { return Ok(()) };
+        self.written = runner.retained();
+        Retained { words: self.written.clone() }
+            .save(&self.layout, path)
+            .map_err(|e| Failure::Write(path.to_path_buf(), e))
+    }
 }

@@ -5,6 +5,8 @@ mod keep;
 
 use std::io::{IsTerminal, stdin, stdout};
 
+pub(crate) use keep::Keeper;
+
 use crate::bench::{self, Bench};
 use crate::cli::Run;
 use crate::failure::{Failure, Verdict};
@@ -27,8 +29,8 @@ pub(crate) fn run(args: &Run) -> Result<Verdict, Failure> {
     }
     let mut runner = bench.runner(args.seed);
     keep::load(&bench, &mut runner, args.retain.as_deref())?;
-    let runner = view::run(&bench, runner, &source.name(), args)?;
-    keep::save(&bench, &runner, args.retain.as_deref())?;
+    let mut keeper = Keeper::new(&bench, &runner, args.retain.as_deref());
+    view::run(&bench, runner, &source.name(), args, &mut keeper)?;
     Ok(Verdict::Fine)
 }
 

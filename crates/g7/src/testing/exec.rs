@@ -8,7 +8,7 @@ use g7_model::{Span, Type};
 
 use super::coverage::Coverage;
 use super::plan::{Check, Does, Line, Plan};
-use crate::bench::{Answer, Bench, Item};
+use crate::bench::{Answer, Bench, Conflicts, Item};
 use crate::sources::Source;
 
 /// Why a test failed, with all that helps to see why.
@@ -30,13 +30,17 @@ pub(crate) struct Defect {
     pub(crate) situation: String,
     /// The signals that matter, up to the failure.
     pub(crate) chronogram: String,
+    /// Where in charts or plant a fault came up.
+    pub(crate) origin: Option<String>,
     expected_at: Option<Span>,
+    origin_at: Option<Span>,
 }
 
 impl Defect {
     /// Fills in what the source knows: places and the author's words.
     pub(super) fn describe(&mut self, source: &Source) {
         self.place = source.place(self.at);
+        self.origin = self.origin_at.map(|at| source.place(at));
         if let Some(at) = self.expected_at {
             let text = source.text.get(source.range(at)).unwrap_or("");
             self.expected = text.split_whitespace().collect::<Vec<_>>().join(" ");
@@ -49,6 +53,8 @@ pub(super) struct Done {
     pub(super) defect: Option<Box<Defect>>,
     pub(super) simulated: i64,
     pub(super) scans: u64,
+    /// What deserves a look although nothing failed.
+    pub(super) notes: Vec<String>,
 }
 
 /// Why the statements stop.
@@ -73,6 +79,8 @@ pub(super) fn run<'b>(
         always: Vec::new(),
         coverage,
         at: Span::default(),
+        conflicts: Conflicts::default(),
+        notes: Vec::new(),
     };
     let ended = exec.scan().and_then(|()| exec.block(&plan.lines));
     let defect = match ended {
@@ -80,7 +88,7 @@ pub(super) fn run<'b>(
         Err(Stop::Failed(defect)) => Some(defect),
         Err(Stop::Fault(halt)) => Some(exec.fault(halt)),
     };
-    Done { defect, simulated: exec.now(), scans: exec.runner.state().scans() }
+    Done { defect, simulated: exec.now(), scans: exec.runner.state().scans(), notes: exec.notes }
 }
 
 struct Exec<'b, 'c> {
@@ -92,6 +100,8 @@ struct Exec<'b, 'c> {
     coverage: Option<&'c mut Coverage>,
     /// The statement in hand.
     at: Span,
+    conflicts: Conflicts,
+    notes: Vec<String>,
 }
 
 impl<'b> Exec<'b, '_> {
@@ -164,6 +174,7 @@ impl<'b> Exec<'b, '_> {
             recording.sample(self.runner.state().now(), self.bench.sample(&self.runner));
         }
         done.map_err(Stop::Fault)?;
+        self.notes.extend(self.conflicts.of(self.bench, &self.runner));
         for check in self.always.clone() {
             self.expect(check, "this did not hold throughout")?;
         }
@@ -312,6 +323,7 @@ impl<'b> Exec<'b, '_> {
         Box::new(Defect {
             at: self.at,
             what: format!("fault: {}", self.bench.halt(&self.runner, halt)),
+            origin_at: self.bench.halt_place(halt),
             time: self.now(),
             situation: self.situation(),
             chronogram: self.chronogram(&[]),

@@ -41,6 +41,8 @@ pub(crate) struct Outcome {
     pub(crate) scans: u64,
     /// Time that it took, nanoseconds.
     pub(crate) took: i64,
+    /// What deserves a look although nothing failed.
+    pub(crate) notes: Vec<String>,
 }
 
 /// What is asked for.
@@ -54,13 +56,15 @@ struct Options<'a> {
 pub(crate) fn test(args: &Test) -> Result<Verdict, Failure> {
     let paths = files::all(&args.paths)?;
     let options = Options { profile: args.profile, scan: args.scan, filter: args.filter.as_deref() };
-    let mut progress = Progress::new("testing", paths.len() as u64);
+    let mut progress = Progress::new("testing", 0);
     let (mut outcomes, mut covered, mut tally) = (Vec::new(), Vec::new(), Tally::default());
     let mut out = anstream::stdout().lock();
     for path in &paths {
         let source = Source::load(path, 0)?;
         let mut coverage = Coverage::default();
-        let (mut done, problems) = file(&source, options, &mut coverage)?;
+        progress.more(source.tests().count() as u64);
+        let (mut done, problems) = file(&source, options, &mut coverage, &mut progress)?;
+        progress.end();
         let found = Tally::of(&problems);
         if found.errors > 0 {
             talk!("{}", report::text(&source, &problems).trim_end());
@@ -71,9 +75,7 @@ pub(crate) fn test(args: &Test) -> Result<Verdict, Failure> {
         }
         outcomes.append(&mut done);
         covered.push((source.name(), coverage));
-        progress.step();
     }
-    progress.end();
     if let Some(path) = &args.junit {
         files::write(path, output::junit(&outcomes).as_bytes())?;
     }
@@ -103,6 +105,7 @@ fn file(
     source: &Source,
     options: Options<'_>,
     coverage: &mut Coverage,
+    progress: &mut Progress,
 ) -> Result<(Vec<Outcome>, Vec<Problem>), Failure> {
     let mut outcomes: Vec<(usize, Outcome)> = Vec::new();
     let (groups, mut problems) = prepare(source, options)?;
@@ -113,6 +116,7 @@ fn file(
                 if options.filter.is_none_or(|f| scenario.title.contains(f)) {
                     outcomes.push((*number, one(source, &group.bench, scenario, plan, coverage)));
                 }
+                progress.step();
             }
         }
     }
@@ -204,5 +208,6 @@ fn one(source: &Source, bench: &Bench, scenario: &Scenario, plan: &Plan, coverag
         simulated: first.simulated,
         scans: first.scans,
         took: clock.now(),
+        notes: first.notes,
     }
 }

@@ -16,6 +16,9 @@ pub(super) fn progress_lines(out: &mut dyn Write, outcomes: &[Outcome]) -> io::R
         let (style, word) = if o.defect.is_some() { (style::BAD, "FAILED") } else { (style::GOOD, "ok") };
         let (faint, time) = (style::FAINT, format_time(o.simulated));
         writeln!(out, "{style}{word:>6}{style:#} {}: {} {faint}({time}){faint:#}", o.file, o.title)?;
+        for note in &o.notes {
+            writeln!(out, "{}  note{:#} {note}", style::WARN, style::WARN)?;
+        }
     }
     Ok(())
 }
@@ -26,6 +29,9 @@ pub(super) fn failures(out: &mut dyn Write, outcomes: &[Outcome]) -> io::Result<
         let Some(d) = &o.defect else { continue };
         writeln!(out, "\n{}{}{:#}: {}", style::BAD, o.title, style::BAD, sentence(d))?;
         writeln!(out, "  at {}, {} after the start", d.place, format_time(d.time))?;
+        if let Some(origin) = &d.origin {
+            writeln!(out, "  it came up at {origin}")?;
+        }
         if !d.got.is_empty() {
             let got: Vec<String> = d.got.iter().map(|(name, value)| format!("{name} = {value}")).collect();
             writeln!(out, "  got {}", got.join(", "))?;
@@ -92,11 +98,12 @@ fn test_json(o: &Outcome) -> Value {
     let mut test = json!({
         "file": o.file, "title": o.title, "place": o.place, "passed": o.defect.is_none(),
         "simulated_seconds": o.simulated as f64 / 1e9, "scans": o.scans, "seconds": o.took as f64 / 1e9,
+        "notes": o.notes,
     });
     if let Some(d) = &o.defect {
         let got: serde_json::Map<String, Value> = d.got.iter().map(|(n, v)| (n.clone(), json!(v))).collect();
         test["failure"] = json!({
-            "what": d.what, "expected": d.expected, "got": got, "place": d.place,
+            "what": d.what, "expected": d.expected, "got": got, "place": d.place, "origin": d.origin,
             "time_seconds": d.time as f64 / 1e9, "situation": d.situation, "chronogram": d.chronogram,
         });
     }

@@ -2,7 +2,7 @@
 
 use g7_host::{Clock, Halt, Kind, Recording, Runner, Start, Value, WallClock, format_time};
 
-use crate::bench::{Bench, Item, Role};
+use crate::bench::{Bench, Conflicts, Item, Role};
 use crate::cli::Run;
 use crate::failure::Failure;
 use crate::values::{self, Assign};
@@ -80,6 +80,7 @@ pub(super) struct App<'b> {
     pub(super) lane: usize,
     speed: usize,
     script: Vec<Assign>,
+    conflicts: Conflicts,
     until: i64,
     over: bool,
 }
@@ -117,13 +118,10 @@ impl<'b> App<'b> {
             lane: 0,
             speed: 6,
             script,
+            conflicts: Conflicts::default(),
             until: args.duration.unwrap_or(i64::MAX),
             over: false,
         })
-    }
-
-    pub(super) fn into_runner(self) -> Runner<'b> {
-        self.runner
     }
 
     pub(super) fn is_over(&self) -> bool {
@@ -176,6 +174,9 @@ impl<'b> App<'b> {
     fn after(&mut self, done: Result<(), Halt>) {
         let now = self.runner.shown().now();
         self.recording.sample(now, self.bench.sample(&self.runner));
+        if let Some(conflict) = self.conflicts.of(self.bench, &self.runner) {
+            self.message = conflict;
+        }
         if let Err(halt) = done {
             self.message = format!("fault: {}; R restarts", self.bench.halt(&self.runner, halt));
         }

@@ -18,30 +18,37 @@ use g7_host::Runner;
 use crate::bench::Bench;
 use crate::cli::Run;
 use crate::failure::Failure;
+use crate::run::Keeper;
 use app::App;
 
 /// Time between two pictures at most.
 const FRAME: Duration = Duration::from_millis(40);
 
-/// Shows the chart at work until the user ends it; gives back the runner.
+/// Shows the chart at work until the user ends it.
 pub(crate) fn run<'b>(
     bench: &'b Bench,
     runner: Runner<'b>,
     title: &str,
     args: &Run,
-) -> Result<Runner<'b>, Failure> {
+    keeper: &mut Keeper<'_>,
+) -> Result<(), Failure> {
     let mut app = App::new(bench, runner, title, args)?;
     // `try_init` also puts the terminal back should we panic.
     let mut terminal = ratatui::try_init()?;
-    let ended = turn(&mut terminal, &mut app);
+    let ended = turn(&mut terminal, &mut app, keeper);
     ratatui::restore();
     ended?;
-    Ok(app.into_runner())
+    keeper.save(&app.runner)
 }
 
-fn turn(terminal: &mut ratatui::DefaultTerminal, app: &mut App<'_>) -> std::io::Result<()> {
+fn turn(
+    terminal: &mut ratatui::DefaultTerminal,
+    app: &mut App<'_>,
+    keeper: &mut Keeper<'_>,
+) -> Result<(), Failure> {
     while !app.is_over() {
         app.advance();
+        keeper.tick(&app.runner)?;
         terminal.draw(|frame| draw::draw(frame, app))?;
         let mut patience = FRAME;
         while event::poll(patience)? {
