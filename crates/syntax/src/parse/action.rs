@@ -28,6 +28,9 @@ impl Parser<'_> {
             };
             match kind {
                 Some(kind) if self.cur.start > start => {
+                    if actions.is_empty() {
+                        actions.reserve_exact(1); // most steps have one
+                    }
                     actions.push(Action { kind, at: self.since(start).into() });
                 }
                 _ => actions.extend(self.lost_action(start)),

@@ -340,6 +340,8 @@ impl Parser<'_> {
             self.close(Tok::RParen, "`)` after the steps", open);
             return names;
         }
+        // One step is the rule, in charts of many thousands: no room for more.
+        names.reserve_exact(1);
         names.extend(self.step_name(what));
         if self.at(Tok::Comma) {
             self.slip(self.here(), "several steps stand in parentheses", "write `(1, 2)`");
