@@ -300,11 +300,13 @@ pub enum Situation {
     Steps(Vec<StepId>),
 }
 
-/// A named action.
+/// A named action, or a PRE or POST section.
 #[derive(Clone, Debug)]
 pub struct Body {
     /// Qualified name.
     pub name: Box<str>,
+    /// The chart it stands in; `None` outside of all charts.
+    pub chart: Option<ChartId>,
     /// What it does.
     pub statements: Vec<Stmt>,
     /// Its name in the text.

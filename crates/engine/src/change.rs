@@ -156,6 +156,7 @@ pub(crate) fn add_runs(p: &Program, s: &mut State, rows: Rows) {
 
 /// Switches the step bits, and clears the marks.
 fn apply(p: &Program, s: &mut State) {
+    s.x.emptied.clear();
     for k in 0..s.x.off.len() {
         let Some(&step) = s.x.off.get(k) else { break };
         unmark(&mut s.x.off_mark, step);
@@ -270,12 +271,32 @@ fn count_groups(p: &Program, s: &mut State, e: &Extra, on: bool) {
         let old = word(&s.w, at);
         let new = if on { old.wrapping_add(1) } else { old.saturating_sub(1) };
         s.set(at, new);
+        if (old == 0) != (new == 0) {
+            stamp_group(p, s, g.0, new != 0);
+        }
         if (old == 0) != (new == 0)
             && let Some(group) = p.t.groups.get(g.0 as usize)
         {
             mark_watches(p, s, group.watches);
         }
     }
+}
+
+/// Notes when a group came on, or how long it was on. One that loses its last
+/// step and gets another in the same change was active without a break.
+fn stamp_group(p: &Program, s: &mut State, group: u32, on: bool) {
+    let at = (p.layout.group_stamps + group) as usize;
+    let (now, old) = (clock(p, s), word(&s.w, at));
+    let stamp = if on {
+        let kept = s.x.emptied.iter().rev().find(|e| e.0 == group);
+        kept.map_or(now as u64, |e| e.1)
+    } else {
+        if s.x.emptied.len() < s.x.emptied.capacity() {
+            s.x.emptied.push((group, old));
+        }
+        if p.t.rules.keep_step_time { now.wrapping_sub(old as i64) as u64 } else { 0 }
+    };
+    s.set(at, stamp);
 }
 
 /// Runs one action where its condition holds and its period is due.

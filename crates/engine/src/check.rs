@@ -72,12 +72,22 @@ impl Program {
         let has_hierarchy = t.extras.iter().any(|e| !e.encloses.is_empty() || !e.links.is_empty());
         let has_periods = t.periods.iter().any(|p| *p > 0);
         let reads_time = |op: &Op| {
-            matches!(op, Op::StepTime(_) | Op::StepTenths(_) | Op::ScanTime | Op::Random(_) | Op::Fb(..))
+            matches!(
+                op,
+                Op::StepTime(_)
+                    | Op::StepTenths(_)
+                    | Op::GroupTime(_)
+                    | Op::ScanTime
+                    | Op::Random(_)
+                    | Op::Fb(..)
+            )
         };
         let bare = t.orders.is_empty()
                 && !has_hierarchy
                 && stored == 0
                 && !t.rules.sequential
+                && t.group_lists.is_empty()
+                && t.drops.is_empty()
                 && !frame
                 && !t.code.iter().any(|op| writes(op) > 0)
                 && !has_periods
@@ -257,6 +267,15 @@ impl Check<'_> {
                 Guard::Word(a) | Guard::NotWord(a) => within(a.0, t.init.len(), "transitions", i)?,
                 Guard::Code(code) => self.code(code, 1)?,
             }
+        }
+        let mut last = 0;
+        for (i, (rank, step)) in t.drops.iter().enumerate() {
+            within(*rank, t.transitions.len(), "drops", i)?;
+            within(step.0, t.steps.len(), "drops", i)?;
+            if *rank < last {
+                return Err(LoadError::Order { table: "drops", row: i as u32 });
+            }
+            last = *rank;
         }
         for (i, o) in t.outs.iter().enumerate() {
             within(*o, t.transitions.len(), "outs", i)?;
@@ -442,7 +461,8 @@ impl Check<'_> {
             Op::Load(a) | Op::Store(a) | Op::Random(a) => words(a, 1),
             Op::LoadAt { base, len } | Op::StoreAt { base, len } => words(base, len as usize),
             Op::Active(s) | Op::StepTime(s) | Op::StepTenths(s) => step(s),
-            Op::GroupActive(g) => within(g.0, t.groups.len(), "code", row),
+            Op::GroupActive(g) | Op::GroupTime(g) => within(g.0, t.groups.len(), "code", row),
+            Op::Due(period) => within(period, t.periods.len(), "code", row),
             Op::Rise(w) | Op::Fall(w) | Op::Timer(w) => within(w.0, t.watches.len(), "code", row),
             Op::Text { to, cap, .. } | Op::StoreText { to, cap } | Op::ToText { to, cap, .. } => {
                 words(to, string(cap.min(crate::TEXT)))?;
@@ -466,6 +486,8 @@ fn effect(op: &Op) -> (i16, i16) {
         | Op::Load(_)
         | Op::Active(_)
         | Op::GroupActive(_)
+        | Op::GroupTime(_)
+        | Op::Due(_)
         | Op::StepTime(_)
         | Op::StepTenths(_)
         | Op::Rise(_)

@@ -236,6 +236,11 @@ pub enum Op {
     StepTime(StepId),
     /// Pushes `min(time / 100 ms, 9999)`.
     StepTenths(StepId),
+    /// Pushes the time since a step of the group became active while none was,
+    /// ns; scans under the scan clock.
+    GroupTime(GroupId),
+    /// Pushes whether this row of [`crate::Tables::periods`] is due in this scan.
+    Due(u32),
     /// Pushes whether the watched expression rose in this pass.
     Rise(WatchId),
     /// Pushes whether it fell in this pass.

@@ -308,11 +308,21 @@ fn mark(p: &Program, s: &mut State) {
     for k in 0..s.x.fired.len() {
         let Some(t) = s.x.fired.get(k).and_then(|i| p.t.transitions.get(*i as usize)) else { break };
         each_from(p, t, |from| mark_off(s, StepId(from)));
+        if t.drops {
+            let rank = s.x.fired.get(k).copied().unwrap_or(NONE);
+            drops(p, rank).for_each(|step| mark_off(s, step));
+        }
         each_to(p, t, |to| mark_on(s, StepId(to)));
         if t.on_clearing != NONE {
             s.x.runs.push(t.on_clearing);
         }
     }
+}
+
+/// The steps that go off with a transition without having to be active for it.
+fn drops(p: &Program, rank: u32) -> impl Iterator<Item = StepId> + '_ {
+    let from = p.t.drops.partition_point(|d| d.0 < rank);
+    p.t.drops.get(from..).unwrap_or(&[]).iter().take_while(move |d| d.0 == rank).map(|d| d.1)
 }
 
 #[inline(always)]
@@ -369,6 +379,14 @@ fn in_turn(p: &Program, s: &mut State) -> Result<(), Fault> {
                 done = leave(p, s, f);
             }
         });
+        if t.drops {
+            let rank = s.x.fired.get(k).copied().unwrap_or(NONE);
+            for step in drops(p, rank) {
+                if done.is_ok() {
+                    done = leave(p, s, step.0);
+                }
+            }
+        }
         each_to(p, &t, |f| {
             if done.is_ok() {
                 done = enter(p, s, f);
@@ -405,6 +423,7 @@ fn leave(p: &Program, s: &mut State, step: u32) -> Result<(), Fault> {
         let e = extra(p, step).copied().unwrap_or_default();
         run_list(p, s, e.off)?;
         deactivate(p, s, step);
+        s.x.emptied.clear();
         for g in p.t.group_lists.get(e.encloses.start as usize..e.encloses.end as usize).unwrap_or(&[]) {
             let Some(group) = p.t.groups.get(g.0 as usize) else { continue };
             let mut from = group.steps.start;

@@ -187,6 +187,8 @@ pub struct Transition {
     pub shares: bool,
     /// The written priority, 1 first; `NONE` without one.
     pub priority: u32,
+    /// Has rows in [`Tables::drops`].
+    pub drops: bool,
     /// The step watched has only transitions with that one preceding step, so
     /// that under single-token the first clearable one settles it.
     pub simple: bool,
@@ -331,6 +333,9 @@ pub struct Tables {
     pub extras: Vec<Extra>,
     /// Transitions, by rank.
     pub transitions: Vec<Transition>,
+    /// Steps that go off with a transition (rank) without having to be active for
+    /// it, sorted by rank: what stands for a macro-step that is left.
+    pub drops: Vec<(u32, StepId)>,
     /// Transitions (rank) by the step that watches them.
     pub outs: Vec<u32>,
     /// Source transitions (rank).

@@ -187,6 +187,14 @@ fn rare(p: &Program, s: &mut State, op: Op) -> Result<(), FaultKind> {
             let v = s.step_time(p, step) as u64;
             s.x.stack.push(v);
         }
+        Op::GroupTime(g) => {
+            let v = s.group_time(p, g) as u64;
+            s.x.stack.push(v);
+        }
+        Op::Due(period) => {
+            let v = u64::from(crate::watch::is_due(p, s, period));
+            s.x.stack.push(v);
+        }
         Op::StepTenths(step) => {
             let v = (s.step_time(p, step) / 100_000_000).clamp(0, 9999) as u64;
             s.x.stack.push(v);
@@ -280,5 +288,9 @@ fn reset_times(p: &Program, s: &mut State) {
     for i in 0..p.t.steps.len() as u32 {
         let stamp = if s.steps.contains(&s.w, i) { now } else { 0 };
         s.set(p.layout.stamps as usize + i as usize, stamp);
+    }
+    for g in 0..p.t.groups.len() as u32 {
+        let stamp = if s.group_active(p, crate::GroupId(g)) { now } else { 0 };
+        s.set((p.layout.group_stamps + g) as usize, stamp);
     }
 }

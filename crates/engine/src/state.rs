@@ -71,6 +71,8 @@ pub(crate) struct Layout {
     pub(crate) start: u32,
     /// A word a group: its active steps.
     pub(crate) groups: u32,
+    /// A word a group: when it became active while active, how long while not.
+    pub(crate) group_stamps: u32,
     /// A bit a contribution: it counts at present (those with a condition or time).
     pub(crate) counted: u32,
     /// Contributions with a condition or time whose step is active.
@@ -116,6 +118,7 @@ impl Layout {
         l.running = Tree::reserve(watches, &mut next);
         l.start = take(&mut next, watches);
         l.groups = take(&mut next, n(t.groups.len()));
+        l.group_stamps = take(&mut next, n(t.groups.len()));
         let contributions = n(t.contributions.len());
         l.counted = take(&mut next, contributions.div_ceil(64));
         l.conditions = Tree::reserve(contributions, &mut next);
@@ -167,6 +170,8 @@ pub(crate) struct Scratch {
     pub(crate) commits: Vec<(u32, u64)>,
     pub(crate) commit_mark: Vec<u32>,
     pub(crate) pass_serial: u32,
+    /// Groups that lost their last step in the change in hand, with their stamps.
+    pub(crate) emptied: Vec<(u32, u64)>,
     pub(crate) changed: bool,
     pub(crate) work: u32,
     pub(crate) saved: Vec<u64>,
@@ -243,6 +248,7 @@ impl State {
             on_mark: bits(steps),
             off_mark: bits(steps),
             taken: bits(steps),
+            emptied: Vec::with_capacity(t.groups.len()),
             runs: Vec::with_capacity(t.actions.len() + t.events.len()),
             late: bits(t.actions.len()),
             before: vec![0; if t.rules.periodic_first { t.periodics.len().div_ceil(64) } else { 0 }],
@@ -324,6 +330,13 @@ impl State {
     /// Whether a step of the group is active.
     pub fn group_active(&self, p: &Program, group: GroupId) -> bool {
         word(&self.w, p.layout.groups as usize + group.0 as usize) != 0
+    }
+
+    /// Time since the group became active in ns (scans under the scan clock).
+    /// Only groups that steps count in have one.
+    pub fn group_time(&self, p: &Program, group: GroupId) -> i64 {
+        let stamp = word(&self.w, p.layout.group_stamps as usize + group.0 as usize) as i64;
+        if self.group_active(p, group) { crate::clock(p, self).wrapping_sub(stamp) } else { stamp }
     }
 
     /// Time since the step's latest activation in ns (scans under the scan clock).

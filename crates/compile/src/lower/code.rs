@@ -279,13 +279,16 @@ impl Lower<'_> {
     /// Pushes the clock of a step as the engine counts it.
     fn clock(&mut self, b: &mut Buf, step: StepId, at: Span) {
         b.reads.time = true;
-        match self.plan.own(step) {
-            Some(n) => b.op(Op::StepTime(n), at),
-            None => b.op(Op::Push(0), at),
+        let group = self.plan.expansion(self.unit, step).and_then(|c| self.plan.group(c));
+        match (group, self.plan.own(step)) {
+            (Some(group), _) => b.op(Op::GroupTime(group), at),
+            (None, Some(n)) => b.op(Op::StepTime(n), at),
+            (None, None) => b.op(Op::Push(0), at),
         }
     }
 
-    /// Pushes the time since activation, ns. Under the scan clock it is the
+    /// Pushes the time since activation, ns; of a macro-step, since a step of its
+    /// expansion is active. Under the scan clock it is the
     /// count of scans times the nominal scan time.
     pub(super) fn step_time(&mut self, b: &mut Buf, step: StepId, at: Span) {
         self.clock(b, step, at);
@@ -296,7 +299,8 @@ impl Lower<'_> {
     }
 
     fn step_tenths(&mut self, b: &mut Buf, step: StepId, at: Span) {
-        if let (false, Some(n)) = (self.unit.rules.scan_clock, self.plan.own(step)) {
+        let is_macro = self.plan.expansion(self.unit, step).is_some();
+        if let (false, false, Some(n)) = (self.unit.rules.scan_clock, is_macro, self.plan.own(step)) {
             b.reads.time = true;
             return b.op(Op::StepTenths(n), at);
         }

@@ -3,14 +3,14 @@
 //! A chart's own steps come first, then those of its expansions, each chart and
 //! each expansion contiguous, so that both are groups. A macro-step is no step
 //! of its own: an arc into it goes to the entry step of its expansion, an arc
-//! out of it comes from the exit step. Where it has actions or its time is
-//! read, a pseudo-step stands for it: it goes on with the entry step and off
-//! with the exit step.
+//! out of it comes from the exit step. Where it has actions, a pseudo-step
+//! carries them: it goes on with the entry step and off with the transition
+//! behind the macro-step.
 
 use g7_engine::NONE;
 
 use super::uses::Uses;
-use crate::ir::{ChartId, ChartRole, StepId, StepSort, Unit};
+use crate::ir::{Chart, ChartId, ChartRole, StepId, StepSort, Unit};
 
 /// Macro-steps within macro-steps, at most.
 pub(super) const NESTING: u32 = 200;
@@ -116,7 +116,7 @@ impl Plan {
                 continue;
             }
             let has = |table: &[bool]| table.get(i as usize).copied().unwrap_or(false);
-            if has(&uses.acts) || has(&uses.timed) {
+            if has(&uses.acts) {
                 self.number(id, true);
             }
             todo.push(Visit::Enter(expansion, level + 1));
@@ -166,34 +166,45 @@ impl Plan {
         }
     }
 
-    /// The steps that go on when a step does: those of a macro-step are the
-    /// entry step of its expansion and its pseudo-step.
+    /// The steps that go on when a step does: those of a macro-step are its
+    /// pseudo-step and the entry step of its expansion.
     pub(super) fn entering(&self, unit: &Unit, id: StepId, to: &mut Vec<g7_engine::StepId>) {
-        self.ends(unit, id, true, to);
+        let (end, pseudos) = self.end(unit, id, |c| c.entry);
+        pseudos.into_iter().chain(end).for_each(|s| add(to, s));
     }
 
-    /// The steps that must be active for a step to be left, and go off with it.
-    pub(super) fn leaving(&self, unit: &Unit, id: StepId, to: &mut Vec<g7_engine::StepId>) {
-        self.ends(unit, id, false, to);
+    /// The step that must be active for a step to be left, and goes off with it:
+    /// of a macro-step the exit step of its expansion. Its pseudo-step only goes
+    /// off, added to `drops`.
+    pub(super) fn leaving(
+        &self,
+        unit: &Unit,
+        id: StepId,
+        to: &mut Vec<g7_engine::StepId>,
+        drops: &mut Vec<g7_engine::StepId>,
+    ) {
+        let (end, pseudos) = self.end(unit, id, |c| c.exit);
+        end.into_iter().for_each(|s| add(to, s));
+        pseudos.into_iter().rev().for_each(|s| add(drops, s));
     }
 
-    fn ends(&self, unit: &Unit, id: StepId, entry: bool, to: &mut Vec<g7_engine::StepId>) {
+    /// The entry or exit step behind a macro-step, and the pseudo-steps on the way.
+    fn end(
+        &self,
+        unit: &Unit,
+        id: StepId,
+        which: impl Fn(&Chart) -> Option<StepId>,
+    ) -> (Option<g7_engine::StepId>, Vec<g7_engine::StepId>) {
         let mut pseudos = Vec::new();
         let mut at = id;
         for _ in 0..=NESTING {
             let Some(chart) = self.expansion(unit, at) else { break };
             pseudos.extend(self.pseudo(at));
-            let end = unit.charts.get(chart.index()).and_then(|c| if entry { c.entry } else { c.exit });
-            let Some(end) = end else { break };
+            let Some(end) = unit.charts.get(chart.index()).and_then(&which) else { break };
             at = end;
         }
-        // A macro-step comes on before its entry step and goes off behind its exit step.
-        let end = self.step.get(at.index()).copied().filter(|n| *n != NONE).map(g7_engine::StepId);
-        if entry {
-            pseudos.into_iter().chain(end).for_each(|s| add(to, s));
-        } else {
-            end.into_iter().chain(pseudos.into_iter().rev()).for_each(|s| add(to, s));
-        }
+        let end = self.step.get(at.index()).copied().filter(|n| *n != NONE);
+        (end.map(g7_engine::StepId), pseudos)
     }
 
     /// The pseudo-steps of the macro-steps round a step.

@@ -60,11 +60,23 @@ impl Lower<'_> {
         }
     }
 
-    /// Sections one behind the other, a RETURN ending only its own.
+    /// Sections one behind the other, a RETURN ending only its own. Those of a
+    /// chart with a period run when it is due, those of an unused expansion never.
     fn sections(&mut self, bodies: &[Body]) -> g7_engine::Code {
         let mut b = self.buf(0);
         for body in bodies {
+            if body.chart.is_some_and(|c| self.plan.chart(c).is_none()) {
+                continue;
+            }
+            b.period = body.chart.map_or(0, |c| self.period(c));
+            if b.period == 0 {
+                self.inline(&mut b, &body.statements);
+                continue;
+            }
+            b.op(Op::Due(b.period), body.at);
+            let skip = b.jump(Op::JumpUnless, body.at);
             self.inline(&mut b, &body.statements);
+            b.land(skip);
         }
         self.place(b)
     }

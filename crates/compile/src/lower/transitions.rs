@@ -10,7 +10,7 @@ use super::Lower;
 use super::actions::Clearing;
 use super::code::Buf;
 use super::lists::Lists;
-use super::plan::{add, parent};
+use super::plan::parent;
 use crate::ir::{self, ChartId, ChartRole, Expr, ExprKind, StepId, TransitionId, Value, VarClass, VarId};
 
 /// Where a transition of the program comes from.
@@ -32,6 +32,25 @@ enum Extra {
     OwnedBy(Addr, u64),
     /// The task's owner is no longer active.
     Orphaned(Addr, Vec<StepId>),
+}
+
+/// What a transition is made of.
+#[derive(Default)]
+struct Parts {
+    from: Vec<Number>,
+    to: Vec<Number>,
+    /// Go off with it.
+    drops: Vec<Number>,
+    extras: Vec<Extra>,
+}
+
+impl Parts {
+    fn clear(&mut self) {
+        self.from.clear();
+        self.to.clear();
+        self.drops.clear();
+        self.extras.clear();
+    }
 }
 
 impl Lower<'_> {
@@ -64,43 +83,42 @@ impl Lower<'_> {
     pub(super) fn transitions(&mut self, ranks: &[Origin], clearing: &Clearing) {
         let steps = self.plan.source.len();
         let (mut uses, mut joint) = (vec![0u8; steps], vec![false; steps]);
-        let (mut from, mut to) = (Vec::new(), Vec::new());
-        let mut extras = Vec::new();
+        let mut p = Parts::default();
         let mut outs = Lists::default();
         for (rank, origin) in ranks.iter().enumerate() {
-            from.clear();
-            to.clear();
-            extras.clear();
+            p.clear();
             let (chart, mut row) = match *origin {
                 Origin::Written(id) => {
                     let Some(t) = self.unit.transitions.get(id.index()) else { continue };
-                    self.written(t, &mut from, &mut to, &mut extras);
+                    self.written(t, &mut p);
                     if self.has_blockers {
-                        extras.extend(self.blockers(t.chart));
+                        p.extras.extend(self.blockers(t.chart));
                     }
-                    let row = self.row(&t.receptivity, &extras, t.chart);
+                    let row = self.row(&t.receptivity, &p.extras, t.chart);
                     let on_clearing = clearing.written(id);
                     (t.chart, Transition { on_clearing, priority: t.priority.unwrap_or(NONE), ..row })
                 }
                 Origin::Return(task) => {
-                    self.returning(task, &mut from, &mut to, &mut extras);
+                    self.returning(task, &mut p);
                     let at = self.unit.charts.get(task.index()).map(|c| c.at).unwrap_or_default();
                     let always =
                         Expr { kind: ExprKind::Const(Value::Bool(true)), ty: g7_model::Type::Bool, at };
                     let on_clearing = clearing.returning(task);
-                    (task, Transition { on_clearing, ..self.row(&always, &extras, task) })
+                    (task, Transition { on_clearing, ..self.row(&always, &p.extras, task) })
                 }
             };
             row.chart = self.plan.chart(chart).unwrap_or(0);
-            (row.from, row.more_from) = self.arcs(&from);
-            (row.to, row.more_to) = self.arcs(&to);
-            for s in &from {
+            (row.from, row.more_from) = self.arcs(&p.from);
+            (row.to, row.more_to) = self.arcs(&p.to);
+            row.drops = !p.drops.is_empty();
+            self.t.drops.extend(p.drops.iter().map(|s| (rank as u32, *s)));
+            for s in &p.from {
                 if let (Some(n), Some(j)) = (uses.get_mut(s.0 as usize), joint.get_mut(s.0 as usize)) {
                     *n = n.saturating_add(1);
-                    *j |= from.len() > 1;
+                    *j |= p.from.len() > 1;
                 }
             }
-            match from.first() {
+            match p.from.first() {
                 Some(s) => outs.add(s.0, rank as u32),
                 None => self.t.sources.push(rank as u32),
             }
@@ -135,20 +153,14 @@ impl Lower<'_> {
         Rows { start, end: self.t.arcs.len() as u32 }
     }
 
-    fn written(
-        &self,
-        t: &ir::Transition,
-        from: &mut Vec<Number>,
-        to: &mut Vec<Number>,
-        extras: &mut Vec<Extra>,
-    ) {
+    fn written(&self, t: &ir::Transition, p: &mut Parts) {
         for step in &t.from {
-            self.plan.leaving(self.unit, *step, from);
+            self.plan.leaving(self.unit, *step, &mut p.from, &mut p.drops);
             for task in self.tasks_of(*step) {
-                self.hand_back(task, *step, from, to, extras);
+                self.hand_back(task, *step, p);
             }
         }
-        t.to.iter().for_each(|s| self.plan.entering(self.unit, *s, to));
+        t.to.iter().for_each(|s| self.plan.entering(self.unit, *s, &mut p.to));
         if self.owners.is_empty() {
             return;
         }
@@ -156,52 +168,34 @@ impl Lower<'_> {
         if let Some(chart) = chart.filter(|c| c.role == ChartRole::Task)
             && chart.entry.is_some_and(|e| t.from.contains(&e))
         {
-            extras.push(Extra::Any(self.callers(t.chart).to_vec()));
+            p.extras.push(Extra::Any(self.callers(t.chart).to_vec()));
         }
     }
 
     /// A caller is left when the task's exit step is active on its behalf; the
     /// task then stands at its entry step again.
-    fn hand_back(
-        &self,
-        task: ChartId,
-        caller: StepId,
-        from: &mut Vec<Number>,
-        to: &mut Vec<Number>,
-        extras: &mut Vec<Extra>,
-    ) {
+    fn hand_back(&self, task: ChartId, caller: StepId, p: &mut Parts) {
         let Some(owner) = self.owner(task) else { return };
         let Some(number) = self.callers(task).iter().position(|c| *c == caller) else { return };
-        let Some(chart) = self.unit.charts.get(task.index()) else { return };
-        if let Some(exit) = chart.exit {
-            let mut steps = Vec::new();
-            self.plan.leaving(self.unit, exit, &mut steps);
-            steps.into_iter().for_each(|s| add(from, s));
-        }
-        if let Some(entry) = chart.entry {
-            let mut steps = Vec::new();
-            self.plan.entering(self.unit, entry, &mut steps);
-            steps.into_iter().for_each(|s| add(to, s));
-        }
-        extras.push(Extra::OwnedBy(owner, number as u64 + 1));
+        self.to_entry(task, p);
+        p.extras.push(Extra::OwnedBy(owner, number as u64 + 1));
     }
 
-    fn returning(
-        &self,
-        task: ChartId,
-        from: &mut Vec<Number>,
-        to: &mut Vec<Number>,
-        extras: &mut Vec<Extra>,
-    ) {
+    fn returning(&self, task: ChartId, p: &mut Parts) {
+        self.to_entry(task, p);
+        if let Some(owner) = self.owner(task) {
+            p.extras.push(Extra::Orphaned(owner, self.callers(task).to_vec()));
+        }
+    }
+
+    /// From the exit step of a task to its entry step.
+    fn to_entry(&self, task: ChartId, p: &mut Parts) {
         let Some(chart) = self.unit.charts.get(task.index()) else { return };
         if let Some(exit) = chart.exit {
-            self.plan.leaving(self.unit, exit, from);
+            self.plan.leaving(self.unit, exit, &mut p.from, &mut p.drops);
         }
         if let Some(entry) = chart.entry {
-            self.plan.entering(self.unit, entry, to);
-        }
-        if let Some(owner) = self.owner(task) {
-            extras.push(Extra::Orphaned(owner, self.callers(task).to_vec()));
+            self.plan.entering(self.unit, entry, &mut p.to);
         }
     }
 
@@ -233,6 +227,7 @@ impl Lower<'_> {
             shares: false,
             priority: NONE,
             simple: false,
+            drops: false,
         }
     }
 

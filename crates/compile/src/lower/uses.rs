@@ -2,7 +2,7 @@
 //! before anything is emitted.
 //!
 //! The walk decides what costs something at run time: which macro-steps need a
-//! time of their own, which outputs may be written with their step at once,
+//! step of their own, which outputs may be written with their step at once,
 //! which charts can be frozen.
 
 use crate::ir::{ActionKind, ChartId, Expr, ExprKind, Service, StepId, Stmt, StmtKind, Target, Unit, VarId};
@@ -20,8 +20,6 @@ pub(super) struct Uses {
     pub(super) written: Vec<bool>,
     /// By variable: named anywhere.
     pub(super) named: Vec<bool>,
-    /// By step: its time is read.
-    pub(super) timed: Vec<bool>,
     /// By chart: `FREEZECHART` names it.
     pub(super) frozen: Vec<bool>,
     /// By step: `enable`, `mask` or `call` stands in it, or other actions.
@@ -47,7 +45,6 @@ pub(super) fn uses(unit: &Unit, queries: &[Expr]) -> Uses {
         early: vec![false; vars],
         written: vec![false; vars],
         named: vec![false; vars],
-        timed: vec![false; unit.steps.len()],
         frozen: vec![false; unit.charts.len()],
         acts: unit.steps.iter().map(|s| !s.actions.is_empty() || !s.calls.is_empty()).collect(),
         random: false,
@@ -153,12 +150,6 @@ impl Walk<'_> {
         }
     }
 
-    fn time_of(&mut self, step: StepId) {
-        if let Some(t) = self.uses.timed.get_mut(step.index()) {
-            *t = true;
-        }
-    }
-
     fn watched(&mut self, e: &Expr) {
         let early = std::mem::replace(&mut self.early, true);
         self.expr(e);
@@ -179,23 +170,23 @@ impl Walk<'_> {
             e = left;
         }
         match &e.kind {
-            ExprKind::Const(_) | ExprKind::StepActive(_) | ExprKind::ScanTime | ExprKind::Section(_) => {}
+            ExprKind::Const(_)
+            | ExprKind::StepActive(_)
+            | ExprKind::StepTime(_)
+            | ExprKind::StepTenths(_)
+            | ExprKind::StepScans(_)
+            | ExprKind::StepSeconds(_)
+            | ExprKind::ScanTime
+            | ExprKind::Section(_) => {}
             ExprKind::Random => self.uses.random = true,
             ExprKind::Var(v) | ExprKind::Member(v, _) => self.read(*v),
             ExprKind::Element(v, index) => {
                 self.read(*v);
                 self.expr(index);
             }
-            ExprKind::StepTime(s)
-            | ExprKind::StepTenths(s)
-            | ExprKind::StepScans(s)
-            | ExprKind::StepSeconds(s) => self.time_of(*s),
             ExprKind::Not(x) | ExprKind::Neg(x) | ExprKind::Convert(x) | ExprKind::Trunc(x) => self.expr(x),
             ExprKind::Rise(x) | ExprKind::Fall(x) => self.watched(x),
             ExprKind::Timer { t1, e, t2 } => {
-                if let Some(step) = timed_step(e, t2.as_deref()) {
-                    self.time_of(step);
-                }
                 self.expr(t1);
                 self.watched(e);
                 if let Some(t2) = t2 {

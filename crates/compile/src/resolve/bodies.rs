@@ -15,7 +15,7 @@ impl<'d> Resolver<'_, 'd> {
         let id = BodyId(self.unit.bodies.len() as u32);
         self.define(chart, &action.name, Entity::Body(id));
         let name = self.qualified(chart, &action.name.text);
-        self.unit.bodies.push(Body { name, statements: Vec::new(), at: action.name.at.0 });
+        self.unit.bodies.push(Body { name, chart, statements: Vec::new(), at: action.name.at.0 });
     }
 
     /// The row, name and output of a transition section.
@@ -128,7 +128,7 @@ impl<'d> Resolver<'_, 'd> {
     fn fill_processing(&mut self, chart: Option<ChartId>, body: &WrittenBody, at: Span, pre: bool) {
         let name = self.qualified(chart, if pre { "pre" } else { "post" });
         let statements = self.in_chart(chart, |r| r.body(body, &name));
-        let body = Body { name, statements, at };
+        let body = Body { name, chart, statements, at };
         if pre { self.unit.pre.push(body) } else { self.unit.post.push(body) }
     }
 

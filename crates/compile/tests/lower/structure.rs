@@ -72,22 +72,22 @@ fn arcs_into_a_macro_step_go_to_its_entry_step_and_come_from_its_exit_step() {
 }
 
 #[test]
-fn a_macro_step_with_actions_or_a_time_has_a_step_of_its_own() {
+fn a_macro_step_with_actions_has_a_step_of_its_own() {
     let c = compiled(
         "input a : BOOL  output V : BOOL
-         chart G { initial macro M = E1 { N V }  macro K = E2  macro L = E3  step 2
-           t1: M -> K when a  t2: K -> L when K.t > 1s  t3: L -> 2 when a  t4: 2 -> M when a }
+         chart G { initial macro M = E1 { N V }  macro K = E2  step 2
+           t1: M -> K when a  t2: K -> M when K.t > 1s  t3: 2 -> M when a }
          macrochart E1 { entry step E  exit step S  E -> S when a }
-         macrochart E2 { entry step E  exit step S  E -> S when a }
-         macrochart E3 { entry step E  exit step S  E -> S when a }",
+         macrochart E2 { entry step E  exit step S  E -> S when a }",
     );
     let has: Vec<bool> = c.symbols.macro_steps.iter().map(|m| m.step.is_some()).collect();
-    assert_eq!(has, [true, true, false], "M has an action, K.t is read, L is neither");
-    // It comes on before the entry step and goes off behind the exit step.
-    assert_eq!(c.from("t1"), ["M.S", "M"]);
-    assert_eq!(c.to("t1"), ["K", "K.E"]);
-    assert_eq!(c.from("t3"), ["L.S"]);
+    assert_eq!(has, [true, false], "M has an action");
+    // It comes on before the entry step. What leads on waits for the exit step alone.
+    assert_eq!((c.from("t1"), c.to("t1")), (vec!["M.S".into()], vec!["K.E".to_owned()]));
+    assert_eq!(c.to("t3"), ["M", "M.E"]);
     let pseudo = c.symbols.macro_steps[0].step.expect("M acts");
+    assert_eq!(c.tables().drops, [(c.rank("t1"), pseudo)]);
+    assert!(c.transition("t1").drops && !c.transition("t2").drops);
     assert!(!c.symbols.is_listed(pseudo));
     assert_eq!(c.tables().steps[pseudo.0 as usize].direct, c.addr("V"));
     assert_eq!(c.tables().initial, [pseudo, c.step("M.E")], "it starts with its entry step");
@@ -95,6 +95,33 @@ fn a_macro_step_with_actions_or_a_time_has_a_step_of_its_own() {
     assert_eq!((run.scan().situation(), run.value("V")), ("M.E".into(), "TRUE".to_owned()));
     run.set("a", 1).scan();
     assert_eq!((run.situation(), run.value("V")), ("K.S".into(), "FALSE".to_owned()));
+}
+
+#[test]
+fn the_time_of_a_macro_step_runs_while_a_step_of_its_expansion_is_active() {
+    let c = compiled(
+        "input a : BOOL  var t : TIME
+         chart G { step 1  initial macro M = E1  M -> 1 when not a  1 -> M when a }
+         macrochart E1 { entry step E  exit step S  E -> S when a }  post { t := M.t }",
+    );
+    let mut run = c.start();
+    assert_eq!(run.scan().value("t"), "T#0s");
+    run.set("a", 1).scan();
+    assert_eq!((run.situation(), run.value("t")), ("M.S".into(), "T#10ms".to_owned()));
+    run.scan().set("a", 0).scan();
+    assert_eq!((run.situation(), run.value("t")), ("1".into(), "T#30ms".to_owned()));
+    assert_eq!(run.scan().value("t"), "T#30ms", "kept");
+}
+
+#[test]
+fn pre_and_post_of_a_chart_with_a_period_run_when_it_is_due() {
+    let c = compiled(
+        "var n, m : INT  post { m := m + 1 }
+         chart G every 20ms { post { n := n + 1 }  initial step 1 }",
+    );
+    let mut run = c.start();
+    run.scan().scan().scan();
+    assert_eq!((run.value("n"), run.value("m")), ("2".into(), "3".to_owned()));
 }
 
 #[test]
