@@ -17,7 +17,7 @@ pub mod resolve;
 pub mod symbols;
 
 use g7_engine::{Code, Program};
-use g7_model::{Document, Expr, Problem, ProfileName, Severity, Span, Type};
+use g7_model::{Document, Expr, Problem, ProfileName, Severity, Span, Type, codes};
 
 use symbols::Symbols;
 
@@ -65,8 +65,8 @@ pub fn compile_with(
         questions.extend(expr);
         problems.append(&mut wrong);
     }
-    let unclear = problems.iter().filter(|p| p.severity() == Severity::Error).map(|p| p.at).collect();
-    problems.append(&mut clear(check::check(&unit), unclear));
+    let judged = clear(check::check(&unit), &problems);
+    problems.extend(judged);
     let failed = problems.iter().any(|p| p.severity() == Severity::Error);
     if failed || questions.len() < queries.len() {
         return (None, sorted(problems));
@@ -84,8 +84,24 @@ pub fn compile_with(
 }
 
 /// The problems that are none of something that has no meaning yet: what could
-/// not be resolved stands for FALSE, and is not to be judged as that.
-fn clear(mut found: Vec<Problem>, mut unclear: Vec<Span>) -> Vec<Problem> {
+/// not be resolved stands for FALSE, and is not to be judged as that; where a
+/// transition or nesting had to be left out, ways that lead nowhere are no news.
+fn clear(mut found: Vec<Problem>, unresolved: &[Problem]) -> Vec<Problem> {
+    let errors = || unresolved.iter().filter(|p| p.severity() == Severity::Error);
+    let gaps = [
+        &codes::UNKNOWN_STEP,
+        &codes::UNKNOWN_CHART,
+        &codes::EXPANSION_SHARED,
+        &codes::NESTED_IN_ITSELF,
+        &codes::NESTED_TOO_DEEPLY,
+        &codes::ENCLOSED_TWICE,
+        &codes::WRONG_KIND,
+        &codes::NOT_HERE,
+    ];
+    if errors().any(|p| gaps.contains(&p.code)) {
+        found.retain(|p| p.code != &codes::UNREACHABLE && p.code != &codes::NEVER_STARTS);
+    }
+    let mut unclear: Vec<Span> = errors().map(|p| p.at).collect();
     unclear.sort_unstable();
     found.retain(|p| {
         let from = unclear.partition_point(|e| (e.file, e.start) < (p.at.file, p.at.start));

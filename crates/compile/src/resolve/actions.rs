@@ -39,10 +39,10 @@ impl Resolver<'_, '_> {
         self.unit.transitions.reserve(chart.transitions().count());
         let mut labels = std::collections::HashMap::new();
         for t in chart.transitions() {
-            if let Some(label) = &t.label {
-                if let Some(first) = labels.insert(&*label.text, label.at.0) {
-                    self.defined_twice(label, first);
-                }
+            if let Some(label) = &t.label
+                && let Some(first) = labels.insert(&*label.text, label.at.0)
+            {
+                self.defined_twice(label, first);
             }
             if let Some(t) = self.transition(id, t) {
                 self.unit.transitions.push(t);

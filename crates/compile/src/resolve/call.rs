@@ -224,12 +224,10 @@ impl Resolver<'_, '_> {
             if ordered.len() <= k {
                 ordered.resize(k + 1, None);
             }
-            if let Some(slot) = ordered.get_mut(k) {
-                if let Some(first) = slot.replace(arg) {
-                    let problem = Problem::new(&codes::WRONG_ARGUMENTS, at, "given twice in one call")
-                        .related(first.value.at.0, "given here first");
-                    return self.report(problem);
-                }
+            if let Some(first) = ordered.get_mut(k).and_then(|slot| slot.replace(arg)) {
+                let problem = Problem::new(&codes::WRONG_ARGUMENTS, at, "given twice in one call")
+                    .related(first.value.at.0, "given here first");
+                return self.report(problem);
             }
         }
         Some(ordered)
@@ -361,8 +359,8 @@ impl Resolver<'_, '_> {
         let want = if matches!(from, Type::String(_)) { Type::String(g7_engine::TEXT) } else { from };
         let e = self.value(&arg.value, want)?;
         match (from, to) {
-            (Type::Time, _) if is_number(to) => self.from_time(e, to, at),
-            (_, Type::Time) if is_number(from) => self.to_time(e, at),
+            (Type::Time, _) if is_number(to) => self.time_as_number(e, to, at),
+            (_, Type::Time) if is_number(from) => self.number_as_time(e, at),
             (Type::Time, Type::Bool) | (Type::Bool, Type::Time) => {
                 let what = format!("there is no conversion from {from} to {to}");
                 self.report(Problem::new(&codes::UNKNOWN_NAME, name.at.0, what))
@@ -385,7 +383,7 @@ impl Resolver<'_, '_> {
         Some(Typed::of(ExprKind::Convert(Box::new(e)), to, at))
     }
 
-    fn from_time(&mut self, time: Expr, to: Type, at: Span) -> Option<Typed> {
+    fn time_as_number(&mut self, time: Expr, to: Type, at: Span) -> Option<Typed> {
         if to.is_integer() {
             let ms = Typed::constant(Value::Int(MILLISECOND), Type::Lint, at).expr;
             let whole = match &time.kind {
@@ -406,7 +404,7 @@ impl Resolver<'_, '_> {
     }
 
     /// A millisecond as often as the number says.
-    fn to_time(&mut self, e: Expr, at: Span) -> Option<Typed> {
+    fn number_as_time(&mut self, e: Expr, at: Span) -> Option<Typed> {
         let ms = Typed::constant(Value::Int(MILLISECOND), Type::Time, at).expr;
         let times = if e.ty.is_real() { Type::Lreal } else { Type::Lint };
         let e = converted(e, times);

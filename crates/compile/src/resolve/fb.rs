@@ -26,7 +26,8 @@ impl Resolver<'_, '_> {
         args: &[Arg],
     ) -> Option<StmtKind> {
         let allowed = self.may_call(name);
-        let (mut inputs, mut outputs): (Vec<(u8, Expr)>, Vec<(u8, Target)>) = Default::default();
+        let mut inputs: Vec<(u8, Expr)> = Vec::new();
+        let mut outputs: Vec<(u8, Target)> = Vec::new();
         let mut given: Vec<Option<Span>> = vec![None; kind.members().len()];
         let mut complete = true;
         for (k, arg) in args.iter().enumerate() {

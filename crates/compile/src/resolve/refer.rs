@@ -81,10 +81,8 @@ impl Resolver<'_, '_> {
             }
         }
         if let Some(Entity::Var(v)) = self.entity(&first.text) {
-            if names.len() == 2 {
-                if let Some(m) = self.member(v, &second.text) {
-                    return Ok(Ref::Member(v, m));
-                }
+            if let (Some(m), 2) = (self.member(v, &second.text), names.len()) {
+                return Ok(Ref::Member(v, m));
             }
             let fb = matches!(self.var(v).map(|v| v.ty), Some(Type::Fb(_)));
             miss = miss.or(Some(if fb { Miss::Member(1, v) } else { Miss::NoMembers(1, v) }));
@@ -180,10 +178,8 @@ impl Resolver<'_, '_> {
             Home::One(_, s) => s,
             Home::Several(a, b) => return Err(Miss::Ambiguous(k, a, b)),
         };
-        if last {
-            if let Some(r) = self.of_step(step, &second.text, bare) {
-                return Ok(r);
-            }
+        if let (Some(r), true) = (self.of_step(step, &second.text, bare), last) {
+            return Ok(r);
         }
         match self.expansion(step) {
             Some(inner) if bare => self.of_chart(inner, names, k + 1),
@@ -424,26 +420,21 @@ impl Resolver<'_, '_> {
 
     /// Whether code in this place may read it; reports where not.
     pub(super) fn may_read(&mut self, r: Ref, at: Span) -> bool {
-        if let (Ref::Var(v), true) = (r, self.frame.watched) {
-            if self.var(v).is_some_and(|v| v.class == VarClass::Local) {
-                self.problems.push(
-                    Problem::new(&codes::NOT_HERE, at, "an edge or a delay cannot watch a local variable")
-                        .help("a local has no value between two runs; watch a variable of the chart"),
-                );
-                return false;
-            }
+        let class = match r {
+            Ref::Var(v) => self.var(v).map(|v| v.class),
+            Ref::Member(..) | Ref::Active(_) | Ref::Time(..) => None,
+        };
+        if self.frame.watched && class == Some(VarClass::Local) {
+            self.problems.push(
+                Problem::new(&codes::NOT_HERE, at, "an edge or a delay cannot watch a local variable")
+                    .help("a local has no value between two runs; watch a variable of the chart"),
+            );
+            return false;
         }
-        if self.frame.role == Role::Constant {
-            let constant =
-                matches!(r, Ref::Var(v) if self.var(v).is_some_and(|v| v.class == VarClass::Const));
-            if !constant {
-                self.problems.push(Problem::new(
-                    &codes::NOT_CONSTANT,
-                    at,
-                    "a value that is known before the chart runs is needed here",
-                ));
-                return false;
-            }
+        if self.frame.role == Role::Constant && class != Some(VarClass::Const) {
+            let what = "a value that is known before the chart runs is needed here";
+            self.problems.push(Problem::new(&codes::NOT_CONSTANT, at, what));
+            return false;
         }
         true
     }

@@ -147,10 +147,7 @@ impl Resolver<'_, '_> {
         let ty = looped.map_or(Type::Lint, |(_, ty)| ty);
         let from = self.value(from, ty);
         let to = self.value(to, ty);
-        let by = match by {
-            Some(by) => Some(self.value(by, ty)),
-            None => None,
-        };
+        let by = by.map(|by| self.value(by, ty));
         if let Some(Some(Expr { kind: ExprKind::Const(Value::Int(0)), at, .. })) = &by {
             let problem = Problem::new(&codes::OUT_OF_RANGE, *at, "a loop by 0 never ends");
             self.problems.push(problem);
@@ -364,12 +361,11 @@ impl Resolver<'_, '_> {
         if let Some(kind) = self.instance_call(path, args) {
             return kind;
         }
-        if let [name] = path.names.as_slice() {
-            if self.entity(&name.text).is_none() {
-                if let Some(kind) = self.service(name, args, at) {
-                    return kind.map(StmtKind::Service);
-                }
-            }
+        if let [name] = path.names.as_slice()
+            && self.entity(&name.text).is_none()
+            && let Some(kind) = self.service(name, args, at)
+        {
+            return kind.map(StmtKind::Service);
         }
         // A function as a statement: its arguments are judged, its result is lost.
         self.call(path, args, None, at)?;
@@ -430,10 +426,10 @@ impl Resolver<'_, '_> {
     }
 
     fn chart_argument(&mut self, e: &Written) -> Option<crate::ir::ChartId> {
-        if let Form::Path(p) = &e.kind {
-            if let [name] = p.names.as_slice() {
-                return self.chart_named(name);
-            }
+        if let Form::Path(p) = &e.kind
+            && let [name] = p.names.as_slice()
+        {
+            return self.chart_named(name);
         }
         self.report(Problem::new(&codes::WRONG_ARGUMENTS, e.at.0, "the name of a chart is needed here"))
     }

@@ -119,11 +119,11 @@ impl Resolver<'_, '_> {
 
     /// A constant text must fit; a variable one is cut when it is copied.
     fn fitting_text(&mut self, e: Expr, most: u16) -> Option<Expr> {
-        if let ExprKind::Const(Value::Str(s)) = &e.kind {
-            if s.len() > usize::from(most) {
-                let what = format!("this text has {} bytes, at most {most} fit", s.len());
-                return self.report(Problem::new(&codes::OUT_OF_RANGE, e.at, what));
-            }
+        if let ExprKind::Const(Value::Str(s)) = &e.kind
+            && s.len() > usize::from(most)
+        {
+            let what = format!("this text has {} bytes, at most {most} fit", s.len());
+            return self.report(Problem::new(&codes::OUT_OF_RANGE, e.at, what));
         }
         Some(e)
     }
@@ -193,10 +193,10 @@ impl Resolver<'_, '_> {
 /// The same value in a wider type; constants at once.
 pub(super) fn converted(e: Expr, to: Type) -> Expr {
     let at = e.at;
-    if let ExprKind::Const(v) = &e.kind {
-        if let Ok(Some(v)) = constant::convert(v, to) {
-            return Expr { kind: ExprKind::Const(v), ty: to, at };
-        }
+    if let ExprKind::Const(v) = &e.kind
+        && let Ok(Some(v)) = constant::convert(v, to)
+    {
+        return Expr { kind: ExprKind::Const(v), ty: to, at };
     }
     Expr { kind: ExprKind::Convert(Box::new(e)), ty: to, at }
 }
