@@ -5,12 +5,12 @@ use g7_model::{Document, FileId};
 use g7_syntax::{LineIndex, parse, print};
 use std::path::{Path, PathBuf};
 
-fn pages(folder: &Path, into: &mut Vec<PathBuf>) {
+fn pages(folder: &Path, ending: &str, into: &mut Vec<PathBuf>) {
     for entry in std::fs::read_dir(folder).expect("the folder is there") {
         let path = entry.expect("an entry").path();
         if path.is_dir() {
-            pages(&path, into);
-        } else if path.extension().is_some_and(|e| e == "md") {
+            pages(&path, ending, into);
+        } else if path.extension().is_some_and(|e| e == ending) {
             into.push(path);
         }
     }
@@ -56,7 +56,7 @@ fn misprint(text: &str, document: &Document) -> Option<String> {
 fn wrong_blocks(folder: &str, at_least: usize) -> Vec<String> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..").join(folder);
     let mut files = Vec::new();
-    pages(&root, &mut files);
+    pages(&root, "md", &mut files);
     let mut seen = 0;
     let mut wrong = Vec::new();
     for file in files {
@@ -90,7 +90,7 @@ fn wrong_blocks(folder: &str, at_least: usize) -> Vec<String> {
 
 #[test]
 fn charts_of_the_book_are_read() {
-    let wrong = wrong_blocks("docs/book", 0);
+    let wrong = wrong_blocks("docs/book", 30);
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
@@ -100,13 +100,29 @@ fn charts_of_the_cases_are_read() {
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
+#[test]
+fn the_examples_are_read_and_stand_in_canonical_form() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples");
+    let mut files = Vec::new();
+    pages(&root, "g7", &mut files);
+    assert!(files.len() > 5, "only {} examples", files.len());
+    for file in files {
+        let text = std::fs::read_to_string(&file).expect("a readable example");
+        let (document, problems) = parse(&text, FileId(0));
+        assert!(problems.is_empty(), "{}: {problems:?}", file.display());
+        let wrong = misprint(&text, &document);
+        assert!(wrong.is_none(), "{}: {wrong:?}", file.display());
+        assert!(print(&document, Some(&text)) == text, "{} is not as `g7 fmt` writes it", file.display());
+    }
+}
+
 /// Texts that are wrong in one place: the start of a chart, a chart without a
 /// line, a chart without a word. All end, with or without a problem.
 #[test]
 fn broken_charts_of_the_cases_are_survived() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests/spec");
     let mut files = Vec::new();
-    pages(&root, &mut files);
+    pages(&root, "md", &mut files);
     files.sort();
     let mut broken = 0;
     for file in files.iter().step_by(5) {
