@@ -57,7 +57,8 @@ impl Parser<'_> {
             }
             let start = self.cur.start;
             let read = self.chart_item(items) || self.correct(words::CHART) && self.chart_item(items);
-            if !read {
+            // A word of the language before `:` is taken for a label, but is no name.
+            if !read || self.cur.start == start {
                 self.lost_chart_item(start);
             }
         }
