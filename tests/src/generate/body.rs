@@ -170,7 +170,7 @@ pub(super) fn action(
     sight: &Sight,
     to: &mut Targets,
     driven: &mut Vec<Driven>,
-    named: &[(String, String)],
+    named: &mut Vec<(String, String)>,
 ) -> Option<String> {
     let condition = |rng: &mut Rng, sight: &Sight| {
         if rng.percent(25) { format!(" if {}", sight.plain().boolean(rng, 1)) } else { String::new() }
@@ -204,7 +204,11 @@ pub(super) fn action(
         }
         4 => format!("each scan: {}{}", assignment(rng, sight, to), condition(rng, sight)),
         5 => {
-            let (name, qualifiers) = rng.pick(named)?.clone();
+            let at = rng.below(named.len());
+            if named.is_empty() {
+                return None;
+            }
+            let (name, qualifiers) = named.remove(at);
             let all: Vec<&str> = qualifiers.split(',').collect();
             let q = *rng.pick(&all)?;
             format!("{q} {name}{}", condition(rng, sight))

@@ -1,8 +1,7 @@
 //! The skeleton of a random document: charts, steps, arcs, and how charts hang
 //! together. Conditions and actions are hung on later, when every name is known.
 
-use g7_model::ProfileName;
-
+use super::Weights;
 use super::rng::Rng;
 
 /// What hangs at a step beside its actions.
@@ -39,22 +38,23 @@ pub(super) struct Plan {
     pub(super) charts: Vec<PlanChart>,
     /// Number for the next step, unique in the document.
     next: usize,
+    weights: Weights,
 }
 
 /// Draws a skeleton.
-pub(super) fn plan(rng: &mut Rng, profile: ProfileName, driven: &[String]) -> Plan {
-    let mut plan = Plan { charts: Vec::new(), next: 1 };
+pub(super) fn plan(rng: &mut Rng, weights: &Weights, driven: &[String]) -> Plan {
+    let mut plan = Plan { charts: Vec::new(), next: 1, weights: *weights };
     let count = 1 + rng.weighted(&[35, 35, 20, 10]);
     let mut mains = Vec::new();
     for _ in 0..count {
         mains.push(main_chart(rng, &mut plan));
     }
-    if rng.percent(15) {
+    if rng.percent(weights.periods) {
         let id = main_chart(rng, &mut plan);
         plan.charts[id].every = Some(rng.one([15, 20, 30, 50]));
     }
     link_charts(rng, &mut plan, &mains, driven);
-    if rng.percent(if profile == ProfileName::Jgrafchart { 15 } else { 25 }) {
+    if rng.percent(weights.tasks) {
         task(rng, &mut plan, &mains);
     }
     plan
@@ -71,7 +71,7 @@ fn main_chart(rng: &mut Rng, plan: &mut Plan) -> usize {
         plan.next += 1;
         let mut step = PlanStep { name: number.to_string(), ..PlanStep::default() };
         step.head = if initial { "initial step" } else { "step" }.to_owned();
-        if rng.percent(13) && plan.charts.len() < 8 {
+        if rng.percent(plan.weights.macro_steps) && plan.charts.len() < 8 {
             step.name = format!("M{number}");
             step.head = if initial { "initial macro" } else { "macro" }.to_owned();
             step.expansion = Some(expansion(rng, plan, 1));
@@ -96,6 +96,8 @@ fn task(rng: &mut Rng, plan: &mut Plan, mains: &[usize]) {
     let name = format!("Task{id}");
     plan.charts.push(PlanChart { word: "task", name: name.clone(), ..PlanChart::default() });
     between_ends(rng, plan, id, 2);
+    // A task works for one caller at a time: one token, from entry to exit.
+    plan.charts[id].arcs = (1..plan.charts[id].steps.len()).map(|i| (vec![i - 1], vec![i])).collect();
     for _ in 0..rng.between(1, 3) {
         let Some(&chart) = rng.pick(mains) else { return };
         let count = plan.charts[chart].steps.len();
@@ -118,7 +120,7 @@ fn between_ends(rng: &mut Rng, plan: &mut Plan, id: usize, depth: usize) {
             step.head = "entry step".to_owned();
         } else if i == inner + 1 {
             step.head = "exit step".to_owned();
-        } else if depth < 2 && rng.percent(15) && plan.charts.len() < 8 {
+        } else if depth < 2 && rng.percent(plan.weights.macro_steps) && plan.charts.len() < 8 {
             step.name = format!("M{number}");
             step.head = "macro".to_owned();
             step.expansion = Some(expansion(rng, plan, depth + 1));
@@ -177,7 +179,8 @@ fn link_charts(rng: &mut Rng, plan: &mut Plan, mains: &[usize], driven: &[String
     for (place, &target) in mains.iter().enumerate().skip(1) {
         let by = &mains[..place];
         let Some(&master) = rng.pick(by) else { continue };
-        match rng.weighted(&[40, 22, 28, 10]) {
+        let w = plan.weights;
+        match rng.weighted(&[40, w.enclosing, w.forcing, w.enabling]) {
             1 => enclose(rng, plan, master, target),
             2 => force(rng, plan, by, target),
             3 => {
@@ -186,13 +189,13 @@ fn link_charts(rng: &mut Rng, plan: &mut Plan, mains: &[usize], driven: &[String
             }
             _ => {}
         }
-        if rng.percent(8) {
+        if rng.percent(w.masking) {
             let order = format!("mask {}", plan.charts[target].name);
             order_of(rng, plan, master, order);
         }
     }
     for name in driven {
-        if rng.percent(4)
+        if rng.percent(plan.weights.masking / 2)
             && let Some(&master) = rng.pick(mains)
         {
             order_of(rng, plan, master, format!("mask {name}"));
@@ -237,7 +240,7 @@ fn enclose(rng: &mut Rng, plan: &mut Plan, master: usize, target: usize) {
 
 fn force(rng: &mut Rng, plan: &mut Plan, by: &[usize], target: usize) {
     plan.charts[target].forced = true;
-    for _ in 0..rng.weighted(&[0, 60, 30, 10]) {
+    for _ in 0..rng.weighted(&[0, 80, 16, 4]) {
         let Some(&master) = rng.pick(by) else { return };
         let steps = &plan.charts[target].steps;
         let names: Vec<String> =

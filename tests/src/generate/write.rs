@@ -3,6 +3,7 @@
 
 use g7_model::{ProfileName, Type};
 
+use super::Weights;
 use super::body::{self, Driven, Targets};
 use super::plan::{Plan, PlanChart, plan};
 use super::rng::Rng;
@@ -18,9 +19,10 @@ struct World {
     /// Named actions with the qualifiers each may stand behind.
     named: Vec<(String, String)>,
     sections: Vec<String>,
+    weights: Weights,
 }
 
-pub(super) fn document(rng: &mut Rng, profile: ProfileName) -> String {
+pub(super) fn document(rng: &mut Rng, profile: ProfileName, weights: &Weights) -> String {
     let mut out = String::new();
     let mut world = World {
         profile,
@@ -28,20 +30,21 @@ pub(super) fn document(rng: &mut Rng, profile: ProfileName) -> String {
         sight: Sight {
             edges: true,
             timers: true,
-            risk: if rng.percent(35) { 25 } else { 0 },
+            risk: if rng.percent(weights.risk) { 25 } else { 0 },
             ..Sight::default()
         },
         targets: Targets::default(),
         driven: Vec::new(),
         named: Vec::new(),
         sections: Vec::new(),
+        weights: *weights,
     };
     world.sight.scans = profile == ProfileName::Jgrafchart;
-    header(rng, &mut world, &mut out);
+    header(rng, &mut world, weights, &mut out);
     variables(rng, &mut world, &mut out);
     driven(rng, &mut world, &mut out);
     let names: Vec<String> = world.driven.iter().map(|d| d.name.clone()).collect();
-    let plan = plan(rng, profile, &names);
+    let plan = plan(rng, weights, &names);
     functions(rng, &mut world, &mut out);
     let outside = outside(&world, &plan);
     named_actions(rng, &mut world, &outside, &mut out);
@@ -51,10 +54,10 @@ pub(super) fn document(rng: &mut Rng, profile: ProfileName) -> String {
         out += &format!("transition section {name} := {value}\n");
         world.sections.push(name);
     }
-    if rng.percent(35) {
+    if rng.percent(weights.sections) {
         out += &format!("pre {}\n", pre(rng, &mut world, &outside, &plan));
     }
-    if rng.percent(35) {
+    if rng.percent(weights.sections) {
         let text = body::block(rng, &outside, &mut world.targets);
         out += &format!("post {text}\n");
     }
@@ -64,9 +67,9 @@ pub(super) fn document(rng: &mut Rng, profile: ProfileName) -> String {
     out
 }
 
-fn header(rng: &mut Rng, world: &mut World, out: &mut String) {
+fn header(rng: &mut Rng, world: &mut World, weights: &Weights, out: &mut String) {
     let mut switches: Vec<&str> = Vec::new();
-    if rng.percent(25) {
+    if rng.percent(weights.switches) {
         let pairs = [
             ["multi-token", "single-token"],
             ["parallel-actions", "ordered-actions"],
@@ -359,16 +362,16 @@ fn chart(rng: &mut Rng, world: &mut World, plan: &Plan, at: usize, out: &mut Str
         }
         let actions =
             if step.expansion.is_some() { rng.weighted(&[75, 25]) } else { rng.weighted(&[30, 40, 22, 8]) };
-        let mut driven = driven.clone();
+        let (mut driven, mut named) = (driven.clone(), named.clone());
         for _ in 0..actions {
             let profile = world.profile;
-            if let Some(a) = body::action(rng, profile, &sight, &mut world.targets, &mut driven, &named) {
+            if let Some(a) = body::action(rng, profile, &sight, &mut world.targets, &mut driven, &mut named) {
                 out.push_str(&format!("    {a}\n"));
             }
         }
         out.push_str("  }\n");
     }
-    if rng.percent(8) {
+    if rng.percent(world.weights.sections / 4) {
         let text = body::block(rng, &sight, &mut world.targets);
         out.push_str(&format!("  {} {text}\n", rng.one(["pre", "post"])));
     }
@@ -409,10 +412,11 @@ fn receptivity(rng: &mut Rng, world: &mut World, sight: &Sight, source: bool, pe
     if source {
         return format!("↑{input} and {}", sight.boolean(rng, 1));
     }
-    let calm = if world.stable { [46, 20, 8, 8, 16, 2] } else { [20, 15, 20, 25, 12, 8] };
+    let calm = if world.stable { [30, 20, 24, 10, 14, 2] } else { [20, 15, 20, 25, 12, 8] };
     match rng.weighted(&calm) {
         0 => sight.edge(rng, 1),
         1 => format!("({} and {})", sight.edge(rng, 0), sight.boolean(rng, 1)),
+        2 if rng.percent(50) => format!("not {input}"),
         2 => input,
         3 => sight.boolean(rng, 2),
         4 => sight.timer(rng, 1),

@@ -144,7 +144,7 @@ pub(super) fn end_of_scan(m: &Model, s: &mut State, due: &[bool], went: &Went) -
     for owner in owners {
         let mine: Vec<&Block<'_>> = blocks.iter().filter(|b| b.owner == *owner).collect();
         if mine.iter().any(|b| due[m.steps[b.step].scope]) {
-            let verdict = judge(m, s, owner, &mine)?;
+            let verdict = judge(m, s, due, owner, &mine)?;
             verdicts.insert(owner, verdict);
         }
     }
@@ -161,7 +161,7 @@ pub(super) fn end_of_scan(m: &Model, s: &mut State, due: &[bool], went: &Went) -
 }
 
 /// The inputs of a block, and what comes of them.
-fn judge(m: &Model, s: &mut State, owner: &Owner, blocks: &[&Block<'_>]) -> Run<Verdict> {
+fn judge(m: &Model, s: &mut State, due: &[bool], owner: &Owner, blocks: &[&Block<'_>]) -> Run<Verdict> {
     let continuous = match owner {
         Owner::Var(v) => m.rules.profile == ProfileName::Iec60848 && !m.blocked_vars.contains(v),
         Owner::Named(..) | Owner::Own(..) => false,
@@ -176,28 +176,31 @@ fn judge(m: &Model, s: &mut State, owner: &Owner, blocks: &[&Block<'_>]) -> Run<
     let mut timed = [false; 5];
     for b in blocks {
         let scope = m.steps[b.step].scope;
-        let active = s.active.contains(&b.step) && !masked(m, s, scope);
-        let mut exec = Exec::new(m, s);
-        let mut input = active;
-        if let (true, Some(c)) = (active, b.condition) {
-            input = exec.truth(scope, c)?;
-        }
-        if !active {
+        let place = (b.step, b.place);
+        if !due[scope] {
+            let held = s.held.get(&place).is_some_and(|h| *h);
+            any |= held;
+            inputs[b.qualifier as usize] |= held;
             continue;
         }
+        let mut input = s.active.contains(&b.step) && !masked(m, s, scope);
+        if let (true, Some(c)) = (input, b.condition) {
+            input = Exec::new(m, s).truth(scope, c)?;
+        }
         let time = match b.time {
-            Some(e) => exec.eval(scope, e)?.duration()?,
-            None => 0,
+            Some(e) if input => Exec::new(m, s).eval(scope, e)?.duration()?,
+            _ => 0,
         };
         if continuous {
             let run = s.now - s.timing[b.step].since;
-            any |= input
-                && match b.qualifier {
-                    Qualifier::D => run >= time,
-                    Qualifier::L => run < time,
-                    _ => true,
-                };
+            input &= match b.qualifier {
+                Qualifier::D => run >= time,
+                Qualifier::L => run < time,
+                _ => true,
+            };
         }
+        any |= input;
+        s.held.insert(place, input);
         if input {
             inputs[b.qualifier as usize] = true;
             if let Some(i) = timer_of(b.qualifier)
@@ -295,7 +298,7 @@ fn is_late_pulse(m: &Model, step: StepId, action: &Action) -> bool {
     // A step that comes and goes within a scan is not seen either.
     let through_block = m.rules.stable || m.chart_masks.iter().any(|(_, chart)| *chart == m.root_of(step));
     let pulse = matches!(qualifier, Qualifier::P1 | Qualifier::P0);
-    pulse && m.rules.late_actions() && !through_block
+    pulse && !m.rules.stored_pulses() && !through_block
 }
 
 /// A P1 or P0 body of a step's own where such bodies wait for the end of the
@@ -328,20 +331,8 @@ fn bodies(
     let mut todo: Vec<(i8, Run1<'_>)> = Vec::new();
     let mut done: BTreeSet<&Owner> = BTreeSet::new();
     for scope in FILE + 1..m.scopes.len() {
-        for t in m.scopes[scope]
-            .transitions
-            .iter()
-            .filter(|t| m.rules.late_actions() && went.changes.cleared.contains(t))
-        {
-            todo.extend(m.transitions[*t].on_clearing.as_ref().map(|b| (-1, Run1::Named(scope, b))));
-        }
         for &step in &m.scopes[scope].steps {
             for (place, action) in m.steps[step].actions.iter().enumerate() {
-                if let ActionKind::OnEvent { work, .. } = &action.kind {
-                    if m.rules.late_actions() && went.changes.events.contains(&(step, place)) {
-                        todo.push((1, Run1::Work(scope, work)));
-                    }
-                }
                 if let ActionKind::EachScan { work, condition } = &action.kind {
                     let was = m.rules.profile != ProfileName::Jgrafchart || went.start.contains(&step);
                     if each_scan && due[scope] && s.active.contains(&step) && was {
@@ -372,8 +363,9 @@ fn bodies(
             }
         }
     }
-    // What cleared comes before what the steps do; then P1 and P0 where they have a place.
-    todo.sort_by_key(|(pulse, _)| if m.rules.pulse_first { *pulse } else { (*pulse).min(0) });
+    if m.rules.pulse_first {
+        todo.sort_by_key(|(pulse, _)| *pulse);
+    }
     for (_, what) in todo {
         let mut exec = Exec::new(m, s);
         match what {

@@ -18,7 +18,7 @@ use super::{Diagnostics, Marks};
 pub(super) struct Changes {
     pub(super) on: BTreeSet<StepId>,
     pub(super) off: BTreeSet<StepId>,
-    /// Transitions that cleared.
+    /// Transitions that cleared, where their actions are still to run.
     pub(super) cleared: BTreeSet<TransId>,
     /// Steps and actions whose event happened.
     pub(super) events: BTreeSet<(StepId, usize)>,
@@ -41,12 +41,11 @@ pub(super) fn enabled(m: &Model, s: &State, t: TransId) -> bool {
     })
 }
 
-/// One pass; `earlier` are changes by services whose stored actions run now.
+/// One pass.
 pub(super) fn pass(
     m: &Model,
     s: &mut State,
     due: &[bool],
-    earlier: Changes,
     diagnostics: &mut Diagnostics,
     marks: &mut Marks,
 ) -> Run<Changes> {
@@ -71,7 +70,7 @@ pub(super) fn pass(
     marks.cleared.extend(&chosen);
 
     if m.rules.sequential && !m.rules.parallel_actions {
-        return one_after_the_other(m, s, due, &chosen, &forced, events, earlier, diagnostics);
+        return one_after_the_other(m, s, due, &chosen, &forced, events, diagnostics);
     }
     let mut flow = Flow { next: s.active.clone(), left: BTreeSet::new() };
     let back = tasks(m, s, due, &chosen);
@@ -99,7 +98,6 @@ pub(super) fn pass(
         flow.left.iter().copied().filter(|x| before.active.contains(x) && flow.next.contains(x)).collect();
     hierarchy(m, &before.active, &again, &mut flow.next);
     let mut changes = settle(m, s, flow.next, &again);
-    changes.add(&earlier);
     changes.cleared.extend(chosen);
     changes.events = events;
     stored::run(m, s, &before, &changes, diagnostics)?;
@@ -110,7 +108,6 @@ pub(super) fn pass(
 /// preceding steps, turns them off, turns the succeeding ones on and runs their
 /// entry actions, before the next one does. Hierarchy and forcing follow, with
 /// the other stored actions.
-#[expect(clippy::too_many_arguments, reason = "what a pass knows by then")]
 fn one_after_the_other(
     m: &Model,
     s: &mut State,
@@ -118,37 +115,21 @@ fn one_after_the_other(
     chosen: &[TransId],
     forced: &BTreeMap<ScopeId, Option<BTreeSet<StepId>>>,
     events: BTreeSet<(StepId, usize)>,
-    earlier: Changes,
     diagnostics: &mut Diagnostics,
 ) -> Run<Changes> {
     let before = s.active.clone();
     let mut all = Changes::default();
-    let nothing = BTreeSet::new();
     // Owners of tasks are settled by the situation in which the pass began.
     let by_themselves = tasks(m, s, due, chosen);
     for &t in chosen {
-        all.cleared.insert(t);
-        if let (Some(block), false) = (&m.transitions[t].on_clearing, m.rules.late_actions()) {
+        if let Some(block) = &m.transitions[t].on_clearing {
             Exec::new(m, s).body(m.transitions[t].scope, block)?;
         }
-        for group in leaving(m, t) {
-            for &x in &group {
-                if !s.active.contains(&x) {
-                    continue;
-                }
-                stored::at_once(m, s, x, false)?;
-            }
-            let next = &s.active - &group.into_iter().collect();
-            let changes = settle(m, s, next, &nothing);
-            all.off.extend(changes.off);
+        for x in leaving(m, t).into_iter().flatten() {
+            leave(m, s, x, &mut all)?;
         }
-        for group in arriving(m, t) {
-            let next = &s.active | &group.iter().copied().collect();
-            let changes = settle(m, s, next, &nothing);
-            for x in group.into_iter().filter(|x| changes.on.contains(x)) {
-                stored::at_once(m, s, x, true)?;
-            }
-            all.on.extend(changes.on);
+        for x in arriving(m, t).into_iter().flatten() {
+            enter(m, s, x, &mut all)?;
         }
     }
     let mut next = s.active.clone();
@@ -161,15 +142,51 @@ fn one_after_the_other(
             impose(m, *chart, set, &mut next);
         }
     }
-    let again: BTreeSet<StepId> = all.off.intersection(&all.on).copied().collect();
-    hierarchy(m, &before, &again, &mut next);
-    let mut changes = settle(m, s, next, &nothing);
-    changes.add(&earlier);
+    hierarchy(m, &before, &BTreeSet::new(), &mut next);
+    let mut changes = settle(m, s, next, &BTreeSet::new());
     changes.events = events;
     let so_far = s.clone();
     stored::run(m, s, &so_far, &changes, diagnostics)?;
     all.add(&changes);
     Ok(all)
+}
+
+/// Turns a step off, its exit actions first, and after it what it encloses.
+fn leave(m: &Model, s: &mut State, step: StepId, all: &mut Changes) -> Run<()> {
+    if !s.active.contains(&step) {
+        return Ok(());
+    }
+    stored::at_once(m, s, step, false)?;
+    let next = &s.active - &BTreeSet::from([step]);
+    all.add(&settle(m, s, next, &BTreeSet::new()));
+    for &chart in &m.steps[step].encloses {
+        let mut enclosed = BTreeSet::new();
+        m.everything_in(chart, &mut enclosed);
+        for inner in enclosed {
+            leave(m, s, inner, all)?;
+        }
+    }
+    Ok(())
+}
+
+/// Turns a step on, and with it the linked steps of what it encloses; its entry
+/// actions run then.
+fn enter(m: &Model, s: &mut State, step: StepId, all: &mut Changes) -> Run<()> {
+    if s.active.contains(&step) {
+        return Ok(());
+    }
+    let next = &s.active | &BTreeSet::from([step]);
+    all.add(&settle(m, s, next, &BTreeSet::new()));
+    stored::at_once(m, s, step, true)?;
+    for &chart in &m.steps[step].encloses {
+        for &inner in m.scopes[chart].steps.iter().filter(|&&inner| m.steps[inner].linked) {
+            enter(m, s, inner, all)?;
+            if let Some((_, entry, _)) = m.steps[inner].expansion {
+                enter(m, s, entry, all)?;
+            }
+        }
+    }
+    Ok(())
 }
 
 /// The situation that the clearings so far lead to.

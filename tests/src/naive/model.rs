@@ -67,13 +67,7 @@ impl Rules {
 
     /// P1 and P0 assignments and bodies are stored actions (decision 8).
     pub(super) fn stored_pulses(self) -> bool {
-        !self.late_actions()
-    }
-
-    /// All actions run at the end of the scan, those on clearing and on event
-    /// too: evolution first, then actions.
-    pub(super) fn late_actions(self) -> bool {
-        matches!(self.profile, ProfileName::Iec61131 | ProfileName::Unity)
+        !matches!(self.profile, ProfileName::Iec61131 | ProfileName::Unity)
     }
 }
 

@@ -77,9 +77,12 @@ impl Naive {
         let mut changes = if self.first { self.initialise()? } else { Changes::default() };
         sample(m, &mut self.state, &due)?;
         self.sections(true, &due)?;
+        let before = self.state.clone();
         let requested = services(m, &mut self.state);
+        stored::run(m, &mut self.state, &before, &requested, &mut self.diagnostics)?;
+        changes.add(&requested);
         let start = self.state.active.clone();
-        let counted = self.evolve(&due, requested, &mut changes)?;
+        let counted = self.evolve(&due, &mut changes)?;
         self.count(counted);
         super::control::end_of_scan(m, &mut self.state, &due, &Went { start, changes })?;
         self.sections(false, &due)
@@ -136,7 +139,7 @@ impl Naive {
 
     /// The passes; gives the steps turned on and off, and the transitions that
     /// were enabled at the start.
-    fn evolve(&mut self, due: &[bool], requested: Changes, changes: &mut Changes) -> Run<Counted> {
+    fn evolve(&mut self, due: &[bool], changes: &mut Changes) -> Run<Counted> {
         let model = std::rc::Rc::clone(&self.model);
         let m = &*model;
         let plain = |set: &BTreeSet<StepId>| set.iter().filter(|&&x| m.steps[x].expansion.is_none()).count();
@@ -145,7 +148,6 @@ impl Naive {
         };
         let mut counted =
             Counted { steps: plain(&self.state.active), enabled: enabled(&self.state), moved: 0 };
-        let mut earlier = requested;
         let mut history: Vec<State> = Vec::new();
         loop {
             self.marks.passes += 1;
@@ -153,15 +155,12 @@ impl Naive {
                 sample(m, &mut self.state, due)?;
             }
             let before = self.state.clone();
-            let extra = std::mem::take(&mut earlier);
-            let passed =
-                evolve::pass(m, &mut self.state, due, extra.clone(), &mut self.diagnostics, &mut self.marks)?;
+            let passed = evolve::pass(m, &mut self.state, due, &mut self.diagnostics, &mut self.marks)?;
             changes.add(&passed);
-            let [on, off] = [&passed.on - &extra.on, &passed.off - &extra.off];
-            counted.moved += plain(&on) + plain(&off);
+            counted.moved += plain(&passed.on) + plain(&passed.off);
             self.check_tables(enabled(&self.state).len())?;
             let s = &self.state;
-            let still = on.is_empty() && off.is_empty() && before.active == s.active;
+            let still = passed.on.is_empty() && passed.off.is_empty() && before.active == s.active;
             let same = still && before.vars == s.vars && before.owners == s.owners;
             if !m.rules.stable || same {
                 return Ok(counted);

@@ -93,6 +93,9 @@ pub(super) struct State {
     pub(super) frozen: BTreeSet<ScopeId>,
     pub(super) requests: Vec<Request>,
     pub(super) control: BTreeMap<Owner, Control>,
+    /// What each qualified action last gave to its block: it stays so while its
+    /// chart is not due.
+    pub(super) held: BTreeMap<(StepId, usize), bool>,
     /// Loop iterations in this scan.
     pub(super) work: u32,
 }
@@ -114,6 +117,7 @@ impl State {
             frozen: BTreeSet::new(),
             requests: Vec::new(),
             control: BTreeMap::new(),
+            held: BTreeMap::new(),
             work: 0,
         };
         // Constants first: initial values may be made of them.

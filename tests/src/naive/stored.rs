@@ -44,9 +44,6 @@ pub(super) fn run(
     happened: &Changes,
     diagnostics: &mut Diagnostics,
 ) -> Run<()> {
-    if m.rules.late_actions() {
-        return Ok(()); // see the end of the scan
-    }
     let mut todo = collect(m, happened)?;
     if m.rules.parallel_actions {
         todo.sort_by_key(|t| t.kind);
@@ -64,9 +61,6 @@ pub(super) fn run(
 
 /// Runs the entry or the exit actions of one step, with the state as it is.
 pub(super) fn at_once(m: &Model, s: &mut State, step: StepId, on: bool) -> Run<()> {
-    if m.rules.late_actions() {
-        return Ok(());
-    }
     let mut changes = Changes::default();
     let set = if on { &mut changes.on } else { &mut changes.off };
     set.insert(step);
@@ -163,6 +157,10 @@ fn of_action<'m>(
             let goal = control::goal(m, scope, target)?;
             if control::through_block(m, &goal, *qualifier) {
                 return Ok(());
+            }
+            let pulse = matches!(qualifier, Qualifier::P1 | Qualifier::P0);
+            if pulse && !m.rules.stored_pulses() {
+                return Ok(()); // at the end of the scan
             }
             let (on, off) = (h.on.contains(&step), h.off.contains(&step));
             let (kind, pulse, happens) = match qualifier {
