@@ -192,12 +192,6 @@ impl Tree {
         }
         None
     }
-
-    /// Members in a range of members, counted.
-    pub(crate) fn count(&self, words: &[u64], n: u32) -> u32 {
-        let base = self.at[0] as usize;
-        (0..n.div_ceil(64) as usize).map(|k| word(words, base + k).count_ones()).sum()
-    }
 }
 
 /// Walks a set that does not change meanwhile, in ascending order.

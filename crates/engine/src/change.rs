@@ -192,6 +192,7 @@ pub(crate) fn activate(p: &Program, s: &mut State, step: u32) {
     if row.extra != NONE
         && let Some(e) = p.t.extras.get(row.extra as usize)
     {
+        s.x.moved -= u32::from(e.uncounted);
         carry_on(p, s, e);
     }
 }
@@ -212,6 +213,7 @@ pub(crate) fn deactivate(p: &Program, s: &mut State, step: u32) {
     if row.extra != NONE
         && let Some(e) = p.t.extras.get(row.extra as usize)
     {
+        s.x.moved -= u32::from(e.uncounted);
         carry_off(p, s, e);
     }
 }

@@ -109,6 +109,7 @@ impl Program {
                 && t.limits.is_none()
                 && !t.code.iter().any(reads_time),
             frame,
+            looks_back: t.code.iter().any(|op| matches!(op, Op::WasActive(_))),
             has_orders: !t.orders.is_empty(),
             has_hierarchy,
             has_periods,
@@ -460,7 +461,7 @@ impl Check<'_> {
         match *op {
             Op::Load(a) | Op::Store(a) | Op::Random(a) => words(a, 1),
             Op::LoadAt { base, len } | Op::StoreAt { base, len } => words(base, len as usize),
-            Op::Active(s) | Op::StepTime(s) | Op::StepTenths(s) => step(s),
+            Op::Active(s) | Op::WasActive(s) | Op::StepTime(s) | Op::StepTenths(s) => step(s),
             Op::GroupActive(g) | Op::GroupTime(g) => within(g.0, t.groups.len(), "code", row),
             Op::Due(period) => within(period, t.periods.len(), "code", row),
             Op::Rise(w) | Op::Fall(w) | Op::Timer(w) => within(w.0, t.watches.len(), "code", row),
@@ -485,6 +486,7 @@ fn effect(op: &Op) -> (i16, i16) {
         Op::Push(_)
         | Op::Load(_)
         | Op::Active(_)
+        | Op::WasActive(_)
         | Op::GroupActive(_)
         | Op::GroupTime(_)
         | Op::Due(_)

@@ -230,6 +230,8 @@ pub enum Op {
     },
     /// Pushes the activity of a step.
     Active(StepId),
+    /// Pushes the activity of a step as the pass began.
+    WasActive(StepId),
     /// Pushes whether any step of a group is active.
     GroupActive(GroupId),
     /// Pushes the time since activation, ns; scans under the scan clock.

@@ -1,9 +1,7 @@
 //! One pass of the evolution (SEMANTICS section 3): judge all, then change all.
 
-use crate::bits::{Walk, bit, set_bit};
-use crate::change::{
-    activate, add_runs, commit, deactivate, extra, mark_off, mark_on, marked, run_action, run_ordered,
-};
+use crate::bits::{Walk, bit, set_bit, word};
+use crate::change::{activate, add_runs, commit, deactivate, extra, mark_off, mark_on, marked, run_action};
 use crate::fault::{Fault, FaultKind};
 use crate::run::{guard, value};
 use crate::state::State;
@@ -17,10 +15,19 @@ pub(crate) fn evolve(p: &Program, s: &mut State) -> Result<bool, Fault> {
     if p.has_periods || p.has_orders {
         block(p, s);
     }
+    if p.looks_back {
+        let base = s.steps.base() as usize;
+        let State { w, x, .. } = s;
+        for (i, was) in x.was.iter_mut().enumerate() {
+            *was = word(w, base + i);
+        }
+    }
     collect(p, s)?;
     if !p.t.events.is_empty() {
         events(p, s)?;
     }
+    // What receptivities leave in the words of functions is no change.
+    s.x.changed = false;
     if p.has_orders {
         force(s)?;
     }
@@ -352,22 +359,11 @@ pub(crate) fn each_to(p: &Program, t: &Transition, mut f: impl FnMut(u32)) {
 
 /// Transitions clear one after the other, in order of rank, with their actions
 /// at once: a step that one activates and a later one deactivates ends inactive.
-/// What forcing orders impose comes first, event actions behind.
+/// What follows from enclosing steps, what forcing orders impose and event
+/// actions come behind.
 fn in_turn(p: &Program, s: &mut State) -> Result<(), Fault> {
-    for k in 0..s.x.off.len() {
-        let Some(&step) = s.x.off.get(k) else { break };
-        set_bit(&mut s.x.off_mark, 0, step, false);
-        if !marked(&s.x.on_mark, step) {
-            leave(p, s, step)?;
-        }
-    }
-    s.x.off.clear();
-    for k in 0..s.x.on.len() {
-        let Some(&step) = s.x.on.get(k) else { break };
-        set_bit(&mut s.x.on_mark, 0, step, false);
-        enter(p, s, step)?;
-    }
-    s.x.on.clear();
+    s.x.left.clear();
+    s.x.came.clear();
     for k in 0..s.x.fired.len() {
         let Some(t) = s.x.fired.get(k).and_then(|i| p.t.transitions.get(*i as usize)).copied() else { break };
         if t.on_clearing != NONE {
@@ -394,7 +390,38 @@ fn in_turn(p: &Program, s: &mut State) -> Result<(), Fault> {
         });
         done?;
     }
-    run_ordered(p, s)
+    if p.has_hierarchy {
+        enclosures(p, s);
+    }
+    commit(p, s)
+}
+
+/// Marks what the enclosing steps that were left or entered take and bring.
+fn enclosures(p: &Program, s: &mut State) {
+    for k in 0..s.x.left.len() {
+        let Some(e) = s.x.left.get(k).and_then(|step| extra(p, *step)) else { continue };
+        for g in p.t.group_lists.get(e.encloses.start as usize..e.encloses.end as usize).unwrap_or(&[]) {
+            let Some(group) = p.t.groups.get(g.0 as usize) else { continue };
+            for i in group.steps.start..group.steps.end {
+                set_bit(&mut s.x.on_mark, 0, i, false);
+            }
+            let mut from = group.steps.start;
+            while let Some(i) = s.steps.next(&s.w, from).filter(|i| *i < group.steps.end) {
+                mark_off(s, StepId(i));
+                from = i + 1;
+            }
+        }
+    }
+    for k in 0..s.x.came.len() {
+        let Some(&step) = s.x.came.get(k) else { break };
+        if !s.steps.contains(&s.w, step) {
+            continue;
+        }
+        let Some(e) = extra(p, step) else { continue };
+        for link in arcs(p, e.links) {
+            mark_on(s, *link);
+        }
+    }
 }
 
 fn run_list(p: &Program, s: &mut State, rows: Rows) -> Result<(), Fault> {
@@ -410,46 +437,31 @@ fn run_list(p: &Program, s: &mut State, rows: Rows) -> Result<(), Fault> {
     Ok(())
 }
 
-/// Deactivates a step; its exit actions come first, its enclosed charts with it.
+/// Deactivates a step; its exit actions come first.
 fn leave(p: &Program, s: &mut State, step: u32) -> Result<(), Fault> {
-    s.x.chain.clear();
-    s.x.chain.push(step);
-    let mut k = 0;
-    while let Some(&step) = s.x.chain.get(k) {
-        k += 1;
-        if !s.steps.contains(&s.w, step) {
-            continue;
-        }
-        let e = extra(p, step).copied().unwrap_or_default();
-        run_list(p, s, e.off)?;
-        deactivate(p, s, step);
-        s.x.emptied.clear();
-        for g in p.t.group_lists.get(e.encloses.start as usize..e.encloses.end as usize).unwrap_or(&[]) {
-            let Some(group) = p.t.groups.get(g.0 as usize) else { continue };
-            let mut from = group.steps.start;
-            while let Some(i) = s.steps.next(&s.w, from).filter(|i| *i < group.steps.end) {
-                s.x.chain.push(i);
-                from = i + 1;
-            }
-        }
+    if !s.steps.contains(&s.w, step) {
+        return Ok(());
+    }
+    let e = extra(p, step).copied().unwrap_or_default();
+    run_list(p, s, e.off)?;
+    deactivate(p, s, step);
+    s.x.emptied.clear();
+    if !e.encloses.is_empty() && s.x.left.len() < s.x.left.capacity() {
+        s.x.left.push(step);
     }
     Ok(())
 }
 
-/// Activates a step; its entry actions run at once, its linked steps come with it.
+/// Activates a step; its entry actions run at once.
 fn enter(p: &Program, s: &mut State, step: u32) -> Result<(), Fault> {
-    s.x.chain.clear();
-    s.x.chain.push(step);
-    let mut k = 0;
-    while let Some(&step) = s.x.chain.get(k) {
-        k += 1;
-        if s.steps.contains(&s.w, step) {
-            continue;
-        }
-        activate(p, s, step);
-        let e = extra(p, step).copied().unwrap_or_default();
-        run_list(p, s, e.on)?;
-        s.x.chain.extend(arcs(p, e.links).iter().map(|l| l.0));
+    if s.steps.contains(&s.w, step) {
+        return Ok(());
+    }
+    activate(p, s, step);
+    let e = extra(p, step).copied().unwrap_or_default();
+    run_list(p, s, e.on)?;
+    if !e.links.is_empty() && s.x.came.len() < s.x.came.capacity() {
+        s.x.came.push(step);
     }
     Ok(())
 }

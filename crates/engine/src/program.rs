@@ -164,6 +164,9 @@ pub struct Extra {
     pub links: Rows,
     /// Watches that read its activity or time: rows of [`Tables::watch_lists`].
     pub watches: Rows,
+    /// No step of the text but the stand-in of a macro-step: `%SW20` and the
+    /// target's limit do not count it.
+    pub uncounted: bool,
 }
 
 /// A transition. Index = rank: the order of priority, then of the text.
@@ -189,6 +192,8 @@ pub struct Transition {
     pub priority: u32,
     /// Has rows in [`Tables::drops`].
     pub drops: bool,
+    /// No transition of the text: `%SW21` and the target's limit do not count it.
+    pub uncounted: bool,
     /// The step watched has only transitions with that one preceding step, so
     /// that under single-token the first clearable one settles it.
     pub simple: bool,
@@ -432,6 +437,8 @@ pub struct Program {
     pub(crate) word_index: Box<[u32]>,
     pub(crate) layout: crate::state::Layout,
     pub(crate) has_orders: bool,
+    /// Some code asks for the situation as the pass began.
+    pub(crate) looks_back: bool,
     pub(crate) has_hierarchy: bool,
     pub(crate) has_periods: bool,
     /// Some transitions share a preceding step and are not settled by their place.

@@ -187,6 +187,10 @@ fn rare(p: &Program, s: &mut State, op: Op) -> Result<(), FaultKind> {
             let v = s.step_time(p, step) as u64;
             s.x.stack.push(v);
         }
+        Op::WasActive(step) => {
+            let v = u64::from(bit(&s.x.was, 0, step.0));
+            s.x.stack.push(v);
+        }
         Op::GroupTime(g) => {
             let v = s.group_time(p, g) as u64;
             s.x.stack.push(v);

@@ -331,12 +331,11 @@ pub fn finish(p: &Program, s: &mut State) -> Result<(), Fault> {
         run::run(p, s, t.post)?;
         run::run(p, s, t.tail)?;
     }
-    if let Some((flag, limits)) = t.limits {
-        let active = s.steps.count(&s.w, t.steps.len() as u32);
-        if active > limits.active || enabled_now(p, s) > limits.enabled {
-            write(p, s, flag, 1);
-            return Err(FaultKind::Table.nowhere());
-        }
+    if let Some((flag, limits)) = t.limits
+        && (active_now(p, s) > limits.active || enabled_now(p, s) > limits.enabled)
+    {
+        write(p, s, flag, 1);
+        return Err(FaultKind::Table.nowhere());
     }
     s.x.quiet = p.timeless && s.x.idle && !s.x.changed && !waits(p, s);
     Ok(())
@@ -405,10 +404,17 @@ pub fn eval(p: &Program, s: &mut State, code: Code) -> Result<u64, Fault> {
     run::value(p, s, code)
 }
 
-/// Whether a transition is enabled.
+/// The active steps of the text.
+fn active_now(p: &Program, s: &State) -> u32 {
+    let stands_in = |step: &u32| crate::change::extra(p, *step).is_some_and(|e| e.uncounted);
+    s.active().filter(|step| !stands_in(&step.0)).count() as u32
+}
+
+/// Whether a transition is enabled, of those that count.
 fn is_enabled(p: &Program, s: &State, i: usize) -> bool {
     p.t.transitions
         .get(i)
+        .filter(|t| !t.uncounted)
         .is_some_and(|t| (t.from.0 == NONE || s.steps.contains(&s.w, t.from.0)) && rest_active(p, s, t))
 }
 
@@ -424,7 +430,7 @@ fn enabled(p: &Program, s: &mut State, after: bool) -> Result<(), Fault> {
         set_bit(if after { &mut x.enabled_after } else { &mut x.enabled }, 0, i as u32, on);
     }
     if !after {
-        s.x.active_before = s.steps.count(&s.w, p.t.steps.len() as u32);
+        s.x.active_before = active_now(p, s);
     }
     Ok(())
 }

@@ -145,8 +145,12 @@ pub(crate) struct Scratch {
     /// Active steps whose transitions need a closer look (`bare`).
     pub(crate) slow: Vec<u32>,
     pub(crate) on: Vec<u32>,
-    /// Steps that follow one another through enclosures (`sequential`).
-    pub(crate) chain: Vec<u32>,
+    /// Enclosing steps left in this pass (`sequential`).
+    pub(crate) left: Vec<u32>,
+    /// Enclosing steps entered in this pass.
+    pub(crate) came: Vec<u32>,
+    /// Step bits as the pass began, where some code looks back.
+    pub(crate) was: Box<[u64]>,
     pub(crate) off: Vec<u32>,
     pub(crate) on_mark: Box<[u64]>,
     pub(crate) off_mark: Box<[u64]>,
@@ -244,7 +248,9 @@ impl State {
             slow: Vec::with_capacity(if p.bare { steps } else { 0 }),
             on: Vec::with_capacity(2 * steps),
             off: Vec::with_capacity(2 * steps),
-            chain: Vec::with_capacity(if t.rules.sequential { 2 * steps + 1 } else { 0 }),
+            left: Vec::with_capacity(if t.rules.sequential { 2 * steps + 1 } else { 0 }),
+            came: Vec::with_capacity(if t.rules.sequential { 2 * steps + 1 } else { 0 }),
+            was: bits(if p.looks_back { steps } else { 0 }),
             on_mark: bits(steps),
             off_mark: bits(steps),
             taken: bits(steps),

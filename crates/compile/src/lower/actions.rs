@@ -268,7 +268,8 @@ impl Lower<'_> {
         b.op(Op::Compare(Cmp::Eq, Num::I64), at);
         let mut ends = vec![b.jump(Op::JumpUnless, at)];
         for (i, caller) in callers.iter().enumerate() {
-            self.active_before(b, *caller, at);
+            let was = self.plan.own(*caller).map_or(Op::Push(0), Op::WasActive);
+            b.op(was, at);
             let next = b.jump(Op::JumpUnless, at);
             b.op(Op::Push(i as u64 + 1), at);
             b.op(Op::Store(owner), at);

@@ -29,6 +29,14 @@ pub(super) struct Reads {
 }
 
 impl Reads {
+    pub(super) fn append(&mut self, other: &mut Reads) {
+        self.words.append(&mut other.words);
+        self.steps.append(&mut other.steps);
+        self.groups.append(&mut other.groups);
+        self.watches.append(&mut other.watches);
+        self.time |= other.time;
+    }
+
     fn clear(&mut self) {
         self.words.clear();
         self.steps.clear();

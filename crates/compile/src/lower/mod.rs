@@ -227,6 +227,12 @@ impl Lower<'_> {
         self.plan.source.iter().map(row).collect()
     }
 
+    /// Whether a step of the program stands for a macro-step.
+    fn is_pseudo(&self, number: u32) -> bool {
+        let source = self.plan.source.get(number as usize);
+        source.and_then(|id| self.plan.pseudo(*id)).is_some_and(|p| p.0 == number)
+    }
+
     /// Gives each step what only few have.
     fn extras(&mut self, a: &mut actions::Actions) {
         let mut groups = self.counted_groups();
@@ -250,6 +256,7 @@ impl Lower<'_> {
                 encloses: encloses.take(i, &mut self.t.group_lists),
                 links: links.take(i, &mut self.t.arcs),
                 watches: watches.take(i, &mut self.t.watch_lists),
+                uncounted: self.is_pseudo(i),
             };
             let lists = [
                 e.on,
@@ -265,7 +272,7 @@ impl Lower<'_> {
             ];
             let Some(step) = self.t.steps.get_mut(i as usize) else { break };
             step.direct = a.direct.get(i as usize).copied().unwrap_or(Addr(NONE));
-            if lists.iter().any(|r| !r.is_empty()) {
+            if e.uncounted || lists.iter().any(|r| !r.is_empty()) {
                 step.extra = self.t.extras.len() as u32;
                 self.t.extras.push(e);
             }

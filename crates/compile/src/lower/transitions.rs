@@ -104,7 +104,8 @@ impl Lower<'_> {
                     let always =
                         Expr { kind: ExprKind::Const(Value::Bool(true)), ty: g7_model::Type::Bool, at };
                     let on_clearing = clearing.returning(task);
-                    (task, Transition { on_clearing, ..self.row(&always, &p.extras, task) })
+                    let row = self.row(&always, &p.extras, task);
+                    (task, Transition { on_clearing, uncounted: true, ..row })
                 }
             };
             row.chart = self.plan.chart(chart).unwrap_or(0);
@@ -228,6 +229,7 @@ impl Lower<'_> {
             priority: NONE,
             simple: false,
             drops: false,
+            uncounted: false,
         }
     }
 

@@ -13,7 +13,7 @@ use g7_model::Span;
 use super::Lower;
 use super::code::{Buf, Reads};
 use super::lists::Lists;
-use crate::ir::{Expr, ExprKind, StepId};
+use crate::ir::{Expr, ExprKind};
 
 /// What makes two watches the same.
 #[derive(PartialEq, Eq, Hash)]
@@ -60,17 +60,6 @@ impl Lower<'_> {
         self.timer_of(b, code, (on, off), at);
     }
 
-    /// Pushes the activity of a step as it was at the start of the pass: a timer
-    /// without times. Code that runs behind the change of steps needs it.
-    pub(super) fn active_before(&mut self, b: &mut Buf, step: StepId, at: Span) {
-        let mut code = self.buf(b.period);
-        self.acting(&mut code, step, at);
-        let (mut on, mut off) = (self.buf(0), self.buf(0));
-        on.op(Op::Push(0), at);
-        off.op(Op::Push(0), at);
-        self.timer_of(b, code, (on, off), at);
-    }
-
     fn timer_of(&mut self, b: &mut Buf, code: Buf, times: (Buf, Buf), at: Span) {
         let watch = self.watch(code, Some(times));
         b.reads.watches.push(watch);
@@ -92,8 +81,13 @@ impl Lower<'_> {
             [Some(code), on, off].into_iter().flatten().for_each(|b| self.drop_buf(b));
             return known;
         }
-        let mut code = code;
-        let reads = std::mem::take(&mut code.reads);
+        let (mut code, mut times) = (code, times);
+        let mut reads = std::mem::take(&mut code.reads);
+        // A timer that runs goes by its times as they are now.
+        if let Some((on, off)) = &mut times {
+            reads.append(&mut on.reads);
+            reads.append(&mut off.reads);
+        }
         let period = code.period;
         let always = reads.time;
         let code = self.place(code);

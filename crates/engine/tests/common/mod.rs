@@ -50,6 +50,7 @@ pub(crate) fn chart(rules: Rules, steps: u32, inputs: u32, initial: &[u32], arcs
             shares: pre.iter().any(|s| uses(*s) > 1),
             priority: NONE,
             drops: false,
+            uncounted: false,
             simple: pre.first().is_some_and(|first| {
                 arcs.iter().filter(|(p, ..)| p.contains(first)).all(|(p, ..)| p.len() == 1)
             }),
