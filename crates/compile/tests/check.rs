@@ -101,6 +101,35 @@ fn difference(a: &Reports, b: &Reports) -> Reports {
     more
 }
 
+/// Words of the cases in another order, left out or doubled: the strangest
+/// documents that still read like charts. Whatever comes out, it comes out.
+#[test]
+fn shuffled_charts_are_checked_to_the_end() {
+    let mut chance = 1u64;
+    let mut next = |below: usize| {
+        chance = chance.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (chance >> 33) as usize % below.max(1)
+    };
+    let mut problems = 0;
+    for file in files("tests/check", "g7") {
+        let text = String::from_utf8_lossy(&std::fs::read(&file).expect("a case")).into_owned();
+        let words: Vec<&str> = text.split_inclusive([' ', '\n']).filter(|w| !w.contains("//~")).collect();
+        for _ in 0..30 {
+            let mut mixed = words.clone();
+            for _ in 0..=next(6) {
+                let (a, b) = (next(mixed.len()), next(mixed.len()));
+                match next(3) {
+                    0 => mixed.swap(a, b),
+                    1 => mixed[a] = words[b % words.len()],
+                    _ => drop(mixed.remove(a)),
+                }
+            }
+            problems += reported(&mixed.concat()).0.len();
+        }
+    }
+    assert!(problems > 0, "shuffling has made nothing wrong");
+}
+
 #[test]
 fn the_case_of_a_code_reports_it() {
     let cases = files("tests/check", "g7");
