@@ -1,7 +1,7 @@
 //! The charts in the book and in the conformance cases are read without a problem.
 #![allow(clippy::disallowed_methods, reason = "a test reads the files that it is about")]
 
-use g7_model::{Document, FileId};
+use g7_model::{Document, FileId, codes};
 use g7_syntax::{LineIndex, parse, print};
 use std::path::{Path, PathBuf};
 
@@ -18,6 +18,10 @@ fn pages(folder: &Path, ending: &str, into: &mut Vec<PathBuf>) {
 
 /// The blocks marked just `g7`, each with the line it begins on.
 fn blocks(page: &str) -> Vec<(usize, String)> {
+    marked_blocks(page, "g7")
+}
+
+fn marked_blocks(page: &str, mark: &str) -> Vec<(usize, String)> {
     let mut found = Vec::new();
     let mut fence = "";
     let mut block: Option<(usize, String)> = None;
@@ -25,7 +29,7 @@ fn blocks(page: &str) -> Vec<(usize, String)> {
         let ticks = line.len() - line.trim_start_matches('`').len();
         if fence.is_empty() && ticks >= 3 {
             fence = &line[..ticks];
-            block = (&line[ticks..] == "g7").then(|| (i + 2, String::new()));
+            block = (&line[ticks..] == mark).then(|| (i + 2, String::new()));
         } else if !fence.is_empty() && line == fence {
             fence = "";
             found.extend(block.take());
@@ -113,6 +117,33 @@ fn the_examples_are_read_and_stand_in_canonical_form() {
         let wrong = misprint(&text, &document);
         assert!(wrong.is_none(), "{}: {wrong:?}", file.display());
         assert!(print(&document, Some(&text)) == text, "{} is not as `g7 fmt` writes it", file.display());
+    }
+}
+
+/// The pages of the codes of files and words are about what the reader reports.
+#[test]
+fn the_pages_of_the_codes_of_reading_hold() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+    let cases: Vec<String> = std::fs::read_dir(root.join("tests/check"))
+        .expect("the cases")
+        .map(|e| e.expect("a case").file_name().to_string_lossy().into_owned())
+        .collect();
+    // A file that is too large, no UTF-8 or full of mistakes is tried in `hostile.rs` and `problems.rs`.
+    let no_text = ["G0001", "G0008", "G0010"];
+    for code in codes::ALL.iter().filter(|c| c.id.starts_with("G00")) {
+        let page = root.join(format!("docs/book/src/problems/{}.md", code.id));
+        let page = std::fs::read_to_string(&page).unwrap_or_else(|e| panic!("{}: {e}", code.id));
+        assert!(page.starts_with(&format!("# {}: {}\n", code.id, code.title)), "{}", code.id);
+        assert!(page.contains(code.source), "{}", code.id);
+        let case = format!("{}-", code.id.to_lowercase());
+        assert!(no_text.contains(&code.id) || cases.iter().any(|c| c.starts_with(&case)), "{case}");
+        for (_, wrong) in marked_blocks(&page, "g7,wrong") {
+            let (_, problems) = parse(&wrong, FileId(0));
+            assert!(
+                !problems.is_empty() && problems.iter().all(|p| p.code.id == code.id),
+                "{wrong}{problems:#?}"
+            );
+        }
     }
 }
 

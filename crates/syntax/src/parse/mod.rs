@@ -24,6 +24,11 @@ use g7_model::{FileId, Name, Problem, Span};
 /// Brackets, blocks and operands may be nested this deep.
 const MOST_NESTED: u32 = 128;
 
+/// Stand for what could not be read: values that are allowed everywhere, so
+/// that no later stage complains of them again.
+const UNREAD_TIME: i64 = 1_000_000_000;
+const UNREAD_NUMBER: u64 = 1;
+
 /// The parser: one token in hand, one looked at.
 pub(crate) struct Parser<'a> {
     lexer: Lexer<'a>,
@@ -504,12 +509,12 @@ impl<'a> Parser<'a> {
                         problem
                     }
                 });
-                0
+                UNREAD_TIME
             }
         }
     }
 
-    /// A duration; without one a problem, and 0.
+    /// A duration; without one a problem.
     fn duration(&mut self, what: &str) -> i64 {
         if let Some(ns) = self.duration_if() {
             return ns;
@@ -520,7 +525,7 @@ impl<'a> Parser<'a> {
         } else {
             self.expected(what);
         }
-        0
+        UNREAD_TIME
     }
 
     /// A whole number that fits into `most`, if one stands here.
@@ -533,7 +538,7 @@ impl<'a> Parser<'a> {
             });
             value.unwrap_or_else(|what| {
                 self.lexer.problems.add(at, || Problem::new(&codes::BAD_NUMBER, at, what));
-                0
+                UNREAD_NUMBER
             })
         })
     }
@@ -543,7 +548,7 @@ impl<'a> Parser<'a> {
             Some(n) => u32::try_from(n).unwrap_or(u32::MAX),
             None => {
                 self.expected(what);
-                0
+                1
             }
         }
     }
