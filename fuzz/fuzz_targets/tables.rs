@@ -156,6 +156,7 @@ fn steps(d: &mut Draw<'_, '_>, t: &mut Tables) {
             encloses: d.rows(t.group_lists.len()),
             links: d.rows(t.arcs.len()),
             watches: d.rows(t.watch_lists.len()),
+            uncounted: d.flag(),
         });
     }
     let transitions = d.n(10);
@@ -177,8 +178,11 @@ fn steps(d: &mut Draw<'_, '_>, t: &mut Tables) {
             shares: d.flag(),
             priority: d.or_none(3),
             simple: d.flag(),
+            drops: d.flag(),
+            uncounted: d.flag(),
         });
     }
+    t.drops = (0..transitions).filter_map(|i| d.flag().then(|| (i, StepId(d.n(STEPS))))).collect();
     t.sources = if transitions > 0 && d.flag() { vec![d.n(transitions)] } else { Vec::new() };
     t.outs = if transitions > 0 { (0..8).map(|_| d.n(transitions)).collect() } else { Vec::new() };
     for _ in 0..STEPS {
