@@ -67,7 +67,7 @@ pub(crate) fn build(
     problems.extend(found);
     let Some(charts) = charts else { return Ok((None, problems)) };
     let mut items = Vec::new();
-    variables(&charts.symbols, &mut items);
+    variables(&charts, &mut items);
     let mut side = None;
     if let Some(plant) = plant {
         let (made, found) = plant_side(&source.document, plant, &charts, &asks(true));
@@ -185,14 +185,11 @@ pub(super) fn kind(ty: Type) -> Option<Kind> {
 }
 
 /// The charts' variables, each with its role.
-fn variables(symbols: &Symbols, items: &mut Vec<Item>) {
-    let mut first_input = None;
-    for v in &symbols.variables {
+fn variables(charts: &Compiled, items: &mut Vec<Item>) {
+    let first = charts.program.tables().inputs.start;
+    for v in &charts.symbols.variables {
         let role = match v.class {
-            VarClass::Input => {
-                let first = *first_input.get_or_insert(v.addr.0);
-                Role::Input(v.addr.0.saturating_sub(first))
-            }
+            VarClass::Input => Role::Input(v.addr.0.saturating_sub(first)),
             VarClass::Output => Role::Output,
             VarClass::Internal => Role::Variable,
             VarClass::Local | VarClass::Const | VarClass::System => continue,

@@ -134,6 +134,7 @@ impl Grid {
 fn lane(recording: &Recording, index: usize, signal: &Signal, grid: &Grid) -> Lane {
     let end = i64::try_from(i128::from(grid.from) + grid.span).unwrap_or(i64::MAX);
     let last = recording.value_at(index, end).map_or_else(String::new, |v| v.show(signal.kind));
+    let last = last.chars().map(visible).collect();
     let changes = recording.changes(index).filter(|(at, _)| *at >= grid.from && *at <= end).count();
     let (cells, note) = match signal.kind {
         Kind::Bool => (logic(recording, index, grid), String::new()),
@@ -281,6 +282,13 @@ mod tests {
         let lane = one(kind, &words(&[(0, 0), (50, 1), (100, 12), (105, 13), (110, 7)]), 40, 200);
         assert_eq!(lane.cells, "0·········│1········│││7················");
         assert_eq!(lane.note, "7");
+    }
+
+    #[test]
+    fn text_never_breaks_its_line() {
+        let samples = [(0, Value::Text("a\nb".into())), (50, Value::Text("c\td".into()))];
+        let lane = one(Kind::Text, &samples, 20, 100);
+        assert_eq!((lane.cells.as_str(), lane.note.as_str()), ("a␀b·······│c␀d······", "c␀d"));
     }
 
     #[test]
