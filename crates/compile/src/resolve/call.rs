@@ -15,7 +15,7 @@ const MILLISECOND: i128 = 1_000_000;
 /// How the arguments of a standard function are typed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Shape {
-    /// One number; the result is of its type.
+    /// One number or TIME; the result is of its type.
     Number,
     /// One REAL or LREAL; the result is of its type.
     Real,
@@ -361,7 +361,7 @@ impl Resolver<'_, '_> {
         match (from, to) {
             (Type::Time, _) if is_number(to) => self.time_as_number(e, to, at),
             (_, Type::Time) if is_number(from) => self.number_as_time(e, at),
-            (Type::Time, Type::Bool) | (Type::Bool, Type::Time) => {
+            (Type::Time, Type::Bool) | (Type::Bool | Type::String(_), Type::Time) => {
                 let what = format!("there is no conversion from {from} to {to}");
                 self.report(Problem::new(&codes::UNKNOWN_NAME, name.at.0, what))
             }
@@ -441,7 +441,7 @@ fn shared(typed: &[Typed], shape: Shape, hint: Option<Type>) -> Option<Type> {
         Some(t) => t,
     };
     let fits = match shape {
-        Shape::Number => is_number(ty),
+        Shape::Number => is_number(ty) || ty == Type::Time,
         Shape::Real if ty.is_integer() => return common(ty, Type::Real),
         Shape::Real => ty.is_real(),
         Shape::Ordered | Shape::Limit => is_number(ty) || ty == Type::Time,

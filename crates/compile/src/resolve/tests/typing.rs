@@ -131,6 +131,7 @@ fn standard_functions() {
     check(&[
         ("ABS(n)", "Abs(n) : INT"),
         ("abs(x)", "Abs(x) : REAL"),
+        ("ABS(t)", "Abs(t) : TIME"),
         ("ABS(a)", "G0209"),
         ("SQRT(x)", "Sqrt(x) : REAL"),
         ("SQRT(n)", "Sqrt(REAL(n)) : REAL"),
@@ -185,6 +186,8 @@ fn conversions() {
         ("DINT_TO_TIME(d)", "(1000000 Mul LINT(d)) : TIME"),
         ("INT_TO_TIME(5)", "5000000 : TIME"),
         ("TIME_TO_STRING(t)", "STRING(t) : STRING"),
+        ("STRING_TO_TIME(w)", "G0202"),
+        ("BOOL_TO_TIME(a)", "G0202"),
         ("DINT_TO_INT(x)", "G0209"),
         ("DINT_TO_INT(70000)", "G0212"),
         ("DINT_TO_WORD(d)", "G0202"),
