@@ -51,6 +51,7 @@ codes! {
     SAME_TRANSITION = "G0106" Warning "a transition that stands there twice" "IEC 60848:2013, 4.4";
     TASK_END_ACTS = "G0107" Warning "an end of a task with an action" "Actions, counters, macro-steps and tasks";
     NEVER_CLEARS = "G0108" Warning "a receptivity that is never true" "IEC 60848:2013, 4.7";
+    CHART_UNUSED = "G0109" Warning "an expansion or task that nothing uses" "IEC 60848:2013, 7.5";
 
     // Names and types
     DEFINED_TWICE = "G0201" Error "one name is defined twice" "IEC 61131-3:2003, 2.7.1";
@@ -82,6 +83,7 @@ codes! {
     BODY_LANGUAGE = "G0227" Error "a body in a language that does not run yet" "the .g7 format";
     BAD_DECLARATION = "G0228" Error "a declaration that does not fit its type" "IEC 61131-3:2003, 2.4.3";
     ADDRESS_TWICE = "G0229" Error "one address for two variables" "IEC 61131-3:2003, 2.4.1.1";
+    UNUSED_VARIABLE = "G0230" Warning "a variable that nothing names" "the .g7 format";
 
     // Evolution and actions
     CONFLICT = "G0301" Warning "branches that can be true together" "GRAFCET course, conflicts";
@@ -93,10 +95,13 @@ codes! {
     TWO_VALUES = "G0307" Error "two values for one variable at one moment" "IEC 60848:2013, 4.8.3";
     TWO_TIMES = "G0308" Error "two timed qualifiers on one action" "IEC 61131-3:2003, 2.6.4.4";
     PULSE_TWICE = "G0309" Warning "a pulse body that runs twice" "IEC 61131-3:2003, 2.6.4.5";
-    RESTLESS_LOOP = "G0310" Warning "a loop that never rests" "IEC 60848:2013, 4.6";
+    RESTLESS_LOOP = "G0310" Warning "a loop that never rests" "IEC 60848:2013, 4.9";
     MACRO_ACTS = "G0311" Warning "a macro-step with actions of its own" "IEC 60848:2013, 7.5";
     PRIORITY_IGNORED = "G0312" Warning "a priority without effect" "IEC 61131-3:2003, 2.6.5";
     ALSO_WRITTEN = "G0313" Warning "a variable that an action drives and a statement writes" "IEC 61131-3:2003, 2.6.4.5";
+    EVENT_LASTS = "G0314" Warning "an event that can be true without an edge" "IEC 60848:2013, 4.8.3";
+    ORDERS_DISAGREE = "G0315" Warning "two forcing orders that disagree" "IEC 60848:2013, 7.3";
+    WRITES_MEET = "G0316" Warning "two values for one variable when one transition clears" "IEC 60848:2013, 4.8.3";
 
     // Limits of a target
     TARGET_STEPS = "G0401" Error "more steps than the target holds" "GRAFCET course, TSX 37 and 57, characteristics";
@@ -104,6 +109,7 @@ codes! {
     TARGET_TRANSITIONS = "G0403" Error "more transitions than the target holds" "GRAFCET course, TSX 37 and 57, transitions";
     TARGET_BRANCHES = "G0404" Error "more branches than the target draws" "GRAFCET course, TSX 37 and 57, transitions";
     TARGET_WORDS = "G0405" Warning "something the target has no word for" "GRAFCET course, TSX 37 and 57";
+    TARGET_PAGES = "G0406" Error "a drawing larger than the target's pages" "GRAFCET course, TSX 37 and 57, editor";
 
     // Tests
     TEST_PLANT = "G0550" Error "a test with a plant that is not there" "the .g7 format";

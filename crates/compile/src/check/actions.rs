@@ -1,243 +1,176 @@
-//! What actions may be, and what they do to each other.
+//! What an action may be, and the events, conditions and times that it has.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 use g7_model::{Problem, Qualifier, Span, codes};
 
-use super::tree::{has_edge, key};
-use crate::ir::{Action, ActionKind, Step, StepSort, Stmt, StmtKind, Target, Unit, VarId};
+use super::facts::Facts;
+use super::solve::Question;
+use super::tree::has_edge;
+use crate::ir::{Action, ActionKind, Expr, Step, StepId, StepSort, Unit, VarId};
 
-pub(super) fn check(unit: &Unit, problems: &mut Vec<Problem>) {
-    let grafcet = unit.rules.stable && unit.rules.parallel_actions;
+pub(super) fn check(facts: &Facts<'_>, problems: &mut Vec<Problem>) {
+    let unit = facts.unit;
+    let grafcet = is_grafcet(unit);
     for step in &unit.steps {
         for action in &step.actions {
-            one(unit, step, action, grafcet, problems);
-        }
-        two_times(unit, step, problems);
-        if grafcet {
-            disagree(unit, step, problems);
+            pulse(unit, action, problems);
+            if grafcet {
+                macro_acts(step, action, problems);
+                event(facts, action, problems);
+                condition(action, problems);
+            }
         }
     }
-    classes(unit, grafcet, problems);
+    times(unit, grafcet, problems);
 }
 
-/// Rules for one action by itself.
-fn one(unit: &Unit, step: &Step, action: &Action, grafcet: bool, problems: &mut Vec<Problem>) {
-    if grafcet && matches!(step.sort, StepSort::Macro(_)) {
+/// Whether continuous and stored actions are those of IEC 60848.
+pub(super) fn is_grafcet(unit: &Unit) -> bool {
+    unit.rules.stable && unit.rules.parallel_actions
+}
+
+/// A pulse body that runs twice.
+fn pulse(unit: &Unit, action: &Action, problems: &mut Vec<Problem>) {
+    if let ActionKind::Named { qualifier: Qualifier::P, .. }
+    | ActionKind::Work { qualifier: Qualifier::P, .. } = &action.kind
+        && unit.rules.final_scan
+    {
+        problems.push(
+            Problem::new(
+                &codes::PULSE_TWICE,
+                action.at,
+                "under `P` this body runs twice: in the pulse and in the final scan",
+            )
+            .help("write `P1`, which runs once, or set `no-final-scan`"),
+        );
+    }
+}
+
+fn macro_acts(step: &Step, action: &Action, problems: &mut Vec<Problem>) {
+    if matches!(step.sort, StepSort::Macro(_)) {
         let what = format!("macro-step `{}` has an action of its own", step.name);
         problems.push(Problem::new(&codes::MACRO_ACTS, action.at, what).help(
             "put it into the steps of the expansion; it runs here as long as the macro-step is active",
         ));
     }
-    match &action.kind {
-        ActionKind::OnEvent { event, .. } if grafcet && !has_edge(event) => {
-            problems.push(
-                Problem::new(
-                    &codes::EVENT_WITHOUT_EDGE,
-                    event.at,
-                    "the event of a stored action needs an edge",
-                )
-                .help("write `↑` or `↓` before what makes the event, for example `on ↑a: …`"),
-            );
-        }
-        ActionKind::Variable { qualifier, condition: Some(c), .. }
-            if grafcet && !stored(*qualifier) && has_edge(c) =>
-        {
-            problems.push(
-                Problem::new(
-                    &codes::EDGE_IN_CONDITION,
-                    c.at,
-                    "the condition of a continuous action has an edge",
-                )
-                .help("an edge lasts no time: use a stored action, `on ↑a: V := TRUE`"),
-            );
-        }
-        ActionKind::Named { qualifier: Qualifier::P, .. }
-        | ActionKind::Work { qualifier: Qualifier::P, .. }
-            if unit.rules.final_scan =>
-        {
-            problems.push(
-                Problem::new(
-                    &codes::PULSE_TWICE,
-                    action.at,
-                    "under `P` this body runs twice: in the pulse and in the final scan",
-                )
-                .help("write `P1`, which runs once, or set `no-final-scan`"),
-            );
-        }
-        _ => {}
-    }
 }
 
-fn stored(q: Qualifier) -> bool {
-    matches!(q, Qualifier::S | Qualifier::R | Qualifier::P0 | Qualifier::P1 | Qualifier::P)
-}
-
-/// One action with two times in one step.
-fn two_times(unit: &Unit, step: &Step, problems: &mut Vec<Problem>) {
-    let mut seen: HashMap<(u8, u32), Span> = HashMap::new();
-    for action in &step.actions {
-        let (qualifier, target) = match &action.kind {
-            ActionKind::Variable { qualifier, var, .. } => (qualifier, (0u8, var.0)),
-            ActionKind::Named { qualifier, body, .. } => (qualifier, (1, body.0)),
-            _ => continue,
-        };
-        if !qualifier.timed() {
-            continue;
-        }
-        if let Some(first) = seen.insert(target, action.at) {
-            let name = match target {
-                (0, v) => unit.vars.get(v as usize).map(|v| &*v.name),
-                (_, b) => unit.bodies.get(b as usize).map(|b| &*b.name),
-            };
-            let what = format!("`{}` has two timed qualifiers in one step", name.unwrap_or(""));
-            problems.push(Problem::new(&codes::TWO_TIMES, action.at, what).related(first, "and this one"));
-        }
-    }
-}
-
-/// Stored actions of one moment that give one variable two values.
-fn disagree(unit: &Unit, step: &Step, problems: &mut Vec<Problem>) {
-    let mut seen: HashMap<(Qualifier, VarId), (String, Span)> = HashMap::new();
-    for action in &step.actions {
-        let writes = match &action.kind {
-            ActionKind::Work {
-                qualifier: q @ (Qualifier::P0 | Qualifier::P1),
-                work,
-                condition: None,
-                ..
-            } => work
-                .iter()
-                .filter_map(|s| plain_write(s))
-                .map(|(v, e, at)| (*q, v, e, at))
-                .collect::<Vec<_>>(),
-            ActionKind::Variable {
-                qualifier: q @ (Qualifier::S | Qualifier::R),
-                var,
-                condition: None,
-                ..
-            } => {
-                let value = if *q == Qualifier::S { "Bool(true)" } else { "Bool(false)" };
-                vec![(Qualifier::P1, *var, value.to_owned(), action.at)]
-            }
-            _ => continue,
-        };
-        // Within one action the later statement is simply the later one.
-        for (q, v, value, at) in writes {
-            match seen.get(&(q, v)) {
-                Some((other, first)) if *other != value && !action.at_contains(*first) => {
-                    let name = unit.vars.get(v.index()).map_or("", |v| &*v.name);
-                    let what = format!("`{name}` gets two values at one moment");
-                    problems.push(
-                        Problem::new(&codes::TWO_VALUES, at, what)
-                            .related(*first, "another value here")
-                            .help("both are written when the step changes; keep one of them"),
-                    );
-                }
-                _ => {
-                    seen.insert((q, v), (value, at));
-                }
-            }
-        }
-    }
-}
-
-impl Action {
-    fn at_contains(&self, span: Span) -> bool {
-        self.at.start <= span.start && span.end <= self.at.end
-    }
-}
-
-/// A variable written by a plain assignment of a constant.
-fn plain_write(s: &Stmt) -> Option<(VarId, String, Span)> {
-    match &s.kind {
-        StmtKind::Assign(Target::Var(v), e) if matches!(e.kind, crate::ir::ExprKind::Const(_)) => {
-            Some((*v, key(e), s.at))
-        }
-        _ => None,
-    }
-}
-
-/// A variable that continuous actions drive and something else writes.
-fn classes(unit: &Unit, grafcet: bool, problems: &mut Vec<Problem>) {
-    let mut driven: HashMap<VarId, Span> = HashMap::new();
-    let mut written: HashMap<VarId, Span> = HashMap::new();
-    let mut blocked: Vec<VarId> = Vec::new();
-    let bodies = unit.pre.iter().chain(&unit.post).chain(&unit.bodies);
-    let mut stmts: Vec<&Stmt> = bodies.flat_map(|b| &b.statements).collect();
-    stmts.extend(unit.transitions.iter().flat_map(|t| &t.on_clearing));
-    let mut set_reset: Vec<(VarId, Span)> = Vec::new();
-    for action in unit.steps.iter().flat_map(|s| &s.actions) {
-        match &action.kind {
-            ActionKind::Variable { qualifier: Qualifier::S | Qualifier::R, var, .. }
-                if unit.rules.stored_set_reset =>
-            {
-                set_reset.push((*var, action.at));
-            }
-            ActionKind::Variable { qualifier, var, .. } => {
-                driven.entry(*var).or_insert(action.at);
-                if !matches!(qualifier, Qualifier::N | Qualifier::D | Qualifier::L) {
-                    blocked.push(*var);
-                }
-            }
-            ActionKind::Work { work, .. }
-            | ActionKind::OnEvent { work, .. }
-            | ActionKind::EachScan { work, .. } => {
-                stmts.extend(work);
-            }
-            _ => {}
-        }
-    }
-    // With a control block of its own, S and R of the variable are inputs of that.
-    for (var, at) in set_reset.into_iter().filter(|(v, _)| !blocked.contains(v)) {
-        written.entry(var).or_insert(at);
-    }
-    while let Some(s) = stmts.pop() {
-        match &s.kind {
-            StmtKind::Assign(Target::Var(v), _) => {
-                written.entry(*v).or_insert(s.at);
-            }
-            StmtKind::Fb { outputs, .. } => {
-                for (_, target) in outputs {
-                    if let Target::Var(v) = target {
-                        written.entry(*v).or_insert(s.at);
-                    }
-                }
-            }
-            StmtKind::If(arms, rest) => {
-                stmts.extend(arms.iter().flat_map(|(_, b)| b));
-                stmts.extend(rest);
-            }
-            StmtKind::Case(_, arms, rest) => {
-                stmts.extend(arms.iter().flat_map(|(_, b)| b));
-                stmts.extend(rest);
-            }
-            StmtKind::For { body, .. } | StmtKind::While(_, body) | StmtKind::Repeat(body, _) => {
-                stmts.extend(body)
-            }
-            _ => {}
-        }
-    }
-    let mut both: Vec<(VarId, Span, Span)> =
-        driven.iter().filter_map(|(v, at)| written.get(v).map(|w| (*v, *at, *w))).collect();
-    both.sort_by_key(|(v, ..)| *v);
-    for (v, at, other) in both {
-        let name = unit.vars.get(v.index()).map_or("", |v| &*v.name);
-        let (code, what) = if grafcet {
-            (
-                &codes::TWO_CLASSES,
-                format!("`{name}` is driven by a continuous action and written by a stored one"),
-            )
-        } else {
-            (
-                &codes::ALSO_WRITTEN,
-                format!("`{name}` follows an action and is written by a statement as well"),
-            )
-        };
+/// The event of a stored action has an edge, without which it is not true.
+fn event(facts: &Facts<'_>, action: &Action, problems: &mut Vec<Problem>) {
+    let ActionKind::OnEvent { event, .. } = &action.kind else { return };
+    if !has_edge(event) {
         problems.push(
-            Problem::new(code, other, what)
-                .related(at, "follows the activity of steps here")
-                .help("use one of the two ways for a variable, not both"),
+            Problem::new(&codes::EVENT_WITHOUT_EDGE, event.at, "the event of a stored action needs an edge")
+                .help("write `↑` or `↓` before what makes the event, for example `on ↑a: …`"),
+        );
+        return;
+    }
+    let mut question = Question::new(facts);
+    question.demand(event, true);
+    question.at_rest();
+    if question.possible() == Some(true) {
+        problems.push(
+            Problem::new(
+                &codes::EVENT_LASTS,
+                event.at,
+                "this event can be true without an edge: the action then runs in every evolution",
+            )
+            .help("put an edge into each of its alternatives, for example `↑a or ↑b`"),
         );
     }
+}
+
+/// The condition of a continuous action has no edge.
+fn condition(action: &Action, problems: &mut Vec<Problem>) {
+    let (ActionKind::Variable { qualifier, condition: Some(c), .. }
+    | ActionKind::Named { qualifier, condition: Some(c), .. }
+    | ActionKind::Work { qualifier, condition: Some(c), .. }) = &action.kind
+    else {
+        return;
+    };
+    let continuous = matches!(qualifier, Qualifier::N | Qualifier::D | Qualifier::L);
+    if continuous && has_edge(c) {
+        problems.push(
+            Problem::new(&codes::EDGE_IN_CONDITION, c.at, "the condition of a continuous action has an edge")
+                .help("an edge lasts no time: use a stored action, `on ↑a: V := TRUE`"),
+        );
+    }
+}
+
+/// What a timed qualifier governs.
+#[derive(Clone, Copy, PartialEq, Eq, Hash)]
+enum Governed {
+    Var(VarId),
+    Body(crate::ir::BodyId),
+}
+
+/// One control block has one time: two timed qualifiers of one action in one
+/// step, or in steps that one transition starts together.
+fn times(unit: &Unit, grafcet: bool, problems: &mut Vec<Problem>) {
+    let blocked = blocked(unit);
+    let mut told: HashSet<Span> = HashSet::new();
+    let single = (0..unit.steps.len() as u32).map(|s| vec![StepId(s)]);
+    let forked = unit.transitions.iter().filter(|t| t.to.len() > 1).map(|t| t.to.clone());
+    for mut steps in single.chain(forked) {
+        steps.sort_unstable();
+        steps.dedup();
+        let mut seen: HashMap<Governed, (Span, StepId, Qualifier, Option<&Expr>)> = HashMap::new();
+        for (step, action) in steps.iter().flat_map(|s| of_step(unit, *s)) {
+            let Some((governed, qualifier, time)) = timed(&blocked, grafcet, action) else { continue };
+            let Some(first) = seen.insert(governed, (action.at, step, qualifier, time)) else { continue };
+            // One block under one qualifier and time from two steps is one input.
+            let same = first.2 == qualifier && key_of(first.3) == key_of(time) && first.1 != step;
+            if same || !told.insert(action.at) {
+                continue;
+            }
+            let name = match governed {
+                Governed::Var(v) => unit.vars.get(v.index()).map_or("", |v| &*v.name),
+                Governed::Body(b) => unit.bodies.get(b.index()).map_or("", |b| &*b.name),
+            };
+            let place = if first.1 == step { "one step" } else { "steps that start together" };
+            let what = format!("`{name}` has two timed qualifiers in {place}");
+            problems.push(Problem::new(&codes::TWO_TIMES, action.at, what).related(first.0, "and this one"));
+        }
+    }
+}
+
+fn of_step(unit: &Unit, step: StepId) -> impl Iterator<Item = (StepId, &Action)> {
+    unit.steps.get(step.index()).into_iter().flat_map(|s| &s.actions).map(move |a| (step, a))
+}
+
+fn key_of(time: Option<&Expr>) -> Option<String> {
+    time.map(super::tree::key)
+}
+
+/// A timed qualifier that has a control block: `L` and `D` of a variable are
+/// continuous actions of their own in GRAFCET.
+fn timed<'a>(
+    blocked: &HashSet<VarId>,
+    grafcet: bool,
+    action: &'a Action,
+) -> Option<(Governed, Qualifier, Option<&'a Expr>)> {
+    let (qualifier, governed, time) = match &action.kind {
+        ActionKind::Variable { qualifier, var, time, .. } => (*qualifier, Governed::Var(*var), time),
+        ActionKind::Named { qualifier, body, time, .. } => (*qualifier, Governed::Body(*body), time),
+        _ => return None,
+    };
+    let alone = grafcet
+        && matches!(qualifier, Qualifier::L | Qualifier::D)
+        && matches!(governed, Governed::Var(v) if !blocked.contains(&v));
+    (qualifier.timed() && !alone).then_some((governed, qualifier, time.as_ref()))
+}
+
+/// Variables with a control block, of which all their qualifiers are inputs.
+pub(super) fn blocked(unit: &Unit) -> HashSet<VarId> {
+    use Qualifier::{D, L, N, R, S};
+    let actions = unit.steps.iter().flat_map(|s| &s.actions);
+    actions
+        .filter_map(|a| match &a.kind {
+            ActionKind::Variable { qualifier, var, .. } if !matches!(qualifier, N | D | L | S | R) => {
+                Some(*var)
+            }
+            _ => None,
+        })
+        .collect()
 }

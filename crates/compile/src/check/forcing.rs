@@ -1,26 +1,25 @@
-//! Forcing orders and enclosures: who rules whom; and loops that never rest.
+//! Forcing orders and enclosures: who rules whom.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use g7_model::{Problem, codes};
 
-use super::structure::transitions_of;
-use crate::ir::{ActionKind, ChartId, ChartRole, ExprKind, StepId, StepSort, Unit, Value};
+use super::facts::Facts;
+use crate::ir::{ActionKind, ChartId, ChartRole, Situation, StepId, Unit};
 
-pub(super) fn check(unit: &Unit, problems: &mut Vec<Problem>) {
-    let orders = orders(unit);
-    circles(unit, &orders, problems);
-    both(unit, &orders, problems);
-    if unit.rules.stable {
-        restless(unit, problems);
-    }
+pub(super) fn check(facts: &Facts<'_>, problems: &mut Vec<Problem>) {
+    let orders = orders(facts.unit);
+    circles(facts.unit, &orders, problems);
+    both(facts, &orders, problems);
+    disagree(facts.unit, &orders, problems);
 }
 
 /// A forcing order: the chart that gives it, the chart forced, the step and the place.
-struct Order {
+struct Order<'u> {
     by: ChartId,
     on: ChartId,
     step: StepId,
+    situation: (ChartId, &'u Situation),
     at: g7_model::Span,
 }
 
@@ -39,13 +38,18 @@ fn outermost(unit: &Unit, mut chart: ChartId) -> ChartId {
     chart
 }
 
-fn orders(unit: &Unit) -> Vec<Order> {
+fn orders(unit: &Unit) -> Vec<Order<'_>> {
     let mut list = Vec::new();
     for (i, step) in unit.steps.iter().enumerate() {
         for action in &step.actions {
-            if let ActionKind::Force(on, _) = &action.kind {
-                let by = outermost(unit, step.chart);
-                list.push(Order { by, on: outermost(unit, *on), step: StepId(i as u32), at: action.at });
+            if let ActionKind::Force(on, situation) = &action.kind {
+                list.push(Order {
+                    by: outermost(unit, step.chart),
+                    on: outermost(unit, *on),
+                    step: StepId(i as u32),
+                    situation: (*on, situation),
+                    at: action.at,
+                });
             }
         }
     }
@@ -53,15 +57,23 @@ fn orders(unit: &Unit) -> Vec<Order> {
 }
 
 /// A chart that forces itself, directly or through others.
-fn circles(unit: &Unit, orders: &[Order], problems: &mut Vec<Problem>) {
+fn circles(unit: &Unit, orders: &[Order<'_>], problems: &mut Vec<Problem>) {
+    let mut forces: BTreeMap<ChartId, BTreeSet<ChartId>> = BTreeMap::new();
     for order in orders {
-        let mut seen = BTreeSet::new();
-        let mut pending = vec![order.on];
-        while let Some(chart) = pending.pop() {
-            if seen.insert(chart) {
-                pending.extend(orders.iter().filter(|o| o.by == chart).map(|o| o.on));
+        forces.entry(order.by).or_default().insert(order.on);
+    }
+    let mut within: BTreeMap<ChartId, BTreeSet<ChartId>> = BTreeMap::new();
+    for order in orders {
+        let seen = within.entry(order.on).or_insert_with(|| {
+            let mut seen = BTreeSet::new();
+            let mut pending = vec![order.on];
+            while let Some(chart) = pending.pop() {
+                if seen.insert(chart) {
+                    pending.extend(forces.get(&chart).into_iter().flatten());
+                }
             }
-        }
+            seen
+        });
         if seen.contains(&order.by) {
             let name = |c: ChartId| unit.charts.get(c.index()).map_or("", |c| &*c.name);
             let what = if order.by == order.on {
@@ -78,107 +90,63 @@ fn circles(unit: &Unit, orders: &[Order], problems: &mut Vec<Problem>) {
 }
 
 /// A chart that is both forced and enclosed.
-fn both(unit: &Unit, orders: &[Order], problems: &mut Vec<Problem>) {
+fn both(facts: &Facts<'_>, orders: &[Order<'_>], problems: &mut Vec<Problem>) {
+    let unit = facts.unit;
     for order in orders {
         let Some(chart) = unit.charts.get(order.on.index()) else { continue };
-        if let Some(encloser) = chart.enclosed_by.filter(|e| together(unit, *e, order.step)) {
-            let at = unit.steps.get(encloser.index()).map_or(chart.at, |s| s.at);
-            let what = format!("chart `{}` is forced and enclosed at once", chart.name);
-            problems.push(
-                Problem::new(&codes::FORCED_AND_ENCLOSED, order.at, what)
-                    .related(at, "this step encloses it")
-                    .help("force it from steps that are never active with the enclosing step, or use one of the two"),
-            );
-        }
+        let together = chart.enclosed_by.filter(|e| !facts.exclude(*e, order.step));
+        let Some(encloser) = together else { continue };
+        let at = unit.steps.get(encloser.index()).map_or(chart.at, |s| s.at);
+        let what = format!("chart `{}` is forced and enclosed at once", chart.name);
+        problems.push(
+            Problem::new(&codes::FORCED_AND_ENCLOSED, order.at, what)
+                .related(at, "this step encloses it")
+                .help("force it from steps that are never active with the enclosing step, or use one of the two"),
+        );
     }
 }
 
-/// Whether two steps may be active together, as far as a look at one chart tells:
-/// in one chart without AND divergence and with one initial step they may not.
-fn together(unit: &Unit, a: StepId, b: StepId) -> bool {
-    let (Some(x), Some(y)) = (unit.steps.get(a.index()), unit.steps.get(b.index())) else { return false };
-    if a == b || x.chart != y.chart {
-        return true;
+/// Two orders that act at one moment, by one step or by steps that one
+/// transition starts together, and want two situations of one chart.
+fn disagree(unit: &Unit, orders: &[Order<'_>], problems: &mut Vec<Problem>) {
+    let mut by_step: BTreeMap<StepId, Vec<usize>> = BTreeMap::new();
+    for (i, order) in orders.iter().enumerate() {
+        by_step.entry(order.step).or_default().push(i);
     }
-    let Some(chart) = unit.charts.get(x.chart.index()) else { return true };
-    let one_token = transitions_of(unit, chart).iter().all(|t| t.from.len() == 1 && t.to.len() <= 1);
-    let starts = super::structure::steps_of(unit, chart).iter().filter(|s| s.initial || s.linked).count();
-    !(one_token && starts <= 1 && !unit.rules.multi_token)
-        && !(one_token && starts <= 1 && single_exits(unit, chart))
-}
-
-/// No step of the chart has two ways out, so even multi-token keeps one token.
-fn single_exits(unit: &Unit, chart: &crate::ir::Chart) -> bool {
-    let mut seen = BTreeSet::new();
-    transitions_of(unit, chart).iter().flat_map(|t| &t.from).all(|f| seen.insert(*f))
-}
-
-/// Loops in which every receptivity is always true: once reached they never rest.
-fn restless(unit: &Unit, problems: &mut Vec<Problem>) {
-    let always = |t: &crate::ir::Transition| {
-        matches!(t.receptivity.kind, ExprKind::Const(Value::Bool(true)))
-            && t.from.len() == 1
-            && t.to.len() == 1
+    let of = |steps: &[StepId]| {
+        let all: BTreeSet<usize> = steps.iter().filter_map(|s| by_step.get(s)).flatten().copied().collect();
+        all.into_iter().filter_map(|i| orders.get(i)).collect::<Vec<_>>()
     };
-    let plain = |s: StepId| unit.steps.get(s.index()).is_some_and(|s| matches!(s.sort, StepSort::Plain));
-    let mut next: Vec<Option<usize>> = vec![None; unit.steps.len()];
-    for (i, t) in unit.transitions.iter().enumerate().filter(|(_, t)| always(t)) {
-        if let (Some(from), Some(to)) = (t.from.first(), t.to.first())
-            && plain(*from)
-            && plain(*to)
-            && from != to
-            && let Some(n) = next.get_mut(from.index())
-        {
-            n.get_or_insert(i);
-        }
-    }
-    // Each step leads to at most one other: walk, and colour what was seen.
-    let mut colour = vec![0usize; unit.steps.len()];
-    for start in 0..unit.steps.len() {
-        let mut at = start;
-        while colour.get(at) == Some(&0) {
-            if let Some(c) = colour.get_mut(at) {
-                *c = start + 1;
-            }
-            match next
-                .get(at)
-                .copied()
-                .flatten()
-                .and_then(|t| unit.transitions.get(t))
-                .and_then(|t| t.to.first())
-            {
-                Some(to) => at = to.index(),
-                None => break,
-            }
-            if colour.get(at) == Some(&(start + 1)) {
-                tell(unit, &next, at, problems);
+    let mut told = BTreeSet::new();
+    let single = by_step.keys().map(|s| of(&[*s]));
+    let forked = unit.transitions.iter().filter(|t| t.to.len() > 1).map(|t| of(&t.to));
+    for group in single.chain(forked).filter(|g| g.len() > 1) {
+        let mut first: BTreeMap<ChartId, &Order<'_>> = BTreeMap::new();
+        for order in group {
+            let before = *first.entry(order.situation.0).or_insert(order);
+            if wanted(unit, before) != wanted(unit, order) && told.insert(order.at) {
+                let name = unit.charts.get(order.on.index()).map_or("", |c| &*c.name);
+                let what = format!("chart `{name}` is forced into two situations at one moment");
+                problems.push(
+                    Problem::new(&codes::ORDERS_DISAGREE, order.at, what)
+                        .related(before.at, "another situation is ordered here")
+                        .help("a run stops with a fault there; keep one of the two orders"),
+                );
             }
         }
     }
 }
 
-fn tell(unit: &Unit, next: &[Option<usize>], start: usize, problems: &mut Vec<Problem>) {
-    let mut names = Vec::new();
-    let mut at = start;
-    let mut place = None;
-    loop {
-        let (Some(step), Some(t)) =
-            (unit.steps.get(at), next.get(at).copied().flatten().and_then(|t| unit.transitions.get(t)))
-        else {
-            return;
-        };
-        names.push(format!("`{}`", step.name));
-        place.get_or_insert(t.at);
-        at = t.to.first().map_or(start, |s| s.index());
-        if at == start {
-            break;
+/// The situation ordered; none for `{*}`, which only holds what is there.
+fn wanted(unit: &Unit, order: &Order<'_>) -> Option<BTreeSet<StepId>> {
+    let (chart, situation) = order.situation;
+    match situation {
+        Situation::Current => None,
+        Situation::Steps(list) => Some(list.iter().copied().collect()),
+        Situation::Init => {
+            let range = unit.charts.get(chart.index()).map_or(0..0, |c| c.steps.clone());
+            let initial = |s: &StepId| unit.steps.get(s.index()).is_some_and(|s| s.initial);
+            Some(range.map(StepId).filter(initial).collect())
         }
     }
-    let Some(place) = place else { return };
-    let what =
-        format!("the loop {} never rests: each of its receptivities is always true", names.join(" → "));
-    problems.push(
-        Problem::new(&codes::RESTLESS_LOOP, place, what)
-            .help("give at least one of its transitions a receptivity that can be false"),
-    );
 }

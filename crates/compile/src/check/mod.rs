@@ -13,31 +13,40 @@
 
 mod actions;
 mod exclusion;
+mod facts;
 mod forcing;
+mod loops;
+mod named;
+mod pages;
+mod reach;
+mod solve;
 mod structure;
 mod target;
 mod tree;
+mod unused;
+mod writes;
 
-use g7_model::{Problem, TargetPlc};
+use g7_model::{Document, Problem};
 
 use crate::ir::Unit;
+use facts::Facts;
 
 /// All checks of the chart itself, and of its target if it names one.
-pub fn check(unit: &Unit) -> Vec<Problem> {
+pub fn check(doc: &Document, unit: &Unit) -> Vec<Problem> {
+    let facts = Facts::of(unit);
     let mut problems = Vec::new();
     structure::check(unit, &mut problems);
-    exclusion::check(unit, &mut problems);
-    actions::check(unit, &mut problems);
-    forcing::check(unit, &mut problems);
-    if let Some(plc) = unit.target {
-        target::check(unit, plc, &mut problems);
+    reach::check(&facts, &mut problems);
+    exclusion::check(&facts, &mut problems);
+    actions::check(&facts, &mut problems);
+    writes::check(unit, &mut problems);
+    forcing::check(&facts, &mut problems);
+    if unit.rules.stable {
+        loops::check(&facts, &mut problems);
     }
-    problems
-}
-
-/// The limits of a PLC that the document does not name (`g7 check --target`).
-pub fn check_target(unit: &Unit, plc: TargetPlc) -> Vec<Problem> {
-    let mut problems = Vec::new();
-    target::check(unit, plc, &mut problems);
+    if let Some(plc) = unit.target {
+        target::check(doc, unit, plc, &mut problems);
+    }
+    unused::check(doc, &mut problems);
     problems
 }

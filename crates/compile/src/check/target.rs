@@ -1,20 +1,23 @@
 //! The limits of a PLC (GRAFCET course, implementation in the TSX 37 and 57).
+//!
+//! The number of active steps and of valid transitions at one time shows in the
+//! run: there the table overflows (`%S25`).
 
 use std::collections::BTreeMap;
 
-use g7_model::{Problem, Span, TargetPlc, codes};
+use g7_model::{Document, Problem, Qualifier, Span, TargetPlc, codes};
 
+use super::pages;
 use crate::ir::{ActionKind, Chart, ChartRole, StepId, StepSort, Unit};
 
-/// Most transitions of a chart, on every PLC.
+/// Most transitions, on every PLC.
 const TRANSITIONS: usize = 1024;
 /// Most branches of a divergence or convergence.
 const BRANCHES: usize = 11;
-/// Pages, rows of steps on a page (even rows of 14), columns.
-const CELLS: usize = 8 * 6 * 11;
 
-struct Limits {
-    name: &'static str,
+/// What a PLC has room for.
+pub(super) struct Limits {
+    pub(super) name: &'static str,
     steps: usize,
     macros: usize,
     macro_steps: usize,
@@ -29,42 +32,46 @@ fn limits(plc: TargetPlc) -> Limits {
     }
 }
 
-pub(super) fn check(unit: &Unit, plc: TargetPlc, problems: &mut Vec<Problem>) {
+pub(super) fn check(doc: &Document, unit: &Unit, plc: TargetPlc, problems: &mut Vec<Problem>) {
     let most = limits(plc);
-    let place = unit.charts.first().map_or_else(Span::default, |c| c.at);
-    let mut main = 0;
-    let mut macros = Vec::new();
-    for step in &unit.steps {
-        let Some(chart) = unit.charts.get(step.chart.index()) else { continue };
-        if matches!(step.sort, StepSort::Macro(_)) {
-            macros.push(step.at);
-        }
-        if matches!(chart.role, ChartRole::Chart | ChartRole::Task) {
-            main += 1;
-        }
-    }
-    let mut over = |code, n: usize, limit: usize, what: &str, at: Span| {
-        if n > limit {
-            let text = format!("{n} {what}; a {} has room for {limit}", most.name);
-            problems.push(Problem::new(code, at, text));
-        }
-    };
-    over(&codes::TARGET_STEPS, main, most.steps.min(CELLS), "steps", place);
-    over(&codes::TARGET_STEPS, unit.steps.len(), most.total, "steps with those of macro-steps", place);
-    over(
-        &codes::TARGET_MACROS,
-        macros.len(),
-        most.macros,
-        "macro-steps",
-        macros.first().copied().unwrap_or(place),
-    );
-    over(&codes::TARGET_TRANSITIONS, unit.transitions.len(), TRANSITIONS, "transitions", place);
-    for chart in unit.charts.iter().filter(|c| matches!(c.role, ChartRole::Expansion(_))) {
-        let n = (chart.steps.end - chart.steps.start) as usize;
-        over(&codes::TARGET_STEPS, n, most.macro_steps, "steps of a macro-step", chart.at);
-    }
+    sizes(unit, &most, problems);
     branches(unit, problems);
     words(unit, &most, problems);
+    numbers(unit, &most, problems);
+    pages::check(doc, &most, problems);
+}
+
+/// How many there are of each. A problem stands at the first that is too many.
+fn sizes(unit: &Unit, most: &Limits, problems: &mut Vec<Problem>) {
+    let (mut main, mut inner, mut macros) = (Vec::new(), Vec::new(), Vec::new());
+    for step in &unit.steps {
+        match (&step.sort, unit.charts.get(step.chart.index()).map(|c| &c.role)) {
+            (_, None | Some(ChartRole::Unused)) => {}
+            (StepSort::Macro(_), _) => macros.push(step.at),
+            (_, Some(ChartRole::Expansion(_))) => inner.push(step.at),
+            (_, Some(ChartRole::Chart | ChartRole::Task)) => main.push(step.at),
+        }
+    }
+    let mut over = |code, places: &[Span], limit: usize, what: &str| {
+        if let Some(first) = places.get(limit) {
+            let text = format!("{} {what}; a {} has room for {limit}", places.len(), most.name);
+            problems.push(Problem::new(code, *first, text));
+        }
+    };
+    over(&codes::TARGET_STEPS, &main, most.steps, "steps");
+    over(&codes::TARGET_MACROS, &macros, most.macros, "macro-steps");
+    if most.macros > 0 {
+        let all: Vec<Span> = main.iter().chain(&inner).copied().collect();
+        over(&codes::TARGET_STEPS, &all, most.total, "steps with those of macro-steps");
+        for chart in unit.charts.iter().filter(|c| matches!(c.role, ChartRole::Expansion(_))) {
+            let steps = super::structure::steps_of(unit, chart).iter();
+            let own: Vec<Span> =
+                steps.filter(|s| !matches!(s.sort, StepSort::Macro(_))).map(|s| s.at).collect();
+            over(&codes::TARGET_STEPS, &own, most.macro_steps, "steps of one macro-step");
+        }
+    }
+    let transitions: Vec<Span> = unit.transitions.iter().map(|t| t.at).collect();
+    over(&codes::TARGET_TRANSITIONS, &transitions, TRANSITIONS, "transitions");
 }
 
 /// Divergences and convergences that are too wide.
@@ -92,46 +99,98 @@ fn branches(unit: &Unit, problems: &mut Vec<Problem>) {
     }
 }
 
-/// What PL7 has no word for, and how it numbers steps.
+/// What PL7 has no word for: its actions are those on activation, on
+/// deactivation and continuous ones.
 fn words(unit: &Unit, most: &Limits, problems: &mut Vec<Problem>) {
     let mut cannot = |what: &str, at: Span| {
-        let text = format!("{} has no {what}", most.name);
+        let text = format!("a {} has no {what}", most.name);
         problems.push(Problem::new(&codes::TARGET_WORDS, at, text));
     };
     for step in &unit.steps {
         if matches!(step.sort, StepSort::Enclosing(_)) {
             cannot("enclosing steps", step.at);
         }
-        if !step.calls.is_empty() {
-            cannot("tasks", step.at);
+        for (_, at) in &step.calls {
+            cannot("tasks", *at);
         }
         for action in &step.actions {
-            if let ActionKind::Variable { qualifier, .. } | ActionKind::Named { qualifier, .. } = &action.kind
-                && qualifier.timed()
-            {
-                cannot("timed qualifiers", action.at);
+            match &action.kind {
+                ActionKind::Variable { qualifier, .. }
+                | ActionKind::Named { qualifier, .. }
+                | ActionKind::Work { qualifier, .. } => {
+                    if qualifier.timed() || *qualifier == Qualifier::P {
+                        cannot(&format!("qualifier `{}`", qualifier.name()), action.at);
+                    }
+                }
+                ActionKind::OnEvent { .. } => cannot("actions on an event", action.at),
+                ActionKind::Force(..) => cannot("forcing orders", action.at),
+                ActionKind::Enable(_) | ActionKind::MaskChart(_) | ActionKind::MaskVar(_) => {
+                    cannot("orders to enable or mask", action.at);
+                }
+                ActionKind::EachScan { .. } => {}
             }
         }
     }
-    for chart in unit.charts.iter().filter(|c| c.role == ChartRole::Chart) {
-        numbers(unit, chart, most, problems);
+    for t in &unit.transitions {
+        if let (Some(first), Some(last)) = (t.on_clearing.first(), t.on_clearing.last()) {
+            cannot("actions on clearing", first.at.to(last.at));
+        }
+        if t.from.is_empty() || t.to.is_empty() {
+            cannot("source and sink transitions", t.at);
+        }
     }
 }
 
-fn numbers(unit: &Unit, chart: &Chart, most: &Limits, problems: &mut Vec<Problem>) {
-    for step in super::structure::steps_of(unit, chart) {
-        if matches!(step.sort, StepSort::Macro(_)) {
-            continue;
+/// Steps are numbers, each there once in the main charts and once in each
+/// expansion, where the ends are IN and OUT; macro-steps are `M0` and so on.
+fn numbers(unit: &Unit, most: &Limits, problems: &mut Vec<Problem>) {
+    let mut main: BTreeMap<usize, Span> = BTreeMap::new();
+    for chart in &unit.charts {
+        match chart.role {
+            ChartRole::Chart => numbers_of(unit, chart, most.steps, most, &mut main, problems),
+            ChartRole::Expansion(_) => {
+                numbers_of(unit, chart, most.macro_steps, most, &mut BTreeMap::new(), problems);
+            }
+            ChartRole::Task | ChartRole::Unused => {}
         }
-        let number = step.name.parse::<usize>().ok();
-        if number.is_none_or(|n| n >= most.steps) {
-            let text = format!(
-                "step `{}` has no number from 0 to {}, as a {} wants",
-                step.name,
-                most.steps - 1,
-                most.name
-            );
-            problems.push(Problem::new(&codes::TARGET_WORDS, step.at, text));
+    }
+}
+
+fn numbers_of(
+    unit: &Unit,
+    chart: &Chart,
+    limit: usize,
+    most: &Limits,
+    taken: &mut BTreeMap<usize, Span>,
+    problems: &mut Vec<Problem>,
+) {
+    for (id, step) in (chart.steps.start..).map(StepId).zip(super::structure::steps_of(unit, chart)) {
+        let an_end =
+            matches!(chart.role, ChartRole::Expansion(_)) && [chart.entry, chart.exit].contains(&Some(id));
+        let is_macro = matches!(step.sort, StepSort::Macro(_));
+        let digits = if is_macro { step.name.strip_prefix('M').unwrap_or("") } else { &step.name };
+        let number = digits.parse::<usize>().ok().filter(|n| *n < if is_macro { most.macros } else { limit });
+        match number {
+            _ if an_end || is_macro && most.macros == 0 || limit == 0 => {}
+            Some(_) if is_macro => {}
+            Some(n) => {
+                if let Some(first) = taken.insert(n, step.at) {
+                    let text =
+                        format!("two steps have the number {n}: in PL7 all charts share one numbering");
+                    problems.push(
+                        Problem::new(&codes::TARGET_WORDS, step.at, text).related(first, "the other one"),
+                    );
+                }
+            }
+            None => {
+                let text = if is_macro {
+                    format!("macro-step `{}` is none of M0 to M{}", step.name, most.macros - 1)
+                } else {
+                    let last = limit - 1;
+                    format!("step `{}` has no number from 0 to {last}, as a {} wants", step.name, most.name)
+                };
+                problems.push(Problem::new(&codes::TARGET_WORDS, step.at, text));
+            }
         }
     }
 }

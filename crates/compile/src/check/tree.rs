@@ -1,8 +1,68 @@
-//! Looking into expressions.
+//! Looking into expressions and statements.
 
 use std::fmt::Write;
 
-use crate::ir::{Expr, ExprKind};
+use crate::ir::{ActionKind, Expr, ExprKind, Stmt, StmtKind, Target, Unit, VarId};
+
+/// Every statement that runs, those inside others too; in no special order.
+pub(super) fn statements(unit: &Unit) -> Vec<&Stmt> {
+    let bodies = unit.pre.iter().chain(&unit.post).chain(&unit.bodies);
+    let mut list: Vec<&Stmt> = bodies.flat_map(|b| &b.statements).collect();
+    list.extend(unit.sections.iter().flat_map(|s| &s.statements));
+    list.extend(unit.transitions.iter().flat_map(|t| &t.on_clearing));
+    for action in unit.steps.iter().flat_map(|s| &s.actions) {
+        if let ActionKind::Work { work, .. }
+        | ActionKind::OnEvent { work, .. }
+        | ActionKind::EachScan { work, .. } = &action.kind
+        {
+            list.extend(work);
+        }
+    }
+    within(list)
+}
+
+/// These statements and all inside them.
+pub(super) fn within<'u>(list: impl IntoIterator<Item = &'u Stmt>) -> Vec<&'u Stmt> {
+    let mut pending: Vec<&Stmt> = list.into_iter().collect();
+    let mut all = Vec::new();
+    while let Some(s) = pending.pop() {
+        all.push(s);
+        match &s.kind {
+            StmtKind::If(arms, rest) => {
+                pending.extend(arms.iter().flat_map(|(_, b)| b));
+                pending.extend(rest);
+            }
+            StmtKind::Case(_, arms, rest) => {
+                pending.extend(arms.iter().flat_map(|(_, b)| b));
+                pending.extend(rest);
+            }
+            StmtKind::For { body, .. } | StmtKind::While(_, body) | StmtKind::Repeat(body, _) => {
+                pending.extend(body);
+            }
+            StmtKind::Assign(..)
+            | StmtKind::Fb { .. }
+            | StmtKind::Exit
+            | StmtKind::Return
+            | StmtKind::Service(_) => {}
+        }
+    }
+    all
+}
+
+/// The variables that a statement itself writes; of a function block, the instance.
+pub(super) fn written(s: &Stmt) -> Vec<VarId> {
+    let variable = |t: &Target| match t {
+        Target::Var(v) | Target::Element(v, _) | Target::Member(v, _) => *v,
+    };
+    match &s.kind {
+        StmtKind::Assign(target, _) => vec![variable(target)],
+        StmtKind::Fb { var, outputs, .. } => {
+            std::iter::once(*var).chain(outputs.iter().map(|(_, t)| variable(t))).collect()
+        }
+        StmtKind::For { var, .. } => vec![*var],
+        _ => Vec::new(),
+    }
+}
 
 /// The operands of an expression.
 pub(super) fn operands(e: &Expr) -> Vec<&Expr> {

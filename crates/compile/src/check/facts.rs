@@ -1,0 +1,249 @@
+//! What is known of a unit before any of its expressions is judged: the charts
+//! in which at most one step is active at a time, and the values that nothing
+//! changes between the moment edges are taken and the moment transitions are judged.
+
+use g7_model::Type;
+
+use super::solve::Question;
+use super::tree::{operands, statements, within, written};
+use crate::ir::{
+    ActionKind, Chart, ChartId, ChartRole, Expr, ExprKind, Service, Situation, StepId, StepSort, StmtKind,
+    Transition, Unit, VarClass,
+};
+
+/// Most rounds in which charts lose their single token; then all with a choice do.
+const ROUNDS: usize = 8;
+/// Most pairs of branches judged of one document.
+const PAIRS: usize = 20_000;
+
+pub(super) struct Facts<'u> {
+    pub(super) unit: &'u Unit,
+    /// By chart: never two of its steps are active at once.
+    single: Vec<bool>,
+    /// By variable: the preliminary processing writes it.
+    moved: Vec<bool>,
+    /// Services or system bits can change the situation before the evolution.
+    serviced: bool,
+    /// Branches behind each step, by transition.
+    branches: Vec<Vec<u32>>,
+}
+
+impl<'u> Facts<'u> {
+    pub(super) fn of(unit: &'u Unit) -> Facts<'u> {
+        let mut branches = vec![Vec::new(); unit.steps.len()];
+        for (i, t) in unit.transitions.iter().enumerate() {
+            for from in &t.from {
+                // A step that stands twice on one side counts once.
+                if let Some(list) = branches.get_mut(from.index())
+                    && list.last() != Some(&(i as u32))
+                {
+                    list.push(i as u32);
+                }
+            }
+        }
+        let mut moved = vec![false; unit.vars.len()];
+        for v in within(unit.pre.iter().flat_map(|b| &b.statements)).into_iter().flat_map(written) {
+            if let Some(m) = moved.get_mut(v.index()) {
+                *m = true;
+            }
+        }
+        let mut facts = Facts { unit, single: Vec::new(), moved, serviced: serviced(unit), branches };
+        facts.single = facts.shapes();
+        facts.settle();
+        facts
+    }
+
+    /// The transitions behind a step, in text order.
+    pub(super) fn branches(&self, step: StepId) -> &[u32] {
+        self.branches.get(step.index()).map_or(&[], Vec::as_slice)
+    }
+
+    /// The chart of a step, where only one of the chart's steps is active at a time.
+    pub(super) fn group(&self, step: StepId) -> Option<ChartId> {
+        let s = self.unit.steps.get(step.index())?;
+        self.single.get(s.chart.index()).copied().unwrap_or(false).then_some(s.chart)
+    }
+
+    /// Whether two steps are never active at the same time.
+    pub(super) fn exclude(&self, a: StepId, b: StepId) -> bool {
+        let (way, other) = (self.way(a), self.way(b));
+        way.iter().any(|(chart, step)| {
+            self.single.get(chart.index()) == Some(&true)
+                && other.iter().any(|(c, s)| c == chart && s != step)
+        })
+    }
+
+    /// A step and the macro-steps in which it lies, each with its chart.
+    fn way(&self, step: StepId) -> Vec<(ChartId, StepId)> {
+        let mut way = Vec::new();
+        let mut at = Some(step);
+        // Charts nest without circles; the bound is a seat belt.
+        while let Some(s) = at.filter(|_| way.len() <= self.unit.charts.len())
+            && let Some(row) = self.unit.steps.get(s.index())
+        {
+            way.push((row.chart, s));
+            at = match self.unit.charts.get(row.chart.index()).map(|c| &c.role) {
+                Some(ChartRole::Expansion(m)) => Some(*m),
+                _ => None,
+            };
+        }
+        way
+    }
+
+    /// Whether an expression has one value from the moment that edges are taken
+    /// to the moment that receptivities are judged.
+    pub(super) fn steady(&self, e: &Expr) -> bool {
+        let mut pending = vec![e];
+        while let Some(e) = pending.pop() {
+            let fine = match &e.kind {
+                ExprKind::Var(v) | ExprKind::Element(v, _) | ExprKind::Member(v, _) => {
+                    !self.moved.get(v.index()).copied().unwrap_or(true)
+                }
+                ExprKind::StepActive(_)
+                | ExprKind::StepTime(_)
+                | ExprKind::StepTenths(_)
+                | ExprKind::StepScans(_)
+                | ExprKind::StepSeconds(_) => !self.serviced,
+                ExprKind::Section(_) | ExprKind::Call(..) | ExprKind::ScanTime | ExprKind::Random => false,
+                _ => true,
+            };
+            if !fine {
+                return false;
+            }
+            pending.extend(operands(e));
+        }
+        true
+    }
+
+    /// Whether two transitions that share a step can clear together, as far as
+    /// can be told; `None` where it cannot.
+    pub(super) fn meet(&self, a: &Transition, b: &Transition) -> Option<bool> {
+        if self.unit.rules.numbered_exclusive && a.priority != b.priority {
+            return Some(false);
+        }
+        let mut active = a.from.clone();
+        active.extend(&b.from);
+        let mut question = Question::new(self);
+        question.demand(&a.receptivity, true);
+        question.demand(&b.receptivity, true);
+        question.with_active(&active);
+        question.possible()
+    }
+
+    /// Charts whose transitions each take one step and give at most one, and
+    /// that nothing else puts a second step into.
+    fn shapes(&self) -> Vec<bool> {
+        let mut single: Vec<bool> = self.unit.charts.iter().map(|c| self.shape(c)).collect();
+        let mut lose = |c: ChartId| {
+            if let Some(s) = single.get_mut(c.index()) {
+                *s = false;
+            }
+        };
+        for action in self.unit.steps.iter().flat_map(|s| &s.actions) {
+            if let ActionKind::Force(chart, situation) = &action.kind {
+                let many = matches!(situation, Situation::Steps(list) if list.len() > 1);
+                let nested = self
+                    .unit
+                    .charts
+                    .get(chart.index())
+                    .is_none_or(|c| c.enclosed_by.is_some() || c.role != ChartRole::Chart);
+                if many || nested {
+                    lose(*chart);
+                }
+            }
+        }
+        for s in statements(self.unit) {
+            if let StmtKind::Service(Service::SetStep(step)) = &s.kind
+                && let Some(step) = self.unit.steps.get(step.index())
+            {
+                lose(step.chart);
+            }
+        }
+        single
+    }
+
+    fn shape(&self, chart: &Chart) -> bool {
+        let transitions = super::structure::transitions_of(self.unit, chart);
+        let steps = super::structure::steps_of(self.unit, chart);
+        let starts = steps.iter().filter(|s| s.initial || s.linked).count();
+        let room = match chart.role {
+            ChartRole::Chart => 1,
+            // The entry step is where the token comes in.
+            ChartRole::Task | ChartRole::Expansion(_) => 0,
+            ChartRole::Unused => return false,
+        };
+        // What leaves an exit step goes on outside of the chart as well.
+        let ends = chart.role == ChartRole::Chart
+            || chart.exit.is_some_and(|x| self.branches(x).is_empty()) && chart.entry.is_some();
+        starts <= room && ends && transitions.iter().all(|t| t.from.len() == 1 && t.to.len() <= 1)
+    }
+
+    /// Takes out the charts in which a choice can double the token, until what is
+    /// left is single on the strength of itself.
+    fn settle(&mut self) {
+        for round in 0.. {
+            let mut budget = PAIRS;
+            let lost: Vec<usize> = (0..self.single.len())
+                .filter(|c| self.single.get(*c) == Some(&true))
+                .filter(|c| round >= ROUNDS && self.chooses(*c) || !self.stays_single(*c, &mut budget))
+                .collect();
+            if lost.is_empty() {
+                return;
+            }
+            for c in lost {
+                if let Some(s) = self.single.get_mut(c) {
+                    *s = false;
+                }
+            }
+        }
+    }
+
+    /// Whether some step of a chart has several ways out.
+    fn chooses(&self, chart: usize) -> bool {
+        let Some(chart) = self.unit.charts.get(chart) else { return false };
+        (chart.steps.start..chart.steps.end).any(|s| self.branches(StepId(s)).len() > 1)
+    }
+
+    fn stays_single(&self, chart: usize, budget: &mut usize) -> bool {
+        let Some(chart) = self.unit.charts.get(chart) else { return false };
+        for step in (chart.steps.start..chart.steps.end).map(StepId) {
+            let sort = self.unit.steps.get(step.index()).map(|s| &s.sort);
+            if let Some(StepSort::Macro(inner)) = sort
+                && self.single.get(inner.index()) != Some(&true)
+            {
+                return false;
+            }
+            if self.unit.rules.multi_token && !self.branches_exclude(step, budget) {
+                return false;
+            }
+        }
+        true
+    }
+
+    fn branches_exclude(&self, step: StepId, budget: &mut usize) -> bool {
+        let rows: Vec<&Transition> =
+            self.branches(step).iter().filter_map(|t| self.unit.transitions.get(*t as usize)).collect();
+        for (k, a) in rows.iter().enumerate() {
+            for b in rows.get(k + 1..).unwrap_or(&[]) {
+                if *budget == 0 {
+                    return false;
+                }
+                *budget -= 1;
+                if a.to != b.to && self.meet(a, b) != Some(false) {
+                    return false;
+                }
+            }
+        }
+        true
+    }
+}
+
+/// Whether something between the inputs and the evolution changes the situation.
+fn serviced(unit: &Unit) -> bool {
+    let system = |v: crate::ir::VarId| {
+        unit.vars.get(v.index()).is_some_and(|v| v.class == VarClass::System && v.ty == Type::Bool)
+    };
+    statements(unit)
+        .into_iter()
+        .any(|s| matches!(s.kind, StmtKind::Service(_)) || written(s).into_iter().any(system))
+}

@@ -1,0 +1,172 @@
+//! Loops that never rest: steps joined in a circle by receptivities that are
+//! always true, through AND divergences and macro-steps too.
+//!
+//! The transitions that always clear are sorted into circles first (a step can
+//! be reached again only within one); then a token is played round each circle.
+
+use std::collections::BTreeSet;
+
+use g7_model::{Problem, codes};
+
+use super::exclusion::always;
+use super::facts::Facts;
+use crate::ir::{StepId, StepSort, Transition, Unit};
+
+/// Starts tried in one circle.
+const STARTS: usize = 16;
+/// Most steps of a circle that is played; a larger one is left to the run.
+const LARGEST: usize = 500;
+/// Situations played in one circle, beside twice its size.
+const LENGTH: usize = 64;
+
+pub(super) fn check(facts: &Facts<'_>, problems: &mut Vec<Problem>) {
+    let unit = facts.unit;
+    let ever: Vec<&Transition> = unit
+        .transitions
+        .iter()
+        .filter(|t| !t.from.is_empty() && !t.to.is_empty() && always(facts, &t.receptivity, &t.from))
+        .collect();
+    if ever.is_empty() {
+        return;
+    }
+    let circles = circles(unit, &ever);
+    let mut of_step = vec![usize::MAX; unit.steps.len()];
+    for (k, step) in circles.iter().enumerate().flat_map(|(k, c)| c.iter().map(move |s| (k, s))) {
+        if let Some(circle) = of_step.get_mut(step.index()) {
+            *circle = k;
+        }
+    }
+    let home = |s: StepId| of_step.get(s.index()).copied().unwrap_or(usize::MAX);
+    let mut own: Vec<Vec<&Transition>> = vec![Vec::new(); circles.len()];
+    for t in ever {
+        let Some(circle) = t.from.first().map(|s| home(leaves(unit, *s))) else { continue };
+        let all = t.from.iter().all(|s| home(leaves(unit, *s)) == circle);
+        let some = t.to.iter().any(|s| home(enters(unit, *s)) == circle);
+        if let Some(list) = own.get_mut(circle).filter(|_| all && some) {
+            list.push(t);
+        }
+    }
+    for (circle, own) in circles.iter().zip(own).filter(|(c, _)| c.len() <= LARGEST) {
+        let played = own.iter().take(STARTS);
+        let found = played.filter_map(|t| play(unit, &own, &t.from, circle.len()).map(|c| (*t, c))).next();
+        let Some((first, names)) = found else { continue };
+        let what =
+            format!("the loop {} never rests: each of its receptivities is always true", names.join(" → "));
+        problems.push(
+            Problem::new(&codes::RESTLESS_LOOP, first.at, what)
+                .help("give at least one of its transitions a receptivity that can be false"),
+        );
+    }
+}
+
+/// The step that becomes active with this one: of a macro-step the entry step.
+fn enters(unit: &Unit, step: StepId) -> StepId {
+    end(unit, step, true)
+}
+
+/// The step whose activity counts behind this one: of a macro-step the exit step.
+fn leaves(unit: &Unit, step: StepId) -> StepId {
+    end(unit, step, false)
+}
+
+fn end(unit: &Unit, mut step: StepId, entry: bool) -> StepId {
+    // Expansions nest without circles; the bound is a seat belt.
+    for _ in 0..=unit.charts.len() {
+        let Some(StepSort::Macro(chart)) = unit.steps.get(step.index()).map(|s| &s.sort) else { return step };
+        let inner = unit.charts.get(chart.index()).and_then(|c| if entry { c.entry } else { c.exit });
+        let Some(inner) = inner else { return step };
+        step = inner;
+    }
+    step
+}
+
+/// Sets of steps that all lead to each other (strongly connected, by two walks).
+fn circles(unit: &Unit, ever: &[&Transition]) -> Vec<Vec<StepId>> {
+    let count = unit.steps.len();
+    let mut ahead = vec![Vec::new(); count];
+    let mut back = vec![Vec::new(); count];
+    for t in ever {
+        for from in &t.from {
+            for to in &t.to {
+                let (from, to) = (leaves(unit, *from), enters(unit, *to));
+                if let (Some(a), Some(b)) = (ahead.get_mut(from.index()), back.get_mut(to.index())) {
+                    a.push(to);
+                    b.push(from);
+                }
+            }
+        }
+    }
+    let mut seen = vec![false; count];
+    let mut order = Vec::new();
+    for start in (0..count as u32).map(StepId) {
+        walk(start, &ahead, &mut seen, &mut order);
+    }
+    let mut taken = vec![false; count];
+    let mut found = Vec::new();
+    for start in order.into_iter().rev() {
+        let mut circle = Vec::new();
+        walk(start, &back, &mut taken, &mut circle);
+        if circle.len() > 1 {
+            found.push(circle);
+        }
+    }
+    found
+}
+
+/// The steps reached from one, each after all that it leads to.
+fn walk(start: StepId, next: &[Vec<StepId>], seen: &mut [bool], order: &mut Vec<StepId>) {
+    let mut way = vec![(start, 0)];
+    if seen.get_mut(start.index()).is_none_or(|s| std::mem::replace(s, true)) {
+        return;
+    }
+    while let Some((step, k)) = way.last_mut() {
+        let (step, at) = (*step, *k);
+        *k += 1;
+        match next.get(step.index()).and_then(|n| n.get(at)) {
+            Some(to) => {
+                if seen.get_mut(to.index()).is_some_and(|s| !std::mem::replace(s, true)) {
+                    way.push((*to, 0));
+                }
+            }
+            None => {
+                order.push(step);
+                way.pop();
+            }
+        }
+    }
+}
+
+/// Plays passes from the steps of one transition until a situation comes again
+/// (then the names of the steps on the way round) or nothing moves any more.
+fn play(unit: &Unit, own: &[&Transition], start: &[StepId], size: usize) -> Option<Vec<String>> {
+    let mut now: BTreeSet<StepId> = start.iter().map(|s| leaves(unit, *s)).collect();
+    let mut seen: Vec<BTreeSet<StepId>> = Vec::new();
+    // In a circle without AND one walk round is enough; with AND the situations
+    // of its parts mix, and what does not come again soon is left to the run.
+    for _ in 0..2 * size + LENGTH {
+        if let Some(first) = seen.iter().position(|s| *s == now) {
+            let round = seen.get(first..).unwrap_or(&[]);
+            return (round.len() > 1).then(|| round.iter().map(|s| names(unit, s)).collect());
+        }
+        let clearing: Vec<&&Transition> =
+            own.iter().filter(|t| t.from.iter().all(|s| now.contains(&leaves(unit, *s)))).collect();
+        let mut next = now.clone();
+        for t in &clearing {
+            t.from.iter().for_each(|s| {
+                next.remove(&leaves(unit, *s));
+            });
+        }
+        next.extend(clearing.iter().flat_map(|t| &t.to).map(|s| enters(unit, *s)));
+        if clearing.is_empty() {
+            return None;
+        }
+        seen.push(std::mem::replace(&mut now, next));
+    }
+    None
+}
+
+fn names(unit: &Unit, situation: &BTreeSet<StepId>) -> String {
+    let name = |s: &StepId| unit.steps.get(s.index()).map_or("", |s| &*s.name).to_owned();
+    let all: Vec<String> = situation.iter().map(name).collect();
+    if all.len() == 1 { format!("`{}`", all.concat()) } else { format!("`({})`", all.join(", ")) }
+}

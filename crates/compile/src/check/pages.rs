@@ -1,0 +1,45 @@
+//! The pages of a PL7 drawing: eight, each of 14 lines and 11 columns.
+//!
+//! One column of the layout is as wide as the distance of two branches, two
+//! lines (a step and the transition under it) as high as the distance of two
+//! steps; pages lie one below the other.
+
+use g7_model::{Document, Item, Placed, Problem, codes};
+
+use super::target::Limits;
+
+/// Distance of two branches and of two steps, in hundredths of the drawing's unit.
+const PITCH: i32 = 1300;
+/// Columns of a page.
+const COLUMNS: i32 = 11;
+/// Pages, and lines of steps on each: the first and the last line of the 14 hold
+/// connectors, the others steps and transitions in turn.
+const PAGES: i32 = 8;
+const STEP_LINES: i32 = 6;
+
+pub(super) fn check(doc: &Document, most: &Limits, problems: &mut Vec<Problem>) {
+    for item in &doc.items {
+        let Item::Layout(layout) = item else { continue };
+        let placed = layout.places.iter().filter(|p| !matches!(p.what, Placed::Comment(_)));
+        let places: Vec<_> = placed.collect();
+        let (Some(left), Some(top)) = (places.iter().map(|p| p.x).min(), places.iter().map(|p| p.y).min())
+        else {
+            continue;
+        };
+        let beyond = places.iter().find(|p| {
+            let column = i64::from(p.x) - i64::from(left);
+            let line = i64::from(p.y) - i64::from(top);
+            column >= i64::from(PITCH * COLUMNS) || line >= i64::from(PITCH * STEP_LINES * PAGES)
+        });
+        if let Some(first) = beyond {
+            let what = format!(
+                "the drawing of `{}` does not fit: a {} has {PAGES} pages of 14 lines and {COLUMNS} columns",
+                layout.chart.text, most.name
+            );
+            problems.push(
+                Problem::new(&codes::TARGET_PAGES, first.at.0, what)
+                    .help("move it nearer, or leave the layout out: the chart is then drawn by itself"),
+            );
+        }
+    }
+}

@@ -1,0 +1,194 @@
+//! What actions write: variables with two masters, and stored actions that give
+//! one variable two values at one moment.
+
+use std::collections::{BTreeMap, BTreeSet, HashSet};
+
+use g7_model::{Problem, Qualifier, Span, codes};
+
+use super::actions::{blocked, is_grafcet};
+use super::tree::{key, statements, within, written};
+use crate::ir::{
+    Action, ActionKind, Expr, ExprKind, StepId, Stmt, StmtKind, Target, Transition, Unit, VarId,
+};
+
+pub(super) fn check(unit: &Unit, problems: &mut Vec<Problem>) {
+    let blocked = blocked(unit);
+    if is_grafcet(unit) {
+        for step in (0..unit.steps.len() as u32).map(StepId) {
+            let mut moment = Moment::default();
+            moment.step(unit, &blocked, step, Qualifier::P1);
+            moment.tell(unit, &codes::TWO_VALUES, problems);
+            let mut moment = Moment::default();
+            moment.step(unit, &blocked, step, Qualifier::P0);
+            moment.tell(unit, &codes::TWO_VALUES, problems);
+        }
+        for t in &unit.transitions {
+            cleared(unit, &blocked, t).tell(unit, &codes::WRITES_MEET, problems);
+        }
+    }
+    classes(unit, &blocked, problems);
+}
+
+/// A constant written by a stored action that runs whatever else is the case.
+struct Write {
+    var: VarId,
+    value: String,
+    at: Span,
+    /// The action it is part of: its later statements are simply later.
+    of: Span,
+    /// The step or the clearing it belongs to.
+    group: usize,
+}
+
+/// All writes of one moment.
+#[derive(Default)]
+struct Moment {
+    writes: Vec<Write>,
+    group: usize,
+}
+
+impl Moment {
+    /// What a step writes at its activation (P1) or deactivation (P0).
+    fn step(&mut self, unit: &Unit, blocked: &HashSet<VarId>, step: StepId, when: Qualifier) {
+        self.group += 1;
+        for action in unit.steps.get(step.index()).map_or(&[][..], |s| &s.actions) {
+            match &action.kind {
+                ActionKind::Work { qualifier, work, condition: None, .. } if *qualifier == when => {
+                    self.body(work, action.at);
+                }
+                ActionKind::Variable {
+                    qualifier: q @ (Qualifier::S | Qualifier::R),
+                    var,
+                    condition: None,
+                    ..
+                } if when == Qualifier::P1 && unit.rules.stored_set_reset && !blocked.contains(var) => {
+                    self.set_reset(action, *var, *q == Qualifier::S);
+                }
+                _ => {}
+            }
+        }
+    }
+
+    fn set_reset(&mut self, action: &Action, var: VarId, value: bool) {
+        let value = format!("Bool({value})");
+        let (at, group) = (action.at, self.group);
+        self.writes.push(Write { var, value, at, of: at, group });
+    }
+
+    /// The last constant that a body surely leaves in each variable.
+    fn body(&mut self, work: &[Stmt], of: Span) {
+        let mut last: BTreeMap<VarId, Option<(String, Span)>> = BTreeMap::new();
+        for s in work {
+            match &s.kind {
+                StmtKind::Assign(Target::Var(v), Expr { kind: ExprKind::Const(_), .. }) => {
+                    let StmtKind::Assign(_, e) = &s.kind else { continue };
+                    last.insert(*v, Some((key(e), s.at)));
+                }
+                // Behind a RETURN nothing is sure.
+                StmtKind::Return => break,
+                _ => {
+                    for v in within([s]).into_iter().flat_map(written) {
+                        last.insert(v, None);
+                    }
+                }
+            }
+        }
+        let returns = within(work).iter().any(|s| matches!(s.kind, StmtKind::Return));
+        for (var, write) in last.into_iter().filter(|_| !returns) {
+            let Some((value, at)) = write else { continue };
+            self.writes.push(Write { var, value, at, of, group: self.group });
+        }
+    }
+
+    /// Reports each variable that is given two values, once.
+    fn tell(&self, unit: &Unit, code: &'static g7_model::codes::Code, problems: &mut Vec<Problem>) {
+        let meet = std::ptr::eq(code, &codes::WRITES_MEET);
+        let mut told = BTreeSet::new();
+        for (k, b) in self.writes.iter().enumerate() {
+            let first = self.writes.iter().take(k).find(|a| {
+                a.var == b.var && a.value != b.value && a.of != b.of && (a.group != b.group) == meet
+            });
+            let Some(a) = first.filter(|_| told.insert(b.var)) else { continue };
+            let name = unit.vars.get(b.var.index()).map_or("", |v| &*v.name);
+            let (what, help) = if meet {
+                (
+                    format!("`{name}` gets two values when one transition clears"),
+                    "the later one stays and each run reports the conflict; keep one of them",
+                )
+            } else {
+                (
+                    format!("`{name}` gets two values at one moment"),
+                    "both are written when the step changes; keep one of them",
+                )
+            };
+            problems.push(Problem::new(code, b.at, what).related(a.at, "another value here").help(help));
+        }
+    }
+}
+
+/// What surely runs when a transition clears: its own stored action, those on
+/// deactivation of the steps before it, those on activation of the steps behind.
+fn cleared(unit: &Unit, blocked: &HashSet<VarId>, t: &Transition) -> Moment {
+    let mut moment = Moment::default();
+    moment.body(&t.on_clearing, t.at);
+    // A step that is on both sides stays active.
+    let both = |s: &&StepId| t.from.contains(s) && t.to.contains(s);
+    for step in t.from.iter().filter(|s| !both(s)) {
+        moment.step(unit, blocked, *step, Qualifier::P0);
+    }
+    for step in t.to.iter().filter(|s| !both(s)) {
+        moment.step(unit, blocked, *step, Qualifier::P1);
+    }
+    moment
+}
+
+/// A variable that continuous actions drive and something else writes.
+fn classes(unit: &Unit, blocked: &HashSet<VarId>, problems: &mut Vec<Problem>) {
+    let mut driven: BTreeMap<VarId, Span> = BTreeMap::new();
+    let mut stored: BTreeMap<VarId, Span> = BTreeMap::new();
+    for action in unit.steps.iter().flat_map(|s| &s.actions) {
+        let ActionKind::Variable { qualifier, var, .. } = &action.kind else { continue };
+        let set_reset = matches!(qualifier, Qualifier::S | Qualifier::R) && unit.rules.stored_set_reset;
+        // With a control block of its own, S and R of the variable are inputs of that.
+        if !set_reset {
+            driven.entry(*var).or_insert(action.at);
+        } else if !blocked.contains(var) {
+            stored.entry(*var).or_insert(action.at);
+        }
+    }
+    let mut by_statement: BTreeMap<VarId, Span> = BTreeMap::new();
+    for s in statements(unit) {
+        for v in written(s).into_iter().filter(|v| driven.contains_key(v)) {
+            let first = by_statement.entry(v).or_insert(s.at);
+            *first = (*first).min(s.at);
+        }
+    }
+    let grafcet = is_grafcet(unit);
+    for (v, at) in driven {
+        let by = by_statement.get(&v);
+        let Some(other) = stored.get(&v).or(by) else { continue };
+        let name = unit.vars.get(v.index()).map_or("", |v| &*v.name);
+        let (code, what) = match (grafcet, stored.contains_key(&v)) {
+            (true, true) => (
+                &codes::TWO_CLASSES,
+                format!("`{name}` is driven by a continuous action and set or reset by a stored one"),
+            ),
+            (true, false) => (
+                &codes::TWO_CLASSES,
+                format!("`{name}` is driven by a continuous action and assigned as well"),
+            ),
+            (false, true) => {
+                (&codes::ALSO_WRITTEN, format!("`{name}` follows an action and is set or reset as well"))
+            }
+            (false, false) => (
+                &codes::ALSO_WRITTEN,
+                format!("`{name}` follows an action and is written by a statement as well"),
+            ),
+        };
+        problems.push(
+            Problem::new(code, *other, what)
+                .related(at, "follows the activity of steps here")
+                .help("use one of the two ways for a variable, not both"),
+        );
+    }
+}
