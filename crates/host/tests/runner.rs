@@ -227,6 +227,8 @@ fn transient() -> Program {
         shares: false,
         priority: NONE,
         simple: true,
+        drops: false,
+        uncounted: false,
     };
     Program::new(Tables {
         steps: vec![step(0), step(1), step(2)],
