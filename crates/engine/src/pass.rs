@@ -359,8 +359,7 @@ pub(crate) fn each_to(p: &Program, t: &Transition, mut f: impl FnMut(u32)) {
 
 /// Transitions clear one after the other, in order of rank, with their actions
 /// at once: a step that one activates and a later one deactivates ends inactive.
-/// What follows from enclosing steps, what forcing orders impose and event
-/// actions come behind.
+/// What forcing orders impose and event actions come behind.
 fn in_turn(p: &Program, s: &mut State) -> Result<(), Fault> {
     s.x.left.clear();
     s.x.came.clear();
@@ -396,10 +395,15 @@ fn in_turn(p: &Program, s: &mut State) -> Result<(), Fault> {
     commit(p, s)
 }
 
-/// Marks what the enclosing steps that were left or entered take and bring.
+/// What enclosing steps take and bring holds against the turns that came behind:
+/// a chart whose enclosing step has gone is empty, linked steps are active.
 fn enclosures(p: &Program, s: &mut State) {
     for k in 0..s.x.left.len() {
-        let Some(e) = s.x.left.get(k).and_then(|step| extra(p, *step)) else { continue };
+        let Some(&step) = s.x.left.get(k) else { break };
+        if s.steps.contains(&s.w, step) {
+            continue;
+        }
+        let Some(e) = extra(p, step) else { continue };
         for g in p.t.group_lists.get(e.encloses.start as usize..e.encloses.end as usize).unwrap_or(&[]) {
             let Some(group) = p.t.groups.get(g.0 as usize) else { continue };
             for i in group.steps.start..group.steps.end {
@@ -414,11 +418,10 @@ fn enclosures(p: &Program, s: &mut State) {
     }
     for k in 0..s.x.came.len() {
         let Some(&step) = s.x.came.get(k) else { break };
-        if !s.steps.contains(&s.w, step) {
+        if s.x.left.contains(&step) || !s.steps.contains(&s.w, step) {
             continue;
         }
-        let Some(e) = extra(p, step) else { continue };
-        for link in arcs(p, e.links) {
+        for link in extra(p, step).map(|e| arcs(p, e.links)).unwrap_or(&[]) {
             mark_on(s, *link);
         }
     }
@@ -437,31 +440,52 @@ fn run_list(p: &Program, s: &mut State, rows: Rows) -> Result<(), Fault> {
     Ok(())
 }
 
-/// Deactivates a step; its exit actions come first.
+/// Deactivates a step; its exit actions come first, its enclosed charts with it.
 fn leave(p: &Program, s: &mut State, step: u32) -> Result<(), Fault> {
-    if !s.steps.contains(&s.w, step) {
-        return Ok(());
-    }
-    let e = extra(p, step).copied().unwrap_or_default();
-    run_list(p, s, e.off)?;
-    deactivate(p, s, step);
-    s.x.emptied.clear();
-    if !e.encloses.is_empty() && s.x.left.len() < s.x.left.capacity() {
-        s.x.left.push(step);
+    s.x.chain.clear();
+    s.x.chain.push(step);
+    let mut k = 0;
+    while let Some(&step) = s.x.chain.get(k) {
+        k += 1;
+        if !s.steps.contains(&s.w, step) {
+            continue;
+        }
+        let e = extra(p, step).copied().unwrap_or_default();
+        run_list(p, s, e.off)?;
+        deactivate(p, s, step);
+        s.x.emptied.clear();
+        if !e.encloses.is_empty() && s.x.left.len() < s.x.left.capacity() {
+            s.x.left.push(step);
+        }
+        for g in p.t.group_lists.get(e.encloses.start as usize..e.encloses.end as usize).unwrap_or(&[]) {
+            let Some(group) = p.t.groups.get(g.0 as usize) else { continue };
+            let mut from = group.steps.start;
+            while let Some(i) = s.steps.next(&s.w, from).filter(|i| *i < group.steps.end) {
+                s.x.chain.push(i);
+                from = i + 1;
+            }
+        }
     }
     Ok(())
 }
 
-/// Activates a step; its entry actions run at once.
+/// Activates a step; its entry actions run at once, its linked steps come with it.
 fn enter(p: &Program, s: &mut State, step: u32) -> Result<(), Fault> {
-    if s.steps.contains(&s.w, step) {
-        return Ok(());
-    }
-    activate(p, s, step);
-    let e = extra(p, step).copied().unwrap_or_default();
-    run_list(p, s, e.on)?;
-    if !e.links.is_empty() && s.x.came.len() < s.x.came.capacity() {
-        s.x.came.push(step);
+    s.x.chain.clear();
+    s.x.chain.push(step);
+    let mut k = 0;
+    while let Some(&step) = s.x.chain.get(k) {
+        k += 1;
+        if s.steps.contains(&s.w, step) {
+            continue;
+        }
+        activate(p, s, step);
+        let e = extra(p, step).copied().unwrap_or_default();
+        run_list(p, s, e.on)?;
+        if !e.links.is_empty() && s.x.came.len() < s.x.came.capacity() {
+            s.x.came.push(step);
+        }
+        s.x.chain.extend(arcs(p, e.links).iter().map(|l| l.0));
     }
     Ok(())
 }

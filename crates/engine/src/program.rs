@@ -39,6 +39,9 @@ pub struct Rules {
     /// Boolean S and R are stored actions, else inputs of control blocks
     /// (used by `compile` alone).
     pub stored_set_reset: bool,
+    /// N, D and L on Boolean variables are continuous actions, else inputs of
+    /// control blocks (used by `compile` alone).
+    pub continuous: bool,
     /// `each scan` actions run before the control blocks, and not in the scan in
     /// which their step was activated.
     pub periodic_first: bool,
@@ -66,6 +69,7 @@ impl Rules {
         scan_clock: false,
         pulse_first: false,
         stored_set_reset: true,
+        continuous: true,
         periodic_first: false,
         bound: 1_000_000,
     };
@@ -77,10 +81,12 @@ impl Rules {
         late_actions: true,
         final_scan: true,
         stored_set_reset: false,
+        continuous: false,
         ..Rules::IEC60848
     };
     /// PL7.
-    pub const PL7: Rules = Rules { stable: false, parallel_actions: false, ..Rules::IEC60848 };
+    pub const PL7: Rules =
+        Rules { stable: false, parallel_actions: false, continuous: false, ..Rules::IEC60848 };
     /// Unity Pro.
     pub const UNITY: Rules = Rules { final_scan: false, pulse_first: true, ..Rules::IEC61131 };
     /// JGrafchart.

@@ -145,9 +145,10 @@ pub(crate) struct Scratch {
     /// Active steps whose transitions need a closer look (`bare`).
     pub(crate) slow: Vec<u32>,
     pub(crate) on: Vec<u32>,
-    /// Enclosing steps left in this pass (`sequential`).
+    /// Steps that follow one another through enclosures (`sequential`).
+    pub(crate) chain: Vec<u32>,
+    /// Enclosing steps left in this pass, and those entered.
     pub(crate) left: Vec<u32>,
-    /// Enclosing steps entered in this pass.
     pub(crate) came: Vec<u32>,
     /// Step bits as the pass began, where some code looks back.
     pub(crate) was: Box<[u64]>,
@@ -248,6 +249,7 @@ impl State {
             slow: Vec::with_capacity(if p.bare { steps } else { 0 }),
             on: Vec::with_capacity(2 * steps),
             off: Vec::with_capacity(2 * steps),
+            chain: Vec::with_capacity(if t.rules.sequential { 2 * steps + 1 } else { 0 }),
             left: Vec::with_capacity(if t.rules.sequential { 2 * steps + 1 } else { 0 }),
             came: Vec::with_capacity(if t.rules.sequential { 2 * steps + 1 } else { 0 }),
             was: bits(if p.looks_back { steps } else { 0 }),

@@ -96,7 +96,7 @@ impl Associations {
 impl Lower<'_> {
     /// Looks at all actions of the steps that run.
     pub(super) fn associations(&self) -> Associations {
-        let continuous = self.has_continuous_actions();
+        let continuous = self.unit.rules.continuous;
         let mut a = Associations {
             vars: vec![Association::default(); self.unit.vars.len()],
             bodies: vec![Association::default(); self.unit.bodies.len()],
@@ -147,15 +147,10 @@ impl Lower<'_> {
         })
     }
 
-    /// N, D and L on Boolean variables are continuous actions (IEC 60848).
-    fn has_continuous_actions(&self) -> bool {
-        self.unit.rules.stable && self.unit.rules.parallel_actions
-    }
-
     /// What becomes of a qualifier on a variable with these associations.
     pub(super) fn way(&self, qualifier: Qualifier, all: Association) -> Way {
         let rules = &self.unit.rules;
-        let continuous = self.has_continuous_actions() && !all.block_only;
+        let continuous = rules.continuous && !all.block_only;
         match qualifier {
             Qualifier::S if rules.stored_set_reset && !all.block_only => Way::Store(true),
             Qualifier::R if rules.stored_set_reset && !all.block_only => Way::Store(false),
