@@ -21,7 +21,7 @@ mod rewrite;
 
 pub use program::{Binding, Link, PlantProgram, compile_plant};
 
-use std::collections::{HashMap, HashSet};
+use std::collections::HashMap;
 
 use g7_model::{
     BinaryOp, Block, Body, Document, Expr, Item, Name, Place, Plant, PlantItem, Problem, Stmt, Type, VarDecl,
@@ -55,13 +55,9 @@ struct PlantDocument {
 /// Makes the document of a plant; `unit` is that of the charts it answers.
 fn document(doc: &Document, plant: &Plant, unit: &Unit, queries: &[Expr]) -> (PlantDocument, Vec<Problem>) {
     let mut maker = Maker {
-        rewrite: Rewrite {
-            tables: HashMap::new(),
-            charts: unit.charts.iter().map(|c| &*c.name).collect(),
-            problems: Vec::new(),
-        },
+        rewrite: Rewrite { charts: unit.charts.iter().map(|c| &*c.name).collect(), ..Rewrite::default() },
         vars: Vec::new(),
-        own: HashSet::new(),
+        own: HashMap::new(),
         arrivals: Vec::new(),
         rates: Vec::new(),
         rest: Vec::new(),
@@ -70,16 +66,19 @@ fn document(doc: &Document, plant: &Plant, unit: &Unit, queries: &[Expr]) -> (Pl
         hidden: 0,
         unit,
     };
-    let mut made = maker.make(doc, plant);
-    made.queries = queries.iter().map(|e| maker.rewrite.expr(e)).collect();
+    for item in &plant.items {
+        maker.declare(item);
+    }
+    let queries = queries.iter().map(|e| maker.rewrite.expr(e)).collect();
+    let made = PlantDocument { queries, ..maker.make(doc, plant) };
     (made, maker.rewrite.problems)
 }
 
 struct Maker<'d> {
     rewrite: Rewrite<'d>,
     vars: Vec<VarDecl>,
-    /// Names that the plant declares itself.
-    own: HashSet<&'d str>,
+    /// Names that the plant declares itself, and where.
+    own: HashMap<&'d str, Place>,
     arrivals: Vec<Stmt>,
     rates: Vec<Stmt>,
     rest: Vec<Stmt>,
@@ -98,9 +97,6 @@ const STEP_LREAL: &str = "@stepl";
 impl<'d> Maker<'d> {
     fn make(&mut self, doc: &'d Document, plant: &'d Plant) -> PlantDocument {
         let at = At(plant.name.at);
-        for item in &plant.items {
-            self.declare(item);
-        }
         let mut limits = Vec::new();
         let mut bindings = Vec::new();
         let mut view = None;
@@ -137,18 +133,11 @@ impl<'d> Maker<'d> {
         tick.append(&mut limits);
         tick.append(&mut self.drives);
         tick.push(at.assign(STARTED, at.bool(true)));
-        let mut document = Document::default();
-        // Functions and constants of the file are the plant's as well.
-        for item in &doc.items {
-            match item {
-                Item::Function(_) => document.items.push(item.clone()),
-                Item::Var(v) if v.kind == VarKind::Const => document.items.push(item.clone()),
-                _ => {}
-            }
-        }
+        let mut document = Document { items: self.shared(doc), ..Document::default() };
         for (name, ty) in [(STARTED, Type::Bool), (STEP_REAL, Type::Real), (STEP_LREAL, Type::Lreal)] {
             document.items.push(Item::Var(at.declare(VarKind::Var, name, ty, None)));
         }
+        self.vars.append(&mut self.rewrite.hidden);
         document.items.extend(self.vars.drain(..).map(Item::Var));
         let block = Block { locals: Vec::new(), statements: tick, at: plant.at };
         document.items.push(Item::Pre(Body::St(block), plant.at));
@@ -166,13 +155,45 @@ impl<'d> Maker<'d> {
         }
     }
 
+    /// What the file has for its plants as well: the constants that no name of the
+    /// plant hides, and the functions that it calls. Others may read variables of
+    /// the charts, which a plant does not see.
+    fn shared(&self, doc: &Document) -> Vec<Item> {
+        let mut bodies: HashMap<&str, Vec<&Block>> = HashMap::new();
+        for item in &doc.items {
+            if let Item::Function(f) = item {
+                bodies.entry(&f.name.text).or_default().push(&f.body);
+            }
+        }
+        let mut called = self.rewrite.called.clone();
+        let mut open: Vec<Box<str>> = called.iter().cloned().collect();
+        while let Some(name) = open.pop() {
+            let mut inside = Rewrite::default();
+            for body in bodies.remove(&*name).unwrap_or_default() {
+                let _ = inside.block(body);
+            }
+            open.extend(inside.called.iter().cloned());
+            called.extend(inside.called);
+        }
+        let shared = |item: &Item| match item {
+            Item::Function(f) => called.contains(&f.name.text).then(|| item.clone()),
+            Item::Var(v) if v.kind == VarKind::Const => {
+                let mut v = v.clone();
+                v.names.retain(|n| !self.own.contains_key(&*n.text));
+                (!v.names.is_empty()).then_some(Item::Var(v))
+            }
+            _ => None,
+        };
+        doc.items.iter().filter_map(shared).collect()
+    }
+
     /// The charts' outputs that no name of the plant hides.
     fn chart_outputs(&mut self, at: At) -> Vec<Box<str>> {
         let unit = self.unit;
         let outputs =
             unit.vars.iter().filter(|v| v.class == VarClass::Output && !matches!(v.ty, Type::Fb(_)));
         let mut names = Vec::new();
-        for v in outputs.filter(|v| !self.own.contains(&*v.name)) {
+        for v in outputs.filter(|v| !self.own.contains_key(&*v.name)) {
             let mut decl = At(v.at.into()).declare(VarKind::Input, &v.name, v.ty, None);
             decl.at = at.0;
             self.vars.push(decl);
@@ -184,7 +205,7 @@ impl<'d> Maker<'d> {
     fn declare(&mut self, item: &'d PlantItem) {
         match item {
             PlantItem::Const { names, ty, value, comment, at } => {
-                self.own.extend(names.iter().map(|n| &*n.text));
+                self.own(names);
                 self.vars.push(VarDecl {
                     names: names.clone(),
                     init: Some(value.clone()),
@@ -193,7 +214,7 @@ impl<'d> Maker<'d> {
                 });
             }
             PlantItem::State(s) => {
-                self.own.extend(s.names.iter().map(|n| &*n.text));
+                self.own(&s.names);
                 self.vars.push(VarDecl {
                     names: s.names.clone(),
                     init: s.init.clone(),
@@ -211,7 +232,27 @@ impl<'d> Maker<'d> {
         }
     }
 
+    fn own(&mut self, names: &'d [Name]) {
+        for name in names {
+            // Two variables of one name, the resolver tells apart; parts have none.
+            let before = self.own.insert(&name.text, name.at);
+            if let (Some(before), true) = (before, self.rewrite.tables.contains_key(&*name.text)) {
+                self.twice(name, before);
+            }
+        }
+    }
+
+    fn twice(&mut self, name: &Name, before: Place) {
+        let what = format!("`{}` is defined twice", name.text);
+        self.rewrite.problems.push(
+            Problem::new(&codes::DEFINED_TWICE, name.at.0, what).related(before.0, "defined here first"),
+        );
+    }
+
     fn parts(&mut self, p: &'d g7_model::Parts) {
+        if let Some(before) = self.own.insert(&p.name.text, p.name.at) {
+            return self.twice(&p.name, before);
+        }
         let at = p.name.at.0;
         let mut bad = |what: String| self.rewrite.problems.push(Problem::new(&codes::BAD_PARTS, at, what));
         if p.max == 0 || p.max > MOST_PARTS {
@@ -220,15 +261,17 @@ impl<'d> Maker<'d> {
         if p.init.len() > p.max as usize {
             bad(format!("`{}` begins with {} parts but holds {}", p.name.text, p.init.len(), p.max));
         }
-        if p.init.iter().any(|part| part.len() != p.attributes.len()) {
-            bad(format!("each part of `{}` has {} attribute(s)", p.name.text, p.attributes.len()));
+        // The position of a part on a track may stand behind its attributes.
+        let (least, most) = (p.attributes.len(), p.attributes.len() + usize::from(p.length.is_some()));
+        if p.init.iter().any(|part| part.len() < least || part.len() > most) {
+            let track = if most > least { ", and perhaps its position" } else { "" };
+            bad(format!("each part of `{}` has {least} attribute(s){track}", p.name.text));
         }
         if let Some(a) = p.attributes.iter().find(|a| matches!(a.ty, Type::String(_) | Type::Fb(_))) {
             return bad(format!("a part cannot carry a {}", a.ty));
         }
         let table = Table { parts: p };
         self.vars.extend(table.declare());
-        self.own.insert(&p.name.text);
         self.rewrite.tables.insert(&p.name.text, table);
     }
 

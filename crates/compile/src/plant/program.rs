@@ -1,7 +1,7 @@
 //! The program of a plant, and how its words and those of the charts belong together.
 
 use g7_engine::{Addr, Code};
-use g7_model::{Document, Expr, Plant, Problem, ProfileName, Severity, Type};
+use g7_model::{Document, Expr, Plant, Problem, ProfileName, Severity, Type, codes};
 
 use super::{document, driven};
 use crate::{Compiled, compile_with};
@@ -65,6 +65,8 @@ pub fn compile_plant(
     asked.extend(made.bindings.iter().map(|(_, _, value)| value.clone()));
     // One pass a tick, whatever the charts' profile: a plant has no charts.
     let (compiled, mut wrong) = compile_with(&made.document, Some(ProfileName::Iec61131), &asked);
+    // A state that nothing reads is still there to be looked at.
+    wrong.retain(|p| p.code != &codes::UNUSED_VARIABLE);
     problems.append(&mut wrong);
     let compiled = compiled.filter(|_| !problems.iter().any(|p| p.severity() == Severity::Error));
     let program = compiled.map(|compiled| {

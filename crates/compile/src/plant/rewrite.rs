@@ -1,11 +1,14 @@
 //! Putting plain variables for what the plant language has of its own.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
-use g7_model::{Arg, Block, Expr, ExprKind, Path, Place, Problem, Stmt, StmtKind, codes};
+use g7_model::{
+    Arg, Block, Expr, ExprKind, Literal, Name, Path, Place, Problem, Stmt, StmtKind, Type, VarDecl, VarKind,
+    codes,
+};
 
 use super::build::At;
-use super::parts::Table;
+use super::parts::{Table, zero};
 
 /// Names of the functions that only plants have, as the resolver knows them.
 pub(super) const RANDOM: &str = "@random";
@@ -13,10 +16,17 @@ pub(super) const RANDOM: &str = "@random";
 pub(super) const DT: &str = "@dt";
 
 /// Rewrites expressions and statements of one plant.
+#[derive(Default)]
 pub(super) struct Rewrite<'d> {
     pub(super) tables: HashMap<&'d str, Table<'d>>,
     pub(super) charts: Vec<&'d str>,
     pub(super) problems: Vec<Problem>,
+    /// Functions that are called.
+    pub(super) called: HashSet<Box<str>>,
+    /// Variables of blocks, under names of their own.
+    pub(super) hidden: Vec<VarDecl>,
+    /// The variables of the block at hand, and what they are called instead.
+    pub(super) locals: HashMap<Box<str>, String>,
 }
 
 impl Rewrite<'_> {
@@ -47,6 +57,10 @@ impl Rewrite<'_> {
     fn path(&mut self, at: At, path: &Path) -> Expr {
         let names: Vec<&str> = path.names.iter().map(|n| &*n.text).collect();
         match names[..] {
+            [local] if self.locals.contains_key(local) => {
+                let name = self.locals.get(local).map(String::as_str).unwrap_or_default();
+                at.var(name)
+            }
             [table, ..] if self.tables.contains_key(table) => self.member(at, table, &names[1..]),
             // An output of a chart: one name in the plant's own document.
             [chart, name] if self.charts.contains(&chart) => at.var(&format!("{chart}.{name}")),
@@ -109,6 +123,7 @@ impl Rewrite<'_> {
         if let ["random"] = names[..] {
             return self.random(at, args);
         }
+        self.called.extend(names.first().map(|n| Box::from(*n)));
         at.expr(ExprKind::Call(path.clone(), args))
     }
 
@@ -132,7 +147,43 @@ impl Rewrite<'_> {
     }
 
     pub(super) fn block(&mut self, block: &Block) -> Vec<Stmt> {
-        self.statements(&block.statements)
+        let mut out = self.declare(block);
+        out.extend(self.statements(&block.statements));
+        self.locals.clear();
+        out
+    }
+
+    /// Gives the variables of a block names that no other block has, and the
+    /// statements that set them to their initial values.
+    fn declare(&mut self, block: &Block) -> Vec<Stmt> {
+        let mut out = Vec::new();
+        for local in &block.locals {
+            let init = local.init.as_ref().map(|e| self.expr(e));
+            for name in &local.names {
+                let at = At(name.at);
+                let hidden = format!("@{}.{}", name.text, self.hidden.len());
+                let mut decl = at.declare(VarKind::Var, &hidden, local.ty, None);
+                decl.at = local.at;
+                self.hidden.push(decl);
+                let first = match local.ty {
+                    Type::Fb(_) => None,
+                    Type::String(_) => Some(at.expr(ExprKind::Literal(Literal::Str("".into())))),
+                    ty => Some(zero(at, ty)),
+                };
+                out.extend(init.clone().or(first).map(|value| at.assign(&hidden, value)));
+                if self.locals.insert(name.text.clone(), hidden).is_some() {
+                    let what = format!("`{}` is defined twice", name.text);
+                    self.problems.push(Problem::new(&codes::DEFINED_TWICE, name.at.0, what));
+                }
+            }
+        }
+        out
+    }
+
+    /// What a variable is called here.
+    fn variable(&self, name: &Name) -> Name {
+        let text = self.locals.get(&name.text).map_or_else(|| name.text.clone(), |n| n.as_str().into());
+        Name { text, at: name.at }
     }
 
     pub(super) fn statements(&mut self, list: &[Stmt]) -> Vec<Stmt> {
@@ -150,6 +201,7 @@ impl Rewrite<'_> {
                     out.append(&mut done);
                     return;
                 }
+                self.called.extend(path.names.first().map(|n| n.text.clone()));
                 let args = args
                     .iter()
                     .map(|a| Arg { name: a.name.clone(), output: a.output, value: self.expr(&a.value) })
@@ -174,7 +226,7 @@ impl Rewrite<'_> {
                 self.statements(rest),
             ),
             StmtKind::For { var, from, to, by, body } => StmtKind::For {
-                var: var.clone(),
+                var: self.variable(var),
                 from: self.expr(from),
                 to: self.expr(to),
                 by: by.as_ref().map(|e| self.expr(e)),

@@ -171,10 +171,14 @@ impl Planner<'_> {
     fn ask(&mut self, e: &Expr) -> AskId {
         let mut paths = Vec::new();
         collect(e, &mut paths);
-        // A condition on the plant's own states is put to the plant.
+        // A condition on the plant's own states and parts is put to the plant.
+        let plant = |i: &&crate::bench::Item| i.role == Role::Plant;
         let of_plant = paths.iter().any(|p| {
             let name = p.text();
-            self.bench.items.iter().any(|i| i.role == Role::Plant && i.name == name)
+            self.bench.items.iter().filter(plant).any(|i| i.name == name)
+        }) || parts(e, &|table| {
+            let count = format!("{table}.count");
+            self.bench.items.iter().filter(plant).any(|i| i.name == count)
         });
         self.asks.push(Ask { expr: e.clone(), of_plant });
         self.asks.len() - 1
@@ -215,6 +219,19 @@ fn collect<'e>(e: &'e Expr, to: &mut Vec<&'e Path>) {
         }
         ExprKind::Call(_, args) => args.iter().for_each(|a| collect(&a.value, to)),
         ExprKind::Literal(_) | ExprKind::Direct(_) | ExprKind::Bad => {}
+    }
+}
+
+/// Whether an expression asks something of parts: `T.empty`, `T.first.colour`,
+/// `T.at(a, b)`.
+fn parts(e: &Expr, is_parts: &impl Fn(&str) -> bool) -> bool {
+    let names = |p: &Path| p.names.len() > 1 && p.names.first().is_some_and(|n| is_parts(&n.text));
+    match &e.kind {
+        ExprKind::Path(path) => names(path),
+        ExprKind::Unary(_, a) => parts(a, is_parts),
+        ExprKind::Binary(_, a, b) => parts(a, is_parts) || parts(b, is_parts),
+        ExprKind::Call(path, args) => names(path) || args.iter().any(|a| parts(&a.value, is_parts)),
+        ExprKind::Timer { .. } | ExprKind::Literal(_) | ExprKind::Direct(_) | ExprKind::Bad => false,
     }
 }
 
