@@ -6,7 +6,9 @@ use std::collections::BTreeSet;
 use std::ops::Range;
 
 use g7_engine::{Addr, GroupId, State, StepId};
-use g7_host::{Coupling, Force, Halt, Kind, Runner, Signal, Value, format_time, read_text, write_text};
+use g7_host::{
+    Coupling, Force, Halt, Kind, Recording, Runner, Signal, Value, format_time, read_text, write_text,
+};
 use g7_model::{Span, Type};
 
 pub(crate) use names::{Answer, Ask, Options, build};
@@ -219,12 +221,19 @@ impl Bench {
         self.items.iter().map(item).chain(self.steps.iter().map(step)).collect()
     }
 
-    /// The order in which signals are shown: from cause to effect.
-    pub(crate) fn order(signals: &[Signal]) -> Vec<usize> {
+    /// The signals that moved, from cause to effect; what single parts of a
+    /// queue have is left to those who ask for it.
+    pub(crate) fn moving(recording: &Recording) -> Vec<usize> {
         let groups = ["inputs", "steps", "outputs", "variables", "plant"];
-        let mut order: Vec<usize> = (0..signals.len()).collect();
-        order.sort_by_key(|i| signals.get(*i).and_then(|s| groups.iter().position(|g| *g == s.group)));
-        order
+        let signals = recording.signals();
+        let is_part = |s: &Signal| {
+            let last = s.name.rsplit_once('.').map_or("", |(_, last)| last);
+            s.group == "plant" && !last.is_empty() && last.bytes().all(|b| b.is_ascii_digit())
+        };
+        let mut moving: Vec<usize> = (0..signals.len()).filter(|i| recording.count(*i) > 1).collect();
+        moving.retain(|i| signals.get(*i).is_some_and(|s| !is_part(s)));
+        moving.sort_by_key(|i| signals.get(*i).and_then(|s| groups.iter().position(|g| *g == s.group)));
+        moving
     }
 
     /// The values of [`Bench::signals`], in their order.

@@ -1,6 +1,6 @@
 //! Runs without a terminal: virtual time, traces, a printed chronogram.
 
-use std::io::Write;
+use std::io::{IsTerminal, Write, stdout};
 use std::path::Path;
 
 use g7_host::{
@@ -183,8 +183,7 @@ fn print(
     )?;
     let mut lanes: Vec<usize> = shown.to_vec();
     if lanes.is_empty() {
-        lanes = Bench::order(recording.signals());
-        lanes.retain(|i| recording.count(*i) > 1);
+        lanes = Bench::moving(recording);
     }
     if lanes.is_empty() {
         writeln!(out, "nothing moved")?;
@@ -194,7 +193,7 @@ fn print(
     lanes.truncate(LANES);
     let columns = columns(recording, &lanes);
     let to = recording.end().saturating_add(bench.period);
-    let style = Style { columns, from: recording.start(), to };
+    let style = Style { columns, from: recording.start(), to, until: to };
     write!(out, "{}", Chronogram::new(recording, lanes, style))?;
     if left > 0 {
         writeln!(out, "… and {left} more signals that move; --show picks, --trace keeps them all")?;
@@ -204,8 +203,10 @@ fn print(
 
 /// Columns for the lanes: the terminal's width less labels and notes.
 fn columns(recording: &Recording, lanes: &[usize]) -> usize {
-    let width = crossterm::terminal::size().map_or(100, |(columns, _)| usize::from(columns));
-    let width = if width == 0 { 100 } else { width.min(160) };
+    let said = || std::env::var("COLUMNS").ok().and_then(|c| c.parse().ok());
+    let size = || crossterm::terminal::size().ok().map(|(columns, _)| usize::from(columns));
+    let width = if stdout().is_terminal() { size() } else { said() };
+    let width = width.filter(|w| *w > 0).unwrap_or(110).min(200);
     let labels = lanes.iter().filter_map(|i| recording.signals().get(*i));
     let label = labels.map(|s| s.name.chars().count().min(24)).max().unwrap_or(0);
     width.saturating_sub(label + 20).max(20)

@@ -361,7 +361,7 @@ impl<'b> Exec<'b, '_> {
         }
         // One scan more than there was, so that the last one has room.
         let to = recording.end().saturating_add(self.bench.period);
-        Chronogram::new(recording, lanes, Style { columns: 60, from, to }).to_string()
+        Chronogram::new(recording, lanes, Style { columns: 60, from, to, until: to }).to_string()
     }
 }
 

@@ -195,8 +195,7 @@ fn draw_chronogram(frame: &mut Frame<'_>, app: &mut App<'_>, area: Rect) {
     let block = framed(&title, false);
     let inner = block.inner(area);
     let signals = app.recording.signals();
-    let mut moving = Bench::order(signals);
-    moving.retain(|i| app.recording.count(*i) > 1);
+    let moving = Bench::moving(&app.recording);
     let room = usize::from(inner.height.saturating_sub(1));
     app.lane = app.lane.min(moving.len().saturating_sub(room));
     let shown: Vec<usize> = moving.into_iter().skip(app.lane).take(room).collect();
@@ -204,7 +203,8 @@ fn draw_chronogram(frame: &mut Frame<'_>, app: &mut App<'_>, area: Rect) {
     let label = labels.max().unwrap_or(0);
     let columns = usize::from(inner.width).saturating_sub(label + 14).max(1);
     let to = app.recording.end().saturating_sub(app.back).max(app.span());
-    let window = Window { columns, from: to.saturating_sub(app.span()), to };
+    let until = app.recording.end();
+    let window = Window { columns, from: to.saturating_sub(app.span()), to, until };
     let drawn = Chronogram::new(&app.recording, shown, window);
     let mut lines: Vec<Line<'_>> = drawn
         .lanes

@@ -11,6 +11,8 @@ pub struct Style {
     pub from: i64,
     /// Last instant shown.
     pub to: i64,
+    /// Up to here values hold; what lies behind is blank.
+    pub until: i64,
 }
 
 /// The line of one signal.
@@ -42,10 +44,15 @@ impl Chronogram {
     /// Draws the chosen signals.
     pub fn new(recording: &Recording, which: impl IntoIterator<Item = usize>, style: Style) -> Chronogram {
         let grid = Grid::new(style);
-        let lanes = which
+        let mut lanes: Vec<Lane> = which
             .into_iter()
             .filter_map(|i| recording.signals().get(i).map(|s| lane(recording, i, s, &grid)))
             .collect();
+        let known = (0..grid.columns).take_while(|c| grid.instant(*c) <= style.until).count();
+        for lane in lanes.iter_mut().filter(|_| known < grid.columns) {
+            let cells = lane.cells.chars().take(known);
+            lane.cells = cells.chain(std::iter::repeat_n(' ', grid.columns - known)).collect();
+        }
         Chronogram { lanes, axis: grid.axis() }
     }
 
@@ -257,7 +264,7 @@ mod tests {
         for (at, value) in samples {
             r.sample(*at, [value.clone()]);
         }
-        let mut drawn = Chronogram::new(&r, [0], Style { columns, from: 0, to });
+        let mut drawn = Chronogram::new(&r, [0], Style { columns, from: 0, to, until: to });
         drawn.lanes.remove(0)
     }
 
@@ -269,6 +276,14 @@ mod tests {
     fn a_level_has_slopes_where_it_changes() {
         let samples = words(&[(0, 0), (20, 1), (60, 0), (80, 1), (85, 0)]);
         assert_eq!(one(Kind::Bool, &samples, 10, 100).cells, "▁▁╱▔▔▔╲▁╳▁");
+    }
+
+    #[test]
+    fn what_is_not_known_yet_is_blank() {
+        let mut r = Recording::new(vec![Signal { group: "", name: "a".into(), kind: Kind::Bool }]);
+        r.sample(0, [Value::Word(1)]);
+        let style = Style { columns: 10, from: 0, to: 100, until: 40 };
+        assert_eq!(Chronogram::new(&r, [0], style).lanes[0].cells, "▔▔▔▔▔     ");
     }
 
     #[test]
@@ -301,7 +316,7 @@ mod tests {
     #[test]
     fn the_axis_has_round_times_that_do_not_collide() {
         let r = Recording::new(Vec::new());
-        let style = Style { columns: 60, from: 0, to: 60_000_000_000 };
+        let style = Style { columns: 60, from: 0, to: 60_000_000_000, until: 0 };
         let axis = Chronogram::new(&r, [], style).axis;
         assert_eq!(axis, format!("{:60}", "|0s            |15s           |30s           |45s"));
     }
@@ -311,7 +326,7 @@ mod tests {
         for (columns, from, to) in [(0, 0, 0), (1, 5, 5), (3, i64::MIN, i64::MAX), (80, 7, 3)] {
             let mut r = Recording::new(vec![Signal { group: "", name: "a".into(), kind: Kind::Bool }]);
             r.sample(5, [Value::Word(1)]);
-            let drawn = Chronogram::new(&r, [0, 7], Style { columns, from, to });
+            let drawn = Chronogram::new(&r, [0, 7], Style { columns, from, to, until: to });
             assert_eq!(drawn.lanes.len(), 1, "a signal that is not there has no lane");
             assert_eq!(drawn.lanes[0].cells.chars().count(), columns.max(1));
         }
