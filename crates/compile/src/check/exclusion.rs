@@ -68,7 +68,9 @@ pub(super) fn always(facts: &Facts<'_>, e: &Expr, active: &[StepId]) -> bool {
 fn priorities(facts: &Facts<'_>, problems: &mut Vec<Problem>) {
     let rules = &facts.unit.rules;
     for t in &facts.unit.transitions {
-        let Some(number) = t.priority else { continue };
+        if t.priority.is_none() {
+            continue;
+        }
         if rules.multi_token && !rules.numbered_exclusive {
             problems.push(
                 Problem::new(
@@ -86,11 +88,6 @@ fn priorities(facts: &Facts<'_>, problems: &mut Vec<Problem>) {
                     "this priority has no effect: no other transition shares a preceding step",
                 )
                 .help("leave the number out"),
-            );
-        } else if number == 0 {
-            problems.push(
-                Problem::new(&codes::PRIORITY_IGNORED, t.at, "priorities begin at 1")
-                    .help("number the branches 1, 2, … in the order in which they go"),
             );
         }
     }

@@ -164,7 +164,9 @@ fn numbers_of(
     taken: &mut BTreeMap<usize, Span>,
     problems: &mut Vec<Problem>,
 ) {
-    for (id, step) in (chart.steps.start..).map(StepId).zip(super::structure::steps_of(unit, chart)) {
+    let steps = super::structure::steps_of(unit, chart);
+    let crowded = steps.len() > limit;
+    for (id, step) in (chart.steps.start..).map(StepId).zip(steps) {
         let an_end =
             matches!(chart.role, ChartRole::Expansion(_)) && [chart.entry, chart.exit].contains(&Some(id));
         let is_macro = matches!(step.sort, StepSort::Macro(_));
@@ -182,6 +184,8 @@ fn numbers_of(
                     );
                 }
             }
+            // Where there are too many steps that has been said.
+            None if crowded && step.name.parse::<usize>().is_ok() => {}
             None => {
                 let text = if is_macro {
                     format!("macro-step `{}` is none of M0 to M{}", step.name, most.macros - 1)
