@@ -18,6 +18,8 @@ use crate::{files, style, talk, values};
 
 /// How long it runs where nothing is said.
 const UNSAID: i64 = 10_000_000_000;
+/// Changes kept of a signal where no trace is asked for.
+const KEPT: usize = 200_000;
 /// Most lanes of a chronogram.
 const LANES: usize = 40;
 
@@ -48,7 +50,9 @@ pub(super) fn run(bench: &Bench, source: &Source, args: &Run) -> Result<Verdict,
         runner = runner.with_tape();
     }
     keep::load(bench, &mut runner, args.retain.as_deref())?;
-    let mut recording = Recording::new(bench.signals());
+    // A trace has everything; for a picture the latest changes do, however long it runs.
+    let limit = if trace.is_some() { 0 } else { KEPT };
+    let mut recording = Recording::new(bench.signals()).with_limit(limit);
     let length = args.duration.unwrap_or(UNSAID);
     let mut clock: Box<dyn Clock> =
         if args.real_time { Box::new(WallClock::default()) } else { Box::new(VirtualClock::default()) };
