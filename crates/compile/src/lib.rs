@@ -36,9 +36,16 @@ pub struct Compiled {
     pub query_types: Vec<Type>,
 }
 
-/// What is wrong with a document, in the order of the text.
+/// What is wrong with a document and its plants, in the order of the text. Plants
+/// are judged where the charts they answer are right.
 pub fn check(doc: &Document) -> Vec<Problem> {
-    compile(doc).1
+    let (charts, mut problems) = compile(doc);
+    if let Some(charts) = charts {
+        for plant in plant::plants(doc) {
+            problems.extend(plant::compile_plant(doc, plant, &charts, &[]).1);
+        }
+    }
+    sorted(problems)
 }
 
 /// The program of a document; none if a problem is an error.
