@@ -30,13 +30,24 @@ pub fn engine(
     profile: Option<ProfileName>,
     queries: &[Expr],
 ) -> Result<Box<dyn Subject>, String> {
+    with_program(doc, profile, queries, Ok)
+}
+
+/// The same on a program that was changed between compiling and running.
+pub(crate) fn with_program(
+    doc: &Document,
+    profile: Option<ProfileName>,
+    queries: &[Expr],
+    change: impl FnOnce(g7_engine::Program) -> Result<g7_engine::Program, String>,
+) -> Result<Box<dyn Subject>, String> {
     // Under its own profile a document keeps its switches.
     let profile = profile.filter(|p| *p != doc.profile().map(|d| d.name).unwrap_or_default());
     let (compiled, problems) = compile_with(doc, profile, queries);
-    let Some(compiled) = compiled else {
+    let Some(mut compiled) = compiled else {
         let first = problems.iter().find(|p| p.severity() == g7_model::Severity::Error);
         return Err(first.map_or("no program".into(), |p| format!("{} {}", p.code.id, p.what)));
     };
+    compiled.program = change(compiled.program)?;
     let state = State::new(&compiled.program);
     let inputs = compiled.program.tables().inputs;
     let inputs = state.words().get(inputs.start as usize..inputs.end as usize).unwrap_or(&[]).to_vec();
