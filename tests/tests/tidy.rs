@@ -1,0 +1,316 @@
+//! The house rules, as tests: which crate may use which, how long a file may be,
+//! what each has to have, what none may contain, which licences are fine.
+//!
+//! To change a rule, change it here in the same commit and say why in its message.
+#![allow(clippy::disallowed_methods, reason = "the tests read the sources")]
+
+#[path = "tidy/licences.rs"]
+mod licences;
+
+use std::collections::BTreeSet;
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+
+use g7_model::codes;
+
+/// A crate, what it may use of ours, and of others (`None`: anything).
+type Arrows = (&'static str, &'static [&'static str], Option<&'static [&'static str]>);
+
+/// An arrow that is not here is not allowed.
+const ALLOWED: &[Arrows] = &[
+    ("model", &[], Some(&[])),
+    // It runs in the plant: nothing it did not bring but the functions of `libm`.
+    ("engine", &[], Some(&["libm"])),
+    ("syntax", &["g7-model"], None),
+    ("compile", &["g7-model", "g7-engine"], Some(&[])),
+    ("host", &["g7-engine"], None),
+    ("g7", &["g7-model", "g7-syntax", "g7-engine", "g7-compile", "g7-host"], None),
+];
+
+/// Longest file, in lines.
+const LONGEST: usize = 600;
+
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
+}
+
+/// The files of the repository, relative to its root: those git knows, or all
+/// where there is no git (an unpacked archive).
+fn files() -> Vec<PathBuf> {
+    let listed = std::process::Command::new("git").args(["ls-files", "-z"]).current_dir(root()).output();
+    let mut files: Vec<PathBuf> = match listed {
+        Ok(out) if out.status.success() && !out.stdout.is_empty() => {
+            out.stdout.split(|b| *b == 0).map(|p| PathBuf::from(&*String::from_utf8_lossy(p))).collect()
+        }
+        _ => {
+            let mut all = Vec::new();
+            walk(&root(), &mut all);
+            all.iter().filter_map(|p| p.strip_prefix(root()).ok().map(Path::to_path_buf)).collect()
+        }
+    };
+    // One that was deleted a moment ago is still listed.
+    files.retain(|f| root().join(f).is_file());
+    assert!(files.len() > 100, "only {} files found", files.len());
+    files
+}
+
+fn walk(folder: &Path, all: &mut Vec<PathBuf>) {
+    for entry in std::fs::read_dir(folder).expect("a folder") {
+        let path = entry.expect("an entry").path();
+        let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        if path.is_dir() && !name.starts_with('.') && name != "target" && name != "node_modules" {
+            walk(&path, all);
+        } else if path.is_file() {
+            all.push(path);
+        }
+    }
+}
+
+fn ends_in(file: &Path, endings: &[&str]) -> bool {
+    file.extension().is_some_and(|e| endings.iter().any(|x| e == *x))
+}
+
+fn read(file: impl AsRef<Path>) -> String {
+    let path = root().join(file.as_ref());
+    let bytes = std::fs::read(&path).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
+    String::from_utf8_lossy(&bytes).into_owned()
+}
+
+/// Fails with everything found, not only the first.
+fn none(found: &[String], rule: &str) {
+    let mut text = String::new();
+    found.iter().for_each(|f| {
+        let _ = writeln!(text, "  {f}");
+    });
+    assert!(found.is_empty(), "{rule}:\n{text}");
+}
+
+/// The keys of the tables of dependencies; dev-dependencies are free.
+fn dependencies(manifest: &str) -> Vec<&str> {
+    let mut found = Vec::new();
+    let mut inside = false;
+    for line in manifest.lines().map(str::trim) {
+        if let Some(table) = line.strip_prefix('[') {
+            let table = table.trim_end_matches(']');
+            inside = table == "dependencies"
+                || table == "build-dependencies"
+                || table.starts_with("target.") && table.ends_with(".dependencies");
+            if let Some(name) = table.strip_prefix("dependencies.") {
+                found.push(name);
+            }
+        } else if inside && !line.starts_with('#') && !line.is_empty() {
+            found.extend(line.split(['=', '.']).next().map(str::trim));
+        }
+    }
+    found
+}
+
+#[test]
+fn crates_use_only_what_the_table_allows() {
+    let mut found = Vec::new();
+    let mut seen = 0;
+    for file in files() {
+        let parts: Vec<_> = file.iter().map(|p| p.to_string_lossy().into_owned()).collect();
+        let [place, name, manifest] = &parts[..] else { continue };
+        if place != "crates" || manifest != "Cargo.toml" {
+            continue;
+        }
+        seen += 1;
+        let Some((_, ours, others)) = ALLOWED.iter().find(|(listed, ..)| listed == name) else {
+            found.push(format!("crate `{name}` is not in the table"));
+            continue;
+        };
+        for dependency in dependencies(&read(&file)) {
+            let fine = match dependency.starts_with("g7-") {
+                true => ours.contains(&dependency),
+                false => others.is_none_or(|o| o.contains(&dependency)),
+            };
+            if !fine {
+                found.push(format!("`{name}` may not depend on `{dependency}`"));
+            }
+        }
+    }
+    assert_eq!(seen, ALLOWED.len(), "crates found");
+    none(&found, "arrows that are not in the table");
+}
+
+#[test]
+fn files_are_short_enough_to_be_read() {
+    let ours = files().into_iter().filter(|f| ends_in(f, &["rs", "ts", "svelte"]));
+    let long: Vec<String> = ours
+        .map(|f| (read(&f).lines().count(), f))
+        .filter(|(lines, _)| *lines > LONGEST)
+        .map(|(lines, f)| format!("{}: {lines} lines", f.display()))
+        .collect();
+    none(&long, "files of more than 600 lines; split them by meaning");
+}
+
+#[test]
+fn modules_say_where_they_stand() {
+    let mut found = Vec::new();
+    for file in files() {
+        let inside = file.starts_with("crates") && file.iter().any(|p| p == "src") && ends_in(&file, &["rs"]);
+        let helper = file.starts_with("tests") && ends_in(&file, &["rs"]);
+        if (inside || helper) && !read(&file).trim_start().starts_with("//!") {
+            found.push(file.display().to_string());
+        }
+    }
+    none(&found, "files without a header `//!`");
+}
+
+#[test]
+fn crates_forbid_unsafe_code() {
+    let mut found = Vec::new();
+    for (name, ..) in ALLOWED {
+        let main = format!("crates/{name}/src/main.rs");
+        let file = if root().join(&main).is_file() { main } else { format!("crates/{name}/src/lib.rs") };
+        if !read(&file).contains("#![forbid(unsafe_code)]") {
+            found.push(file);
+        }
+    }
+    none(&found, "crates without `#![forbid(unsafe_code)]`");
+}
+
+#[test]
+fn nothing_is_left_for_later() {
+    // In two parts, so that this file does not hold them.
+    let words = [
+        ["TO", "DO"].concat(),
+        ["FIX", "ME"].concat(),
+        ["unimpl", "emented!"].concat(),
+        ["to", "do!"].concat(),
+        ["#[ig", "nore"].concat(),
+    ];
+    let mut found = Vec::new();
+    for file in files().into_iter().filter(|f| ends_in(f, &["rs"])) {
+        for (k, line) in read(&file).lines().enumerate() {
+            for word in words.iter().filter(|w| has_word(line, w)) {
+                found.push(format!("{}:{}: {word}", file.display(), k + 1));
+            }
+        }
+    }
+    none(&found, "words for unfinished work");
+}
+
+/// Whether a word stands in a line, not as a part of a longer one.
+fn has_word(line: &str, word: &str) -> bool {
+    line.match_indices(word).any(|(at, _)| {
+        let before = line.get(..at).and_then(|s| s.chars().next_back());
+        let behind = line.get(at + word.len()..).and_then(|s| s.chars().next());
+        let letter = |c: Option<char>| c.is_some_and(|c| c.is_alphanumeric() || c == '_');
+        !letter(before) && (!word.ends_with(char::is_alphanumeric) || !letter(behind))
+    })
+}
+
+#[test]
+fn no_path_of_a_machine() {
+    let paths = [["/wo", "rk/"].concat(), ["/tmp", "/t-"].concat(), ["/ho", "me/"].concat()];
+    let mut found = Vec::new();
+    for file in files() {
+        for (k, line) in read(&file).lines().enumerate() {
+            for path in paths.iter().filter(|p| line.contains(*p)) {
+                found.push(format!("{}:{}: {path}", file.display(), k + 1));
+            }
+        }
+    }
+    none(&found, "paths of somebody's machine");
+}
+
+/// The problem codes of the pages `G0123.md`.
+fn pages() -> BTreeSet<String> {
+    let pages = files().into_iter().filter(|f| f.starts_with("docs/book/src/problems"));
+    let stems = pages.filter_map(|f| Some(f.file_stem()?.to_string_lossy().into_owned()));
+    stems.filter(|s| s.starts_with('G')).collect()
+}
+
+#[test]
+fn each_code_has_a_page_and_each_page_a_code() {
+    let codes: BTreeSet<String> = codes::ALL.iter().map(|c| c.id.to_owned()).collect();
+    assert_eq!(codes.len(), codes::ALL.len(), "a code stands there twice");
+    let pages = pages();
+    let missing: Vec<String> = codes.difference(&pages).cloned().collect();
+    none(&missing, "codes without a page in docs/book/src/problems");
+    let stray: Vec<String> = pages.difference(&codes).cloned().collect();
+    none(&stray, "pages without a code");
+}
+
+#[test]
+fn each_code_has_a_case_and_each_case_a_code() {
+    let mut cases = BTreeSet::new();
+    let mut tested = String::new();
+    for file in files() {
+        let name = file.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        if file.starts_with("tests/check") && ends_in(&file, &["g7"]) {
+            cases.insert(name.split('-').next().unwrap_or("").to_uppercase());
+        } else if file.starts_with("crates") && file.iter().any(|p| p == "tests") && ends_in(&file, &["rs"]) {
+            tested.push_str(&read(&file));
+        }
+    }
+    let codes: BTreeSet<String> = codes::ALL.iter().map(|c| c.id.to_owned()).collect();
+    let stray: Vec<String> = cases.difference(&codes).cloned().collect();
+    none(&stray, "cases in tests/check without a code");
+    // What is no text of a chart (broken bytes, huge files, XML) is tested beside its reader.
+    let missing: Vec<String> = codes.difference(&cases).filter(|c| !tested.contains(*c)).cloned().collect();
+    none(&missing, "codes without a case");
+}
+
+/// The rows of the table of rules: line, text of the row, cases named in it.
+fn rules() -> Vec<(usize, String, Vec<String>)> {
+    let mut rows = Vec::new();
+    for (k, line) in read("docs/spec/rules.md").lines().enumerate() {
+        let cells: Vec<&str> = line.trim().trim_matches('|').split('|').map(str::trim).collect();
+        if !line.starts_with('|') || cells.first() == Some(&"rule") || line.starts_with("|---") {
+            continue;
+        }
+        let named = cells.last().unwrap_or(&"").split('`').skip(1).step_by(2);
+        rows.push((k + 1, line.to_owned(), named.map(str::to_owned).collect()));
+    }
+    assert!(rows.len() > 100, "only {} rows of rules", rows.len());
+    rows
+}
+
+#[test]
+fn each_rule_names_cases_that_are_there() {
+    let mut found = Vec::new();
+    for (line, row, cases) in rules() {
+        if cases.is_empty() {
+            found.push(format!("{line}: no case: {row}"));
+        }
+        for case in cases {
+            let spec = root().join(format!("tests/spec/{case}.md")).is_file();
+            // `tests/check` stands for the cases of the checker.
+            if !spec && !(case.starts_with("tests/") && root().join(&case).exists()) {
+                found.push(format!("{line}: `{case}` is not there"));
+            }
+        }
+    }
+    none(&found, "rows of docs/spec/rules.md");
+}
+
+#[test]
+fn each_case_stands_in_a_rule() {
+    let named: BTreeSet<String> = rules().into_iter().flat_map(|(_, _, cases)| cases).collect();
+    let mut found = Vec::new();
+    for file in files() {
+        let Ok(case) = file.strip_prefix("tests/spec") else { continue };
+        let case = case.with_extension("").display().to_string();
+        if ends_in(&file, &["md"]) && case != "README" && !named.contains(&case) {
+            found.push(case);
+        }
+    }
+    none(&found, "cases that no row of docs/spec/rules.md names");
+}
+
+#[test]
+fn licences_are_permissive() {
+    let allowed = licences::allowed(&read("deny.toml"));
+    assert!(allowed.contains("MIT"), "deny.toml allows {allowed:?}");
+    let used = licences::used(&root());
+    assert!(used.len() > 20, "only {} packages", used.len());
+    let bad: Vec<String> = used
+        .iter()
+        .filter(|(_, licence)| !licences::fits(licence, &allowed))
+        .map(|(name, licence)| format!("{name}: {licence}"))
+        .collect();
+    none(&bad, "dependencies with a licence that deny.toml does not allow");
+}
