@@ -224,8 +224,8 @@ pub const DEFECTS: &[Defect] = &[
         t.periods.iter_mut().for_each(|p| *p = 0)
     }),
     // The frame.
-    ("PRE does not run", |t| t.pre = Code::default()),
-    ("POST does not run", |t| t.post = Code::default()),
+    ("PRE does not run", "iec60848/stability-pre-runs-once", |t| t.pre = Code::default()),
+    ("POST does not run", "iec60848/stability-pre-runs-once", |t| t.post = Code::default()),
     ("system bits do nothing", "pl7/s21-initialise", |t| t.services = Code::default()),
     ("system bits do not fall back", "pl7/s0-and-s1", |t| t.tail = Code::default()),
     ("the target has no limits", "pl7/s25-table-overflow", |t| t.limits = None),
