@@ -180,11 +180,15 @@ fn apply(p: &Program, s: &mut State) {
 #[inline]
 pub(crate) fn activate(p: &Program, s: &mut State, step: u32) {
     s.x.changed = true;
+    s.x.stepped = true;
     s.x.moved += 1;
     let tree = s.steps;
     tree.insert(&mut s.w, step);
     let now = clock(p, s) as u64;
     s.set(p.layout.stamps as usize + step as usize, now);
+    if p.t.rules.scan_clock {
+        s.set((p.layout.ages + step) as usize, s.now() as u64);
+    }
     let Some(row) = p.t.steps.get(step as usize) else { return };
     if row.direct.0 != NONE {
         s.set((s.vars + row.direct.0) as usize, 1);
@@ -200,12 +204,18 @@ pub(crate) fn activate(p: &Program, s: &mut State, step: u32) {
 #[inline]
 pub(crate) fn deactivate(p: &Program, s: &mut State, step: u32) {
     s.x.changed = true;
+    s.x.stepped = true;
     s.x.moved += 1;
     let tree = s.steps;
     tree.remove(&mut s.w, step);
     let at = p.layout.stamps as usize + step as usize;
     let gone = if p.t.rules.keep_step_time { clock(p, s).wrapping_sub(word(&s.w, at) as i64) } else { 0 };
     s.set(at, gone as u64);
+    if p.t.rules.scan_clock {
+        let at = (p.layout.ages + step) as usize;
+        let age = s.now().wrapping_sub(word(&s.w, at) as i64);
+        s.set(at, if p.t.rules.keep_step_time { age as u64 } else { 0 });
+    }
     let Some(row) = p.t.steps.get(step as usize) else { return };
     if row.direct.0 != NONE {
         s.set((s.vars + row.direct.0) as usize, 0);
@@ -287,18 +297,22 @@ fn count_groups(p: &Program, s: &mut State, e: &Extra, on: bool) {
 /// Notes when a group came on, or how long it was on. One that loses its last
 /// step and gets another in the same change was active without a break.
 fn stamp_group(p: &Program, s: &mut State, group: u32, on: bool) {
-    let at = (p.layout.group_stamps + group) as usize;
-    let (now, old) = (clock(p, s), word(&s.w, at));
-    let stamp = if on {
+    let l = &p.layout;
+    let (stamp, age) = ((l.group_stamps + group) as usize, (l.group_ages + group) as usize);
+    let (clock, now) = (clock(p, s) as u64, s.now() as u64);
+    let old = (word(&s.w, stamp), word(&s.w, age));
+    let new = if on {
         let kept = s.x.emptied.iter().rev().find(|e| e.0 == group);
-        kept.map_or(now as u64, |e| e.1)
+        kept.map_or((clock, now), |e| e.1)
     } else {
         if s.x.emptied.len() < s.x.emptied.capacity() {
             s.x.emptied.push((group, old));
         }
-        if p.t.rules.keep_step_time { now.wrapping_sub(old as i64) as u64 } else { 0 }
+        let keep = p.t.rules.keep_step_time;
+        if keep { (clock.wrapping_sub(old.0), now.wrapping_sub(old.1)) } else { (0, 0) }
     };
-    s.set(at, stamp);
+    s.set(age, new.1);
+    s.set(stamp, new.0);
 }
 
 /// Runs one action where its condition holds and its period is due.
@@ -352,23 +366,22 @@ fn run_parallel(p: &Program, s: &mut State) -> Result<(), Fault> {
     Ok(())
 }
 
-/// Makes the noted writes; the later one wins, and a disagreement is told.
+/// Makes the noted writes; the later one wins, and a disagreement is told. A
+/// word that ends as it was has not changed, whatever it was given in between.
 fn write_commits(p: &Program, s: &mut State) {
     if s.x.commits.is_empty() {
         return;
     }
     s.x.pass_serial = s.x.pass_serial.wrapping_add(1).max(1);
     let serial = s.x.pass_serial;
-    for k in 0..s.x.commits.len() {
-        let Some(&(addr, new)) = s.x.commits.get(k) else { break };
-        if let Some(mark) = s.x.commit_mark.get_mut(addr as usize) {
-            let again = *mark == serial;
-            *mark = serial;
-            if again && read(s, Addr(addr)) != new && s.x.conflict.is_none() {
-                s.x.conflict = Some(Addr(addr));
-            }
+    let mut conflict = None;
+    while let Some((addr, new)) = s.x.commits.pop() {
+        let mark = s.x.commit_mark.get_mut(addr as usize);
+        if mark.is_none_or(|mark| core::mem::replace(mark, serial) != serial) {
+            write(p, s, Addr(addr), new);
+        } else if read(s, Addr(addr)) != new {
+            conflict = Some(Addr(addr));
         }
-        write(p, s, Addr(addr), new);
     }
-    s.x.commits.clear();
+    s.x.conflict = s.x.conflict.or(conflict);
 }

@@ -77,6 +77,8 @@ impl Program {
                 Op::StepTime(_)
                     | Op::StepTenths(_)
                     | Op::GroupTime(_)
+                    | Op::StepAge(_)
+                    | Op::GroupAge(_)
                     | Op::ScanTime
                     | Op::Random(_)
                     | Op::Fb(..)
@@ -109,6 +111,8 @@ impl Program {
                 && t.limits.is_none()
                 && !t.code.iter().any(reads_time),
             frame,
+            locals: if t.locals.is_empty() { u32::MAX } else { t.locals.start },
+            comes_and_goes: t.rules.stable && (t.rules.sequential || !t.rules.parallel_actions),
             looks_back: t.code.iter().any(|op| matches!(op, Op::WasActive(_))),
             has_orders: !t.orders.is_empty(),
             has_hierarchy,
@@ -190,6 +194,9 @@ impl Check<'_> {
         }
         rows(t.inputs, t.init.len(), "inputs", 0)?;
         rows(t.outputs, t.init.len(), "outputs", 0)?;
+        if !t.locals.is_empty() && t.locals.end as usize != t.init.len() {
+            return Err(bad("locals", 0));
+        }
         if t.safe.len() != (t.outputs.end - t.outputs.start) as usize {
             return Err(bad("safe", 0));
         }
@@ -461,8 +468,12 @@ impl Check<'_> {
         match *op {
             Op::Load(a) | Op::Store(a) | Op::Random(a) => words(a, 1),
             Op::LoadAt { base, len } | Op::StoreAt { base, len } => words(base, len as usize),
-            Op::Active(s) | Op::WasActive(s) | Op::StepTime(s) | Op::StepTenths(s) => step(s),
-            Op::GroupActive(g) | Op::GroupTime(g) => within(g.0, t.groups.len(), "code", row),
+            Op::Active(s) | Op::WasActive(s) | Op::StepAge(s) | Op::StepTime(s) | Op::StepTenths(s) => {
+                step(s)
+            }
+            Op::GroupActive(g) | Op::GroupTime(g) | Op::GroupAge(g) => {
+                within(g.0, t.groups.len(), "code", row)
+            }
             Op::Due(period) => within(period, t.periods.len(), "code", row),
             Op::Rise(w) | Op::Fall(w) | Op::Timer(w) => within(w.0, t.watches.len(), "code", row),
             Op::Text { to, cap, .. } | Op::StoreText { to, cap } | Op::ToText { to, cap, .. } => {
@@ -489,6 +500,8 @@ fn effect(op: &Op) -> (i16, i16) {
         | Op::WasActive(_)
         | Op::GroupActive(_)
         | Op::GroupTime(_)
+        | Op::StepAge(_)
+        | Op::GroupAge(_)
         | Op::Due(_)
         | Op::StepTime(_)
         | Op::StepTenths(_)

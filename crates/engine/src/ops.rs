@@ -241,6 +241,10 @@ pub enum Op {
     /// Pushes the time since a step of the group became active while none was,
     /// ns; scans under the scan clock.
     GroupTime(GroupId),
+    /// Pushes the time since activation, ns, under the scan clock too.
+    StepAge(StepId),
+    /// The same of a group.
+    GroupAge(GroupId),
     /// Pushes whether this row of [`crate::Tables::periods`] is due in this scan.
     Due(u32),
     /// Pushes whether the watched expression rose in this pass.

@@ -15,6 +15,12 @@ pub(crate) fn evolve(p: &Program, s: &mut State) -> Result<bool, Fault> {
     if p.has_periods || p.has_orders {
         block(p, s);
     }
+    if p.comes_and_goes {
+        let State { w, x, vars, var_words, .. } = s;
+        x.before_pass.clear();
+        x.before_pass.extend_from_slice(w.get(*vars as usize..(*vars + *var_words) as usize).unwrap_or(&[]));
+        x.stepped = false;
+    }
     if p.looks_back {
         let base = s.steps.base() as usize;
         let State { w, x, .. } = s;
@@ -26,7 +32,7 @@ pub(crate) fn evolve(p: &Program, s: &mut State) -> Result<bool, Fault> {
     if !p.t.events.is_empty() {
         events(p, s)?;
     }
-    // What receptivities leave in the words of functions is no change.
+    // What receptivities leave in the outputs of sections is no change.
     s.x.changed = false;
     if p.has_orders {
         force(s)?;
@@ -42,6 +48,10 @@ pub(crate) fn evolve(p: &Program, s: &mut State) -> Result<bool, Fault> {
     } else {
         mark(p, s);
         commit(p, s)?;
+    }
+    if p.comes_and_goes && s.x.changed && !s.x.stepped {
+        let to = p.locals.min(s.var_words) as usize;
+        s.x.changed = s.words().get(..to) != s.x.before_pass.get(..to);
     }
     Ok(s.x.changed)
 }

@@ -338,6 +338,10 @@ pub struct Tables {
     pub outputs: Rows,
     /// Values of the outputs' words after a fault.
     pub safe: Vec<u64>,
+    /// Words that code writes before it reads them: `start..end` of the variable
+    /// area, up to its end. Writing them changes nothing, and every scan leaves
+    /// them zero, so that states differ only where their futures can.
+    pub locals: Rows,
     /// Steps.
     pub steps: Vec<Step>,
     /// What few steps have.
@@ -445,6 +449,10 @@ pub struct Program {
     pub(crate) has_orders: bool,
     /// Some code asks for the situation as the pass began.
     pub(crate) looks_back: bool,
+    /// First word of the locals, or past all words.
+    pub(crate) locals: u32,
+    /// Within a pass of a search for stability a variable can change and change back.
+    pub(crate) comes_and_goes: bool,
     pub(crate) has_hierarchy: bool,
     pub(crate) has_periods: bool,
     /// Some transitions share a preceding step and are not settled by their place.

@@ -20,18 +20,16 @@ pub(crate) fn read(s: &State, addr: Addr) -> u64 {
 pub(crate) fn write(p: &Program, s: &mut State, addr: Addr, value: u64) {
     let at = (s.vars + addr.0) as usize;
     let old = word(&s.w, at);
-    if old == value {
-        // An unchanged word still counts as written where writes are compared.
-        if s.x.logging {
-            log(s, addr, old);
-        }
-        return;
-    }
-    if s.x.logging {
+    let lasts = addr.0 < p.locals;
+    // An unchanged word still counts as written where writes are compared.
+    if s.x.logging && lasts {
         log(s, addr, old);
     }
+    if old == value {
+        return;
+    }
     s.set(at, value);
-    s.x.changed = true;
+    s.x.changed |= lasts;
     notice(p, s, addr);
 }
 
@@ -195,6 +193,14 @@ fn rare(p: &Program, s: &mut State, op: Op) -> Result<(), FaultKind> {
             let v = s.group_time(p, g) as u64;
             s.x.stack.push(v);
         }
+        Op::StepAge(step) => {
+            let v = s.step_age(p, step) as u64;
+            s.x.stack.push(v);
+        }
+        Op::GroupAge(g) => {
+            let v = s.group_age(p, g) as u64;
+            s.x.stack.push(v);
+        }
         Op::Due(period) => {
             let v = u64::from(crate::watch::is_due(p, s, period));
             s.x.stack.push(v);
@@ -288,13 +294,16 @@ fn request(p: &Program, s: &mut State, service: Service) {
 
 /// RESET_XIT: active steps start anew at 0, the others have been active for 0.
 fn reset_times(p: &Program, s: &mut State) {
-    let now = clock(p, s) as u64;
+    let (clock, now) = (clock(p, s) as u64, s.now() as u64);
+    let l = &p.layout;
     for i in 0..p.t.steps.len() as u32 {
-        let stamp = if s.steps.contains(&s.w, i) { now } else { 0 };
-        s.set(p.layout.stamps as usize + i as usize, stamp);
+        let active = s.steps.contains(&s.w, i);
+        s.set((l.ages + i) as usize, if active { now } else { 0 });
+        s.set((l.stamps + i) as usize, if active { clock } else { 0 });
     }
     for g in 0..p.t.groups.len() as u32 {
-        let stamp = if s.group_active(p, crate::GroupId(g)) { now } else { 0 };
-        s.set((p.layout.group_stamps + g) as usize, stamp);
+        let active = s.group_active(p, crate::GroupId(g));
+        s.set((l.group_ages + g) as usize, if active { now } else { 0 });
+        s.set((l.group_stamps + g) as usize, if active { clock } else { 0 });
     }
 }

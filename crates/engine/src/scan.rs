@@ -337,6 +337,12 @@ pub fn finish(p: &Program, s: &mut State) -> Result<(), Fault> {
         write(p, s, flag, 1);
         return Err(FaultKind::Table.nowhere());
     }
+    if !t.locals.is_empty() {
+        let (from, to) = (s.vars + t.locals.start, s.vars + t.locals.end);
+        if let Some(words) = s.w.get_mut(from as usize..to as usize) {
+            words.fill(0);
+        }
+    }
     s.x.quiet = p.timeless && s.x.idle && !s.x.changed && !waits(p, s);
     Ok(())
 }

@@ -53,6 +53,8 @@ pub(crate) struct Layout {
     pub(crate) vars: u32,
     /// A word a step: when activated while active, how long while not.
     pub(crate) stamps: u32,
+    /// The same in nanoseconds: the stamps themselves but under the scan clock.
+    pub(crate) ages: u32,
     /// A bit a watch: its value (of a timer: its condition).
     pub(crate) value: u32,
     /// A bit a watch: it rose in this pass.
@@ -73,6 +75,8 @@ pub(crate) struct Layout {
     pub(crate) groups: u32,
     /// A word a group: when it became active while active, how long while not.
     pub(crate) group_stamps: u32,
+    /// The same in nanoseconds.
+    pub(crate) group_ages: u32,
     /// A bit a contribution: it counts at present (those with a condition or time).
     pub(crate) counted: u32,
     /// Contributions with a condition or time whose step is active.
@@ -108,6 +112,7 @@ impl Layout {
         }
         l.vars = take(&mut next, n(t.init.len()));
         l.stamps = take(&mut next, steps);
+        l.ages = if t.rules.scan_clock { take(&mut next, steps) } else { l.stamps };
         let bits = watches.div_ceil(64);
         l.value = take(&mut next, bits);
         l.rise = take(&mut next, bits);
@@ -119,6 +124,7 @@ impl Layout {
         l.start = take(&mut next, watches);
         l.groups = take(&mut next, n(t.groups.len()));
         l.group_stamps = take(&mut next, n(t.groups.len()));
+        l.group_ages = if t.rules.scan_clock { take(&mut next, n(t.groups.len())) } else { l.group_stamps };
         let contributions = n(t.contributions.len());
         l.counted = take(&mut next, contributions.div_ceil(64));
         l.conditions = Tree::reserve(contributions, &mut next);
@@ -152,6 +158,10 @@ pub(crate) struct Scratch {
     pub(crate) came: Vec<u32>,
     /// Step bits as the pass began, where some code looks back.
     pub(crate) was: Box<[u64]>,
+    /// Variables as the pass began, where they may change and change back in it.
+    pub(crate) before_pass: Vec<u64>,
+    /// A step came on or went off in this pass.
+    pub(crate) stepped: bool,
     pub(crate) off: Vec<u32>,
     pub(crate) on_mark: Box<[u64]>,
     pub(crate) off_mark: Box<[u64]>,
@@ -176,7 +186,7 @@ pub(crate) struct Scratch {
     pub(crate) commit_mark: Vec<u32>,
     pub(crate) pass_serial: u32,
     /// Groups that lost their last step in the change in hand, with their stamps.
-    pub(crate) emptied: Vec<(u32, u64)>,
+    pub(crate) emptied: Vec<(u32, (u64, u64))>,
     pub(crate) changed: bool,
     pub(crate) work: u32,
     pub(crate) saved: Vec<u64>,
@@ -252,6 +262,7 @@ impl State {
             chain: Vec::with_capacity(if t.rules.sequential { 2 * steps + 1 } else { 0 }),
             left: Vec::with_capacity(if t.rules.sequential { 2 * steps + 1 } else { 0 }),
             came: Vec::with_capacity(if t.rules.sequential { 2 * steps + 1 } else { 0 }),
+            before_pass: Vec::with_capacity(if p.comes_and_goes { t.init.len() } else { 0 }),
             was: bits(if p.looks_back { steps } else { 0 }),
             on_mark: bits(steps),
             off_mark: bits(steps),
@@ -351,6 +362,18 @@ impl State {
     pub fn step_time(&self, p: &Program, step: StepId) -> i64 {
         let stamp = word(&self.w, p.layout.stamps as usize + step.0 as usize) as i64;
         if self.is_active(step) { crate::clock(p, self).wrapping_sub(stamp) } else { stamp }
+    }
+
+    /// Time since the step's latest activation in ns, whatever the clock.
+    pub fn step_age(&self, p: &Program, step: StepId) -> i64 {
+        let stamp = word(&self.w, p.layout.ages as usize + step.0 as usize) as i64;
+        if self.is_active(step) { self.now().wrapping_sub(stamp) } else { stamp }
+    }
+
+    /// Time since the group became active in ns, whatever the clock.
+    pub fn group_age(&self, p: &Program, group: GroupId) -> i64 {
+        let stamp = word(&self.w, p.layout.group_ages as usize + group.0 as usize) as i64;
+        if self.group_active(p, group) { self.now().wrapping_sub(stamp) } else { stamp }
     }
 
     /// The output of a timer.

@@ -11,7 +11,9 @@ use g7_model::{Span, Type};
 use super::uses::{DEPTH, timed_step};
 use super::words::{capacity, num, word_of};
 use super::{Lower, Refusal};
-use crate::ir::{BinaryOp, Expr, ExprKind, FunctionId, SectionId, StepId, Value, VarClass, VarId};
+use crate::ir::{
+    BinaryOp, Expr, ExprKind, FunctionId, SectionId, StepId, StmtKind, Target, Value, VarClass, VarId,
+};
 
 /// Instructions that one program may have; more comes only from functions that
 /// call functions that call functions.
@@ -168,7 +170,11 @@ impl Lower<'_> {
                 b.op(Op::Call(Builtin::Min, Num::I64, 2), at);
             }
             ExprKind::StepSeconds(step) => {
-                self.step_time(b, *step, at);
+                self.clock(b, *step, at);
+                if self.unit.rules.scan_clock {
+                    b.op(Op::Push(self.unit.cycle as u64), at);
+                    b.op(Op::Arith(Arith::Mul, Num::I64), at);
+                }
                 b.op(Op::Convert(Num::I64, Num::F64), at);
                 b.op(Op::Push(1e9f64.to_bits()), at);
                 b.op(Op::Arith(Arith::Div, Num::F64), at);
@@ -225,7 +231,7 @@ impl Lower<'_> {
 
     fn load(&mut self, b: &mut Buf, var: VarId, at: Span) {
         let Some(v) = self.unit.vars.get(var.index()) else { return };
-        let addr = self.words.addr(var);
+        let addr = self.addr(var);
         match v.ty {
             Type::String(_) => {
                 self.reads_words(b, var, addr, super::words::words_of(v.ty));
@@ -284,25 +290,40 @@ impl Lower<'_> {
         }
     }
 
-    /// Pushes the clock of a step as the engine counts it.
+    /// Pushes the clock of a step as the engine counts it; of a macro-step, since
+    /// a step of its expansion is active.
     fn clock(&mut self, b: &mut Buf, step: StepId, at: Span) {
+        self.time(b, step, (Op::StepTime, Op::GroupTime), at);
+    }
+
+    /// Pushes the time since activation, ns, whatever the clock.
+    pub(super) fn step_time(&mut self, b: &mut Buf, step: StepId, at: Span) {
+        let scans = self.unit.rules.scan_clock;
+        let ops: (fn(Number) -> Op, fn(GroupId) -> Op) =
+            if scans { (Op::StepAge, Op::GroupAge) } else { (Op::StepTime, Op::GroupTime) };
+        self.time(b, step, ops, at);
+    }
+
+    /// A time goes on by itself, and starts anew within a scan.
+    fn time(
+        &mut self,
+        b: &mut Buf,
+        step: StepId,
+        (of_step, of_group): (fn(Number) -> Op, fn(GroupId) -> Op),
+        at: Span,
+    ) {
         b.reads.time = true;
         let group = self.plan.expansion(self.unit, step).and_then(|c| self.plan.group(c));
         match (group, self.plan.own(step)) {
-            (Some(group), _) => b.op(Op::GroupTime(group), at),
-            (None, Some(n)) => b.op(Op::StepTime(n), at),
+            (Some(group), _) => {
+                b.reads.groups.push(group);
+                b.op(of_group(group), at);
+            }
+            (None, Some(n)) => {
+                b.reads.steps.push(n);
+                b.op(of_step(n), at);
+            }
             (None, None) => b.op(Op::Push(0), at),
-        }
-    }
-
-    /// Pushes the time since activation, ns; of a macro-step, since a step of its
-    /// expansion is active. Under the scan clock it is the
-    /// count of scans times the nominal scan time.
-    pub(super) fn step_time(&mut self, b: &mut Buf, step: StepId, at: Span) {
-        self.clock(b, step, at);
-        if self.unit.rules.scan_clock {
-            b.op(Op::Push(self.unit.cycle as u64), at);
-            b.op(Op::Arith(Arith::Mul, Num::I64), at);
         }
     }
 
@@ -310,6 +331,7 @@ impl Lower<'_> {
         let is_macro = self.plan.expansion(self.unit, step).is_some();
         if let (false, false, Some(n)) = (self.unit.rules.scan_clock, is_macro, self.plan.own(step)) {
             b.reads.time = true;
+            b.reads.steps.push(n);
             return b.op(Op::StepTenths(n), at);
         }
         self.step_time(b, step, at);
@@ -436,12 +458,37 @@ impl Lower<'_> {
         }
     }
 
-    /// A transition section, in place.
+    /// A transition section, in place. Its output is FALSE at the start of each
+    /// run, but takes its value only at the end: what it has been in between is
+    /// no change.
     fn section(&mut self, b: &mut Buf, s: SectionId, at: Span) {
         let unit = self.unit;
         let Some(section) = unit.sections.get(s.index()) else { return b.op(Op::Push(0), at) };
-        self.inline(b, &section.statements);
-        self.load(b, section.output, at);
+        if let [only] = section.statements.as_slice()
+            && let StmtKind::Assign(Target::Var(to), e) = &only.kind
+            && *to == section.output
+        {
+            self.expr(b, e);
+        } else {
+            let value = self.words.hidden(0);
+            b.op(Op::Push(0), at);
+            b.op(Op::Store(value), at);
+            let outer = self.section.replace((section.output, value));
+            self.inline(b, &section.statements);
+            self.section = outer;
+            b.op(Op::Load(value), at);
+        }
+        let to = self.words.addr(section.output);
+        b.op(Op::Store(to), at);
+        b.op(Op::Load(to), at);
+    }
+
+    /// Where a variable is read and written now.
+    fn addr(&self, var: VarId) -> Addr {
+        match self.section {
+            Some((output, value)) if output == var => value,
+            _ => self.words.addr(var),
+        }
     }
 
     fn clear(&mut self, b: &mut Buf, var: VarId, at: Span) {
@@ -453,7 +500,7 @@ impl Lower<'_> {
 
     /// Pops into a variable.
     pub(super) fn store(&mut self, b: &mut Buf, var: VarId, at: Span) {
-        let to = self.words.addr(var);
+        let to = self.addr(var);
         match self.unit.vars.get(var.index()).map(|v| v.ty) {
             Some(Type::String(n)) => b.op(Op::StoreText { to, cap: capacity(n) }, at),
             Some(_) => b.op(Op::Store(to), at),

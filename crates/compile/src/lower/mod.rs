@@ -28,7 +28,7 @@ mod words;
 
 use std::collections::BTreeMap;
 
-use g7_engine::{Addr, Code, Extra, LoadError, NONE, Program, Step, Tables};
+use g7_engine::{Addr, Code, Extra, LoadError, NONE, Program, Rows, Step, Tables};
 use g7_model::{Problem, Span, codes};
 
 use crate::ir::{ChartId, Expr, StepId, Unit, VarId};
@@ -64,7 +64,7 @@ enum Refusal {
 /// The work in hand.
 struct Lower<'a> {
     unit: &'a Unit,
-    uses: Uses,
+    uses: Uses<'a>,
     plan: Plan,
     words: Words,
     t: Tables,
@@ -93,6 +93,8 @@ struct Lower<'a> {
     /// Empty where there is no task.
     owners: Vec<Option<Addr>>,
     freezes: Vec<Option<Freeze>>,
+    /// The output of the section in hand and where it is worked out.
+    section: Option<(VarId, Addr)>,
     /// Some chart is enabled, frozen or can be stopped.
     has_blockers: bool,
     has_masks: bool,
@@ -139,7 +141,7 @@ fn deep(at: Span) -> Problem {
 /// # Errors
 ///
 /// A problem with its place where the unit is too large or nested too deeply.
-pub fn lower(unit: &Unit, queries: &[Expr]) -> Result<Lowered, Problem> {
+pub fn lower<'a>(unit: &'a Unit, queries: &'a [Expr]) -> Result<Lowered, Problem> {
     let uses = uses::uses(unit, queries);
     let plan = Plan::new(unit, &uses);
     let words = Words::new(unit);
@@ -170,6 +172,7 @@ pub fn lower(unit: &Unit, queries: &[Expr]) -> Result<Lowered, Problem> {
         callers: Vec::new(),
         owners: Vec::new(),
         freezes: Vec::new(),
+        section: None,
         has_blockers: false,
         has_masks: false,
     };
@@ -202,6 +205,10 @@ impl Lower<'_> {
         self.stop_all = self.stop_bit();
         self.look_at_periods();
         self.look_at_orders();
+        for text in std::mem::take(&mut self.uses.texts) {
+            self.words.text(text);
+        }
+        let locals = self.words.place_locals(self.unit);
         self.groups();
         self.t.steps = self.steps();
         let mut actions = self.actions();
@@ -211,6 +218,8 @@ impl Lower<'_> {
         let queries: Vec<Code> = queries.iter().map(|q| self.code_of(0, q)).collect();
         self.extras(&mut actions);
         let symbols = self.symbols(&ranks, &mut actions);
+        let end = self.words.init.len() as u32;
+        self.t.locals = if locals < end { Rows { start: locals, end } } else { Rows::default() };
         self.t.inputs = self.words.inputs;
         self.t.outputs = self.words.outputs;
         self.t.safe = std::mem::take(&mut self.words.safe);

@@ -5,14 +5,16 @@
 //! step of their own, which outputs may be written with their step at once,
 //! which charts can be frozen.
 
-use crate::ir::{ActionKind, ChartId, Expr, ExprKind, Service, StepId, Stmt, StmtKind, Target, Unit, VarId};
+use crate::ir::{
+    ActionKind, ChartId, Expr, ExprKind, Service, StepId, Stmt, StmtKind, Target, Unit, Value, VarId,
+};
 use g7_model::Qualifier;
 
 /// Nesting beyond which a chart is refused; see [`super::Lower::expr`].
 pub(super) const DEPTH: u32 = 1000;
 
 /// What is done with what.
-pub(super) struct Uses {
+pub(super) struct Uses<'a> {
     /// By variable: read by a receptivity, watch, condition or stored action,
     /// which may run before the end of the scan.
     pub(super) early: Vec<bool>,
@@ -24,22 +26,26 @@ pub(super) struct Uses {
     pub(super) frozen: Vec<bool>,
     /// By step: `enable`, `mask` or `call` stands in it, or other actions.
     pub(super) acts: Vec<bool>,
+    /// Every text that is written.
+    pub(super) texts: Vec<&'a str>,
     /// Something asks for a random number.
     pub(super) random: bool,
     /// Operands and operators written, about as many as there will be instructions.
     pub(super) size: usize,
 }
 
+static NO_TIME: Option<Expr> = None;
+
 struct Walk<'a> {
     unit: &'a Unit,
-    uses: Uses,
+    uses: Uses<'a>,
     /// What is read now is read before the end of the scan.
     early: bool,
     depth: u32,
 }
 
 /// Looks through the unit and the queries on it.
-pub(super) fn uses(unit: &Unit, queries: &[Expr]) -> Uses {
+pub(super) fn uses<'a>(unit: &'a Unit, queries: &'a [Expr]) -> Uses<'a> {
     let vars = unit.vars.len();
     let uses = Uses {
         early: vec![false; vars],
@@ -47,6 +53,7 @@ pub(super) fn uses(unit: &Unit, queries: &[Expr]) -> Uses {
         named: vec![false; vars],
         frozen: vec![false; unit.charts.len()],
         acts: unit.steps.iter().map(|s| !s.actions.is_empty() || !s.calls.is_empty()).collect(),
+        texts: vec![""],
         random: false,
         size: 0,
     };
@@ -73,7 +80,7 @@ pub(super) fn uses(unit: &Unit, queries: &[Expr]) -> Uses {
     walk.uses
 }
 
-impl Walk<'_> {
+impl<'a> Walk<'a> {
     fn actions(&mut self) {
         let unit = self.unit;
         // Pulses of bodies run within the pass in some profiles.
@@ -101,7 +108,7 @@ impl Walk<'_> {
                     self.stmts(work);
                 }
                 ActionKind::EachScan { work, condition } => {
-                    self.conditions(&None, condition);
+                    self.conditions(&NO_TIME, condition);
                     // JGrafchart's periodic actions still see the outputs of the scan before.
                     self.early = unit.rules.periodic_first;
                     self.stmts(work);
@@ -122,7 +129,7 @@ impl Walk<'_> {
         !self.unit.rules.late_actions && matches!(qualifier, Qualifier::P1 | Qualifier::P0)
     }
 
-    fn conditions(&mut self, time: &Option<Expr>, condition: &Option<Expr>) {
+    fn conditions(&mut self, time: &'a Option<Expr>, condition: &'a Option<Expr>) {
         for e in [time, condition].into_iter().flatten() {
             self.expr(e);
         }
@@ -150,13 +157,13 @@ impl Walk<'_> {
         }
     }
 
-    fn watched(&mut self, e: &Expr) {
+    fn watched(&mut self, e: &'a Expr) {
         let early = std::mem::replace(&mut self.early, true);
         self.expr(e);
         self.early = early;
     }
 
-    fn expr(&mut self, e: &Expr) {
+    fn expr(&mut self, e: &'a Expr) {
         if self.depth > DEPTH {
             return; // the emitter reports it
         }
@@ -170,6 +177,7 @@ impl Walk<'_> {
             e = left;
         }
         match &e.kind {
+            ExprKind::Const(Value::Str(text)) => self.uses.texts.push(text),
             ExprKind::Const(_)
             | ExprKind::StepActive(_)
             | ExprKind::StepTime(_)
@@ -203,7 +211,7 @@ impl Walk<'_> {
         self.depth -= 1;
     }
 
-    fn target(&mut self, t: &Target) {
+    fn target(&mut self, t: &'a Target) {
         match t {
             Target::Var(v) | Target::Member(v, _) => self.write(*v),
             Target::Element(v, index) => {
@@ -213,7 +221,7 @@ impl Walk<'_> {
         }
     }
 
-    fn stmts(&mut self, list: &[Stmt]) {
+    fn stmts(&mut self, list: &'a [Stmt]) {
         if self.depth > DEPTH {
             return; // the emitter reports it
         }
@@ -224,7 +232,7 @@ impl Walk<'_> {
         self.depth -= 1;
     }
 
-    fn stmt(&mut self, s: &Stmt) {
+    fn stmt(&mut self, s: &'a Stmt) {
         self.uses.size += 1;
         match &s.kind {
             StmtKind::Assign(target, e) => {

@@ -1,7 +1,8 @@
 //! The variable area: which word holds what.
 //!
-//! Inputs first, then outputs, then everything else: internal variables,
-//! instances, constants, locals, and what only the lowering knows of. A word is
+//! Inputs first, then outputs, then everything else that lasts: internal
+//! variables, instances, constants, texts, and what only the lowering knows of.
+//! Behind them lie the locals and words for what is worked out in between. A word is
 //! a number; a STRING(n) is its length in bytes and `ceil(n / 8)` words of text.
 
 use std::collections::HashMap;
@@ -54,8 +55,15 @@ impl Words {
             }
         }
         w.safe.resize((w.outputs.end - w.outputs.start) as usize, 0);
-        w.place(unit, |c| !matches!(c, VarClass::Input | VarClass::Output));
+        w.place(unit, |c| !matches!(c, VarClass::Input | VarClass::Output | VarClass::Local));
         w
+    }
+
+    /// Places the locals; only words that need not last may come behind them.
+    pub(super) fn place_locals(&mut self, unit: &Unit) -> u32 {
+        let start = self.init.len() as u32;
+        self.place(unit, |c| c == VarClass::Local);
+        start
     }
 
     fn place(&mut self, unit: &Unit, wanted: impl Fn(VarClass) -> bool) {
@@ -69,7 +77,11 @@ impl Words {
                 *a = self.init.len() as u32;
             }
             for k in 0..var.elements as usize {
-                push_value(&mut self.init, var.ty, initial(var, k));
+                if var.class == VarClass::Local {
+                    self.init.resize(self.init.len() + words_of(var.ty) as usize, 0);
+                } else {
+                    push_value(&mut self.init, var.ty, initial(var, k));
+                }
             }
         }
     }
@@ -79,13 +91,14 @@ impl Words {
         Addr(self.addr.get(var.index()).copied().filter(|a| *a != NONE).unwrap_or(0))
     }
 
-    /// A word that no variable of the unit has.
+    /// A word that no variable of the unit has. Asked for before the locals are
+    /// placed it lasts, behind them it lasts for one run.
     pub(super) fn hidden(&mut self, init: u64) -> Addr {
         self.init.push(init);
         Addr(self.init.len() as u32 - 1)
     }
 
-    /// Room for a text of so many bytes.
+    /// Room for a text of so many bytes, for one run.
     pub(super) fn text_room(&mut self, cap: u16) -> Addr {
         let at = Addr(self.init.len() as u32);
         let words = words_of(Type::String(cap)) as usize;
@@ -93,7 +106,7 @@ impl Words {
         at
     }
 
-    /// Where a constant text lies.
+    /// Where a constant text lies; all are asked for before the locals are placed.
     pub(super) fn text(&mut self, text: &str) -> Addr {
         if let Some(a) = self.texts.get(text) {
             return *a;

@@ -113,6 +113,38 @@ fn functions_are_written_out_with_their_own_words() {
 }
 
 #[test]
+fn what_functions_leave_behind_is_no_change() {
+    // Two receptivities call one function with different arguments in every
+    // pass, and so do two stored actions: nothing of that shows.
+    let c = compiled(
+        "function Over(x : INT) : BOOL { Over := x > 5; }
+         input n : INT  var p, q : BOOL
+         chart G { initial step 1 { P1 p := Over(3) P1 q := Over(7) }
+           () -> 1 when Over(6)  () -> 1 when Over(1)  1 -> () when Over(n) }",
+    );
+    let t = c.tables();
+    assert_eq!((t.locals.start, t.locals.end), (c.addr("Over.x").0, t.init.len() as u32));
+    let mut run = c.start();
+    run.scan();
+    assert_eq!((run.value("p"), run.value("q")), ("FALSE".into(), "TRUE".to_owned()));
+    assert_eq!(run.situation(), "1");
+    let words = &run.state.words()[t.locals.start as usize..];
+    assert!(words.iter().all(|w| *w == 0), "a scan leaves them zero");
+}
+
+#[test]
+fn constant_texts_last_and_intermediate_ones_do_not() {
+    let c = compiled(
+        "var s : STRING(12)  var t : STRING(12) := 'x'
+         post { s := CONCAT(CONCAT('ab', t), 'cd') }  chart G { initial step 1 }",
+    );
+    let mut run = c.start();
+    run.scan();
+    assert_eq!(run.scan().value("s"), "'abxcd'");
+    assert!(run.state.words()[c.tables().locals.start as usize..].iter().all(|w| *w == 0));
+}
+
+#[test]
 fn a_transition_section_runs_when_the_transition_is_judged() {
     let c = compiled(
         "profile unity  input n : INT
