@@ -300,8 +300,11 @@ impl<'d> Maker<'d> {
                 );
                 return;
             };
-            let way = at.binary(BinaryOp::Mul, value, at.var(STEP_LREAL));
-            t.advance(r.at, &way, &length)
+            // Once for all parts, which go the same way.
+            let way = t.way();
+            let mut body = vec![at.assign(&way, at.binary(BinaryOp::Mul, value, at.var(STEP_LREAL)))];
+            body.extend(t.advance(r.at, &at.var(&way), &length));
+            body
         } else {
             let ty = plant.items.iter().find_map(|i| match i {
                 PlantItem::State(s) if s.names.iter().any(|n| *n.text == *name) => Some(s.ty),

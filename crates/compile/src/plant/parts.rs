@@ -24,6 +24,11 @@ impl<'d> Table<'d> {
         self.parts.max
     }
 
+    /// How much text one look at all its parts becomes.
+    pub(super) fn size(&self) -> usize {
+        (self.columns().len() + 1) * self.places() as usize
+    }
+
     pub(super) fn attributes(&self) -> impl Iterator<Item = (&'d str, Type)> {
         self.parts.attributes.iter().map(|a| (&*a.name.text, a.ty))
     }
@@ -57,7 +62,14 @@ impl<'d> Table<'d> {
         let mut list = vec![
             at.declare(VarKind::Var, &self.count(), Type::Int, Some(at.int(full as i128))),
             at.declare(VarKind::Var, &self.lost(), Type::Int, None),
+            at.declare(VarKind::Var, &self.gone(), Type::Int, None),
         ];
+        if self.is_track() {
+            list.push(at.declare(VarKind::Var, &self.way(), Type::Lreal, None));
+        }
+        for (column, ty) in self.attributes() {
+            list.push(at.declare(VarKind::Var, &self.joining(column), ty, None));
+        }
         for place in 0..self.places() {
             for (k, (column, ty)) in self.columns().into_iter().enumerate() {
                 let init = self.parts.init.get(place as usize).and_then(|part| part.get(k)).cloned();
@@ -112,13 +124,17 @@ impl<'d> Table<'d> {
     }
 
     /// `T.enter(…)`: a part joins at the back; where there is no room it is lost.
-    pub(super) fn enter(&self, at: At, values: &[Expr]) -> Vec<Stmt> {
+    pub(super) fn enter(&self, at: At, values: Vec<Expr>) -> Vec<Stmt> {
+        let mut body: Vec<Stmt> = self
+            .attributes()
+            .zip(values)
+            .map(|((column, _), value)| at.assign(&self.joining(column), value))
+            .collect();
         let arms = (0..self.places())
             .map(|place| {
                 let mut body: Vec<Stmt> = self
                     .attributes()
-                    .zip(values)
-                    .map(|((column, _), v)| at.assign(&self.cell(column, place), v.clone()))
+                    .map(|(column, _)| at.assign(&self.cell(column, place), at.var(&self.joining(column))))
                     .collect();
                 if self.is_track() {
                     body.push(at.assign(&self.cell("position", place), at.real("0.0")));
@@ -128,16 +144,34 @@ impl<'d> Table<'d> {
             })
             .collect();
         let lost = at.binary(BinaryOp::Add, at.var(&self.lost()), at.int(1));
-        vec![at.stmt(StmtKind::Case(at.var(&self.count()), arms, vec![at.assign(&self.lost(), lost)]))]
+        body.push(at.stmt(StmtKind::Case(at.var(&self.count()), arms, vec![at.assign(&self.lost(), lost)])));
+        body
     }
 
-    /// Takes the part at a place away; those behind move up.
-    fn remove(&self, at: At, place: u32) -> Vec<Stmt> {
+    /// An attribute of the part that is about to join.
+    fn joining(&self, column: &str) -> String {
+        format!("@joins.{}.{column}", self.name())
+    }
+
+    /// How far a rate moves the parts.
+    pub(super) fn way(&self) -> String {
+        format!("@way.{}", self.name())
+    }
+
+    /// The place of the part that is about to go.
+    fn gone(&self) -> String {
+        format!("@goes.{}", self.name())
+    }
+
+    /// The part at [`Table::gone`] goes; those behind move up.
+    fn remove(&self, at: At) -> Vec<Stmt> {
         let mut body = Vec::new();
-        for to in place..self.places().saturating_sub(1) {
-            for (column, _) in self.columns() {
-                body.push(at.assign(&self.cell(column, to), at.var(&self.cell(column, to + 1))));
-            }
+        for to in 0..self.places().saturating_sub(1) {
+            let behind = at.binary(BinaryOp::Le, at.var(&self.gone()), at.int(i128::from(to)));
+            let columns = self.columns().into_iter();
+            let moves = columns
+                .map(|(column, _)| at.assign(&self.cell(column, to), at.var(&self.cell(column, to + 1))));
+            body.push(at.when(behind, moves.collect()));
         }
         if let Some(last) = self.places().checked_sub(1) {
             for (column, ty) in self.columns() {
@@ -150,7 +184,7 @@ impl<'d> Table<'d> {
 
     /// `T.leave()`: the part that came first goes.
     pub(super) fn leave(&self, at: At) -> Vec<Stmt> {
-        vec![at.when(self.taken(at, 0), self.remove(at, 0))]
+        vec![at.assign(&self.gone(), at.int(0)), at.when(self.taken(at, 0), self.remove(at))]
     }
 
     /// `T.leave_last()`: the part that came last goes.
@@ -170,8 +204,10 @@ impl<'d> Table<'d> {
 
     /// `T.take(from, to)`: the first part there goes.
     pub(super) fn take(&self, at: At, range: &(Expr, Expr)) -> Vec<Stmt> {
-        let arms = (0..self.places()).map(|k| (self.stands(at, k, range), self.remove(at, k))).collect();
-        vec![at.stmt(StmtKind::If(arms, Vec::new()))]
+        let found = |k: u32| vec![at.assign(&self.gone(), at.int(i128::from(k)))];
+        let arms = (0..self.places()).map(|k| (self.stands(at, k, range), found(k))).collect();
+        let there = at.binary(BinaryOp::Lt, at.var(&self.gone()), at.int(i128::from(self.places())));
+        vec![at.stmt(StmtKind::If(arms, found(self.places()))), at.when(there, self.remove(at))]
     }
 
     /// `T.clear()`.

@@ -27,6 +27,34 @@ pub(super) struct Rewrite<'d> {
     pub(super) hidden: Vec<VarDecl>,
     /// The variables of the block at hand, and what they are called instead.
     pub(super) locals: HashMap<Box<str>, String>,
+    /// What all that concerns parts has become so far, in [`Table::size`].
+    pub(super) spent: usize,
+}
+
+/// Most that parts may become: a plant is a small model.
+const MOST: usize = 200_000;
+/// Most operators and operands of what is written out for each part.
+const SMALL: usize = 64;
+
+/// Whether an expression is short and without chance, so that it can stand in
+/// several places.
+fn repeats(e: &Expr) -> bool {
+    fn count(e: &Expr, left: &mut usize) -> bool {
+        *left = left.saturating_sub(1);
+        let fine = match &e.kind {
+            ExprKind::Unary(_, a) => count(a, left),
+            ExprKind::Binary(_, a, b) => count(a, left) && count(b, left),
+            ExprKind::Timer { .. } => false,
+            ExprKind::Call(path, args) => {
+                path.names.first().is_none_or(|n| &*n.text != RANDOM)
+                    && args.iter().all(|a| count(&a.value, left))
+            }
+            ExprKind::Path(_) | ExprKind::Literal(_) | ExprKind::Direct(_) | ExprKind::Bad => true,
+        };
+        fine && *left > 0
+    }
+    let mut left = SMALL;
+    count(e, &mut left)
 }
 
 impl Rewrite<'_> {
@@ -70,6 +98,9 @@ impl Rewrite<'_> {
 
     /// `T.count`, `T.first.colour`, …
     fn member(&mut self, at: At, table: &str, rest: &[&str]) -> Expr {
+        if rest.first() == Some(&"last") && !self.afford(at, table) {
+            return at.expr(ExprKind::Bad);
+        }
         let Some(t) = self.tables.get(table) else { return at.expr(ExprKind::Bad) };
         match rest {
             ["count"] => at.var(&t.count()),
@@ -95,9 +126,38 @@ impl Rewrite<'_> {
     /// Two arguments: where a look at a track begins and ends.
     fn range(&mut self, args: &[Arg]) -> Option<(Expr, Expr)> {
         match args {
-            [a, b] => Some((self.expr(&a.value), self.expr(&b.value))),
+            [a, b] => Some((self.bound(&a.value), self.bound(&b.value))),
             _ => None,
         }
+    }
+
+    /// An end of a range: it is written out for each part.
+    fn bound(&mut self, e: &Expr) -> Expr {
+        let bound = self.expr(e);
+        if repeats(&bound) {
+            return bound;
+        }
+        let what = "this is too much, or too uncertain, for the end of a range".to_owned();
+        self.problems.push(
+            Problem::new(&codes::BAD_PARTS, e.at.0, what)
+                .help("compute it in an `each` block and keep it in a state"),
+        );
+        At(e.at).expr(ExprKind::Bad)
+    }
+
+    /// Whether one more thing may be done with a table; said once where not.
+    fn afford(&mut self, at: At, table: &str) -> bool {
+        let size = self.tables.get(table).map_or(0, Table::size);
+        let before = self.spent <= MOST;
+        self.spent = self.spent.saturating_add(size);
+        if before && self.spent > MOST {
+            let what = "the plant does more with its parts than can be run".to_owned();
+            self.problems.push(
+                Problem::new(&codes::BAD_PARTS, at.0.0, what)
+                    .help("give the parts fewer places, or look at them less often"),
+            );
+        }
+        self.spent <= MOST
     }
 
     fn call(&mut self, at: At, path: &Path, args: &[Arg]) -> Expr {
@@ -106,6 +166,9 @@ impl Rewrite<'_> {
             && self.tables.contains_key(table)
         {
             let range = self.range(args);
+            if !self.afford(at, table) {
+                return at.expr(ExprKind::Bad);
+            }
             let Some(t) = self.tables.get(table) else { return at.expr(ExprKind::Bad) };
             return match range {
                 Some(range) if t.is_track() && what == "at" => t.any(at, &range),
@@ -135,6 +198,10 @@ impl Rewrite<'_> {
             (None, ..) => dice,
             (Some(a), Some(b), None) => {
                 use g7_model::BinaryOp::{Add, Mul, Sub};
+                if !repeats(&a) {
+                    let what = "this is too much, or too uncertain, for a bound of chance".into();
+                    return self.report(&codes::BAD_PARTS, a.at, what);
+                }
                 let width = at.binary(Sub, b, a.clone());
                 at.binary(Add, a, at.binary(Mul, width, dice))
             }
@@ -245,23 +312,24 @@ impl Rewrite<'_> {
         let names: Vec<&str> = path.names.iter().map(|n| &*n.text).collect();
         let [table, what] = names[..] else { return None };
         let wanted = self.tables.get(table)?.attributes().count();
-        let values: Vec<Expr> = args.iter().map(|a| self.expr(&a.value)).collect();
-        let range = match &values[..] {
-            [a, b] => Some((a.clone(), b.clone())),
-            _ => None,
-        };
+        let range = if what == "take" { self.range(args) } else { None };
+        let values: Vec<Expr> =
+            if range.is_some() { Vec::new() } else { args.iter().map(|a| self.expr(&a.value)).collect() };
+        if !self.afford(at, table) {
+            return Some(Vec::new());
+        }
+        let count = args.len();
         let t = self.tables.get(table)?;
         let done = match (what, range) {
-            ("enter", _) if values.len() == wanted => Some(t.enter(at, &values)),
-            ("leave", _) if values.is_empty() => Some(t.leave(at)),
-            ("leave_last", _) if values.is_empty() => Some(t.leave_last(at)),
-            ("clear", _) if values.is_empty() => Some(t.clear(at)),
+            ("enter", _) if values.len() == wanted => Some(t.enter(at, values)),
+            ("leave", _) if count == 0 => Some(t.leave(at)),
+            ("leave_last", _) if count == 0 => Some(t.leave_last(at)),
+            ("clear", _) if count == 0 => Some(t.clear(at)),
             ("take", Some(range)) if t.is_track() => Some(t.take(at, &range)),
             _ => None,
         };
         if done.is_none() {
-            let what =
-                format!("`{table}.{what}` with {} argument(s) is nothing that parts can do", values.len());
+            let what = format!("`{table}.{what}` with {count} argument(s) is nothing that parts can do");
             self.problems.push(Problem::new(&codes::UNKNOWN_PART_MEMBER, at.0.0, what).help(format!(
                 "`{table}.enter` takes {wanted} value(s); `leave`, `leave_last` and `clear` take none; \
                  `take` a range of a track"

@@ -138,3 +138,32 @@ fn a_part_that_enters_begins_at_zero_wherever_the_one_before_stood() {
     assert_eq!((p.int("T.count"), p.int("T.c.0")), (1, 2));
     near(p.lreal("T.position.0"), 0.0);
 }
+
+#[test]
+fn the_values_of_a_part_that_enters_are_those_before_it_does() {
+    let mut p = run("parts Q(a : INT, b : INT) max 3 := (1, 2)  on V { Q.enter(Q.last.b, Q.last.a) }");
+    p.ticks(1).output("V", true).ticks(1);
+    assert_eq!((p.int("Q.a.1"), p.int("Q.b.1")), (2, 1));
+}
+
+#[test]
+fn all_parts_of_a_track_go_the_same_way_by_chance_too() {
+    let mut p = run("
+        parts T(c : INT) max 4 length 100.0 := (1), (2), (3)
+        rate T := random(1.0, 2.0)");
+    p.seed(5).ticks(100);
+    assert!(p.lreal("T.position.0") > 0.99);
+    near(p.lreal("T.position.0"), p.lreal("T.position.2"));
+}
+
+#[test]
+fn the_last_part_of_a_full_track_can_be_taken() {
+    let mut p = run("
+        parts T(c : INT) max 2 length 1.0 := (1, 0.2), (2, 0.9)
+        on V { T.take(0.8, 1.0) }
+        on W { T.take(0.0, 1.0) }");
+    p.ticks(1).output("V", true).ticks(1);
+    assert_eq!((p.int("T.count"), p.int("T.c.0"), p.int("T.c.1")), (1, 1, 0));
+    p.output("W", true).ticks(1);
+    assert_eq!((p.int("T.count"), p.int("T.c.0")), (0, 0));
+}

@@ -49,3 +49,15 @@ fn problems_of_each_plant_are_told_by_check() {
     let codes: Vec<&str> = check(&doc).iter().map(|p| p.code.id).collect();
     assert_eq!(codes, ["G0209", "G0501"]);
 }
+
+#[test]
+fn what_is_written_out_for_each_part_stays_small() {
+    let nested = "parts T(c : INT) max 48 length 1.0  state x : LREAL
+        each { x := T.position(T.position(T.position(0.0, 1.0), 1.0), 1.0) }";
+    assert_eq!(codes(nested), ["G0503", "G0503"]);
+    assert_eq!(codes("parts T(c : INT) max 4 length 1.0  each { T.take(random(), 1.0) }"), ["G0503"]);
+    assert_eq!(codes("state x : LREAL  each { x := random(random(), 1.0) }"), ["G0503"]);
+    let many =
+        format!("parts T(c : INT) max 48 length 1.0  each {{ {} }}", "T.take(0.0, 1.0)\n".repeat(3000));
+    assert_eq!(codes(&many), ["G0503"]);
+}
