@@ -22,12 +22,12 @@ pub(super) fn check(facts: &Facts<'_>, problems: &mut Vec<Problem>) {
             }
         }
     }
-    times(unit, grafcet, problems);
+    times(unit, problems);
 }
 
-/// Whether continuous and stored actions are those of IEC 60848.
+/// Whether continuous actions are those of IEC 60848, true in a stable situation.
 pub(super) fn is_grafcet(unit: &Unit) -> bool {
-    unit.rules.stable && unit.rules.parallel_actions
+    unit.rules.stable && unit.rules.continuous
 }
 
 /// A pulse body that runs twice.
@@ -107,7 +107,7 @@ enum Governed {
 
 /// One control block has one time: two timed qualifiers of one action in one
 /// step, or in steps that one transition starts together.
-fn times(unit: &Unit, grafcet: bool, problems: &mut Vec<Problem>) {
+fn times(unit: &Unit, problems: &mut Vec<Problem>) {
     let blocked = blocked(unit);
     let mut told: HashSet<Span> = HashSet::new();
     let single = (0..unit.steps.len() as u32).map(|s| vec![StepId(s)]);
@@ -117,7 +117,9 @@ fn times(unit: &Unit, grafcet: bool, problems: &mut Vec<Problem>) {
         steps.dedup();
         let mut seen: HashMap<Governed, (Span, StepId, Qualifier, Option<&Expr>)> = HashMap::new();
         for (step, action) in steps.iter().flat_map(|s| of_step(unit, *s)) {
-            let Some((governed, qualifier, time)) = timed(&blocked, grafcet, action) else { continue };
+            let Some((governed, qualifier, time)) = timed(&blocked, unit.rules.continuous, action) else {
+                continue;
+            };
             let Some(first) = seen.insert(governed, (action.at, step, qualifier, time)) else { continue };
             // One block under one qualifier and time from two steps is one input.
             let same = first.2 == qualifier && key_of(first.3) == key_of(time) && first.1 != step;
@@ -147,7 +149,7 @@ fn key_of(time: Option<&Expr>) -> Option<String> {
 /// continuous actions of their own in GRAFCET.
 fn timed<'a>(
     blocked: &HashSet<VarId>,
-    grafcet: bool,
+    continuous: bool,
     action: &'a Action,
 ) -> Option<(Governed, Qualifier, Option<&'a Expr>)> {
     let (qualifier, governed, time) = match &action.kind {
@@ -155,7 +157,7 @@ fn timed<'a>(
         ActionKind::Named { qualifier, body, time, .. } => (*qualifier, Governed::Body(*body), time),
         _ => return None,
     };
-    let alone = grafcet
+    let alone = continuous
         && matches!(qualifier, Qualifier::L | Qualifier::D)
         && matches!(governed, Governed::Var(v) if !blocked.contains(&v));
     (qualifier.timed() && !alone).then_some((governed, qualifier, time.as_ref()))

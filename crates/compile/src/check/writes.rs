@@ -13,7 +13,8 @@ use crate::ir::{
 
 pub(super) fn check(unit: &Unit, problems: &mut Vec<Problem>) {
     let blocked = blocked(unit);
-    if is_grafcet(unit) {
+    // Where actions run one after the other, the later write is simply the later.
+    if unit.rules.parallel_actions && !unit.rules.late_actions {
         for step in (0..unit.steps.len() as u32).map(StepId) {
             let mut moment = Moment::default();
             moment.step(unit, &blocked, step, Qualifier::P1);
