@@ -474,7 +474,7 @@ impl Lower<'_> {
             and(&mut b);
         }
         if let (Way::Delayed | Way::Limited, Some(time)) = (way, terms.time) {
-            self.step_time(&mut b, place.step, place.at);
+            self.acting_time(&mut b, place.step, place.at);
             self.expr(&mut b, time);
             let c = if way == Way::Delayed { Cmp::Ge } else { Cmp::Lt };
             b.op(Op::Compare(c, Num::I64), place.at);

@@ -304,6 +304,13 @@ impl Lower<'_> {
         self.time(b, step, ops, at);
     }
 
+    /// Pushes the time for which the actions of a step have been at work, ns.
+    pub(super) fn acting_time(&mut self, b: &mut Buf, step: StepId, at: Span) {
+        b.reads.time = true;
+        let op = if self.unit.rules.scan_clock { Op::StepAge } else { Op::StepTime };
+        b.op(self.plan.own(step).map_or(Op::Push(0), op), at);
+    }
+
     /// A time goes on by itself, and starts anew within a scan.
     fn time(
         &mut self,

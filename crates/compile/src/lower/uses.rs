@@ -70,8 +70,12 @@ pub(super) fn uses<'a>(unit: &'a Unit, queries: &'a [Expr]) -> Uses<'a> {
         walk.stmts(&s.statements);
     }
     walk.actions();
+    // PRE of the first scan comes behind the activation of the initial steps.
+    for body in &unit.pre {
+        walk.stmts(&body.statements);
+    }
     walk.early = false;
-    for body in unit.pre.iter().chain(&unit.post) {
+    for body in &unit.post {
         walk.stmts(&body.statements);
     }
     for e in queries {

@@ -27,6 +27,7 @@ fn an_output_of_one_step_alone_is_written_with_the_step() {
         "var n : INT chart G { initial step 1 { N V } step 2 { P1 n := BOOL_TO_INT(V) } 1 -> 2 when TRUE }",
         "output W : BOOL chart G { initial step 1 { N V } step 2 { N W if V } 1 -> 2 when TRUE }",
         "var n : INT chart G { initial step 1 { N V on ↑V: n := 1 } }",
+        "var m : BOOL pre { m := V } chart G { initial step 1 { N V } }",
         // Its value would not be that of the block.
         "chart G every 20ms { initial step 1 { N V } }",
     ];
