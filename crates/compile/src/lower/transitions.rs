@@ -57,17 +57,18 @@ impl Lower<'_> {
     /// The transitions by rank.
     pub(super) fn ranks(&self) -> Vec<Origin> {
         let rules = &self.unit.rules;
-        let mut order: Vec<(u32, u32, TransitionId)> = Vec::with_capacity(self.unit.transitions.len());
+        let mut order: Vec<(u32, u32, u32, TransitionId)> = Vec::with_capacity(self.unit.transitions.len());
         for (i, t) in self.unit.transitions.iter().enumerate() {
             if self.plan.chart(t.chart).is_none() {
                 continue;
             }
-            let level = if rules.sequential { self.plan.level(t.chart) } else { 0 };
-            // One after the other, all that clear take their turns in the order
-            // of the document; a number only excludes.
+            // One after the other: chart by chart, the outermost first. Where all
+            // that can clear do, a number only excludes, and the text orders.
+            let (level, chart) =
+                if rules.sequential { (self.plan.level(t.chart), t.chart.0) } else { (0, 0) };
             let by_number = !rules.sequential || !rules.multi_token;
             let number = if by_number { t.priority.unwrap_or(NONE) } else { NONE };
-            order.push((level, number, TransitionId(i as u32)));
+            order.push((level, chart, number, TransitionId(i as u32)));
         }
         if !order.is_sorted() {
             order.sort_unstable();
@@ -76,7 +77,7 @@ impl Lower<'_> {
             .map(ChartId)
             .filter(|c| self.owner(*c).is_some())
             .map(Origin::Return);
-        order.into_iter().map(|(_, _, id)| Origin::Written(id)).chain(returns).collect()
+        order.into_iter().map(|(.., id)| Origin::Written(id)).chain(returns).collect()
     }
 
     /// Fills the tables of transitions.
