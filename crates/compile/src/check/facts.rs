@@ -206,6 +206,13 @@ impl<'u> Facts<'u> {
 
     fn stays_single(&self, chart: usize, budget: &mut usize) -> bool {
         let Some(chart) = self.unit.charts.get(chart) else { return false };
+        // A macro-step entered again while it is active gets a second token.
+        if let ChartRole::Expansion(m) = chart.role {
+            let around = self.unit.steps.get(m.index()).map(|s| s.chart.index());
+            if around.and_then(|c| self.single.get(c)) != Some(&true) {
+                return false;
+            }
+        }
         for step in (chart.steps.start..chart.steps.end).map(StepId) {
             let sort = self.unit.steps.get(step.index()).map(|s| &s.sort);
             if let Some(StepSort::Macro(inner)) = sort
