@@ -35,6 +35,11 @@ pub struct Statistics {
 }
 
 impl Statistics {
+    /// Scans that ended without a fault.
+    pub fn sound(&self) -> usize {
+        self.scans - self.faults.values().sum::<usize>()
+    }
+
     /// Adds another run's.
     pub fn add(&mut self, other: &Statistics) {
         self.scans += other.scans;

@@ -175,10 +175,10 @@ impl Cutter {
 
     fn action(&mut self, action: &mut Action) {
         match &mut action.kind {
-            ActionKind::Qualified { condition, .. } | ActionKind::EachScan { condition, .. } => {
-                if self.hit() {
-                    *condition = None;
-                }
+            ActionKind::Qualified { condition, .. } | ActionKind::EachScan { condition, .. }
+                if self.hit() =>
+            {
+                *condition = None;
             }
             ActionKind::Order(g7_model::Order::Force(_, Situation::Steps(names))) => self.list(names),
             _ => {}

@@ -24,6 +24,8 @@ pub(super) struct PlanChart {
     pub(super) word: &'static str,
     pub(super) name: String,
     pub(super) every: Option<usize>,
+    /// It, or the chart that it is an expansion in, has a period.
+    pub(super) periodic: bool,
     pub(super) steps: Vec<PlanStep>,
     /// Preceding and succeeding steps.
     pub(super) arcs: Vec<(Vec<usize>, Vec<usize>)>,
@@ -52,6 +54,7 @@ pub(super) fn plan(rng: &mut Rng, weights: &Weights, driven: &[String]) -> Plan 
     if rng.percent(weights.periods) {
         let id = main_chart(rng, &mut plan);
         plan.charts[id].every = Some(rng.one([15, 20, 30, 50]));
+        plan.charts[id..].iter_mut().for_each(|c| c.periodic = true);
     }
     link_charts(rng, &mut plan, &mains, driven);
     if rng.percent(weights.tasks) {
@@ -140,7 +143,9 @@ fn arcs(rng: &mut Rng, count: usize, first: usize, last: usize) -> Vec<(Vec<usiz
     }
     let more = rng.below(count + 1);
     for _ in 0..more {
-        let mut from = some(rng, 0, last, &[4, 74, 18, 4]);
+        // A source within an expansion would make it active without its macro-step.
+        let sources = if first == 0 { 4 } else { 0 };
+        let mut from = some(rng, 0, last, &[sources, 78 - sources, 18, 4]);
         let to = some(rng, first, count, &[5, 72, 19, 4]);
         if from.is_empty() && to.is_empty() {
             from.push(0);
@@ -224,6 +229,9 @@ fn enclose(rng: &mut Rng, plan: &mut Plan, master: usize, target: usize) {
     step.orders.push(format!("enclose {name}"));
     let target = &mut plan.charts[target];
     target.enclosed = true;
+    for (from, _) in target.arcs.iter_mut().filter(|(from, _)| from.is_empty()) {
+        from.push(0); // nothing within is active without the enclosing step
+    }
     let linked = rng.below(target.steps.len());
     target.steps[linked].linked = true;
     if rng.percent(30) {

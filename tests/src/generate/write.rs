@@ -13,6 +13,8 @@ use super::sight::{Sight, duration};
 struct World {
     profile: ProfileName,
     stable: bool,
+    /// At most one of the transitions that share a step clears.
+    single: bool,
     sight: Sight,
     targets: Targets,
     driven: Vec<Driven>,
@@ -27,6 +29,7 @@ pub(super) fn document(rng: &mut Rng, profile: ProfileName, weights: &Weights) -
     let mut world = World {
         profile,
         stable: profile == ProfileName::Iec60848,
+        single: matches!(profile, ProfileName::Iec61131 | ProfileName::Unity),
         sight: Sight {
             edges: true,
             timers: true,
@@ -83,7 +86,8 @@ fn header(rng: &mut Rng, world: &mut World, weights: &Weights, out: &mut String)
             if rng.percent(25) {
                 let switch = rng.one(pair);
                 // Actions cannot wait for the end of the pass and run at once.
-                let at_once = switch == "sequential"
+                let at_once = switch == "stable" && switches.contains(&"parallel-actions")
+                    || switch == "sequential"
                     && matches!(world.profile, ProfileName::Iec60848 | ProfileName::Pl7)
                     || switch == "parallel-actions" && world.profile == ProfileName::Jgrafchart
                     || switch == "sequential" && switches.contains(&"parallel-actions")
@@ -94,6 +98,9 @@ fn header(rng: &mut Rng, world: &mut World, weights: &Weights, out: &mut String)
                     continue;
                 }
                 switches.push(switch);
+                if pair[1] == "single-token" {
+                    world.single = switch == "single-token";
+                }
                 if pair[0] == "stable" {
                     world.stable = switch == "stable";
                 }
@@ -279,7 +286,7 @@ fn see_steps(sight: &mut Sight, chart: &PlanChart, prefix: &str) {
     for step in &chart.steps {
         sight.steps.push(format!("{prefix}X{}", step.name));
         // With a period the time may count other scans than the chart's own.
-        if chart.every.is_none() {
+        if !chart.periodic {
             sight.step_times.push(format!("{prefix}X{}.t", step.name));
         }
     }
@@ -342,7 +349,10 @@ fn chart(rng: &mut Rng, world: &mut World, plan: &Plan, at: usize, out: &mut Str
     // A chart with a period drives outputs of its own only.
     let mut driven = world.driven.clone();
     let mut named = world.named.clone();
-    if chart.every.is_some() {
+    if chart.periodic && chart.every.is_none() {
+        named.clear();
+        driven.clear();
+    } else if chart.every.is_some() {
         named.clear();
         driven.clear();
         out.push_str("  var own : BOOL\n");
@@ -383,7 +393,11 @@ fn chart(rng: &mut Rng, world: &mut World, plan: &Plan, at: usize, out: &mut Str
                 format!("({})", names.join(", "))
             }
         };
-        let when = receptivity(rng, world, &sight, from.is_empty(), chart.every.is_some());
+        let mut sight = sight.clone();
+        if world.single {
+            sight.risk = 0; // which receptivities are asked for is the engine's business
+        }
+        let when = receptivity(rng, world, &sight, from.is_empty(), chart.periodic);
         out.push_str(&format!("  {} -> {} when {when}", names(from), names(to)));
         if rng.percent(12) {
             out.push_str(&format!(" priority {}", rng.between(1, 3)));

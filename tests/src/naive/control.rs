@@ -330,16 +330,16 @@ fn bodies(
 ) -> Run<()> {
     let mut todo: Vec<(i8, Run1<'_>)> = Vec::new();
     let mut done: BTreeSet<&Owner> = BTreeSet::new();
-    for scope in FILE + 1..m.scopes.len() {
+    for (scope, in_turn) in due.iter().copied().enumerate().skip(FILE + 1) {
         for &step in &m.scopes[scope].steps {
             for (place, action) in m.steps[step].actions.iter().enumerate() {
                 if let ActionKind::EachScan { work, condition } = &action.kind {
                     let was = m.rules.profile != ProfileName::Jgrafchart || went.start.contains(&step);
-                    if each_scan && due[scope] && s.active.contains(&step) && was {
+                    if each_scan && in_turn && s.active.contains(&step) && was {
                         todo.push((1, Run1::Each(scope, work, condition.as_ref())));
                     }
                 }
-                if due[scope] {
+                if in_turn {
                     todo.extend(late_pulse(m, went, step, action));
                 }
                 let Some(block) = blocks.iter().find(|b| (b.step, b.place) == (step, place)) else {

@@ -8,7 +8,7 @@ use g7_model::{ActionKind, ChartKind, ProfileName};
 use super::exec::Exec;
 use super::force::{forced_situations, impose};
 use super::model::{Model, ScopeId, StepId, TransId};
-use super::state::{State, Timing};
+use super::state::State;
 use super::stored;
 use super::value::Run;
 use super::{Diagnostics, Marks};
@@ -52,7 +52,7 @@ pub(super) fn pass(
     let before = s.clone();
     let forced = forced_situations(m, &before)?;
     let events = true_events(m, s, due)?;
-    let mut clearable = Vec::new();
+    let mut ready = Vec::new();
     for t in 0..m.transitions.len() {
         let scope = m.transitions[t].scope;
         if m.is_live(scope)
@@ -61,12 +61,11 @@ pub(super) fn pass(
             && !forced.contains_key(&m.scopes[scope].root)
             && !held(m, s, scope)
             && task_allows(m, s, t)
-            && Exec::new(m, s).truth(scope, &m.transitions[t].receptivity)?
         {
-            clearable.push(t);
+            ready.push(t);
         }
     }
-    let chosen = choose(m, &clearable);
+    let chosen = choose(m, s, ready)?;
     marks.cleared.extend(&chosen);
 
     if m.rules.sequential && !m.rules.parallel_actions {
@@ -271,7 +270,7 @@ fn task_allows(m: &Model, s: &State, t: TransId) -> bool {
 fn tasks(m: &Model, s: &mut State, due: &[bool], chosen: &[TransId]) -> Vec<(StepId, StepId)> {
     let mut by_themselves = Vec::new();
     let begun = s.clone();
-    for task in 0..m.scopes.len() {
+    for (task, due) in due.iter().enumerate() {
         if m.scopes[task].kind != ChartKind::Task {
             continue;
         }
@@ -279,7 +278,7 @@ fn tasks(m: &Model, s: &mut State, due: &[bool], chosen: &[TransId]) -> Vec<(Ste
         let handed_back =
             chosen.iter().any(|&t| m.transitions[t].pre.iter().any(|&p| m.steps[p].calls.contains(&task)));
         let owner_gone = !begun.owners.get(&task).is_some_and(|&o| begun.is_active(m, o));
-        let by_itself = due[task] && begun.active.contains(&exit) && owner_gone;
+        let by_itself = *due && begun.active.contains(&exit) && owner_gone;
         if handed_back || by_itself {
             s.owners.remove(&task);
         }
@@ -288,44 +287,69 @@ fn tasks(m: &Model, s: &mut State, due: &[bool], chosen: &[TransId]) -> Vec<(Ste
         }
         let begins =
             chosen.iter().any(|&t| m.transitions[t].scope == task && m.transitions[t].pre.contains(&entry));
-        if begins && !begun.owners.contains_key(&task) {
-            if let Some(first) = callers(m, task).find(|&c| begun.is_active(m, c)) {
-                s.owners.insert(task, first);
-            }
+        if begins
+            && !begun.owners.contains_key(&task)
+            && let Some(first) = callers(m, task).find(|&c| begun.is_active(m, c))
+        {
+            s.owners.insert(task, first);
         }
     }
     by_themselves
 }
 
-/// Which of the clearable transitions clear.
-fn choose(m: &Model, clearable: &[TransId]) -> Vec<TransId> {
+/// Which of the transitions that could clear do: those with a true receptivity,
+/// and of these as many as the profile lets share a step.
+fn choose(m: &Model, s: &mut State, ready: Vec<TransId>) -> Run<Vec<TransId>> {
     let shares =
         |a: TransId, b: TransId| m.transitions[a].pre.iter().any(|p| m.transitions[b].pre.contains(p));
+    let mut is_true =
+        |t: TransId| Exec::new(m, s).receptivity(m.transitions[t].scope, &m.transitions[t].receptivity);
     if !m.rules.multi_token {
-        let mut ranked = clearable.to_vec();
-        ranked.sort_by_key(|&t| (m.transitions[t].priority.unwrap_or(u32::MAX), t));
+        // One behind another: a step that is taken asks no further receptivity.
+        let mut ranked = ready;
+        ranked.sort_by_key(|&t| (level(m, t), m.transitions[t].priority.unwrap_or(u32::MAX), t));
         let mut chosen: Vec<TransId> = Vec::new();
         for t in ranked {
-            if !chosen.iter().any(|&c| shares(c, t)) {
+            if !chosen.iter().any(|&c| shares(c, t)) && is_true(t)? {
                 chosen.push(t);
             }
         }
-        chosen.sort_unstable();
-        return chosen;
+        return Ok(chosen);
+    }
+    let mut clearable = Vec::new();
+    for t in ready {
+        if is_true(t)? {
+            clearable.push(t);
+        }
     }
     if m.rules.profile != ProfileName::Jgrafchart {
-        return clearable.to_vec();
+        clearable.sort_by_key(|&t| (level(m, t), t));
+        return Ok(clearable);
     }
     let beaten = |t: TransId| {
         // Without a number it has the lowest priority.
         let number = |t: TransId| m.transitions[t].priority.unwrap_or(u32::MAX);
         clearable.iter().any(|&o| shares(o, t) && number(o) < number(t))
     };
-    clearable.iter().copied().filter(|&t| !beaten(t)).collect()
+    let mut chosen: Vec<TransId> = clearable.iter().copied().filter(|&t| !beaten(t)).collect();
+    chosen.sort_by_key(|&t| (level(m, t), t));
+    Ok(chosen)
+}
+
+/// Where one clears after the other, those of a chart come before those of the
+/// expansions in it: how many macro-steps lie round a transition.
+fn level(m: &Model, t: TransId) -> usize {
+    let depth = m.scopes[m.transitions[t].scope].qualified.split('.').count();
+    if m.rules.sequential { depth } else { 0 }
 }
 
 /// What enclosing steps bring and take, from the outermost inward.
-fn hierarchy(m: &Model, before: &BTreeSet<StepId>, again: &BTreeSet<StepId>, next: &mut BTreeSet<StepId>) {
+pub(super) fn hierarchy(
+    m: &Model,
+    before: &BTreeSet<StepId>,
+    again: &BTreeSet<StepId>,
+    next: &mut BTreeSet<StepId>,
+) {
     for &chart in &m.order {
         for e in m.steps_within(chart) {
             let (was, is) = (before.contains(&e), next.contains(&e));
@@ -366,7 +390,7 @@ pub(super) fn settle(m: &Model, s: &mut State, next: BTreeSet<StepId>, again: &B
     for x in (0..m.steps.len()).filter(|&x| m.steps[x].expansion.is_some()) {
         let (was, is) = (before.is_active(m, x), s.is_active(m, x));
         let (now, scan) = (s.now, s.scan);
-        let t = s.macro_timing.entry(x).or_insert_with(Timing::default);
+        let t = s.macro_timing.entry(x).or_default();
         if was && !is {
             t.kept = now - t.since;
             t.kept_scans = scan - t.since_scan;

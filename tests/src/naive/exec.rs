@@ -122,11 +122,26 @@ impl<'a> Exec<'a> {
                 let tenths = self.s.time(self.m, *step) / 100_000_000;
                 Typed::int(tenths.clamp(0, 9999).into())
             }
-            Ref::Section(scope, name) => return self.section(*scope, name),
+            Ref::Section(scope, name) => {
+                let key = (*scope, name.clone());
+                Typed::bool(self.s.sections.get(&key).is_some_and(|b| *b))
+            }
         })
     }
 
-    /// A transition section: its statements, then its output.
+    /// A receptivity. One that is the name of a transition section runs it;
+    /// everything else reads what the section said last.
+    pub(super) fn receptivity(&mut self, scope: ScopeId, e: &Expr) -> Run<bool> {
+        if let ExprKind::Path(p) = &e.kind
+            && let Some(Ref::Section(s, name)) = self.m.resolve(scope, p)
+        {
+            let value = self.section(s, &name)?.truth()?;
+            self.s.sections.insert((s, name), value);
+            return Ok(value);
+        }
+        self.truth(scope, e)
+    }
+
     fn section(&mut self, scope: ScopeId, name: &str) -> Run<Typed> {
         let Some(section) = self.m.scopes[scope].sections.get(name) else { return bad("no such section") };
         let mut frame = Frame::from([(name.to_owned(), (Type::Bool, Value::Bool(false)))]);
@@ -142,9 +157,6 @@ impl<'a> Exec<'a> {
         let name = path.text();
         if let Some(function) = self.m.functions.get(&name) {
             return self.function(scope, function, args);
-        }
-        if let Some(Ref::Section(s, section)) = self.m.resolve(scope, path) {
-            return self.section(s, &section);
         }
         let mut values = Vec::new();
         for arg in args {

@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use g7_model::{Situation, StepKind};
 
-use super::evolve::{Changes, settle};
+use super::evolve::{Changes, hierarchy, settle};
 use super::model::{FILE, Model, ScopeId, StepId};
 use super::state::{Request, State};
 use super::value::{NaiveFault, Run, Value};
@@ -70,10 +70,13 @@ pub(super) fn services(m: &Model, s: &mut State) -> Changes {
     for request in std::mem::take(&mut s.requests) {
         match request {
             Request::Init(chart) => {
-                clear(m, chart, &mut next);
+                let mut set = BTreeSet::new();
                 for step in m.initial_of(chart) {
-                    m.activate(step, &mut next);
+                    m.activate(step, &mut set);
                 }
+                let before = next.clone();
+                impose(m, chart, &set, &mut next);
+                hierarchy(m, &before, &BTreeSet::new(), &mut next);
             }
             Request::Clear(chart) => clear(m, chart, &mut next),
             Request::Freeze(chart, true) => {
@@ -82,14 +85,15 @@ pub(super) fn services(m: &Model, s: &mut State) -> Changes {
             Request::Freeze(chart, false) => {
                 s.frozen.remove(&chart);
             }
-            Request::Set(step) => {
-                if !s.is_active(m, step) || !next.contains(&step) {
-                    m.activate(step, &mut next);
-                }
+            // A macro-step stands for its entry step.
+            Request::Set(step) if !next.contains(&step) || m.steps[step].expansion.is_some() => {
+                m.activate(step, &mut next);
             }
+            Request::Set(_) => {}
             Request::Reset(step) => {
-                next.remove(&step);
-                next.retain(|x| !m.subordinates(step).contains(x));
+                if next.remove(&step) || m.steps[step].expansion.is_some() {
+                    next.retain(|x| !m.subordinates(step).contains(x));
+                }
             }
         }
     }

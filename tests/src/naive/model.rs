@@ -412,7 +412,7 @@ impl Model {
 
     /// Whether a scope takes part: an expansion does where a macro-step has it.
     pub(super) fn is_live(&self, scope: ScopeId) -> bool {
-        self.scopes[scope].kind != ChartKind::Expansion || self.scopes[scope].macro_step.is_some()
+        self.scopes[self.scopes[scope].root].kind != ChartKind::Expansion
     }
 
     pub(super) fn root_of(&self, step: StepId) -> ScopeId {

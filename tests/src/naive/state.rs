@@ -93,6 +93,8 @@ pub(super) struct State {
     pub(super) frozen: BTreeSet<ScopeId>,
     pub(super) requests: Vec<Request>,
     pub(super) control: BTreeMap<Owner, Control>,
+    /// Outputs of transition sections, as their transition last computed them.
+    pub(super) sections: BTreeMap<(ScopeId, String), bool>,
     /// What each qualified action last gave to its block: it stays so while its
     /// chart is not due.
     pub(super) held: BTreeMap<(StepId, usize), bool>,
@@ -117,6 +119,7 @@ impl State {
             frozen: BTreeSet::new(),
             requests: Vec::new(),
             control: BTreeMap::new(),
+            sections: BTreeMap::new(),
             held: BTreeMap::new(),
             work: 0,
         };

@@ -8,7 +8,7 @@ use super::Diagnostics;
 use super::control::{self, Goal};
 use super::evolve::Changes;
 use super::exec::Exec;
-use super::model::{FILE, Model, ScopeId, StepId, TransId, VarId};
+use super::model::{FILE, Model, ScopeId, StepId, VarId};
 use super::state::State;
 use super::value::{Run, Value};
 
