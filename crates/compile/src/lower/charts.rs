@@ -193,7 +193,8 @@ impl Lower<'_> {
     }
 
     /// By step: the groups it counts in. Only those of expansions are counted,
-    /// since only macro-steps have an activity of their own.
+    /// since only macro-steps have an activity of their own; what stands for a
+    /// macro-step inside is no step of the expansion.
     pub(super) fn counted_groups(&self) -> Lists<GroupId> {
         let mut lists = Lists::default();
         if self.plan.groups.len() == self.plan.outer.len() {
@@ -201,7 +202,8 @@ impl Lower<'_> {
         }
         for (i, (chart, start, end)) in self.plan.groups.iter().enumerate() {
             if parent(self.unit, *chart).is_some() {
-                (*start..*end).for_each(|s| lists.add(s, GroupId(i as u32)));
+                let steps = (*start..*end).filter(|s| !self.is_pseudo(*s));
+                steps.for_each(|s| lists.add(s, GroupId(i as u32)));
             }
         }
         lists.sort_unique();

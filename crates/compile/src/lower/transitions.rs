@@ -242,15 +242,26 @@ impl Lower<'_> {
         }
         let at = receptivity.at;
         let mut b = self.buf(self.period(chart));
-        let mut any = !is_true(receptivity);
-        if any {
-            self.expr(&mut b, receptivity);
-        }
-        for e in extras {
+        // What holds a transition back comes first: then its receptivity is not
+        // even looked at, and cannot fail.
+        for (i, e) in extras.iter().enumerate() {
             self.extra(&mut b, e, at);
-            if std::mem::replace(&mut any, true) {
+            if i > 0 {
                 b.op(Op::And, at);
             }
+        }
+        if extras.is_empty() {
+            self.expr(&mut b, receptivity);
+        } else if self.plain_guard(receptivity).is_none() {
+            let held = b.jump(Op::JumpUnless, at);
+            self.expr(&mut b, receptivity);
+            let end = b.jump(Op::Jump, at);
+            b.land(held);
+            b.op(Op::Push(0), at);
+            b.land(end);
+        } else if !is_true(receptivity) {
+            self.expr(&mut b, receptivity);
+            b.op(Op::And, at);
         }
         Guard::Code(self.place(b))
     }

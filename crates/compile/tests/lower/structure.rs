@@ -114,6 +114,23 @@ fn the_time_of_a_macro_step_runs_while_a_step_of_its_expansion_is_active() {
 }
 
 #[test]
+fn what_stands_for_a_macro_step_is_no_step_of_the_expansion_round_it() {
+    let c = compiled(
+        "input a : BOOL  output V : BOOL
+         chart G { initial macro M = E1  step 1  M -> 1 when a }
+         macrochart E1 { entry step E  macro N = E2 { N V }  exit step S  E -> N when a  N -> S when a }
+         macrochart E2 { entry step I  exit step O  I -> O when a }",
+    );
+    let counted = |step: g7_engine::StepId| {
+        let row = c.tables().steps[step.0 as usize].extra;
+        let groups = c.tables().extras[row as usize].groups;
+        groups.end - groups.start
+    };
+    let stand_in = c.symbols.macro_steps[1].step.expect("N acts");
+    assert_eq!((counted(stand_in), counted(c.step("M.E")), counted(c.step("N.I"))), (0, 1, 2));
+}
+
+#[test]
 fn pre_and_post_of_a_chart_with_a_period_run_when_it_is_due() {
     let c = compiled(
         "var n, m : INT  post { m := m + 1 }

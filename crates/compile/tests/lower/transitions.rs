@@ -76,10 +76,23 @@ fn enable_holds_a_chart_and_its_expansions() {
     );
     let Guard::Code(code) = c.transition("t1").guard else { panic!("code") };
     let (one, three) = (Op::Active(c.step("1")), Op::Active(c.step("3")));
-    assert_eq!(c.ops(code), [Op::Load(c.addr("a")), one, three, Op::Or, Op::And]);
+    assert_eq!(c.ops(code), [one, three, Op::Or, Op::Load(c.addr("a")), Op::And]);
     let Guard::Code(code) = c.transition("t2").guard else { panic!("code") };
     assert_eq!(c.ops(code), [one, three, Op::Or]);
     assert_eq!(c.transition("t3").guard, Guard::Word(c.addr("a")));
+}
+
+#[test]
+fn the_receptivity_of_a_transition_held_back_is_not_looked_at() {
+    let c = compiled(
+        "input a : BOOL  var n : INT
+         chart G { initial step 1  step 2 { enable H }  1 -> 2 when a }
+         chart H { initial step 5  step 6  5 -> 6 when 1 / n > 0 }",
+    );
+    let mut run = c.start();
+    assert_eq!(run.scan().situation(), "1 5");
+    run.set("a", 1);
+    assert_eq!(run.try_scan().expect_err("a fault").kind, g7_engine::FaultKind::DivisionByZero);
 }
 
 #[test]
