@@ -16,6 +16,8 @@ use crate::ir::{StepId, StepSort, Transition, Unit};
 const STARTS: usize = 16;
 /// Most steps of a circle that is played; a larger one is left to the run.
 const LARGEST: usize = 500;
+/// Most situations named in a message.
+const SHOWN: usize = 8;
 /// Situations played in one circle, beside twice its size.
 const LENGTH: usize = 64;
 
@@ -50,8 +52,12 @@ pub(super) fn check(facts: &Facts<'_>, problems: &mut Vec<Problem>) {
         let played = own.iter().take(STARTS);
         let found = played.filter_map(|t| play(unit, &own, &t.from, circle.len()).map(|c| (*t, c))).next();
         let Some((first, names)) = found else { continue };
-        let what =
-            format!("the loop {} never rests: each of its receptivities is always true", names.join(" → "));
+        let way = if names.len() > SHOWN {
+            format!("{} → …", names.get(..SHOWN).unwrap_or(&names).join(" → "))
+        } else {
+            names.join(" → ")
+        };
+        let what = format!("the loop {way} never rests: each of its receptivities is always true");
         problems.push(
             Problem::new(&codes::RESTLESS_LOOP, first.at, what)
                 .help("give at least one of its transitions a receptivity that can be false"),
