@@ -19,6 +19,9 @@ use crate::ir::{
 /// call functions that call functions.
 const MOST: usize = 1 << 22;
 
+/// The instructions for the time of a step and of a macro-step's group.
+type TimeOps = (fn(Number) -> Op, fn(GroupId) -> Op);
+
 /// What a watched expression reads.
 #[derive(Default)]
 pub(super) struct Reads {
@@ -88,6 +91,9 @@ impl Buf {
         }
     }
 }
+
+/// How the time of a step, and that of a group, are read.
+type Clocks = (fn(Number) -> Op, fn(GroupId) -> Op);
 
 impl Lower<'_> {
     /// An empty buffer for code of a period.
@@ -299,8 +305,7 @@ impl Lower<'_> {
     /// Pushes the time since activation, ns, whatever the clock.
     pub(super) fn step_time(&mut self, b: &mut Buf, step: StepId, at: Span) {
         let scans = self.unit.rules.scan_clock;
-        let ops: (fn(Number) -> Op, fn(GroupId) -> Op) =
-            if scans { (Op::StepAge, Op::GroupAge) } else { (Op::StepTime, Op::GroupTime) };
+        let ops: TimeOps = if scans { (Op::StepAge, Op::GroupAge) } else { (Op::StepTime, Op::GroupTime) };
         self.time(b, step, ops, at);
     }
 
@@ -312,13 +317,7 @@ impl Lower<'_> {
     }
 
     /// A time goes on by itself, and starts anew within a scan.
-    fn time(
-        &mut self,
-        b: &mut Buf,
-        step: StepId,
-        (of_step, of_group): (fn(Number) -> Op, fn(GroupId) -> Op),
-        at: Span,
-    ) {
+    fn time(&mut self, b: &mut Buf, step: StepId, (of_step, of_group): TimeOps, at: Span) {
         b.reads.time = true;
         let group = self.plan.expansion(self.unit, step).and_then(|c| self.plan.group(c));
         match (group, self.plan.own(step)) {
