@@ -92,9 +92,6 @@ impl Buf {
     }
 }
 
-/// How the time of a step, and that of a group, are read.
-type Clocks = (fn(Number) -> Op, fn(GroupId) -> Op);
-
 impl Lower<'_> {
     /// An empty buffer for code of a period.
     pub(super) fn buf(&mut self, period: u32) -> Buf {
