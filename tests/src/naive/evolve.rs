@@ -121,6 +121,7 @@ fn one_after_the_other(
     // Owners of tasks are settled by the situation in which the pass began.
     let by_themselves = tasks(m, s, due, chosen);
     for &t in chosen {
+        let begun = s.clone();
         if let Some(block) = &m.transitions[t].on_clearing {
             Exec::new(m, s).body(m.transitions[t].scope, block)?;
         }
@@ -129,6 +130,13 @@ fn one_after_the_other(
         }
         for x in arriving(m, t).into_iter().flatten() {
             enter(m, s, x, &mut all)?;
+        }
+        // A token that goes from step to step within does not leave the macro-step.
+        for x in (0..m.steps.len()).filter(|&x| m.steps[x].expansion.is_some()) {
+            if begun.is_active(m, x) && s.is_active(m, x) {
+                let kept = begun.macro_timing.get(&x).copied().unwrap_or_default();
+                s.macro_timing.insert(x, kept);
+            }
         }
     }
     let mut next = s.active.clone();
@@ -307,7 +315,7 @@ fn choose(m: &Model, s: &mut State, ready: Vec<TransId>) -> Run<Vec<TransId>> {
     if !m.rules.multi_token {
         // One behind another: a step that is taken asks no further receptivity.
         let mut ranked = ready;
-        ranked.sort_by_key(|&t| (level(m, t), m.transitions[t].priority.unwrap_or(u32::MAX), t));
+        ranked.sort_by_key(|&t| (turn(m, t), m.transitions[t].priority.unwrap_or(u32::MAX), t));
         let mut chosen: Vec<TransId> = Vec::new();
         for t in ranked {
             if !chosen.iter().any(|&c| shares(c, t)) && is_true(t)? {
@@ -323,7 +331,7 @@ fn choose(m: &Model, s: &mut State, ready: Vec<TransId>) -> Run<Vec<TransId>> {
         }
     }
     if m.rules.profile != ProfileName::Jgrafchart {
-        clearable.sort_by_key(|&t| (level(m, t), t));
+        clearable.sort_by_key(|&t| (turn(m, t), t));
         return Ok(clearable);
     }
     let beaten = |t: TransId| {
@@ -332,15 +340,16 @@ fn choose(m: &Model, s: &mut State, ready: Vec<TransId>) -> Run<Vec<TransId>> {
         clearable.iter().any(|&o| shares(o, t) && number(o) < number(t))
     };
     let mut chosen: Vec<TransId> = clearable.iter().copied().filter(|&t| !beaten(t)).collect();
-    chosen.sort_by_key(|&t| (level(m, t), t));
+    chosen.sort_by_key(|&t| (turn(m, t), t));
     Ok(chosen)
 }
 
-/// Where one clears after the other, those of a chart come before those of the
-/// expansions in it: how many macro-steps lie round a transition.
-fn level(m: &Model, t: TransId) -> usize {
-    let depth = m.scopes[m.transitions[t].scope].qualified.split('.').count();
-    if m.rules.sequential { depth } else { 0 }
+/// Where one clears after the other, chart by chart: how many macro-steps lie
+/// round a transition, then the place of its chart in the text.
+fn turn(m: &Model, t: TransId) -> (usize, ScopeId) {
+    let scope = m.transitions[t].scope;
+    let depth = m.scopes[scope].qualified.split('.').count();
+    if m.rules.sequential { (depth, scope) } else { (0, 0) }
 }
 
 /// What enclosing steps bring and take, from the outermost inward.
