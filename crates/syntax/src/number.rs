@@ -192,7 +192,7 @@ pub(crate) fn show_duration(ns: i64) -> String {
         return "0s".into();
     }
     const SECOND: i128 = 1_000_000_000;
-    if rest >= 120 * SECOND {
+    if rest >= 60 * SECOND {
         for (unit, size) in UNITS.iter().take(3) {
             if rest >= *size {
                 let _ = write!(out, "{}{unit}", rest / size);

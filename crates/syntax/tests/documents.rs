@@ -120,6 +120,61 @@ fn the_examples_are_read_and_stand_in_canonical_form() {
     }
 }
 
+const DURATIONS: &str = "\
+input a : BOOL
+
+chart G every 120s {
+  initial step 1 { D 60s go }
+  1 -> 1 when X1.t > 90s
+}
+
+test \"t\" {
+  pulse a for 0d
+  wait 60s
+  wait until a within T#1m_30s
+}
+
+prove after a within 90m expect not a
+";
+
+/// Written durations stay as they are; those of a tree alone are short, large units first.
+#[test]
+fn durations_are_printed_as_written_else_in_their_natural_form() {
+    let (document, problems) = parse(DURATIONS, FileId(0));
+    assert!(problems.is_empty(), "{problems:?}");
+    assert_eq!(print(&document, Some(DURATIONS)), DURATIONS);
+    let bare = print(&document, None);
+    for part in [
+        "every 2m {",
+        "D 1m go",
+        "X1.t > 1m30s",
+        "for 0s\n",
+        "wait 1m\n",
+        "within 1m30s\n",
+        "within 1h30m expect",
+    ] {
+        assert!(bare.contains(part), "{part} in\n{bare}");
+    }
+    assert_eq!(misprint(DURATIONS, &document), None);
+}
+
+#[test]
+fn a_number_in_brackets_keeps_its_spelling() {
+    for (e, want) in [
+        ("a · not (0d)", "a · not (0d)"),
+        ("a and (( 16#FF )) > n", "a and 16#FF > n"),
+        ("not ([2.50e1] > x)", "not (2.50e1 > x)"),
+        ("(1h) / 2 > t", "(1h) / 2 > t"),
+    ] {
+        let text = format!("chart G {{\n  initial step 1\n  1 -> 1 when {e}\n}}\n");
+        let (document, problems) = parse(&text, FileId(0));
+        assert!(problems.is_empty(), "{e}: {problems:?}");
+        let printed = print(&document, Some(&text));
+        assert!(printed.contains(&format!("when {want}\n")), "{e}: {printed}");
+        assert_eq!(misprint(&text, &document), None, "{e}");
+    }
+}
+
 /// The pages of the codes of files and words are about what the reader reports.
 #[test]
 fn the_pages_of_the_codes_of_reading_hold() {

@@ -16,10 +16,7 @@ impl Printer<'_> {
         });
         self.name(&chart.name.text);
         self.comment(chart.comment.as_deref());
-        if let Some(ns) = chart.every {
-            self.push(" every ");
-            self.push(&crate::number::show_duration(ns));
-        }
+        self.time_clause("every", chart.every, chart.at.0);
         self.push(" ");
         let first = starts(chart.items.first().map(place));
         self.braces(chart.at.0, first, |p| p.chart_items(&chart.items));

@@ -166,7 +166,9 @@ impl<'a> Printer<'a> {
     fn as_written(&self, literal: &Literal, e: &Expr) -> Option<&'a str> {
         let source = self.source.as_ref()?;
         let at = e.at.0;
+        // Brackets around it are part of its place, but not of the number.
         let text = source.text().get(at.start as usize..at.end as usize)?;
+        let text = text.trim_matches(|c: char| c.is_whitespace() || matches!(c, '(' | ')' | '[' | ']'));
         if !text.starts_with(|c: char| c.is_ascii_alphanumeric()) {
             return None;
         }

@@ -28,10 +28,7 @@ impl Printer<'_> {
     fn item(&mut self, item: &Item, apart: bool) {
         match item {
             Item::Profile(p) => self.line(p.at.0, apart, |s| s.profile(p)),
-            Item::Cycle(ns, at) => self.line(at.0, apart, |s| {
-                s.push("scan ");
-                s.push(&number::show_duration(*ns));
-            }),
+            Item::Cycle(ns, at) => self.line(at.0, apart, |s| s.time_clause("scan", Some(*ns), at.0)),
             Item::Target(plc, at) => self.line(at.0, apart, |s| {
                 s.push("target ");
                 s.push(plc.name());

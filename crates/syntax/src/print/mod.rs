@@ -56,6 +56,34 @@ impl<'a> Printer<'a> {
         self.out.push_str(text);
     }
 
+    /// A word of the thing at hand and the duration behind it, spelled as in
+    /// the source if that is this duration.
+    fn time_clause(&mut self, word: &str, ns: Option<i64>, at: Span) {
+        let Some(ns) = ns else { return };
+        if self.out.ends_with(|c: char| !c.is_whitespace()) {
+            self.push(" ");
+        }
+        self.push(word);
+        self.push(" ");
+        match self.time_as_written(word, ns, at) {
+            Some(text) => self.out.push_str(text),
+            None => self.push(&number::show_duration(ns)),
+        }
+    }
+
+    /// The tree has only the value: its spelling stands behind the word.
+    fn time_as_written(&self, word: &str, ns: i64, at: Span) -> Option<&'a str> {
+        let text = self.source.as_ref()?.text().get(at.start as usize..at.end as usize)?;
+        let mut words = text.split(|c: char| c.is_whitespace() || matches!(c, ';' | '{' | '}'));
+        while words.any(|w| w == word) {
+            let next = words.clone().find(|w| !w.is_empty())?;
+            if number::duration(next) == Ok(ns) && next.starts_with(|c: char| c.is_ascii_alphanumeric()) {
+                return Some(next);
+            }
+        }
+        None
+    }
+
     fn start_line(&mut self) {
         for _ in 0..self.indent {
             self.out.push_str("  ");

@@ -180,13 +180,13 @@ impl Printer<'_> {
             TestStmtKind::Pulse(path, time) => {
                 self.push("pulse ");
                 self.path(path);
-                self.time_clause(" for ", *time);
+                self.time_clause("for", *time, s.at.0);
             }
-            TestStmtKind::Wait(ns) => self.time_clause("wait ", Some(*ns)),
+            TestStmtKind::Wait(ns) => self.time_clause("wait", Some(*ns), s.at.0),
             TestStmtKind::WaitUntil(e, within) => {
                 self.push("wait until ");
                 self.expr(e);
-                self.time_clause(" within ", *within);
+                self.time_clause("within", *within, s.at.0);
             }
             TestStmtKind::Scan(1) => self.push("scan"),
             TestStmtKind::Scan(n) => self.push(&format!("scan {n}")),
@@ -245,13 +245,6 @@ impl Printer<'_> {
         }
     }
 
-    fn time_clause(&mut self, word: &str, ns: Option<i64>) {
-        if let Some(ns) = ns {
-            self.push(word);
-            self.push(&number::show_duration(ns));
-        }
-    }
-
     pub(super) fn property(&mut self, property: &Property) {
         let (word, e) = match &property.kind {
             PropertyKind::Always(e) => ("prove always ", e),
@@ -262,7 +255,7 @@ impl Printer<'_> {
         self.push(word);
         self.expr(e);
         if let PropertyKind::After(_, ns, then) = &property.kind {
-            self.time_clause(" within ", Some(*ns));
+            self.time_clause("within", Some(*ns), property.at.0);
             self.push(" expect ");
             self.expr(then);
         }
