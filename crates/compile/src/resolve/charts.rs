@@ -42,7 +42,8 @@ impl<'d> Resolver<'_, 'd> {
                 }
                 None => {} // The name could not be read, and was reported then.
             }
-            self.scopes.charts.push(ChartScope::default());
+            let proper = chart.kind == ChartKind::Chart;
+            self.scopes.charts.push(ChartScope { proper, ..ChartScope::default() });
             let start = self.unit.steps.len() as u32;
             self.unit.charts.push(Chart {
                 name: chart.name.text.clone(),

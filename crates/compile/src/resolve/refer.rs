@@ -8,7 +8,7 @@
 use g7_model::{Name, Problem, ProfileName, Span, Type, codes};
 
 use super::resolver::{Resolver, Role, nearest};
-use super::scopes::{Entity, Home, normal_address};
+use super::scopes::{Entity, Home, Homes, normal_address};
 use crate::ir::{ChartId, ChartRole, StepId, StepSort, VarClass, VarId};
 
 /// What a path stands for.
@@ -272,10 +272,24 @@ impl Resolver<'_, '_> {
             None => format!("nothing is called `{name}`"),
         };
         let mut problem = Problem::new(&codes::UNKNOWN_NAME, at, what);
-        if self.may_guess() {
+        if let Some(base) = self.overlined(name, chart) {
+            problem.help = Some(format!("write `not {base}`, `{base}'` or `/{base}`"));
+        } else if self.may_guess() {
             problem.help = self.guess(name, home.as_deref()).map(|n| format!("did you mean `{n}`?"));
         }
         problem
+    }
+
+    /// The BOOL variable meant by a letter with a macron (`ā`), which looks like
+    /// an overline but is a letter of its own.
+    fn overlined(&self, name: &str, chart: Option<ChartId>) -> Option<String> {
+        let base: String = name.chars().map(|c| without_macron(c).unwrap_or(c)).collect();
+        if base == name {
+            return None;
+        }
+        let entity = chart.map_or_else(|| self.entity(&base), |c| self.scopes.of_chart(c, &base))?;
+        let Ok(Ref::Var(v)) = self.value_of(entity, 0) else { return None };
+        (self.var(v)?.ty == Type::Bool).then_some(base)
     }
 
     /// Among the variables of the named chart, or of the file and the chart at hand.
@@ -329,7 +343,7 @@ impl Resolver<'_, '_> {
     /// How the activity of a step is written from anywhere.
     pub(super) fn activity_path(&self, step: StepId) -> String {
         let Some(s) = self.unit.steps.get(step.index()) else { return String::new() };
-        let unique = matches!(self.scopes.step_homes.get(&*s.name), Some(Home::One(..)));
+        let unique = matches!(self.scopes.step_homes.get(&*s.name), Some(Homes::One(..)));
         let number = s.name.bytes().all(|b| b.is_ascii_digit());
         let own = if number { format!("X{}", s.name) } else { format!("{}.X", s.name) };
         match self.unit.charts.get(s.chart.index()) {
@@ -406,9 +420,9 @@ impl Resolver<'_, '_> {
     fn macro_step(&self, number: &str) -> Option<StepId> {
         [number.to_owned(), format!("M{number}")].iter().find_map(|name| {
             let own = self.first_chart().and_then(|c| self.scopes.step(c, name));
-            let step = own.or_else(|| match self.scopes.step_homes.get(&**name) {
-                Some(Home::One(_, s)) => Some(*s),
-                _ => None,
+            let step = own.or_else(|| match self.scopes.home(None, name)? {
+                Home::One(_, s) => Some(s),
+                Home::Several(..) => None,
             })?;
             self.expansion(step).map(|_| step)
         })
@@ -443,6 +457,29 @@ impl Resolver<'_, '_> {
 /// The number in `X12`.
 fn step_number(name: &str) -> Option<&str> {
     name.strip_prefix('X').filter(|n| !n.is_empty() && n.bytes().all(|b| b.is_ascii_digit()))
+}
+
+/// The letter below the macron of a precomposed one (Unicode's decompositions with U+0304).
+fn without_macron(c: char) -> Option<char> {
+    const LETTERS: [(char, char); 16] = [
+        ('Ā', 'A'),
+        ('ā', 'a'),
+        ('Ē', 'E'),
+        ('ē', 'e'),
+        ('Ī', 'I'),
+        ('ī', 'i'),
+        ('Ō', 'O'),
+        ('ō', 'o'),
+        ('Ū', 'U'),
+        ('ū', 'u'),
+        ('Ȳ', 'Y'),
+        ('ȳ', 'y'),
+        ('Ḡ', 'G'),
+        ('ḡ', 'g'),
+        ('Ǣ', 'Æ'),
+        ('ǣ', 'æ'),
+    ];
+    LETTERS.iter().find(|(with, _)| *with == c).map(|(_, base)| *base)
 }
 
 /// The type of a system bit or word (SEMANTICS section 6).

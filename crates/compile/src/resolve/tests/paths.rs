@@ -51,10 +51,13 @@ const TABLE: &[(&str, [&str; 4])] = &[
     ("go.Q", ["G0206"; 4]),
     ("G.timer.ET", ["G.timer#3 : TIME"; 4]),
     ("timer.Q", ["G0202", "G.timer#2 : BOOL", "G0202", "G0202"]),
-    // Activity: of the chart itself, else the only one of the document.
+    // Activity: of the chart itself, else the only one of the document, else
+    // the only one of the charts, expansions apart.
     ("X20", ["active H.20 : BOOL"; 4]),
-    ("X12", ["G0203", "active G.12 : BOOL", "active G.M3.12 : BOOL", "G0203"]),
+    ("X12", ["active G.12 : BOOL", "active G.12 : BOOL", "active G.M3.12 : BOOL", "active G.12 : BOOL"]),
     ("X1", ["G0203", "active G.1 : BOOL", "G0203", "active H.1 : BOOL"]),
+    ("XE", ["G0203", "G0203", "active G.M3.E : BOOL", "G0203"]),
+    ("XA", ["active G.4.A : BOOL"; 4]),
     ("G.X12", ["active G.12 : BOOL"; 4]),
     ("M3.X12", ["active G.M3.12 : BOOL"; 4]),
     ("G.M3.X12", ["active G.M3.12 : BOOL"; 4]),
@@ -81,7 +84,7 @@ const TABLE: &[(&str, [&str; 4])] = &[
     ("M3.X12.t", ["time G.M3.12 : TIME"; 4]),
     ("Fill.s", ["G0206"; 4]),
     ("Fill.x", ["G0206"; 4]),
-    ("X12.X", ["G0203", "G0206", "G0206", "G0203"]),
+    ("X12.X", ["G0206"; 4]),
     // Direct names.
     ("%I0.1", ["go : BOOL"; 4]),
     ("%IX0.1", ["go : BOOL"; 4]),
@@ -154,5 +157,59 @@ fn jgrafchart_counts_scans() {
     ] {
         let got = ask(&mut unit, &mut scopes, path, None);
         assert_eq!(outcome(&unit, got), want, "{path}");
+    }
+}
+
+/// What each bare name leads to does not depend on the order of the charts.
+#[test]
+fn steps_of_charts_come_before_those_of_expansions_and_tasks() {
+    const CHART: &str = "chart G { initial step 1  step 2  macro M = D  step 5 { call T }
+        1 -> 2 when =1 -> M when =1 -> 5 when =1 -> 1 when =1 }";
+    const EXPANSION: &str = "macrochart D { entry step 1  step 7  exit step 3  1 -> 7 when =1 -> 3 when =1 }";
+    const TASK: &str =
+        "task T { entry step 1  step 2  step 7  exit step 3  1 -> 2 when =1 -> 7 when =1 -> 3 when =1 }";
+    const OTHER: &str = "chart H { initial step 11  step 2  11 -> 2 when =1 -> 11 when =1 }";
+    for order in
+        [[CHART, EXPANSION, TASK, OTHER], [TASK, OTHER, EXPANSION, CHART], [EXPANSION, TASK, CHART, OTHER]]
+    {
+        let doc = read(&order.join("\n"));
+        let (mut unit, mut scopes) = resolved(&doc);
+        for (path, from, want) in [
+            ("X1", None, "active G.1 : BOOL"),
+            ("X1", Some("H"), "active G.1 : BOOL"),
+            ("X1", Some("T"), "active T.1 : BOOL"),
+            ("X1.t", None, "time G.1 : TIME"),
+            ("X2", None, "G0203"),
+            ("X2", Some("D"), "G0203"),
+            ("X3", None, "G0203"),
+            ("X7", Some("G"), "G0203"),
+            ("X7", Some("D"), "active G.M.7 : BOOL"),
+            ("X11", Some("T"), "active H.11 : BOOL"),
+        ] {
+            let chart = from.and_then(|c| scopes.chart(c));
+            let got = ask(&mut unit, &mut scopes, path, chart);
+            assert_eq!(outcome(&unit, got), want, "{path} from {from:?} in\n{}", order.join("\n"));
+        }
+    }
+}
+
+/// `ā` is one letter to Unicode, so it is no `a̅`.
+#[test]
+fn a_letter_with_a_macron_is_told_from_an_overline() {
+    let doc = read("input a, b : BOOL  var n : INT  chart G { var o : BOOL  initial step 1  1 -> 1 when a }");
+    let (mut unit, mut scopes) = resolved(&doc);
+    for (path, from, want) in [
+        ("ā", None, Some("write `not a`, `a'` or `/a`")),
+        ("b · ā", Some("G"), Some("write `not a`, `a'` or `/a`")),
+        ("ō", Some("G"), Some("write `not o`, `o'` or `/o`")),
+        ("G.ō", None, Some("write `not o`, `o'` or `/o`")),
+        // Not seen from here; nothing of that name.
+        ("ō", None, None),
+        ("ē", None, None),
+    ] {
+        let chart = from.and_then(|c| scopes.chart(c));
+        let problems = ask(&mut unit, &mut scopes, path, chart).expect_err(path);
+        assert_eq!(problems.iter().map(|p| p.code.id).collect::<Vec<_>>(), ["G0202"], "{path}");
+        assert_eq!(problems[0].help.as_deref(), want, "{path} from {from:?}");
     }
 }
