@@ -82,6 +82,28 @@ fn without_a_terminal_it_runs_headless() {
 }
 
 #[test]
+fn where_nothing_moved_it_says_how_to_set_a_free_input() {
+    let still = |chart: &str| {
+        let out = Folder::with(chart).g7(&["run", "--headless", "--for", "2s"]).is(0).out.clone();
+        out.lines().last().unwrap_or_default().to_owned()
+    };
+    let chart = "chart G { initial step 1  step 2  1 -> 2 when a -> 1 when not a }";
+    // What the plant drives cannot be set; a BOOL goes first.
+    let plant = "plant P { state x : REAL := 0.0  drive d := x > 1.0 }";
+    let first = still(&format!("input d, a : BOOL  {chart} {plant}"));
+    assert_eq!(first, "nothing moved; `--set a=1@1s` sets an input after 1s");
+    let only = still("input t : TIME  chart G { initial step 1 }");
+    assert_eq!(only, "nothing moved; `--set t=1s@1s` sets an input after 1s");
+    let odd = still("input `push it` : INT  chart G { initial step 1 }");
+    assert_eq!(odd, "nothing moved; `--set 'push it=1@1s'` sets an input after 1s");
+    assert_eq!(still("chart G { initial step 1 }"), "nothing moved");
+    // The words do what they say.
+    let folder = Folder::with(&format!("input a : BOOL  {chart}"));
+    let ran = folder.g7(&["run", "--headless", "--for", "2s", "--set", "a=1@1s"]);
+    assert!(ran.is(0).out.contains("now in {2}"), "{}", ran.out);
+}
+
+#[test]
 fn profile_and_scan_take_the_place_of_the_files_own() {
     let chart = "scan 5ms\ninput a : BOOL\nchart G {\n  initial step 1\n  step 2\n  step 3\n  \
                  1 -> 2 when a\n  2 -> 3 when a\n  3 -> 1 when not a\n}\n";

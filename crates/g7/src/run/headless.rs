@@ -4,12 +4,12 @@ use std::io::{IsTerminal, Write, stdout};
 use std::path::Path;
 
 use g7_host::{
-    Chronogram, Clock, Recording, Runner, Style, Tape, Value, VirtualClock, WallClock, format_time,
+    Chronogram, Clock, Kind, Recording, Runner, Style, Tape, Value, VirtualClock, WallClock, format_time,
     write_csv, write_vcd,
 };
 
 use super::keep::{self, Keeper};
-use crate::bench::{Bench, Conflicts, Item};
+use crate::bench::{Bench, Conflicts, Item, Role};
 use crate::cli::Run;
 use crate::failure::{Failure, Verdict};
 use crate::progress::Progress;
@@ -190,7 +190,7 @@ fn print(
         lanes = Bench::moving(recording);
     }
     if lanes.is_empty() {
-        writeln!(out, "nothing moved")?;
+        writeln!(out, "nothing moved{}", how_to_move(bench, runner))?;
         return Ok(out.flush()?);
     }
     let left = lanes.len().saturating_sub(LANES);
@@ -203,6 +203,20 @@ fn print(
         writeln!(out, "… and {left} more signals that move; --show picks, --trace keeps them all")?;
     }
     Ok(out.flush()?)
+}
+
+/// How to set an input, one that is free and if possible a BOOL; nothing where there is none.
+fn how_to_move(bench: &Bench, runner: &Runner<'_>) -> String {
+    let inputs = || bench.items.iter().filter(|i| matches!(i.role, Role::Input(_)));
+    let free = || inputs().filter(|i| !bench.is_driven(runner, i));
+    let Some(input) = free().find(|i| i.kind == Kind::Bool).or_else(|| free().next()) else {
+        return String::new();
+    };
+    let value = if input.kind == Kind::Time { "1s" } else { "1" };
+    let assign = format!("{}={value}@1s", input.name);
+    let plain = |c: char| c.is_alphanumeric() || "_.=@".contains(c);
+    let quote = if assign.chars().all(plain) { "" } else { "'" };
+    format!("; `--set {quote}{assign}{quote}` sets an input after 1s")
 }
 
 /// Columns for the lanes: the terminal's width less labels and notes.
