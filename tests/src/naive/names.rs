@@ -34,10 +34,20 @@ impl Model {
         {
             return self.variable_in(chart, rest).or_else(|| self.step_in(chart, rest));
         }
-        // Linked charts read each other's steps by their bare number (A17).
-        let everywhere: Vec<Ref> =
-            (FILE + 1..self.scopes.len()).filter_map(|s| self.step_in(s, &names)).collect();
-        if let [only] = &everywhere[..] { Some(only.clone()) } else { None }
+        // Linked charts read each other's steps by their bare number (A17): the
+        // only one of the charts, else the only one of expansions and tasks.
+        let found = |of_charts: bool| {
+            let scopes = FILE + 1..self.scopes.len();
+            let mut all = scopes
+                .filter(|&s| (self.scopes[s].kind == ChartKind::Chart) == of_charts)
+                .filter_map(|s| self.step_in(s, &names));
+            match (all.next(), all.next()) {
+                (Some(only), None) => Some(Some(only)),
+                (None, _) => None,
+                _ => Some(None),
+            }
+        };
+        found(true).or_else(|| found(false)).flatten()
     }
 
     /// A scope, the charts around an expansion, the file.
