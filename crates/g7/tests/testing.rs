@@ -216,6 +216,54 @@ test \"left\" { pulse a }
 }
 
 #[test]
+fn every_action_of_a_step_counts_for_itself() {
+    let chart = "\
+input a, c : BOOL
+output m, k, l : BOOL
+action Add { n := n + 1 }
+var n : INT
+chart G {
+  initial step 1 { N m }
+  step 2 {
+    N m
+    N k if c
+    N k if not c
+    D 1s l
+    N Add
+    P1 n := 0
+  }
+  step 3 {
+    N m
+    N Add
+    force H := INIT
+  }
+  1 -> 2 when a -> 3 when c -> 1 when TRUE
+}
+chart H { initial step 10  step 11  10 -> 11 when X3 }
+test \"t\" { set a := TRUE  wait TIME  expect k = not c }
+";
+    let folder = Folder::new();
+    let missing = |profile: &str, time: &str| {
+        folder.write("chart.g7", format!("profile {profile}\n{}", chart.replace("TIME", time)));
+        let out = folder.g7(&["test", "--coverage"]).is(0).out.clone();
+        let rows = out.lines().filter_map(|l| l.trim().strip_prefix("not reached: action "));
+        rows.map(|r| r.split(" (./chart.g7:").map(str::to_owned).collect::<Vec<_>>().join(" "))
+            .collect::<Vec<_>>()
+    };
+    let of_3 = ["N m 17:5)", "N Add 18:5)", "force H := INIT 19:5)"];
+    let never = ["N k if c 10:5)"];
+    for (profile, time, late) in [
+        ("iec60848", "500ms", &["D 1s l 12:5)"][..]),
+        ("iec60848", "2s", &[]),
+        // The delay is the block's own there.
+        ("iec61131", "500ms", &[]),
+    ] {
+        let want = [&never[..], late, &of_3].concat();
+        assert_eq!(missing(profile, time), want, "{profile} {time}");
+    }
+}
+
+#[test]
 fn json_and_junit_have_every_test() {
     let title = "<&\\\"'>";
     let folder =

@@ -1,8 +1,9 @@
 //! What the tests reached: steps, transitions, actions, branches.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
-use g7_engine::{Addr, NONE, StepId};
+use g7_compile::ir::{Action, ActionKind, Unit};
+use g7_engine::{Code, Contribution, StepId, eval};
 use g7_host::Runner;
 use g7_model::Span;
 
@@ -30,6 +31,18 @@ pub(crate) struct Coverage {
     pub(crate) actions: Rows,
     /// Transitions that share a preceding step: the ways of a divergence.
     pub(crate) branches: Rows,
+    /// Actions that hold as long as their steps are active, by step.
+    lasting: BTreeMap<StepId, Vec<Lasting>>,
+    /// Actions (rank) that several steps share: each step's own counts.
+    shared: BTreeSet<u32>,
+}
+
+/// An action without a moment of its own: `N motor`, `D 5s alarm if c`, `force G := INIT`.
+#[derive(Clone, Copy, Debug)]
+struct Lasting {
+    at: Span,
+    /// Empty where the active step is all that it takes.
+    condition: Code,
 }
 
 impl Coverage {
@@ -61,18 +74,21 @@ impl Coverage {
                 add(&mut self.branches, at, &name);
             }
         }
-        for action in symbols.actions.iter().filter(|a| !a.hidden) {
+        self.shared = shared(bench);
+        let ranks = (0u32..).zip(&symbols.actions);
+        let own = || ranks.clone().filter(|(rank, a)| !a.hidden && !self.shared.contains(rank));
+        for (_, action) in own() {
             add(&mut self.actions, action.at, &first_line(source, action.at));
         }
-        for (block, symbol) in bench.compiled.program.tables().blocks.iter().zip(&symbols.blocks) {
-            if block.output.0 != NONE {
-                add(&mut self.actions, symbol.at, &symbol.name);
-            }
+        self.lasting = lasting(bench, &own().map(|(_, a)| a.at).collect());
+        for action in self.lasting.values().flatten() {
+            add(&mut self.actions, action.at, &first_line(source, action.at));
         }
     }
 
     /// Takes in what the latest scan did.
-    pub(super) fn see(&mut self, bench: &Bench, runner: &Runner<'_>) {
+    pub(super) fn see(&mut self, bench: &Bench, runner: &mut Runner<'_>) {
+        self.see_lasting(runner);
         let (symbols, state) = (&bench.compiled.symbols, runner.state());
         let tables = bench.compiled.program.tables();
         let hit = |rows: &mut Rows, at: Span| {
@@ -96,15 +112,73 @@ impl Coverage {
             }
         }
         for rank in state.ran() {
-            if let Some(action) = symbols.actions.get(*rank as usize) {
+            if let Some(action) = symbols.actions.get(*rank as usize).filter(|_| !self.shared.contains(rank))
+            {
                 hit(&mut self.actions, action.at);
             }
         }
-        for (block, symbol) in tables.blocks.iter().zip(&symbols.blocks) {
-            if block.output != Addr(NONE) && state.word(block.output) != 0 {
-                hit(&mut self.actions, symbol.at);
+    }
+
+    /// The lasting actions of the steps that are active now, where their conditions hold.
+    fn see_lasting(&mut self, runner: &mut Runner<'_>) {
+        let program = runner.program();
+        let active: Vec<StepId> = runner.state().active().collect();
+        for action in active.iter().filter_map(|s| self.lasting.get(s)).flatten() {
+            let holds = action.condition.is_empty()
+                || eval(program, runner.state_mut(), action.condition).is_ok_and(|word| word != 0);
+            if let Some(row) = self.actions.get_mut(&action.at).filter(|_| holds) {
+                row.hits += 1;
             }
         }
+    }
+}
+
+/// The actions that run the body of a name, whichever steps asked for it.
+fn shared(bench: &Bench) -> BTreeSet<u32> {
+    let blocks = bench.compiled.program.tables().blocks.iter().zip(&bench.compiled.symbols.blocks);
+    blocks.filter(|(_, symbol)| !symbol.name.is_empty()).map(|(block, _)| block.action).collect()
+}
+
+/// The actions that no moment of `told` stands for, with the conditions that
+/// their inputs to control blocks have: these lie by step, in the order of the text.
+fn lasting(bench: &Bench, told: &BTreeSet<Span>) -> BTreeMap<StepId, Vec<Lasting>> {
+    let (unit, symbols) = (&bench.compiled.unit, &bench.compiled.symbols);
+    let tables = bench.compiled.program.tables();
+    let places: BTreeMap<Span, StepId> =
+        (0..symbols.steps()).map(StepId).map(|s| (symbols.step_place(s), s)).collect();
+    let mut found: BTreeMap<StepId, Vec<Lasting>> = BTreeMap::new();
+    for step in unit.steps.iter().filter(|s| !s.actions.is_empty()) {
+        let Some(id) = places.get(&step.at) else { continue };
+        let extra = tables.steps.get(id.0 as usize).and_then(|s| tables.extras.get(s.extra as usize));
+        let inputs = extra.map(|e| e.contributions.start as usize..e.contributions.end as usize);
+        let inputs = inputs.and_then(|rows| tables.contributions.get(rows)).unwrap_or(&[]);
+        let mut inputs = inputs.iter().peekable();
+        for action in &step.actions {
+            let drives = |c: &&Contribution| {
+                let block = symbols.blocks.get(c.block as usize);
+                block.is_some_and(|b| drives(unit, action, &b.name, b.at))
+            };
+            let condition = inputs.next_if(drives).map_or(Code::default(), |c| c.condition);
+            if !told.contains(&action.at) {
+                found.entry(*id).or_default().push(Lasting { at: action.at, condition });
+            }
+        }
+    }
+    found
+}
+
+/// Whether an action drives the control block with this name and place.
+fn drives(unit: &Unit, action: &Action, name: &str, at: Span) -> bool {
+    match &action.kind {
+        ActionKind::Variable { var, .. } => unit.vars.get(var.index()).is_some_and(|v| *v.name == *name),
+        ActionKind::Named { body, .. } => unit.bodies.get(body.index()).is_some_and(|b| b.at == at),
+        ActionKind::Work { .. } => name.is_empty() && action.at == at,
+        ActionKind::OnEvent { .. }
+        | ActionKind::EachScan { .. }
+        | ActionKind::Force(..)
+        | ActionKind::Enable(_)
+        | ActionKind::MaskChart(_)
+        | ActionKind::MaskVar(_) => false,
     }
 }
 

@@ -168,7 +168,7 @@ impl<'b> Exec<'b, '_> {
     fn scan(&mut self) -> Result<(), Stop> {
         let done = self.runner.scan();
         if let Some(coverage) = &mut self.coverage {
-            coverage.see(self.bench, &self.runner);
+            coverage.see(self.bench, &mut self.runner);
         }
         if let Some(recording) = &mut self.recording {
             recording.sample(self.runner.state().now(), self.bench.sample(&self.runner));
