@@ -375,6 +375,8 @@ fn in_turn(p: &Program, s: &mut State) -> Result<(), Fault> {
     s.x.came.clear();
     for k in 0..s.x.fired.len() {
         let Some(t) = s.x.fired.get(k).and_then(|i| p.t.transitions.get(*i as usize)).copied() else { break };
+        // A token that moves within a macro-step does not leave it.
+        s.x.emptied.clear();
         if t.on_clearing != NONE {
             run_action(p, s, t.on_clearing)?;
         }
@@ -463,7 +465,6 @@ fn leave(p: &Program, s: &mut State, step: u32) -> Result<(), Fault> {
         let e = extra(p, step).copied().unwrap_or_default();
         run_list(p, s, e.off)?;
         deactivate(p, s, step);
-        s.x.emptied.clear();
         if !e.encloses.is_empty() && s.x.left.len() < s.x.left.capacity() {
             s.x.left.push(step);
         }
