@@ -373,10 +373,16 @@ fn chart(rng: &mut Rng, world: &mut World, plan: &Plan, at: usize, out: &mut Str
         let actions =
             if step.expansion.is_some() { rng.weighted(&[75, 25]) } else { rng.weighted(&[30, 40, 22, 8]) };
         let (mut driven, mut named) = (driven.clone(), named.clone());
+        let mut moments = Vec::new();
         for _ in 0..actions {
             let profile = world.profile;
             if let Some(a) = body::action(rng, profile, &sight, &mut world.targets, &mut driven, &mut named) {
-                out.push_str(&format!("    {a}\n"));
+                // One moment gives a variable one value.
+                let moment = a.split_once(" :=").map(|(m, _)| m.to_owned());
+                if moment.is_none() || !moments.contains(&moment) {
+                    out.push_str(&format!("    {a}\n"));
+                    moments.push(moment);
+                }
             }
         }
         out.push_str("  }\n");

@@ -160,7 +160,9 @@ impl Naive {
             counted.moved += plain(&passed.on) + plain(&passed.off);
             self.check_tables(enabled(&self.state).len())?;
             let s = &self.state;
-            let still = passed.on.is_empty() && passed.off.is_empty() && before.active == s.active;
+            // A macro-step without actions of its own is no more than its expansion.
+            let counts = |x: &StepId| m.steps[*x].expansion.is_none() || !m.steps[*x].actions.is_empty();
+            let still = !passed.on.iter().chain(&passed.off).any(counts);
             let same = still && before.vars == s.vars && before.owners == s.owners;
             if !m.rules.stable || same {
                 return Ok(counted);
