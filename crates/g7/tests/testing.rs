@@ -166,6 +166,38 @@ fn a_plant_drives_is_set_and_is_asked() {
 }
 
 #[test]
+fn a_condition_may_join_charts_and_plant_by_and_alone() {
+    passes(&format!(
+        "{PLANT}\ntest \"t\" with P {{\n  expect m and level < 1.0\n  wait until ((level > 0.5) · X2) and n = 1\n  \
+         expect X2 and level > 0.4 and X2.t > 100ms, not (m and X1)\n  always m and level < 3.0 {{ wait 1s }}\n  \
+         set level := 2.999\n  wait until X1 and level >= 3.0\n  expect not m and level >= 3.0\n}}"
+    ));
+    // The part that does not hold is the one that counts, on either side.
+    for (e, got) in [("level < 1.0 and X1", "X1 = FALSE"), ("m and level > 5.0", "level = 0.0")] {
+        fails(
+            &format!("{PLANT}\ntest \"t\" with P {{ expect {e} }}"),
+            &[&format!("expected: {e}"), got, "situation {2}"],
+        );
+    }
+    let refused = |stmt: &str, parts: &[&str]| {
+        let (_folder, ran) = with(&format!("{PLANT}\ntest \"t\" with P {{ {stmt} }}"));
+        ran.is(1);
+        for part in parts {
+            assert!(ran.err.contains(part), "{stmt}: `{part}` in {}", ran.err);
+        }
+    };
+    let both = "one expression cannot ask both";
+    refused("expect X2 or level > 5.0", &["G0551", "`level` is the plant's and `X2` the charts'", both]);
+    refused("expect m and (n = 1 or level > 5.0)", &["`n` the charts'", both, "by `and`"]);
+    refused("expect level > INT_TO_REAL(n)", &[both]);
+    refused("set level := INT_TO_REAL(n) + level", &[both]);
+    refused("expect m and level", &["G0552", "this is REAL"]);
+    // What nobody knows is no mixture; the charts' outputs the plant knows.
+    refused("expect level > limit", &["`limit`"]);
+    passes(&format!("{PLANT}\ntest \"t\" with P {{ scan  expect level > 5.0 or m }}"));
+}
+
+#[test]
 fn what_the_plant_drives_can_be_held_but_not_set() {
     passes(&format!("{PLANT}\ntest \"t\" with P {{ expect X2  force a := FALSE  expect X1 }}"));
     let folder = Folder::with(&format!("{PINGPONG}\n{PLANT}\ntest \"t\" with P {{ set a := TRUE }}"));

@@ -250,8 +250,13 @@ impl<'b> Exec<'b, '_> {
     }
 
     fn holds(&mut self, check: &Check) -> Result<bool, Stop> {
-        let Some(answer) = self.answer(check.ask) else { return Ok(false) };
-        Ok(self.eval(answer)? != 0)
+        for asked in &check.asks {
+            let Some(answer) = self.answer(asked.ask) else { return Ok(false) };
+            if self.eval(answer)? == 0 {
+                return Ok(false);
+            }
+        }
+        Ok(true)
     }
 
     fn eval(&mut self, answer: Answer) -> Result<u64, Stop> {

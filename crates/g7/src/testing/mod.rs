@@ -12,6 +12,7 @@ mod coverage;
 mod exec;
 mod output;
 mod plan;
+mod sides;
 
 use std::collections::BTreeSet;
 use std::io::Write;

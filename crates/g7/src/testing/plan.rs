@@ -3,6 +3,7 @@
 
 use g7_model::{Expr, ExprKind, Literal, Path, Problem, Scenario, Span, TestStmt, TestStmtKind, Type, codes};
 
+use super::sides::{self, Needs};
 use crate::bench::{Answer, Ask, Bench, Role};
 use crate::sources::Source;
 
@@ -44,9 +45,19 @@ pub(super) enum Does {
 /// A condition, and what it mentions: for the report of a failure.
 #[derive(Debug)]
 pub(super) struct Check {
-    pub(super) ask: AskId,
+    /// All must hold: one, unless charts and plant are asked in one condition.
+    pub(super) asks: Vec<Asked>,
     pub(super) at: Span,
     pub(super) mentions: Vec<(String, AskId)>,
+}
+
+/// A condition, or one of those that `and` joins.
+#[derive(Debug)]
+pub(super) struct Asked {
+    pub(super) ask: AskId,
+    at: Span,
+    /// `0` or `1`, which do for a BOOL.
+    bit: bool,
 }
 
 /// How long `wait until` waits where nothing is said.
@@ -96,10 +107,13 @@ impl Planner<'_> {
             TestStmtKind::Always(list, body) => {
                 Does::Always(list.iter().map(|e| self.check(e)).collect(), self.lines(body))
             }
-            TestStmtKind::Force(path, e) => match self.item(path, true) {
-                Some(item) => Does::Force(item, self.ask(e)),
-                None => Does::Nothing,
-            },
+            TestStmtKind::Force(path, e) => {
+                let item = self.item(path, true);
+                match item.and_then(|item| Some((item, self.ask(e)?))) {
+                    Some((item, ask)) => Does::Force(item, ask),
+                    None => Does::Nothing,
+                }
+            }
             TestStmtKind::Release(path) => self.item(path, true).map_or(Does::Nothing, Does::Release),
             TestStmtKind::Restart { cold } => Does::Restart { cold: *cold },
             TestStmtKind::Repeat(n, body) => Does::Repeat(*n, self.lines(body)),
@@ -109,7 +123,7 @@ impl Planner<'_> {
 
     fn put(&mut self, path: &Path, e: &Expr) -> Option<(ItemId, AskId)> {
         let item = self.item(path, false)?;
-        Some((item, self.ask(e)))
+        Some((item, self.ask(e)?))
     }
 
     fn pulse(&mut self, path: &Path, time: Option<i64>) -> Does {
@@ -168,28 +182,36 @@ impl Planner<'_> {
         self.problems.push(problem);
     }
 
-    fn ask(&mut self, e: &Expr) -> AskId {
-        let mut paths = Vec::new();
-        collect(e, &mut paths);
-        // A condition on the plant's own states and parts is put to the plant.
-        let plant = |i: &&crate::bench::Item| i.role == Role::Plant;
-        let of_plant = paths.iter().any(|p| {
-            let name = p.text();
-            self.bench.items.iter().filter(plant).any(|i| i.name == name)
-        }) || parts(e, &|table| {
-            let count = format!("{table}.count");
-            self.bench.items.iter().filter(plant).any(|i| i.name == count)
-        });
-        self.asks.push(Ask { expr: e.clone(), of_plant });
-        self.asks.len() - 1
+    /// Asks the one side that knows all the names, charts rather than plant;
+    /// reports where none does.
+    fn ask(&mut self, e: &Expr) -> Option<AskId> {
+        let needs = Needs::of(self.bench, e);
+        if let Some(problem) = needs.problem(e) {
+            self.problems.push(problem);
+            return None;
+        }
+        self.asks.push(Ask { expr: e.clone(), of_plant: needs.plant() });
+        Some(self.asks.len() - 1)
     }
 
+    /// What asks the plant is taken apart at its `and`s: each part asks its own side.
     fn check(&mut self, e: &Expr) -> Check {
-        let ask = self.ask(e);
+        let plant = Needs::of(self.bench, e).plant();
+        let parts = if plant { sides::conjuncts(e) } else { vec![e] };
+        let mut check = Check { asks: Vec::new(), at: e.at.0, mentions: Vec::new() };
+        for part in parts {
+            let Some(ask) = self.ask(part) else { continue };
+            check.asks.push(Asked { ask, at: part.at.0, bit: is_bit(part) });
+            self.mention(part, ask, &mut check.mentions);
+        }
+        check
+    }
+
+    /// Asks for every name in a condition, of the side that the condition is put to.
+    fn mention(&mut self, e: &Expr, ask: AskId, mentions: &mut Vec<(String, AskId)>) {
         let of_plant = self.asks.get(ask).is_some_and(|a| a.of_plant);
         let mut paths: Vec<&Path> = Vec::new();
         collect(e, &mut paths);
-        let mut mentions: Vec<(String, AskId)> = Vec::new();
         for path in paths {
             let name = path.text();
             if mentions.len() < MENTIONS && mentions.iter().all(|(n, _)| *n != name) {
@@ -199,7 +221,6 @@ impl Planner<'_> {
                 mentions.push((name, self.asks.len() - 1));
             }
         }
-        Check { ask, at: e.at.0, mentions }
     }
 }
 
@@ -222,19 +243,6 @@ fn collect<'e>(e: &'e Expr, to: &mut Vec<&'e Path>) {
     }
 }
 
-/// Whether an expression asks something of parts: `T.empty`, `T.first.colour`,
-/// `T.at(a, b)`.
-fn parts(e: &Expr, is_parts: &impl Fn(&str) -> bool) -> bool {
-    let names = |p: &Path| p.names.len() > 1 && p.names.first().is_some_and(|n| is_parts(&n.text));
-    match &e.kind {
-        ExprKind::Path(path) => names(path),
-        ExprKind::Unary(_, a) => parts(a, is_parts),
-        ExprKind::Binary(_, a, b) => parts(a, is_parts) || parts(b, is_parts),
-        ExprKind::Call(path, args) => names(path) || args.iter().any(|a| parts(&a.value, is_parts)),
-        ExprKind::Timer { .. } | ExprKind::Literal(_) | ExprKind::Direct(_) | ExprKind::Bad => false,
-    }
-}
-
 /// Whether an expression is `0` or `1`, which do for a BOOL.
 fn is_bit(e: &Expr) -> bool {
     matches!(&e.kind, ExprKind::Literal(Literal::Int(0 | 1, _)))
@@ -252,13 +260,12 @@ pub(super) fn judge(plans: &[(usize, &Scenario, Plan)], bench: &Bench) -> Vec<Pr
 
 fn judge_lines(body: &[TestStmt], lines: &[Line], bench: &Bench, problems: &mut Vec<Problem>) {
     let ty = |ask: AskId| bench.answers.get(ask).map(|a: &Answer| a.ty);
-    let condition = |e: &Expr, check: &Check, problems: &mut Vec<Problem>| {
-        if let Some(ty) = ty(check.ask).filter(|t| *t != Type::Bool && !is_bit(e)) {
-            problems.push(Problem::new(
-                &codes::TEST_TYPE,
-                e.at.0,
-                format!("this is {ty}, a condition is BOOL"),
-            ));
+    let condition = |check: &Check, problems: &mut Vec<Problem>| {
+        for asked in check.asks.iter().filter(|a| !a.bit) {
+            if let Some(ty) = ty(asked.ask).filter(|t| *t != Type::Bool) {
+                let what = format!("this is {ty}, a condition is BOOL");
+                problems.push(Problem::new(&codes::TEST_TYPE, asked.at, what));
+            }
         }
     };
     let value = |item: ItemId, ask: AskId, e: &Expr, problems: &mut Vec<Problem>| {
@@ -276,12 +283,10 @@ fn judge_lines(body: &[TestStmt], lines: &[Line], bench: &Bench, problems: &mut 
                 }
             }
             (TestStmtKind::Force(_, e), Does::Force(item, ask)) => value(*item, *ask, e, problems),
-            (TestStmtKind::WaitUntil(e, _), Does::WaitUntil(check, _)) => condition(e, check, problems),
-            (TestStmtKind::Expect(list), Does::Expect(checks)) => {
-                list.iter().zip(checks).for_each(|(e, c)| condition(e, c, problems));
-            }
-            (TestStmtKind::Always(list, body), Does::Always(checks, lines)) => {
-                list.iter().zip(checks).for_each(|(e, c)| condition(e, c, problems));
+            (_, Does::WaitUntil(check, _)) => condition(check, problems),
+            (_, Does::Expect(checks)) => checks.iter().for_each(|c| condition(c, problems)),
+            (TestStmtKind::Always(_, body), Does::Always(checks, lines)) => {
+                checks.iter().for_each(|c| condition(c, problems));
                 judge_lines(body, lines, bench, problems);
             }
             (TestStmtKind::Repeat(_, body), Does::Repeat(_, lines)) => {

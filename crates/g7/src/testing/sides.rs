@@ -1,0 +1,113 @@
+//! Whom a condition of a test asks: the charts or the plant. Each is a program
+//! of its own, so an expression can be put to one of them only.
+
+use g7_compile::ir::VarClass;
+use g7_compile::symbols::Symbols;
+use g7_model::{BinaryOp, Expr, ExprKind, Path, Problem, codes};
+
+use crate::bench::{Activity, Bench, Role};
+
+/// The names of an expression that only one side knows; the first of each.
+/// What both know (constants, the charts' outputs) needs neither.
+#[derive(Debug, Default)]
+pub(super) struct Needs {
+    plant: Option<String>,
+    charts: Option<String>,
+}
+
+impl Needs {
+    pub(super) fn of(bench: &Bench, e: &Expr) -> Needs {
+        let mut needs = Needs::default();
+        needs.look(bench, e);
+        needs
+    }
+
+    /// Whether it is to be put to the plant.
+    pub(super) fn plant(&self) -> bool {
+        self.plant.is_some()
+    }
+
+    /// The problem of an expression that neither side can answer alone.
+    pub(super) fn problem(&self, e: &Expr) -> Option<Problem> {
+        let (plant, charts) = (self.plant.as_ref()?, self.charts.as_ref()?);
+        let what =
+            format!("`{plant}` is the plant's and `{charts}` the charts': one expression cannot ask both");
+        let help = "conditions on either can be joined by `and` or a comma; the plant knows the charts' outputs as well";
+        Some(Problem::new(&codes::TEST_NAME, e.at.0, what).help(help))
+    }
+
+    fn look(&mut self, bench: &Bench, e: &Expr) {
+        match &e.kind {
+            ExprKind::Path(path) => self.name(bench, path),
+            ExprKind::Direct(name) => self.charts = self.charts.take().or(Some(format!("%{name}"))),
+            ExprKind::Unary(_, a) => self.look(bench, a),
+            ExprKind::Binary(_, a, b) => {
+                self.look(bench, a);
+                self.look(bench, b);
+            }
+            ExprKind::Timer { t1, e, t2 } => {
+                self.look(bench, t1);
+                self.look(bench, e);
+                t2.iter().for_each(|t| self.look(bench, t));
+            }
+            ExprKind::Call(path, args) => {
+                if of_parts(bench, path) {
+                    self.plant = self.plant.take().or(Some(path.text()));
+                }
+                args.iter().for_each(|a| self.look(bench, &a.value));
+            }
+            ExprKind::Literal(_) | ExprKind::Bad => {}
+        }
+    }
+
+    fn name(&mut self, bench: &Bench, path: &Path) {
+        let name = path.text();
+        let charts = || class(&bench.compiled.symbols, &name);
+        let plant = || bench.plant.as_ref().and_then(|p| class(&p.compiled.symbols, &name));
+        let own = bench.items.iter().any(|i| i.role == Role::Plant && i.name == name)
+            || of_parts(bench, path)
+            || charts().is_none() && plant() == Some(VarClass::Const);
+        if own {
+            self.plant = self.plant.take().or(Some(name));
+        } else if is_step(bench, path)
+            || charts().is_some_and(|c| !matches!(c, VarClass::Const | VarClass::Output))
+        {
+            self.charts = self.charts.take().or(Some(name));
+        }
+    }
+}
+
+/// The conditions that `and` joins into this one, however they are bracketed.
+pub(super) fn conjuncts(e: &Expr) -> Vec<&Expr> {
+    match &e.kind {
+        ExprKind::Binary(BinaryOp::And | BinaryOp::Dot, a, b) => [conjuncts(a), conjuncts(b)].concat(),
+        _ => vec![e],
+    }
+}
+
+fn class(symbols: &Symbols, name: &str) -> Option<VarClass> {
+    symbols.variable(name).map(|v| v.class)
+}
+
+/// Whether a path asks something of parts: `T.empty`, `T.first.colour`, `T.at(a, b)`.
+fn of_parts(bench: &Bench, path: &Path) -> bool {
+    let Some(first) = path.names.first().filter(|_| path.names.len() > 1) else { return false };
+    let count = format!("{}.count", first.text);
+    bench.items.iter().any(|i| i.role == Role::Plant && i.name == count)
+}
+
+/// Whether a path asks something of a step: `X12`, `G.X12`, `Fill.t`.
+fn is_step(bench: &Bench, path: &Path) -> bool {
+    let names: Vec<&str> = path.names.iter().map(|n| &*n.text).collect();
+    let step = match names.as_slice() {
+        [.., step, "X" | "x" | "t" | "T" | "s"] => step,
+        [.., last] => last,
+        [] => return false,
+    };
+    bench.steps.iter().any(|s| {
+        let last = s.name.rsplit('.').next().unwrap_or_default();
+        let stem = step.strip_prefix('X').unwrap_or(step);
+        let number = if matches!(s.id, Activity::Macro(_)) { stem.strip_prefix('M') } else { None };
+        *step == last || stem == last || number == Some(last)
+    })
+}
