@@ -1,6 +1,7 @@
 //! The test bench: charts, plant and names, ready to be run by hand or by a test.
 
 mod names;
+mod tables;
 
 use std::collections::BTreeSet;
 use std::ops::Range;
@@ -12,6 +13,7 @@ use g7_host::{
 use g7_model::{Span, Type};
 
 pub(crate) use names::{Answer, Ask, Options, build};
+pub(crate) use tables::Table;
 
 /// What a variable is to the bench.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -47,6 +49,8 @@ pub(crate) struct StepItem {
     pub(crate) name: String,
     pub(crate) comment: Option<String>,
     pub(crate) id: Activity,
+    /// Of an expansion or a task.
+    pub(crate) inner: bool,
 }
 
 impl StepItem {
@@ -233,6 +237,20 @@ impl Bench {
         let mut moving: Vec<usize> = (0..signals.len()).filter(|i| recording.count(*i) > 1).collect();
         moving.retain(|i| signals.get(*i).is_some_and(|s| !is_part(s)));
         moving.sort_by_key(|i| signals.get(*i).and_then(|s| groups.iter().position(|g| *g == s.group)));
+        moving
+    }
+
+    /// The signals that moved as they are looked at: what comes in and goes out,
+    /// the variables, the steps of the charts, the plant, the steps of expansions.
+    pub(crate) fn lanes(&self, recording: &Recording) -> Vec<usize> {
+        let groups = ["inputs", "outputs", "variables", "steps", "plant"];
+        let mut moving = Bench::moving(recording);
+        moving.sort_by_key(|i| {
+            let inner =
+                i.checked_sub(self.items.len()).and_then(|i| self.steps.get(i)).is_some_and(|s| s.inner);
+            let group = recording.signals().get(*i).and_then(|s| groups.iter().position(|g| *g == s.group));
+            (inner, group)
+        });
         moving
     }
 

@@ -1,12 +1,14 @@
 //! From a document to a bench: compiled, coupled to its plant, with names for all.
 
+use std::collections::BTreeMap;
+
 use g7_compile::Compiled;
 use g7_compile::ir::VarClass;
 use g7_compile::plant::{self, Link};
 use g7_compile::symbols::{Symbols, Variable};
 use g7_engine::{Code, StepId};
 use g7_host::{Coupling, Kind};
-use g7_model::{Document, Expr, Plant, Problem, ProfileName, Step, Type};
+use g7_model::{ChartKind, Document, Expr, Plant, Problem, ProfileName, Span, Step, Type};
 
 use super::{Activity, Bench, Item, PlantSide, Role, StepItem};
 use crate::failure::Failure;
@@ -124,12 +126,15 @@ fn answers(asks: &[Ask], charts: &Compiled, plant: Option<&PlantSide>) -> Vec<An
 
 /// Steps and macro-steps with their comments.
 fn steps(document: &Document, symbols: &Symbols) -> Vec<StepItem> {
-    let written: std::collections::BTreeMap<g7_model::Span, &Step> =
-        document.charts().flat_map(g7_model::Chart::steps).map(|s| (s.name.at.0, s)).collect();
-    let item = |name: &str, at: g7_model::Span, id| StepItem {
+    let mut written: BTreeMap<Span, (&Step, bool)> = BTreeMap::new();
+    for chart in document.charts() {
+        written.extend(chart.steps().map(|s| (s.name.at.0, (s, chart.kind != ChartKind::Chart))));
+    }
+    let item = |name: &str, at: Span, id| StepItem {
         name: name.to_owned(),
-        comment: written.get(&at).and_then(|s| s.comment.as_deref()).map(str::to_owned),
+        comment: written.get(&at).and_then(|(s, _)| s.comment.as_deref()).map(str::to_owned),
         id,
+        inner: written.get(&at).is_some_and(|(_, inner)| *inner),
     };
     let macros = symbols.macro_steps.iter().map(|m| item(&m.name, m.at, Activity::Macro(m.group)));
     let listed = (0..symbols.steps()).map(StepId).filter(|s| symbols.is_listed(*s));

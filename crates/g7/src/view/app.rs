@@ -2,7 +2,7 @@
 
 use g7_host::{Clock, Halt, Kind, Recording, Runner, Start, Value, WallClock, format_time};
 
-use crate::bench::{Bench, Conflicts, Item, Role};
+use crate::bench::{Bench, Conflicts, Item, Role, Table};
 use crate::cli::Run;
 use crate::failure::Failure;
 use crate::values::{self, Assign};
@@ -71,6 +71,8 @@ pub(super) struct App<'b> {
     pub(super) selected: [usize; 4],
     pub(super) edit: Option<Edit>,
     pub(super) help: bool,
+    /// Queues and tracks of the plant.
+    pub(super) tables: Vec<Table>,
     pub(super) message: String,
     /// Time that the chronogram shows: place in [`SPANS`].
     span: usize,
@@ -112,6 +114,7 @@ impl<'b> App<'b> {
             selected: [0; 4],
             edit: None,
             help: false,
+            tables: Table::all(bench),
             message: String::new(),
             span: 6,
             back: 0,
@@ -258,10 +261,17 @@ impl<'b> App<'b> {
         .to_owned();
     }
 
-    /// Places of a panel's items in [`Bench::items`].
+    /// Places of a panel's items in [`Bench::items`]; of a queue or track only
+    /// the number of its parts, which stands for all of it.
     pub(super) fn listed(&self, panel: Panel) -> Vec<usize> {
         let items = self.bench.items.iter().enumerate();
-        items.filter(|(_, i)| panel.holds(i)).map(|(at, _)| at).collect()
+        let own = |at: &usize| !self.tables.iter().any(|t| t.rest.contains(at));
+        items.filter(|(_, i)| panel.holds(i)).map(|(at, _)| at).filter(own).collect()
+    }
+
+    /// The queue or track that an item stands for.
+    pub(super) fn table(&self, at: usize) -> Option<&Table> {
+        self.tables.iter().find(|t| t.count == at)
     }
 
     pub(super) fn next_panel(&mut self, by: usize) {

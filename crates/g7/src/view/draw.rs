@@ -8,8 +8,9 @@ use ratatui::text::{Line, Span};
 use ratatui::widgets::{Block, Borders, Clear, Paragraph};
 
 use super::app::{App, Panel};
+use super::columns;
 use super::keys::HELP;
-use crate::bench::{Bench, Item, Role};
+use crate::bench::{Role, StepItem};
 
 const ON: Style = Style::new().fg(Color::Green).add_modifier(Modifier::BOLD);
 const DIM: Style = Style::new().add_modifier(Modifier::DIM);
@@ -74,15 +75,8 @@ fn clock(ns: i64) -> String {
 }
 
 fn draw_lists(frame: &mut Frame<'_>, app: &App<'_>, area: Rect) {
-    let mut panels: Vec<Option<Panel>> = vec![None];
-    panels.extend(Panel::ALL.into_iter().filter(|p| !app.listed(*p).is_empty()).map(Some));
-    // Too narrow for all: the steps and the list in focus.
-    let room = usize::from(area.width / 22).max(1);
-    if panels.len() > room {
-        panels.retain(|p| p.is_none() || *p == Some(app.panel));
-        panels.truncate(room.max(if area.width >= 40 { 2 } else { 1 }));
-    }
-    let columns = Layout::horizontal(vec![Constraint::Fill(1); panels.len()]).split(area);
+    let (panels, columns) = columns::share(app, area.width);
+    let columns = Layout::horizontal(columns.into_iter().map(Constraint::Length)).split(area);
     for (panel, area) in panels.into_iter().zip(columns.iter()) {
         match panel {
             None => draw_steps(frame, app, *area),
@@ -99,18 +93,19 @@ fn draw_steps(frame: &mut Frame<'_>, app: &App<'_>, area: Rect) {
     // Where all have room they keep their places; else the active ones come first.
     let all = app.bench.steps.len() <= room;
     let listed = if all { app.bench.steps.iter().collect() } else { [active, rest].concat() };
-    let lines: Vec<Line<'_>> = listed
-        .into_iter()
-        .take(room)
-        .map(|step| {
-            let on = app.bench.is_active(state, step);
-            let time = app.bench.step_time(state, step).filter(|_| on).unwrap_or_default();
-            let comment = step.comment.as_deref().unwrap_or("");
-            let mark = if on { "■" } else { "□" };
-            Line::styled(format!("{mark} {} {time} {comment}", step.name), if on { ON } else { DIM })
-        })
-        .collect();
+    let lines: Vec<Line<'_>> = listed.into_iter().take(room).map(|step| step_line(app, step)).collect();
     frame.render_widget(Paragraph::new(lines).block(framed("Steps", false)), area);
+}
+
+/// The comment last: it is what a narrow panel cuts off.
+pub(super) fn step_line<'a>(app: &App<'_>, step: &'a StepItem) -> Line<'a> {
+    let state = app.runner.shown();
+    let on = app.bench.is_active(state, step);
+    let time = app.bench.step_time(state, step).filter(|_| on);
+    let mut spans = vec![Span::raw(format!("{} {}", if on { "■" } else { "□" }, step.name))];
+    spans.extend(time.map(|t| Span::raw(format!(" {t}"))));
+    spans.extend(step.comment.as_ref().map(|c| Span::raw(format!(" {c}"))));
+    Line::from(spans).style(if on { ON } else { DIM })
 }
 
 fn framed(title: &str, focus: bool) -> Block<'_> {
@@ -136,15 +131,19 @@ fn draw_panel(frame: &mut Frame<'_>, app: &App<'_>, panel: Panel, area: Rect) {
         .skip(first)
         .take(room)
         .filter_map(|(number, at)| {
-            let item = app.bench.items.get(*at)?;
-            let line = item_line(app, item, (panel == Panel::Inputs).then_some(number));
+            let line = item_line(app, *at, (panel == Panel::Inputs).then_some(number))?;
             Some(if focus && number == selected { line.patch_style(Modifier::REVERSED) } else { line })
         })
         .collect();
     frame.render_widget(Paragraph::new(lines).block(framed(title, focus)), area);
 }
 
-fn item_line<'a>(app: &App<'_>, item: &'a Item, number: Option<usize>) -> Line<'a> {
+/// The comment last: it is what a narrow panel cuts off.
+pub(super) fn item_line<'a>(app: &App<'a>, at: usize, number: Option<usize>) -> Option<Line<'a>> {
+    let item = app.bench.items.get(at)?;
+    if let (Some(table), Some((_, state))) = (app.table(at), app.runner.plant()) {
+        return Some(Line::raw(table.show(state)));
+    }
     let value = match item.role {
         // What will be read next: a key shows at once, even while paused.
         Role::Input(index) if item.words == 1 => g7_host::Value::Word(app.runner.input(index)),
@@ -170,7 +169,7 @@ fn item_line<'a>(app: &App<'_>, item: &'a Item, number: Option<usize>) -> Line<'
     if let Some(comment) = &item.comment {
         spans.push(Span::styled(format!(" {comment}"), DIM));
     }
-    Line::from(spans)
+    Some(Line::from(spans))
 }
 
 /// A number without the last dozen of its decimals; control characters shown.
@@ -195,7 +194,7 @@ fn draw_chronogram(frame: &mut Frame<'_>, app: &mut App<'_>, area: Rect) {
     let block = framed(&title, false);
     let inner = block.inner(area);
     let signals = app.recording.signals();
-    let moving = Bench::moving(&app.recording);
+    let moving = app.bench.lanes(&app.recording);
     let room = usize::from(inner.height.saturating_sub(1));
     app.lane = app.lane.min(moving.len().saturating_sub(room));
     let shown: Vec<usize> = moving.into_iter().skip(app.lane).take(room).collect();

@@ -5,6 +5,7 @@
 //! terminal: the rest is tested without one.
 
 mod app;
+mod columns;
 mod draw;
 mod keys;
 #[cfg(test)]

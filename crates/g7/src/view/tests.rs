@@ -198,6 +198,89 @@ fn the_chronogram_follows_goes_back_and_zooms() {
     assert_eq!(app.back, 0);
 }
 
+const PARTS: &str = "\
+input a : BOOL \"a very long comment that goes on and on and on to the end of the world and back\"
+output m : BOOL
+var n : INT
+chart G {
+  initial step Wait
+  macro M = D
+  Wait -> M when a -> Wait when not a
+}
+macrochart D {
+  entry step E \"dosing, with a comment that is a good deal longer than the panel\" {
+    N m
+    P1 n := n + 1
+  }
+  exit step S
+  E -> S when E.t > 1s
+}
+plant P {
+  parts One(kind : INT) max 4 := (7), (8)
+  parts Belt(kind : INT, big : BOOL) max 3 length 1.0
+  parts Rail() max 2 length 1.0
+  state x : REAL := 0.0
+  rate x := 1.0 when m
+  on m {
+    Belt.enter(5, TRUE)
+    Rail.enter()
+    One.enter(9)
+    One.enter(3)
+    One.enter(4)
+  }
+}
+";
+
+#[test]
+fn a_queue_of_parts_is_one_line_without_the_places_that_are_empty() {
+    let bench = bench(PARTS);
+    let mut app = app(&bench, &[]);
+    press(&mut app, ".");
+    for part in ["│One  2: 7 8", "│Belt  0 ", "│Rail  0 "] {
+        shows(&mut app, part);
+    }
+    let picture = picture(&mut app, 130, 30);
+    assert!(!picture.contains("One.") && !picture.contains("Belt."), "no line a cell:\n{picture}");
+    press(&mut app, "1...");
+    for part in ["│One  4: 7 8 9 3 (1 lost)", "│Belt  1: 5/1@0 ", "│Rail  1: 0 "] {
+        shows(&mut app, part);
+    }
+}
+
+#[test]
+fn the_chronogram_begins_with_what_comes_in_and_goes_out() {
+    let bench = bench(PARTS);
+    let mut app = app(&bench, &[]);
+    press(&mut app, ".1.1..");
+    let picture = picture(&mut app, 130, 40);
+    let chronogram = picture.split("Chronogram").nth(1).expect("it is drawn");
+    let lanes: Vec<&str> = chronogram
+        .lines()
+        .filter_map(|l| l.trim_start_matches('│').split_whitespace().next())
+        .filter(|w| w.starts_with(char::is_alphabetic))
+        .collect();
+    assert_eq!(lanes[..5], ["a", "m", "n", "Wait.X", "M.X"], "{picture}");
+    assert_eq!(lanes.last(), Some(&"M.E.X"), "{picture}");
+}
+
+#[test]
+fn names_and_times_are_seen_whole_and_comments_go_first() {
+    let bench = bench(PARTS);
+    for (width, lists) in [(80, 3), (130, 5), (200, 5)] {
+        let mut app = app(&bench, &[]);
+        press(&mut app, ".1");
+        for _ in 0..7 {
+            press(&mut app, "..........");
+        }
+        let picture = picture(&mut app, width, 30);
+        assert!(picture.contains("■ M.E 690ms dosing"), "{picture}");
+        let top = picture.lines().nth(1).expect("a line of titles");
+        let widths: Vec<usize> = top.split('┐').map(|p| p.chars().count()).filter(|w| *w > 0).collect();
+        assert!(widths.len() >= lists, "{widths:?}\n{picture}");
+        assert!(widths[1..].iter().all(|w| *w < widths[0]), "{widths:?}\n{picture}");
+    }
+}
+
 #[test]
 fn any_size_of_window_can_be_drawn() {
     let bench = bench(CHART);

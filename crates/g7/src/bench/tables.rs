@@ -1,0 +1,114 @@
+//! Queues and tracks of the plant, each as one thing: how many parts there are
+//! and what they have, from the first to the last.
+
+use g7_compile::symbols::Symbols;
+use g7_engine::{Addr, State};
+use g7_host::{Kind, Value, read_text};
+
+use super::names::kind;
+use super::{Bench, Role};
+
+/// A queue or track.
+#[derive(Clone, Debug)]
+pub(crate) struct Table {
+    pub(crate) name: String,
+    /// Place of its number of parts in [`Bench::items`].
+    pub(crate) count: usize,
+    /// Places of all else that it has there.
+    pub(crate) rest: Vec<usize>,
+    counted: Addr,
+    lost: Option<Addr>,
+    /// By place, the part that came first before the others.
+    places: Vec<Vec<Cell>>,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Cell {
+    addr: Addr,
+    kind: Kind,
+    /// Where the part stands, on a track.
+    position: bool,
+}
+
+impl Table {
+    /// The tables of the plant, as it declares them.
+    pub(crate) fn all(bench: &Bench) -> Vec<Table> {
+        let Some(plant) = &bench.plant else { return Vec::new() };
+        let states = || bench.items.iter().enumerate().filter(|(_, i)| i.role == Role::Plant);
+        let of = |count: usize, name: &str| {
+            let inner = format!("{name}.");
+            let mine = states().filter(|(at, i)| *at != count && i.name.starts_with(&inner));
+            let lost = states().find(|(_, i)| i.name.strip_prefix(&inner) == Some("lost"));
+            Table {
+                name: name.to_owned(),
+                count,
+                rest: mine.map(|(at, _)| at).collect(),
+                counted: Addr(bench.items.get(count).map_or(0, |i| i.addr)),
+                lost: lost.map(|(_, i)| Addr(i.addr)),
+                places: places(&plant.compiled.symbols, &inner),
+            }
+        };
+        states().filter_map(|(at, i)| Some(of(at, i.name.strip_suffix(".count")?))).collect()
+    }
+
+    /// `One  3: 0 0 1`; on a track with the positions, `Belt  2: 1@0.35 0@0.1`.
+    pub(crate) fn show(&self, state: &State) -> String {
+        let count = state.word(self.counted);
+        let mut text = format!("{}  {count}", self.name);
+        let there = self.places.iter().take(usize::try_from(count).unwrap_or(0));
+        for (i, cells) in there.enumerate() {
+            text.push_str(if i == 0 { ": " } else { " " });
+            text.push_str(&part(cells, state));
+        }
+        match self.lost.map_or(0, |at| state.word(at)) {
+            0 => text,
+            lost => format!("{text} ({lost} lost)"),
+        }
+    }
+}
+
+/// The cells `T.column.place` of a table, by place.
+fn places(symbols: &Symbols, inner: &str) -> Vec<Vec<Cell>> {
+    let mut places: Vec<Vec<Cell>> = Vec::new();
+    for v in &symbols.variables {
+        let cell = v.name.strip_prefix(inner).and_then(|rest| rest.rsplit_once('.'));
+        let Some((column, place)) = cell.and_then(|(c, p)| Some((c, p.parse::<usize>().ok()?))) else {
+            continue;
+        };
+        let Some(kind) = kind(v.ty) else { continue };
+        // They are declared place by place.
+        if place == places.len() {
+            places.push(Vec::new());
+        }
+        if let Some(cells) = places.get_mut(place) {
+            cells.push(Cell { addr: v.addr, kind, position: column == "position" });
+        }
+    }
+    places
+}
+
+/// What a part has: its attributes, and behind an `@` its position.
+fn part(cells: &[Cell], state: &State) -> String {
+    let value = |c: &Cell| match c.kind {
+        Kind::Text => Value::Text(read_text(state.words(), c.addr.0).into()),
+        Kind::Bool | Kind::Int { .. } | Kind::Real | Kind::Lreal | Kind::Time => {
+            Value::Word(state.word(c.addr))
+        }
+    };
+    let show = |c: &Cell| match c.kind {
+        Kind::Bool => value(c).word().to_string(),
+        Kind::Real | Kind::Lreal => {
+            let text = format!("{:.2}", value(c).number(c.kind));
+            text.trim_end_matches('0').trim_end_matches('.').to_owned()
+        }
+        Kind::Int { .. } | Kind::Time | Kind::Text => value(c).show(c.kind),
+    };
+    let attributes: Vec<String> = cells.iter().filter(|c| !c.position).map(show).collect();
+    let position = cells.iter().find(|c| c.position).map(show);
+    match (attributes.join("/"), position) {
+        (own, None) if own.is_empty() => "·".to_owned(),
+        (own, None) => own,
+        (own, Some(position)) if own.is_empty() => position,
+        (own, Some(position)) => format!("{own}@{position}"),
+    }
+}

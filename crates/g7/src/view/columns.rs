@@ -1,0 +1,140 @@
+//! How wide each list is: names, values and times first, comments with what is left.
+
+use super::app::{App, Panel};
+use super::draw::{item_line, step_line};
+
+/// Width that a list asks for, at most, before comments are thought of.
+const MOST: u16 = 32;
+/// A list narrower than this says nothing.
+const LEAST: u16 = 12;
+/// Width of the steps from which on the other lists grow too.
+const GOOD: u16 = 40;
+/// Room for the time of an active step: `1m23s450ms`.
+const TIME: usize = 11;
+/// Room for a value, so that the lists do not jump about with it.
+const VALUE: usize = 9;
+
+/// A list; `None` is that of the steps.
+type List = Option<Panel>;
+
+/// What a list would have.
+#[derive(Clone, Copy)]
+struct Wish {
+    /// For all but the comments.
+    need: u16,
+    /// For everything.
+    want: u16,
+}
+
+/// The lists shown, and their widths. Where there is no room for all, the steps
+/// and the list in focus go first.
+pub(super) fn share(app: &App<'_>, width: u16) -> (Vec<List>, Vec<u16>) {
+    let mut lists: Vec<List> = vec![None];
+    lists.extend(Panel::ALL.into_iter().filter(|p| !app.listed(*p).is_empty()).map(Some));
+    let mut wishes: Vec<(List, Wish)> = lists.into_iter().map(|l| (l, wish(app, l))).collect();
+    let total = |wishes: &[(List, Wish)]| wishes.iter().map(|(_, w)| w.need).fold(0, u16::saturating_add);
+    while total(&wishes) > width && wishes.len() > 2 {
+        let Some(last) = wishes.iter().rposition(|(l, _)| l.is_some() && *l != Some(app.panel)) else {
+            break;
+        };
+        wishes.remove(last);
+    }
+    if width < 2 * LEAST + 16 {
+        wishes.truncate(1);
+    }
+    let (lists, wishes): (Vec<List>, Vec<Wish>) = wishes.into_iter().unzip();
+    (lists, widths(&wishes, width))
+}
+
+/// All get what they need; too much of that is taken from the widest. The rest
+/// goes to the first, the steps, up to a good width, then to the narrowest that
+/// has more to say; the steps stay wider than any other.
+fn widths(wishes: &[Wish], width: u16) -> Vec<u16> {
+    let mut got: Vec<u16> = wishes.iter().map(|w| w.need).collect();
+    let total = |got: &[u16]| got.iter().copied().fold(0, u16::saturating_add);
+    while total(&got) > width {
+        let Some(widest) = got.iter_mut().max().filter(|g| **g > 0) else { break };
+        *widest -= 1;
+    }
+    for turn in 0..usize::from(width.saturating_sub(total(&got))) {
+        let next = next(&got, wishes, turn);
+        if let Some(slot) = got.get_mut(next) {
+            *slot += 1;
+        }
+    }
+    got
+}
+
+/// Whose turn it is to grow by a cell.
+fn next(got: &[u16], wishes: &[Wish], turn: usize) -> usize {
+    let lacks =
+        |i: usize, most: u16| got.get(i).zip(wishes.get(i)).is_some_and(|(g, w)| *g < w.want.min(most));
+    if lacks(0, GOOD) {
+        return 0;
+    }
+    let others = (1..got.len()).filter(|i| lacks(*i, u16::MAX));
+    let free = turn.checked_rem(got.len()).filter(|_| !lacks(0, u16::MAX)).unwrap_or(0);
+    let next = others.min_by_key(|i| got.get(*i).copied()).unwrap_or(free);
+    let stays_below = got.get(next).zip(got.first()).is_some_and(|(g, steps)| g + 1 < *steps);
+    if stays_below { next } else { 0 }
+}
+
+fn wish(app: &App<'_>, list: List) -> Wish {
+    let (mut need, mut want, title) = match list {
+        None => steps(app),
+        Some(panel) => items(app, panel),
+    };
+    need = need.max(title) + 2;
+    want += 2;
+    let need = u16::try_from(need).unwrap_or(u16::MAX).clamp(LEAST, MOST);
+    Wish { need, want: u16::try_from(want).unwrap_or(u16::MAX).max(need) }
+}
+
+/// Without and with comments, and the title.
+fn steps(app: &App<'_>) -> (usize, usize, usize) {
+    let name = |s: &crate::bench::StepItem| 2 + s.name.chars().count() + TIME;
+    let all = app.bench.steps.iter();
+    let with = |s| name(s).max(step_line(app, s).width());
+    (all.clone().map(name).max().unwrap_or(0), all.map(with).max().unwrap_or(0), 5)
+}
+
+fn items(app: &App<'_>, panel: Panel) -> (usize, usize, usize) {
+    let (mut need, mut want) = (0, 0);
+    for (number, at) in app.listed(panel).into_iter().enumerate() {
+        let Some(item) = app.bench.items.get(at) else { continue };
+        let Some(line) = item_line(app, at, (panel == Panel::Inputs).then_some(number)) else { continue };
+        let comment = item.comment.as_ref().map_or(0, |c| c.chars().count() + 1);
+        let value = if item.kind == g7_host::Kind::Bool { 2 } else { 3 + VALUE };
+        let key = if panel == Panel::Inputs { 4 } else { 0 };
+        let steady = key + value + item.name.chars().count();
+        let bare = line.width().saturating_sub(comment).max(steady);
+        need = need.max(bare);
+        want = want.max(bare + comment);
+    }
+    (need, want, 9)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Wish, widths};
+
+    fn of(wishes: &[(u16, u16)], width: u16) -> Vec<u16> {
+        let wishes: Vec<Wish> = wishes.iter().map(|(need, want)| Wish { need: *need, want: *want }).collect();
+        widths(&wishes, width)
+    }
+
+    #[test]
+    fn needs_go_first_then_the_steps_then_the_narrowest() {
+        assert_eq!(of(&[(20, 20), (12, 12)], 32), [20, 12]);
+        assert_eq!(of(&[(20, 40), (12, 60)], 50), [38, 12]);
+        assert_eq!(of(&[(20, 90), (12, 30)], 80), [50, 30]);
+        // The steps have all they want: the others grow below them.
+        assert_eq!(of(&[(20, 30), (12, 60), (12, 20)], 62), [30, 16, 16]);
+        // Steps with little to say are still the widest.
+        assert_eq!(of(&[(14, 14), (20, 60)], 60), [31, 29]);
+        // Too much is taken from the widest.
+        assert_eq!(of(&[(30, 30), (12, 12)], 30), [18, 12]);
+        assert_eq!(of(&[(30, 30)], 0), [0]);
+        assert!(of(&[], 9).is_empty());
+    }
+}
