@@ -129,14 +129,7 @@ fn one_after_the_other(
             leave(m, s, x, &mut all)?;
         }
         for x in arriving(m, t).into_iter().flatten() {
-            enter(m, s, x, &mut all)?;
-        }
-        // A token that goes from step to step within does not leave the macro-step.
-        for x in (0..m.steps.len()).filter(|&x| m.steps[x].expansion.is_some()) {
-            if begun.is_active(m, x) && s.is_active(m, x) {
-                let kept = begun.macro_timing.get(&x).copied().unwrap_or_default();
-                s.macro_timing.insert(x, kept);
-            }
+            enter(m, s, x, &begun, &mut all)?;
         }
     }
     let mut next = s.active.clone();
@@ -177,19 +170,26 @@ fn leave(m: &Model, s: &mut State, step: StepId, all: &mut Changes) -> Run<()> {
 }
 
 /// Turns a step on, and with it the linked steps of what it encloses; its entry
-/// actions run then.
-fn enter(m: &Model, s: &mut State, step: StepId, all: &mut Changes) -> Run<()> {
+/// actions run then. `begun` is the state before the transition cleared.
+fn enter(m: &Model, s: &mut State, step: StepId, begun: &State, all: &mut Changes) -> Run<()> {
     if s.active.contains(&step) {
         return Ok(());
     }
     let next = &s.active | &BTreeSet::from([step]);
     all.add(&settle(m, s, next, &BTreeSet::new()));
+    // A token that goes from step to step within does not leave the macro-step.
+    for x in (0..m.steps.len()).filter(|&x| m.steps[x].expansion.is_some()) {
+        if begun.is_active(m, x) && s.is_active(m, x) {
+            let kept = begun.macro_timing.get(&x).copied().unwrap_or_default();
+            s.macro_timing.insert(x, kept);
+        }
+    }
     stored::at_once(m, s, step, true)?;
     for &chart in &m.steps[step].encloses {
         for &inner in m.scopes[chart].steps.iter().filter(|&&inner| m.steps[inner].linked) {
-            enter(m, s, inner, all)?;
+            enter(m, s, inner, begun, all)?;
             if let Some((_, entry, _)) = m.steps[inner].expansion {
-                enter(m, s, entry, all)?;
+                enter(m, s, entry, begun, all)?;
             }
         }
     }
