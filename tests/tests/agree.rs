@@ -33,6 +33,9 @@ fn run(profile: ProfileName) {
         let sample = sample(seed, profile, LENGTH).expect("a random chart can be read");
         match both(&sample.document, &sample.script) {
             Ok(statistics) => all.add(&statistics),
+            // The generator knows no values: what assigns two constants at one
+            // moment is refused, and there is nothing to compare.
+            Err(why) if why.what.contains(g7_model::codes::TWO_VALUES.id) => {}
             Err(why) => panic!("{}", smallest(profile, &sample, &why)),
         }
         seed += 1;
@@ -42,7 +45,10 @@ fn run(profile: ProfileName) {
 
 /// The smallest chart and script with a disagreement of the same sort.
 fn smallest(profile: ProfileName, sample: &Sample, why: &Disagreement) -> String {
-    let sort = |what: &str| what.split(':').next().unwrap_or("").chars().take(12).collect::<String>();
+    // A chart that one of them refuses is of the sort of its problem's code.
+    let length =
+        |what: &str| if what.starts_with("the ") { 17 } else { what.find(':').unwrap_or(12).min(12) };
+    let sort = |what: &str| what.chars().take(length(what)).collect::<String>();
     let wanted = sort(&why.what);
     let fails = |d: &Document, s: &Script| both(d, s).is_err_and(|e| sort(&e.what) == wanted);
     let (doc, script) = shrink(&sample.document, &sample.script, &fails);

@@ -81,7 +81,7 @@ pub(crate) fn commit(p: &Program, s: &mut State) -> Result<(), Fault> {
 }
 
 /// Enclosed charts follow their enclosing steps, through all levels.
-fn cascade(p: &Program, s: &mut State) {
+pub(crate) fn cascade(p: &Program, s: &mut State) {
     let mut k = 0;
     while let Some(&step) = s.x.off.get(k) {
         k += 1;

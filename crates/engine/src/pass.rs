@@ -1,7 +1,9 @@
 //! One pass of the evolution (SEMANTICS section 3): judge all, then change all.
 
 use crate::bits::{Walk, bit, set_bit, word};
-use crate::change::{activate, add_runs, commit, deactivate, extra, mark_off, mark_on, marked, run_action};
+use crate::change::{
+    activate, add_runs, cascade, commit, deactivate, extra, mark_off, mark_on, marked, run_action,
+};
 use crate::fault::{Fault, FaultKind};
 use crate::run::{guard, value};
 use crate::state::State;
@@ -70,18 +72,22 @@ fn block(p: &Program, s: &mut State) {
     if !p.has_orders || p.layout.orders.is_empty(&s.w) {
         return;
     }
-    // A forced chart's steps may give orders themselves: whether those act
-    // depends on what is imposed on them, so orders go down the partial order.
+    // A forced chart's steps may give orders themselves, and so may the steps it
+    // encloses: whether those act depends on what is imposed above them, so
+    // orders go down the partial order.
     for i in 0..p.t.orders.len() as u32 {
         let Some(o) = p.t.orders.get(i as usize) else { break };
         if acts(s, o.step) {
             impose(p, s, i);
+            if p.has_hierarchy {
+                cascade(p, s);
+            }
         }
     }
 }
 
-/// Whether a step gives its orders in this pass: active, and not forced off by
-/// an order above; or just forced on.
+/// Whether a step gives its orders in this pass: active, and not taken off by an
+/// order above, itself or with its enclosing step; or just forced on so.
 fn acts(s: &State, step: StepId) -> bool {
     marked(&s.x.on_mark, step.0) || (s.steps.contains(&s.w, step.0) && !marked(&s.x.off_mark, step.0))
 }

@@ -106,7 +106,7 @@ fn task(rng: &mut Rng, plan: &mut Plan, mains: &[usize]) {
         let count = plan.charts[chart].steps.len();
         let step = &mut plan.charts[chart].steps[rng.below(count)];
         let order = format!("call {name}");
-        if step.expansion.is_none() && !step.orders.contains(&order) {
+        if !step.orders.contains(&order) {
             step.orders.push(order);
         }
     }
@@ -211,7 +211,7 @@ fn link_charts(rng: &mut Rng, plan: &mut Plan, mains: &[usize], driven: &[String
 fn order_of(rng: &mut Rng, plan: &mut Plan, chart: usize, order: String) {
     let count = plan.charts[chart].steps.len();
     let step = &mut plan.charts[chart].steps[rng.below(count)];
-    if step.expansion.is_none() && !step.orders.contains(&order) {
+    if !step.orders.contains(&order) {
         step.orders.push(order);
     }
 }

@@ -167,7 +167,7 @@ fn judge(m: &Model, s: &mut State, due: &[bool], owner: &Owner, blocks: &[&Block
         Owner::Named(..) | Owner::Own(..) => false,
     };
     let masked_var = match owner {
-        Owner::Var(v) => m.var_masks.iter().any(|(by, var)| var == v && s.is_active(m, *by)),
+        Owner::Var(v) => m.var_masks.iter().any(|(by, var)| var == v && s.active.contains(by)),
         Owner::Named(..) | Owner::Own(..) => false,
     };
     let mut inputs = [false; Qualifier::ALL.len()];
@@ -230,7 +230,7 @@ fn judge(m: &Model, s: &mut State, due: &[bool], owner: &Owner, blocks: &[&Block
 
 /// Whether a step with an active order masks the chart that a scope is in.
 fn masked(m: &Model, s: &State, scope: ScopeId) -> bool {
-    m.chart_masks.iter().any(|(by, chart)| *chart == m.scopes[scope].root && s.is_active(m, *by))
+    m.chart_masks.iter().any(|(by, chart)| *chart == m.scopes[scope].root && s.active.contains(by))
 }
 
 /// The place of a timed qualifier among the timers.

@@ -245,10 +245,11 @@ fn flat(groups: Vec<Vec<StepId>>) -> BTreeSet<StepId> {
     groups.into_iter().flatten().collect()
 }
 
-/// Frozen, or not enabled by any step although some step enables it.
+/// Frozen, or not enabled by any step although some step enables it. A macro-step
+/// gives its orders as it does its actions: from its activation to its clearing.
 fn held(m: &Model, s: &State, scope: ScopeId) -> bool {
     let root = m.scopes[scope].root;
-    let waits = m.enables.get(&root).is_some_and(|by| !by.iter().any(|&e| s.is_active(m, e)));
+    let waits = m.enables.get(&root).is_some_and(|by| !by.iter().any(|e| s.active.contains(e)));
     waits || s.frozen.contains(&root) || s.system(m, "S23")
 }
 
@@ -263,7 +264,7 @@ fn task_allows(m: &Model, s: &State, t: TransId) -> bool {
     let scope = transition.scope;
     let leaves_entry = m.scopes[scope].kind == ChartKind::Task
         && m.ends(scope).is_ok_and(|(entry, _)| transition.pre.contains(&entry));
-    if leaves_entry && !callers(m, scope).any(|c| s.is_active(m, c)) {
+    if leaves_entry && !callers(m, scope).any(|c| s.active.contains(&c)) {
         return false;
     }
     transition.pre.iter().all(|&p| {
@@ -285,7 +286,7 @@ fn tasks(m: &Model, s: &mut State, due: &[bool], chosen: &[TransId]) -> Vec<(Ste
         let Ok((entry, exit)) = m.ends(task) else { continue };
         let handed_back =
             chosen.iter().any(|&t| m.transitions[t].pre.iter().any(|&p| m.steps[p].calls.contains(&task)));
-        let owner_gone = !begun.owners.get(&task).is_some_and(|&o| begun.is_active(m, o));
+        let owner_gone = !begun.owners.get(&task).is_some_and(|o| begun.active.contains(o));
         let by_itself = *due && begun.active.contains(&exit) && owner_gone;
         if handed_back || by_itself {
             s.owners.remove(&task);
@@ -297,7 +298,7 @@ fn tasks(m: &Model, s: &mut State, due: &[bool], chosen: &[TransId]) -> Vec<(Ste
             chosen.iter().any(|&t| m.transitions[t].scope == task && m.transitions[t].pre.contains(&entry));
         if begins
             && !begun.owners.contains_key(&task)
-            && let Some(first) = callers(m, task).find(|&c| begun.is_active(m, c))
+            && let Some(first) = callers(m, task).find(|c| begun.active.contains(c))
         {
             s.owners.insert(task, first);
         }

@@ -12,16 +12,13 @@ use super::value::{NaiveFault, Run, Value};
 /// The charts that orders act on in this pass, each with the situation that it
 /// is forced to; `None` where it is only kept as it is.
 pub(super) fn forced_situations(m: &Model, s: &State) -> Run<BTreeMap<ScopeId, Option<BTreeSet<StepId>>>> {
-    let mut forced = BTreeMap::new();
-    // What forcing has made of the situation so far.
+    let mut forced: BTreeMap<ScopeId, Option<BTreeSet<StepId>>> = BTreeMap::new();
+    // The situation that the orders so far lead to, with what enclosing steps
+    // take and bring in it.
     let mut active = s.active.clone();
-    let is_active = |active: &BTreeSet<StepId>, step: StepId| match m.steps[step].expansion {
-        None => active.contains(&step),
-        Some((inner, ..)) => m.steps_within(inner).iter().any(|x| active.contains(x)),
-    };
     for &chart in &m.order {
         let mut order: Option<Option<BTreeSet<StepId>>> = None;
-        for f in m.forcings.iter().filter(|f| f.chart == chart && is_active(&active, f.step)) {
+        for f in m.forcings.iter().filter(|f| f.chart == chart && active.contains(&f.step)) {
             let situation = situation(m, chart, &f.situation)?;
             match &order {
                 Some(first) if *first != situation => {
@@ -31,14 +28,12 @@ pub(super) fn forced_situations(m: &Model, s: &State) -> Run<BTreeMap<ScopeId, O
             }
         }
         let Some(order) = order else { continue };
-        if let Some(set) = &order {
-            let before = active.clone();
-            impose(m, chart, set, &mut active);
-            for &x in before.difference(&active.clone()) {
-                active.retain(|y| !m.subordinates(x).contains(y));
-            }
-        }
         forced.insert(chart, order);
+        active.clone_from(&s.active);
+        for (chart, set) in forced.iter().filter_map(|(c, order)| Some((*c, order.as_ref()?))) {
+            impose(m, chart, set, &mut active);
+        }
+        hierarchy(m, &s.active, &BTreeSet::new(), &mut active);
     }
     Ok(forced)
 }

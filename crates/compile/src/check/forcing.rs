@@ -56,11 +56,17 @@ fn orders(unit: &Unit) -> Vec<Order<'_>> {
     list
 }
 
-/// A chart that forces itself, directly or through others.
+/// A chart that forces itself or what encloses it, directly or through others:
+/// an enclosing step rules what it encloses as an order rules what it forces.
 fn circles(unit: &Unit, orders: &[Order<'_>], problems: &mut Vec<Problem>) {
-    let mut forces: BTreeMap<ChartId, BTreeSet<ChartId>> = BTreeMap::new();
+    let mut rules: BTreeMap<ChartId, BTreeSet<ChartId>> = BTreeMap::new();
     for order in orders {
-        forces.entry(order.by).or_default().insert(order.on);
+        rules.entry(order.by).or_default().insert(order.on);
+    }
+    for (i, chart) in unit.charts.iter().enumerate() {
+        if let Some(step) = chart.enclosed_by.and_then(|e| unit.steps.get(e.index())) {
+            rules.entry(outermost(unit, step.chart)).or_default().insert(ChartId(i as u32));
+        }
     }
     let mut within: BTreeMap<ChartId, BTreeSet<ChartId>> = BTreeMap::new();
     for order in orders {
@@ -69,7 +75,7 @@ fn circles(unit: &Unit, orders: &[Order<'_>], problems: &mut Vec<Problem>) {
             let mut pending = vec![order.on];
             while let Some(chart) = pending.pop() {
                 if seen.insert(chart) {
-                    pending.extend(forces.get(&chart).into_iter().flatten());
+                    pending.extend(rules.get(&chart).into_iter().flatten());
                 }
             }
             seen
@@ -79,7 +85,11 @@ fn circles(unit: &Unit, orders: &[Order<'_>], problems: &mut Vec<Problem>) {
             let what = if order.by == order.on {
                 format!("chart `{}` forces itself", name(order.by))
             } else {
-                format!("chart `{}` forces `{}`, which forces it in turn", name(order.by), name(order.on))
+                format!(
+                    "chart `{}` forces `{}`, which forces or encloses it in turn",
+                    name(order.by),
+                    name(order.on)
+                )
             };
             problems.push(
                 Problem::new(&codes::FORCING_CIRCLE, order.at, what)

@@ -280,11 +280,23 @@ impl Lower<'_> {
         by_step
     }
 
-    /// By chart: the longest way down the forcing orders to it.
+    /// The charts with enclosing steps, each with one that it encloses.
+    fn enclosing(&self) -> impl Iterator<Item = (u32, u32)> + '_ {
+        self.unit.steps.iter().flat_map(|step| {
+            let charts = match &step.sort {
+                StepSort::Enclosing(charts) => &charts[..],
+                StepSort::Plain | StepSort::Macro(_) => &[],
+            };
+            charts.iter().filter_map(|c| Some((self.plan.chart(step.chart)?, self.plan.chart(*c)?)))
+        })
+    }
+
+    /// By chart: the longest way down to it, over forcing orders and enclosures.
     fn depths(&self, rows: &[(u32, Order)]) -> Vec<u32> {
         let mut arcs: Vec<(u32, u32)> = rows
             .iter()
             .filter_map(|(_, o)| self.t.steps.get(o.step.0 as usize).map(|s| (s.chart, o.chart)))
+            .chain(self.enclosing())
             .collect();
         arcs.sort_unstable();
         arcs.dedup();
