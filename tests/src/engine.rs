@@ -2,6 +2,7 @@
 //! read back by name.
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
 
 use g7_compile::ir::VarClass;
 use g7_compile::symbols::Variable;
@@ -47,7 +48,7 @@ pub(crate) fn with_program(
         let first = problems.iter().find(|p| p.severity() == g7_model::Severity::Error);
         return Err(first.map_or("no program".into(), |p| format!("{} {}", p.code.id, p.what)));
     };
-    compiled.program = change(compiled.program)?;
+    compiled.program = change(Arc::unwrap_or_clone(compiled.program))?.into();
     let state = State::new(&compiled.program);
     let inputs = compiled.program.tables().inputs;
     let inputs = state.words().get(inputs.start as usize..inputs.end as usize).unwrap_or(&[]).to_vec();

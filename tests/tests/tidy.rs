@@ -24,7 +24,8 @@ const ALLOWED: &[Arrows] = &[
     ("syntax", &["g7-model"], None),
     ("compile", &["g7-model", "g7-engine"], Some(&[])),
     ("host", &["g7-engine"], None),
-    ("g7", &["g7-model", "g7-syntax", "g7-engine", "g7-compile", "g7-host"], None),
+    ("rig", &["g7-model", "g7-syntax", "g7-engine", "g7-compile", "g7-host"], Some(&["thiserror"])),
+    ("g7", &["g7-model", "g7-syntax", "g7-engine", "g7-compile", "g7-host", "g7-rig"], None),
 ];
 
 /// Longest file, in lines.

@@ -16,6 +16,8 @@ pub mod plant;
 pub mod resolve;
 pub mod symbols;
 
+use std::sync::Arc;
+
 use g7_engine::{Code, Program};
 use g7_model::{Document, Expr, Problem, ProfileName, Severity, Span, Type, codes};
 
@@ -26,8 +28,8 @@ use symbols::Symbols;
 pub struct Compiled {
     /// Its typed form.
     pub unit: ir::Unit,
-    /// Its program.
-    pub program: Program,
+    /// Its program, shared by all that run it.
+    pub program: Arc<Program>,
     /// Names and places of everything in the program.
     pub symbols: Symbols,
     /// A code for each query, in their order, for `engine::eval`.
@@ -80,6 +82,7 @@ pub fn compile_with(
     }
     match lower::program(&unit, &questions) {
         Ok((program, symbols, queries)) => {
+            let program = Arc::new(program);
             let query_types = questions.iter().map(|q| q.ty).collect();
             (Some(Compiled { unit, program, symbols, queries, query_types }), sorted(problems))
         }

@@ -9,8 +9,8 @@ use crate::cli::{Check, Format};
 use crate::failure::{Failure, Verdict};
 use crate::progress::Progress;
 use crate::report::{self, Tally};
-use crate::sources::Source;
-use crate::{files, style, talk, testing};
+use crate::sources::{self, Source};
+use crate::{files, style, talk};
 
 pub(crate) fn check(args: &Check) -> Result<Verdict, Failure> {
     let paths = files::all(&args.paths)?;
@@ -18,7 +18,7 @@ pub(crate) fn check(args: &Check) -> Result<Verdict, Failure> {
     let mut out = anstream::stdout().lock();
     let (mut tally, mut listed) = (Tally::default(), Vec::new());
     for path in &paths {
-        let (source, problems) = problems(Source::load(path, 0)?, args)?;
+        let (source, problems) = problems(sources::load(path, 0)?, args)?;
         tally.add(Tally::of(&problems));
         match args.format {
             Format::Text => write!(out, "{}", report::text(&source, &problems))?,
@@ -47,7 +47,7 @@ fn problems(mut source: Source, args: &Check) -> Result<(Source, Vec<Problem>), 
         source.document.items.retain(|i| !matches!(i, Item::Target(..)));
         source.document.items.push(Item::Target(target, Place::default()));
     }
-    let problems = testing::problems(&source, args.profile)?;
+    let problems = g7_rig::testing::problems(&source, args.profile)?;
     Ok((source, problems))
 }
 

@@ -20,6 +20,17 @@ pub(crate) enum Failure {
     Usage(String),
 }
 
+impl From<g7_rig::Error> for Failure {
+    fn from(error: g7_rig::Error) -> Failure {
+        Failure::Usage(match error {
+            g7_rig::Error::SeveralPlants { file, there } => {
+                format!("{file} has several plants: choose with --plant one of {}, or none", there.join(", "))
+            }
+            other @ g7_rig::Error::NoPlant { .. } => other.to_string(),
+        })
+    }
+}
+
 impl Failure {
     /// The reader of a pipe has gone: no reason to speak.
     pub(crate) fn is_quiet(&self) -> bool {

@@ -6,7 +6,7 @@ use std::path::Path;
 use crate::cli::Fmt;
 use crate::failure::{Failure, Verdict};
 use crate::report::{self, Tally};
-use crate::sources::Source;
+use crate::sources;
 use crate::{files, style, talk};
 
 pub(crate) fn fmt(args: &Fmt) -> Result<Verdict, Failure> {
@@ -14,16 +14,16 @@ pub(crate) fn fmt(args: &Fmt) -> Result<Verdict, Failure> {
     let (mut changed, mut refused) = (0, 0);
     let mut out = anstream::stdout().lock();
     for path in &paths {
-        let source = Source::load(path, 0)?;
+        let source = sources::load(path, 0)?;
         if source.imported {
             return Err(Failure::Usage(format!(
                 "{} is a JGrafchart file; `g7 import` makes a .g7 file of it",
-                source.name()
+                source.name
             )));
         }
         if source.has_errors() {
             talk!("{}", report::text(&source, &source.problems).trim_end());
-            talk!("{}: left as it is: {}", source.name(), Tally::of(&source.problems));
+            talk!("{}: left as it is: {}", source.name, Tally::of(&source.problems));
             refused += 1;
             continue;
         }
@@ -34,12 +34,12 @@ pub(crate) fn fmt(args: &Fmt) -> Result<Verdict, Failure> {
         }
         match (args.check, path == Path::new("-")) {
             (true, _) if same => {}
-            (true, _) => writeln!(out, "{}", source.name())?,
+            (true, _) => writeln!(out, "{}", source.name)?,
             (false, true) => write!(out, "{text}")?,
             (false, false) if same => {}
             (false, false) => {
                 files::write(path, text.as_bytes())?;
-                talk!("{}formatted{:#} {}", style::GOOD, style::GOOD, source.name());
+                talk!("{}formatted{:#} {}", style::GOOD, style::GOOD, source.name);
             }
         }
     }

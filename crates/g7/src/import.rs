@@ -5,20 +5,20 @@ use std::io::Write;
 use crate::cli::Import;
 use crate::failure::{Failure, Verdict};
 use crate::report::{self, Tally};
-use crate::sources::Source;
+use crate::sources;
 use crate::{files, style, talk};
 
 pub(crate) fn import(args: &Import) -> Result<Verdict, Failure> {
-    let source = Source::load(&args.file, 0)?;
+    let source = sources::load(&args.file, 0)?;
     if !source.imported {
-        return Err(Failure::Usage(format!("{} is no JGrafchart file", source.name())));
+        return Err(Failure::Usage(format!("{} is no JGrafchart file", source.name)));
     }
     if let Some(output) = args.output.as_ref().filter(|o| o.is_file() && !args.force) {
         return Err(Failure::Usage(format!("{} is there already; --force replaces it", output.display())));
     }
     if !source.problems.is_empty() {
         talk!("{}", report::text(&source, &source.problems).trim_end());
-        talk!("{}: {}", source.name(), Tally::of(&source.problems));
+        talk!("{}: {}", source.name, Tally::of(&source.problems));
     }
     if source.has_errors() {
         return Ok(Verdict::Found);

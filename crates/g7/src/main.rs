@@ -13,7 +13,6 @@
 //! - Files are written whole or not at all; a broken pipe ends in silence.
 #![forbid(unsafe_code)]
 
-mod bench;
 mod check;
 mod cli;
 mod explain;

@@ -56,7 +56,7 @@ pub(crate) fn text(source: &Source, problems: &[Problem]) -> String {
         out.push_str("\n\n");
     }
     if sorted.len() > MANY {
-        out.push_str(&format!("… and {} more problems in {}\n\n", sorted.len() - MANY, source.name()));
+        out.push_str(&format!("… and {} more problems in {}\n\n", sorted.len() - MANY, source.name));
     }
     out
 }
@@ -100,7 +100,7 @@ fn excerpt<'a>(source: &'a Source, places: &[(Span, Option<&'a str>)]) -> Elemen
     let text = source.text.get(region.clone()).unwrap_or("");
     if text.lines().any(|l| l.len() > WIDE) {
         let (line, column) = source.position(ranges.first().map_or(0, |r| r.start));
-        return Origin::path(source.name()).line(line).char_column(column).into();
+        return Origin::path(source.name.as_str()).line(line).char_column(column).into();
     }
     let annotations: Vec<Annotation<'a>> = ranges
         .iter()
@@ -110,7 +110,7 @@ fn excerpt<'a>(source: &'a Source, places: &[(Span, Option<&'a str>)]) -> Elemen
             kind.span(range.start - region.start..range.end - region.start).label(*there)
         })
         .collect();
-    Snippet::source(text).path(source.name()).line_start(first + 1).annotations(annotations).into()
+    Snippet::source(text).path(source.name.as_str()).line_start(first + 1).annotations(annotations).into()
 }
 
 /// A span over many lines is marked at its first.
@@ -157,5 +157,5 @@ fn place(source: &Source, span: Span) -> Value {
         let (line, column) = source.position(byte);
         json!({ "line": line, "column": column, "byte": byte })
     };
-    json!({ "file": source.name(), "start": point(range.start), "end": point(range.end) })
+    json!({ "file": source.name, "start": point(range.start), "end": point(range.end) })
 }

@@ -1,7 +1,7 @@
-//! Values as users type them on the command line and in the view.
+//! Arguments that are more than a word.
 
-use g7_host::{Kind, Value};
 use g7_model::{ProfileName, TargetPlc};
+pub(crate) use g7_rig::values::{duration, read};
 
 /// `start=1@2s`.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -43,109 +43,9 @@ pub(crate) fn target(text: &str) -> Result<TargetPlc, String> {
         .ok_or_else(|| format!("expected one of {}", all.map(TargetPlc::name).join(", ")))
 }
 
-/// `1h30m`, `2.5s`, `500ms`, in nanoseconds; more than 0, or 0 itself as `0s`.
-pub(crate) fn duration(text: &str) -> Result<i64, String> {
-    let bad = || "expected a duration such as 10ms, 2.5s or 1h30m".to_owned();
-    let text = text.trim();
-    let text = text.strip_prefix("T#").or(text.strip_prefix("t#")).unwrap_or(text);
-    let mut left = text.replace('_', "");
-    let mut total: i128 = 0;
-    if left.is_empty() {
-        return Err(bad());
-    }
-    while !left.is_empty() {
-        let digits = left.find(|c: char| !c.is_ascii_digit() && c != '.').ok_or_else(bad)?;
-        let (number, rest) = left.split_at(digits);
-        let letters = rest.find(|c: char| !c.is_alphabetic()).unwrap_or(rest.len());
-        let (unit, rest) = rest.split_at(letters);
-        total += part(number, unit).ok_or_else(bad)?;
-        left = rest.to_owned();
-    }
-    i64::try_from(total).map_err(|_| "this duration is too long".to_owned())
-}
-
-/// A number with a unit, exactly; decimals below a nanosecond are no duration.
-fn part(number: &str, unit: &str) -> Option<i128> {
-    let unit: i128 = match unit.to_ascii_lowercase().as_str() {
-        "d" => 86_400_000_000_000,
-        "h" => 3_600_000_000_000,
-        "m" | "min" => 60_000_000_000,
-        "s" => 1_000_000_000,
-        "ms" => 1_000_000,
-        "us" | "µs" => 1_000,
-        "ns" => 1,
-        _ => return None,
-    };
-    let (whole, decimals) = number.split_once('.').unwrap_or((number, ""));
-    if whole.is_empty() || whole.len() > 18 || decimals.len() > 18 || decimals.contains('.') {
-        return None;
-    }
-    let mut ns = whole.parse::<i128>().ok()? * unit;
-    if !decimals.is_empty() {
-        let scaled = decimals.parse::<i128>().ok()? * unit;
-        let scale = 10i128.pow(decimals.len() as u32);
-        if scaled % scale != 0 {
-            return None;
-        }
-        ns += scaled / scale;
-    }
-    Some(ns)
-}
-
-/// Reads a value of a kind; `true`, `on` and `1` are TRUE.
-pub(crate) fn read(text: &str, kind: Kind) -> Result<Value, String> {
-    let plain = text.trim();
-    let number = plain.replace('_', "");
-    match kind {
-        Kind::Bool => match plain.to_ascii_lowercase().as_str() {
-            "1" | "true" | "on" => Ok(Value::Word(1)),
-            "0" | "false" | "off" => Ok(Value::Word(0)),
-            _ => Err(format!("`{plain}` is no BOOL: write TRUE or FALSE")),
-        },
-        Kind::Int { bits, signed } => {
-            let value: i128 = number.parse().map_err(|_| format!("`{plain}` is no whole number"))?;
-            let bits = u32::from(bits.clamp(1, 64));
-            let (least, most) = if signed {
-                (-(1i128 << (bits - 1)), (1i128 << (bits - 1)) - 1)
-            } else {
-                (0, (1i128 << bits) - 1)
-            };
-            if value < least || value > most {
-                return Err(format!("`{plain}` is outside {least} .. {most}"));
-            }
-            Ok(Value::Word(value as u64))
-        }
-        Kind::Real => number
-            .parse::<f32>()
-            .map(|x| Value::Word(u64::from(x.to_bits())))
-            .map_err(|_| format!("`{plain}` is no number")),
-        Kind::Lreal => number
-            .parse::<f64>()
-            .map(|x| Value::Word(x.to_bits()))
-            .map_err(|_| format!("`{plain}` is no number")),
-        Kind::Time => duration(plain).map(|ns| Value::Word(ns as u64)),
-        Kind::Text => {
-            let inner = plain.strip_prefix('\'').and_then(|t| t.strip_suffix('\''));
-            Ok(Value::Text(inner.unwrap_or(text).into()))
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn durations_are_exact_or_refused() {
-        assert_eq!(duration("1h30m"), Ok(5_400_000_000_000));
-        assert_eq!(duration("2.5s"), Ok(2_500_000_000));
-        assert_eq!(duration("T#1m_30s"), Ok(90_000_000_000));
-        assert_eq!(duration("0.1us"), Ok(100));
-        assert_eq!(duration("1d"), Ok(86_400_000_000_000));
-        for bad in ["", "5", "s", "5x", "-1s", "1.5ns", "1..5s", "999999d999999999999d", "1e3s", "5 s"] {
-            assert!(duration(bad).is_err(), "{bad:?}");
-        }
-    }
 
     #[test]
     fn assignments_name_value_and_time() {
@@ -156,22 +56,5 @@ mod tests {
         for bad in ["start", "=1", "a=1@", "a=1@soon"] {
             assert!(assign(bad).is_err(), "{bad:?}");
         }
-    }
-
-    #[test]
-    fn values_are_read_by_their_kind_and_range() {
-        let int = Kind::Int { bits: 16, signed: true };
-        assert_eq!(read("-3", int), Ok(Value::Word(-3i64 as u64)));
-        assert_eq!(read("32767", int), Ok(Value::Word(32767)));
-        assert!(read("32768", int).is_err());
-        assert_eq!(
-            read("18446744073709551615", Kind::Int { bits: 64, signed: false }),
-            Ok(Value::Word(u64::MAX))
-        );
-        assert_eq!(read("on", Kind::Bool), Ok(Value::Word(1)));
-        assert!(read("2", Kind::Bool).is_err());
-        assert_eq!(read("0.1", Kind::Real), Ok(Value::Word(u64::from(0.1f32.to_bits()))));
-        assert_eq!(read("1.5s", Kind::Time), Ok(Value::Word(1_500_000_000)));
-        assert_eq!(read("'a b'", Kind::Text), Ok(Value::Text("a b".into())));
     }
 }

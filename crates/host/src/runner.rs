@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 use std::ops::Range;
+use std::sync::Arc;
 
 use g7_engine::{Addr, Fault, Program, Report, State, begin, pass, scan};
 
@@ -49,22 +50,25 @@ pub enum Halt {
     Plant(Fault),
 }
 
-struct Plant<'p> {
-    program: &'p Program,
+#[derive(Clone)]
+struct Plant {
+    program: Arc<Program>,
     state: State,
     inputs: Vec<u64>,
     coupling: Coupling,
 }
 
-/// A program at work, with its plant if it has one.
-pub struct Runner<'p> {
-    program: &'p Program,
+/// A program at work, with its plant if it has one. It owns what it needs: a
+/// clone is a second run from this instant on.
+#[derive(Clone)]
+pub struct Runner {
+    program: Arc<Program>,
     state: State,
     /// As set from outside or by the plant; forces lie over them.
     inputs: Vec<u64>,
     /// What the latest scan read.
     read: Vec<u64>,
-    plant: Option<Plant<'p>>,
+    plant: Option<Plant>,
     forces: BTreeMap<Force, u64>,
     /// The charts' own values of forced outputs.
     own: BTreeMap<Addr, u64>,
@@ -82,13 +86,14 @@ pub struct Runner<'p> {
     ready: bool,
 }
 
-impl<'p> Runner<'p> {
+impl Runner {
     /// Charts before their first scan, which is due at 0; cold.
-    pub fn new(program: &'p Program, period: i64) -> Runner<'p> {
+    pub fn new(program: impl Into<Arc<Program>>, period: i64) -> Runner {
+        let program = program.into();
         let rows = program.tables().inputs;
         let mut runner = Runner {
+            state: State::new(&program),
             program,
-            state: State::new(program),
             inputs: Vec::new(),
             read: Vec::new(),
             plant: None,
@@ -112,9 +117,10 @@ impl<'p> Runner<'p> {
 
     /// Runs against this plant.
     #[must_use]
-    pub fn with_plant(mut self, program: &'p Program, coupling: Coupling) -> Runner<'p> {
+    pub fn with_plant(mut self, program: impl Into<Arc<Program>>, coupling: Coupling) -> Runner {
+        let program = program.into();
         let rows = program.tables().inputs;
-        let state = State::new(program);
+        let state = State::new(&program);
         let inputs = (rows.start..rows.end).map(|a| state.word(Addr(a))).collect();
         self.plant = Some(Plant { program, state, inputs, coupling });
         self
@@ -122,14 +128,14 @@ impl<'p> Runner<'p> {
 
     /// The words kept over a warm restart.
     #[must_use]
-    pub fn with_retained(mut self, words: Vec<Range<u32>>) -> Runner<'p> {
+    pub fn with_retained(mut self, words: Vec<Range<u32>>) -> Runner {
         self.retained = words;
         self
     }
 
     /// The words of `%S0` and `%S1`.
     #[must_use]
-    pub fn with_flags(mut self, flags: Option<(Addr, Addr)>) -> Runner<'p> {
+    pub fn with_flags(mut self, flags: Option<(Addr, Addr)>) -> Runner {
         self.flags = flags;
         self.set_flags(Start::Cold);
         self
@@ -137,8 +143,8 @@ impl<'p> Runner<'p> {
 
     /// Keeps a tape from here on.
     #[must_use]
-    pub fn with_tape(mut self) -> Runner<'p> {
-        self.tape = Some(Tape::new(self.program));
+    pub fn with_tape(mut self) -> Runner {
+        self.tape = Some(Tape::new(&self.program));
         if let (Some(flags), Some(tape)) = (self.flags, &mut self.tape) {
             tape.write(flags.0, self.state.word(flags.0));
             tape.write(flags.1, self.state.word(flags.1));
@@ -152,8 +158,8 @@ impl<'p> Runner<'p> {
     }
 
     /// The program.
-    pub fn program(&self) -> &'p Program {
-        self.program
+    pub fn program(&self) -> &Program {
+        &self.program
     }
 
     /// The state of the charts.
@@ -161,19 +167,19 @@ impl<'p> Runner<'p> {
         &self.state
     }
 
-    /// The state of the charts, to evaluate expressions on.
-    pub fn state_mut(&mut self) -> &mut State {
-        &mut self.state
+    /// The program and the state of the charts, to evaluate expressions on.
+    pub fn charts_mut(&mut self) -> (&Program, &mut State) {
+        (&self.program, &mut self.state)
     }
 
     /// The plant's program and state.
-    pub fn plant(&self) -> Option<(&'p Program, &State)> {
-        self.plant.as_ref().map(|p| (p.program, &p.state))
+    pub fn plant(&self) -> Option<(&Program, &State)> {
+        self.plant.as_ref().map(|p| (&*p.program, &p.state))
     }
 
-    /// The plant's state, to evaluate expressions on.
-    pub fn plant_mut(&mut self) -> Option<(&'p Program, &mut State)> {
-        self.plant.as_mut().map(|p| (p.program, &mut p.state))
+    /// The same of the plant.
+    pub fn plant_mut(&mut self) -> Option<(&Program, &mut State)> {
+        self.plant.as_mut().map(|p| (&*p.program, &mut p.state))
     }
 
     /// Instant of the next scan.
@@ -233,7 +239,7 @@ impl<'p> Runner<'p> {
 
     /// Writes a variable of the charts, once.
     pub fn set_word(&mut self, addr: Addr, value: u64) {
-        self.state.set_word(self.program, addr, value);
+        self.state.set_word(&self.program, addr, value);
         if let Some(tape) = &mut self.tape {
             tape.write(addr, value);
         }
@@ -242,7 +248,7 @@ impl<'p> Runner<'p> {
     /// Writes a variable of the plant, once.
     pub fn set_plant_word(&mut self, addr: Addr, value: u64) {
         if let Some(p) = &mut self.plant {
-            p.state.set_word(p.program, addr, value);
+            p.state.set_word(&p.program, addr, value);
         }
     }
 
@@ -321,7 +327,7 @@ impl<'p> Runner<'p> {
                     return self.scan().map(|_| true);
                 }
                 let mut state = self.state.clone();
-                if begin(self.program, &mut state, &self.read, now).is_err() {
+                if begin(&self.program, &mut state, &self.read, now).is_err() {
                     return self.scan().map(|_| true);
                 }
                 state
@@ -329,7 +335,7 @@ impl<'p> Runner<'p> {
         };
         // The passes are made on a copy: at the end, or at a fault, the whole
         // scan is made on the state itself, so that it is made in one way only.
-        match pass(self.program, &mut state) {
+        match pass(&self.program, &mut state) {
             Ok(true) if self.program.tables().rules.stable => {
                 self.slow = Some(state);
                 Ok(false)
@@ -366,7 +372,7 @@ impl<'p> Runner<'p> {
                 *word = self.state.word(Addr(outputs.saturating_add(*from)));
             }
         }
-        scan(p.program, &mut p.state, &p.inputs, now)?;
+        scan(&p.program, &mut p.state, &p.inputs, now)?;
         let driven = p.program.tables().outputs.start;
         for (from, to) in &p.coupling.to_charts {
             if let Some(word) = self.inputs.get_mut(*to as usize) {
@@ -395,7 +401,7 @@ impl<'p> Runner<'p> {
     }
 
     fn evolve(&mut self, now: i64) -> Result<Report, Halt> {
-        let done = scan(self.program, &mut self.state, &self.read, now);
+        let done = scan(&self.program, &mut self.state, &self.read, now);
         if let Some(tape) = &mut self.tape {
             tape.scan(now, &self.read, &self.state);
         }
@@ -418,7 +424,7 @@ impl<'p> Runner<'p> {
             Start::Cold => Vec::new(),
             Start::Warm => self.retained(),
         };
-        self.state = State::new(self.program);
+        self.state = State::new(&self.program);
         (self.halt, self.ready, self.slow) = (None, false, None);
         self.own.clear();
         if let Some(tape) = &mut self.tape {
@@ -468,18 +474,19 @@ pub enum Served {
 
 /// Runs on devices until told to stop, asked before each scan.
 pub fn serve(
-    runner: &mut Runner<'_>,
+    runner: &mut Runner,
     clock: &mut dyn Clock,
     io: &mut dyn Io,
-    stop: &mut dyn FnMut(&Runner<'_>) -> bool,
+    stop: &mut dyn FnMut(&Runner) -> bool,
 ) -> Served {
+    let program = Arc::clone(&runner.program);
+    let safe = &program.tables().safe;
     loop {
         if stop(runner) {
             return Served::Stopped;
         }
         clock.wait_until(runner.due());
         runner.catch_up(clock.now());
-        let safe = &runner.program.tables().safe;
         if let Err(e) = io.read(&mut runner.inputs) {
             io.write(safe).ok();
             return Served::Io(e);

@@ -9,12 +9,12 @@ use g7_host::{
 };
 
 use super::keep::{self, Keeper};
-use crate::bench::{Bench, Conflicts, Item, Role};
 use crate::cli::Run;
 use crate::failure::{Failure, Verdict};
 use crate::progress::Progress;
 use crate::sources::Source;
 use crate::{files, style, talk, values};
+use g7_rig::{Bench, Conflicts, Item, Role};
 
 /// How long it runs where nothing is said.
 const UNSAID: i64 = 10_000_000_000;
@@ -111,7 +111,7 @@ fn shown(bench: &Bench, args: &Run) -> Result<Vec<usize>, Failure> {
 /// Scans until `length` has passed, the scan at its end included.
 fn play(
     bench: &Bench,
-    runner: &mut Runner<'_>,
+    runner: &mut Runner,
     recording: &mut Recording,
     script: &[(i64, &Item, Value)],
     length: i64,
@@ -143,7 +143,7 @@ fn play(
         if let Some(keeper) = live {
             keeper.tick(runner)?;
         }
-        if runner.state().scans() % 256 == 0 {
+        if runner.state().scans().is_multiple_of(256) {
             progress.at(runner.due().max(0) as u64);
         }
     }
@@ -166,7 +166,7 @@ fn write_trace(recording: &Recording, path: &Path, form: Form) -> Result<(), Fai
 /// The end of the run, and how it came to it.
 fn print(
     bench: &Bench,
-    runner: &Runner<'_>,
+    runner: &Runner,
     recording: &Recording,
     source: &Source,
     shown: &[usize],
@@ -179,7 +179,7 @@ fn print(
         out,
         "{}{}{:#}{plant}: {} in {} scans of {}, now in {{{situation}}}\n",
         style::STRONG,
-        source.name(),
+        source.name,
         style::STRONG,
         format_time(state.now()),
         state.scans(),
@@ -206,7 +206,7 @@ fn print(
 }
 
 /// How to set an input, one that is free and if possible a BOOL; nothing where there is none.
-fn how_to_move(bench: &Bench, runner: &Runner<'_>) -> String {
+fn how_to_move(bench: &Bench, runner: &Runner) -> String {
     let inputs = || bench.items.iter().filter(|i| matches!(i.role, Role::Input(_)));
     let free = || inputs().filter(|i| !bench.is_driven(runner, i));
     let Some(input) = free().find(|i| i.kind == Kind::Bool).or_else(|| free().next()) else {

@@ -4,16 +4,16 @@ use std::path::Path;
 
 use g7_host::{Clock, Layout, RetainError, Retained, Runner, Start, WallClock};
 
-use crate::bench::Bench;
 use crate::failure::Failure;
+use g7_rig::Bench;
 
 fn layout(bench: &Bench) -> Layout {
-    let row = |i: &crate::bench::Item| (i.name.clone(), i.retain.clone().unwrap_or_default(), i.words);
+    let row = |i: &g7_rig::Item| (i.name.clone(), i.retain.clone().unwrap_or_default(), i.words);
     Layout { variables: bench.retained().map(row).collect() }
 }
 
 /// Takes over what an earlier run kept: then this start is a warm one.
-pub(super) fn load(bench: &Bench, runner: &mut Runner<'_>, path: Option<&Path>) -> Result<(), Failure> {
+pub(super) fn load(bench: &Bench, runner: &mut Runner, path: Option<&Path>) -> Result<(), Failure> {
     let Some(path) = path else { return Ok(()) };
     match Retained::load(&layout(bench), path) {
         Ok(None) => Ok(()),
@@ -39,13 +39,13 @@ pub(crate) struct Keeper<'a> {
 const PAUSE: i64 = 1_000_000_000;
 
 impl<'a> Keeper<'a> {
-    pub(super) fn new(bench: &Bench, runner: &Runner<'_>, path: Option<&'a Path>) -> Keeper<'a> {
+    pub(super) fn new(bench: &Bench, runner: &Runner, path: Option<&'a Path>) -> Keeper<'a> {
         Keeper { layout: layout(bench), path, written: runner.retained(), clock: WallClock::default() }
     }
 
     /// Writes what has changed, once a second at most: no more is lost where
     /// the run is cut short.
-    pub(crate) fn tick(&mut self, runner: &Runner<'_>) -> Result<(), Failure> {
+    pub(crate) fn tick(&mut self, runner: &Runner) -> Result<(), Failure> {
         if self.path.is_none() || self.clock.now() < PAUSE {
             return Ok(());
         }
@@ -57,7 +57,7 @@ impl<'a> Keeper<'a> {
     }
 
     /// Writes them as they are now.
-    pub(crate) fn save(&mut self, runner: &Runner<'_>) -> Result<(), Failure> {
+    pub(crate) fn save(&mut self, runner: &Runner) -> Result<(), Failure> {
         let Some(path) = self.path else { return Ok(()) };
         self.written = runner.retained();
         Retained { words: self.written.clone() }

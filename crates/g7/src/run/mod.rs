@@ -7,15 +7,15 @@ use std::io::{IsTerminal, stdin, stdout};
 
 pub(crate) use keep::Keeper;
 
-use crate::bench::{self, Bench};
 use crate::cli::Run;
 use crate::failure::{Failure, Verdict};
 use crate::report::{self, Tally};
-use crate::sources::Source;
+use crate::sources::{self, Source};
 use crate::{files, talk, view};
+use g7_rig::{self as bench, Bench};
 
 pub(crate) fn run(args: &Run) -> Result<Verdict, Failure> {
-    let source = Source::load(&files::one(&args.path)?, 0)?;
+    let source = sources::load(&files::one(&args.path)?, 0)?;
     let Some(bench) = load(&source, args)? else { return Ok(Verdict::Found) };
     if let Some(tape) = &args.replay {
         return headless::replay(&bench, args, tape);
@@ -30,7 +30,7 @@ pub(crate) fn run(args: &Run) -> Result<Verdict, Failure> {
     let mut runner = bench.runner(args.seed);
     keep::load(&bench, &mut runner, args.retain.as_deref())?;
     let mut keeper = Keeper::new(&bench, &runner, args.retain.as_deref());
-    view::run(&bench, runner, &source.name(), args, &mut keeper)?;
+    view::run(&bench, runner, &source.name, args, &mut keeper)?;
     Ok(Verdict::Fine)
 }
 
@@ -41,7 +41,7 @@ fn load(source: &Source, args: &Run) -> Result<Option<Bench>, Failure> {
     let (bench, problems) = bench::build(source, &options)?;
     if !problems.is_empty() {
         talk!("{}", report::text(source, &problems).trim_end());
-        talk!("{}: {}", source.name(), Tally::of(&problems));
+        talk!("{}: {}", source.name, Tally::of(&problems));
     }
     Ok(bench)
 }

@@ -5,10 +5,8 @@ use std::io::{self, Write};
 use g7_host::{format_seconds, format_time};
 use serde_json::{Value, json};
 
-use super::Outcome;
-use super::coverage::Coverage;
-use super::exec::Defect;
 use crate::style;
+use g7_rig::testing::{Coverage, Defect, Outcome};
 
 /// A line for each test.
 pub(super) fn progress_lines(out: &mut dyn Write, outcomes: &[Outcome]) -> io::Result<()> {

@@ -2,10 +2,10 @@
 
 use g7_host::{Clock, Halt, Kind, Recording, Runner, Start, Value, WallClock, format_time};
 
-use crate::bench::{Bench, Conflicts, Item, Role, Table};
 use crate::cli::Run;
 use crate::failure::Failure;
 use crate::values::{self, Assign};
+use g7_rig::{Bench, Conflicts, Item, Role, Table};
 
 /// The keys that stand for inputs: those that no command needs.
 pub(super) const INPUT_KEYS: &str = "1234567890abcdefghijklmnoprstuvwxyz";
@@ -63,7 +63,7 @@ pub(super) struct Edit {
 
 pub(super) struct App<'b> {
     pub(super) bench: &'b Bench,
-    pub(super) runner: Runner<'b>,
+    pub(super) runner: Runner,
     pub(super) title: String,
     pub(super) recording: Recording,
     pub(super) clock: WallClock,
@@ -88,12 +88,7 @@ pub(super) struct App<'b> {
 }
 
 impl<'b> App<'b> {
-    pub(super) fn new(
-        bench: &'b Bench,
-        runner: Runner<'b>,
-        title: &str,
-        args: &Run,
-    ) -> Result<App<'b>, Failure> {
+    pub(super) fn new(bench: &'b Bench, runner: Runner, title: &str, args: &Run) -> Result<App<'b>, Failure> {
         let mut script = args.set.clone();
         script.sort_by_key(|a| std::cmp::Reverse(a.at));
         for assign in &script {

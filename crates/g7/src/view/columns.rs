@@ -92,7 +92,7 @@ fn wish(app: &App<'_>, list: List) -> Wish {
 
 /// Without and with comments, and the title.
 fn steps(app: &App<'_>) -> (usize, usize, usize) {
-    let name = |s: &crate::bench::StepItem| 2 + s.name.chars().count() + TIME;
+    let name = |s: &g7_rig::StepItem| 2 + s.name.chars().count() + TIME;
     let all = app.bench.steps.iter();
     let with = |s| name(s).max(step_line(app, s).width());
     (all.clone().map(name).max().unwrap_or(0), all.map(with).max().unwrap_or(0), 5)

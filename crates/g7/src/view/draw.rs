@@ -10,7 +10,7 @@ use ratatui::widgets::{Block, Borders, Clear, Paragraph};
 use super::app::{App, Panel};
 use super::columns;
 use super::keys::HELP;
-use crate::bench::{Role, StepItem};
+use g7_rig::{Role, StepItem};
 
 const ON: Style = Style::new().fg(Color::Green).add_modifier(Modifier::BOLD);
 const DIM: Style = Style::new().add_modifier(Modifier::DIM);

@@ -16,19 +16,19 @@ use std::time::Duration;
 use crossterm::event::{self, Event};
 use g7_host::Runner;
 
-use crate::bench::Bench;
 use crate::cli::Run;
 use crate::failure::Failure;
 use crate::run::Keeper;
 use app::App;
+use g7_rig::Bench;
 
 /// Time between two pictures at most.
 const FRAME: Duration = Duration::from_millis(40);
 
 /// Shows the chart at work until the user ends it.
-pub(crate) fn run<'b>(
-    bench: &'b Bench,
-    runner: Runner<'b>,
+pub(crate) fn run(
+    bench: &Bench,
+    runner: Runner,
     title: &str,
     args: &Run,
     keeper: &mut Keeper<'_>,

@@ -7,9 +7,9 @@ use ratatui::backend::TestBackend;
 
 use super::app::App;
 use super::{draw, keys};
-use crate::bench::{self, Bench};
 use crate::cli::{Cli, Command};
 use crate::sources::Source;
+use g7_rig::{self as bench, Bench};
 
 const CHART: &str = "\
 input a : BOOL \"push button\"
@@ -36,7 +36,7 @@ plant P {
 ";
 
 fn bench(chart: &str) -> Bench {
-    let source = Source::new("a.g7".as_ref(), chart.as_bytes().to_vec(), 0);
+    let source = Source::new("a.g7", chart.as_bytes().to_vec(), 0);
     let (bench, problems) = bench::build(&source, &bench::Options::default()).expect("one plant");
     bench.unwrap_or_else(|| panic!("{problems:?}"))
 }

@@ -6,18 +6,19 @@ mod tables;
 use std::collections::BTreeSet;
 use std::ops::Range;
 
+use g7_compile::plant;
 use g7_engine::{Addr, GroupId, State, StepId};
 use g7_host::{
     Coupling, Force, Halt, Kind, Recording, Runner, Signal, Value, format_time, read_text, write_text,
 };
 use g7_model::{Span, Type};
 
-pub(crate) use names::{Answer, Ask, Options, build};
-pub(crate) use tables::Table;
+pub use names::{Answer, Ask, Options, build};
+pub use tables::Table;
 
 /// What a variable is to the bench.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Role {
+pub enum Role {
     /// An input of the charts: its first word counted from the first input.
     Input(u32),
     /// An output.
@@ -30,33 +31,46 @@ pub(crate) enum Role {
 
 /// Something with a value and a name.
 #[derive(Clone, Debug)]
-pub(crate) struct Item {
-    pub(crate) name: String,
-    pub(crate) kind: Kind,
-    pub(crate) role: Role,
+pub struct Item {
+    /// As the language has it from outside of all charts.
+    pub name: String,
+    /// How its words are to be read.
+    pub kind: Kind,
+    /// What it is for.
+    pub role: Role,
     /// First word, in the charts' or the plant's variable area.
-    pub(crate) addr: u32,
-    pub(crate) words: u32,
+    pub addr: u32,
+    /// How many words it has.
+    pub words: u32,
     /// Kept over a restart; its type as written.
-    pub(crate) retain: Option<String>,
-    pub(crate) comment: Option<String>,
-    pub(crate) ty: Type,
+    pub retain: Option<String>,
+    /// `"…"`.
+    pub comment: Option<String>,
+    /// Its type.
+    pub ty: Type,
+    /// Where it is declared.
+    pub at: Span,
 }
 
 /// A step or macro-step with its name.
 #[derive(Clone, Debug)]
-pub(crate) struct StepItem {
-    pub(crate) name: String,
-    pub(crate) comment: Option<String>,
-    pub(crate) id: Activity,
+pub struct StepItem {
+    /// As in traces.
+    pub name: String,
+    /// `"…"`.
+    pub comment: Option<String>,
+    /// Whose activity it is.
+    pub id: Activity,
+    /// Where its name stands.
+    pub at: Span,
     /// Of an expansion or a task.
-    pub(crate) inner: bool,
+    pub inner: bool,
 }
 
 impl StepItem {
     /// The variable of its activity, as the language has it: `X12`, `G.X12`,
     /// `XM3`, `Fill.X`.
-    pub(crate) fn activity(&self) -> String {
+    pub fn activity(&self) -> String {
         let (before, last) = match self.name.rsplit_once('.') {
             Some((before, last)) => (format!("{before}."), last),
             None => (String::new(), self.name.as_str()),
@@ -75,42 +89,56 @@ impl StepItem {
 
 /// Whose activity.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Activity {
+pub enum Activity {
+    /// A step's own.
     Step(StepId),
+    /// That of a macro-step: of all steps of its expansion.
     Macro(GroupId),
 }
 
 /// A plant made ready.
 #[derive(Debug)]
-pub(crate) struct PlantSide {
-    pub(crate) name: String,
-    pub(crate) compiled: g7_compile::Compiled,
-    pub(crate) coupling: Coupling,
+pub struct PlantSide {
+    /// Its name.
+    pub name: String,
+    /// Its program.
+    pub compiled: g7_compile::Compiled,
+    /// Which words it shares with the charts.
+    pub coupling: Coupling,
+    /// Its picture, as written.
+    pub view: Option<String>,
+    /// What moves in the picture.
+    pub bindings: Vec<plant::Binding>,
     /// Of the expressions asked of it.
-    pub(crate) queries: Vec<g7_engine::Code>,
+    pub queries: Vec<g7_engine::Code>,
 }
 
 /// Charts with names, and a plant if there is one.
-pub(crate) struct Bench {
-    pub(crate) compiled: g7_compile::Compiled,
-    pub(crate) items: Vec<Item>,
-    pub(crate) steps: Vec<StepItem>,
-    pub(crate) plant: Option<PlantSide>,
+pub struct Bench {
+    /// The charts.
+    pub compiled: g7_compile::Compiled,
+    /// Everything with a value.
+    pub items: Vec<Item>,
+    /// Everything with an activity.
+    pub steps: Vec<StepItem>,
+    /// The plant.
+    pub plant: Option<PlantSide>,
     /// Of the expressions asked for.
-    pub(crate) answers: Vec<Answer>,
-    pub(crate) period: i64,
+    pub answers: Vec<Answer>,
+    /// Time between scans, nanoseconds.
+    pub period: i64,
 }
 
 impl Bench {
     /// The charts before their first scan, coupled to the plant.
-    pub(crate) fn runner(&self, seed: u64) -> Runner<'_> {
+    pub fn runner(&self, seed: u64) -> Runner {
         let symbols = &self.compiled.symbols;
         let flags = symbols.s0.zip(symbols.s1);
         let kept = self.retained().map(|i| i.addr..i.addr + i.words).collect::<Vec<Range<u32>>>();
         let mut runner =
-            Runner::new(&self.compiled.program, self.period).with_retained(kept).with_flags(flags);
+            Runner::new(self.compiled.program.clone(), self.period).with_retained(kept).with_flags(flags);
         if let Some(plant) = &self.plant {
-            runner = runner.with_plant(&plant.compiled.program, plant.coupling.clone());
+            runner = runner.with_plant(plant.compiled.program.clone(), plant.coupling.clone());
             if let Some(addr) = plant.compiled.symbols.seed {
                 runner.set_plant_word(addr, seed);
             }
@@ -119,19 +147,19 @@ impl Bench {
     }
 
     /// The variables kept over a restart.
-    pub(crate) fn retained(&self) -> impl Iterator<Item = &Item> {
+    pub fn retained(&self) -> impl Iterator<Item = &Item> {
         self.items.iter().filter(|i| i.retain.is_some())
     }
 
     /// The variable of this name.
-    pub(crate) fn item(&self, name: &str) -> Option<&Item> {
+    pub fn item(&self, name: &str) -> Option<&Item> {
         let plain = |i: &&Item| i.name == name;
         let cased = |i: &&Item| i.name.eq_ignore_ascii_case(name);
         self.items.iter().find(plain).or_else(|| self.items.iter().find(cased))
     }
 
     /// The names nearest to a name that is not there, for a message.
-    pub(crate) fn suggestions(&self, name: &str) -> String {
+    pub fn suggestions(&self, name: &str) -> String {
         let mut near: Vec<(usize, &str)> = self
             .items
             .iter()
@@ -145,7 +173,7 @@ impl Bench {
     }
 
     /// The value of an item as it stands.
-    pub(crate) fn value(&self, runner: &Runner<'_>, item: &Item) -> Value {
+    pub fn value(&self, runner: &Runner, item: &Item) -> Value {
         match item.role {
             // Before the first scan the variable area has not read them yet.
             Role::Input(index) if item.words == 1 && !runner.state().is_started() => {
@@ -157,7 +185,7 @@ impl Bench {
     }
 
     /// Sets an item once: an input, a variable or a state of the plant.
-    pub(crate) fn set(&self, runner: &mut Runner<'_>, item: &Item, value: &Value) {
+    pub fn set(&self, runner: &mut Runner, item: &Item, value: &Value) {
         for (at, word) in words(item, value) {
             match item.role {
                 Role::Input(first) => runner.set_input(first + at, word),
@@ -168,7 +196,7 @@ impl Bench {
     }
 
     /// Holds an item at a value; a state of the plant is only set.
-    pub(crate) fn force(&self, runner: &mut Runner<'_>, item: &Item, value: &Value) {
+    pub fn force(&self, runner: &mut Runner, item: &Item, value: &Value) {
         for (at, word) in words(item, value) {
             match force(item, at) {
                 Some(what) => runner.force(what, word),
@@ -178,7 +206,7 @@ impl Bench {
     }
 
     /// Lets go of an item.
-    pub(crate) fn release(&self, runner: &mut Runner<'_>, item: &Item) {
+    pub fn release(&self, runner: &mut Runner, item: &Item) {
         for at in 0..item.words {
             if let Some(what) = force(item, at) {
                 runner.release(what);
@@ -187,12 +215,12 @@ impl Bench {
     }
 
     /// Whether an item is held.
-    pub(crate) fn is_forced(&self, runner: &Runner<'_>, item: &Item) -> bool {
+    pub fn is_forced(&self, runner: &Runner, item: &Item) -> bool {
         force(item, 0).is_some_and(|what| runner.is_forced(what))
     }
 
     /// Whether a step or macro-step is active.
-    pub(crate) fn is_active(&self, state: &State, step: &StepItem) -> bool {
+    pub fn is_active(&self, state: &State, step: &StepItem) -> bool {
         match step.id {
             Activity::Step(id) => state.is_active(id),
             Activity::Macro(group) => state.group_active(&self.compiled.program, group),
@@ -200,7 +228,7 @@ impl Bench {
     }
 
     /// Time since a step was activated: nanoseconds, or scans where those are counted.
-    pub(crate) fn step_time(&self, state: &State, step: &StepItem) -> Option<String> {
+    pub fn step_time(&self, state: &State, step: &StepItem) -> Option<String> {
         let id = match step.id {
             Activity::Step(id) => id,
             Activity::Macro(_) => return None,
@@ -214,12 +242,12 @@ impl Bench {
     }
 
     /// The active steps by name, macro-steps left out.
-    pub(crate) fn situation<'a>(&'a self, state: &'a State) -> Vec<&'a str> {
+    pub fn situation<'a>(&'a self, state: &'a State) -> Vec<&'a str> {
         self.compiled.symbols.situation(state).collect()
     }
 
     /// What can be recorded: all items and all steps.
-    pub(crate) fn signals(&self) -> Vec<Signal> {
+    pub fn signals(&self) -> Vec<Signal> {
         let item = |i: &Item| Signal { group: group(i.role), name: i.name.clone(), kind: i.kind };
         let step = |s: &StepItem| Signal { group: "steps", name: s.activity(), kind: Kind::Bool };
         self.items.iter().map(item).chain(self.steps.iter().map(step)).collect()
@@ -227,7 +255,7 @@ impl Bench {
 
     /// The signals that moved, from cause to effect; what single parts of a
     /// queue have is left to those who ask for it.
-    pub(crate) fn moving(recording: &Recording) -> Vec<usize> {
+    pub fn moving(recording: &Recording) -> Vec<usize> {
         let groups = ["inputs", "steps", "outputs", "variables", "plant"];
         let signals = recording.signals();
         let is_part = |s: &Signal| {
@@ -242,7 +270,7 @@ impl Bench {
 
     /// The signals that moved as they are looked at: what comes in and goes out,
     /// the variables, the steps of the charts, the plant, the steps of expansions.
-    pub(crate) fn lanes(&self, recording: &Recording) -> Vec<usize> {
+    pub fn lanes(&self, recording: &Recording) -> Vec<usize> {
         let groups = ["inputs", "outputs", "variables", "steps", "plant"];
         let mut moving = Bench::moving(recording);
         moving.sort_by_key(|i| {
@@ -255,14 +283,14 @@ impl Bench {
     }
 
     /// The values of [`Bench::signals`], in their order.
-    pub(crate) fn sample<'a>(&'a self, runner: &'a Runner<'_>) -> impl Iterator<Item = Value> + 'a {
+    pub fn sample<'a>(&'a self, runner: &'a Runner) -> impl Iterator<Item = Value> + 'a {
         let state = runner.shown();
         let items = self.items.iter().map(move |i| self.value(runner, i));
         items.chain(self.steps.iter().map(move |s| Value::Word(u64::from(self.is_active(state, s)))))
     }
 
     /// The same of a state of the charts alone; the plant's are 0.
-    pub(crate) fn sample_state<'a>(&'a self, state: &'a State) -> impl Iterator<Item = Value> + 'a {
+    pub fn sample_state<'a>(&'a self, state: &'a State) -> impl Iterator<Item = Value> + 'a {
         let items = self.items.iter().map(move |i| match i.role {
             Role::Input(_) | Role::Output | Role::Variable => read(state, i),
             Role::Plant => Value::Word(0),
@@ -271,12 +299,12 @@ impl Bench {
     }
 
     /// Whether the plant drives it.
-    pub(crate) fn is_driven(&self, runner: &Runner<'_>, item: &Item) -> bool {
+    pub fn is_driven(&self, runner: &Runner, item: &Item) -> bool {
         matches!(item.role, Role::Input(index) if runner.is_driven(index))
     }
 
     /// What stopped the run, in a sentence.
-    pub(crate) fn halt(&self, runner: &Runner<'_>, halt: Halt) -> String {
+    pub fn halt(&self, runner: &Runner, halt: Halt) -> String {
         let (who, fault) = match halt {
             Halt::Charts(fault) => ("", fault),
             Halt::Plant(fault) => ("the plant: ", fault),
@@ -295,7 +323,7 @@ impl Bench {
     }
 
     /// The place in the text at which a run was stopped, where there is one.
-    pub(crate) fn halt_place(&self, halt: Halt) -> Option<Span> {
+    pub fn halt_place(&self, halt: Halt) -> Option<Span> {
         let (symbols, fault) = match halt {
             Halt::Charts(fault) => (&self.compiled.symbols, fault),
             Halt::Plant(fault) => (&self.plant.as_ref()?.compiled.symbols, fault),
@@ -304,7 +332,7 @@ impl Bench {
     }
 
     /// The situations of an unstable cycle, from where the state stands in it.
-    fn cycle(&self, runner: &Runner<'_>, length: u32) -> Vec<String> {
+    fn cycle(&self, runner: &Runner, length: u32) -> Vec<String> {
         let mut state = runner.state().clone();
         let mut seen = Vec::new();
         for _ in 0..length.min(16) {
@@ -323,11 +351,11 @@ impl Bench {
 /// Variables that stored actions of one pass gave different values, each told
 /// once in a run.
 #[derive(Debug, Default)]
-pub(crate) struct Conflicts(BTreeSet<Addr>);
+pub struct Conflicts(BTreeSet<Addr>);
 
 impl Conflicts {
     /// What the latest scan says of it, in a sentence.
-    pub(crate) fn of(&mut self, bench: &Bench, runner: &Runner<'_>) -> Option<String> {
+    pub fn of(&mut self, bench: &Bench, runner: &Runner) -> Option<String> {
         let addr = runner.report().conflict.filter(|a| self.0.insert(*a))?;
         let name = bench.compiled.symbols.variable_at(addr).map_or("a variable", |v| &v.name);
         let now = format_time(runner.state().now());

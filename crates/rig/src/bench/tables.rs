@@ -10,12 +10,13 @@ use super::{Bench, Role};
 
 /// A queue or track.
 #[derive(Clone, Debug)]
-pub(crate) struct Table {
-    pub(crate) name: String,
+pub struct Table {
+    /// Its name.
+    pub name: String,
     /// Place of its number of parts in [`Bench::items`].
-    pub(crate) count: usize,
+    pub count: usize,
     /// Places of all else that it has there.
-    pub(crate) rest: Vec<usize>,
+    pub rest: Vec<usize>,
     counted: Addr,
     lost: Option<Addr>,
     /// By place, the part that came first before the others.
@@ -32,7 +33,7 @@ struct Cell {
 
 impl Table {
     /// The tables of the plant, as it declares them.
-    pub(crate) fn all(bench: &Bench) -> Vec<Table> {
+    pub fn all(bench: &Bench) -> Vec<Table> {
         let Some(plant) = &bench.plant else { return Vec::new() };
         let states = || bench.items.iter().enumerate().filter(|(_, i)| i.role == Role::Plant);
         let of = |count: usize, name: &str| {
@@ -52,7 +53,7 @@ impl Table {
     }
 
     /// `One  3: 0 0 1`; on a track with the positions, `Belt  2: 1@0.35 0@0.1`.
-    pub(crate) fn show(&self, state: &State) -> String {
+    pub fn show(&self, state: &State) -> String {
         let count = state.word(self.counted);
         let mut text = format!("{}  {count}", self.name);
         let there = self.places.iter().take(usize::try_from(count).unwrap_or(0));

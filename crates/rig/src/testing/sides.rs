@@ -5,7 +5,7 @@ use g7_compile::ir::VarClass;
 use g7_compile::symbols::Symbols;
 use g7_model::{BinaryOp, Expr, ExprKind, Path, Problem, codes};
 
-use crate::bench::{Activity, Bench, Role};
+use crate::{Activity, Bench, Role};
 
 /// The names of an expression that only one side knows; the first of each.
 /// What both know (constants, the charts' outputs) needs neither.

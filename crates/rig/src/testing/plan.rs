@@ -4,8 +4,8 @@
 use g7_model::{Expr, ExprKind, Literal, Path, Problem, Scenario, Span, TestStmt, TestStmtKind, Type, codes};
 
 use super::sides::{self, Needs};
-use crate::bench::{Answer, Ask, Bench, Role};
-use crate::sources::Source;
+use crate::Source;
+use crate::{Answer, Ask, Bench, Role};
 
 /// A test made ready.
 #[derive(Debug, Default)]

@@ -7,30 +7,34 @@ use g7_engine::{Code, Contribution, StepId, eval};
 use g7_host::Runner;
 use g7_model::Span;
 
-use crate::bench::Bench;
-use crate::sources::Source;
+use crate::Bench;
+use crate::Source;
 
 /// A thing that tests can reach.
 #[derive(Clone, Debug)]
-pub(crate) struct Row {
-    pub(crate) name: String,
+pub struct Row {
+    /// What it is called in reports.
+    pub name: String,
     /// `path:line:column`.
-    pub(crate) place: String,
+    pub place: String,
     /// Scans in which it was reached.
-    pub(crate) hits: u64,
+    pub hits: u64,
 }
 
 /// One sort of thing, in the order of the text.
-pub(crate) type Rows = BTreeMap<Span, Row>;
+pub type Rows = BTreeMap<Span, Row>;
 
 /// What the tests of one file reached.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Coverage {
-    pub(crate) steps: Rows,
-    pub(crate) transitions: Rows,
-    pub(crate) actions: Rows,
+pub struct Coverage {
+    /// Steps.
+    pub steps: Rows,
+    /// Transitions.
+    pub transitions: Rows,
+    /// Actions.
+    pub actions: Rows,
     /// Transitions that share a preceding step: the ways of a divergence.
-    pub(crate) branches: Rows,
+    pub branches: Rows,
     /// Actions that hold as long as their steps are active, by step.
     lasting: BTreeMap<StepId, Vec<Lasting>>,
     /// Actions (rank) that several steps share: each step's own counts.
@@ -47,7 +51,7 @@ struct Lasting {
 
 impl Coverage {
     /// The four sorts with their headings.
-    pub(crate) fn sorts(&self) -> [(&'static str, &Rows); 4] {
+    pub fn sorts(&self) -> [(&'static str, &Rows); 4] {
         [
             ("steps", &self.steps),
             ("transitions", &self.transitions),
@@ -87,7 +91,7 @@ impl Coverage {
     }
 
     /// Takes in what the latest scan did.
-    pub(super) fn see(&mut self, bench: &Bench, runner: &mut Runner<'_>) {
+    pub(super) fn see(&mut self, bench: &Bench, runner: &mut Runner) {
         self.see_lasting(runner);
         let (symbols, state) = (&bench.compiled.symbols, runner.state());
         let tables = bench.compiled.program.tables();
@@ -120,12 +124,12 @@ impl Coverage {
     }
 
     /// The lasting actions of the steps that are active now, where their conditions hold.
-    fn see_lasting(&mut self, runner: &mut Runner<'_>) {
-        let program = runner.program();
+    fn see_lasting(&mut self, runner: &mut Runner) {
         let active: Vec<StepId> = runner.state().active().collect();
+        let (program, state) = runner.charts_mut();
         for action in active.iter().filter_map(|s| self.lasting.get(s)).flatten() {
             let holds = action.condition.is_empty()
-                || eval(program, runner.state_mut(), action.condition).is_ok_and(|word| word != 0);
+                || eval(program, state, action.condition).is_ok_and(|word| word != 0);
             if let Some(row) = self.actions.get_mut(&action.at).filter(|_| holds) {
                 row.hits += 1;
             }

@@ -8,30 +8,30 @@ use g7_model::{Span, Type};
 
 use super::coverage::Coverage;
 use super::plan::{Check, Does, Line, Plan};
-use crate::bench::{Answer, Bench, Conflicts, Item};
-use crate::sources::Source;
+use crate::Source;
+use crate::{Answer, Bench, Conflicts, Item};
 
 /// Why a test failed, with all that helps to see why.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Defect {
+pub struct Defect {
     /// The statement.
-    pub(crate) at: Span,
+    pub at: Span,
     /// `path:line:column` of it.
-    pub(crate) place: String,
+    pub place: String,
     /// What happened, in a sentence without the expression.
-    pub(crate) what: String,
+    pub what: String,
     /// The condition as written, where one failed.
-    pub(crate) expected: String,
+    pub expected: String,
     /// What it mentions, as it was.
-    pub(crate) got: Vec<(String, String)>,
+    pub got: Vec<(String, String)>,
     /// Time in the test, nanoseconds.
-    pub(crate) time: i64,
+    pub time: i64,
     /// The active steps.
-    pub(crate) situation: String,
+    pub situation: String,
     /// The signals that matter, up to the failure.
-    pub(crate) chronogram: String,
+    pub chronogram: String,
     /// Where in charts or plant a fault came up.
-    pub(crate) origin: Option<String>,
+    pub origin: Option<String>,
     expected_at: Option<Span>,
     origin_at: Option<Span>,
 }
@@ -93,7 +93,7 @@ pub(super) fn run<'b>(
 
 struct Exec<'b, 'c> {
     bench: &'b Bench,
-    runner: Runner<'b>,
+    runner: Runner,
     recording: Option<Recording>,
     /// Conditions of the `always` blocks that are open.
     always: Vec<&'b Check>,
@@ -264,7 +264,7 @@ impl<'b> Exec<'b, '_> {
             let Some(plant) = self.runner.plant_mut() else { return Ok(0) };
             plant
         } else {
-            (self.runner.program(), self.runner.state_mut())
+            self.runner.charts_mut()
         };
         // A stopped state still has values to look at.
         eval(program, state, answer.code).map_err(|fault| {

@@ -11,36 +11,40 @@ use g7_host::{Coupling, Kind};
 use g7_model::{ChartKind, Document, Expr, Plant, Problem, ProfileName, Span, Step, Type};
 
 use super::{Activity, Bench, Item, PlantSide, Role, StepItem};
-use crate::failure::Failure;
-use crate::sources::Source;
+use crate::error::Error;
+use crate::source::Source;
 
 /// What a bench is made for.
 #[derive(Clone, Copy, Default)]
-pub(crate) struct Options<'a> {
+pub struct Options<'a> {
     /// In place of the file's own.
-    pub(crate) profile: Option<ProfileName>,
+    pub profile: Option<ProfileName>,
     /// In place of the file's own, nanoseconds.
-    pub(crate) scan: Option<i64>,
+    pub scan: Option<i64>,
     /// The plant; the only one unless said, `none` for none.
-    pub(crate) plant: Option<&'a str>,
+    pub plant: Option<&'a str>,
     /// Expressions to be evaluated on it.
-    pub(crate) asks: &'a [Ask],
+    pub asks: &'a [Ask],
 }
 
 /// An expression to be evaluated, and where.
 #[derive(Clone, Debug)]
-pub(crate) struct Ask {
-    pub(crate) expr: Expr,
+pub struct Ask {
+    /// What is asked.
+    pub expr: Expr,
     /// Names are those of the plant.
-    pub(crate) of_plant: bool,
+    pub of_plant: bool,
 }
 
 /// What became of an [`Ask`].
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Answer {
-    pub(crate) code: Code,
-    pub(crate) ty: Type,
-    pub(crate) of_plant: bool,
+pub struct Answer {
+    /// Its code, for `engine::eval`.
+    pub code: Code,
+    /// Its type.
+    pub ty: Type,
+    /// Runs on the plant's state.
+    pub of_plant: bool,
 }
 
 /// Elements of a table that get a name each.
@@ -53,10 +57,7 @@ const PARTS: u32 = 6;
 /// # Errors
 ///
 /// The plant asked for is not there.
-pub(crate) fn build(
-    source: &Source,
-    options: &Options<'_>,
-) -> Result<(Option<Bench>, Vec<Problem>), Failure> {
+pub fn build(source: &Source, options: &Options<'_>) -> Result<(Option<Bench>, Vec<Problem>), Error> {
     let mut problems = source.problems.clone();
     if source.has_errors() {
         return Ok((None, problems));
@@ -98,7 +99,14 @@ fn plant_side(
             to_plant: words(&made.to_plant, c.outputs.start, p.inputs.start),
             to_charts: words(&made.to_charts, p.outputs.start, c.inputs.start),
         };
-        PlantSide { name: made.name.to_string(), coupling, queries: made.queries, compiled: made.compiled }
+        PlantSide {
+            name: made.name.to_string(),
+            coupling,
+            view: made.view.map(String::from),
+            bindings: made.bindings,
+            queries: made.queries,
+            compiled: made.compiled,
+        }
     });
     (side, problems)
 }
@@ -132,6 +140,7 @@ fn steps(document: &Document, symbols: &Symbols) -> Vec<StepItem> {
     }
     let item = |name: &str, at: Span, id| StepItem {
         name: name.to_owned(),
+        at,
         comment: written.get(&at).and_then(|(s, _)| s.comment.as_deref()).map(str::to_owned),
         id,
         inner: written.get(&at).is_some_and(|(_, inner)| *inner),
@@ -143,28 +152,19 @@ fn steps(document: &Document, symbols: &Symbols) -> Vec<StepItem> {
 }
 
 /// The plant meant: the named one, the only one, or none.
-fn plant_of<'a>(source: &'a Source, name: Option<&str>) -> Result<Option<&'a Plant>, Failure> {
+fn plant_of<'a>(source: &'a Source, name: Option<&str>) -> Result<Option<&'a Plant>, Error> {
     let plants: Vec<&Plant> = plant::plants(&source.document).collect();
-    let names = || plants.iter().map(|p| p.name.text.to_string()).collect::<Vec<_>>().join(", ");
+    let there = || plants.iter().map(|p| p.name.text.to_string()).collect();
     match name {
         Some("none") => Ok(None),
         Some(name) => match plants.iter().find(|p| *p.name.text == *name) {
             Some(plant) => Ok(Some(plant)),
-            None if plants.is_empty() => {
-                Err(Failure::Usage(format!("{} has no plant `{name}`, nor any other", source.name())))
-            }
-            None => {
-                Err(Failure::Usage(format!("{} has no plant `{name}`; it has {}", source.name(), names())))
-            }
+            None => Err(Error::NoPlant { file: source.name.clone(), name: name.to_owned(), there: there() }),
         },
         None => match plants.as_slice() {
             [] => Ok(None),
             [one] => Ok(Some(one)),
-            _ => Err(Failure::Usage(format!(
-                "{} has several plants: choose with --plant one of {}, or none",
-                source.name(),
-                names()
-            ))),
+            _ => Err(Error::SeveralPlants { file: source.name.clone(), there: there() }),
         },
     }
 }
@@ -222,6 +222,6 @@ fn push(v: &Variable, role: Role, items: &mut Vec<Item>) {
     for k in 0..v.elements.min(ELEMENTS) {
         let name = if v.elements == 1 { v.name.to_string() } else { format!("{}[{k}]", v.name) };
         let (addr, retain, comment) = (v.addr.0 + k * words, retain.clone(), comment.clone());
-        items.push(Item { name, kind, role, addr, words, retain, comment, ty: v.ty });
+        items.push(Item { name, kind, role, addr, words, retain, comment, ty: v.ty, at: v.at });
     }
 }

@@ -1,0 +1,123 @@
+//! Files as the parser saw them: bytes, document, problems; and from byte to line.
+
+use g7_model::{Document, FileId, Item, Problem, Scenario, Severity, Span};
+
+/// A file that was read.
+#[derive(Debug)]
+pub struct Source {
+    /// What messages call it, on one line.
+    pub name: String,
+    /// One byte of it for each byte of the file: what is no UTF-8 shows as `?`.
+    pub text: String,
+    /// The bytes.
+    pub bytes: Vec<u8>,
+    /// What the parser made of them.
+    pub document: Document,
+    /// What the parser said of them.
+    pub problems: Vec<Problem>,
+    /// Came from a JGrafchart file.
+    pub imported: bool,
+    starts: Vec<usize>,
+}
+
+impl Source {
+    /// Reads a .g7 or JGrafchart file; which, its content says.
+    pub fn new(name: &str, bytes: Vec<u8>, id: u32) -> Source {
+        let imported = g7_syntax::jgrafchart::looks_like(&bytes);
+        let (document, problems) = if imported {
+            g7_syntax::jgrafchart::import(&bytes, FileId(id))
+        } else {
+            g7_syntax::parse_bytes(&bytes, FileId(id))
+        };
+        let text = same_length(&bytes);
+        let starts = std::iter::once(0).chain(text.match_indices('\n').map(|(i, _)| i + 1)).collect();
+        let name = name.chars().map(|c| if c.is_control() { '?' } else { c }).collect();
+        Source { name, text, bytes, document, problems, imported, starts }
+    }
+
+    /// Whether a problem is an error.
+    pub fn has_errors(&self) -> bool {
+        self.problems.iter().any(|p| p.severity() == Severity::Error)
+    }
+
+    /// The tests in it, in the order of the text.
+    pub fn tests(&self) -> impl Iterator<Item = &Scenario> {
+        self.document.items.iter().filter_map(|i| if let Item::Test(t) = i { Some(t) } else { None })
+    }
+
+    /// The span within the text, its ends at characters.
+    pub fn range(&self, span: Span) -> std::ops::Range<usize> {
+        let floor = |at: u32| {
+            let mut at = (at as usize).min(self.text.len());
+            while !self.text.is_char_boundary(at) {
+                at -= 1;
+            }
+            at
+        };
+        let start = floor(span.start);
+        start..floor(span.end).max(start)
+    }
+
+    /// Number of the line of a byte, from 0.
+    pub fn line(&self, byte: usize) -> usize {
+        self.starts.partition_point(|s| *s <= byte).saturating_sub(1)
+    }
+
+    /// Line and column in characters, both from 1.
+    pub fn position(&self, byte: usize) -> (usize, usize) {
+        let line = self.line(byte);
+        let start = self.starts.get(line).copied().unwrap_or(0);
+        let column = self.text.get(start..byte).map_or(0, |t| t.chars().count());
+        (line + 1, column + 1)
+    }
+
+    /// The bytes of some lines, line ends included.
+    pub fn lines(&self, first: usize, last: usize) -> std::ops::Range<usize> {
+        let start = self.starts.get(first).copied().unwrap_or(self.text.len());
+        let end = self.starts.get(last + 1).copied().unwrap_or(self.text.len());
+        start..end.max(start)
+    }
+
+    /// `path:line:column` of a span.
+    pub fn place(&self, span: Span) -> String {
+        let (line, column) = self.position(self.range(span).start);
+        format!("{}:{line}:{column}", self.name)
+    }
+}
+
+/// Text with a byte for each byte: spans count bytes of the file.
+fn same_length(bytes: &[u8]) -> String {
+    let mut text = String::with_capacity(bytes.len());
+    for chunk in bytes.utf8_chunks() {
+        text.push_str(chunk.valid());
+        chunk.invalid().iter().for_each(|_| text.push('?'));
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn source(bytes: &[u8]) -> Source {
+        Source::new("a.g7", bytes.to_vec(), 0)
+    }
+
+    #[test]
+    fn bad_bytes_keep_every_place_where_it_was() {
+        let s = source(b"ab\xff\xfe\n\xc3\xa5x");
+        assert_eq!(s.text.len(), 8);
+        assert_eq!(s.position(7), (2, 2), "one character of two bytes before it");
+    }
+
+    #[test]
+    fn places_count_lines_and_characters_from_one() {
+        let s = source("x\n  höger\n".as_bytes());
+        let span = |start, end| Span { file: FileId(0), start, end };
+        assert_eq!(s.place(span(4, 9)), "a.g7:2:3");
+        assert_eq!(s.place(span(8, 9)), "a.g7:2:6");
+        assert_eq!(s.place(span(900, 901)), "a.g7:3:1");
+        assert_eq!(s.lines(1, 1), 2..11);
+        assert_eq!(s.range(span(6, 6)), 5..5, "inside of ö: back to its start");
+    }
+}
