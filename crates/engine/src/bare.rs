@@ -8,22 +8,31 @@
 
 use alloc::boxed::Box;
 
-use crate::bits::{Tree, Walk, word};
+use crate::bits::{Tree, Walk, bit, set_bit, word};
 use crate::fault::Fault;
 use crate::pass::{each_from, each_to, one_to_one, report, resolve};
 use crate::program::{Guard, Tables};
 use crate::state::{Layout, Scratch, State, head};
 use crate::{NONE, Program};
 
-/// A step with one transition behind it, which waits for one BOOL word.
+/// A step with one transition behind it, which waits for one BOOL word; where a
+/// token that is alone goes from here. One row is one piece of a cache line.
 #[derive(Clone, Copy, Debug)]
+#[repr(align(32))]
 pub(crate) struct Hot {
     /// Word of the image; `NONE` for a step of another kind.
     guard: u32,
-    /// The receptivity is the complement of the word.
-    flip: bool,
     /// The transition.
     rank: u32,
+    /// The one step behind it; `NONE` where a pass has more to do than to move
+    /// the only token to another step.
+    to: u32,
+    /// Output that follows this step, or `NONE`.
+    from_output: u32,
+    /// Output that follows the step behind, or `NONE`.
+    to_output: u32,
+    /// The receptivity is the complement of the word.
+    flip: bool,
 }
 
 /// A transition from one step to one step, with words of the image.
@@ -38,9 +47,17 @@ pub(crate) struct Move {
     to_output: u32,
 }
 
+/// The output that follows a step, as a word of the image.
+fn output(t: &Tables, l: &Layout, step: u32) -> u32 {
+    match t.steps.get(step as usize) {
+        Some(s) if s.direct.0 != NONE => l.vars + s.direct.0,
+        _ => NONE,
+    }
+}
+
 pub(crate) fn hot(t: &Tables, l: &Layout) -> Box<[Hot]> {
-    let none = Hot { guard: NONE, flip: false, rank: NONE };
-    let row = |out: crate::Rows| {
+    let none = Hot { guard: NONE, rank: NONE, to: NONE, from_output: NONE, to_output: NONE, flip: false };
+    let row = |step: u32, out: crate::Rows| {
         let [rank] = t.outs.get(out.start as usize..out.end as usize)? else { return None };
         let tr = t.transitions.get(*rank as usize)?;
         if !tr.more_from.is_empty() {
@@ -53,16 +70,16 @@ pub(crate) fn hot(t: &Tables, l: &Layout) -> Box<[Hot]> {
             Guard::NotWord(a) => (l.vars + a.0, true),
             Guard::Code(_) => return None,
         };
-        Some(Hot { guard, flip, rank: *rank })
+        // A source transition wants to be looked at in every pass.
+        let moves = one_to_one(tr) && tr.from.0 == step && tr.to.0 != step && t.sources.is_empty();
+        let to = if moves { tr.to.0 } else { NONE };
+        let (from_output, to_output) = (output(t, l, step), output(t, l, to));
+        Some(Hot { guard, rank: *rank, to, from_output, to_output, flip })
     };
-    t.steps.iter().map(|s| row(s.out).unwrap_or(none)).collect()
+    (0..).zip(&t.steps).map(|(i, s)| row(i, s.out).unwrap_or(none)).collect()
 }
 
 pub(crate) fn moves(t: &Tables, l: &Layout) -> Box<[Move]> {
-    let output = |step: u32| match t.steps.get(step as usize) {
-        Some(s) if s.direct.0 != NONE => l.vars + s.direct.0,
-        _ => NONE,
-    };
     t.transitions
         .iter()
         .map(|tr| {
@@ -70,8 +87,8 @@ pub(crate) fn moves(t: &Tables, l: &Layout) -> Box<[Move]> {
             Move {
                 from: if one_to_one(tr) { from } else { NONE },
                 to,
-                from_output: output(from),
-                to_output: output(to),
+                from_output: output(t, l, from),
+                to_output: output(t, l, to),
             }
         })
         .collect()
@@ -81,10 +98,11 @@ pub(crate) fn moves(t: &Tables, l: &Layout) -> Box<[Move]> {
 pub(crate) fn evolve(p: &Program, s: &mut State) -> Result<bool, Fault> {
     s.x.passes += 1;
     s.x.fired.clear();
-    if s.x.lone != NONE
-        && let Some(changed) = one_token(p, s)
-    {
-        return Ok(changed);
+    let now = word(&s.w, head::NOW);
+    if let Some(moved) = one_token(p, s, now) {
+        s.x.idle = !moved;
+        s.x.cleared_count += u32::from(moved);
+        return Ok(moved);
     }
     collect(p, s);
     if !s.x.slow.is_empty() || !p.t.sources.is_empty() {
@@ -102,69 +120,72 @@ pub(crate) fn evolve(p: &Program, s: &mut State) -> Result<bool, Fault> {
     let keep = p.t.rules.keep_step_time;
     let State { w, x, steps, .. } = s;
     let Scratch { fired, on_mark, .. } = x;
-    let mut area = Area { w, steps: *steps, now: 0, stamps, keep, changed: false };
-    area.now = word(area.w, head::NOW);
+    let mut area = Area { w, steps: *steps, now, stamps, keep, changed: false };
     // Where one token has moved by one transition, the next pass knows where it is.
     x.lone = match fired[..] {
         [i] if x.lone != NONE => p.moves.get(i as usize).filter(|m| m.from == x.lone).map_or(NONE, |m| m.to),
         _ => NONE,
     };
+    // Rule 5: what is activated is not deactivated. Only what was active before
+    // its activation can be meant.
+    let mut stay = false;
     for i in fired.iter() {
         each_end(p, *i, true, |to, output| {
-            if let Some(m) = on_mark.get_mut((to / 64) as usize) {
-                *m |= 1 << (to % 64);
+            if !area.on(to, output) {
+                stay = true;
+                set_bit(on_mark, 0, to, true);
             }
-            area.on(to, output);
         });
     }
     for i in fired.iter() {
         each_end(p, *i, false, |from, output| {
-            // Rule 5: what is activated is not deactivated.
-            if word(on_mark, (from / 64) as usize) & (1 << (from % 64)) == 0 {
+            if !stay || !bit(on_mark, 0, from) {
                 area.off(from, output);
             }
         });
     }
-    for i in fired.iter() {
-        each_end(p, *i, true, |to, _| {
-            if let Some(m) = on_mark.get_mut((to / 64) as usize) {
-                *m &= !(1 << (to % 64));
-            }
-        });
+    if stay {
+        for i in fired.iter() {
+            each_end(p, *i, true, |to, _| {
+                set_bit(on_mark, 0, to, false);
+            });
+        }
     }
     Ok(area.changed)
 }
 
 /// A pass while a single hot step is active and its transition leads from one
-/// step to one step: nothing need be searched. `None` where it is not so.
+/// step to another one: nothing need be searched. Whether the token moved;
+/// `None`, and nothing done, where it is not so.
 #[inline(always)]
-fn one_token(p: &Program, s: &mut State) -> Option<bool> {
-    let h = p.hot.get(s.x.lone as usize).filter(|h| h.guard != NONE && p.t.sources.is_empty())?;
-    let m = p.moves.get(h.rank as usize).filter(|m| m.from != NONE)?;
+pub(crate) fn one_token(p: &Program, s: &mut State, now: u64) -> Option<bool> {
     let State { w, x, steps, .. } = s;
-    x.idle = (word(w, h.guard as usize) != 0) == h.flip;
-    if x.idle {
+    let from = x.lone;
+    let Hot { guard, rank, to, from_output, to_output, flip } = *p.hot.get(from as usize)?;
+    if to == NONE {
+        return None;
+    }
+    if (word(w, guard as usize) != 0) == flip {
         return Some(false);
     }
-    x.cleared_count += 1;
     if x.cleared.len() < x.cleared.capacity() {
-        x.cleared.push(h.rank);
+        x.cleared.push(rank);
     }
-    if m.from == m.to {
-        return Some(false);
+    x.lone = to;
+    steps.pass_on(w, from, to);
+    let stamps = p.layout.stamps;
+    if let Some(stamp) = w.get_mut((stamps + to) as usize) {
+        *stamp = now;
     }
-    x.lone = m.to;
-    let now = word(w, head::NOW);
-    let mut area = Area {
-        w,
-        steps: *steps,
-        now,
-        stamps: p.layout.stamps,
-        keep: p.t.rules.keep_step_time,
-        changed: false,
-    };
-    area.on(m.to, m.to_output);
-    area.off(m.from, m.from_output);
+    if let Some(stamp) = w.get_mut((stamps + from) as usize) {
+        *stamp = if p.t.rules.keep_step_time { now.wrapping_sub(*stamp) } else { 0 };
+    }
+    if let Some(o) = w.get_mut(to_output as usize) {
+        *o = 1;
+    }
+    if let Some(o) = w.get_mut(from_output as usize) {
+        *o = 0;
+    }
     Some(true)
 }
 
@@ -177,11 +198,13 @@ fn each_end(p: &Program, rank: u32, succeeding: bool, mut f: impl FnMut(u32, u32
         f(step, output);
         return;
     }
+    ends(p, rank, succeeding, &mut f);
+}
+
+/// The same for transitions with several steps or none on a side.
+fn ends(p: &Program, rank: u32, succeeding: bool, f: &mut dyn FnMut(u32, u32)) {
     let Some(t) = p.t.transitions.get(rank as usize) else { return };
-    let g = |step: u32| {
-        let direct = p.t.steps.get(step as usize).map_or(NONE, |s| s.direct.0);
-        f(step, if direct == NONE { NONE } else { p.layout.vars + direct });
-    };
+    let g = |step: u32| f(step, output(&p.t, &p.layout, step));
     if succeeding { each_to(p, t, g) } else { each_from(p, t, g) }
 }
 
@@ -215,9 +238,11 @@ struct Area<'a> {
 }
 
 impl Area<'_> {
+    /// Activates a step; whether it was inactive.
     #[inline(always)]
-    fn on(&mut self, step: u32, output: u32) {
-        if self.steps.add(self.w, step) {
+    fn on(&mut self, step: u32, output: u32) -> bool {
+        let new = self.steps.add(self.w, step);
+        if new {
             if let Some(stamp) = self.w.get_mut((self.stamps + step) as usize) {
                 *stamp = self.now;
             }
@@ -226,6 +251,7 @@ impl Area<'_> {
             }
             self.changed = true;
         }
+        new
     }
 
     #[inline(always)]

@@ -132,6 +132,24 @@ impl Tree {
         old & mask != 0
     }
 
+    /// Of a set whose only member is `from`, makes the set whose only member is
+    /// `to`.
+    #[inline(always)]
+    pub(crate) fn pass_on(&self, words: &mut [u64], from: u32, to: u32) {
+        if from / 64 != to / 64 {
+            self.pass_far(words, from, to);
+        } else if let Some(w) = words.get_mut((self.at[0] + to / 64) as usize) {
+            // Written, not changed: the word need not be waited for.
+            *w = 1 << (to % 64);
+        }
+    }
+
+    #[inline(never)]
+    fn pass_far(&self, words: &mut [u64], from: u32, to: u32) {
+        self.take(words, from);
+        self.add(words, to);
+    }
+
     /// Sets the summaries above a word that has its first member.
     fn summarise(&self, words: &mut [u64], i: u32) {
         let mut i = i / 64;
@@ -287,6 +305,17 @@ mod tests {
                 tree.remove(&mut words, i);
             }
             assert!(words.iter().all(|w| *w == 0), "no summary is left behind");
+            // One member alone, passed on near and far.
+            let mut at = 0;
+            tree.insert(&mut words, at);
+            for step in [1, 62, 1, 64, 4096, 5000, 1, 100_001] {
+                let to = (at + step) % n;
+                tree.pass_on(&mut words, at, to);
+                let mut other = vec![0; words.len()];
+                tree.insert(&mut other, to);
+                assert_eq!(words, other, "{at} to {to} of {n}");
+                at = to;
+            }
         }
     }
 }

@@ -43,13 +43,39 @@ pub fn scan(p: &Program, s: &mut State, inputs: &[u64], now: i64) -> Result<Repo
     if s.x.quiet && still(p, s, inputs, now) {
         return Ok(Report { passes: 1, cleared: 0, conflict: None });
     }
-    let done = if p.bare && s.has_only_flag(STARTED) && begin_bare(p, s, inputs, now) {
-        let done = search(p, s, crate::bare::evolve);
-        s.x.quiet = p.timeless && s.x.idle;
-        done
-    } else {
-        begin(p, s, inputs, now).and_then(|()| search(p, s, pass)).and_then(|()| finish(p, s))
-    };
+    if p.bare && begin_bare(p, s, inputs, now) {
+        if !p.t.rules.stable
+            && let Some(moved) = crate::bare::one_token(p, s, now as u64)
+        {
+            s.x.quiet = !moved && p.timeless;
+            return Ok(Report { passes: 1, cleared: u32::from(moved), conflict: None });
+        }
+        return bare(p, s);
+    }
+    whole(p, s, inputs, now)
+}
+
+/// The rest of the short way, behind [`begin_bare`].
+#[inline(never)]
+fn bare(p: &Program, s: &mut State) -> Result<Report, Fault> {
+    let x = &mut s.x;
+    x.cleared_count = 0;
+    x.passes = 0;
+    x.conflict = None;
+    x.work = 0;
+    let done = search(p, s, crate::bare::evolve);
+    s.x.quiet = p.timeless && s.x.idle;
+    end(p, s, done)
+}
+
+/// The general way.
+#[inline(never)]
+fn whole(p: &Program, s: &mut State, inputs: &[u64], now: i64) -> Result<Report, Fault> {
+    let done = begin(p, s, inputs, now).and_then(|()| search(p, s, pass)).and_then(|()| finish(p, s));
+    end(p, s, done)
+}
+
+fn end(p: &Program, s: &mut State, done: Result<(), Fault>) -> Result<Report, Fault> {
     match done {
         Ok(()) => Ok(report(s)),
         Err(fault) => {
@@ -59,27 +85,38 @@ pub fn scan(p: &Program, s: &mut State, inputs: &[u64], now: i64) -> Result<Repo
     }
 }
 
-/// [`begin`] for programs that consist of steps, transitions and outputs that
-/// follow one step. False where the inputs do not fit; then nothing was done.
-#[inline]
+/// What [`begin`] does for programs that consist of steps, transitions and
+/// outputs that follow one step. False where a scan before is missing, a fault
+/// came or the inputs do not fit; then nothing was done.
+#[inline(always)]
 fn begin_bare(p: &Program, s: &mut State, inputs: &[u64], now: i64) -> bool {
     let (from, to) = ((s.vars + p.t.inputs.start) as usize, (s.vars + p.t.inputs.end) as usize);
     let before = s.now();
-    let Some(area) = s.w.get_mut(from..to) else { return false };
-    if area.len() != inputs.len() || now < before {
+    if !s.has_only_flag(STARTED) || now < before {
         return false;
     }
-    for (a, i) in area.iter_mut().zip(inputs) {
-        *a = *i;
+    let Some(area) = s.w.get_mut(from..to) else { return false };
+    if area.len() != inputs.len() {
+        return false;
     }
+    take(area, inputs);
     tick(s, now.wrapping_sub(before), now);
-    let x = &mut s.x;
-    x.cleared.clear();
-    x.cleared_count = 0;
-    x.passes = 0;
-    x.conflict = None;
-    x.work = 0;
+    s.x.cleared.clear();
     true
+}
+
+/// Copies the inputs; few of them word by word, which takes less than a call.
+#[inline(always)]
+fn take(area: &mut [u64], inputs: &[u64]) {
+    if inputs.len() > 8 {
+        area.copy_from_slice(inputs);
+        return;
+    }
+    for (a, i) in area.iter_mut().zip(inputs) {
+        if *a != *i {
+            *a = *i;
+        }
+    }
 }
 
 /// A scan begins: time goes on.
@@ -294,6 +331,7 @@ fn requests(p: &Program, s: &mut State) -> Result<(), Fault> {
 ///
 /// A [`Fault`] of a receptivity, an action or a forcing order.
 pub fn pass(p: &Program, s: &mut State) -> Result<bool, Fault> {
+    s.x.lone = NONE;
     if s.x.first_pass {
         s.x.first_pass = false;
     } else {
