@@ -13,10 +13,22 @@
 //! - No symbol or text overlaps another where the layout is automatic.
 #![forbid(unsafe_code)]
 
+mod draw;
 mod drawing;
 mod geometry;
+mod ink;
+#[path = "stacked.rs"]
+mod layout;
+mod options;
 mod placement;
+mod svg;
+mod symbols;
+mod text;
 
+pub use draw::{draw, measure};
 pub use drawing::{Drawing, Item, Part};
 pub use geometry::{Extent, Point, Rect, U};
+pub use options::{Look, Options};
 pub use placement::{Bar, Connector, End, Link, Placement, Sizes};
+pub use svg::{style, svg};
+pub use text::{FONT_FAMILY, font};

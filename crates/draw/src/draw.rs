@@ -1,0 +1,156 @@
+//! From a chart to its drawing: symbols round their anchors, their sizes to the
+//! layout, and back with their places.
+
+use std::collections::HashMap;
+
+use g7_model::{Chart, Document, Item as Entry, PlaceAt, Step, Transition};
+
+use crate::ink::Picture;
+use crate::layout::layout;
+use crate::symbols::{
+    StepShape, TransitionShape, arrow, connector, connector_label, connector_width, double, step, transition,
+};
+use crate::{Connector, Drawing, End, Item, Options, Part, Placement, Point, Rect, Sizes};
+
+/// The symbols of a chart round their anchors, and what their texts need.
+pub(crate) struct Symbols<'a> {
+    steps: Vec<(&'a Step, StepShape)>,
+    transitions: Vec<(&'a Transition, TransitionShape)>,
+    sizes: Sizes,
+}
+
+/// How much room the symbols of a chart need.
+pub fn measure(_: &Document, chart: &Chart, options: &Options) -> Sizes {
+    Symbols::new(chart, options).sizes
+}
+
+/// A chart as a picture.
+pub fn draw(document: &Document, chart: &Chart, options: &Options) -> Drawing {
+    let symbols = Symbols::new(chart, options);
+    let placement = layout(chart, &symbols.sizes, places(document, chart));
+    symbols.put(chart, &placement)
+}
+
+/// What the layout section of the chart says.
+fn places<'a>(document: &'a Document, chart: &Chart) -> &'a [PlaceAt] {
+    let mut sections = document.items.iter().filter_map(|i| match i {
+        Entry::Layout(l) if l.chart == chart.name => Some(l.places.as_slice()),
+        _ => None,
+    });
+    sections.next().unwrap_or(&[])
+}
+
+impl<'a> Symbols<'a> {
+    pub(crate) fn new(chart: &'a Chart, options: &Options) -> Symbols<'a> {
+        let steps: Vec<_> = chart.steps().map(|s| (s, step(s, options))).collect();
+        let transitions: Vec<_> = chart.transitions().map(|t| (t, transition(t))).collect();
+        let sizes = Sizes {
+            steps: steps.iter().map(|(_, s)| s.extent).collect(),
+            transitions: transitions.iter().map(|(_, t)| t.extent).collect(),
+            connectors: steps
+                .iter()
+                .map(|(s, _)| connector_width(&connector_label(&s.name.text, None)))
+                .collect(),
+        };
+        Symbols { steps, transitions, sizes }
+    }
+
+    /// Every symbol at its place.
+    pub(crate) fn put(self, chart: &Chart, placement: &Placement) -> Drawing {
+        let mut items = Vec::new();
+        self.links(placement, &mut items);
+        let names = Names::new(&self);
+        for (index, c) in (0..).zip(&placement.connectors) {
+            items.push(names.connector(index, c));
+        }
+        for (number, ((t, shape), at)) in (0..).zip(self.transitions.into_iter().zip(&placement.transitions))
+        {
+            let mut picture = shape.picture.moved(*at);
+            placement.bars.iter().filter(|b| b.transition == number).for_each(|b| double(&mut picture, b));
+            let (bar, text) = (moved(shape.bar, *at), moved(shape.text, *at));
+            items.push(item(Part::Transition { transition: number, bar, text }, picture, t.at.0));
+        }
+        for (number, ((s, shape), at)) in (0..).zip(self.steps.into_iter().zip(&placement.steps)) {
+            for (index, picture) in shape.actions {
+                let span = s.actions.get(index as usize).map_or(s.at.0, |a| a.at.0);
+                items.push(item(Part::Action { step: number, index }, picture.moved(*at), span));
+            }
+            let square = moved(shape.square, *at);
+            items.push(item(Part::Step { step: number, square }, shape.picture.moved(*at), s.at.0));
+        }
+        let area = items
+            .iter()
+            .map(|i| i.area)
+            .fold(None, |all: Option<Rect>, a| Some(all.map_or(a, |all| all.union(&a))));
+        let area = area.map_or(placement.area, |a| a.union(&placement.area));
+        Drawing { chart: chart.name.text.clone(), area, items }
+    }
+
+    fn links(&self, placement: &Placement, items: &mut Vec<Item>) {
+        for (index, l) in (0..).zip(&placement.links) {
+            let mut picture = Picture::default();
+            let points: Vec<(i32, i32)> = l.points.iter().map(|p| (p.x, p.y)).collect();
+            picture.line("g7-link", &points);
+            l.arrows.iter().for_each(|(tip, way)| arrow(&mut picture, *tip, *way));
+            items.push(item(Part::Link { link: index }, picture, self.span(l.from)));
+        }
+    }
+
+    fn span(&self, end: End) -> g7_model::Span {
+        match end {
+            End::Step(n) => self.steps.get(n as usize).map(|(s, _)| s.at.0),
+            End::Transition(n) => self.transitions.get(n as usize).map(|(t, _)| t.at.0),
+        }
+        .unwrap_or_default()
+    }
+}
+
+/// Names of steps for the texts of connectors.
+struct Names {
+    steps: Vec<Box<str>>,
+    /// The first preceding and succeeding step of each transition.
+    beside: Vec<(Option<u32>, Option<u32>)>,
+    spans: Vec<g7_model::Span>,
+}
+
+impl Names {
+    fn new(symbols: &Symbols) -> Names {
+        let steps: Vec<Box<str>> = symbols.steps.iter().map(|(s, _)| s.name.text.clone()).collect();
+        let numbers: HashMap<&str, u32> = symbols.steps.iter().map(|(s, _)| &*s.name.text).zip(0..).collect();
+        let first = |names: &[g7_model::Name]| names.first().and_then(|n| numbers.get(&*n.text).copied());
+        let beside = symbols.transitions.iter().map(|(t, _)| (first(&t.from), first(&t.to))).collect();
+        let spans = symbols.transitions.iter().map(|(t, _)| t.at.0).collect();
+        Names { steps, beside, spans }
+    }
+
+    /// The step that a broken link names: its own other end, or beyond the transition there.
+    fn named(&self, c: &Connector) -> Option<u32> {
+        let beside = |t: u32| self.beside.get(t as usize).copied().unwrap_or_default();
+        match if c.leaving { c.to } else { c.from } {
+            End::Step(s) => Some(s),
+            End::Transition(t) if c.leaving => beside(t).1,
+            End::Transition(t) => beside(t).0,
+        }
+    }
+
+    fn connector(&self, index: u32, c: &Connector) -> Item {
+        let name = self.named(c).and_then(|s| self.steps.get(s as usize)).map_or("", |s| s);
+        let mut picture = Picture::default();
+        arrow(&mut picture, c.at, (0, 1));
+        connector(&mut picture, c.text, &connector_label(name, None));
+        let transition = match (c.from, c.to) {
+            (End::Transition(t), _) | (_, End::Transition(t)) => Some(t),
+            (End::Step(_), End::Step(_)) => None,
+        };
+        let span = transition.and_then(|t| self.spans.get(t as usize)).copied().unwrap_or_default();
+        item(Part::Connector { connector: index }, picture, span)
+    }
+}
+
+fn moved(r: Rect, by: Point) -> Rect {
+    Rect { x: r.x + by.x, y: r.y + by.y, ..r }
+}
+
+fn item(part: Part, picture: Picture, at: g7_model::Span) -> Item {
+    Item { part, area: picture.area().unwrap_or_default(), svg: picture.svg(), far: picture.far(), at }
+}

@@ -1,0 +1,159 @@
+//! A line of set text: characters, overlines over parts of it, places to break.
+
+use crate::text::width;
+
+/// A set line.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Line {
+    /// Its characters.
+    pub(crate) text: String,
+    /// Complements, inner ones first.
+    pub(crate) overs: Vec<Over>,
+    /// Where it may break, in the order of the text.
+    pub(crate) breaks: Vec<Break>,
+    /// How far it is indented.
+    pub(crate) indent: i32,
+}
+
+/// An overline: the complement of what is under it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Over {
+    /// First byte of the text.
+    pub(crate) from: usize,
+    /// One past the last byte.
+    pub(crate) to: usize,
+    /// 1 close to the text, one more over each overline below it.
+    pub(crate) level: u32,
+}
+
+/// A place to break.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Break {
+    /// The byte with which the next line begins.
+    pub(crate) at: usize,
+    /// 0 at the outermost operator; a low one is the better place.
+    pub(crate) depth: u32,
+}
+
+impl Line {
+    /// Plain text.
+    pub(crate) fn plain(text: impl Into<String>) -> Line {
+        Line { text: text.into(), ..Line::default() }
+    }
+
+    /// Its width, indent included.
+    pub(crate) fn width(&self, size: i32) -> i32 {
+        self.indent + width(&self.text, size)
+    }
+
+    /// The highest overline, 0 for none.
+    pub(crate) fn levels(&self) -> u32 {
+        self.overs.iter().map(|o| o.level).max().unwrap_or(0)
+    }
+
+    /// The line without overlines, for titles: `¬` stands before what is complemented.
+    pub(crate) fn linear(&self) -> String {
+        let mut text = String::new();
+        for (i, c) in self.text.char_indices() {
+            self.overs.iter().filter(|o| o.to == i).for_each(|_| text.push(')'));
+            self.overs.iter().filter(|o| o.from == i).for_each(|_| text.push_str("¬("));
+            text.push(c);
+        }
+        self.overs.iter().filter(|o| o.to == self.text.len()).for_each(|_| text.push(')'));
+        text
+    }
+
+    /// Broken into lines no wider than `most`, where it has places to break.
+    pub(crate) fn wrap(self, size: i32, most: i32) -> Vec<Line> {
+        if self.width(size) <= most || self.breaks.is_empty() {
+            return vec![self];
+        }
+        let mut lines = Vec::new();
+        let mut start = 0;
+        let room = (most - self.indent).max(size);
+        while start < self.text.len() {
+            let end = self.line_end(start, size, if start == 0 { room } else { (room - HANG).max(size) });
+            let mut line = self.cut(start, end);
+            if start > 0 {
+                line.indent += HANG;
+            }
+            lines.push(line);
+            start = end;
+        }
+        lines
+    }
+
+    /// Where the line that begins at a byte ends: the outermost operator that
+    /// leaves it more than half full, else the last place that fits.
+    fn line_end(&self, start: usize, size: i32, room: i32) -> usize {
+        let span = |end: usize| width(self.text.get(start..end).unwrap_or("").trim_end(), size);
+        if span(self.text.len()) <= room {
+            return self.text.len();
+        }
+        let ahead = self.breaks.iter().filter(|b| b.at > start);
+        let mut best: Option<Break> = None;
+        for b in ahead {
+            if span(b.at) > room {
+                // Nothing fits: the first place there is.
+                return best.map_or(b.at, |best| best.at);
+            }
+            let better = best.is_none_or(|best| b.depth <= best.depth || span(best.at) * 2 < room);
+            if better {
+                best = Some(*b);
+            }
+        }
+        best.map_or(self.text.len(), |b| b.at)
+    }
+
+    fn cut(&self, start: usize, end: usize) -> Line {
+        let text = self.text.get(start..end).unwrap_or("").trim_end().to_owned();
+        let inside = self.overs.iter().filter(|o| o.from >= start && o.to <= end);
+        let overs = inside.map(|o| Over { from: o.from - start, to: o.to - start, level: o.level }).collect();
+        Line { text, overs, breaks: Vec::new(), indent: self.indent }
+    }
+}
+
+/// How far the lines behind the first are indented.
+const HANG: i32 = 120;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn terms(n: usize) -> Line {
+        let mut line = Line::default();
+        for i in 0..n {
+            if i > 0 {
+                line.breaks.push(Break { at: line.text.len(), depth: 0 });
+                line.text.push_str("+ ");
+            }
+            line.text.push_str("aaaa ");
+        }
+        line
+    }
+
+    #[test]
+    fn a_long_sum_breaks_before_its_signs_and_loses_nothing() {
+        let line = terms(20);
+        let lines = line.clone().wrap(140, 1500);
+        assert!(lines.len() > 3);
+        assert!(lines.iter().all(|l| l.width(140) <= 1500));
+        assert!(lines[1..].iter().all(|l| l.text.starts_with("+ ")));
+        let back = lines.iter().map(|l| l.text.as_str()).collect::<Vec<_>>().join(" ");
+        assert_eq!(back, line.text.trim_end());
+    }
+
+    #[test]
+    fn the_outer_operator_is_the_better_place() {
+        let mut line = Line::plain("aaaaaaaa + bbb · ccc");
+        line.breaks = vec![Break { at: 9, depth: 0 }, Break { at: 15, depth: 1 }];
+        let most = width("aaaaaaaa + bbb ·", 140);
+        let lines: Vec<String> = line.wrap(140, most).into_iter().map(|l| l.text).collect();
+        assert_eq!(lines, ["aaaaaaaa", "+ bbb · ccc"]);
+    }
+
+    #[test]
+    fn what_has_no_place_to_break_stays_whole() {
+        assert_eq!(Line::plain("a".repeat(500)).wrap(140, 100).len(), 1);
+    }
+}

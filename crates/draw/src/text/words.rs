@@ -1,0 +1,140 @@
+//! Words: comments broken into lines, names fitted into a square.
+
+use crate::text::{clean, width};
+
+/// Text broken at blanks into at most `lines` lines; the last one ends in `…`
+/// where there was more. Tells whether all of it is there.
+pub(crate) fn wrap_words(text: &str, size: i32, most: i32, lines: usize) -> (Vec<String>, bool) {
+    let mut out: Vec<String> = Vec::new();
+    let mut whole = true;
+    for word in clean(text).split_whitespace() {
+        let (word, fits) = shortened(word, size, most);
+        whole &= fits;
+        match out.last_mut() {
+            Some(line) if width(&format!("{line} {word}"), size) <= most => {
+                line.push(' ');
+                line.push_str(&word);
+            }
+            _ => out.push(word),
+        }
+    }
+    if out.len() > lines.max(1) {
+        out.truncate(lines.max(1));
+        whole = false;
+        if let Some(last) = out.last_mut() {
+            let (mut cut, _) = shortened(last, size, most - width(" …", size));
+            if !cut.ends_with('…') {
+                cut.push_str(" …");
+            }
+            *last = cut;
+        }
+    }
+    (out, whole)
+}
+
+/// The text, or as much of it as fits with `…` behind it; and whether it fits.
+pub(crate) fn shortened(text: &str, size: i32, most: i32) -> (String, bool) {
+    if width(text, size) <= most {
+        return (text.to_owned(), true);
+    }
+    let room = most - width("…", size);
+    let mut cut = String::new();
+    let mut taken = 0;
+    for c in text.chars() {
+        taken += width(c.encode_utf8(&mut [0; 4]), size);
+        if taken > room {
+            break;
+        }
+        cut.push(c);
+    }
+    cut.push('…');
+    (cut, false)
+}
+
+/// A step's name set for its square: lines, their size, and the room they need.
+pub(crate) struct Fitted {
+    pub(crate) lines: Vec<String>,
+    pub(crate) size: i32,
+    pub(crate) width: i32,
+}
+
+/// Widest name before it is cut.
+const WIDEST_NAME: i32 = 2400;
+
+/// Fits a name into `room`: as it is, a little smaller, in two lines, and only
+/// then wider than the room.
+pub(crate) fn name_lines(name: &str, room: i32) -> Fitted {
+    let name = clean(name);
+    for size in [140, 120] {
+        let w = width(&name, size);
+        if w <= room {
+            return Fitted { lines: vec![name], size, width: w };
+        }
+    }
+    let two = split(&name, 110);
+    let widest = |lines: &[String], size| lines.iter().map(|l| width(l, size)).max().unwrap_or(0);
+    if widest(&two, 110) <= room {
+        return Fitted { width: widest(&two, 110), lines: two, size: 110 };
+    }
+    let lines: Vec<String> = two.iter().map(|l| shortened(l, 120, WIDEST_NAME).0).collect();
+    Fitted { width: widest(&lines, 120), lines, size: 120 }
+}
+
+/// The name in two lines of nearly the same width where it has a seam: a blank,
+/// `_`, a capital behind a small letter, a figure behind a letter.
+fn split(name: &str, size: i32) -> Vec<String> {
+    let mut best: Option<(i32, usize)> = None;
+    let mut before: Option<char> = None;
+    for (at, c) in name.char_indices() {
+        let seam = before.is_some_and(|b| {
+            matches!(b, '_' | ' ' | '-' | '.')
+                || (b.is_lowercase() && c.is_uppercase())
+                || (b.is_alphabetic() && c.is_ascii_digit())
+        });
+        if seam {
+            let (a, b) = name.split_at(at);
+            let w = width(a.trim_end(), size).max(width(b.trim_start(), size));
+            if best.is_none_or(|(least, _)| w < least) {
+                best = Some((w, at));
+            }
+        }
+        before = Some(c);
+    }
+    match best {
+        Some((_, at)) => {
+            let (a, b) = name.split_at(at);
+            vec![a.trim_end().to_owned(), b.trim_start().to_owned()]
+        }
+        None => vec![name.to_owned()],
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_comment_breaks_at_blanks_and_says_where_it_was_cut() {
+        let text = "one two three four five six";
+        let (lines, whole) = wrap_words(text, 120, 700, 9);
+        assert!(whole && lines.len() > 1 && lines.join(" ") == text, "{lines:?}");
+        let (lines, whole) = wrap_words(text, 120, 700, 2);
+        assert!(!whole && lines.len() == 2 && lines[1].ends_with('…'), "{lines:?}");
+        assert!(lines.iter().all(|l| width(l, 120) <= 700));
+    }
+
+    #[test]
+    fn a_short_name_stays_as_it_is_and_a_long_one_breaks_at_its_seam() {
+        let one = name_lines("12", 460);
+        assert_eq!((one.lines, one.size), (vec!["12".to_owned()], 140));
+        let two = name_lines("WaitBead", 460);
+        assert_eq!((two.lines.join("|"), two.size), ("Wait|Bead".to_owned(), 110));
+        let wide = name_lines("Sequencing", 460);
+        assert!(wide.width > 460 && wide.lines.len() == 1, "no seam: the square gets wider");
+    }
+
+    #[test]
+    fn a_name_of_a_thousand_letters_is_cut() {
+        assert!(name_lines(&"a".repeat(1000), 460).width <= WIDEST_NAME);
+    }
+}
