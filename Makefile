@@ -2,7 +2,7 @@
 
 EXAMPLE ?= examples/bead-sorter
 
-.PHONY: run test lint deny bench book fuzz help
+.PHONY: run test lint deny wasm bench book fuzz help
 
 ## build G7 and run the bead sorter in the terminal (EXAMPLE=… for another)
 run:
@@ -22,6 +22,13 @@ lint:
 ## licences and sources of what is built in (needs cargo-deny)
 deny:
 	cargo deny check licenses bans sources
+
+## the crates as wasm, for the page
+wasm:
+	@rustup target list --installed | grep -q wasm32-unknown-unknown || rustup target add wasm32-unknown-unknown
+	cargo build --quiet --profile wasm --target wasm32-unknown-unknown --package g7-page
+	mkdir -p web/public
+	cp $${CARGO_TARGET_DIR:-target}/wasm32-unknown-unknown/wasm/g7_page.wasm web/public/g7.wasm
 
 ## time of a scan, beside matiec where an iec2c is on the PATH
 bench:

@@ -92,7 +92,7 @@ impl<'a> Symbols<'a> {
             let points: Vec<(i32, i32)> = l.points.iter().map(|p| (p.x, p.y)).collect();
             picture.line("g7-link", &points);
             l.arrows.iter().for_each(|(tip, way)| arrow(&mut picture, *tip, *way));
-            items.push(item(Part::Link { link: index }, picture, self.span(l.from)));
+            items.push(item(Part::Link { link: index, from: l.from, to: l.to }, picture, self.span(l.from)));
         }
     }
 
@@ -143,7 +143,8 @@ impl Names {
             (End::Step(_), End::Step(_)) => None,
         };
         let span = transition.and_then(|t| self.spans.get(t as usize)).copied().unwrap_or_default();
-        item(Part::Connector { connector: index }, picture, span)
+        let part = Part::Connector { connector: index, from: c.from, to: c.to, leaving: c.leaving };
+        item(part, picture, span)
     }
 }
 

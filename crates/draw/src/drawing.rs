@@ -5,7 +5,7 @@
 
 use g7_model::Span;
 
-use crate::Rect;
+use crate::{End, Rect};
 
 /// One chart, drawn.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -63,11 +63,21 @@ pub enum Part {
     Link {
         /// Index in the placement's links.
         link: u32,
+        /// Where it comes from.
+        from: End,
+        /// Where it leads to.
+        to: End,
     },
     /// A broken-off end of a link.
     Connector {
         /// Index in the placement's connectors.
         connector: u32,
+        /// The link's own ends.
+        from: End,
+        /// Where it leads to.
+        to: End,
+        /// The end that goes away; else the one that arrives.
+        leaving: bool,
     },
     /// A comment, a frame of a page, a title: nothing that can be edited as a symbol.
     Text,

@@ -42,6 +42,7 @@ mod change;
 mod check;
 mod fault;
 mod fb;
+mod judge;
 mod number;
 mod ops;
 mod pass;
@@ -53,6 +54,7 @@ mod text;
 mod watch;
 
 pub use fault::{Fault, FaultKind};
+pub use judge::enabled;
 pub use ops::{Addr, Arith, Block, Builtin, Cmp, Code, GroupId, Num, Op, Service, StepId, WatchId};
 pub use program::{
     Action, Chart, Contribution, ControlBlock, Event, Extra, Group, Guard, INPUTS, Limits, LoadError, NONE,

@@ -1,0 +1,259 @@
+//! A chart's drawing as the page takes it: px, ids, places in the text.
+
+use std::collections::HashMap;
+use std::sync::Arc;
+
+use g7_draw::{End, Look, Options, Part, Rect};
+use g7_model::{Chart, ChartKind, Document, Span, Step, StepKind, Transition};
+use serde::{Deserialize, Serialize};
+
+use crate::file::File;
+use crate::ids;
+use crate::look::opens;
+use crate::positions::Positions;
+
+/// How a chart is to be drawn.
+#[derive(Clone, Debug, Deserialize)]
+pub(crate) struct Wish {
+    pub(crate) file: String,
+    pub(crate) chart: String,
+    #[serde(default)]
+    look: Option<String>,
+    #[serde(default)]
+    pages: Option<String>,
+    #[serde(default)]
+    actions: Option<bool>,
+}
+
+/// A chart, drawn. Lengths in px at 100 %.
+#[derive(Debug, Serialize)]
+pub(crate) struct Drawn {
+    chart: String,
+    kind: &'static str,
+    /// Of the latest text without syntax errors, which is not the present one.
+    stale: bool,
+    area: [f64; 4],
+    items: Vec<Item>,
+}
+
+#[derive(Debug, Default, Serialize)]
+struct Item {
+    id: String,
+    part: &'static str,
+    area: [f64; 4],
+    svg: String,
+    far: String,
+    from: usize,
+    to: usize,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    square: Option<[f64; 4]>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    bar: Option<[f64; 4]>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    text: Option<[f64; 4]>,
+    /// The anchor: of a step the middle of its upper edge, of a transition that of its bar.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    at: Option<[f64; 2]>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    name: Option<String>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    label: Option<String>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    comment: Option<String>,
+    /// Receptivity or action as typed.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    source: Option<String>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    priority: Option<u32>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    step: Option<&'static str>,
+    #[serde(rename = "macro", skip_serializing_if = "Option::is_none")]
+    expansion: Option<String>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    encloses: Vec<String>,
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    initial: bool,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    ends: Option<[String; 2]>,
+}
+
+/// Draws a chart of a file.
+pub(crate) fn drawing(file: &File, wish: &Wish) -> Result<Drawn, String> {
+    let good = file.drawn();
+    let find = |c: &&Chart| *c.name.text == *wish.chart;
+    let chart =
+        good.document.charts().find(find).ok_or_else(|| format!("there is no chart `{}`", wish.chart))?;
+    let look = match wish.look.as_deref() {
+        None | Some("iec60848") => Look::Iec60848,
+        Some("sfc") => Look::Sfc,
+        Some(other) => return Err(format!("there is no look `{other}`")),
+    };
+    let options = Options {
+        look,
+        actions: wish.actions.unwrap_or(true),
+        pages: wish.pages.as_deref() == Some("pl7"),
+        ..Options::default()
+    };
+    let drawing = g7_draw::draw(&good.document, chart, &options);
+    let names = Names::new(&good, chart);
+    Ok(Drawn {
+        chart: wish.chart.clone(),
+        kind: kind(chart.kind),
+        stale: good.stale,
+        area: area(drawing.area),
+        items: drawing.items.into_iter().enumerate().map(|(n, i)| names.item(n, i)).collect(),
+    })
+}
+
+/// What a chart is for, in a word.
+pub(crate) fn kind(kind: ChartKind) -> &'static str {
+    match kind {
+        ChartKind::Chart => "chart",
+        ChartKind::Expansion => "expansion",
+        ChartKind::Task => "task",
+    }
+}
+
+/// The document that is drawn, with the text it came from.
+#[derive(Clone)]
+pub(crate) struct Good {
+    pub(crate) document: Arc<Document>,
+    pub(crate) text: Arc<str>,
+    pub(crate) positions: Arc<Positions>,
+    pub(crate) stale: bool,
+}
+
+impl Good {
+    /// A place in code units of the text that is drawn.
+    fn units(&self, at: Span) -> (usize, usize) {
+        let unit = |byte: u32| self.positions.unit(&self.text, byte as usize);
+        (unit(at.start), unit(at.end))
+    }
+
+    fn words(&self, at: Span) -> String {
+        self.text.get(at.start as usize..at.end as usize).unwrap_or("").to_owned()
+    }
+}
+
+struct Names<'a> {
+    good: &'a Good,
+    chart: &'a Chart,
+    steps: Vec<&'a Step>,
+    transitions: Vec<&'a Transition>,
+    seen: std::cell::RefCell<HashMap<String, u32>>,
+}
+
+impl<'a> Names<'a> {
+    fn new(good: &'a Good, chart: &'a Chart) -> Names<'a> {
+        Names {
+            good,
+            chart,
+            steps: chart.steps().collect(),
+            transitions: chart.transitions().collect(),
+            seen: Default::default(),
+        }
+    }
+
+    fn item(&self, number: usize, item: g7_draw::Item) -> Item {
+        let chart = &*self.chart.name.text;
+        let (from, to) = self.good.units(item.at);
+        let base = Item { area: area(item.area), svg: item.svg, far: item.far, from, to, ..Item::default() };
+        let made = match item.part {
+            Part::Step { step, square } => self.step(step, square, base),
+            Part::Action { step, index } => {
+                let name = self.steps.get(step as usize).map_or("", |s| &*s.name.text);
+                let source = self.good.words(item.at);
+                let id = ids::action(chart, name, index as usize);
+                Item { id, part: "action", source: Some(source), ..base }
+            }
+            Part::Transition { transition, bar, text } => self.transition(transition, bar, text, base),
+            Part::Link { from, to, .. } => {
+                let id = format!("{chart}/l/{}>{}", self.end(from), self.end(to));
+                Item { id, part: "link", ends: Some([self.end_id(from), self.end_id(to)]), ..base }
+            }
+            Part::Connector { from, to, leaving, .. } => {
+                let side = if leaving { "leaving" } else { "arriving" };
+                let id = format!("{chart}/c/{}>{}/{side}", self.end(from), self.end(to));
+                Item { id, part: "connector", ends: Some([self.end_id(from), self.end_id(to)]), ..base }
+            }
+            Part::Text => Item { id: format!("{chart}/x/{number}"), part: "text", ..base },
+        };
+        self.unique(made)
+    }
+
+    /// A step of a name that stands there twice is a problem, not a reason for equal ids.
+    fn unique(&self, mut item: Item) -> Item {
+        let mut seen = self.seen.borrow_mut();
+        let times = seen.entry(item.id.clone()).or_default();
+        *times += 1;
+        if *times > 1 {
+            item.id = format!("{}#{times}", item.id);
+        }
+        item
+    }
+
+    fn step(&self, number: u32, square: Rect, base: Item) -> Item {
+        let Some(step) = self.steps.get(number as usize) else { return base };
+        let (expansion, sort) = match &step.kind {
+            StepKind::Plain => (None, "plain"),
+            StepKind::Entry => (None, "entry"),
+            StepKind::Exit => (None, "exit"),
+            StepKind::Macro(name) => (Some(name.text.to_string()), "macro"),
+            StepKind::Enclosing => (None, "enclosing"),
+        };
+        let opened = opens(step).map(str::to_owned).filter(|n| Some(n) != expansion.as_ref());
+        Item {
+            id: ids::step(&self.chart.name.text, &step.name.text),
+            part: "step",
+            at: Some([px(square.x) + px(square.w) / 2.0, px(square.y)]),
+            square: Some(area(square)),
+            name: Some(step.name.text.to_string()),
+            comment: step.comment.as_deref().map(str::to_owned),
+            step: Some(sort),
+            encloses: opened.collect(),
+            expansion,
+            initial: step.initial,
+            ..base
+        }
+    }
+
+    fn transition(&self, number: u32, bar: Rect, text: Rect, base: Item) -> Item {
+        let Some(t) = self.transitions.get(number as usize) else { return base };
+        Item {
+            id: ids::transition(&self.chart.name.text, number as usize),
+            part: "transition",
+            at: Some([px(bar.x) + px(bar.w) / 2.0, px(bar.y) + px(bar.h) / 2.0]),
+            bar: Some(area(bar)),
+            text: Some(area(text)),
+            label: t.label.as_ref().map(|l| l.text.to_string()),
+            comment: t.comment.as_deref().map(str::to_owned),
+            source: Some(self.good.words(t.receptivity.at.0)),
+            priority: t.priority,
+            ..base
+        }
+    }
+
+    fn end(&self, end: End) -> String {
+        match end {
+            End::Step(n) => format!("s:{}", self.steps.get(n as usize).map_or("", |s| &*s.name.text)),
+            End::Transition(n) => format!("t:{n}"),
+        }
+    }
+
+    fn end_id(&self, end: End) -> String {
+        let chart = &self.chart.name.text;
+        match end {
+            End::Step(n) => ids::step(chart, self.steps.get(n as usize).map_or("", |s| &*s.name.text)),
+            End::Transition(n) => ids::transition(chart, n as usize),
+        }
+    }
+}
+
+/// Hundredths of u as px: a u is ten px.
+fn px(hundredths: i32) -> f64 {
+    f64::from(hundredths) / 10.0
+}
+
+fn area(r: Rect) -> [f64; 4] {
+    [px(r.x), px(r.y), px(r.w), px(r.h)]
+}

@@ -1,0 +1,66 @@
+//! The names of items between page and crate: `Chart/s/Step`, `Chart/a/Step/0`,
+//! `Chart/t/3`; and what stands at a place of the text.
+
+use g7_model::{Chart, Document, Span, Step, Transition};
+
+pub(crate) fn step(chart: &str, name: &str) -> String {
+    format!("{chart}/s/{name}")
+}
+
+pub(crate) fn action(chart: &str, step: &str, index: usize) -> String {
+    format!("{chart}/a/{step}/{index}")
+}
+
+pub(crate) fn transition(chart: &str, number: usize) -> String {
+    format!("{chart}/t/{number}")
+}
+
+/// Something of a chart that an id names.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Thing<'d> {
+    Step(&'d Chart, &'d Step),
+    Action(&'d Chart, &'d Step, usize),
+    Transition(&'d Chart, usize, &'d Transition),
+}
+
+impl Thing<'_> {
+    pub(crate) fn id(self) -> String {
+        match self {
+            Thing::Step(c, s) => step(&c.name.text, &s.name.text),
+            Thing::Action(c, s, i) => action(&c.name.text, &s.name.text, i),
+            Thing::Transition(c, n, _) => transition(&c.name.text, n),
+        }
+    }
+}
+
+/// Everything of the charts that has an id, in the order of the text, with its place.
+pub(crate) fn things(document: &Document) -> impl Iterator<Item = (Span, Thing<'_>)> {
+    document.charts().flat_map(|c| {
+        let steps = c.steps().flat_map(move |s| {
+            let own = std::iter::once((s.at.0, Thing::Step(c, s)));
+            own.chain(s.actions.iter().enumerate().map(move |(i, a)| (a.at.0, Thing::Action(c, s, i))))
+        });
+        let transitions = c.transitions().enumerate().map(move |(n, t)| (t.at.0, Thing::Transition(c, n, t)));
+        steps.chain(transitions)
+    })
+}
+
+/// The innermost thing that a place belongs to.
+pub(crate) fn at(document: &Document, place: Span) -> Option<Thing<'_>> {
+    let chart = document.charts().find(|c| holds(c.at.0, place))?;
+    let only = |c: &Chart| std::ptr::eq(c, chart);
+    things(document)
+        .filter(|(at, thing)| {
+            let mine = match thing {
+                Thing::Step(c, _) | Thing::Action(c, ..) | Thing::Transition(c, ..) => only(c),
+            };
+            mine && holds(*at, place)
+        })
+        .min_by_key(|(at, _)| at.end - at.start)
+        .map(|(_, thing)| thing)
+}
+
+/// Whether a place lies in another.
+pub(crate) fn holds(outer: Span, inner: Span) -> bool {
+    outer.file == inner.file && outer.start <= inner.start && inner.end <= outer.end
+}

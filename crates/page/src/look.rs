@@ -1,0 +1,122 @@
+//! What the shell of the page knows of a file: charts, problems, plants, tests.
+
+use g7_model::{Document, Item, StepKind};
+use serde::Serialize;
+
+use crate::drawing::kind;
+use crate::file::File;
+use crate::problems::{self, units};
+
+/// A file at a glance.
+#[derive(Debug, Serialize)]
+pub(crate) struct Look {
+    file: String,
+    version: u64,
+    length: usize,
+    hash: String,
+    clean: bool,
+    imported: bool,
+    can_undo: bool,
+    can_redo: bool,
+    problems: Vec<problems::Row>,
+    charts: Vec<ChartRow>,
+    profile: &'static str,
+    scan_ms: f64,
+    plants: Vec<String>,
+    tests: Vec<TestRow>,
+}
+
+#[derive(Debug, Serialize)]
+struct ChartRow {
+    name: String,
+    kind: &'static str,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    comment: Option<String>,
+    from: usize,
+    to: usize,
+    steps: usize,
+    transitions: usize,
+    /// Chart and step that this is the expansion of, or that enclose it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    of: Option<[String; 2]>,
+}
+
+#[derive(Debug, Serialize)]
+struct TestRow {
+    name: String,
+    from: usize,
+    to: usize,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    plant: Option<String>,
+}
+
+pub(crate) fn look(name: &str, file: &File) -> Look {
+    let document = &file.source.document;
+    let tests = file.source.tests().map(|t| {
+        let (from, to) = units(file, t.at.0);
+        TestRow { name: t.title.to_string(), from, to, plant: t.plant.as_ref().map(|p| p.text.to_string()) }
+    });
+    let scan = document.items.iter().find_map(|i| if let Item::Cycle(ns, _) = i { Some(*ns) } else { None });
+    Look {
+        file: name.to_owned(),
+        version: file.version,
+        length: file.positions.units(),
+        hash: hash(file.text()),
+        clean: file.is_clean(),
+        imported: file.imported,
+        can_undo: false,
+        can_redo: false,
+        problems: problems::rows(file),
+        charts: charts(file),
+        profile: document.profile().map_or(g7_model::ProfileName::default(), |p| p.name).name(),
+        scan_ms: scan.unwrap_or(SCAN) as f64 / 1e6,
+        plants: g7_compile::plant::plants(document).map(|p| p.name.text.to_string()).collect(),
+        tests: tests.collect(),
+    }
+}
+
+/// Nominal scan time where a file says nothing.
+const SCAN: i64 = 10_000_000;
+
+fn charts(file: &File) -> Vec<ChartRow> {
+    let good = file.drawn();
+    let document = &*good.document;
+    let row = |c: &g7_model::Chart| {
+        let (from, to) = if good.stale { (0, 0) } else { units(file, c.at.0) };
+        ChartRow {
+            name: c.name.text.to_string(),
+            kind: kind(c.kind),
+            comment: c.comment.as_deref().map(str::to_owned),
+            from,
+            to,
+            steps: c.steps().count(),
+            transitions: c.transitions().count(),
+            of: owner(document, &c.name.text),
+        }
+    };
+    document.charts().map(row).collect()
+}
+
+/// The macro-step that a chart is the expansion of, or the step that encloses it.
+fn owner(document: &Document, name: &str) -> Option<[String; 2]> {
+    let mut steps = document.charts().flat_map(|c| c.steps().map(move |s| (c, s)));
+    let (chart, step) = steps.find(|(_, s)| opens(s).any(|opened| opened == name))?;
+    Some([chart.name.text.to_string(), step.name.text.to_string()])
+}
+
+/// The charts that a step opens into: its expansion, or those it encloses.
+pub(crate) fn opens(step: &g7_model::Step) -> impl Iterator<Item = &str> {
+    let expansion = if let StepKind::Macro(name) = &step.kind { Some(&*name.text) } else { None };
+    let enclosed = step.actions.iter().filter_map(|a| match &a.kind {
+        g7_model::ActionKind::Order(g7_model::Order::Enclose(name)) => Some(&*name.text),
+        _ => None,
+    });
+    expansion.into_iter().chain(enclosed)
+}
+
+/// A short name for a text: FNV-1a, 64 bits.
+pub(crate) fn hash(text: &str) -> String {
+    let h =
+        text.bytes().fold(0xcbf2_9ce4_8422_2325u64, |h, b| (h ^ u64::from(b)).wrapping_mul(0x0100_0000_01b3));
+    format!("{h:016x}")
+}

@@ -1,0 +1,139 @@
+//! All that is open, and who answers which message.
+
+use std::collections::BTreeMap;
+
+use crate::answer::{self, Answer, ok};
+use crate::drawing;
+use crate::file::File;
+use crate::look::look;
+use crate::request::Request;
+use crate::run::{self, Run};
+
+/// What a page has open: files and runs.
+#[derive(Default)]
+pub struct Page {
+    files: BTreeMap<String, File>,
+    runs: BTreeMap<String, Run>,
+}
+
+/// Most files and runs at a time.
+const MOST: usize = 64;
+
+impl Page {
+    /// A page with nothing open.
+    pub fn new() -> Page {
+        Page::default()
+    }
+
+    /// Answers a message: `{"ok":…}`, or `{"no":"a sentence for the user"}`.
+    pub fn call(&mut self, message: &str) -> String {
+        let answer = match serde_json::from_str(message) {
+            Ok(request) => self.answer(request),
+            Err(e) => Err(format!("this message means nothing: {e}")),
+        };
+        answer::text(answer)
+    }
+
+    fn answer(&mut self, request: Request) -> Answer {
+        match request {
+            Request::Open { file, text } => self.open(file, text),
+            Request::Close { file } => {
+                self.files.remove(&file);
+                ok(&())
+            }
+            Request::Look { file } => self.look(&file),
+            Request::Text { file } => ok(&serde_json::json!({ "text": self.file(&file)?.text() })),
+            Request::Splice { file, splices, unit: _ } => {
+                let open = self.file_mut(&file)?;
+                let mut text = open.text().to_owned();
+                for s in splices.iter().rev() {
+                    let (from, to) =
+                        (open.positions.byte(open.text(), s.from), open.positions.byte(open.text(), s.to));
+                    if from > to || text.get(from..to).is_none() {
+                        return Err("these places are none of the text".to_owned());
+                    }
+                    text.replace_range(from..to, &s.insert);
+                }
+                open.set_text(text);
+                self.look(&file)
+            }
+            Request::Drawing(wish) => ok(&drawing::drawing(self.file(&wish.file)?, &wish)?),
+            Request::Style { dark } => ok(&serde_json::json!({ "css": g7_draw::style(dark) })),
+            Request::RunStart(wish) => self.start(&wish),
+            Request::RunStop { run } => {
+                self.runs.remove(&run);
+                ok(&())
+            }
+            Request::RunAdvance { run, ms, most_scans, times } => self.with(&run, times, |r| {
+                r.advance(ms, most_scans);
+                Ok(())
+            }),
+            Request::RunScan { run, times } => self.with(&run, times, |r| {
+                r.scan();
+                Ok(())
+            }),
+            Request::RunPass { run, times } => self.with(&run, times, |r| {
+                r.pass();
+                Ok(())
+            }),
+            Request::RunSet { run, signal, value } => self.with(&run, false, |r| r.set(signal, &value)),
+            Request::RunToggle { run, signal } => self.with(&run, false, |r| r.toggle(signal)),
+            Request::RunForce { run, signal, value } => self.with(&run, false, |r| r.force(signal, &value)),
+            Request::RunRelease { run, signal } => self.with(&run, false, |r| r.release(signal)),
+            Request::RunRestart { run, warm } => self.with(&run, false, |r| {
+                r.restart(warm);
+                Ok(())
+            }),
+            Request::RunFrame { run, full, times } => ok(&self.run(&run)?.frame(full, times)),
+        }
+    }
+
+    fn file(&self, name: &str) -> Result<&File, String> {
+        self.files.get(name).ok_or_else(|| format!("{name} is not open"))
+    }
+
+    fn file_mut(&mut self, name: &str) -> Result<&mut File, String> {
+        self.files.get_mut(name).ok_or_else(|| format!("{name} is not open"))
+    }
+
+    fn run(&mut self, name: &str) -> Result<&mut Run, String> {
+        self.runs.get_mut(name).ok_or_else(|| format!("there is no run `{name}`"))
+    }
+
+    fn open(&mut self, name: String, text: String) -> Answer {
+        if self.files.len() >= MOST && !self.files.contains_key(&name) {
+            return Err("too many files are open: close one".to_owned());
+        }
+        let file = File::open(&name, text)?;
+        let name = if file.imported { with_ending(&name) } else { name };
+        self.files.insert(name.clone(), file);
+        self.look(&name)
+    }
+
+    fn look(&self, name: &str) -> Answer {
+        ok(&look(name, self.file(name)?))
+    }
+
+    fn start(&mut self, wish: &run::Start) -> Answer {
+        if self.runs.len() >= MOST && !self.runs.contains_key(&wish.run) {
+            return Err("too many runs: stop one".to_owned());
+        }
+        let mut run = run::start(&self.file(&wish.file)?.source, wish)?;
+        let started = ok(&run.started());
+        self.runs.insert(wish.run.clone(), run);
+        started
+    }
+
+    /// Does something to a run and answers what changed.
+    fn with(&mut self, name: &str, times: bool, work: impl FnOnce(&mut Run) -> Result<(), String>) -> Answer {
+        let run = self.run(name)?;
+        work(run)?;
+        ok(&run.frame(false, times))
+    }
+}
+
+/// The name of an imported file: its own, ending in .g7.
+fn with_ending(name: &str) -> String {
+    let stem = name.rsplit_once('.').filter(|(_, end)| !end.contains('/')).map_or(name, |(stem, _)| stem);
+    format!("{stem}.g7")
+}

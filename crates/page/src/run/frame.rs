@@ -1,0 +1,194 @@
+//! What changed since the frame before.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use g7_host::{Kind, Value, read_text};
+use g7_model::Type;
+use g7_rig::Activity;
+use serde::Serialize;
+
+use super::Run;
+
+/// A frame. Steps, transitions, signals and bindings by the numbers that
+/// [`super::Started`] gave them.
+#[derive(Debug, Serialize)]
+pub(crate) struct Frame {
+    run: String,
+    now_ms: f64,
+    scans: u64,
+    passes: u32,
+    full: bool,
+    /// Steps that are active now and were not.
+    on: Vec<u32>,
+    /// Steps that were and are no more.
+    off: Vec<u32>,
+    /// Of the active steps: time since activation, ms.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    times: Option<BTreeMap<u32, f64>>,
+    /// 0 not enabled, 1 enabled, 2 enabled and the receptivity holds.
+    enabled: Vec<(u32, u8)>,
+    cleared: Vec<u32>,
+    values: Vec<(u32, String, f64)>,
+    forced: Vec<(u32, bool)>,
+    view: Vec<(u32, Show)>,
+    /// Between two passes of a scan.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    within: bool,
+    /// More time was asked for than could be run.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    late: bool,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    stopped: Option<Stopped>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    halt: Option<Halted>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    notes: Vec<String>,
+}
+
+/// The breakpoint at which a run stopped.
+#[derive(Debug, Serialize)]
+struct Stopped {
+    id: String,
+}
+
+/// The fault that ended it.
+#[derive(Debug, Serialize)]
+struct Halted {
+    what: String,
+    /// Bytes of the text that the run was started from.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    at: Option<(u32, u32)>,
+}
+
+/// A value of the picture.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(untagged)]
+pub(super) enum Show {
+    Flag(bool),
+    Number(f64),
+    Text(String),
+}
+
+/// What the page knows already.
+#[derive(Debug, Default)]
+pub(super) struct Sent {
+    active: BTreeSet<u32>,
+    enabled: BTreeMap<u32, u8>,
+    values: Vec<Value>,
+    forced: Vec<bool>,
+    view: Vec<Show>,
+}
+
+/// The frame since the one before; a full one has all there is.
+pub(super) fn frame(run: &mut Run, full: bool, times: bool) -> Frame {
+    if full {
+        run.sent = Sent::default();
+    }
+    let active = run.active();
+    let enabled = enabled(run);
+    let values: Vec<Value> = run.bench.items.iter().map(|i| run.bench.value(&run.runner, i)).collect();
+    let forced: Vec<bool> = run.bench.items.iter().map(|i| run.bench.is_forced(&run.runner, i)).collect();
+    let view = view(run);
+    let sent = &run.sent;
+    let numbered = || (0u32..).zip(&run.bench.items).zip(&values);
+    let changed = numbered().filter(|((i, _), v)| sent.values.get(*i as usize) != Some(v));
+    let mut marks: Vec<(u32, u8)> =
+        enabled.iter().filter(|(i, v)| sent.enabled.get(i) != Some(v)).map(|(i, v)| (*i, *v)).collect();
+    marks.extend(sent.enabled.keys().filter(|i| !enabled.contains_key(i)).map(|i| (*i, 0)));
+    let frame = Frame {
+        run: run.name.clone(),
+        now_ms: run.now as f64 / 1e6,
+        scans: run.runner.state().scans(),
+        passes: run.runner.report().passes,
+        full,
+        on: active.difference(&sent.active).copied().collect(),
+        off: sent.active.difference(&active).copied().collect(),
+        times: times.then(|| step_times(run, &active)),
+        enabled: marks,
+        cleared: std::mem::take(&mut run.cleared).into_iter().collect(),
+        values: changed.map(|((i, item), v)| (i, shown(v, item.kind), v.number(item.kind))).collect(),
+        forced: (0u32..)
+            .zip(&forced)
+            .filter(|(i, f)| sent.forced.get(*i as usize).copied().unwrap_or(false) != **f)
+            .map(|(i, f)| (i, *f))
+            .collect(),
+        view: (0u32..)
+            .zip(&view)
+            .filter(|(i, v)| sent.view.get(*i as usize) != Some(v))
+            .map(|(i, v)| (i, v.clone()))
+            .collect(),
+        within: run.runner.is_within_scan(),
+        late: std::mem::take(&mut run.late),
+        stopped: run.stopped.take().map(|id| Stopped { id }),
+        halt: run.runner.halt().map(|halt| Halted {
+            what: run.bench.halt(&run.runner, halt),
+            at: run.bench.halt_place(halt).map(|at| (at.start, at.end)),
+        }),
+        notes: std::mem::take(&mut run.notes),
+    };
+    run.sent = Sent { active, enabled, values, forced, view };
+    frame
+}
+
+/// The enabled transitions of the shown state: 1, or 2 where the receptivity
+/// holds. A receptivity with a fault is said when a scan meets it.
+fn enabled(run: &Run) -> BTreeMap<u32, u8> {
+    let mut found = BTreeMap::new();
+    let tell = |rank: u32, holds: bool| {
+        if let Some(number) = run.places.transition(rank) {
+            let mark = found.entry(number).or_insert(1);
+            *mark = (*mark).max(1 + u8::from(holds));
+        }
+    };
+    g7_engine::enabled(run.runner.program(), run.runner.shown(), tell).ok();
+    found
+}
+
+fn step_times(run: &Run, active: &BTreeSet<u32>) -> BTreeMap<u32, f64> {
+    let (program, state) = (run.runner.program(), run.runner.shown());
+    let time = |i: &u32| {
+        let ns = match run.bench.steps.get(*i as usize)?.id {
+            Activity::Step(id) => state.step_age(program, id),
+            Activity::Macro(group) => state.group_age(program, group),
+        };
+        Some((*i, ns as f64 / 1e6))
+    };
+    active.iter().filter_map(time).collect()
+}
+
+/// The values that the plant's picture shows.
+fn view(run: &mut Run) -> Vec<Show> {
+    let Some(side) = &run.bench.plant else { return Vec::new() };
+    let Some((program, state)) = run.runner.plant_mut() else { return Vec::new() };
+    let mut values = Vec::with_capacity(side.bindings.len());
+    for b in &side.bindings {
+        let word = g7_engine::eval(program, state, b.code).unwrap_or(0);
+        values.push(match b.ty {
+            Type::Bool => Show::Flag(word != 0),
+            Type::String(_) => Show::Text(read_text(state.words(), word as u32)),
+            Type::Real => Show::Number(rounded(f64::from(f32::from_bits(word as u32)))),
+            Type::Lreal => Show::Number(rounded(f64::from_bits(word))),
+            Type::Time => Show::Number(word as i64 as f64 / 1e9),
+            Type::Ulint => Show::Number(word as f64),
+            _ => Show::Number(word as i64 as f64),
+        });
+    }
+    values
+}
+
+/// To a ten-thousandth: what no picture shows is no change.
+fn rounded(x: f64) -> f64 {
+    if x.is_finite() { (x * 1e4).round() / 1e4 } else { 0.0 }
+}
+
+/// A value as people read it; numbers with four decimals at most.
+pub(super) fn shown(value: &Value, kind: Kind) -> String {
+    let real = matches!(kind, Kind::Real | Kind::Lreal);
+    let x = value.number(kind);
+    if !real || !x.is_finite() || x != 0.0 && !(1e-3..1e9).contains(&x.abs()) {
+        return value.show(kind);
+    }
+    let text = format!("{x:.4}");
+    let text = text.trim_end_matches('0').trim_end_matches('.');
+    if text == "-0" { "0".to_owned() } else { text.to_owned() }
+}
