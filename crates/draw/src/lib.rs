@@ -30,5 +30,5 @@ pub use drawing::{Drawing, Item, Part};
 pub use geometry::{Extent, Point, Rect, U};
 pub use options::{Look, Options};
 pub use placement::{Bar, Connector, End, Link, Placement, Sizes};
-pub use svg::{style, svg};
+pub use svg::{sheet, style, svg};
 pub use text::{FONT_FAMILY, font};

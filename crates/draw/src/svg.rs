@@ -1,13 +1,24 @@
-//! Drawings as files of their own: a style sheet, the font, the items.
+//! Drawings as files of their own: a style sheet, the font, the items of one or
+//! several charts on one sheet.
 
 use std::fmt::Write as _;
 
-use crate::ink::{Px, escape};
-use crate::text::{FONT_FAMILY, font};
-use crate::{Drawing, Options, Part, Rect};
+use g7_model::{Chart, ChartKind, Document, StepKind};
+
+use crate::ink::{Picture, Px, escape};
+use crate::text::{FONT_FAMILY, clean, font, shortened, width};
+use crate::{Drawing, Options, Part, Point, Rect};
 
 /// Round a standalone picture.
 const MARGIN: i32 = 200;
+/// Between two charts on a sheet.
+const BETWEEN: i32 = 600;
+/// Size of the name over a chart.
+const TITLE: i32 = 180;
+/// Size of the comment beside it.
+const SUBTITLE: i32 = 130;
+/// From the title to the chart.
+const UNDER_TITLE: i32 = 180;
 
 /// The style sheet of the fragments: what each class looks like.
 pub fn style(dark: bool) -> String {
@@ -40,11 +51,81 @@ pub fn style(dark: bool) -> String {
 /// One chart as an SVG file.
 pub fn svg(drawing: &Drawing, options: &Options) -> String {
     let mut out = String::new();
-    let area = drawing.area;
-    open(&mut out, area, options, &drawing.chart);
+    open(&mut out, drawing.area, options, &drawing.chart);
     body(&mut out, drawing);
     out.push_str("</g></svg>\n");
     out
+}
+
+/// Several charts as one SVG file: in rows, each under its name.
+pub fn sheet(document: &Document, drawings: &[Drawing], options: &Options) -> String {
+    let titles: Vec<Picture> = drawings.iter().map(|d| title(document, d)).collect();
+    let boxes: Vec<Rect> = drawings.iter().zip(&titles).map(|(d, t)| with_title(d, t)).collect();
+    let places = rows(&boxes);
+    let area = boxes.iter().zip(&places).fold(None, |all: Option<Rect>, (b, p)| {
+        let here = Rect { x: p.x, y: p.y, ..*b };
+        Some(all.map_or(here, |all| all.union(&here)))
+    });
+    let names: Vec<&str> = drawings.iter().map(|d| &*d.chart).collect();
+    let mut out = String::new();
+    open(&mut out, area.unwrap_or_default(), options, &names.join(", "));
+    for (((d, t), b), p) in drawings.iter().zip(&titles).zip(&boxes).zip(&places) {
+        let _ = write!(out, "<g transform=\"translate({} {})\">", Px(p.x - b.x), Px(p.y - b.y));
+        out.push_str(&t.svg());
+        body(&mut out, d);
+        out.push_str("</g>");
+    }
+    out.push_str("</g></svg>\n");
+    out
+}
+
+/// The name over a chart, with what it is the inside of, and its comment.
+fn title(document: &Document, drawing: &Drawing) -> Picture {
+    let mut p = Picture::default();
+    let Some(chart) = document.charts().find(|c| c.name.text == drawing.chart) else { return p };
+    let name = match (chart.kind, inside_of(document, chart)) {
+        (ChartKind::Expansion, Some(step)) if *step != *chart.name.text => {
+            format!("{} = {}", clean(&step), clean(&chart.name.text))
+        }
+        (ChartKind::Chart | ChartKind::Expansion | ChartKind::Task, _) => clean(&chart.name.text),
+    };
+    let (x, y) = (drawing.area.x, drawing.area.y - UNDER_TITLE);
+    p.text("g7-title", x, y, TITLE, &name);
+    if let Some(comment) = &chart.comment {
+        let (comment, _) = shortened(&clean(comment), SUBTITLE, 6000);
+        p.text("g7-note", x + width(&name, TITLE) + 120, y, SUBTITLE, &comment);
+    }
+    p
+}
+
+/// The macro-step whose inside a chart is.
+fn inside_of(document: &Document, chart: &Chart) -> Option<Box<str>> {
+    let steps = document.charts().flat_map(Chart::steps);
+    let mut of = steps.filter(|s| matches!(&s.kind, StepKind::Macro(name) if name.text == chart.name.text));
+    of.next().map(|s| s.name.text.clone())
+}
+
+fn with_title(drawing: &Drawing, title: &Picture) -> Rect {
+    title.area().map_or(drawing.area, |t| t.union(&drawing.area))
+}
+
+/// Boxes side by side while the row is no wider than the widest box or than a
+/// sheet somewhat wider than high; then the next row. The order stays.
+fn rows(boxes: &[Rect]) -> Vec<Point> {
+    let ink: i64 = boxes.iter().map(|b| i64::from(b.w + BETWEEN) * i64::from(b.h + BETWEEN)).sum();
+    let widest = boxes.iter().map(|b| b.w).max().unwrap_or(0);
+    let room = widest.max(i32::try_from((ink * 3 / 2).isqrt()).unwrap_or(i32::MAX));
+    let (mut x, mut y, mut high) = (0, 0, 0);
+    let mut places = Vec::new();
+    for b in boxes {
+        if x > 0 && x + b.w > room {
+            (x, y, high) = (0, y + high + BETWEEN, 0);
+        }
+        places.push(Point { x, y });
+        x += b.w + BETWEEN;
+        high = high.max(b.h);
+    }
+    places
 }
 
 /// The head of a file up to the open group `g7`.
@@ -105,7 +186,7 @@ fn base64(bytes: &[u8]) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::base64;
+    use super::*;
 
     #[test]
     fn base_64_is_that_of_the_rfc() {
@@ -120,5 +201,16 @@ mod tests {
         for (plain, coded) in cases {
             assert_eq!(base64(plain.as_bytes()), coded);
         }
+    }
+
+    #[test]
+    fn charts_on_a_sheet_keep_their_order_and_their_distance() {
+        let boxes = [(900, 2000), (800, 500), (4000, 700), (10, 10)].map(|(w, h)| Rect { x: 5, y: 5, w, h });
+        let places = rows(&boxes);
+        let put: Vec<Rect> = boxes.iter().zip(&places).map(|(b, p)| Rect { x: p.x, y: p.y, ..*b }).collect();
+        for (i, a) in put.iter().enumerate() {
+            assert!(put[i + 1..].iter().all(|b| !a.overlaps(b)), "{put:?}");
+        }
+        assert!(places.windows(2).all(|w| (w[0].y, w[0].x) < (w[1].y, w[1].x)), "{places:?}");
     }
 }

@@ -72,6 +72,8 @@ pub(crate) enum Command {
     Run(Run),
     /// Run the tests of charts in virtual time.
     Test(Test),
+    /// Draw charts as SVG, PNG or PDF.
+    Draw(crate::draw::Draw),
     /// Turn a JGrafchart XML file into a .g7 file.
     Import(Import),
     /// Explain a problem code, or list them all.

@@ -15,6 +15,7 @@
 
 mod check;
 mod cli;
+mod draw;
 mod explain;
 mod failure;
 mod files;
@@ -72,6 +73,7 @@ fn run(command: &Command) -> Result<Verdict, Failure> {
         Command::Fmt(args) => fmt::fmt(args),
         Command::Run(args) => run::run(args),
         Command::Test(args) => testing::test(args),
+        Command::Draw(args) => draw::draw(args),
         Command::Import(args) => import::import(args),
         Command::Explain(args) => explain::explain(args),
         Command::Completions(args) => shell::completions(args),

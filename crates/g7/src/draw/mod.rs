@@ -1,0 +1,207 @@
+//! `g7 draw`: charts as pictures, in SVG, PNG or PDF.
+
+mod paper;
+
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+use clap::ValueEnum;
+use g7_draw::{Drawing, Look, Options};
+use g7_model::Chart;
+
+use crate::failure::{Failure, Verdict};
+use crate::report::{self, Tally};
+use crate::sources::{self, Source};
+use crate::{files, style, talk};
+
+const EXAMPLES: &str = "\
+Examples:
+  g7 draw tank -o tank.svg              every chart of the file on one sheet
+  g7 draw tank -o tank.pdf --chart Fill one chart
+  g7 draw tank -o pictures/ --as png    a file for each chart
+  g7 draw tank > tank.svg               to the standard output
+  g7 draw tank -o sfc.svg --look sfc    qualifier boxes, as in IEC 61131-3
+
+Exit codes:
+  0  fine
+  1  the chart cannot be read
+  2  bad usage, or something outside the chart: no such file, a full disk";
+
+/// What can be asked of `g7 draw`.
+#[derive(clap::Args, Debug)]
+#[command(after_help = EXAMPLES)]
+pub(crate) struct Draw {
+    /// A .g7 or JGrafchart file, or a folder with a chart.g7.
+    #[arg(default_value = ".")]
+    file: PathBuf,
+    /// Where to: .svg, .png or .pdf, or a folder for a file each; the standard output unless said.
+    #[arg(long, short, value_name = "FILE")]
+    output: Option<PathBuf>,
+    /// The form, where the name of the output does not say it.
+    #[arg(long = "as", value_enum, value_name = "FORM")]
+    form: Option<Form>,
+    /// Only this chart, expansion or task; may be given several times.
+    #[arg(long = "chart", value_name = "NAME")]
+    charts: Vec<String>,
+    /// The manner of drawing.
+    #[arg(long, value_enum, default_value_t = Manner::Iec60848)]
+    look: Manner,
+    /// On pages, as the editor of this PLC has them.
+    #[arg(long, value_enum, value_name = "PLC")]
+    pages: Option<Pages>,
+    /// Light on dark.
+    #[arg(long)]
+    dark: bool,
+    /// Without the actions of the steps.
+    #[arg(long)]
+    no_actions: bool,
+    /// Pixels of a PNG for each of the picture.
+    #[arg(long, default_value_t = 2.0, value_parser = scale, value_name = "NUMBER")]
+    scale: f32,
+}
+
+/// The form of a picture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Form {
+    Svg,
+    Png,
+    Pdf,
+}
+
+/// The manner of drawing.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Manner {
+    /// GRAFCET, IEC 60848.
+    Iec60848,
+    /// Sequential function chart, IEC 61131-3.
+    Sfc,
+}
+
+/// Whose pages.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Pages {
+    /// PL7: 14 lines and 11 columns.
+    Pl7,
+}
+
+impl Form {
+    fn ending(self) -> &'static str {
+        match self {
+            Form::Svg => "svg",
+            Form::Png => "png",
+            Form::Pdf => "pdf",
+        }
+    }
+
+    fn of(path: &Path) -> Option<Form> {
+        let ending = path.extension()?.to_str()?.to_ascii_lowercase();
+        [Form::Svg, Form::Png, Form::Pdf].into_iter().find(|f| f.ending() == ending)
+    }
+}
+
+fn scale(text: &str) -> Result<f32, String> {
+    match text.parse::<f32>() {
+        Ok(n) if (0.1..=16.0).contains(&n) => Ok(n),
+        _ => Err("expected a number from 0.1 to 16".to_owned()),
+    }
+}
+
+pub(crate) fn draw(args: &Draw) -> Result<Verdict, Failure> {
+    let source = sources::load(&files::one(&args.file)?, 0)?;
+    if source.has_errors() {
+        talk!("{}", report::text(&source, &source.problems).trim_end());
+        talk!("{}: {}", source.name, Tally::of(&source.problems));
+        return Ok(Verdict::Found);
+    }
+    let charts = chosen(args, &source)?;
+    let options = Options {
+        look: match args.look {
+            Manner::Iec60848 => Look::Iec60848,
+            Manner::Sfc => Look::Sfc,
+        },
+        actions: !args.no_actions,
+        pages: args.pages == Some(Pages::Pl7),
+        dark: args.dark,
+        font: true,
+    };
+    let drawings: Vec<Drawing> =
+        charts.iter().map(|c| g7_draw::draw(&source.document, c, &options)).collect();
+    match &args.output {
+        Some(folder) if is_folder(folder) => each(args, &drawings, &options, folder)?,
+        output => {
+            let form = form(args, output.as_deref())?;
+            let svg = match drawings.as_slice() {
+                [one] => g7_draw::svg(one, &options),
+                several => g7_draw::sheet(&source.document, several, &options),
+            };
+            let bytes = paper::print(form, svg, args.scale)?;
+            match output {
+                Some(path) => put(path, &bytes)?,
+                None => {
+                    let mut out = std::io::stdout().lock();
+                    out.write_all(&bytes)?;
+                    out.flush()?;
+                }
+            }
+        }
+    }
+    Ok(Verdict::Fine)
+}
+
+/// The charts that are wanted, in the order of the text.
+fn chosen<'a>(args: &Draw, source: &'a Source) -> Result<Vec<&'a Chart>, Failure> {
+    let all: Vec<&Chart> = source.document.charts().collect();
+    if let Some(name) = args.charts.iter().find(|n| !all.iter().any(|c| *c.name.text == ***n)) {
+        let names: Vec<&str> = all.iter().map(|c| &*c.name.text).collect();
+        let (file, names) = (&source.name, names.join(", "));
+        return Err(Failure::Usage(format!("{file} has no chart {name}; it has {names}")));
+    }
+    if all.is_empty() {
+        return Err(Failure::Usage(format!("{} has no chart to draw", source.name)));
+    }
+    let wanted = |c: &&Chart| args.charts.is_empty() || args.charts.iter().any(|n| *c.name.text == **n);
+    Ok(all.into_iter().filter(wanted).collect())
+}
+
+/// A folder that is there, or a name that ends as only folders' names do.
+fn is_folder(path: &Path) -> bool {
+    path.is_dir() || path.to_string_lossy().ends_with(std::path::MAIN_SEPARATOR)
+}
+
+fn form(args: &Draw, output: Option<&Path>) -> Result<Form, Failure> {
+    match (args.form, output) {
+        (Some(form), _) => Ok(form),
+        (None, None) => Ok(Form::Svg),
+        (None, Some(path)) => Form::of(path).ok_or_else(|| {
+            let name = path.display();
+            Failure::Usage(format!("{name} ends in none of .svg, .png, .pdf; --as says the form"))
+        }),
+    }
+}
+
+/// A file for each chart, in a folder. All are made before one is written.
+fn each(args: &Draw, drawings: &[Drawing], options: &Options, folder: &Path) -> Result<(), Failure> {
+    let form = args.form.unwrap_or(Form::Svg);
+    let mut made: Vec<(PathBuf, Vec<u8>)> = Vec::new();
+    for drawing in drawings {
+        let path = folder.join(format!("{}.{}", file_name(&drawing.chart), form.ending()));
+        if made.iter().any(|(p, _)| *p == path) {
+            let (name, path) = (&drawing.chart, path.display());
+            return Err(Failure::Usage(format!("two charts would go to {path}; draw {name} alone")));
+        }
+        made.push((path, paper::print(form, g7_draw::svg(drawing, options), args.scale)?));
+    }
+    std::fs::create_dir_all(folder).map_err(|e| Failure::Write(folder.to_path_buf(), e))?;
+    made.iter().try_for_each(|(path, bytes)| put(path, bytes))
+}
+
+/// A chart's name as that of a file: letters, figures, `-` and `_`.
+fn file_name(chart: &str) -> String {
+    chart.chars().map(|c| if c.is_alphanumeric() || matches!(c, '-' | '_') { c } else { '_' }).collect()
+}
+
+fn put(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
+    files::write(path, bytes)?;
+    talk!("{}wrote{:#} {}", style::GOOD, style::GOOD, path.display());
+    Ok(())
+}

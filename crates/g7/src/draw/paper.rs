@@ -1,0 +1,54 @@
+//! From SVG to what a picture is kept as.
+
+use std::sync::Arc;
+
+use resvg::{tiny_skia, usvg};
+
+use super::Form;
+use crate::failure::Failure;
+
+/// Most pixels of a PNG: 400 MB of memory.
+const MOST_PIXELS: f64 = 1e8;
+
+/// The bytes of a picture.
+pub(super) fn print(form: Form, svg: String, scale: f32) -> Result<Vec<u8>, Failure> {
+    match form {
+        Form::Svg => Ok(svg.into_bytes()),
+        Form::Png => png(&tree(&svg)?, scale),
+        Form::Pdf => pdf(&tree(&svg)?),
+    }
+}
+
+/// The picture with its texts set in our own font: no other is looked for.
+fn tree(svg: &str) -> Result<usvg::Tree, Failure> {
+    let mut fonts = usvg::fontdb::Database::new();
+    fonts.load_font_data(g7_draw::font().to_vec());
+    fonts.set_sans_serif_family(g7_draw::FONT_FAMILY);
+    let options = usvg::Options {
+        font_family: g7_draw::FONT_FAMILY.to_owned(),
+        fontdb: Arc::new(fonts),
+        ..usvg::Options::default()
+    };
+    usvg::Tree::from_str(svg, &options).map_err(|e| Failure::Usage(format!("the picture cannot be set: {e}")))
+}
+
+fn png(tree: &usvg::Tree, scale: f32) -> Result<Vec<u8>, Failure> {
+    let size = tree.size();
+    let (w, h) = ((size.width() * scale).ceil(), (size.height() * scale).ceil());
+    let too_large = || {
+        Failure::Usage(format!(
+            "a PNG of {w} × {h} pixels is too large; a smaller --scale, one --chart, or .svg and .pdf are not"
+        ))
+    };
+    if f64::from(w) * f64::from(h) > MOST_PIXELS {
+        return Err(too_large());
+    }
+    let mut pixels = tiny_skia::Pixmap::new(w as u32, h as u32).ok_or_else(too_large)?;
+    resvg::render(tree, tiny_skia::Transform::from_scale(scale, scale), &mut pixels.as_mut());
+    pixels.encode_png().map_err(|e| Failure::Usage(format!("the PNG cannot be made: {e}")))
+}
+
+fn pdf(tree: &usvg::Tree) -> Result<Vec<u8>, Failure> {
+    svg2pdf::to_pdf(tree, svg2pdf::ConversionOptions::default(), svg2pdf::PageOptions::default())
+        .map_err(|e| Failure::Usage(format!("the PDF cannot be made: {e}")))
+}
