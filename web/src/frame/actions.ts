@@ -1,0 +1,79 @@
+// What the frame does with files.
+import { files, type OpenFile } from '../lib/files.svelte';
+import { t } from '../lib/i18n';
+import { Conflict, server } from '../lib/server';
+import { shell } from '../lib/shell.svelte';
+
+/** A first file: one chart of one step, so that there is something to go on from. */
+const FIRST = 'chart G1 {\n  initial step 0\n}\n';
+
+export async function save(file: OpenFile): Promise<void> {
+  if (!server.writes) {
+    download(file);
+    return;
+  }
+  try {
+    await files.save(file);
+    shell.say(t('app.saved', { name: file.name }));
+  } catch (error) {
+    if (error instanceof Conflict) file.outside = { text: error.text, hash: error.hash };
+    else shell.say((error as Error).message, 'error');
+  }
+}
+
+/** Hands the text to the browser as a file. */
+export function download(file: OpenFile): void {
+  handOut(file.name.slice(file.name.lastIndexOf('/') + 1), file.text, 'text/plain');
+}
+
+export function handOut(name: string, text: string, type: string): void {
+  const link = document.createElement('a');
+  link.href = URL.createObjectURL(new Blob([text], { type }));
+  link.download = name;
+  link.click();
+  setTimeout(() => URL.revokeObjectURL(link.href), 10_000);
+}
+
+/** Closes a file; one with changes asks first. */
+export function close(file: OpenFile): void {
+  if (file.changed && file.saved !== null) {
+    shell.closing = file;
+    shell.dialog = 'close';
+  } else void shell.try(() => files.close(file));
+}
+
+export function newFile(): void {
+  let n = 1;
+  const taken = (name: string) => files.find(name) || shell.folder.some((f) => f.path === name);
+  while (taken(`new-${n}.g7`)) n++;
+  shell.gallery = false;
+  void shell.try(() => files.open(`new-${n}.g7`, FIRST));
+}
+
+/** Opens a file of the user's own machine. */
+export async function openLocal(input: HTMLInputElement): Promise<void> {
+  const chosen = input.files?.[0];
+  input.value = '';
+  if (!chosen) return;
+  const text = await chosen.text();
+  shell.gallery = false;
+  await shell.try(() => files.open(chosen.name, text));
+}
+
+/** The state on the disk becomes ours, as one edit that can be undone. */
+export async function takeTheirs(file: OpenFile): Promise<void> {
+  const outside = file.outside;
+  if (!outside) return;
+  await shell.try(() => file.replace(outside.text));
+  file.saved = outside.text;
+  file.tag = outside.hash;
+  file.outside = null;
+}
+
+/** Ours stays; saving will write over theirs, which the user has seen now. */
+export function keepMine(file: OpenFile): void {
+  if (!file.outside) return;
+  file.saved = file.outside.text;
+  file.tag = file.outside.hash;
+  file.outside = null;
+}

@@ -1,0 +1,214 @@
+// The open files. The text is kept here and in the worker; changes typed here
+// and changes made there while an answer is under way are carried over each other.
+import { ChangeSet, type Text } from '@codemirror/state';
+import { page, type Message } from './page';
+import { prefs } from './prefs.svelte';
+import type { Drawing, Edited, Gesture, Look, Splice } from './protocol';
+import { server } from './server';
+
+/** Who made a change: whoever it was need not be told. */
+export type Origin = 'text' | 'structure' | 'history' | 'disk';
+
+export interface TextChange {
+  splices: Splice[];
+  origin: Origin;
+}
+
+type Listener = (change: TextChange) => void;
+
+const asSpecs = (splices: Splice[]) => splices.map((s) => ({ from: s.from, to: s.to, insert: s.insert }));
+
+function asSplices(changes: ChangeSet): Splice[] {
+  const found: Splice[] = [];
+  changes.iterChanges((from, to, _a, _b, insert: Text) => {
+    found.push({ from, to, insert: insert.toString() });
+  }, true);
+  return found;
+}
+
+function apply(text: string, splices: Splice[]): string {
+  let out = '';
+  let at = 0;
+  for (const s of splices) {
+    out += text.slice(at, s.from) + s.insert;
+    at = s.to;
+  }
+  return out + text.slice(at);
+}
+
+export class OpenFile {
+  readonly name: string;
+  look: Look = $state.raw(undefined as unknown as Look);
+  text: string = $state.raw('');
+  /** The text as it lies on the disk. */
+  saved: string | null = $state.raw(null);
+  /** The server's name for that state. */
+  tag: string | null = null;
+  /** What lies on the disk now, where it is neither ours nor what we read. */
+  outside: { text: string; hash: string } | null = $state.raw(null);
+  readonly changed: boolean = $derived(this.text !== this.saved);
+
+  #listeners = new Set<Listener>();
+  /** Typed while an edit of the worker is under way; relative to the text before it. */
+  #typed: ChangeSet | null = null;
+  #under = 0;
+  #drawings = new Map<string, { version: number; drawing: Promise<Drawing> }>();
+
+  constructor(look: Look, text: string) {
+    this.name = look.file;
+    this.look = look;
+    this.text = text;
+  }
+
+  /** Tells of every change of the text. */
+  listen(listener: Listener): () => void {
+    this.#listeners.add(listener);
+    return () => this.#listeners.delete(listener);
+  }
+
+  /** Typed in the text view. */
+  async type(splices: Splice[], unit = false): Promise<void> {
+    if (splices.length === 0) return;
+    const changes = this.#under > 0 ? ChangeSet.of(asSpecs(splices), this.text.length) : null;
+    this.text = apply(this.text, splices);
+    this.#tell({ splices, origin: 'text' });
+    if (changes) {
+      this.#typed = this.#typed ? this.#typed.compose(changes) : changes;
+      return;
+    }
+    this.look = await page.call<Look>({ do: 'splice', file: this.name, splices, unit });
+  }
+
+  /** An edit by structure. */
+  edit(gesture: Gesture): Promise<Edited> {
+    return this.#change({ do: 'edit', file: this.name, gesture }, 'structure');
+  }
+
+  undo(): Promise<Edited> {
+    return this.#change({ do: 'undo', file: this.name }, 'history');
+  }
+
+  redo(): Promise<Edited> {
+    return this.#change({ do: 'redo', file: this.name }, 'history');
+  }
+
+  format(): Promise<Edited> {
+    return this.#change({ do: 'format', file: this.name }, 'structure');
+  }
+
+  /** The whole text replaced as one edit that can be undone: a newer state from the disk. */
+  async replace(text: string): Promise<void> {
+    const now = this.text;
+    let from = 0;
+    while (from < Math.min(now.length, text.length) && now[from] === text[from]) from++;
+    let tail = 0;
+    while (
+      tail < Math.min(now.length, text.length) - from &&
+      now[now.length - 1 - tail] === text[text.length - 1 - tail]
+    ) {
+      tail++;
+    }
+    const splices = [{ from, to: now.length - tail, insert: text.slice(from, text.length - tail) }];
+    this.text = text;
+    this.#tell({ splices, origin: 'disk' });
+    this.look = await page.call<Look>({ do: 'splice', file: this.name, splices, unit: true });
+  }
+
+  /** A chart as drawn, of the present text. */
+  drawing(chart: string): Promise<Drawing> {
+    const look = prefs.look;
+    const key = `${chart}\n${look}\n${prefs.pages}`;
+    const known = this.#drawings.get(key);
+    if (known && known.version === this.look.version) return known.drawing;
+    const message: Message = { do: 'drawing', file: this.name, chart, look, actions: true };
+    if (prefs.pages) message.pages = 'pl7';
+    const drawing = page.call<Drawing>(message);
+    this.#drawings.set(key, { version: this.look.version, drawing });
+    return drawing;
+  }
+
+  async #change(message: Message, origin: Origin): Promise<Edited> {
+    this.#under++;
+    try {
+      const edited = await page.call<Edited>(message);
+      let splices = edited.splices;
+      if (this.#typed) {
+        const theirs = ChangeSet.of(asSpecs(splices), this.#typed.length);
+        splices = asSplices(theirs.map(this.#typed, true));
+        this.#typed = this.#typed.map(theirs);
+      }
+      this.text = apply(this.text, splices);
+      this.look = edited;
+      this.#tell({ splices, origin });
+      return edited;
+    } finally {
+      this.#under--;
+      if (this.#under === 0) await this.#send();
+    }
+  }
+
+  async #send(): Promise<void> {
+    const typed = this.#typed;
+    this.#typed = null;
+    if (!typed || typed.empty) return;
+    this.look = await page.call<Look>({ do: 'splice', file: this.name, splices: asSplices(typed) });
+  }
+
+  #tell(change: TextChange): void {
+    this.#listeners.forEach((listener) => listener(change));
+  }
+}
+
+class Files {
+  list: OpenFile[] = $state.raw([]);
+  current: OpenFile | null = $state.raw(null);
+
+  find(name: string): OpenFile | undefined {
+    return this.list.find((f) => f.name === name);
+  }
+
+  /** Opens a text under a name, or shows it where it is open already. */
+  async open(name: string, text: string, saved: string | null = null, tag: string | null = null): Promise<OpenFile> {
+    const known = this.find(name);
+    if (known) {
+      this.current = known;
+      return known;
+    }
+    const look = await page.call<Look>({ do: 'open', file: name, text });
+    if (look.imported) text = (await page.call<{ text: string }>({ do: 'text', file: look.file })).text;
+    const file = new OpenFile(look, text);
+    file.saved = look.imported ? null : saved;
+    file.tag = look.imported ? null : tag;
+    this.list = [...this.list, file];
+    this.current = file;
+    return file;
+  }
+
+  /** Opens a file of the server, or an example. */
+  async read(path: string): Promise<OpenFile> {
+    const known = this.find(path);
+    if (known) {
+      this.current = known;
+      return known;
+    }
+    const { text, hash } = await server.read(path);
+    return this.open(path, text, text, hash);
+  }
+
+  async save(file: OpenFile): Promise<void> {
+    const text = file.text;
+    file.tag = await server.write(file.name, text, file.tag);
+    file.saved = text;
+    file.outside = null;
+    void server.dropDraft(file.name);
+  }
+
+  async close(file: OpenFile): Promise<void> {
+    const at = this.list.indexOf(file);
+    this.list = this.list.filter((f) => f !== file);
+    if (this.current === file) this.current = this.list[Math.min(at, this.list.length - 1)] ?? null;
+    await page.call({ do: 'close', file: file.name });
+  }
+}
+
+export const files = new Files();

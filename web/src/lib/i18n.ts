@@ -1,0 +1,23 @@
+// One table of words: key -> [English, French, Portuguese].
+import { canvas } from './words/canvas';
+import { run } from './words/run';
+import { shell } from './words/shell';
+import { text } from './words/text';
+import { prefs } from './prefs.svelte';
+
+export type Words = Record<string, readonly [en: string, fr: string, pt: string]>;
+
+const table = { ...shell, ...canvas, ...run, ...text } as const;
+
+export type Key = keyof typeof table;
+export type Language = 'en' | 'fr' | 'pt';
+
+export const languages: Record<Language, string> = { en: 'English', fr: 'Français', pt: 'Português' };
+
+/** The word in the language of the page; `{name}` stands for a value. */
+export function t(key: Key, values: Record<string, string | number> = {}): string {
+  const row: readonly [string, string, string] = table[key];
+  const at = { en: 0, fr: 1, pt: 2 } as const;
+  const word = row[at[prefs.language]];
+  return word.replace(/\{(\w+)\}/g, (whole, name: string) => String(values[name] ?? whole));
+}

@@ -1,0 +1,61 @@
+// The Rust crate `g7-page` as wasm in a worker: one JSON message in, one out, in
+// the order asked. The worker keeps parsing, layout and runs off the thread that
+// paints.
+
+export type Message = { do: string } & Record<string, unknown>;
+
+/** A sentence for the user. */
+export class Refused extends Error {}
+
+/** Who answers messages: the page's own worker, or the server. */
+export interface Answers {
+  call<T>(message: Message): Promise<T>;
+}
+
+interface Waiting {
+  resolve(value: unknown): void;
+  reject(reason: Error): void;
+}
+
+/** The answer in its outer form. */
+export function opened<T>(answer: string): T {
+  const said = JSON.parse(answer) as { ok?: T; no?: string };
+  if (said.no !== undefined) throw new Refused(said.no);
+  return said.ok as T;
+}
+
+class Local implements Answers {
+  #worker: Worker | undefined;
+  #waiting: Waiting[] = [];
+
+  call<T>(message: Message): Promise<T> {
+    this.#worker ??= this.#start();
+    const answer = new Promise<T>((resolve, reject) => {
+      this.#waiting.push({ resolve: resolve as (value: unknown) => void, reject });
+    });
+    this.#worker.postMessage(JSON.stringify(message));
+    return answer;
+  }
+
+  #start(): Worker {
+    const worker = new Worker(new URL('./page.worker.ts', import.meta.url), { type: 'module' });
+    worker.postMessage({ wasm: new URL('g7.wasm', document.baseURI).href });
+    worker.onmessage = (event: MessageEvent<string>) => {
+      const waiting = this.#waiting.shift();
+      try {
+        waiting?.resolve(opened(event.data));
+      } catch (error) {
+        waiting?.reject(error as Error);
+      }
+    };
+    worker.onerror = (event) => {
+      const waiting = this.#waiting.splice(0);
+      waiting.forEach((w) => w.reject(new Error(event.message || 'the worker stopped')));
+      worker.terminate();
+      this.#worker = undefined;
+    };
+    return worker;
+  }
+}
+
+export const page: Answers = new Local();

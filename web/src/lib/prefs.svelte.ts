@@ -1,0 +1,71 @@
+// What the user chose and the browser remembers.
+import type { Language } from './i18n';
+
+export type Theme = 'auto' | 'light' | 'dark';
+
+interface Kept {
+  language: Language;
+  theme: Theme;
+  left: number;
+  right: number;
+  bottom: number;
+  split: number;
+  leftOpen: boolean;
+  rightOpen: boolean;
+  bottomOpen: boolean;
+  view: 'chart' | 'both' | 'text';
+  look: 'iec60848' | 'sfc';
+  pages: boolean;
+  minimap: boolean;
+  guided: boolean;
+}
+
+const KEY = 'g7-prefs';
+
+function spoken(): Language {
+  const code = (navigator.language || 'en').slice(0, 2);
+  return code === 'fr' || code === 'pt' ? code : 'en';
+}
+
+const first: Kept = {
+  language: spoken(),
+  theme: 'auto',
+  left: 240,
+  right: 300,
+  bottom: 220,
+  split: 0.6,
+  leftOpen: true,
+  rightOpen: true,
+  bottomOpen: false,
+  view: 'chart',
+  look: 'iec60848',
+  pages: false,
+  minimap: true,
+  guided: false,
+};
+
+function stored(): Partial<Kept> {
+  try {
+    return JSON.parse(localStorage.getItem(KEY) ?? '{}') as Partial<Kept>;
+  } catch {
+    return {};
+  }
+}
+
+export const prefs: Kept = $state({ ...first, ...stored() });
+
+/** Writes what was chosen whenever it changes; call once, inside a component. */
+export function keepPrefs(): void {
+  $effect(() => {
+    const text = JSON.stringify(prefs);
+    try {
+      localStorage.setItem(KEY, text);
+    } catch {
+      // A browser that keeps nothing still works.
+    }
+  });
+  $effect(() => {
+    document.documentElement.lang = prefs.language;
+    document.documentElement.dataset.theme = prefs.theme;
+  });
+}

@@ -1,0 +1,292 @@
+// The messages between the page and the Rust crate `g7-page`, which answers them
+// in the page's own worker (as wasm) and in the server. Places in texts are
+// UTF-16 code units; geometry is in px at 100 % zoom.
+
+export type Box = [x: number, y: number, w: number, h: number];
+
+export interface Splice {
+  from: number;
+  to: number;
+  insert: string;
+}
+
+export interface Fix {
+  title: string;
+  splices: Splice[];
+}
+
+export interface Problem {
+  code: string;
+  title: string;
+  severity: 'error' | 'warning';
+  what: string;
+  help?: string;
+  from: number;
+  to: number;
+  line: number;
+  column: number;
+  related: { from: number; to: number; what: string }[];
+  /** Ids of the symbols that it marks. */
+  items: string[];
+  fixes: Fix[];
+}
+
+export type ChartKind = 'chart' | 'expansion' | 'task';
+
+export interface ChartRow {
+  name: string;
+  kind: ChartKind;
+  comment?: string;
+  from: number;
+  to: number;
+  steps: number;
+  transitions: number;
+  /** Chart and step that this is the expansion of, or that enclose it. */
+  of?: [chart: string, step: string];
+}
+
+export interface TestRow {
+  name: string;
+  from: number;
+  to: number;
+  plant?: string;
+}
+
+/** A file at a glance. */
+export interface Look {
+  file: string;
+  version: number;
+  length: number;
+  hash: string;
+  /** Parses without syntax errors. */
+  clean: boolean;
+  imported?: boolean;
+  can_undo: boolean;
+  can_redo: boolean;
+  problems: Problem[];
+  charts: ChartRow[];
+  profile: string;
+  scan_ms: number;
+  plants: string[];
+  tests: TestRow[];
+}
+
+/** A look after a change that the page did not type itself. */
+export interface Edited extends Look {
+  splices: Splice[];
+  select?: string[];
+  /** The symbol whose text is to be edited in place next. */
+  begin?: string;
+}
+
+export type Part = 'step' | 'action' | 'transition' | 'link' | 'connector' | 'text';
+
+/** A thing in a drawing that can be pointed at. */
+export interface Item {
+  id: string;
+  part: Part;
+  /** What it covers, texts included. */
+  area: Box;
+  /** Its symbol. */
+  svg: string;
+  /** Path data for a far view. */
+  far: string;
+  from: number;
+  to: number;
+  square?: Box;
+  bar?: Box;
+  text?: Box;
+  name?: string;
+  label?: string;
+  comment?: string;
+  /** The chart that a macro-step opens. */
+  macro?: string;
+  encloses?: string[];
+  initial?: boolean;
+  /** The receptivity or the action as typed. */
+  source?: string;
+  priority?: number;
+  /** The two ends of a link. */
+  ends?: [string, string];
+  /** Anchor. */
+  at?: [number, number];
+}
+
+export interface Drawing {
+  chart: string;
+  kind: ChartKind;
+  /** The text has syntax errors; this is the last good drawing. */
+  stale: boolean;
+  area: Box;
+  items: Item[];
+}
+
+export interface DrawingLook {
+  look?: 'iec60848' | 'sfc';
+  pages?: 'pl7';
+  actions?: boolean;
+}
+
+export interface Completion {
+  label: string;
+  kind: string;
+  detail?: string;
+  insert?: string;
+}
+
+export interface Completions {
+  from: number;
+  items: Completion[];
+}
+
+export interface Hover {
+  from: number;
+  to: number;
+  markdown: string;
+}
+
+export interface VariableRow {
+  name: string;
+  class: 'input' | 'output' | 'var' | 'const';
+  type: string;
+  init?: string;
+  address?: string;
+  inverted?: boolean;
+  retain?: boolean;
+  safe?: string;
+  comment?: string;
+  chart?: string;
+  from: number;
+  to: number;
+}
+
+export interface StepSymbol {
+  id: string;
+  name: string;
+  chart: string;
+  comment?: string;
+  from: number;
+  to: number;
+}
+
+export interface Symbols {
+  variables: VariableRow[];
+  steps: StepSymbol[];
+}
+
+export interface SearchHit {
+  from: number;
+  to: number;
+  line: number;
+  text: string;
+  chart?: string;
+  item?: string;
+}
+
+/** An edit by structure; ids name symbols of one chart. */
+export type Gesture =
+  | { g: 'add_step'; chart: string; at?: [number, number]; kind?: string }
+  | { g: 'next'; id: string }
+  | { g: 'before'; id: string }
+  | { g: 'connect'; from: string; to: string }
+  | { g: 'insert'; link: string; what: string }
+  | { g: 'branch'; id: string; how: 'or' | 'and' }
+  | { g: 'converge'; ids: string[]; how: 'or' | 'and'; to?: string }
+  | { g: 'jump'; id: string; to: string }
+  | { g: 'parallel'; ids: string[] }
+  | { g: 'delete'; ids: string[]; heal: boolean }
+  | { g: 'rename'; id?: string; name?: string; to: string }
+  | { g: 'receptivity'; id: string; text: string }
+  | { g: 'action'; id: string; index?: number; text: string }
+  | { g: 'comment'; id: string; text: string }
+  | { g: 'label'; id: string; text: string }
+  | { g: 'priority'; id: string; n: number | null }
+  | { g: 'initial'; id: string; on: boolean }
+  | { g: 'kind'; id: string; kind: 'plain' | 'macro' | 'enclosing' | 'entry' | 'exit' }
+  | { g: 'move'; ids: string[]; dx: number; dy: number }
+  | { g: 'align'; ids: string[]; how: 'left' | 'top' | 'center' | 'distribute_x' | 'distribute_y' }
+  | { g: 'tidy'; chart: string }
+  | { g: 'paste'; chart: string; text: string; at?: [number, number] }
+  | { g: 'cut'; ids: string[] }
+  | { g: 'add_chart'; kind: ChartKind; name?: string }
+  | { g: 'delete_chart'; chart: string }
+  | { g: 'macro'; ids: string[] }
+  | { g: 'variable'; name: string | null; row: Partial<VariableRow> }
+  | { g: 'delete_variable'; name: string }
+  | { g: 'profile'; name: string }
+  | { g: 'scan'; ms: number }
+  | { g: 'text'; splices: Splice[] };
+
+export type SignalRole = 'input' | 'output' | 'variable' | 'plant';
+export type SignalType = 'bool' | 'int' | 'real' | 'time' | 'text';
+
+export interface SignalRow {
+  name: string;
+  role: SignalRole;
+  type: SignalType;
+  declared: string;
+  comment?: string;
+  address?: string;
+  driven: boolean;
+}
+
+export interface RunStep {
+  id: string;
+  name: string;
+  chart: string;
+  /** The signal of its activity is called so. */
+  activity: string;
+  macro: boolean;
+  inner: boolean;
+}
+
+export interface Started {
+  run: string;
+  file: string;
+  profile: string;
+  period_ms: number;
+  signals: SignalRow[];
+  steps: RunStep[];
+  transitions: { id: string }[];
+  plant?: string;
+  view?: { file: string; svg?: string; bindings: { element: string; attribute: string }[] };
+  frame: Frame;
+}
+
+/** What changed in a run since its last frame; a full one has all. */
+export interface Frame {
+  run: string;
+  now_ms: number;
+  scans: number;
+  passes: number;
+  full: boolean;
+  on: number[];
+  off: number[];
+  times?: Record<string, number>;
+  /** 0 not enabled, 1 enabled, 2 enabled and the receptivity true. */
+  enabled: [number, 0 | 1 | 2][];
+  cleared: number[];
+  values: [number, string, number][];
+  forced: [number, boolean][];
+  view: [number, boolean | number | string][];
+  within?: boolean;
+  late?: boolean;
+  live?: boolean;
+  stopped?: { id: string };
+  halt?: { what: string; at?: [number, number]; ids?: string[] };
+  notes?: string[];
+}
+
+export interface Lane {
+  signal: number;
+  edges: [ms: number, value: number, show: string][];
+}
+
+export interface TestResult {
+  name: string;
+  ok: boolean;
+  message?: string;
+  from: number;
+  to: number;
+  steps?: string[];
+}

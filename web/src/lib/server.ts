@@ -1,0 +1,204 @@
+// Files and shared runs of `g7 serve`; without a server (the static playground)
+// the examples come from one file beside the page and nothing is written.
+import { opened, Refused, type Answers, type Message } from './page';
+
+export interface Info {
+  name: string;
+  version: string;
+  read_only: boolean;
+  folder: string;
+  start?: string;
+}
+
+export interface FileRow {
+  path: string;
+  size: number;
+  hash: string;
+  title?: string;
+}
+
+export interface Changed {
+  path: string;
+  hash: string;
+}
+
+/** The file was changed by someone else since it was read. */
+export class Conflict extends Error {
+  constructor(
+    readonly text: string,
+    readonly hash: string,
+  ) {
+    super('changed outside');
+  }
+}
+
+const TOKEN = 'g7-token';
+
+function takeToken(): string {
+  const here = new URL(location.href);
+  const token = here.searchParams.get('token');
+  if (token) {
+    sessionStorage.setItem(TOKEN, token);
+    here.searchParams.delete('token');
+    history.replaceState(null, '', here);
+  }
+  return sessionStorage.getItem(TOKEN) ?? '';
+}
+
+class Server implements Answers {
+  info: Info | null = null;
+  /** Files of the static playground. */
+  #examples = new Map<string, string>();
+  #token = '';
+  #socket: Promise<WebSocket> | null = null;
+  #waiting = new Map<number, { resolve(v: unknown): void; reject(e: Error): void }>();
+  #next = 1;
+  #heard = new Set<(message: Record<string, unknown>) => void>();
+
+  /** Finds out whether there is a server; else reads the examples. */
+  async begin(): Promise<void> {
+    this.#token = takeToken();
+    try {
+      const answer = await this.#fetch('api/info');
+      if (answer.ok && answer.headers.get('content-type')?.includes('json')) {
+        this.info = (await answer.json()) as Info;
+        return;
+      }
+      if (answer.status === 401 || answer.status === 403) throw new Refused(await answer.text());
+    } catch (error) {
+      if (error instanceof Refused) throw error;
+    }
+    const answer = await fetch('./examples.json').catch(() => null);
+    if (!answer?.ok) return;
+    const found = (await answer.json()) as Record<string, string>;
+    this.#examples = new Map(Object.entries(found));
+  }
+
+  get writes(): boolean {
+    return this.info !== null && !this.info.read_only;
+  }
+
+  async files(): Promise<FileRow[]> {
+    if (!this.info) {
+      return [...this.#examples].map(([path, text]) => ({ path, size: text.length, hash: '' }));
+    }
+    const answer = await this.#ok(await this.#fetch('api/files'));
+    return ((await answer.json()) as { files: FileRow[] }).files;
+  }
+
+  async read(path: string): Promise<{ text: string; hash: string }> {
+    if (!this.info) {
+      const text = this.#examples.get(path);
+      if (text === undefined) throw new Refused(path);
+      return { text, hash: '' };
+    }
+    const answer = await this.#ok(await this.#fetch(`api/file?path=${encodeURIComponent(path)}`));
+    return { text: await answer.text(), hash: tag(answer) };
+  }
+
+  /** Writes a file whole; throws [`Conflict`] when it is not as it was read. */
+  async write(path: string, text: string, hash: string | null): Promise<string> {
+    const headers: Record<string, string> = { 'content-type': 'text/plain; charset=utf-8' };
+    if (hash === null) headers['if-none-match'] = '*';
+    else headers['if-match'] = `"${hash}"`;
+    const answer = await this.#fetch(`api/file?path=${encodeURIComponent(path)}`, {
+      method: 'PUT',
+      headers,
+      body: text,
+    });
+    if (answer.status === 412) throw new Conflict(await answer.text(), tag(answer));
+    await this.#ok(answer);
+    return tag(answer);
+  }
+
+  async keepDraft(path: string, text: string): Promise<void> {
+    await this.#fetch(`api/draft?path=${encodeURIComponent(path)}`, { method: 'PUT', body: text });
+  }
+
+  async drafts(): Promise<{ path: string; text: string }[]> {
+    if (!this.info) return [];
+    const answer = await this.#fetch('api/drafts');
+    return answer.ok ? ((await answer.json()) as { drafts: { path: string; text: string }[] }).drafts : [];
+  }
+
+  async dropDraft(path: string): Promise<void> {
+    await this.#fetch(`api/draft?path=${encodeURIComponent(path)}`, { method: 'DELETE' });
+  }
+
+  /** Renames, deletes or makes a file. */
+  async change(what: 'rename' | 'delete' | 'new', body: Record<string, string>): Promise<void> {
+    const answer = await this.#fetch(`api/${what}`, {
+      method: 'POST',
+      headers: { 'content-type': 'application/json' },
+      body: JSON.stringify(body),
+    });
+    await this.#ok(answer);
+  }
+
+  /** Called with every message that the server sends of itself: frames, changed files. */
+  hear(listener: (message: Record<string, unknown>) => void): () => void {
+    this.#heard.add(listener);
+    if (this.info) void this.#live().catch(() => undefined);
+    return () => this.#heard.delete(listener);
+  }
+
+  /** A message to the server's own page: shared runs. */
+  async call<T>(message: Message): Promise<T> {
+    const socket = await this.#live();
+    const id = this.#next++;
+    return new Promise<T>((resolve, reject) => {
+      this.#waiting.set(id, { resolve: resolve as (v: unknown) => void, reject });
+      socket.send(JSON.stringify({ id, call: message }));
+    });
+  }
+
+  #live(): Promise<WebSocket> {
+    this.#socket ??= new Promise((resolve, reject) => {
+      const address = new URL('api/live', document.baseURI);
+      address.protocol = address.protocol === 'https:' ? 'wss:' : 'ws:';
+      address.searchParams.set('token', this.#token);
+      const socket = new WebSocket(address);
+      socket.onopen = () => resolve(socket);
+      socket.onmessage = (event: MessageEvent<string>) => this.#hear(event.data);
+      socket.onclose = () => {
+        this.#socket = null;
+        reject(new Refused('the server is gone'));
+        this.#waiting.forEach((w) => w.reject(new Refused('the server is gone')));
+        this.#waiting.clear();
+        setTimeout(() => void this.#live().catch(() => undefined), 2000);
+      };
+    });
+    return this.#socket;
+  }
+
+  #hear(text: string): void {
+    const message = JSON.parse(text) as Record<string, unknown>;
+    const waiting = this.#waiting.get(message.id as number);
+    if (!waiting) {
+      this.#heard.forEach((listener) => listener(message));
+      return;
+    }
+    this.#waiting.delete(message.id as number);
+    try {
+      waiting.resolve(opened(JSON.stringify(message.answer)));
+    } catch (error) {
+      waiting.reject(error as Error);
+    }
+  }
+
+  async #fetch(path: string, init: RequestInit = {}): Promise<Response> {
+    const headers = { ...(init.headers as Record<string, string>), authorization: `Bearer ${this.#token}` };
+    return fetch(new URL(path, document.baseURI), { ...init, headers });
+  }
+
+  async #ok(answer: Response): Promise<Response> {
+    if (!answer.ok) throw new Refused((await answer.text()) || answer.statusText);
+    return answer;
+  }
+}
+
+function tag(answer: Response): string {
+  return (answer.headers.get('etag') ?? '').replace(/^W\//, '').replaceAll('"', '');
+}
+
+export const server = new Server();

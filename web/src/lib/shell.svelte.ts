@@ -1,0 +1,114 @@
+// What is shown: which chart, what is selected, which dialog is open, and the
+// places where the components of other folders put themselves.
+import type { Component } from 'svelte';
+import { files, type OpenFile } from './files.svelte';
+import type { Key } from './i18n';
+import { prefs } from './prefs.svelte';
+import { Refused } from './page';
+import type { FileRow } from './server';
+
+/** A component that has a place in the frame. */
+export interface Panel {
+  id: string;
+  title: Key;
+  region: 'left' | 'right' | 'bottom' | 'top' | 'text' | 'start';
+  component: Component;
+  /** Lower ones first. */
+  order: number;
+}
+
+/** A place in the text that is to be shown. */
+export interface Reveal {
+  file: string;
+  from: number;
+  to: number;
+}
+
+export interface Notice {
+  id: number;
+  text: string;
+  kind: 'info' | 'error';
+}
+
+class Shell {
+  /** The chart in view, by file. */
+  #charts: Record<string, string> = $state({});
+  /** Ids of the selected symbols of the chart in view. */
+  selection: ReadonlySet<string> = $state.raw(new Set());
+  hover: string | null = $state(null);
+  /** A symbol that the canvas is to bring into view. */
+  goto: { id: string; n: number } | null = $state.raw(null);
+  /** A place that the text view is to bring into view. */
+  reveal: Reveal | null = $state.raw(null);
+  dialog: string | null = $state(null);
+  /** The open tab by region. */
+  tabs: Record<string, string> = $state({});
+  notices: Notice[] = $state.raw([]);
+  /** Whether the gallery is shown over everything. */
+  gallery = $state(false);
+  /** The beginning is over: server found, first file open. */
+  ready = $state(false);
+  /** What the server's folder holds, or the examples. */
+  folder: FileRow[] = $state.raw([]);
+  /** The file that the dialog about closing asks about. */
+  closing: OpenFile | null = $state.raw(null);
+  #count = 0;
+
+  /** The chart of a file that is in view: the chosen one, else the first. */
+  chart(file: OpenFile | null): string | null {
+    if (!file) return null;
+    const chosen = this.#charts[file.name];
+    const charts = file.look.charts;
+    return charts.find((c) => c.name === chosen)?.name ?? charts[0]?.name ?? null;
+  }
+
+  show(file: OpenFile, chart?: string): void {
+    files.current = file;
+    if (chart !== undefined && this.chart(file) !== chart) {
+      this.#charts[file.name] = chart;
+      this.selection = new Set();
+    }
+  }
+
+  /** Brings a symbol into view and selects it. */
+  jump(file: OpenFile, id: string): void {
+    const chart = id.split('/')[0] ?? '';
+    this.show(file, chart);
+    this.selection = new Set([id]);
+    this.goto = { id, n: ++this.#count };
+  }
+
+  /** Brings a place of the text into view. */
+  showText(file: OpenFile, from: number, to: number): void {
+    files.current = file;
+    if (prefs.view === 'chart') prefs.view = 'both';
+    this.reveal = { file: file.name, from, to };
+  }
+
+  select(ids: Iterable<string>): void {
+    this.selection = new Set(ids);
+  }
+
+  say(text: string, kind: 'info' | 'error' = 'info'): void {
+    const id = ++this.#count;
+    this.notices = [...this.notices.slice(-3), { id, text, kind }];
+    setTimeout(() => this.drop(id), kind === 'error' ? 8000 : 4000);
+  }
+
+  drop(id: number): void {
+    this.notices = this.notices.filter((n) => n.id !== id);
+  }
+
+  /** Does something that may be refused; a refusal is told to the user. */
+  async try<T>(work: () => Promise<T>): Promise<T | undefined> {
+    try {
+      return await work();
+    } catch (error) {
+      this.say(error instanceof Error ? error.message : String(error), 'error');
+      if (!(error instanceof Refused)) console.error(error);
+      return undefined;
+    }
+  }
+}
+
+export const shell = new Shell();
