@@ -30,7 +30,7 @@ const SD_FF: u64 = 1 << 17;
 const DS_FF: u64 = 1 << 18;
 const SL_FF: u64 = 1 << 19;
 /// Q as it was written last (of a plain block, in the word of its count).
-const WRITTEN: u64 = 1 << 63;
+pub(crate) const WRITTEN: u64 = 1 << 63;
 /// Q, pulses P1 and P0 left out, at the last evaluation.
 const Q_BEFORE: u64 = 1 << 20;
 
@@ -102,6 +102,13 @@ pub(crate) fn evaluate(p: &Program, s: &mut State) -> Result<(), Fault> {
         }
     }
     Ok(())
+}
+
+/// Notes that a block wrote TRUE last.
+pub(crate) fn take_as_written(p: &Program, s: &mut State, block: u32) {
+    let plain = p.t.blocks.get(block as usize).is_some_and(|b| b.plain);
+    let at = (base(p, block) + if plain { 0 } else { MEMORY }) as usize;
+    s.set(at, word(&s.w, at) | WRITTEN);
 }
 
 /// Writes Q where it has changed: between two changes the variable is free.

@@ -38,6 +38,7 @@ extern crate alloc;
 mod bare;
 mod bits;
 mod blocks;
+mod carry;
 mod change;
 mod check;
 mod fault;
@@ -53,6 +54,7 @@ mod state;
 mod text;
 mod watch;
 
+pub use carry::{Common, carry};
 pub use fault::{Fault, FaultKind};
 pub use judge::enabled;
 pub use ops::{Addr, Arith, Block, Builtin, Cmp, Code, GroupId, Num, Op, Service, StepId, WatchId};

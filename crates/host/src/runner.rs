@@ -440,6 +440,20 @@ impl Runner {
         }
     }
 
+    /// Goes on from a state that another run had reached, with its next scan at `due`.
+    #[must_use]
+    pub fn from_state(mut self, state: State, due: i64) -> Runner {
+        (self.state, self.due) = (state, due);
+        self
+    }
+
+    /// The same of the plant.
+    pub fn set_plant_state(&mut self, state: State) {
+        if let Some(plant) = &mut self.plant {
+            plant.state = state;
+        }
+    }
+
     /// The words kept over a warm restart, now.
     pub fn retained(&self) -> Vec<u64> {
         self.retained.iter().cloned().flatten().map(|a| self.state.word(Addr(a))).collect()

@@ -14,6 +14,7 @@
 #![forbid(unsafe_code)]
 
 mod bench;
+mod carry;
 mod error;
 mod source;
 pub mod testing;
@@ -22,5 +23,6 @@ pub mod values;
 pub use bench::{
     Activity, Answer, Ask, Bench, Conflicts, Item, Options, PlantSide, Role, StepItem, Table, build,
 };
+pub use carry::{Carried, carry};
 pub use error::Error;
 pub use source::Source;

@@ -1,0 +1,223 @@
+//! A changed chart takes over a run: what both have by the same name goes on.
+//!
+//! ```text
+//! old Bench + Runner, new Bench -> pairs by name -> engine::carry -> new Runner, what is lost
+//! ```
+//!
+//! What must hold: nothing that goes away unsaid mattered: an active step, a
+//! value that is not the initial one, a forced signal.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use g7_compile::Compiled;
+use g7_compile::ir::VarClass;
+use g7_compile::symbols::{Symbols, Variable};
+use g7_engine::{Addr, Common, GroupId, NONE, State, StepId};
+use g7_host::Runner;
+use g7_model::{Chart, ChartKind, Document};
+
+use crate::{Bench, Role};
+
+/// A run that goes on in changed charts.
+pub struct Carried {
+    /// It, at the instant where the old one stood.
+    pub runner: Runner,
+    /// What does not go on, a sentence each.
+    pub lost: Vec<String>,
+}
+
+/// Lets new charts go on where a run of old ones stands.
+///
+/// # Errors
+///
+/// Why it cannot: the run is stopped by a fault, or an expression of the new
+/// charts has one in this state.
+pub fn carry(new: (&Bench, &Document), old: (&Bench, &Document), run: &Runner) -> Result<Carried, String> {
+    if run.halt().is_some() {
+        return Err("the run is stopped by a fault: start it anew".to_owned());
+    }
+    let (bench, before) = (new.0, old.0);
+    let mut lost = Vec::new();
+    let state = charts(new, old, run.state(), &mut lost)?;
+    let mut runner = bench.runner(0).from_state(state, run.due());
+    plant(bench, before, run, &mut runner, &mut lost)?;
+    for item in &before.items {
+        let there = bench.items.iter().find(|i| i.name == item.name && i.kind == item.kind);
+        let forced = before.is_forced(run, item);
+        match there {
+            Some(i) if forced => {
+                let value = before.value(run, item);
+                bench.force(&mut runner, i, &value);
+            }
+            None if forced => lost.push(format!("`{}` was forced and is not there any more", item.name)),
+            Some(i) if matches!((item.role, i.role), (Role::Input(_), Role::Input(_))) => {
+                let value = before.value(run, item);
+                bench.set(&mut runner, i, &value);
+            }
+            Some(_) | None => {}
+        }
+    }
+    Ok(Carried { runner, lost })
+}
+
+/// The state of the new charts.
+fn charts(
+    new: (&Bench, &Document),
+    old: (&Bench, &Document),
+    state: &State,
+    lost: &mut Vec<String>,
+) -> Result<State, String> {
+    let (c, was) = (&new.0.compiled, &old.0.compiled);
+    let kept = kept_charts(new.1, old.1);
+    let at_work = at_work(old.1, was, state);
+    for task in &at_work {
+        lost.push(format!("the task `{task}` is at work: it goes back to its start"));
+    }
+    let path_kept = |path: &str| path.split('.').next().is_some_and(|chart| kept.contains(chart));
+    let partners = partners(&was.symbols);
+    let (mut steps, mut begin) = (Vec::new(), Vec::new());
+    for step in (0..c.symbols.steps()).map(StepId) {
+        let path = key(&c.symbols, step);
+        match partners.get(&path).filter(|_| path_kept(&path)) {
+            Some(old) => steps.push((step, *old)),
+            None if !path_kept(&path) && c.program.tables().initial.contains(&step) => begin.push(step),
+            None => {}
+        }
+    }
+    let taken: BTreeSet<StepId> = steps.iter().map(|(_, old)| *old).collect();
+    let gone = |s: &StepId| was.symbols.is_listed(*s) && !taken.contains(s);
+    for step in state.active().filter(gone) {
+        let task = was.symbols.step_path(step).split('.').next().unwrap_or("").to_owned();
+        // What is said of the whole task is not said of its steps again.
+        if !tasks(old.1).any(|t| *t.name.text == *task) {
+            lost.push(format!("step `{}` is active and is not there any more", was.symbols.step_name(step)));
+        }
+    }
+    let words = words(c, was, state, lost);
+    let groups: Vec<(GroupId, GroupId)> = c
+        .symbols
+        .macro_steps
+        .iter()
+        .filter_map(|m| Some((m.group, was.symbols.macro_steps.iter().find(|o| o.path == m.path)?.group)))
+        .collect();
+    let blocks = blocks(c, was);
+    let common = Common { words: &words, steps: &steps, begin: &begin, groups: &groups, blocks: &blocks };
+    let carried = g7_engine::carry(&c.program, (&was.program, state), &common);
+    let (state, delays) = carried.map_err(|f| format!("the changed chart cannot go on here: {}", f.kind))?;
+    match delays {
+        0 => {}
+        1 => lost.push("a delay that runs begins anew".to_owned()),
+        n => lost.push(format!("{n} delays that run begin anew")),
+    }
+    Ok(state)
+}
+
+/// The outermost charts and expansions that both have; tasks go by their callers
+/// and begin anew.
+fn kept_charts<'d>(new: &'d Document, old: &'d Document) -> BTreeSet<&'d str> {
+    let of = |d: &'d Document| -> BTreeSet<&'d str> {
+        d.charts().filter(|c| c.kind == ChartKind::Chart).map(|c| &*c.name.text).collect()
+    };
+    of(new).intersection(&of(old)).copied().collect()
+}
+
+fn tasks(document: &Document) -> impl Iterator<Item = &Chart> {
+    document.charts().filter(|c| c.kind == ChartKind::Task)
+}
+
+/// The tasks that are not at rest.
+fn at_work(document: &Document, was: &Compiled, state: &State) -> Vec<String> {
+    let initial = &was.program.tables().initial;
+    let busy = |task: &str| {
+        let own = |s: &StepId| was.symbols.step_path(*s).split('.').next() == Some(task);
+        state.active().filter(own).any(|s| !initial.contains(&s))
+    };
+    tasks(document).map(|t| t.name.text.to_string()).filter(|t| busy(t)).collect()
+}
+
+/// Steps by their names; the stand-ins of macro-steps by a name of their own.
+fn partners(symbols: &Symbols) -> BTreeMap<String, StepId> {
+    (0..symbols.steps()).map(StepId).map(|s| (key(symbols, s), s)).collect()
+}
+
+fn key(symbols: &Symbols, step: StepId) -> String {
+    let path = symbols.step_path(step);
+    if symbols.is_listed(step) { path.to_owned() } else { format!("{path}.@") }
+}
+
+/// The words of the variables that both have with one type.
+fn words(c: &Compiled, was: &Compiled, state: &State, lost: &mut Vec<String>) -> Vec<(Addr, Addr)> {
+    let old: BTreeMap<&str, &Variable> = was.symbols.variables.iter().map(|v| (&*v.name, v)).collect();
+    let lasting = |v: &Variable| !matches!(v.class, VarClass::Const | VarClass::Local);
+    let (drives, drove) = (driven(c), driven(was));
+    let mut words = Vec::new();
+    let mut kept = BTreeSet::new();
+    for v in c.symbols.variables.iter().filter(|v| lasting(v)) {
+        let Some(o) = old.get(&*v.name).filter(|o| lasting(o) && o.ty == v.ty) else { continue };
+        kept.insert(&*v.name);
+        // An action that went away no longer holds its variable.
+        if drove.contains(&o.addr) && !drives.contains(&v.addr) {
+            continue;
+        }
+        let count = v.words().min(o.words());
+        words.extend((0..count).map(|k| (Addr(v.addr.0 + k), Addr(o.addr.0 + k))));
+    }
+    let fresh = State::new(&was.program);
+    for o in was.symbols.variables.iter().filter(|o| lasting(o) && o.class != VarClass::System) {
+        // Members of an instance go with it, and so does its name.
+        if kept.contains(&*o.name) || o.value(state) == o.value(&fresh) || o.class == VarClass::Input {
+            continue;
+        }
+        let value = Symbols::value_text(o.ty, o.value(state));
+        let now = c.symbols.variable(&o.name);
+        lost.push(match now {
+            Some(v) => format!("`{}` was {} and is {}: its value {value} is lost", o.name, o.ty, v.ty),
+            None if value.is_empty() => format!("`{}` is not there any more", o.name),
+            None => format!("`{}`, which is {value}, is not there any more", o.name),
+        });
+    }
+    words
+}
+
+/// The variables that steps and control blocks drive.
+fn driven(c: &Compiled) -> BTreeSet<Addr> {
+    let tables = c.program.tables();
+    let direct = tables.steps.iter().map(|s| s.direct);
+    direct.chain(tables.blocks.iter().map(|b| b.output)).filter(|a| a.0 != NONE).collect()
+}
+
+/// Control blocks of one name.
+fn blocks(c: &Compiled, was: &Compiled) -> Vec<(u32, u32)> {
+    let named = |s: &Symbols| -> BTreeMap<Box<str>, u32> {
+        (0u32..)
+            .zip(&s.blocks)
+            .filter(|(_, b)| !b.name.is_empty())
+            .map(|(i, b)| (b.name.clone(), i))
+            .collect()
+    };
+    let old = named(&was.symbols);
+    named(&c.symbols).into_iter().filter_map(|(name, i)| Some((i, *old.get(&name)?))).collect()
+}
+
+/// The plant goes on where it stands, as far as it is the same.
+fn plant(
+    bench: &Bench,
+    before: &Bench,
+    run: &Runner,
+    runner: &mut Runner,
+    lost: &mut Vec<String>,
+) -> Result<(), String> {
+    let (Some(side), Some(old), Some((_, state))) = (&bench.plant, &before.plant, run.plant()) else {
+        if let Some(old) = &before.plant {
+            lost.push(format!("the plant `{}` is not there any more", old.name));
+        }
+        return Ok(());
+    };
+    let mut words = words(&side.compiled, &old.compiled, state, lost);
+    words.extend(side.compiled.symbols.seed.zip(old.compiled.symbols.seed));
+    let common = Common { words: &words, ..Common::default() };
+    let carried = g7_engine::carry(&side.compiled.program, (&old.compiled.program, state), &common);
+    let (state, _) = carried.map_err(|f| format!("the changed plant cannot go on here: {}", f.kind))?;
+    runner.set_plant_state(state);
+    Ok(())
+}
