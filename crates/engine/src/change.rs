@@ -91,9 +91,8 @@ pub(crate) fn cascade(p: &Program, s: &mut State) {
         let Some(e) = extra(p, step) else { continue };
         for g in p.t.group_lists.get(e.encloses.start as usize..e.encloses.end as usize).unwrap_or(&[]) {
             let Some(group) = p.t.groups.get(g.0 as usize) else { continue };
-            // An activation in a chart that is being emptied does not take place.
-            for i in group.steps.start..group.steps.end {
-                unmark(&mut s.x.on_mark, i);
+            if drop_activations(s, group.steps) {
+                k = 0;
             }
             let mut from = group.steps.start;
             while let Some(i) = s.steps.next(&s.w, from).filter(|i| *i < group.steps.end) {
@@ -113,6 +112,21 @@ pub(crate) fn cascade(p: &Program, s: &mut State) {
             mark_on(s, *link);
         }
     }
+}
+
+/// An activation in a chart that is being emptied does not take place. Whether
+/// a step goes off for that that would have stayed: what it encloses is to be
+/// looked at again.
+fn drop_activations(s: &mut State, steps: Rows) -> bool {
+    let mut goes = false;
+    for j in 0..s.x.on.len() {
+        let Some(&i) = s.x.on.get(j) else { break };
+        if (steps.start..steps.end).contains(&i) && marked(&s.x.on_mark, i) {
+            unmark(&mut s.x.on_mark, i);
+            goes |= marked(&s.x.off_mark, i);
+        }
+    }
+    goes
 }
 
 /// Collects the stored actions of the marked changes.
@@ -177,12 +191,24 @@ fn apply(p: &Program, s: &mut State) {
     s.x.on.clear();
 }
 
+/// Notes what a step was as the pass began, at its first change in it.
+#[cold]
+fn turn(s: &mut State, step: u32, was: bool) {
+    if !set_bit(&mut s.x.turned, 0, step, true) {
+        set_bit(&mut s.x.was, 0, step, was);
+        s.x.turns.push(step);
+    }
+}
+
 #[inline]
 pub(crate) fn activate(p: &Program, s: &mut State, step: u32) {
     s.x.changed = true;
     s.x.stepped = true;
     s.x.moved += 1;
     let tree = s.steps;
+    if p.looks_back {
+        turn(s, step, false);
+    }
     tree.insert(&mut s.w, step);
     let now = clock(p, s) as u64;
     s.set(p.layout.stamps as usize + step as usize, now);
@@ -207,6 +233,9 @@ pub(crate) fn deactivate(p: &Program, s: &mut State, step: u32) {
     s.x.stepped = true;
     s.x.moved += 1;
     let tree = s.steps;
+    if p.looks_back {
+        turn(s, step, true);
+    }
     tree.remove(&mut s.w, step);
     let at = p.layout.stamps as usize + step as usize;
     let gone = if p.t.rules.keep_step_time { clock(p, s).wrapping_sub(word(&s.w, at) as i64) } else { 0 };
@@ -283,12 +312,11 @@ fn count_groups(p: &Program, s: &mut State, e: &Extra, on: bool) {
         let old = word(&s.w, at);
         let new = if on { old.wrapping_add(1) } else { old.saturating_sub(1) };
         s.set(at, new);
-        if (old == 0) != (new == 0) {
-            stamp_group(p, s, g.0, new != 0);
+        if (old == 0) == (new == 0) {
+            continue;
         }
-        if (old == 0) != (new == 0)
-            && let Some(group) = p.t.groups.get(g.0 as usize)
-        {
+        stamp_group(p, s, g.0, new != 0);
+        if let Some(group) = p.t.groups.get(g.0 as usize) {
             mark_watches(p, s, group.watches);
         }
     }

@@ -1,13 +1,13 @@
 //! One pass of the evolution (SEMANTICS section 3): judge all, then change all.
 
-use crate::bits::{Walk, bit, set_bit, word};
+use crate::bits::{Walk, bit, set_bit};
 use crate::change::{
     activate, add_runs, cascade, commit, deactivate, extra, mark_off, mark_on, marked, run_action,
 };
 use crate::fault::{Fault, FaultKind};
-use crate::run::{guard, value};
+use crate::run::{guard, read, value};
 use crate::state::State;
-use crate::{NONE, Program, Rows, Situation, StepId, Transition};
+use crate::{Addr, NONE, Program, Rows, Situation, StepId, Transition};
 
 /// Makes one pass; whether it changed a step or a variable.
 pub(crate) fn evolve(p: &Program, s: &mut State) -> Result<bool, Fault> {
@@ -16,19 +16,10 @@ pub(crate) fn evolve(p: &Program, s: &mut State) -> Result<bool, Fault> {
     s.x.fired.clear();
     if p.has_periods || p.has_orders {
         block(p, s);
-    }
-    if p.comes_and_goes {
-        let State { w, x, vars, var_words, .. } = s;
-        x.before_pass.clear();
-        x.before_pass.extend_from_slice(w.get(*vars as usize..(*vars + *var_words) as usize).unwrap_or(&[]));
-        x.stepped = false;
+        force(s)?;
     }
     if p.looks_back {
-        let base = s.steps.base() as usize;
-        let State { w, x, .. } = s;
-        for (i, was) in x.was.iter_mut().enumerate() {
-            *was = word(w, base + i);
-        }
+        forget_turns(s);
     }
     collect(p, s)?;
     if !p.t.events.is_empty() {
@@ -36,8 +27,9 @@ pub(crate) fn evolve(p: &Program, s: &mut State) -> Result<bool, Fault> {
     }
     // What receptivities leave in the outputs of sections is no change.
     s.x.changed = false;
-    if p.has_orders {
-        force(s)?;
+    if p.comes_and_goes {
+        s.x.stepped = false;
+        forget_writes(s);
     }
     s.x.idle = s.x.fired.is_empty() && s.x.on.is_empty() && s.x.off.is_empty() && s.x.runs.is_empty();
     if s.x.idle {
@@ -51,11 +43,25 @@ pub(crate) fn evolve(p: &Program, s: &mut State) -> Result<bool, Fault> {
         mark(p, s);
         commit(p, s)?;
     }
-    if p.comes_and_goes && s.x.changed && !s.x.stepped {
-        let to = p.locals.min(s.var_words) as usize;
-        s.x.changed = s.words().get(..to) != s.x.before_pass.get(..to);
+    if p.comes_and_goes {
+        let differs = |w: &(u32, u64)| read(s, Addr(w.0)) != w.1;
+        s.x.changed = s.x.stepped || s.x.written.iter().any(differs);
     }
     Ok(s.x.changed)
+}
+
+/// A pass begins: no step has changed in it.
+fn forget_turns(s: &mut State) {
+    while let Some(step) = s.x.turns.pop() {
+        set_bit(&mut s.x.turned, 0, step, false);
+    }
+}
+
+/// A pass begins: no word has been written in it.
+fn forget_writes(s: &mut State) {
+    while let Some((addr, _)) = s.x.written.pop() {
+        set_bit(&mut s.x.written_mark, 0, addr, false);
+    }
 }
 
 /// Which charts stand still in this pass: those not due, and those forced.
@@ -154,7 +160,7 @@ pub(crate) fn arcs(p: &Program, rows: Rows) -> &[StepId] {
     p.t.arcs.get(rows.start as usize..rows.end as usize).unwrap_or(&[])
 }
 
-/// Tells of two orders that disagree.
+/// Tells of two orders that disagree, before anything is judged in the pass.
 fn force(s: &mut State) -> Result<(), Fault> {
     match s.x.forced_by.iter().position(|f| *f == CONFLICT) {
         Some(chart) => Err(FaultKind::Forcing { chart: chart as u32 }.nowhere()),

@@ -162,7 +162,8 @@ pub struct Extra {
     pub contributions: Rows,
     /// Groups whose activity this step counts in: rows of [`Tables::group_lists`].
     pub groups: Rows,
-    /// Forcing orders: rows of [`Tables::orders`].
+    /// Rows of [`Tables::orders`] that tell, while the step is active, that there
+    /// are orders: one of its own is enough.
     pub orders: Rows,
     /// Groups emptied when it is deactivated: rows of [`Tables::group_lists`].
     pub encloses: Rows,

@@ -3,7 +3,7 @@
 //! Code has been checked by [`crate::Program::new`]: it never pops what is not
 //! there. Only values can go wrong, and that is a [`Fault`] with its place.
 
-use crate::bits::{bit, word};
+use crate::bits::{bit, set_bit, word};
 use crate::fault::{Fault, FaultKind};
 use crate::number::{arith, call, compare, convert, negate, truncate};
 use crate::state::{State, head};
@@ -28,9 +28,20 @@ pub(crate) fn write(p: &Program, s: &mut State, addr: Addr, value: u64) {
     if old == value {
         return;
     }
+    if p.comes_and_goes && lasts {
+        note(s, addr, old);
+    }
     s.set(at, value);
     s.x.changed |= lasts;
     notice(p, s, addr);
+}
+
+/// Notes what a word was as the pass began, at the first write to it.
+#[cold]
+fn note(s: &mut State, addr: Addr, old: u64) {
+    if !set_bit(&mut s.x.written_mark, 0, addr.0, true) {
+        s.x.written.push((addr.0, old));
+    }
 }
 
 fn log(s: &mut State, addr: Addr, old: u64) {
@@ -186,8 +197,9 @@ fn rare(p: &Program, s: &mut State, op: Op) -> Result<(), FaultKind> {
             s.x.stack.push(v);
         }
         Op::WasActive(step) => {
-            let v = u64::from(bit(&s.x.was, 0, step.0));
-            s.x.stack.push(v);
+            let turned = bit(&s.x.turned, 0, step.0);
+            let was = if turned { bit(&s.x.was, 0, step.0) } else { s.steps.contains(&s.w, step.0) };
+            s.x.stack.push(u64::from(was));
         }
         Op::GroupTime(g) => {
             let v = s.group_time(p, g) as u64;

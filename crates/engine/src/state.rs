@@ -89,7 +89,7 @@ pub(crate) struct Layout {
     pub(crate) events: Tree,
     /// Actions of each scan whose step is active.
     pub(crate) periodics: Tree,
-    /// Forcing orders whose step is active.
+    /// Rows of active steps that give forcing orders.
     pub(crate) orders: Tree,
     /// A word a period: when it is due next.
     pub(crate) periods: u32,
@@ -156,10 +156,15 @@ pub(crate) struct Scratch {
     /// Enclosing steps left in this pass, and those entered.
     pub(crate) left: Vec<u32>,
     pub(crate) came: Vec<u32>,
-    /// Step bits as the pass began, where some code looks back.
+    /// Steps that changed in this pass, where some code looks back: which, a bit
+    /// each, and whether they were active as the pass began.
+    pub(crate) turns: Vec<u32>,
+    pub(crate) turned: Box<[u64]>,
     pub(crate) was: Box<[u64]>,
-    /// Variables as the pass began, where they may change and change back in it.
-    pub(crate) before_pass: Vec<u64>,
+    /// Words written in this pass with their values as it began, where they may
+    /// change and change back in it; and which, a bit each.
+    pub(crate) written: Vec<(u32, u64)>,
+    pub(crate) written_mark: Box<[u64]>,
     /// A step came on or went off in this pass.
     pub(crate) stepped: bool,
     pub(crate) off: Vec<u32>,
@@ -262,7 +267,10 @@ impl State {
             chain: Vec::with_capacity(if t.rules.sequential { 2 * steps + 1 } else { 0 }),
             left: Vec::with_capacity(if t.rules.sequential { 2 * steps + 1 } else { 0 }),
             came: Vec::with_capacity(if t.rules.sequential { 2 * steps + 1 } else { 0 }),
-            before_pass: Vec::with_capacity(if p.comes_and_goes { t.init.len() } else { 0 }),
+            written: Vec::with_capacity(if p.comes_and_goes { t.init.len() } else { 0 }),
+            written_mark: bits(if p.comes_and_goes { t.init.len() } else { 0 }),
+            turns: Vec::with_capacity(if p.looks_back { steps } else { 0 }),
+            turned: bits(if p.looks_back { steps } else { 0 }),
             was: bits(if p.looks_back { steps } else { 0 }),
             on_mark: bits(steps),
             off_mark: bits(steps),

@@ -229,7 +229,7 @@ impl Lower<'_> {
     }
 
     /// Fills the table of forcing orders, in the partial order of the charts.
-    /// Returns the rows of each step that gives any, by step.
+    /// Returns the first row of each step that gives any, by step.
     pub(super) fn orders(&mut self) -> Vec<(u32, Rows)> {
         let unit = self.unit;
         let mut found: Vec<(u32, ChartId, &ir::Situation)> = Vec::new();
@@ -262,21 +262,16 @@ impl Lower<'_> {
             rows.push((step, Order { step: Number(step), chart: forced, situation }));
         }
         let depth = self.depths(&rows);
-        let level = |o: &Order| {
-            let chart = self.t.steps.get(o.step.0 as usize).map_or(0, |s| s.chart);
-            depth.get(chart as usize).copied().unwrap_or(0)
-        };
-        rows.sort_by_key(|(step, o)| (level(o), *step));
+        // By the charts they act on: what rules a chart is settled before it is.
+        rows.sort_by_key(|(step, o)| (depth.get(o.chart as usize).copied().unwrap_or(0), *step));
         let mut by_step: Vec<(u32, Rows)> = Vec::new();
         for (step, order) in rows {
             let at = self.t.orders.len() as u32;
             self.t.orders.push(order);
-            match by_step.last_mut() {
-                Some((last, rows)) if *last == step => rows.end = at + 1,
-                _ => by_step.push((step, Rows { start: at, end: at + 1 })),
-            }
+            by_step.push((step, Rows { start: at, end: at + 1 }));
         }
-        by_step.sort_unstable_by_key(|(step, _)| *step);
+        by_step.sort_by_key(|(step, _)| *step);
+        by_step.dedup_by_key(|(step, _)| *step);
         by_step
     }
 
