@@ -13,6 +13,7 @@
 //! - No symbol or text overlaps another where the layout is automatic.
 #![forbid(unsafe_code)]
 
+mod chronogram;
 mod draw;
 mod drawing;
 mod geometry;
@@ -25,6 +26,7 @@ mod svg;
 mod symbols;
 mod text;
 
+pub use chronogram::{Chronogram, Edge, Lane, LaneKind, chronogram_svg};
 pub use draw::{draw, measure};
 pub use drawing::{Drawing, Item, Part};
 pub use geometry::{Extent, Point, Rect, U};

@@ -42,6 +42,9 @@ pub fn style(dark: bool) -> String {
 .g7 .g7-over{{stroke-width:1.1}}\
 .g7 .g7-ring{{fill:{paper};stroke-width:1.1}}\
 .g7 .g7-frame{{stroke:{soft};stroke-width:1}}\
+.g7 .g7-grid{{stroke:{soft};stroke-width:.5;stroke-opacity:.5}}\
+.g7 .g7-wave{{stroke-width:1.4}}\
+.g7 .g7-active{{fill:{accent};stroke:none}}\
 .g7 .g7-bar,.g7 .g7-mark{{fill:{ink};stroke:none}}\
 .g7 .g7-note,.g7 .g7-label,.g7 .g7-ref{{fill:{soft}}}\
 .g7 .g7-qual,.g7 .g7-cond{{fill:{accent}}}"
@@ -126,6 +129,15 @@ fn rows(boxes: &[Rect]) -> Vec<Point> {
         high = high.max(b.h);
     }
     places
+}
+
+/// Something else in the same style as a file.
+pub(crate) fn standalone(area: Rect, options: &Options, title: &str, body: &str) -> String {
+    let mut out = String::new();
+    open(&mut out, area, options, title);
+    out.push_str(body);
+    out.push_str("</g></svg>\n");
+    out
 }
 
 /// The head of a file up to the open group `g7`.

@@ -1,0 +1,249 @@
+//! Chronograms as pictures: signals one below the other on one axis of time.
+
+use crate::ink::{Ink, Picture};
+use crate::svg::standalone;
+use crate::text::{duration, shortened, width};
+use crate::{Options, Point, Rect};
+
+/// What was seen of some signals.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Chronogram {
+    /// From top to bottom.
+    pub lanes: Vec<Lane>,
+    /// First instant shown, nanoseconds.
+    pub from: i64,
+    /// Last instant shown.
+    pub to: i64,
+}
+
+/// One signal.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Lane {
+    /// Its name.
+    pub name: String,
+    /// How it is drawn.
+    pub kind: LaneKind,
+    /// What it changed to, by time; the value holds until the next one.
+    pub edges: Vec<Edge>,
+}
+
+/// How a signal is drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LaneKind {
+    /// A line, low and high.
+    Bool,
+    /// A bar while active.
+    Step,
+    /// A stair between the least and the greatest value.
+    Number,
+    /// Boxes with the value in them.
+    Text,
+}
+
+/// A change.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Edge {
+    /// When, nanoseconds.
+    pub at: i64,
+    /// The number; 0 and 1 for what is Boolean.
+    pub value: f64,
+    /// As it is read.
+    pub show: String,
+}
+
+/// Width of the plot.
+const PLOT: i32 = 9000;
+/// Height of a lane.
+const LANE: i32 = 300;
+/// Height of a wave in its lane.
+const WAVE: i32 = 180;
+/// Size of names and figures.
+const TEXT: i32 = 120;
+/// Height of the axis.
+const AXIS: i32 = 260;
+/// Longest name.
+const NAME: i32 = 2600;
+
+/// A chronogram as an SVG file.
+pub fn chronogram_svg(chronogram: &Chronogram, options: &Options) -> String {
+    let names: Vec<String> = chronogram.lanes.iter().map(|l| shortened(&l.name, TEXT, NAME).0).collect();
+    let left = names.iter().map(|n| width(n, TEXT)).max().unwrap_or(0) + 120;
+    let plot = Plot { left, from: chronogram.from, to: chronogram.to.max(chronogram.from + 1) };
+    let low = AXIS + LANE * i32::try_from(chronogram.lanes.len()).unwrap_or(i32::MAX / LANE - 1);
+    let mut p = Picture::default();
+    plot.axis(&mut p, low);
+    for ((lane, name), i) in chronogram.lanes.iter().zip(&names).zip(0..) {
+        let base = AXIS + LANE * i + (LANE + WAVE) / 2;
+        p.text("g7-name", left - 120 - width(name, TEXT), base - WAVE / 2 + TEXT * 35 / 100, TEXT, name);
+        plot.lane(&mut p, lane, base);
+    }
+    let area = p.area().unwrap_or_default().union(&Rect { x: 0, y: 0, w: left + PLOT, h: low });
+    standalone(area, options, "chronogram", &p.svg())
+}
+
+/// The field in which the signals run.
+struct Plot {
+    left: i32,
+    from: i64,
+    to: i64,
+}
+
+impl Plot {
+    /// From an instant to its place.
+    fn x(&self, at: i64) -> i32 {
+        let span = i128::from(self.to) - i128::from(self.from);
+        let into = i128::from(at.clamp(self.from, self.to)) - i128::from(self.from);
+        self.left + i32::try_from(into * i128::from(PLOT) / span.max(1)).unwrap_or(PLOT)
+    }
+
+    /// Instants at round times, ten or so.
+    fn axis(&self, p: &mut Picture, low: i32) {
+        let step = tick(self.to.saturating_sub(self.from));
+        let mut at = self.from.div_euclid(step).saturating_mul(step);
+        while at <= self.to {
+            if at >= self.from {
+                let (x, text) = (self.x(at), duration(at));
+                p.line("g7-grid", &[(x, AXIS - 60), (x, low)]);
+                p.text("g7-note", x - width(&text, TEXT) / 2, AXIS - 110, TEXT, &text);
+            }
+            let Some(next) = at.checked_add(step) else { break };
+            at = next;
+        }
+    }
+
+    fn lane(&self, p: &mut Picture, lane: &Lane, base: i32) {
+        p.line("g7-grid", &[(self.left, base), (self.left + PLOT, base)]);
+        let pieces = self.pieces(&lane.edges);
+        match lane.kind {
+            LaneKind::Bool => stair(p, &pieces, |e| if e.value == 0.0 { base } else { base - WAVE }),
+            LaneKind::Step => {
+                for (a, b, _) in pieces.iter().filter(|(_, _, e)| e.value != 0.0) {
+                    p.rect("g7-active", *a, base - WAVE, (b - a).max(8), WAVE);
+                }
+            }
+            LaneKind::Number => {
+                let values = || pieces.iter().map(|(_, _, e)| e.value).filter(|v| v.is_finite());
+                let (least, most) = values().fold((f64::MAX, f64::MIN), |(a, b), v| (a.min(v), b.max(v)));
+                let height = |e: &Edge| match (e.value - least) / (most - least) {
+                    part if part.is_finite() => base - (part * f64::from(WAVE)).round() as i32,
+                    _ => base - WAVE / 2,
+                };
+                stair(p, &pieces, height);
+                for (a, b, e) in &pieces {
+                    let room = width(&e.show, 90) + 30;
+                    // Beside the line, not on it: above where it is low.
+                    let y = height(e);
+                    let y = if y > base - WAVE / 2 { y - 30 } else { y + 95 };
+                    if b - a > room {
+                        p.text("g7-note", a + 25, y, 90, &e.show);
+                    }
+                }
+            }
+            LaneKind::Text => {
+                for (a, b, e) in &pieces {
+                    p.rect("g7-inner", *a, base - WAVE, b - a, WAVE);
+                    let (text, _) = shortened(&e.show, 100, b - a - 60);
+                    if width(&text, 100) + 60 <= b - a {
+                        p.text("g7-note", a + 30, base - WAVE / 2 + 35, 100, &text);
+                    }
+                }
+            }
+        }
+    }
+
+    /// From where to where each value holds, as far as it is in sight.
+    fn pieces<'a>(&self, edges: &'a [Edge]) -> Vec<(i32, i32, &'a Edge)> {
+        let ends = edges.iter().skip(1).map(|e| e.at).chain(std::iter::once(self.to));
+        let seen = edges.iter().zip(ends).filter(|(e, end)| *end > self.from && e.at <= self.to);
+        seen.map(|(e, end)| (self.x(e.at), self.x(end), e)).collect()
+    }
+}
+
+/// A line that goes from height to height.
+fn stair(p: &mut Picture, pieces: &[(i32, i32, &Edge)], height: impl Fn(&Edge) -> i32) {
+    let mut points: Vec<Point> = Vec::new();
+    for (a, b, e) in pieces {
+        let y = height(e);
+        if points.last().is_some_and(|l| l.y == y && l.x == *a) {
+            points.pop();
+        } else {
+            points.push(Point { x: *a, y });
+        }
+        points.push(Point { x: *b, y });
+    }
+    if points.len() > 1 {
+        p.ink.push(Ink::Line("g7-wave", points));
+    }
+}
+
+/// A round time that divides a span into about ten.
+fn tick(span: i64) -> i64 {
+    let minute = 60_000_000_000;
+    let long = [1, 2, 5, 10, 15, 30, 60, 120, 360, 720, 1440].map(|m| m * minute);
+    let mut short = 1_i64;
+    while short <= 30_000_000_000 {
+        for step in [short, 2 * short, 5 * short] {
+            if span / step <= 12 && step <= 30_000_000_000 {
+                return step;
+            }
+        }
+        short *= 10;
+    }
+    long.into_iter().find(|s| span / s <= 12).unwrap_or(span / 10 + 1)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const S: i64 = 1_000_000_000;
+
+    fn edge(at: i64, value: f64) -> Edge {
+        Edge { at, value, show: value.to_string() }
+    }
+
+    fn one(kind: LaneKind, edges: Vec<Edge>) -> String {
+        let lanes = vec![Lane { name: "a<b".to_owned(), kind, edges }];
+        let c = Chronogram { lanes, from: 0, to: 10 * S };
+        chronogram_svg(&c, &Options { font: false, ..Options::default() })
+    }
+
+    #[test]
+    fn a_boolean_rises_and_falls_where_its_edges_are() {
+        let svg = one(LaneKind::Bool, vec![edge(0, 0.0), edge(2 * S, 1.0), edge(4 * S, 0.0)]);
+        // 900 px are ten seconds; the wave is 18 px high.
+        let wave = svg.split("g7-wave\" d=\"").nth(1).and_then(|s| s.split('"').next()).expect("a wave");
+        let x0: f64 = wave[1..].split(' ').next().and_then(|n| n.parse().ok()).expect("its start");
+        assert!(wave.contains(&format!("H{}V", x0 + 180.0)), "{wave}");
+        assert!(wave.contains(&format!("H{}V", x0 + 360.0)), "{wave}");
+        assert!(wave.ends_with(&format!("H{}", x0 + 900.0)), "{wave}");
+        assert!(svg.contains("a&lt;b") && svg.contains(">2s<"));
+    }
+
+    #[test]
+    fn a_step_is_a_bar_for_each_time_it_is_active() {
+        let edges = vec![edge(0, 1.0), edge(S, 0.0), edge(5 * S, 1.0)];
+        let svg = one(LaneKind::Step, edges);
+        assert_eq!(svg.matches("class=\"g7-active\"").count(), 2);
+        assert!(svg.contains("width=\"90\"") && svg.contains("width=\"450\""));
+    }
+
+    #[test]
+    fn nothing_to_show_and_numbers_without_measure_are_no_fault() {
+        let c = Chronogram { lanes: Vec::new(), from: i64::MIN, to: i64::MAX };
+        assert!(chronogram_svg(&c, &Options::default()).starts_with("<svg"));
+        let svg = one(LaneKind::Number, vec![edge(-5, f64::NAN), edge(S, f64::INFINITY), edge(2 * S, 1.0)]);
+        assert!(svg.contains("g7-wave") && !svg.contains("NaN\""));
+        assert!(one(LaneKind::Text, Vec::new()).starts_with("<svg"));
+    }
+
+    #[test]
+    fn the_axis_has_round_times() {
+        for (span, step) in
+            [(10 * S, S), (100 * S, 10 * S), (600 * S, 60 * S), (S, 100_000_000), (3600 * S, 300 * S)]
+        {
+            assert_eq!(tick(span), step, "{span}");
+        }
+        assert!(tick(i64::MAX) > 0 && tick(0) == 1);
+    }
+}

@@ -1,0 +1,185 @@
+//! The chart as a graph: which symbol leads to which, where its sequences begin,
+//! and which links close a loop.
+
+use std::collections::HashMap;
+
+use g7_model::{Chart, Step, StepKind};
+
+/// Steps and transitions as nodes (steps first), links in the order of the text.
+#[derive(Debug)]
+pub(crate) struct Graph {
+    /// How many of the nodes are steps.
+    pub(crate) steps: usize,
+    /// How many nodes there are.
+    pub(crate) nodes: usize,
+    /// From node, to node.
+    pub(crate) links: Vec<(u32, u32)>,
+    /// The links that leave each node.
+    pub(crate) out: Lists,
+    /// The links that enter each node.
+    pub(crate) into: Lists,
+    /// Links that lead back up.
+    pub(crate) back: Vec<bool>,
+}
+
+/// A list of numbers for each node, in one piece.
+#[derive(Debug, Default)]
+pub(crate) struct Lists {
+    starts: Vec<u32>,
+    all: Vec<u32>,
+}
+
+impl Lists {
+    fn new(count: usize, of: impl Iterator<Item = u32> + Clone) -> Lists {
+        let mut starts = vec![0u32; count + 1];
+        of.clone().for_each(|n| starts[n as usize + 1] += 1);
+        for k in 0..count {
+            starts[k + 1] += starts[k];
+        }
+        let mut next = starts.clone();
+        let mut all = vec![0; starts[count] as usize];
+        for (item, n) in (0..).zip(of) {
+            let at = &mut next[n as usize];
+            all[*at as usize] = item;
+            *at += 1;
+        }
+        Lists { starts, all }
+    }
+
+    /// The list of one node.
+    pub(crate) fn of(&self, n: u32) -> &[u32] {
+        let (from, to) = (self.starts[n as usize] as usize, self.starts[n as usize + 1] as usize);
+        &self.all[from..to]
+    }
+}
+
+impl Graph {
+    /// The graph of a chart. Names without a step are passed over.
+    pub(crate) fn new(chart: &Chart) -> Graph {
+        let steps: Vec<&Step> = chart.steps().collect();
+        let mut numbers: HashMap<&str, u32> = HashMap::with_capacity(steps.len());
+        for (n, s) in (0u32..).zip(&steps) {
+            numbers.entry(&s.name.text).or_insert(n);
+        }
+        let mut links = Vec::new();
+        let mut node = steps.len() as u32;
+        for t in chart.transitions() {
+            let mut seen: Vec<u32> = Vec::with_capacity(t.from.len());
+            let mut number = |name: &g7_model::Name, seen: &mut Vec<u32>| {
+                let n = numbers.get(&*name.text).copied().filter(|n| !seen.contains(n))?;
+                seen.push(n);
+                Some(n)
+            };
+            links.extend(t.from.iter().filter_map(|f| Some((number(f, &mut seen)?, node))));
+            seen.clear();
+            links.extend(t.to.iter().filter_map(|f| Some((node, number(f, &mut seen)?))));
+            node += 1;
+        }
+        let nodes = node as usize;
+        let out = Lists::new(nodes, links.iter().map(|l| l.0));
+        let into = Lists::new(nodes, links.iter().map(|l| l.1));
+        let back = vec![false; links.len()];
+        let mut graph = Graph { steps: steps.len(), nodes, links, out, into, back };
+        graph.find_loops(&steps);
+        graph
+    }
+
+    /// Whether a node is a step.
+    pub(crate) fn is_step(&self, n: u32) -> bool {
+        (n as usize) < self.steps
+    }
+
+    /// Marks the links that lead back. A loop is opened at the step where it is
+    /// entered, and never between a step and a transition behind it, if it can be helped.
+    fn find_loops(&mut self, steps: &[&Step]) {
+        let seeds = self.seeds(steps);
+        let mut top = self.tops(&seeds);
+        for _ in 0..4 {
+            self.descend(&seeds, &top);
+            let wrong: Vec<u32> = (0..self.links.len())
+                .filter(|&l| self.back[l] && self.is_step(self.links[l].0))
+                .map(|l| self.links[l].0)
+                .collect();
+            if wrong.is_empty() {
+                break;
+            }
+            wrong.into_iter().for_each(|s| top[s as usize] = true);
+        }
+    }
+
+    /// All nodes, those first where a sequence would begin.
+    fn seeds(&self, steps: &[&Step]) -> Vec<u32> {
+        let mut seeds: Vec<u32> = Vec::with_capacity(2 * self.nodes);
+        let of = |which: &dyn Fn(&Step) -> bool| {
+            let all = (0u32..).zip(steps).filter(|(_, s)| which(s));
+            all.map(|(n, _)| n).collect::<Vec<_>>()
+        };
+        seeds.extend(of(&|s| s.initial));
+        seeds.extend(of(&|s| s.linked || s.kind == StepKind::Entry));
+        seeds.extend((self.steps as u32..self.nodes as u32).filter(|&t| self.into.of(t).is_empty()));
+        seeds.extend((0..self.steps as u32).filter(|&s| self.into.of(s).is_empty()));
+        seeds.extend(0..self.nodes as u32);
+        seeds
+    }
+
+    /// The nodes at which one has to begin so that every node is come to, where a
+    /// transition is passed only when all its preceding steps have been come to.
+    fn tops(&self, seeds: &[u32]) -> Vec<bool> {
+        let mut top = vec![false; self.nodes];
+        let mut seen = vec![false; self.nodes];
+        let mut missing: Vec<usize> = (0..self.nodes as u32).map(|n| self.into.of(n).len()).collect();
+        let mut stack = Vec::new();
+        for &seed in seeds {
+            if seen[seed as usize] {
+                continue;
+            }
+            top[seed as usize] = true;
+            seen[seed as usize] = true;
+            stack.push(seed);
+            while let Some(n) = stack.pop() {
+                for &l in self.out.of(n) {
+                    let to = self.links[l as usize].1 as usize;
+                    missing[to] -= 1;
+                    if !seen[to] && (self.is_step(to as u32) || missing[to] == 0) {
+                        seen[to] = true;
+                        stack.push(to as u32);
+                    }
+                }
+            }
+        }
+        top
+    }
+
+    /// Depth first from the tops: what leads to a top or to a node above leads back.
+    fn descend(&mut self, seeds: &[u32], top: &[bool]) {
+        const NEW: u8 = 0;
+        const OPEN: u8 = 1;
+        const DONE: u8 = 2;
+        self.back.iter_mut().for_each(|b| *b = false);
+        let mut state = vec![NEW; self.nodes];
+        let mut stack: Vec<(u32, usize)> = Vec::new();
+        let tops = seeds.iter().filter(|n| top[**n as usize]);
+        for &seed in tops.chain(seeds) {
+            if state[seed as usize] != NEW {
+                continue;
+            }
+            state[seed as usize] = OPEN;
+            stack.push((seed, 0));
+            while let Some((n, next)) = stack.last_mut() {
+                let Some(&l) = self.out.of(*n).get(*next) else {
+                    state[*n as usize] = DONE;
+                    stack.pop();
+                    continue;
+                };
+                *next += 1;
+                let to = self.links[l as usize].1;
+                if top[to as usize] || state[to as usize] == OPEN {
+                    self.back[l as usize] = true;
+                } else if state[to as usize] == NEW {
+                    state[to as usize] = OPEN;
+                    stack.push((to, 0));
+                }
+            }
+        }
+    }
+}
