@@ -64,27 +64,39 @@ impl Page {
                 self.runs.remove(&run);
                 ok(&())
             }
-            Request::RunAdvance { run, ms, most_scans, times } => self.with(&run, times, |r| {
-                r.advance(ms, most_scans);
-                Ok(())
-            }),
-            Request::RunScan { run, times } => self.with(&run, times, |r| {
-                r.scan();
-                Ok(())
-            }),
-            Request::RunPass { run, times } => self.with(&run, times, |r| {
-                r.pass();
-                Ok(())
-            }),
+            Request::RunAdvance { run, ms, most_scans, times } => {
+                self.with(&run, times, |r| r.advance(ms, most_scans))
+            }
+            Request::RunScan { run, times } => self.with(&run, times, Run::one_scan),
+            Request::RunPass { run, times } => self.with(&run, times, Run::pass),
             Request::RunSet { run, signal, value } => self.with(&run, false, |r| r.set(signal, &value)),
             Request::RunToggle { run, signal } => self.with(&run, false, |r| r.toggle(signal)),
             Request::RunForce { run, signal, value } => self.with(&run, false, |r| r.force(signal, &value)),
-            Request::RunRelease { run, signal } => self.with(&run, false, |r| r.release(signal)),
-            Request::RunRestart { run, warm } => self.with(&run, false, |r| {
-                r.restart(warm);
+            Request::RunRelease { run, signal } => self.with(&run, false, |r| match signal {
+                Some(signal) => r.release(signal),
+                None => r.release_all(),
+            }),
+            Request::RunRestart { run, warm } => self.with(&run, true, |r| r.restart(warm)),
+            Request::RunSeek { run, ms } => self.with(&run, true, |r| r.seek(ms)),
+            Request::RunLive { run, here } => self.with(&run, true, |r| {
+                r.live(here);
                 Ok(())
             }),
+            Request::RunBreaks { run, ids } => {
+                let run = self.run(&run)?;
+                run.set_breaks(&ids);
+                ok(&serde_json::json!({ "ids": run.break_ids() }))
+            }
+            Request::RunSwap { run, file, force } => self.swap(&run, &file, force),
             Request::RunFrame { run, full, times } => ok(&self.run(&run)?.frame(full, times)),
+            Request::RunSignals { run } => ok(&self.run(&run)?.started()),
+            Request::RunLanes { run, signals, from_ms, to_ms, most } => {
+                ok(&self.run(&run)?.lanes(&signals, from_ms, to_ms, most))
+            }
+            Request::RunExport { run, signals, r#as, from_ms, to_ms } => {
+                let text = self.run(&run)?.export(&signals, r#as, from_ms, to_ms)?;
+                ok(&serde_json::json!({ "text": text }))
+            }
         }
     }
 
@@ -122,6 +134,14 @@ impl Page {
         let started = ok(&run.started());
         self.runs.insert(wish.run.clone(), run);
         started
+    }
+
+    /// Lets a run go on in a changed text: what would be lost, or all of the run anew.
+    fn swap(&mut self, run: &str, file: &str, force: bool) -> Answer {
+        let open = self.files.get(file).ok_or_else(|| format!("{file} is not open"))?;
+        let run = self.runs.get_mut(run).ok_or_else(|| format!("there is no run `{run}`"))?;
+        let lost = run.swap(&open.source, force)?;
+        if lost.is_empty() { ok(&run.started()) } else { ok(&serde_json::json!({ "lost": lost })) }
     }
 
     /// Does something to a run and answers what changed.

@@ -63,14 +63,34 @@ pub(crate) enum Request {
         signal: usize,
         value: String,
     },
+    /// One signal, or all where none is named.
     RunRelease {
         run: String,
-        signal: usize,
+        signal: Option<usize>,
     },
     RunRestart {
         run: String,
         #[serde(default)]
         warm: bool,
+    },
+    RunSeek {
+        run: String,
+        ms: f64,
+    },
+    RunLive {
+        run: String,
+        #[serde(default)]
+        here: bool,
+    },
+    RunBreaks {
+        run: String,
+        ids: Vec<String>,
+    },
+    RunSwap {
+        run: String,
+        file: String,
+        #[serde(default)]
+        force: bool,
     },
     RunStop {
         run: String,
@@ -82,6 +102,31 @@ pub(crate) enum Request {
         #[serde(default)]
         times: bool,
     },
+    /// What a page is told at the beginning, once more.
+    RunSignals {
+        run: String,
+    },
+    RunLanes {
+        run: String,
+        signals: Vec<usize>,
+        from_ms: f64,
+        to_ms: f64,
+        #[serde(default = "lane")]
+        most: usize,
+    },
+    RunExport {
+        run: String,
+        #[serde(default)]
+        signals: Vec<usize>,
+        r#as: crate::run::Form,
+        from_ms: Option<f64>,
+        to_ms: Option<f64>,
+    },
+}
+
+/// Edges of a lane where nothing is said: more than a screen has columns.
+fn lane() -> usize {
+    4_000
 }
 
 /// A piece of text in place of another; places in code units.

@@ -204,6 +204,44 @@ impl Recording {
         self.end
     }
 
+    /// Forgets everything behind an instant.
+    pub fn truncate(&mut self, instant: i64) {
+        for list in &mut self.changes {
+            while list.back().is_some_and(|(at, _)| *at > instant) {
+                list.pop_back();
+            }
+        }
+        self.end = self.end.min(instant);
+    }
+
+    /// Takes over what another recording has of a signal.
+    pub fn adopt(&mut self, signal: usize, from: &Recording, other: usize) {
+        if let (Some(to), Some(list)) = (self.changes.get_mut(signal), from.changes.get(other)) {
+            to.clone_from(list);
+            self.start = Some(self.start.unwrap_or(from.start()).min(from.start()));
+            self.end = self.end.max(from.end);
+        }
+    }
+
+    /// Some of the signals from one instant to another.
+    #[must_use]
+    pub fn part(&self, signals: &[usize], from: i64, to: i64) -> Recording {
+        let (from, to) = (from.max(self.start()), to.min(self.end));
+        let there = || signals.iter().filter_map(|i| Some((self.signals.get(*i)?, *i)));
+        let changes = there().map(|(_, i)| {
+            let before = self.value_at(i, from).map(|v| (from, v.clone()));
+            let inside = self.changes(i).filter(|(at, _)| *at > from && *at <= to).cloned();
+            before.into_iter().chain(inside).collect()
+        });
+        Recording {
+            changes: changes.collect(),
+            signals: there().map(|(s, _)| s.clone()).collect(),
+            start: Some(from),
+            end: to.max(from),
+            limit: 0,
+        }
+    }
+
     /// Every instant at which some signal changed, ascending, each once.
     pub fn instants(&self) -> Vec<i64> {
         let mut all: Vec<i64> = self.changes.iter().flatten().map(|(at, _)| *at).collect();
@@ -250,6 +288,24 @@ mod tests {
             r.sample(t, [Value::Word((t % 2) as u64)]);
         }
         assert_eq!(r.changes(0).map(|c| c.0).collect::<Vec<_>>(), [3, 4]);
+    }
+
+    #[test]
+    fn a_part_begins_with_the_values_that_stand_there() {
+        let mut r = Recording::new(vec![bool_signal("a"), bool_signal("b")]);
+        for (t, a, b) in [(0, 0, 1), (10, 1, 1), (20, 0, 0), (30, 1, 0)] {
+            r.sample(t, [Value::Word(a), Value::Word(b)]);
+        }
+        let part = r.part(&[1, 0, 7], 15, 25);
+        assert_eq!(part.signals().iter().map(|s| s.name.as_str()).collect::<Vec<_>>(), ["b", "a"]);
+        let of = |i| part.changes(i).map(|(t, v)| (*t, v.word())).collect::<Vec<_>>();
+        assert_eq!((of(0), of(1)), (vec![(15, 1), (20, 0)], vec![(15, 1), (20, 0)]));
+        assert_eq!((part.start(), part.end()), (15, 25));
+        r.truncate(10);
+        assert_eq!((r.count(0), r.count(1), r.end()), (2, 1, 10));
+        let mut other = Recording::new(vec![bool_signal("b")]);
+        other.adopt(0, &r, 1);
+        assert_eq!(other.value_at(0, 10), Some(&Value::Word(1)));
     }
 
     #[test]

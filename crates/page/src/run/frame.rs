@@ -8,6 +8,8 @@ use g7_rig::Activity;
 use serde::Serialize;
 
 use super::Run;
+use super::lanes::ms;
+use crate::ids;
 
 /// A frame. Steps, transitions, signals and bindings by the numbers that
 /// [`super::Started`] gave them.
@@ -34,6 +36,8 @@ pub(crate) struct Frame {
     /// Between two passes of a scan.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     within: bool,
+    /// The present of the run, and no earlier scan of it.
+    live: bool,
     /// More time was asked for than could be run.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     late: bool,
@@ -51,13 +55,27 @@ struct Stopped {
     id: String,
 }
 
-/// The fault that ended it.
+/// The fault that ended it; the place in the text that the run was started from.
 #[derive(Debug, Serialize)]
 struct Halted {
     what: String,
-    /// Bytes of the text that the run was started from.
+    ids: Vec<String>,
     #[serde(skip_serializing_if = "Option::is_none")]
-    at: Option<(u32, u32)>,
+    from: Option<usize>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    to: Option<usize>,
+}
+
+fn halted(run: &Run) -> Option<Halted> {
+    let halt = run.watched().halt()?;
+    let at = run.bench.halt_place(halt);
+    let unit = |byte: u32| run.positions.unit(&run.text, byte as usize);
+    Some(Halted {
+        what: run.bench.halt(run.watched(), halt),
+        ids: at.and_then(|at| ids::at(&run.document, at)).map(|t| t.id()).into_iter().collect(),
+        from: at.map(|at| unit(at.start)),
+        to: at.map(|at| unit(at.end)),
+    })
 }
 
 /// A value of the picture.
@@ -86,8 +104,8 @@ pub(super) fn frame(run: &mut Run, full: bool, times: bool) -> Frame {
     }
     let active = run.active();
     let enabled = enabled(run);
-    let values: Vec<Value> = run.bench.items.iter().map(|i| run.bench.value(&run.runner, i)).collect();
-    let forced: Vec<bool> = run.bench.items.iter().map(|i| run.bench.is_forced(&run.runner, i)).collect();
+    let values: Vec<Value> = run.bench.items.iter().map(|i| run.bench.value(run.watched(), i)).collect();
+    let forced: Vec<bool> = run.bench.items.iter().map(|i| run.bench.is_forced(run.watched(), i)).collect();
     let view = view(run);
     let sent = &run.sent;
     let numbered = || (0u32..).zip(&run.bench.items).zip(&values);
@@ -97,9 +115,9 @@ pub(super) fn frame(run: &mut Run, full: bool, times: bool) -> Frame {
     marks.extend(sent.enabled.keys().filter(|i| !enabled.contains_key(i)).map(|i| (*i, 0)));
     let frame = Frame {
         run: run.name.clone(),
-        now_ms: run.now as f64 / 1e6,
-        scans: run.runner.state().scans(),
-        passes: run.runner.report().passes,
+        now_ms: ms(run.viewed.as_ref().map_or(run.now, |v| v.now)),
+        scans: run.watched().state().scans(),
+        passes: run.watched().report().passes,
         full,
         on: active.difference(&sent.active).copied().collect(),
         off: sent.active.difference(&active).copied().collect(),
@@ -117,13 +135,11 @@ pub(super) fn frame(run: &mut Run, full: bool, times: bool) -> Frame {
             .filter(|(i, v)| sent.view.get(*i as usize) != Some(v))
             .map(|(i, v)| (i, v.clone()))
             .collect(),
-        within: run.runner.is_within_scan(),
+        within: run.watched().is_within_scan(),
         late: std::mem::take(&mut run.late),
         stopped: run.stopped.take().map(|id| Stopped { id }),
-        halt: run.runner.halt().map(|halt| Halted {
-            what: run.bench.halt(&run.runner, halt),
-            at: run.bench.halt_place(halt).map(|at| (at.start, at.end)),
-        }),
+        halt: halted(run),
+        live: run.viewed.is_none(),
         notes: std::mem::take(&mut run.notes),
     };
     run.sent = Sent { active, enabled, values, forced, view };
@@ -140,12 +156,12 @@ fn enabled(run: &Run) -> BTreeMap<u32, u8> {
             *mark = (*mark).max(1 + u8::from(holds));
         }
     };
-    g7_engine::enabled(run.runner.program(), run.runner.shown(), tell).ok();
+    g7_engine::enabled(run.watched().program(), run.watched().shown(), tell).ok();
     found
 }
 
 fn step_times(run: &Run, active: &BTreeSet<u32>) -> BTreeMap<u32, f64> {
-    let (program, state) = (run.runner.program(), run.runner.shown());
+    let (program, state) = (run.watched().program(), run.watched().shown());
     let time = |i: &u32| {
         let ns = match run.bench.steps.get(*i as usize)?.id {
             Activity::Step(id) => state.step_age(program, id),
@@ -159,7 +175,8 @@ fn step_times(run: &Run, active: &BTreeSet<u32>) -> BTreeMap<u32, f64> {
 /// The values that the plant's picture shows.
 fn view(run: &mut Run) -> Vec<Show> {
     let Some(side) = &run.bench.plant else { return Vec::new() };
-    let Some((program, state)) = run.runner.plant_mut() else { return Vec::new() };
+    let watched = run.viewed.as_mut().map_or(&mut run.runner, |v| &mut v.runner);
+    let Some((program, state)) = watched.plant_mut() else { return Vec::new() };
     let mut values = Vec::with_capacity(side.bindings.len());
     for b in &side.bindings {
         let word = g7_engine::eval(program, state, b.code).unwrap_or(0);

@@ -2,22 +2,31 @@
 //!
 //! ```text
 //! start -> Run (rig::Bench, host::Runner, Recording) -> frame: what changed
+//!            \-> past: back in time    lanes: chronogram    swap: on-line change
 //! ```
 //!
 //! What must hold: time moves only by messages; a frame says no more than what
 //! differs from the frame before; every scan is recorded.
 
 mod frame;
+mod lanes;
+mod past;
 mod start;
+mod swap;
 
 use std::collections::BTreeSet;
+use std::sync::Arc;
 
 use g7_engine::StepId;
 use g7_host::{Kind, Recording, Runner, Start as Restart, Value};
+use g7_model::Document;
 use g7_rig::{Activity, Bench, Conflicts, Item, Role, values};
 
+use crate::positions::Positions;
 pub(crate) use frame::Frame;
 use frame::Sent;
+pub(crate) use lanes::Form;
+use past::{Event, Past};
 use start::Places;
 pub(crate) use start::{Start, start};
 
@@ -31,9 +40,18 @@ pub(crate) struct Run {
     pub(crate) name: String,
     /// The file that it was started from.
     pub(crate) file: String,
-    pub(crate) bench: Bench,
+    bench: Bench,
+    /// The text it was compiled from.
+    document: Arc<Document>,
+    text: Arc<str>,
+    positions: Arc<Positions>,
+    /// As it was asked for.
+    wish: Start,
     places: Places,
     runner: Runner,
+    past: Past,
+    /// An earlier scan that is looked at: the run as it stood, its number, its instant.
+    viewed: Option<Viewed>,
     /// Virtual time asked for, nanoseconds.
     clock: i64,
     /// Time of the latest scan, nanoseconds.
@@ -52,6 +70,13 @@ pub(crate) struct Run {
     sent: Sent,
 }
 
+/// A scan of the past.
+struct Viewed {
+    runner: Runner,
+    scans: u64,
+    now: i64,
+}
+
 /// Where a run stops: indices of steps and transitions.
 #[derive(Debug, Default)]
 struct Breaks {
@@ -65,7 +90,8 @@ impl Run {
     }
 
     /// Moves the virtual time on, scan by scan, up to a stop.
-    pub(crate) fn advance(&mut self, ms: f64, most: Option<u32>) {
+    pub(crate) fn advance(&mut self, ms: f64, most: Option<u32>) -> Result<(), String> {
+        self.only_now()?;
         let step = if ms.is_finite() { (ms.clamp(0.0, 1e12) * 1e6) as i64 } else { 0 };
         self.clock = self.clock.max(self.now).saturating_add(step);
         self.late = false;
@@ -74,41 +100,65 @@ impl Run {
         while self.runner.due() <= self.clock {
             if made >= most {
                 (self.clock, self.late) = (self.now, true);
-                return;
+                break;
             }
             made += 1;
             if !self.scan() {
                 self.clock = self.now;
-                return;
+                break;
             }
+        }
+        Ok(())
+    }
+
+    /// One scan, asked for by itself.
+    pub(crate) fn one_scan(&mut self) -> Result<(), String> {
+        self.only_now()?;
+        self.scan();
+        self.clock = self.now;
+        Ok(())
+    }
+
+    /// Refuses while an earlier scan is looked at.
+    fn only_now(&self) -> Result<(), String> {
+        match self.viewed {
+            Some(_) => Err("this is the past: come back to now, or go on from here".to_owned()),
+            None => Ok(()),
         }
     }
 
     /// One scan; whether the run goes on behind it.
-    pub(crate) fn scan(&mut self) -> bool {
+    fn scan(&mut self) -> bool {
         if self.runner.halt().is_some() {
             return false;
         }
         let before = (!self.breaks.steps.is_empty()).then(|| self.active());
         self.now = self.runner.due();
         self.clock = self.clock.max(self.now);
+        self.past.before_scan(&self.runner);
         let done = self.runner.scan();
         self.seen(before.as_ref());
         done.is_ok() && self.stopped.is_none()
     }
 
     /// One pass of the scan that is due.
-    pub(crate) fn pass(&mut self) {
+    pub(crate) fn pass(&mut self) -> Result<(), String> {
+        self.only_now()?;
         if self.runner.halt().is_some() {
-            return;
+            return Ok(());
+        }
+        let begun = self.runner.is_within_scan();
+        if !begun {
+            self.past.before_scan(&self.runner);
         }
         let before = (!self.breaks.steps.is_empty()).then(|| self.active());
         let due = self.runner.due();
         if self.runner.pass().unwrap_or(true) {
             self.now = due;
-            self.clock = self.clock.max(due);
+            self.clock = due;
             self.seen(before.as_ref());
         }
+        Ok(())
     }
 
     /// Takes in what a scan did.
@@ -153,7 +203,7 @@ impl Run {
 
     /// The active steps and macro-steps, by index.
     fn active(&self) -> BTreeSet<u32> {
-        let state = self.runner.shown();
+        let state = self.watched().shown();
         (0u32..)
             .zip(&self.bench.steps)
             .filter(|(_, s)| self.bench.is_active(state, s))
@@ -193,37 +243,108 @@ impl Run {
     }
 
     fn put(&mut self, signal: usize, value: &Value) -> Result<(), String> {
-        let Some(item) = self.bench.items.get(signal) else { return Ok(()) };
-        self.bench.set(&mut self.runner, item, value);
+        self.only_now()?;
+        self.come(Event::Set(signal, value.clone()));
         Ok(())
+    }
+
+    /// Something comes in: it is noted, and done.
+    fn come(&mut self, event: Event) {
+        self.past.note(&self.runner, event.clone());
+        past::apply(&self.bench, &mut self.runner, &event);
     }
 
     /// Holds a signal at a value.
     pub(crate) fn force(&mut self, signal: usize, value: &str) -> Result<(), String> {
+        self.only_now()?;
         let item = self.item(signal)?;
         if item.role == Role::Plant {
             return Err(format!("`{}` is a state of the plant: it can be set, not forced", item.name));
         }
         let value = values::read(value, item.kind)?;
-        let Some(item) = self.bench.items.get(signal) else { return Ok(()) };
-        self.bench.force(&mut self.runner, item, &value);
+        self.come(Event::Force(signal, value));
         Ok(())
     }
 
     /// Lets go of a signal.
     pub(crate) fn release(&mut self, signal: usize) -> Result<(), String> {
-        let Some(item) = self.bench.items.get(signal) else {
-            return Err("there is no such signal".to_owned());
-        };
-        self.bench.release(&mut self.runner, item);
+        self.only_now()?;
+        self.item(signal)?;
+        self.come(Event::Release(signal));
+        Ok(())
+    }
+
+    /// Lets go of all of them.
+    pub(crate) fn release_all(&mut self) -> Result<(), String> {
+        self.only_now()?;
+        let held =
+            |i: &usize| self.bench.items.get(*i).is_some_and(|it| self.bench.is_forced(&self.runner, it));
+        let held: Vec<usize> = (0..self.bench.items.len()).filter(held).collect();
+        held.into_iter().for_each(|i| self.come(Event::Release(i)));
         Ok(())
     }
 
     /// Starts the charts anew, with their first scan.
-    pub(crate) fn restart(&mut self, warm: bool) {
-        self.runner.restart(if warm { Restart::Warm } else { Restart::Cold });
+    pub(crate) fn restart(&mut self, warm: bool) -> Result<(), String> {
+        self.only_now()?;
+        self.come(Event::Restart(if warm { Restart::Warm } else { Restart::Cold }));
         self.stopped = None;
+        self.conflicts = Conflicts::default();
         self.scan();
+        self.clock = self.now;
+        Ok(())
+    }
+
+    /// Looks at the run as it stood at an instant.
+    pub(crate) fn seek(&mut self, ms: f64) -> Result<(), String> {
+        let instant = lanes::ns(ms).max(self.past.begin());
+        let found = self.past.at(&self.bench, instant);
+        let (runner, scans) = found.ok_or("nothing was recorded yet")?;
+        let back = i64::try_from(scans).unwrap_or(1).saturating_sub(1).saturating_mul(runner.period());
+        let now = self.past.begin().saturating_add(back);
+        let last = self.past.is_last(scans);
+        self.cleared.clear();
+        if last {
+            self.viewed = None;
+            return Ok(());
+        }
+        self.cleared.extend(runner.state().cleared().iter().filter_map(|rank| self.places.transition(*rank)));
+        self.viewed = Some(Viewed { runner, scans, now });
+        Ok(())
+    }
+
+    /// Comes back to now; or takes the scan looked at for now, and forgets what
+    /// came behind it.
+    pub(crate) fn live(&mut self, here: bool) {
+        let Some(viewed) = self.viewed.take() else { return };
+        if here {
+            self.past.cut(viewed.scans);
+            self.recording.truncate(viewed.now);
+            (self.runner, self.now, self.clock) = (viewed.runner, viewed.now, viewed.now);
+        }
+    }
+
+    /// The run that is looked at.
+    fn watched(&self) -> &Runner {
+        self.viewed.as_ref().map_or(&self.runner, |v| &v.runner)
+    }
+
+    /// Stops at these steps and transitions, and at no others.
+    pub(crate) fn set_breaks(&mut self, ids: &[String]) {
+        self.breaks = Breaks::default();
+        for id in ids {
+            if let Some(step) = self.places.step(id) {
+                self.breaks.steps.insert(step);
+            } else if let Some(transition) = self.places.transition_of(id) {
+                self.breaks.transitions.insert(transition);
+            }
+        }
+    }
+
+    /// Where it stops, by id.
+    pub(crate) fn break_ids(&self) -> Vec<String> {
+        let steps = self.breaks.steps.iter().filter_map(|s| self.places.step_id(*s));
+        steps.chain(self.breaks.transitions.iter().filter_map(|t| self.places.transition_id(*t))).collect()
     }
 
     /// What a page is told of it.

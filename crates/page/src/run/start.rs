@@ -1,6 +1,7 @@
 //! How a run begins: compiled, coupled, named for the page.
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 use g7_host::{Kind, Recording};
 use g7_model::{ProfileName, Severity, Span};
@@ -8,11 +9,13 @@ use g7_rig::{Activity, Bench, Conflicts, Options, Role, Source};
 use serde::{Deserialize, Serialize};
 
 use super::frame::Sent;
+use super::past::Past;
 use super::{Breaks, Frame, KEPT, Run};
 use crate::ids::{self, Thing};
+use crate::positions::Positions;
 
 /// What a page asks to be run.
-#[derive(Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize)]
 pub(crate) struct Start {
     pub(crate) file: String,
     pub(crate) run: String,
@@ -93,7 +96,7 @@ pub(super) struct Places {
 }
 
 impl Places {
-    fn new(source: &Source, bench: &Bench) -> Places {
+    pub(super) fn new(source: &Source, bench: &Bench) -> Places {
         let mut steps: BTreeMap<Span, String> = BTreeMap::new();
         let mut places = Places::default();
         let mut numbers: BTreeMap<Span, u32> = BTreeMap::new();
@@ -126,6 +129,14 @@ impl Places {
         self.transitions.get(number as usize).cloned()
     }
 
+    pub(super) fn step(&self, id: &str) -> Option<u32> {
+        self.steps.iter().position(|s| s == id).and_then(|i| u32::try_from(i).ok())
+    }
+
+    pub(super) fn transition_of(&self, id: &str) -> Option<u32> {
+        self.transitions.iter().position(|t| t == id).and_then(|i| u32::try_from(i).ok())
+    }
+
     pub(super) fn step_id(&self, number: u32) -> Option<String> {
         self.steps.get(number as usize).cloned()
     }
@@ -140,6 +151,12 @@ pub(crate) fn start(source: &Source, wish: &Start) -> Result<Run, String> {
         file: wish.file.clone(),
         places: Places::new(source, &bench),
         recording: Recording::new(bench.signals()).with_limit(KEPT),
+        past: Past::new(&runner),
+        document: Arc::new(source.document.clone()),
+        text: source.text.as_str().into(),
+        positions: Arc::new(Positions::new(&source.text)),
+        wish: wish.clone(),
+        viewed: None,
         runner,
         bench,
         clock: 0,
@@ -153,6 +170,7 @@ pub(crate) fn start(source: &Source, wish: &Start) -> Result<Run, String> {
         sent: Sent::default(),
     };
     run.scan();
+    run.clock = run.now;
     Ok(run)
 }
 

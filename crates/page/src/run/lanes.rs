@@ -1,0 +1,90 @@
+//! What the signals did: edges for a chronogram, and files of them.
+
+use g7_host::{Recording, write_csv, write_vcd};
+use serde::Serialize;
+
+use super::Run;
+use super::frame::shown;
+
+/// The lanes of a chronogram.
+#[derive(Debug, Serialize)]
+pub(crate) struct Lanes {
+    start_ms: f64,
+    end_ms: f64,
+    /// By signal: instant (ms), number, value as people read it.
+    lanes: Vec<Vec<(f64, f64, String)>>,
+}
+
+/// The form of a file of signals.
+#[derive(Clone, Copy, Debug, serde::Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub(crate) enum Form {
+    Csv,
+    Vcd,
+    Svg,
+}
+
+impl Run {
+    /// The edges of some signals between two instants, at most about so many of each.
+    pub(crate) fn lanes(&self, signals: &[usize], from: f64, to: f64, most: usize) -> Lanes {
+        let (from, to) = (ns(from), ns(to));
+        let part = self.recording.part(signals, from, to);
+        let most = most.clamp(2, 100_000);
+        Lanes {
+            start_ms: ms(self.recording.start()),
+            end_ms: ms(self.recording.end()),
+            lanes: (0..part.signals().len()).map(|i| lane(&part, i, most)).collect(),
+        }
+    }
+
+    /// Some signals (all where none is named) as a file.
+    pub(crate) fn export(
+        &self,
+        signals: &[usize],
+        form: Form,
+        from: Option<f64>,
+        to: Option<f64>,
+    ) -> Result<String, String> {
+        let all: Vec<usize> = (0..self.recording.signals().len()).collect();
+        let signals = if signals.is_empty() { &all } else { signals };
+        let from = from.map_or(self.recording.start(), ns);
+        let to = to.map_or(self.recording.end(), ns);
+        let part = self.recording.part(signals, from, to);
+        let mut out = Vec::new();
+        let done = match form {
+            Form::Csv => write_csv(&part, &mut out),
+            Form::Vcd => write_vcd(&part, &mut out),
+            Form::Svg => return Err("a chronogram cannot be written as SVG yet".to_owned()),
+        };
+        done.map_err(|e| e.to_string())?;
+        String::from_utf8(out).map_err(|e| e.to_string())
+    }
+}
+
+/// The edges of a signal; of those that lie closer than can be told apart the
+/// first and the last.
+fn lane(part: &Recording, signal: usize, most: usize) -> Vec<(f64, f64, String)> {
+    let Some(kind) = part.signals().get(signal).map(|s| s.kind) else { return Vec::new() };
+    let width = ((part.end() - part.start()) / most as i64).max(1);
+    let crowded = part.count(signal) > most;
+    let mut kept: Vec<&(i64, g7_host::Value)> = Vec::new();
+    for edge in part.changes(signal) {
+        let slot = |e: &(i64, g7_host::Value)| e.0 / width;
+        let full = kept.iter().rev().take(2).filter(|e| slot(e) == slot(edge)).count() == 2;
+        if crowded && full {
+            kept.pop();
+        }
+        kept.push(edge);
+    }
+    kept.into_iter().map(|(at, v)| (ms(*at), v.number(kind), shown(v, kind))).collect()
+}
+
+/// Nanoseconds of a time in ms.
+pub(super) fn ns(ms: f64) -> i64 {
+    if ms.is_finite() { (ms.clamp(-1e12, 1e12) * 1e6).round() as i64 } else { 0 }
+}
+
+/// A time in ms.
+pub(super) fn ms(ns: i64) -> f64 {
+    ns as f64 / 1e6
+}
