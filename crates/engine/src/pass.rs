@@ -464,13 +464,12 @@ fn run_list(p: &Program, s: &mut State, rows: Rows) -> Result<(), Fault> {
     Ok(())
 }
 
-/// Deactivates a step; its exit actions come first, its enclosed charts with it.
+/// Deactivates a step; its exit actions come first, its enclosed charts with it,
+/// step by step, each before the next one.
 fn leave(p: &Program, s: &mut State, step: u32) -> Result<(), Fault> {
     s.x.chain.clear();
     s.x.chain.push(step);
-    let mut k = 0;
-    while let Some(&step) = s.x.chain.get(k) {
-        k += 1;
+    while let Some(step) = s.x.chain.pop() {
         if !s.steps.contains(&s.w, step) {
             continue;
         }
@@ -480,6 +479,7 @@ fn leave(p: &Program, s: &mut State, step: u32) -> Result<(), Fault> {
         if !e.encloses.is_empty() && s.x.left.len() < s.x.left.capacity() {
             s.x.left.push(step);
         }
+        let behind = s.x.chain.len();
         for g in p.t.group_lists.get(e.encloses.start as usize..e.encloses.end as usize).unwrap_or(&[]) {
             let Some(group) = p.t.groups.get(g.0 as usize) else { continue };
             let mut from = group.steps.start;
@@ -488,17 +488,18 @@ fn leave(p: &Program, s: &mut State, step: u32) -> Result<(), Fault> {
                 from = i + 1;
             }
         }
+        s.x.chain.get_mut(behind..).unwrap_or_default().reverse();
     }
     Ok(())
 }
 
-/// Activates a step; its entry actions run at once, its linked steps come with it.
+/// Activates a step; its entry actions run at once, its linked steps come with it
+/// as if a transition led to them: in the order of the text, each with what it
+/// brings.
 fn enter(p: &Program, s: &mut State, step: u32) -> Result<(), Fault> {
     s.x.chain.clear();
     s.x.chain.push(step);
-    let mut k = 0;
-    while let Some(&step) = s.x.chain.get(k) {
-        k += 1;
+    while let Some(step) = s.x.chain.pop() {
         if s.steps.contains(&s.w, step) {
             continue;
         }
@@ -508,7 +509,7 @@ fn enter(p: &Program, s: &mut State, step: u32) -> Result<(), Fault> {
         if !e.links.is_empty() && s.x.came.len() < s.x.came.capacity() {
             s.x.came.push(step);
         }
-        s.x.chain.extend(arcs(p, e.links).iter().map(|l| l.0));
+        s.x.chain.extend(arcs(p, e.links).iter().rev().map(|l| l.0));
     }
     Ok(())
 }

@@ -219,13 +219,27 @@ impl Lower<'_> {
             for chart in charts {
                 let Some(group) = self.plan.group(*chart) else { continue };
                 groups.add(number.0, group);
-                let linked = self.steps_where(group, |_, _, s| s.linked);
-                linked.into_iter().for_each(|s| links.add(number.0, s));
+                self.linked(group).into_iter().for_each(|s| links.add(number.0, s));
             }
         }
         groups.sort_unique();
-        links.sort_unique();
+        links.sort();
         (groups, links)
+    }
+
+    /// The linked steps of a group in the order of the text, each with all that
+    /// goes on with it.
+    fn linked(&self, group: GroupId) -> Vec<Number> {
+        let mut found = Vec::new();
+        for chart in self.within(group).filter_map(|c| self.unit.charts.get(c.index())) {
+            for i in chart.steps.clone() {
+                if self.unit.steps.get(i as usize).is_some_and(|s| s.linked) {
+                    self.plan.around(self.unit, StepId(i), &mut found);
+                    self.plan.entering(self.unit, StepId(i), &mut found);
+                }
+            }
+        }
+        found
     }
 
     /// Fills the table of forcing orders, in the partial order of the charts.
