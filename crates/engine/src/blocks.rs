@@ -31,6 +31,9 @@ const DS_FF: u64 = 1 << 18;
 const SL_FF: u64 = 1 << 19;
 /// Q as it was written last (of a plain block, in the word of its count).
 pub(crate) const WRITTEN: u64 = 1 << 63;
+/// A pulse that [`look`] saw before the evolution.
+const EARLY_P1: u64 = 1 << 21;
+const EARLY_P0: u64 = 1 << 22;
 /// Q, pulses P1 and P0 left out, at the last evaluation.
 const Q_BEFORE: u64 = 1 << 20;
 
@@ -49,14 +52,40 @@ pub(crate) fn count(p: &Program, s: &mut State, block: u32, input: u8, on: bool)
     p.layout.blocks.insert(&mut s.w, block);
 }
 
-/// Looks at the conditions of the active steps' actions.
-pub(crate) fn conditions(p: &Program, s: &mut State) -> Result<(), Fault> {
+/// Shows P1 and P0 the situation before the evolution, where the initialisation
+/// or a service made it: a step that is left in the same scan has its pulses.
+pub(crate) fn look(p: &Program, s: &mut State) -> Result<(), Fault> {
+    conditions(p, s, |input| input == P1 || input == P0)?;
+    let l = &p.layout;
+    let mut from = 0;
+    while let Some(i) = l.blocks.next(&s.w, from) {
+        from = i + 1;
+        let Some(b) = p.t.blocks.get(i as usize) else { break };
+        if b.plain || !is_due(p, s, b.period) {
+            continue;
+        }
+        let at = base(p, i);
+        let mut memory = word(&s.w, (at + MEMORY) as usize);
+        for (input, pulse, rises) in [(P1, EARLY_P1, true), (P0, EARLY_P0, false)] {
+            let on = word(&s.w, (at + input) as usize) != 0;
+            if on != (memory & (1 << input) != 0) {
+                memory ^= 1 << input;
+                memory |= if on == rises { pulse } else { 0 };
+            }
+        }
+        s.set((at + MEMORY) as usize, memory);
+    }
+    Ok(())
+}
+
+/// Looks at the conditions of the active steps' actions, those of some inputs.
+pub(crate) fn conditions(p: &Program, s: &mut State, of: impl Fn(u32) -> bool) -> Result<(), Fault> {
     let l = &p.layout;
     let mut from = 0;
     while let Some(row) = l.conditions.next(&s.w, from) {
         from = row + 1;
         let Some(c) = p.t.contributions.get(row as usize) else { break };
-        if !is_due(p, s, c.period) {
+        if !of(u32::from(c.input)) || !is_due(p, s, c.period) {
             continue;
         }
         let now = condition(p, s, c.condition)?;
@@ -158,8 +187,8 @@ fn full(p: &Program, s: &mut State, at: u32, gate: bool) -> (bool, bool, bool) {
     let sl_done = ton(s, 4, sl_ff, memory & SL_FF != 0);
     let ds_ff = !r && (ds_done || memory & DS_FF != 0);
     let p_trig = on(P) && !before(P);
-    let p1 = on(P1) && !before(P1) && !r && gate;
-    let p0 = !on(P0) && before(P0) && !r && gate;
+    let p1 = (on(P1) && !before(P1) || memory & EARLY_P1 != 0) && !r && gate;
+    let p0 = (!on(P0) && before(P0) || memory & EARLY_P0 != 0) && !r && gate;
     let level = !r
         && gate
         && (on(N)

@@ -232,8 +232,12 @@ pub fn begin(p: &Program, s: &mut State, inputs: &[u64], now: i64) -> Result<(),
         run::run(p, s, t.pre)?;
         run::run(p, s, t.services)?;
     }
+    s.x.stepped = fresh;
     if s.has_flag(REQUESTS) {
         requests(p, s)?;
+    }
+    if t.rules.late_actions && s.x.stepped {
+        blocks::look(p, s)?;
     }
     if t.counts.is_some() {
         enabled(p, s, false)?;
@@ -356,7 +360,7 @@ pub fn finish(p: &Program, s: &mut State) -> Result<(), Fault> {
         late(p, s)?;
     }
     if !t.contributions.is_empty() {
-        blocks::conditions(p, s)?;
+        blocks::conditions(p, s, |_| true)?;
     }
     if !t.blocks.is_empty() {
         blocks::evaluate(p, s)?;

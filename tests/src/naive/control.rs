@@ -121,6 +121,65 @@ struct Verdict {
     pulse: i8,
 }
 
+/// What goes through control blocks.
+fn blocks(m: &Model) -> Run<Vec<Block<'_>>> {
+    let all = qualified(m)?.into_iter();
+    Ok(all
+        .filter(|(b, goal)| through_block(m, goal, b.qualifier))
+        .filter(|(b, _)| !is_late_pulse(m, b.step, &m.steps[b.step].actions[b.place]))
+        .map(|(b, _)| b)
+        .collect())
+}
+
+fn owners<'b>(blocks: &'b [Block<'_>]) -> Vec<&'b Owner> {
+    let mut owners: Vec<&Owner> = Vec::new();
+    for b in blocks {
+        if !owners.contains(&&b.owner) {
+            owners.push(&b.owner);
+        }
+    }
+    owners
+}
+
+/// What an association gives to its block in the situation as it is.
+fn input_of(m: &Model, s: &mut State, b: &Block<'_>) -> Run<bool> {
+    let scope = m.steps[b.step].scope;
+    let on = s.active.contains(&b.step) && !masked(m, s, scope);
+    match b.condition {
+        Some(c) if on => Exec::new(m, s).truth(scope, c),
+        _ => Ok(on),
+    }
+}
+
+/// The initialisation or a service made a situation: P1 and P0 see it before
+/// the evolution, so that a step left in the same scan has its pulses.
+pub(super) fn before_evolution(m: &Model, s: &mut State, due: &[bool]) -> Run<()> {
+    if m.rules.stored_pulses() {
+        return Ok(());
+    }
+    let blocks = blocks(m)?;
+    for owner in owners(&blocks) {
+        for (i, qualifier) in [Qualifier::P1, Qualifier::P0].into_iter().enumerate() {
+            let mut input = false;
+            let mut any_due = false;
+            for b in blocks.iter().filter(|b| b.owner == *owner) {
+                let here = due[m.steps[b.step].scope];
+                any_due |= here;
+                if b.qualifier == qualifier {
+                    let held = s.held.get(&(b.step, b.place)).is_some_and(|h| *h);
+                    input |= if here { input_of(m, s, b)? } else { held };
+                }
+            }
+            let control = s.control.entry(owner.clone()).or_default();
+            if any_due && control.last[i + 1] != input {
+                control.last[i + 1] = input;
+                control.early[i] |= input == (qualifier == Qualifier::P1);
+            }
+        }
+    }
+    Ok(())
+}
+
 /// Evaluates all control blocks and continuous actions, then runs the bodies.
 pub(super) fn end_of_scan(m: &Model, s: &mut State, due: &[bool], went: &Went) -> Run<()> {
     // JGrafchart: the periodic actions, and after them the level actions.
@@ -128,20 +187,9 @@ pub(super) fn end_of_scan(m: &Model, s: &mut State, due: &[bool], went: &Went) -
     if level_last {
         bodies(m, s, due, went, &[], &BTreeMap::new(), true)?;
     }
-    let blocks: Vec<Block<'_>> = qualified(m)?
-        .into_iter()
-        .filter(|(b, goal)| through_block(m, goal, b.qualifier))
-        .filter(|(b, _)| !is_late_pulse(m, b.step, &m.steps[b.step].actions[b.place]))
-        .map(|(b, _)| b)
-        .collect();
-    let mut owners: Vec<&Owner> = Vec::new();
-    for b in &blocks {
-        if !owners.contains(&&b.owner) {
-            owners.push(&b.owner);
-        }
-    }
+    let blocks = blocks(m)?;
     let mut verdicts: BTreeMap<&Owner, Verdict> = BTreeMap::new();
-    for owner in owners {
+    for owner in owners(&blocks) {
         let mine: Vec<&Block<'_>> = blocks.iter().filter(|b| b.owner == *owner).collect();
         if mine.iter().any(|b| due[m.steps[b.step].scope]) {
             let verdict = judge(m, s, due, owner, &mine)?;
@@ -183,10 +231,7 @@ fn judge(m: &Model, s: &mut State, due: &[bool], owner: &Owner, blocks: &[&Block
             inputs[b.qualifier as usize] |= held;
             continue;
         }
-        let mut input = s.active.contains(&b.step) && !masked(m, s, scope);
-        if let (true, Some(c)) = (input, b.condition) {
-            input = Exec::new(m, s).truth(scope, c)?;
-        }
+        let mut input = input_of(m, s, b)?;
         let time = match b.time {
             Some(e) if input => Exec::new(m, s).eval(scope, e)?.duration()?,
             _ => 0,
@@ -257,8 +302,9 @@ impl Control {
         let [p_last, p1_last, p0_last] = self.last;
         self.last = [on(Q::P), on(Q::P1), on(Q::P0)];
         let p_trig = on(Q::P) && !p_last;
-        let p1 = on(Q::P1) && !p1_last;
-        let p0 = !on(Q::P0) && p0_last;
+        let [p1_early, p0_early] = std::mem::take(&mut self.early);
+        let p1 = p1_early || on(Q::P1) && !p1_last;
+        let p0 = p0_early || !on(Q::P0) && p0_last;
         let level = !r
             && (on(Q::N)
                 || self.s_ff

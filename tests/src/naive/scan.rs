@@ -80,6 +80,9 @@ impl Naive {
         let before = self.state.clone();
         let requested = services(m, &mut self.state);
         stored::run(m, &mut self.state, &before, &requested, &mut self.diagnostics)?;
+        if self.first || !(requested.on.is_empty() && requested.off.is_empty()) {
+            super::control::before_evolution(m, &mut self.state, &due)?;
+        }
         changes.add(&requested);
         let start = self.state.active.clone();
         let counted = self.evolve(&due, &mut changes)?;

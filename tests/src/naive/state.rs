@@ -51,6 +51,8 @@ pub(super) struct Control {
     pub(super) sl_ff: bool,
     /// P, P1, P0 as they were.
     pub(super) last: [bool; 3],
+    /// P1 and P0 seen before the evolution.
+    pub(super) early: [bool; 2],
     /// Starts of the timers L, D, SD, DS, SL while their inputs are true.
     pub(super) starts: [Option<i64>; 5],
     /// The times last given for them.
