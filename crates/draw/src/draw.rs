@@ -7,8 +7,10 @@ use g7_model::{Chart, Document, Item as Entry, PlaceAt, Step, Transition};
 
 use crate::ink::Picture;
 use crate::layout::layout;
+use crate::pages;
 use crate::symbols::{
-    StepShape, TransitionShape, arrow, connector, connector_label, connector_width, double, step, transition,
+    SQUARE, StepShape, TransitionShape, arrow, connector, connector_label, connector_width, double, step,
+    transition,
 };
 use crate::{Connector, Drawing, End, Item, Options, Part, Placement, Point, Rect, Sizes};
 
@@ -27,8 +29,12 @@ pub fn measure(_: &Document, chart: &Chart, options: &Options) -> Sizes {
 /// A chart as a picture.
 pub fn draw(document: &Document, chart: &Chart, options: &Options) -> Drawing {
     let symbols = Symbols::new(chart, options);
+    if options.pages {
+        let paged = pages::place(chart, &symbols.sizes);
+        return symbols.put(chart, &paged.placement, paged.frames, &paged.pages);
+    }
     let placement = layout(chart, &symbols.sizes, places(document, chart));
-    symbols.put(chart, &placement)
+    symbols.put(chart, &placement, Vec::new(), &[])
 }
 
 /// What the layout section of the chart says.
@@ -55,18 +61,22 @@ impl<'a> Symbols<'a> {
         Symbols { steps, transitions, sizes }
     }
 
-    /// Every symbol at its place.
-    pub(crate) fn put(self, chart: &Chart, placement: &Placement) -> Drawing {
-        let mut items = Vec::new();
+    /// Every symbol at its place, over what is there already; `pages` has the
+    /// page of each step where there are several.
+    fn put(self, chart: &Chart, placement: &Placement, mut items: Vec<Item>, pages: &[u32]) -> Drawing {
         self.links(placement, &mut items);
         let names = Names::new(&self);
         for (index, c) in (0..).zip(&placement.connectors) {
-            items.push(names.connector(index, c));
+            items.push(names.connector(index, c, placement, pages));
         }
         for (number, ((t, shape), at)) in (0..).zip(self.transitions.into_iter().zip(&placement.transitions))
         {
             let mut picture = shape.picture.moved(*at);
-            placement.bars.iter().filter(|b| b.transition == number).for_each(|b| double(&mut picture, b));
+            placement
+                .bars
+                .iter()
+                .filter(|b| b.transition == number)
+                .for_each(|b| double(&mut picture, b, *at));
             let (bar, text) = (moved(shape.bar, *at), moved(shape.text, *at));
             items.push(item(Part::Transition { transition: number, bar, text }, picture, t.at.0));
         }
@@ -133,11 +143,23 @@ impl Names {
         }
     }
 
-    fn connector(&self, index: u32, c: &Connector) -> Item {
-        let name = self.named(c).and_then(|s| self.steps.get(s as usize)).map_or("", |s| s);
+    fn connector(&self, index: u32, c: &Connector, placement: &Placement, pages: &[u32]) -> Item {
+        let named = self.named(c);
+        let name = named.and_then(|s| self.steps.get(s as usize)).map_or("", |s| s);
+        let page = named.and_then(|s| pages.get(s as usize)).copied();
         let mut picture = Picture::default();
+        // The link up to where it is broken off.
+        let start = match (c.leaving, c.from) {
+            (false, _) => None,
+            (true, End::Step(s)) => placement.steps.get(s as usize).map(|p| Point { y: p.y + SQUARE, ..*p }),
+            (true, End::Transition(t)) => placement.transitions.get(t as usize).copied(),
+        };
+        match start {
+            Some(from) if from.x == c.at.x => picture.line("g7-link", &[(from.x, from.y), (c.at.x, c.at.y)]),
+            _ => picture.line("g7-link", &[(c.at.x, c.at.y - 160), (c.at.x, c.at.y)]),
+        }
         arrow(&mut picture, c.at, (0, 1));
-        connector(&mut picture, c.text, &connector_label(name, None));
+        connector(&mut picture, c.text, &connector_label(name, page));
         let transition = match (c.from, c.to) {
             (End::Transition(t), _) | (_, End::Transition(t)) => Some(t),
             (End::Step(_), End::Step(_)) => None,

@@ -21,6 +21,7 @@ mod ink;
 #[path = "stacked.rs"]
 mod layout;
 mod options;
+mod pages;
 mod placement;
 mod svg;
 mod symbols;

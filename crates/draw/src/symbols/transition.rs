@@ -5,7 +5,7 @@ use g7_model::Transition;
 use crate::ink::{Picture, stack};
 use crate::symbols::{ACTION_TEXT, DOUBLE_GAP, HALF_BAR, SMALL, TEXT, action, extent, quoted};
 use crate::text::{Line, body, clean, receptivity, width};
-use crate::{Bar, Extent, Rect};
+use crate::{Bar, Extent, Point, Rect};
 
 /// A transition round its anchor, the middle of its bar.
 #[derive(Clone, Debug)]
@@ -107,9 +107,11 @@ fn priority(p: &mut Picture, n: u32) {
     p.text("g7-num", x - w / 2, y + size * 35 / 100, size, &text);
 }
 
-/// The two lines of a synchronisation.
-pub(crate) fn double(p: &mut Picture, bar: &Bar) {
+/// The two lines of a synchronisation, with the link between them and the bar.
+pub(crate) fn double(p: &mut Picture, bar: &Bar, at: Point) {
     for y in [bar.at.y, bar.at.y + DOUBLE_GAP] {
         p.line("g7-double", &[(bar.at.x, y), (bar.at.x + bar.w, y)]);
     }
+    let near = if bar.join { bar.at.y + DOUBLE_GAP } else { bar.at.y };
+    p.line("g7-link", &[(at.x, near.min(at.y)), (at.x, near.max(at.y))]);
 }

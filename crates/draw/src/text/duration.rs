@@ -25,7 +25,7 @@ pub(crate) fn duration(ns: i64) -> String {
     };
     let fraction = format!("{:0width$}", rest % size, width = size.ilog10() as usize);
     text.push_str(&(rest / size).to_string());
-    if rest % size > 0 {
+    if !rest.is_multiple_of(size) {
         text.push('.');
         text.push_str(fraction.trim_end_matches('0'));
     }

@@ -1,0 +1,343 @@
+//! How large the cells are, and how the links run between them.
+
+use g7_model::{Chart, Span};
+
+use super::cells::{Cell, Cells, cells};
+use super::{COLUMNS, LINES};
+use crate::ink::Picture;
+use crate::symbols::{DOUBLE_GAP, SMALL, SQUARE, connector_label, connector_width};
+use crate::text::width;
+use crate::{Bar, Connector, End, Item, Link, Part, Placement, Point, Rect, Sizes};
+
+/// A chart on pages.
+pub(crate) struct Paged {
+    /// Where all is.
+    pub(crate) placement: Placement,
+    /// The page of each step, from 1; empty where there is one page.
+    pub(crate) pages: Vec<u32>,
+    /// Frames and numbers of the pages.
+    pub(crate) frames: Vec<Item>,
+}
+
+/// Narrowest half of a column.
+const HALF: i32 = 450;
+/// Between the texts of two columns.
+const GUTTER: i32 = 160;
+/// Between two pages.
+const BETWEEN: i32 = 400;
+/// Height of a connector's line.
+const CONNECTOR: i32 = 180;
+/// From a symbol to the links beside it.
+const STUB: i32 = 110;
+
+struct Paper<'a> {
+    cells: &'a Cells,
+    names: Vec<&'a str>,
+    /// Left edge of each column, and one past the last.
+    edges: Vec<i32>,
+    /// The link's place in each column.
+    middles: Vec<i32>,
+    /// Of each page and line: top of the steps' squares, lowest point of the steps, middle of the bars.
+    lines: Vec<[(i32, i32, i32); LINES as usize]>,
+    /// Top and bottom of each page.
+    spans: Vec<(i32, i32)>,
+    /// How far the texts of each transition reach below its bar.
+    below: Vec<i32>,
+}
+
+/// Puts a chart on pages.
+pub(crate) fn place(chart: &Chart, sizes: &Sizes) -> Paged {
+    let cells = cells(chart);
+    let paper = Paper::new(chart, sizes, &cells);
+    let mut placement = Placement {
+        steps: cells.steps.iter().map(|c| Point { x: paper.x(*c), y: paper.line(*c).0 }).collect(),
+        transitions: cells
+            .transitions
+            .iter()
+            .map(|c| Point { x: paper.x(*c), y: paper.line(*c).2 })
+            .collect(),
+        ..Placement::default()
+    };
+    paper.links(&mut placement);
+    let frames = paper.frames();
+    placement.area = frames.iter().map(|f| f.area).fold(Rect::default(), |a, b| a.union(&b));
+    let pages = if cells.pages > 1 { cells.steps.iter().map(|c| c.page + 1).collect() } else { Vec::new() };
+    Paged { placement, pages, frames }
+}
+
+impl<'a> Paper<'a> {
+    fn new(chart: &'a Chart, sizes: &Sizes, cells: &'a Cells) -> Paper<'a> {
+        let names: Vec<&str> = chart.steps().map(|s| &*s.name.text).collect();
+        let mut paper = Paper {
+            cells,
+            names,
+            edges: Vec::new(),
+            middles: Vec::new(),
+            lines: Vec::new(),
+            spans: Vec::new(),
+            below: sizes.transitions.iter().map(|e| e.down).collect(),
+        };
+        paper.columns(sizes);
+        let mut top = 0;
+        for page in 0..cells.pages {
+            top = paper.page(page, top, sizes) + BETWEEN;
+        }
+        paper
+    }
+
+    fn label(&self, step: u32) -> String {
+        let page = self.cells.steps.get(step as usize).map(|c| c.page + 1);
+        let name = self.names.get(step as usize).copied().unwrap_or("");
+        connector_label(name, page.filter(|_| self.cells.pages > 1))
+    }
+
+    /// As wide as the widest text needs, on every page.
+    fn columns(&mut self, sizes: &Sizes) {
+        let cells = self.cells;
+        let widest = |c: Option<(i32, i32)>, e: (i32, i32)| c.map_or(e, |c| (c.0.max(e.0), c.1.max(e.1)));
+        let mut sides: Vec<(i32, i32)> = vec![(HALF, HALF); COLUMNS as usize];
+        let steps = cells.steps.iter().zip(&sizes.steps);
+        for (cell, e) in steps.chain(cells.transitions.iter().zip(&sizes.transitions)) {
+            if let Some(side) = sides.get_mut(cell.column as usize) {
+                *side = widest(Some(*side), (e.left, e.right));
+            }
+        }
+        for ((from, to), t) in cells.from.iter().zip(&cells.to).zip(&cells.transitions) {
+            let labels = from.iter().chain(to).map(|s| connector_width(&self.label(*s)) + 120);
+            let need = labels.max().unwrap_or(0);
+            for cell in to.iter().filter_map(|s| cells.steps.get(*s as usize)).chain([t]) {
+                if let Some(side) = sides.get_mut(cell.column as usize) {
+                    side.1 = side.1.max(need);
+                }
+            }
+        }
+        let mut x = 0;
+        for (left, right) in sides {
+            self.edges.push(x);
+            self.middles.push(x + left + GUTTER / 2);
+            x += left + right + GUTTER;
+        }
+        self.edges.push(x);
+    }
+
+    /// The lines of a page; tells its lower end.
+    fn page(&mut self, page: u32, top: i32, sizes: &Sizes) -> i32 {
+        let cells = self.cells;
+        let mut y = top + 2 * CONNECTOR;
+        let mut lines = [(0, 0, 0); LINES as usize];
+        for (number, line) in (0..).zip(&mut lines) {
+            let here = |c: &Cell| c.page == page && c.line == number;
+            let (mut up, mut down) = (0, SQUARE);
+            for ((s, _), e) in (0..).zip(&cells.steps).zip(&sizes.steps).filter(|((_, c), _)| here(c)) {
+                up = up.max(e.up).max(self.arriving(s) * CONNECTOR + STUB);
+                down = down.max(e.down);
+            }
+            let (mut over, mut under) = (0, 0);
+            for ((t, _), e) in
+                (0..).zip(&cells.transitions).zip(&sizes.transitions).filter(|((_, c), _)| here(c))
+            {
+                let leaving = self.leaving(t) * CONNECTOR;
+                over = over.max(e.up + self.entering(t) * CONNECTOR);
+                let broken = if leaving > 0 { leaving + STUB + DOUBLE_GAP } else { 0 };
+                under = under.max(e.down + broken);
+            }
+            line.0 = y + up;
+            line.1 = line.0 + down;
+            line.2 = line.1 + 2 * STUB + DOUBLE_GAP + over;
+            y = line.2 + under + 2 * STUB + DOUBLE_GAP;
+        }
+        let low = y + CONNECTOR;
+        self.lines.push(lines);
+        self.spans.push((top, low));
+        low
+    }
+
+    fn x(&self, cell: Cell) -> i32 {
+        self.middles.get(cell.column as usize).copied().unwrap_or(0)
+    }
+
+    fn line(&self, cell: Cell) -> (i32, i32, i32) {
+        self.lines
+            .get(cell.page as usize)
+            .and_then(|p| p.get(cell.line as usize))
+            .copied()
+            .unwrap_or_default()
+    }
+
+    /// Whether the link from a transition to a step is drawn: to the line below.
+    fn runs_on(&self, t: u32, s: u32) -> bool {
+        match (self.cells.transitions.get(t as usize), self.cells.steps.get(s as usize)) {
+            (Some(t), Some(s)) => t.page == s.page && t.line + 1 == s.line && self.alone_above(*s, *t),
+            _ => false,
+        }
+    }
+
+    /// No step but those behind one transition begins in this line right of it:
+    /// a link to the left would cross them, so it is broken off.
+    fn alone_above(&self, step: Cell, transition: Cell) -> bool {
+        step.column >= transition.column
+    }
+
+    /// Whether the link from a step to a transition is drawn.
+    fn runs_into(&self, s: u32, t: u32) -> bool {
+        let (Some(at), Some(to)) = (self.cells.steps.get(s as usize), self.cells.transitions.get(t as usize))
+        else {
+            return false;
+        };
+        let only = self.cells.behind.get(s as usize).is_some_and(|b| b.len() == 1);
+        at.page == to.page && (at.line == to.line || (only && at.line < to.line))
+    }
+
+    fn count(list: impl Iterator<Item = bool>) -> i32 {
+        i32::try_from(list.filter(|b| *b).count()).unwrap_or(0)
+    }
+
+    /// How many broken links arrive at a step.
+    fn arriving(&self, s: u32) -> i32 {
+        let into = (0..).zip(&self.cells.to).filter(|(_, to)| to.contains(&s));
+        Paper::count(into.map(|(t, _)| !self.runs_on(t, s)))
+    }
+
+    /// How many broken links leave a transition.
+    fn leaving(&self, t: u32) -> i32 {
+        let to = self.cells.to.get(t as usize).map_or(&[][..], Vec::as_slice);
+        Paper::count(to.iter().map(|s| !self.runs_on(t, *s)))
+    }
+
+    /// How many broken links enter a transition.
+    fn entering(&self, t: u32) -> i32 {
+        let from = self.cells.from.get(t as usize).map_or(&[][..], Vec::as_slice);
+        Paper::count(from.iter().map(|s| !self.runs_into(*s, t)))
+    }
+
+    fn links(&self, p: &mut Placement) {
+        for ((t, from), to) in (0..).zip(&self.cells.from).zip(&self.cells.to) {
+            let Some(at) = p.transitions.get(t as usize).copied() else { continue };
+            let Some(cell) = self.cells.transitions.get(t as usize) else { continue };
+            let (_, low, _) = self.line(*cell);
+            let (join, fork) = (low + STUB, self.fork(*cell));
+            self.into(p, t, at, from, join);
+            self.onward(p, t, at, to, fork);
+        }
+    }
+
+    /// The height at which the links behind the transitions of a line run.
+    fn fork(&self, cell: Cell) -> i32 {
+        let below = Cell { line: cell.line + 1, ..cell };
+        let next = if below.line < LINES {
+            self.line(below).0
+        } else {
+            self.spans.get(cell.page as usize).map_or(0, |s| s.1)
+        };
+        // Over the connectors that arrive at the steps of the next line.
+        let arrive =
+            (0..).zip(&self.cells.steps).filter(|(_, c)| c.page == below.page && c.line == below.line);
+        let most = arrive.map(|(s, _)| self.arriving(s)).max().unwrap_or(0);
+        next - STUB - DOUBLE_GAP - most * CONNECTOR
+    }
+
+    fn into(&self, p: &mut Placement, t: u32, at: Point, from: &[u32], join: i32) {
+        let mut reach: Vec<i32> = Vec::new();
+        for s in from {
+            let Some(step) = p.steps.get(*s as usize).copied() else { continue };
+            let bottom = Point { x: step.x, y: step.y + SQUARE };
+            let (link_from, link_to) = (End::Step(*s), End::Transition(t));
+            if self.runs_into(*s, t) {
+                let points = if from.len() > 1 {
+                    reach.push(step.x);
+                    vec![bottom, Point { x: step.x, y: join }]
+                } else {
+                    bent(bottom, at, join)
+                };
+                p.links.push(Link { from: link_from, to: link_to, points, arrows: Vec::new() });
+            } else {
+                let entering = i32::try_from(reach.len()).unwrap_or(0);
+                let tip = Point { x: at.x, y: at.y - STUB - entering * CONNECTOR };
+                let target = self.next_step(t);
+                let after = Point { x: step.x, y: bottom.y + STUB };
+                p.connectors.push(self.connector(link_from, link_to, true, after, target));
+                p.connectors.push(self.connector(link_from, link_to, false, tip, Some(*s)));
+            }
+        }
+        if from.len() > 1 && reach.len() > 1 {
+            bar(p, t, true, &reach, at.x, join);
+        }
+    }
+
+    fn onward(&self, p: &mut Placement, t: u32, at: Point, to: &[u32], fork: i32) {
+        let mut reach: Vec<i32> = Vec::new();
+        let low = at.y + self.below.get(t as usize).copied().unwrap_or(0);
+        let mut leaving = 0;
+        for s in to {
+            let Some(step) = p.steps.get(*s as usize).copied() else { continue };
+            let (from, into) = (End::Transition(t), End::Step(*s));
+            if self.runs_on(t, *s) {
+                let points = if to.len() > 1 {
+                    reach.push(step.x);
+                    vec![Point { x: step.x, y: fork + DOUBLE_GAP }, step]
+                } else {
+                    bent(at, step, fork)
+                };
+                p.links.push(Link { from, to: into, points, arrows: Vec::new() });
+            } else {
+                leaving += 1;
+                let tip = Point { x: at.x, y: low + DOUBLE_GAP + leaving * CONNECTOR };
+                p.connectors.push(self.connector(from, into, true, tip, Some(*s)));
+                let before = p.connectors.iter().filter(|c| !c.leaving && c.to == into).count();
+                let before = i32::try_from(before).unwrap_or(0);
+                let tip = Point { x: step.x, y: step.y - before * CONNECTOR };
+                let origin = self.cells.from.get(t as usize).and_then(|f| f.first()).copied();
+                p.connectors.push(self.connector(from, into, false, tip, origin));
+            }
+        }
+        if to.len() > 1 && !reach.is_empty() {
+            bar(p, t, false, &reach, at.x, fork);
+        } else if to.len() > 1 {
+            // All of them are broken off, below the double line they belong to.
+            bar(p, t, false, &[at.x - 60, at.x + 60], at.x, low - DOUBLE_GAP);
+        }
+    }
+
+    fn next_step(&self, t: u32) -> Option<u32> {
+        self.cells.to.get(t as usize).and_then(|to| to.first()).copied()
+    }
+
+    fn connector(&self, from: End, to: End, leaving: bool, at: Point, named: Option<u32>) -> Connector {
+        let w = named.map_or(0, |s| connector_width(&self.label(s)));
+        let text = Rect { x: at.x + 80, y: at.y - 165, w, h: 150 };
+        Connector { from, to, leaving, at, text }
+    }
+
+    fn frames(&self) -> Vec<Item> {
+        let mut items = Vec::new();
+        let right = self.edges.last().copied().unwrap_or(0);
+        for (page, (top, low)) in (1..).zip(&self.spans) {
+            let mut p = Picture::default();
+            p.rect("g7-frame", 0, *top, right, low - top);
+            for x in self.edges.iter().skip(1).take(COLUMNS as usize - 1) {
+                p.line("g7-grid", &[(*x, *top), (*x, top + 60)]);
+                p.line("g7-grid", &[(*x, low - 60), (*x, *low)]);
+            }
+            let text = format!("{page} / {}", self.cells.pages);
+            p.text("g7-label", right - width(&text, SMALL) - 60, top + 160, SMALL, &text);
+            let area = p.area().unwrap_or_default();
+            items.push(Item { part: Part::Text, area, svg: p.svg(), far: p.far(), at: Span::default() });
+        }
+        items
+    }
+}
+
+/// Down, across at a height, down.
+fn bent(from: Point, to: Point, across: i32) -> Vec<Point> {
+    if from.x == to.x {
+        return vec![from, to];
+    }
+    vec![from, Point { x: from.x, y: across }, Point { x: to.x, y: across }, to]
+}
+
+/// A double line over what it joins, and the link between it and the transition.
+fn bar(p: &mut Placement, t: u32, join: bool, reach: &[i32], x: i32, y: i32) {
+    let left = reach.iter().copied().min().unwrap_or(x).min(x) - 100;
+    let right = reach.iter().copied().max().unwrap_or(x).max(x) + 100;
+    p.bars.push(Bar { transition: t, join, at: Point { x: left, y }, w: right - left });
+}
