@@ -117,7 +117,7 @@ impl Placing {
                     if self.step_at.get(s as usize).is_some_and(Option::is_none) {
                         let at = match above.line + 1 {
                             line if line < LINES => self.beside(above.page, line),
-                            _ => self.top(above.page),
+                            _ => self.overleaf(above.page),
                         };
                         self.run(s, at);
                     }
@@ -131,18 +131,28 @@ impl Placing {
         self.beside(page, 0)
     }
 
-    /// A free column at a line; another page's top where there is none.
+    /// The top of a column on a later page: this page's columns are for its branches.
+    fn overleaf(&mut self, page: u32) -> Cell {
+        let last = (self.free.len() as u32).saturating_sub(1);
+        if last == page {
+            self.free.push(0);
+        }
+        self.beside((self.free.len() as u32).saturating_sub(1), 0)
+    }
+
+    /// A free column at a line; the top of one on the last or a new page where there is none.
     fn beside(&mut self, page: u32, line: u32) -> Cell {
-        match self.free.get_mut(page as usize) {
-            Some(column) if *column < COLUMNS => {
+        let last = (self.free.len() as u32).saturating_sub(1);
+        for (page, line) in [(page, line), (last, 0)] {
+            if let Some(column) = self.free.get_mut(page as usize)
+                && *column < COLUMNS
+            {
                 *column += 1;
-                Cell { page, line, column: *column - 1 }
-            }
-            _ => {
-                self.free.push(1);
-                Cell { page: self.free.len() as u32 - 1, line: 0, column: 0 }
+                return Cell { page, line, column: *column - 1 };
             }
         }
+        self.free.push(1);
+        Cell { page: self.free.len() as u32 - 1, line: 0, column: 0 }
     }
 
     /// Places a step and what follows down its column.
@@ -206,7 +216,7 @@ impl Placing {
         let first = first?;
         let cell = match at.line + 1 {
             line if line < LINES => Cell { line, ..at },
-            _ => self.top(at.page),
+            _ => self.overleaf(at.page),
         };
         Some((first, cell))
     }

@@ -41,7 +41,9 @@ struct Paper<'a> {
     lines: Vec<[(i32, i32, i32); LINES as usize]>,
     /// Top and bottom of each page.
     spans: Vec<(i32, i32)>,
-    /// How far the texts of each transition reach below its bar.
+    /// How far the texts of each transition reach above its bar.
+    above: Vec<i32>,
+    /// How far they reach below it.
     below: Vec<i32>,
 }
 
@@ -75,6 +77,7 @@ impl<'a> Paper<'a> {
             middles: Vec::new(),
             lines: Vec::new(),
             spans: Vec::new(),
+            above: sizes.transitions.iter().map(|e| e.up).collect(),
             below: sizes.transitions.iter().map(|e| e.down).collect(),
         };
         paper.columns(sizes);
@@ -130,7 +133,7 @@ impl<'a> Paper<'a> {
             let (mut up, mut down) = (0, SQUARE);
             for ((s, _), e) in (0..).zip(&cells.steps).zip(&sizes.steps).filter(|((_, c), _)| here(c)) {
                 up = up.max(e.up).max(self.arriving(s) * CONNECTOR + STUB);
-                down = down.max(e.down);
+                down = down.max(e.down).max(self.departing(s));
             }
             let (mut over, mut under) = (0, 0);
             for ((t, _), e) in
@@ -198,6 +201,13 @@ impl<'a> Paper<'a> {
         Paper::count(into.map(|(t, _)| !self.runs_on(t, s)))
     }
 
+    /// How far the broken links from a step to its transitions reach below its upper edge.
+    fn departing(&self, s: u32) -> i32 {
+        let behind = self.cells.behind.get(s as usize).map_or(&[][..], Vec::as_slice);
+        let broken = Paper::count(behind.iter().map(|t| !self.runs_into(s, *t)));
+        SQUARE + if broken > 0 { STUB + broken * CONNECTOR } else { 0 }
+    }
+
     /// How many broken links leave a transition.
     fn leaving(&self, t: u32) -> i32 {
         let to = self.cells.to.get(t as usize).map_or(&[][..], Vec::as_slice);
@@ -237,6 +247,8 @@ impl<'a> Paper<'a> {
     }
 
     fn into(&self, p: &mut Placement, t: u32, at: Point, from: &[u32], join: i32) {
+        let high = at.y - self.above.get(t as usize).copied().unwrap_or(0);
+        let mut entering = 0;
         let mut reach: Vec<i32> = Vec::new();
         for s in from {
             let Some(step) = p.steps.get(*s as usize).copied() else { continue };
@@ -251,15 +263,17 @@ impl<'a> Paper<'a> {
                 };
                 p.links.push(Link { from: link_from, to: link_to, points, arrows: Vec::new() });
             } else {
-                let entering = i32::try_from(reach.len()).unwrap_or(0);
-                let tip = Point { x: at.x, y: at.y - STUB - entering * CONNECTOR };
+                let tip = Point { x: at.x, y: high - entering * CONNECTOR };
+                entering += 1;
                 let target = self.next_step(t);
-                let after = Point { x: step.x, y: bottom.y + STUB };
+                let before = p.connectors.iter().filter(|c| c.leaving && c.from == link_from).count();
+                let before = i32::try_from(before).unwrap_or(0);
+                let after = Point { x: step.x, y: bottom.y + DOUBLE_GAP + (before + 1) * CONNECTOR };
                 p.connectors.push(self.connector(link_from, link_to, true, after, target));
                 p.connectors.push(self.connector(link_from, link_to, false, tip, Some(*s)));
             }
         }
-        if from.len() > 1 && reach.len() > 1 {
+        if from.len() > 1 && !reach.is_empty() {
             bar(p, t, true, &reach, at.x, join);
         }
     }
@@ -304,7 +318,7 @@ impl<'a> Paper<'a> {
 
     fn connector(&self, from: End, to: End, leaving: bool, at: Point, named: Option<u32>) -> Connector {
         let w = named.map_or(0, |s| connector_width(&self.label(s)));
-        let text = Rect { x: at.x + 80, y: at.y - 165, w, h: 150 };
+        let text = Rect { x: at.x + 80, y: at.y - 150, w, h: 150 };
         Connector { from, to, leaving, at, text }
     }
 
