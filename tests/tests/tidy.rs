@@ -24,6 +24,7 @@ const ALLOWED: &[Arrows] = &[
     ("syntax", &["g7-model"], None),
     ("compile", &["g7-model", "g7-engine"], Some(&[])),
     ("host", &["g7-engine"], None),
+    ("edit", &["g7-model", "g7-syntax", "g7-compile"], Some(&["serde"])),
     ("rig", &["g7-model", "g7-syntax", "g7-engine", "g7-compile", "g7-host"], Some(&["thiserror"])),
     (
         "page",
@@ -32,7 +33,7 @@ const ALLOWED: &[Arrows] = &[
         ],
         Some(&["serde", "serde_json"]),
     ),
-    ("g7", &["g7-model", "g7-syntax", "g7-engine", "g7-compile", "g7-host", "g7-rig"], None),
+    ("g7", &["g7-model", "g7-syntax", "g7-engine", "g7-compile", "g7-host", "g7-rig", "g7-page"], None),
 ];
 
 /// Longest file, in lines.

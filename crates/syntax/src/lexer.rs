@@ -79,6 +79,7 @@ pub(crate) struct Token {
 }
 
 /// The place in the text, and what was set aside on the way.
+#[derive(Debug)]
 pub(crate) struct Lexer<'a> {
     text: &'a str,
     file: FileId,

@@ -28,11 +28,15 @@ mod number;
 mod parse;
 mod print;
 mod problems;
+mod tokens;
 mod words;
 
 pub use decode::decode;
 pub use lines::{LineColumn, LineIndex};
 pub use print::{print, print_expr};
+pub use tokens::{
+    Token, TokenKind, Tokens, is_reserved, show_comment, show_name, show_path_name, show_step_name, tokens,
+};
 
 use g7_model::{Document, Expr, ExprKind, FileId, Place, Problem, Span, Stmt};
 use parse::Parser;

@@ -261,7 +261,7 @@ impl<'a> Printer<'a> {
 }
 
 /// Whether a name needs no back-ticks.
-fn is_plain(name: &str) -> bool {
+pub(crate) fn is_plain(name: &str) -> bool {
     let mut chars = name.chars();
     let Some(first) = chars.next() else { return false };
     if first.is_ascii_digit() {

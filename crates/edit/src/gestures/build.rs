@@ -1,0 +1,161 @@
+//! Building on: steps and transitions behind, before and beside others.
+
+use g7_model::{Chart, ChartKind, Span, StepKind};
+
+use super::graph::{add, leaving, may_arrive, may_leave, put_step, put_step_before, put_transition};
+use super::{Node, node, places};
+use crate::draft::Draft;
+use crate::gesture::Branching;
+use crate::id::ItemId;
+use crate::{Refusal, refuse};
+
+/// A step by itself; the first one of a chart is initial, the first one of an
+/// expansion or task its entry.
+pub(crate) fn add_step(d: &mut Draft<'_>, chart: &str, at: Option<[f64; 2]>) -> Result<(), Refusal> {
+    let home = d.chart(chart)?;
+    let name = d.step_name(home);
+    let (first, kind) = (home.steps().next().is_none(), home.kind);
+    let mut step = d.new_step(&name);
+    if first && kind == ChartKind::Chart {
+        step.initial = !enclosed(d, chart);
+    } else if first {
+        step.kind = StepKind::Entry;
+    }
+    put_step(d, chart, step, None)?;
+    if let Some(at) = at {
+        places::place(d, &ItemId::step(chart, name.as_str()), places::point(at)?)?;
+    }
+    d.select_step(chart, &name);
+    Ok(())
+}
+
+/// Whether a step encloses the chart.
+fn enclosed(d: &Draft<'_>, chart: &str) -> bool {
+    use g7_model::{ActionKind, Order};
+    let actions = |c: &Chart| c.steps().flat_map(|s| s.actions.clone()).collect::<Vec<_>>();
+    d.doc.charts().flat_map(actions).any(|a| match a.kind {
+        ActionKind::Order(Order::Enclose(name)) => *name.text == *chart,
+        _ => false,
+    })
+}
+
+/// A fresh plain step behind another in the text; its name.
+pub(crate) fn fresh_step(d: &mut Draft<'_>, chart: &str, behind: Option<&str>) -> Result<String, Refusal> {
+    let name = d.step_name(d.chart(chart)?);
+    let step = d.new_step(&name);
+    put_step(d, chart, step, behind)?;
+    Ok(name)
+}
+
+/// A step more behind a step, with the transition between them.
+fn onward(d: &mut Draft<'_>, chart: &str, from: &str) -> Result<(), Refusal> {
+    may_leave(d.step(chart, from)?)?;
+    let name = d.step_name(d.chart(chart)?);
+    let t = d.new_transition(&[from], &[&name]);
+    let at = t.at;
+    put_transition(d, chart, t, from)?;
+    let step = d.new_step(&name);
+    put_step(d, chart, step, Some(from))?;
+    d.select_step(chart, &name);
+    d.begin_transition(chart, at);
+    Ok(())
+}
+
+pub(crate) fn next(d: &mut Draft<'_>, id: &ItemId) -> Result<(), Refusal> {
+    match node(d, id)? {
+        Node::Step(step) => onward(d, &id.chart, &step),
+        Node::Transition(at) => {
+            let there = d.transition(&id.chart, at)?.to.first().map(|n| n.text.to_string());
+            match there {
+                // It goes on there already: on we go.
+                Some(step) => d.select_step(&id.chart, &step),
+                None => step_behind(d, &id.chart, at)?,
+            }
+            Ok(())
+        }
+    }
+}
+
+/// A new step behind a transition.
+fn step_behind(d: &mut Draft<'_>, chart: &str, at: Span) -> Result<(), Refusal> {
+    let near = near(d, chart, at)?;
+    let name = fresh_step(d, chart, near.as_deref())?;
+    add(d, chart, at, &name, true)?;
+    d.select_step(chart, &name);
+    Ok(())
+}
+
+/// The step in the text that a new step behind a transition should follow.
+fn near(d: &Draft<'_>, chart: &str, at: Span) -> Result<Option<String>, Refusal> {
+    let t = d.transition(chart, at)?;
+    Ok(t.to.last().or(t.from.last()).map(|n| n.text.to_string()))
+}
+
+pub(crate) fn before(d: &mut Draft<'_>, id: &ItemId) -> Result<(), Refusal> {
+    let chart = id.chart.as_str();
+    match node(d, id)? {
+        Node::Step(step) => {
+            may_arrive(d.step(chart, &step)?)?;
+            let name = d.step_name(d.chart(chart)?);
+            let t = d.new_transition(&[&name], &[&step]);
+            let at = t.at;
+            put_transition(d, chart, t, &step)?;
+            let new = d.new_step(&name);
+            put_step_before(d, chart, new, &step)?;
+            d.select_step(chart, &name);
+            d.begin_transition(chart, at);
+        }
+        Node::Transition(at) => {
+            if let Some(there) = d.transition(chart, at)?.from.first().map(|n| n.text.to_string()) {
+                d.select_step(chart, &there);
+                return Ok(());
+            }
+            let behind = d.transition(chart, at)?.to.first().map(|n| n.text.to_string());
+            let name = d.step_name(d.chart(chart)?);
+            let step = d.new_step(&name);
+            match behind {
+                Some(other) => put_step_before(d, chart, step, &other)?,
+                None => put_step(d, chart, step, None)?,
+            }
+            add(d, chart, at, &name, false)?;
+            d.select_step(chart, &name);
+        }
+    }
+    Ok(())
+}
+
+/// A branch more: alternatives begin behind a step, simultaneous ones behind a transition.
+pub(crate) fn branch(d: &mut Draft<'_>, id: &ItemId, how: Branching) -> Result<(), Refusal> {
+    let chart = id.chart.as_str();
+    match (node(d, id)?, how) {
+        (Node::Step(step), Branching::Or) => onward(d, chart, &step),
+        (Node::Step(step), Branching::And) => {
+            let home = d.chart(chart)?;
+            let behind: Vec<Span> = leaving(home, &step).map(|t| t.at.0).collect();
+            match behind.as_slice() {
+                [one] => step_behind(d, chart, *one),
+                _ => refuse(
+                    "simultaneous sequences begin behind one transition; choose the transition, not the step",
+                ),
+            }
+        }
+        (Node::Transition(at), Branching::And) => step_behind(d, chart, at),
+        (Node::Transition(at), Branching::Or) => {
+            let from: Vec<String> =
+                d.transition(chart, at)?.from.iter().map(|n| n.text.to_string()).collect();
+            let Some(last) = from.last().cloned() else {
+                return refuse("alternatives begin behind a step; this transition has none before it");
+            };
+            let name = d.step_name(d.chart(chart)?);
+            let names: Vec<&str> = from.iter().map(String::as_str).collect();
+            let t = d.new_transition(&names, &[&name]);
+            let new = t.at;
+            put_transition(d, chart, t, &last)?;
+            let step = d.new_step(&name);
+            put_step(d, chart, step, Some(&last))?;
+            d.select_step(chart, &name);
+            d.begin_transition(chart, new);
+            Ok(())
+        }
+    }
+}

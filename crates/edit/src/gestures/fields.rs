@@ -1,0 +1,193 @@
+//! The fields of one step, transition or chart.
+
+use g7_model::{Action, ChartItem, ChartKind, FileId, StepKind};
+
+use super::graph::{arriving, leaving};
+use super::table::add_expansion;
+use super::{Node, node};
+use crate::draft::Draft;
+use crate::gesture::Sort;
+use crate::id::{ItemId, Part};
+use crate::{Refusal, refuse};
+
+/// The transition that an id names.
+fn transition(d: &Draft<'_>, id: &ItemId) -> Result<g7_model::Span, Refusal> {
+    match node(d, id)? {
+        Node::Transition(at) => Ok(at),
+        Node::Step(_) => refuse("this belongs to a transition, not to a step"),
+    }
+}
+
+/// The step that an id names.
+fn step(d: &Draft<'_>, id: &ItemId) -> Result<String, Refusal> {
+    match node(d, id)? {
+        Node::Step(name) => Ok(name),
+        Node::Transition(_) => refuse("this belongs to a step, not to a transition"),
+    }
+}
+
+pub(crate) fn receptivity(d: &mut Draft<'_>, id: &ItemId, text: &str) -> Result<(), Refusal> {
+    let at = transition(d, id)?;
+    let typed = text.trim();
+    let typed = if typed.is_empty() { "TRUE" } else { typed };
+    let (mut e, problems) = g7_syntax::parse_expr(typed, FileId(0));
+    if let Some(problem) = problems.first() {
+        return refuse(format!("this is no receptivity: {problem}"));
+    }
+    e.at = d.fresh_as(typed);
+    d.transition_mut(&id.chart, at)?.receptivity = e;
+    d.select(id.clone());
+    Ok(())
+}
+
+/// The actions that a text says, each as typed.
+pub(crate) fn read_actions(d: &mut Draft<'_>, text: &str) -> Result<Vec<Action>, Refusal> {
+    const HEAD: &str = "chart A {\nstep 1 {\n";
+    let whole = format!("{HEAD}{text}\n}}\n}}\n");
+    let (doc, problems) = g7_syntax::parse(&whole, FileId(0));
+    if let Some(problem) = problems.first() {
+        return refuse(format!("this is no action: {problem}"));
+    }
+    let mut charts = doc.charts();
+    let items = charts.next().map(|c| c.items.as_slice()).unwrap_or_default();
+    let ([ChartItem::Step(step)], None, 1) = (items, charts.next(), doc.items.len()) else {
+        return refuse("this is more than the actions of one step");
+    };
+    let mut actions = Vec::new();
+    for (k, action) in step.actions.iter().enumerate() {
+        // What stands between two actions, notes among it, belongs to the first.
+        let from = if k == 0 { HEAD.len() } else { action.at.0.start as usize };
+        let to = step.actions.get(k + 1).map_or(whole.len() - 5, |n| n.at.0.start as usize);
+        let raw = whole.get(from..to).unwrap_or_default().trim();
+        actions.push(Action { at: d.fresh_as(raw), kind: action.kind.clone() });
+    }
+    Ok(actions)
+}
+
+pub(crate) fn action(
+    d: &mut Draft<'_>,
+    id: &ItemId,
+    index: Option<usize>,
+    text: &str,
+) -> Result<(), Refusal> {
+    let name = step(d, id)?;
+    let index = match (&id.part, index) {
+        (Part::Action(_, k), None) => Some(*k),
+        (_, index) => index,
+    };
+    if text.trim().is_empty() {
+        let Some(k) = index else { return Ok(()) };
+        return remove_action(d, &id.chart, &name, k);
+    }
+    let new = read_actions(d, text.trim())?;
+    let count = new.len();
+    let there = d.step_mut(&id.chart, &name)?;
+    let at = match index {
+        Some(k) if k < there.actions.len() => {
+            there.actions.splice(k..=k, new);
+            k
+        }
+        Some(k) if k > there.actions.len() => {
+            return refuse(format!("step `{name}` has no action number {k}"));
+        }
+        _ => {
+            there.actions.extend(new);
+            there.actions.len() - count
+        }
+    };
+    d.select(ItemId::action(id.chart.as_str(), name, at));
+    Ok(())
+}
+
+pub(crate) fn remove_action(d: &mut Draft<'_>, chart: &str, name: &str, k: usize) -> Result<(), Refusal> {
+    let step = d.step_mut(chart, name)?;
+    if k >= step.actions.len() {
+        return refuse(format!("step `{name}` has no action number {k}"));
+    }
+    step.actions.remove(k);
+    Ok(())
+}
+
+pub(crate) fn comment(d: &mut Draft<'_>, id: &ItemId, text: &str) -> Result<(), Refusal> {
+    let comment = Some(text.trim()).filter(|t| !t.is_empty()).map(Box::from);
+    if id.part == Part::Chart {
+        d.chart_mut(&id.chart)?.comment = comment;
+    } else {
+        match node(d, id)? {
+            Node::Step(name) => d.step_mut(&id.chart, &name)?.comment = comment,
+            Node::Transition(at) => d.transition_mut(&id.chart, at)?.comment = comment,
+        }
+    }
+    d.select(id.clone());
+    Ok(())
+}
+
+pub(crate) fn label(d: &mut Draft<'_>, id: &ItemId, text: &str) -> Result<(), Refusal> {
+    let at = transition(d, id)?;
+    let text = text.trim();
+    let old = d.transition(&id.chart, at)?.label.as_ref().map(|l| l.text.to_string());
+    if old.as_deref().unwrap_or_default() == text {
+        return Ok(());
+    }
+    let taken = d.chart(&id.chart)?.transitions().any(|t| t.label.as_ref().is_some_and(|l| *l.text == *text));
+    if taken {
+        return refuse(format!("another transition has the label `{text}` already"));
+    }
+    let new = if text.is_empty() { None } else { Some(d.new_name(text)) };
+    super::places::relabel(d, &id.chart, at, old.as_deref(), new.as_ref())?;
+    d.transition_mut(&id.chart, at)?.label = new;
+    d.select(id.clone());
+    Ok(())
+}
+
+pub(crate) fn priority(d: &mut Draft<'_>, id: &ItemId, n: Option<u32>) -> Result<(), Refusal> {
+    let at = transition(d, id)?;
+    d.transition_mut(&id.chart, at)?.priority = n;
+    d.select(id.clone());
+    Ok(())
+}
+
+pub(crate) fn initial(d: &mut Draft<'_>, id: &ItemId, on: bool) -> Result<(), Refusal> {
+    let name = step(d, id)?;
+    d.step_mut(&id.chart, &name)?.initial = on;
+    d.select(id.clone());
+    Ok(())
+}
+
+pub(crate) fn kind(d: &mut Draft<'_>, id: &ItemId, sort: Sort) -> Result<(), Refusal> {
+    let name = step(d, id)?;
+    let now = d.step(&id.chart, &name)?.kind.clone();
+    let new = match sort {
+        Sort::Plain => StepKind::Plain,
+        Sort::Enclosing => StepKind::Enclosing,
+        Sort::Macro if matches!(now, StepKind::Macro(_)) => now,
+        Sort::Macro => {
+            let expansion = add_expansion(d, &format!("Expansion{name}"))?;
+            StepKind::Macro(d.new_name(&expansion))
+        }
+        Sort::Entry | Sort::Exit => end(d, &id.chart, &name, sort)?,
+    };
+    d.step_mut(&id.chart, &name)?.kind = new;
+    d.select(id.clone());
+    Ok(())
+}
+
+/// Entry and exit steps: one of each, in expansions and tasks only.
+fn end(d: &Draft<'_>, chart: &str, name: &str, sort: Sort) -> Result<StepKind, Refusal> {
+    let home = d.chart(chart)?;
+    let entry = sort == Sort::Entry;
+    let (word, kind) = if entry { ("entry", StepKind::Entry) } else { ("exit", StepKind::Exit) };
+    if home.kind == ChartKind::Chart {
+        return refuse(format!("an {word} step belongs to an expansion or a task, `{chart}` is a chart"));
+    }
+    if let Some(other) = home.steps().find(|s| s.kind == kind && *s.name.text != *name) {
+        return refuse(format!("`{chart}` has its {word} step already, `{}`", other.name.text));
+    }
+    if entry && arriving(home, name).next().is_some() {
+        return refuse(format!("a transition leads to step `{name}`; nothing leads to an entry step"));
+    }
+    if !entry && leaving(home, name).next().is_some() {
+        return refuse(format!("a transition follows step `{name}`; nothing follows an exit step"));
+    }
+    Ok(kind)
+}

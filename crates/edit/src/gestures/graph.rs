@@ -1,0 +1,158 @@
+//! Steps and transitions as neighbours, and where new ones go in the text.
+//!
+//! In most charts the steps come first and the transitions behind them: a new
+//! step goes behind the step it follows, a new transition behind those that
+//! leave the same step. Where they alternate in the text, the new ones do too.
+
+use g7_model::{Chart, ChartItem, Name, Span, Step, StepKind, Transition};
+
+use crate::draft::Draft;
+use crate::{Refusal, refuse};
+
+/// Whether a step is among names.
+pub(crate) fn has(names: &[Name], step: &str) -> bool {
+    names.iter().any(|n| *n.text == *step)
+}
+
+/// The transitions behind a step.
+pub(crate) fn leaving<'c>(chart: &'c Chart, step: &'c str) -> impl Iterator<Item = &'c Transition> {
+    chart.transitions().filter(move |t| has(&t.from, step))
+}
+
+/// The transitions before a step.
+pub(crate) fn arriving<'c>(chart: &'c Chart, step: &'c str) -> impl Iterator<Item = &'c Transition> {
+    chart.transitions().filter(move |t| has(&t.to, step))
+}
+
+/// Nothing leaves an exit step: the transitions behind its macro-step or its caller do.
+pub(crate) fn may_leave(step: &Step) -> Result<(), Refusal> {
+    if step.kind == StepKind::Exit {
+        return refuse(format!(
+            "nothing follows the exit step `{}`: the transition behind the macro-step or the calling step does",
+            step.name.text
+        ));
+    }
+    Ok(())
+}
+
+/// Nothing leads to an entry step: its macro-step or caller activates it.
+pub(crate) fn may_arrive(step: &Step) -> Result<(), Refusal> {
+    if step.kind == StepKind::Entry {
+        return refuse(format!(
+            "nothing leads to the entry step `{}`: the macro-step or the calling step activates it",
+            step.name.text
+        ));
+    }
+    Ok(())
+}
+
+/// Adds a step to names, unless it is there.
+pub(crate) fn add(d: &mut Draft<'_>, chart: &str, at: Span, step: &str, to: bool) -> Result<(), Refusal> {
+    let name = d.new_name(step);
+    let t = d.transition_mut(chart, at)?;
+    let list = if to { &mut t.to } else { &mut t.from };
+    if has(list, step) {
+        let side = if to { "behind" } else { "before" };
+        return refuse(format!("step `{step}` stands {side} this transition already"));
+    }
+    list.push(name);
+    Ok(())
+}
+
+/// Puts other names into the place of a step; none stands there twice.
+pub(crate) fn replace(list: &mut Vec<Name>, step: &str, by: &[Name]) {
+    let Some(k) = list.iter().position(|n| *n.text == *step) else { return };
+    list.remove(k);
+    let new: Vec<Name> = by.iter().filter(|n| !has(list, &n.text)).cloned().collect();
+    for (i, name) in new.into_iter().enumerate() {
+        list.insert(k + i, name);
+    }
+}
+
+/// Whether steps and transitions alternate in the text.
+fn alternating(chart: &Chart) -> bool {
+    let first = chart.items.iter().position(|i| matches!(i, ChartItem::Transition(_)));
+    let last = chart.items.iter().rposition(|i| matches!(i, ChartItem::Step(_)));
+    matches!((first, last), (Some(t), Some(s)) if t < s)
+}
+
+/// Behind the end of the chain that item `k` is in.
+fn chain_end(chart: &Chart, k: usize) -> usize {
+    let rest = chart.items.iter().skip(k + 1);
+    k + 1 + rest.take_while(|i| matches!(i, ChartItem::Transition(t) if t.chained)).count()
+}
+
+fn item_of_step(chart: &Chart, step: &str) -> Option<usize> {
+    chart.items.iter().position(|i| matches!(i, ChartItem::Step(s) if *s.name.text == *step))
+}
+
+/// Puts a new step into the text behind another step, or behind the last one.
+pub(crate) fn put_step(
+    d: &mut Draft<'_>,
+    chart: &str,
+    step: Step,
+    behind: Option<&str>,
+) -> Result<(), Refusal> {
+    let chart = d.chart_mut(chart)?;
+    let last = |c: &Chart| {
+        let step = c.items.iter().rposition(|i| matches!(i, ChartItem::Step(_)));
+        step.or_else(|| c.items.iter().rposition(|i| matches!(i, ChartItem::Var(_))))
+    };
+    let place = behind.and_then(|s| item_of_step(chart, s));
+    let k = match place {
+        Some(k) if alternating(chart) => {
+            let own = |i: &ChartItem| match (i, behind) {
+                (ChartItem::Transition(t), Some(s)) => has(&t.from, s),
+                _ => false,
+            };
+            let t = chart.items.iter().rposition(own).filter(|t| *t > k);
+            t.map_or(k + 1, |t| chain_end(chart, t))
+        }
+        Some(k) => k + 1,
+        None => last(chart).map_or(0, |k| chain_end(chart, k)),
+    };
+    chart.items.insert(k.min(chart.items.len()), ChartItem::Step(step));
+    Ok(())
+}
+
+/// Puts a new step into the text before another one.
+pub(crate) fn put_step_before(
+    d: &mut Draft<'_>,
+    chart: &str,
+    step: Step,
+    other: &str,
+) -> Result<(), Refusal> {
+    let chart = d.chart_mut(chart)?;
+    let k = item_of_step(chart, other).unwrap_or(chart.items.len());
+    chart.items.insert(k, ChartItem::Step(step));
+    Ok(())
+}
+
+/// Puts a new transition into the text behind those that leave a step, else
+/// behind those that lead to it, else at the end.
+pub(crate) fn put_transition(
+    d: &mut Draft<'_>,
+    chart: &str,
+    t: Transition,
+    step: &str,
+) -> Result<(), Refusal> {
+    let chart = d.chart_mut(chart)?;
+    let find = |test: &dyn Fn(&Transition) -> bool| {
+        chart.items.iter().rposition(|i| matches!(i, ChartItem::Transition(t) if test(t)))
+    };
+    let near = find(&|t| has(&t.from, step)).or_else(|| find(&|t| has(&t.to, step)));
+    let own = if alternating(chart) { item_of_step(chart, step) } else { None };
+    let place = near.max(own).or_else(|| find(&|_| true));
+    let k = place.map_or_else(
+        || {
+            chart
+                .items
+                .iter()
+                .rposition(|i| matches!(i, ChartItem::Step(_)))
+                .map_or(chart.items.len(), |k| k + 1)
+        },
+        |k| chain_end(chart, k),
+    );
+    chart.items.insert(k.min(chart.items.len()), ChartItem::Transition(t));
+    Ok(())
+}

@@ -1,0 +1,87 @@
+//! The gestures, each as a change of the draft.
+
+mod build;
+mod delete;
+mod fields;
+mod graph;
+mod insert;
+mod join;
+mod places;
+mod table;
+
+use crate::draft::Draft;
+use crate::gesture::Gesture;
+use crate::id::{ItemId, Part};
+use crate::{Refusal, refuse};
+
+/// Changes the draft; renaming and typing go other ways.
+pub(crate) fn carry_out(d: &mut Draft<'_>, gesture: &Gesture) -> Result<(), Refusal> {
+    match gesture {
+        Gesture::AddStep { chart, at } => build::add_step(d, chart, *at),
+        Gesture::Next { id } => build::next(d, id),
+        Gesture::Before { id } => build::before(d, id),
+        Gesture::Connect { from, to } => join::connect(d, from, to),
+        Gesture::Insert { link, what } => insert::insert(d, link, *what),
+        Gesture::Branch { id, how } => build::branch(d, id, *how),
+        Gesture::Converge { ids, how, to } => join::converge(d, ids, *how, to.as_ref()),
+        Gesture::Jump { id, to } => join::jump(d, id, to),
+        Gesture::Parallel { ids } => insert::parallel(d, ids),
+        Gesture::Delete { ids, heal } => delete::delete(d, ids, *heal),
+        Gesture::Cut { ids } => delete::delete(d, ids, false),
+        Gesture::Receptivity { id, text } => fields::receptivity(d, id, text),
+        Gesture::Action { id, index, text } => fields::action(d, id, *index, text),
+        Gesture::Comment { id, text } => fields::comment(d, id, text),
+        Gesture::Label { id, text } => fields::label(d, id, text),
+        Gesture::Priority { id, n } => fields::priority(d, id, *n),
+        Gesture::Initial { id, on } => fields::initial(d, id, *on),
+        Gesture::Kind { id, kind } => fields::kind(d, id, *kind),
+        Gesture::Move { ids, dx, dy } => places::shift(d, ids, *dx, *dy),
+        Gesture::Align { ids, how } => places::align(d, ids, *how),
+        Gesture::Tidy { chart } => places::tidy(d, chart),
+        Gesture::AddChart { kind, name } => table::add_chart(d, *kind, name.as_deref()),
+        Gesture::DeleteChart { chart } => table::delete_chart(d, chart),
+        Gesture::Variable { name, row } => table::variable(d, name.as_deref(), row),
+        Gesture::DeleteVariable { name } => table::delete_variable(d, name),
+        Gesture::Profile { name } => table::profile(d, name),
+        Gesture::Scan { ms } => table::scan(d, *ms),
+        Gesture::Rename { .. } | Gesture::Paste { .. } | Gesture::Macro { .. } | Gesture::Text { .. } => {
+            refuse("this gesture is not one of the drawing")
+        }
+    }
+}
+
+/// A step or transition that an id names.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) enum Node {
+    Step(String),
+    Transition(g7_model::Span),
+}
+
+/// What an id names, if it is a step (or one of its actions) or a transition that is there.
+pub(crate) fn node(d: &Draft<'_>, id: &ItemId) -> Result<Node, Refusal> {
+    match &id.part {
+        Part::Step(name) => {
+            d.step(&id.chart, name)?;
+            Ok(Node::Step(name.clone()))
+        }
+        Part::Action(name, k) => {
+            if d.step(&id.chart, name)?.actions.get(*k).is_none() {
+                return refuse(format!("step `{name}` has no action number {k}"));
+            }
+            Ok(Node::Step(name.clone()))
+        }
+        Part::Transition(n) => Ok(Node::Transition(d.number(&id.chart, *n)?)),
+        Part::Chart | Part::Link(..) | Part::Connector(..) | Part::Other(_) => {
+            refuse("this is done with a step or a transition; choose one")
+        }
+    }
+}
+
+/// The one chart that all ids are of.
+pub(crate) fn one_chart(ids: &[ItemId]) -> Result<&str, Refusal> {
+    let Some(first) = ids.first() else { return refuse("nothing is chosen") };
+    if ids.iter().any(|id| id.chart != first.chart) {
+        return refuse("the chosen things are of several charts; this is done in one");
+    }
+    Ok(&first.chart)
+}

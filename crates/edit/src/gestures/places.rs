@@ -1,0 +1,203 @@
+//! The layout section: where symbols were moved to.
+
+use std::collections::BTreeMap;
+
+use g7_model::{Item, Layout, Name, PlaceAt, Placed, Span};
+
+use super::{Node, node, one_chart};
+use crate::draft::Draft;
+use crate::gesture::Alignment;
+use crate::id::{ItemId, Part};
+use crate::{Refusal, refuse};
+
+/// Farthest place, in hundredths of a unit.
+const FARTHEST: i64 = 100_000_000;
+
+/// Pixels to hundredths of a unit.
+pub(crate) fn point([x, y]: [f64; 2]) -> Result<(i32, i32), Refusal> {
+    Ok((hundredths(x)?, hundredths(y)?))
+}
+
+fn hundredths(px: f64) -> Result<i32, Refusal> {
+    let n = (px * 10.0).round();
+    if !(n.abs() <= FARTHEST as f64) {
+        return refuse("this place is too far away");
+    }
+    #[allow(clippy::cast_possible_truncation, reason = "bounded just above")]
+    let n = n as i64;
+    i32::try_from(n).or_else(|_| refuse("this place is too far away"))
+}
+
+/// Gives a step or transition its place.
+pub(crate) fn place(d: &mut Draft<'_>, id: &ItemId, (x, y): (i32, i32)) -> Result<(), Refusal> {
+    let what = match node(d, id)? {
+        Node::Step(name) => Placed::Step(d.new_name(&name)),
+        Node::Transition(at) => placed(d, &id.chart, at)?,
+    };
+    let at = d.fresh();
+    with_layout(d, &id.chart, |layout| match layout.places.iter_mut().find(|p| p.what == what) {
+        Some(there) => (there.x, there.y) = (x, y),
+        None => layout.places.push(PlaceAt { what, x, y, at }),
+    });
+    Ok(())
+}
+
+/// A transition as a layout names it.
+fn placed(d: &Draft<'_>, chart: &str, at: Span) -> Result<Placed, Refusal> {
+    if let Some(label) = &d.transition(chart, at)?.label {
+        return Ok(Placed::Transition(label.clone()));
+    }
+    let n = d.chart(chart)?.transitions().position(|t| t.at.0 == at).unwrap_or_default();
+    Ok(Placed::TransitionNumber(u32::try_from(n).unwrap_or(u32::MAX)))
+}
+
+/// Changes the layout of a chart; a new one at the end of the file where there is none.
+fn with_layout(d: &mut Draft<'_>, chart: &str, change: impl FnOnce(&mut Layout)) {
+    let own = |i: &Item| matches!(i, Item::Layout(l) if *l.chart.text == *chart);
+    if !d.doc.items.iter().any(own) {
+        let layout = Layout { chart: d.new_name(chart), places: Vec::new(), at: d.fresh() };
+        d.doc.items.push(Item::Layout(layout));
+    }
+    if let Some(Item::Layout(layout)) = d.doc.items.iter_mut().find(|i| own(i)) {
+        change(layout);
+    }
+}
+
+/// Lets the places of a transition follow its label.
+pub(crate) fn relabel(
+    d: &mut Draft<'_>,
+    chart: &str,
+    at: Span,
+    old: Option<&str>,
+    new: Option<&Name>,
+) -> Result<(), Refusal> {
+    let Some(old) = old else { return Ok(()) };
+    let n = d.chart(chart)?.transitions().position(|t| t.at.0 == at).unwrap_or_default();
+    for item in &mut d.doc.items {
+        let Item::Layout(layout) = item else { continue };
+        if *layout.chart.text != *chart {
+            continue;
+        }
+        for p in &mut layout.places {
+            if matches!(&p.what, Placed::Transition(l) if *l.text == *old) {
+                p.what = match new {
+                    Some(name) => Placed::Transition(name.clone()),
+                    None => Placed::TransitionNumber(u32::try_from(n).unwrap_or(u32::MAX)),
+                };
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Where a symbol stands: as the layout says, else as it is drawn.
+fn anchor(d: &Draft<'_>, id: &ItemId) -> Result<(i32, i32), Refusal> {
+    if let Some(drawn) = (d.anchors)(id) {
+        return Ok(drawn);
+    }
+    let number = match node(d, id)? {
+        Node::Transition(at) => Some((placed(d, &id.chart, at)?, at)),
+        Node::Step(_) => None,
+    };
+    let named = |p: &PlaceAt| match (&p.what, &id.part, &number) {
+        (Placed::Step(a), Part::Step(b), _) => *a.text == **b,
+        (Placed::TransitionNumber(a), Part::Transition(b), _) => *a as usize == *b,
+        (Placed::Transition(_), _, Some((what, _))) => p.what == *what,
+        _ => false,
+    };
+    let layouts = d.doc.items.iter().filter_map(|i| match i {
+        Item::Layout(l) if *l.chart.text == id.chart => Some(l),
+        _ => None,
+    });
+    let found = layouts.flat_map(|l| &l.places).find(|p| named(p)).map(|p| (p.x, p.y));
+    found.ok_or_else(|| Refusal::new("where this stands on the drawing is not known yet"))
+}
+
+/// The steps and transitions among ids, with where they stand; actions stand with their steps.
+fn anchors(d: &Draft<'_>, ids: &[ItemId]) -> Result<BTreeMap<ItemId, (i32, i32)>, Refusal> {
+    let mut found = BTreeMap::new();
+    for id in ids {
+        let id = match &id.part {
+            Part::Action(step, _) => ItemId::step(id.chart.as_str(), step.as_str()),
+            Part::Step(_) | Part::Transition(_) => id.clone(),
+            // Links and texts follow what they belong to.
+            Part::Chart | Part::Link(..) | Part::Connector(..) | Part::Other(_) => continue,
+        };
+        node(d, &id)?;
+        let at = anchor(d, &id)?;
+        found.insert(id, at);
+    }
+    if found.is_empty() { refuse("choose steps or transitions to move") } else { Ok(found) }
+}
+
+fn put(d: &mut Draft<'_>, places: &BTreeMap<ItemId, (i32, i32)>) -> Result<(), Refusal> {
+    for (id, at) in places {
+        place(d, id, *at)?;
+        d.select(id.clone());
+    }
+    Ok(())
+}
+
+pub(crate) fn shift(d: &mut Draft<'_>, ids: &[ItemId], dx: f64, dy: f64) -> Result<(), Refusal> {
+    let (dx, dy) = point([dx, dy])?;
+    let mut places = anchors(d, ids)?;
+    for (x, y) in places.values_mut() {
+        *x = bounded(i64::from(*x) + i64::from(dx))?;
+        *y = bounded(i64::from(*y) + i64::from(dy))?;
+    }
+    put(d, &places)
+}
+
+fn bounded(n: i64) -> Result<i32, Refusal> {
+    if n.abs() > FARTHEST {
+        return refuse("this place is too far away");
+    }
+    i32::try_from(n).or_else(|_| refuse("this place is too far away"))
+}
+
+pub(crate) fn align(d: &mut Draft<'_>, ids: &[ItemId], how: Alignment) -> Result<(), Refusal> {
+    one_chart(ids)?;
+    let mut places = anchors(d, ids)?;
+    if places.len() < 2 {
+        return refuse("choose several steps or transitions to bring into line");
+    }
+    let xs: Vec<i32> = places.values().map(|p| p.0).collect();
+    let ys: Vec<i32> = places.values().map(|p| p.1).collect();
+    let least = |list: &[i32]| list.iter().min().copied().unwrap_or_default();
+    match how {
+        Alignment::Left => places.values_mut().for_each(|p| p.0 = least(&xs)),
+        Alignment::Top => places.values_mut().for_each(|p| p.1 = least(&ys)),
+        Alignment::Center => {
+            let sum: i64 = xs.iter().map(|x| i64::from(*x)).sum();
+            let middle = bounded(sum / i64::try_from(xs.len()).unwrap_or(1))?;
+            places.values_mut().for_each(|p| p.0 = middle);
+        }
+        Alignment::DistributeX => distribute(&mut places, |p| &mut p.0)?,
+        Alignment::DistributeY => distribute(&mut places, |p| &mut p.1)?,
+    }
+    put(d, &places)
+}
+
+/// Equal distances between the first and the last.
+fn distribute(
+    places: &mut BTreeMap<ItemId, (i32, i32)>,
+    part: impl Fn(&mut (i32, i32)) -> &mut i32,
+) -> Result<(), Refusal> {
+    let mut order: Vec<&mut i32> = places.values_mut().map(&part).collect();
+    order.sort();
+    let (Some(first), Some(last)) = (order.first().map(|n| **n), order.last().map(|n| **n)) else {
+        return Ok(());
+    };
+    let gaps = i64::try_from(order.len() - 1).unwrap_or(1).max(1);
+    for (k, n) in order.into_iter().enumerate() {
+        let way = (i64::from(last) - i64::from(first)) * i64::try_from(k).unwrap_or_default() / gaps;
+        *n = bounded(i64::from(first) + way)?;
+    }
+    Ok(())
+}
+
+pub(crate) fn tidy(d: &mut Draft<'_>, chart: &str) -> Result<(), Refusal> {
+    d.chart(chart)?;
+    d.doc.items.retain(|i| !matches!(i, Item::Layout(l) if *l.chart.text == *chart));
+    Ok(())
+}

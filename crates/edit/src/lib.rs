@@ -1,0 +1,145 @@
+//! Every gesture of the editor as a small change of the file's text.
+//!
+//! ```text
+//! text + Document -> gesture -> Draft (the document as it is to be)
+//!                                 -> write -> splices -> parse again -> compare
+//! ```
+//!
+//! The text is the truth: a gesture says what the document is to become, the
+//! writer finds the least change of the text that makes it so. Only lines that
+//! must change do; notes, blank lines, spelling and order of all else stay.
+//!
+//! # What must hold
+//!
+//! - After an accepted gesture the text reads without syntax errors, as exactly
+//!   the document that the gesture meant: each result is parsed and compared.
+//! - Steps and transitions alternate always; what the standard forbids is refused.
+//! - Nothing panics, whatever the ids and texts.
+#![forbid(unsafe_code)]
+
+mod copy;
+mod draft;
+mod gesture;
+mod gestures;
+mod history;
+mod id;
+mod splice;
+mod write;
+
+pub use copy::copy;
+pub use gesture::{Alignment, Branching, ChartSort, Gesture, Row, Sort, What};
+pub use history::History;
+pub use id::{End, ItemId, NoId, Part};
+pub use splice::{Splice, spliced};
+
+use g7_model::{ChartItem, Document, FileId, Item};
+
+use draft::Draft;
+
+/// A file as it is: its text and what was read from it.
+#[derive(Clone, Copy, Debug)]
+pub struct Source<'a> {
+    /// The text.
+    pub text: &'a str,
+    /// Its document, as `g7_syntax::parse` gave it.
+    pub document: &'a Document,
+    /// Whether it was read without syntax errors.
+    pub clean: bool,
+}
+
+/// A change of the text.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Edit {
+    /// In bytes of the text before; in order, none over another.
+    pub splices: Vec<Splice>,
+    /// What is to be selected afterwards.
+    pub select: Vec<ItemId>,
+    /// What is to be typed in next, at its place.
+    pub begin: Option<ItemId>,
+}
+
+/// Why a gesture was not carried out: a sentence for the user.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Refusal(String);
+
+impl Refusal {
+    pub(crate) fn new(why: impl Into<String>) -> Refusal {
+        Refusal(why.into())
+    }
+}
+
+impl std::fmt::Display for Refusal {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(&self.0)
+    }
+}
+
+impl std::error::Error for Refusal {}
+
+/// An answer that is no.
+pub(crate) fn refuse<T>(why: impl Into<String>) -> Result<T, Refusal> {
+    Err(Refusal::new(why))
+}
+
+/// Where symbols stand on the drawing, in hundredths of its unit: the middle
+/// of the upper edge of a step, the middle of the bar of a transition.
+pub type Anchors<'a> = &'a dyn Fn(&ItemId) -> Option<(i32, i32)>;
+
+/// Carries a gesture out; symbols are known to stand only where the layout
+/// section of the text has them.
+pub fn apply(source: &Source<'_>, gesture: &Gesture) -> Result<Edit, Refusal> {
+    apply_placed(source, gesture, &|_| None)
+}
+
+/// The same for a chart that is drawn: `anchors` says where its symbols stand.
+pub fn apply_placed(source: &Source<'_>, gesture: &Gesture, anchors: Anchors<'_>) -> Result<Edit, Refusal> {
+    if let Gesture::Text { splices } = gesture {
+        return match spliced(source.text, splices) {
+            Some(_) => Ok(Edit { splices: splices.clone(), ..Edit::default() }),
+            None => refuse("the change does not fit the text"),
+        };
+    }
+    if !source.clean {
+        return refuse(
+            "the text has syntax errors; mend them first, the drawing shows the chart before them",
+        );
+    }
+    let mut draft = Draft::new(source, anchors);
+    gestures::carry_out(&mut draft, gesture)?;
+    write::settle(&mut draft);
+    let splices = write::difference(&draft);
+    let after = spliced(source.text, &splices).ok_or_else(unwritable)?;
+    judge(&after, &draft.doc)?;
+    let select = draft.select.iter().filter_map(|m| draft.resolved(m)).collect();
+    let begin = draft.begin.as_ref().and_then(|m| draft.resolved(m));
+    Ok(Edit { splices, select, begin })
+}
+
+/// The text must read as just the document that was meant.
+fn judge(text: &str, meant: &Document) -> Result<(), Refusal> {
+    let (read, problems) = g7_syntax::parse(text, FileId(0));
+    if let Some(problem) = problems.first() {
+        return refuse(format!("this cannot be written: {problem}"));
+    }
+    if plain(read).items != plain(meant.clone()).items {
+        return Err(unwritable());
+    }
+    Ok(())
+}
+
+/// Empty braces of a step mean nothing.
+fn plain(mut doc: Document) -> Document {
+    for item in &mut doc.items {
+        let Item::Chart(chart) = item else { continue };
+        for item in &mut chart.items {
+            if let ChartItem::Step(step) = item {
+                step.braces = !step.actions.is_empty();
+            }
+        }
+    }
+    doc
+}
+
+fn unwritable() -> Refusal {
+    Refusal::new("this cannot be written into the text as it stands here; change the text itself")
+}

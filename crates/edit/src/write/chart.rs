@@ -1,0 +1,183 @@
+//! Charts and what stands in them.
+
+use g7_model::{Chart, ChartItem, Name, Span};
+use g7_syntax::{Token, TokenKind, show_comment, show_name, show_step_name};
+
+use super::file::{edit_variable, printed};
+use super::item;
+use super::lines::{Sheet, reindent};
+use super::list::{Block, Style, changed, list};
+use crate::draft::{Draft, is_fresh};
+
+/// Changes a chart in place.
+pub(crate) fn edit(sheet: &mut Sheet<'_>, draft: &Draft<'_>, old: &Chart, new: &Chart) {
+    let (start, end) = (old.at.0.start as usize, old.at.0.end as usize);
+    let (head, Some(open)) = sheet.header(start, end) else { return };
+    if old.comment != new.comment {
+        let name = head.get(1).map_or(start, |t| t.end);
+        comment(sheet, &head, name, new.comment.as_deref());
+    }
+    let outer = sheet.indent(start);
+    let block = Block { open: Some(open.end), close: end - 1, indent: format!("{outer}  "), outer };
+    list(sheet, &old.items, &new.items, &block, &Items { draft });
+}
+
+/// Changes, removes or adds the comment among the words of a header; a new one
+/// goes behind byte `after`.
+pub(crate) fn comment(sheet: &mut Sheet<'_>, head: &[Token], after: usize, text: Option<&str>) {
+    let there = head.iter().find(|t| t.kind == TokenKind::Comment);
+    match (there, text) {
+        (Some(t), Some(text)) => sheet.put(t.start, t.end, show_comment(text)),
+        (Some(t), None) => sheet.remove_part(t.start, t.end),
+        (None, Some(text)) => sheet.put(after, after, format!(" {}", show_comment(text))),
+        (None, None) => {}
+    }
+}
+
+/// A chart that is new; its things may come from elsewhere in the text.
+pub(crate) fn fresh(sheet: &Sheet<'_>, draft: &Draft<'_>, chart: &Chart) -> String {
+    let bare = Chart { items: Vec::new(), ..chart.clone() };
+    let mut out = printed(g7_model::Item::Chart(bare));
+    if chart.items.is_empty() {
+        return out;
+    }
+    out.truncate(out.trim_end_matches('}').len());
+    let style = Items { draft };
+    let mut before: Option<&ChartItem> = None;
+    for item in &chart.items {
+        let apart = before.is_some_and(|b| style.apart(b, item));
+        out.push_str(if apart { "\n\n" } else { "\n" });
+        out.push_str(&style.fresh(sheet, item, "  "));
+        before = Some(item);
+    }
+    out.push_str("\n}");
+    out
+}
+
+/// How the things of a chart are written.
+struct Items<'d, 's> {
+    draft: &'d Draft<'s>,
+}
+
+impl Items<'_, '_> {
+    /// Where the text has a thing that was moved.
+    fn origin(&self, item: &ChartItem) -> Option<&ChartItem> {
+        let at = self.at(item);
+        if is_fresh(at.into()) {
+            return None;
+        }
+        let charts = self.draft.source.document.charts();
+        charts.flat_map(|c| &c.items).find(|i| self.at(i).start == at.start)
+    }
+}
+
+impl Style<ChartItem> for Items<'_, '_> {
+    fn at(&self, thing: &ChartItem) -> Span {
+        match thing {
+            ChartItem::Var(v) => v.at.0,
+            ChartItem::Step(s) => s.at.0,
+            ChartItem::Transition(t) => t.at.0,
+            ChartItem::Pre(_, at) | ChartItem::Post(_, at) => at.0,
+            ChartItem::Action(a) => a.at.0,
+            ChartItem::Section(s) => s.at.0,
+        }
+    }
+
+    fn edit(&self, sheet: &mut Sheet<'_>, old: &ChartItem, new: &ChartItem) {
+        match (old, new) {
+            (ChartItem::Step(a), ChartItem::Step(b)) => item::edit_step(sheet, self.draft, a, b),
+            (ChartItem::Transition(a), ChartItem::Transition(b)) => {
+                item::edit_transition(sheet, self.draft, a, b);
+            }
+            (ChartItem::Var(a), ChartItem::Var(b)) => edit_variable(sheet, self.draft, a, b),
+            _ => {}
+        }
+    }
+
+    fn lead(&self, old: &ChartItem, new: &ChartItem) -> Option<String> {
+        let (ChartItem::Transition(a), ChartItem::Transition(b)) = (old, new) else { return None };
+        (a.chained && !b.chained).then(|| {
+            let label = b.label.as_ref().map_or(String::new(), |l| format!("{}: ", show_step_name(&l.text)));
+            format!("{label}{} ", step_list(&b.from))
+        })
+    }
+
+    fn fresh(&self, sheet: &Sheet<'_>, new: &ChartItem, indent: &str) -> String {
+        if let Some(old) = self.origin(new) {
+            let lead = self.lead(old, new);
+            let deeper = if lead.is_none() && self.inner(new) { "  " } else { "" };
+            let own = sheet.indent(self.at(old).start as usize).to_owned();
+            let text = lead.unwrap_or_default() + &changed(sheet, self, old, new);
+            return format!("{indent}{deeper}{}", reindent(&text, &own, indent, sheet.newline));
+        }
+        let text = match (new, self.draft.raw.get(&self.at(new).start)) {
+            (_, Some(raw)) => raw.clone(),
+            (ChartItem::Var(v), None) => item::variable_text(v, &self.draft.raw),
+            (ChartItem::Transition(t), None) => item::transition_text(t, &self.draft.raw),
+            (ChartItem::Step(s), None) => item::step_text(s, &self.draft.raw),
+            (other, None) => {
+                let chart = self.draft.source.document.charts().next();
+                let Some(chart) = chart else { return String::new() };
+                let one = Chart { items: vec![other.clone()], comment: None, ..chart.clone() };
+                let text = printed(g7_model::Item::Chart(one));
+                let inside: Vec<&str> = text.lines().skip(1).collect();
+                let lines = inside.split_last().map_or(&[][..], |(_, rest)| rest);
+                lines.iter().map(|l| l.strip_prefix("  ").unwrap_or(l)).collect::<Vec<_>>().join("\n")
+            }
+        };
+        format!("{indent}{}", reindent(&text, "", indent, sheet.newline))
+    }
+
+    fn apart(&self, a: &ChartItem, b: &ChartItem) -> bool {
+        let (a, b) = (family(a), family(b));
+        a != b || b == 3
+    }
+
+    fn inner(&self, thing: &ChartItem) -> bool {
+        matches!(thing, ChartItem::Transition(t) if t.chained)
+    }
+}
+
+/// Things that stand together without a blank line; 3 for those that never do.
+fn family(item: &ChartItem) -> u8 {
+    match item {
+        ChartItem::Var(_) => 0,
+        ChartItem::Step(_) => 1,
+        ChartItem::Transition(_) => 2,
+        ChartItem::Pre(..) | ChartItem::Post(..) | ChartItem::Action(_) | ChartItem::Section(_) => 3,
+    }
+}
+
+/// `5`, `(3, 5)` or `()`.
+pub(crate) fn step_list(names: &[Name]) -> String {
+    match names {
+        [one] => show_step_name(&one.text),
+        _ => format!("({})", names.iter().map(|n| show_step_name(&n.text)).collect::<Vec<_>>().join(", ")),
+    }
+}
+
+/// The words of a step's header.
+pub(crate) fn step_words(kind: &g7_model::StepKind, initial: bool) -> String {
+    use g7_model::StepKind;
+    let sort = match kind {
+        StepKind::Plain => "step",
+        StepKind::Entry => "entry step",
+        StepKind::Exit => "exit step",
+        StepKind::Enclosing => "enclosing step",
+        StepKind::Macro(_) => "macro",
+    };
+    if initial { format!("initial {sort}") } else { sort.to_owned() }
+}
+
+/// `step 5* "comment"`, `macro M3 = Dose`.
+pub(crate) fn step_header(step: &g7_model::Step) -> String {
+    let mut out = format!("{} {}", step_words(&step.kind, step.initial), show_name(&step.name.text));
+    if let g7_model::StepKind::Macro(expansion) = &step.kind {
+        out.push_str(&format!(" = {}", show_name(&expansion.text)));
+    }
+    out.push_str(if step.linked { "*" } else { "" });
+    if let Some(comment) = &step.comment {
+        out.push_str(&format!(" {}", show_comment(comment)));
+    }
+    out
+}

@@ -1,0 +1,280 @@
+//! Things one below the other: what stayed, what went, what came between.
+//!
+//! Things that share a line form an island. Where only fields change, an island
+//! is changed in place; where something goes out of it or comes into it, it is
+//! laid out anew, one thing a line.
+
+use std::collections::HashMap;
+
+use g7_model::Span;
+
+use super::lines::Sheet;
+use crate::draft::FRESH;
+use crate::splice::spliced;
+
+/// How one kind of thing is written.
+pub(crate) trait Style<T> {
+    /// Its place.
+    fn at(&self, thing: &T) -> Span;
+    /// Changes its fields in place.
+    fn edit(&self, sheet: &mut Sheet<'_>, old: &T, new: &T);
+    /// What must come before it because the thing before it no longer says it.
+    fn lead(&self, _old: &T, _new: &T) -> Option<String> {
+        None
+    }
+    /// It with its indentation, without the last line end.
+    fn fresh(&self, sheet: &Sheet<'_>, new: &T, indent: &str) -> String;
+    /// Whether a blank line stands between the two where both are to be laid out.
+    fn apart(&self, a: &T, b: &T) -> bool;
+    /// Whether it goes on with the one before, farther in.
+    fn inner(&self, _thing: &T) -> bool {
+        false
+    }
+}
+
+/// What encloses the things.
+pub(crate) struct Block<'a> {
+    /// Behind the `{`; none for a file.
+    pub(crate) open: Option<usize>,
+    /// At the `}`, or the end of the file.
+    pub(crate) close: usize,
+    /// The indentation of the things, where none tells.
+    pub(crate) indent: String,
+    /// That of the `}`.
+    pub(crate) outer: &'a str,
+}
+
+/// Changes a list of things.
+pub(crate) fn list<T>(sheet: &mut Sheet<'_>, old: &[T], new: &[T], block: &Block<'_>, style: &impl Style<T>) {
+    let mut work = Work::new(sheet, old, new, block, style);
+    work.at_start();
+    let mut a = 0;
+    while a < old.len() {
+        let mut b = a;
+        while b + 1 < old.len() && !work.between(b).contains('\n') {
+            b += 1;
+        }
+        work.island(a, b);
+        a = b + 1;
+    }
+}
+
+struct Work<'w, 's, 't, T, S> {
+    sheet: &'w mut Sheet<'s>,
+    old: &'t [T],
+    block: &'w Block<'w>,
+    style: &'w S,
+    indent: String,
+    /// What became of each old thing.
+    kept: Vec<Option<&'t T>>,
+    /// What came before the first old thing, and behind each of them.
+    came: Vec<Vec<&'t T>>,
+}
+
+impl<'w, 's, 't, T, S: Style<T>> Work<'w, 's, 't, T, S> {
+    fn new(sheet: &'w mut Sheet<'s>, old: &'t [T], new: &'t [T], block: &'w Block<'w>, style: &'w S) -> Self {
+        let places: HashMap<u32, usize> =
+            old.iter().enumerate().map(|(k, t)| (style.at(t).start, k)).collect();
+        let mut kept = vec![None; old.len()];
+        let mut came = vec![Vec::new(); old.len() + 1];
+        let mut next = 0;
+        for thing in new {
+            let at = style.at(thing);
+            let place = places.get(&at.start).copied().filter(|k| at.file != FRESH && *k >= next);
+            if let (Some(k), Some(slot)) = (place, place.and_then(|k| kept.get_mut(k))) {
+                *slot = Some(thing);
+                next = k + 1;
+            } else if let Some(slot) = came.get_mut(next) {
+                slot.push(thing);
+            }
+        }
+        let first = old.iter().map(|t| (t, style.at(t).start as usize));
+        let told = first.filter(|(t, at)| sheet.begins_line(*at) && !style.inner(t)).map(|(_, at)| at).next();
+        let indent = told.map_or(block.indent.clone(), |at| sheet.indent(at).to_owned());
+        Work { sheet, old, block, style, indent, kept, came }
+    }
+
+    fn span(&self, k: usize) -> (usize, usize) {
+        let at = self.old.get(k).map(|t| self.style.at(t)).unwrap_or_default();
+        (at.start as usize, at.end as usize)
+    }
+
+    /// What stands between an old thing and the next.
+    fn between(&self, k: usize) -> &'s str {
+        self.sheet.slice(self.span(k).1, self.span(k + 1).0)
+    }
+
+    fn new_after(&self, k: usize) -> &[&'t T] {
+        self.came.get(k + 1).map_or(&[], Vec::as_slice)
+    }
+
+    fn kept(&self, k: usize) -> Option<(&'t T, &'t T)> {
+        Some((self.old.get(k)?, self.kept.get(k).copied().flatten()?))
+    }
+
+    /// Lines for new things behind another one.
+    fn lines(&self, things: &[&'t T], after: Option<&'t T>) -> String {
+        let mut out = String::new();
+        let mut before = after;
+        for (k, thing) in things.iter().enumerate() {
+            if k > 0 {
+                out.push_str(self.sheet.newline);
+            }
+            if before.is_some_and(|b| self.style.apart(b, thing)) {
+                out.push_str(self.sheet.newline);
+            }
+            out.push_str(&self.style.fresh(self.sheet, thing, &self.indent));
+            before = Some(thing);
+        }
+        out
+    }
+
+    fn at_start(&mut self) {
+        let things = self.came.first().cloned().unwrap_or_default();
+        let Some(last) = things.last() else { return };
+        let mut lines = self.lines(&things, None);
+        let nl = self.sheet.newline;
+        let (first, outer) = (self.span(0).0, self.block.outer);
+        let follows = self.old.first().is_some_and(|f| self.style.apart(last, f));
+        if follows {
+            lines.push_str(nl);
+        }
+        match (self.block.open, self.old.is_empty()) {
+            (Some(open), false) if self.sheet.begins_line(first) => {
+                let indent = self.indent.clone();
+                self.sheet.insert_below(open, &lines, &indent);
+            }
+            (Some(open), false) => self.sheet.put(open, open, format!("{nl}{lines}{nl}{}", self.indent)),
+            (None, false) => self.sheet.insert_above(first, &lines),
+            (Some(open), true) => self.into_empty(open, &lines, outer),
+            (None, true) => {
+                let end = self.sheet.text.len();
+                let before = match self.sheet.text {
+                    "" => String::new(),
+                    t if t.ends_with('\n') => nl.to_owned(),
+                    _ => format!("{nl}{nl}"),
+                };
+                self.sheet.put(end, end, format!("{before}{lines}{nl}"));
+            }
+        }
+    }
+
+    /// Into braces with at most notes between them.
+    fn into_empty(&mut self, open: usize, lines: &str, outer: &str) {
+        let (close, nl) = (self.block.close, self.sheet.newline);
+        let inside = self.sheet.slice(open, close);
+        if inside.trim().is_empty() {
+            self.sheet.put(open, close, format!("{nl}{lines}{nl}{outer}"));
+        } else if self.sheet.begins_line(close) {
+            let at = self.sheet.line_start(close);
+            self.sheet.put(at, at, format!("{lines}{nl}"));
+        } else {
+            self.sheet.put(close, close, format!("{nl}{lines}{nl}{outer}"));
+        }
+    }
+
+    /// The things `a..=b`, which share a line.
+    fn island(&mut self, a: usize, b: usize) {
+        if (a..=b).all(|k| self.kept(k).is_none()) {
+            return self.sheet.remove(self.span(a).0, self.span(b).1);
+        }
+        let led = |w: &Self, k| w.kept(k).is_some_and(|(o, n)| w.style.lead(o, n).is_some());
+        let torn = (a..=b).any(|k| {
+            self.kept(k).is_none() || k < b && !self.new_after(k).is_empty() || k > a && led(self, k)
+        });
+        if torn {
+            return self.laid_anew(a, b);
+        }
+        for k in a..=b {
+            let Some((old, new)) = self.kept(k) else { continue };
+            if let Some(lead) = self.style.lead(old, new) {
+                let start = self.span(k).0;
+                if self.sheet.begins_line(start) {
+                    let from = self.sheet.line_start(start);
+                    self.sheet.put(from, start, format!("{}{lead}", self.indent));
+                } else {
+                    self.sheet.put(start, start, lead);
+                }
+            }
+            self.style.edit(self.sheet, old, new);
+        }
+        self.below(b);
+    }
+
+    /// What came behind the last thing of an island.
+    fn below(&mut self, b: usize) {
+        let things = self.new_after(b).to_vec();
+        let (Some(last), Some((_, anchor))) = (things.last(), self.kept(b)) else { return };
+        let mut lines = self.lines(&things, Some(anchor));
+        let end = self.span(b).1;
+        let next = (b + 1..self.old.len()).find_map(|k| self.kept(k)).map(|(_, n)| n);
+        let line = self.sheet.next_line(self.sheet.tail(end));
+        if next.is_some_and(|n| self.style.apart(last, n)) && !self.sheet.is_blank_line(line) {
+            lines.push_str(self.sheet.newline);
+        }
+        self.sheet.insert_below(end, &lines, self.block.outer);
+    }
+
+    fn laid_anew(&mut self, a: usize, b: usize) {
+        let nl = self.sheet.newline;
+        let mut out = String::new();
+        for k in a..=b {
+            if let Some((old, new)) = self.kept(k) {
+                let lead = self.style.lead(old, new);
+                let joined = k > a && self.kept(k - 1).is_some() && self.new_after(k - 1).is_empty();
+                if joined && lead.is_none() {
+                    out.push_str(self.between(k - 1));
+                } else if !out.is_empty() {
+                    out.push_str(nl);
+                    out.push_str(&self.indent);
+                }
+                out.push_str(&lead.unwrap_or_default());
+                out.push_str(&self.changed(old, new));
+            }
+            let things = self.new_after(k).to_vec();
+            if !things.is_empty() {
+                out.push_str(nl);
+                out.push_str(&self.lines(&things, self.kept(k).map(|(_, n)| n)));
+            }
+            if k < b && self.sheet.has_notes(self.span(k).1, self.span(k + 1).0) && self.kept(k).is_some() {
+                self.keep_notes(k, &mut out);
+            }
+        }
+        let (start, end) = (self.span(a).0, self.span(b).1);
+        if !self.new_after(b).is_empty() && !self.sheet.ends_line(self.sheet.tail(end)) {
+            out.push_str(nl);
+            out.push_str(self.block.outer);
+        }
+        self.sheet.put(start, end, out);
+    }
+
+    /// Notes between two things that are no longer joined as they were.
+    fn keep_notes(&self, k: usize, out: &mut String) {
+        let joined = self.new_after(k).is_empty()
+            && self.kept(k + 1).is_some_and(|(o, n)| self.style.lead(o, n).is_none());
+        if !joined {
+            out.push(' ');
+            out.push_str(self.between(k).trim_matches([' ', '\t', ';']));
+        }
+    }
+
+    /// The text of a thing with its fields changed.
+    fn changed(&self, old: &T, new: &T) -> String {
+        changed(self.sheet, self.style, old, new)
+    }
+}
+
+/// The text of a thing with its fields changed.
+pub(crate) fn changed<T>(sheet: &Sheet<'_>, style: &impl Style<T>, old: &T, new: &T) -> String {
+    let mut sub = sheet.blank();
+    style.edit(&mut sub, old, new);
+    let at = style.at(old);
+    let start = at.start as usize;
+    sub.splices.sort_by_key(|s| (s.start, s.end));
+    for s in &mut sub.splices {
+        s.start = s.start.saturating_sub(start);
+        s.end = s.end.saturating_sub(start);
+    }
+    let text = sheet.of(at);
+    spliced(text, &sub.splices).unwrap_or_else(|| text.to_owned())
+}

@@ -1,0 +1,110 @@
+//! From the document as it is to be to the least change of the text.
+
+mod chart;
+mod file;
+mod item;
+mod lines;
+mod list;
+
+use std::collections::{BTreeMap, HashMap};
+
+use g7_model::{Chart, ChartItem, Document, Item, Name, Placed, Transition};
+
+use crate::draft::{Draft, is_fresh};
+use crate::splice::{Splice, tidied};
+use lines::Sheet;
+
+/// The splices that make the text say what the draft says.
+pub(crate) fn difference(draft: &Draft<'_>) -> Vec<Splice> {
+    let source = draft.source;
+    let mut sheet = Sheet::new(source.text, &source.document.notes);
+    file::write(&mut sheet, draft);
+    tidied(source.text, sheet.splices)
+}
+
+/// Brings everything into line that follows from other changes: chains whose
+/// parts were separated, places of what is gone, numbers of transitions.
+pub(crate) fn settle(draft: &mut Draft<'_>) {
+    let before = predecessors(draft.source.document);
+    for item in &mut draft.doc.items {
+        if let Item::Chart(chart) = item {
+            unchain(chart, &before);
+        }
+    }
+    settle_layouts(draft);
+}
+
+/// The place of the transition that each chained one goes on with.
+fn predecessors(doc: &Document) -> HashMap<u32, u32> {
+    let mut before = HashMap::new();
+    for chart in doc.charts() {
+        for (a, b) in chart.items.iter().zip(chart.items.iter().skip(1)) {
+            if let (ChartItem::Transition(a), ChartItem::Transition(b)) = (a, b)
+                && b.chained
+            {
+                before.insert(b.at.0.start, a.at.0.start);
+            }
+        }
+    }
+    before
+}
+
+fn unchain(chart: &mut Chart, before: &HashMap<u32, u32>) {
+    let mut last: Option<(Vec<Name>, u32, bool)> = None;
+    for item in &mut chart.items {
+        let ChartItem::Transition(t) = item else {
+            last = None;
+            continue;
+        };
+        if t.chained {
+            let goes_on = last.as_ref().is_some_and(|(to, start, fresh)| {
+                !fresh && before.get(&t.at.0.start) == Some(start) && *to == t.from && t.label.is_none()
+            });
+            t.chained = goes_on && !is_fresh(t.at);
+        }
+        last = Some((t.to.clone(), t.at.0.start, is_fresh(t.at)));
+    }
+}
+
+/// Steps that are gone have no place any more; numbers follow the transitions.
+fn settle_layouts(draft: &mut Draft<'_>) {
+    let old = draft.source.document;
+    let charts: Vec<Chart> = draft.doc.charts().cloned().collect();
+    for item in &mut draft.doc.items {
+        let Item::Layout(layout) = item else { continue };
+        if is_fresh(layout.at) {
+            continue;
+        }
+        let now = charts.iter().find(|c| c.name.text == layout.chart.text);
+        let then = old.charts().find(|c| c.name.text == layout.chart.text);
+        let (Some(now), Some(then)) = (now, then) else { continue };
+        let numbers: BTreeMap<(u32, u32), usize> =
+            now.transitions().enumerate().map(|(n, t)| (key(t), n)).collect();
+        let number = |t: Option<&Transition>| t.and_then(|t| numbers.get(&key(t)).copied());
+        layout.places.retain_mut(|p| match &mut p.what {
+            Placed::Step(name) => {
+                now.steps().any(|s| s.name == *name) || !then.steps().any(|s| s.name == *name)
+            }
+            Placed::TransitionNumber(n) if !is_fresh(p.at) => {
+                let t = then.transitions().nth(*n as usize);
+                match (t, number(t)) {
+                    (None, _) => true,
+                    (Some(_), None) => false,
+                    (Some(_), Some(k)) => {
+                        *n = u32::try_from(k).unwrap_or(u32::MAX);
+                        true
+                    }
+                }
+            }
+            Placed::Transition(label) => {
+                let has = |c: &Chart| c.transitions().any(|t| t.label.as_ref() == Some(label));
+                has(now) || !has(then)
+            }
+            Placed::TransitionNumber(_) | Placed::Comment(_) => true,
+        });
+    }
+}
+
+fn key(t: &Transition) -> (u32, u32) {
+    (t.at.0.file.0, t.at.0.start)
+}
