@@ -3,7 +3,7 @@
 
 use std::fmt::Write as _;
 
-use g7_model::{Chart, ChartKind, Document, StepKind};
+use g7_model::{ActionKind, Chart, ChartKind, Document, Order, Step, StepKind};
 
 use crate::ink::{Picture, Px, escape};
 use crate::text::{FONT_FAMILY, clean, font, shortened, width};
@@ -82,7 +82,8 @@ pub fn sheet(document: &Document, drawings: &[Drawing], options: &Options) -> St
     out
 }
 
-/// The name over a chart, with what it is the inside of, and its comment.
+/// The name over a chart, with what it is the inside of, and its comment; a frame
+/// round an enclosed one, with the step that encloses it.
 fn title(document: &Document, drawing: &Drawing) -> Picture {
     let mut p = Picture::default();
     let Some(chart) = document.charts().find(|c| c.name.text == drawing.chart) else { return p };
@@ -92,13 +93,47 @@ fn title(document: &Document, drawing: &Drawing) -> Picture {
         }
         (ChartKind::Chart | ChartKind::Expansion | ChartKind::Task, _) => clean(&chart.name.text),
     };
-    let (x, y) = (drawing.area.x, drawing.area.y - UNDER_TITLE);
+    let (mut x, y) = (drawing.area.x, drawing.area.y - UNDER_TITLE);
+    if let Some(step) = enclosed_by(document, chart) {
+        let (step, _) = shortened(&clean(&step), SUBTITLE, 2000);
+        x += enclosing_mark(&mut p, x, y, &step) + 100;
+    }
+    let enclosed = !p.ink.is_empty();
     p.text("g7-title", x, y, TITLE, &name);
     if let Some(comment) = &chart.comment {
         let (comment, _) = shortened(&clean(comment), SUBTITLE, 6000);
         p.text("g7-note", x + width(&name, TITLE) + 120, y, SUBTITLE, &comment);
     }
+    if enclosed {
+        let all = p.area().unwrap_or_default().union(&drawing.area);
+        p.rect("g7-frame", all.x - 150, all.y - 120, all.w + 300, all.h + 270);
+    }
     p
+}
+
+/// The symbol of an enclosing step, small, with its name; tells how wide it is.
+fn enclosing_mark(p: &mut Picture, x: i32, y: i32, step: &str) -> i32 {
+    let (h, c) = (260, 60);
+    let w = (width(step, SUBTITLE) + 120).max(h);
+    let top = y - TITLE * 35 / 100 - h / 2;
+    let (right, low) = (x + w, top + h);
+    p.rect("g7-box", x, top, w, h);
+    p.line("g7-inner", &[(x, top + c), (x + c, top)]);
+    p.line("g7-inner", &[(right - c, top), (right, top + c)]);
+    p.line("g7-inner", &[(right, low - c), (right - c, low)]);
+    p.line("g7-inner", &[(x + c, low), (x, low - c)]);
+    p.text("g7-name", x + (w - width(step, SUBTITLE)) / 2, top + h / 2 + SUBTITLE * 35 / 100, SUBTITLE, step);
+    w
+}
+
+/// The step that encloses a chart.
+fn enclosed_by(document: &Document, chart: &Chart) -> Option<Box<str>> {
+    let encloses = |s: &&Step| {
+        s.actions.iter().any(
+            |a| matches!(&a.kind, ActionKind::Order(Order::Enclose(name)) if name.text == chart.name.text),
+        )
+    };
+    document.charts().flat_map(Chart::steps).find(encloses).map(|s| s.name.text.clone())
 }
 
 /// The macro-step whose inside a chart is.

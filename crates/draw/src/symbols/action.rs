@@ -5,7 +5,7 @@ use g7_model::{Action, ActionKind, Expr, ExprKind, Order, Qualifier, Situation, 
 use crate::ink::{Picture, stack};
 use crate::symbols::{ACTION_TEXT, SMALL, SQUARE, quoted};
 use crate::text::{Line, body, clean, set, width};
-use crate::{Look, Options};
+use crate::{Look, Options, Rect};
 
 /// From the square to the actions.
 pub(crate) const GAP: i32 = 200;
@@ -62,7 +62,9 @@ struct Row {
 /// The actions of a step, with the right edge of its square.
 pub(crate) fn actions(step: &Step, list: &[Action], edge: i32, options: &Options) -> Vec<(u32, Picture)> {
     let rows: Vec<Row> = list.iter().map(|a| row(step, a, options.look)).collect();
-    let w = rows.iter().filter(|r| r.frame != Frame::None).map(Row::width).max().unwrap_or(0);
+    // Boxes of qualifiers make a column.
+    let cell = rows.iter().map(|r| r.sign.width()).max().unwrap_or(0);
+    let w = rows.iter().filter(|r| r.frame != Frame::None).map(|r| r.width(cell)).max().unwrap_or(0);
     let x = edge + GAP;
     let mut out = Vec::new();
     let mut low: Option<i32> = None;
@@ -94,7 +96,7 @@ pub(crate) fn actions(step: &Step, list: &[Action], edge: i32, options: &Options
             }
             bus = Some(middle);
         }
-        row.draw(&mut p, x, y, w, h);
+        row.draw(&mut p, Rect { x, y, w, h }, cell, rows.len() == 1);
         low = Some(y + h);
         contiguous = row.frame == Frame::Plain;
         out.push((index, p));
@@ -252,8 +254,8 @@ fn ordered(order: &Order) -> Row {
 }
 
 impl Row {
-    /// Left and right of the text.
-    fn sides(&self) -> (i32, i32) {
+    /// Left and right of the text, with the width of the step's qualifier boxes.
+    fn sides(&self, cell: i32) -> (i32, i32) {
         let extra = match self.frame {
             Frame::Double | Frame::Sides => 40,
             Frame::Cut => 30,
@@ -263,13 +265,13 @@ impl Row {
             Sign::Nothing => 0,
             Sign::Up | Sign::Down => 110,
             Sign::Each => 150,
-            Sign::Box(text) => width(text, SMALL) + 120,
+            Sign::Box(_) => cell,
         };
         (PAD + extra + sign, PAD + extra)
     }
 
-    fn width(&self) -> i32 {
-        let (left, right) = self.sides();
+    fn width(&self, cell: i32) -> i32 {
+        let (left, right) = self.sides(cell);
         let text = self.lines.iter().map(|l| l.width(ACTION_TEXT)).max().unwrap_or(0);
         (left + text + right).max(400)
     }
@@ -290,7 +292,8 @@ impl Row {
         }
     }
 
-    fn draw(&self, p: &mut Picture, x: i32, y: i32, w: i32, h: i32) {
+    fn draw(&self, p: &mut Picture, at: Rect, cell: i32, alone: bool) {
+        let Rect { x, y, w, h } = at;
         let size = if self.frame == Frame::None { SMALL } else { ACTION_TEXT };
         let (up, height) = stack(&self.lines, size);
         match self.frame {
@@ -310,8 +313,11 @@ impl Row {
             }
             Frame::Cut => cut_box(p, x, y, w, h),
         }
-        self.sign(p, x, y, h);
-        let (left, _) = self.sides();
+        self.sign(p, at, cell);
+        let (left, right) = self.sides(cell);
+        let text = self.lines.iter().map(|l| l.width(ACTION_TEXT)).max().unwrap_or(0);
+        // Alone it stands in the middle; below one another texts begin alike.
+        let left = if alone { left + (w - left - right - text) / 2 } else { left };
         // One line stands with the middle of its capitals in the middle.
         let first = match self.lines.as_slice() {
             [_] => y + h / 2 + size * 35 / 100,
@@ -323,9 +329,9 @@ impl Row {
         }
     }
 
-    fn sign(&self, p: &mut Picture, x: i32, y: i32, h: i32) {
-        let middle = y + h / 2;
-        let at = x + 95;
+    fn sign(&self, p: &mut Picture, r: Rect, cell: i32) {
+        let middle = r.y + r.h / 2;
+        let at = r.x + 95;
         match &self.sign {
             Sign::Nothing => {}
             Sign::Up => {
@@ -336,12 +342,21 @@ impl Row {
                 p.line("g7-sign", &[(at, middle - 85), (at, middle + 40)]);
                 p.shape("g7-mark", &[(at, middle + 95), (at - 38, middle + 15), (at + 38, middle + 15)]);
             }
-            Sign::Each => p.text("g7-qual", x + 70, middle + 50, 140, "↻"),
+            Sign::Each => p.text("g7-qual", r.x + 70, middle + 50, 140, "↻"),
             Sign::Box(text) => {
-                let side = width(text, SMALL) + 120;
-                p.line("g7-thin", &[(x + side, y), (x + side, y + h)]);
-                p.text("g7-qual", x + 60, middle + SMALL * 35 / 100, SMALL, text);
+                p.line("g7-thin", &[(r.x + cell, r.y), (r.x + cell, r.y + r.h)]);
+                p.text("g7-qual", r.x + 60, middle + SMALL * 35 / 100, SMALL, text);
             }
+        }
+    }
+}
+
+impl Sign {
+    /// How wide the box of a qualifier is.
+    fn width(&self) -> i32 {
+        match self {
+            Sign::Box(text) => width(text, SMALL) + 120,
+            Sign::Nothing | Sign::Up | Sign::Down | Sign::Each => 0,
         }
     }
 }

@@ -31,7 +31,7 @@ pub(crate) fn connector(p: &mut Picture, text: Rect, label: &str) {
 /// An arrow head with its tip at a point.
 pub(crate) fn arrow(p: &mut Picture, tip: Point, (dx, dy): (i8, i8)) {
     let (dx, dy) = (i32::from(dx), i32::from(dy));
-    let (bx, by) = (tip.x - 130 * dx, tip.y - 130 * dy);
-    let (sx, sy) = (-dy * 50, dx * 50);
+    let (bx, by) = (tip.x - 120 * dx, tip.y - 120 * dy);
+    let (sx, sy) = (-dy * 44, dx * 44);
     p.shape("g7-mark", &[(tip.x, tip.y), (bx + sx, by + sy), (bx - sx, by - sy)]);
 }
