@@ -101,6 +101,7 @@ export interface Item {
   comment?: string;
   /** The chart that a macro-step opens. */
   macro?: string;
+  step?: 'plain' | 'entry' | 'exit' | 'macro' | 'enclosing';
   encloses?: string[];
   initial?: boolean;
   /** The receptivity or the action as typed. */

@@ -1,30 +1,228 @@
-// The runs of the page: which message goes to whom, and what came back.
-import { page, type Answers } from './page';
+// The runs of the page: one for each open file, and beside it one under another
+// profile to compare with. Time moves by the clock of the page for runs that the
+// page holds, by the server's for those that it holds.
+import { differ, type Difference } from '../run/compare';
+import { Run } from '../run/state.svelte';
+import { files, type OpenFile } from './files.svelte';
+import { page, type Answers, type Message } from './page';
 import type { Frame, Started } from './protocol';
+import { server } from './server';
+import { shell } from './shell.svelte';
 
-/** One run, simulated in the page or held by the server. */
-export class Run {
-  readonly started: Started;
-  readonly answers: Answers;
-  frame: Frame = $state.raw(undefined as unknown as Frame);
+export { Run };
 
-  constructor(started: Started, answers: Answers) {
-    this.started = started;
-    this.answers = answers;
-    this.frame = started.frame;
-  }
+export interface Wishes {
+  profile?: string;
+  scan_ms?: number;
+  plant?: string;
+  seed?: number;
 }
 
 class Runs {
-  list: Run[] = $state.raw([]);
-  current: Run | null = $state.raw(null);
+  /** By file. */
+  #byFile: Map<string, Run> = $state.raw(new Map());
+  /** The second run of a comparison. */
+  other: Run | null = $state.raw(null);
+  difference: Difference | null = $state.raw(null);
+  /** Steps and transitions at which runs stop, by file. */
+  #breaks: Map<string, readonly string[]> = $state.raw(new Map());
+  #wishes: Map<string, Wishes> = $state.raw(new Map());
+  #heard = false;
 
-  async start(file: string, run = 'a', wishes: Record<string, unknown> = {}): Promise<Run> {
-    const started = await page.call<Started>({ do: 'run_start', file, run, ...wishes });
-    const made = new Run(started, page);
-    this.list = [...this.list.filter((r) => r.started.run !== run), made];
-    this.current = made;
-    return made;
+  /** The run of the file in view. */
+  readonly current: Run | null = $derived(files.current ? (this.#byFile.get(files.current.name) ?? null) : null);
+
+  of(file: string): Run | null {
+    return this.#byFile.get(file) ?? null;
+  }
+
+  get all(): Run[] {
+    return [...this.#byFile.values()];
+  }
+
+  wishes(file: string): Wishes {
+    return this.#wishes.get(file) ?? {};
+  }
+
+  breaks(file: string): readonly string[] {
+    return this.#breaks.get(file) ?? [];
+  }
+
+  /** Starts the run of a file anew, in the page. */
+  async start(file: OpenFile, wishes: Wishes = this.wishes(file.name)): Promise<Run> {
+    const before = this.of(file.name);
+    this.#wishes = new Map(this.#wishes).set(file.name, wishes);
+    if (before?.shared) await this.#quit(before);
+    const started = await page.call<Started>({ do: 'run_start', file: file.name, run: file.name, ...wishes });
+    const run = new Run(started, page, false);
+    run.hash = file.look.hash;
+    run.speed = before?.speed ?? 1;
+    this.#put(file.name, run);
+    await this.#tellBreaks(run);
+    return run;
+  }
+
+  /** The run of a file, begun where there is none. */
+  async get(file: OpenFile): Promise<Run> {
+    return this.of(file.name) ?? (await this.start(file));
+  }
+
+  async stop(file: string): Promise<void> {
+    const run = this.of(file);
+    if (!run) return;
+    if (this.other?.file === file) await this.compare(null);
+    this.#put(file, null);
+    if (run.shared) await this.#quit(run);
+    else await page.call({ do: 'run_stop', run: run.name });
+  }
+
+  /** A message to a run, and to the one that it is compared with; the frames that come back are taken. */
+  async send(run: Run, message: Message): Promise<void> {
+    const other = this.other && this.other.file === run.file && !run.shared ? this.other : null;
+    const both = [this.#send(run, message)];
+    if (other) both.push(this.#send(other, message));
+    await Promise.all(both);
+    if (other) this.difference ??= await differ(run, other);
+    if (other && this.difference && run.playing && !this.difference.seen) {
+      this.difference = { ...this.difference, seen: true };
+      run.playing = false;
+    }
+  }
+
+  async #send(run: Run, message: Message): Promise<void> {
+    run.take(await run.answers.call<Frame>({ ...message, run: run.name }));
+  }
+
+  async play(run: Run, on: boolean): Promise<void> {
+    if (!run.live && on) await this.send(run, { do: 'run_live' });
+    if (run.shared) await run.answers.call({ do: 'pace', run: run.name, speed: on ? run.speed : 0 });
+    run.playing = on && !run.halt;
+  }
+
+  async pace(run: Run, speed: number): Promise<void> {
+    run.speed = speed;
+    if (run.shared && run.playing) await run.answers.call({ do: 'pace', run: run.name, speed });
+  }
+
+  async toggleBreak(file: string, id: string): Promise<void> {
+    const now = this.breaks(file);
+    const next = now.includes(id) ? now.filter((b) => b !== id) : [...now, id];
+    this.#breaks = new Map(this.#breaks).set(file, next);
+    const run = this.of(file);
+    if (run) await this.#tellBreaks(run);
+  }
+
+  async #tellBreaks(run: Run): Promise<void> {
+    const ids = this.breaks(run.file);
+    await run.answers.call({ do: 'run_breaks', run: run.name, ids });
+  }
+
+  /** A second run of the file in view under another profile, both from their beginning on. */
+  async compare(profile: string | null): Promise<void> {
+    const old = this.other;
+    this.other = null;
+    this.difference = null;
+    if (old) await page.call({ do: 'run_stop', run: old.name });
+    const file = files.current;
+    if (!profile || !file) return;
+    await this.start(file);
+    const message = { do: 'run_start', file: file.name, run: `${file.name}|b`, ...this.wishes(file.name), profile };
+    const other = new Run(await page.call<Started>(message), page, false);
+    this.other = other;
+    const run = this.of(file.name);
+    if (run) this.difference = await differ(run, other);
+  }
+
+  /** Takes a changed text over into its run; what would be lost is asked about first. */
+  async swap(file: OpenFile, force = false): Promise<void> {
+    const run = this.of(file.name);
+    if (!run || run.hash === file.look.hash) return;
+    const hash = file.look.hash;
+    const message: Message = { do: 'run_swap', run: run.name, file: file.name, force };
+    if (run.shared) message.text = file.text;
+    try {
+      const answer = await run.answers.call<Started | { lost: string[] }>(message);
+      run.refused = null;
+      if ('lost' in answer) {
+        run.losing = answer.lost;
+        return;
+      }
+      run.begin(answer);
+      run.hash = hash;
+      run.losing = null;
+      if (this.other?.file === file.name) await this.compare(null);
+    } catch (error) {
+      run.losing = null;
+      run.refused = (error as Error).message;
+    }
+  }
+
+  /** Hands a run to the server, or joins the one that it holds of this file already. */
+  async share(file: OpenFile): Promise<void> {
+    this.#hear();
+    const { runs } = await server.call<{ runs: { run: string; file: string }[] }>({ do: 'runs' });
+    const known = runs.find((r) => r.file === file.name);
+    const message: Message = known
+      ? { do: 'watch', run: known.run }
+      : { do: 'run_start', run: file.name, file: file.name, text: file.text, ...this.wishes(file.name) };
+    const started = await server.call<Started & { speed?: number }>(message);
+    const before = this.of(file.name);
+    if (before) await page.call({ do: 'run_stop', run: before.name }).catch(() => undefined);
+    if (this.other) await this.compare(null);
+    const run = new Run(started, server as Answers, true);
+    run.hash = file.look.hash;
+    this.#paced(run, started.speed ?? 0);
+    this.#put(file.name, run);
+  }
+
+  /** Whether the server holds a run of this file. */
+  async isShared(file: string): Promise<boolean> {
+    if (!server.info) return false;
+    const { runs } = await server.call<{ runs: { file: string }[] }>({ do: 'runs' });
+    return runs.some((r) => r.file === file);
+  }
+
+  #paced(run: Run, speed: number): void {
+    run.playing = speed > 0;
+    if (speed > 0) run.speed = speed;
+  }
+
+  async #quit(run: Run): Promise<void> {
+    await run.answers.call({ do: 'unwatch', run: run.name }).catch(() => undefined);
+  }
+
+  /** What the server says of shared runs by itself. */
+  #hear(): void {
+    if (this.#heard) return;
+    this.#heard = true;
+    server.hear((message) => {
+      const named = (name: string) => this.all.find((r) => r.shared && r.name === name);
+      if (message.frame) named((message.frame as Frame).run)?.take(message.frame as Frame);
+      if (message.started) named((message.started as Started).run)?.begin(message.started as Started);
+      if (message.pace) {
+        const { run, speed } = message.pace as { run: string; speed: number };
+        const paced = named(run);
+        if (paced) this.#paced(paced, speed);
+      }
+      if (message.ended) {
+        const run = named((message.ended as { run: string }).run);
+        if (run) this.#put(run.file, null);
+      }
+    });
+  }
+
+  #put(file: string, run: Run | null): void {
+    const next = new Map(this.#byFile);
+    if (run) next.set(file, run);
+    else next.delete(file);
+    this.#byFile = next;
+  }
+
+  /** Does something to the run of the file in view, begun where there is none. */
+  async act(work: (run: Run) => Promise<void>): Promise<void> {
+    const file = files.current;
+    if (!file) return;
+    await shell.try(async () => work(await this.get(file)));
   }
 }
 

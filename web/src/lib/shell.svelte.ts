@@ -4,6 +4,7 @@ import type { Component } from 'svelte';
 import { files, type OpenFile } from './files.svelte';
 import type { Key } from './i18n';
 import { prefs } from './prefs.svelte';
+import { chartOf } from './ids';
 import { Refused } from './page';
 import type { FileRow } from './server';
 
@@ -72,7 +73,7 @@ class Shell {
 
   /** Brings a symbol into view and selects it. */
   jump(file: OpenFile, id: string): void {
-    const chart = id.split('/')[0] ?? '';
+    const chart = chartOf(id);
     this.show(file, chart);
     this.selection = new Set([id]);
     this.goto = { id, n: ++this.#count };

@@ -1,0 +1,115 @@
+// Where the view stands: d3-zoom for drag and pinch, the wheel to move.
+import { select } from 'd3-selection';
+import { zoom, zoomIdentity, type D3ZoomEvent, type ZoomBehavior } from 'd3-zoom';
+import type { Box } from '../lib/protocol';
+import type { View } from './editor.svelte';
+
+const LEAST = 0.02;
+const MOST = 4;
+
+export class Camera {
+  #root: HTMLElement;
+  #zoom: ZoomBehavior<HTMLElement, unknown>;
+  #area: () => Box;
+
+  /** `mayPan` says whether a press on the drawing moves the view. */
+  constructor(root: HTMLElement, area: () => Box, mayPan: (e: MouseEvent | TouchEvent) => boolean, moved: (view: View) => void) {
+    this.#root = root;
+    this.#area = area;
+    this.#zoom = zoom<HTMLElement, unknown>()
+      .scaleExtent([LEAST, MOST])
+      .filter((e: MouseEvent | TouchEvent | WheelEvent) => {
+        if (e.type === 'wheel') return (e as WheelEvent).ctrlKey || (e as WheelEvent).metaKey;
+        if (e.type === 'dblclick') return false;
+        return mayPan(e as MouseEvent);
+      })
+      .wheelDelta((e: WheelEvent) => -e.deltaY * (e.deltaMode === 1 ? 0.05 : 0.004))
+      .on('zoom', (e: D3ZoomEvent<HTMLElement, unknown>) => {
+        const { x, y, k } = e.transform;
+        moved({ x, y, k });
+      });
+    select(root).call(this.#zoom).on('dblclick.zoom', null);
+    root.addEventListener('wheel', this.#wheel, { passive: false });
+  }
+
+  #wheel = (e: WheelEvent): void => {
+    e.preventDefault();
+    if (e.ctrlKey || e.metaKey) return;
+    const size = e.deltaMode === 1 ? 24 : 1;
+    const [dx, dy] = e.shiftKey && e.deltaX === 0 ? [e.deltaY, 0] : [e.deltaX, e.deltaY];
+    this.panBy(-dx * size, -dy * size);
+  };
+
+  /** Moves by px of the screen. */
+  panBy(dx: number, dy: number): void {
+    const k = this.#scale();
+    select(this.#root).call(this.#zoom.translateBy, dx / k, dy / k);
+  }
+
+  zoomBy(factor: number): void {
+    select(this.#root).call(this.#zoom.scaleBy, factor);
+  }
+
+  set(view: View): void {
+    select(this.#root).call(this.#zoom.transform, zoomIdentity.translate(view.x, view.y).scale(view.k));
+  }
+
+  /** Puts a place of the plane into the middle. */
+  moveTo(x: number, y: number): void {
+    select(this.#root).call(this.#zoom.translateTo, x, y);
+  }
+
+  /** All of the chart. */
+  fit(): void {
+    const { clientWidth: w, clientHeight: h } = this.#root;
+    const [ax, ay, aw, ah] = this.#area();
+    const k = Math.max(LEAST, Math.min(1.5, (w - 60) / Math.max(aw, 1), (h - 60) / Math.max(ah, 1)));
+    this.set({ k, x: w / 2 - (ax + aw / 2) * k, y: h / 2 - (ay + ah / 2) * k });
+  }
+
+  /** A first look: all of it where it can be read, else its beginning. */
+  begin(): void {
+    const { clientWidth: w, clientHeight: h } = this.#root;
+    const [ax, ay, aw, ah] = this.#area();
+    const all = Math.min((w - 60) / Math.max(aw, 1), (h - 60) / Math.max(ah, 1));
+    if (all >= 0.6) {
+      this.fit();
+      return;
+    }
+    const k = Math.max(0.6, Math.min(1, (w - 60) / Math.max(aw, 1)));
+    const left = aw * k <= w - 60 ? w / 2 - (ax + aw / 2) * k : w / 2;
+    this.set({ k, x: left, y: 40 - ay * k });
+  }
+
+  reveal(box: Box, centre = false): void {
+    const t = this.#transform();
+    const { clientWidth: w, clientHeight: h } = this.#root;
+    const [x, y] = [box[0] * t.k + t.x, box[1] * t.k + t.y];
+    const [right, low] = [x + box[2] * t.k, y + box[3] * t.k];
+    const edge = 50;
+    if (!centre && x >= edge && y >= edge && right <= w - edge && low <= h - edge) return;
+    if (centre || x > w || right < 0 || y > h || low < 0) {
+      this.moveTo(box[0] + box[2] / 2, box[1] + box[3] / 2);
+      return;
+    }
+    const by = (from: number, to: number, size: number) => (from < edge ? edge - from : to > size - edge ? Math.max(size - edge - to, edge - from) : 0);
+    this.panBy(by(x, right, w), by(y, low, h));
+  }
+
+  focus(): void {
+    this.#root.focus({ preventScroll: true });
+  }
+
+  drop(): void {
+    this.#root.removeEventListener('wheel', this.#wheel);
+    select(this.#root).on('.zoom', null);
+  }
+
+  #transform(): View {
+    return (this.#root as unknown as { __zoom: View }).__zoom;
+  }
+
+  #scale(): number {
+    return this.#transform().k;
+  }
+}

@@ -1,0 +1,265 @@
+// Every command of the drawing: the keys, the context menu, the buttons at a
+// selected symbol and the list of shortcuts all read this one table.
+import type { IconName } from '../lib/Icon.svelte';
+import type { Key } from '../lib/i18n';
+import { live } from '../lib/live.svelte';
+import { shell } from '../lib/shell.svelte';
+import { editor } from './editor.svelte';
+
+export interface Command {
+  id: string;
+  title: Key;
+  /** As shown; the first one is what `keys` compares. */
+  keys?: string[];
+  icon?: IconName | 'or' | 'and' | 'next' | 'action';
+  /** Beside a selected symbol. */
+  near?: boolean;
+  when: () => boolean;
+  run: () => unknown;
+  /** A line above it in the menu. */
+  group?: boolean;
+}
+
+const one = (part: string) => editor.one?.part === part;
+const ids = () => [...shell.selection];
+const some = () => editor.selected.length > 0;
+const many = () => editor.selected.filter((i) => i.part === 'step' || i.part === 'transition').length > 1;
+const step = () => one('step');
+const transition = () => one('transition');
+const id = () => editor.one?.id ?? '';
+
+const align = (how: 'left' | 'top' | 'center' | 'distribute_x' | 'distribute_y') =>
+  editor.apply({ g: 'align', ids: ids(), how });
+
+export const commands: Command[] = [
+  {
+    id: 'open',
+    title: 'cmd.open',
+    keys: ['Enter'],
+    near: true,
+    icon: 'chevron',
+    when: () => !!editor.one?.macro || !!editor.one?.encloses?.length,
+    run: () => editor.one && editor.open(editor.one),
+  },
+  {
+    id: 'receptivity',
+    title: 'cmd.receptivity',
+    keys: ['Enter'],
+    near: true,
+    icon: 'pencil',
+    when: transition,
+    run: () => editor.edit(id(), 'receptivity'),
+  },
+  {
+    id: 'editAction',
+    title: 'cmd.editAction',
+    keys: ['Enter'],
+    near: true,
+    icon: 'pencil',
+    when: () => one('action'),
+    run: () => editor.edit(id()),
+  },
+  {
+    id: 'next',
+    title: 'cmd.next',
+    keys: ['Tab'],
+    near: true,
+    icon: 'next',
+    when: () => step() || transition(),
+    run: () => editor.apply({ g: 'next', id: id() }),
+  },
+  {
+    id: 'before',
+    title: 'cmd.before',
+    keys: ['Shift+Tab'],
+    icon: 'up',
+    when: () => step() || transition(),
+    run: () => editor.apply({ g: 'before', id: id() }),
+  },
+  {
+    id: 'or',
+    title: 'cmd.or',
+    keys: ['O'],
+    near: true,
+    icon: 'or',
+    when: step,
+    run: () => editor.apply({ g: 'branch', id: id(), how: 'or' }),
+  },
+  {
+    id: 'and',
+    title: 'cmd.and',
+    keys: ['P'],
+    near: true,
+    icon: 'and',
+    when: transition,
+    run: () => editor.apply({ g: 'branch', id: id(), how: 'and' }),
+  },
+  {
+    id: 'action',
+    title: 'cmd.action',
+    keys: ['A'],
+    near: true,
+    icon: 'action',
+    when: step,
+    run: () => editor.edit(id(), 'action'),
+  },
+  {
+    id: 'jump',
+    title: 'cmd.jump',
+    keys: ['J'],
+    when: () => step() || transition(),
+    run: () => (shell.dialog = 'jump'),
+  },
+  {
+    id: 'convergeOr',
+    title: 'cmd.convergeOr',
+    near: true,
+    icon: 'or',
+    keys: ['O'],
+    when: many,
+    run: () => editor.apply({ g: 'converge', ids: ids(), how: 'or' }),
+  },
+  {
+    id: 'convergeAnd',
+    title: 'cmd.convergeAnd',
+    near: true,
+    icon: 'and',
+    keys: ['P'],
+    when: many,
+    run: () => editor.apply({ g: 'converge', ids: ids(), how: 'and' }),
+  },
+  {
+    id: 'parallel',
+    title: 'cmd.parallel',
+    when: some,
+    run: () => editor.apply({ g: 'parallel', ids: ids() }),
+  },
+  {
+    id: 'macro',
+    title: 'cmd.macro',
+    keys: ['M'],
+    when: some,
+    run: () => editor.apply({ g: 'macro', ids: ids() }),
+  },
+  {
+    id: 'rename',
+    title: 'cmd.rename',
+    keys: ['F2'],
+    group: true,
+    when: step,
+    run: () => editor.edit(id(), 'name'),
+  },
+  {
+    id: 'initial',
+    title: 'cmd.initial',
+    keys: ['I'],
+    when: step,
+    run: () => editor.apply({ g: 'initial', id: id(), on: !editor.one?.initial }),
+  },
+  {
+    id: 'label',
+    title: 'cmd.label',
+    keys: ['F2'],
+    when: transition,
+    run: () => editor.edit(id(), 'label'),
+  },
+  {
+    id: 'priority',
+    title: 'cmd.priority',
+    when: transition,
+    run: () => editor.edit(id(), 'priority'),
+  },
+  {
+    id: 'comment',
+    title: 'cmd.comment',
+    keys: ['C'],
+    when: () => step() || transition(),
+    run: () => editor.edit(id(), 'comment'),
+  },
+  {
+    id: 'breakpoint',
+    title: 'cmd.breakpoint',
+    keys: ['F9'],
+    when: () => step() || transition(),
+    run: () => {
+      const breaks = new Set(live.breaks);
+      if (!breaks.delete(id())) breaks.add(id());
+      live.breaks = breaks;
+    },
+  },
+  {
+    id: 'cut',
+    title: 'cmd.cut',
+    keys: ['Ctrl+X'],
+    group: true,
+    when: some,
+    run: () => editor.cut(),
+  },
+  { id: 'copy', title: 'cmd.copy', keys: ['Ctrl+C'], when: some, run: () => editor.copy() },
+  { id: 'paste', title: 'cmd.paste', keys: ['Ctrl+V'], when: () => true, run: () => editor.paste() },
+  {
+    id: 'delete',
+    title: 'cmd.delete',
+    keys: ['Delete', 'Backspace'],
+    near: true,
+    icon: 'trash',
+    when: some,
+    run: () => editor.remove(true),
+  },
+  {
+    id: 'deleteOnly',
+    title: 'cmd.deleteOnly',
+    keys: ['Shift+Delete'],
+    when: some,
+    run: () => editor.remove(false),
+  },
+  { id: 'all', title: 'cmd.all', keys: ['Ctrl+A'], when: () => true, run: () => editor.selectAll() },
+  { id: 'alignLeft', title: 'cmd.alignLeft', group: true, when: many, run: () => align('left') },
+  { id: 'alignTop', title: 'cmd.alignTop', when: many, run: () => align('top') },
+  { id: 'alignCenter', title: 'cmd.alignCenter', when: many, run: () => align('center') },
+  { id: 'distributeX', title: 'cmd.distributeX', when: many, run: () => align('distribute_x') },
+  { id: 'distributeY', title: 'cmd.distributeY', when: many, run: () => align('distribute_y') },
+  {
+    id: 'addStep',
+    title: 'cmd.addStep',
+    keys: ['Insert'],
+    group: true,
+    when: () => !some(),
+    run: () => editor.chart !== null && editor.apply({ g: 'add_step', chart: editor.chart }),
+  },
+  {
+    id: 'tidy',
+    title: 'cmd.tidy',
+    when: () => !some(),
+    run: () => editor.chart !== null && editor.apply({ g: 'tidy', chart: editor.chart }),
+  },
+  {
+    id: 'showText',
+    title: 'cmd.showText',
+    keys: ['Ctrl+E'],
+    group: true,
+    when: () => editor.one !== null,
+    run: () => editor.file && editor.one && shell.showText(editor.file, editor.one.from, editor.one.to),
+  },
+  {
+    id: 'fit',
+    title: 'canvas.zoomFit',
+    keys: ['F', 'Home'],
+    icon: 'fit',
+    when: () => true,
+    run: () => editor.camera?.fit(),
+  },
+  { id: 'print', title: 'app.print', keys: ['Ctrl+P'], when: () => true, run: () => window.print() },
+];
+
+/** How a key is written in the table. */
+export function keyName(e: KeyboardEvent): string {
+  const key = e.key === ' ' ? 'Space' : e.key.length === 1 ? e.key.toUpperCase() : e.key;
+  return `${e.ctrlKey || e.metaKey ? 'Ctrl+' : ''}${e.altKey ? 'Alt+' : ''}${e.shiftKey && key.length > 1 ? 'Shift+' : ''}${key}`;
+}
+
+/** The command that a key stands for now. */
+export function commandOf(e: KeyboardEvent): Command | undefined {
+  const name = keyName(e);
+  return commands.find((c) => c.keys?.includes(name) && c.when());
+}

@@ -1,0 +1,170 @@
+// The state of the drawing in view, and what is done to it. One drawing is in
+// view at a time; panels beside it (palette, properties) work on the same state.
+import type { OpenFile } from '../lib/files.svelte';
+import { actionOf, kindOf } from '../lib/ids';
+import { page } from '../lib/page';
+import type { Box, Edited, Gesture, Item } from '../lib/protocol';
+import { shell } from '../lib/shell.svelte';
+import { Scene } from './scene';
+
+export type Field = 'name' | 'receptivity' | 'action' | 'comment' | 'label' | 'priority';
+
+export interface InPlace {
+  id: string;
+  field: Field;
+  /** Which action; a new one where absent. */
+  index?: number;
+  /** Typed already when the field opens. */
+  typed?: string;
+}
+
+export interface View {
+  x: number;
+  y: number;
+  k: number;
+}
+
+/** What is dragged from the palette. */
+export type Tool = 'step' | 'transition' | 'macro' | 'enclosing' | 'or' | 'and' | 'action' | 'comment';
+
+interface Camera {
+  fit(): void;
+  zoomBy(factor: number): void;
+  /** Brings a box of the plane into sight. */
+  reveal(box: Box, centre?: boolean): void;
+  moveTo(x: number, y: number): void;
+  focus(): void;
+}
+
+class Editor {
+  file: OpenFile | null = $state.raw(null);
+  chart: string | null = $state(null);
+  scene: Scene | null = $state.raw(null);
+  view: View = $state.raw({ x: 0, y: 0, k: 1 });
+  width = $state(0);
+  height = $state(0);
+  inplace: InPlace | null = $state.raw(null);
+  /** The context menu, by its place on the screen. */
+  menu: { x: number; y: number } | null = $state.raw(null);
+  marquee: Box | null = $state.raw(null);
+  /** Where a drop would go. */
+  target: string | null = $state(null);
+  moving: { ids: ReadonlySet<string>; dx: number; dy: number } | null = $state.raw(null);
+  linking: { from: string; x: number; y: number } | null = $state.raw(null);
+  /** Dragged from the palette, by its place on the screen. */
+  tool: { what: Tool; x: number; y: number } | null = $state.raw(null);
+  /** Read out to those who do not see the drawing. */
+  said = $state('');
+  camera: Camera | null = null;
+  #copied = '';
+
+  readonly selected: Item[] = $derived(
+    [...shell.selection].map((id) => this.scene?.byId.get(id)).filter((i): i is Item => i !== undefined),
+  );
+  readonly one: Item | null = $derived(this.selected.length === 1 ? (this.selected[0] ?? null) : null);
+  readonly stale: boolean = $derived(this.scene?.drawing.stale ?? false);
+
+  /** A gesture; what was refused is told, what was made is selected. */
+  async apply(gesture: Gesture): Promise<Edited | undefined> {
+    const { file, chart } = this;
+    if (!file) return undefined;
+    const edited = await shell.try(() => file.edit(gesture));
+    if (edited && chart !== null) await this.took(file, chart, edited);
+    return edited;
+  }
+
+  async history(way: 'undo' | 'redo'): Promise<void> {
+    const { file, chart } = this;
+    if (!file || chart === null) return;
+    if (way === 'undo' ? !file.look.can_undo : !file.look.can_redo) return;
+    const edited = await shell.try(() => (way === 'undo' ? file.undo() : file.redo()));
+    if (edited) await this.took(file, chart, edited);
+  }
+
+  async took(file: OpenFile, chart: string, edited: Edited): Promise<void> {
+    if (file !== this.file || chart !== this.chart) return;
+    if (shell.chart(file) === chart) {
+      this.scene = new Scene(await file.drawing(chart));
+    }
+    const made = edited.select ?? [];
+    if (made.length > 0) {
+      shell.select(made);
+      const item = this.scene?.byId.get(made[0] ?? '');
+      if (item) this.camera?.reveal(item.area);
+    } else shell.select([...shell.selection].filter((id) => this.scene?.byId.has(id)));
+    if (edited.begin) this.edit(edited.begin);
+  }
+
+  /** Opens the field in which a symbol's text is edited. */
+  edit(id: string, field?: Field, index?: number): void {
+    const kind = kindOf(id);
+    const of = actionOf(id);
+    const usual: Field = kind === 't' ? 'receptivity' : kind === 'a' ? 'action' : 'name';
+    this.menu = null;
+    this.inplace = of
+      ? { id: of.step, field: 'action', index: of.index }
+      : { id, field: field ?? usual, ...(index === undefined ? {} : { index }) };
+  }
+
+  /** What Enter does: opens what can be opened, else edits. */
+  enter(item: Item): void {
+    if (this.open(item)) return;
+    if (item.part === 'step') {
+      const first = this.scene?.actions.get(item.id)?.[0];
+      this.edit(item.id, 'action', first ? 0 : undefined);
+    } else if (item.part === 'link') void this.apply({ g: 'insert', link: item.id, what: 'step' });
+    else if (item.part === 'connector') this.follow(item);
+    else if (item.part !== 'text') this.edit(item.id);
+  }
+
+  /** Shows the chart that a macro-step or an enclosing step opens. */
+  open(item: Item): boolean {
+    const to = item.macro ?? item.encloses?.[0];
+    if (!to || !this.file?.look.charts.some((c) => c.name === to)) return false;
+    shell.show(this.file, to);
+    return true;
+  }
+
+  /** From one end of a broken-off link to the other. */
+  follow(item: Item): void {
+    const other = item.ends?.[item.id.endsWith('/leaving') ? 1 : 0];
+    if (other && this.file) shell.jump(this.file, other);
+  }
+
+  async copy(): Promise<string> {
+    const { file } = this;
+    const ids = [...shell.selection];
+    if (!file || ids.length === 0) return '';
+    const copied = await shell.try(() => page.call<{ text: string }>({ do: 'copy', file: file.name, ids }));
+    if (copied) {
+      this.#copied = copied.text;
+      await navigator.clipboard?.writeText(copied.text).catch(() => undefined);
+    }
+    return copied?.text ?? '';
+  }
+
+  async cut(): Promise<void> {
+    if ((await this.copy()) !== '') await this.apply({ g: 'cut', ids: [...shell.selection] });
+  }
+
+  async paste(text?: string): Promise<void> {
+    const fragment = text?.trim() ? text : this.#copied;
+    if (!fragment || this.chart === null) return;
+    await this.apply({ g: 'paste', chart: this.chart, text: fragment });
+  }
+
+  remove(heal = true): Promise<Edited | undefined> {
+    return this.apply({ g: 'delete', ids: [...shell.selection], heal });
+  }
+
+  selectAll(): void {
+    shell.select(this.scene?.items.filter((i) => i.part === 'step' || i.part === 'transition').map((i) => i.id) ?? []);
+  }
+
+  /** From the screen to the plane. */
+  toPlane(x: number, y: number): [number, number] {
+    return [(x - this.view.x) / this.view.k, (y - this.view.y) / this.view.k];
+  }
+}
+
+export const editor = new Editor();

@@ -1,0 +1,30 @@
+// What symbols are called for those who do not see them.
+import { actionOf } from '../lib/ids';
+import { t } from '../lib/i18n';
+import type { Item } from '../lib/protocol';
+
+export function nameOf(item: Item): string {
+  const with_ = (name: string) => (item.comment ? `${name} — ${item.comment}` : name);
+  switch (item.part) {
+    case 'step': {
+      const key = item.macro
+        ? 'canvas.macro'
+        : item.encloses?.length
+          ? 'canvas.enclosing'
+          : item.initial
+            ? 'canvas.initialStep'
+            : 'canvas.step';
+      return with_(t(key, { name: item.name ?? '' }));
+    }
+    case 'transition':
+      return with_(t('canvas.transition', { name: item.label ?? '', text: item.source ?? '' }).replace(/ +/g, ' '));
+    case 'action':
+      return t('canvas.action', { name: actionOf(item.id)?.step.split('/')[2] ?? '', text: item.source ?? '' });
+    case 'connector':
+      return t('canvas.connector', { name: item.name ?? item.ends?.[1]?.split('/')[2] ?? '' });
+    case 'link':
+      return t('canvas.link');
+    case 'text':
+      return item.comment ?? '';
+  }
+}

@@ -1,0 +1,181 @@
+// What a press on the drawing means: select, move, mark an area, draw a link.
+// The view itself is moved by the camera.
+import type { Item } from '../lib/protocol';
+import { actionOf } from '../lib/ids';
+import { shell } from '../lib/shell.svelte';
+import { editor } from './editor.svelte';
+
+/** Movements smaller than this are clicks. */
+const CLICK = 4;
+/** Symbols move in steps of half a unit. */
+const SNAP = 5;
+
+type Doing =
+  | { what: 'press'; item: Item | null; add: boolean }
+  | { what: 'move'; ids: Set<string> }
+  | { what: 'mark'; add: boolean }
+  | { what: 'link'; from: string };
+
+export class Pointer {
+  #doing: Doing | null = null;
+  #at = { x: 0, y: 0 };
+  #place: (e: { clientX: number; clientY: number }) => [number, number];
+  #root: HTMLElement;
+  #touch = false;
+
+  constructor(root: HTMLElement) {
+    this.#root = root;
+    this.#place = (e) => {
+      const box = root.getBoundingClientRect();
+      return [e.clientX - box.left, e.clientY - box.top];
+    };
+  }
+
+  /** What lies under a place of the screen. */
+  under(e: { clientX: number; clientY: number }): Item | null {
+    const [x, y] = editor.toPlane(...this.#place(e));
+    const reach = (this.#touch ? 14 : 6) / Math.min(editor.view.k, 1);
+    return editor.scene?.hit(x, y, reach) ?? null;
+  }
+
+  /** Whether a press moves the view: on the paper, or with the middle button. */
+  mayPan = (e: MouseEvent | TouchEvent): boolean => {
+    if ('touches' in e) {
+      if (e.touches.length > 1) {
+        this.stop();
+        return true;
+      }
+      const touch = e.touches[0];
+      return !!touch && this.under(touch) === null;
+    }
+    if (e.button === 1) return true;
+    return e.button === 0 && !e.shiftKey && this.under(e) === null;
+  };
+
+  down(e: PointerEvent): void {
+    this.#touch = e.pointerType === 'touch';
+    editor.menu = null;
+    if (e.button !== 0 || !e.isPrimary) return;
+    const item = this.under(e);
+    [this.#at.x, this.#at.y] = this.#place(e);
+    const add = e.shiftKey || e.ctrlKey || e.metaKey;
+    this.#doing = item || !e.shiftKey ? { what: 'press', item, add } : { what: 'mark', add: e.ctrlKey || e.metaKey };
+  }
+
+  /** Begins a link at a symbol. */
+  link(e: PointerEvent, from: string): void {
+    [this.#at.x, this.#at.y] = this.#place(e);
+    this.#doing = { what: 'link', from };
+    const [x, y] = editor.toPlane(this.#at.x, this.#at.y);
+    editor.linking = { from, x, y };
+    this.#root.setPointerCapture(e.pointerId);
+  }
+
+  move(e: PointerEvent): void {
+    const doing = this.#doing;
+    if (!doing) {
+      if (e.buttons === 0) shell.hover = this.under(e)?.id ?? null;
+      return;
+    }
+    const [x, y] = this.#place(e);
+    const [dx, dy] = [x - this.#at.x, y - this.#at.y];
+    if (doing.what === 'press') {
+      if (Math.hypot(dx, dy) < CLICK) return;
+      if (!doing.item || !this.#grab(doing.item, doing.add)) {
+        if (!doing.item) this.#doing = null;
+        return;
+      }
+      this.#root.setPointerCapture(e.pointerId);
+    }
+    const k = editor.view.k;
+    const now = this.#doing;
+    if (now?.what === 'move') {
+      const snap = (n: number) => Math.round(n / k / SNAP) * SNAP;
+      editor.moving = { ids: now.ids, dx: snap(dx), dy: snap(dy) };
+    } else if (now?.what === 'mark') {
+      const [ax, ay] = editor.toPlane(Math.min(x, this.#at.x), Math.min(y, this.#at.y));
+      editor.marquee = [ax, ay, Math.abs(dx) / k, Math.abs(dy) / k];
+      this.#root.setPointerCapture(e.pointerId);
+    } else if (now?.what === 'link') {
+      const [px, py] = editor.toPlane(x, y);
+      editor.linking = { from: now.from, x: px, y: py };
+      const over = this.under(e);
+      const fits = over && over.id !== now.from && (over.part === 'step' || over.part === 'transition');
+      editor.target = fits ? over.id : null;
+    }
+  }
+
+  /** Takes hold of the selection, or of the symbol pressed on. */
+  #grab(item: Item, add: boolean): boolean {
+    const movable = item.part === 'step' || item.part === 'transition' || item.part === 'action';
+    if (!movable) return false;
+    const id = actionOf(item.id)?.step ?? item.id;
+    if (!shell.selection.has(item.id) && !shell.selection.has(id)) {
+      shell.select(add ? [...shell.selection, id] : [id]);
+    }
+    const parts = [...shell.selection].map((s) => actionOf(s)?.step ?? s);
+    const ids = new Set(parts.filter((s) => ['step', 'transition'].includes(editor.scene?.byId.get(s)?.part ?? '')));
+    this.#doing = { what: 'move', ids: ids.size > 0 ? ids : new Set([id]) };
+    return true;
+  }
+
+  up(e: PointerEvent): void {
+    const doing = this.#doing;
+    this.#doing = null;
+    if (!doing) return;
+    if (doing.what === 'press') this.#click(doing.item, doing.add);
+    else if (doing.what === 'move') this.#drop(doing.ids);
+    else if (doing.what === 'mark') this.#mark(doing.add);
+    else this.#join(doing.from, e);
+  }
+
+  stop(): void {
+    this.#doing = null;
+    editor.moving = null;
+    editor.marquee = null;
+    editor.linking = null;
+    editor.target = null;
+  }
+
+  #click(item: Item | null, add: boolean): void {
+    if (!item) {
+      if (!add) shell.select([]);
+      return;
+    }
+    if (!add) {
+      shell.select([item.id]);
+      return;
+    }
+    const ids = new Set(shell.selection);
+    if (!ids.delete(item.id)) ids.add(item.id);
+    shell.select(ids);
+  }
+
+  async #drop(ids: Set<string>): Promise<void> {
+    const moving = editor.moving;
+    if (moving && (moving.dx !== 0 || moving.dy !== 0)) {
+      await editor.apply({ g: 'move', ids: [...ids], dx: moving.dx, dy: moving.dy });
+    }
+    editor.moving = null;
+  }
+
+  #mark(add: boolean): void {
+    const box = editor.marquee;
+    editor.marquee = null;
+    if (!box) {
+      if (!add) shell.select([]);
+      return;
+    }
+    const found = editor.scene?.within(box).map((i) => i.id) ?? [];
+    shell.select(add ? [...shell.selection, ...found] : found);
+  }
+
+  #join(from: string, e: PointerEvent): void {
+    const to = editor.target;
+    const moved = Math.hypot(this.#place(e)[0] - this.#at.x, this.#place(e)[1] - this.#at.y) >= CLICK;
+    editor.linking = null;
+    editor.target = null;
+    if (to) void editor.apply({ g: 'connect', from, to });
+    else if (!moved) void editor.apply({ g: 'next', id: from });
+  }
+}

@@ -1,0 +1,33 @@
+// Printing: all of the chart, on one page, without the frame of the page.
+import { editor } from './editor.svelte';
+
+/** Puts a whole picture into the document while the browser prints. */
+export function keepPrintable(): () => void {
+  let picture: HTMLElement | null = null;
+  const before = () => {
+    const drawing = editor.scene?.drawing;
+    if (!drawing) return;
+    const [x, y, w, h] = drawing.area;
+    picture = document.createElement('div');
+    picture.className = 'printed';
+    const title = document.createElement('h1');
+    title.textContent = `${editor.file?.name ?? ''} — ${drawing.chart}`;
+    picture.append(title);
+    picture.insertAdjacentHTML(
+      'beforeend',
+      `<svg class="g7" viewBox="${x - 10} ${y - 10} ${w + 20} ${h + 20}">${drawing.items.map((i) => i.svg).join('')}</svg>`,
+    );
+    document.body.append(picture);
+  };
+  const after = () => {
+    picture?.remove();
+    picture = null;
+  };
+  window.addEventListener('beforeprint', before);
+  window.addEventListener('afterprint', after);
+  return () => {
+    window.removeEventListener('beforeprint', before);
+    window.removeEventListener('afterprint', after);
+    after();
+  };
+}

@@ -1,0 +1,209 @@
+// A drawing made ready to be looked at: symbols by id, what follows what, what
+// lies where. Knows geometry only.
+import { actionOf } from '../lib/ids';
+import type { Box, Drawing, Item } from '../lib/protocol';
+
+export type Point = [x: number, y: number];
+
+const RANK: Record<Item['part'], number> = { action: 0, step: 1, transition: 2, connector: 3, link: 4, text: 5 };
+
+export class Scene {
+  readonly drawing: Drawing;
+  readonly items: Item[];
+  readonly byId = new Map<string, Item>();
+  /** Ids of what follows a step or transition. */
+  readonly after = new Map<string, string[]>();
+  readonly before = new Map<string, string[]>();
+  /** Actions by step. */
+  readonly actions = new Map<string, Item[]>();
+  #lines = new Map<string, Point[]>();
+
+  constructor(drawing: Drawing) {
+    this.drawing = drawing;
+    this.items = drawing.items;
+    for (const item of this.items) {
+      this.byId.set(item.id, item);
+      const of = item.part === 'action' ? actionOf(item.id) : null;
+      if (of) this.actions.set(of.step, [...(this.actions.get(of.step) ?? []), item]);
+      if (item.ends) this.#join(item.ends[0], item.ends[1]);
+    }
+    const x = (id: string) => this.byId.get(id)?.at?.[0] ?? 0;
+    for (const side of [this.after, this.before]) side.forEach((ids) => ids.sort((a, b) => x(a) - x(b)));
+  }
+
+  #join(from: string, to: string): void {
+    const put = (side: Map<string, string[]>, a: string, b: string) => {
+      const known = side.get(a);
+      if (!known) side.set(a, [b]);
+      else if (!known.includes(b)) known.push(b);
+    };
+    put(this.after, from, to);
+    put(this.before, to, from);
+  }
+
+  /** The box of a symbol without its texts. */
+  core(item: Item): Box {
+    return item.square ?? item.bar ?? item.area;
+  }
+
+  /** What lies at a place; `reach` is how far beside it still counts. */
+  hit(x: number, y: number, reach: number): Item | null {
+    let best: Item | null = null;
+    let bestAt = Infinity;
+    for (const item of this.items) {
+      if (item.part === 'text') continue;
+      const [ax, ay, w, h] = item.area;
+      if (x < ax - reach || y < ay - reach || x > ax + w + reach || y > ay + h + reach) continue;
+      const away = item.part === 'link' ? this.distance(item, x, y) : outside(item.area, x, y);
+      if (away > reach) continue;
+      const at = RANK[item.part] + (away > 0 ? 2.5 : 0) + away / (reach + 1);
+      if (at < bestAt) {
+        best = item;
+        bestAt = at;
+      }
+    }
+    return best;
+  }
+
+  /** The link nearest to a place, within reach. */
+  linkAt(x: number, y: number, reach: number): Item | null {
+    let best: Item | null = null;
+    let least = reach;
+    for (const item of this.items) {
+      if (item.part !== 'link') continue;
+      const away = this.distance(item, x, y);
+      if (away < least) {
+        best = item;
+        least = away;
+      }
+    }
+    return best;
+  }
+
+  /** The step or transition without a follower whose lower end is nearest, within reach. */
+  endAt(x: number, y: number, reach: number): Item | null {
+    let best: Item | null = null;
+    let least = reach;
+    for (const item of this.items) {
+      if (item.part !== 'step' && item.part !== 'transition') continue;
+      if ((this.after.get(item.id)?.length ?? 0) > 0) continue;
+      const [bx, by, w, h] = this.core(item);
+      const away = Math.hypot(x - (bx + w / 2), y - (by + h + 12));
+      if (away < least) {
+        best = item;
+        least = away;
+      }
+    }
+    return best;
+  }
+
+  within(box: Box): Item[] {
+    const [x, y, w, h] = box;
+    return this.items.filter((item) => {
+      if (item.part !== 'step' && item.part !== 'transition' && item.part !== 'action') return false;
+      const [bx, by, bw, bh] = this.core(item);
+      return bx >= x && by >= y && bx + bw <= x + w && by + bh <= y + h;
+    });
+  }
+
+  distance(link: Item, x: number, y: number): number {
+    const line = this.line(link);
+    let least = Infinity;
+    for (let i = 1; i < line.length; i++) {
+      least = Math.min(least, toSegment(x, y, line[i - 1] as Point, line[i] as Point));
+    }
+    return least;
+  }
+
+  /** The corners of a link. */
+  line(link: Item): Point[] {
+    const known = this.#lines.get(link.id);
+    if (known) return known;
+    const line = corners(link.far);
+    this.#lines.set(link.id, line);
+    return line;
+  }
+
+  /** The next symbol in a direction: along links up and down, else the nearest beside. */
+  towards(id: string, way: 'up' | 'down' | 'left' | 'right'): string | null {
+    const item = this.byId.get(id);
+    if (!item) return null;
+    const of = actionOf(id);
+    if (of && (way === 'up' || way === 'down')) {
+      const next = this.actions.get(of.step)?.[of.index + (way === 'down' ? 1 : -1)];
+      return next ? next.id : this.towards(of.step, way);
+    }
+    if (of && way === 'left') return of.step;
+    if (way === 'down') return this.after.get(id)?.[0] ?? null;
+    if (way === 'up') return this.before.get(id)?.[0] ?? null;
+    if (way === 'right' && item.part === 'step') {
+      const action = this.actions.get(id)?.[0];
+      if (action) return action.id;
+    }
+    return this.#beside(item, way);
+  }
+
+  #beside(item: Item, way: 'left' | 'right'): string | null {
+    const [x, y] = middle(this.core(item));
+    let best: string | null = null;
+    let least = Infinity;
+    for (const other of this.items) {
+      if (other.part !== 'step' && other.part !== 'transition') continue;
+      const [ox, oy] = middle(this.core(other));
+      const dx = way === 'right' ? ox - x : x - ox;
+      if (dx < 20) continue;
+      const away = dx + Math.abs(oy - y) * 3;
+      if (away < least) {
+        least = away;
+        best = other.id;
+      }
+    }
+    return best;
+  }
+
+  /** Steps and transitions as read: from the top, from the left. */
+  ordered(): Item[] {
+    return this.items
+      .filter((i) => i.part === 'step' || i.part === 'transition')
+      .sort((a, b) => (a.at?.[1] ?? 0) - (b.at?.[1] ?? 0) || (a.at?.[0] ?? 0) - (b.at?.[0] ?? 0));
+  }
+}
+
+export function middle([x, y, w, h]: Box): Point {
+  return [x + w / 2, y + h / 2];
+}
+
+export function union(boxes: Box[]): Box | null {
+  if (boxes.length === 0) return null;
+  const x = Math.min(...boxes.map((b) => b[0]));
+  const y = Math.min(...boxes.map((b) => b[1]));
+  const right = Math.max(...boxes.map((b) => b[0] + b[2]));
+  const low = Math.max(...boxes.map((b) => b[1] + b[3]));
+  return [x, y, right - x, low - y];
+}
+
+function outside([x, y, w, h]: Box, px: number, py: number): number {
+  return Math.hypot(Math.max(x - px, 0, px - x - w), Math.max(y - py, 0, py - y - h));
+}
+
+function toSegment(x: number, y: number, [ax, ay]: Point, [bx, by]: Point): number {
+  const [dx, dy] = [bx - ax, by - ay];
+  const length = dx * dx + dy * dy;
+  const t = length === 0 ? 0 : Math.max(0, Math.min(1, ((x - ax) * dx + (y - ay) * dy) / length));
+  return Math.hypot(x - ax - t * dx, y - ay - t * dy);
+}
+
+/** The corners of the first open line of path data made of M, L, H and V. */
+function corners(path: string): Point[] {
+  const found: Point[] = [];
+  let [x, y] = [0, 0];
+  for (const [, letter, numbers] of path.matchAll(/([MLHVZ])([^MLHVZ]*)/g)) {
+    if (letter === 'M' && found.length > 0) break;
+    const [a = 0, b = 0] = (numbers ?? '').trim().split(/[ ,]+/).map(Number);
+    if (letter === 'H') x = a;
+    else if (letter === 'V') y = a;
+    else if (letter !== 'Z') [x, y] = [a, b];
+    found.push([x, y]);
+  }
+  return found;
+}

@@ -1,0 +1,34 @@
+// Names of symbols: `Chart/s/Step`, `Chart/a/Step/0`, `Chart/t/3`, … as the Rust
+// crate `g7-edit` writes them; `/ > : %` inside a name are written %2F %3E %3A %25.
+
+export type IdKind = 's' | 'a' | 't' | 'l' | 'c' | 'x';
+
+const decode = (text: string): string => text.replace(/%(2F|3E|3A|25)/g, (code) => decodeURIComponent(code));
+const encode = (text: string): string => text.replace(/[/>:%]/g, (c) => `%${c.charCodeAt(0).toString(16).toUpperCase()}`);
+
+export function chartOf(id: string): string {
+  return decode(id.split('/')[0] ?? '');
+}
+
+export function kindOf(id: string): IdKind | undefined {
+  return id.split('/')[1] as IdKind | undefined;
+}
+
+export function stepId(chart: string, step: string): string {
+  return `${encode(chart)}/s/${encode(step)}`;
+}
+
+/** The step that an action belongs to, and its place there. */
+export function actionOf(id: string): { step: string; index: number } | null {
+  const [chart, kind, step, index] = id.split('/');
+  if (kind !== 'a' || step === undefined) return null;
+  return { step: `${chart}/s/${step}`, index: Number(index) };
+}
+
+export function actionId(step: string, index: number): string {
+  return `${step.replace('/s/', '/a/')}/${index}`;
+}
+
+export function transitionNumber(id: string): number {
+  return Number(id.split('/')[2]);
+}

@@ -1,0 +1,155 @@
+// What the drawing shows of a run: told at most 25 times a second.
+import { live } from '../lib/live.svelte';
+import type { Item } from '../lib/protocol';
+import { transitionNumber } from '../lib/ids';
+import type { Run } from './state.svelte';
+
+const GAP = 40;
+/** How long a cleared transition flashes. */
+const FLASH = 300;
+
+/** The signals that symbols name, by id of the symbol. */
+export type Named = ReadonlyMap<string, readonly number[]>;
+
+/** Finds the names of signals in what is written in symbols. */
+export function named(run: Run, chart: string, items: readonly Item[]): Named {
+  const byName = new Map(run.started.signals.map((s, i) => [s.name, i]));
+  const found = new Map<string, number[]>();
+  for (const item of items) {
+    if (!item.source) continue;
+    const signals = new Set<number>();
+    for (const word of item.source.matchAll(/`([^`]+)`|[\p{L}_][\p{L}\p{N}_.]*/gu)) {
+      const name = word[1] ?? word[0];
+      const signal = byName.get(`${chart}.${name}`) ?? byName.get(name);
+      if (signal !== undefined) signals.add(signal);
+    }
+    if (signals.size > 0) found.set(item.id, [...signals]);
+  }
+  return found;
+}
+
+/** A time beside a step: short, in units that do not flicker. */
+export function age(ms: number): string {
+  if (ms < 1000) return `${Math.round(ms)}ms`;
+  if (ms < 60_000) return `${(ms / 1000).toFixed(1)}s`;
+  const minutes = Math.floor(ms / 60_000);
+  if (minutes < 60) return `${minutes}m${Math.floor((ms % 60_000) / 1000)}s`;
+  return `${Math.floor(minutes / 60)}h${minutes % 60}m`;
+}
+
+export class Marks {
+  readonly #run: Run;
+  #names: Named = new Map();
+  #other: Run | null = null;
+  #told = 0;
+  #timer = 0;
+  #unwatch: () => void;
+  #flashes = new Map<string, number>();
+
+  constructor(run: Run) {
+    this.#run = run;
+    this.#unwatch = run.watch(() => this.soon());
+    live.running = true;
+    this.tell();
+  }
+
+  /** What the symbols in view name. */
+  show(names: Named, other: Run | null): void {
+    this.#names = names;
+    this.#other = other;
+    this.tell();
+  }
+
+  end(): void {
+    this.#unwatch();
+    clearTimeout(this.#timer);
+    live.clear();
+  }
+
+  soon(): void {
+    if (this.#timer !== 0) return;
+    const wait = Math.max(0, GAP - (performance.now() - this.#told));
+    this.#timer = window.setTimeout(() => this.tell(), wait);
+  }
+
+  tell(): void {
+    clearTimeout(this.#timer);
+    this.#timer = 0;
+    this.#told = performance.now();
+    const run = this.#run;
+    const { steps, transitions } = run.started;
+    const on = new Set<string>();
+    const times = new Map<string, string>();
+    for (const i of run.active) {
+      const id = steps[i]?.id;
+      if (!id) continue;
+      on.add(id);
+      const ms = run.times.get(i);
+      if (ms !== undefined) times.set(id, age(ms));
+    }
+    const enabled = new Map<string, 0 | 1 | 2>();
+    for (const [i, how] of run.enabled) {
+      const id = transitions[i]?.id;
+      if (id) enabled.set(id, how);
+    }
+    live.on = on;
+    live.times = times;
+    live.enabled = enabled;
+    live.stopped = run.halt?.ids?.[0] ?? run.stopped;
+    this.#flash();
+    this.#beside(on, enabled);
+  }
+
+  /** Cleared transitions flash for a moment. */
+  #flash(): void {
+    const now = performance.now();
+    for (const i of this.#run.cleared) {
+      const id = this.#run.started.transitions[i]?.id;
+      if (id) this.#flashes.set(id, now + FLASH);
+    }
+    this.#run.cleared.clear();
+    for (const [id, until] of this.#flashes) if (until < now) this.#flashes.delete(id);
+    const shown = [...this.#flashes.keys()];
+    if (shown.length > 0 || live.cleared.length > 0) live.cleared = shown;
+    if (shown.length > 0 && !this.#run.playing && this.#timer === 0) {
+      this.#timer = window.setTimeout(() => this.tell(), FLASH);
+    }
+  }
+
+  /** Values beside names, lit actions, locks. */
+  #beside(on: ReadonlySet<string>, enabled: ReadonlyMap<string, number>): void {
+    const run = this.#run;
+    const { signals } = run.started;
+    const values = new Map<string, string>();
+    const lit = new Set<string>();
+    const forced = new Set<string>();
+    for (const [id, names] of this.#names) {
+      const action = id.includes('/a/');
+      const concerned = action ? on.has(stepOf(id)) : enabled.has(id);
+      const numbers = concerned ? names.filter((s) => signals[s]?.type !== 'bool') : [];
+      if (numbers.length > 0) values.set(id, numbers.map((s) => `${signals[s]?.name} = ${run.shows[s]}`).join('   '));
+      if (action && concerned && names.some((s) => signals[s]?.role === 'output' && run.shows[s] === 'TRUE')) lit.add(id);
+      if (names.some((s) => run.forced[s])) forced.add(id);
+    }
+    const other = this.#other;
+    if (other) {
+      for (const i of other.active) {
+        const id = other.started.steps[i]?.id;
+        if (id && !on.has(id)) values.set(id, `◦ ${other.started.profile}`);
+      }
+    }
+    live.values = values;
+    live.lit = lit;
+    live.forced = forced;
+  }
+}
+
+function stepOf(action: string): string {
+  return action.replace('/a/', '/s/').replace(/\/\d+$/, '');
+}
+
+/** A short name of a step or transition for lists. */
+export function shortName(id: string): string {
+  const [chart, kind, name] = id.split('/').map((part) => decodeURIComponent(part));
+  return kind === 't' ? `${chart} (${transitionNumber(id) + 1})` : `${chart}.${name}`;
+}

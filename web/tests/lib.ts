@@ -1,0 +1,104 @@
+// A browser and a page for the tests: the built page on a server of its own, or `g7 serve`.
+import { spawn } from 'node:child_process';
+import { mkdtempSync, rmSync } from 'node:fs';
+import { readFile } from 'node:fs/promises';
+import { createServer } from 'node:http';
+import type { AddressInfo } from 'node:net';
+import { tmpdir } from 'node:os';
+import { extname, join, normalize } from 'node:path';
+import { chromium, type Browser, type Page } from 'playwright-core';
+
+const HERE = new URL('..', import.meta.url).pathname;
+/** The built page; another one for trying things out. */
+const DIST = process.env.G7_DIST ?? join(HERE, 'dist');
+const TYPES: Record<string, string> = {
+  '.html': 'text/html; charset=utf-8',
+  '.js': 'text/javascript',
+  '.css': 'text/css',
+  '.json': 'application/json',
+  '.svg': 'image/svg+xml',
+  '.wasm': 'application/wasm',
+  '.ttf': 'font/ttf',
+};
+
+export interface Site {
+  url: string;
+  stop(): Promise<void>;
+}
+
+/** The static playground, with these files as its examples. */
+export async function playground(examples: Record<string, string>): Promise<Site> {
+  const server = createServer((request, response) => {
+    const path = normalize(new URL(request.url ?? '/', 'http://localhost').pathname);
+    if (path === '/examples.json') {
+      response.writeHead(200, { 'content-type': 'application/json' }).end(JSON.stringify(examples));
+      return;
+    }
+    readFile(join(DIST, path === '/' ? 'index.html' : path)).then(
+      (bytes) => response.writeHead(200, { 'content-type': TYPES[extname(path === '/' ? '.html' : path)] ?? 'text/html' }).end(bytes),
+      () => response.writeHead(404).end(),
+    );
+  });
+  await new Promise<void>((done) => server.listen(0, '127.0.0.1', done));
+  return {
+    url: `http://127.0.0.1:${(server.address() as AddressInfo).port}/`,
+    stop: async () => {
+      server.closeAllConnections();
+      await new Promise((done) => server.close(done));
+    },
+  };
+}
+
+/** `g7 serve` over a folder; `G7` names the program. */
+export async function serve(folder: string, ...more: string[]): Promise<Site> {
+  const program = process.env.G7 ?? join(HERE, '../target/release/g7');
+  const child = spawn(program, ['serve', folder, '--port', '0', '--no-open', ...more], { stdio: ['ignore', 'pipe', 'inherit'] });
+  const url = await new Promise<string>((found, failed) => {
+    let said = '';
+    child.stdout.on('data', (chunk: Buffer) => {
+      said += chunk.toString();
+      const address = /http:\/\/\S+/.exec(said)?.[0];
+      if (address) found(address);
+    });
+    child.once('error', failed);
+    child.once('exit', (code) => failed(new Error(`g7 serve ended with ${code}: ${said}`)));
+  });
+  return {
+    url,
+    stop: () =>
+      new Promise((done) => {
+        child.once('exit', () => done());
+        child.kill('SIGTERM');
+      }),
+  };
+}
+
+/** Debian's Chromium without a network of its own. */
+export async function browser(): Promise<Browser & { done(): Promise<void> }> {
+  const home = mkdtempSync(join(tmpdir(), 'g7-browser-'));
+  const found = await chromium.launch({
+    executablePath: process.env.CHROMIUM ?? '/usr/bin/chromium',
+    args: ['--no-sandbox', '--disable-gpu', '--disable-quic', '--no-first-run', '--disable-background-networking', '--disable-component-update', '--disable-sync'],
+    env: { ...process.env, HOME: home },
+  });
+  return Object.assign(found, {
+    done: async () => {
+      await found.close();
+      rmSync(home, { recursive: true, force: true });
+    },
+  });
+}
+
+/** Opens a file in a fresh page; errors of the page are errors of the test. */
+export async function open(b: Browser, site: Site, file?: string, size = { width: 1280, height: 720 }): Promise<Page & { errors: string[] }> {
+  const context = await b.newContext({ viewport: size, locale: 'en-GB' });
+  const page = await context.newPage();
+  const errors: string[] = [];
+  page.on('pageerror', (e) => errors.push(e.message));
+  page.on('console', (m) => m.type() === 'error' && !m.text().includes('404') && errors.push(m.text()));
+  const url = new URL(site.url);
+  if (file) url.searchParams.set('file', file);
+  await page.goto(url.href);
+  if (file) await page.waitForSelector('.sheet [data-id]');
+  return Object.assign(page, { errors });
+}
