@@ -8,9 +8,6 @@ use crate::cli::Explain;
 use crate::failure::{Failure, Verdict};
 use crate::style;
 
-/// Pages of the book by problem, in the order of their numbers.
-static PAGES: &[(&str, &str)] = include!(concat!(env!("OUT_DIR"), "/pages.rs"));
-
 pub(crate) fn explain(args: &Explain) -> Result<Verdict, Failure> {
     let mut out = anstream::stdout().lock();
     let Some(id) = &args.code else {
@@ -23,13 +20,9 @@ pub(crate) fn explain(args: &Explain) -> Result<Verdict, Failure> {
         }
         return Ok(out.flush().map(|()| Verdict::Fine)?);
     };
-    let Some(code) = codes::find(id) else {
+    let Some(text) = g7_page::explain(id) else {
         return Err(Failure::Usage(format!("there is no problem `{id}`; `g7 explain` lists them all")));
     };
-    match PAGES.iter().find(|(page, _)| *page == code.id) {
-        Some((_, text)) => write!(out, "{}", text.trim_end())?,
-        None => write!(out, "# {}: {}", code.id, code.title)?,
-    }
-    writeln!(out, "\n\nSource: {}", code.source)?;
+    write!(out, "{text}")?;
     Ok(out.flush().map(|()| Verdict::Fine)?)
 }

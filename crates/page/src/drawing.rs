@@ -4,6 +4,7 @@ use std::collections::HashMap;
 use std::sync::Arc;
 
 use g7_draw::{End, Look, Options, Part, Rect};
+use g7_edit::ItemId;
 use g7_model::{Chart, ChartKind, Document, Span, Step, StepKind, Transition};
 use serde::{Deserialize, Serialize};
 
@@ -80,20 +81,10 @@ struct Item {
 /// Draws a chart of a file.
 pub(crate) fn drawing(file: &File, wish: &Wish) -> Result<Drawn, String> {
     let good = file.drawn();
+    let options = options(wish)?;
     let find = |c: &&Chart| *c.name.text == *wish.chart;
     let chart =
         good.document.charts().find(find).ok_or_else(|| format!("there is no chart `{}`", wish.chart))?;
-    let look = match wish.look.as_deref() {
-        None | Some("iec60848") => Look::Iec60848,
-        Some("sfc") => Look::Sfc,
-        Some(other) => return Err(format!("there is no look `{other}`")),
-    };
-    let options = Options {
-        look,
-        actions: wish.actions.unwrap_or(true),
-        pages: wish.pages.as_deref() == Some("pl7"),
-        ..Options::default()
-    };
     let drawing = g7_draw::draw(&good.document, chart, &options);
     let names = Names::new(&good, chart);
     Ok(Drawn {
@@ -103,6 +94,40 @@ pub(crate) fn drawing(file: &File, wish: &Wish) -> Result<Drawn, String> {
         area: area(drawing.area),
         items: drawing.items.into_iter().enumerate().map(|(n, i)| names.item(n, i)).collect(),
     })
+}
+
+fn options(wish: &Wish) -> Result<Options, String> {
+    let look = match wish.look.as_deref() {
+        None | Some("iec60848") => Look::Iec60848,
+        Some("sfc") => Look::Sfc,
+        Some(other) => return Err(format!("there is no look `{other}`")),
+    };
+    Ok(Options {
+        look,
+        actions: wish.actions.unwrap_or(true),
+        pages: wish.pages.as_deref() == Some("pl7"),
+        ..Options::default()
+    })
+}
+
+/// Where the symbols of a chart stand: anchors in hundredths of u, by id.
+pub(crate) fn anchors(document: &Document, chart: &str) -> HashMap<ItemId, (i32, i32)> {
+    let Some(chart) = document.charts().find(|c| *c.name.text == *chart) else { return HashMap::new() };
+    let names: Vec<&str> = chart.steps().map(|s| &*s.name.text).collect();
+    let name = &*chart.name.text;
+    let drawing = g7_draw::draw(document, chart, &Options::default());
+    let anchor = |item: &g7_draw::Item| match item.part {
+        Part::Step { step, square } => {
+            let id = ItemId::step(name, *names.get(step as usize)?);
+            Some((id, (square.x + square.w / 2, square.y)))
+        }
+        Part::Transition { transition, bar, .. } => {
+            let id = ItemId::transition(name, transition as usize);
+            Some((id, (bar.x + bar.w / 2, bar.y + bar.h / 2)))
+        }
+        Part::Action { .. } | Part::Link { .. } | Part::Connector { .. } | Part::Text => None,
+    };
+    drawing.items.iter().filter_map(anchor).collect()
 }
 
 /// What a chart is for, in a word.
@@ -125,12 +150,12 @@ pub(crate) struct Good {
 
 impl Good {
     /// A place in code units of the text that is drawn.
-    fn units(&self, at: Span) -> (usize, usize) {
+    pub(crate) fn units(&self, at: Span) -> (usize, usize) {
         let unit = |byte: u32| self.positions.unit(&self.text, byte as usize);
         (unit(at.start), unit(at.end))
     }
 
-    fn words(&self, at: Span) -> String {
+    pub(crate) fn words(&self, at: Span) -> String {
         self.text.get(at.start as usize..at.end as usize).unwrap_or("").to_owned()
     }
 }
@@ -161,22 +186,21 @@ impl<'a> Names<'a> {
         let made = match item.part {
             Part::Step { step, square } => self.step(step, square, base),
             Part::Action { step, index } => {
-                let name = self.steps.get(step as usize).map_or("", |s| &*s.name.text);
+                let name = self.name(step);
                 let source = self.good.words(item.at);
                 let id = ids::action(chart, name, index as usize);
                 Item { id, part: "action", source: Some(source), ..base }
             }
             Part::Transition { transition, bar, text } => self.transition(transition, bar, text, base),
             Part::Link { from, to, .. } => {
-                let id = format!("{chart}/l/{}>{}", self.end(from), self.end(to));
+                let id = ItemId::link(chart, self.end(from), self.end(to)).to_string();
                 Item { id, part: "link", ends: Some([self.end_id(from), self.end_id(to)]), ..base }
             }
             Part::Connector { from, to, leaving, .. } => {
-                let side = if leaving { "leaving" } else { "arriving" };
-                let id = format!("{chart}/c/{}>{}/{side}", self.end(from), self.end(to));
+                let id = ItemId::connector(chart, self.end(from), self.end(to), leaving).to_string();
                 Item { id, part: "connector", ends: Some([self.end_id(from), self.end_id(to)]), ..base }
             }
-            Part::Text => Item { id: format!("{chart}/x/{number}"), part: "text", ..base },
+            Part::Text => Item { id: ItemId::other(chart, number).to_string(), part: "text", ..base },
         };
         self.unique(made)
     }
@@ -233,17 +257,21 @@ impl<'a> Names<'a> {
         }
     }
 
-    fn end(&self, end: End) -> String {
+    fn name(&self, step: u32) -> &str {
+        self.steps.get(step as usize).map_or("", |s| &*s.name.text)
+    }
+
+    fn end(&self, end: End) -> g7_edit::End {
         match end {
-            End::Step(n) => format!("s:{}", self.steps.get(n as usize).map_or("", |s| &*s.name.text)),
-            End::Transition(n) => format!("t:{n}"),
+            End::Step(n) => g7_edit::End::Step(self.name(n).to_owned()),
+            End::Transition(n) => g7_edit::End::Transition(n as usize),
         }
     }
 
     fn end_id(&self, end: End) -> String {
         let chart = &self.chart.name.text;
         match end {
-            End::Step(n) => ids::step(chart, self.steps.get(n as usize).map_or("", |s| &*s.name.text)),
+            End::Step(n) => ids::step(chart, self.name(n)),
             End::Transition(n) => ids::transition(chart, n as usize),
         }
     }

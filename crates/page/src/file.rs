@@ -2,11 +2,13 @@
 
 use std::sync::Arc;
 
+use g7_edit::{History, Splice, spliced};
 use g7_model::{FileId, Problem, Severity};
 use g7_rig::Source;
 
 use crate::drawing::Good;
 use crate::positions::Positions;
+use crate::problems::Change;
 
 /// Text, what it means, and what is wrong with it.
 pub(crate) struct File {
@@ -18,6 +20,7 @@ pub(crate) struct File {
     pub(crate) version: u64,
     /// Came from a JGrafchart file.
     pub(crate) imported: bool,
+    pub(crate) history: History,
 }
 
 /// Longest text that is opened, in bytes.
@@ -48,6 +51,7 @@ impl File {
             problems: Vec::new(),
             version: 0,
             imported,
+            history: History::default(),
             source,
         };
         file.judge();
@@ -56,12 +60,52 @@ impl File {
         Ok(file)
     }
 
-    /// Takes a new text.
-    pub(crate) fn set_text(&mut self, text: String) {
+    /// Makes a change and remembers it; typing grows by words.
+    pub(crate) fn change(&mut self, splices: &[Splice], typed: bool) -> Result<(), String> {
+        let text = spliced(self.text(), splices).ok_or("these places are none of the text")?;
+        if text.len() > MOST {
+            return Err("the text would be too large for the editor".to_owned());
+        }
+        if !self.history.record(&self.source.text, splices, typed) {
+            return Err("these places are none of the text".to_owned());
+        }
+        self.set_text(text);
+        Ok(())
+    }
+
+    /// Takes the last change back, or makes it again; what that changed.
+    pub(crate) fn travel(&mut self, back: bool) -> Result<Vec<Splice>, String> {
+        let splices = if back { self.history.undo() } else { self.history.redo() };
+        let nothing = if back { "nothing to undo" } else { "nothing to redo" };
+        let splices = splices.ok_or(nothing)?;
+        let text = spliced(self.text(), &splices).ok_or("the history does not fit the text")?;
+        self.set_text(text);
+        Ok(splices)
+    }
+
+    fn set_text(&mut self, text: String) {
         self.source = Source::new(&self.source.name, text.into_bytes(), 0);
         self.positions = Arc::new(Positions::new(&self.source.text));
         self.version += 1;
         self.judge();
+    }
+
+    /// The text as gestures take it.
+    pub(crate) fn as_edited(&self) -> g7_edit::Source<'_> {
+        g7_edit::Source { text: self.text(), document: &self.source.document, clean: self.is_clean() }
+    }
+
+    /// Splices as they go out, in code units of the text before them.
+    pub(crate) fn outward(&self, splices: &[Splice]) -> Vec<Change> {
+        let unit = |byte| self.positions.unit(self.text(), byte);
+        let change = |s: &Splice| Change { from: unit(s.start), to: unit(s.end), insert: s.insert.clone() };
+        splices.iter().map(change).collect()
+    }
+
+    /// Splices as they come in.
+    pub(crate) fn inward(&self, splices: &[Change]) -> Vec<Splice> {
+        let byte = |unit| self.positions.byte(self.text(), unit);
+        splices.iter().map(|s| Splice::new(byte(s.from), byte(s.to), s.insert.as_str())).collect()
     }
 
     pub(crate) fn text(&self) -> &str {

@@ -1,18 +1,19 @@
 //! The names of items between page and crate: `Chart/s/Step`, `Chart/a/Step/0`,
 //! `Chart/t/3`; and what stands at a place of the text.
 
-use g7_model::{Chart, Document, Span, Step, Transition};
+use g7_edit::ItemId;
+use g7_model::{Chart, Document, Span, Step};
 
 pub(crate) fn step(chart: &str, name: &str) -> String {
-    format!("{chart}/s/{name}")
+    ItemId::step(chart, name).to_string()
 }
 
 pub(crate) fn action(chart: &str, step: &str, index: usize) -> String {
-    format!("{chart}/a/{step}/{index}")
+    ItemId::action(chart, step, index).to_string()
 }
 
 pub(crate) fn transition(chart: &str, number: usize) -> String {
-    format!("{chart}/t/{number}")
+    ItemId::transition(chart, number).to_string()
 }
 
 /// Something of a chart that an id names.
@@ -20,7 +21,7 @@ pub(crate) fn transition(chart: &str, number: usize) -> String {
 pub(crate) enum Thing<'d> {
     Step(&'d Chart, &'d Step),
     Action(&'d Chart, &'d Step, usize),
-    Transition(&'d Chart, usize, &'d Transition),
+    Transition(&'d Chart, usize),
 }
 
 impl Thing<'_> {
@@ -28,7 +29,7 @@ impl Thing<'_> {
         match self {
             Thing::Step(c, s) => step(&c.name.text, &s.name.text),
             Thing::Action(c, s, i) => action(&c.name.text, &s.name.text, i),
-            Thing::Transition(c, n, _) => transition(&c.name.text, n),
+            Thing::Transition(c, n) => transition(&c.name.text, n),
         }
     }
 }
@@ -40,7 +41,7 @@ pub(crate) fn things(document: &Document) -> impl Iterator<Item = (Span, Thing<'
             let own = std::iter::once((s.at.0, Thing::Step(c, s)));
             own.chain(s.actions.iter().enumerate().map(move |(i, a)| (a.at.0, Thing::Action(c, s, i))))
         });
-        let transitions = c.transitions().enumerate().map(move |(n, t)| (t.at.0, Thing::Transition(c, n, t)));
+        let transitions = c.transitions().enumerate().map(move |(n, t)| (t.at.0, Thing::Transition(c, n)));
         steps.chain(transitions)
     })
 }
@@ -52,7 +53,7 @@ pub(crate) fn at(document: &Document, place: Span) -> Option<Thing<'_>> {
     things(document)
         .filter(|(at, thing)| {
             let mine = match thing {
-                Thing::Step(c, _) | Thing::Action(c, ..) | Thing::Transition(c, ..) => only(c),
+                Thing::Step(c, _) | Thing::Action(c, ..) | Thing::Transition(c, _) => only(c),
             };
             mine && holds(*at, place)
         })

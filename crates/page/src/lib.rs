@@ -18,14 +18,20 @@
 
 mod answer;
 mod drawing;
+mod edit;
+mod explain;
 pub mod exports;
 mod file;
+mod fixes;
 mod ids;
+mod language;
 mod look;
 mod page;
 mod positions;
 mod problems;
 mod request;
 mod run;
+mod tests;
 
+pub use explain::explain;
 pub use page::Page;

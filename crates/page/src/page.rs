@@ -3,11 +3,14 @@
 use std::collections::BTreeMap;
 
 use crate::answer::{self, Answer, ok};
-use crate::drawing;
+use crate::explain::explain;
 use crate::file::File;
+use crate::language;
 use crate::look::look;
 use crate::request::Request;
 use crate::run::{self, Run};
+use crate::tests;
+use crate::{drawing, edit};
 
 /// What a page has open: files and runs.
 #[derive(Default)]
@@ -43,22 +46,33 @@ impl Page {
             }
             Request::Look { file } => self.look(&file),
             Request::Text { file } => ok(&serde_json::json!({ "text": self.file(&file)?.text() })),
-            Request::Splice { file, splices, unit: _ } => {
+            Request::Splice { file, splices, unit } => {
                 let open = self.file_mut(&file)?;
-                let mut text = open.text().to_owned();
-                for s in splices.iter().rev() {
-                    let (from, to) =
-                        (open.positions.byte(open.text(), s.from), open.positions.byte(open.text(), s.to));
-                    if from > to || text.get(from..to).is_none() {
-                        return Err("these places are none of the text".to_owned());
-                    }
-                    text.replace_range(from..to, &s.insert);
-                }
-                open.set_text(text);
+                let splices = open.inward(&splices);
+                open.change(&splices, !unit)?;
                 self.look(&file)
+            }
+            Request::Edit { file, gesture } => ok(&edit::edit(&file, self.file_mut(&file)?, &gesture)?),
+            Request::Undo { file } => ok(&edit::travel(&file, self.file_mut(&file)?, true)?),
+            Request::Redo { file } => ok(&edit::travel(&file, self.file_mut(&file)?, false)?),
+            Request::Format { file } => ok(&edit::format(&file, self.file_mut(&file)?)?),
+            Request::References { file, at } => ok(&edit::references(self.file(&file)?, at)),
+            Request::Copy { file, ids } => {
+                let text = g7_edit::copy(&self.file(&file)?.as_edited(), &ids);
+                ok(&serde_json::json!({ "text": text }))
             }
             Request::Drawing(wish) => ok(&drawing::drawing(self.file(&wish.file)?, &wish)?),
             Request::Style { dark } => ok(&serde_json::json!({ "css": g7_draw::style(dark) })),
+            Request::Explain { code } => {
+                let text = explain(&code).ok_or_else(|| format!("there is no problem `{code}`"))?;
+                ok(&serde_json::json!({ "markdown": text }))
+            }
+            Request::Test { file, name } => ok(&tests::test(self.file(&file)?, name.as_deref())?),
+            Request::Tokens { file, from, to } => ok(&language::tokens::tokens(self.file(&file)?, from, to)),
+            Request::Complete { file, at } => ok(&language::complete::complete(self.file(&file)?, at)),
+            Request::Hover { file, at } => ok(&language::hover::hover(self.file(&file)?, at)),
+            Request::Symbols { file } => ok(&language::symbols::tables(&self.file(&file)?.drawn())),
+            Request::Search { file, text } => ok(&language::search::search(self.file(&file)?, &text)),
             Request::RunStart(wish) => self.start(&wish),
             Request::RunStop { run } => {
                 self.runs.remove(&run);

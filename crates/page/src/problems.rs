@@ -1,9 +1,10 @@
 //! Problems as the page shows them.
 
 use g7_model::{Document, Problem, Severity, Span};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::file::File;
+use crate::fixes::{Fix, SOME, fixes};
 use crate::ids;
 
 /// One problem.
@@ -31,15 +32,8 @@ struct Related {
     what: String,
 }
 
-/// A change that mends a problem.
-#[derive(Debug, Serialize)]
-pub(crate) struct Fix {
-    title: String,
-    splices: Vec<Change>,
-}
-
-/// A piece of text in place of another, as it goes out.
-#[derive(Clone, Debug, Serialize, PartialEq, Eq)]
+/// A piece of text in place of another; places in code units.
+#[derive(Clone, Debug, Deserialize, Serialize, PartialEq, Eq)]
 pub(crate) struct Change {
     pub(crate) from: usize,
     pub(crate) to: usize,
@@ -48,10 +42,16 @@ pub(crate) struct Change {
 
 /// The problems of a file.
 pub(crate) fn rows(file: &File) -> Vec<Row> {
-    file.problems.iter().map(|p| row(file, p)).collect()
+    let small = file.text().len() < 100_000;
+    file.problems.iter().enumerate().map(|(i, p)| whole_row(file, p, small && i < SOME)).collect()
 }
 
+/// One problem, with the fixes that cost nothing.
 pub(crate) fn row(file: &File, p: &Problem) -> Row {
+    whole_row(file, p, false)
+}
+
+fn whole_row(file: &File, p: &Problem, time: bool) -> Row {
     let (from, to) = units(file, p.at);
     let byte = file.source.range(p.at).start;
     let (line, column) = file.positions.line_column(file.text(), byte);
@@ -71,7 +71,7 @@ pub(crate) fn row(file: &File, p: &Problem) -> Row {
         column,
         related: related.collect(),
         items: items(&file.source.document, p),
-        fixes: Vec::new(),
+        fixes: fixes(file, p, time),
     }
 }
 

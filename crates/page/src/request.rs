@@ -21,15 +21,67 @@ pub(crate) enum Request {
     },
     Splice {
         file: String,
-        splices: Vec<Splice>,
+        splices: Vec<crate::problems::Change>,
         #[serde(default)]
         unit: bool,
+    },
+    Edit {
+        file: String,
+        gesture: g7_edit::Gesture,
+    },
+    Undo {
+        file: String,
+    },
+    Redo {
+        file: String,
+    },
+    /// What would be put into another chart.
+    Copy {
+        file: String,
+        ids: Vec<g7_edit::ItemId>,
+    },
+    Format {
+        file: String,
+    },
+    References {
+        file: String,
+        at: usize,
     },
     Drawing(crate::drawing::Wish),
     /// The style sheet of the fragments.
     Style {
         #[serde(default)]
         dark: bool,
+    },
+    Explain {
+        code: String,
+    },
+    /// The tests whose titles hold `name`, or all.
+    Test {
+        file: String,
+        name: Option<String>,
+    },
+    Tokens {
+        file: String,
+        #[serde(default)]
+        from: usize,
+        #[serde(default = "end")]
+        to: usize,
+    },
+    Complete {
+        file: String,
+        at: usize,
+    },
+    Hover {
+        file: String,
+        at: usize,
+    },
+    Symbols {
+        file: String,
+    },
+    Search {
+        file: String,
+        text: String,
     },
     RunStart(crate::run::Start),
     RunAdvance {
@@ -124,15 +176,12 @@ pub(crate) enum Request {
     },
 }
 
+/// The end of any text.
+fn end() -> usize {
+    usize::MAX
+}
+
 /// Edges of a lane where nothing is said: more than a screen has columns.
 fn lane() -> usize {
     4_000
-}
-
-/// A piece of text in place of another; places in code units.
-#[derive(Clone, Debug, Deserialize)]
-pub(crate) struct Splice {
-    pub(crate) from: usize,
-    pub(crate) to: usize,
-    pub(crate) insert: String,
 }

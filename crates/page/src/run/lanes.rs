@@ -1,6 +1,6 @@
 //! What the signals did: edges for a chronogram, and files of them.
 
-use g7_host::{Recording, write_csv, write_vcd};
+use g7_host::{Kind, Recording, write_csv, write_vcd};
 use serde::Serialize;
 
 use super::Run;
@@ -54,11 +54,35 @@ impl Run {
         let done = match form {
             Form::Csv => write_csv(&part, &mut out),
             Form::Vcd => write_vcd(&part, &mut out),
-            Form::Svg => return Err("a chronogram cannot be written as SVG yet".to_owned()),
+            Form::Svg => return Ok(picture(&part)),
         };
         done.map_err(|e| e.to_string())?;
         String::from_utf8(out).map_err(|e| e.to_string())
     }
+}
+
+/// The signals as a chronogram.
+fn picture(part: &Recording) -> String {
+    let lane = |(i, signal): (usize, &g7_host::Signal)| g7_draw::Lane {
+        name: signal.name.clone(),
+        kind: match signal.kind {
+            Kind::Bool if signal.group == "steps" => g7_draw::LaneKind::Step,
+            Kind::Bool => g7_draw::LaneKind::Bool,
+            Kind::Int { .. } | Kind::Real | Kind::Lreal | Kind::Time => g7_draw::LaneKind::Number,
+            Kind::Text => g7_draw::LaneKind::Text,
+        },
+        edges: part
+            .changes(i)
+            .map(|(at, v)| g7_draw::Edge {
+                at: *at,
+                value: v.number(signal.kind),
+                show: shown(v, signal.kind),
+            })
+            .collect(),
+    };
+    let lanes = part.signals().iter().enumerate().map(lane).collect();
+    let chronogram = g7_draw::Chronogram { lanes, from: part.start(), to: part.end() };
+    g7_draw::chronogram_svg(&chronogram, &g7_draw::Options::default())
 }
 
 /// The edges of a signal; of those that lie closer than can be told apart the

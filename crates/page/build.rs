@@ -1,4 +1,4 @@
-//! Lists the pages on problems, so that `g7 explain` has them with it.
+//! Lists the pages on problems, so that the editor and `g7 explain` have them with them.
 
 use std::fmt::Write;
 use std::path::Path;

@@ -1,0 +1,102 @@
+//! Changes that mend a problem: only where it is sure that they do.
+
+use g7_edit::{Gesture, ItemId, Row, Splice};
+use g7_model::{Problem, codes};
+use serde::Serialize;
+
+use crate::edit::draft;
+use crate::file::File;
+use crate::ids::{self, Thing};
+use crate::problems::Change;
+
+/// A change that mends a problem.
+#[derive(Debug, Serialize)]
+pub(crate) struct Fix {
+    title: String,
+    splices: Vec<Change>,
+}
+
+/// Problems that get fixes made by gestures: each costs a look at the whole file.
+pub(crate) const SOME: usize = 8;
+
+/// The fixes of a problem; those made by gestures only where there is `time`.
+pub(crate) fn fixes(file: &File, p: &Problem, time: bool) -> Vec<Fix> {
+    let mut found: Vec<Fix> = suggested(file, p).into_iter().collect();
+    if found.is_empty() && time && file.is_clean() {
+        let gestures = gestures(file, p);
+        found.extend(gestures.into_iter().filter_map(|(title, gesture)| {
+            let edit = draft(file, &gesture).ok()?;
+            Some(Fix { title, splices: file.outward(&edit.splices) })
+        }));
+    }
+    found
+}
+
+/// What the checker itself would bet on: another word in place of the one that stands there.
+fn suggested(file: &File, p: &Problem) -> Option<Fix> {
+    let help = p.help.as_deref()?;
+    let range = file.source.range(p.at);
+    let there = file.text().get(range.clone())?;
+    let (word, start) = if p.code == &codes::EMPTY_RANGE {
+        (help.strip_prefix("write ")?, range.start)
+    } else {
+        let word = help.strip_prefix("did you mean `")?.strip_suffix("`?")?;
+        let dots = |s: &str| s.matches('.').count();
+        // Of a path the last name is the wrong one, unless the guess is a path too.
+        let behind = if dots(there) > dots(word) { there.rfind('.').map_or(0, |i| i + 1) } else { 0 };
+        (word, range.start + behind)
+    };
+    if there.contains(char::is_whitespace) && p.code != &codes::EMPTY_RANGE {
+        return None;
+    }
+    let splice = Splice::new(start, range.end, word);
+    Some(Fix { title: format!("write `{word}`"), splices: file.outward(&[splice]) })
+}
+
+/// Gestures that mend it, each with its title.
+fn gestures(file: &File, p: &Problem) -> Vec<(String, Gesture)> {
+    let document = &file.source.document;
+    let thing = || ids::at(document, p.at);
+    let transition = || match thing() {
+        Some(Thing::Transition(c, n)) => Some(ItemId::transition(&*c.name.text, n)),
+        _ => None,
+    };
+    let there = file.text().get(file.source.range(p.at)).unwrap_or("").trim_matches('`');
+    if p.code == &codes::UNUSED_VARIABLE {
+        let of = document.charts().find(|c| ids::holds(c.at.0, p.at));
+        let name = of.map_or(there.to_owned(), |c| format!("{}.{there}", c.name.text));
+        return vec![(format!("delete `{there}`"), Gesture::DeleteVariable { name })];
+    }
+    if p.code == &codes::PRIORITY_IGNORED
+        && p.help.as_deref() == Some("leave the number out")
+        && let Some(id) = transition()
+    {
+        return vec![("leave the number out".to_owned(), Gesture::Priority { id, n: None })];
+    }
+    if p.code == &codes::SAME_TRANSITION
+        && let Some(id) = transition()
+    {
+        return vec![("delete this transition".to_owned(), Gesture::Delete { ids: vec![id], heal: false })];
+    }
+    if p.code == &codes::UNKNOWN_NAME && is_name(there) {
+        let declared = |class: &str, what: &str| {
+            let row = Row {
+                name: there.to_owned(),
+                class: class.to_owned(),
+                ty: "BOOL".to_owned(),
+                ..Row::default()
+            };
+            (format!("declare `{there}` as {what}"), Gesture::Variable { name: None, row })
+        };
+        return vec![
+            declared("input", "an input"),
+            declared("output", "an output"),
+            declared("var", "a variable"),
+        ];
+    }
+    Vec::new()
+}
+
+fn is_name(text: &str) -> bool {
+    !text.is_empty() && text.chars().all(|c| c.is_alphanumeric() || c == '_')
+}

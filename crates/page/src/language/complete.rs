@@ -1,0 +1,417 @@
+//! What could stand at a place of the text.
+
+use g7_model::{Document, ProfileName};
+use g7_syntax::{Token, TokenKind};
+use serde::Serialize;
+
+use super::names::{Meaning, names};
+use super::symbols::declaration;
+use crate::file::File;
+
+/// What can be put in, from where on.
+#[derive(Debug, Serialize)]
+pub(crate) struct Completion {
+    from: usize,
+    items: Vec<Choice>,
+}
+
+/// One choice.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub(crate) struct Choice {
+    label: String,
+    kind: &'static str,
+    detail: String,
+    insert: String,
+}
+
+/// What the braces round a place belong to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Around {
+    File,
+    Chart,
+    Step,
+    Plant,
+    Test,
+    Layout,
+    /// Statements.
+    Body,
+}
+
+const FILE: &[(&str, &str)] = &[
+    ("input", "a value from the plant"),
+    ("output", "a value for the plant"),
+    ("var", "an internal variable"),
+    ("const", "a constant"),
+    ("chart", "a partial chart"),
+    ("macrochart", "the expansion of a macro-step"),
+    ("task", "a chart that steps call"),
+    ("action", "a named action"),
+    ("function", "a function"),
+    ("plant", "a model of the process"),
+    ("test", "a scenario"),
+    ("profile", "the evolution rules"),
+    ("scan", "the nominal scan time"),
+    ("pre", "before each evolution"),
+    ("post", "after each evolution"),
+];
+const CHART: &[(&str, &str)] = &[
+    ("step", "a step"),
+    ("initial step", "a step of the initial situation"),
+    ("macro", "a macro-step"),
+    ("enclosing", "an enclosing step"),
+    ("entry step", "the first step of an expansion"),
+    ("exit step", "the last step of an expansion"),
+    ("var", "a variable of this chart"),
+    ("action", "a named action of this chart"),
+];
+const ACTIONS: &[(&str, &str)] = &[
+    ("N", "while the step is active"),
+    ("S", "set"),
+    ("R", "reset"),
+    ("L", "limited in time"),
+    ("D", "delayed"),
+    ("P", "for one scan"),
+    ("P1", "once at activation"),
+    ("P0", "once at deactivation"),
+    ("SD", "set, delayed"),
+    ("DS", "delayed, set"),
+    ("SL", "set, limited"),
+    ("on", "stored, at an event"),
+    ("each scan:", "in each scan while active"),
+    ("force", "a forcing order"),
+    ("enclose", "charts inside this step"),
+    ("call", "a task"),
+    ("enable", "lets a chart evolve"),
+    ("mask", "holds outputs back"),
+];
+const PLANT: &[(&str, &str)] = &[
+    ("state", "a state of the process"),
+    ("rate", "how a state moves"),
+    ("drive", "what an input reads"),
+    ("on", "once when a condition comes true"),
+    ("each", "in every tick"),
+    ("parts", "a queue or track"),
+    ("arrivals", "what arrives by itself"),
+    ("const", "a constant of the plant"),
+    ("view", "a picture"),
+];
+const TEST: &[(&str, &str)] = &[
+    ("set", "inputs take values"),
+    ("pulse", "an input is true for a moment"),
+    ("wait", "time passes"),
+    ("wait until", "until a condition holds"),
+    ("scan", "so many scans"),
+    ("expect", "this must hold now"),
+    ("expect fault", "a fault must come"),
+    ("always", "holds throughout"),
+    ("force", "holds a value"),
+    ("release", "lets go"),
+    ("restart", "starts anew"),
+    ("repeat", "again and again"),
+];
+const TYPES: &[&str] = &[
+    "BOOL", "INT", "REAL", "TIME", "DINT", "LREAL", "STRING", "SINT", "LINT", "USINT", "UINT", "UDINT",
+    "ULINT", "TON", "TOF", "TP", "CTU", "CTD", "CTUD", "R_TRIG", "F_TRIG", "SR", "RS",
+];
+const FUNCTIONS: &[(&str, &str)] = &[
+    ("rise", "rising edge, ↑"),
+    ("fall", "falling edge, ↓"),
+    ("ABS", "absolute value"),
+    ("SQRT", "square root"),
+    ("MIN", "the least"),
+    ("MAX", "the greatest"),
+    ("LIMIT", "held between two bounds"),
+    ("SEL", "one of two"),
+    ("MUX", "one of several"),
+    ("TRUNC", "whole part"),
+    ("LEN", "length of a text"),
+    ("CONCAT", "texts joined"),
+];
+
+/// What could stand at a code unit.
+pub(crate) fn complete(file: &File, at: usize) -> Completion {
+    let text = file.text();
+    let byte = file.positions.byte(text, at);
+    let before: Vec<Token> = g7_syntax::tokens(text).take_while(|t| t.start < byte).collect();
+    // A word that goes on to the place is what is being typed.
+    let typed = before.last().filter(|t| t.end >= byte && is_word(t.kind));
+    let from = typed.map_or(byte, |t| t.start);
+    let before = if typed.is_some() { before.split_last().map_or(&[][..], |(_, b)| b) } else { &before[..] };
+    let good = file.drawn();
+    let place = Place { text, before, document: &good.document, at: u32::try_from(byte).unwrap_or(u32::MAX) };
+    let mut items = place.choices();
+    let prefix = text.get(from..byte).unwrap_or("").trim_start_matches('`').to_lowercase();
+    items.retain(|c| c.label.to_lowercase().contains(&prefix));
+    items.sort_by_key(|c| !c.label.to_lowercase().starts_with(&prefix));
+    items.dedup();
+    items.truncate(200);
+    Completion { from: file.positions.unit(text, from), items }
+}
+
+fn is_word(kind: TokenKind) -> bool {
+    matches!(kind, TokenKind::Word | TokenKind::Ticked | TokenKind::Number)
+}
+
+struct Place<'a> {
+    text: &'a str,
+    /// The tokens before what is being typed.
+    before: &'a [Token],
+    document: &'a Document,
+    at: u32,
+}
+
+impl Place<'_> {
+    fn word(&self, token: &Token) -> &str {
+        self.text.get(token.start..token.end).unwrap_or("")
+    }
+
+    fn choices(&self) -> Vec<Choice> {
+        let Some(last) = self.before.last() else { return keywords(FILE) };
+        let around = self.around();
+        let word = self.word(last).to_owned();
+        match (last.kind, word.as_str()) {
+            (TokenKind::Note | TokenKind::Str | TokenKind::Comment, _) if last.end as u32 > self.at => {
+                Vec::new()
+            }
+            (TokenKind::PathDot, _) => self.members(),
+            (TokenKind::Colon, _) if self.declares() => {
+                TYPES.iter().map(|t| choice(t, "type", "", t)).collect()
+            }
+            (TokenKind::Arrow, _) => self.steps(),
+            (_, "profile") => {
+                ProfileName::ALL.iter().map(|p| choice(p.name(), "profile", "", p.name())).collect()
+            }
+            (_, "force" | "enclose" | "call" | "enable" | "mask" | "layout") => self.charts(),
+            (_, "with") => self.others("plant"),
+            _ if self.begins(last) => match around {
+                Around::File => keywords(FILE),
+                Around::Chart => [self.steps(), keywords(CHART)].concat(),
+                Around::Step => [keywords(ACTIONS), self.values()].concat(),
+                Around::Plant => keywords(PLANT),
+                Around::Test => keywords(TEST),
+                Around::Layout => self.steps(),
+                Around::Body => [self.values(), functions()].concat(),
+            },
+            (
+                _,
+                "step" | "initial" | "macro" | "enclosing" | "chart" | "macrochart" | "task" | "var"
+                | "input",
+            )
+            | (_, "output" | "const") => Vec::new(),
+            (TokenKind::Comma | TokenKind::LParen, _) if around == Around::Chart && !self.after("when") => {
+                self.steps()
+            }
+            _ if around == Around::Chart && self.after("->") && !self.after("when") => {
+                [keywords(&[("when", "the receptivity"), ("priority", "1 goes first")]), self.steps()]
+                    .concat()
+            }
+            _ => [self.values(), functions()].concat(),
+        }
+    }
+
+    /// Whether a statement or item begins here.
+    fn begins(&self, last: &Token) -> bool {
+        let between = self.text.get(last.end..self.at as usize).unwrap_or("");
+        matches!(last.kind, TokenKind::LBrace | TokenKind::RBrace | TokenKind::Semi)
+            || between.contains('\n') && !matches!(last.kind, TokenKind::Sign | TokenKind::Comma)
+    }
+
+    /// What the braces round the place belong to: the first word of their item.
+    fn around(&self) -> Around {
+        let mut open: Vec<Around> = Vec::new();
+        let mut head: Option<&str> = None;
+        for (i, t) in self.before.iter().enumerate() {
+            let first = i.checked_sub(1).and_then(|i| self.before.get(i)).is_none_or(|b| {
+                matches!(b.kind, TokenKind::LBrace | TokenKind::RBrace)
+                    || self.text.get(b.end..t.start).unwrap_or("").contains('\n')
+            });
+            let word = self.word(t);
+            if first {
+                head = Some(word);
+            }
+            match t.kind {
+                TokenKind::LBrace => {
+                    let inside = open.last().copied().unwrap_or(Around::File);
+                    let opened = match (inside, head.unwrap_or("")) {
+                        (Around::File, "chart" | "macrochart" | "task") => Around::Chart,
+                        (Around::File, "plant") => Around::Plant,
+                        (Around::File, "test") => Around::Test,
+                        (Around::File, "layout") => Around::Layout,
+                        (Around::Chart, "step" | "initial" | "entry" | "exit" | "macro" | "enclosing") => {
+                            Around::Step
+                        }
+                        (Around::Test, _) => Around::Test,
+                        _ => Around::Body,
+                    };
+                    open.push(opened);
+                    head = None;
+                }
+                TokenKind::RBrace => {
+                    open.pop();
+                    head = None;
+                }
+                _ => {}
+            }
+        }
+        open.last().copied().unwrap_or(Around::File)
+    }
+
+    /// Whether a word or sign stands before on this line.
+    fn after(&self, sign: &str) -> bool {
+        let mut end = self.at as usize;
+        for t in self.before.iter().rev() {
+            if self.text.get(t.end..end).is_some_and(|b| b.contains('\n')) {
+                return false;
+            }
+            if self.word(t) == sign || sign == "->" && t.kind == TokenKind::Arrow {
+                return true;
+            }
+            end = t.start;
+        }
+        false
+    }
+
+    /// Whether this line declares something.
+    fn declares(&self) -> bool {
+        ["input", "output", "var", "const", "state", "function", "parts"].iter().any(|w| self.after(w))
+    }
+
+    fn here(&self) -> Option<&g7_model::Chart> {
+        self.document.charts().find(|c| c.at.0.start <= self.at && self.at <= c.at.0.end)
+    }
+
+    /// What stands behind the dot.
+    fn members(&self) -> Vec<Choice> {
+        let owner = self.before.iter().rev().nth(1).map(|t| self.word(t).trim_matches('`')).unwrap_or("");
+        let mut found = Vec::new();
+        for n in names(self.document) {
+            let name = &*n.name.text;
+            match n.meaning {
+                Meaning::Step(c, _) if *c.name.text == *owner => found.push(activity(name, &c.name.text)),
+                Meaning::Variable(v, Some(c)) if *c.name.text == *owner => {
+                    found.push(choice(name, "variable", &declaration(name, v), name));
+                }
+                Meaning::Variable(v, _) if name == owner => {
+                    if let g7_model::Type::Fb(kind) = v.ty {
+                        let member = |(m, ty, input): &(&str, g7_model::Type, bool)| {
+                            let what = if *input { "input" } else { "output" };
+                            choice(m, "member", &format!("{what} : {ty}"), m)
+                        };
+                        found.extend(kind.members().iter().map(member));
+                    }
+                }
+                Meaning::Step(..) if name == owner => {
+                    found.push(choice("X", "member", "active or not", "X"));
+                    found.push(choice("T", "member", "time since activation", "T"));
+                }
+                Meaning::Other("parts of the plant", _) if name == owner => {
+                    let members = [
+                        ("count", "how many"),
+                        ("empty", "none"),
+                        ("full", "no room"),
+                        ("lost", "fallen off"),
+                    ];
+                    found.extend(members.iter().map(|(m, d)| choice(m, "member", d, m)));
+                }
+                Meaning::Variable(..) | Meaning::Step(..) | Meaning::Chart(_) | Meaning::Other(..) => {}
+            }
+        }
+        if owner.starts_with('X')
+            && owner.get(1..2).is_some_and(|c| c.starts_with(|c: char| c.is_ascii_digit()))
+        {
+            found.push(choice("T", "member", "time since activation", "T"));
+        }
+        found
+    }
+
+    fn steps(&self) -> Vec<Choice> {
+        let steps = self.here().into_iter().flat_map(|c| c.steps());
+        let comment = |s: &g7_model::Step| s.comment.as_deref().unwrap_or("").to_owned();
+        steps
+            .map(|s| choice(&s.name.text, "step", &comment(s), &g7_syntax::show_step_name(&s.name.text)))
+            .collect()
+    }
+
+    fn charts(&self) -> Vec<Choice> {
+        let shown = |c: &g7_model::Chart| {
+            choice(
+                &c.name.text,
+                "chart",
+                c.comment.as_deref().unwrap_or(""),
+                &g7_syntax::show_name(&c.name.text),
+            )
+        };
+        self.document.charts().map(shown).collect()
+    }
+
+    fn others(&self, what: &str) -> Vec<Choice> {
+        let named = names(self.document).into_iter().filter_map(|n| match n.meaning {
+            Meaning::Other(w, comment) if w == what => Some(choice(
+                &n.name.text,
+                "plant",
+                comment.unwrap_or(""),
+                &g7_syntax::show_name(&n.name.text),
+            )),
+            _ => None,
+        });
+        named.collect()
+    }
+
+    /// What an expression can name: variables, steps, charts, parts of plants.
+    fn values(&self) -> Vec<Choice> {
+        let here = self.here().map(|c| c.name.text.clone());
+        let mut found = Vec::new();
+        for n in names(self.document) {
+            let name = &*n.name.text;
+            let shown = g7_syntax::show_name(name);
+            match n.meaning {
+                Meaning::Variable(v, None) => {
+                    found.push(choice(name, "variable", &declaration(name, v), &shown))
+                }
+                Meaning::Variable(v, Some(c)) => {
+                    let inside = here.as_ref() == Some(&c.name.text);
+                    let path = if inside {
+                        shown
+                    } else {
+                        format!("{}.{shown}", g7_syntax::show_name(&c.name.text))
+                    };
+                    found.push(choice(&path, "variable", &declaration(name, v), &path));
+                }
+                Meaning::Step(c, _) if here.as_ref() == Some(&c.name.text) => {
+                    found.push(activity(name, &c.name.text))
+                }
+                Meaning::Step(..) => {}
+                Meaning::Chart(c) => found.push(choice(name, "chart", crate::drawing::kind(c.kind), &shown)),
+                Meaning::Other(what, comment) => {
+                    if n.scope.is_none_or(|s| s.start <= self.at && self.at <= s.end) && what != "transition"
+                    {
+                        found.push(choice(name, "name", comment.unwrap_or(what), &shown));
+                    }
+                }
+            }
+        }
+        found
+    }
+}
+
+/// The activity of a step as an expression names it.
+fn activity(step: &str, chart: &str) -> Choice {
+    let text = if step.starts_with(|c: char| c.is_ascii_digit()) {
+        format!("X{step}")
+    } else {
+        format!("{}.X", g7_syntax::show_name(step))
+    };
+    choice(&text, "step", &format!("step {step} of {chart} is active"), &text)
+}
+
+fn keywords(list: &[(&str, &str)]) -> Vec<Choice> {
+    list.iter().map(|(w, d)| choice(w, "keyword", d, &format!("{w} "))).collect()
+}
+
+fn functions() -> Vec<Choice> {
+    FUNCTIONS.iter().map(|(f, d)| choice(f, "function", d, &format!("{f}("))).collect()
+}
+
+fn choice(label: &str, kind: &'static str, detail: &str, insert: &str) -> Choice {
+    Choice { label: label.to_owned(), kind, detail: detail.to_owned(), insert: insert.to_owned() }
+}

@@ -1,0 +1,105 @@
+//! What stands under the pointer, in a few words.
+
+use serde::Serialize;
+
+use super::names::{Meaning, Named, meaning, word_at};
+use super::symbols::declaration;
+use crate::file::File;
+use crate::problems::units;
+
+/// A note on a piece of the text.
+#[derive(Debug, Serialize)]
+pub(crate) struct Hover {
+    from: usize,
+    to: usize,
+    markdown: String,
+}
+
+/// What there is to say of the text at a code unit.
+pub(crate) fn hover(file: &File, at: usize) -> Option<Hover> {
+    let byte = file.positions.byte(file.text(), at);
+    let problem = file.problems.iter().filter(|p| {
+        let range = file.source.range(p.at);
+        range.start <= byte && byte <= range.end && range.len() < 400
+    });
+    let said: Vec<String> = problem
+        .map(|p| {
+            let help = p.help.as_ref().map_or(String::new(), |h| format!("  \n{h}"));
+            format!("**{}** {}{help}", p.code.id, p.what)
+        })
+        .collect();
+    let word = word_at(file.text(), byte);
+    let named = word.as_ref().and_then(|w| meaning(&file.source.document, w));
+    let (from, to) = match (&word, &named) {
+        (Some(w), _) => {
+            (file.positions.unit(file.text(), w.token.start), file.positions.unit(file.text(), w.token.end))
+        }
+        (None, _) => {
+            let first = file.problems.iter().find(|p| {
+                let range = file.source.range(p.at);
+                range.start <= byte && byte <= range.end
+            })?;
+            units(file, first.at)
+        }
+    };
+    let about = named.map(|n| describe(&n)).or_else(|| word.and_then(|w| explain(w.text)).map(str::to_owned));
+    let parts: Vec<String> = said.into_iter().chain(about).collect();
+    (!parts.is_empty()).then(|| Hover { from, to, markdown: parts.join("\n\n") })
+}
+
+fn describe(n: &Named<'_>) -> String {
+    let name = &n.name.text;
+    let with = |head: String, comment: Option<&str>| match comment {
+        Some(c) => format!("{head}  \n{c}"),
+        None => head,
+    };
+    match n.meaning {
+        Meaning::Variable(v, chart) => {
+            let of = chart.map_or(String::new(), |c| format!(" of chart {}", c.name.text));
+            with(format!("`{}`{of}", declaration(name, v)), v.comment.as_deref())
+        }
+        Meaning::Step(c, s) => {
+            let sort = if s.initial { "initial step" } else { "step" };
+            let actions = match s.actions.len() {
+                0 => String::new(),
+                1 => ", 1 action".to_owned(),
+                n => format!(", {n} actions"),
+            };
+            with(format!("{sort} `{name}` of chart `{}`{actions}", c.name.text), s.comment.as_deref())
+        }
+        Meaning::Chart(c) => {
+            let count = format!("{} steps, {} transitions", c.steps().count(), c.transitions().count());
+            with(format!("{} `{name}`: {count}", crate::drawing::kind(c.kind)), c.comment.as_deref())
+        }
+        Meaning::Other(what, comment) => with(format!("{what} `{name}`"), comment),
+    }
+}
+
+/// The words of the language that are asked for most.
+fn explain(word: &str) -> Option<&'static str> {
+    Some(match word {
+        "N" => "**N**: while the step is active",
+        "S" => "**S**: set, and stays so until a reset",
+        "R" => "**R**: reset; goes before everything that sets",
+        "L" => "**L**: while the step is active, for the time at most",
+        "D" => "**D**: while the step is active, once the time has passed",
+        "P" => "**P**: for one scan after activation",
+        "P1" => "**P1**: once, at activation",
+        "P0" => "**P0**: once, at deactivation",
+        "SD" => "**SD**: set at activation, acts once the time has passed, even if the step is left",
+        "DS" => "**DS**: set once the step was active for the time",
+        "SL" => "**SL**: set at activation, for the time",
+        "when" => "**when**: the receptivity; the transition clears when it is enabled and this is true",
+        "force" => "**force**: a forcing order: the chart is brought into this situation and held in it",
+        "enclose" => "**enclose**: the charts that are active inside this step",
+        "initial" => "**initial**: active in the initial situation",
+        "macro" => "**macro**: a macro-step; its expansion is a `macrochart`",
+        "call" => "**call**: the task runs while this step is active; it waits for its exit step",
+        "enable" => "**enable**: the chart evolves only while a step enables it",
+        "mask" => "**mask**: what the chart's actions ask for is held back",
+        "inverted" => "**inverted**: the channel carries the complement",
+        "retain" => "**retain**: keeps its value over a warm restart",
+        "safe" => "**safe**: the value of the output after a fault",
+        _ => return None,
+    })
+}

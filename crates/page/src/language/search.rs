@@ -1,0 +1,81 @@
+//! Words anywhere in a file, with the symbols that they stand in.
+
+use g7_model::{FileId, Span};
+use serde::Serialize;
+
+use crate::file::File;
+use crate::ids;
+
+/// A hit.
+#[derive(Debug, Serialize)]
+pub(crate) struct Hit {
+    from: usize,
+    to: usize,
+    line: usize,
+    /// The line that it stands in.
+    text: String,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    id: Option<String>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    chart: Option<String>,
+}
+
+/// Most hits that are told.
+const MOST: usize = 200;
+
+/// Where a text stands in a file, capitals ignored.
+pub(crate) fn search(file: &File, what: &str) -> Vec<Hit> {
+    let wanted = what.trim().to_lowercase();
+    if wanted.is_empty() {
+        return Vec::new();
+    }
+    let mut hits = Vec::new();
+    let mut start = 0;
+    for (number, line) in file.text().split('\n').enumerate() {
+        for at in found(line, &wanted) {
+            let (first, last) = (start + at.start, start + at.end);
+            let span = Span { file: FileId(0), start: first as u32, end: last as u32 };
+            let document = &file.source.document;
+            let unit = |byte| file.positions.unit(file.text(), byte);
+            hits.push(Hit {
+                from: unit(first),
+                to: unit(last),
+                line: number + 1,
+                text: line.trim().chars().take(200).collect(),
+                id: ids::at(document, span).map(|t| t.id()),
+                chart: document.charts().find(|c| ids::holds(c.at.0, span)).map(|c| c.name.text.to_string()),
+            });
+            if hits.len() >= MOST {
+                return hits;
+            }
+        }
+        start += line.len() + 1;
+    }
+    hits
+}
+
+/// The places of a lower-case text in a line; letters whose small form is
+/// longer or shorter are compared one by one.
+fn found(line: &str, wanted: &str) -> Vec<std::ops::Range<usize>> {
+    let letters: Vec<(usize, char)> = line.char_indices().collect();
+    let mut all = Vec::new();
+    let mut k = 0;
+    while let Some((start, _)) = letters.get(k) {
+        let mut rest = wanted;
+        let mut end = *start;
+        let mut next = k;
+        while let Some((at, c)) = letters.get(next).filter(|_| !rest.is_empty()) {
+            let small: String = c.to_lowercase().collect();
+            let Some(left) = rest.strip_prefix(small.as_str()) else { break };
+            (rest, end) = (left, at + c.len_utf8());
+            next += 1;
+        }
+        if rest.is_empty() {
+            all.push(*start..end);
+            k = next;
+        } else {
+            k += 1;
+        }
+    }
+    all
+}
