@@ -154,11 +154,15 @@ impl Names {
             (true, End::Step(s)) => placement.steps.get(s as usize).map(|p| Point { y: p.y + SQUARE, ..*p }),
             (true, End::Transition(t)) => placement.transitions.get(t as usize).copied(),
         };
+        let points: Vec<(i32, i32)> = c.points.iter().map(|p| (p.x, p.y)).collect();
         match start {
+            _ if points.len() > 1 => picture.line("g7-link", &points),
             Some(from) if from.x == c.at.x => picture.line("g7-link", &[(from.x, from.y), (c.at.x, c.at.y)]),
             _ => picture.line("g7-link", &[(c.at.x, c.at.y - 160), (c.at.x, c.at.y)]),
         }
-        arrow(&mut picture, c.at, (0, 1));
+        let before = points.iter().rev().nth(1).copied().unwrap_or((c.at.x, c.at.y - 160));
+        let way = ((c.at.x - before.0).signum() as i8, (c.at.y - before.1).signum() as i8);
+        arrow(&mut picture, c.at, way);
         connector(&mut picture, c.text, &connector_label(name, page));
         let transition = match (c.from, c.to) {
             (End::Transition(t), _) | (_, End::Transition(t)) => Some(t),

@@ -17,8 +17,9 @@ mod chronogram;
 mod draw;
 mod drawing;
 mod geometry;
+#[cfg(test)]
+mod geometry_tests;
 mod ink;
-#[path = "stacked.rs"]
 mod layout;
 mod options;
 mod pages;
@@ -31,6 +32,7 @@ pub use chronogram::{Chronogram, Edge, Lane, LaneKind, chronogram_svg};
 pub use draw::{draw, measure};
 pub use drawing::{Drawing, Item, Part};
 pub use geometry::{Extent, Point, Rect, U};
+pub use layout::layout;
 pub use options::{Look, Options};
 pub use placement::{Bar, Connector, End, Link, Placement, Sizes};
 pub use svg::{sheet, style, svg};

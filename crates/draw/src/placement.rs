@@ -51,7 +51,7 @@ pub struct Bar {
 }
 
 /// A link that is broken off and named at both ends.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct Connector {
     /// The link's own ends.
     pub from: End,
@@ -62,6 +62,8 @@ pub struct Connector {
     pub leaving: bool,
     /// The tip of its arrow.
     pub at: Point,
+    /// What is left of the link, to the tip; where empty, a short piece above it.
+    pub points: Vec<Point>,
     /// The box of its text, to the right of the arrow.
     pub text: Rect,
 }

@@ -65,7 +65,7 @@ impl Graph {
         let mut node = steps.len() as u32;
         for t in chart.transitions() {
             let mut seen: Vec<u32> = Vec::with_capacity(t.from.len());
-            let mut number = |name: &g7_model::Name, seen: &mut Vec<u32>| {
+            let number = |name: &g7_model::Name, seen: &mut Vec<u32>| {
                 let n = numbers.get(&*name.text).copied().filter(|n| !seen.contains(n))?;
                 seen.push(n);
                 Some(n)

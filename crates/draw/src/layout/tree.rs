@@ -56,8 +56,10 @@ pub(crate) struct Branch {
 pub(crate) struct Par {
     /// From left to right, once sorted.
     pub(crate) branches: Vec<Branch>,
+    /// They begin by themselves.
+    pub(crate) top_open: bool,
     /// They end by themselves.
-    pub(crate) open: bool,
+    pub(crate) end_open: bool,
 }
 
 /// Links that lead back to one step and meet before they do.
@@ -129,9 +131,9 @@ impl Tree {
     }
 
     /// Branches as one item.
-    pub(crate) fn par(&mut self, branches: Vec<Branch>, open: bool) -> Chain {
+    pub(crate) fn par(&mut self, branches: Vec<Branch>, top_open: bool, end_open: bool) -> Chain {
         let n = self.pars.len() as u32;
-        self.pars.push(Par { branches, open });
+        self.pars.push(Par { branches, top_open, end_open });
         self.one(Item::Par(n))
     }
 

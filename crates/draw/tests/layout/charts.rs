@@ -1,0 +1,100 @@
+//! The charts of the examples and of the corpus, with their real texts and with random ones.
+
+use std::path::{Path, PathBuf};
+
+use g7_draw::{Extent, Options, Sizes, layout, measure};
+use g7_model::{Chart, Document, FileId};
+use g7_syntax::{jgrafchart, parse_bytes};
+
+use crate::geometry::faults;
+
+/// Random numbers, the same each time.
+pub struct Random(pub u64);
+
+impl Random {
+    pub fn below(&mut self, n: usize) -> usize {
+        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        ((self.0 >> 33) as usize) % n.max(1)
+    }
+}
+
+/// Symbols with texts of random width.
+pub fn random_sizes(chart: &Chart, random: &mut Random) -> Sizes {
+    let mut extent = |half: i32, up: i32, down: i32| Extent {
+        left: half + if random.below(4) == 0 { random.below(300) as i32 } else { 0 },
+        right: half + random.below(1500) as i32,
+        up: up + if random.below(8) == 0 { random.below(400) as i32 } else { 0 },
+        down: down + if random.below(5) == 0 { random.below(600) as i32 } else { 0 },
+    };
+    Sizes {
+        steps: chart.steps().map(|_| extent(250, 0, 500)).collect(),
+        transitions: chart.transitions().map(|_| extent(220, 70, 70)).collect(),
+        connectors: chart.steps().map(|s| 80 * s.name.text.len() as i32).collect(),
+    }
+}
+
+fn check(what: &str, document: &Document) -> usize {
+    let mut checked = 0;
+    for chart in document.charts() {
+        let name = format!("{what}, {}", chart.name.text);
+        let sizes = measure(document, chart, &Options::default());
+        let p = layout(chart, &sizes, &[]);
+        let found = faults(chart, &sizes, &p);
+        assert!(found.is_empty(), "{name}: {found:#?}");
+        let mut random = Random(checked as u64);
+        for _ in 0..5 {
+            let sizes = random_sizes(chart, &mut random);
+            let found = faults(chart, &sizes, &layout(chart, &sizes, &[]));
+            assert!(found.is_empty(), "{name} with random sizes: {found:#?}");
+        }
+        assert_eq!(p, layout(chart, &sizes, &[]), "{name}");
+        checked += 1;
+    }
+    checked
+}
+
+fn files(folder: &Path, ending: &str, all: &mut Vec<PathBuf>) {
+    let Ok(entries) = std::fs::read_dir(folder) else { return };
+    for entry in entries {
+        let path = entry.expect("an entry").path();
+        if path.is_dir() {
+            files(&path, ending, all);
+        } else if path.extension().is_some_and(|e| e == ending) {
+            all.push(path);
+        }
+    }
+    all.sort();
+}
+
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
+}
+
+#[test]
+fn examples_are_laid_out_without_overlaps() {
+    let mut all = Vec::new();
+    files(&root().join("examples"), "g7", &mut all);
+    let mut charts = 0;
+    for file in &all {
+        let bytes = std::fs::read(file).expect("a file");
+        charts += check(&file.display().to_string(), &parse_bytes(&bytes, FileId(0)).0);
+    }
+    assert!(charts > 20, "only {charts} charts");
+}
+
+#[test]
+fn charts_of_the_corpus_are_laid_out_without_overlaps() {
+    let corpus = std::env::var_os("G7_CORPUS").map_or_else(|| root().join("../shared/corpus"), PathBuf::from);
+    let mut all = Vec::new();
+    files(&corpus.join("jgrafchart-xml"), "xml", &mut all);
+    if all.is_empty() {
+        println!("skipped: no corpus");
+        return;
+    }
+    let mut charts = 0;
+    for file in &all {
+        let bytes = std::fs::read(file).expect("a file");
+        charts += check(&file.display().to_string(), &jgrafchart::import(&bytes, FileId(0)).0);
+    }
+    assert!(charts > 0, "no chart in {} files", all.len());
+}

@@ -1,0 +1,6 @@
+//! Layouts by geometry: nothing overlaps, no link runs through a symbol.
+#![allow(clippy::disallowed_methods, reason = "the tests read the examples")]
+
+mod charts;
+mod geometry;
+mod random;
