@@ -1,0 +1,219 @@
+//! Nothing lies over anything else: every example and every importable chart of
+//! the corpus, drawn and looked at by its boxes and lines.
+
+use std::path::{Path, PathBuf};
+
+use g7_model::{Document, FileId, Severity, Span};
+
+use crate::text::width;
+use crate::{Drawing, Item, Look, Options, Part, Rect, draw};
+
+/// What an item covers: its boxes, its texts, its lines.
+#[derive(Default)]
+struct Seen {
+    boxes: Vec<Rect>,
+    texts: Vec<(Rect, String)>,
+    lines: Vec<Rect>,
+}
+
+fn attribute<'a>(tag: &'a str, name: &str) -> &'a str {
+    let key = format!(" {name}=\"");
+    let start = tag.find(&key).unwrap_or_else(|| panic!("{name} in {tag}")) + key.len();
+    tag[start..].split('"').next().unwrap_or("")
+}
+
+fn number(text: &str) -> i32 {
+    (text.parse::<f64>().unwrap_or_else(|_| panic!("{text}")) * 10.0).round() as i32
+}
+
+fn plain(text: &str) -> String {
+    text.replace("&lt;", "<").replace("&gt;", ">").replace("&quot;", "\"").replace("&amp;", "&")
+}
+
+/// The pieces of path data, each as the box of its two ends.
+fn pieces(d: &str) -> Vec<Rect> {
+    let mut out: Vec<Rect> = Vec::new();
+    let (mut x, mut y) = (0, 0);
+    let starts: Vec<usize> =
+        d.char_indices().filter(|(_, c)| c.is_ascii_alphabetic()).map(|(i, _)| i).collect();
+    for (k, at) in starts.iter().enumerate() {
+        let end = starts.get(k + 1).copied().unwrap_or(d.len());
+        let values: Vec<i32> = d[at + 1..end].split(' ').filter(|t| !t.is_empty()).map(number).collect();
+        let (px, py) = (x, y);
+        match (&d[*at..at + 1], values.as_slice()) {
+            ("M" | "L", [a, b]) => (x, y) = (*a, *b),
+            ("H", [a]) => x = *a,
+            ("V", [b]) => y = *b,
+            ("Z", []) => {}
+            other => panic!("{other:?}"),
+        }
+        if &d[*at..at + 1] != "M" {
+            out.push(Rect { x: x.min(px), y: y.min(py), w: (x - px).abs(), h: (y - py).abs() });
+        }
+    }
+    out
+}
+
+fn seen(item: &Item) -> Seen {
+    let mut seen = Seen::default();
+    for tag in item.svg.split('<').skip(1) {
+        let rect = || {
+            let of = |name| number(attribute(tag, name));
+            Rect { x: of("x"), y: of("y"), w: of("width"), h: of("height") }
+        };
+        match tag.split(' ').next().unwrap_or("") {
+            "rect" if !tag.contains("g7-frame") => seen.boxes.push(rect()),
+            "text" => {
+                let size = number(attribute(tag, "font-size"));
+                let text = plain(tag.split_once('>').map_or("", |t| t.1));
+                let (x, y) = (number(attribute(tag, "x")), number(attribute(tag, "y")));
+                // From the height of capitals to the base line: accents may touch a line.
+                let r = Rect { x, y: y - size * 70 / 100, w: width(&text, size), h: size * 75 / 100 };
+                seen.texts.push((r, text));
+            }
+            "path" if tag.contains("g7-link") || tag.contains("g7-double") => {
+                seen.lines.extend(pieces(attribute(tag, "d")));
+            }
+            _ => {}
+        }
+    }
+    seen
+}
+
+/// Whether a line runs through the inside of a box, not along its edge.
+fn cuts(line: &Rect, r: &Rect) -> bool {
+    line.x < r.x + r.w - 1 && line.x + line.w > r.x + 1 && line.y < r.y + r.h - 1 && line.y + line.h > r.y + 1
+}
+
+fn faults(drawing: &Drawing) -> Vec<String> {
+    let all: Vec<Seen> = drawing.items.iter().map(seen).collect();
+    let mut faults = Vec::new();
+    for (i, a) in all.iter().enumerate() {
+        for (j, (r, text)) in a.texts.iter().enumerate() {
+            for (k, b) in all.iter().enumerate() {
+                let later = |l: usize| k > i || (k == i && l > j);
+                for (l, (o, other)) in b.texts.iter().enumerate() {
+                    if later(l) && r.overlaps(o) {
+                        faults.push(format!("«{text}» over «{other}» at {r:?}"));
+                    }
+                }
+                if k != i && b.boxes.iter().any(|o| o.overlaps(r)) {
+                    faults.push(format!("«{text}» over the box of {:?}", drawing.items[k].part));
+                }
+                if b.lines.iter().any(|o| cuts(o, r)) {
+                    faults.push(format!("«{text}» at {r:?} is crossed by {:?}", drawing.items[k].part));
+                }
+            }
+        }
+        for (k, b) in all.iter().enumerate().filter(|(k, _)| *k != i) {
+            let part = |n: usize| &drawing.items[n].part;
+            if k > i && a.boxes.iter().any(|r| b.boxes.iter().any(|o| r.overlaps(o))) {
+                faults.push(format!("{:?} over {:?}", part(i), part(k)));
+            }
+            let square = matches!(part(i), Part::Step { .. } | Part::Action { .. });
+            if square && a.boxes.iter().any(|r| b.lines.iter().any(|l| cuts(l, r))) {
+                faults.push(format!("{:?} is crossed by {:?}", part(i), part(k)));
+            }
+        }
+    }
+    faults
+}
+
+fn files(folder: &Path, ending: &str, found: &mut Vec<PathBuf>) {
+    let Ok(entries) = std::fs::read_dir(folder) else { return };
+    let mut paths: Vec<PathBuf> = entries.filter_map(|e| e.ok().map(|e| e.path())).collect();
+    paths.sort();
+    for path in paths {
+        if path.is_dir() {
+            files(&path, ending, found);
+        } else if path.extension().is_some_and(|e| e == ending) {
+            found.push(path);
+        }
+    }
+}
+
+fn document(path: &Path) -> Option<Document> {
+    let bytes = std::fs::read(path).ok()?;
+    let (document, problems) = if g7_syntax::jgrafchart::looks_like(&bytes) {
+        g7_syntax::jgrafchart::import(&bytes, FileId(0))
+    } else {
+        g7_syntax::parse_bytes(&bytes, FileId(0))
+    };
+    problems.iter().all(|p| p.severity() != Severity::Error).then_some(document)
+}
+
+/// Looks at every chart of every file under each set of options.
+fn look(paths: &[PathBuf], ways: &[Options]) -> usize {
+    let (mut charts, mut bad) = (0, String::new());
+    for path in paths {
+        let Some(document) = document(path) else { continue };
+        for chart in document.charts() {
+            for options in ways {
+                charts += 1;
+                let drawing = draw(&document, chart, options);
+                let found = faults(&drawing);
+                for fault in found.iter().take(6) {
+                    bad.push_str(&format!("{}: {}: {fault}\n", path.display(), chart.name.text));
+                }
+            }
+        }
+    }
+    assert!(bad.is_empty(), "{bad}");
+    charts
+}
+
+fn ways() -> [Options; 4] {
+    let plain = Options::default();
+    [
+        plain,
+        Options { look: Look::Sfc, ..plain },
+        Options { actions: false, ..plain },
+        Options { pages: true, ..plain },
+    ]
+}
+
+#[test]
+fn nothing_overlaps_in_the_examples() {
+    let mut paths = Vec::new();
+    files(&Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples"), "g7", &mut paths);
+    let charts = look(&paths, &ways());
+    assert!(charts >= 4 * 40, "{charts}");
+}
+
+/// Charts that people drew, where the corpus is at hand (`G7_CORPUS`, else
+/// `../shared/corpus` beside the repository).
+#[test]
+fn nothing_overlaps_in_the_corpus() {
+    let beside = || Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/corpus");
+    let corpus = std::env::var_os("G7_CORPUS").map_or_else(beside, PathBuf::from);
+    let mut paths = Vec::new();
+    files(&corpus.join("jgrafchart-xml"), "xml", &mut paths);
+    if paths.is_empty() {
+        println!("skipped: no corpus");
+        return;
+    }
+    assert!(look(&paths, &ways()) >= 4, "no chart in {} files", paths.len());
+}
+
+#[test]
+fn what_lies_over_something_is_found() {
+    let (document, _) =
+        g7_syntax::parse("chart G { initial step 1 { N b } step 2 1 -> 2 when a }", FileId(0));
+    let chart = document.charts().next().expect("a chart");
+    let mut drawing = draw(&document, chart, &Options::default());
+    assert!(faults(&drawing).is_empty());
+    let twice = drawing.items.clone();
+    drawing.items.extend(twice);
+    let through =
+        drawing.items.iter().find(|i| matches!(i.part, Part::Step { step: 0, .. })).expect("step 1").area;
+    let (y, right) = (f64::from(through.y + 100) / 10.0, f64::from(through.x + through.w) / 10.0);
+    let svg = format!("<path class=\"g7-link\" d=\"M-900 {y}H{right}\"/>");
+    let link =
+        Item { part: Part::Link { link: 0 }, svg, area: through, far: String::new(), at: Span::default() };
+    drawing.items.push(link);
+    let found = faults(&drawing);
+    for what in ["«1» over «1»", "Step { step: 0", "Action { step: 0", "«a» over «a»", "is crossed by Link"]
+    {
+        assert!(found.iter().any(|f| f.contains(what)), "{what}: {found:?}");
+    }
+}
