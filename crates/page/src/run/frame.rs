@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use g7_host::{Kind, Value, read_text};
 use g7_model::Type;
-use g7_rig::Activity;
+use g7_rig::{Activity, Item, Role};
 use serde::Serialize;
 
 use super::Run;
@@ -104,7 +104,7 @@ pub(super) fn frame(run: &mut Run, full: bool, times: bool) -> Frame {
     }
     let active = run.active();
     let enabled = enabled(run);
-    let values: Vec<Value> = run.bench.items.iter().map(|i| run.bench.value(run.watched(), i)).collect();
+    let values: Vec<Value> = run.bench.items.iter().map(|i| value(run, i)).collect();
     let forced: Vec<bool> = run.bench.items.iter().map(|i| run.bench.is_forced(run.watched(), i)).collect();
     let view = view(run);
     let sent = &run.sent;
@@ -144,6 +144,15 @@ pub(super) fn frame(run: &mut Run, full: bool, times: bool) -> Frame {
     };
     run.sent = Sent { active, enabled, values, forced, view };
     frame
+}
+
+/// A value to be shown: of an input what the next scan will read, so that a
+/// switch is seen to move while the run stands still.
+fn value(run: &Run, item: &Item) -> Value {
+    match item.role {
+        Role::Input(index) if item.words == 1 => Value::Word(run.watched().input(index)),
+        Role::Input(_) | Role::Output | Role::Variable | Role::Plant => run.bench.value(run.watched(), item),
+    }
 }
 
 /// The enabled transitions of the shown state: 1, or 2 where the receptivity

@@ -28,12 +28,13 @@ impl Run {
     /// The edges of some signals between two instants, at most about so many of each.
     pub(crate) fn lanes(&self, signals: &[usize], from: f64, to: f64, most: usize) -> Lanes {
         let (from, to) = (ns(from), ns(to));
-        let part = self.recording.part(signals, from, to);
         let most = most.clamp(2, 100_000);
+        // One lane for each signal asked for, empty where there is none.
+        let parts = signals.iter().map(|i| self.recording.part(&[*i], from, to));
         Lanes {
             start_ms: ms(self.recording.start()),
             end_ms: ms(self.recording.end()),
-            lanes: (0..part.signals().len()).map(|i| lane(&part, i, most)).collect(),
+            lanes: parts.map(|part| lane(&part, 0, most)).collect(),
         }
     }
 

@@ -1,0 +1,170 @@
+//! On-line changes: a chart that takes over where another stands.
+#![allow(clippy::disallowed_methods, reason = "the tests read the examples")]
+
+use std::path::{Path, PathBuf};
+
+use g7_host::{Runner, Value};
+use g7_rig::{Bench, Carried, Item, Options, Role, Source, build, carry};
+
+fn source(text: &str) -> Source {
+    Source::new("a.g7", text.as_bytes().to_vec(), 0)
+}
+
+fn bench(source: &Source) -> Bench {
+    let (bench, problems) = build(source, &Options::default()).expect("one plant");
+    bench.unwrap_or_else(|| panic!("{problems:?}"))
+}
+
+fn item<'b>(bench: &'b Bench, name: &str) -> &'b Item {
+    bench.item(name).unwrap_or_else(|| panic!("{name}"))
+}
+
+/// Runs the first text so many scans with the inputs set, then lets the second one go on.
+fn changed(before: &str, after: &str, inputs: &[(&str, u64)], scans: u32) -> (Bench, Carried) {
+    let (old, new) = (source(before), source(after));
+    let (was, is) = (bench(&old), bench(&new));
+    let mut runner = was.runner(0);
+    runner.scan().expect("no fault");
+    for (name, value) in inputs {
+        was.set(&mut runner, item(&was, name), &Value::Word(*value));
+    }
+    for _ in 0..scans {
+        runner.scan().expect("no fault");
+    }
+    let carried = carry((&is, &new.document), (&was, &old.document), &runner).expect("it goes on");
+    (is, carried)
+}
+
+fn situation(bench: &Bench, runner: &Runner) -> String {
+    bench.situation(runner.state()).join(",")
+}
+
+fn word(bench: &Bench, runner: &Runner, name: &str) -> u64 {
+    bench.value(runner, item(bench, name)).word()
+}
+
+const PUMP: &str = "input a : BOOL\noutput pump : BOOL\nvar n : INT\nchart G {\n initial step 1\n step 2 { N pump }\n 1 -> 2 when a\n 2 -> 1 when not a on clearing { n := n + 1 }\n}\n";
+
+#[test]
+fn situation_values_and_step_times_go_on() {
+    let after = PUMP.replace("when not a", "when not a and X2.t > 5s").replace("step 2 {", "step 3\n step 2 {");
+    let after = after.replace("}\n}\n", "}\n 2 -> 3 when FALSE\n 3 -> 1 when TRUE\n}\n");
+    let (bench, Carried { mut runner, lost }) = changed(PUMP, &after, &[("a", 1)], 100);
+    assert_eq!(lost, Vec::<String>::new());
+    assert_eq!(situation(&bench, &runner), "2");
+    assert_eq!(word(&bench, &runner, "pump"), 1);
+    bench.set(&mut runner, item(&bench, "a"), &Value::Word(0));
+    // Step 2 came on at 10 ms and its time goes on: 5 s are over in the scan at 5.02 s.
+    while runner.due() <= 5_010_000_000 {
+        runner.scan().expect("no fault");
+        assert_eq!(situation(&bench, &runner), "2", "at {} ns", runner.state().now());
+    }
+    runner.scan().expect("no fault");
+    assert_eq!((situation(&bench, &runner), word(&bench, &runner, "n")), ("1".to_owned(), 1));
+    assert_eq!(word(&bench, &runner, "pump"), 0);
+}
+
+#[test]
+fn what_goes_away_is_said() {
+    let before = PUMP.replace("1 -> 2 when a", "1 -> 2 when a on clearing { n := 7 }");
+    let after = "input a : BOOL\noutput pump : BOOL\nvar n : BOOL\nchart G {\n initial step 1\n step 4 { N pump }\n 1 -> 4 when a\n 4 -> 1 when n\n}\n";
+    let (bench, Carried { runner, lost }) = changed(&before, after, &[("a", 1)], 3);
+    assert_eq!(
+        lost,
+        ["step `2` is active and is not there any more", "`n` was INT and is BOOL: its value 7 is lost"]
+    );
+    assert_eq!(situation(&bench, &runner), "");
+}
+
+#[test]
+fn an_output_whose_action_is_gone_is_let_go() {
+    let after = PUMP.replace("step 2 { N pump }", "step 2");
+    let (bench, Carried { runner, .. }) = changed(PUMP, &after, &[("a", 1)], 3);
+    assert_eq!(word(&bench, &runner, "pump"), 0);
+}
+
+#[test]
+fn a_chart_more_begins_and_a_pulse_does_not_run_again() {
+    let before = "profile iec61131\ninput a : BOOL\nvar n : INT\noutput q : BOOL\nchart G {\n initial step 1\n step 2 { P1 n := n + 1; S q }\n 1 -> 2 when a\n 2 -> 1 when not a\n}\n";
+    let after = format!("{before}chart H {{\n initial step 10\n}}\n");
+    let (bench, Carried { mut runner, lost }) = changed(before, &after, &[("a", 1)], 3);
+    assert_eq!(lost, Vec::<String>::new());
+    for _ in 0..3 {
+        runner.scan().expect("no fault");
+    }
+    assert_eq!(situation(&bench, &runner), "2,10");
+    assert_eq!((word(&bench, &runner, "n"), word(&bench, &runner, "q")), (1, 1));
+    bench.set(&mut runner, item(&bench, "a"), &Value::Word(0));
+    runner.scan().expect("no fault");
+    assert_eq!(word(&bench, &runner, "q"), 1, "set stays set");
+}
+
+fn examples(folder: &Path, all: &mut Vec<PathBuf>) {
+    for entry in std::fs::read_dir(folder).expect("a folder") {
+        let path = entry.expect("an entry").path();
+        if path.is_dir() {
+            examples(&path, all);
+        } else if path.extension().is_some_and(|e| e == "g7") {
+            all.push(path);
+        }
+    }
+}
+
+/// Chance, the same in every run.
+fn next(seed: &mut u64) -> u64 {
+    *seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+    *seed >> 33
+}
+
+#[test]
+fn an_unchanged_chart_goes_on_as_if_nothing_had_been() {
+    let mut paths = Vec::new();
+    examples(&Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples"), &mut paths);
+    paths.sort();
+    assert!(paths.len() > 15, "{paths:?}");
+    let mut compared = 0;
+    for path in paths {
+        let text = std::fs::read_to_string(&path).expect("an example");
+        let source = source(&text);
+        let plant = g7_compile::plant::plants(&source.document).next().map(|p| p.name.text.to_string());
+        let options = Options { plant: plant.as_deref(), ..Options::default() };
+        let Some(bench) = build(&source, &options).expect("its plant").0 else { continue };
+        let mut seed = 7;
+        for length in [1, 20, 300, 1500] {
+            let mut runner = bench.runner(3);
+            for _ in 0..length {
+                stir(&bench, &mut runner, &mut seed);
+                runner.scan().ok();
+            }
+            let same = (&bench, &source.document);
+            let Ok(Carried { runner: mut other, lost }) = carry(same, same, &runner) else { continue };
+            if !lost.is_empty() {
+                continue;
+            }
+            compared += 1;
+            for scan in 0..200 {
+                let mut again = seed;
+                stir(&bench, &mut runner, &mut seed);
+                stir(&bench, &mut other, &mut again);
+                assert_eq!(runner.scan().is_ok(), other.scan().is_ok());
+                let at = format!("{} after {length}, scan {scan}", path.display());
+                assert_eq!(situation(&bench, &runner), situation(&bench, &other), "{at}");
+                for item in &bench.items {
+                    let values = (bench.value(&runner, item), bench.value(&other, item));
+                    assert_eq!(values.0, values.1, "{} in {at}", item.name);
+                }
+            }
+        }
+    }
+    assert!(compared > 40, "only {compared}");
+}
+
+/// Now and then a free input changes.
+fn stir(bench: &Bench, runner: &mut Runner, seed: &mut u64) {
+    for item in bench.items.iter().filter(|i| matches!(i.role, Role::Input(_)) && i.words == 1) {
+        if next(seed).is_multiple_of(10) && !bench.is_driven(runner, item) {
+            let value = next(seed) % 2;
+            bench.set(runner, item, &Value::Word(value));
+        }
+    }
+}
