@@ -1,4 +1,11 @@
 // The components of this folder that have a place in the frame.
 import type { Panel } from '../lib/shell.svelte';
+import Chronogram from './Chronogram.svelte';
+import Operate from './Operate.svelte';
+import RunBar from './RunBar.svelte';
 
-export const panels: Panel[] = [];
+export const panels: Panel[] = [
+  { id: 'run', title: 'run.bar', region: 'top', component: RunBar, order: 10 },
+  { id: 'operate', title: 'run.panel', region: 'right', component: Operate, order: 10 },
+  { id: 'chronogram', title: 'run.chronogram', region: 'bottom', component: Chronogram, order: 20 },
+];

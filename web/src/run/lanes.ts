@@ -1,0 +1,223 @@
+// Lanes of a chronogram: edges as they come from the run, and how they are painted.
+import type { SignalType } from '../lib/protocol';
+
+export type Edge = [ms: number, value: number, show: string];
+
+export interface Lane {
+  name: string;
+  type: SignalType;
+  step: boolean;
+  edges: Edge[];
+}
+
+export interface Span {
+  from: number;
+  to: number;
+}
+
+export interface Colours {
+  ink: string;
+  soft: string;
+  line: string;
+  grid: string;
+  accent: string;
+  accentSoft: string;
+  green: string;
+  greenSoft: string;
+  amber: string;
+  violet: string;
+  font: string;
+}
+
+export const HEIGHT = 30;
+export const AXIS = 24;
+
+/** The last edge at an instant or before it; -1 where there is none. */
+export function at(edges: readonly Edge[], ms: number): number {
+  let low = 0;
+  let high = edges.length;
+  while (low < high) {
+    const mid = (low + high) >> 1;
+    if ((edges[mid] as Edge)[0] <= ms) low = mid + 1;
+    else high = mid;
+  }
+  return low - 1;
+}
+
+/** 1, 2 or 5 times a power of ten: ticks about so far apart. */
+export function tick(span: number, wished: number): number {
+  const raw = span / Math.max(1, wished);
+  const power = 10 ** Math.floor(Math.log10(Math.max(raw, 1e-6)));
+  const n = raw / power;
+  return power * (n <= 1 ? 1 : n <= 2 ? 2 : n <= 5 ? 5 : 10);
+}
+
+export function showTime(ms: number, step = 1): string {
+  const digits = step >= 1000 ? 0 : step >= 100 ? 1 : step >= 10 ? 2 : 3;
+  return `${(ms / 1000).toFixed(digits)} s`;
+}
+
+export interface Painting {
+  width: number;
+  height: number;
+  span: Span;
+  /** The present: nothing is known behind it. */
+  now: number;
+  lanes: readonly Lane[];
+  cursors: readonly (number | null)[];
+  colours: Colours;
+}
+
+export function paint(g: CanvasRenderingContext2D, p: Painting): void {
+  const { width, height, span, colours } = p;
+  const scale = width / Math.max(span.to - span.from, 1e-6);
+  const x = (ms: number) => (ms - span.from) * scale;
+  g.clearRect(0, 0, width, height);
+  g.font = `11px ${colours.font}`;
+  g.textBaseline = 'middle';
+  axis(g, p, x);
+  p.lanes.forEach((lane, i) => {
+    const top = AXIS + i * HEIGHT;
+    g.save();
+    g.beginPath();
+    g.rect(0, top, Math.max(0, Math.min(width, x(p.now))), HEIGHT);
+    g.clip();
+    if (lane.type === 'bool') square(g, p, lane, top, x);
+    else if (lane.type === 'real') curve(g, p, lane, top, x);
+    else boxes(g, p, lane, top, x);
+    g.restore();
+    g.strokeStyle = colours.grid;
+    g.lineWidth = 1;
+    line(g, 0, top + HEIGHT - 0.5, width, top + HEIGHT - 0.5);
+  });
+  cursors(g, p, x);
+}
+
+type X = (ms: number) => number;
+
+function line(g: CanvasRenderingContext2D, x1: number, y1: number, x2: number, y2: number): void {
+  g.beginPath();
+  g.moveTo(x1, y1);
+  g.lineTo(x2, y2);
+  g.stroke();
+}
+
+function axis(g: CanvasRenderingContext2D, { width, height, span, colours }: Painting, x: X): void {
+  const step = tick(span.to - span.from, width / 90);
+  g.lineWidth = 1;
+  g.textAlign = 'left';
+  for (let ms = Math.ceil(span.from / step) * step; ms <= span.to; ms += step) {
+    const at = Math.round(x(ms)) + 0.5;
+    g.strokeStyle = colours.grid;
+    line(g, at, AXIS, at, height);
+    g.strokeStyle = colours.line;
+    line(g, at, AXIS - 5, at, AXIS);
+    g.fillStyle = colours.soft;
+    g.fillText(showTime(ms, step), at + 3, AXIS / 2);
+  }
+  g.strokeStyle = colours.line;
+  line(g, 0, AXIS - 0.5, width, AXIS - 0.5);
+}
+
+/** Edges in sight, the one before them included. */
+function* inSight(lane: Lane, span: Span): Generator<[Edge, number]> {
+  for (let i = Math.max(0, at(lane.edges, span.from)); i < lane.edges.length; i++) {
+    const edge = lane.edges[i] as Edge;
+    if (edge[0] > span.to) return;
+    yield [edge, lane.edges[i + 1]?.[0] ?? Infinity];
+  }
+}
+
+function square(g: CanvasRenderingContext2D, { width, span, colours }: Painting, lane: Lane, top: number, x: X): void {
+  const high = top + 7;
+  const low = top + HEIGHT - 7;
+  g.fillStyle = lane.step ? colours.greenSoft : colours.accentSoft;
+  g.strokeStyle = lane.step ? colours.green : colours.accent;
+  g.lineWidth = 1.5;
+  g.beginPath();
+  let begun = false;
+  for (const [edge, until] of inSight(lane, span)) {
+    const from = Math.max(-2, x(edge[0]));
+    const to = Math.min(width + 2, x(until));
+    const y = edge[1] ? high : low;
+    if (edge[1]) g.fillRect(from, high, Math.max(to - from, 1), low - high);
+    if (begun) g.lineTo(from, y);
+    else g.moveTo(from, y);
+    g.lineTo(to, y);
+    begun = true;
+  }
+  g.stroke();
+}
+
+/** Values as boxes with what they are, where there is room for it. */
+function boxes(g: CanvasRenderingContext2D, { width, span, colours }: Painting, lane: Lane, top: number, x: X): void {
+  const high = top + 6;
+  const low = top + HEIGHT - 6;
+  g.strokeStyle = colours.violet;
+  g.lineWidth = 1.2;
+  g.textAlign = 'left';
+  for (const [edge, until] of inSight(lane, span)) {
+    const from = Math.max(-4, x(edge[0]));
+    const to = Math.min(width + 4, x(until));
+    const slant = Math.min(3, (to - from) / 2);
+    g.beginPath();
+    g.moveTo(from, (high + low) / 2);
+    g.lineTo(from + slant, high);
+    g.lineTo(to - slant, high);
+    g.lineTo(to, (high + low) / 2);
+    g.lineTo(to - slant, low);
+    g.lineTo(from + slant, low);
+    g.closePath();
+    g.stroke();
+    if (to - from < 16) continue;
+    g.fillStyle = colours.ink;
+    const room = Math.floor((to - from - 8) / 6.2);
+    g.fillText(edge[2].length > room ? `${edge[2].slice(0, Math.max(0, room - 1))}…` : edge[2], Math.max(from, 0) + 6, (high + low) / 2 + 0.5);
+  }
+}
+
+function curve(g: CanvasRenderingContext2D, { span, colours, now }: Painting, lane: Lane, top: number, x: X): void {
+  let least = Infinity;
+  let most = -Infinity;
+  for (const [, value] of lane.edges) {
+    least = Math.min(least, value);
+    most = Math.max(most, value);
+  }
+  if (!Number.isFinite(least) || !Number.isFinite(most)) return;
+  const reach = most - least || 1;
+  const y = (value: number) => top + HEIGHT - 6 - ((value - least) / reach) * (HEIGHT - 12);
+  g.strokeStyle = colours.violet;
+  g.lineWidth = 1.4;
+  g.beginPath();
+  let begun = false;
+  for (const [edge, until] of inSight(lane, span)) {
+    if (begun) g.lineTo(x(edge[0]), y(edge[1]));
+    else g.moveTo(x(edge[0]), y(edge[1]));
+    begun = true;
+    // A value that stayed for long is level, and no slope to the next.
+    if (until - edge[0] > (span.to - span.from) / 60) g.lineTo(x(Math.min(until, now)), y(edge[1]));
+  }
+  g.stroke();
+}
+
+function cursors(g: CanvasRenderingContext2D, { width, height, cursors, colours, now, span }: Painting, x: X): void {
+  if (now > span.from && now < span.to) {
+    g.strokeStyle = colours.soft;
+    g.setLineDash([2, 3]);
+    line(g, Math.round(x(now)) + 0.5, AXIS, Math.round(x(now)) + 0.5, height);
+    g.setLineDash([]);
+  }
+  cursors.forEach((ms, i) => {
+    if (ms === null || ms < span.from || ms > span.to) return;
+    const at = Math.round(x(ms)) + 0.5;
+    g.strokeStyle = i === 0 ? colours.amber : colours.violet;
+    g.lineWidth = 1.5;
+    line(g, at, 0, at, height);
+    g.fillStyle = g.strokeStyle;
+    const left = at < width - 20;
+    g.fillRect(left ? at : at - 14, 0, 14, 13);
+    g.fillStyle = '#fff';
+    g.textAlign = 'center';
+    g.fillText(i === 0 ? 'A' : 'B', left ? at + 7 : at - 7, 7);
+  });
+}
