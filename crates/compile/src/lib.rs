@@ -13,6 +13,7 @@ pub mod check;
 pub mod ir;
 pub mod lower;
 pub mod plant;
+pub mod references;
 pub mod resolve;
 pub mod symbols;
 
@@ -21,6 +22,7 @@ use std::sync::Arc;
 use g7_engine::{Code, Program};
 use g7_model::{Document, Expr, Problem, ProfileName, Severity, Span, Type, codes};
 
+pub use references::{Definition, References, references};
 use symbols::Symbols;
 
 /// A document that can be run.

@@ -13,6 +13,7 @@ use g7_model::{
 };
 
 use crate::id::ItemId;
+use crate::splice::Splice;
 use crate::{Anchors, Refusal, Source, refuse};
 
 /// The file of all that is new.
@@ -31,7 +32,10 @@ pub(crate) struct Draft<'s> {
     pub(crate) source: &'s Source<'s>,
     pub(crate) anchors: Anchors<'s>,
     pub(crate) doc: Document,
+    /// How new things are written, by their places.
     pub(crate) raw: HashMap<u32, String>,
+    /// Changes besides, of names outside of what the document says by itself.
+    pub(crate) besides: Vec<Splice>,
     pub(crate) select: Vec<Mark>,
     pub(crate) begin: Option<Mark>,
     fresh: u32,
@@ -44,6 +48,7 @@ impl<'s> Draft<'s> {
             anchors,
             doc: source.document.clone(),
             raw: HashMap::new(),
+            besides: Vec::new(),
             select: Vec::new(),
             begin: None,
             fresh: 0,

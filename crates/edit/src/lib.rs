@@ -104,15 +104,35 @@ pub fn apply_placed(source: &Source<'_>, gesture: &Gesture, anchors: Anchors<'_>
             "the text has syntax errors; mend them first, the drawing shows the chart before them",
         );
     }
+    if let Gesture::Rename { id, name, to } = gesture {
+        return gestures::rename(source, id.as_ref(), name.as_deref(), to);
+    }
     let mut draft = Draft::new(source, anchors);
     gestures::carry_out(&mut draft, gesture)?;
     write::settle(&mut draft);
     let splices = write::difference(&draft);
     let after = spliced(source.text, &splices).ok_or_else(unwritable)?;
     judge(&after, &draft.doc)?;
+    let splices = with_besides(source.text, splices, std::mem::take(&mut draft.besides))?;
     let select = draft.select.iter().filter_map(|m| draft.resolved(m)).collect();
     let begin = draft.begin.as_ref().and_then(|m| draft.resolved(m));
     Ok(Edit { splices, select, begin })
+}
+
+/// Adds changes of names, which must leave the text clean.
+fn with_besides(text: &str, mut splices: Vec<Splice>, besides: Vec<Splice>) -> Result<Vec<Splice>, Refusal> {
+    if besides.is_empty() {
+        return Ok(splices);
+    }
+    let free = |s: &Splice| !splices.iter().any(|o| s.start < o.end && o.start < s.end);
+    let besides: Vec<Splice> = besides.into_iter().filter(free).collect();
+    splices.extend(besides);
+    splices.sort_by_key(|s| (s.start, s.end));
+    let after = spliced(text, &splices).ok_or_else(unwritable)?;
+    match g7_syntax::parse(&after, FileId(0)).1.first() {
+        Some(problem) => refuse(format!("this cannot be written: {problem}")),
+        None => Ok(splices),
+    }
 }
 
 /// The text must read as just the document that was meant.

@@ -30,6 +30,7 @@ mod scopes;
 mod stmt;
 #[cfg(test)]
 mod tests;
+mod trace;
 mod types;
 mod vars;
 
@@ -39,6 +40,7 @@ use crate::ir::{ChartId, Expr, Unit};
 use resolver::{Frame, Resolver, Role};
 pub use rules::of_profile;
 pub use scopes::Scopes;
+pub(crate) use trace::Tracer;
 
 /// Nominal scan time where none is written: 10 ms.
 const CYCLE: i64 = 10_000_000;

@@ -188,7 +188,7 @@ impl Resolver<'_, '_> {
     }
 
     /// `.X`, `.T`, `.t`; in `jgrafchart` also `.x` and `.s`.
-    fn of_step(&self, step: StepId, name: &str, bare: bool) -> Option<Ref> {
+    pub(super) fn of_step(&self, step: StepId, name: &str, bare: bool) -> Option<Ref> {
         let jgrafchart = self.unit.profile == ProfileName::Jgrafchart;
         match name {
             "X" if bare => Some(Ref::Active(step)),
@@ -200,7 +200,7 @@ impl Resolver<'_, '_> {
     }
 
     /// `X12`, `XFill`, `XM3` (of macro-step `M3` or `3`).
-    fn activity(&self, chart: Option<ChartId>, name: &str) -> Option<Home> {
+    pub(super) fn activity(&self, chart: Option<ChartId>, name: &str) -> Option<Home> {
         let step = name.strip_prefix('X').filter(|s| !s.is_empty())?;
         let find = |name: &str| match chart {
             Some(c) => self.scopes.step(c, name).map(|s| Home::One(c, s)),
@@ -220,7 +220,7 @@ impl Resolver<'_, '_> {
         }
     }
 
-    fn member(&self, instance: VarId, name: &str) -> Option<u8> {
+    pub(super) fn member(&self, instance: VarId, name: &str) -> Option<u8> {
         match self.var(instance)?.ty {
             Type::Fb(kind) => super::fb::member(kind, name),
             _ => None,
@@ -411,13 +411,13 @@ impl Resolver<'_, '_> {
         }
     }
 
-    fn first_chart(&self) -> Option<ChartId> {
+    pub(super) fn first_chart(&self) -> Option<ChartId> {
         let k = self.unit.charts.iter().position(|c| c.role == ChartRole::Chart)?;
         Some(ChartId(k as u32))
     }
 
     /// Macro-step 3, called `3` or `M3`: of the first chart, else the only one.
-    fn macro_step(&self, number: &str) -> Option<StepId> {
+    pub(super) fn macro_step(&self, number: &str) -> Option<StepId> {
         [number.to_owned(), format!("M{number}")].iter().find_map(|name| {
             let own = self.first_chart().and_then(|c| self.scopes.step(c, name));
             let step = own.or_else(|| match self.scopes.home(None, name)? {

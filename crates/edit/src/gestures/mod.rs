@@ -4,10 +4,15 @@ mod build;
 mod delete;
 mod fields;
 mod graph;
+mod group;
 mod insert;
 mod join;
+mod paste;
 mod places;
+mod rename;
 mod table;
+
+pub(crate) use rename::rename;
 
 use crate::draft::Draft;
 use crate::gesture::Gesture;
@@ -38,15 +43,15 @@ pub(crate) fn carry_out(d: &mut Draft<'_>, gesture: &Gesture) -> Result<(), Refu
         Gesture::Move { ids, dx, dy } => places::shift(d, ids, *dx, *dy),
         Gesture::Align { ids, how } => places::align(d, ids, *how),
         Gesture::Tidy { chart } => places::tidy(d, chart),
+        Gesture::Paste { chart, text, at } => paste::paste(d, chart, text, *at),
+        Gesture::Macro { ids } => group::into_macro(d, ids),
         Gesture::AddChart { kind, name } => table::add_chart(d, *kind, name.as_deref()),
         Gesture::DeleteChart { chart } => table::delete_chart(d, chart),
         Gesture::Variable { name, row } => table::variable(d, name.as_deref(), row),
         Gesture::DeleteVariable { name } => table::delete_variable(d, name),
         Gesture::Profile { name } => table::profile(d, name),
         Gesture::Scan { ms } => table::scan(d, *ms),
-        Gesture::Rename { .. } | Gesture::Paste { .. } | Gesture::Macro { .. } | Gesture::Text { .. } => {
-            refuse("this gesture is not one of the drawing")
-        }
+        Gesture::Rename { .. } | Gesture::Text { .. } => refuse("this gesture is not one of the drawing"),
     }
 }
 

@@ -51,13 +51,12 @@ impl Style<Item> for Items<'_, '_> {
     }
 
     fn fresh(&self, sheet: &Sheet<'_>, new: &Item, _indent: &str) -> String {
-        match new {
-            Item::Chart(c) => chart::fresh(sheet, self.draft, c),
-            Item::Var(v) => item::variable_text(v, &self.draft.raw),
-            other => match self.draft.raw.get(&place(other).start) {
-                Some(raw) if is_fresh(place(other).into()) => raw.clone(),
-                _ => printed(other.clone()),
-            },
+        let raw = self.draft.raw.get(&place(new).start).filter(|_| is_fresh(place(new).into()));
+        match (new, raw) {
+            (_, Some(raw)) => raw.clone(),
+            (Item::Chart(c), None) => chart::fresh(sheet, self.draft, c),
+            (Item::Var(v), None) => item::variable_text(v, &self.draft.raw),
+            (other, None) => printed(other.clone()),
         }
         .replace('\n', sheet.newline)
         .replace("\r\r", "\r")

@@ -12,6 +12,9 @@ use g7_model::{Chart, ChartItem, Document, Item, Name, Placed, Transition};
 
 use crate::draft::{Draft, is_fresh};
 use crate::splice::{Splice, tidied};
+pub(crate) use chart::step_list;
+pub(crate) use lines::reindent;
+
 use lines::Sheet;
 
 /// The splices that make the text say what the draft says.
@@ -27,7 +30,9 @@ pub(crate) fn difference(draft: &Draft<'_>) -> Vec<Splice> {
 pub(crate) fn settle(draft: &mut Draft<'_>) {
     let before = predecessors(draft.source.document);
     for item in &mut draft.doc.items {
-        if let Item::Chart(chart) = item {
+        if let Item::Chart(chart) = item
+            && !(is_fresh(chart.at) && draft.raw.contains_key(&chart.at.0.start))
+        {
             unchain(chart, &before);
         }
     }

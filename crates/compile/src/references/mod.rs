@@ -1,0 +1,149 @@
+//! What every name of a document refers to: for renaming, for "go to the
+//! definition", for what a hover tells.
+//!
+//! ```text
+//! model::Document -> resolve (names) -> here: name by name, the whole document
+//! ```
+//!
+//! Names are looked up in the order of `resolve`. A name that means nothing has
+//! no entry. Plants and tests are followed too: they see the charts from outside.
+
+mod walk;
+
+use g7_model::{Document, Span};
+
+/// Something that has a name.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Definition {
+    /// A chart, expansion or task.
+    Chart(String),
+    /// A step or macro-step.
+    Step {
+        /// Its chart.
+        chart: String,
+        /// Its name.
+        name: String,
+    },
+    /// A variable or constant.
+    Variable {
+        /// Its chart; none for one of the file.
+        chart: Option<String>,
+        /// Its name.
+        name: String,
+    },
+    /// A named action.
+    Action {
+        /// Its chart; none for one of the file.
+        chart: Option<String>,
+        /// Its name.
+        name: String,
+    },
+    /// A transition section.
+    Section {
+        /// Its chart; none for one of the file.
+        chart: Option<String>,
+        /// Its name.
+        name: String,
+    },
+    /// A function.
+    Function(String),
+    /// A transition with a label.
+    Transition {
+        /// Its chart.
+        chart: String,
+        /// Its label.
+        label: String,
+    },
+    /// A plant.
+    Plant(String),
+    /// A constant, state or queue of a plant.
+    PlantItem {
+        /// The plant.
+        plant: String,
+        /// Its name.
+        name: String,
+    },
+}
+
+/// How a name is written at a place.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Written {
+    /// Where it is declared.
+    Declared,
+    /// Alone, where only a name can stand.
+    Name,
+    /// In a list of steps, where words of the language can stand too.
+    Step,
+    /// In a path.
+    Path {
+        /// At its beginning.
+        first: bool,
+        /// Without anything before or behind it.
+        only: bool,
+    },
+    /// Within a direct name, `%X12`.
+    Direct,
+}
+
+/// One place where a name stands.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Use {
+    /// The whole word, with back-ticks and with the `X` of `X12`.
+    pub at: Span,
+    /// What it refers to.
+    pub definition: Definition,
+    /// How it is written.
+    pub written: Written,
+    /// Letters before the name itself: 1 in `X12`, 2 in `XM3` of macro-step `3`.
+    pub before: usize,
+}
+
+/// Every name of a document with what it refers to, in the order of the text.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct References {
+    uses: Vec<Use>,
+}
+
+impl References {
+    /// What the name at a byte refers to; just behind a name counts.
+    pub fn at(&self, offset: u32) -> Option<&Definition> {
+        self.use_at(offset).map(|u| &u.definition)
+    }
+
+    /// The name at a byte; just behind a name counts.
+    pub fn use_at(&self, offset: u32) -> Option<&Use> {
+        let near = self.uses.iter().filter(|u| u.at.start <= offset && offset <= u.at.end);
+        near.min_by_key(|u| (offset == u.at.end, u.at.end - u.at.start))
+    }
+
+    /// Every place of a name, the declaration among them.
+    pub fn of(&self, definition: &Definition) -> Vec<Span> {
+        self.uses_of(definition).map(|u| u.at).collect()
+    }
+
+    /// Every use of a name, the declaration among them.
+    pub fn uses_of<'r>(&'r self, definition: &'r Definition) -> impl Iterator<Item = &'r Use> {
+        self.uses.iter().filter(move |u| u.definition == *definition)
+    }
+
+    /// Where it is declared.
+    pub fn declaration(&self, definition: &Definition) -> Option<Span> {
+        self.uses_of(definition).find(|u| u.written == Written::Declared).map(|u| u.at)
+    }
+
+    /// All of them.
+    pub fn all(&self) -> &[Use] {
+        &self.uses
+    }
+}
+
+/// Follows every name of a document.
+pub fn references(doc: &Document) -> References {
+    let mut uses = walk::uses(doc);
+    uses.sort_by_key(|u| (u.at, u.before));
+    uses.dedup();
+    References { uses }
+}
+
+#[cfg(test)]
+mod tests;

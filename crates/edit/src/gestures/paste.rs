@@ -1,0 +1,183 @@
+//! Putting in what was copied: names that clash get new ones, in the fragment
+//! and wherever the fragment refers to them.
+
+use std::collections::BTreeSet;
+
+use g7_compile::{Definition, references};
+use g7_model::{Chart, ChartItem, ChartKind, Document, FileId, Item, Span, Step, StepKind, Transition};
+
+use super::graph::put_step;
+use super::places;
+use super::rename::written;
+use crate::draft::{Draft, Mark};
+use crate::id::ItemId;
+use crate::splice::spliced;
+use crate::write::{reindent, step_list};
+use crate::{Refusal, refuse};
+
+/// Longest fragment, in bytes.
+const MOST: usize = 1 << 20;
+
+pub(crate) fn paste(d: &mut Draft<'_>, chart: &str, text: &str, at: Option<[f64; 2]>) -> Result<(), Refusal> {
+    d.chart(chart)?;
+    let (text, doc) = fragment(text)?;
+    let (text, doc) = without_clashes(d, chart, text, doc)?;
+    let mut charts = doc.charts();
+    let Some(part) = charts.next() else { return refuse("there is nothing to paste") };
+    let mut first = None;
+    for item in &part.items {
+        match item {
+            ChartItem::Step(s) => {
+                first = first.or(Some(s.name.text.to_string()));
+                paste_step(d, chart, &text, s)?;
+            }
+            ChartItem::Transition(t) => paste_transition(d, chart, &text, t)?,
+            _ => return refuse("only steps and transitions are pasted into a chart"),
+        }
+    }
+    for expansion in charts {
+        paste_chart(d, &text, expansion);
+    }
+    if d.select.is_empty() {
+        return refuse("there is nothing to paste");
+    }
+    if let (Some(step), Some(at)) = (first, at) {
+        places::place(d, &ItemId::step(chart, step), places::point(at)?)?;
+    }
+    Ok(())
+}
+
+/// A fragment is a small file; the mere lines of a chart will do.
+fn fragment(text: &str) -> Result<(String, Document), Refusal> {
+    if text.len() > MOST {
+        return refuse("this is too long to be pasted into a chart");
+    }
+    let (doc, problems) = g7_syntax::parse(text, FileId(0));
+    if problems.is_empty() && doc.charts().next().is_some() {
+        return Ok((text.to_owned(), doc));
+    }
+    let wrapped = format!("chart Fragment {{\n{text}\n}}\n");
+    let (doc, problems) = g7_syntax::parse(&wrapped, FileId(0));
+    match problems.first() {
+        Some(_) => refuse("this is no part of a chart"),
+        None => Ok((wrapped, doc)),
+    }
+}
+
+/// The fragment with other names for steps, labels and expansions that are there already.
+fn without_clashes(
+    d: &Draft<'_>,
+    chart: &str,
+    text: String,
+    doc: Document,
+) -> Result<(String, Document), Refusal> {
+    let Some(part) = doc.charts().next() else { return Ok((text, doc)) };
+    let home = d.chart(chart)?;
+    let owner = part.name.text.to_string();
+    let steps = |c: &Chart| c.steps().map(|s| s.name.text.to_string()).collect::<BTreeSet<_>>();
+    let labels = |c: &Chart| {
+        c.transitions().filter_map(|t| t.label.as_ref()).map(|l| l.text.to_string()).collect::<BTreeSet<_>>()
+    };
+    let mut new: Vec<(Definition, String)> = Vec::new();
+    for (name, to) in fresh_names(&steps(home), &steps(part)) {
+        new.push((Definition::Step { chart: owner.clone(), name }, to));
+    }
+    for (label, to) in fresh_names(&labels(home), &labels(part)) {
+        new.push((Definition::Transition { chart: owner.clone(), label }, to));
+    }
+    let there: BTreeSet<String> = d.doc.charts().map(|c| c.name.text.to_string()).collect();
+    let brought: BTreeSet<String> = doc.charts().skip(1).map(|c| c.name.text.to_string()).collect();
+    for (name, to) in fresh_names(&there, &brought) {
+        new.push((Definition::Chart(name), to));
+    }
+    if new.is_empty() {
+        return Ok((text, doc));
+    }
+    let refs = references(&doc);
+    let mut splices = Vec::new();
+    for (definition, to) in &new {
+        for found in refs.uses_of(definition) {
+            splices.push(written(&text, found, to)?);
+        }
+    }
+    splices.sort_by_key(|s| (s.start, s.end));
+    let text = spliced(&text, &splices).ok_or_else(|| Refusal::new("this is no part of a chart"))?;
+    let (doc, problems) = g7_syntax::parse(&text, FileId(0));
+    if problems.is_empty() { Ok((text, doc)) } else { refuse("this is no part of a chart") }
+}
+
+/// New names for those that are there already: the next number, or the name with a number behind it.
+fn fresh_names(there: &BTreeSet<String>, brought: &BTreeSet<String>) -> Vec<(String, String)> {
+    let mut taken: BTreeSet<String> = there.union(brought).cloned().collect();
+    let number = |n: &String| n.trim_start_matches('M').parse::<u64>().ok().filter(|n| *n < u64::MAX / 2);
+    let mut next = taken.iter().filter_map(number).max().unwrap_or(0) + 1;
+    let mut by_number: Vec<&String> = there.intersection(brought).collect();
+    by_number.sort_by_key(|n| number(n));
+    let mut pairs = Vec::new();
+    for name in by_number {
+        let to = match number(name) {
+            Some(_) => {
+                let to = format!("{}{next}", if name.starts_with('M') { "M" } else { "" });
+                next += 1;
+                to
+            }
+            None => (2u64..).map(|n| format!("{name}{n}")).find(|n| !taken.contains(n)).unwrap_or_default(),
+        };
+        taken.insert(to.clone());
+        pairs.push((name.clone(), to));
+    }
+    pairs
+}
+
+fn slice(text: &str, at: Span) -> &str {
+    text.get(at.start as usize..at.end as usize).unwrap_or_default()
+}
+
+/// The text of something with the indentation of its first line taken away.
+fn lines(text: &str, at: Span) -> String {
+    let start = text.get(..at.start as usize).unwrap_or_default();
+    let line = start.rsplit('\n').next().unwrap_or_default();
+    let indent = line.len() - line.trim_start().len();
+    reindent(slice(text, at), line.get(..indent).unwrap_or_default(), "", "\n")
+}
+
+fn paste_step(d: &mut Draft<'_>, chart: &str, text: &str, step: &Step) -> Result<(), Refusal> {
+    let home = d.chart(chart)?.kind;
+    let mut new = step.clone();
+    let mut raw = lines(text, step.at.0);
+    if matches!(step.kind, StepKind::Entry | StepKind::Exit) {
+        // A chart has neither, an expansion has its own.
+        let of_kind = d.chart(chart)?.steps().any(|s| s.kind == step.kind);
+        if home == ChartKind::Chart || of_kind {
+            let words = (step.name.at.0.start - step.at.0.start) as usize;
+            let initial = if step.initial { "initial " } else { "" };
+            raw = format!("{initial}step {}", raw.get(words..).unwrap_or_default());
+            new.kind = StepKind::Plain;
+        }
+    }
+    new.at = d.fresh_as(raw);
+    put_step(d, chart, new, None)?;
+    d.select_step(chart, &step.name.text);
+    Ok(())
+}
+
+fn paste_transition(d: &mut Draft<'_>, chart: &str, text: &str, t: &Transition) -> Result<(), Refusal> {
+    let mut new = t.clone();
+    let lead = if t.chained { format!("{} ", step_list(&t.from)) } else { String::new() };
+    new.chained = false;
+    new.at = d.fresh_as(lead + &lines(text, t.at.0));
+    d.select.push(Mark::Transition(chart.to_owned(), new.at.0));
+    let items = &mut d.chart_mut(chart)?.items;
+    let last = items.iter().rposition(|i| matches!(i, ChartItem::Transition(_)));
+    let last = last.or_else(|| items.iter().rposition(|i| matches!(i, ChartItem::Step(_))));
+    items.insert(last.map_or(items.len(), |k| k + 1), ChartItem::Transition(new));
+    Ok(())
+}
+
+/// An expansion that a pasted macro-step brings along.
+fn paste_chart(d: &mut Draft<'_>, text: &str, chart: &Chart) {
+    let mut new = chart.clone();
+    new.at = d.fresh_as(lines(text, chart.at.0));
+    let last = d.doc.items.iter().rposition(|i| matches!(i, Item::Chart(_)));
+    d.doc.items.insert(last.map_or(0, |k| k + 1), Item::Chart(new));
+}

@@ -1,0 +1,302 @@
+//! Another name for a step, chart, variable or other thing that has one,
+//! wherever it is used.
+//!
+//! Each use is written as its place asks for: in back-ticks, behind the `X` of
+//! `X12`, within `%X12`. What must hold: afterwards every name of the file
+//! refers to what it referred to before. A new name that would hide another, or
+//! be hidden, is refused.
+
+use g7_compile::references::{Use, Written};
+use g7_compile::{Definition, References, references};
+use g7_model::{FileId, Item, Span};
+use g7_syntax::{show_name, show_path_name, show_step_name};
+
+use crate::id::{ItemId, Part};
+use crate::splice::{Splice, spliced, tidied};
+use crate::{Edit, Refusal, Source, refuse};
+
+/// Renames everywhere.
+pub(crate) fn rename(
+    source: &Source<'_>,
+    id: Option<&ItemId>,
+    name: Option<&str>,
+    to: &str,
+) -> Result<Edit, Refusal> {
+    let to = to.trim();
+    if to.is_empty() {
+        return refuse("a name cannot be empty");
+    }
+    let refs = references(source.document);
+    let definition = defined(source, &refs, id, name)?;
+    let new = renamed(&definition, to);
+    if new == definition {
+        return Ok(Edit { select: selected(id, to), ..Edit::default() });
+    }
+    if refs.declaration(&new).is_some() || taken(source, &new) {
+        return refuse(format!("there is {} `{to}` already", kind(&definition)));
+    }
+    let mut splices = Vec::new();
+    for found in refs.uses_of(&definition) {
+        splices.push(written(source.text, found, to)?);
+    }
+    let splices = tidied(source.text, splices);
+    let after =
+        spliced(source.text, &splices).ok_or_else(|| Refusal::new("the name cannot be written here"))?;
+    judge(&refs, &after, &definition, &new, &splices)?;
+    Ok(Edit { splices, select: selected(id, to), begin: None })
+}
+
+/// What is to be renamed.
+fn defined(
+    source: &Source<'_>,
+    refs: &References,
+    id: Option<&ItemId>,
+    name: Option<&str>,
+) -> Result<Definition, Refusal> {
+    let found = match (id, name) {
+        (Some(id), _) => match &id.part {
+            Part::Chart => Definition::Chart(id.chart.clone()),
+            Part::Step(name) | Part::Action(name, _) => {
+                Definition::Step { chart: id.chart.clone(), name: name.clone() }
+            }
+            Part::Transition(n) => {
+                let chart = source.document.charts().find(|c| *c.name.text == *id.chart);
+                let label = chart.and_then(|c| c.transitions().nth(*n)).and_then(|t| t.label.as_ref());
+                let Some(label) = label else {
+                    return refuse("this transition has no label; give it one first");
+                };
+                Definition::Transition { chart: id.chart.clone(), label: label.text.to_string() }
+            }
+            Part::Link(..) | Part::Connector(..) | Part::Other(_) => {
+                return refuse("this has no name of its own");
+            }
+        },
+        (None, Some(name)) => by_name(source, refs, name),
+        (None, None) => return refuse("nothing is chosen"),
+    };
+    if refs.declaration(&found).is_none() {
+        return refuse(format!("there is no {} called so", kind(&found).trim_start_matches("a ")));
+    }
+    Ok(found)
+}
+
+/// A variable by the name that the table has, `Chart.name` for one of a chart;
+/// else whatever else has that name.
+fn by_name(source: &Source<'_>, refs: &References, name: &str) -> Definition {
+    let split = source.document.charts().find_map(|c| {
+        let rest = name.strip_prefix(&*c.name.text)?.strip_prefix('.')?;
+        Some((c.name.text.to_string(), rest.to_owned()))
+    });
+    let whole = name.to_owned();
+    let mut candidates = Vec::new();
+    if let Some((chart, name)) = split {
+        candidates.push(Definition::Variable { chart: Some(chart.clone()), name: name.clone() });
+        candidates.push(Definition::Action { chart: Some(chart.clone()), name: name.clone() });
+        candidates.push(Definition::Section { chart: Some(chart.clone()), name: name.clone() });
+        candidates.push(Definition::Step { chart, name });
+    }
+    candidates.push(Definition::Action { chart: None, name: whole.clone() });
+    candidates.push(Definition::Section { chart: None, name: whole.clone() });
+    candidates.push(Definition::Function(whole.clone()));
+    candidates.push(Definition::Chart(whole.clone()));
+    candidates.push(Definition::Plant(whole.clone()));
+    let first = Definition::Variable { chart: None, name: whole };
+    if refs.declaration(&first).is_some() {
+        return first;
+    }
+    candidates.into_iter().find(|c| refs.declaration(c).is_some()).unwrap_or(first)
+}
+
+fn renamed(definition: &Definition, to: &str) -> Definition {
+    let to = to.to_owned();
+    match definition.clone() {
+        Definition::Chart(_) => Definition::Chart(to),
+        Definition::Step { chart, .. } => Definition::Step { chart, name: to },
+        Definition::Variable { chart, .. } => Definition::Variable { chart, name: to },
+        Definition::Action { chart, .. } => Definition::Action { chart, name: to },
+        Definition::Section { chart, .. } => Definition::Section { chart, name: to },
+        Definition::Function(_) => Definition::Function(to),
+        Definition::Transition { chart, .. } => Definition::Transition { chart, label: to },
+        Definition::Plant(_) => Definition::Plant(to),
+        Definition::PlantItem { plant, .. } => Definition::PlantItem { plant, name: to },
+    }
+}
+
+fn kind(definition: &Definition) -> &'static str {
+    match definition {
+        Definition::Chart(_) => "a chart",
+        Definition::Step { .. } => "a step",
+        Definition::Variable { .. } => "a variable",
+        Definition::Action { .. } => "an action",
+        Definition::Section { .. } => "a section",
+        Definition::Function(_) => "a function",
+        Definition::Transition { .. } => "a label",
+        Definition::Plant(_) => "a plant",
+        Definition::PlantItem { .. } => "a state of the plant",
+    }
+}
+
+/// Whether another kind of thing in the same name space has the name.
+fn taken(source: &Source<'_>, new: &Definition) -> bool {
+    let (chart, name) = match new {
+        Definition::Variable { chart, name }
+        | Definition::Action { chart, name }
+        | Definition::Section { chart, name } => (chart.as_deref(), name),
+        Definition::Function(name) => (None, name),
+        _ => return false,
+    };
+    let is = |n: &g7_model::Name| *n.text == **name;
+    match chart {
+        Some(chart) => {
+            use g7_model::ChartItem;
+            let home = source.document.charts().find(|c| *c.name.text == *chart);
+            home.is_some_and(|c| {
+                c.items.iter().any(|i| match i {
+                    ChartItem::Var(v) => v.names.iter().any(is),
+                    ChartItem::Action(a) => is(&a.name),
+                    ChartItem::Section(s) => is(&s.name),
+                    _ => false,
+                })
+            })
+        }
+        None => source.document.items.iter().any(|i| match i {
+            Item::Var(v) => v.names.iter().any(is),
+            Item::Action(a) => is(&a.name),
+            Item::Section(s) => is(&s.name),
+            Item::Function(f) => is(&f.name),
+            _ => false,
+        }),
+    }
+}
+
+/// A use with the new name.
+pub(crate) fn written(text: &str, found: &Use, to: &str) -> Result<Splice, Refusal> {
+    let (start, end) = (found.at.start as usize, found.at.end as usize);
+    let old = text.get(start..end).unwrap_or_default();
+    let text = match found.written {
+        Written::Declared if matches!(found.definition, Definition::Transition { .. }) => show_step_name(to),
+        Written::Declared | Written::Name => show_name(to),
+        Written::Step => show_step_name(to),
+        Written::Path { first, only } => {
+            let before: String = old.trim_start_matches('`').chars().take(found.before).collect();
+            show_path_name(&format!("{before}{to}"), first, only)
+        }
+        Written::Direct => return direct(found, old, to).map(|t| Splice::new(start, end, t)),
+    };
+    Ok(Splice::new(start, end, text))
+}
+
+/// `%X12`, `%XM3`, `%X3.12` with another number.
+fn direct(found: &Use, old: &str, to: &str) -> Result<String, Refusal> {
+    let Definition::Step { name, .. } = &found.definition else { return Ok(old.to_owned()) };
+    let number = to.strip_prefix('M').filter(|_| name.starts_with('M')).unwrap_or(to);
+    let no = || Refusal::new(format!("`{old}` names this step, so its name must stay a number"));
+    if number.is_empty() || !number.bytes().all(|b| b.is_ascii_digit()) {
+        return Err(no());
+    }
+    let digits = name.trim_start_matches('M');
+    let (head, rest) = old.split_at(2.min(old.len()));
+    let mut parts: Vec<String> = rest.split('.').map(str::to_owned).collect();
+    let inner = parts.len() > 1 && parts.get(1).is_some_and(|p| p != "T" && p != "t");
+    let named = |part: &String| part.trim_start_matches(['M', 'm']) == digits;
+    // Of `%X3.12` the definition is the macro-step or the step in it.
+    let k = match (inner, parts.get(1).is_some_and(named)) {
+        (true, true) => 1,
+        (true, false)
+            if parts.get(1).is_some_and(|p| p == "IN" || p == "OUT") && !parts.first().is_some_and(named) =>
+        {
+            return Ok(old.to_owned());
+        }
+        _ => 0,
+    };
+    let part = parts.get_mut(k).ok_or_else(no)?;
+    let letters: String = part.chars().take_while(|c| c.is_ascii_alphabetic()).collect();
+    *part = format!("{letters}{number}");
+    Ok(format!("{head}{}", parts.join(".")))
+}
+
+/// Afterwards all names must mean what they meant.
+fn judge(
+    before: &References,
+    after: &str,
+    definition: &Definition,
+    new: &Definition,
+    splices: &[Splice],
+) -> Result<(), Refusal> {
+    let (doc, problems) = g7_syntax::parse(after, FileId(0));
+    if let Some(problem) = problems.first() {
+        return refuse(format!("this name cannot be written here: {problem}"));
+    }
+    let now = references(&doc);
+    let meant = |d: &Definition| if d == definition { new.clone() } else { within(d, definition, new) };
+    let same = before.all().len() == now.all().len()
+        && before.all().iter().zip(now.all()).all(|(a, b)| {
+            b.definition == meant(&a.definition) && shifted(splices, a.at) == b.at.start as usize
+        });
+    if !same {
+        return refuse(format!(
+            "with this name something would mean another thing than before: `{}` is in use",
+            last_name(new)
+        ));
+    }
+    Ok(())
+}
+
+/// What lies in a chart or plant is called after it.
+fn within(d: &Definition, old: &Definition, new: &Definition) -> Definition {
+    let mut d = d.clone();
+    match (old, new, &mut d) {
+        (
+            Definition::Chart(a),
+            Definition::Chart(b),
+            Definition::Step { chart, .. } | Definition::Transition { chart, .. },
+        ) if chart == a => {
+            chart.clone_from(b);
+        }
+        (
+            Definition::Chart(a),
+            Definition::Chart(b),
+            Definition::Variable { chart: Some(chart), .. }
+            | Definition::Action { chart: Some(chart), .. }
+            | Definition::Section { chart: Some(chart), .. },
+        ) if chart == a => chart.clone_from(b),
+        (Definition::Plant(a), Definition::Plant(b), Definition::PlantItem { plant, .. }) if plant == a => {
+            plant.clone_from(b);
+        }
+        _ => {}
+    }
+    d
+}
+
+/// Where a place of the text before begins in the text after.
+fn shifted(splices: &[Splice], at: Span) -> usize {
+    let start = at.start as usize;
+    let mut shift = 0isize;
+    for s in splices.iter().take_while(|s| s.start < start && s.end <= start) {
+        shift += s.insert.len() as isize - (s.end - s.start) as isize;
+    }
+    start.saturating_add_signed(shift)
+}
+
+fn last_name(definition: &Definition) -> &str {
+    match definition {
+        Definition::Chart(n) | Definition::Function(n) | Definition::Plant(n) => n,
+        Definition::Step { name, .. }
+        | Definition::Variable { name, .. }
+        | Definition::Action { name, .. }
+        | Definition::Section { name, .. }
+        | Definition::PlantItem { name, .. } => name,
+        Definition::Transition { label, .. } => label,
+    }
+}
+
+fn selected(id: Option<&ItemId>, to: &str) -> Vec<ItemId> {
+    let Some(id) = id else { return Vec::new() };
+    let mut id = id.clone();
+    match &mut id.part {
+        Part::Chart => to.clone_into(&mut id.chart),
+        Part::Step(_) | Part::Action(..) => id.part = Part::Step(to.to_owned()),
+        Part::Transition(_) | Part::Link(..) | Part::Connector(..) | Part::Other(_) => {}
+    }
+    vec![id]
+}
