@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use g7_model::{Document, FileId, Severity, Span};
 
 use crate::text::width;
-use crate::{Drawing, Item, Look, Options, Part, Rect, draw};
+use crate::{Drawing, End, Item, Look, Options, Part, Rect, draw};
 
 /// What an item covers: its boxes, its texts, its lines.
 #[derive(Default)]
@@ -208,8 +208,13 @@ fn what_lies_over_something_is_found() {
         drawing.items.iter().find(|i| matches!(i.part, Part::Step { step: 0, .. })).expect("step 1").area;
     let (y, right) = (f64::from(through.y + 100) / 10.0, f64::from(through.x + through.w) / 10.0);
     let svg = format!("<path class=\"g7-link\" d=\"M-900 {y}H{right}\"/>");
-    let link =
-        Item { part: Part::Link { link: 0 }, svg, area: through, far: String::new(), at: Span::default() };
+    let link = Item {
+        part: Part::Link { link: 0, from: End::Step(0), to: End::Transition(0) },
+        svg,
+        area: through,
+        far: String::new(),
+        at: Span::default(),
+    };
     drawing.items.push(link);
     let found = faults(&drawing);
     for what in ["«1» over «1»", "Step { step: 0", "Action { step: 0", "«a» over «a»", "is crossed by Link"]
