@@ -80,8 +80,13 @@ pub(crate) fn name_lines(name: &str, room: i32) -> Fitted {
     Fitted { width: widest(&lines, 120), lines, size: 120 }
 }
 
+/// Whether a name ends in a number that can stand alone: three figures or more.
+fn is_number(tail: &str) -> bool {
+    tail.len() > 2 && tail.bytes().all(|b| b.is_ascii_digit())
+}
+
 /// The name in two lines of nearly the same width where it has a seam: a blank,
-/// `_`, a capital behind a small letter, a figure behind a letter.
+/// `_`, a capital behind a small letter, a number behind letters.
 fn split(name: &str, size: i32) -> Vec<String> {
     let mut best: Option<(i32, usize)> = None;
     let mut before: Option<char> = None;
@@ -89,7 +94,7 @@ fn split(name: &str, size: i32) -> Vec<String> {
         let seam = before.is_some_and(|b| {
             matches!(b, '_' | ' ' | '-' | '.')
                 || (b.is_lowercase() && c.is_uppercase())
-                || (b.is_alphabetic() && c.is_ascii_digit())
+                || (b.is_alphabetic() && name.get(at..).is_some_and(is_number))
         });
         if seam {
             let (a, b) = name.split_at(at);
@@ -129,6 +134,9 @@ mod tests {
         assert_eq!((one.lines, one.size), (vec!["12".to_owned()], 140));
         let two = name_lines("WaitBead", 460);
         assert_eq!((two.lines.join("|"), two.size), ("Wait|Bead".to_owned(), 110));
+        let numbered = name_lines("Release5", 460);
+        assert_eq!(numbered.lines, ["Release5"], "one figure is no line");
+        assert_eq!(name_lines("Release500", 460).lines, ["Release", "500"]);
         let wide = name_lines("Sequencing", 460);
         assert!(wide.width > 460 && wide.lines.len() == 1, "no seam: the square gets wider");
     }
