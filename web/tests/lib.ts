@@ -5,12 +5,12 @@ import { readFile } from 'node:fs/promises';
 import { createServer } from 'node:http';
 import type { AddressInfo } from 'node:net';
 import { tmpdir } from 'node:os';
-import { extname, join, normalize } from 'node:path';
+import { extname, join, normalize, resolve } from 'node:path';
 import { chromium, type Browser, type Page } from 'playwright-core';
 
 const HERE = new URL('..', import.meta.url).pathname;
 /** The built page; another one for trying things out. */
-const DIST = process.env.G7_DIST ?? join(HERE, 'dist');
+const DIST = resolve(process.env.G7_DIST ?? join(HERE, 'dist'));
 const TYPES: Record<string, string> = {
   '.html': 'text/html; charset=utf-8',
   '.js': 'text/javascript',

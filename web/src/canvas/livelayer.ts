@@ -1,20 +1,26 @@
-// The moving marks of a run, in a layer of their own made of nodes that are kept
-// and used again. Colour is never the only sign: active has a thick frame and a
-// token, enabled a thick bar, enabled and true a filled mark, forced a lock.
+// The moving marks of a run, in a layer of their own: one path for each kind of
+// mark, since a path that changes costs the painter far less than nodes that move,
+// and text nodes that are used again. Colour is never the only sign: active has a
+// thick frame and a token, enabled a thick bar, enabled and true a bar with an
+// arrow head, forced a dashed frame and a lock.
 import type { Live } from '../lib/live.svelte';
 import type { Box, Item } from '../lib/protocol';
 import type { Scene } from './scene';
 
 const SVG = 'http://www.w3.org/2000/svg';
 
-/** Nodes of one kind: as many as were ever in sight at once. */
-class Pool {
-  #made: SVGElement[] = [];
+/** Kinds of marks, in the order of painting. */
+const KINDS = ['lit', 'flash', 'on', 'token', 'enabled', 'holds', 'hatch', 'lock', 'break', 'stop', 'far-enabled', 'far-on'] as const;
+type Kind = (typeof KINDS)[number];
+
+/** Texts of one kind: as many nodes as were ever in sight at once. */
+class Texts {
+  #made: SVGTextElement[] = [];
   #used = 0;
   #was = 0;
   constructor(
     readonly parent: SVGGElement,
-    readonly html: string,
+    readonly name: string,
   ) {}
 
   begin(): void {
@@ -22,104 +28,57 @@ class Pool {
     this.#used = 0;
   }
 
-  next(): SVGElement {
-    let node = this.#made[this.#used];
+  put(x: number, y: number, text: string): void {
+    let node = this.#made[this.#used++];
     if (!node) {
-      node = document.createElementNS(SVG, 'g');
-      node.innerHTML = this.html;
+      node = document.createElementNS(SVG, 'text');
+      node.setAttribute('class', this.name);
+      node.append('');
       this.parent.append(node);
       this.#made.push(node);
-    } else if (this.#used >= this.#was) node.style.display = '';
-    this.#used++;
-    return node;
+    }
+    set(node, 'x', String(x));
+    set(node, 'y', String(y));
+    const inside = node.firstChild as Text;
+    if (inside.data !== text) inside.data = text;
   }
 
+  /** Texts that are not needed now are empty. */
   end(): void {
-    for (let i = this.#used; i < this.#was; i++) (this.#made[i] as SVGElement).style.display = 'none';
+    for (let i = this.#used; i < this.#was; i++) (this.#made[i]?.firstChild as Text).data = '';
   }
 }
-
-function place(node: SVGElement, x: number, y: number): void {
-  const to = `translate(${x} ${y})`;
-  if (node.getAttribute('transform') !== to) node.setAttribute('transform', to);
-}
-
-function write(node: Element | null, text: string): void {
-  if (!node) return;
-  const inside = node.firstChild as Text | null;
-  if (!inside) node.textContent = text;
-  else if (inside.data !== text) inside.data = text;
-}
-
-const LOCK = '<path class="lock" d="M0 5h9v7h-9zM2 5v-2a2.5 2.5 0 0 1 5 0v2"/>';
 
 export class LiveLayer {
-  #on: Pool;
-  #enabled: Pool;
-  #holds: Pool;
-  #lit: Pool;
-  #value: Pool;
-  #forced: Pool;
-  #break: Pool;
-  #flash: Pool;
-  #stop: Pool;
-  #farOn: SVGPathElement;
-  #farEnabled: SVGPathElement;
+  #paths = new Map<Kind, SVGPathElement>();
+  #times: Texts;
+  #values: Texts;
 
   constructor(root: SVGGElement) {
-    const pool = (html: string) => {
-      const g = document.createElementNS(SVG, 'g');
-      root.append(g);
-      return new Pool(g, html);
-    };
-    const path = (name: string) => {
-      const p = document.createElementNS(SVG, 'path');
-      p.setAttribute('class', name);
-      root.append(p);
-      return p;
-    };
-    this.#lit = pool('<rect class="lit"/>');
-    this.#on = pool('<rect class="on"/><circle class="token" r="5"/><text class="time" text-anchor="middle"/>');
-    this.#enabled = pool('<rect class="enabled"/>');
-    this.#holds = pool('<rect class="holds"/><path class="holds-mark" d="M0 0l-9 -6v12z"/>');
-    this.#flash = pool('<rect class="flash"/>');
-    this.#value = pool('<text class="value"/>');
-    this.#forced = pool(`<rect class="hatch"/><g>${LOCK}</g>`);
-    this.#break = pool('<circle class="break" r="5"/>');
-    this.#stop = pool('<rect class="stop" rx="4"/>');
-    this.#farEnabled = path('far-enabled');
-    this.#farOn = path('far-on');
+    for (const kind of KINDS) {
+      const path = document.createElementNS(SVG, 'path');
+      path.setAttribute('class', kind);
+      root.append(path);
+      this.#paths.set(kind, path);
+    }
+    this.#times = new Texts(root, 'time');
+    this.#values = new Texts(root, 'value');
   }
 
   /** Draws the marks within a window of the plane. */
   show(scene: Scene, live: Live, window: [number, number, number, number], far: boolean): void {
-    const pools = [this.#on, this.#enabled, this.#holds, this.#lit, this.#value, this.#forced, this.#break, this.#flash, this.#stop];
-    pools.forEach((p) => p.begin());
-    if (far) this.#far(scene, live);
-    else {
-      set(this.#farOn, 'd', '');
-      set(this.#farEnabled, 'd', '');
-      this.#near(scene, live, window);
-    }
-    pools.forEach((p) => p.end());
+    const drawn = new Map<Kind, string>();
+    this.#times.begin();
+    this.#values.begin();
+    if (far) farMarks(scene, live, drawn);
+    else this.#near(scene, live, window, drawn);
+    this.#times.end();
+    this.#values.end();
+    for (const [kind, path] of this.#paths) set(path, 'd', drawn.get(kind) ?? '');
   }
 
-  #far(scene: Scene, live: Live): void {
-    let on = '';
-    for (const id of live.on) {
-      const b = scene.byId.get(id)?.square;
-      if (b) on += `M${b[0] - 8} ${b[1] - 8}h${b[2] + 16}v${b[3] + 16}h-${b[2] + 16}z`;
-    }
-    let enabled = '';
-    for (const id of live.enabled.keys()) {
-      const b = scene.byId.get(id)?.bar;
-      if (b) enabled += `M${b[0]} ${b[1] - 3}h${b[2]}v${b[3] + 6}h-${b[2]}z`;
-    }
-    set(this.#farOn, 'd', on);
-    set(this.#farEnabled, 'd', enabled);
-  }
-
-  #near(scene: Scene, live: Live, [x, y, right, low]: [number, number, number, number]): void {
+  #near(scene: Scene, live: Live, [x, y, right, low]: [number, number, number, number], drawn: Map<Kind, string>): void {
+    const add = (kind: Kind, path: string) => drawn.set(kind, (drawn.get(kind) ?? '') + path);
     const sight = (id: string): Item | null => {
       const item = scene.byId.get(id);
       if (!item) return null;
@@ -128,75 +87,76 @@ export class LiveLayer {
     };
     for (const id of live.lit) {
       const item = sight(id);
-      if (item) frame(this.#lit.next(), item.area, 0);
+      if (item) add('lit', rect(item.area, 0));
     }
     for (const id of live.on) {
-      const item = sight(id);
-      if (item?.square) this.#step(item.square, live.times.get(id) ?? '');
+      const square = sight(id)?.square;
+      if (!square) continue;
+      add('on', rect(square, 0));
+      add('token', circle(square[0] + square[2] / 2, square[1] + square[3] - 11, 5));
+      const time = live.times.get(id);
+      if (time) this.#times.put(square[0] + square[2] / 2, square[1] + 13, time);
     }
     for (const [id, how] of live.enabled) {
-      const item = how > 0 ? sight(id) : null;
-      if (!item?.bar) continue;
-      const [bx, by, w, h] = item.bar;
-      const node = (how === 2 ? this.#holds : this.#enabled).next();
-      place(node, bx, by + h / 2);
-      box(node.firstElementChild, [0, -4, w, 8]);
-      if (how === 2) set(node.lastElementChild, 'transform', 'translate(-3 0)');
+      const bar = how > 0 ? sight(id)?.bar : undefined;
+      if (!bar) continue;
+      const middle = bar[1] + bar[3] / 2;
+      add(how === 2 ? 'holds' : 'enabled', rect([bar[0], middle - 4, bar[2], 8], 0));
+      if (how === 2) add('holds', `M${bar[0] - 3} ${middle}l-9 -6v12z`);
     }
     for (const id of live.cleared) {
-      const item = sight(id);
-      if (item?.bar) frame(this.#flash.next(), item.bar, 5);
+      const bar = sight(id)?.bar;
+      if (bar) add('flash', rect(bar, 6));
     }
     for (const [id, text] of live.values) {
-      const item = sight(id);
-      if (!item) continue;
-      const node = this.#value.next();
-      const [bx, by, w, h] = item.area;
-      place(node, bx + w + 6, by + h / 2 + 4);
-      write(node.firstElementChild, text);
+      const area = sight(id)?.area;
+      if (area) this.#values.put(area[0] + area[2] + 6, area[1] + area[3] / 2 + 4, text);
     }
     for (const id of live.forced) {
-      const item = sight(id);
-      if (!item) continue;
-      const node = this.#forced.next();
-      frame(node, item.area, 2);
-      set(node.lastElementChild, 'transform', `translate(${item.area[2] - 4} -6)`);
+      const area = sight(id)?.area;
+      if (!area) continue;
+      add('hatch', rect(area, 2));
+      add('lock', lock(area[0] + area[2] - 4, area[1] - 7));
     }
     for (const id of live.breaks) {
       const item = sight(id);
-      if (item) place(this.#break.next(), scene.core(item)[0] - 9, scene.core(item)[1] + scene.core(item)[3] / 2);
+      if (!item) continue;
+      const core = scene.core(item);
+      add('break', circle(core[0] - 10, core[1] + core[3] / 2, 5));
     }
     const stopped = live.stopped ? sight(live.stopped) : null;
-    if (stopped) frame(this.#stop.next(), scene.core(stopped), 9);
-  }
-
-  #step(square: Box, time: string): void {
-    const node = this.#on.next();
-    const [x, y, w, h] = square;
-    place(node, x, y);
-    const [rect, token, text] = node.children as unknown as [Element, Element, Element];
-    box(rect, [0, 0, w, h]);
-    set(token, 'cx', String(w / 2));
-    set(token, 'cy', String(h - 11));
-    set(text, 'x', String(w / 2));
-    set(text, 'y', '13');
-    write(text, time);
+    if (stopped) add('stop', rect(scene.core(stopped), 9));
   }
 }
 
-function set(node: Element | null, name: string, value: string): void {
-  if (node && node.getAttribute(name) !== value) node.setAttribute(name, value);
+function farMarks(scene: Scene, live: Live, drawn: Map<Kind, string>): void {
+  let on = '';
+  for (const id of live.on) {
+    const square = scene.byId.get(id)?.square;
+    if (square) on += rect(square, 8);
+  }
+  let enabled = '';
+  for (const [id, how] of live.enabled) {
+    const bar = how > 0 ? scene.byId.get(id)?.bar : undefined;
+    if (bar) enabled += rect(bar, 3);
+  }
+  drawn.set('far-on', on);
+  drawn.set('far-enabled', enabled);
 }
 
-function box(node: Element | null, [x, y, w, h]: Box): void {
-  set(node, 'x', String(x));
-  set(node, 'y', String(y));
-  set(node, 'width', String(w));
-  set(node, 'height', String(h));
+function set(node: Element, name: string, value: string): void {
+  if (node.getAttribute(name) !== value) node.setAttribute(name, value);
 }
 
-/** Puts a node with a rectangle round a box. */
-function frame(node: SVGElement, [x, y, w, h]: Box, wider: number): void {
-  place(node, x, y);
-  box(node.firstElementChild, [-wider, -wider, w + 2 * wider, h + 2 * wider]);
+function rect([x, y, w, h]: Box, wider: number): string {
+  const [width, height] = [w + 2 * wider, h + 2 * wider];
+  return `M${x - wider} ${y - wider}h${width}v${height}h${-width}z`;
+}
+
+function circle(x: number, y: number, r: number): string {
+  return `M${x - r} ${y}a${r} ${r} 0 1 0 ${2 * r} 0a${r} ${r} 0 1 0 ${-2 * r} 0z`;
+}
+
+function lock(x: number, y: number): string {
+  return `M${x} ${y + 5}h9v7h-9zM${x + 2} ${y + 5}v-2a2.5 2.5 0 0 1 5 0v2`;
 }

@@ -1,0 +1,47 @@
+// The editor itself, with a door for the benchmark.
+import '../src/lib/theme.css';
+import { mount } from 'svelte';
+import App from '../src/App.svelte';
+import { editor } from '../src/canvas/editor.svelte';
+import { files } from '../src/lib/files.svelte';
+import { live } from '../src/lib/live.svelte';
+import { page } from '../src/lib/page';
+import { prefs } from '../src/lib/prefs.svelte';
+import { active, chartText } from './chart';
+
+prefs.leftOpen = prefs.rightOpen = prefs.bottomOpen = false;
+prefs.view = 'chart';
+const target = document.getElementById('app');
+if (target) mount(App, { target });
+
+let steps = 1000;
+
+const frame = () => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)));
+
+Object.assign(window, {
+  bench: {
+    async ready() {
+      // The module is loaded and warm, as it is when a user opens a second file.
+      await page.call({ do: 'open', file: 'warm.g7', text: chartText(40) });
+      await page.call({ do: 'drawing', file: 'warm.g7', chart: 'Big' });
+    },
+    async show(n: number) {
+      steps = n;
+      await files.open(`big-${n}.g7`, chartText(n));
+      while (editor.scene?.drawing.items.length === undefined || !document.querySelector('.still [data-id], .still .far')) await frame();
+      await frame();
+    },
+    tick(n: number) {
+      const on = active(steps, n);
+      live.running = true;
+      live.on = new Set(on.map((i) => `Big/s/${i}`));
+      live.enabled = new Map(on.map((i) => [`Big/t/${i}`, n % 2 === 0 ? 1 : 2]));
+    },
+    whole: () => editor.camera?.fit(),
+    actual() {
+      editor.camera?.zoomBy(1 / editor.view.k);
+      const [x, y, w, h] = editor.scene?.drawing.area ?? [0, 0, 0, 0];
+      editor.camera?.moveTo(x + w / 2, y + Math.min(h / 2, 400));
+    },
+  },
+});
