@@ -131,9 +131,7 @@ impl Plot {
                 stair(p, &pieces, height);
                 for (a, b, e) in &pieces {
                     let room = width(&e.show, 90) + 30;
-                    // Beside the line, not on it: above where it is low.
-                    let y = height(e);
-                    let y = if y > base - WAVE / 2 { y - 30 } else { y + 95 };
+                    let y = height(e) - 30;
                     if b - a > room {
                         p.text("g7-note", a + 25, y, 90, &e.show);
                     }

@@ -44,7 +44,7 @@ pub fn style(dark: bool) -> String {
 .g7 .g7-frame{{stroke:{soft};stroke-width:1}}\
 .g7 .g7-grid{{stroke:{soft};stroke-width:.5;stroke-opacity:.5}}\
 .g7 .g7-wave{{stroke-width:1.4}}\
-.g7 .g7-active{{fill:{accent};stroke:none}}\
+.g7 .g7-active{{fill:{accent};fill-opacity:.2;stroke-width:1.2}}\
 .g7 .g7-bar,.g7 .g7-mark{{fill:{ink};stroke:none}}\
 .g7 .g7-note,.g7 .g7-label,.g7 .g7-ref{{fill:{soft}}}\
 .g7 .g7-qual,.g7 .g7-cond{{fill:{accent}}}"
