@@ -24,16 +24,19 @@ const ALLOWED: &[Arrows] = &[
     ("syntax", &["g7-model"], None),
     ("compile", &["g7-model", "g7-engine"], Some(&[])),
     ("host", &["g7-engine"], None),
+    ("draw", &["g7-model"], Some(&[])),
     ("edit", &["g7-model", "g7-syntax", "g7-compile"], Some(&["serde"])),
     ("rig", &["g7-model", "g7-syntax", "g7-engine", "g7-compile", "g7-host"], Some(&["thiserror"])),
     (
         "page",
-        &[
-            "g7-model", "g7-syntax", "g7-engine", "g7-compile", "g7-host", "g7-draw", "g7-edit", "g7-rig",
-        ],
+        &["g7-model", "g7-syntax", "g7-engine", "g7-compile", "g7-host", "g7-draw", "g7-edit", "g7-rig"],
         Some(&["serde", "serde_json"]),
     ),
-    ("g7", &["g7-model", "g7-syntax", "g7-engine", "g7-compile", "g7-host", "g7-rig", "g7-page"], None),
+    (
+        "g7",
+        &["g7-model", "g7-syntax", "g7-engine", "g7-compile", "g7-host", "g7-draw", "g7-rig", "g7-page"],
+        None,
+    ),
 ];
 
 /// Longest file, in lines.
