@@ -216,13 +216,52 @@ pub(crate) struct Scratch {
 /// Everything a running program remembers.
 ///
 /// Equality and hash are those of [`State::image`].
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub struct State {
     pub(crate) w: Box<[u64]>,
     pub(crate) x: Scratch,
     pub(crate) vars: u32,
     pub(crate) var_words: u32,
     pub(crate) steps: Tree,
+}
+
+impl Clone for State {
+    /// A copy with the same room to work in: a scan allocates nothing, and what
+    /// has no room is left out.
+    fn clone(&self) -> State {
+        let mut x = self.x.clone();
+        x.make_room(&self.x);
+        State { w: self.w.clone(), x, vars: self.vars, var_words: self.var_words, steps: self.steps }
+    }
+}
+
+impl Scratch {
+    /// Room in every list as another one has it.
+    fn make_room(&mut self, of: &Scratch) {
+        fn room<T>(to: &mut Vec<T>, of: &Vec<T>) {
+            to.reserve_exact(of.capacity().saturating_sub(to.len()));
+        }
+        room(&mut self.stack, &of.stack);
+        room(&mut self.fired, &of.fired);
+        room(&mut self.slow, &of.slow);
+        room(&mut self.on, &of.on);
+        room(&mut self.off, &of.off);
+        room(&mut self.chain, &of.chain);
+        room(&mut self.left, &of.left);
+        room(&mut self.came, &of.came);
+        room(&mut self.turns, &of.turns);
+        room(&mut self.written, &of.written);
+        room(&mut self.runs, &of.runs);
+        room(&mut self.log, &of.log);
+        room(&mut self.commits, &of.commits);
+        room(&mut self.emptied, &of.emptied);
+        room(&mut self.saved, &of.saved);
+        room(&mut self.cleared, &of.cleared);
+        room(&mut self.ran, &of.ran);
+        for (to, of) in self.text.iter_mut().zip(&of.text) {
+            room(to, of);
+        }
+    }
 }
 
 impl PartialEq for State {
@@ -317,8 +356,8 @@ impl State {
         if bytes.len() != state.w.len() * 8 {
             return None;
         }
-        for (w, b) in state.w.iter_mut().zip(bytes.chunks_exact(8)) {
-            *w = b.iter().rev().fold(0, |acc, b| acc << 8 | u64::from(*b));
+        for (w, b) in state.w.iter_mut().zip(bytes.as_chunks().0) {
+            *w = u64::from_le_bytes(*b);
         }
         Some(state)
     }
