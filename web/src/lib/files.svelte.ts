@@ -16,6 +16,12 @@ export interface TextChange {
 
 type Listener = (change: TextChange) => void;
 
+interface Typed {
+  changes: ChangeSet;
+  /** Undone by itself. */
+  unit: boolean;
+}
+
 const asSpecs = (splices: Splice[]) => splices.map((s) => ({ from: s.from, to: s.to, insert: s.insert }));
 
 function asSplices(changes: ChangeSet): Splice[] {
@@ -49,9 +55,11 @@ export class OpenFile {
   readonly changed: boolean = $derived(this.text !== this.saved);
 
   #listeners = new Set<Listener>();
-  /** Typed while an edit of the worker is under way; relative to the text before it. */
-  #typed: ChangeSet | null = null;
-  #under = 0;
+  /** Typed and not sent yet; each relative to the text after those before it. */
+  #typed: Typed[] = [];
+  /** Whether the worker is at a change of this file. */
+  #busy = false;
+  #waiting: (() => void)[] = [];
   #drawings = new Map<string, { version: number; drawing: Promise<Drawing> }>();
 
   constructor(look: Look, text: string) {
@@ -66,17 +74,19 @@ export class OpenFile {
     return () => this.#listeners.delete(listener);
   }
 
-  /** Typed in the text view. */
-  async type(splices: Splice[], unit = false): Promise<void> {
-    if (splices.length === 0) return;
-    const changes = this.#under > 0 ? ChangeSet.of(asSpecs(splices), this.text.length) : null;
-    this.text = apply(this.text, splices);
-    this.#tell({ splices, origin: 'text' });
-    if (changes) {
-      this.#typed = this.#typed ? this.#typed.compose(changes) : changes;
-      return;
-    }
-    this.look = await page.call<Look>({ do: 'splice', file: this.name, splices, unit });
+  /** Typed in the text view. What is typed while the worker is busy is sent together afterwards. */
+  type(splices: Splice[], unit = false): Promise<void> {
+    return this.#put(splices, unit, 'text');
+  }
+
+  /** A fix that was offered: one edit of its own. */
+  fix(splices: Splice[]): Promise<void> {
+    return this.#put(splices, true, 'structure');
+  }
+
+  /** Waits until the worker has the text as it is here. */
+  async settled(): Promise<void> {
+    while (this.#busy) await new Promise<void>((done) => this.#waiting.push(done));
   }
 
   /** An edit by structure. */
@@ -108,10 +118,9 @@ export class OpenFile {
     ) {
       tail++;
     }
-    const splices = [{ from, to: now.length - tail, insert: text.slice(from, text.length - tail) }];
-    this.text = text;
-    this.#tell({ splices, origin: 'disk' });
-    this.look = await page.call<Look>({ do: 'splice', file: this.name, splices, unit: true });
+    const insert = text.slice(from, text.length - tail);
+    await this.#put([{ from, to: now.length - tail, insert }], true, 'disk');
+    await this.settled();
   }
 
   /** A chart as drawn, of the present text. */
@@ -127,31 +136,51 @@ export class OpenFile {
     return drawing;
   }
 
+  async #put(splices: Splice[], unit: boolean, origin: Origin): Promise<void> {
+    if (splices.length === 0) return;
+    const changes = ChangeSet.of(asSpecs(splices), this.text.length);
+    const last = this.#typed.at(-1);
+    if (last && !last.unit && !unit) last.changes = last.changes.compose(changes);
+    else this.#typed.push({ changes, unit });
+    this.text = apply(this.text, splices);
+    this.#tell({ splices, origin });
+    if (!this.#busy) await this.#send();
+  }
+
   async #change(message: Message, origin: Origin): Promise<Edited> {
-    this.#under++;
+    await this.settled();
+    this.#busy = true;
     try {
       const edited = await page.call<Edited>(message);
-      let splices = edited.splices;
-      if (this.#typed) {
-        const theirs = ChangeSet.of(asSpecs(splices), this.#typed.length);
-        splices = asSplices(theirs.map(this.#typed, true));
-        this.#typed = this.#typed.map(theirs);
+      let theirs = ChangeSet.of(asSpecs(edited.splices), this.#typed[0]?.changes.length ?? this.text.length);
+      for (const mine of this.#typed) {
+        const after = theirs.map(mine.changes, true);
+        mine.changes = mine.changes.map(theirs);
+        theirs = after;
       }
+      const splices = asSplices(theirs);
       this.text = apply(this.text, splices);
       this.look = edited;
       this.#tell({ splices, origin });
       return edited;
     } finally {
-      this.#under--;
-      if (this.#under === 0) await this.#send();
+      await this.#send();
     }
   }
 
+  /** Sends what was typed, until there is no more. */
   async #send(): Promise<void> {
-    const typed = this.#typed;
-    this.#typed = null;
-    if (!typed || typed.empty) return;
-    this.look = await page.call<Look>({ do: 'splice', file: this.name, splices: asSplices(typed) });
+    this.#busy = true;
+    try {
+      for (let next = this.#typed.shift(); next; next = this.#typed.shift()) {
+        const splices = asSplices(next.changes);
+        if (splices.length === 0) continue;
+        this.look = await page.call<Look>({ do: 'splice', file: this.name, splices, unit: next.unit });
+      }
+    } finally {
+      this.#busy = false;
+      this.#waiting.splice(0).forEach((done) => done());
+    }
   }
 
   #tell(change: TextChange): void {
