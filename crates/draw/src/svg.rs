@@ -89,9 +89,9 @@ fn title(document: &Document, drawing: &Drawing) -> Picture {
     let Some(chart) = document.charts().find(|c| c.name.text == drawing.chart) else { return p };
     let name = match (chart.kind, inside_of(document, chart)) {
         (ChartKind::Expansion, Some(step)) if *step != *chart.name.text => {
-            format!("{} = {}", clean(&step), clean(&chart.name.text))
+            format!("{} = {}", short(&step), short(&chart.name.text))
         }
-        (ChartKind::Chart | ChartKind::Expansion | ChartKind::Task, _) => clean(&chart.name.text),
+        (ChartKind::Chart | ChartKind::Expansion | ChartKind::Task, _) => short(&chart.name.text),
     };
     let (mut x, y) = (drawing.area.x, drawing.area.y - UNDER_TITLE);
     if let Some(step) = enclosed_by(document, chart) {
@@ -109,6 +109,10 @@ fn title(document: &Document, drawing: &Drawing) -> Picture {
         p.rect("g7-frame", all.x - 150, all.y - 120, all.w + 300, all.h + 270);
     }
     p
+}
+
+fn short(name: &str) -> String {
+    shortened(&clean(name), TITLE, 4000).0
 }
 
 /// The symbol of an enclosing step, small, with its name; tells how wide it is.

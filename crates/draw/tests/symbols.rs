@@ -6,7 +6,8 @@ use g7_model::{Document, FileId, Severity};
 
 fn parse(text: &str) -> Document {
     let (document, problems) = g7_syntax::parse(text, FileId(0));
-    assert!(problems.iter().all(|p| p.severity() != Severity::Error), "{text}: {problems:?}");
+    let wrong = problems.iter().find(|p| p.severity() == Severity::Error);
+    assert!(wrong.is_none(), "{}: {wrong:?}", text.chars().take(400).collect::<String>());
     document
 }
 
@@ -269,5 +270,33 @@ fn every_item_is_inside_the_drawing_and_knows_its_text() {
         let all = d.area;
         assert!(x >= all.x && y >= all.y && x + w <= all.x + all.w && y + h <= all.y + all.h, "{item:?}");
         assert!(item.at.end > item.at.start, "{item:?}");
+    }
+}
+
+#[test]
+fn no_chart_is_too_odd_to_be_drawn() {
+    let long = "a".repeat(50_000);
+    let seams = "aB".repeat(50_000);
+    let words = "x ".repeat(100_000);
+    let args = vec!["a"; 50_000].join(", ");
+    let sum = vec!["not a"; 200].join(" or ");
+    let deep = format!("{}a{}", "not (".repeat(100), ")".repeat(100));
+    let body: String = (0..3000).map(|i| format!("v{i} := {sum};")).take(50).collect();
+    let odd = "`\u{202e}مرحبا 🦀 e\u{301}\u{0301} \u{200d}`";
+    let text = format!(
+        "chart G \"{words}\" {{
+           initial step {long} \"{words}\" {{ N {long} if {sum} P1 {{ {body} }} \"{words}\" }}
+           step {seams}
+           step {odd} {{ force {odd} := {{{long}, {seams}}} }}
+           {long} -> {seams} when f({args}) priority 4294967295 \"{words}\" on clearing {{ {body} }}
+           {seams} -> {odd} when {deep} + {sum}
+           () -> {odd} when a
+           {odd} -> () when b
+         }}"
+    );
+    for options in [Options::default(), Options { look: Look::Sfc, pages: true, ..Options::default() }] {
+        let d = picture(&text, &options);
+        assert_eq!(items(&d, |p| matches!(p, Part::Step { .. })).len(), 3);
+        assert!(d.area.w < 60_000 && d.area.h < 60_000, "{:?}", d.area);
     }
 }

@@ -4,7 +4,7 @@ use g7_model::{Action, ActionKind, Expr, ExprKind, Order, Qualifier, Situation, 
 
 use crate::ink::{Picture, stack};
 use crate::symbols::{ACTION_TEXT, SMALL, SQUARE, quoted};
-use crate::text::{Line, body, clean, set, width};
+use crate::text::{Line, body, clean, set, shortened, width};
 use crate::{Look, Options, Rect};
 
 /// From the square to the actions.
@@ -112,7 +112,8 @@ pub(crate) fn limited(lines: &[Line]) -> (Vec<Line>, Option<String>) {
     };
     let mut shown: Vec<Line> = lines.iter().cloned().flat_map(|l| l.wrap(ACTION_TEXT, WIDEST)).collect();
     if shown.len() <= LINES {
-        return (shown, None);
+        let title = shown.iter().any(Line::is_cut).then(full);
+        return (shown, title);
     }
     shown.truncate(LINES - 1);
     shown.push(Line::plain("…"));
@@ -215,12 +216,17 @@ fn and(a: Expr, b: Expr) -> Expr {
 }
 
 fn above(line: Line) -> Vec<Line> {
-    line.wrap(SMALL, WIDEST)
+    let mut lines = line.wrap(SMALL, WIDEST);
+    if lines.len() > LINES {
+        lines.truncate(LINES - 1);
+        lines.push(Line::plain("…"));
+    }
+    lines
 }
 
 fn qualified(q: Qualifier, time: Option<&Expr>) -> String {
     match time {
-        Some(t) => format!("{} {}", q.name(), set(t).text),
+        Some(t) => format!("{} {}", q.name(), shortened(&set(t).text, SMALL, 900).0),
         None => q.name().to_owned(),
     }
 }
@@ -250,7 +256,8 @@ fn ordered(order: &Order) -> Row {
         Order::Call(task) => (Frame::Sides, clean(&task.text)),
         Order::Enclose(chart) => (Frame::Cut, clean(&chart.text)),
     };
-    Row { frame, sign: Sign::Nothing, stub: None, lines: vec![Line::plain(text)], title: None }
+    let (lines, title) = limited(&[Line::plain(text)]);
+    Row { frame, sign: Sign::Nothing, stub: None, lines, title }
 }
 
 impl Row {

@@ -4,7 +4,7 @@ use g7_model::{Step, StepKind};
 
 use crate::ink::{Picture, rise, stack};
 use crate::symbols::{SMALL, SQUARE, action, extent, quoted};
-use crate::text::{Line, clean, name_lines, width};
+use crate::text::{Line, clean, name_lines, shortened, width};
 use crate::{Extent, Options, Rect};
 
 /// A step round its anchor, the middle of the upper edge of its square.
@@ -109,7 +109,7 @@ fn remarks(p: &mut Picture, step: &Step, s: Rect, actions: Option<i32>) {
     if let StepKind::Macro(of) = &step.kind
         && of.text != step.name.text
     {
-        lines.push(Line::plain(format!("= {}", clean(&of.text))));
+        lines.push(Line::plain(format!("= {}", shortened(&clean(&of.text), SMALL, COMMENT).0)));
     }
     if let Some(comment) = step.comment.as_deref().filter(|c| !c.trim().is_empty()) {
         let (set, whole) = quoted(comment, COMMENT, 3);

@@ -4,7 +4,7 @@ use g7_model::Transition;
 
 use crate::ink::{Picture, stack};
 use crate::symbols::{ACTION_TEXT, DOUBLE_GAP, HALF_BAR, SMALL, TEXT, action, extent, quoted};
-use crate::text::{Line, body, clean, receptivity, width};
+use crate::text::{Line, body, clean, receptivity, shortened, width};
 use crate::{Bar, Extent, Point, Rect};
 
 /// A transition round its anchor, the middle of its bar.
@@ -47,7 +47,7 @@ pub(crate) fn transition(t: &Transition) -> TransitionShape {
         }
     }
     if let Some(label) = &t.label {
-        let label = format!("({})", clean(&label.text));
+        let label = format!("({})", shortened(&clean(&label.text), SMALL, 1600).0);
         p.text("g7-label", -HALF_BAR - GAP - width(&label, SMALL), SMALL * 35 / 100, SMALL, &label);
     }
     if let Some(n) = t.priority {
@@ -67,6 +67,8 @@ fn condition(p: &mut Picture, t: &Transition) -> Rect {
         if let Some(last) = lines.last_mut() {
             last.text.push_str(" …");
         }
+    }
+    if lines.iter().any(Line::is_cut) {
         p.title = Some(linear);
     }
     let x = HALF_BAR + GAP;

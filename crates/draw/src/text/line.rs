@@ -1,6 +1,6 @@
 //! A line of set text: characters, overlines over parts of it, places to break.
 
-use crate::text::width;
+use crate::text::{fits, shortened, width};
 
 /// A set line.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -63,9 +63,31 @@ impl Line {
         text
     }
 
-    /// Broken into lines no wider than `most`, where it has places to break.
+    /// Broken into lines no wider than `most`, where it has places to break; a line
+    /// far wider for want of such a place is cut and ends in `…`.
     pub(crate) fn wrap(self, size: i32, most: i32) -> Vec<Line> {
-        if self.width(size) <= most || self.breaks.is_empty() {
+        let widest = most + most / 2;
+        self.broken(size, most).into_iter().map(|l| l.shortened(size, widest)).collect()
+    }
+
+    /// Whether a part of it was left out.
+    pub(crate) fn is_cut(&self) -> bool {
+        self.text.ends_with('…')
+    }
+
+    fn shortened(mut self, size: i32, most: i32) -> Line {
+        if !fits(&self.text, size, most - self.indent) {
+            let (text, _) = shortened(&self.text, size, most - self.indent);
+            let end = text.len() - '…'.len_utf8();
+            self.overs.retain(|o| o.from < end);
+            self.overs.iter_mut().for_each(|o| o.to = o.to.min(end));
+            self.text = text;
+        }
+        self
+    }
+
+    fn broken(self, size: i32, most: i32) -> Vec<Line> {
+        if self.breaks.is_empty() || fits(&self.text, size, most - self.indent) {
             return vec![self];
         }
         let mut lines = Vec::new();
@@ -87,10 +109,10 @@ impl Line {
     /// leaves it more than half full, else the last place that fits.
     fn line_end(&self, start: usize, size: i32, room: i32) -> usize {
         let span = |end: usize| width(self.text.get(start..end).unwrap_or("").trim_end(), size);
-        if span(self.text.len()) <= room {
+        if fits(self.text.get(start..).unwrap_or(""), size, room) {
             return self.text.len();
         }
-        let ahead = self.breaks.iter().filter(|b| b.at > start);
+        let ahead = self.breaks.iter().skip(self.breaks.partition_point(|b| b.at <= start));
         let mut best: Option<Break> = None;
         for b in ahead {
             if span(b.at) > room {
@@ -153,7 +175,14 @@ mod tests {
     }
 
     #[test]
-    fn what_has_no_place_to_break_stays_whole() {
-        assert_eq!(Line::plain("a".repeat(500)).wrap(140, 100).len(), 1);
+    fn what_has_no_place_to_break_stays_whole_unless_it_is_far_too_wide() {
+        let word = "a".repeat(12);
+        let most = width(&word, 140) - 200;
+        assert_eq!(Line::plain(&*word).wrap(140, most), [Line::plain(&*word)]);
+        let mut long = Line::plain("a".repeat(500));
+        long.overs.push(Over { from: 0, to: 500, level: 1 });
+        let [cut] = &long.wrap(140, most)[..] else { panic!("one line") };
+        assert!(cut.is_cut() && cut.width(140) <= most + most / 2);
+        assert!(cut.overs[0].to < cut.text.len(), "the line ends where the text does");
     }
 }

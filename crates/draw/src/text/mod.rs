@@ -21,6 +21,16 @@ pub(crate) fn width(text: &str, size: i32) -> i32 {
     i32::try_from((sum * i64::from(size) + 999) / 1000).unwrap_or(i32::MAX / 4)
 }
 
+/// Whether a text is no wider than that; looks at no more of it than it must.
+pub(crate) fn fits(text: &str, size: i32, most: i32) -> bool {
+    let most = i64::from(most) * 1000;
+    let mut sum = 0;
+    text.trim_end().chars().all(|c| {
+        sum += i64::from(advance(c).unwrap_or_else(|| guess(c))) * i64::from(size);
+        sum <= most
+    })
+}
+
 /// Whether the bundled font has every character, so that the width is exact.
 pub(crate) fn known(text: &str) -> bool {
     text.chars().all(|c| advance(c).is_some())

@@ -1,6 +1,6 @@
 //! Words: comments broken into lines, names fitted into a square.
 
-use crate::text::{clean, width};
+use crate::text::{clean, fits, width};
 
 /// Text broken at blanks into at most `lines` lines; the last one ends in `…`
 /// where there was more. Tells whether all of it is there.
@@ -34,7 +34,7 @@ pub(crate) fn wrap_words(text: &str, size: i32, most: i32, lines: usize) -> (Vec
 
 /// The text, or as much of it as fits with `…` behind it; and whether it fits.
 pub(crate) fn shortened(text: &str, size: i32, most: i32) -> (String, bool) {
-    if width(text, size) <= most {
+    if fits(text, size, most) {
         return (text.to_owned(), true);
     }
     let room = most - width("…", size);
@@ -61,10 +61,16 @@ pub(crate) struct Fitted {
 /// Widest name before it is cut.
 const WIDEST_NAME: i32 = 2400;
 
+/// Most characters of a name that are looked at.
+const LONGEST_NAME: usize = 200;
+
 /// Fits a name into `room`: as it is, a little smaller, in two lines, and only
 /// then wider than the room.
 pub(crate) fn name_lines(name: &str, room: i32) -> Fitted {
-    let name = clean(name);
+    let name = match name.char_indices().nth(LONGEST_NAME) {
+        Some((at, _)) => format!("{}…", clean(name.get(..at).unwrap_or(""))),
+        None => clean(name),
+    };
     for size in [140, 120] {
         let w = width(&name, size);
         if w <= room {
