@@ -246,6 +246,13 @@ fn play(seed: u64, first: &str, length: usize) -> usize {
                     spliced(&text, &edit.splices).unwrap_or_else(|| panic!("does not fit: {}", told()));
                 let (doc, clean) = read(&after);
                 assert!(clean, "not clean: {}\n--- after\n{after}", told());
+                let takes = ["delete", "delete_variable", "macro", "action", "tidy", "paste", "kind"];
+                if !takes.contains(&value["g"].as_str().unwrap_or_default()) {
+                    let (before, _) = read(&text);
+                    let mut left = doc.notes.iter();
+                    let kept = before.notes.iter().all(|n| left.any(|l| l == n));
+                    assert!(kept, "notes: {}\n--- after\n{after}", told());
+                }
                 for id in edit.select.iter().chain(&edit.begin) {
                     assert!(known(&doc, id), "no {id}: {}\n--- after\n{after}", told());
                 }

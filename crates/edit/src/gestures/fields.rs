@@ -79,7 +79,11 @@ pub(crate) fn action(
         let Some(k) = index else { return Ok(()) };
         return remove_action(d, &id.chart, &name, k);
     }
-    let new = read_actions(d, text.trim())?;
+    let text = text.trim();
+    // GRAFCET writes a continuous action without a letter, and so a stored one: its arrow is understood.
+    let understood = if text.contains(":=") { "P1" } else { "N" };
+    let new = read_actions(d, text)
+        .or_else(|refusal| read_actions(d, &format!("{understood} {text}")).map_err(|_| refusal))?;
     let count = new.len();
     let there = d.step_mut(&id.chart, &name)?;
     let at = match index {

@@ -156,3 +156,20 @@ pub(crate) fn put_transition(
     chart.items.insert(k.min(chart.items.len()), ChartItem::Transition(t));
     Ok(())
 }
+
+/// Puts a new transition into the text just before or behind another, so that
+/// alternatives keep their order.
+pub(crate) fn put_beside(
+    d: &mut Draft<'_>,
+    chart: &str,
+    t: Transition,
+    other: Span,
+    behind: bool,
+) -> Result<(), Refusal> {
+    let chart = d.chart_mut(chart)?;
+    let same = |i: &ChartItem| matches!(i, ChartItem::Transition(x) if x.at.0 == other);
+    let k = chart.items.iter().position(same).unwrap_or(chart.items.len());
+    let k = if behind { chain_end(chart, k) } else { k };
+    chart.items.insert(k.min(chart.items.len()), ChartItem::Transition(t));
+    Ok(())
+}

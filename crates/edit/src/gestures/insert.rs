@@ -4,7 +4,7 @@ use g7_model::{Span, StepKind};
 
 use super::build::fresh_step;
 use super::delete::Chosen;
-use super::graph::{add, put_step, put_transition, replace};
+use super::graph::{add, put_beside, put_step, replace};
 use super::table::add_expansion;
 use crate::draft::Draft;
 use crate::gesture::What;
@@ -37,7 +37,7 @@ pub(crate) fn insert(d: &mut Draft<'_>, link: &ItemId, what: What) -> Result<(),
     replace(if leaving { &mut old.from } else { &mut old.to }, &step, &new);
     let near = if leaving { None } else { d.transition(chart, at)?.from.last().map(|n| n.text.to_string()) };
     let near = near.unwrap_or(step.clone());
-    put_transition(d, chart, t, &near)?;
+    put_beside(d, chart, t, at, !leaving)?;
     let mut born_step = d.new_step(&name);
     born_step.kind = kind;
     put_step(d, chart, born_step, Some(&near))?;

@@ -20,7 +20,7 @@ pub(crate) fn point([x, y]: [f64; 2]) -> Result<(i32, i32), Refusal> {
 
 fn hundredths(px: f64) -> Result<i32, Refusal> {
     let n = (px * 10.0).round();
-    if !(n.abs() <= FARTHEST as f64) {
+    if n.is_nan() || n.abs() > FARTHEST as f64 {
         return refuse("this place is too far away");
     }
     #[allow(clippy::cast_possible_truncation, reason = "bounded just above")]

@@ -144,7 +144,8 @@ fn edit_actions(
     if new.actions.is_empty() && !notes {
         return sheet.put(head_end, end, "");
     }
-    if !notes && !sheet.slice(open.start, end).contains('\n') || old.actions.is_empty() && !notes {
+    let one_line = !sheet.slice(open.start, end).contains('\n');
+    if !notes && (one_line || old.actions.is_empty()) {
         return sheet.put(open.start, end, braces(&texts, &outer, newline));
     }
     let block = Block { open: Some(open.end), close: end - 1, indent: format!("{outer}  "), outer: &outer };

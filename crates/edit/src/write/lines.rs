@@ -138,10 +138,11 @@ impl<'a> Sheet<'a> {
         let from = self.line_start(start);
         let mut to = self.next_line(tail);
         let above = from > 0 && self.is_blank_line(self.line_start(from - 1));
-        if above && self.is_blank_line(to) {
+        if (above || from == 0) && self.is_blank_line(to) {
             to = self.next_line(to);
         }
-        let closing = self.slice(to, self.line_end(to)).trim_start().starts_with('}');
+        let closing =
+            to >= self.text.len() || self.slice(to, self.line_end(to)).trim_start().starts_with('}');
         let gap = if above && closing { self.line_start(from - 1) } else { from };
         let from = if self.splices.last().is_none_or(|s| s.end <= gap) { gap } else { from };
         let last = to >= self.text.len() && !self.text.ends_with('\n');

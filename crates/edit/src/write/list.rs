@@ -146,7 +146,7 @@ impl<'w, 's, 't, T, S: Style<T>> Work<'w, 's, 't, T, S> {
             }
             (Some(open), false) => self.sheet.put(open, open, format!("{nl}{lines}{nl}{}", self.indent)),
             (None, false) => self.sheet.insert_above(first, &lines),
-            (Some(open), true) => self.into_empty(open, &lines, outer),
+            (Some(open), true) => self.fill_empty(open, &lines, outer),
             (None, true) => {
                 let end = self.sheet.text.len();
                 let before = match self.sheet.text {
@@ -160,7 +160,7 @@ impl<'w, 's, 't, T, S: Style<T>> Work<'w, 's, 't, T, S> {
     }
 
     /// Into braces with at most notes between them.
-    fn into_empty(&mut self, open: usize, lines: &str, outer: &str) {
+    fn fill_empty(&mut self, open: usize, lines: &str, outer: &str) {
         let (close, nl) = (self.block.close, self.sheet.newline);
         let inside = self.sheet.slice(open, close);
         if inside.trim().is_empty() {
@@ -205,11 +205,21 @@ impl<'w, 's, 't, T, S: Style<T>> Work<'w, 's, 't, T, S> {
     fn below(&mut self, b: usize) {
         let things = self.new_after(b).to_vec();
         let (Some(last), Some((_, anchor))) = (things.last(), self.kept(b)) else { return };
+        if let (Some(first), Some((_, next))) = (things.first(), self.kept(b + 1))
+            && self.style.apart(anchor, first)
+            && !self.style.apart(last, next)
+        {
+            // They belong to what follows.
+            let lines = self.lines(&things, None);
+            return self.sheet.insert_above(self.span(b + 1).0, &lines);
+        }
         let mut lines = self.lines(&things, Some(anchor));
         let end = self.span(b).1;
         let next = (b + 1..self.old.len()).find_map(|k| self.kept(k)).map(|(_, n)| n);
         let line = self.sheet.next_line(self.sheet.tail(end));
-        if next.is_some_and(|n| self.style.apart(last, n)) && !self.sheet.is_blank_line(line) {
+        // Where the author put no blank line between the two, none is put now.
+        let wanted = next.is_some_and(|n| self.style.apart(last, n) && !self.style.apart(anchor, n));
+        if wanted && !self.sheet.is_blank_line(line) {
             lines.push_str(self.sheet.newline);
         }
         self.sheet.insert_below(end, &lines, self.block.outer);
