@@ -84,6 +84,7 @@ export const run = {
   'run.signal': ['Signal', 'Signal', 'Sinal'],
   'run.value': ['Value', 'Valeur', 'Valor'],
   'run.export': ['Export as {form}', 'Exporter en {form}', 'Exportar em {form}'],
+  'run.exportAs': ['Export', 'Exporter', 'Exportar'],
   'run.cursors': ['Click sets cursor A, Shift and click cursor B; arrow keys go from edge to edge', 'Un clic place le curseur A, Maj et clic le curseur B ; les flèches vont de front en front', 'Um clique põe o cursor A, Shift e clique o cursor B; as setas vão de flanco em flanco'],
   'run.up': ['Move {name} up', 'Monter {name}', 'Subir {name}'],
   'run.hide': ['Hide {name}', 'Masquer {name}', 'Ocultar {name}'],
