@@ -1,5 +1,6 @@
 //! Changes of a file: gestures, typing, undo, the formatter.
 
+use std::cell::RefCell;
 use std::collections::HashMap;
 
 use g7_edit::{Edit, Gesture, ItemId, Splice};
@@ -40,7 +41,7 @@ pub(crate) fn edit(name: &str, file: &mut File, gesture: &Gesture) -> Result<Edi
 
 /// What a gesture would change.
 pub(crate) fn draft(file: &File, gesture: &Gesture) -> Result<Edit, String> {
-    let placed: std::cell::RefCell<HashMap<String, HashMap<ItemId, (i32, i32)>>> = Default::default();
+    let placed = RefCell::new(HashMap::new());
     let document = &file.source.document;
     let stand = |id: &ItemId| {
         let mut placed = placed.borrow_mut();

@@ -47,7 +47,8 @@ const PUMP: &str = "input a : BOOL\noutput pump : BOOL\nvar n : INT\nchart G {\n
 
 #[test]
 fn situation_values_and_step_times_go_on() {
-    let after = PUMP.replace("when not a", "when not a and X2.t > 5s").replace("step 2 {", "step 3\n step 2 {");
+    let after =
+        PUMP.replace("when not a", "when not a and X2.t > 5s").replace("step 2 {", "step 3\n step 2 {");
     let after = after.replace("}\n}\n", "}\n 2 -> 3 when FALSE\n 3 -> 1 when TRUE\n}\n");
     let (bench, Carried { mut runner, lost }) = changed(PUMP, &after, &[("a", 1)], 100);
     assert_eq!(lost, Vec::<String>::new());
@@ -167,4 +168,35 @@ fn stir(bench: &Bench, runner: &mut Runner, seed: &mut u64) {
             bench.set(runner, item, &Value::Word(value));
         }
     }
+}
+
+#[test]
+fn a_copy_of_a_run_goes_on_like_it() {
+    let mut paths = Vec::new();
+    examples(&Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples"), &mut paths);
+    let mut reports = 0;
+    for path in paths {
+        let source = source(&std::fs::read_to_string(&path).expect("an example"));
+        let plant = g7_compile::plant::plants(&source.document).next().map(|p| p.name.text.to_string());
+        let options = Options { plant: plant.as_deref(), ..Options::default() };
+        let Some(bench) = build(&source, &options).expect("its plant").0 else { continue };
+        let mut seed = 1;
+        let mut runner = bench.runner(3);
+        for _ in 0..100 {
+            stir(&bench, &mut runner, &mut seed);
+            runner.scan().ok();
+        }
+        let mut copy = runner.clone();
+        for _ in 0..300 {
+            let mut again = seed;
+            stir(&bench, &mut runner, &mut seed);
+            stir(&bench, &mut copy, &mut again);
+            assert_eq!(runner.scan(), copy.scan(), "{}", path.display());
+            assert_eq!(runner.state(), copy.state(), "{}", path.display());
+            assert_eq!(runner.state().cleared(), copy.state().cleared(), "{}", path.display());
+            assert_eq!(runner.state().ran(), copy.state().ran(), "{}", path.display());
+            reports += runner.state().cleared().len() + runner.state().ran().len();
+        }
+    }
+    assert!(reports > 1_000, "only {reports}");
 }

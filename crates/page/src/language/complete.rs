@@ -174,6 +174,8 @@ impl Place<'_> {
                 Vec::new()
             }
             (TokenKind::PathDot, _) => self.members(),
+            // A dot with nothing behind it yet.
+            (TokenKind::Sign, ".") if last.end as u32 == self.at => self.members(),
             (TokenKind::Colon, _) if self.declares() => {
                 TYPES.iter().map(|t| choice(t, "type", "", t)).collect()
             }

@@ -135,7 +135,10 @@ impl Run {
         let before = (!self.breaks.steps.is_empty()).then(|| self.active());
         self.now = self.runner.due();
         self.clock = self.clock.max(self.now);
-        self.past.before_scan(&self.runner);
+        // One that is looked at pass by pass has begun already.
+        if !self.runner.is_within_scan() {
+            self.past.before_scan(&self.runner);
+        }
         let done = self.runner.scan();
         self.seen(before.as_ref());
         done.is_ok() && self.stopped.is_none()
@@ -287,6 +290,9 @@ impl Run {
     /// Starts the charts anew, with their first scan.
     pub(crate) fn restart(&mut self, warm: bool) -> Result<(), String> {
         self.only_now()?;
+        if self.runner.is_within_scan() {
+            self.scan();
+        }
         self.come(Event::Restart(if warm { Restart::Warm } else { Restart::Cold }));
         self.stopped = None;
         self.conflicts = Conflicts::default();

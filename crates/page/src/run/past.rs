@@ -92,7 +92,7 @@ impl Past {
             }
             // What came in at this very instant is made again too: it lies behind the mark.
             if self.scans.is_multiple_of(self.every)
-                && !self.entries.last().is_some_and(|e| e.scans == self.scans)
+                && self.entries.last().is_none_or(|e| e.scans != self.scans)
             {
                 self.marks.push(Mark { scans: self.scans, runner: runner.clone() });
             }
