@@ -1,4 +1,5 @@
-// The components of this folder that have a place in the frame.
+// The text view of the middle.
 import type { Panel } from '../lib/shell.svelte';
+import TextView from './TextView.svelte';
 
-export const panels: Panel[] = [];
+export const panels: Panel[] = [{ id: 'text', title: 'app.view.text', region: 'text', component: TextView, order: 10 }];

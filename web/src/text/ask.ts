@@ -1,0 +1,118 @@
+// What the text view asks the checker: completion, hover, problems, references.
+import type { Completion, CompletionContext, CompletionResult } from '@codemirror/autocomplete';
+import type { Action, Diagnostic } from '@codemirror/lint';
+import type { EditorState } from '@codemirror/state';
+import { hoverTooltip, type EditorView } from '@codemirror/view';
+import type { OpenFile } from '../lib/files.svelte';
+import { t } from '../lib/i18n';
+import { page } from '../lib/page';
+import type { Completions, Fix, Hover, Problem, Symbols } from '../lib/protocol';
+import { markdown } from './markdown';
+import { asUnit } from './sync';
+
+const KINDS: Record<string, string> = {
+  step: 'property',
+  chart: 'class',
+  variable: 'variable',
+  keyword: 'keyword',
+  type: 'type',
+  profile: 'constant',
+  function: 'function',
+  member: 'property',
+  name: 'text',
+  plant: 'namespace',
+};
+
+export function completion(file: OpenFile) {
+  return async (context: CompletionContext): Promise<CompletionResult | null> => {
+    const before = context.matchBefore(/[\p{L}\p{N}_.%`]+/u);
+    if (!before && !context.explicit) return null;
+    await file.settled();
+    if (context.aborted) return null;
+    const found = await page.call<Completions | null>({ do: 'complete', file: file.name, at: context.pos }).catch(() => null);
+    if (!found || found.items.length === 0) return null;
+    const options = found.items.map((item): Completion => ({
+      label: item.label,
+      type: KINDS[item.kind] ?? 'text',
+      ...(item.detail ? { detail: item.detail } : {}),
+      ...(item.insert && item.insert !== item.label ? { apply: item.insert } : {}),
+    }));
+    return { from: found.from, options, validFor: /^[\p{L}\p{N}_]*$/u };
+  };
+}
+
+export function hover(file: OpenFile) {
+  return hoverTooltip(async (view, at) => {
+    const { doc } = view.state;
+    await file.settled();
+    const found = await page.call<Hover | null>({ do: 'hover', file: file.name, at }).catch(() => null);
+    if (!found || view.state.doc !== doc) return null;
+    return {
+      pos: found.from,
+      end: found.to,
+      above: true,
+      create: () => {
+        const dom = markdown(found.markdown);
+        dom.className = 'g7-hover';
+        return { dom };
+      },
+    };
+  });
+}
+
+function mend(fix: Fix): Action {
+  return {
+    name: fix.title,
+    apply: (view) => view.dispatch({ changes: fix.splices, annotations: asUnit.of(true), userEvent: 'input.fix' }),
+  };
+}
+
+export function diagnostics(problems: readonly Problem[], length: number): Diagnostic[] {
+  return problems.map((p) => ({
+    from: Math.min(p.from, length),
+    to: Math.min(Math.max(p.to, p.from), length),
+    severity: p.severity,
+    source: p.code,
+    message: p.help ? `${p.what}\n${p.help}` : p.what,
+    actions: p.fixes.map(mend),
+  }));
+}
+
+export interface Named {
+  places: [from: number, to: number][];
+  /** Where it is declared. */
+  declared: [from: number, to: number];
+  /** How a gesture calls it. */
+  id?: string;
+  name?: string;
+  word: string;
+}
+
+/** What the name at a place refers to, and wherever else it stands. */
+export async function named(file: OpenFile, state: EditorState, at: number): Promise<Named | null> {
+  await file.settled();
+  const places = await page.call<[number, number][]>({ do: 'references', file: file.name, at }).catch(() => []);
+  const here = places.find(([from, to]) => from <= at && at <= to) ?? places[0];
+  if (!here) return null;
+  const symbols = await page.call<Symbols>({ do: 'symbols', file: file.name });
+  const same = (row: { from: number; to: number }) => places.some(([from, to]) => row.from <= from && to <= row.to && row.to - row.from < 200);
+  const step = symbols.steps.find(same);
+  const variable = step ? undefined : symbols.variables.find(same);
+  const heads = file.look.charts.map((c) => ({ name: c.name, from: state.doc.sliceString(c.from, c.to).indexOf(c.name) + c.from }));
+  const chart = step || variable ? undefined : heads.find((c) => places.some(([from, to]) => from <= c.from && c.from < to));
+  const row = step ?? variable;
+  const declared = (row ? places.find(([from, to]) => row.from <= from && to <= row.to) : places.find(([from]) => chart && from <= chart.from)) ?? here;
+  return {
+    places,
+    declared: chart ? (places.find(([from, to]) => from <= chart.from && chart.from < to) ?? declared) : declared,
+    word: state.doc.sliceString(declared[0], declared[1]),
+    ...(step ? { id: step.id } : chart ? { id: chart.name } : variable ? { name: variable.chart ? `${variable.chart}.${variable.name}` : variable.name } : {}),
+  };
+}
+
+/** A sentence for those who do not see the marks. */
+export function told(view: EditorView, look: readonly Problem[]): string {
+  const line = view.state.doc.lineAt(view.state.selection.main.head);
+  const here = look.find((p) => p.from <= line.to && p.to >= line.from);
+  return here ? `${t(here.severity === 'error' ? 'app.error' : 'app.warning')}: ${here.what}` : '';
+}

@@ -1,0 +1,99 @@
+// The parts that make up the text view of one file.
+import { autocompletion, closeBrackets, closeBracketsKeymap, completionKeymap } from '@codemirror/autocomplete';
+import { defaultKeymap, indentWithTab } from '@codemirror/commands';
+import { bracketMatching, codeFolding, foldGutter, foldKeymap, indentOnInput, indentUnit } from '@codemirror/language';
+import { lintGutter, lintKeymap } from '@codemirror/lint';
+import { highlightSelectionMatches, search, searchKeymap } from '@codemirror/search';
+import { EditorState, Prec, type Extension } from '@codemirror/state';
+import { crosshairCursor, drawSelection, dropCursor, EditorView, highlightActiveLine, highlightActiveLineGutter, keymap, lineNumbers, rectangularSelection } from '@codemirror/view';
+import type { OpenFile } from '../lib/files.svelte';
+import { t } from '../lib/i18n';
+import { shell } from '../lib/shell.svelte';
+import { completion, hover } from './ask';
+import { byBraces } from './braces';
+import { highlight } from './highlight';
+import { marks } from './marks';
+import { phrases } from './phrases';
+import { writeSigns } from './signs';
+import { definition, references, rename, smallWindow } from './small';
+import { theme } from './theme';
+
+const language = {
+  commentTokens: { line: '//', block: { open: '/*', close: '*/' } },
+  closeBrackets: { brackets: ['(', '[', '{', '"', '`'] },
+  indentOnInput: /^\s*[})]$/,
+  wordChars: '_',
+};
+
+function history(file: OpenFile, way: 'undo' | 'redo') {
+  return () => {
+    void shell.try(async () => {
+      await file.settled();
+      if (way === 'undo' ? file.look.can_undo : file.look.can_redo) await (way === 'undo' ? file.undo() : file.redo());
+    });
+    return true;
+  };
+}
+
+export function format(file: OpenFile): void {
+  void shell.try(() => file.format());
+}
+
+export function setup(file: OpenFile, more: Extension): Extension {
+  const keys = [
+    { key: 'Mod-z', run: history(file, 'undo'), shift: history(file, 'redo'), preventDefault: true },
+    { key: 'Mod-y', run: history(file, 'redo'), preventDefault: true },
+    { key: 'F2', run: rename(file) },
+    { key: 'F12', run: definition(file), shift: references(file) },
+    {
+      key: 'Shift-Alt-f',
+      run: () => {
+        format(file);
+        return true;
+      },
+    },
+  ];
+  const click = EditorView.domEventHandlers({
+    click(e, view) {
+      if (!(e.ctrlKey || e.metaKey) || e.button !== 0) return false;
+      return definition(file)(view);
+    },
+  });
+  return [
+    // Line ends are `\n` alone, so that places are those of the file.
+    EditorState.lineSeparator.of('\n'),
+    EditorView.clipboardInputFilter.of((text) => text.replace(/\r\n?/g, '\n')),
+    EditorState.phrases.of(phrases()),
+    EditorState.languageData.of(() => [language]),
+    EditorState.allowMultipleSelections.of(true),
+    indentUnit.of('  '),
+    lintGutter(),
+    lineNumbers(),
+    codeFolding(),
+    foldGutter(),
+    highlightActiveLine(),
+    highlightActiveLineGutter(),
+    drawSelection(),
+    dropCursor(),
+    rectangularSelection(),
+    crosshairCursor(),
+    bracketMatching(),
+    closeBrackets(),
+    indentOnInput(),
+    highlightSelectionMatches(),
+    search({ top: true }),
+    autocompletion({ override: [completion(file)], activateOnTypingDelay: 60, icons: false }),
+    hover(file),
+    byBraces,
+    highlight(file),
+    marks,
+    smallWindow,
+    writeSigns,
+    click,
+    theme,
+    Prec.high(keymap.of(keys)),
+    keymap.of([...closeBracketsKeymap, ...completionKeymap, ...searchKeymap, ...foldKeymap, ...lintKeymap, ...defaultKeymap, indentWithTab]),
+    EditorView.contentAttributes.of({ 'aria-label': t('text.of', { name: file.name }), spellcheck: 'false', autocorrect: 'off', autocapitalize: 'off' }),
+    more,
+  ];
+}

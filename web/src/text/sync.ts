@@ -1,0 +1,55 @@
+// Keeps the text view and the open file the same: what is typed goes to the file,
+// what is changed elsewhere comes as splices. Undo belongs to the file.
+import { Annotation, Transaction, type ChangeSet, type Text } from '@codemirror/state';
+import { EditorView, type ViewUpdate } from '@codemirror/view';
+import type { OpenFile } from '../lib/files.svelte';
+import type { Splice } from '../lib/protocol';
+import { shell } from '../lib/shell.svelte';
+
+/** A change that came from the file: it is not sent back. */
+export const fromFile = Annotation.define<boolean>();
+/** Undone by itself, apart from what is typed before and after it. */
+export const asUnit = Annotation.define<boolean>();
+
+const UNITS = ['input.paste', 'input.drop', 'input.complete', 'delete.cut', 'move', 'input.replace'];
+
+function splices(changes: ChangeSet): Splice[] {
+  const found: Splice[] = [];
+  changes.iterChanges((from, to, _a, _b, insert: Text) => found.push({ from, to, insert: insert.toString() }), true);
+  return found;
+}
+
+export function sync(file: OpenFile) {
+  let sending = false;
+  const send = EditorView.updateListener.of((update: ViewUpdate) => {
+    for (const transaction of update.transactions) {
+      if (!transaction.docChanged || transaction.annotation(fromFile)) continue;
+      const unit = transaction.annotation(asUnit) === true || UNITS.some((event) => transaction.isUserEvent(event));
+      sending = true;
+      void shell.try(() => file.type(splices(transaction.changes), unit));
+      sending = false;
+    }
+  });
+  /** Takes over what is changed elsewhere, until it is ended. */
+  const follow = (view: EditorView): (() => void) =>
+    file.listen(({ splices: changes, origin }) => {
+      if (sending) return;
+      view.dispatch({
+        changes: changes.map(({ from, to, insert }) => ({ from, to, insert })),
+        annotations: [fromFile.of(true), Transaction.addToHistory.of(false)],
+        ...(origin === 'history' && changes[0] && view.hasFocus ? { selection: { anchor: after(changes) }, scrollIntoView: true } : {}),
+      });
+    });
+  return { send, follow };
+}
+
+/** Behind the last change, in the text after it. */
+function after(changes: Splice[]): number {
+  let shift = 0;
+  let at = 0;
+  for (const { from, to, insert } of changes) {
+    at = from + shift + insert.length;
+    shift += insert.length - (to - from);
+  }
+  return at;
+}
