@@ -6,6 +6,10 @@ import type { View } from './editor.svelte';
 
 const LEAST = 0.02;
 const MOST = 4;
+/** Room for what lies over the drawing: the palette, the way to this chart, the zoom. */
+const SIDE = 64;
+const TOP = 58;
+const LOW = 40;
 
 export class Camera {
   #root: HTMLElement;
@@ -60,25 +64,25 @@ export class Camera {
   }
 
   /** All of the chart. */
-  fit(): void {
+  fit(most = 1.5): void {
     const { clientWidth: w, clientHeight: h } = this.#root;
     const [ax, ay, aw, ah] = this.#area();
-    const k = Math.max(LEAST, Math.min(1.5, (w - 60) / Math.max(aw, 1), (h - 60) / Math.max(ah, 1)));
-    this.set({ k, x: w / 2 - (ax + aw / 2) * k, y: h / 2 - (ay + ah / 2) * k });
+    const k = Math.max(LEAST, Math.min(most, (w - 2 * SIDE) / Math.max(aw, 1), (h - TOP - LOW) / Math.max(ah, 1)));
+    this.set({ k, x: w / 2 - (ax + aw / 2) * k, y: TOP + (h - TOP - LOW) / 2 - (ay + ah / 2) * k });
   }
 
   /** A first look: all of it where it can be read, else its beginning. */
   begin(): void {
     const { clientWidth: w, clientHeight: h } = this.#root;
     const [ax, ay, aw, ah] = this.#area();
-    const all = Math.min((w - 60) / Math.max(aw, 1), (h - 60) / Math.max(ah, 1));
+    const all = Math.min((w - 2 * SIDE) / Math.max(aw, 1), (h - TOP - LOW) / Math.max(ah, 1));
     if (all >= 0.6) {
-      this.fit();
+      this.fit(1);
       return;
     }
-    const k = Math.max(0.6, Math.min(1, (w - 60) / Math.max(aw, 1)));
-    const left = aw * k <= w - 60 ? w / 2 - (ax + aw / 2) * k : w / 2;
-    this.set({ k, x: left, y: 40 - ay * k });
+    const k = Math.max(0.6, Math.min(1, (w - 2 * SIDE) / Math.max(aw, 1)));
+    const left = aw * k <= w - 2 * SIDE ? w / 2 - (ax + aw / 2) * k : w / 2;
+    this.set({ k, x: left, y: TOP - ay * k });
   }
 
   reveal(box: Box, centre = false): void {

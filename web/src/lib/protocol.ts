@@ -159,6 +159,7 @@ export interface VariableRow {
   chart?: string;
   from: number;
   to: number;
+  uses?: number;
 }
 
 export interface StepSymbol {
@@ -171,6 +172,7 @@ export interface StepSymbol {
 }
 
 export interface Symbols {
+  stale?: boolean;
   variables: VariableRow[];
   steps: StepSymbol[];
 }
@@ -181,7 +183,8 @@ export interface SearchHit {
   line: number;
   text: string;
   chart?: string;
-  item?: string;
+  /** The symbol that shows it. */
+  id?: string;
 }
 
 /** An edit by structure; ids name symbols of one chart. */
@@ -215,8 +218,7 @@ export type Gesture =
   | { g: 'variable'; name: string | null; row: Partial<VariableRow> }
   | { g: 'delete_variable'; name: string }
   | { g: 'profile'; name: string }
-  | { g: 'scan'; ms: number }
-  | { g: 'text'; splices: Splice[] };
+  | { g: 'scan'; ms: number };
 
 export type SignalRole = 'input' | 'output' | 'variable' | 'plant';
 export type SignalType = 'bool' | 'int' | 'real' | 'time' | 'text';
@@ -274,7 +276,7 @@ export interface Frame {
   late?: boolean;
   live?: boolean;
   stopped?: { id: string };
-  halt?: { what: string; at?: [number, number]; ids?: string[] };
+  halt?: { what: string; ids: string[]; from?: number; to?: number };
   notes?: string[];
 }
 
@@ -286,8 +288,18 @@ export interface Lane {
 export interface TestResult {
   name: string;
   ok: boolean;
-  message?: string;
   from: number;
   to: number;
-  steps?: string[];
+  simulated_ms: number;
+  scans: number;
+  notes?: string[];
+  failure?: { message: string; from: number; to: number; time_ms: number; got: [string, string][]; situation: string; chronogram?: string };
+}
+
+export interface TestAnswer {
+  passed: number;
+  failed: number;
+  tests: TestResult[];
+  coverage: { sort: string; total: number; reached: number; missed: string[] }[];
+  problems: Problem[];
 }
