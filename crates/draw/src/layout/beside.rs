@@ -61,7 +61,7 @@ impl Shapes<'_> {
                 heads.push(Side { block, x: 0, y });
             }
         }
-        let lift = -heads.iter().map(|h| h.y).min().unwrap_or(0).min(0);
+        let lift = CLEAR - heads.iter().map(|h| h.y).min().unwrap_or(CLEAR).min(CLEAR);
         if lift > 0 {
             self.lower(b, lift);
             heads.iter_mut().for_each(|h| h.y += lift);
@@ -154,7 +154,8 @@ impl Shapes<'_> {
         for (k, side) in left.iter().enumerate() {
             for e in std::mem::take(&mut self.blocks[side.block as usize].exits) {
                 ends[k].push(exits.len());
-                exits.push(Exit { y: e.y + side.y, ..e });
+                // Its edge is known when it has been set.
+                exits.push(Exit { y: e.y + side.y, edge: -1, ..e });
             }
         }
         let rows = bands.iter().flat_map(|s| [s.y0, s.y1]);

@@ -94,8 +94,9 @@ impl Graph {
     fn find_loops(&mut self, steps: &[&Step]) {
         let seeds = self.seeds(steps);
         let mut top = self.tops(&seeds);
+        let knots = self.knots();
         for _ in 0..4 {
-            self.descend(&seeds, &top);
+            self.descend(&seeds, &top, &knots);
             let wrong: Vec<u32> = (0..self.links.len())
                 .filter(|&l| self.back[l] && self.is_step(self.links[l].0))
                 .map(|l| self.links[l].0)
@@ -150,8 +151,52 @@ impl Graph {
         top
     }
 
-    /// Depth first from the tops: what leads to a top or to a node above leads back.
-    fn descend(&mut self, seeds: &[u32], top: &[bool]) {
+    /// A number for each node; nodes on a common loop have the same.
+    fn knots(&self) -> Vec<u32> {
+        const NEW: u32 = u32::MAX;
+        let mut knot = vec![NEW; self.nodes];
+        let (mut low, mut first) = (vec![NEW; self.nodes], vec![NEW; self.nodes]);
+        let (mut seen, mut path, mut stack) = (0, Vec::new(), Vec::<(u32, usize)>::new());
+        for root in 0..self.nodes as u32 {
+            if low[root as usize] == NEW {
+                stack.push((root, 0));
+            }
+            while let Some((n, next)) = stack.last_mut() {
+                let (n, at) = (*n, *n as usize);
+                if *next == 0 {
+                    (low[at], first[at]) = (seen, seen);
+                    seen += 1;
+                    path.push(n);
+                }
+                let links = self.out.of(n);
+                if *next > 0 {
+                    let done = self.links[links[*next - 1] as usize].1 as usize;
+                    if knot[done] == NEW {
+                        low[at] = low[at].min(low[done]);
+                    }
+                }
+                let Some(&l) = links.get(*next) else {
+                    stack.pop();
+                    // The first of its loop that was come to: the loop is what has come since.
+                    while low[at] == first[at] && knot[at] == NEW {
+                        let Some(m) = path.pop() else { break };
+                        knot[m as usize] = n;
+                    }
+                    continue;
+                };
+                *next += 1;
+                let to = self.links[l as usize].1 as usize;
+                if low[to] == NEW {
+                    stack.push((to as u32, 0));
+                }
+            }
+        }
+        knot
+    }
+
+    /// Depth first from the tops: what leads to a node above, or to a top that is
+    /// on the same loop, leads back.
+    fn descend(&mut self, seeds: &[u32], top: &[bool], knots: &[u32]) {
         const NEW: u8 = 0;
         const OPEN: u8 = 1;
         const DONE: u8 = 2;
@@ -173,7 +218,8 @@ impl Graph {
                 };
                 *next += 1;
                 let to = self.links[l as usize].1;
-                if top[to as usize] || state[to as usize] == OPEN {
+                let loops = knots[*n as usize] == knots[to as usize];
+                if top[to as usize] && loops || state[to as usize] == OPEN {
                     self.back[l as usize] = true;
                 } else if state[to as usize] == NEW {
                     state[to as usize] = OPEN;

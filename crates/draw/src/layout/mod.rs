@@ -23,6 +23,7 @@
 
 mod beside;
 mod graph;
+mod moved;
 mod place;
 mod profile;
 mod reduce;
@@ -30,6 +31,7 @@ mod rooms;
 mod route;
 mod shape;
 mod tree;
+mod way;
 
 use g7_model::{Chart, PlaceAt};
 
@@ -40,7 +42,6 @@ const TRIES: usize = 4;
 
 /// The layout of a chart: automatic, but for what a layout section places.
 pub fn layout(chart: &Chart, sizes: &Sizes, places: &[PlaceAt]) -> Placement {
-    let _ = places;
     let graph = graph::Graph::new(chart);
     let mut broken = vec![false; graph.links.len()];
     let mut tries = 0;
@@ -48,8 +49,8 @@ pub fn layout(chart: &Chart, sizes: &Sizes, places: &[PlaceAt]) -> Placement {
         let tree = reduce::reduce(&graph, &broken);
         let shapes = shape::shapes(&graph, &tree, sizes);
         if shapes.failed.is_empty() {
-            let placed = place::places(&shapes);
-            return route::route(&shapes, &placed);
+            let auto = route::route(&shapes, &place::places(&shapes));
+            return moved::moved(&graph, sizes, auto, &moved::given(chart, &graph, places));
         }
         tries += 1;
         shapes.failed.iter().for_each(|l| broken[*l as usize] = true);

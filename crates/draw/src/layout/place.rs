@@ -18,8 +18,10 @@ pub(crate) struct Places {
     /// The line below and above each node.
     pub(crate) below_line: Vec<i32>,
     pub(crate) above_line: Vec<i32>,
-    /// The column of each link, where it is not that of its upper end.
+    /// The column of each link, where it is not that of its upper end: of the
+    /// sequence that it begins, and of the one that it ends.
     pub(crate) column: Vec<i32>,
+    pub(crate) landing: Vec<i32>,
     /// The row of each way back, and the column in which it goes up.
     pub(crate) row: Vec<i32>,
     pub(crate) lane: Vec<i32>,
@@ -37,6 +39,7 @@ pub(crate) fn places(s: &Shapes) -> Places {
         below_line: vec![NOWHERE; nodes],
         above_line: vec![NOWHERE; nodes],
         column: vec![NOWHERE; s.graph.links.len()],
+        landing: vec![NOWHERE; s.graph.links.len()],
         row: vec![0; s.tree.returns.len()],
         lane: vec![0; s.tree.returns.len()],
         ..Places::default()
@@ -50,6 +53,13 @@ pub(crate) fn places(s: &Shapes) -> Places {
 }
 
 impl Places {
+    /// The column in which a link runs where it leaves a node, or enters one.
+    pub(crate) fn column(&self, link: u32, leaving: bool, at: i32) -> i32 {
+        let (column, landing) = (self.column[link as usize], self.landing[link as usize]);
+        let both = if leaving { [column, landing] } else { [landing, column] };
+        both.into_iter().find(|x| *x != NOWHERE).unwrap_or(at)
+    }
+
     /// The outermost blocks beside one another, the one with the first step first.
     fn roots(&mut self, s: &Shapes) -> Vec<(u32, i32, i32)> {
         let first = first_steps(s);
@@ -85,8 +95,11 @@ impl Places {
     }
 
     fn block(&mut self, s: &Shapes, b: &Block, at: Point, stack: &mut Vec<(u32, i32, i32)>) {
-        for link in [b.branch.first, b.branch.last].into_iter().filter(|l| *l != NONE) {
-            self.column[link as usize] = at.x;
+        if b.branch.first != NONE {
+            self.column[b.branch.first as usize] = at.x;
+        }
+        if b.branch.last != NONE {
+            self.landing[b.branch.last as usize] = at.x;
         }
         for (back, x) in &b.lanes {
             self.lane[*back as usize] = at.x + x;

@@ -68,7 +68,7 @@ fn start(s: &Shapes, p: &Places, l: usize) -> Vec<Point> {
     let mut points = vec![Point { x: at.x, y: at.y + s.rooms[from].port }];
     let line = p.below_line[from];
     if line != NOWHERE {
-        let x = if p.column[l] == NOWHERE { at.x } else { p.column[l] };
+        let x = p.column(l as u32, true, at.x);
         points.extend([Point { x: at.x, y: line }, Point { x, y: line }]);
     }
     points
@@ -134,10 +134,7 @@ fn bars(s: &Shapes, p: &Places, placement: &mut Placement) {
                 continue;
             }
             let links = if join { graph.into.of(t) } else { graph.out.of(t) };
-            let column = |l: &u32| match p.column[*l as usize] {
-                NOWHERE => at.x,
-                x => x,
-            };
+            let column = |l: &u32| p.column(*l, !join, at.x);
             let (from, to) = links.iter().map(column).fold((at.x, at.x), |(a, b), x| (a.min(x), b.max(x)));
             let (x, w) = (from - OVERHANG, to - from + 2 * OVERHANG);
             let transition = t - graph.steps as u32;

@@ -91,6 +91,8 @@ pub(crate) struct Group {
     pub(crate) xs: Vec<i32>,
     /// The top of each.
     pub(crate) ys: Vec<i32>,
+    /// All columns at its top: a branch that begins with branches has several.
+    tops: Vec<i32>,
     left: i32,
     right: i32,
     head: i32,
@@ -314,7 +316,7 @@ impl Shapes<'_> {
         let entering: usize = of.iter().skip(1).map(|b| b.entries.len()).sum();
         let lift = if top_open { 100 * entering.min(10_000) as i32 } else { 0 };
         group.ys = of.iter().map(|b| lift + if b.head == NOWHERE { 0 } else { head - b.head }).collect();
-        columns(&mut group, of);
+        columns(&mut group, of, &self.groups);
         let mut row = lift;
         let mut low = NOWHERE;
         for (k, b) in range.enumerate() {
@@ -332,7 +334,7 @@ impl Shapes<'_> {
             for e in std::mem::take(&mut self.blocks[b].entries) {
                 if k == 0 {
                     group.entries.push(Entry { y: e.y + dy, ..e });
-                } else if top_open {
+                } else if top_open && self.begins_with(b, e.step) {
                     row -= 100;
                     self.entry[e.step as usize] += e.y + dy - row;
                     group.entries.push(Entry { y: row, ..e });
@@ -347,6 +349,10 @@ impl Shapes<'_> {
             group.foot = group.height;
         }
         self.groups[p] = group;
+    }
+
+    fn begins_with(&self, b: usize, step: u32) -> bool {
+        self.blocks[b].puts.first().is_some_and(|p| p.item == Item::Node(step))
     }
 
     /// Lets a way back at the end of a block run lower.
@@ -422,7 +428,7 @@ pub(crate) struct Band {
 }
 
 /// Sets branches beside one another and finds the spine among them.
-fn columns(group: &mut Group, of: &[Block]) {
+fn columns(group: &mut Group, of: &[Block], groups: &[Group]) {
     let Some(last) = of.last() else { return };
     let need: Vec<i32> = of.windows(2).map(|w| (w[0].right + GAP + w[1].left + 99) / 100 * 100).collect();
     // Even distances where that costs little.
@@ -436,15 +442,24 @@ fn columns(group: &mut Group, of: &[Block]) {
         x += if even { widest } else { n };
         group.xs.push(x);
     }
-    let count = of.len();
+    for (x, b) in group.xs.iter().zip(of) {
+        match b.puts.first() {
+            Some(Put { item: Item::Par(p), .. }) => {
+                group.tops.extend(groups[*p as usize].tops.iter().map(|top| x + top));
+            }
+            _ => group.tops.push(*x),
+        }
+    }
     let rows = |k: usize| of[k].branch.chain.rows;
     let light = |a: usize, b: usize| rows(a) <= 1 && rows(b) > 1 || rows(a) * 4 <= rows(b);
-    let spine = match count {
+    let count = group.tops.len();
+    let spine = match of.len() {
         2 if light(0, 1) => group.xs[1],
         2 if light(1, 0) => 0,
-        _ if count % 2 == 1 => group.xs[count / 2],
-        _ => (group.xs[count / 2 - 1] + group.xs[count / 2]) / 2,
+        _ if count % 2 == 1 => group.tops[count / 2],
+        _ => (group.tops[count / 2 - 1] + group.tops[count / 2]) / 2,
     };
+    group.tops.iter_mut().for_each(|x| *x -= spine);
     group.left = (spine + of[0].left).max(spine + OVERHANG);
     group.right = (x - spine + last.right).max(x - spine + OVERHANG);
     group.xs.iter_mut().for_each(|x| *x -= spine);

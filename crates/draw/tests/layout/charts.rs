@@ -9,17 +9,17 @@ use g7_syntax::{jgrafchart, parse_bytes};
 use crate::geometry::faults;
 
 /// Random numbers, the same each time.
-pub struct Random(pub u64);
+pub(crate) struct Random(pub(crate) u64);
 
 impl Random {
-    pub fn below(&mut self, n: usize) -> usize {
+    pub(crate) fn below(&mut self, n: usize) -> usize {
         self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         ((self.0 >> 33) as usize) % n.max(1)
     }
 }
 
 /// Symbols with texts of random width.
-pub fn random_sizes(chart: &Chart, random: &mut Random) -> Sizes {
+pub(crate) fn random_sizes(chart: &Chart, random: &mut Random) -> Sizes {
     let mut extent = |half: i32, up: i32, down: i32| Extent {
         left: half + if random.below(4) == 0 { random.below(300) as i32 } else { 0 },
         right: half + random.below(1500) as i32,

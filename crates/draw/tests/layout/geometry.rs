@@ -7,14 +7,14 @@ use g7_model::Chart;
 
 /// A thing that takes room.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Solid {
+pub(crate) enum Solid {
     Symbol(End),
     Bar(u32),
     Connector(End, End),
 }
 
 /// All that is wrong with a placement, in words.
-pub fn faults(chart: &Chart, sizes: &Sizes, p: &Placement) -> Vec<String> {
+pub(crate) fn faults(chart: &Chart, sizes: &Sizes, p: &Placement) -> Vec<String> {
     let mut found = Vec::new();
     let solids = solids(sizes, p);
     overlaps(&solids, &mut found);

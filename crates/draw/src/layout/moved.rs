@@ -1,0 +1,234 @@
+//! What a layout section places: symbols go where it says, and the links that
+//! touch them find their way anew. Links of symbols that stay keep their corners.
+
+use std::collections::HashMap;
+
+use g7_model::{Chart, PlaceAt, Placed};
+
+use crate::layout::graph::Graph;
+use crate::layout::rooms::{BAR, DOUBLE, LINK, OVERHANG, SQUARE, extents};
+use crate::layout::route::{area, end, tidy};
+use crate::layout::way::Ways;
+use crate::{Bar, End, Extent, Link, Placement, Point, Rect, Sizes};
+
+/// Farthest place from the origin.
+const FAR: i32 = 10_000_000;
+
+/// The places a layout section gives, by node.
+pub(crate) fn given(chart: &Chart, graph: &Graph, places: &[PlaceAt]) -> Vec<Option<Point>> {
+    let mut given = vec![None; graph.nodes];
+    if places.is_empty() {
+        return given;
+    }
+    let mut steps: HashMap<&str, usize> = HashMap::new();
+    for (n, s) in chart.steps().enumerate() {
+        steps.entry(&s.name.text).or_insert(n);
+    }
+    let mut labels: HashMap<&str, usize> = HashMap::new();
+    for (n, t) in chart.transitions().enumerate() {
+        if let Some(label) = &t.label {
+            labels.entry(&label.text).or_insert(n + graph.steps);
+        }
+    }
+    for place in places {
+        let node = match &place.what {
+            Placed::Step(name) => steps.get(&*name.text).copied(),
+            Placed::Transition(name) => labels.get(&*name.text).copied(),
+            Placed::TransitionNumber(n) => Some(graph.steps + *n as usize),
+            Placed::Comment(_) => None,
+        };
+        if let Some(slot) = node.and_then(|n| given.get_mut(n)) {
+            *slot = Some(Point { x: place.x.clamp(-FAR, FAR), y: place.y.clamp(-FAR, FAR) });
+        }
+    }
+    given
+}
+
+struct Moved<'a> {
+    graph: &'a Graph,
+    at: Vec<Point>,
+    extents: Vec<Extent>,
+    moved: Vec<bool>,
+    /// Height of the line or double line below and above each node.
+    below: Vec<i32>,
+    above: Vec<i32>,
+}
+
+/// The placement with the given places.
+pub(crate) fn moved(graph: &Graph, sizes: &Sizes, auto: Placement, given: &[Option<Point>]) -> Placement {
+    let count = given.iter().flatten().count();
+    if count == 0 {
+        return auto;
+    }
+    let mut at: Vec<Point> = auto.steps.iter().chain(&auto.transitions).copied().collect();
+    // Of a chart drawn by hand what is new stands as it would to its neighbours.
+    let by_hand = count * 2 > graph.nodes;
+    if by_hand {
+        beside_neighbours(graph, &mut at, given);
+    }
+    at.iter_mut().zip(given).for_each(|(at, g)| *at = g.unwrap_or(*at));
+    let moved = given.iter().map(|g| by_hand || g.is_some()).collect();
+    let extents = extents(graph, sizes);
+    let mut m = Moved { graph, at, extents, moved, below: Vec::new(), above: Vec::new() };
+    m.lines();
+    m.place(auto, sizes)
+}
+
+fn beside_neighbours(graph: &Graph, at: &mut [Point], given: &[Option<Point>]) {
+    let auto = at.to_vec();
+    let mut known: Vec<bool> = given.iter().map(Option::is_some).collect();
+    let mut next: Vec<u32> = (0..graph.nodes as u32).filter(|n| known[*n as usize]).collect();
+    next.iter().for_each(|n| at[*n as usize] = given[*n as usize].unwrap_or_default());
+    while let Some(n) = next.pop() {
+        let links = graph.out.of(n).iter().chain(graph.into.of(n));
+        for &l in links {
+            let (from, to) = graph.links[l as usize];
+            let (n, o) = (n as usize, if from == n { to } else { from } as usize);
+            if !known[o] {
+                known[o] = true;
+                at[o] = Point { x: at[n].x + auto[o].x - auto[n].x, y: at[n].y + auto[o].y - auto[n].y };
+                next.push(o as u32);
+            }
+        }
+    }
+}
+
+impl Moved<'_> {
+    fn port(&self, n: u32) -> i32 {
+        self.at[n as usize].y + if self.graph.is_step(n) { SQUARE } else { 0 }
+    }
+
+    /// Where links part below each node and meet above it.
+    fn lines(&mut self) {
+        let nodes = 0..self.graph.nodes as u32;
+        let (mut below, mut above) = (Vec::new(), Vec::new());
+        for n in nodes {
+            let port = self.port(n);
+            let under =
+                self.graph.out.of(n).iter().map(|l| self.at[self.graph.links[*l as usize].1 as usize].y);
+            let room = under.filter(|y| *y > port).map(|y| y - port).min().unwrap_or(2 * LINK);
+            let top = self.at[n as usize].y;
+            let over = self.graph.into.of(n).iter().map(|l| self.port(self.graph.links[*l as usize].0));
+            let height = over.filter(|y| *y < top).map(|y| top - y).min().unwrap_or(2 * LINK);
+            if self.graph.is_step(n) {
+                below.push(port + LINK.min(room / 2));
+                above.push(top - LINK.min(height / 2));
+            } else {
+                below.push(port + BAR.min((room - DOUBLE) / 2).max(0));
+                above.push(top - DOUBLE - BAR.min((height - DOUBLE) / 2).max(0));
+            }
+        }
+        (self.below, self.above) = (below, above);
+    }
+
+    fn place(&self, auto: Placement, sizes: &Sizes) -> Placement {
+        let graph = self.graph;
+        let touched = |n: u32, links: &[u32], other: fn((u32, u32)) -> u32| {
+            let moved = |n: u32| self.moved[n as usize];
+            moved(n) || links.iter().any(|l| moved(other(graph.links[*l as usize])))
+        };
+        let nodes = 0..graph.nodes as u32;
+        let below: Vec<bool> = nodes.clone().map(|n| touched(n, graph.out.of(n), |l| l.1)).collect();
+        let above: Vec<bool> = nodes.map(|n| touched(n, graph.into.of(n), |l| l.0)).collect();
+        let (steps, transitions) = self.at.split_at(graph.steps);
+        let mut p =
+            Placement { steps: steps.to_vec(), transitions: transitions.to_vec(), ..Placement::default() };
+        let boxes = self.at.iter().zip(&self.extents).map(|(at, e)| Rect::around(*at, *e)).collect();
+        let ways = Ways::new(boxes);
+        let mut drawn: HashMap<(End, End), Link> =
+            auto.links.into_iter().map(|l| ((l.from, l.to), l)).collect();
+        let broken = |from: End, to: End| auto.connectors.iter().any(|c| (c.from, c.to) == (from, to));
+        for &(from, to) in &graph.links {
+            let again = below[from as usize] || above[to as usize];
+            let (a, b) = (end(graph.steps, from), end(graph.steps, to));
+            match drawn.remove(&(a, b)) {
+                Some(link) if !again && !ways.blocked(&link.points, from, to) => p.links.push(link),
+                None if !again && broken(a, b) => {}
+                _ => p.links.push(self.link(&ways, from, to)),
+            }
+        }
+        let keep = |c: &crate::Connector| !p.links.iter().any(|l| (l.from, l.to) == (c.from, c.to));
+        p.connectors = auto.connectors.into_iter().filter(keep).collect();
+        let side = |b: &Bar| if b.join { &above } else { &below };
+        let still = |b: &Bar| !side(b)[graph.steps + b.transition as usize];
+        p.bars = auto.bars.into_iter().filter(still).collect();
+        self.bars(&mut p, &below, &above);
+        p.area = area(&p, &crate::layout::rooms::extents(graph, sizes));
+        p
+    }
+
+    /// Double lines of transitions that were touched, over the columns of their links.
+    fn bars(&self, p: &mut Placement, below: &[bool], above: &[bool]) {
+        let graph = self.graph;
+        for t in graph.steps as u32..graph.nodes as u32 {
+            for join in [true, false] {
+                let (touched, links) =
+                    if join { (above, graph.into.of(t)) } else { (below, graph.out.of(t)) };
+                if !touched[t as usize] || links.len() < 2 {
+                    continue;
+                }
+                let x = self.at[t as usize].x;
+                let columns = links.iter().map(|l| self.column(*l, !join));
+                let (from, to) = columns.fold((x, x), |(a, b), x| (a.min(x), b.max(x)));
+                let y = if join { self.above[t as usize] } else { self.below[t as usize] };
+                let at = Point { x: from - OVERHANG, y };
+                let transition = t - graph.steps as u32;
+                p.bars.push(Bar { transition, join, at, w: to - from + 2 * OVERHANG });
+            }
+        }
+        p.bars.sort_by_key(|b| (b.transition, !b.join));
+    }
+
+    /// Where a link meets the double line of its transition: over or under the step
+    /// where that is on the right side, else beside the others.
+    fn column(&self, link: u32, fork: bool) -> i32 {
+        let (from, to) = self.graph.links[link as usize];
+        let (t, step) = if fork { (from, to) } else { (to, from) };
+        let right_way = match fork {
+            true => self.at[step as usize].y > self.below[t as usize] + DOUBLE,
+            false => self.port(step) < self.above[t as usize],
+        };
+        if right_way {
+            return self.at[step as usize].x;
+        }
+        let links = if fork { self.graph.out.of(t) } else { self.graph.into.of(t) };
+        let others = links.iter().filter(|l| **l != link).map(|l| {
+            let (a, b) = self.graph.links[*l as usize];
+            self.at[if fork { b } else { a } as usize].x
+        });
+        let place = links.iter().position(|l| *l == link).unwrap_or(0) as i32;
+        others.min().unwrap_or(self.at[t as usize].x).min(self.at[t as usize].x) - 150 * (1 + place)
+    }
+
+    fn link(&self, ways: &Ways, from: u32, to: u32) -> Link {
+        let graph = self.graph;
+        let number =
+            graph.out.of(from).iter().copied().find(|l| graph.links[*l as usize].1 == to).unwrap_or(0);
+        let (a, b) = (self.at[from as usize], self.at[to as usize]);
+        let mut points = vec![Point { x: a.x, y: self.port(from) }];
+        let mut last = vec![b];
+        let (parts, meets) = (graph.out.of(from).len() > 1, graph.into.of(to).len() > 1);
+        if parts && !graph.is_step(from) {
+            let (x, y) = (self.column(number, true), self.below[from as usize]);
+            points.extend([Point { x: a.x, y }, Point { x, y }, Point { x, y: y + DOUBLE }]);
+        }
+        if meets && !graph.is_step(to) {
+            let (x, y) = (self.column(number, false), self.above[to as usize]);
+            last.extend([Point { x: b.x, y: y + DOUBLE }, Point { x, y: y + DOUBLE }, Point { x, y }]);
+        }
+        let (start, goal) = (points.last().copied().unwrap_or(a), last.last().copied().unwrap_or(b));
+        let rows = [
+            (parts && graph.is_step(from)).then_some(self.below[from as usize]),
+            (meets && graph.is_step(to)).then_some(self.above[to as usize]),
+        ];
+        points.extend(ways.find(start, goal, rows, from, to));
+        last.reverse();
+        points.extend(last);
+        let points = tidy(points);
+        let up = points.windows(2).filter(|w| w[1].y < w[0].y && w[1].x == w[0].x);
+        let arrows = up
+            .map(|w| (Point { x: w[0].x, y: (w[0].y + w[1].y) / 2 - 60.min((w[0].y - w[1].y) / 2) }, (0, -1)))
+            .collect();
+        Link { from: end(graph.steps, from), to: end(graph.steps, to), points, arrows }
+    }
+}
