@@ -107,6 +107,15 @@ pub fn apply_placed(source: &Source<'_>, gesture: &Gesture, anchors: Anchors<'_>
     if let Gesture::Rename { id, name, to } = gesture {
         return gestures::rename(source, id.as_ref(), name.as_deref(), to);
     }
+    if let Gesture::Variable { name: Some(name), row } = gesture
+        && let Some(new) = gestures::renamed_row(source, name, row)
+    {
+        return in_two(
+            source,
+            &Gesture::Rename { id: None, name: Some(name.clone()), to: row.name.clone() },
+            &new,
+        );
+    }
     let mut draft = Draft::new(source, anchors);
     gestures::carry_out(&mut draft, gesture)?;
     write::settle(&mut draft);
@@ -117,6 +126,17 @@ pub fn apply_placed(source: &Source<'_>, gesture: &Gesture, anchors: Anchors<'_>
     let select = draft.select.iter().filter_map(|m| draft.resolved(m)).collect();
     let begin = draft.begin.as_ref().and_then(|m| draft.resolved(m));
     Ok(Edit { splices, select, begin })
+}
+
+/// One gesture behind another, as one change.
+fn in_two(source: &Source<'_>, first: &Gesture, second: &Gesture) -> Result<Edit, Refusal> {
+    let before = apply(source, first)?;
+    let text = spliced(source.text, &before.splices).ok_or_else(unwritable)?;
+    let (document, problems) = g7_syntax::parse(&text, FileId(0));
+    let between = Source { text: &text, document: &document, clean: problems.is_empty() };
+    let after = apply(&between, second)?;
+    let splices = splice::composed(source.text, &before.splices, &after.splices).ok_or_else(unwritable)?;
+    Ok(Edit { splices, ..after })
 }
 
 /// Adds changes of names, which must leave the text clean.

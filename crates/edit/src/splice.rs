@@ -56,6 +56,83 @@ pub(crate) fn inverse(text: &str, splices: &[Splice]) -> Option<Vec<Splice>> {
     Some(back)
 }
 
+/// A piece of a changed text: what stayed, by its place in the text before, or what is new.
+enum Piece {
+    Kept(usize, usize),
+    New(String),
+}
+
+/// The splices that do at once what two lists do one after the other.
+pub(crate) fn composed(text: &str, first: &[Splice], second: &[Splice]) -> Option<Vec<Splice>> {
+    let mut pieces = Vec::new();
+    let mut at = 0;
+    for s in first {
+        pieces.push(Piece::Kept(at, s.start));
+        pieces.push(Piece::New(s.insert.clone()));
+        at = s.end;
+    }
+    pieces.push(Piece::Kept(at, text.len()));
+    let mut out = Vec::new();
+    let mut place = 0;
+    let mut left = second.iter().peekable();
+    for piece in pieces {
+        let length = match &piece {
+            Piece::Kept(a, b) => b.checked_sub(*a)?,
+            Piece::New(t) => t.len(),
+        };
+        let end = place + length;
+        // What the second list does to this piece; the end of one is the start of the next.
+        let mut from = place;
+        while let Some(s) = left.peek() {
+            if s.start > end || s.start == end && s.end > end {
+                break;
+            }
+            let start = s.start.max(from);
+            out.push(part(&piece, from - place, start - place)?);
+            if s.start >= place {
+                out.push(Piece::New(s.insert.clone()));
+            }
+            from = s.end.min(end).max(start);
+            if s.end > end {
+                break;
+            }
+            left.next();
+        }
+        out.push(part(&piece, from - place, length)?);
+        place = end;
+    }
+    Some(tidied(text, gaps(text, &out)))
+}
+
+fn part(piece: &Piece, from: usize, to: usize) -> Option<Piece> {
+    Some(match piece {
+        Piece::Kept(a, _) => Piece::Kept(a + from, a + to),
+        Piece::New(t) => Piece::New(t.get(from..to)?.to_owned()),
+    })
+}
+
+/// The splices between what is kept.
+fn gaps(text: &str, pieces: &[Piece]) -> Vec<Splice> {
+    let mut splices = Vec::new();
+    let (mut at, mut new) = (0, String::new());
+    for piece in pieces {
+        match piece {
+            Piece::Kept(a, b) if a < b => {
+                if at < *a || !new.is_empty() {
+                    splices.push(Splice::new(at, *a, std::mem::take(&mut new)));
+                }
+                at = *b;
+            }
+            Piece::Kept(..) => {}
+            Piece::New(t) => new.push_str(t),
+        }
+    }
+    if at < text.len() || !new.is_empty() {
+        splices.push(Splice::new(at, text.len(), new));
+    }
+    splices
+}
+
 /// In order, those that change nothing left out, common beginnings and ends cut away.
 pub(crate) fn tidied(text: &str, mut splices: Vec<Splice>) -> Vec<Splice> {
     splices.sort_by_key(|s| (s.start, s.end));
@@ -92,7 +169,7 @@ fn trimmed(text: &str, mut s: Splice) -> Option<Splice> {
 
 #[cfg(test)]
 mod tests {
-    use super::{Splice, inverse, spliced, tidied};
+    use super::{Splice, composed, inverse, spliced, tidied};
 
     #[test]
     fn the_inverse_leads_back() {
@@ -113,6 +190,25 @@ mod tests {
             vec![Splice::new(2, 3, "")],
         ] {
             assert_eq!(spliced("aéx!", &wrong), None, "{wrong:?}");
+        }
+    }
+
+    #[test]
+    fn two_changes_are_one() {
+        let text = "abcdefgh";
+        let first = [Splice::new(1, 2, "XYZ"), Splice::new(5, 6, ""), Splice::new(8, 8, "!")];
+        let mid = spliced(text, &first).expect("it fits");
+        assert_eq!(mid, "aXYZcdegh!");
+        for second in [
+            vec![],
+            vec![Splice::new(0, 10, "")],
+            vec![Splice::new(2, 5, "-"), Splice::new(7, 7, "+")],
+            vec![Splice::new(0, 1, "A"), Splice::new(1, 1, "B"), Splice::new(4, 10, "C")],
+            vec![Splice::new(10, 10, "end")],
+        ] {
+            let wanted = spliced(&mid, &second).expect("it fits");
+            let at_once = composed(text, &first, &second).expect("they fit");
+            assert_eq!(spliced(text, &at_once), Some(wanted), "{second:?}");
         }
     }
 

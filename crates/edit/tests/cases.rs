@@ -181,3 +181,13 @@ fn a_copy_has_what_was_chosen_and_no_links_to_the_rest() {
         assert_eq!(copy(&source, &ids(chosen)), wanted, "{chosen:?}");
     }
 }
+
+#[test]
+fn new_lines_end_as_the_others_do() {
+    let text = "chart G {\r\n\tinitial step 1\r\n\t1 -> 1 when a\r\n}\r\n";
+    let next = Gesture::Next { id: ItemId::step("G", "1") };
+    let edit = run(text, &next).expect("it can be done");
+    let wanted =
+        "chart G {\r\n\tinitial step 1\r\n\tstep 2\r\n\t1 -> 1 when a\r\n\t1 -> 2 when TRUE\r\n}\r\n";
+    assert_eq!(spliced(text, &edit.splices).as_deref(), Some(wanted));
+}

@@ -28,6 +28,7 @@ pub(crate) struct Chosen {
     pub(crate) chart: String,
     pub(crate) steps: Vec<String>,
     pub(crate) transitions: BTreeSet<Span>,
+    names: BTreeSet<String>,
 }
 
 impl Chosen {
@@ -47,11 +48,11 @@ impl Chosen {
         }
         let steps = d.chart(&chart)?.steps().map(|s| s.name.text.to_string());
         let steps = steps.filter(|s| names.contains(s)).collect();
-        Ok(Chosen { chart, steps, transitions })
+        Ok(Chosen { chart, steps, transitions, names })
     }
 
     pub(crate) fn has_step(&self, name: &str) -> bool {
-        self.steps.iter().any(|s| s == name)
+        self.names.contains(name)
     }
 
     fn has(&self, t: &Transition) -> bool {

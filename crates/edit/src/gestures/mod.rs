@@ -13,6 +13,7 @@ mod rename;
 mod table;
 
 pub(crate) use rename::rename;
+pub(crate) use table::renamed_row;
 
 use crate::draft::Draft;
 use crate::gesture::Gesture;

@@ -3,9 +3,9 @@
 use g7_model::{Chart, ChartItem, ChartKind, FileId, Item, Name, Profile, ProfileName, StepKind, VarDecl};
 
 use crate::draft::Draft;
-use crate::gesture::{ChartSort, Row};
+use crate::gesture::{ChartSort, Gesture, Row};
 use crate::id::ItemId;
-use crate::{Refusal, refuse};
+use crate::{Refusal, Source, refuse};
 
 // Charts
 
@@ -141,6 +141,17 @@ pub(crate) fn delete_variable(d: &mut Draft<'_>, name: &str) -> Result<(), Refus
     Ok(())
 }
 
+/// The same row for the variable under its new name, if the row gives it one.
+pub(crate) fn renamed_row(source: &Source<'_>, name: &str, row: &Row) -> Option<Gesture> {
+    let own = source.document.charts().find_map(|c| {
+        let own = name.strip_prefix(&*c.name.text)?.strip_prefix('.')?;
+        Some((format!("{}.", c.name.text), own))
+    });
+    let (chart, own) = own.unwrap_or((String::new(), name));
+    let to = row.name.trim();
+    (own != to).then(|| Gesture::Variable { name: Some(format!("{chart}{to}")), row: row.clone() })
+}
+
 pub(crate) fn variable(d: &mut Draft<'_>, name: Option<&str>, row: &Row) -> Result<(), Refusal> {
     let mut new = declared(d, row)?;
     let (home, old) = match name {
@@ -162,9 +173,6 @@ pub(crate) fn variable(d: &mut Draft<'_>, name: Option<&str>, row: &Row) -> Resu
     let Some(before) = there.into_iter().find(|v| declares(v, old)).cloned() else {
         return refuse(format!("there is no variable `{old}`"));
     };
-    if old != row.name {
-        return refuse("a variable gets another name by renaming it, so that its uses follow");
-    }
     if before.names.len() == 1 {
         new.at = before.at;
         return change(d, home, before.at.0, vec![new]);
