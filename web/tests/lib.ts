@@ -99,6 +99,6 @@ export async function open(b: Browser, site: Site, file?: string, size = { width
   const url = new URL(site.url);
   if (file) url.searchParams.set('file', file);
   await page.goto(url.href);
-  if (file) await page.waitForSelector('.sheet [data-id]');
+  if (file) await page.waitForSelector('.sheet [data-id]', { state: 'attached' });
   return Object.assign(page, { errors });
 }
