@@ -74,6 +74,8 @@ pub(crate) enum Command {
     Test(Test),
     /// Draw charts as SVG, PNG or PDF.
     Draw(crate::draw::Draw),
+    /// Open the editor in the browser.
+    Serve(crate::serve::Serve),
     /// Turn a JGrafchart XML file into a .g7 file.
     Import(Import),
     /// Explain a problem code, or list them all.

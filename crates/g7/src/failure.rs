@@ -44,7 +44,7 @@ fn show(path: &Path) -> String {
 }
 
 /// The system's words without the number behind them.
-fn plain(error: &io::Error) -> String {
+pub(crate) fn plain(error: &io::Error) -> String {
     let text = error.to_string();
     let end = text.find(" (os error").unwrap_or(text.len());
     let text = text.get(..end).unwrap_or(&text);

@@ -25,6 +25,7 @@ mod new;
 mod progress;
 mod report;
 mod run;
+mod serve;
 mod shell;
 mod sources;
 mod style;
@@ -74,6 +75,7 @@ fn run(command: &Command) -> Result<Verdict, Failure> {
         Command::Run(args) => run::run(args),
         Command::Test(args) => testing::test(args),
         Command::Draw(args) => draw::draw(args),
+        Command::Serve(args) => serve::serve(args),
         Command::Import(args) => import::import(args),
         Command::Explain(args) => explain::explain(args),
         Command::Completions(args) => shell::completions(args),

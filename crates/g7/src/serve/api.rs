@@ -1,0 +1,218 @@
+//! Files over HTTP: listed, read, written, with the hash of what is known in
+//! `If-Match`; copies of unsaved work.
+
+use std::sync::Arc;
+use std::time::Duration;
+
+use axum::body::Body;
+use axum::extract::{Query, Request, State};
+use axum::http::{HeaderMap, StatusCode, header};
+use axum::response::{IntoResponse, Response};
+use axum::routing::{get, post};
+use axum::{Json, Router};
+use serde::Deserialize;
+use serde_json::{Value, json};
+use tokio::sync::Semaphore;
+
+use super::Shared;
+use super::folder::{LARGEST, Wanted, Written};
+use super::refusal::Refusal;
+
+type Answer = Result<Response, Refusal>;
+
+/// Bodies read at a time: so much memory, and no more.
+static BODIES: Semaphore = Semaphore::const_new(4);
+/// Longest that a body may take.
+const SLOWEST: Duration = Duration::from_secs(30);
+
+/// The addresses below `/api`.
+pub(super) fn routes() -> Router<Shared> {
+    Router::new()
+        .route("/api/info", get(info))
+        .route("/api/files", get(files))
+        .route("/api/file", get(read).put(write))
+        .route("/api/new", post(new))
+        .route("/api/rename", post(rename))
+        .route("/api/delete", post(delete))
+        .route("/api/draft", axum::routing::put(keep).delete(drop_draft))
+        .route("/api/drafts", get(drafts))
+}
+
+#[derive(Deserialize)]
+struct At {
+    path: String,
+}
+
+async fn info(State(shared): State<Shared>) -> Json<Value> {
+    let mut info = json!({
+        "name": "g7",
+        "version": env!("CARGO_PKG_VERSION"),
+        "read_only": shared.folder.is_read_only(),
+        "folder": shared.title,
+    });
+    if let (Some(start), Some(info)) = (&shared.start, info.as_object_mut()) {
+        info.insert("start".to_owned(), json!(start));
+    }
+    Json(info)
+}
+
+async fn files(State(shared): State<Shared>) -> Answer {
+    let rows = aside(move || Ok(shared.watch.rows())).await?;
+    Ok(Json(json!({ "files": rows })).into_response())
+}
+
+async fn read(State(shared): State<Shared>, Query(at): Query<At>) -> Answer {
+    let bytes = aside(move || shared.folder.read(&at.path)).await?;
+    Ok(text(StatusCode::OK, bytes))
+}
+
+async fn write(State(shared): State<Shared>, Query(at): Query<At>, request: Request) -> Answer {
+    let wanted = wanted(request.headers())?;
+    let bytes = body(request).await?;
+    let written = aside(move || {
+        shared.watch.put_off(&at.path);
+        shared.folder.write(&at.path, &bytes, &wanted)
+    });
+    Ok(match written.await? {
+        Written::Done(hash) => {
+            (StatusCode::NO_CONTENT, [(header::ETAG, format!("\"{hash}\""))]).into_response()
+        }
+        Written::Other(Some(bytes)) => text(StatusCode::PRECONDITION_FAILED, bytes),
+        Written::Other(None) => StatusCode::PRECONDITION_FAILED.into_response(),
+    })
+}
+
+async fn new(State(shared): State<Shared>, request: Request) -> Answer {
+    #[derive(Deserialize)]
+    struct New {
+        path: String,
+        #[serde(default)]
+        text: String,
+    }
+    let wish: New = json_body(request).await?;
+    let path = wish.path.clone();
+    let written = aside(move || shared.folder.write(&wish.path, wish.text.as_bytes(), &Wanted::Absent));
+    match written.await? {
+        Written::Done(hash) => {
+            Ok((StatusCode::NO_CONTENT, [(header::ETAG, format!("\"{hash}\""))]).into_response())
+        }
+        Written::Other(_) => Err(Refusal::io(&path, &std::io::ErrorKind::AlreadyExists.into())),
+    }
+}
+
+async fn rename(State(shared): State<Shared>, request: Request) -> Answer {
+    #[derive(Deserialize)]
+    struct Rename {
+        from: String,
+        to: String,
+    }
+    let wish: Rename = json_body(request).await?;
+    aside(move || shared.folder.rename(&wish.from, &wish.to)).await?;
+    Ok(StatusCode::NO_CONTENT.into_response())
+}
+
+async fn delete(State(shared): State<Shared>, request: Request) -> Answer {
+    #[derive(Deserialize)]
+    struct Delete {
+        path: String,
+        hash: Option<String>,
+    }
+    let wish: Delete = json_body(request).await?;
+    aside(move || shared.folder.delete(&wish.path, wish.hash.as_deref())).await?;
+    Ok(StatusCode::NO_CONTENT.into_response())
+}
+
+async fn keep(State(shared): State<Shared>, Query(at): Query<At>, request: Request) -> Answer {
+    if shared.folder.is_read_only() {
+        return Err(Refusal::forbidden("this server was started with --read-only: nothing is written"));
+    }
+    let bytes = body(request).await?;
+    let text = String::from_utf8(bytes).map_err(|_| Refusal::bad("an unsaved copy must be UTF-8 text"))?;
+    aside(move || shared.drafts.keep(&at.path, text)).await?;
+    Ok(StatusCode::NO_CONTENT.into_response())
+}
+
+async fn drafts(State(shared): State<Shared>) -> Answer {
+    let drafts = aside(move || Ok(shared.drafts.list())).await?;
+    Ok(Json(json!({ "drafts": drafts })).into_response())
+}
+
+async fn drop_draft(State(shared): State<Shared>, Query(at): Query<At>) -> Answer {
+    if shared.folder.is_read_only() {
+        return Err(Refusal::forbidden("this server was started with --read-only: nothing is written"));
+    }
+    aside(move || shared.drafts.drop(&at.path)).await?;
+    Ok(StatusCode::NO_CONTENT.into_response())
+}
+
+/// Bytes of a file; as plain text, so that no browser runs what is in it.
+fn text(status: StatusCode, bytes: Vec<u8>) -> Response {
+    let head = [
+        (header::CONTENT_TYPE, "text/plain; charset=utf-8".to_owned()),
+        (header::CACHE_CONTROL, "no-store".to_owned()),
+        (header::ETAG, format!("\"{}\"", super::hash(&bytes))),
+    ];
+    (status, head, bytes).into_response()
+}
+
+/// What the file must be, by the headers.
+fn wanted(headers: &HeaderMap) -> Result<Wanted, Refusal> {
+    let of = |name| headers.get(name).and_then(|v| v.to_str().ok()).map(str::trim);
+    match (of(header::IF_MATCH), of(header::IF_NONE_MATCH)) {
+        (Some("*"), None) => Ok(Wanted::Any),
+        (Some(tag), None) => {
+            let bare = tag.strip_prefix('"').and_then(|t| t.strip_suffix('"'));
+            let bare = bare.ok_or_else(|| Refusal::bad("`If-Match` needs one hash in quotes"))?;
+            Ok(Wanted::Hash(bare.to_owned()))
+        }
+        (None, Some("*")) => Ok(Wanted::Absent),
+        _ => Err(Refusal::new(
+            StatusCode::PRECONDITION_REQUIRED,
+            "a file is written with `If-Match` and the hash it was read with, or `If-None-Match: *` for a new one",
+        )),
+    }
+}
+
+async fn json_body<T: for<'a> Deserialize<'a>>(request: Request) -> Result<T, Refusal> {
+    let bytes = body(request).await?;
+    serde_json::from_slice(&bytes).map_err(|e| Refusal::bad(format!("this request means nothing: {e}")))
+}
+
+/// A body of bounded size, in a bounded time.
+async fn body(request: Request) -> Result<Vec<u8>, Refusal> {
+    let too_large = || {
+        let text = format!("this is larger than {} MB: nothing was written", LARGEST >> 20);
+        Refusal::new(StatusCode::PAYLOAD_TOO_LARGE, text)
+    };
+    let length =
+        request.headers().get(header::CONTENT_LENGTH).and_then(|v| v.to_str().ok()?.parse::<u64>().ok());
+    if length.is_some_and(|l| l > LARGEST as u64) {
+        return Err(too_large());
+    }
+    let late =
+        || Refusal::new(StatusCode::REQUEST_TIMEOUT, "this took too long to arrive: nothing was written");
+    let _place = BODIES.acquire().await.map_err(|_| late())?;
+    let bytes = axum::body::to_bytes(Body::new(request.into_body()), LARGEST);
+    match tokio::time::timeout(SLOWEST, bytes).await {
+        Ok(Ok(bytes)) => Ok(bytes.to_vec()),
+        Ok(Err(_)) => Err(too_large()),
+        Err(_) => Err(late()),
+    }
+}
+
+/// Disks are slow: what waits for one does not hold up the others.
+async fn aside<T: Send + 'static>(
+    work: impl FnOnce() -> Result<T, Refusal> + Send + 'static,
+) -> Result<T, Refusal> {
+    let done = tokio::task::spawn_blocking(work).await;
+    done.unwrap_or_else(|_| {
+        Err(Refusal::new(StatusCode::INTERNAL_SERVER_ERROR, "this failed; nothing was changed"))
+    })
+}
+
+/// The text of a chart, for a run.
+pub(super) async fn chart(shared: &Shared, name: &str) -> Result<String, String> {
+    let (folder, name) = (Arc::clone(&shared.folder), name.to_owned());
+    let bytes = aside(move || folder.read(&name)).await.map_err(|r| r.text)?;
+    Ok(String::from_utf8_lossy(&bytes).into_owned())
+}

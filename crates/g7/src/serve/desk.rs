@@ -1,0 +1,389 @@
+//! One run at work: its page, its pace, those who watch it.
+//!
+//! What must hold: frames leave in the order of what they tell, to every
+//! watcher, so that all see the same; the pace follows absolute instants of the
+//! wall clock, whoever asks what in between; a run too heavy for its speed goes
+//! slower, and stays answerable.
+
+use std::sync::mpsc::{Receiver, RecvTimeoutError};
+use std::sync::{Arc, Weak};
+use std::time::Duration;
+
+use axum::extract::ws::Utf8Bytes;
+use g7_host::{Clock as _, WallClock};
+use g7_page::Page;
+use serde::Deserialize;
+use serde::de::IgnoredAny;
+use serde_json::json;
+use serde_json::value::RawValue;
+
+use super::outbox::Outbox;
+use super::runs::{Order, Runs, What};
+
+/// Nanoseconds between two looks at a run that goes by itself: 25 a second.
+const TICK: i64 = 40_000_000;
+/// In which only the time has changed, every so many looks are shown.
+const QUIET: u32 = 5;
+/// Most scans of a look.
+const SCANS: u32 = 20_000;
+/// Largest answer, in bytes.
+const LARGEST: usize = 32 << 20;
+
+/// A run, its clock and its watchers.
+pub(super) struct Desk {
+    run: Arc<str>,
+    number: u64,
+    runs: Arc<Runs>,
+    page: Page,
+    watchers: Vec<Weak<Outbox>>,
+    /// Whether the page has the run.
+    started: bool,
+    speed: f64,
+    /// Goes at the speed of the run.
+    clock: WallClock,
+    /// Of that clock: up to where the run was taken.
+    given: i64,
+    wall: WallClock,
+    /// Instant of the wall at which the run is looked at next.
+    due: i64,
+    /// Scans of a look, so that a look stays short.
+    most: u32,
+    /// Looks that showed nothing new.
+    quiet: u32,
+}
+
+/// What is looked at in a frame.
+#[derive(Deserialize)]
+struct Peek {
+    now_ms: f64,
+    #[serde(default)]
+    late: bool,
+    stopped: Option<IgnoredAny>,
+    halt: Option<IgnoredAny>,
+    on: Vec<IgnoredAny>,
+    off: Vec<IgnoredAny>,
+    enabled: Vec<IgnoredAny>,
+    cleared: Vec<IgnoredAny>,
+    values: Vec<IgnoredAny>,
+    forced: Vec<IgnoredAny>,
+    view: Vec<IgnoredAny>,
+    #[serde(default)]
+    notes: Vec<IgnoredAny>,
+}
+
+impl Peek {
+    fn is_news(&self) -> bool {
+        let lists =
+            [&self.on, &self.off, &self.enabled, &self.cleared, &self.values, &self.forced, &self.view];
+        lists.iter().any(|l| !l.is_empty()) || !self.notes.is_empty() || self.ends()
+    }
+
+    fn ends(&self) -> bool {
+        self.stopped.is_some() || self.halt.is_some()
+    }
+}
+
+impl Desk {
+    pub(super) fn new(run: Arc<str>, number: u64, runs: Arc<Runs>) -> Desk {
+        let mut clock = WallClock::default();
+        clock.hold(true);
+        Desk {
+            run,
+            number,
+            runs,
+            page: Page::new(),
+            watchers: Vec::new(),
+            started: false,
+            speed: 0.0,
+            clock,
+            given: 0,
+            wall: WallClock::default(),
+            due: 0,
+            most: SCANS,
+            quiet: 0,
+        }
+    }
+
+    /// Works until the run is stopped.
+    pub(super) fn work(mut self, orders: &Receiver<Order>) {
+        loop {
+            let order = if self.speed == 0.0 {
+                orders.recv().map_err(|_| RecvTimeoutError::Disconnected)
+            } else {
+                let left = self.due.saturating_sub(self.wall.now()).max(0);
+                orders.recv_timeout(Duration::from_nanos(left as u64))
+            };
+            match order {
+                Ok(Order::Asked { by, id, what, done }) => {
+                    let answer = self.answer(&by, what);
+                    by.put(answered(id, &answer));
+                    if !self.started {
+                        // Told before the page goes on: its next call may start the run again.
+                        self.end();
+                        done.send(()).ok();
+                        return;
+                    }
+                    done.send(()).ok();
+                }
+                Ok(Order::CatchUp(outbox)) => self.catch_up(&outbox),
+                Err(RecvTimeoutError::Timeout) => {}
+                Err(RecvTimeoutError::Disconnected) => return,
+            }
+            // However many ask: the run is taken on when it is due.
+            if self.speed > 0.0 && self.wall.now() >= self.due {
+                self.look();
+            }
+        }
+    }
+
+    fn answer(&mut self, by: &Arc<Outbox>, what: What) -> String {
+        match what {
+            What::Watch if !self.started => no("there is no such run"),
+            What::Watch => {
+                self.flush(None);
+                self.enter(by);
+                let told = self.page.call(&json!({ "do": "run_signals", "run": *self.run }).to_string());
+                self.with_speed(&told)
+            }
+            What::Unwatch => {
+                self.watchers.retain(|w| w.upgrade().is_some_and(|w| !Arc::ptr_eq(&w, by)));
+                r#"{"ok":null}"#.to_owned()
+            }
+            What::Pace(speed) => {
+                self.pace(speed);
+                json!({ "ok": { "run": *self.run, "speed": speed } }).to_string()
+            }
+            What::Call { message, text } => {
+                let answer = self.call(by, &message, text);
+                if answer.len() > LARGEST {
+                    return no("this is too much at once: choose fewer signals or a shorter time");
+                }
+                answer
+            }
+        }
+    }
+
+    /// A message of a page for the page of the run.
+    fn call(&mut self, by: &Arc<Outbox>, message: &str, text: Option<String>) -> String {
+        let Ok(mut wish) = serde_json::from_str::<serde_json::Map<_, _>>(message) else {
+            return no("this message means nothing");
+        };
+        let what = wish.get("do").and_then(|w| w.as_str()).unwrap_or_default().to_owned();
+        if what == "run_frame" && wish.get("full").is_some_and(|f| f == true) {
+            // A full frame takes back what was told: the others are told before.
+            self.flush(None);
+            return self.page.call(message);
+        }
+        let Some(text) = text else {
+            let answer = self.page.call(message);
+            self.spread(by, &what, &answer);
+            return answer;
+        };
+        // The file is open for no longer than the run needs it.
+        let file = wish.get("file").and_then(|f| f.as_str()).unwrap_or_default().to_owned();
+        let opened = self.page.call(&json!({ "do": "open", "file": file, "text": text }).to_string());
+        let Some(Opened { file: open }) = ok(&opened).and_then(|v| serde_json::from_str(v.get()).ok()) else {
+            return opened;
+        };
+        // An imported file is open under its new name.
+        wish.insert("file".to_owned(), json!(open));
+        wish.remove("text");
+        let answer = self.page.call(&json!(wish).to_string());
+        self.page.call(&json!({ "do": "close", "file": open }).to_string());
+        self.spread(by, &what, &answer);
+        match what.as_str() {
+            "run_start" if ok(&answer).is_some() => self.with_speed(&answer),
+            _ => answer,
+        }
+    }
+
+    /// Tells the others what came of a call.
+    fn spread(&mut self, by: &Arc<Outbox>, what: &str, answer: &str) {
+        let Some(told) = ok(answer) else { return };
+        match what {
+            "run_start" => {
+                self.started = true;
+                self.pace(0.0);
+                self.enter(by);
+                self.head(by, told);
+            }
+            "run_swap" => self.head(by, told),
+            "run_stop" => self.started = false,
+            "run_breaks" => {
+                self.notice(
+                    Some(by),
+                    &format!(r#"{{"breaks":{{"run":{},"what":{told}}}}}"#, json!(*self.run)),
+                );
+            }
+            _ => {
+                if let Ok(peek) = serde_json::from_str::<Peek>(told.get()) {
+                    self.frame(told, Some(by));
+                    if peek.ends() {
+                        self.pace(0.0);
+                    }
+                }
+            }
+        }
+    }
+
+    /// A run that has begun, or goes on in a changed chart.
+    fn head(&mut self, by: &Arc<Outbox>, told: &RawValue) {
+        #[derive(Deserialize)]
+        struct Started {
+            file: String,
+            #[serde(rename = "signals")]
+            _signals: IgnoredAny,
+        }
+        // Where something would be lost, nothing has begun.
+        let Ok(started) = serde_json::from_str::<Started>(told.get()) else { return };
+        self.runs.tell(&self.run, self.number, |card| card.file = started.file);
+        self.notice(Some(by), &format!(r#"{{"started":{told}}}"#));
+    }
+
+    /// Takes the run to where its clock is.
+    fn look(&mut self) {
+        let began = self.wall.now();
+        self.due += TICK;
+        if self.due < began {
+            self.due = began + TICK;
+        }
+        let now = self.clock.now();
+        let ms = (now - self.given) as f64 / 1e6;
+        self.given = now;
+        let message = json!({ "do": "run_advance", "run": *self.run, "ms": ms, "most_scans": self.most, "times": true });
+        let answer = self.page.call(&message.to_string());
+        let Some((told, peek)) =
+            ok(&answer).and_then(|t| Some((t, serde_json::from_str::<Peek>(t.get()).ok()?)))
+        else {
+            // Nothing goes on in the past.
+            self.pace(0.0);
+            return;
+        };
+        let took = self.wall.now() - began;
+        if took > TICK {
+            self.most = (self.most / 2).max(1);
+        } else if peek.late && took < TICK / 4 {
+            self.most = (self.most * 2).min(SCANS);
+        }
+        self.quiet += 1;
+        if peek.is_news() || (self.quiet >= QUIET && peek.now_ms >= 0.0) {
+            self.quiet = 0;
+            self.frame(told, None);
+        }
+        if peek.ends() {
+            self.pace(0.0);
+        }
+    }
+
+    /// What was not told yet goes to all.
+    fn flush(&mut self, but: Option<&Arc<Outbox>>) {
+        let rest = self.page.call(&json!({ "do": "run_frame", "run": *self.run, "times": true }).to_string());
+        let news = |t: &RawValue| serde_json::from_str::<Peek>(t.get()).is_ok_and(|p| p.is_news());
+        if let Some(told) = ok(&rest).filter(|t| news(t)) {
+            self.frame(told, but);
+        }
+    }
+
+    /// One full frame for a page that was left behind.
+    fn catch_up(&mut self, outbox: &Arc<Outbox>) {
+        self.flush(Some(outbox));
+        let wish = json!({ "do": "run_frame", "run": *self.run, "full": true, "times": true });
+        if let Some(told) = ok(&self.page.call(&wish.to_string())) {
+            outbox.full(&self.run, format!(r#"{{"frame":{told}}}"#).into());
+        }
+    }
+
+    fn pace(&mut self, speed: f64) {
+        if speed > 0.0 {
+            self.clock.set_speed(speed);
+            self.clock.hold(false);
+            self.given = self.clock.now();
+            self.due = self.wall.now() + TICK;
+            self.most = SCANS;
+        } else {
+            self.clock.hold(true);
+        }
+        if self.speed != speed {
+            self.speed = speed;
+            self.runs.tell(&self.run, self.number, |card| card.speed = speed);
+            self.notice(None, &json!({ "pace": { "run": *self.run, "speed": speed } }).to_string());
+        }
+    }
+
+    fn enter(&mut self, by: &Arc<Outbox>) {
+        if !self.watching().any(|w| Arc::ptr_eq(&w, by)) {
+            self.watchers.push(Arc::downgrade(by));
+        }
+    }
+
+    /// Those who watch and are still there.
+    fn watching(&mut self) -> impl Iterator<Item = Arc<Outbox>> {
+        self.watchers.retain(|w| w.strong_count() > 0);
+        self.watchers.iter().filter_map(Weak::upgrade)
+    }
+
+    fn frame(&mut self, told: &RawValue, but: Option<&Arc<Outbox>>) {
+        let run = Arc::clone(&self.run);
+        let text: Utf8Bytes = format!(r#"{{"frame":{told}}}"#).into();
+        let others = self.watching().filter(|w| but.is_none_or(|b| !Arc::ptr_eq(w, b)));
+        others.for_each(|w| w.frame(&run, text.clone()));
+    }
+
+    fn notice(&mut self, but: Option<&Arc<Outbox>>, text: &str) {
+        let text: Utf8Bytes = text.into();
+        let others = self.watching().filter(|w| but.is_none_or(|b| !Arc::ptr_eq(w, b)));
+        others.for_each(|w| w.put(text.clone()));
+    }
+
+    fn end(&mut self) {
+        self.runs.close(&self.run, self.number);
+        self.notice(None, &json!({ "ended": { "run": *self.run } }).to_string());
+    }
+
+    /// A beginning, with how fast the run goes.
+    fn with_speed(&self, answer: &str) -> String {
+        match answer.strip_suffix("}}") {
+            Some(front) => format!(r#"{front},"speed":{}}}}}"#, json!(self.speed)),
+            None => answer.to_owned(),
+        }
+    }
+}
+
+impl Drop for Desk {
+    /// Also where the thread ended as it should not.
+    fn drop(&mut self) {
+        self.runs.close(&self.run, self.number);
+    }
+}
+
+/// The name under which a file is open.
+#[derive(Deserialize)]
+struct Opened {
+    file: String,
+}
+
+/// What a page answered, where it is no refusal; `null` is an answer.
+fn ok(answer: &str) -> Option<&RawValue> {
+    serde_json::from_str(answer.strip_prefix(r#"{"ok":"#)?.strip_suffix('}')?).ok()
+}
+
+fn no(why: &str) -> String {
+    json!({ "no": why }).to_string()
+}
+
+fn answered(id: u64, answer: &str) -> Utf8Bytes {
+    format!(r#"{{"id":{id},"answer":{answer}}}"#).into()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_outer_form_is_that_of_the_page() {
+        assert_eq!(ok(r#"{"ok":{"a":1}}"#).map(RawValue::get), Some(r#"{"a":1}"#));
+        assert!(ok(&no("a \"word\"")).is_none());
+        assert_eq!(answered(7, &no("why")).as_str(), r#"{"id":7,"answer":{"no":"why"}}"#);
+        assert_eq!(ok(r#"{"ok":null}"#).map(RawValue::get), Some("null"));
+    }
+}

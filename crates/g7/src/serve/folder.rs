@@ -1,0 +1,185 @@
+//! The one folder that pages read and write: files by name, whole or not at all.
+//!
+//! What must hold: nothing outside the folder is read or written, not through a
+//! link either; a file that is not as the page knew it is never replaced.
+
+use std::fs;
+use std::io::{self, Read};
+use std::path::{Path, PathBuf};
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+use axum::http::StatusCode;
+
+use super::names;
+use super::refusal::Refusal;
+
+/// Largest file that is read or written.
+pub(super) const LARGEST: usize = 8 << 20;
+
+/// The folder.
+#[derive(Debug)]
+pub(super) struct Folder {
+    /// Canonical, so that what lies below it can be told.
+    root: PathBuf,
+    read_only: bool,
+    /// One change at a time: between looking and writing nobody else of ours writes.
+    turn: Mutex<()>,
+}
+
+/// What a file must be to be replaced.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) enum Wanted {
+    /// Not there.
+    Absent,
+    /// There, with this hash.
+    Hash(String),
+    /// There, whatever it is.
+    Any,
+}
+
+/// How a write went.
+#[derive(Debug, PartialEq, Eq)]
+pub(super) enum Written {
+    /// The file has this hash now.
+    Done(String),
+    /// The file is another one: its bytes, or none where it is gone.
+    Other(Option<Vec<u8>>),
+}
+
+impl Folder {
+    pub(super) fn new(root: &Path, read_only: bool) -> io::Result<Folder> {
+        Ok(Folder { root: fs::canonicalize(root)?, read_only, turn: Mutex::new(()) })
+    }
+
+    pub(super) fn root(&self) -> &Path {
+        &self.root
+    }
+
+    pub(super) fn is_read_only(&self) -> bool {
+        self.read_only
+    }
+
+    /// The bytes of a file.
+    pub(super) fn read(&self, name: &str) -> Result<Vec<u8>, Refusal> {
+        let path = self.place(name)?;
+        self.bytes(&path, name)?.ok_or_else(|| Refusal::io(name, &io::ErrorKind::NotFound.into()))
+    }
+
+    /// Replaces or makes a file.
+    pub(super) fn write(&self, name: &str, bytes: &[u8], wanted: &Wanted) -> Result<Written, Refusal> {
+        let _turn = self.change()?;
+        let path = self.place(name)?;
+        let present = self.bytes(&path, name)?;
+        let fits = match (wanted, &present) {
+            (Wanted::Absent, None) | (Wanted::Any, Some(_)) => true,
+            (Wanted::Hash(hash), Some(bytes)) => *hash == super::hash(bytes),
+            (Wanted::Absent, Some(_)) | (Wanted::Hash(_) | Wanted::Any, None) => false,
+        };
+        if !fits {
+            return Ok(Written::Other(present));
+        }
+        self.make_folders(&path, name)?;
+        g7_host::write_whole(&path, bytes).map_err(|e| Refusal::io(name, &e))?;
+        Ok(Written::Done(super::hash(bytes)))
+    }
+
+    /// Gives a file another name, which nothing may have.
+    pub(super) fn rename(&self, from: &str, to: &str) -> Result<(), Refusal> {
+        let _turn = self.change()?;
+        let (old, new) = (self.place(from)?, self.place(to)?);
+        if self.bytes(&old, from)?.is_none() {
+            return Err(Refusal::io(from, &io::ErrorKind::NotFound.into()));
+        }
+        self.make_folders(&new, to)?;
+        // A link fails where the new name is taken, at whatever moment; a rename would replace it.
+        match fs::hard_link(&old, &new) {
+            Ok(()) => fs::remove_file(&old).map_err(|e| Refusal::io(from, &e)),
+            Err(e) if e.kind() == io::ErrorKind::AlreadyExists => Err(Refusal::io(to, &e)),
+            Err(_) if fs::symlink_metadata(&new).is_ok() => {
+                Err(Refusal::io(to, &io::ErrorKind::AlreadyExists.into()))
+            }
+            Err(_) => fs::rename(&old, &new).map_err(|e| Refusal::io(from, &e)),
+        }
+    }
+
+    /// Removes a file; where a hash is given, only the file with that hash.
+    pub(super) fn delete(&self, name: &str, hash: Option<&str>) -> Result<(), Refusal> {
+        let _turn = self.change()?;
+        let path = self.place(name)?;
+        let present = self.bytes(&path, name)?;
+        let present = present.ok_or_else(|| Refusal::io(name, &io::ErrorKind::NotFound.into()))?;
+        if hash.is_some_and(|h| h != super::hash(&present)) {
+            let text = format!("{name} was changed outside; it is left as it is");
+            return Err(Refusal::new(StatusCode::PRECONDITION_FAILED, text));
+        }
+        fs::remove_file(&path).map_err(|e| Refusal::io(name, &e))
+    }
+
+    /// The right to change something.
+    fn change(&self) -> Result<MutexGuard<'_, ()>, Refusal> {
+        if self.read_only {
+            return Err(Refusal::forbidden("this server was started with --read-only: nothing is written"));
+        }
+        Ok(self.turn.lock().unwrap_or_else(PoisonError::into_inner))
+    }
+
+    /// Where a file lies, or would: inside the folder, links followed.
+    fn place(&self, name: &str) -> Result<PathBuf, Refusal> {
+        let path = self.root.join(names::path(name).map_err(Refusal::bad)?);
+        let outside =
+            || Refusal::forbidden(format!("{name} is or goes through a link that leads out of the folder"));
+        match fs::canonicalize(&path) {
+            Ok(real) if real.starts_with(&self.root) => return Ok(real),
+            Ok(_) => return Err(outside()),
+            Err(e) if e.kind() == io::ErrorKind::NotFound => {}
+            Err(e) => return Err(Refusal::io(name, &e)),
+        }
+        // A link to nothing is there without being there; what is written to it would be made elsewhere.
+        let mut above = path.as_path();
+        loop {
+            if fs::symlink_metadata(above).is_ok_and(|m| m.is_symlink()) {
+                return Err(outside());
+            }
+            let Some(parent) = above.parent() else { return Err(outside()) };
+            above = parent;
+            match fs::canonicalize(above) {
+                Ok(real) if real.starts_with(&self.root) => {
+                    let rest = path.strip_prefix(above).map_err(|_| outside())?;
+                    return Ok(real.join(rest));
+                }
+                Ok(_) => return Err(outside()),
+                Err(e) if e.kind() == io::ErrorKind::NotFound => {}
+                Err(e) => return Err(Refusal::io(name, &e)),
+            }
+        }
+    }
+
+    /// The bytes of a file; none where there is no file.
+    fn bytes(&self, path: &Path, name: &str) -> Result<Option<Vec<u8>>, Refusal> {
+        let meta = match fs::metadata(path) {
+            Err(e) if e.kind() == io::ErrorKind::NotFound => return Ok(None),
+            other => other.map_err(|e| Refusal::io(name, &e))?,
+        };
+        // Opening a pipe or a device would wait, or do something.
+        if !meta.is_file() {
+            return Err(Refusal::forbidden(format!("{name} is no plain file")));
+        }
+        let too_large = || {
+            let text = format!("{name} is larger than {} MB: the editor does not open it", LARGEST >> 20);
+            Refusal::new(StatusCode::PAYLOAD_TOO_LARGE, text)
+        };
+        if meta.len() > LARGEST as u64 {
+            return Err(too_large());
+        }
+        let mut bytes = Vec::new();
+        fs::File::open(path)
+            .and_then(|f| f.take(LARGEST as u64 + 1).read_to_end(&mut bytes))
+            .map_err(|e| Refusal::io(name, &e))?;
+        if bytes.len() > LARGEST { Err(too_large()) } else { Ok(Some(bytes)) }
+    }
+
+    fn make_folders(&self, path: &Path, name: &str) -> Result<(), Refusal> {
+        let Some(folder) = path.parent() else { return Ok(()) };
+        fs::create_dir_all(folder).map_err(|e| Refusal::io(name, &e))
+    }
+}

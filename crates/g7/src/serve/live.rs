@@ -1,0 +1,143 @@
+//! One WebSocket for each page: its calls come in, answers, frames and notices
+//! go out.
+//!
+//! What must hold: a page that never reads, never answers, or sends what means
+//! nothing costs a bounded place and is let go; one call of a page is worked on
+//! at a time, the others wait in the network.
+
+use std::sync::Arc;
+
+use axum::extract::State;
+use axum::extract::ws::{Message, WebSocket, WebSocketUpgrade};
+use axum::http::StatusCode;
+use axum::response::{IntoResponse, Response};
+use serde::Deserialize;
+use serde_json::value::RawValue;
+use tokio::sync::OwnedSemaphorePermit;
+use tokio::time::{Instant, MissedTickBehavior, interval, timeout};
+
+use super::outbox::{Next, Outbox};
+use super::refusal::Refusal;
+use super::runs::letter;
+use super::{Shared, api};
+
+/// A call, as far as the server has to know it.
+#[derive(Deserialize)]
+struct Incoming<'a> {
+    id: u64,
+    #[serde(borrow)]
+    call: &'a RawValue,
+}
+
+/// Of a call: what, and of which run.
+#[derive(Deserialize)]
+struct Head {
+    r#do: String,
+    #[serde(default)]
+    run: String,
+    file: Option<String>,
+    text: Option<String>,
+    speed: Option<f64>,
+}
+
+/// Opens the socket of a page, if there is a place for it.
+pub(super) async fn live(State(shared): State<Shared>, upgrade: WebSocketUpgrade) -> Response {
+    let Ok(seat) = Arc::clone(&shared.seats).try_acquire_owned() else {
+        let text = format!("all {} places are taken: close a page somewhere", shared.limits.clients);
+        return Refusal::new(StatusCode::SERVICE_UNAVAILABLE, text).into_response();
+    };
+    let most = shared.limits.message;
+    upgrade
+        .max_message_size(most)
+        .max_frame_size(most)
+        // The defaults would hold a quarter of a megabyte for each page.
+        .read_buffer_size(8 << 10)
+        .write_buffer_size(0)
+        .on_upgrade(move |socket| attend(socket, shared, seat))
+}
+
+/// Serves a page until it goes, or has to.
+async fn attend(mut socket: WebSocket, shared: Shared, seat: OwnedSemaphorePermit) {
+    let outbox = Arc::new(Outbox::default());
+    shared.clients.enter(&outbox);
+    let limits = shared.limits;
+    let mut ping = interval(limits.ping);
+    ping.set_missed_tick_behavior(MissedTickBehavior::Delay);
+    let mut heard = Instant::now();
+    loop {
+        let out = tokio::select! {
+            said = socket.recv() => match said {
+                Some(Ok(Message::Text(text))) => {
+                    heard = Instant::now();
+                    take(&shared, &outbox, &text).await;
+                    continue;
+                }
+                Some(Ok(Message::Ping(_) | Message::Pong(_))) => {
+                    heard = Instant::now();
+                    continue;
+                }
+                Some(Ok(Message::Binary(_))) => {
+                    outbox.put(letter(&serde_json::json!({ "no": "messages are texts" })));
+                    continue;
+                }
+                Some(Ok(Message::Close(_)) | Err(_)) | None => break,
+            },
+            next = outbox.next() => match next {
+                Next::Text(text) => Message::Text(text),
+                Next::Behind(run) => {
+                    shared.runs.catch_up(&run, &outbox);
+                    continue;
+                }
+                Next::Closed => break,
+            },
+            _ = ping.tick() => {
+                if heard.elapsed() > limits.silence {
+                    break;
+                }
+                Message::Ping(Default::default())
+            }
+        };
+        if !matches!(timeout(limits.send, socket.send(out)).await, Ok(Ok(()))) {
+            break;
+        }
+    }
+    // Runs know the page by a weak link only: with it, all that waits goes.
+    drop(outbox);
+    drop(seat);
+}
+
+/// Works on one message of a page.
+async fn take(shared: &Shared, outbox: &Arc<Outbox>, text: &str) {
+    let Ok(Incoming { id, call }) = serde_json::from_str(text) else {
+        outbox.put(letter(&serde_json::json!({ "no": "this message means nothing" })));
+        return;
+    };
+    if let Err(no) = call_of(shared, outbox, id, call).await {
+        outbox.put(letter(&serde_json::json!({ "id": id, "answer": { "no": no } })));
+    }
+}
+
+/// Hands a call to whom it is for, who puts the answer into the outbox; or says why not.
+async fn call_of(shared: &Shared, outbox: &Arc<Outbox>, id: u64, call: &RawValue) -> Result<(), String> {
+    let head: Head =
+        serde_json::from_str(call.get()).map_err(|e| format!("this message means nothing: {e}"))?;
+    let runs = &shared.runs;
+    let text = match (head.r#do.as_str(), &head.file, head.text) {
+        ("run_start" | "run_swap", Some(_), Some(text)) => Some(text),
+        ("run_start" | "run_swap", Some(file), None) => Some(api::chart(shared, file).await?),
+        ("run_start" | "run_swap", None, _) => return Err("this names no file".to_owned()),
+        _ => None,
+    };
+    match head.r#do.as_str() {
+        "runs" => {
+            outbox.put(letter(&serde_json::json!({ "id": id, "answer": { "ok": { "runs": runs.list() } } })));
+            Ok(())
+        }
+        "run_start" => runs.start(&head.run, outbox, id, call.get(), text).await,
+        "watch" => runs.watch(&head.run, outbox, id).await,
+        "unwatch" => runs.unwatch(&head.run, outbox, id).await,
+        "pace" => runs.pace(&head.run, outbox, id, head.speed.unwrap_or(0.0)).await,
+        what if what.starts_with("run_") => runs.call(&head.run, outbox, id, call.get(), text).await,
+        _ => Err("the server answers for runs; this is answered in the page".to_owned()),
+    }
+}

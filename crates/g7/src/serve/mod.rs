@@ -1,0 +1,305 @@
+//! `g7 serve`: the editor in the browser, its files, and runs that pages share.
+//!
+//! # Where this sits
+//!
+//! ```text
+//! browser -> listen -> guard -> assets                          the page
+//!                            -> api  -> folder, drafts, watch   files
+//!                            -> live -> runs -> desk -> Page    shared runs
+//!                                <- outbox <-+
+//! ```
+//!
+//! # Invariants
+//!
+//! - Nothing is answered without the right host and origin; nothing but the page
+//!   itself without the token of this start (`guard`).
+//! - Only the folder given is read or written, links out of it refused (`folder`).
+//! - Whatever pages do, runs go on and memory stays bounded (`outbox`, `desk`).
+
+mod api;
+mod assets;
+mod browser;
+mod desk;
+mod drafts;
+mod folder;
+mod guard;
+mod listen;
+mod live;
+mod names;
+mod outbox;
+mod refusal;
+mod runs;
+#[cfg(test)]
+mod tests;
+mod watch;
+
+use std::net::{IpAddr, Ipv4Addr, SocketAddr};
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex, PoisonError, Weak};
+use std::time::Duration;
+
+use axum::Router;
+use axum::routing::get;
+use clap::Args;
+use tokio::net::TcpListener;
+use tokio::sync::Semaphore;
+
+use crate::failure::{Failure, Verdict};
+use crate::talk;
+use drafts::Drafts;
+use folder::Folder;
+use guard::Guard;
+use outbox::Outbox;
+use runs::Runs;
+use watch::Watch;
+
+/// The port that is tried first where none is asked for.
+const PORT: u16 = 4700;
+/// Between two looks at the folder.
+const LOOK: Duration = Duration::from_millis(500);
+
+#[derive(Args, Debug)]
+#[command(after_help = "\
+Examples:
+  g7 serve                          the charts in this folder and below
+  g7 serve examples                 those of a folder
+  g7 serve tank/chart.g7            a folder, with one chart opened
+  g7 serve --read-only examples     for looking, not for changing
+  g7 serve --host 0.0.0.0 --no-open on a machine without a screen, for others
+
+The address printed has a token that is made anew at each start: whoever has it
+reads and writes the charts of the folder, nobody else does, and nothing outside
+the folder is touched. Ctrl-C ends the server.")]
+pub(crate) struct Serve {
+    /// A folder with charts, or one chart.
+    #[arg(default_value = ".", value_name = "FILE or FOLDER")]
+    path: PathBuf,
+    /// The port; 4700 unless said, or another where it is taken.
+    #[arg(long, value_name = "NUMBER")]
+    port: Option<u16>,
+    /// The address to listen at; only this machine unless said.
+    #[arg(long, default_value_t = IpAddr::V4(Ipv4Addr::LOCALHOST), value_name = "ADDRESS")]
+    host: IpAddr,
+    /// Write nothing; charts can be looked at and run.
+    #[arg(long)]
+    read_only: bool,
+    /// Do not open a browser; print the address only.
+    #[arg(long)]
+    no_open: bool,
+    /// The chart to open first, as its path in the folder.
+    #[arg(long, value_name = "FILE")]
+    start: Option<String>,
+    /// Take the page from this folder (to work on the page).
+    #[arg(long, value_name = "FOLDER", hide = true)]
+    page_dir: Option<PathBuf>,
+}
+
+/// How much of everything.
+#[derive(Clone, Copy, Debug)]
+struct Limits {
+    /// Pages at a time.
+    clients: usize,
+    /// Shared runs.
+    runs: usize,
+    /// Bytes of a message.
+    message: usize,
+    /// Between two pings.
+    ping: Duration,
+    /// Without a sign for so long, a page is let go.
+    silence: Duration,
+    /// Longest that a message may take to leave.
+    send: Duration,
+}
+
+impl Default for Limits {
+    fn default() -> Limits {
+        Limits {
+            clients: 200,
+            runs: 16,
+            message: 1 << 20,
+            ping: Duration::from_secs(10),
+            silence: Duration::from_secs(35),
+            send: Duration::from_secs(20),
+        }
+    }
+}
+
+/// What requests share.
+#[derive(Debug)]
+struct Inner {
+    folder: Arc<Folder>,
+    /// The folder as the user named it.
+    title: String,
+    /// The chart to open first.
+    start: Option<String>,
+    page: Option<PathBuf>,
+    drafts: Drafts,
+    watch: Watch,
+    runs: Arc<Runs>,
+    clients: Clients,
+    seats: Arc<Semaphore>,
+    limits: Limits,
+}
+
+type Shared = Arc<Inner>;
+
+/// The pages that are there.
+#[derive(Debug, Default)]
+struct Clients(Mutex<Vec<Weak<Outbox>>>);
+
+impl Clients {
+    fn enter(&self, outbox: &Arc<Outbox>) {
+        let mut list = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        list.retain(|w| w.strong_count() > 0);
+        list.push(Arc::downgrade(outbox));
+    }
+
+    fn all(&self) -> Vec<Arc<Outbox>> {
+        let list = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        list.iter().filter_map(Weak::upgrade).collect()
+    }
+}
+
+/// Tells contents apart; no secret.
+fn hash(bytes: &[u8]) -> String {
+    let fnv =
+        |start: u64| bytes.iter().fold(start, |h, b| (h ^ u64::from(*b)).wrapping_mul(0x0100_0000_01b3));
+    format!("{:x}-{:016x}", bytes.len(), fnv(0xcbf2_9ce4_8422_2325))
+}
+
+/// What requests share, for a folder and a place for what is kept.
+fn shared(args: &Serve, limits: Limits, state: Option<&Path>) -> Result<Shared, Failure> {
+    let unreadable = |e| Failure::Read(args.path.clone(), e);
+    let is_file = std::fs::metadata(&args.path).map_err(unreadable)?.is_file();
+    let (root, first) = match (is_file, args.path.parent(), args.path.file_name()) {
+        (true, Some(parent), Some(name)) => {
+            let parent = if parent.as_os_str().is_empty() { Path::new(".") } else { parent };
+            let name = name.to_string_lossy().into_owned();
+            names::path(&name).map_err(Failure::Usage)?;
+            (parent.to_path_buf(), Some(name))
+        }
+        _ => (args.path.clone(), None),
+    };
+    let folder = Arc::new(Folder::new(&root, args.read_only).map_err(unreadable)?);
+    let chart = folder.root().join("chart.g7").is_file().then(|| "chart.g7".to_owned());
+    let start = args.start.clone().or(first).or(chart);
+    if let Some(start) = &start {
+        folder.read(start).map_err(|r| Failure::Usage(r.text))?;
+    }
+    let page = args.page_dir.as_ref().map(|p| p.canonicalize().map_err(|e| Failure::Read(p.clone(), e)));
+    Ok(Arc::new(Inner {
+        title: root.display().to_string(),
+        start,
+        page: page.transpose()?,
+        drafts: Drafts::of(folder.root(), state),
+        watch: Watch::new(Arc::clone(&folder)),
+        folder,
+        runs: Arc::new(Runs::new(limits.runs)),
+        clients: Clients::default(),
+        seats: Arc::new(Semaphore::new(limits.clients)),
+        limits,
+    }))
+}
+
+/// All addresses, behind the guard.
+fn app(shared: Shared, guard: Guard) -> Router {
+    Router::new()
+        .merge(api::routes())
+        .route("/api/live", get(live::live))
+        .fallback(get(assets::asset))
+        .with_state(shared)
+        .layer(axum::middleware::from_fn_with_state(guard, guard::guard))
+}
+
+/// Tells every page what changed in the folder.
+async fn tell_changes(shared: Shared) {
+    let mut tick = tokio::time::interval(LOOK);
+    tick.set_missed_tick_behavior(tokio::time::MissedTickBehavior::Delay);
+    loop {
+        tick.tick().await;
+        let pages = shared.clients.all();
+        if pages.is_empty() {
+            continue;
+        }
+        let of = Arc::clone(&shared);
+        let changes = tokio::task::spawn_blocking(move || of.watch.changes()).await.unwrap_or_default();
+        for change in changes {
+            let text = runs::letter(&serde_json::json!({ "changed": change }));
+            pages.iter().for_each(|p| p.put(text.clone()));
+        }
+    }
+}
+
+/// The secret of this start.
+fn token() -> Result<String, Failure> {
+    let mut bytes = [0u8; 24];
+    getrandom::fill(&mut bytes)
+        .map_err(|e| Failure::Usage(format!("the system gives no random numbers: {e}")))?;
+    Ok(bytes.iter().map(|b| format!("{b:02x}")).collect())
+}
+
+/// The port that was asked for, or the usual one, or any.
+async fn bind(args: &Serve) -> Result<TcpListener, Failure> {
+    let at = |port| TcpListener::bind(SocketAddr::new(args.host, port));
+    let bound = match args.port {
+        Some(port) => at(port).await,
+        None => match at(PORT).await {
+            Ok(listener) => Ok(listener),
+            Err(_) => at(0).await,
+        },
+    };
+    bound.map_err(|e| {
+        let port = args.port.unwrap_or(PORT);
+        Failure::Usage(format!("cannot listen at {} port {port}: {}", args.host, crate::failure::plain(&e)))
+    })
+}
+
+/// Runs the command until Ctrl-C.
+pub(crate) fn serve(args: &Serve) -> Result<Verdict, Failure> {
+    let shared = shared(args, Limits::default(), drafts::state_folder().as_deref())?;
+    let runtime = tokio::runtime::Builder::new_multi_thread().enable_all().worker_threads(2).build();
+    let runtime = runtime.map_err(|e| Failure::Usage(format!("the server cannot start: {e}")))?;
+    let served = runtime.block_on(async {
+        let listener = bind(args).await?;
+        let bound = listener.local_addr()?;
+        let token = token()?;
+        let address = address(bound, &token);
+        talk!("G7 serves {}{}", shared.title, if args.read_only { ", read-only" } else { "" });
+        if !bound.ip().is_loopback() {
+            talk!("anyone in the network who has this address reads and writes these charts");
+        }
+        print(&address)?;
+        talk!("Ctrl-C ends it");
+        if !args.no_open {
+            browser::open(&address);
+        }
+        tokio::spawn(tell_changes(Arc::clone(&shared)));
+        let app = app(Arc::clone(&shared), Guard { token, bound });
+        tokio::select! {
+            () = listen::listen(listener, app) => {}
+            _ = tokio::signal::ctrl_c() => {}
+        }
+        Ok(Verdict::Fine)
+    });
+    // Nothing is left half done: files are written whole or not at all.
+    runtime.shutdown_background();
+    served
+}
+
+/// What the user opens.
+fn address(bound: SocketAddr, token: &str) -> String {
+    let shown = match bound.ip() {
+        // One that can be opened; others use this machine's own.
+        IpAddr::V4(ip) if ip.is_unspecified() => SocketAddr::new(Ipv4Addr::LOCALHOST.into(), bound.port()),
+        IpAddr::V6(ip) if ip.is_unspecified() => SocketAddr::new(Ipv4Addr::LOCALHOST.into(), bound.port()),
+        IpAddr::V4(_) | IpAddr::V6(_) => bound,
+    };
+    format!("http://{shown}/?token={token}")
+}
+
+fn print(address: &str) -> Result<(), Failure> {
+    use std::io::Write as _;
+    let mut out = anstream::stdout();
+    writeln!(out, "{address}")?;
+    Ok(out.flush()?)
+}

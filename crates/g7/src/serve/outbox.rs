@@ -1,0 +1,190 @@
+//! What goes out to one page, in order and bounded.
+//!
+//! ```text
+//! runs, watch, answers -> Outbox -> the page's socket
+//! ```
+//!
+//! What must hold: nobody waits for a slow reader. When it falls behind, the
+//! frames of a run that wait for it are thrown away, and once it has read what
+//! is left it is given one full frame. Where even that is too much, it is let go.
+
+use std::collections::{BTreeSet, VecDeque};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+use axum::extract::ws::Utf8Bytes;
+use tokio::sync::Notify;
+
+/// Most frames of a run that wait for a page.
+const FRAMES: usize = 50;
+/// Most bytes that wait for a page.
+const BYTES: usize = 4 << 20;
+
+/// What waits for a page.
+#[derive(Debug, Default)]
+pub(super) struct Outbox {
+    inner: Mutex<Inner>,
+    ring: Notify,
+}
+
+#[derive(Debug, Default)]
+struct Inner {
+    queue: VecDeque<Letter>,
+    bytes: usize,
+    frames: usize,
+    /// Runs of which frames were thrown away.
+    behind: BTreeSet<Arc<str>>,
+    closed: bool,
+}
+
+#[derive(Debug)]
+struct Letter {
+    text: Utf8Bytes,
+    /// The run that this is a frame of.
+    run: Option<Arc<str>>,
+}
+
+/// What is next.
+#[derive(Debug, PartialEq, Eq)]
+pub(super) enum Next {
+    Text(Utf8Bytes),
+    /// All is read, but of this run frames were thrown away.
+    Behind(Arc<str>),
+    /// Too much waits: the page is let go.
+    Closed,
+}
+
+impl Outbox {
+    /// A frame of a run, thrown away where the page is behind.
+    pub(super) fn frame(&self, run: &Arc<str>, text: Utf8Bytes) {
+        let mut inner = self.lock();
+        if inner.behind.contains(run) {
+            return;
+        }
+        if inner.frames >= FRAMES || inner.bytes + text.len() > BYTES {
+            inner.throw_away(run);
+            inner.behind.insert(Arc::clone(run));
+        } else {
+            inner.push(text, Some(Arc::clone(run)));
+        }
+        drop(inner);
+        self.ring.notify_one();
+    }
+
+    /// A frame that has all: what was missed is in it.
+    pub(super) fn full(&self, run: &Arc<str>, text: Utf8Bytes) {
+        let mut inner = self.lock();
+        inner.throw_away(run);
+        inner.behind.remove(run);
+        inner.push(text, Some(Arc::clone(run)));
+        drop(inner);
+        self.ring.notify_one();
+    }
+
+    /// An answer or a notice, which cannot be thrown away.
+    pub(super) fn put(&self, text: Utf8Bytes) {
+        let mut inner = self.lock();
+        // One large answer is fine; many that nobody reads are not.
+        if inner.bytes > BYTES {
+            inner.closed = true;
+            inner.queue.clear();
+        } else {
+            inner.push(text, None);
+        }
+        drop(inner);
+        self.ring.notify_one();
+    }
+
+    /// Waits for what is next.
+    pub(super) async fn next(&self) -> Next {
+        loop {
+            if let Some(next) = self.take() {
+                return next;
+            }
+            self.ring.notified().await;
+        }
+    }
+
+    fn take(&self) -> Option<Next> {
+        let mut inner = self.lock();
+        if inner.closed {
+            return Some(Next::Closed);
+        }
+        if let Some(letter) = inner.queue.pop_front() {
+            inner.bytes -= letter.text.len();
+            inner.frames -= usize::from(letter.run.is_some());
+            return Some(Next::Text(letter.text));
+        }
+        inner.behind.pop_first().map(Next::Behind)
+    }
+
+    fn lock(&self) -> MutexGuard<'_, Inner> {
+        self.inner.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+impl Inner {
+    fn push(&mut self, text: Utf8Bytes, run: Option<Arc<str>>) {
+        self.bytes += text.len();
+        self.frames += usize::from(run.is_some());
+        self.queue.push_back(Letter { text, run });
+    }
+
+    fn throw_away(&mut self, run: &Arc<str>) {
+        self.queue.retain(|l| l.run.as_ref() != Some(run));
+        self.bytes = self.queue.iter().map(|l| l.text.len()).sum();
+        self.frames = self.queue.iter().filter(|l| l.run.is_some()).count();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn run() -> Arc<str> {
+        Arc::from("a")
+    }
+
+    #[test]
+    fn what_is_read_comes_in_order() {
+        let outbox = Outbox::default();
+        outbox.frame(&run(), "1".into());
+        outbox.put("2".into());
+        outbox.frame(&run(), "3".into());
+        for text in ["1", "2", "3"] {
+            assert_eq!(outbox.take(), Some(Next::Text(text.into())));
+        }
+        assert_eq!(outbox.take(), None);
+    }
+
+    #[test]
+    fn a_reader_left_behind_keeps_its_answers_and_gets_one_full_frame() {
+        let outbox = Outbox::default();
+        outbox.put("answer".into());
+        for _ in 0..10_000 {
+            outbox.frame(&run(), "frame".into());
+        }
+        assert_eq!(outbox.lock().queue.len(), 1, "the frames are thrown away");
+        assert_eq!(outbox.take(), Some(Next::Text("answer".into())));
+        assert_eq!(outbox.take(), Some(Next::Behind(run())));
+        assert_eq!(outbox.take(), None, "asked for once");
+        outbox.full(&run(), "all".into());
+        outbox.frame(&run(), "more".into());
+        assert_eq!(outbox.take(), Some(Next::Text("all".into())));
+        assert_eq!(outbox.take(), Some(Next::Text("more".into())));
+    }
+
+    #[test]
+    fn bytes_are_bounded_whatever_is_sent() {
+        let outbox = Outbox::default();
+        let large: Utf8Bytes = "x".repeat(1 << 20).into();
+        for _ in 0..40 {
+            outbox.frame(&run(), large.clone());
+            assert!(outbox.lock().bytes <= BYTES);
+        }
+        for _ in 0..40 {
+            outbox.put(large.clone());
+        }
+        assert_eq!(outbox.take(), Some(Next::Closed));
+        assert!(outbox.lock().queue.is_empty(), "nothing is kept for it");
+    }
+}
