@@ -12,7 +12,8 @@ import type { FileRow } from './server';
 export interface Panel {
   id: string;
   title: Key;
-  region: 'left' | 'right' | 'bottom' | 'top' | 'text' | 'start';
+  /** `over` lies above everything. */
+  region: 'left' | 'right' | 'bottom' | 'top' | 'text' | 'start' | 'over';
   component: Component;
   /** Lower ones first. */
   order: number;
