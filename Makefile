@@ -1,15 +1,20 @@
 # The commands of the README. Each installs what it needs, and only that.
 
 EXAMPLE ?= examples/bead-sorter
+FOLDER ?= examples
 
-.PHONY: run test lint deny wasm bench book fuzz help
+.PHONY: run view test lint deny wasm web site page-test page-bench bench book fuzz help
+
+## build G7 and open the editor in the browser on the examples (FOLDER=… for another)
+run: web
+	cargo run --release --quiet --package g7 -- serve $(FOLDER)
 
 ## build G7 and run the bead sorter in the terminal (EXAMPLE=… for another)
-run:
+view:
 	cargo run --release --quiet --package g7 -- run $(EXAMPLE)
 
 ## run every test
-test: lint
+test: lint page-test
 	cargo test --workspace --quiet
 	cargo run --quiet --package g7 -- test examples
 	cargo run --quiet --package g7 -- check examples
@@ -30,6 +35,27 @@ wasm:
 	mkdir -p web/public
 	cp $${CARGO_TARGET_DIR:-target}/wasm32-unknown-unknown/wasm/g7_page.wasm web/public/g7.wasm
 
+## the editor's page, built into g7
+web: wasm
+	@command -v npm >/dev/null || { apt-get update -qq && apt-get install -qq nodejs npm; }
+	cd web && npm ci --silent --no-audit --no-fund && npm run --silent build
+
+## the static playground in site/: the page and the examples, for any web server
+site: web
+	rm -rf site
+	cp -r web/dist site
+	node web/examples.mjs examples site/examples.json
+
+## the stories of the page in a real browser
+page-test: web
+	@command -v chromium >/dev/null || { apt-get update -qq && apt-get install -qq chromium; }
+	cargo build --release --quiet --package g7
+	cd web && npm run --silent check && npm test --silent
+
+## main-thread time of the page, beside React Flow
+page-bench: wasm
+	cd web && npm ci --silent --no-audit --no-fund && npm run --silent bench
+
 ## time of a scan, beside matiec where an iec2c is on the PATH
 bench:
 	benches/scan.sh
@@ -43,4 +69,4 @@ fuzz:
 	fuzz/run.sh 60
 
 help:
-	@grep -B1 -E '^[a-z]+:' Makefile | grep -E '^(##|[a-z]+:)' | paste - - | sed -E 's/^## (.*)\t([a-z]+):.*/  make \2\t\1/' | expand -t 18
+	@grep -B1 -E '^[a-z-]+:' Makefile | grep -E '^(##|[a-z-]+:)' | paste - - | sed -E 's/^## (.*)\t([a-z-]+):.*/  make \2\t\1/' | expand -t 18

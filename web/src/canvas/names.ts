@@ -17,7 +17,11 @@ export function nameOf(item: Item): string {
       return with_(t(key, { name: item.name ?? '' }));
     }
     case 'transition':
-      return with_(t('canvas.transition', { name: item.label ?? '', text: item.source ?? '' }).replace(/ +/g, ' '));
+      return with_(
+        item.label
+          ? t('canvas.transition', { name: item.label, text: item.source ?? '' })
+          : t('canvas.transitionOf', { text: item.source ?? '' }),
+      );
     case 'action':
       return t('canvas.action', { name: actionOf(item.id)?.step.split('/')[2] ?? '', text: item.source ?? '' });
     case 'connector':

@@ -7,6 +7,7 @@ export const canvas = {
   'canvas.macro': ['Macro-step {name}', 'Macro-étape {name}', 'Macroetapa {name}'],
   'canvas.enclosing': ['Enclosing step {name}', 'Étape encapsulante {name}', 'Etapa encapsulante {name}'],
   'canvas.transition': ['Transition {name}: {text}', 'Transition {name} : {text}', 'Transição {name}: {text}'],
+  'canvas.transitionOf': ['Transition: {text}', 'Transition : {text}', 'Transição: {text}'],
   'canvas.action': ['Action of step {name}: {text}', "Action de l'étape {name} : {text}", 'Ação da etapa {name}: {text}'],
   'canvas.connector': ['Connector to {name}', 'Renvoi vers {name}', 'Ligação para {name}'],
   'canvas.link': ['Link', 'Liaison', 'Ligação orientada'],
