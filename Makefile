@@ -56,9 +56,10 @@ page-test: web
 page-bench: wasm
 	cd web && npm ci --silent --no-audit --no-fund && npm run --silent bench
 
-## time of a scan, beside matiec where an iec2c is on the PATH
+## time of a scan (beside matiec where an iec2c is on the PATH) and of a layout
 bench:
 	benches/scan.sh
+	benches/layout.sh
 
 ## the book, as HTML (needs mdbook)
 book:
