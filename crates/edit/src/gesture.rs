@@ -14,6 +14,9 @@ pub enum Gesture {
         /// Where it stands, in pixels of the drawing.
         #[serde(default)]
         at: Option<[f64; 2]>,
+        /// What sort; a plain one when absent.
+        #[serde(default)]
+        kind: Option<Sort>,
     },
     /// Builds on: behind a step a transition and a step, behind a transition a step.
     Next {

@@ -5,13 +5,18 @@ use g7_model::{Chart, ChartKind, Span, StepKind};
 use super::graph::{add, leaving, may_arrive, may_leave, put_step, put_step_before, put_transition};
 use super::{Node, node, places};
 use crate::draft::Draft;
-use crate::gesture::Branching;
+use crate::gesture::{Branching, Sort};
 use crate::id::ItemId;
 use crate::{Refusal, refuse};
 
 /// A step by itself; the first one of a chart is initial, the first one of an
 /// expansion or task its entry.
-pub(crate) fn add_step(d: &mut Draft<'_>, chart: &str, at: Option<[f64; 2]>) -> Result<(), Refusal> {
+pub(crate) fn add_step(
+    d: &mut Draft<'_>,
+    chart: &str,
+    at: Option<[f64; 2]>,
+    sort: Option<Sort>,
+) -> Result<(), Refusal> {
     let home = d.chart(chart)?;
     let name = d.step_name(home);
     let (first, kind) = (home.steps().next().is_none(), home.kind);
@@ -22,6 +27,10 @@ pub(crate) fn add_step(d: &mut Draft<'_>, chart: &str, at: Option<[f64; 2]>) -> 
         step.kind = StepKind::Entry;
     }
     put_step(d, chart, step, None)?;
+    if let Some(sort) = sort {
+        super::fields::kind(d, &ItemId::step(chart, name.as_str()), sort)?;
+        d.select.clear();
+    }
     if let Some(at) = at {
         places::place(d, &ItemId::step(chart, name.as_str()), places::point(at)?)?;
     }

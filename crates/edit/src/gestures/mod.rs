@@ -23,7 +23,7 @@ use crate::{Refusal, refuse};
 /// Changes the draft; renaming and typing go other ways.
 pub(crate) fn carry_out(d: &mut Draft<'_>, gesture: &Gesture) -> Result<(), Refusal> {
     match gesture {
-        Gesture::AddStep { chart, at } => build::add_step(d, chart, *at),
+        Gesture::AddStep { chart, at, kind } => build::add_step(d, chart, *at, *kind),
         Gesture::Next { id } => build::next(d, id),
         Gesture::Before { id } => build::before(d, id),
         Gesture::Connect { from, to } => join::connect(d, from, to),
