@@ -2,12 +2,13 @@
 import { canvas } from './words/canvas';
 import { run } from './words/run';
 import { shell } from './words/shell';
+import { start } from './words/start';
 import { text } from './words/text';
 import { prefs } from './prefs.svelte';
 
 export type Words = Record<string, readonly [en: string, fr: string, pt: string]>;
 
-const table = { ...shell, ...canvas, ...run, ...text } as const;
+const table = { ...shell, ...canvas, ...run, ...start, ...text } as const;
 
 export type Key = keyof typeof table;
 export type Language = 'en' | 'fr' | 'pt';

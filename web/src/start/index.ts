@@ -1,4 +1,9 @@
-// The components of this folder that have a place in the frame.
+// The gallery, and what lies over the page for those who begin.
 import type { Panel } from '../lib/shell.svelte';
+import Over from './Over.svelte';
+import Start from './Start.svelte';
 
-export const panels: Panel[] = [];
+export const panels: Panel[] = [
+  { id: 'start', title: 'app.gallery', region: 'start', component: Start, order: 10 },
+  { id: 'over', title: 'start.tour', region: 'over', component: Over, order: 10 },
+];

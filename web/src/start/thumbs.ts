@@ -1,0 +1,75 @@
+// Small pictures of files for the gallery, drawn by the same crates as the page:
+// one after the other, and only those that come into sight.
+import { page } from '../lib/page';
+import type { Box, Drawing, Look } from '../lib/protocol';
+import { server, type FileRow } from '../lib/server';
+
+export interface Thumb {
+  /** First sentence of the notes at the head of the file. */
+  about: string;
+  svg: string;
+  area: Box;
+  charts: number;
+  steps: number;
+  transitions: number;
+  tests: number;
+  plant: boolean;
+}
+
+const known = new Map<string, Promise<Thumb>>();
+let last: Promise<unknown> = Promise.resolve();
+
+export function thumb(row: FileRow): Promise<Thumb> {
+  const key = `${row.path}\n${row.hash}`;
+  let found = known.get(key);
+  if (!found) {
+    found = last.then(() => draw(row.path));
+    last = found.catch(() => undefined);
+    known.set(key, found);
+  }
+  return found;
+}
+
+async function draw(path: string): Promise<Thumb> {
+  const { text } = await server.read(path);
+  return picture(path, text);
+}
+
+export async function picture(path: string, text: string): Promise<Thumb> {
+  const { file, charts, tests, plants } = await page.call<Look>({ do: 'open', file: `\u0000gallery/${path}`, text });
+  try {
+    const own = charts.filter((c) => !c.of && c.kind === 'chart');
+    const chart = own[0] ?? charts[0];
+    const drawing = chart ? await page.call<Drawing>({ do: 'drawing', file, chart: chart.name }) : null;
+    return {
+      about: about(text),
+      svg: drawing?.items.map((i) => i.svg).join('') ?? '',
+      area: drawing?.area ?? [0, 0, 1, 1],
+      charts: charts.length,
+      steps: charts.reduce((n, c) => n + c.steps, 0),
+      transitions: charts.reduce((n, c) => n + c.transitions, 0),
+      tests: tests.length,
+      plant: plants.length > 0,
+    };
+  } finally {
+    void page.call({ do: 'close', file }).catch(() => undefined);
+  }
+}
+
+function about(text: string): string {
+  const lines: string[] = [];
+  for (const line of text.split('\n')) {
+    const note = /^\s*\/\/ ?(.*)/.exec(line)?.[1];
+    if (note === undefined || note.trim() === '') break;
+    lines.push(note);
+  }
+  return lines.join(' ');
+}
+
+/** What of a drawing is shown: its upper part, at a size that can be read. */
+export function crop([x, y, w, h]: Box): string {
+  const width = Math.max(w + 40, 300);
+  const height = width * 0.62;
+  const top = h + 40 < height ? y - (height - h) / 2 : y - 20;
+  return [x - (width - w) / 2, top, width, height].map((n) => n.toFixed(1)).join(' ');
+}
