@@ -105,3 +105,20 @@ fn options_change_what_is_drawn() {
     assert!(svg(&["--pages", "pl7"]).contains(">1 / 1<"));
     assert_ne!(svg(&["--dark"]), svg(&[]));
 }
+
+/// The texts of a picture, sorted: what it says, wherever it stands.
+fn texts(svg: &str) -> Vec<&str> {
+    let pieces = svg.split("<text").skip(1);
+    let mut texts: Vec<&str> = pieces.filter_map(|p| p.split_once('>')?.1.split('<').next()).collect();
+    texts.sort_unstable();
+    texts
+}
+
+#[test]
+fn the_picture_in_the_book_shows_the_chart_beside_it() {
+    let book = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/book/src/drawing/");
+    let drawn = Folder::new().g7(&["draw", &format!("{book}symbols.g7")]).is(0).out.clone();
+    let kept = std::fs::read_to_string(format!("{book}symbols.svg")).expect("the picture in the book");
+    assert_eq!(texts(&kept), texts(&drawn), "make it again: g7 draw symbols.g7 -o symbols.svg");
+    assert!(texts(&kept).len() > 60);
+}
