@@ -123,9 +123,14 @@ fn prepare<'s>(source: &'s Source, options: Options<'_>) -> Result<(Vec<Group<'s
             problems.extend(found);
             plans.push((*number, *scenario, plan));
         }
-        let (bench, found) = bench::build(source, &bench::Options { asks: &asks, ..wanted })?;
-        problems.extend(found);
-        let Some(bench) = bench else { continue };
+        let bench = if asks.is_empty() {
+            bench
+        } else {
+            let (bench, found) = bench::build(source, &bench::Options { asks: &asks, ..wanted })?;
+            problems.extend(found);
+            let Some(bench) = bench else { continue };
+            bench
+        };
         problems.extend(plan::judge(&plans, &bench));
         groups.push(Group { bench, plans });
     }
