@@ -3,7 +3,13 @@
 EXAMPLE ?= examples/bead-sorter
 FOLDER ?= examples
 
-.PHONY: run view test lint deny wasm web site page-test page-bench bench book fuzz help
+# What Debian has is installed from there, once, as root or through sudo.
+SUDO := $(shell [ "$$(id -u)" = 0 ] || echo sudo)
+debian = command -v $(1) >/dev/null || \
+	{ $(SUDO) apt-get update -qq && $(SUDO) apt-get install -qq --no-install-recommends $(2); }
+PAGE := $(shell find web/src web/index.html web/public web/*.ts web/*.js -type f 2>/dev/null)
+
+.PHONY: run view test lint deny wasm web site page-test page-bench bench book fuzz help FORCE
 
 ## build G7 and open the editor in the browser on the examples (FOLDER=… for another)
 run: web
@@ -29,16 +35,27 @@ deny:
 	cargo deny check licenses bans sources
 
 ## the crates as wasm, for the page
-wasm:
+wasm: web/public/g7.wasm
+
+web/public/g7.wasm: FORCE
 	@rustup target list --installed | grep -q wasm32-unknown-unknown || rustup target add wasm32-unknown-unknown
 	cargo build --quiet --profile wasm --target wasm32-unknown-unknown --package g7-page
-	mkdir -p web/public
-	cp $${CARGO_TARGET_DIR:-target}/wasm32-unknown-unknown/wasm/g7_page.wasm web/public/g7.wasm
+	@mkdir -p web/public
+	@cmp -s $${CARGO_TARGET_DIR:-target}/wasm32-unknown-unknown/wasm/g7_page.wasm $@ || \
+		cp $${CARGO_TARGET_DIR:-target}/wasm32-unknown-unknown/wasm/g7_page.wasm $@
 
 ## the editor's page, built into g7
-web: wasm
-	@command -v npm >/dev/null || { apt-get update -qq && apt-get install -qq nodejs npm; }
-	cd web && npm ci --silent --no-audit --no-fund && npm run --silent build
+web: web/dist/index.html
+
+web/dist/index.html: web/public/g7.wasm web/node_modules/.package-lock.json $(PAGE)
+	cd web && npm run --silent build
+
+web/node_modules/.package-lock.json: web/package.json web/package-lock.json
+	@$(call debian,npm,nodejs npm)
+	cd web && npm ci --silent --no-audit --no-fund
+	@touch $@
+
+FORCE:
 
 ## the static playground in site/: the page and the examples, for any web server
 site: web
@@ -48,13 +65,14 @@ site: web
 
 ## the stories of the page in a real browser
 page-test: web
-	@command -v chromium >/dev/null || { apt-get update -qq && apt-get install -qq chromium; }
+	@$(call debian,chromium,chromium)
 	cargo build --release --quiet --package g7
 	cd web && npm run --silent check && npm test --silent
 
 ## main-thread time of the page, beside React Flow
-page-bench: wasm
-	cd web && npm ci --silent --no-audit --no-fund && npm run --silent bench
+page-bench: wasm web/node_modules/.package-lock.json
+	@$(call debian,chromium,chromium)
+	cd web && npm run --silent bench
 
 ## time of a scan (beside matiec where an iec2c is on the PATH) and of a layout
 bench:
