@@ -4,6 +4,7 @@
 use std::collections::HashMap;
 
 use crate::layout::rooms::LINK;
+use crate::layout::tree::NONE;
 use crate::{Point, Rect};
 
 /// Side of a cell of the map.
@@ -73,7 +74,11 @@ impl Ways {
 
     fn count(&self, points: &[Point], ends: [u32; 2]) -> usize {
         let mut count = 0;
-        points.windows(2).for_each(|w| self.hits(w[0], w[1], ends, |_| count += 1));
+        for (k, w) in points.windows(2).enumerate() {
+            // Near its ends a link passes the texts of its own symbols.
+            let own = if k > 1 && k + 3 < points.len() { [NONE; 2] } else { ends };
+            self.hits(w[0], w[1], own, |_| count += 1);
+        }
         count
     }
 
@@ -122,7 +127,7 @@ impl Ways {
             let mut x = start;
             for _ in 0..PUSHES {
                 let mut next = x;
-                self.hits(Point { x, y: y0 }, Point { x, y: y1 }, ends, |n| {
+                self.hits(Point { x, y: y0 }, Point { x, y: y1 }, [NONE; 2], |n| {
                     let r = self.boxes[n as usize];
                     next = if way < 0 { next.min(r.x - BESIDE) } else { next.max(r.x + r.w + BESIDE) };
                 });

@@ -5,6 +5,23 @@ use std::collections::HashMap;
 use g7_draw::{End, Placement, Point, Rect, Sizes};
 use g7_model::Chart;
 
+/// What is wrong with the links of a placement by hand, where symbols may overlap.
+pub(crate) fn link_faults(chart: &Chart, p: &Placement) -> Vec<String> {
+    let mut found = Vec::new();
+    whole(chart, p, &mut found);
+    links(p, &mut found);
+    found
+}
+
+/// Lines that run through a symbol.
+pub(crate) fn runs_through(sizes: &Sizes, p: &Placement) -> Vec<String> {
+    let mut found = Vec::new();
+    let symbols: Vec<(Solid, Rect)> =
+        solids(sizes, p).into_iter().filter(|(s, _)| matches!(s, Solid::Symbol(_))).collect();
+    crossings(p, &symbols, &mut found);
+    found
+}
+
 /// A thing that takes room.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Solid {

@@ -3,4 +3,5 @@
 
 mod charts;
 mod geometry;
+mod placed;
 mod random;

@@ -15,7 +15,7 @@ fn document(text: &str) -> Document {
     document
 }
 
-fn chart_of(body: &str) -> Document {
+pub(crate) fn chart_of(body: &str) -> Document {
     document(&format!("chart G {{\n{body}}}\n"))
 }
 
@@ -162,7 +162,7 @@ fn charts_without_structure_have_no_faults() {
     }
 }
 
-fn only(document: &Document) -> &Chart {
+pub(crate) fn only(document: &Document) -> &Chart {
     document.charts().next().expect("a chart")
 }
 
@@ -178,7 +178,7 @@ fn a_jump_into_a_branch_breaks_one_link() {
 }
 
 #[test]
-fn a_chart_without_jumps_breaks_nothing() {
+fn charts_without_jumps_break_few_links() {
     for seed in 0..20 {
         let document = random_chart(seed, 40, 0);
         let chart = only(&document);
