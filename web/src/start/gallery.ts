@@ -38,15 +38,14 @@ export function groups(rows: FileRow[]): Group[] {
     .map(([folder, of]) => {
       const key = FOLDERS.find(([name]) => folder.split('/').at(-1) === name)?.[1];
       const title = key ? t(key) : folder ? plain(folder) : t('start.files');
-      return { title, rows: of.map((row) => ({ row, name: label(row, title, of.length) })) };
+      return { title, rows: of.map((row) => ({ row, name: label(row, title) })) };
     });
 }
 
 /** A file called `chart` is the one that its folder is about. */
-function label(row: FileRow, folder: string, many: number): string {
+function label(row: FileRow, folder: string): string {
   const name = row.path.slice(row.path.lastIndexOf('/') + 1);
-  if (name === 'chart.g7') return many > 1 ? t('start.whole', { name: folder }) : folder;
-  return plain(name);
+  return name === 'chart.g7' && folder ? folder : plain(name);
 }
 
 /** How a file is called in a short list. */

@@ -66,10 +66,14 @@ function about(text: string): string {
   return lines.join(' ');
 }
 
-/** What of a drawing is shown: its upper part, at a size that can be read. */
+const LEAST = 300;
+const MOST = 560;
+
+/** What of a drawing is shown: its beginning, at a size that can be read. */
 export function crop([x, y, w, h]: Box): string {
-  const width = Math.max(w + 40, 300);
+  const width = Math.min(Math.max(w + 40, LEAST), MOST);
   const height = width * 0.62;
+  const left = w + 40 > MOST ? x - 20 : x - (width - w) / 2;
   const top = h + 40 < height ? y - (height - h) / 2 : y - 20;
-  return [x - (width - w) / 2, top, width, height].map((n) => n.toFixed(1)).join(' ');
+  return [left, top, width, height].map((n) => n.toFixed(1)).join(' ');
 }

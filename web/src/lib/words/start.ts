@@ -14,7 +14,6 @@ export const start = {
   'start.folder': ['Folder {name}', 'Dossier {name}', 'Pasta {name}'],
   'start.files': ['Files', 'Fichiers', 'Ficheiros'],
   'start.filter': ['Filter', 'Filtrer', 'Filtrar'],
-  'start.whole': ['{name}, complete', '{name}, complet', '{name}, completo'],
   'start.unreadable': ['This file cannot be read.', 'Ce fichier est illisible.', 'Este ficheiro não pode ser lido.'],
   'start.facts': ['{steps} steps, {transitions} transitions', '{steps} étapes, {transitions} transitions', '{steps} etapas, {transitions} transições'],
   'start.factTests': ['{n} tests', '{n} essais', '{n} testes'],
@@ -65,9 +64,9 @@ export const start = {
   ],
   'tour.receptivity': ['When may it go on?', 'Quand peut-on continuer ?', 'Quando pode continuar?'],
   'tour.receptivity.what': [
-    'Beside the bar stands the receptivity, the condition of the transition. Double-click the bar and write start with a rising edge: the moment at which the button is pressed.',
-    "À côté de la barre se trouve la réceptivité, la condition de la transition. Double-cliquez sur la barre et écrivez start avec un front montant : l'instant où l'on appuie sur le bouton.",
-    'Ao lado da barra está a recetividade, a condição da transição. Faça duplo clique na barra e escreva start com um flanco ascendente: o instante em que se prime o botão.',
+    'Beside the bar stands the receptivity, the condition of the transition. In the field that is open (or with a double-click at the bar) write ↑start: the moment at which the button start is pressed.',
+    "À côté de la barre se trouve la réceptivité, la condition de la transition. Dans le champ ouvert (ou par un double-clic sur la barre), écrivez ↑start : l'instant où l'on appuie sur le bouton start.",
+    'Ao lado da barra está a recetividade, a condição da transição. No campo aberto (ou com duplo clique na barra) escreva ↑start: o instante em que se prime o botão start.',
   ],
   'tour.input': ['What is start?', "Qu'est-ce que start ?", 'O que é start?'],
   'tour.input.what': [
