@@ -1,7 +1,7 @@
 // What follows from elsewhere: a changed text is taken over into its run, closed
-// files end theirs, and the first file of a server begins to run by itself.
+// files end theirs, and an example that was chosen begins to run by itself.
 import { untrack } from 'svelte';
-import { files } from '../lib/files.svelte';
+import { files, type OpenFile } from '../lib/files.svelte';
 import { t } from '../lib/i18n';
 import { runs } from '../lib/runs.svelte';
 import { server } from '../lib/server';
@@ -17,17 +17,28 @@ export const begun = new Begun();
 /** A text is taken over when no key was pressed for so long. */
 const PAUSE = 600;
 
-/** Call once, inside a component. */
+/** Whether a file can be run, and has something that moves. */
+function lively(file: OpenFile): boolean {
+  return file.look.plants.length > 0 && !file.changed && !file.look.problems.some((p) => p.severity === 'error');
+}
+
+/** Files that were in view before. */
+const seen = new Set<string>();
+
+/** Call inside the component that stands above every file in view. */
 export function follow(): void {
-  let first = true;
+  // That component comes when a file is chosen in the gallery; or at the beginning,
+  // before the page is ready, with the file that was named to the server.
+  let chosen = untrack(() => shell.ready);
   $effect(() => {
     const file = files.current;
     if (!shell.ready || !file) return;
     untrack(() => {
-      const begin = first && file.name === server.info?.start && file.look.plants.length > 0;
-      first = false;
-      if (!begin || runs.of(file.name)) return;
-      if (file.look.problems.some((p) => p.severity === 'error')) return;
+      const named = seen.size === 0 && file.name === server.info?.start;
+      const begin = (chosen || named) && !seen.has(file.name) && lively(file) && !runs.of(file.name);
+      chosen = false;
+      files.list.forEach((f) => seen.add(f.name));
+      if (!begin) return;
       void shell.try(async () => {
         if (await runs.isShared(file.name)) await runs.share(file);
         else await runs.play(await runs.start(file), true);

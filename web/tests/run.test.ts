@@ -1,0 +1,298 @@
+// Running in the page: the chart moves, is driven, held, compared, changed, looked
+// back on, and shown over time.
+import assert from 'node:assert/strict';
+import { readFileSync } from 'node:fs';
+import { after, before, test } from 'node:test';
+import type { Page } from 'playwright-core';
+import { browser, open, playground, type Site } from './lib';
+
+const example = (path: string) => readFileSync(new URL(`../../examples/${path}`, import.meta.url), 'utf8');
+
+const LAMP = `input push : BOOL "push button"
+input level : INT
+output lamp : BOOL
+var n : INT
+
+chart G1 {
+  initial step 0
+  step 1 { N lamp }
+  step 2 { N lamp }
+  0 -> 1 when ↑push
+  1 -> 2 when 500ms/X1
+  2 -> 0 when 500ms/X2
+}
+`;
+
+// Two transitions in one scan: the situation {1} is transient under iec60848.
+const FLEETING = `input a : BOOL
+output M : BOOL
+chart G1 {
+  initial step 0
+  step 1
+  step 2 { N M }
+  0 -> 1 when a
+  1 -> 2 when a
+  2 -> 0 when not a
+}
+`;
+
+let site: Site;
+let b: Awaited<ReturnType<typeof browser>>;
+
+before(async () => {
+  site = await playground({
+    'lamp.g7': LAMP,
+    'fleeting.g7': FLEETING,
+    'tanks.g7': example('two-tanks/chart.g7'),
+    'two-tanks.svg': example('two-tanks/two-tanks.svg'),
+    'evil.g7': LAMP.replace('chart G1', "plant P {\n  view 'evil.svg' { lamp.on := lamp }\n}\n\nchart G1"),
+    'evil.svg': `<svg xmlns="http://www.w3.org/2000/svg" xmlns:xlink="http://www.w3.org/1999/xlink" viewBox="0 0 40 40" onload="window.bad = 1">
+      <script>window.bad = 2</script>
+      <style>@import url(http://example.org/x.css);</style>
+      <style>.on { fill: lime; } rect { fill: red; }</style>
+      <image href="http://example.org/x.png" width="4" height="4"/>
+      <foreignObject><p xmlns="http://www.w3.org/1999/xhtml">text</p></foreignObject>
+      <a href="javascript:window.bad = 3"><rect width="9" height="9"/></a>
+      <use xlink:href="http://example.org/x.svg#a"/>
+      <rect data-g7="lamp" onclick="window.bad = 4" style="stroke: url(http://example.org/y)" width="40" height="40"/>
+    </svg>`,
+  });
+  b = await browser();
+});
+
+after(async () => {
+  await b.done();
+  await site.stop();
+});
+
+const active = async (p: Page) => (await p.locator('.steps button.on').allInnerTexts()).join(' ');
+const clock = (p: Page) => p.locator('.clock').innerText();
+const oneScan = (p: Page) => p.getByRole('button', { name: 'One scan', exact: true }).click();
+
+async function until(what: () => Promise<boolean>, said: string, ms = 8000): Promise<void> {
+  const end = Date.now() + ms;
+  while (!(await what())) {
+    if (Date.now() > end) assert.fail(said);
+    await new Promise((done) => setTimeout(done, 40));
+  }
+}
+
+async function end(p: Page & { errors: string[] }): Promise<void> {
+  assert.deepEqual(p.errors, []);
+  await p.context().close();
+}
+
+test('scan by scan: an input is turned, the step follows, its output is lit', async () => {
+  const p = await open(b, site, 'lamp.g7');
+  await oneScan(p);
+  await until(async () => (await active(p)) === '0', 'step 0 is active');
+  await p.getByRole('switch', { name: 'push', exact: true }).click();
+  await oneScan(p);
+  await until(async () => (await active(p)) === '1', 'step 1 is active');
+  assert.equal(await p.getByRole('switch', { name: 'lamp', exact: true }).getAttribute('aria-checked'), 'true');
+  await end(p);
+});
+
+test('a number is typed, and a push button is held', async () => {
+  const p = await open(b, site, 'lamp.g7');
+  await oneScan(p);
+  const level = p.getByRole('textbox', { name: 'Value of level' });
+  await level.fill('42');
+  await level.press('Enter');
+  await until(async () => (await level.inputValue()) === '42', 'level is 42');
+  await level.fill('many');
+  await level.press('Enter');
+  await p.getByText(/many/).first().waitFor();
+  await until(async () => (await level.inputValue()) === '42', 'what is no number is refused');
+  const push = p.getByRole('button', { name: 'Push push' });
+  await push.focus();
+  await p.keyboard.down('Enter');
+  await until(async () => (await p.getByRole('switch', { name: 'push', exact: true }).getAttribute('aria-checked')) === 'true', 'held');
+  await p.keyboard.up('Enter');
+  await until(async () => (await p.getByRole('switch', { name: 'push', exact: true }).getAttribute('aria-checked')) === 'false', 'let go');
+  await end(p);
+});
+
+test('Space runs and pauses; time goes on and stands', async () => {
+  const p = await open(b, site, 'lamp.g7');
+  await p.locator('.sheet').focus();
+  await p.keyboard.press(' ');
+  await until(async () => parseFloat(await clock(p).catch(() => '0')) > 0.5, 'time goes on');
+  await p.locator('.sheet').focus();
+  await p.keyboard.press(' ');
+  await p.getByRole('button', { name: 'Run', exact: true }).waitFor();
+  await p.waitForTimeout(150);
+  const stood = await clock(p);
+  await p.waitForTimeout(300);
+  assert.equal(await clock(p), stood);
+  await p.keyboard.press('.');
+  await until(async () => (await clock(p)) !== stood, 'one scan');
+  assert.ok(Math.abs(parseFloat(await clock(p)) - parseFloat(stood) - 0.01) < 0.006, 'one scan is 10 ms');
+  await end(p);
+});
+
+test('pass by pass, the transient situation is seen', async () => {
+  const p = await open(b, site, 'fleeting.g7');
+  await oneScan(p);
+  await p.getByRole('switch', { name: 'a', exact: true }).click();
+  const seen: string[] = [];
+  for (let i = 0; i < 6; i++) {
+    await p.getByRole('button', { name: 'One pass: transient situations' }).click();
+    await p.waitForTimeout(120);
+    const now = await active(p);
+    if (seen.at(-1) !== now) seen.push(now);
+  }
+  assert.deepEqual(seen.filter((s) => s !== '0').slice(0, 2), ['1', '2']);
+  await end(p);
+});
+
+test('a forced output carries its mark and keeps its value until it is released', async () => {
+  const p = await open(b, site, 'lamp.g7');
+  await oneScan(p);
+  await p.getByRole('button', { name: 'Force lamp' }).click();
+  await p.locator('li.forced').waitFor();
+  const lamp = p.getByRole('switch', { name: 'lamp', exact: true });
+  await lamp.click();
+  await oneScan(p);
+  await until(async () => (await lamp.getAttribute('aria-checked')) === 'true', 'forced to TRUE');
+  await oneScan(p);
+  assert.equal(await lamp.getAttribute('aria-checked'), 'true');
+  await p.getByRole('button', { name: 'Release lamp' }).click();
+  await oneScan(p);
+  await until(async () => (await lamp.getAttribute('aria-checked')) === 'false', 'released');
+  assert.equal(await p.locator('li.forced').count(), 0);
+  await end(p);
+});
+
+test('a breakpoint stops the run where the step comes', async () => {
+  const p = await open(b, site, 'lamp.g7');
+  await oneScan(p);
+  await p.locator('[data-id="G1/s/2"]').first().click({ force: true });
+  await p.getByRole('button', { name: 'Breakpoints' }).click();
+  await p.getByRole('button', { name: 'Stop at G1.2' }).click();
+  await p.keyboard.press('Escape');
+  await p.getByRole('tab', { name: 'Operate' }).click();
+  await p.getByRole('switch', { name: 'push', exact: true }).click();
+  await p.getByRole('button', { name: 'Run', exact: true }).click();
+  await p.getByRole('button', { name: 'Stopped at G1.2' }).waitFor();
+  assert.equal(await active(p), '2');
+  await end(p);
+});
+
+test('back in time, and on from there', async () => {
+  const p = await open(b, site, 'lamp.g7');
+  await oneScan(p);
+  await p.getByRole('switch', { name: 'push', exact: true }).click();
+  for (let i = 0; i < 8; i++) await oneScan(p);
+  await until(async () => (await clock(p)) === '0.09 s', `nine scans: ${await clock(p)}`);
+  assert.equal(await active(p), '1');
+  const line = p.getByRole('slider', { name: 'Back in time' });
+  await line.fill('10');
+  await until(async () => (await active(p)) === '0', 'before the push');
+  await p.getByRole('button', { name: 'Live', exact: true }).click();
+  await until(async () => (await active(p)) === '1' && (await clock(p)) === '0.09 s', 'now again');
+  await line.fill('10');
+  await until(async () => (await active(p)) === '0', 'before the push');
+  await p.getByRole('button', { name: 'Go on from here' }).click();
+  await until(async () => (await line.getAttribute('max')) === '10', 'what came after is forgotten');
+  await end(p);
+});
+
+test('two profiles on the same inputs: the first difference is told', async () => {
+  const p = await open(b, site, 'fleeting.g7');
+  await p.getByRole('button', { name: 'Compare profiles' }).click();
+  await p.getByRole('button', { name: 'Compare with unity' }).click();
+  await p.getByText('no difference so far').first().waitFor();
+  await p.getByRole('switch', { name: 'a', exact: true }).click();
+  await oneScan(p);
+  await p.getByText('first difference at 0.010 s').first().waitFor();
+  await p.getByRole('button', { name: 'Compare profiles' }).click();
+  const rows = await p.locator('[role=dialog] tbody tr').allInnerTexts();
+  assert.ok(rows.some((r) => /X2/.test(r) && /TRUE\s+FALSE/.test(r)), rows.join(' | '));
+  await end(p);
+});
+
+test('a changed chart is taken over; what would be lost is asked about', async () => {
+  const p = await open(b, site, 'lamp.g7');
+  await oneScan(p);
+  await p.getByRole('switch', { name: 'push', exact: true }).click();
+  await oneScan(p);
+  await until(async () => (await active(p)) === '1', 'step 1 is active');
+  await p.locator('[data-id="G1/s/0"]').first().click({ force: true });
+  await p.keyboard.press('Tab');
+  await p.keyboard.press('Escape');
+  await p.getByText('the situation is kept').waitFor();
+  await p.getByRole('tab', { name: 'Operate' }).click();
+  assert.equal(await active(p), '1');
+  await p.locator('[data-id="G1/s/1"]').first().click({ force: true });
+  await p.keyboard.press('Delete');
+  const ask = p.getByRole('dialog', { name: 'Change of the running chart' });
+  await ask.waitFor();
+  await ask.getByRole('button', { name: 'Take over' }).click();
+  await until(async () => (await p.locator('dialog[open]').count()) === 0, 'answered');
+  await p.getByRole('tab', { name: 'Operate' }).click();
+  assert.ok(!(await active(p)).split(' ').includes('1'), 'step 1 is gone');
+  await end(p);
+});
+
+test('the picture of a plant moves, and its button works', async () => {
+  const p = await open(b, site, 'tanks.g7');
+  await oneScan(p);
+  const water = p.locator('[data-g7=water1]');
+  await until(async () => /^1 0$/.test(await water.evaluate((e) => (e as SVGElement).style.scale)), 'empty');
+  const m = p.getByRole('button', { name: 'Start a batch (m)' });
+  await m.focus();
+  await p.keyboard.down('Enter');
+  await oneScan(p).then(() => oneScan(p));
+  await p.getByRole('button', { name: 'Run', exact: true }).click();
+  await until(async () => parseFloat((await water.evaluate((e) => (e as SVGElement).style.scale)).split(' ')[1] ?? '1') > 0.1, 'it fills');
+  assert.ok(await p.locator('path[data-g7=in1]').evaluate((e) => e.classList.contains('on')), 'the inlet is open');
+  await end(p);
+});
+
+test('a picture brings no scripts, no handlers and nothing from elsewhere', async () => {
+  const p = await open(b, site, 'evil.g7');
+  const asked: string[] = [];
+  p.on('request', (r) => asked.push(r.url()));
+  await oneScan(p);
+  const lamp = p.locator('rect[data-g7=lamp]');
+  await lamp.waitFor();
+  await lamp.click();
+  const inside = await lamp.evaluate((e) => (e.getRootNode() as ShadowRoot).innerHTML);
+  for (const word of ['script', 'onload', 'onclick', 'example.org', 'image', 'foreignObject', 'javascript', '@import']) {
+    assert.ok(!inside.includes(word), `${word} in ${inside}`);
+  }
+  assert.equal(await p.evaluate(() => (window as { bad?: number }).bad), undefined);
+  assert.deepEqual(asked.filter((u) => !u.startsWith(site.url)), []);
+  await end(p);
+});
+
+test('the chronogram: cursors by keyboard, the difference of times, a table, files', async () => {
+  const p = await open(b, site, 'lamp.g7');
+  await oneScan(p);
+  await p.getByRole('switch', { name: 'push', exact: true }).click();
+  for (let i = 0; i < 6; i++) await oneScan(p);
+  if ((await p.getByRole('tab', { name: 'Chronogram' }).count()) === 0) await p.getByRole('button', { name: 'Bottom' }).click();
+  await p.getByRole('tab', { name: 'Chronogram' }).click();
+  await p.getByRole('button', { name: 'Whole run' }).click();
+  await p.waitForTimeout(400);
+  const lanes = p.locator('[role=group][aria-label^=Chronogram]');
+  await lanes.focus();
+  for (let i = 0; i < 8; i++) await p.keyboard.press('ArrowLeft');
+  await p.keyboard.press('ArrowRight');
+  await p.keyboard.press('Shift+ArrowLeft');
+  const said = await p.locator('.cursors').innerText();
+  assert.match(said, /A 0\.020 s/);
+  assert.match(said, /B 0\.000 s/);
+  assert.match(said, /Δ -0\.020 s/);
+  await p.getByRole('button', { name: 'As a table' }).click();
+  const rows = await p.locator('[role=region][aria-label="Table of edges"] tbody tr').allInnerTexts();
+  assert.ok(rows.some((r) => /0\.020 s\s+push\s+TRUE/.test(r)), rows.join(' | '));
+  for (const [form, start] of [['CSV', /^time/i], ['VCD', /\$timescale/], ['SVG', /^<svg/]] as const) {
+    await p.getByRole('button', { name: 'Export', exact: true }).click();
+    const [file] = await Promise.all([p.waitForEvent('download'), p.getByRole('button', { name: `Export as ${form}` }).click()]);
+    assert.equal(file.suggestedFilename(), `lamp.${form.toLowerCase()}`);
+    assert.match(readFileSync(await file.path(), 'utf8'), start);
+  }
+  await end(p);
+});
