@@ -42,7 +42,9 @@ fn one_chart_alone_has_no_title_and_nothing_of_the_other() {
 #[test]
 fn the_name_of_the_output_says_the_form() {
     let folder = Folder::with(TWO);
-    for (name, magic) in [("a.png", &b"\x89PNG\r\n"[..]), ("a.pdf", b"%PDF-"), ("a.svg", b"<svg"), ("b.SVG", b"<svg")] {
+    for (name, magic) in
+        [("a.png", &b"\x89PNG\r\n"[..]), ("a.pdf", b"%PDF-"), ("a.svg", b"<svg"), ("b.SVG", b"<svg")]
+    {
         folder.g7(&["draw", "-o", name]).is(0);
         let bytes = std::fs::read(folder.path(name)).expect("the picture");
         assert!(bytes.starts_with(magic), "{name}");
