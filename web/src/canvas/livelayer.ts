@@ -95,7 +95,7 @@ export class LiveLayer {
       add('on', rect(square, 0));
       add('token', circle(square[0] + square[2] / 2, square[1] + square[3] - 11, 5));
       const time = live.times.get(id);
-      if (time) this.#times.put(square[0] + square[2] / 2, square[1] + 13, time);
+      if (time) this.#times.put(square[0] - 7, square[1] + square[3] / 2 + 4, time);
     }
     for (const [id, how] of live.enabled) {
       const bar = how > 0 ? sight(id)?.bar : undefined;
@@ -109,8 +109,10 @@ export class LiveLayer {
       if (bar) add('flash', rect(bar, 6));
     }
     for (const [id, text] of live.values) {
-      const area = sight(id)?.area;
-      if (area) this.#values.put(area[0] + area[2] + 6, area[1] + area[3] / 2 + 4, text);
+      const item = sight(id);
+      // Below a receptivity, where its neighbour is not; beside anything else.
+      if (item?.text) this.#values.put(item.text[0], item.text[1] + item.text[3] + 12, text);
+      else if (item) this.#values.put(item.area[0] + item.area[2] + 6, item.area[1] + item.area[3] / 2 + 4, text);
     }
     for (const id of live.forced) {
       const area = sight(id)?.area;

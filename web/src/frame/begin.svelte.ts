@@ -1,10 +1,13 @@
 // The beginning: server or playground, the first file, unsaved work of the last time.
 import { files, type OpenFile } from '../lib/files.svelte';
 import { t } from '../lib/i18n';
+import { prefs } from '../lib/prefs.svelte';
 import { server, type Changed } from '../lib/server';
 import { shell } from '../lib/shell.svelte';
 
 export async function begin(): Promise<void> {
+  // On a narrow window the sides lie over the drawing: they come when they are called.
+  if (matchMedia('(max-width: 1000px)').matches) prefs.leftOpen = prefs.rightOpen = false;
   await shell.try(() => server.begin());
   shell.folder = (await shell.try(() => server.files())) ?? [];
   server.hear((message) => {

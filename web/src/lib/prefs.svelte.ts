@@ -33,7 +33,7 @@ const first: Kept = {
   left: 240,
   right: 300,
   bottom: 220,
-  split: 0.6,
+  split: 0.5,
   leftOpen: true,
   rightOpen: true,
   bottomOpen: false,

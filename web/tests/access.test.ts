@@ -1,0 +1,102 @@
+// Everyone can use the page: axe finds nothing, and all of it is reached by keyboard.
+import assert from 'node:assert/strict';
+import { readFileSync } from 'node:fs';
+import { createRequire } from 'node:module';
+import { after, before, test } from 'node:test';
+import type { Page } from 'playwright-core';
+import { browser, open, playground, type Site } from './lib';
+
+const AXE = readFileSync(createRequire(import.meta.url).resolve('axe-core/axe.min.js'), 'utf8');
+const SORTER = new URL('../../examples/bead-sorter/', import.meta.url);
+
+let b: Awaited<ReturnType<typeof browser>>;
+let site: Site;
+
+before(async () => {
+  const text = (name: string) => readFileSync(new URL(name, SORTER), 'utf8');
+  site = await playground({
+    'bead-sorter/chart.g7': text('chart.g7'),
+    'bead-sorter/bead-sorter.svg': text('bead-sorter.svg'),
+    'wrong.g7': 'chart G1 {\n initial step 0\n step 1\n 0 -> 1 when missing\n}\n',
+  });
+  b = await browser();
+});
+
+after(async () => {
+  await b?.done();
+  await site?.stop();
+});
+
+async function axe(page: Page): Promise<string[]> {
+  await page.evaluate(AXE);
+  return page.evaluate(async () => {
+    const found = await (window as unknown as { axe: { run(): Promise<{ violations: { id: string; nodes: { html: string; failureSummary?: string }[] }[] }> } }).axe.run();
+    return found.violations.flatMap((v) => v.nodes.map((n) => `${v.id}: ${n.html.slice(0, 160)} ${n.failureSummary?.split('\n')[1] ?? ''}`));
+  });
+}
+
+for (const theme of ['light', 'dark'] as const) {
+  test(`axe finds nothing wrong, ${theme}`, async () => {
+    const page = await open(b, site, 'bead-sorter/chart.g7');
+    await page.emulateMedia({ colorScheme: theme });
+    await page.waitForTimeout(200);
+    assert.deepEqual(await axe(page), [], 'a chart');
+    const step = await page.locator('.sheet [data-id="Sorter/s/Mode"]').boundingBox();
+    assert.ok(step);
+    await page.mouse.click(step.x + 10, step.y + 10);
+    assert.deepEqual(await axe(page), [], 'a step selected');
+    await page.keyboard.press('Shift+F10');
+    assert.deepEqual(await axe(page), [], 'the menu');
+    await page.keyboard.press('Escape');
+    await page.keyboard.press('F2');
+    await page.locator('.inplace input').waitFor();
+    assert.deepEqual(await axe(page), [], 'a field');
+    await page.keyboard.press('Escape');
+    await page.keyboard.press('?');
+    await page.locator('dialog').waitFor();
+    assert.deepEqual(await axe(page), [], 'the shortcuts');
+    await page.keyboard.press('Escape');
+    await page.context().close();
+  });
+}
+
+test('problems and both views are without violations', async () => {
+  const page = await open(b, site, 'wrong.g7');
+  await page.getByRole('button', { name: 'Bottom' }).click();
+  await page.getByRole('button', { name: 'Drawing and text' }).click();
+  await page.waitForTimeout(300);
+  assert.deepEqual(await axe(page), []);
+  await page.context().close();
+});
+
+test('every control is reached by the Tab key', async () => {
+  const page = await open(b, site, 'bead-sorter/chart.g7');
+  const reached = new Set<string>();
+  for (let n = 0; n < 160; n++) {
+    await page.keyboard.press('Tab');
+    const id = await page.evaluate(() => {
+      const at = document.activeElement as HTMLElement | null;
+      if (!at || at === document.body) return '';
+      at.dataset.seen ??= String(Math.random());
+      return at.dataset.seen;
+    });
+    if (id === '' || (reached.has(id) && reached.size > 3)) break;
+    reached.add(id);
+  }
+  const missed = await page.evaluate(() => {
+    const all = [...document.querySelectorAll<HTMLElement>('button, input, select, a[href], [tabindex="0"]')];
+    const shown = all.filter((e) => e.checkVisibility() && !(e as HTMLButtonElement).disabled && e.tabIndex >= 0 && !e.dataset.seen);
+    return shown.map((e) => e.getAttribute('aria-label') ?? e.textContent?.trim() ?? e.tagName);
+  });
+  assert.deepEqual(missed, []);
+  await page.context().close();
+});
+
+test('the frame fits a tablet', async () => {
+  const page = await open(b, site, 'bead-sorter/chart.g7', { width: 800, height: 1100 });
+  const wide = await page.evaluate(() => document.documentElement.scrollWidth);
+  assert.ok(wide <= 800, `${wide} px wide`);
+  const sheet = await page.locator('.sheet').boundingBox();
+  assert.ok(sheet && sheet.width >= 700, `the drawing has ${sheet?.width} px`);
+  await page.context().close();
+});

@@ -1,0 +1,260 @@
+// Stories of drawing and editing, with the keyboard and the mouse.
+import assert from 'node:assert/strict';
+import { after, before, test } from 'node:test';
+import type { Page } from 'playwright-core';
+import { browser, open, playground, type Site } from './lib';
+
+const SMALL = `input a, b, start : BOOL
+output M : BOOL
+chart G1 {
+  initial step 0
+}
+`;
+
+const LOOP = `input a, b : BOOL
+output M, N : BOOL
+chart G1 {
+  initial step 0
+  step 1 { N M }
+  macro M2 = Inside
+  0 -> 1 when a
+  1 -> M2 when b
+  M2 -> 0 when a and b
+}
+macrochart Inside {
+  entry step E
+  exit step S { N N }
+  E -> S when a
+}
+`;
+
+const WRONG = SMALL.replace('initial step 0', 'initial step 0\n  step 1\n  0 -> 1 when missing');
+
+let b: Awaited<ReturnType<typeof browser>>;
+let site: Site;
+
+before(async () => {
+  site = await playground({ 'small.g7': SMALL, 'loop.g7': LOOP, 'wrong.g7': WRONG });
+  b = await browser();
+});
+
+after(async () => {
+  await b?.done();
+  await site?.stop();
+});
+
+/** The text of the file in view, by way of a download. */
+async function textOf(page: Page): Promise<string> {
+  const [download] = await Promise.all([page.waitForEvent('download'), page.keyboard.press('Control+s')]);
+  const parts: Buffer[] = [];
+  for await (const part of await download.createReadStream()) parts.push(part as Buffer);
+  return Buffer.concat(parts).toString('utf8');
+}
+
+const item = (page: Page, id: string) => page.locator(`.sheet [data-id="${id}"]`);
+
+async function middle(page: Page, id: string): Promise<[number, number]> {
+  const box = await item(page, id).boundingBox();
+  assert.ok(box, `${id} is drawn`);
+  return [box.x + box.width / 2, box.y + box.height / 2];
+}
+
+async function click(page: Page, id: string, count = 1): Promise<void> {
+  const [x, y] = await middle(page, id);
+  await page.mouse.click(x, y, { clickCount: count });
+}
+
+const field = (page: Page) => page.locator('.inplace input');
+const words = (text: string) => text.replace(/\s+/g, ' ');
+
+test('a chart of ten steps is drawn without the mouse', async () => {
+  const page = await open(b, site, 'small.g7');
+  await page.locator('.sheet').focus();
+  await page.keyboard.press('ArrowDown');
+  for (let n = 1; n < 10; n++) {
+    await page.keyboard.press('Tab');
+    await field(page).waitFor();
+    await page.keyboard.type(n % 2 ? 'start' : 'a·/b');
+    await page.keyboard.press('Enter');
+    await item(page, `G1/s/${n}`).waitFor({ state: 'attached' });
+    await field(page).waitFor({ state: 'detached' });
+  }
+  const text = words(await textOf(page));
+  assert.match(text, /step 9 /);
+  assert.match(text, /0 -> 1 when start/);
+  assert.match(text, /7 -> 8 when a·\/b/);
+  assert.match(text, /8 -> 9 when start/);
+  assert.deepEqual(page.errors, []);
+  await page.context().close();
+});
+
+test('names are completed in a field, and Tab goes from field to field', async () => {
+  const page = await open(b, site, 'small.g7');
+  await page.locator('.sheet').focus();
+  await page.keyboard.press('ArrowDown');
+  await page.keyboard.press('Tab');
+  await field(page).waitFor();
+  await page.keyboard.type('sta');
+  await page.getByRole('option', { name: 'start' }).waitFor();
+  await page.keyboard.press('ArrowDown');
+  await page.keyboard.press('Enter');
+  assert.equal(await field(page).inputValue(), 'start');
+  await page.keyboard.press('Tab');
+  await page.getByLabel('Edit the action').waitFor();
+  await page.keyboard.type('M');
+  await page.keyboard.press('Enter');
+  await item(page, 'G1/a/1/0').waitFor({ state: 'attached' });
+  const text = words(await textOf(page));
+  assert.match(text, /step 1 \{ N M \}/);
+  assert.match(text, /0 -> 1 when start/);
+  await page.context().close();
+});
+
+test('everything that was done is undone, and done again', async () => {
+  const page = await open(b, site, 'loop.g7');
+  await click(page, 'G1/s/1');
+  await page.keyboard.press('o');
+  await field(page).waitFor();
+  await page.keyboard.press('Escape');
+  await page.keyboard.press('Delete');
+  await click(page, 'G1/s/0');
+  await page.keyboard.press('F2');
+  await field(page).fill('Rest');
+  await page.keyboard.press('Enter');
+  await item(page, 'G1/s/Rest').waitFor({ state: 'attached' });
+  const done = await textOf(page);
+  assert.notEqual(done, LOOP);
+  for (let n = 0; n < 6; n++) {
+    await page.keyboard.press('Control+z');
+    await page.waitForTimeout(120);
+  }
+  assert.equal(await textOf(page), LOOP);
+  for (let n = 0; n < 6; n++) {
+    await page.keyboard.press('Control+y');
+    await page.waitForTimeout(120);
+  }
+  assert.equal(await textOf(page), done);
+  assert.deepEqual(page.errors, []);
+  await page.context().close();
+});
+
+test('a step is renamed everywhere', async () => {
+  const page = await open(b, site, 'loop.g7');
+  await click(page, 'G1/s/1');
+  await page.keyboard.press('F2');
+  await field(page).fill('Fill');
+  await page.keyboard.press('Enter');
+  await item(page, 'G1/s/Fill').waitFor({ state: 'attached' });
+  const text = words(await textOf(page));
+  assert.match(text, /step Fill \{ N M \}/);
+  assert.match(text, /0 -> Fill when a/);
+  assert.match(text, /Fill -> M2 when b/);
+  await page.context().close();
+});
+
+test('a macro-step opens in its own view, and the way back is told', async () => {
+  const page = await open(b, site, 'loop.g7');
+  await click(page, 'G1/s/M2', 2);
+  await item(page, 'Inside/s/E').waitFor({ state: 'attached' });
+  const way = page.getByRole('navigation', { name: 'Where this chart belongs' });
+  assert.match((await way.innerText()).replace(/\s+/g, ' '), /G1 M2 Inside/);
+  await page.locator('.sheet').focus();
+  await page.keyboard.press('Backspace');
+  await item(page, 'G1/s/M2').waitFor({ state: 'attached' });
+  await page.context().close();
+});
+
+test('a step is moved with the mouse, and the layout is kept in the text', async () => {
+  const page = await open(b, site, 'loop.g7');
+  const [x, y] = await middle(page, 'G1/s/1');
+  await page.mouse.move(x - 15, y);
+  await page.mouse.down();
+  await page.mouse.move(x + 105, y, { steps: 5 });
+  await page.mouse.up();
+  await page.waitForFunction(() => !document.querySelector('.marks .rubber'));
+  assert.match(await textOf(page), /layout G1 \{[^}]*step 1 at \(/);
+  await page.context().close();
+});
+
+test('a step dropped on a link goes into it', async () => {
+  const page = await open(b, site, 'loop.g7');
+  const tool = await page.getByRole('toolbar', { name: 'Palette' }).getByRole('button', { name: 'Step', exact: true }).boundingBox();
+  assert.ok(tool);
+  const [x, y] = await middle(page, 'G1/l/s:0>t:0');
+  await page.mouse.move(tool.x + 15, tool.y + 15);
+  await page.mouse.down();
+  await page.mouse.move(x + 2, y, { steps: 6 });
+  await page.locator('.marks .target').waitFor({ state: 'attached' });
+  await page.mouse.up();
+  await item(page, 'G1/t/3').waitFor({ state: 'attached' });
+  const text = words(await textOf(page));
+  assert.doesNotMatch(text, /[^\d]0 -> 1 when/);
+  assert.match(text, /-> 1 when a/);
+  await page.context().close();
+});
+
+test('a name that is taken is refused with a reason, and nothing is changed', async () => {
+  const page = await open(b, site, 'loop.g7');
+  await click(page, 'G1/s/0');
+  await page.keyboard.press('F2');
+  await field(page).fill('1');
+  await page.keyboard.press('Enter');
+  await page.locator('.notice.error').waitFor();
+  assert.match(await page.locator('.notice.error').innerText(), /1/);
+  await page.keyboard.press('Escape');
+  assert.equal(await textOf(page), LOOP);
+  await page.context().close();
+});
+
+test('a problem is marked at its symbol and mended there', async () => {
+  const page = await open(b, site, 'wrong.g7');
+  await page.locator('.marks .badge').waitFor({ state: 'attached' });
+  await click(page, 'G1/t/0');
+  const note = page.locator('.note');
+  await note.waitFor();
+  assert.match(await note.innerText(), /missing/);
+  await note.getByRole('button').first().click();
+  await page.waitForFunction(() => !document.querySelector('.marks .badge:not(.warning)'));
+  assert.match(await textOf(page), /missing : BOOL/);
+  await page.context().close();
+});
+
+test('parts of a chart are copied into another file with new names', async () => {
+  const page = await open(b, site, 'loop.g7');
+  await click(page, 'G1/s/1');
+  await page.keyboard.press('Control+c');
+  await page.waitForTimeout(200);
+  await page.keyboard.press('Control+v');
+  await page.waitForFunction(() => document.querySelectorAll('.sheet [data-id^="G1/s/"]').length === 4);
+  await page.context().close();
+});
+
+test('searching goes to the symbol', async () => {
+  const page = await open(b, site, 'loop.g7');
+  await page.locator('.sheet').focus();
+  await page.keyboard.press('Control+f');
+  await page.getByRole('combobox', { name: 'Search' }).fill('N N');
+  await page.locator('dialog [role=option]').first().waitFor();
+  await page.keyboard.press('Enter');
+  await item(page, 'Inside/s/S').waitFor({ state: 'attached' });
+  await page.locator('.marks .selected').first().waitFor();
+  await page.context().close();
+});
+
+test('the view is moved, zoomed and fitted', async () => {
+  const page = await open(b, site, 'loop.g7');
+  const percent = async () => Number.parseInt(await page.locator('.zoom .percent').innerText(), 10);
+  const was = await percent();
+  await page.locator('.sheet').focus();
+  await page.keyboard.press('+');
+  assert.equal(await percent(), Math.round(was * 1.25));
+  const [, before] = await middle(page, 'G1/s/0');
+  await page.mouse.move(600, 400);
+  await page.mouse.wheel(0, 100);
+  await page.waitForTimeout(100);
+  const [, now] = await middle(page, 'G1/s/0');
+  assert.ok(Math.abs(before - now - 100) < 3, `${before} to ${now}`);
+  await page.keyboard.press('f');
+  assert.ok((await middle(page, 'G1/s/0'))[1] > 60);
+  await page.context().close();
+});
