@@ -66,7 +66,7 @@ export const lessons: Lesson[] = [
   {
     title: 'tour.back',
     what: 'tour.back.what',
-    keys: ['J', '0'],
+    keys: ['J', 'Enter'],
     done: () => (chart()?.transitions ?? 0) >= 2,
   },
   {
@@ -116,7 +116,11 @@ class Tour {
 
   to(at: number): void {
     this.at = Math.max(0, at);
-    this.lesson?.prepare?.();
+    const prepare = this.lesson?.prepare;
+    if (!prepare) return;
+    prepare();
+    // The regions have their new sizes by then.
+    setTimeout(() => editor.camera?.fit(), 60);
   }
 
   end(): void {
