@@ -12,6 +12,8 @@ use crate::{Drawing, End, Item, Look, Options, Part, Rect, draw};
 #[derive(Default)]
 struct Seen {
     boxes: Vec<Rect>,
+    /// Double lines; they are boxes as well.
+    doubles: Vec<Rect>,
     texts: Vec<(Rect, String)>,
     lines: Vec<Rect>,
 }
@@ -62,7 +64,10 @@ fn seen(item: &Item) -> Seen {
             Rect { x: of("x"), y: of("y"), w: of("width"), h: of("height") }
         };
         match tag.split(' ').next().unwrap_or("") {
-            "rect" if !tag.contains("g7-frame") => seen.boxes.push(rect()),
+            "rect" if !tag.contains("g7-frame") => {
+                seen.boxes.push(rect());
+                seen.doubles.extend(tag.contains("g7-paper").then(rect));
+            }
             "text" => {
                 let size = number(attribute(tag, "font-size"));
                 let text = plain(tag.split_once('>').map_or("", |t| t.1));
@@ -83,6 +88,17 @@ fn seen(item: &Item) -> Seen {
 /// Whether a line runs through the inside of a box, not along its edge.
 fn cuts(line: &Rect, r: &Rect) -> bool {
     line.x < r.x + r.w - 1 && line.x + line.w > r.x + 1 && line.y < r.y + r.h - 1 && line.y + line.h > r.y + 1
+}
+
+/// Whether a link or connector is one of a transition's own.
+fn belongs(link: &Part, of: &Part) -> bool {
+    match (link, of) {
+        (
+            Part::Link { from, to, .. } | Part::Connector { from, to, .. },
+            Part::Transition { transition, .. },
+        ) => [from, to].contains(&&End::Transition(*transition)),
+        _ => false,
+    }
 }
 
 fn faults(drawing: &Drawing) -> Vec<String> {
@@ -109,6 +125,11 @@ fn faults(drawing: &Drawing) -> Vec<String> {
             let part = |n: usize| &drawing.items[n].part;
             if k > i && a.boxes.iter().any(|r| b.boxes.iter().any(|o| r.overlaps(o))) {
                 faults.push(format!("{:?} over {:?}", part(i), part(k)));
+            }
+            // A link ends at a double line or keeps away from it.
+            let through = |l: &Rect, r: &Rect| cuts(l, r) && l.y + 20 < r.y && l.y + l.h > r.y + r.h + 20;
+            if !belongs(part(k), part(i)) && a.doubles.iter().any(|r| b.lines.iter().any(|l| through(l, r))) {
+                faults.push(format!("the double line of {:?} is crossed by {:?}", part(i), part(k)));
             }
             let square = matches!(part(i), Part::Step { .. } | Part::Action { .. });
             if square && a.boxes.iter().any(|r| b.lines.iter().any(|l| cuts(l, r))) {
@@ -139,6 +160,9 @@ fn document(path: &Path) -> Option<Document> {
     } else {
         g7_syntax::parse_bytes(&bytes, FileId(0))
     };
+    // Where symbols are placed by hand, the hand answers for it.
+    let mut document = document;
+    document.items.retain(|i| !matches!(i, g7_model::Item::Layout(_)));
     problems.iter().all(|p| p.severity() != Severity::Error).then_some(document)
 }
 

@@ -93,7 +93,7 @@ mod tests {
     fn a_profile_answers_like_a_plain_list() {
         let rows: Vec<i32> = (0..40).map(|k| k * 7).collect();
         let mut profile = Profile::new(rows.clone());
-        let mut plain = vec![0; 39];
+        let mut plain = [0; 39];
         let mut seed = 1u32;
         let mut random = |n: u32| {
             seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);

@@ -138,11 +138,11 @@ impl Reduction<'_> {
         }
         let pars = [edge.branch, branch].map(|b| self.only_par(b.chain));
         let chain = match pars {
-            [Some(p), None] => self.into_par(p, vec![branch], edge.branch.chain),
-            [None, Some(p)] => self.into_par(p, vec![edge.branch], branch.chain),
+            [Some(p), None] => self.extend_par(p, vec![branch], edge.branch.chain),
+            [None, Some(p)] => self.extend_par(p, vec![edge.branch], branch.chain),
             [Some(p), Some(q)] => {
                 let more = std::mem::take(&mut self.tree.pars[q as usize].branches);
-                self.into_par(p, more, edge.branch.chain)
+                self.extend_par(p, more, edge.branch.chain)
             }
             [None, None] => self.tree.par(vec![edge.branch, branch], false, false),
         };
@@ -160,7 +160,7 @@ impl Reduction<'_> {
         }
     }
 
-    fn into_par(&mut self, par: u32, more: Vec<Branch>, chain: Chain) -> Chain {
+    fn extend_par(&mut self, par: u32, more: Vec<Branch>, chain: Chain) -> Chain {
         let rows = more.iter().map(|b| b.chain.rows).max().unwrap_or(0).max(chain.rows);
         self.tree.pars[par as usize].branches.extend(more);
         Chain { rows, ..chain }

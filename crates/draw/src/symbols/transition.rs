@@ -112,7 +112,8 @@ fn priority(p: &mut Picture, n: u32) {
 /// The two lines of a synchronisation, with the link between them and the bar.
 pub(crate) fn double(p: &mut Picture, bar: &Bar, at: Point) {
     // Links end at the double line: nothing of them shows between its two.
-    p.rect("g7-paper", bar.at.x, bar.at.y, bar.w, DOUBLE_GAP);
+    let (x, y, right, low) = (bar.at.x, bar.at.y, bar.at.x + bar.w, bar.at.y + DOUBLE_GAP);
+    p.shape("g7-paper", &[(x, y), (right, y), (right, low), (x, low)]);
     for y in [bar.at.y, bar.at.y + DOUBLE_GAP] {
         p.line("g7-double", &[(bar.at.x, y), (bar.at.x + bar.w, y)]);
     }
