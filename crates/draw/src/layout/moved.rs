@@ -44,6 +44,9 @@ pub(crate) fn given(chart: &Chart, graph: &Graph, places: &[PlaceAt]) -> Vec<Opt
     given
 }
 
+/// A bend no wider than this is none.
+const ASKEW: i32 = 40;
+
 struct Moved<'a> {
     graph: &'a Graph,
     at: Vec<Point>,
@@ -67,11 +70,25 @@ pub(crate) fn moved(graph: &Graph, sizes: &Sizes, auto: Placement, given: &[Opti
         beside_neighbours(graph, &mut at, given);
     }
     at.iter_mut().zip(given).for_each(|(at, g)| *at = g.unwrap_or(*at));
+    if by_hand {
+        straighten(graph, &mut at);
+    }
     let moved = given.iter().map(|g| by_hand || g.is_some()).collect();
     let extents = extents(graph, sizes);
     let mut m = Moved { graph, at, extents, moved, below: Vec::new(), above: Vec::new() };
     m.lines();
     m.place(auto, sizes)
+}
+
+/// Transitions that all but stand under or over a step do so, lest their links have a tiny bend.
+fn straighten(graph: &Graph, at: &mut [Point]) {
+    for t in graph.steps as u32..graph.nodes as u32 {
+        let before = graph.into.of(t).iter().map(|l| graph.links[*l as usize].0);
+        let behind = graph.out.of(t).iter().map(|l| graph.links[*l as usize].1);
+        let x = at[t as usize].x;
+        let near = before.chain(behind).map(|s| at[s as usize].x).find(|s| (s - x).abs() <= ASKEW);
+        at[t as usize].x = near.unwrap_or(x);
+    }
 }
 
 fn beside_neighbours(graph: &Graph, at: &mut [Point], given: &[Option<Point>]) {

@@ -130,6 +130,20 @@ fn random_places_leave_every_link_whole() {
 }
 
 #[test]
+fn absurd_sizes_and_places_do_no_harm() {
+    let document = chart_of(BRANCHES);
+    let chart = only(&document);
+    for n in [i32::MIN, -1, i32::MAX] {
+        let e = Extent { left: n, right: n, up: n, down: n };
+        let sizes = Sizes { steps: vec![e; 5], transitions: vec![e; 5], connectors: vec![n; 5] };
+        assert!(link_faults(chart, &layout(chart, &sizes, &[])).is_empty());
+        let places: Vec<PlaceAt> = (0..5).map(|t| at(Placed::TransitionNumber(t), n, n)).collect();
+        assert!(link_faults(chart, &layout(chart, &sizes, &places)).is_empty());
+        assert!(link_faults(chart, &layout(chart, &Sizes::default(), &places)).is_empty());
+    }
+}
+
+#[test]
 fn imported_charts_stand_as_they_were_drawn() {
     for (file, document) in corpus() {
         let places = document.items.iter().find_map(|i| if let Item::Layout(l) = i { Some(l) } else { None });
