@@ -24,6 +24,8 @@ const TYPES: Record<string, string> = {
 export interface Site {
   url: string;
   stop(): Promise<void>;
+  /** Ends it at once, without its goodbyes. */
+  crash?(): Promise<void>;
 }
 
 /** The static playground, with these files as its examples. */
@@ -63,14 +65,12 @@ export async function serve(folder: string, ...more: string[]): Promise<Site> {
     child.once('error', failed);
     child.once('exit', (code) => failed(new Error(`g7 serve ended with ${code}: ${said}`)));
   });
-  return {
-    url,
-    stop: () =>
-      new Promise((done) => {
-        child.once('exit', () => done());
-        child.kill('SIGTERM');
-      }),
-  };
+  const end = (how: NodeJS.Signals) =>
+    new Promise<void>((done) => {
+      child.once('exit', () => done());
+      child.kill(how);
+    });
+  return { url, stop: () => end('SIGTERM'), crash: () => end('SIGKILL') };
 }
 
 /** Debian's Chromium without a network of its own. */

@@ -36,7 +36,7 @@ async function changedOutside({ path, hash }: Changed): Promise<void> {
 
 /** Copies that were kept before a crash are opened again, unsaved. */
 async function recover(): Promise<void> {
-  for (const draft of await server.drafts().catch(() => [])) {
+  for (const draft of await drafts()) {
     const known = shell.folder.some((f) => f.path === draft.path);
     const file = known
       ? await shell.try(() => files.read(draft.path))
@@ -48,6 +48,17 @@ async function recover(): Promise<void> {
 }
 
 const DRAFT = 'g7-draft:';
+
+/** Copies of unsaved work: of the server, or of the browser where no server keeps any. */
+async function drafts(): Promise<{ path: string; text: string }[]> {
+  if (server.writes) return server.drafts().catch(() => []);
+  try {
+    const keys = Object.keys(localStorage).filter((k) => k.startsWith(DRAFT));
+    return keys.map((k) => ({ path: k.slice(DRAFT.length), text: localStorage.getItem(k) ?? '' }));
+  } catch {
+    return [];
+  }
+}
 
 /** Keeps copies of what is not saved, a second after the last change; call once, inside a component. */
 export function keepDrafts(): void {
