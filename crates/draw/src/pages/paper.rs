@@ -140,8 +140,10 @@ impl<'a> Paper<'a> {
                 (0..).zip(&cells.transitions).zip(&sizes.transitions).filter(|((_, c), _)| here(c))
             {
                 let leaving = self.leaving(t) * CONNECTOR;
-                over = over.max(e.up + self.entering(t) * CONNECTOR);
-                let broken = if leaving > 0 { leaving + STUB + DOUBLE_GAP } else { 0 };
+                let entering = self.entering(t);
+                let double = if entering > 1 { 3 * DOUBLE_GAP } else { 0 };
+                over = over.max(e.up + double + entering * CONNECTOR);
+                let broken = if leaving > 0 { leaving + STUB + 3 * DOUBLE_GAP } else { 0 };
                 under = under.max(e.down + broken);
             }
             line.0 = y + up;
@@ -167,28 +169,55 @@ impl<'a> Paper<'a> {
             .unwrap_or_default()
     }
 
-    /// Whether the link from a transition to a step is drawn: to the line below.
+    /// Whether the link from a transition to a step is drawn: to the line below it,
+    /// and of a double line all or none.
     fn runs_on(&self, t: u32, s: u32) -> bool {
+        let to = self.cells.to.get(t as usize).map_or(&[][..], Vec::as_slice);
+        match self.cells.transitions.get(t as usize) {
+            Some(at) if to.len() > 1 => {
+                let next = to.iter().filter_map(|s| self.cells.steps.get(*s as usize));
+                let crossed = self.between(next.clone().map(|c| c.column), at.column, |column| {
+                    let here = Cell { line: at.line + 1, column, ..*at };
+                    self.cells.steps.contains(&here) && !next.clone().any(|c| *c == here)
+                });
+                !crossed && to.iter().all(|s| self.is_next(t, *s))
+            }
+            _ => self.is_next(t, s),
+        }
+    }
+
+    /// Whether a step stands in the line below a transition, not left of it.
+    fn is_next(&self, t: u32, s: u32) -> bool {
         match (self.cells.transitions.get(t as usize), self.cells.steps.get(s as usize)) {
-            (Some(t), Some(s)) => t.page == s.page && t.line + 1 == s.line && self.alone_above(*s, *t),
+            (Some(t), Some(s)) => t.page == s.page && t.line + 1 == s.line && s.column >= t.column,
             _ => false,
         }
     }
 
-    /// No step but those behind one transition begins in this line right of it:
-    /// a link to the left would cross them, so it is broken off.
-    fn alone_above(&self, step: Cell, transition: Cell) -> bool {
-        step.column >= transition.column
-    }
-
-    /// Whether the link from a step to a transition is drawn.
+    /// Whether the link from a step to a transition is drawn; of a double line all or none.
     fn runs_into(&self, s: u32, t: u32) -> bool {
+        let from = self.cells.from.get(t as usize).map_or(&[][..], Vec::as_slice);
         let (Some(at), Some(to)) = (self.cells.steps.get(s as usize), self.cells.transitions.get(t as usize))
         else {
             return false;
         };
-        let only = self.cells.behind.get(s as usize).is_some_and(|b| b.len() == 1);
-        at.page == to.page && (at.line == to.line || (only && at.line < to.line))
+        if from.len() < 2 {
+            return at.page == to.page && at.line == to.line;
+        }
+        // The double line takes the place where other branches would part.
+        let alone = |s: &u32| self.cells.behind.get(*s as usize).is_some_and(|b| b.len() == 1);
+        let above = from.iter().filter_map(|s| self.cells.steps.get(*s as usize));
+        let crossed = self.between(above.clone().map(|c| c.column), to.column, |column| {
+            let here = Cell { column, ..*to };
+            here != *to && self.cells.transitions.contains(&here)
+        });
+        !crossed && from.iter().all(alone) && above.clone().all(|c| c.page == to.page && c.line <= to.line)
+    }
+
+    /// Whether something is met in a column from the outermost to the outermost of these.
+    fn between(&self, columns: impl Iterator<Item = u32>, own: u32, met: impl Fn(u32) -> bool) -> bool {
+        let (least, most) = columns.fold((own, own), |(a, b), c| (a.min(c), b.max(c)));
+        (least..=most).any(met)
     }
 
     fn count(list: impl Iterator<Item = bool>) -> i32 {
@@ -247,7 +276,8 @@ impl<'a> Paper<'a> {
     }
 
     fn into(&self, p: &mut Placement, t: u32, at: Point, from: &[u32], join: i32) {
-        let high = at.y - self.above.get(t as usize).copied().unwrap_or(0);
+        let double = if from.len() > 1 { 3 * DOUBLE_GAP } else { 0 };
+        let high = at.y - self.above.get(t as usize).copied().unwrap_or(0) - double;
         let mut entering = 0;
         let mut reach: Vec<i32> = Vec::new();
         for s in from {
@@ -275,12 +305,15 @@ impl<'a> Paper<'a> {
         }
         if from.len() > 1 && !reach.is_empty() {
             bar(p, t, true, &reach, at.x, join);
+        } else if from.len() > 1 {
+            bar(p, t, true, &[at.x - 60, at.x + 60], at.x, high + DOUBLE_GAP);
         }
     }
 
     fn onward(&self, p: &mut Placement, t: u32, at: Point, to: &[u32], fork: i32) {
         let mut reach: Vec<i32> = Vec::new();
         let low = at.y + self.below.get(t as usize).copied().unwrap_or(0);
+        let first = if to.len() > 1 { 3 * DOUBLE_GAP } else { DOUBLE_GAP };
         let mut leaving = 0;
         for s in to {
             let Some(step) = p.steps.get(*s as usize).copied() else { continue };
@@ -295,7 +328,7 @@ impl<'a> Paper<'a> {
                 p.links.push(Link { from, to: into, points, arrows: Vec::new() });
             } else {
                 leaving += 1;
-                let tip = Point { x: at.x, y: low + DOUBLE_GAP + leaving * CONNECTOR };
+                let tip = Point { x: at.x, y: low + first + leaving * CONNECTOR };
                 p.connectors.push(self.connector(from, into, true, tip, Some(*s)));
                 let before = p.connectors.iter().filter(|c| !c.leaving && c.to == into).count();
                 let before = i32::try_from(before).unwrap_or(0);
@@ -308,7 +341,7 @@ impl<'a> Paper<'a> {
             bar(p, t, false, &reach, at.x, fork);
         } else if to.len() > 1 {
             // All of them are broken off, below the double line they belong to.
-            bar(p, t, false, &[at.x - 60, at.x + 60], at.x, low - DOUBLE_GAP);
+            bar(p, t, false, &[at.x - 60, at.x + 60], at.x, low + DOUBLE_GAP);
         }
     }
 
