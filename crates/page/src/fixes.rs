@@ -78,7 +78,7 @@ fn gestures(file: &File, p: &Problem) -> Vec<(String, Gesture)> {
     {
         return vec![("delete this transition".to_owned(), Gesture::Delete { ids: vec![id], heal: false })];
     }
-    if p.code == &codes::UNKNOWN_NAME && is_name(there) {
+    if p.code == &codes::UNKNOWN_NAME && is_name(there) && p.what == format!("nothing is called `{there}`") {
         let declared = |class: &str, what: &str| {
             let row = Row {
                 name: there.to_owned(),

@@ -293,3 +293,35 @@ fn tests_are_run_and_a_failure_has_its_place() {
     let one = page.ok(json!({ "do": "test", "file": "a.g7", "name": "comes" }));
     assert_eq!(one["tests"].as_array().map(Vec::len), Some(1));
 }
+
+#[test]
+fn every_fix_mends_its_problem() {
+    let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests/check");
+    let (mut tried, mut codes) = (0, BTreeSet::new());
+    for entry in std::fs::read_dir(folder).expect("a folder") {
+        let path = entry.expect("an entry").path();
+        let Ok(text) = std::fs::read_to_string(&path) else { continue };
+        let mut page = Asked::default();
+        let look = page.open(&text);
+        for problem in look["problems"].as_array().expect("problems") {
+            for fix in problem["fixes"].as_array().expect("fixes") {
+                let mended = page.ok(json!({
+                    "do": "splice", "file": "a.g7", "splices": fix["splices"], "unit": true,
+                }));
+                let same = |look: &Value| {
+                    let all = look["problems"].as_array().expect("problems");
+                    all.iter()
+                        .filter(|p| p["code"] == problem["code"] && p["what"] == problem["what"])
+                        .count()
+                };
+                let at = format!("{}: {} by {}", path.display(), problem["what"], fix["title"]);
+                assert!(same(&mended) < same(&look), "{at}");
+                assert!(mended["clean"] == true || look["clean"] == false, "{at}");
+                tried += 1;
+                codes.insert(problem["code"].to_string());
+                page.ok(json!({ "do": "undo", "file": "a.g7" }));
+            }
+        }
+    }
+    assert!(tried > 20 && codes.len() > 7, "{tried} fixes of {codes:?}");
+}
