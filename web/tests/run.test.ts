@@ -168,7 +168,7 @@ test('a breakpoint stops the run where the step comes', async () => {
   const p = await open(b, site, 'lamp.g7');
   await oneScan(p);
   await p.locator('[data-id="G1/s/2"]').first().click({ force: true });
-  await p.getByRole('button', { name: 'Breakpoints' }).click();
+  await p.getByRole('button', { name: /^Breakpoints/ }).click();
   await p.getByRole('button', { name: 'Stop at G1.2' }).click();
   await p.keyboard.press('Escape');
   await p.getByRole('tab', { name: 'Operate' }).click();

@@ -18,6 +18,9 @@ export interface Wishes {
   seed?: number;
 }
 
+/** A shared run that moves is heard of more often than that, ms. */
+const SILENT = 4000;
+
 class Runs {
   /** By file. */
   #byFile: Map<string, Run> = $state.raw(new Map());
@@ -133,8 +136,8 @@ class Runs {
     if (run) this.difference = await differ(run, other);
   }
 
-  /** Takes a changed text over into its run; what would be lost is asked about first. */
-  async swap(file: OpenFile, force = false): Promise<void> {
+  /** Takes a changed text over into its run; what would be lost is asked about first, unless this is no moment to ask. */
+  async swap(file: OpenFile, force = false, quiet = false): Promise<void> {
     const run = this.of(file.name);
     if (!run || run.hash === file.look.hash) return;
     const hash = file.look.hash;
@@ -144,7 +147,7 @@ class Runs {
       const answer = await run.answers.call<Started | { lost: string[] }>(message);
       run.refused = null;
       if ('lost' in answer) {
-        run.losing = answer.lost;
+        run.losing = quiet ? null : answer.lost;
         return;
       }
       run.begin(answer);
@@ -195,6 +198,7 @@ class Runs {
   #hear(): void {
     if (this.#heard) return;
     this.#heard = true;
+    setInterval(() => this.all.forEach((run) => void this.#again(run)), SILENT);
     server.hear((message) => {
       const named = (name: string) => this.all.find((r) => r.shared && r.name === name);
       if (message.frame) named((message.frame as Frame).run)?.take(message.frame as Frame);
@@ -209,6 +213,17 @@ class Runs {
         if (run) this.#put(run.file, null);
       }
     });
+  }
+
+  /** A shared run that moves and was not heard of: the connection was lost, or the server began anew. */
+  async #again(run: Run): Promise<void> {
+    if (!run.shared || !run.playing || performance.now() - run.heard < SILENT) return;
+    try {
+      run.begin(await server.call<Started>({ do: 'watch', run: run.name }));
+    } catch (error) {
+      run.playing = false;
+      shell.say((error as Error).message, 'error');
+    }
   }
 
   #put(file: string, run: Run | null): void {

@@ -17,6 +17,10 @@ export const begun = new Begun();
 /** A text is taken over when no key was pressed for so long. */
 const PAUSE = 600;
 
+/** That a change was taken over is not said again and again. */
+const OFTEN = 20_000;
+let said = -OFTEN;
+
 /** Whether a file can be run, and has something that moves. */
 function lively(file: OpenFile): boolean {
   return file.look.plants.length > 0 && !file.changed && !file.look.problems.some((p) => p.severity === 'error');
@@ -53,8 +57,12 @@ export function follow(): void {
     if (file.look.problems.some((p) => p.severity === 'error')) return;
     const timer = setTimeout(() => {
       void shell.try(async () => {
-        await runs.swap(file);
-        if (run.hash === file.look.hash) shell.say(t('run.swapped'));
+        // A dialog does not come between someone and what is being typed.
+        const at = document.activeElement;
+        await runs.swap(file, false, !!at?.closest('input, textarea, .cm-editor'));
+        if (run.hash !== file.look.hash || performance.now() - said < OFTEN) return;
+        said = performance.now();
+        shell.say(t('run.swapped'));
       });
     }, PAUSE);
     return () => clearTimeout(timer);

@@ -40,6 +40,8 @@ export function age(ms: number): string {
 export class Marks {
   readonly #run: Run;
   #names: Named = new Map();
+  /** Actions that name signals, by step. */
+  #actions = new Map<string, string[]>();
   #other: Run | null = null;
   #told = 0;
   #timer = 0;
@@ -56,6 +58,12 @@ export class Marks {
   /** What the symbols in view name. */
   show(names: Named, other: Run | null): void {
     this.#names = names;
+    this.#actions = new Map();
+    for (const id of names.keys()) {
+      if (!id.includes('/a/')) continue;
+      const step = stepOf(id);
+      this.#actions.set(step, [...(this.#actions.get(step) ?? []), id]);
+    }
     this.#other = other;
     this.tell();
   }
@@ -116,20 +124,26 @@ export class Marks {
     }
   }
 
-  /** Values beside names, lit actions, locks. */
+  /** Values beside names, lit actions, locks: looked at only where something is active. */
   #beside(on: ReadonlySet<string>, enabled: ReadonlyMap<string, number>): void {
     const run = this.#run;
     const { signals } = run.started;
     const values = new Map<string, string>();
     const lit = new Set<string>();
     const forced = new Set<string>();
-    for (const [id, names] of this.#names) {
-      const action = id.includes('/a/');
-      const concerned = action ? on.has(stepOf(id)) : enabled.has(id);
-      const numbers = concerned ? names.filter((s) => signals[s]?.type !== 'bool') : [];
+    const tell = (id: string) => {
+      const numbers = this.#names.get(id)?.filter((s) => signals[s]?.type !== 'bool') ?? [];
       if (numbers.length > 0) values.set(id, numbers.map((s) => `${signals[s]?.name} = ${run.shows[s]}`).join('   '));
-      if (action && concerned && names.some((s) => signals[s]?.role === 'output' && run.shows[s] === 'TRUE')) lit.add(id);
-      if (names.some((s) => run.forced[s])) forced.add(id);
+    };
+    for (const step of on) {
+      for (const id of this.#actions.get(step) ?? []) {
+        tell(id);
+        if (this.#names.get(id)?.some((s) => signals[s]?.role === 'output' && run.shows[s] === 'TRUE')) lit.add(id);
+      }
+    }
+    for (const id of enabled.keys()) tell(id);
+    if (run.forced.includes(true)) {
+      for (const [id, names] of this.#names) if (names.some((s) => run.forced[s])) forced.add(id);
     }
     const other = this.#other;
     if (other) {

@@ -53,6 +53,10 @@ export class Run {
   losing: string[] | null = $state.raw(null);
   /** A changed text that cannot be taken over, and why. */
   refused: string | null = $state.raw(null);
+  /** What the run has to say: outputs that two actions write against each other, and the like. */
+  note: string | null = $state(null);
+  /** When the latest frame came, by the clock of the page. */
+  heard = 0;
   /** Counts frames: for what is drawn anew as a whole. */
   frames = $state(0);
 
@@ -75,6 +79,7 @@ export class Run {
     this.on = started.steps.map(() => false);
     this.view = [];
     this.halt = null;
+    this.note = null;
     this.take({ ...started.frame, full: true });
   }
 
@@ -119,6 +124,8 @@ export class Run {
     this.halt = frame.halt ?? null;
     this.stopped = frame.stopped?.id ?? null;
     if (this.halt || this.stopped) this.playing = false;
+    if (frame.notes && frame.notes.length > 0) this.note = frame.notes.at(-1) ?? null;
+    this.heard = performance.now();
     this.frames++;
     this.#watchers.forEach((watcher) => watcher(frame));
   }
