@@ -1,0 +1,80 @@
+// One run held by the server and seen by two pages.
+import assert from 'node:assert/strict';
+import { mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { after, before, test } from 'node:test';
+import type { Page } from 'playwright-core';
+import { browser, open, serve, type Site } from './lib';
+
+const CHART = `input a : BOOL
+output M : BOOL
+
+chart G1 {
+  initial step 0
+  step 1 { N M }
+  0 -> 1 when a
+  1 -> 0 when not a
+}
+`;
+
+let folder: string;
+let site: Site;
+let b: Awaited<ReturnType<typeof browser>>;
+
+before(async () => {
+  folder = mkdtempSync(join(tmpdir(), 'g7-shared-'));
+  writeFileSync(join(folder, 'shared.g7'), CHART);
+  site = await serve(folder);
+  b = await browser();
+});
+
+after(async () => {
+  await b.done();
+  await site.stop();
+  rmSync(folder, { recursive: true, force: true });
+});
+
+const active = async (p: Page) => (await p.locator('.steps button.on').allInnerTexts()).join(' ');
+
+async function until(what: () => Promise<boolean>, said: string, ms = 8000): Promise<void> {
+  const end = Date.now() + ms;
+  while (!(await what())) {
+    if (Date.now() > end) assert.fail(said);
+    await new Promise((done) => setTimeout(done, 40));
+  }
+}
+
+async function joined(p: Page): Promise<void> {
+  await p.getByRole('switch', { name: 'Shared run' }).click();
+  await p.locator('.clock').waitFor();
+}
+
+test('what one page does the other one sees', async () => {
+  const one = await open(b, site, 'shared.g7');
+  await joined(one);
+  const two = await open(b, site, 'shared.g7');
+  await joined(two);
+
+  await one.getByRole('button', { name: 'Run', exact: true }).click();
+  await two.getByRole('button', { name: 'Pause', exact: true }).waitFor();
+  await two.getByRole('switch', { name: 'a', exact: true }).click();
+  await until(async () => (await active(one)) === '1', 'step 1 in the first page');
+  await until(async () => (await active(two)) === '1', 'step 1 in the second page');
+
+  await one.getByRole('button', { name: 'Force M' }).click();
+  await two.locator('li.forced').waitFor();
+
+  await two.getByRole('button', { name: 'Pause', exact: true }).click();
+  await one.getByRole('button', { name: 'Run', exact: true }).waitFor();
+  await one.waitForTimeout(200);
+  assert.equal(await one.locator('.clock').innerText(), await two.locator('.clock').innerText());
+
+  // A page that leaves takes nothing with it.
+  await two.context().close();
+  await one.getByRole('button', { name: 'One scan', exact: true }).click();
+  assert.equal(await active(one), '1');
+  assert.deepEqual(one.errors, []);
+  assert.equal(readFileSync(join(folder, 'shared.g7'), 'utf8'), CHART);
+  await one.context().close();
+});
