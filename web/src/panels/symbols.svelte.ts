@@ -1,0 +1,31 @@
+// The variables and steps of the file in view, as the checker knows them.
+import { files } from '../lib/files.svelte';
+import { page } from '../lib/page';
+import type { Symbols, VariableRow } from '../lib/protocol';
+
+/** Follows the file in view; call inside a component. */
+export function symbols(): { readonly rows: VariableRow[]; readonly stale: boolean } {
+  let found: Symbols = $state.raw({ variables: [], steps: [] });
+  let of = '';
+  $effect(() => {
+    const file = files.current;
+    if (!file) return;
+    const { look } = file;
+    if (of !== file.name) found = { variables: [], steps: [] };
+    of = file.name;
+    page.call<Symbols>({ do: 'symbols', file: file.name }).then(
+      (answer) => {
+        if (file.look === look && files.current === file) found = answer;
+      },
+      () => undefined,
+    );
+  });
+  return {
+    get rows() {
+      return found.variables;
+    },
+    get stale() {
+      return found.stale ?? false;
+    },
+  };
+}
