@@ -2,7 +2,8 @@
 
 export const LENGTH = 20;
 
-export function chartText(steps: number): string {
+/** `timed`: each token moves on 25 times a second by itself. */
+export function chartText(steps: number, timed = false): string {
   const lines = ['input a, b, c : BOOL', 'output V : BOOL', 'chart Big {'];
   for (let i = 0; i < steps; i++) {
     const head = i % LENGTH === 0 ? 'initial step' : 'step';
@@ -10,7 +11,7 @@ export function chartText(steps: number): string {
   }
   for (let i = 0; i < steps; i++) {
     const to = i % LENGTH === LENGTH - 1 ? i - LENGTH + 1 : i + 1;
-    lines.push(`  ${i} -> ${to} when a · not b + ↑c`);
+    lines.push(`  ${i} -> ${to} when ${timed ? `40ms/X${i}` : 'a · not b + ↑c'}`);
   }
   lines.push('}');
   return lines.join('\n');

@@ -5,6 +5,7 @@ import App from '../src/App.svelte';
 import { editor } from '../src/canvas/editor.svelte';
 import { files } from '../src/lib/files.svelte';
 import { live } from '../src/lib/live.svelte';
+import { runs } from '../src/lib/runs.svelte';
 import { page } from '../src/lib/page';
 import { prefs } from '../src/lib/prefs.svelte';
 import { active, chartText } from './chart';
@@ -36,6 +37,14 @@ Object.assign(window, {
       live.running = true;
       live.on = new Set(on.map((i) => `Big/s/${i}`));
       live.enabled = new Map(on.map((i) => [`Big/t/${i}`, n % 2 === 0 ? 1 : 2]));
+    },
+    /** A real run of the same chart, computed by the module in its worker. */
+    async run() {
+      const file = await files.open(`run-${steps}.g7`, chartText(steps, true));
+      await frame();
+      await runs.play(await runs.start(file), true);
+      await frame();
+      this.actual();
     },
     whole: () => editor.camera?.fit(),
     actual() {

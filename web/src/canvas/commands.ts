@@ -2,7 +2,7 @@
 // selected symbol and the list of shortcuts all read this one table.
 import type { IconName } from '../lib/Icon.svelte';
 import type { Key } from '../lib/i18n';
-import { live } from '../lib/live.svelte';
+import { runs } from '../lib/runs.svelte';
 import { shell } from '../lib/shell.svelte';
 import { editor } from './editor.svelte';
 
@@ -181,11 +181,7 @@ export const commands: Command[] = [
     title: 'cmd.breakpoint',
     keys: ['F9'],
     when: () => step() || transition(),
-    run: () => {
-      const breaks = new Set(live.breaks);
-      if (!breaks.delete(id())) breaks.add(id());
-      live.breaks = breaks;
-    },
+    run: () => editor.file && runs.toggleBreak(editor.file.name, id()),
   },
   {
     id: 'cut',
