@@ -170,12 +170,13 @@ class Runs {
       : { do: 'run_start', run: file.name, file: file.name, text: file.text, ...this.wishes(file.name) };
     const started = await server.call<Started & { speed?: number }>(message);
     const before = this.of(file.name);
-    if (before) await page.call({ do: 'run_stop', run: before.name }).catch(() => undefined);
-    if (this.other) await this.compare(null);
+    // It is known before anything is waited for: its frames come from now on.
     const run = new Run(started, server as Answers, true);
     run.hash = file.look.hash;
     this.#paced(run, started.speed ?? 0);
     this.#put(file.name, run);
+    if (before) await page.call({ do: 'run_stop', run: before.name }).catch(() => undefined);
+    if (this.other) await this.compare(null);
   }
 
   /** Whether the server holds a run of this file. */
