@@ -150,8 +150,16 @@ impl Moved<'_> {
         let (steps, transitions) = self.at.split_at(graph.steps);
         let mut p =
             Placement { steps: steps.to_vec(), transitions: transitions.to_vec(), ..Placement::default() };
-        let boxes = self.at.iter().zip(&self.extents).map(|(at, e)| Rect::around(*at, *e)).collect();
-        let ways = Ways::new(boxes);
+        let side = |b: &Bar| if b.join { &above } else { &below };
+        let still = |b: &Bar| !side(b)[graph.steps + b.transition as usize];
+        p.bars = auto.bars.into_iter().filter(still).collect();
+        self.bars(&mut p, &below, &above);
+        let boxes = self.at.iter().zip(&self.extents).map(|(at, e)| Rect::around(*at, *e));
+        let double = |b: &Bar| {
+            let r = Rect { x: b.at.x, y: b.at.y, w: b.w, h: DOUBLE };
+            (graph.steps as u32 + b.transition, r)
+        };
+        let ways = Ways::new((0..).zip(boxes).chain(p.bars.iter().map(double)).collect());
         let mut drawn: HashMap<(End, End), Link> =
             auto.links.into_iter().map(|l| ((l.from, l.to), l)).collect();
         let broken = |from: End, to: End| auto.connectors.iter().any(|c| (c.from, c.to) == (from, to));
@@ -166,11 +174,7 @@ impl Moved<'_> {
         }
         let keep = |c: &crate::Connector| !p.links.iter().any(|l| (l.from, l.to) == (c.from, c.to));
         p.connectors = auto.connectors.into_iter().filter(keep).collect();
-        let side = |b: &Bar| if b.join { &above } else { &below };
-        let still = |b: &Bar| !side(b)[graph.steps + b.transition as usize];
-        p.bars = auto.bars.into_iter().filter(still).collect();
-        self.bars(&mut p, &below, &above);
-        p.area = area(&p, &crate::layout::rooms::extents(graph, sizes));
+        p.area = area(&p, &extents(graph, sizes));
         p
     }
 

@@ -398,20 +398,24 @@ impl Shapes<'_> {
     /// and the steps to which one can come back.
     pub(crate) fn open_ends(&self, b: usize) -> (Vec<Exit>, Vec<Entry>) {
         let (mut exits, mut entries) = (Vec::new(), Vec::new());
+        let mut meeting = LINE;
         for put in &self.blocks[b].puts {
             match put.item {
                 Item::Node(n) if self.waiting[n as usize] > 0 => {
                     let line = self.above_line[n as usize];
                     let y = if line == NOWHERE { put.y - self.entry[n as usize] } else { line };
                     entries.push(Entry { step: n, y });
+                    meeting = LINE;
                 }
-                Item::Return(back) => exits.push(Exit { back, y: put.y, edge: LINE }),
+                // Branches that meet and go back have that line in common.
+                Item::Return(back) => exits.push(Exit { back, y: put.y, edge: meeting }),
                 Item::Par(p) => {
                     let g = &self.groups[p as usize];
+                    meeting = meeting.max(g.left);
                     exits.extend(g.exits.iter().map(|e| Exit { y: e.y + put.y, ..*e }));
                     entries.extend(g.entries.iter().map(|e| Entry { y: e.y + put.y, ..*e }));
                 }
-                Item::Node(_) | Item::Leave(_) | Item::Arrive(_) => {}
+                Item::Node(_) | Item::Leave(_) | Item::Arrive(_) => meeting = LINE,
             }
         }
         (exits, entries)

@@ -19,7 +19,7 @@ const BESIDE: i32 = 100;
 /// The symbols in the way.
 #[derive(Debug)]
 pub(crate) struct Ways {
-    boxes: Vec<Rect>,
+    boxes: Vec<(u32, Rect)>,
     cells: HashMap<(i32, i32), Vec<u32>>,
 }
 
@@ -33,10 +33,11 @@ fn cells(r: &Rect) -> (std::ops::RangeInclusive<i32>, std::ops::RangeInclusive<i
 }
 
 impl Ways {
-    /// A map of boxes; their indices are the nodes.
-    pub(crate) fn new(boxes: Vec<Rect>) -> Ways {
+    /// A map of boxes with the node each belongs to; those of the nodes themselves
+    /// come first and in their order.
+    pub(crate) fn new(boxes: Vec<(u32, Rect)>) -> Ways {
         let mut map: HashMap<(i32, i32), Vec<u32>> = HashMap::new();
-        for (n, r) in (0..).zip(&boxes) {
+        for (n, (_, r)) in (0..).zip(&boxes) {
             let (xs, ys) = cells(r);
             for x in xs {
                 ys.clone().for_each(|y| map.entry((x, y)).or_default().push(n));
@@ -52,7 +53,8 @@ impl Ways {
         let count = (i64::from(*xs.end()) - i64::from(*xs.start()) + 1)
             * (i64::from(*ys.end()) - i64::from(*ys.start()) + 1);
         let mut look = |n: u32| {
-            if !ends.contains(&n) && self.boxes[n as usize].overlaps(&piece) {
+            let (owner, r) = &self.boxes[n as usize];
+            if !ends.contains(owner) && r.overlaps(&piece) {
                 f(n);
             }
         };
@@ -119,7 +121,7 @@ impl Ways {
     /// Columns beside the two ends, pushed aside by what stands in them.
     fn columns(&self, y0: i32, y1: i32, ends: [u32; 2]) -> Vec<i32> {
         let mut found = Vec::new();
-        let boxes = ends.map(|n| self.boxes[n as usize]);
+        let boxes = ends.map(|n| self.boxes[n as usize].1);
         let left = boxes.iter().map(|r| r.x).min().unwrap_or(0) - LINK;
         let right = boxes.iter().map(|r| r.x + r.w).max().unwrap_or(0) + LINK;
         let starts = boxes.iter().flat_map(|r| [(r.x - LINK, -1), (r.x + r.w + LINK, 1)]);
@@ -128,7 +130,7 @@ impl Ways {
             for _ in 0..PUSHES {
                 let mut next = x;
                 self.hits(Point { x, y: y0 }, Point { x, y: y1 }, [NONE; 2], |n| {
-                    let r = self.boxes[n as usize];
+                    let r = self.boxes[n as usize].1;
                     next = if way < 0 { next.min(r.x - BESIDE) } else { next.max(r.x + r.w + BESIDE) };
                 });
                 if next == x {
