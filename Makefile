@@ -9,15 +9,19 @@ debian = command -v $(1) >/dev/null || \
 	{ $(SUDO) apt-get update -qq && $(SUDO) apt-get install -qq --no-install-recommends $(2); }
 PAGE := $(shell find web/src web/index.html web/public web/*.ts web/*.js -type f 2>/dev/null)
 
-.PHONY: run view test lint deny wasm web site page-test page-bench bench book fuzz help FORCE
+.PHONY: run view install test lint deny wasm web site page-test page-bench bench book fuzz help FORCE
 
 ## build G7 and open the editor in the browser on the examples (FOLDER=… for another)
 run: web
-	cargo run --release --quiet --package g7 -- serve $(FOLDER)
+	cargo run --release --quiet --package g7 -- serve $(FOLDER) $(if $(filter examples,$(FOLDER)),--start bead-sorter/chart.g7)
 
 ## build G7 and run the bead sorter in the terminal (EXAMPLE=… for another)
 view:
 	cargo run --release --quiet --package g7 -- run $(EXAMPLE)
+
+## put g7, with its page, on the PATH
+install: web
+	cargo install --quiet --path crates/g7
 
 ## run every test
 test: lint page-test
@@ -66,8 +70,8 @@ site: web
 ## the stories of the page in a real browser
 page-test: web
 	@$(call debian,chromium,chromium)
-	cargo build --release --quiet --package g7
-	cd web && npm run --silent check && npm test --silent
+	cargo build --quiet --package g7
+	cd web && npm run --silent check && G7=$${CARGO_TARGET_DIR:-$(CURDIR)/target}/debug/g7 npm test --silent
 
 ## main-thread time of the page, beside React Flow
 page-bench: wasm web/node_modules/.package-lock.json
