@@ -26,6 +26,7 @@ export interface Colours {
   greenSoft: string;
   amber: string;
   violet: string;
+  paper: string;
   font: string;
 }
 
@@ -75,9 +76,9 @@ export function paint(g: CanvasRenderingContext2D, p: Painting): void {
   g.clearRect(0, 0, width, height);
   g.font = `11px ${colours.font}`;
   g.textBaseline = 'middle';
-  axis(g, p, x);
+  grid(g, p, x);
   p.lanes.forEach((lane, i) => {
-    const top = AXIS + i * HEIGHT;
+    const top = i * HEIGHT;
     g.save();
     g.beginPath();
     g.rect(0, top, Math.max(0, Math.min(width, x(p.now))), HEIGHT);
@@ -102,21 +103,46 @@ function line(g: CanvasRenderingContext2D, x1: number, y1: number, x2: number, y
   g.stroke();
 }
 
-function axis(g: CanvasRenderingContext2D, { width, height, span, colours }: Painting, x: X): void {
+function* ticks(span: Span, width: number): Generator<[ms: number, step: number]> {
   const step = tick(span.to - span.from, width / 90);
+  for (let ms = Math.ceil(span.from / step) * step; ms <= span.to; ms += step) yield [ms, step];
+}
+
+function grid(g: CanvasRenderingContext2D, { width, height, span, colours }: Painting, x: X): void {
   g.lineWidth = 1;
+  g.strokeStyle = colours.grid;
+  for (const [ms] of ticks(span, width)) line(g, Math.round(x(ms)) + 0.5, 0, Math.round(x(ms)) + 0.5, height);
+}
+
+/** The times above the lanes, and the heads of the cursors. */
+export function paintAxis(g: CanvasRenderingContext2D, p: Painting): void {
+  const { width, span, colours } = p;
+  const x = (ms: number) => (ms - span.from) * (width / Math.max(span.to - span.from, 1e-6));
+  g.clearRect(0, 0, width, AXIS);
+  g.font = `11px ${colours.font}`;
+  g.textBaseline = 'middle';
   g.textAlign = 'left';
-  for (let ms = Math.ceil(span.from / step) * step; ms <= span.to; ms += step) {
+  g.lineWidth = 1;
+  g.strokeStyle = colours.line;
+  for (const [ms, step] of ticks(span, width)) {
     const at = Math.round(x(ms)) + 0.5;
-    g.strokeStyle = colours.grid;
-    line(g, at, AXIS, at, height);
-    g.strokeStyle = colours.line;
     line(g, at, AXIS - 5, at, AXIS);
     g.fillStyle = colours.soft;
     g.fillText(showTime(ms, step), at + 3, AXIS / 2);
   }
-  g.strokeStyle = colours.line;
   line(g, 0, AXIS - 0.5, width, AXIS - 0.5);
+  p.cursors.forEach((ms, i) => {
+    if (ms === null || ms < span.from || ms > span.to) return;
+    const at = Math.round(x(ms)) + 0.5;
+    const left = at < width - 20 ? at : at - 14;
+    g.fillStyle = i === 0 ? colours.amber : colours.violet;
+    g.fillRect(at - 0.75, 0, 1.5, AXIS);
+    g.fillRect(left, 0, 14, 13);
+    g.fillStyle = colours.paper;
+    g.textAlign = 'center';
+    g.fillText(i === 0 ? 'A' : 'B', left + 7, 7);
+    g.textAlign = 'left';
+  });
 }
 
 /** Edges in sight, the one before them included. */
@@ -200,24 +226,17 @@ function curve(g: CanvasRenderingContext2D, { span, colours, now }: Painting, la
   g.stroke();
 }
 
-function cursors(g: CanvasRenderingContext2D, { width, height, cursors, colours, now, span }: Painting, x: X): void {
+function cursors(g: CanvasRenderingContext2D, { height, cursors, colours, now, span }: Painting, x: X): void {
   if (now > span.from && now < span.to) {
     g.strokeStyle = colours.soft;
     g.setLineDash([2, 3]);
-    line(g, Math.round(x(now)) + 0.5, AXIS, Math.round(x(now)) + 0.5, height);
+    line(g, Math.round(x(now)) + 0.5, 0, Math.round(x(now)) + 0.5, height);
     g.setLineDash([]);
   }
   cursors.forEach((ms, i) => {
     if (ms === null || ms < span.from || ms > span.to) return;
-    const at = Math.round(x(ms)) + 0.5;
     g.strokeStyle = i === 0 ? colours.amber : colours.violet;
     g.lineWidth = 1.5;
-    line(g, at, 0, at, height);
-    g.fillStyle = g.strokeStyle;
-    const left = at < width - 20;
-    g.fillRect(left ? at : at - 14, 0, 14, 13);
-    g.fillStyle = '#fff';
-    g.textAlign = 'center';
-    g.fillText(i === 0 ? 'A' : 'B', left ? at + 7 : at - 7, 7);
+    line(g, Math.round(x(ms)) + 0.5, 0, Math.round(x(ms)) + 0.5, height);
   });
 }
