@@ -82,6 +82,15 @@ pub(crate) struct Block {
     pub(crate) entries: Vec<Entry>,
 }
 
+impl Block {
+    /// A way back out of it runs at this height now.
+    fn deepen(&mut self, back: u32, y: i32) {
+        self.exits.iter_mut().filter(|e| e.back == back).for_each(|e| e.y = y);
+        self.height = self.height.max(y);
+        self.foot = self.foot.max(y);
+    }
+}
+
 /// A group of branches.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Group {
@@ -355,15 +364,39 @@ impl Shapes<'_> {
         self.blocks[b].puts.first().is_some_and(|p| p.item == Item::Node(step))
     }
 
-    /// Lets a way back at the end of a block run lower.
+    /// Lets a way back at the end of a block run lower, or the only one of the
+    /// branches at its end.
     pub(crate) fn stretch(&mut self, b: usize, y: i32) {
-        let block = &mut self.blocks[b];
-        let Some(Put { item: Item::Return(back), y: row, .. }) = block.puts.last_mut() else { return };
-        if *row < y {
-            *row = y;
-            block.exits.iter_mut().filter(|e| e.back == *back).for_each(|e| e.y = y);
-            block.height = block.height.max(y);
-            block.foot = block.foot.max(y);
+        let Some(last) = self.blocks[b].puts.last().copied() else { return };
+        match last.item {
+            Item::Return(back) if last.y < y => {
+                if let Some(put) = self.blocks[b].puts.last_mut() {
+                    put.y = y;
+                }
+                self.blocks[b].deepen(back, y);
+            }
+            Item::Par(p) if self.tree.pars[p as usize].end_open => {
+                let group = &self.groups[p as usize];
+                let [exit] = group.exits[..] else { return };
+                let ends = |b: &usize| {
+                    self.blocks[*b].puts.last().is_some_and(|put| put.item == Item::Return(exit.back))
+                };
+                let branches = (group.blocks.start as usize..group.blocks.end as usize).zip(&group.ys);
+                let Some((inner, dy)) = branches.into_iter().find(|(b, _)| ends(b)) else { return };
+                if last.y + exit.y < y {
+                    let row = y - last.y - dy;
+                    if let Some(put) = self.blocks[inner].puts.last_mut() {
+                        put.y = row;
+                    }
+                    self.blocks[inner].deepen(exit.back, row);
+                    self.blocks[b].deepen(exit.back, y);
+                    let group = &mut self.groups[p as usize];
+                    group.exits[0].y = y - last.y;
+                    group.height = group.height.max(y - last.y);
+                    group.foot = group.height;
+                }
+            }
+            Item::Return(_) | Item::Par(_) | Item::Node(_) | Item::Leave(_) | Item::Arrive(_) => {}
         }
     }
 

@@ -2,6 +2,7 @@
 #![allow(clippy::disallowed_methods, reason = "the tests read the examples")]
 
 mod charts;
+mod conventions;
 mod geometry;
 mod placed;
 mod random;

@@ -10,7 +10,7 @@ use crate::random::{chart_of, only};
 const BRANCHES: &str = "initial step 1 step 2 step 3 step 4 step 5\n\
     t1: 1 -> (2, 3) when TRUE t2: (2, 3) -> 4 when TRUE 4 -> 5 when TRUE 5 -> 1 when TRUE 4 -> 1 when FALSE\n";
 
-fn plain(chart: &Chart) -> Sizes {
+pub(crate) fn plain(chart: &Chart) -> Sizes {
     Sizes {
         steps: chart.steps().map(|_| Extent { left: 250, right: 250, up: 0, down: 500 }).collect(),
         transitions: chart
