@@ -71,8 +71,8 @@ export class Camera {
     this.set({ k, x: w / 2 - (ax + aw / 2) * k, y: TOP + (h - TOP - LOW) / 2 - (ay + ah / 2) * k });
   }
 
-  /** A first look: all of it where it can be read, else its beginning. */
-  begin(): void {
+  /** A first look: all of it where it can be read, else where it begins. */
+  begin(first: Box): void {
     const { clientWidth: w, clientHeight: h } = this.#root;
     const [ax, ay, aw, ah] = this.#area();
     const all = Math.min((w - 2 * SIDE) / Math.max(aw, 1), (h - TOP - LOW) / Math.max(ah, 1));
@@ -81,8 +81,11 @@ export class Camera {
       return;
     }
     const k = Math.max(0.6, Math.min(1, (w - 2 * SIDE) / Math.max(aw, 1)));
-    const left = aw * k <= w - 2 * SIDE ? w / 2 - (ax + aw / 2) * k : w / 2;
-    this.set({ k, x: left, y: TOP - ay * k });
+    const [left, right] = [SIDE - ax * k, w - SIDE - (ax + aw) * k];
+    const middle = w / 2 - (first[0] + first[2] / 2) * k;
+    const x = right >= left ? w / 2 - (ax + aw / 2) * k : Math.max(right, Math.min(left, middle));
+    const far = (first[1] - ay) * k > (h - TOP) / 2;
+    this.set({ k, x, y: TOP - (far ? first[1] - 60 : ay) * k });
   }
 
   reveal(box: Box, centre = false): void {

@@ -161,6 +161,13 @@ export class Scene {
     return best;
   }
 
+  /** The box of the step where the chart begins. */
+  first(): Box {
+    const steps = this.ordered().filter((i) => i.part === 'step');
+    const begin = steps.find((s) => s.initial) ?? steps.find((s) => s.step === 'entry') ?? steps[0];
+    return begin ? this.core(begin) : [0, 0, 0, 0];
+  }
+
   /** Steps and transitions as read: from the top, from the left. */
   ordered(): Item[] {
     return this.items
