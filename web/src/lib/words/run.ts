@@ -3,6 +3,8 @@ import type { Words } from '../i18n';
 export const run = {
   'run.bar': ['Run', 'Exécution', 'Execução'],
   'run.play': ['Run', 'Exécuter', 'Correr'],
+  'run.toggle': ['Run and pause', 'Exécuter et suspendre', 'Correr e pausar'],
+  'run.break': ['Breakpoint at what is selected', "Point d'arrêt sur la sélection", 'Ponto de paragem na seleção'],
   'run.pause': ['Pause', 'Pause', 'Pausa'],
   'run.scan': ['One scan', 'Un cycle', 'Um ciclo'],
   'run.pass': ['One pass: transient situations', 'Un pas : situations fugaces', 'Um passo: situações fugazes'],
