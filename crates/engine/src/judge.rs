@@ -3,23 +3,29 @@
 
 use crate::bits::Walk;
 use crate::fault::Fault;
-use crate::pass::rest_active;
+use crate::pass::{block, rest_active};
 use crate::run::guard;
 use crate::state::State;
-use crate::{NONE, Program};
+use crate::{NONE, Program, watch};
 
-/// Tells of every transition that is enabled in a state, by rank, and whether
-/// its receptivity holds: with the edges of the state's latest pass, and in a
-/// chart that was not blocked in it. Priorities are left out.
+/// Tells of every transition that is enabled in a state, by rank, and whether it
+/// would clear in the next pass if nothing came in before: its receptivity holds
+/// and its chart is not blocked. Priorities are left out.
 ///
 /// # Errors
 ///
-/// A [`Fault`] of a receptivity; those behind it are not told.
+/// A [`Fault`] of a receptivity or a watched expression; those behind it are not told.
 pub fn enabled(p: &Program, s: &State, mut tell: impl FnMut(u32, bool)) -> Result<(), Fault> {
     // Sections leave their values in variables: not in those of the run.
     let mut s = s.clone();
     s.x.work = 0;
     s.x.stack.clear();
+    if !s.x.first_pass {
+        watch::update(p, &mut s, false, false)?;
+    }
+    if p.has_periods || p.has_orders {
+        block(p, &mut s);
+    }
     let mut judge = |s: &mut State, rank: u32| -> Result<(), Fault> {
         let Some(t) = p.t.transitions.get(rank as usize) else { return Ok(()) };
         if (t.from.0 != NONE && !s.is_active(t.from)) || !rest_active(p, s, t) {

@@ -65,7 +65,7 @@ fn forget_writes(s: &mut State) {
 }
 
 /// Which charts stand still in this pass: those not due, and those forced.
-fn block(p: &Program, s: &mut State) {
+pub(crate) fn block(p: &Program, s: &mut State) {
     s.x.any_blocked = false;
     for (i, chart) in p.t.charts.iter().enumerate() {
         let due = crate::watch::is_due(p, s, chart.period);
