@@ -331,7 +331,7 @@ impl Shapes<'_> {
         for (k, b) in range.enumerate() {
             let dy = group.ys[k];
             if end_open && k > 0 {
-                self.stretch(b, low + CLEAR - dy);
+                self.stretch(b, low + 2 * CLEAR - dy);
             }
             let edge = group.left;
             for e in std::mem::take(&mut self.blocks[b].exits) {
@@ -364,8 +364,7 @@ impl Shapes<'_> {
         self.blocks[b].puts.first().is_some_and(|p| p.item == Item::Node(step))
     }
 
-    /// Lets a way back at the end of a block run lower, or the only one of the
-    /// branches at its end.
+    /// Lets a way back at the end of a block run lower, or those of the branches at its end.
     pub(crate) fn stretch(&mut self, b: usize, y: i32) {
         let Some(last) = self.blocks[b].puts.last().copied() else { return };
         match last.item {
@@ -376,28 +375,35 @@ impl Shapes<'_> {
                 self.blocks[b].deepen(back, y);
             }
             Item::Par(p) if self.tree.pars[p as usize].end_open => {
-                let group = &self.groups[p as usize];
-                let [exit] = group.exits[..] else { return };
-                let ends = |b: &usize| {
-                    self.blocks[*b].puts.last().is_some_and(|put| put.item == Item::Return(exit.back))
-                };
-                let branches = (group.blocks.start as usize..group.blocks.end as usize).zip(&group.ys);
-                let Some((inner, dy)) = branches.into_iter().find(|(b, _)| ends(b)) else { return };
-                if last.y + exit.y < y {
-                    let row = y - last.y - dy;
-                    if let Some(put) = self.blocks[inner].puts.last_mut() {
-                        put.y = row;
-                    }
-                    self.blocks[inner].deepen(exit.back, row);
-                    self.blocks[b].deepen(exit.back, y);
-                    let group = &mut self.groups[p as usize];
-                    group.exits[0].y = y - last.y;
-                    group.height = group.height.max(y - last.y);
-                    group.foot = group.height;
+                let highest = self.groups[p as usize].exits.iter().map(|e| last.y + e.y).min();
+                if let Some(by) = highest.map(|row| y - row).filter(|by| *by > 0) {
+                    self.stretch_all(b, p as usize, by);
                 }
             }
             Item::Return(_) | Item::Par(_) | Item::Node(_) | Item::Leave(_) | Item::Arrive(_) => {}
         }
+    }
+
+    /// Lets the ways back of the branches at the end of a block run lower.
+    fn stretch_all(&mut self, b: usize, p: usize, by: i32) {
+        let mut group = std::mem::take(&mut self.groups[p]);
+        for inner in group.blocks.clone() {
+            let Some(Put { item: Item::Return(back), y, .. }) = self.blocks[inner as usize].puts.last_mut()
+            else {
+                continue;
+            };
+            *y += by;
+            let (back, row) = (*back, *y);
+            self.blocks[inner as usize].deepen(back, row);
+            // Others, from farther inside, stay where they are.
+            group.exits.iter_mut().filter(|e| e.back == back).for_each(|e| e.y += by);
+        }
+        let low = group.exits.iter().map(|e| e.y).max().unwrap_or(0);
+        group.height = group.height.max(low);
+        group.foot = group.height;
+        let top = self.blocks[b].puts.last().map_or(0, |put| put.y);
+        group.exits.iter().for_each(|e| self.blocks[b].deepen(e.back, top + e.y));
+        self.groups[p] = group;
     }
 
     /// The rows of a sequence with their reach, without what stands beside it.
