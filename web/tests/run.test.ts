@@ -45,6 +45,8 @@ before(async () => {
     'fleeting.g7': FLEETING,
     'tanks.g7': example('two-tanks/chart.g7'),
     'two-tanks.svg': example('two-tanks/two-tanks.svg'),
+    'bead-sorter/exercise-1.g7': example('bead-sorter/exercise-1.g7'),
+    'bead-sorter/bead-sorter.svg': example('bead-sorter/bead-sorter.svg'),
     'evil.g7': LAMP.replace('chart G1', "plant P {\n  view 'evil.svg' { lamp.on := lamp }\n}\n\nchart G1"),
     'evil.svg': `<svg xmlns="http://www.w3.org/2000/svg" xmlns:xlink="http://www.w3.org/1999/xlink" viewBox="0 0 40 40" onload="window.bad = 1">
       <script>window.bad = 2</script>
@@ -294,5 +296,25 @@ test('the chronogram: cursors by keyboard, the difference of times, a table, fil
     assert.equal(file.suggestedFilename(), `lamp.${form.toLowerCase()}`);
     assert.match(readFileSync(await file.path(), 'utf8'), start);
   }
+  await end(p);
+});
+
+// Exercise 1: one black, one yellow, in turn; then the unit is turned over by the
+// button in the picture, and each bead goes back to its compartment.
+test('the bead sorter: a pattern, a tilt, every bead back in its place', async () => {
+  const p = await open(b, site, 'bead-sorter/exercise-1.g7');
+  await p.getByRole('combobox', { name: 'Speed' }).selectOption('20');
+  await p.getByRole('button', { name: 'Run', exact: true }).click();
+  const beads = async (of: string) =>
+    p.locator(`[data-g7=${of}] .bead`).evaluateAll((all) =>
+      all.flatMap((e) => ((e as SVGElement).style.display === 'none' ? [] : [e.classList.contains('y') ? 'y' : 'b'])).join(''),
+    );
+  await until(async () => (await beads('track')) === 'bybybyby', 'four pairs lie in the track', 20_000);
+  const black = await beads('one');
+  assert.match(black, /^b*$/);
+  await p.getByRole('button', { name: 'Turn over the unit (tilted)' }).click();
+  await until(async () => (await beads('track')) === '', 'the track is empty', 30_000);
+  await until(async () => (await beads('one')) === 'bbbbbb' && (await beads('two')) === 'yyyy', 'six black, four yellow', 20_000);
+  assert.equal(await p.locator('[data-g7=astray]').textContent(), '0');
   await end(p);
 });
