@@ -121,15 +121,20 @@ impl Shapes<'_> {
         }
     }
 
+    /// Down to where it is clear of a line to which it leads, with a double line.
+    fn met(&self, s: &Side) -> i32 {
+        self.low(s).max(self.blocks[s.block as usize].foot + DOUBLE) + CLEAR
+    }
+
     fn place_right(&mut self, b: usize, bands: &[Band], right: Vec<Side>) {
         let rows = bands.iter().flat_map(|s| [s.y0, s.y1]);
-        let rows = rows.chain(right.iter().flat_map(|s| [s.y - CLEAR, s.y + self.low(s) + CLEAR]));
+        let rows = rows.chain(right.iter().flat_map(|s| [s.y - CLEAR, s.y + self.met(s)]));
         let mut reach = Profile::new(rows.collect());
         bands.iter().for_each(|s| reach.raise(s.y0, s.y1, s.right));
         let mut most = bands.iter().map(|s| s.right).max().unwrap_or(0).max(LINE);
         for mut side in right {
             let block = &self.blocks[side.block as usize];
-            let (y0, y1) = (side.y - CLEAR, side.y + block.height + CLEAR);
+            let (y0, y1) = (side.y - CLEAR, side.y + self.met(&side));
             side.x = (reach.most(y0, y1).max(LINE) + GAP + block.left + 99) / 100 * 100;
             let to = side.x + block.right;
             reach.raise(y0, y1, to);
