@@ -32,8 +32,17 @@ pub(crate) use start::{Start, start};
 
 /// Most scans that one message makes.
 const SCANS: u32 = 20_000;
-/// Changes kept of each signal.
+/// Most changes kept of a signal.
 const KEPT: usize = 20_000;
+/// Most changes kept of all signals together.
+const KEPT_IN_ALL: usize = 2_000_000;
+
+/// A recording of all signals of a bench, in bounded memory.
+fn recording(bench: &Bench) -> Recording {
+    let signals = bench.signals();
+    let limit = (KEPT_IN_ALL / signals.len().max(1)).clamp(100, KEPT);
+    Recording::new(signals).with_limit(limit)
+}
 
 /// A run.
 pub(crate) struct Run {

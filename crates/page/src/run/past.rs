@@ -47,7 +47,7 @@ pub(super) struct Past {
 /// Scans from mark to mark at first.
 const EVERY: u64 = 64;
 /// Words that all marks may take.
-const WORDS: usize = 4 << 20;
+const WORDS: usize = 1 << 20;
 /// Most events that are kept; at more the past begins anew.
 const EVENTS: usize = 100_000;
 

@@ -3,14 +3,14 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use g7_host::{Kind, Recording};
+use g7_host::Kind;
 use g7_model::{ProfileName, Severity, Span};
 use g7_rig::{Activity, Bench, Conflicts, Options, Role, Source};
 use serde::{Deserialize, Serialize};
 
 use super::frame::Sent;
 use super::past::Past;
-use super::{Breaks, Frame, KEPT, Run};
+use super::{Breaks, Frame, Run};
 use crate::ids::{self, Thing};
 use crate::positions::Positions;
 
@@ -150,7 +150,7 @@ pub(crate) fn start(source: &Source, wish: &Start) -> Result<Run, String> {
         name: wish.run.clone(),
         file: wish.file.clone(),
         places: Places::new(source, &bench),
-        recording: Recording::new(bench.signals()).with_limit(KEPT),
+        recording: super::recording(&bench),
         past: Past::new(&runner),
         document: Arc::new(source.document.clone()),
         text: source.text.as_str().into(),

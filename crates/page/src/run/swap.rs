@@ -2,12 +2,11 @@
 
 use std::sync::Arc;
 
-use g7_host::Recording;
 use g7_rig::Source;
 
 use super::past::Past;
 use super::start::{Places, bench};
-use super::{Breaks, KEPT, Run};
+use super::{Breaks, Run};
 use crate::positions::Positions;
 
 impl Run {
@@ -26,7 +25,7 @@ impl Run {
         if !carried.lost.is_empty() && !forced {
             return Ok(carried.lost);
         }
-        let mut recording = Recording::new(new.signals()).with_limit(KEPT);
+        let mut recording = super::recording(&new);
         for (i, signal) in new.signals().iter().enumerate() {
             let same = |s: &g7_host::Signal| {
                 s.name == signal.name && s.group == signal.group && s.kind == signal.kind
