@@ -1,8 +1,6 @@
-// Files that were open lately, and work that was not saved before the page was
-// left: both kept by the browser.
+// Files that were open lately, as the browser keeps them.
 
 const RECENT = 'g7-recent';
-const DRAFT = 'g7-draft:';
 const MOST = 8;
 
 function stored(): string[] {
@@ -14,29 +12,8 @@ function stored(): string[] {
   }
 }
 
-export interface Draft {
-  name: string;
-  text: string;
-}
-
-function drafts(): Draft[] {
-  const found: Draft[] = [];
-  try {
-    for (let n = 0; n < localStorage.length; n++) {
-      const key = localStorage.key(n);
-      if (!key?.startsWith(DRAFT)) continue;
-      found.push({ name: key.slice(DRAFT.length), text: localStorage.getItem(key) ?? '' });
-    }
-  } catch {
-    // A browser that keeps nothing has nothing.
-  }
-  return found.sort((a, b) => (a.name < b.name ? -1 : 1));
-}
-
 class Recent {
   names: string[] = $state.raw(stored());
-  /** As they were when the page was opened. */
-  drafts: Draft[] = $state.raw(drafts());
 
   add(name: string): void {
     if (this.names[0] === name) return;
@@ -45,15 +22,6 @@ class Recent {
       localStorage.setItem(RECENT, JSON.stringify(this.names));
     } catch {
       // It is a convenience only.
-    }
-  }
-
-  drop(name: string): void {
-    this.drafts = this.drafts.filter((d) => d.name !== name);
-    try {
-      localStorage.removeItem(DRAFT + name);
-    } catch {
-      // Nothing was kept.
     }
   }
 }

@@ -93,7 +93,7 @@ export function setup(file: OpenFile, more: Extension): Extension {
     theme,
     Prec.high(keymap.of(keys)),
     keymap.of([...closeBracketsKeymap, ...completionKeymap, ...searchKeymap, ...foldKeymap, ...lintKeymap, ...defaultKeymap, indentWithTab]),
-    EditorView.contentAttributes.of({ 'aria-label': t('text.of', { name: file.name }), spellcheck: 'false', autocorrect: 'off', autocapitalize: 'off' }),
+    EditorView.contentAttributes.of({ 'aria-label': t('text.of', { name: file.name }), tabindex: '0', spellcheck: 'false', autocorrect: 'off', autocapitalize: 'off' }),
     more,
   ];
 }

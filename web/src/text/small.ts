@@ -24,7 +24,9 @@ function shut(view: EditorView): void {
 
 function leaving(view: EditorView, dom: HTMLElement): void {
   dom.addEventListener('focusout', (e) => {
-    if (!dom.contains(e.relatedTarget as Node | null)) view.dispatch({ effects: open.of(null) });
+    if (dom.contains(e.relatedTarget as Node | null)) return;
+    // It is also left when it is taken away, in the midst of an update.
+    setTimeout(() => dom.isConnected && view.dispatch({ effects: open.of(null) }));
   });
   dom.addEventListener('keydown', (e) => {
     if (e.key !== 'Escape') return;

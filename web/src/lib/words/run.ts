@@ -46,6 +46,7 @@ export const run = {
   'run.changed': ['The chart was changed. What runs is the earlier text.', "Le grafcet a changé. L'ancien texte s'exécute.", 'O grafcet foi alterado. Corre o texto anterior.'],
   'run.swapAsk': ['Taking over the change now loses:', 'Prendre le changement maintenant fait perdre :', 'Aplicar a alteração agora perde:'],
   'run.swap': ['Take over', 'Appliquer', 'Aplicar'],
+  'run.anew': ['Begin anew', 'Recommencer', 'Recomeçar'],
   'run.swapTitle': ['Change of the running chart', "Changement du grafcet en cours d'exécution", 'Alteração do grafcet em execução'],
   'run.keep': ['Go on with the earlier chart', "Continuer avec l'ancien grafcet", 'Continuar com o grafcet anterior'],
   'run.swapped': ['The change is taken over; the situation is kept.', 'Le changement est appliqué ; la situation est conservée.', 'A alteração foi aplicada; a situação mantém-se.'],

@@ -13,7 +13,7 @@ export const text = {
   'text.rename': ['Rename ({n})', 'Renommer ({n})', 'Mudar o nome ({n})'],
   'text.renameTo': ['New name of {name}, in {n} places', 'Nouveau nom de {name}, à {n} endroits', 'Novo nome de {name}, em {n} sítios'],
   'text.places': ['{name}: {n} places', '{name} : {n} endroits', '{name}: {n} sítios'],
-  'text.sign.bar': ['not: overline', 'non : barre', 'não: barra'],
+  'text.sign.bar': ['not: a̅, overline', 'non : a̅, barre', 'não: a̅, barra'],
   'text.sign.to': ['arrow of a transition', "flèche d'une transition", 'seta de uma transição'],
   'text.sign.ne': ['not equal', 'différent', 'diferente'],
   'text.sign.le': ['at most', 'au plus', 'no máximo'],
