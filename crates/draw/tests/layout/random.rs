@@ -139,7 +139,7 @@ fn fine(what: &str, document: &Document, random: &mut Random) {
 
 #[test]
 fn structured_charts_have_no_faults() {
-    for seed in 0..300 {
+    for seed in 0..600 {
         let mut random = Random(seed);
         let size = 2 + random.below(80);
         fine(&format!("seed {seed}"), &random_chart(seed, size, 0), &mut random);
@@ -148,7 +148,7 @@ fn structured_charts_have_no_faults() {
 
 #[test]
 fn charts_with_jumps_have_no_faults() {
-    for seed in 0..300 {
+    for seed in 0..600 {
         let mut random = Random(seed);
         let (size, jumps) = (2 + random.below(80), 1 + random.below(12));
         fine(&format!("seed {seed}"), &random_chart(seed, size, jumps), &mut random);
