@@ -23,7 +23,9 @@ export interface Command {
 const one = (part: string) => editor.one?.part === part;
 const ids = () => [...shell.selection];
 const some = () => editor.selected.length > 0;
-const many = () => editor.selected.filter((i) => i.part === 'step' || i.part === 'transition').length > 1;
+const count = () => editor.selected.filter((i) => i.part === 'step' || i.part === 'transition').length;
+const symbols = () => count() > 0;
+const many = () => count() > 1;
 const step = () => one('step');
 const transition = () => one('transition');
 const id = () => editor.one?.id ?? '';
@@ -131,14 +133,14 @@ export const commands: Command[] = [
   {
     id: 'parallel',
     title: 'cmd.parallel',
-    when: some,
+    when: symbols,
     run: () => editor.apply({ g: 'parallel', ids: ids() }),
   },
   {
     id: 'macro',
     title: 'cmd.macro',
     keys: ['M'],
-    when: some,
+    when: symbols,
     run: () => editor.apply({ g: 'macro', ids: ids() }),
   },
   {

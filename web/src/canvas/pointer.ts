@@ -13,8 +13,13 @@ const SNAP = 5;
 type Doing =
   | { what: 'press'; item: Item | null; add: boolean }
   | { what: 'move'; ids: Set<string> }
-  | { what: 'mark'; add: boolean }
+  | { what: 'mark'; item: Item | null; add: boolean }
   | { what: 'link'; from: string };
+
+/** Whether a symbol can be taken hold of: links only follow. */
+function held(item: Item | null): boolean {
+  return item?.part === 'step' || item?.part === 'transition' || item?.part === 'action';
+}
 
 export class Pointer {
   #doing: Doing | null = null;
@@ -46,10 +51,10 @@ export class Pointer {
         return true;
       }
       const touch = e.touches[0];
-      return !!touch && this.under(touch) === null;
+      return !!touch && !held(this.under(touch));
     }
     if (e.button === 1) return true;
-    return e.button === 0 && !e.shiftKey && this.under(e) === null;
+    return e.button === 0 && !e.shiftKey && !held(this.under(e));
   };
 
   down(e: PointerEvent): void {
@@ -59,7 +64,7 @@ export class Pointer {
     const item = this.under(e);
     [this.#at.x, this.#at.y] = this.#place(e);
     const add = e.shiftKey || e.ctrlKey || e.metaKey;
-    this.#doing = item || !e.shiftKey ? { what: 'press', item, add } : { what: 'mark', add: e.ctrlKey || e.metaKey };
+    this.#doing = held(item) || !e.shiftKey ? { what: 'press', item, add } : { what: 'mark', item, add };
   }
 
   /** Begins a link at a symbol. */
@@ -82,7 +87,7 @@ export class Pointer {
     if (doing.what === 'press') {
       if (Math.hypot(dx, dy) < CLICK) return;
       if (!doing.item || !this.#grab(doing.item, doing.add)) {
-        if (!doing.item) this.#doing = null;
+        this.#doing = null;
         return;
       }
       this.#root.setPointerCapture(e.pointerId);
@@ -107,8 +112,7 @@ export class Pointer {
 
   /** Takes hold of the selection, or of the symbol pressed on. */
   #grab(item: Item, add: boolean): boolean {
-    const movable = item.part === 'step' || item.part === 'transition' || item.part === 'action';
-    if (!movable) return false;
+    if (!held(item)) return false;
     const id = actionOf(item.id)?.step ?? item.id;
     if (!shell.selection.has(item.id) && !shell.selection.has(id)) {
       shell.select(add ? [...shell.selection, id] : [id]);
@@ -125,7 +129,7 @@ export class Pointer {
     if (!doing) return;
     if (doing.what === 'press') this.#click(doing.item, doing.add);
     else if (doing.what === 'move') this.#drop(doing.ids);
-    else if (doing.what === 'mark') this.#mark(doing.add);
+    else if (doing.what === 'mark') this.#mark(doing.item);
     else this.#join(doing.from, e);
   }
 
@@ -159,15 +163,16 @@ export class Pointer {
     editor.moving = null;
   }
 
-  #mark(add: boolean): void {
+  /** What lies in the area marked; without one it was a click. */
+  #mark(item: Item | null): void {
     const box = editor.marquee;
     editor.marquee = null;
     if (!box) {
-      if (!add) shell.select([]);
+      this.#click(item, true);
       return;
     }
     const found = editor.scene?.within(box).map((i) => i.id) ?? [];
-    shell.select(add ? [...shell.selection, ...found] : found);
+    shell.select([...shell.selection, ...found]);
   }
 
   #join(from: string, e: PointerEvent): void {

@@ -15,7 +15,7 @@ export function keepPrintable(): () => void {
     picture.append(title);
     picture.insertAdjacentHTML(
       'beforeend',
-      `<svg class="g7" viewBox="${x - 10} ${y - 10} ${w + 20} ${h + 20}">${drawing.items.map((i) => i.svg).join('')}</svg>`,
+      `<svg class="g7" width="${w + 20}" viewBox="${x - 10} ${y - 10} ${w + 20} ${h + 20}">${drawing.items.map((i) => i.svg).join('')}</svg>`,
     );
     document.body.append(picture);
   };
