@@ -27,7 +27,7 @@ const QUIET: u32 = 5;
 /// Most scans of a look.
 const SCANS: u32 = 20_000;
 /// Largest answer, in bytes.
-const LARGEST: usize = 32 << 20;
+const LARGEST: usize = 16 << 20;
 
 /// A run, its clock and its watchers.
 pub(super) struct Desk {
@@ -210,10 +210,9 @@ impl Desk {
             "run_swap" => self.head(by, told),
             "run_stop" => self.started = false,
             "run_breaks" => {
-                self.notice(
-                    Some(by),
-                    &format!(r#"{{"breaks":{{"run":{},"what":{told}}}}}"#, json!(*self.run)),
-                );
+                let Ok(mut told) = serde_json::from_str::<serde_json::Map<_, _>>(told.get()) else { return };
+                told.insert("run".to_owned(), json!(*self.run));
+                self.notice(Some(by), &json!({ "breaks": told }).to_string());
             }
             _ => {
                 if let Ok(peek) = serde_json::from_str::<Peek>(told.get()) {

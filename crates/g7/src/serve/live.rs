@@ -66,7 +66,8 @@ async fn attend(mut socket: WebSocket, shared: Shared, seat: OwnedSemaphorePermi
     let mut heard = Instant::now();
     loop {
         let out = tokio::select! {
-            said = socket.recv() => match said {
+            // Who does not take the answers asks in vain.
+            said = socket.recv(), if !outbox.owes() => match said {
                 Some(Ok(Message::Text(text))) => {
                     heard = Instant::now();
                     take(&shared, &outbox, &text).await;

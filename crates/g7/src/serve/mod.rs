@@ -266,7 +266,10 @@ pub(crate) fn serve(args: &Serve) -> Result<Verdict, Failure> {
         let address = address(bound, &token);
         talk!("G7 serves {}{}", shared.title, if args.read_only { ", read-only" } else { "" });
         if !bound.ip().is_loopback() {
-            talk!("anyone in the network who has this address reads and writes these charts");
+            talk!("whoever in the network has this address can use these charts; it is not encrypted");
+        }
+        if bound.ip().is_unspecified() {
+            talk!("others put the address of this machine in place of 127.0.0.1");
         }
         print(&address)?;
         talk!("Ctrl-C ends it");

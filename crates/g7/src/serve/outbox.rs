@@ -94,6 +94,11 @@ impl Outbox {
         self.ring.notify_one();
     }
 
+    /// Whether something waits that cannot be thrown away: no more is to be asked for then.
+    pub(super) fn owes(&self) -> bool {
+        self.lock().queue.iter().any(|l| l.run.is_none())
+    }
+
     /// Waits for what is next.
     pub(super) async fn next(&self) -> Next {
         loop {
@@ -160,11 +165,13 @@ mod tests {
     fn a_reader_left_behind_keeps_its_answers_and_gets_one_full_frame() {
         let outbox = Outbox::default();
         outbox.put("answer".into());
+        assert!(outbox.owes());
         for _ in 0..10_000 {
             outbox.frame(&run(), "frame".into());
         }
         assert_eq!(outbox.lock().queue.len(), 1, "the frames are thrown away");
         assert_eq!(outbox.take(), Some(Next::Text("answer".into())));
+        assert!(!outbox.owes());
         assert_eq!(outbox.take(), Some(Next::Behind(run())));
         assert_eq!(outbox.take(), None, "asked for once");
         outbox.full(&run(), "all".into());

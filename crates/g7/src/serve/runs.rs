@@ -97,8 +97,9 @@ impl Runs {
         message: &str,
         text: Option<String>,
     ) -> Result<(), String> {
-        if run.is_empty() || run.len() > 64 || run.chars().any(char::is_control) {
-            return Err("a run needs a name of at most 64 letters".to_owned());
+        // Runs are called like their files.
+        if run.is_empty() || run.len() > 1_024 || run.chars().any(char::is_control) {
+            return Err("a run needs a name of at most 1024 letters".to_owned());
         }
         self.open(run)?;
         self.call(run, by, id, message, text).await

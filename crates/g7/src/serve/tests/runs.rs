@@ -153,7 +153,10 @@ async fn a_run_goes_by_the_wall_clock_and_stops_where_it_is_told() {
     let server = Server::new().await;
     let mut page = server.live().await;
     let started = page.start("a").await;
+    let mut other = server.live().await;
+    other.call(json!({ "do": "watch", "run": "a" })).await;
     page.call(json!({ "do": "run_breaks", "run": "a", "ids": ["G/s/2"] })).await;
+    assert_eq!(other.hear_of("breaks").await, json!({ "run": "a", "ids": ["G/s/2"] }));
     page.call(json!({ "do": "pace", "run": "a", "speed": 1.0 })).await;
     // Nothing changes but the time: it is told, a few times a second.
     let first = page.hear_of("frame").await["scans"].as_u64().expect("scans");
@@ -220,7 +223,7 @@ async fn there_are_so_many_runs_and_no_more() {
     assert!(page.no(third.clone()).await.contains("stop one"));
     page.call(json!({ "do": "run_stop", "run": "a" })).await;
     page.call(third).await;
-    let long = "x".repeat(65);
+    let long = "x".repeat(1_025);
     page.no(json!({ "do": "run_start", "run": long, "file": "chart.g7" })).await;
     page.no(json!({ "do": "run_start", "run": "", "file": "chart.g7" })).await;
     page.no(json!({ "do": "open", "file": "x.g7", "text": CHART })).await;
