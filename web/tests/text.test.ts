@@ -127,6 +127,11 @@ test('a problem is marked at its place, and its fix mends it as one edit', async
   await mark.waitFor();
   assert.equal(await mark.innerText(), 'missing');
   await mark.hover();
+  await page.getByRole('button', { name: 'Explain' }).click();
+  await page.locator('.g7-hover', { hasText: 'name' }).waitFor();
+  await page.keyboard.press('Escape');
+  await page.mouse.move(5, 300);
+  await mark.hover();
   await page.getByRole('button', { name: /as an input/ }).first().click();
   await mark.waitFor({ state: 'detached' });
   assert.match(await text(page), /input missing : BOOL/);
@@ -185,6 +190,41 @@ test('line ends of other systems stay where they are', async () => {
   await page.keyboard.type(' and M');
   await until(() => page.locator('.sheet').innerHTML(), (html) => html.includes('M'), 'drawn');
   assert.equal(await saved(page), LOOP.replace('when a', 'when a and M').replaceAll('\n', '\r\n'));
+  assert.deepEqual(page.errors, []);
+  await page.context().close();
+});
+
+test('typing goes on while gestures are under way, and all of it is undone to the first byte', async () => {
+  const page = await beside('loop.g7');
+  const step = await page.locator('.sheet [data-id="G1/s/1"]').boundingBox();
+  assert.ok(step);
+  for (let round = 0; round < 4; round++) {
+    await behind(page, 'when a');
+    await page.keyboard.type(' and M and a and M');
+    await page.keyboard.press('Escape');
+    await page.mouse.click(step.x + 8, step.y + 8);
+    await page.keyboard.press('i');
+    await page.locator('.cm-content').click({ position: { x: 200, y: 5 } });
+    await page.keyboard.press('Control+End');
+    await page.keyboard.type('// note\n', { delay: 0 });
+  }
+  await page.waitForTimeout(800);
+  const typed = await text(page);
+  assert.equal(await saved(page), typed);
+  assert.equal(typed.match(/note/g)?.length, 4);
+  const undo = page.getByRole('button', { name: 'Undo', exact: true });
+  for (let n = 0; n < 80 && (await undo.isEnabled()); n++) {
+    await undo.click();
+    await page.waitForTimeout(60);
+  }
+  assert.equal(await text(page), LOOP);
+  assert.equal(await saved(page), LOOP);
+  const redo = page.getByRole('button', { name: 'Redo', exact: true });
+  for (let n = 0; n < 80 && (await redo.isEnabled()); n++) {
+    await redo.click();
+    await page.waitForTimeout(60);
+  }
+  assert.equal(await text(page), typed);
   assert.deepEqual(page.errors, []);
   await page.context().close();
 });

@@ -9,9 +9,7 @@ export interface Thumb {
   about: string;
   svg: string;
   area: Box;
-  charts: number;
   steps: number;
-  transitions: number;
   tests: number;
   plant: boolean;
 }
@@ -45,9 +43,7 @@ export async function picture(path: string, text: string): Promise<Thumb> {
       about: about(text),
       svg: drawing?.items.map((i) => i.svg).join('') ?? '',
       area: drawing?.area ?? [0, 0, 1, 1],
-      charts: charts.length,
       steps: charts.reduce((n, c) => n + c.steps, 0),
-      transitions: charts.reduce((n, c) => n + c.transitions, 0),
       tests: tests.length,
       plant: plants.length > 0,
     };
@@ -66,7 +62,7 @@ function about(text: string): string {
   return lines.join(' ');
 }
 
-const LEAST = 300;
+const LEAST = 400;
 const MOST = 560;
 
 /** What of a drawing is shown: its beginning, at a size that can be read. */

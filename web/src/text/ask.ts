@@ -2,12 +2,14 @@
 import type { Completion, CompletionContext, CompletionResult } from '@codemirror/autocomplete';
 import type { Action, Diagnostic } from '@codemirror/lint';
 import type { EditorState } from '@codemirror/state';
-import { hoverTooltip, type EditorView } from '@codemirror/view';
+import { hoverTooltip } from '@codemirror/view';
 import type { OpenFile } from '../lib/files.svelte';
 import { t } from '../lib/i18n';
 import { page } from '../lib/page';
 import type { Completions, Fix, Hover, Problem, Symbols } from '../lib/protocol';
+import { shell } from '../lib/shell.svelte';
 import { markdown } from './markdown';
+import { tell } from './window';
 import { asUnit } from './sync';
 
 const KINDS: Record<string, string> = {
@@ -67,6 +69,19 @@ function mend(fix: Fix): Action {
   };
 }
 
+/** What a problem of this kind is about, at its place. */
+function why(code: string): Action {
+  return {
+    name: t('text.why'),
+    apply: (view, from) => {
+      void shell.try(async () => {
+        const said = await page.call<{ markdown: string }>({ do: 'explain', code });
+        tell(view, from, markdown(said.markdown));
+      });
+    },
+  };
+}
+
 export function diagnostics(problems: readonly Problem[], length: number): Diagnostic[] {
   return problems.map((p) => ({
     from: Math.min(p.from, length),
@@ -74,7 +89,7 @@ export function diagnostics(problems: readonly Problem[], length: number): Diagn
     severity: p.severity,
     source: p.code,
     message: p.help ? `${p.what}\n${p.help}` : p.what,
-    actions: p.fixes.map(mend),
+    actions: [...p.fixes.map(mend), why(p.code)],
   }));
 }
 
@@ -108,11 +123,4 @@ export async function named(file: OpenFile, state: EditorState, at: number): Pro
     word: state.doc.sliceString(declared[0], declared[1]),
     ...(step ? { id: step.id } : chart ? { id: chart.name } : variable ? { name: variable.chart ? `${variable.chart}.${variable.name}` : variable.name } : {}),
   };
-}
-
-/** A sentence for those who do not see the marks. */
-export function told(view: EditorView, look: readonly Problem[]): string {
-  const line = view.state.doc.lineAt(view.state.selection.main.head);
-  const here = look.find((p) => p.from <= line.to && p.to >= line.from);
-  return here ? `${t(here.severity === 'error' ? 'app.error' : 'app.warning')}: ${here.what}` : '';
 }

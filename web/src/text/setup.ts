@@ -15,8 +15,9 @@ import { highlight } from './highlight';
 import { marks } from './marks';
 import { phrases } from './phrases';
 import { writeSigns } from './signs';
-import { definition, references, rename, smallWindow } from './small';
+import { definition, references, rename } from './small';
 import { theme } from './theme';
+import { smallWindow } from './window';
 
 const language = {
   commentTokens: { line: '//', block: { open: '/*', close: '*/' } },

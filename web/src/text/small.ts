@@ -1,40 +1,10 @@
 // Small windows at a name: its new name, and the places where it stands.
-import { StateEffect, StateField } from '@codemirror/state';
-import { showTooltip, type Command, type EditorView, type Tooltip } from '@codemirror/view';
+import type { Command, EditorView } from '@codemirror/view';
 import type { OpenFile } from '../lib/files.svelte';
 import { t } from '../lib/i18n';
 import { shell } from '../lib/shell.svelte';
 import { named, type Named } from './ask';
-
-const open = StateEffect.define<Tooltip | null>();
-
-export const smallWindow = StateField.define<Tooltip | null>({
-  create: () => null,
-  update(tooltip, transaction) {
-    for (const effect of transaction.effects) if (effect.is(open)) return effect.value;
-    return transaction.docChanged || transaction.selection ? null : tooltip;
-  },
-  provide: (field) => showTooltip.from(field),
-});
-
-function shut(view: EditorView): void {
-  view.dispatch({ effects: open.of(null) });
-  view.focus();
-}
-
-function leaving(view: EditorView, dom: HTMLElement): void {
-  dom.addEventListener('focusout', (e) => {
-    if (dom.contains(e.relatedTarget as Node | null)) return;
-    // It is also left when it is taken away, in the midst of an update.
-    setTimeout(() => dom.isConnected && view.dispatch({ effects: open.of(null) }));
-  });
-  dom.addEventListener('keydown', (e) => {
-    if (e.key !== 'Escape') return;
-    e.preventDefault();
-    e.stopPropagation();
-    shut(view);
-  });
-}
+import { leaving, open, shut } from './window';
 
 /** Does something with the name at the cursor. */
 function atName(file: OpenFile, work: (view: EditorView, found: Named) => void): Command {

@@ -15,7 +15,7 @@ export const start = {
   'start.files': ['Files', 'Fichiers', 'Ficheiros'],
   'start.filter': ['Filter', 'Filtrer', 'Filtrar'],
   'start.unreadable': ['This file cannot be read.', 'Ce fichier est illisible.', 'Este ficheiro não pode ser lido.'],
-  'start.facts': ['{steps} steps, {transitions} transitions', '{steps} étapes, {transitions} transitions', '{steps} etapas, {transitions} transições'],
+  'start.facts': ['{steps} steps', '{steps} étapes', '{steps} etapas'],
   'start.factTests': ['{n} tests', '{n} essais', '{n} testes'],
   'start.factPlant': ['plant', 'partie opérative', 'processo'],
   'start.drop': ['Drop a .g7 file, or a JGrafchart .xml', 'Déposez un fichier .g7, ou un .xml de JGrafchart', 'Largue um ficheiro .g7, ou um .xml do JGrafchart'],

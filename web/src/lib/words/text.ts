@@ -10,6 +10,7 @@ export const text = {
   'text.tests': ['Tests', 'Essais', 'Testes'],
   'text.noName': ['There is no name of this file at the cursor.', "Pas de nom de ce fichier sous le curseur.", 'Não há nenhum nome deste ficheiro no cursor.'],
   'text.noRename': ['{name} is not declared in this file: it keeps its name.', "{name} n'est pas déclaré dans ce fichier : il garde son nom.", '{name} não é declarado neste ficheiro: mantém o nome.'],
+  'text.why': ['Explain', 'Expliquer', 'Explicar'],
   'text.rename': ['Rename ({n})', 'Renommer ({n})', 'Mudar o nome ({n})'],
   'text.renameTo': ['New name of {name}, in {n} places', 'Nouveau nom de {name}, à {n} endroits', 'Novo nome de {name}, em {n} sítios'],
   'text.places': ['{name}: {n} places', '{name} : {n} endroits', '{name}: {n} sítios'],
