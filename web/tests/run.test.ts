@@ -36,6 +36,17 @@ chart G1 {
 }
 `;
 
+const FAULT = `input a : BOOL
+var n, q : INT
+
+chart G1 {
+  initial step 0
+  step 1 { P1 q := 10 / n }
+  0 -> 1 when a
+  1 -> 0 when not a
+}
+`;
+
 let site: Site;
 let b: Awaited<ReturnType<typeof browser>>;
 
@@ -43,6 +54,7 @@ before(async () => {
   site = await playground({
     'lamp.g7': LAMP,
     'fleeting.g7': FLEETING,
+    'fault.g7': FAULT,
     'tanks.g7': example('two-tanks/chart.g7'),
     'two-tanks.svg': example('two-tanks/two-tanks.svg'),
     'bead-sorter/exercise-1.g7': example('bead-sorter/exercise-1.g7'),
@@ -226,7 +238,8 @@ test('a changed chart is taken over; what would be lost is asked about', async (
   await p.getByText('the situation is kept').waitFor();
   await p.getByRole('tab', { name: 'Operate' }).click();
   assert.equal(await active(p), '1');
-  await p.locator('[data-id="G1/s/1"]').first().click({ force: true });
+  await p.locator('.steps button', { hasText: '1' }).click();
+  await p.locator('.sheet').focus();
   await p.keyboard.press('Delete');
   const ask = p.getByRole('dialog', { name: 'Change of the running chart' });
   await ask.waitFor();
@@ -234,6 +247,20 @@ test('a changed chart is taken over; what would be lost is asked about', async (
   await until(async () => (await p.locator('dialog[open]').count()) === 0, 'answered');
   await p.getByRole('tab', { name: 'Operate' }).click();
   assert.ok(!(await active(p)).split(' ').includes('1'), 'step 1 is gone');
+  await end(p);
+});
+
+test('a fault halts the run, tells its place, and a new start goes on', async () => {
+  const p = await open(b, site, 'fault.g7');
+  await oneScan(p);
+  await p.getByRole('switch', { name: 'a', exact: true }).click();
+  await oneScan(p);
+  await p.getByRole('button', { name: /^Halted: division by zero/ }).click();
+  assert.equal(await p.getByRole('tab', { name: 'Operate' }).count(), 1);
+  await p.getByRole('tab', { name: 'Operate' }).click();
+  await p.getByRole('button', { name: 'Run', exact: true }).click();
+  await until(async () => (await p.getByRole('button', { name: /^Halted/ }).count()) === 0, 'begun anew');
+  await until(async () => (await active(p)) === '0', 'step 0 is active again');
   await end(p);
 });
 
