@@ -47,6 +47,8 @@ export function hover(file: OpenFile) {
   return hoverTooltip(async (view, at) => {
     const { doc } = view.state;
     await file.settled();
+    // A problem speaks for itself.
+    if (file.look.problems.some((p) => p.from <= at && at <= p.to)) return null;
     const found = await page.call<Hover | null>({ do: 'hover', file: file.name, at }).catch(() => null);
     if (!found || view.state.doc !== doc) return null;
     return {
@@ -64,7 +66,7 @@ export function hover(file: OpenFile) {
 
 function mend(fix: Fix): Action {
   return {
-    name: fix.title,
+    name: fix.title.replaceAll('`', ''),
     apply: (view) => view.dispatch({ changes: fix.splices, annotations: asUnit.of(true), userEvent: 'input.fix' }),
   };
 }
@@ -88,7 +90,8 @@ export function diagnostics(problems: readonly Problem[], length: number): Diagn
     to: Math.min(Math.max(p.to, p.from), length),
     severity: p.severity,
     source: p.code,
-    message: p.help ? `${p.what}\n${p.help}` : p.what,
+    message: p.what,
+    renderMessage: () => markdown(p.help ? `${p.what}\n\n${p.help}` : p.what),
     actions: [...p.fixes.map(mend), why(p.code)],
   }));
 }
