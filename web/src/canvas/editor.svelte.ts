@@ -76,6 +76,7 @@ class Editor {
   async history(way: 'undo' | 'redo'): Promise<void> {
     const { file, chart } = this;
     if (!file || chart === null) return;
+    await file.settled();
     if (way === 'undo' ? !file.look.can_undo : !file.look.can_redo) return;
     const edited = await shell.try(() => (way === 'undo' ? file.undo() : file.redo()));
     if (edited) await this.took(file, chart, edited);
