@@ -6,7 +6,7 @@ import { createServer } from 'node:http';
 import type { AddressInfo } from 'node:net';
 import { tmpdir } from 'node:os';
 import { extname, join, normalize, resolve } from 'node:path';
-import { chromium, type Browser, type Page } from 'playwright-core';
+import { chromium, type Browser, type BrowserContext, type Page } from 'playwright-core';
 
 const HERE = new URL('..', import.meta.url).pathname;
 /** The built page; another one for trying things out. */
@@ -90,8 +90,15 @@ export async function browser(): Promise<Browser & { done(): Promise<void> }> {
 }
 
 /** Opens a file in a fresh page; errors of the page are errors of the test. */
-export async function open(b: Browser, site: Site, file?: string, size = { width: 1280, height: 720 }): Promise<Page & { errors: string[] }> {
+export async function open(
+  b: Browser,
+  site: Site,
+  file?: string,
+  size = { width: 1280, height: 720 },
+  before?: (context: BrowserContext) => Promise<unknown>,
+): Promise<Page & { errors: string[] }> {
   const context = await b.newContext({ viewport: size, locale: 'en-GB' });
+  await before?.(context);
   const page = await context.newPage();
   const errors: string[] = [];
   page.on('pageerror', (e) => errors.push(e.message));

@@ -1,0 +1,160 @@
+// `make pictures`: every example at work, as pictures for the book and the README.
+// Time is virtual: each message of the page moves a run on by the same step, up to
+// the instant that is wanted, so that the pictures show the same situation each time.
+import assert from 'node:assert/strict';
+import { mkdirSync, readdirSync, readFileSync, statSync } from 'node:fs';
+import { join, relative } from 'node:path';
+import type { Browser, Page } from 'playwright-core';
+import { browser, open, playground, type Site } from './lib';
+
+const ROOT = new URL('../..', import.meta.url).pathname;
+const BOOK = join(ROOT, 'docs/book/src/examples/img');
+const README = join(ROOT, 'docs/img/editor.jpg');
+const STEP_MS = 20;
+
+/** What is done before the picture: an input turned, a button pushed, or time passed. */
+type Act = number | { turn: string } | { push: string } | { write: [string, string] };
+interface Scene {
+  acts: Act[];
+  /** The chart to show, where it is not the first. */
+  chart?: string;
+}
+
+const push = (name: string): Act => ({ push: name });
+const turn = (name: string): Act => ({ turn: name });
+
+const SCENES: Record<string, Scene> = {
+  'actions/continuous.g7': { acts: [push('go'), turn('c'), 2000] },
+  'actions/counters-timers.g7': { acts: [push('go'), push('piece'), push('piece'), turn('c'), 1500] },
+  'actions/pl7.g7': { acts: [{ write: ['level', '64'] }, push('push'), 1200] },
+  'actions/qualifiers.g7': { acts: [push('go'), 2500] },
+  'actions/stored.g7': { acts: [push('go'), push('c'), 300, push('c'), 700] },
+  'bead-sorter/chart.g7': { acts: [4000] },
+  'bead-sorter/exercise-1.g7': { acts: [6000] },
+  'bead-sorter/exercise-2.g7': { acts: [12000] },
+  'bead-sorter/exercise-3.g7': { acts: [16000] },
+  'bead-sorter/exercise-4.g7': { acts: [8000] },
+  'bead-sorter/template.g7': { acts: [2000] },
+  'bottle-conveyor/chart.g7': { acts: [push('start'), 9000] },
+  'bottle-conveyor/counter.g7': { acts: [push('start'), 14000] },
+  'modelling/conflict.g7': { acts: [push('p1'), push('p2'), turn('t1'), turn('t2'), 200] },
+  'modelling/conflict-priority.g7': { acts: [push('p1'), push('p2'), 200] },
+  'modelling/machine.g7': { acts: [push('m'), 6000] },
+  'modelling/or-into-and.g7': { acts: [push('p1'), 500] },
+  'structure/enclosing.g7': { acts: [turn('on'), 7000] },
+  'structure/gemma.g7': { acts: [turn('auto'), 2000, push('start'), 800], chart: 'Modes' },
+  'structure/linked-charts.g7': { acts: [turn('gate'), turn('start'), 2500] },
+  'structure/macro-step.g7': { acts: [push('start'), 3000] },
+  'structure/task.g7': { acts: [push('start'), 2400] },
+  'transport-workcell/alternating.g7': { acts: [9000] },
+  'transport-workcell/basic.g7': { acts: [8000] },
+  'transport-workcell/improved.g7': { acts: [11000] },
+  'two-tanks/chart.g7': { acts: [push('m'), 6000] },
+};
+
+/** The examples as the playground has them. */
+function examples(): Record<string, string> {
+  const folder = join(ROOT, 'examples');
+  const found: Record<string, string> = {};
+  for (const entry of readdirSync(folder, { recursive: true, withFileTypes: true })) {
+    if (!entry.isFile() || !/\.(g7|svg)$/.test(entry.name)) continue;
+    const path = join(entry.parentPath, entry.name);
+    found[relative(folder, path)] = readFileSync(path, 'utf8');
+  }
+  return found;
+}
+
+/** Takes the wall clock out of the page's runs. */
+function still(step: number): void {
+  const left = { ms: 0 };
+  Object.assign(window, { left });
+  const send = Worker.prototype.postMessage as (this: Worker, message: unknown) => void;
+  Worker.prototype.postMessage = function (this: Worker, message: unknown) {
+    if (typeof message !== 'string' || !message.includes('"run_advance"')) return send.call(this, message);
+    const asked = JSON.parse(message) as { do: string; ms: number };
+    asked.ms = Math.min(step, left.ms);
+    left.ms -= asked.ms;
+    send.call(this, JSON.stringify(asked));
+  };
+}
+
+const oneScan = (page: Page) => page.getByRole('button', { name: 'One scan', exact: true }).click();
+const clock = async (page: Page) => parseFloat(await page.locator('.clock').innerText());
+
+async function pass(page: Page, ms: number): Promise<void> {
+  const from = await clock(page);
+  await page.evaluate((ms) => ((window as unknown as { left: { ms: number } }).left.ms = ms), ms);
+  await page.getByRole('button', { name: 'Run', exact: true }).click();
+  await page.waitForFunction(() => (window as unknown as { left: { ms: number } }).left.ms <= 0, null, { timeout: 60_000 });
+  await page.getByRole('button', { name: 'Pause', exact: true }).click();
+  await page.waitForTimeout(150);
+  assert.ok(Math.abs((await clock(page)) - from - ms / 1000) < 0.011, `${await clock(page)} s after ${from} s and ${ms} ms`);
+}
+
+async function act(page: Page, what: Act): Promise<void> {
+  if (typeof what === 'number') return pass(page, what);
+  if ('write' in what) {
+    const field = page.getByRole('textbox', { name: `Value of ${what.write[0]}`, exact: true });
+    await field.fill(what.write[1]);
+    await field.press('Enter');
+    return oneScan(page);
+  }
+  const name = 'turn' in what ? what.turn : what.push;
+  const signal = page.getByRole('region', { name: 'Signals' }).getByRole('switch', { name, exact: true });
+  await signal.click();
+  await oneScan(page);
+  if ('turn' in what) return;
+  await signal.click();
+  await oneScan(page);
+}
+
+async function shown(b: Browser, site: Site, file: string, scene: Scene, size: { width: number; height: number }): Promise<Page> {
+  const page = await open(b, site, file, size, (context) => context.addInitScript(still, STEP_MS));
+  if (scene.chart) await page.getByRole('button', { name: new RegExp(`^${scene.chart}\\b`) }).first().click();
+  await oneScan(page);
+  await page.locator('.clock').waitFor();
+  for (const what of scene.acts) await act(page, what);
+  await page.evaluate(() => (document.activeElement as HTMLElement | null)?.blur());
+  await page.mouse.move(1, 1);
+  await page.waitForTimeout(300);
+  assert.deepEqual(page.errors, [], file);
+  return page;
+}
+
+async function take(page: Page, path: string, most: number): Promise<void> {
+  for (const quality of [85, 80, 72, 64, 56]) {
+    await page.screenshot({ path, type: 'jpeg', quality, animations: 'disabled', caret: 'hide' });
+    if (statSync(path).size <= most) return;
+  }
+  assert.fail(`${path} is larger than ${most} bytes`);
+}
+
+const wanted = process.argv.slice(2);
+const files = examples();
+assert.deepEqual(Object.keys(files).filter((f) => f.endsWith('.g7')).sort(), Object.keys(SCENES).sort(), 'an example without a scene');
+mkdirSync(BOOK, { recursive: true });
+const site = await playground(files);
+const b = await browser();
+try {
+  for (const [file, scene] of Object.entries(SCENES)) {
+    if (wanted.length > 0 && !wanted.some((w) => file.includes(w))) continue;
+    const page = await shown(b, site, file, scene, { width: 1280, height: 800 });
+    await take(page, join(BOOK, `${file.replace('/', '-').replace(/\.g7$/, '')}.jpg`), 90_000);
+    await page.context().close();
+    process.stdout.write(`${file}\n`);
+  }
+  if (wanted.length === 0 || wanted.includes('README')) {
+    const page = await shown(b, site, 'bead-sorter/chart.g7', { acts: [] }, { width: 1440, height: 900 });
+    await page.getByRole('button', { name: 'Bottom' }).click();
+    await page.getByRole('tab', { name: 'Chronogram' }).click();
+    await act(page, 4000);
+    await page.getByRole('button', { name: 'Whole run' }).click();
+    await page.waitForTimeout(500);
+    await take(page, README, 250_000);
+    await page.context().close();
+    process.stdout.write('README\n');
+  }
+} finally {
+  await b.done();
+  await site.stop();
+}
