@@ -28,13 +28,27 @@ macrochart Inside {
 }
 `;
 
+const ENCLOSING = `input a : BOOL
+chart G1 {
+  initial step 0
+  enclosing step 1 {
+    enclose G2
+    enclose G3
+  }
+  0 -> 1 when a
+  1 -> 0 when not a
+}
+chart G2 { step E * }
+chart G3 { step E * }
+`;
+
 const WRONG = SMALL.replace('initial step 0', 'initial step 0\n  step 1\n  0 -> 1 when missing');
 
 let b: Awaited<ReturnType<typeof browser>>;
 let site: Site;
 
 before(async () => {
-  site = await playground({ 'small.g7': SMALL, 'loop.g7': LOOP, 'wrong.g7': WRONG });
+  site = await playground({ 'small.g7': SMALL, 'loop.g7': LOOP, 'wrong.g7': WRONG, 'enclosing.g7': ENCLOSING });
   b = await browser();
 });
 
@@ -164,6 +178,17 @@ test('a step is renamed everywhere', async () => {
   await page.context().close();
 });
 
+test('an enclosing step opens the charts it encloses', async () => {
+  const page = await open(b, site, 'enclosing.g7');
+  await click(page, 'G1/a/1/1', 2);
+  await item(page, 'G3/s/E').waitFor({ state: 'attached' });
+  await page.locator('.sheet').focus();
+  await page.keyboard.press('Backspace');
+  await click(page, 'G1/s/1', 2);
+  await item(page, 'G2/s/E').waitFor({ state: 'attached' });
+  await page.context().close();
+});
+
 test('a macro-step opens in its own view, and the way back is told', async () => {
   const page = await open(b, site, 'loop.g7');
   await click(page, 'G1/s/M2', 2);
@@ -238,6 +263,12 @@ test('parts of a chart are copied into another file with new names', async () =>
   await page.waitForTimeout(200);
   await page.keyboard.press('Control+v');
   await page.waitForFunction(() => document.querySelectorAll('.sheet [data-id^="G1/s/"]').length === 4);
+  await page.getByRole('button', { name: 'small.g7' }).click();
+  await item(page, 'G1/s/0').waitFor({ state: 'attached' });
+  await page.locator('.sheet').focus();
+  await page.keyboard.press('Control+v');
+  await item(page, 'G1/s/1').waitFor({ state: 'attached' });
+  assert.match(words(await textOf(page)), /step 1 \{ N M \}/);
   await page.context().close();
 });
 

@@ -120,10 +120,17 @@ class Editor {
 
   /** Shows the chart that a macro-step or an enclosing step opens. */
   open(item: Item): boolean {
-    const to = item.macro ?? item.encloses?.[0];
+    const to = item.macro ?? item.encloses?.[0] ?? this.#enclosed(item);
     if (!to || !this.file?.look.charts.some((c) => c.name === to)) return false;
     shell.show(this.file, to);
     return true;
+  }
+
+  /** The chart that an action of an enclosing step names. */
+  #enclosed(item: Item): string | undefined {
+    const of = actionOf(item.id);
+    const charts = of ? this.scene?.byId.get(of.step)?.encloses : undefined;
+    return charts?.find((chart) => item.source === `enclose ${chart}`);
   }
 
   /** From one end of a broken-off link to the other. */
