@@ -87,7 +87,7 @@ export class LiveLayer {
     };
     for (const id of live.lit) {
       const item = sight(id);
-      if (item) add('lit', rect(item.area, 0));
+      if (item) add('lit', rect(scene.rectangle(item), 0));
     }
     for (const id of live.on) {
       const square = sight(id)?.square;
@@ -112,7 +112,10 @@ export class LiveLayer {
       const item = sight(id);
       // Below a receptivity, where its neighbour is not; beside anything else.
       if (item?.text) this.#values.put(item.text[0], item.text[1] + item.text[3] + 12, text);
-      else if (item) this.#values.put(item.area[0] + item.area[2] + 6, item.area[1] + item.area[3] / 2 + 4, text);
+      else if (item) {
+        const [bx, by, w, h] = scene.rectangle(item);
+        this.#values.put(bx + w + 6, by + h / 2 + 4, text);
+      }
     }
     for (const id of live.forced) {
       const area = sight(id)?.area;

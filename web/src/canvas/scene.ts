@@ -17,6 +17,7 @@ export class Scene {
   /** Actions by step. */
   readonly actions = new Map<string, Item[]>();
   #lines = new Map<string, Point[]>();
+  #rectangles = new Map<string, Box>();
 
   constructor(drawing: Drawing) {
     this.drawing = drawing;
@@ -44,6 +45,16 @@ export class Scene {
   /** The box of a symbol without its texts. */
   core(item: Item): Box {
     return item.square ?? item.bar ?? item.area;
+  }
+
+  /** The rectangle of an action without its line to the step. */
+  rectangle(action: Item): Box {
+    const known = this.#rectangles.get(action.id);
+    if (known) return known;
+    const found = /class="g7-action" x="([-\d.]+)" y="([-\d.]+)" width="([\d.]+)" height="([\d.]+)"/.exec(action.svg);
+    const box: Box = found ? [Number(found[1]), Number(found[2]), Number(found[3]), Number(found[4])] : action.area;
+    this.#rectangles.set(action.id, box);
+    return box;
   }
 
   /** What lies at a place; `reach` is how far beside it still counts. */
