@@ -95,7 +95,8 @@ export class LiveLayer {
       add('on', rect(square, 0));
       add('token', circle(square[0] + square[2] / 2, square[1] + square[3] - 11, 5));
       const time = live.times.get(id);
-      if (time) this.#times.put(square[0] - 7, square[1] + square[3] / 2 + 4, time);
+      // Above the square, before the link: lines beside it go up and down there.
+      if (time) this.#times.put(square[0] + square[2] / 2 - 5, square[1] - 4, time);
     }
     for (const [id, how] of live.enabled) {
       const bar = how > 0 ? sight(id)?.bar : undefined;
