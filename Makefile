@@ -9,7 +9,7 @@ debian = command -v $(1) >/dev/null || \
 	{ $(SUDO) apt-get update -qq && $(SUDO) apt-get install -qq --no-install-recommends $(2); }
 PAGE := $(shell find web/src web/index.html web/public web/*.ts web/*.js -type f 2>/dev/null)
 
-.PHONY: run view install test lint deny wasm web site page-test page-bench bench book fuzz help FORCE
+.PHONY: run view install test lint deny wasm web site pictures page-test page-bench bench book fuzz help FORCE
 
 ## build G7 and open the editor in the browser on the examples (FOLDER=… for another)
 run: web
@@ -66,6 +66,11 @@ site: web
 	rm -rf site
 	cp -r web/dist site
 	node web/examples.mjs examples site/examples.json
+
+## the pictures of the examples, for the book and the README
+pictures: web
+	@$(call debian,chromium,chromium)
+	cd web && npx tsx tests/pictures.ts
 
 ## the stories of the page in a real browser
 page-test: web
