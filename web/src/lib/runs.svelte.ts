@@ -82,10 +82,11 @@ class Runs {
   /** A message to a run, and to the one that it is compared with; the frames that come back are taken. */
   async send(run: Run, message: Message): Promise<void> {
     const other = this.other && this.other.file === run.file && !run.shared ? this.other : null;
+    const before = run.now;
     const both = [this.#send(run, message)];
     if (other) both.push(this.#send(other, message));
     await Promise.all(both);
-    if (other) this.difference ??= await differ(run, other);
+    if (other) this.difference ??= await differ(run, other, before);
     if (other && this.difference && run.playing && !this.difference.seen) {
       this.difference = { ...this.difference, seen: true };
       run.playing = false;
