@@ -133,6 +133,11 @@ test('a file from elsewhere is dropped in', async () => {
   });
   await page.dispatchEvent('main', 'drop', { dataTransfer: data });
   await page.waitForSelector('.sheet [data-id="Mine/s/7"]', { state: 'attached' });
+  await page.getByRole('button', { name: 'Gallery' }).click();
+  const [chooser] = await Promise.all([page.waitForEvent('filechooser'), page.getByRole('button', { name: 'Open a file' }).click()]);
+  await chooser.setFiles({ name: 'other.xml', mimeType: 'text/xml', buffer: Buffer.from('<?xml version="1.0"?><project/>') });
+  await page.getByText('other.xml is neither').waitFor();
+  assert.equal(await page.getByRole('tab', { name: 'other.xml' }).count(), 0);
   await page.context().close();
 });
 

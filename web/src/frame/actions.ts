@@ -55,9 +55,17 @@ export async function openLocal(input: HTMLInputElement): Promise<void> {
   const chosen = input.files?.[0];
   input.value = '';
   if (!chosen) return;
-  const text = await chosen.text();
-  shell.gallery = false;
-  await shell.try(() => files.open(chosen.name, text));
+  await openText(chosen.name, await chosen.text());
+}
+
+/** Opens a text from elsewhere: G7's own, or a chart of JGrafchart. */
+export async function openText(name: string, text: string): Promise<void> {
+  const file = await shell.try(() => files.open(name, text));
+  if (!file) return;
+  if (/^\s*</.test(text) && file.text === text) {
+    shell.say(t('start.notOurs', { name }), 'error');
+    await shell.try(() => files.close(file));
+  } else shell.gallery = false;
 }
 
 /** The state on the disk becomes ours, as one edit that can be undone. */
