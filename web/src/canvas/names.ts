@@ -1,5 +1,5 @@
 // What symbols are called for those who do not see them.
-import { actionOf } from '../lib/ids';
+import { actionOf, nameIn } from '../lib/ids';
 import { t } from '../lib/i18n';
 import type { Item } from '../lib/protocol';
 
@@ -23,9 +23,9 @@ export function nameOf(item: Item): string {
           : t('canvas.transitionOf', { text: item.source ?? '' }),
       );
     case 'action':
-      return t('canvas.action', { name: actionOf(item.id)?.step.split('/')[2] ?? '', text: item.source ?? '' });
+      return t('canvas.action', { name: nameIn(actionOf(item.id)?.step ?? ''), text: item.source ?? '' });
     case 'connector':
-      return t('canvas.connector', { name: item.name ?? item.ends?.[1]?.split('/')[2] ?? '' });
+      return t('canvas.connector', { name: item.name ?? nameIn(item.ends?.[1] ?? '') });
     case 'link':
       return t('canvas.link');
     case 'text':

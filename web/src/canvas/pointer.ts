@@ -86,7 +86,7 @@ export class Pointer {
     const [dx, dy] = [x - this.#at.x, y - this.#at.y];
     if (doing.what === 'press') {
       if (Math.hypot(dx, dy) < CLICK) return;
-      if (!doing.item || !this.#grab(doing.item, doing.add)) {
+      if (!doing.item || !this.#grab(doing.item, doing.add, e.altKey)) {
         this.#doing = null;
         return;
       }
@@ -110,8 +110,8 @@ export class Pointer {
     }
   }
 
-  /** Takes hold of the selection, or of the symbol pressed on. */
-  #grab(item: Item, add: boolean): boolean {
+  /** Takes hold of the selection, or of the symbol pressed on; its neighbours come along unless it is to go alone. */
+  #grab(item: Item, add: boolean, alone: boolean): boolean {
     if (!held(item)) return false;
     const id = actionOf(item.id)?.step ?? item.id;
     if (!shell.selection.has(item.id) && !shell.selection.has(id)) {
@@ -119,7 +119,8 @@ export class Pointer {
     }
     const parts = [...shell.selection].map((s) => actionOf(s)?.step ?? s);
     const ids = new Set(parts.filter((s) => ['step', 'transition'].includes(editor.scene?.byId.get(s)?.part ?? '')));
-    this.#doing = { what: 'move', ids: ids.size > 0 ? ids : new Set([id]) };
+    const taken = ids.size > 0 ? ids : new Set([id]);
+    this.#doing = { what: 'move', ids: alone ? taken : (editor.scene?.withNeighbours(taken) ?? taken) };
     return true;
   }
 
@@ -128,7 +129,7 @@ export class Pointer {
     this.#doing = null;
     if (!doing) return;
     if (doing.what === 'press') this.#click(doing.item, doing.add);
-    else if (doing.what === 'move') this.#drop(doing.ids);
+    else if (doing.what === 'move') void this.#drop(doing.ids);
     else if (doing.what === 'mark') this.#mark(doing.item);
     else this.#join(doing.from, e);
   }
@@ -158,7 +159,9 @@ export class Pointer {
   async #drop(ids: Set<string>): Promise<void> {
     const moving = editor.moving;
     if (moving && (moving.dx !== 0 || moving.dy !== 0)) {
-      await editor.apply({ g: 'move', ids: [...ids], dx: moving.dx, dy: moving.dy });
+      // What only came along stays unselected.
+      const selected = [...shell.selection];
+      if (await editor.apply({ g: 'move', ids: [...ids], dx: moving.dx, dy: moving.dy })) shell.select(selected);
     }
     editor.moving = null;
   }

@@ -42,6 +42,21 @@ export class Scene {
     put(this.before, to, from);
   }
 
+  /** The symbols with the transitions that hang on their steps alone: what a drag takes along. */
+  withNeighbours(ids: ReadonlySet<string>): Set<string> {
+    const all = new Set(ids);
+    const y = (id: string) => this.byId.get(id)?.at?.[1] ?? 0;
+    const among = (steps: string[] | undefined) => steps?.every((s) => ids.has(s)) ?? false;
+    for (const link of this.items) {
+      const [from, to] = link.part === 'link' && link.ends ? link.ends : ['', ''];
+      // A link that runs back upward leads to no neighbour.
+      if (y(from) >= y(to)) continue;
+      if (ids.has(from) && this.byId.get(to)?.part === 'transition' && among(this.before.get(to))) all.add(to);
+      if (ids.has(to) && this.byId.get(from)?.part === 'transition' && among(this.after.get(from))) all.add(from);
+    }
+    return all;
+  }
+
   /** The box of a symbol without its texts. */
   core(item: Item): Box {
     return item.square ?? item.bar ?? item.area;

@@ -14,6 +14,11 @@ export function kindOf(id: string): IdKind | undefined {
   return id.split('/')[1] as IdKind | undefined;
 }
 
+/** The name of a step, or the number of a transition, in an id. */
+export function nameIn(id: string): string {
+  return decode(id.split('/')[2] ?? '');
+}
+
 export function stepId(chart: string, step: string): string {
   return `${encode(chart)}/s/${encode(step)}`;
 }

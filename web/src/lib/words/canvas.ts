@@ -105,7 +105,11 @@ export const canvas = {
   'help.everywhere': ['Everywhere', 'Partout', 'Em todo o lado'],
   'help.drawing': ['In the drawing', 'Dans le dessin', 'No desenho'],
   'help.mouse': ['Mouse and fingers', 'Souris et doigts', 'Rato e dedos'],
-  'help.drag': ['Drag: move symbols; on the paper, move the view', 'Glisser : déplacer les symboles ; sur le papier, la vue', 'Arrastar: mover símbolos; no papel, a vista'],
+  'help.drag': [
+    'Drag: move a step with its transitions (Alt: alone); on the paper, move the view',
+    'Glisser : déplacer une étape avec ses transitions (Alt : seule) ; sur le papier, la vue',
+    'Arrastar: mover uma etapa com as suas transições (Alt: sozinha); no papel, a vista',
+  ],
   'help.marquee': ['Shift + drag: select an area', 'Maj + glisser : sélectionner une zone', 'Shift + arrastar: selecionar uma área'],
   'help.wheel': ['Wheel: move; Ctrl + wheel, pinch: zoom', 'Molette : déplacer ; Ctrl + molette, pincer : zoom', 'Roda: mover; Ctrl + roda, beliscar: zoom'],
   'help.double': ['Double-click: edit or open; on the paper, a new step', 'Double-clic : modifier ou ouvrir ; sur le papier, une étape', 'Duplo clique: editar ou abrir; no papel, uma etapa nova'],
