@@ -8,7 +8,7 @@ use serde::Serialize;
 
 use crate::drawing::anchors;
 use crate::file::File;
-use crate::language::names::{Meaning, meaning, word_at};
+use crate::language::names::{meaning, word_at};
 use crate::look::{Look, look};
 use crate::problems::Change;
 
@@ -94,37 +94,20 @@ fn difference(old: &str, new: &str) -> Vec<Splice> {
 /// Every place that names what the word at a place names.
 pub(crate) fn references(file: &File, at: usize) -> Vec<(usize, usize)> {
     let byte = file.positions.byte(file.text(), at);
-    let Some(word) = word_at(file.text(), byte) else { return Vec::new() };
-    let Some(named) = meaning(&file.source.document, &word) else { return Vec::new() };
-    let text = &*named.name.text;
-    let (id, name) = match named.meaning {
-        Meaning::Variable(_, None) => (None, Some(text.to_owned())),
-        Meaning::Variable(_, Some(c)) => (None, Some(format!("{}.{text}", c.name.text))),
-        Meaning::Step(c, _) => (Some(ItemId::step(&*c.name.text, text)), None),
-        Meaning::Chart(c) => (Some(ItemId::chart(&*c.name.text)), None),
-        Meaning::Other(..) => (None, None),
-    };
-    let places = match (&id, &name) {
-        (None, None) => words(file.text(), text),
-        // Who renames finds them all; a name of other letters leaves none unchanged.
-        _ => {
-            let fresh = if text.starts_with('\u{3b1}') { "\u{3b2}\u{3b2}" } else { "\u{3b1}\u{3b1}" };
-            let gesture = Gesture::Rename { id, name, to: fresh.to_owned() };
-            match g7_edit::apply(&file.as_edited(), &gesture) {
-                Ok(edit) => edit.splices.iter().map(|s| whole(file.text(), s.start)).collect(),
-                Err(_) => words(file.text(), text),
-            }
-        }
+    let known = g7_compile::references(&file.source.document);
+    let offset = u32::try_from(byte).unwrap_or(u32::MAX);
+    let places: Vec<(usize, usize)> = match known.at(offset) {
+        Some(named) => known.of(named).into_iter().map(|s| (s.start as usize, s.end as usize)).collect(),
+        // Names without an entry, such as those of functions within themselves, are taken by their letters.
+        None => match word_at(file.text(), byte) {
+            Some(word) if meaning(&file.source.document, &word).is_some() => words(file.text(), word.text),
+            _ => Vec::new(),
+        },
     };
     places
         .into_iter()
         .map(|(a, b)| (file.positions.unit(file.text(), a), file.positions.unit(file.text(), b)))
         .collect()
-}
-
-/// The word that a byte belongs to.
-fn whole(text: &str, byte: usize) -> (usize, usize) {
-    word_at(text, byte).map_or((byte, byte), |w| (w.token.start, w.token.end))
 }
 
 /// Words of a text that read so.
