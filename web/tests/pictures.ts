@@ -18,6 +18,8 @@ interface Scene {
   acts: Act[];
   /** The chart to show, where it is not the first. */
   chart?: string;
+  /** The macro-step whose active step comes into view, where the chart is larger than the picture. */
+  within?: string;
 }
 
 const push = (name: string): Act => ({ push: name });
@@ -30,10 +32,10 @@ const SCENES: Record<string, Scene> = {
   'actions/qualifiers.g7': { acts: [push('go'), 2500] },
   'actions/stored.g7': { acts: [push('go'), push('c'), 300, push('c'), 700] },
   'bead-sorter/chart.g7': { acts: [4000] },
-  'bead-sorter/exercise-1.g7': { acts: [6000], chart: 'SequencingMode' },
-  'bead-sorter/exercise-2.g7': { acts: [15000], chart: 'SequencingMode' },
+  'bead-sorter/exercise-1.g7': { acts: [6000], within: 'Sequencing' },
+  'bead-sorter/exercise-2.g7': { acts: [15000], within: 'Sequencing' },
   'bead-sorter/exercise-3.g7': { acts: [24000] },
-  'bead-sorter/exercise-4.g7': { acts: [6000], chart: 'SequencingMode' },
+  'bead-sorter/exercise-4.g7': { acts: [6000], within: 'Sequencing' },
   'bead-sorter/template.g7': { acts: [2000] },
   'bottle-conveyor/chart.g7': { acts: [push('start'), 9000] },
   'bottle-conveyor/counter.g7': { acts: [push('start'), 11500] },
@@ -114,6 +116,13 @@ async function shown(b: Browser, site: Site, file: string, scene: Scene, size: {
   await oneScan(page);
   await page.locator('.clock').waitFor();
   for (const what of scene.acts) await act(page, what);
+  if (scene.within) {
+    await page.locator(`.steps button.on[title^="${scene.within}."]`).first().evaluate((step: HTMLElement) => step.click());
+    await page.waitForTimeout(800);
+    await page.locator('.sheet').focus();
+    await page.keyboard.press('Escape');
+    await page.getByRole('tab', { name: 'Operate' }).click();
+  }
   await page.evaluate(() => (document.activeElement as HTMLElement | null)?.blur());
   await page.mouse.move(1, 1);
   await page.waitForTimeout(300);
