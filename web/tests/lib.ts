@@ -51,10 +51,17 @@ export async function playground(examples: Record<string, string>): Promise<Site
   };
 }
 
+/** Where the servers of one test file keep copies of unsaved work: not where the user's are. */
+const STATE = mkdtempSync(join(tmpdir(), 'g7-state-'));
+process.once('exit', () => rmSync(STATE, { recursive: true, force: true }));
+
 /** `g7 serve` over a folder; `G7` names the program. */
 export async function serve(folder: string, ...more: string[]): Promise<Site> {
   const program = process.env.G7 ?? join(HERE, '../target/release/g7');
-  const child = spawn(program, ['serve', folder, '--port', '0', '--no-open', ...more], { stdio: ['ignore', 'pipe', 'inherit'] });
+  const child = spawn(program, ['serve', folder, '--port', '0', '--no-open', ...more], {
+    stdio: ['ignore', 'pipe', 'inherit'],
+    env: { ...process.env, XDG_STATE_HOME: STATE },
+  });
   const url = await new Promise<string>((found, failed) => {
     let said = '';
     child.stdout.on('data', (chunk: Buffer) => {
