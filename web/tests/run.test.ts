@@ -226,6 +226,20 @@ test('two profiles on the same inputs: the first difference is told', async () =
   await end(p);
 });
 
+test('a difference of one scan is told, however fast time goes', async () => {
+  const p = await open(b, site, 'fleeting.g7');
+  await oneScan(p);
+  await p.getByRole('button', { name: 'Compare profiles' }).click();
+  await p.getByRole('button', { name: 'Compare with unity' }).click();
+  await p.getByText('no difference so far').first().waitFor();
+  await p.getByRole('switch', { name: 'a', exact: true }).click();
+  await p.getByRole('combobox', { name: 'Speed' }).selectOption('100');
+  await p.getByRole('button', { name: 'Run', exact: true }).click();
+  await p.getByText('first difference at 0.010 s').first().waitFor();
+  await p.getByRole('button', { name: 'Run', exact: true }).waitFor();
+  await end(p);
+});
+
 test('a changed chart is taken over; what would be lost is asked about', async () => {
   const p = await open(b, site, 'lamp.g7');
   await oneScan(p);
