@@ -23,7 +23,9 @@ pub(crate) fn import(args: &Import) -> Result<Verdict, Failure> {
     if source.has_errors() {
         return Ok(Verdict::Found);
     }
-    let text = g7_syntax::print(&source.document, None);
+    let mut document = source.document.clone();
+    g7_draw::make_room(&mut document);
+    let text = g7_syntax::print(&document, None);
     match &args.output {
         Some(path) => {
             files::write(path, text.as_bytes())?;

@@ -42,6 +42,7 @@ impl File {
             }
             // What the importer had to leave out stays said; it has no place in the new text.
             told = std::mem::take(&mut source.problems);
+            g7_draw::make_room(&mut source.document);
             let text = g7_syntax::print(&source.document, None);
             source = Source::new(name, text.into_bytes(), 0);
         }
