@@ -64,10 +64,10 @@ fn is_clear(chart: &Chart, sizes: &Sizes, places: &[PlaceAt]) -> bool {
     let transitions = placed.transitions.iter().zip(&sizes.transitions);
     let mut boxes: Vec<Rect> = steps.chain(transitions).map(|(at, e)| Rect::around(*at, *e)).collect();
     boxes.sort_by_key(|r| r.y);
-    boxes.iter().enumerate().all(|(n, r)| {
-        let below = boxes.iter().skip(n + 1).take_while(|o| o.y < r.y + r.h);
-        below.into_iter().all(|o| !r.overlaps(o))
-    })
+    boxes
+        .iter()
+        .enumerate()
+        .all(|(n, r)| boxes.iter().skip(n + 1).take_while(|o| o.y < r.y + r.h).all(|o| !r.overlaps(o)))
 }
 
 #[cfg(test)]
