@@ -34,8 +34,15 @@ async function axe(page: Page): Promise<string[]> {
 
 /** Presses at the middle of a symbol's own shape. */
 async function press(page: Page, id: string, clickCount = 1): Promise<void> {
-  await page.waitForTimeout(150);
-  const box = await page.locator(`.sheet [data-id="${id}"]`).first().boundingBox();
+  const symbol = page.locator(`.sheet [data-id="${id}"]`).first();
+  let box = await symbol.boundingBox();
+  // The view may still move there.
+  for (let still = 0; still < 3; ) {
+    await page.waitForTimeout(100);
+    const now = await symbol.boundingBox();
+    still = JSON.stringify(now) === JSON.stringify(box) ? still + 1 : 0;
+    box = now;
+  }
   assert.ok(box, id);
   await page.mouse.click(box.x + Math.min(20, box.width / 2), box.y + box.height / 2, { clickCount });
 }
