@@ -2,7 +2,7 @@
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
 import type { Page } from 'playwright-core';
-import { browser, open, playground, type Site } from './lib';
+import { browser, open, playground, textOf, type Site } from './lib';
 
 const SMALL = `input a, b, start : BOOL
 output M : BOOL
@@ -56,14 +56,6 @@ after(async () => {
   await b?.done();
   await site?.stop();
 });
-
-/** The text of the file in view, by way of a download. */
-async function textOf(page: Page): Promise<string> {
-  const [download] = await Promise.all([page.waitForEvent('download'), page.keyboard.press('Control+s')]);
-  const parts: Buffer[] = [];
-  for await (const part of await download.createReadStream()) parts.push(part as Buffer);
-  return Buffer.concat(parts).toString('utf8');
-}
 
 /** Waits until the text is this one. */
 async function becomes(page: Page, wanted: string): Promise<void> {

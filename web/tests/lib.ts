@@ -116,3 +116,11 @@ export async function open(
   if (file) await page.waitForSelector('.sheet [data-id]', { state: 'attached' });
   return Object.assign(page, { errors });
 }
+
+/** The text of the file in view, by way of a download. */
+export async function textOf(page: Page): Promise<string> {
+  const [download] = await Promise.all([page.waitForEvent('download'), page.keyboard.press('Control+s')]);
+  const parts: Buffer[] = [];
+  for await (const part of await download.createReadStream()) parts.push(part as Buffer);
+  return Buffer.concat(parts).toString('utf8');
+}

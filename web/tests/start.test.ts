@@ -5,7 +5,7 @@ import { readFileSync } from 'node:fs';
 import { createRequire } from 'node:module';
 import { after, before, test } from 'node:test';
 import type { Page } from 'playwright-core';
-import { browser, open, playground, type Site } from './lib';
+import { browser, open, playground, textOf, type Site } from './lib';
 
 const AXE = readFileSync(createRequire(import.meta.url).resolve('axe-core/axe.min.js'), 'utf8');
 const example = (path: string) => readFileSync(new URL(`../../examples/${path}`, import.meta.url), 'utf8');
@@ -50,13 +50,6 @@ async function press(page: Page, id: string, clickCount = 1): Promise<void> {
 async function below(page: Page, tab: string): Promise<void> {
   if ((await page.getByRole('tab', { name: tab }).count()) === 0) await page.getByRole('button', { name: 'Bottom' }).click();
   await page.getByRole('tab', { name: tab }).click();
-}
-
-async function saved(page: Page): Promise<string> {
-  const [download] = await Promise.all([page.waitForEvent('download'), page.keyboard.press('Control+s')]);
-  const parts: Buffer[] = [];
-  for await (const part of await download.createReadStream()) parts.push(part as Buffer);
-  return Buffer.concat(parts).toString('utf8');
 }
 
 test('the gallery draws the examples and opens them', async () => {
@@ -125,7 +118,7 @@ test('the guided first chart goes on by itself, and ends with a lamp that is lit
   await lesson('Press the button');
   await page.getByRole('switch', { name: /start/ }).first().click();
   await lesson('That is a GRAFCET');
-  assert.match(await saved(page), /input start : BOOL[^]*output lamp : BOOL[^]*0 -> 1 when ↑start\n {2}1 -> 0 when 3s\/X1/);
+  assert.match(await textOf(page), /input start : BOOL[^]*output lamp : BOOL[^]*0 -> 1 when ↑start\n {2}1 -> 0 when 3s\/X1/);
   assert.deepEqual(page.errors, []);
   await page.context().close();
 });
@@ -162,7 +155,7 @@ test('variables are added, renamed everywhere, changed, taken away', async () =>
   await page.keyboard.press('Enter');
   await page.getByRole('button', { name: 'Delete: bottle', exact: true }).waitFor();
   await page.waitForTimeout(300);
-  const text = await saved(page);
+  const text = await textOf(page);
   assert.match(text, /output belt : BOOL at %Q0\.0 "belt"/);
   assert.match(text, /expect belt, X1/);
   assert.match(text, /var count : INT := 3 retain/);

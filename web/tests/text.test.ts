@@ -3,7 +3,7 @@
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
 import type { Page } from 'playwright-core';
-import { browser, open, playground, type Site } from './lib';
+import { browser, open, playground, textOf, type Site } from './lib';
 
 const LOOP = `// A loop.
 input a : BOOL
@@ -34,14 +34,6 @@ async function beside(file: string): Promise<Page & { errors: string[] }> {
   await page.getByRole('button', { name: 'Drawing and text' }).click();
   await page.waitForSelector('.tok-keyword');
   return page;
-}
-
-/** The text as the file has it, by way of a download. */
-async function saved(page: Page): Promise<string> {
-  const [download] = await Promise.all([page.waitForEvent('download'), page.keyboard.press('Control+s')]);
-  const parts: Buffer[] = [];
-  for await (const part of await download.createReadStream()) parts.push(part as Buffer);
-  return Buffer.concat(parts).toString('utf8');
 }
 
 const text = async (page: Page) => (await page.locator('.cm-line').allInnerTexts()).map((line) => line.replace(/\n$/, '')).join('\n');
@@ -79,7 +71,7 @@ test('what is typed is drawn, with signs that keyboards lack', async () => {
   await page.keyboard.type('1 -> 2 when \\upa');
   await until(() => drawn(page, 'G1/s/2'), (n) => n === 1, 'step 2 is drawn');
   assert.match(await text(page), /\n {2}step 2\n {2}1 -> 2 when ↑a\n/);
-  assert.equal(await saved(page), LOOP.replace('step 1 { N M }', 'step 1 { N M }\n  step 2\n  1 -> 2 when ↑a'));
+  assert.equal(await textOf(page), LOOP.replace('step 1 { N M }', 'step 1 { N M }\n  step 2\n  1 -> 2 when ↑a'));
   assert.deepEqual(page.errors, []);
   await page.context().close();
 });
@@ -103,7 +95,7 @@ test('undo goes through typing and gestures alike, from either view, to the firs
     await page.waitForTimeout(120);
   }
   assert.equal(await text(page), LOOP);
-  assert.equal(await saved(page), LOOP);
+  assert.equal(await textOf(page), LOOP);
   assert.deepEqual(page.errors, []);
   await page.context().close();
 });
@@ -189,7 +181,7 @@ test('line ends of other systems stay where they are', async () => {
   await behind(page, 'when a');
   await page.keyboard.type(' and M');
   await until(() => page.locator('.sheet').innerHTML(), (html) => html.includes('M'), 'drawn');
-  assert.equal(await saved(page), LOOP.replace('when a', 'when a and M').replaceAll('\n', '\r\n'));
+  assert.equal(await textOf(page), LOOP.replace('when a', 'when a and M').replaceAll('\n', '\r\n'));
   assert.deepEqual(page.errors, []);
   await page.context().close();
 });
@@ -210,7 +202,7 @@ test('typing goes on while gestures are under way, and all of it is undone to th
   }
   await page.waitForTimeout(800);
   const typed = await text(page);
-  assert.equal(await saved(page), typed);
+  assert.equal(await textOf(page), typed);
   assert.equal(typed.match(/note/g)?.length, 4);
   const undo = page.getByRole('button', { name: 'Undo', exact: true });
   for (let n = 0; n < 80 && (await undo.isEnabled()); n++) {
@@ -218,7 +210,7 @@ test('typing goes on while gestures are under way, and all of it is undone to th
     await page.waitForTimeout(60);
   }
   assert.equal(await text(page), LOOP);
-  assert.equal(await saved(page), LOOP);
+  assert.equal(await textOf(page), LOOP);
   const redo = page.getByRole('button', { name: 'Redo', exact: true });
   for (let n = 0; n < 80 && (await redo.isEnabled()); n++) {
     await redo.click();
