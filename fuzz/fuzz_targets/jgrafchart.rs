@@ -6,7 +6,7 @@ use g7_model::FileId;
 use libfuzzer_sys::fuzz_target;
 
 fuzz_target!(|bytes: &[u8]| {
-    let _ = g7_syntax::jgrafchart::looks_like(bytes);
-    let (document, _) = g7_syntax::jgrafchart::import(bytes, FileId(0));
+    let _ = g7_exchange::recognise("", bytes);
+    let (document, _) = g7_exchange::import(g7_exchange::Format::Jgrafchart, bytes, FileId(0));
     let _ = g7_compile::compile(&document);
 });

@@ -22,11 +22,16 @@ const ALLOWED: &[Arrows] = &[
     // It runs in the plant: nothing it did not bring but the functions of `libm`.
     ("engine", &[], Some(&["libm"])),
     ("syntax", &["g7-model"], None),
+    ("exchange", &["g7-model", "g7-syntax"], None),
     ("compile", &["g7-model", "g7-engine"], Some(&[])),
     ("host", &["g7-engine"], None),
     ("draw", &["g7-model"], Some(&[])),
     ("edit", &["g7-model", "g7-syntax", "g7-compile"], Some(&["serde"])),
-    ("rig", &["g7-model", "g7-syntax", "g7-engine", "g7-compile", "g7-host"], Some(&["thiserror"])),
+    (
+        "rig",
+        &["g7-model", "g7-syntax", "g7-exchange", "g7-engine", "g7-compile", "g7-host"],
+        Some(&["thiserror"]),
+    ),
     (
         "page",
         &["g7-model", "g7-syntax", "g7-engine", "g7-compile", "g7-host", "g7-draw", "g7-edit", "g7-rig"],

@@ -155,8 +155,8 @@ fn files(folder: &Path, ending: &str, found: &mut Vec<PathBuf>) {
 
 fn document(path: &Path) -> Option<Document> {
     let bytes = std::fs::read(path).ok()?;
-    let (document, problems) = if g7_syntax::jgrafchart::looks_like(&bytes) {
-        g7_syntax::jgrafchart::import(&bytes, FileId(0))
+    let (document, problems) = if let Some(format) = g7_exchange::recognise("", &bytes) {
+        g7_exchange::import(format, &bytes, FileId(0))
     } else {
         g7_syntax::parse_bytes(&bytes, FileId(0))
     };

@@ -15,7 +15,7 @@ pub(crate) fn fmt(args: &Fmt) -> Result<Verdict, Failure> {
     let mut out = anstream::stdout().lock();
     for path in &paths {
         let source = sources::load(path, 0)?;
-        if source.imported {
+        if source.format.is_some() {
             return Err(Failure::Usage(format!(
                 "{} is a JGrafchart file; `g7 import` makes a .g7 file of it",
                 source.name

@@ -1,4 +1,4 @@
-//! `g7 import`: a JGrafchart file becomes a .g7 file.
+//! `g7 import`: a file of another tool becomes a .g7 file.
 
 use std::io::Write;
 
@@ -10,8 +10,8 @@ use crate::{files, style, talk};
 
 pub(crate) fn import(args: &Import) -> Result<Verdict, Failure> {
     let source = sources::load(&args.file, 0)?;
-    if !source.imported {
-        return Err(Failure::Usage(format!("{} is no JGrafchart file", source.name)));
+    if source.format.is_none() {
+        return Err(Failure::Usage(format!("{} is no file of another tool that is known here", source.name)));
     }
     if let Some(output) = args.output.as_ref().filter(|o| o.is_file() && !args.force) {
         return Err(Failure::Usage(format!("{} is there already; --force replaces it", output.display())));

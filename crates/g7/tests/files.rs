@@ -166,9 +166,9 @@ fn help_teaches_by_example() {
 }
 
 #[test]
-fn import_refuses_what_is_no_jgrafchart_file_and_what_is_there_already() {
+fn import_refuses_what_is_no_foreign_file_and_what_is_there_already() {
     let folder = Folder::with(PINGPONG);
-    folder.g7(&["import", "chart.g7"]).is_refused(&["chart.g7", "no JGrafchart file"]);
+    folder.g7(&["import", "chart.g7"]).is_refused(&["chart.g7", "no file of another tool"]);
     folder.write("a.xml", XML);
     folder.write("out.g7", "mine");
     folder.g7(&["import", "a.xml", "-o", "out.g7"]).is_refused(&["out.g7", "--force"]);

@@ -33,7 +33,7 @@ impl File {
             return Err(format!("{name} is too large for the editor"));
         }
         let mut source = Source::new(name, text.into_bytes(), 0);
-        let imported = source.imported;
+        let imported = source.format.is_some();
         let mut told = Vec::new();
         if imported {
             if source.has_errors() {

@@ -1,5 +1,6 @@
 //! Files as the parser saw them: bytes, document, problems; and from byte to line.
 
+use g7_exchange::Format;
 use g7_model::{Document, FileId, Item, Problem, Scenario, Severity, Span};
 
 /// A file that was read.
@@ -15,24 +16,23 @@ pub struct Source {
     pub document: Document,
     /// What the parser said of them.
     pub problems: Vec<Problem>,
-    /// Came from a JGrafchart file.
-    pub imported: bool,
+    /// The foreign format it came from.
+    pub format: Option<Format>,
     starts: Vec<usize>,
 }
 
 impl Source {
-    /// Reads a .g7 or JGrafchart file; which, its content says.
+    /// Reads a .g7 file or one of a foreign format; which, its content says, or else its name.
     pub fn new(name: &str, bytes: Vec<u8>, id: u32) -> Source {
-        let imported = g7_syntax::jgrafchart::looks_like(&bytes);
-        let (document, problems) = if imported {
-            g7_syntax::jgrafchart::import(&bytes, FileId(id))
-        } else {
-            g7_syntax::parse_bytes(&bytes, FileId(id))
+        let format = g7_exchange::recognise(name, &bytes);
+        let (document, problems) = match format {
+            Some(format) => g7_exchange::import(format, &bytes, FileId(id)),
+            None => g7_syntax::parse_bytes(&bytes, FileId(id)),
         };
         let text = same_length(&bytes);
         let starts = std::iter::once(0).chain(text.match_indices('\n').map(|(i, _)| i + 1)).collect();
         let name = name.chars().map(|c| if c.is_control() { '?' } else { c }).collect();
-        Source { name, text, bytes, document, problems, imported, starts }
+        Source { name, text, bytes, document, problems, format, starts }
     }
 
     /// Whether a problem is an error.

@@ -21,7 +21,6 @@
 #![forbid(unsafe_code)]
 
 mod decode;
-pub mod jgrafchart;
 mod lexer;
 mod lines;
 mod number;

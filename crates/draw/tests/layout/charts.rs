@@ -3,8 +3,9 @@
 use std::path::{Path, PathBuf};
 
 use g7_draw::{Extent, Options, Sizes, layout, measure};
+use g7_exchange::{Format, import};
 use g7_model::{Chart, Document, FileId};
-use g7_syntax::{jgrafchart, parse_bytes};
+use g7_syntax::parse_bytes;
 
 use crate::geometry::faults;
 
@@ -63,7 +64,7 @@ pub(crate) fn corpus() -> Vec<(String, Document)> {
     }
     let read = |file: &PathBuf| {
         let bytes = std::fs::read(file).expect("a file");
-        (file.display().to_string(), jgrafchart::import(&bytes, FileId(0)).0)
+        (file.display().to_string(), import(Format::Jgrafchart, &bytes, FileId(0)).0)
     };
     all.iter().map(read).collect()
 }

@@ -11,10 +11,10 @@ use std::collections::{HashMap, HashSet};
 
 use g7_model::codes;
 
-use super::attr::Text;
 use super::read::{name_place, shown};
-use super::report::Report;
 use super::sheet::{Plan, Sheet, SheetKind, StepSort};
+use crate::report::Report;
+use crate::xml::attr::Text;
 
 /// The names of the document.
 pub(super) struct Names {

@@ -19,7 +19,7 @@ pub(crate) fn bytes(name: &str) -> Vec<u8> {
 
 /// What becomes of it.
 pub(crate) fn import(name: &str) -> (Document, Vec<Problem>) {
-    g7_syntax::jgrafchart::import(&bytes(name), FileId(0))
+    g7_exchange::import(g7_exchange::Format::Jgrafchart, &bytes(name), FileId(0))
 }
 
 pub(crate) fn chart<'a>(document: &'a Document, name: &str) -> &'a Chart {

@@ -3,10 +3,10 @@
 //! # Where this sits
 //!
 //! ```text
-//! bytes -> guard -> roxmltree -> read (sheets) -> links, names, actions -> build (Document)
+//! bytes -> xml -> read (sheets) -> links, names, actions -> build (Document)
 //! ```
 //!
-//! - `guard` refuses what no chart can be: wrong encodings, document types,
+//! - `xml` refuses what no chart can be: wrong encodings, document types,
 //!   elements nested without end, files too large. After it the work is bounded.
 //! - `read` turns each workspace of the file into a [`sheet::Sheet`], still with
 //!   the file's own names and links.
@@ -25,35 +25,30 @@
 //! - Every span lies in the XML file, so a message shows the author's own line.
 
 mod actions;
-mod attr;
 mod build;
 mod express;
-mod guard;
 mod lex;
 mod links;
 mod names;
 mod phrase;
 mod read;
-mod report;
 mod sheet;
 
 use g7_model::{Document, FileId, Problem};
 
-/// Whether the file is a chart saved by JGrafchart, judged by its first element.
-///
-/// True also for UTF-16, so that [`import`] can say what is wrong with it.
-pub fn looks_like(bytes: &[u8]) -> bool {
-    guard::root_name(bytes).is_some_and(|name| read::is_root(&name))
-}
+use crate::report::Report;
+use crate::xml;
+
+pub(crate) use read::is_root;
 
 /// Reads a chart saved by JGrafchart (2.x, `saveVersion` up to 8).
 ///
 /// Always gives a document, as much of one as could be read, and what is wrong
 /// or was not carried over, in the order of the file.
-pub fn import(bytes: &[u8], file: FileId) -> (Document, Vec<Problem>) {
-    let mut report = report::Report::new(file);
-    let document = guard::text(bytes, &mut report)
-        .and_then(|text| guard::tree(text, &mut report))
+pub(crate) fn import(bytes: &[u8], file: FileId) -> (Document, Vec<Problem>) {
+    let mut report = Report::new(file);
+    let document = xml::text(bytes, &mut report)
+        .and_then(|text| xml::tree(text, &mut report))
         .map(|tree| {
             let plan = read::sheets(&tree, &mut report);
             build::document(&plan, &mut report)

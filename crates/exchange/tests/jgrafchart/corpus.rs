@@ -4,8 +4,8 @@
 use std::collections::BTreeSet;
 use std::path::PathBuf;
 
+use g7_exchange::{Format, recognise};
 use g7_model::{FileId, Severity};
-use g7_syntax::jgrafchart;
 
 const FILES: [&str; 5] = [
     "boremodell_test.xml",
@@ -51,8 +51,8 @@ fn charts_of_the_corpus_come_over_whole() {
     for file in FILES {
         let bytes = std::fs::read(folder.join(file)).expect(file);
         let text = String::from_utf8(bytes.clone()).expect(file);
-        assert!(jgrafchart::looks_like(&bytes), "{file}");
-        let (document, problems) = jgrafchart::import(&bytes, FileId(0));
+        assert_eq!(recognise("", &bytes), Some(Format::Jgrafchart), "{file}");
+        let (document, problems) = g7_exchange::import(Format::Jgrafchart, &bytes, FileId(0));
         let errors: Vec<&str> =
             problems.iter().filter(|p| p.severity() == Severity::Error).map(|p| &*p.what).collect();
         assert!(errors.is_empty(), "{file}: {errors:?}");

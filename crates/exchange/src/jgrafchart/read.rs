@@ -7,11 +7,11 @@ use g7_model::codes;
 use g7_model::{Type, VarKind};
 use roxmltree::{Document, Node as Xml};
 
-use super::attr::{self, Text};
-use super::report::Report;
 use super::sheet::{
     Link, Node, Plan, Post, Sheet, SheetKind, StepNode, StepSort, TransitionNode, Value, Var,
 };
+use crate::report::Report;
+use crate::xml::attr::{self, Text};
 
 /// Half the width of JGrafchart's step symbol: its axis, in pixels from its left.
 const STEP_AXIS: i32 = 30;
@@ -21,7 +21,7 @@ const TRANSITION_AXIS: i32 = 15;
 pub(super) const STRING_BYTES: u16 = 255;
 
 /// Whether a file with this first element is one of JGrafchart's.
-pub(super) fn is_root(name: &str) -> bool {
+pub(crate) fn is_root(name: &str) -> bool {
     matches!(name, "GCDocument" | "GCDocumentCollection")
 }
 

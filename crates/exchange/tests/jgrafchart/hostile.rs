@@ -2,8 +2,8 @@
 
 use std::time::{Duration, Instant};
 
+use g7_exchange::{Format, recognise};
 use g7_model::{Document, FileId, Problem};
-use g7_syntax::jgrafchart;
 use proptest::prelude::*;
 
 use crate::show::bytes;
@@ -12,8 +12,8 @@ const FILES: [&str; 6] =
     ["bead-sorter.xml", "lines.xml", "texts.xml", "workspaces.xml", "not-carried.xml", "wrong.xml"];
 
 fn import(file: &[u8]) -> (Document, Vec<Problem>) {
-    jgrafchart::looks_like(file);
-    let (document, problems) = jgrafchart::import(file, FileId(0));
+    recognise("", file);
+    let (document, problems) = g7_exchange::import(Format::Jgrafchart, file, FileId(0));
     for p in &problems {
         assert!(p.at.start <= p.at.end, "{p:?}");
         assert!(p.at.end as usize <= file.len().max(1), "{p:?}");
@@ -52,7 +52,7 @@ fn encodings_other_than_utf_8_are_named() {
     let text = "<?xml version=\"1.0\" encoding=\"UTF-16\"?><GCDocument name=\"J1\"/>";
     let wide = |join: fn(u16) -> [u8; 2]| text.encode_utf16().flat_map(join).collect::<Vec<u8>>();
     for body in [wide(u16::to_le_bytes), wide(u16::to_be_bytes)] {
-        assert!(jgrafchart::looks_like(&body));
+        assert_eq!(recognise("", &body), Some(Format::Jgrafchart));
         let (_, problems) = import(&body);
         assert_eq!(
             problems.iter().map(|p| &*p.what).collect::<Vec<_>>(),
@@ -61,7 +61,7 @@ fn encodings_other_than_utf_8_are_named() {
     }
     let mut marked = vec![0xFF, 0xFE];
     marked.extend(wide(u16::to_le_bytes));
-    assert!(jgrafchart::looks_like(&marked));
+    assert_eq!(recognise("", &marked), Some(Format::Jgrafchart));
     assert_eq!(refused(&marked), ["G0001"]);
     let latin = b"<?xml version=\"1.0\" encoding=\"ISO-8859-1\"?><GCDocument name=\"\xE5\"/>";
     let (_, problems) = import(latin);

@@ -11,12 +11,12 @@ use std::ops::Range;
 use g7_model::codes;
 use g7_model::{Arg, BinaryOp, Expr, ExprKind, Literal, Name, Path, Place, Span, Type, UnaryOp};
 
-use super::attr::Text;
 use super::names::{Meaning, Names, Property};
 use super::phrase::{Binary, Phrase, PhraseKind, Unary};
 use super::read::shown;
-use super::report::Report;
 use super::sheet::Plan;
+use crate::report::Report;
+use crate::xml::attr::Text;
 
 /// How an expression is evaluated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]

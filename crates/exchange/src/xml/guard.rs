@@ -8,7 +8,7 @@ use std::ops::Range;
 use g7_model::codes;
 use roxmltree::{Document, ParsingOptions};
 
-use super::report::Report;
+use crate::report::Report;
 
 /// Largest file that is read. Charts of the laboratory have some 20 kB.
 const MOST_BYTES: usize = 8 << 20;
@@ -20,7 +20,7 @@ const DEEPEST: usize = 100;
 const MOST_ATTRIBUTES: usize = 200;
 
 /// The text of the file, when it is UTF-8.
-pub(super) fn text<'a>(bytes: &'a [u8], report: &mut Report) -> Option<&'a str> {
+pub(crate) fn text<'a>(bytes: &'a [u8], report: &mut Report) -> Option<&'a str> {
     if bytes.len() > MOST_BYTES {
         let what = format!("the file has {} bytes; at most {MOST_BYTES} are read", bytes.len());
         report.say(&codes::TOO_LARGE, &(0..0), what);
@@ -45,7 +45,7 @@ pub(super) fn text<'a>(bytes: &'a [u8], report: &mut Report) -> Option<&'a str> 
 }
 
 /// The elements of the file, when it is well formed and within bounds.
-pub(super) fn tree<'a>(text: &'a str, report: &mut Report) -> Option<Document<'a>> {
+pub(crate) fn tree<'a>(text: &'a str, report: &mut Report) -> Option<Document<'a>> {
     if let Some(name) = declared(text.as_bytes())
         && !name.eq_ignore_ascii_case("utf-8")
         && !name.eq_ignore_ascii_case("us-ascii")
@@ -206,7 +206,7 @@ fn wide(bytes: &[u8]) -> Option<fn([u8; 2]) -> u16> {
 }
 
 /// The name of the first element, from the first part of any file.
-pub(super) fn root_name(bytes: &[u8]) -> Option<String> {
+pub(crate) fn root_name(bytes: &[u8]) -> Option<String> {
     const HEAD: usize = 1 << 16;
     /// Stands for what is beyond Latin letters, a byte order mark above all.
     const MARK: u8 = 0x1A;

@@ -11,8 +11,8 @@ use super::express::written;
 use super::links::{self, Ends};
 use super::names::{self, Names, writable};
 use super::read::name_place;
-use super::report::Report;
 use super::sheet::{Plan, Sheet, SheetKind, StepNode, StepSort, Value, Var};
+use crate::report::Report;
 
 /// JGrafchart's own default, in milliseconds.
 const DEFAULT_SCAN: i64 = 40;

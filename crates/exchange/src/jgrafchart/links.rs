@@ -10,8 +10,8 @@ use g7_model::codes;
 
 use super::names::Names;
 use super::read::shown;
-use super::report::Report;
 use super::sheet::{Node, Plan, Sheet};
+use crate::report::Report;
 
 /// Steps of the walk through a workspace's lines; a file of nothing but joins
 /// would otherwise cost their number squared.

@@ -5,7 +5,7 @@ use std::ops::Range;
 
 use g7_model::{Type, VarKind};
 
-use super::attr::Text;
+use crate::xml::attr::Text;
 
 /// All workspaces of a file; a nested one stands behind the one that holds it.
 #[derive(Default)]

@@ -14,7 +14,7 @@ const MOST_PLACES: usize = 100;
 const LONGEST_NOTE: usize = 300;
 
 /// The problems found so far.
-pub(super) struct Report {
+pub(crate) struct Report {
     file: FileId,
     problems: Vec<Problem>,
     /// Room for more errors and warnings.
@@ -27,7 +27,7 @@ pub(super) struct Report {
 }
 
 impl Report {
-    pub(super) fn new(file: FileId) -> Report {
+    pub(crate) fn new(file: FileId) -> Report {
         Report {
             file,
             problems: Vec::new(),
@@ -40,16 +40,16 @@ impl Report {
     }
 
     /// The span of a range of bytes of the file.
-    pub(super) fn span(&self, at: &Range<usize>) -> Span {
+    pub(crate) fn span(&self, at: &Range<usize>) -> Span {
         let clip = |n: usize| u32::try_from(n).unwrap_or(u32::MAX);
         Span { file: self.file, start: clip(at.start), end: clip(at.end.max(at.start)) }
     }
 
-    pub(super) fn say(&mut self, code: &'static Code, at: &Range<usize>, what: impl Into<String>) {
+    pub(crate) fn say(&mut self, code: &'static Code, at: &Range<usize>, what: impl Into<String>) {
         self.put(Problem::new(code, self.span(at), what));
     }
 
-    pub(super) fn put(&mut self, problem: Problem) {
+    pub(crate) fn put(&mut self, problem: Problem) {
         let room = if problem.severity() == Severity::Error { &mut self.errors } else { &mut self.warnings };
         match room.checked_sub(1) {
             Some(left) => {
@@ -61,7 +61,7 @@ impl Report {
     }
 
     /// Reports an element that has no counterpart; all of one name are one problem.
-    pub(super) fn element(&mut self, code: &'static Code, tag: &str, at: &Range<usize>, what: &str) {
+    pub(crate) fn element(&mut self, code: &'static Code, tag: &str, at: &Range<usize>, what: &str) {
         let span = self.span(at);
         let key = (code.id, tag.to_string());
         if let Some((index, count)) = self.groups.get_mut(&key) {
@@ -81,7 +81,7 @@ impl Report {
     }
 
     /// Keeps the text of an element that has no counterpart as a note to the reader.
-    pub(super) fn keep(&mut self, xml: &str) {
+    pub(crate) fn keep(&mut self, xml: &str) {
         if self.notes.len() >= MOST {
             return;
         }
@@ -92,12 +92,12 @@ impl Report {
     }
 
     /// The notes kept so far.
-    pub(super) fn take_notes(&mut self) -> Vec<Note> {
+    pub(crate) fn take_notes(&mut self) -> Vec<Note> {
         std::mem::take(&mut self.notes)
     }
 
     /// All problems, in the order of the file.
-    pub(super) fn finish(mut self) -> Vec<Problem> {
+    pub(crate) fn finish(mut self) -> Vec<Problem> {
         let mut counts: Vec<(usize, usize)> = self.groups.into_values().filter(|(_, n)| *n > 1).collect();
         counts.sort_unstable();
         for (index, count) in counts {

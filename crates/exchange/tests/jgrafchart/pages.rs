@@ -4,14 +4,14 @@
 
 use std::path::PathBuf;
 
+use g7_exchange::Format;
 use g7_model::{FileId, codes};
-use g7_syntax::jgrafchart;
 
 /// The codes that a piece of XML gives; a fragment stands in a workspace.
 fn reported(xml: &str) -> Vec<&'static str> {
     let whole = ["<GCDocument", "<Project"].iter().any(|root| xml.starts_with(root));
     let file = if whole { xml.to_string() } else { format!("<GCDocument name='J1'>{xml}</GCDocument>") };
-    let (_, problems) = jgrafchart::import(file.as_bytes(), FileId(0));
+    let (_, problems) = g7_exchange::import(Format::Jgrafchart, file.as_bytes(), FileId(0));
     problems.iter().map(|p| p.code.id).collect()
 }
 

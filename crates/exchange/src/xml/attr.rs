@@ -6,18 +6,18 @@ use roxmltree::Node;
 
 /// A decoded attribute value that still knows where each part of it stands.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Text {
+pub(crate) struct Text {
     /// The value, entities undone.
-    pub(super) text: String,
+    pub(crate) text: String,
     /// The value in the file, between its quotes.
-    pub(super) at: Range<usize>,
+    pub(crate) at: Range<usize>,
     /// Where text and file go apart: from this byte of the text on, the file is there.
     jumps: Vec<(usize, usize)>,
 }
 
 impl Text {
     /// The place in the file of a range of bytes of the text.
-    pub(super) fn place(&self, part: &Range<usize>) -> Range<usize> {
+    pub(crate) fn place(&self, part: &Range<usize>) -> Range<usize> {
         let start = self.offset(part.start);
         start..self.offset(part.end).max(start)
     }
@@ -32,7 +32,7 @@ impl Text {
 }
 
 /// An attribute's value with its places.
-pub(super) fn text(node: Node, name: &str) -> Option<Text> {
+pub(crate) fn text(node: Node, name: &str) -> Option<Text> {
     let attribute = node.attribute_node(name)?;
     let at = attribute.range_value();
     let raw = node.document().input_text().get(at.clone())?;
@@ -81,11 +81,61 @@ fn entity_char(name: &str) -> Option<char> {
 }
 
 /// The start tag of an element: what a message underlines.
-pub(super) fn head(node: Node) -> Range<usize> {
+pub(crate) fn head(node: Node) -> Range<usize> {
     let whole = node.range();
     let from = node.attributes().map(|a| a.range().end).max().unwrap_or(whole.start);
     let input = node.document().input_text();
     let tail = input.get(from..whole.end).unwrap_or("");
     let end = tail.find('>').map_or(whole.end, |i| from + i + 1);
     whole.start..end
+}
+
+/// The text inside an element and all elements within it, with its places;
+/// marked-up text of any dialect: in CDATA, in XHTML paragraphs, or bare.
+pub(crate) fn content(node: Node) -> Text {
+    let input = node.document().input_text();
+    let start = head(node).end;
+    let whole = node.range();
+    let inside = input.get(start..whole.end).unwrap_or("");
+    let length = if start >= whole.end { 0 } else { inside.rfind("</").unwrap_or(0) };
+    let at = start.min(whole.end)..(start + length).min(whole.end).max(start.min(whole.end));
+    strip(input.get(at.clone()).unwrap_or(""), at)
+}
+
+/// Text without its tags and comments, entities undone.
+fn strip(raw: &str, at: Range<usize>) -> Text {
+    let mut out = Text { text: String::with_capacity(raw.len()), at: at.clone(), jumps: Vec::new() };
+    let mut rest = raw;
+    while let Some(c) = rest.chars().next() {
+        let here = at.end - rest.len();
+        if let Some(cdata) = rest.strip_prefix("<![CDATA[") {
+            let (piece, behind) = cdata.split_once("]]>").unwrap_or((cdata, ""));
+            out.jumps.push((out.text.len(), here + 9));
+            out.text.push_str(piece);
+            rest = behind;
+        } else if let Some(note) = rest.strip_prefix("<!--") {
+            rest = note.split_once("-->").map_or("", |(_, behind)| behind);
+        } else if c == '<' {
+            let (tag, behind) = rest.split_once('>').unwrap_or((rest, ""));
+            let name = tag.trim_start_matches(['<', '/']).trim_end_matches('/').trim();
+            let name = name.split_once(':').map_or(name, |(_, n)| n);
+            if matches!(name.split_whitespace().next(), Some("p" | "br" | "div" | "li"))
+                && !out.text.is_empty()
+            {
+                out.text.push('\n');
+            }
+            rest = behind;
+        } else if c == '&' {
+            let (name, behind) = rest.split_once(';').unwrap_or((rest, ""));
+            out.jumps.push((out.text.len(), here));
+            out.text.push(entity_char(name).unwrap_or('\u{FFFD}'));
+            rest = behind;
+        } else {
+            let length = rest.find(['<', '&']).unwrap_or(rest.len());
+            out.jumps.push((out.text.len(), here));
+            out.text.push_str(rest.get(..length).unwrap_or(""));
+            rest = rest.get(length..).unwrap_or("");
+        }
+    }
+    out
 }

@@ -163,7 +163,8 @@ fn what_is_read_can_be_written_as_text_and_read_again() {
 #[test]
 fn notes_on_what_is_left_out_stand_at_the_head_of_the_text() {
     let file = "<GCDocument name='J1'><GCInitialStep id='a' name='Idle'/><GCRectangle name='*/ frame'/></GCDocument>";
-    let (document, _) = g7_syntax::jgrafchart::import(file.as_bytes(), g7_model::FileId(0));
+    let (document, _) =
+        g7_exchange::import(g7_exchange::Format::Jgrafchart, file.as_bytes(), g7_model::FileId(0));
     let text = g7_syntax::print(&document, None);
     assert!(text.starts_with("// not carried over: <GCRectangle name='*/ frame'/>\n"), "{text}");
     let (again, found) = g7_syntax::parse(&text, g7_model::FileId(0));

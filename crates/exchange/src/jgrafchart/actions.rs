@@ -3,13 +3,13 @@
 use g7_model::codes;
 use g7_model::{Action, ActionKind, Expr, ExprKind, Path, Qualifier, Stmt, StmtKind, Target, Type, Work};
 
-use super::attr::Text;
 use super::express::Express;
 use super::names::{Meaning, Names};
 use super::phrase::{self, Deed, Fault, Letter, Statement};
 use super::read::shown;
-use super::report::Report;
 use super::sheet::Plan;
+use crate::report::Report;
+use crate::xml::attr::Text;
 
 /// Longest text of one step or transition, in bytes.
 const MOST_BYTES: usize = 1 << 16;
