@@ -39,7 +39,17 @@ const ALLOWED: &[Arrows] = &[
     ),
     (
         "g7",
-        &["g7-model", "g7-syntax", "g7-engine", "g7-compile", "g7-host", "g7-draw", "g7-rig", "g7-page"],
+        &[
+            "g7-model",
+            "g7-syntax",
+            "g7-exchange",
+            "g7-engine",
+            "g7-compile",
+            "g7-host",
+            "g7-draw",
+            "g7-rig",
+            "g7-page",
+        ],
         None,
     ),
 ];

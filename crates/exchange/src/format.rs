@@ -30,3 +30,36 @@ impl Format {
         }
     }
 }
+
+/// A form that is written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Outlet {
+    /// A flowchart in the text of Mermaid, for documents; it is not read back.
+    Mermaid,
+}
+
+impl Outlet {
+    /// All of them, in the order in which they are listed.
+    pub const ALL: &[Outlet] = &[Outlet::Mermaid];
+
+    /// The word for it on the command line.
+    pub fn word(self) -> &'static str {
+        match self {
+            Outlet::Mermaid => "mermaid",
+        }
+    }
+
+    /// What messages call it.
+    pub fn title(self) -> &'static str {
+        match self {
+            Outlet::Mermaid => "Mermaid flowchart",
+        }
+    }
+
+    /// The ending of its files, without the dot.
+    pub fn ending(self) -> &'static str {
+        match self {
+            Outlet::Mermaid => "mmd",
+        }
+    }
+}

@@ -24,12 +24,13 @@
 
 mod format;
 mod jgrafchart;
+mod mermaid;
 mod report;
 mod xml;
 
 use g7_model::{Document, FileId, Problem};
 
-pub use format::Format;
+pub use format::{Format, Outlet};
 
 /// The foreign format of a file, by its content and, where that does not tell, the ending of its name.
 ///
@@ -46,5 +47,24 @@ pub fn recognise(name: &str, bytes: &[u8]) -> Option<Format> {
 pub fn import(format: Format, bytes: &[u8], file: FileId) -> (Document, Vec<Problem>) {
     match format {
         Format::Jgrafchart => jgrafchart::import(bytes, file),
+    }
+}
+
+/// A document in a foreign form.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Written {
+    /// The file, UTF-8.
+    pub text: String,
+    /// What it does not carry, with its place in the document, in its order.
+    /// With an error among them the file does not mean what the document means.
+    pub problems: Vec<Problem>,
+}
+
+/// Writes a document in a foreign form.
+///
+/// The document must have been read without errors.
+pub fn export(to: Outlet, document: &Document) -> Written {
+    match to {
+        Outlet::Mermaid => mermaid::export(document),
     }
 }

@@ -76,8 +76,10 @@ pub(crate) enum Command {
     Draw(crate::draw::Draw),
     /// Open the editor in the browser.
     Serve(crate::serve::Serve),
-    /// Turn a JGrafchart XML file into a .g7 file.
+    /// Turn a file of another tool into a .g7 file.
     Import(Import),
+    /// Write a chart in the form of another tool.
+    Export(crate::export::Export),
     /// Explain a problem code, or list them all.
     Explain(Explain),
     /// Print the completions for a shell.
@@ -153,7 +155,7 @@ Examples:
   g7 run tank --headless --for 60s --trace out.vcd for GTKWave; .csv for a spreadsheet
   g7 run tank --headless --set start=1@2s --set start=0@2.5s
   g7 run tank --profile iec61131 --scan 40ms       under other rules of evolution
-  g7 run Sorter.xml                                a JGrafchart file
+  g7 run Sorter.xml                                a file of another tool, here JGrafchart's
 
 {EXIT_CODES}"))]
 pub(crate) struct Run {
@@ -244,7 +246,7 @@ What the importer does not know is reported with its line, never dropped in sile
 
 {EXIT_CODES}"))]
 pub(crate) struct Import {
-    /// The XML file.
+    /// The file of another tool.
     pub(crate) file: PathBuf,
     /// Where to; the standard output unless said.
     #[arg(long, short, value_name = "FILE")]

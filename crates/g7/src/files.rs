@@ -1,10 +1,11 @@
 //! From arguments to files: folders, the standard input, whole writes.
 
 use std::fs;
-use std::io::{self, Read};
+use std::io::{self, Read, Write};
 use std::path::{Path, PathBuf};
 
 use crate::failure::Failure;
+use crate::{style, talk};
 
 /// Longest file read; the parser's own limit is below it.
 const LONGEST: u64 = 64 << 20;
@@ -30,6 +31,31 @@ pub(crate) fn read(path: &Path) -> Result<Vec<u8>, Failure> {
 /// Replaces a file, whole or not at all.
 pub(crate) fn write(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
     g7_host::write_whole(path, bytes).map_err(|e| Failure::Write(path.to_path_buf(), e))
+}
+
+/// Says no where an output file is there and may not be replaced.
+pub(crate) fn refuse_present(output: Option<&Path>, force: bool) -> Result<(), Failure> {
+    match output.filter(|o| o.is_file() && !force) {
+        Some(o) => Err(Failure::Usage(format!("{} is there already; --force replaces it", o.display()))),
+        None => Ok(()),
+    }
+}
+
+/// Data to a file, whole or not at all, or to the standard output.
+pub(crate) fn deliver(output: Option<&Path>, bytes: &[u8]) -> Result<(), Failure> {
+    match output {
+        Some(path) => {
+            write(path, bytes)?;
+            talk!("{}wrote{:#} {}", style::GOOD, style::GOOD, path.display());
+        }
+        None => {
+            // As they are: these may be a picture.
+            let mut out = io::stdout().lock();
+            out.write_all(bytes)?;
+            out.flush()?;
+        }
+    }
+    Ok(())
 }
 
 /// The one chart to run: a file, or a folder's `chart.g7` or only `.g7` file.

@@ -17,7 +17,7 @@ pub(crate) fn fmt(args: &Fmt) -> Result<Verdict, Failure> {
         let source = sources::load(path, 0)?;
         if source.format.is_some() {
             return Err(Failure::Usage(format!(
-                "{} is a JGrafchart file; `g7 import` makes a .g7 file of it",
+                "{} is a file of another tool; `g7 import` makes a .g7 file of it",
                 source.name
             )));
         }

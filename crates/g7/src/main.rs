@@ -17,6 +17,7 @@ mod check;
 mod cli;
 mod draw;
 mod explain;
+mod export;
 mod failure;
 mod files;
 mod fmt;
@@ -77,6 +78,7 @@ fn run(command: &Command) -> Result<Verdict, Failure> {
         Command::Draw(args) => draw::draw(args),
         Command::Serve(args) => serve::serve(args),
         Command::Import(args) => import::import(args),
+        Command::Export(args) => export::export(args),
         Command::Explain(args) => explain::explain(args),
         Command::Completions(args) => shell::completions(args),
         Command::Man(args) => shell::man(args),

@@ -143,7 +143,8 @@ fn explain_knows_every_code_and_says_where_it_comes_from() {
 #[test]
 fn completions_and_manual_pages_name_every_command() {
     let folder = Folder::new();
-    let commands = ["new", "check", "fmt", "run", "test", "draw", "import", "explain", "completions", "man"];
+    let commands =
+        ["new", "check", "fmt", "run", "test", "draw", "import", "export", "explain", "completions", "man"];
     for shell in ["bash", "zsh", "fish", "elvish", "powershell"] {
         let text = folder.g7(&["completions", shell]).is(0).out.clone();
         assert!(commands.iter().all(|c| text.contains(c)), "{shell}");
@@ -191,3 +192,18 @@ const XML: &str = r#"<?xml version="1.0" encoding="UTF-8"?>
   <GCLink fromObject="2" toObject="1"/>
 </GCDocument>
 "#;
+
+#[test]
+fn export_writes_whole_files_and_asks_for_the_form() {
+    let folder = Folder::with(PINGPONG);
+    let shown = folder.g7(&["export", "chart.g7", "--to", "mermaid"]).is(0).out.clone();
+    assert!(shown.starts_with("flowchart TB\n"), "{shown}");
+    folder.g7(&["export", "chart.g7"]).is_refused(&["--to", "mermaid"]);
+    folder.g7(&["export", "chart.g7", "-o", "chart.mmd"]).is(0);
+    assert_eq!(folder.read("chart.mmd"), shown);
+    folder.g7(&["export", "chart.g7", "-o", "chart.mmd"]).is_refused(&["chart.mmd", "--force"]);
+    folder.write("wrong.g7", "chart G { initial step 1 1 -> 2 when TRUE }");
+    let out = folder.g7(&["export", "wrong.g7", "-o", "wrong.mmd"]).is(1).err.clone();
+    assert!(out.contains("G0204"), "{out}");
+    assert!(!folder.path("wrong.mmd").exists(), "nothing is written of a chart with errors");
+}

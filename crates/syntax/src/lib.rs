@@ -32,7 +32,7 @@ mod words;
 
 pub use decode::decode;
 pub use lines::{LineColumn, LineIndex};
-pub use print::{print, print_expr};
+pub use print::{print, print_action, print_expr};
 pub use tokens::{
     Token, TokenKind, Tokens, is_reserved, show_comment, show_name, show_path_name, show_step_name, tokens,
 };

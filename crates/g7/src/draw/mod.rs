@@ -2,7 +2,6 @@
 
 mod paper;
 
-use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use clap::ValueEnum;
@@ -12,7 +11,7 @@ use g7_model::Chart;
 use crate::failure::{Failure, Verdict};
 use crate::report::{self, Tally};
 use crate::sources::{self, Source};
-use crate::{files, style, talk};
+use crate::{files, talk};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -135,14 +134,7 @@ pub(crate) fn draw(args: &Draw) -> Result<Verdict, Failure> {
                 several => g7_draw::sheet(&source.document, several, &options),
             };
             let bytes = paper::print(form, svg, args.scale)?;
-            match output {
-                Some(path) => put(path, &bytes)?,
-                None => {
-                    let mut out = std::io::stdout().lock();
-                    out.write_all(&bytes)?;
-                    out.flush()?;
-                }
-            }
+            files::deliver(output.as_deref(), &bytes)?;
         }
     }
     Ok(Verdict::Fine)
@@ -192,16 +184,10 @@ fn each(args: &Draw, drawings: &[Drawing], options: &Options, folder: &Path) -> 
         made.push((path, paper::print(form, g7_draw::svg(drawing, options), args.scale)?));
     }
     std::fs::create_dir_all(folder).map_err(|e| Failure::Write(folder.to_path_buf(), e))?;
-    made.iter().try_for_each(|(path, bytes)| put(path, bytes))
+    made.iter().try_for_each(|(path, bytes)| files::deliver(Some(path), bytes))
 }
 
 /// A chart's name as that of a file: letters, figures, `-` and `_`.
 fn file_name(chart: &str) -> String {
     chart.chars().map(|c| if c.is_alphanumeric() || matches!(c, '-' | '_') { c } else { '_' }).collect()
-}
-
-fn put(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
-    files::write(path, bytes)?;
-    talk!("{}wrote{:#} {}", style::GOOD, style::GOOD, path.display());
-    Ok(())
 }

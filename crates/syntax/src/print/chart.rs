@@ -113,7 +113,7 @@ impl Printer<'_> {
         });
     }
 
-    fn action(&mut self, action: &Action) {
+    pub(super) fn action(&mut self, action: &Action) {
         match &action.kind {
             ActionKind::Qualified { qualifier, time, target, condition } => {
                 self.push(qualifier.name());

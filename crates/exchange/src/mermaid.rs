@@ -1,0 +1,114 @@
+//! Charts as Mermaid flowcharts, for pages that draw them from text.
+//!
+//! A picture, no exchange: steps are boxes (an initial step has a thick frame, a
+//! macro-step or enclosing step one with side lines), transitions hexagons with
+//! their receptivity, actions notes beside their step. Identifiers are counted,
+//! so no name can break the text; what has a meaning to Mermaid or HTML in a
+//! label is written as a character code.
+
+use std::collections::HashMap;
+use std::fmt::Write;
+
+use g7_model::{Chart, ChartKind, Document, Step, StepKind, Transition};
+use g7_syntax::{print_action, print_expr};
+
+use crate::Written;
+
+/// One flowchart with a box for each chart.
+pub(crate) fn export(document: &Document) -> Written {
+    let mut text = String::from("flowchart TB\n");
+    for (number, chart) in document.charts().enumerate() {
+        draw(&mut text, number, chart);
+    }
+    text.push_str("  classDef action fill:none,stroke-dasharray:4\n");
+    Written { text, problems: Vec::new() }
+}
+
+fn draw(text: &mut String, number: usize, chart: &Chart) {
+    let kind = match chart.kind {
+        ChartKind::Chart => "",
+        ChartKind::Expansion => "expansion ",
+        ChartKind::Task => "task ",
+    };
+    line(
+        text,
+        1,
+        &format!("subgraph c{number}[{}]", label(&[kind, &chart.name.text], chart.comment.as_deref())),
+    );
+    let ids: HashMap<&str, String> =
+        chart.steps().enumerate().map(|(i, s)| (&*s.name.text, format!("c{number}s{i}"))).collect();
+    for (step, id) in chart.steps().filter_map(|s| Some((s, ids.get(&*s.name.text)?))) {
+        draw_step(text, step, id);
+    }
+    for (i, transition) in chart.transitions().enumerate() {
+        draw_transition(text, transition, &format!("c{number}t{i}"), &ids);
+    }
+    line(text, 1, "end");
+}
+
+fn draw_step(text: &mut String, step: &Step, id: &str) {
+    let name = label(&[&step.name.text], step.comment.as_deref());
+    let symbol = match step.kind {
+        // Mermaid's box with double side lines is the symbol of a subroutine.
+        StepKind::Macro(_) | StepKind::Enclosing => format!("{id}[[{name}]]"),
+        StepKind::Plain | StepKind::Entry | StepKind::Exit => format!("{id}[{name}]"),
+    };
+    line(text, 2, &symbol);
+    if step.initial {
+        // A thick frame stands for the double square, which Mermaid does not have for boxes.
+        line(text, 2, &format!("style {id} stroke-width:4px"));
+    }
+    for (i, action) in step.actions.iter().enumerate() {
+        line(text, 2, &format!("{id}a{i}[{}]:::action", label(&[print_action(action).trim_end()], None)));
+        line(text, 2, &format!("{id} -.- {id}a{i}"));
+    }
+}
+
+fn draw_transition(text: &mut String, transition: &Transition, id: &str, ids: &HashMap<&str, String>) {
+    let receptivity = print_expr(&transition.receptivity);
+    let label = match &transition.label {
+        Some(name) => label(&[&name.text, ": ", &receptivity], transition.comment.as_deref()),
+        None => label(&[&receptivity], transition.comment.as_deref()),
+    };
+    line(text, 2, &format!("{id}{{{{{label}}}}}"));
+    for from in transition.from.iter().filter_map(|n| ids.get(&*n.text)) {
+        line(text, 2, &format!("{from} --- {id}"));
+    }
+    for to in transition.to.iter().filter_map(|n| ids.get(&*n.text)) {
+        line(text, 2, &format!("{id} --> {to}"));
+    }
+}
+
+/// A quoted label: the parts in a row, a comment below them.
+fn label(parts: &[&str], comment: Option<&str>) -> String {
+    let mut label = String::from("\"");
+    parts.iter().for_each(|p| escape(&mut label, p));
+    if let Some(comment) = comment {
+        label.push_str("<br/>");
+        escape(&mut label, comment);
+    }
+    label.push('"');
+    label
+}
+
+/// Letters, digits, blanks and what means nothing as they are; line ends as breaks; the rest as codes.
+fn escape(out: &mut String, text: &str) {
+    for c in text.chars() {
+        match c {
+            '\n' => out.push_str("<br/>"),
+            c if c.is_control() => out.push(' '),
+            '"' | '#' | '&' | '<' | '>' | ';' | '`' | '\\' | '*' | '_' | '[' | ']' | '{' | '}' | '|'
+            | '~' => {
+                // Writing to a string cannot fail.
+                let _ = write!(out, "#{};", u32::from(c));
+            }
+            c => out.push(c),
+        }
+    }
+}
+
+fn line(text: &mut String, depth: usize, line: &str) {
+    text.extend(std::iter::repeat_n("  ", depth));
+    text.push_str(line);
+    text.push('\n');
+}

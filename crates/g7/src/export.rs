@@ -1,0 +1,106 @@
+//! `g7 export`: a chart in the form of another tool.
+
+use std::path::{Path, PathBuf};
+
+use clap::ValueEnum;
+use clap::builder::PossibleValue;
+use g7_exchange::Outlet;
+use g7_model::Severity;
+
+use crate::failure::{Failure, Verdict};
+use crate::report::{self, Tally};
+use crate::{files, sources, talk};
+
+const EXAMPLES: &str = "\
+Examples:
+  g7 export tank --to mermaid           to the standard output
+  g7 export tank -o tank.mmd            to a file; its ending says the form
+
+What the form cannot carry is reported with its place, never dropped in silence.
+
+Exit codes:
+  0  fine
+  1  the chart has errors, or the form cannot carry what it means
+  2  bad usage, or something outside the chart: no such file, a full disk";
+
+/// What can be asked of `g7 export`.
+#[derive(clap::Args, Debug)]
+#[command(after_help = EXAMPLES)]
+pub(crate) struct Export {
+    /// A .g7 file, a file of another tool, or a folder with a chart.g7.
+    #[arg(default_value = ".")]
+    file: PathBuf,
+    /// The form, where the name of the output does not say it.
+    #[arg(long, value_enum, value_name = "FORM")]
+    to: Option<Form>,
+    /// Where to; the standard output unless said.
+    #[arg(long, short, value_name = "FILE")]
+    output: Option<PathBuf>,
+    /// Replace the output file if it is there.
+    #[arg(long)]
+    force: bool,
+    /// Write it even where it would not mean the same.
+    #[arg(long)]
+    lossy: bool,
+}
+
+/// A form, as a word of the command line.
+#[derive(Clone, Copy, Debug)]
+struct Form(Outlet);
+
+impl ValueEnum for Form {
+    fn value_variants<'a>() -> &'a [Form] {
+        static ALL: std::sync::LazyLock<Vec<Form>> =
+            std::sync::LazyLock::new(|| Outlet::ALL.iter().map(|o| Form(*o)).collect());
+        &ALL
+    }
+
+    fn to_possible_value(&self) -> Option<PossibleValue> {
+        Some(PossibleValue::new(self.0.word()).help(self.0.title()))
+    }
+}
+
+pub(crate) fn export(args: &Export) -> Result<Verdict, Failure> {
+    let to = outlet(args)?;
+    let source = sources::load(&files::one(&args.file)?, 0)?;
+    files::refuse_present(args.output.as_deref(), args.force)?;
+    let mut problems = source.problems.clone();
+    if !source.has_errors() {
+        problems.extend(g7_compile::check(&source.document));
+    }
+    if problems.iter().any(|p| p.severity() == Severity::Error) {
+        problems.retain(|p| p.severity() == Severity::Error);
+        return Ok(found(&source, &problems));
+    }
+    let written = g7_exchange::export(to, &source.document);
+    let lost = written.problems.iter().any(|p| p.severity() == Severity::Error);
+    if !written.problems.is_empty() {
+        found(&source, &written.problems);
+    }
+    if lost && !args.lossy {
+        talk!("nothing is written; --lossy writes it all the same");
+        return Ok(Verdict::Found);
+    }
+    files::deliver(args.output.as_deref(), written.text.as_bytes())?;
+    Ok(Verdict::Fine)
+}
+
+fn found(source: &sources::Source, problems: &[g7_model::Problem]) -> Verdict {
+    talk!("{}", report::text(source, problems).trim_end());
+    talk!("{}: {}", source.name, Tally::of(problems));
+    Verdict::Found
+}
+
+/// The form that is asked for, by `--to` or by the ending of the output.
+fn outlet(args: &Export) -> Result<Outlet, Failure> {
+    let by_name = |path: &Path| {
+        let ending = path.extension()?.to_str()?.to_ascii_lowercase();
+        let mut fits = Outlet::ALL.iter().filter(|o| o.ending() == ending);
+        // Several forms are XML: then the ending says nothing.
+        fits.next().copied().filter(|_| fits.next().is_none())
+    };
+    args.to.map(|form| form.0).or_else(|| by_name(args.output.as_ref()?)).ok_or_else(|| {
+        let words: Vec<&str> = Outlet::ALL.iter().map(|o| o.word()).collect();
+        Failure::Usage(format!("say the form with --to: {}", words.join(", ")))
+    })
+}
