@@ -6,7 +6,7 @@ use crate::fault::Fault;
 use crate::run::{condition, value, write};
 use crate::state::{MEMORY, STARTS, State, TIMES, head};
 use crate::watch::is_due;
-use crate::{Addr, ControlBlock, NONE, Program};
+use crate::{Addr, NONE, Program};
 
 // Inputs, in the order of `INPUTS`.
 const N: u32 = 0;
@@ -47,8 +47,9 @@ pub(crate) fn count(p: &Program, s: &mut State, block: u32, input: u8, on: bool)
     let plain = p.t.blocks.get(block as usize).is_some_and(|b| b.plain);
     let at = base(p, block) as usize + if plain { 0 } else { usize::from(input) };
     let old = word(&s.w, at);
-    // The count of a plain block shares its word with the Q written last.
-    s.set(at, if on { old.wrapping_add(1) } else { old.wrapping_sub(u64::from(old & !WRITTEN != 0)) });
+    // The count of a plain block shares its word with the Q written last. What
+    // is taken away was added before, so it never borrows from there.
+    s.set(at, if on { old.wrapping_add(1) } else { old.wrapping_sub(1) });
     p.layout.blocks.insert(&mut s.w, block);
 }
 
@@ -118,7 +119,7 @@ pub(crate) fn evaluate(p: &Program, s: &mut State) -> Result<(), Fault> {
         l.blocks.remove(&mut s.w, i);
         let gate = condition(p, s, b.gate)?;
         let at = base(p, i);
-        let (q, run, live) = if b.plain { plain(s, at, b, gate) } else { full(p, s, at, gate) };
+        let (q, run, live) = if b.plain { plain(s, at, gate) } else { full(p, s, at, gate) };
         if b.output.0 != NONE {
             put(p, s, (at + if b.plain { 0 } else { MEMORY }) as usize, b.output, q);
         }
@@ -149,10 +150,9 @@ fn put(p: &Program, s: &mut State, at: usize, output: Addr, q: bool) {
     }
 }
 
-/// Q, whether a body runs, whether to look again at the next scan.
-fn plain(s: &State, at: u32, b: &ControlBlock, gate: bool) -> (bool, bool, bool) {
-    let q = word(&s.w, at as usize) & !WRITTEN != 0 && gate;
-    (q, q, b.action != NONE && q)
+/// Q, whether a body runs, whether to look again at the next scan. A plain block has no body.
+fn plain(s: &State, at: u32, gate: bool) -> (bool, bool, bool) {
+    (word(&s.w, at as usize) & !WRITTEN != 0 && gate, false, false)
 }
 
 fn full(p: &Program, s: &mut State, at: u32, gate: bool) -> (bool, bool, bool) {
@@ -201,7 +201,10 @@ fn full(p: &Program, s: &mut State, at: u32, gate: bool) -> (bool, bool, bool) {
             || (sl_ff && !sl_done));
     let fell = memory & Q_BEFORE != 0 && !level;
     let written = memory & WRITTEN;
-    let mut keep = written | inputs.iter().enumerate().fold(0u64, |m, (i, v)| m | u64::from(*v) << i);
+    let mut keep = written;
+    for (i, v) in inputs.iter().enumerate() {
+        keep |= u64::from(*v) << i;
+    }
     for (flag, v) in [(S_FF, s_ff), (SD_FF, sd_ff), (DS_FF, ds_ff), (SL_FF, sl_ff), (Q_BEFORE, level)] {
         if v {
             keep |= flag;

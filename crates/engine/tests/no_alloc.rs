@@ -4,25 +4,33 @@
 mod common;
 
 use std::alloc::{GlobalAlloc, Layout, System};
-use std::sync::atomic::{AtomicUsize, Ordering};
+use std::cell::Cell;
 
 use common::{Arc, chart};
-use g7_engine::{Program, Rules, State, scan};
+use g7_engine::{FaultKind, Program, Rules, State, scan};
 
 struct Counting;
-static COUNT: AtomicUsize = AtomicUsize::new(0);
+
+thread_local! {
+    /// Of this thread alone: the tests run side by side.
+    static COUNT: Cell<usize> = const { Cell::new(0) };
+}
+
+fn count() {
+    COUNT.with(|c| c.set(c.get() + 1));
+}
 
 // SAFETY: forwards to `System`, which upholds the contract.
 unsafe impl GlobalAlloc for Counting {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
-        COUNT.fetch_add(1, Ordering::Relaxed);
+        count();
         unsafe { System.alloc(layout) }
     }
     unsafe fn dealloc(&self, ptr: *mut u8, layout: Layout) {
         unsafe { System.dealloc(ptr, layout) }
     }
     unsafe fn realloc(&self, ptr: *mut u8, layout: Layout, new: usize) -> *mut u8 {
-        COUNT.fetch_add(1, Ordering::Relaxed);
+        count();
         unsafe { System.realloc(ptr, layout, new) }
     }
 }
@@ -47,7 +55,7 @@ fn scan_allocates_nothing() {
     for rules in [Rules::IEC60848, Rules::IEC61131, Rules::PL7, Rules::UNITY, Rules::JGRAFCHART] {
         let program = Program::new(chart(rules, 6, 2, &[0], &arcs())).expect("tables are sound");
         let mut state = State::new(&program);
-        let before = COUNT.load(Ordering::Relaxed);
+        let before = COUNT.get();
         let mut cleared = 0;
         for k in 0..200i64 {
             let inputs = [(k % 3 == 0) as u64, (k % 3 == 1) as u64];
@@ -56,7 +64,20 @@ fn scan_allocates_nothing() {
                 cleared += report.cleared;
             }
         }
-        assert_eq!(COUNT.load(Ordering::Relaxed), before, "{rules:?}");
+        assert_eq!(COUNT.get(), before, "{rules:?}");
         assert!(cleared > 2, "{rules:?}: nothing moved");
     }
+}
+
+/// One token that never rests clears far more transitions in a scan than there are.
+#[test]
+fn a_scan_without_end_allocates_nothing() {
+    let ring: Vec<Arc> = vec![(vec![0], vec![1], None), (vec![1], vec![2], None), (vec![2], vec![0], None)];
+    let rules = Rules { bound: 10_000, ..Rules::IEC60848 };
+    let program = Program::new(chart(rules, 3, 1, &[0], &ring)).expect("tables are sound");
+    let mut state = State::new(&program);
+    let before = COUNT.get();
+    let fault = scan(&program, &mut state, &[0], 0);
+    assert_eq!(COUNT.get(), before);
+    assert!(matches!(fault.map_err(|f| f.kind), Err(FaultKind::Unstable { .. })));
 }
