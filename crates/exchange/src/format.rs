@@ -1,32 +1,36 @@
 //! The formats that are known, and how a file shows which one it is.
 
-use crate::{jgrafchart, xml};
+use crate::{iectext, jgrafchart, xml};
 
 /// A foreign format.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Format {
     /// JGrafchart 2.x, `saveVersion` up to 8.
     Jgrafchart,
+    /// IEC 61131-3 in text: charts with Structured Text and Instruction List.
+    IecText,
 }
 
 impl Format {
     /// All of them, in the order in which a file is asked.
-    pub const ALL: &[Format] = &[Format::Jgrafchart];
+    pub const ALL: &[Format] = &[Format::Jgrafchart, Format::IecText];
 
     /// What messages call it.
     pub fn title(self) -> &'static str {
         match self {
             Format::Jgrafchart => "JGrafchart",
+            Format::IecText => "IEC 61131-3 text",
         }
     }
 
     /// Whether a file is of this format: by its content first, else by its name's ending.
     ///
     /// True also for UTF-16, so that the reader can say what is wrong with it.
-    pub(crate) fn fits(self, _name: &str, bytes: &[u8]) -> bool {
+    pub(crate) fn fits(self, name: &str, bytes: &[u8]) -> bool {
         let root = xml::root_name(bytes);
         match self {
             Format::Jgrafchart => root.is_some_and(|name| jgrafchart::is_root(&name)),
+            Format::IecText => iectext::fits(name, bytes),
         }
     }
 }

@@ -23,6 +23,8 @@
 #![forbid(unsafe_code)]
 
 mod format;
+mod iec;
+mod iectext;
 mod jgrafchart;
 mod mermaid;
 mod report;
@@ -47,6 +49,7 @@ pub fn recognise(name: &str, bytes: &[u8]) -> Option<Format> {
 pub fn import(format: Format, bytes: &[u8], file: FileId) -> (Document, Vec<Problem>) {
     match format {
         Format::Jgrafchart => jgrafchart::import(bytes, file),
+        Format::IecText => iectext::import(bytes, file),
     }
 }
 

@@ -201,12 +201,33 @@ pub enum BodyLang {
 }
 
 /// The body of a named action or of a PRE or POST section.
-#[derive(Clone, Debug, PartialEq, Eq)]
+///
+/// Two bodies in another language are equal when their texts are: the statements follow from these.
+#[derive(Clone, Debug, Eq)]
 pub enum Body {
     /// Structured Text.
     St(Block),
-    /// Another language, kept as the text between the braces.
-    Other(BodyLang, Box<str>, Place),
+    /// Another language: the text between the braces, and the statements that it stands for.
+    Other(BodyLang, Box<str>, Block),
+}
+
+impl PartialEq for Body {
+    fn eq(&self, other: &Body) -> bool {
+        match (self, other) {
+            (Body::St(a), Body::St(b)) => a == b,
+            (Body::Other(lang, text, _), Body::Other(lang2, text2, _)) => lang == lang2 && text == text2,
+            (Body::St(_), Body::Other(..)) | (Body::Other(..), Body::St(_)) => false,
+        }
+    }
+}
+
+impl Body {
+    /// What the body does, in Structured Text.
+    pub fn block(&self) -> &Block {
+        match self {
+            Body::St(block) | Body::Other(_, _, block) => block,
+        }
+    }
 }
 
 /// A statement of Structured Text.

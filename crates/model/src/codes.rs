@@ -80,7 +80,7 @@ codes! {
     SECTION_SHARED = "G0224" Error "one transition section for two transitions" "Unity Pro, transition sections";
     SECTION_UNUSED = "G0225" Warning "a transition section that no transition uses" "Unity Pro, transition sections";
     NESTED_TOO_DEEPLY = "G0226" Error "macro-steps nested too deeply" "the .g7 format";
-    BODY_LANGUAGE = "G0227" Error "a body in a language that does not run yet" "the .g7 format";
+    BODY_LANGUAGE = "G0227" Error "a part of a ladder or list that has no meaning" "IEC 61131-3:2003, 3.2 and 4.2";
     BAD_DECLARATION = "G0228" Error "a declaration that does not fit its type" "IEC 61131-3:2003, 2.4.3";
     ADDRESS_TWICE = "G0229" Error "one address for two variables" "IEC 61131-3:2003, 2.4.1.1";
     UNUSED_VARIABLE = "G0230" Warning "a variable that nothing names" "the .g7 format";

@@ -1,7 +1,7 @@
 //! Named actions, PRE and POST, transition sections and functions.
 
 use g7_model::{
-    Body as WrittenBody, BodyLang, ChartItem, Document, Function as WrittenFunction, Item, NamedAction,
+    Body as WrittenBody, ChartItem, Document, Function as WrittenFunction, Item, NamedAction,
     Problem, Section as WrittenSection, Span, Type, codes,
 };
 
@@ -139,21 +139,7 @@ impl<'d> Resolver<'_, 'd> {
     }
 
     fn body(&mut self, body: &WrittenBody, owner: &str) -> Vec<Stmt> {
-        match body {
-            WrittenBody::St(block) => self.block(block, owner),
-            WrittenBody::Other(lang, _, at) => {
-                let lang = match lang {
-                    BodyLang::Il => "Instruction List",
-                    BodyLang::Ld => "Ladder Diagram",
-                };
-                let what = format!("{lang} is kept as it stands, but does not run yet");
-                self.problems.push(
-                    Problem::new(&codes::BODY_LANGUAGE, at.0, what)
-                        .help("write this body in Structured Text"),
-                );
-                Vec::new()
-            }
-        }
+        self.block(body.block(), owner)
     }
 
     /// A function that comes back to itself would need a stack without bound.

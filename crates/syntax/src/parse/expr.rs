@@ -214,6 +214,11 @@ impl Parser<'_> {
         }
     }
 
+    /// An operand alone: no operator, sign or complement around it.
+    pub(super) fn operand(&mut self) -> Expr {
+        self.primary().expr
+    }
+
     fn leaf(&self, kind: ExprKind, start: u32) -> Tree {
         Tree { expr: Expr { kind, at: self.since(start).into() }, height: 1 }
     }

@@ -8,6 +8,8 @@ mod action;
 mod chart;
 mod expr;
 mod file;
+mod il;
+pub(crate) mod ladder;
 mod plant;
 mod scenario;
 mod st;
@@ -47,6 +49,11 @@ pub(crate) struct Parser<'a> {
 impl<'a> Parser<'a> {
     pub(crate) fn new(text: &'a str, file: FileId) -> Parser<'a> {
         let start = if text.starts_with('\u{feff}') { 3 } else { 0 };
+        Parser::portion(text, file, start)
+    }
+
+    /// A parser of the end of a text, from a byte on.
+    pub(crate) fn portion(text: &'a str, file: FileId, start: usize) -> Parser<'a> {
         let mut lexer = Lexer::new(text, file, start);
         let cur = lexer.token();
         let prev = Token { kind: Tok::Bad, start: cur.start, end: cur.start, newline: true };

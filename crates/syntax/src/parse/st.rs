@@ -3,6 +3,7 @@
 use super::Parser;
 use crate::lexer::Tok;
 use crate::words::St;
+use crate::{il, ladder};
 use g7_model::{
     Block, Body, BodyLang, CaseArm, Expr, ExprKind, Local, Path, Problem, Stmt, StmtKind, Work, codes,
 };
@@ -55,14 +56,31 @@ impl Parser<'_> {
         self.bump();
         if !self.at(Tok::LBrace) || self.next.is_some() {
             self.expected("`{`");
-            return Body::Other(lang, "".into(), self.since(start).into());
+            let at = self.since(start).into();
+            return Body::Other(lang, "".into(), Block { at, ..Block::default() });
         }
         let open = self.here();
-        let text = self.lexer.raw_body(self.cur.end);
-        let text = if text.contains('\r') { text.replace("\r\n", "\n").into() } else { text.into() };
+        let from = self.cur.end as usize;
+        let raw = self.lexer.raw_body(self.cur.end);
+        let statements = self.other_body(lang, from, from + raw.len());
+        let text = if raw.contains('\r') { raw.replace("\r\n", "\n").into() } else { raw.into() };
         self.bump();
         self.close(Tok::RBrace, "`}`", open);
-        Body::Other(lang, text, self.since(start).into())
+        let at = self.since(start).into();
+        Body::Other(lang, text, Block { locals: Vec::new(), statements, at })
+    }
+
+    /// The statements that a body in another language stands for.
+    fn other_body(&mut self, lang: BodyLang, from: usize, to: usize) -> Vec<Stmt> {
+        let text = self.text.get(..to).unwrap_or_default();
+        let (statements, problems) = match lang {
+            BodyLang::Il => il::statements_from(text, self.file, from),
+            BodyLang::Ld => ladder::statements_from(text, self.file, from),
+        };
+        for problem in problems {
+            self.lexer.problems.add(problem.at, || problem);
+        }
+        statements
     }
 
     /// An assignment, a call or a block, as an action does them.

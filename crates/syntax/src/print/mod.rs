@@ -13,7 +13,7 @@ mod world;
 
 use crate::lexer::{name_continue, name_start};
 use crate::{LineIndex, number, words};
-use g7_model::{Action, Document, Expr, Note, Span};
+use g7_model::{Action, Document, Expr, Note, Span, Stmt};
 
 /// Lines that are put together from several parts are no longer than this.
 const WIDTH: usize = 100;
@@ -33,6 +33,13 @@ pub fn print(document: &Document, source: Option<&str>) -> String {
 pub fn print_expr(expr: &Expr) -> String {
     let mut printer = Printer::new(&[], None);
     printer.expr(expr);
+    printer.out
+}
+
+/// The canonical text of statements, a line each or more.
+pub fn print_statements(statements: &[Stmt]) -> String {
+    let mut printer = Printer::new(&[], None);
+    printer.statements(statements);
     printer.out
 }
 

@@ -70,7 +70,7 @@ impl Printer<'_> {
         }
     }
 
-    fn statements(&mut self, statements: &[Stmt]) {
+    pub(super) fn statements(&mut self, statements: &[Stmt]) {
         for statement in statements {
             if is_short(&statement.kind) {
                 self.line(statement.at.0, false, |p| p.statement(statement));

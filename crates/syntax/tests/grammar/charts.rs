@@ -197,7 +197,7 @@ fn actions_need_no_separators() {
 fn sections_of_a_chart() {
     let c = chart(
         "var n : INT := 0 pre { a := b } post st { c := d } action Pump \"x\" { e := f } \
-         action Old il { LD a { } ST b } action Rung ld {--[ ]--} \
+         action Old il { LD a ST b } action Rung ld {--{ [a] | [b] }--(c)} \
          transition section Ready := a and b transition section Full { Full := c }",
     );
     let seen: Vec<String> = c
@@ -225,8 +225,8 @@ fn sections_of_a_chart() {
             "pre a <- b",
             "post c <- d",
             "action Pump e <- f",
-            "il LD a { } ST b ",
-            "ld--[ ]--",
+            "il LD a ST b ",
+            "ld--{ [a] | [b] }--(c)",
             "section Ready true Ready <- (and a b)",
             "section Full false Full <- c",
         ]

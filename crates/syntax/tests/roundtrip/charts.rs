@@ -63,10 +63,13 @@ fn variable() -> impl Strategy<Value = VarDecl> {
 fn body() -> impl Strategy<Value = Body> {
     prop_oneof![
         3 => block().prop_map(Body::St),
-        1 => (any::<bool>(), "[a-z \n{]{0,8}").prop_map(|(il, text)| {
-            let closing = "}".repeat(text.matches('{').count());
-            let lang = if il { BodyLang::Il } else { BodyLang::Ld };
-            Body::Other(lang, format!("{text}{closing}").into(), at())
+        1 => (any::<bool>(), "[ \n]{0,4}", any::<bool>()).prop_map(|(il, blanks, empty)| {
+            let (lang, text) = match il {
+                true => (BodyLang::Il, "LD a\nAND(\nLD b\n)\nST c"),
+                false => (BodyLang::Ld, "--{ [a] | [/b]\n }--(c)"),
+            };
+            let text = if empty { "" } else { text };
+            Body::Other(lang, format!("{blanks}{text}{blanks}").into(), Block::default())
         }),
     ]
 }

@@ -1,0 +1,226 @@
+//! Structured Text shown as Instruction List.
+
+use g7_model::{Arg, BinaryOp, Expr, ExprKind, Literal, Path, Place, Stmt, StmtKind, UnaryOp};
+
+use crate::print::print_expr;
+
+/// The list whose last result is the expression.
+pub fn show_expr_as_il(e: &Expr) -> String {
+    let mut shower = Shower::default();
+    shower.value(e);
+    shower.out
+}
+
+/// The list that does what the statements do; none where a statement has no form in it (FOR, CASE).
+pub fn show_as_il(statements: &[Stmt]) -> Option<String> {
+    let mut shower = Shower::default();
+    shower.statements(statements, None)?;
+    Some(shower.out)
+}
+
+#[derive(Default)]
+struct Shower {
+    out: String,
+    indent: usize,
+    labels: usize,
+}
+
+/// The operator of an operation, and whether its operand may be complemented.
+fn operator(op: BinaryOp) -> Option<(&'static str, bool)> {
+    Some(match op {
+        BinaryOp::Or => ("OR", true),
+        BinaryOp::Xor => ("XOR", true),
+        BinaryOp::And | BinaryOp::Dot => ("AND", true),
+        BinaryOp::Eq => ("EQ", false),
+        BinaryOp::Ne => ("NE", false),
+        BinaryOp::Lt => ("LT", false),
+        BinaryOp::Le => ("LE", false),
+        BinaryOp::Gt => ("GT", false),
+        BinaryOp::Ge => ("GE", false),
+        BinaryOp::Add => ("ADD", false),
+        BinaryOp::Sub => ("SUB", false),
+        BinaryOp::Mul => ("MUL", false),
+        BinaryOp::Div => ("DIV", false),
+        BinaryOp::Mod => ("MOD", false),
+        BinaryOp::Pow => return None,
+    })
+}
+
+/// An operand as it stands behind an operator, if it is one.
+fn operand(e: &Expr) -> Option<String> {
+    match &e.kind {
+        ExprKind::Literal(_) | ExprKind::Path(_) | ExprKind::Direct(_) | ExprKind::Call(..) => {
+            Some(print_expr(e))
+        }
+        ExprKind::Timer { .. } => Some(print_expr(e)),
+        ExprKind::Unary(UnaryOp::Rise | UnaryOp::Fall, _) => Some(print_expr(e)),
+        ExprKind::Unary(UnaryOp::Neg, inner) if matches!(inner.kind, ExprKind::Literal(_)) => {
+            Some(print_expr(e))
+        }
+        ExprKind::Unary(..) | ExprKind::Binary(..) | ExprKind::Bad => None,
+    }
+}
+
+impl Shower {
+    fn line(&mut self, text: &str) {
+        for _ in 0..self.indent {
+            self.out.push_str("  ");
+        }
+        self.out.push_str(text);
+        self.out.push('\n');
+    }
+
+    /// Lines behind which the result is the expression.
+    fn value(&mut self, e: &Expr) {
+        if let Some(text) = operand(e) {
+            return self.line(&format!("LD {text}"));
+        }
+        match &e.kind {
+            ExprKind::Unary(UnaryOp::Not, inner) => match operand(inner) {
+                Some(text) => self.line(&format!("LDN {text}")),
+                None => {
+                    self.value(inner);
+                    self.line("NOT");
+                }
+            },
+            ExprKind::Binary(op, a, b) => match operator(*op) {
+                Some((word, complement)) => {
+                    self.value(a);
+                    self.operation(word, complement, b);
+                }
+                None => self.line(&format!("LD ({})", print_expr(e))),
+            },
+            _ => self.line(&format!("LD ({})", print_expr(e))),
+        }
+    }
+
+    fn operation(&mut self, word: &str, complement: bool, e: &Expr) {
+        let (word, e) = match &e.kind {
+            ExprKind::Unary(UnaryOp::Not, inner) if complement => (format!("{word}N"), &**inner),
+            _ => (word.to_string(), e),
+        };
+        match operand(e) {
+            Some(text) => self.line(&format!("{word} {text}")),
+            None => {
+                self.line(&format!("{word}("));
+                self.indent += 1;
+                self.value(e);
+                self.indent -= 1;
+                self.line(")");
+            }
+        }
+    }
+
+    fn label(&mut self) -> String {
+        self.labels += 1;
+        format!("L{}", self.labels)
+    }
+
+    /// `exit`: where EXIT goes to.
+    fn statements(&mut self, list: &[Stmt], exit: Option<&str>) -> Option<()> {
+        list.iter().try_for_each(|s| self.statement(s, exit))
+    }
+
+    fn statement(&mut self, stmt: &Stmt, exit: Option<&str>) -> Option<()> {
+        match &stmt.kind {
+            StmtKind::Assign { target, value } => self.assign(target, value),
+            StmtKind::Call(path, args) => {
+                self.line(&format!("CAL {}", call(path, args, stmt.at)));
+            }
+            StmtKind::If(arms, otherwise) => return self.conditions(arms, otherwise, exit),
+            StmtKind::While(condition, body) => {
+                let (start, end) = (self.label(), self.label());
+                self.line(&format!("{start}:"));
+                if condition.kind != ExprKind::Literal(Literal::Bool(true)) {
+                    self.value(condition);
+                    self.line(&format!("JMPCN {end}"));
+                }
+                self.statements(body, Some(&end))?;
+                self.line(&format!("JMP {start}"));
+                self.line(&format!("{end}:"));
+            }
+            StmtKind::Repeat(body, condition) => {
+                let (start, end) = (self.label(), self.label());
+                self.line(&format!("{start}:"));
+                self.statements(body, Some(&end))?;
+                self.value(condition);
+                self.line(&format!("JMPCN {start}"));
+                self.line(&format!("{end}:"));
+            }
+            StmtKind::Exit => self.line(&format!("JMP {}", exit?)),
+            StmtKind::Return => self.line("RET"),
+            StmtKind::Case(..) | StmtKind::For { .. } => return None,
+        }
+        Some(())
+    }
+
+    fn assign(&mut self, target: &Expr, value: &Expr) {
+        let target = print_expr(target);
+        if let ExprKind::Unary(UnaryOp::Not, inner) = &value.kind
+            && operand(inner).is_none()
+        {
+            self.value(inner);
+            return self.line(&format!("STN {target}"));
+        }
+        self.value(value);
+        self.line(&format!("ST {target}"));
+    }
+
+    fn conditions(
+        &mut self,
+        arms: &[(Expr, Vec<Stmt>)],
+        otherwise: &[Stmt],
+        exit: Option<&str>,
+    ) -> Option<()> {
+        if let [(condition, body)] = arms
+            && otherwise.is_empty()
+            && self.short(condition, body)
+        {
+            return Some(());
+        }
+        let end = self.label();
+        let mut needs_end = false;
+        for (index, (condition, body)) in arms.iter().enumerate() {
+            let last = index + 1 == arms.len() && otherwise.is_empty();
+            let next = if last { end.clone() } else { self.label() };
+            needs_end |= last;
+            self.value(condition);
+            self.line(&format!("JMPCN {next}"));
+            self.statements(body, exit)?;
+            if !last {
+                needs_end = true;
+                self.line(&format!("JMP {end}"));
+                self.line(&format!("{next}:"));
+            }
+        }
+        self.statements(otherwise, exit)?;
+        if needs_end {
+            self.line(&format!("{end}:"));
+        }
+        Some(())
+    }
+
+    /// `S`, `R`, `CALC` and `RETC`.
+    fn short(&mut self, condition: &Expr, body: &[Stmt]) -> bool {
+        let [only] = body else { return false };
+        let line = match &only.kind {
+            StmtKind::Assign { target, value } => match &value.kind {
+                ExprKind::Literal(Literal::Bool(true)) => format!("S {}", print_expr(target)),
+                ExprKind::Literal(Literal::Bool(false)) => format!("R {}", print_expr(target)),
+                _ => return false,
+            },
+            StmtKind::Call(path, args) => {
+                format!("CALC {}", call(path, args, only.at))
+            }
+            StmtKind::Return => "RETC".to_string(),
+            _ => return false,
+        };
+        self.value(condition);
+        self.line(&line);
+        true
+    }
+}
+
+fn call(path: &Path, args: &[Arg], at: Place) -> String {
+    print_expr(&Expr { kind: ExprKind::Call(path.clone(), args.to_vec()), at })
+}
