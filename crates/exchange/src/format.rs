@@ -1,24 +1,27 @@
 //! The formats that are known, and how a file shows which one it is.
 
-use crate::{iectext, jgrafchart, xml};
+use crate::{iectext, jgrafchart, xmi, xml};
 
 /// A foreign format.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Format {
     /// JGrafchart 2.x, `saveVersion` up to 8.
     Jgrafchart,
+    /// EMF/XMI instances of the AGRAFE meta-model of IEC 60848.
+    Xmi,
     /// IEC 61131-3 in text: charts with Structured Text and Instruction List.
     IecText,
 }
 
 impl Format {
     /// All of them, in the order in which a file is asked.
-    pub const ALL: &[Format] = &[Format::Jgrafchart, Format::IecText];
+    pub const ALL: &[Format] = &[Format::Jgrafchart, Format::Xmi, Format::IecText];
 
     /// What messages call it.
     pub fn title(self) -> &'static str {
         match self {
             Format::Jgrafchart => "JGrafchart",
+            Format::Xmi => "XMI",
             Format::IecText => "IEC 61131-3 text",
         }
     }
@@ -30,6 +33,7 @@ impl Format {
         let root = xml::root_name(bytes);
         match self {
             Format::Jgrafchart => root.is_some_and(|name| jgrafchart::is_root(&name)),
+            Format::Xmi => root.is_some_and(|name| xmi::is_root(&name)),
             Format::IecText => iectext::fits(name, bytes),
         }
     }
@@ -40,16 +44,19 @@ impl Format {
 pub enum Outlet {
     /// A flowchart in the text of Mermaid, for documents; it is not read back.
     Mermaid,
+    /// An EMF/XMI instance of the AGRAFE meta-model of IEC 60848.
+    Xmi,
 }
 
 impl Outlet {
     /// All of them, in the order in which they are listed.
-    pub const ALL: &[Outlet] = &[Outlet::Mermaid];
+    pub const ALL: &[Outlet] = &[Outlet::Mermaid, Outlet::Xmi];
 
     /// The word for it on the command line.
     pub fn word(self) -> &'static str {
         match self {
             Outlet::Mermaid => "mermaid",
+            Outlet::Xmi => "xmi",
         }
     }
 
@@ -57,6 +64,7 @@ impl Outlet {
     pub fn title(self) -> &'static str {
         match self {
             Outlet::Mermaid => "Mermaid flowchart",
+            Outlet::Xmi => "XMI",
         }
     }
 
@@ -64,6 +72,7 @@ impl Outlet {
     pub fn ending(self) -> &'static str {
         match self {
             Outlet::Mermaid => "mmd",
+            Outlet::Xmi => "grafcet",
         }
     }
 }

@@ -28,6 +28,7 @@ mod iectext;
 mod jgrafchart;
 mod mermaid;
 mod report;
+mod xmi;
 mod xml;
 
 use g7_model::{Document, FileId, Problem};
@@ -49,6 +50,7 @@ pub fn recognise(name: &str, bytes: &[u8]) -> Option<Format> {
 pub fn import(format: Format, bytes: &[u8], file: FileId) -> (Document, Vec<Problem>) {
     match format {
         Format::Jgrafchart => jgrafchart::import(bytes, file),
+        Format::Xmi => xmi::import(bytes, file),
         Format::IecText => iectext::import(bytes, file),
     }
 }
@@ -69,5 +71,6 @@ pub struct Written {
 pub fn export(to: Outlet, document: &Document) -> Written {
     match to {
         Outlet::Mermaid => mermaid::export(document),
+        Outlet::Xmi => xmi::export(document),
     }
 }

@@ -1,0 +1,115 @@
+//! References by place: `//@partialGrafcets.0/@steps.1` is the second `steps` of
+//! the first `partialGrafcets` of the file.
+
+use std::collections::HashMap;
+use std::ops::Range;
+
+use super::read::Xml;
+use crate::xml::attr;
+
+/// Longest reference or name that a message repeats.
+const LONGEST: usize = 80;
+
+/// Every element by its parent and the feature that holds it.
+pub(super) struct Refs<'a> {
+    root: Xml<'a>,
+    children: HashMap<(roxmltree::NodeId, &'a str), Vec<Xml<'a>>>,
+    /// Elements with an `xmi:id`.
+    ids: HashMap<&'a str, Xml<'a>>,
+}
+
+impl<'a> Refs<'a> {
+    pub(super) fn new(root: Xml<'a>) -> Refs<'a> {
+        let mut refs = Refs { root, children: HashMap::new(), ids: HashMap::new() };
+        for xml in root.descendants().filter(Xml::is_element) {
+            if let Some(parent) = xml.parent() {
+                refs.children.entry((parent.id(), xml.tag_name().name())).or_default().push(xml);
+            }
+            let id = xml.attributes().find(|a| a.name() == "id" && a.namespace().is_some());
+            if let Some(id) = id {
+                refs.ids.entry(id.value()).or_insert(xml);
+            }
+        }
+        refs
+    }
+
+    /// The element that a reference means, or what is wrong with it.
+    pub(super) fn resolve(&self, reference: &str) -> Result<Xml<'a>, String> {
+        let path = reference.strip_prefix('#').unwrap_or(reference);
+        if path.contains('#') {
+            return Err(format!("`{}` is a reference into another file", shown(reference)));
+        }
+        let Some(path) = path.strip_prefix('/') else {
+            return match self.ids.get(path) {
+                Some(xml) => Ok(*xml),
+                None => Err(format!("no element has the identifier `{}`", shown(reference))),
+            };
+        };
+        let mut segments = path.split('/');
+        let first = segments.next().unwrap_or("");
+        if !matches!(first, "" | "0") {
+            return Err(format!("`{}`: the file has one root only", shown(reference)));
+        }
+        let mut here = self.root;
+        for segment in segments {
+            here = self.step(here, segment, reference)?;
+        }
+        Ok(here)
+    }
+
+    /// One step down, `@steps.1` or `@term`.
+    fn step(&self, here: Xml<'a>, segment: &str, whole: &str) -> Result<Xml<'a>, String> {
+        let named = segment.strip_prefix('@').map(|rest| match rest.rsplit_once('.') {
+            Some((name, number)) => (name, number.parse::<usize>().ok()),
+            None => (rest, Some(0)),
+        });
+        let Some((name, Some(number))) = named else {
+            return Err(format!("`{}` is no reference: `{}`", shown(whole), shown(segment)));
+        };
+        let list = self.children.get(&(here.id(), name));
+        let count = list.map_or(0, Vec::len);
+        list.and_then(|l| l.get(number)).copied().ok_or_else(|| match count {
+            0 => format!("`{}` leads nowhere: there are no `{}`", shown(whole), shown(name)),
+            n => format!("`{}` leads nowhere: there are {n} `{}`, counted from 0", shown(whole), shown(name)),
+        })
+    }
+}
+
+/// One reference of an attribute.
+pub(super) struct Reference {
+    /// As written.
+    pub(super) text: String,
+    /// Its place in the file.
+    pub(super) at: Range<usize>,
+}
+
+/// The references in an attribute.
+pub(super) fn list(xml: Xml, name: &str) -> Vec<Reference> {
+    let Some(text) = attr::text(xml, name) else { return Vec::new() };
+    let mut found = Vec::new();
+    let mut start = None;
+    for (i, c) in text.text.char_indices().chain([(text.text.len(), ' ')]) {
+        match (c.is_whitespace(), start) {
+            (false, None) => start = Some(i),
+            (true, Some(from)) => {
+                let part = from..i;
+                let at = text.place(&part);
+                let text = text.text.get(part).unwrap_or("").to_string();
+                found.push(Reference { text, at });
+                start = None;
+            }
+            _ => {}
+        }
+    }
+    found
+}
+
+/// A piece of the file as a message repeats it.
+pub(super) fn shown(text: &str) -> String {
+    let mut short: String =
+        text.chars().take(LONGEST).map(|c| if c.is_control() { ' ' } else { c }).collect();
+    if text.chars().nth(LONGEST).is_some() {
+        short.push('…');
+    }
+    short
+}

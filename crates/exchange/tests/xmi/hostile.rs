@@ -1,0 +1,196 @@
+//! Files made to break a reader: it ends soon, with words, never with a panic.
+
+use std::time::{Duration, Instant};
+
+use g7_exchange::{Format, Outlet, recognise};
+use g7_model::{Document, FileId, Problem};
+use proptest::prelude::*;
+
+use crate::show::bytes;
+
+const HEAD: &str = "<g:Grafcet xmlns:g='g' xmlns:xsi='x' xmlns:terms='t'>";
+const TAIL: &str = "</g:Grafcet>";
+
+fn import(file: &[u8]) -> (Document, Vec<Problem>) {
+    recognise("", file);
+    let (document, problems) = g7_exchange::import(Format::Xmi, file, FileId(0));
+    for p in &problems {
+        assert!(p.at.start <= p.at.end, "{p:?}");
+        assert!(p.at.end as usize <= file.len().max(1), "{p:?}");
+    }
+    g7_exchange::export(Outlet::Xmi, &document);
+    (document, problems)
+}
+
+/// Runs something that has to end within so many seconds.
+#[allow(clippy::disallowed_methods, reason = "how long the machine takes is what is asked here")]
+fn within<T>(seconds: u64, work: impl FnOnce() -> T) -> T {
+    let start = Instant::now();
+    let result = work();
+    assert!(start.elapsed() < Duration::from_secs(seconds));
+    result
+}
+
+/// The codes of a file, found within a time that no bound lets pass.
+fn codes(body: &str) -> Vec<&'static str> {
+    let file = format!("{HEAD}{body}{TAIL}");
+    let (_, problems) = within(20, || import(file.as_bytes()));
+    problems.iter().map(|p| p.code.id).collect()
+}
+
+#[test]
+fn the_gate_for_xml_stands_before_this_reader_too() {
+    let bomb = r#"<!DOCTYPE l [<!ENTITY a "aaaa"><!ENTITY b "&a;&a;">]><g:Grafcet xmlns:g="g" name="&b;"/>"#;
+    assert_eq!(import(bomb.as_bytes()).1.iter().map(|p| p.code.id).collect::<Vec<_>>(), ["G0601"]);
+    let deep = format!("{}{}", "<partialGrafcets>".repeat(10_000), "</partialGrafcets>".repeat(10_000));
+    assert_eq!(codes(&deep), ["G0007"]);
+}
+
+#[test]
+fn wide_terms_are_refused() {
+    let many = "<subterm xsi:type='terms:BooleanConstant'/>".repeat(50_000);
+    for class in ["And", "Equality", "Addition"] {
+        let file = format!(
+            "<partialGrafcets><transitions><term xsi:type='terms:{class}'>{many}</term></transitions></partialGrafcets>"
+        );
+        assert!(codes(&file).contains(&"G0007"), "{class}");
+    }
+}
+
+#[test]
+fn one_action_of_many_steps_is_bounded() {
+    let steps = "<steps/>".repeat(3000);
+    let value = "<subterm xsi:type='terms:BooleanConstant'/>".repeat(300);
+    let links: String = (0..3000)
+        .map(|n| format!("<actionLinks step='//@partialGrafcets.0/@steps.{n}' actionType='//@partialGrafcets.0/@actionTypes.0'/>"))
+        .collect();
+    let file = format!(
+        "<partialGrafcets>{steps}<actionTypes xsi:type='g:StoredAction'><variable variableDeclaration='{}'/><value xsi:type='terms:And'>{value}</value></actionTypes>{links}</partialGrafcets>
+         <variableDeclarationContainer><variableDeclarations name='a'><sort xsi:type='terms:Bool'/></variableDeclarations></variableDeclarationContainer>",
+        "//@variableDeclarationContainer/@variableDeclarations.0"
+    );
+    assert!(codes(&file).contains(&"G0008"));
+}
+
+#[test]
+fn synchronisations_are_bounded() {
+    let part = |n: usize, what: &str| format!("//@partialGrafcets.0/@{what}.{n}");
+    let mut arcs = String::new();
+    for n in 0..3000 {
+        arcs += &format!("<arcs source='{}' target='{}'/>", part(n, "steps"), part(0, "synchronizations"));
+        arcs +=
+            &format!("<arcs source='{}' target='{}'/>", part(0, "synchronizations"), part(n, "transitions"));
+    }
+    let file = format!(
+        "<partialGrafcets>{}{}<synchronizations/>{arcs}</partialGrafcets>",
+        "<steps/>".repeat(3000),
+        "<transitions/>".repeat(3000)
+    );
+    assert!(codes(&file).contains(&"G0008"));
+}
+
+#[test]
+fn many_equal_numbers_and_long_references_are_no_work() {
+    let names = "<steps id='7'/>".repeat(30_000);
+    codes(&format!("<partialGrafcets>{names}</partialGrafcets>"));
+    let long = "/@a.0".repeat(100_000);
+    assert!(
+        codes(&format!("<partialGrafcets enclosingStep='/{long}'><steps/></partialGrafcets>"))
+            .contains(&"G0607")
+    );
+    let many = "//@a.0 ".repeat(100_000);
+    assert!(
+        codes(&format!("<partialGrafcets><steps partialGrafcets='{many}'/></partialGrafcets>"))
+            .contains(&"G0607")
+    );
+}
+
+#[derive(Clone, Debug)]
+enum Change {
+    Set(usize, u8),
+    Cut(usize, usize),
+    Copy(usize, usize, usize),
+    Put(usize, &'static str),
+}
+
+fn change() -> impl Strategy<Value = Change> {
+    let words = prop::sample::select(vec![
+        "<",
+        ">",
+        "/>",
+        "\"",
+        "&",
+        "&#10;",
+        "<!--",
+        "é",
+        "\u{202e}",
+        "//@",
+        "@steps.0",
+        ".1",
+        ".99999999999999999999",
+        "initial=\"true\"",
+        "partialGrafcets",
+        "terms:",
+        "Variable",
+        "And",
+        "Not",
+        "-1",
+        "99999999999",
+        "true",
+        "#",
+        "/",
+        "`",
+        "enclosingStep=\"//@partialGrafcets.0/@steps.0\"",
+        "<subterm xsi:type=\"terms:Not\">",
+        "</subterm>",
+    ]);
+    let place = any::<prop::sample::Index>().prop_map(|i| i.index(1 << 20));
+    prop_oneof![
+        (place.clone(), any::<u8>()).prop_map(|(i, b)| Change::Set(i, b)),
+        (place.clone(), 0usize..200).prop_map(|(i, n)| Change::Cut(i, n)),
+        (place.clone(), place.clone(), 0usize..400).prop_map(|(i, j, n)| Change::Copy(i, j, n)),
+        (place, words).prop_map(|(i, w)| Change::Put(i, w)),
+    ]
+}
+
+fn apply(file: &mut Vec<u8>, change: &Change) {
+    let len = file.len().max(1);
+    match change {
+        Change::Set(i, b) => {
+            if let Some(byte) = file.get_mut(i % len) {
+                *byte = *b;
+            }
+        }
+        Change::Cut(i, n) => {
+            let from = (i % len).min(file.len());
+            let to = (from + n).min(file.len());
+            file.drain(from..to);
+        }
+        Change::Copy(i, j, n) => {
+            let from = (i % len).min(file.len());
+            let piece = file[from..(from + n).min(file.len())].to_vec();
+            let at = (j % len).min(file.len());
+            file.splice(at..at, piece);
+        }
+        Change::Put(i, word) => {
+            let at = (i % len).min(file.len());
+            file.splice(at..at, word.bytes());
+        }
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 300, failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn a_changed_file_never_panics(
+        file in prop::sample::select(vec!["mixer.grafcet", "wrong.grafcet"]),
+        changes in prop::collection::vec(change(), 1..8),
+    ) {
+        let mut file = bytes(file);
+        for change in &changes {
+            apply(&mut file, change);
+        }
+        import(&file);
+    }
+}
