@@ -12,6 +12,7 @@
 pub mod check;
 pub mod ir;
 pub mod lower;
+mod mentions;
 pub mod plant;
 pub mod references;
 pub mod resolve;

@@ -3,13 +3,13 @@
 use std::collections::HashSet;
 
 use g7_model::{
-    Action, ActionKind, Arg, Block, Body, Chart, ChartItem, Document, Expr, ExprKind, Item, Name, Order,
-    Path, Placed, Plant, PlantItem, PropertyKind, Situation, Span, Step, StepKind, Stmt, StmtKind, Target,
-    TestStmt, TestStmtKind, Transition, VarDecl, Work,
+    Block, Chart, ChartItem, Document, Item, Name, Order, Placed, Plant, PlantItem, Situation, Span, Step,
+    StepKind, Transition, VarDecl,
 };
 
 use super::{Definition, Use, Written};
 use crate::ir::ChartId;
+use crate::mentions::Mentions;
 use crate::resolve::{Tracer, resolve_open};
 
 /// Every name with what it refers to.
@@ -78,13 +78,7 @@ impl<'d> Walk<'_, 'd> {
                 t.body.iter().for_each(|s| self.test(s));
                 self.plant = None;
             }
-            Item::Prove(p) => match &p.kind {
-                PropertyKind::Always(e) | PropertyKind::Never(e) | PropertyKind::Reachable(e) => self.expr(e),
-                PropertyKind::After(a, _, b) => {
-                    self.expr(a);
-                    self.expr(b);
-                }
-            },
+            Item::Prove(p) => self.property(&p.kind),
             Item::Layout(l) => {
                 let chart = self.tracer.chart(&l.chart.text);
                 self.name(&l.chart, chart, Written::Name);
@@ -168,27 +162,46 @@ impl<'d> Walk<'_, 'd> {
         t.on_clearing.iter().for_each(|b| self.block(b));
     }
 
-    fn action(&mut self, action: &'d Action) {
-        match &action.kind {
-            ActionKind::Qualified { time, target, condition, .. } => {
-                time.iter().for_each(|e| self.expr(e));
-                match target {
-                    Target::Path(path) => self.path(path),
-                    Target::Direct(text, at) => self.direct(text, at.0),
-                    Target::Work(work) => self.work(work),
-                }
-                condition.iter().for_each(|e| self.expr(e));
+    fn plant(&mut self, plant: &'d Plant) {
+        let home = plant.name.text.to_string();
+        self.add(plant.name.at.0, Definition::Plant(home.clone()), Written::Declared);
+        self.plant = Some((plant, plant_names(plant)));
+        for item in &plant.items {
+            for n in declared(item) {
+                let own = Definition::PlantItem { plant: home.clone(), name: n.text.to_string() };
+                self.add(n.at.0, own, Written::Declared);
             }
-            ActionKind::OnEvent { event, work } => {
-                self.expr(event);
-                self.work(work);
+            self.plant_item(item);
+        }
+        self.plant = None;
+    }
+}
+
+impl<'d> Mentions<'d> for Walk<'_, 'd> {
+    fn path(&mut self, names: &'d [Name]) {
+        let local = |w: &Self, n: &Name| w.locals.iter().any(|l| l.contains(&*n.text));
+        let of_plant = match (names.first(), &self.plant) {
+            (Some(first), Some((p, own))) if own.contains(&*first.text) && !local(self, first) => {
+                let plant = p.name.text.to_string();
+                Some((first.at.0, Definition::PlantItem { plant, name: first.text.to_string() }))
             }
-            ActionKind::EachScan { work, condition } => {
-                self.work(work);
-                condition.iter().for_each(|e| self.expr(e));
+            _ => None,
+        };
+        let only = names.len() == 1;
+        if let Some((at, def)) = of_plant {
+            return self.add(at, def, Written::Path { first: true, only });
+        }
+        for (k, definition, before) in self.tracer.path(names, &self.locals) {
+            if let Some(name) = names.get(k) {
+                let written = Written::Path { first: k == 0, only };
+                self.uses.push(Use { at: name.at.0, definition, written, before });
             }
-            ActionKind::Order(order) => self.order(order),
-            ActionKind::Comment(_) => {}
+        }
+    }
+
+    fn direct(&mut self, text: &'d str, at: Span) {
+        for (_, def, _) in self.tracer.direct(text) {
+            self.add(at, def, Written::Direct);
         }
     }
 
@@ -214,208 +227,13 @@ impl<'d> Walk<'_, 'd> {
         self.name(name, chart, Written::Name);
     }
 
-    // Structured Text
-
-    fn work(&mut self, work: &'d Work) {
-        match work {
-            Work::Single(s) => self.statement(s),
-            Work::Block(b) => self.block(b),
-        }
-    }
-
-    fn body(&mut self, body: &'d Body) {
-        if let Body::St(block) = body {
-            self.block(block);
-        }
-    }
-
-    fn block(&mut self, block: &'d Block) {
-        for local in &block.locals {
-            local.init.iter().for_each(|e| self.expr(e));
-        }
+    fn enter(&mut self, block: &'d Block) {
         let own = block.locals.iter().flat_map(|l| &l.names).map(|n| &*n.text).collect();
         self.locals.push(own);
-        self.statements(&block.statements);
+    }
+
+    fn leave(&mut self) {
         self.locals.pop();
-    }
-
-    fn statements(&mut self, list: &'d [Stmt]) {
-        list.iter().for_each(|s| self.statement(s));
-    }
-
-    fn statement(&mut self, s: &'d Stmt) {
-        match &s.kind {
-            StmtKind::Assign { target, value } => {
-                self.expr(target);
-                self.expr(value);
-            }
-            StmtKind::Call(path, args) => self.call(path, args),
-            StmtKind::If(arms, rest) => {
-                for (e, body) in arms {
-                    self.expr(e);
-                    self.statements(body);
-                }
-                self.statements(rest);
-            }
-            StmtKind::Case(e, arms, rest) => {
-                self.expr(e);
-                for arm in arms {
-                    for (first, last) in &arm.labels {
-                        self.expr(first);
-                        last.iter().for_each(|e| self.expr(e));
-                    }
-                    self.statements(&arm.body);
-                }
-                self.statements(rest);
-            }
-            StmtKind::For { var, from, to, by, body } => {
-                self.names(std::slice::from_ref(var));
-                self.expr(from);
-                self.expr(to);
-                by.iter().for_each(|e| self.expr(e));
-                self.statements(body);
-            }
-            StmtKind::While(e, body) => {
-                self.expr(e);
-                self.statements(body);
-            }
-            StmtKind::Repeat(body, e) => {
-                self.statements(body);
-                self.expr(e);
-            }
-            StmtKind::Exit | StmtKind::Return => {}
-        }
-    }
-
-    fn call(&mut self, path: &'d Path, args: &'d [Arg]) {
-        self.path(path);
-        args.iter().for_each(|a| self.expr(&a.value));
-    }
-
-    fn expr(&mut self, e: &'d Expr) {
-        match &e.kind {
-            ExprKind::Literal(_) | ExprKind::Bad => {}
-            ExprKind::Path(path) => self.path(path),
-            ExprKind::Direct(text) => self.direct(text, e.at.0),
-            ExprKind::Unary(_, a) => self.expr(a),
-            ExprKind::Binary(_, a, b) => {
-                self.expr(a);
-                self.expr(b);
-            }
-            ExprKind::Timer { t1, e, t2 } => {
-                self.expr(t1);
-                self.expr(e);
-                t2.iter().for_each(|t| self.expr(t));
-            }
-            ExprKind::Call(path, args) => self.call(path, args),
-        }
-    }
-
-    fn direct(&mut self, text: &str, at: Span) {
-        for (_, def, _) in self.tracer.direct(text) {
-            self.add(at, def, Written::Direct);
-        }
-    }
-
-    fn path(&mut self, path: &Path) {
-        self.names(&path.names);
-    }
-
-    fn names(&mut self, names: &[Name]) {
-        let local = |w: &Self, n: &Name| w.locals.iter().any(|l| l.contains(&*n.text));
-        let of_plant = match (names.first(), &self.plant) {
-            (Some(first), Some((p, own))) if own.contains(&*first.text) && !local(self, first) => {
-                let plant = p.name.text.to_string();
-                Some((first.at.0, Definition::PlantItem { plant, name: first.text.to_string() }))
-            }
-            _ => None,
-        };
-        let only = names.len() == 1;
-        if let Some((at, def)) = of_plant {
-            return self.add(at, def, Written::Path { first: true, only });
-        }
-        for (k, definition, before) in self.tracer.path(names, &self.locals) {
-            if let Some(name) = names.get(k) {
-                let written = Written::Path { first: k == 0, only };
-                self.uses.push(Use { at: name.at.0, definition, written, before });
-            }
-        }
-    }
-
-    // Plants and tests
-
-    fn plant(&mut self, plant: &'d Plant) {
-        let home = plant.name.text.to_string();
-        self.add(plant.name.at.0, Definition::Plant(home.clone()), Written::Declared);
-        let own = |n: &Name| Definition::PlantItem { plant: home.clone(), name: n.text.to_string() };
-        self.plant = Some((plant, plant_names(plant)));
-        for item in &plant.items {
-            match item {
-                PlantItem::Const { names, value, .. } => {
-                    names.iter().for_each(|n| self.add(n.at.0, own(n), Written::Declared));
-                    self.expr(value);
-                }
-                PlantItem::State(s) => {
-                    s.names.iter().for_each(|n| self.add(n.at.0, own(n), Written::Declared));
-                    s.init.iter().for_each(|e| self.expr(e));
-                    s.limits.iter().flat_map(|(a, b)| [a, b]).for_each(|e| self.expr(e));
-                }
-                PlantItem::Rate(r) => {
-                    self.names(std::slice::from_ref(&r.state));
-                    self.expr(&r.value);
-                    r.when.iter().for_each(|e| self.expr(e));
-                }
-                PlantItem::Drive(x) => {
-                    self.names(std::slice::from_ref(&x.input));
-                    self.expr(&x.value);
-                }
-                PlantItem::On(e, block, _) => {
-                    self.expr(e);
-                    self.block(block);
-                }
-                PlantItem::Each(block, _) => self.block(block),
-                PlantItem::Parts(p) => {
-                    self.add(p.name.at.0, own(&p.name), Written::Declared);
-                    p.length.iter().chain(p.init.iter().flatten()).for_each(|e| self.expr(e));
-                }
-                PlantItem::Arrivals(a) => {
-                    self.add(a.name.at.0, own(&a.name), Written::Declared);
-                    self.expr(&a.least);
-                    a.most.iter().chain(&a.when).for_each(|e| self.expr(e));
-                    self.block(&a.body);
-                }
-                PlantItem::View(v) => v.bindings.iter().for_each(|b| self.expr(&b.value)),
-            }
-        }
-        self.plant = None;
-    }
-
-    fn test(&mut self, s: &'d TestStmt) {
-        match &s.kind {
-            TestStmtKind::Set(list) => {
-                for (path, e) in list {
-                    self.path(path);
-                    self.expr(e);
-                }
-            }
-            TestStmtKind::Pulse(path, _) | TestStmtKind::Release(path) => self.path(path),
-            TestStmtKind::WaitUntil(e, _) => self.expr(e),
-            TestStmtKind::Expect(list) => list.iter().for_each(|e| self.expr(e)),
-            TestStmtKind::Always(list, body) => {
-                list.iter().for_each(|e| self.expr(e));
-                body.iter().for_each(|s| self.test(s));
-            }
-            TestStmtKind::Force(path, e) => {
-                self.path(path);
-                self.expr(e);
-            }
-            TestStmtKind::Repeat(_, body) => body.iter().for_each(|s| self.test(s)),
-            TestStmtKind::Wait(_)
-            | TestStmtKind::Scan(_)
-            | TestStmtKind::ExpectFault(_)
-            | TestStmtKind::Restart { .. }
-            | TestStmtKind::Comment(_) => {}
-        }
     }
 }
 
@@ -428,23 +246,20 @@ fn plant_named<'d>(doc: &'d Document, name: &str) -> Option<&'d Plant> {
 
 /// The names that a plant declares itself.
 fn plant_names(plant: &Plant) -> HashSet<&str> {
-    let mut names = HashSet::new();
-    for item in &plant.items {
-        match item {
-            PlantItem::Const { names: list, .. } => names.extend(list.iter().map(|n| &*n.text)),
-            PlantItem::State(s) => names.extend(s.names.iter().map(|n| &*n.text)),
-            PlantItem::Parts(p) => {
-                names.insert(&*p.name.text);
-            }
-            PlantItem::Arrivals(a) => {
-                names.insert(&*a.name.text);
-            }
-            PlantItem::Rate(_)
-            | PlantItem::Drive(_)
-            | PlantItem::On(..)
-            | PlantItem::Each(..)
-            | PlantItem::View(_) => {}
-        }
+    plant.items.iter().flat_map(declared).map(|n| &*n.text).collect()
+}
+
+/// The names that an item of a plant declares.
+fn declared(item: &PlantItem) -> &[Name] {
+    match item {
+        PlantItem::Const { names, .. } => names,
+        PlantItem::State(s) => &s.names,
+        PlantItem::Parts(p) => std::slice::from_ref(&p.name),
+        PlantItem::Arrivals(a) => std::slice::from_ref(&a.name),
+        PlantItem::Rate(_)
+        | PlantItem::Drive(_)
+        | PlantItem::On(..)
+        | PlantItem::Each(..)
+        | PlantItem::View(_) => &[],
     }
-    names
 }
