@@ -8,16 +8,7 @@ use g7_model::{Chart, Document, FileId};
 use g7_syntax::parse_bytes;
 
 use crate::geometry::faults;
-
-/// Random numbers, the same each time.
-pub(crate) struct Random(pub(crate) u64);
-
-impl Random {
-    pub(crate) fn below(&mut self, n: usize) -> usize {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        ((self.0 >> 33) as usize) % n.max(1)
-    }
-}
+use crate::maker::Random;
 
 /// Symbols with texts of random width.
 pub(crate) fn random_sizes(chart: &Chart, random: &mut Random) -> Sizes {

@@ -4,5 +4,6 @@
 mod charts;
 mod conventions;
 mod geometry;
+mod maker;
 mod placed;
 mod random;

@@ -3,8 +3,9 @@
 use g7_draw::{End, Extent, Placement, Point, Sizes, layout};
 use g7_model::{Chart, Item, Name, PlaceAt, Placed, Span};
 
-use crate::charts::{Random, corpus, random_sizes};
+use crate::charts::{corpus, random_sizes};
 use crate::geometry::{faults, link_faults, runs_through};
+use crate::maker::Random;
 use crate::random::{chart_of, only};
 
 const BRANCHES: &str = "initial step 1 step 2 step 3 step 4 step 5\n\

@@ -1,4 +1,4 @@
-//! Random charts: forks, joins, alternatives, loops and jumps; and extreme ones.
+//! Random charts, structured and without any structure; and extreme ones.
 
 use std::fmt::Write as _;
 
@@ -6,8 +6,9 @@ use g7_draw::{Extent, Sizes, layout};
 use g7_model::{Chart, Document, FileId};
 use g7_syntax::parse;
 
-use crate::charts::{Random, random_sizes};
+use crate::charts::random_sizes;
 use crate::geometry::faults;
+use crate::maker::{Random, random_chart};
 
 fn document(text: &str) -> Document {
     let (document, problems) = parse(text, FileId(0));
@@ -17,92 +18,6 @@ fn document(text: &str) -> Document {
 
 pub(crate) fn chart_of(body: &str) -> Document {
     document(&format!("chart G {{\n{body}}}\n"))
-}
-
-/// A chart in the making.
-struct Maker {
-    random: Random,
-    steps: usize,
-    links: String,
-}
-
-impl Maker {
-    fn step(&mut self) -> usize {
-        self.steps += 1;
-        self.steps - 1
-    }
-
-    fn link(&mut self, from: &[usize], to: &[usize]) {
-        let list = |steps: &[usize]| {
-            let all: Vec<String> = steps.iter().map(ToString::to_string).collect();
-            if all.len() == 1 { all.concat() } else { format!("({})", all.join(", ")) }
-        };
-        let _ = writeln!(self.links, "  {} -> {} when TRUE", list(from), list(to));
-    }
-
-    /// A sequence with branches; its first and last step.
-    fn sequence(&mut self, depth: usize, size: usize) -> (usize, usize) {
-        let first = self.step();
-        let (mut last, mut used) = (first, 1);
-        while used < size {
-            let count = 2 + self.random.below(3);
-            let each = ((size - used) / count).min(4 + self.random.below(10));
-            match self.random.below(8) {
-                0 if depth < 4 && size - used > 6 => {
-                    let ends: Vec<_> = (0..count).map(|_| self.sequence(depth + 1, each.max(1))).collect();
-                    let (heads, tails): (Vec<_>, Vec<_>) = ends.into_iter().unzip();
-                    self.link(&[last], &heads);
-                    let next = self.step();
-                    self.link(&tails, &[next]);
-                    last = next;
-                    used += each * count + 1;
-                }
-                1 if depth < 4 && size - used > 6 => {
-                    let next = self.step();
-                    for _ in 0..count {
-                        if self.random.below(5) == 0 {
-                            self.link(&[last], &[next]);
-                            continue;
-                        }
-                        let (head, tail) = self.sequence(depth + 1, each.max(1));
-                        self.link(&[last], &[head]);
-                        self.link(&[tail], &[next]);
-                    }
-                    last = next;
-                    used += each * count + 1;
-                }
-                2 if self.random.below(3) == 0 => {
-                    // Back to where this sequence began.
-                    self.link(&[last], &[first]);
-                    used += 1;
-                }
-                _ => {
-                    let next = self.step();
-                    self.link(&[last], &[next]);
-                    last = next;
-                    used += 1;
-                }
-            }
-        }
-        (first, last)
-    }
-}
-
-/// A chart of so many steps with so many jumps from anywhere to anywhere.
-fn random_chart(seed: u64, size: usize, jumps: usize) -> Document {
-    let mut m = Maker { random: Random(seed), steps: 0, links: String::new() };
-    let (first, last) = m.sequence(0, size);
-    m.link(&[last], &[first]);
-    for _ in 0..jumps {
-        let (a, b) = (m.random.below(m.steps), m.random.below(m.steps));
-        m.link(&[a], &[b]);
-    }
-    let mut body = String::new();
-    for n in 0..m.steps {
-        let initial = if n == 0 || m.random.below(40) == 0 { "initial " } else { "" };
-        let _ = writeln!(body, "  {initial}step {n}");
-    }
-    chart_of(&(body + &m.links))
 }
 
 /// A chart with no structure at all.
@@ -142,7 +57,7 @@ fn structured_charts_have_no_faults() {
     for seed in 0..600 {
         let mut random = Random(seed);
         let size = 2 + random.below(80);
-        fine(&format!("seed {seed}"), &random_chart(seed, size, 0), &mut random);
+        fine(&format!("seed {seed}"), &random_chart(seed, size, 0, size), &mut random);
     }
 }
 
@@ -151,7 +66,7 @@ fn charts_with_jumps_have_no_faults() {
     for seed in 0..600 {
         let mut random = Random(seed);
         let (size, jumps) = (2 + random.below(80), 1 + random.below(12));
-        fine(&format!("seed {seed}"), &random_chart(seed, size, jumps), &mut random);
+        fine(&format!("seed {seed}"), &random_chart(seed, size, jumps, size), &mut random);
     }
 }
 
@@ -180,7 +95,7 @@ fn a_jump_into_a_branch_breaks_one_link() {
 #[test]
 fn charts_without_jumps_break_few_links() {
     for seed in 0..20 {
-        let document = random_chart(seed, 40, 0);
+        let document = random_chart(seed, 40, 0, 40);
         let chart = only(&document);
         let plain = Sizes {
             steps: chart.steps().map(|_| Extent { left: 250, right: 250, up: 0, down: 500 }).collect(),
