@@ -3,7 +3,7 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 seconds=${1:-60}
-mkdir -p fuzz/corpus/text fuzz/corpus/run fuzz/corpus/jgrafchart fuzz/corpus/xmi
+mkdir -p fuzz/corpus/{text,run,jgrafchart,xmi,edit,page}
 for f in $(git ls-files 'examples/*.g7' 'tests/check/*.g7'); do
     cp "$f" "fuzz/corpus/text/$(echo "$f" | tr / _)"
     cp "$f" "fuzz/corpus/run/$(echo "$f" | tr / _)"
@@ -14,6 +14,15 @@ done
 for f in $(git ls-files 'tests/interchange/xmi/*.grafcet'); do
     cp "$f" "fuzz/corpus/xmi/$(basename "$f")"
 done
-for target in text jgrafchart xmi run tables; do
+# The cases of gestures, and stories of messages.
+awk '
+    /^## / { n++; blocks = 0 }
+    /^```/ { kind = kind == "" ? substr($0, 4) : ""; if (kind == "g7") blocks++; next }
+    kind == "g7" && blocks == 1 { text[n] = text[n] $0 "\n" }
+    kind == "json" { said[n] = said[n] $0 "\n" }
+    END { for (k = 1; k <= n; k++) printf "%s----\n%s", text[k], said[k] > "fuzz/corpus/edit/case-" k }
+' tests/edit/*.md
+cp fuzz/stories/* fuzz/corpus/page/
+for target in text jgrafchart xmi run tables edit page; do
     cargo fuzz run --sanitizer none "$target" -- -max_total_time="$seconds" -max_len=65536 -timeout=20 -verbosity=0
 done

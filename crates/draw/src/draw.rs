@@ -3,14 +3,14 @@
 
 use std::collections::HashMap;
 
-use g7_model::{Chart, Document, Item as Entry, PlaceAt, Step, Transition};
+use g7_model::{Chart, Document, Item as Entry, PlaceAt, Placed, Step, Transition};
 
 use crate::ink::Picture;
-use crate::layout::layout;
+use crate::layout::{FAR, layout};
 use crate::pages;
 use crate::symbols::{
-    SQUARE, StepShape, TransitionShape, arrow, connector, connector_label, connector_width, double, step,
-    transition,
+    SQUARE, StepShape, TransitionShape, arrow, connector, connector_label, connector_width, double, note,
+    step, transition, widest,
 };
 use crate::{Connector, Drawing, End, Item, Options, Part, Placement, Point, Rect, Sizes};
 
@@ -34,7 +34,25 @@ pub fn draw(document: &Document, chart: &Chart, options: &Options) -> Drawing {
         return symbols.put(chart, &paged.placement, paged.frames, &paged.pages);
     }
     let placement = layout(chart, &symbols.sizes, places(document, chart));
-    symbols.put(chart, &placement, Vec::new(), &[])
+    symbols.put(chart, &placement, notes(document, chart), &[])
+}
+
+/// The comments of a chart's layout, in the order of the text, with their places.
+pub fn comments<'a>(document: &'a Document, chart: &Chart) -> impl Iterator<Item = (&'a str, &'a PlaceAt)> {
+    places(document, chart).iter().filter_map(|p| match &p.what {
+        Placed::Comment(text) => Some((&**text, p)),
+        Placed::Step(_) | Placed::Transition(_) | Placed::TransitionNumber(_) => None,
+    })
+}
+
+fn notes(document: &Document, chart: &Chart) -> Vec<Item> {
+    (0..)
+        .zip(comments(document, chart))
+        .map(|(comment, (text, p))| {
+            let place = Point { x: p.x.clamp(-FAR, FAR), y: p.y.clamp(-FAR, FAR) };
+            item(Part::Comment { comment, place }, note(text).moved(place), p.at.0)
+        })
+        .collect()
 }
 
 /// What the layout section of the chart says.
@@ -46,10 +64,26 @@ fn places<'a>(document: &'a Document, chart: &Chart) -> &'a [PlaceAt] {
     sections.next().unwrap_or(&[])
 }
 
+/// How many transitions stand behind each step, and how many before it.
+fn alternatives(chart: &Chart) -> HashMap<&str, (usize, usize)> {
+    let mut count = HashMap::<&str, (usize, usize)>::new();
+    for t in chart.transitions() {
+        t.from.iter().for_each(|n| count.entry(&n.text).or_default().0 += 1);
+        t.to.iter().for_each(|n| count.entry(&n.text).or_default().1 += 1);
+    }
+    count
+}
+
 impl<'a> Symbols<'a> {
     pub(crate) fn new(chart: &'a Chart, options: &Options) -> Symbols<'a> {
         let steps: Vec<_> = chart.steps().map(|s| (s, step(s, options))).collect();
-        let transitions: Vec<_> = chart.transitions().map(|t| (t, transition(t))).collect();
+        let alternatives = alternatives(chart);
+        let shape = |t: &'a Transition| {
+            let at = |n: &g7_model::Name| alternatives.get(&*n.text).copied().unwrap_or_default();
+            let among = t.from.iter().map(|n| at(n).0).chain(t.to.iter().map(|n| at(n).1));
+            (t, transition(t, widest(among.max().unwrap_or(1))))
+        };
+        let transitions: Vec<_> = chart.transitions().map(shape).collect();
         let sizes = Sizes {
             steps: steps.iter().map(|(_, s)| s.extent).collect(),
             transitions: transitions.iter().map(|(_, t)| t.extent).collect(),

@@ -5,7 +5,7 @@
 
 use g7_model::Span;
 
-use crate::{End, Rect};
+use crate::{End, Point, Rect};
 
 /// One chart, drawn.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -79,6 +79,13 @@ pub enum Part {
         /// The end that goes away; else the one that arrives.
         leaving: bool,
     },
-    /// A comment, a frame of a page, a title: nothing that can be edited as a symbol.
+    /// A comment of the layout section.
+    Comment {
+        /// Its number among the comments of the chart's layout, from 0.
+        comment: u32,
+        /// The upper left corner of its text.
+        place: Point,
+    },
+    /// A frame of a page, a title: nothing that can be edited as a symbol.
     Text,
 }

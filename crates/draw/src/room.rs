@@ -6,15 +6,25 @@
 //!
 //! What must hold afterwards: no symbol or text stands on another because of a layout.
 
-use g7_model::{Chart, Document, Item, PlaceAt};
+use std::collections::{BTreeMap, HashMap, HashSet};
 
-use crate::{Options, Rect, Sizes, layout, measure};
+use g7_model::{Chart, Document, Item, PlaceAt, Placed};
 
-/// By how much places are drawn apart, in percent, in the order of trial.
-const APART: [i32; 4] = [100, 125, 150, 200];
+use crate::layout::rooms::{BAR, CLEAR, DOUBLE, LINK, SQUARE};
+use crate::symbols::note_area;
+use crate::{End, Extent, Options, Rect, Sizes, layout, measure};
 
-/// Draws the places of each layout apart until all symbols stand clear; a
-/// layout that does not come clear is left out, so the chart is laid out anew.
+/// Most symbols whose places are drawn apart.
+const MOST: usize = 4_000;
+/// Between two symbols side by side.
+const ASIDE: i64 = 150;
+/// Farthest place.
+const FAR: i64 = 10_000_000;
+
+/// Draws the places of each layout apart until all symbols stand clear: rows go
+/// down and columns go right, only as far as they must, so that what stood in
+/// line still does. A layout that does not come clear is left out, so the chart
+/// is laid out anew; its comments stand beside that.
 pub fn make_room(document: &mut Document) {
     let roomy: Vec<Option<Vec<PlaceAt>>> = document
         .items
@@ -22,7 +32,7 @@ pub fn make_room(document: &mut Document) {
         .map(|item| match item {
             Item::Layout(l) => {
                 let chart = document.charts().find(|c| c.name == l.chart)?;
-                with_room(document, chart, &l.places)
+                Some(with_room(document, chart, &l.places))
             }
             _ => None,
         })
@@ -33,7 +43,7 @@ pub fn make_room(document: &mut Document) {
         match (item, places) {
             (Item::Layout(l), Some(places)) => {
                 l.places = places;
-                true
+                !l.places.is_empty()
             }
             (Item::Layout(_), None) => false,
             _ => true,
@@ -41,20 +51,217 @@ pub fn make_room(document: &mut Document) {
     });
 }
 
-fn with_room(document: &Document, chart: &Chart, places: &[PlaceAt]) -> Option<Vec<PlaceAt>> {
+fn with_room(document: &Document, chart: &Chart, places: &[PlaceAt]) -> Vec<PlaceAt> {
     let sizes = measure(document, chart, &Options::default());
-    APART.iter().find_map(|percent| {
-        let mut apart = places.to_vec();
-        for p in &mut apart {
-            p.x = scaled(p.x, *percent);
-            p.y = scaled(p.y, *percent);
-        }
-        is_clear(chart, &sizes, &apart).then_some(apart)
-    })
+    let clear = apart(chart, &sizes, places).filter(|p| is_clear(chart, &sizes, p));
+    clear.unwrap_or_else(|| comments_beside(chart, &sizes, places))
 }
 
-fn scaled(at: i32, percent: i32) -> i32 {
-    i32::try_from(i64::from(at) * i64::from(percent) / 100).unwrap_or(at)
+/// Without places of symbols: the comments one below the other at the right of the chart.
+fn comments_beside(chart: &Chart, sizes: &Sizes, places: &[PlaceAt]) -> Vec<PlaceAt> {
+    let area = layout(chart, sizes, &[]).area;
+    let mut y = area.y;
+    let mut found = Vec::new();
+    for p in places {
+        let Placed::Comment(text) = &p.what else { continue };
+        found.push(PlaceAt { x: area.x + area.w + 2 * LINK, y, ..p.clone() });
+        y += note_area(text).h + LINK;
+    }
+    found
+}
+
+/// What stands at a place.
+struct Body {
+    at: [i64; 2],
+    extent: Extent,
+    node: Option<End>,
+}
+
+/// One stands this far before another at least, along one axis.
+struct Apart {
+    first: usize,
+    second: usize,
+    by: i64,
+}
+
+fn apart(chart: &Chart, sizes: &Sizes, places: &[PlaceAt]) -> Option<Vec<PlaceAt>> {
+    if places.len() > MOST {
+        return Some(places.to_vec());
+    }
+    let bodies = bodies(chart, sizes, places);
+    let links = links(chart, &bodies);
+    let (columns, mut rows) = overlaps(&bodies, &links)?;
+    rows.extend(links.iter().filter_map(|l| l.room(&bodies)));
+    let xs = shifted(&bodies, 0, &columns);
+    let ys = shifted(&bodies, 1, &rows);
+    let mut out = places.to_vec();
+    for ((p, x), y) in out.iter_mut().zip(xs).zip(ys) {
+        if x.abs() > FAR || y.abs() > FAR {
+            return None;
+        }
+        p.x = i32::try_from(x).ok()?;
+        p.y = i32::try_from(y).ok()?;
+    }
+    Some(out)
+}
+
+fn bodies(chart: &Chart, sizes: &Sizes, places: &[PlaceAt]) -> Vec<Body> {
+    let mut steps: HashMap<&str, usize> = HashMap::new();
+    for (n, s) in chart.steps().enumerate() {
+        steps.entry(&s.name.text).or_insert(n);
+    }
+    let mut labels: HashMap<&str, usize> = HashMap::new();
+    for (n, t) in chart.transitions().enumerate() {
+        if let Some(label) = &t.label {
+            labels.entry(&label.text).or_insert(n);
+        }
+    }
+    let number = |n: usize| u32::try_from(n).unwrap_or(u32::MAX);
+    let step = |n: &usize| Some((End::Step(number(*n)), *sizes.steps.get(*n)?));
+    let transition = |n: usize| Some((End::Transition(number(n)), *sizes.transitions.get(n)?));
+    let body = |p: &PlaceAt| {
+        let found = match &p.what {
+            Placed::Step(name) => steps.get(&*name.text).and_then(step),
+            Placed::Transition(label) => labels.get(&*label.text).and_then(|n| transition(*n)),
+            Placed::TransitionNumber(n) => transition(*n as usize),
+            Placed::Comment(_) => None,
+        };
+        let extent = match (&found, &p.what) {
+            (Some((_, extent)), _) => *extent,
+            (None, Placed::Comment(text)) => {
+                let area = note_area(text);
+                Extent { left: 0, right: area.w, up: 0, down: area.h }
+            }
+            (None, _) => Extent::default(),
+        };
+        Body { at: [p.x, p.y].map(i64::from), extent, node: found.map(|(end, _)| end) }
+    };
+    places.iter().map(body).collect()
+}
+
+/// A link between two places, and whether others part or meet at its ends.
+struct Linked {
+    from: usize,
+    to: usize,
+    parts: bool,
+    meets: bool,
+}
+
+fn links(chart: &Chart, bodies: &[Body]) -> Vec<Linked> {
+    let mut at: HashMap<End, usize> = HashMap::new();
+    bodies.iter().enumerate().filter_map(|(k, b)| Some((b.node?, k))).for_each(|(end, k)| {
+        at.entry(end).or_insert(k);
+    });
+    let mut steps: HashMap<&str, u32> = HashMap::new();
+    for (n, s) in (0..).zip(chart.steps()) {
+        steps.entry(&s.name.text).or_insert(n);
+    }
+    let (mut out, mut into) = (HashMap::<usize, u32>::new(), HashMap::<usize, u32>::new());
+    let mut found: Vec<(usize, usize)> = Vec::new();
+    for (n, t) in (0..).zip(chart.transitions()) {
+        let Some(own) = at.get(&End::Transition(n)).copied() else { continue };
+        let place = |name: &g7_model::Name| at.get(&End::Step(*steps.get(&*name.text)?)).copied();
+        found.extend(t.from.iter().filter_map(place).map(|s| (s, own)));
+        found.extend(t.to.iter().filter_map(place).map(|s| (own, s)));
+    }
+    for (a, b) in &found {
+        *out.entry(*a).or_default() += 1;
+        *into.entry(*b).or_default() += 1;
+    }
+    let many = |count: &HashMap<usize, u32>, k: usize| count.get(&k).is_some_and(|n| *n > 1);
+    let link =
+        |(from, to): (usize, usize)| Linked { from, to, parts: many(&out, from), meets: many(&into, to) };
+    found.into_iter().map(link).collect()
+}
+
+impl Linked {
+    /// The room for the link itself, where it runs down.
+    fn room(&self, bodies: &[Body]) -> Option<Apart> {
+        let (a, b) = (bodies.get(self.from)?, bodies.get(self.to)?);
+        if b.at[1] <= a.at[1] {
+            return None;
+        }
+        let step = matches!(a.node, Some(End::Step(_)));
+        let port = if step { SQUARE } else { 0 };
+        let (double, line) = (BAR + DOUBLE, LINK + CLEAR);
+        // Where several part they do so below the symbol's texts.
+        let leave = match (self.parts, step) {
+            (true, true) => (port + LINK).max(a.extent.down + CLEAR),
+            (true, false) => a.extent.down.max(double) + CLEAR,
+            (false, _) => port + LINK / 2,
+        };
+        let come = match (self.meets, step) {
+            (true, true) => b.extent.up.max(double) + CLEAR,
+            (true, false) => b.extent.up + line,
+            (false, _) => LINK / 2,
+        };
+        let come = if self.parts { come.max(b.extent.up + CLEAR) } else { come };
+        Some(Apart { first: self.from, second: self.to, by: i64::from(leave + come) })
+    }
+}
+
+/// What must stand farther apart: side by side, and one below the other. `None`
+/// where two stand at the same place.
+fn overlaps(bodies: &[Body], links: &[Linked]) -> Option<(Vec<Apart>, Vec<Apart>)> {
+    let box_of = |b: &Body| {
+        let [x, y] = b.at;
+        let e = &b.extent;
+        [x - i64::from(e.left), y - i64::from(e.up), x + i64::from(e.right), y + i64::from(e.down)]
+    };
+    let linked: HashSet<(usize, usize)> =
+        links.iter().flat_map(|l| [(l.from, l.to), (l.to, l.from)]).collect();
+    let mut order: Vec<(usize, [i64; 4])> = bodies.iter().map(box_of).enumerate().collect();
+    order.sort_by_key(|(_, b)| b[1]);
+    let (mut columns, mut rows) = (Vec::new(), Vec::new());
+    for (n, (i, a)) in order.iter().enumerate() {
+        for (j, b) in order.iter().skip(n + 1).take_while(|(_, b)| b[1] < a[3] + i64::from(CLEAR)) {
+            if a[0] >= b[2] + ASIDE || b[0] >= a[2] + ASIDE {
+                continue;
+            }
+            let (p, q) = (bodies.get(*i)?, bodies.get(*j)?);
+            let pair = |axis: usize, margin: i64| {
+                let ((f, fb, fp), (s, sb, sp)) = match p.at[axis] <= q.at[axis] {
+                    true => ((*i, a, p), (*j, b, q)),
+                    false => ((*j, b, q), (*i, a, p)),
+                };
+                let reach = fb[axis + 2] - fp.at[axis] + sp.at[axis] - sb[axis];
+                Apart { first: f, second: s, by: reach + margin }
+            };
+            let (aside, below) = (pair(0, ASIDE), pair(1, i64::from(CLEAR)));
+            let lack = |axis: usize, w: &Apart| w.by - (p.at[axis] - q.at[axis]).abs();
+            let (same_x, same_y) = (p.at[0] == q.at[0], p.at[1] == q.at[1]);
+            if same_x && same_y {
+                return None;
+            }
+            let down = linked.contains(&(*i, *j)) || lack(1, &below) <= lack(0, &aside);
+            if same_x || down && !same_y { rows.push(below) } else { columns.push(aside) }
+        }
+    }
+    Some((columns, rows))
+}
+
+/// The places along one axis, in their order: each line of symbols moves as far
+/// as it must, and what stands behind it as far as it does.
+fn shifted(bodies: &[Body], axis: usize, wanted: &[Apart]) -> Vec<i64> {
+    let at = |k: usize| bodies.get(k).map_or(0, |b| b.at[axis]);
+    let mut by_line: BTreeMap<i64, Vec<&Apart>> = bodies.iter().map(|b| (b.at[axis], Vec::new())).collect();
+    for w in wanted {
+        if let Some(list) = by_line.get_mut(&at(w.second)) {
+            list.push(w);
+        }
+    }
+    let mut shift: BTreeMap<i64, i64> = BTreeMap::new();
+    let mut most = 0;
+    for (line, list) in by_line {
+        for w in list {
+            let first = at(w.first) + shift.get(&at(w.first)).copied().unwrap_or(0);
+            most = most.max(first + w.by - line);
+        }
+        // On half units, as the page moves symbols.
+        most = (most + 49) / 50 * 50;
+        shift.insert(line, most);
+    }
+    bodies.iter().map(|b| b.at[axis] + shift.get(&b.at[axis]).copied().unwrap_or(0)).collect()
 }
 
 /// Whether no symbol with its texts touches another.
@@ -105,6 +312,32 @@ mod tests {
         make_room(&mut near);
         let found = places(&near).expect("they come clear");
         assert!(found[2].1 - found[0].1 > 400, "{found:?}");
+    }
+
+    #[test]
+    fn what_stood_in_line_still_does_and_only_what_must_moves() {
+        let mut near = document("step 0 at (10, 10) transition #0 at (10, 12) step 1 at (14, 10)");
+        make_room(&mut near);
+        let found = places(&near).expect("they come clear");
+        assert_eq!((found[0], found[1].0), ((1000, 1000), 1000), "{found:?}");
+        assert_eq!(found[2].1, 1000, "the second step stays beside the first: {found:?}");
+        assert!(found[2].0 >= 1500, "and clear of it: {found:?}");
+        assert!(found[1].1 >= 1000 + 500, "the transition stands below: {found:?}");
+    }
+
+    #[test]
+    fn comments_are_kept_clear_of_symbols_or_beside_a_new_layout() {
+        let mut over = document(
+            "comment \"on it\" at (9, 11) step 0 at (10, 10) transition #0 at (10, 20) step 1 at (10, 30)",
+        );
+        make_room(&mut over);
+        let found = places(&over).expect("a layout");
+        assert!(found[0].1 >= found[1].1 + 500 || found[0].0 >= found[1].0 + 250, "{found:?}");
+        let mut same = document("step 0 at (1, 1) step 1 at (1, 1) comment \"kept\" at (1, 1)");
+        make_room(&mut same);
+        let found = places(&same).expect("the comment's");
+        assert_eq!(found.len(), 1, "the symbols are laid out anew");
+        assert!(found[0].0 > 500, "{found:?}");
     }
 
     #[test]

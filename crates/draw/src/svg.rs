@@ -213,6 +213,7 @@ fn body(out: &mut String, drawing: &Drawing) {
             Part::Transition { .. } => "transition",
             Part::Link { .. } => "link",
             Part::Connector { .. } => "connector",
+            Part::Comment { .. } => "comment",
             Part::Text => "text",
         };
         let _ = write!(out, "<g data-part=\"{part}\">{}</g>", item.svg);

@@ -300,3 +300,39 @@ fn no_chart_is_too_odd_to_be_drawn() {
         assert!(d.area.w < 60_000 && d.area.h < 60_000, "{:?}", d.area);
     }
 }
+
+#[test]
+fn comments_of_the_layout_stand_at_their_places_in_quotes() {
+    let d = picture(
+        "chart G { initial step 1 }\nlayout G { comment \"one\" at (10, 2) step 1 at (0, 0) comment \"two\" at (10, 8) }\n",
+        &Options::default(),
+    );
+    let found = items(&d, |p| matches!(p, Part::Comment { .. }));
+    let numbers: Vec<u32> = found
+        .iter()
+        .filter_map(|i| if let Part::Comment { comment, .. } = i.part { Some(comment) } else { None })
+        .collect();
+    assert_eq!(numbers, [0, 1], "numbered among the comments");
+    assert_eq!((found[0].area.x, found[0].area.y), (1000, 200), "the upper left corner");
+    assert_eq!((found[1].area.x, found[1].area.y), (1000, 800));
+    assert_eq!(texts(found[1]), ["“two”"]);
+    assert!(d.area.x + d.area.w >= found[1].area.x + found[1].area.w, "the drawing covers them");
+}
+
+#[test]
+fn receptivities_side_by_side_are_set_narrower_than_one_alone() {
+    let long = "[count_of_parts > 10] and ready and not empty and [level < 20]";
+    let condition = long.replace('[', "(").replace(']', ")");
+    let widths = |branches: usize| {
+        let mut text = String::from("chart G { initial step 0 ");
+        for n in 1..=branches {
+            text.push_str(&format!("step {n} 0 -> {n} when {condition} "));
+        }
+        text.push('}');
+        let d = picture(&text, &Options::default());
+        let found = items(&d, |p| matches!(p, Part::Transition { .. }));
+        found.iter().map(|i| i.area.w).max().unwrap_or(0)
+    };
+    let (one, two, three) = (widths(1), widths(2), widths(3));
+    assert!(three < two && two < one, "{one} {two} {three}");
+}

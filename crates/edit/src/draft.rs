@@ -38,6 +38,8 @@ pub(crate) struct Draft<'s> {
     pub(crate) besides: Vec<Splice>,
     pub(crate) select: Vec<Mark>,
     pub(crate) begin: Option<Mark>,
+    /// What the user should know.
+    pub(crate) told: Vec<String>,
     fresh: u32,
 }
 
@@ -51,6 +53,7 @@ impl<'s> Draft<'s> {
             besides: Vec::new(),
             select: Vec::new(),
             begin: None,
+            told: Vec::new(),
             fresh: 0,
         }
     }

@@ -108,12 +108,21 @@ pub enum Gesture {
         /// As typed; empty to delete it.
         text: String,
     },
-    /// The comment of a step, transition or chart.
+    /// The comment of a step, transition or chart, or the text of one in the layout.
     Comment {
         /// The thing.
         id: ItemId,
-        /// Without quotes; empty for none.
+        /// Without quotes; empty for none, which takes one in the layout away.
         text: String,
+    },
+    /// A comment that belongs to no symbol, somewhere on the drawing.
+    CommentAt {
+        /// The chart.
+        chart: String,
+        /// Without quotes.
+        text: String,
+        /// Its upper left corner, in pixels.
+        at: [f64; 2],
     },
     /// The label of a transition.
     Label {
@@ -129,6 +138,17 @@ pub enum Gesture {
         /// 1 is first.
         #[serde(default)]
         n: Option<u32>,
+    },
+    /// The steps that a transition joins.
+    Ends {
+        /// The transition.
+        id: ItemId,
+        /// Names of the preceding steps; as they are when absent.
+        #[serde(default)]
+        before: Option<Vec<String>>,
+        /// Names of the succeeding steps; as they are when absent.
+        #[serde(default)]
+        after: Option<Vec<String>>,
     },
     /// Whether a step is active in the initial situation.
     Initial {
@@ -216,6 +236,19 @@ pub enum Gesture {
     Profile {
         /// Its name.
         name: String,
+    },
+    /// A switch of the profile.
+    Switch {
+        /// Its word, such as `one-pass`.
+        name: String,
+        /// Whether it is set beside the profile; else the profile says.
+        on: bool,
+    },
+    /// Most passes in a scan.
+    Bound {
+        /// How many; as the profile says when absent.
+        #[serde(default)]
+        n: Option<u32>,
     },
     /// The scan time of the file.
     Scan {

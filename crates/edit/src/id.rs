@@ -1,6 +1,6 @@
 //! Names for the things of a drawing, the same in the page, in gestures and in
 //! answers: `Chart/s/Step`, `Chart/a/Step/0`, `Chart/t/3`, `Chart/l/s:Step>t:3`,
-//! `Chart/c/s:Step>t:3/leaving`, `Chart/x/0`, and `Chart` for a chart itself.
+//! `Chart/c/s:Step>t:3/leaving`, `Chart/n/0`, `Chart/x/0`, and `Chart` for a chart itself.
 //!
 //! Any text can be a name, so `/`, `>`, `:` and `%` inside one are written
 //! `%2F`, `%3E`, `%3A` and `%25`. What must hold: an id reads as it prints.
@@ -32,6 +32,8 @@ pub enum Part {
     Link(End, End),
     /// One end of a link that is broken off: the one that leaves, or the one that arrives.
     Connector(End, End, bool),
+    /// A comment of the layout by its place there, from 0.
+    Note(usize),
     /// Something that is only drawn.
     Other(usize),
 }
@@ -76,6 +78,11 @@ impl ItemId {
         ItemId { chart: chart.into(), part: Part::Connector(from, to, leaving) }
     }
 
+    /// A comment of the layout.
+    pub fn note(chart: impl Into<String>, number: usize) -> ItemId {
+        ItemId { chart: chart.into(), part: Part::Note(number) }
+    }
+
     /// Something that is only drawn.
     pub fn other(chart: impl Into<String>, number: usize) -> ItemId {
         ItemId { chart: chart.into(), part: Part::Other(number) }
@@ -101,6 +108,7 @@ impl fmt::Display for ItemId {
             Part::Connector(from, to, leaving) => {
                 write!(f, "/c/{from}>{to}/{}", if *leaving { "leaving" } else { "arriving" })
             }
+            Part::Note(number) => write!(f, "/n/{number}"),
             Part::Other(number) => write!(f, "/x/{number}"),
         }
     }
@@ -160,6 +168,7 @@ fn read(text: &str) -> Option<ItemId> {
             };
             Part::Connector(from, to, leaving)
         }
+        "n" => Part::Note(number(first)?),
         "x" => Part::Other(number(first)?),
         _ => return None,
     };
@@ -246,6 +255,7 @@ mod tests {
             (ItemId::link("G", End::Step("a>b".into()), End::Transition(3)), "G/l/s:a%3Eb>t:3"),
             (ItemId::link("G", End::Transition(3), End::Step("1".into())), "G/l/t:3>s:1"),
             (ItemId::connector("G", End::Transition(3), End::Step("1".into()), true), "G/c/t:3>s:1/leaving"),
+            (ItemId::note("G", 2), "G/n/2"),
             (ItemId::other("G", 7), "G/x/7"),
         ] {
             assert_eq!(id.to_string(), text);

@@ -23,10 +23,11 @@ mod gesture;
 mod gestures;
 mod history;
 mod id;
+mod needs;
 mod splice;
 mod write;
 
-pub use copy::copy;
+pub use copy::{copy, copy_placed};
 pub use gesture::{Alignment, Branching, ChartSort, Gesture, Row, Sort, What};
 pub use history::History;
 pub use id::{End, ItemId, NoId, Part};
@@ -56,6 +57,8 @@ pub struct Edit {
     pub select: Vec<ItemId>,
     /// What is to be typed in next, at its place.
     pub begin: Option<ItemId>,
+    /// What the user should know of it, sentence by sentence.
+    pub told: Vec<String>,
 }
 
 /// Why a gesture was not carried out: a sentence for the user.
@@ -125,7 +128,7 @@ pub fn apply_placed(source: &Source<'_>, gesture: &Gesture, anchors: Anchors<'_>
     let splices = with_besides(source.text, splices, std::mem::take(&mut draft.besides))?;
     let select = draft.select.iter().filter_map(|m| draft.resolved(m)).collect();
     let begin = draft.begin.as_ref().and_then(|m| draft.resolved(m));
-    Ok(Edit { splices, select, begin })
+    Ok(Edit { splices, select, begin, told: draft.told })
 }
 
 /// One gesture behind another, as one change.

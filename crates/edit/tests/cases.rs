@@ -3,7 +3,8 @@
 //! A case is a `##` section with a block `g7` (before), a block `json` (one or
 //! more gestures, one a line), and a block `g7` (after) or `no` (words of the
 //! refusal); a block `select` names what is selected afterwards, with `begin`
-//! before what is typed in next.
+//! before what is typed in next. A block `told` has a part of each sentence that
+//! the user is told besides; without one nothing may be told.
 #![allow(clippy::disallowed_methods, reason = "the test reads the cases")]
 
 use std::path::Path;
@@ -104,6 +105,11 @@ fn wrong(case: &Case) -> Option<String> {
     if text != after {
         return Some(format!("--- expected\n{after}--- found\n{text}"));
     }
+    let told: Vec<&str> = case.block("told", 0).unwrap_or_default().lines().collect();
+    let fits = told.len() == last.told.len() && told.iter().zip(&last.told).all(|(w, t)| t.contains(w));
+    if !fits {
+        return Some(format!("told {:?}", last.told));
+    }
     let select = case.block("select", 0)?;
     let mut found: Vec<String> = last.select.iter().map(ToString::to_string).collect();
     found.extend(last.begin.iter().map(|id| format!("begin {id}")));
@@ -144,6 +150,8 @@ fn each_gesture_has_a_case() {
         "receptivity",
         "action",
         "comment",
+        "comment_at",
+        "ends",
         "label",
         "priority",
         "initial",
@@ -159,6 +167,8 @@ fn each_gesture_has_a_case() {
         "variable",
         "delete_variable",
         "profile",
+        "switch",
+        "bound",
         "scan",
         "text",
     ] {

@@ -120,12 +120,13 @@ fn an_id(rng: &mut Rng, doc: &Document) -> Value {
     let ends: Vec<_> = t.map(|t| t.from.iter().chain(&t.to).collect()).unwrap_or_default();
     let end = rng.pick(&ends).map_or("1".to_owned(), |e| g7_edit::ItemId::chart(&*e.text).to_string());
     let before = t.is_some_and(|t| t.from.iter().any(|f| *f.text == *end));
-    match rng.below(12) {
+    match rng.below(13) {
         0..=4 => json!(format!("{name}/s/{escaped}")),
         5..=8 => json!(format!("{name}/t/{n}")),
         9 if before => json!(format!("{name}/l/s:{end}>t:{n}")),
         9 => json!(format!("{name}/l/t:{n}>s:{end}")),
         10 => json!(format!("{name}/a/{escaped}/{}", rng.below(3))),
+        11 => json!(format!("{name}/n/{}", rng.below(3))),
         _ => json!(name),
     }
 }
@@ -163,7 +164,7 @@ fn variable(rng: &mut Rng, doc: &Document) -> String {
 fn a_gesture(rng: &mut Rng, text: &str, doc: &Document) -> Value {
     let id = an_id(rng, doc);
     let or_and = if rng.below(2) == 0 { "or" } else { "and" };
-    match rng.below(32) {
+    match rng.below(33) {
         0 => json!({"g": "add_step", "chart": chart(rng, doc), "at": [rng.below(900) as f64, -12.5]}),
         1 => json!({"g": "add_step", "chart": chart(rng, doc)}),
         2 | 3 => json!({"g": "next", "id": id}),
@@ -204,12 +205,24 @@ fn a_gesture(rng: &mut Rng, text: &str, doc: &Document) -> Value {
             json!({"g": "paste", "chart": chart(rng, doc), "text": copy(&source, &chosen), "at": [40, 50]})
         }
         29 => json!({"g": "macro", "ids": ids(rng, doc)}),
-        30 => match rng.below(4) {
+        30 => match rng.below(7) {
+            4 => {
+                json!({"g": "switch", "name": rng.text(&["one-pass", "stable", "x"]), "on": rng.below(2) == 0})
+            }
+            5 => json!({"g": "bound", "n": rng.below(3)}),
+            6 => {
+                let steps = json!([rng.text(&["1", "2", "E"]), rng.text(&["2", "3", "S"])]);
+                json!({"g": "ends", "id": id, "before": steps, "after": ["1"]})
+            }
             0 => json!({"g": "add_chart", "kind": rng.text(&["chart", "expansion", "task"])}),
             1 => json!({"g": "tidy", "chart": chart(rng, doc)}),
             2 => json!({"g": "profile", "name": rng.text(&["pl7", "unity", "what"])}),
             _ => json!({"g": "scan", "ms": rng.below(50) as f64 / 4.0}),
         },
+        31 => {
+            let text = rng.text(&["a note", "", "two\nlines \"quoted\"", "`b\\`"]);
+            json!({"g": "comment_at", "chart": chart(rng, doc), "text": text, "at": [rng.below(400), -7.25]})
+        }
         _ => match rng.below(3) {
             0 => json!({"g": "delete_variable", "name": variable(rng, doc)}),
             1 => {
@@ -246,7 +259,18 @@ fn play(seed: u64, first: &str, length: usize) -> usize {
                     spliced(&text, &edit.splices).unwrap_or_else(|| panic!("does not fit: {}", told()));
                 let (doc, clean) = read(&after);
                 assert!(clean, "not clean: {}\n--- after\n{after}", told());
-                let takes = ["delete", "delete_variable", "macro", "action", "tidy", "paste", "kind"];
+                let takes = [
+                    "delete",
+                    "delete_variable",
+                    "macro",
+                    "action",
+                    "tidy",
+                    "paste",
+                    "kind",
+                    "comment",
+                    "switch",
+                    "bound",
+                ];
                 if !takes.contains(&value["g"].as_str().unwrap_or_default()) {
                     let (before, _) = read(&text);
                     let mut left = doc.notes.iter();
@@ -295,6 +319,14 @@ fn known(doc: &Document, id: &g7_edit::ItemId) -> bool {
         Part::Step(name) => step(name).is_some(),
         Part::Action(name, k) => step(name).is_some_and(|s| *k < s.actions.len()),
         Part::Transition(n) => chart.transitions().nth(*n).is_some(),
+        Part::Note(n) => {
+            let layout = doc.items.iter().find_map(|i| match i {
+                g7_model::Item::Layout(l) if l.chart == chart.name => Some(l),
+                _ => None,
+            });
+            let note = |p: &&g7_model::PlaceAt| matches!(p.what, g7_model::Placed::Comment(_));
+            layout.is_some_and(|l| l.places.iter().filter(note).nth(*n).is_some())
+        }
         Part::Link(..) | Part::Connector(..) | Part::Other(_) => true,
     }
 }
@@ -315,7 +347,18 @@ fn random_series_keep_the_text_clean_and_can_be_undone() {
 #[test]
 fn nothing_makes_it_panic() {
     let mut rng = Rng(7);
-    let odd = ["", "/", "G/s/", "G/t/99999999999999999999", "G/l/s:1>s:2", "%", "é/s/é", "G/a/1/9", "G/x/0"];
+    let odd = [
+        "",
+        "/",
+        "G/s/",
+        "G/t/99999999999999999999",
+        "G/l/s:1>s:2",
+        "%",
+        "é/s/é",
+        "G/a/1/9",
+        "G/n/7",
+        "G/x/0",
+    ];
     for text in texts() {
         // Cut anywhere, so that most of it is wrong.
         let cut = (0..=rng.below(text.len() + 1)).rev().find(|n| text.is_char_boundary(*n)).unwrap_or(0);

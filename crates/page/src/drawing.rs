@@ -66,6 +66,9 @@ struct Item {
     source: Option<String>,
     #[serde(skip_serializing_if = "Option::is_none")]
     priority: Option<u32>,
+    /// Names of the steps before and behind a transition.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    steps: Option<[Vec<String>; 2]>,
     #[serde(skip_serializing_if = "Option::is_none")]
     step: Option<&'static str>,
     #[serde(rename = "macro", skip_serializing_if = "Option::is_none")]
@@ -125,6 +128,7 @@ pub(crate) fn anchors(document: &Document, chart: &str) -> HashMap<ItemId, (i32,
             let id = ItemId::transition(name, transition as usize);
             Some((id, (bar.x + bar.w / 2, bar.y + bar.h / 2)))
         }
+        Part::Comment { comment, place } => Some((ItemId::note(name, comment as usize), (place.x, place.y))),
         Part::Action { .. } | Part::Link { .. } | Part::Connector { .. } | Part::Text => None,
     };
     drawing.items.iter().filter_map(anchor).collect()
@@ -165,6 +169,8 @@ struct Names<'a> {
     chart: &'a Chart,
     steps: Vec<&'a Step>,
     transitions: Vec<&'a Transition>,
+    /// Of its layout section.
+    comments: Vec<&'a str>,
     seen: std::cell::RefCell<HashMap<String, u32>>,
 }
 
@@ -175,6 +181,7 @@ impl<'a> Names<'a> {
             chart,
             steps: chart.steps().collect(),
             transitions: chart.transitions().collect(),
+            comments: g7_draw::comments(&good.document, chart).map(|(text, _)| text).collect(),
             seen: Default::default(),
         }
     }
@@ -199,6 +206,12 @@ impl<'a> Names<'a> {
             Part::Connector { from, to, leaving, .. } => {
                 let id = ItemId::connector(chart, self.end(from), self.end(to), leaving).to_string();
                 Item { id, part: "connector", ends: Some([self.end_id(from), self.end_id(to)]), ..base }
+            }
+            Part::Comment { comment, place } => {
+                let id = ItemId::note(chart, comment as usize).to_string();
+                let text = self.comments.get(comment as usize).map(|t| (*t).to_owned());
+                let at = Some([px(place.x), px(place.y)]);
+                Item { id, part: "comment", at, comment: text, ..base }
             }
             Part::Text => Item { id: ItemId::other(chart, number).to_string(), part: "text", ..base },
         };
@@ -253,6 +266,7 @@ impl<'a> Names<'a> {
             comment: t.comment.as_deref().map(str::to_owned),
             source: Some(self.good.words(t.receptivity.at.0)),
             priority: t.priority,
+            steps: Some([&t.from, &t.to].map(|l| l.iter().map(|n| n.text.to_string()).collect())),
             ..base
         }
     }

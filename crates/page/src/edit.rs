@@ -4,6 +4,7 @@ use std::cell::RefCell;
 use std::collections::HashMap;
 
 use g7_edit::{Edit, Gesture, ItemId, Splice};
+use g7_model::Document;
 use serde::Serialize;
 
 use crate::drawing::anchors;
@@ -21,6 +22,8 @@ pub(crate) struct Edited {
     select: Vec<ItemId>,
     #[serde(skip_serializing_if = "Option::is_none")]
     begin: Option<ItemId>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    told: Vec<String>,
 }
 
 /// Carries a gesture out.
@@ -32,23 +35,33 @@ pub(crate) fn edit(name: &str, file: &mut File, gesture: &Gesture) -> Result<Edi
             splices: Vec::new(),
             select: edit.select,
             begin: edit.begin,
+            told: edit.told,
         });
     }
     let splices = file.outward(&edit.splices);
     file.change(&edit.splices, false)?;
-    Ok(Edited { look: look(name, file), splices, select: edit.select, begin: edit.begin })
+    Ok(Edited { look: look(name, file), splices, select: edit.select, begin: edit.begin, told: edit.told })
 }
 
 /// What a gesture would change.
 pub(crate) fn draft(file: &File, gesture: &Gesture) -> Result<Edit, String> {
+    let stand = standing(&file.source.document);
+    g7_edit::apply_placed(&file.as_edited(), gesture, &stand).map_err(|e| e.to_string())
+}
+
+/// A part of a chart as text, with where it stands.
+pub(crate) fn copy(file: &File, ids: &[ItemId]) -> String {
+    g7_edit::copy_placed(&file.as_edited(), ids, &standing(&file.source.document))
+}
+
+/// Where symbols stand; a chart is drawn when the first of its symbols is asked for.
+fn standing(document: &Document) -> impl Fn(&ItemId) -> Option<(i32, i32)> {
     let placed = RefCell::new(HashMap::new());
-    let document = &file.source.document;
-    let stand = |id: &ItemId| {
+    move |id: &ItemId| {
         let mut placed = placed.borrow_mut();
         let chart = placed.entry(id.chart.clone()).or_insert_with(|| anchors(document, &id.chart));
         chart.get(id).copied()
-    };
-    g7_edit::apply_placed(&file.as_edited(), gesture, &stand).map_err(|e| e.to_string())
+    }
 }
 
 /// Takes the last change back, or makes it again.
@@ -59,7 +72,7 @@ pub(crate) fn travel(name: &str, file: &mut File, back: bool) -> Result<Edited, 
     let unit = |byte| before.unit(&text, byte);
     let change = |s: &Splice| Change { from: unit(s.start), to: unit(s.end), insert: s.insert.clone() };
     let splices = splices.iter().map(change).collect();
-    Ok(Edited { look: look(name, file), splices, select: Vec::new(), begin: None })
+    Ok(Edited { look: look(name, file), splices, select: Vec::new(), begin: None, told: Vec::new() })
 }
 
 /// Writes the text as the formatter does.
@@ -73,7 +86,7 @@ pub(crate) fn format(name: &str, file: &mut File) -> Result<Edited, String> {
     if !splices.is_empty() {
         file.change(&splices, false)?;
     }
-    Ok(Edited { look: look(name, file), splices: out, select: Vec::new(), begin: None })
+    Ok(Edited { look: look(name, file), splices: out, select: Vec::new(), begin: None, told: Vec::new() })
 }
 
 /// The lines that differ: one splice from the first to the last of them.

@@ -26,6 +26,7 @@ mod fixes;
 mod ids;
 mod language;
 mod look;
+mod merge;
 mod page;
 mod positions;
 mod problems;

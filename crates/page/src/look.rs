@@ -1,6 +1,7 @@
 //! What the shell of the page knows of a file: charts, problems, plants, tests.
 
-use g7_model::{Document, Item, StepKind};
+use g7_compile::resolve::{of_profile, with_switch};
+use g7_model::{Document, Item, ProfileName, StepKind, Switch};
 use serde::Serialize;
 
 use crate::drawing::kind;
@@ -21,9 +22,31 @@ pub(crate) struct Look {
     problems: Vec<problems::Row>,
     charts: Vec<ChartRow>,
     profile: &'static str,
+    switches: Vec<SwitchRow>,
+    bound: Bound,
     scan_ms: f64,
     plants: Vec<String>,
     tests: Vec<TestRow>,
+}
+
+/// A switch of the profile.
+#[derive(Debug, Serialize)]
+struct SwitchRow {
+    /// Its two words.
+    words: [&'static str; 2],
+    /// The one that the profile stands for by itself.
+    usual: &'static str,
+    /// The one that is set beside it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    set: Option<&'static str>,
+}
+
+/// Most passes in a scan.
+#[derive(Debug, Serialize)]
+struct Bound {
+    usual: u32,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    set: Option<u32>,
 }
 
 #[derive(Debug, Serialize)]
@@ -69,10 +92,33 @@ pub(crate) fn look(name: &str, file: &File) -> Look {
         problems: problems::rows(file),
         charts: charts(file),
         profile: document.profile().map_or(g7_model::ProfileName::default(), |p| p.name).name(),
+        switches: switches(document),
+        bound: bound(document),
         scan_ms: scan.unwrap_or(SCAN) as f64 / 1e6,
         plants: g7_compile::plant::plants(document).map(|p| p.name.text.to_string()).collect(),
         tests: tests.collect(),
     }
+}
+
+fn switches(document: &Document) -> Vec<SwitchRow> {
+    let profile = document.profile();
+    let name = profile.map_or(ProfileName::default(), |p| p.name);
+    let set = |s: Switch| profile.is_some_and(|p| p.switches.iter().any(|(there, _)| *there == s));
+    let row = |(one, other): (&(&'static str, Switch), &(&'static str, Switch))| SwitchRow {
+        words: [one.0, other.0],
+        usual: if of_profile(name) == with_switch(of_profile(name), one.1) { one.0 } else { other.0 },
+        set: [one, other].iter().find(|(_, s)| set(*s)).map(|(word, _)| *word),
+    };
+    let all = &g7_syntax::SWITCHES;
+    all.iter().step_by(2).zip(all.iter().skip(1).step_by(2)).map(row).collect()
+}
+
+fn bound(document: &Document) -> Bound {
+    let profile = document.profile();
+    let set = profile.and_then(|p| {
+        p.switches.iter().find_map(|(s, _)| if let Switch::Bound(n) = s { Some(*n) } else { None })
+    });
+    Bound { usual: of_profile(profile.map_or(ProfileName::default(), |p| p.name)).bound, set }
 }
 
 /// Nominal scan time where a file says nothing.

@@ -7,6 +7,7 @@ use crate::explain::explain;
 use crate::file::File;
 use crate::language;
 use crate::look::look;
+use crate::merge::merge;
 use crate::request::Request;
 use crate::run::{self, Run};
 use crate::tests;
@@ -58,9 +59,10 @@ impl Page {
             Request::Format { file } => ok(&edit::format(&file, self.file_mut(&file)?)?),
             Request::References { file, at } => ok(&edit::references(self.file(&file)?, at)),
             Request::Copy { file, ids } => {
-                let text = g7_edit::copy(&self.file(&file)?.as_edited(), &ids);
+                let text = edit::copy(self.file(&file)?, &ids);
                 ok(&serde_json::json!({ "text": text }))
             }
+            Request::Merge { base, mine, theirs } => ok(&merge(&base, &mine, &theirs)?),
             Request::Drawing(wish) => ok(&drawing::drawing(self.file(&wish.file)?, &wish)?),
             Request::Style { dark } => ok(&serde_json::json!({ "css": g7_draw::style(dark) })),
             Request::Explain { code } => {

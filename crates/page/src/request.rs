@@ -40,6 +40,12 @@ pub(crate) enum Request {
         file: String,
         ids: Vec<g7_edit::ItemId>,
     },
+    /// Two changes of one text as one.
+    Merge {
+        base: String,
+        mine: String,
+        theirs: String,
+    },
     Format {
         file: String,
     },

@@ -38,7 +38,7 @@ use g7_model::{Chart, ChartItem, Document, Expr as Written, Item, Problem, Profi
 
 use crate::ir::{ChartId, Expr, Unit};
 use resolver::{Frame, Resolver, Role};
-pub use rules::of_profile;
+pub use rules::{of_profile, with_switch};
 pub use scopes::Scopes;
 pub(crate) use trace::Tracer;
 

@@ -64,6 +64,12 @@ fn repeated_switches(p: &Profile, problems: &mut Vec<Problem>) {
     }
 }
 
+/// Rules with a switch set.
+pub fn with_switch(mut rules: Rules, switch: Switch) -> Rules {
+    apply(&mut rules, switch);
+    rules
+}
+
 fn apply(rules: &mut Rules, switch: Switch) {
     match switch {
         Switch::Stable(b) => rules.stable = b,

@@ -27,7 +27,7 @@ mod moved;
 mod place;
 mod profile;
 mod reduce;
-mod rooms;
+pub(crate) mod rooms;
 mod route;
 mod shape;
 mod tree;
@@ -36,6 +36,9 @@ mod way;
 use g7_model::{Chart, PlaceAt};
 
 use crate::{Placement, Sizes};
+
+/// Farthest place from the origin that a layout section can give.
+pub(crate) const FAR: i32 = 10_000_000;
 
 /// Times that links which could not be drawn are broken before all that is left is.
 const TRIES: usize = 4;

@@ -5,14 +5,12 @@ use std::collections::HashMap;
 
 use g7_model::{Chart, PlaceAt, Placed};
 
+use crate::layout::FAR;
 use crate::layout::graph::Graph;
-use crate::layout::rooms::{BAR, DOUBLE, LINK, OVERHANG, SQUARE, extents};
+use crate::layout::rooms::{BAR, CLEAR, DOUBLE, LINK, OVERHANG, SQUARE, extents};
 use crate::layout::route::{area, end, tidy};
 use crate::layout::way::Ways;
 use crate::{Bar, End, Extent, Link, Placement, Point, Rect, Sizes};
-
-/// Farthest place from the origin.
-const FAR: i32 = 10_000_000;
 
 /// The places a layout section gives, by node.
 pub(crate) fn given(chart: &Chart, graph: &Graph, places: &[PlaceAt]) -> Vec<Option<Point>> {
@@ -128,7 +126,7 @@ impl Moved<'_> {
             let over = self.graph.into.of(n).iter().map(|l| self.port(self.graph.links[*l as usize].0));
             let height = over.filter(|y| *y < top).map(|y| top - y).min().unwrap_or(2 * LINK);
             if self.graph.is_step(n) {
-                below.push(port + LINK.min(room / 2));
+                below.push(self.parting(n, port, room));
                 above.push(top - LINK.min(height / 2));
             } else {
                 below.push(port + BAR.min((room - DOUBLE) / 2).max(0));
@@ -136,6 +134,23 @@ impl Moved<'_> {
             }
         }
         (self.below, self.above) = (below, above);
+    }
+
+    /// The height at which the links of a step part: below its actions, where
+    /// there is room for that and a link goes their way.
+    fn parting(&self, n: u32, port: i32, room: i32) -> i32 {
+        let usual = port + LINK.min(room / 2);
+        let low = self.at[n as usize].y + self.extents[n as usize].down + CLEAR;
+        let x = self.at[n as usize].x;
+        let (mut top, mut to_right) = (i32::MAX, false);
+        for l in self.graph.out.of(n) {
+            let to = self.graph.links[*l as usize].1 as usize;
+            if self.at[to].y > port {
+                top = top.min(self.at[to].y - self.extents[to].up);
+                to_right |= self.at[to].x > x;
+            }
+        }
+        if to_right && low > usual && low + CLEAR / 2 <= top { low } else { usual }
     }
 
     fn place(&self, auto: Placement, sizes: &Sizes) -> Placement {

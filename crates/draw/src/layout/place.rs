@@ -1,7 +1,7 @@
 //! Where everything stands in the end: sizes become places, from the outside in.
 
 use crate::Point;
-use crate::layout::rooms::{LINE, only_arrivals};
+use crate::layout::rooms::{LINE, from_above, only_arrivals};
 use crate::layout::shape::{Block, NOWHERE, Shapes};
 use crate::layout::tree::{Item, NONE};
 
@@ -138,16 +138,17 @@ impl Places {
     /// Broken links come in at the right of the link above a step; where there is
     /// no other, the uppermost comes from above.
     fn arrivals(&mut self, s: &Shapes) {
-        use crate::layout::rooms::{ROW, STUB};
+        use crate::layout::rooms::{APART, HEAD, ROW, STUB};
         for (step, links) in s.tree.arrivals.iter().enumerate().filter(|(_, l)| !l.is_empty()) {
             let at = self.at[step];
-            let first = at.y - s.rooms[step].text - ROW / 2 - 10;
             let alone = only_arrivals(s.graph, s.tree, step as u32);
+            let (head, apart) = if from_above(s.graph, s.tree, step as u32) { (HEAD, APART) } else { (0, 0) };
+            let first = at.y - s.rooms[step].text - ROW / 2 - 10 - head;
             for (k, &l) in (0..).zip(links) {
                 let y = first - ROW * k;
                 let last = k as usize + 1 == links.len();
                 let (tail, tip) = match alone && last {
-                    true => (Point { x: at.x, y: y - ROW / 2 + LINE / 3 }, at),
+                    true => (Point { x: at.x, y: y - apart - ROW / 2 + LINE / 3 }, at),
                     false => (Point { x: at.x + STUB - 40, y }, Point { x: at.x, y }),
                 };
                 self.broken.push((l, false, tail, tip));

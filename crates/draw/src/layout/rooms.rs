@@ -25,6 +25,11 @@ pub(crate) const LINE: i32 = 60;
 pub(crate) const ROW: i32 = 200;
 /// Height of the text box of a connector.
 pub(crate) const ROW_TEXT: i32 = 180;
+/// How far arriving connectors stand above a step into which one of them leads
+/// from above: clear of its arrow head.
+pub(crate) const HEAD: i32 = 100;
+/// How far that one begins above the others.
+pub(crate) const APART: i32 = 60;
 /// From an arriving connector's tip to its text.
 pub(crate) const STUB: i32 = 240;
 /// From a vertical connector to its text.
@@ -104,6 +109,11 @@ pub(crate) fn only_arrivals(graph: &Graph, tree: &Tree, step: u32) -> bool {
     graph.into.of(step).len() == tree.arrivals[step as usize].len()
 }
 
+/// Whether one of several broken links comes into a step from above, the others from its right.
+pub(crate) fn from_above(graph: &Graph, tree: &Tree, step: u32) -> bool {
+    tree.arrivals[step as usize].len() > 1 && only_arrivals(graph, tree, step)
+}
+
 /// The rooms of all nodes.
 pub(crate) fn rooms(graph: &Graph, tree: &Tree, sizes: &Sizes) -> Vec<Room> {
     let mut all: Vec<Room> = extents(graph, sizes)
@@ -116,6 +126,9 @@ pub(crate) fn rooms(graph: &Graph, tree: &Tree, sizes: &Sizes) -> Vec<Room> {
         if !arrivals.is_empty() {
             let widest = arrivals.iter().map(|l| connector_width(graph, sizes, *l, false)).max().unwrap_or(0);
             room.up += ROW * arrivals.len().min(10_000) as i32 + 30;
+            if from_above(graph, tree, step) {
+                room.up += HEAD + APART;
+            }
             room.right = room.right.max(grid(STUB + widest + CLEAR));
         }
     }

@@ -2,6 +2,7 @@
 
 mod action;
 mod connector;
+mod note;
 mod step;
 mod transition;
 
@@ -9,8 +10,9 @@ use crate::text::{Line, wrap_words};
 use crate::{Extent, Rect};
 
 pub(crate) use connector::{arrow, connector, connector_label, connector_width};
+pub(crate) use note::{note, note_area};
 pub(crate) use step::{StepShape, step};
-pub(crate) use transition::{TransitionShape, double, transition};
+pub(crate) use transition::{TransitionShape, double, transition, widest};
 
 /// Side of a step's square.
 pub(crate) const SQUARE: i32 = 500;

@@ -24,16 +24,28 @@ pub(crate) struct TransitionShape {
 const HALF: i32 = 18;
 /// From the bar to the receptivity.
 const GAP: i32 = 80;
-/// Widest line of a receptivity.
-const WIDEST: i32 = 3200;
+/// Widest line of a receptivity by the number of alternatives it stands among:
+/// branches side by side are as wide as their texts.
+const WIDEST: [i32; 3] = [3200, 2000, 1500];
 /// Most lines of a receptivity.
 const LINES: usize = 10;
 
-pub(crate) fn transition(t: &Transition) -> TransitionShape {
+/// How wide lines may be among this many alternatives.
+pub(crate) fn widest(alternatives: usize) -> i32 {
+    let [alone, of_two, of_many] = WIDEST;
+    match alternatives {
+        0 | 1 => alone,
+        2 => of_two,
+        _ => of_many,
+    }
+}
+
+/// A transition with lines no wider than `widest` where they can be broken.
+pub(crate) fn transition(t: &Transition, widest: i32) -> TransitionShape {
     let mut p = Picture::default();
     let bar = Rect { x: -HALF_BAR, y: -HALF, w: 2 * HALF_BAR, h: 2 * HALF };
     p.rect("g7-bar", bar.x, bar.y, bar.w, bar.h);
-    let text = condition(&mut p, t);
+    let text = condition(&mut p, t, widest);
     let mut low = text.y + text.h;
     if let Some(block) = &t.on_clearing {
         low = clearing(&mut p, &body(&block.statements), low);
@@ -58,10 +70,10 @@ pub(crate) fn transition(t: &Transition) -> TransitionShape {
 }
 
 /// The receptivity, its lines round the height of the bar.
-fn condition(p: &mut Picture, t: &Transition) -> Rect {
+fn condition(p: &mut Picture, t: &Transition, widest: i32) -> Rect {
     let full = receptivity(&t.receptivity);
     let linear = full.linear();
-    let mut lines = full.wrap(TEXT, WIDEST);
+    let mut lines = full.wrap(TEXT, widest);
     if lines.len() > LINES {
         lines.truncate(LINES);
         if let Some(last) = lines.last_mut() {

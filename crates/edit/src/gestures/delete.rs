@@ -13,7 +13,7 @@
 //! - Steps on both sides: the transition behind the first of them is kept and
 //!   leads to the other.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use g7_model::{Chart, ChartItem, Name, Span, Transition};
 
@@ -67,6 +67,7 @@ pub(crate) fn delete(d: &mut Draft<'_>, ids: &[ItemId], heal: bool) -> Result<()
     let mut nodes: Vec<ItemId> = Vec::new();
     let mut links: Vec<(String, String, Span, bool)> = Vec::new();
     let mut actions: Vec<(String, String, usize)> = Vec::new();
+    let mut notes: BTreeMap<String, BTreeSet<usize>> = BTreeMap::new();
     for id in ids {
         match &id.part {
             Part::Step(_) | Part::Transition(_) => {
@@ -75,9 +76,15 @@ pub(crate) fn delete(d: &mut Draft<'_>, ids: &[ItemId], heal: bool) -> Result<()
             }
             Part::Action(step, k) => actions.push((id.chart.clone(), step.clone(), *k)),
             Part::Link(a, b) | Part::Connector(a, b, _) => links.push(link(d, &id.chart, a, b)?),
+            Part::Note(n) => {
+                notes.entry(id.chart.clone()).or_default().insert(*n);
+            }
             Part::Chart => return refuse("a chart is deleted as a whole, not with symbols"),
             Part::Other(_) => return refuse("this is only drawn; nothing in the text stands for it alone"),
         }
+    }
+    for (chart, numbers) in &notes {
+        super::notes::delete(d, chart, numbers)?;
     }
     actions.sort();
     actions.dedup();

@@ -2,7 +2,7 @@
 
 use g7_model::{Action, ChartItem, ChartKind, FileId, StepKind};
 
-use super::graph::{arriving, leaving};
+use super::graph::{arriving, leaving, may_arrive, may_leave};
 use super::table::add_expansion;
 use super::{Node, node};
 use crate::draft::Draft;
@@ -114,6 +114,9 @@ pub(crate) fn remove_action(d: &mut Draft<'_>, chart: &str, name: &str, k: usize
 
 pub(crate) fn comment(d: &mut Draft<'_>, id: &ItemId, text: &str) -> Result<(), Refusal> {
     let comment = Some(text.trim()).filter(|t| !t.is_empty()).map(Box::from);
+    if let Part::Note(n) = id.part {
+        return super::notes::change(d, &id.chart, n, comment.as_deref());
+    }
     if id.part == Part::Chart {
         d.chart_mut(&id.chart)?.comment = comment;
     } else {
@@ -147,6 +150,42 @@ pub(crate) fn label(d: &mut Draft<'_>, id: &ItemId, text: &str) -> Result<(), Re
 pub(crate) fn priority(d: &mut Draft<'_>, id: &ItemId, n: Option<u32>) -> Result<(), Refusal> {
     let at = transition(d, id)?;
     d.transition_mut(&id.chart, at)?.priority = n;
+    d.select(id.clone());
+    Ok(())
+}
+
+/// Other steps before or behind a transition.
+pub(crate) fn ends(
+    d: &mut Draft<'_>,
+    id: &ItemId,
+    before: Option<&[String]>,
+    after: Option<&[String]>,
+) -> Result<(), Refusal> {
+    let at = transition(d, id)?;
+    for (names, leaving) in [(before, true), (after, false)] {
+        let Some(names) = names else { continue };
+        let mut list: Vec<g7_model::Name> = Vec::new();
+        for name in names {
+            let step = d.step(&id.chart, name)?;
+            if leaving {
+                may_leave(step)?
+            } else {
+                may_arrive(step)?
+            }
+            if !super::graph::has(&list, name) {
+                list.push(d.new_name(name));
+            }
+        }
+        let t = d.transition_mut(&id.chart, at)?;
+        let there = if leaving { &mut t.from } else { &mut t.to };
+        if *there != list {
+            *there = list;
+        }
+    }
+    let t = d.transition(&id.chart, at)?;
+    if t.from.is_empty() && t.to.is_empty() {
+        return refuse("a transition joins steps: leave it one at least");
+    }
     d.select(id.clone());
     Ok(())
 }

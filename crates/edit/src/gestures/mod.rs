@@ -7,9 +7,11 @@ mod graph;
 mod group;
 mod insert;
 mod join;
+mod notes;
 mod paste;
 mod places;
 mod rename;
+mod settings;
 mod table;
 
 pub(crate) use rename::rename;
@@ -37,8 +39,10 @@ pub(crate) fn carry_out(d: &mut Draft<'_>, gesture: &Gesture) -> Result<(), Refu
         Gesture::Receptivity { id, text } => fields::receptivity(d, id, text),
         Gesture::Action { id, index, text } => fields::action(d, id, *index, text),
         Gesture::Comment { id, text } => fields::comment(d, id, text),
+        Gesture::CommentAt { chart, text, at } => notes::add(d, chart, text, *at),
         Gesture::Label { id, text } => fields::label(d, id, text),
         Gesture::Priority { id, n } => fields::priority(d, id, *n),
+        Gesture::Ends { id, before, after } => fields::ends(d, id, before.as_deref(), after.as_deref()),
         Gesture::Initial { id, on } => fields::initial(d, id, *on),
         Gesture::Kind { id, kind } => fields::kind(d, id, *kind),
         Gesture::Move { ids, dx, dy } => places::shift(d, ids, *dx, *dy),
@@ -50,8 +54,10 @@ pub(crate) fn carry_out(d: &mut Draft<'_>, gesture: &Gesture) -> Result<(), Refu
         Gesture::DeleteChart { chart } => table::delete_chart(d, chart),
         Gesture::Variable { name, row } => table::variable(d, name.as_deref(), row),
         Gesture::DeleteVariable { name } => table::delete_variable(d, name),
-        Gesture::Profile { name } => table::profile(d, name),
-        Gesture::Scan { ms } => table::scan(d, *ms),
+        Gesture::Profile { name } => settings::profile(d, name),
+        Gesture::Switch { name, on } => settings::switch(d, name, *on),
+        Gesture::Bound { n } => settings::bound(d, *n),
+        Gesture::Scan { ms } => settings::scan(d, *ms),
         Gesture::Rename { .. } | Gesture::Text { .. } => refuse("this gesture is not one of the drawing"),
     }
 }
@@ -77,7 +83,7 @@ pub(crate) fn node(d: &Draft<'_>, id: &ItemId) -> Result<Node, Refusal> {
             Ok(Node::Step(name.clone()))
         }
         Part::Transition(n) => Ok(Node::Transition(d.number(&id.chart, *n)?)),
-        Part::Chart | Part::Link(..) | Part::Connector(..) | Part::Other(_) => {
+        Part::Chart | Part::Link(..) | Part::Connector(..) | Part::Note(_) | Part::Other(_) => {
             refuse("this is done with a step or a transition; choose one")
         }
     }

@@ -1,18 +1,23 @@
 //! Putting in what was copied: names that clash get new ones, in the fragment
 //! and wherever the fragment refers to them.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeSet, HashMap};
 
 use g7_compile::{Definition, references};
-use g7_model::{Chart, ChartItem, ChartKind, Document, FileId, Item, Span, Step, StepKind, Transition};
+use g7_model::{
+    Chart, ChartItem, ChartKind, Document, FileId, Item, Layout, PlaceAt, Placed, Span, Step, StepKind,
+    Transition, VarDecl,
+};
 
 use super::graph::put_step;
-use super::places;
 use super::rename::written;
+use super::table::{declares, put_variable};
+use super::{notes, places};
 use crate::draft::{Draft, Mark};
 use crate::id::ItemId;
+use crate::needs::needs;
 use crate::splice::spliced;
-use crate::write::{reindent, step_list};
+use crate::write::{reindent, step_list, variable_text};
 use crate::{Refusal, refuse};
 
 /// Longest fragment, in bytes.
@@ -24,27 +29,160 @@ pub(crate) fn paste(d: &mut Draft<'_>, chart: &str, text: &str, at: Option<[f64;
     let (text, doc) = without_clashes(d, chart, text, doc)?;
     let mut charts = doc.charts();
     let Some(part) = charts.next() else { return refuse("there is nothing to paste") };
-    let mut first = None;
+    let mut pasted = Pasted::default();
     for item in &part.items {
         match item {
             ChartItem::Step(s) => {
-                first = first.or(Some(s.name.text.to_string()));
+                pasted.steps.push(s.name.text.to_string());
                 paste_step(d, chart, &text, s)?;
             }
-            ChartItem::Transition(t) => paste_transition(d, chart, &text, t)?,
+            ChartItem::Transition(t) => pasted.transitions.push(paste_transition(d, chart, &text, t)?),
+            // Those that are needed are declared below.
+            ChartItem::Var(_) => {}
             _ => return refuse("only steps and transitions are pasted into a chart"),
         }
     }
     for expansion in charts {
         paste_chart(d, &text, expansion);
     }
+    declare(d, chart, &doc)?;
+    let at = at.map(places::point).transpose()?;
+    pasted.put(d, chart, places::layout(&doc, &part.name.text), at)?;
     if d.select.is_empty() {
         return refuse("there is nothing to paste");
     }
-    if let (Some(step), Some(at)) = (first, at) {
-        places::place(d, &ItemId::step(chart, step), places::point(at)?)?;
+    Ok(())
+}
+
+/// Steps and transitions of the fragment in its order, as they are in the chart now.
+#[derive(Default)]
+struct Pasted {
+    steps: Vec<String>,
+    transitions: Vec<Span>,
+}
+
+/// From a comment to its copy where no place is given, in hundredths of a unit.
+const BESIDE: i32 = 200;
+
+impl Pasted {
+    /// Puts all of it where `at` says, in the same order as on the drawing it comes from.
+    fn put(
+        &self,
+        d: &mut Draft<'_>,
+        chart: &str,
+        layout: Option<&Layout>,
+        at: Option<(i32, i32)>,
+    ) -> Result<(), Refusal> {
+        let places = layout.map_or(&[][..], |l| l.places.as_slice());
+        let id = |d: &Draft<'_>, what: &Placed| match what {
+            Placed::Step(name) => Some(ItemId::step(chart, &*name.text)),
+            Placed::TransitionNumber(n) => self.id(d, chart, *self.transitions.get(*n as usize)?),
+            Placed::Transition(label) => {
+                let all = d.chart(chart).ok()?.transitions();
+                let found = all.filter(|t| t.label.as_ref() == Some(label)).map(|t| t.at.0);
+                self.id(d, chart, found.last()?)
+            }
+            Placed::Comment(_) => None,
+        };
+        let known: Vec<(&PlaceAt, Option<ItemId>)> = places.iter().map(|p| (p, id(d, &p.what))).collect();
+        let first = known.iter().find(|(p, _)| matches!(p.what, Placed::Step(_))).or(known.first());
+        let (dx, dy) = match (first, at) {
+            (Some((p, _)), Some((x, y))) => (x.saturating_sub(p.x), y.saturating_sub(p.y)),
+            _ => (BESIDE, BESIDE),
+        };
+        for (p, id) in &known {
+            let (x, y) = (p.x.saturating_add(dx), p.y.saturating_add(dy));
+            match (&p.what, id) {
+                (Placed::Comment(text), _) => notes::put(d, chart, text, (x, y)),
+                // Without a place of their own, symbols stand where the layout puts them.
+                (_, Some(id)) if at.is_some() => places::place(d, id, (x, y))?,
+                _ => {}
+            }
+        }
+        let placed = known.iter().any(|(p, _)| !matches!(p.what, Placed::Comment(_)));
+        match (self.steps.first(), at) {
+            (Some(step), Some(at)) if !placed => places::place(d, &ItemId::step(chart, step.as_str()), at),
+            _ => Ok(()),
+        }
+    }
+
+    fn id(&self, d: &Draft<'_>, chart: &str, at: Span) -> Option<ItemId> {
+        let n = d.chart(chart).ok()?.transitions().position(|t| t.at.0 == at)?;
+        self.transitions.contains(&at).then(|| ItemId::transition(chart, n))
+    }
+}
+
+/// Declares what the fragment needs and the file does not have. What the file
+/// has stays as it is; where that is not the same, it is told.
+fn declare(d: &mut Draft<'_>, chart: &str, doc: &Document) -> Result<(), Refusal> {
+    let places: Vec<Span> = doc.charts().map(|c| c.at.0).collect();
+    let first = doc.charts().next().map(|c| c.name.text.to_string());
+    let own = doc.charts().next().into_iter().flat_map(Chart::vars).cloned();
+    let own = own.map(|v| (first.clone(), v));
+    for (home, v) in needs(doc, &places).into_iter().chain(own) {
+        let mut missing = v.clone();
+        missing.names.clear();
+        for name in &v.names {
+            match meaning(d, chart, &name.text) {
+                None => missing.names.push(name.clone()),
+                Some(Meaning::Variable(there)) if same(&there, &v) => {}
+                Some(Meaning::Variable(there)) => d.told.push(format!(
+                    "`{}` is declared here as {}; the pasted part had it as {}: the declaration here was kept",
+                    name.text,
+                    sort(&there),
+                    sort(&v)
+                )),
+                Some(Meaning::Other(what)) => d.told.push(format!(
+                    "`{}` is {what} here; the variable of the pasted part was not declared",
+                    name.text
+                )),
+            }
+        }
+        if !missing.names.is_empty() {
+            missing.at = d.fresh();
+            missing.names.iter_mut().for_each(|n| n.at = d.fresh());
+            put_variable(d, home.is_some().then_some(chart), missing)?;
+        }
     }
     Ok(())
+}
+
+/// What a name means already.
+enum Meaning {
+    Variable(VarDecl),
+    Other(&'static str),
+}
+
+fn meaning(d: &Draft<'_>, chart: &str, name: &str) -> Option<Meaning> {
+    let home = d.chart(chart).ok()?;
+    let own = home.vars().find(|v| declares(v, name));
+    let of_file = d.doc.items.iter().find_map(|i| match i {
+        Item::Var(v) if declares(v, name) => Some(v),
+        _ => None,
+    });
+    if let Some(v) = own.or(of_file) {
+        return Some(Meaning::Variable(v.clone()));
+    }
+    d.doc.items.iter().find_map(|i| match i {
+        Item::Chart(c) if *c.name.text == *name => Some(Meaning::Other("a chart")),
+        Item::Action(a) if *a.name.text == *name => Some(Meaning::Other("an action")),
+        Item::Section(s) if *s.name.text == *name => Some(Meaning::Other("a transition section")),
+        Item::Function(f) if *f.name.text == *name => Some(Meaning::Other("a function")),
+        _ => None,
+    })
+}
+
+/// Whether two declarations mean the same to a chart; addresses and comments do not matter.
+fn same(a: &VarDecl, b: &VarDecl) -> bool {
+    (a.kind, &a.ty, &a.init, a.retain) == (b.kind, &b.ty, &b.init, b.retain)
+}
+
+/// A declaration in words: class, type and initial value.
+fn sort(v: &VarDecl) -> String {
+    let bare = VarDecl { address: None, inverted: false, safe: None, comment: None, ..v.clone() };
+    let text = variable_text(&bare, &HashMap::new());
+    let names = v.names.iter().map(|n| g7_syntax::show_name(&n.text)).collect::<Vec<_>>().join(", ");
+    format!("`{}`", text.replacen(&format!("{names} : "), "", 1))
 }
 
 /// A fragment is a small file; the mere lines of a chart will do.
@@ -161,17 +299,18 @@ fn paste_step(d: &mut Draft<'_>, chart: &str, text: &str, step: &Step) -> Result
     Ok(())
 }
 
-fn paste_transition(d: &mut Draft<'_>, chart: &str, text: &str, t: &Transition) -> Result<(), Refusal> {
+fn paste_transition(d: &mut Draft<'_>, chart: &str, text: &str, t: &Transition) -> Result<Span, Refusal> {
     let mut new = t.clone();
     let lead = if t.chained { format!("{} ", step_list(&t.from)) } else { String::new() };
     new.chained = false;
     new.at = d.fresh_as(lead + &lines(text, t.at.0));
+    let at = new.at.0;
     d.select.push(Mark::Transition(chart.to_owned(), new.at.0));
     let items = &mut d.chart_mut(chart)?.items;
     let last = items.iter().rposition(|i| matches!(i, ChartItem::Transition(_)));
     let last = last.or_else(|| items.iter().rposition(|i| matches!(i, ChartItem::Step(_))));
     items.insert(last.map_or(items.len(), |k| k + 1), ChartItem::Transition(new));
-    Ok(())
+    Ok(at)
 }
 
 /// An expansion that a pasted macro-step brings along.

@@ -2,9 +2,9 @@
 
 use std::collections::BTreeMap;
 
-use g7_model::{Item, Layout, Name, PlaceAt, Placed, Span};
+use g7_model::{Document, Item, Layout, Name, PlaceAt, Placed, Span};
 
-use super::{Node, node, one_chart};
+use super::{Node, node, notes, one_chart};
 use crate::draft::Draft;
 use crate::gesture::Alignment;
 use crate::id::{ItemId, Part};
@@ -28,8 +28,11 @@ fn hundredths(px: f64) -> Result<i32, Refusal> {
     i32::try_from(n).or_else(|_| refuse("this place is too far away"))
 }
 
-/// Gives a step or transition its place.
+/// Gives a step, transition or comment its place.
 pub(crate) fn place(d: &mut Draft<'_>, id: &ItemId, (x, y): (i32, i32)) -> Result<(), Refusal> {
+    if let Part::Note(n) = id.part {
+        return notes::shift(d, &id.chart, n, (x, y));
+    }
     let what = match node(d, id)? {
         Node::Step(name) => Placed::Step(d.new_name(&name)),
         Node::Transition(at) => placed(d, &id.chart, at)?,
@@ -51,8 +54,22 @@ fn placed(d: &Draft<'_>, chart: &str, at: Span) -> Result<Placed, Refusal> {
     Ok(Placed::TransitionNumber(u32::try_from(n).unwrap_or(u32::MAX)))
 }
 
+/// The layout of a chart: the first, as the drawing has it.
+pub(crate) fn layout<'d>(doc: &'d Document, chart: &str) -> Option<&'d Layout> {
+    doc.items.iter().find_map(|i| match i {
+        Item::Layout(l) if *l.chart.text == *chart => Some(l),
+        _ => None,
+    })
+}
+
+/// Takes layouts of a chart away that place nothing.
+pub(crate) fn without_empty_layout(d: &mut Draft<'_>, chart: &str) {
+    let empty = |l: &Layout| *l.chart.text == *chart && l.places.is_empty();
+    d.doc.items.retain(|i| !matches!(i, Item::Layout(l) if empty(l)));
+}
+
 /// Changes the layout of a chart; a new one at the end of the file where there is none.
-fn with_layout(d: &mut Draft<'_>, chart: &str, change: impl FnOnce(&mut Layout)) {
+pub(crate) fn with_layout(d: &mut Draft<'_>, chart: &str, change: impl FnOnce(&mut Layout)) {
     let own = |i: &Item| matches!(i, Item::Layout(l) if *l.chart.text == *chart);
     if !d.doc.items.iter().any(own) {
         let layout = Layout { chart: d.new_name(chart), places: Vec::new(), at: d.fresh() };
@@ -92,10 +109,14 @@ pub(crate) fn relabel(
 
 /// Where a symbol stands: as the layout says, else as it is drawn.
 fn anchor(d: &Draft<'_>, id: &ItemId) -> Result<(i32, i32), Refusal> {
+    if let Part::Note(n) = id.part {
+        return notes::at(d, &id.chart, n);
+    }
+    let known = node(d, id)?;
     if let Some(drawn) = (d.anchors)(id) {
         return Ok(drawn);
     }
-    let number = match node(d, id)? {
+    let number = match known {
         Node::Transition(at) => Some((placed(d, &id.chart, at)?, at)),
         Node::Step(_) => None,
     };
@@ -113,17 +134,16 @@ fn anchor(d: &Draft<'_>, id: &ItemId) -> Result<(i32, i32), Refusal> {
     found.ok_or_else(|| Refusal::new("where this stands on the drawing is not known yet"))
 }
 
-/// The steps and transitions among ids, with where they stand; actions stand with their steps.
+/// The steps, transitions and comments among ids, with where they stand; actions stand with their steps.
 fn anchors(d: &Draft<'_>, ids: &[ItemId]) -> Result<BTreeMap<ItemId, (i32, i32)>, Refusal> {
     let mut found = BTreeMap::new();
     for id in ids {
         let id = match &id.part {
             Part::Action(step, _) => ItemId::step(id.chart.as_str(), step.as_str()),
-            Part::Step(_) | Part::Transition(_) => id.clone(),
+            Part::Step(_) | Part::Transition(_) | Part::Note(_) => id.clone(),
             // Links and texts follow what they belong to.
             Part::Chart | Part::Link(..) | Part::Connector(..) | Part::Other(_) => continue,
         };
-        node(d, &id)?;
         let at = anchor(d, &id)?;
         found.insert(id, at);
     }
@@ -196,8 +216,16 @@ fn distribute(
     Ok(())
 }
 
+/// Comments stay: they are no places of symbols.
 pub(crate) fn tidy(d: &mut Draft<'_>, chart: &str) -> Result<(), Refusal> {
     d.chart(chart)?;
-    d.doc.items.retain(|i| !matches!(i, Item::Layout(l) if *l.chart.text == *chart));
+    for item in &mut d.doc.items {
+        if let Item::Layout(l) = item
+            && *l.chart.text == *chart
+        {
+            l.places.retain(|p| matches!(p.what, Placed::Comment(_)));
+        }
+    }
+    without_empty_layout(d, chart);
     Ok(())
 }

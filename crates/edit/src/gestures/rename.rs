@@ -43,7 +43,7 @@ pub(crate) fn rename(
     let after =
         spliced(source.text, &splices).ok_or_else(|| Refusal::new("the name cannot be written here"))?;
     judge(&refs, &after, &definition, &new, &splices)?;
-    Ok(Edit { splices, select: selected(id, to), begin: None })
+    Ok(Edit { splices, select: selected(id, to), ..Edit::default() })
 }
 
 /// What is to be renamed.
@@ -67,7 +67,7 @@ fn defined(
                 };
                 Definition::Transition { chart: id.chart.clone(), label: label.text.to_string() }
             }
-            Part::Link(..) | Part::Connector(..) | Part::Other(_) => {
+            Part::Link(..) | Part::Connector(..) | Part::Note(_) | Part::Other(_) => {
                 return refuse("this has no name of its own");
             }
         },
@@ -296,7 +296,7 @@ fn selected(id: Option<&ItemId>, to: &str) -> Vec<ItemId> {
     match &mut id.part {
         Part::Chart => to.clone_into(&mut id.chart),
         Part::Step(_) | Part::Action(..) => id.part = Part::Step(to.to_owned()),
-        Part::Transition(_) | Part::Link(..) | Part::Connector(..) | Part::Other(_) => {}
+        Part::Transition(_) | Part::Link(..) | Part::Connector(..) | Part::Note(_) | Part::Other(_) => {}
     }
     vec![id]
 }

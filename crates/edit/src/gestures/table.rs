@@ -1,6 +1,6 @@
-//! Charts, variables and settings of the file.
+//! Charts and variables of the file.
 
-use g7_model::{Chart, ChartItem, ChartKind, FileId, Item, Name, Profile, ProfileName, StepKind, VarDecl};
+use g7_model::{Chart, ChartItem, ChartKind, FileId, Item, Name, StepKind, VarDecl};
 
 use crate::draft::Draft;
 use crate::gesture::{ChartSort, Gesture, Row};
@@ -113,7 +113,7 @@ pub(crate) fn split<'n>(d: &Draft<'_>, name: &'n str) -> (Option<&'n str>, &'n s
     (None, name)
 }
 
-fn declares(v: &VarDecl, name: &str) -> bool {
+pub(crate) fn declares(v: &VarDecl, name: &str) -> bool {
     v.names.iter().any(|n| *n.text == *name)
 }
 
@@ -210,7 +210,7 @@ fn change(
 }
 
 /// A new declaration goes behind the last of its class, else behind the last one.
-fn put_variable(d: &mut Draft<'_>, home: Option<&str>, new: VarDecl) -> Result<(), Refusal> {
+pub(crate) fn put_variable(d: &mut Draft<'_>, home: Option<&str>, new: VarDecl) -> Result<(), Refusal> {
     match home {
         Some(chart) => {
             let items = &mut d.chart_mut(chart)?.items;
@@ -277,39 +277,4 @@ fn declared(d: &mut Draft<'_>, row: &Row) -> Result<VarDecl, Refusal> {
     }
     v.names.iter_mut().for_each(|n: &mut Name| n.at = d.fresh());
     Ok(v)
-}
-
-// Settings
-
-pub(crate) fn profile(d: &mut Draft<'_>, name: &str) -> Result<(), Refusal> {
-    let Some(profile) = ProfileName::ALL.into_iter().find(|p| p.name() == name) else {
-        return refuse(format!("there is no profile `{name}`"));
-    };
-    let at = d.fresh();
-    for item in &mut d.doc.items {
-        if let Item::Profile(p) = item {
-            p.name = profile;
-            return Ok(());
-        }
-    }
-    d.doc.items.insert(0, Item::Profile(Profile { name: profile, switches: Vec::new(), at }));
-    Ok(())
-}
-
-pub(crate) fn scan(d: &mut Draft<'_>, ms: f64) -> Result<(), Refusal> {
-    if !(ms.is_finite() && ms > 0.0 && ms <= 3_600_000.0) {
-        return refuse("a scan takes more than no time, and at most an hour");
-    }
-    #[allow(clippy::cast_possible_truncation, reason = "bounded just above")]
-    let ns = ((ms * 1_000_000.0).round() as i64).max(1);
-    let at = d.fresh();
-    for item in &mut d.doc.items {
-        if let Item::Cycle(there, _) = item {
-            *there = ns;
-            return Ok(());
-        }
-    }
-    let k = d.doc.items.iter().position(|i| matches!(i, Item::Profile(_))).map_or(0, |k| k + 1);
-    d.doc.items.insert(k, Item::Cycle(ns, at));
-    Ok(())
 }

@@ -13,6 +13,7 @@ use g7_model::{Chart, ChartItem, Document, Item, Name, Placed, Transition};
 use crate::draft::{Draft, is_fresh};
 use crate::splice::{Splice, tidied};
 pub(crate) use chart::step_list;
+pub(crate) use item::variable_text;
 pub(crate) use lines::reindent;
 
 use lines::Sheet;

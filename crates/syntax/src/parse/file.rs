@@ -235,8 +235,8 @@ fn short_section(name: &Name, value: Expr, at: g7_model::Place) -> Block {
     Block { locals: Vec::new(), statements: vec![stmt], at }
 }
 
-/// The switches by name, `bound` aside.
-pub(crate) const SWITCHES: [(&str, Switch); 16] = [
+/// The switches of profiles by their words, `bound` aside; the two words of a switch are neighbours.
+pub const SWITCHES: [(&str, Switch); 16] = [
     ("stable", Switch::Stable(true)),
     ("one-pass", Switch::Stable(false)),
     ("multi-token", Switch::MultiToken(true)),

@@ -16,7 +16,7 @@ mod st;
 mod variable;
 
 pub(crate) use expr::strength;
-pub(crate) use file::SWITCHES;
+pub use file::SWITCHES;
 
 use crate::lexer::{Lexer, Tok, Token};
 use crate::{number, words};
