@@ -6,7 +6,7 @@ import { browser, playground } from '../tests/lib';
 const SIZE = { width: 1600, height: 900 };
 const TICKS = 75;
 const MOVES = 60;
-const limits = { first: 100, tick: 3, whole: 10, pan: 5 };
+const limits = { first: 100, tick: 3, whole: 10, pan: 5, run: 3 };
 
 interface Row {
   name: string;

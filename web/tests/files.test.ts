@@ -126,6 +126,24 @@ test('after a crash of page and server the work is there again', async () => {
   await again.context().close();
 });
 
+test('work that the server could not keep is kept by the browser', async () => {
+  const page = await open(b, site, 'loop.g7');
+  const { port } = new URL(site.url);
+  await site.crash?.();
+  await rename(page, 'Kept');
+  await page.waitForFunction(() => Object.values(localStorage).some((text) => text.includes('step Kept')));
+  site = await serve(folder, '--port', port);
+  await page.goto(site.url);
+  await step(page, 'Kept').waitFor({ state: 'attached' });
+  await dirty(page).waitFor();
+  await page.locator('.sheet').focus();
+  await page.keyboard.press('Control+s');
+  await dirty(page).waitFor({ state: 'detached' });
+  assert.match(onDisk(), /step Kept/);
+  await page.waitForFunction(() => !Object.keys(localStorage).some((key) => key.startsWith('g7-draft')));
+  await page.context().close();
+});
+
 test('two windows see the same file', async () => {
   const one = await open(b, site, 'loop.g7');
   const two = await open(b, site, 'loop.g7');

@@ -58,7 +58,8 @@ process.once('exit', () => rmSync(STATE, { recursive: true, force: true }));
 /** `g7 serve` over a folder; `G7` names the program. */
 export async function serve(folder: string, ...more: string[]): Promise<Site> {
   const program = process.env.G7 ?? join(HERE, '../target/release/g7');
-  const child = spawn(program, ['serve', folder, '--port', '0', '--no-open', ...more], {
+  const port = more.includes('--port') ? [] : ['--port', '0'];
+  const child = spawn(program, ['serve', folder, ...port, '--no-open', ...more], {
     stdio: ['ignore', 'pipe', 'inherit'],
     env: { ...process.env, XDG_STATE_HOME: STATE },
   });

@@ -78,3 +78,36 @@ test('what one page does the other one sees', async () => {
   assert.equal(readFileSync(join(folder, 'shared.g7'), 'utf8'), CHART);
   await one.context().close();
 });
+
+test('breakpoints are those of all pages, and a page with another text is told so', async () => {
+  const one = await open(b, site, 'shared.g7');
+  await joined(one);
+  await one.locator('[data-id="G1/s/1"]').first().click({ force: true });
+  await one.keyboard.press('F9');
+  const two = await open(b, site, 'shared.g7');
+  await joined(two);
+  // Set before it came, and what is changed while it looks on.
+  await two.getByRole('button', { name: 'Breakpoints 1' }).waitFor();
+  await two.locator('[data-id="G1/s/0"]').first().click({ force: true });
+  await two.keyboard.press('F9');
+  await one.getByRole('button', { name: 'Breakpoints 2' }).waitFor();
+  await two.context().close();
+
+  const three = await open(b, site, 'shared.g7');
+  await three.locator('[data-id="G1/s/1"]').first().click({ force: true });
+  await three.keyboard.press('F2');
+  await three.locator('.inplace input').fill('Other');
+  await three.keyboard.press('Enter');
+  await three.locator('[data-id="G1/s/Other"]').waitFor({ state: 'attached' });
+  await joined(three);
+  await three.getByText('was begun from another text').waitFor();
+  // What others run is not changed by looking.
+  await three.waitForTimeout(1500);
+  assert.deepEqual(await three.locator('.steps button').allInnerTexts(), ['0', '1']);
+  await three.getByRole('button', { name: 'Take over' }).click();
+  await three.getByText('was begun from another text').waitFor({ state: 'detached' });
+  await one.getByText('was begun from another text').waitFor();
+  assert.deepEqual(one.errors, []);
+  await three.context().close();
+  await one.context().close();
+});

@@ -95,7 +95,7 @@ test('the guided first chart goes on by itself, and ends with a lamp that is lit
   await page.locator('.inplace input').fill('↑start');
   await page.keyboard.press('Enter');
   await lesson('What is start?');
-  await page.getByRole('button', { name: 'Fix: declare `start` as an input' }).click();
+  await page.getByRole('button', { name: 'Fix: declare start as an input' }).click();
   await lesson('Let it do something');
   await page.waitForTimeout(400);
   await press(page, 'G1/s/1');
@@ -103,7 +103,7 @@ test('the guided first chart goes on by itself, and ends with a lamp that is lit
   await page.locator('.inplace input').fill('N lamp');
   await page.keyboard.press('Enter');
   await lesson('The lamp is an output');
-  await page.getByRole('button', { name: 'Fix: declare `lamp` as an output' }).click();
+  await page.getByRole('button', { name: 'Fix: declare lamp as an output' }).click();
   await lesson('Back to the beginning');
   await page.waitForTimeout(400);
   await press(page, 'G1/s/1');

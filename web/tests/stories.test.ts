@@ -34,7 +34,7 @@ async function activate(control: Locator): Promise<void> {
 }
 
 async function declare(page: Page, name: string, as: string): Promise<void> {
-  const fix = page.getByRole('button', { name: `Fix: declare \`${name}\` as ${as}` });
+  const fix = page.getByRole('button', { name: `Fix: declare ${name} as ${as}` });
   await activate(fix.first());
   await fix.first().waitFor({ state: 'detached' });
 }

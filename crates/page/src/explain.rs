@@ -10,5 +10,10 @@ pub fn explain(id: &str) -> Option<String> {
     let code = codes::find(id)?;
     let page = PAGES.iter().find(|(page, _)| *page == code.id);
     let text = page.map_or_else(|| format!("# {}: {}", code.id, code.title), |(_, text)| (*text).to_owned());
-    Some(format!("{}\n\nSource: {}\n", text.trim_end(), code.source))
+    let text = text.trim_end();
+    // Most pages name their sources themselves.
+    if text.lines().any(|line| line.starts_with("Source:")) {
+        return Some(format!("{text}\n"));
+    }
+    Some(format!("{text}\n\nSource: {}\n", code.source))
 }

@@ -15,6 +15,8 @@ export interface Command {
   /** Beside a selected symbol. */
   near?: boolean;
   when: () => boolean;
+  /** Of what is either set or not: whether it is. */
+  checked?: () => boolean;
   run: () => unknown;
   /** A line above it in the menu. */
   group?: boolean;
@@ -156,6 +158,7 @@ export const commands: Command[] = [
     title: 'cmd.initial',
     keys: ['I'],
     when: step,
+    checked: () => editor.one?.initial ?? false,
     run: () => editor.apply({ g: 'initial', id: id(), on: !editor.one?.initial }),
   },
   {
@@ -183,6 +186,7 @@ export const commands: Command[] = [
     title: 'cmd.breakpoint',
     keys: ['F9'],
     when: () => step() || transition(),
+    checked: () => !!editor.file && runs.breaks(editor.file.name).includes(id()),
     run: () => editor.file && runs.toggleBreak(editor.file.name, id()),
   },
   {

@@ -10,7 +10,7 @@ import type { Scene } from './scene';
 const SVG = 'http://www.w3.org/2000/svg';
 
 /** Kinds of marks, in the order of painting. */
-const KINDS = ['lit', 'flash', 'on', 'token', 'enabled', 'holds', 'hatch', 'lock', 'break', 'stop', 'far-enabled', 'far-on'] as const;
+const KINDS = ['lit', 'flash', 'other', 'on', 'token', 'enabled', 'holds', 'hatch', 'lock', 'break', 'stop', 'far-enabled', 'far-on'] as const;
 type Kind = (typeof KINDS)[number];
 
 /** Texts of one kind: as many nodes as were ever in sight at once. */
@@ -52,6 +52,7 @@ class Texts {
 export class LiveLayer {
   #paths = new Map<Kind, SVGPathElement>();
   #times: Texts;
+  #others: Texts;
   #values: Texts;
 
   constructor(root: SVGGElement) {
@@ -62,18 +63,17 @@ export class LiveLayer {
       this.#paths.set(kind, path);
     }
     this.#times = new Texts(root, 'time');
+    this.#others = new Texts(root, 'time other');
     this.#values = new Texts(root, 'value');
   }
 
   /** Draws the marks within a window of the plane. */
   show(scene: Scene, live: Live, window: [number, number, number, number], far: boolean): void {
     const drawn = new Map<Kind, string>();
-    this.#times.begin();
-    this.#values.begin();
+    for (const texts of [this.#times, this.#others, this.#values]) texts.begin();
     if (far) farMarks(scene, live, drawn);
     else this.#near(scene, live, window, drawn);
-    this.#times.end();
-    this.#values.end();
+    for (const texts of [this.#times, this.#others, this.#values]) texts.end();
     for (const [kind, path] of this.#paths) set(path, 'd', drawn.get(kind) ?? '');
   }
 
@@ -93,10 +93,15 @@ export class LiveLayer {
       const square = sight(id)?.square;
       if (!square) continue;
       add('on', rect(square, 0));
-      add('token', circle(square[0] + square[2] / 2, square[1] + square[3] - 11, 5));
+      add('token', circle(square[0] + square[2] / 2, scene.tokenAt(id), 5));
       const time = live.times.get(id);
-      // Above the square, before the link: lines beside it go up and down there.
-      if (time) this.#times.put(square[0] + square[2] / 2 - 5, square[1] - 4, time);
+      if (time) this.#times.put(...above(square), time);
+    }
+    for (const id of live.others) {
+      const square = sight(id)?.square;
+      if (!square) continue;
+      add('other', rect(square, 4));
+      this.#others.put(...above(square), live.otherName);
     }
     for (const [id, how] of live.enabled) {
       const bar = how > 0 ? sight(id)?.bar : undefined;
@@ -148,6 +153,11 @@ function farMarks(scene: Scene, live: Live, drawn: Map<Kind, string>): void {
   }
   drawn.set('far-on', on);
   drawn.set('far-enabled', enabled);
+}
+
+/** Where a text ends above a square, before the link: lines beside it go up and down there. */
+function above(square: Box): [x: number, y: number] {
+  return [square[0] + square[2] / 2 - 5, square[1] - 4];
 }
 
 function set(node: Element, name: string, value: string): void {

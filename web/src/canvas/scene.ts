@@ -18,6 +18,7 @@ export class Scene {
   readonly actions = new Map<string, Item[]>();
   #lines = new Map<string, Point[]>();
   #rectangles = new Map<string, Box>();
+  #tokens = new Map<string, number>();
 
   constructor(drawing: Drawing) {
     this.drawing = drawing;
@@ -67,9 +68,27 @@ export class Scene {
     const known = this.#rectangles.get(action.id);
     if (known) return known;
     const found = /class="g7-action" x="([-\d.]+)" y="([-\d.]+)" width="([\d.]+)" height="([\d.]+)"/.exec(action.svg);
-    const box: Box = found ? [Number(found[1]), Number(found[2]), Number(found[3]), Number(found[4])] : action.area;
+    const cut = found ? null : /class="g7-action" d="([^"]+)"/.exec(action.svg)?.[1];
+    const box: Box = found ? [Number(found[1]), Number(found[2]), Number(found[3]), Number(found[4])] : cut ? round(corners(cut)) : action.area;
     this.#rectangles.set(action.id, box);
     return box;
+  }
+
+  /** How high in a step its token stands: below its name, on its edge where that has two lines. */
+  tokenAt(id: string): number {
+    const known = this.#tokens.get(id);
+    if (known !== undefined) return known;
+    const item = this.byId.get(id);
+    const [, y = 0, , h = 0] = item?.square ?? [];
+    const lines = item?.svg.split('class="g7-name"').length ?? 0;
+    const at = y + h - (lines > 2 ? 0 : 11);
+    this.#tokens.set(id, at);
+    return at;
+  }
+
+  /** The outline of a symbol: of an action without its line to the step. */
+  outline(item: Item): Box {
+    return item.part === 'action' ? this.rectangle(item) : item.area;
   }
 
   /** What lies at a place; `reach` is how far beside it still counts. */
@@ -213,6 +232,12 @@ export function union(boxes: Box[]): Box | null {
   const right = Math.max(...boxes.map((b) => b[0] + b[2]));
   const low = Math.max(...boxes.map((b) => b[1] + b[3]));
   return [x, y, right - x, low - y];
+}
+
+/** The box round some points. */
+function round(points: Point[]): Box {
+  const [x, y] = [Math.min(...points.map((p) => p[0])), Math.min(...points.map((p) => p[1]))];
+  return [x, y, Math.max(...points.map((p) => p[0])) - x, Math.max(...points.map((p) => p[1])) - y];
 }
 
 function outside([x, y, w, h]: Box, px: number, py: number): number {

@@ -34,9 +34,9 @@ export function handOut(name: string, text: string, type: string): void {
   setTimeout(() => URL.revokeObjectURL(link.href), 10_000);
 }
 
-/** Closes a file; one with changes asks first. */
+/** Closes a file; one with changes asks first. A new one that nothing was done to has none. */
 export function close(file: OpenFile): void {
-  if (file.changed && file.saved !== null) {
+  if (file.changed && (file.saved !== null || file.look.can_undo)) {
     shell.closing = file;
     shell.dialog = 'close';
   } else void shell.try(() => files.close(file));

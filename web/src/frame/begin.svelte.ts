@@ -2,6 +2,7 @@
 import { files, type OpenFile } from '../lib/files.svelte';
 import { t } from '../lib/i18n';
 import { prefs } from '../lib/prefs.svelte';
+import { local } from '../lib/local';
 import { server, type Changed } from '../lib/server';
 import { shell } from '../lib/shell.svelte';
 
@@ -42,22 +43,18 @@ async function recover(): Promise<void> {
       ? await shell.try(() => files.read(draft.path))
       : await shell.try(() => files.open(draft.path, draft.text));
     if (!file) continue;
+    if (known && file.text === draft.text) continue;
     if (file.text !== draft.text) await shell.try(() => file.replace(draft.text));
     shell.say(t('app.recovered', { name: draft.path }));
   }
 }
 
-const DRAFT = 'g7-draft:';
-
-/** Copies of unsaved work: of the server, or of the browser where no server keeps any. */
+/** Copies of unsaved work: the server's; the browser's where no server keeps any, or it was gone. */
 async function drafts(): Promise<{ path: string; text: string }[]> {
-  if (server.writes) return server.drafts().catch(() => []);
-  try {
-    const keys = Object.keys(localStorage).filter((k) => k.startsWith(DRAFT));
-    return keys.map((k) => ({ path: k.slice(DRAFT.length), text: localStorage.getItem(k) ?? '' }));
-  } catch {
-    return [];
-  }
+  const kept = server.writes ? await server.drafts().catch(() => []) : [];
+  // The browser's were kept when the server did not answer: they are later.
+  const own = local.all();
+  return [...kept.filter((d) => !own.some((o) => o.path === d.path)), ...own];
 }
 
 /** Keeps copies of what is not saved, a second after the last change; call once, inside a component. */
@@ -77,15 +74,14 @@ export function keepDrafts(): void {
 }
 
 async function keep(file: OpenFile, text: string | null): Promise<void> {
+  if (!files.list.includes(file)) return;
+  let kept = false;
   if (server.writes) {
-    if (text === null) await server.dropDraft(file.name).catch(() => undefined);
-    else await server.keepDraft(file.name, text).catch(() => undefined);
-    return;
+    const asked = text === null ? server.dropDraft(file.name) : server.keepDraft(file.name, text);
+    kept = await asked.then(
+      () => true,
+      () => false,
+    );
   }
-  try {
-    if (text === null) localStorage.removeItem(DRAFT + file.name);
-    else localStorage.setItem(DRAFT + file.name, text);
-  } catch {
-    // A full store keeps what it has.
-  }
+  local.put(file.name, kept ? null : text);
 }

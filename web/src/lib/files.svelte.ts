@@ -1,6 +1,7 @@
 // The open files. The text is kept here and in the worker; changes typed here
 // and changes made there while an answer is under way are carried over each other.
 import { ChangeSet, type Text } from '@codemirror/state';
+import { local } from './local';
 import { page, type Message } from './page';
 import { prefs } from './prefs.svelte';
 import type { Drawing, Edited, Gesture, Look, Splice } from './protocol';
@@ -229,13 +230,16 @@ class Files {
     file.tag = await server.write(file.name, text, file.tag);
     file.saved = text;
     file.outside = null;
-    void server.dropDraft(file.name);
+    void server.dropDraft(file.name).catch(() => undefined);
   }
 
   async close(file: OpenFile): Promise<void> {
     const at = this.list.indexOf(file);
     this.list = this.list.filter((f) => f !== file);
     if (this.current === file) this.current = this.list[Math.min(at, this.list.length - 1)] ?? null;
+    // Whoever closes a file wants no copy of it back.
+    local.put(file.name, null);
+    if (server.writes) void server.dropDraft(file.name).catch(() => undefined);
     await page.call({ do: 'close', file: file.name });
   }
 }

@@ -17,6 +17,9 @@ export class Live {
   /** Symbols that show a forced variable. */
   forced: ReadonlySet<string> = $state.raw(new Set());
   breaks: ReadonlySet<string> = $state.raw(new Set());
+  /** Steps that are active only in the run that this one is compared with, and what that is called. */
+  others: ReadonlySet<string> = $state.raw(new Set());
+  otherName = $state('');
   /** Transitions that were cleared since the last frame. */
   cleared: readonly string[] = $state.raw([]);
   /** The symbol at which the run stopped or halted. */
@@ -30,6 +33,7 @@ export class Live {
     this.values = new Map();
     this.lit = new Set();
     this.forced = new Set();
+    this.others = new Set();
     this.cleared = [];
     this.stopped = null;
   }

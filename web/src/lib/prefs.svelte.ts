@@ -17,6 +17,8 @@ interface Kept {
   look: 'iec60848' | 'sfc';
   pages: boolean;
   minimap: boolean;
+  /** The view goes where steps become active. */
+  follow: boolean;
   guided: boolean;
 }
 
@@ -41,6 +43,7 @@ const first: Kept = {
   look: 'iec60848',
   pages: false,
   minimap: true,
+  follow: false,
   guided: false,
 };
 

@@ -253,6 +253,10 @@ export interface Started {
   transitions: { id: string }[];
   plant?: string;
   view?: { file: string; svg?: string; bindings: { element: string; attribute: string }[] };
+  /** The short name of the text that runs, as in a look. */
+  hash: string;
+  /** Steps and transitions at which it stops. */
+  breaks: string[];
   frame: Frame;
 }
 

@@ -51,14 +51,21 @@ class Runs {
     return this.#breaks.get(file) ?? [];
   }
 
-  /** Starts the run of a file anew, in the page. */
+  /** Starts the run of a file anew, in the page; a comparison begins anew with it. */
   async start(file: OpenFile, wishes: Wishes = this.wishes(file.name)): Promise<Run> {
+    const other = this.other?.file === file.name ? this.other.started.profile : null;
+    const run = await this.#begin(file, wishes);
+    if (other && run.started.profile !== other) await this.#beside(run, other);
+    else if (other) await this.compare(null);
+    return run;
+  }
+
+  async #begin(file: OpenFile, wishes: Wishes): Promise<Run> {
     const before = this.of(file.name);
     this.#wishes = new Map(this.#wishes).set(file.name, wishes);
     if (before?.shared) await this.#quit(before);
     const started = await page.call<Started>({ do: 'run_start', file: file.name, run: file.name, ...wishes });
     const run = new Run(started, page, false);
-    run.hash = file.look.hash;
     run.speed = before?.speed ?? 1;
     this.#put(file.name, run);
     await this.#tellBreaks(run);
@@ -83,10 +90,12 @@ class Runs {
   async send(run: Run, message: Message): Promise<void> {
     const other = this.other && this.other.file === run.file && !run.shared ? this.other : null;
     const before = run.now;
+    const anew = message.do === 'run_restart';
+    if (anew) this.difference = null;
     const both = [this.#send(run, message)];
     if (other) both.push(this.#send(other, message));
     await Promise.all(both);
-    if (other) this.difference ??= await differ(run, other, before);
+    if (other) this.difference ??= await differ(run, other, anew ? run.now : before);
     if (other && this.difference && run.playing && !this.difference.seen) {
       this.difference = { ...this.difference, seen: true };
       run.playing = false;
@@ -110,8 +119,7 @@ class Runs {
 
   async toggleBreak(file: string, id: string): Promise<void> {
     const now = this.breaks(file);
-    const next = now.includes(id) ? now.filter((b) => b !== id) : [...now, id];
-    this.#breaks = new Map(this.#breaks).set(file, next);
+    this.#breaksAre(file, now.includes(id) ? now.filter((b) => b !== id) : [...now, id]);
     const run = this.of(file);
     if (run) await this.#tellBreaks(run);
   }
@@ -129,19 +137,21 @@ class Runs {
     if (old) await page.call({ do: 'run_stop', run: old.name });
     const file = files.current;
     if (!profile || !file) return;
-    await this.start(file);
-    const message = { do: 'run_start', file: file.name, run: `${file.name}|b`, ...this.wishes(file.name), profile };
+    await this.#beside(await this.#begin(file, this.wishes(file.name)), profile);
+  }
+
+  async #beside(run: Run, profile: string): Promise<void> {
+    this.difference = null;
+    const message = { do: 'run_start', file: run.file, run: `${run.file}|b`, ...this.wishes(run.file), profile };
     const other = new Run(await page.call<Started>(message), page, false);
     this.other = other;
-    const run = this.of(file.name);
-    if (run) this.difference = await differ(run, other);
+    this.difference = await differ(run, other);
   }
 
   /** Takes a changed text over into its run; what would be lost is asked about first, unless this is no moment to ask. */
   async swap(file: OpenFile, force = false, quiet = false): Promise<void> {
     const run = this.of(file.name);
     if (!run || run.hash === file.look.hash) return;
-    const hash = file.look.hash;
     const message: Message = { do: 'run_swap', run: run.name, file: file.name, force };
     if (run.shared) message.text = file.text;
     try {
@@ -152,7 +162,7 @@ class Runs {
         return;
       }
       run.begin(answer);
-      run.hash = hash;
+      run.foreign = false;
       run.losing = null;
       if (this.other?.file === file.name) await this.compare(null);
     } catch (error) {
@@ -173,9 +183,11 @@ class Runs {
     const before = this.of(file.name);
     // It is known before anything is waited for: its frames come from now on.
     const run = new Run(started, server as Answers, true);
-    run.hash = file.look.hash;
+    run.foreign = run.hash !== file.look.hash;
     this.#paced(run, started.speed ?? 0);
     this.#put(file.name, run);
+    if (known) this.#breaksAre(file.name, started.breaks);
+    else await this.#tellBreaks(run);
     if (before) await page.call({ do: 'run_stop', run: before.name }).catch(() => undefined);
     if (this.other) await this.compare(null);
   }
@@ -204,7 +216,12 @@ class Runs {
     server.hear((message) => {
       const named = (name: string) => this.all.find((r) => r.shared && r.name === name);
       if (message.frame) named((message.frame as Frame).run)?.take(message.frame as Frame);
-      if (message.started) named((message.started as Started).run)?.begin(message.started as Started);
+      if (message.started) this.#begun(message.started as Started);
+      if (message.breaks) {
+        const { run, ids } = message.breaks as { run: string; ids: string[] };
+        const of = named(run);
+        if (of) this.#breaksAre(of.file, ids);
+      }
       if (message.pace) {
         const { run, speed } = message.pace as { run: string; speed: number };
         const paced = named(run);
@@ -215,6 +232,19 @@ class Runs {
         if (run) this.#put(run.file, null);
       }
     });
+  }
+
+  /** Someone began a shared run anew, or took a changed chart over into it. */
+  #begun(started: Started): void {
+    const run = this.all.find((r) => r.shared && r.name === started.run);
+    if (!run) return;
+    run.begin(started);
+    run.foreign = run.hash !== files.find(run.file)?.look.hash;
+    this.#breaksAre(run.file, started.breaks);
+  }
+
+  #breaksAre(file: string, ids: readonly string[]): void {
+    this.#breaks = new Map(this.#breaks).set(file, ids);
   }
 
   /** A shared run that moves and was not heard of: the connection was lost, or the server began anew. */

@@ -112,7 +112,7 @@ class Server implements Answers {
   }
 
   async keepDraft(path: string, text: string): Promise<void> {
-    await this.#fetch(`api/draft?path=${encodeURIComponent(path)}`, { method: 'PUT', body: text });
+    await this.#ok(await this.#fetch(`api/draft?path=${encodeURIComponent(path)}`, { method: 'PUT', body: text }));
   }
 
   async drafts(): Promise<{ path: string; text: string }[]> {

@@ -43,6 +43,8 @@ class Shell {
   /** A place that the text view is to bring into view. */
   reveal: Reveal | null = $state.raw(null);
   dialog: string | null = $state(null);
+  /** The code of the problem that a dialog explains. */
+  explained = $state('');
   /** The open tab by region. */
   tabs: Record<string, string> = $state({});
   notices: Notice[] = $state.raw([]);
@@ -85,6 +87,12 @@ class Shell {
     files.current = file;
     if (prefs.view === 'chart') prefs.view = 'both';
     this.reveal = { file: file.name, from, to };
+  }
+
+  /** Shows the page about a kind of problem. */
+  explain(code: string): void {
+    this.explained = code;
+    this.dialog = 'explain';
   }
 
   select(ids: Iterable<string>): void {

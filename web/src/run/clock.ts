@@ -1,49 +1,54 @@
 // The wall clock of runs that the page holds: a message moves the virtual time on,
 // and the next one waits for its answer, so that a slow run makes time slow and not
-// the queue long.
+// the queue long. It asks as often as something can have changed to be seen: with
+// each picture of the screen where a plant moves, else 25 times a second, and never
+// more often than there are scans.
 import { runs, type Run } from '../lib/runs.svelte';
 import { files } from '../lib/files.svelte';
 import { shell } from '../lib/shell.svelte';
 
-/** Between two messages: smooth where a picture moves, else as often as the drawing changes. */
+/** Between two messages, ms: where a picture moves, and where only the drawing does. */
 const SMOOTH = 15;
-const CALM = 38;
+const CALM = 40;
+/** Slow scans are waited for no longer than that, so that a pause is felt at once. */
+const PATIENT = 200;
 /** A page that was hidden does not catch up. */
-const LONGEST = 200;
+const LONGEST = 400;
 
 class Clock {
   #last = 0;
   #owed = 0;
-  #sent = 0;
-  #busy = false;
-  #handle = 0;
+  #going = false;
 
   /** Goes while something runs. */
   go(): void {
-    if (this.#handle !== 0) return;
+    if (this.#going) return;
+    this.#going = true;
+    this.#owed = 0;
     this.#last = performance.now();
-    this.#handle = requestAnimationFrame((at) => this.#tick(at));
+    this.#wait(0);
   }
 
-  #tick(at: number): void {
-    this.#handle = 0;
+  #wait(ms: number): void {
+    // A message of a plant's picture goes out with the picture of the screen before it.
+    if (ms <= SMOOTH) requestAnimationFrame(() => void this.#tick());
+    else setTimeout(() => void this.#tick(), ms);
+  }
+
+  async #tick(): Promise<void> {
     const run = files.current ? runs.of(files.current.name) : null;
     if (!run?.playing || run.shared) {
-      this.#owed = 0;
+      this.#going = false;
       return;
     }
-    this.#owed = Math.min(this.#owed + Math.max(0, at - this.#last), LONGEST);
-    this.#last = at;
-    const gap = run.started.view ? SMOOTH : CALM;
-    if (!this.#busy && at - this.#sent >= gap) {
-      this.#sent = at;
-      void this.#advance(run);
-    }
-    this.#handle = requestAnimationFrame((next) => this.#tick(next));
+    const now = performance.now();
+    this.#owed = document.hidden ? 0 : Math.min(this.#owed + now - this.#last, LONGEST);
+    this.#last = now;
+    await this.#advance(run);
+    this.#wait(Math.max(0, gap(run) - (performance.now() - now)));
   }
 
   async #advance(run: Run): Promise<void> {
-    this.#busy = true;
     const ms = this.#owed * run.speed;
     this.#owed = 0;
     try {
@@ -51,10 +56,13 @@ class Clock {
     } catch (error) {
       run.playing = false;
       shell.say((error as Error).message, 'error');
-    } finally {
-      this.#busy = false;
     }
   }
+}
+
+function gap(run: Run): number {
+  const scan = run.started.period_ms / run.speed;
+  return Math.min(PATIENT, Math.max(scan, run.pictures > 0 ? SMOOTH : CALM));
 }
 
 export const clock = new Clock();

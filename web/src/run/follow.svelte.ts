@@ -53,7 +53,9 @@ export function follow(): void {
   $effect(() => {
     const file = files.current;
     const run = runs.current;
-    if (!file || !run || run.hash === file.look.hash) return;
+    if (!file || !run) return;
+    if (run.hash === file.look.hash) run.foreign = false;
+    if (run.hash === file.look.hash || run.foreign) return;
     if (file.look.problems.some((p) => p.severity === 'error')) return;
     const timer = setTimeout(() => {
       void shell.try(async () => {

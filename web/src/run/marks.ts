@@ -5,6 +5,10 @@ import { transitionNumber } from '../lib/ids';
 import type { Run } from './state.svelte';
 
 const GAP = 40;
+/** A frame that comes so early is told at once: one painting instead of two. */
+const EARLY = 12;
+/** A time that changes faster than so cannot be read, ms of the wall clock. */
+const READABLE = 100;
 /** How long a cleared transition flashes. */
 const FLASH = 300;
 
@@ -28,8 +32,10 @@ export function named(run: Run, chart: string, items: readonly Item[]): Named {
   return found;
 }
 
-/** A time beside a step: short, in units that do not flicker. */
-export function age(ms: number): string {
+/** A time beside a step: short, in units that do not flicker. While time goes on, none that nobody could read. */
+export function age(ms: number, grain = 0): string {
+  if (ms < grain) return '';
+  if (grain > 1) ms = Math.floor(ms / grain + 1e-6) * grain;
   if (ms < 1000) return `${Math.round(ms)}ms`;
   if (ms < 60_000) return `${(ms / 1000).toFixed(1)}s`;
   const minutes = Math.floor(ms / 60_000);
@@ -43,6 +49,7 @@ export class Marks {
   /** Actions that name signals, by step. */
   #actions = new Map<string, string[]>();
   #other: Run | null = null;
+  #unwatchOther: (() => void) | null = null;
   #told = 0;
   #timer = 0;
   #unwatch: () => void;
@@ -64,19 +71,28 @@ export class Marks {
       const step = stepOf(id);
       this.#actions.set(step, [...(this.#actions.get(step) ?? []), id]);
     }
-    this.#other = other;
+    if (this.#other !== other) {
+      this.#unwatchOther?.();
+      this.#unwatchOther = other?.watch(() => this.soon()) ?? null;
+      this.#other = other;
+    }
     this.tell();
   }
 
   end(): void {
     this.#unwatch();
+    this.#unwatchOther?.();
     clearTimeout(this.#timer);
     live.clear();
   }
 
   soon(): void {
     if (this.#timer !== 0) return;
-    const wait = Math.max(0, GAP - (performance.now() - this.#told));
+    const wait = GAP - (performance.now() - this.#told);
+    if (wait <= EARLY) {
+      this.tell();
+      return;
+    }
     this.#timer = window.setTimeout(() => this.tell(), wait);
   }
 
@@ -88,12 +104,13 @@ export class Marks {
     const { steps, transitions } = run.started;
     const on = new Set<string>();
     const times = new Map<string, string>();
+    const grain = run.playing ? READABLE * Math.min(1, run.speed) : 0;
     for (const i of run.active) {
       const id = steps[i]?.id;
       if (!id) continue;
       on.add(id);
       const ms = run.times.get(i);
-      if (ms !== undefined) times.set(id, age(ms));
+      if (ms !== undefined) times.set(id, age(ms, grain));
     }
     const enabled = new Map<string, 0 | 1 | 2>();
     for (const [i, how] of run.enabled) {
@@ -132,8 +149,11 @@ export class Marks {
     const lit = new Set<string>();
     const forced = new Set<string>();
     const tell = (id: string) => {
-      const numbers = this.#names.get(id)?.filter((s) => signals[s]?.type !== 'bool') ?? [];
-      if (numbers.length > 0) values.set(id, numbers.map((s) => `${signals[s]?.name} = ${run.shows[s]}`).join('   '));
+      const all = this.#names.get(id) ?? [];
+      const numbers = all.filter((s) => signals[s]?.type !== 'bool');
+      // Where one name stands, its value needs no name.
+      const short = (s: number) => (all.length === 1 ? '' : `${brief(signals[s]?.name ?? '')} `);
+      if (numbers.length > 0) values.set(id, numbers.map((s) => `${short(s)}= ${run.shows[s]}`).join('   '));
     };
     for (const step of on) {
       for (const id of this.#actions.get(step) ?? []) {
@@ -145,17 +165,23 @@ export class Marks {
     if (run.forced.includes(true)) {
       for (const [id, names] of this.#names) if (names.some((s) => run.forced[s])) forced.add(id);
     }
-    const other = this.#other;
-    if (other) {
-      for (const i of other.active) {
-        const id = other.started.steps[i]?.id;
-        if (id && !on.has(id)) values.set(id, `◦ ${other.started.profile}`);
-      }
+    const others = new Set<string>();
+    for (const i of this.#other?.active ?? []) {
+      const id = this.#other?.started.steps[i]?.id;
+      if (id && !on.has(id)) others.add(id);
     }
+    if (others.size > 0 || live.others.size > 0) live.others = others;
+    live.otherName = this.#other?.started.profile ?? '';
     live.values = values;
     live.lit = lit;
     live.forced = forced;
   }
+}
+
+/** A name without what it belongs to, and no longer than a glance. */
+function brief(name: string): string {
+  const last = name.slice(name.lastIndexOf('.') + 1);
+  return last.length <= 16 ? last : `${last.slice(0, 9)}…${last.slice(-6)}`;
 }
 
 function stepOf(action: string): string {

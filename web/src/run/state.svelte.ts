@@ -4,6 +4,9 @@
 import type { Answers } from '../lib/page';
 import type { Frame, SignalRow, Started } from '../lib/protocol';
 
+/** While it runs, its time is told in words no more often than can be read, ms. */
+const READ = 100;
+
 type Watcher = (frame: Frame) => void;
 
 export interface Halt {
@@ -33,10 +36,14 @@ export class Run {
   /** Transitions cleared since the drawing was told. */
   readonly cleared = new Set<number>();
   view: (boolean | number | string | undefined)[] = [];
+  /** Pictures of the plant that are in view. */
+  pictures = 0;
 
   now = $state(0);
   /** The latest instant that there is. */
   end = $state(0);
+  #told: { now: number; end: number } = $state.raw({ now: 0, end: 0 });
+  #toldAt = 0;
   scans = $state(0);
   passes = $state(0);
   within = $state(false);
@@ -47,8 +54,12 @@ export class Run {
   stopped: string | null = $state(null);
   playing = $state(false);
   speed = $state(1);
+  /** The time as it is told in words. */
+  readonly clock: { now: number; end: number } = $derived(this.playing ? this.#told : { now: this.now, end: this.end });
   /** The version of the text that runs. */
   hash = $state('');
+  /** A shared run of another text than the one here, which others look at: it is changed only on demand. */
+  foreign = $state(false);
   /** What an on-line change would lose, while that is asked. */
   losing: string[] | null = $state.raw(null);
   /** A changed text that cannot be taken over, and why. */
@@ -73,6 +84,7 @@ export class Run {
   /** Takes over a start, or a changed chart: the numbers of frames have new meanings. */
   begin(started: Started): void {
     this.started = started;
+    this.hash = started.hash;
     this.shows = started.signals.map(() => '');
     this.numbers = started.signals.map(() => 0);
     this.forced = started.signals.map(() => false);
@@ -126,6 +138,10 @@ export class Run {
     if (this.halt || this.stopped) this.playing = false;
     if (frame.notes && frame.notes.length > 0) this.note = frame.notes.at(-1) ?? null;
     this.heard = performance.now();
+    if (this.heard - this.#toldAt >= READ) {
+      this.#toldAt = this.heard;
+      this.#told = { now: this.now, end: this.end };
+    }
     this.frames++;
     this.#watchers.forEach((watcher) => watcher(frame));
   }

@@ -40,6 +40,10 @@ pub(crate) struct Started {
     plant: Option<String>,
     #[serde(skip_serializing_if = "Option::is_none")]
     view: Option<View>,
+    /// The short name of the text that runs, as in a look.
+    hash: String,
+    /// Where it stops.
+    breaks: Vec<String>,
     frame: Frame,
 }
 
@@ -260,6 +264,8 @@ impl Run {
             transitions: self.places.transitions.iter().map(|id| TransitionRow { id: id.clone() }).collect(),
             plant: bench.plant.as_ref().map(|p| p.name.clone()),
             view,
+            hash: crate::look::hash(&self.text),
+            breaks: self.break_ids(),
             frame,
         }
     }

@@ -18,6 +18,7 @@ export const canvas = {
   'canvas.zoomOut': ['Zoom out', 'Réduire', 'Reduzir'],
   'canvas.zoomFit': ['Show all', 'Tout voir', 'Ver tudo'],
   'canvas.zoomActual': ['Zoom {n} %: back to 100 %', 'Zoom {n} % : revenir à 100 %', 'Zoom {n} %: voltar a 100 %'],
+  'canvas.follow': ['Follow the active steps', 'Suivre les étapes actives', 'Seguir as etapas ativas'],
   'canvas.minimap': ['Overview', "Vue d'ensemble", 'Vista geral'],
   'canvas.way': ['Where this chart belongs', 'Où se place ce grafcet', 'Onde se situa este grafcet'],
   'cmd.next': ['Next transition and step', 'Transition et étape suivantes', 'Transição e etapa seguintes'],

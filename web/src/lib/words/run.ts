@@ -44,6 +44,11 @@ export const run = {
   'run.server': ['Shared run', 'Exécution partagée', 'Execução partilhada'],
   'run.serverHint': ['The server holds the run: all pages that join it see and drive the same one', "Le serveur tient l'exécution : toutes les pages qui la rejoignent voient et pilotent la même", 'O servidor mantém a execução: todas as páginas que se juntam veem e comandam a mesma'],
   'run.changed': ['The chart was changed. What runs is the earlier text.', "Le grafcet a changé. L'ancien texte s'exécute.", 'O grafcet foi alterado. Corre o texto anterior.'],
+  'run.foreign': [
+    'This shared run was begun from another text of this file.',
+    "Cette exécution partagée est partie d'un autre texte de ce fichier.",
+    'Esta execução partilhada começou de outro texto deste ficheiro.',
+  ],
   'run.swapAsk': ['Taking over the change now loses:', 'Prendre le changement maintenant fait perdre :', 'Aplicar a alteração agora perde:'],
   'run.swap': ['Take over', 'Appliquer', 'Aplicar'],
   'run.anew': ['Begin anew', 'Recommencer', 'Recomeçar'],

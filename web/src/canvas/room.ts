@@ -1,0 +1,41 @@
+// Where something that lies over the drawing covers least of it.
+import type { Box } from '../lib/protocol';
+import type { Point } from './scene';
+
+interface Room {
+  /** Corners to choose from, the dearest first. */
+  places: readonly Point[];
+  size: readonly [w: number, h: number];
+  within: Box;
+  /** What would rather be seen. */
+  others: readonly Box[];
+  /** What it belongs to: never covered. */
+  about: Box;
+  /** What a px farther away counts, in px² covered. */
+  far: number;
+}
+
+/** How much of one box lies in another. */
+function overlap([ax, ay, aw, ah]: Box, [bx, by, bw, bh]: Box): number {
+  const w = Math.min(ax + aw, bx + bw) - Math.max(ax, bx);
+  const h = Math.min(ay + ah, by + bh) - Math.max(ay, by);
+  return w > 0 && h > 0 ? w * h : 0;
+}
+
+export function freest({ places, size: [w, h], within: [left, top, wide, high], others, about, far }: Room): Point {
+  const [mx, my] = [about[0] + about[2] / 2, about[1] + about[3] / 2];
+  let best: Point = [left, top];
+  let least = Infinity;
+  for (const [px, py] of places) {
+    const x = Math.max(left, Math.min(px, left + wide - w));
+    const y = Math.max(top, Math.min(py, top + high - h));
+    const at: Box = [x, y, w, h];
+    const covered = others.reduce((sum, other) => sum + overlap(at, other), 0);
+    const cost = covered + far * Math.hypot(x + w / 2 - mx, y + h / 2 - my) + (overlap(at, about) > 0 ? 1e7 : 0);
+    if (cost < least) {
+      best = [x, y];
+      least = cost;
+    }
+  }
+  return best;
+}
