@@ -102,7 +102,7 @@ fn value(ty: Type, words: &[u64]) -> Value {
     }
 }
 
-fn words(value: &Value) -> Vec<u64> {
+pub(crate) fn words(value: &Value) -> Vec<u64> {
     match value {
         Value::Bool(b) => vec![u64::from(*b)],
         Value::Int(n) => vec![*n as u64],

@@ -54,7 +54,7 @@ fn queries(trace: &Trace) -> Result<Vec<g7_model::Expr>, String> {
     Ok(all)
 }
 
-fn input_values(
+pub(crate) fn input_values(
     row: &Row,
     inputs: &[(String, Type)],
     names: &Naive,

@@ -108,6 +108,41 @@ test('theirs can be taken, and that undone', async () => {
   await page.context().close();
 });
 
+test('both sides can be merged where they changed different lines, and the merging undone', async () => {
+  const page = await open(b, site, 'loop.g7');
+  await rename(page, 'Mine');
+  const theirs = `// theirs\n${TEXT}`;
+  writeFileSync(path(), theirs);
+  const bar = page.getByRole('alert');
+  await bar.getByRole('button', { name: 'Merge' }).click();
+  await bar.waitFor({ state: 'detached' });
+  await page.locator('.sheet').focus();
+  await page.keyboard.press('Control+s');
+  await dirty(page).waitFor({ state: 'detached' });
+  assert.match(onDisk(), /^\/\/ theirs\n/);
+  assert.match(onDisk(), /step Mine/);
+  await page.keyboard.press('Control+z');
+  await dirty(page).waitFor();
+  await page.keyboard.press('Control+s');
+  await dirty(page).waitFor({ state: 'detached' });
+  assert.doesNotMatch(onDisk(), /theirs/);
+  await page.context().close();
+});
+
+test('what both sides changed in one line is not merged: the question stays', async () => {
+  const page = await open(b, site, 'loop.g7');
+  await rename(page, 'Mine');
+  const theirs = TEXT.replace('step 1', 'step Theirs').replace('-> 1', '-> Theirs').replace('1 ->', 'Theirs ->');
+  writeFileSync(path(), theirs);
+  const bar = page.getByRole('alert').filter({ hasText: 'changed outside' });
+  await bar.getByRole('button', { name: 'Merge' }).click();
+  await page.getByText('Both changed the same lines').waitFor();
+  await bar.waitFor();
+  assert.equal(onDisk(), theirs);
+  await step(page, 'Mine').waitFor({ state: 'attached' });
+  await page.context().close();
+});
+
 test('after a crash of page and server the work is there again', async () => {
   const page = await open(b, site, 'loop.g7');
   await rename(page, 'Kept');

@@ -32,6 +32,9 @@ const step = () => one('step');
 const transition = () => one('transition');
 const id = () => editor.one?.id ?? '';
 
+/** Where the context menu was called. */
+const here = () => (editor.menu ? editor.toPlane(editor.menu.x, editor.menu.y) : undefined);
+
 const align = (how: 'left' | 'top' | 'center' | 'distribute_x' | 'distribute_y') =>
   editor.apply({ g: 'align', ids: ids(), how });
 
@@ -178,8 +181,15 @@ export const commands: Command[] = [
     id: 'comment',
     title: 'cmd.comment',
     keys: ['C'],
-    when: () => step() || transition(),
+    when: () => step() || transition() || one('comment'),
     run: () => editor.edit(id(), 'comment'),
+  },
+  {
+    id: 'note',
+    title: 'cmd.note',
+    keys: ['C'],
+    when: () => !some(),
+    run: () => editor.note(here() ?? editor.middle()),
   },
   {
     id: 'breakpoint',
@@ -198,7 +208,7 @@ export const commands: Command[] = [
     run: () => editor.cut(),
   },
   { id: 'copy', title: 'cmd.copy', keys: ['Ctrl+C'], when: some, run: () => editor.copy() },
-  { id: 'paste', title: 'cmd.paste', keys: ['Ctrl+V'], when: () => true, run: () => editor.paste() },
+  { id: 'paste', title: 'cmd.paste', keys: ['Ctrl+V'], when: () => true, run: () => editor.paste(undefined, here()) },
   {
     id: 'delete',
     title: 'cmd.delete',

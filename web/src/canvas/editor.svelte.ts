@@ -16,6 +16,8 @@ export interface InPlace {
   index?: number;
   /** Typed already when the field opens. */
   typed?: string;
+  /** A comment that is not there yet: its place. */
+  at?: [number, number];
 }
 
 export interface View {
@@ -87,6 +89,7 @@ class Editor {
     if (shell.chart(file) === chart) {
       this.scene = new Scene(await file.drawing(chart));
     }
+    for (const sentence of edited.told ?? []) shell.say(sentence);
     const made = edited.select ?? [];
     if (made.length > 0) {
       shell.select(made);
@@ -100,11 +103,18 @@ class Editor {
   edit(id: string, field?: Field, index?: number): void {
     const kind = kindOf(id);
     const of = actionOf(id);
-    const usual: Field = kind === 't' ? 'receptivity' : kind === 'a' ? 'action' : 'name';
+    const usual: Field = kind === 't' ? 'receptivity' : kind === 'a' ? 'action' : kind === 'n' ? 'comment' : 'name';
     this.menu = null;
     this.inplace = of
       ? { id: of.step, field: 'action', index: of.index }
       : { id, field: field ?? usual, ...(index === undefined ? {} : { index }) };
+  }
+
+  /** Opens the field of a comment that is to stand at a place of the plane. */
+  note(at: [number, number]): void {
+    if (this.chart === null) return;
+    this.menu = null;
+    this.inplace = { id: this.chart, field: 'comment', at };
   }
 
   /** What Enter does: opens what can be opened, else edits. */
@@ -155,10 +165,10 @@ class Editor {
     if ((await this.copy()) !== '') await this.apply({ g: 'cut', ids: [...shell.selection] });
   }
 
-  async paste(text?: string): Promise<void> {
+  async paste(text?: string, at?: [number, number]): Promise<void> {
     const fragment = text?.trim() ? text : this.#copied;
     if (!fragment || this.chart === null) return;
-    await this.apply({ g: 'paste', chart: this.chart, text: fragment });
+    await this.apply({ g: 'paste', chart: this.chart, text: fragment, ...(at ? { at } : {}) });
   }
 
   remove(heal = true): Promise<Edited | undefined> {
@@ -166,7 +176,13 @@ class Editor {
   }
 
   selectAll(): void {
-    shell.select(this.scene?.items.filter((i) => i.part === 'step' || i.part === 'transition').map((i) => i.id) ?? []);
+    shell.select(this.scene?.items.filter((i) => ['step', 'transition', 'comment'].includes(i.part)).map((i) => i.id) ?? []);
+  }
+
+  /** The middle of what is in sight, on the grid. */
+  middle(): [number, number] {
+    const [x, y] = this.toPlane(this.width / 2, this.height / 2);
+    return [Math.round(x / 5) * 5, Math.round(y / 5) * 5];
   }
 
   /** From the screen to the plane. */

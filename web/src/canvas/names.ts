@@ -26,6 +26,8 @@ export function nameOf(item: Item): string {
       return t('canvas.action', { name: nameIn(actionOf(item.id)?.step ?? ''), text: item.source ?? '' });
     case 'connector':
       return t('canvas.connector', { name: item.name ?? nameIn(item.ends?.[1] ?? '') });
+    case 'comment':
+      return t('canvas.comment', { text: item.comment ?? '' });
     case 'link':
       return t('canvas.link');
     case 'text':

@@ -15,8 +15,9 @@ export function targetOf(what: Tool, x: number, y: number): string | null {
   if (!scene) return null;
   const reach = REACH / Math.min(editor.view.k, 1);
   if (!intoLink.has(what)) {
+    // A comment stands free unless it is put onto a symbol.
     const over = scene.hit(x, y, reach);
-    const wanted = what === 'or' || what === 'action' ? ['step'] : what === 'and' ? ['transition'] : ['step', 'transition'];
+    const wanted = what === 'or' || what === 'action' ? ['step'] : what === 'and' ? ['transition'] : ['step', 'transition', 'comment'];
     return over && wanted.includes(over.part) ? over.id : null;
   }
   return (scene.linkAt(x, y, reach) ?? scene.endAt(x, y, reach * 2))?.id ?? null;
@@ -29,6 +30,7 @@ export async function useTool(what: Tool, target: string | null, at?: [number, n
   if (chart === null) return;
   if (item && what === 'action') editor.edit(item.id, 'action');
   else if (item && what === 'comment') editor.edit(item.id, 'comment');
+  else if (what === 'comment') editor.note(at ?? editor.middle());
   else if (item && (what === 'or' || what === 'and')) await editor.apply({ g: 'branch', id: item.id, how: what });
   else if (item?.part === 'link') await editor.apply({ g: 'insert', link: item.id, what });
   else if (item && intoLink.has(what)) {
@@ -68,5 +70,5 @@ export function pressTool(what: Tool): void {
   const one = editor.one;
   void useTool(what, one?.id ?? null);
   if (what !== 'action' && what !== 'comment') editor.camera?.focus();
-  if (!one && (what === 'action' || what === 'comment')) shell.select([]);
+  if (!one && what === 'action') shell.select([]);
 }

@@ -18,7 +18,7 @@ type Doing =
 
 /** Whether a symbol can be taken hold of: links only follow. */
 function held(item: Item | null): boolean {
-  return item?.part === 'step' || item?.part === 'transition' || item?.part === 'action';
+  return item !== null && ['step', 'transition', 'action', 'comment'].includes(item.part);
 }
 
 export class Pointer {
@@ -118,7 +118,7 @@ export class Pointer {
       shell.select(add ? [...shell.selection, id] : [id]);
     }
     const parts = [...shell.selection].map((s) => actionOf(s)?.step ?? s);
-    const ids = new Set(parts.filter((s) => ['step', 'transition'].includes(editor.scene?.byId.get(s)?.part ?? '')));
+    const ids = new Set(parts.filter((s) => ['step', 'transition', 'comment'].includes(editor.scene?.byId.get(s)?.part ?? '')));
     const taken = ids.size > 0 ? ids : new Set([id]);
     this.#doing = { what: 'move', ids: alone ? taken : (editor.scene?.withNeighbours(taken) ?? taken) };
     return true;

@@ -5,7 +5,7 @@ import type { Box, Drawing, Item } from '../lib/protocol';
 
 export type Point = [x: number, y: number];
 
-const RANK: Record<Item['part'], number> = { action: 0, step: 1, transition: 2, connector: 3, link: 4, text: 5 };
+const RANK: Record<Item['part'], number> = { action: 0, step: 1, transition: 2, connector: 3, comment: 3.5, link: 4, text: 5 };
 
 export class Scene {
   readonly drawing: Drawing;
@@ -145,7 +145,7 @@ export class Scene {
   within(box: Box): Item[] {
     const [x, y, w, h] = box;
     return this.items.filter((item) => {
-      if (item.part !== 'step' && item.part !== 'transition' && item.part !== 'action') return false;
+      if (item.part === 'link' || item.part === 'connector' || item.part === 'text') return false;
       const [bx, by, bw, bh] = this.core(item);
       return bx >= x && by >= y && bx + bw <= x + w && by + bh <= y + h;
     });

@@ -1,6 +1,8 @@
 // What the frame does with files.
 import { files, type OpenFile } from '../lib/files.svelte';
 import { t } from '../lib/i18n';
+import { page } from '../lib/page';
+import type { Merged } from '../lib/protocol';
 import { Conflict, server } from '../lib/server';
 import { shell } from '../lib/shell.svelte';
 
@@ -76,6 +78,25 @@ export async function takeTheirs(file: OpenFile): Promise<void> {
   file.saved = outside.text;
   file.tag = outside.hash;
   file.outside = null;
+}
+
+/** Theirs and ours as one text, where they changed different lines; else the question stays. */
+export async function mergeBoth(file: OpenFile): Promise<void> {
+  const outside = file.outside;
+  if (!outside || file.saved === null) return;
+  const ask = { do: 'merge', base: file.saved, mine: file.text, theirs: outside.text };
+  const merged = await shell.try(() => page.call<Merged>(ask));
+  if (!merged || file.outside !== outside) return;
+  const { text } = merged;
+  if (text === null) {
+    shell.say(t('app.outside.clash'), 'error');
+    return;
+  }
+  await shell.try(() => file.replace(text));
+  file.saved = outside.text;
+  file.tag = outside.hash;
+  file.outside = null;
+  shell.say(t('app.outside.merged'));
 }
 
 /** Ours stays; saving will write over theirs, which the user has seen now. */

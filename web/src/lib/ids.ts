@@ -1,7 +1,7 @@
 // Names of symbols: `Chart/s/Step`, `Chart/a/Step/0`, `Chart/t/3`, … as the Rust
 // crate `g7-edit` writes them; `/ > : %` inside a name are written %2F %3E %3A %25.
 
-export type IdKind = 's' | 'a' | 't' | 'l' | 'c' | 'x';
+export type IdKind = 's' | 'a' | 't' | 'l' | 'c' | 'n' | 'x';
 
 const decode = (text: string): string => text.replace(/%(2F|3E|3A|25)/g, (code) => decodeURIComponent(code));
 const encode = (text: string): string => text.replace(/[/>:%]/g, (c) => `%${c.charCodeAt(0).toString(16).toUpperCase()}`);

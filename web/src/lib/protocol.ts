@@ -52,6 +52,13 @@ export interface TestRow {
   plant?: string;
 }
 
+/** A switch of the profile: its two words, the profile's own one, the one set beside it. */
+export interface SwitchRow {
+  words: [string, string];
+  usual: string;
+  set?: string;
+}
+
 /** A file at a glance. */
 export interface Look {
   file: string;
@@ -66,6 +73,9 @@ export interface Look {
   problems: Problem[];
   charts: ChartRow[];
   profile: string;
+  switches: SwitchRow[];
+  /** Most passes in a scan. */
+  bound: { usual: number; set?: number };
   scan_ms: number;
   plants: string[];
   tests: TestRow[];
@@ -77,9 +87,11 @@ export interface Edited extends Look {
   select?: string[];
   /** The symbol whose text is to be edited in place next. */
   begin?: string;
+  /** What the user should know of the change. */
+  told?: string[];
 }
 
-export type Part = 'step' | 'action' | 'transition' | 'link' | 'connector' | 'text';
+export type Part = 'step' | 'action' | 'transition' | 'link' | 'connector' | 'comment' | 'text';
 
 /** A thing in a drawing that can be pointed at. */
 export interface Item {
@@ -107,6 +119,8 @@ export interface Item {
   /** The receptivity or the action as typed. */
   source?: string;
   priority?: number;
+  /** Names of the steps before and behind a transition. */
+  steps?: [before: string[], after: string[]];
   /** The two ends of a link. */
   ends?: [string, string];
   /** Anchor. */
@@ -120,6 +134,12 @@ export interface Drawing {
   stale: boolean;
   area: Box;
   items: Item[];
+}
+
+/** Two changes of one text as one; no text where they contradict each other. */
+export interface Merged {
+  text: string | null;
+  conflicts: number;
 }
 
 export interface DrawingLook {
@@ -203,6 +223,8 @@ export type Gesture =
   | { g: 'receptivity'; id: string; text: string }
   | { g: 'action'; id: string; index?: number; text: string }
   | { g: 'comment'; id: string; text: string }
+  | { g: 'comment_at'; chart: string; text: string; at: [number, number] }
+  | { g: 'ends'; id: string; before?: string[]; after?: string[] }
   | { g: 'label'; id: string; text: string }
   | { g: 'priority'; id: string; n: number | null }
   | { g: 'initial'; id: string; on: boolean }
@@ -218,6 +240,8 @@ export type Gesture =
   | { g: 'variable'; name: string | null; row: Partial<VariableRow> }
   | { g: 'delete_variable'; name: string }
   | { g: 'profile'; name: string }
+  | { g: 'switch'; name: string; on: boolean }
+  | { g: 'bound'; n: number | null }
   | { g: 'scan'; ms: number };
 
 export type SignalRole = 'input' | 'output' | 'variable' | 'plant';

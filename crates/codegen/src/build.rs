@@ -1,0 +1,310 @@
+//! From the engine's tables to the tree: what of the templates a program needs,
+//! and the functions that only it has.
+
+use std::collections::{BTreeSet, HashMap};
+
+use g7_compile::Compiled;
+use g7_engine::{Code, Guard, NONE, Num, Op, Rows, Service, StepId, Tables};
+use g7_model::{Problem, codes};
+
+use crate::flow::Flow;
+use crate::names::Names;
+use crate::template::Facts;
+use crate::tree::{Arm, Block, Expr, Function, Module, Numbers, Stmt, Struct, Ty};
+use crate::vars::{Home, Kind, Vars};
+
+/// The work in hand.
+pub(crate) struct Gen<'a> {
+    pub(crate) c: &'a Compiled,
+    pub(crate) t: &'a Tables,
+    /// The text of the chart, for comments.
+    source: &'a str,
+    pub(crate) vars: Vars,
+    pub(crate) names: Names,
+    undeclared: BTreeSet<u32>,
+    pub(crate) m: Module,
+    pub(crate) facts: Facts,
+    pub(crate) steps: Vec<String>,
+    pub(crate) transitions: Vec<String>,
+    pub(crate) problems: Vec<Problem>,
+    /// The instruction in hand.
+    pub(crate) at: u32,
+    pub(crate) math: bool,
+    pub(crate) real_text: bool,
+}
+
+/// A parameter that every function of the state has.
+pub(crate) fn state() -> (String, Ty) {
+    ("s".into(), Ty::Ref(true, Box::new(Ty::Named("State".into()))))
+}
+
+pub(crate) fn s() -> Expr {
+    Expr::name("s")
+}
+
+pub(crate) fn memory(field: &str) -> Expr {
+    s().field("m").field(field)
+}
+
+impl<'a> Gen<'a> {
+    pub(crate) fn new(c: &'a Compiled, source: &'a str, hidden: HashMap<u32, Num>) -> Gen<'a> {
+        let t = c.program.tables();
+        let mut names = Names::default();
+        let mut vars = Vars::new(t, &c.symbols, &mut names);
+        vars.hidden = hidden;
+        let mut g = Gen {
+            c,
+            t,
+            source,
+            vars,
+            names,
+            undeclared: BTreeSet::new(),
+            m: Module::default(),
+            facts: Facts::default(),
+            steps: Vec::new(),
+            transitions: Vec::new(),
+            problems: Vec::new(),
+            at: 0,
+            math: false,
+            real_text: false,
+        };
+        g.number();
+        g.facts = crate::facts::of(t);
+        g
+    }
+
+    /// Names for steps, transitions and faults.
+    fn number(&mut self) {
+        let mut steps = Numbers { note: "The steps.".into(), name: "Step".into(), public: true, ..Numbers::default() };
+        for i in 0..self.t.steps.len() {
+            let id = StepId(i as u32);
+            let symbols = &self.c.symbols;
+            let name = self.names.capital("STEP", symbols.step_name(id));
+            let note = symbols.step_path(id).to_owned();
+            let note = if symbols.is_listed(id) { note } else { format!("{note} (stands for the macro-step)") };
+            steps.rows.push((name.clone(), i, note));
+            self.steps.push(name);
+        }
+        let mut rows =
+            Numbers { note: "The transitions, in order of rank.".into(), name: "Transition".into(), ..Numbers::default() };
+        for i in 0..self.t.transitions.len() {
+            let symbols = &self.c.symbols;
+            let text = symbols.transition_text(i as u32).replace("->", "to");
+            let name = self.names.capital("T", symbols.label(i as u32).unwrap_or(&text));
+            rows.rows.push((name.clone(), i, String::new()));
+            self.transitions.push(name);
+        }
+        let words = [
+            ("NONE", "no fault"),
+            ("UNSTABLE", "the chart comes back to the same state within a scan"),
+            ("BOUND", "no stable situation within the bound, or a loop without end"),
+            ("OVERFLOW", "a result that its type cannot hold"),
+            ("DIVISION", "division by zero"),
+            ("RANGE", "an index or a text out of range"),
+            ("FORCING", "two forcing orders disagree"),
+            ("TABLE", "more than the tables of the target hold"),
+            ("INPUTS", "time went back"),
+            ("STOPPED", "stopped by an earlier fault"),
+        ];
+        let faults = words.iter().enumerate().map(|(i, (n, note))| (format!("FAULT_{n}"), i, (*note).to_owned()));
+        let faults = Numbers {
+            note: "What can stop a scan.".into(),
+            name: "Fault".into(),
+            public: true,
+            ty: Some(Ty::U8),
+            rows: faults.collect(),
+        };
+        self.m.numbers = vec![faults, steps, rows];
+    }
+
+    /// What the language of the code cannot say.
+    pub(crate) fn cannot(&mut self, what: &str) {
+        let text = format!("{what} cannot be printed as code");
+        if self.problems.iter().all(|p| p.what != text) {
+            self.problems.push(Problem::new(&codes::NOT_CARRIED, self.c.symbols.place(self.at), text));
+        }
+    }
+
+    pub(crate) fn needs_math(&mut self) {
+        self.math = true;
+    }
+
+    pub(crate) fn needs_real_text(&mut self) {
+        self.real_text = true;
+    }
+
+    pub(crate) fn reveal(&mut self, addr: u32) {
+        if self.vars.slot(addr).is_none() {
+            self.undeclared.insert(addr);
+            self.vars.reveal(self.t, addr, &mut self.names);
+        }
+    }
+
+    pub(crate) fn reveal_text(&mut self, addr: u32) {
+        self.vars.reveal_text(self.t, addr, &mut self.names);
+    }
+
+    pub(crate) fn is_declared(&self, addr: u32) -> bool {
+        !self.undeclared.contains(&addr) && self.vars.slot(addr).is_some()
+    }
+
+    pub(crate) fn step(&self, step: StepId) -> Expr {
+        Expr::name(self.steps.get(step.0 as usize).cloned().unwrap_or_default())
+    }
+
+    pub(crate) fn transition(&self, rank: u32) -> Expr {
+        Expr::name(self.transitions.get(rank as usize).cloned().unwrap_or_default())
+    }
+
+    pub(crate) fn active(&self, step: StepId) -> Expr {
+        Expr::call("bit", vec![Expr::Ref(false, Box::new(memory("active"))), self.step(step)])
+    }
+
+    /// Whether a period is due in this scan.
+    pub(crate) fn due(&self, period: u32) -> Expr {
+        let known = self.t.periods.get(period as usize).is_none_or(|p| *p <= 0);
+        if known { Expr::Bool(true) } else { s().field("due").at(Expr::size(period as usize)) }
+    }
+
+    pub(crate) fn flag(&self, name: &str) -> bool {
+        self.facts.flags.get(name).copied().unwrap_or(false)
+    }
+
+    /// A piece of the chart's text on one line.
+    pub(crate) fn text(&self, span: g7_model::Span) -> String {
+        let text = self.source.get(span.start as usize..span.end as usize).unwrap_or("");
+        let words: Vec<&str> = text.split_whitespace().collect();
+        let line = words.join(" ");
+        match line.char_indices().nth(90) {
+            Some((i, _)) => format!("{} …", line.get(..i).unwrap_or("")),
+            None => line,
+        }
+    }
+
+    /// What a transition is called in comments.
+    pub(crate) fn transition_note(&self, rank: u32) -> String {
+        let text = self.text(self.c.symbols.transition_place(rank));
+        if text.is_empty() || !self.c.symbols.is_written(rank) {
+            self.c.symbols.transition_text(rank).to_owned()
+        } else {
+            text
+        }
+    }
+
+    pub(crate) fn function(&mut self, name: &str, note: &str, parameters: Vec<(String, Ty)>, body: Block) {
+        let result = None;
+        let (note, name) = (note.to_owned(), name.to_owned());
+        self.m.functions.push(Function { public: false, note, name, parameters, result, body });
+    }
+
+    /// The value of code: an expression where it is one, else a function of its own.
+    pub(crate) fn value(&mut self, code: Code, n: Num, name: &str) -> (Expr, bool) {
+        let result = Kind::Num(n);
+        let (block, e, fails) = Flow::new(self, code, Some(result)).value(result);
+        if block.is_empty() {
+            return (e, fails);
+        }
+        let name = self.names.small(name);
+        let mut body = block;
+        body.push(Stmt::Return(Some(e)));
+        let result = Some(crate::vars::ty(n));
+        self.m.functions.push(Function {
+            public: false,
+            note: String::new(),
+            name: name.clone(),
+            parameters: vec![state()],
+            result,
+            body,
+        });
+        // It may end in a fault within.
+        (Expr::Call(name, vec![s()]), true)
+    }
+
+    /// Whether a condition holds; an empty one does.
+    pub(crate) fn condition(&mut self, code: Code, name: &str) -> (Expr, bool) {
+        if code.is_empty() { (Expr::Bool(true), false) } else { self.value(code, Num::Bool, name) }
+    }
+
+    pub(crate) fn guard(&mut self, rank: u32) -> (Expr, bool) {
+        let Some(tr) = self.t.transitions.get(rank as usize) else { return (Expr::Bool(false), false) };
+        match tr.guard {
+            Guard::True => (Expr::Bool(true), false),
+            Guard::Word(a) | Guard::NotWord(a) => {
+                let mut flow = Flow::new(self, Code::default(), None);
+                let entry = flow.load(a.0);
+                let e = flow.as_kind(&entry, Kind::Num(Num::Bool));
+                (if matches!(tr.guard, Guard::Word(_)) { e } else { e.not() }, false)
+            }
+            Guard::Code(code) => {
+                let name = format!("guard_{}", self.transitions.get(rank as usize).cloned().unwrap_or_default());
+                self.value(code, Num::Bool, &name)
+            }
+        }
+    }
+
+    /// Whether the preceding steps behind the first are active.
+    pub(crate) fn rest_active(&self, rows: Rows) -> Expr {
+        let steps = self.t.arcs.get(rows.start as usize..rows.end as usize).unwrap_or(&[]);
+        steps.iter().fold(Expr::Bool(true), |e, step| e.and(self.active(*step)))
+    }
+
+    /// A function that does something for one of many numbers.
+    pub(crate) fn choice(&mut self, name: &str, note: &str, of: &str, arms: Vec<Arm>) {
+        let parameters = vec![state(), (of.to_owned(), Ty::Size)];
+        let body = vec![Stmt::Match(Expr::name(of), arms)];
+        self.function(name, note, parameters, body);
+    }
+
+    /// Adds what the templates say.
+    pub(crate) fn templates(&mut self) {
+        for text in [
+            include_str!("runtime/core.g"),
+            include_str!("runtime/more.g"),
+            include_str!("runtime/fb.g"),
+        ] {
+            let m = crate::template::read(text, &self.facts);
+            // The smaller structures first: the larger ones consist of them.
+            self.m.structs.extend(m.structs);
+            self.m.functions.extend(m.functions);
+        }
+    }
+
+    /// The structures that hold the variables.
+    pub(crate) fn structures(&mut self) {
+        let homes = [
+            (Home::Inputs, "Inputs", "What comes in."),
+            (Home::Outputs, "Outputs", "What goes out."),
+            (Home::Variables, "Variables", "The variables of the chart."),
+            (Home::Locals, "Locals", "What is worked out in between."),
+        ];
+        for (home, name, note) in homes {
+            let fields = self.vars.fields(home);
+            self.m.structs.push(Struct { public: true, note: note.into(), name: name.into(), fields });
+        }
+    }
+
+    /// Whether services are asked for.
+    pub(crate) fn asks(t: &Tables) -> bool {
+        t.code.iter().any(|op| matches!(op, Op::Service(s) if *s != Service::ResetTimes))
+    }
+
+    /// Calls of the section, where there is something in it.
+    pub(crate) fn section(&mut self, name: &str, note: &str, code: Code) {
+        if !code.is_empty() {
+            let body = Flow::new(self, code, None).body();
+            self.function(name, note, vec![state()], body);
+        }
+    }
+
+    /// Rows of a list as numbers.
+    pub(crate) fn list(rows: &[u32], r: Rows) -> Vec<u32> {
+        rows.get(r.start as usize..r.end as usize).unwrap_or(&[]).to_vec()
+    }
+
+    /// Preceding or succeeding steps of a transition.
+    pub(crate) fn ends(&self, first: StepId, rest: Rows) -> Vec<StepId> {
+        let more = self.t.arcs.get(rest.start as usize..rest.end as usize).unwrap_or(&[]);
+        let first = (first.0 != NONE).then_some(first);
+        first.into_iter().chain(more.iter().copied()).collect()
+    }
+}

@@ -1,0 +1,497 @@
+//! The tree as C99.
+
+use std::collections::{HashMap, HashSet};
+use std::fmt::Write as _;
+
+use crate::tree::{Arm, Bin, Block, Const, Expr, Field, Function, Known, Module, Stmt, Struct, Ty, Un};
+
+/// What every name of the module is.
+pub(crate) struct Printer<'a> {
+    module: &'a Module,
+    /// In front of public names.
+    prefix: &'a str,
+    structs: HashMap<&'a str, &'a Struct>,
+    /// Constants that carry the prefix.
+    public: HashSet<&'a str>,
+    /// Functions that carry the prefix.
+    offered: HashSet<&'a str>,
+    functions: HashMap<&'a str, &'a Function>,
+    /// Types of the names in the function at hand.
+    scope: HashMap<String, Ty>,
+    out: String,
+}
+
+/// `StepTimes` as `step_times`.
+fn snake(name: &str) -> String {
+    let mut out = String::new();
+    for (i, c) in name.chars().enumerate() {
+        if c.is_uppercase() && i > 0 {
+            out.push('_');
+        }
+        out.extend(c.to_lowercase());
+    }
+    out
+}
+
+/// Text that may stand in a comment.
+pub(crate) fn comment(text: &str) -> String {
+    text.replace("*/", "* /").replace("/*", "/ *").replace('\\', "\\ ")
+}
+
+impl<'a> Printer<'a> {
+    pub(crate) fn new(module: &'a Module, prefix: &'a str) -> Printer<'a> {
+        let rows = module.numbers.iter().filter(|n| n.public).flat_map(|n| n.rows.iter().map(|r| r.0.as_str()));
+        let consts = module.consts.iter().filter(|c| c.public).map(|c| c.name.as_str());
+        Printer {
+            module,
+            prefix,
+            structs: module.structs.iter().map(|s| (s.name.as_str(), s)).collect(),
+            public: rows.chain(consts).collect(),
+            offered: module.functions.iter().filter(|f| f.public).map(|f| f.name.as_str()).collect(),
+            functions: module.functions.iter().map(|f| (f.name.as_str(), f)).collect(),
+            scope: HashMap::new(),
+            out: String::new(),
+        }
+    }
+
+    /// What other files may know.
+    pub(crate) fn header(mut self) -> String {
+        for numbers in self.module.numbers.iter().filter(|n| n.public) {
+            self.note(&numbers.note, "");
+            self.numbers(&numbers.rows, &format!("{}_{}", self.prefix, snake(&numbers.name)));
+        }
+        for s in &self.module.structs {
+            self.structure(s);
+        }
+        for f in self.module.functions.iter().filter(|f| f.public) {
+            self.note(&f.note, "");
+            let head = self.head(f);
+            let _ = writeln!(self.out, "{head};\n");
+        }
+        self.out
+    }
+
+    /// The rest.
+    pub(crate) fn body(mut self, native: &str) -> String {
+        for numbers in self.module.numbers.iter().filter(|n| !n.public && !n.rows.is_empty()) {
+            self.note(&numbers.note, "");
+            self.numbers(&numbers.rows, "");
+        }
+        for c in &self.module.consts {
+            self.constant(c);
+        }
+        self.out.push_str(native);
+        for f in self.module.functions.iter().filter(|f| !f.public) {
+            let head = self.head(f);
+            let _ = writeln!(self.out, "static {head};");
+        }
+        self.out.push('\n');
+        for f in &self.module.functions {
+            self.function(f);
+        }
+        while self.out.ends_with("\n\n") {
+            self.out.pop();
+        }
+        self.out
+    }
+
+    fn note(&mut self, text: &str, indent: &str) {
+        let lines: Vec<&str> = text.lines().collect();
+        match lines.as_slice() {
+            [] => {}
+            [one] => {
+                let _ = writeln!(self.out, "{indent}/* {} */", comment(one));
+            }
+            many => {
+                for (i, line) in many.iter().enumerate() {
+                    let start = if i == 0 { "/*" } else { " *" };
+                    let end = if i + 1 == many.len() { " */" } else { "" };
+                    let _ = writeln!(self.out, "{indent}{start} {}{end}", comment(line));
+                }
+            }
+        }
+    }
+
+    fn numbers(&mut self, rows: &[(String, usize, String)], name: &str) {
+        self.out.push_str(if name.is_empty() { "enum {\n" } else { "typedef enum {\n" });
+        for (i, (row, value, note)) in rows.iter().enumerate() {
+            let comma = if i + 1 == rows.len() { "" } else { "," };
+            let row = self.constant_name(row);
+            let note = if note.is_empty() { String::new() } else { format!(" /* {} */", comment(note)) };
+            let _ = writeln!(self.out, "    {row} = {value}{comma}{note}");
+        }
+        let _ = writeln!(self.out, "}}{}{name};\n", if name.is_empty() { "" } else { " " });
+    }
+
+    fn constant_name(&self, name: &str) -> String {
+        if self.public.contains(name) {
+            format!("{}_{name}", self.prefix.to_uppercase())
+        } else {
+            name.to_owned()
+        }
+    }
+
+    fn structure(&mut self, s: &Struct) {
+        self.note(&s.note, "");
+        self.out.push_str("typedef struct {\n");
+        for f in &s.fields {
+            self.field(f);
+        }
+        if s.fields.is_empty() {
+            self.out.push_str("    uint8_t none; /* C wants a field */\n");
+        }
+        let _ = writeln!(self.out, "}} {};\n", self.type_name(&s.name));
+    }
+
+    fn field(&mut self, f: &Field) {
+        let note = if f.note.is_empty() { String::new() } else { format!(" /* {} */", comment(&f.note)) };
+        let declared = self.declared(&f.ty, &f.name);
+        let _ = writeln!(self.out, "    {declared};{note}");
+    }
+
+    fn type_name(&self, name: &str) -> String {
+        format!("{}_{}", self.prefix, snake(name))
+    }
+
+    /// A type with the name that is declared by it.
+    fn declared(&self, ty: &Ty, name: &str) -> String {
+        match ty {
+            Ty::Array(of, n) => self.declared(of, &format!("{name}[{}]", (*n).max(1))),
+            Ty::Ref(mutable, of) | Ty::Slice(mutable, of) => {
+                let constant = if *mutable { "" } else { "const " };
+                format!("{constant}{} *{name}", self.ty(of))
+            }
+            other => format!("{} {name}", self.ty(other)),
+        }
+    }
+
+    fn ty(&self, ty: &Ty) -> String {
+        match ty {
+            Ty::Bool => "bool".into(),
+            Ty::Int { signed, bits } => format!("{}int{bits}_t", if *signed { "" } else { "u" }),
+            Ty::Real { bits: 32 } => "float".into(),
+            Ty::Real { .. } => "double".into(),
+            Ty::Size => "uint32_t".into(),
+            Ty::Named(n) => self.type_name(n),
+            Ty::Array(of, _) | Ty::Ref(_, of) | Ty::Slice(_, of) => self.ty(of),
+        }
+    }
+
+    fn constant(&mut self, c: &Const) {
+        self.note(&c.note, "");
+        let declared = self.declared(&c.ty, &c.name);
+        match &c.value {
+            Known::One(e) => {
+                let value = self.literal(e, &c.ty);
+                let _ = writeln!(self.out, "static const {declared} = {value};\n");
+            }
+            Known::Many(all) => {
+                let of = if let Ty::Array(of, _) = &c.ty { (**of).clone() } else { c.ty.clone() };
+                let values: Vec<String> = all.iter().map(|e| self.literal(e, &of)).collect();
+                let _ = writeln!(self.out, "static const {declared} = {{");
+                self.columns(if values.is_empty() { &["0"] } else { &[] });
+                self.columns(&values.iter().map(String::as_str).collect::<Vec<_>>());
+                self.out.push_str("};\n\n");
+            }
+        }
+    }
+
+    fn columns(&mut self, values: &[&str]) {
+        let mut line = String::from("   ");
+        for (i, v) in values.iter().enumerate() {
+            if line.len() + v.len() > 98 {
+                let _ = writeln!(self.out, "{line}");
+                line = String::from("   ");
+            }
+            let _ = write!(line, " {v}{}", if i + 1 == values.len() { "" } else { "," });
+        }
+        if !values.is_empty() {
+            let _ = writeln!(self.out, "{line}");
+        }
+    }
+
+    fn literal(&self, e: &Expr, ty: &Ty) -> String {
+        match (e, ty) {
+            (Expr::Int(n, _), Ty::Int { signed, bits }) => integer(*n, *signed, *bits),
+            _ => self.expr(e),
+        }
+    }
+
+    fn head(&self, f: &Function) -> String {
+        let name = if f.public { format!("{}_{}", self.prefix, f.name) } else { f.name.clone() };
+        let parameters: Vec<String> = f.parameters.iter().map(|(n, t)| self.declared(t, n)).collect();
+        let parameters = if parameters.is_empty() { "void".to_owned() } else { parameters.join(", ") };
+        let result = f.result.as_ref().map_or("void".to_owned(), |t| self.ty(t));
+        format!("{result} {name}({parameters})")
+    }
+
+    fn function(&mut self, f: &Function) {
+        self.note(&f.note, "");
+        let head = self.head(f);
+        let open = if f.public { "" } else { "static " };
+        let _ = writeln!(self.out, "{open}{head}\n{{");
+        self.scope = f.parameters.iter().cloned().collect();
+        let mut used = HashSet::new();
+        for s in &f.body {
+            s.walk(&mut |e| {
+                if let Expr::Name(n) = e {
+                    used.insert(n.clone());
+                }
+            });
+        }
+        for (name, _) in f.parameters.iter().filter(|(n, _)| !used.contains(n)) {
+            let _ = writeln!(self.out, "    (void)({name});");
+        }
+        self.block(&f.body, 1);
+        self.out.push_str("}\n\n");
+    }
+
+    fn block(&mut self, block: &Block, depth: usize) {
+        for s in block {
+            self.statement(s, depth);
+        }
+    }
+
+    fn statement(&mut self, s: &Stmt, depth: usize) {
+        let indent = "    ".repeat(depth);
+        match s {
+            Stmt::Note(text) => self.note(text, &indent),
+            Stmt::Let { mutable, name, ty, value } => {
+                self.scope.insert(name.clone(), ty.clone());
+                let constant = if *mutable { "" } else { "const " };
+                let declared = self.declared(ty, name);
+                match (ty, value) {
+                    (Ty::Array(..), Expr::Call(f, _)) if f == "zeroed" => {
+                        let _ = writeln!(self.out, "{indent}{declared} = {{0}};");
+                    }
+                    (Ty::Array(_, n), from) => {
+                        let from = self.expr(from);
+                        let _ = writeln!(self.out, "{indent}{declared};");
+                        let head = format!("for (uint32_t i = 0; i < {n}; i++)");
+                        let _ = writeln!(self.out, "{indent}{head} {{\n{indent}    {name}[i] = {from}[i];\n{indent}}}");
+                    }
+                    _ => {
+                        let value = self.literal(value, ty);
+                        let _ = writeln!(self.out, "{indent}{constant}{declared} = {value};");
+                    }
+                }
+            }
+            Stmt::Assign(op, to, value) => self.assign(*op, to, value, &indent),
+            Stmt::If(c, then, other) => {
+                let _ = write!(self.out, "{indent}");
+                self.alternative(c, then, other, depth);
+            }
+            Stmt::While(c, body) => {
+                let c = self.expr(c);
+                let _ = writeln!(self.out, "{indent}while ({c}) {{");
+                self.block(body, depth + 1);
+                let _ = writeln!(self.out, "{indent}}}");
+            }
+            Stmt::For(name, from, to, body) => {
+                self.scope.insert(name.clone(), Ty::Size);
+                let (from, to) = (self.expr(from), self.expr(to));
+                let _ = writeln!(self.out, "{indent}for (uint32_t {name} = {from}; {name} < {to}; {name}++) {{");
+                self.block(body, depth + 1);
+                let _ = writeln!(self.out, "{indent}}}");
+            }
+            Stmt::Match(e, arms) => self.choice(e, arms, depth),
+            Stmt::Return(None) => {
+                let _ = writeln!(self.out, "{indent}return;");
+            }
+            Stmt::Return(Some(e)) => {
+                let e = self.expr(e);
+                let _ = writeln!(self.out, "{indent}return {e};");
+            }
+            Stmt::Break => {
+                let _ = writeln!(self.out, "{indent}break;");
+            }
+            Stmt::Do(e) => {
+                let e = self.expr(e);
+                let _ = writeln!(self.out, "{indent}{e};");
+            }
+            Stmt::Clear(to, ty) => {
+                let (to, ty) = (self.expr(to), self.ty(ty));
+                let _ = writeln!(self.out, "{indent}{to} = ({ty}){{0}};");
+            }
+        }
+    }
+
+    fn assign(&mut self, op: Option<Bin>, to: &Expr, value: &Expr, indent: &str) {
+        let ty = self.type_of(to);
+        if let (None, Some(Ty::Array(_, n))) = (op, &ty) {
+            let (to, value) = (self.expr(to), self.expr(value));
+            let head = format!("for (uint32_t i = 0; i < {n}; i++)");
+            let _ = writeln!(self.out, "{indent}{head} {{\n{indent}    {to}[i] = {value}[i];\n{indent}}}");
+            return;
+        }
+        let value = match &ty {
+            Some(ty) => self.literal(value, ty),
+            None => self.expr(value),
+        };
+        let to = self.expr(to);
+        let small = matches!(ty, Some(Ty::Int { bits: 8 | 16, .. }));
+        match op {
+            Some(op) if small => {
+                let ty = ty.as_ref().map_or(String::new(), |t| self.ty(t));
+                let _ = writeln!(self.out, "{indent}{to} = ({ty})({to} {} {value});", op.text());
+            }
+            _ => {
+                let _ = writeln!(self.out, "{indent}{to} {}= {value};", op.map_or("", Bin::text));
+            }
+        }
+    }
+
+    fn alternative(&mut self, c: &Expr, then: &Block, other: &Block, depth: usize) {
+        let indent = "    ".repeat(depth);
+        let c = self.expr(c);
+        let _ = writeln!(self.out, "if ({c}) {{");
+        self.block(then, depth + 1);
+        match other.as_slice() {
+            [] => {
+                let _ = writeln!(self.out, "{indent}}}");
+            }
+            [Stmt::If(c, then, other)] => {
+                let _ = write!(self.out, "{indent}}} else ");
+                self.alternative(c, then, other, depth);
+            }
+            _ => {
+                let _ = writeln!(self.out, "{indent}}} else {{");
+                self.block(other, depth + 1);
+                let _ = writeln!(self.out, "{indent}}}");
+            }
+        }
+    }
+
+    fn choice(&mut self, e: &Expr, arms: &[Arm], depth: usize) {
+        let indent = "    ".repeat(depth);
+        let e = self.expr(e);
+        let _ = writeln!(self.out, "{indent}switch ({e}) {{");
+        for arm in arms {
+            let label = self.expr(&arm.label);
+            let note = if arm.note.is_empty() { String::new() } else { format!(" /* {} */", comment(&arm.note)) };
+            let _ = writeln!(self.out, "{indent}case {label}: {{{note}");
+            self.block(&arm.body, depth + 1);
+            if !matches!(arm.body.last(), Some(Stmt::Return(_))) {
+                let _ = writeln!(self.out, "{indent}    break;");
+            }
+            let _ = writeln!(self.out, "{indent}}}");
+        }
+        let _ = writeln!(self.out, "{indent}default: {{\n{indent}    break;\n{indent}}}\n{indent}}}");
+    }
+
+    /// The type of a place, as far as the tree tells it.
+    fn type_of(&self, e: &Expr) -> Option<Ty> {
+        match e {
+            Expr::Name(n) => self.scope.get(n).cloned(),
+            Expr::Field(of, name) => {
+                let of = match self.type_of(of)? {
+                    Ty::Named(n) => n,
+                    Ty::Ref(_, inner) => match *inner {
+                        Ty::Named(n) => n,
+                        _ => return None,
+                    },
+                    _ => return None,
+                };
+                self.structs.get(of.as_str())?.fields.iter().find(|f| f.name == *name).map(|f| f.ty.clone())
+            }
+            Expr::Index(of, _) => match self.type_of(of)? {
+                Ty::Array(of, _) | Ty::Slice(_, of) => Some(*of),
+                _ => None,
+            },
+            Expr::Deref(of) => match self.type_of(of)? {
+                Ty::Ref(_, of) => Some(*of),
+                _ => None,
+            },
+            _ => None,
+        }
+    }
+
+    fn within(&self, e: &Expr, outer: Bin) -> String {
+        let text = self.expr(e);
+        let bare = match e {
+            Expr::Bin(op, ..) => *op == outer && op.chains(),
+            Expr::If(..) => false,
+            _ => true,
+        };
+        if bare { text } else { format!("({text})") }
+    }
+
+    fn expr(&self, e: &Expr) -> String {
+        match e {
+            Expr::Int(n, None) => integer(*n, true, 32),
+            Expr::Int(n, Some(Ty::Int { signed, bits })) => {
+                let plain = integer(*n, *signed, *bits);
+                if *bits == 64 { plain } else { format!("({})({plain})", self.ty(&Ty::Int { signed: *signed, bits: *bits })) }
+            }
+            Expr::Int(n, Some(_)) => integer(*n, true, 32),
+            Expr::Real(bits, 32) => real(f64::from(f32::from_bits(*bits as u32)), &format!("{:?}", f32::from_bits(*bits as u32)), "f"),
+            Expr::Real(bits, _) => real(f64::from_bits(*bits), &format!("{:?}", f64::from_bits(*bits)), ""),
+            Expr::Bool(b) => b.to_string(),
+            Expr::Name(n) => self.constant_name(n),
+            Expr::Field(of, name) => {
+                let pointer = matches!(self.type_of(of), Some(Ty::Ref(..)));
+                format!("{}{}{name}", self.expr(of), if pointer { "->" } else { "." })
+            }
+            Expr::Index(of, i) => format!("{}[{}]", self.expr(of), self.expr(i)),
+            Expr::Call(f, args) => self.call(f, args),
+            Expr::Un(Un::Not, e) => format!("!{}", self.tight(e)),
+            Expr::Un(Un::Neg, e) => format!("-{}", self.tight(e)),
+            Expr::Bin(op, a, b) => format!("{} {} {}", self.within(a, *op), op.text(), self.within(b, *op)),
+            Expr::Cast(e, ty) => format!("({}){}", self.ty(ty), self.tight(e)),
+            Expr::Ref(_, e) => match (&**e, self.type_of(e)) {
+                (_, Some(Ty::Array(..))) => self.expr(e),
+                (_, Some(Ty::Ref(..) | Ty::Slice(..))) => self.expr(e),
+                (Expr::Name(n), None) if self.module.consts.iter().any(|c| c.name == *n) => self.expr(e),
+                _ => format!("&{}", self.expr(e)),
+            },
+            Expr::Deref(e) => format!("*{}", self.expr(e)),
+            Expr::If(c, a, b) => format!("{} ? {} : {}", self.tight(c), self.tight(a), self.tight(b)),
+        }
+    }
+
+    fn tight(&self, e: &Expr) -> String {
+        let text = self.expr(e);
+        if matches!(e, Expr::Bin(..) | Expr::If(..)) || text.starts_with('-') { format!("({text})") } else { text }
+    }
+
+    fn call(&self, f: &str, args: &[Expr]) -> String {
+        if f == "inv"
+            && let [a] = args
+        {
+            return format!("~{}", self.tight(a));
+        }
+        let types = self.functions.get(f).map(|f| f.parameters.as_slice()).unwrap_or(&[]);
+        let mut all = Vec::new();
+        for (i, a) in args.iter().enumerate() {
+            all.push(match types.get(i) {
+                Some((_, ty)) => self.literal(a, ty),
+                None => self.expr(a),
+            });
+        }
+        let name = if self.offered.contains(f) { format!("{}_{f}", self.prefix) } else { f.to_owned() };
+        format!("{name}({})", all.join(", "))
+    }
+}
+
+fn integer(n: i128, signed: bool, bits: u8) -> String {
+    if bits == 64 && n == i128::from(i64::MIN) {
+        return "INT64_MIN".into();
+    }
+    if bits == 64 {
+        return format!("{}INT64_C({n})", if signed { "" } else { "U" });
+    }
+    if !signed && bits == 32 {
+        return format!("UINT32_C({n})");
+    }
+    if signed && n == i128::from(i32::MIN) { "INT32_MIN".into() } else { n.to_string() }
+}
+
+fn real(v: f64, text: &str, suffix: &str) -> String {
+    if v.is_nan() {
+        format!("(0.0{suffix} / 0.0{suffix})")
+    } else if v.is_infinite() {
+        format!("({}1.0{suffix} / 0.0{suffix})", if v < 0.0 { "-" } else { "" })
+    } else {
+        format!("{text}{suffix}")
+    }
+}

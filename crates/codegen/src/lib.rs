@@ -1,0 +1,215 @@
+//! Code for controllers, printed from the lowered program of a chart.
+//!
+//! ```text
+//! compile::Compiled (tables, names) -> tree of functions -> C99 | Rust | an Arduino sketch
+//! ```
+//!
+//! # Invariants
+//!
+//! - It evolves nothing and decides nothing: the tables of the engine are the
+//!   truth, and the code does what the engine does, scan by scan. The tests run
+//!   both beside each other.
+//! - What a language cannot say is refused with a [`Problem`], never printed wrong.
+//! - The code needs no heap and no library, and its work follows the active steps.
+#![forbid(unsafe_code)]
+
+mod acts;
+mod arduino;
+mod build;
+mod c;
+mod chart;
+mod facts;
+mod flow;
+mod frame;
+mod names;
+mod native_c;
+mod native_rust;
+mod prune;
+mod rust;
+mod template;
+mod tree;
+mod values;
+mod vars;
+
+use std::collections::HashMap;
+
+use g7_compile::Compiled;
+use g7_engine::{Addr, StepId};
+use g7_model::{Problem, Severity, Span, codes};
+
+use build::Gen;
+use tree::Module;
+
+/// A language that is printed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Language {
+    /// C99: a header and a source file.
+    C,
+    /// The same with a sketch round it.
+    Arduino,
+    /// A Rust module without the standard library.
+    Rust,
+}
+
+/// What to print.
+#[derive(Clone, Debug)]
+pub struct Options<'a> {
+    /// The language.
+    pub language: Language,
+    /// What files and public names begin with.
+    pub name: &'a str,
+    /// The text of the chart, for comments; may be empty.
+    pub source: &'a str,
+}
+
+/// A file that was printed.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct File {
+    /// Its name, without a folder.
+    pub name: String,
+    /// What is in it.
+    pub text: String,
+}
+
+/// What was printed.
+#[derive(Clone, Debug)]
+pub struct Printed {
+    /// The files, the main one last.
+    pub files: Vec<File>,
+    /// What is printed with a difference.
+    pub problems: Vec<Problem>,
+    /// Where the variables and steps went.
+    pub places: Places,
+}
+
+/// Where what the chart names is in the code.
+#[derive(Clone, Debug, Default)]
+pub struct Places {
+    variables: HashMap<u32, String>,
+    texts: HashMap<u32, u16>,
+    steps: Vec<String>,
+}
+
+impl Places {
+    /// The field of a variable, as in `v.count`, from its first word.
+    pub fn variable(&self, addr: Addr) -> Option<&str> {
+        self.variables.get(&addr.0).map(String::as_str)
+    }
+
+    /// The number of a step, without what public names begin with.
+    pub fn step(&self, step: StepId) -> &str {
+        self.steps.get(step.0 as usize).map_or("", String::as_str)
+    }
+
+    /// Bytes that a text can hold, where there is one.
+    pub fn text(&self, addr: Addr) -> Option<u16> {
+        self.texts.get(&addr.0).copied()
+    }
+}
+
+/// Prints the code of a chart.
+///
+/// # Errors
+///
+/// What the language cannot say, with its place in the chart.
+pub fn print(compiled: &Compiled, options: &Options<'_>) -> Result<Printed, Vec<Problem>> {
+    // Kinds of words without a declaration show in their uses: each round knows more.
+    let mut hidden = HashMap::new();
+    let mut made = None;
+    for _ in 0..6 {
+        let mut g = Gen::new(compiled, options.source, hidden.clone());
+        g.chart();
+        g.acts();
+        g.frame();
+        g.structures();
+        g.templates();
+        let known = std::mem::take(&mut g.vars.hidden);
+        let done = known == hidden;
+        hidden = known;
+        made = Some(g);
+        if done {
+            break;
+        }
+    }
+    let Some(mut g) = made else { return Err(Vec::new()) };
+    let mut module = std::mem::take(&mut g.m);
+    let natives = prune::prune(&mut module);
+    let mut problems = std::mem::take(&mut g.problems);
+    if g.real_text && options.language != Language::Rust {
+        problems.push(Problem::new(
+            &codes::NOT_CARRIED,
+            Span::default(),
+            "reals are turned into text or back: C has no way for that without a library",
+        ));
+    }
+    if g.math {
+        let (what, way) = match options.language {
+            Language::C | Language::Arduino => ("`<math.h>`", "their last digit can be another than in a run here"),
+            Language::Rust => ("the crate `libm`", "add it to the dependencies"),
+        };
+        let text = format!("the functions of LREAL come from {what}; {way}");
+        problems.push(Problem::new(&codes::DIFFERENT, Span::default(), text));
+    }
+    if problems.iter().any(|p| p.severity() == Severity::Error) {
+        return Err(problems);
+    }
+    let name = names::letters(options.name).to_lowercase();
+    let files = match options.language {
+        Language::C => c_files(&module, &natives, &name),
+        Language::Arduino => {
+            let mut files = c_files(&module, &natives, &name);
+            files.push(File { name: format!("{name}.ino"), text: arduino::sketch(&g, &name) });
+            files
+        }
+        Language::Rust => {
+            let native = native_rust::functions(&natives);
+            let head = format!(
+                "//! The chart `{name}`, printed by G7. Call [`init`] once, then [`scan`] in each cycle.\n\n"
+            );
+            vec![File { name: format!("{name}.rs"), text: head + &rust::print(&module, &native) }]
+        }
+    };
+    Ok(Printed { files, problems, places: places(&g) })
+}
+
+fn places(g: &Gen<'_>) -> Places {
+    let mut places = Places { steps: g.steps.clone(), ..Places::default() };
+    for v in &g.c.symbols.variables {
+        let Some(slot) = g.vars.slot(v.addr.0) else { continue };
+        let home = match slot.home {
+            vars::Home::Inputs => "inputs",
+            vars::Home::Outputs => "outputs",
+            vars::Home::Variables => "v",
+            vars::Home::Locals | vars::Home::Constant => continue,
+        };
+        let mut path = format!("{home}.{}", slot.field);
+        match slot.shape {
+            vars::Shape::Fb(kind) => {
+                let member = vars::members(kind).get((v.addr.0 - slot.start) as usize);
+                match member.filter(|_| !matches!(v.ty, g7_model::Type::Fb(_))) {
+                    Some((name, _)) => path = format!("{path}.{name}"),
+                    None => continue,
+                }
+            }
+            vars::Shape::Text(cap) | vars::Shape::Texts(cap, _) => {
+                places.texts.insert(v.addr.0, cap);
+            }
+            vars::Shape::One(_) | vars::Shape::Many(..) => {}
+        }
+        places.variables.insert(v.addr.0, path);
+    }
+    places
+}
+
+fn c_files(module: &Module, natives: &std::collections::BTreeSet<String>, name: &str) -> Vec<File> {
+    let guard = format!("{}_H", name.to_uppercase());
+    let mut header = format!("/* The chart {name}, printed by G7. Call {name}_init once, then {name}_scan in each cycle. */\n");
+    header += &format!("#ifndef {guard}\n#define {guard}\n\n#include <stdbool.h>\n#include <stdint.h>\n\n");
+    header += "#ifdef __cplusplus\nextern \"C\" {\n#endif\n\n";
+    header += &c::Printer::new(module, name).header();
+    header += "#ifdef __cplusplus\n}\n#endif\n\n#endif\n";
+    let (includes, native) = native_c::functions(natives, name);
+    let body = c::Printer::new(module, name).body(&native);
+    let text = format!("/* The chart {name}, printed by G7. */\n#include \"{name}.h\"\n{includes}\n{body}");
+    vec![File { name: format!("{name}.h"), text: header }, File { name: format!("{name}.c"), text }]
+}

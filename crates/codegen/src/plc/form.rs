@@ -1,0 +1,272 @@
+//! The equations of a chart: what Structured Text, Instruction List and Ladder
+//! have in common, before it is printed in one of them.
+
+use g7_model::Problem;
+
+/// A value.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Ex {
+    Bool(bool),
+    Int(i128),
+    Real(f64),
+    /// Nanoseconds.
+    Time(i64),
+    Var(String),
+    Index(String, Box<Ex>),
+    Not(Box<Ex>),
+    And(Vec<Ex>),
+    Or(Vec<Ex>),
+    Xor(Box<Ex>, Box<Ex>),
+    /// Arithmetic and comparison, by the sign of Structured Text.
+    Op(&'static str, Box<Ex>, Box<Ex>),
+    Neg(Box<Ex>),
+    Call(String, Vec<Ex>),
+}
+
+impl Ex {
+    pub(crate) fn var(name: impl Into<String>) -> Ex {
+        Ex::Var(name.into())
+    }
+
+    pub(crate) fn op(sign: &'static str, a: Ex, b: Ex) -> Ex {
+        Ex::Op(sign, Box::new(a), Box::new(b))
+    }
+
+    pub(crate) fn call(name: impl Into<String>, args: Vec<Ex>) -> Ex {
+        Ex::Call(name.into(), args)
+    }
+
+    pub(crate) fn not(self) -> Ex {
+        match self {
+            Ex::Bool(b) => Ex::Bool(!b),
+            Ex::Not(e) => *e,
+            Ex::Op("=", a, b) => Ex::Op("<>", a, b),
+            Ex::Op("<>", a, b) => Ex::Op("=", a, b),
+            other => Ex::Not(Box::new(other)),
+        }
+    }
+
+    pub(crate) fn and(self, other: Ex) -> Ex {
+        Ex::all([self, other])
+    }
+
+    pub(crate) fn or(self, other: Ex) -> Ex {
+        Ex::any([self, other])
+    }
+
+    /// Conjunction, short where something is known.
+    pub(crate) fn all(parts: impl IntoIterator<Item = Ex>) -> Ex {
+        let mut list = Vec::new();
+        for part in parts {
+            match part {
+                Ex::Bool(true) => {}
+                Ex::Bool(false) => return part,
+                Ex::And(inner) => list.extend(inner),
+                other => list.push(other),
+            }
+        }
+        match list.len() {
+            0 => Ex::Bool(true),
+            1 => list.remove(0),
+            _ => Ex::And(list),
+        }
+    }
+
+    /// Disjunction, short where something is known.
+    pub(crate) fn any(parts: impl IntoIterator<Item = Ex>) -> Ex {
+        let mut list = Vec::new();
+        for part in parts {
+            match part {
+                Ex::Bool(false) => {}
+                Ex::Bool(true) => return part,
+                Ex::Or(inner) => list.extend(inner),
+                other => list.push(other),
+            }
+        }
+        match list.len() {
+            0 => Ex::Bool(false),
+            1 => list.remove(0),
+            _ => Ex::Or(list),
+        }
+    }
+
+    /// Exclusive disjunction.
+    pub(crate) fn xor(self, other: Ex) -> Ex {
+        match (self, other) {
+            (Ex::Bool(b), e) | (e, Ex::Bool(b)) => {
+                if b {
+                    e.not()
+                } else {
+                    e
+                }
+            }
+            (a, b) => Ex::Xor(Box::new(a), Box::new(b)),
+        }
+    }
+
+    /// Every part, itself included.
+    pub(crate) fn walk(&self, f: &mut dyn FnMut(&Ex)) {
+        f(self);
+        match self {
+            Ex::Bool(_) | Ex::Int(_) | Ex::Real(_) | Ex::Time(_) | Ex::Var(_) => {}
+            Ex::Index(_, e) | Ex::Not(e) | Ex::Neg(e) => e.walk(f),
+            Ex::And(list) | Ex::Or(list) | Ex::Call(_, list) => list.iter().for_each(|e| e.walk(f)),
+            Ex::Xor(a, b) | Ex::Op(_, a, b) => {
+                a.walk(f);
+                b.walk(f);
+            }
+        }
+    }
+
+    /// Whether it reads a variable.
+    pub(crate) fn reads(&self, name: &str) -> bool {
+        let mut found = false;
+        self.walk(&mut |e| found |= matches!(e, Ex::Var(n) | Ex::Index(n, _) if n == name));
+        found
+    }
+}
+
+/// A statement.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum St {
+    Assign(Ex, Ex),
+    If(Ex, Vec<St>, Vec<St>),
+    /// Until EXIT.
+    Loop(Vec<St>),
+    Exit,
+    /// A function block with its inputs.
+    Call(String, Vec<(String, Ex)>),
+}
+
+impl St {
+    pub(crate) fn set(to: impl Into<String>, value: Ex) -> St {
+        St::Assign(Ex::Var(to.into()), value)
+    }
+
+    /// IF without ELSE; the statements alone where the condition is known.
+    pub(crate) fn when(condition: Ex, then: Vec<St>) -> Vec<St> {
+        match condition {
+            Ex::Bool(true) => then,
+            Ex::Bool(false) => Vec::new(),
+            c if then.is_empty() => {
+                drop(c);
+                Vec::new()
+            }
+            c => vec![St::If(c, then, Vec::new())],
+        }
+    }
+}
+
+/// What a rung does.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum What {
+    /// A BOOL follows its equation.
+    Assign(String, Ex),
+    /// A BOOL comes on where the condition holds, and stays.
+    Set(String, Ex),
+    /// A BOOL goes off where the condition holds, and stays.
+    Reset(String, Ex),
+    /// Anything else, where the condition holds.
+    Do(Ex, Vec<St>),
+}
+
+/// An equation with its comment.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Rung {
+    pub(crate) note: String,
+    pub(crate) what: What,
+}
+
+impl Rung {
+    pub(crate) fn assign(note: impl Into<String>, to: impl Into<String>, e: Ex) -> Rung {
+        Rung { note: note.into(), what: What::Assign(to.into(), e) }
+    }
+
+    pub(crate) fn act(note: impl Into<String>, when: Ex, body: Vec<St>) -> Rung {
+        Rung { note: note.into(), what: What::Do(when, body) }
+    }
+}
+
+/// Rungs with a heading.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct Section {
+    pub(crate) title: String,
+    pub(crate) rungs: Vec<Rung>,
+}
+
+impl Section {
+    pub(crate) fn new(title: &str) -> Section {
+        Section { title: title.to_owned(), rungs: Vec::new() }
+    }
+
+    pub(crate) fn push(&mut self, rung: Rung) {
+        let empty = match &rung.what {
+            What::Set(_, e) | What::Reset(_, e) => *e == Ex::Bool(false),
+            What::Do(e, body) => *e == Ex::Bool(false) || body.is_empty(),
+            What::Assign(..) => false,
+        };
+        if !empty {
+            self.rungs.push(rung);
+        }
+    }
+
+    pub(crate) fn assign(&mut self, note: impl Into<String>, to: impl Into<String>, e: Ex) {
+        self.push(Rung::assign(note, to, e));
+    }
+
+    pub(crate) fn set(&mut self, note: impl Into<String>, to: impl Into<String>, when: Ex) {
+        self.push(Rung { note: note.into(), what: What::Set(to.into(), when) });
+    }
+
+    pub(crate) fn reset(&mut self, note: impl Into<String>, to: impl Into<String>, when: Ex) {
+        self.push(Rung { note: note.into(), what: What::Reset(to.into(), when) });
+    }
+
+    pub(crate) fn act(&mut self, note: impl Into<String>, when: Ex, body: Vec<St>) {
+        self.push(Rung::act(note, when, body));
+    }
+}
+
+/// Which part of the declarations.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum Class {
+    Input,
+    Output,
+    Retain,
+    Internal,
+}
+
+/// A declaration.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Declared {
+    pub(crate) class: Class,
+    pub(crate) name: String,
+    pub(crate) ty: String,
+    pub(crate) elements: u32,
+    pub(crate) init: Vec<Ex>,
+    pub(crate) note: String,
+}
+
+/// The whole of it.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Equations {
+    pub(crate) name: String,
+    pub(crate) variables: Vec<Declared>,
+    /// Once a scan, before the evolution.
+    pub(crate) before: Vec<Section>,
+    /// The evolution: once, or until nothing changes.
+    pub(crate) pass: Vec<Section>,
+    /// Most passes, where there is more than one.
+    pub(crate) bound: Option<u32>,
+    /// Once a scan, behind the evolution.
+    pub(crate) after: Vec<Section>,
+    /// Safe values of the outputs, where a fault can come.
+    pub(crate) safe: Option<Vec<St>>,
+    pub(crate) problems: Vec<Problem>,
+}
+
+impl Equations {
+    pub(crate) fn sections(&self) -> impl Iterator<Item = &Section> {
+        self.before.iter().chain(&self.pass).chain(&self.after)
+    }
+}

@@ -1,0 +1,279 @@
+//! The equations as Structured Text.
+
+use std::fmt::Write;
+
+use super::form::{Class, Declared, Equations, Ex, Section, St, What};
+
+/// The whole function block.
+pub(crate) fn print(e: &Equations) -> String {
+    let mut out = declarations(e);
+    let mut p = Printer { out: String::new(), depth: 0 };
+    p.sections(&e.before);
+    if e.safe.is_some() {
+        p.line("IF NOT FAULT THEN");
+        p.depth += 1;
+    }
+    match e.bound {
+        None => p.sections(&e.pass),
+        Some(bound) => {
+            p.comment("The evolution, until nothing changes");
+            p.line("PASSES := 0;");
+            p.line("REPEAT");
+            p.depth += 1;
+            p.line("PASSES := PASSES + 1;");
+            p.sections(&e.pass);
+            p.depth -= 1;
+            p.line(&format!("UNTIL FAULT OR NOT CHANGED OR PASSES >= {bound} END_REPEAT;"));
+            p.line("FAULT := FAULT OR CHANGED;");
+        }
+    }
+    if e.safe.is_some() {
+        p.depth -= 1;
+        p.line("END_IF;");
+        p.line("IF NOT FAULT THEN");
+        p.depth += 1;
+    }
+    p.sections(&e.after);
+    if let Some(safe) = &e.safe {
+        p.depth -= 1;
+        if !safe.is_empty() {
+            p.line("ELSE");
+            p.depth += 1;
+            p.comment("No stable situation, or orders that disagree: the safe values, and no further scan");
+            p.block(safe);
+            p.depth -= 1;
+        }
+        p.line("END_IF;");
+    }
+    out += &p.out;
+    out += "END_FUNCTION_BLOCK\n";
+    out
+}
+
+/// The head of the function block with its variables.
+pub(crate) fn declarations(e: &Equations) -> String {
+    let mut out = format!("FUNCTION_BLOCK {}\n", e.name);
+    let heads = [
+        (Class::Input, "VAR_INPUT"),
+        (Class::Output, "VAR_OUTPUT"),
+        (Class::Retain, "VAR RETAIN"),
+        (Class::Internal, "VAR"),
+    ];
+    for (class, head) in heads {
+        let mut own = e.variables.iter().filter(|v| v.class == class).peekable();
+        if own.peek().is_none() {
+            continue;
+        }
+        let _ = writeln!(out, "{head}");
+        for v in own {
+            let note = if v.note.is_empty() { String::new() } else { format!(" (* {} *)", plain(&v.note)) };
+            let _ = writeln!(out, "  {} : {};{note}", v.name, type_text(v));
+        }
+        out += "END_VAR\n";
+    }
+    out.push('\n');
+    out
+}
+
+fn type_text(v: &Declared) -> String {
+    let ty = if v.elements == 1 { v.ty.clone() } else { format!("ARRAY[0..{}] OF {}", v.elements - 1, v.ty) };
+    let init: Vec<String> = v.init.iter().map(expression).collect();
+    match (init.as_slice(), v.elements) {
+        ([], _) => ty,
+        ([one], 1) => format!("{ty} := {one}"),
+        (many, _) => format!("{ty} := [{}]", many.join(", ")),
+    }
+}
+
+/// A comment cannot hold the end of a comment.
+pub(crate) fn plain(note: &str) -> String {
+    let mut text: String = note.chars().map(|c| if c.is_control() { ' ' } else { c }).collect();
+    while text.contains("*)") || text.contains("(*") {
+        text = text.replace("*)", "* )").replace("(*", "( *");
+    }
+    text.trim().to_owned()
+}
+
+struct Printer {
+    out: String,
+    depth: usize,
+}
+
+impl Printer {
+    fn line(&mut self, text: &str) {
+        let _ = writeln!(self.out, "{}{text}", "  ".repeat(self.depth));
+    }
+
+    fn comment(&mut self, note: &str) {
+        let note = plain(note);
+        if !note.is_empty() {
+            self.line(&format!("(* {note} *)"));
+        }
+    }
+
+    fn sections(&mut self, sections: &[Section]) {
+        for s in sections.iter().filter(|s| !s.rungs.is_empty()) {
+            self.comment(&s.title);
+            for r in &s.rungs {
+                self.comment(&r.note);
+                match &r.what {
+                    What::Assign(to, e) => self.line(&format!("{to} := {};", expression(e))),
+                    What::Set(to, e) => self.when(e, &[St::set(to, Ex::Bool(true))]),
+                    What::Reset(to, e) => self.when(e, &[St::set(to, Ex::Bool(false))]),
+                    What::Do(e, body) => self.when(e, body),
+                }
+            }
+            self.out.push('\n');
+        }
+    }
+
+    fn when(&mut self, e: &Ex, body: &[St]) {
+        match e {
+            Ex::Bool(true) => self.block(body),
+            Ex::Bool(false) => {}
+            e => match body {
+                [St::Assign(to, value)] => {
+                    let text = format!("{} := {};", expression(to), expression(value));
+                    self.line(&format!("IF {} THEN {text} END_IF;", expression(e)));
+                }
+                _ => self.statement(&St::If(e.clone(), body.to_vec(), Vec::new())),
+            },
+        }
+    }
+
+    fn block(&mut self, body: &[St]) {
+        body.iter().for_each(|s| self.statement(s));
+    }
+
+    fn inner(&mut self, body: &[St]) {
+        self.depth += 1;
+        self.block(body);
+        self.depth -= 1;
+    }
+
+    fn statement(&mut self, s: &St) {
+        match s {
+            St::Assign(to, e) => self.line(&format!("{} := {};", expression(to), expression(e))),
+            St::If(c, then, other) => {
+                self.line(&format!("IF {} THEN", expression(c)));
+                self.inner(then);
+                let mut other = other.as_slice();
+                while let [St::If(c, then, rest)] = other {
+                    self.line(&format!("ELSIF {} THEN", expression(c)));
+                    self.inner(then);
+                    other = rest;
+                }
+                if !other.is_empty() {
+                    self.line("ELSE");
+                    self.inner(other);
+                }
+                self.line("END_IF;");
+            }
+            St::Loop(body) => {
+                let (c, body) = match body.split_first() {
+                    Some((St::If(c, then, other), rest)) if then[..] == [St::Exit] && other.is_empty() => {
+                        (c.clone().not(), rest)
+                    }
+                    _ => (Ex::Bool(true), body.as_slice()),
+                };
+                self.line(&format!("WHILE {} DO", expression(&c)));
+                self.inner(body);
+                self.line("END_WHILE;");
+            }
+            St::Exit => self.line("EXIT;"),
+            St::Call(name, inputs) => {
+                let inputs: Vec<String> = inputs.iter().map(|(n, e)| format!("{n} := {}", expression(e))).collect();
+                self.line(&format!("{name}({});", inputs.join(", ")));
+            }
+        }
+    }
+}
+
+/// How tightly it binds.
+fn tightness(e: &Ex) -> u8 {
+    match e {
+        Ex::Or(_) => 1,
+        Ex::Xor(..) => 2,
+        Ex::And(_) => 3,
+        Ex::Op("=" | "<>", ..) => 4,
+        Ex::Op("<" | "<=" | ">" | ">=", ..) => 5,
+        Ex::Op("+" | "-", ..) => 6,
+        Ex::Op("**", ..) => 9,
+        Ex::Op(..) => 7,
+        Ex::Not(_) | Ex::Neg(_) => 8,
+        Ex::Int(n) if *n < 0 => 8,
+        Ex::Real(x) if *x < 0.0 => 8,
+        _ => 10,
+    }
+}
+
+/// An expression of Structured Text.
+pub(crate) fn expression(e: &Ex) -> String {
+    let within = |inner: &Ex, least: u8| {
+        let text = expression(inner);
+        if tightness(inner) < least { format!("({text})") } else { text }
+    };
+    let list = |list: &[Ex], sign: &str, least: u8| {
+        let parts: Vec<String> = list.iter().map(|e| within(e, least)).collect();
+        parts.join(sign)
+    };
+    match e {
+        Ex::Bool(true) => "TRUE".into(),
+        Ex::Bool(false) => "FALSE".into(),
+        Ex::Int(n) => n.to_string(),
+        Ex::Real(x) => real(*x),
+        Ex::Time(ns) => time(*ns),
+        Ex::Var(name) => name.clone(),
+        Ex::Index(name, i) => format!("{name}[{}]", expression(i)),
+        Ex::Not(inner) => format!("NOT {}", within(inner, 9)),
+        Ex::Neg(inner) => format!("-{}", within(inner, 9)),
+        Ex::And(parts) => list(parts, " AND ", 4),
+        // AND beside OR reads better in brackets only where it is long.
+        Ex::Or(parts) => list(parts, " OR ", 3),
+        Ex::Xor(a, b) => format!("{} XOR {}", within(a, 3), within(b, 3)),
+        Ex::Op(sign, a, b) => {
+            let t = tightness(e);
+            format!("{} {sign} {}", within(a, t), within(b, t + 1))
+        }
+        Ex::Call(name, args) => {
+            let args: Vec<String> = args.iter().map(expression).collect();
+            format!("{name}({})", args.join(", "))
+        }
+    }
+}
+
+pub(crate) fn real(x: f64) -> String {
+    let text = format!("{x:?}");
+    match text.split_once('e') {
+        Some((m, e)) if m.contains('.') => format!("{m}E{e}"),
+        Some((m, e)) => format!("{m}.0E{e}"),
+        None => text,
+    }
+}
+
+/// A TIME literal.
+pub(crate) fn time(ns: i64) -> String {
+    let sign = if ns < 0 { "-" } else { "" };
+    let mut left = ns.unsigned_abs();
+    let mut text = String::new();
+    for (unit, size) in
+        [("d", 86_400_000_000_000u64), ("h", 3_600_000_000_000), ("m", 60_000_000_000), ("s", 1_000_000_000)]
+    {
+        if left >= size {
+            let _ = write!(text, "{}{unit}", left / size);
+            left %= size;
+        }
+    }
+    if left > 0 || text.is_empty() {
+        let (ms, rest) = (left / 1_000_000, left % 1_000_000);
+        if text.is_empty() && left == 0 {
+            text.push_str("0s");
+        } else if rest == 0 {
+            let _ = write!(text, "{ms}ms");
+        } else {
+            let fraction = format!("{rest:06}");
+            let _ = write!(text, "{ms}.{}ms", fraction.trim_end_matches('0'));
+        }
+    }
+    format!("T#{sign}{text}")
+}

@@ -1,0 +1,690 @@
+// Enclosed charts follow their enclosing steps, through all levels.
+fn cascade(s: &mut State) {
+    s.again = true;
+    while s.again {
+        s.again = false;
+        let mut k: usize = 0;
+        while k < s.off_count {
+            let step: usize = s.off[k] as usize;
+            k += 1;
+            if bit(&s.off_mark, step) && !bit(&s.on_mark, step) && bit(&s.m.active, step) {
+                empty_enclosed(s, step);
+            }
+        }
+    }
+    s.again = true;
+    while s.again {
+        s.again = false;
+        let mut k: usize = 0;
+        while k < s.on_count {
+            let step: usize = s.on[k] as usize;
+            k += 1;
+            if bit(&s.on_mark, step) && !bit(&s.m.active, step) {
+                let mut i: usize = LINKS_AT[step] as usize;
+                while i < LINKS_AT[step + 1] as usize {
+                    mark_on(s, LINKS[i] as usize);
+                    i += 1;
+                }
+            }
+        }
+    }
+}
+
+fn empty_enclosed(s: &mut State, step: usize) {
+    let mut i: usize = ENCLOSES_AT[step] as usize;
+    while i < ENCLOSES_AT[step + 1] as usize {
+        let group: usize = ENCLOSES[i] as usize;
+        i += 1;
+        let first: usize = GROUP_FIRST[group] as usize;
+        let end: usize = GROUP_END[group] as usize;
+        // An activation in a chart that is being emptied does not take place.
+        let mut j: usize = 0;
+        while j < s.on_count {
+            let other: usize = s.on[j] as usize;
+            j += 1;
+            if other >= first && other < end && bit(&s.on_mark, other) {
+                bit_clear(&mut s.on_mark, other);
+                if bit(&s.off_mark, other) {
+                    s.again = true;
+                }
+            }
+        }
+        mark_range_off(s, first, end);
+    }
+}
+
+fn mark_range_off(s: &mut State, first: usize, end: usize) {
+    let mut k: usize = bit_next(&s.m.active, end, first);
+    while k < end {
+        mark_off(s, k);
+        k = bit_next(&s.m.active, end, k + 1);
+    }
+}
+
+fn count_group(s: &mut State, group: usize, on: bool) {
+    let old: row = s.m.group_count[group];
+    if on {
+        s.m.group_count[group] += 1;
+        if old == 0 {
+            group_on(s, group);
+        }
+    } else if old != 0 {
+        s.m.group_count[group] -= 1;
+        if old == 1 {
+            group_off(s, group);
+        }
+    }
+}
+
+// A group that loses its last step and gets another in the same change was
+// active without a break.
+fn group_on(s: &mut State, group: usize) {
+    let mut stamp: i64 = clock(s);
+    let mut age: i64 = s.now;
+    let mut k: usize = 0;
+    while k < s.emptied_count {
+        if s.emptied[k] as usize == group {
+            stamp = s.emptied_stamp[k];
+            age = s.emptied_age[k];
+        }
+        k += 1;
+    }
+    s.m.group_stamp[group] = stamp;
+    s.m.group_age[group] = age;
+}
+
+fn group_off(s: &mut State, group: usize) {
+    if s.emptied_count < GROUPS {
+        s.emptied[s.emptied_count] = group as row;
+        s.emptied_stamp[s.emptied_count] = s.m.group_stamp[group];
+        s.emptied_age[s.emptied_count] = s.m.group_age[group];
+        s.emptied_count += 1;
+    }
+    if KEEP {
+        s.m.group_stamp[group] = since(clock(s), s.m.group_stamp[group]);
+        s.m.group_age[group] = since(s.now, s.m.group_age[group]);
+    } else {
+        s.m.group_stamp[group] = 0;
+        s.m.group_age[group] = 0;
+    }
+}
+
+// Which charts stand still in this pass: those not due, and those forced.
+fn block_charts(s: &mut State) {
+    for i in 0..CHARTS {
+        s.blocked[i] = false;
+        if HAS_PERIODS {
+            s.blocked[i] = !s.due[CHART_PERIOD[i] as usize];
+        }
+    }
+    if HAS_ORDERS {
+        for i in 0..CHARTS {
+            s.forced_by[i] = NO_ORDER as row;
+        }
+        s.conflict = false;
+        for i in 0..ORDERS {
+            let step: usize = ORDER_STEP[i] as usize;
+            if bit(&s.on_mark, step) || (bit(&s.m.active, step) && !bit(&s.off_mark, step)) {
+                impose(s, i);
+                if HAS_HIERARCHY {
+                    cascade(s);
+                }
+            }
+        }
+        if s.conflict {
+            s.fault = FAULT_FORCING;
+        }
+    }
+}
+
+// Marks what a forcing order imposes.
+fn impose(s: &mut State, order: usize) {
+    let chart: usize = ORDER_CHART[order] as usize;
+    let first: usize = s.forced_by[chart] as usize;
+    if first != NO_ORDER {
+        if ORDER_SITUATION[first] != ORDER_SITUATION[order] {
+            s.conflict = true;
+        }
+        return;
+    }
+    s.forced_by[chart] = order as row;
+    s.blocked[chart] = true;
+    // The present situation is number 0.
+    if ORDER_SITUATION[order] == 0 {
+        return;
+    }
+    let mut i: usize = ORDER_AT[order] as usize;
+    while i < ORDER_AT[order + 1] as usize {
+        mark_on(s, ORDER_STEPS[i] as usize);
+        i += 1;
+    }
+    let group: usize = CHART_GROUP[chart] as usize;
+    mark_range_off(s, GROUP_FIRST[group] as usize, GROUP_END[group] as usize);
+    // An imposed step that is active already is neither activated nor deactivated.
+    i = ORDER_AT[order] as usize;
+    while i < ORDER_AT[order + 1] as usize {
+        let step: usize = ORDER_STEPS[i] as usize;
+        i += 1;
+        if bit(&s.m.active, step) {
+            bit_clear(&mut s.on_mark, step);
+            bit_clear(&mut s.off_mark, step);
+        }
+    }
+}
+
+// Actions on event of the steps that are active as the pass begins.
+fn events(s: &mut State) {
+    let mut i: usize = bit_next(&s.m.events, EVENTS, 0);
+    while i < EVENTS && s.fault == 0 {
+        event(s, i);
+        i = bit_next(&s.m.events, EVENTS, i + 1);
+    }
+}
+
+// Transitions clear one after the other, with their actions at once.
+fn in_turn(s: &mut State) {
+    s.left_count = 0;
+    s.came_count = 0;
+    let mut k: usize = 0;
+    while k < s.fired_count {
+        let t: usize = s.fired[k] as usize;
+        k += 1;
+        if HAS_GROUPS {
+            s.emptied_count = 0;
+        }
+        if HAS_CLEARING {
+            clearing(s, t);
+            if s.fault != 0 {
+                return;
+            }
+        }
+        let mut i: usize = FROM_AT[t] as usize;
+        while i < FROM_AT[t + 1] as usize {
+            leave(s, FROM[i] as usize);
+            if s.fault != 0 {
+                return;
+            }
+            i += 1;
+        }
+        if HAS_DROPS {
+            i = DROPS_AT[t] as usize;
+            while i < DROPS_AT[t + 1] as usize {
+                leave(s, DROPS[i] as usize);
+                if s.fault != 0 {
+                    return;
+                }
+                i += 1;
+            }
+        }
+        i = TO_AT[t] as usize;
+        while i < TO_AT[t + 1] as usize {
+            enter(s, TO[i] as usize);
+            if s.fault != 0 {
+                return;
+            }
+            i += 1;
+        }
+    }
+    if HAS_HIERARCHY {
+        enclosures(s);
+    }
+    commit(s);
+}
+
+fn push(s: &mut State, step: usize) {
+    if s.chain_count < CHAIN {
+        s.chain[s.chain_count] = step as row;
+        s.chain_count += 1;
+    }
+}
+
+// Deactivates a step; its exit actions come first, its enclosed charts with it.
+fn leave(s: &mut State, first: usize) {
+    s.chain_count = 0;
+    push(s, first);
+    while s.chain_count > 0 {
+        s.chain_count -= 1;
+        let step: usize = s.chain[s.chain_count] as usize;
+        if bit(&s.m.active, step) {
+            if HAS_LISTS {
+                run_off(s, step);
+                if s.fault != 0 {
+                    return;
+                }
+            }
+            deactivate(s, step);
+            if HAS_HIERARCHY {
+                if ENCLOSES_AT[step] < ENCLOSES_AT[step + 1] && s.left_count < ENTERED {
+                    s.left[s.left_count] = step as row;
+                    s.left_count += 1;
+                }
+                let mut i: usize = ENCLOSES_AT[step + 1] as usize;
+                while i > ENCLOSES_AT[step] as usize {
+                    i -= 1;
+                    let group: usize = ENCLOSES[i] as usize;
+                    let mut k: usize = GROUP_END[group] as usize;
+                    while k > GROUP_FIRST[group] as usize {
+                        k -= 1;
+                        if bit(&s.m.active, k) {
+                            push(s, k);
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+// Activates a step; its entry actions run at once, its linked steps come with it.
+fn enter(s: &mut State, first: usize) {
+    s.chain_count = 0;
+    push(s, first);
+    while s.chain_count > 0 {
+        s.chain_count -= 1;
+        let step: usize = s.chain[s.chain_count] as usize;
+        if !bit(&s.m.active, step) {
+            activate(s, step);
+            if HAS_LISTS {
+                run_on(s, step);
+                if s.fault != 0 {
+                    return;
+                }
+            }
+            if HAS_HIERARCHY {
+                if LINKS_AT[step] < LINKS_AT[step + 1] && s.came_count < ENTERED {
+                    s.came[s.came_count] = step as row;
+                    s.came_count += 1;
+                }
+                let mut i: usize = LINKS_AT[step + 1] as usize;
+                while i > LINKS_AT[step] as usize {
+                    i -= 1;
+                    push(s, LINKS[i] as usize);
+                }
+            }
+        }
+    }
+}
+
+// What enclosing steps take and bring holds against the turns that came behind.
+fn enclosures(s: &mut State) {
+    let mut k: usize = 0;
+    while k < s.left_count {
+        let step: usize = s.left[k] as usize;
+        k += 1;
+        if !bit(&s.m.active, step) {
+            let mut i: usize = ENCLOSES_AT[step] as usize;
+            while i < ENCLOSES_AT[step + 1] as usize {
+                let group: usize = ENCLOSES[i] as usize;
+                i += 1;
+                let first: usize = GROUP_FIRST[group] as usize;
+                let end: usize = GROUP_END[group] as usize;
+                for j in first..end {
+                    bit_clear(&mut s.on_mark, j);
+                }
+                mark_range_off(s, first, end);
+            }
+        }
+    }
+    k = 0;
+    while k < s.came_count {
+        let step: usize = s.came[k] as usize;
+        k += 1;
+        if bit(&s.m.active, step) && !has_left(s, step) {
+            let mut i: usize = LINKS_AT[step] as usize;
+            while i < LINKS_AT[step + 1] as usize {
+                mark_on(s, LINKS[i] as usize);
+                i += 1;
+            }
+        }
+    }
+}
+
+fn has_left(s: &State, step: usize) -> bool {
+    for i in 0..s.left_count {
+        if s.left[i] as usize == step {
+            return true;
+        }
+    }
+    return false;
+}
+
+// Edges live one pass.
+fn edge(s: &mut State, i: usize, now: bool, fresh: bool) {
+    let before: bool = s.m.value[i];
+    s.m.value[i] = now;
+    s.m.rise[i] = now && !before && !fresh;
+    s.m.fall[i] = before && !now && !fresh;
+}
+
+// Whether a timer runs now that its condition is known; then it asks for its time.
+fn timer_runs(s: &mut State, i: usize, now: bool) -> bool {
+    if s.m.value[i] != now {
+        s.m.value[i] = now;
+        s.m.running[i] = s.m.timer[i] != now;
+        s.m.start[i] = 0;
+        if s.m.running[i] {
+            s.m.start[i] = s.now;
+        }
+    }
+    return s.m.running[i];
+}
+
+fn timer_goes(s: &mut State, i: usize, time: i64) {
+    let mut least: i64 = time;
+    if least < 0 {
+        least = 0;
+    }
+    if is_due_after(s.now, s.m.start[i], least) {
+        s.m.running[i] = false;
+        s.m.start[i] = 0;
+        s.m.timer[i] = s.m.value[i];
+    }
+}
+
+// Which periods are due; instants missed are skipped, not queued.
+fn find_due(s: &mut State, fresh: bool) {
+    for i in 0..PERIODS {
+        let period: i64 = PERIOD[i];
+        let mut next: i64 = s.m.next_due[i];
+        s.due[i] = period <= 0 || fresh || s.now >= next;
+        if s.due[i] && period > 0 {
+            if fresh {
+                next = s.now;
+            }
+            s.m.next_due[i] = next + (period * (((s.now - next) / period) + 1));
+        }
+    }
+}
+
+// Carries out the requests of services.
+fn carry_out(s: &mut State) {
+    s.m.requests = false;
+    for i in 0..GROUPS {
+        let first: bool = bit(&s.m.ask_init, i);
+        let empty: bool = bit(&s.m.ask_clear, i);
+        bit_clear(&mut s.m.ask_init, i);
+        bit_clear(&mut s.m.ask_clear, i);
+        if first || empty {
+            mark_range_off(s, GROUP_FIRST[i] as usize, GROUP_END[i] as usize);
+        }
+        if first {
+            let mut k: usize = INITIAL_AT[i] as usize;
+            while k < INITIAL_AT[i + 1] as usize {
+                mark_on(s, INITIAL[k] as usize);
+                k += 1;
+            }
+        }
+    }
+    for i in 0..STEPS {
+        if bit(&s.m.ask_set, i) {
+            bit_clear(&mut s.m.ask_set, i);
+            mark_on(s, i);
+        }
+        if bit(&s.m.ask_reset, i) {
+            bit_clear(&mut s.m.ask_reset, i);
+            mark_off(s, i);
+        }
+    }
+    commit(s);
+}
+
+// RESET_XIT: all step times are 0.
+fn reset_times(s: &mut State) {
+    for i in 0..STEPS {
+        let active: bool = bit(&s.m.active, i);
+        s.m.stamp[i] = 0;
+        if active {
+            s.m.stamp[i] = clock(s);
+        }
+        if SCAN_CLOCK {
+            s.m.age[i] = 0;
+            if active {
+                s.m.age[i] = s.now;
+            }
+        }
+    }
+    if HAS_GROUPS {
+        for i in 0..GROUPS {
+            s.m.group_stamp[i] = 0;
+            s.m.group_age[i] = 0;
+            if group_active(s, i) {
+                s.m.group_stamp[i] = clock(s);
+                s.m.group_age[i] = s.now;
+            }
+        }
+    }
+}
+
+// Actions of each scan of the active steps.
+fn periodics(s: &mut State) {
+    let mut i: usize = bit_next(&s.m.periodics, PERIODICS, 0);
+    while i < PERIODICS {
+        if !PERIODIC_FIRST || bit(&s.before_periodics, i) {
+            run_at_end(s, PERIODIC_ACTION[i] as usize);
+        }
+        i = bit_next(&s.m.periodics, PERIODICS, i + 1);
+    }
+}
+
+fn add_input(s: &mut State, at: usize, block: usize) {
+    s.m.counts[at] += 1;
+    bit_set(&mut s.m.blocks, block);
+}
+
+fn remove_input(s: &mut State, at: usize, block: usize) {
+    if s.m.counts[at] != 0 {
+        s.m.counts[at] -= 1;
+    }
+    bit_set(&mut s.m.blocks, block);
+}
+
+// An input with a condition goes with its step.
+fn drop_condition(s: &mut State, i: usize, at: usize, block: usize) {
+    bit_clear(&mut s.m.conditions, i);
+    if s.m.counted[i] {
+        s.m.counted[i] = false;
+        remove_input(s, at, block);
+    }
+}
+
+fn count_condition(s: &mut State, i: usize, now: bool, at: usize, block: usize) {
+    s.m.counted[i] = now;
+    if now {
+        add_input(s, at, block);
+    } else {
+        remove_input(s, at, block);
+    }
+}
+
+// Looks at the conditions of the active steps' actions; or at those of pulses only.
+fn look_at_conditions(s: &mut State, pulses: bool) {
+    let mut i: usize = bit_next(&s.m.conditions, CONDITIONS, 0);
+    while i < CONDITIONS && s.fault == 0 {
+        condition(s, i, pulses);
+        i = bit_next(&s.m.conditions, CONDITIONS, i + 1);
+    }
+}
+
+// Evaluates the blocks whose inputs changed or whose timers run, in order.
+fn evaluate_blocks(s: &mut State) {
+    let mut i: usize = bit_next(&s.m.blocks, BLOCKS, 0);
+    while i < BLOCKS && s.fault == 0 {
+        evaluate_block(s, i);
+        i = bit_next(&s.m.blocks, BLOCKS, i + 1);
+    }
+}
+
+// Shows P1 and P0 the situation before the evolution, where the initialisation or
+// a service made it.
+fn look_early(s: &mut State) {
+    if HAS_CONDITIONS {
+        look_at_conditions(s, true);
+        if s.fault != 0 {
+            return;
+        }
+    }
+    if HAS_FULL {
+        for k in 0..FULL {
+            if bit(&s.m.blocks, FULL_BLOCK[k] as usize) && (!HAS_PERIODS || s.due[FULL_PERIOD[k] as usize]) {
+                let at: usize = FULL_AT[k] as usize;
+                let p1: bool = s.m.counts[at + 6] != 0;
+                if p1 != ((s.m.inputs_before[k] & 0x40) != 0) {
+                    s.m.inputs_before[k] ^= 0x40;
+                    if p1 {
+                        s.m.flip[k] |= 32;
+                    }
+                }
+                let p0: bool = s.m.counts[at + 7] != 0;
+                if p0 != ((s.m.inputs_before[k] & 0x80) != 0) {
+                    s.m.inputs_before[k] ^= 0x80;
+                    if !p0 {
+                        s.m.flip[k] |= 64;
+                    }
+                }
+            }
+        }
+    }
+}
+
+// Whether a delay of a block has run off; it starts as its input comes.
+fn delay_done(s: &mut State, i: usize, now: bool, before: bool) -> bool {
+    if now && !before {
+        s.m.block_start[i] = s.now;
+    }
+    if !now {
+        s.m.block_start[i] = 0;
+        return false;
+    }
+    return since(s.now, s.m.block_start[i]) >= s.m.block_time[i];
+}
+
+// ACTION_CONTROL (IEC 61131-3:2003, 2.6.4.5). Tells Q (1), whether a body runs (2),
+// whether to look again at the next scan (4).
+fn control_block(s: &mut State, k: usize, at: usize, gate: bool) -> u32 {
+    let before: u16 = s.m.inputs_before[k];
+    let flip: u16 = s.m.flip[k];
+    let mut now: u16 = 0;
+    for i in 0..11 {
+        if s.m.counts[at + i] != 0 {
+            now |= (1u32 << i) as u16;
+        }
+    }
+    let n: bool = (now & 1) != 0;
+    let r: bool = (now & 4) != 0;
+    let l: bool = (now & 8) != 0;
+    let d: bool = (now & 16) != 0;
+    let ds: bool = (now & 0x200) != 0;
+    let s_flip: bool = !r && ((now & 2) != 0 || (flip & 1) != 0);
+    let sd_flip: bool = !r && ((now & 0x100) != 0 || (flip & 2) != 0);
+    let sl_flip: bool = !r && ((now & 0x400) != 0 || (flip & 8) != 0);
+    let timers: usize = k * 5;
+    let l_done: bool = delay_done(s, timers, l, (before & 8) != 0);
+    let d_done: bool = delay_done(s, timers + 1, d, (before & 16) != 0);
+    let sd_done: bool = delay_done(s, timers + 2, sd_flip, (flip & 2) != 0);
+    let ds_done: bool = delay_done(s, timers + 3, ds, (before & 0x200) != 0);
+    let sl_done: bool = delay_done(s, timers + 4, sl_flip, (flip & 8) != 0);
+    let ds_flip: bool = !r && (ds_done || (flip & 4) != 0);
+    let pulse: bool = (now & 0x20) != 0 && (before & 0x20) == 0;
+    let p1: bool = (((now & 0x40) != 0 && (before & 0x40) == 0) || (flip & 32) != 0) && !r && gate;
+    let p0: bool = (((now & 0x80) == 0 && (before & 0x80) != 0) || (flip & 64) != 0) && !r && gate;
+    let level: bool = !r && gate && (n || s_flip || (l && !l_done) || d_done || pulse || sd_done || ds_flip || (sl_flip && !sl_done));
+    let fell: bool = (flip & 16) != 0 && !level;
+    let mut keep: u16 = 0;
+    if s_flip {
+        keep |= 1;
+    }
+    if sd_flip {
+        keep |= 2;
+    }
+    if ds_flip {
+        keep |= 4;
+    }
+    if sl_flip {
+        keep |= 8;
+    }
+    if level {
+        keep |= 16;
+    }
+    s.m.inputs_before[k] = now;
+    s.m.flip[k] = keep;
+    let mut result: u32 = 0;
+    let q: bool = level || p1 || p0;
+    if q {
+        result |= 1;
+    }
+    if q || (FINAL_SCAN && fell) {
+        result |= 2;
+    }
+    let live: bool = (l && !l_done) || (d && !d_done) || (sd_flip && !sd_done) || (ds && !ds_done) || (sl_flip && !sl_done);
+    if live || pulse || p1 || p0 {
+        result |= 4;
+    }
+    return result;
+}
+
+fn is_enabled(s: &State, t: usize) -> bool {
+    if !COUNTED[t] {
+        return false;
+    }
+    let mut i: usize = FROM_AT[t] as usize;
+    while i < FROM_AT[t + 1] as usize {
+        if !bit(&s.m.active, FROM[i] as usize) {
+            return false;
+        }
+        i += 1;
+    }
+    return true;
+}
+
+fn count_active(s: &State) -> u32 {
+    let mut count: u32 = 0;
+    for i in 0..STEPS {
+        if STEP_COUNTED[i] && bit(&s.m.active, i) {
+            count += 1;
+        }
+    }
+    return count;
+}
+
+fn count_before(s: &mut State) {
+    for t in 0..TRANSITIONS {
+        s.enabled_before[t] = is_enabled(s, t);
+    }
+    s.active_before = count_active(s);
+    s.moved = 0;
+}
+
+fn at_most(count: u32) -> i64 {
+    if count > 32767 {
+        return 32767;
+    }
+    return count as i64;
+}
+
+// %SW20 and %SW21: what was, and what changed in this scan.
+fn count_after(s: &mut State) {
+    let mut total: u32 = 0;
+    for t in 0..TRANSITIONS {
+        if s.enabled_before[t] {
+            total += 1;
+        }
+        if s.enabled_before[t] != is_enabled(s, t) {
+            total += 1;
+        }
+    }
+    let steps: u32 = s.active_before + s.moved;
+    write_counts(s, at_most(steps), at_most(total));
+}
+
+fn judge_limits(s: &mut State) {
+    let mut enabled: u32 = 0;
+    for t in 0..TRANSITIONS {
+        if is_enabled(s, t) {
+            enabled += 1;
+        }
+    }
+    if count_active(s) > MOST_ACTIVE || enabled > MOST_ENABLED {
+        write_overflow(s);
+        s.fault = FAULT_TABLE;
+    }
+}

@@ -1,0 +1,168 @@
+//! Generated C and Rust do what the engine does, scan by scan: situation, step
+//! times, outputs, variables, faults; on every conformance case and on random
+//! charts.
+//!
+//! `G7_SCANS=100000` sets how many random scans each profile makes; the folder
+//! of the code is kept where `G7_KEEP` is set.
+#![allow(clippy::disallowed_methods, reason = "the tests start compilers")]
+
+use std::path::{Path, PathBuf};
+
+use g7_model::ProfileName;
+use g7_tests::case;
+use g7_tests::generate::sample;
+use g7_tests::generated::{Subject, c_program, compare, has, rust_program};
+
+const SANITIZERS: [&str; 3] = ["-O0", "-fsanitize=address,undefined", "-fno-sanitize-recover=all"];
+
+fn number(name: &str, otherwise: u64) -> u64 {
+    std::env::var(name).ok().and_then(|v| v.parse().ok()).unwrap_or(otherwise)
+}
+
+/// A folder of the test that goes when it is over.
+struct Folder(PathBuf);
+
+impl Folder {
+    fn new(name: &str) -> Folder {
+        Folder(std::env::temp_dir().join(format!("g7-codegen-{}-{name}", std::process::id())))
+    }
+}
+
+impl Drop for Folder {
+    fn drop(&mut self) {
+        if std::env::var_os("G7_KEEP").is_none() {
+            let _ = std::fs::remove_dir_all(&self.0);
+        }
+    }
+}
+
+fn cases(folder: &Path, found: &mut Vec<PathBuf>) {
+    let Ok(entries) = std::fs::read_dir(folder) else { return };
+    for path in entries.filter_map(|e| e.ok().map(|e| e.path())) {
+        if path.is_dir() {
+            cases(&path, found);
+        } else if path.extension().is_some_and(|e| e == "md") && path.file_stem().is_some_and(|s| s != "README") {
+            found.push(path);
+        }
+    }
+}
+
+/// Every conformance case with a trace, a subject for each profile it runs under.
+fn spec() -> Vec<Subject> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("spec");
+    let mut files = Vec::new();
+    cases(&root, &mut files);
+    files.sort();
+    let mut subjects: Vec<Subject> = Vec::new();
+    for file in files {
+        let text = std::fs::read_to_string(&file).expect("a case");
+        let case = case::read(&text).expect("a case in good form");
+        let title = file.strip_prefix(&root).unwrap_or(&file).with_extension("").display().to_string();
+        let folder = title.split('/').next().unwrap_or("").to_owned();
+        let doc = case::document(&case.chart).expect("a chart");
+        for trace in &case.traces {
+            let own = doc.profile().map(|p| p.name);
+            let profile = trace.profile.or_else(|| case::profile_named(&folder).ok()).or(own).unwrap_or_default();
+            let title = format!("{title} {}", profile.name());
+            let at = match subjects.iter().position(|s| s.title == title) {
+                Some(at) => at,
+                None => {
+                    let subject = Subject::new(&title, &doc, Some(profile), &case.chart);
+                    subjects.push(subject.unwrap_or_else(|e| panic!("{title}: {e}")));
+                    subjects.len() - 1
+                }
+            };
+            subjects[at].replay(&doc, profile, trace).unwrap_or_else(|e| panic!("{title}: {e}"));
+        }
+    }
+    assert!(subjects.len() > 100, "only {} cases", subjects.len());
+    subjects
+}
+
+/// Random charts with so many scans in all.
+fn random(profile: ProfileName, scans: usize, length: usize) -> Vec<Subject> {
+    let mut subjects = Vec::new();
+    let (mut sound, mut seed) = (0, number("G7_SEED", 1));
+    while sound < scans {
+        let title = format!("{} seed {seed}", profile.name());
+        let sample = sample(seed, profile, length).expect("a random chart can be read");
+        seed += 1;
+        // What assigns two constants at one moment is refused by the checker.
+        let Ok(mut subject) = Subject::new(&title, &sample.document, None, &sample.text) else { continue };
+        subject.play(&sample.script).unwrap_or_else(|e| panic!("{title}: {e}"));
+        sound += subject.sound;
+        subjects.push(subject);
+    }
+    println!("{}: {} charts, {sound} scans", profile.name(), subjects.len());
+    subjects
+}
+
+fn c_agrees(name: &str, compiler: &str, subjects: &[Subject]) {
+    if !has(compiler) {
+        println!("skipped: no {compiler} on the PATH");
+        return;
+    }
+    let folder = Folder::new(name);
+    let mut wrong = Vec::new();
+    for (i, batch) in subjects.chunks(60).enumerate() {
+        let batch: Vec<&Subject> = batch.iter().collect();
+        let program = c_program(&folder.0.join(i.to_string()), compiler, &SANITIZERS, &batch);
+        if let Err(why) = program.and_then(|p| compare(&p, &batch)) {
+            wrong.push(format!("batch {i}: {why}"));
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n\n"));
+}
+
+#[test]
+fn cases_in_c_by_gcc() {
+    c_agrees("spec-gcc", "gcc", &spec());
+}
+
+#[test]
+fn cases_in_c_by_clang() {
+    c_agrees("spec-clang", "clang", &spec());
+}
+
+#[test]
+fn cases_in_rust() {
+    let subjects = spec();
+    let folder = Folder::new("spec-rust");
+    for (i, batch) in subjects.chunks(200).enumerate() {
+        let batch: Vec<&Subject> = batch.iter().collect();
+        let program = rust_program(&folder.0.join(i.to_string()), &batch);
+        if let Err(why) = program.and_then(|p| compare(&p, &batch)) {
+            panic!("{why}");
+        }
+    }
+}
+
+fn random_in_c(profile: ProfileName, compiler: &str) {
+    let subjects = random(profile, number("G7_SCANS", 100_000) as usize, 1000);
+    c_agrees(profile.name(), compiler, &subjects);
+}
+
+#[test]
+fn random_iec60848() {
+    random_in_c(ProfileName::Iec60848, "gcc");
+}
+
+#[test]
+fn random_iec61131() {
+    random_in_c(ProfileName::Iec61131, "gcc");
+}
+
+#[test]
+fn random_pl7() {
+    random_in_c(ProfileName::Pl7, "gcc");
+}
+
+#[test]
+fn random_unity() {
+    random_in_c(ProfileName::Unity, "gcc");
+}
+
+#[test]
+fn random_jgrafchart() {
+    random_in_c(ProfileName::Jgrafchart, "gcc");
+}
