@@ -6,7 +6,7 @@ import { createServer } from 'node:http';
 import type { AddressInfo } from 'node:net';
 import { tmpdir } from 'node:os';
 import { extname, join, normalize, resolve } from 'node:path';
-import { chromium, type Browser, type BrowserContext, type Page } from 'playwright-core';
+import { chromium, type Browser, type BrowserContext, type Locator, type Page } from 'playwright-core';
 
 const HERE = new URL('..', import.meta.url).pathname;
 /** The built page; another one for trying things out. */
@@ -124,4 +124,27 @@ export async function textOf(page: Page): Promise<string> {
   const parts: Buffer[] = [];
   for await (const part of await download.createReadStream()) parts.push(part as Buffer);
   return Buffer.concat(parts).toString('utf8');
+}
+
+export type Box = { x: number; y: number; width: number; height: number };
+
+/** A symbol of the drawing. */
+export const item = (page: Page, id: string) => page.locator(`.sheet [data-id="${id}"]`).first();
+
+export async function box(of: Locator): Promise<Box> {
+  const found = await of.boundingBox();
+  if (!found) throw new Error(`${of} is not to be seen`);
+  return found;
+}
+
+/** Where a symbol can be pressed: in its box, bar or rectangle. */
+export async function core(page: Page, id: string): Promise<[x: number, y: number]> {
+  const at = await box(item(page, id).locator('.g7-box, .g7-bar, .g7-action').first());
+  return [at.x + Math.min(8, at.width / 2), at.y + Math.min(8, at.height / 2)];
+}
+
+/** Selects a symbol with the mouse. */
+export async function press(page: Page, id: string): Promise<void> {
+  await page.mouse.click(...(await core(page, id)));
+  await page.locator('.marks .selected').first().waitFor({ state: 'attached' });
 }

@@ -2,8 +2,8 @@
 // frames of problems, notes, buttons; and the view goes along with the run.
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
-import type { Locator, Page } from 'playwright-core';
-import { browser, open, playground, type Site } from './lib';
+import type { Page } from 'playwright-core';
+import { box, browser, item, open, playground, press, type Box, type Site } from './lib';
 
 const CHART = `input a : BOOL
 output lamp, motor : BOOL
@@ -40,8 +40,6 @@ ${Array.from({ length: 39 }, (_, n) => `  ${n} -> ${n + 1} when 100ms/X${n}`).jo
 }
 `;
 
-type Box = { x: number; y: number; width: number; height: number };
-
 let b: Awaited<ReturnType<typeof browser>>;
 let site: Site;
 
@@ -55,23 +53,10 @@ after(async () => {
   await site?.stop();
 });
 
-const item = (page: Page, id: string) => page.locator(`.sheet [data-id="${id}"]`).first();
 const oneScan = (page: Page) => page.getByRole('button', { name: 'One scan', exact: true }).click();
-
-async function box(of: Locator): Promise<Box> {
-  const found = await of.boundingBox();
-  assert.ok(found, `${of} is to be seen`);
-  return found;
-}
 
 function apart(one: Box, other: Box): boolean {
   return one.x + one.width <= other.x || other.x + other.width <= one.x || one.y + one.height <= other.y || other.y + other.height <= one.y;
-}
-
-async function press(page: Page, id: string): Promise<void> {
-  const at = await box(item(page, id).locator('.g7-box, .g7-bar, .g7-action').first());
-  await page.mouse.click(at.x + Math.min(8, at.width / 2), at.y + Math.min(8, at.height / 2));
-  await page.locator('.marks .selected').waitFor({ state: 'attached' });
 }
 
 async function end(page: Page & { errors: string[] }): Promise<void> {

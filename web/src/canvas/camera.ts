@@ -94,7 +94,13 @@ export class Camera {
     const [x, y] = [box[0] * t.k + t.x, box[1] * t.k + t.y];
     const [right, low] = [x + box[2] * t.k, y + box[3] * t.k];
     const edge = 50;
-    if (!centre && x >= edge && y >= edge && right <= w - edge && low <= h - edge) return;
+    if (!centre && x >= edge && y >= edge && right <= w - edge && low <= h - edge) {
+      // The overview covers its corner.
+      const map = this.#root.parentElement?.querySelector('.map')?.getBoundingClientRect();
+      const top = map ? map.top - this.#root.getBoundingClientRect().top : h;
+      if (map && right > w - map.width - 12 && low > top) this.panBy(0, Math.max(top - edge - low, edge - y));
+      return;
+    }
     if (centre || x > w || right < 0 || y > h || low < 0) {
       this.moveTo(box[0] + box[2] / 2, box[1] + box[3] / 2);
       return;

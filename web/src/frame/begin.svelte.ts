@@ -8,7 +8,10 @@ import { shell } from '../lib/shell.svelte';
 
 export async function begin(): Promise<void> {
   // On a narrow window the sides lie over the drawing: they come when they are called.
-  if (matchMedia('(max-width: 1000px)').matches) prefs.leftOpen = prefs.rightOpen = false;
+  const narrow = matchMedia('(max-width: 1000px)');
+  const shut = () => narrow.matches && (prefs.leftOpen = prefs.rightOpen = false);
+  narrow.addEventListener('change', shut);
+  shut();
   await shell.try(() => server.begin());
   shell.folder = (await shell.try(() => server.files())) ?? [];
   server.hear((message) => {

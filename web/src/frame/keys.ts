@@ -17,6 +17,8 @@ export function onKey(e: KeyboardEvent): void {
     shell.dialog = 'help';
   } else if (ctrl && key === 's') {
     if (file) void save(file);
+  } else if (ctrl && key === 'm' && e.shiftKey) {
+    shell.problems();
   } else if (ctrl && key === 'f' && e.shiftKey) {
     shell.dialog = 'search';
   } else if (ctrl && key === 'f' && !typing(e)) {

@@ -1,6 +1,6 @@
 // What is shown: which chart, what is selected, which dialog is open, and the
 // places where the components of other folders put themselves.
-import type { Component } from 'svelte';
+import { tick, type Component } from 'svelte';
 import { files, type OpenFile } from './files.svelte';
 import type { Key } from './i18n';
 import { prefs } from './prefs.svelte';
@@ -87,6 +87,15 @@ class Shell {
     files.current = file;
     if (prefs.view === 'chart') prefs.view = 'both';
     this.reveal = { file: file.name, from, to };
+  }
+
+  /** Goes to the list of problems, to the one at a place of the text where there is one. */
+  problems(at?: number): void {
+    prefs.bottomOpen = true;
+    this.tabs.bottom = 'problems';
+    const all = files.current?.look.problems ?? [];
+    const n = Math.max(0, all.findIndex((p) => at !== undefined && p.from <= at && at <= p.to));
+    void tick().then(() => document.querySelectorAll<HTMLElement>('.problems .problem')[n]?.focus());
   }
 
   /** Shows the page about a kind of problem. */

@@ -2,10 +2,10 @@
 import { autocompletion, closeBrackets, closeBracketsKeymap, completionKeymap } from '@codemirror/autocomplete';
 import { defaultKeymap, indentWithTab } from '@codemirror/commands';
 import { bracketMatching, codeFolding, foldGutter, foldKeymap, indentOnInput, indentUnit } from '@codemirror/language';
-import { lintGutter, lintKeymap } from '@codemirror/lint';
+import { lintGutter, nextDiagnostic, previousDiagnostic } from '@codemirror/lint';
 import { highlightSelectionMatches, search, searchKeymap } from '@codemirror/search';
 import { EditorState, Prec, type Extension } from '@codemirror/state';
-import { crosshairCursor, drawSelection, dropCursor, EditorView, highlightActiveLine, highlightActiveLineGutter, keymap, lineNumbers, rectangularSelection } from '@codemirror/view';
+import { crosshairCursor, drawSelection, dropCursor, EditorView, type Command, highlightActiveLine, highlightActiveLineGutter, keymap, lineNumbers, rectangularSelection } from '@codemirror/view';
 import type { OpenFile } from '../lib/files.svelte';
 import { t } from '../lib/i18n';
 import { shell } from '../lib/shell.svelte';
@@ -40,12 +40,26 @@ export function format(file: OpenFile): void {
   void shell.try(() => file.format());
 }
 
+/** Mends the problem at the cursor where there is one way to; else the list of problems offers the ways. */
+function mend(file: OpenFile): Command {
+  return ({ state }) => {
+    const at = state.selection.main.head;
+    const fixes = file.look.problems.filter((p) => p.from <= at && at <= p.to).flatMap((p) => p.fixes);
+    const [only] = fixes;
+    if (only && fixes.length === 1) void shell.try(() => file.fix(only.splices));
+    else shell.problems(at);
+    return true;
+  };
+}
+
 export function setup(file: OpenFile, more: Extension): Extension {
   const keys = [
     { key: 'Mod-z', run: history(file, 'undo'), shift: history(file, 'redo'), preventDefault: true },
     { key: 'Mod-y', run: history(file, 'redo'), preventDefault: true },
     { key: 'F2', run: rename(file) },
     { key: 'F12', run: definition(file), shift: references(file) },
+    { key: 'F8', run: nextDiagnostic, shift: previousDiagnostic },
+    { key: 'Mod-.', run: mend(file) },
     {
       key: 'Shift-Alt-f',
       run: () => {
@@ -93,7 +107,7 @@ export function setup(file: OpenFile, more: Extension): Extension {
     click,
     theme,
     Prec.high(keymap.of(keys)),
-    keymap.of([...closeBracketsKeymap, ...completionKeymap, ...searchKeymap, ...foldKeymap, ...lintKeymap, ...defaultKeymap, indentWithTab]),
+    keymap.of([...closeBracketsKeymap, ...completionKeymap, ...searchKeymap, ...foldKeymap, ...defaultKeymap, indentWithTab]),
     EditorView.contentAttributes.of({ 'aria-label': t('text.of', { name: file.name }), tabindex: '0', spellcheck: 'false', autocorrect: 'off', autocapitalize: 'off' }),
     more,
   ];

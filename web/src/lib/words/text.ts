@@ -3,7 +3,7 @@ import type { Words } from '../i18n';
 export const text = {
   'text.of': ['Text of {name}', 'Texte de {name}', 'Texto de {name}'],
   'text.place': ['Line {line}, column {column}', 'Ligne {line}, colonne {column}', 'Linha {line}, coluna {column}'],
-  'text.hint': ['F2 rename · F12 declaration · Shift+F12 uses · Esc, Tab: leave', 'F2 renommer · F12 déclaration · Maj+F12 emplois · Échap, Tab : sortir', 'F2 mudar o nome · F12 declaração · Shift+F12 usos · Esc, Tab: sair'],
+  'text.hint': ['F2 rename · F8 next problem · Ctrl+. fix · F12 declaration · Shift+F12 uses · Esc, Tab: leave', 'F2 renommer · F8 problème suivant · Ctrl+. corriger · F12 déclaration · Maj+F12 emplois · Échap, Tab : sortir', 'F2 mudar o nome · F8 problema seguinte · Ctrl+. corrigir · F12 declaração · Shift+F12 usos · Esc, Tab: sair'],
   'text.goto': ['Go to …', 'Aller à …', 'Ir para …'],
   'text.format': ['Format', 'Mettre en forme', 'Formatar'],
   'text.plants': ['Plants', 'Parties opératives', 'Processos'],
