@@ -2,6 +2,9 @@
 
 use crate::{iectext, jgrafchart, xmi, xml};
 
+/// The endings that files of the formats have, without the dot; some have none of these.
+pub const ENDINGS: [&str; 10] = ["xml", "grafcet", "xmi", "st", "sfc", "exp", "xsf", "xef", "l5x", "clprj"];
+
 /// A foreign format.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Format {

@@ -33,7 +33,7 @@ mod xml;
 
 use g7_model::{Document, FileId, Problem};
 
-pub use format::{Format, Outlet};
+pub use format::{ENDINGS, Format, Outlet};
 
 /// The foreign format of a file, by its content and, where that does not tell, the ending of its name.
 ///

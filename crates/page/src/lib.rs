@@ -27,6 +27,7 @@ mod ids;
 mod language;
 mod look;
 mod merge;
+mod out;
 mod page;
 mod positions;
 mod problems;

@@ -54,6 +54,13 @@ pub(crate) enum Request {
         at: usize,
     },
     Drawing(crate::drawing::Wish),
+    /// The forms in which a chart can leave.
+    Forms,
+    /// A file in one of them.
+    Export {
+        file: String,
+        to: String,
+    },
     /// The style sheet of the fragments.
     Style {
         #[serde(default)]

@@ -325,3 +325,24 @@ fn every_fix_mends_its_problem() {
     }
     assert!(tried > 20 && codes.len() > 7, "{tried} fixes of {codes:?}");
 }
+
+#[test]
+fn a_chart_leaves_in_every_form_that_is_listed() {
+    let mut page = Asked::default();
+    page.open(&CHART.replace("when aa", "when a"));
+    let forms = page.ok(json!({ "do": "forms" }));
+    let words: Vec<&str> =
+        forms.as_array().expect("a list").iter().filter_map(|f| f["word"].as_str()).collect();
+    assert!(words.contains(&"mermaid") && words.contains(&"svg"), "{words:?}");
+    for word in words {
+        let out = page.ok(json!({ "do": "export", "file": "a.g7", "to": word }));
+        let file = &out["files"][0];
+        assert!(file["name"].as_str().is_some_and(|n| n.starts_with("a.")), "{word}: {out}");
+        assert!(file["text"].as_str().is_some_and(|t| t.len() > 100), "{word}: {out}");
+    }
+    let why = page.no(json!({ "do": "export", "file": "a.g7", "to": "nothing" }));
+    assert_eq!(why, "there is no form `nothing`");
+    page.open(CHART);
+    let why = page.no(json!({ "do": "export", "file": "a.g7", "to": "mermaid" }));
+    assert!(why.starts_with("the chart has errors: "), "{why}");
+}

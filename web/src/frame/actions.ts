@@ -60,11 +60,11 @@ export async function openLocal(input: HTMLInputElement): Promise<void> {
   await openText(chosen.name, await chosen.text());
 }
 
-/** Opens a text from elsewhere: G7's own, or a chart of JGrafchart. */
+/** Opens a text from elsewhere: G7's own, or a chart of another tool, which the page knows by its content. */
 export async function openText(name: string, text: string): Promise<void> {
   const file = await shell.try(() => files.open(name, text));
   if (!file) return;
-  if (/^\s*</.test(text) && file.text === text) {
+  if (!file.look.imported && !/\.g7$/i.test(name)) {
     shell.say(t('start.notOurs', { name }), 'error');
     await shell.try(() => files.close(file));
   } else shell.gallery = false;

@@ -1,13 +1,14 @@
 // All panels of the page, from the folders that have some.
 import { panels as canvas } from '../canvas';
 import type { Panel } from '../lib/shell.svelte';
+import { panels as out } from '../out';
 import { panels as tables } from '../panels';
 import { panels as run } from '../run';
 import { panels as start } from '../start';
 import { panels as text } from '../text';
 import { panels as frame } from './index';
 
-const all: Panel[] = [...frame, ...canvas, ...tables, ...run, ...start, ...text];
+const all: Panel[] = [...frame, ...canvas, ...tables, ...run, ...start, ...text, ...out];
 
 export function slots(region: Panel['region']): Panel[] {
   return all.filter((p) => p.region === region).sort((a, b) => a.order - b.order);

@@ -1,5 +1,6 @@
 // One table of words: key -> [English, French, Portuguese].
 import { canvas } from './words/canvas';
+import { out } from './words/out';
 import { panels } from './words/panels';
 import { run } from './words/run';
 import { shell } from './words/shell';
@@ -9,7 +10,7 @@ import { prefs } from './prefs.svelte';
 
 export type Words = Record<string, readonly [en: string, fr: string, pt: string]>;
 
-const table = { ...shell, ...canvas, ...panels, ...run, ...start, ...text } as const;
+const table = { ...shell, ...canvas, ...out, ...panels, ...run, ...start, ...text } as const;
 
 export type Key = keyof typeof table;
 export type Language = 'en' | 'fr' | 'pt';

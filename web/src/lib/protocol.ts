@@ -331,3 +331,26 @@ export interface TestAnswer {
   coverage: { sort: string; total: number; reached: number; missed: string[] }[];
   problems: Problem[];
 }
+
+/** A form in which a chart can leave. */
+export interface Form {
+  word: string;
+  title: string;
+  kind: 'chart' | 'code' | 'picture';
+}
+
+export interface OutFile {
+  name: string;
+  text: string;
+  /** The lines, from 0, that belong to a symbol. */
+  marks: { id: string; lines: number[] }[];
+}
+
+/** A chart in another form. */
+export interface Out {
+  files: OutFile[];
+  /** What it does not carry; places are those of the chart. */
+  problems: Problem[];
+  /** It does not mean what the chart means. */
+  lossy: boolean;
+}

@@ -18,14 +18,14 @@ export interface Group {
 }
 
 const plain = (name: string) => {
-  const words = name.replace(/\.(g7|xml)$/, '').replace(/[-_]+/g, ' ');
+  const words = name.replace(/\.\w+$/, '').replace(/[-_]+/g, ' ');
   return words.charAt(0).toUpperCase() + words.slice(1);
 };
 
 export function groups(rows: FileRow[]): Group[] {
   const found = new Map<string, FileRow[]>();
   for (const row of rows) {
-    if (!/\.(g7|xml)$/.test(row.path)) continue;
+    if (/\.svg$/i.test(row.path)) continue;
     const folder = row.path.slice(0, Math.max(row.path.lastIndexOf('/'), 0));
     found.set(folder, [...(found.get(folder) ?? []), row]);
   }

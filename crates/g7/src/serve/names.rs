@@ -11,8 +11,8 @@ const LONGEST: usize = 1024;
 /// Deepest path, in folders.
 pub(super) const DEEPEST: usize = 16;
 
-/// Endings of the files that are served.
-const ENDINGS: [&str; 3] = ["g7", "xml", "svg"];
+/// Endings of our own files that are served; those of charts of other tools are as well.
+const ENDINGS: [&str; 2] = ["g7", "svg"];
 
 /// The path below the folder, or why it is none.
 pub(super) fn path(name: &str) -> Result<PathBuf, String> {
@@ -27,7 +27,7 @@ pub(super) fn path(name: &str) -> Result<PathBuf, String> {
         return Err(format!("`{}` cannot be used here: {why}", shown(name)));
     }
     if !is_served(name) {
-        return Err(format!("`{}` is no .g7, .xml or .svg file: others are not served", shown(name)));
+        return Err(format!("`{}` is no chart and no .svg picture: other files are not served", shown(name)));
     }
     Ok(parts.iter().collect())
 }
@@ -35,7 +35,8 @@ pub(super) fn path(name: &str) -> Result<PathBuf, String> {
 /// Whether files with this ending are served.
 pub(super) fn is_served(name: &str) -> bool {
     name.rsplit_once('.').is_some_and(|(stem, end)| {
-        !stem.is_empty() && ENDINGS.iter().any(|known| end.eq_ignore_ascii_case(known))
+        !stem.is_empty()
+            && ENDINGS.iter().chain(&g7_exchange::ENDINGS).any(|known| end.eq_ignore_ascii_case(known))
     })
 }
 
