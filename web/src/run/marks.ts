@@ -5,12 +5,14 @@ import { transitionNumber } from '../lib/ids';
 import type { Run } from './state.svelte';
 
 const GAP = 40;
-/** A frame that comes so early is told at once: one painting instead of two. */
+/** Frames that come so much earlier than that are told at once: one painting instead of two. */
 const EARLY = 12;
 /** A time that changes faster than so cannot be read, ms of the wall clock. */
 const READABLE = 100;
-/** How long a cleared transition flashes. */
+/** How long a cleared transition flashes, ms; and where so many do that none stands out. */
 const FLASH = 300;
+const BRIEF = 60;
+const MANY = 40;
 
 /** The signals that symbols name, by id of the symbol. */
 export type Named = ReadonlyMap<string, readonly number[]>;
@@ -51,6 +53,8 @@ export class Marks {
   #other: Run | null = null;
   #unwatchOther: (() => void) | null = null;
   #told = 0;
+  /** When the latest frame came. */
+  #came = 0;
   #timer = 0;
   #unwatch: () => void;
   #flashes = new Map<string, number>();
@@ -87,9 +91,12 @@ export class Marks {
   }
 
   soon(): void {
+    const now = performance.now();
+    const since = now - this.#came;
+    this.#came = now;
     if (this.#timer !== 0) return;
-    const wait = GAP - (performance.now() - this.#told);
-    if (wait <= EARLY) {
+    const wait = GAP - (now - this.#told);
+    if (Math.min(wait, GAP - since) <= EARLY) {
       this.tell();
       return;
     }
@@ -130,7 +137,7 @@ export class Marks {
     const now = performance.now();
     for (const i of this.#run.cleared) {
       const id = this.#run.started.transitions[i]?.id;
-      if (id) this.#flashes.set(id, now + FLASH);
+      if (id) this.#flashes.set(id, now + (this.#flashes.size < MANY ? FLASH : BRIEF));
     }
     this.#run.cleared.clear();
     for (const [id, until] of this.#flashes) if (until < now) this.#flashes.delete(id);
