@@ -1,11 +1,18 @@
-//! What leaves the page: a chart in the form of another tool, or as a picture.
+//! What leaves the page: a chart in the form of another tool, as code for a
+//! controller, or as a picture.
 
+use std::collections::BTreeMap;
+
+use g7_codegen::Language;
+use g7_compile::symbols::Symbols;
 use g7_draw::{Drawing, Options};
+use g7_engine::StepId;
 use g7_exchange::Outlet;
-use g7_model::{Problem, Severity};
+use g7_model::{Problem, Severity, Span};
 use serde::Serialize;
 
 use crate::file::File;
+use crate::ids::{self, Thing};
 use crate::problems::{Row, row};
 
 /// A form in which a chart can leave.
@@ -42,11 +49,19 @@ struct Mark {
     lines: Vec<usize>,
 }
 
+/// Languages of controllers: word, title, language.
+const LANGUAGES: [(&str, &str, Language); 3] = [
+    ("c", "C99", Language::C),
+    ("arduino", "Arduino sketch", Language::Arduino),
+    ("rust", "Rust module", Language::Rust),
+];
+
 /// All forms, in the order in which they are shown.
 pub(crate) fn forms() -> Vec<Form> {
     let chart = |o: &Outlet| Form { word: o.word(), title: o.title(), kind: "chart" };
+    let code = |(word, title, _)| Form { word, title, kind: "code" };
     let picture = Form { word: "svg", title: "SVG", kind: "picture" };
-    Outlet::ALL.iter().map(chart).chain([picture]).collect()
+    Outlet::ALL.iter().map(chart).chain(LANGUAGES.map(code)).chain([picture]).collect()
 }
 
 /// A file in another form.
@@ -58,6 +73,9 @@ pub(crate) fn export(name: &str, file: &File, to: &str) -> Result<Out, String> {
     let stem = stem.strip_suffix(".g7").unwrap_or(stem);
     if to == "svg" {
         return Ok(out(file, vec![(format!("{stem}.svg"), picture(file))], &[]));
+    }
+    if let Some((_, _, language)) = LANGUAGES.iter().find(|(word, ..)| *word == to) {
+        return code(file, stem, *language);
     }
     let outlet =
         Outlet::ALL.iter().find(|o| o.word() == to).ok_or_else(|| format!("there is no form `{to}`"))?;
@@ -72,6 +90,52 @@ fn out(file: &File, files: Vec<(String, String)>, problems: &[Problem]) -> Out {
         lossy: problems.iter().any(|p| p.severity() == Severity::Error),
         problems: problems.iter().map(|p| row(file, p)).collect(),
     }
+}
+
+/// Code for a controller; what belongs to each step is marked.
+fn code(file: &File, name: &str, language: Language) -> Result<Out, String> {
+    let (compiled, _) = g7_compile::compile(&file.source.document);
+    let compiled = compiled.ok_or("the chart has errors")?;
+    let options = g7_codegen::Options { language, name, source: file.text() };
+    let printed = match g7_codegen::print(&compiled, &options) {
+        Ok(printed) => printed,
+        Err(problems) => return Ok(out(file, Vec::new(), &problems)),
+    };
+    let steps = words(file, &compiled.symbols, |step| printed.places.step(step));
+    let files = printed.files.into_iter().map(|f| (f.name, f.text)).collect();
+    let mut out = out(file, files, &printed.problems);
+    for file in &mut out.files {
+        file.marks = marks(&file.text, &steps);
+    }
+    Ok(out)
+}
+
+/// The ids of steps by the word that stands for each in the code.
+fn words<'c>(file: &File, symbols: &Symbols, word: impl Fn(StepId) -> &'c str) -> BTreeMap<&'c str, String> {
+    let ids: BTreeMap<Span, String> = ids::things(&file.source.document)
+        .filter_map(|(_, thing)| match thing {
+            Thing::Step(_, step) => Some((step.name.at.0, thing.id())),
+            Thing::Action(..) | Thing::Transition(..) => None,
+        })
+        .collect();
+    let steps = (0..symbols.steps()).map(StepId).filter(|s| symbols.is_listed(*s));
+    steps.filter_map(|s| Some((word(s), ids.get(&symbols.step_place(s))?.clone()))).collect()
+}
+
+/// The lines in which each word stands, alone or behind the prefix that public names have.
+fn marks(text: &str, words: &BTreeMap<&str, String>) -> Vec<Mark> {
+    let mut lines: BTreeMap<&str, Vec<usize>> = BTreeMap::new();
+    for (number, line) in text.lines().enumerate() {
+        for word in line.split(|c: char| !c.is_alphanumeric() && c != '_') {
+            let ends = word.char_indices().map(|(i, _)| i).filter(|i| *i == 0 || word[..*i].ends_with('_'));
+            let Some((_, id)) = ends.filter_map(|i| words.get_key_value(&word[i..])).next() else { continue };
+            let known = lines.entry(id).or_default();
+            if known.last() != Some(&number) {
+                known.push(number);
+            }
+        }
+    }
+    lines.into_iter().map(|(id, lines)| Mark { id: id.to_owned(), lines }).collect()
 }
 
 /// All charts on one sheet.

@@ -346,3 +346,25 @@ fn a_chart_leaves_in_every_form_that_is_listed() {
     let why = page.no(json!({ "do": "export", "file": "a.g7", "to": "mermaid" }));
     assert!(why.starts_with("the chart has errors: "), "{why}");
 }
+
+#[test]
+fn the_code_of_a_step_is_marked() {
+    let mut page = Asked::default();
+    page.open(&CHART.replace("when aa", "when a"));
+    for (word, ending) in [("c", ".c"), ("rust", ".rs"), ("arduino", ".c")] {
+        let out = page.ok(json!({ "do": "export", "file": "a.g7", "to": word }));
+        let files = out["files"].as_array().expect("files");
+        let file =
+            files.iter().find(|f| f["name"].as_str().is_some_and(|n| n.ends_with(ending))).expect("code");
+        let lines: Vec<&str> = file["text"].as_str().expect("text").lines().collect();
+        let mark =
+            file["marks"].as_array().expect("marks").iter().find(|m| m["id"] == "G/s/2").expect("a mark");
+        let marked = mark["lines"].as_array().expect("lines");
+        assert!(!marked.is_empty());
+        for line in marked {
+            let line = lines[line.as_u64().expect("a number") as usize];
+            assert!(line.contains("STEP_2"), "{word}: {line}");
+        }
+        assert!(marked.len() < lines.len() / 4, "{word}: not everything belongs to one step");
+    }
+}
