@@ -119,19 +119,19 @@ codes! {
     // Imported files
     BAD_XML = "G0601" Error "a file that is no well-formed XML" "XML 1.0";
     NOT_JGRAFCHART = "G0602" Error "a file that is no chart of JGrafchart" "JGrafchart 2.6.1, files";
-    UNKNOWN_ELEMENT = "G0603" Warning "an element that is not known" "JGrafchart 2.6.1, files";
-    NOT_CARRIED = "G0604" Error "a part with a meaning that cannot be carried over" "JGrafchart 2.6.1, language reference";
-    LEFT_OUT = "G0605" Warning "a part that is left out; the rest runs" "JGrafchart 2.6.1, language reference";
-    BAD_TEXT = "G0606" Error "an action or condition that cannot be read" "JGrafchart 2.6.1, textual language";
-    UNKNOWN_OBJECT = "G0607" Error "a name that nothing in the file has" "JGrafchart 2.6.1, name references";
-    UNKNOWN_FUNCTION = "G0608" Error "a function or method that is not known" "JGrafchart 2.6.1, textual language";
+    UNKNOWN_ELEMENT = "G0603" Warning "an element that is not known" "the form of the file";
+    NOT_CARRIED = "G0604" Error "a part with a meaning that cannot be carried over" "the language of the file";
+    LEFT_OUT = "G0605" Warning "a part that is left out; the rest runs" "the language of the file";
+    BAD_TEXT = "G0606" Error "an action or condition that cannot be read" "the language of the file";
+    UNKNOWN_OBJECT = "G0607" Error "a name that nothing in the file has" "names and references of the file";
+    UNKNOWN_FUNCTION = "G0608" Error "a function or method that is not known" "the language of the file";
     BAD_LINK = "G0609" Error "a line that cannot be in a chart" "IEC 60848:2013, 4.4";
     OPEN_LINK = "G0610" Warning "a line or transition that leads nowhere" "IEC 60848:2013, 4.4";
-    RENAMED = "G0611" Warning "a name that had to be changed" "JGrafchart 2.6.1, files";
-    BAD_VALUE = "G0612" Error "a value that cannot be read" "JGrafchart 2.6.1, files";
-    BAD_MACRO = "G0613" Error "a macro-step without its inside" "JGrafchart 2.6.1, macro steps";
-    DIFFERENT = "G0614" Warning "a part that is carried over with a difference" "JGrafchart 2.6.1, language reference";
-    TWICE = "G0615" Error "two variables of one name in a workspace" "JGrafchart 2.6.1, name references";
+    RENAMED = "G0611" Warning "a name that had to be changed" "the form of the file";
+    BAD_VALUE = "G0612" Error "a value that cannot be read" "the form of the file";
+    BAD_MACRO = "G0613" Error "a macro-step without its inside" "IEC 60848:2013, 7.5";
+    DIFFERENT = "G0614" Warning "a part that is carried over with a difference" "the language of the file";
+    TWICE = "G0615" Error "two variables of one name in a workspace" "names and references of the file";
 
     // Plants and tests
     BAD_DRIVE = "G0501" Error "a plant drives what is no free input" "the plant language";
