@@ -2,7 +2,7 @@
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
 import type { Page } from 'playwright-core';
-import { browser, open, playground, textOf, type Site } from './lib';
+import { browser, item, open, playground, press, textOf, type Site } from './lib';
 
 const LOOP = `input a, b : BOOL
 chart G1 {
@@ -27,8 +27,6 @@ after(async () => {
   await b?.done();
   await site?.stop();
 });
-
-const item = (page: Page, id: string) => page.locator(`.sheet [data-id="${id}"]`);
 
 /** Waits until the text says this. */
 async function says(page: Page, wanted: RegExp): Promise<void> {
@@ -73,7 +71,7 @@ test('a comment is put on the drawing, moved, changed and taken away', async () 
 
 test('the steps of a transition are chosen in the properties', async () => {
   const page = await open(b, site, 'loop.g7');
-  await item(page, 'G1/t/0').click();
+  await press(page, 'G1/t/0');
   await page.getByLabel('Succeeding steps 1').selectOption('2');
   await says(page, /0 -> 2 when a/);
   await page.getByLabel('Preceding steps: Add a step…').selectOption('1');

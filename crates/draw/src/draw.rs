@@ -34,7 +34,12 @@ pub fn draw(document: &Document, chart: &Chart, options: &Options) -> Drawing {
         return symbols.put(chart, &paged.placement, paged.frames, &paged.pages);
     }
     let placement = layout(chart, &symbols.sizes, places(document, chart));
-    symbols.put(chart, &placement, notes(document, chart), &[])
+    let mut drawing = symbols.put(chart, &placement, Vec::new(), &[]);
+    for note in notes(document, chart) {
+        drawing.area = drawing.area.union(&note.area);
+        drawing.items.push(note);
+    }
+    drawing
 }
 
 /// The comments of a chart's layout, in the order of the text, with their places.

@@ -189,7 +189,7 @@ export const commands: Command[] = [
     title: 'cmd.note',
     keys: ['C'],
     when: () => !some(),
-    run: () => editor.note(here() ?? editor.middle()),
+    run: () => editor.note(here() ?? editor.beside()),
   },
   {
     id: 'breakpoint',

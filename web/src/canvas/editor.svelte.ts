@@ -179,10 +179,12 @@ class Editor {
     shell.select(this.scene?.items.filter((i) => ['step', 'transition', 'comment'].includes(i.part)).map((i) => i.id) ?? []);
   }
 
-  /** The middle of what is in sight, on the grid. */
-  middle(): [number, number] {
-    const [x, y] = this.toPlane(this.width / 2, this.height / 2);
-    return [Math.round(x / 5) * 5, Math.round(y / 5) * 5];
+  /** A free place at the right of the drawing, at the height that is in sight, on the grid. */
+  beside(): [number, number] {
+    const [x, y, w, h] = this.scene?.drawing.area ?? [0, 0, 0, 0];
+    const middle = this.toPlane(0, this.height / 2)[1];
+    const grid = (n: number) => Math.round(n / 5) * 5;
+    return [grid(x + w + 30), grid(Math.max(y, Math.min(middle, y + h)))];
   }
 
   /** From the screen to the plane. */

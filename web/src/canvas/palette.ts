@@ -30,7 +30,7 @@ export async function useTool(what: Tool, target: string | null, at?: [number, n
   if (chart === null) return;
   if (item && what === 'action') editor.edit(item.id, 'action');
   else if (item && what === 'comment') editor.edit(item.id, 'comment');
-  else if (what === 'comment') editor.note(at ?? editor.middle());
+  else if (what === 'comment') editor.note(at ?? editor.beside());
   else if (item && (what === 'or' || what === 'and')) await editor.apply({ g: 'branch', id: item.id, how: what });
   else if (item?.part === 'link') await editor.apply({ g: 'insert', link: item.id, what });
   else if (item && intoLink.has(what)) {
