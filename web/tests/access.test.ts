@@ -60,6 +60,25 @@ for (const theme of ['light', 'dark'] as const) {
   });
 }
 
+test('a run with all of its panels is without violations', async () => {
+  const page = await open(b, site, 'bead-sorter/chart.g7');
+  await page.getByRole('button', { name: 'One scan', exact: true }).click();
+  await page.getByRole('button', { name: 'Bottom' }).click();
+  for (const name of ['Variables', 'Inputs and outputs', 'Tests', 'Chronogram']) {
+    await page.getByRole('tab', { name }).click();
+    await page.waitForTimeout(200);
+    assert.deepEqual(await axe(page), [], name);
+  }
+  // A symbol that is selected and out of sight is named by nothing.
+  await page.locator('.sheet').focus();
+  await page.keyboard.press('ArrowDown');
+  for (let n = 0; n < 6; n++) await page.keyboard.press('-');
+  await page.getByRole('button', { name: 'Drawing and text' }).click();
+  await page.waitForTimeout(300);
+  assert.deepEqual(await axe(page), [], 'from afar');
+  await page.context().close();
+});
+
 test('problems and both views are without violations', async () => {
   const page = await open(b, site, 'wrong.g7');
   await page.getByRole('button', { name: 'Bottom' }).click();
