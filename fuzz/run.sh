@@ -3,7 +3,7 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 seconds=${1:-60}
-mkdir -p fuzz/corpus/{text,run,jgrafchart,xmi,edit,page}
+mkdir -p fuzz/corpus/{text,run,jgrafchart,classicladder,controlexpert,s7graph,l5x,xmi,edit,page}
 for f in $(git ls-files 'examples/*.g7' 'tests/check/*.g7'); do
     cp "$f" "fuzz/corpus/text/$(echo "$f" | tr / _)"
     cp "$f" "fuzz/corpus/run/$(echo "$f" | tr / _)"
@@ -14,6 +14,11 @@ done
 for f in $(git ls-files 'tests/interchange/xmi/*.grafcet'); do
     cp "$f" "fuzz/corpus/xmi/$(basename "$f")"
 done
+for format in classicladder controlexpert s7graph l5x; do
+    for f in $(git ls-files "tests/interchange/$format/*"); do
+        cp "$f" "fuzz/corpus/$format/$(basename "$f")"
+    done
+done
 # The cases of gestures, and stories of messages.
 awk '
     /^## / { n++; blocks = 0 }
@@ -23,6 +28,6 @@ awk '
     END { for (k = 1; k <= n; k++) printf "%s----\n%s", text[k], said[k] > "fuzz/corpus/edit/case-" k }
 ' tests/edit/*.md
 cp fuzz/stories/* fuzz/corpus/page/
-for target in text jgrafchart xmi run tables edit page; do
+for target in text jgrafchart classicladder controlexpert s7graph l5x xmi run tables edit page; do
     cargo fuzz run --sanitizer none "$target" -- -max_total_time="$seconds" -max_len=65536 -timeout=20 -verbosity=0
 done

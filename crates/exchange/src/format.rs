@@ -1,6 +1,6 @@
 //! The formats that are known, and how a file shows which one it is.
 
-use crate::{iectext, jgrafchart, xmi, xml};
+use crate::{classicladder, controlexpert, iectext, jgrafchart, l5x, s7graph, xmi, xml};
 
 /// The endings that files of the formats have, without the dot; some have none of these.
 pub const ENDINGS: [&str; 10] = ["xml", "grafcet", "xmi", "st", "sfc", "exp", "xsf", "xef", "l5x", "clprj"];
@@ -12,19 +12,39 @@ pub enum Format {
     Jgrafchart,
     /// EMF/XMI instances of the AGRAFE meta-model of IEC 60848.
     Xmi,
+    /// ClassicLadder 0.7 to 0.9: a project, or its `sequential.csv` alone.
+    ClassicLadder,
+    /// Control Expert and Unity Pro: a chart (`.XSF`), or an application with charts (`.XEF`).
+    ControlExpert,
+    /// S7-GRAPH: a block exported by TIA Portal's Openness.
+    S7Graph,
+    /// Studio 5000 Logix Designer (`.L5X`): routines in SFC.
+    L5x,
     /// IEC 61131-3 in text: charts with Structured Text and Instruction List.
     IecText,
 }
 
 impl Format {
     /// All of them, in the order in which a file is asked.
-    pub const ALL: &[Format] = &[Format::Jgrafchart, Format::Xmi, Format::IecText];
+    pub const ALL: &[Format] = &[
+        Format::Jgrafchart,
+        Format::Xmi,
+        Format::ClassicLadder,
+        Format::ControlExpert,
+        Format::S7Graph,
+        Format::L5x,
+        Format::IecText,
+    ];
 
     /// What messages call it.
     pub fn title(self) -> &'static str {
         match self {
             Format::Jgrafchart => "JGrafchart",
             Format::Xmi => "XMI",
+            Format::ClassicLadder => "ClassicLadder",
+            Format::ControlExpert => "Control Expert",
+            Format::S7Graph => "S7-GRAPH",
+            Format::L5x => "Logix L5X",
             Format::IecText => "IEC 61131-3 text",
         }
     }
@@ -37,6 +57,10 @@ impl Format {
         match self {
             Format::Jgrafchart => root.is_some_and(|name| jgrafchart::is_root(&name)),
             Format::Xmi => root.is_some_and(|name| xmi::is_root(&name)),
+            Format::ClassicLadder => classicladder::fits(bytes),
+            Format::ControlExpert => root.is_some_and(|name| controlexpert::is_root(&name)),
+            Format::S7Graph => root.is_some_and(|name| s7graph::fits(&name, bytes)),
+            Format::L5x => root.is_some_and(|name| l5x::is_root(&name)),
             Format::IecText => iectext::fits(name, bytes),
         }
     }

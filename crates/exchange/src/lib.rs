@@ -22,12 +22,20 @@
 //!   profile, `compile` and `engine` do the rest.
 #![forbid(unsafe_code)]
 
+mod classicladder;
+mod controlexpert;
+mod flow;
 mod format;
 mod iec;
 mod iectext;
 mod jgrafchart;
+mod l5x;
 mod mermaid;
+mod nodes;
+mod outside;
 mod report;
+mod s7graph;
+mod walk;
 mod xmi;
 mod xml;
 
@@ -51,6 +59,10 @@ pub fn import(format: Format, bytes: &[u8], file: FileId) -> (Document, Vec<Prob
     match format {
         Format::Jgrafchart => jgrafchart::import(bytes, file),
         Format::Xmi => xmi::import(bytes, file),
+        Format::ClassicLadder => classicladder::import(bytes, file),
+        Format::ControlExpert => controlexpert::import(bytes, file),
+        Format::S7Graph => s7graph::import(bytes, file),
+        Format::L5x => l5x::import(bytes, file),
         Format::IecText => iectext::import(bytes, file),
     }
 }

@@ -1,0 +1,373 @@
+//! Expressions of compare and operate boxes: `@200/1@:=@200/1@+1`, `@220/9@>5`.
+//!
+//! ClassicLadder reads them without blanks, from left to right: `!` and brackets,
+//! then `* / %`, `+ -`, `&`, `^`, `|`. All values are 32 bits with a sign.
+
+use std::collections::BTreeSet;
+use std::ops::Range;
+
+use g7_model::{BinaryOp, Expr, Stmt, codes};
+
+use super::plan::Key;
+use super::vars::{Vars, kind, title};
+use crate::nodes::{self, binary, call, int};
+use crate::report::Report;
+
+/// Longest expression; ClassicLadder itself has 50 characters.
+const MOST_BYTES: usize = 1000;
+/// Deepest brackets.
+const DEEPEST: usize = 40;
+
+/// Functions that a project needs and the language does not have.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum Helper {
+    And,
+    Or,
+    Xor,
+    Power,
+}
+
+/// Reads one expression.
+pub(super) struct Arith<'a, 'b, 'c> {
+    pub(super) vars: &'a mut Vars<'b>,
+    pub(super) helpers: &'a mut BTreeSet<Helper>,
+    pub(super) report: &'c mut Report,
+    text: &'a str,
+    /// Place of the text in the file.
+    start: usize,
+    at: usize,
+    depth: usize,
+}
+
+/// An expression that cannot be read, or not carried over; it has been reported.
+struct Stop;
+
+type Read = Result<Expr, Stop>;
+
+impl<'a, 'b, 'c> Arith<'a, 'b, 'c> {
+    pub(super) fn new(
+        text: &'a str,
+        place: &Range<usize>,
+        vars: &'a mut Vars<'b>,
+        helpers: &'a mut BTreeSet<Helper>,
+        report: &'c mut Report,
+    ) -> Self {
+        Arith { vars, helpers, report, text, start: place.start, at: 0, depth: 0 }
+    }
+
+    /// A comparison, as a condition.
+    pub(super) fn compare(&mut self) -> Option<Expr> {
+        self.fits().ok()?;
+        let at = self.whole();
+        let Some(found) = self.text.find(['<', '>', '=']) else {
+            self.say(&codes::BAD_TEXT, at, "a comparison without `<`, `>` or `=`");
+            return None;
+        };
+        let rest = self.text.get(found..).unwrap_or("");
+        let mut chars = rest.chars();
+        let (first, second) = (chars.next().unwrap_or('='), chars.next());
+        // As ClassicLadder does: the second character counts only where it is `=` or `>`.
+        let (op, len) = match (first, second) {
+            ('>', Some('=')) => (BinaryOp::Ge, 2),
+            ('<', Some('=')) => (BinaryOp::Le, 2),
+            ('<', Some('>')) => (BinaryOp::Ne, 2),
+            ('=', Some('=' | '>')) => (BinaryOp::Eq, 2),
+            ('>', Some('>')) => (BinaryOp::Gt, 2),
+            ('>', _) => (BinaryOp::Gt, 1),
+            ('<', _) => (BinaryOp::Lt, 1),
+            _ => (BinaryOp::Eq, 1),
+        };
+        if rest.starts_with("=>") {
+            let place = self.start + found..self.start + found + 2;
+            self.report.say(&codes::DIFFERENT, &place, "`=>` is read as `=`, as ClassicLadder reads it");
+        }
+        let (whole, span) = (self.text, self.report.span(&self.whole()));
+        self.text = whole.get(..found).unwrap_or("");
+        let left = self.all().ok();
+        self.text = whole;
+        self.at = found + len;
+        let right = self.all().ok();
+        Some(binary(op, left?, right?, span))
+    }
+
+    /// An assignment.
+    pub(super) fn operate(&mut self) -> Option<(Key, Stmt)> {
+        self.fits().ok()?;
+        let span = self.report.span(&self.whole());
+        let start = self.at;
+        let key = self.variable().ok()?;
+        let place = self.start + start..self.start + self.at;
+        let rest = self.text.get(self.at..).unwrap_or("");
+        let Some(skip) =
+            rest.find('=').filter(|n| rest.get(..*n).is_some_and(|s| s.chars().all(|c| ": ".contains(c))))
+        else {
+            self.say(&codes::BAD_TEXT, self.whole(), "an operation without `:=`");
+            return None;
+        };
+        self.at += skip + 1;
+        while self.peek() == Some(b' ') {
+            self.at += 1;
+        }
+        let value = self.all();
+        let target = self.vars.target(key, &place, self.report)?;
+        let value = value.ok()?;
+        let value =
+            if key.0 < kind::FIRST_WORD { binary(BinaryOp::Ne, value, int(0, span), span) } else { value };
+        Some((key, nodes::assign(target, value, span)))
+    }
+
+    fn whole(&self) -> Range<usize> {
+        self.start..self.start + self.text.len()
+    }
+
+    fn fits(&mut self) -> Result<(), Stop> {
+        if self.text.len() > MOST_BYTES {
+            let what = format!("an expression of {} bytes; at most {MOST_BYTES} are read", self.text.len());
+            return Err(self.say(&codes::TOO_LARGE, self.whole(), what));
+        }
+        Ok(())
+    }
+
+    fn say(
+        &mut self,
+        code: &'static g7_model::codes::Code,
+        at: Range<usize>,
+        what: impl Into<String>,
+    ) -> Stop {
+        self.report.say(code, &at, what);
+        Stop
+    }
+
+    fn fault(&mut self, what: impl Into<String>) -> Stop {
+        let here = self.start + self.at;
+        let end = (here + 1).min(self.start + self.text.len());
+        self.say(&codes::BAD_TEXT, here..end.max(here), what)
+    }
+
+    fn peek(&self) -> Option<u8> {
+        self.text.as_bytes().get(self.at).copied()
+    }
+
+    fn take(&mut self, byte: u8) -> bool {
+        let found = self.peek() == Some(byte);
+        self.at += usize::from(found);
+        found
+    }
+
+    /// A whole expression, to the end of the text.
+    fn all(&mut self) -> Read {
+        let e = self.bits(0)?;
+        if self.at < self.text.len() {
+            return Err(self.fault("something that is no part of an expression"));
+        }
+        Ok(e)
+    }
+
+    /// `|`, `^`, `&` from the loosest to the tightest.
+    fn bits(&mut self, level: usize) -> Read {
+        let (sign, name, helper) = match level {
+            0 => (b'|', "BITS_OR", Helper::Or),
+            1 => (b'^', "BITS_XOR", Helper::Xor),
+            2 => (b'&', "BITS_AND", Helper::And),
+            _ => return self.sum(),
+        };
+        let start = self.at;
+        let mut left = self.bits(level + 1)?;
+        while self.take(sign) {
+            let right = self.bits(level + 1)?;
+            let span = self.span(start);
+            // Any word with itself: how projects write zero.
+            left = if helper == Helper::Xor && left == right {
+                int(0, span)
+            } else {
+                self.helpers.insert(helper);
+                call(name, vec![left, right], span)
+            };
+        }
+        Ok(left)
+    }
+
+    fn span(&self, start: usize) -> g7_model::Span {
+        self.report.span(&(self.start + start..self.start + self.at))
+    }
+
+    fn sum(&mut self) -> Read {
+        let start = self.at;
+        let mut left = self.product()?;
+        loop {
+            let op = match self.peek() {
+                Some(b'+') => BinaryOp::Add,
+                Some(b'-') => BinaryOp::Sub,
+                _ => return Ok(left),
+            };
+            self.at += 1;
+            let right = self.product()?;
+            left = binary(op, left, right, self.span(start));
+        }
+    }
+
+    fn product(&mut self) -> Read {
+        let start = self.at;
+        let mut left = self.term()?;
+        loop {
+            let op = match self.peek() {
+                Some(b'*') => BinaryOp::Mul,
+                Some(b'/') => BinaryOp::Div,
+                Some(b'%') => BinaryOp::Mod,
+                _ => return Ok(left),
+            };
+            self.at += 1;
+            let right = self.term()?;
+            left = binary(op, left, right, self.span(start));
+        }
+    }
+
+    fn term(&mut self) -> Read {
+        let start = self.at;
+        match self.peek() {
+            Some(b'(') => {
+                self.depth += 1;
+                if self.depth > DEEPEST {
+                    return Err(self.fault("brackets nested too deeply"));
+                }
+                self.at += 1;
+                let e = self.bits(0)?;
+                self.depth -= 1;
+                if !self.take(b')') {
+                    return Err(self.fault("a bracket that is not closed"));
+                }
+                Ok(e)
+            }
+            Some(b'!') => {
+                self.at += 1;
+                self.depth += 1;
+                if self.depth > DEEPEST {
+                    return Err(self.fault("nested too deeply"));
+                }
+                let e = self.term()?;
+                self.depth -= 1;
+                let span = self.span(start);
+                Ok(call("BOOL_TO_DINT", vec![binary(BinaryOp::Eq, e, int(0, span), span)], span))
+            }
+            Some(b'A'..=b'Z') => self.function(),
+            _ => self.operand(),
+        }
+    }
+
+    /// A variable or a constant.
+    fn operand(&mut self) -> Read {
+        let start = self.at;
+        match self.peek() {
+            Some(b'@') => {
+                let key = self.variable()?;
+                let place = self.start + start..self.start + self.at;
+                Ok(self.vars.number(key, &place, self.report))
+            }
+            Some(b'0'..=b'9' | b'-' | b'$' | b'\'') => self.constant(),
+            _ => Err(self.fault("a variable, number or function is missing")),
+        }
+    }
+
+    fn constant(&mut self) -> Read {
+        let start = self.at;
+        let negative = self.take(b'-');
+        let (radix, text) = if self.take(b'$') {
+            (16, self.run(|b| b.is_ascii_hexdigit()))
+        } else if self.take(b'\'') {
+            let text = self.run(|b| b != b'\'');
+            if !self.take(b'\'') {
+                return Err(self.fault("a character that is not closed"));
+            }
+            let value = text.bytes().try_fold(0i128, |v, b| (v < 1 << 40).then(|| v * 256 + i128::from(b)));
+            return self.in_range(value, negative, start);
+        } else {
+            (10, self.run(|b| b.is_ascii_digit()))
+        };
+        self.in_range(i128::from_str_radix(text, radix).ok(), negative, start)
+    }
+
+    /// A number of 32 bits; from half of their range on it is negative.
+    fn in_range(&mut self, value: Option<i128>, negative: bool, start: usize) -> Read {
+        let span = self.span(start);
+        match value.filter(|v| *v < 1 << 32) {
+            Some(value) => {
+                let value = if value >= 1 << 31 { value - (1 << 32) } else { value };
+                Ok(int(if negative { -value } else { value }, span))
+            }
+            None => Err(self.fault("a number that does not fit into 32 bits")),
+        }
+    }
+
+    fn run(&mut self, fits: impl Fn(u8) -> bool) -> &'a str {
+        let start = self.at;
+        while self.peek().is_some_and(&fits) {
+            self.at += 1;
+        }
+        self.text.get(start..self.at).unwrap_or("")
+    }
+
+    /// `@200/3@`; with an index, `@200/3[200/4]@`, there is no counterpart.
+    fn variable(&mut self) -> Result<Key, Stop> {
+        let start = self.at;
+        if !self.take(b'@') {
+            return Err(self.fault("a variable is missing"));
+        }
+        let kind = self.run(|b| b.is_ascii_digit()).parse();
+        let slash = self.take(b'/');
+        let number = self.run(|b| b.is_ascii_digit()).parse();
+        let (Ok(kind), true, Ok(number)) = (kind, slash, number) else {
+            return Err(self.fault("a variable that cannot be read"));
+        };
+        if self.peek() == Some(b'[') {
+            self.run(|b| b != b'@');
+            self.take(b'@');
+            let what = format!("a variable by index, from {} on; there are no arrays", title((kind, number)));
+            let place = self.start + start..self.start + self.at;
+            return Err(self.say(&codes::NOT_CARRIED, place, what));
+        }
+        if !self.take(b'@') {
+            return Err(self.fault("a variable that is not closed"));
+        }
+        Ok((kind, number))
+    }
+
+    fn function(&mut self) -> Read {
+        let start = self.at;
+        let name = self.run(|b| b.is_ascii_uppercase());
+        if !self.take(b'(') {
+            return Err(self.fault("a function without brackets"));
+        }
+        let mut args = vec![self.operand()?];
+        while self.take(b',') {
+            args.push(self.operand()?);
+        }
+        if !self.take(b')') {
+            return Err(self.fault("a bracket that is not closed"));
+        }
+        let span = self.span(start);
+        let count = args.len();
+        Ok(match (name, count) {
+            ("ABS", 1) => call("ABS", args, span),
+            ("MINI" | "MAXI", 1) | ("MOY" | "AVG", 1) => args.remove(0),
+            ("MINI", _) => call("MIN", args, span),
+            ("MAXI", _) => call("MAX", args, span),
+            ("MOY" | "AVG", _) => {
+                let sum = args.into_iter().reduce(|a, b| binary(BinaryOp::Add, a, b, span));
+                let sum = sum.unwrap_or_else(|| int(0, span));
+                binary(BinaryOp::Div, sum, int(i128::try_from(count).unwrap_or(1), span), span)
+            }
+            ("POW", 2) => {
+                self.helpers.insert(Helper::Power);
+                call("POWER", args, span)
+            }
+            _ => {
+                let what = format!("the function `{name}` with {count} values has no counterpart");
+                return Err(self.say(
+                    &codes::UNKNOWN_FUNCTION,
+                    self.start + start..self.start + self.at,
+                    what,
+                ));
+            }
+        })
+    }
+}

@@ -1,0 +1,173 @@
+//! Which objects touch.
+//!
+//! A chart is drawn on a grid, each object in one cell. A line leads from an
+//! object to the one in the cell below. The beginning of branches stands in the
+//! row of what is below it, over all columns of the branches, and their end in
+//! the row of what is above it; its own one line is in the column of its stem.
+
+use std::collections::{BTreeMap, HashMap};
+use std::ops::Range;
+
+use g7_model::codes;
+
+use super::read::{BarNode, Sheet, Spot};
+use crate::flow::{Ends, Flow, Node};
+use crate::report::Report;
+
+/// Cells looked at for one chart.
+const MOST_CELLS: usize = 1_000_000;
+
+/// Something in a column.
+#[derive(Clone, Copy, Debug)]
+struct Item {
+    node: Node,
+    row: i32,
+    /// May be entered from above, left below, in this column.
+    above: bool,
+    below: bool,
+}
+
+/// What stands in each column, with row and level in it, from the top down.
+type Columns = BTreeMap<i32, Vec<((i32, i32), Item)>>;
+
+/// The ends of each transition of a chart.
+pub(super) fn ends(sheet: &Sheet, report: &mut Report) -> Vec<Ends> {
+    let mut flow = Flow::default();
+    let spots = Spots::of(sheet);
+    let columns = columns(sheet, &spots, report);
+    for column in columns.values() {
+        for pair in column.windows(2) {
+            let [(_, above), (_, below)] = pair else { continue };
+            if above.below && below.above && below.row - above.row <= 1 {
+                flow.line(above.node, below.node, &place(sheet, below.node), report);
+            }
+        }
+    }
+    jumps(sheet, &spots, &columns, &mut flow, report);
+    for link in &sheet.links {
+        let from = spots.object(&link.from.0, link.from.1);
+        let to = spots.object(&link.to.0, link.to.1);
+        match (from, to) {
+            (Some(from), Some(to)) => flow.line(from, to, &link.at, report),
+            _ => report.say(&codes::OPEN_LINK, &link.at, "a link from or to a cell where nothing stands"),
+        }
+    }
+    let places: Vec<Range<usize>> = sheet.transitions.iter().map(|t| t.at.clone()).collect();
+    flow.ends(&places, report)
+}
+
+/// What stands in each column, from the top down.
+fn columns(sheet: &Sheet, spots: &Spots, report: &mut Report) -> Columns {
+    let mut columns = Columns::new();
+    let mut left = MOST_CELLS;
+    let mut put = |column: i32, level: i32, item: Item| {
+        columns.entry(column).or_default().push(((item.row, level), item));
+    };
+    let whole = |node: Node, row: i32| Item { node, row, above: true, below: true };
+    for (index, step) in sheet.steps.iter().enumerate() {
+        put(step.spot.0, 1, whole(Node::Step(index), step.spot.1));
+    }
+    for (index, transition) in sheet.transitions.iter().enumerate() {
+        put(transition.spot.0, 1, whole(Node::Transition(index), transition.spot.1));
+    }
+    for (index, bar) in sheet.bars.iter().enumerate() {
+        let stem = bar.spot.0.saturating_add(bar.stem);
+        let level = level(spots, bar);
+        for column in bar.spot.0..bar.spot.0.saturating_add(bar.width) {
+            let Some(rest) = left.checked_sub(1) else {
+                report.element(
+                    &codes::TOO_LARGE,
+                    "branch",
+                    &bar.at,
+                    "the branches of the chart are too wide",
+                );
+                break;
+            };
+            left = rest;
+            let here = column == stem;
+            let item = Item {
+                node: Node::Bar(index),
+                row: bar.spot.1,
+                above: !bar.opens || here,
+                below: bar.opens || here,
+            };
+            put(column, level, item);
+        }
+    }
+    for column in columns.values_mut() {
+        column.sort_by_key(|(key, _)| *key);
+    }
+    columns
+}
+
+/// Whether a bar stands above what is in its row (0) or below it (2): what its
+/// own line leads to, a transition of parallel branches or a step of
+/// alternative ones, may stand in the same row.
+fn level(spots: &Spots, bar: &BarNode) -> i32 {
+    let stem = (bar.spot.0.saturating_add(bar.stem), bar.spot.1);
+    let own =
+        if bar.parallel { spots.transitions.contains_key(&stem) } else { spots.steps.contains_key(&stem) };
+    if bar.opens == own { 2 } else { 0 }
+}
+
+/// A jump leads from what is above it to its step.
+fn jumps(sheet: &Sheet, spots: &Spots, columns: &Columns, flow: &mut Flow, report: &mut Report) {
+    for jump in &sheet.jumps {
+        let to = spots.names.get(&jump.to.to_uppercase()).copied();
+        let column = columns.get(&jump.spot.0);
+        let above = column.and_then(|c| {
+            let before = c.partition_point(|(key, _)| *key < (jump.spot.1, 1));
+            c.get(before.checked_sub(1)?)
+        });
+        let from = above.filter(|(_, item)| item.below && jump.spot.1 - item.row <= 1);
+        match (from, to) {
+            (Some((_, item)), Some(step)) => flow.line(item.node, Node::Step(step), &jump.at, report),
+            (None, Some(_)) => report.say(&codes::OPEN_LINK, &jump.at, "a jump with nothing above it"),
+            (_, None) => {
+                let what = format!("a jump to `{}`, a step that is not there", crate::nodes::line(&jump.to));
+                report.say(&codes::BAD_LINK, &jump.at, what);
+            }
+        }
+    }
+}
+
+/// What stands where, the first of several in a cell, and steps by name in capitals.
+struct Spots {
+    steps: HashMap<Spot, usize>,
+    transitions: HashMap<Spot, usize>,
+    bars: HashMap<Spot, usize>,
+    names: HashMap<String, usize>,
+}
+
+impl Spots {
+    fn of(sheet: &Sheet) -> Spots {
+        // From the last to the first: the first one stays.
+        let steps = || sheet.steps.iter().enumerate().rev();
+        Spots {
+            steps: steps().map(|(i, s)| (s.spot, i)).collect(),
+            transitions: sheet.transitions.iter().enumerate().rev().map(|(i, t)| (t.spot, i)).collect(),
+            bars: sheet.bars.iter().enumerate().rev().map(|(i, b)| (b.spot, i)).collect(),
+            names: steps().map(|(i, s)| (s.name.to_uppercase(), i)).collect(),
+        }
+    }
+
+    /// The object of a kind in a cell.
+    fn object(&self, kind: &str, spot: Spot) -> Option<Node> {
+        match kind {
+            "step" | "initialStep" | "macroStep" | "inStep" | "outStep" => {
+                self.steps.get(&spot).copied().map(Node::Step)
+            }
+            "transition" => self.transitions.get(&spot).copied().map(Node::Transition),
+            _ => self.bars.get(&spot).copied().map(Node::Bar),
+        }
+    }
+}
+
+fn place(sheet: &Sheet, node: Node) -> Range<usize> {
+    let found = match node {
+        Node::Step(i) => sheet.steps.get(i).map(|s| s.at.clone()),
+        Node::Transition(i) => sheet.transitions.get(i).map(|t| t.at.clone()),
+        Node::Bar(i) => sheet.bars.get(i).map(|b| b.at.clone()),
+    };
+    found.unwrap_or_default()
+}

@@ -1,0 +1,132 @@
+//! Lines between steps and transitions, through the bars of branches.
+
+use std::collections::{HashMap, HashSet};
+use std::ops::Range;
+
+use g7_model::codes;
+
+use crate::report::Report;
+
+/// Lines followed for one chart.
+const MOST_WORK: usize = 2_000_000;
+
+/// What a line leads from or to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(crate) enum Node {
+    Step(usize),
+    Transition(usize),
+    /// A branch, or a part of one: nothing but a way.
+    Bar(usize),
+}
+
+/// The lines of a chart.
+#[derive(Debug, Default)]
+pub(crate) struct Flow {
+    out: HashMap<Node, Vec<Node>>,
+    into: HashMap<Node, Vec<Node>>,
+}
+
+/// The steps before and behind a transition.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Ends {
+    pub(crate) from: Vec<usize>,
+    pub(crate) to: Vec<usize>,
+}
+
+impl Flow {
+    /// Adds a line; one that no chart can have is reported.
+    pub(crate) fn line(&mut self, from: Node, to: Node, at: &Range<usize>, report: &mut Report) {
+        let wrong = match (from, to) {
+            (Node::Step(_), Node::Step(_)) => "a line from a step to a step without a transition between",
+            (Node::Transition(_), Node::Transition(_)) => {
+                "a line from a transition to a transition without a step between"
+            }
+            _ => {
+                self.out.entry(from).or_default().push(to);
+                self.into.entry(to).or_default().push(from);
+                return;
+            }
+        };
+        report.say(&codes::BAD_LINK, at, wrong);
+    }
+
+    /// The ends of each transition, given with its place.
+    pub(crate) fn ends(&self, transitions: &[Range<usize>], report: &mut Report) -> Vec<Ends> {
+        let mut left = MOST_WORK;
+        let mut all = Vec::with_capacity(transitions.len());
+        for (index, at) in transitions.iter().enumerate() {
+            let from = self.walk(index, &self.into, &mut left);
+            let to = self.walk(index, &self.out, &mut left);
+            if left == 0 {
+                report.element(&codes::TOO_LARGE, "line", at, "the chart has too many lines");
+            } else if from.is_empty() && to.is_empty() {
+                report.say(&codes::OPEN_LINK, at, "a transition without any step");
+            } else if from.is_empty() {
+                report.say(
+                    &codes::OPEN_LINK,
+                    at,
+                    "a transition without a step before it; it is always enabled",
+                );
+            } else if to.is_empty() {
+                report.say(&codes::OPEN_LINK, at, "a transition without a step behind it");
+            }
+            all.push(Ends { from, to });
+        }
+        all
+    }
+
+    /// For each transition the first step before it, and its place among the
+    /// transitions behind that step, in the order of the lines.
+    pub(crate) fn order(&self, steps: usize, transitions: usize) -> Vec<(usize, usize)> {
+        let mut order = vec![(usize::MAX, 0); transitions];
+        let mut left = MOST_WORK;
+        for step in 0..steps {
+            let mut place = 0;
+            let mut seen = HashSet::new();
+            let mut stack = vec![Node::Step(step)];
+            while let Some(node) = stack.pop() {
+                if let Node::Transition(index) = node {
+                    if let Some(found) = order.get_mut(index).filter(|o| o.0 == usize::MAX) {
+                        *found = (step, place);
+                    }
+                    place += 1;
+                    continue;
+                }
+                for &other in self.out.get(&node).into_iter().flatten().rev() {
+                    if left == 0 {
+                        return order;
+                    }
+                    left -= 1;
+                    if !matches!(other, Node::Step(_)) && seen.insert(other) {
+                        stack.push(other);
+                    }
+                }
+            }
+        }
+        order
+    }
+
+    /// The steps reached from a transition, in the order of the lines.
+    fn walk(&self, transition: usize, next: &HashMap<Node, Vec<Node>>, left: &mut usize) -> Vec<usize> {
+        let start = Node::Transition(transition);
+        let mut steps = Vec::new();
+        let mut seen = HashSet::from([start]);
+        let mut stack = vec![start];
+        while let Some(node) = stack.pop() {
+            if let Node::Step(step) = node {
+                steps.push(step);
+                continue;
+            }
+            for &other in next.get(&node).into_iter().flatten().rev() {
+                if *left == 0 {
+                    return steps;
+                }
+                *left -= 1;
+                if !matches!(other, Node::Transition(_)) && seen.insert(other) {
+                    stack.push(other);
+                }
+            }
+        }
+        steps
+    }
+}

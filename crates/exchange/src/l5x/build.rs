@@ -1,0 +1,203 @@
+//! From the routines of a project to the document.
+
+use std::collections::{BTreeMap, HashMap, HashSet};
+
+use g7_model::{
+    ChartItem, Document, Item, Path, Profile, ProfileName, Span, Stmt, Switch, Type, VarDecl, VarKind, codes,
+};
+
+use super::chart::{self, Lines, Read, Xml, kid, kids};
+use super::tags::{self, Tags};
+use super::words::{Presets, Words};
+use crate::iec;
+use crate::nodes::{self, Taken};
+use crate::outside;
+use crate::report::Report;
+use crate::walk::{self, Use, Visitor};
+use crate::xml::attr;
+
+/// The document of a file.
+pub(super) fn document(root: Xml, report: &mut Report) -> Document {
+    let controller = kid(root, "Controller");
+    let charts: Vec<Xml> = root.descendants().filter(|n| n.has_tag_name("SFCContent")).collect();
+    if charts.is_empty() {
+        let what = "there is no routine in SFC in the file";
+        report.say(&codes::NOT_JGRAFCHART, &attr::head(root), what);
+        return Document::default();
+    }
+    let at = report.span(&attr::head(root));
+    let switches = switches(controller, report).into_iter().map(|s| (s, at.into())).collect();
+    let mut document = Document::default();
+    document.items.push(Item::Profile(Profile { name: ProfileName::Iec61131, switches, at: at.into() }));
+    document.items.extend(cycle(root, &charts, report));
+    let mut taken = Taken::default();
+    let mut declared: HashMap<String, VarDecl> = HashMap::new();
+    let mut layouts = Vec::new();
+    for content in charts {
+        let title = title(content, &mut taken);
+        let program = content.ancestors().find(|n| n.has_tag_name("Program"));
+        let tags = Tags::of(program, controller);
+        let mut presets = Presets::default();
+        tags::presets(&tags, &mut presets);
+        let Read { chart, layout, flags } = chart::read(content, &title, &mut presets, report);
+        let flags = flags.into_iter().map(|n| nodes::variable(VarKind::Output, &n.text, Type::Bool, n.at.0));
+        let routines = routines(program, report);
+        let mut part = Document { items: vec![Item::Chart(chart)], notes: Vec::new() };
+        walk::document(&mut part, &mut Words::new(&presets, &routines, report));
+        let vars = used(&mut part, &tags, flags.collect(), report);
+        join(&mut document, part, vars, &mut declared);
+        layouts.push(Item::Layout(layout));
+    }
+    document.items.extend(layouts);
+    iec::settle(&mut document);
+    outside::declare(&mut document, report);
+    iec::settle(&mut document);
+    outside::open(&mut document, report);
+    document.notes = report.take_notes();
+    document
+}
+
+/// How the controller runs its charts.
+fn switches(controller: Option<Xml>, report: &mut Report) -> Vec<Switch> {
+    let mut switches = Vec::new();
+    let set = |name: &str| controller.and_then(|n| n.attribute_node(name));
+    if set("SFCExecutionControl").is_some_and(|a| a.value() == "UntilFalse") {
+        switches.push(Switch::Stable(true));
+    }
+    match set("SFCLastScan") {
+        Some(a) if a.value() == "Programmatic" => {}
+        Some(a) if a.value() == "AutoReset" => {
+            switches.push(Switch::FinalScan(false));
+            let what =
+                "the last scan of a step resets what its actions set (automatic reset); there is none here";
+            report.say(&codes::DIFFERENT, &a.range_value(), what);
+        }
+        _ => switches.push(Switch::FinalScan(false)),
+    }
+    switches
+}
+
+/// The period of the task that runs the program of the first chart.
+fn cycle(root: Xml, charts: &[Xml], report: &Report) -> Option<Item> {
+    let program = charts.first()?.ancestors().find(|n| n.has_tag_name("Program"))?.attribute("Name")?;
+    let task = root.descendants().filter(|n| n.has_tag_name("Task")).find(|t| {
+        t.descendants().any(|n| n.has_tag_name("ScheduledProgram") && n.attribute("Name") == Some(program))
+    })?;
+    let rate: f64 = task.attribute("Rate")?.trim().parse().ok()?;
+    if task.attribute("Type") != Some("PERIODIC") || !(0.1..=3_600_000.0).contains(&rate) {
+        return None;
+    }
+    let ns: i64 = format!("{:.0}", rate * 1e6).parse().ok()?;
+    Some(Item::Cycle(ns, report.span(&attr::head(task)).into()))
+}
+
+fn title(content: Xml, taken: &mut Taken) -> String {
+    let name = |tag: &str| {
+        let node = content.ancestors().find(|n| n.has_tag_name(tag))?;
+        node.attribute("Name").map(|n| nodes::line(&n.replace('`', "'")))
+    };
+    let own = name("Routine").filter(|n| !n.is_empty()).unwrap_or_else(|| "SFC".to_string());
+    let program = name("Program").unwrap_or_default();
+    if taken.has(&own) { taken.give(&format!("{program}_{own}")) } else { taken.give(&own) }
+}
+
+/// The routines in text beside a chart; those in other languages are left out.
+fn routines(program: Option<Xml>, report: &mut Report) -> HashMap<String, Vec<Stmt>> {
+    let mut found = HashMap::new();
+    for routine in program.and_then(|n| kid(n, "Routines")).into_iter().flat_map(|n| kids(n, "Routine")) {
+        let name = routine.attribute("Name").unwrap_or("");
+        match routine.attribute("Type") {
+            Some("SFC") => {}
+            Some("ST") => {
+                // Its problems are told where it is called.
+                let mut silent = Report::new(report.span(&(0..0)).file);
+                found.insert(name.to_uppercase(), Lines::of(Some(routine)).statements(&mut silent));
+            }
+            ty => {
+                let ty = ty.unwrap_or("?");
+                let what =
+                    format!("the routine `{}` ({ty}) is left out, with what it writes", nodes::line(name));
+                report.element(&codes::LEFT_OUT, &format!("routine {ty}"), &attr::head(routine), &what);
+            }
+        }
+    }
+    found
+}
+
+/// Declarations of the tags that a chart names; aliases become what they stand for.
+fn used(part: &mut Document, tags: &Tags, flags: Vec<VarDecl>, report: &mut Report) -> Vec<VarDecl> {
+    struct Aliases<'a, 'b>(&'a Tags<'b>);
+    impl Visitor for Aliases<'_, '_> {
+        fn path(&mut self, path: &mut Path, _: Use, at: Span) {
+            let Some((first, rest)) = path.names.split_first() else { return };
+            let Some(names) = self.0.alias(&first.text) else { return };
+            let names: Vec<&str> = names.iter().map(String::as_str).collect();
+            let mut whole = nodes::path(&names, at);
+            whole.names.extend(rest.iter().cloned());
+            *path = whole;
+        }
+    }
+    #[derive(Default)]
+    struct Found(BTreeMap<String, Vec<String>>);
+    impl Visitor for Found {
+        fn path(&mut self, path: &mut Path, _: Use, _: Span) {
+            let names: Vec<String> = path.names.iter().map(|n| n.text.to_string()).collect();
+            self.0.entry(names.join(".").to_uppercase()).or_insert(names);
+        }
+    }
+    walk::document(part, &mut Aliases(tags));
+    let mut found = Found::default();
+    walk::document(part, &mut found);
+    let steps: HashSet<String> =
+        part.charts().flat_map(|c| c.steps()).map(|s| s.name.text.to_uppercase()).collect();
+    let actions: HashSet<String> = part
+        .charts()
+        .flat_map(|c| &c.items)
+        .filter_map(|i| if let ChartItem::Action(a) = i { Some(a.name.text.to_uppercase()) } else { None })
+        .collect();
+    let own: HashSet<String> = flags.iter().flat_map(|v| &v.names).map(|n| n.text.to_uppercase()).collect();
+    let mut vars = flags;
+    for (key, names) in &found.0 {
+        let first = names.first().map_or("", String::as_str).to_uppercase();
+        if own.contains(key) || steps.contains(&first) || (actions.contains(&first) && names.len() == 1) {
+            continue;
+        }
+        let names: Vec<&str> = names.iter().map(String::as_str).collect();
+        vars.extend(tags.declare(&names, report));
+    }
+    vars
+}
+
+/// Adds a chart: its tags are variables of the file, or its own where another
+/// program has other tags of the same names.
+fn join(
+    document: &mut Document,
+    part: Document,
+    vars: Vec<VarDecl>,
+    declared: &mut HashMap<String, VarDecl>,
+) {
+    let mut own = Vec::new();
+    for var in vars {
+        let key = var.names.first().map_or_else(String::new, |n| n.text.to_uppercase());
+        match declared.get(&key) {
+            // The same tag of the controller.
+            Some(other) if other.at.0 == var.at.0 => {}
+            Some(_) => own.push(ChartItem::Var(var)),
+            None => {
+                declared.insert(key, var.clone());
+                let place = document.items.iter().position(|i| matches!(i, Item::Chart(_)));
+                let place = place.unwrap_or(document.items.len());
+                document.items.insert(place, Item::Var(var));
+            }
+        }
+    }
+    for item in part.items {
+        match item {
+            Item::Chart(mut chart) => {
+                chart.items.splice(0..0, std::mem::take(&mut own));
+                document.items.push(Item::Chart(chart));
+            }
+            other => document.items.push(other),
+        }
+    }
+}

@@ -1,0 +1,86 @@
+//! Files made to break a reader: it ends soon, with words, never with a panic.
+
+use std::time::{Duration, Instant};
+
+use g7_exchange::{Format, import, recognise};
+use g7_model::{Document, FileId, Problem};
+use proptest::prelude::*;
+use proptest::test_runner::TestRunner;
+
+/// Reads a file; its problems lie in it, and what came of it may be compiled.
+pub(crate) fn survives(format: Format, file: &[u8]) -> (Document, Vec<Problem>) {
+    recognise("", file);
+    let (document, problems) = import(format, file, FileId(0));
+    for p in &problems {
+        assert!(p.at.start <= p.at.end && p.at.end as usize <= file.len().max(1), "{p:?}");
+    }
+    (document, problems)
+}
+
+/// The codes of a file that gives no chart, soon.
+#[allow(clippy::disallowed_methods, reason = "how long the machine takes is what is asked here")]
+pub(crate) fn refused(format: Format, file: &[u8]) -> Vec<&'static str> {
+    let start = Instant::now();
+    let (document, problems) = survives(format, file);
+    assert!(start.elapsed() < Duration::from_secs(30));
+    assert_eq!(document.charts().count(), 0);
+    problems.iter().map(|p| p.code.id).collect()
+}
+
+/// One change of a file.
+#[derive(Clone, Debug)]
+enum Change {
+    Set(usize, u8),
+    Cut(usize, usize),
+    Copy(usize, usize, usize),
+    Put(usize, &'static str),
+}
+
+fn change(words: Vec<&'static str>) -> impl Strategy<Value = Change> {
+    let place = any::<prop::sample::Index>().prop_map(|i| i.index(1 << 20));
+    prop_oneof![
+        (place.clone(), any::<u8>()).prop_map(|(i, b)| Change::Set(i, b)),
+        (place.clone(), 0usize..200).prop_map(|(i, n)| Change::Cut(i, n)),
+        (place.clone(), place.clone(), 0usize..400).prop_map(|(i, j, n)| Change::Copy(i, j, n)),
+        (place, prop::sample::select(words)).prop_map(|(i, w)| Change::Put(i, w)),
+    ]
+}
+
+fn apply(file: &mut Vec<u8>, change: &Change) {
+    let len = file.len().max(1);
+    match change {
+        Change::Set(i, b) => {
+            if let Some(byte) = file.get_mut(i % len) {
+                *byte = *b;
+            }
+        }
+        Change::Cut(i, n) => {
+            let from = (i % len).min(file.len());
+            file.drain(from..(from + n).min(file.len()));
+        }
+        Change::Copy(i, j, n) => {
+            let from = (i % len).min(file.len());
+            let piece = file[from..(from + n).min(file.len())].to_vec();
+            let at = (j % len).min(file.len());
+            file.splice(at..at, piece);
+        }
+        Change::Put(i, word) => {
+            let at = (i % len).min(file.len());
+            file.splice(at..at, word.bytes());
+        }
+    }
+}
+
+/// Reads changed files: `words` are put into them besides bytes and pieces of their own.
+pub(crate) fn changed(format: Format, files: Vec<Vec<u8>>, words: &[&'static str], cases: u32) {
+    let config = ProptestConfig { cases, failure_persistence: None, ..ProptestConfig::default() };
+    let changes = prop::collection::vec(change(words.to_vec()), 1..12);
+    let strategy = (prop::sample::select(files), changes);
+    TestRunner::new(config)
+        .run(&strategy, |(mut file, changes)| {
+            changes.iter().for_each(|c| apply(&mut file, c));
+            survives(format, &file);
+            Ok(())
+        })
+        .expect("no file breaks the reader");
+}
