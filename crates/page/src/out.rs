@@ -69,8 +69,7 @@ pub(crate) fn export(name: &str, file: &File, to: &str) -> Result<Out, String> {
     if let Some(first) = file.problems.iter().find(|p| p.severity() == Severity::Error) {
         return Err(format!("the chart has errors: {}", first.what));
     }
-    let stem = name.rsplit('/').next().unwrap_or(name);
-    let stem = stem.strip_suffix(".g7").unwrap_or(stem);
+    let stem = stem(name);
     if to == "svg" {
         return Ok(out(file, vec![(format!("{stem}.svg"), picture(file))], &[]));
     }
@@ -82,6 +81,16 @@ pub(crate) fn export(name: &str, file: &File, to: &str) -> Result<Out, String> {
     let written = g7_exchange::export(*outlet, &file.source.document);
     let name = format!("{stem}.{}", outlet.ending());
     Ok(out(file, vec![(name, written.text)], &written.problems))
+}
+
+/// What files are called: as the chart's own, `tank` for `tank/chart.g7`.
+fn stem(name: &str) -> &str {
+    let mut parts = name.rsplit('/');
+    let own = parts.next().unwrap_or(name);
+    match own.strip_suffix(".g7").unwrap_or(own) {
+        "chart" => parts.next().unwrap_or("chart"),
+        stem => stem,
+    }
 }
 
 fn out(file: &File, files: Vec<(String, String)>, problems: &[Problem]) -> Out {

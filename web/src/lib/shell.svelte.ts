@@ -89,10 +89,15 @@ class Shell {
     this.reveal = { file: file.name, from, to };
   }
 
+  /** Shows a panel at the bottom. */
+  below(panel: string): void {
+    prefs.bottomOpen = true;
+    this.tabs.bottom = panel;
+  }
+
   /** Goes to the list of problems, to the one at a place of the text where there is one. */
   problems(at?: number): void {
-    prefs.bottomOpen = true;
-    this.tabs.bottom = 'problems';
+    this.below('problems');
     const all = files.current?.look.problems ?? [];
     const n = Math.max(0, all.findIndex((p) => at !== undefined && p.from <= at && at <= p.to));
     void tick().then(() => document.querySelectorAll<HTMLElement>('.problems .problem')[n]?.focus());

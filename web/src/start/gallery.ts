@@ -1,4 +1,5 @@
 // The order and the headings of the gallery.
+import { isChart } from '../lib/charts';
 import { t, type Key } from '../lib/i18n';
 import type { FileRow } from '../lib/server';
 
@@ -25,7 +26,7 @@ const plain = (name: string) => {
 export function groups(rows: FileRow[]): Group[] {
   const found = new Map<string, FileRow[]>();
   for (const row of rows) {
-    if (/\.svg$/i.test(row.path)) continue;
+    if (!isChart(row.path)) continue;
     const folder = row.path.slice(0, Math.max(row.path.lastIndexOf('/'), 0));
     found.set(folder, [...(found.get(folder) ?? []), row]);
   }
