@@ -336,7 +336,7 @@ test('the chronogram: cursors by keyboard, the difference of times, a table, fil
   const rows = await p.locator('[role=region][aria-label="Table of edges"] tbody tr').allInnerTexts();
   assert.ok(rows.some((r) => /0\.020 s\s+push\s+TRUE/.test(r)), rows.join(' | '));
   for (const [form, start] of [['CSV', /^time/i], ['VCD', /\$timescale/], ['SVG', /^<svg/]] as const) {
-    await p.getByRole('button', { name: 'Export', exact: true }).click();
+    await p.getByRole('toolbar', { name: 'Chronogram' }).getByRole('button', { name: 'Export', exact: true }).click();
     const [file] = await Promise.all([p.waitForEvent('download'), p.getByRole('button', { name: `Export as ${form}` }).click()]);
     assert.equal(file.suggestedFilename(), `lamp.${form.toLowerCase()}`);
     assert.match(readFileSync(await file.path(), 'utf8'), start);
