@@ -8,6 +8,7 @@
 
 use std::path::{Path, PathBuf};
 
+use g7_codegen::Language;
 use g7_model::ProfileName;
 use g7_tests::case;
 use g7_tests::generate::sample;
@@ -41,7 +42,9 @@ fn cases(folder: &Path, found: &mut Vec<PathBuf>) {
     for path in entries.filter_map(|e| e.ok().map(|e| e.path())) {
         if path.is_dir() {
             cases(&path, found);
-        } else if path.extension().is_some_and(|e| e == "md") && path.file_stem().is_some_and(|s| s != "README") {
+        } else if path.extension().is_some_and(|e| e == "md")
+            && path.file_stem().is_some_and(|s| s != "README")
+        {
             found.push(path);
         }
     }
@@ -62,7 +65,8 @@ fn spec() -> Vec<Subject> {
         let doc = case::document(&case.chart).expect("a chart");
         for trace in &case.traces {
             let own = doc.profile().map(|p| p.name);
-            let profile = trace.profile.or_else(|| case::profile_named(&folder).ok()).or(own).unwrap_or_default();
+            let profile =
+                trace.profile.or_else(|| case::profile_named(&folder).ok()).or(own).unwrap_or_default();
             let title = format!("{title} {}", profile.name());
             let at = match subjects.iter().position(|s| s.title == title) {
                 Some(at) => at,
@@ -126,7 +130,12 @@ fn cases_in_c_by_clang() {
 
 #[test]
 fn cases_in_rust() {
-    let subjects = spec();
+    let mut subjects = spec();
+    // SIN and its like come from the crate `libm`, which a lone rustc has not.
+    let all = subjects.len();
+    subjects.retain(|s| s.print(Language::Rust, "c").is_ok_and(|p| p.problems.is_empty()));
+    println!("{} of {all} cases without functions of the crate libm", subjects.len());
+    assert!(subjects.len() + 10 > all, "only {} of {all} cases", subjects.len());
     let folder = Folder::new("spec-rust");
     for (i, batch) in subjects.chunks(200).enumerate() {
         let batch: Vec<&Subject> = batch.iter().collect();

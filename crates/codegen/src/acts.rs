@@ -66,9 +66,9 @@ impl Gen<'_> {
                 self.function(&name, &note, vec![state()], body);
                 let body = vec![Stmt::Do(Expr::call(name, vec![s()]))];
                 defer.push(Arm { label: label.clone(), note: note.clone(), body });
-                let writes = slots.values().map(|slot| {
-                    Stmt::Do(Expr::call(format!("write_{}", slot.field), vec![s()]))
-                });
+                let writes = slots
+                    .values()
+                    .map(|slot| Stmt::Do(Expr::call(format!("write_{}", slot.field), vec![s()])));
                 write.push(Arm { label, note, body: writes.collect() });
                 written.extend(slots);
             }
@@ -90,9 +90,11 @@ impl Gen<'_> {
         }
         let mut body = flow.body();
         if let Some(slots) = deferred {
-            let copies = slots.values().flat_map(own_copy);
-            let back = slots.values().flat_map(give_back);
-            body = copies.chain(body).chain(back).collect();
+            let sure: Vec<Sure> = slots.values().map(|s| make_direct(&mut body, s)).collect();
+            let each = || slots.values().zip(&sure);
+            let copies: Block = each().flat_map(|(s, sure)| own_copy(s, *sure)).collect();
+            let back: Block = each().flat_map(|(s, sure)| give_back(s, *sure != Sure::No)).collect();
+            body = [copies, body, back].concat();
         }
         let mut all = Block::new();
         if fails {
@@ -131,7 +133,12 @@ impl Gen<'_> {
         let field = |s: &Slot, ty: Ty| Field { name: s.field.clone(), ty, note: String::new(), kept: true };
         let next = slots.values().map(|s| field(s, s.ty())).collect();
         let wrote = slots.values().map(|s| field(s, flag_ty(s))).collect();
-        let new = |name: &str, note: &str, fields| Struct { public: true, note: note.into(), name: name.into(), fields };
+        let new = |name: &str, note: &str, fields| Struct {
+            public: true,
+            note: note.into(),
+            name: name.into(),
+            fields,
+        };
         self.m.structs.push(new("Next", "What stored actions have written, until the pass ends.", next));
         self.m.structs.push(new("Wrote", "Which of it was written.", wrote));
         for slot in slots.values() {
@@ -152,7 +159,8 @@ impl Gen<'_> {
                 c = s().field("fault").bin(Bin::Eq, Expr::size(0)).and(c);
             }
             body.push(Stmt::If(c, vec![run], Vec::new()));
-            let note = self.c.symbols.actions.get(e.action as usize).map_or(String::new(), |a| self.text(a.at));
+            let note =
+                self.c.symbols.actions.get(e.action as usize).map_or(String::new(), |a| self.text(a.at));
             arms.push(Arm { label: Expr::size(i), note, body: Stmt::when(self.due(period), body) });
         }
         self.choice("event", "An action on event of an active step.", "row", arms);
@@ -180,7 +188,8 @@ impl Gen<'_> {
             let full = self.full_row(c.block);
             if let (Some(k), Some(full), false) = (timed, full, c.time.is_empty()) {
                 let (time, fails) = self.value(c.time, Num::I64, &format!("time_{i}"));
-                let mut take = vec![Stmt::Let { mutable: false, name: "time".into(), ty: Ty::I64, value: time }];
+                let mut take =
+                    vec![Stmt::Let { mutable: false, name: "time".into(), ty: Ty::I64, value: time }];
                 if fails {
                     take.push(leave());
                 }
@@ -202,7 +211,12 @@ impl Gen<'_> {
         }
         let parameters = vec![state(), ("row".into(), Ty::Size), ("pulses".into(), Ty::Bool)];
         let body = vec![Stmt::Match(Expr::name("row"), arms)];
-        self.function("condition", "An input of a control block that has a condition or a time.", parameters, body);
+        self.function(
+            "condition",
+            "An input of a control block that has a condition or a time.",
+            parameters,
+            body,
+        );
     }
 
     /// The row of a block among those with memory.
@@ -231,7 +245,8 @@ impl Gen<'_> {
             }
             let q = || Expr::name("q");
             let let_q = |value| Stmt::Let { mutable: false, name: "q".into(), ty: Ty::Bool, value };
-            let has = |k: usize| Expr::name("result").bin(Bin::BitAnd, Expr::size(k)).bin(Bin::Ne, Expr::size(0));
+            let has =
+                |k: usize| Expr::name("result").bin(Bin::BitAnd, Expr::size(k)).bin(Bin::Ne, Expr::size(0));
             match self.full_row(i as u32) {
                 None => {
                     let some = memory("counts").at(Expr::size(at)).bin(Bin::Ne, Expr::size(0));
@@ -293,14 +308,18 @@ fn flag_ty(slot: &Slot) -> Ty {
     }
 }
 
-fn own_copy(slot: &Slot) -> Block {
+fn own_copy(slot: &Slot, sure: Sure) -> Block {
+    if sure == Sure::Begins {
+        return Block::new();
+    }
     let own = format!("own_{}", slot.field);
     let zero = match flag_ty(slot) {
         Ty::Bool => Expr::Bool(false),
         _ => Expr::call("zeroed", Vec::new()),
     };
     let flag = Stmt::Let { mutable: true, name: format!("{own}_set"), ty: flag_ty(slot), value: zero };
-    vec![Stmt::Let { mutable: true, name: own, ty: slot.ty(), value: slot.place() }, flag]
+    let copy = Stmt::Let { mutable: true, name: own, ty: slot.ty(), value: slot.place() };
+    if sure == Sure::No { vec![copy, flag] } else { vec![copy] }
 }
 
 /// `next` and `wrote` of a variable.
@@ -308,13 +327,81 @@ fn waits(slot: &Slot) -> (Expr, Expr) {
     (s().field("next").field(slot.field.clone()), s().field("wrote").field(slot.field.clone()))
 }
 
-fn give_back(slot: &Slot) -> Block {
-    let own = Expr::name(format!("own_{}", slot.field));
-    let flag = Expr::name(format!("own_{}_set", slot.field));
-    let (next, wrote) = waits(slot);
-    let both = |next: Expr, own: Expr, wrote: Expr| {
-        vec![Stmt::set(next, own), Stmt::set(wrote, Expr::Bool(true))]
+/// Whether an expression or what is in it has one of two names.
+fn mentions(s: &Stmt, names: [&str; 2]) -> bool {
+    let mut found = false;
+    s.walk(&mut |e| found |= matches!(e, Expr::Name(n) if names.contains(&n.as_str())));
+    found
+}
+
+/// Takes assignments to a name away, at every depth.
+fn without(body: &mut Block, name: &str) {
+    body.retain(|s| !matches!(s, Stmt::Assign(None, Expr::Name(n), _) if n == name));
+    for s in body {
+        match s {
+            Stmt::If(_, a, b) => {
+                without(a, name);
+                without(b, name);
+            }
+            Stmt::While(_, inner) | Stmt::For(_, _, _, inner) => without(inner, name),
+            _ => {}
+        }
+    }
+}
+
+/// How often a name is assigned to.
+fn assigned(body: &Block, name: &str) -> usize {
+    let one = |s: &Stmt| match s {
+        Stmt::Assign(_, Expr::Name(n), _) => usize::from(n == name),
+        Stmt::If(_, a, b) => assigned(a, name) + assigned(b, name),
+        Stmt::While(_, inner) | Stmt::For(_, _, _, inner) => assigned(inner, name),
+        _ => 0,
     };
+    body.iter().map(one).sum()
+}
+
+/// Whether an action writes a variable in any case.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Sure {
+    /// It may, or may not.
+    No,
+    /// It does.
+    Writes,
+    /// It does, before it reads it: its copy begins with that.
+    Begins,
+}
+
+/// Leaves away the flag where the variable is written in any case, and the copy
+/// where it is not read before.
+fn make_direct(body: &mut Block, slot: &Slot) -> Sure {
+    let own = format!("own_{}", slot.field);
+    let flag = format!("{own}_set");
+    let sets = |s: &Stmt| matches!(s, Stmt::Assign(None, Expr::Name(n), _) if *n == flag);
+    if !matches!(slot.shape, Shape::One(_) | Shape::Text(_)) || !body.iter().any(sets) {
+        return Sure::No;
+    }
+    without(body, &flag);
+    let Some(at) = body.iter().position(|s| mentions(s, [&own, &flag])) else { return Sure::Writes };
+    let value = match body.get(at) {
+        Some(Stmt::Assign(None, Expr::Name(n), value)) if *n == own => value.clone(),
+        _ => return Sure::Writes,
+    };
+    if mentions(&Stmt::Do(value.clone()), [&own, &flag]) {
+        return Sure::Writes;
+    }
+    let mutable = assigned(body, &own) > 1;
+    if let Some(s) = body.get_mut(at) {
+        *s = Stmt::Let { mutable, name: own, ty: slot.ty(), value };
+    }
+    Sure::Begins
+}
+
+fn give_back(slot: &Slot, direct: bool) -> Block {
+    let own = Expr::name(format!("own_{}", slot.field));
+    let flag = if direct { Expr::Bool(true) } else { Expr::name(format!("own_{}_set", slot.field)) };
+    let (next, wrote) = waits(slot);
+    let both =
+        |next: Expr, own: Expr, wrote: Expr| vec![Stmt::set(next, own), Stmt::set(wrote, Expr::Bool(true))];
     match slot.shape {
         Shape::One(_) | Shape::Text(_) => Stmt::when(flag, both(next, own, wrote)),
         Shape::Many(_, n) | Shape::Texts(_, n) => {
@@ -326,7 +413,8 @@ fn give_back(slot: &Slot) -> Block {
             let mut all = Block::new();
             for (k, (name, _)) in members(kind).iter().enumerate() {
                 let k = Expr::size(k);
-                let inner = both(next.clone().field(*name), own.clone().field(*name), wrote.clone().at(k.clone()));
+                let inner =
+                    both(next.clone().field(*name), own.clone().field(*name), wrote.clone().at(k.clone()));
                 all.extend(Stmt::when(flag.clone().at(k), inner));
             }
             all

@@ -1,7 +1,119 @@
 //! The sketch round the C code: pins from addresses, `millis()` as the clock.
 
-use crate::build::Gen;
+use std::fmt::Write as _;
 
-pub(crate) fn sketch(_g: &Gen<'_>, name: &str) -> String {
-    format!("#include \"{name}.h\"\n")
+use g7_compile::ir::VarClass;
+use g7_compile::symbols::Variable;
+use g7_model::Type;
+
+use crate::build::Gen;
+use crate::c::comment;
+
+/// What a pin is for.
+struct Pin {
+    constant: String,
+    field: String,
+    ty: Type,
+    inverted: bool,
+    /// As the sketch writes it; none where the chart names no pin.
+    number: Option<String>,
+    note: String,
+}
+
+/// `13`, `A0`, `D5` as they are; `%I0.3`, `%Q0.3` have no pin of their own.
+fn pin_of(address: &str) -> Option<String> {
+    let plain = address.trim();
+    let digits = plain.strip_prefix(['D', 'd']).unwrap_or(plain);
+    if !digits.is_empty() && digits.len() <= 3 && digits.chars().all(|c| c.is_ascii_digit()) {
+        return Some(digits.to_owned());
+    }
+    let analog = plain.strip_prefix(['A', 'a'])?;
+    (!analog.is_empty() && analog.len() <= 2 && analog.chars().all(|c| c.is_ascii_digit()))
+        .then(|| format!("A{analog}"))
+}
+
+fn pins(g: &Gen<'_>, class: VarClass) -> Vec<Pin> {
+    let fits =
+        |v: &&Variable| v.class == class && v.elements == 1 && !matches!(v.ty, Type::Fb(_) | Type::String(_));
+    let pin = |v: &Variable| {
+        let field = g.vars.slot(v.addr.0).map_or(String::new(), |s| s.field.clone());
+        let address = v.address.as_deref().unwrap_or("");
+        let place = if address.is_empty() { String::new() } else { format!(" at {address}") };
+        Pin {
+            constant: format!("PIN_{}", field.to_uppercase()),
+            field,
+            ty: v.ty,
+            inverted: v.inverted,
+            number: pin_of(address),
+            note: comment(&format!("{}{place}", v.name)).replace('\n', " "),
+        }
+    };
+    g.c.symbols.variables.iter().filter(fits).map(pin).collect()
+}
+
+/// How a pin is read into a field.
+fn read(p: &Pin) -> String {
+    match p.ty {
+        Type::Bool => format!("digitalRead({}) == {}", p.constant, if p.inverted { "LOW" } else { "HIGH" }),
+        _ => format!("analogRead({})", p.constant),
+    }
+}
+
+fn write(p: &Pin) -> String {
+    match p.ty {
+        Type::Bool => {
+            let (on, off) = if p.inverted { ("LOW", "HIGH") } else { ("HIGH", "LOW") };
+            format!("digitalWrite({}, output.{} ? {on} : {off});", p.constant, p.field)
+        }
+        _ => format!("analogWrite({}, (int)output.{});", p.constant, p.field),
+    }
+}
+
+/// The sketch. Pins that the chart does not name stand in the table at its top
+/// with -1, which leaves them alone.
+pub(crate) fn sketch(g: &Gen<'_>, name: &str) -> String {
+    let (ins, outs) = (pins(g, VarClass::Input), pins(g, VarClass::Output));
+    let mut t = format!(
+        "// The chart {name}, printed by G7: a sketch round {name}.c and {name}.h, which belong in this folder.\n\n\
+         #include \"{name}.h\"\n\n// The pins. What is -1 is left alone: put the number of the pin there.\n"
+    );
+    for p in ins.iter().chain(&outs) {
+        let number = p.number.as_deref().unwrap_or("-1");
+        let _ = writeln!(t, "static const int {} = {number}; // {}", p.constant, p.note);
+    }
+    let _ = write!(
+        t,
+        "\n// Time between scans in milliseconds; 0 for as often as it goes.\nstatic const unsigned long SCAN_MS = {};\n\n\
+         static {name}_inputs input;\nstatic {name}_outputs output;\nstatic {name}_state state;\n\
+         static uint32_t last_ms;\nstatic int64_t now_ns;\n\nvoid setup() {{\n",
+        (g.c.symbols.cycle / 1_000_000).max(0)
+    );
+    for p in &ins {
+        let mode = if p.inverted { "INPUT_PULLUP" } else { "INPUT" };
+        if p.ty == Type::Bool {
+            let _ = writeln!(t, "  if ({} >= 0) {{ pinMode({}, {mode}); }}", p.constant, p.constant);
+        }
+    }
+    for p in &outs {
+        let _ = writeln!(t, "  if ({} >= 0) {{ pinMode({}, OUTPUT); }}", p.constant, p.constant);
+    }
+    let _ = write!(
+        t,
+        "  {name}_init(&state);\n  last_ms = millis();\n}}\n\nvoid loop() {{\n  const uint32_t ms = millis();\n  \
+         if (ms - last_ms < SCAN_MS && now_ns != 0) {{\n    return;\n  }}\n  \
+         // millis() starts again at 0 after 49 days; the difference does not mind.\n  \
+         now_ns += (int64_t)(uint32_t)(ms - last_ms) * 1000000;\n  last_ms = ms;\n\n"
+    );
+    for p in &ins {
+        let _ = writeln!(t, "  if ({} >= 0) {{ input.{} = {}; }}", p.constant, p.field, read(p));
+    }
+    let _ = write!(
+        t,
+        "\n  // After a fault the outputs have their safe values; a reset starts again.\n  (void){name}_scan(&input, &output, &state, now_ns);\n\n"
+    );
+    for p in &outs {
+        let _ = writeln!(t, "  if ({} >= 0) {{ {} }}", p.constant, write(p));
+    }
+    t += "}\n";
+    t
 }

@@ -75,18 +75,23 @@ impl<'a> Gen<'a> {
 
     /// Names for steps, transitions and faults.
     fn number(&mut self) {
-        let mut steps = Numbers { note: "The steps.".into(), name: "Step".into(), public: true, ..Numbers::default() };
+        let mut steps =
+            Numbers { note: "The steps.".into(), name: "Step".into(), public: true, ..Numbers::default() };
         for i in 0..self.t.steps.len() {
             let id = StepId(i as u32);
             let symbols = &self.c.symbols;
             let name = self.names.capital("STEP", symbols.step_name(id));
             let note = symbols.step_path(id).to_owned();
-            let note = if symbols.is_listed(id) { note } else { format!("{note} (stands for the macro-step)") };
+            let note =
+                if symbols.is_listed(id) { note } else { format!("{note} (stands for the macro-step)") };
             steps.rows.push((name.clone(), i, note));
             self.steps.push(name);
         }
-        let mut rows =
-            Numbers { note: "The transitions, in order of rank.".into(), name: "Transition".into(), ..Numbers::default() };
+        let mut rows = Numbers {
+            note: "The transitions, in order of rank.".into(),
+            name: "Transition".into(),
+            ..Numbers::default()
+        };
         for i in 0..self.t.transitions.len() {
             let symbols = &self.c.symbols;
             let text = symbols.transition_text(i as u32).replace("->", "to");
@@ -106,7 +111,8 @@ impl<'a> Gen<'a> {
             ("INPUTS", "time went back"),
             ("STOPPED", "stopped by an earlier fault"),
         ];
-        let faults = words.iter().enumerate().map(|(i, (n, note))| (format!("FAULT_{n}"), i, (*note).to_owned()));
+        let faults =
+            words.iter().enumerate().map(|(i, (n, note))| (format!("FAULT_{n}"), i, (*note).to_owned()));
         let faults = Numbers {
             note: "What can stop a scan.".into(),
             name: "Fault".into(),
@@ -236,7 +242,8 @@ impl<'a> Gen<'a> {
                 (if matches!(tr.guard, Guard::Word(_)) { e } else { e.not() }, false)
             }
             Guard::Code(code) => {
-                let name = format!("guard_{}", self.transitions.get(rank as usize).cloned().unwrap_or_default());
+                let name =
+                    format!("guard_{}", self.transitions.get(rank as usize).cloned().unwrap_or_default());
                 self.value(code, Num::Bool, &name)
             }
         }
@@ -257,11 +264,9 @@ impl<'a> Gen<'a> {
 
     /// Adds what the templates say.
     pub(crate) fn templates(&mut self) {
-        for text in [
-            include_str!("runtime/core.g"),
-            include_str!("runtime/more.g"),
-            include_str!("runtime/fb.g"),
-        ] {
+        for text in
+            [include_str!("runtime/core.g"), include_str!("runtime/more.g"), include_str!("runtime/fb.g")]
+        {
             let m = crate::template::read(text, &self.facts);
             // The smaller structures first: the larger ones consist of them.
             self.m.structs.extend(m.structs);

@@ -40,7 +40,8 @@ pub(crate) fn comment(text: &str) -> String {
 
 impl<'a> Printer<'a> {
     pub(crate) fn new(module: &'a Module, prefix: &'a str) -> Printer<'a> {
-        let rows = module.numbers.iter().filter(|n| n.public).flat_map(|n| n.rows.iter().map(|r| r.0.as_str()));
+        let rows =
+            module.numbers.iter().filter(|n| n.public).flat_map(|n| n.rows.iter().map(|r| r.0.as_str()));
         let consts = module.consts.iter().filter(|c| c.public).map(|c| c.name.as_str());
         Printer {
             module,
@@ -268,7 +269,10 @@ impl<'a> Printer<'a> {
                         let from = self.expr(from);
                         let _ = writeln!(self.out, "{indent}{declared};");
                         let head = format!("for (uint32_t i = 0; i < {n}; i++)");
-                        let _ = writeln!(self.out, "{indent}{head} {{\n{indent}    {name}[i] = {from}[i];\n{indent}}}");
+                        let _ = writeln!(
+                            self.out,
+                            "{indent}{head} {{\n{indent}    {name}[i] = {from}[i];\n{indent}}}"
+                        );
                     }
                     _ => {
                         let value = self.literal(value, ty);
@@ -290,7 +294,8 @@ impl<'a> Printer<'a> {
             Stmt::For(name, from, to, body) => {
                 self.scope.insert(name.clone(), Ty::Size);
                 let (from, to) = (self.expr(from), self.expr(to));
-                let _ = writeln!(self.out, "{indent}for (uint32_t {name} = {from}; {name} < {to}; {name}++) {{");
+                let _ =
+                    writeln!(self.out, "{indent}for (uint32_t {name} = {from}; {name} < {to}; {name}++) {{");
                 self.block(body, depth + 1);
                 let _ = writeln!(self.out, "{indent}}}");
             }
@@ -368,7 +373,8 @@ impl<'a> Printer<'a> {
         let _ = writeln!(self.out, "{indent}switch ({e}) {{");
         for arm in arms {
             let label = self.expr(&arm.label);
-            let note = if arm.note.is_empty() { String::new() } else { format!(" /* {} */", comment(&arm.note)) };
+            let note =
+                if arm.note.is_empty() { String::new() } else { format!(" /* {} */", comment(&arm.note)) };
             let _ = writeln!(self.out, "{indent}case {label}: {{{note}");
             self.block(&arm.body, depth + 1);
             if !matches!(arm.body.last(), Some(Stmt::Return(_))) {
@@ -421,10 +427,18 @@ impl<'a> Printer<'a> {
             Expr::Int(n, None) => integer(*n, true, 32),
             Expr::Int(n, Some(Ty::Int { signed, bits })) => {
                 let plain = integer(*n, *signed, *bits);
-                if *bits == 64 { plain } else { format!("({})({plain})", self.ty(&Ty::Int { signed: *signed, bits: *bits })) }
+                if *bits >= 32 && !(*signed && *bits == 32) {
+                    plain
+                } else {
+                    format!("({})({plain})", self.ty(&Ty::Int { signed: *signed, bits: *bits }))
+                }
             }
             Expr::Int(n, Some(_)) => integer(*n, true, 32),
-            Expr::Real(bits, 32) => real(f64::from(f32::from_bits(*bits as u32)), &format!("{:?}", f32::from_bits(*bits as u32)), "f"),
+            Expr::Real(bits, 32) => real(
+                f64::from(f32::from_bits(*bits as u32)),
+                &format!("{:?}", f32::from_bits(*bits as u32)),
+                "f",
+            ),
             Expr::Real(bits, _) => real(f64::from_bits(*bits), &format!("{:?}", f64::from_bits(*bits)), ""),
             Expr::Bool(b) => b.to_string(),
             Expr::Name(n) => self.constant_name(n),
@@ -451,7 +465,11 @@ impl<'a> Printer<'a> {
 
     fn tight(&self, e: &Expr) -> String {
         let text = self.expr(e);
-        if matches!(e, Expr::Bin(..) | Expr::If(..)) || text.starts_with('-') { format!("({text})") } else { text }
+        if matches!(e, Expr::Bin(..) | Expr::If(..)) || text.starts_with('-') {
+            format!("({text})")
+        } else {
+            text
+        }
     }
 
     fn call(&self, f: &str, args: &[Expr]) -> String {
@@ -483,7 +501,17 @@ fn integer(n: i128, signed: bool, bits: u8) -> String {
     if !signed && bits == 32 {
         return format!("UINT32_C({n})");
     }
-    if signed && n == i128::from(i32::MIN) { "INT32_MIN".into() } else { n.to_string() }
+    if n > i128::from(i64::MAX) {
+        format!("UINT64_C({n})")
+    } else if n == i128::from(i64::MIN) {
+        "INT64_MIN".into()
+    } else if signed && n == i128::from(i32::MIN) {
+        "INT32_MIN".into()
+    } else if n > i128::from(u32::MAX) || n < i128::from(i32::MIN) {
+        format!("INT64_C({n})")
+    } else {
+        n.to_string()
+    }
 }
 
 fn real(v: f64, text: &str, suffix: &str) -> String {

@@ -62,7 +62,12 @@ impl Gen<'_> {
             let note = self.c.symbols.step_path(id).to_owned();
             arms.push(Arm { label: self.step(id), note, body });
         }
-        self.choice("watch_step", "The transitions behind an active step, best priority first.", "step", arms);
+        self.choice(
+            "watch_step",
+            "The transitions behind an active step, best priority first.",
+            "step",
+            arms,
+        );
     }
 
     fn watched(&mut self, ranks: &[u32]) -> Block {
@@ -194,11 +199,8 @@ impl Gen<'_> {
                 arms.push(Arm { label: self.step(id), note: self.c.symbols.step_path(id).to_owned(), body });
             }
         }
-        let (name, note) = if on {
-            ("step_on", "What comes with a step.")
-        } else {
-            ("step_off", "What goes with a step.")
-        };
+        let (name, note) =
+            if on { ("step_on", "What comes with a step.") } else { ("step_off", "What goes with a step.") };
         self.choice(name, note, "step", arms);
     }
 
@@ -230,8 +232,7 @@ impl Gen<'_> {
         for (i, w) in t.watches.iter().enumerate() {
             let (now, fails) = self.value(w.code, Num::Bool, &format!("watched_{i}"));
             let name = format!("now{i}");
-            let mut part =
-                vec![Stmt::Let { mutable: false, name: name.clone(), ty: Ty::Bool, value: now }];
+            let mut part = vec![Stmt::Let { mutable: false, name: name.clone(), ty: Ty::Bool, value: now }];
             let leave = || {
                 let fault = s().field("fault").bin(Bin::Ne, Expr::size(0));
                 Stmt::If(fault, vec![Stmt::Return(None)], Vec::new())
@@ -316,8 +317,19 @@ impl Gen<'_> {
 
     fn numbers(&mut self, name: &str, note: &str, values: &[u32]) {
         let most = values.iter().copied().max().unwrap_or(0);
-        let bits = if most < 256 { 8 } else if most < 65_536 { 16 } else { 32 };
-        self.table(name, note, Ty::Int { signed: false, bits }, values.iter().map(|v| Expr::size(*v as usize)));
+        let bits = if most < 256 {
+            8
+        } else if most < 65_536 {
+            16
+        } else {
+            32
+        };
+        self.table(
+            name,
+            note,
+            Ty::Int { signed: false, bits },
+            values.iter().map(|v| Expr::size(*v as usize)),
+        );
     }
 
     fn table(&mut self, name: &str, note: &str, of: Ty, values: impl Iterator<Item = Expr>) {
@@ -373,11 +385,31 @@ impl Gen<'_> {
         let charts = |f: fn(&g7_engine::Chart) -> u32| t.charts.iter().map(f).collect::<Vec<_>>();
         self.numbers("CHART_GROUP", "The group of each chart.", &charts(|c| c.group.0));
         self.numbers("CHART_PERIOD", "The period of each chart.", &charts(|c| c.period));
-        self.table("PERIOD", "Periods in nanoseconds.", Ty::I64, t.periods.iter().map(|p| Expr::Int((*p).into(), None)));
+        self.table(
+            "PERIOD",
+            "Periods in nanoseconds.",
+            Ty::I64,
+            t.periods.iter().map(|p| Expr::Int((*p).into(), None)),
+        );
         let truth = |b: bool| Expr::Bool(b);
-        self.table("SHARES", "Transitions that share a step before them.", Ty::Bool, t.transitions.iter().map(|x| truth(x.shares)));
-        self.table("COUNTED", "Transitions of the text.", Ty::Bool, t.transitions.iter().map(|x| truth(!x.uncounted)));
-        self.table("STEP_COUNTED", "Steps of the text.", Ty::Bool, t.steps.iter().map(|x| truth(!extra(x.extra).uncounted)));
+        self.table(
+            "SHARES",
+            "Transitions that share a step before them.",
+            Ty::Bool,
+            t.transitions.iter().map(|x| truth(x.shares)),
+        );
+        self.table(
+            "COUNTED",
+            "Transitions of the text.",
+            Ty::Bool,
+            t.transitions.iter().map(|x| truth(!x.uncounted)),
+        );
+        self.table(
+            "STEP_COUNTED",
+            "Steps of the text.",
+            Ty::Bool,
+            t.steps.iter().map(|x| truth(!extra(x.extra).uncounted)),
+        );
         let number = |p: u32| Expr::size(p as usize);
         let bits = Ty::Int { signed: false, bits: 32 };
         self.table("PRIORITY", "Written priorities.", bits, t.transitions.iter().map(|x| number(x.priority)));
@@ -385,7 +417,8 @@ impl Gen<'_> {
         self.numbers("PERIODIC_ACTION", "Actions of each scan.", &periodics);
         self.orders();
         let places = counts(t).0;
-        let full: Vec<usize> = (0..t.blocks.len()).filter(|i| t.blocks.get(*i).is_some_and(|b| !b.plain)).collect();
+        let full: Vec<usize> =
+            (0..t.blocks.len()).filter(|i| t.blocks.get(*i).is_some_and(|b| !b.plain)).collect();
         let blocks: Vec<u32> = full.iter().map(|i| *i as u32).collect();
         self.numbers("FULL_BLOCK", "Control blocks with memory.", &blocks);
         let at: Vec<u32> = full.iter().filter_map(|i| places.get(*i)).map(|a| *a as u32).collect();

@@ -26,14 +26,20 @@ pub(crate) fn of(t: &Tables) -> Facts {
     let hierarchy = t.extras.iter().any(|e| !e.encloses.is_empty() || !e.links.is_empty());
     let comes_and_goes = r.stable && (r.sequential || !r.parallel_actions);
     let full = t.blocks.iter().filter(|b| !b.plain).count();
-    let conditional = t.contributions.iter().filter(|c| !c.condition.is_empty() || !c.time.is_empty()).count();
-    let shared = t.transitions.iter().any(|x| {
-        x.shares && !(!r.multi_token && x.simple) && (!r.multi_token || x.priority != NONE)
-    });
-    let late = r.late_actions && lists || !t.periodics.is_empty() || t.blocks.iter().any(|b| b.action != NONE);
+    let conditional =
+        t.contributions.iter().filter(|c| !c.condition.is_empty() || !c.time.is_empty()).count();
+    let shared = t
+        .transitions
+        .iter()
+        .any(|x| x.shares && !(!r.multi_token && x.simple) && (!r.multi_token || x.priority != NONE));
+    let late =
+        r.late_actions && lists || !t.periodics.is_empty() || t.blocks.iter().any(|b| b.action != NONE);
     let on = t.steps.iter().any(|s| s.direct.0 != NONE)
         || t.extras.iter().any(|e| {
-            !(e.events.is_empty() && e.periodics.is_empty() && e.contributions.is_empty() && e.groups.is_empty())
+            !(e.events.is_empty()
+                && e.periodics.is_empty()
+                && e.contributions.is_empty()
+                && e.groups.is_empty())
                 || (e.uncounted && t.counts.is_some())
         });
     f.flags = [
@@ -78,6 +84,7 @@ pub(crate) fn of(t: &Tables) -> Facts {
         ("NOTES_STEPS", comes_and_goes || r.late_actions),
         ("LOOKS_EARLY", r.late_actions && (conditional > 0 || full > 0)),
         ("GUARDS_FAIL", true),
+        ("HAS_OUTS", !t.outs.is_empty()),
     ]
     .into_iter()
     .collect();
@@ -109,7 +116,16 @@ fn sizes(t: &Tables, f: &mut Facts, full: usize) {
     ];
     let most = most.into_iter().max().unwrap_or(0);
     f.sizes = [
-        ("ROW_BITS", if most < 250 { 8 } else if most < 65_000 { 16 } else { 32 }),
+        (
+            "ROW_BITS",
+            if most < 250 {
+                8
+            } else if most < 65_000 {
+                16
+            } else {
+                32
+            },
+        ),
         ("STEPS", steps),
         ("WORDS", words(steps)),
         ("TOP", words(words(steps))),

@@ -12,7 +12,8 @@ impl Gen<'_> {
     pub(crate) fn frame(&mut self) {
         let slots: Vec<Slot> = self.vars.slots.values().cloned().collect();
         let mut body = vec![Stmt::Clear(Expr::Deref(Box::new(s())), Ty::Named("State".into()))];
-        for slot in slots.iter().filter(|s| matches!(s.home, Home::Inputs | Home::Outputs | Home::Variables)) {
+        for slot in slots.iter().filter(|s| matches!(s.home, Home::Inputs | Home::Outputs | Home::Variables))
+        {
             let words = self.words(slot);
             body.extend(self.given(slot, slot.place(), &words));
         }
@@ -106,7 +107,11 @@ impl Gen<'_> {
     fn restart(&mut self, slots: &[Slot]) {
         let mut body = Block::new();
         let mut back = Block::new();
-        let homes = [(Home::Variables, "v", "Variables"), (Home::Outputs, "outputs", "Outputs"), (Home::Inputs, "inputs", "Inputs")];
+        let homes = [
+            (Home::Variables, "v", "Variables"),
+            (Home::Outputs, "outputs", "Outputs"),
+            (Home::Inputs, "inputs", "Inputs"),
+        ];
         for (home, field, ty) in homes {
             let kept: Vec<&Slot> = slots.iter().filter(|s| s.home == home && s.retain).collect();
             if kept.is_empty() {
@@ -154,9 +159,7 @@ fn text_bytes(words: &[u64], cap: u16) -> Vec<u8> {
 
 fn text_given(place: &Expr, words: &[u64], cap: u16) -> Block {
     let bytes = text_bytes(words, cap);
-    let set = |(i, b): (usize, &u8)| {
-        Stmt::set(place.clone().at(Expr::size(i)), Expr::size((*b).into()))
-    };
+    let set = |(i, b): (usize, &u8)| Stmt::set(place.clone().at(Expr::size(i)), Expr::size((*b).into()));
     bytes.iter().enumerate().filter(|(_, b)| **b != 0).map(set).collect()
 }
 
@@ -177,7 +180,8 @@ pub(crate) fn comparisons(m: &mut Module) {
         let Some(of) = m.structs.iter().find(|s| s.name == name) else { continue };
         let mut body = Block::new();
         for field in &of.fields {
-            let (a, b) = (Expr::name("a").field(field.name.clone()), Expr::name("b").field(field.name.clone()));
+            let (a, b) =
+                (Expr::name("a").field(field.name.clone()), Expr::name("b").field(field.name.clone()));
             body.extend(same(m, &field.ty, a, b, 0));
         }
         body.push(Stmt::Return(Some(Expr::Bool(true))));
@@ -203,7 +207,8 @@ fn same(m: &Module, ty: &Ty, a: Expr, b: Expr, depth: usize) -> Block {
             vec![Stmt::For(i.into(), Expr::size(0), Expr::size(*n), inner)]
         }
         Ty::Named(name) => {
-            let fields = m.structs.iter().find(|s| s.name == *name).map(|s| s.fields.clone()).unwrap_or_default();
+            let fields =
+                m.structs.iter().find(|s| s.name == *name).map(|s| s.fields.clone()).unwrap_or_default();
             let each = |f: &crate::tree::Field| {
                 same(m, &f.ty, a.clone().field(f.name.clone()), b.clone().field(f.name.clone()), depth)
             };

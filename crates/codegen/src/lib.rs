@@ -24,8 +24,10 @@ mod frame;
 mod names;
 mod native_c;
 mod native_rust;
+pub mod plc;
 mod prune;
 mod rust;
+mod stmts;
 mod template;
 mod tree;
 mod values;
@@ -144,7 +146,9 @@ pub fn print(compiled: &Compiled, options: &Options<'_>) -> Result<Printed, Vec<
     }
     if g.math {
         let (what, way) = match options.language {
-            Language::C | Language::Arduino => ("`<math.h>`", "their last digit can be another than in a run here"),
+            Language::C | Language::Arduino => {
+                ("`<math.h>`", "their last digit can be another than in a run here")
+            }
             Language::Rust => ("the crate `libm`", "add it to the dependencies"),
         };
         let text = format!("the functions of LREAL come from {what}; {way}");
@@ -164,7 +168,7 @@ pub fn print(compiled: &Compiled, options: &Options<'_>) -> Result<Printed, Vec<
         Language::Rust => {
             let native = native_rust::functions(&natives);
             let head = format!(
-                "//! The chart `{name}`, printed by G7. Call [`init`] once, then [`scan`] in each cycle.\n\n"
+                "//! The chart `{name}`, printed by G7. Call [`init`] once, then [`scan`] in each cycle.\n#![forbid(unsafe_code)]\n\n"
             );
             vec![File { name: format!("{name}.rs"), text: head + &rust::print(&module, &native) }]
         }
@@ -203,7 +207,9 @@ fn places(g: &Gen<'_>) -> Places {
 
 fn c_files(module: &Module, natives: &std::collections::BTreeSet<String>, name: &str) -> Vec<File> {
     let guard = format!("{}_H", name.to_uppercase());
-    let mut header = format!("/* The chart {name}, printed by G7. Call {name}_init once, then {name}_scan in each cycle. */\n");
+    let mut header = format!(
+        "/* The chart {name}, printed by G7. Call {name}_init once, then {name}_scan in each cycle. */\n"
+    );
     header += &format!("#ifndef {guard}\n#define {guard}\n\n#include <stdbool.h>\n#include <stdint.h>\n\n");
     header += "#ifdef __cplusplus\nextern \"C\" {\n#endif\n\n";
     header += &c::Printer::new(module, name).header();

@@ -51,7 +51,7 @@ impl Writer {
             return;
         }
         if let Some(text) = self.fixed(name) {
-            let _ = writeln!(self.out, "{}", text.trim_start_matches('\n'));
+            let _ = writeln!(self.out, "{}\n", text.trim());
             return;
         }
         if let Some((op, t)) = name.rsplit_once('_').filter(|(_, t)| INTS.contains(t)) {
@@ -93,7 +93,10 @@ impl Writer {
     fn extreme(&mut self, op: &str, t: &str) {
         let sign = if op == "min" { "b < a" } else { "a < b" };
         let t_ = ty(t);
-        let _ = writeln!(self.out, "static {t_} {op}_{t}({t_} a, {t_} b)\n{{\n    return ({sign}) ? b : a;\n}}\n");
+        let _ = writeln!(
+            self.out,
+            "static {t_} {op}_{t}({t_} a, {t_} b)\n{{\n    return ({sign}) ? b : a;\n}}\n"
+        );
     }
 
     fn divide(&mut self, op: &str, t: &str) {
@@ -103,7 +106,11 @@ impl Writer {
             "a / b".to_owned()
         } else {
             self.needs(&["remainder_of"]);
-            if t == "f32" { "(float)remainder_of((double)a, (double)b)".to_owned() } else { "remainder_of(a, b)".to_owned() }
+            if t == "f32" {
+                "(float)remainder_of((double)a, (double)b)".to_owned()
+            } else {
+                "remainder_of(a, b)".to_owned()
+            }
         };
         let zero = if t == "f32" { "0.0f" } else { "0.0" };
         let _ = writeln!(
@@ -133,7 +140,8 @@ impl Writer {
                 let (least, most) = (least(t), most(t));
                 let mut body = String::new();
                 if op == "div" || op == "rem" {
-                    body += "    if (b == 0) {\n        fail(fault, FAULT_DIVISION);\n        return 0;\n    }\n";
+                    body +=
+                        "    if (b == 0) {\n        fail(fault, FAULT_DIVISION);\n        return 0;\n    }\n";
                 }
                 body += &match op {
                     "neg" => "    const int64_t v = -(int64_t)a;\n".to_owned(),
@@ -195,11 +203,14 @@ impl Writer {
         let (limit, low) = if t == "u64" {
             ("(negative && (v != 0))".to_owned(), String::new())
         } else {
-            (format!("(negative ? (v > {}) : (v > (uint64_t){}))", if t.starts_with('u') {
-                "0u".to_owned()
-            } else {
-                format!("(uint64_t){} + 1u", most(t))
-            }, most(t)), String::new())
+            (
+                format!(
+                    "(negative ? (v > {}) : (v > (uint64_t){}))",
+                    if t.starts_with('u') { "0u".to_owned() } else { format!("(uint64_t){} + 1u", most(t)) },
+                    most(t)
+                ),
+                String::new(),
+            )
         };
         let value = if t.starts_with('u') {
             format!("({t_})v")
@@ -218,17 +229,21 @@ impl Writer {
 
     fn fixed(&mut self, name: &str) -> Option<&'static str> {
         let (needs, text): (&[&str], &str) = match name {
-            "text_copy" | "text_left" | "text_right" | "text_mid" | "text_concat" | "text_insert" | "text_delete"
-            | "text_replace" => {
+            "text_copy" | "text_left" | "text_right" | "text_mid" | "text_concat" | "text_insert"
+            | "text_delete" | "text_replace" => {
                 let text = piece(name);
                 let needs: &[&str] = match name {
                     "text_copy" | "text_concat" => &["text_size", "text_clear", "text_append"],
-                    "text_right" => &["fail", "text_size", "text_clear", "text_append", "text_skip", "text_len"],
+                    "text_right" => {
+                        &["fail", "text_size", "text_clear", "text_append", "text_skip", "text_len"]
+                    }
                     _ => &["fail", "text_size", "text_clear", "text_append", "text_skip"],
                 };
                 (needs, text)
             }
-            "text_len" | "text_compare" | "text_find" | "text_append" | "text_skip" => (&["text_size"], piece(name)),
+            "text_len" | "text_compare" | "text_find" | "text_append" | "text_skip" => {
+                (&["text_size"], piece(name))
+            }
             "text_number" => (&["text_size", "text_trim"], piece(name)),
             "text_trim" => (&[], piece(name)),
             "text_to_bool" => (&["text_size", "text_trim", "fail"], piece(name)),
@@ -238,8 +253,8 @@ impl Writer {
             "text_from_time" => (&["text_clear", "text_put", "text_put_number"], piece(name)),
             "text_put_number" => (&["text_put"], piece(name)),
             "text_put" => (&["text_size"], piece(name)),
-            "real_sqrt" | "real_abs" | "low_bit" | "since" | "is_due_after" | "fail" | "round_even" | "toward_zero"
-            | "remainder_of" | "text_size" | "text_clear" => (&[], piece(name)),
+            "real_sqrt" | "real_abs" | "low_bit" | "since" | "is_due_after" | "fail" | "round_even"
+            | "toward_zero" | "remainder_of" | "text_size" | "text_clear" => (&[], piece(name)),
             "place" => (&["fail"], piece(name)),
             _ => return None,
         };
@@ -274,7 +289,9 @@ fn signed(op: &str) -> String {
              }} else if ((a < 0) && (b < 0)) {{\n        over = b < (INT64_MAX / a);\n    }}\n    \
              if (over) {{\n        {over}    return a * b;\n"
         ),
-        "div" => format!("{zero}    if ((a == INT64_MIN) && (b == -1)) {{\n        {over}    return a / b;\n"),
+        "div" => {
+            format!("{zero}    if ((a == INT64_MIN) && (b == -1)) {{\n        {over}    return a / b;\n")
+        }
         "rem" => format!("{zero}    return (b == -1) ? 0 : (a % b);\n"),
         "neg" => format!("    if (a == INT64_MIN) {{\n        {over}    return -a;\n"),
         _ => format!("    if (a == INT64_MIN) {{\n        {over}    return (a < 0) ? -a : a;\n"),
@@ -287,7 +304,9 @@ fn unsigned(op: &str) -> String {
     match op {
         "add" => format!("    if (a > (UINT64_MAX - b)) {{\n        {over}    return a + b;\n"),
         "sub" => format!("    if (a < b) {{\n        {over}    return a - b;\n"),
-        "mul" => format!("    if ((a != 0u) && (b > (UINT64_MAX / a))) {{\n        {over}    return a * b;\n"),
+        "mul" => {
+            format!("    if ((a != 0u) && (b > (UINT64_MAX / a))) {{\n        {over}    return a * b;\n")
+        }
         "div" => format!("{zero}    return a / b;\n"),
         "rem" => format!("{zero}    return a % b;\n"),
         _ => format!("    if (a != 0u) {{\n        {over}    return a;\n"),

@@ -32,8 +32,7 @@ impl Writer {
         if !text.is_empty() {
             // What a piece names, it needs.
             for other in names() {
-                let used = [format!("{other}("), format!("{other}::")];
-                if other != name && used.iter().any(|u| text.contains(u.as_str())) {
+                if other != name && (calls(text, other) || text.contains(&format!("{other}::"))) {
                     self.need(other);
                 }
             }
@@ -54,7 +53,8 @@ impl Writer {
 
     fn of_kind(&mut self, op: &str, t: &str) {
         let real = t.starts_with('f');
-        let over = "None => {\n            fail(fault, FAULT_OVERFLOW);\n            0\n        }\n    }\n}\n";
+        let over =
+            "None => {\n            fail(fault, FAULT_OVERFLOW);\n            0\n        }\n    }\n}\n";
         let text = match op {
             "add" | "sub" | "mul" => format!(
                 "fn {op}_{t}(a: {t}, b: {t}, fault: &mut u8) -> {t} {{\n    match a.checked_{op}(b) {{\n        Some(v) => v,\n        {over}"
@@ -78,7 +78,10 @@ impl Writer {
                 "fn rem_{t}(a: {t}, b: {t}, fault: &mut u8) -> {t} {{\n    if b == 0 {{\n        \
                  fail(fault, FAULT_DIVISION);\n        return 0;\n    }}\n    a.wrapping_rem(b)\n}}\n"
             ),
-            "pow" => format!("fn pow_{t}(a: {t}, b: {t}) -> {t} {{\n    libm::{}(a, b)\n}}\n", if t == "f32" { "powf" } else { "pow" }),
+            "pow" => format!(
+                "fn pow_{t}(a: {t}, b: {t}) -> {t} {{\n    libm::{}(a, b)\n}}\n",
+                if t == "f32" { "powf" } else { "pow" }
+            ),
             "min" => format!("fn min_{t}(a: {t}, b: {t}) -> {t} {{\n    if b < a {{ b }} else {{ a }}\n}}\n"),
             "max" => format!("fn max_{t}(a: {t}, b: {t}) -> {t} {{\n    if a < b {{ b }} else {{ a }}\n}}\n"),
             "round" | "trunc" => {
@@ -99,7 +102,9 @@ impl Writer {
                 self.needs(&["text_str"]);
                 let parsed = match t {
                     "f32" | "f64" | "u64" => format!("text_str(a).trim().parse::<{t}>().ok()"),
-                    _ => format!("text_str(a).trim().parse::<i64>().ok().and_then(|v| {t}::try_from(v).ok())"),
+                    _ => {
+                        format!("text_str(a).trim().parse::<i64>().ok().and_then(|v| {t}::try_from(v).ok())")
+                    }
                 };
                 let zero = if real { "0.0" } else { "0" };
                 format!(
@@ -129,6 +134,15 @@ impl Writer {
         self.out.push_str(&text);
         self.out.push('\n');
     }
+}
+
+/// Whether a function is called in a text.
+fn calls(text: &str, f: &str) -> bool {
+    let behind = |(at, _): (usize, &str)| {
+        let before = text.get(..at).and_then(|t| t.chars().next_back());
+        !before.is_some_and(|c| c.is_ascii_alphanumeric() || c == '_')
+    };
+    text.match_indices(&format!("{f}(")).any(behind)
 }
 
 const PIECES: &str = include_str!("runtime/native.rs.txt");

@@ -70,7 +70,11 @@ impl Printer {
             let ty = self.ty(&f.ty);
             let _ = writeln!(self.out, "    pub {}: {ty},", f.name);
         }
-        let _ = writeln!(self.out, "}}\n\nimpl {0} {{\n    /// All zero and FALSE.\n    pub const fn new() -> {0} {{", s.name);
+        let _ = writeln!(
+            self.out,
+            "}}\n\nimpl {0} {{\n    /// All zero and FALSE.\n    pub const fn new() -> {0} {{",
+            s.name
+        );
         let _ = writeln!(self.out, "        {} {{", s.name);
         for f in &s.fields {
             let zero = self.zero(&f.ty);
@@ -263,8 +267,14 @@ impl Printer {
         match e {
             Expr::Int(n, None) => n.to_string(),
             Expr::Int(n, Some(ty)) => format!("{n}{}", self.ty(ty)),
-            Expr::Real(bits, 32) => real(f32::from_bits(*bits as u32).into(), &format!("{:?}", f32::from_bits(*bits as u32)), "f32"),
-            Expr::Real(bits, _) => real(f64::from_bits(*bits), &format!("{:?}", f64::from_bits(*bits)), "f64"),
+            Expr::Real(bits, 32) => real(
+                f32::from_bits(*bits as u32).into(),
+                &format!("{:?}", f32::from_bits(*bits as u32)),
+                "f32",
+            ),
+            Expr::Real(bits, _) => {
+                real(f64::from_bits(*bits), &format!("{:?}", f64::from_bits(*bits)), "f64")
+            }
             Expr::Bool(b) => b.to_string(),
             Expr::Name(n) => n.clone(),
             Expr::Field(of, name) => format!("{}.{name}", self.expr(of)),
@@ -291,7 +301,9 @@ impl Printer {
             }
             Expr::Ref(m, e) => format!("&{}{}", if *m { "mut " } else { "" }, self.expr(e)),
             Expr::Deref(e) => format!("*{}", self.expr(e)),
-            Expr::If(c, a, b) => format!("if {} {{ {} }} else {{ {} }}", self.expr(c), self.expr(a), self.expr(b)),
+            Expr::If(c, a, b) => {
+                format!("if {} {{ {} }} else {{ {} }}", self.expr(c), self.expr(a), self.expr(b))
+            }
         }
     }
 }

@@ -229,6 +229,10 @@ impl Reader<'_> {
             }
             self.statement(&mut all);
         }
+        // What stands behind a way out that is always taken.
+        if let Some(at) = all.iter().position(|s| matches!(s, Stmt::Return(_))) {
+            all.truncate(at + 1);
+        }
         all
     }
 
@@ -390,8 +394,24 @@ impl Reader<'_> {
 
 fn operator(sign: &str) -> Option<Bin> {
     const ALL: [Bin; 18] = [
-        Bin::Mul, Bin::Div, Bin::Rem, Bin::Add, Bin::Sub, Bin::Shl, Bin::Shr, Bin::BitAnd, Bin::BitXor,
-        Bin::BitOr, Bin::Eq, Bin::Ne, Bin::Lt, Bin::Le, Bin::Gt, Bin::Ge, Bin::And, Bin::Or,
+        Bin::Mul,
+        Bin::Div,
+        Bin::Rem,
+        Bin::Add,
+        Bin::Sub,
+        Bin::Shl,
+        Bin::Shr,
+        Bin::BitAnd,
+        Bin::BitXor,
+        Bin::BitOr,
+        Bin::Eq,
+        Bin::Ne,
+        Bin::Lt,
+        Bin::Le,
+        Bin::Gt,
+        Bin::Ge,
+        Bin::And,
+        Bin::Or,
     ];
     ALL.into_iter().find(|op| op.text() == sign)
 }

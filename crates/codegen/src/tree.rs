@@ -219,7 +219,12 @@ pub(crate) struct Arm {
 /// A statement.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Stmt {
-    Let { mutable: bool, name: String, ty: Ty, value: Expr },
+    Let {
+        mutable: bool,
+        name: String,
+        ty: Ty,
+        value: Expr,
+    },
     /// `=`, or with an operator.
     Assign(Option<Bin>, Expr, Expr),
     If(Expr, Block, Block),

@@ -161,7 +161,9 @@ impl Flow<'_, '_> {
                 let (a, b) = (self.as_kind(a, want), self.as_kind(b, want));
                 Expr::If(Box::new(c.clone()), Box::new(a), Box::new(b))
             }
-            (Entry::Typed { e, kind: Kind::Num(have), .. }, Kind::Num(n)) => self.converted(e.clone(), *have, n),
+            (Entry::Typed { e, kind: Kind::Num(have), .. }, Kind::Num(n)) => {
+                self.converted(e.clone(), *have, n)
+            }
             (Entry::Typed { e, kind: Kind::Text, .. }, Kind::Text) => e.clone(),
             (Entry::Typed { .. } | Entry::Hidden(..), _) => {
                 self.g.cannot("a text at a place that is worked out");
@@ -311,12 +313,16 @@ impl Flow<'_, '_> {
     }
 
     fn compared(&self, c: Cmp, n: Num, x: Expr, y: Expr) -> Expr {
+        // What can never be otherwise, compilers warn of.
+        let same = x == y && !is_real(n) && !matches!(x, Expr::Call(..));
+        if same {
+            return Expr::Bool(matches!(c, Cmp::Eq | Cmp::Le | Cmp::Ge));
+        }
         match (c, n, &x, &y) {
             (Cmp::Eq, Num::Bool, _, Expr::Bool(true)) | (Cmp::Ne, Num::Bool, _, Expr::Bool(false)) => x,
             (Cmp::Eq, Num::Bool, _, Expr::Bool(false)) | (Cmp::Ne, Num::Bool, _, Expr::Bool(true)) => x.not(),
             (Cmp::Eq | Cmp::Ne, ..) => x.bin(bin(c), y),
             (_, Num::Bool, ..) => x.cast(Ty::U8).bin(bin(c), y.cast(Ty::U8)),
-            // What can never be otherwise, compilers warn of.
             (Cmp::Ge, n, _, Expr::Int(0, None)) if !signed(n) && !is_real(n) => Expr::Bool(true),
             (Cmp::Lt, n, _, Expr::Int(0, None)) if !signed(n) && !is_real(n) => Expr::Bool(false),
             _ => x.bin(bin(c), y),
@@ -344,7 +350,7 @@ impl Flow<'_, '_> {
         let (b, a) = (self.pop(), self.pop());
         let (x, y) = (self.as_num(&a, Num::Bool), self.as_num(&b, Num::Bool));
         let e = match op {
-            Op::Xor => x.bin(Bin::Ne, y),
+            Op::Xor => self.compared(Cmp::Ne, Num::Bool, x, y),
             // The right one is worked out in any case where it can fail.
             Op::And if b.fails() => x.bin(Bin::BitAnd, y),
             Op::Or if b.fails() => x.bin(Bin::BitOr, y),
@@ -447,7 +453,8 @@ impl Flow<'_, '_> {
                 if !matches!(f, Builtin::Abs | Builtin::Sqrt) {
                     self.g.needs_math();
                 }
-                let wide = exprs.into_iter().map(|e| if n == Num::F32 { e.cast(vars::ty(Num::F64)) } else { e });
+                let wide =
+                    exprs.into_iter().map(|e| if n == Num::F32 { e.cast(vars::ty(Num::F64)) } else { e });
                 let e = Expr::call(format!("real_{name}"), wide.collect());
                 if n == Num::F32 { e.cast(vars::ty(Num::F32)) } else { e }
             }

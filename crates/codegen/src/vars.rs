@@ -237,7 +237,8 @@ impl Vars {
     }
 
     fn hide(&mut self, start: u32, words: u32, home: Home, shape: Shape, field: String) {
-        self.slots.insert(start, Slot { start, words, home, shape, field, note: String::new(), retain: false });
+        self.slots
+            .insert(start, Slot { start, words, home, shape, field, note: String::new(), retain: false });
     }
 
     /// The slot in which a word lies.

@@ -80,6 +80,8 @@ pub(crate) enum Command {
     Import(Import),
     /// Write a chart in the form of another tool.
     Export(crate::export::Export),
+    /// Print code for a controller from a chart.
+    Gen(crate::r#gen::Gen),
     /// Explain a problem code, or list them all.
     Explain(Explain),
     /// Print the completions for a shell.

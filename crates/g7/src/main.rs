@@ -21,6 +21,7 @@ mod export;
 mod failure;
 mod files;
 mod fmt;
+mod r#gen;
 mod import;
 mod new;
 mod progress;
@@ -79,6 +80,7 @@ fn run(command: &Command) -> Result<Verdict, Failure> {
         Command::Serve(args) => serve::serve(args),
         Command::Import(args) => import::import(args),
         Command::Export(args) => export::export(args),
+        Command::Gen(args) => r#gen::generate(args),
         Command::Explain(args) => explain::explain(args),
         Command::Completions(args) => shell::completions(args),
         Command::Man(args) => shell::man(args),

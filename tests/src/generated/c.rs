@@ -93,7 +93,8 @@ fn player(subject: &Subject, printed: &Printed, name: &str) -> String {
     let symbols = &subject.compiled.symbols;
     let mut t = String::new();
     let _ = writeln!(t, "static void show_{name}(const {name}_state *s, uint8_t fault)\n{{\n    put(fault);");
-    let outputs: u32 = visible(&subject.compiled).filter(|v| v.class == VarClass::Output).map(|v| v.words()).sum();
+    let outputs: u32 =
+        visible(&subject.compiled).filter(|v| v.class == VarClass::Output).map(|v| v.words()).sum();
     let all: u32 = visible(&subject.compiled).map(|v| v.words()).sum();
     let _ = writeln!(t, "    put(fault ? {outputs} : {});", all + 2 * symbols.steps());
     t += "    if (!fault) {\n";
@@ -137,7 +138,12 @@ fn player(subject: &Subject, printed: &Printed, name: &str) -> String {
 /// # Errors
 ///
 /// What a compiler has to say, or what cannot be printed (the titles of those charts).
-pub fn c_program(folder: &Path, compiler: &str, flags: &[&str], subjects: &[&Subject]) -> Result<PathBuf, String> {
+pub fn c_program(
+    folder: &Path,
+    compiler: &str,
+    flags: &[&str],
+    subjects: &[&Subject],
+) -> Result<PathBuf, String> {
     std::fs::create_dir_all(folder).map_err(|e| e.to_string())?;
     let mut main = String::from(HEAD);
     let mut files = Vec::new();
@@ -161,8 +167,13 @@ pub fn c_program(folder: &Path, compiler: &str, flags: &[&str], subjects: &[&Sub
     std::fs::write(folder.join("main.c"), main).map_err(|e| e.to_string())?;
     let program = folder.join("charts");
     let strict = ["-std=c99", "-Wall", "-Wextra", "-Wconversion", "-pedantic", "-Werror"];
-    let mut command = Command::new(compiler);
-    command.args(strict).args(flags).arg("main.c").args(&files).args(["-o", "charts", "-lm"]).current_dir(folder);
-    run(&mut command)?;
+    let start = || {
+        let mut command = Command::new(compiler);
+        command.args(flags).current_dir(folder);
+        command
+    };
+    run(start().args(strict).arg("-c").args(&files))?;
+    let objects = files.iter().map(|f| f.replace(".c", ".o"));
+    run(start().args(["-std=c99", "-w", "main.c"]).args(objects).args(["-o", "charts", "-lm"]))?;
     Ok(program)
 }

@@ -317,7 +317,12 @@ fn text(word: Option<u64>) -> String {
 
 /// Whether a tool can be started.
 pub fn has(tool: &str) -> bool {
-    Command::new(tool).arg("--version").stdout(Stdio::null()).stderr(Stdio::null()).status().is_ok_and(|s| s.success())
+    Command::new(tool)
+        .arg("--version")
+        .stdout(Stdio::null())
+        .stderr(Stdio::null())
+        .status()
+        .is_ok_and(|s| s.success())
 }
 
 pub(crate) fn run(command: &mut Command) -> Result<(), String> {

@@ -52,7 +52,9 @@ fn getter(place: &str, v: &Variable) -> String {
 fn putter(place: &str, v: &Variable) -> String {
     match v.ty {
         Type::Bool => format!("w.put(u64::from({place}));"),
-        Type::Real => format!("w.put(if {place}.is_nan() {{ 0x7fc0_0000 }} else {{ u64::from({place}.to_bits()) }});"),
+        Type::Real => {
+            format!("w.put(if {place}.is_nan() {{ 0x7fc0_0000 }} else {{ u64::from({place}.to_bits()) }});")
+        }
         Type::Lreal => {
             format!("w.put(if {place}.is_nan() {{ 0x7ff8_0000_0000_0000 }} else {{ {place}.to_bits() }});")
         }
@@ -70,7 +72,8 @@ fn each(path: &str, v: &Variable, line: fn(&str, &Variable) -> String) -> String
 fn player(subject: &Subject, printed: &Printed, name: &str) -> String {
     let symbols = &subject.compiled.symbols;
     let mut t = String::new();
-    let outputs: u32 = visible(&subject.compiled).filter(|v| v.class == VarClass::Output).map(|v| v.words()).sum();
+    let outputs: u32 =
+        visible(&subject.compiled).filter(|v| v.class == VarClass::Output).map(|v| v.words()).sum();
     let all: u32 = visible(&subject.compiled).map(|v| v.words()).sum();
     let _ = writeln!(
         t,
@@ -83,8 +86,10 @@ fn player(subject: &Subject, printed: &Printed, name: &str) -> String {
         let path = printed.places.variable(v.addr).unwrap_or("missing").replacen("inputs.", "input.", 1);
         t += &each(&path, v, getter);
     }
-    let _ = writeln!(t, "        let fault = scan(&input, &mut out, &mut s, now);\n        w.put(fault.into());");
-    let _ = writeln!(t, "        w.put(if fault != 0 {{ {outputs} }} else {{ {} }});", all + 2 * symbols.steps());
+    let _ =
+        writeln!(t, "        let fault = scan(&input, &mut out, &mut s, now);\n        w.put(fault.into());");
+    let _ =
+        writeln!(t, "        w.put(if fault != 0 {{ {outputs} }} else {{ {} }});", all + 2 * symbols.steps());
     t += "        if fault == 0 {\n";
     for i in 0..symbols.steps() {
         let step = printed.places.step(StepId(i));

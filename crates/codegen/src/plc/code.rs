@@ -438,8 +438,7 @@ impl<'p, 'a> Body<'p, 'a> {
             Op::Trunc(from, to) => {
                 let v = self.pop();
                 let e = self.as_ty(&v, Ty::of(from));
-                let name = format!("{}_TRUNC_{}", Ty::of(from).name(), Ty::of(to).name());
-                self.push(Ex::call(name, vec![e]), Ty::of(to));
+                self.push(Ex::call("TRUNC", vec![e]), Ty::of(to));
             }
             Op::Call(f, n, count) => self.call(f, n, usize::from(count)),
             Op::Fb(_, base) => self.instance(base),
@@ -449,7 +448,11 @@ impl<'p, 'a> Body<'p, 'a> {
             Op::Due(_) => self.cannot("a chart with a period of its own"),
             Op::Service(_) => self.cannot("a service that sets or clears steps"),
             Op::Random(_) => self.cannot("a random number"),
-            Op::Text { .. } | Op::CompareText(_) | Op::StoreText { .. } | Op::ToText { .. } | Op::FromText(_) => {
+            Op::Text { .. }
+            | Op::CompareText(_)
+            | Op::StoreText { .. }
+            | Op::ToText { .. }
+            | Op::FromText(_) => {
                 self.cannot("a text");
                 if !matches!(op, Op::StoreText { .. }) {
                     self.push(Ex::Bool(false), Ty::BOOL);

@@ -61,7 +61,14 @@ impl Ex {
             match part {
                 Ex::Bool(true) => {}
                 Ex::Bool(false) => return part,
-                Ex::And(inner) => list.extend(inner),
+                Ex::And(inner) => {
+                    for e in inner {
+                        if !list.contains(&e) {
+                            list.push(e);
+                        }
+                    }
+                }
+                other if list.contains(&other) => {}
                 other => list.push(other),
             }
         }
@@ -79,7 +86,14 @@ impl Ex {
             match part {
                 Ex::Bool(false) => {}
                 Ex::Bool(true) => return part,
-                Ex::Or(inner) => list.extend(inner),
+                Ex::Or(inner) => {
+                    for e in inner {
+                        if !list.contains(&e) {
+                            list.push(e);
+                        }
+                    }
+                }
+                other if list.contains(&other) => {}
                 other => list.push(other),
             }
         }

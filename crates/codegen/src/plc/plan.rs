@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
 use g7_compile::Compiled;
-use g7_engine::{Extra, GroupId, Guard, NONE, Rows, Situation, StepId, Tables, Transition, WatchId};
+use g7_engine::{Extra, GroupId, Guard, NONE, Rows, StepId, Tables, Transition, WatchId};
 use g7_model::{Problem, Span, codes};
 
 use super::form::{Class, Equations, Ex, Section, St};
@@ -34,6 +34,15 @@ pub(crate) struct Plan<'a> {
     looked_back: BTreeSet<u32>,
     clock: bool,
     dt: bool,
+    /// What stored actions of one moment write.
+    pub(crate) nexts: BTreeMap<String, Ty>,
+    pub(crate) block_names: Vec<String>,
+    /// Conditions of actions that are judged before others, by their code.
+    pub(crate) judged: BTreeMap<u32, String>,
+    /// Memories of steps as the scan began.
+    pub(crate) begun: BTreeMap<String, String>,
+    /// Steps are set and reset, in the manner of DOLOG80.
+    pub(crate) set_reset: bool,
     pub(crate) e: Equations,
 }
 
@@ -43,6 +52,7 @@ impl<'a> Plan<'a> {
         c: &'a Compiled,
         name: &str,
         source: &'a str,
+        set_reset: bool,
         hidden: HashMap<u32, Ty>,
     ) -> Plan<'a> {
         let t = c.program.tables();
@@ -63,6 +73,11 @@ impl<'a> Plan<'a> {
             looked_back: BTreeSet::new(),
             clock: false,
             dt: false,
+            nexts: BTreeMap::new(),
+            block_names: Vec::new(),
+            judged: BTreeMap::new(),
+            begun: BTreeMap::new(),
+            set_reset,
             e: Equations::default(),
         };
         p.e.name = p.names.variable(name);
@@ -95,9 +110,6 @@ impl<'a> Plan<'a> {
         if t.rules.sequential && (hierarchy || !t.orders.is_empty()) {
             self.cannot(0, "enclosing or forcing under transitions that clear in turn");
         }
-        if !t.orders.is_empty() && t.rules.stable && t.orders.iter().any(|o| o.situation == Situation::Current) {
-            // `{*}` only blocks; nothing to refuse.
-        }
     }
 
     pub(crate) fn cannot(&mut self, at: u32, what: &str) {
@@ -120,8 +132,11 @@ impl<'a> Plan<'a> {
             let id = StepId(i as u32);
             let name = self.names.with("X", symbols.step_name(id));
             let note = symbols.step_path(id);
-            let note =
-                if symbols.is_listed(id) { format!("step {note}") } else { format!("stands for the macro-step {note}") };
+            let note = if symbols.is_listed(id) {
+                format!("step {note}")
+            } else {
+                format!("stands for the macro-step {note}")
+            };
             self.declare(&name, "BOOL", &note);
             self.steps.push(name);
         }
@@ -160,12 +175,18 @@ impl<'a> Plan<'a> {
         Ex::Var(name)
     }
 
-    fn group_steps(&self, g: GroupId) -> std::ops::Range<u32> {
-        self.t.groups.get(g.0 as usize).map_or(0..0, |g| g.steps.start..g.steps.end)
+    /// The steps that count in a group.
+    fn group_steps(&self, g: GroupId) -> Vec<u32> {
+        let range = self.t.groups.get(g.0 as usize).map_or(0..0, |g| g.steps.start..g.steps.end);
+        let counts = |s: &u32| {
+            let rows = self.extra(*s).groups;
+            self.t.group_lists.get(rows.start as usize..rows.end as usize).unwrap_or(&[]).contains(&g)
+        };
+        range.filter(counts).collect()
     }
 
     pub(crate) fn group_active(&self, g: GroupId) -> Ex {
-        Ex::any(self.group_steps(g).map(|s| self.active(s)))
+        Ex::any(self.group_steps(g).into_iter().map(|s| self.active(s)))
     }
 
     /// The variable that holds the time of a step.
@@ -174,7 +195,11 @@ impl<'a> Plan<'a> {
         self.now();
         let name = format!("XT_{}", self.step(step).trim_start_matches("X_"));
         self.declare(&name, "TIME", "since its activation");
-        self.declare(&format!("XS_{}", self.step(step).trim_start_matches("X_")), "TIME", "when it was activated");
+        self.declare(
+            &format!("XS_{}", self.step(step).trim_start_matches("X_")),
+            "TIME",
+            "when it was activated",
+        );
         Ex::Var(name)
     }
 
@@ -238,6 +263,15 @@ impl<'a> Plan<'a> {
         name
     }
 
+    /// The word of a name that the lowering made.
+    pub(crate) fn hidden_at(&self, name: &str) -> Option<u32> {
+        self.hidden_names.iter().find(|(_, n)| *n == name).map(|(addr, _)| *addr)
+    }
+
+    pub(crate) fn has_timed_groups(&self) -> bool {
+        !self.timed_groups.is_empty()
+    }
+
     /// A piece of the chart's text on one line.
     pub(crate) fn text(&self, span: Span) -> String {
         let text = self.source.get(span.start as usize..span.end as usize).unwrap_or("");
@@ -250,7 +284,11 @@ impl<'a> Plan<'a> {
 
     pub(crate) fn extra(&self, step: u32) -> Extra {
         let row = self.t.steps.get(step as usize).map_or(NONE, |s| s.extra);
-        if row == NONE { Extra::default() } else { self.t.extras.get(row as usize).copied().unwrap_or_default() }
+        if row == NONE {
+            Extra::default()
+        } else {
+            self.t.extras.get(row as usize).copied().unwrap_or_default()
+        }
     }
 
     pub(crate) fn arcs(&self, rows: Rows) -> Vec<u32> {
@@ -292,10 +330,15 @@ impl<'a> Plan<'a> {
         let mut first = Section::new("");
         first.assign("", "FIRST", Ex::Bool(false));
         sections.push(first);
+        let after = self.end_of_scan();
         let moves = self.moves();
         sections.extend(moves);
-        let after = self.end_of_scan();
         self.e.before.push(start);
+        let mut begun = Section::new("As the scan begins");
+        for (before, step) in self.begun.clone() {
+            begun.assign("", before, Ex::Var(step));
+        }
+        self.e.before.push(begun);
         self.e.pass = sections;
         self.e.after = after;
         let mut back = Section::new("As the pass begins");
@@ -444,6 +487,14 @@ impl<'a> Plan<'a> {
             };
             let note = self.transition_note(i as u32);
             s.act("", Ex::Bool(true), before);
+            let mut note = note;
+            let mut guard = guard;
+            if self.set_reset && guard != Ex::Bool(true) {
+                let own = self.transitions.get(i).cloned().unwrap_or_default();
+                let r = self.memory("R", own.trim_start_matches("T_"), Ty::BOOL, "its receptivity");
+                s.assign(std::mem::take(&mut note), r.clone(), guard);
+                guard = Ex::Var(r);
+            }
             let mut e = Ex::all(from.iter().map(|f| self.active(*f)).chain([guard]));
             if let Some(b) = blocked.get(&t.chart) {
                 e = e.and(Ex::var(b.clone()).not());
@@ -505,7 +556,11 @@ impl<'a> Plan<'a> {
     fn transition_note(&self, rank: u32) -> String {
         let symbols = &self.c.symbols;
         let text = self.text(symbols.transition_place(rank));
-        if text.is_empty() || !symbols.is_written(rank) { symbols.transition_text(rank).to_owned() } else { text }
+        if text.is_empty() || !symbols.is_written(rank) {
+            symbols.transition_text(rank).to_owned()
+        } else {
+            text
+        }
     }
 
     /// The clock and the times of steps, for what turned out to be read.
@@ -518,7 +573,11 @@ impl<'a> Plan<'a> {
             };
             let et = Ex::var("CLOCK.ET");
             let now = St::set("NOW", Ex::op("+", Ex::var("CLOCK_BASE"), et.clone()));
-            s.act("A timer that runs on gives the time; it begins anew each hour", Ex::Bool(true), vec![call(true), now]);
+            s.act(
+                "A timer that runs on gives the time; it begins anew each hour",
+                Ex::Bool(true),
+                vec![call(true), now],
+            );
             let over = Ex::op(">=", et, Ex::Time(3_600_000_000_000));
             s.act("", over, vec![St::set("CLOCK_BASE", Ex::var("NOW")), call(false), call(true)]);
         }
@@ -558,12 +617,17 @@ impl<'a> Plan<'a> {
     /// Rungs that start and stop the times of steps, before their bits change.
     pub(crate) fn stamps(&mut self, s: &mut Section, come: &HashMap<u32, (Ex, Ex)>) {
         let keep = self.t.rules.keep_step_time;
-        for (step, scans) in
-            self.timed.clone().into_iter().map(|s| (s, false)).chain(self.counted.clone().into_iter().map(|s| (s, true)))
+        for (step, scans) in self
+            .timed
+            .clone()
+            .into_iter()
+            .map(|s| (s, false))
+            .chain(self.counted.clone().into_iter().map(|s| (s, true)))
         {
             let Some((on, off)) = come.get(&step) else { continue };
             let name = self.step(StepId(step)).trim_start_matches("X_").to_owned();
-            let zero = if scans { (format!("XN_{name}"), Ex::Int(0)) } else { (format!("XT_{name}"), Ex::Time(0)) };
+            let zero =
+                if scans { (format!("XN_{name}"), Ex::Int(0)) } else { (format!("XT_{name}"), Ex::Time(0)) };
             let mut begin = vec![St::set(zero.0.clone(), zero.1.clone())];
             if !scans {
                 begin.push(St::set(format!("XS_{name}"), Ex::var("NOW")));
@@ -579,7 +643,7 @@ impl<'a> Plan<'a> {
     pub(crate) fn group_stamps(&mut self, s: &mut Section, next: impl Fn(u32) -> Ex) {
         for g in self.timed_groups.clone() {
             let now = self.group_active(GroupId(g));
-            let then = Ex::any(self.group_steps(GroupId(g)).map(&next));
+            let then = Ex::any(self.group_steps(GroupId(g)).into_iter().map(&next));
             let (time, start) = (format!("GT_{}", g + 1), format!("GS_{}", g + 1));
             let begin = vec![St::set(time.clone(), Ex::Time(0)), St::set(start, Ex::var("NOW"))];
             s.act("", then.clone().and(now.clone().not()), begin);
@@ -657,7 +721,8 @@ impl<'a> Plan<'a> {
             }
         }
         let kept = |v: &super::form::Declared| {
-            matches!(v.class, Class::Input | Class::Output) || ["PASSES", "CHANGED", "FAULT"].contains(&&*v.name)
+            matches!(v.class, Class::Input | Class::Output)
+                || ["PASSES", "CHANGED", "FAULT"].contains(&&*v.name)
         };
         self.e.variables.retain(|v| kept(v) || used.contains(&v.name));
     }

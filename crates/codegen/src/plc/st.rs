@@ -30,21 +30,8 @@ pub(crate) fn print(e: &Equations) -> String {
     if e.safe.is_some() {
         p.depth -= 1;
         p.line("END_IF;");
-        p.line("IF NOT FAULT THEN");
-        p.depth += 1;
     }
-    p.sections(&e.after);
-    if let Some(safe) = &e.safe {
-        p.depth -= 1;
-        if !safe.is_empty() {
-            p.line("ELSE");
-            p.depth += 1;
-            p.comment("No stable situation, or orders that disagree: the safe values, and no further scan");
-            p.block(safe);
-            p.depth -= 1;
-        }
-        p.line("END_IF;");
-    }
+    p.ending(e);
     out += &p.out;
     out += "END_FUNCTION_BLOCK\n";
     out
@@ -127,6 +114,30 @@ impl Printer {
         }
     }
 
+    /// What comes behind the evolution, or the safe values after a fault.
+    fn ending(&mut self, e: &Equations) {
+        let Some(safe) = &e.safe else { return self.sections(&e.after) };
+        let works = e.after.iter().any(|s| !s.rungs.is_empty());
+        if works {
+            self.line("IF NOT FAULT THEN");
+            self.depth += 1;
+            self.sections(&e.after);
+            self.depth -= 1;
+        }
+        if !safe.is_empty() {
+            self.line(if works { "ELSE" } else { "IF FAULT THEN" });
+            self.depth += 1;
+            self.comment(
+                "No stable situation, or orders that disagree: the safe values, and no further scan",
+            );
+            self.block(safe);
+            self.depth -= 1;
+        }
+        if works || !safe.is_empty() {
+            self.line("END_IF;");
+        }
+    }
+
     fn when(&mut self, e: &Ex, body: &[St]) {
         match e {
             Ex::Bool(true) => self.block(body),
@@ -182,7 +193,8 @@ impl Printer {
             }
             St::Exit => self.line("EXIT;"),
             St::Call(name, inputs) => {
-                let inputs: Vec<String> = inputs.iter().map(|(n, e)| format!("{n} := {}", expression(e))).collect();
+                let inputs: Vec<String> =
+                    inputs.iter().map(|(n, e)| format!("{n} := {}", expression(e))).collect();
                 self.line(&format!("{name}({});", inputs.join(", ")));
             }
         }

@@ -478,6 +478,12 @@ fn collect(s: &mut State) {
             return;
         }
     }
+    if HAS_OUTS {
+        watch_all(s);
+    }
+}
+
+fn watch_all(s: &mut State) {
     let mut j: usize = 0;
     while j < TOP {
         let mut words: u32 = s.m.top[j];

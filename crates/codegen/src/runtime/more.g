@@ -588,7 +588,6 @@ fn control_block(s: &mut State, k: usize, at: usize, gate: bool) -> u32 {
     let p1: bool = (((now & 0x40) != 0 && (before & 0x40) == 0) || (flip & 32) != 0) && !r && gate;
     let p0: bool = (((now & 0x80) == 0 && (before & 0x80) != 0) || (flip & 64) != 0) && !r && gate;
     let level: bool = !r && gate && (n || s_flip || (l && !l_done) || d_done || pulse || sd_done || ds_flip || (sl_flip && !sl_done));
-    let fell: bool = (flip & 16) != 0 && !level;
     let mut keep: u16 = 0;
     if s_flip {
         keep |= 1;
@@ -612,7 +611,7 @@ fn control_block(s: &mut State, k: usize, at: usize, gate: bool) -> u32 {
     if q {
         result |= 1;
     }
-    if q || (FINAL_SCAN && fell) {
+    if q || (FINAL_SCAN && (flip & 16) != 0 && !level) {
         result |= 2;
     }
     let live: bool = (l && !l_done) || (d && !d_done) || (sd_flip && !sd_done) || (ds && !ds_done) || (sl_flip && !sl_done);

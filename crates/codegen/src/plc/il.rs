@@ -1,0 +1,292 @@
+//! The equations as Instruction List.
+
+use std::fmt::Write;
+
+use super::form::{Equations, Ex, Section, St, What};
+use super::st::{declarations, expression, plain};
+
+/// The whole function block.
+pub(crate) fn print(e: &Equations) -> String {
+    let mut p = Printer { e, out: String::new(), labels: 0, loops: Vec::new() };
+    p.sections(&e.before);
+    let fine = e.safe.is_some().then(|| p.label());
+    if let Some(label) = &fine {
+        p.line("LD FAULT");
+        p.line(&format!("JMPC {label}"));
+    }
+    match e.bound {
+        None => p.sections(&e.pass),
+        Some(bound) => {
+            p.comment("The evolution, until nothing changes");
+            p.lines(&["LD 0", "ST PASSES"]);
+            let again = p.label();
+            p.mark(&again);
+            p.lines(&["LD PASSES", "ADD 1", "ST PASSES"]);
+            p.sections(&e.pass);
+            let (over, stable) = (p.label(), p.label());
+            p.lines(&["LD FAULT", "ORN CHANGED"]);
+            p.line(&format!("JMPC {stable}"));
+            p.lines(&["LD PASSES", &format!("GE {bound}")]);
+            p.line(&format!("JMPC {over}"));
+            p.line(&format!("JMP {again}"));
+            p.mark(&over);
+            p.lines(&["LD TRUE", "S FAULT"]);
+            p.mark(&stable);
+        }
+    }
+    if let (Some(label), Some(safe)) = (fine, &e.safe) {
+        let (faulty, end) = (p.label(), p.label());
+        p.line("LD FAULT");
+        p.line(&format!("JMPC {faulty}"));
+        p.sections(&e.after);
+        p.line(&format!("JMP {end}"));
+        p.mark(&label);
+        p.mark(&faulty);
+        p.comment("No stable situation, or orders that disagree: the safe values, and no further scan");
+        p.block(safe);
+        p.mark(&end);
+    } else {
+        p.sections(&e.after);
+    }
+    let body = if p.out.trim().is_empty() { "  LD TRUE\n".to_owned() } else { p.out };
+    format!("{}{body}  RET\nEND_FUNCTION_BLOCK\n", declarations(e))
+}
+
+struct Printer<'e> {
+    e: &'e Equations,
+    out: String,
+    labels: usize,
+    /// Labels behind the loops round this point.
+    loops: Vec<String>,
+}
+
+impl Printer<'_> {
+    fn line(&mut self, text: &str) {
+        let _ = writeln!(self.out, "  {text}");
+    }
+
+    fn lines(&mut self, list: &[&str]) {
+        list.iter().for_each(|l| self.line(l));
+    }
+
+    fn comment(&mut self, note: &str) {
+        let note = plain(note);
+        if !note.is_empty() {
+            self.line(&format!("(* {note} *)"));
+        }
+    }
+
+    fn label(&mut self) -> String {
+        self.labels += 1;
+        format!("P_{}", self.labels)
+    }
+
+    fn mark(&mut self, label: &str) {
+        let _ = writeln!(self.out, "{label}:");
+    }
+
+    fn sections(&mut self, sections: &[Section]) {
+        for s in sections.iter().filter(|s| !s.rungs.is_empty()) {
+            self.comment(&s.title);
+            for r in &s.rungs {
+                self.comment(&r.note);
+                match &r.what {
+                    What::Assign(to, e) => self.store(e, "ST", to),
+                    What::Set(to, e) => self.store(e, "S", to),
+                    What::Reset(to, e) => self.store(e, "R", to),
+                    What::Do(Ex::Bool(true), body) => self.block(body),
+                    What::Do(e, body) => {
+                        let behind = self.label();
+                        self.load(e);
+                        self.line(&format!("JMPCN {behind}"));
+                        self.block(body);
+                        self.mark(&behind);
+                    }
+                }
+            }
+        }
+    }
+
+    fn store(&mut self, e: &Ex, with: &str, to: &str) {
+        self.load(e);
+        self.line(&format!("{with} {to}"));
+    }
+
+    fn block(&mut self, body: &[St]) {
+        body.iter().for_each(|s| self.statement(s));
+    }
+
+    fn statement(&mut self, s: &St) {
+        match s {
+            St::Assign(to, e) => self.store(e, "ST", &expression(to)),
+            St::If(c, then, other) => {
+                let (behind, end) = (self.label(), self.label());
+                self.load(c);
+                self.line(&format!("JMPCN {behind}"));
+                self.block(then);
+                if !other.is_empty() {
+                    self.line(&format!("JMP {end}"));
+                }
+                self.mark(&behind);
+                if !other.is_empty() {
+                    self.block(other);
+                    self.mark(&end);
+                }
+            }
+            St::Loop(body) => {
+                let (again, end) = (self.label(), self.label());
+                self.mark(&again);
+                self.loops.push(end.clone());
+                self.block(body);
+                self.loops.pop();
+                self.line(&format!("JMP {again}"));
+                self.mark(&end);
+            }
+            St::Exit => {
+                let end = self.loops.last().cloned().unwrap_or_default();
+                self.line(&format!("JMP {end}"));
+            }
+            St::Call(name, inputs) => {
+                // Some inputs are called as operators are: LD, R, S. These are stored.
+                if inputs.iter().any(|(formal, _)| !matches!(formal.as_str(), "IN" | "PT"))
+                    || inputs.is_empty()
+                {
+                    for (formal, e) in inputs {
+                        self.store(e, "ST", &format!("{name}.{formal}"));
+                    }
+                    return self.line(&format!("CAL {name}"));
+                }
+                self.line(&format!("CAL {name}("));
+                self.inputs(inputs);
+                self.line(")");
+            }
+        }
+    }
+
+    /// Named inputs of a call, one a line.
+    fn inputs(&mut self, inputs: &[(String, Ex)]) {
+        for (i, (name, e)) in inputs.iter().enumerate() {
+            let comma = if i + 1 < inputs.len() { "," } else { "" };
+            match operand(e) {
+                Some(text) => self.line(&format!("  {name} := {text}{comma}")),
+                None => {
+                    self.line(&format!("  {name} := ("));
+                    self.load(e);
+                    self.line(&format!("  ){comma}"));
+                }
+            }
+        }
+    }
+
+    /// The value as the current result.
+    fn load(&mut self, e: &Ex) {
+        if let Some(text) = operand(e) {
+            return self.line(&format!("LD {text}"));
+        }
+        match e {
+            Ex::Not(inner) => match operand(inner) {
+                Some(text) => self.line(&format!("LDN {text}")),
+                None => {
+                    self.line("LD TRUE");
+                    self.with("ANDN", inner);
+                }
+            },
+            Ex::And(list) => self.chain(list, "AND"),
+            Ex::Or(list) => self.chain(list, "OR"),
+            Ex::Xor(a, b) => {
+                self.load(a);
+                self.with("XOR", b);
+            }
+            Ex::Neg(inner) => {
+                self.line(if self.is_real(inner) { "LD 0.0" } else { "LD 0" });
+                self.with("SUB", inner);
+            }
+            Ex::Op(sign, a, b) => {
+                self.load(a);
+                let word = match *sign {
+                    "+" => "ADD",
+                    "-" => "SUB",
+                    "*" => "MUL",
+                    "/" => "DIV",
+                    "=" => "EQ",
+                    "<>" => "NE",
+                    "<" => "LT",
+                    "<=" => "LE",
+                    ">" => "GT",
+                    ">=" => "GE",
+                    other => other,
+                };
+                self.with(word, b);
+            }
+            Ex::Call(name, args) => self.function(name, args),
+            Ex::Bool(_) | Ex::Int(_) | Ex::Real(_) | Ex::Time(_) | Ex::Var(_) | Ex::Index(..) => {}
+        }
+    }
+
+    fn chain(&mut self, list: &[Ex], word: &str) {
+        // What needs brackets comes first, where that saves them.
+        let Some((first, rest)) = list.split_first() else { return };
+        self.load(first);
+        for e in rest {
+            match e {
+                Ex::Not(inner) => self.with(&format!("{word}N"), inner),
+                e => self.with(word, e),
+            }
+        }
+    }
+
+    fn with(&mut self, word: &str, e: &Ex) {
+        match operand(e) {
+            Some(text) => self.line(&format!("{word} {text}")),
+            None => {
+                self.line(&format!("{word}("));
+                self.load(e);
+                self.line(")");
+            }
+        }
+    }
+
+    fn function(&mut self, name: &str, args: &[Ex]) {
+        if let [one] = args {
+            self.load(one);
+            return self.line(name);
+        }
+        let names: Vec<String> = match name {
+            "SEL" => vec!["G".into(), "IN0".into(), "IN1".into()],
+            "LIMIT" => vec!["MN".into(), "IN".into(), "MX".into()],
+            "MUX" => std::iter::once("K".to_owned())
+                .chain((0..).map(|i| format!("IN{i}")))
+                .take(args.len())
+                .collect(),
+            _ => (1..=args.len()).map(|i| format!("IN{i}")).collect(),
+        };
+        self.line(&format!("{name}("));
+        self.inputs(&names.into_iter().zip(args.iter().cloned()).collect::<Vec<_>>());
+        self.line(")");
+    }
+
+    fn is_real(&self, e: &Ex) -> bool {
+        let mut found = false;
+        e.walk(&mut |e| {
+            found |= match e {
+                Ex::Real(_) => true,
+                Ex::Var(n) | Ex::Index(n, _) => {
+                    self.e.variables.iter().any(|v| v.name == *n && v.ty.ends_with("REAL"))
+                }
+                Ex::Call(n, _) => n.ends_with("REAL"),
+                _ => false,
+            }
+        });
+        found
+    }
+}
+
+/// What can stand behind an operator as it is.
+fn operand(e: &Ex) -> Option<String> {
+    match e {
+        Ex::Bool(_) | Ex::Int(_) | Ex::Real(_) | Ex::Time(_) | Ex::Var(_) | Ex::Index(..) => {
+            Some(expression(e))
+        }
+        _ => None,
+    }
+}

@@ -1,0 +1,326 @@
+//! The equations as rungs of Ladder: contacts in series and parallel, coils,
+//! and blocks for what is not Boolean. `ld` writes them as PLCopen XML,
+//! `drawn` as a picture.
+
+use g7_model::{Problem, Span, codes};
+
+use super::form::{Class, Declared, Equations, Ex, Section, St, What};
+use super::st::expression;
+
+/// What power flows through.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Net {
+    Wire,
+    Contact { name: String, negated: bool },
+    Series(Vec<Net>),
+    Parallel(Vec<Net>),
+}
+
+/// What a coil does.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Coil {
+    Plain,
+    Set,
+    Reset,
+}
+
+/// A function or function block that power enables.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Block {
+    pub(crate) ty: String,
+    pub(crate) instance: Option<String>,
+    pub(crate) inputs: Vec<(String, String)>,
+    /// Where its result goes.
+    pub(crate) output: Option<(String, String)>,
+}
+
+/// What stands at the right end.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum End {
+    Coil(String, Coil),
+    Block(Block),
+}
+
+/// One rung.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Rung {
+    pub(crate) title: String,
+    pub(crate) note: String,
+    pub(crate) net: Net,
+    pub(crate) end: End,
+}
+
+/// The rungs with the declarations they need.
+#[derive(Debug)]
+pub(crate) struct Ladder {
+    pub(crate) variables: Vec<Declared>,
+    pub(crate) rungs: Vec<Rung>,
+}
+
+/// Equations as rungs.
+///
+/// # Errors
+///
+/// What Ladder cannot say.
+pub(crate) fn ladder(e: &Equations, place: Span) -> Result<Ladder, Vec<Problem>> {
+    let mut l = Maker { variables: e.variables.clone(), rungs: Vec::new(), memories: 0, refused: None };
+    if e.bound.is_some() {
+        l.refused = Some("a search for stability, which is a loop: choose a profile of one pass; it");
+    } else if e.safe.is_some() {
+        l.refused = Some("a fault that stops the rungs behind it");
+    }
+    for s in e.sections() {
+        l.section(s);
+    }
+    match l.refused {
+        Some(what) => {
+            let text = format!("{what} cannot be printed as Ladder");
+            Err(vec![Problem::new(&codes::NOT_CARRIED, place, text)])
+        }
+        None => Ok(Ladder { variables: l.variables, rungs: l.rungs }),
+    }
+}
+
+struct Maker {
+    variables: Vec<Declared>,
+    rungs: Vec<Rung>,
+    memories: usize,
+    refused: Option<&'static str>,
+}
+
+impl Maker {
+    fn section(&mut self, s: &Section) {
+        let from = self.rungs.len();
+        for r in &s.rungs {
+            let at = self.rungs.len();
+            match &r.what {
+                What::Assign(to, Ex::Bool(false)) => self.coil(&Ex::Bool(true), to, Coil::Reset),
+                What::Assign(to, e) => self.coil(e, to, Coil::Plain),
+                What::Set(to, e) => self.coil(e, to, Coil::Set),
+                What::Reset(to, e) => self.coil(e, to, Coil::Reset),
+                What::Do(e, body) => self.act(e, body),
+            }
+            if let Some(first) = self.rungs.get_mut(at) {
+                first.note.clone_from(&r.note);
+            }
+        }
+        if let Some(first) = self.rungs.get_mut(from) {
+            first.title.clone_from(&s.title);
+        }
+    }
+
+    fn push(&mut self, net: Net, end: End) {
+        self.rungs.push(Rung { title: String::new(), note: String::new(), net, end });
+    }
+
+    fn coil(&mut self, e: &Ex, to: &str, coil: Coil) {
+        let Some(net) = self.net(e, false) else {
+            // Never any power: a plain coil is off, the others do nothing.
+            if coil == Coil::Plain {
+                self.push(Net::Wire, End::Coil(to.to_owned(), Coil::Reset));
+            }
+            return;
+        };
+        self.push(net, End::Coil(to.to_owned(), coil));
+    }
+
+    fn memory(&mut self, ty: &str) -> String {
+        loop {
+            self.memories += 1;
+            let name = format!("K_{}", self.memories);
+            if self.variables.iter().all(|v| !v.name.eq_ignore_ascii_case(&name)) {
+                self.variables.push(Declared {
+                    class: Class::Internal,
+                    name: name.clone(),
+                    ty: ty.to_owned(),
+                    elements: 1,
+                    init: Vec::new(),
+                    note: String::new(),
+                });
+                return name;
+            }
+        }
+    }
+
+    /// A condition whose value is kept while statements run.
+    fn kept(&mut self, e: &Ex) -> Ex {
+        match e {
+            Ex::Bool(_) => e.clone(),
+            e => {
+                let name = self.memory("BOOL");
+                self.coil(e, &name, Coil::Plain);
+                Ex::Var(name)
+            }
+        }
+    }
+
+    fn act(&mut self, when: &Ex, body: &[St]) {
+        let when = if body.len() > 1 { self.kept(when) } else { when.clone() };
+        for s in body {
+            match s {
+                St::Assign(to, e) => self.assign(&when, &expression(to), to, e),
+                St::If(c, then, other) => {
+                    let (c, outer) = (self.kept(c), self.kept(&when));
+                    self.act(&outer.clone().and(c.clone()), then);
+                    self.act(&outer.and(c.not()), other);
+                }
+                St::Call(name, inputs) => {
+                    let ty = self.type_of(name);
+                    let mut operands = Vec::new();
+                    for (formal, e) in inputs {
+                        operands.push((formal.clone(), self.operand(e)));
+                    }
+                    let block = Block { ty, instance: Some(name.clone()), inputs: operands, output: None };
+                    self.block(&when, block);
+                }
+                St::Loop(_) | St::Exit => self.refused = Some("a loop"),
+            }
+        }
+    }
+
+    fn block(&mut self, when: &Ex, block: Block) {
+        if let Some(net) = self.net(when, false) {
+            self.push(net, End::Block(block));
+        }
+    }
+
+    fn type_of(&self, name: &str) -> String {
+        let name = name.split(['[', '.']).next().unwrap_or(name);
+        self.variables.iter().find(|v| v.name == name).map_or("DINT".into(), |v| v.ty.clone())
+    }
+
+    fn assign(&mut self, when: &Ex, to: &str, place: &Ex, e: &Ex) {
+        if matches!(place, Ex::Var(n) if self.type_of(n) == "BOOL") {
+            return match e {
+                Ex::Bool(on) => self.coil(when, to, if *on { Coil::Set } else { Coil::Reset }),
+                e => {
+                    let (when, e) = (self.kept(when), self.kept(e));
+                    self.coil(&when.clone().and(e.clone()), to, Coil::Set);
+                    self.coil(&when.and(e.not()), to, Coil::Reset);
+                }
+            };
+        }
+        let mut block = self.value(e);
+        block.output = Some(("OUT".into(), to.to_owned()));
+        self.block(when, block);
+    }
+
+    /// A value as a block; what it consists of comes before it.
+    fn value(&mut self, e: &Ex) -> Block {
+        let plain = |ty: &str, inputs: Vec<(String, String)>| Block {
+            ty: ty.into(),
+            instance: None,
+            inputs,
+            output: None,
+        };
+        match e {
+            Ex::Op(sign, a, b) => {
+                let ty = match *sign {
+                    "+" => "ADD",
+                    "-" => "SUB",
+                    "*" => "MUL",
+                    "/" => "DIV",
+                    "=" => "EQ",
+                    "<>" => "NE",
+                    "<" => "LT",
+                    "<=" => "LE",
+                    ">" => "GT",
+                    ">=" => "GE",
+                    other => other,
+                };
+                let (a, b) = (self.operand(a), self.operand(b));
+                plain(ty, vec![("IN1".into(), a), ("IN2".into(), b)])
+            }
+            Ex::Neg(inner) => {
+                let zero = if self.type_name(inner).ends_with("REAL") { "0.0" } else { "0" };
+                let inner = self.operand(inner);
+                plain("SUB", vec![("IN1".into(), zero.into()), ("IN2".into(), inner)])
+            }
+            Ex::Call(name, args) => {
+                let formal: Vec<String> = match (name.as_str(), args.len()) {
+                    ("SEL", _) => vec!["G".into(), "IN0".into(), "IN1".into()],
+                    ("LIMIT", _) => vec!["MN".into(), "IN".into(), "MX".into()],
+                    (_, 1) => vec!["IN".into()],
+                    ("MUX", n) => {
+                        std::iter::once("K".into()).chain((0..n).map(|i| format!("IN{i}"))).collect()
+                    }
+                    (_, n) => (1..=n).map(|i| format!("IN{i}")).collect(),
+                };
+                let mut inputs = Vec::new();
+                for (formal, arg) in formal.into_iter().zip(args) {
+                    inputs.push((formal, self.operand(arg)));
+                }
+                plain(name, inputs)
+            }
+            e => plain("MOVE", vec![("IN".into(), expression(e))]),
+        }
+    }
+
+    /// A value as a variable or literal.
+    fn operand(&mut self, e: &Ex) -> String {
+        match e {
+            Ex::Bool(_) | Ex::Int(_) | Ex::Real(_) | Ex::Time(_) | Ex::Var(_) | Ex::Index(..) => {
+                expression(e)
+            }
+            Ex::And(_) | Ex::Or(_) | Ex::Not(_) | Ex::Xor(..) => expression(&self.kept(e)),
+            e => {
+                let name = self.memory(&self.type_name(e));
+                let mut block = self.value(e);
+                block.output = Some(("OUT".into(), name.clone()));
+                self.push(Net::Wire, End::Block(block));
+                name
+            }
+        }
+    }
+
+    fn type_name(&self, e: &Ex) -> String {
+        match e {
+            Ex::Bool(_) | Ex::Not(_) | Ex::And(_) | Ex::Or(_) | Ex::Xor(..) => "BOOL".into(),
+            Ex::Op("=" | "<>" | "<" | "<=" | ">" | ">=", ..) => "BOOL".into(),
+            Ex::Int(_) => "DINT".into(),
+            Ex::Real(_) => "LREAL".into(),
+            Ex::Time(_) => "TIME".into(),
+            Ex::Var(n) if n.ends_with(".ET") || n.ends_with(".PT") => "TIME".into(),
+            Ex::Var(n) if n.ends_with(".CV") || n.ends_with(".PV") => "INT".into(),
+            Ex::Var(n) if n.contains('.') => "BOOL".into(),
+            Ex::Var(n) | Ex::Index(n, _) => self.type_of(n),
+            Ex::Neg(e) => self.type_name(e),
+            Ex::Op(_, a, b) => match (&**a, &**b) {
+                (Ex::Int(_) | Ex::Real(_), b) => self.type_name(b),
+                (a, _) => self.type_name(a),
+            },
+            Ex::Call(n, args) => match n.split_once("_TO_").or_else(|| n.split_once("_TRUNC_")) {
+                Some((_, to)) => to.to_owned(),
+                None => args.last().map_or("DINT".into(), |a| self.type_name(a)),
+            },
+        }
+    }
+
+    /// Contacts; `None` where no power ever comes through.
+    fn net(&mut self, e: &Ex, negated: bool) -> Option<Net> {
+        match e {
+            Ex::Bool(b) => (*b != negated).then_some(Net::Wire),
+            Ex::Not(e) => self.net(e, !negated),
+            Ex::And(list) | Ex::Or(list) => {
+                let parts: Vec<Option<Net>> = list.iter().map(|e| self.net(e, negated)).collect();
+                let series = matches!(e, Ex::And(_)) != negated;
+                if series {
+                    let parts: Option<Vec<Net>> = parts.into_iter().collect();
+                    return Some(Net::Series(parts?));
+                }
+                let parts: Vec<Net> = parts.into_iter().flatten().collect();
+                if parts.is_empty() { None } else { Some(Net::Parallel(parts)) }
+            }
+            Ex::Xor(a, b) => {
+                let (a0, a1) = (self.net(a, false)?, self.net(a, true)?);
+                let (b0, b1) = (self.net(b, negated)?, self.net(b, !negated)?);
+                Some(Net::Parallel(vec![Net::Series(vec![a0, b1]), Net::Series(vec![a1, b0])]))
+            }
+            Ex::Var(_) | Ex::Index(..) => Some(Net::Contact { name: expression(e), negated }),
+            other => {
+                let name = self.operand(other);
+                Some(Net::Contact { name, negated })
+            }
+        }
+    }
+}

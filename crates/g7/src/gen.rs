@@ -1,0 +1,218 @@
+//! `g7 gen`: code for a controller.
+
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+use clap::{Args, Subcommand};
+use g7_codegen::{File, Language, Options, plc};
+use g7_model::{Problem, ProfileName, Severity};
+
+use crate::failure::{Failure, Verdict};
+use crate::report::{self, Tally};
+use crate::sources::Source;
+use crate::{files, sources, style, talk, values};
+
+const EXAMPLES: &str = "\
+Examples:
+  g7 gen c tank -o out            out/tank.h and out/tank.c
+  g7 gen c tank                   to the standard output, one file behind the other
+  g7 gen arduino tank -o tank     a sketch folder: tank.ino with the C code
+  g7 gen rust tank -o src         src/tank.rs, a module without the standard library
+  g7 gen st tank                  Structured Text: a function block of equations
+  g7 gen il tank --style dolog80  Instruction List: steps that are set and reset
+  g7 gen ld tank -o out           Ladder as PLCopen XML: out/tank.xml
+  g7 gen ld tank --style drawn    Ladder as a picture (SVG)
+
+The code does what `g7 run` does, scan by scan. What a language cannot say is
+reported with its place, and nothing is written then.
+
+Exit codes:
+  0  fine
+  1  the chart has errors, or the language cannot say what it means
+  2  bad usage, or something outside the chart: no such file, a full disk";
+
+/// What can be asked of `g7 gen`.
+#[derive(Args, Debug)]
+#[command(after_help = EXAMPLES)]
+pub(crate) struct Gen {
+    #[command(subcommand)]
+    language: Words,
+}
+
+/// The languages.
+#[derive(Debug, Subcommand)]
+enum Words {
+    /// C99 without heap and library: a header and a source file.
+    #[command(after_help = EXAMPLES)]
+    C(What),
+    /// The same with a sketch round it.
+    #[command(after_help = EXAMPLES)]
+    Arduino(What),
+    /// A Rust module without the standard library.
+    #[command(after_help = EXAMPLES)]
+    Rust(What),
+    /// Structured Text (IEC 61131-3): Boolean equations with memories.
+    #[command(after_help = EXAMPLES)]
+    St(What),
+    /// The same equations as Instruction List.
+    #[command(after_help = EXAMPLES)]
+    Il {
+        /// How the steps change.
+        #[arg(long, value_enum, default_value_t = IlStyle::Flat)]
+        style: IlStyle,
+        #[command(flatten)]
+        what: What,
+    },
+    /// The same equations as Ladder.
+    #[command(after_help = EXAMPLES)]
+    Ld {
+        /// A file for other tools, or a picture.
+        #[arg(long, value_enum, default_value_t = LdStyle::Xml)]
+        style: LdStyle,
+        #[command(flatten)]
+        what: What,
+    },
+}
+
+/// Styles of Instruction List.
+#[derive(Clone, Copy, Debug, clap::ValueEnum)]
+enum IlStyle {
+    /// An equation for each step.
+    Flat,
+    /// A memory for each receptivity, steps that are set and reset.
+    Dolog80,
+}
+
+/// Forms of Ladder.
+#[derive(Clone, Copy, Debug, clap::ValueEnum)]
+enum LdStyle {
+    /// PLCopen XML.
+    Xml,
+    /// A picture (SVG).
+    Drawn,
+}
+
+/// What to print and where to.
+#[derive(Args, Debug)]
+struct What {
+    /// A .g7 file, a file of another tool, or a folder with a chart.g7.
+    #[arg(default_value = ".")]
+    file: PathBuf,
+    /// The folder for the files; the standard output unless said.
+    #[arg(long, short, value_name = "FOLDER")]
+    output: Option<PathBuf>,
+    /// What files and public names begin with; the name of the chart's file unless said.
+    #[arg(long, value_name = "NAME")]
+    name: Option<String>,
+    /// The rules of evolution, in place of the file's own.
+    #[arg(long, value_parser = values::profile)]
+    profile: Option<ProfileName>,
+    /// Replace files that are there.
+    #[arg(long)]
+    force: bool,
+}
+
+pub(crate) fn generate(args: &Gen) -> Result<Verdict, Failure> {
+    match &args.language {
+        Words::C(what) => controller(Tongue::Code(Language::C), what),
+        Words::Arduino(what) => controller(Tongue::Code(Language::Arduino), what),
+        Words::Rust(what) => controller(Tongue::Code(Language::Rust), what),
+        Words::St(what) => controller(Tongue::Plc(plc::Form::St, "st"), what),
+        Words::Il { style: IlStyle::Flat, what } => controller(Tongue::Plc(plc::Form::Il, "il"), what),
+        Words::Il { style: IlStyle::Dolog80, what } => controller(Tongue::Plc(plc::Form::Dolog80, "il"), what),
+        Words::Ld { style: LdStyle::Xml, what } => controller(Tongue::Plc(plc::Form::Ld, "xml"), what),
+        Words::Ld { style: LdStyle::Drawn, what } => controller(Tongue::Plc(plc::Form::Drawing, "svg"), what),
+    }
+}
+
+/// What is printed, and for a PLC the ending of its file.
+#[derive(Clone, Copy)]
+enum Tongue {
+    Code(Language),
+    Plc(plc::Form, &'static str),
+}
+
+impl Tongue {
+    fn print(
+        self,
+        compiled: &g7_compile::Compiled,
+        name: &str,
+        source: &str,
+    ) -> Result<(Vec<File>, Vec<Problem>), Vec<Problem>> {
+        match self {
+            Tongue::Code(language) => {
+                let options = Options { language, name, source };
+                g7_codegen::print(compiled, &options).map(|p| (p.files, p.problems))
+            }
+            Tongue::Plc(form, ending) => {
+                let printed = plc::print(compiled, form, name, source)?;
+                let file = File { name: format!("{name}.{ending}"), text: printed.text };
+                Ok((vec![file], printed.problems))
+            }
+        }
+    }
+}
+
+fn controller(tongue: Tongue, what: &What) -> Result<Verdict, Failure> {
+    let path = files::one(&what.file)?;
+    let source = sources::load(&path, 0)?;
+    if source.has_errors() {
+        return Ok(found(&source, &source.problems));
+    }
+    let (compiled, problems) = match what.profile {
+        Some(profile) => g7_compile::compile_as(&source.document, profile),
+        None => g7_compile::compile(&source.document),
+    };
+    let Some(compiled) = compiled else {
+        let errors: Vec<Problem> = problems.into_iter().filter(|p| p.severity() == Severity::Error).collect();
+        return Ok(found(&source, &errors));
+    };
+    let name = what.name.clone().unwrap_or_else(|| name_of(&path));
+    match tongue.print(&compiled, &name, &source.text) {
+        Ok((files, problems)) => {
+            if !problems.is_empty() {
+                found(&source, &problems);
+            }
+            deliver(what, &files)?;
+            Ok(Verdict::Fine)
+        }
+        Err(problems) => Ok(found(&source, &problems)),
+    }
+}
+
+/// `tank` of `tank.g7`, of `tank/chart.g7`, of the folder one stands in.
+fn name_of(path: &Path) -> String {
+    let stem = path.file_stem().map_or("chart".into(), |s| s.to_string_lossy().into_owned());
+    if stem != "chart" {
+        return stem;
+    }
+    let folder = std::path::absolute(path).ok().and_then(|p| p.parent()?.file_name().map(|n| n.to_owned()));
+    folder.map_or(stem, |f| f.to_string_lossy().into_owned())
+}
+
+fn deliver(what: &What, printed: &[File]) -> Result<(), Failure> {
+    let Some(folder) = &what.output else {
+        let mut out = anstream::stdout().lock();
+        for (i, file) in printed.iter().enumerate() {
+            write!(out, "{}{}", if i > 0 { "\n" } else { "" }, file.text)?;
+        }
+        out.flush()?;
+        return Ok(());
+    };
+    let paths: Vec<PathBuf> = printed.iter().map(|f| folder.join(&f.name)).collect();
+    if let Some(there) = paths.iter().find(|p| p.exists() && !what.force) {
+        return Err(Failure::Usage(format!("{} is there already; --force replaces it", there.display())));
+    }
+    std::fs::create_dir_all(folder).map_err(|e| Failure::Write(folder.clone(), e))?;
+    for (file, path) in printed.iter().zip(&paths) {
+        files::write(path, file.text.as_bytes())?;
+        talk!("{}wrote{:#} {}", style::GOOD, style::GOOD, path.display());
+    }
+    Ok(())
+}
+
+fn found(source: &Source, problems: &[Problem]) -> Verdict {
+    talk!("{}", report::text(source, problems).trim_end());
+    talk!("{}: {}", source.name, Tally::of(problems));
+    Verdict::Found
+}
