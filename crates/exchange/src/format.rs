@@ -3,7 +3,8 @@
 use crate::{classicladder, controlexpert, iectext, jgrafchart, l5x, s7graph, xmi, xml};
 
 /// The endings that files of the formats have, without the dot; some have none of these.
-pub const ENDINGS: [&str; 10] = ["xml", "grafcet", "xmi", "st", "sfc", "exp", "xsf", "xef", "l5x", "clprj"];
+pub const ENDINGS: [&str; 11] =
+    ["xml", "grafcet", "xmi", "st", "sfc", "exp", "xsf", "xef", "l5x", "clp", "clprj"];
 
 /// A foreign format.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]

@@ -118,7 +118,7 @@ codes! {
 
     // Imported files
     BAD_XML = "G0601" Error "a file that is no well-formed XML" "XML 1.0";
-    NOT_JGRAFCHART = "G0602" Error "a file that is no chart of JGrafchart" "JGrafchart 2.6.1, files";
+    NOT_JGRAFCHART = "G0602" Error "a file in which there is no chart" "the form of the file";
     UNKNOWN_ELEMENT = "G0603" Warning "an element that is not known" "the form of the file";
     NOT_CARRIED = "G0604" Error "a part with a meaning that cannot be carried over" "the language of the file";
     LEFT_OUT = "G0605" Warning "a part that is left out; the rest runs" "the language of the file";

@@ -9,7 +9,8 @@ use std::ops::Range;
 use g7_model::{BinaryOp, Expr, Stmt, codes};
 
 use super::plan::Key;
-use super::vars::{Vars, kind, title};
+use super::tables::table_name;
+use super::vars::{self, Vars, kind};
 use crate::nodes::{self, binary, call, int};
 use crate::report::Report;
 
@@ -37,6 +38,12 @@ pub(super) struct Arith<'a, 'b, 'c> {
     start: usize,
     at: usize,
     depth: usize,
+}
+
+/// A variable by its number, or by a number and the value of another one.
+enum Named {
+    One(Key),
+    At(Key, Key),
 }
 
 /// An expression that cannot be read, or not carried over; it has been reported.
@@ -90,17 +97,16 @@ impl<'a, 'b, 'c> Arith<'a, 'b, 'c> {
         Some(binary(op, left?, right?, span))
     }
 
-    /// An assignment.
-    pub(super) fn operate(&mut self) -> Option<(Key, Stmt)> {
+    /// An assignment, with the names that it may write.
+    pub(super) fn operate(&mut self) -> Option<(Stmt, Vec<String>)> {
         self.fits().ok()?;
         let span = self.report.span(&self.whole());
         let start = self.at;
-        let key = self.variable().ok()?;
+        let target = self.variable().ok()?;
         let place = self.start + start..self.start + self.at;
         let rest = self.text.get(self.at..).unwrap_or("");
-        let Some(skip) =
-            rest.find('=').filter(|n| rest.get(..*n).is_some_and(|s| s.chars().all(|c| ": ".contains(c))))
-        else {
+        let blank = |n: &usize| rest.get(..*n).is_some_and(|s| s.chars().all(|c| ": ".contains(c)));
+        let Some(skip) = rest.find('=').filter(blank) else {
             self.say(&codes::BAD_TEXT, self.whole(), "an operation without `:=`");
             return None;
         };
@@ -109,11 +115,23 @@ impl<'a, 'b, 'c> Arith<'a, 'b, 'c> {
             self.at += 1;
         }
         let value = self.all();
-        let target = self.vars.target(key, &place, self.report)?;
-        let value = value.ok()?;
-        let value =
-            if key.0 < kind::FIRST_WORD { binary(BinaryOp::Ne, value, int(0, span), span) } else { value };
-        Some((key, nodes::assign(target, value, span)))
+        let (Named::One(key) | Named::At(key, _)) = target;
+        let truth = |value: Expr| {
+            if key.0 < kind::FIRST_WORD { binary(BinaryOp::Ne, value, int(0, span), span) } else { value }
+        };
+        match target {
+            Named::One(key) => {
+                let target = self.vars.target(key, &place, self.report)?;
+                let mut names = BTreeSet::new();
+                vars::reads(&target, &mut names);
+                names.extend(table_name(key.0));
+                Some((nodes::assign(target, truth(value.ok()?), span), names.into_iter().collect()))
+            }
+            Named::At(key, index) => {
+                let value = truth(value.ok()?);
+                self.vars.indexed_target(key, index, &value, &place, self.report)
+            }
+        }
     }
 
     fn whole(&self) -> Range<usize> {
@@ -259,9 +277,16 @@ impl<'a, 'b, 'c> Arith<'a, 'b, 'c> {
         let start = self.at;
         match self.peek() {
             Some(b'@') => {
-                let key = self.variable()?;
+                let variable = self.variable()?;
                 let place = self.start + start..self.start + self.at;
-                Ok(self.vars.number(key, &place, self.report))
+                let span = self.report.span(&place);
+                Ok(match variable {
+                    Named::One(key) => self.vars.number(key, &place, self.report),
+                    Named::At(key, index) => {
+                        let value = self.vars.indexed(key, index, &place, self.report);
+                        if key.0 < kind::FIRST_WORD { call("BOOL_TO_DINT", vec![value], span) } else { value }
+                    }
+                })
             }
             Some(b'0'..=b'9' | b'-' | b'$' | b'\'') => self.constant(),
             _ => Err(self.fault("a variable, number or function is missing")),
@@ -306,29 +331,31 @@ impl<'a, 'b, 'c> Arith<'a, 'b, 'c> {
         self.text.get(start..self.at).unwrap_or("")
     }
 
-    /// `@200/3@`; with an index, `@200/3[200/4]@`, there is no counterpart.
-    fn variable(&mut self) -> Result<Key, Stop> {
-        let start = self.at;
+    /// `@200/3@`, or with an index `@200/3[200/4]@`.
+    fn variable(&mut self) -> Result<Named, Stop> {
         if !self.take(b'@') {
             return Err(self.fault("a variable is missing"));
         }
-        let kind = self.run(|b| b.is_ascii_digit()).parse();
-        let slash = self.take(b'/');
-        let number = self.run(|b| b.is_ascii_digit()).parse();
-        let (Ok(kind), true, Ok(number)) = (kind, slash, number) else {
-            return Err(self.fault("a variable that cannot be read"));
-        };
-        if self.peek() == Some(b'[') {
-            self.run(|b| b != b'@');
-            self.take(b'@');
-            let what = format!("a variable by index, from {} on; there are no arrays", title((kind, number)));
-            let place = self.start + start..self.start + self.at;
-            return Err(self.say(&codes::NOT_CARRIED, place, what));
+        let key = self.key()?;
+        let index = if self.take(b'[') { Some(self.key()?) } else { None };
+        if index.is_some() {
+            self.take(b']');
         }
         if !self.take(b'@') {
             return Err(self.fault("a variable that is not closed"));
         }
-        Ok((kind, number))
+        Ok(index.map_or(Named::One(key), |index| Named::At(key, index)))
+    }
+
+    /// `200/3`.
+    fn key(&mut self) -> Result<Key, Stop> {
+        let kind = self.run(|b| b.is_ascii_digit()).parse();
+        let slash = self.take(b'/');
+        let number = self.run(|b| b.is_ascii_digit()).parse();
+        match (kind, slash, number) {
+            (Ok(kind), true, Ok(number)) => Ok((kind, number)),
+            _ => Err(self.fault("a variable that cannot be read")),
+        }
     }
 
     fn function(&mut self) -> Read {

@@ -56,7 +56,9 @@ pub(super) fn document(plan: &Plan, report: &mut Report) -> Document {
         Item::Profile(Profile { name: ProfileName::Iec60848, switches, at: at.into() }),
         Item::Cycle(plan.period.unwrap_or(DEFAULT_PERIOD).saturating_mul(NS_PER_MS), at.into()),
     ];
+    let tables = vars.tables(at);
     items.extend(vars.finish().into_iter().map(Item::Var));
+    items.extend(tables.into_iter().map(Item::Function));
     items.extend(helpers.into_iter().map(|h| Item::Function(helper(h, at))));
     let body = |statements: Vec<Stmt>| Body::St(Block { locals: Vec::new(), statements, at: at.into() });
     if !pre.is_empty() {

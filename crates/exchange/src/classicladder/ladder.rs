@@ -12,6 +12,7 @@ use g7_model::{BinaryOp, CaseArm, Expr, Span, Stmt, StmtKind, Type, codes};
 
 use super::arith::{Arith, Helper};
 use super::plan::{Cell, Key, Plan, Rung, Section};
+use super::tables::table_name;
 use super::vars::{self, Vars, either, kind, reads};
 use crate::nodes::{self, and, assign, boolean, int, name, not, when};
 use crate::report::Report;
@@ -231,11 +232,9 @@ impl<'b> Ladder<'_, 'b> {
 
     fn element(&mut self, board: &mut Board, cell: &Cell, x: usize, y: usize) {
         let at = self.report.span(&cell.at);
-        if cell.index.is_some() && !matches!(cell.kind, 0 | 9 | 99) {
-            let what = format!(
-                "an element on a variable by index, from {} on; there are no arrays",
-                vars::title(cell.var)
-            );
+        if cell.index.is_some() && !matches!(cell.kind, 0..=2 | 9 | 50..=53 | 99) {
+            let what =
+                format!("an element of this kind on a variable by index, from {} on", vars::title(cell.var));
             self.report.say(&codes::NOT_CARRIED, &cell.at, what);
             return;
         }
@@ -277,7 +276,10 @@ impl<'b> Ladder<'_, 'b> {
 
     /// The state of a contact; those for edges keep the value of the run before.
     fn contact(&mut self, board: &mut Board, cell: &Cell, at: Span) -> Expr {
-        let value = self.vars.boolean(cell.var, &cell.at, self.report);
+        let value = match cell.index {
+            Some(index) => self.vars.indexed(cell.var, index, &cell.at, self.report),
+            None => self.vars.boolean(cell.var, &cell.at, self.report),
+        };
         match cell.kind {
             1 => value,
             2 => not(value, at),
@@ -309,16 +311,24 @@ impl<'b> Ladder<'_, 'b> {
     fn coil(&mut self, board: &mut Board, cell: &Cell, x: usize, y: usize) {
         let at = self.report.span(&cell.at);
         let left = board.left(x, y, at);
-        let Some(target) = self.vars.target(cell.var, &cell.at, self.report) else { return };
-        let names = written(&target);
-        let value = |e: Expr| {
+        let number = |e: Expr| {
             if cell.var.0 < kind::FIRST_WORD { e } else { nodes::call("BOOL_TO_DINT", vec![e], at) }
         };
-        let stmt = match cell.kind {
-            50 => assign(target, value(left), at),
-            51 => assign(target, value(not(left, at)), at),
-            kind => when(left, vec![assign(target, value(boolean(kind == 52, at)), at)], Vec::new(), at),
+        let value = number(match cell.kind {
+            50 => left.clone(),
+            51 => not(left.clone(), at),
+            kind => boolean(kind == 52, at),
+        });
+        let written = match cell.index {
+            Some(index) => self.vars.indexed_target(cell.var, index, &value, &cell.at, self.report),
+            None => self.vars.target(cell.var, &cell.at, self.report).map(|target| {
+                let mut names = written(&target);
+                names.extend(table_name(cell.var.0));
+                (assign(target, value, at), names)
+            }),
         };
+        let Some((stmt, names)) = written else { return };
+        let stmt = if cell.kind >= 52 { when(left, vec![stmt], Vec::new(), at) } else { stmt };
         self.write(board, &names, stmt);
     }
 
@@ -327,11 +337,7 @@ impl<'b> Ladder<'_, 'b> {
         let left = if x < 2 { boolean(false, at) } else { board.left(x - 2, y, at) };
         let Some((text, place)) = self.expression(cell) else { return };
         let read = Arith::new(&text, &place, self.vars, self.helpers, self.report).operate();
-        let Some((_, stmt)) = read else { return };
-        let names = match &stmt.kind {
-            StmtKind::Assign { target, .. } => written(target),
-            _ => Vec::new(),
-        };
+        let Some((stmt, names)) = read else { return };
         match nodes::truth(&left) {
             Some(false) => {}
             Some(true) => self.write(board, &names, stmt),

@@ -10,7 +10,8 @@
 //! - `read` cuts a project (`.clp`, `.clprj`), or its `sequential.csv` alone,
 //!   into the little files it is made of, each line with its place.
 //! - `plan` is what these lines say, still with the file's own numbers.
-//! - `vars` finds what a variable `type/number` is, and declares what is used.
+//! - `vars` finds what a variable `type/number` is, and declares what is used;
+//!   `tables` are variables by index.
 //! - `arith` reads the expressions of compare and operate boxes.
 //! - `ladder` turns rungs into Structured Text in ClassicLadder's own order,
 //!   column by column; `blocks` are its timers, monostables and counters.
@@ -26,6 +27,7 @@ mod build;
 mod ladder;
 mod plan;
 mod read;
+mod tables;
 mod vars;
 
 use g7_model::{Document, FileId, Problem};

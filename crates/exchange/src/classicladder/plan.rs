@@ -105,6 +105,8 @@ impl Symbol {
 #[derive(Debug, Default)]
 pub(super) struct Plan {
     pub(super) period: Option<i64>,
+    /// How many variables there are of a kind, where the project says so.
+    pub(super) sizes: BTreeMap<String, u32>,
     pub(super) sections: Vec<Section>,
     pub(super) steps: BTreeMap<u32, StepLine>,
     pub(super) transitions: BTreeMap<u32, TransitionLine>,
@@ -183,6 +185,12 @@ fn other(part: &Part, report: &mut Report) {
 
 fn general(part: &Part, plan: &mut Plan) {
     let period = part.lines.iter().find_map(|l| l.text.strip_prefix("PERIODIC_REFRESH="));
+    for line in &part.lines {
+        let size = line.text.strip_prefix("SIZE_NBR_").and_then(|rest| rest.split_once('='));
+        if let Some((name, Ok(number))) = size.map(|(name, number)| (name, number.trim().parse())) {
+            plan.sizes.insert(name.to_string(), number);
+        }
+    }
     plan.period = period.and_then(|p| p.trim().parse().ok()).filter(|p| (1..=3_600_000).contains(p));
 }
 

@@ -4,8 +4,8 @@ use std::collections::btree_map::Entry;
 use std::collections::{BTreeMap, BTreeSet, HashSet};
 use std::ops::Range;
 
-use g7_model::{BinaryOp, Expr, Literal, Name, Span, Type, UnaryOp, VarDecl, VarKind, codes};
-use g7_model::{ExprKind, FbKind};
+use g7_model::{BinaryOp, Expr, ExprKind, FbKind, Literal, Name, Span};
+use g7_model::{Type, UnaryOp, VarDecl, VarKind, codes};
 
 use super::plan::{Block, Key, Plan};
 use crate::nodes::{self, binary, boolean, call, int, name, not, or};
@@ -44,20 +44,22 @@ pub(super) mod kind {
 
 /// The variables used so far.
 pub(super) struct Vars<'a> {
-    plan: &'a Plan,
+    pub(super) plan: &'a Plan,
     /// Steps by the number that their variables have.
     steps: BTreeMap<u32, bool>,
-    names: BTreeMap<Key, String>,
+    pub(super) names: BTreeMap<Key, String>,
     taken: HashSet<String>,
-    declared: BTreeMap<Key, VarDecl>,
+    pub(super) declared: BTreeMap<Key, VarDecl>,
     /// Presets that the program writes.
     presets: BTreeSet<Key>,
     more: Vec<VarDecl>,
+    /// Kinds of variables that are read by index.
+    pub(super) tables: BTreeSet<u16>,
     fresh: BTreeMap<&'static str, usize>,
 }
 
 /// The letters before the number, as ClassicLadder shows a variable: `%TM3.Q`.
-fn shown(key: Key) -> Option<(&'static str, &'static str)> {
+pub(super) fn shown(key: Key) -> Option<(&'static str, &'static str)> {
     Some(match key.0 {
         kind::BIT => ("B", ""),
         kind::TIMER_DONE => ("T", ".D"),
@@ -112,6 +114,7 @@ impl<'a> Vars<'a> {
             declared: BTreeMap::new(),
             presets: BTreeSet::new(),
             more: Vec::new(),
+            tables: BTreeSet::new(),
             fresh: BTreeMap::new(),
         };
         vars.presets = presets(plan);
@@ -172,7 +175,7 @@ impl<'a> Vars<'a> {
     }
 
     /// The name of a variable that stands for itself.
-    fn declare(&mut self, key: Key, at: &Range<usize>, report: &mut Report) -> String {
+    pub(super) fn declare(&mut self, key: Key, at: &Range<usize>, report: &mut Report) -> String {
         let plain = title(key).trim_start_matches('%').to_string();
         let name = self.names.get(&key).cloned().unwrap_or_else(|| {
             let mut name = plain.clone();
@@ -315,7 +318,7 @@ impl<'a> Vars<'a> {
         self.block(letters, key.1, ty, at, report)
     }
 
-    fn strange(&mut self, key: Key, at: &Range<usize>, report: &mut Report) -> Expr {
+    pub(super) fn strange(&mut self, key: Key, at: &Range<usize>, report: &mut Report) -> Expr {
         report.say(&codes::NOT_CARRIED, at, format!("the variable {} has no counterpart", title(key)));
         nodes::bad(report.span(at))
     }
@@ -466,7 +469,11 @@ pub(super) fn reads(e: &Expr, into: &mut BTreeSet<String>) {
             reads(a, into);
             reads(b, into);
         }
-        ExprKind::Call(_, args) => args.iter().for_each(|a| reads(&a.value, into)),
+        ExprKind::Call(p, args) => {
+            // A function that chooses a variable reads all of its kind.
+            into.insert(p.text());
+            args.iter().for_each(|a| reads(&a.value, into));
+        }
         ExprKind::Literal(Literal::Bool(_)) => {}
         _ => {}
     }

@@ -3,7 +3,8 @@
 use std::collections::{BTreeMap, HashMap, HashSet};
 
 use g7_model::{
-    ChartItem, Document, Item, Path, Profile, ProfileName, Span, Stmt, Switch, Type, VarDecl, VarKind, codes,
+    Chart, ChartItem, Document, Item, Layout, Path, Profile, ProfileName, Span, Stmt, Switch, Type, VarDecl,
+    VarKind, codes,
 };
 
 use super::chart::{self, Lines, Read, Xml, kid, kids};
@@ -31,30 +32,109 @@ pub(super) fn document(root: Xml, report: &mut Report) -> Document {
     document.items.push(Item::Profile(Profile { name: ProfileName::Iec61131, switches, at: at.into() }));
     document.items.extend(cycle(root, &charts, report));
     let mut taken = Taken::default();
-    let mut declared: HashMap<String, VarDecl> = HashMap::new();
-    let mut layouts = Vec::new();
+    let mut parts = Parts::default();
+    let mut scope: Option<Scope> = None;
     for content in charts {
         let title = title(content, &mut taken);
         let program = content.ancestors().find(|n| n.has_tag_name("Program"));
-        let tags = Tags::of(program, controller);
-        let mut presets = Presets::default();
-        tags::presets(&tags, &mut presets);
-        let Read { chart, layout, flags } = chart::read(content, &title, &mut presets, report);
-        let flags = flags.into_iter().map(|n| nodes::variable(VarKind::Output, &n.text, Type::Bool, n.at.0));
-        let routines = routines(program, report);
-        let mut part = Document { items: vec![Item::Chart(chart)], notes: Vec::new() };
-        walk::document(&mut part, &mut Words::new(&presets, &routines, report));
-        let vars = used(&mut part, &tags, flags.collect(), report);
-        join(&mut document, part, vars, &mut declared);
-        layouts.push(Item::Layout(layout));
+        let same = scope.take_if(|s| s.program == program);
+        let mut here = same.unwrap_or_else(|| Scope::of(program, controller, report));
+        if let Some(before) = scope.take() {
+            before.idle(report);
+        }
+        parts.add(content, &title, &mut here, report);
+        scope = Some(here);
     }
-    document.items.extend(layouts);
+    if let Some(last) = scope {
+        last.idle(report);
+    }
+    document.items.extend(parts.vars.into_iter().map(Item::Var));
+    document.items.extend(parts.charts.into_iter().map(Item::Chart));
+    document.items.extend(parts.layouts.into_iter().map(Item::Layout));
     iec::settle(&mut document);
     outside::declare(&mut document, report);
     iec::settle(&mut document);
     outside::open(&mut document, report);
     document.notes = report.take_notes();
     document
+}
+
+/// What the charts of one program have around them.
+struct Scope<'a> {
+    program: Option<Xml<'a>>,
+    tags: Tags<'a>,
+    presets: Presets,
+    routines: HashMap<String, Vec<Stmt>>,
+    /// Routines in text that some chart has called, in capitals.
+    called: HashSet<String>,
+}
+
+impl<'a> Scope<'a> {
+    fn of(program: Option<Xml<'a>>, controller: Option<Xml<'a>>, report: &mut Report) -> Scope<'a> {
+        let tags = Tags::of(program, controller);
+        let mut presets = Presets::default();
+        tags::presets(&tags, &mut presets);
+        let routines = routines(program, report);
+        Scope { program, tags, presets, routines, called: HashSet::new() }
+    }
+
+    /// Routines in text that no chart calls are left out as well.
+    fn idle(&self, report: &mut Report) {
+        let routines = self.program.and_then(|n| kid(n, "Routines"));
+        for routine in routines.into_iter().flat_map(|n| kids(n, "Routine")) {
+            let name = routine.attribute("Name").unwrap_or("");
+            if routine.attribute("Type") == Some("ST") && !self.called.contains(&name.to_uppercase()) {
+                let what =
+                    format!("the routine `{}` (ST) is left out, with what it writes", nodes::line(name));
+                report.element(&codes::LEFT_OUT, "routine ST", &attr::head(routine), &what);
+            }
+        }
+    }
+}
+
+/// What the document is made of.
+#[derive(Default)]
+struct Parts {
+    vars: Vec<VarDecl>,
+    /// Places of the variables of the file by name, in capitals.
+    declared: HashMap<String, Span>,
+    charts: Vec<Chart>,
+    layouts: Vec<Layout>,
+}
+
+impl Parts {
+    /// Adds a chart and the tags that it names.
+    fn add(&mut self, content: Xml, title: &str, scope: &mut Scope, report: &mut Report) {
+        let Read { chart, layout, flags } = chart::read(content, title, &mut scope.presets, report);
+        let flags = flags.into_iter().map(|n| nodes::variable(VarKind::Output, &n.text, Type::Bool, n.at.0));
+        let mut part = Document { items: vec![Item::Chart(chart)], notes: Vec::new() };
+        let mut words = Words::new(&scope.presets, &scope.routines, report);
+        walk::document(&mut part, &mut words);
+        let called = words.called;
+        scope.called.extend(called);
+        let vars = used(&mut part, &scope.tags, flags.collect(), report);
+        // A tag is a variable of the file, or of the chart where another program
+        // has another tag of its name.
+        let mut own = Vec::new();
+        for var in vars {
+            let key = var.names.first().map_or_else(String::new, |n| n.text.to_uppercase());
+            match self.declared.get(&key) {
+                Some(other) if *other == var.at.0 => {}
+                Some(_) => own.push(ChartItem::Var(var)),
+                None => {
+                    self.declared.insert(key, var.at.0);
+                    self.vars.push(var);
+                }
+            }
+        }
+        for item in part.items {
+            if let Item::Chart(mut chart) = item {
+                chart.items.splice(0..0, std::mem::take(&mut own));
+                self.charts.push(chart);
+            }
+        }
+        self.layouts.push(layout);
+    }
 }
 
 /// How the controller runs its charts.
@@ -166,38 +246,4 @@ fn used(part: &mut Document, tags: &Tags, flags: Vec<VarDecl>, report: &mut Repo
         vars.extend(tags.declare(&names, report));
     }
     vars
-}
-
-/// Adds a chart: its tags are variables of the file, or its own where another
-/// program has other tags of the same names.
-fn join(
-    document: &mut Document,
-    part: Document,
-    vars: Vec<VarDecl>,
-    declared: &mut HashMap<String, VarDecl>,
-) {
-    let mut own = Vec::new();
-    for var in vars {
-        let key = var.names.first().map_or_else(String::new, |n| n.text.to_uppercase());
-        match declared.get(&key) {
-            // The same tag of the controller.
-            Some(other) if other.at.0 == var.at.0 => {}
-            Some(_) => own.push(ChartItem::Var(var)),
-            None => {
-                declared.insert(key, var.clone());
-                let place = document.items.iter().position(|i| matches!(i, Item::Chart(_)));
-                let place = place.unwrap_or(document.items.len());
-                document.items.insert(place, Item::Var(var));
-            }
-        }
-    }
-    for item in part.items {
-        match item {
-            Item::Chart(mut chart) => {
-                chart.items.splice(0..0, std::mem::take(&mut own));
-                document.items.push(Item::Chart(chart));
-            }
-            other => document.items.push(other),
-        }
-    }
 }

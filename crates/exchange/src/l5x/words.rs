@@ -1,6 +1,6 @@
 //! Words of Logix' Structured Text that the language says otherwise.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::ops::Range;
 
 use g7_model::{BinaryOp, Expr, ExprKind, Path, Span, Stmt, StmtKind, codes};
@@ -39,6 +39,8 @@ pub(super) struct Words<'a, 'r> {
     depth: usize,
     /// Statements of routines that may still be written out.
     left: usize,
+    /// The routines that were, in capitals.
+    pub(super) called: HashSet<String>,
 }
 
 /// Routines that call each other.
@@ -61,7 +63,7 @@ impl<'a, 'r> Words<'a, 'r> {
         routines: &'a HashMap<String, Vec<Stmt>>,
         report: &'r mut Report,
     ) -> Self {
-        Words { presets, routines, report, depth: 0, left: MOST }
+        Words { presets, routines, report, depth: 0, left: MOST, called: HashSet::new() }
     }
 
     /// The statements of a routine, as far as there is room for them.
@@ -73,6 +75,7 @@ impl<'a, 'r> Words<'a, 'r> {
         let mut count = Count(0);
         walk::stmts(&mut body, &mut count);
         self.left = self.left.checked_sub(count.0)?;
+        self.called.insert(name.to_uppercase());
         self.depth += 1;
         walk::stmts(&mut body, self);
         self.depth -= 1;

@@ -249,16 +249,14 @@ fn on_event(
                 );
                 return None;
             }
+            if kind == Qualifier::N {
+                let what = "`N` with an event: the variable stays TRUE here, one scan only in GRAPH";
+                report.say(&codes::DIFFERENT, range, what);
+            }
             let target = nodes::expr(ExprKind::Path(path), at);
             vec![assign(target, boolean(kind != Qualifier::R, at), at)]
         }
     };
-    if kind == Qualifier::N
-        && matches!(statements.as_slice(), [Stmt { kind: StmtKind::Assign { value, .. }, .. }] if nodes::truth(value) == Some(true))
-    {
-        let what = "`N` with an event: the variable stays TRUE here, one scan only in GRAPH";
-        report.say(&codes::DIFFERENT, range, what);
-    }
     let statements = match condition {
         Some(condition) => vec![when(condition, statements, Vec::new(), at)],
         None => statements,

@@ -102,6 +102,12 @@ pub(super) fn document(root: Xml, report: &mut Report) -> Document {
         );
         report.say(&codes::LEFT_OUT, range, what);
     }
+    for unit in root.descendants().filter(|n| n.tag_name().name() == "SW.Blocks.CompileUnit") {
+        if !unit.descendants().any(|n| n.tag_name().name() == "Graph") {
+            let what = "a network of a block in another language is left out";
+            report.element(&codes::LEFT_OUT, "CompileUnit", &attr::head(unit), what);
+        }
+    }
     let mut taken = Taken::default();
     let (mut pre, mut post, mut charts) = (Vec::new(), Vec::new(), Vec::new());
     for graph in root.descendants().filter(|n| n.tag_name().name() == "Graph") {

@@ -59,7 +59,8 @@ fn circles_and_depth_come_to_an_end() {
 
 #[test]
 fn a_changed_file_never_panics() {
-    let files = ["press.clprj", "choices.csv", "jumps.clp", "wrong.clprj"].map(|f| own("classicladder", f));
+    let files = ["press.clprj", "choices.csv", "jumps.clp", "tables.clprj", "wrong.clprj"]
+        .map(|f| own("classicladder", f));
     let words = [
         "-1",
         "99",

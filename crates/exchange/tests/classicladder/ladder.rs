@@ -80,3 +80,23 @@ fn old_timers_and_monostables_are_blocks_of_the_standard() {
     jumps.run(400);
     assert_eq!(jumps.get("Q1"), 0);
 }
+
+#[test]
+fn a_variable_by_index_is_chosen_among_all_of_its_kind() {
+    let mut tables = bench("tables.clprj");
+    tables.scan();
+    // %W2[%W0] is %W2 at first; the coil of %Q0[%W0] follows the contact of %I0[%W0].
+    assert_eq!((tables.get("W2"), tables.get("B0"), tables.get("Q0")), (10, 0, 0));
+    tables.set("I0", 1).scan();
+    // The comparison is looked at before the addition of the same rung.
+    assert_eq!((tables.get("W2"), tables.get("B0"), tables.get("Q0")), (20, 0, 1));
+    tables.scan();
+    assert_eq!((tables.get("W2"), tables.get("B0")), (30, 1));
+    // %I2 counts %W0 up at the end of the rung: from the next scan on all is one further.
+    tables.set("I2", 1).scan().set("I2", 0).set("I1", 1).scan();
+    assert_eq!((tables.get("W0"), tables.get("W2"), tables.get("W3")), (1, 40, 10));
+    assert_eq!((tables.get("Q1"), tables.get("B0")), (1, 0));
+    // Out of all reach nothing is written, and what is read is 0.
+    tables.set("I2", 1).scan().scan().scan().scan().scan();
+    assert_eq!((tables.get("W0"), tables.get("B0")), (6, 0));
+}

@@ -89,13 +89,13 @@ fn what_has_no_counterpart_is_told_with_its_line() {
     let told = lines(&bytes, &problems);
     for expected in [
         "G0605 5: `ioconf.csv`, which hardware the inputs and outputs are wired to, is left out",
-        "G0604 9: a variable by index, from %W1 on; there are no arrays",
+        "G0604 9: writing %X1.V has no counterpart",
         "G0606 10: an operation without `:=`",
         "G0608 11: the function `SHL` with 2 values has no counterpart",
         "G0614 12: `=>` is read as `=`, as ClassicLadder reads it",
         "G0614 21: the system variable %S4 becomes an input",
         "G0604 21: writing %I1 has no counterpart",
-        "G0604 22: an element on a variable by index, from %B1 on; there are no arrays",
+        "G0604 22: an element of this kind on a variable by index, from %B1 on",
         "G0604 23: the variable %R0.E has no counterpart",
         "G0604 23: a register (FIFO or LIFO) has no counterpart",
         "G0604 23: an element of kind 77 of a rung is not known",

@@ -76,6 +76,7 @@ fn what_has_no_counterpart_is_told_with_its_line() {
     for expected in [
         "G0614 4: the last scan of a step resets what its actions set (automatic reset); there is none here"
             .to_string(),
+        format!("G0605 {}: the routine `Idle` (ST) is left out, with what it writes", at("\"Idle\"")),
         format!("G0612 {}: the qualifier `Sideways` is not known", at("Sideways")),
         format!("G0604 {}: `JSR(Gone)` has no counterpart", at("JSR(Gone")),
         format!("G0604 {}: `A.TMAX` of a step has no counterpart", at("A.TMax")),

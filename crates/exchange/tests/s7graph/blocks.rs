@@ -87,6 +87,7 @@ fn what_has_no_counterpart_is_told_with_its_line() {
         "G0604 13: `Blinker` in a network has no counterpart",
         "G0604 18: the qualifier `CU` of an action has no counterpart",
         "G0604 19: the event `A1` has no counterpart",
+        "G0614 21: `N` with an event: the variable stays TRUE here, one scan only in GRAPH",
         "G0612 20: the qualifier `D` without its time",
         "G0605 21: an action that waits for the supervision or interlock of a step that has none",
         "G0604 22: an action with an event and a time has no counterpart",
@@ -97,6 +98,7 @@ fn what_has_no_counterpart_is_told_with_its_line() {
         "G0609 32: a connection from or to something that is not there",
         "G0610 33: a connection without its ends",
         "G0610 28: a transition without any step",
+        "G0605 38: a network of a block in another language is left out",
     ] {
         assert!(told.iter().any(|t| t == expected), "{expected}\n{told:#?}");
     }
