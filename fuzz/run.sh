@@ -3,10 +3,13 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 seconds=${1:-60}
-mkdir -p fuzz/corpus/{text,run,jgrafchart,classicladder,controlexpert,s7graph,l5x,xmi,edit,page}
+mkdir -p fuzz/corpus/{text,run,jgrafchart,classicladder,controlexpert,s7graph,l5x,xmi,iectext,edit,page}
 for f in $(git ls-files 'examples/*.g7' 'tests/check/*.g7'); do
     cp "$f" "fuzz/corpus/text/$(echo "$f" | tr / _)"
     cp "$f" "fuzz/corpus/run/$(echo "$f" | tr / _)"
+done
+for f in $(git ls-files 'tests/interchange/iectext/*.st'); do
+    cp "$f" "fuzz/corpus/iectext/$(basename "$f")"
 done
 for f in $(git ls-files 'tests/interchange/jgrafchart/*.xml'); do
     cp "$f" "fuzz/corpus/jgrafchart/$(basename "$f")"
@@ -28,6 +31,6 @@ awk '
     END { for (k = 1; k <= n; k++) printf "%s----\n%s", text[k], said[k] > "fuzz/corpus/edit/case-" k }
 ' tests/edit/*.md
 cp fuzz/stories/* fuzz/corpus/page/
-for target in text jgrafchart classicladder controlexpert s7graph l5x xmi run tables edit page; do
+for target in text jgrafchart classicladder controlexpert s7graph l5x xmi iectext run tables edit page; do
     cargo fuzz run --sanitizer none "$target" -- -max_total_time="$seconds" -max_len=65536 -timeout=20 -verbosity=0
 done

@@ -74,17 +74,20 @@ pub enum Outlet {
     Mermaid,
     /// An EMF/XMI instance of the AGRAFE meta-model of IEC 60848.
     Xmi,
+    /// A program in IEC 61131-3 text: a sequential function chart with Structured Text.
+    IecText,
 }
 
 impl Outlet {
     /// All of them, in the order in which they are listed.
-    pub const ALL: &[Outlet] = &[Outlet::Mermaid, Outlet::Xmi];
+    pub const ALL: &[Outlet] = &[Outlet::Mermaid, Outlet::Xmi, Outlet::IecText];
 
     /// The word for it on the command line.
     pub fn word(self) -> &'static str {
         match self {
             Outlet::Mermaid => "mermaid",
             Outlet::Xmi => "xmi",
+            Outlet::IecText => "sfc",
         }
     }
 
@@ -93,6 +96,7 @@ impl Outlet {
         match self {
             Outlet::Mermaid => "Mermaid flowchart",
             Outlet::Xmi => "XMI",
+            Outlet::IecText => "IEC 61131-3 text",
         }
     }
 
@@ -101,6 +105,7 @@ impl Outlet {
         match self {
             Outlet::Mermaid => "mmd",
             Outlet::Xmi => "grafcet",
+            Outlet::IecText => "st",
         }
     }
 }

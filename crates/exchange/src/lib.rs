@@ -83,6 +83,7 @@ pub struct Written {
 pub fn export(to: Outlet, document: &Document) -> Written {
     match to {
         Outlet::Mermaid => mermaid::export(document),
+        Outlet::IecText => iectext::export(document),
         Outlet::Xmi => xmi::export(document),
     }
 }

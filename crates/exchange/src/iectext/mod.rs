@@ -16,6 +16,7 @@
 mod build;
 mod read;
 mod unit;
+mod write;
 
 use g7_model::codes;
 use g7_model::{Document, FileId, Problem};
@@ -23,6 +24,8 @@ use g7_model::{Document, FileId, Problem};
 use crate::iec::Parser;
 use crate::report::Report;
 use crate::xml;
+
+pub(crate) use write::export;
 
 /// The first words of such a file.
 const FIRST: [&str; 8] = [

@@ -1,0 +1,550 @@
+//! Expressions and statements in the standard's own spelling.
+//!
+//! The standard converts no types by itself; where the .g7 language widens a
+//! number, the conversion is written.
+
+use g7_model::codes;
+use g7_model::{
+    Arg, BinaryOp, Expr, ExprKind, FbKind, Literal, Name, Path, Problem, Span, Stmt, StmtKind, Type, UnaryOp,
+};
+
+use super::names::{Names, Scope};
+
+/// What an expression is, as far as it can be told.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Ty {
+    Known(Type),
+    /// A number without a type of its own.
+    Whole,
+    Real,
+    Unknown,
+}
+
+/// A written expression.
+pub(super) struct Text {
+    pub(super) text: String,
+    pub(super) ty: Ty,
+    /// How tightly its outermost operator binds; 9 for an operand.
+    strength: u8,
+}
+
+/// Writes texts of one place.
+pub(super) struct Writer<'a> {
+    pub(super) names: &'a Names,
+    pub(super) scope: Scope,
+    /// Variables of the body's own.
+    pub(super) locals: Vec<(Box<str>, Type)>,
+    pub(super) problems: &'a mut Vec<Problem>,
+}
+
+const OPERAND: u8 = 9;
+
+fn strength(op: BinaryOp) -> u8 {
+    match op {
+        BinaryOp::Or => 1,
+        BinaryOp::Xor => 2,
+        BinaryOp::And | BinaryOp::Dot => 3,
+        BinaryOp::Eq | BinaryOp::Ne => 4,
+        BinaryOp::Lt | BinaryOp::Le | BinaryOp::Gt | BinaryOp::Ge => 5,
+        BinaryOp::Add | BinaryOp::Sub => 6,
+        BinaryOp::Mul | BinaryOp::Div | BinaryOp::Mod => 7,
+        BinaryOp::Pow => 8,
+    }
+}
+
+fn sign(op: BinaryOp) -> &'static str {
+    match op {
+        BinaryOp::Or => "OR",
+        BinaryOp::Xor => "XOR",
+        BinaryOp::And | BinaryOp::Dot => "AND",
+        BinaryOp::Eq => "=",
+        BinaryOp::Ne => "<>",
+        BinaryOp::Lt => "<",
+        BinaryOp::Le => "<=",
+        BinaryOp::Gt => ">",
+        BinaryOp::Ge => ">=",
+        BinaryOp::Add => "+",
+        BinaryOp::Sub => "-",
+        BinaryOp::Mul => "*",
+        BinaryOp::Div => "/",
+        BinaryOp::Mod => "MOD",
+        BinaryOp::Pow => "**",
+    }
+}
+
+/// The wider of two types, as the .g7 language widens them.
+fn wider(a: Type, b: Type) -> Type {
+    let rank = |t: Type| match t {
+        Type::Usint => 1,
+        Type::Sint => 2,
+        Type::Uint => 3,
+        Type::Int => 4,
+        Type::Udint => 5,
+        Type::Dint => 6,
+        Type::Ulint => 7,
+        Type::Lint => 8,
+        Type::Real => 9,
+        Type::Lreal => 10,
+        Type::Bool | Type::Time | Type::String(_) | Type::Fb(_) => 0,
+    };
+    if rank(a) >= rank(b) { a } else { b }
+}
+
+fn is_number(t: Type) -> bool {
+    t.is_integer() || t.is_real()
+}
+
+impl Text {
+    fn operand(text: String, ty: Ty) -> Text {
+        Text { text, ty, strength: OPERAND }
+    }
+
+    fn within(self, least: u8) -> String {
+        if self.strength < least { format!("({})", self.text) } else { self.text }
+    }
+
+    fn is(&self, ty: Type) -> bool {
+        self.ty == Ty::Known(ty)
+    }
+
+    /// The same value as another type of number.
+    fn converted(self, to: Type) -> Text {
+        match self.ty {
+            Ty::Known(from) if from != to && is_number(from) && is_number(to) => {
+                Text::operand(format!("{from}_TO_{to}({})", self.text), Ty::Known(to))
+            }
+            Ty::Whole if to.is_real() => {
+                let digits = self.text.trim_start_matches('-').chars().all(|c| c.is_ascii_digit());
+                let text =
+                    if digits { format!("{}.0", self.text) } else { format!("DINT_TO_{to}({})", self.text) };
+                Text { text, ty: Ty::Known(to), strength: self.strength }
+            }
+            // A literal as a condition.
+            Ty::Whole if to == Type::Bool => {
+                let text = if self.text == "0" { "FALSE" } else { "TRUE" };
+                Text::operand(text.into(), Ty::Known(Type::Bool))
+            }
+            _ => self,
+        }
+    }
+}
+
+impl Writer<'_> {
+    pub(super) fn lost(&mut self, at: Span, what: impl Into<String>) {
+        self.problems.push(Problem::new(&codes::NOT_CARRIED, at, what));
+    }
+
+    /// An expression as a value of a type.
+    pub(super) fn value(&mut self, e: &Expr, ty: Type) -> String {
+        self.text(e).converted(ty).text
+    }
+
+    pub(super) fn condition(&mut self, e: &Expr) -> String {
+        self.value(e, Type::Bool)
+    }
+
+    pub(super) fn text(&mut self, e: &Expr) -> Text {
+        match &e.kind {
+            ExprKind::Literal(literal) => literal_text(literal),
+            ExprKind::Path(path) => self.path(path, e.at.0),
+            ExprKind::Direct(name) => self.direct(name, e.at.0),
+            ExprKind::Unary(op, inner) => self.unary(*op, inner, e.at.0),
+            ExprKind::Binary(op, a, b) => self.binary(*op, a, b),
+            ExprKind::Timer { t1, e: inner, t2 } => self.timer(t1, inner, t2.is_some(), e.at.0),
+            ExprKind::Call(path, args) => self.call(path, args),
+            ExprKind::Bad => Text::operand("FALSE".into(), Ty::Unknown),
+        }
+    }
+
+    fn unary(&mut self, op: UnaryOp, inner: &Expr, at: Span) -> Text {
+        match op {
+            UnaryOp::Not => {
+                let text = self.text(inner).converted(Type::Bool).within(8);
+                Text { text: format!("NOT {text}"), ty: Ty::Known(Type::Bool), strength: 8 }
+            }
+            UnaryOp::Neg => {
+                let inner = self.text(inner);
+                let ty = inner.ty;
+                let text = inner.within(OPERAND);
+                let text = if text.starts_with('-') { format!("-({text})") } else { format!("-{text}") };
+                Text { text, ty, strength: 8 }
+            }
+            UnaryOp::Rise | UnaryOp::Fall => {
+                self.lost(at, "an edge here has no form in an SFC of the standard; use a variable of R_TRIG or F_TRIG that an action calls");
+                Text::operand("FALSE".into(), Ty::Known(Type::Bool))
+            }
+        }
+    }
+
+    fn binary(&mut self, op: BinaryOp, a: &Expr, b: &Expr) -> Text {
+        let (left, right) = (self.text(a), self.text(b));
+        let boolean = left.is(Type::Bool) || right.is(Type::Bool);
+        let op = match op {
+            BinaryOp::Add if boolean => BinaryOp::Or,
+            BinaryOp::Mul if boolean => BinaryOp::And,
+            op => op,
+        };
+        let own = strength(op);
+        let logical = own <= 3;
+        let compares = matches!(own, 4 | 5);
+        let (left, right, common) = if logical {
+            (left.converted(Type::Bool), right.converted(Type::Bool), Ty::Known(Type::Bool))
+        } else {
+            alike(left, right, op)
+        };
+        let ty = if logical || compares { Ty::Known(Type::Bool) } else { common };
+        let text = format!("{} {} {}", left.within(own), sign(op), right.within(own + 1));
+        Text { text, ty, strength: own }
+    }
+
+    /// `t/X1` is the step's own time; nothing else of the kind has a form.
+    fn timer(&mut self, t1: &Expr, e: &Expr, ends: bool, at: Span) -> Text {
+        let step = match &e.kind {
+            ExprKind::Path(path) => self.path(path, e.at.0).text.strip_suffix(".X").map(str::to_string),
+            _ => None,
+        };
+        let Some(step) = step.filter(|_| !ends) else {
+            self.lost(
+                at,
+                "a time operator here has no form in an SFC of the standard; use a TON that an action calls",
+            );
+            return Text::operand("FALSE".into(), Ty::Known(Type::Bool));
+        };
+        let time = self.text(t1).within(6);
+        Text { text: format!("{step}.X AND {step}.T >= {time}"), ty: Ty::Known(Type::Bool), strength: 3 }
+    }
+
+    fn direct(&mut self, name: &str, at: Span) -> Text {
+        if let Some(variable) = self.names.at_address(name) {
+            return Text::operand(variable.to_string(), Ty::Unknown);
+        }
+        let what = format!("`%{name}` has no counterpart");
+        if name.starts_with(['X', 'S']) {
+            self.lost(at, what);
+        }
+        Text::operand(format!("%{name}"), Ty::Unknown)
+    }
+
+    fn path(&mut self, path: &Path, at: Span) -> Text {
+        let names: Vec<&str> = path.names.iter().map(|n| &*n.text).collect();
+        if let Some(found) = self.find(&names) {
+            return found;
+        }
+        let what = format!("`{}` has no counterpart", path.text());
+        self.lost(at, what);
+        Text::operand("FALSE".into(), Ty::Unknown)
+    }
+
+    /// What a path stands for; the order is that of the language.
+    fn find(&self, names: &[&str]) -> Option<Text> {
+        let variable = |v: &super::names::Variable| Text::operand(v.text.clone(), Ty::Known(v.ty));
+        match names {
+            [one] => {
+                if let Some((name, ty)) = self.locals.iter().find(|(n, _)| **n == **one) {
+                    return Some(Text::operand(name.to_string(), Ty::Known(*ty)));
+                }
+                if let Some(v) = self.names.variable_of(self.scope, one) {
+                    return Some(variable(v));
+                }
+                let step = one.strip_prefix('X').and_then(|s| self.names.step(self.scope, s))?;
+                Some(Text::operand(format!("{step}.X"), Ty::Known(Type::Bool)))
+            }
+            [first, second] => {
+                if let Some(v) = self.names.variable_of(self.scope, first)
+                    && let Type::Fb(kind) = v.ty
+                {
+                    let (name, ty) = member(kind, second)?;
+                    return Some(Text::operand(format!("{}.{name}", v.text), Ty::Known(ty)));
+                }
+                if let Some(chart) = self.names.chart_named(first) {
+                    if let Some(v) = self.names.in_chart(chart, second) {
+                        return Some(variable(v));
+                    }
+                    if let Some(step) = second.strip_prefix('X').and_then(|s| self.names.step_in(chart, s)) {
+                        return Some(Text::operand(format!("{step}.X"), Ty::Known(Type::Bool)));
+                    }
+                }
+                let step = self.names.step(self.scope, first);
+                step_member(step.or_else(|| self.names.step(self.scope, first.strip_prefix('X')?)), second)
+            }
+            [chart, step, last] => {
+                let chart = self.names.chart_named(chart)?;
+                if let Some(v) = self.names.in_chart(chart, step)
+                    && let Type::Fb(kind) = v.ty
+                {
+                    let (name, ty) = member(kind, last)?;
+                    return Some(Text::operand(format!("{}.{name}", v.text), Ty::Known(ty)));
+                }
+                let found = self.names.step_in(chart, step);
+                step_member(found.or_else(|| self.names.step_in(chart, step.strip_prefix('X')?)), last)
+            }
+            _ => None,
+        }
+    }
+
+    fn call(&mut self, path: &Path, args: &[Arg]) -> Text {
+        let name = path.text();
+        let own = self.names.function(&name).map(|f| (f.text.clone(), f.ty));
+        let texts: Vec<Text> = args.iter().map(|a| self.text(&a.value)).collect();
+        let common = texts.iter().fold(Ty::Whole, |all, t| match (all, t.ty) {
+            (Ty::Known(a), Ty::Known(b)) if is_number(a) && is_number(b) => Ty::Known(wider(a, b)),
+            (Ty::Known(a), _) if a != Type::Bool => Ty::Known(a),
+            (_, ty) => ty,
+        });
+        let upper = name.to_ascii_uppercase();
+        let alike = matches!(upper.as_str(), "MIN" | "MAX" | "LIMIT" | "SEL");
+        let ty = match own.as_ref() {
+            Some((_, ty)) => Ty::Known(*ty),
+            None => standard_type(&upper, common),
+        };
+        let mut parts = Vec::new();
+        for (arg, text) in args.iter().zip(texts) {
+            let text = match common {
+                Ty::Known(t) if alike && is_number(t) => text.converted(t).text,
+                _ => text.text,
+            };
+            parts.push(match &arg.name {
+                Some(n) => format!("{} {} {text}", n.text, if arg.output { "=>" } else { ":=" }),
+                None => text,
+            });
+        }
+        let name = own.map_or(upper, |(text, _)| text);
+        Text::operand(format!("{name}({})", parts.join(", ")), ty)
+    }
+
+    /// Statements, each line with its indentation.
+    pub(super) fn statements(&mut self, list: &[Stmt], indent: usize, out: &mut String) {
+        for stmt in list {
+            self.statement(stmt, indent, out);
+        }
+    }
+
+    fn statement(&mut self, stmt: &Stmt, indent: usize, out: &mut String) {
+        let pad = "  ".repeat(indent);
+        let mut line = |text: &str| {
+            out.push_str(&pad);
+            out.push_str(text);
+            out.push('\n');
+        };
+        match &stmt.kind {
+            StmtKind::Assign { target, value } => {
+                let target = self.text(target);
+                let value = self.text(value);
+                let value = match target.ty {
+                    Ty::Known(ty) => value.converted(ty),
+                    _ => value,
+                };
+                line(&format!("{} := {};", target.text, value.text));
+            }
+            StmtKind::Call(path, args) => {
+                let text = self.block_call(path, args, stmt.at.0);
+                line(&format!("{text};"));
+            }
+            StmtKind::If(arms, otherwise) => {
+                for (i, (condition, body)) in arms.iter().enumerate() {
+                    let word = if i == 0 { "IF" } else { "ELSIF" };
+                    let condition = self.condition(condition);
+                    out.push_str(&format!("{pad}{word} {condition} THEN\n"));
+                    self.statements(body, indent + 1, out);
+                }
+                if !otherwise.is_empty() {
+                    out.push_str(&format!("{pad}ELSE\n"));
+                    self.statements(otherwise, indent + 1, out);
+                }
+                out.push_str(&format!("{pad}END_IF;\n"));
+            }
+            StmtKind::Case(selector, arms, otherwise) => {
+                let selector = self.text(selector).text;
+                out.push_str(&format!("{pad}CASE {selector} OF\n"));
+                for arm in arms {
+                    let labels: Vec<String> =
+                        arm.labels.iter().map(|(a, b)| self.label(a, b.as_ref())).collect();
+                    out.push_str(&format!("{pad}  {}:\n", labels.join(", ")));
+                    self.statements(&arm.body, indent + 2, out);
+                }
+                if !otherwise.is_empty() {
+                    out.push_str(&format!("{pad}ELSE\n"));
+                    self.statements(otherwise, indent + 1, out);
+                }
+                out.push_str(&format!("{pad}END_CASE;\n"));
+            }
+            StmtKind::For { var, from, to, by, body } => {
+                let variable = self.path(&Path { names: vec![var.clone()] }, var.at.0);
+                let ty = match variable.ty {
+                    Ty::Known(ty) => ty,
+                    _ => Type::Int,
+                };
+                let (from, to) = (self.value(from, ty), self.value(to, ty));
+                let by = by.as_ref().map_or(String::new(), |by| format!(" BY {}", self.value(by, ty)));
+                out.push_str(&format!("{pad}FOR {} := {from} TO {to}{by} DO\n", variable.text));
+                self.statements(body, indent + 1, out);
+                out.push_str(&format!("{pad}END_FOR;\n"));
+            }
+            StmtKind::While(condition, body) => {
+                let condition = self.condition(condition);
+                out.push_str(&format!("{pad}WHILE {condition} DO\n"));
+                self.statements(body, indent + 1, out);
+                out.push_str(&format!("{pad}END_WHILE;\n"));
+            }
+            StmtKind::Repeat(body, condition) => {
+                out.push_str(&format!("{pad}REPEAT\n"));
+                self.statements(body, indent + 1, out);
+                let condition = self.condition(condition);
+                out.push_str(&format!("{pad}UNTIL {condition}\n{pad}END_REPEAT;\n"));
+            }
+            StmtKind::Exit => line("EXIT;"),
+            StmtKind::Return => line("RETURN;"),
+        }
+    }
+
+    fn label(&mut self, from: &Expr, to: Option<&Expr>) -> String {
+        let from = self.text(from).text;
+        match to {
+            Some(to) => format!("{from}..{}", self.text(to).text),
+            None => from,
+        }
+    }
+
+    /// A call of a function block; other calls have no counterpart.
+    fn block_call(&mut self, path: &Path, args: &[Arg], at: Span) -> String {
+        let names: Vec<&str> = path.names.iter().map(|n| &*n.text).collect();
+        let Some(Text { text, ty: Ty::Known(Type::Fb(kind)), .. }) = self.find(&names) else {
+            let what = format!("a call of `{}` has no counterpart", path.text());
+            self.lost(at, what);
+            return String::new();
+        };
+        let inputs: Vec<&str> = kind.members().iter().filter(|m| m.2).map(|m| m.0).collect();
+        let mut parts = Vec::new();
+        for (i, arg) in args.iter().enumerate() {
+            let named = arg.name.as_ref().map(|n: &Name| n.text.to_ascii_uppercase());
+            let name = named.or_else(|| inputs.get(i).map(ToString::to_string)).unwrap_or_default();
+            let name = match name.as_str() {
+                "RESET" => "R",
+                "LOAD" => "LD",
+                other => other,
+            };
+            let ty = member(kind, name).map(|m| m.1);
+            let value = match ty {
+                Some(ty) if !arg.output => self.value(&arg.value, ty),
+                _ => self.text(&arg.value).text,
+            };
+            parts.push(format!("{name} {} {value}", if arg.output { "=>" } else { ":=" }));
+        }
+        format!("{text}({})", parts.join(", "))
+    }
+}
+
+/// Both operands as one type.
+fn alike(left: Text, right: Text, op: BinaryOp) -> (Text, Text, Ty) {
+    let time = left.is(Type::Time) || right.is(Type::Time);
+    if time && matches!(op, BinaryOp::Mul | BinaryOp::Div) {
+        return (left, right, Ty::Known(Type::Time));
+    }
+    match (left.ty, right.ty) {
+        (Ty::Known(a), Ty::Known(b)) if is_number(a) && is_number(b) => {
+            let ty = wider(a, b);
+            (left.converted(ty), right.converted(ty), Ty::Known(ty))
+        }
+        (Ty::Known(a), Ty::Whole) => (left, right.converted(a), Ty::Known(a)),
+        (Ty::Whole, Ty::Known(b)) => (left.converted(b), right, Ty::Known(b)),
+        (Ty::Known(a), Ty::Real) if a.is_integer() => {
+            (left.converted(Type::Lreal), right, Ty::Known(Type::Lreal))
+        }
+        (Ty::Real, Ty::Known(b)) if b.is_integer() => {
+            (left, right.converted(Type::Lreal), Ty::Known(Type::Lreal))
+        }
+        (Ty::Known(t), _) | (_, Ty::Known(t)) => (left, right, Ty::Known(t)),
+        (a, _) => (left, right, a),
+    }
+}
+
+/// `Step.X` and `Step.T`.
+fn step_member(step: Option<&str>, name: &str) -> Option<Text> {
+    let step = step?;
+    match name {
+        "X" | "x" => Some(Text::operand(format!("{step}.X"), Ty::Known(Type::Bool))),
+        "T" | "t" => Some(Text::operand(format!("{step}.T"), Ty::Known(Type::Time))),
+        _ => None,
+    }
+}
+
+/// A member of a function block by its name, in any case.
+fn member(kind: FbKind, name: &str) -> Option<(&'static str, Type)> {
+    kind.members().iter().find(|m| m.0.eq_ignore_ascii_case(name)).map(|m| (m.0, m.1))
+}
+
+/// The type of a standard function's result.
+fn standard_type(name: &str, common: Ty) -> Ty {
+    if let Some((_, to)) = name.split_once("_TO_") {
+        return crate::iec::elementary(to).map_or(Ty::Unknown, Ty::Known);
+    }
+    match name {
+        "LEN" | "FIND" => Ty::Known(Type::Int),
+        "LEFT" | "RIGHT" | "MID" | "CONCAT" | "INSERT" | "DELETE" | "REPLACE" => Ty::Known(Type::String(80)),
+        "TRUNC" => Ty::Unknown,
+        _ => common,
+    }
+}
+
+fn literal_text(literal: &Literal) -> Text {
+    let (text, ty) = match literal {
+        Literal::Bool(b) => (if *b { "TRUE" } else { "FALSE" }.to_string(), Ty::Known(Type::Bool)),
+        Literal::Int(n, None) => (n.to_string(), Ty::Whole),
+        Literal::Int(n, Some(ty)) => (format!("{ty}#{n}"), Ty::Known(*ty)),
+        Literal::Real(text, None) => (real(text), Ty::Real),
+        Literal::Real(text, Some(ty)) => (format!("{ty}#{}", real(text)), Ty::Known(*ty)),
+        Literal::Time(ns) => (time(*ns), Ty::Known(Type::Time)),
+        Literal::Str(text) => (string(text), Ty::Known(Type::String(80))),
+    };
+    let strength = if text.starts_with('-') { 8 } else { OPERAND };
+    Text { text, ty, strength }
+}
+
+/// A real number has a point.
+fn real(text: &str) -> String {
+    let (digits, power) = match text.split_once(['e', 'E']) {
+        Some((digits, power)) => (digits, format!("E{power}")),
+        None => (text, String::new()),
+    };
+    let point = if digits.contains('.') { "" } else { ".0" };
+    format!("{digits}{point}{power}")
+}
+
+/// A duration; the standard's finest unit is a millisecond, which may have a fraction.
+pub(super) fn time(ns: i64) -> String {
+    const UNITS: [(&str, u64); 4] =
+        [("d", 86_400_000_000_000), ("h", 3_600_000_000_000), ("m", 60_000_000_000), ("s", 1_000_000_000)];
+    let mut rest = ns.unsigned_abs();
+    let mut out = String::from(if ns < 0 { "T#-" } else { "T#" });
+    let empty = out.len();
+    for (unit, size) in UNITS {
+        if rest >= size {
+            out.push_str(&format!("{}{unit}", rest / size));
+            rest %= size;
+        }
+    }
+    let (ms, part) = (rest / 1_000_000, rest % 1_000_000);
+    if part > 0 {
+        let part = format!("{part:06}");
+        out.push_str(&format!("{ms}.{}ms", part.trim_end_matches('0')));
+    } else if ms > 0 || out.len() == empty {
+        out.push_str(&format!("{ms}ms"));
+    }
+    out
+}
+
+fn string(text: &str) -> String {
+    let mut out = String::from("'");
+    for c in text.chars() {
+        match c {
+            '$' => out.push_str("$$"),
+            '\'' => out.push_str("$'"),
+            '\n' => out.push_str("$N"),
+            '\r' => out.push_str("$R"),
+            '\t' => out.push_str("$T"),
+            c => out.push(c),
+        }
+    }
+    out.push('\'');
+    out
+}

@@ -1,0 +1,74 @@
+//! Charts that people wrote, where the corpus is at hand (`G7_CORPUS`, else
+//! `../shared/corpus` beside the repository).
+
+use std::path::{Path, PathBuf};
+
+use g7_exchange::{Format, recognise};
+use g7_model::FileId;
+
+use crate::errors;
+
+fn folder() -> PathBuf {
+    let root = match std::env::var_os("G7_CORPUS") {
+        Some(path) => PathBuf::from(path),
+        None => [env!("CARGO_MANIFEST_DIR"), "..", "..", "..", "shared", "corpus"].iter().collect(),
+    };
+    root.join("sfc-text")
+}
+
+fn files(folder: &Path, out: &mut Vec<PathBuf>) {
+    let entries = std::fs::read_dir(folder).expect("a folder");
+    for path in entries.map(|e| e.expect("an entry").path()) {
+        if path.is_dir() { files(&path, out) } else { out.push(path) }
+    }
+}
+
+/// Files that are wrong, each with the line and a part of what is told.
+/// Python's operators, a `%` between numbers, a `;` left out, steps and names that are not there.
+const REFUSED: [(&str, usize, &str); 11] = [
+    ("oscat/36_standard.st", 17, "expected `;`"),
+    ("oscat/42_standard.st", 10, "expected `;`"),
+    ("sfclang/Delay1_left.sfc", 36, "no step `I1`"),
+    ("sfclang/Input1_right.sfc", 21, "no step `Add`"),
+    ("AnnexF/gravel_st.txt", 76, "no input `EN`"),
+    ("identifier/identifier_in_sfc.test", 98, "the address of two variables"),
+    ("test/first_steps.st", 174, "no program `plc_prg`"),
+    ("test/first_steps_semantic_error.st", 174, "no program `plc_prg`"),
+    ("test/first_steps_syntax_error.st", 148, "expected `;`"),
+    ("oscat/42_standard.st", 17, "expected `;`"),
+    ("identifier/identifier_in_sfc.test", 108, "nothing is called `IX3`"),
+];
+
+#[test]
+fn charts_of_the_corpus_run_or_are_refused_with_their_reason() {
+    let folder = folder();
+    if !folder.is_dir() {
+        println!("skipped: no corpus");
+        return;
+    }
+    let mut all = Vec::new();
+    files(&folder, &mut all);
+    assert_eq!(all.len(), 70);
+    let mut ran = 0;
+    for path in &all {
+        let name = path.to_string_lossy().replace('\\', "/");
+        let bytes = std::fs::read(path).expect("a file");
+        let text = String::from_utf8_lossy(&bytes).into_owned();
+        assert_eq!(recognise(&name, &bytes), Some(Format::IecText), "{name}");
+        let (document, mut problems) = g7_exchange::import(Format::IecText, &bytes, FileId(0));
+        let (compiled, more) = g7_compile::compile(&document);
+        problems.extend(more);
+        let expected: Vec<&(&str, usize, &str)> = REFUSED.iter().filter(|r| name.ends_with(r.0)).collect();
+        if expected.is_empty() {
+            assert!(compiled.is_some(), "{name}: {:?}", errors(&problems));
+            ran += 1;
+            continue;
+        }
+        for (_, number, words) in expected {
+            let line = |at: u32| text[..at as usize].matches('\n').count() + 1;
+            let found = problems.iter().any(|p| line(p.at.start) == *number && p.what.contains(words));
+            assert!(found, "{name}: line {number}: {words}: {:?}", errors(&problems));
+        }
+    }
+    assert_eq!(ran, 61);
+}

@@ -1,0 +1,144 @@
+//! What is written: read back equal, and taken by a compiler that is not ours.
+
+use std::process::Command;
+
+use g7_exchange::{Outlet, Written};
+use g7_model::{Document, FileId, Severity};
+
+use crate::{file, import};
+
+fn document(text: &str) -> Document {
+    let (document, problems) = g7_syntax::parse(text, FileId(0));
+    assert_eq!(problems, [], "{text}");
+    document
+}
+
+fn export(document: &Document) -> Written {
+    g7_exchange::export(Outlet::IecText, document)
+}
+
+const PUMP: &str = "profile iec61131
+scan 10ms
+input go, stop : BOOL
+input level : REAL
+output motor, lamp : BOOL
+var n : DINT := 3
+var k : INT
+var t : TON
+chart Pump {
+  initial step Rest { N lamp  P1 Tally }
+  step Run { S motor  D 2s lamp  N Watch }
+  step Off { R motor }
+  Rest -> Run when go and not stop
+  Run -> Off when level >= 0.5 or Run.T > 1m30s or t.Q priority 1
+  Off -> Rest when n > 2
+  action Tally { n := n + 1 }
+  action Watch {
+    t(IN := Run.X, PT := 5s)
+    IF n > 10 THEN n := 0 ELSE n := n - 1 END_IF
+    CASE n OF 1, 2: lamp := TRUE 3 .. 5: lamp := FALSE ELSE lamp := stop END_CASE
+    FOR k := 1 TO 5 DO n := n * 2 END_FOR
+    WHILE n > 3 DO n := n - 1 END_WHILE
+    REPEAT n := n + 1 UNTIL n > 5 END_REPEAT
+  }
+}
+";
+
+#[test]
+fn a_chart_of_the_standard_comes_back_equal() {
+    let before = document(PUMP);
+    let written = export(&before);
+    assert_eq!(written.problems, []);
+    let (after, problems) = import(&written.text);
+    assert_eq!(problems, [], "{}", written.text);
+    // Variables that were declared together are declared one by one.
+    let lone = "input go : BOOL\ninput stop : BOOL\n";
+    let expected = PUMP
+        .replace("input go, stop : BOOL\n", lone)
+        .replace("output motor, lamp : BOOL\n", "output motor : BOOL\noutput lamp : BOOL\n");
+    let expected = g7_syntax::print(&document(&expected), None);
+    assert_eq!(g7_syntax::print(&after, None), expected, "{}", written.text);
+}
+
+#[test]
+fn numbers_are_converted_where_the_standard_does_not() {
+    let written = export(&document(
+        "profile iec61131\nvar a : INT\nvar b : DINT\nvar r : REAL\nvar q : BOOL\nchart G {\n initial step 1 { N { b := a + b  r := a * 2  q := a < b } }\n}\n",
+    ));
+    for part in [
+        "b := INT_TO_DINT(a) + b;",
+        "r := INT_TO_REAL(a * 2);",
+        "q := INT_TO_DINT(a) < b;",
+        "INITIAL_STEP Step1:",
+    ] {
+        assert!(written.text.contains(part), "{part} in {}", written.text);
+    }
+    assert!(written.problems.iter().all(|p| p.severity() == Severity::Warning), "{:?}", written.problems);
+}
+
+#[test]
+fn what_has_no_form_is_told_with_its_place() {
+    let text = "profile iec61131
+input a : BOOL
+output q : BOOL
+chart G {
+  initial step A { N q if a  on rise(a): q := TRUE }
+  step B { force H := {} }
+  A -> B when rise(a)
+  B -> A when 5s/a
+  () -> A when a
+}
+chart H { initial step C }
+";
+    let written = export(&document(text));
+    let told = |part: &str, words: &str| {
+        let at = text.find(part).expect("a part") as u32;
+        let hit = |p: &&g7_model::Problem| p.at.start <= at && at < p.at.end && p.what.contains(words);
+        assert!(written.problems.iter().any(|p| hit(&p)), "{part}: {:?}", written.problems);
+    };
+    told("on rise(a): q", "on an event");
+    told("force H", "an order");
+    told("rise(a)\n", "an edge");
+    told("5s/a", "a time operator");
+    told("() -> A", "source or sink");
+    assert!(written.problems.iter().any(|p| p.what.contains("a condition of an action")));
+}
+
+#[test]
+fn rules_of_another_profile_are_told() {
+    let written = export(&document("chart G { initial step A }"));
+    assert!(written.problems.iter().any(|p| p.what.contains("evolves by the rules of iec60848")));
+}
+
+/// matiec's `iec2c`, where it is on the PATH; `MATIEC_LIB` is its folder `lib`.
+fn compile(text: &str) -> Option<Result<(), String>> {
+    let folder = std::env::temp_dir().join(format!("g7-iectext-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).ok()?;
+    let source = folder.join("chart.st");
+    std::fs::write(&source, text).ok()?;
+    let mut command = Command::new("iec2c");
+    if let Some(lib) = std::env::var_os("MATIEC_LIB") {
+        command.arg("-I").arg(lib);
+    }
+    let output = command.arg("-T").arg(&folder).arg(&source).output();
+    let result = output.ok().map(|o| {
+        if o.status.success() { Ok(()) } else { Err(String::from_utf8_lossy(&o.stderr).into_owned()) }
+    });
+    let _ = std::fs::remove_dir_all(&folder);
+    result
+}
+
+#[test]
+fn matiec_takes_what_is_written() {
+    for text in [
+        PUMP.to_string(),
+        g7_syntax::print(&import(&file("press.st")).0, None),
+        g7_syntax::print(&import(&file("fork.st")).0, None),
+    ] {
+        let written = export(&document(&text));
+        match compile(&written.text) {
+            None => return println!("skipped: no iec2c on the PATH (github.com/beremiz/matiec)"),
+            Some(result) => assert_eq!(result, Ok(()), "{}", written.text),
+        }
+    }
+}
