@@ -149,7 +149,7 @@ fn declare(d: &mut Draft<'_>, chart: &str, doc: &Document) -> Result<(), Refusal
 
 /// What a name means already.
 enum Meaning {
-    Variable(VarDecl),
+    Variable(Box<VarDecl>),
     Other(&'static str),
 }
 
@@ -161,7 +161,7 @@ fn meaning(d: &Draft<'_>, chart: &str, name: &str) -> Option<Meaning> {
         _ => None,
     });
     if let Some(v) = own.or(of_file) {
-        return Some(Meaning::Variable(v.clone()));
+        return Some(Meaning::Variable(Box::new(v.clone())));
     }
     d.doc.items.iter().find_map(|i| match i {
         Item::Chart(c) if *c.name.text == *name => Some(Meaning::Other("a chart")),
