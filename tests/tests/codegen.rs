@@ -125,7 +125,10 @@ fn cases_in_c_by_gcc() {
 
 #[test]
 fn cases_in_c_by_clang() {
-    c_agrees("spec-clang", "clang", &spec());
+    // All of them in the long run; where nothing is said, every fourth.
+    let step = if std::env::var_os("G7_SCANS").is_some() { 1 } else { 4 };
+    let subjects: Vec<Subject> = spec().into_iter().step_by(step).collect();
+    c_agrees("spec-clang", "clang", &subjects);
 }
 
 #[test]
@@ -147,7 +150,7 @@ fn cases_in_rust() {
 }
 
 fn random_in_c(profile: ProfileName, compiler: &str) {
-    let subjects = random(profile, number("G7_SCANS", 100_000) as usize, 1000);
+    let subjects = random(profile, number("G7_SCANS", 100_000) as usize, 2000);
     c_agrees(profile.name(), compiler, &subjects);
 }
 

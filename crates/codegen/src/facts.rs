@@ -28,10 +28,10 @@ pub(crate) fn of(t: &Tables) -> Facts {
     let full = t.blocks.iter().filter(|b| !b.plain).count();
     let conditional =
         t.contributions.iter().filter(|c| !c.condition.is_empty() || !c.time.is_empty()).count();
-    let shared = t
-        .transitions
-        .iter()
-        .any(|x| x.shares && !(!r.multi_token && x.simple) && (!r.multi_token || x.priority != NONE));
+    let shared = t.transitions.iter().any(|x| {
+        let settled = if r.multi_token { x.priority == NONE } else { x.simple };
+        x.shares && !settled
+    });
     let late =
         r.late_actions && lists || !t.periodics.is_empty() || t.blocks.iter().any(|b| b.action != NONE);
     let on = t.steps.iter().any(|s| s.direct.0 != NONE)

@@ -58,7 +58,7 @@ impl Writer {
             match op {
                 "add" | "sub" | "mul" | "div" | "rem" | "neg" | "abs" => self.arith(op, t),
                 "min" | "max" => self.extreme(op, t),
-                "round" | "trunc" => self.from_real(op, t),
+                "round" | "trunc" => self.whole_of(op, t),
                 "text_to" => self.text_to(t),
                 _ => {
                     if let Some(to) = op.strip_suffix("_from") {
@@ -181,7 +181,7 @@ impl Writer {
         );
     }
 
-    fn from_real(&mut self, op: &str, t: &str) {
+    fn whole_of(&mut self, op: &str, t: &str) {
         self.needs(&["fail", if op == "round" { "round_even" } else { "toward_zero" }]);
         let f = if op == "round" { "round_even" } else { "toward_zero" };
         let t_ = ty(t);

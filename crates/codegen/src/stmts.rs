@@ -57,7 +57,7 @@ impl Flow<'_, '_> {
                 } else {
                     e
                 };
-                self.to_text(e, format!("text_from_{name}"), to, cap, &slot);
+                self.print_text(e, format!("text_from_{name}"), to, cap, &slot);
             }
             Op::Fb(block, base) => {
                 self.settle();
@@ -84,7 +84,7 @@ impl Flow<'_, '_> {
         }
     }
 
-    fn to_text(&mut self, e: Expr, f: String, to: Addr, cap: u16, slot: &vars::Slot) {
+    fn print_text(&mut self, e: Expr, f: String, to: Addr, cap: u16, slot: &vars::Slot) {
         let place = self.text_place(to.0, slot);
         self.out.push(Stmt::Do(Expr::call(f, vec![e, place.passed(), Expr::size(cap.into())])));
         self.wrote(to.0, None);

@@ -424,7 +424,7 @@ impl Flow<'_, '_> {
 
     fn function(&mut self, f: Builtin, n: Num, count: usize) {
         let from = self.stack.len().saturating_sub(count);
-        let mut args = self.stack.split_off(from);
+        let args = self.stack.split_off(from);
         match f {
             Builtin::Sel | Builtin::Mux => return self.select(f, args),
             Builtin::Abs if !is_real(n) => {
@@ -459,7 +459,6 @@ impl Flow<'_, '_> {
                 if n == Num::F32 { e.cast(vars::ty(Num::F32)) } else { e }
             }
         };
-        let args: Vec<Entry> = args.drain(..).collect();
         self.push(e, n, &args.iter().collect::<Vec<_>>());
     }
 

@@ -284,3 +284,33 @@ impl Equations {
         self.before.iter().chain(&self.pass).chain(&self.after)
     }
 }
+
+/// The type of a variable.
+pub(crate) fn type_of(variables: &[Declared], name: &str) -> String {
+    let name = name.split(['[', '.']).next().unwrap_or(name);
+    variables.iter().find(|v| v.name == name).map_or("DINT".into(), |v| v.ty.clone())
+}
+
+/// The type of a value.
+pub(crate) fn type_name(variables: &[Declared], e: &Ex) -> String {
+    match e {
+        Ex::Bool(_) | Ex::Not(_) | Ex::And(_) | Ex::Or(_) | Ex::Xor(..) => "BOOL".into(),
+        Ex::Op("=" | "<>" | "<" | "<=" | ">" | ">=", ..) => "BOOL".into(),
+        Ex::Int(_) => "DINT".into(),
+        Ex::Real(_) => "LREAL".into(),
+        Ex::Time(_) => "TIME".into(),
+        Ex::Var(n) if n.ends_with(".ET") || n.ends_with(".PT") => "TIME".into(),
+        Ex::Var(n) if n.ends_with(".CV") || n.ends_with(".PV") => "INT".into(),
+        Ex::Var(n) if n.contains('.') => "BOOL".into(),
+        Ex::Var(n) | Ex::Index(n, _) => type_of(variables, n),
+        Ex::Neg(e) => type_name(variables, e),
+        Ex::Op(_, a, b) => match (&**a, &**b) {
+            (Ex::Int(_) | Ex::Real(_), b) => type_name(variables, b),
+            (a, _) => type_name(variables, a),
+        },
+        Ex::Call(n, args) => match n.split_once("_TO_").or_else(|| n.split_once("_TRUNC_")) {
+            Some((_, to)) => to.to_owned(),
+            None => args.last().map_or("DINT".into(), |a| type_name(variables, a)),
+        },
+    }
+}

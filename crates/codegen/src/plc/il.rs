@@ -2,12 +2,18 @@
 
 use std::fmt::Write;
 
-use super::form::{Equations, Ex, Section, St, What};
+use super::form::{Class, Declared, Equations, Ex, Section, St, What, type_name};
 use super::st::{declarations, expression, plain};
 
 /// The whole function block.
 pub(crate) fn print(e: &Equations) -> String {
-    let mut p = Printer { e, out: String::new(), labels: 0, loops: Vec::new() };
+    let mut p = Printer {
+        variables: e.variables.clone(),
+        out: String::new(),
+        labels: 0,
+        memories: 0,
+        loops: Vec::new(),
+    };
     p.sections(&e.before);
     let fine = e.safe.is_some().then(|| p.label());
     if let Some(label) = &fine {
@@ -49,18 +55,21 @@ pub(crate) fn print(e: &Equations) -> String {
         p.sections(&e.after);
     }
     let body = if p.out.trim().is_empty() { "  LD TRUE\n".to_owned() } else { p.out };
-    format!("{}{body}  RET\nEND_FUNCTION_BLOCK\n", declarations(e))
+    let head =
+        declarations(&Equations { name: e.name.clone(), variables: p.variables, ..Equations::default() });
+    format!("{head}{body}  RET\nEND_FUNCTION_BLOCK\n")
 }
 
-struct Printer<'e> {
-    e: &'e Equations,
+struct Printer {
+    variables: Vec<Declared>,
     out: String,
     labels: usize,
+    memories: usize,
     /// Labels behind the loops round this point.
     loops: Vec<String>,
 }
 
-impl Printer<'_> {
+impl Printer {
     fn line(&mut self, text: &str) {
         let _ = writeln!(self.out, "  {text}");
     }
@@ -156,53 +165,117 @@ impl Printer<'_> {
                     }
                     return self.line(&format!("CAL {name}"));
                 }
+                let mut operands = Vec::new();
+                for (formal, e) in inputs {
+                    operands.push((formal.clone(), self.kept(e)));
+                }
                 self.line(&format!("CAL {name}("));
-                self.inputs(inputs);
+                self.inputs(&operands);
                 self.line(")");
             }
         }
     }
 
-    /// Named inputs of a call, one a line.
+    /// Named inputs of a call, one a line; each is an operand.
     fn inputs(&mut self, inputs: &[(String, Ex)]) {
         for (i, (name, e)) in inputs.iter().enumerate() {
             let comma = if i + 1 < inputs.len() { "," } else { "" };
-            match operand(e) {
-                Some(text) => self.line(&format!("  {name} := {text}{comma}")),
-                None => {
-                    self.line(&format!("  {name} := ("));
-                    self.load(e);
-                    self.line(&format!("  ){comma}"));
-                }
+            self.line(&format!("  {name} := {}{comma}", expression(e)));
+        }
+    }
+
+    /// A value in a memory of its own, where it is no operand.
+    fn kept(&mut self, e: &Ex) -> Ex {
+        if operand(e).is_some() {
+            return e.clone();
+        }
+        let ty = type_name(&self.variables, e);
+        let name = loop {
+            self.memories += 1;
+            let name = format!("K_{}", self.memories);
+            if self.variables.iter().all(|v| !v.name.eq_ignore_ascii_case(&name)) {
+                break name;
             }
+        };
+        self.variables.push(Declared {
+            class: Class::Internal,
+            name: name.clone(),
+            ty,
+            elements: 1,
+            init: Vec::new(),
+            note: String::new(),
+        });
+        self.load(e);
+        self.line(&format!("ST {name}"));
+        Ex::Var(name)
+    }
+
+    /// An expression whose brackets hold contacts only: whatever is deeper, and
+    /// comparisons behind the first, have memories.
+    fn ready(&mut self, e: &Ex) -> Ex {
+        match e {
+            Ex::And(list) | Ex::Or(list) => {
+                let mut list = list.clone();
+                if let Some(i) = list.iter().position(|e| !contact(e) && !flat(e)) {
+                    let first = list.remove(i);
+                    list.insert(0, first);
+                }
+                let mut done = Vec::new();
+                for (i, e) in list.iter().enumerate() {
+                    done.push(match e {
+                        e if contact(e) || flat(e) => e.clone(),
+                        Ex::Op(..) if i == 0 => self.ready(e),
+                        Ex::Not(inner) => Ex::Not(Box::new(self.kept(inner))),
+                        e => self.kept(e),
+                    });
+                }
+                if matches!(e, Ex::And(_)) { Ex::And(done) } else { Ex::Or(done) }
+            }
+            Ex::Not(inner) if operand(inner).is_none() => Ex::Not(Box::new(self.kept(inner))),
+            Ex::Xor(a, b) => {
+                let b = if contact(b) { (**b).clone() } else { self.kept(b) };
+                let a = if contact(a) { (**a).clone() } else { self.kept(a) };
+                Ex::Xor(Box::new(a), Box::new(b))
+            }
+            Ex::Op(sign, a, b) => {
+                let b = self.kept(b);
+                let a = if matches!(**a, Ex::Op(..)) { self.ready(a) } else { self.kept(a) };
+                Ex::op(sign, a, b)
+            }
+            Ex::Neg(inner) => Ex::Neg(Box::new(self.kept(inner))),
+            Ex::Call(name, args) => {
+                let args: Vec<Ex> = args.iter().map(|a| self.kept(a)).collect();
+                Ex::Call(name.clone(), args)
+            }
+            plain => plain.clone(),
         }
     }
 
     /// The value as the current result.
     fn load(&mut self, e: &Ex) {
+        let e = self.ready(e);
+        self.result(&e);
+    }
+
+    fn result(&mut self, e: &Ex) {
         if let Some(text) = operand(e) {
             return self.line(&format!("LD {text}"));
         }
         match e {
-            Ex::Not(inner) => match operand(inner) {
-                Some(text) => self.line(&format!("LDN {text}")),
-                None => {
-                    self.line("LD TRUE");
-                    self.with("ANDN", inner);
-                }
-            },
+            Ex::Not(inner) => self.line(&format!("LDN {}", expression(inner))),
             Ex::And(list) => self.chain(list, "AND"),
             Ex::Or(list) => self.chain(list, "OR"),
             Ex::Xor(a, b) => {
-                self.load(a);
+                self.result(a);
                 self.with("XOR", b);
             }
             Ex::Neg(inner) => {
-                self.line(if self.is_real(inner) { "LD 0.0" } else { "LD 0" });
+                let real = type_name(&self.variables, inner).ends_with("REAL");
+                self.line(if real { "LD 0.0" } else { "LD 0" });
                 self.with("SUB", inner);
             }
             Ex::Op(sign, a, b) => {
-                self.load(a);
+                self.result(a);
                 let word = match *sign {
                     "+" => "ADD",
                     "-" => "SUB",
@@ -224,31 +297,30 @@ impl Printer<'_> {
     }
 
     fn chain(&mut self, list: &[Ex], word: &str) {
-        // What needs brackets comes first, where that saves them.
         let Some((first, rest)) = list.split_first() else { return };
-        self.load(first);
+        self.result(first);
         for e in rest {
-            match e {
-                Ex::Not(inner) => self.with(&format!("{word}N"), inner),
-                e => self.with(word, e),
-            }
+            self.with(word, e);
         }
     }
 
     fn with(&mut self, word: &str, e: &Ex) {
-        match operand(e) {
-            Some(text) => self.line(&format!("{word} {text}")),
-            None => {
-                self.line(&format!("{word}("));
-                self.load(e);
-                self.line(")");
-            }
+        match e {
+            Ex::Not(inner) => self.with(&format!("{word}N"), inner),
+            e => match operand(e) {
+                Some(text) => self.line(&format!("{word} {text}")),
+                None => {
+                    self.line(&format!("{word}("));
+                    self.result(e);
+                    self.line(")");
+                }
+            },
         }
     }
 
     fn function(&mut self, name: &str, args: &[Ex]) {
         if let [one] = args {
-            self.load(one);
+            self.result(one);
             return self.line(name);
         }
         let names: Vec<String> = match name {
@@ -264,20 +336,22 @@ impl Printer<'_> {
         self.inputs(&names.into_iter().zip(args.iter().cloned()).collect::<Vec<_>>());
         self.line(")");
     }
+}
 
-    fn is_real(&self, e: &Ex) -> bool {
-        let mut found = false;
-        e.walk(&mut |e| {
-            found |= match e {
-                Ex::Real(_) => true,
-                Ex::Var(n) | Ex::Index(n, _) => {
-                    self.e.variables.iter().any(|v| v.name == *n && v.ty.ends_with("REAL"))
-                }
-                Ex::Call(n, _) => n.ends_with("REAL"),
-                _ => false,
-            }
-        });
-        found
+/// An operand, or the complement of one.
+fn contact(e: &Ex) -> bool {
+    match e {
+        Ex::Not(inner) => operand(inner).is_some(),
+        e => operand(e).is_some(),
+    }
+}
+
+/// Operands in brackets.
+fn flat(e: &Ex) -> bool {
+    match e {
+        Ex::Not(inner) => matches!(&**inner, Ex::And(_) | Ex::Or(_)) && flat(inner),
+        Ex::And(list) | Ex::Or(list) => list.iter().all(contact),
+        _ => false,
     }
 }
 

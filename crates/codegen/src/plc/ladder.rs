@@ -4,7 +4,7 @@
 
 use g7_model::{Problem, Span, codes};
 
-use super::form::{Class, Declared, Equations, Ex, Section, St, What};
+use super::form::{Class, Declared, Equations, Ex, Section, St, What, type_name, type_of};
 use super::st::expression;
 
 /// What power flows through.
@@ -165,7 +165,7 @@ impl Maker {
                     self.act(&outer.and(c.not()), other);
                 }
                 St::Call(name, inputs) => {
-                    let ty = self.type_of(name);
+                    let ty = type_of(&self.variables, name);
                     let mut operands = Vec::new();
                     for (formal, e) in inputs {
                         operands.push((formal.clone(), self.operand(e)));
@@ -184,13 +184,8 @@ impl Maker {
         }
     }
 
-    fn type_of(&self, name: &str) -> String {
-        let name = name.split(['[', '.']).next().unwrap_or(name);
-        self.variables.iter().find(|v| v.name == name).map_or("DINT".into(), |v| v.ty.clone())
-    }
-
     fn assign(&mut self, when: &Ex, to: &str, place: &Ex, e: &Ex) {
-        if matches!(place, Ex::Var(n) if self.type_of(n) == "BOOL") {
+        if matches!(place, Ex::Var(n) if type_of(&self.variables, n) == "BOOL") {
             return match e {
                 Ex::Bool(on) => self.coil(when, to, if *on { Coil::Set } else { Coil::Reset }),
                 e => {
@@ -232,7 +227,7 @@ impl Maker {
                 plain(ty, vec![("IN1".into(), a), ("IN2".into(), b)])
             }
             Ex::Neg(inner) => {
-                let zero = if self.type_name(inner).ends_with("REAL") { "0.0" } else { "0" };
+                let zero = if type_name(&self.variables, inner).ends_with("REAL") { "0.0" } else { "0" };
                 let inner = self.operand(inner);
                 plain("SUB", vec![("IN1".into(), zero.into()), ("IN2".into(), inner)])
             }
@@ -264,35 +259,12 @@ impl Maker {
             }
             Ex::And(_) | Ex::Or(_) | Ex::Not(_) | Ex::Xor(..) => expression(&self.kept(e)),
             e => {
-                let name = self.memory(&self.type_name(e));
+                let name = self.memory(&type_name(&self.variables, e));
                 let mut block = self.value(e);
                 block.output = Some(("OUT".into(), name.clone()));
                 self.push(Net::Wire, End::Block(block));
                 name
             }
-        }
-    }
-
-    fn type_name(&self, e: &Ex) -> String {
-        match e {
-            Ex::Bool(_) | Ex::Not(_) | Ex::And(_) | Ex::Or(_) | Ex::Xor(..) => "BOOL".into(),
-            Ex::Op("=" | "<>" | "<" | "<=" | ">" | ">=", ..) => "BOOL".into(),
-            Ex::Int(_) => "DINT".into(),
-            Ex::Real(_) => "LREAL".into(),
-            Ex::Time(_) => "TIME".into(),
-            Ex::Var(n) if n.ends_with(".ET") || n.ends_with(".PT") => "TIME".into(),
-            Ex::Var(n) if n.ends_with(".CV") || n.ends_with(".PV") => "INT".into(),
-            Ex::Var(n) if n.contains('.') => "BOOL".into(),
-            Ex::Var(n) | Ex::Index(n, _) => self.type_of(n),
-            Ex::Neg(e) => self.type_name(e),
-            Ex::Op(_, a, b) => match (&**a, &**b) {
-                (Ex::Int(_) | Ex::Real(_), b) => self.type_name(b),
-                (a, _) => self.type_name(a),
-            },
-            Ex::Call(n, args) => match n.split_once("_TO_").or_else(|| n.split_once("_TRUNC_")) {
-                Some((_, to)) => to.to_owned(),
-                None => args.last().map_or("DINT".into(), |a| self.type_name(a)),
-            },
         }
     }
 

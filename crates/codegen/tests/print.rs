@@ -1,0 +1,110 @@
+//! What is printed: names and texts of the chart, what is refused, and a sketch
+//! that compiles. That the code does what the engine does is tested in
+//! `/tests/tests/codegen.rs`.
+#![allow(clippy::disallowed_methods, reason = "the tests start a compiler")]
+
+use std::process::Command;
+
+use g7_codegen::{Language, Options, Printed, print};
+use g7_compile::compile;
+use g7_model::{FileId, Problem, codes};
+
+const TANK: &str = "profile iec60848
+
+input start : BOOL at 2 \"push button\"
+input full : BOOL at %I0.3
+output valve : BOOL at D13
+
+chart Tank {
+  initial step 1
+  step Fill { N valve }
+  1 -> Fill when start and not full
+  Fill -> 1 when full
+}
+";
+
+fn printed(text: &str, language: Language) -> Result<Printed, Vec<Problem>> {
+    let (doc, problems) = g7_syntax::parse(text, FileId(0));
+    assert!(problems.is_empty(), "{problems:?}");
+    let (compiled, problems) = compile(&doc);
+    let compiled = compiled.unwrap_or_else(|| panic!("{problems:?}"));
+    print(&compiled, &Options { language, name: "tank", source: text })
+}
+
+fn file(p: &Printed, name: &str) -> String {
+    let found = p.files.iter().find(|f| f.name == name);
+    found
+        .unwrap_or_else(|| panic!("no {name} in {:?}", p.files.iter().map(|f| &f.name).collect::<Vec<_>>()))
+        .text
+        .clone()
+}
+
+#[test]
+fn names_and_texts_of_the_chart_stand_in_the_code() {
+    let p = printed(TANK, Language::C).expect("it can be printed");
+    let (header, source) = (file(&p, "tank.h"), file(&p, "tank.c"));
+    for want in ["TANK_STEP_1 = 0", "TANK_STEP_FILL = 1", "bool start;", "bool valve;", "tank_scan("] {
+        assert!(header.contains(want), "no `{want}` in\n{header}");
+    }
+    assert!(source.contains("1 -> Fill when start and not full"), "{source}");
+    for never in ["malloc", "goto", "string.h", "stdio"] {
+        assert!(!source.contains(never), "`{never}` in\n{source}");
+    }
+    let rust = printed(TANK, Language::Rust).expect("it can be printed");
+    assert!(file(&rust, "tank.rs").contains("pub const STEP_FILL: usize = 1;"));
+}
+
+#[test]
+fn what_c_cannot_say_is_refused() {
+    let text = "profile iec60848\noutput t : STRING(20)\nvar x : REAL\nchart G {\n  initial step 1 { P1 t := REAL_TO_STRING(x) }\n}\n";
+    let problems = printed(text, Language::C).expect_err("C has no way for it");
+    assert_eq!(problems[0].code.id, codes::NOT_CARRIED.id);
+    printed(text, Language::Rust).expect("Rust has one");
+}
+
+#[test]
+fn functions_of_the_library_are_told() {
+    let text = "profile iec60848\noutput y : LREAL\ninput x : LREAL\nchart G {\n  initial step 1 { N y := SIN(x) }\n}\n";
+    let p = printed(text, Language::C).expect("it can be printed");
+    assert_eq!(p.problems[0].code.id, codes::DIFFERENT.id);
+    assert!(file(&p, "tank.c").contains("#include <math.h>"));
+}
+
+const ARDUINO: &str = "#include <stdint.h>
+enum { LOW, HIGH, INPUT, OUTPUT, INPUT_PULLUP, A0 };
+static unsigned long millis() { return 0; }
+static int digitalRead(int p) { return p; }
+static void digitalWrite(int, int) {}
+static int analogRead(int p) { return p; }
+static void analogWrite(int, int) {}
+static void pinMode(int, int) {}
+void use() { (void)analogRead(0); analogWrite(0, 0); digitalWrite(0, digitalRead(0)); pinMode(0, 0); (void)millis(); }
+void setup();
+void loop();
+#include \"tank.ino\"
+";
+
+#[test]
+fn the_sketch_has_the_pins_and_compiles() {
+    let p = printed(TANK, Language::Arduino).expect("it can be printed");
+    let sketch = file(&p, "tank.ino");
+    assert!(sketch.contains("PIN_START = 2;") && sketch.contains("PIN_VALVE = 13;"), "{sketch}");
+    assert!(sketch.contains("PIN_FULL = -1;"), "{sketch}");
+    if Command::new("g++").arg("--version").output().is_err() {
+        println!("skipped: no g++ on the PATH");
+        return;
+    }
+    let folder = std::env::temp_dir().join(format!("g7-sketch-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).expect("a folder");
+    for f in &p.files {
+        std::fs::write(folder.join(&f.name), &f.text).expect("a file");
+    }
+    std::fs::write(folder.join("main.cpp"), ARDUINO).expect("a file");
+    let out = Command::new("g++")
+        .args(["-Wall", "-Wextra", "-Werror", "-fsyntax-only", "main.cpp"])
+        .current_dir(&folder)
+        .output()
+        .expect("g++ starts");
+    let _ = std::fs::remove_dir_all(&folder);
+    assert!(out.status.success(), "{}", String::from_utf8_lossy(&out.stderr));
+}
