@@ -4,7 +4,7 @@ use std::collections::btree_map::Entry;
 use std::collections::{BTreeMap, BTreeSet, HashSet};
 use std::ops::Range;
 
-use g7_model::{BinaryOp, Expr, ExprKind, FbKind, Literal, Name, Span};
+use g7_model::{BinaryOp, Expr, ExprKind, FbKind, Name, Span};
 use g7_model::{Type, UnaryOp, VarDecl, VarKind, codes};
 
 use super::plan::{Block, Key, Plan};
@@ -474,7 +474,6 @@ pub(super) fn reads(e: &Expr, into: &mut BTreeSet<String>) {
             into.insert(p.text());
             args.iter().for_each(|a| reads(&a.value, into));
         }
-        ExprKind::Literal(Literal::Bool(_)) => {}
         _ => {}
     }
 }

@@ -157,13 +157,14 @@ fn interface(
             _ => VarKind::Var,
         };
         for member in kids(section, "Member") {
-            self_or_member(member, kind, "", 0, left_out, &mut vars, report);
+            declare(member, kind, "", 0, left_out, &mut vars, report);
         }
     }
     vars
 }
 
-fn self_or_member(
+/// Declares a member, or those of a structure.
+fn declare(
     member: Xml,
     kind: VarKind,
     before: &str,
@@ -186,7 +187,7 @@ fn self_or_member(
     }
     if ty.trim_matches('"') == "Struct" && depth < 16 {
         for inner in kids(member, "Member") {
-            self_or_member(inner, kind, &name, depth + 1, left_out, vars, report);
+            declare(inner, kind, &name, depth + 1, left_out, vars, report);
         }
         return;
     }

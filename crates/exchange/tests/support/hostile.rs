@@ -7,13 +7,14 @@ use g7_model::{Document, FileId, Problem};
 use proptest::prelude::*;
 use proptest::test_runner::TestRunner;
 
-/// Reads a file; its problems lie in it, and what came of it may be compiled.
+/// Reads a file: its problems lie in it, and what came of it goes through the checker.
 pub(crate) fn survives(format: Format, file: &[u8]) -> (Document, Vec<Problem>) {
     recognise("", file);
     let (document, problems) = import(format, file, FileId(0));
     for p in &problems {
         assert!(p.at.start <= p.at.end && p.at.end as usize <= file.len().max(1), "{p:?}");
     }
+    let _ = g7_compile::compile(&document);
     (document, problems)
 }
 
