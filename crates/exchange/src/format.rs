@@ -1,6 +1,6 @@
 //! The formats that are known, and how a file shows which one it is.
 
-use crate::{classicladder, controlexpert, iectext, jgrafchart, l5x, s7graph, xmi, xml};
+use crate::{classicladder, controlexpert, iectext, jgrafchart, l5x, plcopen, s7graph, xmi, xml};
 
 /// The endings that files of the formats have, without the dot; some have none of these.
 pub const ENDINGS: [&str; 11] =
@@ -11,6 +11,8 @@ pub const ENDINGS: [&str; 11] =
 pub enum Format {
     /// JGrafchart 2.x, `saveVersion` up to 8.
     Jgrafchart,
+    /// PLCopen TC6 XML and IEC 61131-10 XML.
+    Plcopen,
     /// EMF/XMI instances of the AGRAFE meta-model of IEC 60848.
     Xmi,
     /// ClassicLadder 0.7 to 0.9: a project, or its `sequential.csv` alone.
@@ -29,6 +31,7 @@ impl Format {
     /// All of them, in the order in which a file is asked.
     pub const ALL: &[Format] = &[
         Format::Jgrafchart,
+        Format::Plcopen,
         Format::Xmi,
         Format::ClassicLadder,
         Format::ControlExpert,
@@ -41,6 +44,7 @@ impl Format {
     pub fn title(self) -> &'static str {
         match self {
             Format::Jgrafchart => "JGrafchart",
+            Format::Plcopen => "PLCopen XML",
             Format::Xmi => "XMI",
             Format::ClassicLadder => "ClassicLadder",
             Format::ControlExpert => "Control Expert",
@@ -57,6 +61,7 @@ impl Format {
         let root = xml::root_name(bytes);
         match self {
             Format::Jgrafchart => root.is_some_and(|name| jgrafchart::is_root(&name)),
+            Format::Plcopen => root.is_some_and(|name| plcopen::is_root(&name)) && plcopen::fits(bytes),
             Format::Xmi => root.is_some_and(|name| xmi::is_root(&name)),
             Format::ClassicLadder => classicladder::fits(bytes),
             Format::ControlExpert => root.is_some_and(|name| controlexpert::is_root(&name)),
@@ -72,6 +77,8 @@ impl Format {
 pub enum Outlet {
     /// A flowchart in the text of Mermaid, for documents; it is not read back.
     Mermaid,
+    /// A project in PLCopen TC6 XML 2.01.
+    Plcopen,
     /// An EMF/XMI instance of the AGRAFE meta-model of IEC 60848.
     Xmi,
     /// A program in IEC 61131-3 text: a sequential function chart with Structured Text.
@@ -80,12 +87,13 @@ pub enum Outlet {
 
 impl Outlet {
     /// All of them, in the order in which they are listed.
-    pub const ALL: &[Outlet] = &[Outlet::Mermaid, Outlet::Xmi, Outlet::IecText];
+    pub const ALL: &[Outlet] = &[Outlet::Mermaid, Outlet::Plcopen, Outlet::Xmi, Outlet::IecText];
 
     /// The word for it on the command line.
     pub fn word(self) -> &'static str {
         match self {
             Outlet::Mermaid => "mermaid",
+            Outlet::Plcopen => "plcopen",
             Outlet::Xmi => "xmi",
             Outlet::IecText => "sfc",
         }
@@ -95,6 +103,7 @@ impl Outlet {
     pub fn title(self) -> &'static str {
         match self {
             Outlet::Mermaid => "Mermaid flowchart",
+            Outlet::Plcopen => "PLCopen XML",
             Outlet::Xmi => "XMI",
             Outlet::IecText => "IEC 61131-3 text",
         }
@@ -104,6 +113,7 @@ impl Outlet {
     pub fn ending(self) -> &'static str {
         match self {
             Outlet::Mermaid => "mmd",
+            Outlet::Plcopen => "xml",
             Outlet::Xmi => "grafcet",
             Outlet::IecText => "st",
         }

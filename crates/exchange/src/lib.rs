@@ -33,6 +33,7 @@ mod l5x;
 mod mermaid;
 mod nodes;
 mod outside;
+mod plcopen;
 mod report;
 mod s7graph;
 mod walk;
@@ -58,12 +59,13 @@ pub fn recognise(name: &str, bytes: &[u8]) -> Option<Format> {
 pub fn import(format: Format, bytes: &[u8], file: FileId) -> (Document, Vec<Problem>) {
     match format {
         Format::Jgrafchart => jgrafchart::import(bytes, file),
+        Format::IecText => iectext::import(bytes, file),
+        Format::Plcopen => plcopen::import(bytes, file),
         Format::Xmi => xmi::import(bytes, file),
         Format::ClassicLadder => classicladder::import(bytes, file),
         Format::ControlExpert => controlexpert::import(bytes, file),
         Format::S7Graph => s7graph::import(bytes, file),
         Format::L5x => l5x::import(bytes, file),
-        Format::IecText => iectext::import(bytes, file),
     }
 }
 
@@ -84,6 +86,7 @@ pub fn export(to: Outlet, document: &Document) -> Written {
     match to {
         Outlet::Mermaid => mermaid::export(document),
         Outlet::IecText => iectext::export(document),
+        Outlet::Plcopen => plcopen::export(document),
         Outlet::Xmi => xmi::export(document),
     }
 }

@@ -40,10 +40,17 @@ impl Parser<'_> {
 
     /// `;`, needed where another statement follows.
     fn end_statement(&mut self) {
-        if !self.eat(";") && !self.at_end() && !self.at_closing() {
+        if !self.eat(";") && !self.at_end() && !self.at_closing() && !self.closed() {
             self.expected("`;`");
             self.recover();
         }
+    }
+
+    /// Whether `END_IF` or its like stands right before: tools leave out the `;` there.
+    fn closed(&self) -> bool {
+        let before = self.text.get(..self.behind()).unwrap_or("");
+        let word = before.rsplit(|c: char| !c.is_alphanumeric() && c != '_').next().unwrap_or("");
+        word.to_ascii_uppercase().starts_with("END_")
     }
 
     fn statement(&mut self, list: &mut Vec<Stmt>) {

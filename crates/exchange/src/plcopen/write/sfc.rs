@@ -1,0 +1,415 @@
+//! A chart as the objects of an SFC body, joined by wires that are stored
+//! backwards.
+
+use std::collections::HashMap;
+
+use g7_model::codes;
+use g7_model::{
+    Action, ActionKind, Chart, Expr, ExprKind, Literal, Name, Order, Problem, Qualifier, Step, StepKind,
+    Target, Transition, Work,
+};
+
+use super::names::{Names, Scope, is_section};
+use super::place::Places;
+use super::st::{Text, duration};
+use super::xml::Element;
+
+const STEP: (f64, f64) = (60.0, 30.0);
+const TRANSITION: (f64, f64) = (20.0, 2.0);
+const ACTION: (f64, f64) = (120.0, 20.0);
+
+/// Writes the bodies of one program.
+pub(super) struct Sfc<'a> {
+    pub(super) names: &'a mut Names,
+    pub(super) scope: Scope<'a>,
+    pub(super) problems: &'a mut Vec<Problem>,
+    /// Whether bodies run once more behind their step, in this document.
+    pub(super) final_scan: bool,
+    next: u64,
+}
+
+/// Where a wire comes from.
+type Id = u64;
+
+/// The objects of one drawing so far.
+struct Drawing<'d> {
+    chart: &'d Chart,
+    places: Places,
+    objects: Vec<Element>,
+    /// What each step gives its flow by: itself, or the divergence behind it.
+    out: HashMap<String, Id>,
+    /// What leads to each step.
+    into: HashMap<String, Vec<Id>>,
+}
+
+impl<'a> Sfc<'a> {
+    pub(super) fn new(
+        names: &'a mut Names,
+        scope: Scope<'a>,
+        problems: &'a mut Vec<Problem>,
+        final_scan: bool,
+    ) -> Sfc<'a> {
+        Sfc { names, scope, problems, final_scan, next: 0 }
+    }
+
+    fn id(&mut self) -> Id {
+        self.next += 1;
+        self.next
+    }
+
+    fn text(&mut self) -> Text<'_> {
+        Text { names: self.names, scope: self.scope, problems: self.problems }
+    }
+
+    fn say(&mut self, code: &'static codes::Code, at: g7_model::Place, what: &str) {
+        self.problems.push(Problem::new(code, at.0, what));
+    }
+
+    /// The body of a chart or of the expansion of a macro-step.
+    pub(super) fn body(&mut self, chart: &Chart, depth: usize) -> Element {
+        let mut drawing = Drawing {
+            chart,
+            places: Places::of(self.scope.document, chart),
+            objects: Vec::new(),
+            out: HashMap::new(),
+            into: HashMap::new(),
+        };
+        for step in chart.steps() {
+            self.names.give(&step.name);
+        }
+        // Identifiers first: wires lead forward and back.
+        let steps: Vec<(Id, &Step)> = chart.steps().map(|s| (self.id(), s)).collect();
+        let ways: Vec<(Id, &Transition)> = chart.transitions().map(|t| (self.id(), t)).collect();
+        for (id, step) in &steps {
+            drawing.out.insert(step.name.text.to_string(), *id);
+        }
+        self.divergences(&mut drawing);
+        for (number, (id, transition)) in ways.iter().enumerate() {
+            self.transition(&mut drawing, number, *id, transition);
+        }
+        let rows: HashMap<&str, f64> =
+            chart.steps().map(|s| (&*s.name.text, drawing.places.step(&s.name.text).1)).collect();
+        for (id, step) in &steps {
+            self.step(&mut drawing, *id, step, &rows, depth);
+        }
+        Element::new("SFC").children(drawing.objects)
+    }
+
+    /// Steps with several transitions behind them have a bar.
+    fn divergences(&mut self, drawing: &mut Drawing) {
+        for step in drawing.chart.steps() {
+            let name = &step.name.text;
+            let behind =
+                drawing.chart.transitions().filter(|t| t.from.iter().any(|n| n.text == *name)).count();
+            if behind < 2 {
+                continue;
+            }
+            let id = self.id();
+            let from = drawing.out.insert(name.to_string(), id).unwrap_or(id);
+            let (x, y) = drawing.places.step(name);
+            let bar = object("selectionDivergence", id, (x, y + STEP.1 + 10.0), (ACTION.0, 1.0))
+                .child(input(&[from]))
+                .children(
+                    (0..behind).map(|_| Element::new("connectionPointOut").with("formalParameter", "")),
+                );
+            drawing.objects.push(bar);
+        }
+    }
+
+    fn transition(&mut self, drawing: &mut Drawing, number: usize, id: Id, transition: &Transition) {
+        let place = drawing.places.transition(number);
+        let from: Vec<Id> =
+            transition.from.iter().filter_map(|n| drawing.out.get(&*n.text).copied()).collect();
+        if transition.from.is_empty() || transition.to.is_empty() {
+            let what = "a source or sink transition: IEC 61131-3 wants a step before and behind";
+            self.say(&codes::NOT_CARRIED, transition.at, what);
+        }
+        let before = match from.as_slice() {
+            [] => None,
+            [one] => Some(*one),
+            several => {
+                let bar = self.id();
+                let inputs: Vec<Element> = several.iter().map(|s| input(&[*s])).collect();
+                drawing.objects.push(
+                    object("simultaneousConvergence", bar, (place.0, place.1 - 10.0), (ACTION.0, 3.0))
+                        .children(inputs)
+                        .child(Element::new("connectionPointOut")),
+                );
+                Some(bar)
+            }
+        };
+        let mut element = object("transition", id, place, TRANSITION);
+        if let Some(priority) = transition.priority {
+            element = element.with("priority", priority);
+        }
+        element = element
+            .child(before.map_or_else(|| Element::new("connectionPointIn"), |b| input(&[b])))
+            .child(Element::new("connectionPointOut"))
+            .child(self.condition(drawing.chart, transition));
+        if let Some(comment) = &transition.comment {
+            element.push(Element::formatted("documentation", comment));
+        }
+        if let Some(block) = &transition.on_clearing {
+            self.say(&codes::NOT_CARRIED, block.at, "an action on clearing, which IEC 61131-3 does not have");
+        }
+        drawing.objects.push(element);
+        let mut behind = id;
+        if transition.to.len() > 1 {
+            behind = self.id();
+            let bar = object("simultaneousDivergence", behind, (place.0, place.1 + 10.0), (ACTION.0, 3.0))
+                .child(input(&[id]))
+                .children(
+                    transition
+                        .to
+                        .iter()
+                        .map(|_| Element::new("connectionPointOut").with("formalParameter", "")),
+                );
+            drawing.objects.push(bar);
+        }
+        for step in &transition.to {
+            drawing.into.entry(step.text.to_string()).or_default().push(behind);
+        }
+        // A jump where the line would lead up again.
+        let row = drawing.places.step(transition.from.first().map_or("", |n| &n.text)).1;
+        for step in transition.to.iter().filter(|_| !transition.from.is_empty()) {
+            let place = drawing.places.step(&step.text);
+            if place.1 <= row {
+                if let Some(into) = drawing.into.get_mut(&*step.text) {
+                    into.pop();
+                }
+                let jump = self.id();
+                let target = self.names.give(step);
+                let at = drawing.places.transition(number);
+                drawing.objects.push(
+                    object("jumpStep", jump, (at.0, at.1 + 20.0), TRANSITION)
+                        .with("targetName", target)
+                        .child(input(&[behind])),
+                );
+            }
+        }
+    }
+
+    fn condition(&mut self, chart: &Chart, transition: &Transition) -> Element {
+        let condition = Element::new("condition");
+        if let Some(section) = is_section(chart, self.scope.document, &transition.receptivity) {
+            let name = self.names.give(&section.name);
+            return condition.child(Element::new("reference").with("name", name));
+        }
+        let text = self.text().expr(&transition.receptivity);
+        let label = transition.label.as_ref().map(|l| l.text.to_string()).unwrap_or_default();
+        condition.child(Element::new("inline").with("name", label).child(Element::formatted("ST", &text)))
+    }
+
+    fn step(&mut self, drawing: &mut Drawing, id: Id, step: &Step, rows: &HashMap<&str, f64>, depth: usize) {
+        let place = drawing.places.step(&step.name.text);
+        let name = self.names.give(&step.name);
+        let into = drawing.into.remove(&*step.name.text).unwrap_or_default();
+        let into = match into.len() {
+            0 | 1 => into,
+            _ => {
+                let bar = self.id();
+                let inputs: Vec<Element> = into.iter().map(|s| input(&[*s])).collect();
+                let at = (place.0, rows.get(&*step.name.text).copied().unwrap_or(place.1) - 10.0);
+                drawing.objects.push(
+                    object("selectionConvergence", bar, at, (ACTION.0, 1.0))
+                        .children(inputs)
+                        .child(Element::new("connectionPointOut")),
+                );
+                vec![bar]
+            }
+        };
+        let entry = into.is_empty();
+        let expansion = match &step.kind {
+            StepKind::Macro(expansion) => {
+                self.scope.document.charts().find(|c| c.name.text == expansion.text)
+            }
+            StepKind::Plain | StepKind::Entry | StepKind::Exit => None,
+            StepKind::Enclosing => {
+                self.say(&codes::NOT_CARRIED, step.at, "an enclosing step, which IEC 61131-3 does not have");
+                None
+            }
+        };
+        if let StepKind::Macro(_) = step.kind {
+            let mut element = object("macroStep", id, place, STEP).with("name", &name);
+            element =
+                element.children((!entry).then(|| input(&into))).child(Element::new("connectionPointOut"));
+            if step.initial {
+                self.say(&codes::NOT_CARRIED, step.at, "an initial macro-step, which TC6 does not have");
+            }
+            if let Some(chart) = expansion.filter(|_| depth < 20) {
+                self.of_expansion(chart);
+                element.push(Element::new("body").child(self.body(chart, depth + 1)));
+            }
+            drawing.objects.push(documented(element, step));
+        } else {
+            let mut element = object("step", id, place, STEP).with("name", &name);
+            if step.initial || step.kind == StepKind::Entry {
+                element = element.with("initialStep", true);
+            }
+            element = element
+                .children((!entry).then(|| input(&into)))
+                .child(Element::new("connectionPointOut").with("formalParameter", ""));
+            if step.actions.iter().any(is_action) {
+                element.push(Element::new("connectionPointOutAction").with("formalParameter", ""));
+            }
+            drawing.objects.push(documented(element, step));
+        }
+        self.block(drawing, id, step, place);
+    }
+
+    /// What an expansion has and the body of a macro-step cannot hold.
+    fn of_expansion(&mut self, chart: &Chart) {
+        use g7_model::ChartItem;
+        for item in &chart.items {
+            match item {
+                ChartItem::Var(v) => self.say(&codes::NOT_CARRIED, v.at, "a variable of an expansion"),
+                ChartItem::Pre(_, at) | ChartItem::Post(_, at) => {
+                    self.say(&codes::NOT_CARRIED, *at, "a body of an expansion");
+                }
+                ChartItem::Action(_)
+                | ChartItem::Section(_)
+                | ChartItem::Step(_)
+                | ChartItem::Transition(_) => {}
+            }
+        }
+        if let Some(comment) = &chart.comment {
+            let what = format!("the comment of an expansion, \"{comment}\"");
+            self.say(&codes::LEFT_OUT, chart.at, &what);
+        }
+    }
+
+    /// The action block of a step.
+    fn block(&mut self, drawing: &mut Drawing, step_id: Id, step: &Step, place: (f64, f64)) {
+        let actions: Vec<Element> = step.actions.iter().filter_map(|a| self.action(a)).collect();
+        if actions.is_empty() {
+            return;
+        }
+        let id = self.id();
+        let height = ACTION.1 * f64::from(u32::try_from(actions.len()).unwrap_or(1));
+        let at = (place.0 + STEP.0 + ACTION.0 / 2.0, place.1);
+        let block = object("actionBlock", id, at, (ACTION.0, height));
+        drawing.objects.push(block.child(input(&[step_id])).children(actions));
+    }
+
+    fn action(&mut self, action: &Action) -> Option<Element> {
+        let id = self.id();
+        let element = |qualifier: Qualifier| {
+            Element::new("action").with("localId", id).with("qualifier", qualifier.name())
+        };
+        let place = Element::new("relPosition").with("x", 0).with("y", 0);
+        match &action.kind {
+            ActionKind::Qualified { qualifier, time, target, condition } => {
+                let mut element = element(*qualifier);
+                if let Some(time) = time {
+                    element = element.with("duration", self.time(time));
+                }
+                let what = match target {
+                    Target::Path(path) => {
+                        self.condition_of(condition.as_ref(), action);
+                        let path = path.clone();
+                        let at = action.at;
+                        let text = self.text().expr(&Expr { kind: ExprKind::Path(path), at });
+                        Element::new("reference").with("name", text)
+                    }
+                    Target::Direct(address, _) => {
+                        self.condition_of(condition.as_ref(), action);
+                        Element::new("reference").with("name", format!("%{address}"))
+                    }
+                    Target::Work(work) => {
+                        let once = matches!(qualifier, Qualifier::P0 | Qualifier::P1);
+                        if condition.is_some() && !once {
+                            let what = "a condition of a body, which becomes its first line: the body runs, and looks";
+                            self.say(&codes::DIFFERENT, action.at, what);
+                        }
+                        self.inline(work, condition.as_ref())
+                    }
+                };
+                Some(element.child(place).child(what))
+            }
+            ActionKind::EachScan { work, condition } => {
+                if self.final_scan {
+                    let what =
+                        "an action of each scan; with the qualifier N it runs once more behind the step";
+                    self.say(&codes::DIFFERENT, action.at, what);
+                }
+                let inline = self.inline(work, condition.as_ref());
+                Some(element(Qualifier::N).child(place).child(inline))
+            }
+            ActionKind::OnEvent { .. } => {
+                self.say(
+                    &codes::NOT_CARRIED,
+                    action.at,
+                    "an action on event, which IEC 61131-3 does not have",
+                );
+                None
+            }
+            ActionKind::Order(order) => {
+                let what = match order {
+                    Order::Force(..) => "a forcing order",
+                    Order::Enable(_) => "an order that enables a chart",
+                    Order::Mask(_) => "an order that masks",
+                    Order::Call(_) => "a call of a task",
+                    Order::Enclose(_) => "an enclosed chart",
+                };
+                self.say(&codes::NOT_CARRIED, action.at, &format!("{what}, which IEC 61131-3 does not have"));
+                None
+            }
+            ActionKind::Comment(text) => {
+                self.say(&codes::LEFT_OUT, action.at, &format!("the comment \"{text}\" beside a step"));
+                None
+            }
+        }
+    }
+
+    fn condition_of(&mut self, condition: Option<&Expr>, action: &Action) {
+        if condition.is_some() {
+            let what = "the condition of an action, which IEC 61131-3 does not have";
+            self.say(&codes::NOT_CARRIED, action.at, what);
+        }
+    }
+
+    fn time(&mut self, time: &Expr) -> String {
+        match &time.kind {
+            ExprKind::Literal(Literal::Time(ns)) => duration(*ns),
+            _ => self.text().expr(time),
+        }
+    }
+
+    fn inline(&mut self, work: &Work, condition: Option<&Expr>) -> Element {
+        let mut text = self.text();
+        let body = text.statements(work.statements());
+        let body = match condition {
+            Some(condition) => format!("IF {} THEN\n{body}\nEND_IF;", text.expr(condition)),
+            None => body,
+        };
+        Element::new("inline").child(Element::formatted("ST", &body))
+    }
+}
+
+fn is_action(action: &Action) -> bool {
+    matches!(action.kind, ActionKind::Qualified { .. } | ActionKind::EachScan { .. })
+}
+
+/// An object at a place: the middle of its upper side.
+fn object(tag: &str, id: Id, at: (f64, f64), size: (f64, f64)) -> Element {
+    let position = Element::new("position").with("x", at.0 - size.0 / 2.0).with("y", at.1);
+    Element::new(tag).with("localId", id).with("height", size.1).with("width", size.0).child(position)
+}
+
+fn input(from: &[Id]) -> Element {
+    let wires = from.iter().map(|id| Element::new("connection").with("refLocalId", id));
+    Element::new("connectionPointIn").children(wires)
+}
+
+fn documented(mut element: Element, step: &Step) -> Element {
+    if let Some(comment) = &step.comment {
+        element.push(Element::formatted("documentation", comment));
+    }
+    element
+}
+
+/// The name of a chart.
+pub(super) fn chart_name(names: &mut Names, chart: &Chart) -> String {
+    let name: &Name = &chart.name;
+    names.give(name)
+}
