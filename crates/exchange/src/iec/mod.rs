@@ -64,12 +64,3 @@ pub(crate) fn il_expression(text: &str, place: Places, report: &mut Report) -> E
     let mut parser = Parser::new(text, place, report);
     parser.il_expression()
 }
-
-/// Sections of declarations, `VAR … END_VAR`, as many as stand there.
-pub(crate) fn declarations(text: &str, types: &Types, place: Places, report: &mut Report) -> Vec<Variable> {
-    let mut parser = Parser::new(text, place, report);
-    let mut found = Vec::new();
-    while parser.declarations(types, &mut found) {}
-    parser.expect_end();
-    found
-}

@@ -49,13 +49,9 @@ impl<'a> Parser<'a> {
         u32::try_from(self.text.len()).unwrap_or(u32::MAX)
     }
 
-    /// Where reading stands; [`Parser::back`] returns to it.
+    /// Where reading stands: whether it moved on can be told.
     pub(crate) fn mark(&self) -> usize {
         self.pos
-    }
-
-    pub(crate) fn back(&mut self, mark: usize) {
-        self.pos = mark;
     }
 
     pub(crate) fn bump(&mut self) -> Token {

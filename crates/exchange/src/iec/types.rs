@@ -241,8 +241,7 @@ impl Parser<'_> {
     fn enumeration(&mut self) -> Shape {
         self.bump();
         let mut names = Vec::new();
-        loop {
-            let Some(name) = self.name("a value of the enumeration") else { break };
+        while let Some(name) = self.name("a value of the enumeration") {
             if self.at(":=") {
                 let at = self.here();
                 self.say(&codes::NOT_CARRIED, &at, "numbers of an enumeration's values are not carried over");
@@ -262,8 +261,7 @@ impl Parser<'_> {
         self.bump();
         self.expect("[");
         let mut bounds = Vec::new();
-        loop {
-            let Some(from) = self.bound() else { break };
+        while let Some(from) = self.bound() {
             self.expect("..");
             let Some(to) = self.bound() else { break };
             bounds.push((from, to.max(from)));
@@ -300,8 +298,7 @@ impl Parser<'_> {
         let mut fields = Vec::new();
         while !self.at_end() && !self.at_word("END_STRUCT") {
             let mut names = Vec::new();
-            loop {
-                let Some(name) = self.name("the name of an element") else { break };
+            while let Some(name) = self.name("the name of an element") {
                 names.push(name);
                 if !self.eat(",") {
                     break;

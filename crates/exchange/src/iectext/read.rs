@@ -350,8 +350,7 @@ fn steps(p: &mut Parser) -> Vec<Name> {
         return p.name("the name of a step").into_iter().collect();
     }
     let mut names = Vec::new();
-    loop {
-        let Some(name) = p.name("the name of a step") else { break };
+    while let Some(name) = p.name("the name of a step") {
         names.push(name);
         if !p.eat(",") {
             break;

@@ -75,7 +75,7 @@ pub(crate) enum Coil {
     /// `(P q)`, `(N q)`: true in the scan in which power comes or goes.
     Edge(Expr, UnaryOp),
     /// `(n := n + 1)`: while there is power.
-    Statement(Stmt),
+    Statement(Box<Stmt>),
     Jump(Name),
     Return,
 }

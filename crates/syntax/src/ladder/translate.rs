@@ -213,19 +213,24 @@ impl Run<'_> {
     fn target(coil: &Coil) -> Option<&Expr> {
         match coil {
             Coil::Assign(target, _) | Coil::Latch(target, _) | Coil::Edge(target, _) => Some(target),
-            Coil::Statement(Stmt { kind: StmtKind::Assign { target, .. }, .. }) => Some(target),
-            Coil::Statement(_) | Coil::Jump(_) | Coil::Return => None,
+            Coil::Statement(stmt) => match &stmt.kind {
+                StmtKind::Assign { target, .. } => Some(target),
+                _ => None,
+            },
+            Coil::Jump(_) | Coil::Return => None,
         }
     }
 
     fn changes(&self, coil: &Coil, power: &Expr) -> bool {
-        match (Self::target(coil), coil) {
-            (Some(target), _) => reads(power, target),
-            (None, Coil::Statement(Stmt { kind: StmtKind::Call(path, _), at })) => {
-                reads(power, &Expr { kind: ExprKind::Path(path.clone()), at: *at })
-            }
-            (None, _) => false,
+        if let Some(target) = Self::target(coil) {
+            return reads(power, target);
         }
+        if let Coil::Statement(stmt) = coil
+            && let StmtKind::Call(path, _) = &stmt.kind
+        {
+            return reads(power, &Expr { kind: ExprKind::Path(path.clone()), at: stmt.at });
+        }
+        false
     }
 
     /// What is still needed must not be changed.
@@ -248,7 +253,7 @@ impl Run<'_> {
             Coil::Latch(target, value) => {
                 return self.when(power, assign(target, boolean(*value, at), at), at);
             }
-            Coil::Statement(stmt) => return self.when(power, stmt.clone(), at),
+            Coil::Statement(stmt) => return self.when(power, (**stmt).clone(), at),
             Coil::Jump(name) => {
                 let condition = Some(power).filter(|p| !is_true(p));
                 return self.pieces.push(Piece::Jump(condition, name.clone()));

@@ -366,11 +366,11 @@ impl<'a> Parser<'a> {
             && let ExprKind::Path(path) = target.kind
         {
             let kind = StmtKind::Call(path, self.call_args());
-            return Coil::Statement(Stmt { kind, at: self.since(start).into() });
+            return Coil::Statement(Box::new(Stmt { kind, at: self.since(start).into() }));
         }
         if self.at(Tok::Assign) {
             let kind = self.assignment(target);
-            return Coil::Statement(Stmt { kind, at: self.since(start).into() });
+            return Coil::Statement(Box::new(Stmt { kind, at: self.since(start).into() }));
         }
         Coil::Assign(target, false)
     }
