@@ -5,7 +5,7 @@ use std::collections::{BTreeSet, HashMap};
 
 use g7_compile::Compiled;
 use g7_engine::{Code, Guard, NONE, Num, Op, Rows, Service, StepId, Tables};
-use g7_model::{Problem, codes};
+use g7_model::{Problem, Span, codes};
 
 use crate::flow::Flow;
 use crate::names::Names;
@@ -29,8 +29,10 @@ pub(crate) struct Gen<'a> {
     pub(crate) problems: Vec<Problem>,
     /// The instruction in hand.
     pub(crate) at: u32,
-    pub(crate) math: bool,
-    pub(crate) real_text: bool,
+    /// The first function that C and Rust have from elsewhere.
+    pub(crate) math: Option<Span>,
+    /// The first real that becomes a text or comes from one.
+    pub(crate) real_text: Option<Span>,
 }
 
 /// A parameter that every function of the state has.
@@ -65,8 +67,8 @@ impl<'a> Gen<'a> {
             transitions: Vec::new(),
             problems: Vec::new(),
             at: 0,
-            math: false,
-            real_text: false,
+            math: None,
+            real_text: None,
         };
         g.number();
         g.facts = crate::facts::of(t);
@@ -132,11 +134,11 @@ impl<'a> Gen<'a> {
     }
 
     pub(crate) fn needs_math(&mut self) {
-        self.math = true;
+        self.math.get_or_insert(self.c.symbols.place(self.at));
     }
 
     pub(crate) fn needs_real_text(&mut self) {
-        self.real_text = true;
+        self.real_text.get_or_insert(self.c.symbols.place(self.at));
     }
 
     pub(crate) fn reveal(&mut self, addr: u32) {
@@ -177,7 +179,7 @@ impl<'a> Gen<'a> {
     }
 
     /// A piece of the chart's text on one line.
-    pub(crate) fn text(&self, span: g7_model::Span) -> String {
+    pub(crate) fn text(&self, span: Span) -> String {
         let text = self.source.get(span.start as usize..span.end as usize).unwrap_or("");
         let words: Vec<&str> = text.split_whitespace().collect();
         let line = words.join(" ");

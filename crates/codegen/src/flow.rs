@@ -368,7 +368,10 @@ impl<'g, 'a> Flow<'g, 'a> {
             Shape::Many(n, _) => Entry::of(place.at(Expr::size((addr - slot.start) as usize)), n),
             Shape::Fb(kind) => match members(kind).get((addr - slot.start) as usize) {
                 Some((name, n)) => Entry::of(place.field(*name), *n),
-                None => Entry::Word(0),
+                None => {
+                    self.g.cannot("a table of function blocks");
+                    Entry::Word(0)
+                }
             },
             Shape::Text(_) | Shape::Texts(..) => {
                 self.g.cannot("a word of a text");

@@ -37,7 +37,7 @@ use std::collections::HashMap;
 
 use g7_compile::Compiled;
 use g7_engine::{Addr, StepId};
-use g7_model::{Problem, Severity, Span, codes};
+use g7_model::{Problem, Severity, codes};
 
 use build::Gen;
 use tree::Module;
@@ -137,14 +137,14 @@ pub fn print(compiled: &Compiled, options: &Options<'_>) -> Result<Printed, Vec<
     let mut module = std::mem::take(&mut g.m);
     let natives = prune::prune(&mut module);
     let mut problems = std::mem::take(&mut g.problems);
-    if g.real_text && options.language != Language::Rust {
+    if let Some(at) = g.real_text.filter(|_| options.language != Language::Rust) {
         problems.push(Problem::new(
             &codes::NOT_CARRIED,
-            Span::default(),
+            at,
             "reals are turned into text or back: C has no way for that without a library",
         ));
     }
-    if g.math {
+    if let Some(at) = g.math {
         let (what, way) = match options.language {
             Language::C | Language::Arduino => {
                 ("`<math.h>`", "their last digit can be another than in a run here")
@@ -152,7 +152,7 @@ pub fn print(compiled: &Compiled, options: &Options<'_>) -> Result<Printed, Vec<
             Language::Rust => ("the crate `libm`", "add it to the dependencies"),
         };
         let text = format!("the functions of LREAL come from {what}; {way}");
-        problems.push(Problem::new(&codes::DIFFERENT, Span::default(), text));
+        problems.push(Problem::new(&codes::DIFFERENT, at, text));
     }
     if problems.iter().any(|p| p.severity() == Severity::Error) {
         return Err(problems);

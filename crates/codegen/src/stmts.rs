@@ -65,6 +65,9 @@ impl Flow<'_, '_> {
                 let Shape::Fb(kind) = slot.shape else {
                     return self.g.cannot("a block without a declaration");
                 };
+                if base.0 != slot.start {
+                    return self.g.cannot("a table of function blocks");
+                }
                 let place = self.own_place(base.0, slot.place());
                 let mut args = vec![place.passed()];
                 if matches!(block, g7_engine::Block::Ton | g7_engine::Block::Tof | g7_engine::Block::Tp) {

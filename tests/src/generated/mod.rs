@@ -221,7 +221,7 @@ impl Subject {
         if fault == 0 {
             if at < 2 * steps {
                 let name = self.compiled.symbols.step_path(StepId((at / 2) as u32));
-                return format!("{}{name}", if at % 2 == 0 { "X of " } else { "time of " });
+                return format!("{}{name}", if at.is_multiple_of(2) { "X of " } else { "time of " });
             }
             left -= 2 * steps;
         }
