@@ -119,7 +119,9 @@ pub(crate) fn generate(args: &Gen) -> Result<Verdict, Failure> {
         Words::Rust(what) => controller(Tongue::Code(Language::Rust), what),
         Words::St(what) => controller(Tongue::Plc(plc::Form::St, "st"), what),
         Words::Il { style: IlStyle::Flat, what } => controller(Tongue::Plc(plc::Form::Il, "il"), what),
-        Words::Il { style: IlStyle::Dolog80, what } => controller(Tongue::Plc(plc::Form::Dolog80, "il"), what),
+        Words::Il { style: IlStyle::Dolog80, what } => {
+            controller(Tongue::Plc(plc::Form::Dolog80, "il"), what)
+        }
         Words::Ld { style: LdStyle::Xml, what } => controller(Tongue::Plc(plc::Form::Ld, "xml"), what),
         Words::Ld { style: LdStyle::Drawn, what } => controller(Tongue::Plc(plc::Form::Drawing, "svg"), what),
     }

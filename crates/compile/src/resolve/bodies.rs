@@ -1,8 +1,8 @@
 //! Named actions, PRE and POST, transition sections and functions.
 
 use g7_model::{
-    Body as WrittenBody, ChartItem, Document, Function as WrittenFunction, Item, NamedAction,
-    Problem, Section as WrittenSection, Span, Type, codes,
+    Body as WrittenBody, ChartItem, Document, Function as WrittenFunction, Item, NamedAction, Problem,
+    Section as WrittenSection, Span, Type, codes,
 };
 
 use super::resolver::{Frame, Resolver, Role};
