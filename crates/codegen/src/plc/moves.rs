@@ -1,6 +1,7 @@
 //! The change of the situation: orders, transitions, marks, what activity
 //! starts and stops, and the stored actions of a pass.
 
+use std::collections::btree_map::Entry;
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
 use g7_engine::{GroupId, NONE, Situation, StepId};
@@ -221,10 +222,10 @@ impl Plan<'_> {
         for o in &orders {
             let chart =
                 self.c.symbols.charts.get(o.chart as usize).map_or(String::new(), |c| c.name.to_string());
-            if !blocked.contains_key(&o.chart) {
+            if let Entry::Vacant(place) = blocked.entry(o.chart) {
                 let name = self.memory("FORCED", &chart, Ty::BOOL, "its transitions do not clear");
                 s.assign("", name.clone(), Ex::Bool(false));
-                blocked.insert(o.chart, name);
+                place.insert(name);
             }
         }
         let mut acting: Vec<String> = Vec::new();
