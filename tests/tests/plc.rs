@@ -354,10 +354,10 @@ fn difference(s: &Subject, printed: &Printed, want: &Seen, got: &Seen) -> String
 }
 
 /// Prints what can be printed; counts why the rest cannot.
-fn printable<'a>(
-    subjects: &'a [Subject],
+fn printable(
+    subjects: &[Subject],
     form: Form,
-) -> (Vec<(&'a Subject, Printed)>, BTreeMap<String, usize>) {
+) -> (Vec<(&Subject, Printed)>, BTreeMap<String, usize>) {
     let mut list = Vec::new();
     let mut refused: BTreeMap<String, usize> = BTreeMap::new();
     for s in subjects {
