@@ -354,10 +354,7 @@ fn difference(s: &Subject, printed: &Printed, want: &Seen, got: &Seen) -> String
 }
 
 /// Prints what can be printed; counts why the rest cannot.
-fn printable(
-    subjects: &[Subject],
-    form: Form,
-) -> (Vec<(&Subject, Printed)>, BTreeMap<String, usize>) {
+fn printable(subjects: &[Subject], form: Form) -> (Vec<(&Subject, Printed)>, BTreeMap<String, usize>) {
     let mut list = Vec::new();
     let mut refused: BTreeMap<String, usize> = BTreeMap::new();
     for s in subjects {

@@ -2,6 +2,10 @@
 //!
 //! The files stand in `tests/interchange/iectext`; what is expected of them is
 //! written here from the standard, not from a run.
+#![allow(
+    clippy::disallowed_methods,
+    reason = "the tests read the files that they are about, and mind the time of hostile ones"
+)]
 
 mod carried;
 mod corpus;
