@@ -173,6 +173,9 @@ fn tables_are_far_smaller_than_their_indices() {
     assert_eq!(verdict(|t| t.arcs = vec![StepId(1); most + 1]), Some(LoadError::Large { table: "arcs" }));
 }
 
+/// Puts code into its place of the tables.
+type SetCode = fn(&mut Tables, Code);
+
 /// What is said of these instructions as PRE.
 fn pre(ops: &[Op]) -> Option<LoadError> {
     verdict(|t| {
@@ -215,13 +218,13 @@ fn code_leaves_what_it_should_on_every_way() {
     assert_eq!(pre(&[Op::Return, drop]), None);
     assert_eq!(pre(&[one, Op::Return]), stack(1));
     // Each code by what it has to leave.
-    let leaves = |n: usize, set: fn(&mut Tables, Code)| {
+    let leaves = |n: usize, set: SetCode| {
         verdict(|t| {
             let c = code(t, &vec![one; n]);
             set(t, c);
         })
     };
-    let codes: [(usize, fn(&mut Tables, Code)); 15] = [
+    let codes: [(usize, SetCode); 15] = [
         (0, |t, c| t.pre = c),
         (0, |t, c| t.services = c),
         (0, |t, c| t.post = c),
