@@ -394,3 +394,30 @@ proptest! {
         let _ = ladder::statements(&text, FILE);
     }
 }
+
+/// Words of the language stand where instructions and rungs should: each is told, and the reading ends.
+#[test]
+fn words_of_the_language_in_a_body_are_told_and_passed() {
+    for language in ["il", "ld"] {
+        for body in [
+            "chart motor",
+            "step",
+            "JMP step",
+            "CAL chart",
+            "LD chart",
+            "ST step",
+            "LD (",
+            "AND ,",
+            ",",
+            "{",
+            "-> 1",
+        ] {
+            let text = format!("action P {language} {{\n  {body}\n}}\n");
+            let (_, problems) = g7_syntax::parse(&text, g7_model::FileId(0));
+            assert!(problems.len() < 20, "{language} {body}: {}", problems.len());
+            if language == "il" {
+                assert!(!problems.is_empty(), "{body} is no instruction");
+            }
+        }
+    }
+}

@@ -16,8 +16,11 @@ impl Parser<'_> {
             }
             let start = self.cur.start;
             match self.instruction() {
-                Some(kind) => list.push(Instruction { kind, at: self.since(start) }),
-                None => self.next_line(start),
+                // A word of the language where a name should be is left standing.
+                Some(kind) if self.cur.start > start => {
+                    list.push(Instruction { kind, at: self.since(start) })
+                }
+                _ => self.next_line(start),
             }
         }
     }
