@@ -156,31 +156,13 @@ impl Printer {
                 self.line(&format!("JMP {end}"));
             }
             St::Call(name, inputs) => {
-                // Some inputs are called as operators are: LD, R, S. These are stored.
-                if inputs.iter().any(|(formal, _)| !matches!(formal.as_str(), "IN" | "PT"))
-                    || inputs.is_empty()
-                {
-                    for (formal, e) in inputs {
-                        self.store(e, "ST", &format!("{name}.{formal}"));
-                    }
-                    return self.line(&format!("CAL {name}"));
-                }
-                let mut operands = Vec::new();
+                // Inputs are stored, then the block is called: some are named as
+                // operators are (LD, R, S), which not every compiler takes in a call.
                 for (formal, e) in inputs {
-                    operands.push((formal.clone(), self.kept(e)));
+                    self.store(e, "ST", &format!("{name}.{formal}"));
                 }
-                self.line(&format!("CAL {name}("));
-                self.inputs(&operands);
-                self.line(")");
+                self.line(&format!("CAL {name}"));
             }
-        }
-    }
-
-    /// Named inputs of a call, one a line; each is an operand.
-    fn inputs(&mut self, inputs: &[(String, Ex)]) {
-        for (i, (name, e)) in inputs.iter().enumerate() {
-            let comma = if i + 1 < inputs.len() { "," } else { "" };
-            self.line(&format!("  {name} := {}{comma}", expression(e)));
         }
     }
 
@@ -319,22 +301,10 @@ impl Printer {
     }
 
     fn function(&mut self, name: &str, args: &[Ex]) {
-        if let [one] = args {
-            self.result(one);
-            return self.line(name);
-        }
-        let names: Vec<String> = match name {
-            "SEL" => vec!["G".into(), "IN0".into(), "IN1".into()],
-            "LIMIT" => vec!["MN".into(), "IN".into(), "MX".into()],
-            "MUX" => std::iter::once("K".to_owned())
-                .chain((0..).map(|i| format!("IN{i}")))
-                .take(args.len())
-                .collect(),
-            _ => (1..=args.len()).map(|i| format!("IN{i}")).collect(),
-        };
-        self.line(&format!("{name}("));
-        self.inputs(&names.into_iter().zip(args.iter().cloned()).collect::<Vec<_>>());
-        self.line(")");
+        let Some((first, rest)) = args.split_first() else { return };
+        self.result(first);
+        let rest: Vec<String> = rest.iter().map(expression).collect();
+        self.line(format!("{name} {}", rest.join(", ")).trim_end());
     }
 }
 
