@@ -309,15 +309,17 @@ fn batch(folder: &Path, ending: &str, list: &[(&Subject, Printed)]) -> Result<()
     let mut translate = Command::new(tool);
     translate.current_dir(folder).arg("-I").arg(&lib).args(["-T", ".", &file]);
     let out = translate.output().map_err(|e| e.to_string())?;
-    if out.status.code().is_none() {
-        return Err("Internal compiler error: a signal".into());
-    }
     if !out.status.success() {
         let said = [&*out.stdout, &*out.stderr].concat();
-        return Err(String::from_utf8_lossy(&said).lines().take(40).collect::<Vec<_>>().join("\n"));
+        let said = String::from_utf8_lossy(&said);
+        let internal = out.status.code().is_none() || said.contains("Internal compiler error");
+        let lines = said.lines().take(40).collect::<Vec<_>>().join("\n");
+        return Err(format!("{}: {lines}", if internal { BROKEN } else { "matiec" }));
     }
     let gcc = ["-w", "-O0", "-std=gnu99", "-o", "charts", "main.c", "-lm"];
-    run(Command::new("gcc").current_dir(folder).arg("-I").arg(lib.join("C")).args(gcc))?;
+    // Of some lists that it takes, matiec makes C that is none.
+    run(Command::new("gcc").current_dir(folder).arg("-I").arg(lib.join("C")).args(gcc))
+        .map_err(|why| format!("Internal compiler error: {why}"))?;
     let stdin = std::fs::File::open(folder.join("input")).map_err(|e| e.to_string())?;
     let out = run(Command::new(folder.join("charts")).stdin(Stdio::from(stdin)))?;
     let words: Vec<u64> =
@@ -385,13 +387,16 @@ fn printable(subjects: &[Subject], form: Form) -> (Vec<(&Subject, Printed)>, BTr
     (list, refused)
 }
 
-/// The charts of a batch in parts where matiec breaks off by itself (a signal,
-/// "internal compiler error"), as it does on some sound lists of instructions;
-/// how many it cannot take even alone.
+/// What begins the message where matiec breaks off by itself: a signal, an
+/// "internal compiler error".
+const BROKEN: &str = "matiec is broken";
+
+/// The charts of a batch, in parts where matiec fails on all of them together (it
+/// mixes up blocks of one file); how many it breaks off on even alone.
 fn in_parts(folder: &Path, ending: &str, list: &[(&Subject, Printed)]) -> Result<usize, String> {
     match batch(folder, ending, list) {
         Ok(()) => Ok(0),
-        Err(why) if why.contains("Internal compiler error") => {
+        Err(why) if why.starts_with("matiec") && (list.len() > 1 || why.starts_with(BROKEN)) => {
             if list.len() < 2 {
                 return Ok(list.len());
             }
