@@ -258,7 +258,7 @@ fn end(cell: &str) -> Result<End, String> {
         Some((kind, cycle)) => (kind.trim(), Some(cycle)),
         None => (fault.trim(), None),
     };
-    if !["unstable", "forcing", "overflow", "division", "bound", "table"].contains(&kind) {
+    if !["unstable", "forcing", "overflow", "division", "bound", "range", "table"].contains(&kind) {
         return Err(format!("no fault `{kind}`"));
     }
     let cycle = match cycle {

@@ -2,7 +2,7 @@
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
 import type { Page } from 'playwright-core';
-import { browser, open, playground, textOf, type Site } from './lib';
+import { browser, drawn, open, playground, textOf, until, type Site } from './lib';
 
 const SMALL = `input a, b, start : BOOL
 output M : BOOL
@@ -67,6 +67,7 @@ async function becomes(page: Page, wanted: string): Promise<void> {
 const item = (page: Page, id: string) => page.locator(`.sheet [data-id="${id}"]`);
 
 async function middle(page: Page, id: string): Promise<[number, number]> {
+  await drawn(page);
   // A drawing that has just changed may be drawn anew between two looks.
   let box = await item(page, id).boundingBox();
   for (let n = 0; n < 20 && !box; n++) {
@@ -144,12 +145,12 @@ test('everything that was done is undone, and done again', async () => {
   assert.notEqual(done, LOOP);
   for (let n = 0; n < 6; n++) {
     await page.keyboard.press('Control+z');
-    await page.waitForTimeout(120);
+    await drawn(page);
   }
   await becomes(page, LOOP);
   for (let n = 0; n < 6; n++) {
     await page.keyboard.press('Control+y');
-    await page.waitForTimeout(120);
+    await drawn(page);
   }
   await becomes(page, done);
   assert.deepEqual(page.errors, []);
@@ -252,7 +253,7 @@ test('parts of a chart are copied into another file with new names', async () =>
   const page = await open(b, site, 'loop.g7');
   await click(page, 'G1/s/1');
   await page.keyboard.press('Control+c');
-  await page.waitForTimeout(200);
+  await drawn(page);
   await page.keyboard.press('Control+v');
   await page.waitForFunction(() => document.querySelectorAll('.sheet [data-id^="G1/s/"]').length === 4);
   await page.getByRole('button', { name: 'small.g7' }).click();
@@ -286,9 +287,7 @@ test('the view is moved, zoomed and fitted', async () => {
   const [, before] = await middle(page, 'G1/s/0');
   await page.mouse.move(600, 400);
   await page.mouse.wheel(0, 100);
-  await page.waitForTimeout(100);
-  const [, now] = await middle(page, 'G1/s/0');
-  assert.ok(Math.abs(before - now - 100) < 3, `${before} to ${now}`);
+  await until(async () => Math.abs(before - (await middle(page, 'G1/s/0'))[1] - 100) < 3, 'the wheel moves the view');
   await page.keyboard.press('f');
   assert.ok((await middle(page, 'G1/s/0'))[1] > 60);
   await page.context().close();

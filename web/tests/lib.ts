@@ -1,8 +1,10 @@
 // A browser and a page for the tests: the built page on a server of its own, or `g7 serve`.
+import assert from 'node:assert/strict';
 import { spawn } from 'node:child_process';
-import { mkdtempSync, rmSync } from 'node:fs';
+import { mkdtempSync, readFileSync, rmSync } from 'node:fs';
 import { readFile } from 'node:fs/promises';
 import { createServer } from 'node:http';
+import { createRequire } from 'node:module';
 import type { AddressInfo } from 'node:net';
 import { tmpdir } from 'node:os';
 import { extname, join, normalize, resolve } from 'node:path';
@@ -126,6 +128,32 @@ export async function textOf(page: Page): Promise<string> {
   return Buffer.concat(parts).toString('utf8');
 }
 
+/** Waits until every gesture is drawn: what is pressed next stands where it will stay. */
+export async function drawn(page: Page): Promise<void> {
+  await page.locator('.sheet[aria-busy="false"]').waitFor({ state: 'attached' });
+}
+
+/** Waits until it is so; `said` tells what did not come. */
+export async function until(what: () => Promise<boolean>, said: string, ms = 20_000): Promise<void> {
+  const end = Date.now() + ms;
+  while (!(await what())) {
+    if (Date.now() > end) assert.fail(said);
+    await new Promise((done) => setTimeout(done, 40));
+  }
+}
+
+const AXE = readFileSync(createRequire(import.meta.url).resolve('axe-core/axe.min.js'), 'utf8');
+
+/** What the accessibility checker axe finds wrong, once nothing is fading in or out. */
+export async function axe(page: Page): Promise<string[]> {
+  await page.waitForFunction(() => document.getAnimations().every((a) => a.playState !== 'running' || a.effect?.getTiming().iterations === Infinity));
+  await page.evaluate(AXE);
+  return page.evaluate(async () => {
+    const found = await (window as unknown as { axe: { run(): Promise<{ violations: { id: string; nodes: { html: string; failureSummary?: string }[] }[] }> } }).axe.run();
+    return found.violations.flatMap((v) => v.nodes.map((n) => `${v.id}: ${n.html.slice(0, 160)} ${n.failureSummary?.split('\n')[1] ?? ''}`));
+  });
+}
+
 export type Box = { x: number; y: number; width: number; height: number };
 
 /** A symbol of the drawing. */
@@ -139,6 +167,7 @@ export async function box(of: Locator): Promise<Box> {
 
 /** Where a symbol can be pressed: in its box, bar or rectangle. */
 export async function core(page: Page, id: string): Promise<[x: number, y: number]> {
+  await drawn(page);
   const at = await box(item(page, id).locator('.g7-box, .g7-bar, .g7-action').first());
   return [at.x + Math.min(8, at.width / 2), at.y + Math.min(8, at.height / 2)];
 }

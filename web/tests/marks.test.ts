@@ -3,7 +3,7 @@
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
 import type { Page } from 'playwright-core';
-import { box, browser, item, open, playground, press, type Box, type Site } from './lib';
+import { box, browser, item, open, playground, press, until, type Box, type Site } from './lib';
 
 const CHART = `input a : BOOL
 output lamp, motor : BOOL
@@ -186,10 +186,8 @@ test('the view goes along with the active step, if wished', async () => {
   await page.getByRole('combobox', { name: 'Speed' }).selectOption('5');
   await page.getByRole('button', { name: 'Run', exact: true }).click();
   await page.waitForFunction(() => document.querySelector('.steps button.on')?.textContent?.trim() === '39', null, { timeout: 20_000 });
-  await page.waitForTimeout(200);
   const sheet = await box(page.locator('.sheet'));
-  const last = await box(item(page, 'G1/s/39').locator('.g7-box'));
-  assert.ok(!apart(sheet, last), 'the last step is in sight');
+  await until(async () => !apart(sheet, await box(item(page, 'G1/s/39').locator('.g7-box'))), 'the last step is in sight');
   await end(page);
 });
 
@@ -226,9 +224,7 @@ test('the chronogram is zoomed by keys and by two fingers', async () => {
   await touch('touchStart', 40);
   for (let n = 1; n <= 8; n++) await touch('touchMove', 40 + n * 5);
   await touch('touchEnd');
-  await page.waitForTimeout(200);
-  const after = await wide();
-  assert.ok(Math.abs(after - before / 2) < before * 0.1, `${before} s, then ${after} s`);
+  await until(async () => Math.abs((await wide()) - before / 2) < before * 0.1, `half of ${before} s are in sight`);
   assert.equal(await page.locator('.cursors b').count(), 0);
   await context.close();
 });

@@ -5,7 +5,7 @@ import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import type { Page } from 'playwright-core';
-import { browser, open, serve, type Site } from './lib';
+import { browser, open, serve, until, type Site } from './lib';
 
 const CHART = `input a : BOOL
 output M : BOOL
@@ -37,14 +37,6 @@ after(async () => {
 
 const active = async (p: Page) => (await p.locator('.steps button.on').allInnerTexts()).join(' ');
 
-async function until(what: () => Promise<boolean>, said: string, ms = 8000): Promise<void> {
-  const end = Date.now() + ms;
-  while (!(await what())) {
-    if (Date.now() > end) assert.fail(said);
-    await new Promise((done) => setTimeout(done, 40));
-  }
-}
-
 async function joined(p: Page): Promise<void> {
   await p.getByRole('switch', { name: 'Shared run' }).click();
   await p.locator('.clock').waitFor();
@@ -67,8 +59,7 @@ test('what one page does the other one sees', async () => {
 
   await two.getByRole('button', { name: 'Pause', exact: true }).click();
   await one.getByRole('button', { name: 'Run', exact: true }).waitFor();
-  await one.waitForTimeout(200);
-  assert.equal(await one.locator('.clock').innerText(), await two.locator('.clock').innerText());
+  await until(async () => (await one.locator('.clock').innerText()) === (await two.locator('.clock').innerText()), 'both show one time');
 
   // A page that leaves takes nothing with it.
   await two.context().close();

@@ -2,12 +2,10 @@
 // one's own; and the tables and tests below the drawing.
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
-import { createRequire } from 'node:module';
 import { after, before, test } from 'node:test';
 import type { Page } from 'playwright-core';
-import { browser, open, playground, textOf, type Site } from './lib';
+import { axe, browser, open, playground, textOf, until, type Site } from './lib';
 
-const AXE = readFileSync(createRequire(import.meta.url).resolve('axe-core/axe.min.js'), 'utf8');
 const example = (path: string) => readFileSync(new URL(`../../examples/${path}`, import.meta.url), 'utf8');
 const CONVEYOR = 'bottle-conveyor/chart.g7';
 
@@ -23,14 +21,6 @@ after(async () => {
   await b?.done();
   await site?.stop();
 });
-
-async function axe(page: Page): Promise<string[]> {
-  await page.evaluate(AXE);
-  return page.evaluate(async () => {
-    const found = await (window as unknown as { axe: { run(): Promise<{ violations: { id: string; nodes: { html: string; failureSummary?: string }[] }[] }> } }).axe.run();
-    return found.violations.flatMap((v) => v.nodes.map((n) => `${v.id}: ${n.html.slice(0, 160)} ${n.failureSummary?.split('\n')[1] ?? ''}`));
-  });
-}
 
 /** Presses at the middle of a symbol's own shape. */
 async function press(page: Page, id: string, clickCount = 1): Promise<void> {
@@ -97,7 +87,6 @@ test('the guided first chart goes on by itself, and ends with a lamp that is lit
   await lesson('What is start?');
   await page.getByRole('button', { name: 'Fix: declare start as an input' }).click();
   await lesson('Let it do something');
-  await page.waitForTimeout(400);
   await press(page, 'G1/s/1');
   await page.keyboard.press('a');
   await page.locator('.inplace input').fill('N lamp');
@@ -105,7 +94,6 @@ test('the guided first chart goes on by itself, and ends with a lamp that is lit
   await lesson('The lamp is an output');
   await page.getByRole('button', { name: 'Fix: declare lamp as an output' }).click();
   await lesson('Back to the beginning');
-  await page.waitForTimeout(400);
   await press(page, 'G1/s/1');
   await page.keyboard.press('j');
   await page.getByRole('dialog').getByRole('button', { name: 'Initial step 0' }).click();
@@ -154,7 +142,7 @@ test('variables are added, renamed everywhere, changed, taken away', async () =>
   await page.getByLabel('Type: v1').fill('TIME');
   await page.keyboard.press('Enter');
   await page.getByRole('button', { name: 'Delete: bottle', exact: true }).waitFor();
-  await page.waitForTimeout(300);
+  await until(async () => /var v1 : TIME/.test(await textOf(page)), 'the type is in the text');
   const text = await textOf(page);
   assert.match(text, /output belt : BOOL at %Q0\.0 "belt"/);
   assert.match(text, /expect belt, X1/);
@@ -202,7 +190,6 @@ for (const theme of ['light', 'dark'] as const) {
         await page.getByRole('button', { name: 'Run all tests' }).click();
         await page.getByText('All 6 passed').waitFor();
       }
-      await page.waitForTimeout(200);
       assert.deepEqual(await axe(page), [], tab);
     }
     await page.locator('.cm-content').click();
@@ -211,11 +198,9 @@ for (const theme of ['light', 'dark'] as const) {
     assert.deepEqual(await axe(page), [], 'search in the text');
     await page.getByRole('button', { name: 'Gallery' }).click();
     await page.locator('.card svg').first().waitFor();
-    await page.waitForTimeout(500);
     assert.deepEqual(await axe(page), [], 'the gallery');
     await page.getByRole('button', { name: 'First chart in two minutes' }).click();
     await page.getByRole('heading', { name: 'This is a step' }).waitFor();
-    await page.waitForTimeout(300);
     assert.deepEqual(await axe(page), [], 'the guide');
     await page.context().close();
   });

@@ -3,7 +3,7 @@
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
 import type { Locator, Page } from 'playwright-core';
-import { browser, open, playground, type Site } from './lib';
+import { browser, open, playground, until, type Site } from './lib';
 
 let b: Awaited<ReturnType<typeof browser>>;
 let site: Site;
@@ -93,8 +93,7 @@ test('the bottle conveyor from nothing to five bottles, by keyboard alone', asyn
     await turn('bottle');
   }
   await activate(scan);
-  await page.waitForTimeout(200);
-  assert.equal(await value('motor'), 'false', 'five bottles stop it');
+  await until(async () => (await value('motor')) === 'false', 'five bottles stop it');
   assert.deepEqual(page.errors, []);
   await page.context().close();
 });

@@ -38,14 +38,14 @@ async function beside(file: string): Promise<Page & { errors: string[] }> {
 
 const text = async (page: Page) => (await page.locator('.cm-line').allInnerTexts()).map((line) => line.replace(/\n$/, '')).join('\n');
 
-async function until<T>(ask: () => Promise<T>, good: (found: T) => boolean, what: string): Promise<T> {
-  let found = await ask();
-  for (let n = 0; n < 80 && !good(found); n++) {
+async function found<T>(ask: () => Promise<T>, good: (found: T) => boolean, what: string): Promise<T> {
+  let now = await ask();
+  for (let n = 0; n < 80 && !good(now); n++) {
     await new Promise((done) => setTimeout(done, 100));
-    found = await ask();
+    now = await ask();
   }
-  assert.ok(good(found), `${what}: ${JSON.stringify(found)}`);
-  return found;
+  assert.ok(good(now), `${what}: ${JSON.stringify(now)}`);
+  return now;
 }
 
 /** The cursor behind a piece of text. */
@@ -69,7 +69,7 @@ test('what is typed is drawn, with signs that keyboards lack', async () => {
   await page.keyboard.press('Escape');
   await page.keyboard.press('Enter');
   await page.keyboard.type('1 -> 2 when \\upa');
-  await until(() => drawn(page, 'G1/s/2'), (n) => n === 1, 'step 2 is drawn');
+  await found(() => drawn(page, 'G1/s/2'), (n) => n === 1, 'step 2 is drawn');
   assert.match(await text(page), /\n {2}step 2\n {2}1 -> 2 when ↑a\n/);
   assert.equal(await textOf(page), LOOP.replace('step 1 { N M }', 'step 1 { N M }\n  step 2\n  1 -> 2 when ↑a'));
   assert.deepEqual(page.errors, []);
@@ -80,13 +80,13 @@ test('undo goes through typing and gestures alike, from either view, to the firs
   const page = await beside('loop.g7');
   await behind(page, 'when a');
   await page.keyboard.type(' · not M');
-  await until(() => page.locator('.sheet').innerHTML(), (html) => html.includes('·'), 'the receptivity is drawn');
+  await found(() => page.locator('.sheet').innerHTML(), (html) => html.includes('·'), 'the receptivity is drawn');
   await page.keyboard.press('Escape');
   const step = await page.locator('.sheet [data-id="G1/s/1"]').boundingBox();
   assert.ok(step);
   await page.mouse.click(step.x + 8, step.y + 8);
   await page.keyboard.press('Tab');
-  await until(() => text(page), (t) => t.includes('step 2'), 'the gesture is in the text');
+  await found(() => text(page), (t) => t.includes('step 2'), 'the gesture is in the text');
   await page.keyboard.press('Escape');
   await page.locator('.cm-content').click();
   const undo = page.getByRole('button', { name: 'Undo', exact: true });
@@ -129,7 +129,7 @@ test('a problem is marked at its place, and its fix mends it as one edit', async
   assert.match(await text(page), /input missing : BOOL/);
   await page.locator('.cm-content').click();
   await page.keyboard.press('Control+z');
-  await until(() => text(page), (t) => !t.includes('input missing'), 'one undo takes it back');
+  await found(() => text(page), (t) => !t.includes('input missing'), 'one undo takes it back');
   await page.context().close();
 });
 
@@ -140,7 +140,7 @@ test('the cursor and the selection in the drawing go together', async () => {
   const step = await page.locator('.sheet [data-id="G1/s/0"]').boundingBox();
   assert.ok(step);
   await page.mouse.click(step.x + 8, step.y + 8);
-  await until(() => page.locator('.cm-picked').allInnerTexts(), (lines) => lines.join() === '  initial step 0', 'the line of the step is marked');
+  await found(() => page.locator('.cm-picked').allInnerTexts(), (lines) => lines.join() === '  initial step 0', 'the line of the step is marked');
   await page.context().close();
 });
 
@@ -152,7 +152,7 @@ test('rename, declaration and uses by keys', async () => {
   await page.waitForTimeout(100);
   await page.keyboard.type('key');
   await page.keyboard.press('Enter');
-  await until(() => text(page), (t) => t === LOOP.replace('input a', 'input key').replace('when a', 'when key').replace('not a', 'not key'), 'renamed everywhere');
+  await found(() => text(page), (t) => t === LOOP.replace('input a', 'input key').replace('when a', 'when key').replace('not a', 'not key'), 'renamed everywhere');
   await page.keyboard.press('F12');
   await page.getByText('Line 2, column').waitFor();
   await page.keyboard.press('Shift+F12');
@@ -172,7 +172,7 @@ test('completion knows the names, format puts the text in order', async () => {
   await page.locator('.cm-tooltip-autocomplete').waitFor();
   await page.keyboard.press('Escape');
   await page.keyboard.press('Shift+Alt+F');
-  await until(() => text(page), (t) => !t.includes('{   N'), 'formatted');
+  await found(() => text(page), (t) => !t.includes('{   N'), 'formatted');
   await page.context().close();
 });
 
@@ -180,7 +180,7 @@ test('line ends of other systems stay where they are', async () => {
   const page = await beside('crlf.g7');
   await behind(page, 'when a');
   await page.keyboard.type(' and M');
-  await until(() => page.locator('.sheet').innerHTML(), (html) => html.includes('M'), 'drawn');
+  await found(() => page.locator('.sheet').innerHTML(), (html) => html.includes('M'), 'drawn');
   assert.equal(await textOf(page), LOOP.replace('when a', 'when a and M').replaceAll('\n', '\r\n'));
   assert.deepEqual(page.errors, []);
   await page.context().close();

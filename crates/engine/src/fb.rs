@@ -100,7 +100,8 @@ pub(crate) fn call(p: &Program, s: &mut State, block: Block, base: Addr) -> Resu
     Ok(())
 }
 
-/// IN, PT, Q, ET, start, memory of IN (of TP also whether the pulse runs: bit 1).
+/// IN, PT, Q, ET, start, memory: IN in bit 0; of TOF and TP bit 1, whether time runs; of TOF
+/// bit 2, whether it has run out.
 fn timer(w: &mut Words<'_>, block: Block, now: i64) {
     let input = w.get(0) != 0;
     let pt = (w.get(1) as i64).max(0);
@@ -141,17 +142,16 @@ fn timer(w: &mut Words<'_>, block: Block, now: i64) {
             }
             let gone = now.wrapping_sub(start).clamp(0, pt);
             q = running && gone < pt;
-            // ET stays at PT while IN is still true behind the pulse.
-            let hold = memory & 4 != 0 || (running && !q);
+            // ET stays at PT while IN, which began the pulse, is still true behind it.
             et = if q {
                 gone
-            } else if input && hold {
+            } else if input {
                 pt
             } else {
                 0
             };
             running = q;
-            w.set(5, u64::from(input) | u64::from(running) << 1 | u64::from(input && hold) << 2);
+            w.set(5, u64::from(input) | u64::from(running) << 1);
         }
         Block::Ton
         | Block::Ctu

@@ -246,8 +246,8 @@ pub fn begin(p: &Program, s: &mut State, inputs: &[u64], now: i64) -> Result<(),
     if t.rules.periodic_first {
         let base = p.layout.periodics.base() as usize;
         let State { w, x, .. } = s;
-        for (i, b) in x.before.iter_mut().enumerate() {
-            *b = word(w, base + i);
+        for (b, now) in x.before.iter_mut().zip(w.get(base..).unwrap_or_default()) {
+            *b = *now;
         }
     }
     s.x.first_pass = true;

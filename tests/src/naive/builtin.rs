@@ -157,7 +157,8 @@ fn text(name: &str, args: &[Typed]) -> Run<Typed> {
         None => bad(format!("{name} lacks arguments")),
     };
     let n = |i: usize| match args.get(i).map(Typed::whole) {
-        Some(Ok(n)) => Ok(usize::try_from(n.max(0)).unwrap_or(usize::MAX)),
+        Some(Ok(n)) if n < 0 => Err(NaiveFault::Index),
+        Some(Ok(n)) => Ok(usize::try_from(n).unwrap_or(usize::MAX)),
         Some(Err(e)) => Err(e),
         None => bad(format!("{name} lacks arguments")),
     };

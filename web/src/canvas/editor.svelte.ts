@@ -58,6 +58,9 @@ class Editor {
   /** Read out to those who do not see the drawing. */
   said = $state('');
   camera: Camera | null = null;
+  /** Gestures whose result is not there yet. */
+  #under = $state(0);
+  readonly busy: boolean = $derived(this.#under > 0);
   #copied = '';
 
   readonly selected: Item[] = $derived(
@@ -68,35 +71,54 @@ class Editor {
 
   /** A gesture; what was refused is told, what was made is selected. */
   async apply(gesture: Gesture): Promise<Edited | undefined> {
-    const { file, chart } = this;
-    if (!file) return undefined;
-    const edited = await shell.try(() => file.edit(gesture));
-    if (edited && chart !== null) await this.took(file, chart, edited);
-    return edited;
+    const { file } = this;
+    return file ? this.#draw(file, () => file.edit(gesture)) : undefined;
   }
 
   async history(way: 'undo' | 'redo'): Promise<void> {
     const { file, chart } = this;
     if (!file || chart === null) return;
-    await file.settled();
-    if (way === 'undo' ? !file.look.can_undo : !file.look.can_redo) return;
-    const edited = await shell.try(() => (way === 'undo' ? file.undo() : file.redo()));
-    if (edited) await this.took(file, chart, edited);
+    await this.#draw(file, async () => {
+      await file.settled();
+      if (way === 'undo') return file.look.can_undo ? file.undo() : null;
+      return file.look.can_redo ? file.redo() : null;
+    });
   }
 
-  async took(file: OpenFile, chart: string, edited: Edited): Promise<void> {
+  async #draw(file: OpenFile, change: () => Promise<Edited | null>): Promise<Edited | undefined> {
+    const { chart } = this;
+    const selection = shell.selection;
+    return this.#during(async () => {
+      const edited = (await shell.try(change)) ?? undefined;
+      if (edited && chart !== null) await this.#took(file, chart, edited, selection);
+      return edited;
+    });
+  }
+
+  async #during<T>(work: () => Promise<T>): Promise<T> {
+    this.#under += 1;
+    try {
+      return await work();
+    } finally {
+      this.#under -= 1;
+    }
+  }
+
+  async #took(file: OpenFile, chart: string, edited: Edited, selection: ReadonlySet<string>): Promise<void> {
     if (file !== this.file || chart !== this.chart) return;
     if (shell.chart(file) === chart) {
       this.scene = new Scene(await file.drawing(chart));
     }
     for (const sentence of edited.told ?? []) shell.say(sentence);
-    const made = edited.select ?? [];
+    // What was selected while the gesture was under way stays so.
+    const free = shell.selection === selection;
+    const made = free ? (edited.select ?? []) : [];
     if (made.length > 0) {
       shell.select(made);
       const item = this.scene?.byId.get(made[0] ?? '');
       if (item) this.camera?.reveal(item.area);
     } else shell.select([...shell.selection].filter((id) => this.scene?.byId.has(id)));
-    if (edited.begin) this.edit(edited.begin);
+    if (edited.begin && free) this.edit(edited.begin);
   }
 
   /** Opens the field in which a symbol's text is edited. */
@@ -149,7 +171,11 @@ class Editor {
     if (other && this.file) shell.jump(this.file, other);
   }
 
-  async copy(): Promise<string> {
+  copy(): Promise<string> {
+    return this.#during(() => this.#copy());
+  }
+
+  async #copy(): Promise<string> {
     const { file } = this;
     const ids = [...shell.selection];
     if (!file || ids.length === 0) return '';

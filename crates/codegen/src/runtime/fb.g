@@ -128,11 +128,10 @@ fn call_tp(b: &mut Tp, now: i64) {
     }
     let gone: i64 = gone_by(now, b.start, pt);
     b.q = running && gone < pt;
-    let hold: bool = (b.memory & 4) != 0 || (running && !b.q);
     b.et = 0;
     if b.q {
         b.et = gone;
-    } else if b.in_ && hold {
+    } else if b.in_ {
         b.et = pt;
     }
     let mut memory: u8 = 0;
@@ -141,9 +140,6 @@ fn call_tp(b: &mut Tp, now: i64) {
     }
     if b.q {
         memory |= 2;
-    }
-    if b.in_ && hold {
-        memory |= 4;
     }
     b.memory = memory;
 }
