@@ -125,21 +125,7 @@ fn impose(p: &Program, s: &mut State, i: u32) {
         mark_off(s, StepId(k));
         from = k + 1;
     }
-    // An imposed step that is active already is neither activated nor deactivated.
-    for step in arcs(p, rows) {
-        unmark_kept(s, step.0);
-    }
-}
-
-/// Takes both marks off a step that an order leaves as it is. The lists keep
-/// the number; without a mark it has no effect.
-fn unmark_kept(s: &mut State, step: u32) {
-    if s.steps.contains(&s.w, step) {
-        set_bit(&mut s.x.on_mark, 0, step, false);
-        set_bit(&mut s.x.off_mark, 0, step, false);
-        s.x.on.retain(|k| *k != step);
-        s.x.off.retain(|k| *k != step);
-    }
+    // An imposed step that is active already has both marks, and stays as it is (rule 5).
 }
 
 /// Stands in `forced_by` for "two orders disagree".

@@ -4,7 +4,7 @@ mod common;
 
 use common::{Arc, chart};
 use g7_engine::{
-    Addr, Chart, Code, FaultKind, Limits, Op, Program, Rules, State, StepId, Tables, begin, eval, scan,
+    Addr, Chart, Code, FaultKind, Limits, Op, Program, Rows, Rules, State, StepId, Tables, begin, eval, scan,
     set_step,
 };
 
@@ -145,4 +145,19 @@ fn a_step_set_from_outside_is_seen_by_the_next_scan() {
     // The same inputs as before: a scan that nothing else wakes.
     let r = scan(&p, &mut s, &[0, 1], 1).expect("no fault");
     assert_eq!((r.cleared, s.active().collect::<Vec<_>>()), (1, vec![StepId(0)]));
+}
+
+#[test]
+fn locals_are_gone_when_a_scan_is_over() {
+    let mut t = fork();
+    let first = t.init.len() as u32;
+    t.init.extend([0, 0]);
+    t.locals = Rows { start: first, end: first + 2 };
+    let start = t.code.len() as u32;
+    t.code.extend([Op::Push(5), Op::Store(Addr(first)), Op::Push(6), Op::Store(Addr(first + 1))]);
+    t.pre = Code { start, end: start + 4 };
+    let p = Program::new(t).expect("tables are sound");
+    let mut s = State::new(&p);
+    scan(&p, &mut s, &[0, 0], 0).expect("no fault");
+    assert_eq!([s.word(Addr(first)), s.word(Addr(first + 1))], [0, 0]);
 }

@@ -25,6 +25,7 @@ mod file;
 mod fixes;
 mod ids;
 mod language;
+mod logic;
 mod look;
 mod merge;
 mod out;

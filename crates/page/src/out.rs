@@ -3,7 +3,7 @@
 
 use std::collections::BTreeMap;
 
-use g7_codegen::Language;
+use g7_codegen::{Language, plc};
 use g7_compile::symbols::Symbols;
 use g7_draw::{Drawing, Options};
 use g7_engine::StepId;
@@ -49,11 +49,24 @@ struct Mark {
     lines: Vec<usize>,
 }
 
+/// What code is printed in.
+#[derive(Clone, Copy)]
+enum Code {
+    Native(Language),
+    /// A form of the equations, and the ending of its file.
+    Plc(plc::Form, &'static str),
+}
+
 /// Languages of controllers: word, title, language.
-const LANGUAGES: [(&str, &str, Language); 3] = [
-    ("c", "C99", Language::C),
-    ("arduino", "Arduino sketch", Language::Arduino),
-    ("rust", "Rust module", Language::Rust),
+const LANGUAGES: [(&str, &str, Code); 8] = [
+    ("c", "C99", Code::Native(Language::C)),
+    ("arduino", "Arduino sketch", Code::Native(Language::Arduino)),
+    ("rust", "Rust module", Code::Native(Language::Rust)),
+    ("st", "Structured Text", Code::Plc(plc::Form::St, "st")),
+    ("il", "Instruction List", Code::Plc(plc::Form::Il, "il")),
+    ("dolog80", "Instruction List, set and reset", Code::Plc(plc::Form::Dolog80, "il")),
+    ("ld", "Ladder (PLCopen XML)", Code::Plc(plc::Form::Ld, "xml")),
+    ("ladder", "Ladder, drawn", Code::Plc(plc::Form::Drawing, "svg")),
 ];
 
 /// All forms, in the order in which they are shown.
@@ -102,25 +115,36 @@ fn out(file: &File, files: Vec<(String, String)>, problems: &[Problem]) -> Out {
 }
 
 /// Code for a controller; what belongs to each step is marked.
-fn code(file: &File, name: &str, language: Language) -> Result<Out, String> {
+fn code(file: &File, name: &str, code: Code) -> Result<Out, String> {
     let (compiled, _) = g7_compile::compile(&file.source.document);
     let compiled = compiled.ok_or("the chart has errors")?;
-    let options = g7_codegen::Options { language, name, source: file.text() };
-    let printed = match g7_codegen::print(&compiled, &options) {
+    let symbols = &compiled.symbols;
+    let printed = match code {
+        Code::Native(language) => {
+            let options = g7_codegen::Options { language, name, source: file.text() };
+            g7_codegen::print(&compiled, &options).map(|p| {
+                let steps = words(file, symbols, |step| p.places.step(step).to_owned());
+                (p.files.into_iter().map(|f| (f.name, f.text)).collect(), p.problems, steps)
+            })
+        }
+        Code::Plc(form, ending) => plc::print(&compiled, form, name, file.text()).map(|p| {
+            let steps = words(file, symbols, |step| p.step(step).to_owned());
+            (vec![(format!("{name}.{ending}"), p.text)], p.problems, steps)
+        }),
+    };
+    let (files, problems, steps) = match printed {
         Ok(printed) => printed,
         Err(problems) => return Ok(out(file, Vec::new(), &problems)),
     };
-    let steps = words(file, &compiled.symbols, |step| printed.places.step(step));
-    let files = printed.files.into_iter().map(|f| (f.name, f.text)).collect();
-    let mut out = out(file, files, &printed.problems);
-    for file in &mut out.files {
+    let mut out = out(file, files, &problems);
+    for file in out.files.iter_mut().filter(|f| !f.name.ends_with(".svg")) {
         file.marks = marks(&file.text, &steps);
     }
     Ok(out)
 }
 
 /// The ids of steps by the word that stands for each in the code.
-fn words<'c>(file: &File, symbols: &Symbols, word: impl Fn(StepId) -> &'c str) -> BTreeMap<&'c str, String> {
+fn words(file: &File, symbols: &Symbols, word: impl Fn(StepId) -> String) -> BTreeMap<String, String> {
     let ids: BTreeMap<Span, String> = ids::things(&file.source.document)
         .filter_map(|(_, thing)| match thing {
             Thing::Step(_, step) => Some((step.name.at.0, thing.id())),
@@ -132,7 +156,7 @@ fn words<'c>(file: &File, symbols: &Symbols, word: impl Fn(StepId) -> &'c str) -
 }
 
 /// The lines in which each word stands, alone or behind the prefix that public names have.
-fn marks(text: &str, words: &BTreeMap<&str, String>) -> Vec<Mark> {
+fn marks(text: &str, words: &BTreeMap<String, String>) -> Vec<Mark> {
     let mut lines: BTreeMap<&str, Vec<usize>> = BTreeMap::new();
     for (number, line) in text.lines().enumerate() {
         for word in line.split(|c: char| !c.is_alphanumeric() && c != '_') {

@@ -11,7 +11,7 @@ use crate::merge::merge;
 use crate::request::Request;
 use crate::run::{self, Run};
 use crate::tests;
-use crate::{drawing, edit, out};
+use crate::{drawing, edit, logic, out};
 
 /// What a page has open: files and runs.
 #[derive(Default)]
@@ -66,6 +66,10 @@ impl Page {
             Request::Drawing(wish) => ok(&drawing::drawing(self.file(&wish.file)?, &wish)?),
             Request::Forms => ok(&out::forms()),
             Request::Export { file, to } => ok(&out::export(&file, self.file(&file)?, &to)?),
+            Request::Logic { file, id } => ok(&logic::logic(self.file(&file)?, &id)?),
+            Request::LogicRead { tongue, text } => {
+                ok(&serde_json::json!({ "text": logic::read(tongue, &text)? }))
+            }
             Request::Style { dark } => ok(&serde_json::json!({ "css": g7_draw::style(dark) })),
             Request::Explain { code } => {
                 let text = explain(&code).ok_or_else(|| format!("there is no problem `{code}`"))?;

@@ -61,6 +61,16 @@ pub(crate) enum Request {
         file: String,
         to: String,
     },
+    /// The logic of a symbol in the languages of controllers.
+    Logic {
+        file: String,
+        id: String,
+    },
+    /// Logic in one of them as an expression of the text.
+    LogicRead {
+        tongue: crate::logic::Tongue,
+        text: String,
+    },
     /// The style sheet of the fragments.
     Style {
         #[serde(default)]

@@ -332,6 +332,18 @@ export interface TestAnswer {
   problems: Problem[];
 }
 
+/** A language of logic: Structured Text, Instruction List, Ladder. */
+export type Tongue = 'st' | 'il' | 'ld';
+
+/** A receptivity, a condition or a body in each of them. */
+export interface LogicPiece {
+  part: 'receptivity' | 'condition' | 'event' | 'body';
+  /** Its place among the actions of a step. */
+  index?: number;
+  /** No text where the language has no form of it; Ladder comes with its picture, SVG. */
+  forms: { tongue: Tongue; text: string | null; picture?: string }[];
+}
+
 /** A form in which a chart can leave. */
 export interface Form {
   word: string;

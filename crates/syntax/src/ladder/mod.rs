@@ -39,26 +39,38 @@ pub fn expression(text: &str, file: FileId) -> (Expr, Vec<Problem>) {
     (expr, problems)
 }
 
+/// Reads the rungs as they are drawn.
+pub fn read(text: &str, file: FileId) -> (Vec<Rung>, Vec<Problem>) {
+    rungs(text, file, 0)
+}
+
 /// A rung, read.
 #[derive(Clone, Debug)]
-pub(crate) struct Rung {
+pub struct Rung {
     /// Where jumps go to.
-    pub(crate) label: Option<Name>,
-    pub(crate) elements: Vec<Element>,
-    pub(crate) at: Span,
+    pub label: Option<Name>,
+    /// From left to right.
+    pub elements: Vec<Element>,
+    /// All of it.
+    pub at: Span,
 }
 
 /// What stands on a wire.
 #[derive(Clone, Debug)]
-pub(crate) enum Element {
+pub enum Element {
     /// `[a]`: power passes while this is true.
     Contact(Expr),
+    /// A coil.
     Coil(Coil, Span),
     /// `<t1(IN, PT := 5s).Q>`: power goes to the input that has no value, and comes from the output.
     Block {
+        /// The function or instance.
         path: Path,
+        /// Its arguments.
         args: Vec<Arg>,
+        /// Where power comes out.
         output: Option<Name>,
+        /// Where it stands.
         at: Span,
     },
     /// `{ … | … }`.
@@ -67,7 +79,7 @@ pub(crate) enum Element {
 
 /// What power does.
 #[derive(Clone, Debug)]
-pub(crate) enum Coil {
+pub enum Coil {
     /// `(q)`, and with a complement `(/q)`.
     Assign(Expr, bool),
     /// `(S q)`, `(R q)`.
@@ -76,6 +88,8 @@ pub(crate) enum Coil {
     Edge(Expr, UnaryOp),
     /// `(n := n + 1)`: while there is power.
     Statement(Box<Stmt>),
+    /// `(JMP name)`.
     Jump(Name),
+    /// `(RET)`.
     Return,
 }

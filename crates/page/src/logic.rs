@@ -1,0 +1,243 @@
+//! Receptivities and actions in the languages of controllers: the same logic as
+//! Structured Text, as Instruction List and as Ladder; and back again.
+
+use g7_compile::symbols::Symbols;
+use g7_draw::{Element, Rung};
+use g7_model::{
+    ActionKind, Document, Expr, ExprKind, FileId, Item, Path, Stmt, StmtKind, Target, Type, UnaryOp, Work,
+};
+use g7_syntax::ladder::{self, Coil};
+use g7_syntax::{il, print_expr, print_statements};
+use serde::{Deserialize, Serialize};
+
+use crate::file::File;
+use crate::ids::{self, Thing};
+
+/// A language of logic.
+#[derive(Clone, Copy, Debug, Deserialize, Serialize, PartialEq, Eq)]
+#[serde(rename_all = "lowercase")]
+pub(crate) enum Tongue {
+    St,
+    Il,
+    Ld,
+}
+
+/// A receptivity, a condition or a body.
+#[derive(Debug, Serialize)]
+pub(crate) struct Piece {
+    /// What of the symbol it is.
+    part: Part,
+    /// Its place among the actions of a step.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    index: Option<usize>,
+    forms: Vec<Form>,
+}
+
+/// What of a symbol a piece is.
+#[derive(Clone, Copy, Debug, Serialize)]
+#[serde(rename_all = "snake_case")]
+enum Part {
+    Receptivity,
+    Condition,
+    Event,
+    Body,
+}
+
+/// A piece in one language.
+#[derive(Debug, Serialize)]
+struct Form {
+    tongue: Tongue,
+    /// None where the language has no form of it.
+    text: Option<String>,
+    /// Ladder as it is drawn.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    picture: Option<String>,
+}
+
+/// All logic of a transition, an action, or of all actions of a step.
+pub(crate) fn logic(file: &File, id: &str) -> Result<Vec<Piece>, String> {
+    let document = &file.source.document;
+    let (_, thing) =
+        ids::things(document).find(|(_, t)| t.id() == id).ok_or_else(|| format!("there is no `{id}`"))?;
+    let symbols = g7_compile::compile(document).0.map(|c| c.symbols);
+    let boolean = |e: &Expr| is_boolean(e, symbols.as_ref());
+    let show = Show { document, boolean: &boolean };
+    Ok(match thing {
+        Thing::Transition(chart, n) => match chart.transitions().nth(n) {
+            Some(t) => {
+                let body = t.on_clearing.iter().map(|b| show.body(None, &b.statements));
+                [show.condition(Part::Receptivity, None, &t.receptivity)].into_iter().chain(body).collect()
+            }
+            None => Vec::new(),
+        },
+        Thing::Step(_, step) => {
+            (0..step.actions.len()).flat_map(|i| show.action(i, &step.actions[i].kind)).collect()
+        }
+        Thing::Action(_, step, i) => step.actions.get(i).map_or_else(Vec::new, |a| show.action(i, &a.kind)),
+    })
+}
+
+/// Logic in one of the languages as an expression of the text.
+pub(crate) fn read(tongue: Tongue, text: &str) -> Result<String, String> {
+    let (expr, problems) = match tongue {
+        Tongue::St => g7_syntax::parse_expr(text, FileId(0)),
+        Tongue::Il => il::expression(text, FileId(0)),
+        Tongue::Ld => ladder::expression(text, FileId(0)),
+    };
+    match problems.into_iter().next() {
+        Some(p) => {
+            let before = text.get(..p.at.start as usize).unwrap_or(text);
+            let line = before.matches('\n').count() + 1;
+            Err(format!("line {line}: {}", p.what))
+        }
+        None if matches!(expr.kind, ExprKind::Bad) => Err("there is no logic in this text".to_owned()),
+        None => Ok(print_expr(&expr)),
+    }
+}
+
+/// Whether a variable or call is a BOOL: by its declaration, else by what names of
+/// steps and of members of blocks are.
+fn is_boolean(e: &Expr, symbols: Option<&Symbols>) -> bool {
+    let text = print_expr(e);
+    let declared = symbols.and_then(|s| s.variables.iter().find(|v| v.name.as_ref() == text));
+    match declared {
+        Some(v) => v.ty == Type::Bool,
+        None => !matches!(text.rsplit('.').next(), Some("t" | "s" | "ET" | "CV" | "PT" | "PV")),
+    }
+}
+
+struct Show<'a> {
+    document: &'a Document,
+    boolean: &'a dyn Fn(&Expr) -> bool,
+}
+
+impl Show<'_> {
+    fn action(&self, index: usize, kind: &ActionKind) -> Vec<Piece> {
+        let mut pieces = Vec::new();
+        match kind {
+            ActionKind::Qualified { target, condition, .. } => {
+                if let Some(e) = condition {
+                    pieces.push(self.condition(Part::Condition, Some(index), e));
+                }
+                match target {
+                    Target::Work(work) => pieces.push(self.work(index, work)),
+                    Target::Path(path) => pieces.extend(self.named(path).map(|s| self.body(Some(index), s))),
+                    Target::Direct(..) => {}
+                }
+            }
+            ActionKind::OnEvent { event, work } => {
+                pieces.push(self.condition(Part::Event, Some(index), event));
+                pieces.push(self.work(index, work));
+            }
+            ActionKind::EachScan { work, condition } => {
+                if let Some(e) = condition {
+                    pieces.push(self.condition(Part::Condition, Some(index), e));
+                }
+                pieces.push(self.work(index, work));
+            }
+            ActionKind::Order(_) | ActionKind::Comment(_) => {}
+        }
+        pieces
+    }
+
+    fn work(&self, index: usize, work: &Work) -> Piece {
+        self.body(Some(index), work.statements())
+    }
+
+    /// The statements of the named action that a path means.
+    fn named(&self, path: &Path) -> Option<&[Stmt]> {
+        let [name] = path.names.as_slice() else { return None };
+        self.document.items.iter().find_map(|item| match item {
+            Item::Action(a) if a.name.text == name.text => Some(a.body.block().statements.as_slice()),
+            _ => None,
+        })
+    }
+
+    fn condition(&self, part: Part, index: Option<usize>, e: &Expr) -> Piece {
+        let st = Some(print_expr(e));
+        self.piece(part, index, [st, Some(il::show_expr_as_il(e)), Some(ladder::show_expr_as_ladder(e))])
+    }
+
+    fn body(&self, index: Option<usize>, statements: &[Stmt]) -> Piece {
+        let st = Some(print_statements(statements));
+        let ld = ladder::show_as_ladder(statements, self.boolean);
+        self.piece(Part::Body, index, [st, il::show_as_il(statements), ld])
+    }
+
+    fn piece(&self, part: Part, index: Option<usize>, texts: [Option<String>; 3]) -> Piece {
+        let forms = [Tongue::St, Tongue::Il, Tongue::Ld].into_iter().zip(texts).map(|(tongue, text)| {
+            let picture = text.as_deref().filter(|_| tongue == Tongue::Ld).and_then(picture);
+            Form { tongue, text, picture }
+        });
+        Piece { part, index, forms: forms.collect() }
+    }
+}
+
+/// Rungs in the .g7 language, drawn.
+fn picture(text: &str) -> Option<String> {
+    let (rungs, problems) = ladder::read(text, FileId(0));
+    let drawn = |r: &ladder::Rung| Rung {
+        label: r.label.as_ref().map_or_else(String::new, |l| l.text.to_string()),
+        elements: elements(&r.elements),
+        ..Rung::default()
+    };
+    problems.is_empty().then(|| g7_draw::rungs(&rungs.iter().map(drawn).collect::<Vec<_>>()))
+}
+
+fn elements(list: &[ladder::Element]) -> Vec<Element> {
+    list.iter().map(element).collect()
+}
+
+fn element(e: &ladder::Element) -> Element {
+    match e {
+        ladder::Element::Contact(e) => {
+            let (sign, inner) = match &e.kind {
+                ExprKind::Unary(UnaryOp::Not, inner) => ("/", &**inner),
+                ExprKind::Unary(UnaryOp::Rise, inner) => ("P", &**inner),
+                ExprKind::Unary(UnaryOp::Fall, inner) => ("N", &**inner),
+                _ => ("", e),
+            };
+            Element::Contact { sign, text: print_expr(inner) }
+        }
+        ladder::Element::Coil(coil, _) => {
+            let (sign, text) = match coil {
+                Coil::Assign(e, false) => ("", print_expr(e)),
+                Coil::Assign(e, true) => ("/", print_expr(e)),
+                Coil::Latch(e, true) => ("S", print_expr(e)),
+                Coil::Latch(e, false) => ("R", print_expr(e)),
+                Coil::Edge(e, UnaryOp::Rise) => ("P", print_expr(e)),
+                Coil::Edge(e, _) => ("N", print_expr(e)),
+                Coil::Statement(s) => ("", statement(s)),
+                Coil::Jump(to) => ("", format!("JMP {}", to.text)),
+                Coil::Return => ("", "RET".to_owned()),
+            };
+            Element::Coil { sign, text }
+        }
+        ladder::Element::Block { path, args, output, .. } => {
+            let of = |out: bool| {
+                let named = args.iter().filter(move |a| a.output == out);
+                named
+                    .filter_map(|a| Some((a.name.as_ref()?.text.to_string(), print_expr(&a.value))))
+                    .collect()
+            };
+            // The input without a value is where power goes.
+            let power = args.iter().find(|a| a.name.is_none()).map(|a| print_expr(&a.value));
+            Element::Block {
+                title: path.names.iter().map(|n| &*n.text).collect::<Vec<_>>().join("."),
+                power: power.unwrap_or_default(),
+                inputs: of(false),
+                output: output.as_ref().map_or_else(String::new, |n| n.text.to_string()),
+                outputs: of(true),
+            }
+        }
+        ladder::Element::Branch(ways, _) => Element::Branch(ways.iter().map(|w| elements(w)).collect()),
+    }
+}
+
+/// A statement on one line.
+fn statement(s: &Stmt) -> String {
+    match &s.kind {
+        StmtKind::Assign { target, value } => format!("{} := {}", print_expr(target), print_expr(value)),
+        _ => print_statements(std::slice::from_ref(s)).split_whitespace().collect::<Vec<_>>().join(" "),
+    }
+}
