@@ -49,18 +49,21 @@ fn seventy_charts_do_each_what_one_does() {
     for profile in ProfileName::ALL {
         let (one, many) = (compiled(1, profile), compiled(WIDE, profile));
         let (mut alone, mut wide) = (State::new(&one.program), State::new(&many.program));
-        let mut all = Vec::new();
+        let (mut all, mut ran) = (Vec::new(), 0);
         for (k, (a, b)) in rows.into_iter().enumerate() {
             let now = k as i64 * 10_000_000;
             scan(&one.program, &mut alone, &[a, b], now).expect("no fault");
             scan(&many.program, &mut wide, &[a, b], now).expect("no fault");
             let wanted = seen(&one, &alone, 0);
+            assert_eq!(wide.ran().len(), WIDE * alone.ran().len(), "{}, scan {k}", profile.name());
+            ran += alone.ran().len();
             for chart in 0..WIDE {
                 assert_eq!(seen(&many, &wide, chart), wanted, "{}, scan {k}, chart {chart}", profile.name());
             }
             all.push(wanted);
         }
-        // The chart went round twice, and every action acted.
+        // The chart went round twice, and every action acted, most of them by running.
+        assert!(ran > rows.len(), "{}: {ran}", profile.name());
         let last = all.last().expect("rows");
         assert_eq!(last.get(5), Some(&2), "{}: {all:?}", profile.name());
         assert!((0..5).all(|v| all.iter().any(|row| row[v] != 0)), "{}: {all:?}", profile.name());

@@ -107,7 +107,7 @@ fn inputs_are_as_many_as_the_programs_and_time_does_not_go_back() {
     assert_eq!(fault(&mut s, &[0, 0, 0], 10), Some(FaultKind::Inputs));
     assert!(!s.is_started());
     scan(&p, &mut s, &[0, 0], 10).expect("no fault");
-    assert!(s.is_started());
+    assert!(s.is_started() && !s.is_stopped());
     assert_eq!(fault(&mut s, &[0], 20), Some(FaultKind::Inputs));
     assert_eq!(fault(&mut s, &[0, 0], 9), Some(FaultKind::Inputs));
     assert_eq!(fault(&mut s, &[0, 0], 10), None);

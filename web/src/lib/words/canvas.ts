@@ -98,7 +98,7 @@ export const canvas = {
   'inspect.kind.entry': ['entry step', "étape d'entrée", 'etapa de entrada'],
   'inspect.kind.exit': ['exit step', 'étape de sortie', 'etapa de saída'],
   'inspect.actions': ['Actions', 'Actions', 'Ações'],
-  'logic.title': ['In the languages of controllers', 'Dans les langages des automates', 'Nas linguagens dos autómatos'],
+  'logic.title': ['Logic', 'Logique', 'Lógica'],
   'logic.language': ['Language', 'Langage', 'Linguagem'],
   'logic.st': ['Structured Text', 'Texte structuré', 'Texto estruturado'],
   'logic.il': ['Instruction List', "Liste d'instructions", 'Lista de instruções'],
