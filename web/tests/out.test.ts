@@ -19,7 +19,7 @@ let b: Awaited<ReturnType<typeof browser>>;
 let site: Site;
 
 before(async () => {
-  site = await playground({ 'loop.g7': LOOP });
+  site = await playground({ 'loop.g7': LOOP, 'flat.g7': `profile iec61131\n${LOOP}` });
   b = await browser();
 });
 
@@ -48,6 +48,15 @@ test('the code of the selected step is marked, and follows the chart', async () 
   await page.locator('.inplace input').fill('Fill');
   await page.keyboard.press('Enter');
   await code.locator('.marked', { hasText: 'STEP_FILL' }).first().waitFor();
+  // Code for a PLC as well, whatever its steps are called there.
+  await page.getByRole('combobox', { name: 'As' }).selectOption('st');
+  const equations = page.getByRole('region', { name: 'Preview of loop.st' });
+  await equations.locator('.marked', { hasText: /X_FILL/i }).first().waitFor();
+  // A search for stability is a loop, which rungs do not have; a profile of one pass is drawn.
+  await page.getByRole('combobox', { name: 'As' }).selectOption('ladder');
+  await page.getByRole('button', { name: /cannot be printed as Ladder/ }).waitFor();
+  await page.getByRole('button', { name: 'flat.g7' }).first().click();
+  await page.getByRole('img', { name: 'flat.svg' }).waitFor();
   await page.close();
 });
 

@@ -2,7 +2,7 @@
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
 import type { Page } from 'playwright-core';
-import { browser, item, open, playground, press, textOf, type Site } from './lib';
+import { axe, browser, item, open, playground, press, textOf, type Site } from './lib';
 
 const LOOP = `input a, b : BOOL
 chart G1 {
@@ -92,6 +92,30 @@ test('the rules of the profile are set one by one', async () => {
   await says(page, /^profile iec60848 \{ one-pass, bound 50 \}/);
   await page.getByLabel('stable / one-pass').selectOption('');
   await says(page, /^profile iec60848 \{ bound 50 \}/);
+  assert.deepEqual(page.errors, []);
+  await page.context().close();
+});
+
+test('a receptivity is seen and written in each language of controllers', async () => {
+  const page = await open(b, site, 'loop.g7');
+  await press(page, 'G1/t/0');
+  const logic = page.getByRole('region', { name: 'Logic', exact: true });
+  await logic.getByRole('button', { name: 'LD' }).click();
+  await logic.locator('svg text', { hasText: /^a$/ }).waitFor();
+  await logic.getByRole('button', { name: 'IL' }).click();
+  const list = logic.getByRole('textbox');
+  assert.equal((await list.inputValue()).trim().replace(/\s+/g, ' '), 'LD a');
+  await list.fill('LD a\nAND )');
+  await list.blur();
+  assert.match(await logic.getByRole('alert').innerText(), /line 2/);
+  await list.fill('LDN a\nOR b');
+  await list.blur();
+  await says(page, /0 -> 1 when not a or b/);
+  await logic.getByRole('button', { name: 'LD' }).click();
+  await logic.getByRole('textbox').fill('--{ [a] | [/b] }');
+  await logic.getByRole('textbox').blur();
+  await says(page, /0 -> 1 when a or not b/);
+  assert.deepEqual(await axe(page), []);
   assert.deepEqual(page.errors, []);
   await page.context().close();
 });

@@ -100,6 +100,79 @@ fn a_chart_more_begins_and_a_pulse_does_not_run_again() {
     assert_eq!(word(&bench, &runner, "q"), 1, "set stays set");
 }
 
+/// Whether a BOOL is TRUE, scan by scan, beginning with the next one.
+fn seen(bench: &Bench, runner: &mut Runner, name: &str, scans: u32) -> Vec<u64> {
+    (0..scans)
+        .map(|_| {
+            runner.scan().expect("no fault");
+            word(bench, runner, name)
+        })
+        .collect()
+}
+
+#[test]
+fn a_delay_of_an_action_without_a_name_goes_on() {
+    let chart = |own: &str| {
+        format!(
+            "profile iec61131\ninput a : BOOL\nvar n : INT\noutput q : BOOL\nchart G {{\n initial step 1\n step 2 {{ S q; {own} }}\n 1 -> 2 when a\n 2 -> 1 when not a\n}}\n"
+        )
+    };
+    let before = chart("D 50ms n := n + 1");
+    // A chart in front, with steps and blocks of its own, moves all numbers.
+    let front = "chart F {\n initial step 8 { D 1s n := 0; S r }\n}\n";
+    let after = before.replace("chart G", &format!("output r : BOOL\n{front}chart G"));
+    // Step 2 came on in the second scan, four scans of its delay are over.
+    let (bench, Carried { mut runner, lost }) = changed(&before, &after, &[("a", 1)], 4);
+    assert_eq!(lost, Vec::<String>::new());
+    let counts = seen(&bench, &mut runner, "n", 5);
+    let (_, Carried { runner: mut unchanged, .. }) = changed(&before, &before, &[("a", 1)], 4);
+    assert_eq!(counts, seen(&self::bench(&source(&before)), &mut unchanged, "n", 5));
+    assert!(counts[0] == 0 && counts[4] > 1, "the delay ends in between: {counts:?}");
+    // Another qualifier is another action: it begins with the change.
+    let after = chart("L 30ms n := n + 1");
+    let (bench, Carried { mut runner, .. }) = changed(&before, &after, &[("a", 1)], 4);
+    let counts = seen(&bench, &mut runner, "n", 8);
+    assert!(counts[0] > 0 && counts[4] == counts[7], "{counts:?}");
+}
+
+#[test]
+fn the_time_of_a_macro_step_goes_on() {
+    let chart = "output v, w : BOOL\nchart G {\n initial macro M1 = A\n initial macro M2 = B\n initial step 9 { N v if XM1.t >= 50ms\n N w if XM2.t >= 60ms }\n}\nmacrochart A {\n entry step E\n exit step S\n E -> S when TRUE\n}\nmacrochart B {\n entry step E\n exit step S\n E -> S when TRUE\n}\n";
+    let front = "chart F {\n initial macro M0 = C\n}\nmacrochart C {\n entry step E\n exit step S\n E -> S when TRUE\n}\n";
+    let after = chart.replace("chart G", &format!("{front}chart G"));
+    // 20 ms are over at the change.
+    let (bench, Carried { mut runner, lost }) = changed(chart, &after, &[], 2);
+    assert_eq!(lost, Vec::<String>::new());
+    let mut both = Vec::new();
+    for _ in 0..6 {
+        runner.scan().expect("no fault");
+        both.push((word(&bench, &runner, "v"), word(&bench, &runner, "w")));
+    }
+    assert_eq!(both, [(0, 0), (0, 0), (1, 0), (1, 1), (1, 1), (1, 1)], "at 30 to 80 ms");
+}
+
+#[test]
+fn an_output_that_nothing_drives_any_more_goes_off_where_another_step_has_an_action_for_it() {
+    let before = PUMP.replace("step 2 { N pump }", "step 2 { L 9s pump }");
+    let after = PUMP.replace("step 2 { N pump }", "step 2").replace("step 1\n", "step 1 { D 5s pump }\n");
+    let (bench, Carried { mut runner, .. }) = changed(&before, &after, &[("a", 1)], 3);
+    runner.scan().expect("no fault");
+    assert_eq!((situation(&bench, &runner), word(&bench, &runner, "pump")), ("2".to_owned(), 0));
+}
+
+#[test]
+fn step_times_go_on_from_a_clock_of_scans_to_one_of_time() {
+    let before = format!("profile jgrafchart\n{PUMP}");
+    let after = PUMP.replace("when not a on", "when X2.t >= 1s on");
+    // Step 2 came on in the second scan, at 10 ms; the change is at 500 ms.
+    let (bench, Carried { mut runner, .. }) = changed(&before, &after, &[("a", 1)], 50);
+    bench.set(&mut runner, item(&bench, "a"), &Value::Word(0));
+    while situation(&bench, &runner) == "2" {
+        runner.scan().expect("no fault");
+    }
+    assert_eq!(runner.state().now(), 1_010_000_000);
+}
+
 fn examples(folder: &Path, all: &mut Vec<PathBuf>) {
     for entry in std::fs::read_dir(folder).expect("a folder") {
         let path = entry.expect("an entry").path();
