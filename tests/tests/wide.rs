@@ -4,7 +4,7 @@
 use std::fmt::Write as _;
 
 use g7_compile::{Compiled, compile_as};
-use g7_engine::{State, scan};
+use g7_engine::{State, WatchId, scan};
 use g7_model::{FileId, ProfileName};
 
 /// More than the bits of a word.
@@ -68,4 +68,18 @@ fn seventy_charts_do_each_what_one_does() {
         assert_eq!(last.get(5), Some(&2), "{}: {all:?}", profile.name());
         assert!((0..5).all(|v| all.iter().any(|row| row[v] != 0)), "{}: {all:?}", profile.name());
     }
+}
+
+#[test]
+fn the_output_of_a_timer_can_be_read() {
+    let text = "input a : BOOL\noutput q : BOOL\nchart G { initial step 1 { N q if 30ms/a } }\n";
+    let (document, _) = g7_syntax::parse(text, FileId::default());
+    let c = compile_as(&document, ProfileName::Iec60848).0.expect("a chart");
+    let mut s = State::new(&c.program);
+    let mut seen = Vec::new();
+    for (a, now) in [(0, 0), (1, 10), (1, 30), (1, 40), (1, 50), (0, 60)] {
+        scan(&c.program, &mut s, &[a], now * 1_000_000).expect("no fault");
+        seen.push(s.timer(&c.program, WatchId(0)));
+    }
+    assert_eq!(seen, [false, false, false, true, true, false]);
 }

@@ -11,8 +11,8 @@ use alloc::boxed::Box;
 use alloc::vec;
 use alloc::vec::Vec;
 
-use crate::bits::{Tree, Walk, word};
-use crate::{Addr, GroupId, Program, STACK, StepId, Tables};
+use crate::bits::{Tree, Walk, bit, word};
+use crate::{Addr, GroupId, Program, STACK, StepId, Tables, WatchId};
 
 /// Words of a control block that is not plain: 11 counts, memories, 5 starts, 5 times.
 pub(crate) const BLOCK: u32 = 22;
@@ -421,6 +421,11 @@ impl State {
     pub fn group_age(&self, p: &Program, group: GroupId) -> i64 {
         let stamp = word(&self.w, p.layout.group_ages as usize + group.0 as usize) as i64;
         if self.group_active(p, group) { self.now().wrapping_sub(stamp) } else { stamp }
+    }
+
+    /// The output of a timer.
+    pub fn timer(&self, p: &Program, watch: WatchId) -> bool {
+        bit(&self.w, p.layout.q, watch.0)
     }
 
     /// Time of the latest scan, ns.

@@ -1,5 +1,5 @@
 //! Logic in the languages of controllers: each shown as the others, and read back.
-
+#![allow(clippy::disallowed_methods, reason = "the tests read the examples")]
 mod common;
 
 use common::Asked;
