@@ -173,6 +173,22 @@ fn step_times_go_on_from_a_clock_of_scans_to_one_of_time() {
     assert_eq!(runner.state().now(), 1_010_000_000);
 }
 
+#[test]
+fn delays_that_run_or_are_over_are_said_to_begin_anew() {
+    let before = "input a, b : BOOL\noutput q, r : BOOL\nchart G {\n initial step 1 {\n N q if 20ms/a\n N r if 9s/b\n }\n}\n";
+    let lost = |inputs: &[(&str, u64)]| {
+        let said = changed(before, before, inputs, 5).1.lost;
+        said.iter().filter(|s| s.contains("delay")).cloned().collect::<Vec<_>>()
+    };
+    assert_eq!(lost(&[]), Vec::<String>::new());
+    // One is over, one runs.
+    let one = lost(&[("a", 1)]);
+    assert_eq!(one, ["a delay that runs begins anew"]);
+    assert_eq!(lost(&[("b", 1)]), one);
+    let two = lost(&[("a", 1), ("b", 1)]);
+    assert!(two.len() == 1 && two[0].contains('2'), "{two:?}");
+}
+
 fn examples(folder: &Path, all: &mut Vec<PathBuf>) {
     for entry in std::fs::read_dir(folder).expect("a folder") {
         let path = entry.expect("an entry").path();
