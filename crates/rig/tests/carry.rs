@@ -152,6 +152,44 @@ fn the_time_of_a_macro_step_goes_on() {
 }
 
 #[test]
+fn scans_and_time_of_a_macro_step_go_on_where_the_clock_counts_scans() {
+    let chart = "profile jgrafchart\nscan 10ms\ninput a : BOOL\nchart G {\n initial step 1\n macro M1 = A\n macro M2 = B\n 1 -> (M1, M2) when a\n}\nmacrochart A {\n entry step E\n exit step S\n E -> S when FALSE\n}\nmacrochart B {\n entry step E\n exit step S\n E -> S when FALSE\n}\n";
+    let front = "chart F {\n initial macro M0 = C\n}\nmacrochart C {\n entry step E\n exit step S\n E -> S when FALSE\n}\n";
+    let after = chart.replace("chart G", &format!("{front}chart G"));
+    // Entered in the second scan, at 10 ms; the change comes three scans later.
+    let (bench, Carried { mut runner, lost }) = changed(chart, &after, &[("a", 1)], 4);
+    assert_eq!(lost, Vec::<String>::new());
+    runner.scan().expect("no fault");
+    let program = &bench.compiled.program;
+    let mut found = Vec::new();
+    for m in &bench.compiled.symbols.macro_steps {
+        let group = m.group;
+        let s = runner.state();
+        found.push((
+            s.group_active(program, group),
+            s.group_time(program, group),
+            s.group_age(program, group),
+        ));
+    }
+    // In scans and in ns, as before; M0 begins with the change.
+    assert_eq!(found[1..], [(true, 4, 40_000_000); 2], "{found:?}");
+    assert!(found[0].0 && found[0].1 <= 1, "{found:?}");
+}
+
+#[test]
+fn step_times_begin_anew_from_a_clock_of_time_to_one_of_scans() {
+    let after = format!("profile jgrafchart\n{}", PUMP.replace("when not a on", "when X2.t >= 5 on"));
+    let (bench, Carried { mut runner, .. }) = changed(PUMP, &after, &[("a", 1)], 50);
+    bench.set(&mut runner, item(&bench, "a"), &Value::Word(0));
+    let mut scans = 0;
+    while situation(&bench, &runner) == "2" && scans < 20 {
+        runner.scan().expect("no fault");
+        scans += 1;
+    }
+    assert_eq!(scans, 5);
+}
+
+#[test]
 fn an_output_that_nothing_drives_any_more_goes_off_where_another_step_has_an_action_for_it() {
     let before = PUMP.replace("step 2 { N pump }", "step 2 { L 9s pump }");
     let after = PUMP.replace("step 2 { N pump }", "step 2").replace("step 1\n", "step 1 { D 5s pump }\n");

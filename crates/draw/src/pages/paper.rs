@@ -27,6 +27,8 @@ const GUTTER: i32 = 160;
 const BETWEEN: i32 = 400;
 /// Height of a connector's line.
 const CONNECTOR: i32 = 180;
+/// The link that is seen before an arriving connector's arrow.
+const ARRIVING: i32 = 160;
 /// From a symbol to the links beside it.
 const STUB: i32 = 110;
 
@@ -45,6 +47,8 @@ struct Paper<'a> {
     above: Vec<i32>,
     /// How far they reach below it.
     below: Vec<i32>,
+    /// How far the texts of each step's actions reach above its square.
+    over: Vec<i32>,
 }
 
 /// Puts a chart on pages.
@@ -79,6 +83,7 @@ impl<'a> Paper<'a> {
             spans: Vec::new(),
             above: sizes.transitions.iter().map(|e| e.up).collect(),
             below: sizes.transitions.iter().map(|e| e.down).collect(),
+            over: sizes.steps.iter().map(|e| e.up).collect(),
         };
         paper.columns(sizes);
         let mut top = 0;
@@ -132,7 +137,7 @@ impl<'a> Paper<'a> {
             let here = |c: &Cell| c.page == page && c.line == number;
             let (mut up, mut down) = (0, SQUARE);
             for ((s, _), e) in (0..).zip(&cells.steps).zip(&sizes.steps).filter(|((_, c), _)| here(c)) {
-                up = up.max(e.up).max(self.arriving(s) * CONNECTOR + STUB);
+                up = up.max(e.up).max(self.arrivals(s) + STUB);
                 down = down.max(e.down).max(self.departing(s));
             }
             let (mut over, mut under) = (0, 0);
@@ -230,6 +235,14 @@ impl<'a> Paper<'a> {
         Paper::count(into.map(|(t, _)| !self.runs_on(t, s)))
     }
 
+    /// How high what arrives at a step stands over it: above the conditions of its actions.
+    fn arrivals(&self, s: u32) -> i32 {
+        match self.arriving(s) {
+            0 => 0,
+            n => self.over.get(s as usize).copied().unwrap_or(0) + n * CONNECTOR,
+        }
+    }
+
     /// How far the broken links from a step to its transitions reach below its upper edge.
     fn departing(&self, s: u32) -> i32 {
         let behind = self.cells.behind.get(s as usize).map_or(&[][..], Vec::as_slice);
@@ -271,8 +284,8 @@ impl<'a> Paper<'a> {
         // Over the connectors that arrive at the steps of the next line.
         let arrive =
             (0..).zip(&self.cells.steps).filter(|(_, c)| c.page == below.page && c.line == below.line);
-        let most = arrive.map(|(s, _)| self.arriving(s)).max().unwrap_or(0);
-        next - STUB - DOUBLE_GAP - most * CONNECTOR
+        let most = arrive.map(|(s, _)| self.arrivals(s)).max().unwrap_or(0);
+        next - STUB - DOUBLE_GAP - most
     }
 
     fn into(&self, p: &mut Placement, t: u32, at: Point, from: &[u32], join: i32) {
@@ -332,9 +345,15 @@ impl<'a> Paper<'a> {
                 p.connectors.push(self.connector(from, into, true, tip, Some(*s)));
                 let before = p.connectors.iter().filter(|c| !c.leaving && c.to == into).count();
                 let before = i32::try_from(before).unwrap_or(0);
-                let tip = Point { x: step.x, y: step.y - before * CONNECTOR };
+                let over = self.over.get(*s as usize).copied().unwrap_or(0);
+                let tip = Point { x: step.x, y: step.y - over - before * CONNECTOR };
                 let origin = self.cells.from.get(t as usize).and_then(|f| f.first()).copied();
-                p.connectors.push(self.connector(from, into, false, tip, origin));
+                let mut arriving = self.connector(from, into, false, tip, origin);
+                if before == 0 {
+                    arriving.at = step;
+                    arriving.points = vec![Point { y: tip.y - ARRIVING, ..tip }, step];
+                }
+                p.connectors.push(arriving);
             }
         }
         if to.len() > 1 && !reach.is_empty() {
