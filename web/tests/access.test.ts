@@ -96,11 +96,34 @@ test('every control is reached by the Tab key', async () => {
   await page.context().close();
 });
 
-test('the frame fits a tablet', async () => {
-  const page = await open(b, site, 'bead-sorter/chart.g7', { width: 800, height: 1100 });
-  const wide = await page.evaluate(() => document.documentElement.scrollWidth);
-  assert.ok(wide <= 800, `${wide} px wide`);
-  const sheet = await page.locator('.sheet').boundingBox();
-  assert.ok(sheet && sheet.width >= 700, `the drawing has ${sheet?.width} px`);
-  await page.context().close();
-});
+for (const [width, height] of [[800, 1100], [768, 1024]] as const) {
+  test(`the frame fits a tablet of ${width} px`, async () => {
+    const page = await open(b, site, 'bead-sorter/chart.g7', { width, height });
+    const wide = await page.evaluate(() => document.documentElement.scrollWidth);
+    assert.ok(wide <= width, `${wide} px wide`);
+    const sheet = await page.locator('.sheet').boundingBox();
+    assert.ok(sheet && sheet.width >= width - 100, `the drawing has ${sheet?.width} px`);
+    // Every button of the bars can be pressed: it stands in sight.
+    for (const button of await page.locator('header button:visible, .bar[role=toolbar] button:visible').all()) {
+      const at = await button.boundingBox();
+      assert.ok(at && at.x >= 0 && at.x + at.width <= width, `${await button.getAttribute('aria-label')} at ${at?.x}`);
+    }
+    assert.deepEqual(await axe(page), []);
+    await page.context().close();
+  });
+}
+
+for (const theme of ['light', 'dark'] as const) {
+  test(`the question before a changed file is closed is without violations, ${theme}`, async () => {
+    const page = await open(b, site, 'wrong.g7');
+    await page.emulateMedia({ colorScheme: theme });
+    await page.locator('.sheet').focus();
+    await page.keyboard.press('Insert');
+    await page.getByRole('button', { name: 'Close wrong.g7' }).click();
+    await page.getByRole('dialog').waitFor();
+    assert.deepEqual(await axe(page), []);
+    await page.keyboard.press('Escape');
+    await page.getByRole('tab', { name: /wrong\.g7/ }).waitFor();
+    await page.context().close();
+  });
+}
