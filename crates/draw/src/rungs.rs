@@ -78,6 +78,8 @@ const DOWN: i32 = 140;
 const PIN: i32 = 220;
 /// Between two rungs.
 const APART: i32 = 120;
+/// From the texts over a rung to its names.
+const UNDER_TEXT: i32 = 60;
 /// No rung is narrower.
 const NARROW: i32 = 1600;
 
@@ -197,7 +199,7 @@ struct Pen {
 impl Pen {
     /// A rung whose room begins at `y`; where the next one begins.
     fn rung(&mut self, r: &Rung, y: i32) -> i32 {
-        let mut y = y;
+        let (top, mut y) = (y, y);
         for (text, size, class) in
             [(&r.title, TITLE, "g7-name"), (&r.note, TEXT, "g7-note"), (&r.label, TEXT, "g7-label")]
         {
@@ -208,7 +210,7 @@ impl Pen {
             }
         }
         let all = room(&r.elements);
-        let wire = y + all.up;
+        let wire = y + all.up + if y == top { 0 } else { UNDER_TEXT };
         let ends = r.elements.iter().rev().take_while(|e| e.is_end()).count();
         let (inner, outer) = r.elements.split_at(r.elements.len() - ends);
         let x = self.way(inner, 0, wire);
