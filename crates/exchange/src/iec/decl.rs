@@ -33,6 +33,8 @@ pub(crate) struct Variable {
 #[derive(Clone, Copy)]
 struct Head {
     section: Section,
+    /// What a global variable is for, where the list of it tells.
+    channel: Option<VarKind>,
     constant: bool,
     retain: bool,
 }
@@ -60,7 +62,7 @@ impl Parser<'_> {
             _ => return false,
         };
         self.bump();
-        let mut head = Head { section, constant: false, retain: false };
+        let mut head = Head { section, channel: None, constant: false, retain: false };
         loop {
             match self.word().as_str() {
                 "CONSTANT" => head.constant = true,
@@ -72,6 +74,14 @@ impl Parser<'_> {
                 break;
             }
             self.bump();
+        }
+        // Lists of global variables tell nothing of their use, but for those that we write.
+        if section == Section::Global {
+            head.channel = match self.comment_behind().as_deref() {
+                Some("inputs") => Some(VarKind::Input),
+                Some("outputs") => Some(VarKind::Output),
+                _ => None,
+            };
         }
         while !self.at_end() && !self.at_word("END_VAR") {
             let before = self.mark();
@@ -332,6 +342,9 @@ impl Maker<'_> {
         if matches!(ty, Type::Fb(_)) {
             return VarKind::Var;
         }
+        if let Some(kind) = self.head.channel {
+            return kind;
+        }
         let address = self.address.as_ref().map_or("", |a| &*a.text);
         match self.head.section {
             Section::Input => VarKind::Input,
@@ -403,8 +416,8 @@ fn path(name: &str, at: Place) -> Expr {
     Expr { kind: ExprKind::Path(Path { names: vec![Name { text: name.into(), at }] }), at }
 }
 
-/// The value that a constant without one has.
-fn zero(ty: Type, at: Place) -> Expr {
+/// The value that a variable without one begins with.
+pub(crate) fn zero(ty: Type, at: Place) -> Expr {
     let literal = match ty {
         Type::Bool => Literal::Bool(false),
         Type::Real | Type::Lreal => Literal::Real("0.0".into(), None),

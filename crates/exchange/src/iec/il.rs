@@ -11,7 +11,7 @@ use super::parse::Parser;
 impl Parser<'_> {
     /// The statements that an Instruction List stands for.
     pub(crate) fn il_statements(&mut self) -> Vec<Stmt> {
-        let list = self.instructions();
+        let list = joined(self.instructions());
         let (statements, problems) = il::translate(&list);
         self.tell(problems);
         statements
@@ -267,4 +267,61 @@ impl Parser<'_> {
 
 fn ends(word: &str) -> bool {
     word.starts_with("END_")
+}
+
+/// Instructions behind a label that one jump copies, at most.
+const MOST_COPIED: usize = 50;
+/// Labels that are put away so.
+const MOST_JOINED: usize = 100;
+
+/// Beremiz and OpenPLC carry a result across a label, where the ways meet: what stands
+/// behind such a label is done on each way.
+///
+/// ```text
+/// LD a / ADD 1 / JMP q / l: LD b / q: ST c   ->   LD a / ADD 1 / ST c / JMP end / l: LD b / ST c / end:
+/// ```
+fn joined(mut list: Vec<Instruction>) -> Vec<Instruction> {
+    for _ in 0..MOST_JOINED {
+        let Some(at) = list.windows(2).position(|w| matches!(w, [a, b] if meets(&a.kind, &b.kind))) else {
+            break;
+        };
+        let (Some(label), Some(tail)) = (list.get(at).cloned(), list.get(at + 1..)) else { break };
+        let Kind::Label(name) = &label.kind else { break };
+        let plain = |i: &Instruction| !matches!(i.kind, Kind::Label(_) | Kind::Jump(..));
+        let jumps = |i: &&Instruction| matches!(&i.kind, Kind::Jump(n, _) if n.text == name.text);
+        let sure = list.iter().filter(jumps).all(|i| matches!(i.kind, Kind::Jump(_, When::Always)));
+        if tail.len() > MOST_COPIED || !tail.iter().all(plain) || !sure {
+            break;
+        }
+        // No label of the list has a blank in it.
+        let end = Name { text: format!("{} END", name.text).into(), at: name.at };
+        let mut made = Vec::new();
+        for (number, instruction) in list.iter().enumerate() {
+            if jumps(&instruction) {
+                made.extend(tail.iter().cloned());
+                made.push(Instruction { kind: Kind::Jump(end.clone(), When::Always), at: instruction.at });
+            } else if number != at {
+                made.push(instruction.clone());
+            }
+        }
+        made.push(Instruction { kind: Kind::Label(end), at: label.at });
+        list = made;
+    }
+    list
+}
+
+/// Whether a label stands before an instruction that uses the result.
+fn meets(label: &Kind, next: &Kind) -> bool {
+    let uses = matches!(
+        next,
+        Kind::Store { .. }
+            | Kind::Latch { .. }
+            | Kind::Operate { .. }
+            | Kind::Complement
+            | Kind::Apply(..)
+            | Kind::Input(..)
+            | Kind::Return(When::True | When::False)
+            | Kind::Call(_, _, When::True | When::False)
+    );
+    matches!(label, Kind::Label(_)) && uses
 }

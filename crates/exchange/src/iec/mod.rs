@@ -5,6 +5,7 @@
 //! ```text
 //! text -> lex -> parse -> expr, stmt, decl -> model::{Expr, Stmt, VarDecl}
 //!                      -> il -> syntax::il -> model::Stmt
+//! model::Document -> standard -> print -> text
 //! ```
 //!
 //! The text may be a file or a part of one, such as an attribute of an XML
@@ -22,7 +23,9 @@ mod il;
 mod lex;
 mod literal;
 mod parse;
+mod print;
 mod settle;
+mod standard;
 mod stmt;
 mod types;
 
@@ -30,10 +33,12 @@ use g7_model::{Expr, Stmt};
 
 use crate::report::Report;
 
-pub(crate) use decl::{Section, Variable};
+pub(crate) use decl::{Section, Variable, zero};
 pub(crate) use lex::Kind;
 pub(crate) use parse::{Parser, Places};
+pub(crate) use print::{Types as Known, Writer, time};
 pub(crate) use settle::settle;
+pub(crate) use standard::{Form, standard};
 pub(crate) use types::{Types, bits, elementary};
 
 /// Structured Text and nothing behind it.

@@ -27,11 +27,21 @@ pub(super) fn document(source: Source, length: usize, report: &mut Report) -> Do
     items.extend(builder.globals());
     let alone = source.units.iter().filter(|u| u.kind != UnitKind::Function && builder.runs(u)).count() == 1;
     let mut charts = Vec::new();
-    for unit in &source.units {
+    let (mut before, mut behind) = (Vec::new(), Vec::new());
+    for (number, unit) in source.units.iter().enumerate() {
+        if !alone && builder.is_code(unit) {
+            items.extend(builder.variables(unit).into_iter().map(Item::Var));
+            builder.lost_actions(unit);
+            let list = if builder.is_late(number) { &mut behind } else { &mut before };
+            list.push(unit);
+            continue;
+        }
         let (of_file, unit) = builder.unit(unit, alone);
         items.extend(of_file.into_iter().map(Item::Var));
         charts.extend(unit);
     }
+    items.extend(builder.code(before).map(|(b, at)| Item::Pre(b, at)));
+    items.extend(builder.code(behind).map(|(b, at)| Item::Post(b, at)));
     items.append(&mut charts);
     let mut document = Document { items, notes: Vec::new() };
     settle(&mut document);
@@ -74,7 +84,9 @@ fn paces(source: &Source, report: &mut Report) -> Paces {
             units.insert(name, interval);
         }
     }
-    Paces { scan: units.values().copied().min(), units }
+    // A task may be there for the time of a scan alone.
+    let scan = source.tasks.iter().filter_map(|t| t.interval).min().filter(|_| !units.is_empty());
+    Paces { scan, units }
 }
 
 struct Builder<'a> {
@@ -119,9 +131,7 @@ impl Builder<'_> {
                 "an instance of `{}`; that chart is carried over once, on its own, and not as a part of this unit",
                 ty.text
             ),
-            Some(_) => {
-                format!("an instance of `{}`; function blocks of one's own have no counterpart", ty.text)
-            }
+            Some(_) => format!("an instance of `{}`, which is no function block", ty.text),
             None => format!("there is no type `{}`", ty.text),
         };
         self.report.put(Problem::new(&codes::NOT_CARRIED, variable.decl.at.0, what));
@@ -133,16 +143,59 @@ impl Builder<'_> {
         unit.is_chart() || unit.kind == UnitKind::Program
     }
 
+    /// Whether a program is statements of the file: in each scan, with names that
+    /// nothing else of the file has.
+    fn is_code(&mut self, unit: &Unit) -> bool {
+        let pace = self.paces.units.get(&unit.name.text.to_uppercase());
+        let base = pace.is_none_or(|p| Some(*p) == self.paces.scan);
+        if unit.is_chart() || unit.kind != UnitKind::Program || !base {
+            return false;
+        }
+        let own: Vec<String> =
+            unit.vars.iter().filter(|v| v.section != Section::External).map(upper).collect();
+        if own.iter().any(|n| self.globals.contains(n)) {
+            return false;
+        }
+        self.globals.extend(own);
+        true
+    }
+
+    /// Whether a program runs behind all charts of its resource.
+    fn is_late(&self, number: usize) -> bool {
+        let turn = |unit: &Unit| {
+            let here = |i: &super::unit::Instance| i.unit.text.eq_ignore_ascii_case(&unit.name.text);
+            self.source.instances.iter().position(here)
+        };
+        let last = self.source.units.iter().filter(|u| u.is_chart()).filter_map(turn).max();
+        let own = self.source.units.get(number).and_then(turn);
+        matches!((own, last), (Some(own), Some(last)) if own > last)
+    }
+
+    /// Programs without steps, one after the other.
+    fn code(&mut self, mut units: Vec<&Unit>) -> Option<(Body, g7_model::Place)> {
+        let turn = |u: &&Unit| {
+            let here = |i: &super::unit::Instance| i.unit.text.eq_ignore_ascii_case(&u.name.text);
+            self.source.instances.iter().position(here).unwrap_or(usize::MAX)
+        };
+        units.sort_by_key(turn);
+        let at = units.first()?.at;
+        if units.len() > 1 {
+            for unit in units.iter().filter(|u| super::blocks::returns(&u.body, true)) {
+                let what = "RETURN in one of several programs: the others would not run either";
+                self.report.put(Problem::new(&codes::NOT_CARRIED, unit.name.at.0, what));
+            }
+        }
+        let statements = units.iter().flat_map(|u| u.body.iter().cloned()).collect();
+        Some((Body::St(Block { locals: Vec::new(), statements, at: at.into() }), at.into()))
+    }
+
     /// The variables of the file and the items that a unit becomes.
     fn unit(&mut self, unit: &Unit, alone: bool) -> (Vec<VarDecl>, Option<Item>) {
         if unit.kind == UnitKind::Function {
             return (Vec::new(), self.function(unit).map(Item::Function));
         }
         if !self.runs(unit) {
-            let what = format!(
-                "the function block `{}` is no chart; it has no counterpart and is left out",
-                unit.name.text
-            );
+            let what = format!("the function block `{}` is not used; it is left out", unit.name.text);
             self.report.put(Problem::new(&codes::LEFT_OUT, unit.name.at.0, what));
             return (Vec::new(), None);
         }

@@ -8,11 +8,13 @@
 //! ```
 //!
 //! - `read` turns the file into program organisation units and configurations.
+//! - `blocks` puts function blocks of the file's own where they are called.
 //! - `build` makes a chart of each unit with steps, brings globals, addresses and
 //!   intervals of the configuration to their places and tells what has none.
 //! - `write` goes the other way; what it writes is read back equal where the
 //!   standard has a form for it.
 
+mod blocks;
 mod build;
 mod read;
 mod unit;
@@ -73,13 +75,14 @@ pub(crate) fn import(bytes: &[u8], file: FileId) -> (Document, Vec<Problem>) {
     let Some(text) = xml::text(bytes, &mut report) else { return (Document::default(), report.finish()) };
     let place = |r| r;
     let mut parser = Parser::new(text, &place, &mut report);
-    let source = read::source(&mut parser);
+    let mut source = read::source(&mut parser);
     if source.units.is_empty() && source.globals.is_empty() {
         let what = "no PROGRAM, FUNCTION_BLOCK, FUNCTION or CONFIGURATION stands in this file";
         let end = text.len().min(1);
         report.say(&codes::NOT_JGRAFCHART, &(0..end), what);
         return (Document::default(), report.finish());
     }
+    blocks::expand(&mut source, &mut report);
     let document = build::document(source, text.len(), &mut report);
     (document, report.finish())
 }

@@ -516,7 +516,9 @@ pub(super) fn guarded(guard: Option<&Expr>, statements: Vec<Stmt>, at: g7_model:
 
 /// Whether a file's steps have their actions by name only, as CODESYS has it.
 pub(super) fn without_blocks(root: Xml) -> bool {
-    !root.descendants().any(|n| n.is_element() && tag(n) == "actionBlock")
+    let named = |n: Xml| tag(n) == "step" && !kept(n).is_empty();
+    let elements = || root.descendants().filter(roxmltree::Node::is_element);
+    !elements().any(|n| tag(n) == "actionBlock") && elements().any(named)
 }
 
 /// The attributes that CODESYS keeps with an element: identifier and value.

@@ -167,3 +167,119 @@ fn a_program_without_steps_runs_before_the_charts() {
     let text = carried("PROGRAM p VAR n : INT; END_VAR n := n + 1; END_PROGRAM");
     assert!(text.contains("pre {"), "{text}");
 }
+
+/// Instances of function blocks are their variables, calls what the blocks do.
+#[test]
+fn function_blocks_stand_where_they_are_called() {
+    let (document, problems) = import(
+        "FUNCTION_BLOCK Count
+           VAR_INPUT up : BOOL; most : INT := 3; END_VAR
+           VAR_OUTPUT full : BOOL; END_VAR
+           VAR_IN_OUT sum : INT; END_VAR
+           VAR n : INT; edge : R_TRIG; END_VAR
+           edge(CLK := up);
+           IF NOT edge.Q THEN RETURN; END_IF;
+           n := n + 1; sum := sum + 1;
+           full := n >= most;
+         END_FUNCTION_BLOCK
+         FUNCTION_BLOCK Pair
+           VAR_INPUT a : BOOL; END_VAR
+           VAR one : Count; all : INT; END_VAR
+           LD a
+           ST one.up
+           CAL one(sum := all)
+         END_FUNCTION_BLOCK
+         FUNCTION_BLOCK Unused VAR_INPUT a : BOOL; END_VAR a := FALSE; END_FUNCTION_BLOCK
+         PROGRAM Main
+           VAR_INPUT go : BOOL; END_VAR
+           VAR_OUTPUT done : BOOL; END_VAR
+           VAR c : Count; total : INT; p : Pair; END_VAR
+           INITIAL_STEP A: Work(N); END_STEP
+           STEP B: END_STEP
+           TRANSITION FROM A TO B := c.full AND p.one.n >= 3; END_TRANSITION
+           ACTION Work:
+             c(up := go, most := 2, sum := total, full => done);
+             P(a := go);
+           END_ACTION
+         END_PROGRAM",
+    );
+    let words: Vec<&str> = problems.iter().map(|p| &*p.what).collect();
+    assert_eq!(words, ["the function block `Unused` is not used; it is left out"]);
+    same(
+        &document,
+        "profile iec61131
+         input go : BOOL
+         output done : BOOL
+         var `c.up` : BOOL
+         var `c.most` : INT := 3
+         var `c.full` : BOOL
+         var `c.n` : INT
+         var `c.edge` : R_TRIG
+         var total : INT
+         var `p.a` : BOOL
+         var `p.one.up` : BOOL
+         var `p.one.most` : INT := 3
+         var `p.one.full` : BOOL
+         var `p.one.n` : INT
+         var `p.one.edge` : R_TRIG
+         var `p.all` : INT
+         chart Main {
+           initial step A { N Work }
+           step B
+           A -> B when `c.full` and `p.one.n` >= 3
+           action Work {
+             `c.up` := go
+             `c.most` := 2
+             REPEAT
+               `c.edge`(CLK := `c.up`)
+               IF not `c.edge`.Q THEN EXIT END_IF
+               `c.n` := `c.n` + 1
+               total := total + 1
+               `c.full` := `c.n` >= `c.most`
+             UNTIL TRUE END_REPEAT
+             done := `c.full`
+             `p.a` := go
+             `p.one.up` := `p.a`
+             REPEAT
+               `p.one.edge`(CLK := `p.one.up`)
+               IF not `p.one.edge`.Q THEN EXIT END_IF
+               `p.one.n` := `p.one.n` + 1
+               `p.all` := `p.all` + 1
+               `p.one.full` := `p.one.n` >= `p.one.most`
+             UNTIL TRUE END_REPEAT
+           }
+         }",
+    );
+    let (_, problems) = g7_compile::compile(&document);
+    assert_eq!(errors(&problems), <[&str; 0]>::default());
+}
+
+#[test]
+fn a_function_block_that_contains_itself_is_refused() {
+    let (_, problems) = import(
+        "FUNCTION_BLOCK F VAR f : F; END_VAR f(); END_FUNCTION_BLOCK \
+         PROGRAM p VAR f : F; END_VAR f(); END_PROGRAM",
+    );
+    assert!(problems.iter().any(|p| p.what.contains("contains itself")), "{problems:?}");
+}
+
+/// Beremiz and OpenPLC: the ways of a list meet at a label with their result.
+#[test]
+fn a_result_is_carried_across_a_label() {
+    let text = carried(
+        "PROGRAM p VAR reset : BOOL; cnt, out : INT; END_VAR
+         LD reset
+         JMPC l
+         LD cnt
+         ADD 1
+         JMP q
+         l: LD 5
+         q:
+         ST cnt
+         ST out
+         END_PROGRAM",
+    );
+    for part in ["cnt := cnt + 1", "cnt := 5", "out := cnt"] {
+        assert!(text.contains(part), "{part} in {text}");
+    }
+}

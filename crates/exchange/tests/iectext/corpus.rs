@@ -7,6 +7,7 @@ use g7_exchange::{Format, recognise};
 use g7_model::FileId;
 
 use crate::errors;
+use crate::support::Bench;
 
 fn folder() -> PathBuf {
     let root = match std::env::var_os("G7_CORPUS") {
@@ -71,4 +72,37 @@ fn charts_of_the_corpus_run_or_are_refused_with_their_reason() {
         }
     }
     assert_eq!(ran, 61);
+}
+
+/// What two files give for the same input, scan by scan.
+fn outputs(name: &str, input: i64) -> Option<Vec<i64>> {
+    let path = folder().join("VerifAPS/sfclang").join(name);
+    let bytes = std::fs::read(path).ok()?;
+    let (document, problems) = g7_exchange::import(Format::IecText, &bytes, FileId(0));
+    assert_eq!(errors(&problems), Vec::<&str>::new());
+    let mut bench = Bench::new(&document);
+    bench.set("i", input);
+    Some((0..40).map(|_| bench.scan().get("o")).collect())
+}
+
+/// The pairs of the corpus of which both files are whole: the one cuts a branch in two,
+/// the other computes a root with the next number instead of this.
+#[test]
+fn pairs_of_the_corpus_are_equal() {
+    for input in [-5, 0, 1, 561, 562, 563, 599, 600, 601, 30_000] {
+        let (left, right) = (outputs("Transition2_left.sfc", input), outputs("Transition2_right.sfc", input));
+        if left.is_none() {
+            return println!("skipped: no corpus");
+        }
+        assert_eq!(left, right, "{input}");
+        let end = if input <= 562 { 1 } else { 2 };
+        assert_eq!(left.and_then(|l| l.last().copied()), Some(end), "{input}");
+    }
+    for input in [0, 1, 8, 9, 100] {
+        // A is left in the first scan, before its action ran: `t` stays 0. B counts in the
+        // scan in which it is entered, and once more when it is left in the next.
+        let left = outputs("Algo1_left.sfc", input).and_then(|l| l.last().copied());
+        let right = outputs("Algo1_right.sfc", input).and_then(|l| l.last().copied());
+        assert_eq!((left, right), (Some(2), Some(2)), "{input}");
+    }
 }

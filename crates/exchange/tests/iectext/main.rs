@@ -11,6 +11,8 @@ mod carried;
 mod corpus;
 mod hostile;
 mod problems;
+#[path = "../support/mod.rs"]
+mod support;
 mod written;
 
 use std::path::Path;

@@ -82,13 +82,13 @@ fn what_has_no_form_is_told_with_its_place() {
 input a : BOOL
 output q : BOOL
 chart G {
-  initial step A { N q if a  on rise(a): q := TRUE }
+  initial step A { S q if a  N q }
   step B { force H := {} }
-  A -> B when rise(a)
+  A -> B when a on clearing { q := a }
+  A -> B when not a
   B -> A when 5s/a
-  () -> A when a
 }
-chart H { initial step C }
+chart H every 3s { initial step C  step D  C -> D when ↑a }
 ";
     let written = export(&document(text));
     let told = |part: &str, words: &str| {
@@ -96,12 +96,70 @@ chart H { initial step C }
         let hit = |p: &&g7_model::Problem| p.at.start <= at && at < p.at.end && p.what.contains(words);
         assert!(written.problems.iter().any(|p| hit(&p)), "{part}: {:?}", written.problems);
     };
-    told("on rise(a): q", "on an event");
+    told("S q if a", "the condition of an action");
     told("force H", "an order");
-    told("rise(a)\n", "an edge");
-    told("5s/a", "a time operator");
-    told("() -> A", "source or sink");
-    assert!(written.problems.iter().any(|p| p.what.contains("a condition of an action")));
+    told("{ q := a }", "an action on clearing");
+    told("↑a", "an edge in a chart with a period of its own");
+    let errors = written.problems.iter().filter(|p| p.severity() == Severity::Error).count();
+    assert_eq!(errors, 4, "{:?}", written.problems);
+}
+
+#[test]
+fn macro_steps_stand_in_line() {
+    let written = export(&document(
+        "profile iec61131\ninput a : BOOL\nchart G { initial step 1  macro M = Fill  1 -> M when a  M -> 1 when XM }\n\
+         macrochart Fill { entry step 1  exit step S  1 -> S when a }",
+    ));
+    for part in
+        ["FROM Step1 TO Fill_Step1", "FROM S TO Step1\n    := Fill_Step1.X OR S.X;", "FROM Fill_Step1 TO S\n"]
+    {
+        assert!(written.text.contains(part), "{part} in {}", written.text);
+    }
+    assert!(written.problems.iter().any(|p| p.what.contains("its expansion stands in its place")));
+}
+
+/// A chart with code before and behind it, edges, delays and conditions.
+const BESIDE: &str = "profile iec61131
+scan 20ms
+input a, b : BOOL
+input level : INT at %IW3
+output q, lamp : BOOL
+var n : INT
+var kept : DINT retain
+const most : INT := 7
+pre { n := level + 1 }
+post { IF n > most THEN kept := kept + 1 END_IF }
+chart G {
+  initial step 1 { N q if a  on ↑b: n := 0 }
+  step 2 { L 2s lamp  each scan: n := n + most }
+  1 -> 2 when ↑a and 3s/b
+  2 -> 1 when ↓(a or b) or 5s/X2
+}
+chart H every 60ms { initial step 3  step 4  3 -> 4 when n > 3  4 -> 3 when not q }
+";
+
+#[test]
+fn programs_beside_a_chart_share_global_variables() {
+    let written = export(&document(BESIDE));
+    assert!(written.problems.iter().all(|p| p.severity() == Severity::Warning), "{:?}", written.problems);
+    let (after, problems) = import(&written.text);
+    assert_eq!(problems, [], "{}", written.text);
+    let text = g7_syntax::print(&after, None);
+    for part in [
+        "input a : BOOL\n",
+        "input level : INT at %IW3\n",
+        "output q : BOOL",
+        "const most : INT := 7",
+        "var kept : DINT retain",
+        "a_rise_edge(CLK := a)",
+        "n := level + 1",
+        "post {",
+        "chart H every 60ms {",
+        "Step1 -> Step2 when a_rise and b_timed",
+        "Step2 -> Step1 when Event_fall or Step2.X and Step2.T >= 5s",
+    ] {
+        assert!(text.contains(part), "{part} in {text}\n{}", written.text);
+    }
 }
 
 #[test]
@@ -132,6 +190,7 @@ fn compile(text: &str) -> Option<Result<(), String>> {
 fn matiec_takes_what_is_written() {
     for text in [
         PUMP.to_string(),
+        BESIDE.to_string(),
         g7_syntax::print(&import(&file("press.st")).0, None),
         g7_syntax::print(&import(&file("fork.st")).0, None),
     ] {

@@ -30,8 +30,8 @@ const FILES: [Row; 25] = [
     ("VerifAPS/share/xPPU/PLCOpenXML_Scenario_3.xml", &[], true),
     ("VerifAPS/share/xPPU/PLCOpenXML_Scenario_7.xml", &[], true),
     // Instruction List that goes on with a result across a label.
-    ("beremiz/exemples/first_steps/plc.xml", &["G0604"], true),
-    ("thiagoralves/examples/Multi_Language/plc.xml", &["G0604"], true),
+    ("beremiz/exemples/first_steps/plc.xml", &[], true),
+    ("thiagoralves/examples/Multi_Language/plc.xml", &[], true),
     ("beremiz/tests/SFC_TEST.xml", &[], true),
     // A block in Python.
     ("beremiz/tests/projects/svghmi_basic/plc.xml", &["G0604"], false),

@@ -73,15 +73,10 @@ prove always v
         "G0604 3",  // inverted
         "G0605 4",  // a safe value
         "G0604 7",  // forcing
-        "G0604 7",  // on event
-        "G0604 7",  // a condition
-        "G0611 7",  // 1 is no identifier
-        "G0611 8",  // 2
-        "G0604 9",  // an edge
-        "G0604 10", // a time operator
-        "G0604 10", // on clearing
-        "G0604 11", // a source
-        "G0611 13", // 5
+        "G0614 7",  // on event
+        "G0611 7",  // 1 is no identifier, nor 2 and 5
+        "G0614 10", // on clearing
+        "G0614 11", // a source
         "G0605 14", // a property
     ];
     expected.sort_unstable();

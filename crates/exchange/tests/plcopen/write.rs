@@ -114,11 +114,133 @@ layout G { step S1 at (5.25, 1)  step S2 at (5.25, 9.5)  transition #0 at (5.25,
 fn imported_projects_come_back() {
     for name in ["press.xml", "part10.xml"] {
         let (mut there, _) = import(name);
-        // An edge has no place in a condition of IEC 61131-3.
-        let edge = "or rise(Lower)";
-        let plain = text(&there).replace("or ↑Lower", "").replace(edge, "");
+        // An edge becomes a function block.
+        let plain = text(&there).replace("or ↑Lower", "").replace("or rise(Lower)", "");
         there = document(&plain);
         assert_eq!(sorted(&again(&there)), sorted(&there), "{name}");
+    }
+}
+
+/// What comes back of a document, without its head.
+fn becomes(there: &str, expected: &str) {
+    let back = again(&document(&format!("profile iec61131\n{there}")));
+    let wanted = document(&format!("profile iec61131\n{expected}"));
+    assert_eq!(sorted(&back), sorted(&wanted), "{}", text(&back));
+}
+
+#[test]
+fn edges_and_delays_become_function_blocks() {
+    becomes(
+        "input a, b : BOOL
+         chart G {
+           initial step S1
+           step S2
+           S1 -> S2 when ↑a and 3s/S2.X
+           S2 -> S1 when 2s/b/1s
+         }",
+        "input a : BOOL
+         input b : BOOL
+         var a_rise : BOOL
+         var a_rise_edge : R_TRIG
+         var Started : BOOL
+         var b_timed : BOOL
+         var b_timed_on : TON
+         var b_timed_off : TOF
+         pre {
+           a_rise_edge(CLK := a)
+           a_rise := a_rise_edge.Q and Started
+           b_timed_on(IN := b, PT := 2s)
+           b_timed_off(IN := b_timed_on.Q or b_timed_off.Q and b, PT := 1s)
+           b_timed := b_timed_off.Q
+           Started := TRUE
+         }
+         chart G {
+           initial step S1
+           step S2
+           S1 -> S2 when a_rise and (S2.X and S2.t >= 3s)
+           S2 -> S1 when b_timed
+         }",
+    );
+}
+
+#[test]
+fn charts_share_variables_and_steps() {
+    // A variable of a chart that another one uses is global; a step drives one.
+    becomes(
+        "chart One { var n, own : INT  initial step S1 { P1 n := own }  step S2  S1 -> S2 when Two.S4.X }
+         chart Two { initial step S3  step S4 { N One.n := 0 }  S3 -> S4 when X1 }
+         chart Three { initial step `1` }",
+        "var n : INT
+         var own : INT
+         var Step1_active : BOOL := TRUE
+         var S4_active : BOOL
+         chart One { initial step S1 { P1 n := own }  step S2  S1 -> S2 when S4_active }
+         chart Two { initial step S3  step S4 { N n := 0  N S4_active }  S3 -> S4 when Step1_active }
+         chart Three { initial step Step1 { N Step1_active } }",
+    );
+}
+
+#[test]
+fn conditions_of_actions_become_bodies() {
+    becomes(
+        "input a : BOOL  output q : BOOL  var n : INT
+         chart G {
+           initial step S1 { N q if a  P1 n := 1 if a  each scan: n := n + 1 }
+           step S2 { N q }
+           S1 -> S2 when a
+         }",
+        "input a : BOOL  output q : BOOL  var n : INT
+         chart G {
+           initial step S1 {
+             N q := S1.X and a or S2.X
+             P1 { IF a THEN n := 1 END_IF }
+             N { IF S1.X THEN n := n + 1 END_IF }
+           }
+           step S2 { N q := S1.X and a or S2.X }
+           S1 -> S2 when a
+         }",
+    );
+}
+
+#[test]
+fn sources_and_sinks_have_steps() {
+    let there = document(
+        "profile iec61131\ninput a : BOOL\nchart G { initial step S1  () -> S1 when a  S1 -> () when a }",
+    );
+    let back = text(&again(&there));
+    for part in ["initial step Source", "step Sink", "Source -> (S1, Source) when a", "S1 -> Sink when a"] {
+        assert!(back.contains(part), "{part} in {back}");
+    }
+}
+
+#[test]
+fn what_has_no_form_is_told_with_its_place() {
+    let text = "profile iec61131
+input a : BOOL
+output q : BOOL
+chart G {
+  initial step A { S q if a  N q }
+  step B { force H := {} }
+  A -> B when Full(1) on clearing { q := a }
+  A -> B when not a
+  B -> A when a
+}
+chart H { initial enclosing step C }
+task T { entry step E  exit step F  E -> F when a }
+function Full(n : INT) : BOOL { Full := a }
+";
+    let written = g7_exchange::export(Outlet::Plcopen, &document(text));
+    for (part, words) in [
+        ("S q if a", "the condition of an action"),
+        ("force H", "a forcing order"),
+        ("{ q := a }", "an action on clearing"),
+        ("C }", "an enclosing step"),
+        ("T { entry", "a task"),
+        ("a }\n", "a function sees no variables"),
+    ] {
+        let at = text.rfind(part).expect("a part") as u32;
+        let hit = |p: &&g7_model::Problem| p.at.start <= at && at < p.at.end && p.what.contains(words);
+        assert!(written.problems.iter().any(|p| hit(&p)), "{part}: {:?}", written.problems);
     }
 }
 

@@ -6,11 +6,9 @@
 //! task says when they run.
 
 mod declare;
-mod names;
 mod place;
 mod project;
 mod sfc;
-mod st;
 mod xml;
 
 pub(super) use project::export;

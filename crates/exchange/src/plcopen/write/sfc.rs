@@ -5,14 +5,13 @@ use std::collections::HashMap;
 
 use g7_model::codes;
 use g7_model::{
-    Action, ActionKind, Chart, Expr, ExprKind, Literal, Name, Order, Problem, Qualifier, Step, StepKind,
-    Target, Transition, Work,
+    Action, ActionKind, Chart, ChartItem, Document, Expr, ExprKind, Literal, Problem, Step, StepKind, Target,
+    Transition, Work,
 };
 
-use super::names::{Names, Scope, is_section};
 use super::place::Places;
-use super::st::{Text, duration};
 use super::xml::Element;
+use crate::iec::{Writer, time};
 
 const STEP: (f64, f64) = (60.0, 30.0);
 const TRANSITION: (f64, f64) = (20.0, 2.0);
@@ -20,12 +19,12 @@ const ACTION: (f64, f64) = (120.0, 20.0);
 
 /// Writes the bodies of one program.
 pub(super) struct Sfc<'a> {
-    pub(super) names: &'a mut Names,
-    pub(super) scope: Scope<'a>,
+    pub(super) document: &'a Document,
+    /// The chart that is the program: its sections are known in its macro-steps too.
+    pub(super) chart: &'a Chart,
+    pub(super) writer: Writer<'a>,
     pub(super) problems: &'a mut Vec<Problem>,
-    /// Whether bodies run once more behind their step, in this document.
-    pub(super) final_scan: bool,
-    next: u64,
+    pub(super) next: u64,
 }
 
 /// Where a wire comes from.
@@ -42,41 +41,21 @@ struct Drawing<'d> {
     into: HashMap<String, Vec<Id>>,
 }
 
-impl<'a> Sfc<'a> {
-    pub(super) fn new(
-        names: &'a mut Names,
-        scope: Scope<'a>,
-        problems: &'a mut Vec<Problem>,
-        final_scan: bool,
-    ) -> Sfc<'a> {
-        Sfc { names, scope, problems, final_scan, next: 0 }
-    }
-
+impl Sfc<'_> {
     fn id(&mut self) -> Id {
         self.next += 1;
         self.next
-    }
-
-    fn text(&mut self) -> Text<'_> {
-        Text { names: self.names, scope: self.scope, problems: self.problems }
-    }
-
-    fn say(&mut self, code: &'static codes::Code, at: g7_model::Place, what: &str) {
-        self.problems.push(Problem::new(code, at.0, what));
     }
 
     /// The body of a chart or of the expansion of a macro-step.
     pub(super) fn body(&mut self, chart: &Chart, depth: usize) -> Element {
         let mut drawing = Drawing {
             chart,
-            places: Places::of(self.scope.document, chart),
+            places: Places::of(self.document, chart),
             objects: Vec::new(),
             out: HashMap::new(),
             into: HashMap::new(),
         };
-        for step in chart.steps() {
-            self.names.give(&step.name);
-        }
         // Identifiers first: wires lead forward and back.
         let steps: Vec<(Id, &Step)> = chart.steps().map(|s| (self.id(), s)).collect();
         let ways: Vec<(Id, &Transition)> = chart.transitions().map(|t| (self.id(), t)).collect();
@@ -120,10 +99,6 @@ impl<'a> Sfc<'a> {
         let place = drawing.places.transition(number);
         let from: Vec<Id> =
             transition.from.iter().filter_map(|n| drawing.out.get(&*n.text).copied()).collect();
-        if transition.from.is_empty() || transition.to.is_empty() {
-            let what = "a source or sink transition: IEC 61131-3 wants a step before and behind";
-            self.say(&codes::NOT_CARRIED, transition.at, what);
-        }
         let before = match from.as_slice() {
             [] => None,
             [one] => Some(*one),
@@ -145,12 +120,9 @@ impl<'a> Sfc<'a> {
         element = element
             .child(before.map_or_else(|| Element::new("connectionPointIn"), |b| input(&[b])))
             .child(Element::new("connectionPointOut"))
-            .child(self.condition(drawing.chart, transition));
+            .child(self.condition(transition));
         if let Some(comment) = &transition.comment {
             element.push(Element::formatted("documentation", comment));
-        }
-        if let Some(block) = &transition.on_clearing {
-            self.say(&codes::NOT_CARRIED, block.at, "an action on clearing, which IEC 61131-3 does not have");
         }
         drawing.objects.push(element);
         let mut behind = id;
@@ -178,31 +150,40 @@ impl<'a> Sfc<'a> {
                     into.pop();
                 }
                 let jump = self.id();
-                let target = self.names.give(step);
                 let at = drawing.places.transition(number);
                 drawing.objects.push(
                     object("jumpStep", jump, (at.0, at.1 + 20.0), TRANSITION)
-                        .with("targetName", target)
+                        .with("targetName", &step.text)
                         .child(input(&[behind])),
                 );
             }
         }
     }
 
-    fn condition(&mut self, chart: &Chart, transition: &Transition) -> Element {
+    fn condition(&self, transition: &Transition) -> Element {
         let condition = Element::new("condition");
-        if let Some(section) = is_section(chart, self.scope.document, &transition.receptivity) {
-            let name = self.names.give(&section.name);
+        if let Some(name) = self.section(&transition.receptivity) {
             return condition.child(Element::new("reference").with("name", name));
         }
-        let text = self.text().expr(&transition.receptivity);
+        let text = self.writer.condition(&transition.receptivity);
         let label = transition.label.as_ref().map(|l| l.text.to_string()).unwrap_or_default();
         condition.child(Element::new("inline").with("name", label).child(Element::formatted("ST", &text)))
     }
 
+    /// The name of the section that a receptivity is.
+    fn section<'e>(&self, receptivity: &'e Expr) -> Option<&'e str> {
+        let ExprKind::Path(path) = &receptivity.kind else { return None };
+        let [name] = path.names.as_slice() else { return None };
+        let is = |c: &Chart| {
+            c.items.iter().any(|i| matches!(i, ChartItem::Section(s) if s.name.text == name.text))
+        };
+        let expansions = self.document.charts().filter(|c| c.kind == g7_model::ChartKind::Expansion);
+        std::iter::once(self.chart).chain(expansions).any(is).then_some(&*name.text)
+    }
+
     fn step(&mut self, drawing: &mut Drawing, id: Id, step: &Step, rows: &HashMap<&str, f64>, depth: usize) {
         let place = drawing.places.step(&step.name.text);
-        let name = self.names.give(&step.name);
+        let name = &step.name.text;
         let into = drawing.into.remove(&*step.name.text).unwrap_or_default();
         let into = match into.len() {
             0 | 1 => into,
@@ -220,29 +201,19 @@ impl<'a> Sfc<'a> {
         };
         let entry = into.is_empty();
         let expansion = match &step.kind {
-            StepKind::Macro(expansion) => {
-                self.scope.document.charts().find(|c| c.name.text == expansion.text)
-            }
-            StepKind::Plain | StepKind::Entry | StepKind::Exit => None,
-            StepKind::Enclosing => {
-                self.say(&codes::NOT_CARRIED, step.at, "an enclosing step, which IEC 61131-3 does not have");
-                None
-            }
+            StepKind::Macro(expansion) => self.document.charts().find(|c| c.name.text == expansion.text),
+            StepKind::Plain | StepKind::Entry | StepKind::Exit | StepKind::Enclosing => None,
         };
         if let StepKind::Macro(_) = step.kind {
-            let mut element = object("macroStep", id, place, STEP).with("name", &name);
+            let mut element = object("macroStep", id, place, STEP).with("name", name);
             element =
                 element.children((!entry).then(|| input(&into))).child(Element::new("connectionPointOut"));
-            if step.initial {
-                self.say(&codes::NOT_CARRIED, step.at, "an initial macro-step, which TC6 does not have");
-            }
             if let Some(chart) = expansion.filter(|_| depth < 20) {
-                self.of_expansion(chart);
                 element.push(Element::new("body").child(self.body(chart, depth + 1)));
             }
             drawing.objects.push(documented(element, step));
         } else {
-            let mut element = object("step", id, place, STEP).with("name", &name);
+            let mut element = object("step", id, place, STEP).with("name", name);
             if step.initial || step.kind == StepKind::Entry {
                 element = element.with("initialStep", true);
             }
@@ -255,27 +226,6 @@ impl<'a> Sfc<'a> {
             drawing.objects.push(documented(element, step));
         }
         self.block(drawing, id, step, place);
-    }
-
-    /// What an expansion has and the body of a macro-step cannot hold.
-    fn of_expansion(&mut self, chart: &Chart) {
-        use g7_model::ChartItem;
-        for item in &chart.items {
-            match item {
-                ChartItem::Var(v) => self.say(&codes::NOT_CARRIED, v.at, "a variable of an expansion"),
-                ChartItem::Pre(_, at) | ChartItem::Post(_, at) => {
-                    self.say(&codes::NOT_CARRIED, *at, "a body of an expansion");
-                }
-                ChartItem::Action(_)
-                | ChartItem::Section(_)
-                | ChartItem::Step(_)
-                | ChartItem::Transition(_) => {}
-            }
-        }
-        if let Some(comment) = &chart.comment {
-            let what = format!("the comment of an expansion, \"{comment}\"");
-            self.say(&codes::LEFT_OUT, chart.at, &what);
-        }
     }
 
     /// The action block of a step.
@@ -292,102 +242,43 @@ impl<'a> Sfc<'a> {
     }
 
     fn action(&mut self, action: &Action) -> Option<Element> {
+        let (qualifier, time, target) = match &action.kind {
+            ActionKind::Qualified { qualifier, time, target, .. } => (qualifier, time, target),
+            ActionKind::Comment(text) => {
+                let what = format!("the comment \"{text}\" beside a step");
+                self.problems.push(Problem::new(&codes::LEFT_OUT, action.at.0, what));
+                return None;
+            }
+            ActionKind::EachScan { .. } | ActionKind::OnEvent { .. } | ActionKind::Order(_) => return None,
+        };
         let id = self.id();
-        let element = |qualifier: Qualifier| {
-            Element::new("action").with("localId", id).with("qualifier", qualifier.name())
+        let mut element = Element::new("action").with("localId", id).with("qualifier", qualifier.name());
+        if let Some(time) = time {
+            element = element.with("duration", self.time(time));
+        }
+        let what = match target {
+            Target::Path(path) => Element::new("reference").with("name", path.text()),
+            Target::Direct(address, _) => Element::new("reference").with("name", format!("%{address}")),
+            Target::Work(work) => self.inline(work),
         };
         let place = Element::new("relPosition").with("x", 0).with("y", 0);
-        match &action.kind {
-            ActionKind::Qualified { qualifier, time, target, condition } => {
-                let mut element = element(*qualifier);
-                if let Some(time) = time {
-                    element = element.with("duration", self.time(time));
-                }
-                let what = match target {
-                    Target::Path(path) => {
-                        self.condition_of(condition.as_ref(), action);
-                        let path = path.clone();
-                        let at = action.at;
-                        let text = self.text().expr(&Expr { kind: ExprKind::Path(path), at });
-                        Element::new("reference").with("name", text)
-                    }
-                    Target::Direct(address, _) => {
-                        self.condition_of(condition.as_ref(), action);
-                        Element::new("reference").with("name", format!("%{address}"))
-                    }
-                    Target::Work(work) => {
-                        let once = matches!(qualifier, Qualifier::P0 | Qualifier::P1);
-                        if condition.is_some() && !once {
-                            let what = "a condition of a body, which becomes its first line: the body runs, and looks";
-                            self.say(&codes::DIFFERENT, action.at, what);
-                        }
-                        self.inline(work, condition.as_ref())
-                    }
-                };
-                Some(element.child(place).child(what))
-            }
-            ActionKind::EachScan { work, condition } => {
-                if self.final_scan {
-                    let what =
-                        "an action of each scan; with the qualifier N it runs once more behind the step";
-                    self.say(&codes::DIFFERENT, action.at, what);
-                }
-                let inline = self.inline(work, condition.as_ref());
-                Some(element(Qualifier::N).child(place).child(inline))
-            }
-            ActionKind::OnEvent { .. } => {
-                self.say(
-                    &codes::NOT_CARRIED,
-                    action.at,
-                    "an action on event, which IEC 61131-3 does not have",
-                );
-                None
-            }
-            ActionKind::Order(order) => {
-                let what = match order {
-                    Order::Force(..) => "a forcing order",
-                    Order::Enable(_) => "an order that enables a chart",
-                    Order::Mask(_) => "an order that masks",
-                    Order::Call(_) => "a call of a task",
-                    Order::Enclose(_) => "an enclosed chart",
-                };
-                self.say(&codes::NOT_CARRIED, action.at, &format!("{what}, which IEC 61131-3 does not have"));
-                None
-            }
-            ActionKind::Comment(text) => {
-                self.say(&codes::LEFT_OUT, action.at, &format!("the comment \"{text}\" beside a step"));
-                None
-            }
+        Some(element.child(place).child(what))
+    }
+
+    fn time(&self, e: &Expr) -> String {
+        match &e.kind {
+            ExprKind::Literal(Literal::Time(ns)) => time(*ns),
+            _ => self.writer.plain(e),
         }
     }
 
-    fn condition_of(&mut self, condition: Option<&Expr>, action: &Action) {
-        if condition.is_some() {
-            let what = "the condition of an action, which IEC 61131-3 does not have";
-            self.say(&codes::NOT_CARRIED, action.at, what);
-        }
-    }
-
-    fn time(&mut self, time: &Expr) -> String {
-        match &time.kind {
-            ExprKind::Literal(Literal::Time(ns)) => duration(*ns),
-            _ => self.text().expr(time),
-        }
-    }
-
-    fn inline(&mut self, work: &Work, condition: Option<&Expr>) -> Element {
-        let mut text = self.text();
-        let body = text.statements(work.statements());
-        let body = match condition {
-            Some(condition) => format!("IF {} THEN\n{body}\nEND_IF;", text.expr(condition)),
-            None => body,
-        };
-        Element::new("inline").child(Element::formatted("ST", &body))
+    fn inline(&self, work: &Work) -> Element {
+        Element::new("inline").child(Element::formatted("ST", &self.writer.body(work.statements())))
     }
 }
 
 fn is_action(action: &Action) -> bool {
-    matches!(action.kind, ActionKind::Qualified { .. } | ActionKind::EachScan { .. })
+    matches!(action.kind, ActionKind::Qualified { .. })
 }
 
 /// An object at a place: the middle of its upper side.
@@ -406,10 +297,4 @@ fn documented(mut element: Element, step: &Step) -> Element {
         element.push(Element::formatted("documentation", comment));
     }
     element
-}
-
-/// The name of a chart.
-pub(super) fn chart_name(names: &mut Names, chart: &Chart) -> String {
-    let name: &Name = &chart.name;
-    names.give(name)
 }

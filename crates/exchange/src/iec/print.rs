@@ -1,18 +1,19 @@
-//! Expressions and statements in the standard's own spelling.
+//! Expressions and statements in the standard's own spelling, for all that write them.
 //!
-//! The standard converts no types by itself; where the .g7 language widens a
-//! number, the conversion is written.
+//! What is printed has been through [`super::standard`]: paths are `name`,
+//! `block.member`, `step.X` and `step.T`. The standard converts no types by itself;
+//! where the .g7 language widens a number, the conversion is written.
 
-use g7_model::codes;
+use std::collections::HashMap;
+
 use g7_model::{
-    Arg, BinaryOp, Expr, ExprKind, FbKind, Literal, Name, Path, Problem, Span, Stmt, StmtKind, Type, UnaryOp,
+    Arg, BinaryOp, Chart, Document, Expr, ExprKind, FbKind, Item, Literal, Name, Path, Stmt, StmtKind, Type,
+    UnaryOp, VarDecl,
 };
-
-use super::names::{Names, Scope};
 
 /// What an expression is, as far as it can be told.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Ty {
+pub(crate) enum Ty {
     Known(Type),
     /// A number without a type of its own.
     Whole,
@@ -21,20 +22,49 @@ pub(super) enum Ty {
 }
 
 /// A written expression.
-pub(super) struct Text {
-    pub(super) text: String,
-    pub(super) ty: Ty,
+pub(crate) struct Text {
+    pub(crate) text: String,
+    pub(crate) ty: Ty,
     /// How tightly its outermost operator binds; 9 for an operand.
     strength: u8,
 }
 
+/// The types of names.
+#[derive(Debug, Default)]
+pub(crate) struct Types<'d> {
+    names: HashMap<&'d str, Type>,
+    functions: HashMap<&'d str, Type>,
+}
+
+impl<'d> Types<'d> {
+    /// Those of the file and of a chart, or of the file alone.
+    pub(crate) fn new(document: &'d Document, chart: Option<&'d Chart>) -> Types<'d> {
+        let mut types = Types::default();
+        for item in &document.items {
+            match item {
+                Item::Var(v) => types.declare(v),
+                Item::Function(f) => _ = types.functions.insert(&f.name.text, f.result),
+                _ => {}
+            }
+        }
+        chart.into_iter().flat_map(Chart::vars).for_each(|v| types.declare(v));
+        types
+    }
+
+    fn declare(&mut self, decl: &'d VarDecl) {
+        self.names.extend(decl.names.iter().map(|n| (&*n.text, decl.ty)));
+    }
+
+    /// The names of a function's own stand before all others.
+    pub(crate) fn own(mut self, name: &'d str, ty: Type) -> Types<'d> {
+        self.names.insert(name, ty);
+        self
+    }
+}
+
 /// Writes texts of one place.
-pub(super) struct Writer<'a> {
-    pub(super) names: &'a Names,
-    pub(super) scope: Scope,
-    /// Variables of the body's own.
-    pub(super) locals: Vec<(Box<str>, Type)>,
-    pub(super) problems: &'a mut Vec<Problem>,
+pub(crate) struct Writer<'a> {
+    pub(crate) types: &'a Types<'a>,
 }
 
 const OPERAND: u8 = 9;
@@ -130,33 +160,35 @@ impl Text {
 }
 
 impl Writer<'_> {
-    pub(super) fn lost(&mut self, at: Span, what: impl Into<String>) {
-        self.problems.push(Problem::new(&codes::NOT_CARRIED, at, what));
-    }
-
     /// An expression as a value of a type.
-    pub(super) fn value(&mut self, e: &Expr, ty: Type) -> String {
+    pub(crate) fn value(&self, e: &Expr, ty: Type) -> String {
         self.text(e).converted(ty).text
     }
 
-    pub(super) fn condition(&mut self, e: &Expr) -> String {
+    /// A condition.
+    pub(crate) fn condition(&self, e: &Expr) -> String {
         self.value(e, Type::Bool)
     }
 
-    pub(super) fn text(&mut self, e: &Expr) -> Text {
+    /// An expression of any type.
+    pub(crate) fn plain(&self, e: &Expr) -> String {
+        self.text(e).text
+    }
+
+    fn text(&self, e: &Expr) -> Text {
         match &e.kind {
             ExprKind::Literal(literal) => literal_text(literal),
-            ExprKind::Path(path) => self.path(path, e.at.0),
-            ExprKind::Direct(name) => self.direct(name, e.at.0),
-            ExprKind::Unary(op, inner) => self.unary(*op, inner, e.at.0),
+            ExprKind::Path(path) => self.path(path),
+            ExprKind::Direct(name) => Text::operand(format!("%{name}"), Ty::Unknown),
+            ExprKind::Unary(op, inner) => self.unary(*op, inner),
             ExprKind::Binary(op, a, b) => self.binary(*op, a, b),
-            ExprKind::Timer { t1, e: inner, t2 } => self.timer(t1, inner, t2.is_some(), e.at.0),
             ExprKind::Call(path, args) => self.call(path, args),
-            ExprKind::Bad => Text::operand("FALSE".into(), Ty::Unknown),
+            // Of these nothing is left where this stands.
+            ExprKind::Timer { .. } | ExprKind::Bad => Text::operand("FALSE".into(), Ty::Unknown),
         }
     }
 
-    fn unary(&mut self, op: UnaryOp, inner: &Expr, at: Span) -> Text {
+    fn unary(&self, op: UnaryOp, inner: &Expr) -> Text {
         match op {
             UnaryOp::Not => {
                 let text = self.text(inner).converted(Type::Bool).within(8);
@@ -169,14 +201,11 @@ impl Writer<'_> {
                 let text = if text.starts_with('-') { format!("-({text})") } else { format!("-{text}") };
                 Text { text, ty, strength: 8 }
             }
-            UnaryOp::Rise | UnaryOp::Fall => {
-                self.lost(at, "an edge here has no form in an SFC of the standard; use a variable of R_TRIG or F_TRIG that an action calls");
-                Text::operand("FALSE".into(), Ty::Known(Type::Bool))
-            }
+            UnaryOp::Rise | UnaryOp::Fall => Text::operand("FALSE".into(), Ty::Known(Type::Bool)),
         }
     }
 
-    fn binary(&mut self, op: BinaryOp, a: &Expr, b: &Expr) -> Text {
+    fn binary(&self, op: BinaryOp, a: &Expr, b: &Expr) -> Text {
         let (left, right) = (self.text(a), self.text(b));
         let boolean = left.is(Type::Bool) || right.is(Type::Bool);
         let op = match op {
@@ -197,94 +226,23 @@ impl Writer<'_> {
         Text { text, ty, strength: own }
     }
 
-    /// `t/X1` is the step's own time; nothing else of the kind has a form.
-    fn timer(&mut self, t1: &Expr, e: &Expr, ends: bool, at: Span) -> Text {
-        let step = match &e.kind {
-            ExprKind::Path(path) => self.path(path, e.at.0).text.strip_suffix(".X").map(str::to_string),
+    fn path(&self, path: &Path) -> Text {
+        let ty = match path.names.as_slice() {
+            [one] => self.types.names.get(&*one.text).copied(),
+            [first, second] => match self.types.names.get(&*first.text) {
+                Some(Type::Fb(kind)) => member(*kind, &second.text).map(|m| m.1),
+                Some(_) => None,
+                None if &*second.text == "X" => Some(Type::Bool),
+                None => Some(Type::Time),
+            },
             _ => None,
         };
-        let Some(step) = step.filter(|_| !ends) else {
-            self.lost(
-                at,
-                "a time operator here has no form in an SFC of the standard; use a TON that an action calls",
-            );
-            return Text::operand("FALSE".into(), Ty::Known(Type::Bool));
-        };
-        let time = self.text(t1).within(6);
-        Text { text: format!("{step}.X AND {step}.T >= {time}"), ty: Ty::Known(Type::Bool), strength: 3 }
+        Text::operand(path.text(), ty.map_or(Ty::Unknown, Ty::Known))
     }
 
-    fn direct(&mut self, name: &str, at: Span) -> Text {
-        if let Some(variable) = self.names.at_address(name) {
-            return Text::operand(variable.to_string(), Ty::Unknown);
-        }
-        let what = format!("`%{name}` has no counterpart");
-        if name.starts_with(['X', 'S']) {
-            self.lost(at, what);
-        }
-        Text::operand(format!("%{name}"), Ty::Unknown)
-    }
-
-    fn path(&mut self, path: &Path, at: Span) -> Text {
-        let names: Vec<&str> = path.names.iter().map(|n| &*n.text).collect();
-        if let Some(found) = self.find(&names) {
-            return found;
-        }
-        let what = format!("`{}` has no counterpart", path.text());
-        self.lost(at, what);
-        Text::operand("FALSE".into(), Ty::Unknown)
-    }
-
-    /// What a path stands for; the order is that of the language.
-    fn find(&self, names: &[&str]) -> Option<Text> {
-        let variable = |v: &super::names::Variable| Text::operand(v.text.clone(), Ty::Known(v.ty));
-        match names {
-            [one] => {
-                if let Some((name, ty)) = self.locals.iter().find(|(n, _)| **n == **one) {
-                    return Some(Text::operand(name.to_string(), Ty::Known(*ty)));
-                }
-                if let Some(v) = self.names.variable_of(self.scope, one) {
-                    return Some(variable(v));
-                }
-                let step = one.strip_prefix('X').and_then(|s| self.names.step(self.scope, s))?;
-                Some(Text::operand(format!("{step}.X"), Ty::Known(Type::Bool)))
-            }
-            [first, second] => {
-                if let Some(v) = self.names.variable_of(self.scope, first)
-                    && let Type::Fb(kind) = v.ty
-                {
-                    let (name, ty) = member(kind, second)?;
-                    return Some(Text::operand(format!("{}.{name}", v.text), Ty::Known(ty)));
-                }
-                if let Some(chart) = self.names.chart_named(first) {
-                    if let Some(v) = self.names.in_chart(chart, second) {
-                        return Some(variable(v));
-                    }
-                    if let Some(step) = second.strip_prefix('X').and_then(|s| self.names.step_in(chart, s)) {
-                        return Some(Text::operand(format!("{step}.X"), Ty::Known(Type::Bool)));
-                    }
-                }
-                let step = self.names.step(self.scope, first);
-                step_member(step.or_else(|| self.names.step(self.scope, first.strip_prefix('X')?)), second)
-            }
-            [chart, step, last] => {
-                let chart = self.names.chart_named(chart)?;
-                if let Some(v) = self.names.in_chart(chart, step)
-                    && let Type::Fb(kind) = v.ty
-                {
-                    let (name, ty) = member(kind, last)?;
-                    return Some(Text::operand(format!("{}.{name}", v.text), Ty::Known(ty)));
-                }
-                let found = self.names.step_in(chart, step);
-                step_member(found.or_else(|| self.names.step_in(chart, step.strip_prefix('X')?)), last)
-            }
-            _ => None,
-        }
-    }
-
-    fn call(&mut self, path: &Path, args: &[Arg]) -> Text {
+    fn call(&self, path: &Path, args: &[Arg]) -> Text {
         let name = path.text();
-        let own = self.names.function(&name).map(|f| (f.text.clone(), f.ty));
+        let own = self.types.functions.get(&*name).copied();
         let texts: Vec<Text> = args.iter().map(|a| self.text(&a.value)).collect();
         let common = texts.iter().fold(Ty::Whole, |all, t| match (all, t.ty) {
             (Ty::Known(a), Ty::Known(b)) if is_number(a) && is_number(b) => Ty::Known(wider(a, b)),
@@ -293,8 +251,8 @@ impl Writer<'_> {
         });
         let upper = name.to_ascii_uppercase();
         let alike = matches!(upper.as_str(), "MIN" | "MAX" | "LIMIT" | "SEL");
-        let ty = match own.as_ref() {
-            Some((_, ty)) => Ty::Known(*ty),
+        let ty = match own {
+            Some(ty) => Ty::Known(ty),
             None => standard_type(&upper, common),
         };
         let mut parts = Vec::new();
@@ -308,18 +266,26 @@ impl Writer<'_> {
                 None => text,
             });
         }
-        let name = own.map_or(upper, |(text, _)| text);
+        let name = if own.is_some() { name } else { upper };
         Text::operand(format!("{name}({})", parts.join(", ")), ty)
     }
 
+    /// Statements of a body that stands alone.
+    pub(crate) fn body(&self, list: &[Stmt]) -> String {
+        let mut text = String::new();
+        self.statements(list, 0, &mut text);
+        text.truncate(text.trim_end().len());
+        text
+    }
+
     /// Statements, each line with its indentation.
-    pub(super) fn statements(&mut self, list: &[Stmt], indent: usize, out: &mut String) {
+    pub(crate) fn statements(&self, list: &[Stmt], indent: usize, out: &mut String) {
         for stmt in list {
             self.statement(stmt, indent, out);
         }
     }
 
-    fn statement(&mut self, stmt: &Stmt, indent: usize, out: &mut String) {
+    fn statement(&self, stmt: &Stmt, indent: usize, out: &mut String) {
         let pad = "  ".repeat(indent);
         let mut line = |text: &str| {
             out.push_str(&pad);
@@ -337,7 +303,7 @@ impl Writer<'_> {
                 line(&format!("{} := {};", target.text, value.text));
             }
             StmtKind::Call(path, args) => {
-                let text = self.block_call(path, args, stmt.at.0);
+                let text = self.block_call(path, args);
                 line(&format!("{text};"));
             }
             StmtKind::If(arms, otherwise) => {
@@ -369,7 +335,7 @@ impl Writer<'_> {
                 out.push_str(&format!("{pad}END_CASE;\n"));
             }
             StmtKind::For { var, from, to, by, body } => {
-                let variable = self.path(&Path { names: vec![var.clone()] }, var.at.0);
+                let variable = self.path(&Path { names: vec![var.clone()] });
                 let ty = match variable.ty {
                     Ty::Known(ty) => ty,
                     _ => Type::Int,
@@ -397,7 +363,7 @@ impl Writer<'_> {
         }
     }
 
-    fn label(&mut self, from: &Expr, to: Option<&Expr>) -> String {
+    fn label(&self, from: &Expr, to: Option<&Expr>) -> String {
         let from = self.text(from).text;
         match to {
             Some(to) => format!("{from}..{}", self.text(to).text),
@@ -405,32 +371,26 @@ impl Writer<'_> {
         }
     }
 
-    /// A call of a function block; other calls have no counterpart.
-    fn block_call(&mut self, path: &Path, args: &[Arg], at: Span) -> String {
-        let names: Vec<&str> = path.names.iter().map(|n| &*n.text).collect();
-        let Some(Text { text, ty: Ty::Known(Type::Fb(kind)), .. }) = self.find(&names) else {
-            let what = format!("a call of `{}` has no counterpart", path.text());
-            self.lost(at, what);
-            return String::new();
+    /// A call of a function block.
+    fn block_call(&self, path: &Path, args: &[Arg]) -> String {
+        let kind = match path.names.as_slice() {
+            [one] => self.types.names.get(&*one.text).copied(),
+            _ => None,
         };
-        let inputs: Vec<&str> = kind.members().iter().filter(|m| m.2).map(|m| m.0).collect();
         let mut parts = Vec::new();
-        for (i, arg) in args.iter().enumerate() {
-            let named = arg.name.as_ref().map(|n: &Name| n.text.to_ascii_uppercase());
-            let name = named.or_else(|| inputs.get(i).map(ToString::to_string)).unwrap_or_default();
-            let name = match name.as_str() {
-                "RESET" => "R",
-                "LOAD" => "LD",
-                other => other,
+        for arg in args {
+            let name = arg.name.as_ref().map_or("", |n: &Name| &n.text);
+            let ty = match kind {
+                Some(Type::Fb(kind)) => member(kind, name).map(|m| m.1),
+                _ => None,
             };
-            let ty = member(kind, name).map(|m| m.1);
             let value = match ty {
                 Some(ty) if !arg.output => self.value(&arg.value, ty),
                 _ => self.text(&arg.value).text,
             };
             parts.push(format!("{name} {} {value}", if arg.output { "=>" } else { ":=" }));
         }
-        format!("{text}({})", parts.join(", "))
+        format!("{}({})", path.text(), parts.join(", "))
     }
 }
 
@@ -458,16 +418,6 @@ fn alike(left: Text, right: Text, op: BinaryOp) -> (Text, Text, Ty) {
     }
 }
 
-/// `Step.X` and `Step.T`.
-fn step_member(step: Option<&str>, name: &str) -> Option<Text> {
-    let step = step?;
-    match name {
-        "X" | "x" => Some(Text::operand(format!("{step}.X"), Ty::Known(Type::Bool))),
-        "T" | "t" => Some(Text::operand(format!("{step}.T"), Ty::Known(Type::Time))),
-        _ => None,
-    }
-}
-
 /// A member of a function block by its name, in any case.
 fn member(kind: FbKind, name: &str) -> Option<(&'static str, Type)> {
     kind.members().iter().find(|m| m.0.eq_ignore_ascii_case(name)).map(|m| (m.0, m.1))
@@ -476,7 +426,7 @@ fn member(kind: FbKind, name: &str) -> Option<(&'static str, Type)> {
 /// The type of a standard function's result.
 fn standard_type(name: &str, common: Ty) -> Ty {
     if let Some((_, to)) = name.split_once("_TO_") {
-        return crate::iec::elementary(to).map_or(Ty::Unknown, Ty::Known);
+        return super::elementary(to).map_or(Ty::Unknown, Ty::Known);
     }
     match name {
         "LEN" | "FIND" => Ty::Known(Type::Int),
@@ -511,7 +461,7 @@ fn real(text: &str) -> String {
 }
 
 /// A duration; the standard's finest unit is a millisecond, which may have a fraction.
-pub(super) fn time(ns: i64) -> String {
+pub(crate) fn time(ns: i64) -> String {
     const UNITS: [(&str, u64); 4] =
         [("d", 86_400_000_000_000), ("h", 3_600_000_000_000), ("m", 60_000_000_000), ("s", 1_000_000_000)];
     let mut rest = ns.unsigned_abs();
@@ -542,6 +492,7 @@ fn string(text: &str) -> String {
             '\n' => out.push_str("$N"),
             '\r' => out.push_str("$R"),
             '\t' => out.push_str("$T"),
+            c if u32::from(c) < 32 => out.push_str(&format!("${:02X}", u32::from(c))),
             c => out.push(c),
         }
     }
