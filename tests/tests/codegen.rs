@@ -2,13 +2,14 @@
 //! times, outputs, variables, faults; on every conformance case and on random
 //! charts.
 //!
-//! `G7_SCANS=100000` sets how many random scans each profile makes; the folder
-//! of the code is kept where `G7_KEEP` is set.
+//! `G7_SCANS=100000` sets how many random scans each profile makes, and asks for
+//! every case by every compiler in both styles; without it some are left out. The
+//! folder of the code is kept where `G7_KEEP` is set.
 #![allow(clippy::disallowed_methods, reason = "the tests start compilers")]
 
 use std::path::{Path, PathBuf};
 
-use g7_codegen::Language;
+use g7_codegen::{Language, Style};
 use g7_model::ProfileName;
 use g7_tests::case;
 use g7_tests::generate::sample;
@@ -16,8 +17,14 @@ use g7_tests::generated::{Subject, c_program, compare, has, rust_program};
 
 const SANITIZERS: [&str; 3] = ["-O0", "-fsanitize=address,undefined", "-fno-sanitize-recover=all"];
 
-fn number(name: &str, otherwise: u64) -> u64 {
-    std::env::var(name).ok().and_then(|v| v.parse().ok()).unwrap_or(otherwise)
+fn number(name: &str) -> Option<u64> {
+    std::env::var(name).ok().and_then(|v| v.parse().ok())
+}
+
+/// Every `step`th, from the `first`; all of them in the long run.
+fn some(subjects: &[Subject], first: usize, step: usize) -> Vec<&Subject> {
+    let step = if number("G7_SCANS").is_some() { 1 } else { step };
+    subjects.iter().skip(first % step).step_by(step).collect()
 }
 
 /// A folder of the test that goes when it is over.
@@ -86,7 +93,7 @@ fn spec() -> Vec<Subject> {
 /// Random charts with so many scans in all.
 fn random(profile: ProfileName, scans: usize, length: usize) -> Vec<Subject> {
     let mut subjects = Vec::new();
-    let (mut sound, mut seed) = (0, number("G7_SEED", 1));
+    let (mut sound, mut seed) = (0, number("G7_SEED").unwrap_or(1));
     while sound < scans {
         let title = format!("{} seed {seed}", profile.name());
         let sample = sample(seed, profile, length).expect("a random chart can be read");
@@ -97,38 +104,44 @@ fn random(profile: ProfileName, scans: usize, length: usize) -> Vec<Subject> {
         sound += subject.sound;
         subjects.push(subject);
     }
-    println!("{}: {} charts, {sound} scans", profile.name(), subjects.len());
     subjects
 }
 
-fn c_agrees(name: &str, compiler: &str, subjects: &[Subject]) {
+/// Prints, compiles and runs them beside the engine.
+fn agree(name: &str, compiler: &str, style: Style, subjects: &[&Subject]) {
     if !has(compiler) {
         println!("skipped: no {compiler} on the PATH");
         return;
     }
-    let folder = Folder::new(name);
+    let folder = Folder::new(&format!("{name}-{compiler}-{style:?}"));
     let mut wrong = Vec::new();
     for (i, batch) in subjects.chunks(60).enumerate() {
-        let batch: Vec<&Subject> = batch.iter().collect();
-        let program = c_program(&folder.0.join(i.to_string()), compiler, &SANITIZERS, &batch);
-        if let Err(why) = program.and_then(|p| compare(&p, &batch)) {
+        let place = folder.0.join(i.to_string());
+        let program = match compiler {
+            "rustc" => rust_program(&place, style, batch),
+            _ => c_program(&place, compiler, &SANITIZERS, style, batch),
+        };
+        if let Err(why) = program.and_then(|p| compare(&p, batch)) {
             wrong.push(format!("batch {i}: {why}"));
         }
     }
-    assert!(wrong.is_empty(), "{}", wrong.join("\n\n"));
+    assert!(wrong.is_empty(), "{name} by {compiler}, {style:?}:\n{}", wrong.join("\n\n"));
+    let scans: usize = subjects.iter().map(|s| s.sound).sum();
+    println!("{name}: {} charts, {scans} scans by {compiler}, {style:?}, as the engine", subjects.len());
 }
 
 #[test]
-fn cases_in_c_by_gcc() {
-    c_agrees("spec-gcc", "gcc", &spec());
+fn cases_in_structured_c() {
+    let subjects = spec();
+    agree("cases", "gcc", Style::Structured, &some(&subjects, 0, 3));
+    agree("cases", "clang", Style::Structured, &some(&subjects, 1, 16));
 }
 
 #[test]
-fn cases_in_c_by_clang() {
-    // All of them in the long run; where nothing is said, every fourth.
-    let step = if std::env::var_os("G7_SCANS").is_some() { 1 } else { 4 };
-    let subjects: Vec<Subject> = spec().into_iter().step_by(step).collect();
-    c_agrees("spec-clang", "clang", &subjects);
+fn cases_in_flat_c() {
+    let subjects = spec();
+    agree("cases", "gcc", Style::Flat, &some(&subjects, 1, 3));
+    agree("cases", "clang", Style::Flat, &some(&subjects, 9, 16));
 }
 
 #[test]
@@ -136,45 +149,46 @@ fn cases_in_rust() {
     let mut subjects = spec();
     // SIN and its like come from the crate `libm`, which a lone rustc has not.
     let all = subjects.len();
-    subjects.retain(|s| s.print(Language::Rust, "c").is_ok_and(|p| p.problems.is_empty()));
+    let complete =
+        |s: &Subject| s.print(Language::Rust, Style::Structured, "c").is_ok_and(|p| p.problems.is_empty());
+    subjects.retain(complete);
     println!("{} of {all} cases without functions of the crate libm", subjects.len());
     assert!(subjects.len() + 10 > all, "only {} of {all} cases", subjects.len());
-    let folder = Folder::new("spec-rust");
-    for (i, batch) in subjects.chunks(200).enumerate() {
-        let batch: Vec<&Subject> = batch.iter().collect();
-        let program = rust_program(&folder.0.join(i.to_string()), &batch);
-        if let Err(why) = program.and_then(|p| compare(&p, &batch)) {
-            panic!("{why}");
-        }
-    }
+    agree("cases", "rustc", Style::Structured, &some(&subjects, 0, 2));
+    agree("cases", "rustc", Style::Flat, &some(&subjects, 1, 2));
 }
 
-fn random_in_c(profile: ProfileName, compiler: &str) {
-    let subjects = random(profile, number("G7_SCANS", 100_000) as usize, 2000);
-    c_agrees(profile.name(), compiler, &subjects);
+fn random_charts(profile: ProfileName) {
+    let scans = number("G7_SCANS").unwrap_or(2_000) as usize;
+    let subjects = random(profile, scans, (scans / 4).clamp(1, 2_000));
+    let all: Vec<&Subject> = subjects.iter().collect();
+    agree(profile.name(), "gcc", Style::Structured, &all);
+    agree(profile.name(), "clang", Style::Flat, &all);
+    agree(profile.name(), "rustc", Style::Structured, &some(&subjects, 0, 2));
+    agree(profile.name(), "rustc", Style::Flat, &some(&subjects, 1, 2));
 }
 
 #[test]
 fn random_iec60848() {
-    random_in_c(ProfileName::Iec60848, "gcc");
+    random_charts(ProfileName::Iec60848);
 }
 
 #[test]
 fn random_iec61131() {
-    random_in_c(ProfileName::Iec61131, "gcc");
+    random_charts(ProfileName::Iec61131);
 }
 
 #[test]
 fn random_pl7() {
-    random_in_c(ProfileName::Pl7, "gcc");
+    random_charts(ProfileName::Pl7);
 }
 
 #[test]
 fn random_unity() {
-    random_in_c(ProfileName::Unity, "gcc");
+    random_charts(ProfileName::Unity);
 }
 
 #[test]
 fn random_jgrafchart() {
-    random_in_c(ProfileName::Jgrafchart, "gcc");
+    random_charts(ProfileName::Jgrafchart);
 }

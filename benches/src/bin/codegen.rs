@@ -9,7 +9,7 @@ use std::process::Command;
 
 use g7_benches::matiec::{self, LOOKED_AT, Measured};
 use g7_benches::shape::Shape;
-use g7_codegen::{Language, Options};
+use g7_codegen::{Language, Options, Style};
 use g7_model::FileId;
 
 const HARNESS: &str = r#"
@@ -94,7 +94,7 @@ fn ours(folder: &Path, shape: Shape) -> Result<Measured, String> {
     let (doc, _) = g7_syntax::parse(&text, FileId(0));
     let (compiled, problems) = g7_compile::compile(&doc);
     let compiled = compiled.ok_or_else(|| format!("{problems:?}"))?;
-    let options = Options { language: Language::C, name: "chart", source: &text };
+    let options = Options { language: Language::C, style: Style::Structured, name: "chart", source: &text };
     let printed = g7_codegen::print(&compiled, &options).map_err(|p| format!("{p:?}"))?;
     let io = |e: std::io::Error| e.to_string();
     std::fs::create_dir_all(folder).map_err(io)?;

@@ -228,8 +228,13 @@ impl Gen<'_> {
 
     fn blocks(&mut self) {
         let places = counts(self.t).0;
-        let mut arms = Vec::new();
+        let (mut arms, mut line) = (Vec::new(), Block::new());
         for (i, b) in self.t.blocks.iter().enumerate() {
+            if self.is_equation(i as u32) {
+                let equation = self.equation(i, b);
+                line.extend(equation);
+                continue;
+            }
             let again = |f: &str| Stmt::Do(Expr::call(f, vec![memory("blocks").passed(), Expr::size(i)]));
             let mut body = vec![again("bit_clear")];
             let (gate, fails) = self.condition(b.gate, &format!("gate_{i}"));
@@ -251,7 +256,7 @@ impl Gen<'_> {
                 None => {
                     let some = memory("counts").at(Expr::size(at)).bin(Bin::Ne, Expr::size(0));
                     body.push(let_q(some.and(gate_here)));
-                    self.put(&mut body, i, b.output.0);
+                    self.put(&mut body, i, b.output.0, q());
                     if b.action != NONE {
                         let run = vec![call("run_at_end", Expr::size(b.action as usize)), again("bit_set")];
                         body.push(Stmt::If(q(), run, Vec::new()));
@@ -265,7 +270,7 @@ impl Gen<'_> {
                     if b.output.0 != NONE || (b.action != NONE) {
                         body.push(let_q(has(1)));
                     }
-                    self.put(&mut body, i, b.output.0);
+                    self.put(&mut body, i, b.output.0, q());
                     let mut live = has(4);
                     if b.action != NONE {
                         let run = call("run_at_end", Expr::size(b.action as usize));
@@ -282,18 +287,26 @@ impl Gen<'_> {
             }
             let note = self.c.symbols.blocks.get(i).map_or(String::new(), |b| b.name.to_string());
             arms.push(Arm { label: Expr::size(i), note, body: Stmt::when(self.due(b.period), body) });
+            let wanted = Expr::call("bit", vec![Expr::Ref(false, Box::new(memory("blocks"))), Expr::size(i)]);
+            let mut look = vec![call("evaluate_block", Expr::size(i))];
+            if fails {
+                let fault = s().field("fault").bin(Bin::Ne, Expr::size(0));
+                look.push(Stmt::If(fault, vec![Stmt::Return(None)], Vec::new()));
+            }
+            line.extend(Stmt::when(wanted, look));
         }
         self.choice("evaluate_block", "A control block.", "block", arms);
+        self.function("control_blocks", "Outputs and control blocks, in order.", vec![state()], line);
     }
 
     /// Writes Q where it has changed: between two changes the variable is free.
-    fn put(&mut self, body: &mut Block, i: usize, output: u32) {
+    pub(crate) fn put(&mut self, body: &mut Block, i: usize, output: u32, q: Expr) {
         if output == NONE {
             return;
         }
-        let mut then = vec![Stmt::set(memory("written").at(Expr::size(i)), Expr::name("q"))];
-        then.extend(self.assign(output, |_| Expr::name("q")));
-        let differs = Expr::name("q").bin(Bin::Ne, memory("written").at(Expr::size(i)));
+        let mut then = vec![Stmt::set(memory("written").at(Expr::size(i)), q.clone())];
+        then.extend(self.assign(output, |_| q.clone()));
+        let differs = q.bin(Bin::Ne, memory("written").at(Expr::size(i)));
         body.push(Stmt::If(differs, then, Vec::new()));
     }
 }

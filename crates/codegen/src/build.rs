@@ -24,6 +24,8 @@ pub(crate) struct Gen<'a> {
     undeclared: BTreeSet<u32>,
     pub(crate) m: Module,
     pub(crate) facts: Facts,
+    /// Control blocks that are printed as equations of their steps.
+    pub(crate) equations: Vec<bool>,
     pub(crate) steps: Vec<String>,
     pub(crate) transitions: Vec<String>,
     pub(crate) problems: Vec<Problem>,
@@ -49,7 +51,7 @@ pub(crate) fn memory(field: &str) -> Expr {
 }
 
 impl<'a> Gen<'a> {
-    pub(crate) fn new(c: &'a Compiled, source: &'a str, hidden: HashMap<u32, Num>) -> Gen<'a> {
+    pub(crate) fn new(c: &'a Compiled, source: &'a str, flat: bool, hidden: HashMap<u32, Num>) -> Gen<'a> {
         let t = c.program.tables();
         let mut names = Names::default();
         let mut vars = Vars::new(t, &c.symbols, &mut names);
@@ -63,6 +65,7 @@ impl<'a> Gen<'a> {
             undeclared: BTreeSet::new(),
             m: Module::default(),
             facts: Facts::default(),
+            equations: Vec::new(),
             steps: Vec::new(),
             transitions: Vec::new(),
             problems: Vec::new(),
@@ -71,7 +74,8 @@ impl<'a> Gen<'a> {
             real_text: None,
         };
         g.number();
-        g.facts = crate::facts::of(t);
+        g.facts = crate::facts::of(t, flat);
+        g.find_equations();
         g
     }
 
@@ -165,7 +169,7 @@ impl<'a> Gen<'a> {
     }
 
     pub(crate) fn active(&self, step: StepId) -> Expr {
-        Expr::call("bit", vec![Expr::Ref(false, Box::new(memory("active"))), self.step(step)])
+        memory("x").at(self.step(step))
     }
 
     /// Whether a period is due in this scan.
@@ -249,12 +253,6 @@ impl<'a> Gen<'a> {
                 self.value(code, Num::Bool, &name)
             }
         }
-    }
-
-    /// Whether the preceding steps behind the first are active.
-    pub(crate) fn rest_active(&self, rows: Rows) -> Expr {
-        let steps = self.t.arcs.get(rows.start as usize..rows.end as usize).unwrap_or(&[]);
-        steps.iter().fold(Expr::Bool(true), |e, step| e.and(self.active(*step)))
     }
 
     /// A function that does something for one of many numbers.

@@ -13,6 +13,8 @@ pub(crate) struct Printer<'a> {
     structs: HashMap<&'a str, &'a Struct>,
     /// Constants that carry the prefix.
     public: HashSet<&'a str>,
+    /// Names of numbers.
+    numbered: HashSet<&'a str>,
     /// Functions that carry the prefix.
     offered: HashSet<&'a str>,
     functions: HashMap<&'a str, &'a Function>,
@@ -48,6 +50,7 @@ impl<'a> Printer<'a> {
             prefix,
             structs: module.structs.iter().map(|s| (s.name.as_str(), s)).collect(),
             public: rows.chain(consts).collect(),
+            numbered: module.numbers.iter().flat_map(|n| n.rows.iter().map(|r| r.0.as_str())).collect(),
             offered: module.functions.iter().filter(|f| f.public).map(|f| f.name.as_str()).collect(),
             functions: module.functions.iter().map(|f| (f.name.as_str(), f)).collect(),
             scope: HashMap::new(),
@@ -194,6 +197,18 @@ impl<'a> Printer<'a> {
                 self.columns(&values.iter().map(String::as_str).collect::<Vec<_>>());
                 self.out.push_str("};\n\n");
             }
+            Known::Rows(rows) => {
+                let of = if let Ty::Array(of, _) = &c.ty { (**of).clone() } else { c.ty.clone() };
+                let last = rows.iter().rposition(|r| !r.0.is_empty()).unwrap_or(0);
+                let _ = writeln!(self.out, "static const {declared} = {{");
+                for (i, (all, note)) in rows.iter().enumerate().filter(|(_, r)| !r.0.is_empty()) {
+                    let values: Vec<String> = all.iter().map(|e| self.literal(e, &of)).collect();
+                    let comma = if i == last { "" } else { "," };
+                    let note = comment(note);
+                    let _ = writeln!(self.out, "    {}{comma} /* {note} */", values.join(", "));
+                }
+                self.out.push_str("};\n\n");
+            }
         }
     }
 
@@ -214,6 +229,12 @@ impl<'a> Printer<'a> {
     fn literal(&self, e: &Expr, ty: &Ty) -> String {
         match (e, ty) {
             (Expr::Int(n, _), Ty::Int { signed, bits }) => integer(*n, *signed, *bits),
+            // The number of a step fits as it is.
+            (Expr::Cast(e, to), _)
+                if to == ty && matches!(&**e, Expr::Name(n) if self.numbered.contains(n.as_str())) =>
+            {
+                self.expr(e)
+            }
             _ => self.expr(e),
         }
     }

@@ -1,12 +1,14 @@
 //! The functions that only one chart has: its transitions, what its steps bring,
 //! its edges, its sections.
 
+use std::collections::HashMap;
+
 use g7_engine::{NONE, Num, Rows, Situation, StepId, Tables};
 
 use crate::build::{Gen, memory, s, state};
 use crate::facts::counts;
 use crate::flow::Flow;
-use crate::tree::{Arm, Bin, Block, Const, Expr, Known, Stmt, Ty};
+use crate::tree::{Arm, Bin, Block, Const, Expr, Function, Known, Stmt, Ty};
 use crate::vars::Kind;
 
 /// `set[field]` gets or loses a member.
@@ -25,11 +27,12 @@ impl Gen<'_> {
         let t = self.t;
         let start: Block = t.initial.iter().map(|step| call("mark_on", self.step(*step))).collect();
         self.function("start", "The initial situation.", vec![state()], start);
-        self.watch_steps();
-        if !t.sources.is_empty() {
-            self.sources();
+        if self.flag("FLAT") {
+            self.flat_evolution();
+        } else {
+            self.receptivities();
         }
-        self.clearing();
+        self.followers();
         if self.flag("HAS_ON") {
             self.step_changes(true);
             self.step_changes(false);
@@ -45,129 +48,55 @@ impl Gen<'_> {
         self.tables();
     }
 
-    /// `if a transition can clear, fire it`, for the transitions watched by a step.
-    fn watch_steps(&mut self) {
-        let t = self.t;
-        let blocks = self.flag("HAS_ORDERS") || self.flag("HAS_PERIODS");
-        let mut arms = Vec::new();
-        for (i, step) in t.steps.iter().enumerate() {
-            let ranks = Gen::list(&t.outs, step.out);
-            if ranks.is_empty() {
-                continue;
+    /// One choice for each receptivity; transitions with the same one share it.
+    fn receptivities(&mut self) {
+        let mut known: HashMap<String, u32> = HashMap::new();
+        let (mut when, mut arms) = (Vec::new(), Vec::new());
+        let mut some_fail = false;
+        for i in 0..self.t.transitions.len() as u32 {
+            let (e, fails) = self.guard(i);
+            some_fail |= fails;
+            let first = *known.entry(format!("{e:?}")).or_insert(i);
+            when.push(first);
+            if first == i {
+                let note = self.transition_note(i);
+                arms.push(Arm { label: self.transition(i), note, body: vec![Stmt::Return(Some(e))] });
             }
-            let body = self.watched(&ranks);
-            let free = s().field("blocked").at(Expr::size(step.chart as usize)).not();
-            let body = if blocks { Stmt::when(free, body) } else { body };
-            let id = StepId(i as u32);
-            let note = self.c.symbols.step_path(id).to_owned();
-            arms.push(Arm { label: self.step(id), note, body });
         }
-        self.choice(
-            "watch_step",
-            "The transitions behind an active step, best priority first.",
-            "step",
-            arms,
-        );
+        let shared = arms.len() < when.len();
+        self.facts.flags.insert("SAME_RECEPTIVITIES", shared);
+        self.facts.flags.insert("GUARDS_FAIL", some_fail);
+        self.m.functions.push(Function {
+            public: false,
+            note: "Whether the receptivity of a transition is true.".into(),
+            name: "receptivity".into(),
+            parameters: vec![state(), ("transition".into(), Ty::Size)],
+            result: Some(Ty::Bool),
+            body: vec![Stmt::Match(Expr::name("transition"), arms), Stmt::Return(Some(Expr::Bool(false)))],
+        });
+        let note = "Transitions that wait for the same: the first of them.";
+        let rows = when.iter().map(|t| vec![self.transition(*t)]).collect();
+        let notes = self.transition_notes();
+        self.named_table("WHEN", note, rows, notes, self.t.transitions.len());
     }
 
-    fn watched(&mut self, ranks: &[u32]) -> Block {
-        let single = !self.t.rules.multi_token;
-        let mut parts = Vec::new();
-        for rank in ranks {
-            let Some(tr) = self.t.transitions.get(*rank as usize).copied() else { continue };
-            let rest = self.rest_active(tr.more_from);
-            let (guard, fails) = self.guard(*rank);
-            let note = self.transition_note(*rank);
-            let fire = call("fire", self.transition(*rank));
-            parts.push((note, rest.and(guard), fire, tr.simple && single, fails));
-        }
-        // Behind the first that clears of those that need nothing else, none is looked at.
-        let chained = parts.len() < 40 && parts.iter().all(|p| p.3);
-        if chained {
-            let mut all = Block::new();
-            for (note, c, fire, ..) in parts.into_iter().rev() {
-                let then = vec![Stmt::Note(note.clone()), fire];
-                all = match c {
-                    Expr::Bool(true) => then,
-                    c => vec![Stmt::If(c, then, all)],
-                };
-            }
-            return all;
-        }
-        let mut all = Block::new();
-        let some_end = parts.iter().rev().skip(1).any(|p| p.3);
-        let open = || Expr::name("open");
-        if some_end {
-            all.push(Stmt::Let { mutable: true, name: "open".into(), ty: Ty::Bool, value: Expr::Bool(true) });
-        }
-        let mut ended = false;
-        let last = parts.len().saturating_sub(1);
-        for (i, (note, c, fire, ends, _)) in parts.into_iter().enumerate() {
-            let mut then = vec![Stmt::Note(note), fire];
-            if ends && i < last {
-                then.push(Stmt::set(open(), Expr::Bool(false)));
-            }
-            let c = if ended { open().and(c) } else { c };
-            all.extend(Stmt::when(c, then));
-            ended |= ends;
-        }
-        all
+    fn transition_notes(&self) -> Vec<String> {
+        (0..self.t.transitions.len() as u32).map(|i| self.transition_note(i)).collect()
     }
 
-    fn sources(&mut self) {
+    /// Outputs that follow one step each.
+    fn followers(&mut self) {
         let t = self.t;
-        let mut body = Block::new();
-        for rank in &t.sources {
-            let Some(tr) = t.transitions.get(*rank as usize) else { continue };
-            let (guard, fails) = self.guard(*rank);
-            let fire = call("fire", self.transition(*rank));
-            let then = Stmt::when(guard, vec![Stmt::Note(self.transition_note(*rank)), fire]);
-            let blocks = self.flag("HAS_ORDERS") || self.flag("HAS_PERIODS");
-            let free = s().field("blocked").at(Expr::size(tr.chart as usize)).not();
-            body.extend(if blocks { Stmt::when(free, then) } else { then });
-            if fails {
-                let fault = s().field("fault").bin(Bin::Ne, Expr::size(0));
-                body.push(Stmt::If(fault, vec![Stmt::Return(None)], Vec::new()));
-            }
-        }
-        self.function("sources", "Transitions without a preceding step.", vec![state()], body);
-    }
-
-    /// What a transition does as it clears.
-    fn clearing(&mut self) {
-        let t = self.t;
-        let sequential = self.flag("SEQUENTIAL");
-        let mut arms = Vec::new();
-        for (i, tr) in t.transitions.iter().enumerate() {
-            let mut body = Block::new();
-            if sequential {
-                if tr.on_clearing == NONE {
-                    continue;
-                }
-                body.push(call("run_action", Expr::size(tr.on_clearing as usize)));
-            } else {
-                for from in self.ends(tr.from, tr.more_from) {
-                    body.push(call("mark_off", self.step(from)));
-                }
-                for (_, step) in t.drops.iter().filter(|d| d.0 == i as u32) {
-                    body.push(call("mark_off", self.step(*step)));
-                }
-                for to in self.ends(tr.to, tr.more_to) {
-                    body.push(call("mark_on", self.step(to)));
-                }
-                if tr.on_clearing != NONE {
-                    body.push(call("run_in_pass", Expr::size(tr.on_clearing as usize)));
-                }
-            }
-            let note = self.transition_note(i as u32);
-            arms.push(Arm { label: self.transition(i as u32), note, body });
-        }
-        let (name, note) = if sequential {
-            ("clearing", "The action of a transition that clears.")
-        } else {
-            ("clear", "A transition clears: the steps before it go off, those behind it come on.")
-        };
-        self.choice(name, note, "transition", arms);
+        let mut all: Vec<(u32, StepId)> =
+            (0u32..).zip(&t.steps).map(|(i, s)| (s.direct.0, StepId(i))).collect();
+        all.retain(|(addr, _)| *addr != NONE);
+        all.sort_unstable_by_key(|(addr, _)| *addr);
+        let each = all.into_iter().flat_map(|(addr, step)| {
+            let active = self.active(step);
+            self.assign(addr, |_| active)
+        });
+        let body = each.collect();
+        self.function("follow", "Outputs that follow a step.", vec![state()], body);
     }
 
     /// What comes and goes with the activity of a step.
@@ -176,12 +105,6 @@ impl Gen<'_> {
         let mut arms = Vec::new();
         for (i, step) in t.steps.iter().enumerate() {
             let mut body = Block::new();
-            if step.direct.0 != NONE {
-                let mut flow = Flow::new(self, g7_engine::Code::default(), None);
-                if let crate::values::Entry::Typed { e, .. } = flow.load(step.direct.0) {
-                    body.push(Stmt::set(e, Expr::Bool(on)));
-                }
-            }
             if let Some(e) = t.extras.get(step.extra as usize).copied() {
                 if e.uncounted && t.counts.is_some() {
                     body.push(Stmt::Assign(Some(Bin::Sub), s().field("moved"), Expr::size(1)));
@@ -208,6 +131,9 @@ impl Gen<'_> {
         let places = counts(self.t).0;
         for k in rows.start..rows.end {
             let Some(c) = self.t.contributions.get(k as usize) else { continue };
+            if self.is_equation(c.block) {
+                continue;
+            }
             let at = places.get(c.block as usize).copied().unwrap_or(0) + usize::from(c.input);
             let name = self.c.symbols.blocks.get(c.block as usize).map_or("", |b| &b.name);
             let input = g7_engine::INPUTS.get(usize::from(c.input)).copied().unwrap_or("");
@@ -345,14 +271,71 @@ impl Gen<'_> {
 
     /// Lists one behind the other, and where each begins.
     fn lists_of(&mut self, name: &str, note: &str, lists: &[Vec<u32>]) {
+        self.starts(name, lists.iter().map(Vec::len));
+        self.numbers(name, note, &lists.concat());
+    }
+
+    /// Rows of names, each with what it is for.
+    fn named_table(&mut self, name: &str, note: &str, rows: Vec<Vec<Expr>>, notes: Vec<String>, of: usize) {
+        let bits = if of < 256 {
+            8
+        } else if of < 65_536 {
+            16
+        } else {
+            32
+        };
+        let ty = Ty::Int { signed: false, bits };
+        let values: usize = rows.iter().map(Vec::len).sum();
+        let cast = |row: Vec<Expr>| -> Vec<Expr> { row.into_iter().map(|e| e.cast(ty.clone())).collect() };
+        let rows = rows.into_iter().map(cast).zip(notes).collect();
+        self.m.consts.push(Const {
+            public: false,
+            note: note.to_owned(),
+            name: name.to_owned(),
+            value: if values == 0 { Known::Many(Vec::new()) } else { Known::Rows(rows) },
+            ty: Ty::Array(Box::new(ty), values),
+        });
+    }
+
+    /// Steps of each transition, one row behind the other, and where each begins.
+    fn step_lists(&mut self, name: &str, note: &str, lists: &[Vec<u32>], notes: &[String]) {
+        self.starts(name, lists.iter().map(Vec::len));
+        let names = |list: &Vec<u32>| list.iter().map(|s| self.step(StepId(*s))).collect();
+        let rows = lists.iter().map(names).collect();
+        self.named_table(name, note, rows, notes.to_vec(), self.t.steps.len());
+    }
+
+    fn starts(&mut self, name: &str, lengths: impl Iterator<Item = usize>) {
         let mut starts = vec![0];
-        let mut all = Vec::new();
-        for list in lists {
-            all.extend(list);
-            starts.push(all.len() as u32);
+        let mut end = 0;
+        for length in lengths {
+            end += length as u32;
+            starts.push(end);
         }
-        self.numbers(&format!("{name}_AT"), note, &starts);
-        self.numbers(name, "", &all);
+        self.numbers(&format!("{name}_AT"), "Where each row begins.", &starts);
+    }
+
+    /// Which transitions are looked at from where, and what else the templates ask of one.
+    fn watched(&mut self) {
+        let t = self.t;
+        let outs: Vec<Vec<u32>> = t.steps.iter().map(|s| Gen::list(&t.outs, s.out)).collect();
+        self.starts("OUT", outs.iter().map(Vec::len));
+        let names = |list: &Vec<u32>| list.iter().map(|r| self.transition(*r)).collect();
+        let rows = outs.iter().map(names).collect();
+        let paths =
+            (0..t.steps.len() as u32).map(|i| self.c.symbols.step_path(StepId(i)).to_owned()).collect();
+        self.named_table("OUT", "The transitions behind each step.", rows, paths, t.transitions.len());
+        let charts: Vec<u32> = t.steps.iter().map(|s| s.chart).collect();
+        self.numbers("STEP_CHART", "The chart of each step.", &charts);
+        self.numbers("SOURCE", "Transitions without a preceding step.", &t.sources);
+        let chart = |rank: &u32| t.transitions.get(*rank as usize).map_or(0, |x| x.chart);
+        self.numbers("SOURCE_CHART", "Their charts.", &t.sources.iter().map(chart).collect::<Vec<_>>());
+        let note = "Transitions that leave nothing to those behind them.";
+        self.table("SETTLES", note, Ty::Bool, t.transitions.iter().map(|x| Expr::Bool(x.simple)));
+        let none = t.actions.len() as u32;
+        let actions = t.transitions.iter().map(|x| x.on_clearing.min(none));
+        let note = format!("The action of each transition as it clears; {none} for none.");
+        self.numbers("ON_CLEARING", &note, &actions.collect::<Vec<_>>());
     }
 
     /// What the templates look up.
@@ -361,8 +344,10 @@ impl Gen<'_> {
         let ids = |steps: Vec<StepId>| steps.into_iter().map(|s| s.0).collect::<Vec<_>>();
         let from: Vec<_> = t.transitions.iter().map(|x| ids(self.ends(x.from, x.more_from))).collect();
         let to: Vec<_> = t.transitions.iter().map(|x| ids(self.ends(x.to, x.more_to))).collect();
-        self.lists_of("FROM", "The steps before each transition.", &from);
-        self.lists_of("TO", "The steps behind each transition.", &to);
+        let notes = self.transition_notes();
+        self.step_lists("FROM", "The steps before each transition.", &from, &notes);
+        self.step_lists("TO", "The steps behind each transition.", &to, &notes);
+        self.watched();
         let drops: Vec<Vec<u32>> = (0..t.transitions.len() as u32)
             .map(|i| t.drops.iter().filter(|d| d.0 == i).map(|d| d.1.0).collect())
             .collect();
@@ -452,14 +437,7 @@ impl Gen<'_> {
             lists.push(list);
         }
         self.numbers("ORDER_SITUATION", "What each forcing order imposes.", &numbers);
-        let mut starts = vec![0];
-        let mut all = Vec::new();
-        for list in &lists {
-            all.extend(list);
-            starts.push(all.len() as u32);
-        }
-        self.numbers("ORDER_AT", "", &starts);
-        self.numbers("ORDER_STEPS", "", &all);
+        self.lists_of("ORDER_STEPS", "The steps that each forcing order imposes.", &lists);
         let steps: Vec<u32> = t.orders.iter().map(|o| o.step.0).collect();
         self.numbers("ORDER_STEP", "The step that gives each forcing order.", &steps);
         let charts: Vec<u32> = t.orders.iter().map(|o| o.chart).collect();

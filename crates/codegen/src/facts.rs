@@ -17,7 +17,7 @@ pub(crate) fn counts(t: &Tables) -> (Vec<usize>, usize) {
     (places, at)
 }
 
-pub(crate) fn of(t: &Tables) -> Facts {
+pub(crate) fn of(t: &Tables, flat: bool) -> Facts {
     let mut f = Facts::default();
     let r = t.rules;
     let lists = t.extras.iter().any(|e| !e.on.is_empty() || !e.off.is_empty());
@@ -32,17 +32,24 @@ pub(crate) fn of(t: &Tables) -> Facts {
         let settled = if r.multi_token { x.priority == NONE } else { x.simple };
         x.shares && !settled
     });
+    // Each step's memory may change by itself, before those of the others do.
+    let alone = !(hierarchy || lists || r.parallel_actions && stored)
+        && t.orders.is_empty()
+        && t.group_lists.is_empty();
+    let single = |x: &g7_engine::Transition| {
+        let ends = x.from.0 != NONE && x.to.0 != NONE;
+        ends && x.more_from.is_empty() && x.more_to.is_empty() && !x.drops
+    };
+    let settled = !r.multi_token && t.steps.iter().any(|s| s.out.end > s.out.start + 1);
     let late =
         r.late_actions && lists || !t.periodics.is_empty() || t.blocks.iter().any(|b| b.action != NONE);
-    let on = t.steps.iter().any(|s| s.direct.0 != NONE)
-        || t.extras.iter().any(|e| {
-            !(e.events.is_empty()
-                && e.periodics.is_empty()
-                && e.contributions.is_empty()
-                && e.groups.is_empty())
-                || (e.uncounted && t.counts.is_some())
-        });
+    let on = t.extras.iter().any(|e| {
+        !(e.events.is_empty() && e.periodics.is_empty() && e.contributions.is_empty() && e.groups.is_empty())
+            || (e.uncounted && t.counts.is_some())
+    });
     f.flags = [
+        ("FLAT", flat),
+        ("ALONE", alone),
         ("STABLE", r.stable),
         ("MULTI", r.multi_token),
         ("EXCLUSIVE", r.numbered_exclusive),
@@ -61,6 +68,11 @@ pub(crate) fn of(t: &Tables) -> Facts {
         ("DEFERS", stored && r.parallel_actions),
         ("HAS_CLEARING", clearing),
         ("HAS_CONTESTS", shared),
+        ("HAS_JOINS", t.transitions.iter().any(|x| !x.more_from.is_empty())),
+        ("ONE_TO_ONE", t.transitions.iter().all(single)),
+        ("HAS_SETTLED", settled && t.transitions.iter().any(|x| x.simple)),
+        ("SAME_RECEPTIVITIES", false),
+        ("HAS_FOLLOWERS", t.steps.iter().any(|s| s.direct.0 != NONE)),
         ("HAS_GROUPS", !t.group_lists.is_empty()),
         ("HAS_EVENTS", !t.events.is_empty()),
         ("HAS_PERIODICS", !t.periodics.is_empty()),
@@ -130,6 +142,7 @@ fn sizes(t: &Tables, f: &mut Facts, full: usize) {
         ("WORDS", words(steps)),
         ("TOP", words(words(steps))),
         ("TRANSITIONS", transitions),
+        ("SOURCES", t.sources.len()),
         ("GROUPS", t.groups.len()),
         ("GROUP_WORDS", words(t.groups.len())),
         ("CHARTS", t.charts.len()),

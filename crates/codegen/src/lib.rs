@@ -19,6 +19,7 @@ mod build;
 mod c;
 mod chart;
 mod facts;
+mod flat;
 mod flow;
 mod frame;
 mod names;
@@ -53,11 +54,25 @@ pub enum Language {
     Rust,
 }
 
+/// How the evolution is written down; what it does is the same.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Style {
+    /// The elements of the chart: tables of its steps and transitions, receptivities,
+    /// actions. What a scan costs follows the active steps.
+    #[default]
+    Structured,
+    /// Boolean equations with memories: the clearing condition of each transition,
+    /// then set and reset of each step, then the outputs.
+    Flat,
+}
+
 /// What to print.
 #[derive(Clone, Debug)]
 pub struct Options<'a> {
     /// The language.
     pub language: Language,
+    /// How the evolution is written down.
+    pub style: Style,
     /// What files and public names begin with.
     pub name: &'a str,
     /// The text of the chart, for comments; may be empty.
@@ -119,7 +134,8 @@ pub fn print(compiled: &Compiled, options: &Options<'_>) -> Result<Printed, Vec<
     let mut hidden = HashMap::new();
     let mut made = None;
     for _ in 0..6 {
-        let mut g = Gen::new(compiled, options.source, hidden.clone());
+        let flat = options.style == Style::Flat;
+        let mut g = Gen::new(compiled, options.source, flat, hidden.clone());
         g.chart();
         g.acts();
         g.frame();
@@ -168,7 +184,9 @@ pub fn print(compiled: &Compiled, options: &Options<'_>) -> Result<Printed, Vec<
         Language::Rust => {
             let native = native_rust::functions(&natives);
             let head = format!(
-                "//! The chart `{name}`, printed by G7. Call [`init`] once, then [`scan`] in each cycle.\n#![forbid(unsafe_code)]\n\n"
+                "//! The chart `{name}`, printed by G7. Call [`init`] once, then [`scan`] in each cycle.\n#![forbid(unsafe_code)]\n\
+                 // What a chart writes for nothing, as `x := x`, stands as it is.\n\
+                 #![allow(dead_code, unused_assignments, clippy::self_assignment)]\n\n"
             );
             vec![File { name: format!("{name}.rs"), text: head + &rust::print(&module, &native) }]
         }

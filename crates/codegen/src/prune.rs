@@ -137,6 +137,15 @@ fn reach(m: &Module) -> (HashSet<String>, HashSet<String>, HashSet<String>, BTre
             });
         }
     }
+    for c in &m.consts {
+        if names.contains(&c.name) {
+            c.value.walk(&mut |e| {
+                if let Expr::Name(n) = e {
+                    names.insert(n.clone());
+                }
+            });
+        }
+    }
     (functions, names, fields, natives)
 }
 

@@ -105,6 +105,14 @@ impl Printer {
                 }
                 self.out.push_str("];\n");
             }
+            Known::Rows(rows) => {
+                let _ = writeln!(self.out, "{open}static {}: {ty} = [", c.name);
+                for (all, note) in rows.iter().filter(|r| !r.0.is_empty()) {
+                    let values: Vec<String> = all.iter().map(|e| self.expr(e)).collect();
+                    let _ = writeln!(self.out, "    {}, // {note}", values.join(", "));
+                }
+                self.out.push_str("];\n");
+            }
         }
         self.out.push('\n');
     }

@@ -264,7 +264,10 @@ impl Reader<'_> {
             let from = self.expr(0);
             self.need("..");
             let to = self.expr(0);
-            all.push(Stmt::For(name, from, to, self.block()));
+            let body = self.block();
+            if from != to {
+                all.push(Stmt::For(name, from, to, body));
+            }
         } else if self.has_word("return") {
             let value = if self.has(";") { None } else { Some(self.expr(0)) };
             if value.is_some() {

@@ -322,6 +322,19 @@ pub(crate) struct Struct {
 pub(crate) enum Known {
     One(Expr),
     Many(Vec<Expr>),
+    /// The same in lines, each with what it is for.
+    Rows(Vec<(Vec<Expr>, String)>),
+}
+
+impl Known {
+    /// Every expression in it.
+    pub(crate) fn walk(&self, f: &mut dyn FnMut(&Expr)) {
+        match self {
+            Known::One(e) => e.walk(f),
+            Known::Many(all) => all.iter().for_each(|e| e.walk(f)),
+            Known::Rows(rows) => rows.iter().flat_map(|r| &r.0).for_each(|e| e.walk(f)),
+        }
+    }
 }
 
 /// A constant.

@@ -245,8 +245,7 @@ impl Flow<'_, '_> {
                 self.stack.push(Entry::of(e, Num::Bool));
             }
             Op::WasActive(step) => {
-                let before = Expr::Ref(false, Box::new(Expr::name("s").field("before")));
-                let e = Expr::call("bit", vec![before, self.g.step(step)]);
+                let e = Expr::name("s").field("before").at(self.g.step(step));
                 self.stack.push(Entry::of(e, Num::Bool));
             }
             Op::GroupActive(g) => self.state_call("group_active", Expr::size(g.0 as usize), Num::Bool),

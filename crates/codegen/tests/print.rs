@@ -5,7 +5,7 @@
 
 use std::process::Command;
 
-use g7_codegen::{Language, Options, Printed, print};
+use g7_codegen::{Language, Options, Printed, Style, print};
 use g7_compile::compile;
 use g7_model::{FileId, Problem, codes};
 
@@ -24,11 +24,15 @@ chart Tank {
 ";
 
 fn printed(text: &str, language: Language) -> Result<Printed, Vec<Problem>> {
+    printed_as(text, language, Style::Structured)
+}
+
+fn printed_as(text: &str, language: Language, style: Style) -> Result<Printed, Vec<Problem>> {
     let (doc, problems) = g7_syntax::parse(text, FileId(0));
     assert!(problems.is_empty(), "{problems:?}");
     let (compiled, problems) = compile(&doc);
     let compiled = compiled.unwrap_or_else(|| panic!("{problems:?}"));
-    print(&compiled, &Options { language, name: "tank", source: text })
+    print(&compiled, &Options { language, style, name: "tank", source: text })
 }
 
 fn file(p: &Printed, name: &str) -> String {
@@ -52,6 +56,47 @@ fn names_and_texts_of_the_chart_stand_in_the_code() {
     }
     let rust = printed(TANK, Language::Rust).expect("it can be printed");
     assert!(file(&rust, "tank.rs").contains("pub const STEP_FILL: usize = 1;"));
+}
+
+#[test]
+fn the_flat_style_is_equations_with_memories() {
+    let c = printed_as(TANK, Language::C, Style::Flat).expect("it can be printed");
+    let text = file(&c, "tank.c");
+    for want in [
+        "s->cf[T_1_TO_FILL] = s->m.x[TANK_STEP_1] && s->inputs.start && !s->inputs.full;",
+        "s->cf[T_FILL_TO_1] = s->m.x[TANK_STEP_FILL] && s->inputs.full;",
+        "set_reset(s, TANK_STEP_FILL, s->cf[T_1_TO_FILL], s->cf[T_FILL_TO_1]);",
+        "set_reset(s, TANK_STEP_1, s->cf[T_FILL_TO_1], s->cf[T_1_TO_FILL]);",
+        "s->outputs.valve = s->m.x[TANK_STEP_FILL];",
+    ] {
+        assert!(text.contains(want), "no `{want}` in\n{text}");
+    }
+    assert!(!text.contains("switch"), "{text}");
+    let rust = printed_as(TANK, Language::Rust, Style::Flat).expect("it can be printed");
+    let want = "s.cf[T_1_TO_FILL] = s.m.x[STEP_1] && s.inputs.start && !s.inputs.full;";
+    assert!(file(&rust, "tank.rs").contains(want), "{}", file(&rust, "tank.rs"));
+}
+
+/// One step before so many alternatives.
+fn alternatives(n: usize) -> String {
+    let mut text = String::from("profile iec61131\ninput a : BOOL\nchart G {\n  initial step 0\n");
+    for i in 1..=n {
+        text += &format!("  step {i}\n  0 -> {i} when a\n  {i} -> 0\n");
+    }
+    text + "}\n"
+}
+
+#[test]
+fn priority_is_an_equation_and_too_many_alternatives_are_refused() {
+    let c = printed_as(&alternatives(3), Language::C, Style::Flat).expect("it can be printed");
+    let want =
+        "s->cf[T_0_TO_3] = s->m.x[TANK_STEP_0] && !s->cf[T_0_TO_1] && !s->cf[T_0_TO_2] && s->inputs.a;";
+    assert!(file(&c, "tank.c").contains(want), "{}", file(&c, "tank.c"));
+    // 500 alternatives: 500 * 499 / 2 terms.
+    let many = alternatives(500);
+    let problems = printed_as(&many, Language::C, Style::Flat).expect_err("too many terms");
+    assert_eq!(problems[0].code.id, codes::NOT_CARRIED.id);
+    printed_as(&many, Language::C, Style::Structured).expect("tables hold them");
 }
 
 #[test]

@@ -4,7 +4,7 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use clap::{Args, Subcommand};
-use g7_codegen::{File, Language, Options, plc};
+use g7_codegen::{File, Language, Options, Style, plc};
 use g7_model::{Problem, ProfileName, Severity};
 
 use crate::failure::{Failure, Verdict};
@@ -16,6 +16,7 @@ const EXAMPLES: &str = "\
 Examples:
   g7 gen c tank -o out            out/tank.h and out/tank.c
   g7 gen c tank                   to the standard output, one file behind the other
+  g7 gen c tank --style flat      Boolean equations with memories
   g7 gen arduino tank -o tank     a sketch folder: tank.ino with the C code
   g7 gen rust tank -o src         src/tank.rs, a module without the standard library
   g7 gen st tank                  Structured Text: a function block of equations
@@ -44,13 +45,13 @@ pub(crate) struct Gen {
 enum Words {
     /// C99 without heap and library: a header and a source file.
     #[command(after_help = EXAMPLES)]
-    C(What),
+    C(Code),
     /// The same with a sketch round it.
     #[command(after_help = EXAMPLES)]
-    Arduino(What),
+    Arduino(Code),
     /// A Rust module without the standard library.
     #[command(after_help = EXAMPLES)]
-    Rust(What),
+    Rust(Code),
     /// Structured Text (IEC 61131-3): Boolean equations with memories.
     #[command(after_help = EXAMPLES)]
     St(What),
@@ -72,6 +73,35 @@ enum Words {
         #[command(flatten)]
         what: What,
     },
+}
+
+/// What to print of C and Rust.
+#[derive(Args, Debug)]
+struct Code {
+    /// How the evolution is written down; what it does is the same.
+    #[arg(long, value_enum, default_value_t = CodeStyle::Structured)]
+    style: CodeStyle,
+    #[command(flatten)]
+    what: What,
+}
+
+/// Styles of C and Rust.
+#[derive(Clone, Copy, Debug, clap::ValueEnum)]
+enum CodeStyle {
+    /// The elements of the chart: steps, transitions, receptivities, actions.
+    Structured,
+    /// Boolean equations: clearing conditions, memories of steps, outputs.
+    Flat,
+}
+
+impl Code {
+    fn print(&self, language: Language) -> Result<Verdict, Failure> {
+        let style = match self.style {
+            CodeStyle::Structured => Style::Structured,
+            CodeStyle::Flat => Style::Flat,
+        };
+        controller(Tongue::Code(language, style), &self.what)
+    }
 }
 
 /// Styles of Instruction List.
@@ -114,9 +144,9 @@ struct What {
 
 pub(crate) fn generate(args: &Gen) -> Result<Verdict, Failure> {
     match &args.language {
-        Words::C(what) => controller(Tongue::Code(Language::C), what),
-        Words::Arduino(what) => controller(Tongue::Code(Language::Arduino), what),
-        Words::Rust(what) => controller(Tongue::Code(Language::Rust), what),
+        Words::C(code) => code.print(Language::C),
+        Words::Arduino(code) => code.print(Language::Arduino),
+        Words::Rust(code) => code.print(Language::Rust),
         Words::St(what) => controller(Tongue::Plc(plc::Form::St, "st"), what),
         Words::Il { style: IlStyle::Flat, what } => controller(Tongue::Plc(plc::Form::Il, "il"), what),
         Words::Il { style: IlStyle::Dolog80, what } => {
@@ -130,7 +160,7 @@ pub(crate) fn generate(args: &Gen) -> Result<Verdict, Failure> {
 /// What is printed, and for a PLC the ending of its file.
 #[derive(Clone, Copy)]
 enum Tongue {
-    Code(Language),
+    Code(Language, Style),
     Plc(plc::Form, &'static str),
 }
 
@@ -142,8 +172,8 @@ impl Tongue {
         source: &str,
     ) -> Result<(Vec<File>, Vec<Problem>), Vec<Problem>> {
         match self {
-            Tongue::Code(language) => {
-                let options = Options { language, name, source };
+            Tongue::Code(language, style) => {
+                let options = Options { language, style, name, source };
                 g7_codegen::print(compiled, &options).map(|p| (p.files, p.problems))
             }
             Tongue::Plc(form, ending) => {

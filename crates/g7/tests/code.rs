@@ -1,6 +1,10 @@
 //! `g7 gen`: files of code, whole or not at all; exit codes as the other commands.
+#![allow(clippy::disallowed_methods, reason = "a test starts a compiler")]
 
 mod common;
+
+use std::path::Path;
+use std::process::Command;
 
 use common::Folder;
 
@@ -48,4 +52,78 @@ fn what_c_cannot_say_is_a_problem_and_nothing_is_written() {
     folder.write("chart.g7", CHART.replace("when a", "when nothing_has_this"));
     folder.g7(&["gen", "c", "-o", "out"]).is(1);
     assert_eq!(folder.names(), ["chart.g7"]);
+}
+
+/// Every language and style: arguments, the files in their order, a sign of each style.
+const ALL: [(&[&str], &[&str], &str); 12] = [
+    (&["c"], &["tank.h", "tank.c"], "receptivity("),
+    (&["c", "--style", "structured"], &["tank.h", "tank.c"], "receptivity("),
+    (&["c", "--style", "flat"], &["tank.h", "tank.c"], "clearing_conditions("),
+    (&["arduino"], &["tank.h", "tank.c", "tank.ino"], "void loop()"),
+    (&["arduino", "--style", "flat"], &["tank.h", "tank.c", "tank.ino"], "clearing_conditions("),
+    (&["rust"], &["tank.rs"], "fn receptivity("),
+    (&["rust", "--style", "flat"], &["tank.rs"], "fn clearing_conditions("),
+    (&["st"], &["tank.st"], "END_FUNCTION_BLOCK"),
+    (&["il"], &["tank.il"], "END_FUNCTION_BLOCK"),
+    (&["il", "--style", "dolog80"], &["tank.il"], "R_"),
+    (&["ld"], &["tank.xml"], "<LD>"),
+    (&["ld", "--style", "drawn"], &["tank.svg"], "<svg"),
+];
+
+#[test]
+fn every_language_and_style_goes_to_the_standard_output_and_to_files() {
+    for (args, files, sign) in ALL {
+        let folder = Folder::new();
+        folder.write("tank/chart.g7", CHART);
+        let given = [&["gen"], args, &["tank"]].concat();
+        let out = folder.g7(&given).is(0).out.clone();
+        assert!(out.contains(sign), "{args:?}: no `{sign}` in\n{out}");
+        assert_eq!(folder.names(), ["tank"], "{args:?}: the standard output leaves no file");
+        folder.g7(&[&given[..], &["-o", "out"]].concat()).is(0);
+        let texts: Vec<String> = files.iter().map(|f| folder.read(&format!("out/{f}"))).collect();
+        assert_eq!(texts.join("\n"), out, "{args:?}: the files one behind the other");
+        let count = std::fs::read_dir(folder.path("out")).expect("a folder").count();
+        assert_eq!(count, files.len(), "{args:?}: these files and no other");
+    }
+}
+
+#[test]
+fn what_is_no_language_and_no_style_is_refused() {
+    let folder = Folder::with(CHART);
+    for (args, word) in [
+        (&["gen", "cobol"] as &[&str], "cobol"),
+        (&["gen", "c", "--style", "round"], "round"),
+        (&["gen", "rust", "--style", "dolog80"], "dolog80"),
+        (&["gen", "il", "--style", "structured"], "structured"),
+        (&["gen", "ld", "--style", "flat"], "flat"),
+        (&["gen", "st", "--style", "flat"], "--style"),
+        (&["gen", "c", "nowhere.g7"], "nowhere.g7"),
+        (&["gen", "c", "--profile", "iec"], "iec"),
+    ] {
+        let ran = folder.g7(args);
+        assert_eq!((ran.code, ran.out.as_str()), (2, ""), "{args:?}: {}", ran.err);
+        assert!(ran.err.contains(word), "{args:?}: {}", ran.err);
+    }
+    assert_eq!(folder.names(), ["chart.g7"]);
+}
+
+#[test]
+fn the_bead_sorter_compiles_without_a_warning() {
+    let chart = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples/bead-sorter/chart.g7");
+    let chart = chart.to_str().expect("a path");
+    for style in ["structured", "flat"] {
+        let folder = Folder::new();
+        folder.g7(&["gen", "c", chart, "--style", style, "--name", "sorter", "-o", "."]).is(0);
+        for compiler in ["gcc", "clang"] {
+            let strict =
+                ["-std=c99", "-Wall", "-Wextra", "-Wconversion", "-pedantic", "-Werror", "-O2", "-c"];
+            let run = Command::new(compiler).args(strict).arg("sorter.c").current_dir(folder.root()).output();
+            let Ok(out) = run else {
+                println!("skipped: no {compiler} on the PATH");
+                continue;
+            };
+            let said = String::from_utf8_lossy(&out.stderr);
+            assert!(out.status.success() && said.is_empty(), "{compiler}, {style}:\n{said}");
+        }
+    }
 }

@@ -121,7 +121,8 @@ fn code(file: &File, name: &str, code: Code) -> Result<Out, String> {
     let symbols = &compiled.symbols;
     let printed = match code {
         Code::Native(language) => {
-            let options = g7_codegen::Options { language, name, source: file.text() };
+            let style = g7_codegen::Style::Structured;
+            let options = g7_codegen::Options { language, style, name, source: file.text() };
             g7_codegen::print(&compiled, &options).map(|p| {
                 let steps = words(file, symbols, |step| p.places.step(step).to_owned());
                 (p.files.into_iter().map(|f| (f.name, f.text)).collect(), p.problems, steps)

@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use g7_codegen::{Language, Printed};
+use g7_codegen::{Language, Printed, Style};
 use g7_compile::ir::VarClass;
 use g7_compile::symbols::Variable;
 use g7_engine::StepId;
@@ -142,6 +142,7 @@ pub fn c_program(
     folder: &Path,
     compiler: &str,
     flags: &[&str],
+    style: Style,
     subjects: &[&Subject],
 ) -> Result<PathBuf, String> {
     std::fs::create_dir_all(folder).map_err(|e| e.to_string())?;
@@ -150,7 +151,8 @@ pub fn c_program(
     let mut table = String::new();
     for (i, subject) in subjects.iter().enumerate() {
         let name = format!("c{i}");
-        let printed = subject.print(Language::C, &name).map_err(|e| format!("{}: {e}", subject.title))?;
+        let printed =
+            subject.print(Language::C, style, &name).map_err(|e| format!("{}: {e}", subject.title))?;
         for file in &printed.files {
             std::fs::write(folder.join(&file.name), &file.text).map_err(|e| e.to_string())?;
         }

@@ -11,7 +11,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use std::process::{Command, Stdio};
 
-use g7_codegen::{Language, Options, Printed};
+use g7_codegen::{Language, Options, Printed, Style};
 use g7_compile::ir::VarClass;
 use g7_compile::symbols::Variable;
 use g7_compile::{Compiled, compile_with};
@@ -209,8 +209,8 @@ impl Subject {
     /// # Errors
     ///
     /// What the language cannot say.
-    pub fn print(&self, language: Language, name: &str) -> Result<Printed, String> {
-        let options = Options { language, name, source: &self.text };
+    pub fn print(&self, language: Language, style: Style, name: &str) -> Result<Printed, String> {
+        let options = Options { language, style, name, source: &self.text };
         g7_codegen::print(&self.compiled, &options)
             .map_err(|p| p.iter().map(|p| p.what.clone()).collect::<Vec<_>>().join("; "))
     }

@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use g7_codegen::{Language, Printed};
+use g7_codegen::{Language, Printed, Style};
 use g7_compile::ir::VarClass;
 use g7_compile::symbols::Variable;
 use g7_engine::StepId;
@@ -117,14 +117,15 @@ fn player(subject: &Subject, printed: &Printed, name: &str) -> String {
 /// # Errors
 ///
 /// What the compiler has to say, or what cannot be printed.
-pub fn rust_program(folder: &Path, subjects: &[&Subject]) -> Result<PathBuf, String> {
+pub fn rust_program(folder: &Path, style: Style, subjects: &[&Subject]) -> Result<PathBuf, String> {
     std::fs::create_dir_all(folder).map_err(|e| e.to_string())?;
     let mut library = String::from("#![no_std]\n#![forbid(unsafe_code)]\n#![deny(warnings)]\n");
     let mut main = String::from(HEAD);
     let mut table = String::new();
     for (i, subject) in subjects.iter().enumerate() {
         let name = format!("c{i}");
-        let printed = subject.print(Language::Rust, &name).map_err(|e| format!("{}: {e}", subject.title))?;
+        let printed =
+            subject.print(Language::Rust, style, &name).map_err(|e| format!("{}: {e}", subject.title))?;
         for file in &printed.files {
             std::fs::write(folder.join(&file.name), &file.text).map_err(|e| e.to_string())?;
         }

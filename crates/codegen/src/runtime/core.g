@@ -1,6 +1,8 @@
 // What evolves.
 struct Memory {
-    // active steps, a bit each
+    // the step memories: whether each step is active
+    x: [bool; STEPS],
+    // active steps, a bit each: the list of those to look at
     active: [u32; WORDS],
     // words of `active` that are not zero, a bit each
     top: [u32; TOP],
@@ -66,6 +68,11 @@ struct State {
     conflict: bool,
     // loops made in this scan
     work: u32,
+    // outputs that follow a step are behind
+    behind: bool,
+    // clearing conditions: enabled and the receptivity true; and with nothing in the way
+    clearable: [bool; TRANSITIONS],
+    cf: [bool; TRANSITIONS],
     // transitions that clear in this pass
     fired: [row; TRANSITIONS],
     fired_count: usize,
@@ -81,7 +88,7 @@ struct State {
     on_count: usize,
     off_count: usize,
     // the situation as the pass began
-    before: [u32; WORDS],
+    before: [bool; STEPS],
     // actions to run in this pass, and at the end of the scan
     runs: [row; RUNS],
     runs_count: usize,
@@ -145,7 +152,7 @@ fn bit_next(words: &[u32], count: usize, from: usize) -> usize {
 
 // Whether a step is active.
 pub fn is_active(s: &State, step: usize) -> bool {
-    return step < STEPS && bit(&s.m.active, step);
+    return step < STEPS && s.m.x[step];
 }
 
 // Time since a step was activated in nanoseconds (scans under the scan clock);
@@ -154,7 +161,7 @@ pub fn step_time(s: &State, step: usize) -> i64 {
     if step >= STEPS {
         return 0;
     }
-    if bit(&s.m.active, step) {
+    if s.m.x[step] {
         return since(clock(s), s.m.stamp[step]);
     }
     return s.m.stamp[step];
@@ -164,7 +171,7 @@ fn step_age(s: &State, step: usize) -> i64 {
     if !SCAN_CLOCK {
         return step_time(s, step);
     }
-    if bit(&s.m.active, step) {
+    if s.m.x[step] {
         return since(s.now, s.m.age[step]);
     }
     return s.m.age[step];
@@ -246,14 +253,20 @@ fn mark_off(s: &mut State, step: usize) {
 }
 
 fn activate(s: &mut State, step: usize) {
-    let k: usize = step >> 5;
-    s.m.active[k] |= 1u32 << (step & 31);
-    s.m.top[k >> 5] |= 1u32 << (k & 31);
+    s.m.x[step] = true;
+    if !FLAT {
+        let k: usize = step >> 5;
+        s.m.active[k] |= 1u32 << (step & 31);
+        s.m.top[k >> 5] |= 1u32 << (k & 31);
+    }
     if STABLE {
         s.changed = true;
     }
     if NOTES_STEPS {
         s.stepped = true;
+    }
+    if HAS_FOLLOWERS && !FLAT {
+        s.behind = true;
     }
     if HAS_COUNTS {
         s.moved += 1;
@@ -268,16 +281,22 @@ fn activate(s: &mut State, step: usize) {
 }
 
 fn deactivate(s: &mut State, step: usize) {
-    let k: usize = step >> 5;
-    s.m.active[k] &= inv(1u32 << (step & 31));
-    if s.m.active[k] == 0 {
-        s.m.top[k >> 5] &= inv(1u32 << (k & 31));
+    s.m.x[step] = false;
+    if !FLAT {
+        let k: usize = step >> 5;
+        s.m.active[k] &= inv(1u32 << (step & 31));
+        if s.m.active[k] == 0 {
+            s.m.top[k >> 5] &= inv(1u32 << (k & 31));
+        }
     }
     if STABLE {
         s.changed = true;
     }
     if NOTES_STEPS {
         s.stepped = true;
+    }
+    if HAS_FOLLOWERS && !FLAT {
+        s.behind = true;
     }
     if HAS_COUNTS {
         s.moved += 1;
@@ -327,7 +346,7 @@ fn gather(s: &mut State) {
     while k < s.off_count {
         let step: usize = s.off[k] as usize;
         k += 1;
-        if bit(&s.off_mark, step) && !bit(&s.on_mark, step) && bit(&s.m.active, step) {
+        if bit(&s.off_mark, step) && !bit(&s.on_mark, step) && s.m.x[step] {
             gather_off(s, step);
         }
     }
@@ -335,7 +354,7 @@ fn gather(s: &mut State) {
     while k < s.on_count {
         let step: usize = s.on[k] as usize;
         k += 1;
-        if bit(&s.on_mark, step) && !bit(&s.m.active, step) {
+        if bit(&s.on_mark, step) && !s.m.x[step] {
             gather_on(s, step);
         }
     }
@@ -350,7 +369,7 @@ fn apply(s: &mut State) {
     while k < s.off_count {
         let step: usize = s.off[k] as usize;
         k += 1;
-        let goes: bool = bit(&s.off_mark, step) && !bit(&s.on_mark, step) && bit(&s.m.active, step);
+        let goes: bool = bit(&s.off_mark, step) && !bit(&s.on_mark, step) && s.m.x[step];
         bit_clear(&mut s.off_mark, step);
         if UNMARKS {
             bit_clear(&mut s.off_listed, step);
@@ -364,7 +383,7 @@ fn apply(s: &mut State) {
     while k < s.on_count {
         let step: usize = s.on[k] as usize;
         k += 1;
-        let comes: bool = bit(&s.on_mark, step) && !bit(&s.m.active, step);
+        let comes: bool = bit(&s.on_mark, step) && !s.m.x[step];
         bit_clear(&mut s.on_mark, step);
         if UNMARKS {
             bit_clear(&mut s.on_listed, step);
@@ -506,6 +525,129 @@ fn watch_all(s: &mut State) {
     }
 }
 
+// The transitions behind an active step, best priority first.
+fn watch_step(s: &mut State, step: usize) {
+    if HAS_ORDERS || HAS_PERIODS {
+        if s.blocked[STEP_CHART[step] as usize] {
+            return;
+        }
+    }
+    let mut i: usize = OUT_AT[step] as usize;
+    while i < OUT_AT[step + 1] as usize {
+        let t: usize = OUT[i] as usize;
+        i += 1;
+        if is_clearable(s, t) {
+            fire(s, t);
+            // Behind the first that clears none is looked at.
+            if HAS_SETTLED {
+                if SETTLES[t] {
+                    return;
+                }
+            }
+        }
+        if GUARDS_FAIL {
+            if s.fault != 0 {
+                return;
+            }
+        }
+    }
+}
+
+// Whether a transition that is looked at from its first preceding step is enabled
+// and its receptivity true.
+fn is_clearable(s: &mut State, t: usize) -> bool {
+    if HAS_JOINS {
+        let mut i: usize = FROM_AT[t] as usize + 1;
+        while i < FROM_AT[t + 1] as usize {
+            if !s.m.x[FROM[i] as usize] {
+                return false;
+            }
+            i += 1;
+        }
+    }
+    return is_true(s, t);
+}
+
+fn is_true(s: &mut State, t: usize) -> bool {
+    if SAME_RECEPTIVITIES {
+        return receptivity(s, WHEN[t] as usize);
+    }
+    return receptivity(s, t);
+}
+
+fn judge_source(s: &mut State, t: usize) {
+    if is_true(s, t) {
+        fire(s, t);
+    }
+}
+
+// Transitions without a preceding step.
+fn sources(s: &mut State) {
+    for i in 0..SOURCES {
+        if HAS_ORDERS || HAS_PERIODS {
+            if !s.blocked[SOURCE_CHART[i] as usize] {
+                judge_source(s, SOURCE[i] as usize);
+            }
+        } else {
+            judge_source(s, SOURCE[i] as usize);
+        }
+        if s.fault != 0 {
+            return;
+        }
+    }
+}
+
+// A transition clears: the steps before it go off, those behind it come on.
+fn clear(s: &mut State, t: usize) {
+    if ONE_TO_ONE {
+        mark_off(s, FROM[t] as usize);
+        mark_on(s, TO[t] as usize);
+    } else {
+        let mut i: usize = FROM_AT[t] as usize;
+        while i < FROM_AT[t + 1] as usize {
+            mark_off(s, FROM[i] as usize);
+            i += 1;
+        }
+        if HAS_DROPS {
+            i = DROPS_AT[t] as usize;
+            while i < DROPS_AT[t + 1] as usize {
+                mark_off(s, DROPS[i] as usize);
+                i += 1;
+            }
+        }
+        i = TO_AT[t] as usize;
+        while i < TO_AT[t + 1] as usize {
+            mark_on(s, TO[i] as usize);
+            i += 1;
+        }
+    }
+    if HAS_CLEARING {
+        if (ON_CLEARING[t] as usize) < ACTIONS {
+            run_in_pass(s, ON_CLEARING[t] as usize);
+        }
+    }
+}
+
+// A step's memory: `set` makes it true, `reset` false where it is not set (rule 5).
+fn set_reset(s: &mut State, step: usize, set: bool, reset: bool) {
+    if ALONE {
+        if set {
+            if !s.m.x[step] {
+                activate(s, step);
+            }
+        } else if reset && s.m.x[step] {
+            deactivate(s, step);
+        }
+    } else {
+        if set {
+            mark_on(s, step);
+        }
+        if reset {
+            mark_off(s, step);
+        }
+    }
+}
+
 fn fire(s: &mut State, transition: usize) {
     s.fired[s.fired_count] = transition as row;
     s.fired_count += 1;
@@ -624,9 +766,13 @@ fn pass(s: &mut State) {
         }
     }
     if LOOKS_BACK {
-        s.before = s.m.active;
+        s.before = s.m.x;
     }
-    collect(s);
+    if FLAT {
+        clearing_conditions(s);
+    } else {
+        collect(s);
+    }
     if HAS_EVENTS {
         if s.fault == 0 {
             events(s);
@@ -643,9 +789,21 @@ fn pass(s: &mut State) {
         s.before_v = s.v;
         s.before_outputs = s.outputs;
     }
-    resolve(s);
+    if FLAT && SEQUENTIAL {
+        s.fired_count = 0;
+        for t in 0..TRANSITIONS {
+            if s.cf[t] {
+                fire(s, t);
+            }
+        }
+    } else if !FLAT {
+        resolve(s);
+    }
     if SEQUENTIAL {
         in_turn(s);
+    } else if FLAT {
+        step_memories(s);
+        commit(s);
     } else {
         let mut k: usize = 0;
         while k < s.fired_count {
@@ -790,7 +948,11 @@ fn finish(s: &mut State) {
         }
     }
     if HAS_BLOCKS {
-        evaluate_blocks(s);
+        if FLAT {
+            control_blocks(s);
+        } else {
+            evaluate_blocks(s);
+        }
         if s.fault != 0 {
             return;
         }
@@ -836,6 +998,14 @@ pub fn scan(input: &Inputs, out: &mut Outputs, s: &mut State, now: i64) -> u8 {
         begin(s, now);
         if s.fault == 0 {
             evolve(s);
+        }
+        if HAS_FOLLOWERS {
+            if FLAT {
+                follow(s);
+            } else if s.behind {
+                s.behind = false;
+                follow(s);
+            }
         }
         if s.fault == 0 {
             finish(s);

@@ -7,7 +7,7 @@ fn cascade(s: &mut State) {
         while k < s.off_count {
             let step: usize = s.off[k] as usize;
             k += 1;
-            if bit(&s.off_mark, step) && !bit(&s.on_mark, step) && bit(&s.m.active, step) {
+            if bit(&s.off_mark, step) && !bit(&s.on_mark, step) && s.m.x[step] {
                 empty_enclosed(s, step);
             }
         }
@@ -19,7 +19,7 @@ fn cascade(s: &mut State) {
         while k < s.on_count {
             let step: usize = s.on[k] as usize;
             k += 1;
-            if bit(&s.on_mark, step) && !bit(&s.m.active, step) {
+            if bit(&s.on_mark, step) && !s.m.x[step] {
                 let mut i: usize = LINKS_AT[step] as usize;
                 while i < LINKS_AT[step + 1] as usize {
                     mark_on(s, LINKS[i] as usize);
@@ -54,10 +54,18 @@ fn empty_enclosed(s: &mut State, step: usize) {
 }
 
 fn mark_range_off(s: &mut State, first: usize, end: usize) {
-    let mut k: usize = bit_next(&s.m.active, end, first);
-    while k < end {
-        mark_off(s, k);
-        k = bit_next(&s.m.active, end, k + 1);
+    if FLAT {
+        for k in first..end {
+            if s.m.x[k] {
+                mark_off(s, k);
+            }
+        }
+    } else {
+        let mut k: usize = bit_next(&s.m.active, end, first);
+        while k < end {
+            mark_off(s, k);
+            k = bit_next(&s.m.active, end, k + 1);
+        }
     }
 }
 
@@ -124,7 +132,7 @@ fn block_charts(s: &mut State) {
         s.conflict = false;
         for i in 0..ORDERS {
             let step: usize = ORDER_STEP[i] as usize;
-            if bit(&s.on_mark, step) || (bit(&s.m.active, step) && !bit(&s.off_mark, step)) {
+            if bit(&s.on_mark, step) || (s.m.x[step] && !bit(&s.off_mark, step)) {
                 impose(s, i);
                 if HAS_HIERARCHY {
                     cascade(s);
@@ -153,19 +161,19 @@ fn impose(s: &mut State, order: usize) {
     if ORDER_SITUATION[order] == 0 {
         return;
     }
-    let mut i: usize = ORDER_AT[order] as usize;
-    while i < ORDER_AT[order + 1] as usize {
+    let mut i: usize = ORDER_STEPS_AT[order] as usize;
+    while i < ORDER_STEPS_AT[order + 1] as usize {
         mark_on(s, ORDER_STEPS[i] as usize);
         i += 1;
     }
     let group: usize = CHART_GROUP[chart] as usize;
     mark_range_off(s, GROUP_FIRST[group] as usize, GROUP_END[group] as usize);
     // An imposed step that is active already is neither activated nor deactivated.
-    i = ORDER_AT[order] as usize;
-    while i < ORDER_AT[order + 1] as usize {
+    i = ORDER_STEPS_AT[order] as usize;
+    while i < ORDER_STEPS_AT[order + 1] as usize {
         let step: usize = ORDER_STEPS[i] as usize;
         i += 1;
-        if bit(&s.m.active, step) {
+        if s.m.x[step] {
             bit_clear(&mut s.on_mark, step);
             bit_clear(&mut s.off_mark, step);
         }
@@ -193,9 +201,11 @@ fn in_turn(s: &mut State) {
             s.emptied_count = 0;
         }
         if HAS_CLEARING {
-            clearing(s, t);
-            if s.fault != 0 {
-                return;
+            if (ON_CLEARING[t] as usize) < ACTIONS {
+                run_action(s, ON_CLEARING[t] as usize);
+                if s.fault != 0 {
+                    return;
+                }
             }
         }
         let mut i: usize = FROM_AT[t] as usize;
@@ -245,7 +255,7 @@ fn leave(s: &mut State, first: usize) {
     while s.chain_count > 0 {
         s.chain_count -= 1;
         let step: usize = s.chain[s.chain_count] as usize;
-        if bit(&s.m.active, step) {
+        if s.m.x[step] {
             if HAS_LISTS {
                 run_off(s, step);
                 if s.fault != 0 {
@@ -265,7 +275,7 @@ fn leave(s: &mut State, first: usize) {
                     let mut k: usize = GROUP_END[group] as usize;
                     while k > GROUP_FIRST[group] as usize {
                         k -= 1;
-                        if bit(&s.m.active, k) {
+                        if s.m.x[k] {
                             push(s, k);
                         }
                     }
@@ -282,7 +292,7 @@ fn enter(s: &mut State, first: usize) {
     while s.chain_count > 0 {
         s.chain_count -= 1;
         let step: usize = s.chain[s.chain_count] as usize;
-        if !bit(&s.m.active, step) {
+        if !s.m.x[step] {
             activate(s, step);
             if HAS_LISTS {
                 run_on(s, step);
@@ -311,7 +321,7 @@ fn enclosures(s: &mut State) {
     while k < s.left_count {
         let step: usize = s.left[k] as usize;
         k += 1;
-        if !bit(&s.m.active, step) {
+        if !s.m.x[step] {
             let mut i: usize = ENCLOSES_AT[step] as usize;
             while i < ENCLOSES_AT[step + 1] as usize {
                 let group: usize = ENCLOSES[i] as usize;
@@ -329,7 +339,7 @@ fn enclosures(s: &mut State) {
     while k < s.came_count {
         let step: usize = s.came[k] as usize;
         k += 1;
-        if bit(&s.m.active, step) && !has_left(s, step) {
+        if s.m.x[step] && !has_left(s, step) {
             let mut i: usize = LINKS_AT[step] as usize;
             while i < LINKS_AT[step + 1] as usize {
                 mark_on(s, LINKS[i] as usize);
@@ -431,7 +441,7 @@ fn carry_out(s: &mut State) {
 // RESET_XIT: all step times are 0.
 fn reset_times(s: &mut State) {
     for i in 0..STEPS {
-        let active: bool = bit(&s.m.active, i);
+        let active: bool = s.m.x[i];
         s.m.stamp[i] = 0;
         if active {
             s.m.stamp[i] = clock(s);
@@ -627,7 +637,7 @@ fn is_enabled(s: &State, t: usize) -> bool {
     }
     let mut i: usize = FROM_AT[t] as usize;
     while i < FROM_AT[t + 1] as usize {
-        if !bit(&s.m.active, FROM[i] as usize) {
+        if !s.m.x[FROM[i] as usize] {
             return false;
         }
         i += 1;
@@ -638,7 +648,7 @@ fn is_enabled(s: &State, t: usize) -> bool {
 fn count_active(s: &State) -> u32 {
     let mut count: u32 = 0;
     for i in 0..STEPS {
-        if STEP_COUNTED[i] && bit(&s.m.active, i) {
+        if STEP_COUNTED[i] && s.m.x[i] {
             count += 1;
         }
     }
