@@ -264,9 +264,13 @@ impl<'a> Gen<'a> {
 
     /// Adds what the templates say.
     pub(crate) fn templates(&mut self) {
-        for text in
-            [include_str!("runtime/core.g"), include_str!("runtime/more.g"), include_str!("runtime/fb.g")]
-        {
+        for text in [
+            include_str!("runtime/core.g"),
+            include_str!("runtime/pass.g"),
+            include_str!("runtime/more.g"),
+            include_str!("runtime/blocks.g"),
+            include_str!("runtime/fb.g"),
+        ] {
             let m = crate::template::read(text, &self.facts);
             // The smaller structures first: the larger ones consist of them.
             self.m.structs.extend(m.structs);

@@ -2,6 +2,7 @@
 //!
 //! ```text
 //! compile::Compiled (tables, names) -> tree of functions -> C99 | Rust | an Arduino sketch
+//!                                      (tables of the chart, or equations: `flat`)
 //! ```
 //!
 //! # Invariants
@@ -10,7 +11,8 @@
 //!   truth, and the code does what the engine does, scan by scan. The tests run
 //!   both beside each other.
 //! - What a language cannot say is refused with a [`Problem`], never printed wrong.
-//! - The code needs no heap and no library, and its work follows the active steps.
+//! - The code needs no heap and no library. In the structured style its work follows
+//!   the active steps; the flat style looks at every transition in every pass.
 #![forbid(unsafe_code)]
 
 mod acts;
@@ -185,8 +187,8 @@ pub fn print(compiled: &Compiled, options: &Options<'_>) -> Result<Printed, Vec<
             let native = native_rust::functions(&natives);
             let head = format!(
                 "//! The chart `{name}`, printed by G7. Call [`init`] once, then [`scan`] in each cycle.\n#![forbid(unsafe_code)]\n\
-                 // What a chart writes for nothing, as `x := x`, stands as it is.\n\
-                 #![allow(dead_code, unused_assignments, clippy::self_assignment)]\n\n"
+                 // What a chart writes for nothing stands as it is, and so do brackets.\n\
+                 #![allow(dead_code, unused_assignments, unused_mut, unused_parens)]\n\n"
             );
             vec![File { name: format!("{name}.rs"), text: head + &rust::print(&module, &native) }]
         }

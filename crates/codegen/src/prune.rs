@@ -39,9 +39,13 @@ fn is_idle(f: &Function) -> bool {
         })
 }
 
-/// Takes calls of functions that do nothing out.
+/// Takes out calls of functions that do nothing, and `x := x`.
 fn without_idle(body: &mut Vec<Stmt>, idle: &HashSet<String>) {
-    body.retain(|s| !matches!(s, Stmt::Do(Expr::Call(f, _)) if idle.contains(f)));
+    body.retain(|s| match s {
+        Stmt::Do(Expr::Call(f, _)) => !idle.contains(f),
+        Stmt::Assign(None, to, value) => to != value,
+        _ => true,
+    });
     for s in body {
         match s {
             Stmt::If(_, a, b) => {
@@ -61,12 +65,12 @@ pub(crate) fn prune(m: &mut Module) -> BTreeSet<String> {
     loop {
         let idle: HashSet<String> =
             m.functions.iter().filter(|f| !f.public && is_idle(f)).map(|f| f.name.clone()).collect();
-        if idle.is_empty() {
-            break;
-        }
         m.functions.retain(|f| f.public || !idle.contains(&f.name));
         for f in &mut m.functions {
             without_idle(&mut f.body, &idle);
+        }
+        if idle.is_empty() {
+            break;
         }
     }
     // What compares is made of the fields that are left.
