@@ -201,6 +201,7 @@ pub(crate) fn comparisons(m: &mut Module) {
 fn same(m: &Module, ty: &Ty, a: Expr, b: Expr, depth: usize) -> Block {
     let leave = || vec![Stmt::Return(Some(Expr::Bool(false)))];
     match ty {
+        Ty::Array(_, 0) => Block::new(),
         Ty::Array(of, n) => {
             let i = ["i", "j", "k"].get(depth).copied().unwrap_or("l");
             let inner = same(m, of, a.at(Expr::name(i)), b.at(Expr::name(i)), depth + 1);

@@ -73,15 +73,37 @@ fn the_flat_style_is_equations_with_memories() {
     }
     assert!(!text.contains("switch"), "{text}");
     let rust = printed_as(TANK, Language::Rust, Style::Flat).expect("it can be printed");
-    let want = "s.cf[T_1_TO_FILL] = s.m.x[STEP_1] && s.inputs.start && !s.inputs.full;";
+    let want = "s.cf[T_1_TO_FILL] = s.m.x[STEP_1] && (s.inputs.start && !s.inputs.full);";
     assert!(file(&rust, "tank.rs").contains(want), "{}", file(&rust, "tank.rs"));
+}
+
+#[test]
+fn an_input_named_as_what_the_code_remembers_brings_no_warning() {
+    // `start` is a field of timers as well, of which this chart has none.
+    for style in [Style::Structured, Style::Flat] {
+        let p = printed_as(TANK, Language::C, style).expect("it can be printed");
+        let folder = std::env::temp_dir().join(format!("g7-tank-{}-{style:?}", std::process::id()));
+        std::fs::create_dir_all(&folder).expect("a folder");
+        for f in &p.files {
+            std::fs::write(folder.join(&f.name), &f.text).expect("a file");
+        }
+        let strict =
+            ["-std=c99", "-Wall", "-Wextra", "-Wconversion", "-pedantic", "-Werror", "-fsyntax-only"];
+        let out = Command::new("gcc").args(strict).arg("tank.c").current_dir(&folder).output();
+        let _ = std::fs::remove_dir_all(&folder);
+        let Ok(out) = out else {
+            println!("skipped: no gcc on the PATH");
+            return;
+        };
+        assert!(out.status.success(), "{}", String::from_utf8_lossy(&out.stderr));
+    }
 }
 
 /// One step before so many alternatives.
 fn alternatives(n: usize) -> String {
     let mut text = String::from("profile iec61131\ninput a : BOOL\nchart G {\n  initial step 0\n");
     for i in 1..=n {
-        text += &format!("  step {i}\n  0 -> {i} when a\n  {i} -> 0\n");
+        text += &format!("  step {i}\n  0 -> {i} when a\n  {i} -> 0 when TRUE\n");
     }
     text + "}\n"
 }
