@@ -66,8 +66,9 @@ const ALL: [(&[&str], &[&str], &str); 12] = [
     (&["st"], &["tank.st"], "END_FUNCTION_BLOCK"),
     (&["il"], &["tank.il"], "END_FUNCTION_BLOCK"),
     (&["il", "--style", "dolog80"], &["tank.il"], "R_"),
-    (&["ld"], &["tank.xml"], "<LD>"),
-    (&["ld", "--style", "drawn"], &["tank.svg"], "<svg"),
+    // Ladder has no loop: one pass.
+    (&["ld", "--profile", "pl7"], &["tank.xml"], "<LD>"),
+    (&["ld", "--profile", "pl7", "--style", "drawn"], &["tank.svg"], "<svg"),
 ];
 
 #[test]
