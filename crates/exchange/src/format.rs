@@ -83,11 +83,14 @@ pub enum Outlet {
     Xmi,
     /// A program in IEC 61131-3 text: a sequential function chart with Structured Text.
     IecText,
+    /// A workspace of JGrafchart 2.x, `saveVersion` 8.
+    Jgrafchart,
 }
 
 impl Outlet {
     /// All of them, in the order in which they are listed.
-    pub const ALL: &[Outlet] = &[Outlet::Mermaid, Outlet::Plcopen, Outlet::Xmi, Outlet::IecText];
+    pub const ALL: &[Outlet] =
+        &[Outlet::Mermaid, Outlet::Plcopen, Outlet::Xmi, Outlet::IecText, Outlet::Jgrafchart];
 
     /// The word for it on the command line.
     pub fn word(self) -> &'static str {
@@ -96,6 +99,7 @@ impl Outlet {
             Outlet::Plcopen => "plcopen",
             Outlet::Xmi => "xmi",
             Outlet::IecText => "sfc",
+            Outlet::Jgrafchart => "jgrafchart",
         }
     }
 
@@ -106,6 +110,7 @@ impl Outlet {
             Outlet::Plcopen => "PLCopen XML",
             Outlet::Xmi => "XMI",
             Outlet::IecText => "IEC 61131-3 text",
+            Outlet::Jgrafchart => "JGrafchart",
         }
     }
 
@@ -116,6 +121,7 @@ impl Outlet {
             Outlet::Plcopen => "xml",
             Outlet::Xmi => "grafcet",
             Outlet::IecText => "st",
+            Outlet::Jgrafchart => "xml",
         }
     }
 }

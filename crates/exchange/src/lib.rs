@@ -88,5 +88,6 @@ pub fn export(to: Outlet, document: &Document) -> Written {
         Outlet::IecText => iectext::export(document),
         Outlet::Plcopen => plcopen::export(document),
         Outlet::Xmi => xmi::export(document),
+        Outlet::Jgrafchart => jgrafchart::export(document),
     }
 }

@@ -1,18 +1,22 @@
 //! The actions of a step and the condition of a transition.
 
 use g7_model::codes;
-use g7_model::{Action, ActionKind, Expr, ExprKind, Path, Qualifier, Stmt, StmtKind, Target, Type, Work};
+use g7_model::{
+    Action, ActionKind, Expr, ExprKind, Path, Qualifier, Stmt, StmtKind, Target, Type, VarKind, Work,
+};
 
+use super::build::fresh;
 use super::express::Express;
 use super::names::{Meaning, Names};
 use super::phrase::{self, Deed, Fault, Letter, Statement};
 use super::read::shown;
 use super::sheet::Plan;
+use crate::nodes;
 use crate::report::Report;
 use crate::xml::attr::Text;
 
 /// Longest text of one step or transition, in bytes.
-const MOST_BYTES: usize = 1 << 16;
+pub(super) const MOST_BYTES: usize = 1 << 16;
 /// Actions and conditions of a file: each costs memory far beyond its text.
 pub(super) const MOST_WORK: usize = 100_000;
 
@@ -26,16 +30,16 @@ pub(super) struct Texts<'a> {
 }
 
 impl Texts<'_> {
-    /// The actions of a step.
-    pub(super) fn actions(&mut self, sheet: usize, text: &Text) -> Vec<Action> {
+    /// The actions of a step; `aborted` is true while its macro-step is left by an exception.
+    pub(super) fn actions(&mut self, sheet: usize, text: &Text, aborted: Option<&Expr>) -> Vec<Action> {
         if text.text.trim().is_empty() || !self.fits(text) {
             return Vec::new();
         }
         let (statements, faults) = phrase::actions(&text.text, self.left);
         self.left = self.left.saturating_sub(statements.len() + faults.len());
         self.faults(text, &faults);
-        let mut express = self.express(sheet, text);
-        statements.iter().filter_map(|s| action(&mut express, s)).collect()
+        let mut express = self.express(sheet, sheet, text);
+        statements.iter().filter_map(|s| action(&mut express, s, aborted)).collect()
     }
 
     /// The condition of a transition.
@@ -50,7 +54,7 @@ impl Texts<'_> {
         }
         self.left = self.left.saturating_sub(1);
         match phrase::condition(&text.text) {
-            Ok(phrase) => self.express(sheet, text).condition(&phrase),
+            Ok(phrase) => self.express(sheet, sheet, text).condition(&phrase),
             Err(fault) => {
                 self.faults(text, &[fault]);
                 bad
@@ -58,8 +62,54 @@ impl Texts<'_> {
         }
     }
 
-    fn express<'b>(&'b mut self, sheet: usize, text: &'b Text) -> Express<'b> {
-        Express { plan: self.plan, names: self.names, report: self.report, sheet, text }
+    /// `v := e` at the beginning of each scan, of a variable that follows an expression.
+    pub(super) fn follow(&mut self, sheet: usize, var: usize, text: &Text) -> Option<Stmt> {
+        let ty = self.plan.sheets.get(sheet)?.vars.get(var)?.ty;
+        if !self.fits(text) {
+            return None;
+        }
+        self.left = self.left.saturating_sub(1);
+        match phrase::condition(&text.text) {
+            Ok(phrase) => {
+                let mut express = self.express(sheet, sheet, text);
+                let at = express.span(&phrase.at);
+                let target = nodes::expr(ExprKind::Path(express.var_path(sheet, var, at)), at);
+                let value = express.value(&phrase, ty);
+                Some(nodes::assign(target, value, at))
+            }
+            Err(fault) => {
+                self.faults(text, &[fault]);
+                None
+            }
+        }
+    }
+
+    /// What the variables of a called procedure begin with: `P1` actions of its enter step.
+    pub(super) fn begin(&mut self, inside: usize) -> Vec<Action> {
+        let Some(sheet) = self.plan.sheets.get(inside) else { return Vec::new() };
+        let (Some(call), Some((caller, _))) = (&sheet.call, sheet.owner) else { return Vec::new() };
+        let mut actions = Vec::new();
+        for (number, var) in sheet.vars.iter().enumerate() {
+            if var.kind != VarKind::Var || var.follows.is_some() {
+                continue;
+            }
+            self.left = self.left.saturating_sub(1);
+            let value = call.values.iter().find(|(n, _)| *n == number).map(|(_, value)| value);
+            let at = self.report.span(value.map_or(&var.at, |_| &call.parameters.at));
+            let mut express = self.express(caller, inside, &call.parameters);
+            let target = nodes::expr(ExprKind::Path(express.var_path(inside, number, at)), at);
+            let value = match value {
+                Some(phrase) => express.value(phrase, var.ty),
+                None => fresh(var, at),
+            };
+            let work = Work::Single(Box::new(nodes::assign(target, value, at)));
+            actions.push(Action { kind: qualified(Qualifier::P1, Target::Work(work), None), at: at.into() });
+        }
+        actions
+    }
+
+    fn express<'b>(&'b mut self, sheet: usize, home: usize, text: &'b Text) -> Express<'b> {
+        Express { plan: self.plan, names: self.names, report: self.report, sheet, home, text }
     }
 
     /// Whether the text is of a size that anybody writes.
@@ -88,10 +138,10 @@ impl Texts<'_> {
 }
 
 /// One action, or nothing where it has been reported.
-fn action(express: &mut Express, statement: &Statement) -> Option<Action> {
+fn action(express: &mut Express, statement: &Statement, aborted: Option<&Expr>) -> Option<Action> {
     let at = express.span(&statement.at);
-    if statement.letter == Letter::A {
-        let what = "an abortive action runs only when an exception transition fires; it is left out";
+    if statement.letter == Letter::A && aborted.is_none() {
+        let what = "an abortive action runs only when an exception transition fires; none does here, and it is left out";
         express.report.say(&codes::LEFT_OUT, &express.text.place(&statement.at), what);
         return None;
     }
@@ -109,7 +159,14 @@ fn action(express: &mut Express, statement: &Statement) -> Option<Action> {
                 express.report.say(&codes::BAD_TEXT, &express.text.place(place), what);
                 return None;
             }
-            qualified(Qualifier::N, Target::Path(path))
+            if aborted.is_some() {
+                let what = format!(
+                    "`{}` goes off with its step; JGrafchart leaves it as it is when an exception transition fires",
+                    shown(&names.join("."))
+                );
+                express.report.say(&codes::DIFFERENT, &express.text.place(place), what);
+            }
+            qualified(Qualifier::N, Target::Path(path), None)
         }
         Deed::Assign { target: (names, place), value } => {
             let Some((path, ty)) = target(express, names, place) else {
@@ -122,11 +179,16 @@ fn action(express: &mut Express, statement: &Statement) -> Option<Action> {
             let work =
                 Work::Single(Box::new(Stmt { kind: StmtKind::Assign { target, value }, at: at.into() }));
             match statement.letter {
-                Letter::S => qualified(Qualifier::P1, Target::Work(work)),
-                Letter::X => qualified(Qualifier::P0, Target::Work(work)),
+                Letter::S => qualified(Qualifier::P1, Target::Work(work), None),
+                // A step that an exception takes off runs `A`, and not `X`.
+                Letter::X => {
+                    let kept = aborted.map(|a| nodes::not(a.clone(), at));
+                    qualified(Qualifier::P0, Target::Work(work), kept)
+                }
+                Letter::A => qualified(Qualifier::P0, Target::Work(work), aborted.cloned()),
                 Letter::P => ActionKind::EachScan { work, condition: None },
-                // `N v = e` is none of JGrafchart's forms; `A` has been dealt with.
-                Letter::N | Letter::A => {
+                // `N v = e` is none of JGrafchart's forms.
+                Letter::N => {
                     let what = "`N` takes the name of an output only; `S`, `P` and `X` assign";
                     express.report.say(&codes::BAD_TEXT, &express.text.place(&statement.at), what);
                     return None;
@@ -137,8 +199,8 @@ fn action(express: &mut Express, statement: &Statement) -> Option<Action> {
     Some(Action { kind, at: at.into() })
 }
 
-fn qualified(qualifier: Qualifier, target: Target) -> ActionKind {
-    ActionKind::Qualified { qualifier, time: None, target, condition: None }
+fn qualified(qualifier: Qualifier, target: Target, condition: Option<Expr>) -> ActionKind {
+    ActionKind::Qualified { qualifier, time: None, target, condition }
 }
 
 /// The variable that is written, and its type.

@@ -2,16 +2,19 @@
 
 use g7_model::codes;
 use g7_model::{
-    Chart, ChartItem, ChartKind, Document, Expr, ExprKind, Item, Layout, Literal, Name, PlaceAt, Placed,
-    Profile, ProfileName, Span, Step, StepKind, Transition, UnaryOp, VarDecl,
+    Action, ActionKind, Body, Chart, ChartItem, ChartKind, Document, Expr, ExprKind, Item, Layout, Literal,
+    Name, Order, PlaceAt, Placed, Profile, ProfileName, Span, Step, StepKind, Transition, Type, UnaryOp,
+    VarDecl, VarKind,
 };
 
 use super::actions::{MOST_WORK, Texts};
 use super::express::written;
+use super::guards::Guards;
 use super::links::{self, Ends};
 use super::names::{self, Names, writable};
 use super::read::name_place;
 use super::sheet::{Plan, Sheet, SheetKind, StepNode, StepSort, Value, Var};
+use crate::nodes;
 use crate::report::Report;
 
 /// JGrafchart's own default, in milliseconds.
@@ -20,6 +23,8 @@ const DEFAULT_SCAN: i64 = 40;
 /// some 120 apart, ours 13 units.
 const PER_PIXEL: i32 = 10;
 const NS_PER_MS: i64 = 1_000_000;
+/// Longest time between two scans of a workspace, in milliseconds: a day.
+const MOST_PACE: i64 = 86_400_000;
 
 /// The document of a file.
 pub(super) fn document(plan: &Plan, report: &mut Report) -> Document {
@@ -38,7 +43,10 @@ pub(super) fn document(plan: &Plan, report: &mut Report) -> Document {
         let vars = sheet.vars.iter().enumerate().filter(of_file);
         items.extend(vars.map(|(_, var)| Item::Var(declaration(var, report))));
     }
-    let mut builder = Builder { plan, names: &names, left: MOST_WORK, scan, report };
+    let ends: Vec<Vec<Ends>> = (0..plan.sheets.len()).map(|i| links::ends(plan, i, &names, report)).collect();
+    let guards = Guards::find(plan, &names, &ends, report);
+    let mut builder =
+        Builder { plan, names: &names, ends: &ends, guards: &guards, left: MOST_WORK, scan, report };
     items.extend((0..plan.sheets.len()).filter_map(|i| builder.chart(i)).map(Item::Chart));
     items.extend((0..plan.sheets.len()).filter_map(|i| builder.layout(i)).map(Item::Layout));
     Document { items, notes: report.take_notes() }
@@ -60,6 +68,8 @@ fn scan(plan: &Plan, report: &mut Report) -> i64 {
 struct Builder<'a> {
     plan: &'a Plan,
     names: &'a Names,
+    ends: &'a [Vec<Ends>],
+    guards: &'a Guards,
     left: usize,
     scan: i64,
     report: &'a mut Report,
@@ -74,40 +84,98 @@ impl Builder<'_> {
                 items.push(ChartItem::Var(declaration(var, self.report)));
             }
         }
+        for inside in self.insides(index) {
+            items.extend(self.flag(inside).map(ChartItem::Var));
+        }
         let kinds = self.kinds(index, sheet);
         for (number, (step, kind)) in sheet.steps.iter().zip(kinds).enumerate() {
-            let step = self.step(index, number, step, kind);
-            items.push(ChartItem::Step(step));
+            if step.fused.is_none() {
+                let step = self.step(index, number, step, kind);
+                items.push(ChartItem::Step(step));
+            }
         }
         items.extend(self.missing_exit(index, sheet).map(ChartItem::Step));
-        let ends = links::ends(self.plan, index, self.names, self.report);
-        for (number, ends) in ends.iter().enumerate() {
-            items.extend(self.transition(index, number, ends).map(ChartItem::Transition));
+        let mut conditions = Vec::new();
+        for number in 0..sheet.transitions.len() {
+            let Some((transition, condition)) = self.transition(index, number) else { continue };
+            items.push(ChartItem::Transition(transition));
+            conditions.push(condition);
         }
+        items.extend(self.beginning(index, &conditions));
         let at = self.report.span(&sheet.at);
         let pace = self.pace(sheet);
         Some(Chart {
-            kind: if sheet.kind == SheetKind::Macro { ChartKind::Expansion } else { ChartKind::Chart },
+            kind: if self.is_expansion(index) { ChartKind::Expansion } else { ChartKind::Chart },
             name: Name::new(self.names.chart(index), self.report.span(&name_place(&sheet.name, &sheet.at))),
-            comment: comment(sheet),
-            every: (sheet.kind != SheetKind::Macro && pace != self.scan).then_some(pace * NS_PER_MS),
+            comment: None,
+            every: (!self.is_expansion(index) && pace != self.scan).then_some(pace * NS_PER_MS),
             items,
             at: at.into(),
         })
     }
 
+    /// Whether a workspace is the expansion of a macro-step, and no chart by itself.
+    fn is_expansion(&self, index: usize) -> bool {
+        let inside = self.plan.sheets.get(index).is_some_and(|s| s.kind == SheetKind::Macro);
+        inside && !self.guards.enclosed.get(index).copied().unwrap_or(false)
+    }
+
+    /// The workspaces inside the steps of this one.
+    fn insides(&self, index: usize) -> Vec<usize> {
+        let steps = self.plan.sheets.get(index).map_or(&[][..], |s| &s.steps);
+        let inside = |s: &StepNode| if let StepSort::Macro(inside) = s.sort { inside } else { None };
+        steps.iter().filter_map(inside).collect()
+    }
+
+    /// The variable that tells that an exception takes a workspace.
+    fn flag(&self, inside: usize) -> Option<VarDecl> {
+        let name = self.guards.flag.get(inside)?.as_ref()?;
+        let at = self.report.span(&self.plan.sheets.get(inside)?.at);
+        Some(nodes::variable(VarKind::Var, name, Type::Bool, at))
+    }
+
+    /// What is worked out at the beginning of a scan: variables that follow an
+    /// expression, then which macro-steps an exception takes.
+    fn beginning(&mut self, index: usize, conditions: &[Expr]) -> Option<ChartItem> {
+        let sheet = self.plan.sheets.get(index)?;
+        let at = self.report.span(&sheet.at);
+        let mut statements = Vec::new();
+        for (number, var) in sheet.vars.iter().enumerate() {
+            let Some(text) = &var.follows else { continue };
+            let mut texts =
+                Texts { plan: self.plan, names: self.names, report: self.report, left: self.left };
+            statements.extend(texts.follow(index, number, text));
+            self.left = texts.left;
+        }
+        let ends = self.ends.get(index).map_or(&[][..], Vec::as_slice);
+        let all = sheet.transitions.iter().zip(ends).zip(conditions);
+        let exceptions: Vec<(&Ends, &Expr)> =
+            all.filter(|((t, _), _)| t.exception).map(|((_, e), c)| (e, c)).collect();
+        for inside in self.insides(index) {
+            let Some(flag) = self.guards.flag.get(inside).and_then(Option::as_ref) else { continue };
+            let marked = self.guards.marked((self.plan, self.names), inside, &exceptions, at);
+            let target = nodes::name(&[flag], at);
+            statements.extend(marked.map(|value| nodes::assign(target, value, at)));
+        }
+        let body = Body::St(nodes::block(statements, at));
+        matches!(&body, Body::St(b) if !b.statements.is_empty()).then(|| ChartItem::Pre(body, at.into()))
+    }
+
     /// Milliseconds between two scans of a workspace: those of the top one around it.
     fn pace(&self, sheet: &Sheet) -> i64 {
         let mut top = sheet;
-        while let Some(outer) = top.parent.and_then(|p| self.plan.sheets.get(p)) {
+        let mut cycle = sheet.cycle;
+        while let Some(outer) = top.owner.map(|o| o.0).or(top.parent).and_then(|p| self.plan.sheets.get(p)) {
             top = outer;
+            cycle = cycle.saturating_mul(top.cycle);
         }
-        top.speed.unwrap_or(DEFAULT_SCAN)
+        top.speed.unwrap_or(DEFAULT_SCAN).saturating_mul(cycle).min(MOST_PACE)
     }
 
     /// What each step is; enter and exit steps have their place in macro-steps only.
     fn kinds(&mut self, index: usize, sheet: &Sheet) -> Vec<StepKind> {
         let inside = sheet.kind == SheetKind::Macro;
+        let expansion = self.is_expansion(index);
         let mut ends = [(StepSort::Enter, "enter", None), (StepSort::Exit, "exit", None)];
         let mut kinds = Vec::with_capacity(sheet.steps.len());
         for (number, step) in sheet.steps.iter().enumerate() {
@@ -120,10 +188,11 @@ impl Builder<'_> {
                     let what = format!("an {word} step outside a macro-step; it is a plain step");
                     self.report.say(&codes::DIFFERENT, &step.at, what);
                 } else if first.replace(number).is_some() {
-                    let what =
-                        format!("a second {word} step; only one way in and one way out are carried over");
-                    self.report.say(&codes::NOT_CARRIED, &step.at, what);
-                } else {
+                    if *sort == StepSort::Enter {
+                        let what = "a second enter step; only one way in is carried over";
+                        self.report.say(&codes::NOT_CARRIED, &step.at, what);
+                    }
+                } else if expansion {
                     kind = if *sort == StepSort::Enter { StepKind::Entry } else { StepKind::Exit };
                 }
             }
@@ -145,6 +214,7 @@ impl Builder<'_> {
 
     fn macro_kind(&mut self, inner: Option<usize>, step: &StepNode) -> StepKind {
         match inner {
+            Some(chart) if !self.is_expansion(chart) => StepKind::Enclosing,
             Some(chart) => {
                 let at = self.report.span(&name_place(&step.name, &step.at));
                 StepKind::Macro(Name::new(self.names.chart(chart), at))
@@ -157,10 +227,24 @@ impl Builder<'_> {
     }
 
     fn step(&mut self, index: usize, number: usize, node: &StepNode, kind: StepKind) -> Step {
-        let mut texts = Texts { plan: self.plan, names: self.names, report: self.report, left: self.left };
-        let actions = texts.actions(index, &node.actions);
-        self.left = texts.left;
         let at = self.report.span(&node.at);
+        let expansion = self.is_expansion(index);
+        let entry = node.sort == StepSort::Enter && self.first_enter(index) == Some(number);
+        let inside = if let StepSort::Macro(inside) = node.sort { inside } else { None };
+        let aborted = self.guards.aborted(self.plan, self.names, inside.unwrap_or(index), index, at);
+        let mut texts = Texts { plan: self.plan, names: self.names, report: self.report, left: self.left };
+        let mut actions = Vec::new();
+        if let Some(inside) = inside.filter(|_| kind == StepKind::Enclosing) {
+            let chart = Name::new(self.names.chart(inside), at);
+            actions.push(Action { kind: ActionKind::Order(Order::Enclose(chart)), at: at.into() });
+        }
+        if entry {
+            actions.extend(texts.begin(index));
+        }
+        for text in &node.actions {
+            actions.extend(texts.actions(index, text, aborted.as_ref()));
+        }
+        self.left = texts.left;
         Step {
             name: Name::new(
                 self.names.step(index, number),
@@ -168,12 +252,19 @@ impl Builder<'_> {
             ),
             kind,
             initial: node.sort == StepSort::Initial && self.starts(index),
-            linked: false,
+            linked: entry
+                && !expansion
+                && self.plan.sheets.get(index).is_some_and(|s| s.kind == SheetKind::Macro),
             comment: None,
             braces: !actions.is_empty(),
             actions,
             at: at.into(),
         }
+    }
+
+    /// The enter step with which a macro-step begins.
+    fn first_enter(&self, index: usize) -> Option<usize> {
+        self.plan.sheets.get(index)?.steps.iter().position(|s| s.sort == StepSort::Enter)
     }
 
     /// Whether the initial steps of a workspace are active at the start.
@@ -183,7 +274,7 @@ impl Builder<'_> {
 
     /// A macro-step that is never left needs no exit step there, but has one here.
     fn missing_exit(&mut self, index: usize, sheet: &Sheet) -> Option<Step> {
-        if sheet.kind != SheetKind::Macro || sheet.steps.iter().any(|s| s.sort == StepSort::Exit) {
+        if !self.is_expansion(index) || sheet.steps.iter().any(|s| s.sort == StepSort::Exit) {
             return None;
         }
         let what = format!(
@@ -209,15 +300,20 @@ impl Builder<'_> {
         })
     }
 
-    fn transition(&mut self, index: usize, number: usize, ends: &Ends) -> Option<Transition> {
+    /// A transition, and the condition of its own text.
+    fn transition(&mut self, index: usize, number: usize) -> Option<(Transition, Expr)> {
         let sheet = self.plan.sheets.get(index)?;
         let node = sheet.transitions.get(number)?;
+        let nowhere = Ends::default();
+        let ends = self.ends.get(index).and_then(|e| e.get(number)).unwrap_or(&nowhere);
         let mut texts = Texts { plan: self.plan, names: self.names, report: self.report, left: self.left };
-        let receptivity = texts.condition(index, &node.condition, &node.at);
+        let condition = texts.condition(index, &node.condition, &node.at);
         self.left = texts.left;
         let at = self.report.span(&node.at);
         let name = |step: &usize| Name::new(self.names.step(index, *step), at);
-        Some(Transition {
+        let receptivity =
+            self.guards.receptivity((self.plan, self.names), (index, number), ends, condition.clone(), at);
+        let transition = Transition {
             label: None,
             from: ends.from.iter().map(name).collect(),
             to: ends.to.iter().map(name).collect(),
@@ -227,7 +323,8 @@ impl Builder<'_> {
             on_clearing: None,
             chained: false,
             at: at.into(),
-        })
+        };
+        Some((transition, condition))
     }
 
     fn layout(&self, index: usize) -> Option<Layout> {
@@ -239,7 +336,8 @@ impl Builder<'_> {
             y: y.saturating_mul(PER_PIXEL),
             at: at.into(),
         };
-        let steps = sheet.steps.iter().enumerate().map(|(number, step)| {
+        let drawn = sheet.steps.iter().enumerate().filter(|(_, step)| step.fused.is_none());
+        let steps = drawn.map(|(number, step)| {
             let at = self.report.span(&step.at);
             place(Placed::Step(Name::new(self.names.step(index, number), at)), step.x, step.y, at)
         });
@@ -247,17 +345,19 @@ impl Builder<'_> {
             let at = self.report.span(&transition.at);
             place(Placed::TransitionNumber(number), transition.x, transition.y, at)
         });
-        let places: Vec<PlaceAt> = steps.chain(transitions).collect();
+        let texts = sheet.texts.iter().map(|free| {
+            place(Placed::Comment(comment(&free.text.text)), free.x, free.y, self.report.span(&free.text.at))
+        });
+        let places: Vec<PlaceAt> = steps.chain(transitions).chain(texts).collect();
         let chart = Name::new(self.names.chart(index), at);
         (!places.is_empty()).then_some(Layout { chart, places, at: at.into() })
     }
 }
 
-/// The free texts of a workspace, as the comment of its chart.
-fn comment(sheet: &Sheet) -> Option<Box<str>> {
-    let clean = |text: &str| text.split_whitespace().collect::<Vec<_>>().join(" ");
-    let texts: Vec<String> = sheet.texts.iter().map(|t| clean(&t.text)).collect();
-    (!texts.is_empty()).then(|| texts.join(" / ").into())
+/// A text of the drawing without what cannot be written.
+fn comment(text: &str) -> Box<str> {
+    let put = |c: char| if c != '\n' && c.is_control() { ' ' } else { c };
+    text.trim_end().chars().map(put).collect::<String>().into()
 }
 
 fn declaration(var: &Var, report: &Report) -> VarDecl {
@@ -277,18 +377,26 @@ fn declaration(var: &Var, report: &Report) -> VarDecl {
     }
 }
 
+/// What a variable of a procedure begins with at each call.
+pub(super) fn fresh(var: &Var, at: Span) -> Expr {
+    literal(var.init.as_ref().unwrap_or(&zero(var.ty)), at)
+}
+
+fn zero(ty: Type) -> Value {
+    match ty {
+        Type::Bool => Value::Bool(false),
+        Type::Dint => Value::Int(0),
+        Type::Lreal => Value::Real(0.0),
+        _ => Value::Str(String::new()),
+    }
+}
+
 /// A constant has a value in any case.
 fn constant_zero(var: &Var, at: Span) -> Option<Expr> {
-    if var.kind != g7_model::VarKind::Const {
+    if var.kind != VarKind::Const {
         return None;
     }
-    let zero = match var.ty {
-        g7_model::Type::Bool => Value::Bool(false),
-        g7_model::Type::Dint => Value::Int(0),
-        g7_model::Type::Lreal => Value::Real(0.0),
-        _ => Value::Str(String::new()),
-    };
-    Some(literal(&zero, at))
+    Some(literal(&zero(var.ty), at))
 }
 
 /// A value as it would be written: a sign stands before the number.

@@ -49,8 +49,10 @@ pub(super) struct Express<'a> {
     pub(super) plan: &'a Plan,
     pub(super) names: &'a Names,
     pub(super) report: &'a mut Report,
-    /// The workspace where the text stands.
+    /// The workspace where the text stands, and its names are looked up.
     pub(super) sheet: usize,
+    /// The workspace in whose chart the expression will stand.
+    pub(super) home: usize,
     /// The text, for the places.
     pub(super) text: &'a Text,
 }
@@ -100,7 +102,7 @@ impl Express<'_> {
         let name =
             self.plan.sheets.get(sheet).and_then(|s| s.vars.get(var)).map_or("", |v| v.name.text.as_str());
         let mut names = Vec::new();
-        if sheet != self.sheet && !self.names.is_of_file(sheet, var) {
+        if sheet != self.home && !self.names.is_of_file(sheet, var) {
             names.push(Name::new(self.names.chart(sheet), at));
         }
         names.push(Name::new(super::names::writable(name), at));
@@ -109,7 +111,7 @@ impl Express<'_> {
 
     fn step_path(&self, sheet: usize, step: usize, property: Property, at: Span) -> Path {
         let mut names = Vec::new();
-        if sheet != self.sheet {
+        if sheet != self.home {
             names.push(Name::new(self.names.chart(sheet), at));
         }
         names.push(Name::new(self.names.step(sheet, step), at));

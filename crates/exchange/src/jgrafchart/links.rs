@@ -10,7 +10,7 @@ use g7_model::codes;
 
 use super::names::Names;
 use super::read::shown;
-use super::sheet::{Node, Plan, Sheet};
+use super::sheet::{Node, Plan, Sheet, StepSort};
 use crate::report::Report;
 
 /// Steps of the walk through a workspace's lines; a file of nothing but joins
@@ -21,13 +21,23 @@ const MOST_WORK: usize = 4_000_000;
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(super) struct Ends {
     pub(super) from: Vec<usize>,
+    /// By which way out each of them is left, from 0; others than 0 of macro-steps only.
+    pub(super) ways: Vec<usize>,
     pub(super) to: Vec<usize>,
+}
+
+/// The exit steps of a workspace, in the order of the ports: from left to right.
+pub(super) fn exits(sheet: &Sheet) -> Vec<usize> {
+    let sort = |(n, s): (usize, &super::sheet::StepNode)| (s.sort == StepSort::Exit).then_some((s.x, n));
+    let mut found: Vec<(i32, usize)> = sheet.steps.iter().enumerate().filter_map(sort).collect();
+    found.sort_unstable();
+    found.into_iter().map(|(_, n)| n).collect()
 }
 
 /// The ends of each transition of a workspace.
 pub(super) fn ends(plan: &Plan, index: usize, names: &Names, report: &mut Report) -> Vec<Ends> {
     let Some(sheet) = plan.sheets.get(index) else { return Vec::new() };
-    let mut web = Web::new(sheet, index, names);
+    let mut web = Web::new(plan, sheet, index, names);
     web.lines(report);
     web.posts(plan, report);
     let all: Vec<Ends> = (0..sheet.transitions.len()).map(|t| web.ends_of(t, report)).collect();
@@ -46,6 +56,8 @@ struct Web<'a> {
     into: HashMap<Node, Vec<Node>>,
     /// Ends of lines that are not followed, with the way they would have led; reported.
     cut: HashSet<(Node, bool)>,
+    /// How many ways out the macro-steps have, by their insides.
+    exits: HashMap<usize, usize>,
     work: usize,
 }
 
@@ -56,7 +68,7 @@ struct End {
 }
 
 impl<'a> Web<'a> {
-    fn new(sheet: &'a Sheet, index: usize, names: &'a Names) -> Web<'a> {
+    fn new(plan: &Plan, sheet: &'a Sheet, index: usize, names: &'a Names) -> Web<'a> {
         Web {
             sheet,
             index,
@@ -64,6 +76,7 @@ impl<'a> Web<'a> {
             out: HashMap::new(),
             into: HashMap::new(),
             cut: HashSet::new(),
+            exits: ways_out(plan, sheet),
             work: MOST_WORK,
         }
     }
@@ -112,7 +125,10 @@ impl<'a> Web<'a> {
                 self.cut.extend(to.map(|end| (end.node, false)));
                 continue;
             }
-            let (Some(from), Some(to)) = (from, to) else { continue };
+            let (Some(mut from), Some(to)) = (from, to) else { continue };
+            if let (Node::Step(step), Ok(way @ 1..)) = (from.node, from.port.parse::<usize>()) {
+                from.node = Node::Way(step, way);
+            }
             if from.port == "R" || to.port == "R" {
                 later.push((from.node, to.node));
             } else {
@@ -124,25 +140,53 @@ impl<'a> Web<'a> {
         }
     }
 
-    /// Lines at the history or a further port of a macro-step.
+    /// Lines at the ports of a macro-step where there is no line.
     fn special_port(&self, from: &End, to: &End, at: &std::ops::Range<usize>, report: &mut Report) -> bool {
         let step = |end: &End| matches!(end.node, Node::Step(_));
-        let what = if to.port == "H" && step(to) {
-            "a line to the history port of a macro-step; resuming it is not carried over"
-        } else if from.port == "E" && step(from) {
-            "a line from the exception port of a macro-step is not carried over"
-        } else if (step(from) && !matches!(&*from.port, "" | "0" | "N"))
-            || (step(to) && !matches!(&*to.port, "" | "0" | "N"))
-        {
-            "a line to a further port of a macro-step; only one way in and one way out are carried over"
+        let exception = self.is_exception(to.node);
+        let (code, what) = if to.port == "H" && step(to) {
+            let what = "a line to the history port of a macro-step; resuming it is not carried over";
+            (&codes::NOT_CARRIED, what)
+        } else if exception && !self.is_macro(from.node) {
+            let what = "a line to an exception transition from what is no macro-step";
+            (&codes::BAD_LINK, what)
+        } else if from.port == "E" && step(from) && !exception {
+            let what = "a line from the exception port of a macro-step to what is no exception transition";
+            (&codes::BAD_LINK, what)
+        } else if step(to) && !matches!(&*to.port, "" | "0" | "N") {
+            let what = "a line to a further port of a macro-step; only one way in is carried over";
+            (&codes::NOT_CARRIED, what)
+        } else if step(from) && !exception && !self.has_way(from) {
+            (&codes::BAD_LINK, "a line from a port that the macro-step does not have")
         } else {
             return false;
         };
-        // The exception transition itself has been reported.
         if from.node != Node::Stranger && to.node != Node::Stranger {
-            report.say(&codes::NOT_CARRIED, at, what);
+            report.say(code, at, what);
         }
         true
+    }
+
+    fn is_exception(&self, node: Node) -> bool {
+        matches!(node, Node::Transition(t) if self.sheet.transitions.get(t).is_some_and(|t| t.exception))
+    }
+
+    fn is_macro(&self, node: Node) -> bool {
+        let sort = |step| self.sheet.steps.get(step).map(|s: &super::sheet::StepNode| s.sort);
+        matches!(node, Node::Step(step) if matches!(sort(step), Some(StepSort::Macro(_))))
+    }
+
+    /// Whether a macro-step has an exit step for the port at which a line begins.
+    fn has_way(&self, end: &End) -> bool {
+        let way = match &*end.port {
+            "" | "0" | "N" => return true,
+            port => port.parse::<usize>().ok(),
+        };
+        let Node::Step(step) = end.node else { return false };
+        let Some(StepSort::Macro(Some(inside))) = self.sheet.steps.get(step).map(|s| s.sort) else {
+            return false;
+        };
+        way.is_some_and(|way| self.exits.get(&inside).is_some_and(|n| way < *n))
     }
 
     /// Whether a line may lead from one to the other.
@@ -172,7 +216,9 @@ impl<'a> Web<'a> {
 
     fn called(&self, node: Node) -> String {
         match node {
-            Node::Step(step) => format!("step `{}`", shown(self.names.step(self.index, step))),
+            Node::Step(step) | Node::Way(step, _) => {
+                format!("step `{}`", shown(self.names.step(self.index, step)))
+            }
             Node::Transition(_) => "a transition".to_string(),
             Node::Split(_) => "a parallel split".to_string(),
             Node::Join(_) => "a parallel join".to_string(),
@@ -241,6 +287,8 @@ impl<'a> Web<'a> {
         let start = Node::Transition(transition);
         let (from, from_cut) = self.walk(start, false);
         let (to, to_cut) = self.walk(start, true);
+        let (from, ways): (Vec<usize>, Vec<usize>) = from.into_iter().unzip();
+        let to: Vec<usize> = to.into_iter().map(|(step, _)| step).collect();
         let Some(node) = self.sheet.transitions.get(transition) else { return Ends::default() };
         let lost = match (from.is_empty() && !from_cut, to.is_empty() && !to_cut) {
             (true, true) => "a transition without any step",
@@ -251,12 +299,12 @@ impl<'a> Web<'a> {
         if !lost.is_empty() {
             report.say(&codes::OPEN_LINK, &node.at, lost);
         }
-        Ends { from, to }
+        Ends { from, ways, to }
     }
 
     /// The steps that are reached through bars and posts, in the order of the
     /// lines, and whether a line was cut on the way.
-    fn walk(&mut self, start: Node, forward: bool) -> (Vec<usize>, bool) {
+    fn walk(&mut self, start: Node, forward: bool) -> (Vec<(usize, usize)>, bool) {
         let mut steps = Vec::new();
         let mut seen = HashSet::from([start]);
         let mut stack = vec![start];
@@ -264,7 +312,11 @@ impl<'a> Web<'a> {
         while let Some(node) = stack.pop() {
             touched |= self.cut.contains(&(node, forward));
             if let Node::Step(step) = node {
-                steps.push(step);
+                steps.push((step, 0));
+                continue;
+            }
+            if let Node::Way(step, way) = node {
+                steps.push((step, way));
                 continue;
             }
             let next = if forward { self.out.get(&node) } else { self.into.get(&node) };
@@ -282,13 +334,20 @@ impl<'a> Web<'a> {
     }
 }
 
+/// How many exit steps stand inside the macro-steps of a workspace.
+fn ways_out(plan: &Plan, sheet: &Sheet) -> HashMap<usize, usize> {
+    let inside = sheet.steps.iter().filter_map(|s| if let StepSort::Macro(i) = s.sort { i } else { None });
+    let count = |s: &Sheet| s.steps.iter().filter(|s| s.sort == StepSort::Exit).count();
+    inside.map(|i| (i, plan.sheets.get(i).map_or(0, count))).collect()
+}
+
 /// What a line may lead from and to.
 fn allowed(from: Node, to: Node) -> bool {
-    use Node::{Join, PostIn, PostOut, Split, Step, Transition};
+    use Node::{Join, PostIn, PostOut, Split, Step, Transition, Way};
     match (from, to) {
         (PostIn(_), _) | (_, PostOut(_)) => false,
         (PostOut(_), _) | (_, PostIn(_)) => true,
-        (Step(_), Transition(_) | Join(_)) => true,
+        (Step(_) | Way(..), Transition(_) | Join(_)) => true,
         (Transition(_), Step(_) | Split(_)) => true,
         (Split(_), Step(_) | Split(_)) => true,
         (Join(_), Transition(_) | Join(_)) => true,

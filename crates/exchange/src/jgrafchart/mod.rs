@@ -26,13 +26,18 @@
 
 mod actions;
 mod build;
+mod calls;
 mod express;
+mod fuse;
+mod guards;
+mod kinds;
 mod lex;
 mod links;
 mod names;
 mod phrase;
 mod read;
 mod sheet;
+mod write;
 
 use g7_model::{Document, FileId, Problem};
 
@@ -40,6 +45,7 @@ use crate::report::Report;
 use crate::xml;
 
 pub(crate) use read::is_root;
+pub(crate) use write::export;
 
 /// Reads a chart saved by JGrafchart (2.x, `saveVersion` up to 8).
 ///

@@ -16,6 +16,9 @@ use super::sheet::{Plan, Sheet, SheetKind, StepSort};
 use crate::report::Report;
 use crate::xml::attr::Text;
 
+/// Most calls of procedures within one another through which a parameter is handed on.
+const MOST_CALLS: u8 = 50;
+
 /// The names of the document.
 pub(super) struct Names {
     /// Of each workspace's chart.
@@ -105,9 +108,13 @@ impl Names {
 
     /// What a dotted name in a text of the workspace stands for.
     pub(super) fn find<'a>(&self, plan: &'a Plan, sheet: usize, path: &[&str]) -> Meaning<'a> {
+        self.look(plan, sheet, path, MOST_CALLS)
+    }
+
+    fn look<'a>(&self, plan: &'a Plan, sheet: usize, path: &[&str], depth: u8) -> Meaning<'a> {
         let mut here = Some(sheet);
         while let Some(index) = here {
-            match self.find_in(plan, index, path) {
+            match self.find_in(plan, index, path, depth) {
                 Meaning::Nothing => {}
                 found => return found,
             }
@@ -116,8 +123,8 @@ impl Names {
         let Some((first, rest)) = path.split_first() else { return Meaning::Nothing };
         let top = plan.sheets.iter().position(|s| s.kind == SheetKind::Top && s.name.text == **first);
         match top {
-            Some(index) if rest.is_empty() => self.find_in(plan, index, rest),
-            Some(index) => match self.find_in(plan, index, rest) {
+            Some(index) if rest.is_empty() => self.find_in(plan, index, rest, depth),
+            Some(index) => match self.find_in(plan, index, rest, depth) {
                 Meaning::Nothing => Meaning::NoPart,
                 found => found,
             },
@@ -126,20 +133,25 @@ impl Names {
     }
 
     /// What a dotted name stands for in one workspace.
-    fn find_in<'a>(&self, plan: &'a Plan, index: usize, path: &[&str]) -> Meaning<'a> {
+    fn find_in<'a>(&self, plan: &'a Plan, index: usize, path: &[&str], depth: u8) -> Meaning<'a> {
         let (Some(sheet), Some((first, rest))) = (plan.sheets.get(index), path.split_first()) else {
             return Meaning::Nothing;
         };
+        if let Some((caller, target)) = sheet.refs.get(*first) {
+            let whole: Vec<&str> = target.iter().map(String::as_str).chain(rest.iter().copied()).collect();
+            // A caller's name may be a parameter by reference too, of its own caller.
+            return if depth == 0 { Meaning::NoPart } else { self.look(plan, *caller, &whole, depth - 1) };
+        }
         if rest.is_empty()
             && let Some(var) = self.vars.get(index).and_then(|v| v.get(*first))
         {
             return Meaning::Var(index, *var);
         }
         if let Some(&step) = self.by_name.get(index).and_then(|s| s.get(*first)) {
-            return self.part_of_step(plan, sheet, (index, step), rest);
+            return self.part_of_step(plan, sheet, (index, step), rest, depth);
         }
         if let Some((_, inside)) = sheet.objects.iter().find(|(name, _)| name == first) {
-            return self.inside(plan, *inside, rest);
+            return self.inside(plan, *inside, rest, depth);
         }
         match sheet.strangers.get(*first) {
             Some(tag) => Meaning::Stranger(tag),
@@ -154,6 +166,7 @@ impl Names {
         sheet: &Sheet,
         (index, step): (usize, usize),
         rest: &[&str],
+        depth: u8,
     ) -> Meaning<'a> {
         if let [word] = rest
             && let Some(property) = Property::of(word)
@@ -161,13 +174,13 @@ impl Names {
             return Meaning::Step(index, step, property);
         }
         match sheet.steps.get(step).map(|s| s.sort) {
-            Some(StepSort::Macro(Some(inside))) => self.inside(plan, inside, rest),
+            Some(StepSort::Macro(Some(inside))) => self.inside(plan, inside, rest, depth),
             _ => Meaning::NoPart,
         }
     }
 
-    fn inside<'a>(&self, plan: &'a Plan, index: usize, rest: &[&str]) -> Meaning<'a> {
-        match self.find_in(plan, index, rest) {
+    fn inside<'a>(&self, plan: &'a Plan, index: usize, rest: &[&str], depth: u8) -> Meaning<'a> {
+        match self.find_in(plan, index, rest, depth) {
             Meaning::Nothing => Meaning::NoPart,
             found => found,
         }
@@ -284,7 +297,7 @@ fn steps_by_name(sheet: &Sheet) -> HashMap<String, usize> {
     let mut map = HashMap::new();
     for (index, step) in sheet.steps.iter().enumerate() {
         if !step.name.text.is_empty() {
-            map.entry(step.name.text.clone()).or_insert(index);
+            map.entry(step.name.text.clone()).or_insert(step.fused.unwrap_or(index));
         }
     }
     map

@@ -391,3 +391,56 @@ fn operator(sign: &str) -> Option<(Binary, u8)> {
         _ => return None,
     })
 }
+
+/// A parameter of the call of a procedure.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Parameter {
+    /// `R`: the name stands for another variable; else `V`: it takes a value.
+    pub(super) by_reference: bool,
+    pub(super) name: String,
+    pub(super) value: Phrase,
+    pub(super) at: Range<usize>,
+}
+
+/// The parameters of a call, `V x = e; R y = z;`, and what cannot be read of them.
+pub(super) fn parameters(text: &str) -> (Vec<Parameter>, Vec<Fault>) {
+    let tokens = tokens(text);
+    let mut reader = Reader { tokens: &tokens, next: 0, depth: 0 };
+    let (mut list, mut faults) = (Vec::new(), Vec::new());
+    loop {
+        while reader.take(";") {}
+        if reader.peek().kind == Kind::End {
+            return (list, faults);
+        }
+        match reader.parameter() {
+            Ok(parameter) => list.push(parameter),
+            Err(fault) => {
+                faults.push(fault);
+                reader.next += 1;
+                while reader.peek().kind != Kind::End && reader.sign() != ";" {
+                    reader.next += 1;
+                }
+            }
+        }
+    }
+}
+
+impl Reader<'_> {
+    fn parameter(&mut self) -> Result<Parameter, Fault> {
+        let start = self.peek().at.start;
+        let by_reference = match &self.peek().kind {
+            Kind::Name(letter) if letter == "V" => false,
+            Kind::Name(letter) if letter == "R" => true,
+            _ => return Err(self.fault("`V` or `R` and then a name")),
+        };
+        self.next += 1;
+        let Kind::Name(name) = self.peek().kind.clone() else { return Err(self.fault("a name")) };
+        self.next += 1;
+        self.need("=")?;
+        let value = self.expression()?;
+        if self.sign() != ";" && self.peek().kind != Kind::End {
+            return Err(self.fault("`;`"));
+        }
+        Ok(Parameter { by_reference, name, value, at: start..self.end() })
+    }
+}

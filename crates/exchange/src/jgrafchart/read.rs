@@ -7,16 +7,20 @@ use g7_model::codes;
 use g7_model::{Type, VarKind};
 use roxmltree::{Document, Node as Xml};
 
+use super::calls::{self, Caller, Procedure};
+use super::fuse;
+use super::kinds::{is_data, is_drawing};
 use super::sheet::{
-    Link, Node, Plan, Post, Sheet, SheetKind, StepNode, StepSort, TransitionNode, Value, Var,
+    FreeText, Fusion, Link, Node, Plan, Post, Sheet, SheetKind, StepNode, StepSort, TransitionNode, Value,
+    Var,
 };
 use crate::report::Report;
 use crate::xml::attr::{self, Text};
 
 /// Half the width of JGrafchart's step symbol: its axis, in pixels from its left.
-const STEP_AXIS: i32 = 30;
+pub(super) const STEP_AXIS: i32 = 30;
 /// The same of its transition symbol.
-const TRANSITION_AXIS: i32 = 15;
+pub(super) const TRANSITION_AXIS: i32 = 15;
 /// Longest text that a string variable holds, in bytes.
 pub(super) const STRING_BYTES: u16 = 255;
 
@@ -26,9 +30,10 @@ pub(crate) fn is_root(name: &str) -> bool {
 }
 
 /// All workspaces of the file.
-pub(super) fn sheets(tree: &Document, report: &mut Report) -> Plan {
+pub(super) fn sheets(tree: &Document<'_>, report: &mut Report) -> Plan {
     let root = tree.root_element();
-    let mut reader = Reader { plan: Plan { sheets: Vec::new(), at: attr::head(root) }, report };
+    let plan = Plan { sheets: Vec::new(), at: attr::head(root) };
+    let mut reader = Reader { plan, report, procedures: Vec::new(), callers: Vec::new(), chain: Vec::new() };
     match root.tag_name().name() {
         "GCDocument" => reader.top(root),
         "GCDocumentCollection" => {
@@ -45,17 +50,27 @@ pub(super) fn sheets(tree: &Document, report: &mut Report) -> Plan {
             reader.report.say(&codes::NOT_JGRAFCHART, &reader.plan.at, what);
         }
     }
-    reader.plan
+    calls::expand(&mut reader);
+    let mut plan = reader.plan;
+    fuse::fuse(&mut plan, report);
+    plan
 }
 
-struct Reader<'r> {
-    plan: Plan,
-    report: &'r mut Report,
+/// Reads workspaces one after the other.
+pub(super) struct Reader<'r, 'x> {
+    pub(super) plan: Plan,
+    pub(super) report: &'r mut Report,
+    /// The procedures of the file.
+    pub(super) procedures: Vec<Procedure<'x>>,
+    /// The steps that call one and are not dealt with yet.
+    pub(super) callers: Vec<Caller>,
+    /// The procedures within one another that are being read.
+    pub(super) chain: Vec<usize>,
 }
 
-impl Reader<'_> {
+impl<'x> Reader<'_, 'x> {
     /// A workspace that runs by itself.
-    fn top(&mut self, xml: Xml) {
+    fn top(&mut self, xml: Xml<'x, 'x>) {
         let name = attr::text(xml, "name").unwrap_or_default();
         let mut sheet = Sheet::new(SheetKind::Top, name, None, attr::head(xml));
         sheet.speed = self.number::<i64>(xml, "threadSpeed").filter(|ms| {
@@ -72,17 +87,22 @@ impl Reader<'_> {
     }
 
     /// The workspace inside an element, if it has one.
-    fn inner(&mut self, xml: Xml, kind: SheetKind, parent: usize) -> Option<usize> {
+    pub(super) fn inner(&mut self, xml: Xml<'x, 'x>, kind: SheetKind, parent: usize) -> Option<usize> {
         let inside = xml.children().find(|c| c.has_tag_name("GCDocument"))?;
         let name = attr::text(xml, "name").unwrap_or_default();
         let index = self.plan.sheets.len();
-        self.plan.sheets.push(Sheet::new(kind, name, Some(parent), attr::head(inside)));
+        let mut sheet = Sheet::new(kind, name, Some(parent), attr::head(inside));
+        if kind == SheetKind::Macro {
+            // The step of a macro-step is put down behind its inside.
+            sheet.owner = Some((parent, self.plan.sheets.get(parent).map_or(0, |s| s.steps.len())));
+        }
+        self.plan.sheets.push(sheet);
         self.content(inside, index);
         Some(index)
     }
 
     /// Everything in a workspace, or in a group within it.
-    fn content(&mut self, xml: Xml, sheet: usize) {
+    pub(super) fn content(&mut self, xml: Xml<'x, 'x>, sheet: usize) {
         for child in xml.children() {
             if child.is_element() {
                 self.element(child, sheet);
@@ -93,7 +113,7 @@ impl Reader<'_> {
         }
     }
 
-    fn element(&mut self, xml: Xml, sheet: usize) {
+    fn element(&mut self, xml: Xml<'x, 'x>, sheet: usize) {
         let tag = xml.tag_name().name();
         match tag {
             "GCStep" => self.step(xml, sheet, StepSort::Plain),
@@ -104,12 +124,20 @@ impl Reader<'_> {
                 let inner = self.inner(xml, SheetKind::Macro, sheet);
                 self.step(xml, sheet, StepSort::Macro(inner));
             }
-            "ProcedureStep" | "ProcessStep" => {
-                let what = format!("a `{tag}` calls a procedure; it is read as a step that calls none");
-                self.not_carried(xml, &what);
+            "ProcedureStep" => {
+                self.caller(xml, sheet);
+                self.step(xml, sheet, StepSort::Macro(None));
+            }
+            "ProcessStep" => {
+                let what = "a `ProcessStep` starts a procedure and does not wait for it, any number of times; \
+                            it is read as a step that starts none";
+                self.not_carried(xml, what);
                 self.step(xml, sheet, StepSort::Plain);
             }
-            "GCTransition" => self.transition(xml, sheet),
+            "GrafcetProcedure" => self.procedure(xml, sheet),
+            "GCTransition" => self.transition(xml, sheet, false),
+            "ExceptionTransition" => self.transition(xml, sheet, true),
+            "StepFusionSet" => self.fusion(xml, sheet),
             "ParallelSplit" => self.bar(xml, sheet, Node::Split),
             "ParallelJoin" => self.bar(xml, sheet, Node::Join),
             "ConnectionPostIn" => self.post(xml, sheet, true),
@@ -118,7 +146,12 @@ impl Reader<'_> {
             "GCGroup" => self.content(xml, sheet),
             "WorkspaceObject" => {
                 let name = attr::text(xml, "name").unwrap_or_default().text;
+                let cycle = self.number::<i64>(xml, "scanCycle").filter(|n| (1..=1_000_000).contains(n));
+                if attr::text(xml, "enabled").is_some_and(|e| e.text == "0") {
+                    self.not_carried(xml, "a workspace object that stands still until it is enabled");
+                }
                 if let Some(index) = self.inner(xml, SheetKind::Object, sheet) {
+                    self.with(index, |s| s.cycle = cycle.unwrap_or(1));
                     self.with(sheet, |s| s.objects.push((name, index)));
                 }
             }
@@ -126,27 +159,30 @@ impl Reader<'_> {
             | "AnalogOut" => {
                 self.channel(xml, sheet);
             }
+            "SocketBooleanIn" | "SocketIntIn" | "SocketRealIn" | "SocketStringIn" | "SocketBooleanOut"
+            | "SocketIntOut" | "SocketRealOut" | "SocketStringOut" => self.socket(xml, sheet),
             "BooleanVariable" => self.variable(xml, sheet, Type::Bool),
             "IntegerVariable" => self.variable(xml, sheet, Type::Dint),
             "RealVariable" => self.variable(xml, sheet, Type::Lreal),
             "StringVariable" => self.variable(xml, sheet, Type::String(STRING_BYTES)),
             "FreeText" => {
                 if let Some(text) = attr::text(xml, "text").filter(|t| !t.text.trim().is_empty()) {
-                    self.with(sheet, |s| s.texts.push(text));
+                    let (x, y) = (self.pixels(xml, "x"), self.pixels(xml, "y"));
+                    self.with(sheet, |s| s.texts.push(FreeText { text, x, y }));
                 }
             }
             _ => self.stranger(xml, sheet),
         }
     }
 
-    fn with(&mut self, sheet: usize, change: impl FnOnce(&mut Sheet)) {
+    pub(super) fn with(&mut self, sheet: usize, change: impl FnOnce(&mut Sheet)) {
         if let Some(sheet) = self.plan.sheets.get_mut(sheet) {
             change(sheet);
         }
     }
 
     /// Remembers what an identifier stands for; the first of two keeps it.
-    fn identify(&mut self, xml: Xml, sheet: usize, node: Node) {
+    fn identify(&mut self, xml: Xml<'x, 'x>, sheet: usize, node: Node) {
         let Some(id) = attr::text(xml, "id").filter(|id| !id.text.is_empty()) else { return };
         let Some(known) = self.plan.sheets.get_mut(sheet) else { return };
         if let Entry::Vacant(place) = known.ids.entry(id.text.clone()) {
@@ -157,11 +193,12 @@ impl Reader<'_> {
         }
     }
 
-    fn step(&mut self, xml: Xml, sheet: usize, sort: StepSort) {
+    fn step(&mut self, xml: Xml<'x, 'x>, sheet: usize, sort: StepSort) {
         let step = StepNode {
             sort,
             name: attr::text(xml, "name").unwrap_or_default(),
-            actions: attr::text(xml, "actionText").unwrap_or_default(),
+            actions: vec![attr::text(xml, "actionText").unwrap_or_default()],
+            fused: None,
             at: attr::head(xml),
             x: self.pixels(xml, "x").saturating_add(STEP_AXIS),
             y: self.pixels(xml, "y"),
@@ -177,8 +214,9 @@ impl Reader<'_> {
         }
     }
 
-    fn transition(&mut self, xml: Xml, sheet: usize) {
+    fn transition(&mut self, xml: Xml<'x, 'x>, sheet: usize, exception: bool) {
         let transition = TransitionNode {
+            exception,
             condition: attr::text(xml, "actionText").unwrap_or_default(),
             priority: self.number::<u32>(xml, "priority"),
             at: attr::head(xml),
@@ -190,13 +228,13 @@ impl Reader<'_> {
         self.with(sheet, |s| s.transitions.push(transition));
     }
 
-    fn bar(&mut self, xml: Xml, sheet: usize, node: fn(usize) -> Node) {
+    fn bar(&mut self, xml: Xml<'x, 'x>, sheet: usize, node: fn(usize) -> Node) {
         let index = self.plan.sheets.get(sheet).map_or(0, |s| s.bars);
         self.identify(xml, sheet, node(index));
         self.with(sheet, |s| s.bars += 1);
     }
 
-    fn post(&mut self, xml: Xml, sheet: usize, inward: bool) {
+    fn post(&mut self, xml: Xml<'x, 'x>, sheet: usize, inward: bool) {
         let name = attr::text(xml, "name").unwrap_or_default().text;
         let remote = attr::text(xml, "remoteString").unwrap_or_default().text;
         let index = self.plan.sheets.get(sheet).map_or(0, |s| s.posts.len());
@@ -205,15 +243,57 @@ impl Reader<'_> {
         self.with(sheet, |s| s.posts.push(post));
     }
 
-    fn link(&mut self, xml: Xml, sheet: usize) {
+    fn link(&mut self, xml: Xml<'x, 'x>, sheet: usize) {
         let from = attr::text(xml, "fromObject").unwrap_or_default();
         let to = attr::text(xml, "toObject").unwrap_or_default();
         let link = Link { from, to, at: attr::head(xml) };
         self.with(sheet, |s| s.links.push(link));
     }
 
+    /// Steps that are one step: texts in a workspace of their own name them.
+    fn fusion(&mut self, xml: Xml<'x, 'x>, sheet: usize) {
+        let inside = xml.children().find(|c| c.has_tag_name("GCDocument"));
+        let mut members = Vec::new();
+        for child in inside.into_iter().flat_map(|i| i.children()).filter(Xml::is_element) {
+            if child.has_tag_name("FreeText") {
+                members.extend(attr::text(child, "text").filter(|t| !t.text.trim().is_empty()));
+            } else {
+                self.unknown(child);
+            }
+        }
+        let abortive = attr::text(xml, "abortive").is_some_and(|a| a.text == "1");
+        self.with(sheet, |s| s.fusions.push(Fusion { members, abortive, at: attr::head(xml) }));
+    }
+
+    /// A value that a message on a socket brings, or takes away.
+    fn socket(&mut self, xml: Xml<'x, 'x>, sheet: usize) {
+        let tag = xml.tag_name().name();
+        let kind = if tag.ends_with("Out") { VarKind::Output } else { VarKind::Input };
+        let ty = match tag.trim_start_matches("Socket").trim_end_matches("Out").trim_end_matches("In") {
+            "Boolean" => Type::Bool,
+            "Int" => Type::Dint,
+            "Real" => Type::Lreal,
+            _ => Type::String(STRING_BYTES),
+        };
+        let way = if kind == VarKind::Input { "an input" } else { "an output" };
+        let what = format!("a `{tag}` becomes {way} with its identifier as channel; the socket is not there");
+        self.report.element(&codes::DIFFERENT, tag, &attr::head(xml), &what);
+        let var = Var {
+            name: attr::text(xml, "name").unwrap_or_default(),
+            kind,
+            ty,
+            init: None,
+            channel: attr::text(xml, "identifier").filter(|c| !c.text.trim().is_empty()),
+            inverted: false,
+            retain: false,
+            follows: None,
+            at: attr::head(xml),
+        };
+        self.declare(var, sheet);
+    }
+
     /// A digital or analogue input or output.
-    fn channel(&mut self, xml: Xml, sheet: usize) {
+    fn channel(&mut self, xml: Xml<'x, 'x>, sheet: usize) {
         let tag = xml.tag_name().name();
         let inverted = tag.ends_with('1');
         let kind = if tag.contains("Out") { VarKind::Output } else { VarKind::Input };
@@ -229,21 +309,19 @@ impl Reader<'_> {
             channel: attr::text(xml, "channel").filter(|c| !c.text.trim().is_empty()),
             inverted,
             retain: false,
+            follows: None,
             at: attr::head(xml),
         };
         self.declare(var, sheet);
     }
 
-    fn variable(&mut self, xml: Xml, sheet: usize, ty: Type) {
+    fn variable(&mut self, xml: Xml<'x, 'x>, sheet: usize, ty: Type) {
         let on = |name: &str| attr::text(xml, name).is_some_and(|v| v.text == "1" || v.text == "true");
         let initial = attr::text(xml, "initialValue").filter(|v| !v.text.is_empty());
         let fresh = initial.is_some();
         let value = initial.or_else(|| attr::text(xml, "value").filter(|v| !v.text.is_empty()));
         let constant = on("constant");
-        if on("updated") {
-            let what = "a variable that follows an expression of its own; it keeps its value instead";
-            self.not_carried(xml, what);
-        }
+        let follows = attr::text(xml, "exp").filter(|_| on("updated") && !constant);
         let var = Var {
             name: attr::text(xml, "name").unwrap_or_default(),
             kind: if constant { VarKind::Const } else { VarKind::Var },
@@ -251,7 +329,8 @@ impl Reader<'_> {
             init: value.and_then(|v| self.value(&v, ty)),
             channel: None,
             inverted: false,
-            retain: !constant && !fresh,
+            retain: !constant && !fresh && follows.is_none(),
+            follows,
             at: attr::head(xml),
         };
         self.declare(var, sheet);
@@ -287,7 +366,7 @@ impl Reader<'_> {
     }
 
     /// An element that is not carried over: reported, kept as a note, never dropped in silence.
-    fn stranger(&mut self, xml: Xml, sheet: usize) {
+    fn stranger(&mut self, xml: Xml<'x, 'x>, sheet: usize) {
         let tag = xml.tag_name().name();
         self.identify(xml, sheet, Node::Stranger);
         if let Some(name) = attr::text(xml, "name").filter(|n| !n.text.is_empty()) {
@@ -296,16 +375,6 @@ impl Reader<'_> {
             });
         }
         match tag {
-            "ExceptionTransition" => self.not_carried(
-                xml,
-                "an exception transition, which leaves a macro-step at any of its steps, is not carried over",
-            ),
-            "StepFusionSet" => {
-                self.not_carried(xml, "a step fusion set, whose steps are one step, is not carried over");
-            }
-            "GrafcetProcedure" => {
-                self.left_out(xml, "a procedure is left out; each step that calls one is reported")
-            }
             "GraphicalButton" | "AssignmentButton" | "ActionButton" => {
                 let what = format!("a `{tag}` is left out: nothing is set by a click on it");
                 self.left_out(xml, &what);
@@ -322,27 +391,27 @@ impl Reader<'_> {
         }
     }
 
-    fn not_carried(&mut self, xml: Xml, what: &str) {
+    pub(super) fn not_carried(&mut self, xml: Xml<'x, 'x>, what: &str) {
         self.put(xml, &codes::NOT_CARRIED, what);
     }
 
-    fn left_out(&mut self, xml: Xml, what: &str) {
+    fn left_out(&mut self, xml: Xml<'x, 'x>, what: &str) {
         self.put(xml, &codes::LEFT_OUT, what);
     }
 
-    fn unknown(&mut self, xml: Xml) {
+    fn unknown(&mut self, xml: Xml<'x, 'x>) {
         let what = format!("`{}` is no element of a chart that is known here", shown(xml.tag_name().name()));
         self.put(xml, &codes::UNKNOWN_ELEMENT, &what);
     }
 
-    fn put(&mut self, xml: Xml, code: &'static codes::Code, what: &str) {
+    fn put(&mut self, xml: Xml<'x, 'x>, code: &'static codes::Code, what: &str) {
         let at = attr::head(xml);
         self.report.element(code, xml.tag_name().name(), &at, what);
         self.report.keep(xml.document().input_text().get(at).unwrap_or(""));
     }
 
     /// A number from an attribute; absent is fine, unreadable is reported.
-    fn number<N: std::str::FromStr>(&mut self, xml: Xml, name: &str) -> Option<N> {
+    fn number<N: std::str::FromStr>(&mut self, xml: Xml<'x, 'x>, name: &str) -> Option<N> {
         let text = attr::text(xml, name).filter(|t| !t.text.trim().is_empty())?;
         let number = text.text.trim().parse().ok();
         if number.is_none() {
@@ -353,7 +422,7 @@ impl Reader<'_> {
     }
 
     /// A coordinate; drawings do without one, so an unreadable one is 0.
-    fn pixels(&mut self, xml: Xml, name: &str) -> i32 {
+    fn pixels(&mut self, xml: Xml<'x, 'x>, name: &str) -> i32 {
         const FAR: f64 = 100_000.0;
         let value = xml.attribute(name).and_then(|v| v.trim().parse::<f64>().ok()).filter(|v| v.is_finite());
         value.map_or(0, |v| v.clamp(-FAR, FAR) as i32)
@@ -373,45 +442,4 @@ pub(super) fn shown(text: &str) -> String {
 /// The place of a name, or of the element when it has none.
 pub(super) fn name_place(name: &Text, at: &Range<usize>) -> Range<usize> {
     if name.text.is_empty() { at.clone() } else { name.at.clone() }
-}
-
-/// Elements that hold data: without effect until something names them.
-fn is_data(tag: &str) -> bool {
-    matches!(
-        tag,
-        "BooleanList"
-            | "IntegerList"
-            | "RealList"
-            | "StringList"
-            | "IndexVariable"
-            | "IntegerAttributeVariable"
-            | "RealAttributeVariable"
-            | "StringAttributeVariable"
-            | "ByteStreamIn"
-            | "ByteStreamOut"
-            | "DPWSObject"
-            | "LabCommObject"
-            | "GCClass"
-    ) || tag.starts_with("Socket")
-        || tag.starts_with("XML")
-}
-
-/// Elements that are only looked at.
-fn is_drawing(tag: &str) -> bool {
-    matches!(
-        tag,
-        "GCRectangle"
-            | "GC3DRect"
-            | "GCEllipse"
-            | "GCPolygon"
-            | "GCStroke"
-            | "GCLine"
-            | "GCSpline"
-            | "GCImage"
-            | "Icon"
-            | "LUCASLogo"
-            | "Browser"
-            | "SFCPlotter"
-            | "ShowWorkspaceButton"
-    )
 }

@@ -31,10 +31,17 @@ pub(super) struct Sheet {
     pub(super) kind: SheetKind,
     /// Its name, or that of the object that holds it; may be empty.
     pub(super) name: Text,
-    /// The workspace that holds it.
+    /// The workspace around it, where its texts look names up: that which holds it,
+    /// for a procedure that in which the procedure stands.
     pub(super) parent: Option<usize>,
+    /// The step that it is the inside of: its workspace and number.
+    pub(super) owner: Option<(usize, usize)>,
+    /// What is brought along where a procedure is called.
+    pub(super) call: Option<Call>,
     /// Time between two scans, in milliseconds, of a top workspace.
     pub(super) speed: Option<i64>,
+    /// Scans of the workspace around it between two of its own; of a workspace object.
+    pub(super) cycle: i64,
     pub(super) at: Range<usize>,
     pub(super) vars: Vec<Var>,
     pub(super) steps: Vec<StepNode>,
@@ -43,11 +50,14 @@ pub(super) struct Sheet {
     /// Number of parallel splits and joins.
     pub(super) bars: usize,
     pub(super) links: Vec<Link>,
-    pub(super) texts: Vec<Text>,
+    pub(super) texts: Vec<FreeText>,
+    pub(super) fusions: Vec<Fusion>,
     /// Workspace objects: name, index of their workspace.
     pub(super) objects: Vec<(String, usize)>,
     /// Named objects that are not carried over: name to element.
     pub(super) strangers: HashMap<String, String>,
+    /// Parameters by reference: what a name stands for, and in which workspace.
+    pub(super) refs: HashMap<String, (usize, Vec<String>)>,
     /// What an identifier stands for.
     pub(super) ids: HashMap<String, Node>,
 }
@@ -58,7 +68,10 @@ impl Sheet {
             kind,
             name,
             parent,
+            owner: None,
+            call: None,
             speed: None,
+            cycle: 1,
             at,
             vars: Vec::new(),
             steps: Vec::new(),
@@ -67,8 +80,10 @@ impl Sheet {
             bars: 0,
             links: Vec::new(),
             texts: Vec::new(),
+            fusions: Vec::new(),
             objects: Vec::new(),
             strangers: HashMap::new(),
+            refs: HashMap::new(),
             ids: HashMap::new(),
         }
     }
@@ -78,6 +93,8 @@ impl Sheet {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub(super) enum Node {
     Step(usize),
+    /// A way out of a macro-step with several: the step and the number of the way, from 1.
+    Way(usize, usize),
     Transition(usize),
     /// A parallel split, by its number among the bars.
     Split(usize),
@@ -98,7 +115,7 @@ pub(super) enum StepSort {
     Initial,
     Enter,
     Exit,
-    /// A macro-step, with its workspace.
+    /// A macro-step or the call of a procedure, with its workspace.
     Macro(Option<usize>),
 }
 
@@ -106,7 +123,10 @@ pub(super) enum StepSort {
 pub(super) struct StepNode {
     pub(super) sort: StepSort,
     pub(super) name: Text,
-    pub(super) actions: Text,
+    /// Its texts; several where steps are fused.
+    pub(super) actions: Vec<Text>,
+    /// The step that it is one with.
+    pub(super) fused: Option<usize>,
     pub(super) at: Range<usize>,
     pub(super) x: i32,
     pub(super) y: i32,
@@ -114,11 +134,34 @@ pub(super) struct StepNode {
 
 /// A transition.
 pub(super) struct TransitionNode {
+    /// It leaves its macro-step at any of its steps.
+    pub(super) exception: bool,
     pub(super) condition: Text,
     pub(super) priority: Option<u32>,
     pub(super) at: Range<usize>,
     pub(super) x: i32,
     pub(super) y: i32,
+}
+
+/// A text on the drawing.
+pub(super) struct FreeText {
+    pub(super) text: Text,
+    pub(super) x: i32,
+    pub(super) y: i32,
+}
+
+/// Steps that are one step.
+pub(super) struct Fusion {
+    pub(super) members: Vec<Text>,
+    pub(super) abortive: bool,
+    pub(super) at: Range<usize>,
+}
+
+/// The call of a procedure, kept with the workspace that it brings about.
+pub(super) struct Call {
+    pub(super) parameters: Text,
+    /// Parameters by value: the variable of the procedure, and where in the text its value stands.
+    pub(super) values: Vec<(usize, super::phrase::Phrase)>,
 }
 
 /// A connection post.
@@ -147,6 +190,8 @@ pub(super) struct Var {
     pub(super) channel: Option<Text>,
     pub(super) inverted: bool,
     pub(super) retain: bool,
+    /// It follows this expression, worked out at the beginning of each scan.
+    pub(super) follows: Option<Text>,
     pub(super) at: Range<usize>,
 }
 

@@ -2,14 +2,26 @@
 
 use std::time::{Duration, Instant};
 
-use g7_exchange::{Format, recognise};
+use g7_exchange::{Format, Outlet, recognise};
 use g7_model::{Document, FileId, Problem};
 use proptest::prelude::*;
 
 use crate::show::bytes;
 
-const FILES: [&str; 6] =
-    ["bead-sorter.xml", "lines.xml", "texts.xml", "workspaces.xml", "not-carried.xml", "wrong.xml"];
+const FILES: [&str; 12] = [
+    "bead-sorter.xml",
+    "exceptions.xml",
+    "fusion.xml",
+    "lines.xml",
+    "nested.xml",
+    "not-carried.xml",
+    "outside.xml",
+    "procedures.xml",
+    "texts.xml",
+    "ways-out.xml",
+    "workspaces.xml",
+    "wrong.xml",
+];
 
 fn import(file: &[u8]) -> (Document, Vec<Problem>) {
     recognise("", file);
@@ -18,6 +30,10 @@ fn import(file: &[u8]) -> (Document, Vec<Problem>) {
         assert!(p.at.start <= p.at.end, "{p:?}");
         assert!(p.at.end as usize <= file.len().max(1), "{p:?}");
     }
+    // What is written of it is well-formed, and soon there.
+    let written = g7_exchange::export(Outlet::Jgrafchart, &document);
+    let (_, again) = g7_exchange::import(Format::Jgrafchart, written.text.as_bytes(), FileId(1));
+    assert!(again.iter().all(|p| p.code.id != "G0601"), "{again:?}");
     (document, problems)
 }
 
@@ -243,5 +259,82 @@ proptest! {
     #[test]
     fn any_bytes_never_panic(file in prop::collection::vec(any::<u8>(), 0..300)) {
         import(&file);
+    }
+}
+
+/// The codes of a workspace, found within a time that no bound lets pass.
+fn codes(body: &str) -> Vec<&'static str> {
+    let file = format!("<GCDocument name='J' saveVersion='8'>{body}</GCDocument>");
+    let (_, problems) = within(20, || import(file.as_bytes()));
+    problems.iter().map(|p| p.code.id).collect()
+}
+
+#[test]
+fn procedures_that_call_each_other_end() {
+    let call = |n: usize, of: usize| {
+        format!(
+            "<ProcedureStep id='c{n}' name='c{n}' grafcetProcedure='p{of}' parameters='R v = v;' actionText=''/>"
+        )
+    };
+    let procedure = |n: usize, body: &str| {
+        format!(
+            "<GrafcetProcedure name='p{n}'><GCDocument><IntegerVariable name='v' initialValue='0'/>\
+             <EnterStep id='e' name='e'/>{body}</GCDocument></GrafcetProcedure>"
+        )
+    };
+    // One that calls itself, by another.
+    let circle = format!("{}{}{}", procedure(0, &call(0, 1)), procedure(1, &call(0, 0)), call(9, 0));
+    assert!(codes(&circle).contains(&"G0604"));
+    // Each calls the next one ten times: without a bound, 10^12 copies.
+    let mut tower: String =
+        (0..12).map(|n| procedure(n, &(0..10).map(|c| call(c, n + 1)).collect::<String>())).collect();
+    tower += &procedure(12, "");
+    tower += &call(9, 0);
+    assert!(codes(&tower).contains(&"G0007"));
+    // A long chain of references.
+    let mut chain: String = (0..200).map(|n| procedure(n, &call(0, n + 1))).collect();
+    chain += &procedure(200, "<GCStep id='s' name='s' actionText='S v = 1;'/>");
+    chain += "<IntegerVariable name='v' initialValue='0'/>";
+    chain += &call(9, 0);
+    codes(&chain);
+}
+
+#[test]
+fn thousands_of_exceptions_and_fusions_are_soon_read_and_written() {
+    let mut body = String::new();
+    for n in 0..1500 {
+        body += &format!(
+            "<MacroStep id='m{n}' name='m' actionText='A v = 1;'><GCDocument><EnterStep id='e{n}'/></GCDocument></MacroStep>\
+             <ExceptionTransition id='x{n}' actionText='1'/><GCLink fromObject='m{n}E' toObject='x{n}'/>\
+             <GCLink fromObject='x{n}' toObject='m{n}'/>"
+        );
+    }
+    codes(&body);
+    // One exception of many macro-steps, one macro-step with many ways out.
+    let many: String = (0..1500).map(|n| format!("<GCLink fromObject='m{n}E' toObject='x0'/>")).collect();
+    codes(&(body + &many));
+    let exits: String = (0..1500).map(|n| format!("<ExitStep id='x{n}' x='{n}'/>")).collect();
+    let ways: String = (0..1500)
+        .map(|n| {
+            format!("<GCTransition id='t{n}' actionText='1'/><GCLink fromObject='m_{n}' toObject='t{n}'/>")
+        })
+        .collect();
+    codes(&format!(
+        "<MacroStep id='m'><GCDocument><EnterStep id='e'/>{exits}</GCDocument></MacroStep>{ways}"
+    ));
+    let steps: String = (0..3000).map(|n| format!("<GCStep id='s{n}' name='s{n}'/>")).collect();
+    let texts: String = (0..3000).map(|n| format!("<FreeText text='s{n}'/>")).collect();
+    let set = format!("<StepFusionSet><GCDocument>{texts}</GCDocument></StepFusionSet>");
+    assert!(codes(&format!("{steps}{set}{set}")).contains(&"G0604"));
+}
+
+#[test]
+fn a_macro_step_that_only_exceptions_leave_and_texts_of_any_sort_go_out() {
+    for text in ["&#10;", "a&#9;b", "\u{FFFD}", "&quot;&lt;&amp;", "`\\"] {
+        let body = format!(
+            "<FreeText text='{text}'/><StringVariable name='s' initialValue='{text}'/>\
+             <GCInitialStep id='a' name='{text}' actionText='S s = &quot;x&quot;;'/>"
+        );
+        assert!(!codes(&body).contains(&"G0601"), "{text}");
     }
 }

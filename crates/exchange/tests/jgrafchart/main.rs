@@ -1,4 +1,5 @@
-//! Charts saved by JGrafchart become documents that mean the same.
+//! Charts saved by JGrafchart become documents that mean the same, and documents
+//! become such charts.
 //!
 //! The files stand in `tests/interchange/jgrafchart`; what is expected of them
 //! is written here from JGrafchart's language reference, not from a run.
@@ -8,5 +9,9 @@ mod hostile;
 mod pages;
 mod plants;
 mod problems;
+mod runs;
 mod show;
+#[path = "../support/mod.rs"]
+mod support;
 mod typed;
+mod written;

@@ -34,7 +34,10 @@ fn the_bead_sorter_comes_over_whole() {
     );
     let top = chart(&document, "BeadSorter");
     assert_eq!(top.kind, ChartKind::Chart);
-    assert_eq!(top.comment.as_deref(), Some("Select beads in turn, then sort them back"));
+    let layout = document.items.iter().find_map(|i| if let Item::Layout(l) = i { Some(l) } else { None });
+    let text = Placed::Comment("Select beads in turn,\nthen sort them back".into());
+    let at = layout.and_then(|l| l.places.iter().find(|p| p.what == text)).map(|p| (p.x, p.y));
+    assert_eq!(at, Some((300, 6000)));
     assert_eq!(
         transitions(top),
         ["Start -> Sequencing, BeadLogic when TRUE", "Sequencing, BeadLogic -> Start when Tilt"]

@@ -2,7 +2,7 @@
 
 use g7_model::{Expr, Name, Type, VarDecl, VarKind};
 
-use super::xml::Element;
+use crate::xml::element::Element;
 use crate::iec::{Known, Writer};
 
 /// The type of a variable, a parameter or a result.

@@ -9,6 +9,5 @@ mod declare;
 mod place;
 mod project;
 mod sfc;
-mod xml;
 
 pub(super) use project::export;

@@ -7,7 +7,7 @@ use g7_model::{
 
 use super::declare::{external, initial, lists, type_of};
 use super::sfc::Sfc;
-use super::xml::Element;
+use crate::xml::element::Element;
 use crate::Written;
 use crate::iec::{Form, Known, Writer, standard, time};
 

@@ -10,7 +10,7 @@ use g7_model::{
 };
 
 use super::place::Places;
-use super::xml::Element;
+use crate::xml::element::Element;
 use crate::iec::{Writer, time};
 
 const STEP: (f64, f64) = (60.0, 30.0);

@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 /// An element with its attributes, and elements or text within.
-pub(super) struct Element {
+pub(crate) struct Element {
     tag: String,
     attributes: Vec<(&'static str, String)>,
     children: Vec<Element>,
@@ -11,44 +11,44 @@ pub(super) struct Element {
 }
 
 impl Element {
-    pub(super) fn new(tag: &str) -> Element {
+    pub(crate) fn new(tag: &str) -> Element {
         Element { tag: tag.to_string(), attributes: Vec::new(), children: Vec::new(), text: String::new() }
     }
 
-    pub(super) fn with(mut self, name: &'static str, value: impl ToString) -> Element {
+    pub(crate) fn with(mut self, name: &'static str, value: impl ToString) -> Element {
         self.attributes.push((name, value.to_string()));
         self
     }
 
-    pub(super) fn child(mut self, child: Element) -> Element {
+    pub(crate) fn child(mut self, child: Element) -> Element {
         self.children.push(child);
         self
     }
 
-    pub(super) fn children(mut self, children: impl IntoIterator<Item = Element>) -> Element {
+    pub(crate) fn children(mut self, children: impl IntoIterator<Item = Element>) -> Element {
         self.children.extend(children);
         self
     }
 
     /// The same under another name.
-    pub(super) fn renamed(mut self, tag: &str) -> Element {
+    pub(crate) fn renamed(mut self, tag: &str) -> Element {
         self.tag = tag.to_string();
         self
     }
 
-    pub(super) fn push(&mut self, child: Element) {
+    pub(crate) fn push(&mut self, child: Element) {
         self.children.push(child);
     }
 
     /// Text in the paragraph of XHTML that TC6 wants round it.
-    pub(super) fn formatted(tag: &str, text: &str) -> Element {
+    pub(crate) fn formatted(tag: &str, text: &str) -> Element {
         let mut inner = Element::new("xhtml").with("xmlns", "http://www.w3.org/1999/xhtml");
         inner.text = text.to_string();
         Element::new(tag).child(inner)
     }
 
     /// Prints it, two blanks a level.
-    pub(super) fn print(&self, level: usize, text: &mut String) {
+    pub(crate) fn print(&self, level: usize, text: &mut String) {
         let blanks = " ".repeat(2 * level);
         let _ = write!(text, "{blanks}<{}", self.tag);
         for (name, value) in &self.attributes {

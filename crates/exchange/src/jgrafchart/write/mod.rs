@@ -1,0 +1,284 @@
+//! A document as a file of JGrafchart.
+//!
+//! The first chart is the workspace of the file, each other one a workspace object
+//! in it; macro-steps hold their expansions. What JGrafchart does not have is a
+//! problem with its place in the document: a warning where the rest means the same,
+//! an error where it does not.
+
+mod actions;
+mod chart;
+mod declare;
+mod draw;
+mod guards;
+mod look;
+mod text;
+
+use std::collections::HashMap;
+
+use g7_model::codes::{self, Code};
+use g7_model::{
+    Body, ChartItem, ChartKind, Document, ExprKind, Item, Place, Problem, ProfileName, Stmt, StmtKind,
+    VarKind,
+};
+
+use crate::Written;
+use crate::xml::element::Element;
+use guards::Guards;
+use look::{Look, Meaning, Thing, VarId};
+use text::Speech;
+
+/// Nominal scan time where the document has none, as everywhere here.
+const SCAN: i64 = 10_000_000;
+const NS_PER_MS: i64 = 1_000_000;
+/// The attributes of a workspace as a fresh one has them.
+const WORKSPACE: [(&str, &str); 14] = [
+    ("color", "-1"),
+    ("dimTicks", "25"),
+    ("dpwsInterface", ""),
+    ("dpwsPort", "-1"),
+    ("horizontalScrollBar", "1"),
+    ("modifiable", "1"),
+    ("saveVersion", "8"),
+    ("simulationMode", "1"),
+    ("socketHost", ""),
+    ("socketIsServer", "0"),
+    ("socketPort", "-1"),
+    ("socketSendMode", "Changed"),
+    ("tokenLuminance", "0"),
+    ("verticalScrollBar", "1"),
+];
+
+/// Writes the document.
+pub(crate) fn export(document: &Document) -> Written {
+    let mut look = Look::new(document);
+    let guards = Guards::find(&mut look);
+    let mut writer = Writer::new(document, look, guards);
+    let mut root = writer.root();
+    // Which names texts cannot hold is known when all texts have been written.
+    if !writer.look.unspeakable.is_empty() {
+        writer.look.rename();
+        writer = Writer::new(document, writer.look, writer.guards);
+        root = writer.root();
+        writer.tell_renamed();
+    }
+    let mut text = String::from("<?xml version=\"1.0\" encoding=\"UTF-8\" standalone=\"yes\"?>\n");
+    root.print(0, &mut text);
+    let mut problems = writer.problems;
+    problems.sort_by_key(|p| (p.at.start, p.at.end));
+    Written { text, problems }
+}
+
+struct Writer<'d> {
+    document: &'d Document,
+    look: Look<'d>,
+    guards: Guards,
+    problems: Vec<Problem>,
+    /// Identifiers given so far.
+    ids: u64,
+    /// Variables that follow an expression, with its text.
+    follows: HashMap<VarId, String>,
+    /// The scan time, in nanoseconds.
+    scan: i64,
+    /// Charts in the order in which they are written.
+    order: Vec<usize>,
+    /// Where the steps of the charts written so far stand.
+    spots: HashMap<usize, Vec<draw::Spot>>,
+}
+
+impl<'d> Writer<'d> {
+    fn new(document: &'d Document, look: Look<'d>, guards: Guards) -> Writer<'d> {
+        let scan =
+            document.items.iter().find_map(|i| if let Item::Cycle(ns, _) = i { Some(*ns) } else { None });
+        Writer {
+            document,
+            look,
+            guards,
+            problems: Vec::new(),
+            ids: 0,
+            follows: HashMap::new(),
+            scan: scan.unwrap_or(SCAN),
+            order: Vec::new(),
+            spots: HashMap::new(),
+        }
+    }
+
+    fn say(&mut self, code: &'static Code, at: Place, what: impl Into<String>) {
+        self.problems.push(Problem::new(code, at.0, what));
+    }
+
+    /// Something with a meaning that JGrafchart does not have.
+    fn cannot(&mut self, at: Place, what: &str) {
+        self.say(&codes::NOT_CARRIED, at, format!("{what}: JGrafchart has none"));
+    }
+
+    /// Something without which the chart means the same.
+    fn leave_out(&mut self, at: Place, what: &str) {
+        self.say(&codes::LEFT_OUT, at, format!("{what}: JGrafchart has none; it is left out"));
+    }
+
+    /// An identifier like those of newer files.
+    fn id(&mut self) -> String {
+        self.ids += 1;
+        format!("00000000-0000-4000-8000-{:012x}", self.ids)
+    }
+
+    fn root(&mut self) -> Element {
+        let document = self.document;
+        for note in &document.notes {
+            self.leave_out(note.at.into(), "a note to the reader");
+        }
+        document.items.iter().for_each(|i| self.item(i));
+        self.processing();
+        let top = self.look.top;
+        let mut root = Element::new("GCDocument");
+        for (name, value) in WORKSPACE {
+            root = root.with(name, value);
+        }
+        let name = self.look.charts.get(top).map_or("", |c| &*c.name.text);
+        root = root.with("name", name).with("threadSpeed", (self.scan / NS_PER_MS).max(1));
+        let root = window(root);
+        let content = self.workspace(top);
+        let mut objects = Vec::new();
+        for index in 0..self.look.charts.len() {
+            let Some(chart) = self.look.charts.get(index).copied() else { break };
+            let alone = index != top && self.look.owner.get(index) == Some(&None);
+            match chart.kind {
+                ChartKind::Chart if alone => objects.push(self.object(index)),
+                ChartKind::Task => self.cannot(chart.at, "a task"),
+                ChartKind::Expansion if alone => {
+                    self.leave_out(chart.at, "an expansion without a macro-step");
+                }
+                _ => {}
+            }
+        }
+        self.in_order();
+        let (parts, links): (Vec<Element>, Vec<Element>) = content;
+        root.children(parts).children(objects).children(links)
+    }
+
+    /// What stands beside charts and variables.
+    fn item(&mut self, item: &Item) {
+        match item {
+            Item::Var(_) | Item::Chart(_) | Item::Layout(_) | Item::Pre(..) => {}
+            Item::Profile(p) if p.name == ProfileName::Jgrafchart && p.switches.is_empty() => {}
+            Item::Profile(p) => {
+                let what = format!(
+                    "the rules of evolution of `{}` or its switches; JGrafchart has its own",
+                    p.name.name()
+                );
+                self.say(&codes::NOT_CARRIED, p.at, what);
+            }
+            Item::Cycle(ns, at) if ns % NS_PER_MS != 0 || *ns < NS_PER_MS => {
+                self.cannot(*at, "a scan time that is no whole number of milliseconds");
+            }
+            Item::Cycle(..) => {}
+            Item::Target(_, at) => self.leave_out(*at, "a target"),
+            Item::Action(a) => self.cannot(a.at, "a named action"),
+            Item::Section(s) => self.cannot(s.at, "a transition section"),
+            Item::Function(f) => self.cannot(f.at, "a function"),
+            Item::Post(_, at) => self.cannot(*at, "processing behind the evolution"),
+            Item::Plant(p) => self.leave_out(p.at, "a plant"),
+            Item::Test(t) => self.leave_out(t.at, "a test"),
+            Item::Prove(p) => self.leave_out(p.at, "a property"),
+        }
+    }
+
+    /// Processing before the evolution: a variable there can follow an expression.
+    fn processing(&mut self) {
+        let document = self.document;
+        let top = self.look.top;
+        if !document.items.iter().any(|i| matches!(i, Item::Profile(_))) {
+            let what = "the rules of evolution of `iec60848`; JGrafchart has its own";
+            self.say(&codes::NOT_CARRIED, Place::default(), what);
+        }
+        for item in &document.items {
+            if let Item::Pre(body, at) = item {
+                self.before(top, body, *at);
+            }
+        }
+        for (index, chart) in self.look.charts.clone().into_iter().enumerate() {
+            for item in &chart.items {
+                if let ChartItem::Pre(body, at) = item {
+                    self.before(index, body, *at);
+                }
+            }
+        }
+    }
+
+    fn before(&mut self, chart: usize, body: &Body, at: Place) {
+        let Body::St(block) = body else {
+            return self.cannot(at, "processing before the evolution in another language");
+        };
+        if !block.locals.is_empty() {
+            self.cannot(at, "variables of a body");
+        }
+        for statement in &block.statements {
+            if !self.follow(chart, statement) {
+                let what = "processing before the evolution other than one assignment to a variable";
+                self.cannot(statement.at, what);
+            }
+        }
+    }
+
+    fn follow(&mut self, chart: usize, statement: &Stmt) -> bool {
+        let StmtKind::Assign { target, value } = &statement.kind else { return false };
+        let ExprKind::Path(path) = &target.kind else { return false };
+        let Some(Meaning::Var(var)) = self.look.path(chart, path) else { return false };
+        if self.guards.is_flag(var) {
+            return true;
+        }
+        let Some(decl) = self.look.decl(var).filter(|d| d.kind == VarKind::Var) else { return false };
+        let home = var.chart.unwrap_or(self.look.top);
+        if self.follows.contains_key(&var) {
+            return false;
+        }
+        match (Speech { look: &mut self.look, chart, home }).value(value, decl.ty) {
+            Ok(text) => {
+                self.follows.insert(var, text);
+            }
+            Err((at, what)) => self.cannot(at, &what),
+        }
+        true
+    }
+
+    /// Charts are read in the order of the file, which decides what fires first.
+    fn in_order(&mut self) {
+        let mut last = None;
+        for index in std::mem::take(&mut self.order) {
+            if last.is_some_and(|l| l > index)
+                && let Some(chart) = self.look.charts.get(index)
+            {
+                let what = format!(
+                    "`{}` comes behind charts that stand before it; transitions fire in the order of the file",
+                    chart.name.text
+                );
+                return self.say(&codes::DIFFERENT, chart.name.at, what);
+            }
+            last = Some(index);
+        }
+    }
+
+    /// Says which names had to change.
+    fn tell_renamed(&mut self) {
+        let renamed: Vec<(Thing, String)> =
+            self.look.renamed.iter().map(|(thing, name)| (*thing, name.clone())).collect();
+        for (thing, new) in renamed {
+            let old = match thing {
+                Thing::Var(var) => self.look.decl(var).and_then(|d| d.names.get(var.name)).cloned(),
+                Thing::Step((chart, step)) => self.look.step_at((chart, step)).map(|s| s.name.clone()),
+            };
+            if let Some(old) = old {
+                let what =
+                    format!("texts of JGrafchart cannot hold the name `{}`; it becomes `{new}`", old.text);
+                self.say(&codes::RENAMED, old.at, what);
+            }
+        }
+    }
+}
+
+/// The place and size of a workspace's window.
+fn window(element: Element) -> Element {
+    let numbers =
+        [("viewPositionX", 0), ("viewPositionY", 0), ("width", 900), ("height", 700), ("x", 0), ("y", 0)];
+    numbers.into_iter().fold(element.with("scale", "1.0"), |e, (name, value)| e.with(name, value))
+}
