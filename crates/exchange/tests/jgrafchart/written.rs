@@ -246,7 +246,8 @@ fn conformance_cases_run_as_before() {
 fn a_drawing_without_a_layout_is_laid_out() {
     let document = parse(
         "profile jgrafchart input a : BOOL
-         chart G { initial step 1 step 2 step 3 1 -> (2, 3) when a (2, 3) -> 1 when not a }",
+         chart G { initial step 1 step 2 step 3 1 -> (2, 3) when a
+         (2, 3) -> 1 when not a }",
     );
     let written = g7_exchange::export(Outlet::Jgrafchart, &document);
     assert_eq!(lines(b"", &written.problems), Vec::<String>::new());
@@ -277,7 +278,7 @@ fn what_means_the_same_is_written_with_what_there_is() {
            1 -> 2 when ↑a or (b xor X1) and n <> 4 priority 1
            2 -> 1 when X2 and 2.t > 3 and 2.s >= 0.5
          }
-         chart H every 60ms { initial step 9 { P1 n := G.1.t } }";
+         chart H every 60ms { initial step 9 { P1 n := G.X1.t } }";
     let written = g7_exchange::export(Outlet::Jgrafchart, &parse(text));
     assert_eq!(
         lines(text.as_bytes(), &written.problems),
@@ -290,7 +291,7 @@ fn what_means_the_same_is_written_with_what_there_is() {
         "threadSpeed=\"20\"",
         "actionText=\"S y = 1;&#10;S z = 0;&#10;S n = (a &amp; !b) ? (n + 1) : n;&#10;N y;\"",
         "actionText=\"S n = n * (k - 1);&#10;S r = 2.5;&#10;X r = r / 2.0;&#10;P n = a ? 0 : n;\"",
-        "actionText=\"/a | (b != S1.x) &amp; n != 4\"",
+        "actionText=\"/a | b != S1.x &amp; n != 4\"",
         "actionText=\"S2.x &amp; S2.t &gt; 3 &amp; S2.s &gt;= 0.5\"",
         "<WorkspaceObject enabled=\"1\" fileName=\"\" horizontalScrollBar=\"1\" name=\"H\" ownerClass=\"\" scanCycle=\"3\"",
         "actionText=\"S n = S1.t;\"",
@@ -364,6 +365,9 @@ fn an_enclosing_step_of_another_form_is_not_taken_for_a_macro_step() {
          chart H { step 3 * step 4 3 -> 4 when b }";
     assert_eq!(
         said(text),
-        ["G0604 2: a transition of such an enclosing step, or of what it encloses: JGrafchart has none"]
+        [
+            "G0604 2: a transition of such an enclosing step, or of what it encloses: JGrafchart has none",
+            "G0611 3: `H` is called as its macro-step there: `2`",
+        ]
     );
 }

@@ -248,7 +248,11 @@ fn assigned<'s>(look: &Look<'_>, index: usize, s: &'s Stmt) -> Option<(VarId, &'
 
 /// The enclosing step of `flag := Step.x and …`, with a variable of the chart.
 fn tells_of(look: &Look<'_>, index: usize, var: VarId, value: &Expr) -> Option<usize> {
-    let ExprKind::Binary(BinaryOp::And, first, _) = &value.kind else { return None };
+    // Alone where the exception has no condition.
+    let first = match &value.kind {
+        ExprKind::Binary(BinaryOp::And, first, _) => first,
+        _ => value,
+    };
     let decl = look.decl(var).filter(|d| var.chart == Some(index) && d.names.len() == 1)?;
     let plain = decl.kind == VarKind::Var && decl.ty == Type::Bool && decl.init.is_none() && !decl.retain;
     let named = decl.names.first().is_some_and(|n| n.text.contains("_abort"));
