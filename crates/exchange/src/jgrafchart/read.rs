@@ -1,6 +1,6 @@
 //! From XML elements to workspaces.
 
-use std::collections::hash_map::Entry;
+use std::collections::btree_map::Entry;
 use std::ops::Range;
 
 use g7_model::codes;

@@ -1,6 +1,6 @@
 //! A workspace of the file, in the file's own names and with its own links.
 
-use std::collections::HashMap;
+use std::collections::{BTreeMap, HashMap};
 use std::ops::Range;
 
 use g7_model::{Type, VarKind};
@@ -59,7 +59,7 @@ pub(super) struct Sheet {
     /// Parameters by reference: what a name stands for, and in which workspace.
     pub(super) refs: HashMap<String, (usize, Vec<String>)>,
     /// What an identifier stands for.
-    pub(super) ids: HashMap<String, Node>,
+    pub(super) ids: BTreeMap<String, Node>,
 }
 
 impl Sheet {
@@ -84,7 +84,7 @@ impl Sheet {
             objects: Vec::new(),
             strangers: HashMap::new(),
             refs: HashMap::new(),
-            ids: HashMap::new(),
+            ids: BTreeMap::new(),
         }
     }
 }

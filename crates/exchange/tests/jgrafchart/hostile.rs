@@ -294,7 +294,7 @@ fn procedures_that_call_each_other_end() {
         (0..12).map(|n| procedure(n, &(0..10).map(|c| call(c, n + 1)).collect::<String>())).collect();
     tower += &procedure(12, "");
     tower += &call(9, 0);
-    assert!(codes(&tower).contains(&"G0007"));
+    assert!(codes(&tower).contains(&"G0008"));
     // A long chain of references.
     let mut chain: String = (0..200).map(|n| procedure(n, &call(0, n + 1))).collect();
     chain += &procedure(200, "<GCStep id='s' name='s' actionText='S v = 1;'/>");

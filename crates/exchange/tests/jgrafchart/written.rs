@@ -196,7 +196,7 @@ fn cases(folder: &str) -> Vec<(String, Document)> {
     let path: PathBuf = [env!("CARGO_MANIFEST_DIR"), "..", "..", "tests", "spec", folder].iter().collect();
     let mut cases = Vec::new();
     for entry in std::fs::read_dir(path).expect("a folder of the repository").flatten() {
-        let text = std::fs::read_to_string(entry.path()).expect("a case");
+        let text = String::from_utf8(std::fs::read(entry.path()).expect("a case")).expect("UTF-8");
         let chart = text.split("```g7\n").nth(1).and_then(|t| t.split("\n```").next()).expect("a chart");
         let profile = if chart.contains("profile ") { "" } else { "profile jgrafchart\n" };
         let name = entry.file_name().to_string_lossy().trim_end_matches(".md").to_string();

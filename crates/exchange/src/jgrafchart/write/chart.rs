@@ -248,7 +248,7 @@ impl<'d> Writer<'d> {
         let shown = self.guards.shown(index, number).cloned().unwrap_or_else(|| {
             self.cannot(transition.at, "a transition of such an enclosing step, or of what it encloses");
             let condition = transition.receptivity.clone();
-            Shown { exception: false, exits: std::collections::HashMap::new(), condition }
+            Shown { exception: false, exits: std::collections::BTreeMap::new(), condition }
         });
         let condition =
             (Speech { look: &mut self.look, chart: index, home: index }).condition(&shown.condition);

@@ -91,13 +91,7 @@ impl Writer<'_> {
         }
         let address = decl.address.as_ref().map_or("", |a| &*a.text);
         let value = match decl.ty {
-            Type::Bool => {
-                if rests {
-                    "1"
-                } else {
-                    "0"
-                }
-            }
+            Type::Bool if rests => "1",
             Type::Real | Type::Lreal => "0.0",
             Type::String(_) => "",
             _ => "0",

@@ -1,7 +1,7 @@
 //! Which enclosing steps are macro-steps with exception transitions: those that
 //! have the form which reading such a file gives them.
 
-use std::collections::HashMap;
+use std::collections::BTreeMap;
 
 use g7_model::{
     ActionKind, BinaryOp, Body, Chart, ChartItem, ChartKind, Expr, ExprKind, Name, Order, Path, Place, Step,
@@ -17,7 +17,7 @@ pub(super) struct Shown {
     /// An exception transition.
     pub(super) exception: bool,
     /// By which exit step each preceding macro-step is left, where it has several.
-    pub(super) exits: HashMap<usize, usize>,
+    pub(super) exits: BTreeMap<usize, usize>,
     /// Its own condition.
     pub(super) condition: Expr,
 }
@@ -25,27 +25,27 @@ pub(super) struct Shown {
 /// The enclosing steps that are macro-steps in the file.
 pub(super) struct Guards {
     /// The variable that tells that an exception takes the inside of a step.
-    flags: HashMap<StepId, VarId>,
+    flags: BTreeMap<StepId, VarId>,
     /// Of each chart: the nearest step round it that has one.
     above: Vec<Option<StepId>>,
     /// The exit steps of each enclosed chart.
-    pub(super) exits: HashMap<usize, Vec<usize>>,
+    pub(super) exits: BTreeMap<usize, Vec<usize>>,
     /// Transitions of enclosing steps, and others that give way.
-    shown: HashMap<(usize, usize), Shown>,
+    shown: BTreeMap<(usize, usize), Shown>,
 }
 
 impl Guards {
     /// Finds them, and makes their charts the insides of their steps.
     pub(super) fn find(look: &mut Look<'_>) -> Guards {
         let mut guards = Guards {
-            flags: HashMap::new(),
+            flags: BTreeMap::new(),
             above: vec![None; look.charts.len()],
-            exits: HashMap::new(),
-            shown: HashMap::new(),
+            exits: BTreeMap::new(),
+            shown: BTreeMap::new(),
         };
         let charts = look.charts.clone();
         // What variables are given at the beginning of each scan; nothing where twice.
-        let mut given: HashMap<VarId, Option<&Expr>> = HashMap::new();
+        let mut given: BTreeMap<VarId, Option<&Expr>> = BTreeMap::new();
         for (index, chart) in charts.iter().enumerate() {
             for (number, step) in chart.steps().enumerate() {
                 let Some(inside) = encloses(step).and_then(|name| look.chart(name)) else { continue };
@@ -131,7 +131,7 @@ impl Guards {
         }
         let from: Vec<usize> = transition.from.iter().filter_map(|n| look.step(chart, &n.text)).collect();
         let enclosing = |s: &usize| look.step_at((chart, *s)).is_some_and(|s| s.kind == StepKind::Enclosing);
-        let mut exits = HashMap::new();
+        let mut exits = BTreeMap::new();
         let mut plain = condition.clone();
         // The last step's guard stands outermost.
         let ordinary = from.iter().rev().filter(|s| enclosing(s)).try_for_each(|step| {
@@ -148,12 +148,12 @@ impl Guards {
             return Some(Shown { exception: false, exits, condition: plain });
         }
         let all = from.iter().all(|s| self.flags.contains_key(&(chart, *s)));
-        all.then(|| Shown { exception: true, exits: HashMap::new(), condition })
+        all.then(|| Shown { exception: true, exits: BTreeMap::new(), condition })
     }
 
     /// Drops what the variables of the form do not say: they must be what reading makes of them.
-    fn keep_sound(&mut self, look: &Look<'_>, given: &HashMap<VarId, Option<&Expr>>) {
-        let mut exceptions: HashMap<StepId, Vec<(Vec<usize>, &Expr)>> = HashMap::new();
+    fn keep_sound(&mut self, look: &Look<'_>, given: &BTreeMap<VarId, Option<&Expr>>) {
+        let mut exceptions: BTreeMap<StepId, Vec<(Vec<usize>, &Expr)>> = BTreeMap::new();
         let mut numbers: Vec<&(usize, usize)> = self.shown.keys().collect();
         numbers.sort_unstable();
         for &(chart, number) in numbers {
