@@ -22,7 +22,7 @@ const ALLOWED: &[Arrows] = &[
     // It runs in the plant: nothing it did not bring but the functions of `libm`.
     ("engine", &[], Some(&["libm"])),
     ("syntax", &["g7-model"], None),
-    ("exchange", &["g7-model", "g7-syntax"], None),
+    ("exchange", &["g7-model", "g7-syntax", "g7-draw"], None),
     ("compile", &["g7-model", "g7-engine"], Some(&[])),
     ("codegen", &["g7-model", "g7-engine", "g7-compile"], Some(&[])),
     ("host", &["g7-engine"], None),

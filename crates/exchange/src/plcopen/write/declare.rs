@@ -2,8 +2,8 @@
 
 use g7_model::{Expr, Name, Type, VarDecl, VarKind};
 
-use crate::xml::element::Element;
 use crate::iec::{Known, Writer};
+use crate::xml::element::Element;
 
 /// The type of a variable, a parameter or a result.
 pub(super) fn type_of(ty: Type) -> Element {

@@ -7,9 +7,9 @@ use g7_model::{
 
 use super::declare::{external, initial, lists, type_of};
 use super::sfc::Sfc;
-use crate::xml::element::Element;
 use crate::Written;
 use crate::iec::{Form, Known, Writer, standard, time};
+use crate::xml::element::Element;
 
 /// The nominal scan time where the document has none.
 const SCAN: i64 = 10_000_000;

@@ -10,8 +10,8 @@ use g7_model::{
 };
 
 use super::place::Places;
-use crate::xml::element::Element;
 use crate::iec::{Writer, time};
+use crate::xml::element::Element;
 
 const STEP: (f64, f64) = (60.0, 30.0);
 const TRANSITION: (f64, f64) = (20.0, 2.0);
