@@ -202,13 +202,20 @@ impl<'d> Lower<'d> {
         nodes::name(&[&name], span)
     }
 
-    /// The time of an action: a name, else what it comes to.
+    /// The time of an action: a literal or a variable. Another one is computed before the charts.
     pub(super) fn time(&mut self, e: &Expr, at: &At<'d>) -> Expr {
+        let span = e.at.0;
         let name = matches!(e.kind, ExprKind::Path(_));
-        match self.folded(e, at.chart, MOST_CONSTANTS).filter(|_| !name) {
-            Some(value) => value,
-            None => self.expr(e, at),
+        if let Some(value) = self.folded(e, at.chart, MOST_CONSTANTS).filter(|_| !name) {
+            return value;
         }
+        if name {
+            return self.expr(e, at);
+        }
+        let value = self.expr(e, &At { program: None, ..at.clone() });
+        let name = self.fresh(None, "Duration", Type::Time, span);
+        self.sections.push(nodes::assign(nodes::name(&[&name], span), value, span));
+        nodes::name(&[&name], span)
     }
 
     /// An initial value: one literal.

@@ -86,7 +86,7 @@ struct Lower<'d> {
     mirrors: BTreeMap<StepKey, String>,
     watches: Vec<watch::Watch>,
     started: Option<String>,
-    /// Statements before the charts: of edges and delays, and of sections.
+    /// Statements before the charts: of edges and delays, and of sections and times.
     looking: Vec<Stmt>,
     /// Statements behind them.
     closing: Vec<Stmt>,
