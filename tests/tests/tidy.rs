@@ -24,7 +24,7 @@ const ALLOWED: &[Arrows] = &[
     ("syntax", &["g7-model"], None),
     ("exchange", &["g7-model", "g7-syntax", "g7-draw"], None),
     ("compile", &["g7-model", "g7-engine"], Some(&[])),
-    ("codegen", &["g7-model", "g7-engine", "g7-compile"], Some(&[])),
+    ("codegen", &["g7-model", "g7-engine", "g7-compile", "g7-draw"], Some(&[])),
     ("host", &["g7-engine"], None),
     ("draw", &["g7-model"], Some(&[])),
     ("edit", &["g7-model", "g7-syntax", "g7-compile"], Some(&["serde"])),
