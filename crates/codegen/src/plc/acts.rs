@@ -37,7 +37,7 @@ impl Plan<'_> {
     pub(crate) fn run(&mut self, s: &mut Section, action: u32, when: Ex) {
         let (c, body) = self.action(action);
         let note = self.action_note(action);
-        s.act(note, when.and(c), body);
+        conditional(s, note, when, c, body);
     }
 
     /// The memory "runs at the end of the scan".
@@ -54,7 +54,11 @@ impl Plan<'_> {
             let rows = self.extra(step).events;
             for i in rows.start..rows.end {
                 let Some(e) = self.t.events.get(i as usize).copied() else { break };
-                let when = self.active(step).and(self.condition(e.event));
+                let event = self.condition(e.event);
+                if event.divides() {
+                    self.cannot(e.event.start, "an event that divides");
+                }
+                let when = self.active(step).and(event);
                 all.push((e.action, Start::When(when)));
             }
         }
@@ -160,7 +164,7 @@ impl Plan<'_> {
             let (c, body) = self.action(action);
             let body = self.waiting(action, body);
             let note = self.action_note(action);
-            bodies.act(note, when.and(c), body);
+            conditional(&mut bodies, note, when, c, body);
         }
         let copies = self.nexts.clone().into_iter();
         s.act(
@@ -220,6 +224,16 @@ impl Plan<'_> {
                 }
             }
         }
+    }
+}
+
+/// Statements under two conditions. The second is judged only where the first
+/// holds if it divides: its divisor may be zero.
+fn conditional(s: &mut Section, note: String, when: Ex, c: Ex, body: Vec<St>) {
+    if c.divides() {
+        s.act(note, when, St::when(c, body));
+    } else {
+        s.act(note, when.and(c), body);
     }
 }
 

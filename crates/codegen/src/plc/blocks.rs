@@ -81,6 +81,9 @@ impl Plan<'_> {
         for block in 0..self.t.blocks.len() as u32 {
             for input in [P1, P0] {
                 let e = self.input(&inputs, block, input);
+                if e.divides() {
+                    self.cannot(0, "a pulse whose condition divides");
+                }
                 let first = Ex::var("FIRST").and(e);
                 let (before, early) =
                     (self.before_name(block, input), self.of_block(block, "P1_EARLY", Ty::BOOL));
@@ -377,7 +380,7 @@ impl Plan<'_> {
     }
 
     /// Conditions see the variables before any block has written: those that
-    /// read what one writes are judged first.
+    /// read what one writes are judged first, and those that divide.
     fn conditions_before(&mut self, s: &mut Section, inputs: &Inputs) {
         let outputs: Vec<u32> = self.t.blocks.iter().map(|b| b.output.0).filter(|o| *o != NONE).collect();
         let outputs: Vec<Ex> = outputs.into_iter().map(|o| self.word(o)).collect();
@@ -387,10 +390,19 @@ impl Plan<'_> {
                 Ex::Var(n) | Ex::Index(n, _) => e.reads(n),
                 _ => false,
             });
-            if touches && !self.judged.contains_key(&c.condition.start) {
+            if (touches || e.divides()) && !self.judged.contains_key(&c.condition.start) {
                 let n = (self.judged.len() + 1).to_string();
                 let name = self.memory("BC", &n, Ty::BOOL, "a condition of an action");
-                s.assign("", name.clone(), e);
+                if e.divides() {
+                    // Only where its step is active: its divisor may be zero otherwise.
+                    let rows = inputs.values().flatten();
+                    let own = rows.filter(|(_, o)| o.condition.start == c.condition.start);
+                    let active = Ex::any(own.map(|(step, _)| self.active(*step)));
+                    s.assign("", name.clone(), Ex::Bool(false));
+                    s.act("", active, vec![St::set(name.clone(), e)]);
+                } else {
+                    s.assign("", name.clone(), e);
+                }
                 self.judged.insert(c.condition.start, name);
             }
         }

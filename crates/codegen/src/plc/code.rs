@@ -227,7 +227,8 @@ impl<'p, 'a> Body<'p, 'a> {
             return end;
         }
         let other = match self.op(to.wrapping_sub(1)) {
-            Some(Op::Jump(u)) if to > at + 1 && u >= to && u <= end => Some(u),
+            // One to the place behind itself leads past nothing.
+            Some(Op::Jump(u)) if to > at + 1 && u > to && u <= end => Some(u),
             _ => None,
         };
         let next = other.unwrap_or(to);
@@ -249,7 +250,9 @@ impl<'p, 'a> Body<'p, 'a> {
                     _ => Ty::BOOL,
                 };
                 let (x, y) = (self.as_ty(&a, ty), self.as_ty(&b, ty));
-                if then.is_empty() && otherwise.is_empty() {
+                // What divides is worked out only where it is wanted.
+                let both = then.is_empty() && otherwise.is_empty();
+                if both && !x.divides() && !y.divides() {
                     let e = match (&x, &y) {
                         (_, Ex::Bool(false)) => c.and(x),
                         _ => Ex::call("SEL", vec![c, y, x]),

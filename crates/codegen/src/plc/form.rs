@@ -37,7 +37,12 @@ impl Ex {
     }
 
     pub(crate) fn call(name: impl Into<String>, args: Vec<Ex>) -> Ex {
-        Ex::Call(name.into(), args)
+        let name = name.into();
+        match (name.as_str(), args.as_slice()) {
+            ("MIN", [Ex::Int(x), Ex::Int(y)]) => Ex::Int(*x.min(y)),
+            ("MAX", [Ex::Int(x), Ex::Int(y)]) => Ex::Int(*x.max(y)),
+            _ => Ex::Call(name, args),
+        }
     }
 
     pub(crate) fn not(self) -> Ex {
@@ -134,6 +139,29 @@ impl Ex {
                 b.walk(f);
             }
         }
+    }
+
+    /// Whether working it out can fail: it divides.
+    pub(crate) fn divides(&self) -> bool {
+        let mut found = false;
+        self.walk(&mut |e| found |= matches!(e, Ex::Op("/" | "MOD", ..)));
+        found
+    }
+
+    /// Whether it reads no variable at all.
+    fn is_constant(&self) -> bool {
+        let mut found = true;
+        self.walk(&mut |e| found &= !matches!(e, Ex::Var(_) | Ex::Index(..)));
+        found
+    }
+
+    /// Whether working it out can fail or leave the range: it calculates.
+    pub(crate) fn calculates(&self) -> bool {
+        let mut found = false;
+        self.walk(&mut |e| {
+            found |= matches!(e, Ex::Op("+" | "-" | "*" | "/" | "MOD", ..) | Ex::Neg(_) | Ex::Call(..));
+        });
+        found
     }
 
     /// Whether it reads a variable.
@@ -308,13 +336,47 @@ pub(crate) fn type_name(variables: &[Declared], e: &Ex) -> String {
         Ex::Var(n) if n.contains('.') => "BOOL".into(),
         Ex::Var(n) | Ex::Index(n, _) => type_of(variables, n),
         Ex::Neg(e) => type_name(variables, e),
-        Ex::Op(_, a, b) => match (&**a, &**b) {
-            (Ex::Int(_) | Ex::Real(_), b) => type_name(variables, b),
-            (a, _) => type_name(variables, a),
-        },
+        Ex::Op(_, a, b) => type_of_any(variables, [&**a, &**b]),
         Ex::Call(n, args) => match n.split_once("_TO_").or_else(|| n.split_once("_TRUNC_")) {
             Some((_, to)) => to.to_owned(),
-            None => args.last().map_or("DINT".into(), |a| type_name(variables, a)),
+            None if n == "TRUNC" => "LINT".into(),
+            None => {
+                let selects = matches!(n.as_str(), "SEL" | "MUX");
+                type_of_any(variables, args.iter().skip(usize::from(selects)))
+            }
         },
     }
+}
+
+/// The type of several values together: constants take that of the others.
+fn type_of_any<'a>(variables: &[Declared], list: impl IntoIterator<Item = &'a Ex>) -> String {
+    let mut of_constant = None;
+    for e in list {
+        let ty = type_name(variables, e);
+        // The type of a TIME is written on it.
+        if !e.is_constant() || ty == "TIME" {
+            return ty;
+        }
+        of_constant = of_constant.or(Some(ty));
+    }
+    of_constant.unwrap_or_else(|| "DINT".into())
+}
+
+/// The type of a memory for an operand of a value: a constant takes the type that
+/// is wanted there.
+pub(crate) fn operand_type(variables: &[Declared], of: &Ex, operand: &Ex) -> String {
+    let own = type_name(variables, operand);
+    if !operand.is_constant() || own == "BOOL" || own == "TIME" {
+        return own;
+    }
+    let wanted = match of {
+        Ex::Op(_, a, b) => type_of_any(variables, [&**a, &**b]),
+        Ex::Call(n, args) => match n.split_once("_TO_") {
+            Some((from, _)) => from.to_owned(),
+            None => type_of_any(variables, args.iter().skip(usize::from(n == "SEL" || n == "MUX"))),
+        },
+        _ => own.clone(),
+    };
+    // A TIME is multiplied by a number and divided by one.
+    if wanted == "TIME" { own } else { wanted }
 }

@@ -1,13 +1,18 @@
 //! The equations as Instruction List.
+//!
+//! What must hold: brackets hold contacts only, a loop has its one jump back at
+//! its end, and members of blocks stand behind LD and ST alone. Not every
+//! compiler takes more, and `syntax::il` reads no more back.
 
 use std::fmt::Write;
 
-use super::form::{Class, Declared, Equations, Ex, Section, St, What, type_name};
+use super::form::{Class, Declared, Equations, Ex, Section, St, What, operand_type, type_name};
 use super::st::{declarations, expression, plain};
 
-/// The whole function block.
-pub(crate) fn print(e: &Equations) -> String {
+/// The whole function block; steps are set and reset by S and R, or by equations.
+pub(crate) fn print(e: &Equations, set_reset: bool) -> String {
     let mut p = Printer {
+        set_reset,
         variables: e.variables.clone(),
         out: String::new(),
         labels: 0,
@@ -15,8 +20,8 @@ pub(crate) fn print(e: &Equations) -> String {
         loops: Vec::new(),
     };
     p.sections(&e.before);
-    let fine = e.safe.is_some().then(|| p.label());
-    if let Some(label) = &fine {
+    let faulty = e.safe.is_some().then(|| p.label());
+    if let Some(label) = &faulty {
         p.line("LD FAULT");
         p.line(&format!("JMPC {label}"));
     }
@@ -29,24 +34,17 @@ pub(crate) fn print(e: &Equations) -> String {
             p.mark(&again);
             p.lines(&["LD PASSES", "ADD 1", "ST PASSES"]);
             p.sections(&e.pass);
-            let (over, stable) = (p.label(), p.label());
-            p.lines(&["LD FAULT", "ORN CHANGED"]);
-            p.line(&format!("JMPC {stable}"));
-            p.lines(&["LD PASSES", &format!("GE {bound}")]);
-            p.line(&format!("JMPC {over}"));
-            p.line(&format!("JMP {again}"));
-            p.mark(&over);
-            p.lines(&["LD TRUE", "S FAULT"]);
-            p.mark(&stable);
+            p.lines(&["LD PASSES", &format!("GE {bound}"), "ORN CHANGED", "OR FAULT"]);
+            p.line(&format!("JMPCN {again}"));
+            p.lines(&["LD FAULT", "OR CHANGED", "ST FAULT"]);
         }
     }
-    if let (Some(label), Some(safe)) = (fine, &e.safe) {
-        let (faulty, end) = (p.label(), p.label());
+    if let (Some(faulty), Some(safe)) = (faulty, &e.safe) {
+        let end = p.label();
         p.line("LD FAULT");
         p.line(&format!("JMPC {faulty}"));
         p.sections(&e.after);
         p.line(&format!("JMP {end}"));
-        p.mark(&label);
         p.mark(&faulty);
         p.comment("No stable situation, or orders that disagree: the safe values, and no further scan");
         p.block(safe);
@@ -61,6 +59,7 @@ pub(crate) fn print(e: &Equations) -> String {
 }
 
 struct Printer {
+    set_reset: bool,
     variables: Vec<Declared>,
     out: String,
     labels: usize,
@@ -101,8 +100,13 @@ impl Printer {
                 self.comment(&r.note);
                 match &r.what {
                     What::Assign(to, e) => self.store(e, "ST", to),
-                    What::Set(to, e) => self.store(e, "S", to),
-                    What::Reset(to, e) => self.store(e, "R", to),
+                    What::Set(to, e) if self.set_reset => self.store(e, "S", to),
+                    What::Reset(to, e) if self.set_reset => self.store(e, "R", to),
+                    // matiec takes S and R for calls of function blocks now and then.
+                    What::Set(to, e) => self.store(&e.clone().or(Ex::var(to.clone())), "ST", to),
+                    What::Reset(to, e) => {
+                        self.store(&Ex::var(to.clone()).and(e.clone().not()), "ST", to);
+                    }
                     What::Do(Ex::Bool(true), body) => self.block(body),
                     What::Do(e, body) => {
                         let behind = self.label();
@@ -168,10 +172,20 @@ impl Printer {
 
     /// A value in a memory of its own, where it is no operand.
     fn kept(&mut self, e: &Ex) -> Ex {
-        if operand(e).is_some() {
+        let ty = type_name(&self.variables, e);
+        self.kept_as(e, ty)
+    }
+
+    /// The operand of a value, the same way.
+    fn kept_of(&mut self, of: &Ex, e: &Ex) -> Ex {
+        let ty = operand_type(&self.variables, of, e);
+        self.kept_as(e, ty)
+    }
+
+    fn kept_as(&mut self, e: &Ex, ty: String) -> Ex {
+        if operand(e).is_some() && !is_member(e) {
             return e.clone();
         }
-        let ty = type_name(&self.variables, e);
         let name = loop {
             self.memories += 1;
             let name = format!("K_{}", self.memories);
@@ -220,13 +234,17 @@ impl Printer {
                 Ex::Xor(Box::new(a), Box::new(b))
             }
             Ex::Op(sign, a, b) => {
-                let b = self.kept(b);
-                let a = if matches!(**a, Ex::Op(..)) { self.ready(a) } else { self.kept(a) };
+                let b = self.kept_of(e, b);
+                let a = match &**a {
+                    Ex::Op(..) => self.ready(a),
+                    a if operand(a).is_some() => a.clone(),
+                    a => self.kept_of(e, a),
+                };
                 Ex::op(sign, a, b)
             }
             Ex::Neg(inner) => Ex::Neg(Box::new(self.kept(inner))),
             Ex::Call(name, args) => {
-                let args: Vec<Ex> = args.iter().map(|a| self.kept(a)).collect();
+                let args: Vec<Ex> = args.iter().map(|a| self.kept_of(e, a)).collect();
                 Ex::Call(name.clone(), args)
             }
             plain => plain.clone(),
@@ -244,7 +262,13 @@ impl Printer {
             return self.line(&format!("LD {text}"));
         }
         match e {
-            Ex::Not(inner) => self.line(&format!("LDN {}", expression(inner))),
+            Ex::Not(inner) => match operand(inner) {
+                Some(text) => self.line(&format!("LDN {text}")),
+                None => {
+                    self.result(inner);
+                    self.line("NOT");
+                }
+            },
             Ex::And(list) => self.chain(list, "AND"),
             Ex::Or(list) => self.chain(list, "OR"),
             Ex::Xor(a, b) => {
@@ -308,11 +332,17 @@ impl Printer {
     }
 }
 
+/// A member of a block: to be loaded, but not every compiler takes it behind
+/// an operator.
+fn is_member(e: &Ex) -> bool {
+    matches!(e, Ex::Var(name) if name.contains('.'))
+}
+
 /// An operand, or the complement of one.
 fn contact(e: &Ex) -> bool {
     match e {
-        Ex::Not(inner) => operand(inner).is_some(),
-        e => operand(e).is_some(),
+        Ex::Not(inner) => contact(inner) && !matches!(**inner, Ex::Not(_)),
+        e => operand(e).is_some() && !is_member(e),
     }
 }
 

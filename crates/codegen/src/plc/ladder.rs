@@ -4,7 +4,7 @@
 
 use g7_model::{Problem, Span, codes};
 
-use super::form::{Class, Declared, Equations, Ex, Section, St, What, type_name, type_of};
+use super::form::{Class, Declared, Equations, Ex, Section, St, What, operand_type, type_name, type_of};
 use super::st::expression;
 
 /// What power flows through.
@@ -63,7 +63,13 @@ pub(crate) struct Ladder {
 ///
 /// What Ladder cannot say.
 pub(crate) fn ladder(e: &Equations, place: Span) -> Result<Ladder, Vec<Problem>> {
-    let mut l = Maker { variables: e.variables.clone(), rungs: Vec::new(), memories: 0, refused: None };
+    let mut l = Maker {
+        variables: e.variables.clone(),
+        rungs: Vec::new(),
+        memories: 0,
+        when: Ex::Bool(true),
+        refused: None,
+    };
     if e.bound.is_some() {
         l.refused = Some("a search for stability, which is a loop: choose a profile of one pass; it");
     } else if e.safe.is_some() {
@@ -85,6 +91,9 @@ struct Maker {
     variables: Vec<Declared>,
     rungs: Vec<Rung>,
     memories: usize,
+    /// When the blocks of a value work: its divisor may be zero otherwise, or it may
+    /// leave the range.
+    when: Ex,
     refused: Option<&'static str>,
 }
 
@@ -158,9 +167,14 @@ impl Maker {
         let when = if body.len() > 1 { self.kept(when) } else { when.clone() };
         for s in body {
             match s {
+                St::Assign(to, e) if e.calculates() && when != Ex::Bool(true) => {
+                    let when = self.kept(&when);
+                    self.within(&when, |l| l.assign(&when, &expression(to), to, e));
+                }
                 St::Assign(to, e) => self.assign(&when, &expression(to), to, e),
                 St::If(c, then, other) => {
-                    let (c, outer) = (self.kept(c), self.kept(&when));
+                    let outer = self.kept(&when);
+                    let c = if c.calculates() { self.within(&outer, |l| l.kept(c)) } else { self.kept(c) };
                     self.act(&outer.clone().and(c.clone()), then);
                     self.act(&outer.and(c.not()), other);
                 }
@@ -176,6 +190,14 @@ impl Maker {
                 St::Loop(_) | St::Exit => self.refused = Some("a loop"),
             }
         }
+    }
+
+    /// Values that are worked out only where the condition, a contact, holds.
+    fn within<R>(&mut self, when: &Ex, work: impl FnOnce(&mut Self) -> R) -> R {
+        let outer = std::mem::replace(&mut self.when, when.clone());
+        let result = work(self);
+        self.when = outer;
+        result
     }
 
     fn block(&mut self, when: &Ex, block: Block) {
@@ -223,7 +245,7 @@ impl Maker {
                     ">=" => "GE",
                     other => other,
                 };
-                let (a, b) = (self.operand(a), self.operand(b));
+                let (a, b) = (self.operand_of(e, a), self.operand_of(e, b));
                 plain(ty, vec![("IN1".into(), a), ("IN2".into(), b)])
             }
             Ex::Neg(inner) => {
@@ -243,7 +265,7 @@ impl Maker {
                 };
                 let mut inputs = Vec::new();
                 for (formal, arg) in formal.into_iter().zip(args) {
-                    inputs.push((formal, self.operand(arg)));
+                    inputs.push((formal, self.operand_of(e, arg)));
                 }
                 plain(name, inputs)
             }
@@ -253,16 +275,28 @@ impl Maker {
 
     /// A value as a variable or literal.
     fn operand(&mut self, e: &Ex) -> String {
+        let ty = type_name(&self.variables, e);
+        self.operand_as(e, &ty)
+    }
+
+    /// An input of a block, the same way.
+    fn operand_of(&mut self, of: &Ex, e: &Ex) -> String {
+        let ty = operand_type(&self.variables, of, e);
+        self.operand_as(e, &ty)
+    }
+
+    fn operand_as(&mut self, e: &Ex, ty: &str) -> String {
         match e {
             Ex::Bool(_) | Ex::Int(_) | Ex::Real(_) | Ex::Time(_) | Ex::Var(_) | Ex::Index(..) => {
                 expression(e)
             }
             Ex::And(_) | Ex::Or(_) | Ex::Not(_) | Ex::Xor(..) => expression(&self.kept(e)),
             e => {
-                let name = self.memory(&type_name(&self.variables, e));
+                let name = self.memory(ty);
                 let mut block = self.value(e);
                 block.output = Some(("OUT".into(), name.clone()));
-                self.push(Net::Wire, End::Block(block));
+                let when = self.when.clone();
+                self.block(&when, block);
                 name
             }
         }

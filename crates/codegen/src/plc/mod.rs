@@ -86,7 +86,7 @@ pub fn print(compiled: &Compiled, form: Form, name: &str, source: &str) -> Resul
     let plan = equations(compiled, name, source, form == Form::Dolog80)?;
     let text = match form {
         Form::St => st::print(&plan.e),
-        Form::Il | Form::Dolog80 => il::print(&plan.e),
+        Form::Il | Form::Dolog80 => il::print(&plan.e, form == Form::Dolog80),
         Form::Ld | Form::Drawing => {
             let place = compiled.symbols.charts.first().map_or(g7_model::Span::default(), |c| c.at);
             let ladder = ladder::ladder(&plan.e, place)?;

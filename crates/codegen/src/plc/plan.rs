@@ -115,11 +115,10 @@ impl<'a> Plan<'a> {
     }
 
     pub(crate) fn cannot(&mut self, at: u32, what: &str) {
-        let span = if (at as usize) < self.t.code.len() && at > 0 {
-            self.c.symbols.place(at)
-        } else {
-            self.c.symbols.charts.first().map_or(Span::default(), |c| c.at)
-        };
+        // What the lowering added has no place of its own: the first chart stands for it.
+        let own = Some(at).filter(|at| *at > 0 && (*at as usize) < self.t.code.len());
+        let own = own.map(|at| self.c.symbols.place(at)).filter(|span| span.start < span.end);
+        let span = own.or(self.c.symbols.charts.first().map(|c| c.at)).unwrap_or_default();
         let what = what.trim_end_matches(',');
         let text = format!("{what} cannot be printed as equations for a PLC");
         if self.e.problems.iter().all(|p| p.what != text) {
@@ -436,17 +435,23 @@ impl<'a> Plan<'a> {
                     self.value_behind(code, Ty::BOOL)
                 }
             };
-            let note = self.transition_note(i as u32);
-            s.act("", Ex::Bool(true), before);
-            let mut note = note;
+            let mut note = self.transition_note(i as u32);
             let mut guard = guard;
-            if self.set_reset && guard != Ex::Bool(true) {
+            // What is not enabled is not judged: its divisor may be zero.
+            let enabled = Ex::all(from.iter().map(|f| self.active(*f)));
+            s.act("", enabled.clone(), before);
+            if guard.divides() || (self.set_reset && guard != Ex::Bool(true)) {
                 let own = self.transitions.get(i).cloned().unwrap_or_default();
                 let r = self.memory("R", own.trim_start_matches("T_"), Ty::BOOL, "its receptivity");
-                s.assign(std::mem::take(&mut note), r.clone(), guard);
+                if guard.divides() {
+                    s.assign(std::mem::take(&mut note), r.clone(), Ex::Bool(false));
+                    s.act("", enabled.clone(), vec![St::set(r.clone(), guard)]);
+                } else {
+                    s.assign(std::mem::take(&mut note), r.clone(), guard);
+                }
                 guard = Ex::Var(r);
             }
-            let mut e = Ex::all(from.iter().map(|f| self.active(*f)).chain([guard]));
+            let mut e = enabled.and(guard);
             if let Some(b) = blocked.get(&t.chart) {
                 e = e.and(Ex::var(b.clone()).not());
             }

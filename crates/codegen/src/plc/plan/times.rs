@@ -63,7 +63,7 @@ impl Plan<'_> {
                 St::Call("CLOCK".into(), vec![("IN".into(), Ex::Bool(on)), ("PT".into(), long.clone())])
             };
             let et = Ex::var("CLOCK.ET");
-            let now = St::set("NOW", Ex::op("+", Ex::var("CLOCK_BASE"), et.clone()));
+            let now = St::set("NOW", Ex::op("+", et.clone(), Ex::var("CLOCK_BASE")));
             s.act(
                 "A timer that runs on gives the time; it begins anew each hour",
                 Ex::Bool(true),
