@@ -138,9 +138,13 @@ impl Builder<'_> {
         false
     }
 
-    /// Whether a unit is carried over as something that runs.
+    /// Whether a unit is carried over as something that runs: a program, a chart, or
+    /// the one function block that the file is about.
     fn runs(&self, unit: &Unit) -> bool {
-        unit.is_chart() || unit.kind == UnitKind::Program
+        let mut others = self.source.units.iter().filter(|u| !std::ptr::eq(*u, unit));
+        unit.is_chart()
+            || unit.kind == UnitKind::Program
+            || unit.kind == UnitKind::FunctionBlock && others.all(|u| u.kind == UnitKind::Function)
     }
 
     /// Whether a program is statements of the file: in each scan, with names that

@@ -12,7 +12,7 @@ use super::chart::{Made, Maker, Order, block, without_blocks};
 use super::code::{Callee, Calls, Coder, Place, Put, called, flags_of, resolve_calls};
 use super::declare;
 use super::inputs;
-use super::read::{PouKind, Project, SectionKind};
+use super::read::{Project, SectionKind};
 use super::tree::{self, Language, head, text};
 use super::types::{self, Known};
 use super::units::{self, Meaning, Unit, name_of};
@@ -123,8 +123,7 @@ impl<'a> Builder<'_, '_, 'a> {
             let here = plan.project.runs.iter().position(|r| r.node == unit.node);
             here.unwrap_or(usize::MAX)
         };
-        let running =
-            |u: &Unit| u.program && plan.project.pous.get(u.pou).is_some_and(|p| p.kind == PouKind::Program);
+        let running = |u: &Unit| u.program;
         let mut order: Vec<usize> = (0..plan.units.len()).collect();
         order.retain(|u| plan.units.get(*u).is_some_and(running));
         order.sort_by_key(|u| plan.units.get(*u).map(turn));

@@ -216,20 +216,26 @@ impl<'a> Planner<'_, 'a> {
         }
     }
 
-    /// Blocks with a chart that nothing instantiates: the file is about them.
+    /// Blocks that nothing instantiates: those with a chart, or the only one of a
+    /// file without programs, are what the file is about.
     fn strays(&mut self) {
         let used: HashSet<usize> = self.plan.units.iter().map(|u| u.pou).collect();
         let project = self.plan.project;
+        let alone = project.pous.iter().filter(|p| p.kind != PouKind::Function).count() == 1;
         for (index, pou) in project.pous.iter().enumerate() {
             if pou.kind != PouKind::Block || used.contains(&index) {
                 continue;
             }
-            if !is_chart(pou) {
+            let chart = pou.name.text.trim().to_string();
+            if alone && !is_chart(pou) {
+                let of_file = variables(pou).filter_map(name_of).map(|n| n.to_uppercase());
+                let of_file = of_file.filter(|u| !self.charts.contains(u)).collect();
+                self.program(index, chart, pou.node, None, of_file);
+            } else if !is_chart(pou) {
                 let what =
                     format!("the function block `{}` is not used; it is left out", line(&pou.name.text));
                 self.report.say(&codes::LEFT_OUT, &head(pou.node), what);
             } else if !self.plan.units.iter().any(|u| u.pou == index) {
-                let chart = pou.name.text.trim().to_string();
                 let unit = self.unit(index, chart, pou.node, &[]);
                 if let Some(unit) = self.plan.units.get_mut(unit) {
                     unit.program = true;

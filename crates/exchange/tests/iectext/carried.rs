@@ -283,3 +283,43 @@ fn a_result_is_carried_across_a_label() {
         assert!(text.contains(part), "{part} in {text}");
     }
 }
+
+#[test]
+fn a_function_block_alone_runs_as_a_program() {
+    let block = "FUNCTION_BLOCK b VAR n : INT; END_VAR n := n + 1; END_FUNCTION_BLOCK ";
+    assert_eq!(carried(block), carried("PROGRAM b VAR n : INT; END_VAR n := n + 1; END_PROGRAM"));
+    // Beside another unit nothing says that it runs.
+    let (document, problems) =
+        import(&format!("{block} PROGRAM p VAR m : INT; END_VAR m := m + 1; END_PROGRAM"));
+    assert!(problems.iter().any(|p| p.code.id == "G0605" && p.what.contains("`b`")), "{problems:?}");
+    assert!(!g7_syntax::print(&document, None).contains("n + 1"));
+}
+
+#[test]
+fn a_list_with_a_loop_is_read_as_one() {
+    let text = carried(
+        "FUNCTION_BLOCK b VAR_INPUT x : BOOL; END_VAR VAR q : BOOL; i : INT; END_VAR
+         LD x
+         S q
+         LD 0
+         ST i
+         again:
+         LD i
+         ADD 1
+         ST i
+         LD i
+         GE 3
+         OR x
+         JMPCN again
+         LD q
+         R q
+         END_FUNCTION_BLOCK",
+    );
+    let same = "PROGRAM b VAR_INPUT x : BOOL; END_VAR VAR q : BOOL; i : INT; END_VAR
+         IF x THEN q := TRUE; END_IF;
+         i := 0;
+         REPEAT i := i + 1; UNTIL i >= 3 OR x END_REPEAT;
+         IF q THEN q := FALSE; END_IF;
+         END_PROGRAM";
+    assert_eq!(text, carried(same));
+}

@@ -215,3 +215,19 @@ chart Cell_Blink {
     );
     assert_eq!(problems, ["G0614 10"]);
 }
+
+#[test]
+fn a_block_alone_runs_as_a_program() {
+    let problems = means(
+        "alone.xml",
+        "profile iec61131
+         input a : BOOL
+         output q : BOOL
+         var n : INT
+         pre {
+           IF a THEN q := TRUE END_IF
+           IF a THEN n := n + 1 END_IF
+         }",
+    );
+    assert_eq!(problems, Vec::<String>::new());
+}
