@@ -5,6 +5,8 @@
 //! reads what happens from its standard input and writes what it sees.
 
 mod c;
+pub mod cases;
+pub mod plc;
 mod rust;
 
 use std::collections::BTreeMap;

@@ -1,0 +1,108 @@
+//! What generated code is tried on: conformance cases and random charts, and
+//! the folders in which it is compiled.
+#![allow(clippy::disallowed_methods, reason = "the cases are files")]
+
+use std::path::{Path, PathBuf};
+
+use g7_model::ProfileName;
+
+use super::Subject;
+use crate::case;
+use crate::generate::sample;
+
+/// A folder of a test that goes when it is over, unless `G7_KEEP` is set.
+#[derive(Debug)]
+pub struct Folder(pub PathBuf);
+
+impl Folder {
+    /// One of this process.
+    pub fn new(name: &str) -> Folder {
+        Folder(std::env::temp_dir().join(format!("g7-{}-{name}", std::process::id())))
+    }
+}
+
+impl Drop for Folder {
+    fn drop(&mut self) {
+        if std::env::var_os("G7_KEEP").is_none() {
+            let _ = std::fs::remove_dir_all(&self.0);
+        }
+    }
+}
+
+fn files(folder: &Path, found: &mut Vec<PathBuf>) {
+    let Ok(entries) = std::fs::read_dir(folder) else { return };
+    for path in entries.filter_map(|e| e.ok().map(|e| e.path())) {
+        if path.is_dir() {
+            files(&path, found);
+        } else if path.extension().is_some_and(|e| e == "md")
+            && path.file_stem().is_some_and(|s| s != "README")
+        {
+            found.push(path);
+        }
+    }
+}
+
+/// Every conformance case with a trace, a subject for each profile it runs under.
+///
+/// # Errors
+///
+/// A case that is not in good form.
+pub fn spec() -> Result<Vec<Subject>, String> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("spec");
+    let mut all = Vec::new();
+    files(&root, &mut all);
+    all.sort();
+    let mut subjects: Vec<Subject> = Vec::new();
+    for file in all {
+        let title = file.strip_prefix(&root).unwrap_or(&file).with_extension("").display().to_string();
+        add(&mut subjects, &file, &title).map_err(|e| format!("{title}: {e}"))?;
+    }
+    if subjects.len() > 100 { Ok(subjects) } else { Err(format!("only {} cases", subjects.len())) }
+}
+
+fn add(subjects: &mut Vec<Subject>, file: &Path, title: &str) -> Result<(), String> {
+    let text = std::fs::read_to_string(file).map_err(|e| e.to_string())?;
+    let case = case::read(&text)?;
+    let folder = title.split('/').next().unwrap_or("");
+    let doc = case::document(&case.chart)?;
+    for trace in &case.traces {
+        let own = doc.profile().map(|p| p.name);
+        let of_folder = || case::profile_named(folder).ok();
+        let profile = trace.profile.or_else(of_folder).or(own).unwrap_or_default();
+        let title = format!("{title} {}", profile.name());
+        let known = subjects.iter().position(|s| s.title == title);
+        if known.is_none() {
+            subjects.push(Subject::new(&title, &doc, Some(profile), &case.chart)?);
+        }
+        let at = known.unwrap_or(subjects.len() - 1);
+        if let Some(subject) = subjects.get_mut(at) {
+            subject.replay(&doc, profile, trace)?;
+        }
+    }
+    Ok(())
+}
+
+/// Random charts of a profile, from a seed on, until `enough`; each with so many scans.
+///
+/// # Errors
+///
+/// What the generator made and nobody can read.
+pub fn random(
+    profile: ProfileName,
+    first: u64,
+    length: usize,
+    enough: impl Fn(&[Subject]) -> bool,
+) -> Result<Vec<Subject>, String> {
+    let mut subjects = Vec::new();
+    let mut seed = first;
+    while !enough(&subjects) {
+        let title = format!("{} seed {seed}", profile.name());
+        let sample = sample(seed, profile, length).map_err(|e| format!("{title}: {e}"))?;
+        seed += 1;
+        // What assigns two constants at one moment is refused by the checker.
+        let Ok(mut subject) = Subject::new(&title, &sample.document, None, &sample.text) else { continue };
+        subject.play(&sample.script).map_err(|e| format!("{title}: {e}"))?;
+        subjects.push(subject);
+    }
+    Ok(subjects)
+}
