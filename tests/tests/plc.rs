@@ -170,9 +170,9 @@ fn batch(folder: &Path, ending: &str, list: &[(&Subject, Printed)]) -> Result<()
     let bytes: Vec<u8> = input.iter().flat_map(|w| w.to_le_bytes()).collect();
     std::fs::write(folder.join("input"), bytes).map_err(|e| e.to_string())?;
     // matiec looks at memory that it has not written when it meets S and R, and
-    // takes them for calls of function blocks then; this has the memory cleared.
+    // takes them for calls of function blocks then; the C library is told to clear it.
     let mut translate = Command::new(tool);
-    translate.env("MALLOC_PERTURB_", "255");
+    translate.env("GLIBC_TUNABLES", "glibc.malloc.perturb=255:glibc.malloc.tcache_count=0");
     run(translate.current_dir(folder).arg("-I").arg(&lib).args(["-T", ".", &file]))
         .map_err(|why| format!("matiec: {why}"))?;
     let gcc = ["-w", "-O0", "-std=gnu99", "-o", "charts", "main.c", "-lm"];

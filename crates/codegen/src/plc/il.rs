@@ -183,7 +183,9 @@ impl Printer {
     }
 
     fn kept_as(&mut self, e: &Ex, ty: String) -> Ex {
-        if operand(e).is_some() && !is_member(e) {
+        // matiec compares a LINT with a negative literal as if that had no sign.
+        let negative = matches!(e, Ex::Int(n) if *n < 0);
+        if operand(e).is_some() && !is_member(e) && !negative {
             return e.clone();
         }
         let name = loop {

@@ -170,17 +170,23 @@ fn rules_of_another_profile_are_told() {
     assert!(written.problems.iter().any(|p| p.what.contains("evolves by the rules of iec60848")));
 }
 
-/// matiec's `iec2c`, where it is on the PATH; `MATIEC_LIB` is its folder `lib`.
+/// matiec's `iec2c`, where it is on the PATH; `MATIEC_LIB` is its folder `lib`, if
+/// that does not stand beside it.
 fn compile(text: &str) -> Option<Result<(), String>> {
     static CALLS: AtomicUsize = AtomicUsize::new(0);
+    let path = std::env::var_os("PATH")?;
+    let tool = std::env::split_paths(&path).map(|d| d.join("iec2c")).find(|p| p.is_file())?;
     let call = CALLS.fetch_add(1, Ordering::Relaxed);
     let folder = std::env::temp_dir().join(format!("g7-iectext-{}-{call}", std::process::id()));
     std::fs::create_dir_all(&folder).ok()?;
     let source = folder.join("chart.st");
     std::fs::write(&source, text).ok()?;
-    let mut command = Command::new("iec2c");
+    let mut command = Command::new(&tool);
+    let beside = tool.with_file_name("lib");
     if let Some(lib) = std::env::var_os("MATIEC_LIB") {
         command.arg("-I").arg(lib);
+    } else if beside.is_dir() {
+        command.arg("-I").arg(beside);
     }
     let output = command.arg("-T").arg(&folder).arg(&source).output();
     let result = output.ok().map(|o| {
