@@ -5,14 +5,9 @@
 //! `G7_SCANS=100000` sets how many random scans each profile makes, and asks for
 //! every case by every compiler in both styles; without it some are left out. The
 //! folder of the code is kept where `G7_KEEP` is set.
-#![allow(clippy::disallowed_methods, reason = "the tests start compilers")]
-
-use std::path::{Path, PathBuf};
-
 use g7_codegen::{Language, Style};
 use g7_model::ProfileName;
-use g7_tests::case;
-use g7_tests::generate::sample;
+use g7_tests::generated::cases::{self, Folder};
 use g7_tests::generated::{Subject, c_program, compare, has, rust_program};
 
 const SANITIZERS: [&str; 3] = ["-O0", "-fsanitize=address,undefined", "-fno-sanitize-recover=all"];
@@ -27,84 +22,15 @@ fn some(subjects: &[Subject], first: usize, step: usize) -> Vec<&Subject> {
     subjects.iter().skip(first % step).step_by(step).collect()
 }
 
-/// A folder of the test that goes when it is over.
-struct Folder(PathBuf);
-
-impl Folder {
-    fn new(name: &str) -> Folder {
-        Folder(std::env::temp_dir().join(format!("g7-codegen-{}-{name}", std::process::id())))
-    }
-}
-
-impl Drop for Folder {
-    fn drop(&mut self) {
-        if std::env::var_os("G7_KEEP").is_none() {
-            let _ = std::fs::remove_dir_all(&self.0);
-        }
-    }
-}
-
-fn cases(folder: &Path, found: &mut Vec<PathBuf>) {
-    let Ok(entries) = std::fs::read_dir(folder) else { return };
-    for path in entries.filter_map(|e| e.ok().map(|e| e.path())) {
-        if path.is_dir() {
-            cases(&path, found);
-        } else if path.extension().is_some_and(|e| e == "md")
-            && path.file_stem().is_some_and(|s| s != "README")
-        {
-            found.push(path);
-        }
-    }
-}
-
-/// Every conformance case with a trace, a subject for each profile it runs under.
 fn spec() -> Vec<Subject> {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("spec");
-    let mut files = Vec::new();
-    cases(&root, &mut files);
-    files.sort();
-    let mut subjects: Vec<Subject> = Vec::new();
-    for file in files {
-        let text = std::fs::read_to_string(&file).expect("a case");
-        let case = case::read(&text).expect("a case in good form");
-        let title = file.strip_prefix(&root).unwrap_or(&file).with_extension("").display().to_string();
-        let folder = title.split('/').next().unwrap_or("").to_owned();
-        let doc = case::document(&case.chart).expect("a chart");
-        for trace in &case.traces {
-            let own = doc.profile().map(|p| p.name);
-            let profile =
-                trace.profile.or_else(|| case::profile_named(&folder).ok()).or(own).unwrap_or_default();
-            let title = format!("{title} {}", profile.name());
-            let at = match subjects.iter().position(|s| s.title == title) {
-                Some(at) => at,
-                None => {
-                    let subject = Subject::new(&title, &doc, Some(profile), &case.chart);
-                    subjects.push(subject.unwrap_or_else(|e| panic!("{title}: {e}")));
-                    subjects.len() - 1
-                }
-            };
-            subjects[at].replay(&doc, profile, trace).unwrap_or_else(|e| panic!("{title}: {e}"));
-        }
-    }
-    assert!(subjects.len() > 100, "only {} cases", subjects.len());
-    subjects
+    cases::spec().unwrap_or_else(|e| panic!("{e}"))
 }
 
 /// Random charts with so many scans in all.
 fn random(profile: ProfileName, scans: usize, length: usize) -> Vec<Subject> {
-    let mut subjects = Vec::new();
-    let (mut sound, mut seed) = (0, number("G7_SEED").unwrap_or(1));
-    while sound < scans {
-        let title = format!("{} seed {seed}", profile.name());
-        let sample = sample(seed, profile, length).expect("a random chart can be read");
-        seed += 1;
-        // What assigns two constants at one moment is refused by the checker.
-        let Ok(mut subject) = Subject::new(&title, &sample.document, None, &sample.text) else { continue };
-        subject.play(&sample.script).unwrap_or_else(|e| panic!("{title}: {e}"));
-        sound += subject.sound;
-        subjects.push(subject);
-    }
-    subjects
+    let enough = |found: &[Subject]| found.iter().map(|s| s.sound).sum::<usize>() >= scans;
+    let first = number("G7_SEED").unwrap_or(1);
+    cases::random(profile, first, length, enough).unwrap_or_else(|e| panic!("{e}"))
 }
 
 /// Prints, compiles and runs them beside the engine.
@@ -113,7 +39,7 @@ fn agree(name: &str, compiler: &str, style: Style, subjects: &[&Subject]) {
         println!("skipped: no {compiler} on the PATH");
         return;
     }
-    let folder = Folder::new(&format!("{name}-{compiler}-{style:?}"));
+    let folder = Folder::new(&format!("codegen-{name}-{compiler}-{style:?}"));
     let mut wrong = Vec::new();
     for (i, batch) in subjects.chunks(60).enumerate() {
         let place = folder.0.join(i.to_string());
