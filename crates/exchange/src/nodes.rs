@@ -7,31 +7,47 @@ use g7_model::{
     StepKind, Stmt, StmtKind, Target, Transition, Type, UnaryOp, VarDecl, VarKind, Work,
 };
 
-/// Names given so far, whatever the size of their letters.
+/// Names given so far, whatever the size of their letters unless `exact`.
 #[derive(Debug, Default)]
 pub(crate) struct Taken {
+    exact: bool,
     names: HashSet<String>,
     /// So that a thousand equal names are no million looks.
     counts: HashMap<String, usize>,
 }
 
 impl Taken {
+    /// Where `a` and `A` are two names.
+    pub(crate) fn exact() -> Taken {
+        Taken { exact: true, ..Taken::default() }
+    }
+
+    fn key(&self, name: &str) -> String {
+        if self.exact { name.to_owned() } else { name.to_uppercase() }
+    }
+
     /// Whether a name is given.
     pub(crate) fn has(&self, name: &str) -> bool {
-        self.names.contains(&name.to_uppercase())
+        self.names.contains(&self.key(name))
+    }
+
+    /// Gives a name as it is; whether nothing had it.
+    pub(crate) fn take(&mut self, name: &str) -> bool {
+        self.names.insert(self.key(name))
     }
 
     /// The name, or the first of `name_2`, `name_3`, … that is free.
     pub(crate) fn give(&mut self, wanted: &str) -> String {
-        let key = wanted.to_uppercase();
+        let key = self.key(wanted);
         if self.names.insert(key.clone()) {
             return wanted.to_string();
         }
-        let count = self.counts.entry(key).or_insert(1);
+        let mut count = self.counts.get(&key).copied().unwrap_or(1);
         loop {
-            *count += 1;
+            count += 1;
             let name = format!("{wanted}_{count}");
-            if self.names.insert(name.to_uppercase()) {
+            if self.take(&name) {
+                self.counts.insert(key, count);
                 return name;
             }
         }

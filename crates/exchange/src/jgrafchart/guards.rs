@@ -21,7 +21,7 @@ use super::links::{Ends, exits};
 use super::names::Names;
 use super::read::shown;
 use super::sheet::{Plan, SheetKind, StepSort};
-use crate::nodes;
+use crate::nodes::{self, Taken};
 use crate::report::Report;
 
 /// How the insides of macro-steps are left.
@@ -66,7 +66,7 @@ impl Guards {
                 differences(plan, index, report);
             }
             if exception && let Some(flag) = guards.flag.get_mut(index) {
-                *flag = Some(free(names.step(owner.0, owner.1), &mut taken));
+                *flag = Some(taken.give(&format!("{}_abort", names.step(owner.0, owner.1))));
             }
         }
         // A workspace stands behind the one with the step that it is the inside of.
@@ -186,20 +186,13 @@ fn activity_here(step: &str, at: Span) -> Expr {
 }
 
 /// The names of all steps, variables and parameters.
-fn all_names(plan: &Plan, names: &Names) -> HashSet<String> {
+fn all_names(plan: &Plan, names: &Names) -> Taken {
     let steps = names.steps.iter().flatten().cloned();
     let vars = plan.sheets.iter().flat_map(|s| s.vars.iter().map(|v| v.name.text.clone()));
     let refs = plan.sheets.iter().flat_map(|s| s.refs.keys().cloned());
-    steps.chain(vars).chain(refs).collect()
-}
-
-/// A name for the variable of a macro-step that nothing has.
-fn free(step: &str, taken: &mut HashSet<String>) -> String {
-    let mut name = format!("{step}_abort");
-    while !taken.insert(name.clone()) {
-        name.push('_');
-    }
-    name
+    let mut taken = Taken::exact();
+    steps.chain(vars).chain(refs).for_each(|name| _ = taken.take(&name));
+    taken
 }
 
 /// Where an enclosing step is not wholly a macro-step.

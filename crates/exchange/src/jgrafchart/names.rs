@@ -13,6 +13,7 @@ use g7_model::codes;
 
 use super::read::{name_place, shown};
 use super::sheet::{Plan, Sheet, SheetKind, StepSort};
+use crate::nodes::Taken;
 use crate::report::Report;
 use crate::xml::attr::Text;
 
@@ -222,22 +223,8 @@ fn clean(name: &Text, at: &std::ops::Range<usize>, report: &mut Report) -> Strin
     text
 }
 
-/// `wanted`, or the first of `wanted_2`, `wanted_3`, … that is free.
-fn free(wanted: String, taken: &mut HashSet<String>, counts: &mut HashMap<String, usize>) -> String {
-    let mut name = wanted.clone();
-    // A count for each name, so that a thousand equal names are no million looks.
-    let count = counts.entry(wanted.clone()).or_insert(1);
-    while taken.contains(&name) {
-        *count += 1;
-        name = format!("{wanted}_{count}");
-    }
-    taken.insert(name.clone());
-    name
-}
-
 fn chart_names(plan: &Plan, report: &mut Report) -> Vec<String> {
-    let mut taken = HashSet::new();
-    let mut counts = HashMap::new();
+    let mut taken = Taken::exact();
     let mut names: Vec<String> = Vec::new();
     let mut tops = 0;
     for sheet in &plan.sheets {
@@ -248,7 +235,7 @@ fn chart_names(plan: &Plan, report: &mut Report) -> Vec<String> {
         if wanted.trim().is_empty() {
             wanted = format!("J{}", tops.max(1));
         }
-        if taken.contains(&wanted) {
+        if taken.has(&wanted) {
             match sheet.parent.and_then(|p| names.get(p)) {
                 // Two macro-steps of one name in two workspaces are no mistake.
                 Some(outer) => wanted = format!("{outer}_{wanted}"),
@@ -259,15 +246,14 @@ fn chart_names(plan: &Plan, report: &mut Report) -> Vec<String> {
                 }
             }
         }
-        names.push(free(wanted, &mut taken, &mut counts));
+        names.push(taken.give(&wanted));
     }
     names
 }
 
 fn step_names(sheet: &Sheet, report: &mut Report) -> Vec<String> {
     let mut first: HashMap<&str, &std::ops::Range<usize>> = HashMap::new();
-    let mut counts = HashMap::new();
-    let mut taken: HashSet<String> = HashSet::new();
+    let mut taken = Taken::exact();
     let written: HashSet<&str> = sheet.steps.iter().map(|s| s.name.text.as_str()).collect();
     let mut number = 0;
     let mut names = Vec::with_capacity(sheet.steps.len());
@@ -276,7 +262,7 @@ fn step_names(sheet: &Sheet, report: &mut Report) -> Vec<String> {
             while written.contains(format!("#{number}").as_str()) {
                 number += 1;
             }
-            names.push(free(format!("#{number}"), &mut taken, &mut counts));
+            names.push(taken.give(&format!("#{number}")));
             number += 1;
             continue;
         }
@@ -288,7 +274,7 @@ fn step_names(sheet: &Sheet, report: &mut Report) -> Vec<String> {
         } else {
             first.insert(&step.name.text, &step.name.at);
         }
-        names.push(free(clean(&step.name, &step.at, report), &mut taken, &mut counts));
+        names.push(taken.give(&clean(&step.name, &step.at, report)));
     }
     names
 }

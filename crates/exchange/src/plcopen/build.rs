@@ -16,7 +16,7 @@ use super::read::{Project, SectionKind};
 use super::tree::{self, Language, head, text};
 use super::types::{self, Known};
 use super::units::{self, Meaning, Unit, name_of};
-use crate::nodes::{self, line};
+use crate::nodes::{self, Taken, line};
 use crate::report::Report;
 
 /// The document of a project.
@@ -84,9 +84,9 @@ impl<'a> Builder<'_, '_, 'a> {
     fn everything(&mut self) -> Whole {
         let (mut body, mut behind) = self.programs();
         self.called_by_actions();
-        let mut charts: HashSet<String> =
-            self.coder.plan.units.iter().map(|u| u.chart.to_uppercase()).collect();
-        charts.extend(self.coder.plan.globals.keys().cloned());
+        let mut charts = Taken::default();
+        let units = self.coder.plan.units.iter().map(|u| &u.chart);
+        units.chain(self.coder.plan.globals.keys()).for_each(|name| _ = charts.take(name));
         let mut flags: Flags = BTreeMap::new();
         let mut guards: HashMap<Callee, Expr> = HashMap::new();
         for (callee, calls) in self.coder.calls.clone() {

@@ -16,7 +16,7 @@ use super::flow::{self, Way};
 use super::graph::Graph;
 use super::tree::{self, Language, Xml, documentation, head, kid, kids, tag, text, word};
 use super::units::name_of;
-use crate::nodes::{self, line};
+use crate::nodes::{self, Taken, line};
 use crate::xml::attr;
 
 /// What one drawing becomes.
@@ -45,8 +45,8 @@ pub(super) struct Order<'a> {
 /// Makes charts of drawings.
 pub(super) struct Maker<'c, 'r, 'p, 'a> {
     pub(super) coder: &'c mut Coder<'r, 'p, 'a>,
-    /// Names of charts, in capitals.
-    pub(super) charts: &'c mut HashSet<String>,
+    /// Names of charts.
+    pub(super) charts: &'c mut Taken,
     /// Whether steps alone have actions in this file, no action blocks: CODESYS.
     pub(super) plain_actions: bool,
     /// What called charts wait for.
@@ -163,16 +163,11 @@ impl<'a> Maker<'_, '_, '_, 'a> {
     /// The names of steps; two of one name are told apart.
     fn names(&mut self, graph: &Graph, steps: &[usize]) -> HashMap<usize, String> {
         let mut names = HashMap::new();
-        let mut taken: HashMap<String, usize> = HashMap::new();
+        let mut taken = Taken::default();
         for index in steps {
             let Some(object) = graph.get(*index) else { continue };
             let wanted = name_of(object.node).unwrap_or_else(|| "Step".to_string());
-            let mut name = wanted.clone();
-            let mut number = 2;
-            while taken.contains_key(&name.to_uppercase()) {
-                name = format!("{wanted}_{number}");
-                number += 1;
-            }
+            let name = taken.give(&wanted);
             if name != wanted || word(object.node, "name").is_none() {
                 let what = if word(object.node, "name").is_none() {
                     format!("a step without a name; it is called `{name}`")
@@ -181,7 +176,6 @@ impl<'a> Maker<'_, '_, '_, 'a> {
                 };
                 self.coder.say(&codes::RENAMED, object.node, what);
             }
-            taken.insert(name.to_uppercase(), *index);
             names.insert(*index, name);
         }
         names
@@ -238,7 +232,7 @@ impl<'a> Maker<'_, '_, '_, 'a> {
             self.coder.say(&codes::BAD_MACRO, node, what);
             return StepKind::Plain;
         };
-        let chart = self.free(&name.text);
+        let chart = self.charts.give(&name.text);
         self.chart(Order {
             kind: ChartKind::Expansion,
             name: chart.clone(),
@@ -251,17 +245,6 @@ impl<'a> Maker<'_, '_, '_, 'a> {
             every: None,
         });
         StepKind::Macro(Name::new(chart, name.at.0))
-    }
-
-    /// A name that no chart has.
-    pub(super) fn free(&mut self, wanted: &str) -> String {
-        let mut name = wanted.to_string();
-        let mut number = 2;
-        while !self.charts.insert(name.to_uppercase()) {
-            name = format!("{wanted}_{number}");
-            number += 1;
-        }
-        name
     }
 
     /// What is added to written priorities: 0 is one of them, ours begin with 1.
@@ -346,7 +329,7 @@ impl<'a> Maker<'_, '_, '_, 'a> {
         );
         self.coder.say(&codes::DIFFERENT, node, what);
         let owner = self.coder.plan.units.get(draft.unit).map(|u| u.chart.clone()).unwrap_or_default();
-        let chart = self.free(&format!("{owner}_{name}"));
+        let chart = self.charts.give(&format!("{owner}_{name}"));
         let flag = nodes::variable(VarKind::Var, name, Type::Bool, at);
         draft.items.insert(0, ChartItem::Var(flag));
         let active = nodes::name(&[&owner, name], at);

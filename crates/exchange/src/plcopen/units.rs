@@ -12,7 +12,7 @@ use g7_model::codes;
 use super::read::{Pou, PouKind, Project, Section, SectionKind};
 use super::tree::{self, Language, Xml, head, tag, text};
 use super::types::{self, Known};
-use crate::nodes::line;
+use crate::nodes::{Taken, line};
 use crate::report::Report;
 
 /// Instances of a file, all levels together.
@@ -102,7 +102,7 @@ pub(super) fn plan<'a>(project: &'a Project<'a>, report: &mut Report) -> Plan<'a
         by_name.insert(upper, index);
     }
     let plan = Plan { project, units: Vec::new(), globals: Names::new(), lists: HashSet::new(), functions };
-    let mut planner = Planner { plan, by_name, charts: HashSet::new(), elements: 0, full: false, report };
+    let mut planner = Planner { plan, by_name, charts: Taken::default(), elements: 0, full: false, report };
     planner.globals();
     planner.programs();
     planner.strays();
@@ -112,8 +112,8 @@ pub(super) fn plan<'a>(project: &'a Project<'a>, report: &mut Report) -> Plan<'a
 struct Planner<'r, 'a> {
     plan: Plan<'a>,
     by_name: HashMap<String, usize>,
-    /// Names of charts and of variables of the file, in capitals.
-    charts: HashSet<String>,
+    /// Names of charts and of variables of the file.
+    charts: Taken,
     elements: usize,
     full: bool,
     report: &'r mut Report,
@@ -131,7 +131,7 @@ impl<'a> Planner<'_, 'a> {
             if self.plan.globals.contains_key(&upper) {
                 continue; // Said where it is declared.
             }
-            self.charts.insert(upper.clone());
+            self.charts.take(&upper);
             let meaning = self.meaning(*variable, None, name, &[]);
             self.plan.globals.insert(upper, meaning);
         }
@@ -186,7 +186,7 @@ impl<'a> Planner<'_, 'a> {
                 let of_file: HashSet<String> = variables(pou)
                     .filter_map(name_of)
                     .map(|n| n.to_uppercase())
-                    .filter(|u| own(u) && !self.charts.contains(u) && !blocks.contains(u))
+                    .filter(|u| own(u) && !self.charts.has(u) && !blocks.contains(u))
                     .collect();
                 self.program(index, chart, node, interval, of_file);
             }
@@ -208,7 +208,7 @@ impl<'a> Planner<'_, 'a> {
         interval: Option<i64>,
         of_file: HashSet<String>,
     ) {
-        self.charts.extend(of_file.iter().cloned());
+        of_file.iter().for_each(|name| _ = self.charts.take(name));
         let unit = self.unit_with(pou, chart, node, &[], of_file);
         if let Some(unit) = self.plan.units.get_mut(unit) {
             unit.program = true;
@@ -229,7 +229,7 @@ impl<'a> Planner<'_, 'a> {
             let chart = pou.name.text.trim().to_string();
             if alone && !is_chart(pou) {
                 let of_file = variables(pou).filter_map(name_of).map(|n| n.to_uppercase());
-                let of_file = of_file.filter(|u| !self.charts.contains(u)).collect();
+                let of_file = of_file.filter(|u| !self.charts.has(u)).collect();
                 self.program(index, chart, pou.node, None, of_file);
             } else if !is_chart(pou) {
                 let what =
@@ -330,12 +330,7 @@ impl<'a> Planner<'_, 'a> {
     fn free(&mut self, wanted: &str, node: Xml) -> String {
         let wanted = line(wanted);
         let wanted = if wanted.is_empty() { "Chart".to_string() } else { wanted };
-        let mut name = wanted.clone();
-        let mut number = 2;
-        while !self.charts.insert(name.to_uppercase()) {
-            name = format!("{wanted}_{number}");
-            number += 1;
-        }
+        let name = self.charts.give(&wanted);
         if name != wanted {
             let what = format!("something else is called `{wanted}`; the chart is called `{name}`");
             self.report.say(&codes::RENAMED, &head(node), what);

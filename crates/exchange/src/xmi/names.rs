@@ -9,6 +9,7 @@ use g7_model::{Expr, ExprKind, Name, Path, Problem, Span, codes};
 
 use super::read::{DEFAULT_NAME, Plan, Sheet, StepSort, VarSort, Xml};
 use super::refs::shown;
+use crate::nodes::Taken;
 use crate::report::Report;
 use crate::xml::attr;
 
@@ -104,28 +105,6 @@ fn writable(name: &str) -> String {
     name.chars().map(put).collect()
 }
 
-/// The names of one name space.
-#[derive(Default)]
-struct Taken {
-    names: HashSet<String>,
-    /// How often each was wanted, so that a thousand equal names are no million looks.
-    counts: HashMap<String, usize>,
-}
-
-impl Taken {
-    /// `wanted`, or the first of `wanted_2`, `wanted_3`, … that is free.
-    fn give(&mut self, wanted: String) -> String {
-        let mut name = wanted.clone();
-        let count = self.counts.entry(wanted.clone()).or_insert(1);
-        while self.names.contains(&name) {
-            *count += 1;
-            name = format!("{wanted}_{count}");
-        }
-        self.names.insert(name.clone());
-        name
-    }
-}
-
 /// The name of an element, with a word to the author where it had to change.
 fn clean(xml: Xml, report: &mut Report) -> Option<String> {
     let name = attr::text(xml, "name")?;
@@ -153,12 +132,12 @@ fn variables(plan: &Plan, report: &mut Report) -> Vec<String> {
             report.say(&codes::RENAMED, &at, what);
             name
         });
-        let taken = spaces.entry(var.sheet).or_default();
-        if taken.names.contains(&wanted) {
+        let taken = spaces.entry(var.sheet).or_insert_with(Taken::exact);
+        if taken.has(&wanted) {
             let what = format!("a second variable is called `{}`; it is renamed", shown(&wanted));
             report.say(&codes::TWICE, &at, what);
         }
-        let name = taken.give(wanted);
+        let name = taken.give(&wanted);
         if var.sort == VarSort::Input && looks_timed(&name) {
             let what = format!(
                 "an input is called `{}`; it stays an input, and no time of the chart sets it",
@@ -178,12 +157,12 @@ fn looks_timed(name: &str) -> bool {
 }
 
 fn charts(plan: &Plan, vars: &[String], report: &mut Report) -> Vec<String> {
-    let mut taken = Taken::default();
-    taken.names.extend(vars.iter().filter(|v| !v.is_empty()).cloned());
+    let mut taken = Taken::exact();
+    vars.iter().filter(|v| !v.is_empty()).for_each(|name| _ = taken.take(name));
     let mut names = Vec::with_capacity(plan.sheets.len());
     for sheet in &plan.sheets {
         let wanted = clean(sheet.xml, report).unwrap_or_else(|| DEFAULT_NAME.to_string());
-        let name = taken.give(wanted.clone());
+        let name = taken.give(&wanted);
         if name != wanted {
             let what = format!(
                 "`{}` is also the name of something else; the chart is called `{}`",
@@ -208,7 +187,7 @@ fn number(xml: Xml, report: &mut Report) -> String {
 }
 
 fn steps(sheet: &Sheet, report: &mut Report) -> Vec<String> {
-    let mut taken = Taken::default();
+    let mut taken = Taken::exact();
     let mut first: HashMap<String, Span> = HashMap::new();
     let mut names = Vec::with_capacity(sheet.steps.len());
     for step in &sheet.steps {
@@ -220,7 +199,7 @@ fn steps(sheet: &Sheet, report: &mut Report) -> Vec<String> {
             StepSort::Exit => format!("S{number}"),
         };
         let at = report.span(&attr::head(step.xml));
-        let name = taken.give(wanted.clone());
+        let name = taken.give(&wanted);
         match first.get(&wanted) {
             Some(other) => {
                 let what = format!("a second step `{}`; it is called `{}`", shown(&wanted), shown(&name));
@@ -238,7 +217,7 @@ fn steps(sheet: &Sheet, report: &mut Report) -> Vec<String> {
 
 /// `T12` for transition 12.
 fn labels(sheet: &Sheet, report: &mut Report) -> Vec<Option<String>> {
-    let mut taken = Taken::default();
+    let mut taken = Taken::exact();
     let mut names = Vec::with_capacity(sheet.transitions.len());
     for xml in &sheet.transitions {
         if xml.attribute("id").is_none() {
@@ -246,7 +225,7 @@ fn labels(sheet: &Sheet, report: &mut Report) -> Vec<Option<String>> {
             continue;
         }
         let wanted = format!("T{}", number(*xml, report));
-        let name = taken.give(wanted.clone());
+        let name = taken.give(&wanted);
         if name != wanted {
             let what = format!("a second transition `{}`; it is called `{}`", shown(&wanted), shown(&name));
             report.say(&codes::RENAMED, &attr::head(*xml), what);

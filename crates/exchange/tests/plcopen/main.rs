@@ -9,4 +9,6 @@ mod corpus;
 mod hostile;
 mod problems;
 mod show;
+#[path = "../support/mod.rs"]
+mod support;
 mod write;

@@ -19,11 +19,8 @@ pub(crate) fn survives(format: Format, file: &[u8]) -> (Document, Vec<Problem>) 
 }
 
 /// The codes of a file that gives no chart, soon.
-#[allow(clippy::disallowed_methods, reason = "how long the machine takes is what is asked here")]
 pub(crate) fn refused(format: Format, file: &[u8]) -> Vec<&'static str> {
-    let start = Instant::now();
-    let (document, problems) = survives(format, file);
-    assert!(start.elapsed() < Duration::from_secs(30));
+    let (document, problems) = within(30, || survives(format, file));
     assert_eq!(document.charts().count(), 0);
     problems.iter().map(|p| p.code.id).collect()
 }
@@ -74,14 +71,33 @@ fn apply(file: &mut Vec<u8>, change: &Change) {
 
 /// Reads changed files: `words` are put into them besides bytes and pieces of their own.
 pub(crate) fn changed(format: Format, files: Vec<Vec<u8>>, words: &[&'static str], cases: u32) {
+    changed_for(files, words, (cases, 12), |file| _ = survives(format, file));
+}
+
+/// The same for a reader of one's own: so many cases, each with fewer changes than that.
+pub(crate) fn changed_for(
+    files: Vec<Vec<u8>>,
+    words: &[&'static str],
+    (cases, most): (u32, usize),
+    read: impl Fn(&[u8]),
+) {
     let config = ProptestConfig { cases, failure_persistence: None, ..ProptestConfig::default() };
-    let changes = prop::collection::vec(change(words.to_vec()), 1..12);
+    let changes = prop::collection::vec(change(words.to_vec()), 1..most);
     let strategy = (prop::sample::select(files), changes);
     TestRunner::new(config)
         .run(&strategy, |(mut file, changes)| {
             changes.iter().for_each(|c| apply(&mut file, c));
-            survives(format, &file);
+            read(&file);
             Ok(())
         })
         .expect("no file breaks the reader");
+}
+
+/// Runs something that has to end within so many seconds.
+#[allow(clippy::disallowed_methods, reason = "how long the machine takes is what is asked here")]
+pub(crate) fn within<T>(seconds: u64, work: impl FnOnce() -> T) -> T {
+    let start = Instant::now();
+    let result = work();
+    assert!(start.elapsed() < Duration::from_secs(seconds));
+    result
 }

@@ -1,12 +1,10 @@
 //! Files made to break a reader: it ends soon, with words, never with a panic.
 
-use std::time::{Duration, Instant};
-
 use g7_exchange::{Format, Outlet, recognise};
 use g7_model::{Document, FileId, Problem};
-use proptest::prelude::*;
 
 use crate::show::bytes;
+use crate::support::hostile::{changed_for, within};
 
 const HEAD: &str = "<g:Grafcet xmlns:g='g' xmlns:xsi='x' xmlns:terms='t'>";
 const TAIL: &str = "</g:Grafcet>";
@@ -20,15 +18,6 @@ fn import(file: &[u8]) -> (Document, Vec<Problem>) {
     }
     g7_exchange::export(Outlet::Xmi, &document);
     (document, problems)
-}
-
-/// Runs something that has to end within so many seconds.
-#[allow(clippy::disallowed_methods, reason = "how long the machine takes is what is asked here")]
-fn within<T>(seconds: u64, work: impl FnOnce() -> T) -> T {
-    let start = Instant::now();
-    let result = work();
-    assert!(start.elapsed() < Duration::from_secs(seconds));
-    result
 }
 
 /// The codes of a file, found within a time that no bound lets pass.
@@ -105,92 +94,41 @@ fn many_equal_numbers_and_long_references_are_no_work() {
     );
 }
 
-#[derive(Clone, Debug)]
-enum Change {
-    Set(usize, u8),
-    Cut(usize, usize),
-    Copy(usize, usize, usize),
-    Put(usize, &'static str),
-}
+/// Put into files besides bytes and pieces of their own.
+const WORDS: &[&str] = &[
+    "<",
+    ">",
+    "/>",
+    "\"",
+    "&",
+    "&#10;",
+    "<!--",
+    "é",
+    "\u{202e}",
+    "//@",
+    "@steps.0",
+    ".1",
+    ".99999999999999999999",
+    "initial=\"true\"",
+    "partialGrafcets",
+    "terms:",
+    "Variable",
+    "And",
+    "Not",
+    "-1",
+    "99999999999",
+    "true",
+    "#",
+    "/",
+    "`",
+    "enclosingStep=\"//@partialGrafcets.0/@steps.0\"",
+    "<subterm xsi:type=\"terms:Not\">",
+    "</subterm>",
+];
 
-fn change() -> impl Strategy<Value = Change> {
-    let words = prop::sample::select(vec![
-        "<",
-        ">",
-        "/>",
-        "\"",
-        "&",
-        "&#10;",
-        "<!--",
-        "é",
-        "\u{202e}",
-        "//@",
-        "@steps.0",
-        ".1",
-        ".99999999999999999999",
-        "initial=\"true\"",
-        "partialGrafcets",
-        "terms:",
-        "Variable",
-        "And",
-        "Not",
-        "-1",
-        "99999999999",
-        "true",
-        "#",
-        "/",
-        "`",
-        "enclosingStep=\"//@partialGrafcets.0/@steps.0\"",
-        "<subterm xsi:type=\"terms:Not\">",
-        "</subterm>",
-    ]);
-    let place = any::<prop::sample::Index>().prop_map(|i| i.index(1 << 20));
-    prop_oneof![
-        (place.clone(), any::<u8>()).prop_map(|(i, b)| Change::Set(i, b)),
-        (place.clone(), 0usize..200).prop_map(|(i, n)| Change::Cut(i, n)),
-        (place.clone(), place.clone(), 0usize..400).prop_map(|(i, j, n)| Change::Copy(i, j, n)),
-        (place, words).prop_map(|(i, w)| Change::Put(i, w)),
-    ]
-}
-
-fn apply(file: &mut Vec<u8>, change: &Change) {
-    let len = file.len().max(1);
-    match change {
-        Change::Set(i, b) => {
-            if let Some(byte) = file.get_mut(i % len) {
-                *byte = *b;
-            }
-        }
-        Change::Cut(i, n) => {
-            let from = (i % len).min(file.len());
-            let to = (from + n).min(file.len());
-            file.drain(from..to);
-        }
-        Change::Copy(i, j, n) => {
-            let from = (i % len).min(file.len());
-            let piece = file[from..(from + n).min(file.len())].to_vec();
-            let at = (j % len).min(file.len());
-            file.splice(at..at, piece);
-        }
-        Change::Put(i, word) => {
-            let at = (i % len).min(file.len());
-            file.splice(at..at, word.bytes());
-        }
-    }
-}
-
-proptest! {
-    #![proptest_config(ProptestConfig { cases: 300, failure_persistence: None, ..ProptestConfig::default() })]
-
-    #[test]
-    fn a_changed_file_never_panics(
-        file in prop::sample::select(vec!["mixer.grafcet", "wrong.grafcet"]),
-        changes in prop::collection::vec(change(), 1..8),
-    ) {
-        let mut file = bytes(file);
-        for change in &changes {
-            apply(&mut file, change);
-        }
-        import(&file);
-    }
+#[test]
+fn a_changed_file_never_panics() {
+    changed_for(["mixer.grafcet", "wrong.grafcet"].map(bytes).to_vec(), WORDS, (300, 8), |file| {
+        _ = import(file)
+    });
 }

@@ -9,4 +9,6 @@ mod hostile;
 mod problems;
 mod show;
 mod sound;
+#[path = "../support/mod.rs"]
+mod support;
 mod write;

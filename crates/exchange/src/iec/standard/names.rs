@@ -6,6 +6,7 @@ use std::collections::{HashMap, HashSet};
 use g7_model::{Name, Span};
 
 use super::scopes::{Scopes, StepKey};
+use crate::nodes::Taken;
 
 /// Words of the language, its standard functions and blocks. Operators of Instruction List and
 /// qualifiers are none: they mean something in their places only.
@@ -32,8 +33,10 @@ pub(super) struct Names {
     /// Named actions and sections.
     parts: HashMap<(Option<usize>, Box<str>), String>,
     functions: HashMap<Box<str>, String>,
+    /// The last number given to each, so that a thousand equal names are no million looks.
+    counts: HashMap<(Owner, String), usize>,
     /// Of programs that are units of their own.
-    units: HashSet<String>,
+    units: Taken,
     /// Names that had to be changed: where, and to what.
     pub(super) renamed: Vec<(Span, Box<str>, String)>,
 }
@@ -51,7 +54,8 @@ impl Names {
             steps: HashMap::new(),
             parts: HashMap::new(),
             functions: HashMap::new(),
-            units: HashSet::new(),
+            counts: HashMap::new(),
+            units: Taken::default(),
             renamed: Vec::new(),
         }
     }
@@ -68,11 +72,13 @@ impl Names {
     pub(super) fn free(&mut self, owner: Owner, wish: &str) -> String {
         let wish = identifier(wish);
         let mut text = wish.clone();
-        let mut number = 1;
+        let key = (owner, wish.to_ascii_uppercase());
+        let mut number = self.counts.get(&key).copied().unwrap_or(1);
         while self.has(owner, &text.to_ascii_uppercase()) {
             number += 1;
             text = format!("{}_{number}", wish.trim_end_matches('_'));
         }
+        self.counts.insert(key, number);
         let upper = text.to_ascii_uppercase();
         match owner.and_then(|p| self.programs.get_mut(p)) {
             Some(program) => program.insert(upper),
@@ -96,17 +102,13 @@ impl Names {
     /// The name of a program beside whose names those within it may be the same.
     pub(super) fn give_unit(&mut self, name: &Name) -> String {
         let wish = identifier(&name.text);
-        let mut text = wish.clone();
-        let mut number = 1;
-        loop {
+        let text = loop {
+            let text = self.units.give(&wish);
             let upper = text.to_ascii_uppercase();
-            let taken = self.reserved.contains(upper.as_str()) || self.global.contains(&upper);
-            if !taken && self.units.insert(upper) {
-                break;
+            if !self.reserved.contains(upper.as_str()) && !self.global.contains(&upper) {
+                break text;
             }
-            number += 1;
-            text = format!("{wish}_{number}");
-        }
+        };
         if *text != *name.text {
             self.renamed.push((name.at.0, name.text.clone(), text.clone()));
         }

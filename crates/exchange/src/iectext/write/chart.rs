@@ -81,7 +81,7 @@ impl<'d> Exporter<'d> {
         writer: &Writer,
         bodies: &mut String,
     ) -> String {
-        let name = self.free(&format!("{step}_{}", number + 1));
+        let name = self.taken.give(&format!("{step}_{}", number + 1));
         block(&name, work.statements(), writer, bodies);
         name
     }

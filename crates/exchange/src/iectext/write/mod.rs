@@ -12,6 +12,7 @@ use g7_model::{Body, Chart, ChartItem, Document, Expr, Function, Item, Type, Var
 
 use crate::Written;
 use crate::iec::{Form, Known, Writer, standard, time};
+use crate::nodes::Taken;
 
 /// What a program of the file contains.
 struct Program<'d> {
@@ -29,14 +30,13 @@ pub(crate) fn export(document: &Document) -> Written {
 
 struct Exporter<'d> {
     document: &'d Document,
-    /// In capitals.
-    taken: HashSet<String>,
+    taken: Taken,
 }
 
 impl<'d> Exporter<'d> {
     fn new(document: &'d Document) -> Exporter<'d> {
-        let mut taken = HashSet::new();
-        let mut take = |name: &g7_model::Name| _ = taken.insert(name.text.to_ascii_uppercase());
+        let mut taken = Taken::default();
+        let mut take = |name: &g7_model::Name| _ = taken.take(&name.text);
         for item in &document.items {
             match item {
                 Item::Var(v) => v.names.iter().for_each(&mut take),
@@ -57,17 +57,6 @@ impl<'d> Exporter<'d> {
             }
         }
         Exporter { document, taken }
-    }
-
-    /// A name that is not taken; it is taken now.
-    fn free(&mut self, wish: &str) -> String {
-        let mut text = wish.to_string();
-        let mut number = 1;
-        while !self.taken.insert(text.to_ascii_uppercase()) {
-            number += 1;
-            text = format!("{wish}_{number}");
-        }
-        text
     }
 
     fn text(&mut self) -> String {
@@ -131,7 +120,7 @@ impl<'d> Exporter<'d> {
         const SCAN: i64 = 10_000_000;
         // Some tools want a period wherever there is a resource.
         let scan = scan.unwrap_or(SCAN);
-        let (config, resource) = (self.free("Config"), self.free("Res"));
+        let (config, resource) = (self.taken.give("Config"), self.taken.give("Res"));
         let mut tasks: Vec<(i64, String)> = Vec::new();
         let mut lines = String::new();
         let mut runs = String::new();
@@ -139,7 +128,7 @@ impl<'d> Exporter<'d> {
         let paces = programs.iter().map(|p| p.chart.and_then(|c| c.every).unwrap_or(scan));
         for pace in std::iter::once(scan).chain(paces.clone()) {
             if !tasks.iter().any(|t| t.0 == pace) {
-                let (name, number) = (self.free("Cycle"), tasks.len());
+                let (name, number) = (self.taken.give("Cycle"), tasks.len());
                 lines.push_str(&format!(
                     "    TASK {name}(INTERVAL := {}, PRIORITY := {number});\n",
                     time(pace)
@@ -149,7 +138,7 @@ impl<'d> Exporter<'d> {
         }
         for (program, pace) in programs.iter().zip(paces) {
             let task = tasks.iter().find(|t| t.0 == pace).map_or("", |t| &t.1);
-            let instance = self.free("Instance");
+            let instance = self.taken.give("Instance");
             runs.push_str(&format!("    PROGRAM {instance} WITH {task} : {};\n", program.name));
         }
         format!(
@@ -174,7 +163,7 @@ impl<'d> Exporter<'d> {
                 Item::Pre(code, _) => ("Pre", code),
                 _ => continue,
             };
-            let name = self.free(if charts == 0 { "Main" } else { name });
+            let name = self.taken.give(if charts == 0 { "Main" } else { name });
             programs.push(Program { name, chart: None, body: body(code) });
         }
         for chart in document.charts() {
@@ -183,11 +172,11 @@ impl<'d> Exporter<'d> {
         }
         for item in &document.items {
             if let Item::Post(code, _) = item {
-                programs.push(Program { name: self.free("Post"), chart: None, body: body(code) });
+                programs.push(Program { name: self.taken.give("Post"), chart: None, body: body(code) });
             }
         }
         if programs.is_empty() {
-            programs.push(Program { name: self.free("Main"), chart: None, body: String::new() });
+            programs.push(Program { name: self.taken.give("Main"), chart: None, body: String::new() });
         }
         programs
     }
