@@ -1,5 +1,10 @@
 # The commands of the README. Each installs what it needs, and only that.
 
+# A pipe fails if any part of it does.
+SHELL := bash
+.SHELLFLAGS := -o pipefail -ec
+.NOTPARALLEL:
+
 EXAMPLE ?= examples/bead-sorter
 FOLDER ?= examples
 
@@ -7,9 +12,12 @@ FOLDER ?= examples
 SUDO := $(shell [ "$$(id -u)" = 0 ] || echo sudo)
 debian = command -v $(1) >/dev/null || \
 	{ $(SUDO) apt-get update -qq && $(SUDO) apt-get install -qq --no-install-recommends $(2); }
+# Logs of `make test` with the list of what was skipped; the pages of the book, put together.
+BOOK := $(abspath $(or $(CARGO_TARGET_DIR),target))/book
+TALLY := $(abspath $(or $(CARGO_TARGET_DIR),target))/tally
 PAGE := $(shell find web/src web/index.html web/public web/*.ts web/*.js -type f 2>/dev/null)
 
-.PHONY: run view install test lint deny wasm web site pictures page-test page-bench bench book fuzz help FORCE
+.PHONY: run view install test tally-anew peers lint deny wasm web site pictures page-test page-bench bench book blocks fuzz help FORCE
 
 ## build G7 and open the editor in the browser on the examples (FOLDER=… for another)
 run: web
@@ -23,19 +31,32 @@ view:
 install: web
 	cargo install --quiet --path crates/g7
 
-## run every test
-test: lint page-test
-	cargo test --workspace --quiet
-	cargo run --quiet --package g7 -- test examples
+## run every test; the last line counts what passed and what was skipped
+test: export G7_SKIPS = $(TALLY)/skips
+test: tally-anew lint page-test
+	cargo test --workspace --quiet 2>&1 | tee $(TALLY)/crates.log
 	cargo run --quiet --package g7 -- check examples
+	cargo run --quiet --package g7 -- test examples | tee $(TALLY)/examples.log
+	@cargo run --quiet --package g7-peers --bin tally -- $(TALLY)
+
+tally-anew:
+	@rm -rf $(TALLY) && mkdir -p $(TALLY) && touch $(TALLY)/skips
+
+## install what some tests are skipped without: clang with its sanitizers, g++, a bare target
+peers:
+	rustup target add thumbv7em-none-eabi
+	@$(call debian,gcc,gcc)
+	@$(call debian,g++,g++)
+	@$(SUDO) apt-get update -qq && $(SUDO) apt-get install -qq --no-install-recommends clang libclang-rt-dev
 
 ## formatting and lints
 lint:
 	cargo fmt --all --check
 	cargo clippy --workspace --all-targets --quiet -- --deny warnings
 
-## licences and sources of what is built in (needs cargo-deny)
+## licences and sources of what is built in
 deny:
+	@command -v cargo-deny >/dev/null || cargo install --quiet --locked cargo-deny
 	cargo deny check licenses bans sources
 
 ## the crates as wasm, for the page
@@ -76,7 +97,9 @@ pictures: web
 page-test: web
 	@$(call debian,chromium,chromium)
 	cargo build --quiet --package g7
-	cd web && npm run --silent check && G7=$${CARGO_TARGET_DIR:-$(CURDIR)/target}/debug/g7 npm test --silent
+	@mkdir -p $(TALLY)
+	cd web && npm run --silent check && \
+		G7=$${CARGO_TARGET_DIR:-$(CURDIR)/target}/debug/g7 npm test --silent | tee $(TALLY)/page.log
 
 ## main-thread time of the page, beside React Flow
 page-bench: wasm web/node_modules/.package-lock.json
@@ -88,12 +111,20 @@ bench:
 	benches/scan.sh
 	benches/layout.sh
 
-## the book, as HTML (needs mdbook)
+## the book, as HTML in docs/book/book, with every conformance case as a page
 book:
-	mdbook build docs/book
+	@command -v mdbook >/dev/null || cargo install --quiet --locked mdbook
+	@rm -rf $(BOOK)
+	cargo run --quiet --package g7-tests --bin book -- $(BOOK)
+	mdbook build $(BOOK) --dest-dir $(CURDIR)/docs/book/book
 
-## every fuzz target for a minute (needs cargo-fuzz and clang's runtime)
-fuzz:
+## the chronograms of the function blocks, drawn anew for the book
+blocks:
+	cargo run --quiet --package g7-tests --bin book -- pictures
+
+## every fuzz target for a minute
+fuzz: peers
+	@command -v cargo-fuzz >/dev/null || cargo install --quiet --locked cargo-fuzz
 	fuzz/run.sh 60
 
 help:

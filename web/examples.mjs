@@ -1,4 +1,4 @@
-// Writes the examples into one file beside a built page: `node examples.mjs FOLDER OUT`.
+// Writes all examples into one file beside a built page: `node examples.mjs FOLDER OUT`.
 import { readdirSync, readFileSync, writeFileSync } from 'node:fs';
 import { join, relative } from 'node:path';
 

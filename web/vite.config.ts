@@ -1,7 +1,7 @@
 import { svelte } from '@sveltejs/vite-plugin-svelte';
 import { defineConfig } from 'vite';
 
-// Relative addresses: the same page is served by `g7 serve` and by any static host.
+// Relative addresses, so that `g7 serve` and any static host can serve the same page.
 export default defineConfig({
   base: './',
   plugins: [svelte()],
@@ -10,7 +10,7 @@ export default defineConfig({
   server: {
     host: '127.0.0.1',
     fs: { allow: ['..'] },
-    // `g7 serve --port 4700` beside `npm run dev`.
+    // For `npm run dev` together with `g7 serve --port 4700`.
     proxy: { '/api': { target: 'http://127.0.0.1:4700', ws: true } },
   },
 });

@@ -1,6 +1,6 @@
-//! Measurements against peers: the same charts for both sides, in one run.
+//! Measurements against other programs: the same charts for both sides, in one run.
 //!
-//! `scan.sh` is the entry; `bin/scan.rs` runs G7, and matiec where it is found.
+//! Start `scan.sh`; `bin/scan.rs` measures G7, and matiec if it is installed.
 
 pub mod matiec;
 pub mod shape;

@@ -1,35 +1,26 @@
-//! matiec's side: the compiler from the `PATH`, its C through `gcc -O2`, timed
-//! by a small C program of ours.
+//! Measures matiec: the compiler from the `PATH`; its C is compiled by `gcc -O2` and timed by a
+//! small C program of ours.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::Command;
+
+use g7_peers::Matiec;
 
 use crate::shape::Shape;
 
-/// What one side measured: ns a scan moving and idle, and the situations seen.
+/// The results for one program: ns a scan, and the situations it visited.
 #[derive(Clone, Debug)]
 pub struct Measured {
-    /// Every active step moves in every scan.
+    /// Time of a scan in which every active step moves, in ns.
     pub moving: f64,
-    /// No transition clears.
+    /// Time of a scan in which no transition clears, in ns.
     pub idle: f64,
-    /// Digest of the situations of the first scans.
+    /// A digest of the situations of the first scans.
     pub digest: u64,
 }
 
-/// Scans whose situations go into the digest.
+/// Number of scans whose situations are part of the digest.
 pub const LOOKED_AT: usize = 40;
-
-/// `iec2c` and its library folder, if the machine has them.
-pub fn find() -> Option<(PathBuf, PathBuf)> {
-    let path = std::env::var_os("PATH")?;
-    let tool = std::env::split_paths(&path).map(|p| p.join("iec2c")).find(|p| p.is_file())?;
-    let home = tool.parent()?.to_path_buf();
-    let named = std::env::var_os("MATIEC_LIB").map(PathBuf::from);
-    let places = [home.join("lib"), home.join("../lib/matiec"), PathBuf::from("/usr/lib/matiec")];
-    let lib = named.into_iter().chain(places).find(|p| p.join("ieclib.txt").is_file())?;
-    Some((tool, lib))
-}
 
 const HARNESS: &str = r#"
 #include <stdio.h>
@@ -76,8 +67,8 @@ int main(void) {
 ///
 /// # Errors
 ///
-/// What a tool said when it failed.
-pub fn measure(tool: &Path, lib: &Path, folder: &Path, shape: Shape) -> Result<Measured, String> {
+/// The message of a tool that failed.
+pub fn measure(matiec: &Matiec, folder: &Path, shape: Shape) -> Result<Measured, String> {
     let io = |e: std::io::Error| e.to_string();
     std::fs::create_dir_all(folder).map_err(io)?;
     std::fs::write(folder.join("chart.st"), shape.st()).map_err(io)?;
@@ -87,10 +78,10 @@ pub fn measure(tool: &Path, lib: &Path, folder: &Path, shape: Shape) -> Result<M
         .replace("SCANS", &scans.max(1000).to_string())
         .replace("FIRST", if shape.forks() { "1" } else { "0" });
     std::fs::write(folder.join("main.c"), harness).map_err(io)?;
-    run(Command::new(tool).arg("-I").arg(lib).arg("chart.st").current_dir(folder))?;
+    run(&mut matiec.translate(folder, "chart.st"))?;
     run(Command::new("gcc")
         .args(["-O2", "-w", "-o", "chart", "main.c", "-I"])
-        .arg(lib.join("C"))
+        .arg(matiec.lib.join("C"))
         .args(["-lrt", "-lm"])
         .current_dir(folder))?;
     let out = run(Command::new(folder.join("chart")).current_dir(folder))?;

@@ -1,27 +1,27 @@
-//! The charts that are measured, as .g7 text and as textual SFC.
+//! The charts for the measurements, as .g7 text and as textual SFC.
 //!
-//! Every transition waits for one input GO, every step i has one action `N Qi`.
+//! Every transition waits for one input GO; every step i has one action `N Qi`.
 
 use std::fmt::Write;
 
 /// A family of charts and its size in steps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Shape {
-    /// One loop, one step active.
+    /// One loop with one active step.
     Linear(usize),
-    /// Loops of 10 steps, one step active in each.
+    /// Loops of 10 steps with one active step each.
     Par(usize),
-    /// One step, then n/10 alternative branches of 9 steps; one step active.
+    /// One step, then a selection of n/10 branches with 9 steps each; one step is active.
     Alt(usize),
-    /// One fork into n/10 branches of 9 steps, one join.
+    /// One AND divergence into n/10 branches with 9 steps each, and one convergence.
     AndFork(usize),
 }
 
-/// Transitions: preceding steps, succeeding steps, place among its alternatives (from 1).
+/// Transitions: preceding steps, succeeding steps, rank among its alternatives (from 1).
 type Arcs = Vec<(Vec<usize>, Vec<usize>, usize)>;
 
 impl Shape {
-    /// As printed in the table.
+    /// The name in the table of results.
     pub fn name(self) -> String {
         match self {
             Shape::Linear(n) => format!("linear {n}"),
@@ -67,7 +67,7 @@ impl Shape {
         }
     }
 
-    /// As .g7 text under `iec61131`.
+    /// The chart as .g7 text under `iec61131`.
     pub fn g7(self) -> String {
         let (steps, initial, arcs) = self.build();
         let mut t = String::from("profile iec61131\n\ninput GO : BOOL\n");
@@ -87,10 +87,10 @@ impl Shape {
         t
     }
 
-    /// As textual SFC of IEC 61131-3, for matiec.
+    /// The chart as textual SFC of IEC 61131-3, for matiec.
     ///
-    /// One step may be initial there, so the loops of `par` start from one
-    /// transition that every loop but the first does without; see [`Shape::forks`].
+    /// There, only one step may be initial, so an additional step and transition start the loops of
+    /// `par`; see [`Shape::forks`].
     pub fn st(self) -> String {
         let (steps, initial, arcs) = self.build();
         let mut t = String::from("PROGRAM chart\n VAR_INPUT GO : BOOL; END_VAR\n VAR_OUTPUT\n");
@@ -120,12 +120,12 @@ impl Shape {
         t
     }
 
-    /// Whether the textual SFC needs a first transition that starts several loops.
+    /// True if the textual SFC needs a first transition that starts several loops.
     pub fn forks(self) -> bool {
         self.build().1.len() > 1
     }
 
-    /// Its number of steps.
+    /// The number of its steps.
     pub fn steps(self) -> usize {
         self.build().0
     }

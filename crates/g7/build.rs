@@ -1,4 +1,4 @@
-//! Has `g7` built again when the page that it carries was.
+//! Rebuilds `g7` when the web page that it contains has changed.
 
 fn main() {
     println!("cargo:rerun-if-changed=build.rs");

@@ -1,4 +1,4 @@
-//! Lists the pages on problems, so that the editor and `g7 explain` have them with them.
+//! Builds a list of the book's pages on problems, which the editor and `g7 explain` contain.
 
 use std::fmt::Write;
 use std::path::Path;

@@ -1,6 +1,6 @@
-//! Any gestures on any text: what is accepted leaves a text that reads as it was
-//! meant and can be undone byte for byte. A document, a line of four dashes, and a
-//! gesture a line.
+//! Applies arbitrary gestures to an arbitrary text. An accepted gesture leaves a text that gives
+//! the intended document and can be undone byte for byte. The input is a document, a line of four
+//! dashes, and one gesture per line.
 #![no_main]
 
 use g7_edit::{Gesture, History, Source, apply_placed, spliced};
@@ -19,7 +19,7 @@ fuzz_target!(|bytes: &[u8]| {
         let (document, problems) = g7_syntax::parse(&text, FileId(0));
         let clean = problems.is_empty();
         let source = Source { text: &text, document: &document, clean };
-        // Symbols stand by the numbers in their names, some nowhere.
+        // Symbols have places derived from the numbers in their names; some have none.
         let stands = |id: &g7_edit::ItemId| {
             let number: i32 = id.to_string().rsplit('/').next()?.parse().ok()?;
             Some((number.wrapping_mul(1000), number.wrapping_mul(500)))

@@ -1,5 +1,5 @@
-//! Any bytes as a JGrafchart file: problems, never a panic; what comes of it
-//! goes through the checker, out as such a file, and in again.
+//! Reads arbitrary bytes as a JGrafchart file: problems, never a panic. The resulting document goes
+//! through the checker, is written as such a file, and read again.
 #![no_main]
 
 use g7_model::FileId;
@@ -7,8 +7,8 @@ use libfuzzer_sys::fuzz_target;
 
 fuzz_target!(|bytes: &[u8]| {
     let _ = g7_exchange::recognise("", bytes);
-    let (document, _) = g7_exchange::import(g7_exchange::Format::Jgrafchart, bytes, FileId(0));
+    let Some((document, _)) = g7_exchange::named("jgrafchart").and_then(|f| f.read(bytes, FileId(0))) else { return };
     let _ = g7_compile::compile(&document);
-    let written = g7_exchange::export(g7_exchange::Outlet::Jgrafchart, &document);
-    let _ = g7_exchange::import(g7_exchange::Format::Jgrafchart, written.text.as_bytes(), FileId(0));
+    let Some(written) = g7_exchange::named("jgrafchart").and_then(|f| f.write(&document)) else { return };
+    let _ = g7_exchange::named("jgrafchart").and_then(|f| f.read(written.text.as_bytes(), FileId(0)));
 });

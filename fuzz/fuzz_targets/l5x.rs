@@ -1,5 +1,5 @@
-//! Any bytes as a Logix project: problems, never a panic; what comes of it
-//! goes through the checker.
+//! Reads arbitrary bytes as a Logix project: problems, never a panic. The resulting document goes
+//! through the checker.
 #![no_main]
 
 use g7_model::FileId;
@@ -7,6 +7,6 @@ use libfuzzer_sys::fuzz_target;
 
 fuzz_target!(|bytes: &[u8]| {
     let _ = g7_exchange::recognise("", bytes);
-    let (document, _) = g7_exchange::import(g7_exchange::Format::L5x, bytes, FileId(0));
+    let Some((document, _)) = g7_exchange::named("l5x").and_then(|f| f.read(bytes, FileId(0))) else { return };
     let _ = g7_compile::compile(&document);
 });

@@ -1,11 +1,11 @@
-//! Any lines as messages to one page: each gets an answer, and nothing panics.
+//! Sends arbitrary lines as messages to one page: each gets an answer, and nothing panics.
 #![no_main]
 
 use g7_page::Page;
 use libfuzzer_sys::fuzz_target;
 use serde_json::Value;
 
-/// More messages than a story needs; each may run for a while.
+/// Greatest number of messages; each may run for a while.
 const MOST: usize = 40;
 
 fuzz_target!(|bytes: &[u8]| {

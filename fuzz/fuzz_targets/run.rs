@@ -1,4 +1,4 @@
-//! Any text that compiles runs for some scans: faults are values, never a panic.
+//! Runs every text that compiles for some scans: faults are values, never panics.
 #![no_main]
 
 use g7_model::FileId;

@@ -1,14 +1,15 @@
-//! Any tables: refused, or a program that scans without a panic.
+//! Arbitrary tables are either refused or become a program that scans without a panic.
 #![no_main]
 
 use arbitrary::{Arbitrary, Unstructured};
 use g7_engine::{
-    Action, Addr, Chart, Code, Contribution, ControlBlock, Event, Extra, Group, GroupId, Guard, NONE, Num, Op, Order,
+    Action, Addr, Chart, Code, Contribution, ControlBlock, Event, Extra, Group, GroupId, Receptivity, NONE, Num, Op, Order,
     Program, Rows, Rules, Service, Situation, State, Step, StepId, Tables, Transition, Watch, WatchId, scan,
 };
 use libfuzzer_sys::fuzz_target;
 
-/// Small numbers are likely to be in range, large ones to be refused.
+/// Draws numbers: mostly small ones, which are likely to be in range, and sometimes large ones,
+/// which must be refused.
 struct Draw<'a, 'b>(&'a mut Unstructured<'b>);
 
 impl Draw<'_, '_> {
@@ -161,14 +162,14 @@ fn steps(d: &mut Draw<'_, '_>, t: &mut Tables) {
     }
     let transitions = d.n(10);
     for _ in 0..transitions {
-        let guard = match d.n(4) {
-            0 => Guard::True,
-            1 => Guard::Word(Addr(d.n(WORDS))),
-            2 => Guard::NotWord(Addr(d.n(WORDS))),
-            _ => Guard::Code(truth(d, t)),
+        let receptivity = match d.n(4) {
+            0 => Receptivity::True,
+            1 => Receptivity::Word(Addr(d.n(WORDS))),
+            2 => Receptivity::NotWord(Addr(d.n(WORDS))),
+            _ => Receptivity::Code(truth(d, t)),
         };
         t.transitions.push(Transition {
-            guard,
+            receptivity,
             from: StepId(d.or_none(STEPS)),
             to: StepId(d.or_none(STEPS)),
             more_from: d.rows(2),

@@ -1,5 +1,5 @@
-//! Any bytes as a .g7 file: problems, never a panic; what is read without a
-//! problem is printed and read again as the same.
+//! Reads arbitrary bytes as a .g7 file: problems, never a panic. A document without problems is
+//! printed and read again, with the same result.
 #![no_main]
 
 use g7_model::FileId;

@@ -1,4 +1,4 @@
-//! Two subjects on the same chart and the same script, scan by scan.
+//! Compares two subjects on the same chart and the same script, scan by scan.
 
 use std::collections::BTreeMap;
 
@@ -8,39 +8,39 @@ use crate::generate::{Event, Script};
 use crate::naive::Value;
 use crate::subject::{Backend, Fault, Subject};
 
-/// Where two subjects part.
+/// The first difference between two subjects.
 #[derive(Clone, Debug)]
 pub struct Disagreement {
-    /// The event of the script, from 0.
+    /// The number of the event in the script, from 0.
     pub event: usize,
-    /// What each of them says.
+    /// A description of the difference.
     pub what: String,
 }
 
-/// What a run was like.
+/// Statistics of a run.
 #[derive(Clone, Debug, Default)]
 pub struct Statistics {
-    /// Scans that both made.
+    /// Number of scans that both subjects made.
     pub scans: usize,
-    /// Active steps, summed over the scans.
+    /// Number of active steps, summed over the scans.
     pub active: usize,
-    /// Scans in which the situation changed.
+    /// Number of scans in which the situation changed.
     pub moved: usize,
-    /// Faults by their kind.
+    /// Number of faults by kind.
     pub faults: BTreeMap<String, usize>,
-    /// Different situations, summed over the runs.
+    /// Number of different situations, summed over the runs.
     pub situations: usize,
-    /// Runs.
+    /// Number of runs.
     pub runs: usize,
 }
 
 impl Statistics {
-    /// Scans that ended without a fault.
+    /// The number of scans that ended without a fault.
     pub fn sound(&self) -> usize {
         self.scans - self.faults.values().sum::<usize>()
     }
 
-    /// Adds another run's.
+    /// Adds the statistics of another run.
     pub fn add(&mut self, other: &Statistics) {
         self.scans += other.scans;
         self.active += other.active;
@@ -52,7 +52,7 @@ impl Statistics {
         }
     }
 
-    /// In one line.
+    /// The statistics on one line.
     pub fn line(&self) -> String {
         let scans = self.scans.max(1) as f64;
         let runs = self.runs.max(1) as f64;
@@ -68,12 +68,12 @@ impl Statistics {
     }
 }
 
-/// Runs a script on two backends and compares situation, outputs, variables,
-/// step times, conflicts and faults after each scan.
+/// Runs a script on two backends and compares situation, outputs, variables, step times, conflicts
+/// and faults after each scan.
 ///
 /// # Errors
 ///
-/// The first difference, or why a subject cannot be made.
+/// The first difference, or the reason why a subject cannot be made.
 pub fn agree(doc: &Document, script: &Script, backends: [Backend; 2]) -> Result<Statistics, Disagreement> {
     let made = |what: String| Disagreement { event: 0, what };
     let mut one = (backends[0])(doc, None, &[]).map_err(|e| made(format!("the first: {e}")))?;
@@ -122,14 +122,14 @@ fn compare(results: &[Result<(), Fault>; 2], one: &dyn Subject, two: &dyn Subjec
         return Err(format!("situations {:?} against {:?}", one.active(), two.active()));
     }
     let (mut mine, mut theirs) = (one.variables(), two.variables());
-    // Outputs of transition sections, which the naive engine keeps nowhere, and
-    // system words that the chart does not use, which the engine leaves out.
+    // Left out: outputs of transition sections, which the naive engine does not store, and system
+    // words that the chart does not use, which the engine does not have.
     theirs.retain(|name, _| mine.contains_key(name));
     mine.retain(|name, _| !name.starts_with('%') || theirs.contains_key(name));
     same("variables", &mine, &theirs)?;
     same("outputs", &one.outputs(), &two.outputs())?;
     same("step times", &one.step_times(), &two.step_times())?;
-    // The second tells the first conflict of a scan only.
+    // The second subject reports only the first conflict of a scan.
     let (all, first) = (one.conflicts(), two.conflicts());
     if all.is_empty() == first.is_empty() && first.iter().all(|c| all.contains(c)) {
         Ok(())
@@ -138,8 +138,8 @@ fn compare(results: &[Result<(), Fault>; 2], one: &dyn Subject, two: &dyn Subjec
     }
 }
 
-/// Whether two faults are the same. A search that passes its bound before it
-/// has gone round its cycle for long may be called by either name.
+/// True if two faults are equal. If a search exceeds its bound shortly after its cycle closes,
+/// either kind of fault is correct.
 fn alike(a: &Fault, b: &Fault) -> bool {
     let search = |f: &Fault| matches!(f.kind(), "unstable" | "bound");
     a.kind() == b.kind() || (search(a) && search(b))
@@ -162,7 +162,7 @@ fn same<T: PartialEq + std::fmt::Debug>(
     if differences.is_empty() { Ok(()) } else { Err(format!("{of}: {}", differences.join("; "))) }
 }
 
-/// One line for each event of a script, up to and with `last`.
+/// The events of a script as text, one on each line, up to and including `last`.
 pub fn script_text(script: &Script, last: usize) -> String {
     let mut text = String::new();
     for event in script.iter().take(last + 1) {

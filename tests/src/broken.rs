@@ -1,8 +1,8 @@
-//! Engines broken on purpose: each defect is a change of the tables, so that the
-//! same scan then follows another rule. A conformance case counts when one of
-//! them fails it; `tests/broken.rs` holds each to a named case.
+//! Engines that are broken on purpose: each defect changes the tables, so that the same scan
+//! follows another rule. A conformance case counts if it fails on one of them; `tests/broken.rs`
+//! names the case for each defect.
 
-use std::cell::Cell;
+use std::cell::{Cell, RefCell};
 
 use g7_engine::{Code, INPUTS, NONE, Op, Program, Rules, Situation, StepId, Tables};
 use g7_model::{Document, Expr, ProfileName};
@@ -10,23 +10,24 @@ use g7_model::{Document, Expr, ProfileName};
 use crate::engine::with_program;
 use crate::subject::Subject;
 
-/// Breaks a program.
+/// A change that breaks a program.
 pub type Break = fn(&mut Tables);
 
 thread_local! {
     static DEFECT: Cell<Option<Break>> = const { Cell::new(None) };
+    static LEFT_OUT: RefCell<Option<String>> = const { RefCell::new(None) };
 }
 
-/// Uses a defect for all engines that [`engine`] makes from now on, in this thread.
+/// Sets the defect for all engines that [`engine`] makes from now on in this thread.
 pub fn set(defect: Option<Break>) {
     DEFECT.with(|d| d.set(defect));
 }
 
-/// The engine with the defect that is set.
+/// The engine with the present defect.
 ///
 /// # Errors
 ///
-/// The first problem of the document, or tables that are no program any more.
+/// The first problem of the document, or tables that are no longer a valid program.
 pub fn engine(
     doc: &Document,
     profile: Option<ProfileName>,
@@ -40,7 +41,54 @@ pub fn engine(
     })
 }
 
-/// Takes the contributions of one input away from their blocks, to another input.
+/// The equations of the tables with the defect that is set.
+///
+/// # Errors
+///
+/// As [`engine`].
+pub fn equations(
+    doc: &Document,
+    profile: Option<ProfileName>,
+    queries: &[Expr],
+) -> Result<Box<dyn Subject>, String> {
+    let defect = DEFECT.with(Cell::get);
+    let left_out = LEFT_OUT.with(|l| l.borrow().clone());
+    crate::equations::changed(
+        doc,
+        profile,
+        queries,
+        |tables| {
+            if let Some(defect) = defect {
+                defect(tables);
+            }
+        },
+        |e| {
+            for list in [&mut e.begin, &mut e.pass, &mut e.finish] {
+                list.retain(|s| Some(s.title) != left_out.as_deref());
+            }
+        },
+    )
+}
+
+/// Whether a defect is one of the instructions, which the equations do not read.
+pub fn is_of_instructions(defect: Break, tables: &Tables) -> bool {
+    let mut broken = tables.clone();
+    defect(&mut broken);
+    let same = |a: &Tables, b: &Tables| format!("{a:?}") == format!("{b:?}");
+    if same(&broken, tables) {
+        return false;
+    }
+    broken.code.clone_from(&tables.code);
+    same(&broken, tables)
+}
+
+/// Leaves the sections with this title out of all equations that [`equations`]
+/// makes from now on, in this thread.
+pub fn leave_out(title: Option<&str>) {
+    LEFT_OUT.with(|l| *l.borrow_mut() = title.map(str::to_owned));
+}
+
+/// Moves the contributions of one block input to another input.
 fn input(t: &mut Tables, from: &str, to: &str) {
     let place = |name: &str| INPUTS.iter().position(|i| *i == name).unwrap_or(0) as u8;
     for b in &mut t.blocks {
@@ -61,10 +109,10 @@ fn rules(t: &mut Tables, change: impl Fn(&mut Rules)) {
     change(&mut t.rules);
 }
 
-/// A defect: its name, a case that must see it, what it does.
+/// A defect: its name, a case that must fail on it, and the change.
 pub type Defect = (&'static str, &'static str, Break);
 
-/// Every defect.
+/// All defects.
 pub const DEFECTS: &[Defect] = &[
     // The five rules.
     ("rule 1: no initial situation", "iec60848/action-delay-function", |t| t.initial.clear()),
@@ -75,7 +123,7 @@ pub const DEFECTS: &[Defect] = &[
         t.transitions.iter_mut().for_each(|t| t.more_from = g7_engine::Rows::default());
     }),
     ("rule 2: receptivities are not looked at", "iec60848/action-delay-function", |t| {
-        t.transitions.iter_mut().for_each(|t| t.guard = g7_engine::Guard::True);
+        t.transitions.iter_mut().for_each(|t| t.receptivity = g7_engine::Receptivity::True);
     }),
     ("rule 3: one succeeding step is activated", "iec60848/macro-in-fork-and-join", |t| {
         t.transitions.iter_mut().for_each(|t| t.more_to = g7_engine::Rows::default());
@@ -179,7 +227,7 @@ pub const DEFECTS: &[Defect] = &[
     ("each scan: never", "iec60848/each-scan-condition", |t| {
         t.extras.iter_mut().for_each(|e| e.periodics = g7_engine::Rows::default())
     }),
-    // Edges, times.
+    // Edges and times.
     ("edges: rising ones fall", "iec60848/conflict-across-kinds", |t| {
         code(t, |op| if let Op::Rise(w) = op { Op::Fall(w) } else { op });
     }),
@@ -223,7 +271,7 @@ pub const DEFECTS: &[Defect] = &[
     ("periods: every chart in every scan", "iec61131/every-edges-and-outputs", |t| {
         t.periods.iter_mut().for_each(|p| *p = 0)
     }),
-    // The frame.
+    // PRE, POST, bodies, and the frame of a scan.
     ("PRE does not run", "iec60848/stability-pre-runs-once", |t| t.pre = Code::default()),
     ("POST does not run", "iec60848/stability-pre-runs-once", |t| t.post = Code::default()),
     ("system bits do nothing", "pl7/s21-initialise", |t| t.services = Code::default()),

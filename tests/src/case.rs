@@ -1,29 +1,29 @@
-//! A conformance case read from its Markdown file; the form is described in
-//! `../spec/README.md`. Wrong form is an error of the case, never ignored.
+//! Reads a conformance case from its Markdown file; `../spec/README.md` describes the form. A wrong
+//! form is an error of the case and never ignored.
 
 use g7_model::{Document, Expr, ExprKind, FileId, Literal, ProfileName};
 
-/// One file.
+/// A case: one file.
 #[derive(Debug)]
 pub struct Case {
     /// The heading.
     pub title: String,
-    /// The rule it stands on.
+    /// The rule on which it is based.
     pub source: String,
-    /// Codes that the checker must report, no more and no less.
+    /// The codes that the checker must report, and no others.
     pub problems: Vec<String>,
     /// The chart, as .g7 text.
     pub chart: String,
-    /// Runs of it.
+    /// The runs of the chart.
     pub traces: Vec<Trace>,
 }
 
 /// One run.
 #[derive(Debug)]
 pub struct Trace {
-    /// The profile named at its head; the folder's where there is none.
+    /// The profile named at the head of the trace; `None` for that of the folder.
     pub profile: Option<ProfileName>,
-    /// What happens.
+    /// The events of the run.
     pub lines: Vec<Line>,
 }
 
@@ -34,47 +34,47 @@ pub enum Line {
     Row(Row),
     /// `! restart`, `! restart cold`.
     Restart {
-        /// Retained variables are forgotten too.
+        /// True if retained variables are reset too.
         cold: bool,
     },
 }
 
-/// A scan, with what must hold after it.
+/// A scan, and the conditions that must hold after it.
 #[derive(Debug)]
 pub struct Row {
     /// The line in the file, from 1.
     pub line: usize,
-    /// Its instant, nanoseconds.
+    /// Its instant, in nanoseconds.
     pub at: i64,
-    /// Inputs: a name for TRUE, or a name with a value.
+    /// The inputs that change: a name for TRUE, or a name with a value.
     pub inputs: Vec<(String, Option<String>)>,
-    /// What the scan ends with.
+    /// The required end of the scan.
     pub end: End,
-    /// BOOL outputs that are TRUE, and others with their value.
+    /// The required outputs: names of BOOL outputs that are TRUE, others with their values.
     pub out: Option<Vec<String>>,
     /// Expressions that must be true.
     pub vars: Vec<String>,
-    /// Variables whose conflict must be reported in this scan.
+    /// Variables for which a conflict must be reported in this scan.
     pub conflicts: Vec<String>,
 }
 
-/// How a scan ends.
+/// The end of a scan.
 #[derive(Debug)]
 pub enum End {
-    /// In a situation: these steps and no other.
+    /// A situation: exactly these active steps.
     Situation(Vec<String>),
-    /// In a fault of this kind, for `unstable` with its cycle.
+    /// A fault of this kind; `unstable` also with its cycle.
     Fault(String, Vec<Vec<String>>),
 }
 
-/// Scans of a trace without `at` are this far apart.
+/// Time between the scans of a trace without `at`, in nanoseconds.
 const STEP: i64 = 10_000_000;
 
 /// Reads a case.
 ///
 /// # Errors
 ///
-/// Says what is wrong with its form.
+/// The fault in its form.
 pub fn read(text: &str) -> Result<Case, String> {
     let mut case = Case {
         title: String::new(),
@@ -137,11 +137,11 @@ fn close(case: &mut Case, tag: &str, body: String, at: usize) -> Result<(), Stri
     Ok(())
 }
 
-/// A profile by its name.
+/// Finds a profile by its name.
 ///
 /// # Errors
 ///
-/// Where there is none.
+/// There is no such profile.
 pub fn profile_named(name: &str) -> Result<ProfileName, String> {
     let found = ProfileName::ALL.into_iter().find(|p| p.name() == name);
     found.ok_or_else(|| format!("no profile `{name}`"))
@@ -177,7 +177,7 @@ fn trace(body: &str, at: usize) -> Result<Vec<Line>, String> {
             header = Some(cells);
             continue;
         };
-        // Trailing cells may be left out: they are then not looked at.
+        // Cells at the end may be left out; they are not checked then.
         if cells.len() > header.len() {
             return Err(said("more cells than columns".into()));
         }
@@ -216,7 +216,7 @@ fn order_line(order: &[String], lines: &mut Vec<Line>) -> Result<(), String> {
     Ok(())
 }
 
-/// Cells between bars; a bar within back-ticks is text.
+/// The cells between bars; a bar within back-ticks is text.
 fn cells(line: &str) -> Vec<String> {
     let mut cells = vec![String::new()];
     let mut quoted = false;
@@ -231,7 +231,7 @@ fn cells(line: &str) -> Vec<String> {
     cells.iter().map(|c| c.trim().to_owned()).collect()
 }
 
-/// Items of a cell, parted by blanks; back-ticks and quotes hold them together.
+/// The items of a cell, separated by blanks; back-ticks and quotes keep blanks together.
 fn items(cell: &str) -> Vec<String> {
     let mut all = vec![String::new()];
     let mut within: Option<char> = None;
@@ -268,21 +268,21 @@ fn end(cell: &str) -> Result<End, String> {
     Ok(End::Fault(kind.to_owned(), cycle))
 }
 
-/// `10ms`, `1.5s`, `1h30m`.
+/// Reads a duration such as `10ms`, `1.5s`, `1h30m`.
 fn duration(text: &str) -> Option<i64> {
     match expression(text).ok()?.kind {
-        ExprKind::Literal(Literal::Time(t)) => Some(t),
+        ExprKind::Literal(Literal::Time(time)) => Some(time.count()),
         ExprKind::Literal(Literal::Int(0, None)) => Some(0),
         _ => None,
     }
 }
 
-/// What a cell of `vars` or `out` demands, as one expression: `k=3`, `m`,
-/// `X12.t=1.5s`, or any expression in back-ticks.
+/// Reads an item of a `vars` or `out` cell as an expression: `k=3`, `m`, `X12.t=1.5s`, or any
+/// expression in back-ticks.
 ///
 /// # Errors
 ///
-/// Where it is not one.
+/// It is not an expression.
 pub fn demand(item: &str) -> Result<Expr, String> {
     if let Some(free) = item.strip_prefix('`').and_then(|i| i.strip_suffix('`')) {
         return expression(free);
@@ -297,7 +297,7 @@ pub fn demand(item: &str) -> Result<Expr, String> {
 ///
 /// # Errors
 ///
-/// Where it is not one.
+/// It is not an expression.
 pub fn expression(text: &str) -> Result<Expr, String> {
     let (e, problems) = g7_syntax::parse_expr(text, FileId(0));
     match problems.first() {

@@ -1,5 +1,4 @@
-//! The engine behind the window of [`Subject`]: compiled, run, and its words
-//! read back by name.
+//! The engine as a [`Subject`]: compiles and runs a document, and reads the values back by name.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
@@ -21,7 +20,7 @@ struct Engine {
     conflicts: Vec<String>,
 }
 
-/// Compiles a document, with the expressions that will be asked for.
+/// Compiles a document together with the expressions that will be evaluated.
 ///
 /// # Errors
 ///
@@ -34,14 +33,14 @@ pub fn engine(
     with_program(doc, profile, queries, Ok)
 }
 
-/// The same on a program that was changed between compiling and running.
+/// The same, with a program that was changed after compilation.
 pub(crate) fn with_program(
     doc: &Document,
     profile: Option<ProfileName>,
     queries: &[Expr],
     change: impl FnOnce(g7_engine::Program) -> Result<g7_engine::Program, String>,
 ) -> Result<Box<dyn Subject>, String> {
-    // Under its own profile a document keeps its switches.
+    // A document keeps its switches under its own profile.
     let profile = profile.filter(|p| *p != doc.profile().map(|d| d.name).unwrap_or_default());
     let (compiled, problems) = compile_with(doc, profile, queries);
     let Some(mut compiled) = compiled else {
@@ -66,7 +65,7 @@ impl Engine {
     }
 
     fn cycle(&mut self, passes: u32) -> Vec<BTreeSet<String>> {
-        // The state at the fault is one of the cycle: the passes after it walk round.
+        // The state at the fault lies on the cycle: further passes walk round it.
         let mut walk = self.state.clone();
         let mut cycle = Vec::new();
         for _ in 0..passes {
@@ -84,7 +83,7 @@ impl Engine {
     }
 }
 
-fn value(ty: Type, words: &[u64]) -> Value {
+pub(crate) fn value(ty: Type, words: &[u64]) -> Value {
     let word = words.first().copied().unwrap_or(0);
     match ty {
         Type::Bool => Value::Bool(word != 0),

@@ -1,4 +1,4 @@
-//! A trace of a case, replayed on a subject and compared row by row.
+//! Replays a trace of a case on a subject and compares it row by row.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -8,14 +8,14 @@ use crate::case::{End, Line, Row, Trace, demand, expression};
 use crate::naive::{Naive, Value};
 use crate::subject::{Backend, Fault, Subject};
 
-/// Runs a trace and says in which line it fails.
+/// Replays a trace; an error names the line in which it fails.
 ///
 /// # Errors
 ///
-/// The first disagreement.
+/// The first difference.
 pub fn replay(doc: &Document, profile: ProfileName, trace: &Trace, backend: Backend) -> Result<(), String> {
     let mut subject = backend(doc, Some(profile), &queries(trace)?)?;
-    // The naive engine knows the declarations: types of inputs and literals.
+    // The naive engine knows the declarations: the types of inputs and of literals.
     let names = Naive::new(doc, Some(profile))?;
     let inputs = names.inputs();
     let mut ended = false;
@@ -38,7 +38,7 @@ pub fn replay(doc: &Document, profile: ProfileName, trace: &Trace, backend: Back
     Ok(())
 }
 
-/// Every expression that the rows ask for.
+/// All expressions that the rows need.
 fn queries(trace: &Trace) -> Result<Vec<g7_model::Expr>, String> {
     let mut all = Vec::new();
     for line in &trace.lines {
@@ -80,7 +80,7 @@ pub(crate) fn input_values(
     Ok(values)
 }
 
-/// Whether a qualified name is meant by its last parts.
+/// True if the last parts of a qualified name are those of `meant`.
 fn matches(qualified: &str, meant: &str) -> bool {
     qualified == meant || qualified.strip_suffix(meant).is_some_and(|rest| rest.ends_with('.'))
 }
@@ -138,7 +138,7 @@ fn situation(want: &[String], got: &BTreeSet<String>) -> Result<(), String> {
     if left.is_empty() { Ok(()) } else { Err(format!("want {want:?}, got {got:?}")) }
 }
 
-/// The same cycle from any of its situations.
+/// Compares cycles; a cycle may start with any of its situations.
 fn same_cycle(want: &[Vec<String>], got: &[BTreeSet<String>]) -> Result<(), String> {
     let fits = |turn: usize| {
         want.iter()
@@ -159,7 +159,7 @@ fn outputs(want: &[String], subject: &dyn Subject, names: &Naive) -> Result<(), 
     let on = left.clone();
     for item in want {
         if let Some((name, value)) = item.split_once('=') {
-            // What goes to the plant, which after a fault is not what the chart holds.
+            // The value that the plant receives; after a fault it differs from the chart's own.
             let Some((full, got)) = all.iter().find(|(n, _)| matches(n, name)) else {
                 return Err(format!("no output `{name}`"));
             };

@@ -1,4 +1,4 @@
-//! Makes a failing chart and its script as small as they still fail.
+//! Reduces a failing chart and its script as long as they still fail.
 
 use g7_model::{
     Action, ActionKind, Block, Body, ChartItem, Document, Expr, ExprKind, Item, Literal, Situation, Stmt,
@@ -7,10 +7,10 @@ use g7_model::{
 
 use crate::generate::{Event, Script};
 
-/// Whether a chart still fails with a script.
+/// True if a chart still fails with a script.
 pub type Fails<'a> = &'a dyn Fn(&Document, &Script) -> bool;
 
-/// Removes whatever can be removed while `fails` holds.
+/// Removes everything that can be removed while `fails` holds.
 pub fn shrink(doc: &Document, script: &Script, fails: Fails<'_>) -> (Document, Script) {
     let (mut doc, mut script) = (doc.clone(), script.clone());
     loop {
@@ -27,7 +27,7 @@ pub fn shrink(doc: &Document, script: &Script, fails: Fails<'_>) -> (Document, S
 
 fn shorter_script(doc: &Document, script: &mut Script, fails: Fails<'_>) -> bool {
     let mut smaller = false;
-    // From the end first: the failure is mostly the last thing that counts.
+    // From the end, because the events after the failure do not matter.
     let mut chunk = script.len() / 2;
     while chunk > 0 {
         let mut at = script.len().saturating_sub(chunk);
@@ -87,8 +87,7 @@ fn fewer(doc: &mut Document, script: &Script, fails: Fails<'_>, part: Part) -> b
     smaller
 }
 
-/// Cuts the place with this number in one of several ways; gives the number of
-/// places.
+/// Cuts the place with this number in one of several ways; returns the number of places.
 fn cut(doc: &mut Document, part: Part, number: usize, variant: usize) -> usize {
     let mut cutter = Cutter { at: 0, number, variant };
     match part {
@@ -185,7 +184,7 @@ impl Cutter {
         }
     }
 
-    /// Drops a statement, or puts a part of it in its place.
+    /// Removes a statement, or replaces it by a part of it.
     fn statements(&mut self, list: &mut Vec<Stmt>) {
         let mut i = 0;
         while i < list.len() {
@@ -208,7 +207,7 @@ impl Cutter {
         }
     }
 
-    /// Puts an operand in the place of an operation, or a constant.
+    /// Replaces an operation by an operand or a constant.
     fn expression(&mut self, e: &mut Expr) {
         if !self.hit() {
             return;
@@ -256,7 +255,7 @@ fn nested(list: &mut Vec<Stmt>, visit: OnStatements<'_>) {
     }
 }
 
-/// Every list of statements in braces.
+/// Visits every list of statements in braces.
 fn each_block(doc: &mut Document, visit: OnStatements<'_>) {
     let of_body = |b: &mut Body, visit: OnStatements<'_>| {
         if let Body::St(b) = b {
@@ -302,7 +301,7 @@ fn work_of(action: &mut Action) -> Option<&mut Block> {
     }
 }
 
-/// Every expression, outer ones before those within.
+/// Visits every expression, outer ones before those inside.
 fn expressions(doc: &mut Document, visit: OnExpr<'_>) {
     each_block(doc, &mut |list| list.iter_mut().for_each(|s| statement(s, visit)));
     for item in &mut doc.items {

@@ -1,7 +1,7 @@
-//! Runs every case in `../spec` on every backend; one named trial for each.
+//! Runs every case in `../spec` on every backend, as one named trial each.
 //!
-//! A case is a Markdown file: why, the source, a chart, traces. To add a case,
-//! add a file. To add a backend, add a line to `BACKENDS`.
+//! A case is a Markdown file: the reason, the source, a chart, traces. To add a case, add a file.
+//! To add a backend, add a line to `BACKENDS`.
 #![allow(clippy::disallowed_methods, reason = "the runner reads the cases")]
 
 use std::collections::BTreeSet;
@@ -10,11 +10,13 @@ use std::path::{Path, PathBuf};
 use g7_model::ProfileName;
 use g7_tests::case::{self, Case};
 use g7_tests::engine;
+use g7_tests::equations;
 use g7_tests::replay::replay;
 use g7_tests::subject::{self, Backend};
 use libtest_mimic::{Arguments, Failed, Trial};
 
-const BACKENDS: &[(&str, Backend)] = &[("engine", engine::engine), ("naive", subject::naive)];
+const BACKENDS: &[(&str, Backend)] =
+    &[("engine", engine::engine), ("equations", equations::equations), ("naive", subject::naive)];
 
 fn main() {
     let args = Arguments::from_args();
@@ -40,7 +42,7 @@ fn collect(folder: &Path, files: &mut Vec<PathBuf>) {
     }
 }
 
-/// The trials of one file; a file in wrong form is one that fails.
+/// The trials of a file; a file in a wrong form gives one trial that fails.
 fn trials(root: &Path, file: &Path) -> Vec<Trial> {
     let title = file.strip_prefix(root).unwrap_or(file).with_extension("").display().to_string();
     let folder = title.split('/').next().unwrap_or("").to_owned();
@@ -77,8 +79,8 @@ fn run(case: &Case, trace: usize, profile: Result<ProfileName, String>, make: Ba
     replay(&doc, profile?, &case.traces[trace], make)
 }
 
-/// The checker reports the codes that the case names, no more and no less:
-/// under the profiles of its traces taken together.
+/// Checks that the checker reports exactly the codes that the case names, over all profiles of its
+/// traces.
 fn check(case: &Case, folder: &str) -> Result<(), String> {
     let doc = case::document(&case.chart)?;
     let mut profiles: Vec<ProfileName> = case.traces.iter().filter_map(|t| t.profile).collect();
@@ -89,7 +91,7 @@ fn check(case: &Case, folder: &str) -> Result<(), String> {
     let mut reported = BTreeSet::new();
     let mut words = String::new();
     for profile in profiles {
-        // Under its own profile a document keeps its switches.
+        // A document keeps its switches under its own profile.
         let (_, problems) = g7_compile::compile_with(&doc, Some(profile).filter(|p| *p != own), &[]);
         for p in problems {
             if reported.insert(p.code.id) {

@@ -1,5 +1,5 @@
-//! What runs a chart: the naive engine, the engine, later generated code. Cases
-//! and random charts look at all of them through this one window.
+//! The interface to everything that can run a chart: the naive engine, the engine, generated code.
+//! Cases and random charts use all of them through it.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -10,16 +10,16 @@ use crate::naive::{Naive, NaiveFault, Value};
 /// Why a scan ended early, in the words of the cases.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Fault {
-    /// A state recurred; the situations of the cycle, step names qualified.
+    /// A state recurred; the situations of the cycle, with qualified step names.
     Unstable(Vec<BTreeSet<String>>),
     /// `forcing`, `overflow`, `division`, `range`, `bound`, `table`.
     Kind(&'static str),
-    /// Anything that is not the chart's own doing.
+    /// A failure that the chart did not cause.
     Other(String),
 }
 
 impl Fault {
-    /// The word that a case has for it.
+    /// The word for it in the cases.
     pub fn kind(&self) -> &str {
         match self {
             Fault::Unstable(_) => "unstable",
@@ -29,44 +29,45 @@ impl Fault {
     }
 }
 
-/// A running program. Names are qualified: `G.5`, `G.M3.E`, `v`, `G.v`, `fb.Q`.
+/// A running chart. Names are qualified: `G.5`, `G.M3.E`, `v`, `G.v`, `fb.Q`.
 pub trait Subject {
-    /// One scan on these inputs; those not named keep their value.
+    /// Makes one scan with these inputs; those not named keep their values.
     ///
     /// # Errors
     ///
     /// The fault that ended it.
     fn scan(&mut self, inputs: &BTreeMap<String, Value>, now: i64) -> Result<(), Fault>;
-    /// Starts again.
+    /// Restarts.
     fn restart(&mut self, cold: bool);
-    /// Active steps, macro-steps left out.
+    /// The active steps, without macro-steps.
     fn active(&self) -> BTreeSet<String>;
-    /// What goes to the plant.
+    /// The outputs that the plant receives.
     fn outputs(&self) -> BTreeMap<String, Value>;
-    /// Every variable but constants, members of blocks too.
+    /// All variables except constants; members of blocks too.
     fn variables(&self) -> BTreeMap<String, Value>;
-    /// Times of the steps that are no macro-steps: nanoseconds, or scans where the profile counts those.
+    /// The times of the steps, without macro-steps: in nanoseconds, or in scans if the profile
+    /// counts scans.
     fn step_times(&self) -> BTreeMap<String, i64>;
-    /// Variables with a diagnostic "conflicting assignment" in the last scan; the
-    /// engine tells the first one only.
+    /// The variables for which the last scan reported conflicting assignments; the engine reports
+    /// only the first.
     fn conflicts(&self) -> Vec<String>;
-    /// An expression on the state as it is.
+    /// Evaluates a condition on the present state.
     ///
     /// # Errors
     ///
-    /// Where it has no value.
+    /// It has no value.
     fn holds(&mut self, e: &Expr) -> Result<bool, String>;
 }
 
-/// Makes a subject of a document under a profile, with the expressions that
-/// [`Subject::holds`] will be asked for.
+/// Makes a subject from a document and a profile, together with the expressions that
+/// [`Subject::holds`] will evaluate.
 pub type Backend = fn(&Document, Option<ProfileName>, &[Expr]) -> Result<Box<dyn Subject>, String>;
 
 /// The naive engine.
 ///
 /// # Errors
 ///
-/// Where the document has no meaning.
+/// The document has no meaning.
 pub fn naive(doc: &Document, profile: Option<ProfileName>, _: &[Expr]) -> Result<Box<dyn Subject>, String> {
     Ok(Box::new(Naive::new(doc, profile)?))
 }
@@ -96,7 +97,7 @@ impl Subject for Naive {
     }
 
     fn restart(&mut self, cold: bool) {
-        // Initial values had a value when the program was made.
+        // The initial values were evaluated without error when the subject was made.
         let _ = Naive::restart(self, cold);
     }
 

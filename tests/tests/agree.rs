@@ -1,8 +1,8 @@
-//! The engine and the naive engine agree, scan by scan, on random charts: on
-//! situation, outputs, variables, step times, conflicts and faults.
+//! The engine and the naive engine agree on random charts, scan by scan: situation, outputs,
+//! variables, step times, conflicts and faults.
 //!
-//! `G7_SCANS=1000000 G7_SEED=7 cargo test -p g7-tests --test agree` looks longer,
-//! and elsewhere. A disagreement is printed as the smallest chart that shows it.
+//! `G7_SCANS=1000000 G7_SEED=7 cargo test -p g7-tests --test agree` runs longer and with other
+//! charts. A disagreement is printed as the smallest chart that shows it.
 
 use g7_model::{Document, ProfileName};
 use g7_tests::agree::{Disagreement, Statistics, agree, script_text};
@@ -11,10 +11,10 @@ use g7_tests::generate::{Sample, Script, sample};
 use g7_tests::shrink::shrink;
 use g7_tests::subject::naive;
 
-/// Scans of one chart.
+/// Number of scans of one chart.
 const LENGTH: usize = 50;
 
-/// Scans without a fault for each profile.
+/// Number of scans without a fault for each profile.
 const SCANS: u64 = 100_000;
 
 fn number(name: &str, otherwise: u64) -> u64 {
@@ -33,8 +33,8 @@ fn run(profile: ProfileName) {
         let sample = sample(seed, profile, LENGTH).expect("a random chart can be read");
         match both(&sample.document, &sample.script) {
             Ok(statistics) => all.add(&statistics),
-            // The generator knows no values: what assigns two constants at one
-            // moment is refused, and there is nothing to compare.
+            // The generator knows no values. The checker refuses charts that assign two constants
+            // at one moment, so there is nothing to compare.
             Err(why) if why.what.contains(g7_model::codes::TWO_VALUES.id) => {}
             Err(why) => panic!("{}", smallest(profile, &sample, &why)),
         }
@@ -43,9 +43,9 @@ fn run(profile: ProfileName) {
     println!("{}: {}", profile.name(), all.line());
 }
 
-/// The smallest chart and script with a disagreement of the same sort.
+/// The smallest chart and script with the same kind of disagreement.
 fn smallest(profile: ProfileName, sample: &Sample, why: &Disagreement) -> String {
-    // A chart that one of them refuses is of the sort of its problem's code.
+    // If one of them refuses the chart, the kind is the code of its problem.
     let length =
         |what: &str| if what.starts_with("the ") { 17 } else { what.find(':').unwrap_or(12).min(12) };
     let sort = |what: &str| what.chars().take(length(what)).collect::<String>();

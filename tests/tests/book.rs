@@ -1,12 +1,16 @@
-//! The book and the README: each chart in them is one, each wrong one is wrong,
-//! each link leads somewhere, and the summary lists every page.
+//! The book and the README: each chart in them is correct, each one marked wrong is wrong, the
+//! summary lists every page, the function blocks do what their page says, and the book that
+//! `make book` builds has every conformance case as a page.
 #![allow(clippy::disallowed_methods, reason = "the tests read the pages")]
 
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
 use g7_compile::plant;
-use g7_model::{FileId, Problem, Severity};
+use g7_model::{FileId, Problem, ProfileName, Severity};
+use g7_tests::book::{assemble, blocks};
+use g7_tests::generated::cases::Folder;
+use g7_tests::{engine, replay, subject};
 
 fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
@@ -35,7 +39,7 @@ fn text(page: &Path) -> String {
     std::fs::read_to_string(page).unwrap_or_else(|e| panic!("{}: {e}", page.display()))
 }
 
-/// The fenced blocks of a page: the line of the fence, what stands behind it, the text.
+/// The fenced blocks of a page: the line of the fence, the words after it, the text.
 fn blocks(page: &str) -> Vec<(usize, String, String)> {
     let mut found = Vec::new();
     let mut open: Option<(usize, String, String)> = None;
@@ -54,7 +58,7 @@ fn blocks(page: &str) -> Vec<(usize, String, String)> {
     found
 }
 
-/// Everything that is wrong with a document: reading, charts, plants.
+/// All problems of a document: syntax, charts, plants.
 fn problems(text: &str) -> Vec<Problem> {
     let (doc, mut problems) = g7_syntax::parse(text, FileId::default());
     let (compiled, mut more) = g7_compile::compile(&doc);
@@ -71,7 +75,7 @@ fn charts_compile_and_wrong_ones_do_not() {
     let (mut right, mut wrong) = (0, 0);
     for page in pages() {
         for (line, kind, chart) in blocks(&text(&page)) {
-            // Mistakes in tests are told by the command line, which has tests of its own.
+            // The command line reports mistakes in tests, and has tests of its own for them.
             if page.ends_with("G0550.md") || page.ends_with("G0551.md") || page.ends_with("G0552.md") {
                 continue;
             }
@@ -97,7 +101,7 @@ fn charts_compile_and_wrong_ones_do_not() {
     assert!(right > 80 && wrong > 40, "{right} right and {wrong} wrong charts found");
 }
 
-/// Whether a chart that checks stops in its first scans.
+/// True if a chart without problems faults in its first scans.
 fn faults(chart: &str) -> bool {
     let (doc, _) = g7_syntax::parse(chart, FileId::default());
     let Some(compiled) = g7_compile::compile(&doc).0 else { return true };
@@ -105,30 +109,6 @@ fn faults(chart: &str) -> bool {
     let inputs = compiled.program.tables().inputs;
     let words = state.words().get(inputs.start as usize..inputs.end as usize).unwrap_or(&[]).to_vec();
     (0..3).any(|k| g7_engine::scan(&compiled.program, &mut state, &words, k * 10_000_000).is_err())
-}
-
-#[test]
-fn links_lead_to_files() {
-    let mut found = String::new();
-    let mut links = 0;
-    for page in pages() {
-        let whole = text(&page);
-        let inside: String = blocks(&whole).into_iter().map(|(.., t)| t).collect();
-        for piece in whole.split("](").skip(1) {
-            let target = piece.split([')', ' ', '\n']).next().unwrap_or("");
-            let file = target.split('#').next().unwrap_or("");
-            let elsewhere = target.contains("://") || file.is_empty();
-            if elsewhere || inside.contains(&format!("]({piece}")) {
-                continue;
-            }
-            links += 1;
-            if !page.parent().is_some_and(|p| p.join(file).exists()) {
-                let _ = writeln!(found, "{}: {target}", page.display());
-            }
-        }
-    }
-    assert!(found.is_empty(), "links that lead nowhere:\n{found}");
-    assert!(links > 50, "only {links} links found");
 }
 
 #[test]
@@ -152,4 +132,69 @@ fn the_summary_lists_every_page() {
         }
     }
     assert!(found.is_empty(), "\n{found}");
+}
+
+/// The sections of the page of function blocks.
+fn sections() -> Vec<blocks::Section> {
+    blocks::sections(&text(&root().join(blocks::PAGE))).unwrap_or_else(|why| panic!("{why}"))
+}
+
+#[test]
+fn function_blocks_do_what_their_page_says() {
+    let sections = sections();
+    let names: Vec<&str> = sections.iter().map(|s| s.kind.name()).collect();
+    assert_eq!(names, g7_model::FbKind::ALL.map(g7_model::FbKind::name));
+    for section in sections {
+        let name = section.kind.name();
+        let members = section.kind.members().iter().map(|(pin, ty, _)| ((*pin).to_owned(), ty.to_string()));
+        assert_eq!(section.pins, members.collect::<Vec<_>>(), "{name}");
+        let document = g7_tests::case::document(&section.case.chart).expect(name);
+        let trace = section.case.traces.first().expect(name);
+        for backend in [engine::engine, subject::naive] {
+            let done = replay::replay(&document, ProfileName::Iec61131, trace, backend);
+            assert_eq!(done, Ok(()), "{name}");
+        }
+    }
+}
+
+#[test]
+fn the_chronograms_are_those_of_the_runs() {
+    let page = root().join(blocks::PAGE);
+    for section in sections() {
+        let drawn = section.chronogram().unwrap_or_else(|why| panic!("{why}"));
+        let kept = text(&page.with_file_name(section.picture()));
+        assert_eq!(kept, drawn, "{}: draw it again with `make blocks`", section.picture());
+        assert!(text(&page).contains(&format!("]({})", section.picture())), "{}", section.picture());
+    }
+}
+
+#[test]
+fn each_case_is_a_page_of_the_book() {
+    let folder = Folder::new("book");
+    assemble(&root(), &folder.0).unwrap_or_else(|why| panic!("{why}"));
+    let source = folder.0.join("src");
+    let summary = text(&source.join("SUMMARY.md"));
+    let mut cases = 0;
+    for group in ["iec60848", "iec61131", "pl7", "unity", "jgrafchart", "side-by-side", "litmus"] {
+        for entry in std::fs::read_dir(root().join("tests/spec").join(group)).expect("cases") {
+            let case = entry.expect("a case").path();
+            let name = format!("{group}/{}", case.file_name().unwrap_or_default().to_string_lossy());
+            let heading = text(&case).lines().next().unwrap_or("").trim_start_matches("# ").to_owned();
+            assert!(summary.contains(&format!("[{heading}](cases/{name})")), "{name} is in no chapter");
+            cases += 1;
+        }
+    }
+    assert!(cases > 400, "only {cases} cases");
+    // No folder of cases is left out, and each entry of the summary is a page.
+    let folders = std::fs::read_dir(root().join("tests/spec")).expect("the cases").flatten();
+    assert_eq!(folders.filter(|e| e.path().is_dir()).count(), 7);
+    let entries = summary.split("](").skip(1).filter_map(|piece| piece.split(')').next());
+    for page in entries.filter(|page| !page.is_empty()) {
+        assert!(source.join(page).is_file(), "{page} is not there");
+    }
+    if g7_peers::tool("mdbook") {
+        let built = std::process::Command::new("mdbook").arg("build").arg(&folder.0).output();
+        let built = built.expect("mdbook starts");
+        assert!(built.status.success(), "{}", String::from_utf8_lossy(&built.stderr));
+    }
 }

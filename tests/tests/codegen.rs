@@ -1,22 +1,22 @@
-//! Generated C and Rust do what the engine does, scan by scan: situation, step
-//! times, outputs, variables, faults; on every conformance case and on random
-//! charts.
+//! Generated C and Rust behave like the engine, scan by scan: situation, step times, outputs,
+//! variables, faults; on every conformance case and on random charts.
 //!
-//! `G7_SCANS=100000` sets how many random scans each profile makes, and asks for
-//! every case by every compiler in both styles; without it some are left out. The
-//! folder of the code is kept where `G7_KEEP` is set.
+//! `G7_SCANS=100000` sets the number of random scans for each profile, and runs every case with
+//! every compiler in both styles; otherwise some combinations are left out. The folder with the
+//! code is kept if `G7_KEEP` is set.
 use g7_codegen::{Language, Style};
 use g7_model::ProfileName;
 use g7_tests::generated::cases::{self, Folder};
-use g7_tests::generated::{Subject, c_program, compare, has, rust_program};
+use g7_tests::generated::{Subject, c_program, compare, rust_program};
 
+/// With these options, undefined behaviour ends the program.
 const SANITIZERS: [&str; 3] = ["-O0", "-fsanitize=address,undefined", "-fno-sanitize-recover=all"];
 
 fn number(name: &str) -> Option<u64> {
     std::env::var(name).ok().and_then(|v| v.parse().ok())
 }
 
-/// Every `step`th, from the `first`; all of them in the long run.
+/// Every `step`th subject, beginning with `first`; all of them in a long run.
 fn some(subjects: &[Subject], first: usize, step: usize) -> Vec<&Subject> {
     let step = if number("G7_SCANS").is_some() { 1 } else { step };
     subjects.iter().skip(first % step).step_by(step).collect()
@@ -26,26 +26,26 @@ fn spec() -> Vec<Subject> {
     cases::spec().unwrap_or_else(|e| panic!("{e}"))
 }
 
-/// Random charts with so many scans in all.
+/// Random charts with this number of scans in total.
 fn random(profile: ProfileName, scans: usize, length: usize) -> Vec<Subject> {
     let enough = |found: &[Subject]| found.iter().map(|s| s.sound).sum::<usize>() >= scans;
     let first = number("G7_SEED").unwrap_or(1);
     cases::random(profile, first, length, enough).unwrap_or_else(|e| panic!("{e}"))
 }
 
-/// Prints, compiles and runs them beside the engine.
+/// Generates, compiles and runs the subjects, and compares them with the engine.
 fn agree(name: &str, compiler: &str, style: Style, subjects: &[&Subject]) {
-    if !has(compiler) {
-        println!("skipped: no {compiler} on the PATH");
+    if !g7_peers::tool(compiler) {
         return;
     }
+    let sanitizers = if compiler == "rustc" { &[] } else { g7_peers::sanitizers(compiler, &SANITIZERS) };
     let folder = Folder::new(&format!("codegen-{name}-{compiler}-{style:?}"));
     let mut wrong = Vec::new();
     for (i, batch) in subjects.chunks(60).enumerate() {
         let place = folder.0.join(i.to_string());
         let program = match compiler {
             "rustc" => rust_program(&place, style, batch),
-            _ => c_program(&place, compiler, &SANITIZERS, style, batch),
+            _ => c_program(&place, compiler, sanitizers, style, batch),
         };
         if let Err(why) = program.and_then(|p| compare(&p, batch)) {
             wrong.push(format!("batch {i}: {why}"));
@@ -73,7 +73,7 @@ fn cases_in_flat_c() {
 #[test]
 fn cases_in_rust() {
     let mut subjects = spec();
-    // SIN and its like come from the crate `libm`, which a lone rustc has not.
+    // SIN and similar functions come from the crate `libm`, which rustc alone does not have.
     let all = subjects.len();
     let complete =
         |s: &Subject| s.print(Language::Rust, Style::Structured, "c").is_ok_and(|p| p.problems.is_empty());

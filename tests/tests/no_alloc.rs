@@ -1,5 +1,5 @@
-//! No scan of any chart allocates: random charts of all features, under every
-//! profile, with the allocations of this thread counted.
+//! No scan of any chart allocates memory: random charts with all features under every profile, with
+//! the allocations of this thread counted.
 #![allow(unsafe_code, reason = "counting allocations needs a GlobalAlloc")]
 
 use std::alloc::{GlobalAlloc, Layout, System};
@@ -13,12 +13,12 @@ use g7_tests::generate::sample;
 struct Counting;
 
 thread_local! {
-    /// Of this thread alone: tests run side by side.
+    /// Counts only this thread, because tests run in parallel.
     static COUNT: Cell<usize> = const { Cell::new(0) };
 }
 
 fn count() {
-    // A thread that ends has no counter any more.
+    // A thread that is ending has no counter any more.
     COUNT.try_with(|c| c.set(c.get() + 1)).ok();
 }
 
@@ -40,9 +40,9 @@ unsafe impl GlobalAlloc for Counting {
 #[global_allocator]
 static ALLOC: Counting = Counting;
 
-/// Charts of each profile.
+/// Number of charts for each profile.
 const CHARTS: u64 = 250;
-/// Scans of each chart.
+/// Number of scans of each chart.
 const SCANS: i64 = 40;
 
 #[test]
@@ -56,6 +56,7 @@ fn no_scan_of_any_chart_allocates() {
             let rows = program.tables().inputs;
             let mut state = State::new(program);
             let mut inputs = vec![0u64; (rows.end - rows.start) as usize];
+            let (mut other, mut image) = (state.clone(), Vec::with_capacity(state.image().len()));
             let mut chance = seed;
             for k in 0..SCANS {
                 for word in &mut inputs {
@@ -65,9 +66,13 @@ fn no_scan_of_any_chart_allocates() {
                 let before = COUNT.get();
                 let report = scan(program, &mut state, &inputs, k * 10_000_000);
                 assert_eq!(COUNT.get(), before, "{} seed {seed}, scan {k}", profile.name());
+                // Nor does what a search does between two scans.
+                state.canonical(program, &mut image);
+                other.restore(program, &image).expect("a canonical image");
+                assert_eq!(COUNT.get(), before, "{} seed {seed}, after scan {k}", profile.name());
                 match report {
                     Ok(report) => cleared += report.cleared,
-                    // What a fault stops stays stopped.
+                    // After a fault the run stays stopped.
                     Err(fault) if fault.kind == FaultKind::Stopped => break,
                     Err(_) => {}
                 }

@@ -1,19 +1,19 @@
-//! What those who look on are told of a situation is what then happens: the
-//! transitions that `enabled` calls true are those that clear in the next pass.
+//! What a user interface shows comes true: the transitions that `enabled` reports as true are those
+//! that clear in the next pass.
 
 use g7_compile::compile;
 use g7_engine::{State, begin, enabled, finish, pass};
 use g7_model::ProfileName;
 use g7_tests::generate::sample;
 
-/// Charts of each profile.
+/// Number of charts for each profile.
 const CHARTS: u64 = 150;
-/// Scans of each chart.
+/// Number of scans of each chart.
 const SCANS: i64 = 30;
-/// Passes of a scan that are looked at; the report of longer ones is cut.
+/// Greatest number of passes of a scan that are compared; reports of longer scans are cut.
 const PASSES: usize = 8;
 
-/// How many clearings were seen.
+/// Compares charts of a profile; returns the number of clearings.
 fn look(profile: ProfileName) -> usize {
     let mut seen = 0;
     for seed in 1..=CHARTS {

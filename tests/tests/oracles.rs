@@ -1,44 +1,39 @@
 //! The steps that the engine can reach in charts of the AGRAFE corpus are those
 //! that the static analysis of the same project lists.
 //!
-//! Breadth first over scans: in each situation, all values of the inputs that its
-//! transitions and events read (all together while these are few, else those of
-//! one transition after the other), with and without a long wait before. A state
-//! that brings a new step, or a new value of a variable while a step is active,
-//! goes first. Bounded by a number of scans; charts with counters have no end.
+//! The search is that of `g7-verify`: breadth first over scans, with the values of
+//! the inputs that the situation asks for (all together while these are few, else
+//! those of one reader after the other), with and without a long wait before. A
+//! state that brings a new step, or a new value of a variable while a step is
+//! active, goes first. Bounded by a number of scans; charts with counters have no end.
 //!
-//! The corpus stands at `G7_CORPUS`, else `../shared/corpus` beside the repository.
+//! The corpus is found by `g7_peers::corpus`.
 #![allow(clippy::disallowed_methods, reason = "the corpus is read")]
 
-use std::collections::{BTreeMap, BTreeSet, HashSet, VecDeque};
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 use g7_compile::Compiled;
 use g7_compile::ir::VarClass;
-use g7_engine::{Addr, State, StepId, begin, finish, pass};
-use g7_exchange::Format;
+use g7_engine::{Addr, Program, Subject, WatchId};
 use g7_model::{
-    ActionKind, Chart, ChartItem, Document, Expr, ExprKind, FileId, Item, Literal, Severity, Step, Stmt,
-    StmtKind, Target, UnaryOp,
+    ActionKind, Chart, ChartItem, Document, Expr, ExprKind, FileId, Item, Literal, Problem, Severity, Step,
+    Target,
 };
+use g7_verify::{Explorer, Inputs, Limits, Moment, Next, Which};
+
+/// A chart of the meta-model, as much of it as could be read.
+fn xmi(bytes: &[u8]) -> (Document, Vec<Problem>) {
+    let format = g7_exchange::named("xmi").expect("a format");
+    format.read(bytes, FileId(0)).expect("a format that is read")
+}
 
 /// Scans of one chart.
 const SCANS: usize = 40_000;
-/// Passes after which a scan counts as one that never rests.
-const PASSES: usize = 60;
 /// Inputs that are tried all together.
 const TOGETHER: usize = 6;
 /// Longer than all delays of the corpus, which are whole seconds.
 const LONG: i64 = 60_000_000_000;
-/// Shorter than them.
-const SHORT: i64 = 1_000_000;
-
-fn corpus() -> PathBuf {
-    match std::env::var_os("G7_CORPUS") {
-        Some(path) => PathBuf::from(path),
-        None => [env!("CARGO_MANIFEST_DIR"), "..", "..", "shared", "corpus"].iter().collect(),
-    }
-}
 
 /// What the analysis says of a file.
 #[derive(Default)]
@@ -50,8 +45,8 @@ struct Says {
 }
 
 /// What the analysis says of each file.
-fn oracles(corpus: &Path) -> Option<BTreeMap<String, Says>> {
-    let text = std::fs::read_to_string(corpus.join("agrafe-oracles.json")).ok()?;
+fn oracles(corpus: &Path) -> BTreeMap<String, Says> {
+    let text = std::fs::read_to_string(corpus.join("agrafe-oracles.json")).expect("the analysis");
     let all: serde_json::Value = serde_json::from_str(&text).expect("the oracles are JSON");
     let mut found = BTreeMap::new();
     for (file, says) in all.as_object().expect("files by name") {
@@ -66,225 +61,59 @@ fn oracles(corpus: &Path) -> Option<BTreeMap<String, Says>> {
             }
         }
     }
-    Some(found)
+    found
 }
 
-/// An input with the values that are worth trying.
-#[derive(Clone, Debug)]
-struct Choice {
-    word: usize,
-    values: Vec<u64>,
-}
-
-/// What reads inputs while some steps are active: a transition or an event.
-struct Reader {
-    needs: Vec<StepId>,
-    inputs: Vec<usize>,
-}
-
-struct Explorer<'c> {
-    compiled: &'c Compiled,
-    choices: Vec<Choice>,
-    readers: Vec<Reader>,
-    timed: bool,
-    /// The words that decide what follows: those of the charts' own variables, and
-    /// inputs whose edges or delays are asked for.
-    telling: Vec<Addr>,
-    reached: BTreeSet<StepId>,
-    /// Each step with each value that a variable had while it was active.
-    met: HashSet<(StepId, Addr, u64)>,
-    seen: HashSet<(Vec<StepId>, Vec<u64>, Vec<bool>)>,
-    queue: VecDeque<State>,
-    scans: usize,
-}
-
-impl<'c> Explorer<'c> {
-    fn new(document: &Document, compiled: &'c Compiled) -> Explorer<'c> {
-        let constants = constants(document);
-        let from = compiled.program.tables().inputs.start;
-        let mut choices = Vec::new();
-        let mut names = BTreeMap::new();
-        for v in compiled.symbols.variables.iter().filter(|v| v.class == VarClass::Input) {
-            names.insert(v.name.to_string(), choices.len());
-            let values = if v.ty == g7_model::Type::Bool { vec![0, 1] } else { constants.clone() };
-            choices.push(Choice { word: (v.addr.0 - from) as usize, values });
+/// The steps that the engine reaches, and the scans that it took. The search ends
+/// early when all steps that there are were reached.
+fn reached(document: &Document, compiled: &Compiled) -> (BTreeSet<String>, usize) {
+    let p = &compiled.program;
+    let steps = p.tables().steps.len();
+    let moves = Inputs::new(p, Which::Asked { together: TOGETHER }, values(document, compiled), waits(p));
+    let mut explorer = Explorer::new(p, Limits { states: SCANS, scans: SCANS });
+    // The values that decide what follows, beside the situation.
+    let own = compiled.symbols.variables.iter().filter(|v| v.class == VarClass::Internal);
+    let mut telling: BTreeSet<Addr> = own.map(|v| v.addr).collect();
+    telling.extend(p.tables().word_watches.iter().map(|(word, _)| *word));
+    let (mut reached, mut met) = (BTreeSet::new(), BTreeSet::new());
+    explorer.search(&moves, |state, moment| {
+        // Behind every pass: transient steps are reached as well.
+        let before = reached.len();
+        reached.extend(state.active());
+        if reached.len() == steps {
+            return Next::Stop;
         }
-        let own = compiled.symbols.variables.iter().filter(|v| v.class == VarClass::Internal);
-        let mut explorer = Explorer {
-            telling: own.map(|v| v.addr).collect(),
-            compiled,
-            choices,
-            readers: Vec::new(),
-            timed: false,
-            reached: BTreeSet::new(),
-            met: HashSet::new(),
-            seen: HashSet::new(),
-            queue: VecDeque::new(),
-            scans: 0,
-        };
-        for chart in document.charts() {
-            explorer.read(chart, &names);
-        }
-        explorer
-    }
-
-    /// Notes which inputs the transitions and events of a chart read.
-    fn read(&mut self, chart: &Chart, names: &BTreeMap<String, usize>) {
-        let id = |step: &str| self.compiled.symbols.step(&format!("{}.{step}", chart.name.text));
-        let mut readers = Vec::new();
-        let mut timed = false;
-        let mut remembered = BTreeSet::new();
-        let of = |e: &Expr| {
-            let mut inputs = BTreeSet::new();
-            walk(e, &mut |e| {
-                if let ExprKind::Path(path) = &e.kind {
-                    inputs.extend(names.get(&path.text()).copied());
-                }
-            });
-            inputs
-        };
-        let mut note = |needs: Vec<StepId>, e: &Expr| {
-            let inputs = of(e);
-            walk(e, &mut |e| match &e.kind {
-                ExprKind::Timer { .. } => {
-                    timed = true;
-                    remembered.extend(of(e));
-                }
-                ExprKind::Unary(UnaryOp::Rise | UnaryOp::Fall, _) => remembered.extend(of(e)),
-                _ => {}
-            });
-            readers.push(Reader { needs, inputs: inputs.into_iter().collect() });
-        };
-        for t in chart.transitions() {
-            note(t.from.iter().filter_map(|n| id(&n.text)).collect(), &t.receptivity);
-        }
-        for step in chart.steps() {
-            for action in &step.actions {
-                match &action.kind {
-                    ActionKind::OnEvent { event, .. } => {
-                        note(id(&step.name.text).into_iter().collect(), event)
-                    }
-                    ActionKind::Qualified { target: Target::Work(work), .. } => {
-                        for Stmt { kind, .. } in work.statements() {
-                            if let StmtKind::Assign { value, .. } = kind {
-                                note(id(&step.name.text).into_iter().collect(), value);
-                            }
-                        }
-                    }
-                    _ => {}
+        let mut new = reached.len() > before;
+        if moment == Moment::End {
+            for step in state.active() {
+                for word in &telling {
+                    new |= met.insert((step, *word, state.word(*word)));
                 }
             }
         }
-        let from = self.compiled.program.tables().inputs.start;
-        let words = remembered.iter().filter_map(|i| self.choices.get(*i));
-        self.telling.extend(words.map(|c| Addr(from + c.word as u32)));
-        self.readers.extend(readers);
-        self.timed |= timed;
-    }
+        if new { Next::Hurry } else { Next::Go }
+    });
+    let names = reached.iter().map(|s| compiled.symbols.step_path(*s).to_string()).collect();
+    (names, explorer.scans())
+}
 
-    /// Explores; ends early when these steps, and all there are, were reached.
-    fn run(&mut self) {
-        let program = &self.compiled.program;
-        let inputs = vec![0; self.input_words()];
-        self.step(&State::new(program), &inputs, 0);
-        while let Some(state) = self.queue.pop_front() {
-            if self.reached.len() == program.tables().steps.len() || self.scans >= SCANS {
-                return;
-            }
-            for inputs in self.moves(&state) {
-                self.step(&state, &inputs, SHORT);
-                if self.timed {
-                    self.step(&state, &inputs, LONG);
-                }
-            }
-        }
+/// The values of each input that are worth trying.
+fn values(document: &Document, compiled: &Compiled) -> Vec<Vec<u64>> {
+    let rows = compiled.program.tables().inputs;
+    let constants = constants(document);
+    let mut values = vec![Vec::new(); (rows.end - rows.start) as usize];
+    for v in compiled.symbols.variables.iter().filter(|v| v.class == VarClass::Input) {
+        values[(v.addr.0 - rows.start) as usize] =
+            if v.ty == g7_model::Type::Bool { vec![0, 1] } else { constants.clone() };
     }
+    values
+}
 
-    fn input_words(&self) -> usize {
-        let inputs = self.compiled.program.tables().inputs;
-        (inputs.end - inputs.start) as usize
-    }
-
-    /// The inputs worth trying in a state.
-    fn moves(&self, state: &State) -> Vec<Vec<u64>> {
-        let from = self.compiled.program.tables().inputs.start;
-        let now: Vec<u64> = (0..self.input_words()).map(|i| state.word(Addr(from + i as u32))).collect();
-        let enabled = || self.readers.iter().filter(|r| r.needs.iter().all(|s| state.is_active(*s)));
-        let all: BTreeSet<usize> = enabled().flat_map(|r| r.inputs.iter().copied()).collect();
-        let mut moves = BTreeSet::new();
-        if all.len() <= TOGETHER {
-            self.combine(&all.into_iter().collect::<Vec<_>>(), now, &mut moves);
-        } else {
-            for reader in enabled() {
-                self.combine(&reader.inputs, now.clone(), &mut moves);
-            }
-        }
-        moves.into_iter().collect()
-    }
-
-    /// All values of some inputs, the others as they are.
-    fn combine(&self, inputs: &[usize], now: Vec<u64>, moves: &mut BTreeSet<Vec<u64>>) {
-        let mut found = vec![now];
-        for choice in inputs.iter().filter_map(|i| self.choices.get(*i)) {
-            found = found
-                .into_iter()
-                .flat_map(|old| {
-                    choice.values.iter().map(move |value| {
-                        let mut new = old.clone();
-                        new[choice.word] = *value;
-                        new
-                    })
-                })
-                .collect();
-        }
-        moves.extend(found);
-    }
-
-    /// One scan, pass by pass: transient steps are reached as well.
-    fn step(&mut self, state: &State, inputs: &[u64], wait: i64) {
-        let program = &self.compiled.program;
-        let mut next = state.clone();
-        self.scans += 1;
-        let before = self.reached.len();
-        if begin(program, &mut next, inputs, state.now() + wait).is_err() {
-            return;
-        }
-        self.reached.extend(next.active());
-        let mut rests = false;
-        for _ in 0..PASSES {
-            let Ok(changed) = pass(program, &mut next) else { return };
-            self.reached.extend(next.active());
-            if !changed {
-                rests = true;
-                break;
-            }
-        }
-        if !rests || finish(program, &mut next).is_err() {
-            return;
-        }
-        // Times are left out: a timer runs, or has run out after a long wait.
-        let timers = (0..program.tables().watches.len() as u32)
-            .map(|w| next.timer(program, g7_engine::WatchId(w)))
-            .collect();
-        let told: Vec<u64> = self.telling.iter().map(|a| next.word(*a)).collect();
-        let mut new = self.reached.len() > before;
-        for step in next.active() {
-            for (addr, value) in self.telling.iter().zip(&told) {
-                new |= self.met.insert((step, *addr, *value));
-            }
-        }
-        if self.seen.insert((next.active().collect(), told, timers)) {
-            if new {
-                self.queue.push_front(next);
-            } else {
-                self.queue.push_back(next);
-            }
-        }
-    }
-
-    fn names(&self) -> BTreeSet<String> {
-        self.reached.iter().map(|s| self.compiled.symbols.step_path(*s).to_string()).collect()
-    }
+/// Where something waits, a scan at once and one after all delays.
+fn waits(p: &Program) -> Vec<i64> {
+    let timed = (0..p.tables().watches.len() as u32).any(|w| p.reads(Subject::Watch(WatchId(w))).time)
+        || (0..p.tables().transitions.len() as u32).any(|t| p.reads(Subject::Transition(t)).time);
+    if timed { vec![0, LONG] } else { vec![0] }
 }
 
 /// The numbers that a document compares with, and those beside them.
@@ -346,17 +175,14 @@ fn is_continuous(kind: &ActionKind) -> bool {
 
 #[test]
 fn reachable_steps_are_those_of_the_analysis() {
-    let corpus = corpus();
-    let Some(oracles) = oracles(&corpus) else {
-        println!("skipped: no corpus");
-        return;
-    };
+    let Some(corpus) = g7_peers::corpus("") else { return };
+    let oracles = oracles(&corpus);
     let mut wrong = Vec::new();
     for (file, says) in &oracles {
         let wanted = &says.steps;
         let path = corpus.join("agrafe-xmi").join("Project-AGRAFE").join(file);
         let bytes = std::fs::read(&path).expect("a file of the corpus");
-        let (mut document, _) = g7_exchange::import(Format::Xmi, &bytes, FileId(0));
+        let (mut document, _) = xmi(&bytes);
         let actions = document.items.iter_mut().filter_map(steps_of).flatten().map(|s| &mut s.actions);
         // No condition of the meta-model reads an output, so these move nothing;
         // some charts drive and assign one output, which the checker refuses.
@@ -368,10 +194,8 @@ fn reachable_steps_are_those_of_the_analysis() {
             }
             continue;
         };
-        let mut explorer = Explorer::new(&document, &compiled);
-        explorer.run();
-        let found = explorer.names();
-        println!("{file}: {} of {} steps in {} scans", found.len(), wanted.len(), explorer.scans);
+        let (found, scans) = reached(&document, &compiled);
+        println!("{file}: {} of {} steps in {scans} scans", found.len(), wanted.len());
         let extra: Vec<_> = found.difference(wanted).collect();
         let missing: Vec<_> = wanted
             .difference(&found)
@@ -417,17 +241,14 @@ const REFUSED: &[(&str, &str)] = &[
 
 #[test]
 fn charts_of_the_corpus_are_checked() {
+    let Some(corpus) = g7_peers::corpus("agrafe-xmi") else { return };
     let mut files = Vec::new();
-    charts(&corpus().join("agrafe-xmi"), &mut files);
+    charts(&corpus, &mut files);
     files.sort();
-    if files.is_empty() {
-        println!("skipped: no corpus");
-        return;
-    }
     let mut refused = Vec::new();
     for file in &files {
         let bytes = std::fs::read(file).expect("a file of the corpus");
-        let (document, _) = g7_exchange::import(Format::Xmi, &bytes, FileId(0));
+        let (document, _) = xmi(&bytes);
         let (_, problems) = g7_compile::compile(&document);
         let errors: BTreeSet<&str> =
             problems.iter().filter(|p| p.severity() == Severity::Error).map(|p| p.code.id).collect();

@@ -1,13 +1,12 @@
-//! Code for PLCs does what the engine does, scan by scan, where a compiler that
-//! is not ours (matiec, `iec2c` on the PATH) makes C of it: situation, outputs
-//! and variables, on every conformance case that can be printed.
+//! Code for PLCs behaves like the engine, scan by scan, when a foreign compiler (matiec, `iec2c` on
+//! the PATH) translates it to C: situation, outputs and variables, on every conformance case that
+//! can be printed.
 //!
-//! The library of matiec is looked for in `MATIEC_LIB`, then beside `iec2c`; the
-//! folder of the code is kept where `G7_KEEP` is set.
+//! `g7_peers::matiec` finds the compiler; the folder with the code is kept if `G7_KEEP` is set.
 #![allow(clippy::disallowed_methods, reason = "the tests start compilers")]
 
 use std::fmt::Write as _;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::{Command, Stdio};
 
 use g7_codegen::plc::{Form, Printed};
@@ -15,6 +14,7 @@ use g7_compile::ir::VarClass;
 use g7_compile::symbols::Variable;
 use g7_engine::StepId;
 use g7_model::{ProfileName, Type};
+use g7_peers::Matiec;
 use g7_tests::generated::Subject;
 use g7_tests::generated::cases::{self, Folder};
 use g7_tests::generated::plc::{Event, Prints, Seen, difference, played, prints, shown};
@@ -40,17 +40,6 @@ static double to_double(uint64_t w) { double v; memcpy(&v, &w, 8); return v; }
 static uint64_t of_time(TIME t) { return (uint64_t)((int64_t)t.tv_sec * 1000000000 + t.tv_nsec); }
 static TIME to_time(uint64_t w) { TIME t; t.tv_sec = (int64_t)w / 1000000000; t.tv_nsec = (int64_t)w % 1000000000; return t; }
 "#;
-
-/// matiec and its library.
-fn matiec() -> Option<(PathBuf, PathBuf)> {
-    let path = std::env::var_os("PATH")?;
-    let tool = std::env::split_paths(&path).map(|d| d.join("iec2c")).find(|p| p.is_file())?;
-    let beside = tool.parent().map(|p| p.join("lib"));
-    let places =
-        [std::env::var_os("MATIEC_LIB").map(PathBuf::from), beside, Some("/usr/share/matiec/lib".into())];
-    let lib = places.into_iter().flatten().find(|l| l.join("ieclib.txt").is_file())?;
-    Some((tool, lib))
-}
 
 fn getter(place: &str, ty: Type) -> String {
     match ty {
@@ -126,15 +115,15 @@ fn run(command: &mut Command) -> Result<Vec<u8>, String> {
     Err(String::from_utf8_lossy(&said).lines().take(40).collect::<Vec<_>>().join("\n"))
 }
 
-/// Cases that matiec itself has otherwise, and why.
+/// Cases in which matiec itself behaves differently, with the reason.
 const NOT_IN_MATIEC: [(&str, &str); 1] = [(
     "iec60848/time-compared",
     "its sum of two TIMEs is wrong where the parts of a second make exactly one",
 )];
 
-/// Charts through matiec and gcc beside the engine; what differs.
-fn batch(folder: &Path, ending: &str, list: &[(&Subject, Printed)]) -> Result<(), String> {
-    let Some((tool, lib)) = matiec() else { return Ok(()) };
+/// Compiles charts with matiec and gcc and compares them with the engine; an error lists the
+/// differences.
+fn batch(matiec: &Matiec, folder: &Path, ending: &str, list: &[(&Subject, Printed)]) -> Result<(), String> {
     std::fs::create_dir_all(folder).map_err(|e| e.to_string())?;
     let mut code = String::new();
     let mut main = HEAD.to_owned();
@@ -169,14 +158,9 @@ fn batch(folder: &Path, ending: &str, list: &[(&Subject, Printed)]) -> Result<()
     std::fs::write(folder.join("main.c"), main).map_err(|e| e.to_string())?;
     let bytes: Vec<u8> = input.iter().flat_map(|w| w.to_le_bytes()).collect();
     std::fs::write(folder.join("input"), bytes).map_err(|e| e.to_string())?;
-    // matiec looks at memory that it has not written when it meets S and R, and
-    // takes them for calls of function blocks then; the C library is told to clear it.
-    let mut translate = Command::new(tool);
-    translate.env("GLIBC_TUNABLES", "glibc.malloc.perturb=255:glibc.malloc.tcache_count=0");
-    run(translate.current_dir(folder).arg("-I").arg(&lib).args(["-T", ".", &file]))
-        .map_err(|why| format!("matiec: {why}"))?;
+    run(&mut matiec.translate(folder, &file)).map_err(|why| format!("matiec: {why}"))?;
     let gcc = ["-w", "-O0", "-std=gnu99", "-o", "charts", "main.c", "-lm"];
-    run(Command::new("gcc").current_dir(folder).arg("-I").arg(lib.join("C")).args(gcc))?;
+    run(Command::new("gcc").current_dir(folder).arg("-I").arg(matiec.lib.join("C")).args(gcc))?;
     let stdin = std::fs::File::open(folder.join("input")).map_err(|e| e.to_string())?;
     let out = run(Command::new(folder.join("charts")).stdin(Stdio::from(stdin)))?;
     let words: Vec<u64> =
@@ -205,17 +189,15 @@ fn batch(folder: &Path, ending: &str, list: &[(&Subject, Printed)]) -> Result<()
     if wrong.is_empty() { Ok(()) } else { Err(wrong.join("\n")) }
 }
 
-/// Prints, compiles, runs and compares; says how many agree and why others are not printed.
+/// Prints, compiles, runs and compares subjects; prints how many agree and why others cannot be
+/// printed.
 fn agrees(name: &str, form: Form, ending: &str, subjects: &[Subject]) -> usize {
     let Prints { mut list, refused } = prints(subjects, form).unwrap_or_else(|e| panic!("{e}"));
     println!("{name}: {} of {} printed", list.len(), subjects.len());
     for (why, n) in &refused {
         println!("  {n} refused: {why}");
     }
-    if matiec().is_none() {
-        println!("skipped: no iec2c (matiec) on the PATH; https://github.com/beremiz/matiec");
-        return list.len();
-    }
+    let Some(matiec) = g7_peers::matiec() else { return list.len() };
     for (case, why) in NOT_IN_MATIEC {
         let all = list.len();
         list.retain(|(s, _)| !s.title.starts_with(case));
@@ -223,7 +205,7 @@ fn agrees(name: &str, form: Form, ending: &str, subjects: &[Subject]) -> usize {
     }
     let folder = Folder::new(&format!("plc-{name}"));
     for (i, part) in list.chunks(40).enumerate() {
-        if let Err(why) = batch(&folder.0.join(i.to_string()), ending, part) {
+        if let Err(why) = batch(&matiec, &folder.0.join(i.to_string()), ending, part) {
             panic!("{name}: {why}");
         }
     }

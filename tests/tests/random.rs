@@ -1,5 +1,5 @@
-//! Random charts are worth running: the checker accepts them, they hold every
-//! feature, most scans end without a fault, and the situations change.
+//! Random charts are useful tests: the checker accepts them, they contain every feature, most scans
+//! end without a fault, and the situations change.
 
 use g7_model::{Document, Item, ProfileName};
 use g7_tests::agree::{Statistics, agree};

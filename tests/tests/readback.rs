@@ -1,8 +1,8 @@
-//! Instruction List and Ladder that were printed are read back by our own readers
-//! and run by the engine: situation, outputs and variables are those of the chart,
-//! scan by scan, on conformance cases and random charts.
+//! Our own readers read printed Instruction List and Ladder back, and the engine runs them:
+//! situation, outputs and variables equal those of the chart, scan by scan, on conformance cases
+//! and random charts.
 //!
-//! Code that differs is kept in a folder of the temporary ones where `G7_KEEP` is set.
+//! If `G7_KEEP` is set, code that differs is kept in a temporary folder.
 
 use std::collections::BTreeMap;
 
@@ -10,16 +10,16 @@ use g7_codegen::plc::{Form, Printed};
 use g7_compile::ir::VarClass;
 use g7_compile::{Compiled, compile};
 use g7_engine::{Addr, FaultKind, State, StepId, scan};
-use g7_exchange::{import, recognise};
+use g7_exchange::recognise;
 use g7_model::{FileId, ProfileName, Severity};
 use g7_tests::generated::Subject;
 use g7_tests::generated::cases;
 use g7_tests::generated::plc::{Event, Prints, Seen, difference, played, prints, shown};
 
-/// The program that the text of a function block stands for, as the engine runs it.
+/// Compiles the text of a function block for the engine.
 fn read(text: &str, file: &str) -> Result<Compiled, String> {
     let format = recognise(file, text.as_bytes()).ok_or("nobody knows the format")?;
-    let (document, mut problems) = import(format, text.as_bytes(), FileId(0));
+    let (document, mut problems) = format.read(text.as_bytes(), FileId(0)).ok_or("the format is not read")?;
     let (compiled, more) = compile(&document);
     problems.extend(more.into_iter().filter(|p| p.severity() == Severity::Error));
     match (compiled, problems.first()) {
@@ -33,7 +33,7 @@ fn read(text: &str, file: &str) -> Result<Compiled, String> {
     }
 }
 
-/// A variable of what was read, by the name that it has in the code.
+/// The address of a variable in the compiled text, by its name in the code.
 fn place(read: &Compiled, name: &str) -> Result<Addr, String> {
     let mut all = read.symbols.variables.iter();
     all.find(|v| v.name.eq_ignore_ascii_case(name))
@@ -41,7 +41,7 @@ fn place(read: &Compiled, name: &str) -> Result<Addr, String> {
         .ok_or_else(|| format!("no variable {name}"))
 }
 
-/// What the code shows, scan by scan.
+/// The results of the code, scan by scan.
 fn replayed(s: &Subject, printed: &Printed, read: &Compiled, events: &[Event]) -> Result<Vec<Seen>, String> {
     let program = &read.program;
     let table = program.tables().inputs;
@@ -69,7 +69,7 @@ fn replayed(s: &Subject, printed: &Printed, read: &Compiled, events: &[Event]) -
         }
         match scan(program, &mut state, &words, *now) {
             Ok(_) => {}
-            // Ten thousand passes can be more than a scan of the engine may take.
+            // Ten thousand passes can exceed the work that the engine allows in a scan.
             Err(f) if f.kind == FaultKind::Work => {
                 seen.push(Seen { stopped: true, words: Vec::new() });
                 continue;
@@ -88,7 +88,7 @@ fn replayed(s: &Subject, printed: &Printed, read: &Compiled, events: &[Event]) -
     Ok(seen)
 }
 
-/// Whether one chart's code does what the chart does; otherwise what it does not.
+/// Compares the code of one chart with the chart; an error describes the difference.
 fn same(s: &Subject, printed: &Printed, file: &str) -> Result<(), String> {
     let read = read(&printed.text, file)?;
     let (events, want) = played(s, printed)?;
@@ -110,7 +110,7 @@ fn keep(title: &str, file: &str, text: &str) {
     }
 }
 
-/// How many agree.
+/// Compares the code of subjects with their charts; returns how many agree.
 fn agree(name: &str, form: Form, file: &str, subjects: &[Subject]) -> usize {
     let Prints { list, refused } = prints(subjects, form).unwrap_or_else(|e| panic!("{e}"));
     println!("{name}: {} of {} printed", list.len(), subjects.len());
@@ -130,7 +130,7 @@ fn agree(name: &str, form: Form, file: &str, subjects: &[Subject]) -> usize {
     list.len()
 }
 
-/// A list in which one instruction is another does something else, and that is seen.
+/// A list with one changed instruction behaves differently, and the test notices it.
 #[test]
 fn a_wrong_list_is_noticed() {
     let all = spec();
@@ -190,7 +190,7 @@ fn random_charts() {
             (Form::Ld, "ld", "chart.xml"),
         ] {
             let n = agree(&format!("{word} {}", profile.name()), form, file, &subjects);
-            // Ladder has no loop.
+            // Ladder has no loops.
             assert!(n > 0 || form == Form::Ld && profile == ProfileName::Iec60848, "{word}: none printed");
         }
     }

@@ -1,8 +1,8 @@
-//! What the checker says is so: on random charts no step that is out of reach
-//! becomes active, no receptivity that is never true clears, and two branches
-//! that clear together have been named.
+//! The checker's warnings are true: on random charts no step reported as unreachable becomes
+//! active, no receptivity reported as never true clears, and branches that clear together were
+//! reported.
 //!
-//! `G7_CHARTS=5000 G7_SEED=7 cargo test -p g7-tests --test warnings` looks longer.
+//! `G7_CHARTS=5000 G7_SEED=7 cargo test -p g7-tests --test warnings` runs longer.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -13,21 +13,21 @@ use g7_model::{ChartItem, Document, Item, Problem, ProfileName, Span, codes};
 use g7_tests::generate::{Event, Sample, sample};
 use g7_tests::naive::Value;
 
-/// Scans of one chart.
+/// Number of scans of one chart.
 const LENGTH: usize = 60;
 
 fn number(name: &str, otherwise: u64) -> u64 {
     std::env::var(name).ok().and_then(|v| v.parse().ok()).unwrap_or(otherwise)
 }
 
-/// What a chart did in its script.
+/// What happened to a chart during its script.
 #[derive(Default)]
 struct Ran {
-    /// Steps that were active, by their names in the text.
+    /// The steps that were active, by the places of their names.
     active: BTreeSet<Span>,
-    /// Transitions that cleared.
+    /// The transitions that cleared.
     cleared: BTreeSet<Span>,
-    /// Transitions that cleared in one scan, by rank.
+    /// The transitions that cleared in one scan, by rank.
     together: Vec<Vec<u32>>,
 }
 
@@ -69,7 +69,7 @@ fn set(steps: &[StepId]) -> BTreeSet<StepId> {
     steps.iter().copied().collect()
 }
 
-/// What the warnings of a sample got wrong.
+/// The wrong warnings for a sample.
 fn mistakes(compiled: &Compiled, problems: &[Problem], ran: &Ran) -> Vec<String> {
     let mut wrong = Vec::new();
     let unit = &compiled.unit;
@@ -103,7 +103,7 @@ fn mistakes(compiled: &Compiled, problems: &[Problem], ran: &Ran) -> Vec<String>
                 for a in &list[..k] {
                     let (a, b) = (&unit.transitions[*a], &unit.transitions[*b]);
                     let shared = a.from.iter().any(|s| b.from.contains(s));
-                    // Two ways with the same ends lead to one situation.
+                    // Two transitions with the same ends lead to the same situation.
                     let alike = set(&a.from) == set(&b.from) && set(&a.to) == set(&b.to);
                     if shared && !alike && !named.contains(&b.receptivity.at) {
                         wrong.push(format!("{} and {} clear together", a.at.start, b.at.start));
@@ -119,7 +119,7 @@ fn text(sample: &Sample) -> String {
     g7_syntax::print(&sample.document, None)
 }
 
-/// Takes every so many transitions out, so that steps fall out of reach.
+/// Removes every n-th transition, so that some steps become unreachable.
 fn thin(document: &mut Document, every: usize) {
     let mut count = 0;
     for item in &mut document.items {

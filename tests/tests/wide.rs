@@ -1,5 +1,5 @@
-//! What a chart does does not depend on how many others stand beside it: seventy
-//! of one kind, more than a word has bits, do each what one alone does.
+//! The behaviour of a chart does not depend on how many others are beside it: seventy equal charts,
+//! more than a word has bits, each behave like a single one.
 
 use std::fmt::Write as _;
 
@@ -10,7 +10,7 @@ use g7_model::{FileId, ProfileName};
 /// More than the bits of a word.
 const WIDE: usize = 70;
 
-/// Charts with stored, continuous, timed and periodic actions, an edge and a join.
+/// Charts with stored, continuous, timed and periodic actions, an edge and a convergence.
 fn text(charts: usize) -> String {
     let mut text = "input a, b : BOOL\n".to_owned();
     for i in 0..charts {
@@ -62,7 +62,7 @@ fn seventy_charts_do_each_what_one_does() {
             }
             all.push(wanted);
         }
-        // The chart went round twice, and every action acted, most of them by running.
+        // The chart completed two cycles, and every action was executed, most of them repeatedly.
         assert!(ran > rows.len(), "{}: {ran}", profile.name());
         let last = all.last().expect("rows");
         assert_eq!(last.get(5), Some(&2), "{}: {all:?}", profile.name());

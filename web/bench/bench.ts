@@ -1,5 +1,5 @@
-// Main-thread time of the page and of React Flow on the same chart in the same
-// run: `npm run bench` in web/. Prints a table; fails where a limit is passed.
+// Compares the main-thread time of the editor and of React Flow for the same chart, in one session:
+// `npm run bench` in web/. Prints a table; fails if a limit is exceeded.
 import type { CDPSession, Page } from 'playwright-core';
 import { browser, playground } from '../tests/lib';
 
@@ -15,7 +15,7 @@ interface Row {
   tick: number;
   whole: number;
   pan: number;
-  /** A tick of a real run, everything about it included. */
+  /** One tick of a real run, everything included. */
   run: number;
 }
 
@@ -29,7 +29,7 @@ class Meter {
     return metrics.find((m) => m.name === name)?.value ?? 0;
   }
 
-  /** Main-thread milliseconds of some work. */
+  /** The main-thread time of some work, in ms. */
   async of(work: () => Promise<unknown>): Promise<number> {
     const before = await this.value('TaskDuration');
     await work();
@@ -77,7 +77,7 @@ async function measure(url: string, name: string, steps: number, own: boolean): 
   page.on('pageerror', (e) => console.error(name, e.message));
   await page.goto(url);
   const session = await page.context().newCDPSession(page);
-  // Thread ticks: CPU, whatever else the machine does.
+  // Thread ticks measure CPU time, whatever else the machine does.
   await session.send('Performance.enable', { timeDomain: 'threadTicks' });
   const meter = new Meter(session);
   await page.waitForFunction(() => 'bench' in window);

@@ -2,7 +2,7 @@
 
 export const LENGTH = 20;
 
-/** `timed`: each token moves on 25 times a second by itself. */
+/** A chart of this many steps; with `timed`, each token moves on by itself 25 times a second. */
 export function chartText(steps: number, timed = false): string {
   const lines = ['input a, b, c : BOOL', 'output V : BOOL', 'chart Big {'];
   for (let i = 0; i < steps; i++) {
@@ -17,7 +17,7 @@ export function chartText(steps: number, timed = false): string {
   return lines.join('\n');
 }
 
-/** The step that is active in each of 50 places at a tick. */
+/** The active step in each of 50 places at a tick. */
 export function active(steps: number, tick: number): number[] {
   const every = steps / 50;
   return Array.from({ length: 50 }, (_, n) => Math.floor(n * every) + ((tick + n) % Math.max(1, Math.floor(every))));

@@ -1,4 +1,4 @@
-// The same chart in React Flow, only what is in sight or all of it (`?all`).
+// The same chart in React Flow: only the visible part, or all of it (`?all`).
 import '@xyflow/react/dist/style.css';
 import { Handle, Position, ReactFlow, useNodesState, type Edge, type Node, type NodeProps, type ReactFlowInstance } from '@xyflow/react';
 import { createElement as h, memo, useEffect } from 'react';

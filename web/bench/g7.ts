@@ -1,4 +1,4 @@
-// The editor itself, with a door for the benchmark.
+// The editor itself, with an interface for the benchmark.
 import '../src/lib/theme.css';
 import { mount } from 'svelte';
 import App from '../src/App.svelte';
@@ -22,7 +22,7 @@ const frame = () => new Promise((done) => requestAnimationFrame(() => requestAni
 Object.assign(window, {
   bench: {
     async ready() {
-      // The module is loaded and warm, as it is when a user opens a second file.
+      // The module is already loaded and warm, as when a user opens a second file.
       await page.call({ do: 'open', file: 'warm.g7', text: chartText(40) });
       await page.call({ do: 'drawing', file: 'warm.g7', chart: 'Big' });
     },

@@ -1,4 +1,4 @@
-// What was found when every sentence about editing and access was tried by hand.
+// Cases found when every sentence about editing and accessibility was tried by hand.
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
 import type { Page } from 'playwright-core';
@@ -25,7 +25,7 @@ chart G2 {
 }
 `;
 
-/** Everything has its name twice. */
+/** Every name exists twice. */
 const TWICE = `input a, a : BOOL
 chart G1 {
   initial step 0

@@ -1,4 +1,4 @@
-// Everyone can use the page: axe finds nothing, and all of it is reached by keyboard.
+// Accessibility: axe reports nothing, and everything can be reached by keyboard.
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { after, before, test } from 'node:test';
@@ -56,7 +56,7 @@ test('a run with all of its panels is without violations', async () => {
     await page.getByRole('tab', { name }).click();
     assert.deepEqual(await axe(page), [], name);
   }
-  // A symbol that is selected and out of sight is named by nothing.
+  // A selected symbol that is not visible must not be referred to.
   await page.locator('.sheet').focus();
   await page.keyboard.press('ArrowDown');
   for (let n = 0; n < 6; n++) await page.keyboard.press('-');
@@ -103,7 +103,7 @@ for (const [width, height] of [[800, 1100], [768, 1024]] as const) {
     assert.ok(wide <= width, `${wide} px wide`);
     const sheet = await page.locator('.sheet').boundingBox();
     assert.ok(sheet && sheet.width >= width - 100, `the drawing has ${sheet?.width} px`);
-    // Every button of the bars can be pressed: it stands in sight.
+    // Every button of the bars is visible and can be pressed.
     for (const button of await page.locator('header button:visible, .bar[role=toolbar] button:visible').all()) {
       const at = await button.boundingBox();
       assert.ok(at && at.x >= 0 && at.x + at.width <= width, `${await button.getAttribute('aria-label')} at ${at?.x}`);

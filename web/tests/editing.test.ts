@@ -1,4 +1,4 @@
-// Stories of drawing and editing, with the keyboard and the mouse.
+// Stories of drawing and editing, with keyboard and mouse.
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
 import type { Page } from 'playwright-core';
@@ -57,7 +57,7 @@ after(async () => {
   await site?.stop();
 });
 
-/** Waits until the text is this one. */
+/** Waits until the text is `wanted`. */
 async function becomes(page: Page, wanted: string): Promise<void> {
   let text = '';
   for (let n = 0; n < 20 && text !== wanted; n++) text = await textOf(page);
@@ -68,7 +68,7 @@ const item = (page: Page, id: string) => page.locator(`.sheet [data-id="${id}"]`
 
 async function middle(page: Page, id: string): Promise<[number, number]> {
   await drawn(page);
-  // A drawing that has just changed may be drawn anew between two looks.
+  // A changed drawing may be redrawn between two measurements.
   let box = await item(page, id).boundingBox();
   for (let n = 0; n < 20 && !box; n++) {
     await page.waitForTimeout(50);

@@ -1,4 +1,5 @@
-// Stories of files: saved whole, changed outside, recovered after a crash, seen by two.
+// Stories of files: saved completely, changed outside, recovered after a crash, opened by two
+// pages.
 import assert from 'node:assert/strict';
 import { mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
@@ -42,7 +43,7 @@ afterEach(async () => {
   rmSync(folder, { recursive: true, force: true });
 });
 
-/** Gives step 1 another name, without saving. */
+/** Renames step 1 without saving. */
 async function rename(page: Page, to: string): Promise<void> {
   await page.locator('.sheet').focus();
   await page.keyboard.press('ArrowDown');

@@ -11,7 +11,7 @@ import { extname, join, normalize, resolve } from 'node:path';
 import { chromium, type Browser, type BrowserContext, type Locator, type Page } from 'playwright-core';
 
 const HERE = new URL('..', import.meta.url).pathname;
-/** The built page; another one for trying things out. */
+/** The built page; another one can be named for experiments. */
 const DIST = resolve(process.env.G7_DIST ?? join(HERE, 'dist'));
 const TYPES: Record<string, string> = {
   '.html': 'text/html; charset=utf-8',
@@ -26,7 +26,7 @@ const TYPES: Record<string, string> = {
 export interface Site {
   url: string;
   stop(): Promise<void>;
-  /** Ends it at once, without its goodbyes. */
+  /** Kills the server without a clean end. */
   crash?(): Promise<void>;
 }
 
@@ -53,11 +53,11 @@ export async function playground(examples: Record<string, string>): Promise<Site
   };
 }
 
-/** Where the servers of one test file keep copies of unsaved work: not where the user's are. */
+/** Where the servers of a test file keep copies of unsaved work, instead of the user's place. */
 const STATE = mkdtempSync(join(tmpdir(), 'g7-state-'));
 process.once('exit', () => rmSync(STATE, { recursive: true, force: true }));
 
-/** `g7 serve` over a folder; `G7` names the program. */
+/** `g7 serve` for a folder; the variable `G7` names the program. */
 export async function serve(folder: string, ...more: string[]): Promise<Site> {
   const program = process.env.G7 ?? join(HERE, '../target/release/g7');
   const port = more.includes('--port') ? [] : ['--port', '0'];
@@ -83,7 +83,7 @@ export async function serve(folder: string, ...more: string[]): Promise<Site> {
   return { url, stop: () => end('SIGTERM'), crash: () => end('SIGKILL') };
 }
 
-/** Debian's Chromium without a network of its own. */
+/** Debian's Chromium without access to the network. */
 export async function browser(): Promise<Browser & { done(): Promise<void> }> {
   const home = mkdtempSync(join(tmpdir(), 'g7-browser-'));
   const found = await chromium.launch({
@@ -99,7 +99,7 @@ export async function browser(): Promise<Browser & { done(): Promise<void> }> {
   });
 }
 
-/** Opens a file in a fresh page; errors of the page are errors of the test. */
+/** Opens a file in a new page; errors in the page make the test fail. */
 export async function open(
   b: Browser,
   site: Site,
@@ -120,7 +120,7 @@ export async function open(
   return Object.assign(page, { errors });
 }
 
-/** The text of the file in view, by way of a download. */
+/** The text of the visible file, obtained by a download. */
 export async function textOf(page: Page): Promise<string> {
   const [download] = await Promise.all([page.waitForEvent('download'), page.keyboard.press('Control+s')]);
   const parts: Buffer[] = [];
@@ -128,12 +128,12 @@ export async function textOf(page: Page): Promise<string> {
   return Buffer.concat(parts).toString('utf8');
 }
 
-/** Waits until every gesture is drawn: what is pressed next stands where it will stay. */
+/** Waits until every gesture is drawn, so that symbols stay where they are. */
 export async function drawn(page: Page): Promise<void> {
   await page.locator('.sheet[aria-busy="false"]').waitFor({ state: 'attached' });
 }
 
-/** Waits until it is so; `said` tells what did not come. */
+/** Waits until a condition holds; `said` names it in the failure. */
 export async function until(what: () => Promise<boolean>, said: string, ms = 20_000): Promise<void> {
   const end = Date.now() + ms;
   while (!(await what())) {
@@ -144,7 +144,7 @@ export async function until(what: () => Promise<boolean>, said: string, ms = 20_
 
 const AXE = readFileSync(createRequire(import.meta.url).resolve('axe-core/axe.min.js'), 'utf8');
 
-/** What the accessibility checker axe finds wrong, once nothing is fading in or out. */
+/** The findings of the accessibility checker axe, after all fading has ended. */
 export async function axe(page: Page): Promise<string[]> {
   await page.waitForFunction(() => document.getAnimations().every((a) => a.playState !== 'running' || a.effect?.getTiming().iterations === Infinity));
   await page.evaluate(AXE);
@@ -165,7 +165,7 @@ export async function box(of: Locator): Promise<Box> {
   return found;
 }
 
-/** Where a symbol can be pressed: in its box, bar or rectangle. */
+/** A place where a symbol can be pressed: in its square, bar or rectangle. */
 export async function core(page: Page, id: string): Promise<[x: number, y: number]> {
   await drawn(page);
   const at = await box(item(page, id).locator('.g7-box, .g7-bar, .g7-action').first());

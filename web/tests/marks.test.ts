@@ -1,5 +1,5 @@
-// What lies over the drawing covers nothing that is to be read: tokens, times, values,
-// frames of problems, notes, buttons; and the view goes along with the run.
+// Elements over the drawing cover nothing that must be readable: tokens, times, values, frames of
+// problems, notes, buttons; and the view follows the run.
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
 import type { Page } from 'playwright-core';
@@ -19,7 +19,7 @@ chart G1 {
 }
 `;
 
-// Under unity one transition is cleared in a scan, under iec60848 all that can be.
+// Under unity one transition is cleared in a scan, under iec60848 all possible ones.
 const FLEETING = `input a : BOOL
 chart G1 {
   initial step 0
@@ -72,7 +72,7 @@ test('a token leaves a name of two lines free', async () => {
   const lines = item(page, 'G1/s/WaitForBottle').locator('.g7-name');
   assert.equal(await lines.count(), 2);
   const second = await lines.nth(1).evaluate((e) => {
-    // The line it is written on: below that there is nothing of these letters.
+    // The base line; none of these letters reaches below it.
     const { x, y } = new DOMPoint(Number(e.getAttribute('x')), Number(e.getAttribute('y'))).matrixTransform((e as SVGTextElement).getScreenCTM() ?? undefined);
     return { x, y };
   });
@@ -104,7 +104,7 @@ test('the other run of a comparison has a mark of its own, which goes with it', 
   const square = await box(item(page, 'G1/s/1').locator('.g7-box'));
   const label = await box(page.locator('.live .time.other').filter({ hasText: 'unity' }));
   assert.ok(label.y + label.height <= square.y + 4, 'the label stands above its step');
-  // Begun anew, both begin anew.
+  // After a restart both runs begin from the start.
   await page.getByRole('switch', { name: 'a', exact: true }).click();
   await page.getByRole('button', { name: 'Restart' }).click();
   await page.getByText('no difference so far').first().waitFor();

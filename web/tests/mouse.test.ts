@@ -1,5 +1,5 @@
-// Editing with the mouse alone, and from wherever the focus is: branches, the
-// clipboard between charts, lining up, the overview, fixes by keyboard from the text.
+// Editing with the mouse alone, and from any focus: branches, the clipboard between charts,
+// alignment, the overview, fixes by keyboard from the text.
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
 import type { Page } from 'playwright-core';
@@ -45,7 +45,7 @@ after(async () => {
 
 const symbols = (page: Page) => page.locator('.sheet [data-id]').evaluateAll((all) => all.map((e) => (e as HTMLElement).dataset.id ?? ''));
 
-/** Where the squares of some steps stand in the drawing. */
+/** The places of the squares of some steps in the drawing. */
 const corners = (page: Page, ids: string[]) =>
   Promise.all(ids.map((id) => item(page, id).locator('.g7-box').first().evaluate((e) => [Number(e.getAttribute('x')), Number(e.getAttribute('y'))] as const)));
 
@@ -153,7 +153,7 @@ test('from the text, a fix is chosen by keyboard', async () => {
   await page.locator('.cm-content').focus();
   await page.keyboard.press('F8');
   await page.keyboard.press('Control+.');
-  // Three ways: the list offers them.
+  // There are three fixes, so the list offers them.
   await page.waitForFunction(() => document.activeElement?.classList.contains('problem'));
   await page.keyboard.press('Tab');
   await page.keyboard.press('Tab');

@@ -1,5 +1,6 @@
-// `make pictures`: every example at work, as pictures for the book and the README.
-// Time is virtual: each message of the page moves a run on by the same step, up to
+// `make pictures`: a picture of every example at work, for the book and the README. Time is
+// virtual: each message advances a run by the same step up to the wanted instant, so that the
+// pictures show the same situation each time.
 // the instant that is wanted, so that the pictures show the same situation each time.
 import assert from 'node:assert/strict';
 import { mkdirSync, readdirSync, readFileSync, statSync } from 'node:fs';
@@ -12,13 +13,14 @@ const BOOK = join(ROOT, 'docs/book/src/examples/img');
 const README = join(ROOT, 'docs/img/editor.jpg');
 const STEP_MS = 20;
 
-/** What is done before the picture: an input turned, a button pushed, or time passed. */
+/** An act before the picture: an input is switched, a button is pushed, a value is written, or time
+ * passes. */
 type Act = number | { turn: string } | { push: string } | { write: [string, string] };
 interface Scene {
   acts: Act[];
-  /** The chart to show, where it is not the first. */
+  /** The chart to show, if it is not the first. */
   chart?: string;
-  /** The macro-step whose active step comes into view, where the chart is larger than the picture. */
+  /** The macro-step whose active step is shown, if the chart is larger than the picture. */
   within?: string;
 }
 
@@ -66,7 +68,7 @@ function examples(): Record<string, string> {
   return found;
 }
 
-/** Takes the wall clock out of the page's runs. */
+/** Replaces the wall clock of the page's runs. */
 function still(step: number): void {
   const left = { ms: 0 };
   Object.assign(window, { left });

@@ -28,7 +28,7 @@ after(async () => {
   await site?.stop();
 });
 
-/** Waits until the text says this. */
+/** Waits until the text matches. */
 async function says(page: Page, wanted: RegExp): Promise<void> {
   let text = '';
   for (let n = 0; n < 20 && !wanted.test(text); n++) text = await textOf(page);

@@ -1,5 +1,5 @@
-// Running in the page: the chart moves, is driven, held, compared, changed, looked
-// back on, and shown over time.
+// Runs in the page: the chart moves, is operated, forced, compared, changed, looked back on, and
+// shown over time.
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { after, before, test } from 'node:test';
@@ -23,7 +23,7 @@ chart G1 {
 }
 `;
 
-// Two transitions in one scan: the situation {1} is transient under iec60848.
+// Two transitions clear in one scan: the situation {1} is transient under iec60848.
 const FLEETING = `input a : BOOL
 output M : BOOL
 chart G1 {
@@ -145,7 +145,7 @@ test('pass by pass, the transient situation is seen', async () => {
   for (let i = 0; i < 6; i++) {
     await p.getByRole('button', { name: 'One pass: transient situations' }).click();
     const last = await active(p);
-    // A pass that changes nothing shows nothing to wait for.
+    // A pass that changes nothing has no visible effect to wait for.
     for (let n = 0; n < 20 && (await active(p)) === last; n++) await p.waitForTimeout(30);
     const now = await active(p);
     if (seen.at(-1) !== now) seen.push(now);
@@ -338,8 +338,8 @@ test('the chronogram: cursors by keyboard, the difference of times, a table, fil
   await end(p);
 });
 
-// Exercise 1: one black, one yellow, in turn; then the unit is turned over by the
-// button in the picture, and each bead goes back to its compartment.
+// Exercise 1: one black and one yellow bead in turn; then the button in the picture tilts the unit,
+// and each bead returns to its compartment.
 test('the bead sorter: a pattern, a tilt, every bead back in its place', async () => {
   const p = await open(b, site, 'bead-sorter/exercise-1.g7');
   await p.getByRole('combobox', { name: 'Speed' }).selectOption('20');
@@ -348,7 +348,7 @@ test('the bead sorter: a pattern, a tilt, every bead back in its place', async (
     p.locator(`[data-g7=${of}] .bead`).evaluateAll((all) =>
       all.flatMap((e) => ((e as SVGElement).style.display === 'none' ? [] : [e.classList.contains('y') ? 'y' : 'b'])).join(''),
     );
-  // Six black and four yellow: four pairs, a fifth black one, and no yellow one is left.
+  // Six black and four yellow beads: four pairs, a fifth black one, and no yellow one is left.
   await until(async () => (await beads('track')) === 'bybybybyb', 'four pairs and a black bead lie in the track', 20_000);
   assert.equal(await beads('one'), 'b');
   await p.getByRole('button', { name: 'Turn over the unit (tilted)' }).click();

@@ -61,7 +61,7 @@ test('what one page does the other one sees', async () => {
   await one.getByRole('button', { name: 'Run', exact: true }).waitFor();
   await until(async () => (await one.locator('.clock').innerText()) === (await two.locator('.clock').innerText()), 'both show one time');
 
-  // A page that leaves takes nothing with it.
+  // A page that leaves does not affect the others.
   await two.context().close();
   await one.getByRole('button', { name: 'One scan', exact: true }).click();
   assert.equal(await active(one), '1');
@@ -77,7 +77,7 @@ test('breakpoints are those of all pages, and a page with another text is told s
   await one.keyboard.press('F9');
   const two = await open(b, site, 'shared.g7');
   await joined(two);
-  // Set before it came, and what is changed while it looks on.
+  // Breakpoints that were set before it joined, and changes while it watches.
   await two.getByRole('button', { name: 'Breakpoints 1' }).waitFor();
   await two.locator('[data-id="G1/s/0"]').first().click({ force: true });
   await two.keyboard.press('F9');
@@ -92,7 +92,7 @@ test('breakpoints are those of all pages, and a page with another text is told s
   await three.locator('[data-id="G1/s/Other"]').waitFor({ state: 'attached' });
   await joined(three);
   await three.getByText('was begun from another text').waitFor();
-  // What others run is not changed by looking.
+  // Watching a run does not change it.
   await three.waitForTimeout(1500);
   assert.deepEqual(await three.locator('.steps button').allInnerTexts(), ['0', '1']);
   await three.getByRole('button', { name: 'Take over' }).click();

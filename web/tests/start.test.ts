@@ -1,5 +1,5 @@
-// Stories of beginning: the gallery, templates, the guided first chart, files of
-// one's own; and the tables and tests below the drawing.
+// Stories of starting: the gallery, templates, the tour, own files; and the tables and tests below
+// the drawing.
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { after, before, test } from 'node:test';
@@ -22,11 +22,11 @@ after(async () => {
   await site?.stop();
 });
 
-/** Presses at the middle of a symbol's own shape. */
+/** Presses the middle of a symbol's shape. */
 async function press(page: Page, id: string, clickCount = 1): Promise<void> {
   const symbol = page.locator(`.sheet [data-id="${id}"]`).first();
   let box = await symbol.boundingBox();
-  // The view may still move there.
+  // The view may still be moving.
   for (let still = 0; still < 3; ) {
     await page.waitForTimeout(100);
     const now = await symbol.boundingBox();

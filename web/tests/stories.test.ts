@@ -1,5 +1,5 @@
-// A whole story without the mouse: the bottle conveyor drawn from nothing, its
-// names declared by the fixes that are offered, and run to five bottles.
+// A story without the mouse: the bottle conveyor is drawn from nothing, its names are declared by
+// the offered fixes, and it runs to five bottles.
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
 import type { Locator, Page } from 'playwright-core';
@@ -20,7 +20,7 @@ after(async () => {
 
 const field = (page: Page) => page.locator('.inplace input');
 
-/** Types into the field in place and takes it. */
+/** Types into the open field and applies the text. */
 async function write(page: Page, text: string): Promise<void> {
   await field(page).waitFor();
   await page.keyboard.type(text);

@@ -1,5 +1,5 @@
-// Stories of the text beside the drawing: both views always agree, and what is
-// wrong is found and mended where it stands.
+// Stories of the text beside the drawing: both views always agree, and problems are found and fixed
+// in place.
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
 import type { Page } from 'playwright-core';
@@ -48,7 +48,7 @@ async function found<T>(ask: () => Promise<T>, good: (found: T) => boolean, what
   return now;
 }
 
-/** The cursor behind a piece of text. */
+/** Puts the cursor after a piece of text. */
 async function behind(page: Page, piece: string): Promise<void> {
   await page.locator('.cm-content').click();
   await page.keyboard.press('Control+f');

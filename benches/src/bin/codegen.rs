@@ -1,8 +1,8 @@
-//! How long is one scan of generated C?
+//! Measures one scan of generated C.
 //!
-//! Prints ns a scan (moving / idle) for the C of `g7 gen c`, and for matiec's C
-//! where `iec2c` stands on the `PATH`, with the ratio; both compiled by gcc -O2.
-//! Checks first that both visit the same situations.
+//! Prints ns a scan (moving / idle) for the C of `g7 gen c`, and for matiec's C if `iec2c` is on
+//! the `PATH`, with the ratio; both are compiled by gcc -O2. Checks first that both visit the same
+//! situations.
 
 use std::path::Path;
 use std::process::Command;
@@ -11,6 +11,7 @@ use g7_benches::matiec::{self, LOOKED_AT, Measured};
 use g7_benches::shape::Shape;
 use g7_codegen::{Language, Options, Style};
 use g7_model::FileId;
+use g7_peers::Matiec;
 
 const HARNESS: &str = r#"
 #include <stdio.h>
@@ -50,7 +51,7 @@ int main(void) {
 
 fn main() {
     let quick = std::env::args().any(|a| a == "--quick");
-    let peer = matiec::find();
+    let peer = Matiec::find();
     if peer.is_none() {
         println!("matiec: skipped, no iec2c on the PATH");
     }
@@ -73,7 +74,7 @@ fn main() {
         };
         let mut line =
             format!("{:<16}{:>22}", shape.name(), format!("{:.1} / {:.1}", ours.moving, ours.idle));
-        match peer.as_ref().map(|(tool, lib)| matiec::measure(tool, lib, &place.join("matiec"), shape)) {
+        match peer.as_ref().map(|peer| matiec::measure(peer, &place.join("matiec"), shape)) {
             None => {}
             Some(Ok(m)) if m.digest != ours.digest => line.push_str("  NOT COMPARABLE: other situations"),
             Some(Ok(m)) => line.push_str(&format!(
@@ -88,7 +89,7 @@ fn main() {
     let _ = std::fs::remove_dir_all(&folder);
 }
 
-/// Prints, compiles and times one chart in a folder of its own.
+/// Generates, compiles and times one chart in a folder of its own.
 fn ours(folder: &Path, shape: Shape) -> Result<Measured, String> {
     let text = shape.g7();
     let (doc, _) = g7_syntax::parse(&text, FileId(0));

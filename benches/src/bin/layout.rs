@@ -1,8 +1,8 @@
-//! How long does the layout of a chart take, and does it grow with the chart?
+//! Measures the layout of a chart, and how it grows with the chart.
 //!
-//! Prints ms for charts of random structure with as many transitions as steps and
-//! more, without jumps and with twenty from anywhere to anywhere; beside it how
-//! many links were broken, and the size of the drawing in u.
+//! Prints ms for charts of random structure with at least as many transitions as steps, without
+//! jumps and with twenty jumps between arbitrary steps; also the number of broken links, and the
+//! size of the drawing in u.
 #![allow(clippy::disallowed_methods, reason = "a stopwatch reads the clock")]
 
 use std::time::Instant;
@@ -32,7 +32,7 @@ fn main() {
     }
 }
 
-/// The best of some runs: others use the machine too.
+/// The best of several runs, because other programs use the machine too.
 fn measure(chart: &Chart) -> (f64, Placement) {
     let mut seed = Random(5);
     let mut extent = |half: i32, up: i32, down: i32| Extent {

@@ -1,5 +1,5 @@
-//! How long does the editor wait: a chart of 1000 steps opened, drawn, changed;
-//! a frame of a run with 50 active steps.
+//! Measures how long the user of the editor waits: a chart of 1000 steps is opened, drawn and
+//! changed; and a frame of a run with 50 active steps.
 #![allow(clippy::disallowed_methods, reason = "a stopwatch reads the clock")]
 
 use std::fmt::Write;
@@ -42,7 +42,7 @@ fn main() {
     }
 }
 
-/// Rings that move in every scan, one token each.
+/// Rings in which one token each moves in every scan.
 fn chart() -> String {
     let mut text = String::from("profile iec61131\ninput a : BOOL\noutput q : BOOL\nchart Big {\n");
     let length = STEPS / TOKENS;

@@ -1,8 +1,8 @@
-//! How long is one scan, and does it grow with the chart or with its activity?
+//! Measures one scan, and how it grows with the size and with the activity of the chart.
 //!
-//! Prints ns a scan (moving / idle) for G7, and for matiec where `iec2c` stands
-//! on the `PATH`, with the ratio; first checks that both visit the same
-//! situations. Then the time from text to first scan.
+//! Prints ns a scan (moving / idle) for G7, and for matiec if `iec2c` is on the `PATH`, with the
+//! ratio; checks first that both visit the same situations. Then prints the time from the text to
+//! the first scan.
 #![allow(clippy::disallowed_methods, reason = "a stopwatch reads the clock")]
 
 use std::time::Instant;
@@ -12,10 +12,11 @@ use g7_benches::shape::Shape;
 use g7_compile::{Compiled, compile};
 use g7_engine::{State, scan};
 use g7_model::FileId;
+use g7_peers::Matiec;
 
 fn main() {
     let quick = std::env::args().any(|a| a == "--quick");
-    let peer = matiec::find();
+    let peer = Matiec::find();
     if peer.is_none() {
         println!("matiec: skipped, no iec2c on the PATH");
     }
@@ -27,10 +28,10 @@ fn main() {
     let folder = std::env::temp_dir().join(format!("g7-matiec-{}", std::process::id()));
     for shape in small.into_iter().chain(large).chain(huge) {
         let ours = g7(shape);
-        let theirs =
-            peer.as_ref().filter(|_| shape.steps() <= if quick { 100 } else { 1000 }).map(|(tool, lib)| {
-                matiec::measure(tool, lib, &folder.join(shape.name().replace(' ', "-")), shape)
-            });
+        let theirs = peer
+            .as_ref()
+            .filter(|_| shape.steps() <= if quick { 100 } else { 1000 })
+            .map(|peer| matiec::measure(peer, &folder.join(shape.name().replace(' ', "-")), shape));
         let mut line =
             format!("{:<16}{:>22}", shape.name(), format!("{:.1} / {:.1}", ours.moving, ours.idle));
         match theirs {
@@ -59,7 +60,7 @@ fn program(text: &str) -> Compiled {
     compiled.unwrap_or_else(|| panic!("{problems:?}"))
 }
 
-/// The situations that the first scans visit, in the digest of the C harness.
+/// A digest of the situations that the first scans visit, computed like that of the C program.
 fn digest(c: &Compiled, state: &mut State, now: &mut i64) -> u64 {
     let mut h = 14_695_981_039_346_656_037u64;
     let mut eat = |v: u64| h = (h ^ v).wrapping_mul(1_099_511_628_211);
@@ -76,7 +77,7 @@ fn g7(shape: Shape) -> Measured {
     let c = program(&shape.g7());
     let (mut state, mut now) = (State::new(&c.program), 0i64);
     if shape.forks() {
-        // The other side spends a scan on starting the loops.
+        // The other program needs one scan to start the loops.
         scan(&c.program, &mut state, &[0], now).expect("the shapes run without fault");
     }
     let digest = digest(&c, &mut state, &mut now);
@@ -98,7 +99,7 @@ fn g7(shape: Shape) -> Measured {
     Measured { moving, idle: time(0), digest }
 }
 
-/// Milliseconds from the text to the end of the first scan, the best of a few.
+/// The time from the text to the end of the first scan in milliseconds; the best of a few runs.
 fn load(shape: Shape) -> f64 {
     let text = shape.g7();
     (0..5)

@@ -22,7 +22,7 @@ impl Gen<'_> {
 
     fn actions(&mut self) {
         let t = self.t;
-        let (late, sequential, defers) = (self.flag("LATE"), self.flag("SEQUENTIAL"), self.flag("DEFERS"));
+        let (late, sequential, defers) = (self.facts.late, self.facts.sequential, self.facts.defers);
         let mut at_once = vec![false; t.actions.len()];
         let mut deferred = at_once.clone();
         let mark = |all: &mut Vec<bool>, a: u32| {

@@ -86,7 +86,7 @@ pub(crate) fn sketch(g: &Gen<'_>, name: &str) -> String {
         "\n// Time between scans in milliseconds; 0 for as often as it goes.\nstatic const unsigned long SCAN_MS = {};\n\n\
          static {name}_inputs input;\nstatic {name}_outputs output;\nstatic {name}_state state;\n\
          static uint32_t last_ms;\nstatic int64_t now_ns;\n\nvoid setup() {{\n",
-        (g.c.symbols.cycle / 1_000_000).max(0)
+        (g.c.symbols.cycle.count() / 1_000_000).max(0)
     );
     for p in &ins {
         let mode = if p.inverted { "INPUT_PULLUP" } else { "INPUT" };

@@ -1,15 +1,15 @@
-//! From the engine's tables to the tree: what of the templates a program needs,
+//! From the engine's tables to the tree: what of the runtime a program needs,
 //! and the functions that only it has.
 
 use std::collections::{BTreeSet, HashMap};
 
 use g7_compile::Compiled;
-use g7_engine::{Code, Guard, NONE, Num, Op, Rows, Service, StepId, Tables};
+use g7_engine::{Code, NONE, Num, Op, Receptivity, Rows, Service, StepId, Tables};
 use g7_model::{Problem, Span, codes};
 
 use crate::flow::Flow;
 use crate::names::Names;
-use crate::template::Facts;
+use crate::runtime::{self, Facts};
 use crate::tree::{Arm, Block, Expr, Function, Module, Numbers, Stmt, Struct, Ty};
 use crate::vars::{Home, Kind, Vars};
 
@@ -105,20 +105,10 @@ impl<'a> Gen<'a> {
             rows.rows.push((name.clone(), i, String::new()));
             self.transitions.push(name);
         }
-        let words = [
-            ("NONE", "no fault"),
-            ("UNSTABLE", "the chart comes back to the same state within a scan"),
-            ("BOUND", "no stable situation within the bound, or a loop without end"),
-            ("OVERFLOW", "a result that its type cannot hold"),
-            ("DIVISION", "division by zero"),
-            ("RANGE", "an index or a text out of range"),
-            ("FORCING", "two forcing orders disagree"),
-            ("TABLE", "more than the tables of the target hold"),
-            ("INPUTS", "time went back"),
-            ("STOPPED", "stopped by an earlier fault"),
-        ];
-        let faults =
-            words.iter().enumerate().map(|(i, (n, note))| (format!("FAULT_{n}"), i, (*note).to_owned()));
+        let faults = runtime::FAULTS
+            .iter()
+            .enumerate()
+            .map(|(i, (name, note))| ((*name).to_owned(), i, (*note).to_owned()));
         let faults = Numbers {
             note: "What can stop a scan.".into(),
             name: "Fault".into(),
@@ -178,10 +168,6 @@ impl<'a> Gen<'a> {
         if known { Expr::Bool(true) } else { s().field("due").at(Expr::size(period as usize)) }
     }
 
-    pub(crate) fn flag(&self, name: &str) -> bool {
-        self.facts.flags.get(name).copied().unwrap_or(false)
-    }
-
     /// A piece of the chart's text on one line.
     pub(crate) fn text(&self, span: Span) -> String {
         let text = self.source.get(span.start as usize..span.end as usize).unwrap_or("");
@@ -239,15 +225,15 @@ impl<'a> Gen<'a> {
 
     pub(crate) fn guard(&mut self, rank: u32) -> (Expr, bool) {
         let Some(tr) = self.t.transitions.get(rank as usize) else { return (Expr::Bool(false), false) };
-        match tr.guard {
-            Guard::True => (Expr::Bool(true), false),
-            Guard::Word(a) | Guard::NotWord(a) => {
+        match tr.receptivity {
+            Receptivity::True => (Expr::Bool(true), false),
+            Receptivity::Word(a) | Receptivity::NotWord(a) => {
                 let mut flow = Flow::new(self, Code::default(), None);
                 let entry = flow.load(a.0);
                 let e = flow.as_kind(&entry, Kind::Num(Num::Bool));
-                (if matches!(tr.guard, Guard::Word(_)) { e } else { e.not() }, false)
+                (if matches!(tr.receptivity, Receptivity::Word(_)) { e } else { e.not() }, false)
             }
-            Guard::Code(code) => {
+            Receptivity::Code(code) => {
                 let name =
                     format!("guard_{}", self.transitions.get(rank as usize).cloned().unwrap_or_default());
                 self.value(code, Num::Bool, &name)
@@ -262,20 +248,12 @@ impl<'a> Gen<'a> {
         self.function(name, note, parameters, body);
     }
 
-    /// Adds what the templates say.
-    pub(crate) fn templates(&mut self) {
-        for text in [
-            include_str!("runtime/core.g"),
-            include_str!("runtime/pass.g"),
-            include_str!("runtime/more.g"),
-            include_str!("runtime/blocks.g"),
-            include_str!("runtime/fb.g"),
-        ] {
-            let m = crate::template::read(text, &self.facts);
-            // The smaller structures first: the larger ones consist of them.
-            self.m.structs.extend(m.structs);
-            self.m.functions.extend(m.functions);
-        }
+    /// Adds what all charts have in common.
+    pub(crate) fn runtime(&mut self) {
+        // The smaller structures first: the larger ones consist of them.
+        let (structs, functions) = runtime::of(&self.facts);
+        self.m.structs.extend(structs);
+        self.m.functions.extend(functions);
     }
 
     /// The structures that hold the variables.

@@ -76,7 +76,7 @@ impl<'a> Printer<'a> {
     }
 
     /// The rest.
-    pub(crate) fn body(mut self, native: &str) -> String {
+    pub(crate) fn body(mut self, helpers: &str) -> String {
         for numbers in self.module.numbers.iter().filter(|n| !n.public && !n.rows.is_empty()) {
             self.note(&numbers.note, "");
             self.numbers(&numbers.rows, "");
@@ -84,7 +84,7 @@ impl<'a> Printer<'a> {
         for c in &self.module.consts {
             self.constant(c);
         }
-        self.out.push_str(native);
+        self.out.push_str(helpers);
         for f in self.module.functions.iter().filter(|f| !f.public) {
             let head = self.head(f);
             let _ = writeln!(self.out, "static {head};");

@@ -27,13 +27,13 @@ impl Gen<'_> {
         let t = self.t;
         let start: Block = t.initial.iter().map(|step| call("mark_on", self.step(*step))).collect();
         self.function("start", "The initial situation.", vec![state()], start);
-        if self.flag("FLAT") {
+        if self.facts.flat {
             self.flat_evolution();
         } else {
             self.receptivities();
         }
         self.followers();
-        if self.flag("HAS_ON") {
+        if self.facts.has_on {
             self.step_changes(true);
             self.step_changes(false);
         }
@@ -64,8 +64,8 @@ impl Gen<'_> {
             }
         }
         let shared = arms.len() < when.len();
-        self.facts.flags.insert("SAME_RECEPTIVITIES", shared);
-        self.facts.flags.insert("GUARDS_FAIL", some_fail);
+        self.facts.same_receptivities = shared;
+        self.facts.guards_fail = some_fail;
         self.m.functions.push(Function {
             public: false,
             note: "Whether the receptivity of a transition is true.".into(),
@@ -200,7 +200,7 @@ impl Gen<'_> {
 
     /// The stored actions of steps that come on and go off.
     fn lists(&mut self) {
-        if !self.flag("HAS_LISTS") {
+        if !self.facts.has_lists {
             return;
         }
         let t = self.t;
@@ -223,7 +223,7 @@ impl Gen<'_> {
                 let mut body = Block::new();
                 for (k, a) in actions.iter().enumerate() {
                     let run = call("run_action", Expr::size(*a as usize));
-                    if self.flag("LATE") {
+                    if self.facts.late {
                         body.push(call("run_at_end", Expr::size(*a as usize)));
                     } else if k == 0 {
                         body.push(run);
@@ -235,7 +235,7 @@ impl Gen<'_> {
                 run.push(Arm { label, note, body });
             }
             self.choice(&format!("gather_{name}"), note, "step", gather);
-            if self.flag("SEQUENTIAL") {
+            if self.facts.sequential {
                 self.choice(&format!("run_{name}"), note, "step", run);
             }
         }
@@ -315,7 +315,7 @@ impl Gen<'_> {
         self.numbers(&format!("{name}_AT"), "Where each row begins.", &starts);
     }
 
-    /// Which transitions are looked at from where, and what else the templates ask of one.
+    /// Which transitions are looked at from where, and what else the runtime asks of one.
     fn watched(&mut self) {
         let t = self.t;
         let outs: Vec<Vec<u32>> = t.steps.iter().map(|s| Gen::list(&t.outs, s.out)).collect();
@@ -338,7 +338,7 @@ impl Gen<'_> {
         self.numbers("ON_CLEARING", &note, &actions.collect::<Vec<_>>());
     }
 
-    /// What the templates look up.
+    /// What the runtime looks up.
     fn tables(&mut self) {
         let t: &Tables = self.t;
         let ids = |steps: Vec<StepId>| steps.into_iter().map(|s| s.0).collect::<Vec<_>>();

@@ -1,9 +1,9 @@
-//! What of the templates a program needs.
+//! What of the runtime a program needs.
 
 use g7_engine::{NONE, Op, Tables};
 
 use crate::build::Gen;
-use crate::template::Facts;
+use crate::runtime::Facts;
 
 /// Where the inputs of each control block are counted, and how many there are.
 pub(crate) fn counts(t: &Tables) -> (Vec<usize>, usize) {
@@ -18,7 +18,6 @@ pub(crate) fn counts(t: &Tables) -> (Vec<usize>, usize) {
 }
 
 pub(crate) fn of(t: &Tables, flat: bool) -> Facts {
-    let mut f = Facts::default();
     let r = t.rules;
     let lists = t.extras.iter().any(|e| !e.on.is_empty() || !e.off.is_empty());
     let clearing = t.transitions.iter().any(|t| t.on_clearing != NONE);
@@ -47,64 +46,7 @@ pub(crate) fn of(t: &Tables, flat: bool) -> Facts {
         !(e.events.is_empty() && e.periodics.is_empty() && e.contributions.is_empty() && e.groups.is_empty())
             || (e.uncounted && t.counts.is_some())
     });
-    f.flags = [
-        ("FLAT", flat),
-        ("ALONE", alone),
-        ("STABLE", r.stable),
-        ("MULTI", r.multi_token),
-        ("EXCLUSIVE", r.numbered_exclusive),
-        ("SEQUENTIAL", r.sequential),
-        ("LATE", r.late_actions),
-        ("KEEP", r.keep_step_time),
-        ("SCAN_CLOCK", r.scan_clock),
-        ("FINAL_SCAN", r.final_scan),
-        ("PERIODIC_FIRST", r.periodic_first),
-        ("HAS_ORDERS", !t.orders.is_empty()),
-        ("HAS_PERIODS", t.periods.iter().any(|p| *p > 0)),
-        ("HAS_HIERARCHY", hierarchy),
-        ("UNMARKS", hierarchy || !t.orders.is_empty()),
-        ("HAS_LISTS", lists),
-        ("HAS_STORED", stored),
-        ("DEFERS", stored && r.parallel_actions),
-        ("HAS_CLEARING", clearing),
-        ("HAS_CONTESTS", shared),
-        ("HAS_JOINS", t.transitions.iter().any(|x| !x.more_from.is_empty())),
-        ("ONE_TO_ONE", t.transitions.iter().all(single)),
-        ("HAS_SETTLED", settled && t.transitions.iter().any(|x| x.simple)),
-        ("SAME_RECEPTIVITIES", false),
-        ("HAS_FOLLOWERS", t.steps.iter().any(|s| s.direct.0 != NONE)),
-        ("HAS_GROUPS", !t.group_lists.is_empty()),
-        ("HAS_EVENTS", !t.events.is_empty()),
-        ("HAS_PERIODICS", !t.periodics.is_empty()),
-        ("HAS_BLOCKS", !t.blocks.is_empty()),
-        ("HAS_FULL", full > 0),
-        ("HAS_CONDITIONS", conditional > 0),
-        ("HAS_WATCHES", !t.watches.is_empty()),
-        ("HAS_REQUESTS", Gen::asks(t)),
-        ("HAS_COUNTS", t.counts.is_some()),
-        ("HAS_LIMITS", t.limits.is_some()),
-        ("HAS_DROPS", !t.drops.is_empty()),
-        ("HAS_SOURCES", !t.sources.is_empty()),
-        ("HAS_PRE", !t.pre.is_empty()),
-        ("HAS_SERVICES", !t.services.is_empty()),
-        ("HAS_POST", !t.post.is_empty()),
-        ("HAS_TAIL", !t.tail.is_empty()),
-        ("HAS_LATE", late),
-        ("HAS_ON", on),
-        ("LOOKS_BACK", t.code.iter().any(|op| matches!(op, Op::WasActive(_)))),
-        ("COMES_AND_GOES", comes_and_goes),
-        ("NOTES_STEPS", comes_and_goes || r.late_actions),
-        ("LOOKS_EARLY", r.late_actions && (conditional > 0 || full > 0)),
-        ("GUARDS_FAIL", true),
-        ("HAS_OUTS", !t.outs.is_empty()),
-    ]
-    .into_iter()
-    .collect();
-    sizes(t, &mut f, full);
-    f
-}
 
-fn sizes(t: &Tables, f: &mut Facts, full: usize) {
     let words = |n: usize| n.div_ceil(32).max(1);
     let references = t.action_lists.len()
         + t.events.len()
@@ -127,49 +69,94 @@ fn sizes(t: &Tables, f: &mut Facts, full: usize) {
         t.charts.len(),
     ];
     let most = most.into_iter().max().unwrap_or(0);
-    f.sizes = [
-        (
-            "ROW_BITS",
-            if most < 250 {
-                8
-            } else if most < 65_000 {
-                16
-            } else {
-                32
-            },
-        ),
-        ("STEPS", steps),
-        ("WORDS", words(steps)),
-        ("TOP", words(words(steps))),
-        ("TRANSITIONS", transitions),
-        ("SOURCES", t.sources.len()),
-        ("GROUPS", t.groups.len()),
-        ("GROUP_WORDS", words(t.groups.len())),
-        ("CHARTS", t.charts.len()),
-        ("WATCHES", t.watches.len()),
-        ("EVENTS", t.events.len()),
-        ("EVENT_WORDS", words(t.events.len())),
-        ("PERIODICS", t.periodics.len()),
-        ("PERIODIC_WORDS", words(t.periodics.len())),
-        ("CONDITIONS", t.contributions.len()),
-        ("CONDITION_WORDS", words(t.contributions.len())),
-        ("BLOCKS", t.blocks.len()),
-        ("BLOCK_WORDS", words(t.blocks.len())),
-        ("COUNTS", counts(t).1),
-        ("FULL", full),
-        ("FULL_TIMES", full * 5),
-        ("PERIODS", t.periods.len()),
-        ("ACTIONS", t.actions.len()),
-        ("ACTION_WORDS", words(t.actions.len())),
-        ("RUNS", references.max(1)),
-        ("ORDERS", t.orders.len()),
-        ("NO_ORDER", t.orders.len()),
-        ("CHAIN", 1 + taken.max(brought)),
-        ("ENTERED", 2 * steps + 1),
-        ("BOUND", t.rules.bound as usize),
-        ("MOST_ACTIVE", t.limits.map_or(0, |l| l.1.active as usize)),
-        ("MOST_ENABLED", t.limits.map_or(0, |l| l.1.enabled as usize)),
-    ]
-    .into_iter()
-    .collect();
+    Facts {
+        flat,
+        alone,
+        stable: r.stable,
+        multi: r.multi_token,
+        exclusive: r.numbered_exclusive,
+        sequential: r.sequential,
+        late: r.late_actions,
+        keep: r.keep_step_time,
+        scan_clock: r.scan_clock,
+        final_scan: r.final_scan,
+        periodic_first: r.periodic_first,
+        has_orders: !t.orders.is_empty(),
+        has_periods: t.periods.iter().any(|p| *p > 0),
+        has_hierarchy: hierarchy,
+        unmarks: hierarchy || !t.orders.is_empty(),
+        has_lists: lists,
+        has_stored: stored,
+        defers: stored && r.parallel_actions,
+        has_clearing: clearing,
+        has_contests: shared,
+        has_joins: t.transitions.iter().any(|x| !x.more_from.is_empty()),
+        one_to_one: t.transitions.iter().all(single),
+        has_settled: settled && t.transitions.iter().any(|x| x.simple),
+        same_receptivities: false,
+        has_followers: t.steps.iter().any(|s| s.direct.0 != NONE),
+        has_groups: !t.group_lists.is_empty(),
+        has_events: !t.events.is_empty(),
+        has_periodics: !t.periodics.is_empty(),
+        has_blocks: !t.blocks.is_empty(),
+        has_full: full > 0,
+        has_conditions: conditional > 0,
+        has_watches: !t.watches.is_empty(),
+        has_requests: Gen::asks(t),
+        has_counts: t.counts.is_some(),
+        has_limits: t.limits.is_some(),
+        has_drops: !t.drops.is_empty(),
+        has_sources: !t.sources.is_empty(),
+        has_pre: !t.pre.is_empty(),
+        has_services: !t.services.is_empty(),
+        has_post: !t.post.is_empty(),
+        has_tail: !t.tail.is_empty(),
+        has_late: late,
+        has_on: on,
+        looks_back: t.code.iter().any(|op| matches!(op, Op::WasActive(_))),
+        comes_and_goes,
+        notes_steps: comes_and_goes || r.late_actions,
+        looks_early: r.late_actions && (conditional > 0 || full > 0),
+        guards_fail: true,
+        has_outs: !t.outs.is_empty(),
+
+        row_bits: if most < 250 {
+            8
+        } else if most < 65_000 {
+            16
+        } else {
+            32
+        },
+        steps,
+        words: words(steps),
+        top: words(words(steps)),
+        transitions,
+        sources: t.sources.len(),
+        groups: t.groups.len(),
+        group_words: words(t.groups.len()),
+        charts: t.charts.len(),
+        watches: t.watches.len(),
+        events: t.events.len(),
+        event_words: words(t.events.len()),
+        periodics: t.periodics.len(),
+        periodic_words: words(t.periodics.len()),
+        conditions: t.contributions.len(),
+        condition_words: words(t.contributions.len()),
+        blocks: t.blocks.len(),
+        block_words: words(t.blocks.len()),
+        counts: counts(t).1,
+        full,
+        full_times: full * 5,
+        periods: t.periods.len(),
+        actions: t.actions.len(),
+        action_words: words(t.actions.len()),
+        runs: references.max(1),
+        orders: t.orders.len(),
+        no_order: t.orders.len(),
+        chain: 1 + taken.max(brought),
+        entered: 2 * steps + 1,
+        bound: t.rules.bound as usize,
+        most_active: t.limits.map_or(0, |l| l.1.active as usize),
+        most_enabled: t.limits.map_or(0, |l| l.1.enabled as usize),
+    }
 }

@@ -1,7 +1,7 @@
 //! The evolution as Boolean equations with memories: the flat style.
 //!
 //! What a pass judges and changes is the same as in the structured style, and so is
-//! all that follows from it (`runtime/`): stored actions, enclosures, forcing, control
+//! all that follows from it (`crates/runtime`): stored actions, enclosures, forcing, control
 //! blocks. Only the way from the step memories to the marked changes is another.
 //!
 //! # Invariants
@@ -27,7 +27,7 @@ impl Gen<'_> {
     /// Clearing conditions and step memories.
     pub(crate) fn flat_evolution(&mut self) {
         self.clearing_conditions();
-        if !self.flag("SEQUENTIAL") {
+        if !self.facts.sequential {
             self.step_memories();
         }
     }
@@ -75,7 +75,7 @@ impl Gen<'_> {
         let single = !t.rules.multi_token;
         let rivals = self.rivals();
         let contested: BTreeSet<u32> = rivals.iter().flatten().copied().collect();
-        let blocks = self.flag("HAS_ORDERS") || self.flag("HAS_PERIODS");
+        let blocks = self.facts.has_orders || self.facts.has_periods;
         let ranks: Vec<u32> = t.sources.iter().chain(&t.outs).copied().collect();
         let mut body = Block::new();
         let mut late = Vec::new();
@@ -174,7 +174,7 @@ impl Gen<'_> {
                 *b = false;
             }
         }
-        self.equations = if self.flag("FLAT") { all } else { Vec::new() };
+        self.equations = if self.facts.flat { all } else { Vec::new() };
     }
 
     /// `Q := X1 OR X2`, for an output or a body.

@@ -25,13 +25,11 @@ mod flat;
 mod flow;
 mod frame;
 mod names;
-mod native_c;
-mod native_rust;
 pub mod plc;
 mod prune;
+mod runtime;
 mod rust;
 mod stmts;
-mod template;
 mod tree;
 mod values;
 mod vars;
@@ -40,9 +38,10 @@ use std::collections::HashMap;
 
 use g7_compile::Compiled;
 use g7_engine::{Addr, StepId};
-use g7_model::{Problem, Severity, codes};
+use g7_model::{Problem, Severity, Span, codes};
 
 use build::Gen;
+use runtime::Helpers;
 use tree::Module;
 
 /// A language that is printed.
@@ -142,7 +141,7 @@ pub fn print(compiled: &Compiled, options: &Options<'_>) -> Result<Printed, Vec<
         g.acts();
         g.frame();
         g.structures();
-        g.templates();
+        g.runtime();
         let known = std::mem::take(&mut g.vars.hidden);
         let done = known == hidden;
         hidden = known;
@@ -153,7 +152,7 @@ pub fn print(compiled: &Compiled, options: &Options<'_>) -> Result<Printed, Vec<
     }
     let Some(mut g) = made else { return Err(Vec::new()) };
     let mut module = std::mem::take(&mut g.m);
-    let natives = prune::prune(&mut module);
+    let called = prune::prune(&mut module);
     let mut problems = std::mem::take(&mut g.problems);
     if let Some(at) = g.real_text.filter(|_| options.language != Language::Rust) {
         problems.push(Problem::new(
@@ -175,22 +174,29 @@ pub fn print(compiled: &Compiled, options: &Options<'_>) -> Result<Printed, Vec<
     if problems.iter().any(|p| p.severity() == Severity::Error) {
         return Err(problems);
     }
+    let all = if options.language == Language::Rust { runtime::rust_helpers() } else { runtime::c_helpers() };
+    let helpers = match (prune::missing(&module), runtime::helpers(all, &called)) {
+        (None, Ok(helpers)) => helpers,
+        (Some(name), _) | (None, Err(name)) => {
+            let text = format!("the code asks for `{name}`, which is not there");
+            return Err(vec![Problem::new(&codes::NOT_CARRIED, Span::default(), text)]);
+        }
+    };
     let name = names::letters(options.name).to_lowercase();
     let files = match options.language {
-        Language::C => c_files(&module, &natives, &name),
+        Language::C => c_files(&module, &helpers, &name),
         Language::Arduino => {
-            let mut files = c_files(&module, &natives, &name);
+            let mut files = c_files(&module, &helpers, &name);
             files.push(File { name: format!("{name}.ino"), text: arduino::sketch(&g, &name) });
             files
         }
         Language::Rust => {
-            let native = native_rust::functions(&natives);
             let head = format!(
                 "//! The chart `{name}`, printed by G7. Call [`init`] once, then [`scan`] in each cycle.\n#![forbid(unsafe_code)]\n\
                  // What a chart writes for nothing stands as it is, and so do brackets.\n\
                  #![allow(dead_code, unused_assignments, unused_mut, unused_parens)]\n\n"
             );
-            vec![File { name: format!("{name}.rs"), text: head + &rust::print(&module, &native) }]
+            vec![File { name: format!("{name}.rs"), text: head + &rust::print(&module, &helpers.text) }]
         }
     };
     Ok(Printed { files, problems, places: places(&g) })
@@ -225,7 +231,7 @@ fn places(g: &Gen<'_>) -> Places {
     places
 }
 
-fn c_files(module: &Module, natives: &std::collections::BTreeSet<String>, name: &str) -> Vec<File> {
+fn c_files(module: &Module, helpers: &Helpers, name: &str) -> Vec<File> {
     let guard = format!("{}_H", name.to_uppercase());
     let mut header = format!(
         "/* The chart {name}, printed by G7. Call {name}_init once, then {name}_scan in each cycle. */\n"
@@ -234,8 +240,9 @@ fn c_files(module: &Module, natives: &std::collections::BTreeSet<String>, name: 
     header += "#ifdef __cplusplus\nextern \"C\" {\n#endif\n\n";
     header += &c::Printer::new(module, name).header();
     header += "#ifdef __cplusplus\n}\n#endif\n\n#endif\n";
-    let (includes, native) = native_c::functions(natives, name);
-    let body = c::Printer::new(module, name).body(&native);
+    let includes = if helpers.math { "#include <math.h>\n" } else { "" };
+    let helpers = helpers.text.replace("FAULT_", &format!("{}_FAULT_", name.to_uppercase()));
+    let body = c::Printer::new(module, name).body(&helpers);
     let text = format!("/* The chart {name}, printed by G7. */\n#include \"{name}.h\"\n{includes}\n{body}");
     vec![File { name: format!("{name}.h"), text: header }, File { name: format!("{name}.c"), text }]
 }

@@ -78,7 +78,7 @@ pub(crate) fn prune(m: &mut Module) -> BTreeSet<String> {
     m.functions.retain(|f| functions.contains(&f.name));
     keep_fields(m, &fields);
     crate::frame::comparisons(m);
-    let (functions, names, fields, natives) = reach(m);
+    let (functions, names, fields, helpers) = reach(m);
     m.functions.retain(|f| functions.contains(&f.name));
     m.consts.retain(|c| names.contains(&c.name));
     for n in m.numbers.iter_mut().filter(|n| !n.public) {
@@ -102,7 +102,16 @@ pub(crate) fn prune(m: &mut Module) -> BTreeSet<String> {
     }
     m.structs.retain(|s| used.contains(&s.name));
     order(m);
-    natives
+    helpers
+}
+
+/// A name in capitals, of a table or a number, that is used and not there.
+pub(crate) fn missing(m: &Module) -> Option<String> {
+    let rows = m.numbers.iter().flat_map(|n| n.rows.iter().map(|r| r.0.as_str()));
+    let there: HashSet<&str> = rows.chain(m.consts.iter().map(|c| c.name.as_str())).collect();
+    let (_, names, _, _) = reach(m);
+    let capital = |n: &&String| !n.contains(|c: char| c.is_lowercase());
+    names.iter().filter(capital).find(|n| !there.contains(n.as_str())).cloned()
 }
 
 fn keep_fields(m: &mut Module, fields: &HashSet<String>) {
@@ -115,7 +124,7 @@ fn keep_fields(m: &mut Module, fields: &HashSet<String>) {
 fn reach(m: &Module) -> (HashSet<String>, HashSet<String>, HashSet<String>, BTreeSet<String>) {
     let by_name: HashMap<&str, &Function> = m.functions.iter().map(|f| (f.name.as_str(), f)).collect();
     let (mut functions, mut names, mut fields) = (HashSet::new(), HashSet::new(), HashSet::new());
-    let mut natives = BTreeSet::new();
+    let mut helpers = BTreeSet::new();
     let mut waiting: Vec<&Function> = m.functions.iter().filter(|f| f.public).collect();
     functions.extend(waiting.iter().map(|f| f.name.clone()));
     while let Some(f) = waiting.pop() {
@@ -134,7 +143,7 @@ fn reach(m: &Module) -> (HashSet<String>, HashSet<String>, HashSet<String>, BTre
                         }
                     }
                     None => {
-                        natives.insert(f.clone());
+                        helpers.insert(f.clone());
                     }
                 },
                 _ => {}
@@ -150,7 +159,7 @@ fn reach(m: &Module) -> (HashSet<String>, HashSet<String>, HashSet<String>, BTre
             });
         }
     }
-    (functions, names, fields, natives)
+    (functions, names, fields, helpers)
 }
 
 /// Structures behind those that they hold.

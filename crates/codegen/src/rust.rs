@@ -6,7 +6,7 @@ use std::fmt::Write as _;
 use crate::tree::{Arm, Bin, Block, Const, Expr, Function, Known, Module, Stmt, Struct, Ty, Un};
 
 /// Prints a module.
-pub(crate) fn print(m: &Module, native: &str) -> String {
+pub(crate) fn print(m: &Module, helpers: &str) -> String {
     let mut p = Printer { out: String::new() };
     for numbers in &m.numbers {
         for (name, value, note) in &numbers.rows {
@@ -20,7 +20,7 @@ pub(crate) fn print(m: &Module, native: &str) -> String {
     }
     m.consts.iter().for_each(|c| p.constant(c));
     m.structs.iter().for_each(|s| p.structure(s));
-    p.out.push_str(native);
+    p.out.push_str(helpers);
     m.functions.iter().for_each(|f| p.function(f));
     while p.out.ends_with("\n\n") {
         p.out.pop();

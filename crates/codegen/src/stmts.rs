@@ -237,17 +237,27 @@ impl Flow<'_, '_> {
     fn service(&mut self, service: Service) {
         self.settle();
         let m = || Expr::name("s").field("m");
-        let (field, i) = match service {
-            Service::Init(g) => ("ask_init", Expr::size(g.0 as usize)),
-            Service::Clear(g) => ("ask_clear", Expr::size(g.0 as usize)),
-            Service::Set(step) => ("ask_set", self.g.step(step)),
-            Service::Reset(step) => ("ask_reset", self.g.step(step)),
-            Service::ResetTimes => {
-                self.out.push(Stmt::Do(Expr::call("reset_times", vec![Expr::name("s")])));
-                return;
+        let call = |name, args| Stmt::Do(Expr::call(name, args));
+        let bit = |name, field, i| call(name, vec![m().field(field).passed(), i]);
+        // A request takes back what was asked for the same steps before.
+        let asked = match service {
+            Service::ResetTimes => return self.out.push(call("reset_times", vec![Expr::name("s")])),
+            Service::Start => vec![Stmt::set(m().field("ask_start"), Expr::Bool(true))],
+            Service::Init(g) | Service::Clear(g) => {
+                let field = if matches!(service, Service::Init(_)) { "ask_init" } else { "ask_clear" };
+                let i = || Expr::size(g.0 as usize);
+                vec![bit("bit_set", field, i()), call("forget_sets", vec![Expr::name("s"), i()])]
+            }
+            Service::Set(step) => {
+                let i = || self.g.step(step);
+                vec![bit("bit_set", "ask_set", i()), bit("bit_clear", "ask_reset", i())]
+            }
+            Service::Reset(step) => {
+                let i = || self.g.step(step);
+                vec![bit("bit_set", "ask_reset", i()), bit("bit_clear", "ask_set", i())]
             }
         };
-        self.out.push(Stmt::Do(Expr::call("bit_set", vec![m().field(field).passed(), i])));
+        self.out.extend(asked);
         self.out.push(Stmt::set(m().field("requests"), Expr::Bool(true)));
     }
 }

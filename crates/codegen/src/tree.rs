@@ -43,7 +43,6 @@ pub(crate) enum Un {
 pub(crate) enum Bin {
     Mul,
     Div,
-    Rem,
     Add,
     Sub,
     Shl,
@@ -67,7 +66,6 @@ impl Bin {
         match self {
             Bin::Mul => "*",
             Bin::Div => "/",
-            Bin::Rem => "%",
             Bin::Add => "+",
             Bin::Sub => "-",
             Bin::Shl => "<<",
@@ -86,10 +84,10 @@ impl Bin {
         }
     }
 
-    /// How tightly it binds in Rust, whose order the templates are read in.
+    /// How tightly it binds in Rust, whose order its printer goes by.
     pub(crate) fn tightness(self) -> u8 {
         match self {
-            Bin::Mul | Bin::Div | Bin::Rem => 9,
+            Bin::Mul | Bin::Div => 9,
             Bin::Add | Bin::Sub => 8,
             Bin::Shl | Bin::Shr => 7,
             Bin::BitAnd => 6,
@@ -202,6 +200,11 @@ impl Expr {
             }
         }
     }
+}
+
+/// Calls that the printers write as operators or literals.
+pub(crate) fn is_operator(function: &str) -> bool {
+    matches!(function, "inv" | "zeroed")
 }
 
 /// A run of statements.

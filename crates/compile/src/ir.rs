@@ -1,12 +1,12 @@
 //! The chart with every name resolved and every expression typed.
 //!
-//! Made by `resolve` from a `model::Document`, judged by `check`, turned into
-//! an `engine::Program` by `lower`. What cannot be resolved is left out and
-//! has been reported; whatever is here is well typed: both operands of a binary
-//! operator have one type, conversions are explicit, targets are writable.
+//! `resolve` makes it from a `model::Document`, `check` judges it, and `lower` turns it into an
+//! `engine::Program`. Parts that cannot be resolved are reported and left out. The rest is well
+//! typed: both operands of a binary operator have one type, conversions are explicit, targets are
+//! writable.
 
 use g7_engine::{Builtin, Rules};
-use g7_model::{FbKind, ProfileName, Qualifier, Span, TargetPlc, Type};
+use g7_model::{FbKind, Nanos, ProfileName, Qualifier, Span, TargetPlc, Type};
 
 macro_rules! ids {
     ($($(#[$doc:meta])* $name:ident)*) => {$(
@@ -46,8 +46,8 @@ pub struct Unit {
     pub profile: ProfileName,
     /// Its switches, with those set one by one.
     pub rules: Rules,
-    /// Nominal scan time, nanoseconds.
-    pub cycle: i64,
+    /// The nominal scan time.
+    pub cycle: Nanos,
     /// The PLC whose limits hold.
     pub target: Option<TargetPlc>,
     /// Inputs, outputs, variables, constants, instances, system bits.
@@ -60,9 +60,10 @@ pub struct Unit {
     pub transitions: Vec<Transition>,
     /// Named actions.
     pub bodies: Vec<Body>,
-    /// Preliminary processing, a body each section, in text order; RETURN ends its own section only.
+    /// Preliminary processing: one body for each section, in text order. RETURN ends its own
+    /// section only.
     pub pre: Vec<Body>,
-    /// Posterior processing, likewise.
+    /// Posterior processing, in the same form.
     pub post: Vec<Body>,
     /// Transition sections.
     pub sections: Vec<Section>,
@@ -70,7 +71,7 @@ pub struct Unit {
     pub functions: Vec<Function>,
 }
 
-/// What a variable is for.
+/// The role of a variable.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum VarClass {
     /// Copied in at the start of a scan.
@@ -92,11 +93,11 @@ pub enum VarClass {
 pub struct Var {
     /// Qualified name as users write it from elsewhere: `motor`, `Fill.count`.
     pub name: Box<str>,
-    /// What it is for.
+    /// Its role.
     pub class: VarClass,
     /// Its type.
     pub ty: Type,
-    /// Number of elements; 1 but for the tables of a plant.
+    /// Number of elements: 1, except for the tables of a plant.
     pub elements: u32,
     /// Initial value (one for all elements).
     pub init: Value,
@@ -116,7 +117,7 @@ pub struct Var {
     pub at: Span,
 }
 
-/// A constant of one of the types; the type stands beside it.
+/// A constant of one of the types; its type is stored next to it.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Value {
     /// BOOL.
@@ -129,7 +130,7 @@ pub enum Value {
     Str(Box<str>),
 }
 
-/// What a chart is for.
+/// The role of a chart.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum ChartRole {
     /// A chart of its own.
@@ -147,12 +148,12 @@ pub enum ChartRole {
 pub struct Chart {
     /// Its name.
     pub name: Box<str>,
-    /// How its steps are called in traces: `G`, for an expansion `G.M3`.
+    /// The name of the chart in traces: `G`, for an expansion `G.M3`.
     pub path: Box<str>,
-    /// What it is for.
+    /// Its role.
     pub role: ChartRole,
-    /// Period of its evolutions in nanoseconds, 0 for each scan.
-    pub every: i64,
+    /// The period of its evolutions; without one it evolves in every scan.
+    pub every: Option<Nanos>,
     /// Its steps: `first..end` of [`Unit::steps`].
     pub steps: std::ops::Range<u32>,
     /// Its transitions: `first..end` of [`Unit::transitions`].
@@ -167,7 +168,7 @@ pub struct Chart {
     pub at: Span,
 }
 
-/// What sort of step.
+/// The kind of a step.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum StepSort {
     /// Plain, entry or exit step.
@@ -185,7 +186,7 @@ pub struct Step {
     pub name: Box<str>,
     /// Its chart.
     pub chart: ChartId,
-    /// What sort.
+    /// Its kind.
     pub sort: StepSort,
     /// Active in the initial situation.
     pub initial: bool,
@@ -223,7 +224,7 @@ pub struct Transition {
 /// An action of a step.
 #[derive(Clone, Debug)]
 pub struct Action {
-    /// What it does and when.
+    /// Its effect and its time.
     pub kind: ActionKind,
     /// Where it stands.
     pub at: Span,
@@ -260,7 +261,7 @@ pub enum ActionKind {
         qualifier: Qualifier,
         /// TIME, for the timed ones.
         time: Option<Expr>,
-        /// What is done.
+        /// The statements that run.
         work: Vec<Stmt>,
         /// BOOL.
         condition: Option<Expr>,
@@ -269,12 +270,12 @@ pub enum ActionKind {
     OnEvent {
         /// BOOL, with an edge in it.
         event: Expr,
-        /// What is done.
+        /// The statements that run.
         work: Vec<Stmt>,
     },
     /// Each scan while the step is active.
     EachScan {
-        /// What is done.
+        /// The statements that run.
         work: Vec<Stmt>,
         /// BOOL.
         condition: Option<Expr>,
@@ -307,7 +308,7 @@ pub struct Body {
     pub name: Box<str>,
     /// The chart it stands in; `None` outside of all charts.
     pub chart: Option<ChartId>,
-    /// What it does.
+    /// Its statements.
     pub statements: Vec<Stmt>,
     /// Its name in the text.
     pub at: Span,
@@ -320,7 +321,7 @@ pub struct Section {
     pub name: Box<str>,
     /// Its BOOL output.
     pub output: VarId,
-    /// Runs when the transition is judged.
+    /// Runs when the receptivity of the transition is evaluated.
     pub statements: Vec<Stmt>,
     /// Its name in the text.
     pub at: Span,
@@ -335,7 +336,7 @@ pub struct Function {
     pub params: Vec<VarId>,
     /// Its result, a local variable, zero at each call.
     pub result: VarId,
-    /// What it computes; starts with the assignments that set its locals.
+    /// Its statements; they begin with the assignments that set its locals.
     pub statements: Vec<Stmt>,
     /// Its name in the text.
     pub at: Span,
@@ -344,7 +345,7 @@ pub struct Function {
 /// A typed expression.
 #[derive(Clone, Debug)]
 pub struct Expr {
-    /// What it is.
+    /// Its kind.
     pub kind: ExprKind,
     /// Type of its value.
     pub ty: Type,
@@ -381,7 +382,7 @@ pub enum ExprKind {
     Rise(Box<Expr>),
     /// Falling edge.
     Fall(Box<Expr>),
-    /// Operands of one type, but for TIME `*` and `/` whose right one is LINT or LREAL.
+    /// Both operands have one type; in `*` and `/` of a TIME the right one is LINT or LREAL.
     Binary(BinaryOp, Box<Expr>, Box<Expr>),
     /// `t1/e/t2`.
     Timer {
@@ -392,8 +393,8 @@ pub enum ExprKind {
         /// TIME.
         t2: Option<Box<Expr>>,
     },
-    /// To the type of this expression, from that of the operand; TIME counts
-    /// as its nanoseconds (LINT), what the user's `TIME_TO_DINT` scales stands beside it.
+    /// Converts the operand to the type of this expression. TIME counts as its nanoseconds (LINT);
+    /// a separate factor scales it for `TIME_TO_DINT`.
     Convert(Box<Expr>),
     /// TRUNC: a real toward zero, to the integer type of this expression.
     Trunc(Box<Expr>),
@@ -409,7 +410,7 @@ pub enum ExprKind {
     Random,
 }
 
-/// Operators between operands; `And`, `Or`, `Xor` of BOOL.
+/// Operators between operands; `And`, `Or` and `Xor` join values of type BOOL.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum BinaryOp {
     /// OR.
@@ -444,7 +445,7 @@ pub enum BinaryOp {
     Pow,
 }
 
-/// What can be written to.
+/// The target of an assignment.
 #[derive(Clone, Debug)]
 pub enum Target {
     /// A variable.
@@ -458,7 +459,7 @@ pub enum Target {
 /// A statement.
 #[derive(Clone, Debug)]
 pub struct Stmt {
-    /// What it is.
+    /// Its kind.
     pub kind: StmtKind,
     /// Where it stands.
     pub at: Span,
@@ -497,7 +498,7 @@ pub enum StmtKind {
         to: Expr,
         /// Step.
         by: Option<Expr>,
-        /// What is repeated.
+        /// The repeated statements.
         body: Vec<Stmt>,
     },
     /// WHILE.

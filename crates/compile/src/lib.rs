@@ -5,18 +5,19 @@
 //!                                                       -> lower -> engine::Program + Symbols
 //! ```
 //!
-//! What an author did wrong is a [`Problem`], never an `Err` and never a panic;
-//! a document with problems still gives all the others that it has.
+//! A mistake of the author is a [`Problem`], never an `Err` and never a panic. All problems of a
+//! document are reported, not only the first.
 #![forbid(unsafe_code)]
 
 pub mod check;
+mod circles;
 pub mod ir;
 pub mod lower;
-mod mentions;
 pub mod plant;
 pub mod references;
 pub mod resolve;
 pub mod symbols;
+pub mod tree;
 
 use std::sync::Arc;
 
@@ -35,14 +36,16 @@ pub struct Compiled {
     pub program: Arc<Program>,
     /// Names and places of everything in the program.
     pub symbols: Symbols,
-    /// A code for each query, in their order, for `engine::eval`.
+    /// One code for each query, in their order, for `engine::eval`.
     pub queries: Vec<Code>,
     /// The type of each query.
     pub query_types: Vec<Type>,
+    /// The tree of each piece of the program's code.
+    pub pieces: lower::Pieces,
 }
 
-/// What is wrong with a document and its plants, in the order of the text. Plants
-/// are judged where the charts they answer are right.
+/// Returns the problems of a document and of its plants, in the order of the text. Plants are
+/// checked only if the charts that they drive compile.
 pub fn check(doc: &Document) -> Vec<Problem> {
     let (charts, mut problems) = compile(doc);
     if let Some(charts) = charts {
@@ -53,18 +56,19 @@ pub fn check(doc: &Document) -> Vec<Problem> {
     sorted(problems)
 }
 
-/// The program of a document; none if a problem is an error.
+/// Compiles a document; returns no program if a problem is an error.
 pub fn compile(doc: &Document) -> (Option<Compiled>, Vec<Problem>) {
     compile_with(doc, None, &[])
 }
 
-/// The same under another profile than the document's, without its switches.
+/// Compiles a document under another profile than its own; the switches of its profile are dropped.
 pub fn compile_as(doc: &Document, profile: ProfileName) -> (Option<Compiled>, Vec<Problem>) {
     compile_with(doc, Some(profile), &[])
 }
 
-/// The same with questions that can be put to a state of the program: any
-/// expression without edges and delays, names as seen from outside of all charts.
+/// Compiles a document together with questions that can be asked of a state of the program. A
+/// question is any expression without edges and delays; its names are looked up as if it stood
+/// outside of all charts.
 pub fn compile_with(
     doc: &Document,
     profile: Option<ProfileName>,
@@ -77,6 +81,7 @@ pub fn compile_with(
         questions.extend(expr);
         problems.append(&mut wrong);
     }
+    problems.append(&mut properties(doc, &mut unit, &mut scopes));
     let judged = clear(check::check(doc, &unit), &problems);
     problems.extend(judged);
     let failed = problems.iter().any(|p| p.severity() == Severity::Error);
@@ -84,10 +89,10 @@ pub fn compile_with(
         return (None, sorted(problems));
     }
     match lower::program(&unit, &questions) {
-        Ok((program, symbols, queries)) => {
+        Ok((program, symbols, queries, pieces)) => {
             let program = Arc::new(program);
             let query_types = questions.iter().map(|q| q.ty).collect();
-            (Some(Compiled { unit, program, symbols, queries, query_types }), sorted(problems))
+            (Some(Compiled { unit, program, symbols, queries, query_types, pieces }), sorted(problems))
         }
         Err(problem) => {
             problems.push(problem);
@@ -96,9 +101,20 @@ pub fn compile_with(
     }
 }
 
-/// The problems that are none of something that has no meaning yet: what could
-/// not be resolved stands for FALSE, and is not to be judged as that; where a
-/// transition or nesting had to be left out, ways that lead nowhere are no news.
+/// Names and types of what is to be proved.
+fn properties<'d>(doc: &'d Document, unit: &mut ir::Unit, scopes: &mut resolve::Scopes<'d>) -> Vec<Problem> {
+    let mut problems = Vec::new();
+    for property in doc.properties() {
+        for claim in property.kind.claims() {
+            problems.append(&mut resolve::resolve_query(unit, scopes, claim, None, Some(Type::Bool)).1);
+        }
+    }
+    problems
+}
+
+/// Drops follow-up problems of parts that failed to resolve. An unresolved expression stands for
+/// FALSE and must not be checked as if the author had written that; and where a transition or a
+/// nesting was left out, unreachable steps follow from it.
 fn clear(mut found: Vec<Problem>, unresolved: &[Problem]) -> Vec<Problem> {
     let errors = || unresolved.iter().filter(|p| p.severity() == Severity::Error);
     let gaps = [
@@ -124,7 +140,7 @@ fn clear(mut found: Vec<Problem>, unresolved: &[Problem]) -> Vec<Problem> {
     found
 }
 
-/// By place, and at one place as they were found.
+/// Sorts by place; problems at one place keep the order in which they were found.
 fn sorted(mut problems: Vec<Problem>) -> Vec<Problem> {
     problems.sort_by_key(|p| p.at);
     problems

@@ -1,16 +1,15 @@
-//! What the rows of a program are called, and where they stand in the text.
+//! Names and places in the text for the rows of a program.
 //!
-//! The engine knows numbers only. Everything that talks about a running program
-//! (traces, tests, coverage, the terminal view, faults with a place) goes
-//! through here and back. Names lie one behind the other in one text, so that a
-//! hundred thousand steps cost two allocations.
+//! The engine knows only numbers. Everything that reports about a running program (traces, tests,
+//! coverage, the terminal view, the place of a fault) translates through these tables. Names are
+//! stored one after another in one string, so that a hundred thousand steps cost two allocations.
 
 use g7_engine::{Addr, Duration, GroupId, State, StepId};
-use g7_model::{Span, Type};
+use g7_model::{Holds, Nanos, Span, Type};
 
 use crate::ir::VarClass;
 
-/// Many short texts, one behind the other.
+/// Many short texts in one string.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Names {
     text: String,
@@ -24,7 +23,7 @@ impl Names {
         self.end();
     }
 
-    /// Adds a text that `write` appends to what is there.
+    /// Adds a text, which `write` appends to the string.
     pub(crate) fn push_with(&mut self, write: impl FnOnce(&mut String)) {
         write(&mut self.text);
         self.end();
@@ -39,12 +38,12 @@ impl Names {
         self.ends.len()
     }
 
-    /// Whether there are none.
+    /// True if there are none.
     pub fn is_empty(&self) -> bool {
         self.ends.is_empty()
     }
 
-    /// The text at a place; empty where there is none.
+    /// The text at an index; empty if there is none.
     pub fn get(&self, i: usize) -> &str {
         let start = if i == 0 { Some(0) } else { self.ends.get(i - 1).copied() };
         let (Some(start), Some(end)) = (start, self.ends.get(i)) else { return "" };
@@ -60,16 +59,16 @@ impl Names {
 /// A variable.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Variable {
-    /// As users write it from elsewhere: `motor`, `Fill.count`; a member of an
-    /// instance `c.Q`.
+    /// The name as users write it from outside of the chart: `motor`, `Fill.count`; `c.Q` for a
+    /// member of an instance.
     pub name: Box<str>,
-    /// What it is for. Members of an instance have the class of the instance.
+    /// The role of the variable. Members of an instance have the class of the instance.
     pub class: VarClass,
     /// Its type.
     pub ty: Type,
     /// Its first word.
     pub addr: Addr,
-    /// Number of elements, 1 but for tables.
+    /// Number of elements: 1, except for tables.
     pub elements: u32,
     /// Kept over a restart.
     pub retain: bool,
@@ -86,7 +85,7 @@ pub struct Variable {
 }
 
 impl Variable {
-    /// Words of all its elements together.
+    /// The number of words of all its elements together.
     pub fn words(&self) -> u32 {
         crate::lower::words_of(self.ty).saturating_mul(self.elements)
     }
@@ -98,7 +97,7 @@ impl Variable {
     }
 }
 
-/// A chart, as the engine counts them: outermost ones.
+/// An outermost chart; the engine counts only these.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ChartSymbol {
     /// Its name.
@@ -118,7 +117,7 @@ pub struct MacroSymbol {
     pub path: Box<str>,
     /// The steps of its expansion: it is active while one of them is.
     pub group: GroupId,
-    /// The step that carries its actions and its time, where it has one.
+    /// The step that carries the actions and the time of the macro-step, if it has any.
     pub step: Option<StepId>,
     /// Its name in the text.
     pub at: Span,
@@ -129,14 +128,14 @@ pub struct MacroSymbol {
 pub struct ActionSymbol {
     /// Where it stands.
     pub at: Span,
-    /// Made by the lowering: nothing of the text.
+    /// True if the lowering made it, and no line of the text stands for it.
     pub hidden: bool,
 }
 
 /// A control block.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct BlockSymbol {
-    /// The variable or named action that it drives; empty for work without a name.
+    /// The variable or named action that it drives; empty for an action without a name.
     pub name: Box<str>,
     /// Its first association, or the named action.
     pub at: Span,
@@ -181,8 +180,8 @@ pub struct Symbols {
     pub s1: Option<Addr>,
     /// The word of the random generator, to be set before the first scan.
     pub seed: Option<Addr>,
-    /// Nominal scan time, ns.
-    pub cycle: i64,
+    /// The nominal scan time.
+    pub cycle: Nanos,
 }
 
 impl Symbols {
@@ -191,12 +190,12 @@ impl Symbols {
         self.variables.iter().find(|v| &*v.name == name)
     }
 
-    /// The variable whose first word this is, instances before their members.
+    /// The variable that begins at this word; an instance is found before its members.
     pub fn variable_at(&self, addr: Addr) -> Option<&Variable> {
         self.variables.iter().find(|v| v.addr <= addr && addr.0 < v.addr.0.saturating_add(v.words()))
     }
 
-    /// Number of steps, pseudo-steps included.
+    /// Number of steps, including those that stand for macro-steps.
     pub fn steps(&self) -> u32 {
         self.step_names.len() as u32
     }
@@ -217,14 +216,14 @@ impl Symbols {
         self.step_places.get(step.0 as usize).copied().unwrap_or_default()
     }
 
-    /// Whether a step is one of the text, and not the stand-in of a macro-step
-    /// (which situations do not list).
+    /// True if the step is written in the text. A step that stands for a macro-step is not listed
+    /// in situations.
     pub fn is_listed(&self, step: StepId) -> bool {
         !self.pseudo.get(step.0 as usize).copied().unwrap_or(true)
     }
 
-    /// The step of this name: as in traces, with its chart, or the end of that
-    /// where only one step ends so.
+    /// Finds a step by its name in traces, by its name with its chart, or by the end of that name
+    /// if only one step has it.
     pub fn step(&self, name: &str) -> Option<StepId> {
         let listed = |i: &usize| self.is_listed(StepId(*i as u32));
         let exact = |names: &Names| (0..names.len()).filter(listed).find(|i| names.get(*i) == name);
@@ -234,7 +233,7 @@ impl Symbols {
                 rest.is_some_and(|r| r.ends_with('.'))
             });
             let first = ends.next();
-            // A chart's own step before those of expansions.
+            // Two steps end alike: then the name is ambiguous.
             match (first, ends.next()) {
                 (Some(i), None) => Some(i),
                 _ => None,
@@ -269,7 +268,7 @@ impl Symbols {
         self.transition_places.get(rank as usize).copied().unwrap_or_default()
     }
 
-    /// Whether a transition is one of the text, by rank. The others take a task
+    /// True if a transition is one of the text, by rank. The others take a task
     /// whose caller has gone back to its start.
     pub fn is_written(&self, rank: u32) -> bool {
         !self.hidden.get(rank as usize).copied().unwrap_or(true)
@@ -284,15 +283,15 @@ impl Symbols {
     /// `words` are those of one element; of an instance nothing is written.
     pub fn value_text(ty: Type, words: &[u64]) -> String {
         let word = words.first().copied().unwrap_or(0);
-        match ty {
-            Type::Bool => (if word == 0 { "FALSE" } else { "TRUE" }).into(),
-            Type::Sint | Type::Int | Type::Dint | Type::Lint => (word as i64).to_string(),
-            Type::Usint | Type::Uint | Type::Udint | Type::Ulint => word.to_string(),
-            Type::Real => format!("{:?}", f32::from_bits(word as u32)),
-            Type::Lreal => format!("{:?}", f64::from_bits(word)),
-            Type::Time => Duration(word as i64).to_string(),
-            Type::String(_) => quoted(words),
-            Type::Fb(_) => String::new(),
+        match ty.holds() {
+            Some(Holds::Truth) => (if word == 0 { "FALSE" } else { "TRUE" }).into(),
+            Some(Holds::Signed) => (word as i64).to_string(),
+            Some(Holds::Unsigned) => word.to_string(),
+            Some(Holds::Real) if ty == Type::Real => format!("{:?}", f32::from_bits(word as u32)),
+            Some(Holds::Real) => format!("{:?}", f64::from_bits(word)),
+            Some(Holds::Time) => Duration(word as i64).to_string(),
+            Some(Holds::Text) => quoted(words),
+            None => String::new(),
         }
     }
 }

@@ -1,70 +1,70 @@
-//! Chronograms as pictures: signals one below the other on one axis of time.
+//! Draws chronograms: one lane for each signal, one below the other, over one time axis.
 
 use crate::ink::{Ink, Picture};
 use crate::svg::standalone;
 use crate::text::{duration, shortened, width};
 use crate::{Options, Point, Rect};
 
-/// What was seen of some signals.
+/// The recorded signals of a run over a span of time.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Chronogram {
-    /// From top to bottom.
+    /// The signals, from top to bottom.
     pub lanes: Vec<Lane>,
-    /// First instant shown, nanoseconds.
+    /// First instant shown, in nanoseconds.
     pub from: i64,
-    /// Last instant shown.
+    /// Last instant shown, in nanoseconds.
     pub to: i64,
 }
 
 /// One signal.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Lane {
-    /// Its name.
+    /// The signal's name, written at the left.
     pub name: String,
-    /// How it is drawn.
+    /// How the lane is drawn.
     pub kind: LaneKind,
-    /// What it changed to, by time; the value holds until the next one.
+    /// The changes of the value, ordered by time; each value holds until the next change.
     pub edges: Vec<Edge>,
 }
 
 /// How a signal is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LaneKind {
-    /// A line, low and high.
+    /// A line with a low and a high level.
     Bool,
-    /// A bar while active.
+    /// A bar while the step is active.
     Step,
-    /// A stair between the least and the greatest value.
+    /// A staircase between the least and the greatest value.
     Number,
-    /// Boxes with the value in them.
+    /// A box for each value, with the value written in it.
     Text,
 }
 
-/// A change.
+/// One change of a signal.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Edge {
-    /// When, nanoseconds.
+    /// The instant of the change, in nanoseconds.
     pub at: i64,
-    /// The number; 0 and 1 for what is Boolean.
+    /// The value as a number; a Boolean is 0 or 1.
     pub value: f64,
-    /// As it is read.
+    /// The value as text, for the reader.
     pub show: String,
 }
 
-/// Width of the plot.
+/// Width of the plot area.
 const PLOT: i32 = 9000;
 /// Height of a lane.
 const LANE: i32 = 300;
-/// Height of a wave in its lane.
+/// Height of a waveform within its lane.
 const WAVE: i32 = 180;
-/// Size of names and figures.
+/// Size of signal names and axis labels.
 const TEXT: i32 = 120;
-/// Height of the axis.
+/// Height of the time axis.
 const AXIS: i32 = 260;
-/// Longest name.
+/// Greatest width of a signal name; longer names are shortened.
 const NAME: i32 = 2600;
 
-/// A chronogram as an SVG file.
+/// Draws a chronogram as an SVG file.
 pub fn chronogram_svg(chronogram: &Chronogram, options: &Options) -> String {
     let names: Vec<String> = chronogram.lanes.iter().map(|l| shortened(&l.name, TEXT, NAME).0).collect();
     let left = names.iter().map(|n| width(n, TEXT)).max().unwrap_or(0) + 120;
@@ -81,7 +81,7 @@ pub fn chronogram_svg(chronogram: &Chronogram, options: &Options) -> String {
     standalone(area, options, "chronogram", &p.svg())
 }
 
-/// The field in which the signals run.
+/// The plot area and the span of time that it covers.
 struct Plot {
     left: i32,
     from: i64,
@@ -89,14 +89,14 @@ struct Plot {
 }
 
 impl Plot {
-    /// From an instant to its place.
+    /// The horizontal position of an instant; instants outside the span lie on its edge.
     fn x(&self, at: i64) -> i32 {
         let span = i128::from(self.to) - i128::from(self.from);
         let into = i128::from(at.clamp(self.from, self.to)) - i128::from(self.from);
         self.left + i32::try_from(into * i128::from(PLOT) / span.max(1)).unwrap_or(PLOT)
     }
 
-    /// Instants at round times, ten or so.
+    /// Draws the time axis: about ten grid lines at round times, each with its label.
     fn axis(&self, p: &mut Picture, low: i32) {
         let step = tick(self.to.saturating_sub(self.from));
         let mut at = self.from.div_euclid(step).saturating_mul(step);
@@ -149,7 +149,7 @@ impl Plot {
         }
     }
 
-    /// From where to where each value holds, as far as it is in sight.
+    /// For each value that is visible: where it begins, where it ends, and the change itself.
     fn pieces<'a>(&self, edges: &'a [Edge]) -> Vec<(i32, i32, &'a Edge)> {
         let ends = edges.iter().skip(1).map(|e| e.at).chain(std::iter::once(self.to));
         let seen = edges.iter().zip(ends).filter(|(e, end)| *end > self.from && e.at <= self.to);
@@ -157,7 +157,7 @@ impl Plot {
     }
 }
 
-/// A line that goes from height to height.
+/// Draws a staircase line through the heights of the values.
 fn stair(p: &mut Picture, pieces: &[(i32, i32, &Edge)], height: impl Fn(&Edge) -> i32) {
     let mut points: Vec<Point> = Vec::new();
     for (a, b, e) in pieces {
@@ -174,7 +174,7 @@ fn stair(p: &mut Picture, pieces: &[(i32, i32, &Edge)], height: impl Fn(&Edge) -
     }
 }
 
-/// A round time that divides a span into about ten.
+/// A round interval that divides the span into about ten parts, in nanoseconds.
 fn tick(span: i64) -> i64 {
     let minute = 60_000_000_000;
     let long = [1, 2, 5, 10, 15, 30, 60, 120, 360, 720, 1440].map(|m| m * minute);
@@ -209,7 +209,7 @@ mod tests {
     #[test]
     fn a_boolean_rises_and_falls_where_its_edges_are() {
         let svg = one(LaneKind::Bool, vec![edge(0, 0.0), edge(2 * S, 1.0), edge(4 * S, 0.0)]);
-        // 900 px are ten seconds; the wave is 18 px high.
+        // 10 s are 900 px wide; the waveform is 18 px high.
         let wave = svg.split("g7-wave\" d=\"").nth(1).and_then(|s| s.split('"').next()).expect("a wave");
         let x0: f64 = wave[1..].split(' ').next().and_then(|n| n.parse().ok()).expect("its start");
         assert!(wave.contains(&format!("H{}V", x0 + 180.0)), "{wave}");

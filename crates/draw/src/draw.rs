@@ -1,5 +1,5 @@
-//! From a chart to its drawing: symbols round their anchors, their sizes to the
-//! layout, and back with their places.
+//! Turns a chart into its drawing: builds the symbols round their anchors, gives their sizes to the
+//! layout, and puts the symbols at the places that the layout returns.
 
 use std::collections::HashMap;
 
@@ -14,19 +14,19 @@ use crate::symbols::{
 };
 use crate::{Connector, Drawing, End, Item, Options, Part, Placement, Point, Rect, Sizes};
 
-/// The symbols of a chart round their anchors, and what their texts need.
+/// The symbols of a chart, built round their anchors, and the room that each needs.
 pub(crate) struct Symbols<'a> {
     steps: Vec<(&'a Step, StepShape)>,
     transitions: Vec<(&'a Transition, TransitionShape)>,
     sizes: Sizes,
 }
 
-/// How much room the symbols of a chart need.
+/// Measures the room that each symbol of a chart needs.
 pub fn measure(_: &Document, chart: &Chart, options: &Options) -> Sizes {
     Symbols::new(chart, options).sizes
 }
 
-/// A chart as a picture.
+/// Draws a chart.
 pub fn draw(document: &Document, chart: &Chart, options: &Options) -> Drawing {
     let symbols = Symbols::new(chart, options);
     if options.pages {
@@ -42,7 +42,7 @@ pub fn draw(document: &Document, chart: &Chart, options: &Options) -> Drawing {
     drawing
 }
 
-/// The comments of a chart's layout, in the order of the text, with their places.
+/// The comments in the layout section of a chart, in the order of the text, with their places.
 pub fn comments<'a>(document: &'a Document, chart: &Chart) -> impl Iterator<Item = (&'a str, &'a PlaceAt)> {
     places(document, chart).iter().filter_map(|p| match &p.what {
         Placed::Comment(text) => Some((&**text, p)),
@@ -60,7 +60,7 @@ fn notes(document: &Document, chart: &Chart) -> Vec<Item> {
         .collect()
 }
 
-/// What the layout section of the chart says.
+/// The entries of the layout section for this chart.
 fn places<'a>(document: &'a Document, chart: &Chart) -> &'a [PlaceAt] {
     let mut sections = document.items.iter().filter_map(|i| match i {
         Entry::Layout(l) if l.chart == chart.name => Some(l.places.as_slice()),
@@ -69,7 +69,7 @@ fn places<'a>(document: &'a Document, chart: &Chart) -> &'a [PlaceAt] {
     sections.next().unwrap_or(&[])
 }
 
-/// How many transitions stand behind each step, and how many before it.
+/// The number of transitions that follow each step, and the number that precede it.
 fn alternatives(chart: &Chart) -> HashMap<&str, (usize, usize)> {
     let mut count = HashMap::<&str, (usize, usize)>::new();
     for t in chart.transitions() {
@@ -100,8 +100,8 @@ impl<'a> Symbols<'a> {
         Symbols { steps, transitions, sizes }
     }
 
-    /// Every symbol at its place, over what is there already; `pages` has the
-    /// page of each step where there are several.
+    /// Puts every symbol at its place, after the items that are there already. `pages` holds the page
+    /// number of each step if the chart takes several pages.
     fn put(self, chart: &Chart, placement: &Placement, mut items: Vec<Item>, pages: &[u32]) -> Drawing {
         self.links(placement, &mut items);
         let names = Names::new(&self);
@@ -154,10 +154,10 @@ impl<'a> Symbols<'a> {
     }
 }
 
-/// Names of steps for the texts of connectors.
+/// The names of the steps, for the texts of connectors.
 struct Names {
     steps: Vec<Box<str>>,
-    /// The first preceding and succeeding step of each transition.
+    /// The first preceding and the first succeeding step of each transition.
     beside: Vec<(Option<u32>, Option<u32>)>,
     spans: Vec<g7_model::Span>,
 }
@@ -172,7 +172,8 @@ impl Names {
         Names { steps, beside, spans }
     }
 
-    /// The step that a broken link names: its own other end, or beyond the transition there.
+    /// The step whose name a connector shows: the other end of the link or, if that is a
+    /// transition, the step beyond it.
     fn named(&self, c: &Connector) -> Option<u32> {
         let beside = |t: u32| self.beside.get(t as usize).copied().unwrap_or_default();
         match if c.leaving { c.to } else { c.from } {
@@ -187,7 +188,7 @@ impl Names {
         let name = named.and_then(|s| self.steps.get(s as usize)).map_or("", |s| s);
         let page = named.and_then(|s| pages.get(s as usize)).copied();
         let mut picture = Picture::default();
-        // The link up to where it is broken off.
+        // The part of the link that ends where the link is broken.
         let start = match (c.leaving, c.from) {
             (false, _) => None,
             (true, End::Step(s)) => placement.steps.get(s as usize).map(|p| Point { y: p.y + SQUARE, ..*p }),

@@ -1,91 +1,92 @@
-//! A chart drawn: a list of items, each with its box and its SVG.
+//! The drawing of a chart: a list of items, each with its bounding box and its SVG.
 //!
-//! The page culls by box and puts the fragments of what is in sight on the
-//! screen, so it needs to know nothing of symbols. `svg` prints all of them.
+//! The page selects the items in view by their boxes and shows their fragments, so it needs no
+//! knowledge of symbols. `svg` prints all items.
 
 use g7_model::Span;
 
 use crate::{End, Point, Rect};
 
-/// One chart, drawn.
+/// The drawing of one chart.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Drawing {
-    /// The chart's name.
+    /// The name of the chart.
     pub chart: Box<str>,
-    /// What all of it covers.
+    /// The smallest box that holds the whole drawing.
     pub area: Rect,
-    /// In the order in which they are painted.
+    /// The items, in the order of painting.
     pub items: Vec<Item>,
 }
 
-/// A thing that can be pointed at.
+/// A part of the drawing that the user can point at.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Item {
-    /// What it is.
+    /// Which part of the chart the item shows.
     pub part: Part,
-    /// What it covers, texts included.
+    /// The bounding box of the item, texts included.
     pub area: Rect,
-    /// Its symbol, in coordinates of the drawing; classes, no colours.
+    /// The SVG of the symbol, in coordinates of the drawing; it has classes, no colours.
     pub svg: String,
-    /// Path data for a far view: lines without texts; may be empty.
+    /// Path data for zoomed-out views: lines without texts; may be empty.
     pub far: String,
-    /// Its place in the text; empty for what has none.
+    /// The place of this part in the text of the file; empty if it has none.
     pub at: Span,
 }
 
-/// What an item is. Steps and transitions are numbered as in the text of the chart, from 0.
+/// Which part of a chart an item shows. Steps and transitions are numbered from 0 in the order of
+/// the text.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Part {
     /// A step without its actions.
     Step {
-        /// Its number.
+        /// The number of the step.
         step: u32,
         /// The square alone.
         square: Rect,
     },
     /// An action rectangle of a step.
     Action {
-        /// The step.
+        /// The number of the step.
         step: u32,
-        /// Which of its actions, from 0.
+        /// The number of the action among those of its step, from 0.
         index: u32,
     },
-    /// A transition: bar, double lines, receptivity, label.
+    /// A transition: the bar, the double lines, the receptivity and the label.
     Transition {
-        /// Its number.
+        /// The number of the transition.
         transition: u32,
         /// The bar alone.
         bar: Rect,
-        /// The text of the receptivity.
+        /// The box of the receptivity's text.
         text: Rect,
     },
     /// A directed link.
     Link {
         /// Index in the placement's links.
         link: u32,
-        /// Where it comes from.
+        /// The end at which the link starts.
         from: End,
-        /// Where it leads to.
+        /// The end at which the link arrives.
         to: End,
     },
-    /// A broken-off end of a link.
+    /// One end of a link that is not drawn in full, with the name of its other end.
     Connector {
         /// Index in the placement's connectors.
         connector: u32,
-        /// The link's own ends.
+        /// The start of the whole link.
         from: End,
-        /// Where it leads to.
+        /// The end of the whole link.
         to: End,
-        /// The end that goes away; else the one that arrives.
+        /// True at the start of the link, false at its end.
         leaving: bool,
     },
-    /// A comment of the layout section.
+    /// A comment from the layout section.
     Comment {
-        /// Its number among the comments of the chart's layout, from 0.
+        /// Its number among the comments of the chart's layout section, from 0.
         comment: u32,
         /// The upper left corner of its text.
         place: Point,
     },
-    /// A frame of a page, a title: nothing that can be edited as a symbol.
+    /// A page frame or a title; it cannot be edited as a symbol.
     Text,
 }

@@ -1,21 +1,21 @@
-//! Points and boxes of a drawing, in whole hundredths of the drawing's unit u.
+//! Points and boxes of a drawing, in integer hundredths of the drawing unit u.
 //!
-//! The grid is that of the layout section of a file: a step is 5 u wide. Whole
-//! numbers make a drawing the same on every machine.
+//! The layout section of a file uses the same unit: a step is 5 u wide. Integers make a drawing
+//! identical on every machine.
 
-/// One unit u of the drawing.
+/// One drawing unit u.
 pub const U: i32 = 100;
 
-/// A place: x to the right, y downward.
+/// A point: x grows to the right, y grows downward.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct Point {
-    /// To the right.
+    /// Distance to the right of the origin.
     pub x: i32,
-    /// Downward.
+    /// Distance below the origin.
     pub y: i32,
 }
 
-/// A box.
+/// An axis-parallel box.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Rect {
     /// Left edge.
@@ -28,9 +28,9 @@ pub struct Rect {
     pub h: i32,
 }
 
-/// How far a symbol with its texts reaches from its anchor. The anchor of a step
-/// is the middle of the upper edge of its square, that of a transition the
-/// middle of its bar. None is negative.
+/// How far a symbol with its texts reaches from its anchor; no field is negative. The anchor of a
+/// step is the middle of the upper edge of its square, the anchor of a transition is the middle of
+/// its bar.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Extent {
     /// To the left.
@@ -44,17 +44,17 @@ pub struct Extent {
 }
 
 impl Rect {
-    /// The box of an extent round its anchor.
+    /// The box that an extent covers round an anchor.
     pub fn around(at: Point, e: Extent) -> Rect {
         Rect { x: at.x - e.left, y: at.y - e.up, w: e.left + e.right, h: e.up + e.down }
     }
 
-    /// Whether the insides of two boxes have a point in common.
+    /// True if the interiors of the two boxes have a point in common.
     pub fn overlaps(&self, o: &Rect) -> bool {
         self.x < o.x + o.w && o.x < self.x + self.w && self.y < o.y + o.h && o.y < self.y + self.h
     }
 
-    /// The smallest box with both in it.
+    /// The smallest box that holds both boxes.
     #[must_use]
     pub fn union(&self, o: &Rect) -> Rect {
         let (x, y) = (self.x.min(o.x), self.y.min(o.y));

@@ -1,45 +1,45 @@
-//! What a symbol is made of: lines, boxes, texts, each with a class. Symbols are
-//! built round their anchor and moved to their place; printing comes last.
+//! The strokes of a symbol: lines, boxes and texts, each with a CSS class. A symbol is built round
+//! its anchor, moved to its place, and printed last.
 
 use std::fmt::Write as _;
 
 use crate::text::{Line, clean, known, width};
 use crate::{Point, Rect};
 
-/// One stroke of the pen.
+/// One stroke.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) enum Ink {
-    /// An open line through corners.
+    /// An open polyline.
     Line(&'static str, Vec<Point>),
-    /// A closed shape.
+    /// A closed polygon.
     Shape(&'static str, Vec<Point>),
     /// A box.
     Rect(&'static str, Rect),
-    /// A circle: middle and radius.
+    /// A circle: centre and radius.
     Circle(&'static str, Point, i32),
     /// A text: left end of its base line, size, characters.
     Text(&'static str, Point, i32, String),
 }
 
-/// A symbol, or a part of one.
+/// A symbol or a part of one.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Picture {
-    /// What is drawn, in the order of painting.
+    /// The strokes, in the order of painting.
     pub(crate) ink: Vec<Ink>,
-    /// What a screen reader and the pointer find: the text in full.
+    /// The title of the SVG group, for screen readers and tooltips: the text in full.
     pub(crate) title: Option<String>,
 }
 
-/// How far above the base line an overline of the first level runs, in thousandths of the size.
+/// Height of the first overline above the base line, in thousandths of the text size.
 const OVERLINE: i32 = 880;
-/// From one level of overlines to the next.
+/// Distance from one level of overlines to the next, in thousandths of the text size.
 const OVERLINE_STEP: i32 = 210;
-/// How far characters reach below the base line.
+/// How far characters reach below the base line, in thousandths of the text size.
 const BELOW: i32 = 270;
-/// How far they reach above it.
+/// How far characters reach above the base line, in thousandths of the text size.
 const ABOVE: i32 = 800;
 
-/// How far a line of set text reaches above its base line.
+/// How far a set line reaches above its base line.
 pub(crate) fn rise(line: &Line, size: i32) -> i32 {
     match line.levels() {
         0 => size * ABOVE / 1000,
@@ -47,7 +47,7 @@ pub(crate) fn rise(line: &Line, size: i32) -> i32 {
     }
 }
 
-/// How far a line reaches below its base line.
+/// How far a set line reaches below its base line.
 pub(crate) fn sink(size: i32) -> i32 {
     size * BELOW / 1000
 }
@@ -73,26 +73,27 @@ impl Picture {
         self.ink.push(Ink::Circle(class, Point { x, y }, r));
     }
 
-    /// Plain text from the left end of its base line.
+    /// Adds plain text; (`x`, `y`) is the left end of its base line.
     pub(crate) fn text(&mut self, class: &'static str, x: i32, y: i32, size: i32, text: &str) {
         if !text.is_empty() {
             self.ink.push(Ink::Text(class, Point { x, y }, size, clean(text)));
         }
     }
 
-    /// A set line with its overlines.
+    /// Adds a set line with its overlines.
     pub(crate) fn set(&mut self, class: &'static str, x: i32, y: i32, size: i32, line: &Line) {
         let x = x + line.indent;
         self.text(class, x, y, size, &line.text);
         let to = |at: usize| x + width(line.text.get(..at).unwrap_or(""), size);
         for over in &line.overs {
             let y = y - size * OVERLINE / 1000 - over_step(size) * (over.level as i32 - 1);
-            // A hair shorter than the text, so that two neighbours stay two.
+            // The overline is slightly shorter than its text, so that two neighbours stay separate.
             self.line("g7-over", &[(to(over.from) + 4, y), (to(over.to) - 4, y)]);
         }
     }
 
-    /// Several set lines, the first base line at `y`; tells the last one.
+    /// Adds several set lines, the first with its base line at `y`; returns the base line of the
+    /// last one.
     pub(crate) fn lines(&mut self, class: &'static str, at: (i32, i32), size: i32, lines: &[Line]) -> i32 {
         let mut y = at.1;
         for (i, line) in lines.iter().enumerate() {
@@ -104,19 +105,19 @@ impl Picture {
         y
     }
 
-    /// What it covers; `None` where nothing is drawn.
+    /// The bounding box; `None` if nothing is drawn.
     pub(crate) fn area(&self) -> Option<Rect> {
         self.ink.iter().map(Ink::area).reduce(|a, b| a.union(&b))
     }
 
-    /// Moved.
+    /// The picture, shifted by a vector.
     #[must_use]
     pub(crate) fn moved(mut self, by: Point) -> Picture {
         self.ink.iter_mut().for_each(|i| i.shift(by));
         self
     }
 
-    /// As SVG, a title first where it has one.
+    /// The SVG of the picture; the title, if there is one, comes first.
     pub(crate) fn svg(&self) -> String {
         let mut out = String::new();
         if let Some(title) = &self.title {
@@ -126,7 +127,7 @@ impl Picture {
         out
     }
 
-    /// Path data without texts, for a far view.
+    /// Path data of the lines and boxes without texts, for zoomed-out views.
     pub(crate) fn far(&self) -> String {
         let mut out = String::new();
         for ink in &self.ink {
@@ -141,12 +142,12 @@ impl Picture {
     }
 }
 
-/// From the base line above to that of a line.
+/// Distance from the base line of the line above to the base line of this line.
 pub(crate) fn leading(line: &Line, size: i32) -> i32 {
     (rise(line, size) + sink(size) + size * 120 / 1000).max(size * 135 / 100)
 }
 
-/// How high several lines are: above the first base line, and in all.
+/// The height of several lines: above the first base line, and in total.
 pub(crate) fn stack(lines: &[Line], size: i32) -> (i32, i32) {
     let Some(first) = lines.first() else { return (0, 0) };
     let rest: i32 = lines.iter().skip(1).map(|l| leading(l, size)).sum();
@@ -232,7 +233,7 @@ impl Ink {
     }
 }
 
-/// A length in px, at most one decimal.
+/// A length that is printed in px with at most one decimal.
 pub(crate) struct Px(pub(crate) i32);
 
 impl std::fmt::Display for Px {
@@ -265,7 +266,7 @@ fn rect_path(out: &mut String, r: &Rect) {
     let _ = write!(out, "M{} {}H{}V{}H{}Z", Px(r.x), Px(r.y), Px(r.x + r.w), Px(r.y + r.h), Px(r.x));
 }
 
-/// Text for SVG.
+/// Escapes text for SVG.
 pub(crate) fn escape(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     for c in text.chars() {

@@ -1,6 +1,6 @@
-//! What a picture is to show.
+//! How a chart is to be drawn.
 
-/// The manner of drawing.
+/// The drawing style.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Look {
     /// GRAFCET: conditions on stubs, arrows for stored actions.
@@ -10,18 +10,18 @@ pub enum Look {
     Sfc,
 }
 
-/// How to draw a chart.
+/// The options of a drawing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Options {
-    /// The manner of drawing.
+    /// The drawing style.
     pub look: Look,
-    /// Whether actions are shown.
+    /// Show the actions.
     pub actions: bool,
-    /// On PL7 pages of 14 lines and 11 columns.
+    /// Divide the drawing into PL7 pages of 14 lines and 11 columns.
     pub pages: bool,
-    /// White on black, for a standalone picture.
+    /// Draw white on black, for a standalone picture.
     pub dark: bool,
-    /// A standalone picture brings its font.
+    /// Embed the font in a standalone picture.
     pub font: bool,
 }
 

@@ -1,16 +1,16 @@
-//! Where the symbols of one chart stand and how its links run: what the layout
-//! hands to the symbols. Nothing here knows how a symbol looks.
+//! Where the symbols of a chart stand and how its links run: the result of the layout. Nothing here
+//! depends on how a symbol looks.
 
 use crate::{Extent, Point, Rect};
 
-/// How much room each symbol needs, in the order of the text of the chart.
+/// The room that each symbol needs, in the order of the text of the chart.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Sizes {
-    /// Of each step, with its actions and comment.
+    /// The room of each step, with its actions and comment.
     pub steps: Vec<Extent>,
-    /// Of each transition, with its receptivity, label and comment.
+    /// The room of each transition, with its receptivity, label and comment.
     pub transitions: Vec<Extent>,
-    /// Width of the text of a connector that names this step.
+    /// For each step the width of a connector's text that names it.
     pub connectors: Vec<i32>,
 }
 
@@ -19,30 +19,30 @@ pub struct Sizes {
 pub enum End {
     /// A step, by its number in the text of the chart, from 0.
     Step(u32),
-    /// A transition, likewise.
+    /// A transition, by its number in the text of the chart, from 0.
     Transition(u32),
 }
 
 /// A directed link between a step and a transition.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Link {
-    /// Where it comes from.
+    /// The end at which it starts.
     pub from: End,
-    /// Where it leads to.
+    /// The end at which it arrives.
     pub to: End,
-    /// Corners, first to last; each piece is horizontal or vertical.
+    /// The corners, from first to last; each segment is horizontal or vertical.
     pub points: Vec<Point>,
-    /// Points at which an arrow is needed, with the direction (dx, dy) it points
-    /// to: links that run upward (IEC 60848, directed links).
+    /// Points at which an arrow is needed, with the direction (dx, dy) of the arrow: links that run
+    /// upward need one (IEC 60848, directed links).
     pub arrows: Vec<(Point, (i8, i8))>,
 }
 
 /// A double line (IEC 60848, synchronisation) above or below a transition.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Bar {
-    /// The transition it belongs to.
+    /// The transition that it belongs to.
     pub transition: u32,
-    /// Above the transition (several preceding steps), else below.
+    /// True above the transition (several preceding steps), false below it.
     pub join: bool,
     /// Left end of the upper line.
     pub at: Point,
@@ -50,19 +50,19 @@ pub struct Bar {
     pub w: i32,
 }
 
-/// A link that is broken off and named at both ends.
+/// One end of a link that is not drawn in full; it shows the name of the other end.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct Connector {
-    /// The link's own ends.
+    /// The start of the whole link.
     pub from: End,
-    /// Where it leads to.
+    /// The end of the whole link.
     pub to: End,
-    /// Stands at the end that goes away (a source connector names the step or
-    /// transition it leads to); false at the end that arrives.
+    /// True at the start of the link (the connector names the step or transition that the link
+    /// leads to), false at its end.
     pub leaving: bool,
     /// The tip of its arrow.
     pub at: Point,
-    /// What is left of the link, to the tip; where empty, a short piece above it.
+    /// The drawn part of the link, up to the tip; if empty, a short piece above the tip is drawn.
     pub points: Vec<Point>,
     /// The box of its text, to the right of the arrow.
     pub text: Rect,
@@ -77,10 +77,10 @@ pub struct Placement {
     pub transitions: Vec<Point>,
     /// The double lines.
     pub bars: Vec<Bar>,
-    /// The links that are drawn.
+    /// The links that are drawn in full.
     pub links: Vec<Link>,
-    /// The links that are not.
+    /// The ends of the links that are broken.
     pub connectors: Vec<Connector>,
-    /// What all of it covers, texts included.
+    /// The bounding box of everything, texts included.
     pub area: Rect,
 }

@@ -1,30 +1,31 @@
-//! Places from a drawing program with other symbols than ours, given room.
+//! Makes room in a layout that comes from another tool, whose symbols have other sizes than ours.
 //!
 //! ```text
 //! importer -> model::Document with layouts -> here -> text
 //! ```
 //!
-//! What must hold afterwards: no symbol or text stands on another because of a layout.
+//! Afterwards no symbol or text overlaps another because of a layout.
 
 use std::collections::{BTreeMap, HashMap, HashSet};
 
 use g7_model::{Chart, Document, Item, PlaceAt, Placed};
 
 use crate::layout::rooms::{BAR, CLEAR, DOUBLE, LINK, SQUARE};
+use crate::layout::section::Named;
 use crate::symbols::note_area;
 use crate::{End, Extent, Options, Rect, Sizes, layout, measure};
 
-/// Most symbols whose places are drawn apart.
+/// Layouts with more symbols and comments than this are not spread.
 const MOST: usize = 4_000;
-/// Between two symbols side by side.
+/// Least distance between two symbols side by side.
 const ASIDE: i64 = 150;
-/// Farthest place.
+/// Greatest coordinate of a layout.
 const FAR: i64 = 10_000_000;
 
-/// Draws the places of each layout apart until all symbols stand clear: rows go
-/// down and columns go right, only as far as they must, so that what stood in
-/// line still does. A layout that does not come clear is left out, so the chart
-/// is laid out anew; its comments stand beside that.
+/// Spreads the places of each layout until no symbols overlap: rows move down and columns move
+/// right, only as far as necessary, so that symbols in one line stay in one line. If symbols still
+/// overlap, the layout is dropped and the chart is laid out automatically, with the comments beside
+/// it.
 pub fn make_room(document: &mut Document) {
     let roomy: Vec<Option<Vec<PlaceAt>>> = document
         .items
@@ -57,7 +58,7 @@ fn with_room(document: &Document, chart: &Chart, places: &[PlaceAt]) -> Vec<Plac
     clear.unwrap_or_else(|| comments_beside(chart, &sizes, places))
 }
 
-/// Without places of symbols: the comments one below the other at the right of the chart.
+/// Only the comments, one below the other at the right of the automatic layout.
 fn comments_beside(chart: &Chart, sizes: &Sizes, places: &[PlaceAt]) -> Vec<PlaceAt> {
     let area = layout(chart, sizes, &[]).area;
     let mut y = area.y;
@@ -70,14 +71,14 @@ fn comments_beside(chart: &Chart, sizes: &Sizes, places: &[PlaceAt]) -> Vec<Plac
     found
 }
 
-/// What stands at a place.
+/// A symbol or comment at its place.
 struct Body {
     at: [i64; 2],
     extent: Extent,
     node: Option<End>,
 }
 
-/// One stands this far before another at least, along one axis.
+/// The rule that `second` stands at least `by` after `first` along one axis.
 struct Apart {
     first: usize,
     second: usize,
@@ -106,26 +107,16 @@ fn apart(chart: &Chart, sizes: &Sizes, places: &[PlaceAt]) -> Option<Vec<PlaceAt
 }
 
 fn bodies(chart: &Chart, sizes: &Sizes, places: &[PlaceAt]) -> Vec<Body> {
-    let mut steps: HashMap<&str, usize> = HashMap::new();
-    for (n, s) in chart.steps().enumerate() {
-        steps.entry(&s.name.text).or_insert(n);
-    }
-    let mut labels: HashMap<&str, usize> = HashMap::new();
-    for (n, t) in chart.transitions().enumerate() {
-        if let Some(label) = &t.label {
-            labels.entry(&label.text).or_insert(n);
-        }
-    }
-    let number = |n: usize| u32::try_from(n).unwrap_or(u32::MAX);
-    let step = |n: &usize| Some((End::Step(number(*n)), *sizes.steps.get(*n)?));
-    let transition = |n: usize| Some((End::Transition(number(n)), *sizes.transitions.get(n)?));
-    let body = |p: &PlaceAt| {
-        let found = match &p.what {
-            Placed::Step(name) => steps.get(&*name.text).and_then(step),
-            Placed::Transition(label) => labels.get(&*label.text).and_then(|n| transition(*n)),
-            Placed::TransitionNumber(n) => transition(*n as usize),
-            Placed::Comment(_) => None,
+    let named = Named::new(chart);
+    let room = |end: End| {
+        let room = match end {
+            End::Step(n) => sizes.steps.get(n as usize),
+            End::Transition(n) => sizes.transitions.get(n as usize),
         };
+        Some((end, *room?))
+    };
+    let body = |p: &PlaceAt| {
+        let found = named.symbol(&p.what).and_then(room);
         let extent = match (&found, &p.what) {
             (Some((_, extent)), _) => *extent,
             (None, Placed::Comment(text)) => {
@@ -139,7 +130,8 @@ fn bodies(chart: &Chart, sizes: &Sizes, places: &[PlaceAt]) -> Vec<Body> {
     places.iter().map(body).collect()
 }
 
-/// A link between two places, and whether others part or meet at its ends.
+/// A link between two places; `parts` and `meets` say that other links leave or arrive at the same
+/// place.
 struct Linked {
     from: usize,
     to: usize,
@@ -175,7 +167,7 @@ fn links(chart: &Chart, bodies: &[Body]) -> Vec<Linked> {
 }
 
 impl Linked {
-    /// The room for the link itself, where it runs down.
+    /// The vertical room that the link itself needs, if it runs down.
     fn room(&self, bodies: &[Body]) -> Option<Apart> {
         let (a, b) = (bodies.get(self.from)?, bodies.get(self.to)?);
         if b.at[1] <= a.at[1] {
@@ -184,7 +176,7 @@ impl Linked {
         let step = matches!(a.node, Some(End::Step(_)));
         let port = if step { SQUARE } else { 0 };
         let (double, line) = (BAR + DOUBLE, LINK + CLEAR);
-        // Where several part they do so below the symbol's texts.
+        // Several links from one symbol part below its texts.
         let leave = match (self.parts, step) {
             (true, true) => (port + LINK).max(a.extent.down + CLEAR),
             (true, false) => a.extent.down.max(double) + CLEAR,
@@ -200,8 +192,8 @@ impl Linked {
     }
 }
 
-/// What must stand farther apart: side by side, and one below the other. `None`
-/// where two stand at the same place.
+/// The pairs that must move apart: side by side, and one below the other. `None` if two of them
+/// stand at exactly the same place.
 fn overlaps(bodies: &[Body], links: &[Linked]) -> Option<(Vec<Apart>, Vec<Apart>)> {
     let box_of = |b: &Body| {
         let [x, y] = b.at;
@@ -240,8 +232,8 @@ fn overlaps(bodies: &[Body], links: &[Linked]) -> Option<(Vec<Apart>, Vec<Apart>
     Some((columns, rows))
 }
 
-/// The places along one axis, in their order: each line of symbols moves as far
-/// as it must, and what stands behind it as far as it does.
+/// The new places along one axis, in their order: each line of symbols moves as far as it must, and
+/// everything after it moves by at least as much.
 fn shifted(bodies: &[Body], axis: usize, wanted: &[Apart]) -> Vec<i64> {
     let at = |k: usize| bodies.get(k).map_or(0, |b| b.at[axis]);
     let mut by_line: BTreeMap<i64, Vec<&Apart>> = bodies.iter().map(|b| (b.at[axis], Vec::new())).collect();
@@ -257,14 +249,14 @@ fn shifted(bodies: &[Body], axis: usize, wanted: &[Apart]) -> Vec<i64> {
             let first = at(w.first) + shift.get(&at(w.first)).copied().unwrap_or(0);
             most = most.max(first + w.by - line);
         }
-        // On half units, as the page moves symbols.
+        // The editor moves symbols in half units too.
         most = (most + 49) / 50 * 50;
         shift.insert(line, most);
     }
     bodies.iter().map(|b| b.at[axis] + shift.get(&b.at[axis]).copied().unwrap_or(0)).collect()
 }
 
-/// Whether no symbol with its texts touches another.
+/// True if no symbol with its texts overlaps another.
 fn is_clear(chart: &Chart, sizes: &Sizes, places: &[PlaceAt]) -> bool {
     let placed = layout(chart, sizes, places);
     let steps = placed.steps.iter().zip(&sizes.steps);

@@ -1,12 +1,12 @@
-//! Ladder as a picture: rails, contacts, branches, blocks, coils
-//! (IEC 61131-3:2003, 4.2, tables 58 to 61).
+//! Ladder diagrams as pictures: rails, contacts, branches, blocks, coils (IEC 61131-3:2003, 4.2,
+//! tables 58 to 61).
 //!
 //! ```text
 //! logic of the text or of printed code -> Rung -> measure -> ink -> SVG
 //! ```
 //!
-//! What must hold: power flows from left to right, rungs stand one below the
-//! other, coils stand at the right rail, and no text covers another.
+//! Power flows from left to right, rungs stand one below the other, coils stand at the right rail,
+//! and no text covers another.
 
 use crate::ink::Picture;
 use crate::svg::standalone;
@@ -16,47 +16,47 @@ use crate::{Options, Rect};
 /// One rung.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Rung {
-    /// Over the rung, like a heading.
+    /// The heading over the rung.
     pub title: String,
-    /// Under the title.
+    /// A remark under the title.
     pub note: String,
-    /// Where jumps go to.
+    /// The label that a jump can name.
     pub label: String,
-    /// What power meets, from left to right.
+    /// The elements, from left to right.
     pub elements: Vec<Element>,
 }
 
-/// What stands on a wire.
+/// An element on a wire.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Element {
-    /// Power passes while this is true. Signs: `/`, `P`, `N`, or none.
+    /// A contact: it passes power while its condition is true. Signs: `/`, `P`, `N`, or none.
     Contact {
-        /// Between the bars.
+        /// The sign between the bars.
         sign: &'static str,
-        /// Over it.
+        /// The name over the contact.
         text: String,
     },
-    /// What power does. Signs: `/`, `S`, `R`, `P`, `N`, or none.
+    /// A coil: power acts on its variable. Signs: `/`, `S`, `R`, `P`, `N`, or none.
     Coil {
-        /// Between the arcs.
+        /// The sign between the arcs.
         sign: &'static str,
-        /// Over it.
+        /// The name over the coil.
         text: String,
     },
     /// A function or function block.
     Block {
-        /// Over the box.
+        /// The name over the box.
         title: String,
-        /// Where power goes in.
+        /// The pin at which power enters.
         power: String,
-        /// Other inputs: pin and what it takes.
+        /// The other inputs: pin and the value it receives.
         inputs: Vec<(String, String)>,
-        /// Where power comes out.
+        /// The pin at which power leaves.
         output: String,
-        /// Other outputs: pin and where it goes.
+        /// The other outputs: pin and the variable it writes.
         outputs: Vec<(String, String)>,
     },
-    /// Power passes on any of the ways.
+    /// Parallel branches: power passes if one of them passes it.
     Branch(Vec<Vec<Element>>),
 }
 
@@ -64,26 +64,26 @@ pub enum Element {
 const TEXT: i32 = 120;
 /// Size of titles.
 const TITLE: i32 = 140;
-/// Half of a contact or coil.
+/// Half the width of a contact or coil.
 const HALF: i32 = 80;
-/// From the wire to the end of a contact.
+/// Distance from the wire to the end of a contact.
 const TALL: i32 = 100;
-/// Wire on both sides of an element, at least.
+/// Least length of the wire on each side of an element.
 const LEAD: i32 = 100;
-/// Above the wire: a contact with its name.
+/// Room above the wire for a contact with its name.
 const UP: i32 = 280;
-/// Below the wire.
+/// Room below the wire.
 const DOWN: i32 = 140;
-/// From pin to pin of a block.
+/// Distance between the pins of a block.
 const PIN: i32 = 220;
-/// Between two rungs.
+/// Distance between two rungs.
 const APART: i32 = 120;
-/// From the texts over a rung to its names.
+/// Distance from the texts over a rung to the names of its elements.
 const UNDER_TEXT: i32 = 60;
-/// No rung is narrower.
+/// Least width of a rung.
 const NARROW: i32 = 1600;
 
-/// How much room an element takes: to the right, above its wire, below it.
+/// The room of an element: its width, and its height above and below the wire.
 #[derive(Clone, Copy, Default)]
 struct Room {
     wide: i32,
@@ -119,7 +119,7 @@ impl Element {
         }
     }
 
-    /// Whether it stands at the right rail.
+    /// True if it stands at the right rail.
     fn is_end(&self) -> bool {
         match self {
             Element::Coil { .. } => true,
@@ -137,7 +137,7 @@ fn room(way: &[Element]) -> Room {
     })
 }
 
-/// The widest text beside a block's pins.
+/// The width of the widest text beside a block's pins.
 fn outside(pins: &[(String, String)]) -> i32 {
     pins.iter().map(|(_, text)| width(text, TEXT) + 60).max().unwrap_or(0)
 }
@@ -155,7 +155,7 @@ fn block_width(
     (widest(power, inputs) + widest(output, outputs) + 220).max(width(title, TEXT) + 40).max(500)
 }
 
-/// Rungs as an SVG element that takes the style sheet of the page.
+/// Draws rungs as an SVG element that uses the page's style sheet.
 pub fn rungs(list: &[Rung]) -> String {
     let (picture, area) = drawn("", list);
     let px = |n: i32| crate::ink::Px(n).to_string();
@@ -169,7 +169,7 @@ pub fn rungs(list: &[Rung]) -> String {
     )
 }
 
-/// Rungs as an SVG file, under a title.
+/// Draws rungs as an SVG file, under a title.
 pub fn rungs_svg(title: &str, list: &[Rung], options: &Options) -> String {
     let (picture, area) = drawn(title, list);
     standalone(area, options, title, &picture.svg())
@@ -197,7 +197,7 @@ struct Pen {
 }
 
 impl Pen {
-    /// A rung whose room begins at `y`; where the next one begins.
+    /// Draws a rung whose room begins at `y`; returns where the next one begins.
     fn rung(&mut self, r: &Rung, y: i32) -> i32 {
         let (top, mut y) = (y, y);
         for (text, size, class) in
@@ -229,7 +229,7 @@ impl Pen {
         }
     }
 
-    /// What stands in a row; where it ends.
+    /// Draws the elements of one wire; returns where it ends.
     fn way(&mut self, way: &[Element], x: i32, y: i32) -> i32 {
         let mut x = x;
         for e in way {
@@ -254,7 +254,7 @@ impl Pen {
             Element::Coil { sign, text } => {
                 self.sides(x, wide, y);
                 for turn in [-1, 1] {
-                    // A third of a circle round the middle.
+                    // An arc of a third of a circle.
                     let arc = [(-50, 100), (-72, 62), (-80, 0), (-72, -62), (-50, -100)];
                     let points = arc.map(|(dx, dy)| (middle - turn * dx, y + dy));
                     self.picture.line("g7-sign", &points);
@@ -303,7 +303,7 @@ impl Pen {
         }
     }
 
-    /// The wire on both sides of a contact or coil.
+    /// Draws the wire on both sides of a contact or coil.
     fn sides(&mut self, x: i32, wide: i32, y: i32) {
         let middle = x + wide / 2;
         self.wire(x, middle - HALF, y);
@@ -322,7 +322,7 @@ impl Pen {
         self.picture.text("g7-name", middle - width(text, TEXT) / 2, y, TEXT, text);
     }
 
-    /// The name of a pin inside the box, what it takes or gives outside.
+    /// Draws a pin: its name inside the box, its value or variable outside.
     fn pin(&mut self, name: &str, x: i32, y: i32, left: bool, text: Option<&str>) {
         let own = width(name, TEXT);
         self.picture.text("g7-note", if left { x + 50 } else { x - 50 - own }, y + 45, TEXT, name);
@@ -346,7 +346,7 @@ mod tests {
         Element::Coil { sign: "S", text: text.to_owned() }
     }
 
-    /// Where texts stand: what, left end, base line.
+    /// The texts of a drawing: characters, left end, base line.
     fn texts(r: &[Rung]) -> Vec<(String, i32, i32)> {
         let (picture, _) = drawn("", r);
         let text = |i: &crate::ink::Ink| match i {

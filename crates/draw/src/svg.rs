@@ -1,5 +1,5 @@
-//! Drawings as files of their own: a style sheet, the font, the items of one or
-//! several charts on one sheet.
+//! Drawings as standalone files: a style sheet, the font, and the items of one or several charts on
+//! one sheet.
 
 use std::fmt::Write as _;
 
@@ -9,18 +9,18 @@ use crate::ink::{Picture, Px, escape};
 use crate::text::{FONT_FAMILY, clean, font, shortened, width};
 use crate::{Drawing, Options, Part, Point, Rect};
 
-/// Round a standalone picture.
+/// Margin round a standalone picture.
 const MARGIN: i32 = 200;
-/// Between two charts on a sheet.
+/// Distance between two charts on a sheet.
 const BETWEEN: i32 = 600;
-/// Size of the name over a chart.
+/// Text size of the name over a chart.
 const TITLE: i32 = 180;
-/// Size of the comment beside it.
+/// Text size of the comment beside the name.
 const SUBTITLE: i32 = 130;
-/// From the title to the chart.
+/// Distance from the title to the chart.
 const UNDER_TITLE: i32 = 180;
 
-/// The style sheet of the fragments: what each class looks like.
+/// The style sheet for the fragments: one rule for each class.
 pub fn style(dark: bool) -> String {
     let (paper, ink, soft, accent) = if dark {
         ("#15181d", "#e8eaed", "#9aa4b2", "#b6c2d2")
@@ -51,7 +51,7 @@ pub fn style(dark: bool) -> String {
     )
 }
 
-/// One chart as an SVG file.
+/// Draws one chart as an SVG file.
 pub fn svg(drawing: &Drawing, options: &Options) -> String {
     let mut out = String::new();
     open(&mut out, drawing.area, options, &drawing.chart);
@@ -60,7 +60,7 @@ pub fn svg(drawing: &Drawing, options: &Options) -> String {
     out
 }
 
-/// Several charts as one SVG file: in rows, each under its name.
+/// Draws several charts as one SVG file: in rows, each under its name.
 pub fn sheet(document: &Document, drawings: &[Drawing], options: &Options) -> String {
     let titles: Vec<Picture> = drawings.iter().map(|d| title(document, d)).collect();
     let boxes: Vec<Rect> = drawings.iter().zip(&titles).map(|(d, t)| with_title(d, t)).collect();
@@ -82,8 +82,8 @@ pub fn sheet(document: &Document, drawings: &[Drawing], options: &Options) -> St
     out
 }
 
-/// The name over a chart, with what it is the inside of, and its comment; a frame
-/// round an enclosed one, with the step that encloses it.
+/// The title over a chart: its name, the macro-step or enclosing step it belongs to, and its
+/// comment. An enclosed chart also gets a frame with the name of its enclosing step.
 fn title(document: &Document, drawing: &Drawing) -> Picture {
     let mut p = Picture::default();
     let Some(chart) = document.charts().find(|c| c.name.text == drawing.chart) else { return p };
@@ -115,7 +115,7 @@ fn short(name: &str) -> String {
     shortened(&clean(name), TITLE, 4000).0
 }
 
-/// The symbol of an enclosing step, small, with its name; tells how wide it is.
+/// Draws a small symbol of an enclosing step with its name; returns its width.
 fn enclosing_mark(p: &mut Picture, x: i32, y: i32, step: &str) -> i32 {
     let (h, c) = (260, 60);
     let w = (width(step, SUBTITLE) + 120).max(h);
@@ -130,7 +130,7 @@ fn enclosing_mark(p: &mut Picture, x: i32, y: i32, step: &str) -> i32 {
     w
 }
 
-/// The step that encloses a chart.
+/// The enclosing step of a chart, if it has one.
 fn enclosed_by(document: &Document, chart: &Chart) -> Option<Box<str>> {
     let encloses = |s: &&Step| {
         s.actions.iter().any(
@@ -140,7 +140,7 @@ fn enclosed_by(document: &Document, chart: &Chart) -> Option<Box<str>> {
     document.charts().flat_map(Chart::steps).find(encloses).map(|s| s.name.text.clone())
 }
 
-/// The macro-step whose inside a chart is.
+/// The macro-step whose expansion the chart is.
 fn inside_of(document: &Document, chart: &Chart) -> Option<Box<str>> {
     let steps = document.charts().flat_map(Chart::steps);
     let mut of = steps.filter(|s| matches!(&s.kind, StepKind::Macro(name) if name.text == chart.name.text));
@@ -151,8 +151,8 @@ fn with_title(drawing: &Drawing, title: &Picture) -> Rect {
     title.area().map_or(drawing.area, |t| t.union(&drawing.area))
 }
 
-/// Boxes side by side while the row is no wider than the widest box or than a
-/// sheet somewhat wider than high; then the next row. The order stays.
+/// Places boxes in rows without changing their order. A row is no wider than the widest box or than
+/// a sheet that is somewhat wider than high.
 fn rows(boxes: &[Rect]) -> Vec<Point> {
     let ink: i64 = boxes.iter().map(|b| i64::from(b.w + BETWEEN) * i64::from(b.h + BETWEEN)).sum();
     let widest = boxes.iter().map(|b| b.w).max().unwrap_or(0);
@@ -170,7 +170,7 @@ fn rows(boxes: &[Rect]) -> Vec<Point> {
     places
 }
 
-/// Something else in the same style as a file.
+/// Wraps other SVG content as a file in the same style.
 pub(crate) fn standalone(area: Rect, options: &Options, title: &str, body: &str) -> String {
     let mut out = String::new();
     open(&mut out, area, options, title);
@@ -179,7 +179,7 @@ pub(crate) fn standalone(area: Rect, options: &Options, title: &str, body: &str)
     out
 }
 
-/// The head of a file up to the open group `g7`.
+/// Writes the head of a file up to and including the opening tag of the group `g7`.
 fn open(out: &mut String, area: Rect, options: &Options, title: &str) {
     let (x, y) = (area.x - MARGIN, area.y - MARGIN);
     let (w, h) = (area.w + 2 * MARGIN, area.h + 2 * MARGIN);
@@ -204,7 +204,7 @@ role=\"img\"><title>{}</title><style>",
     );
 }
 
-/// The items, each in a group that says what it is.
+/// Writes the items, each in a group that says which part of the chart it is.
 fn body(out: &mut String, drawing: &Drawing) {
     for item in &drawing.items {
         let part = match item.part {
@@ -220,7 +220,7 @@ fn body(out: &mut String, drawing: &Drawing) {
     }
 }
 
-/// Bytes in base 64 (RFC 4648, 4).
+/// Encodes bytes in base 64 (RFC 4648, section 4).
 fn base64(bytes: &[u8]) -> String {
     const SIGNS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     let sign = |n: u32| char::from(SIGNS[(n & 63) as usize]);

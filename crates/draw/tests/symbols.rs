@@ -1,4 +1,4 @@
-//! Symbols against the rules of IEC 60848: what must be seen, not how it is made.
+//! Checks the symbols against IEC 60848: what the reader sees, not how it is produced.
 #![allow(missing_docs, reason = "a test")]
 
 use g7_draw::{Drawing, Item, Look, Options, Part, Rect, draw};

@@ -1,6 +1,6 @@
-//! A part of a chart as text, to be pasted elsewhere: a chart of its own with
-//! the chosen steps and transitions, the expansions of its macro-steps, the
-//! declarations that they need, and where all of it stood on the drawing.
+//! Copies a part of a chart as text, to be pasted elsewhere. The text is a small file: a chart with
+//! the chosen steps and transitions, the expansions of its macro-steps, the declarations that they
+//! need, and the places of the symbols.
 
 use g7_model::{Chart, ChartItem, Document, Item, Layout, Name, PlaceAt, Placed, Span, StepKind, Transition};
 
@@ -8,13 +8,13 @@ use crate::id::{ItemId, Part};
 use crate::needs::needs;
 use crate::{Anchors, Source};
 
-/// The chosen steps and transitions as the text of a small file. Transitions
-/// whose steps are all chosen come along; links to other steps are cut.
+/// The chosen steps and transitions as the text of a small file. A transition whose steps are all
+/// chosen is copied too; links to other steps are cut.
 pub fn copy(source: &Source<'_>, ids: &[ItemId]) -> String {
     copy_placed(source, ids, &|_| None)
 }
 
-/// The same for a chart that is drawn: `anchors` says where its symbols stand.
+/// The same for a chart that is drawn: `anchors` gives the places of its symbols.
 pub fn copy_placed(source: &Source<'_>, ids: &[ItemId], anchors: Anchors<'_>) -> String {
     let Some(first) = ids.first() else { return String::new() };
     let Some(chart) = source.document.charts().find(|c| *c.name.text == *first.chart) else {
@@ -72,7 +72,7 @@ fn placed(what: Placed, at: Option<(i32, i32)>) -> Option<PlaceAt> {
     at.map(|(x, y)| PlaceAt { what, x, y, at: Span::default().into() })
 }
 
-/// What is chosen of one chart.
+/// The chosen parts of one chart.
 struct Chosen<'i> {
     chart: &'i str,
     steps: Vec<&'i str>,
@@ -98,7 +98,7 @@ impl<'i> Chosen<'i> {
         self.steps.contains(&&*name.text)
     }
 
-    /// A transition as it comes along, if it does.
+    /// The copy of a transition, if it is to be copied.
     fn transition(&self, t: &Transition, number: usize) -> Option<Transition> {
         let all = t.from.iter().chain(&t.to).all(|n| self.has(n)) && !(t.from.is_empty() && t.to.is_empty());
         if !all && !self.numbers.contains(&number) {
@@ -111,7 +111,7 @@ impl<'i> Chosen<'i> {
         Some(t)
     }
 
-    /// The comments of the layout that are chosen.
+    /// The chosen comments of the layout section.
     fn comments(&self, document: &Document) -> Vec<PlaceAt> {
         let layout = document.items.iter().find_map(|i| match i {
             Item::Layout(l) if *l.chart.text == *self.chart => Some(l),
@@ -123,7 +123,7 @@ impl<'i> Chosen<'i> {
     }
 }
 
-/// Adds the expansions of the macro-steps, and those in them.
+/// Adds the expansions of the macro-steps, and the expansions used in these.
 fn with_expansions(source: &Document, doc: &mut Document) {
     let mut k = 0;
     while let Some(Item::Chart(chart)) = doc.items.get(k) {
@@ -141,7 +141,8 @@ fn with_expansions(source: &Document, doc: &mut Document) {
     }
 }
 
-/// Adds the declarations of what is named; those of a chart to the part of it.
+/// Adds the declarations of the names that are used; the local ones go into the copied part of
+/// their chart.
 fn with_declarations(source: &Document, spans: &[Span], doc: &mut Document) {
     let mut before = Vec::new();
     for (chart, v) in needs(source, spans) {

@@ -1,9 +1,9 @@
-//! What a document is to become: a copy that gestures change, and the texts of
-//! the new parts as they were typed.
+//! A draft: a copy of the document that a gesture changes, and the texts of its new parts as the
+//! user typed them.
 //!
-//! Identity: whatever came from the text keeps its place in it, whatever is new
-//! has a place in a file of its own ([`FRESH`]). So the writer can tell, item by
-//! item, what stayed, what went and what came.
+//! A part that comes from the text keeps its place in the text; a new part gets a place in a file
+//! of its own ([`FRESH`]). The writer compares these places to find out which parts stayed, which
+//! were removed and which were added.
 
 use std::collections::HashMap;
 
@@ -16,29 +16,29 @@ use crate::id::ItemId;
 use crate::splice::Splice;
 use crate::{Anchors, Refusal, Source, refuse};
 
-/// The file of all that is new.
+/// The file in which all new parts have their places.
 pub(crate) const FRESH: FileId = FileId(u32::MAX);
 
-/// Something to be selected afterwards.
+/// A part to be selected after the gesture.
 #[derive(Clone, Debug)]
 pub(crate) enum Mark {
     Id(ItemId),
-    /// A transition of a chart; its number is known only at the end.
+    /// A transition of a chart; its number is known only at the end of the gesture.
     Transition(String, Span),
 }
 
-/// A document in change.
+/// A document that is being changed.
 pub(crate) struct Draft<'s> {
     pub(crate) source: &'s Source<'s>,
     pub(crate) anchors: Anchors<'s>,
     pub(crate) doc: Document,
-    /// How new things are written, by their places.
+    /// The texts of new parts, by their places.
     pub(crate) raw: HashMap<u32, String>,
-    /// Changes besides, of names outside of what the document says by itself.
+    /// Further changes of names, which the comparison of documents does not find.
     pub(crate) besides: Vec<Splice>,
     pub(crate) select: Vec<Mark>,
     pub(crate) begin: Option<Mark>,
-    /// What the user should know.
+    /// Sentences for the user.
     pub(crate) told: Vec<String>,
     fresh: u32,
 }
@@ -58,13 +58,13 @@ impl<'s> Draft<'s> {
         }
     }
 
-    /// A place for something new.
+    /// A place for a new part.
     pub(crate) fn fresh(&mut self) -> Place {
         self.fresh += 1;
         Place(Span { file: FRESH, start: self.fresh, end: self.fresh })
     }
 
-    /// A place for something new that is to be written like this.
+    /// A place for a new part that is written as `raw`.
     pub(crate) fn fresh_as(&mut self, raw: impl Into<String>) -> Place {
         let at = self.fresh();
         self.raw.insert(at.0.start, raw.into());
@@ -96,7 +96,7 @@ impl<'s> Draft<'s> {
         found.ok_or_else(|| no_step(chart, name))
     }
 
-    /// The identity of a transition by its number.
+    /// The place in the text of a transition, given its number; it identifies the transition.
     pub(crate) fn number(&self, chart: &str, number: usize) -> Result<Span, Refusal> {
         match self.chart(chart)?.transitions().nth(number) {
             Some(t) => Ok(t.at.0),
@@ -117,10 +117,10 @@ impl<'s> Draft<'s> {
         found.ok_or_else(|| Refusal::new(format!("chart `{chart}` does not have this transition")))
     }
 
-    // What is new
+    // New parts
 
-    /// A name that no step of the chart has: the next number where steps have
-    /// numbers, else `Step1` and so on.
+    /// A name that no step of the chart has: the next number if the names of steps are numbers,
+    /// otherwise `Step1` and so on.
     pub(crate) fn step_name(&self, chart: &Chart) -> String {
         let taken = |name: &str| chart.steps().any(|s| *s.name.text == *name);
         let number = |s: &Step| s.name.text.parse::<u64>().ok().filter(|n| *n < u64::MAX / 2);
@@ -152,7 +152,7 @@ impl<'s> Draft<'s> {
         }
     }
 
-    /// A transition that is always true.
+    /// A new transition whose receptivity is always true.
     pub(crate) fn new_transition(&mut self, from: &[&str], to: &[&str]) -> Transition {
         let list = |d: &mut Self, names: &[&str]| names.iter().map(|n| d.new_name(n)).collect();
         Transition {
@@ -168,7 +168,7 @@ impl<'s> Draft<'s> {
         }
     }
 
-    /// `TRUE`.
+    /// The receptivity `TRUE`.
     pub(crate) fn always(&mut self) -> Expr {
         Expr { kind: ExprKind::Literal(Literal::Bool(true)), at: self.fresh() }
     }
@@ -177,7 +177,7 @@ impl<'s> Draft<'s> {
         Name { text: name.into(), at: self.fresh() }
     }
 
-    // What is selected
+    // Selection
 
     pub(crate) fn select(&mut self, id: ItemId) {
         self.select.push(Mark::Id(id));
@@ -191,7 +191,7 @@ impl<'s> Draft<'s> {
         self.begin = Some(Mark::Transition(chart.to_owned(), at.0));
     }
 
-    /// The id of a mark, now that the numbers are known.
+    /// The id of a mark, after the numbers of transitions are final.
     pub(crate) fn resolved(&self, mark: &Mark) -> Option<ItemId> {
         match mark {
             Mark::Id(id) => Some(id.clone()),
@@ -203,13 +203,13 @@ impl<'s> Draft<'s> {
     }
 }
 
-/// The number in the name of a macro-step called `M3`.
+/// The number in the name of a macro-step such as `M3`.
 fn macro_number(step: &Step) -> Option<u64> {
     let StepKind::Macro(_) = step.kind else { return None };
     step.name.text.strip_prefix('M')?.parse().ok().filter(|n| *n < u64::MAX / 2)
 }
 
-/// The first of `base1`, `base2`, … from a number on that is not taken.
+/// The first of `base1`, `base2`, … that is not taken; the count starts at `first`.
 fn free(first: u64, base: String, taken: impl Fn(&str) -> bool) -> String {
     (first..).map(|n| format!("{base}{n}")).find(|n| !taken(n)).unwrap_or(base)
 }
@@ -222,7 +222,7 @@ fn no_step(chart: &str, name: &str) -> Refusal {
     Refusal::new(format!("chart `{chart}` has no step `{name}`"))
 }
 
-/// Whether something is new.
+/// True if a part is new.
 pub(crate) fn is_fresh(at: Place) -> bool {
     at.0.file == FRESH
 }

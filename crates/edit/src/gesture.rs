@@ -1,4 +1,4 @@
-//! What a person does to a chart, as the page says it (JSON, tag `g`).
+//! The gestures of the user, as the page sends them (JSON with the tag `g`).
 
 use crate::id::ItemId;
 use crate::splice::Splice;
@@ -7,18 +7,18 @@ use crate::splice::Splice;
 #[derive(Clone, Debug, PartialEq, serde::Deserialize)]
 #[serde(tag = "g", rename_all = "snake_case", deny_unknown_fields)]
 pub enum Gesture {
-    /// A step by itself.
+    /// Adds a step without links.
     AddStep {
         /// The chart.
         chart: String,
-        /// Where it stands, in pixels of the drawing.
+        /// Its place, in pixels of the drawing.
         #[serde(default)]
         at: Option<[f64; 2]>,
-        /// What sort; a plain one when absent.
+        /// Its kind; a plain step if absent.
         #[serde(default)]
         kind: Option<Sort>,
     },
-    /// Builds on: behind a step a transition and a step, behind a transition a step.
+    /// Continues a sequence: adds a transition and a step after a step, a step after a transition.
     Next {
         /// The step or transition.
         id: ItemId,
@@ -28,241 +28,243 @@ pub enum Gesture {
         /// The step or transition.
         id: ItemId,
     },
-    /// A link; with what alternation needs in between.
+    /// Adds a link, with a step or transition in between where steps and transitions must
+    /// alternate.
     Connect {
-        /// Where it begins.
+        /// The start of the link.
         from: ItemId,
-        /// Where it ends.
+        /// The end of the link.
         to: ItemId,
     },
-    /// A step and a transition into a link.
+    /// Inserts a step and a transition into a link.
     Insert {
         /// The link.
         link: ItemId,
-        /// What is wanted of it.
+        /// The part to insert.
         #[serde(default)]
         what: What,
     },
-    /// A branch more.
+    /// Adds a branch.
     Branch {
         /// The step or transition at which it begins.
         id: ItemId,
-        /// Alternative or simultaneous.
+        /// A selection (or) or simultaneous sequences (and).
         how: Branching,
     },
-    /// Branches brought together.
+    /// Makes branches converge.
     Converge {
-        /// Their ends.
+        /// The ends of the branches.
         ids: Vec<ItemId>,
-        /// Alternative or simultaneous.
+        /// The end of a selection (or) or of simultaneous sequences (and).
         how: Branching,
-        /// The step they lead to; a new one when absent.
+        /// The step they lead to; a new one if absent.
         #[serde(default)]
         to: Option<ItemId>,
     },
-    /// A link to a step far away.
+    /// Adds a link to a step that may be far away.
     Jump {
-        /// The step or transition it begins at.
+        /// The step or transition at which it starts.
         id: ItemId,
-        /// The step.
+        /// The step to which it leads.
         to: ItemId,
     },
-    /// A simultaneous branch beside a sequence.
+    /// Adds a simultaneous branch beside a sequence.
     Parallel {
         /// The steps and transitions of the sequence.
         ids: Vec<ItemId>,
     },
-    /// Takes things away.
+    /// Deletes parts of a chart.
     Delete {
-        /// The things.
+        /// The parts.
         ids: Vec<ItemId>,
-        /// Joins what was before them to what was behind them.
+        /// Join what was before the parts to what was after them.
         #[serde(default)]
         heal: bool,
     },
-    /// Gives a step, chart or variable another name, wherever it is used.
+    /// Renames a step, chart or variable wherever it is used.
     Rename {
         /// The step or chart.
         #[serde(default)]
         id: Option<ItemId>,
-        /// Or the variable, `Chart.name` for one of a chart.
+        /// A variable instead, as `Chart.name` if it belongs to a chart.
         #[serde(default)]
         name: Option<String>,
         /// The new name.
         to: String,
     },
-    /// The receptivity of a transition; TRUE when empty.
+    /// Changes the receptivity of a transition; TRUE if the text is empty.
     Receptivity {
         /// The transition.
         id: ItemId,
-        /// As typed.
+        /// The receptivity as typed.
         text: String,
     },
-    /// An action of a step.
+    /// Adds, changes or deletes an action of a step.
     Action {
         /// The step, or one of its actions.
         id: ItemId,
-        /// Which action, from 0; a new one when absent.
+        /// The number of the action, from 0; a new action if absent.
         #[serde(default)]
         index: Option<usize>,
-        /// As typed; empty to delete it.
+        /// The action as typed; empty to delete it.
         text: String,
     },
-    /// The comment of a step, transition or chart, or the text of one in the layout.
+    /// Changes the comment of a step, transition or chart, or a comment of the layout section.
     Comment {
-        /// The thing.
+        /// The commented part, or the comment of the layout section.
         id: ItemId,
-        /// Without quotes; empty for none, which takes one in the layout away.
+        /// The text without quotes. Empty removes the comment.
         text: String,
     },
-    /// A comment that belongs to no symbol, somewhere on the drawing.
+    /// Adds a comment that belongs to no symbol, at a place of the drawing.
     CommentAt {
         /// The chart.
         chart: String,
-        /// Without quotes.
+        /// The text without quotes.
         text: String,
         /// Its upper left corner, in pixels.
         at: [f64; 2],
     },
-    /// The label of a transition.
+    /// Changes the label of a transition.
     Label {
         /// The transition.
         id: ItemId,
-        /// Empty for none.
+        /// The label; empty for none.
         text: String,
     },
-    /// The priority of a transition.
+    /// Changes the priority of a transition.
     Priority {
         /// The transition.
         id: ItemId,
-        /// 1 is first.
+        /// The priority, 1 being the first; absent for none.
         #[serde(default)]
         n: Option<u32>,
     },
-    /// The steps that a transition joins.
+    /// Changes the preceding and succeeding steps of a transition.
     Ends {
         /// The transition.
         id: ItemId,
-        /// Names of the preceding steps; as they are when absent.
+        /// The names of the preceding steps; unchanged if absent.
         #[serde(default)]
         before: Option<Vec<String>>,
-        /// Names of the succeeding steps; as they are when absent.
+        /// The names of the succeeding steps; unchanged if absent.
         #[serde(default)]
         after: Option<Vec<String>>,
     },
-    /// Whether a step is active in the initial situation.
+    /// Adds a step to the initial situation or removes it.
     Initial {
         /// The step.
         id: ItemId,
-        /// Whether.
+        /// True if the step is initial.
         on: bool,
     },
-    /// What sort of step.
+    /// Changes the kind of a step.
     Kind {
         /// The step.
         id: ItemId,
-        /// The sort.
+        /// The kind.
         kind: Sort,
     },
     /// Moves symbols on the drawing.
     Move {
         /// Steps and transitions.
         ids: Vec<ItemId>,
-        /// To the right, in pixels.
+        /// Distance to the right, in pixels.
         dx: f64,
-        /// Downward, in pixels.
+        /// Distance downward, in pixels.
         dy: f64,
     },
-    /// Brings symbols into line.
+    /// Aligns symbols.
     Align {
         /// Steps and transitions.
         ids: Vec<ItemId>,
-        /// Which line.
+        /// The kind of alignment.
         how: Alignment,
     },
-    /// Forgets where symbols were moved to.
+    /// Returns to the automatic layout.
     Tidy {
         /// The chart.
         chart: String,
     },
-    /// Puts in what [`crate::copy`] gave.
+    /// Pastes a text that [`crate::copy`] returned.
     Paste {
         /// The chart.
         chart: String,
-        /// The fragment.
+        /// The text.
         text: String,
-        /// Where its first step stands, in pixels.
+        /// The place of its first step, in pixels.
         #[serde(default)]
         at: Option<[f64; 2]>,
     },
-    /// Takes things away that were copied before.
+    /// Deletes parts that the page copied before.
     Cut {
-        /// The things.
+        /// The parts.
         ids: Vec<ItemId>,
     },
-    /// A chart more.
+    /// Adds a chart.
     AddChart {
-        /// What it is for.
+        /// The kind of chart.
         #[serde(default)]
         kind: ChartSort,
-        /// Its name; a fresh one when absent.
+        /// Its name; a new one is found if absent.
         #[serde(default)]
         name: Option<String>,
     },
-    /// Takes a chart away, with its layout.
+    /// Deletes a chart and its layout section.
     DeleteChart {
         /// The chart.
         chart: String,
     },
-    /// Puts a sequence into the expansion of a new macro-step.
+    /// Moves a sequence into the expansion of a new macro-step.
     Macro {
         /// Its steps and transitions.
         ids: Vec<ItemId>,
     },
-    /// A row of the table of variables.
+    /// Changes or adds a row of the table of variables.
     Variable {
-        /// The variable that is changed, `Chart.name` for one of a chart; a new one when absent.
+        /// The variable to change, `Chart.name` if it belongs to a chart; a new one if absent.
         #[serde(default)]
         name: Option<String>,
-        /// What it is to be.
+        /// The new contents of the row.
         row: Row,
     },
-    /// Takes a variable away.
+    /// Deletes a variable.
     DeleteVariable {
-        /// `Chart.name` for one of a chart.
+        /// Its name, `Chart.name` if it belongs to a chart.
         name: String,
     },
-    /// The profile of the file.
+    /// Sets the profile of the file.
     Profile {
         /// Its name.
         name: String,
     },
-    /// A switch of the profile.
+    /// Sets or clears a switch of the profile.
     Switch {
-        /// Its word, such as `one-pass`.
+        /// The word of the switch, for instance `one-pass`.
         name: String,
-        /// Whether it is set beside the profile; else the profile says.
+        /// True to write the switch, false to leave it to the profile.
         on: bool,
     },
-    /// Most passes in a scan.
+    /// Sets the greatest number of passes in a scan.
     Bound {
-        /// How many; as the profile says when absent.
+        /// The number; the profile decides if absent.
         #[serde(default)]
         n: Option<u32>,
     },
-    /// The scan time of the file.
+    /// Sets the scan time of the file.
     Scan {
-        /// Milliseconds.
+        /// The time in milliseconds.
         ms: f64,
     },
-    /// Typed into the text.
+    /// Changes the text directly, as the user types.
     Text {
-        /// In bytes of the text before.
+        /// The changes, in bytes of the text before.
         splices: Vec<Splice>,
     },
 }
 
-/// What is put into a link; alternation brings the other one along.
+/// A part that is inserted into a link; the step or transition that alternation needs comes with
+/// it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum What {
@@ -277,17 +279,17 @@ pub enum What {
     Enclosing,
 }
 
-/// How branches go.
+/// Kinds of branching.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Branching {
-    /// One of them.
+    /// A selection: one of the branches.
     Or,
-    /// All of them at once.
+    /// Simultaneous sequences: all branches.
     And,
 }
 
-/// Sorts of step.
+/// Kinds of step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Sort {
@@ -303,47 +305,47 @@ pub enum Sort {
     Exit,
 }
 
-/// Sorts of chart.
+/// Kinds of chart.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ChartSort {
-    /// A chart of its own.
+    /// An ordinary chart.
     #[default]
     Chart,
-    /// An expansion.
+    /// The expansion of a macro-step.
     #[serde(alias = "macrochart")]
     Expansion,
     /// A task.
     Task,
 }
 
-/// Lines to bring symbols into.
+/// Kinds of alignment.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Alignment {
-    /// Below the one that stands farthest to the left.
+    /// In a column, at the symbol farthest to the left.
     Left,
-    /// Beside the highest.
+    /// In a row, at the highest symbol.
     Top,
-    /// Below each other, in the middle.
+    /// In a column, at the middle of the symbols.
     Center,
-    /// Equal distances to the right.
+    /// Equal horizontal distances.
     DistributeX,
-    /// Equal distances downward.
+    /// Equal vertical distances.
     DistributeY,
 }
 
-/// A variable as the table shows it; empty texts for what it has not.
+/// A variable as the table shows it; a field is empty if the variable has no such part.
 #[derive(Clone, Debug, Default, PartialEq, Eq, serde::Deserialize)]
 #[serde(default)]
 pub struct Row {
     /// Its name.
     #[serde(deserialize_with = "text_or_null")]
     pub name: String,
-    /// `input`, `output`, `var` or `const`; `var` when empty.
+    /// `input`, `output`, `var` or `const`; `var` if empty.
     #[serde(deserialize_with = "text_or_null")]
     pub class: String,
-    /// Its type; BOOL when empty.
+    /// Its type; BOOL if empty.
     #[serde(rename = "type", deserialize_with = "text_or_null")]
     pub ty: String,
     /// Its initial value.
@@ -352,21 +354,21 @@ pub struct Row {
     /// Its address or channel.
     #[serde(deserialize_with = "text_or_null")]
     pub address: String,
-    /// The channel carries the complement.
+    /// True if the channel carries the complement.
     pub inverted: bool,
-    /// Kept over a restart.
+    /// True if the value is kept over a restart.
     pub retain: bool,
-    /// The value of an output after a fault.
+    /// For an output: its value after a fault.
     #[serde(deserialize_with = "text_or_null")]
     pub safe: String,
-    /// Without quotes.
+    /// Its comment, without quotes.
     #[serde(deserialize_with = "text_or_null")]
     pub comment: String,
-    /// The chart it belongs to; the file when absent.
+    /// The chart to which it belongs; the file if absent.
     pub chart: Option<String>,
 }
 
-/// The page has `null` for what a variable has not.
+/// Reads a text for which the page may send `null`.
 fn text_or_null<'de, D: serde::Deserializer<'de>>(from: D) -> Result<String, D::Error> {
     use serde::Deserialize;
     Option::<String>::deserialize(from).map(Option::unwrap_or_default)

@@ -1,7 +1,6 @@
-//! Undo and redo without limit: each change with the one that leads back.
+//! Unlimited undo and redo: each change is kept together with its inverse.
 //!
-//! What must hold: whatever was recorded, undoing all of it gives the first
-//! text byte for byte, and redoing all of it the last one.
+//! Undoing everything restores the first text byte for byte, and redoing everything the last one.
 
 use crate::splice::{Splice, inverse};
 
@@ -10,11 +9,11 @@ use crate::splice::{Splice, inverse};
 struct Unit {
     there: Vec<Splice>,
     back: Vec<Splice>,
-    /// Came from the keyboard, and may grow with the next key.
+    /// True if the user typed it; the next key may then extend it.
     typed: bool,
 }
 
-/// What was done to a text, and what was undone again.
+/// The changes of a text, and those that were undone.
 #[derive(Clone, Debug, Default)]
 pub struct History {
     done: Vec<Unit>,
@@ -22,8 +21,8 @@ pub struct History {
 }
 
 impl History {
-    /// Remembers a change of `text`. Those from the keyboard join the one before
-    /// while they go on with one word. False where the splices do not fit the text.
+    /// Records a change of `text`. Typed changes are joined while they continue one word. Returns
+    /// false if the splices do not fit the text.
     pub fn record(&mut self, text: &str, splices: &[Splice], typed: bool) -> bool {
         let Some(back) = inverse(text, splices) else { return false };
         if splices.is_empty() {
@@ -38,7 +37,7 @@ impl History {
         true
     }
 
-    /// Takes the last change back: what to do to the text as it is now.
+    /// Undoes the last change: returns the splices for the present text.
     pub fn undo(&mut self) -> Option<Vec<Splice>> {
         let unit = self.done.pop()?;
         let back = unit.back.clone();
@@ -46,7 +45,7 @@ impl History {
         Some(back)
     }
 
-    /// Does the change taken back last again: what to do to the text as it is now.
+    /// Redoes the change that was undone last: returns the splices for the present text.
     pub fn redo(&mut self) -> Option<Vec<Splice>> {
         let mut unit = self.undone.pop()?;
         unit.typed = false;
@@ -55,25 +54,25 @@ impl History {
         Some(there)
     }
 
-    /// The next key begins a unit of its own.
+    /// Ends the present step of undo: the next key starts a new one.
     pub fn pause(&mut self) {
         if let Some(last) = self.done.last_mut() {
             last.typed = false;
         }
     }
 
-    /// Whether something can be undone.
+    /// True if there is a change to undo.
     pub fn can_undo(&self) -> bool {
         !self.done.is_empty()
     }
 
-    /// Whether something can be redone.
+    /// True if there is a change to redo.
     pub fn can_redo(&self) -> bool {
         !self.undone.is_empty()
     }
 }
 
-/// Lets the last unit grow by a key, if both are of one word.
+/// Extends the last step of undo by a key if both belong to one word.
 fn join(last: &mut Unit, next: &Unit) -> bool {
     if !last.typed {
         return false;

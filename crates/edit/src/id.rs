@@ -1,9 +1,9 @@
-//! Names for the things of a drawing, the same in the page, in gestures and in
-//! answers: `Chart/s/Step`, `Chart/a/Step/0`, `Chart/t/3`, `Chart/l/s:Step>t:3`,
-//! `Chart/c/s:Step>t:3/leaving`, `Chart/n/0`, `Chart/x/0`, and `Chart` for a chart itself.
+//! Ids of the parts of a drawing. The page, gestures and answers use the same ones: `Chart/s/Step`,
+//! `Chart/a/Step/0`, `Chart/t/3`, `Chart/l/s:Step>t:3`, `Chart/c/s:Step>t:3/leaving`, `Chart/n/0`,
+//! `Chart/x/0`, and `Chart` for a chart itself.
 //!
-//! Any text can be a name, so `/`, `>`, `:` and `%` inside one are written
-//! `%2F`, `%3E`, `%3A` and `%25`. What must hold: an id reads as it prints.
+//! Any text can be a name, so `/`, `>`, `:` and `%` inside a name are written `%2F`, `%3E`, `%3A`
+//! and `%25`. Reading a printed id gives the same id.
 
 use std::fmt;
 use std::str::FromStr;
@@ -13,77 +13,77 @@ use std::str::FromStr;
 pub enum End {
     /// A step by its name.
     Step(String),
-    /// A transition by its place in the text of the chart, from 0.
+    /// A transition by its number in the text of the chart, from 0.
     Transition(usize),
 }
 
-/// What an id names in its chart.
+/// The part of a chart that an id names.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Part {
     /// The chart itself.
     Chart,
     /// A step by its name.
     Step(String),
-    /// An action: its step, and its place there from 0.
+    /// An action: its step, and its number there from 0.
     Action(String, usize),
-    /// A transition by its place in the text of the chart, from 0.
+    /// A transition by its number in the text of the chart, from 0.
     Transition(usize),
-    /// The link from the one end to the other.
+    /// A link, by its two ends.
     Link(End, End),
-    /// One end of a link that is broken off: the one that leaves, or the one that arrives.
+    /// One end of a broken link; the flag is true at the start of the link.
     Connector(End, End, bool),
-    /// A comment of the layout by its place there, from 0.
+    /// A comment of the layout section, by its number there from 0.
     Note(usize),
-    /// Something that is only drawn.
+    /// A part that is only drawn, such as a title.
     Other(usize),
 }
 
-/// The name of a thing of a chart.
+/// The id of a part of a chart.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct ItemId {
     /// The name of the chart.
     pub chart: String,
-    /// What of it.
+    /// The part.
     pub part: Part,
 }
 
 impl ItemId {
-    /// A chart.
+    /// The id of a chart.
     pub fn chart(chart: impl Into<String>) -> ItemId {
         ItemId { chart: chart.into(), part: Part::Chart }
     }
 
-    /// A step.
+    /// The id of a step.
     pub fn step(chart: impl Into<String>, step: impl Into<String>) -> ItemId {
         ItemId { chart: chart.into(), part: Part::Step(step.into()) }
     }
 
-    /// An action of a step.
+    /// The id of an action of a step.
     pub fn action(chart: impl Into<String>, step: impl Into<String>, index: usize) -> ItemId {
         ItemId { chart: chart.into(), part: Part::Action(step.into(), index) }
     }
 
-    /// A transition.
+    /// The id of a transition.
     pub fn transition(chart: impl Into<String>, number: usize) -> ItemId {
         ItemId { chart: chart.into(), part: Part::Transition(number) }
     }
 
-    /// A link.
+    /// The id of a link.
     pub fn link(chart: impl Into<String>, from: End, to: End) -> ItemId {
         ItemId { chart: chart.into(), part: Part::Link(from, to) }
     }
 
-    /// An end of a broken link.
+    /// The id of one end of a broken link.
     pub fn connector(chart: impl Into<String>, from: End, to: End, leaving: bool) -> ItemId {
         ItemId { chart: chart.into(), part: Part::Connector(from, to, leaving) }
     }
 
-    /// A comment of the layout.
+    /// The id of a comment of the layout section.
     pub fn note(chart: impl Into<String>, number: usize) -> ItemId {
         ItemId { chart: chart.into(), part: Part::Note(number) }
     }
 
-    /// Something that is only drawn.
+    /// The id of a part that is only drawn.
     pub fn other(chart: impl Into<String>, number: usize) -> ItemId {
         ItemId { chart: chart.into(), part: Part::Other(number) }
     }
@@ -126,7 +126,7 @@ impl fmt::Display for End {
     }
 }
 
-/// The text is no id.
+/// The error for a text that is not an id.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct NoId(String);
 

@@ -5,15 +5,15 @@
 //!                                 -> write -> splices -> parse again -> compare
 //! ```
 //!
-//! The text is the truth: a gesture says what the document is to become, the
-//! writer finds the least change of the text that makes it so. Only lines that
-//! must change do; notes, blank lines, spelling and order of all else stay.
+//! The text is the truth: a gesture says what the document is to become, and the writer finds the
+//! least change of the text that leads there. Only lines that must change do; notes, blank lines,
+//! spelling and the order of everything else stay.
 //!
 //! # What must hold
 //!
-//! - After an accepted gesture the text reads without syntax errors, as exactly
-//!   the document that the gesture meant: each result is parsed and compared.
-//! - Steps and transitions alternate always; what the standard forbids is refused.
+//! After an accepted gesture the text has no syntax errors and gives exactly the document that the
+//! gesture asked for: each result is parsed and compared.
+//! Steps and transitions always alternate; the editor refuses what the standard forbids.
 //! - Nothing panics, whatever the ids and texts.
 #![forbid(unsafe_code)]
 
@@ -37,31 +37,31 @@ use g7_model::{ChartItem, Document, FileId, Item};
 
 use draft::Draft;
 
-/// A file as it is: its text and what was read from it.
+/// A file: its text and the parsed document.
 #[derive(Clone, Copy, Debug)]
 pub struct Source<'a> {
     /// The text.
     pub text: &'a str,
     /// Its document, as `g7_syntax::parse` gave it.
     pub document: &'a Document,
-    /// Whether it was read without syntax errors.
+    /// True if the text has no syntax errors.
     pub clean: bool,
 }
 
 /// A change of the text.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Edit {
-    /// In bytes of the text before; in order, none over another.
+    /// The changes in bytes of the text before, in order and without overlap.
     pub splices: Vec<Splice>,
-    /// What is to be selected afterwards.
+    /// The parts to be selected after the change.
     pub select: Vec<ItemId>,
-    /// What is to be typed in next, at its place.
+    /// The part whose field the user fills in next.
     pub begin: Option<ItemId>,
-    /// What the user should know of it, sentence by sentence.
+    /// Sentences for the user about the change.
     pub told: Vec<String>,
 }
 
-/// Why a gesture was not carried out: a sentence for the user.
+/// The reason why a gesture was refused: a sentence for the user.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Refusal(String);
 
@@ -79,22 +79,21 @@ impl std::fmt::Display for Refusal {
 
 impl std::error::Error for Refusal {}
 
-/// An answer that is no.
+/// Refuses a gesture.
 pub(crate) fn refuse<T>(why: impl Into<String>) -> Result<T, Refusal> {
     Err(Refusal::new(why))
 }
 
-/// Where symbols stand on the drawing, in hundredths of its unit: the middle
-/// of the upper edge of a step, the middle of the bar of a transition.
+/// The places of symbols on the drawing, in hundredths of its unit: the middle of the upper edge of
+/// a step, the middle of the bar of a transition.
 pub type Anchors<'a> = &'a dyn Fn(&ItemId) -> Option<(i32, i32)>;
 
-/// Carries a gesture out; symbols are known to stand only where the layout
-/// section of the text has them.
+/// Executes a gesture; places of symbols are known only from the layout section of the text.
 pub fn apply(source: &Source<'_>, gesture: &Gesture) -> Result<Edit, Refusal> {
     apply_placed(source, gesture, &|_| None)
 }
 
-/// The same for a chart that is drawn: `anchors` says where its symbols stand.
+/// The same for a chart that is drawn: `anchors` gives the places of its symbols.
 pub fn apply_placed(source: &Source<'_>, gesture: &Gesture, anchors: Anchors<'_>) -> Result<Edit, Refusal> {
     if let Gesture::Text { splices } = gesture {
         return match spliced(source.text, splices) {
@@ -104,7 +103,7 @@ pub fn apply_placed(source: &Source<'_>, gesture: &Gesture, anchors: Anchors<'_>
     }
     if !source.clean {
         return refuse(
-            "the text has syntax errors; mend them first, the drawing shows the chart before them",
+            "the text has syntax errors; correct them first (the drawing shows the chart before them)",
         );
     }
     if let Gesture::Rename { id, name, to } = gesture {
@@ -131,7 +130,7 @@ pub fn apply_placed(source: &Source<'_>, gesture: &Gesture, anchors: Anchors<'_>
     Ok(Edit { splices, select, begin, told: draft.told })
 }
 
-/// One gesture behind another, as one change.
+/// Executes two gestures as one change.
 fn in_two(source: &Source<'_>, first: &Gesture, second: &Gesture) -> Result<Edit, Refusal> {
     let before = apply(source, first)?;
     let text = spliced(source.text, &before.splices).ok_or_else(unwritable)?;
@@ -142,7 +141,7 @@ fn in_two(source: &Source<'_>, first: &Gesture, second: &Gesture) -> Result<Edit
     Ok(Edit { splices, ..after })
 }
 
-/// Adds changes of names, which must leave the text clean.
+/// Adds changes of names; the resulting text must have no syntax errors.
 fn with_besides(text: &str, mut splices: Vec<Splice>, besides: Vec<Splice>) -> Result<Vec<Splice>, Refusal> {
     if besides.is_empty() {
         return Ok(splices);
@@ -158,7 +157,7 @@ fn with_besides(text: &str, mut splices: Vec<Splice>, besides: Vec<Splice>) -> R
     }
 }
 
-/// The text must read as just the document that was meant.
+/// Checks that the text gives exactly the intended document.
 fn judge(text: &str, meant: &Document) -> Result<(), Refusal> {
     let (read, problems) = g7_syntax::parse(text, FileId(0));
     if let Some(problem) = problems.first() {
@@ -170,7 +169,7 @@ fn judge(text: &str, meant: &Document) -> Result<(), Refusal> {
     Ok(())
 }
 
-/// Empty braces of a step mean nothing.
+/// Removes differences without meaning, such as the empty braces of a step.
 fn plain(mut doc: Document) -> Document {
     for item in &mut doc.items {
         let Item::Chart(chart) = item else { continue };

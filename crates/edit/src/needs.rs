@@ -1,5 +1,5 @@
-//! The declarations that a part of a document needs: the variables it names, and
-//! those that their initial values name.
+//! The declarations that a part of a document needs: the variables it names, and those named by
+//! their initial values.
 
 use std::collections::BTreeSet;
 
@@ -7,12 +7,11 @@ use g7_compile::references::Written;
 use g7_compile::{Definition, references};
 use g7_model::{ChartItem, Document, Item, Span, VarDecl};
 
-/// A declaration, with its chart where it is one of a chart.
+/// A declaration, with its chart if it belongs to one.
 pub(crate) type Need = (Option<String>, VarDecl);
 
-/// What the given places need, in the order of the text; a declaration of
-/// several names is cut down to those needed. Declarations that lie in the
-/// places themselves are no needs of them.
+/// The declarations that the given places need, in the order of the text. A declaration of several
+/// names is reduced to the names needed. Declarations inside the places themselves are left out.
 pub(crate) fn needs(doc: &Document, places: &[Span]) -> Vec<Need> {
     let refs = references(doc);
     let declared = declarations(doc);
@@ -37,7 +36,7 @@ pub(crate) fn needs(doc: &Document, places: &[Span]) -> Vec<Need> {
         places.dedup();
     }
     let home = |at: Span, c: &Option<String>| {
-        // What lies within a place that is no declaration comes along with it.
+        // A declaration inside another part is copied with that part.
         let own = |p: &Span| p.start <= at.start && at.end <= p.end && *p != at;
         c.is_some() && places.iter().any(own)
     };

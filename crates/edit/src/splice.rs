@@ -1,25 +1,25 @@
 //! Changes of a text as data.
 
-/// Replaces bytes `start..end` of the text before by `insert`.
+/// Replaces the bytes `start..end` of the old text by `insert`.
 #[derive(Clone, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub struct Splice {
-    /// First byte that goes.
+    /// The first byte that is replaced.
     pub start: usize,
-    /// One past the last byte that goes.
+    /// One past the last byte that is replaced.
     pub end: usize,
-    /// What comes instead.
+    /// The new text.
     pub insert: String,
 }
 
 impl Splice {
-    /// A replacement.
+    /// Makes a replacement.
     pub fn new(start: usize, end: usize, insert: impl Into<String>) -> Splice {
         Splice { start, end, insert: insert.into() }
     }
 }
 
-/// The text after the splices; none where they do not fit it: out of order,
-/// beyond its end, inside of a character.
+/// Applies splices to a text; `None` if they do not fit: out of order, beyond the end, or inside a
+/// character.
 pub fn spliced(text: &str, splices: &[Splice]) -> Option<String> {
     let added: usize = splices.iter().map(|s| s.insert.len()).sum();
     let mut out = String::with_capacity(text.len() + added);
@@ -37,8 +37,7 @@ pub fn spliced(text: &str, splices: &[Splice]) -> Option<String> {
     Some(out)
 }
 
-/// The splices that lead from the text after back to the text before; none
-/// where they do not fit it.
+/// The splices that lead from the changed text back to `text`; `None` if they do not fit.
 pub(crate) fn inverse(text: &str, splices: &[Splice]) -> Option<Vec<Splice>> {
     let mut shift = 0isize;
     let mut last = 0;
@@ -56,13 +55,13 @@ pub(crate) fn inverse(text: &str, splices: &[Splice]) -> Option<Vec<Splice>> {
     Some(back)
 }
 
-/// A piece of a changed text: what stayed, by its place in the text before, or what is new.
+/// A piece of a changed text: kept text, by its place in the text before, or new text.
 enum Piece {
     Kept(usize, usize),
     New(String),
 }
 
-/// The splices that do at once what two lists do one after the other.
+/// The splices with the same effect as two lists applied one after the other.
 pub(crate) fn composed(text: &str, first: &[Splice], second: &[Splice]) -> Option<Vec<Splice>> {
     let mut pieces = Vec::new();
     let mut at = 0;
@@ -81,7 +80,7 @@ pub(crate) fn composed(text: &str, first: &[Splice], second: &[Splice]) -> Optio
             Piece::New(t) => t.len(),
         };
         let end = place + length;
-        // What the second list does to this piece; the end of one is the start of the next.
+        // Cuts this piece by the second list; the end of one splice is where the next part starts.
         let mut from = place;
         while let Some(s) = left.peek() {
             if s.start > end || s.start == end && s.end > end {
@@ -111,7 +110,7 @@ fn part(piece: &Piece, from: usize, to: usize) -> Option<Piece> {
     })
 }
 
-/// The splices between what is kept.
+/// The splices that remove or replace everything between the kept pieces.
 fn gaps(text: &str, pieces: &[Piece]) -> Vec<Splice> {
     let mut splices = Vec::new();
     let (mut at, mut new) = (0, String::new());
@@ -133,7 +132,7 @@ fn gaps(text: &str, pieces: &[Piece]) -> Vec<Splice> {
     splices
 }
 
-/// In order, those that change nothing left out, common beginnings and ends cut away.
+/// Sorts splices, drops those without effect, and cuts off common beginnings and ends.
 pub(crate) fn tidied(text: &str, mut splices: Vec<Splice>) -> Vec<Splice> {
     splices.sort_by_key(|s| (s.start, s.end));
     let mut out: Vec<Splice> = Vec::with_capacity(splices.len());

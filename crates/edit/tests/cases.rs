@@ -1,10 +1,10 @@
-//! The cases of `tests/edit`: a text, a gesture, and the text that the rule asks for.
+//! Runs the cases of `tests/edit`: a text, a gesture, and the text that the rule asks for.
 //!
-//! A case is a `##` section with a block `g7` (before), a block `json` (one or
-//! more gestures, one a line), and a block `g7` (after) or `no` (words of the
-//! refusal); a block `select` names what is selected afterwards, with `begin`
-//! before what is typed in next. A block `told` has a part of each sentence that
-//! the user is told besides; without one nothing may be told.
+//! A case is a `##` section with a block `g7` (before), a block `json` (one or more gestures, one
+//! per line), and a block `g7` (after) or `no` (words of the refusal). A block `select` names the
+//! parts that are selected afterwards; `begin` precedes the part whose field the user fills in
+//! next. A block `told` has a part of each sentence for the user; without this block there must be
+//! none.
 #![allow(clippy::disallowed_methods, reason = "the test reads the cases")]
 
 use std::path::Path;
@@ -62,7 +62,7 @@ fn cases() -> Vec<Case> {
     all
 }
 
-/// Symbols stand in rows: the number of a step or transition in units of ten.
+/// Places for symbols: in rows, by the number of the step or transition in units of ten.
 fn stands(id: &ItemId) -> Option<(i32, i32)> {
     let text = id.to_string();
     let number: i32 = text.rsplit('/').next()?.parse().ok()?;
@@ -75,7 +75,7 @@ fn run(text: &str, gesture: &Gesture) -> Result<Edit, String> {
     apply_placed(&source, gesture, &stands).map_err(|e| e.to_string())
 }
 
-/// Plays a case; what is wrong, if anything is.
+/// Runs a case; returns what is wrong, if anything.
 fn wrong(case: &Case) -> Option<String> {
     let mut text = case.block("g7", 0)?.to_owned();
     let mut last = Edit::default();

@@ -1,6 +1,6 @@
-//! Random series of gestures on every example: whatever was accepted leaves a
-//! text without syntax errors, undoing all of it gives the first text byte for
-//! byte, redoing all of it the last one. And no id or text makes it panic.
+//! Random series of gestures on every example. After each accepted gesture the text has no syntax
+//! errors; undoing all of them restores the first text byte for byte, redoing all of them the last
+//! one; no id and no text causes a panic.
 #![allow(clippy::disallowed_methods, reason = "the test reads the examples")]
 
 use std::path::{Path, PathBuf};
@@ -9,7 +9,7 @@ use g7_edit::{Edit, Gesture, History, Refusal, Source, apply_placed, copy, splic
 use g7_model::{Document, FileId, StepKind};
 use serde_json::{Value, json};
 
-/// A stream of numbers (SplitMix64).
+/// A pseudo-random generator (SplitMix64).
 struct Rng(u64);
 
 impl Rng {
@@ -45,7 +45,7 @@ fn examples(folder: &Path, found: &mut Vec<PathBuf>) {
     }
 }
 
-/// Texts in which everything stands in unusual places.
+/// Texts with unusual layout.
 const ODD: &[&str] = &[
     "",
     "// nothing but a note",
@@ -105,7 +105,7 @@ const ACTIONS: &[&str] = &[
     "P1 { x := 1\n y := 2 }",
 ];
 
-/// Something of a chart by its id, now and then something that is not there.
+/// The id of a part of a chart; now and then one that does not exist.
 fn an_id(rng: &mut Rng, doc: &Document) -> Value {
     let charts: Vec<_> = doc.charts().collect();
     let Some(chart) = rng.pick(&charts) else { return json!("G/s/1") };
@@ -134,7 +134,7 @@ fn an_id(rng: &mut Rng, doc: &Document) -> Value {
 fn ids(rng: &mut Rng, doc: &Document) -> Value {
     let n = 1 + rng.below(5);
     let all: Vec<Value> = (0..n).map(|_| an_id(rng, doc)).collect();
-    // Mostly of one chart.
+    // Mostly parts of one chart.
     let first = all.first().and_then(Value::as_str).unwrap_or_default().to_owned();
     let home = first.split('/').next().unwrap_or_default();
     let own = all.iter().filter(|v| v.as_str().unwrap_or_default().starts_with(home));
@@ -160,7 +160,7 @@ fn variable(rng: &mut Rng, doc: &Document) -> String {
     rng.pick(&names).cloned().unwrap_or_default()
 }
 
-/// Any gesture at all.
+/// An arbitrary gesture.
 fn a_gesture(rng: &mut Rng, text: &str, doc: &Document) -> Value {
     let id = an_id(rng, doc);
     let or_and = if rng.below(2) == 0 { "or" } else { "and" };
@@ -241,7 +241,7 @@ fn a_gesture(rng: &mut Rng, text: &str, doc: &Document) -> Value {
     }
 }
 
-/// Plays a series on a text; how many gestures were accepted.
+/// Plays a series of gestures on a text; returns how many were accepted.
 fn play(seed: u64, first: &str, length: usize) -> usize {
     let mut rng = Rng(seed);
     let mut history = History::default();
@@ -309,7 +309,7 @@ fn play(seed: u64, first: &str, length: usize) -> usize {
     accepted
 }
 
-/// Whether an id names something of the document.
+/// True if an id names a part of the document.
 fn known(doc: &Document, id: &g7_edit::ItemId) -> bool {
     use g7_edit::Part;
     let Some(chart) = doc.charts().find(|c| *c.name.text == *id.chart) else { return false };
@@ -360,7 +360,7 @@ fn nothing_makes_it_panic() {
         "G/x/0",
     ];
     for text in texts() {
-        // Cut anywhere, so that most of it is wrong.
+        // The text is cut anywhere, so that most of the pasted texts are wrong.
         let cut = (0..=rng.below(text.len() + 1)).rev().find(|n| text.is_char_boundary(*n)).unwrap_or(0);
         for text in [text.as_str(), text.get(..cut).unwrap_or_default()] {
             let (doc, _) = read(text);

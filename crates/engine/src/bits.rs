@@ -1,11 +1,11 @@
 //! Sets of small numbers as bits with summaries, inside a flat word array.
 //!
-//! Level 0 has a bit a member; each further level has a bit a word of the level
-//! below, set while that word is not zero. So a set is walked in ascending
-//! order in time that follows its members, and its words depend on nothing but
-//! the members: two equal sets are equal bytes.
+//! Level 0 has a bit for each number; each further level has a bit for each word of
+//! the level below, which is set while that word is not zero. So walking a set in
+//! ascending order takes time in proportion to its members, and the words depend on
+//! the members alone: two equal sets are equal words.
 
-/// Most levels: `64^5` members.
+/// Most levels; they make room for `64^5` members.
 pub(crate) const LEVELS: usize = 5;
 
 /// Where a set lies in the word array.
@@ -17,7 +17,7 @@ pub(crate) struct Tree {
     levels: u32,
 }
 
-/// The word, or 0 where there is none (checked tables never get there).
+/// The word at a place, or 0 beyond the end, where checked tables never lead.
 #[inline(always)]
 pub(crate) fn word(words: &[u64], at: usize) -> u64 {
     words.get(at).copied().unwrap_or(0)
@@ -46,13 +46,13 @@ fn and_not(words: &mut [u64], at: usize, mask: u64) -> u64 {
     }
 }
 
-/// A plain bit of a plain bit array that begins at word `base`.
+/// Bit `i` of a plain array of bits that begins at word `base`.
 #[inline(always)]
 pub(crate) fn bit(words: &[u64], base: u32, i: u32) -> bool {
     word(words, base as usize + (i / 64) as usize) & (1 << (i % 64)) != 0
 }
 
-/// Writes a plain bit; tells the old one.
+/// Writes a bit of a plain array of bits; returns the old one.
 #[inline(always)]
 pub(crate) fn set_bit(words: &mut [u64], base: u32, i: u32, on: bool) -> bool {
     let Some(w) = words.get_mut(base as usize + (i / 64) as usize) else { return on };
@@ -86,6 +86,27 @@ impl Tree {
         tree
     }
 
+    /// Whether words hold a set of members below `n`, with its summaries.
+    pub(crate) fn is_sound(&self, words: &[u64], n: u32) -> bool {
+        let mut count = n;
+        let mut below: Option<u32> = None;
+        for at in self.at.iter().take(self.levels as usize) {
+            let len = count.div_ceil(64);
+            let beyond = match count % 64 {
+                0 => 0,
+                used => word(words, (at + len - 1) as usize) >> used,
+            };
+            let fits =
+                |base: u32| (0..count).all(|i| bit(words, *at, i) == (word(words, (base + i) as usize) != 0));
+            if beyond != 0 || !below.is_none_or(fits) {
+                return false;
+            }
+            below = Some(*at);
+            count = len;
+        }
+        true
+    }
+
     /// First word of level 0.
     pub(crate) fn base(&self) -> u32 {
         self.at[0]
@@ -106,7 +127,7 @@ impl Tree {
         self.take(words, i);
     }
 
-    /// Inserts a member; whether it is new.
+    /// Inserts a member; tells whether it is new.
     #[inline(always)]
     pub(crate) fn add(&self, words: &mut [u64], i: u32) -> bool {
         let Some(w) = words.get_mut((self.at[0] + i / 64) as usize) else { return false };
@@ -119,7 +140,7 @@ impl Tree {
         old & mask == 0
     }
 
-    /// Removes a member; whether it was there.
+    /// Removes a member; tells whether it was there.
     #[inline(always)]
     pub(crate) fn take(&self, words: &mut [u64], i: u32) -> bool {
         let Some(w) = words.get_mut((self.at[0] + i / 64) as usize) else { return false };
@@ -139,7 +160,7 @@ impl Tree {
         if from / 64 != to / 64 {
             self.pass_far(words, from, to);
         } else if let Some(w) = words.get_mut((self.at[0] + to / 64) as usize) {
-            // Written, not changed: the word need not be waited for.
+            // The old word is not read, so the processor need not wait for it.
             *w = 1 << (to % 64);
         }
     }
@@ -214,7 +235,7 @@ impl Tree {
 
 /// Walks a set that does not change meanwhile, in ascending order.
 pub(crate) struct Walk {
-    /// What is left of the current word of each level.
+    /// The members of the current word of each level that are still to come.
     rest: [u64; LEVELS],
     /// Index of the current word of each level.
     index: [u32; LEVELS],

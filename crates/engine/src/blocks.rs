@@ -1,41 +1,19 @@
-//! Control blocks (IEC 61131-3:2003, 2.6.4.5): the inputs of all the actions
-//! that name one variable or body, and its Q.
+//! Control blocks (IEC 61131-3:2003, 2.6.4.5): the actions of all steps that name
+//! one variable or body give its block inputs, and the block gives its Q.
 
 use crate::bits::{bit, set_bit, word};
+use crate::block_words::{
+    D, DS, DS_FF, EARLY_P0, EARLY_P1, L, MEMORY, N, P, P0, P1, Q_BEFORE, R, S, S_FF, SD, SD_FF, SL, SL_FF,
+    STARTS, TIMED, TIMES, WRITTEN,
+};
 use crate::fault::Fault;
-use crate::run::{condition, value, write};
-use crate::state::{MEMORY, STARTS, State, TIMES, head};
-use crate::watch::is_due;
-use crate::{Addr, NONE, Program};
-
-// Inputs, in the order of `INPUTS`.
-const N: u32 = 0;
-const S: u32 = 1;
-const R: u32 = 2;
-const L: u32 = 3;
-const D: u32 = 4;
-const P: u32 = 5;
-const P1: u32 = 6;
-const P0: u32 = 7;
-const SD: u32 = 8;
-const DS: u32 = 9;
-const SL: u32 = 10;
-
-/// The timed inputs, each with a start and a time.
-const TIMED: [u32; 5] = [L, D, SD, DS, SL];
-
-// Bits of the memory word. The low 11 are the inputs at the last evaluation.
-const S_FF: u64 = 1 << 16;
-const SD_FF: u64 = 1 << 17;
-const DS_FF: u64 = 1 << 18;
-const SL_FF: u64 = 1 << 19;
-/// Q as it was written last (of a plain block, in the word of its count).
-pub(crate) const WRITTEN: u64 = 1 << 63;
-/// A pulse that [`look`] saw before the evolution.
-const EARLY_P1: u64 = 1 << 21;
-const EARLY_P0: u64 = 1 << 22;
-/// Q, pulses P1 and P0 left out, at the last evaluation.
-const Q_BEFORE: u64 = 1 << 20;
+use crate::layout::head;
+use crate::memory::write;
+use crate::ops::Addr;
+use crate::program::Program;
+use crate::run::{condition, value};
+use crate::state::State;
+use crate::tables::NONE;
 
 fn base(p: &Program, block: u32) -> u32 {
     p.layout.block_at.get(block as usize).copied().unwrap_or(0)
@@ -44,31 +22,32 @@ fn base(p: &Program, block: u32) -> u32 {
 /// Adds an input to a block or takes it away.
 #[inline]
 pub(crate) fn count(p: &Program, s: &mut State, block: u32, input: u8, on: bool) {
-    let plain = p.t.blocks.get(block as usize).is_some_and(|b| b.plain);
+    let plain = p.tables.blocks.get(block as usize).is_some_and(|b| b.plain);
     let at = base(p, block) as usize + if plain { 0 } else { usize::from(input) };
-    let old = word(&s.w, at);
-    // The count of a plain block shares its word with the Q written last. What
-    // is taken away was added before, so it never borrows from there.
+    let old = word(&s.image, at);
+    // The count of a plain block shares its word with the Q written last. Only what
+    // was added is taken away, so the subtraction never borrows from that bit.
     s.set(at, if on { old.wrapping_add(1) } else { old.wrapping_sub(1) });
-    p.layout.blocks.insert(&mut s.w, block);
+    p.layout.blocks.insert(&mut s.image, block);
 }
 
-/// Shows P1 and P0 the situation before the evolution, where the initialisation
-/// or a service made it: a step that is left in the same scan has its pulses.
+/// Shows the inputs P1 and P0 the situation before the evolution, after the
+/// initialisation or a service has made it. So a step that is left in the same scan
+/// still gives its pulses.
 pub(crate) fn look(p: &Program, s: &mut State) -> Result<(), Fault> {
     conditions(p, s, |input| input == P1 || input == P0)?;
     let l = &p.layout;
     let mut from = 0;
-    while let Some(i) = l.blocks.next(&s.w, from) {
+    while let Some(i) = l.blocks.next(&s.image, from) {
         from = i + 1;
-        let Some(b) = p.t.blocks.get(i as usize) else { break };
-        if b.plain || !is_due(p, s, b.period) {
+        let Some(b) = p.tables.blocks.get(i as usize) else { break };
+        if b.plain || !s.is_due(p, b.period) {
             continue;
         }
         let at = base(p, i);
-        let mut memory = word(&s.w, (at + MEMORY) as usize);
+        let mut memory = word(&s.image, (at + MEMORY) as usize);
         for (input, pulse, rises) in [(P1, EARLY_P1, true), (P0, EARLY_P0, false)] {
-            let on = word(&s.w, (at + input) as usize) != 0;
+            let on = word(&s.image, (at + input) as usize) != 0;
             if on != (memory & (1 << input) != 0) {
                 memory ^= 1 << input;
                 memory |= if on == rises { pulse } else { 0 };
@@ -79,18 +58,19 @@ pub(crate) fn look(p: &Program, s: &mut State) -> Result<(), Fault> {
     Ok(())
 }
 
-/// Looks at the conditions of the active steps' actions, those of some inputs.
+/// Evaluates the conditions of the active steps' actions, for the inputs that `of`
+/// selects, and counts them.
 pub(crate) fn conditions(p: &Program, s: &mut State, of: impl Fn(u32) -> bool) -> Result<(), Fault> {
     let l = &p.layout;
     let mut from = 0;
-    while let Some(row) = l.conditions.next(&s.w, from) {
+    while let Some(row) = l.conditions.next(&s.image, from) {
         from = row + 1;
-        let Some(c) = p.t.contributions.get(row as usize) else { break };
-        if !of(u32::from(c.input)) || !is_due(p, s, c.period) {
+        let Some(c) = p.tables.contributions.get(row as usize) else { break };
+        if !of(u32::from(c.input)) || !s.is_due(p, c.period) {
             continue;
         }
         let now = condition(p, s, c.condition)?;
-        if now == bit(&s.w, l.counted, row) {
+        if now == bit(&s.image, l.counted, row) {
             continue;
         }
         if now
@@ -100,7 +80,7 @@ pub(crate) fn conditions(p: &Program, s: &mut State, of: impl Fn(u32) -> bool) -
             let time = value(p, s, c.time)?;
             s.set((base(p, c.block) + TIMES) as usize + k, time);
         }
-        set_bit(&mut s.w, l.counted, row, now);
+        set_bit(&mut s.image, l.counted, row, now);
         count(p, s, c.block, c.input, now);
     }
     Ok(())
@@ -110,13 +90,13 @@ pub(crate) fn conditions(p: &Program, s: &mut State, of: impl Fn(u32) -> bool) -
 pub(crate) fn evaluate(p: &Program, s: &mut State) -> Result<(), Fault> {
     let l = &p.layout;
     let mut from = 0;
-    while let Some(i) = l.blocks.next(&s.w, from) {
+    while let Some(i) = l.blocks.next(&s.image, from) {
         from = i + 1;
-        let Some(b) = p.t.blocks.get(i as usize) else { break };
-        if !is_due(p, s, b.period) {
+        let Some(b) = p.tables.blocks.get(i as usize) else { break };
+        if !s.is_due(p, b.period) {
             continue;
         }
-        l.blocks.remove(&mut s.w, i);
+        l.blocks.remove(&mut s.image, i);
         let gate = condition(p, s, b.gate)?;
         let at = base(p, i);
         let (q, run, live) = if b.plain { plain(s, at, gate) } else { full(p, s, at, gate) };
@@ -124,49 +104,52 @@ pub(crate) fn evaluate(p: &Program, s: &mut State) -> Result<(), Fault> {
             put(p, s, (at + if b.plain { 0 } else { MEMORY }) as usize, b.output, q);
         }
         if run && b.action != NONE {
-            set_bit(&mut s.x.late, 0, b.action, true);
-            s.x.late_any = true;
+            set_bit(&mut s.scratch.late, 0, b.action, true);
+            s.scratch.late_any = true;
         }
         if live || !b.gate.is_empty() || (b.action != NONE && q) {
-            l.blocks.insert(&mut s.w, i);
+            l.blocks.insert(&mut s.image, i);
         }
     }
     Ok(())
 }
 
-/// Notes that a block wrote TRUE last.
+/// Notes that the value written last by a block was TRUE.
 pub(crate) fn take_as_written(p: &Program, s: &mut State, block: u32) {
-    let plain = p.t.blocks.get(block as usize).is_some_and(|b| b.plain);
+    let plain = p.tables.blocks.get(block as usize).is_some_and(|b| b.plain);
     let at = (base(p, block) + if plain { 0 } else { MEMORY }) as usize;
-    s.set(at, word(&s.w, at) | WRITTEN);
+    s.set(at, word(&s.image, at) | WRITTEN);
 }
 
-/// Writes Q where it has changed: between two changes the variable is free.
+/// Writes Q where it has changed. Between two changes others may write the variable.
 fn put(p: &Program, s: &mut State, at: usize, output: Addr, q: bool) {
-    let memory = word(&s.w, at);
+    let memory = word(&s.image, at);
     if (memory & WRITTEN != 0) != q {
         s.set(at, memory ^ WRITTEN);
         write(p, s, output, u64::from(q));
     }
 }
 
-/// Q, whether a body runs, whether to look again at the next scan. A plain block has no body.
+/// Evaluates a plain block: Q, whether its body runs (it has none), and whether to
+/// evaluate it in the next scan again.
 fn plain(s: &State, at: u32, gate: bool) -> (bool, bool, bool) {
-    (word(&s.w, at as usize) & !WRITTEN != 0 && gate, false, false)
+    (word(&s.image, at as usize) & !WRITTEN != 0 && gate, false, false)
 }
 
+/// Evaluates any other block, likewise.
 fn full(p: &Program, s: &mut State, at: u32, gate: bool) -> (bool, bool, bool) {
-    let now = word(&s.w, head::NOW) as i64;
-    let input = |s: &State, i: u32| word(&s.w, (at + i) as usize) != 0;
+    let now = word(&s.image, head::NOW) as i64;
+    let input = |s: &State, i: u32| word(&s.image, (at + i) as usize) != 0;
     let inputs: [bool; 11] = core::array::from_fn(|i| input(s, i as u32));
     let on = |i: u32| inputs.get(i as usize).copied().unwrap_or(false);
-    let memory = word(&s.w, (at + MEMORY) as usize);
+    let memory = word(&s.image, (at + MEMORY) as usize);
     let before = |i: u32| memory & (1 << i) != 0;
     let r = on(R);
     let s_ff = !r && (on(S) || memory & S_FF != 0);
     let sd_ff = !r && (on(SD) || memory & SD_FF != 0);
     let sl_ff = !r && (on(SL) || memory & SL_FF != 0);
-    // TON: (its input now, its input at the last evaluation) -> done, still running.
+    // A TON with its input now and at the latest evaluation; tells whether it is over.
+    // `live` notes that one still runs.
     let mut live = false;
     let mut ton = |s: &mut State, k: u32, e: bool, e_before: bool| {
         let start = (at + STARTS + k) as usize;
@@ -175,8 +158,8 @@ fn full(p: &Program, s: &mut State, at: u32, gate: bool) -> (bool, bool, bool) {
         } else if !e {
             s.set(start, 0);
         }
-        let time = word(&s.w, (at + TIMES + k) as usize) as i64;
-        let done = e && now.wrapping_sub(word(&s.w, start) as i64) >= time;
+        let time = word(&s.image, (at + TIMES + k) as usize) as i64;
+        let done = e && now.wrapping_sub(word(&s.image, start) as i64) >= time;
         live |= e && !done;
         done
     };
@@ -212,6 +195,6 @@ fn full(p: &Program, s: &mut State, at: u32, gate: bool) -> (bool, bool, bool) {
     }
     s.set((at + MEMORY) as usize, keep);
     let q = level || p1 || p0;
-    let run = q || (p.t.rules.final_scan && fell);
+    let run = q || (p.tables.rules.final_scan && fell);
     (q, run, live || p_trig || p1 || p0)
 }

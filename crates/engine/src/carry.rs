@@ -1,33 +1,38 @@
 //! An on-line change: a new program takes over where an old one stands.
 //!
-//! What is the same in both, the caller says (names are not known here). What
-//! has no partner begins as in a new state; nothing is taken for an edge, and no
-//! stored action runs by the change itself.
+//! The caller says which parts are the same in both, since names are not known here.
+//! A part without a partner begins as in a new state. The change itself causes no
+//! edge and runs no stored action.
 
 use crate::bits::{bit, word};
+use crate::block_words::{BLOCK, MEMORY, WRITTEN};
 use crate::fault::Fault;
-use crate::run::read;
+use crate::layout::{STARTED, head};
+use crate::memory::read;
+use crate::ops::{Addr, GroupId, StepId};
+use crate::program::Program;
 use crate::scan::set_step;
-use crate::state::{BLOCK, MEMORY, STARTED, State, head};
-use crate::{Addr, GroupId, NONE, Program, StepId};
+use crate::state::State;
+use crate::tables::{Contribution, NONE};
 
-/// What two programs have in common, each pair with the new one first.
+/// The common parts of two programs, in pairs with the new one first.
 #[derive(Clone, Debug, Default)]
 pub struct Common<'a> {
     /// Words of the variable area.
     pub words: &'a [(Addr, Addr)],
     /// Steps.
     pub steps: &'a [(StepId, StepId)],
-    /// Steps of the new one that begin, in charts without a partner.
+    /// Steps of the new program that become active, in charts without a partner.
     pub begin: &'a [StepId],
     /// Groups whose time goes on.
     pub groups: &'a [(GroupId, GroupId)],
-    /// Control blocks; those of common steps are found without.
+    /// Control blocks of variables and named bodies. The others are found by their
+    /// steps.
     pub blocks: &'a [(u32, u32)],
 }
 
-/// The state in which a new program goes on, and how many delays `t1/e/t2` ran
-/// or were over in the old one: these begin anew.
+/// Makes the state in which a new program goes on. Returns it with the number of
+/// delays `t1/e/t2` that were running or over in the old one, since these begin anew.
 ///
 /// # Errors
 ///
@@ -36,18 +41,18 @@ pub fn carry(p: &Program, old: (&Program, &State), common: &Common<'_>) -> Resul
     let (was, from) = old;
     let mut s = State::new(p);
     for at in [head::NOW, head::DT, head::SCANS] {
-        s.set(at, word(&from.w, at));
+        s.set(at, word(&from.image, at));
     }
-    s.flag(STARTED, from.is_started());
+    s.set_flag(STARTED, from.is_started());
     for (new, old) in common.words {
         s.set_word(p, *new, from.word(*old));
     }
-    // Blocks write a variable where Q differs from what they wrote last.
-    for (b, row) in (0u32..).zip(&p.t.blocks) {
+    // A block writes its variable where Q differs from the value written last.
+    for (b, row) in (0u32..).zip(&p.tables.blocks) {
         if row.output.0 != NONE && read(&s, row.output) != 0 {
             crate::blocks::take_as_written(p, &mut s, b);
         }
-        p.layout.blocks.insert(&mut s.w, b);
+        p.layout.blocks.insert(&mut s.image, b);
     }
     for (new, old) in common.steps {
         set_step(p, &mut s, *new, from.is_active(*old));
@@ -58,9 +63,10 @@ pub fn carry(p: &Program, old: (&Program, &State), common: &Common<'_>) -> Resul
     for step in common.begin {
         set_step(p, &mut s, *step, true);
     }
-    for step in (0u32..).zip(&p.t.steps).filter(|(_, row)| row.direct.0 != NONE).map(|(i, _)| StepId(i)) {
+    for step in (0u32..).zip(&p.tables.steps).filter(|(_, row)| row.direct.0 != NONE).map(|(i, _)| StepId(i))
+    {
         let on = u64::from(s.is_active(step));
-        if let Some(row) = p.t.steps.get(step.0 as usize) {
+        if let Some(row) = p.tables.steps.get(step.0 as usize) {
             s.set((s.vars + row.direct.0) as usize, on);
         }
     }
@@ -73,28 +79,28 @@ pub fn carry(p: &Program, old: (&Program, &State), common: &Common<'_>) -> Resul
     }
     blocks(p, &mut s, was, from, common);
     crate::watch::update(p, &mut s, true, true)?;
-    s.x.quiet = false;
-    s.x.any_blocked = false;
+    s.scratch.quiet = false;
+    s.scratch.any_blocked = false;
     Ok((s, delays(was, from)))
 }
 
-/// Takes over when something came on, where both count in the same unit.
+/// Takes over the time of a step or a group, where both programs count in one unit.
 fn stamps(p: &Program, s: &mut State, to: (u32, u32), was: &Program, from: &State, at: (u32, u32)) {
-    let age = word(&from.w, at.1 as usize);
-    if p.t.rules.scan_clock == was.t.rules.scan_clock {
-        s.set(to.0 as usize, word(&from.w, at.0 as usize));
-    } else if !p.t.rules.scan_clock {
+    let age = word(&from.image, at.1 as usize);
+    if p.tables.rules.scan_clock == was.tables.rules.scan_clock {
+        s.set(to.0 as usize, word(&from.image, at.0 as usize));
+    } else if !p.tables.rules.scan_clock {
         s.set(to.0 as usize, age);
     }
     s.set(to.1 as usize, age);
 }
 
-/// Takes over what control blocks remember: set and reset, pulses, timers.
+/// Takes over the memory of control blocks: set and reset, pulses, timers.
 fn blocks(p: &Program, s: &mut State, was: &Program, from: &State, common: &Common<'_>) {
     for (new, old) in common.blocks {
         block(p, s, was, from, (*new, *old));
     }
-    // Blocks of work without a name, by the steps that they belong to.
+    // Blocks of bodies without a name are found by the steps that they belong to.
     for (new, old) in common.steps {
         let (Some(a), Some(b)) = (inputs(p, *new), inputs(was, *old)) else { continue };
         let same = a.len() == b.len() && a.iter().zip(b).all(|(a, b)| a.input == b.input);
@@ -106,30 +112,31 @@ fn blocks(p: &Program, s: &mut State, was: &Program, from: &State, common: &Comm
     }
 }
 
-fn inputs(p: &Program, step: StepId) -> Option<&[crate::Contribution]> {
+fn inputs(p: &Program, step: StepId) -> Option<&[Contribution]> {
     let extra = crate::change::extra(p, step.0)?;
-    p.t.contributions.get(extra.contributions.start as usize..extra.contributions.end as usize)
+    p.tables.contributions.get(extra.contributions.start as usize..extra.contributions.end as usize)
 }
 
 fn block(p: &Program, s: &mut State, was: &Program, from: &State, (new, old): (u32, u32)) {
-    let full = |p: &Program, b: u32| p.t.blocks.get(b as usize).is_some_and(|b| !b.plain);
+    let full = |p: &Program, b: u32| p.tables.blocks.get(b as usize).is_some_and(|b| !b.plain);
     let (Some(to), Some(at)) = (p.layout.block_at.get(new as usize), was.layout.block_at.get(old as usize))
     else {
         return;
     };
     if full(p, new) && full(was, old) {
-        // What was written last is the new variable's own affair.
-        let written = word(&s.w, (to + MEMORY) as usize) & crate::blocks::WRITTEN;
+        // The bit of the value written last belongs to the new variable.
+        let written = word(&s.image, (to + MEMORY) as usize) & WRITTEN;
         for k in MEMORY..BLOCK {
-            s.set((to + k) as usize, word(&from.w, (at + k) as usize));
+            s.set((to + k) as usize, word(&from.image, (at + k) as usize));
         }
-        let memory = word(&s.w, (to + MEMORY) as usize) & !crate::blocks::WRITTEN;
+        let memory = word(&s.image, (to + MEMORY) as usize) & !WRITTEN;
         s.set((to + MEMORY) as usize, memory | written);
     }
 }
 
-/// The delays that ran, or had run off.
+/// Number of the delays that were running or over.
 fn delays(p: &Program, s: &State) -> u32 {
-    let timers = (0u32..).zip(&p.t.watches).filter(|(_, w)| w.times.is_some());
-    timers.filter(|(i, _)| bit(&s.w, p.layout.q, *i) || p.layout.running.contains(&s.w, *i)).count() as u32
+    let timers = (0u32..).zip(&p.tables.watches).filter(|(_, w)| w.times.is_some());
+    timers.filter(|(i, _)| bit(&s.image, p.layout.q, *i) || p.layout.running.contains(&s.image, *i)).count()
+        as u32
 }

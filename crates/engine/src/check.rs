@@ -1,14 +1,12 @@
-//! Proving, once, that tables are a program: every row points to rows that are
-//! there, every code takes and leaves what it should. After that no scan can
-//! meet a bad index, whoever made the tables.
+//! The check that tables are a program: every row points to rows that are there,
+//! and every code pops and pushes the values that it should. After that no scan
+//! can meet a bad index, whoever made the tables.
 
-use alloc::boxed::Box;
 use alloc::vec;
 use alloc::vec::Vec;
 
-use crate::program::{Guard, LoadError, Program, Rows, Situation, Tables};
-use crate::state::Layout;
-use crate::{Addr, Builtin, Code, NONE, Op, STACK, Service, StepId};
+use crate::ops::{Addr, Builtin, Code, Op, STACK, Service, StepId, TEXT};
+use crate::tables::{INPUTS, NONE, Receptivity, Rows, Situation, Tables};
 
 type Checked = Result<(), LoadError>;
 
@@ -30,127 +28,54 @@ fn rows(r: Rows, len: usize, table: &'static str, row: usize) -> Checked {
     if r.start <= r.end && r.end as usize <= len { Ok(()) } else { Err(bad(table, row)) }
 }
 
-impl Program {
-    /// Checks tables and makes them a program.
-    ///
-    /// # Errors
-    ///
-    /// [`LoadError`] names the first bad row or instruction.
-    pub fn new(t: Tables) -> Result<Program, LoadError> {
-        let mut check = Check { t: &t, depth: vec![-1; t.code.len()] };
-        check.sizes()?;
-        check.steps()?;
-        check.transitions()?;
-        check.actions()?;
-        check.watches()?;
-        check.rest()?;
-        Ok(Program::build(t))
-    }
-
-    /// The tables.
-    pub fn tables(&self) -> &Tables {
-        &self.t
-    }
-
-    fn build(t: Tables) -> Program {
-        let layout = Layout::new(&t);
-        let mut word_index = Vec::with_capacity(t.init.len() + 1);
-        let mut k = 0u32;
-        for word in 0..=t.init.len() as u32 {
-            while t.word_watches.get(k as usize).is_some_and(|(a, _)| a.0 < word) {
-                k += 1;
-            }
-            word_index.push(k);
-        }
-        let contested = |t: &crate::Transition| t.shares;
-        let single = !t.rules.multi_token;
-        let always = t.watches.iter().enumerate().filter(|(_, w)| w.always).map(|(i, _)| i as u32).collect();
-        let stored = t.action_lists.len()
-            + t.events.len()
-            + t.transitions.iter().filter(|t| t.on_clearing != NONE).count();
-        let frame = [t.pre, t.services, t.post, t.tail].iter().any(|c| !c.is_empty());
-        let has_hierarchy = t.extras.iter().any(|e| !e.encloses.is_empty() || !e.links.is_empty());
-        let has_periods = t.periods.iter().any(|p| *p > 0);
-        let reads_time = |op: &Op| {
-            matches!(
-                op,
-                Op::StepTime(_)
-                    | Op::StepTenths(_)
-                    | Op::GroupTime(_)
-                    | Op::StepAge(_)
-                    | Op::GroupAge(_)
-                    | Op::ScanTime
-                    | Op::Random(_)
-                    | Op::Fb(..)
-            )
-        };
-        let bare = t.orders.is_empty()
-                && !has_hierarchy
-                && stored == 0
-                && !t.rules.sequential
-                && t.group_lists.is_empty()
-                && t.drops.is_empty()
-                && !frame
-                && !t.code.iter().any(|op| writes(op) > 0)
-                && !has_periods
-                && t.watches.is_empty()
-                && t.contributions.is_empty()
-                && t.blocks.is_empty()
-                && t.periodics.is_empty()
-                && t.counts.is_none()
-                && t.limits.is_none()
-                // Steps under the scan clock count from a scan that is not over yet.
-                && !t.rules.scan_clock;
-        Program {
-            bare,
-            hot: if bare { crate::bare::hot(&t, &layout) } else { Box::default() },
-            moves: if bare { crate::bare::moves(&t, &layout) } else { Box::default() },
-            timeless: !frame
-                && !has_periods
-                && t.counts.is_none()
-                && t.limits.is_none()
-                && !t.code.iter().any(reads_time),
-            frame,
-            locals: if t.locals.is_empty() { u32::MAX } else { t.locals.start },
-            comes_and_goes: t.rules.stable && (t.rules.sequential || !t.rules.parallel_actions),
-            looks_back: t.code.iter().any(|op| matches!(op, Op::WasActive(_))),
-            has_orders: !t.orders.is_empty(),
-            has_hierarchy,
-            has_periods,
-            has_contests: t
-                .transitions
-                .iter()
-                .any(|t| contested(t) && !(single && t.simple) && (single || t.priority != NONE)),
-            stored,
-            commit_room: commit_room(&t),
-            text_room: text_room(&t.code),
-            always,
-            word_index: word_index.into_boxed_slice(),
-            layout,
-            t,
-        }
-    }
+/// Why tables are not a program.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum LoadError {
+    /// A row of the named table points to a row that is not there.
+    Index {
+        /// The table.
+        table: &'static str,
+        /// The row.
+        row: u32,
+    },
+    /// Code at this instruction pops a value that is not there, or leaves one behind.
+    Stack {
+        /// The instruction.
+        at: u32,
+    },
+    /// Code needs more than [`crate::STACK`] words of stack.
+    Deep {
+        /// The instruction.
+        at: u32,
+    },
+    /// A table that must be sorted is not.
+    Order {
+        /// The table.
+        table: &'static str,
+        /// The row.
+        row: u32,
+    },
+    /// A table is larger than `2^26` rows.
+    Large {
+        /// The table.
+        table: &'static str,
+    },
 }
 
-/// Distinct words that each stored action can write, added up.
-fn commit_room(t: &Tables) -> usize {
-    let lists = t.action_lists.iter().copied();
-    let events = t.events.iter().map(|e| e.action);
-    let clearings = t.transitions.iter().map(|t| t.on_clearing).filter(|a| *a != NONE);
-    lists
-        .chain(events)
-        .chain(clearings)
-        .filter_map(|a| t.actions.get(a as usize))
-        .map(|a| {
-            let code = t.code.get(a.body.start as usize..a.body.end as usize).unwrap_or(&[]);
-            let condition = t.code.get(a.condition.start as usize..a.condition.end as usize).unwrap_or(&[]);
-            code.iter().chain(condition).map(writes).sum::<usize>()
-        })
-        .fold(0, usize::saturating_add)
+/// Checks that tables are a program.
+pub(crate) fn check(t: &Tables) -> Result<(), LoadError> {
+    let mut check = Check { t, depth: vec![-1; t.code.len()] };
+    check.sizes()?;
+    check.steps()?;
+    check.transitions()?;
+    check.actions()?;
+    check.watches()?;
+    check.rest()
 }
 
-/// Most words one instruction writes.
-fn writes(op: &Op) -> usize {
+/// Most words of the variable area that an instruction writes.
+pub(crate) fn writes(op: &Op) -> usize {
     let string = |cap: u16| 1 + usize::from(cap).div_ceil(8);
     match op {
         Op::Store(_) | Op::Random(_) => 1,
@@ -159,16 +84,6 @@ fn writes(op: &Op) -> usize {
         Op::Fb(block, _) => block.words() as usize,
         _ => 0,
     }
-}
-
-fn text_room(code: &[Op]) -> usize {
-    let any = code.iter().any(|op| {
-        matches!(
-            op,
-            Op::StoreText { .. } | Op::Text { .. } | Op::ToText { .. } | Op::FromText(_) | Op::CompareText(_)
-        )
-    });
-    if any { usize::from(crate::TEXT) } else { 0 }
 }
 
 impl Check<'_> {
@@ -187,7 +102,7 @@ impl Check<'_> {
             ("arcs", t.arcs.len()),
         ];
         for (table, len) in sizes {
-            // Far below 2^32, so that words of the image can be counted in u32.
+            // So small that all words of an image can be counted in a u32.
             if len > 1 << 26 {
                 return Err(LoadError::Large { table });
             }
@@ -270,10 +185,12 @@ impl Check<'_> {
             if tr.on_clearing != NONE {
                 within(tr.on_clearing, t.actions.len(), "transitions", i)?;
             }
-            match tr.guard {
-                Guard::True => {}
-                Guard::Word(a) | Guard::NotWord(a) => within(a.0, t.init.len(), "transitions", i)?,
-                Guard::Code(code) => self.code(code, 1)?,
+            match tr.receptivity {
+                Receptivity::True => {}
+                Receptivity::Word(a) | Receptivity::NotWord(a) => {
+                    within(a.0, t.init.len(), "transitions", i)?
+                }
+                Receptivity::Code(code) => self.code(code, 1)?,
             }
         }
         let mut last = 0;
@@ -313,7 +230,7 @@ impl Check<'_> {
         }
         for (i, c) in t.contributions.iter().enumerate() {
             within(c.block, t.blocks.len(), "contributions", i)?;
-            within(u32::from(c.input), crate::INPUTS.len(), "contributions", i)?;
+            within(u32::from(c.input), INPUTS.len(), "contributions", i)?;
             within(c.period, t.periods.len(), "contributions", i)?;
             let plain = t.blocks.get(c.block as usize).is_some_and(|b| b.plain);
             if plain && c.input != 0 {
@@ -391,8 +308,8 @@ impl Check<'_> {
         if code.is_empty() { Ok(()) } else { self.code(code, 1) }
     }
 
-    /// Checks that a code, started on an empty stack, never pops too much and
-    /// ends with `leaves` values on every way.
+    /// Checks that a code, started on an empty stack, never pops a value that is not
+    /// there, and ends with `leaves` values on every path.
     fn code(&mut self, code: Code, leaves: i16) -> Checked {
         if code.start > code.end || code.end as usize > self.t.code.len() {
             return Err(LoadError::Stack { at: code.start });
@@ -456,7 +373,7 @@ impl Check<'_> {
         Ok(())
     }
 
-    /// Whether what an instruction names is there.
+    /// Checks that the operands of an instruction are there.
     fn operands(&self, op: &Op, pc: u32) -> Checked {
         let t = self.t;
         let row = pc as usize;
@@ -477,14 +394,14 @@ impl Check<'_> {
             Op::Due(period) => within(period, t.periods.len(), "code", row),
             Op::Rise(w) | Op::Fall(w) | Op::Timer(w) => within(w.0, t.watches.len(), "code", row),
             Op::Text { to, cap, .. } | Op::StoreText { to, cap } | Op::ToText { to, cap, .. } => {
-                words(to, string(cap.min(crate::TEXT)))?;
-                if cap > crate::TEXT { Err(bad("code", row)) } else { Ok(()) }
+                words(to, string(cap.min(TEXT)))?;
+                if cap > TEXT { Err(bad("code", row)) } else { Ok(()) }
             }
             Op::Fb(block, base) => words(base, block.words() as usize),
             Op::Service(s) => match s {
                 Service::Init(g) | Service::Clear(g) => within(g.0, t.groups.len(), "code", row),
                 Service::Set(s) | Service::Reset(s) => step(s),
-                Service::ResetTimes => Ok(()),
+                Service::Start | Service::ResetTimes => Ok(()),
             },
             _ => Ok(()),
         }
@@ -532,7 +449,7 @@ fn text_arguments(f: Builtin) -> i16 {
         Builtin::Left | Builtin::Right | Builtin::Concat | Builtin::Find => 2,
         Builtin::Mid | Builtin::Insert | Builtin::Delete => 3,
         Builtin::Replace => 4,
-        // Not string functions; a count no code has.
+        // These are no string functions. No code has so many values.
         _ => i16::MAX,
     }
 }

@@ -1,10 +1,10 @@
-//! What can stop a scan.
+//! The faults that stop a scan.
 
 /// A scan that could not be finished. The state stays as it was reached; the
 /// outputs have their safe values; further scans are refused.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Fault {
-    /// What happened.
+    /// The kind.
     pub kind: FaultKind,
     /// The instruction in [`crate::Tables::code`], where one was running.
     pub at: Option<u32>,
@@ -13,7 +13,7 @@ pub struct Fault {
 /// The kinds of fault.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FaultKind {
-    /// A full state recurred within the scan: the chart circulates.
+    /// A whole state recurred within the scan, so the passes would never end.
     Unstable {
         /// Passes from one occurrence to the next. Calling [`crate::pass`] so
         /// often walks through the situations of the cycle.
@@ -36,9 +36,9 @@ pub enum FaultKind {
     },
     /// More steps active or transitions enabled than the target's tables hold.
     Table,
-    /// The number of inputs is not the program's, or time went back.
+    /// There are more or fewer inputs than the program has, or time went back.
     Inputs,
-    /// An earlier scan had a fault; restart first.
+    /// An earlier scan had a fault; only a restart helps.
     Stopped,
 }
 
@@ -48,7 +48,7 @@ impl FaultKind {
         Fault { kind: self, at: None }
     }
 
-    /// One word for it, as `expect fault …` and traces have it.
+    /// The word for it in `expect fault …` and in traces.
     pub const fn word(self) -> &'static str {
         match self {
             FaultKind::Unstable { .. } => "unstable",

@@ -1,11 +1,13 @@
-//! The standard function blocks (IEC 61131-3:2003, 2.5.2.3), on the words of an
-//! instance: the members in the order of the call, then the memory.
+//! The standard function blocks (IEC 61131-3:2003, 2.5.2.3). An instance is a run of
+//! words: the members in the order of the call, then the memory.
 
 use crate::bits::word;
 use crate::fault::FaultKind;
-use crate::run::{read, write};
-use crate::state::{State, head};
-use crate::{Addr, Block, Program};
+use crate::layout::head;
+use crate::memory::{read, write};
+use crate::ops::{Addr, Block};
+use crate::program::Program;
+use crate::state::State;
 
 /// The words of one instance.
 struct Words<'a> {
@@ -32,7 +34,7 @@ impl Words<'_> {
 }
 
 pub(crate) fn call(p: &Program, s: &mut State, block: Block, base: Addr) -> Result<(), FaultKind> {
-    let now = word(&s.w, head::NOW) as i64;
+    let now = word(&s.image, head::NOW) as i64;
     let mut w = Words { p, s, base: base.0 };
     match block {
         Block::Ctu => {
@@ -81,8 +83,8 @@ pub(crate) fn call(p: &Program, s: &mut State, block: Block, base: Addr) -> Resu
             w.set(1, u64::from(q));
         }
         Block::FTrig => {
-            // The memory is that of the standard's body, NOT CLK, and starts FALSE:
-            // a first call with CLK false is an edge.
+            // The memory holds NOT CLK and starts FALSE, as in the body that the standard
+            // gives: a first call with CLK false is an edge.
             let low = w.get(0) == 0;
             let before = w.get(2) != 0;
             w.set(2, u64::from(low));
@@ -100,8 +102,8 @@ pub(crate) fn call(p: &Program, s: &mut State, block: Block, base: Addr) -> Resu
     Ok(())
 }
 
-/// IN, PT, Q, ET, start, memory: IN in bit 0; of TOF and TP bit 1, whether time runs; of TOF
-/// bit 2, whether it has run out.
+/// Runs a timer. Its words are IN, PT, Q, ET, start, memory. The memory has IN in bit
+/// 0; of TOF and TP, "time runs" in bit 1; of TOF, "time is over" in bit 2.
 fn timer(w: &mut Words<'_>, block: Block, now: i64) {
     let input = w.get(0) != 0;
     let pt = (w.get(1) as i64).max(0);
@@ -122,7 +124,7 @@ fn timer(w: &mut Words<'_>, block: Block, now: i64) {
             let gone = if running { now.wrapping_sub(start).clamp(0, pt) } else { 0 };
             let ended = !input && !running && memory & 4 != 0;
             let done = running && gone >= pt;
-            // Once ended, ET stays at PT until IN comes again.
+            // After the end ET stays at PT until IN is true again.
             q = input || (running && !done);
             et = if input {
                 0
@@ -142,7 +144,7 @@ fn timer(w: &mut Words<'_>, block: Block, now: i64) {
             }
             let gone = now.wrapping_sub(start).clamp(0, pt);
             q = running && gone < pt;
-            // ET stays at PT while IN, which began the pulse, is still true behind it.
+            // After the pulse ET stays at PT while IN is still true.
             et = if q {
                 gone
             } else if input {

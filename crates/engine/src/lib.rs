@@ -1,15 +1,14 @@
-//! The evolution of a chart: one call to [`scan`] takes the state, a frozen
-//! picture of the inputs and the time, and leaves the next state with its outputs.
+//! The evolution of a chart: one call to [`scan`] takes a state, the inputs and the
+//! time, and leaves the next state with its outputs.
 //!
 //! # Where this sits
 //!
 //! ```text
-//! syntax -> model -> compile -> Program -> engine::scan -> host | wasm | verify
-//!                                   \----> codegen: tested against scan
+//! syntax -> model -> compile -> Program -> engine::scan -> host | page | verify
 //! ```
 //!
-//! This is the only place that knows what a chart *does*. A question such as
-//! "which transition wins?" is answered here or nowhere.
+//! Whoever runs a chart runs it here. `begin`, `pass` and `finish` are the parts of a
+//! scan; there is no other way to evolve a state.
 //!
 //! # Invariants
 //!
@@ -19,14 +18,17 @@
 //! - Equal program, state, inputs and time give an equal result on every machine.
 //! - The work of a scan follows the enabled transitions, the running timers, the
 //!   active steps' actions and what changed, not the size of the program.
-//! - No profile is named here: they differ in [`Rules`] and in how `compile`
-//!   fills the [`Tables`].
+//! - No code here looks at a profile: each is a row of [`Rules`], and differs from the
+//!   others in these switches and in how `compile` fills the [`Tables`].
+//! - Words and public times are `i64` nanoseconds, unless a comment says scans. In
+//!   tables [`NONE`] stands for absence; public functions return an `Option`.
 //!
 //! # Reading order
 //!
-//! [`scan`] (`scan.rs`), then one pass (`pass.rs`), then what a change of steps
-//! carries with it (`change.rs`), edges and timers (`watch.rs`), control blocks
-//! (`blocks.rs`). Code runs in `run.rs`; `check.rs` proves the tables.
+//! [`scan`] (`scan.rs`), then one pass (`pass.rs`), then the consequences of a change
+//! of steps (`change.rs`), edges and timers (`watch.rs`), control blocks (`blocks.rs`).
+//! Code runs in `run.rs`. `tables.rs` has the data and `check.rs` checks it;
+//! `canonical.rs` and `reads.rs` are for those who search.
 //!
 //! Not here: names, places, drawings (`model`), real inputs and clocks (`host`).
 #![no_std]
@@ -36,40 +38,50 @@
 extern crate alloc;
 
 mod bare;
+mod bare_rows;
 mod bits;
+mod block_words;
 mod blocks;
+mod canonical;
 mod carry;
 mod change;
 mod check;
+mod clocks;
+mod enabled;
 mod fault;
 mod fb;
-mod judge;
-mod number;
+mod fingerprint;
+mod layout;
+mod memory;
+pub mod number;
 mod ops;
 mod pass;
 mod program;
+mod reads;
+mod rules;
 mod run;
 mod scan;
+mod scratch;
 mod state;
-mod text;
+mod tables;
+pub mod text;
 mod watch;
 
+pub use canonical::ImageError;
 pub use carry::{Common, carry};
+pub use check::LoadError;
+pub use enabled::enabled;
 pub use fault::{Fault, FaultKind};
-pub use judge::enabled;
-pub use ops::{Addr, Arith, Block, Builtin, Cmp, Code, GroupId, Num, Op, Service, StepId, WatchId};
-pub use program::{
-    Action, Chart, Contribution, ControlBlock, Event, Extra, Group, Guard, INPUTS, Limits, LoadError, NONE,
-    Order, Program, Rows, Rules, Situation, Step, Tables, Transition, Watch,
+pub use ops::{
+    Addr, Arith, Block, Builtin, Cmp, Code, GroupId, Num, Op, STACK, Service, StepId, TEXT, WORK, WatchId,
 };
+pub use program::Program;
+pub use reads::{Reads, Subject};
+pub use rules::Rules;
 pub use scan::{Report, begin, eval, finish, pass, scan, set_step};
 pub use state::State;
-pub use text::{Duration, TEXT};
-
-pub(crate) use run::clock;
-
-/// Words of stack that code may use.
-pub const STACK: usize = 64;
-
-/// Jumps that the code of one scan may make before it counts as endless.
-pub const WORK: u32 = 1_000_000;
+pub use tables::{
+    Action, Chart, Contribution, ControlBlock, Event, Extra, Group, INPUTS, Limits, NONE, Order, Receptivity,
+    Rows, Situation, Step, Tables, Transition, Watch,
+};
+pub use text::Duration;

@@ -1,7 +1,7 @@
 //! Arithmetic on words, with overflow judged in the type of the result.
 
 use crate::fault::FaultKind;
-use crate::{Arith, Builtin, Cmp, Num};
+use crate::ops::{Arith, Builtin, Cmp, Num};
 
 /// Smallest and largest value of an integer kind (BOOL counts as 0..1).
 fn bounds(n: Num) -> (i128, i128) {
@@ -18,7 +18,7 @@ fn bounds(n: Num) -> (i128, i128) {
     }
 }
 
-/// A word of an integer kind as a number.
+/// The number that a word of an integer kind stands for.
 fn whole(n: Num, v: u64) -> i128 {
     match n {
         Num::Bool | Num::U8 | Num::U16 | Num::U32 | Num::U64 => i128::from(v),
@@ -31,7 +31,7 @@ fn fit(n: Num, v: i128) -> Result<u64, FaultKind> {
     if v < least || v > most { Err(FaultKind::Overflow) } else { Ok(v as u64) }
 }
 
-/// A word of a real kind as a number; REAL is exact in LREAL.
+/// The number that a word of a real kind stands for. LREAL holds every REAL exactly.
 pub(crate) fn real(n: Num, v: u64) -> f64 {
     if n == Num::F32 { f64::from(f32::from_bits(v as u32)) } else { f64::from_bits(v) }
 }
@@ -44,7 +44,8 @@ fn is_real(n: Num) -> bool {
     matches!(n, Num::F32 | Num::F64)
 }
 
-pub(crate) fn compare(c: Cmp, n: Num, a: u64, b: u64) -> bool {
+/// Compares two words of a kind; NaN is only unequal.
+pub fn compare(c: Cmp, n: Num, a: u64, b: u64) -> bool {
     if is_real(n) {
         return ordered(c, real(n, a).partial_cmp(&real(n, b)));
     }
@@ -55,8 +56,9 @@ pub(crate) fn compare(c: Cmp, n: Num, a: u64, b: u64) -> bool {
     ordered(c, Some(order))
 }
 
-/// `None` is "not a number": only `<>` holds.
-pub(crate) fn ordered(c: Cmp, order: Option<core::cmp::Ordering>) -> bool {
+/// Whether a comparison is true. `None` stands for operands of which one is NaN; then
+/// only `<>` is true.
+pub fn ordered(c: Cmp, order: Option<core::cmp::Ordering>) -> bool {
     let Some(o) = order else { return c == Cmp::Ne };
     match c {
         Cmp::Eq => o.is_eq(),
@@ -68,11 +70,21 @@ pub(crate) fn ordered(c: Cmp, order: Option<core::cmp::Ordering>) -> bool {
     }
 }
 
-pub(crate) fn negate(n: Num, v: u64) -> Result<u64, FaultKind> {
+/// Minus.
+///
+/// # Errors
+///
+/// Overflow.
+pub fn negate(n: Num, v: u64) -> Result<u64, FaultKind> {
     if is_real(n) { Ok(from_real(n, -real(n, v))) } else { fit(n, -whole(n, v)) }
 }
 
-pub(crate) fn arith(op: Arith, n: Num, a: u64, b: u64) -> Result<u64, FaultKind> {
+/// Arithmetic between two words of a kind.
+///
+/// # Errors
+///
+/// Overflow, division by zero.
+pub fn arith(op: Arith, n: Num, a: u64, b: u64) -> Result<u64, FaultKind> {
     match n {
         Num::F32 => arith_f32(op, f32::from_bits(a as u32), f32::from_bits(b as u32)),
         Num::F64 => arith_f64(op, f64::from_bits(a), f64::from_bits(b)),
@@ -117,8 +129,8 @@ fn arith_f64(op: Arith, a: f64, b: f64) -> Result<u64, FaultKind> {
     Ok(v.to_bits())
 }
 
-/// To another kind; reals round half to even (IEC 61131-3:2003, 2.5.1.5.1).
-pub(crate) fn convert(from: Num, to: Num, v: u64) -> Result<u64, FaultKind> {
+/// Converts to another kind; reals are rounded half to even (IEC 61131-3:2003, 2.5.1.5.1).
+pub fn convert(from: Num, to: Num, v: u64) -> Result<u64, FaultKind> {
     if to == Num::Bool {
         let truth = if is_real(from) { real(from, v) != 0.0 } else { v != 0 };
         return Ok(u64::from(truth));
@@ -128,24 +140,29 @@ pub(crate) fn convert(from: Num, to: Num, v: u64) -> Result<u64, FaultKind> {
         (true, false) => to_whole(to, libm::rint(real(from, v))),
         (false, true) => {
             let x = whole(from, v);
-            // Straight to the width of the result: rounding twice could differ.
+            // It is rounded once, to the width of the result: twice could give another value.
             Ok(if to == Num::F32 { u64::from((x as f32).to_bits()) } else { (x as f64).to_bits() })
         }
         (false, false) => fit(to, whole(from, v)),
     }
 }
 
-pub(crate) fn truncate(from: Num, to: Num, v: u64) -> Result<u64, FaultKind> {
+/// Toward zero, from a real kind to an integer kind.
+///
+/// # Errors
+///
+/// Overflow, of NaN as well.
+pub fn truncate(from: Num, to: Num, v: u64) -> Result<u64, FaultKind> {
     to_whole(to, libm::trunc(real(from, v)))
 }
 
 fn to_whole(to: Num, x: f64) -> Result<u64, FaultKind> {
-    // Every f64 beyond this is beyond every kind; NaN fails the comparison.
+    // A larger f64 fits no kind, and NaN fails this comparison too.
     if x.abs() < 1e30 { fit(to, x as i128) } else { Err(FaultKind::Overflow) }
 }
 
-/// Functions of numbers; `args` in the order of the call.
-pub(crate) fn call(f: Builtin, n: Num, args: &[u64]) -> Result<u64, FaultKind> {
+/// Calls a function of numbers; `args` are in the order of the call.
+pub fn call(f: Builtin, n: Num, args: &[u64]) -> Result<u64, FaultKind> {
     let arg = |i: usize| args.get(i).copied().unwrap_or(0);
     let less = |a: u64, b: u64| compare(Cmp::Lt, n, a, b);
     let on_real = |f64: fn(f64) -> f64| Ok(from_real(n, f64(real(n, arg(0)))));
@@ -165,7 +182,7 @@ pub(crate) fn call(f: Builtin, n: Num, args: &[u64]) -> Result<u64, FaultKind> {
         Builtin::Min => Ok(args.iter().copied().reduce(|a, b| if less(b, a) { b } else { a }).unwrap_or(0)),
         Builtin::Max => Ok(args.iter().copied().reduce(|a, b| if less(a, b) { b } else { a }).unwrap_or(0)),
         Builtin::Limit => {
-            // MIN(MAX(in, mn), mx), as the standard defines it.
+            // The standard defines it as MIN(MAX(in, mn), mx).
             let low = if less(arg(1), arg(0)) { arg(0) } else { arg(1) };
             Ok(if less(arg(2), low) { arg(2) } else { low })
         }
@@ -184,4 +201,17 @@ pub(crate) fn call(f: Builtin, n: Num, args: &[u64]) -> Result<u64, FaultKind> {
         | Builtin::Replace
         | Builtin::Find => Err(FaultKind::Range),
     }
+}
+
+/// What a generator's word grows by for each random number.
+pub const RANDOM_STEP: u64 = 0x9E37_79B9_7F4A_7C15;
+
+/// The random number (F64, at least 0 and below 1) of a generator's word:
+/// splitmix64 (Steele, Lea, Flood 2014); any first word will do.
+pub fn random(word: u64) -> u64 {
+    let mut z = word;
+    z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+    z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+    z ^= z >> 31;
+    ((z >> 11) as f64 / (1u64 << 53) as f64).to_bits()
 }

@@ -2,8 +2,17 @@
 //!
 //! A value is one 64-bit word: BOOL 0 or 1; integers sign- or zero-extended;
 //! TIME signed nanoseconds; REAL and LREAL as the bits of `f32` and `f64`;
-//! STRING as the address of its first word. Code is structured (each jump comes
-//! from an IF, a CASE or a loop), so that generators can print it again.
+//! STRING as the address of its first word. Code is structured: each jump comes
+//! from an IF, a CASE or a loop.
+
+/// Words of stack that code may use.
+pub const STACK: usize = 64;
+
+/// Jumps that the code of one scan may make; more are taken for an endless loop.
+pub const WORK: u32 = 1_000_000;
+
+/// Longest STRING, in bytes.
+pub const TEXT: u16 = 4096;
 
 /// A word of the variable area of a state, `0..program.words`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -31,7 +40,7 @@ pub struct Code {
 }
 
 impl Code {
-    /// Whether there is nothing to run.
+    /// Whether there is no instruction.
     pub const fn is_empty(self) -> bool {
         self.start >= self.end
     }
@@ -133,7 +142,7 @@ pub enum Builtin {
     Sel,
     /// `MUX(k, in0, in1, …)`: K is LINT; out of range is a fault.
     Mux,
-    /// Bytes of a STRING are characters here: `LEN(s)` counts Unicode characters (INT).
+    /// `LEN(s)`: the number of Unicode characters (INT).
     Len,
     /// `LEFT(s, n)`.
     Left,
@@ -153,8 +162,8 @@ pub enum Builtin {
     Find,
 }
 
-/// The standard function blocks; their words lie in the order of the members
-/// of the standard's call, followed by their memory (see `fb`).
+/// The standard function blocks. The words of an instance are the members, in the order
+/// of the standard's call, and then the memory (`fb.rs`).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Block {
     /// CU, R, PV, Q, CV; memory of CU.
@@ -193,6 +202,9 @@ impl Block {
 /// Requests to the service point between PRE and the evolution.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Service {
+    /// All charts take the situation of the start ([`crate::Tables::initial`]),
+    /// whatever else is asked for.
+    Start,
     /// The group takes its initial situation.
     Init(GroupId),
     /// All steps of the group are deactivated.
@@ -243,7 +255,7 @@ pub enum Op {
     GroupTime(GroupId),
     /// Pushes the time since activation, ns, under the scan clock too.
     StepAge(StepId),
-    /// The same of a group.
+    /// As [`Op::StepAge`], of a group.
     GroupAge(GroupId),
     /// Pushes whether this row of [`crate::Tables::periods`] is due in this scan.
     Due(u32),
@@ -267,9 +279,10 @@ pub enum Op {
     Arith(Arith, Num),
     /// Pushes 1 or 0.
     Compare(Cmp, Num),
-    /// To the second kind; out of range is a fault; reals round half to even.
+    /// Converts the top from the first kind to the second; out of range is a fault; reals
+    /// are rounded half to even.
     Convert(Num, Num),
-    /// Toward zero, from the first (real) to the second (integer) kind.
+    /// Converts the top toward zero, from the first (real) to the second (integer) kind.
     Trunc(Num, Num),
     /// A function of `n` arguments on numbers of one kind (for SEL and MUX the
     /// kind does not matter). String functions are [`Op::Text`].
@@ -277,23 +290,24 @@ pub enum Op {
     /// A string function of `n` arguments; writes to the string at `to` of
     /// capacity `cap` bytes and pushes `to`; LEN and FIND push a number instead.
     Text {
-        /// Which.
+        /// The function.
         function: Builtin,
         /// First word of the result.
         to: Addr,
         /// Bytes it can hold.
         cap: u16,
     },
-    /// Pops two strings (addresses), pushes how they compare, by bytes.
+    /// Pops the addresses of two strings; pushes the result of comparing their bytes.
     CompareText(Cmp),
-    /// Pops a string's address, copies it to `to`, cut at a character within `cap` bytes.
+    /// Pops a string's address; copies the string to `to`, cut between two characters to
+    /// at most `cap` bytes.
     StoreText {
         /// First word.
         to: Addr,
         /// Bytes it can hold.
         cap: u16,
     },
-    /// Pops a value of the kind, writes it as text to `to`, pushes `to`.
+    /// Pops a value of the kind; writes it as text to `to`; pushes `to`.
     ToText {
         /// Kind of the value; I64 prints a plain number.
         from: Num,
@@ -304,17 +318,17 @@ pub enum Op {
         /// Bytes it can hold.
         cap: u16,
     },
-    /// Pops a string's address, pushes it read as a number; unreadable is a fault.
+    /// Pops a string's address; pushes the number that it spells; no number is a fault.
     FromText(Num),
     /// Runs a function block instance on its words.
     Fb(Block, Addr),
-    /// Continues at an instruction of the same code.
+    /// Goes on at an instruction of the same code.
     Jump(u32),
-    /// Pops a BOOL; continues there unless it is true.
+    /// Pops a BOOL; goes on there unless it is true.
     JumpUnless(u32),
     /// Ends this code (of a body; never inside an inlined function).
     Return,
-    /// A request.
+    /// Makes a request.
     Service(Service),
     /// Pushes the time since the preceding scan, ns (0 at the first).
     ScanTime,

@@ -1,19 +1,23 @@
-//! One pass of the evolution (SEMANTICS section 3): judge all, then change all.
+//! One pass of the evolution (SEMANTICS section 3): it judges all transitions before
+//! it changes any step.
 
 use crate::bits::{Walk, bit, set_bit};
 use crate::change::{
     activate, add_runs, cascade, commit, deactivate, extra, mark_off, mark_on, marked, run_action,
 };
 use crate::fault::{Fault, FaultKind};
-use crate::run::{guard, read, value};
+use crate::memory::read;
+use crate::ops::{Addr, StepId};
+use crate::program::Program;
+use crate::run::{holds, value};
 use crate::state::State;
-use crate::{Addr, NONE, Program, Rows, Situation, StepId, Transition};
+use crate::tables::{NONE, Rows, Situation, Transition};
 
-/// Makes one pass; whether it changed a step or a variable.
+/// Makes one pass; tells whether it changed a step or a variable.
 pub(crate) fn evolve(p: &Program, s: &mut State) -> Result<bool, Fault> {
-    s.x.changed = false;
-    s.x.passes += 1;
-    s.x.fired.clear();
+    s.scratch.changed = false;
+    s.scratch.passes += 1;
+    s.scratch.fired.clear();
     if p.has_periods || p.has_orders {
         block(p, s);
         force(s)?;
@@ -22,22 +26,25 @@ pub(crate) fn evolve(p: &Program, s: &mut State) -> Result<bool, Fault> {
         forget_turns(s);
     }
     collect(p, s)?;
-    if !p.t.events.is_empty() {
+    if !p.tables.events.is_empty() {
         events(p, s)?;
     }
-    // What receptivities leave in the outputs of sections is no change.
-    s.x.changed = false;
+    // A transition section writes variables while it is evaluated; that is no change.
+    s.scratch.changed = false;
     if p.comes_and_goes {
-        s.x.stepped = false;
+        s.scratch.stepped = false;
         forget_writes(s);
     }
-    s.x.idle = s.x.fired.is_empty() && s.x.on.is_empty() && s.x.off.is_empty() && s.x.runs.is_empty();
-    if s.x.idle {
+    s.scratch.idle = s.scratch.fired.is_empty()
+        && s.scratch.on.is_empty()
+        && s.scratch.off.is_empty()
+        && s.scratch.runs.is_empty();
+    if s.scratch.idle {
         return Ok(false);
     }
     resolve(p, s);
     report(s);
-    if p.t.rules.sequential {
+    if p.tables.rules.sequential {
         in_turn(p, s)?;
     } else {
         mark(p, s);
@@ -45,44 +52,45 @@ pub(crate) fn evolve(p: &Program, s: &mut State) -> Result<bool, Fault> {
     }
     if p.comes_and_goes {
         let differs = |w: &(u32, u64)| read(s, Addr(w.0)) != w.1;
-        s.x.changed = s.x.stepped || s.x.written.iter().any(differs);
+        s.scratch.changed = s.scratch.stepped || s.scratch.written.iter().any(differs);
     }
-    Ok(s.x.changed)
+    Ok(s.scratch.changed)
 }
 
-/// A pass begins: no step has changed in it.
+/// Forgets the steps that changed in the pass before.
 fn forget_turns(s: &mut State) {
-    while let Some(step) = s.x.turns.pop() {
-        set_bit(&mut s.x.turned, 0, step, false);
+    while let Some(step) = s.scratch.turns.pop() {
+        set_bit(&mut s.scratch.turned, 0, step, false);
     }
 }
 
-/// A pass begins: no word has been written in it.
+/// Forgets the words that were written in the pass before.
 fn forget_writes(s: &mut State) {
-    while let Some((addr, _)) = s.x.written.pop() {
-        set_bit(&mut s.x.written_mark, 0, addr, false);
+    while let Some((addr, _)) = s.scratch.written.pop() {
+        set_bit(&mut s.scratch.written_mark, 0, addr, false);
     }
 }
 
-/// Which charts stand still in this pass: those not due, and those forced.
+/// Finds the charts that stand still in this pass, because they are not due or are
+/// forced, and marks the steps that forcing orders impose.
 pub(crate) fn block(p: &Program, s: &mut State) {
-    s.x.any_blocked = false;
-    for (i, chart) in p.t.charts.iter().enumerate() {
-        let due = crate::watch::is_due(p, s, chart.period);
-        if let Some(b) = s.x.blocked.get_mut(i) {
+    s.scratch.any_blocked = false;
+    for (i, chart) in p.tables.charts.iter().enumerate() {
+        let due = s.is_due(p, chart.period);
+        if let Some(b) = s.scratch.blocked.get_mut(i) {
             *b = !due;
-            s.x.any_blocked |= !due;
+            s.scratch.any_blocked |= !due;
         }
     }
-    s.x.forced_by.fill(NONE);
-    if !p.has_orders || p.layout.orders.is_empty(&s.w) {
+    s.scratch.forced_by.fill(NONE);
+    if !p.has_orders || p.layout.orders.is_empty(&s.image) {
         return;
     }
-    // A forced chart's steps may give orders themselves, and so may the steps it
-    // encloses: whether those act depends on what is imposed above them, so
-    // orders go down the partial order.
-    for i in 0..p.t.orders.len() as u32 {
-        let Some(o) = p.t.orders.get(i as usize) else { break };
+    // The steps of a forced chart, and those that it encloses, may give orders too.
+    // Whether these act depends on the orders above them, so the rows are taken in
+    // their order.
+    for i in 0..p.tables.orders.len() as u32 {
+        let Some(o) = p.tables.orders.get(i as usize) else { break };
         if acts(s, o.step) {
             impose(p, s, i);
             if p.has_hierarchy {
@@ -92,40 +100,43 @@ pub(crate) fn block(p: &Program, s: &mut State) {
     }
 }
 
-/// Whether a step gives its orders in this pass: active, and not taken off by an
-/// order above, itself or with its enclosing step; or just forced on so.
+/// Whether a step gives its orders in this pass: it is active and no order above
+/// deactivates it or its enclosing step, or an order above has just activated it.
 fn acts(s: &State, step: StepId) -> bool {
-    marked(&s.x.on_mark, step.0) || (s.steps.contains(&s.w, step.0) && !marked(&s.x.off_mark, step.0))
+    marked(&s.scratch.on_mark, step.0)
+        || (s.steps.contains(&s.image, step.0) && !marked(&s.scratch.off_mark, step.0))
 }
 
-/// Marks what an order imposes. A disagreement is kept for [`force`] to tell.
+/// Marks the steps that an order imposes. A disagreement is kept for [`force`].
 fn impose(p: &Program, s: &mut State, i: u32) {
-    let Some(o) = p.t.orders.get(i as usize) else { return };
+    let Some(o) = p.tables.orders.get(i as usize) else { return };
     let chart = o.chart as usize;
-    let Some(first) = s.x.forced_by.get_mut(chart) else { return };
+    let Some(first) = s.scratch.forced_by.get_mut(chart) else { return };
     if *first != NONE {
-        let same = p.t.orders.get(*first as usize).is_some_and(|f| agree(p, f.situation, o.situation));
+        let same = p.tables.orders.get(*first as usize).is_some_and(|f| agree(p, f.situation, o.situation));
         if !same {
             *first = CONFLICT;
         }
         return;
     }
     *first = i;
-    if let Some(b) = s.x.blocked.get_mut(chart) {
+    if let Some(b) = s.scratch.blocked.get_mut(chart) {
         *b = true;
-        s.x.any_blocked = true;
+        s.scratch.any_blocked = true;
     }
     let Situation::Steps(rows) = o.situation else { return };
     for step in arcs(p, rows) {
         mark_on(s, *step);
     }
-    let Some(group) = p.t.charts.get(chart).and_then(|c| p.t.groups.get(c.group.0 as usize)) else { return };
+    let Some(group) = p.tables.charts.get(chart).and_then(|c| p.tables.groups.get(c.group.0 as usize)) else {
+        return;
+    };
     let mut from = group.steps.start;
-    while let Some(k) = s.steps.next(&s.w, from).filter(|k| *k < group.steps.end) {
+    while let Some(k) = s.steps.next(&s.image, from).filter(|k| *k < group.steps.end) {
         mark_off(s, StepId(k));
         from = k + 1;
     }
-    // An imposed step that is active already has both marks, and stays as it is (rule 5).
+    // An imposed step that is active already has both marks, and rule 5 keeps it so.
 }
 
 /// Stands in `forced_by` for "two orders disagree".
@@ -143,33 +154,33 @@ fn agree(p: &Program, a: Situation, b: Situation) -> bool {
 }
 
 pub(crate) fn arcs(p: &Program, rows: Rows) -> &[StepId] {
-    p.t.arcs.get(rows.start as usize..rows.end as usize).unwrap_or(&[])
+    p.tables.arcs.get(rows.start as usize..rows.end as usize).unwrap_or(&[])
 }
 
-/// Tells of two orders that disagree, before anything is judged in the pass.
+/// Reports two orders that disagree, before any transition of the pass is judged.
 fn force(s: &mut State) -> Result<(), Fault> {
-    match s.x.forced_by.iter().position(|f| *f == CONFLICT) {
+    match s.scratch.forced_by.iter().position(|f| *f == CONFLICT) {
         Some(chart) => Err(FaultKind::Forcing { chart: chart as u32 }.nowhere()),
         None => Ok(()),
     }
 }
 
-/// Every clearable transition, as far as it can be told without the others.
+/// Collects every transition that is clearable, without regard to the others.
 fn collect(p: &Program, s: &mut State) -> Result<(), Fault> {
     sources(p, s)?;
     let tree = s.steps;
-    let mut walk = Walk::new(&tree, &s.w);
-    while let Some(step) = walk.next(&tree, &s.w) {
+    let mut walk = Walk::new(&tree, &s.image);
+    while let Some(step) = walk.next(&tree, &s.image) {
         outs(p, s, step)?;
     }
     Ok(())
 }
 
-/// The same for the steps that `bare` leaves over.
+/// The same for the steps that `bare` has not judged.
 pub(crate) fn collect_slow(p: &Program, s: &mut State) -> Result<(), Fault> {
     sources(p, s)?;
-    for k in 0..s.x.slow.len() {
-        if let Some(&step) = s.x.slow.get(k) {
+    for k in 0..s.scratch.slow.len() {
+        if let Some(&step) = s.scratch.slow.get(k) {
             outs(p, s, step)?;
         }
     }
@@ -177,27 +188,27 @@ pub(crate) fn collect_slow(p: &Program, s: &mut State) -> Result<(), Fault> {
 }
 
 fn sources(p: &Program, s: &mut State) -> Result<(), Fault> {
-    for &t in &p.t.sources {
-        let Some(row) = p.t.transitions.get(t as usize) else { break };
-        if !(s.x.any_blocked && is_blocked(s, row.chart)) && guard(p, s, row.guard)? {
-            s.x.fired.push(t);
+    for &t in &p.tables.sources {
+        let Some(row) = p.tables.transitions.get(t as usize) else { break };
+        if !(s.scratch.any_blocked && is_blocked(s, row.chart)) && holds(p, s, row.receptivity)? {
+            s.scratch.fired.push(t);
         }
     }
     Ok(())
 }
 
-/// The transitions watched by an active step.
+/// Collects the clearable transitions whose first preceding step is this active one.
 #[inline]
 fn outs(p: &Program, s: &mut State, step: u32) -> Result<(), Fault> {
-    let Some(row) = p.t.steps.get(step as usize) else { return Ok(()) };
-    if s.x.any_blocked && is_blocked(s, row.chart) {
+    let Some(row) = p.tables.steps.get(step as usize) else { return Ok(()) };
+    if s.scratch.any_blocked && is_blocked(s, row.chart) {
         return Ok(());
     }
-    for &t in p.t.outs.get(row.out.start as usize..row.out.end as usize).unwrap_or(&[]) {
-        let Some(tr) = p.t.transitions.get(t as usize) else { break };
-        if rest_active(p, s, tr) && guard(p, s, tr.guard)? {
-            s.x.fired.push(t);
-            if tr.simple && !p.t.rules.multi_token {
+    for &t in p.tables.outs.get(row.out.start as usize..row.out.end as usize).unwrap_or(&[]) {
+        let Some(tr) = p.tables.transitions.get(t as usize) else { break };
+        if rest_active(p, s, tr) && holds(p, s, tr.receptivity)? {
+            s.scratch.fired.push(t);
+            if tr.simple && !p.tables.rules.multi_token {
                 break;
             }
         }
@@ -206,25 +217,25 @@ fn outs(p: &Program, s: &mut State, step: u32) -> Result<(), Fault> {
 }
 
 fn is_blocked(s: &State, chart: u32) -> bool {
-    s.x.blocked.get(chart as usize).copied().unwrap_or(false)
+    s.scratch.blocked.get(chart as usize).copied().unwrap_or(false)
 }
 
-/// Whether the preceding steps behind the first are active.
+/// Whether all preceding steps but the first are active.
 #[inline(always)]
 pub(crate) fn rest_active(p: &Program, s: &State, t: &Transition) -> bool {
-    t.more_from.is_empty() || arcs(p, t.more_from).iter().all(|f| s.steps.contains(&s.w, f.0))
+    t.more_from.is_empty() || arcs(p, t.more_from).iter().all(|f| s.steps.contains(&s.image, f.0))
 }
 
-/// Event actions of the steps that are active as the pass begins.
+/// Collects the event actions of the steps that are active as the pass begins.
 fn events(p: &Program, s: &mut State) -> Result<(), Fault> {
     let tree = p.layout.events;
     let mut from = 0;
-    while let Some(i) = tree.next(&s.w, from) {
+    while let Some(i) = tree.next(&s.image, from) {
         from = i + 1;
-        let Some(e) = p.t.events.get(i as usize) else { break };
-        let due = p.t.actions.get(e.action as usize).is_some_and(|a| crate::watch::is_due(p, s, a.period));
+        let Some(e) = p.tables.events.get(i as usize) else { break };
+        let due = p.tables.actions.get(e.action as usize).is_some_and(|a| s.is_due(p, a.period));
         if due && value(p, s, e.event)? != 0 {
-            s.x.runs.push(e.action);
+            s.scratch.runs.push(e.action);
         }
     }
     Ok(())
@@ -232,52 +243,52 @@ fn events(p: &Program, s: &mut State) -> Result<(), Fault> {
 
 /// Drops what priority drops, and puts the rest in order of rank where order matters.
 pub(crate) fn resolve(p: &Program, s: &mut State) {
-    let rules = &p.t.rules;
+    let rules = &p.tables.rules;
     if !rules.multi_token && p.has_contests {
-        s.x.fired.sort_unstable();
+        s.scratch.fired.sort_unstable();
         exclude(p, s);
     } else if rules.multi_token && rules.numbered_exclusive && p.has_contests {
         by_number(p, s);
-        s.x.fired.sort_unstable();
+        s.scratch.fired.sort_unstable();
     } else if rules.sequential {
-        s.x.fired.sort_unstable();
+        s.scratch.fired.sort_unstable();
     }
 }
 
-/// Going through the fired transitions in order of rank, drops those that share
-/// a step with one that was kept.
+/// Goes through the clearable transitions in order of rank, and drops those that share
+/// a preceding step with one that was kept.
 fn exclude(p: &Program, s: &mut State) {
-    let mut fired = core::mem::take(&mut s.x.fired);
+    let mut fired = core::mem::take(&mut s.scratch.fired);
     fired.retain(|i| {
-        let Some(t) = p.t.transitions.get(*i as usize) else { return false };
+        let Some(t) = p.tables.transitions.get(*i as usize) else { return false };
         let free = !t.shares || is_free(p, s, t);
         if free && t.shares {
             each_from(p, t, |f| {
-                set_bit(&mut s.x.taken, 0, f, true);
+                set_bit(&mut s.scratch.taken, 0, f, true);
             });
         }
         free
     });
-    s.x.taken.fill(0);
-    s.x.fired = fired;
+    s.scratch.taken.fill(0);
+    s.scratch.fired = fired;
 }
 
-/// Marks a rank that does not clear; tables are far smaller.
+/// The bit that marks a rank as dropped. No table is so long that a rank has it.
 const DROPPED: u32 = 1 << 31;
 
-/// Drops each transition that shares a step with one of a better number; one
-/// without a number has the worst. Equal ones do not exclude each other.
+/// Drops each transition that shares a preceding step with one of a better number; no
+/// number is the worst. Those of equal number do not exclude each other.
 fn by_number(p: &Program, s: &mut State) {
-    let t = &p.t.transitions;
+    let t = &p.tables.transitions;
     let number = |i: u32| t.get(i as usize).map_or(NONE, |t| t.priority);
-    let mut fired = core::mem::take(&mut s.x.fired);
+    let mut fired = core::mem::take(&mut s.scratch.fired);
     fired.sort_unstable_by_key(|i| (number(*i), *i));
     let mut at = 0;
     while let Some(&first) = fired.get(at) {
         let end =
             at + fired.get(at..).unwrap_or(&[]).iter().take_while(|i| number(**i) == number(first)).count();
-        // All of one number are judged before any of them takes its steps; a
-        // dropped one takes them as well.
+        // All of one number are judged before any of them takes its steps, and a dropped
+        // one takes them too.
         for j in at..end {
             let Some(t) = fired.get(j).and_then(|i| t.get(*i as usize)) else { continue };
             if !is_free(p, s, t)
@@ -289,60 +300,57 @@ fn by_number(p: &Program, s: &mut State) {
         for i in fired.get(at..end).unwrap_or(&[]) {
             if let Some(t) = t.get((*i & !DROPPED) as usize) {
                 each_from(p, t, |f| {
-                    set_bit(&mut s.x.taken, 0, f, true);
+                    set_bit(&mut s.scratch.taken, 0, f, true);
                 });
             }
         }
         at = end;
     }
     fired.retain(|i| i & DROPPED == 0);
-    s.x.taken.fill(0);
-    s.x.fired = fired;
+    s.scratch.taken.fill(0);
+    s.scratch.fired = fired;
 }
 
 fn is_free(p: &Program, s: &State, t: &Transition) -> bool {
     let mut free = true;
-    each_from(p, t, |f| free &= !bit(&s.x.taken, 0, f));
+    each_from(p, t, |f| free &= !bit(&s.scratch.taken, 0, f));
     free
 }
 
-/// Notes what clears, for coverage and traces.
+/// Notes the transitions that clear, for coverage and traces.
 #[inline(always)]
 pub(crate) fn report(s: &mut State) {
-    let x = &mut s.x;
-    x.cleared_count = x.cleared_count.saturating_add(x.fired.len() as u32);
-    for i in &x.fired {
-        if x.cleared.len() < x.cleared.capacity() {
-            x.cleared.push(*i);
+    let scratch = &mut s.scratch;
+    scratch.cleared_count = scratch.cleared_count.saturating_add(scratch.fired.len() as u32);
+    for i in &scratch.fired {
+        if scratch.cleared.len() < scratch.cleared.capacity() {
+            scratch.cleared.push(*i);
         }
     }
 }
 
 /// Marks the steps of the transitions that clear, all at once (rules 3 and 4).
 fn mark(p: &Program, s: &mut State) {
-    for k in 0..s.x.fired.len() {
-        let Some(t) = s.x.fired.get(k).and_then(|i| p.t.transitions.get(*i as usize)) else { break };
+    for k in 0..s.scratch.fired.len() {
+        let Some(t) = s.scratch.fired.get(k).and_then(|i| p.tables.transitions.get(*i as usize)) else {
+            break;
+        };
         each_from(p, t, |from| mark_off(s, StepId(from)));
         if t.drops {
-            let rank = s.x.fired.get(k).copied().unwrap_or(NONE);
+            let rank = s.scratch.fired.get(k).copied().unwrap_or(NONE);
             drops(p, rank).for_each(|step| mark_off(s, step));
         }
         each_to(p, t, |to| mark_on(s, StepId(to)));
         if t.on_clearing != NONE {
-            s.x.runs.push(t.on_clearing);
+            s.scratch.runs.push(t.on_clearing);
         }
     }
 }
 
-/// The steps that go off with a transition without having to be active for it.
+/// The steps that a transition deactivates but that need not be active for it.
 fn drops(p: &Program, rank: u32) -> impl Iterator<Item = StepId> + '_ {
-    let from = p.t.drops.partition_point(|d| d.0 < rank);
-    p.t.drops.get(from..).unwrap_or(&[]).iter().take_while(move |d| d.0 == rank).map(|d| d.1)
-}
-
-#[inline(always)]
-pub(crate) fn one_to_one(t: &Transition) -> bool {
-    t.more_from.is_empty() && t.more_to.is_empty() && t.from.0 != NONE && t.to.0 != NONE
+    let from = p.tables.drops.partition_point(|d| d.0 < rank);
+    p.tables.drops.get(from..).unwrap_or(&[]).iter().take_while(move |d| d.0 == rank).map(|d| d.1)
 }
 
 #[inline(always)]
@@ -365,16 +373,19 @@ pub(crate) fn each_to(p: &Program, t: &Transition, mut f: impl FnMut(u32)) {
     }
 }
 
-/// Transitions clear one after the other, in order of rank, with their actions
-/// at once: a step that one activates and a later one deactivates ends inactive.
-/// What forcing orders impose and event actions come behind.
+/// Clears the transitions one after the other, in order of rank, each with its actions
+/// at once: a step that one activates and a later one deactivates ends inactive. Then
+/// forcing orders and event actions follow.
 fn in_turn(p: &Program, s: &mut State) -> Result<(), Fault> {
-    s.x.left.clear();
-    s.x.came.clear();
-    for k in 0..s.x.fired.len() {
-        let Some(t) = s.x.fired.get(k).and_then(|i| p.t.transitions.get(*i as usize)).copied() else { break };
+    s.scratch.left.clear();
+    s.scratch.entered.clear();
+    for k in 0..s.scratch.fired.len() {
+        let Some(t) = s.scratch.fired.get(k).and_then(|i| p.tables.transitions.get(*i as usize)).copied()
+        else {
+            break;
+        };
         // A token that moves within a macro-step does not leave it.
-        s.x.emptied.clear();
+        s.scratch.emptied.clear();
         if t.on_clearing != NONE {
             run_action(p, s, t.on_clearing)?;
         }
@@ -385,7 +396,7 @@ fn in_turn(p: &Program, s: &mut State) -> Result<(), Fault> {
             }
         });
         if t.drops {
-            let rank = s.x.fired.get(k).copied().unwrap_or(NONE);
+            let rank = s.scratch.fired.get(k).copied().unwrap_or(NONE);
             for step in drops(p, rank) {
                 if done.is_ok() {
                     done = leave(p, s, step.0);
@@ -405,30 +416,30 @@ fn in_turn(p: &Program, s: &mut State) -> Result<(), Fault> {
     commit(p, s)
 }
 
-/// What enclosing steps take and bring holds against the turns that came behind:
-/// a chart whose enclosing step has gone is empty, linked steps are active.
+/// Enclosures hold against the transitions that cleared later in the pass: a chart
+/// whose enclosing step was left is empty, and linked steps are active.
 fn enclosures(p: &Program, s: &mut State) {
-    for k in 0..s.x.left.len() {
-        let Some(&step) = s.x.left.get(k) else { break };
-        if s.steps.contains(&s.w, step) {
+    for k in 0..s.scratch.left.len() {
+        let Some(&step) = s.scratch.left.get(k) else { break };
+        if s.steps.contains(&s.image, step) {
             continue;
         }
         let Some(e) = extra(p, step) else { continue };
-        for g in p.t.group_lists.get(e.encloses.start as usize..e.encloses.end as usize).unwrap_or(&[]) {
-            let Some(group) = p.t.groups.get(g.0 as usize) else { continue };
+        for g in p.tables.group_lists.get(e.encloses.start as usize..e.encloses.end as usize).unwrap_or(&[]) {
+            let Some(group) = p.tables.groups.get(g.0 as usize) else { continue };
             for i in group.steps.start..group.steps.end {
-                set_bit(&mut s.x.on_mark, 0, i, false);
+                set_bit(&mut s.scratch.on_mark, 0, i, false);
             }
             let mut from = group.steps.start;
-            while let Some(i) = s.steps.next(&s.w, from).filter(|i| *i < group.steps.end) {
+            while let Some(i) = s.steps.next(&s.image, from).filter(|i| *i < group.steps.end) {
                 mark_off(s, StepId(i));
                 from = i + 1;
             }
         }
     }
-    for k in 0..s.x.came.len() {
-        let Some(&step) = s.x.came.get(k) else { break };
-        if s.x.left.contains(&step) || !s.steps.contains(&s.w, step) {
+    for k in 0..s.scratch.entered.len() {
+        let Some(&step) = s.scratch.entered.get(k) else { break };
+        if s.scratch.left.contains(&step) || !s.steps.contains(&s.image, step) {
             continue;
         }
         for link in extra(p, step).map(|e| arcs(p, e.links)).unwrap_or(&[]) {
@@ -438,64 +449,63 @@ fn enclosures(p: &Program, s: &mut State) {
 }
 
 fn run_list(p: &Program, s: &mut State, rows: Rows) -> Result<(), Fault> {
-    if p.t.rules.late_actions {
+    if p.tables.rules.late_actions {
         add_runs(p, s, rows);
         return Ok(());
     }
     for i in rows.start..rows.end {
-        if let Some(&action) = p.t.action_lists.get(i as usize) {
+        if let Some(&action) = p.tables.action_lists.get(i as usize) {
             run_action(p, s, action)?;
         }
     }
     Ok(())
 }
 
-/// Deactivates a step; its exit actions come first, its enclosed charts with it,
-/// step by step, each before the next one.
+/// Deactivates a step after its exit actions, and then the steps of the charts that it
+/// encloses, one after the other, each with what it encloses.
 fn leave(p: &Program, s: &mut State, step: u32) -> Result<(), Fault> {
-    s.x.chain.clear();
-    s.x.chain.push(step);
-    while let Some(step) = s.x.chain.pop() {
-        if !s.steps.contains(&s.w, step) {
+    s.scratch.chain.clear();
+    s.scratch.chain.push(step);
+    while let Some(step) = s.scratch.chain.pop() {
+        if !s.steps.contains(&s.image, step) {
             continue;
         }
         let e = extra(p, step).copied().unwrap_or_default();
         run_list(p, s, e.off)?;
         deactivate(p, s, step);
-        if !e.encloses.is_empty() && s.x.left.len() < s.x.left.capacity() {
-            s.x.left.push(step);
+        if !e.encloses.is_empty() && s.scratch.left.len() < s.scratch.left.capacity() {
+            s.scratch.left.push(step);
         }
-        let behind = s.x.chain.len();
-        for g in p.t.group_lists.get(e.encloses.start as usize..e.encloses.end as usize).unwrap_or(&[]) {
-            let Some(group) = p.t.groups.get(g.0 as usize) else { continue };
+        let behind = s.scratch.chain.len();
+        for g in p.tables.group_lists.get(e.encloses.start as usize..e.encloses.end as usize).unwrap_or(&[]) {
+            let Some(group) = p.tables.groups.get(g.0 as usize) else { continue };
             let mut from = group.steps.start;
-            while let Some(i) = s.steps.next(&s.w, from).filter(|i| *i < group.steps.end) {
-                s.x.chain.push(i);
+            while let Some(i) = s.steps.next(&s.image, from).filter(|i| *i < group.steps.end) {
+                s.scratch.chain.push(i);
                 from = i + 1;
             }
         }
-        s.x.chain.get_mut(behind..).unwrap_or_default().reverse();
+        s.scratch.chain.get_mut(behind..).unwrap_or_default().reverse();
     }
     Ok(())
 }
 
-/// Activates a step; its entry actions run at once, its linked steps come with it
-/// as if a transition led to them: in the order of the text, each with what it
-/// brings.
+/// Activates a step and runs its entry actions, and then the steps that its links name,
+/// in the order of the text, each with its own links.
 fn enter(p: &Program, s: &mut State, step: u32) -> Result<(), Fault> {
-    s.x.chain.clear();
-    s.x.chain.push(step);
-    while let Some(step) = s.x.chain.pop() {
-        if s.steps.contains(&s.w, step) {
+    s.scratch.chain.clear();
+    s.scratch.chain.push(step);
+    while let Some(step) = s.scratch.chain.pop() {
+        if s.steps.contains(&s.image, step) {
             continue;
         }
         activate(p, s, step);
         let e = extra(p, step).copied().unwrap_or_default();
         run_list(p, s, e.on)?;
-        if !e.links.is_empty() && s.x.came.len() < s.x.came.capacity() {
-            s.x.came.push(step);
+        if !e.links.is_empty() && s.scratch.entered.len() < s.scratch.entered.capacity() {
+            s.scratch.entered.push(step);
         }
-        s.x.chain.extend(arcs(p, e.links).iter().rev().map(|l| l.0));
+        s.scratch.chain.extend(arcs(p, e.links).iter().rev().map(|l| l.0));
     }
     Ok(())
 }

@@ -1,15 +1,19 @@
-//! One scan: inputs in, evolution, actions, outputs (SEMANTICS section 4).
+//! One scan: inputs, evolution, actions, outputs (SEMANTICS section 4).
 
 use crate::bits::{Walk, bit, set_bit, word};
-use crate::change::{activate, commit, mark_off, mark_on, run_action};
+use crate::change::{activate, carry_out, commit, mark_off, mark_on, run_action};
 use crate::fault::{Fault, FaultKind};
+use crate::layout::{REQUESTS, START, STARTED, STOPPED, head};
+use crate::memory::{notice, write};
+use crate::ops::{Addr, Code, StepId};
 use crate::pass::{arcs, evolve, rest_active};
-use crate::run::{self, write};
-use crate::state::{REQUESTS, STARTED, STOPPED, State, head};
-use crate::watch;
-use crate::{Addr, Code, NONE, Program, StepId, blocks};
+use crate::program::Program;
+use crate::run::{run, value};
+use crate::state::State;
+use crate::tables::NONE;
+use crate::{bare, blocks, watch};
 
-/// What a scan did.
+/// The report of a scan.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Report {
     /// Passes made, the last and unchanging one included.
@@ -21,14 +25,14 @@ pub struct Report {
     pub conflict: Option<Addr>,
 }
 
-/// Passes before cycles are looked for: most searches are shorter, and looking
+/// Passes after which cycles are looked for. Most searches are shorter, and looking
 /// costs a copy of the image.
 const PATIENCE: u32 = 48;
 
 /// Runs one scan.
 ///
 /// `inputs` has a word for each word of [`crate::Tables::inputs`]; `now` is
-/// monotonic, in nanoseconds. After it the outputs stand in the variable area.
+/// monotonic, in nanoseconds. After the scan the outputs stand in the variable area.
 ///
 /// # Errors
 ///
@@ -40,14 +44,14 @@ const PATIENCE: u32 = 48;
 /// IEC 60848:2013, 4.5 (evolution rules) and 4.6 (interpretation);
 /// IEC 61131-3:2003, 2.6.5.
 pub fn scan(p: &Program, s: &mut State, inputs: &[u64], now: i64) -> Result<Report, Fault> {
-    if s.x.quiet && still(p, s, inputs, now) {
+    if s.scratch.quiet && still(p, s, inputs, now) {
         return Ok(Report { passes: 1, cleared: 0, conflict: None });
     }
     if p.bare && begin_bare(p, s, inputs, now) {
-        if !p.t.rules.stable
-            && let Some(moved) = crate::bare::one_token(p, s, now as u64)
+        if !p.tables.rules.stable
+            && let Some(moved) = bare::one_token(p, s, now as u64)
         {
-            s.x.quiet = !moved && p.timeless;
+            s.scratch.quiet = !moved && p.timeless;
             return Ok(Report { passes: 1, cleared: u32::from(moved), conflict: None });
         }
         return bare(p, s);
@@ -55,16 +59,16 @@ pub fn scan(p: &Program, s: &mut State, inputs: &[u64], now: i64) -> Result<Repo
     whole(p, s, inputs, now)
 }
 
-/// The rest of the short way, behind [`begin_bare`].
+/// The rest of a scan on the short way, after [`begin_bare`].
 #[inline(never)]
 fn bare(p: &Program, s: &mut State) -> Result<Report, Fault> {
-    let x = &mut s.x;
-    x.cleared_count = 0;
-    x.passes = 0;
-    x.conflict = None;
-    x.work = 0;
-    let done = search(p, s, crate::bare::evolve);
-    s.x.quiet = p.timeless && s.x.idle;
+    let scratch = &mut s.scratch;
+    scratch.cleared_count = 0;
+    scratch.passes = 0;
+    scratch.conflict = None;
+    scratch.work = 0;
+    let done = search(p, s, bare::evolve);
+    s.scratch.quiet = p.timeless && s.scratch.idle;
     end(p, s, done)
 }
 
@@ -85,27 +89,26 @@ fn end(p: &Program, s: &mut State, done: Result<(), Fault>) -> Result<Report, Fa
     }
 }
 
-/// What [`begin`] does for programs that consist of steps, transitions and
-/// outputs that follow one step. False where a scan before is missing, a fault
-/// came or the inputs do not fit; then nothing was done.
+/// As [`begin`], for bare programs. Does nothing and returns false before the first
+/// scan, after a fault, or where inputs or time do not fit.
 #[inline(always)]
 fn begin_bare(p: &Program, s: &mut State, inputs: &[u64], now: i64) -> bool {
-    let (from, to) = ((s.vars + p.t.inputs.start) as usize, (s.vars + p.t.inputs.end) as usize);
+    let (from, to) = ((s.vars + p.tables.inputs.start) as usize, (s.vars + p.tables.inputs.end) as usize);
     let before = s.now();
     if !s.has_only_flag(STARTED) || now < before {
         return false;
     }
-    let Some(area) = s.w.get_mut(from..to) else { return false };
+    let Some(area) = s.image.get_mut(from..to) else { return false };
     if area.len() != inputs.len() {
         return false;
     }
     take(area, inputs);
     tick(s, now.wrapping_sub(before), now);
-    s.x.cleared.clear();
+    s.scratch.cleared.clear();
     true
 }
 
-/// Copies the inputs; few of them word by word, which takes less than a call.
+/// Copies the inputs. A few are copied word by word, which is faster than a call.
 #[inline(always)]
 fn take(area: &mut [u64], inputs: &[u64]) {
     if inputs.len() > 8 {
@@ -119,50 +122,51 @@ fn take(area: &mut [u64], inputs: &[u64]) {
     }
 }
 
-/// A scan begins: time goes on.
+/// Puts the time of a new scan into the header, and counts the scan.
 #[inline(always)]
 fn tick(s: &mut State, dt: i64, now: i64) {
-    if let Some(head) = s.w.first_chunk_mut::<{ head::WORDS as usize }>() {
+    if let Some(head) = s.image.first_chunk_mut::<{ head::WORDS as usize }>() {
         head[head::DT] = dt as u64;
         head[head::NOW] = now as u64;
         head[head::SCANS] = head[head::SCANS].wrapping_add(1);
     }
 }
 
-/// A scan in which nothing can happen: the one before ended in a situation that
-/// a further pass does not change, no input differs, and nothing waits for the
-/// time. Then only the time goes on.
+/// Makes a scan in which nothing can happen: the one before ended in a situation that
+/// a further pass does not change, and nothing waits for the time. Returns false, and
+/// does nothing, where an input differs.
 #[inline]
 fn still(p: &Program, s: &mut State, inputs: &[u64], now: i64) -> bool {
-    let (from, to) = ((s.vars + p.t.inputs.start) as usize, (s.vars + p.t.inputs.end) as usize);
+    let (from, to) = ((s.vars + p.tables.inputs.start) as usize, (s.vars + p.tables.inputs.end) as usize);
     let before = s.now();
-    let Some(area) = s.w.get(from..to) else { return false };
+    let Some(area) = s.image.get(from..to) else { return false };
     if area.len() != inputs.len() || now < before || area.iter().zip(inputs).any(|(a, i)| a != i) {
         return false;
     }
     tick(s, now.wrapping_sub(before), now);
-    s.x.cleared.clear();
-    s.x.ran.clear();
+    s.scratch.cleared.clear();
+    s.scratch.ran.clear();
     true
 }
 
 fn report(s: &State) -> Report {
-    Report { passes: s.x.passes, cleared: s.x.cleared_count, conflict: s.x.conflict }
+    Report { passes: s.scratch.passes, cleared: s.scratch.cleared_count, conflict: s.scratch.conflict }
 }
 
-/// Passes until nothing changes, or just one.
+/// Makes passes until one changes nothing, or just one without `stable`.
 #[inline]
 fn search(
     p: &Program,
     s: &mut State,
     pass: impl Fn(&Program, &mut State) -> Result<bool, Fault>,
 ) -> Result<(), Fault> {
-    let rules = &p.t.rules;
+    let rules = &p.tables.rules;
     if !rules.stable {
         return pass(p, s).map(|_| ());
     }
-    // Brent's cycle search: a saved image, renewed at doubling distances. Within
-    // a scan time and inputs stand still, so a recurring image recurs for ever.
+    // Brent's search for cycles compares with a saved image, which is renewed at
+    // doubling distances. Within a scan time and inputs do not change, so an image that
+    // recurs once recurs for ever.
     let (mut power, mut distance) = (1u32, 0u32);
     let mut made = 0u32;
     while pass(p, s)? {
@@ -175,14 +179,14 @@ fn search(
         }
         if made > PATIENCE {
             distance += 1;
-            if s.x.saved.as_slice() == &*s.w {
+            if s.scratch.saved.as_slice() == &*s.image {
                 return Err(FaultKind::Unstable { cycle: distance }.nowhere());
             }
         }
         if made == PATIENCE || distance == power {
-            let State { w, x, .. } = s;
-            x.saved.clear();
-            x.saved.extend_from_slice(w);
+            let State { image, scratch, .. } = s;
+            scratch.saved.clear();
+            scratch.saved.extend_from_slice(image);
             power = if made == PATIENCE { 1 } else { power.saturating_mul(2) };
             distance = 0;
         }
@@ -190,15 +194,15 @@ fn search(
     Ok(())
 }
 
-/// The first part of a scan: inputs, time, watches, PRE, services.
+/// The first part of a scan: inputs, time, watches, PRE, services. `now` is in ns.
 ///
 /// # Errors
 ///
-/// [`FaultKind::Inputs`] where the inputs are not as many as the program's or
-/// `now` lies before the scan before; nothing was changed then. Other faults
-/// come from PRE.
+/// [`FaultKind::Inputs`] where there are more or fewer inputs than the program has, or
+/// `now` lies before the time of the preceding scan; nothing was changed then. Other
+/// faults come from watched expressions, PRE or the initial actions.
 pub fn begin(p: &Program, s: &mut State, inputs: &[u64], now: i64) -> Result<(), Fault> {
-    let t = &p.t;
+    let t = &p.tables;
     if s.has_flag(STOPPED) {
         return Err(FaultKind::Stopped.nowhere());
     }
@@ -206,83 +210,63 @@ pub fn begin(p: &Program, s: &mut State, inputs: &[u64], now: i64) -> Result<(),
     if inputs.len() != (t.inputs.end - t.inputs.start) as usize || (!fresh && now < s.now()) {
         return Err(FaultKind::Inputs.nowhere());
     }
-    reset_scratch(s);
-    s.x.quiet = false;
-    s.x.lone = NONE;
+    s.scratch.begin();
+    s.scratch.quiet = false;
+    s.scratch.lone = NONE;
     let before = if fresh { now } else { s.now() };
     tick(s, now.wrapping_sub(before), now);
     if p.has_periods {
         periods(p, s, now, fresh);
     }
     for (i, v) in (t.inputs.start..).zip(inputs) {
-        if word(&s.w, (s.vars + i) as usize) != *v {
+        if word(&s.image, (s.vars + i) as usize) != *v {
             s.set((s.vars + i) as usize, *v);
-            run::notice(p, s, Addr(i));
+            notice(p, s, Addr(i));
         }
     }
     if fresh {
-        s.flag(STARTED, true);
+        s.set_flag(STARTED, true);
         for step in &t.initial {
             mark_on(s, *step);
         }
-        initial(p, s)?;
+        // The initial situation (rule 1) is the initial steps alone: no links.
+        carry_out(p, s)?;
     }
     watch::update(p, s, true, fresh)?;
     if p.frame {
-        run::run(p, s, t.pre)?;
-        run::run(p, s, t.services)?;
+        run(p, s, t.pre)?;
+        run(p, s, t.services)?;
     }
-    s.x.stepped = fresh;
+    s.scratch.stepped = fresh;
     if s.has_flag(REQUESTS) {
         requests(p, s)?;
     }
-    if t.rules.late_actions && s.x.stepped {
+    if t.rules.late_actions && s.scratch.stepped {
         blocks::look(p, s)?;
     }
     if t.counts.is_some() {
         enabled(p, s, false)?;
     }
-    s.x.moved = 0;
+    s.scratch.moved = 0;
     if t.rules.periodic_first {
         let base = p.layout.periodics.base() as usize;
-        let State { w, x, .. } = s;
-        for (b, now) in x.before.iter_mut().zip(w.get(base..).unwrap_or_default()) {
+        let State { image, scratch, .. } = s;
+        for (b, now) in scratch.before.iter_mut().zip(image.get(base..).unwrap_or_default()) {
             *b = *now;
         }
     }
-    s.x.first_pass = true;
+    s.scratch.first_pass = true;
     Ok(())
 }
 
-/// The initial situation (rule 1). Under `sequential` its actions run at once as well.
-fn initial(p: &Program, s: &mut State) -> Result<(), Fault> {
-    commit(p, s)
-}
-
-fn reset_scratch(s: &mut State) {
-    let x = &mut s.x;
-    x.stack.clear();
-    x.fired.clear();
-    x.runs.clear();
-    x.commits.clear();
-    x.cleared.clear();
-    x.ran.clear();
-    x.log.clear();
-    x.logging = false;
-    x.cleared_count = 0;
-    x.passes = 0;
-    x.conflict = None;
-    x.work = 0;
-    x.late_any = false;
-}
-
-/// Which periods are due; instants missed are skipped, not queued.
+/// Finds the periods that are due. Instants that were missed are skipped, not made up
+/// for.
 fn periods(p: &Program, s: &mut State, now: i64, fresh: bool) {
-    for (i, period) in p.t.periods.iter().enumerate() {
+    for (i, period) in p.tables.periods.iter().enumerate() {
         let at = p.layout.periods as usize + i;
-        let next = word(&s.w, at) as i64;
+        let next = word(&s.image, at) as i64;
         let due = *period <= 0 || fresh || now >= next;
-        if let Some(d) = s.x.due.get_mut(i) {
+        if let Some(d) = s.scratch.due.get_mut(i) {
             *d = due;
         }
         if due && *period > 0 {
@@ -296,15 +280,19 @@ fn periods(p: &Program, s: &mut State, now: i64, fresh: bool) {
 /// Carries out the requests of services, with the stored actions of the steps
 /// that change.
 fn requests(p: &Program, s: &mut State) -> Result<(), Fault> {
-    s.flag(REQUESTS, false);
+    s.set_flag(REQUESTS, false);
     let [init, clear, set, reset] = p.layout.requests;
-    for (i, group) in p.t.groups.iter().enumerate() {
+    if s.has_flag(START) {
+        s.set_flag(START, false);
+        return start(p, s);
+    }
+    for (i, group) in p.tables.groups.iter().enumerate() {
         let i = i as u32;
-        let initialise = set_bit(&mut s.w, init, i, false);
-        let empty = set_bit(&mut s.w, clear, i, false);
+        let initialise = set_bit(&mut s.image, init, i, false);
+        let empty = set_bit(&mut s.image, clear, i, false);
         if initialise || empty {
             let mut from = group.steps.start;
-            while let Some(k) = s.steps.next(&s.w, from).filter(|k| *k < group.steps.end) {
+            while let Some(k) = s.steps.next(&s.image, from).filter(|k| *k < group.steps.end) {
                 mark_off(s, StepId(k));
                 from = k + 1;
             }
@@ -315,29 +303,52 @@ fn requests(p: &Program, s: &mut State) -> Result<(), Fault> {
             }
         }
     }
-    for i in 0..p.t.steps.len() as u32 {
-        if set_bit(&mut s.w, set, i, false) {
+    for i in 0..p.tables.steps.len() as u32 {
+        if set_bit(&mut s.image, set, i, false) {
             mark_on(s, StepId(i));
         }
-        if set_bit(&mut s.w, reset, i, false) {
+        if set_bit(&mut s.image, reset, i, false) {
             mark_off(s, StepId(i));
         }
     }
     commit(p, s)
 }
 
+/// All charts take the situation of the start; nothing else that was asked for
+/// takes place.
+fn start(p: &Program, s: &mut State) -> Result<(), Fault> {
+    let [init, clear, set, reset] = p.layout.requests;
+    for i in 0..p.tables.groups.len() as u32 {
+        set_bit(&mut s.image, init, i, false);
+        set_bit(&mut s.image, clear, i, false);
+    }
+    let mut from = 0;
+    while let Some(k) = s.steps.next(&s.image, from) {
+        mark_off(s, StepId(k));
+        from = k + 1;
+    }
+    for i in 0..p.tables.steps.len() as u32 {
+        set_bit(&mut s.image, set, i, false);
+        set_bit(&mut s.image, reset, i, false);
+    }
+    for step in &p.tables.initial {
+        mark_on(s, *step);
+    }
+    carry_out(p, s)
+}
+
 /// One pass of the evolution, between [`begin`] and [`finish`].
 ///
-/// Whether it changed a step or a variable: under search for stability, whether
-/// another is needed.
+/// Tells whether it changed a step or a variable; under the search for stability this
+/// means that another pass is needed.
 ///
 /// # Errors
 ///
 /// A [`Fault`] of a receptivity, an action or a forcing order.
 pub fn pass(p: &Program, s: &mut State) -> Result<bool, Fault> {
-    s.x.lone = NONE;
-    if s.x.first_pass {
-        s.x.first_pass = false;
+    s.scratch.lone = NONE;
+    if s.scratch.first_pass {
+        s.scratch.first_pass = false;
     } else {
         watch::update(p, s, false, false)?;
     }
@@ -350,9 +361,9 @@ pub fn pass(p: &Program, s: &mut State) -> Result<bool, Fault> {
 ///
 /// A [`Fault`] of a condition, a body or POST.
 pub fn finish(p: &Program, s: &mut State) -> Result<(), Fault> {
-    let t = &p.t;
+    let t = &p.tables;
     if let Some((steps, transitions)) = t.counts {
-        let moved = s.x.moved;
+        let moved = s.scratch.moved;
         count(p, s, moved, steps, transitions)?;
     }
     if t.rules.periodic_first {
@@ -370,8 +381,8 @@ pub fn finish(p: &Program, s: &mut State) -> Result<(), Fault> {
     }
     late(p, s)?;
     if p.frame {
-        run::run(p, s, t.post)?;
-        run::run(p, s, t.tail)?;
+        run(p, s, t.post)?;
+        run(p, s, t.tail)?;
     }
     if let Some((flag, limits)) = t.limits
         && (active_now(p, s) > limits.active || enabled_now(p, s) > limits.enabled)
@@ -381,44 +392,44 @@ pub fn finish(p: &Program, s: &mut State) -> Result<(), Fault> {
     }
     if !t.locals.is_empty() {
         let (from, to) = (s.vars + t.locals.start, s.vars + t.locals.end);
-        if let Some(words) = s.w.get_mut(from as usize..to as usize) {
+        if let Some(words) = s.image.get_mut(from as usize..to as usize) {
             words.fill(0);
         }
     }
-    s.x.quiet = p.timeless && s.x.idle && !s.x.changed && !waits(p, s);
+    s.scratch.quiet = p.timeless && s.scratch.idle && !s.scratch.changed && !waits(p, s);
     Ok(())
 }
 
-/// Whether an edge, a timer or a control block wants the next scan.
+/// Whether an edge, a timer, a request or an action needs the next scan.
 fn waits(p: &Program, s: &State) -> bool {
     let l = &p.layout;
-    let watched =
-        !p.t.watches.is_empty() && [&l.edged, &l.dirty, &l.running].iter().any(|tree| !tree.is_empty(&s.w));
-    watched || s.has_flag(REQUESTS) || !l.blocks.is_empty(&s.w) || !l.periodics.is_empty(&s.w)
+    let watched = !p.tables.watches.is_empty()
+        && [&l.edged, &l.dirty, &l.running].iter().any(|tree| !tree.is_empty(&s.image));
+    watched || s.has_flag(REQUESTS) || !l.blocks.is_empty(&s.image) || !l.periodics.is_empty(&s.image)
 }
 
-/// Actions of each scan of the active steps.
+/// Puts the `each scan` actions of the active steps aside for the end of the scan.
 fn periodics(p: &Program, s: &mut State) {
-    let mut walk = Walk::new(&p.layout.periodics, &s.w);
-    while let Some(i) = walk.next(&p.layout.periodics, &s.w) {
-        if p.t.rules.periodic_first && !bit(&s.x.before, 0, i) {
+    let mut walk = Walk::new(&p.layout.periodics, &s.image);
+    while let Some(i) = walk.next(&p.layout.periodics, &s.image) {
+        if p.tables.rules.periodic_first && !bit(&s.scratch.before, 0, i) {
             continue;
         }
-        let Some(&action) = p.t.periodics.get(i as usize) else { break };
-        set_bit(&mut s.x.late, 0, action, true);
-        s.x.late_any = true;
+        let Some(&action) = p.tables.periodics.get(i as usize) else { break };
+        set_bit(&mut s.scratch.late, 0, action, true);
+        s.scratch.late_any = true;
     }
 }
 
-/// Runs what was put aside for the end of the scan, in order.
+/// Runs the actions that were put aside for the end of the scan, in order of rank.
 fn late(p: &Program, s: &mut State) -> Result<(), Fault> {
-    if !core::mem::take(&mut s.x.late_any) {
+    if !core::mem::take(&mut s.scratch.late_any) {
         return Ok(());
     }
-    for k in 0..s.x.late.len() {
-        while let Some(w) = s.x.late.get(k).copied().filter(|w| *w != 0) {
+    for k in 0..s.scratch.late.len() {
+        while let Some(w) = s.scratch.late.get(k).copied().filter(|w| *w != 0) {
             let i = w.trailing_zeros();
-            if let Some(w) = s.x.late.get_mut(k) {
+            if let Some(w) = s.scratch.late.get_mut(k) {
                 *w &= !(1u64 << i);
             }
             run_action(p, s, k as u32 * 64 + i)?;
@@ -427,85 +438,83 @@ fn late(p: &Program, s: &mut State) -> Result<(), Fault> {
     Ok(())
 }
 
-/// Outputs to their safe values; no further scan.
+/// Stops the program: the outputs take their safe values, and no further scan runs.
 fn stop(p: &Program, s: &mut State) {
-    s.flag(STOPPED, true);
-    s.x.on_mark.fill(0);
-    s.x.off_mark.fill(0);
-    s.x.on.clear();
-    s.x.off.clear();
-    s.x.late.fill(0);
-    for (i, v) in (p.t.outputs.start..p.t.outputs.end).zip(&p.t.safe) {
+    s.set_flag(STOPPED, true);
+    s.scratch.drop_marks();
+    for (i, v) in (p.tables.outputs.start..p.tables.outputs.end).zip(&p.tables.safe) {
         s.set((s.vars + i) as usize, *v);
     }
 }
 
-/// Runs code that pushes one value, on the state as it is: a condition of a
-/// test, a watch expression of the debugger.
+/// Evaluates code that pushes one value on the state as it is, such as the condition of
+/// a test or an expression of the debugger.
 ///
 /// # Errors
 ///
-/// A [`Fault`] of its arithmetic.
+/// A [`Fault`] of the code.
 pub fn eval(p: &Program, s: &mut State, code: Code) -> Result<u64, Fault> {
-    s.x.work = 0;
-    s.x.stack.clear();
-    run::value(p, s, code)
+    s.scratch.work = 0;
+    s.scratch.stack.clear();
+    value(p, s, code)
 }
 
-/// The active steps of the text.
+/// Number of active steps, without those that stand for macro-steps.
 fn active_now(p: &Program, s: &State) -> u32 {
     let stands_in = |step: &u32| crate::change::extra(p, *step).is_some_and(|e| e.uncounted);
     s.active().filter(|step| !stands_in(&step.0)).count() as u32
 }
 
-/// Whether a transition is enabled, of those that count.
+/// Whether a transition is enabled and counts.
 fn is_enabled(p: &Program, s: &State, i: usize) -> bool {
-    p.t.transitions
+    p.tables
+        .transitions
         .get(i)
         .filter(|t| !t.uncounted)
-        .is_some_and(|t| (t.from.0 == NONE || s.steps.contains(&s.w, t.from.0)) && rest_active(p, s, t))
+        .is_some_and(|t| (t.from.0 == NONE || s.steps.contains(&s.image, t.from.0)) && rest_active(p, s, t))
 }
 
 fn enabled_now(p: &Program, s: &State) -> u32 {
-    (0..p.t.transitions.len()).filter(|i| is_enabled(p, s, *i)).count() as u32
+    (0..p.tables.transitions.len()).filter(|i| is_enabled(p, s, *i)).count() as u32
 }
 
 /// Notes which transitions are enabled, before or after the evolution.
 fn enabled(p: &Program, s: &mut State, after: bool) -> Result<(), Fault> {
-    for i in 0..p.t.transitions.len() {
+    for i in 0..p.tables.transitions.len() {
         let on = is_enabled(p, s, i);
-        let x = &mut s.x;
-        set_bit(if after { &mut x.enabled_after } else { &mut x.enabled }, 0, i as u32, on);
+        let scratch = &mut s.scratch;
+        set_bit(if after { &mut scratch.enabled_after } else { &mut scratch.enabled }, 0, i as u32, on);
     }
     if !after {
-        s.x.active_before = active_now(p, s);
+        s.scratch.active_before = active_now(p, s);
     }
     Ok(())
 }
 
-/// `%SW20` and `%SW21`: what was, and what changed in this scan.
+/// Writes `%SW20` and `%SW21`: steps that were active or changed in this scan, and
+/// transitions that were enabled or changed.
 fn count(p: &Program, s: &mut State, moved: u32, steps: Addr, transitions: Addr) -> Result<(), Fault> {
     enabled(p, s, true)?;
     let (mut was, mut changed) = (0, 0);
-    for (b, a) in s.x.enabled.iter().zip(s.x.enabled_after.iter()) {
+    for (b, a) in s.scratch.enabled.iter().zip(s.scratch.enabled_after.iter()) {
         was += b.count_ones();
         changed += (b ^ a).count_ones();
     }
     let total = |n: u32| u64::from(n.min(32767));
-    let active = s.x.active_before;
+    let active = s.scratch.active_before;
     write(p, s, steps, total(active.saturating_add(moved)));
     write(p, s, transitions, total(was + changed));
     Ok(())
 }
 
-/// Sets a step from outside, as a debugger does: without its stored actions.
-/// Enclosed charts do not follow; use the services for that.
+/// Activates or deactivates a step from outside, as a debugger does. Its stored actions
+/// do not run and enclosed charts do not follow; the services do that.
 pub fn set_step(p: &Program, s: &mut State, step: StepId, on: bool) {
-    if step.0 as usize >= p.t.steps.len() || s.is_active(step) == on {
+    if step.0 as usize >= p.tables.steps.len() || s.is_active(step) == on {
         return;
     }
-    s.x.quiet = false;
-    s.x.lone = NONE;
+    s.scratch.quiet = false;
+    s.scratch.lone = NONE;
     if on {
         activate(p, s, step.0);
     } else {

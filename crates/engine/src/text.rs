@@ -1,17 +1,17 @@
-//! STRING values: a length in bytes in the first word, then UTF-8, eight bytes a
-//! word. Positions count characters; what does not fit is cut at a character.
+//! STRING values: the first word has the length in bytes, the others have UTF-8, eight
+//! bytes in each. Positions count characters. A text that does not fit is cut between
+//! two characters.
 
+use alloc::string::String;
 use alloc::vec::Vec;
 use core::fmt::Write;
 
 use crate::fault::FaultKind;
+use crate::memory::{read, write};
 use crate::number::{ordered, real};
-use crate::run::{read, write};
+use crate::ops::{Addr, Builtin, Cmp, Num, TEXT};
+use crate::program::Program;
 use crate::state::State;
-use crate::{Addr, Builtin, Cmp, Num, Program};
-
-/// Longest STRING, in bytes.
-pub const TEXT: u16 = 4096;
 
 /// Reads the string at an address into a buffer.
 fn load(s: &State, at: u64, buffer: &mut Vec<u8>) {
@@ -32,15 +32,21 @@ fn text(bytes: &[u8]) -> &str {
     }
 }
 
-/// Writes text to a string variable, cut at a character.
-fn store(p: &Program, s: &mut State, to: Addr, cap: u16, bytes: &[u8]) {
-    let mut len = bytes.len().min(usize::from(cap));
+/// Bytes of a text that so many bytes can hold, cut at a character.
+pub fn cut(bytes: &[u8], cap: usize) -> usize {
+    let mut len = bytes.len().min(cap);
     while len < bytes.len() && len > 0 && bytes.get(len).is_some_and(|b| b & 0xC0 == 0x80) {
         len -= 1;
     }
+    len
+}
+
+/// Writes text to a string variable, cut between two characters where it is too long.
+fn store(p: &Program, s: &mut State, to: Addr, cap: u16, bytes: &[u8]) {
+    let len = cut(bytes, usize::from(cap));
     let kept = bytes.get(..len).unwrap_or(&[]);
     write(p, s, to, len as u64);
-    // Unused bytes are zero, so that equal strings are equal words.
+    // Unused bytes are zero, so that equal strings have equal words.
     for k in 0..usize::from(cap).div_ceil(8) {
         let chunk = kept.get(8 * k..).unwrap_or(&[]);
         let w = chunk.iter().take(8).rev().fold(0u64, |acc, b| acc << 8 | u64::from(*b));
@@ -48,27 +54,27 @@ fn store(p: &Program, s: &mut State, to: Addr, cap: u16, bytes: &[u8]) {
     }
 }
 
-/// Takes the buffers out while they are worked on, so that the state is free.
+/// Takes the buffers out of the state, so that both can be changed at once.
 fn buffers(s: &mut State) -> [Vec<u8>; 3] {
-    core::mem::take(&mut s.x.text)
+    core::mem::take(&mut s.scratch.text)
 }
 
 pub(crate) fn copy(p: &Program, s: &mut State, from: u64, to: Addr, cap: u16) {
     let mut b = buffers(s);
     load(s, from, &mut b[0]);
     store(p, s, to, cap, &b[0]);
-    s.x.text = b;
+    s.scratch.text = b;
 }
 
 pub(crate) fn compare(s: &mut State, c: Cmp) {
     let mut b = buffers(s);
-    let right = s.x.stack.pop().unwrap_or(0);
-    let left = s.x.stack.pop().unwrap_or(0);
+    let right = s.scratch.stack.pop().unwrap_or(0);
+    let left = s.scratch.stack.pop().unwrap_or(0);
     load(s, left, &mut b[0]);
     load(s, right, &mut b[1]);
     let result = ordered(c, Some(b[0].cmp(&b[1])));
-    s.x.text = b;
-    s.x.stack.push(u64::from(result));
+    s.scratch.text = b;
+    s.scratch.stack.push(u64::from(result));
 }
 
 /// Byte position of character `n`, at most the length.
@@ -83,19 +89,19 @@ pub(crate) fn call(p: &Program, s: &mut State, f: Builtin, to: Addr, cap: u16) -
     match done {
         Ok(None) => {
             store(p, s, to, cap, &b[2]);
-            s.x.stack.push(u64::from(to.0));
+            s.scratch.stack.push(u64::from(to.0));
         }
-        Ok(Some(n)) => s.x.stack.push(n),
+        Ok(Some(n)) => s.scratch.stack.push(n),
         Err(_) => {}
     }
-    s.x.text = b;
+    s.scratch.text = b;
     done.map(|_| ())
 }
 
-/// The result in the third buffer, or a number.
+/// Runs a string function: the result is in the third buffer, or is a number.
 fn work(s: &mut State, f: Builtin, b: &mut [Vec<u8>; 3]) -> Result<Option<u64>, FaultKind> {
-    let mut pop = || s.x.stack.pop().unwrap_or(0);
-    let (mut numbers, strings) = match f {
+    let mut pop = || s.scratch.stack.pop().unwrap_or(0);
+    let (numbers, strings) = match f {
         Builtin::Len => ([0, 0], [Some(pop()), None]),
         Builtin::Left | Builtin::Right => {
             let n = pop() as i64;
@@ -126,9 +132,19 @@ fn work(s: &mut State, f: Builtin, b: &mut [Vec<u8>; 3]) -> Result<Option<u64>, 
         }
     }
     let [first, second, out] = b;
-    let (a, c) = (text(first), text(second));
+    assemble(f, [text(first), text(second)], numbers, out)
+}
+
+/// A function of texts: the result in the buffer, or a number. `n` is a length,
+/// `at` a position from 1.
+fn assemble(
+    f: Builtin,
+    [a, c]: [&str; 2],
+    [n, at]: [i64; 2],
+    out: &mut Vec<u8>,
+) -> Result<Option<u64>, FaultKind> {
+    let (n, at) = (&n, &at);
     out.clear();
-    let [n, at] = &mut numbers;
     if *n < 0 || *at < 0 {
         return Err(FaultKind::Range);
     }
@@ -173,7 +189,35 @@ fn work(s: &mut State, f: Builtin, b: &mut [Vec<u8>; 3]) -> Result<Option<u64>, 
     Ok(None)
 }
 
-/// Text of at most a buffer's room; what does not fit is left away.
+/// What a function of texts gives.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Applied {
+    /// LEN and FIND.
+    Number(u64),
+    /// The others, not cut yet.
+    Text(Vec<u8>),
+}
+
+/// A function of texts on its texts and numbers, each in the order of the call.
+/// Allocates: not for a scan.
+///
+/// # Errors
+///
+/// [`FaultKind::Range`] where a length or a position is negative.
+pub fn apply(f: Builtin, texts: [&[u8]; 2], numbers: &[i64]) -> Result<Applied, FaultKind> {
+    let arg = |i: usize| numbers.get(i).copied().unwrap_or(0);
+    let places = match f {
+        Builtin::Left | Builtin::Right => [arg(0), 0],
+        Builtin::Insert => [0, arg(0)],
+        Builtin::Mid | Builtin::Delete | Builtin::Replace => [arg(0), arg(1)],
+        _ => [0, 0],
+    };
+    let mut out = Vec::new();
+    let number = assemble(f, texts.map(text), places, &mut out)?;
+    Ok(number.map_or(Applied::Text(out), Applied::Number))
+}
+
+/// A writer into the room of a buffer, which drops what does not fit.
 struct Out<'a>(&'a mut Vec<u8>);
 
 impl Write for Out<'_> {
@@ -184,30 +228,45 @@ impl Write for Out<'_> {
     }
 }
 
-pub(crate) fn from_number(p: &Program, s: &mut State, from: Num, time: bool, to: Addr, cap: u16) {
-    let v = s.x.stack.pop().unwrap_or(0);
-    let mut b = buffers(s);
-    b[2].clear();
-    let mut out = Out(&mut b[2]);
-    // `Out` never fails.
-    let _ = match from {
+/// A number as text; REAL and LREAL so that they are read again as the same.
+fn write_number(out: &mut impl Write, from: Num, time: bool, v: u64) -> core::fmt::Result {
+    match from {
         _ if time => write!(out, "{}", Duration(v as i64)),
         Num::Bool => out.write_str(if v == 0 { "FALSE" } else { "TRUE" }),
         Num::I8 | Num::I16 | Num::I32 | Num::I64 => write!(out, "{}", v as i64),
         Num::U8 | Num::U16 | Num::U32 | Num::U64 => write!(out, "{v}"),
         Num::F32 => write!(out, "{:?}", f32::from_bits(v as u32)),
         Num::F64 => write!(out, "{:?}", real(from, v)),
-    };
-    store(p, s, to, cap, &b[2]);
-    s.x.text = b;
-    s.x.stack.push(u64::from(to.0));
+    }
 }
 
-pub(crate) fn to_number(s: &mut State, n: Num) -> Result<(), FaultKind> {
-    let at = s.x.stack.pop().unwrap_or(0);
+/// A number as text, as the engine writes it. Allocates: not for a scan.
+pub fn written(from: Num, time: bool, v: u64) -> String {
+    let mut out = String::new();
+    // A String takes everything.
+    let _ = write_number(&mut out, from, time, v);
+    out
+}
+
+pub(crate) fn from_number(p: &Program, s: &mut State, from: Num, time: bool, to: Addr, cap: u16) {
+    let v = s.scratch.stack.pop().unwrap_or(0);
     let mut b = buffers(s);
-    load(s, at, &mut b[0]);
-    let t = text(&b[0]).trim();
+    b[2].clear();
+    let mut out = Out(&mut b[2]);
+    // `Out` never fails.
+    let _ = write_number(&mut out, from, time, v);
+    store(p, s, to, cap, &b[2]);
+    s.scratch.text = b;
+    s.scratch.stack.push(u64::from(to.0));
+}
+
+/// A text as a number.
+///
+/// # Errors
+///
+/// [`FaultKind::Range`] where it is none of this kind.
+pub fn read_number(n: Num, bytes: &[u8]) -> Result<u64, FaultKind> {
+    let t = text(bytes).trim();
     let parsed = match n {
         Num::F32 => t.parse::<f32>().ok().map(|v| u64::from(v.to_bits())),
         Num::F64 => t.parse::<f64>().ok().map(f64::to_bits),
@@ -219,8 +278,16 @@ pub(crate) fn to_number(s: &mut State, n: Num) -> Result<(), FaultKind> {
         Num::U64 => t.parse::<u64>().ok(),
         _ => t.parse::<i64>().ok().and_then(|v| crate::number::convert(Num::I64, n, v as u64).ok()),
     };
-    s.x.text = b;
-    s.x.stack.push(parsed.ok_or(FaultKind::Range)?);
+    parsed.ok_or(FaultKind::Range)
+}
+
+pub(crate) fn to_number(s: &mut State, n: Num) -> Result<(), FaultKind> {
+    let at = s.scratch.stack.pop().unwrap_or(0);
+    let mut b = buffers(s);
+    load(s, at, &mut b[0]);
+    let parsed = read_number(n, &b[0]);
+    s.scratch.text = b;
+    s.scratch.stack.push(parsed?);
     Ok(())
 }
 

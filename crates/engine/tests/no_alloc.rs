@@ -81,3 +81,23 @@ fn a_scan_without_end_allocates_nothing() {
     assert_eq!(COUNT.get(), before);
     assert!(matches!(fault.map_err(|f| f.kind), Err(FaultKind::Unstable { .. })));
 }
+
+/// A search makes millions of these steps: from an image to a state, a scan, and to
+/// the canonical image of the successor.
+#[test]
+fn a_step_of_a_search_allocates_nothing() {
+    for rules in [Rules::IEC60848, Rules::IEC61131, Rules::PL7, Rules::UNITY, Rules::JGRAFCHART] {
+        let program = Program::new(chart(rules, 6, 2, &[0], &arcs())).expect("tables are sound");
+        let mut state = State::new(&program);
+        let mut image = Vec::with_capacity(state.image().len());
+        state.canonical(&program, &mut image);
+        let before = COUNT.get();
+        for k in 0..200i64 {
+            state.restore(&program, &image).expect("a canonical image");
+            let inputs = [(k % 2) as u64, ((k / 2) % 2) as u64];
+            scan(&program, &mut state, &inputs, k * 1_000_000).ok();
+            state.canonical(&program, &mut image);
+        }
+        assert_eq!(COUNT.get(), before, "{rules:?}");
+    }
+}

@@ -5,7 +5,7 @@ mod common;
 use std::hash::{DefaultHasher, Hash, Hasher};
 
 use common::chart;
-use g7_engine::{Addr, GroupId, Program, Rules, State, StepId, scan};
+use g7_engine::{Addr, GroupId, ImageError, Program, Rules, State, StepId, scan};
 
 /// Steps 0 to 1 behind input 0; two inputs, so step `s` has output word `2 + s`.
 fn program() -> Program {
@@ -67,7 +67,7 @@ fn bytes_keep_every_bit() {
     let back = State::from_bytes(&p, &bytes).expect("its own bytes");
     assert_eq!(back.image(), s.image());
     assert_eq!((back.word(Addr(1)), back.now()), (wide, 0x0102_0304_0506_0708));
-    assert!(State::from_bytes(&p, &bytes[1..]).is_none());
+    assert_eq!(State::from_bytes(&p, &bytes[1..]).err(), Some(ImageError::Length));
 }
 
 #[test]

@@ -7,9 +7,9 @@ mod common;
 
 use common::chart;
 use g7_engine::{
-    Action, Addr, Arith, Block, Builtin, Cmp, Code, Contribution, ControlBlock, Event, Extra, GroupId, Guard,
-    Limits, LoadError, NONE, Num, Op, Order, Program, Rows, Rules, STACK, Service, Situation, StepId, TEXT,
-    Tables, Watch, WatchId,
+    Action, Addr, Arith, Block, Builtin, Cmp, Code, Contribution, ControlBlock, Event, Extra, GroupId,
+    Limits, LoadError, NONE, Num, Op, Order, Program, Receptivity, Rows, Rules, STACK, Service, Situation,
+    StepId, TEXT, Tables, Watch, WatchId,
 };
 
 const fn rows(start: u32, end: u32) -> Rows {
@@ -126,8 +126,8 @@ fn an_index_past_the_last_row_is_refused_in_every_table() {
         "transitions" 0: t => t.transitions[0].from = StepId(2), t => t.transitions[0].to = StepId(2),
             t => t.transitions[0].more_from = rows(0, 3), t => t.transitions[0].more_to = rows(0, 3),
             t => t.transitions[0].chart = 1, t => t.transitions[0].on_clearing = 1,
-            t => t.transitions[0].guard = Guard::Word(Addr(3)),
-            t => t.transitions[0].guard = Guard::NotWord(Addr(3));
+            t => t.transitions[0].receptivity = Receptivity::Word(Addr(3)),
+            t => t.transitions[0].receptivity = Receptivity::NotWord(Addr(3));
         "drops" 0: t => t.drops = vec![(2, StepId(0))], t => t.drops = vec![(0, StepId(2))];
         "outs" 1: t => t.outs[1] = 2;
         "sources" 0: t => t.sources[0] = 2;
@@ -238,8 +238,8 @@ fn code_leaves_what_it_should_on_every_way() {
         (1, |t, c| t.watches[0].code = c),
         (1, |t, c| t.watches[0].times = Some((c, t.watches[0].code))),
         (1, |t, c| t.watches[0].times = Some((t.watches[0].code, c))),
-        (1, |t, c| t.transitions[0].guard = Guard::Code(c)),
-        (1, |t, c| t.transitions[1].guard = Guard::Code(c)),
+        (1, |t, c| t.transitions[0].receptivity = Receptivity::Code(c)),
+        (1, |t, c| t.transitions[1].receptivity = Receptivity::Code(c)),
     ];
     for (row, (n, set)) in codes.into_iter().enumerate() {
         assert_eq!(leaves(n, set), None, "code {row}");

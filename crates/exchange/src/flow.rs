@@ -5,17 +5,17 @@ use std::ops::Range;
 
 use g7_model::codes;
 
-use crate::report::Report;
+use g7_iec::report::Report;
 
-/// Lines followed for one chart.
+/// The most lines followed for one chart.
 const MOST_WORK: usize = 2_000_000;
 
-/// What a line leads from or to.
+/// An end of a line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) enum Node {
     Step(usize),
     Transition(usize),
-    /// A branch, or a part of one: nothing but a way.
+    /// A branch or a part of one; lines only pass through it.
     Bar(usize),
 }
 
@@ -34,7 +34,7 @@ pub(crate) struct Ends {
 }
 
 impl Flow {
-    /// Adds a line; one that no chart can have is reported.
+    /// Adds a line; reports a line that no chart can have.
     pub(crate) fn line(&mut self, from: Node, to: Node, at: &Range<usize>, report: &mut Report) {
         let wrong = match (from, to) {
             (Node::Step(_), Node::Step(_)) => "a line from a step to a step without a transition between",
@@ -50,7 +50,7 @@ impl Flow {
         report.say(&codes::BAD_LINK, at, wrong);
     }
 
-    /// The ends of each transition, given with its place.
+    /// The ends of each transition. `transitions` holds the places of the transitions.
     pub(crate) fn ends(&self, transitions: &[Range<usize>], report: &mut Report) -> Vec<Ends> {
         let mut left = MOST_WORK;
         let mut all = Vec::with_capacity(transitions.len());
@@ -75,10 +75,10 @@ impl Flow {
         all
     }
 
-    /// For each transition the first step before it, and its place among the
-    /// transitions behind that step, in the order of the lines.
-    pub(crate) fn order(&self, steps: usize, transitions: usize) -> Vec<(usize, usize)> {
-        let mut order = vec![(usize::MAX, 0); transitions];
+    /// For each transition the first step before it, and the position of the transition among those
+    /// behind that step, in the order of the lines. None if there is no step before it.
+    pub(crate) fn order(&self, steps: usize, transitions: usize) -> Vec<Option<(usize, usize)>> {
+        let mut order = vec![None; transitions];
         let mut left = MOST_WORK;
         for step in 0..steps {
             let mut place = 0;
@@ -86,8 +86,8 @@ impl Flow {
             let mut stack = vec![Node::Step(step)];
             while let Some(node) = stack.pop() {
                 if let Node::Transition(index) = node {
-                    if let Some(found) = order.get_mut(index).filter(|o| o.0 == usize::MAX) {
-                        *found = (step, place);
+                    if let Some(found) = order.get_mut(index).filter(|o| o.is_none()) {
+                        *found = Some((step, place));
                     }
                     place += 1;
                     continue;

@@ -1,10 +1,9 @@
-//! Charts as Mermaid flowcharts, for pages that draw them from text.
+//! Draws charts as Mermaid flowcharts, for pages that draw them from text.
 //!
-//! A picture, no exchange: steps are boxes (an initial step has a thick frame, a
-//! macro-step or enclosing step one with side lines), transitions hexagons with
-//! their receptivity, actions notes beside their step. Identifiers are counted,
-//! so no name can break the text; what has a meaning to Mermaid or HTML in a
-//! label is written as a character code.
+//! This is a picture and is not read back: steps are boxes (with a thick frame for an initial step,
+//! with side lines for a macro-step or enclosing step), transitions are hexagons with their
+//! receptivity, actions are notes beside their step. Identifiers are numbered, so no name can break
+//! the text. Signs with a meaning in Mermaid or HTML are written as character codes in labels.
 
 use std::collections::HashMap;
 use std::fmt::Write;
@@ -14,7 +13,7 @@ use g7_syntax::{print_action, print_expr};
 
 use crate::Written;
 
-/// One flowchart with a box for each chart.
+/// Writes one flowchart with a box for each chart.
 pub(crate) fn export(document: &Document) -> Written {
     let mut text = String::from("flowchart TB\n");
     for (number, chart) in document.charts().enumerate() {
@@ -49,13 +48,13 @@ fn draw(text: &mut String, number: usize, chart: &Chart) {
 fn draw_step(text: &mut String, step: &Step, id: &str) {
     let name = label(&[&step.name.text], step.comment.as_deref());
     let symbol = match step.kind {
-        // Mermaid's box with double side lines is the symbol of a subroutine.
+        // Mermaid's box with double side lines is its symbol of a subroutine.
         StepKind::Macro(_) | StepKind::Enclosing => format!("{id}[[{name}]]"),
         StepKind::Plain | StepKind::Entry | StepKind::Exit => format!("{id}[{name}]"),
     };
     line(text, 2, &symbol);
     if step.initial {
-        // A thick frame stands for the double square, which Mermaid does not have for boxes.
+        // A thick frame replaces the double square, which Mermaid does not have for boxes.
         line(text, 2, &format!("style {id} stroke-width:4px"));
     }
     for (i, action) in step.actions.iter().enumerate() {
@@ -79,7 +78,7 @@ fn draw_transition(text: &mut String, transition: &Transition, id: &str, ids: &H
     }
 }
 
-/// A quoted label: the parts in a row, a comment below them.
+/// A quoted label: the parts in a row, with a comment below them.
 fn label(parts: &[&str], comment: Option<&str>) -> String {
     let mut label = String::from("\"");
     parts.iter().for_each(|p| escape(&mut label, p));
@@ -91,7 +90,8 @@ fn label(parts: &[&str], comment: Option<&str>) -> String {
     label
 }
 
-/// Letters, digits, blanks and what means nothing as they are; line ends as breaks; the rest as codes.
+/// Writes letters, digits, blanks and harmless signs as they are, line ends as breaks, the rest as
+/// codes.
 fn escape(out: &mut String, text: &str) {
     for c in text.chars() {
         match c {

@@ -1,13 +1,12 @@
 //! Charts as Mermaid flowcharts: every step, transition and action is there, and
 //! no name breaks the text.
 
-use g7_exchange::{Outlet, export};
 use g7_model::FileId;
 
 fn written(text: &str) -> String {
     let (document, problems) = g7_syntax::parse(text, FileId(0));
     assert!(problems.is_empty(), "{problems:?}");
-    let written = export(Outlet::Mermaid, &document);
+    let written = g7_exchange::named("mermaid").and_then(|f| f.write(&document)).expect("it is written");
     assert!(written.problems.is_empty());
     written.text
 }

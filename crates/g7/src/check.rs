@@ -1,4 +1,4 @@
-//! `g7 check`: every problem, with its place and the way out.
+//! `g7 check`: prints every problem, with its place and a way to solve it.
 
 use std::io::Write;
 
@@ -16,20 +16,25 @@ pub(crate) fn check(args: &Check) -> Result<Verdict, Failure> {
     let paths = files::all(&args.paths)?;
     let mut progress = Progress::new("checking", paths.len() as u64);
     let mut out = anstream::stdout().lock();
-    let (mut tally, mut listed) = (Tally::default(), Vec::new());
+    let (mut tally, mut listed, mut unproved) = (Tally::default(), Vec::new(), Vec::new());
     for path in &paths {
         let (source, problems) = problems(sources::load(path, 0)?, args)?;
         tally.add(Tally::of(&problems));
+        let mut claims = g7_rig::testing::unproved(&source);
         match args.format {
-            Format::Text => write!(out, "{}", report::text(&source, &problems))?,
+            Format::Text => {
+                write!(out, "{}{}", report::text(&source, &problems), report::unproved(&claims))?;
+            }
             Format::Json => listed.extend(problems.iter().map(|p| report::json(&source, p))),
         }
+        unproved.append(&mut claims);
         progress.step();
     }
     progress.end();
     if args.format == Format::Json {
         let all = json!({
             "files": paths.len(), "errors": tally.errors, "warnings": tally.warnings, "problems": listed,
+            "not_proved": report::unproved_json(&unproved),
         });
         writeln!(out, "{all:#}")?;
     }
@@ -41,7 +46,7 @@ pub(crate) fn check(args: &Check) -> Result<Verdict, Failure> {
     Ok(if bad { Verdict::Found } else { Verdict::Fine })
 }
 
-/// The parser's problems; where it had no errors, those of charts, plants and tests.
+/// The parser's problems; if there is no syntax error, also those of charts, plants and tests.
 fn problems(mut source: Source, args: &Check) -> Result<(Source, Vec<Problem>), Failure> {
     if let Some(target) = args.target {
         source.document.items.retain(|i| !matches!(i, Item::Target(..)));

@@ -1,9 +1,9 @@
-//! What can be typed: commands, options, and the examples that teach them.
+//! The commands, their options, and the examples in their help texts.
 
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
-use g7_model::{ProfileName, TargetPlc};
+use g7_model::{Nanos, ProfileName, TargetPlc};
 
 use crate::values::{self, Assign};
 
@@ -42,7 +42,7 @@ pub(crate) struct Cli {
 /// When to use colours.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum Color {
-    /// On a terminal, unless NO_COLOR is set.
+    /// If the output is a terminal and NO_COLOR is not set.
     Auto,
     /// Also in a pipe or a file.
     Always,
@@ -50,7 +50,7 @@ pub(crate) enum Color {
     Never,
 }
 
-/// The form of what is printed.
+/// The format of the output.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum Format {
     /// For people.
@@ -62,13 +62,13 @@ pub(crate) enum Format {
 /// The commands.
 #[derive(Debug, Subcommand)]
 pub(crate) enum Command {
-    /// Make a folder with a small chart, its plant and a test.
+    /// Create a folder with a small chart, its plant and a test.
     New(New),
-    /// Say what is wrong with charts, where, and the way out.
+    /// Show the problems of charts: where they are and how to solve them.
     Check(Check),
-    /// Write charts in the one canonical form; notes are kept.
+    /// Format charts; notes are kept.
     Fmt(Fmt),
-    /// Run a chart against its plant, in the terminal or headless.
+    /// Run a chart with its plant, in the terminal or without one.
     Run(Run),
     /// Run the tests of charts in virtual time.
     Test(Test),
@@ -76,17 +76,17 @@ pub(crate) enum Command {
     Draw(crate::draw::Draw),
     /// Open the editor in the browser.
     Serve(crate::serve::Serve),
-    /// Turn a file of another tool into a .g7 file.
+    /// Convert a file of another tool to a .g7 file.
     Import(Import),
-    /// Write a chart in the form of another tool.
+    /// Convert a chart to the format of another tool.
     Export(crate::export::Export),
-    /// Print code for a controller from a chart.
+    /// Generate code for a controller from a chart.
     Gen(crate::r#gen::Gen),
     /// Explain a problem code, or list them all.
     Explain(Explain),
     /// Print the completions for a shell.
     Completions(Completions),
-    /// Print the manual page, or write those of all commands to a folder.
+    /// Print the manual page, or write the pages of all commands to a folder.
     Man(Man),
 }
 
@@ -98,7 +98,7 @@ Examples:
 
 A folder that holds something already is left alone.")]
 pub(crate) struct New {
-    /// The folder to make.
+    /// The folder to create.
     pub(crate) folder: PathBuf,
 }
 
@@ -113,19 +113,19 @@ Examples:
 
 {EXIT_CODES}"))]
 pub(crate) struct Check {
-    /// Files or folders; `-` is the standard input.
+    /// Files or folders; `-` reads the standard input.
     #[arg(default_value = ".")]
     pub(crate) paths: Vec<PathBuf>,
-    /// The PLC whose limits must hold.
+    /// Also check the limits of this PLC.
     #[arg(long, value_parser = values::target, value_name = "PLC")]
     pub(crate) target: Option<TargetPlc>,
-    /// The rules of evolution, in place of the file's own.
+    /// The profile to use instead of the file's own.
     #[arg(long, value_parser = values::profile)]
     pub(crate) profile: Option<ProfileName>,
     /// For people or for programs.
     #[arg(long, value_enum, default_value_t = Format::Text)]
     pub(crate) format: Format,
-    /// Warnings count as errors.
+    /// Count warnings as errors.
     #[arg(long)]
     pub(crate) strict: bool,
 }
@@ -144,7 +144,7 @@ pub(crate) struct Fmt {
     /// Files or folders; `-` reads the standard input.
     #[arg(default_value = ".")]
     pub(crate) paths: Vec<PathBuf>,
-    /// Write nothing; exit with 1 where something would change.
+    /// Write nothing; exit with 1 if a file would change.
     #[arg(long)]
     pub(crate) check: bool,
 }
@@ -167,40 +167,40 @@ pub(crate) struct Run {
     /// Do not open the terminal view; print a chronogram at the end.
     #[arg(long)]
     pub(crate) headless: bool,
-    /// How long to run; 10s unless said, without end in the terminal view.
+    /// How long to run [default: 10s; no limit in the terminal view].
     #[arg(long = "for", value_parser = values::duration, value_name = "TIME")]
-    pub(crate) duration: Option<i64>,
-    /// Write what every signal did, as .csv or .vcd by the name.
+    pub(crate) duration: Option<Nanos>,
+    /// Write the values of all signals to this file; its name ends in .csv or .vcd.
     #[arg(long, value_name = "FILE")]
     pub(crate) trace: Option<PathBuf>,
     /// Set an input (or a state of the plant) at a time: `start=1@2s`.
     #[arg(long = "set", value_parser = values::assign, value_name = "NAME=VALUE@TIME")]
     pub(crate) set: Vec<Assign>,
-    /// The rules of evolution, in place of the file's own.
+    /// The profile to use instead of the file's own.
     #[arg(long, value_parser = values::profile)]
     pub(crate) profile: Option<ProfileName>,
-    /// Time between scans, in place of the file's own (10ms).
+    /// Time between scans, instead of the file's own (10ms).
     #[arg(long, value_parser = values::duration, value_name = "TIME")]
-    pub(crate) scan: Option<i64>,
-    /// The plant to run against, where there are several; `none` for none.
+    pub(crate) scan: Option<Nanos>,
+    /// The plant to use if there are several; `none` for no plant.
     #[arg(long, value_name = "NAME")]
     pub(crate) plant: Option<String>,
-    /// What the plant's chance starts from: the same seed, the same run.
+    /// The seed of the plant's random numbers; the same seed gives the same run.
     #[arg(long, default_value_t = 0, value_name = "NUMBER")]
     pub(crate) seed: u64,
-    /// Headless: as fast as the wall clock and no faster.
+    /// With --headless: run in real time.
     #[arg(long)]
     pub(crate) real_time: bool,
-    /// Headless: the signals of the chronogram; all that move unless said.
+    /// With --headless: the signals of the chronogram [default: all that change].
     #[arg(long, value_delimiter = ',', value_name = "NAMES")]
     pub(crate) show: Vec<String>,
-    /// Keep retained variables in this file from run to run.
+    /// Keep the retained variables in this file between runs.
     #[arg(long, value_name = "FILE")]
     pub(crate) retain: Option<PathBuf>,
-    /// Headless: write all that entered the charts, to be played again.
+    /// With --headless: record everything that enters the charts, for --replay.
     #[arg(long, value_name = "FILE")]
     pub(crate) record: Option<PathBuf>,
-    /// Play a record; every state must come out the same.
+    /// Replay a record and check that every state is the same.
     #[arg(long, value_name = "FILE", conflicts_with_all = ["record", "set", "duration", "retain"])]
     pub(crate) replay: Option<PathBuf>,
 }
@@ -218,10 +218,10 @@ pub(crate) struct Test {
     /// Files or folders.
     #[arg(default_value = ".")]
     pub(crate) paths: Vec<PathBuf>,
-    /// Only tests whose title has this in it.
+    /// Run only tests whose title contains this text.
     #[arg(long, short, value_name = "TEXT")]
     pub(crate) filter: Option<String>,
-    /// Say which steps, transitions, actions and branches no test reached.
+    /// List the steps, transitions, actions and branches that no test reached.
     #[arg(long)]
     pub(crate) coverage: bool,
     /// Write a JUnit report.
@@ -230,12 +230,12 @@ pub(crate) struct Test {
     /// For people or for programs.
     #[arg(long, value_enum, default_value_t = Format::Text)]
     pub(crate) format: Format,
-    /// The rules of evolution, in place of the file's own.
+    /// The profile to use instead of the file's own.
     #[arg(long, value_parser = values::profile)]
     pub(crate) profile: Option<ProfileName>,
-    /// Time between scans, in place of the file's own (10ms).
+    /// Time between scans, instead of the file's own (10ms).
     #[arg(long, value_parser = values::duration, value_name = "TIME")]
-    pub(crate) scan: Option<i64>,
+    pub(crate) scan: Option<Nanos>,
 }
 
 #[derive(Args, Debug)]
@@ -250,10 +250,10 @@ What the importer does not know is reported with its line, never dropped in sile
 pub(crate) struct Import {
     /// The file of another tool.
     pub(crate) file: PathBuf,
-    /// Where to; the standard output unless said.
+    /// The file to write [default: the standard output].
     #[arg(long, short, value_name = "FILE")]
     pub(crate) output: Option<PathBuf>,
-    /// Replace the output file if it is there.
+    /// Replace the output file if it exists.
     #[arg(long)]
     pub(crate) force: bool,
 }
@@ -284,7 +284,7 @@ Examples:
   g7 man | man -l -
   g7 man --out /usr/local/share/man/man1")]
 pub(crate) struct Man {
-    /// A folder that takes a page for each command.
+    /// Write a page for each command to this folder.
     #[arg(long, value_name = "FOLDER")]
     pub(crate) out: Option<PathBuf>,
 }

@@ -1,4 +1,4 @@
-//! `g7 explain`: the page of a problem.
+//! `g7 explain`: prints the page on a problem.
 
 use std::io::Write;
 

@@ -1,10 +1,10 @@
-//! `g7 export`: a chart in the form of another tool.
+//! `g7 export`: writes a chart in the format of another tool.
 
 use std::path::{Path, PathBuf};
 
 use clap::ValueEnum;
 use clap::builder::PossibleValue;
-use g7_exchange::Outlet;
+use g7_exchange::{FORMATS, Format};
 use g7_model::Severity;
 
 use crate::failure::{Failure, Verdict};
@@ -23,45 +23,45 @@ Exit codes:
   1  the chart has errors, or the form cannot carry what it means
   2  bad usage, or something outside the chart: no such file, a full disk";
 
-/// What can be asked of `g7 export`.
+/// The arguments of `g7 export`.
 #[derive(clap::Args, Debug)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct Export {
     /// A .g7 file, a file of another tool, or a folder with a chart.g7.
     #[arg(default_value = ".")]
     file: PathBuf,
-    /// The form, where the name of the output does not say it.
+    /// The format, if the name of the output does not tell it.
     #[arg(long, value_enum, value_name = "FORM")]
     to: Option<Form>,
-    /// Where to; the standard output unless said.
+    /// The file to write [default: the standard output].
     #[arg(long, short, value_name = "FILE")]
     output: Option<PathBuf>,
-    /// Replace the output file if it is there.
+    /// Replace the output file if it exists.
     #[arg(long)]
     force: bool,
-    /// Write it even where it would not mean the same.
+    /// Write the file even if it would not have the same meaning.
     #[arg(long)]
     lossy: bool,
 }
 
-/// A form, as a word of the command line.
+/// A format, as a word of the command line.
 #[derive(Clone, Copy, Debug)]
-struct Form(Outlet);
+struct Form(&'static Format);
 
 impl ValueEnum for Form {
     fn value_variants<'a>() -> &'a [Form] {
         static ALL: std::sync::LazyLock<Vec<Form>> =
-            std::sync::LazyLock::new(|| Outlet::ALL.iter().map(|o| Form(*o)).collect());
+            std::sync::LazyLock::new(|| FORMATS.iter().filter(|f| f.is_written()).map(Form).collect());
         &ALL
     }
 
     fn to_possible_value(&self) -> Option<PossibleValue> {
-        Some(PossibleValue::new(self.0.word()).help(self.0.title()))
+        Some(PossibleValue::new(self.0.word).help(self.0.title))
     }
 }
 
 pub(crate) fn export(args: &Export) -> Result<Verdict, Failure> {
-    let to = outlet(args)?;
+    let to = form(args)?;
     let source = sources::load(&files::one(&args.file)?, 0)?;
     files::refuse_present(args.output.as_deref(), args.force)?;
     let mut problems = source.problems.clone();
@@ -72,7 +72,9 @@ pub(crate) fn export(args: &Export) -> Result<Verdict, Failure> {
         problems.retain(|p| p.severity() == Severity::Error);
         return Ok(found(&source, &problems));
     }
-    let written = g7_exchange::export(to, &source.document);
+    let Some(written) = to.write(&source.document) else {
+        return Err(Failure::Usage(format!("{} is not written", to.title)));
+    };
     let lost = written.problems.iter().any(|p| p.severity() == Severity::Error);
     if !written.problems.is_empty() {
         found(&source, &written.problems);
@@ -91,16 +93,16 @@ fn found(source: &sources::Source, problems: &[g7_model::Problem]) -> Verdict {
     Verdict::Found
 }
 
-/// The form that is asked for, by `--to` or by the ending of the output.
-fn outlet(args: &Export) -> Result<Outlet, Failure> {
+/// The format chosen by `--to` or by the extension of the output.
+fn form(args: &Export) -> Result<&'static Format, Failure> {
     let by_name = |path: &Path| {
         let ending = path.extension()?.to_str()?.to_ascii_lowercase();
-        let mut fits = Outlet::ALL.iter().filter(|o| o.ending() == ending);
-        // Several forms are XML: then the ending says nothing.
-        fits.next().copied().filter(|_| fits.next().is_none())
+        let mut fits = FORMATS.iter().filter(|f| f.is_written() && f.ending() == ending);
+        // Several formats share an extension such as .xml; then it decides nothing.
+        fits.next().filter(|_| fits.next().is_none())
     };
     args.to.map(|form| form.0).or_else(|| by_name(args.output.as_ref()?)).ok_or_else(|| {
-        let words: Vec<&str> = Outlet::ALL.iter().map(|o| o.word()).collect();
+        let words: Vec<&str> = FORMATS.iter().filter(|f| f.is_written()).map(|f| f.word).collect();
         Failure::Usage(format!("say the form with --to: {}", words.join(", ")))
     })
 }

@@ -1,9 +1,9 @@
-//! What the environment can do to us, in one line each; exit code 2.
+//! Failures of the environment, one line each; exit code 2.
 
 use std::io;
 use std::path::{Path, PathBuf};
 
-/// Why a command could not do its work.
+/// Why a command could not be executed.
 #[derive(Debug, thiserror::Error)]
 pub(crate) enum Failure {
     /// A file that cannot be read.
@@ -15,7 +15,7 @@ pub(crate) enum Failure {
     /// The standard output cannot be written.
     #[error("cannot write to the standard output: {}", plain(.0))]
     Output(#[from] io::Error),
-    /// Something else that the user can mend.
+    /// An error that the user can correct.
     #[error("{0}")]
     Usage(String),
 }
@@ -32,7 +32,7 @@ impl From<g7_rig::Error> for Failure {
 }
 
 impl Failure {
-    /// The reader of a pipe has gone: no reason to speak.
+    /// True if the reader of a pipe has closed it; then nothing is printed.
     pub(crate) fn is_quiet(&self) -> bool {
         matches!(self, Failure::Output(e) if e.kind() == io::ErrorKind::BrokenPipe)
     }
@@ -43,7 +43,7 @@ fn show(path: &Path) -> String {
     path.display().to_string().chars().map(|c| if c.is_control() { '?' } else { c }).collect()
 }
 
-/// The system's words without the number behind them.
+/// The message of the system, without its error number.
 pub(crate) fn plain(error: &io::Error) -> String {
     let text = error.to_string();
     let end = text.find(" (os error").unwrap_or(text.len());
@@ -52,7 +52,7 @@ pub(crate) fn plain(error: &io::Error) -> String {
     letters.next().map_or_else(String::new, |first| first.to_lowercase().chain(letters).collect())
 }
 
-/// What a command came to.
+/// The result of a command.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Verdict {
     /// Exit code 0.

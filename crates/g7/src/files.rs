@@ -1,4 +1,5 @@
-//! From arguments to files: folders, the standard input, whole writes.
+//! Finds, reads and writes the files that the arguments name; a file is written completely or not
+//! at all.
 
 use std::fs;
 use std::io::{self, Read, Write};
@@ -7,7 +8,7 @@ use std::path::{Path, PathBuf};
 use crate::failure::Failure;
 use crate::{style, talk};
 
-/// Longest file read; the parser's own limit is below it.
+/// Longest file that is read; the parser's own limit is lower.
 const LONGEST: u64 = 64 << 20;
 
 /// The bytes of a file, or of the standard input for `-`.
@@ -28,20 +29,20 @@ pub(crate) fn read(path: &Path) -> Result<Vec<u8>, Failure> {
     Ok(bytes)
 }
 
-/// Replaces a file, whole or not at all.
+/// Replaces a file, completely or not at all.
 pub(crate) fn write(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
     g7_host::write_whole(path, bytes).map_err(|e| Failure::Write(path.to_path_buf(), e))
 }
 
-/// Says no where an output file is there and may not be replaced.
+/// Refuses to overwrite an existing output file without `force`.
 pub(crate) fn refuse_present(output: Option<&Path>, force: bool) -> Result<(), Failure> {
     match output.filter(|o| o.is_file() && !force) {
-        Some(o) => Err(Failure::Usage(format!("{} is there already; --force replaces it", o.display()))),
+        Some(o) => Err(Failure::Usage(format!("{} already exists; --force replaces it", o.display()))),
         None => Ok(()),
     }
 }
 
-/// Data to a file, whole or not at all, or to the standard output.
+/// Writes data to a file, completely or not at all, or to the standard output.
 pub(crate) fn deliver(output: Option<&Path>, bytes: &[u8]) -> Result<(), Failure> {
     match output {
         Some(path) => {
@@ -49,7 +50,7 @@ pub(crate) fn deliver(output: Option<&Path>, bytes: &[u8]) -> Result<(), Failure
             talk!("{}wrote{:#} {}", style::GOOD, style::GOOD, path.display());
         }
         None => {
-            // As they are: these may be a picture.
+            // The bytes are written unchanged, because they may be a picture.
             let mut out = io::stdout().lock();
             out.write_all(bytes)?;
             out.flush()?;
@@ -58,7 +59,7 @@ pub(crate) fn deliver(output: Option<&Path>, bytes: &[u8]) -> Result<(), Failure
     Ok(())
 }
 
-/// The one chart to run: a file, or a folder's `chart.g7` or only `.g7` file.
+/// The chart to run: the given file, or in a folder `chart.g7` or the only .g7 file.
 pub(crate) fn one(path: &Path) -> Result<PathBuf, Failure> {
     let folder = match fs::metadata(path) {
         _ if path == Path::new("-") => return Ok(path.to_path_buf()),
@@ -83,7 +84,7 @@ pub(crate) fn one(path: &Path) -> Result<PathBuf, Failure> {
     }
 }
 
-/// Every chart meant: files as given, folders with all that is in and below them.
+/// All charts: files as given, and all charts in folders and below.
 pub(crate) fn all(paths: &[PathBuf]) -> Result<Vec<PathBuf>, Failure> {
     let mut found = Vec::new();
     for path in paths {
@@ -105,13 +106,13 @@ pub(crate) fn all(paths: &[PathBuf]) -> Result<Vec<PathBuf>, Failure> {
     Ok(found)
 }
 
-/// Deepest folder looked into.
+/// Greatest depth of folders that are searched.
 const DEEPEST: u32 = 32;
 
 fn walk(folder: &Path, found: &mut Vec<PathBuf>, depth: u32) -> Result<(), Failure> {
     for path in list(folder)? {
         let hidden = path.file_name().is_some_and(|n| n.to_string_lossy().starts_with('.'));
-        // A link to a folder is not followed: it may lead back here.
+        // A link to a folder is not followed, because it may lead back here.
         let folder = fs::symlink_metadata(&path).is_ok_and(|m| m.is_dir());
         if folder && !hidden && depth < DEEPEST {
             walk(&path, found, depth + 1)?;

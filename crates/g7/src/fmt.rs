@@ -1,4 +1,4 @@
-//! `g7 fmt`: the one canonical form.
+//! `g7 fmt`: formats files.
 
 use std::io::Write;
 use std::path::Path;

@@ -1,4 +1,4 @@
-//! `g7 gen`: code for a controller.
+//! `g7 gen`: generates code for a controller.
 
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -32,7 +32,7 @@ Exit codes:
   1  the chart has errors, or the language cannot say what it means
   2  bad usage, or something outside the chart: no such file, a full disk";
 
-/// What can be asked of `g7 gen`.
+/// The arguments of `g7 gen`.
 #[derive(Args, Debug)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct Gen {
@@ -46,7 +46,7 @@ enum Words {
     /// C99 without heap and library: a header and a source file.
     #[command(after_help = EXAMPLES)]
     C(Code),
-    /// The same with a sketch round it.
+    /// The same C99 code and an Arduino sketch.
     #[command(after_help = EXAMPLES)]
     Arduino(Code),
     /// A Rust module without the standard library.
@@ -58,7 +58,7 @@ enum Words {
     /// The same equations as Instruction List.
     #[command(after_help = EXAMPLES)]
     Il {
-        /// How the steps change.
+        /// How the equations are written.
         #[arg(long, value_enum, default_value_t = IlStyle::Flat)]
         style: IlStyle,
         #[command(flatten)]
@@ -75,10 +75,10 @@ enum Words {
     },
 }
 
-/// What to print of C and Rust.
+/// The arguments for C and Rust.
 #[derive(Args, Debug)]
 struct Code {
-    /// How the evolution is written down; what it does is the same.
+    /// How the evolution is written; its behaviour is the same.
     #[arg(long, value_enum, default_value_t = CodeStyle::Structured)]
     style: CodeStyle,
     #[command(flatten)]
@@ -88,9 +88,9 @@ struct Code {
 /// Styles of C and Rust.
 #[derive(Clone, Copy, Debug, clap::ValueEnum)]
 enum CodeStyle {
-    /// The elements of the chart: steps, transitions, receptivities, actions.
+    /// By the elements of the chart: steps, transitions, receptivities, actions.
     Structured,
-    /// Boolean equations: clearing conditions, memories of steps, outputs.
+    /// As Boolean equations: clearing conditions, memories of steps, outputs.
     Flat,
 }
 
@@ -107,9 +107,9 @@ impl Code {
 /// Styles of Instruction List.
 #[derive(Clone, Copy, Debug, clap::ValueEnum)]
 enum IlStyle {
-    /// An equation for each step.
+    /// One equation for each step.
     Flat,
-    /// A memory for each receptivity, steps that are set and reset.
+    /// A memory for each receptivity; steps are set and reset.
     Dolog80,
 }
 
@@ -122,22 +122,22 @@ enum LdStyle {
     Drawn,
 }
 
-/// What to print and where to.
+/// The arguments for all languages.
 #[derive(Args, Debug)]
 struct What {
     /// A .g7 file, a file of another tool, or a folder with a chart.g7.
     #[arg(default_value = ".")]
     file: PathBuf,
-    /// The folder for the files; the standard output unless said.
+    /// The folder for the files [default: the standard output].
     #[arg(long, short, value_name = "FOLDER")]
     output: Option<PathBuf>,
-    /// What files and public names begin with; the name of the chart's file unless said.
+    /// The prefix of file names and public names [default: the name of the chart's file].
     #[arg(long, value_name = "NAME")]
     name: Option<String>,
-    /// The rules of evolution, in place of the file's own.
+    /// The profile to use instead of the file's own.
     #[arg(long, value_parser = values::profile)]
     profile: Option<ProfileName>,
-    /// Replace files that are there.
+    /// Replace existing files.
     #[arg(long)]
     force: bool,
 }
@@ -157,7 +157,7 @@ pub(crate) fn generate(args: &Gen) -> Result<Verdict, Failure> {
     }
 }
 
-/// What is printed, and for a PLC the ending of its file.
+/// The language of the output, and the file extension for PLC code.
 #[derive(Clone, Copy)]
 enum Tongue {
     Code(Language, Style),
@@ -212,7 +212,8 @@ fn controller(tongue: Tongue, what: &What) -> Result<Verdict, Failure> {
     }
 }
 
-/// `tank` of `tank.g7`, of `tank/chart.g7`, of the folder one stands in.
+/// The base name: `tank` for `tank.g7` and `tank/chart.g7`; for `chart.g7` the name of the current
+/// folder.
 fn name_of(path: &Path) -> String {
     let stem = path.file_stem().map_or("chart".into(), |s| s.to_string_lossy().into_owned());
     if stem != "chart" {
@@ -233,7 +234,7 @@ fn deliver(what: &What, printed: &[File]) -> Result<(), Failure> {
     };
     let paths: Vec<PathBuf> = printed.iter().map(|f| folder.join(&f.name)).collect();
     if let Some(there) = paths.iter().find(|p| p.exists() && !what.force) {
-        return Err(Failure::Usage(format!("{} is there already; --force replaces it", there.display())));
+        return Err(Failure::Usage(format!("{} already exists; --force replaces it", there.display())));
     }
     std::fs::create_dir_all(folder).map_err(|e| Failure::Write(folder.clone(), e))?;
     for (file, path) in printed.iter().zip(&paths) {

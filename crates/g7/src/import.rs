@@ -1,4 +1,4 @@
-//! `g7 import`: a file of another tool becomes a .g7 file.
+//! `g7 import`: converts a file of another tool to a .g7 file.
 
 use crate::cli::Import;
 use crate::failure::{Failure, Verdict};
@@ -9,7 +9,10 @@ use crate::{files, talk};
 pub(crate) fn import(args: &Import) -> Result<Verdict, Failure> {
     let source = sources::load(&args.file, 0)?;
     if source.format.is_none() {
-        return Err(Failure::Usage(format!("{} is no file of another tool that is known here", source.name)));
+        return Err(Failure::Usage(format!(
+            "{} is not a file of another tool that g7 can read",
+            source.name
+        )));
     }
     files::refuse_present(args.output.as_deref(), args.force)?;
     if !source.problems.is_empty() {

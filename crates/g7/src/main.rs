@@ -1,4 +1,4 @@
-//! The command line: files, arguments, the terminal; ids back to names.
+//! The command line: files, arguments, the terminal; internal numbers are shown as names.
 //!
 //! # Where this sits
 //!
@@ -8,9 +8,10 @@
 //!
 //! # Invariants
 //!
-//! - Data goes to the standard output, talk to the standard error.
-//! - Exit code 0 fine, 1 problems or failed tests, 2 bad usage or environment.
-//! - Files are written whole or not at all; a broken pipe ends in silence.
+//! Data goes to the standard output, messages go to the standard error.
+//! Exit code 0: no problem; 1: problems or failed tests; 2: wrong usage or a failure outside the
+//! chart.
+//! Files are written completely or not at all; a closed pipe ends the program silently.
 #![forbid(unsafe_code)]
 
 mod check;
@@ -42,7 +43,7 @@ use clap::Parser;
 use crate::cli::{Cli, Color, Command};
 use crate::failure::{Failure, Verdict};
 
-/// Says something on the standard error; where nobody listens, nobody minds.
+/// Prints a message to the standard error; a closed standard error is ignored.
 #[macro_export]
 macro_rules! talk {
     ($($arg:tt)*) => {{

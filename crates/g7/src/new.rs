@@ -1,4 +1,4 @@
-//! `g7 new`: a folder to begin with.
+//! `g7 new`: creates a folder with a first chart.
 
 use std::fs;
 use std::io::{self, Write};

@@ -1,11 +1,11 @@
-//! Progress of what takes over a second, on a terminal only.
+//! A progress bar for work that takes more than a second, on a terminal only.
 
 use std::io::{IsTerminal, stderr};
 
 use g7_host::{Clock, WallClock};
 use indicatif::{ProgressBar, ProgressStyle};
 
-/// Silence for the first second, then a bar on the standard error.
+/// Nothing for the first second, then a bar on the standard error.
 pub(crate) struct Progress {
     what: &'static str,
     total: u64,
@@ -22,17 +22,17 @@ impl Progress {
         Progress { what, total, done: 0, clock: WallClock::default(), bar: None, on: stderr().is_terminal() }
     }
 
-    /// So many more are to be done.
+    /// Adds to the amount of work.
     pub(crate) fn more(&mut self, count: u64) {
         self.total += count;
     }
 
-    /// One more is done.
+    /// One more part of the work is done.
     pub(crate) fn step(&mut self) {
         self.at(self.done + 1);
     }
 
-    /// So many are done.
+    /// Sets the amount of work that is done.
     pub(crate) fn at(&mut self, done: u64) {
         self.done = done;
         if !self.on || self.clock.now() < PATIENCE {
@@ -51,7 +51,7 @@ impl Progress {
         bar.set_position(done);
     }
 
-    /// Clears the line; it comes back with the next step.
+    /// Removes the bar; the next step shows it again.
     pub(crate) fn end(&mut self) {
         if let Some(bar) = self.bar.take() {
             bar.finish_and_clear();

@@ -1,19 +1,21 @@
-//! Problems as people and programs read them.
+//! Prints problems, for people and for programs.
 
 use annotate_snippets::{Annotation, AnnotationKind, Element, Group, Level, Origin, Renderer, Snippet};
 use g7_model::{Problem, Severity, Span};
+use g7_rig::testing::Unproved;
 use serde_json::{Value, json};
 
 use crate::sources::Source;
+use crate::style;
 
-/// Lines shown in one excerpt, folded ones included.
+/// Greatest number of lines in one excerpt, folded lines included.
 const EXCERPT: usize = 400;
 /// Longest line that is shown.
 const WIDE: usize = 2_000;
-/// Most problems printed of one file.
+/// Greatest number of problems printed for one file.
 const MANY: usize = 100;
 
-/// The count of each severity.
+/// The number of problems of each severity.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Tally {
     pub(crate) errors: usize,
@@ -27,7 +29,7 @@ impl Tally {
         Tally { errors, warnings: problems.len() - errors }
     }
 
-    /// Counts more.
+    /// Adds another count.
     pub(crate) fn add(&mut self, other: Tally) {
         self.errors += other.errors;
         self.warnings += other.warnings;
@@ -46,7 +48,19 @@ impl std::fmt::Display for Tally {
     }
 }
 
-/// All problems of a file with excerpts, in the order of the text; with styles.
+/// A line for each property that nothing has proved.
+pub(crate) fn unproved(list: &[Unproved]) -> String {
+    let line =
+        |p: &Unproved| format!("{}: {}not proved{:#}: {}\n", p.place, style::WARN, style::WARN, p.text);
+    list.iter().map(line).collect()
+}
+
+/// The same for programs.
+pub(crate) fn unproved_json(list: &[Unproved]) -> Value {
+    list.iter().map(|p| json!({ "place": p.place, "property": p.text })).collect()
+}
+
+/// All problems of a file with excerpts, in the order of the text; coloured.
 pub(crate) fn text(source: &Source, problems: &[Problem]) -> String {
     let mut sorted: Vec<&Problem> = problems.iter().collect();
     sorted.sort_by_key(|p| (p.at.start, p.at.end));
@@ -74,7 +88,7 @@ fn one(source: &Source, problem: &Problem) -> String {
     Renderer::styled().render(&[group])
 }
 
-/// The place itself and those related, together where they stand close by.
+/// The excerpts of the place and of the related places; places close to each other share one.
 fn excerpts<'a>(source: &'a Source, problem: &'a Problem, out: &mut Vec<Element<'a>>) {
     let mut near: Vec<(Span, Option<&str>)> = vec![(problem.at, None)];
     let mut far = Vec::new();
@@ -113,7 +127,7 @@ fn excerpt<'a>(source: &'a Source, places: &[(Span, Option<&'a str>)]) -> Elemen
     Snippet::source(text).path(source.name.as_str()).line_start(first + 1).annotations(annotations).into()
 }
 
-/// A span over many lines is marked at its first.
+/// A span of several lines is marked on its first line.
 fn clip(source: &Source, span: Span) -> std::ops::Range<usize> {
     let range = source.range(span);
     let (first, last) = (source.line(range.start), source.line(range.end));
@@ -125,7 +139,7 @@ fn clip(source: &Source, span: Span) -> std::ops::Range<usize> {
     range.start..range.start + text.len()
 }
 
-/// A problem for programs.
+/// A problem as JSON.
 pub(crate) fn json(source: &Source, problem: &Problem) -> Value {
     let severity = match problem.severity() {
         Severity::Error => "error",

@@ -1,14 +1,14 @@
-//! The few styles of what is written to the terminal.
+//! The text styles of the terminal output.
 
 use anstyle::{AnsiColor, Style};
 
 /// Names and headings.
 pub(crate) const STRONG: Style = Style::new().bold();
-/// What went well.
+/// Success.
 pub(crate) const GOOD: Style = AnsiColor::Green.on_default().bold();
-/// What failed.
+/// Failure.
 pub(crate) const BAD: Style = AnsiColor::Red.on_default().bold();
-/// What deserves a look.
+/// Warning.
 pub(crate) const WARN: Style = AnsiColor::Yellow.on_default().bold();
-/// What may be overlooked.
+/// Less important text.
 pub(crate) const FAINT: Style = Style::new().dimmed();

@@ -1,26 +1,26 @@
-//! Arguments that are more than a word.
+//! Arguments with a syntax of their own.
 
-use g7_model::{ProfileName, TargetPlc};
+use g7_model::{Nanos, ProfileName, TargetPlc};
 pub(crate) use g7_rig::values::{duration, read};
 
-/// `start=1@2s`.
+/// An assignment at a time: `start=1@2s`.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Assign {
-    /// The input or state.
+    /// The name of the input or state.
     pub(crate) name: String,
-    /// Read when its type is known.
+    /// The value; it is parsed when the type is known.
     pub(crate) value: String,
-    /// When, nanoseconds.
-    pub(crate) at: i64,
+    /// The time.
+    pub(crate) at: Nanos,
 }
 
 pub(crate) fn assign(text: &str) -> Result<Assign, String> {
     let form = "expected NAME=VALUE or NAME=VALUE@TIME, as in start=1@2s";
     let (name, rest) = text.split_once('=').ok_or(form)?;
-    // A text value may hold an @; the time is behind the last one.
+    // A text may contain `@`; the time follows the last one.
     let (value, at) = match rest.rsplit_once('@') {
         Some((value, at)) => (value, duration(at)?),
-        None => (rest, 0),
+        None => (rest, Nanos::ZERO),
     };
     if name.trim().is_empty() {
         return Err(form.to_owned());
@@ -50,8 +50,11 @@ mod tests {
     #[test]
     fn assignments_name_value_and_time() {
         let a = assign("start=1@2s").unwrap();
-        assert_eq!((a.name.as_str(), a.value.as_str(), a.at), ("start", "1", 2_000_000_000));
-        assert_eq!(assign("n = 3").unwrap(), Assign { name: "n".into(), value: " 3".into(), at: 0 });
+        assert_eq!((a.name.as_str(), a.value.as_str(), a.at), ("start", "1", Nanos::SECOND * 2));
+        assert_eq!(
+            assign("n = 3").unwrap(),
+            Assign { name: "n".into(), value: " 3".into(), at: Nanos::ZERO }
+        );
         assert_eq!(assign("mail='a@b'@1s").unwrap().value, "'a@b'");
         for bad in ["start", "=1", "a=1@", "a=1@soon"] {
             assert!(assign(bad).is_err(), "{bad:?}");

@@ -1,5 +1,4 @@
-//! The cases of `tests/check/tests`, whose mistakes are in their tests, through
-//! `g7 check`.
+//! Runs `g7 check` on the cases of `tests/check/tests`, charts whose tests contain mistakes.
 #![allow(missing_docs, reason = "a test")]
 #![allow(clippy::disallowed_methods, reason = "the runner reads the cases")]
 
@@ -23,7 +22,7 @@ fn files(folder: &Path, ending: &str) -> Vec<PathBuf> {
     files
 }
 
-/// Lines and codes that `g7 check` reports.
+/// The lines and codes that `g7 check` reports.
 fn reported(folder: &Folder, text: &str) -> Vec<(u64, String)> {
     folder.write("case.g7", text);
     let ran = folder.g7(&["check", "--format", "json", "case.g7"]);
@@ -41,7 +40,7 @@ fn reported(folder: &Folder, text: &str) -> Vec<(u64, String)> {
     found
 }
 
-/// Lines and codes that the comments of a case ask for.
+/// The lines and codes that the comments of a case expect.
 fn expected(text: &str) -> Vec<(u64, String)> {
     let (mut wanted, mut above) = (Vec::new(), 0);
     for (line, text) in (1..).zip(text.lines()) {

@@ -1,4 +1,4 @@
-//! `g7 check`: verdicts, messages, forms.
+//! `g7 check`: results, messages, formats.
 #![allow(missing_docs, reason = "a test")]
 
 mod common;

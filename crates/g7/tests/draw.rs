@@ -1,4 +1,4 @@
-//! `g7 draw`: pictures come out whole, in the form asked for, or not at all.
+//! `g7 draw`: complete pictures in the requested format, or none.
 #![allow(missing_docs, reason = "a test")]
 #![allow(clippy::disallowed_methods, reason = "tests look at what was written")]
 
@@ -108,7 +108,7 @@ fn options_change_what_is_drawn() {
     assert_ne!(svg(&["--dark"]), svg(&[]));
 }
 
-/// The texts of a picture, sorted: what it says, wherever it stands.
+/// The texts of a picture, sorted, wherever they stand.
 fn texts(svg: &str) -> Vec<&str> {
     let pieces = svg.split("<text").skip(1);
     let mut texts: Vec<&str> = pieces.filter_map(|p| p.split_once('>')?.1.split('<').next()).collect();

@@ -1,4 +1,4 @@
-//! What is written is whole or not there; what cannot be written is said in one line.
+//! Files are written completely or not at all; a failure is reported in one line.
 #![allow(missing_docs, reason = "a test")]
 
 mod common;
@@ -169,7 +169,7 @@ fn help_teaches_by_example() {
 #[test]
 fn import_refuses_what_is_no_foreign_file_and_what_is_there_already() {
     let folder = Folder::with(PINGPONG);
-    folder.g7(&["import", "chart.g7"]).is_refused(&["chart.g7", "no file of another tool"]);
+    folder.g7(&["import", "chart.g7"]).is_refused(&["chart.g7", "not a file of another tool"]);
     folder.write("a.xml", XML);
     folder.write("out.g7", "mine");
     folder.g7(&["import", "a.xml", "-o", "out.g7"]).is_refused(&["out.g7", "--force"]);
@@ -183,7 +183,7 @@ fn import_refuses_what_is_no_foreign_file_and_what_is_there_already() {
     }
 }
 
-/// A smallest file: one initial step whose name has blanks and a letter beyond ASCII.
+/// A minimal file: one initial step whose name contains blanks and a non-ASCII letter.
 const XML: &str = r#"<?xml version="1.0" encoding="UTF-8"?>
 <GCDocument name="Top" threadSpeed="40" saveVersion="8">
   <GCInitialStep id="1" name="Vent på start" actionText="" x="10" y="10" width="40" height="40"/>

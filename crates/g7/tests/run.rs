@@ -1,4 +1,4 @@
-//! `g7 run` without a terminal: traces, scripts, records, faults.
+//! `g7 run` without the terminal view: traces, scripts, records, faults.
 #![allow(missing_docs, reason = "a test")]
 
 mod common;
@@ -88,7 +88,7 @@ fn where_nothing_moved_it_says_how_to_set_a_free_input() {
         out.lines().last().unwrap_or_default().to_owned()
     };
     let chart = "chart G { initial step 1  step 2  1 -> 2 when a -> 1 when not a }";
-    // What the plant drives cannot be set; a BOOL goes first.
+    // Inputs that the plant drives are not suggested; a BOOL is preferred.
     let plant = "plant P { state x : REAL := 0.0  drive d := x > 1.0 }";
     let first = still(&format!("input d, a : BOOL  {chart} {plant}"));
     assert_eq!(first, "nothing moved; `--set a=1@1s` sets an input after 1s");
@@ -97,7 +97,7 @@ fn where_nothing_moved_it_says_how_to_set_a_free_input() {
     let odd = still("input `push it` : INT  chart G { initial step 1 }");
     assert_eq!(odd, "nothing moved; `--set 'push it=1@1s'` sets an input after 1s");
     assert_eq!(still("chart G { initial step 1 }"), "nothing moved");
-    // The words do what they say.
+    // The suggested command works.
     let folder = Folder::with(&format!("input a : BOOL  {chart}"));
     let ran = folder.g7(&["run", "--headless", "--for", "2s", "--set", "a=1@1s"]);
     assert!(ran.is(0).out.contains("now in {2}"), "{}", ran.out);
@@ -191,7 +191,7 @@ fn a_fault_ends_the_run_with_its_place_and_code_1() {
     assert!(folder.read("out.csv").lines().last().is_some_and(|l| l.starts_with("0.03,")));
 }
 
-/// Two actions of one pass give `k` different values, each time `a` comes.
+/// Two actions of one pass assign different values to `k`, each time `a` becomes true.
 const CONFLICT: &str = "\
 input a : BOOL
 var k, i, j : INT
@@ -245,7 +245,7 @@ fn a_record_plays_back_and_another_chart_is_noticed() {
     folder.write("chart.g7", PINGPONG.replace("1 -> 2 when a", "1 -> 2 when not a"));
     assert!(folder.g7(&["run", "--replay", "tape"]).is(1).err.contains("scan 0"));
     folder.write("tape", "no tape");
-    folder.g7(&["run", "--replay", "tape"]).is_refused(&["tape", "no record"]);
+    folder.g7(&["run", "--replay", "tape"]).is_refused(&["tape", "not a record"]);
 }
 
 #[test]

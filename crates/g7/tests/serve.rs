@@ -1,4 +1,4 @@
-//! `g7 serve` as a program: what it prints, what outlives it, what it costs.
+//! `g7 serve` as a program: its output, what survives its end, its memory.
 
 mod common;
 
@@ -9,7 +9,7 @@ use std::time::Duration;
 
 use common::{Folder, PINGPONG};
 
-/// A server of a folder; it ends with the test.
+/// A server for a folder; it ends with the test.
 struct Served {
     child: Child,
     host: String,
@@ -48,7 +48,7 @@ impl Served {
         )
     }
 
-    /// Status and body.
+    /// The status and the body of an answer.
     fn ask(&self, line: &str, body: &str) -> (u16, String) {
         let mut stream = self.connect();
         let head = self.head(line, &format!("Connection: close\r\nContent-Length: {}\r\n", body.len()));
@@ -59,7 +59,7 @@ impl Served {
         (status, answer.split_once("\r\n\r\n").map_or(String::new(), |(_, body)| body.to_owned()))
     }
 
-    /// A WebSocket, by hand: what it sends can be nonsense.
+    /// A WebSocket made by hand, so that it can send nonsense.
     fn live(&self) -> TcpStream {
         let mut stream = self.connect();
         let upgrade = "Connection: Upgrade\r\nUpgrade: websocket\r\nSec-WebSocket-Version: 13\r\n\
@@ -79,7 +79,7 @@ impl Served {
 fn command(folder: &Folder, args: &[&str]) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_g7"));
     command.args(["serve", "--no-open"]).args(args).current_dir(folder.root());
-    // Kept beside the folder's own, so that it goes with the test.
+    // Kept in the test's folder, so that it is deleted with it.
     command.env("XDG_STATE_HOME", folder.path(".state"));
     command
 }
@@ -100,7 +100,7 @@ fn frame(text: &str) -> Vec<u8> {
     bytes
 }
 
-/// Texts of a socket, as they come.
+/// The texts from a socket, as they arrive.
 fn texts(stream: TcpStream) -> impl Iterator<Item = String> {
     let mut reader = BufReader::new(stream);
     std::iter::from_fn(move || {
@@ -172,7 +172,7 @@ fn unsaved_work_is_there_again_when_the_server_was_killed() {
     assert_eq!(folder.read("chart.g7"), PINGPONG);
 }
 
-/// Most memory that a process had at a time, in kB.
+/// The greatest memory use of a process, in kB.
 #[cfg(target_os = "linux")]
 #[allow(clippy::disallowed_methods, reason = "the system tells it in a file")]
 fn peak(child: &Child) -> u64 {
@@ -212,7 +212,7 @@ fn floods_cost_bounded_memory_and_the_scan_goes_on() {
             }
         }
     }
-    // As one message; the server hangs up.
+    // As one message; the server closes the connection.
     let mut huge = served.live();
     huge.write_all(&[0x81, 0xff, 0, 0, 0, 0, 0x06, 0x40, 0, 0, 0, 0, 0, 0]).expect("sent");
     for _ in 0..100 {
@@ -220,7 +220,7 @@ fn floods_cost_bounded_memory_and_the_scan_goes_on() {
             break;
         }
     }
-    // 10,000 messages, of which no answer is ever read.
+    // 10,000 messages whose answers are never read.
     let mut mute = served.live();
     mute.set_write_timeout(Some(Duration::from_millis(500))).expect("a limit");
     let watch = frame(r#"{"id":1,"call":{"do":"watch","run":"a"}}"#);

@@ -5,7 +5,7 @@ mod common;
 
 use common::{Folder, PINGPONG};
 
-/// Runs tests behind the ping-pong chart.
+/// Runs tests that are appended to the ping-pong chart.
 fn with(tests: &str) -> (Folder, common::Ran) {
     let folder = Folder::with(&format!("{PINGPONG}\n{tests}"));
     let ran = folder.g7(&["test"]);
@@ -40,7 +40,8 @@ fn set_makes_one_scan_with_all_its_values() {
 #[test]
 fn pulse_is_true_for_a_scan_or_a_time_then_false_for_a_scan() {
     passes("test \"t\" { pulse a  expect X1, n = 1  pulse a for 1s  expect X1, n = 2 }");
-    // 100 scans true, one scan false: step 2 was active for 1 s, and is left at once.
+    // `a` is true for 100 scans and false in the next: step 2 was active for 1 s and is left at
+    // once.
     passes("test \"t\" { pulse a for 1s  expect X2.t = 1s, not X2 }");
 }
 
@@ -161,7 +162,7 @@ fn a_plant_drives_is_set_and_is_asked() {
         &format!("{PLANT}\ntest \"t\" with P {{ expect level > 5.0 }}"),
         &["expected: level > 5.0", "got level = 0.0"],
     );
-    // Without `with` there is no plant: a stands still.
+    // Without `with` there is no plant, so `a` never changes.
     passes(&format!("{PLANT}\ntest \"t\" {{ wait 1s  expect X1 }}"));
 }
 
@@ -172,7 +173,7 @@ fn a_condition_may_join_charts_and_plant_by_and_alone() {
          expect X2 and level > 0.4 and X2.t > 100ms, not (m and X1)\n  always m and level < 3.0 {{ wait 1s }}\n  \
          set level := 2.999\n  wait until X1 and level >= 3.0\n  expect not m and level >= 3.0\n}}"
     ));
-    // The part that does not hold is the one that counts, on either side.
+    // The report shows the operand that is false, on either side.
     for (e, got) in [("level < 1.0 and X1", "X1 = FALSE"), ("m and level > 5.0", "level = 0.0")] {
         fails(
             &format!("{PLANT}\ntest \"t\" with P {{ expect {e} }}"),
@@ -192,7 +193,7 @@ fn a_condition_may_join_charts_and_plant_by_and_alone() {
     refused("expect level > INT_TO_REAL(n)", &[both]);
     refused("set level := INT_TO_REAL(n) + level", &[both]);
     refused("expect m and level", &["G0552", "this is REAL"]);
-    // What nobody knows is no mixture; the charts' outputs the plant knows.
+    // A name that neither side knows is not a mixture; the plant knows the charts' outputs.
     refused("expect level > limit", &["`limit`"]);
     passes(&format!("{PLANT}\ntest \"t\" with P {{ scan  expect level > 5.0 or m }}"));
 }
@@ -287,7 +288,7 @@ test \"t\" { set a := TRUE  wait TIME  expect k = not c }
     for (profile, time, late) in [
         ("iec60848", "500ms", &["D 1s l 12:5)"][..]),
         ("iec60848", "2s", &[]),
-        // The delay is the block's own there.
+        // In this profile the delay is part of the block.
         ("iec61131", "500ms", &[]),
     ] {
         let want = [&never[..], late, &of_3].concat();
@@ -330,4 +331,23 @@ fn tests_run_under_another_profile_and_period() {
     folder.g7(&["test", "--scan", "20ms"]).is(0);
     folder.g7(&["test", "--scan", "20ms", "--profile", "pl7"]).is(0);
     folder.g7(&["test"]).is(1);
+}
+
+#[test]
+fn each_property_is_said_to_be_not_proved() {
+    let folder = Folder::with(&format!(
+        "{PINGPONG}\nprove always X1\n  or X2\ntest \"t\" {{ scan }}\nprove reachable X2 \"once\""
+    ));
+    let test = folder.g7(&["test"]);
+    for text in ["not proved: prove always X1 or X2", "not proved: prove reachable X2 \"once\""] {
+        assert!(test.is(0).out.contains(text), "{}", test.out);
+        assert!(folder.g7(&["check"]).is(0).out.contains(text));
+    }
+    assert!(test.out.ends_with("1 passed, 0 failed, 2 not proved\n"), "{}", test.out);
+    let all: serde_json::Value =
+        serde_json::from_str(&folder.g7(&["check", "--format", "json"]).is(0).out).expect("JSON");
+    assert_eq!(all["not_proved"][1]["property"], "prove reachable X2 \"once\"");
+    assert!(all["not_proved"][0]["place"].as_str().is_some_and(|p| p.ends_with("chart.g7:15:1")), "{all}");
+    let wrong = Folder::with(&format!("{PINGPONG}\nprove always 1.5 * 2.0"));
+    assert!(wrong.g7(&["check"]).is(1).out.contains("G02"), "types are checked");
 }

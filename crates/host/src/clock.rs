@@ -1,16 +1,16 @@
-//! Where time comes from: a clock that tests turn, or the wall.
+//! The source of time: a virtual clock, for simulation and tests, or the wall clock.
 
 use std::time::{Duration, Instant};
 
 /// A monotonic clock in nanoseconds since its own start.
 pub trait Clock {
-    /// The time now.
+    /// The time now, in nanoseconds.
     fn now(&mut self) -> i64;
-    /// Returns when `instant` has come; at once where it is past.
+    /// Returns when `instant` is reached; returns at once if it is past.
     fn wait_until(&mut self, instant: i64);
 }
 
-/// A clock that goes only when it is waited for: as fast as the machine can.
+/// A clock that jumps to the instant it is asked to wait for, so a run is as fast as the machine.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct VirtualClock {
     now: i64,
@@ -26,13 +26,13 @@ impl Clock for VirtualClock {
     }
 }
 
-/// The wall clock, at a chosen speed; it can be held.
+/// The wall clock at a chosen speed; it can be paused.
 #[derive(Clone, Copy, Debug)]
 pub struct WallClock {
-    /// Wall instant at which `base` was the time.
+    /// The wall-clock instant at which this clock showed `base`.
     since: Instant,
     base: i64,
-    /// Nanoseconds of this clock for one of the wall.
+    /// Nanoseconds of this clock per nanosecond of the wall clock.
     speed: f64,
     held: bool,
 }
@@ -53,7 +53,8 @@ impl WallClock {
         if self.held {
             return 0;
         }
-        // As a float: at a thousandfold speed the integer product would overflow in weeks.
+        // Computed as a float: at 1000 times the speed an integer product would overflow within
+        // weeks.
         (self.since.elapsed().as_nanos() as f64 * self.speed) as i64
     }
 
@@ -62,35 +63,35 @@ impl WallClock {
         self.since = wall();
     }
 
-    /// Nanoseconds of this clock for one of the wall.
+    /// Nanoseconds of this clock per nanosecond of the wall clock.
     pub fn speed(&self) -> f64 {
         self.speed
     }
 
-    /// Goes faster or slower from now on.
+    /// Changes the speed from now on.
     pub fn set_speed(&mut self, speed: f64) {
         self.rebase();
         self.speed = if speed.is_finite() && speed > 0.0 { speed } else { 1.0 };
     }
 
-    /// Stands still, or goes on from where it stood.
+    /// Pauses the clock, or lets it go on from where it stopped.
     pub fn hold(&mut self, held: bool) {
         self.rebase();
         self.held = held;
     }
 
-    /// Whether it stands still.
+    /// True while the clock is paused.
     pub fn is_held(&self) -> bool {
         self.held
     }
 
-    /// Takes this as the time now (after steps were made by hand).
+    /// Sets the time, for instance after the user made single scans by hand.
     pub fn set(&mut self, now: i64) {
         self.base = now;
         self.since = wall();
     }
 
-    /// Time of the wall until `instant`; `None` while held.
+    /// Wall-clock time left until `instant`; `None` while the clock is paused.
     pub fn until(&mut self, instant: i64) -> Option<Duration> {
         if self.held {
             return None;

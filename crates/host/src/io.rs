@@ -3,9 +3,9 @@
 /// Why a channel could not be read or written.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct IoError {
-    /// The channel, where it is known.
+    /// The channel, if it is known.
     pub channel: Option<u32>,
-    /// What the device said.
+    /// The message of the device.
     pub what: String,
 }
 
@@ -20,7 +20,7 @@ impl std::fmt::Display for IoError {
 
 impl std::error::Error for IoError {}
 
-/// A device: one word for each word of the program's inputs and outputs.
+/// A device: it holds one word for each word of the program's inputs and outputs.
 pub trait Io {
     /// Reads every input channel.
     ///
@@ -38,7 +38,7 @@ pub trait Io {
 
 /// A device whose inverted channels carry the complement of a BOOL.
 ///
-/// The program sees logical values only; here, and nowhere else, they turn.
+/// The program sees logical values only; this is the one place where they are inverted.
 #[derive(Clone, Debug)]
 pub struct Channels<I> {
     device: I,
@@ -48,12 +48,12 @@ pub struct Channels<I> {
 }
 
 impl<I: Io> Channels<I> {
-    /// Wraps a device; the lists name the words that are inverted.
+    /// Wraps a device; the lists hold the numbers of the inverted words.
     pub fn new(device: I, inverted_inputs: Vec<usize>, inverted_outputs: Vec<usize>) -> Channels<I> {
         Channels { device, inverted_inputs, inverted_outputs, raw: Vec::new() }
     }
 
-    /// The device.
+    /// The wrapped device.
     pub fn device(&mut self) -> &mut I {
         &mut self.device
     }

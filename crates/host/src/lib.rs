@@ -1,5 +1,5 @@
-//! The loop round `engine::scan`: when it is called, with which inputs, where
-//! the outputs go, and what is kept of it.
+//! The loop round `engine::scan`: it decides when a scan is made and with which inputs, passes the
+//! outputs on, and records the run.
 //!
 //! # Where this sits
 //!
@@ -10,23 +10,23 @@
 //!                      +-> Tape -> replay          Retained <-> file
 //! ```
 //!
-//! Simulation and on-line running are two sets of plugs of one loop: a virtual
-//! clock and a plant (a second program), or a wall clock and an [`Io`].
+//! Simulation and on-line operation use the same loop with different parts: a virtual clock and a
+//! plant (a second program), or the wall clock and an [`Io`].
 //!
 //! # Invariants
 //!
-//! - Time goes to the engine as a number; only [`WallClock`] reads a clock.
-//! - With a virtual clock, the same program, plant, seed and inputs give the
-//!   same states, byte for byte (`replay` compares them).
-//! - After a fault the outputs have their safe values and no scan follows
-//!   until a restart.
+//! The engine gets the time as a number; only [`WallClock`] reads a clock.
+//! With a virtual clock, the same program, plant, seed and inputs give the same states, byte for
+//! byte (`replay` compares them).
+//! After a fault the outputs have their safe values, and no scan follows until a restart.
 //! - A file is written whole or not at all ([`write_whole`]).
 //!
-//! Names, paths of charts and spans are not known here: signals carry the names
-//! that the caller gave them.
+//! This crate knows no names of variables or charts and no places in the text: the caller names the
+//! signals.
 #![forbid(unsafe_code)]
 
 mod clock;
+mod hash;
 mod io;
 mod record;
 mod retain;
@@ -35,6 +35,7 @@ mod tape;
 mod text;
 
 pub use clock::{Clock, VirtualClock, WallClock};
+pub use hash::Fnv;
 pub use io::{Channels, Io, IoError};
 pub use record::chronogram::{Chronogram, Lane, Style};
 pub use record::csv::write_csv;

@@ -1,19 +1,20 @@
-//! Retained variables over a restart, and files that are whole or not there.
+//! Keeps the values of retained variables over a restart; writes files completely or not at all.
 
 use std::fs::{self, File};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
-/// Names and types of the retained variables, with the words of each.
+use crate::hash::Fnv;
+
+/// The names and types of the retained variables, and the number of words of each.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Layout {
-    /// Qualified name, type as written, words.
+    /// For each variable: qualified name, type as written, number of words.
     pub variables: Vec<(String, String, u32)>,
 }
 
 impl Layout {
-    /// FNV-1a over the names, types and sizes: a file written under another
-    /// layout is refused.
+    /// FNV-1a over names, types and sizes. A file that was written with another layout is refused.
     pub fn hash(&self) -> u64 {
         let mut hash = Fnv::default();
         for (name, ty, words) in &self.variables {
@@ -23,7 +24,7 @@ impl Layout {
             hash.add(&[0]);
             hash.add(&words.to_le_bytes());
         }
-        hash.0
+        hash.value()
     }
 
     fn words(&self) -> usize {
@@ -31,28 +32,12 @@ impl Layout {
     }
 }
 
-struct Fnv(u64);
-
-impl Default for Fnv {
-    fn default() -> Fnv {
-        Fnv(0xcbf2_9ce4_8422_2325)
-    }
-}
-
-impl Fnv {
-    fn add(&mut self, bytes: &[u8]) {
-        for b in bytes {
-            self.0 = (self.0 ^ u64::from(*b)).wrapping_mul(0x0000_0100_0000_01b3);
-        }
-    }
-}
-
-/// Why retained variables could not be had.
+/// Why retained values could not be loaded.
 #[derive(Debug)]
 pub enum RetainError {
     /// The file cannot be read or written.
     Io(io::Error),
-    /// The file is of other variables.
+    /// The file belongs to other variables.
     Layout,
     /// The file is damaged.
     Damaged,
@@ -73,33 +58,32 @@ impl std::error::Error for RetainError {}
 /// The words of the retained variables, in the order of the layout.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Retained {
-    /// All words.
+    /// The words of all variables.
     pub words: Vec<u64>,
 }
 
 const MAGIC: &[u8; 8] = b"g7retain";
 
 impl Retained {
-    /// Writes them, whole or not at all.
+    /// Writes the words to a file, completely or not at all.
     ///
     /// # Errors
     ///
-    /// The file cannot be written; the one before it is untouched.
+    /// The file cannot be written; the previous file is unchanged.
     pub fn save(&self, layout: &Layout, path: &Path) -> io::Result<()> {
         let mut bytes = MAGIC.to_vec();
         bytes.extend(layout.hash().to_le_bytes());
         self.words.iter().for_each(|w| bytes.extend(w.to_le_bytes()));
-        let mut check = Fnv::default();
-        check.add(&bytes);
-        bytes.extend(check.0.to_le_bytes());
+        let check = Fnv::of(&bytes);
+        bytes.extend(check.to_le_bytes());
         write_whole(path, &bytes)
     }
 
-    /// Reads them; `None` where there is no file yet.
+    /// Reads the words from a file; `None` if there is no file yet.
     ///
     /// # Errors
     ///
-    /// Unreadable, of another layout, or damaged.
+    /// The file is unreadable, has another layout, or is damaged.
     pub fn load(layout: &Layout, path: &Path) -> Result<Option<Retained>, RetainError> {
         let bytes = match fs::read(path) {
             Ok(bytes) => bytes,
@@ -107,10 +91,9 @@ impl Retained {
             Err(e) => return Err(RetainError::Io(e)),
         };
         let Some((body, check)) = bytes.split_last_chunk::<8>() else { return Err(RetainError::Damaged) };
-        let mut sum = Fnv::default();
-        sum.add(body);
+        let sum = Fnv::of(body);
         let body = body.strip_prefix(MAGIC).ok_or(RetainError::Damaged)?;
-        if sum.0 != u64::from_le_bytes(*check) {
+        if sum != u64::from_le_bytes(*check) {
             return Err(RetainError::Damaged);
         }
         let (hash, body) = body.split_first_chunk::<8>().ok_or(RetainError::Damaged)?;
@@ -125,13 +108,13 @@ impl Retained {
     }
 }
 
-/// Writes a file aside, syncs it and puts it in place: a full disk or a lost
-/// power supply leaves the file as it was. What is no plain file (a pipe, a
-/// device) is written to directly.
+/// Writes a file under a temporary name, syncs it and renames it: a full disk or a power failure
+/// leaves the old file unchanged. A path that is not a regular file (a pipe, a device) is written
+/// directly.
 ///
 /// # Errors
 ///
-/// Nothing half written is left behind.
+/// The file cannot be written; no half-written file is left behind.
 pub fn write_whole(path: &Path, bytes: &[u8]) -> io::Result<()> {
     let meta = fs::metadata(path).ok();
     if let Some(meta) = &meta {
@@ -143,10 +126,10 @@ pub fn write_whole(path: &Path, bytes: &[u8]) -> io::Result<()> {
             file.write_all(bytes)?;
             return file.flush();
         }
-        // Renaming over it would get round a protection that the user has set.
+        // Renaming would bypass the write protection that the user has set on the file.
         File::options().write(true).open(path)?;
     }
-    // A link stays a link: what it points to is replaced.
+    // A symbolic link stays; the file that it points to is replaced.
     let path = fs::canonicalize(path).unwrap_or_else(|_| path.to_path_buf());
     let aside = beside(&path)?;
     let written = write_aside(&aside, bytes, meta.as_ref()).and_then(|()| fs::rename(&aside, &path));
@@ -155,7 +138,7 @@ pub fn write_whole(path: &Path, bytes: &[u8]) -> io::Result<()> {
         return written;
     }
     if let Some(folder) = path.parent().filter(|p| !p.as_os_str().is_empty()) {
-        // The name is on the disk when the folder is; not every system can do it.
+        // The new name is safe only after the folder is synced; not every system can do this.
         File::open(folder).and_then(|f| f.sync_all()).ok();
     }
     Ok(())

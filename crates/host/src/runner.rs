@@ -1,4 +1,4 @@
-//! The loop: plant, inputs, scan, outputs, one instant after the other.
+//! The loop of a run: plant, inputs, scan, outputs, one instant after the other.
 
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -10,38 +10,38 @@ use crate::clock::Clock;
 use crate::io::{Io, IoError};
 use crate::tape::Tape;
 
-/// Which words of charts and plant belong together, counted from the first
-/// input and output word of each.
+/// Which words of the charts and of the plant are connected. Words are counted from the first
+/// output or input word of each program.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Coupling {
-    /// Output word of the charts, input word of the plant.
+    /// Pairs of (output word of the charts, input word of the plant).
     pub to_plant: Vec<(u32, u32)>,
-    /// Output word of the plant, input word of the charts.
+    /// Pairs of (output word of the plant, input word of the charts).
     pub to_charts: Vec<(u32, u32)>,
 }
 
-/// What a restart keeps.
+/// The kind of a restart.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Start {
-    /// Nothing: `%S0` is true in the first scan.
+    /// Keeps nothing; `%S0` is true in the first scan.
     Cold,
-    /// Retained variables: `%S1` is true in the first scan.
+    /// Keeps the retained variables; `%S1` is true in the first scan.
     Warm,
 }
 
-/// What is held at a value from outside.
+/// A variable that the user can force to a value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Force {
-    /// An input word, counted from the first: the charts read this value.
+    /// An input word, counted from the first: the charts read the forced value.
     Input(u32),
-    /// An output: the plant and the devices get this value, the charts go on
-    /// with their own.
+    /// An output: the plant and the devices get the forced value, while the charts go on with their
+    /// own value.
     Output(Addr),
-    /// Any other variable: written before and after each scan.
+    /// Any other variable: the value is written before and after each scan.
     Variable(Addr),
 }
 
-/// Who had the fault.
+/// The program in which a fault stopped the run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Halt {
     /// The charts.
@@ -58,19 +58,19 @@ struct Plant {
     coupling: Coupling,
 }
 
-/// A program at work, with its plant if it has one. It owns what it needs: a
-/// clone is a second run from this instant on.
+/// A running program, with its plant if it has one. It owns all its data, so a clone is an
+/// independent run from this instant on.
 #[derive(Clone)]
 pub struct Runner {
     program: Arc<Program>,
     state: State,
-    /// As set from outside or by the plant; forces lie over them.
+    /// The inputs as the user or the plant set them; forced values take precedence.
     inputs: Vec<u64>,
-    /// What the latest scan read.
+    /// The inputs that the latest scan read.
     read: Vec<u64>,
     plant: Option<Plant>,
     forces: BTreeMap<Force, u64>,
-    /// The charts' own values of forced outputs.
+    /// The charts' own values of the forced outputs.
     own: BTreeMap<Addr, u64>,
     period: i64,
     due: i64,
@@ -80,14 +80,14 @@ pub struct Runner {
     retained: Vec<Range<u32>>,
     flags: Option<(Addr, Addr)>,
     tape: Option<Tape>,
-    /// A scan that is looked at pass by pass.
+    /// The state within a scan that is executed pass by pass.
     slow: Option<State>,
-    /// Plant and inputs are those of the scan that is due.
+    /// True if plant and inputs are already prepared for the next scan.
     ready: bool,
 }
 
 impl Runner {
-    /// Charts before their first scan, which is due at 0; cold.
+    /// A cold run before its first scan, which is due at 0.
     pub fn new(program: impl Into<Arc<Program>>, period: i64) -> Runner {
         let program = program.into();
         let rows = program.tables().inputs;
@@ -115,7 +115,7 @@ impl Runner {
         runner
     }
 
-    /// Runs against this plant.
+    /// Connects the charts to a plant.
     #[must_use]
     pub fn with_plant(mut self, program: impl Into<Arc<Program>>, coupling: Coupling) -> Runner {
         let program = program.into();
@@ -126,14 +126,14 @@ impl Runner {
         self
     }
 
-    /// The words kept over a warm restart.
+    /// Sets which words are kept over a warm restart.
     #[must_use]
     pub fn with_retained(mut self, words: Vec<Range<u32>>) -> Runner {
         self.retained = words;
         self
     }
 
-    /// The words of `%S0` and `%S1`.
+    /// Sets the addresses of `%S0` and `%S1`.
     #[must_use]
     pub fn with_flags(mut self, flags: Option<(Addr, Addr)>) -> Runner {
         self.flags = flags;
@@ -141,7 +141,7 @@ impl Runner {
         self
     }
 
-    /// Keeps a tape from here on.
+    /// Records a tape from here on.
     #[must_use]
     pub fn with_tape(mut self) -> Runner {
         self.tape = Some(Tape::new(&self.program));
@@ -152,7 +152,7 @@ impl Runner {
         self
     }
 
-    /// The tape, if one is kept.
+    /// The tape, if one is recorded.
     pub fn tape(&self) -> Option<&Tape> {
         self.tape.as_ref()
     }
@@ -167,77 +167,77 @@ impl Runner {
         &self.state
     }
 
-    /// The program and the state of the charts, to evaluate expressions on.
+    /// The program and the state of the charts, for evaluating expressions.
     pub fn charts_mut(&mut self) -> (&Program, &mut State) {
         (&self.program, &mut self.state)
     }
 
-    /// The plant's program and state.
+    /// The program and the state of the plant.
     pub fn plant(&self) -> Option<(&Program, &State)> {
         self.plant.as_ref().map(|p| (&*p.program, &p.state))
     }
 
-    /// The same of the plant.
+    /// The program and the state of the plant, for evaluating expressions.
     pub fn plant_mut(&mut self) -> Option<(&Program, &mut State)> {
         self.plant.as_mut().map(|p| (&*p.program, &mut p.state))
     }
 
-    /// Instant of the next scan.
+    /// The instant of the next scan, in nanoseconds.
     pub fn due(&self) -> i64 {
         self.due
     }
 
-    /// Time between scans.
+    /// The time between two scans, in nanoseconds.
     pub fn period(&self) -> i64 {
         self.period
     }
 
-    /// Scans that were left out because they came too late.
+    /// The number of scans that were skipped because they were late.
     pub fn missed(&self) -> u64 {
         self.missed
     }
 
-    /// What the latest scan did.
+    /// The engine's report on the latest scan.
     pub fn report(&self) -> Report {
         self.report
     }
 
-    /// What stopped it.
+    /// The fault that stopped the run, if any.
     pub fn halt(&self) -> Option<Halt> {
         self.halt
     }
 
-    /// The inputs as the latest scan read them.
+    /// The inputs that the latest scan read.
     pub fn read(&self) -> &[u64] {
         &self.read
     }
 
-    /// The output words as the plant and the devices get them.
+    /// The output words that the plant and the devices get.
     pub fn outputs(&self) -> Vec<u64> {
         let rows = self.program.tables().outputs;
         (rows.start..rows.end).map(|a| self.state.word(Addr(a))).collect()
     }
 
-    /// Sets an input word, counted from the first. A plant that drives it
-    /// overwrites it at its next tick.
+    /// Sets an input word, counted from the first. If the plant drives it, the plant overwrites it
+    /// in its next scan.
     pub fn set_input(&mut self, index: u32, value: u64) {
         if let Some(word) = self.inputs.get_mut(index as usize) {
             *word = value;
         }
     }
 
-    /// An input word as it will be read, but for what the plant changes.
+    /// The input word that the next scan will read, unless the plant changes it before.
     pub fn input(&self, index: u32) -> u64 {
         let held = self.forces.get(&Force::Input(index));
         held.or(self.inputs.get(index as usize)).copied().unwrap_or(0)
     }
 
-    /// Whether the plant drives this input.
+    /// True if the plant drives this input.
     pub fn is_driven(&self, index: u32) -> bool {
         self.plant.as_ref().is_some_and(|p| p.coupling.to_charts.iter().any(|(_, to)| *to == index))
     }
 
-    /// Writes a variable of the charts, once.
+    /// Writes a variable of the charts once.
     pub fn set_word(&mut self, addr: Addr, value: u64) {
         self.state.set_word(&self.program, addr, value);
         if let Some(tape) = &mut self.tape {
@@ -245,14 +245,14 @@ impl Runner {
         }
     }
 
-    /// Writes a variable of the plant, once.
+    /// Writes a variable of the plant once.
     pub fn set_plant_word(&mut self, addr: Addr, value: u64) {
         if let Some(p) = &mut self.plant {
             p.state.set_word(&p.program, addr, value);
         }
     }
 
-    /// Holds something at a value, at once and until released.
+    /// Forces a variable to a value, from now on until it is released.
     pub fn force(&mut self, what: Force, value: u64) {
         if let Force::Output(addr) = what {
             self.own.entry(addr).or_insert_with(|| self.state.word(addr));
@@ -263,7 +263,7 @@ impl Runner {
         }
     }
 
-    /// Lets go; whether it was held. An output takes the charts' own value again.
+    /// Ends a force; true if there was one. An output gets the charts' own value again.
     pub fn release(&mut self, what: Force) -> bool {
         if let Force::Output(addr) = what
             && let Some(value) = self.own.remove(&addr)
@@ -273,13 +273,12 @@ impl Runner {
         self.forces.remove(&what).is_some()
     }
 
-    /// Whether it is held.
+    /// True if the variable is forced.
     pub fn is_forced(&self, what: Force) -> bool {
         self.forces.contains_key(&what)
     }
 
-    /// Leaves out the scans that should have been made before `now`, but for
-    /// the latest of them.
+    /// Skips the scans that were due before `now`, except the latest of them.
     pub fn catch_up(&mut self, now: i64) {
         let late = now.saturating_sub(self.due) / self.period;
         if late > 0 {
@@ -288,12 +287,13 @@ impl Runner {
         }
     }
 
-    /// The next scan, at the instant it is due: the plant moves, then the
-    /// charts read and evolve.
+    /// Makes the next scan, at the instant it is due: the plant makes its scan first, then the
+    /// charts read their inputs and evolve.
     ///
     /// # Errors
     ///
-    /// A fault of the charts or the plant; the same again until [`Runner::restart`].
+    /// A fault of the charts or the plant; every later call returns it again until
+    /// [`Runner::restart`].
     pub fn scan(&mut self) -> Result<Report, Halt> {
         if let Some(halt) = self.halt {
             return Err(halt);
@@ -309,12 +309,12 @@ impl Runner {
         done
     }
 
-    /// One pass of the scan that is due; whether it was the last, and the scan
-    /// is done. Until then [`Runner::shown`] has the state between two passes.
+    /// Makes one pass of the next scan. Returns true if it was the last pass, so that the scan is
+    /// complete; until then [`Runner::shown`] gives the state between two passes.
     ///
     /// # Errors
     ///
-    /// As [`Runner::scan`].
+    /// The same as [`Runner::scan`].
     pub fn pass(&mut self) -> Result<bool, Halt> {
         if let Some(halt) = self.halt {
             return Err(halt);
@@ -333,8 +333,8 @@ impl Runner {
                 state
             }
         };
-        // The passes are made on a copy: at the end, or at a fault, the whole
-        // scan is made on the state itself, so that it is made in one way only.
+        // The passes run on a copy. After the last pass, or at a fault, the whole scan is made on
+        // the state itself, so that a scan is always made in the same way.
         match pass(&self.program, &mut state) {
             Ok(true) if self.program.tables().rules.stable => {
                 self.slow = Some(state);
@@ -344,17 +344,18 @@ impl Runner {
         }
     }
 
-    /// The state between two passes, else that of the charts.
+    /// The state between two passes, or that of the charts if no scan is in progress.
     pub fn shown(&self) -> &State {
         self.slow.as_ref().unwrap_or(&self.state)
     }
 
-    /// Whether a scan is being made pass by pass.
+    /// True while a scan is executed pass by pass.
     pub fn is_within_scan(&self) -> bool {
         self.slow.is_some()
     }
 
-    /// Moves the plant and takes the inputs of the scan due at `now`, once.
+    /// Makes the plant's scan and takes the inputs of the scan due at `now`; a second call for the
+    /// same scan does nothing.
     fn prepare(&mut self, now: i64) -> Result<(), Halt> {
         if !self.ready {
             self.move_plant(now).map_err(Halt::Plant)?;
@@ -418,7 +419,7 @@ impl Runner {
         done.map_err(Halt::Charts)
     }
 
-    /// Starts the charts anew; inputs, forces and the plant stay as they are.
+    /// Restarts the charts; inputs, forced values and the plant stay as they are.
     pub fn restart(&mut self, start: Start) {
         let kept = match start {
             Start::Cold => Vec::new(),
@@ -440,26 +441,26 @@ impl Runner {
         }
     }
 
-    /// Goes on from a state that another run had reached, with its next scan at `due`.
+    /// Continues from the state of another run; the next scan is at `due`.
     #[must_use]
     pub fn from_state(mut self, state: State, due: i64) -> Runner {
         (self.state, self.due) = (state, due);
         self
     }
 
-    /// The same of the plant.
+    /// Replaces the state of the plant.
     pub fn set_plant_state(&mut self, state: State) {
         if let Some(plant) = &mut self.plant {
             plant.state = state;
         }
     }
 
-    /// The words kept over a warm restart, now.
+    /// The present values of the words that a warm restart keeps.
     pub fn retained(&self) -> Vec<u64> {
         self.retained.iter().cloned().flatten().map(|a| self.state.word(Addr(a))).collect()
     }
 
-    /// Takes over words that were kept; fewer leave the rest as it is.
+    /// Writes retained values; words beyond the given ones stay unchanged.
     pub fn retain(&mut self, words: &[u64]) {
         let all: Vec<u32> = self.retained.iter().cloned().flatten().collect();
         for (addr, value) in all.into_iter().zip(words) {
@@ -478,15 +479,15 @@ impl Runner {
 /// Why [`serve`] ended.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Served {
-    /// It was told to.
+    /// The caller asked it to stop.
     Stopped,
-    /// A fault; the outputs have their safe values.
+    /// A fault occurred; the outputs have their safe values.
     Halted(Halt),
-    /// A device failed; the outputs were set to their safe values where it still let us.
+    /// A device failed; the outputs have their safe values as far as they could still be written.
     Io(IoError),
 }
 
-/// Runs on devices until told to stop, asked before each scan.
+/// Runs with real devices until the caller says stop; it is asked before each scan.
 pub fn serve(
     runner: &mut Runner,
     clock: &mut dyn Clock,

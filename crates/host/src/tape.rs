@@ -1,39 +1,40 @@
-//! What went into the charts, scan by scan, to be played again.
+//! A tape: everything that entered the charts, scan by scan, so that the run can be replayed.
 
+use crate::hash::Fnv;
 use g7_engine::{Addr, Program, State, scan};
 
-/// One thing that happened.
+/// One event of a run.
 #[derive(Clone, Debug, PartialEq, Eq)]
 enum Event {
-    /// A scan at an instant, the inputs that changed, and a digest of the state it left.
+    /// A scan: its instant, the inputs that changed, and a digest of the state after it.
     Scan { now: i64, changed: Vec<(u32, u64)>, digest: u64 },
     /// A variable was written from outside.
     Write(u32, u64),
-    /// The charts were started anew.
+    /// The charts were restarted.
     Restart,
 }
 
-/// A record of everything that entered a program.
+/// The record of everything that entered a program.
 #[derive(Clone, Debug, Default)]
 pub struct Tape {
     events: Vec<Event>,
-    /// As the latest scan read them.
+    /// The inputs that the latest scan read.
     inputs: Vec<u64>,
 }
 
-/// Where a replay left the record.
+/// The first scan at which a replay differs from the record.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Divergence {
-    /// Number of the scan, from 0.
+    /// The number of the scan, from 0.
     pub scan: usize,
-    /// Its instant.
+    /// The instant of the scan, in nanoseconds.
     pub now: i64,
 }
 
 const HEAD: &str = "g7 tape 1";
 
 impl Tape {
-    /// A tape before the first scan of a program.
+    /// An empty tape, for a program before its first scan.
     pub fn new(program: &Program) -> Tape {
         let rows = program.tables().inputs;
         Tape { events: Vec::new(), inputs: vec![0; (rows.end - rows.start) as usize] }
@@ -57,12 +58,13 @@ impl Tape {
         self.events.push(Event::Scan { now, changed, digest: digest(state) });
     }
 
-    /// Number of scans.
+    /// The number of scans.
     pub fn scans(&self) -> usize {
         self.events.iter().filter(|e| matches!(e, Event::Scan { .. })).count()
     }
 
-    /// Plays it; every state must be the recorded one. `seen` gets each state.
+    /// Replays the tape and compares every state with the recorded one; `seen` is called with each
+    /// state.
     ///
     /// # Errors
     ///
@@ -82,7 +84,7 @@ impl Tape {
                             *word = *value;
                         }
                     }
-                    // A fault is part of the record: it stands in the state.
+                    // A fault is recorded in the state, so the comparison covers it.
                     scan(program, &mut state, &inputs, *now).ok();
                     if digest(&state) != *expected {
                         return Err(Divergence { scan: number, now: *now });
@@ -95,7 +97,7 @@ impl Tape {
         Ok(state)
     }
 
-    /// The tape as text, one event a line.
+    /// The tape as text, one event per line.
     pub fn to_text(&self) -> String {
         let mut out = format!("{HEAD} {}\n", self.inputs.len());
         for event in &self.events {
@@ -114,7 +116,7 @@ impl Tape {
         out
     }
 
-    /// Reads [`Tape::to_text`]; `None` where it is none.
+    /// Reads the text that [`Tape::to_text`] writes; `None` if it is not such a text.
     pub fn from_text(text: &str) -> Option<Tape> {
         let mut lines = text.lines();
         let inputs: usize = lines.next()?.strip_prefix(HEAD)?.trim().parse().ok()?;
@@ -144,9 +146,11 @@ impl Tape {
     }
 }
 
-/// FNV-1a over the words of the image: tells two runs apart, proves nothing.
+/// A hash of the memory of a state. It tells two runs apart but does not prove them
+/// equal. The first word of the image is left out: it differs between programs, and
+/// a recording is also replayed on a chart that was changed.
 fn digest(state: &State) -> u64 {
-    state.image().iter().fold(0xcbf2_9ce4_8422_2325, |hash: u64, w| {
-        (hash ^ w).wrapping_mul(0x0000_0100_0000_01b3).rotate_left(23)
-    })
+    let mut hash = Fnv::default();
+    state.image().iter().skip(1).for_each(|word| hash.add(&word.to_le_bytes()));
+    hash.value()
 }

@@ -1,7 +1,7 @@
-//! STRING values in the words of a state: a length in bytes, then UTF-8, eight
-//! bytes a word, little-endian; unused bytes are zero.
+//! STRING values as words of a state: the first word holds the length in bytes, the others hold the
+//! UTF-8 bytes, eight to a word, little-endian; unused bytes are zero.
 
-/// Reads the text whose first word stands at `at`.
+/// Reads the text whose first word is at `at`.
 pub fn read_text(words: &[u64], at: u32) -> String {
     let at = at as usize;
     let len = words.get(at).copied().unwrap_or(0);
@@ -10,7 +10,8 @@ pub fn read_text(words: &[u64], at: u32) -> String {
     String::from_utf8_lossy(&bytes).into_owned()
 }
 
-/// The words of a text in a variable of `words` words; cut at a character.
+/// The words of a text for a variable of `words` words; a longer text is cut between two
+/// characters.
 pub fn write_text(text: &str, words: u32) -> Vec<u64> {
     let capacity = (words.saturating_sub(1) as usize).saturating_mul(8);
     let mut len = text.len().min(capacity);

@@ -1,4 +1,4 @@
-//! The loop on small programs made by hand.
+//! Runs the loop with small programs made by hand.
 #![allow(missing_docs, reason = "a test")]
 
 use g7_engine::{Addr, Arith, Code, FaultKind, Num, Op, Program, Rows, Rules, Tables};
@@ -6,8 +6,8 @@ use g7_host::{
     Channels, Clock, Coupling, Force, Halt, Io, IoError, Runner, Served, Start, Tape, VirtualClock, serve,
 };
 
-/// Words: input, output, kept, other; each scan `output := input`,
-/// `kept := kept + 1`, `other := other + 1`; `kept` is an INT up to 32767.
+/// A program of four words: input, output, kept, other. Each scan does `output := input`, `kept :=
+/// kept + 1`, `other := other + 1`; `kept` is an INT and ends at 32767.
 fn counter() -> Program {
     let add = |a| [Op::Load(Addr(a)), Op::Push(1), Op::Arith(Arith::Add, Num::I16), Op::Store(Addr(a))];
     let mut code = vec![Op::Load(Addr(0)), Op::Store(Addr(1))];
@@ -16,7 +16,7 @@ fn counter() -> Program {
     program(code, vec![0, 0, 0, 0], 1)
 }
 
-/// `output := input + 10`, with 3 at the start.
+/// A program that does `output := input + 10`; its output is 3 at the start.
 fn adder() -> Program {
     let code = vec![Op::Load(Addr(0)), Op::Push(10), Op::Arith(Arith::Add, Num::I64), Op::Store(Addr(1))];
     program(code, vec![0, 3], 0)
@@ -56,7 +56,8 @@ fn the_plant_moves_before_the_charts_read() {
     let coupling = Coupling { to_plant: vec![(0, 0)], to_charts: vec![(0, 0)] };
     let mut runner = Runner::new(charts.clone(), 10).with_plant(plant.clone(), coupling);
     assert!(runner.is_driven(0));
-    // The charts' output is 0 before the first scan: the plant answers 10, read at once.
+    // The charts' output is 0 before the first scan, so the plant answers 10, which the first scan
+    // reads.
     for expected in [10, 20, 30] {
         runner.scan().unwrap();
         assert_eq!(runner.outputs(), [expected]);
@@ -186,7 +187,7 @@ fn a_device_that_fails_gets_the_safe_outputs() {
     let mut clock = VirtualClock::default();
     let ended = serve(&mut runner, &mut clock, &mut io, &mut |_| false);
     assert!(matches!(ended, Served::Io(e) if e.to_string() == "channel 0: gone"));
-    // The input is inverted: the wire's 0 is read as 1. Then the safe value, also 1.
+    // The input is inverted: a 0 on the wire is read as 1. The safe value that follows is 1 too.
     assert_eq!(io.device().written, [[1], [1], [1]]);
     assert_eq!(clock.now(), 20);
 }
@@ -206,9 +207,9 @@ fn serving_ends_when_told_and_at_a_fault() {
     assert_eq!(io.written.last(), Some(&vec![1]), "safe");
 }
 
-/// 1 -> 2 -> 3, both always true, searched until stable.
+/// Steps 1 -> 2 -> 3 with receptivities that are always true, under search for stability.
 fn transient() -> Program {
-    use g7_engine::{Guard, NONE, Step, StepId, Transition};
+    use g7_engine::{NONE, Receptivity, Step, StepId, Transition};
     let none = Rows::default();
     let step = |out: u32| Step {
         out: Rows { start: out.min(2), end: (out + 1).min(2) },
@@ -217,7 +218,7 @@ fn transient() -> Program {
         chart: 0,
     };
     let go = |from, to| Transition {
-        guard: Guard::True,
+        receptivity: Receptivity::True,
         from: StepId(from),
         to: StepId(to),
         more_from: none,

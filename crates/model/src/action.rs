@@ -1,11 +1,11 @@
 //! Actions of steps, and the Structured Text inside them.
 
-use crate::{Arg, Expr, Name, Path, Place, Type};
+use crate::{Arg, Expr, Name, Path, Place, Qualifier, Type};
 
 /// One action of a step.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Action {
-    /// What it does and when.
+    /// Its effect and its time.
     pub kind: ActionKind,
     /// Where it stands.
     pub at: Place,
@@ -29,12 +29,12 @@ pub enum ActionKind {
     OnEvent {
         /// The event, with an edge in it.
         event: Expr,
-        /// What is done.
+        /// The statements that run.
         work: Work,
     },
     /// `each scan: …`, while the step is active.
     EachScan {
-        /// What is done.
+        /// The statements that run.
         work: Work,
         /// `if …`.
         condition: Option<Expr>,
@@ -45,7 +45,7 @@ pub enum ActionKind {
     Comment(Box<str>),
 }
 
-/// What a step orders of another chart.
+/// An order that a step gives to another chart.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Order {
     /// A forcing order (IEC 60848:2013, 7.3).
@@ -65,79 +65,13 @@ pub enum Order {
 pub enum Situation {
     /// `INIT`: the initial situation.
     Init,
-    /// `{*}`: the present one (freeze).
+    /// `{*}`: the present situation (freeze).
     Current,
-    /// `{…}`: just these steps; `{}` none.
+    /// `{…}`: only these steps; `{}` no step.
     Steps(Vec<Name>),
 }
 
-/// The action qualifiers of IEC 61131-3 (2003, table 45).
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum Qualifier {
-    /// Non-stored: follows the step.
-    N,
-    /// Set (stored).
-    S,
-    /// Overriding reset.
-    R,
-    /// Time limited.
-    L,
-    /// Time delayed.
-    D,
-    /// Pulse.
-    P,
-    /// Pulse on deactivation.
-    P0,
-    /// Pulse on activation.
-    P1,
-    /// Stored and time delayed.
-    SD,
-    /// Delayed and stored.
-    DS,
-    /// Stored and time limited.
-    SL,
-}
-
-impl Qualifier {
-    /// All eleven.
-    pub const ALL: [Qualifier; 11] = [
-        Qualifier::N,
-        Qualifier::S,
-        Qualifier::R,
-        Qualifier::L,
-        Qualifier::D,
-        Qualifier::P,
-        Qualifier::P0,
-        Qualifier::P1,
-        Qualifier::SD,
-        Qualifier::DS,
-        Qualifier::SL,
-    ];
-
-    /// As written.
-    pub fn name(self) -> &'static str {
-        match self {
-            Qualifier::N => "N",
-            Qualifier::S => "S",
-            Qualifier::R => "R",
-            Qualifier::L => "L",
-            Qualifier::D => "D",
-            Qualifier::P => "P",
-            Qualifier::P0 => "P0",
-            Qualifier::P1 => "P1",
-            Qualifier::SD => "SD",
-            Qualifier::DS => "DS",
-            Qualifier::SL => "SL",
-        }
-    }
-
-    /// Whether a time stands behind it.
-    pub fn timed(self) -> bool {
-        matches!(self, Qualifier::L | Qualifier::D | Qualifier::SD | Qualifier::DS | Qualifier::SL)
-    }
-}
-
-/// What a qualifier governs.
+/// The object of a qualifier.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Target {
     /// A Boolean variable or a named action.
@@ -148,7 +82,7 @@ pub enum Target {
     Work(Work),
 }
 
-/// Something done: one statement, or a block in braces.
+/// One statement, or a block in braces.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Work {
     /// One assignment or call, written without braces.
@@ -170,7 +104,7 @@ impl Work {
 /// `{ var …; statements }`.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Block {
-    /// Variables of the block's own (functions, actions, sections only).
+    /// The local variables (in functions, actions and sections only).
     pub locals: Vec<Local>,
     /// The statements.
     pub statements: Vec<Stmt>,
@@ -178,7 +112,7 @@ pub struct Block {
     pub at: Place,
 }
 
-/// A variable of a block's own; takes its initial value at each run.
+/// A local variable; it takes its initial value at each run.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Local {
     /// The names declared together.
@@ -222,7 +156,7 @@ impl PartialEq for Body {
 }
 
 impl Body {
-    /// What the body does, in Structured Text.
+    /// The statements of the body, in Structured Text.
     pub fn block(&self) -> &Block {
         match self {
             Body::St(block) | Body::Other(_, _, block) => block,
@@ -233,7 +167,7 @@ impl Body {
 /// A statement of Structured Text.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Stmt {
-    /// What it is.
+    /// Its kind.
     pub kind: StmtKind,
     /// Where it stands.
     pub at: Place,
@@ -265,7 +199,7 @@ pub enum StmtKind {
         to: Expr,
         /// The step, 1 when absent.
         by: Option<Expr>,
-        /// What is repeated.
+        /// The repeated statements.
         body: Vec<Stmt>,
     },
     /// WHILE.

@@ -1,6 +1,6 @@
 //! Documents, charts, steps and transitions.
 
-use crate::{Action, Block, Body, Expr, Place, Plant, Property, Scenario, Span, Type};
+use crate::{Action, Block, Body, Expr, Nanos, Place, Plant, Property, Scenario, Span, Type};
 
 /// A name with its place. Text without back-ticks.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -20,7 +20,7 @@ pub struct Document {
     pub notes: Vec<Note>,
 }
 
-/// A note to the reader, kept by the formatter and by nothing else.
+/// A note to the reader. Only the formatter keeps it.
 #[derive(Clone, Debug, Eq)]
 pub struct Note {
     /// With its delimiters.
@@ -35,13 +35,13 @@ impl PartialEq for Note {
     }
 }
 
-/// What can stand at the outermost level of a file.
+/// An item at the outermost level of a file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Item {
     /// `profile …`.
     Profile(Profile),
-    /// `scan 10ms`: nominal scan time, nanoseconds.
-    Cycle(i64, Place),
+    /// `scan 10ms`: the nominal scan time.
+    Cycle(Nanos, Place),
     /// `target tsx57`.
     Target(TargetPlc, Place),
     /// A variable of the file.
@@ -166,7 +166,7 @@ impl TargetPlc {
     }
 }
 
-/// What a variable is for.
+/// The role of a variable.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum VarKind {
     /// Read from the plant.
@@ -182,7 +182,7 @@ pub enum VarKind {
 /// A declaration of variables.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct VarDecl {
-    /// What they are for.
+    /// Their role.
     pub kind: VarKind,
     /// The names declared together, at least one.
     pub names: Vec<Name>,
@@ -204,10 +204,10 @@ pub struct VarDecl {
     pub at: Place,
 }
 
-/// What a chart is for.
+/// The role of a chart.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum ChartKind {
-    /// A partial chart with a life of its own.
+    /// A partial chart that evolves by itself.
     Chart,
     /// The expansion of a macro-step.
     Expansion,
@@ -218,21 +218,21 @@ pub enum ChartKind {
 /// A chart.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Chart {
-    /// What it is for.
+    /// Its role.
     pub kind: ChartKind,
     /// Its name.
     pub name: Name,
     /// `"…"`.
     pub comment: Option<Box<str>>,
-    /// `every 20ms`: period of its evolutions, nanoseconds.
-    pub every: Option<i64>,
+    /// `every 20ms`: the period of its evolutions.
+    pub every: Option<Nanos>,
     /// In the order of the text.
     pub items: Vec<ChartItem>,
     /// Where it stands.
     pub at: Place,
 }
 
-/// What can stand in a chart.
+/// An item of a chart.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum ChartItem {
     /// A variable of the chart.
@@ -251,7 +251,7 @@ pub enum ChartItem {
     Section(Section),
 }
 
-/// What sort of step.
+/// The kind of a step.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum StepKind {
     /// A plain step.
@@ -271,7 +271,7 @@ pub enum StepKind {
 pub struct Step {
     /// Its name or number.
     pub name: Name,
-    /// What sort.
+    /// Its kind.
     pub kind: StepKind,
     /// Active in the initial situation.
     pub initial: bool,
@@ -281,7 +281,7 @@ pub struct Step {
     pub comment: Option<Box<str>>,
     /// Its actions, in the order of the text.
     pub actions: Vec<Action>,
-    /// Whether braces were written (an empty action block is kept).
+    /// True if braces were written: an empty action block is kept.
     pub braces: bool,
     /// Where it stands.
     pub at: Place,
@@ -292,9 +292,9 @@ pub struct Step {
 pub struct Transition {
     /// `t7:`.
     pub label: Option<Name>,
-    /// Preceding steps; none for a source transition.
+    /// The preceding steps; empty for a source transition.
     pub from: Vec<Name>,
-    /// Succeeding steps; none for a sink transition.
+    /// The succeeding steps; empty for a sink transition.
     pub to: Vec<Name>,
     /// The receptivity.
     pub receptivity: Expr,
@@ -318,7 +318,7 @@ pub struct NamedAction {
     pub name: Name,
     /// `"…"`.
     pub comment: Option<Box<str>>,
-    /// What it does.
+    /// Its statements.
     pub body: Body,
     /// Where it stands.
     pub at: Place,
@@ -346,7 +346,7 @@ pub struct Function {
     pub params: Vec<Param>,
     /// The type of its result.
     pub result: Type,
-    /// What it computes.
+    /// Its statements.
     pub body: Block,
     /// Where it stands.
     pub at: Place,
@@ -385,7 +385,7 @@ pub struct PlaceAt {
     pub at: Place,
 }
 
-/// What a layout places.
+/// The element that a layout places.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Placed {
     /// A step by name.
@@ -409,6 +409,16 @@ impl Document {
     /// The charts, expansions and tasks, in the order of the text.
     pub fn charts(&self) -> impl Iterator<Item = &Chart> {
         self.items.iter().filter_map(|i| if let Item::Chart(c) = i { Some(c) } else { None })
+    }
+
+    /// The nominal scan time, the first if there are several.
+    pub fn cycle(&self) -> Option<Nanos> {
+        self.items.iter().find_map(|i| if let Item::Cycle(time, _) = i { Some(*time) } else { None })
+    }
+
+    /// What is to be proved, in the order of the text.
+    pub fn properties(&self) -> impl Iterator<Item = &Property> {
+        self.items.iter().filter_map(|i| if let Item::Prove(p) = i { Some(p) } else { None })
     }
 
     /// The profile, the first if there are several, else the default.

@@ -10,9 +10,9 @@ use crate::Severity;
 /// A problem code.
 #[derive(Debug, PartialEq, Eq)]
 pub struct Code {
-    /// What users search for and suppress: `G0123`.
+    /// The code that users search for and suppress: `G0301`.
     pub id: &'static str,
-    /// How far a chart with it may go.
+    /// Its effect on the chart.
     pub severity: Severity,
     /// A few words: the heading of its page.
     pub title: &'static str,
@@ -52,6 +52,7 @@ codes! {
     TASK_END_ACTS = "G0107" Warning "an end of a task with an action" "Actions, counters, macro-steps and tasks";
     NEVER_CLEARS = "G0108" Warning "a receptivity that is never true" "IEC 60848:2013, 4.7";
     CHART_UNUSED = "G0109" Warning "an expansion or task that nothing uses" "IEC 60848:2013, 7.5";
+    STARTS_EMPTY = "G0110" Warning "an initial enclosing step with no initial step inside" "IEC 60848:2013, 7.4";
 
     // Names and types
     DEFINED_TWICE = "G0201" Error "one name is defined twice" "IEC 61131-3:2003, 2.7.1";
@@ -69,7 +70,7 @@ codes! {
     NOT_CONSTANT = "G0213" Error "a constant is needed here" "IEC 61131-3:2003, 2.4.2";
     NOT_WRITABLE = "G0214" Error "something that cannot be written" "IEC 61131-3:2003, 2.4.3";
     WRONG_ARGUMENTS = "G0215" Error "a call with the wrong arguments" "IEC 61131-3:2003, 2.5.1.1";
-    RECURSION = "G0216" Error "functions that call each other in a circle" "IEC 61131-3:2003, 2.5";
+    RECURSION = "G0216" Error "functions or tasks that call each other in a circle" "IEC 61131-3:2003, 2.5";
     NOT_HERE = "G0217" Error "something that cannot stand in this place" "IEC 61131-3:2003, 2.5.1";
     EXPANSION_SHARED = "G0218" Error "one expansion for two macro-steps" "IEC 60848:2013, 7.5";
     NESTED_IN_ITSELF = "G0219" Error "a chart nested in itself" "IEC 60848:2013, 7.4 and 7.5";

@@ -1,11 +1,11 @@
 //! Expressions as written: receptivities, conditions, right-hand sides.
 
-use crate::{Name, Place, Type};
+use crate::{BinaryOp, Name, Nanos, Place, Type, UnaryOp};
 
 /// An expression with its place.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Expr {
-    /// What it is.
+    /// Its kind.
     pub kind: ExprKind,
     /// Where it stands.
     pub at: Place,
@@ -36,7 +36,7 @@ pub enum ExprKind {
     },
     /// `f(x, n := y)`.
     Call(Path, Vec<Arg>),
-    /// Something that could not be read; a problem has been reported.
+    /// Text that could not be read; a problem has been reported.
     Bad,
 }
 
@@ -49,8 +49,8 @@ pub enum Literal {
     Int(i128, Option<Type>),
     /// A number with a point or exponent, kept as written (without `_`).
     Real(Box<str>, Option<Type>),
-    /// A duration in nanoseconds.
-    Time(i64),
+    /// A duration.
+    Time(Nanos),
     /// Text, escapes undone.
     Str(Box<str>),
 }
@@ -67,60 +67,10 @@ pub struct Path {
 pub struct Arg {
     /// `n := …` or `n => …`.
     pub name: Option<Name>,
-    /// Whether it is an output, `n => v`; then `value` is a path.
+    /// True for an output, `n => v`; then `value` is a path.
     pub output: bool,
     /// The value.
     pub value: Expr,
-}
-
-/// Operators before an operand.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum UnaryOp {
-    /// Boolean complement.
-    Not,
-    /// Arithmetic minus.
-    Neg,
-    /// Rising edge, `↑e`.
-    Rise,
-    /// Falling edge, `↓e`.
-    Fall,
-}
-
-/// Operators between operands.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum BinaryOp {
-    /// `or`.
-    Or,
-    /// `xor`.
-    Xor,
-    /// `and`, `&`.
-    And,
-    /// `·`: AND with the precedence of a product.
-    Dot,
-    /// `=`.
-    Eq,
-    /// `<>`.
-    Ne,
-    /// `<`.
-    Lt,
-    /// `<=`.
-    Le,
-    /// `>`.
-    Gt,
-    /// `>=`.
-    Ge,
-    /// `+`: OR between Booleans.
-    Add,
-    /// `-`.
-    Sub,
-    /// `*`: AND between Booleans.
-    Mul,
-    /// `/`.
-    Div,
-    /// `mod`.
-    Mod,
-    /// `**`.
-    Pow,
 }
 
 impl Path {

@@ -1,4 +1,4 @@
-//! The chart as data, and how we talk about what is wrong with it.
+//! The chart as data, and the problems that can be reported about it.
 //!
 //! # Where this sits
 //!
@@ -22,23 +22,31 @@ mod action;
 mod chart;
 pub mod codes;
 mod expr;
+mod nanos;
+mod operators;
 mod plant;
 mod problem;
+mod qualifier;
 mod scenario;
 mod span;
 mod types;
+pub mod visit;
+pub mod visit_mut;
+pub mod words;
 
 pub use action::{
-    Action, ActionKind, Block, Body, BodyLang, CaseArm, Local, Order, Qualifier, Situation, Stmt, StmtKind,
-    Target, Work,
+    Action, ActionKind, Block, Body, BodyLang, CaseArm, Local, Order, Situation, Stmt, StmtKind, Target, Work,
 };
 pub use chart::{
     Chart, ChartItem, ChartKind, Document, Function, Item, Layout, Name, NamedAction, Note, Param, PlaceAt,
     Placed, Profile, ProfileName, Section, Step, StepKind, Switch, TargetPlc, Transition, VarDecl, VarKind,
 };
-pub use expr::{Arg, BinaryOp, Expr, ExprKind, Literal, Path, UnaryOp};
+pub use expr::{Arg, Expr, ExprKind, Literal, Path};
+pub use nanos::Nanos;
+pub use operators::{BinaryOp, Operands, Operator, UnaryOp};
 pub use plant::{Arrivals, Binding, Drive, Parts, Plant, PlantItem, Rate, StateVar, View};
 pub use problem::{Problem, Severity};
+pub use qualifier::{Lasting, Qualifier};
 pub use scenario::{Property, PropertyKind, Scenario, TestStmt, TestStmtKind};
 pub use span::{FileId, Place, Span};
-pub use types::{FbKind, Type};
+pub use types::{Elementary, FbKind, Holds, Type};

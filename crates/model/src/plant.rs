@@ -1,4 +1,4 @@
-//! Models of the process, which answer outputs with inputs.
+//! Models of the process: they compute inputs from outputs.
 
 use crate::{Block, Expr, Name, Param, Place, Type};
 
@@ -15,7 +15,7 @@ pub struct Plant {
     pub at: Place,
 }
 
-/// What can stand in a plant.
+/// An item of a plant.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum PlantItem {
     /// A constant of the plant.
@@ -35,7 +35,7 @@ pub enum PlantItem {
     State(StateVar),
     /// How a state moves.
     Rate(Rate),
-    /// What an input of the charts reads.
+    /// The value of an input of the charts.
     Drive(Drive),
     /// Done once each time the condition becomes true.
     On(Expr, Block, Place),
@@ -43,7 +43,7 @@ pub enum PlantItem {
     Each(Block, Place),
     /// A queue or track of parts.
     Parts(Parts),
-    /// Things that arrive by themselves.
+    /// Parts that arrive by themselves.
     Arrivals(Arrivals),
     /// A picture.
     View(View),
@@ -84,7 +84,7 @@ pub struct Rate {
 pub struct Drive {
     /// An input of the charts.
     pub input: Name,
-    /// What it reads.
+    /// The value that it reads.
     pub value: Expr,
     /// Where it stands.
     pub at: Place,
@@ -116,9 +116,9 @@ pub struct Arrivals {
     pub least: Expr,
     /// Longest time between two; evenly spread from `least`.
     pub most: Option<Expr>,
-    /// Time stands still for it while this does not hold.
+    /// Its waiting time stops while this is false.
     pub when: Option<Expr>,
-    /// What happens at an arrival.
+    /// The statements that run at an arrival.
     pub body: Block,
     /// Where it stands.
     pub at: Place,
@@ -129,7 +129,7 @@ pub struct Arrivals {
 pub struct View {
     /// The SVG file, relative to the chart's.
     pub file: Box<str>,
-    /// What moves in it.
+    /// The attributes that move.
     pub bindings: Vec<Binding>,
     /// Where it stands.
     pub at: Place,

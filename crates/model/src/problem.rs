@@ -1,37 +1,37 @@
-//! What an author can do wrong, as a value.
+//! A mistake of an author, as a value.
 //!
-//! A check reports facts; the command line, the language server and the canvas
-//! render the same value. Wrong input is never an `Err`: a check returns what
-//! it could make of the chart *and* the problems, so the rest stays usable.
+//! A check reports facts. The command line, the language server and the canvas present the same
+//! value. Wrong input is never an `Err`: a check returns the parts of the chart that it could use
+//! *and* the problems, so the rest stays usable.
 
 use crate::{Span, codes::Code};
 
-/// How far a chart with this problem may go.
+/// The effect of a problem on its chart.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Severity {
-    /// Runs as written, but probably not as meant.
+    /// Runs as written, but probably not as intended.
     Warning,
-    /// Has no meaning in the standard; cannot be compiled.
+    /// Has no meaning in the standard and cannot be compiled.
     Error,
 }
 
-/// Something wrong with a chart that its author can mend.
+/// A mistake in a chart that its author can correct.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Problem {
     /// Which rule was broken; carries title, severity and source.
     pub code: &'static Code,
     /// The place to underline.
     pub at: Span,
-    /// What is the case: lower case, no full stop, names in back-ticks.
+    /// The facts: lower case, no full stop, names in back-ticks.
     pub what: String,
-    /// Other places, each with what is *there* (not with advice).
+    /// Other places, each with a description of what stands *there* (not with advice).
     pub related: Vec<(Span, String)>,
-    /// The way out, if there is one we would bet on.
+    /// A remedy, if there is one that is very likely right.
     pub help: Option<String>,
 }
 
 impl Problem {
-    /// A problem with nothing but a place and a message.
+    /// A problem with only a place and a message.
     pub fn new(code: &'static Code, at: Span, what: impl Into<String>) -> Problem {
         Problem { code, at, what: what.into(), related: Vec::new(), help: None }
     }
@@ -43,14 +43,14 @@ impl Problem {
         self
     }
 
-    /// Adds the way out.
+    /// Adds a remedy.
     #[must_use]
     pub fn help(mut self, help: impl Into<String>) -> Problem {
         self.help = Some(help.into());
         self
     }
 
-    /// Whether the chart can still be compiled.
+    /// Tells whether the chart can still be compiled.
     pub fn severity(&self) -> Severity {
         self.code.severity
     }

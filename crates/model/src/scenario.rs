@@ -1,6 +1,6 @@
 //! Scenario tests and properties.
 
-use crate::{Expr, Name, Path, Place};
+use crate::{Expr, Name, Nanos, Path, Place};
 
 /// `test "stops after five bottles" with Belt seed 3 { … }`.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -11,7 +11,7 @@ pub struct Scenario {
     pub plant: Option<Name>,
     /// The seed of the plant's chance, 0 when absent.
     pub seed: Option<u64>,
-    /// What happens.
+    /// Its statements.
     pub body: Vec<TestStmt>,
     /// Where it stands.
     pub at: Place,
@@ -20,7 +20,7 @@ pub struct Scenario {
 /// A statement of a test.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct TestStmt {
-    /// What it is.
+    /// Its kind.
     pub kind: TestStmtKind,
     /// Where it stands.
     pub at: Place,
@@ -32,11 +32,11 @@ pub enum TestStmtKind {
     /// `set a := TRUE, n := 3`: inputs, or states of the plant.
     Set(Vec<(Path, Expr)>),
     /// `pulse a for 1s`: true for one scan, or for the time, then false for one scan.
-    Pulse(Path, Option<i64>),
-    /// `wait 1s`, nanoseconds.
-    Wait(i64),
+    Pulse(Path, Option<Nanos>),
+    /// `wait 1s`.
+    Wait(Nanos),
     /// `wait until e within 5s`; 10 s when absent.
-    WaitUntil(Expr, Option<i64>),
+    WaitUntil(Expr, Option<Nanos>),
     /// `scan 3`: so many scans.
     Scan(u32),
     /// `expect a, not b`.
@@ -63,7 +63,7 @@ pub enum TestStmtKind {
 /// `prove …`, for the prover.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Property {
-    /// What is claimed.
+    /// The claim.
     pub kind: PropertyKind,
     /// `"…"`.
     pub comment: Option<Box<str>>,
@@ -80,6 +80,17 @@ pub enum PropertyKind {
     Never(Expr),
     /// Some inputs lead to it.
     Reachable(Expr),
-    /// Whenever the first holds, the second holds within the time (nanoseconds).
-    After(Expr, i64, Expr),
+    /// Whenever the first holds, the second holds within the time.
+    After(Expr, Nanos, Expr),
+}
+
+impl PropertyKind {
+    /// The conditions in it, in the order of the text.
+    pub fn claims(&self) -> impl Iterator<Item = &Expr> {
+        let (first, second) = match self {
+            PropertyKind::Always(e) | PropertyKind::Never(e) | PropertyKind::Reachable(e) => (e, None),
+            PropertyKind::After(cause, _, effect) => (cause, Some(effect)),
+        };
+        std::iter::once(first).chain(second)
+    }
 }

@@ -1,4 +1,4 @@
-//! Where in the sources something comes from.
+//! Places in the sources.
 
 /// A source file known to the session. Paths stay with whoever loaded it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -29,7 +29,7 @@ impl Span {
 
 /// The span of a node of a [`crate::Document`].
 ///
-/// Equal to every other `Place`: where a thing stands is no part of what it is.
+/// Equal to every other `Place`: the place of a node is not part of its value.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Place(pub Span);
 

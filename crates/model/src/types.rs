@@ -1,4 +1,4 @@
-//! The types of variables.
+//! The table of types: the name of each, its width, and what it holds.
 
 /// A type of IEC 61131-3 that a variable can have.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -74,7 +74,7 @@ impl FbKind {
     ];
 
     /// The name as the standard has it.
-    pub fn name(self) -> &'static str {
+    pub const fn name(self) -> &'static str {
         match self {
             FbKind::Ctu => "CTU",
             FbKind::Ctd => "CTD",
@@ -127,53 +127,178 @@ impl FbKind {
     }
 }
 
+/// The kind of values of an elementary type.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Holds {
+    /// FALSE and TRUE.
+    Truth,
+    /// Whole numbers with a sign.
+    Signed,
+    /// Whole numbers from 0.
+    Unsigned,
+    /// Floating-point numbers.
+    Real,
+    /// A duration.
+    Time,
+    /// Text.
+    Text,
+}
+
+/// A row of the table of elementary types.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Elementary {
+    /// The name as the standard has it.
+    pub name: &'static str,
+    /// Bits of a value; of a text, those of one character.
+    pub bits: u8,
+    /// The kind of its values.
+    pub holds: Holds,
+}
+
 impl Type {
-    /// Whether values are whole numbers.
-    pub fn is_integer(self) -> bool {
-        self.bounds().is_some()
+    /// STRING without a length has room for this many bytes.
+    pub const STRING: Type = Type::String(80);
+
+    /// The elementary types (IEC 61131-3:2003, table 10), STRING with its usual length.
+    pub const ELEMENTARY: [Type; 13] = [
+        Type::Bool,
+        Type::Sint,
+        Type::Int,
+        Type::Dint,
+        Type::Lint,
+        Type::Usint,
+        Type::Uint,
+        Type::Udint,
+        Type::Ulint,
+        Type::Real,
+        Type::Lreal,
+        Type::Time,
+        Type::STRING,
+    ];
+
+    /// The row of an elementary type; a function block has none.
+    pub const fn elementary(self) -> Option<Elementary> {
+        let (name, bits, holds) = match self {
+            Type::Bool => ("BOOL", 1, Holds::Truth),
+            Type::Sint => ("SINT", 8, Holds::Signed),
+            Type::Int => ("INT", 16, Holds::Signed),
+            Type::Dint => ("DINT", 32, Holds::Signed),
+            Type::Lint => ("LINT", 64, Holds::Signed),
+            Type::Usint => ("USINT", 8, Holds::Unsigned),
+            Type::Uint => ("UINT", 16, Holds::Unsigned),
+            Type::Udint => ("UDINT", 32, Holds::Unsigned),
+            Type::Ulint => ("ULINT", 64, Holds::Unsigned),
+            Type::Real => ("REAL", 32, Holds::Real),
+            Type::Lreal => ("LREAL", 64, Holds::Real),
+            Type::Time => ("TIME", 64, Holds::Time),
+            Type::String(_) => ("STRING", 8, Holds::Text),
+            Type::Fb(_) => return None,
+        };
+        Some(Elementary { name, bits, holds })
+    }
+
+    /// The name of the type, without the length of a text.
+    pub const fn name(self) -> &'static str {
+        match (self, self.elementary()) {
+            (Type::Fb(kind), _) => kind.name(),
+            (_, Some(row)) => row.name,
+            (_, None) => "",
+        }
+    }
+
+    /// All names: elementary types, then function blocks.
+    pub fn names() -> impl Iterator<Item = &'static str> {
+        let blocks = FbKind::ALL.into_iter().map(FbKind::name);
+        Type::ELEMENTARY.into_iter().map(Type::name).chain(blocks)
+    }
+
+    /// The type of this name in capitals, elementary or a function block.
+    pub fn named(name: &str) -> Option<Type> {
+        let elementary = Type::ELEMENTARY.into_iter().find(|ty| ty.name() == name);
+        elementary.or_else(|| FbKind::ALL.into_iter().find(|k| k.name() == name).map(Type::Fb))
+    }
+
+    /// The kind of its values, for an elementary type.
+    pub const fn holds(self) -> Option<Holds> {
+        match self.elementary() {
+            Some(row) => Some(row.holds),
+            None => None,
+        }
+    }
+
+    /// True if values are whole numbers.
+    pub const fn is_integer(self) -> bool {
+        matches!(self.holds(), Some(Holds::Signed | Holds::Unsigned))
     }
 
     /// Smallest and largest value of an integer type.
-    pub fn bounds(self) -> Option<(i128, i128)> {
-        Some(match self {
-            Type::Sint => (i8::MIN.into(), i8::MAX.into()),
-            Type::Int => (i16::MIN.into(), i16::MAX.into()),
-            Type::Dint => (i32::MIN.into(), i32::MAX.into()),
-            Type::Lint => (i64::MIN.into(), i64::MAX.into()),
-            Type::Usint => (0, u8::MAX.into()),
-            Type::Uint => (0, u16::MAX.into()),
-            Type::Udint => (0, u32::MAX.into()),
-            Type::Ulint => (0, u64::MAX.into()),
-            Type::Bool | Type::Real | Type::Lreal | Type::Time | Type::String(_) | Type::Fb(_) => {
-                return None;
+    pub const fn bounds(self) -> Option<(i128, i128)> {
+        match self.elementary() {
+            Some(Elementary { bits, holds: Holds::Signed, .. }) => {
+                let half = 1 << (bits - 1);
+                Some((-half, half - 1))
             }
-        })
+            Some(Elementary { bits, holds: Holds::Unsigned, .. }) => Some((0, (1 << bits) - 1)),
+            _ => None,
+        }
     }
 
-    /// Whether values are floating-point numbers.
-    pub fn is_real(self) -> bool {
-        matches!(self, Type::Real | Type::Lreal)
+    /// True if values are floating-point numbers.
+    pub const fn is_real(self) -> bool {
+        matches!(self.holds(), Some(Holds::Real))
+    }
+
+    /// True if values are numbers, whole or real.
+    pub const fn is_number(self) -> bool {
+        self.is_integer() || self.is_real()
     }
 }
 
 impl std::fmt::Display for Type {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.write_str(match self {
-            Type::Bool => "BOOL",
-            Type::Sint => "SINT",
-            Type::Int => "INT",
-            Type::Dint => "DINT",
-            Type::Lint => "LINT",
-            Type::Usint => "USINT",
-            Type::Uint => "UINT",
-            Type::Udint => "UDINT",
-            Type::Ulint => "ULINT",
-            Type::Real => "REAL",
-            Type::Lreal => "LREAL",
-            Type::Time => "TIME",
-            Type::String(80) => "STRING",
-            Type::String(n) => return write!(f, "STRING({n})"),
-            Type::Fb(kind) => kind.name(),
-        })
+        match self {
+            Type::String(n) if *self != Type::STRING => write!(f, "{}({n})", self.name()),
+            _ => f.write_str(self.name()),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{FbKind, Type};
+
+    #[test]
+    fn every_type_is_found_by_its_name() {
+        for ty in Type::ELEMENTARY.into_iter().chain(FbKind::ALL.map(Type::Fb)) {
+            assert_eq!(Type::named(ty.name()), Some(ty));
+        }
+        assert_eq!(Type::named("Int"), None);
+        assert_eq!(Type::names().count(), 23);
+        assert_eq!(
+            (Type::STRING.to_string(), Type::String(9).to_string()),
+            ("STRING".into(), "STRING(9)".into())
+        );
+    }
+
+    #[test]
+    fn bounds_are_those_of_the_standard() {
+        // IEC 61131-3:2003, table 10: N bits hold -(2**(N-1)) to 2**(N-1)-1, unsigned 0 to 2**N-1.
+        let bounds = [
+            (Type::Sint, Some((-128, 127))),
+            (Type::Int, Some((-32_768, 32_767))),
+            (Type::Dint, Some((-2_147_483_648, 2_147_483_647))),
+            (Type::Lint, Some((-9_223_372_036_854_775_808, 9_223_372_036_854_775_807))),
+            (Type::Usint, Some((0, 255))),
+            (Type::Uint, Some((0, 65_535))),
+            (Type::Udint, Some((0, 4_294_967_295))),
+            (Type::Ulint, Some((0, 18_446_744_073_709_551_615))),
+            (Type::Bool, None),
+            (Type::Real, None),
+            (Type::Time, None),
+            (Type::Fb(FbKind::Ton), None),
+        ];
+        for (ty, wanted) in bounds {
+            assert_eq!(ty.bounds(), wanted, "{ty}");
+        }
     }
 }

@@ -1,19 +1,16 @@
-//! A chart's drawing as the page takes it: px, ids, places in the text.
+//! A chart's drawing in the form that the page needs: px, ids, places in the text.
 
 use std::collections::HashMap;
-use std::sync::Arc;
 
 use g7_draw::{End, Look, Options, Part, Rect};
 use g7_edit::ItemId;
-use g7_model::{Chart, ChartKind, Document, Span, Step, StepKind, Transition};
+use g7_model::{ActionKind, Chart, ChartKind, Order, Step, StepKind, Transition};
 use serde::{Deserialize, Serialize};
 
-use crate::file::File;
+use crate::file::{File, Readable};
 use crate::ids;
-use crate::look::opens;
-use crate::positions::Positions;
 
-/// How a chart is to be drawn.
+/// The drawing that the page asks for.
 #[derive(Clone, Debug, Deserialize)]
 pub(crate) struct Wish {
     pub(crate) file: String,
@@ -26,12 +23,12 @@ pub(crate) struct Wish {
     actions: Option<bool>,
 }
 
-/// A chart, drawn. Lengths in px at 100 %.
+/// The drawing of a chart. Lengths are in px at 100 %.
 #[derive(Debug, Serialize)]
 pub(crate) struct Drawn {
     chart: String,
     kind: &'static str,
-    /// Of the latest text without syntax errors, which is not the present one.
+    /// True if the drawing shows an earlier text, because the present one has syntax errors.
     stale: bool,
     area: [f64; 4],
     items: Vec<Item>,
@@ -52,7 +49,7 @@ struct Item {
     bar: Option<[f64; 4]>,
     #[serde(skip_serializing_if = "Option::is_none")]
     text: Option<[f64; 4]>,
-    /// The anchor: of a step the middle of its upper edge, of a transition that of its bar.
+    /// The anchor: the middle of the upper edge of a step, the middle of the bar of a transition.
     #[serde(skip_serializing_if = "Option::is_none")]
     at: Option<[f64; 2]>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -61,12 +58,12 @@ struct Item {
     label: Option<String>,
     #[serde(skip_serializing_if = "Option::is_none")]
     comment: Option<String>,
-    /// Receptivity or action as typed.
+    /// The receptivity or the action as typed.
     #[serde(skip_serializing_if = "Option::is_none")]
     source: Option<String>,
     #[serde(skip_serializing_if = "Option::is_none")]
     priority: Option<u32>,
-    /// Names of the steps before and behind a transition.
+    /// The names of the preceding and the succeeding steps of a transition.
     #[serde(skip_serializing_if = "Option::is_none")]
     steps: Option<[Vec<String>; 2]>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -83,17 +80,17 @@ struct Item {
 
 /// Draws a chart of a file.
 pub(crate) fn drawing(file: &File, wish: &Wish) -> Result<Drawn, String> {
-    let good = file.drawn();
+    let readable = file.drawn();
     let options = options(wish)?;
     let find = |c: &&Chart| *c.name.text == *wish.chart;
     let chart =
-        good.document.charts().find(find).ok_or_else(|| format!("there is no chart `{}`", wish.chart))?;
-    let drawing = g7_draw::draw(&good.document, chart, &options);
-    let names = Names::new(&good, chart);
+        readable.document.charts().find(find).ok_or_else(|| format!("there is no chart `{}`", wish.chart))?;
+    let drawing = g7_draw::draw(&readable.document, chart, &options);
+    let names = Names::new(&readable, chart);
     Ok(Drawn {
         chart: wish.chart.clone(),
         kind: kind(chart.kind),
-        stale: good.stale,
+        stale: readable.stale,
         area: area(drawing.area),
         items: drawing.items.into_iter().enumerate().map(|(n, i)| names.item(n, i)).collect(),
     })
@@ -113,28 +110,7 @@ fn options(wish: &Wish) -> Result<Options, String> {
     })
 }
 
-/// Where the symbols of a chart stand: anchors in hundredths of u, by id.
-pub(crate) fn anchors(document: &Document, chart: &str) -> HashMap<ItemId, (i32, i32)> {
-    let Some(chart) = document.charts().find(|c| *c.name.text == *chart) else { return HashMap::new() };
-    let names: Vec<&str> = chart.steps().map(|s| &*s.name.text).collect();
-    let name = &*chart.name.text;
-    let drawing = g7_draw::draw(document, chart, &Options::default());
-    let anchor = |item: &g7_draw::Item| match item.part {
-        Part::Step { step, square } => {
-            let id = ItemId::step(name, *names.get(step as usize)?);
-            Some((id, (square.x + square.w / 2, square.y)))
-        }
-        Part::Transition { transition, bar, .. } => {
-            let id = ItemId::transition(name, transition as usize);
-            Some((id, (bar.x + bar.w / 2, bar.y + bar.h / 2)))
-        }
-        Part::Comment { comment, place } => Some((ItemId::note(name, comment as usize), (place.x, place.y))),
-        Part::Action { .. } | Part::Link { .. } | Part::Connector { .. } | Part::Text => None,
-    };
-    drawing.items.iter().filter_map(anchor).collect()
-}
-
-/// What a chart is for, in a word.
+/// The word for a kind of chart.
 pub(crate) fn kind(kind: ChartKind) -> &'static str {
     match kind {
         ChartKind::Chart => "chart",
@@ -143,58 +119,47 @@ pub(crate) fn kind(kind: ChartKind) -> &'static str {
     }
 }
 
-/// The document that is drawn, with the text it came from.
-#[derive(Clone)]
-pub(crate) struct Good {
-    pub(crate) document: Arc<Document>,
-    pub(crate) text: Arc<str>,
-    pub(crate) positions: Arc<Positions>,
-    pub(crate) stale: bool,
-}
-
-impl Good {
-    /// A place in code units of the text that is drawn.
-    pub(crate) fn units(&self, at: Span) -> (usize, usize) {
-        let unit = |byte: u32| self.positions.unit(&self.text, byte as usize);
-        (unit(at.start), unit(at.end))
-    }
-
-    pub(crate) fn words(&self, at: Span) -> String {
-        self.text.get(at.start as usize..at.end as usize).unwrap_or("").to_owned()
-    }
+/// The charts that a step opens: its expansion, or the charts that it encloses.
+pub(crate) fn opens(step: &Step) -> impl Iterator<Item = &str> {
+    let expansion = if let StepKind::Macro(name) = &step.kind { Some(&*name.text) } else { None };
+    let enclosed = step.actions.iter().filter_map(|a| match &a.kind {
+        ActionKind::Order(Order::Enclose(name)) => Some(&*name.text),
+        _ => None,
+    });
+    expansion.into_iter().chain(enclosed)
 }
 
 struct Names<'a> {
-    good: &'a Good,
+    readable: &'a Readable,
     chart: &'a Chart,
     steps: Vec<&'a Step>,
     transitions: Vec<&'a Transition>,
-    /// Of its layout section.
+    /// The comments of the layout section.
     comments: Vec<&'a str>,
     seen: std::cell::RefCell<HashMap<String, u32>>,
 }
 
 impl<'a> Names<'a> {
-    fn new(good: &'a Good, chart: &'a Chart) -> Names<'a> {
+    fn new(readable: &'a Readable, chart: &'a Chart) -> Names<'a> {
         Names {
-            good,
+            readable,
             chart,
             steps: chart.steps().collect(),
             transitions: chart.transitions().collect(),
-            comments: g7_draw::comments(&good.document, chart).map(|(text, _)| text).collect(),
+            comments: g7_draw::comments(&readable.document, chart).map(|(text, _)| text).collect(),
             seen: Default::default(),
         }
     }
 
     fn item(&self, number: usize, item: g7_draw::Item) -> Item {
         let chart = &*self.chart.name.text;
-        let (from, to) = self.good.units(item.at);
+        let (from, to) = self.readable.units(item.at);
         let base = Item { area: area(item.area), svg: item.svg, far: item.far, from, to, ..Item::default() };
         let made = match item.part {
             Part::Step { step, square } => self.step(step, square, base),
             Part::Action { step, index } => {
                 let name = self.name(step);
-                let source = self.good.words(item.at);
+                let source = self.readable.words(item.at);
                 let id = ids::action(chart, name, index as usize);
                 Item { id, part: "action", source: Some(source), ..base }
             }
@@ -218,7 +183,7 @@ impl<'a> Names<'a> {
         self.unique(made)
     }
 
-    /// A step of a name that stands there twice is a problem, not a reason for equal ids.
+    /// Two steps with the same name are a problem of the chart, but they still get different ids.
     fn unique(&self, mut item: Item) -> Item {
         let mut seen = self.seen.borrow_mut();
         let times = seen.entry(item.id.clone()).or_default();
@@ -264,7 +229,7 @@ impl<'a> Names<'a> {
             text: Some(area(text)),
             label: t.label.as_ref().map(|l| l.text.to_string()),
             comment: t.comment.as_deref().map(str::to_owned),
-            source: Some(self.good.words(t.receptivity.at.0)),
+            source: Some(self.readable.words(t.receptivity.at.0)),
             priority: t.priority,
             steps: Some([&t.from, &t.to].map(|l| l.iter().map(|n| n.text.to_string()).collect())),
             ..base
@@ -291,7 +256,7 @@ impl<'a> Names<'a> {
     }
 }
 
-/// Hundredths of u as px: a u is ten px.
+/// Converts hundredths of u to px; a u is 10 px.
 fn px(hundredths: i32) -> f64 {
     f64::from(hundredths) / 10.0
 }

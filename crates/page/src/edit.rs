@@ -1,23 +1,19 @@
-//! Changes of a file: gestures, typing, undo, the formatter.
+//! Changes of a file: gestures, undo and redo, the formatter; and the places where a name is used.
 
-use std::cell::RefCell;
-use std::collections::HashMap;
-
-use g7_edit::{Edit, Gesture, ItemId, Splice};
-use g7_model::Document;
+use g7_edit::{Gesture, ItemId, Splice};
 use serde::Serialize;
 
-use crate::drawing::anchors;
 use crate::file::File;
-use crate::language::names::{meaning, word_at};
-use crate::look::{Look, look};
-use crate::problems::Change;
+use crate::gestures::draft;
+use crate::language::definitions::{meaning, word_at};
+use crate::overview::{Overview, overview};
+use crate::positions::Change;
 
-/// The file behind a change, and the change: the text view makes it too.
+/// The file after a change, and the change itself, which the text view makes too.
 #[derive(Debug, Serialize)]
 pub(crate) struct Edited {
     #[serde(flatten)]
-    look: Look,
+    overview: Overview,
     splices: Vec<Change>,
     select: Vec<ItemId>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -26,12 +22,12 @@ pub(crate) struct Edited {
     told: Vec<String>,
 }
 
-/// Carries a gesture out.
+/// Executes a gesture.
 pub(crate) fn edit(name: &str, file: &mut File, gesture: &Gesture) -> Result<Edited, String> {
     let edit = draft(file, gesture)?;
     if edit.splices.is_empty() {
         return Ok(Edited {
-            look: look(name, file),
+            overview: overview(name, file),
             splices: Vec::new(),
             select: edit.select,
             begin: edit.begin,
@@ -40,31 +36,16 @@ pub(crate) fn edit(name: &str, file: &mut File, gesture: &Gesture) -> Result<Edi
     }
     let splices = file.outward(&edit.splices);
     file.change(&edit.splices, false)?;
-    Ok(Edited { look: look(name, file), splices, select: edit.select, begin: edit.begin, told: edit.told })
+    Ok(Edited {
+        overview: overview(name, file),
+        splices,
+        select: edit.select,
+        begin: edit.begin,
+        told: edit.told,
+    })
 }
 
-/// What a gesture would change.
-pub(crate) fn draft(file: &File, gesture: &Gesture) -> Result<Edit, String> {
-    let stand = standing(&file.source.document);
-    g7_edit::apply_placed(&file.as_edited(), gesture, &stand).map_err(|e| e.to_string())
-}
-
-/// A part of a chart as text, with where it stands.
-pub(crate) fn copy(file: &File, ids: &[ItemId]) -> String {
-    g7_edit::copy_placed(&file.as_edited(), ids, &standing(&file.source.document))
-}
-
-/// Where symbols stand; a chart is drawn when the first of its symbols is asked for.
-fn standing(document: &Document) -> impl Fn(&ItemId) -> Option<(i32, i32)> {
-    let placed = RefCell::new(HashMap::new());
-    move |id: &ItemId| {
-        let mut placed = placed.borrow_mut();
-        let chart = placed.entry(id.chart.clone()).or_insert_with(|| anchors(document, &id.chart));
-        chart.get(id).copied()
-    }
-}
-
-/// Takes the last change back, or makes it again.
+/// Undoes the last change, or redoes it.
 pub(crate) fn travel(name: &str, file: &mut File, back: bool) -> Result<Edited, String> {
     let before = std::sync::Arc::clone(&file.positions);
     let text = file.text().to_owned();
@@ -72,13 +53,13 @@ pub(crate) fn travel(name: &str, file: &mut File, back: bool) -> Result<Edited, 
     let unit = |byte| before.unit(&text, byte);
     let change = |s: &Splice| Change { from: unit(s.start), to: unit(s.end), insert: s.insert.clone() };
     let splices = splices.iter().map(change).collect();
-    Ok(Edited { look: look(name, file), splices, select: Vec::new(), begin: None, told: Vec::new() })
+    Ok(Edited { overview: overview(name, file), splices, select: Vec::new(), begin: None, told: Vec::new() })
 }
 
-/// Writes the text as the formatter does.
+/// Formats the text.
 pub(crate) fn format(name: &str, file: &mut File) -> Result<Edited, String> {
     if !file.is_clean() {
-        return Err("the text has syntax errors: mend them first".to_owned());
+        return Err("the text has syntax errors: correct them first".to_owned());
     }
     let text = g7_syntax::print(&file.source.document, Some(file.text()));
     let splices = difference(file.text(), &text);
@@ -86,10 +67,16 @@ pub(crate) fn format(name: &str, file: &mut File) -> Result<Edited, String> {
     if !splices.is_empty() {
         file.change(&splices, false)?;
     }
-    Ok(Edited { look: look(name, file), splices: out, select: Vec::new(), begin: None, told: Vec::new() })
+    Ok(Edited {
+        overview: overview(name, file),
+        splices: out,
+        select: Vec::new(),
+        begin: None,
+        told: Vec::new(),
+    })
 }
 
-/// The lines that differ: one splice from the first to the last of them.
+/// The difference between two texts as one splice, from the first to the last differing character.
 fn difference(old: &str, new: &str) -> Vec<Splice> {
     if old == new {
         return Vec::new();
@@ -104,14 +91,15 @@ fn difference(old: &str, new: &str) -> Vec<Splice> {
     vec![Splice::new(head, old.len() - tail, insert)]
 }
 
-/// Every place that names what the word at a place names.
+/// All places that name the same part as the word at a place.
 pub(crate) fn references(file: &File, at: usize) -> Vec<(usize, usize)> {
     let byte = file.positions.byte(file.text(), at);
     let known = g7_compile::references(&file.source.document);
     let offset = u32::try_from(byte).unwrap_or(u32::MAX);
     let places: Vec<(usize, usize)> = match known.at(offset) {
         Some(named) => known.of(named).into_iter().map(|s| (s.start as usize, s.end as usize)).collect(),
-        // Names without an entry, such as those of functions within themselves, are taken by their letters.
+        // Names that are not indexed, such as a function's name inside the function, are found by
+        // spelling.
         None => match word_at(file.text(), byte) {
             Some(word) if meaning(&file.source.document, &word).is_some() => words(file.text(), word.text),
             _ => Vec::new(),
@@ -123,7 +111,7 @@ pub(crate) fn references(file: &File, at: usize) -> Vec<(usize, usize)> {
         .collect()
 }
 
-/// Words of a text that read so.
+/// All words of a text with this spelling.
 fn words(text: &str, name: &str) -> Vec<(usize, usize)> {
     g7_syntax::tokens(text)
         .filter(|t| text.get(t.start..t.end).is_some_and(|w| w.trim_matches('`') == name))

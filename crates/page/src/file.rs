@@ -3,31 +3,29 @@
 use std::sync::Arc;
 
 use g7_edit::{History, Splice, spliced};
-use g7_model::{FileId, Problem, Severity};
+use g7_model::{Document, FileId, Problem, Severity, Span};
 use g7_rig::Source;
 
-use crate::drawing::Good;
-use crate::positions::Positions;
-use crate::problems::Change;
+use crate::positions::{Change, Positions};
 
-/// Text, what it means, and what is wrong with it.
+/// The text of a file, its meaning, and its problems.
 pub(crate) struct File {
     pub(crate) source: Source,
     pub(crate) positions: Arc<Positions>,
-    /// The latest document without syntax errors, and the text it came from.
-    good: Option<Good>,
+    /// The latest document without syntax errors.
+    readable: Option<Readable>,
     pub(crate) problems: Vec<Problem>,
     pub(crate) version: u64,
-    /// Came from a JGrafchart file.
+    /// True if it was imported from a foreign format.
     pub(crate) imported: bool,
     pub(crate) history: History,
 }
 
-/// Longest text that is opened, in bytes.
+/// Greatest length of a text that is opened, in bytes.
 pub(crate) const MOST: usize = 16 << 20;
 
 impl File {
-    /// Reads a text; a JGrafchart file becomes .g7 text.
+    /// Reads a text; a file of a foreign format is converted to .g7 text.
     pub(crate) fn open(name: &str, text: String) -> Result<File, String> {
         if text.len() > MOST {
             return Err(format!("{name} is too large for the editor"));
@@ -40,7 +38,8 @@ impl File {
                 let why = source.problems.first().map_or(String::new(), |p| format!(": {}", p.what));
                 return Err(format!("{name} cannot be imported{why}"));
             }
-            // What the importer had to leave out stays said; it has no place in the new text.
+            // The importer's problems are kept without their places, which do not exist in the new
+            // text.
             told = std::mem::take(&mut source.problems);
             g7_draw::make_room(&mut source.document);
             let text = g7_syntax::print(&source.document, None);
@@ -48,7 +47,7 @@ impl File {
         }
         let mut file = File {
             positions: Arc::new(Positions::new(&source.text)),
-            good: None,
+            readable: None,
             problems: Vec::new(),
             version: 0,
             imported,
@@ -56,12 +55,12 @@ impl File {
             source,
         };
         file.judge();
-        let nowhere = g7_model::Span { file: FileId(0), start: 0, end: 0 };
+        let nowhere = Span { file: FileId(0), start: 0, end: 0 };
         file.problems.extend(told.into_iter().map(|p| Problem { at: nowhere, related: Vec::new(), ..p }));
         Ok(file)
     }
 
-    /// Makes a change and remembers it; typing grows by words.
+    /// Makes a change and records it for undo; typed characters are joined to words.
     pub(crate) fn change(&mut self, splices: &[Splice], typed: bool) -> Result<(), String> {
         let text = spliced(self.text(), splices).ok_or("these places are none of the text")?;
         if text.len() > MOST {
@@ -74,7 +73,7 @@ impl File {
         Ok(())
     }
 
-    /// Takes the last change back, or makes it again; what that changed.
+    /// Undoes the last change, or redoes it; returns the splices.
     pub(crate) fn travel(&mut self, back: bool) -> Result<Vec<Splice>, String> {
         let splices = if back { self.history.undo() } else { self.history.redo() };
         let nothing = if back { "nothing to undo" } else { "nothing to redo" };
@@ -91,34 +90,41 @@ impl File {
         self.judge();
     }
 
-    /// The text as gestures take it.
+    /// The file in the form that gestures need.
     pub(crate) fn as_edited(&self) -> g7_edit::Source<'_> {
         g7_edit::Source { text: self.text(), document: &self.source.document, clean: self.is_clean() }
     }
 
-    /// Splices as they go out, in code units of the text before them.
+    /// Converts splices to code units of the text before them, as they are sent to the page.
     pub(crate) fn outward(&self, splices: &[Splice]) -> Vec<Change> {
         let unit = |byte| self.positions.unit(self.text(), byte);
         let change = |s: &Splice| Change { from: unit(s.start), to: unit(s.end), insert: s.insert.clone() };
         splices.iter().map(change).collect()
     }
 
-    /// Splices as they come in.
+    /// Converts splices from code units, as the page sends them.
     pub(crate) fn inward(&self, splices: &[Change]) -> Vec<Splice> {
         let byte = |unit| self.positions.byte(self.text(), unit);
         splices.iter().map(|s| Splice::new(byte(s.from), byte(s.to), s.insert.as_str())).collect()
+    }
+
+    /// A place in code units.
+    pub(crate) fn units(&self, at: Span) -> (usize, usize) {
+        let range = self.source.range(at);
+        let unit = |byte| self.positions.unit(self.text(), byte);
+        (unit(range.start), unit(range.end))
     }
 
     pub(crate) fn text(&self) -> &str {
         &self.source.text
     }
 
-    /// Whether it parses without errors.
+    /// True if the text has no syntax errors.
     pub(crate) fn is_clean(&self) -> bool {
         !self.source.has_errors()
     }
 
-    /// Looks for problems and keeps the document where it can be drawn.
+    /// Finds the problems, and keeps the document if it has no syntax errors.
     fn judge(&mut self) {
         self.problems = match g7_rig::testing::problems(&self.source, None) {
             Ok(problems) => problems,
@@ -126,12 +132,12 @@ impl File {
         };
         self.problems.sort_by_key(|p| (p.at, p.severity() == Severity::Warning));
         if self.is_clean() {
-            self.good = Some(self.present(false));
+            self.readable = Some(self.present(false));
         }
     }
 
-    fn present(&self, stale: bool) -> Good {
-        Good {
+    fn present(&self, stale: bool) -> Readable {
+        Readable {
             document: Arc::new(self.source.document.clone()),
             text: self.source.text.as_str().into(),
             positions: Arc::clone(&self.positions),
@@ -139,12 +145,33 @@ impl File {
         }
     }
 
-    /// The document to draw: that of the latest text without syntax errors. A
-    /// text that never was without is drawn as far as it could be read.
-    pub(crate) fn drawn(&self) -> Good {
-        match &self.good {
-            Some(good) => Good { stale: !self.is_clean(), ..good.clone() },
+    /// The document to draw: that of the latest text without syntax errors. If there was never such
+    /// a text, it is the readable part of the present one.
+    pub(crate) fn drawn(&self) -> Readable {
+        match &self.readable {
+            Some(readable) => Readable { stale: !self.is_clean(), ..readable.clone() },
             None => self.present(false),
         }
+    }
+}
+
+/// A readable document, with the text from which it was parsed.
+#[derive(Clone)]
+pub(crate) struct Readable {
+    pub(crate) document: Arc<Document>,
+    pub(crate) text: Arc<str>,
+    pub(crate) positions: Arc<Positions>,
+    pub(crate) stale: bool,
+}
+
+impl Readable {
+    /// A place in code units of the text.
+    pub(crate) fn units(&self, at: Span) -> (usize, usize) {
+        let unit = |byte: u32| self.positions.unit(&self.text, byte as usize);
+        (unit(at.start), unit(at.end))
+    }
+
+    pub(crate) fn words(&self, at: Span) -> String {
+        self.text.get(at.start as usize..at.end as usize).unwrap_or("").to_owned()
     }
 }

@@ -1,25 +1,25 @@
-//! Changes that mend a problem: only where it is sure that they do.
+//! Changes that fix a problem; offered only if they certainly do.
 
 use g7_edit::{Gesture, ItemId, Row, Splice};
 use g7_model::{Problem, codes};
 use serde::Serialize;
 
-use crate::edit::draft;
 use crate::file::File;
+use crate::gestures::draft;
 use crate::ids::{self, Thing};
-use crate::problems::Change;
+use crate::positions::Change;
 
-/// A change that mends a problem.
+/// A change that fixes a problem.
 #[derive(Debug, Serialize)]
 pub(crate) struct Fix {
     title: String,
     splices: Vec<Change>,
 }
 
-/// Problems that get fixes made by gestures: each costs a look at the whole file.
+/// Number of problems for which gestures are tried as fixes; each costs a check of the whole file.
 pub(crate) const SOME: usize = 8;
 
-/// The fixes of a problem; those made by gestures only where there is `time`.
+/// The fixes of a problem; gestures are tried only if `time` is true.
 pub(crate) fn fixes(file: &File, p: &Problem, time: bool) -> Vec<Fix> {
     let mut found: Vec<Fix> = suggested(file, p).into_iter().collect();
     if found.is_empty() && time && file.is_clean() {
@@ -32,7 +32,7 @@ pub(crate) fn fixes(file: &File, p: &Problem, time: bool) -> Vec<Fix> {
     found
 }
 
-/// What the checker itself would bet on: another word in place of the one that stands there.
+/// The word that the checker suggests in place of the wrong one.
 fn suggested(file: &File, p: &Problem) -> Option<Fix> {
     let help = p.help.as_deref()?;
     let range = file.source.range(p.at);
@@ -42,7 +42,7 @@ fn suggested(file: &File, p: &Problem) -> Option<Fix> {
     } else {
         let word = help.strip_prefix("did you mean `")?.strip_suffix("`?")?;
         let dots = |s: &str| s.matches('.').count();
-        // Of a path the last name is the wrong one, unless the guess is a path too.
+        // In a path, the last name is the wrong one, unless the suggestion is a path too.
         let behind = if dots(there) > dots(word) { there.rfind('.').map_or(0, |i| i + 1) } else { 0 };
         (word, range.start + behind)
     };
@@ -53,7 +53,7 @@ fn suggested(file: &File, p: &Problem) -> Option<Fix> {
     Some(Fix { title: format!("write `{word}`"), splices: file.outward(&[splice]) })
 }
 
-/// Gestures that mend it, each with its title.
+/// Gestures that may fix the problem, each with its title.
 fn gestures(file: &File, p: &Problem) -> Vec<(String, Gesture)> {
     let document = &file.source.document;
     let thing = || ids::at(document, p.at);

@@ -1,5 +1,5 @@
-//! The names of items between page and crate: `Chart/s/Step`, `Chart/a/Step/0`,
-//! `Chart/t/3`; and what stands at a place of the text.
+//! Ids of items, shared by the page and this crate: `Chart/s/Step`, `Chart/a/Step/0`, `Chart/t/3`;
+//! and the item at a place of the text.
 
 use g7_edit::ItemId;
 use g7_model::{Chart, Document, Span, Step};
@@ -16,7 +16,7 @@ pub(crate) fn transition(chart: &str, number: usize) -> String {
     ItemId::transition(chart, number).to_string()
 }
 
-/// Something of a chart that an id names.
+/// A part of a chart that has an id.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Thing<'d> {
     Step(&'d Chart, &'d Step),
@@ -34,7 +34,7 @@ impl Thing<'_> {
     }
 }
 
-/// Everything of the charts that has an id, in the order of the text, with its place.
+/// All parts of charts that have ids, in the order of the text, with their places.
 pub(crate) fn things(document: &Document) -> impl Iterator<Item = (Span, Thing<'_>)> {
     document.charts().flat_map(|c| {
         let steps = c.steps().flat_map(move |s| {
@@ -46,7 +46,7 @@ pub(crate) fn things(document: &Document) -> impl Iterator<Item = (Span, Thing<'
     })
 }
 
-/// The innermost thing that a place belongs to.
+/// The innermost part that contains a place.
 pub(crate) fn at(document: &Document, place: Span) -> Option<Thing<'_>> {
     let chart = document.charts().find(|c| holds(c.at.0, place))?;
     let only = |c: &Chart| std::ptr::eq(c, chart);
@@ -61,7 +61,7 @@ pub(crate) fn at(document: &Document, place: Span) -> Option<Thing<'_>> {
         .map(|(_, thing)| thing)
 }
 
-/// Whether a place lies in another.
+/// True if a place lies inside another.
 pub(crate) fn holds(outer: Span, inner: Span) -> bool {
     outer.file == inner.file && outer.start <= inner.start && inner.end <= outer.end
 }

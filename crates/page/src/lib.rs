@@ -1,4 +1,4 @@
-//! What the page asks, answered: one text in, one text out.
+//! Answers the questions of the page: one JSON text in, one JSON text out.
 //!
 //! # Where this sits
 //!
@@ -7,34 +7,34 @@
 //!                                        \-> Runs:  rig, host, engine
 //! ```
 //!
-//! The same [`Page`] answers in the browser (as wasm, `exports`) and in the
-//! server (shared runs). The page draws what it is given and knows no rule of
-//! GRAFCET.
+//! The same [`Page`] runs in the browser (as wasm, through `wasm`) and in the server (for shared
+//! runs). The web page only draws the answers and contains no rule of GRAFCET.
 //!
-//! What must hold: no message makes it panic; what it cannot do is a sentence
-//! for the user; time is an input; places in texts are UTF-16 code units outside
-//! and bytes inside, and turn in `positions` only.
+//! No message causes a panic; a request that cannot be fulfilled is answered by a sentence for the
+//! user; time is an input; places in texts are UTF-16 code units outside this crate and bytes
+//! inside, and are converted in `positions` only.
 #![deny(unsafe_code)]
 
 mod answer;
 mod drawing;
 mod edit;
 mod explain;
-pub mod exports;
+mod export;
 mod file;
 mod fixes;
+mod gestures;
 mod ids;
 mod language;
 mod logic;
-mod look;
 mod merge;
-mod out;
+mod overview;
 mod page;
 mod positions;
 mod problems;
 mod request;
 mod run;
-mod tests;
+mod testing;
+pub mod wasm;
 
 pub use explain::explain;
 pub use page::Page;

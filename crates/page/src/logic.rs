@@ -1,19 +1,19 @@
-//! Receptivities and actions in the languages of controllers: the same logic as
-//! Structured Text, as Instruction List and as Ladder; and back again.
+//! Receptivities and actions in the languages of controllers: converts them to Structured Text,
+//! Instruction List and Ladder, and back.
 
 use g7_compile::symbols::Symbols;
 use g7_draw::{Element, Rung};
+use g7_iec::ld::{self, Coil};
 use g7_model::{
     ActionKind, Document, Expr, ExprKind, FileId, Item, Path, Stmt, StmtKind, Target, Type, UnaryOp, Work,
 };
-use g7_syntax::ladder::{self, Coil};
-use g7_syntax::{il, print_expr, print_statements};
+use g7_syntax::{il, ladder, print_expr, print_statements};
 use serde::{Deserialize, Serialize};
 
 use crate::file::File;
 use crate::ids::{self, Thing};
 
-/// A language of logic.
+/// A language of controllers.
 #[derive(Clone, Copy, Debug, Deserialize, Serialize, PartialEq, Eq)]
 #[serde(rename_all = "lowercase")]
 pub(crate) enum Tongue {
@@ -25,15 +25,15 @@ pub(crate) enum Tongue {
 /// A receptivity, a condition or a body.
 #[derive(Debug, Serialize)]
 pub(crate) struct Piece {
-    /// What of the symbol it is.
+    /// The part of the symbol that it is.
     part: Part,
-    /// Its place among the actions of a step.
+    /// The number of the action in its step.
     #[serde(skip_serializing_if = "Option::is_none")]
     index: Option<usize>,
     forms: Vec<Form>,
 }
 
-/// What of a symbol a piece is.
+/// A part of a symbol that contains logic.
 #[derive(Clone, Copy, Debug, Serialize)]
 #[serde(rename_all = "snake_case")]
 enum Part {
@@ -43,18 +43,18 @@ enum Part {
     Body,
 }
 
-/// A piece in one language.
+/// A piece of logic in one language.
 #[derive(Debug, Serialize)]
 struct Form {
     tongue: Tongue,
-    /// None where the language has no form of it.
+    /// The text; absent if the language cannot express the piece.
     text: Option<String>,
-    /// Ladder as it is drawn.
+    /// The drawing, for Ladder.
     #[serde(skip_serializing_if = "Option::is_none")]
     picture: Option<String>,
 }
 
-/// All logic of a transition, an action, or of all actions of a step.
+/// The logic of a transition, of an action, or of all actions of a step.
 pub(crate) fn logic(file: &File, id: &str) -> Result<Vec<Piece>, String> {
     let document = &file.source.document;
     let (_, thing) =
@@ -77,7 +77,7 @@ pub(crate) fn logic(file: &File, id: &str) -> Result<Vec<Piece>, String> {
     })
 }
 
-/// Logic in one of the languages as an expression of the text.
+/// Reads a condition in one of the languages and returns it as an expression of a .g7 text.
 pub(crate) fn read(tongue: Tongue, text: &str) -> Result<String, String> {
     let (expr, problems) = match tongue {
         Tongue::St => g7_syntax::parse_expr(text, FileId(0)),
@@ -95,8 +95,8 @@ pub(crate) fn read(tongue: Tongue, text: &str) -> Result<String, String> {
     }
 }
 
-/// Whether a variable or call is a BOOL: by its declaration, else by what names of
-/// steps and of members of blocks are.
+/// True if a variable or call is a BOOL: by its declaration, otherwise by the spelling of names of
+/// steps and of members of blocks.
 fn is_boolean(e: &Expr, symbols: Option<&Symbols>) -> bool {
     let text = print_expr(e);
     let declared = symbols.and_then(|s| s.variables.iter().find(|v| v.name.as_ref() == text));
@@ -144,7 +144,7 @@ impl Show<'_> {
         self.body(Some(index), work.statements())
     }
 
-    /// The statements of the named action that a path means.
+    /// The statements of the named action that a path refers to.
     fn named(&self, path: &Path) -> Option<&[Stmt]> {
         let [name] = path.names.as_slice() else { return None };
         self.document.items.iter().find_map(|item| match item {
@@ -155,13 +155,13 @@ impl Show<'_> {
 
     fn condition(&self, part: Part, index: Option<usize>, e: &Expr) -> Piece {
         let st = Some(print_expr(e));
-        self.piece(part, index, [st, Some(il::show_expr_as_il(e)), Some(ladder::show_expr_as_ladder(e))])
+        self.piece(part, index, [st, Some(il::show_expr(e)), Some(ladder::show_expr(e))])
     }
 
     fn body(&self, index: Option<usize>, statements: &[Stmt]) -> Piece {
         let st = Some(print_statements(statements));
-        let ld = ladder::show_as_ladder(statements, self.boolean);
-        self.piece(Part::Body, index, [st, il::show_as_il(statements), ld])
+        let ld = ladder::show(statements, self.boolean);
+        self.piece(Part::Body, index, [st, il::show(statements), ld])
     }
 
     fn piece(&self, part: Part, index: Option<usize>, texts: [Option<String>; 3]) -> Piece {
@@ -173,10 +173,10 @@ impl Show<'_> {
     }
 }
 
-/// Rungs in the .g7 language, drawn.
+/// Draws rungs in the Ladder notation of .g7.
 fn picture(text: &str) -> Option<String> {
     let (rungs, problems) = ladder::read(text, FileId(0));
-    let drawn = |r: &ladder::Rung| Rung {
+    let drawn = |r: &ld::Rung| Rung {
         label: r.label.as_ref().map_or_else(String::new, |l| l.text.to_string()),
         elements: elements(&r.elements),
         ..Rung::default()
@@ -184,13 +184,13 @@ fn picture(text: &str) -> Option<String> {
     problems.is_empty().then(|| g7_draw::rungs(&rungs.iter().map(drawn).collect::<Vec<_>>()))
 }
 
-fn elements(list: &[ladder::Element]) -> Vec<Element> {
+fn elements(list: &[ld::Element]) -> Vec<Element> {
     list.iter().map(element).collect()
 }
 
-fn element(e: &ladder::Element) -> Element {
+fn element(e: &ld::Element) -> Element {
     match e {
-        ladder::Element::Contact(e) => {
+        ld::Element::Contact(e) => {
             let (sign, inner) = match &e.kind {
                 ExprKind::Unary(UnaryOp::Not, inner) => ("/", &**inner),
                 ExprKind::Unary(UnaryOp::Rise, inner) => ("P", &**inner),
@@ -199,7 +199,7 @@ fn element(e: &ladder::Element) -> Element {
             };
             Element::Contact { sign, text: print_expr(inner) }
         }
-        ladder::Element::Coil(coil, _) => {
+        ld::Element::Coil(coil, _) => {
             let (sign, text) = match coil {
                 Coil::Assign(e, false) => ("", print_expr(e)),
                 Coil::Assign(e, true) => ("/", print_expr(e)),
@@ -213,14 +213,14 @@ fn element(e: &ladder::Element) -> Element {
             };
             Element::Coil { sign, text }
         }
-        ladder::Element::Block { path, args, output, .. } => {
+        ld::Element::Block { path, args, output, .. } => {
             let of = |out: bool| {
                 let named = args.iter().filter(move |a| a.output == out);
                 named
                     .filter_map(|a| Some((a.name.as_ref()?.text.to_string(), print_expr(&a.value))))
                     .collect()
             };
-            // The input without a value is where power goes.
+            // The argument without a name is the pin through which power enters.
             let power = args.iter().find(|a| a.name.is_none()).map(|a| print_expr(&a.value));
             Element::Block {
                 title: path.names.iter().map(|n| &*n.text).collect::<Vec<_>>().join("."),
@@ -230,7 +230,7 @@ fn element(e: &ladder::Element) -> Element {
                 outputs: of(true),
             }
         }
-        ladder::Element::Branch(ways, _) => Element::Branch(ways.iter().map(|w| elements(w)).collect()),
+        ld::Element::Branch(ways, _) => Element::Branch(ways.iter().map(|w| elements(w)).collect()),
     }
 }
 

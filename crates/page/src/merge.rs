@@ -1,27 +1,27 @@
-//! Two changes of one text brought together, line by line.
+//! Merges two changes of one text, line by line.
 //!
-//! What must hold: a merged text has what both sides changed and nothing else;
-//! where that cannot be said for sure there is no text, never one with marks in it.
+//! A merged text contains exactly the changes of both sides. If this is not certain, there is no
+//! merged text; a text with conflict marks is never made.
 
 use g7_model::{FileId, Severity};
 use serde::Serialize;
 
-/// What came of it.
+/// The result of a merge.
 #[derive(Debug, PartialEq, Eq, Serialize)]
 pub(crate) struct Merged {
-    /// The text with both changes; none where they contradict each other.
+    /// The text with both changes; absent if they contradict each other.
     text: Option<String>,
-    /// Places at which they do.
+    /// The number of places at which they do.
     conflicts: usize,
 }
 
-/// Most lines that differ between two texts; finding what is common takes their square.
+/// Greatest number of differing lines of two texts; the time of a merge grows with its square.
 const MOST_LINES: usize = 6_000;
 
-/// Longest text, in bytes.
+/// Greatest length of a text, in bytes.
 const MOST_BYTES: usize = 4 << 20;
 
-/// `base` with what `mine` and `theirs` each changed of it.
+/// Merges the changes that lead from `base` to `mine` and from `base` to `theirs`.
 pub(crate) fn merge(base: &str, mine: &str, theirs: &str) -> Result<Merged, String> {
     if [base, mine, theirs].iter().any(|t| t.len() > MOST_BYTES) {
         return Err("these texts are too long to be merged".to_owned());
@@ -47,7 +47,7 @@ pub(crate) fn merge(base: &str, mine: &str, theirs: &str) -> Result<Merged, Stri
     }
 }
 
-/// Lines between the common beginning and the common end, of both.
+/// The number of lines between the common beginning and the common end of two texts.
 fn differing(a: &str, b: &str) -> usize {
     let (a, b): (Vec<&str>, Vec<&str>) = (a.lines().collect(), b.lines().collect());
     let head = a.iter().zip(&b).take_while(|(x, y)| x == y).count();
@@ -56,7 +56,7 @@ fn differing(a: &str, b: &str) -> usize {
     a.len() + b.len() - 2 * (head + tail)
 }
 
-/// Whether a text has syntax errors.
+/// True if a text has syntax errors.
 fn broken(text: &str) -> bool {
     g7_syntax::parse(text, FileId(0)).1.iter().any(|p| p.severity() == Severity::Error)
 }
@@ -97,7 +97,7 @@ mod tests {
     #[test]
     fn what_reads_on_both_sides_and_not_together_is_a_conflict() {
         let base = "chart G {\n  initial step 1 {\n  }\n  // a\n  // b\n  // c\n}\n";
-        // Mine closes the chart with the brace of the step; theirs puts a step behind that brace.
+        // `mine` moves the closing brace of the step; `theirs` adds a step after that brace.
         let mine = "chart G {\n  initial step 1\n  }\n  // a\n  // b\n  // c\n";
         let theirs = "chart G {\n  initial step 1 {\n  }\n  // a\n  step 2 {\n  }\n  // b\n  // c\n}\n";
         assert_eq!(merge(base, mine, theirs).expect("small").text, None);

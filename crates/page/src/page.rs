@@ -1,4 +1,4 @@
-//! All that is open, and who answers which message.
+//! The open files and runs, and the dispatch of messages.
 
 use std::collections::BTreeMap;
 
@@ -6,30 +6,29 @@ use crate::answer::{self, Answer, ok};
 use crate::explain::explain;
 use crate::file::File;
 use crate::language;
-use crate::look::look;
 use crate::merge::merge;
+use crate::overview::overview;
 use crate::request::Request;
 use crate::run::{self, Run};
-use crate::tests;
-use crate::{drawing, edit, logic, out};
+use crate::{drawing, edit, export, gestures, logic, testing};
 
-/// What a page has open: files and runs.
+/// A page: its open files and its runs.
 #[derive(Default)]
 pub struct Page {
     files: BTreeMap<String, File>,
     runs: BTreeMap<String, Run>,
 }
 
-/// Most files and runs at a time.
+/// Greatest number of open files, and of runs.
 const MOST: usize = 64;
 
 impl Page {
-    /// A page with nothing open.
+    /// A page without files and runs.
     pub fn new() -> Page {
         Page::default()
     }
 
-    /// Answers a message: `{"ok":…}`, or `{"no":"a sentence for the user"}`.
+    /// Answers a message with `{"ok":…}` or with `{"no":"a sentence for the user"}`.
     pub fn call(&mut self, message: &str) -> String {
         let answer = match serde_json::from_str(message) {
             Ok(request) => self.answer(request),
@@ -59,13 +58,13 @@ impl Page {
             Request::Format { file } => ok(&edit::format(&file, self.file_mut(&file)?)?),
             Request::References { file, at } => ok(&edit::references(self.file(&file)?, at)),
             Request::Copy { file, ids } => {
-                let text = edit::copy(self.file(&file)?, &ids);
+                let text = gestures::copy(self.file(&file)?, &ids);
                 ok(&serde_json::json!({ "text": text }))
             }
             Request::Merge { base, mine, theirs } => ok(&merge(&base, &mine, &theirs)?),
             Request::Drawing(wish) => ok(&drawing::drawing(self.file(&wish.file)?, &wish)?),
-            Request::Forms => ok(&out::forms()),
-            Request::Export { file, to } => ok(&out::export(&file, self.file(&file)?, &to)?),
+            Request::Forms => ok(&export::forms()),
+            Request::Export { file, to } => ok(&export::export(&file, self.file(&file)?, &to)?),
             Request::Logic { file, id } => ok(&logic::logic(self.file(&file)?, &id)?),
             Request::LogicRead { tongue, text } => {
                 ok(&serde_json::json!({ "text": logic::read(tongue, &text)? }))
@@ -75,7 +74,7 @@ impl Page {
                 let text = explain(&code).ok_or_else(|| format!("there is no problem `{code}`"))?;
                 ok(&serde_json::json!({ "markdown": text }))
             }
-            Request::Test { file, name } => ok(&tests::test(self.file(&file)?, name.as_deref())?),
+            Request::Test { file, name } => ok(&testing::test(self.file(&file)?, name.as_deref())?),
             Request::Tokens { file, from, to } => ok(&language::tokens::tokens(self.file(&file)?, from, to)),
             Request::Complete { file, at } => ok(&language::complete::complete(self.file(&file)?, at)),
             Request::Hover { file, at } => ok(&language::hover::hover(self.file(&file)?, at)),
@@ -145,7 +144,7 @@ impl Page {
     }
 
     fn look(&self, name: &str) -> Answer {
-        ok(&look(name, self.file(name)?))
+        ok(&overview(name, self.file(name)?))
     }
 
     fn start(&mut self, wish: &run::Start) -> Answer {
@@ -158,7 +157,8 @@ impl Page {
         started
     }
 
-    /// Lets a run go on in a changed text: what would be lost, or all of the run anew.
+    /// Continues a run with a changed text: answers with the losses, or with the description of the
+    /// new run.
     fn swap(&mut self, run: &str, file: &str, force: bool) -> Answer {
         let open = self.files.get(file).ok_or_else(|| format!("{file} is not open"))?;
         let run = self.runs.get_mut(run).ok_or_else(|| format!("there is no run `{run}`"))?;
@@ -166,7 +166,7 @@ impl Page {
         if lost.is_empty() { ok(&run.started()) } else { ok(&serde_json::json!({ "lost": lost })) }
     }
 
-    /// Does something to a run and answers what changed.
+    /// Does something with a run and answers with what changed.
     fn with(&mut self, name: &str, times: bool, work: impl FnOnce(&mut Run) -> Result<(), String>) -> Answer {
         let run = self.run(name)?;
         work(run)?;
@@ -174,7 +174,7 @@ impl Page {
     }
 }
 
-/// The name of an imported file: its own, ending in .g7.
+/// The name of an imported file: its own name with the extension .g7.
 fn with_ending(name: &str) -> String {
     let stem = name.rsplit_once('.').filter(|(_, end)| !end.contains('/')).map_or(name, |(stem, _)| stem);
     format!("{stem}.g7")

@@ -1,9 +1,11 @@
-//! Bytes of a text and UTF-16 code units, lines and columns.
+//! Converts between bytes of a text, UTF-16 code units, and lines with columns.
 
-/// Looks up places of one text.
+use serde::{Deserialize, Serialize};
+
+/// The conversion for one text.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Positions {
-    /// Of each line: its first byte and its first code unit.
+    /// For each line: its first byte and its first code unit.
     lines: Vec<(usize, usize)>,
     units: usize,
     ascii: bool,
@@ -28,12 +30,12 @@ impl Positions {
         Positions { lines, units, ascii }
     }
 
-    /// Length of the text in code units.
+    /// The length of the text in code units.
     pub(crate) fn units(&self) -> usize {
         self.units
     }
 
-    /// The code unit at a byte; one within a character counts as its start.
+    /// The code unit at a byte; a byte inside a character counts as its start.
     pub(crate) fn unit(&self, text: &str, byte: usize) -> usize {
         if self.ascii {
             return byte.min(self.units);
@@ -45,7 +47,7 @@ impl Positions {
         unit + before.map(|(_, c)| c.len_utf16()).sum::<usize>()
     }
 
-    /// The byte at a code unit; one within a character counts as its start.
+    /// The byte at a code unit; a code unit inside a character counts as its start.
     pub(crate) fn byte(&self, text: &str, unit: usize) -> usize {
         if self.ascii {
             return unit.min(self.units);
@@ -62,7 +64,7 @@ impl Positions {
         byte
     }
 
-    /// Line and column of a byte, from 1, columns in characters.
+    /// The line and the column of a byte, both from 1; the column counts characters.
     pub(crate) fn line_column(&self, text: &str, byte: usize) -> (usize, usize) {
         let line = self.lines.partition_point(|(b, _)| *b <= byte).saturating_sub(1);
         let (start, _) = self.lines.get(line).copied().unwrap_or_default();
@@ -70,6 +72,14 @@ impl Positions {
         let column = rest.char_indices().take_while(|(i, c)| start + i + c.len_utf8() <= byte).count();
         (line + 1, column + 1)
     }
+}
+
+/// A replacement in a text; places are in code units.
+#[derive(Clone, Debug, Deserialize, Serialize, PartialEq, Eq)]
+pub(crate) struct Change {
+    pub(crate) from: usize,
+    pub(crate) to: usize,
+    pub(crate) insert: String,
 }
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
-//! Problems as the page shows them.
+//! Problems in the form that the page shows.
 
-use g7_model::{Document, Problem, Severity, Span};
-use serde::{Deserialize, Serialize};
+use g7_model::{Document, Problem, Severity};
+use serde::Serialize;
 
 use crate::file::File;
 use crate::fixes::{Fix, SOME, fixes};
@@ -32,31 +32,23 @@ struct Related {
     what: String,
 }
 
-/// A piece of text in place of another; places in code units.
-#[derive(Clone, Debug, Deserialize, Serialize, PartialEq, Eq)]
-pub(crate) struct Change {
-    pub(crate) from: usize,
-    pub(crate) to: usize,
-    pub(crate) insert: String,
-}
-
-/// The problems of a file.
+/// The problems of a file, with fixes.
 pub(crate) fn rows(file: &File) -> Vec<Row> {
     let small = file.text().len() < 100_000;
     file.problems.iter().enumerate().map(|(i, p)| whole_row(file, p, small && i < SOME)).collect()
 }
 
-/// One problem, with the fixes that cost nothing.
+/// One problem, with only those fixes that need no check of the file.
 pub(crate) fn row(file: &File, p: &Problem) -> Row {
     whole_row(file, p, false)
 }
 
 fn whole_row(file: &File, p: &Problem, time: bool) -> Row {
-    let (from, to) = units(file, p.at);
+    let (from, to) = file.units(p.at);
     let byte = file.source.range(p.at).start;
     let (line, column) = file.positions.line_column(file.text(), byte);
     let related = p.related.iter().map(|(at, what)| {
-        let (from, to) = units(file, *at);
+        let (from, to) = file.units(*at);
         Related { from, to, what: what.clone() }
     });
     Row {
@@ -75,15 +67,8 @@ fn whole_row(file: &File, p: &Problem, time: bool) -> Row {
     }
 }
 
-/// A place in code units.
-pub(crate) fn units(file: &File, at: Span) -> (usize, usize) {
-    let range = file.source.range(at);
-    let unit = |byte| file.positions.unit(file.text(), byte);
-    (unit(range.start), unit(range.end))
-}
-
-/// What of the drawing a problem marks: the symbol it stands in, and those of
-/// the other places.
+/// The ids of the symbols that a problem marks: the one that contains it, and those at the related
+/// places.
 fn items(document: &Document, p: &Problem) -> Vec<String> {
     let mut items: Vec<String> = Vec::new();
     for at in std::iter::once(p.at).chain(p.related.iter().map(|(at, _)| *at)) {

@@ -1,4 +1,4 @@
-//! What can be asked, as it comes in.
+//! The messages that the page can send.
 
 use serde::Deserialize;
 
@@ -21,7 +21,7 @@ pub(crate) enum Request {
     },
     Splice {
         file: String,
-        splices: Vec<crate::problems::Change>,
+        splices: Vec<crate::positions::Change>,
         #[serde(default)]
         unit: bool,
     },
@@ -35,12 +35,12 @@ pub(crate) enum Request {
     Redo {
         file: String,
     },
-    /// What would be put into another chart.
+    /// Copies symbols as text, to be pasted elsewhere.
     Copy {
         file: String,
         ids: Vec<g7_edit::ItemId>,
     },
-    /// Two changes of one text as one.
+    /// Merges two changes of one text.
     Merge {
         base: String,
         mine: String,
@@ -54,9 +54,9 @@ pub(crate) enum Request {
         at: usize,
     },
     Drawing(crate::drawing::Wish),
-    /// The forms in which a chart can leave.
+    /// Lists the forms in which a chart can be exported.
     Forms,
-    /// A file in one of them.
+    /// Exports a file in one of them.
     Export {
         file: String,
         to: String,
@@ -66,12 +66,12 @@ pub(crate) enum Request {
         file: String,
         id: String,
     },
-    /// Logic in one of them as an expression of the text.
+    /// Converts logic in one of these languages to an expression of the text.
     LogicRead {
         tongue: crate::logic::Tongue,
         text: String,
     },
-    /// The style sheet of the fragments.
+    /// The style sheet of the drawings.
     Style {
         #[serde(default)]
         dark: bool,
@@ -79,7 +79,7 @@ pub(crate) enum Request {
     Explain {
         code: String,
     },
-    /// The tests whose titles hold `name`, or all.
+    /// Runs the tests whose titles contain `name`, or all.
     Test {
         file: String,
         name: Option<String>,
@@ -138,7 +138,7 @@ pub(crate) enum Request {
         signal: usize,
         value: String,
     },
-    /// One signal, or all where none is named.
+    /// Releases one signal, or all if none is named.
     RunRelease {
         run: String,
         signal: Option<usize>,
@@ -177,7 +177,7 @@ pub(crate) enum Request {
         #[serde(default)]
         times: bool,
     },
-    /// What a page is told at the beginning, once more.
+    /// Asks again for the description of a run that its start returned.
     RunSignals {
         run: String,
     },
@@ -199,12 +199,12 @@ pub(crate) enum Request {
     },
 }
 
-/// The end of any text.
+/// The default end of a range: the end of the text.
 fn end() -> usize {
     usize::MAX
 }
 
-/// Edges of a lane where nothing is said: more than a screen has columns.
+/// The default number of edges in a lane: more than the columns of a screen.
 fn lane() -> usize {
     4_000
 }

@@ -1,4 +1,4 @@
-//! Files in the page: what is asked of them and what comes back.
+//! Files in the page: messages and answers.
 #![allow(clippy::disallowed_methods, reason = "the tests read the examples")]
 
 mod common;
@@ -128,7 +128,7 @@ fn undoing_everything_gives_the_first_text() {
     assert!(changes > 150, "only {changes} changes were accepted");
 }
 
-/// Some gesture or some typing; whether it was accepted.
+/// A random gesture or random typing; true if it was accepted.
 fn change(page: &mut Asked, chance: &mut Chance) -> bool {
     let look = page.ok(json!({ "do": "look", "file": "a.g7" }));
     let charts = look["charts"].as_array().cloned().unwrap_or_default();
@@ -139,7 +139,7 @@ fn change(page: &mut Asked, chance: &mut Chance) -> bool {
         let insert = *chance.one(&["x", " ", "ö", "1", "}", ""]);
         let splices = json!([{ "from": from, "to": to, "insert": insert }]);
         let done = page.ask(json!({ "do": "splice", "file": "a.g7", "splices": splices }));
-        // Most of the time the slip is taken back, so that gestures find a chart.
+        // Most faulty texts are undone, so that gestures find a chart.
         if chance.below(3) > 0 {
             page.ask(json!({ "do": "undo", "file": "a.g7" })).ok();
         }
@@ -181,7 +181,7 @@ fn splices_of_an_edit_make_the_text_view_the_same_text() {
     assert!(page.text().starts_with("chart G {"), "{}", page.text());
 }
 
-/// What an editor of UTF-16 text does with splices.
+/// Applies splices like an editor of UTF-16 text.
 fn replay(text: &str, splices: &Value) -> String {
     let mut units: Vec<u16> = text.encode_utf16().collect();
     for s in splices.as_array().expect("splices").iter().rev() {
@@ -329,7 +329,7 @@ fn every_fix_mends_its_problem() {
 #[test]
 fn a_chart_leaves_in_every_form_that_is_listed() {
     let mut page = Asked::default();
-    // One pass a scan: rungs have no search for stability.
+    // One pass a scan, because Ladder has no search for stability.
     page.open(&format!("profile iec61131\n{}", CHART.replace("when aa", "when a")));
     let forms = page.ok(json!({ "do": "forms" }));
     let words: Vec<&str> =

@@ -1,4 +1,4 @@
-//! Whatever comes in, an answer goes out.
+//! Every message gets an answer, whatever it contains.
 #![allow(clippy::disallowed_methods, reason = "the tests read the examples")]
 
 mod common;
@@ -24,7 +24,7 @@ fn what_is_no_message_is_refused_in_words() {
     }
 }
 
-/// Every message once, as it should be.
+/// One correct message of each kind.
 fn messages(text: &str) -> Vec<Value> {
     let file = "a.g7";
     vec![

@@ -1,4 +1,4 @@
-//! Logic in the languages of controllers: each shown as the others, and read back.
+//! Logic in the languages of controllers: each form is shown and read back.
 #![allow(clippy::disallowed_methods, reason = "the tests read the examples")]
 mod common;
 
@@ -19,13 +19,13 @@ chart G {
 }
 ";
 
-/// The pieces of a symbol.
+/// The pieces of logic of a symbol.
 fn logic(page: &mut Asked, id: &str) -> Vec<Value> {
     let found = page.ok(json!({ "do": "logic", "file": "a.g7", "id": id }));
     found.as_array().expect("a list").clone()
 }
 
-/// A piece in a language.
+/// A piece of logic in a language.
 fn text(piece: &Value, tongue: &str) -> Value {
     let forms = piece["forms"].as_array().expect("forms");
     forms.iter().find(|f| f["tongue"] == tongue).expect("each language is named")["text"].clone()
@@ -67,7 +67,7 @@ fn a_step_shows_the_conditions_and_bodies_of_its_actions() {
 
     let pieces = logic(&mut page, "G/s/2");
     assert_eq!(parts(&pieces), [("body".to_owned(), 0), ("event".to_owned(), 1), ("body".to_owned(), 1)]);
-    // A loop that counts has a form in Structured Text alone.
+    // Only Structured Text can express a counting loop.
     assert!(text(&pieces[0], "st").as_str().is_some_and(|t| t.contains("FOR")));
     assert_eq!([text(&pieces[0], "il"), text(&pieces[0], "ld")], [Value::Null, Value::Null]);
 }

@@ -1,6 +1,5 @@
-//! What the drawing and the panel of properties show and change: comments, the
-//! steps of a transition, switches of the profile; parts on their way to another
-//! file; two changes of one file.
+//! The properties that the drawing and the panel show and change: comments, steps of a transition,
+//! switches of the profile; and copying to another file, and merging two changes of one file.
 #![allow(clippy::disallowed_methods, reason = "the common part reads the examples")]
 
 mod common;

@@ -1,4 +1,4 @@
-//! Runs in the page: frames, forcing, the way back, breakpoints, changes.
+//! Runs in the page: frames, forcing, going back in time, breakpoints, on-line changes.
 #![allow(clippy::disallowed_methods, reason = "the tests read the examples")]
 
 mod common;
@@ -60,7 +60,7 @@ fn a_frame_says_only_what_changed() {
     assert_eq!(moved["enabled"], json!([[1, 1], [0, 0]]));
 }
 
-/// What a page knows after all the frames it was given.
+/// The knowledge of a page that has received all frames so far.
 #[derive(Default, PartialEq, Debug)]
 struct Known {
     on: Vec<u64>,
@@ -154,7 +154,7 @@ fn a_scan_of_the_past_is_shown_as_it_was() {
                 page.ok(json!({ "do": "run_pass", "run": "r" }));
             }
             advance(&mut page, 10 * chance.below(30) as u64);
-            // Only whole scans are scans of the past.
+            // The past consists of whole scans only.
             let frame = page.ok(json!({ "do": "run_scan", "run": "r" }));
             let mut whole = full(&mut page);
             whole["cleared"] = frame["cleared"].clone();
@@ -198,7 +198,7 @@ fn breakpoints_stop_at_activation_and_at_clearing() {
     assert_eq!(ids["ids"], json!(["G/s/2", "G/t/2"]));
     page.ok(json!({ "do": "run_toggle", "run": "r", "signal": A }));
     page.ok(json!({ "do": "run_toggle", "run": "r", "signal": B }));
-    // Step 2 is active within the scan only: 1 -> 2 -> 3 clear in one search for stability.
+    // Step 2 is active only within the scan: 1 -> 2 -> 3 clear in one search for stability.
     let stopped = advance(&mut page, 1_000);
     assert_eq!(
         (&stopped["stopped"]["id"], &stopped["now_ms"], &stopped["on"]),
@@ -247,7 +247,7 @@ fn forced_values_are_marked_and_hold() {
     assert!(
         page.no(json!({ "do": "run_set", "run": "r", "signal": Q, "value": "1" })).contains("can be forced")
     );
-    assert!(page.no(json!({ "do": "run_toggle", "run": "r", "signal": N })).contains("no BOOL"));
+    assert!(page.no(json!({ "do": "run_toggle", "run": "r", "signal": N })).contains("not a BOOL"));
     assert!(
         page.no(json!({ "do": "run_set", "run": "r", "signal": N, "value": "40000" })).contains("outside")
     );
@@ -268,7 +268,7 @@ fn a_changed_text_is_taken_over_or_says_what_it_costs() {
     let lanes = page.ok(json!({ "do": "run_lanes", "run": "r", "signals": [A], "from_ms": 0, "to_ms": 300 }));
     assert_eq!(lanes["lanes"][0].as_array().map(Vec::len), Some(2), "what was recorded stays: {lanes}");
     page.open(&CHART.replace("step 2 ", "step 20 ").replace("2 ->", "20 ->").replace("-> 2 ", "-> 20 "));
-    assert_eq!(page.ok(swap(false))["lost"], json!(["step `2` is active and is not there any more"]));
+    assert_eq!(page.ok(swap(false))["lost"], json!(["step `2` is active and no longer exists"]));
     assert_eq!(full(&mut page)["on"], json!([1]), "nothing was done");
     assert_eq!(page.ok(swap(true))["frame"]["on"], json!([]));
     page.open("chart G {");

@@ -1,11 +1,12 @@
-//! A changed chart takes over a run: what both have by the same name goes on.
+//! On-line changes: a changed chart continues the run of the old one. Parts with the same name in
+//! both continue.
 //!
 //! ```text
-//! old Bench + Runner, new Bench -> pairs by name -> engine::carry -> new Runner, what is lost
+//! old Bench + Runner, new Bench -> pairs by name -> engine::carry -> new Runner, losses
 //! ```
 //!
-//! What must hold: nothing that goes away unsaid mattered: an active step, a
-//! value that is not the initial one, a forced signal.
+//! Every loss that matters is reported: an active step, a value that differs from the initial one,
+//! a forced signal.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -18,23 +19,23 @@ use g7_model::{Chart, ChartKind, Document};
 
 use crate::{Bench, Role};
 
-/// A run that goes on in changed charts.
+/// A run that continues with the changed charts.
 pub struct Carried {
-    /// It, at the instant where the old one stood.
+    /// The run, at the same instant as the old one.
     pub runner: Runner,
-    /// What does not go on, a sentence each.
+    /// A sentence for each part of the old run that does not continue.
     pub lost: Vec<String>,
 }
 
-/// Lets new charts go on where a run of old ones stands.
+/// Continues a run of old charts with new ones.
 ///
 /// # Errors
 ///
-/// Why it cannot: the run is stopped by a fault, or an expression of the new
-/// charts has one in this state.
+/// The reason why this is impossible: a fault has stopped the run, or an expression of the new
+/// charts fails in this state.
 pub fn carry(new: (&Bench, &Document), old: (&Bench, &Document), run: &Runner) -> Result<Carried, String> {
     if run.halt().is_some() {
-        return Err("the run is stopped by a fault: start it anew".to_owned());
+        return Err("a fault has stopped the run: restart it".to_owned());
     }
     let (bench, before) = (new.0, old.0);
     let mut lost = Vec::new();
@@ -49,7 +50,7 @@ pub fn carry(new: (&Bench, &Document), old: (&Bench, &Document), run: &Runner) -
                 let value = before.value(run, item);
                 bench.force(&mut runner, i, &value);
             }
-            None if forced => lost.push(format!("`{}` was forced and is not there any more", item.name)),
+            None if forced => lost.push(format!("`{}` was forced and no longer exists", item.name)),
             Some(i) if matches!((item.role, i.role), (Role::Input(_), Role::Input(_))) => {
                 let value = before.value(run, item);
                 bench.set(&mut runner, i, &value);
@@ -60,7 +61,7 @@ pub fn carry(new: (&Bench, &Document), old: (&Bench, &Document), run: &Runner) -
     Ok(Carried { runner, lost })
 }
 
-/// The state of the new charts.
+/// The state with which the new charts continue.
 fn charts(
     new: (&Bench, &Document),
     old: (&Bench, &Document),
@@ -71,7 +72,7 @@ fn charts(
     let kept = kept_charts(new.1, old.1);
     let at_work = at_work(old.1, was, state);
     for task in &at_work {
-        lost.push(format!("the task `{task}` is at work: it goes back to its start"));
+        lost.push(format!("the task `{task}` is being executed: it restarts"));
     }
     let path_kept = |path: &str| path.split('.').next().is_some_and(|chart| kept.contains(chart));
     let partners = partners(&was.symbols);
@@ -88,9 +89,9 @@ fn charts(
     let gone = |s: &StepId| was.symbols.is_listed(*s) && !taken.contains(s);
     for step in state.active().filter(gone) {
         let task = was.symbols.step_path(step).split('.').next().unwrap_or("").to_owned();
-        // What is said of the whole task is not said of its steps again.
+        // The loss of a task was reported already; do not report its steps again.
         if !tasks(old.1).any(|t| *t.name.text == *task) {
-            lost.push(format!("step `{}` is active and is not there any more", was.symbols.step_name(step)));
+            lost.push(format!("step `{}` is active and no longer exists", was.symbols.step_name(step)));
         }
     }
     let words = words(c, was, state, lost);
@@ -106,14 +107,14 @@ fn charts(
     let (state, delays) = carried.map_err(|f| format!("the changed chart cannot go on here: {}", f.kind))?;
     match delays {
         0 => {}
-        1 => lost.push("a delay that runs begins anew".to_owned()),
-        n => lost.push(format!("{n} delays that run begin anew")),
+        1 => lost.push("a running delay restarts".to_owned()),
+        n => lost.push(format!("{n} running delays restart")),
     }
     Ok(state)
 }
 
-/// The outermost charts and expansions that both have; tasks go by their callers
-/// and begin anew.
+/// The charts and expansions that exist in both documents. Tasks are left out: they restart,
+/// because their callers decide where they stand.
 fn kept_charts<'d>(new: &'d Document, old: &'d Document) -> BTreeSet<&'d str> {
     let of = |d: &'d Document| -> BTreeSet<&'d str> {
         d.charts().filter(|c| c.kind == ChartKind::Chart).map(|c| &*c.name.text).collect()
@@ -125,7 +126,7 @@ fn tasks(document: &Document) -> impl Iterator<Item = &Chart> {
     document.charts().filter(|c| c.kind == ChartKind::Task)
 }
 
-/// The tasks that are not at rest.
+/// The tasks that are being executed.
 fn at_work(document: &Document, was: &Compiled, state: &State) -> Vec<String> {
     let initial = &was.program.tables().initial;
     let busy = |task: &str| {
@@ -135,7 +136,7 @@ fn at_work(document: &Document, was: &Compiled, state: &State) -> Vec<String> {
     tasks(document).map(|t| t.name.text.to_string()).filter(|t| busy(t)).collect()
 }
 
-/// Steps by their names; the stand-ins of macro-steps by a name of their own.
+/// The steps of the old charts by a key that also identifies the internal step of a macro-step.
 fn partners(symbols: &Symbols) -> BTreeMap<String, StepId> {
     (0..symbols.steps()).map(StepId).map(|s| (key(symbols, s), s)).collect()
 }
@@ -145,7 +146,8 @@ fn key(symbols: &Symbols, step: StepId) -> String {
     if symbols.is_listed(step) { path.to_owned() } else { format!("{path}.@") }
 }
 
-/// The words of the variables that both have with one type.
+/// The pairs of words of variables that exist in both with the same type. Reports the values that
+/// are lost.
 fn words(c: &Compiled, was: &Compiled, state: &State, lost: &mut Vec<String>) -> Vec<(Addr, Addr)> {
     let old: BTreeMap<&str, &Variable> = was.symbols.variables.iter().map(|v| (&*v.name, v)).collect();
     let lasting = |v: &Variable| !matches!(v.class, VarClass::Const | VarClass::Local);
@@ -155,7 +157,7 @@ fn words(c: &Compiled, was: &Compiled, state: &State, lost: &mut Vec<String>) ->
     for v in c.symbols.variables.iter().filter(|v| lasting(v)) {
         let Some(o) = old.get(&*v.name).filter(|o| lasting(o) && o.ty == v.ty) else { continue };
         kept.insert(&*v.name);
-        // An action that went away no longer holds its variable.
+        // If an action was removed, its variable returns to its initial value.
         if drove.contains(&o.addr) && !drives.contains(&v.addr) {
             continue;
         }
@@ -164,7 +166,7 @@ fn words(c: &Compiled, was: &Compiled, state: &State, lost: &mut Vec<String>) ->
     }
     let fresh = State::new(&was.program);
     for o in was.symbols.variables.iter().filter(|o| lasting(o) && o.class != VarClass::System) {
-        // Members of an instance go with it, and so does its name.
+        // The members of an instance have no name of their own, so the instance reports their loss.
         if kept.contains(&*o.name) || o.value(state) == o.value(&fresh) || o.class == VarClass::Input {
             continue;
         }
@@ -172,21 +174,21 @@ fn words(c: &Compiled, was: &Compiled, state: &State, lost: &mut Vec<String>) ->
         let now = c.symbols.variable(&o.name);
         lost.push(match now {
             Some(v) => format!("`{}` was {} and is {}: its value {value} is lost", o.name, o.ty, v.ty),
-            None if value.is_empty() => format!("`{}` is not there any more", o.name),
-            None => format!("`{}`, which is {value}, is not there any more", o.name),
+            None if value.is_empty() => format!("`{}` no longer exists", o.name),
+            None => format!("`{}`, which is {value}, no longer exists", o.name),
         });
     }
     words
 }
 
-/// The variables that steps and control blocks drive.
+/// The variables that are driven by steps and control blocks.
 fn driven(c: &Compiled) -> BTreeSet<Addr> {
     let tables = c.program.tables();
     let direct = tables.steps.iter().map(|s| s.direct);
     direct.chain(tables.blocks.iter().map(|b| b.output)).filter(|a| a.0 != NONE).collect()
 }
 
-/// Control blocks of one name.
+/// The pairs of control blocks with the same name.
 fn blocks(c: &Compiled, was: &Compiled) -> Vec<(u32, u32)> {
     let named = |s: &Symbols| -> BTreeMap<Box<str>, u32> {
         (0u32..)
@@ -199,7 +201,7 @@ fn blocks(c: &Compiled, was: &Compiled) -> Vec<(u32, u32)> {
     named(&c.symbols).into_iter().filter_map(|(name, i)| Some((i, *old.get(&name)?))).collect()
 }
 
-/// The plant goes on where it stands, as far as it is the same.
+/// Continues the plant, as far as it is unchanged.
 fn plant(
     bench: &Bench,
     before: &Bench,
@@ -209,7 +211,7 @@ fn plant(
 ) -> Result<(), String> {
     let (Some(side), Some(old), Some((_, state))) = (&bench.plant, &before.plant, run.plant()) else {
         if let Some(old) = &before.plant {
-            lost.push(format!("the plant `{}` is not there any more", old.name));
+            lost.push(format!("the plant `{}` no longer exists", old.name));
         }
         return Ok(());
     };

@@ -1,24 +1,24 @@
-//! Why no bench could be made although the charts are right.
+//! Errors in the use of a bench, for charts that are correct themselves.
 
-/// What the user of a bench can mend.
+/// An error that the user can correct by another choice.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum Error {
-    /// The plant asked for is not there.
+    /// The plant that was asked for does not exist.
     #[error("{file} has no plant `{name}`{}", rest(.there))]
     NoPlant {
         /// The file.
         file: String,
-        /// What was asked for.
+        /// The name that was asked for.
         name: String,
-        /// The plants that it has.
+        /// The plants that exist.
         there: Vec<String>,
     },
-    /// There are several plants, and none was asked for.
+    /// The file has several plants, and no name was given.
     #[error("{file} has several plants: choose one of {}, or none", .there.join(", "))]
     SeveralPlants {
         /// The file.
         file: String,
-        /// The plants that it has.
+        /// The plants that exist.
         there: Vec<String>,
     },
 }

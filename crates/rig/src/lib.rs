@@ -1,5 +1,5 @@
-//! Charts on the test bench: a source, what it compiles to, its plant and names
-//! for everything; tests that run on it.
+//! Charts on the test bench: a source, its compiled charts, its plant, names for everything, and
+//! tests that run on them.
 //!
 //! # Where this sits
 //!
@@ -9,8 +9,8 @@
 //!                    model::Scenario -> testing -> Outcome, Coverage
 //! ```
 //!
-//! What must hold: nothing here knows of files, arguments, screens or the time
-//! of day; a clock, where one is wanted, is given.
+//! This crate accesses no files, no screen and no clock: the caller hands a clock in if one is
+//! needed.
 #![forbid(unsafe_code)]
 
 mod bench;

@@ -1,4 +1,4 @@
-//! Files as the parser saw them: bytes, document, problems; and from byte to line.
+//! Source files: bytes, document and problems; and the conversion from bytes to lines.
 
 use g7_exchange::Format;
 use g7_model::{Document, FileId, Item, Problem, Scenario, Severity, Span};
@@ -6,46 +6,47 @@ use g7_model::{Document, FileId, Item, Problem, Scenario, Severity, Span};
 /// A file that was read.
 #[derive(Debug)]
 pub struct Source {
-    /// What messages call it, on one line.
+    /// The name used in messages, on one line.
     pub name: String,
-    /// One byte of it for each byte of the file: what is no UTF-8 shows as `?`.
+    /// The text, with one byte for each byte of the file: bytes that are not UTF-8 are replaced by
+    /// `?`.
     pub text: String,
-    /// The bytes.
+    /// The bytes of the file.
     pub bytes: Vec<u8>,
-    /// What the parser made of them.
+    /// The parsed document.
     pub document: Document,
-    /// What the parser said of them.
+    /// The problems that the parser found.
     pub problems: Vec<Problem>,
-    /// The foreign format it came from.
-    pub format: Option<Format>,
+    /// The foreign format of the file, if it is not .g7.
+    pub format: Option<&'static Format>,
     starts: Vec<usize>,
 }
 
 impl Source {
-    /// Reads a .g7 file or one of a foreign format; which, its content says, or else its name.
+    /// Reads a .g7 file or a file of a foreign format. The content decides which one it is,
+    /// otherwise the name.
     pub fn new(name: &str, bytes: Vec<u8>, id: u32) -> Source {
         let format = g7_exchange::recognise(name, &bytes);
-        let (document, problems) = match format {
-            Some(format) => g7_exchange::import(format, &bytes, FileId(id)),
-            None => g7_syntax::parse_bytes(&bytes, FileId(id)),
-        };
+        let (document, problems) = format
+            .and_then(|format| format.read(&bytes, FileId(id)))
+            .unwrap_or_else(|| g7_syntax::parse_bytes(&bytes, FileId(id)));
         let text = same_length(&bytes);
         let starts = std::iter::once(0).chain(text.match_indices('\n').map(|(i, _)| i + 1)).collect();
         let name = name.chars().map(|c| if c.is_control() { '?' } else { c }).collect();
         Source { name, text, bytes, document, problems, format, starts }
     }
 
-    /// Whether a problem is an error.
+    /// True if one of the problems is an error.
     pub fn has_errors(&self) -> bool {
         self.problems.iter().any(|p| p.severity() == Severity::Error)
     }
 
-    /// The tests in it, in the order of the text.
+    /// The tests in the file, in the order of the text.
     pub fn tests(&self) -> impl Iterator<Item = &Scenario> {
         self.document.items.iter().filter_map(|i| if let Item::Test(t) = i { Some(t) } else { None })
     }
 
-    /// The span within the text, its ends at characters.
+    /// The range of a span within the text, rounded to whole characters.
     pub fn range(&self, span: Span) -> std::ops::Range<usize> {
         let floor = |at: u32| {
             let mut at = (at as usize).min(self.text.len());
@@ -58,12 +59,12 @@ impl Source {
         start..floor(span.end).max(start)
     }
 
-    /// Number of the line of a byte, from 0.
+    /// The number of the line of a byte, from 0.
     pub fn line(&self, byte: usize) -> usize {
         self.starts.partition_point(|s| *s <= byte).saturating_sub(1)
     }
 
-    /// Line and column in characters, both from 1.
+    /// The line and the column of a byte, both from 1; the column counts characters.
     pub fn position(&self, byte: usize) -> (usize, usize) {
         let line = self.line(byte);
         let start = self.starts.get(line).copied().unwrap_or(0);
@@ -71,21 +72,21 @@ impl Source {
         (line + 1, column + 1)
     }
 
-    /// The bytes of some lines, line ends included.
+    /// The range of bytes of some lines, line ends included.
     pub fn lines(&self, first: usize, last: usize) -> std::ops::Range<usize> {
         let start = self.starts.get(first).copied().unwrap_or(self.text.len());
         let end = self.starts.get(last + 1).copied().unwrap_or(self.text.len());
         start..end.max(start)
     }
 
-    /// `path:line:column` of a span.
+    /// The place of a span as `path:line:column`.
     pub fn place(&self, span: Span) -> String {
         let (line, column) = self.position(self.range(span).start);
         format!("{}:{line}:{column}", self.name)
     }
 }
 
-/// Text with a byte for each byte: spans count bytes of the file.
+/// Decodes text so that each byte stays one byte, because spans count the bytes of the file.
 fn same_length(bytes: &[u8]) -> String {
     let mut text = String::with_capacity(bytes.len());
     for chunk in bytes.utf8_chunks() {

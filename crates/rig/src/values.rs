@@ -1,13 +1,15 @@
-//! Values as users type them: on the command line, in the view, in the page.
+//! Reads values that users type: on the command line, in the terminal view, in the page.
 
 use g7_host::{Kind, Value};
+use g7_model::Nanos;
 
-/// `1h30m`, `2.5s`, `500ms`, in nanoseconds; more than 0, or 0 itself as `0s`.
+/// Reads a duration such as `1h30m`, `2.5s` or `500ms`. It must be more than 0; 0 itself is written
+/// `0s`.
 ///
 /// # Errors
 ///
-/// What was expected, in words.
-pub fn duration(text: &str) -> Result<i64, String> {
+/// A text that says what was expected.
+pub fn duration(text: &str) -> Result<Nanos, String> {
     let bad = || "expected a duration such as 10ms, 2.5s or 1h30m".to_owned();
     let text = text.trim();
     let text = text.strip_prefix("T#").or(text.strip_prefix("t#")).unwrap_or(text);
@@ -24,21 +26,18 @@ pub fn duration(text: &str) -> Result<i64, String> {
         total += part(number, unit).ok_or_else(bad)?;
         left = rest.to_owned();
     }
-    i64::try_from(total).map_err(|_| "this duration is too long".to_owned())
+    i64::try_from(total).map(Nanos::new).map_err(|_| "this duration is too long".to_owned())
 }
 
-/// A number with a unit, exactly; decimals below a nanosecond are no duration.
+/// Converts a number with a unit exactly; `None` if it has a fraction of a nanosecond.
 fn part(number: &str, unit: &str) -> Option<i128> {
     let unit: i128 = match unit.to_ascii_lowercase().as_str() {
-        "d" => 86_400_000_000_000,
-        "h" => 3_600_000_000_000,
-        "m" | "min" => 60_000_000_000,
-        "s" => 1_000_000_000,
-        "ms" => 1_000_000,
-        "us" | "µs" => 1_000,
-        "ns" => 1,
-        _ => return None,
-    };
+        "min" => Nanos::MINUTE,
+        "µs" => Nanos::MICROSECOND,
+        name => Nanos::UNITS.iter().find(|(unit, _)| *unit == name)?.1,
+    }
+    .count()
+    .into();
     let (whole, decimals) = number.split_once('.').unwrap_or((number, ""));
     if whole.is_empty() || whole.len() > 18 || decimals.len() > 18 || decimals.contains('.') {
         return None;
@@ -59,7 +58,7 @@ fn part(number: &str, unit: &str) -> Option<i128> {
 ///
 /// # Errors
 ///
-/// What was expected, in words.
+/// A text that says what was expected.
 pub fn read(text: &str, kind: Kind) -> Result<Value, String> {
     let plain = text.trim();
     let number = plain.replace('_', "");
@@ -67,10 +66,10 @@ pub fn read(text: &str, kind: Kind) -> Result<Value, String> {
         Kind::Bool => match plain.to_ascii_lowercase().as_str() {
             "1" | "true" | "on" => Ok(Value::Word(1)),
             "0" | "false" | "off" => Ok(Value::Word(0)),
-            _ => Err(format!("`{plain}` is no BOOL: write TRUE or FALSE")),
+            _ => Err(format!("`{plain}` is not a BOOL: write TRUE or FALSE")),
         },
         Kind::Int { bits, signed } => {
-            let value: i128 = number.parse().map_err(|_| format!("`{plain}` is no whole number"))?;
+            let value: i128 = number.parse().map_err(|_| format!("`{plain}` is not a whole number"))?;
             let bits = u32::from(bits.clamp(1, 64));
             let (least, most) = if signed {
                 (-(1i128 << (bits - 1)), (1i128 << (bits - 1)) - 1)
@@ -85,12 +84,12 @@ pub fn read(text: &str, kind: Kind) -> Result<Value, String> {
         Kind::Real => number
             .parse::<f32>()
             .map(|x| Value::Word(u64::from(x.to_bits())))
-            .map_err(|_| format!("`{plain}` is no number")),
+            .map_err(|_| format!("`{plain}` is not a number")),
         Kind::Lreal => number
             .parse::<f64>()
             .map(|x| Value::Word(x.to_bits()))
-            .map_err(|_| format!("`{plain}` is no number")),
-        Kind::Time => duration(plain).map(|ns| Value::Word(ns as u64)),
+            .map_err(|_| format!("`{plain}` is not a number")),
+        Kind::Time => duration(plain).map(|time| Value::Word(time.count() as u64)),
         Kind::Text => {
             let inner = plain.strip_prefix('\'').and_then(|t| t.strip_suffix('\''));
             Ok(Value::Text(inner.unwrap_or(text).into()))
@@ -104,11 +103,11 @@ mod tests {
 
     #[test]
     fn durations_are_exact_or_refused() {
-        assert_eq!(duration("1h30m"), Ok(5_400_000_000_000));
-        assert_eq!(duration("2.5s"), Ok(2_500_000_000));
-        assert_eq!(duration("T#1m_30s"), Ok(90_000_000_000));
-        assert_eq!(duration("0.1us"), Ok(100));
-        assert_eq!(duration("1d"), Ok(86_400_000_000_000));
+        assert_eq!(duration("1h30m"), Ok(Nanos::HOUR + Nanos::MINUTE * 30));
+        assert_eq!(duration("2.5s"), Ok(Nanos::from_millis(2_500)));
+        assert_eq!(duration("T#1m_30s"), Ok(Nanos::SECOND * 90));
+        assert_eq!(duration("0.1us"), Ok(Nanos::new(100)));
+        assert_eq!(duration("1d"), Ok(Nanos::DAY));
         for bad in ["", "5", "s", "5x", "-1s", "1.5ns", "1..5s", "999999d999999999999d", "1e3s", "5 s"] {
             assert!(duration(bad).is_err(), "{bad:?}");
         }

@@ -1,4 +1,4 @@
-//! On-line changes: a chart that takes over where another stands.
+//! On-line changes: a changed chart continues the run of another.
 #![allow(clippy::disallowed_methods, reason = "the tests read the examples")]
 
 use std::path::{Path, PathBuf};
@@ -19,7 +19,8 @@ fn item<'b>(bench: &'b Bench, name: &str) -> &'b Item {
     bench.item(name).unwrap_or_else(|| panic!("{name}"))
 }
 
-/// Runs the first text so many scans with the inputs set, then lets the second one go on.
+/// Runs the first text for a number of scans with these inputs, then continues with the second
+/// text.
 fn changed(before: &str, after: &str, inputs: &[(&str, u64)], scans: u32) -> (Bench, Carried) {
     let (old, new) = (source(before), source(after));
     let (was, is) = (bench(&old), bench(&new));
@@ -55,7 +56,7 @@ fn situation_values_and_step_times_go_on() {
     assert_eq!(situation(&bench, &runner), "2");
     assert_eq!(word(&bench, &runner, "pump"), 1);
     bench.set(&mut runner, item(&bench, "a"), &Value::Word(0));
-    // Step 2 came on at 10 ms and its time goes on: 5 s are over in the scan at 5.02 s.
+    // Step 2 was activated at 10 ms and its time goes on, so 5 s have passed in the scan at 5.02 s.
     while runner.due() <= 5_010_000_000 {
         runner.scan().expect("no fault");
         assert_eq!(situation(&bench, &runner), "2", "at {} ns", runner.state().now());
@@ -72,7 +73,7 @@ fn what_goes_away_is_said() {
     let (bench, Carried { runner, lost }) = changed(&before, after, &[("a", 1)], 3);
     assert_eq!(
         lost,
-        ["step `2` is active and is not there any more", "`n` was INT and is BOOL: its value 7 is lost"]
+        ["step `2` is active and no longer exists", "`n` was INT and is BOOL: its value 7 is lost"]
     );
     assert_eq!(situation(&bench, &runner), "");
 }
@@ -100,7 +101,7 @@ fn a_chart_more_begins_and_a_pulse_does_not_run_again() {
     assert_eq!(word(&bench, &runner, "q"), 1, "set stays set");
 }
 
-/// Whether a BOOL is TRUE, scan by scan, beginning with the next one.
+/// The values of a BOOL in the following scans.
 fn seen(bench: &Bench, runner: &mut Runner, name: &str, scans: u32) -> Vec<u64> {
     (0..scans)
         .map(|_| {
@@ -118,17 +119,17 @@ fn a_delay_of_an_action_without_a_name_goes_on() {
         )
     };
     let before = chart("D 50ms n := n + 1");
-    // A chart in front, with steps and blocks of its own, moves all numbers.
+    // A chart before it, with steps and blocks of its own, shifts all internal numbers.
     let front = "chart F {\n initial step 8 { D 1s n := 0; S r }\n}\n";
     let after = before.replace("chart G", &format!("output r : BOOL\n{front}chart G"));
-    // Step 2 came on in the second scan, four scans of its delay are over.
+    // Step 2 was activated in the second scan; four scans of its delay have passed.
     let (bench, Carried { mut runner, lost }) = changed(&before, &after, &[("a", 1)], 4);
     assert_eq!(lost, Vec::<String>::new());
     let counts = seen(&bench, &mut runner, "n", 5);
     let (_, Carried { runner: mut unchanged, .. }) = changed(&before, &before, &[("a", 1)], 4);
     assert_eq!(counts, seen(&self::bench(&source(&before)), &mut unchanged, "n", 5));
     assert!(counts[0] == 0 && counts[4] > 1, "the delay ends in between: {counts:?}");
-    // Another qualifier is another action: it begins with the change.
+    // An action with another qualifier is a new action: it begins at the change.
     let after = chart("L 30ms n := n + 1");
     let (bench, Carried { mut runner, .. }) = changed(&before, &after, &[("a", 1)], 4);
     let counts = seen(&bench, &mut runner, "n", 8);
@@ -140,7 +141,7 @@ fn the_time_of_a_macro_step_goes_on() {
     let chart = "output v, w : BOOL\nchart G {\n initial macro M1 = A\n initial macro M2 = B\n initial step 9 { N v if XM1.t >= 50ms\n N w if XM2.t >= 60ms }\n}\nmacrochart A {\n entry step E\n exit step S\n E -> S when TRUE\n}\nmacrochart B {\n entry step E\n exit step S\n E -> S when TRUE\n}\n";
     let front = "chart F {\n initial macro M0 = C\n}\nmacrochart C {\n entry step E\n exit step S\n E -> S when TRUE\n}\n";
     let after = chart.replace("chart G", &format!("{front}chart G"));
-    // 20 ms are over at the change.
+    // At the change, 20 ms have passed.
     let (bench, Carried { mut runner, lost }) = changed(chart, &after, &[], 2);
     assert_eq!(lost, Vec::<String>::new());
     let mut both = Vec::new();
@@ -156,7 +157,7 @@ fn scans_and_time_of_a_macro_step_go_on_where_the_clock_counts_scans() {
     let chart = "profile jgrafchart\nscan 10ms\ninput a : BOOL\nchart G {\n initial step 1\n macro M1 = A\n macro M2 = B\n 1 -> (M1, M2) when a\n}\nmacrochart A {\n entry step E\n exit step S\n E -> S when FALSE\n}\nmacrochart B {\n entry step E\n exit step S\n E -> S when FALSE\n}\n";
     let front = "chart F {\n initial macro M0 = C\n}\nmacrochart C {\n entry step E\n exit step S\n E -> S when FALSE\n}\n";
     let after = chart.replace("chart G", &format!("{front}chart G"));
-    // Entered in the second scan, at 10 ms; the change comes three scans later.
+    // The macro-steps are activated in the second scan, at 10 ms; the change comes three scans later.
     let (bench, Carried { mut runner, lost }) = changed(chart, &after, &[("a", 1)], 4);
     assert_eq!(lost, Vec::<String>::new());
     runner.scan().expect("no fault");
@@ -171,7 +172,7 @@ fn scans_and_time_of_a_macro_step_go_on_where_the_clock_counts_scans() {
             s.group_age(program, group),
         ));
     }
-    // In scans and in ns, as before; M0 begins with the change.
+    // Scans and nanoseconds go on as before; M0 begins at the change.
     assert_eq!(found[1..], [(true, 4, 40_000_000); 2], "{found:?}");
     assert!(found[0].0 && found[0].1 <= 1, "{found:?}");
 }
@@ -202,7 +203,7 @@ fn an_output_that_nothing_drives_any_more_goes_off_where_another_step_has_an_act
 fn step_times_go_on_from_a_clock_of_scans_to_one_of_time() {
     let before = format!("profile jgrafchart\n{PUMP}");
     let after = PUMP.replace("when not a on", "when X2.t >= 1s on");
-    // Step 2 came on in the second scan, at 10 ms; the change is at 500 ms.
+    // Step 2 was activated in the second scan, at 10 ms; the change is at 500 ms.
     let (bench, Carried { mut runner, .. }) = changed(&before, &after, &[("a", 1)], 50);
     bench.set(&mut runner, item(&bench, "a"), &Value::Word(0));
     while situation(&bench, &runner) == "2" {
@@ -219,9 +220,9 @@ fn delays_that_run_or_are_over_are_said_to_begin_anew() {
         said.iter().filter(|s| s.contains("delay")).cloned().collect::<Vec<_>>()
     };
     assert_eq!(lost(&[]), Vec::<String>::new());
-    // One is over, one runs.
+    // The delay of `a` is over, that of `b` is still running.
     let one = lost(&[("a", 1)]);
-    assert_eq!(one, ["a delay that runs begins anew"]);
+    assert_eq!(one, ["a running delay restarts"]);
     assert_eq!(lost(&[("b", 1)]), one);
     let two = lost(&[("a", 1), ("b", 1)]);
     assert!(two.len() == 1 && two[0].contains('2'), "{two:?}");
@@ -238,7 +239,7 @@ fn examples(folder: &Path, all: &mut Vec<PathBuf>) {
     }
 }
 
-/// Chance, the same in every run.
+/// A pseudo-random number; every run gives the same ones.
 fn next(seed: &mut u64) -> u64 {
     *seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
     *seed >> 33
@@ -287,7 +288,7 @@ fn an_unchanged_chart_goes_on_as_if_nothing_had_been() {
     assert!(compared > 40, "only {compared}");
 }
 
-/// Now and then a free input changes.
+/// Changes a free input now and then.
 fn stir(bench: &Bench, runner: &mut Runner, seed: &mut u64) {
     for item in bench.items.iter().filter(|i| matches!(i.role, Role::Input(_)) && i.words == 1) {
         if next(seed).is_multiple_of(10) && !bench.is_driven(runner, item) {

@@ -4,10 +4,10 @@ use crate::problems::Problems;
 use g7_model::{FileId, Problem, Span, codes};
 use std::borrow::Cow;
 
-/// Stands for each byte that is not UTF-8, so that all offsets stay those of the file.
+/// Replaces each byte that is not UTF-8, so that all offsets stay those of the file.
 pub(crate) const SUBSTITUTE: char = '\u{1a}';
 
-/// A file may have this many bytes.
+/// The largest size of a file, in bytes.
 pub(crate) const MOST_BYTES: usize = 64 << 20;
 
 /// The text of a file's bytes. Each byte that is not UTF-8 is replaced by one
@@ -35,7 +35,7 @@ pub fn decode(bytes: &[u8], file: FileId) -> (Cow<'_, str>, Vec<Problem>) {
     (Cow::Owned(text), problems.finish())
 }
 
-/// The problem of a file that is beyond all sense.
+/// The problem of a file that is too large to read.
 pub(crate) fn too_large(len: usize, file: FileId) -> Option<Problem> {
     (len > MOST_BYTES).then(|| {
         let what = format!("the file has {len} bytes; at most {MOST_BYTES} are read");

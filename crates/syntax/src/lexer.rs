@@ -1,10 +1,11 @@
-//! Text to tokens, one at a time and without a copy.
+//! Splits a text into tokens, one at a time and without copying it.
 //!
-//! A token is a kind and two offsets; words and numbers are looked at again only
-//! where they are used. Notes are set aside for the printer. The lexer never
-//! fails: what has no meaning becomes a `Bad` token with a problem.
+//! A token is a kind and two offsets; the text of words and numbers is read again only where it is
+//! needed. Notes are kept for the printer. The lexer never fails: characters without a meaning
+//! become a `Bad` token with a problem.
 
 use crate::problems::Problems;
+use g7_iec::constant;
 use g7_model::{FileId, Note, Problem, Span, codes};
 
 /// Kinds of token.
@@ -54,7 +55,7 @@ pub(crate) enum Tok {
     Bars,
     /// `·`, or a `.` that is no part of a path.
     Dot,
-    /// A `.` with a name close on both sides.
+    /// A `.` with a name directly before and after it.
     PathDot,
     DotDot,
     Bang,
@@ -74,11 +75,11 @@ pub(crate) struct Token {
     pub(crate) kind: Tok,
     pub(crate) start: u32,
     pub(crate) end: u32,
-    /// Whether a line ended between the token before and this one.
+    /// True if a line ended between the token before and this one.
     pub(crate) newline: bool,
 }
 
-/// The place in the text, and what was set aside on the way.
+/// The position in the text, and the notes and problems so far.
 #[derive(Debug)]
 pub(crate) struct Lexer<'a> {
     text: &'a str,
@@ -97,7 +98,7 @@ impl<'a> Lexer<'a> {
         Lexer { text, file, pos, last: Tok::Bad, last_end: usize::MAX, notes: Vec::new(), problems }
     }
 
-    /// A lexer that looks ahead from the end of a token and leaves no trace.
+    /// A lexer that looks ahead from the end of a token and changes nothing here.
     pub(crate) fn ahead(&self, token: Token) -> Lexer<'a> {
         let mut other = Lexer::new(self.text, self.file, token.end as usize);
         other.last = token.kind;
@@ -105,12 +106,12 @@ impl<'a> Lexer<'a> {
         other
     }
 
-    /// The next token; `End` for ever at the end.
+    /// The next token; at the end of the text always `End`.
     pub(crate) fn token(&mut self) -> Token {
         let mut newline = self.blanks();
         let mut start = self.pos;
         let mut kind = self.scan(start == self.last_end);
-        // What has no meaning has been told; the rest may well be right.
+        // The problem has been reported; the rest of the text may be right.
         while kind == Tok::Bad {
             newline |= self.blanks();
             start = self.pos;
@@ -159,7 +160,7 @@ impl<'a> Lexer<'a> {
         self.problems.add(at, || make(at));
     }
 
-    /// Skips blanks and notes; whether a line ended.
+    /// Skips blanks and notes; returns true if a line ended.
     fn blanks(&mut self) -> bool {
         let mut newline = false;
         loop {
@@ -294,7 +295,7 @@ impl<'a> Lexer<'a> {
         )
     }
 
-    /// A `.` joins names only where it stands close to both.
+    /// A `.` joins names only if it directly follows one and directly precedes one.
     fn dot(&mut self, glued: bool) -> Tok {
         let before = glued && matches!(self.last, Tok::Word | Tok::Ticked | Tok::Int);
         self.pos += 1;
@@ -313,7 +314,7 @@ impl<'a> Lexer<'a> {
         let word = self.text.get(start..self.pos).unwrap_or_default();
         let kind = if word.eq_ignore_ascii_case("t") || word.eq_ignore_ascii_case("time") {
             Tok::Time
-        } else if crate::number::literal_type(word).is_some() {
+        } else if constant::literal_type(word).is_some() {
             Tok::Typed
         } else {
             return Tok::Word;
@@ -351,7 +352,7 @@ impl<'a> Lexer<'a> {
         }
     }
 
-    /// What can stand in a duration behind its first digits.
+    /// The bytes that may follow the first digits of a duration.
     fn units(&mut self) {
         while matches!(self.byte(0), b'0'..=b'9' | b'_' | b'a'..=b'z' | b'A'..=b'Z')
             || (self.byte(0) == b'.' && self.byte(1).is_ascii_digit())
@@ -404,7 +405,7 @@ impl<'a> Lexer<'a> {
         }
     }
 
-    /// A text in quotes, up to the end of the line at most.
+    /// A quoted text; it ends at the end of the line at the latest.
     fn quoted(&mut self, quote: char, escape: char, kind: Tok, what: &'static str) -> Tok {
         let start = self.pos;
         self.pos += 1;
@@ -435,7 +436,7 @@ impl<'a> Lexer<'a> {
         kind
     }
 
-    /// Letters beyond ASCII, the signs of GRAFCET, and what has no meaning.
+    /// Letters beyond ASCII, the signs of GRAFCET, and characters without a meaning.
     fn other(&mut self) -> Tok {
         let start = self.pos;
         let Some(c) = self.rest().chars().next() else { return Tok::End };
@@ -462,7 +463,7 @@ impl<'a> Lexer<'a> {
         Tok::Bad
     }
 
-    /// One problem for a whole run of characters without a meaning.
+    /// Reports one problem for a run of characters without a meaning.
     fn bad_run(&mut self, start: usize) {
         while let Some(c) = self.rest().chars().next() {
             let bad = c.is_control() && !c.is_whitespace() || matches!(c, '?' | '@' | '~' | '$' | '\\');
@@ -472,7 +473,7 @@ impl<'a> Lexer<'a> {
             self.pos += c.len_utf8();
         }
         let run = self.text.get(start..self.pos).unwrap_or_default();
-        // Where broken UTF-8 stood, the problem has been told already.
+        // `decode` has reported broken UTF-8.
         if run.chars().all(|c| c == crate::decode::SUBSTITUTE) {
             return;
         }
@@ -483,14 +484,14 @@ impl<'a> Lexer<'a> {
     }
 }
 
-/// Whether a name can begin with it.
+/// True if a name can begin with this character.
 pub(crate) fn name_start(c: char) -> bool {
     c == '_' || unicode_ident::is_xid_start(c)
 }
 
-/// Whether a name can go on with it; a combining overline means `not` instead.
+/// True if a name can continue with this character. A combining overline cannot: it means `not`.
 pub(crate) fn name_continue(c: char) -> bool {
-    // U+00B7 is the GRAFCET dot, though Unicode lets it stand in names.
+    // U+00B7 is the GRAFCET dot, although Unicode allows it in names.
     !matches!(c, '\u{304}' | '\u{305}' | '·') && unicode_ident::is_xid_continue(c)
 }
 

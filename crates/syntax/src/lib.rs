@@ -25,10 +25,10 @@ pub mod il;
 pub mod ladder;
 mod lexer;
 mod lines;
-mod number;
 mod parse;
 mod print;
 mod problems;
+mod quote;
 mod tokens;
 mod words;
 
@@ -43,7 +43,7 @@ pub use tokens::{
 use g7_model::{Document, Expr, ExprKind, FileId, Place, Problem, Span, Stmt};
 use parse::Parser;
 
-/// Reads a file's text. The notes of the text are in the document.
+/// Reads the text of a file. The document contains the notes of the text.
 pub fn parse(text: &str, file: FileId) -> (Document, Vec<Problem>) {
     if let Some(problem) = decode::too_large(text.len(), file) {
         return (Document::default(), vec![problem]);
@@ -64,7 +64,7 @@ pub fn parse_bytes(bytes: &[u8], file: FileId) -> (Document, Vec<Problem>) {
     (document, problems)
 }
 
-/// Reads one expression and nothing behind it.
+/// Reads one expression; nothing may follow it.
 pub fn parse_expr(text: &str, file: FileId) -> (Expr, Vec<Problem>) {
     if let Some(problem) = decode::too_large(text.len(), file) {
         let at = Place(Span { file, start: 0, end: 0 });
@@ -76,7 +76,7 @@ pub fn parse_expr(text: &str, file: FileId) -> (Expr, Vec<Problem>) {
     (expr, parser.finish().0)
 }
 
-/// Reads statements of Structured Text and nothing behind them.
+/// Reads statements of Structured Text; nothing may follow them.
 pub fn parse_statements(text: &str, file: FileId) -> (Vec<Stmt>, Vec<Problem>) {
     if let Some(problem) = decode::too_large(text.len(), file) {
         return (Vec::new(), vec![problem]);

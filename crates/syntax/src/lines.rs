@@ -1,4 +1,4 @@
-//! Byte offsets to lines and columns, for messages.
+//! Converts byte offsets to lines and columns, for messages.
 
 /// The line starts of a text.
 #[derive(Clone, Debug)]
@@ -7,7 +7,7 @@ pub struct LineIndex<'a> {
     starts: Vec<u32>,
 }
 
-/// A place as people count it: both from 1, the column in characters.
+/// A place as people count it: line and column from 1, the column in characters.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct LineColumn {
     /// The line, from 1.
@@ -39,7 +39,7 @@ impl<'a> LineIndex<'a> {
         clamp(self.starts.partition_point(|s| *s <= offset))
     }
 
-    /// The line and column of a byte; one past the end of the text is allowed, beyond is taken as the end.
+    /// The line and column of a byte. An offset beyond the text counts as its end.
     pub fn place(&self, offset: u32) -> LineColumn {
         let line = self.line(offset);
         let start = self.start(line);
@@ -50,7 +50,7 @@ impl<'a> LineIndex<'a> {
         LineColumn { line, column: clamp(column + 1) }
     }
 
-    /// The first byte of a line; the end of the text for a line that is not there.
+    /// The first byte of a line; the end of the text if there is no such line.
     pub fn start(&self, line: u32) -> u32 {
         let index = (line as usize).saturating_sub(1);
         self.starts.get(index).copied().unwrap_or(clamp(self.text.len()))

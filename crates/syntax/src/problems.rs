@@ -1,8 +1,8 @@
-//! The problems of one run, and how many of them are worth telling.
+//! The problems of one run, up to a limit.
 
 use g7_model::{Problem, Span, codes};
 
-/// More than this many problems help nobody.
+/// More problems than this help nobody.
 const MOST: usize = 100;
 
 /// Problems found so far.
@@ -13,7 +13,7 @@ pub(crate) struct Problems {
 }
 
 impl Problems {
-    /// Adds a problem; the words are made only when there is still room for it.
+    /// Adds a problem; its words are made only if there is still room for it.
     pub(crate) fn add(&mut self, at: Span, make: impl FnOnce() -> Problem) {
         if self.list.len() < MOST {
             self.list.push(make());
@@ -22,7 +22,7 @@ impl Problems {
         }
     }
 
-    /// Whether more problems would change nothing.
+    /// True if no more problems are kept.
     pub(crate) fn is_full(&self) -> bool {
         self.overflow.is_some()
     }

@@ -1,14 +1,15 @@
-//! The words and signs of a text, for those who colour or change it in place.
+//! The words and signs of a text, for code that colours or edits it.
 
 use crate::lexer::{Lexer, Tok};
 use crate::print::is_plain;
-use crate::{number, words};
+use crate::quote;
+use crate::words;
 use g7_model::{FileId, Note};
 
 /// A word, sign or note of a text.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Token {
-    /// What it is.
+    /// Its kind.
     pub kind: TokenKind,
     /// First byte.
     pub start: usize,
@@ -16,7 +17,7 @@ pub struct Token {
     pub end: usize,
 }
 
-/// Kinds of token, as far as somebody outside of the parser tells them apart.
+/// Kinds of token, as far as code outside of the parser needs them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum TokenKind {
     /// A word of the language or a name; [`is_reserved`] tells which words are never names.
@@ -29,7 +30,7 @@ pub enum TokenKind {
     Time,
     /// `'text'`.
     Str,
-    /// `"text"`, which is drawn.
+    /// `"text"`, a comment that is drawn.
     Comment,
     /// `%I0.1`.
     Direct,
@@ -64,13 +65,13 @@ pub fn tokens(text: &str) -> Tokens<'_> {
     Tokens { lexer: Lexer::new(text, FileId(0), 0), held: None, notes: Vec::new() }
 }
 
-/// What [`tokens`] gives, made one by one.
+/// The iterator of [`tokens`].
 #[derive(Debug)]
 pub struct Tokens<'a> {
     lexer: Lexer<'a>,
-    /// Read already, but notes stand before it.
+    /// Read already, but notes come before it.
     held: Option<Token>,
-    /// To be given next, the last one first.
+    /// The tokens to return next, in reverse order.
     notes: Vec<Note>,
 }
 
@@ -148,20 +149,20 @@ fn public(kind: Tok) -> Option<TokenKind> {
     })
 }
 
-/// Whether a word is one of the language and never a plain name.
+/// True if a word is reserved: it is never a plain name.
 pub fn is_reserved(word: &str) -> bool {
     words::is_reserved(word)
 }
 
-/// A name as it is written where one is declared: in back-ticks where it must be.
+/// A name as it is declared: in back-ticks if it needs them.
 pub fn show_name(name: &str) -> String {
-    if is_plain(name) { name.to_owned() } else { number::quote(name, '`') }
+    if is_plain(name) { name.to_owned() } else { quote::quote(name, '`') }
 }
 
-/// A name as it is written where words of the language can stand as well: at
-/// the start of a transition, in lists of steps.
+/// A name in a place where words of the language are allowed as well: at the start of a transition,
+/// in lists of steps.
 pub fn show_step_name(name: &str) -> String {
-    if is_plain(name) && !words::is_contextual(name) { name.to_owned() } else { number::quote(name, '`') }
+    if is_plain(name) && !words::is_contextual(name) { name.to_owned() } else { quote::quote(name, '`') }
 }
 
 /// A name as it is written between or before the dots of a path.
@@ -174,12 +175,12 @@ pub fn show_path_name(name: &str, first: bool, only: bool) -> String {
         (true, true) => is_plain(name) && !number,
         (true, false) => is_plain(name),
     };
-    if fits { name.to_owned() } else { number::quote(name, '`') }
+    if fits { name.to_owned() } else { quote::quote(name, '`') }
 }
 
 /// A comment in its double quotes.
 pub fn show_comment(text: &str) -> String {
-    number::quote(text, '"')
+    quote::quote(text, '"')
 }
 
 #[cfg(test)]

@@ -1,10 +1,11 @@
 //! The words of the language, and the nearest one to a misspelt word.
 //!
-//! Few words are reserved; all others (`at`, `max`, `scan`, …) mean something
-//! only where they can stand, and are names elsewhere.
+//! Few words are reserved. All others (`at`, `max`, `scan`, …) have a meaning only in certain
+//! places, and are names elsewhere.
 
-/// Words that are never a plain name: those that would make an expression, a
-/// statement or a chart ambiguous.
+use g7_model::{BinaryOp, words};
+
+/// Reserved words: as plain names they would make an expression, a statement or a chart ambiguous.
 pub(crate) fn is_reserved(word: &str) -> bool {
     matches!(
         word,
@@ -40,7 +41,7 @@ pub(crate) fn is_reserved(word: &str) -> bool {
 }
 
 fn operator(word: &str) -> bool {
-    matches!(word, "and" | "or" | "xor" | "not" | "mod" | "AND" | "OR" | "XOR" | "NOT" | "MOD")
+    matches!(word, "not" | "NOT") || BinaryOp::of_word(word).is_some()
 }
 
 /// The words of Structured Text that build statements.
@@ -68,7 +69,7 @@ pub(crate) enum St {
     Return,
 }
 
-/// Reads such a word, in upper or in lower case.
+/// Returns such a word, written in upper or in lower case.
 pub(crate) fn st(word: &str) -> Option<St> {
     Some(match word {
         "IF" | "if" => St::If,
@@ -95,81 +96,27 @@ pub(crate) fn st(word: &str) -> Option<St> {
     })
 }
 
-/// Words that begin something, or go on with it, in some places only; a name
-/// that stands where one of them could is printed in back-ticks.
+/// Words that begin or continue an item in some places only. A name in such a place is printed in
+/// back-ticks.
 pub(crate) fn is_contextual(word: &str) -> bool {
-    FILE.contains(&word)
-        || CHART.contains(&word)
+    words::FILE.contains(&word)
+        || words::CHART.contains(&word)
         || matches!(
             word,
             "at" | "retain" | "inverted" | "safe" | "every" | "on" | "st" | "il" | "ld" | "INIT"
         )
 }
 
-/// What a file's item can begin with.
-pub(crate) const FILE: &[&str] = &[
-    "profile",
-    "scan",
-    "target",
-    "input",
-    "output",
-    "var",
-    "const",
-    "chart",
-    "macrochart",
-    "task",
-    "action",
-    "transition",
-    "function",
-    "pre",
-    "post",
-    "plant",
-    "test",
-    "prove",
-    "layout",
-];
-
-/// What a chart's item can begin with, names aside.
-pub(crate) const CHART: &[&str] = &[
-    "step",
-    "initial",
-    "entry",
-    "exit",
-    "enclosing",
-    "macro",
-    "input",
-    "output",
-    "var",
-    "const",
-    "pre",
-    "post",
-    "action",
-    "transition",
-];
-
-/// What an action can begin with.
-pub(crate) const ACTION: &[&str] = &[
-    "N", "S", "R", "L", "D", "P", "P0", "P1", "SD", "DS", "SL", "on", "each", "force", "enable", "mask",
-    "call", "enclose",
-];
-
-/// What a plant's item can begin with.
-pub(crate) const PLANT: &[&str] =
-    &["const", "state", "rate", "drive", "on", "each", "parts", "arrivals", "view"];
-
-/// What a statement of a test can begin with.
-pub(crate) const TEST: &[&str] =
-    &["set", "pulse", "wait", "scan", "expect", "always", "force", "release", "restart", "repeat"];
-
-/// The word of the list that was most likely meant: at most one slip in a word
-/// of up to four letters, two in a longer one.
+/// The word of the list that was most likely meant: at most one slip in a word of up to four
+/// letters, two in a longer one.
 pub(crate) fn similar<'w>(word: &str, list: &[&'w str]) -> Option<&'w str> {
     let best = list.iter().map(|w| (slips(word, w), *w)).min_by_key(|(n, _)| *n)?;
     let allowed = if best.1.len() <= 4 { 1 } else { 2 };
     (best.0 <= allowed && best.0 < best.1.len()).then_some(best.1)
 }
 
-/// Insertions, removals, changes and swaps of neighbours between two words, capitals ignored.
+/// The number of insertions, deletions, replacements and swaps of neighbours between two words;
+/// case is ignored.
 fn slips(a: &str, b: &str) -> usize {
     let a: Vec<char> = a.chars().take(24).flat_map(char::to_lowercase).collect();
     let b: Vec<char> = b.chars().take(24).flat_map(char::to_lowercase).collect();

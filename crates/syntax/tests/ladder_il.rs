@@ -261,14 +261,14 @@ fn what_is_wrong_in_a_rung_has_its_place() {
 #[test]
 fn what_is_shown_reads_well() {
     let (e, _) = g7_syntax::parse_expr("(a or not b) and not (c and d)", FILE);
-    assert_eq!(il::show_expr_as_il(&e), "LD a\nORN b\nANDN(\n  LD c\n  AND d\n)\n");
-    assert_eq!(ladder::show_expr_as_ladder(&e), "--{ [a] | [/b] }--{ [/c] | [/d] }");
+    assert_eq!(il::show_expr(&e), "LD a\nORN b\nANDN(\n  LD c\n  AND d\n)\n");
+    assert_eq!(ladder::show_expr(&e), "--{ [a] | [/b] }--{ [/c] | [/d] }");
     let list = st("q := rise(a) and n > 5 if c then k := k + 1 end_if");
     assert_eq!(
-        il::show_as_il(&list).as_deref(),
+        il::show(&list).as_deref(),
         Some("LD ↑a\nAND(\n  LD n\n  GT 5\n)\nST q\nLD c\nJMPCN L1\nLD k\nADD 1\nST k\nL1:\n")
     );
-    let rungs = ladder::show_as_ladder(&list, &|_| true);
+    let rungs = ladder::show(&list, &|_| true);
     assert_eq!(rungs.as_deref(), Some("--[P a]--[n > 5]--(q)\n--[c]--(k := k + 1)\n"));
 }
 
@@ -349,7 +349,7 @@ fn tells(e: &Expr, other: &Expr) -> Result<(), String> {
 proptest! {
     #[test]
     fn a_list_shown_means_the_same(e in expression()) {
-        let text = il::show_expr_as_il(&e);
+        let text = il::show_expr(&e);
         let (read, problems) = il::expression(&text, FILE);
         prop_assert_eq!(problems, vec![], "{}", text);
         prop_assert_eq!(tells(&e, &read), Ok(()), "{}", text);
@@ -357,7 +357,7 @@ proptest! {
 
     #[test]
     fn a_rung_shown_means_the_same(e in expression()) {
-        let text = ladder::show_expr_as_ladder(&e);
+        let text = ladder::show_expr(&e);
         let (read, problems) = ladder::expression(&text, FILE);
         prop_assert_eq!(problems, vec![], "{}", text);
         prop_assert_eq!(tells(&e, &read), Ok(()), "{}", text);
@@ -365,7 +365,7 @@ proptest! {
 
     #[test]
     fn statements_shown_as_a_list_do_the_same(list in statements()) {
-        let text = il::show_as_il(&list).expect("all of these have a form");
+        let text = il::show(&list).expect("all of these have a form");
         let (read, problems) = il::statements(&text, FILE);
         prop_assert_eq!(problems, vec![], "{}", text);
         prop_assert_eq!(same(&list, &read), Ok(()), "{}", text);
@@ -373,7 +373,7 @@ proptest! {
 
     #[test]
     fn statements_shown_as_rungs_do_the_same(list in statements()) {
-        let Some(text) = ladder::show_as_ladder(&list, &|_| true) else { return Ok(()) };
+        let Some(text) = ladder::show(&list, &|_| true) else { return Ok(()) };
         let (read, problems) = ladder::statements(&text, FILE);
         prop_assert_eq!(problems, vec![], "{}", text);
         prop_assert_eq!(same(&list, &read), Ok(()), "{}", text);

@@ -5,7 +5,7 @@ use g7_model::{ProfileName, Type};
 use super::rng::Rng;
 use super::sight::{Sight, duration};
 
-/// What statements may assign.
+/// The variables and blocks that statements may change.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Targets {
     pub(super) bools: Vec<String>,
@@ -13,19 +13,19 @@ pub(super) struct Targets {
     pub(super) reals: Vec<(String, Type)>,
     pub(super) times: Vec<String>,
     pub(super) strings: Vec<String>,
-    /// Block instances not yet called from anywhere.
+    /// Block instances that nothing calls yet.
     pub(super) blocks: Vec<(String, &'static str)>,
 }
 
-/// A Boolean variable that qualified actions drive.
+/// A Boolean variable driven by qualified actions.
 #[derive(Clone, Debug)]
 pub(super) struct Driven {
     pub(super) name: String,
-    /// Qualifiers it may stand behind, with their time.
+    /// The qualifiers that it may have, with their times.
     pub(super) qualifiers: Vec<String>,
 }
 
-/// One assignment.
+/// A random assignment.
 pub(super) fn assignment(rng: &mut Rng, sight: &Sight, to: &Targets) -> String {
     match rng.weighted(&[25, 50, 9, 8, 6]) {
         1 if !to.ints.is_empty() => {
@@ -58,7 +58,7 @@ pub(super) fn assignment(rng: &mut Rng, sight: &Sight, to: &Targets) -> String {
     }
 }
 
-/// A statement, with `depth` levels of nesting left.
+/// A random statement, with at most `depth` further levels of nesting.
 pub(super) fn statement(rng: &mut Rng, sight: &Sight, to: &mut Targets, depth: usize) -> String {
     if depth == 0 {
         return assignment(rng, sight, to);
@@ -125,7 +125,7 @@ fn loop_for(rng: &mut Rng, sight: &Sight, to: &Targets) -> String {
     }
 }
 
-/// A call of a block instance; each instance is called from one place only.
+/// A call of a block instance; each instance is called at one place only.
 fn call(rng: &mut Rng, sight: &Sight, to: &mut Targets) -> String {
     let at = rng.below(to.blocks.len());
     let (name, kind) = to.blocks.remove(at);
@@ -153,7 +153,7 @@ fn call(rng: &mut Rng, sight: &Sight, to: &mut Targets) -> String {
     }
 }
 
-/// A body of some statements, in braces.
+/// A body of a few statements, in braces.
 pub(super) fn block(rng: &mut Rng, sight: &Sight, to: &mut Targets) -> String {
     let mut text = String::from("{ ");
     for _ in 0..rng.between(1, 3) {
@@ -163,7 +163,7 @@ pub(super) fn block(rng: &mut Rng, sight: &Sight, to: &mut Targets) -> String {
     text + "}"
 }
 
-/// One action of a step.
+/// A random action of a step.
 pub(super) fn action(
     rng: &mut Rng,
     profile: ProfileName,
@@ -177,7 +177,7 @@ pub(super) fn action(
     };
     Some(match rng.weighted(&[40, 14, 7, 12, 10, 6, 5]) {
         0 => {
-            // A variable stands once in a step: it can take one value at a time.
+            // A variable occurs once in a step, because it can take one value at a time.
             let at = rng.below(driven.len());
             if driven.is_empty() {
                 return None;

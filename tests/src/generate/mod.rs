@@ -1,12 +1,12 @@
-//! Random documents that `check` accepts, each with a script of scans, under a
-//! seed. Names, structure and conditions are chosen so that most charts run for
-//! many scans without fault and visit many situations.
+//! Makes random documents that `check` accepts, each with a script of scans, from a seed. Names,
+//! structure and conditions are chosen so that most charts run for many scans without a fault and
+//! visit many situations.
 
 mod body;
-mod plan;
 mod rng;
 mod script;
 mod sight;
+mod skeleton;
 mod write;
 
 use g7_model::{Document, FileId, ProfileName};
@@ -14,29 +14,29 @@ use g7_model::{Document, FileId, ProfileName};
 pub use rng::Rng;
 pub use script::{Event, Script};
 
-/// How common the features are, in so many of a hundred places where each could
-/// stand (of the links between charts: against the 40 that have none).
+/// How common the features are: the percentage of places at which each is used. For links between
+/// charts, the weight relative to 40 for no link.
 #[derive(Clone, Copy, Debug)]
 pub struct Weights {
     /// Steps that are macro-steps.
     pub macro_steps: usize,
-    /// Charts that a step encloses.
+    /// Charts that are enclosed by a step.
     pub enclosing: usize,
-    /// Charts that another forces.
+    /// Charts that are forced by another chart.
     pub forcing: usize,
-    /// Charts that another enables.
+    /// Charts that are enabled by another chart.
     pub enabling: usize,
-    /// Charts and outputs that a step masks.
+    /// Charts and outputs that are masked by a step.
     pub masking: usize,
     /// Documents with a task.
     pub tasks: usize,
-    /// Documents with a chart of a period of its own.
+    /// Documents that contain a chart with its own period.
     pub periods: usize,
     /// Documents whose profile has switches.
     pub switches: usize,
-    /// Documents with arithmetic that may fault.
+    /// Documents with arithmetic that can fault.
     pub risk: usize,
-    /// Documents with PRE, and so many with POST; a quarter as common in a chart.
+    /// Documents with PRE, and the same share with POST; in charts a quarter of it.
     pub sections: usize,
 }
 
@@ -57,33 +57,33 @@ impl Default for Weights {
     }
 }
 
-/// A random document with what happens to it.
+/// A random document with its script.
 #[derive(Clone, Debug)]
 pub struct Sample {
-    /// The seed it came from.
+    /// The seed from which it was made.
     pub seed: u64,
     /// Its .g7 text.
     pub text: String,
-    /// The same, read.
+    /// The parsed text.
     pub document: Document,
-    /// Scans and restarts.
+    /// The scans and restarts.
     pub script: Script,
 }
 
-/// Draws a document and its script, every feature in its usual share.
+/// Makes a document and its script with the usual weights.
 ///
 /// # Errors
 ///
-/// As [`sample_with`].
+/// The same as [`sample_with`].
 pub fn sample(seed: u64, profile: ProfileName, scans: usize) -> Result<Sample, String> {
     sample_with(seed, profile, scans, &Weights::default())
 }
 
-/// Draws a document and its script.
+/// Makes a document and its script.
 ///
 /// # Errors
 ///
-/// Where the text drawn cannot be read: an error of the generator or the parser.
+/// The text cannot be read, because of an error in the generator or the parser.
 pub fn sample_with(
     seed: u64,
     profile: ProfileName,

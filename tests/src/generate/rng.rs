@@ -1,11 +1,11 @@
-//! Chance under a seed: splitmix64, the same on every machine.
+//! Pseudo-random numbers from a seed: splitmix64, the same on every machine.
 
 /// A stream of random numbers.
 #[derive(Clone, Debug)]
 pub struct Rng(u64);
 
 impl Rng {
-    /// The stream of a seed.
+    /// A stream that starts with a seed.
     pub fn new(seed: u64) -> Rng {
         Rng(seed)
     }
@@ -19,32 +19,32 @@ impl Rng {
         z ^ (z >> 31)
     }
 
-    /// A number below `n`; 0 where `n` is 0.
+    /// A number below `n`; 0 if `n` is 0.
     pub fn below(&mut self, n: usize) -> usize {
         if n == 0 { 0 } else { (self.bits() % n as u64) as usize }
     }
 
-    /// A number from `least` to `most`.
+    /// A number between `least` and `most`, both included.
     pub fn between(&mut self, least: usize, most: usize) -> usize {
         least + self.below(most + 1 - least)
     }
 
-    /// True in so many of a hundred cases.
+    /// True with a probability of `p` percent.
     pub fn percent(&mut self, p: usize) -> bool {
         self.below(100) < p
     }
 
-    /// One of a list, `None` where it is empty.
+    /// A random element of a list; `None` if it is empty.
     pub fn pick<'a, T>(&mut self, list: &'a [T]) -> Option<&'a T> {
         list.get(self.below(list.len()))
     }
 
-    /// One of an array.
+    /// A random element of an array.
     pub fn one<T: Copy, const N: usize>(&mut self, list: [T; N]) -> T {
         list[self.below(N)]
     }
 
-    /// The place of a weight chosen in proportion to it.
+    /// A random index, with probabilities proportional to the weights.
     pub fn weighted(&mut self, weights: &[usize]) -> usize {
         let mut at = self.below(weights.iter().sum());
         for (i, w) in weights.iter().enumerate() {

@@ -1,5 +1,5 @@
-//! What happens to a random chart: inputs that change now and then, time that
-//! goes on by the durations that the charts use, a restart here and there.
+//! The script of a random chart: inputs that change now and then, time that advances by the
+//! durations that the charts use, and a few restarts.
 
 use std::collections::BTreeMap;
 
@@ -8,24 +8,24 @@ use g7_model::{Document, Item, Type, VarKind};
 use super::rng::Rng;
 use crate::naive::Value;
 
-/// One thing that happens.
+/// An event of the script.
 #[derive(Clone, Debug)]
 pub enum Event {
-    /// A scan at an instant, with the inputs that change in it.
+    /// A scan: its instant, and the inputs that change.
     Scan {
-        /// Nanoseconds.
+        /// The instant, in nanoseconds.
         now: i64,
-        /// New values.
+        /// The new values.
         inputs: BTreeMap<String, Value>,
     },
     /// A restart.
     Restart {
-        /// Retained variables are forgotten too.
+        /// True if retained variables are reset too.
         cold: bool,
     },
 }
 
-/// All that happens, in its order.
+/// The events in their order.
 pub type Script = Vec<Event>;
 
 const MS: i64 = 1_000_000;

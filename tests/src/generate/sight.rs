@@ -1,11 +1,11 @@
-//! The variables of a random document, and random expressions over what can be
-//! seen from a place.
+//! The variables of a random document, and random expressions over the names that are visible at a
+//! place.
 
-use g7_model::Type;
+use g7_model::{BinaryOp, Operands, Type};
 
 use super::rng::Rng;
 
-/// Names that an expression may read, and what it may contain.
+/// The names that an expression may use, and the operations it may contain.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Sight {
     pub(super) inputs: Vec<String>,
@@ -14,33 +14,34 @@ pub(super) struct Sight {
     pub(super) reals: Vec<(String, Type)>,
     pub(super) times: Vec<String>,
     pub(super) strings: Vec<String>,
-    /// Step activities.
+    /// Step variables.
     pub(super) steps: Vec<String>,
     /// Step times.
     pub(super) step_times: Vec<String>,
-    /// User functions of two INT that give an INT, and of one INT that give a BOOL.
+    /// User functions: of two INT with an INT result, and of one INT with a BOOL result.
     pub(super) int_functions: Vec<String>,
     pub(super) bool_functions: Vec<String>,
     pub(super) edges: bool,
     pub(super) timers: bool,
-    /// Step times count scans.
+    /// True if step times count scans.
     pub(super) scans: bool,
-    /// In so many of a hundred cases an operation that may fault.
+    /// The percentage of operations that may fault.
     pub(super) risk: usize,
 }
 
-/// Durations that scans of some milliseconds can see.
+/// A duration that scans of a few milliseconds can observe.
 pub(super) fn duration(rng: &mut Rng) -> String {
     rng.one(["0s", "5ms", "10ms", "20ms", "25ms", "30ms", "50ms", "100ms"]).to_owned()
 }
 
 impl Sight {
-    /// Without edges and timers.
+    /// The same names, for expressions without edges and timers.
     pub(super) fn plain(&self) -> Sight {
         Sight { edges: false, timers: false, ..self.clone() }
     }
 
-    /// Where arithmetic never faults: in what is evaluated in every pass.
+    /// The same names, for arithmetic that never faults: for expressions that are evaluated in
+    /// every pass.
     fn safe(&self) -> Sight {
         Sight { risk: 0, edges: false, timers: false, ..self.clone() }
     }
@@ -121,7 +122,9 @@ impl Sight {
     }
 
     pub(super) fn comparison(&self, rng: &mut Rng, depth: usize) -> String {
-        let op = rng.one(["=", "<>", "<", "<=", ">", ">="]);
+        let compares = |op: &BinaryOp| op.row().operands == Operands::Comparison;
+        let signs: Vec<&str> = BinaryOp::ALL.into_iter().filter(compares).map(|op| op.row().sign).collect();
+        let op = rng.pick(&signs).copied().unwrap_or("=");
         match rng.weighted(&[50, 12, 14, 14, 5, 5]) {
             1 if !self.reals.is_empty() => {
                 let (name, ty) = rng.pick(&self.reals).cloned().unwrap_or_default_real();
@@ -151,7 +154,7 @@ impl Sight {
         }
     }
 
-    /// An integer expression that a variable of this type can take.
+    /// An integer expression whose value fits a variable of this type.
     pub(super) fn int(&self, rng: &mut Rng, ty: Type, depth: usize) -> String {
         let fits: Vec<&String> = self.ints.iter().filter(|(_, t)| widens(*t, ty)).map(|(n, _)| n).collect();
         let small = rng.below(8).to_string();
@@ -162,7 +165,7 @@ impl Sight {
         let d = depth - 1;
         if rng.percent(self.risk) {
             return match rng.below(5) {
-                // A divisor that may be zero, but is not written as one.
+                // A divisor that may be zero but is not written as zero.
                 0 => format!("({small} / {name})"),
                 1 => format!("({small} mod ({name} - 1))"),
                 2 => format!("({name} * {})", self.int(rng, ty, d)),
@@ -236,7 +239,7 @@ impl Sight {
     }
 }
 
-/// A default that keeps an empty list from mattering.
+/// A default for an empty list.
 trait OrReal {
     fn unwrap_or_default_real(self) -> (String, Type);
 }
@@ -247,7 +250,7 @@ impl OrReal for Option<(String, Type)> {
     }
 }
 
-/// Whether one integer type widens to another.
+/// True if one integer type widens to another.
 pub(super) fn widens(from: Type, to: Type) -> bool {
     match (from.bounds(), to.bounds()) {
         (Some((l, h)), Some((tl, th))) => tl <= l && h <= th,

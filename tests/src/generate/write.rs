@@ -1,24 +1,24 @@
-//! A random document as .g7 text: declarations, then the skeleton with its
-//! conditions and actions.
+//! Writes a random document as .g7 text: declarations, then the skeleton with its conditions and
+//! actions.
 
-use g7_model::{ProfileName, Type};
+use g7_model::{Lasting, ProfileName, Qualifier, Type};
 
 use super::Weights;
 use super::body::{self, Driven, Targets};
-use super::plan::{Plan, PlanChart, plan};
 use super::rng::Rng;
 use super::sight::{Sight, duration};
+use super::skeleton::{Skeleton, SkeletonChart, skeleton};
 
-/// What the text is put together from.
+/// The parts from which the text is made.
 struct World {
     profile: ProfileName,
     stable: bool,
-    /// At most one of the transitions that share a step clears.
+    /// True if at most one of the transitions that share a preceding step clears.
     single: bool,
     sight: Sight,
     targets: Targets,
     driven: Vec<Driven>,
-    /// Named actions with the qualifiers each may stand behind.
+    /// Named actions, with the qualifiers that each may have.
     named: Vec<(String, String)>,
     sections: Vec<String>,
     weights: Weights,
@@ -47,9 +47,9 @@ pub(super) fn document(rng: &mut Rng, profile: ProfileName, weights: &Weights) -
     variables(rng, &mut world, &mut out);
     driven(rng, &mut world, &mut out);
     let names: Vec<String> = world.driven.iter().map(|d| d.name.clone()).collect();
-    let plan = plan(rng, weights, &names);
+    let skeleton = skeleton(rng, weights, &names);
     functions(rng, &mut world, &mut out);
-    let outside = outside(&world, &plan);
+    let outside = outside(&world, &skeleton);
     named_actions(rng, &mut world, &outside, &mut out);
     if rng.percent(25) {
         let name = "Ready".to_owned();
@@ -58,14 +58,14 @@ pub(super) fn document(rng: &mut Rng, profile: ProfileName, weights: &Weights) -
         world.sections.push(name);
     }
     if rng.percent(weights.sections) {
-        out += &format!("pre {}\n", pre(rng, &mut world, &outside, &plan));
+        out += &format!("pre {}\n", pre(rng, &mut world, &outside, &skeleton));
     }
     if rng.percent(weights.sections) {
         let text = body::block(rng, &outside, &mut world.targets);
         out += &format!("post {text}\n");
     }
-    for at in 0..plan.charts.len() {
-        chart(rng, &mut world, &plan, at, &mut out);
+    for at in 0..skeleton.charts.len() {
+        chart(rng, &mut world, &skeleton, at, &mut out);
     }
     out
 }
@@ -85,13 +85,13 @@ fn header(rng: &mut Rng, world: &mut World, weights: &Weights, out: &mut String)
         for pair in pairs {
             if rng.percent(25) {
                 let switch = rng.one(pair);
-                // Actions cannot wait for the end of the pass and run at once.
+                // Contradictory: actions cannot wait for the end of the pass and also run at once.
                 let at_once = switch == "stable" && switches.contains(&"parallel-actions")
                     || switch == "sequential"
                     && matches!(world.profile, ProfileName::Iec60848 | ProfileName::Pl7)
                     || switch == "parallel-actions" && world.profile == ProfileName::Jgrafchart
                     || switch == "sequential" && switches.contains(&"parallel-actions")
-                    // Where all actions wait for the end of the scan nothing is read before.
+                    // In these profiles all actions wait for the end of the scan anyway.
                     || switch == "parallel-actions"
                         && matches!(world.profile, ProfileName::Iec61131 | ProfileName::Unity);
                 if at_once {
@@ -194,45 +194,47 @@ fn variables(rng: &mut Rng, world: &mut World, out: &mut String) {
     }
 }
 
-/// Outputs of qualified actions, in the classes that each profile keeps apart.
+/// The outputs of qualified actions, separated into the classes that each profile distinguishes.
 fn driven(rng: &mut Rng, world: &mut World, out: &mut String) {
+    use Qualifier::{N, P, P0, P1, R, S};
     for i in 0..rng.between(2, 5) {
         let name = format!("Q{i}");
         let t = duration(rng);
-        let timed = rng.one(["L", "D", "SD", "DS", "SL"]);
-        let text = |list: &[&str]| list.iter().map(|q| (*q).to_owned()).collect::<Vec<_>>();
+        let timed: Vec<Qualifier> = Qualifier::ALL.into_iter().filter(|q| q.timed()).collect();
+        let timed = rng.pick(&timed).copied().unwrap_or(Qualifier::L);
+        let text = |list: &[Qualifier]| list.iter().map(|q| q.name().to_owned()).collect::<Vec<_>>();
         let qualifiers = if world.profile == ProfileName::Iec60848 {
             match rng.weighted(&[40, 25, 35]) {
                 0 => {
-                    let mut all = text(&["N", "N"]);
+                    let mut all = text(&[N, N]);
                     all.push(format!("L {t}"));
                     all.push(format!("D {}", duration(rng)));
                     all
                 }
-                1 => text(&["S", "R"]),
+                1 => text(&[S, R]),
                 _ => {
-                    let mut all = text(&["P", "P1", "P0", "S", "R"]);
-                    if matches!(timed, "SD" | "DS" | "SL") {
-                        all.push(format!("{timed} {t}"));
+                    let mut all = text(&[P, P1, P0, S, R]);
+                    if timed.lasting() == Lasting::UntilReset {
+                        all.push(format!("{} {t}", timed.name()));
                     }
                     all
                 }
             }
         } else {
-            let mut all = text(&["N", "N"]);
-            for q in ["S", "R", "R", "P", "P1", "P0"] {
+            let mut all = text(&[N, N]);
+            for q in [S, R, R, P, P1, P0] {
                 if rng.percent(35) {
-                    all.push(q.to_owned());
+                    all.push(q.name().to_owned());
                 }
             }
             if rng.percent(60) {
-                all.push(format!("{timed} {t}"));
+                all.push(format!("{} {t}", timed.name()));
             }
             all
         };
         let safe = if rng.percent(20) { " safe TRUE" } else { "" };
         out.push_str(&format!("output {name} : BOOL{safe}\n"));
-        // What is driven at the end of a scan is read like any other variable.
+        // A variable that is driven at the end of a scan can be read like any other.
         world.sight.bools.push(name.clone());
         world.driven.push(Driven { name, qualifiers });
     }
@@ -273,32 +275,32 @@ fn named_actions(rng: &mut Rng, world: &mut World, sight: &Sight, out: &mut Stri
     }
 }
 
-/// What can be read outside of all charts: steps by `Chart.X`.
-fn outside(world: &World, plan: &Plan) -> Sight {
+/// The names that are visible outside of all charts: steps as `Chart.X`.
+fn outside(world: &World, skeleton: &Skeleton) -> Sight {
     let mut sight = world.sight.clone();
-    for chart in plan.charts.iter().filter(|c| c.word == "chart") {
+    for chart in skeleton.charts.iter().filter(|c| c.word == "chart") {
         see_steps(&mut sight, chart, &format!("{}.", chart.name));
     }
     sight
 }
 
-fn see_steps(sight: &mut Sight, chart: &PlanChart, prefix: &str) {
+fn see_steps(sight: &mut Sight, chart: &SkeletonChart, prefix: &str) {
     for step in &chart.steps {
         sight.steps.push(format!("{prefix}X{}", step.name));
-        // With a period the time may count other scans than the chart's own.
+        // In a chart with a period, the time may count other scans than those of the chart.
         if !chart.periodic {
             sight.step_times.push(format!("{prefix}X{}.t", step.name));
         }
     }
 }
 
-fn pre(rng: &mut Rng, world: &mut World, sight: &Sight, plan: &Plan) -> String {
+fn pre(rng: &mut Rng, world: &mut World, sight: &Sight, skeleton: &Skeleton) -> String {
     let mut text = body::block(rng, sight, &mut world.targets);
     let services = match world.profile {
-        // Services that reach a chart with a period wait for no instant of it.
-        _ if plan.charts.iter().any(|c| c.every.is_some()) => return text,
+        // A service takes effect at once, even on a chart with a period.
+        _ if skeleton.charts.iter().any(|c| c.every.is_some()) => return text,
         ProfileName::Pl7 => pl7(rng, sight),
-        ProfileName::Unity => unity(rng, sight, plan),
+        ProfileName::Unity => unity(rng, sight, skeleton),
         ProfileName::Iec60848 | ProfileName::Iec61131 | ProfileName::Jgrafchart => return text,
     };
     text.truncate(text.len() - 1);
@@ -318,9 +320,9 @@ fn pl7(rng: &mut Rng, sight: &Sight) -> String {
     }
 }
 
-fn unity(rng: &mut Rng, sight: &Sight, plan: &Plan) -> String {
-    let charts: Vec<&PlanChart> =
-        plan.charts.iter().filter(|c| c.word == "chart" && c.every.is_none() && !c.enclosed).collect();
+fn unity(rng: &mut Rng, sight: &Sight, skeleton: &Skeleton) -> String {
+    let charts: Vec<&SkeletonChart> =
+        skeleton.charts.iter().filter(|c| c.word == "chart" && c.every.is_none() && !c.enclosed).collect();
     let Some(chart) = rng.pick(&charts) else { return String::new() };
     let when = sight.boolean(rng, 1);
     let name = &chart.name;
@@ -335,18 +337,18 @@ fn unity(rng: &mut Rng, sight: &Sight, plan: &Plan) -> String {
     }
 }
 
-fn chart(rng: &mut Rng, world: &mut World, plan: &Plan, at: usize, out: &mut String) {
-    let chart = &plan.charts[at];
+fn chart(rng: &mut Rng, world: &mut World, skeleton: &Skeleton, at: usize, out: &mut String) {
+    let chart = &skeleton.charts[at];
     let mut sight = world.sight.clone();
     see_steps(&mut sight, chart, "");
-    for (i, other) in plan.charts.iter().enumerate() {
+    for (i, other) in skeleton.charts.iter().enumerate() {
         if i != at && other.word == "chart" {
             see_steps(&mut sight, other, &format!("{}.", other.name));
         }
     }
     let every = chart.every.map(|ms| format!(" every {ms}ms")).unwrap_or_default();
     out.push_str(&format!("{} {}{every} {{\n", chart.word, chart.name));
-    // A chart with a period drives outputs of its own only.
+    // A chart with a period drives only outputs of its own.
     let mut driven = world.driven.clone();
     let mut named = world.named.clone();
     if chart.periodic && chart.every.is_none() {
@@ -377,7 +379,7 @@ fn chart(rng: &mut Rng, world: &mut World, plan: &Plan, at: usize, out: &mut Str
         for _ in 0..actions {
             let profile = world.profile;
             if let Some(a) = body::action(rng, profile, &sight, &mut world.targets, &mut driven, &mut named) {
-                // One moment gives a variable one value.
+                // A moment assigns one value to a variable.
                 let moment = a.split_once(" :=").map(|(m, _)| m.to_owned());
                 if moment.is_none() || !moments.contains(&moment) {
                     out.push_str(&format!("    {a}\n"));
@@ -401,7 +403,7 @@ fn chart(rng: &mut Rng, world: &mut World, plan: &Plan, at: usize, out: &mut Str
         };
         let mut sight = sight.clone();
         if world.single {
-            sight.risk = 0; // which receptivities are asked for is the engine's business
+            sight.risk = 0; // the engine decides which receptivities are evaluated
         }
         let when = receptivity(rng, world, &sight, from.is_empty(), chart.periodic);
         out.push_str(&format!("  {} -> {} when {when}", names(from), names(to)));
@@ -417,15 +419,15 @@ fn chart(rng: &mut Rng, world: &mut World, plan: &Plan, at: usize, out: &mut Str
     world.targets.ints.retain(|(n, _)| n != "j");
 }
 
-/// Where the search for stability goes on while anything clears, a receptivity
-/// that stays true makes most charts run in circles: events are more common.
+/// A random receptivity. While the search for stability goes on, a receptivity that stays true
+/// makes most charts unstable, so events are more common.
 fn receptivity(rng: &mut Rng, world: &mut World, sight: &Sight, source: bool, periodic: bool) -> String {
     // A section of the file samples its edges in every scan.
     if !periodic
         && rng.percent(30)
         && let Some(section) = world.sections.pop()
     {
-        // Its output is computed where it is the whole receptivity, and only there.
+        // The section is computed only where its output is the whole receptivity.
         return section;
     }
     let input = rng.pick(&sight.inputs).cloned().unwrap_or_else(|| "TRUE".to_owned());

@@ -1,4 +1,4 @@
-//! Many charts as one C program.
+//! Compiles many charts as one C program.
 
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -60,7 +60,7 @@ fn c_type(ty: Type) -> &'static str {
     }
 }
 
-/// Reads a variable from the words that come in.
+/// C code that reads a variable from the input words.
 fn getter(place: &str, v: &Variable) -> String {
     match v.ty {
         Type::Bool => format!("{place} = word() != 0;"),
@@ -82,7 +82,7 @@ fn putter(place: &str, v: &Variable) -> String {
     }
 }
 
-/// One line for each element.
+/// Writes one line of code for each element of a variable.
 fn each(path: &str, v: &Variable, line: fn(&str, &Variable) -> String) -> String {
     let place = |i: u32| if v.elements == 1 { path.to_owned() } else { format!("{path}[{i}]") };
     (0..v.elements).map(|i| format!("    {}\n", line(&place(i), v))).collect()
@@ -133,11 +133,11 @@ fn player(subject: &Subject, printed: &Printed, name: &str) -> String {
     t
 }
 
-/// Prints charts as C and compiles them into one program.
+/// Generates C for charts and compiles them into one program.
 ///
 /// # Errors
 ///
-/// What a compiler has to say, or what cannot be printed (the titles of those charts).
+/// The messages of the compiler, or the titles of the charts for which no code can be generated.
 pub fn c_program(
     folder: &Path,
     compiler: &str,

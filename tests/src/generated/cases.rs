@@ -1,5 +1,5 @@
-//! What generated code is tried on: conformance cases and random charts, and
-//! the folders in which it is compiled.
+//! The subjects for generated code: conformance cases and random charts; and the folders in which
+//! they are compiled.
 #![allow(clippy::disallowed_methods, reason = "the cases are files")]
 
 use std::path::{Path, PathBuf};
@@ -10,12 +10,12 @@ use super::Subject;
 use crate::case;
 use crate::generate::sample;
 
-/// A folder of a test that goes when it is over, unless `G7_KEEP` is set.
+/// A folder for a test; it is deleted at the end, unless `G7_KEEP` is set.
 #[derive(Debug)]
 pub struct Folder(pub PathBuf);
 
 impl Folder {
-    /// One of this process.
+    /// A folder that no other process uses.
     pub fn new(name: &str) -> Folder {
         Folder(std::env::temp_dir().join(format!("g7-{}-{name}", std::process::id())))
     }
@@ -42,11 +42,11 @@ fn files(folder: &Path, found: &mut Vec<PathBuf>) {
     }
 }
 
-/// Every conformance case with a trace, a subject for each profile it runs under.
+/// Every conformance case with a trace, as a subject for each profile under which it runs.
 ///
 /// # Errors
 ///
-/// A case that is not in good form.
+/// A case has a wrong form.
 pub fn spec() -> Result<Vec<Subject>, String> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("spec");
     let mut all = Vec::new();
@@ -82,11 +82,12 @@ fn add(subjects: &mut Vec<Subject>, file: &Path, title: &str) -> Result<(), Stri
     Ok(())
 }
 
-/// Random charts of a profile, from a seed on, until `enough`; each with so many scans.
+/// Random charts of a profile, beginning with a seed, until `enough` of them were made; each with
+/// this many scans.
 ///
 /// # Errors
 ///
-/// What the generator made and nobody can read.
+/// The generator made a text that cannot be read.
 pub fn random(
     profile: ProfileName,
     first: u64,
@@ -99,7 +100,7 @@ pub fn random(
         let title = format!("{} seed {seed}", profile.name());
         let sample = sample(seed, profile, length).map_err(|e| format!("{title}: {e}"))?;
         seed += 1;
-        // What assigns two constants at one moment is refused by the checker.
+        // The checker refuses charts that assign two constants at one moment.
         let Ok(mut subject) = Subject::new(&title, &sample.document, None, &sample.text) else { continue };
         subject.play(&sample.script).map_err(|e| format!("{title}: {e}"))?;
         subjects.push(subject);

@@ -1,8 +1,9 @@
-//! Generated code beside the engine: what a chart does is written down scan by
-//! scan, played to the compiled code, and compared word by word.
+//! Compares generated code with the engine: the events of a chart and the engine's results are
+//! recorded scan by scan, the compiled code plays the same events, and the results are compared
+//! word by word.
 //!
-//! Many charts go into one program, so that compilers are started seldom. It
-//! reads what happens from its standard input and writes what it sees.
+//! Many charts are compiled into one program, because starting a compiler is slow. The program
+//! reads events from its standard input and writes results to its standard output.
 
 mod c;
 pub mod cases;
@@ -27,24 +28,24 @@ use crate::naive::{Naive, Value};
 pub use c::c_program;
 pub use rust::rust_program;
 
-/// A chart with all that happens to it and what the engine makes of it.
+/// A chart, its events, and the engine's results.
 #[derive(Debug)]
 pub struct Subject {
-    /// What it is called in messages.
+    /// Its name in messages.
     pub title: String,
-    /// The chart.
+    /// The compiled chart.
     pub compiled: Compiled,
     /// Its text.
     pub text: String,
-    /// What happens, as the program reads it.
+    /// The events, in the form that the program reads.
     pub input: Vec<u8>,
-    /// What the engine shows, scan by scan.
+    /// The results of the engine, scan by scan.
     pub expected: Vec<Seen>,
-    /// Scans without a fault.
+    /// Number of scans without a fault.
     pub sound: usize,
 }
 
-/// What one scan shows: the fault, then words.
+/// The result of one scan: the fault, then the words of all variables.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Seen {
     fault: u64,
@@ -66,7 +67,7 @@ fn number(kind: FaultKind) -> u64 {
     }
 }
 
-/// Variables that are compared, in their order.
+/// The variables that are compared, in their order.
 pub(crate) fn visible(compiled: &Compiled) -> impl Iterator<Item = &Variable> {
     compiled.symbols.variables.iter().filter(|v| {
         let own =
@@ -75,7 +76,7 @@ pub(crate) fn visible(compiled: &Compiled) -> impl Iterator<Item = &Variable> {
     })
 }
 
-/// A number that is none looks the same everywhere.
+/// Replaces every NaN by the same bits, because its bits differ between machines.
 fn plain(ty: Type, word: u64) -> u64 {
     match ty {
         Type::Real if f32::from_bits(word as u32).is_nan() => 0x7fc0_0000,
@@ -90,7 +91,7 @@ fn values<'a>(compiled: &'a Compiled, state: &'a State, outputs: bool) -> Vec<u6
 }
 
 impl Subject {
-    /// A chart without anything that happens yet.
+    /// A chart without events.
     ///
     /// # Errors
     ///
@@ -133,11 +134,11 @@ impl Subject {
         fresh
     }
 
-    /// Plays a script to the engine, and writes both down.
+    /// Plays a script on the engine and records the events and the results.
     ///
     /// # Errors
     ///
-    /// An input that is not there.
+    /// The script names an input that does not exist.
     pub fn play(&mut self, script: &Script) -> Result<(), String> {
         let mut state = self.fresh();
         let table = self.compiled.program.tables().inputs;
@@ -185,11 +186,11 @@ impl Subject {
         Ok(())
     }
 
-    /// Plays a trace of a conformance case.
+    /// Plays a trace of a conformance case on the engine and records it.
     ///
     /// # Errors
     ///
-    /// Where its inputs cannot be read.
+    /// The inputs of the trace cannot be read.
     pub fn replay(&mut self, doc: &Document, profile: ProfileName, trace: &Trace) -> Result<(), String> {
         let names = Naive::new(doc, Some(profile))?;
         let inputs = names.inputs();
@@ -206,11 +207,11 @@ impl Subject {
         self.play(&script)
     }
 
-    /// Its code.
+    /// Generates the code of the chart.
     ///
     /// # Errors
     ///
-    /// What the language cannot say.
+    /// The language cannot express the chart.
     pub fn print(&self, language: Language, style: Style, name: &str) -> Result<Printed, String> {
         let options = Options { language, style, name, source: &self.text };
         g7_codegen::print(&self.compiled, &options)
@@ -238,7 +239,7 @@ impl Subject {
     }
 }
 
-/// A stream of words.
+/// Reads a stream of words.
 struct Words<'a> {
     bytes: &'a [u8],
 }
@@ -251,11 +252,11 @@ impl Words<'_> {
     }
 }
 
-/// Runs a compiled program on all that happens to its charts, and compares.
+/// Runs a compiled program with the events of its charts and compares the results.
 ///
 /// # Errors
 ///
-/// Where it fails, or the first difference of each chart.
+/// The program fails, or the first difference of each chart.
 pub fn compare(program: &Path, subjects: &[&Subject]) -> Result<(), String> {
     let mut input = Vec::new();
     for (i, subject) in subjects.iter().enumerate() {
@@ -272,7 +273,7 @@ pub fn compare(program: &Path, subjects: &[&Subject]) -> Result<(), String> {
     for subject in subjects {
         if let Err(why) = subject.differs(&mut words) {
             wrong.push(format!("{}: {why}", subject.title));
-            break; // what follows is read at other places
+            break; // later words would be misread
         }
     }
     if !out.status.success() {
@@ -315,16 +316,6 @@ impl Subject {
 
 fn text(word: Option<u64>) -> String {
     word.map_or("nothing".into(), |w| (w as i64).to_string())
-}
-
-/// Whether a tool can be started.
-pub fn has(tool: &str) -> bool {
-    Command::new(tool)
-        .arg("--version")
-        .stdout(Stdio::null())
-        .stderr(Stdio::null())
-        .status()
-        .is_ok_and(|s| s.success())
 }
 
 pub(crate) fn run(command: &mut Command) -> Result<(), String> {

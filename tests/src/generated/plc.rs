@@ -1,4 +1,4 @@
-//! Printed PLC code beside the engine: what both of them show, scan by scan.
+//! Compares printed PLC code with the engine, scan by scan.
 
 use std::collections::BTreeMap;
 
@@ -10,7 +10,8 @@ use g7_model::Type;
 
 use super::Subject;
 
-/// Variables that the chart and its code both have, with the names of the code in capitals.
+/// The variables that both the chart and its code have, with their names in the code in capital
+/// letters.
 pub fn shown<'a>(s: &'a Subject, printed: &Printed) -> Vec<(&'a Variable, String)> {
     let all = s.compiled.symbols.variables.iter();
     let all = all.filter(|v| !matches!(v.class, VarClass::Const | VarClass::Local));
@@ -19,36 +20,35 @@ pub fn shown<'a>(s: &'a Subject, printed: &Printed) -> Vec<(&'a Variable, String
         .collect()
 }
 
-/// What one scan shows: steps and variables; after a fault the outputs.
+/// The result of one scan: steps and variables; after a fault only the outputs.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Seen {
-    /// No stable situation, or orders that disagree.
+    /// True after a fault at which the code stops as well.
     pub stopped: bool,
-    /// Steps, then variables in their order.
+    /// The steps, then the variables in their order.
     pub words: Vec<u64>,
 }
 
-/// What the code does next.
+/// An event for the code.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Event {
-    /// It starts anew.
+    /// A restart.
     Start,
-    /// A scan: the time, and the inputs that are shown, word by word.
+    /// A scan: its time, and the words of the visible inputs.
     Scan {
-        /// Nanoseconds.
+        /// The time, in nanoseconds.
         now: i64,
-        /// Inputs.
+        /// The inputs.
         inputs: Vec<u64>,
     },
 }
 
-/// What happens to the code, and what the engine shows in each scan of it. A run
-/// ends where values fail (a controller goes on) and at a warm restart (what is
-/// kept is the controller's matter).
+/// The events for the code, and the engine's result of each scan. The recording ends where a number
+/// overflows (a controller would go on) and at a warm restart (the controller decides what is kept).
 ///
 /// # Errors
 ///
-/// A script that ends within a scan.
+/// The script ends within a scan.
 pub fn played(s: &Subject, printed: &Printed) -> Result<(Vec<Event>, Vec<Seen>), String> {
     let program = &s.compiled.program;
     let table = program.tables().inputs;
@@ -84,7 +84,12 @@ pub fn played(s: &Subject, printed: &Printed) -> Result<(Vec<Event>, Vec<Seen>),
             ended = true;
             let stops = matches!(
                 fault.kind,
-                FaultKind::Unstable { .. } | FaultKind::Forcing { .. } | FaultKind::Bound
+                FaultKind::Unstable { .. }
+                    | FaultKind::Forcing { .. }
+                    | FaultKind::Bound
+                    | FaultKind::DivisionByZero
+                    | FaultKind::Range
+                    | FaultKind::Table
             );
             if !stops {
                 continue;
@@ -108,7 +113,7 @@ pub fn played(s: &Subject, printed: &Printed) -> Result<(Vec<Event>, Vec<Seen>),
     Ok((events, seen))
 }
 
-/// What differs between two scans, with the names of the code.
+/// The differences between two results, with the names of the code.
 pub fn difference(s: &Subject, printed: &Printed, want: &Seen, got: &Seen) -> String {
     if want.stopped != got.stopped {
         return format!("stopped: {} by the engine, {} by the code", want.stopped, got.stopped);
@@ -127,20 +132,20 @@ pub fn difference(s: &Subject, printed: &Printed, want: &Seen, got: &Seen) -> St
         .join(", ")
 }
 
-/// Charts with their code, and why the others have none.
+/// Charts with their code, and the reasons why other charts have none.
 #[derive(Debug)]
 pub struct Prints<'a> {
-    /// Those that are printed.
+    /// The charts that can be printed, with their code.
     pub list: Vec<(&'a Subject, Printed)>,
-    /// How many are refused, by the reason.
+    /// The number of refused charts for each reason.
     pub refused: BTreeMap<String, usize>,
 }
 
-/// Prints what can be printed. Each refusal must give a place in the chart.
+/// Prints all charts that can be printed. Each refusal must name a place in the chart.
 ///
 /// # Errors
 ///
-/// A refusal without a reason or a place.
+/// A refusal has no reason or no place.
 pub fn prints(subjects: &[Subject], form: Form) -> Result<Prints<'_>, String> {
     let mut all = Prints { list: Vec::new(), refused: BTreeMap::new() };
     for s in subjects {

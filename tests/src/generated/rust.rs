@@ -1,4 +1,4 @@
-//! Many charts as one Rust program.
+//! Compiles many charts as one Rust program.
 
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -111,12 +111,12 @@ fn player(subject: &Subject, printed: &Printed, name: &str) -> String {
     t
 }
 
-/// Prints charts as Rust and compiles them into one program: the modules as a
-/// library without the standard library, in which no warning is allowed.
+/// Generates Rust for charts and compiles them into one program: the modules form a library without
+/// the standard library, in which no warning is allowed.
 ///
 /// # Errors
 ///
-/// What the compiler has to say, or what cannot be printed.
+/// The messages of the compiler, or what cannot be generated.
 pub fn rust_program(folder: &Path, style: Style, subjects: &[&Subject]) -> Result<PathBuf, String> {
     std::fs::create_dir_all(folder).map_err(|e| e.to_string())?;
     let mut library = String::from("#![no_std]\n#![forbid(unsafe_code)]\n#![deny(warnings)]\n");

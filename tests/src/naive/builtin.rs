@@ -4,7 +4,7 @@ use g7_model::{BinaryOp, Type};
 
 use super::value::{NaiveFault, Run, Typed, Value, bad, binary, common, cut, negate};
 
-/// Calls a standard function or a conversion by its name, in any case.
+/// Calls a standard function or a conversion by its name, in upper or lower case.
 pub(super) fn call(name: &str, args: &[Typed]) -> Run<Typed> {
     let name = name.to_ascii_uppercase();
     if let Some((from, to)) = name.split_once("_TO_")
@@ -74,7 +74,7 @@ fn real(x: &Typed, single: fn(f32) -> f32, double: fn(f64) -> f64) -> Run<Typed>
     }
 }
 
-/// A value in the type common to all of a list.
+/// Converts a value to the common type of a list.
 fn alike(x: &Typed, all: &[Typed]) -> Run<Typed> {
     let mut so_far = x.clone();
     for other in all {
@@ -105,7 +105,7 @@ fn truncated(x: &Typed) -> Run<f64> {
     }
 }
 
-/// A whole floating-point number as an integer of a type.
+/// Rounds a floating-point number to an integer of a type.
 fn rounded(x: &f64, to: Type) -> Run<Typed> {
     if x.is_nan() || x.abs() > 1e30 {
         return Err(NaiveFault::Overflow);

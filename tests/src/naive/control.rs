@@ -7,11 +7,11 @@ use g7_model::{Action, ActionKind, Body, Expr, ProfileName, Qualifier, Target, T
 use super::evolve::Changes;
 use super::exec::Exec;
 use super::model::{FILE, Model, ScopeId, StepId, VarId};
-use super::names::Ref;
+use super::resolve::Ref;
 use super::state::{Control, Owner, State};
 use super::value::{Run, Value, bad};
 
-/// What a qualified action governs.
+/// The target of a qualified action.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Goal {
     Var(VarId),
@@ -19,7 +19,7 @@ pub(super) enum Goal {
     Own,
 }
 
-/// One qualified action that acts at the end of a scan.
+/// A qualified action that acts at the end of a scan.
 struct Block<'m> {
     step: StepId,
     place: usize,
@@ -50,7 +50,7 @@ pub(super) fn goal(m: &Model, scope: ScopeId, target: &Target) -> Run<Goal> {
     }
 }
 
-/// All qualified actions with their goals.
+/// All qualified actions with their targets.
 fn qualified(m: &Model) -> Run<Vec<(Block<'_>, Goal)>> {
     let mut all = Vec::new();
     for scope in FILE + 1..m.scopes.len() {
@@ -73,8 +73,7 @@ fn qualified(m: &Model) -> Run<Vec<(Block<'_>, Goal)>> {
     Ok(all)
 }
 
-/// Whether an association acts at the end of the scan (decisions 7 and 8), and
-/// not as a stored action.
+/// True if an association acts at the end of the scan (decision 10) and not as a stored action.
 pub(super) fn through_block(m: &Model, goal: &Goal, q: Qualifier) -> bool {
     let Goal::Var(v) = goal else {
         return !(m.rules.stored_pulses() && matches!(q, Qualifier::P1 | Qualifier::P0));
@@ -85,7 +84,7 @@ pub(super) fn through_block(m: &Model, goal: &Goal, q: Qualifier) -> bool {
     m.blocked_vars.contains(v)
 }
 
-/// Variables whose associations all go through a control block.
+/// The variables whose associations all go through a control block.
 pub(super) fn blocked_vars(m: &Model) -> Run<BTreeSet<VarId>> {
     use Qualifier as Q;
     let mut vars = BTreeSet::new();
@@ -104,24 +103,24 @@ pub(super) fn blocked_vars(m: &Model) -> Run<BTreeSet<VarId>> {
     Ok(vars)
 }
 
-/// What the evolution of a scan did.
+/// The results of the evolution of a scan.
 pub(super) struct Went {
-    /// Active steps at its start.
+    /// The steps that were active at its start.
     pub(super) start: BTreeSet<StepId>,
-    /// Steps that came on or went off in it, those of the initialisation too.
+    /// The steps that were activated or deactivated in it, including the initialisation.
     pub(super) changes: Changes,
 }
 
-/// What a control block says.
+/// The result of a control block.
 struct Verdict {
     q: bool,
-    /// Its action's body runs in this scan.
+    /// True if the body of its action runs in this scan.
     runs: bool,
-    /// P1 (0) or P0 (2) runs it, or anything else (1).
+    /// Who runs it: P1 (0), P0 (2) or any other qualifier (1).
     pulse: i8,
 }
 
-/// What goes through control blocks.
+/// The qualified actions that go through control blocks.
 fn blocks(m: &Model) -> Run<Vec<Block<'_>>> {
     let all = qualified(m)?.into_iter();
     Ok(all
@@ -141,7 +140,7 @@ fn owners<'b>(blocks: &'b [Block<'_>]) -> Vec<&'b Owner> {
     owners
 }
 
-/// What an association gives to its block in the situation as it is.
+/// The value that an association gives to its block in the present situation.
 fn input_of(m: &Model, s: &mut State, b: &Block<'_>) -> Run<bool> {
     let scope = m.steps[b.step].scope;
     let on = s.active.contains(&b.step) && !masked(m, s, scope);
@@ -151,8 +150,8 @@ fn input_of(m: &Model, s: &mut State, b: &Block<'_>) -> Run<bool> {
     }
 }
 
-/// The initialisation or a service made a situation: P1 and P0 see it before
-/// the evolution, so that a step left in the same scan has its pulses.
+/// The initialisation or a service made a situation: P1 and P0 see it before the evolution, so that
+/// a step that is left in the same scan still has its pulses.
 pub(super) fn before_evolution(m: &Model, s: &mut State, due: &[bool]) -> Run<()> {
     if m.rules.stored_pulses() {
         return Ok(());
@@ -182,7 +181,7 @@ pub(super) fn before_evolution(m: &Model, s: &mut State, due: &[bool]) -> Run<()
 
 /// Evaluates all control blocks and continuous actions, then runs the bodies.
 pub(super) fn end_of_scan(m: &Model, s: &mut State, due: &[bool], went: &Went) -> Run<()> {
-    // JGrafchart: the periodic actions, and after them the level actions.
+    // JGrafchart executes the periodic actions first and the level actions after them.
     let level_last = m.rules.profile == ProfileName::Jgrafchart;
     if level_last {
         bodies(m, s, due, went, &[], &BTreeMap::new(), true)?;
@@ -208,7 +207,7 @@ pub(super) fn end_of_scan(m: &Model, s: &mut State, due: &[bool], went: &Went) -
     bodies(m, s, due, went, &blocks, &verdicts, !level_last)
 }
 
-/// The inputs of a block, and what comes of them.
+/// Computes the inputs of a block and its result.
 fn judge(m: &Model, s: &mut State, due: &[bool], owner: &Owner, blocks: &[&Block<'_>]) -> Run<Verdict> {
     let continuous = match owner {
         Owner::Var(v) => m.rules.profile == ProfileName::Iec60848 && !m.blocked_vars.contains(v),
@@ -273,18 +272,18 @@ fn judge(m: &Model, s: &mut State, due: &[bool], owner: &Owner, blocks: &[&Block
     Ok(Verdict { q: q && !masked_var, runs: q || (m.rules.final_scan && level_before), pulse })
 }
 
-/// Whether a step with an active order masks the chart that a scope is in.
+/// True if a step with an active order masks the chart of a scope.
 fn masked(m: &Model, s: &State, scope: ScopeId) -> bool {
     m.chart_masks.iter().any(|(by, chart)| *chart == m.scopes[scope].root && s.active.contains(by))
 }
 
-/// The place of a timed qualifier among the timers.
+/// The index of a timed qualifier among the timers.
 fn timer_of(q: Qualifier) -> Option<usize> {
     [Qualifier::L, Qualifier::D, Qualifier::SD, Qualifier::DS, Qualifier::SL].iter().position(|t| *t == q)
 }
 
 impl Control {
-    /// The equations of SEMANTICS section 5: Q without P1 and P0, then these.
+    /// The equations of SEMANTICS section 5: Q without P1 and P0, then P1 and P0.
     fn step(&mut self, inputs: &[bool], now: i64) -> (bool, bool, bool) {
         use Qualifier as Q;
         let on = |q: Q| inputs[q as usize];
@@ -328,29 +327,29 @@ impl Control {
 }
 
 /// A body that runs at the end of the scan.
-enum Run1<'m> {
+enum LateBody<'m> {
     Named(ScopeId, &'m g7_model::Block),
     Work(ScopeId, &'m g7_model::Work),
     Each(ScopeId, &'m g7_model::Work, Option<&'m Expr>),
 }
 
-/// Whether a P1 or P0 body acts on the activation or deactivation itself. With a
-/// condition or a mask its control block sees the step at the end of the scan.
+/// True if a P1 or P0 body follows the activation or deactivation itself. With a condition or a
+/// mask, its control block sees the step at the end of the scan.
 fn is_late_pulse(m: &Model, step: StepId, action: &Action) -> bool {
     let ActionKind::Qualified { qualifier, target: Target::Work(_), condition: None, .. } = &action.kind
     else {
         return false;
     };
-    // A step that comes and goes within a scan is not seen either.
+    // A control block does not see a step that is activated and deactivated within one scan.
     let through_block = m.rules.stable || m.chart_masks.iter().any(|(_, chart)| *chart == m.root_of(step));
     let pulse = matches!(qualifier, Qualifier::P1 | Qualifier::P0);
     pulse && !m.rules.stored_pulses() && !through_block
 }
 
-/// A P1 or P0 body of a step's own where such bodies wait for the end of the
-/// scan: it runs once where the step was activated or deactivated in this scan,
-/// an initial step at the start too.
-fn late_pulse<'m>(m: &'m Model, went: &Went, step: StepId, action: &'m Action) -> Option<(i8, Run1<'m>)> {
+/// A P1 or P0 body of a step, in profiles where such bodies wait for the end of the scan: it runs
+/// once if the step was activated or deactivated in this scan; for an initial step at the start
+/// too.
+fn late_pulse<'m>(m: &'m Model, went: &Went, step: StepId, action: &'m Action) -> Option<(i8, LateBody<'m>)> {
     let ActionKind::Qualified { qualifier, target: Target::Work(work), .. } = &action.kind else {
         return None;
     };
@@ -360,11 +359,11 @@ fn late_pulse<'m>(m: &'m Model, went: &Went, step: StepId, action: &'m Action) -
         _ => return None,
     };
     let late = is_late_pulse(m, step, action) && happened.contains(&step);
-    late.then(|| (pulse, Run1::Each(m.steps[step].scope, work, None)))
+    late.then(|| (pulse, LateBody::Each(m.steps[step].scope, work, None)))
 }
 
-/// Bodies and each-scan actions in the order of the text; a named action stands
-/// where it is first named.
+/// Bodies and each-scan actions in the order of the text; a named action has the place where it is
+/// named first.
 fn bodies(
     m: &Model,
     s: &mut State,
@@ -374,7 +373,7 @@ fn bodies(
     verdicts: &BTreeMap<&Owner, Verdict>,
     each_scan: bool,
 ) -> Run<()> {
-    let mut todo: Vec<(i8, Run1<'_>)> = Vec::new();
+    let mut todo: Vec<(i8, LateBody<'_>)> = Vec::new();
     let mut done: BTreeSet<&Owner> = BTreeSet::new();
     for (scope, in_turn) in due.iter().copied().enumerate().skip(FILE + 1) {
         for &step in &m.scopes[scope].steps {
@@ -382,7 +381,7 @@ fn bodies(
                 if let ActionKind::EachScan { work, condition } = &action.kind {
                     let was = m.rules.profile != ProfileName::Jgrafchart || went.start.contains(&step);
                     if each_scan && in_turn && s.active.contains(&step) && was {
-                        todo.push((1, Run1::Each(scope, work, condition.as_ref())));
+                        todo.push((1, LateBody::Each(scope, work, condition.as_ref())));
                     }
                 }
                 if in_turn {
@@ -398,11 +397,11 @@ fn bodies(
                 match (&block.owner, &action.kind) {
                     (Owner::Named(owner, name), _) => {
                         if let Body::St(b) = &m.scopes[*owner].actions[name].body {
-                            todo.push((v.pulse, Run1::Named(*owner, b)));
+                            todo.push((v.pulse, LateBody::Named(*owner, b)));
                         }
                     }
                     (Owner::Own(..), ActionKind::Qualified { target: Target::Work(work), .. }) => {
-                        todo.push((v.pulse, Run1::Work(scope, work)));
+                        todo.push((v.pulse, LateBody::Work(scope, work)));
                     }
                     _ => {}
                 }
@@ -415,9 +414,9 @@ fn bodies(
     for (_, what) in todo {
         let mut exec = Exec::new(m, s);
         match what {
-            Run1::Named(scope, block) => exec.body(scope, block)?,
-            Run1::Work(scope, work) => exec.work(scope, work)?,
-            Run1::Each(scope, work, condition) => {
+            LateBody::Named(scope, block) => exec.body(scope, block)?,
+            LateBody::Work(scope, work) => exec.work(scope, work)?,
+            LateBody::Each(scope, work, condition) => {
                 let holds = match condition {
                     Some(c) => exec.truth(scope, c)?,
                     None => true,

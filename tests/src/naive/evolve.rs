@@ -1,5 +1,6 @@
-//! One pass of the evolution: enabled, clearable, chosen, cleared all at once
-//! (or, `sequential`, one after the other), then hierarchy and forcing.
+//! One pass of the evolution: finds enabled and clearable transitions, chooses among them, clears
+//! all of them at once (or one after the other under `sequential`), then applies hierarchy and
+//! forcing.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -13,14 +14,14 @@ use super::stored;
 use super::value::Run;
 use super::{Diagnostics, Marks};
 
-/// Steps that a pass, or the services before it, turned on and off.
+/// The steps that a pass, or the services before it, activated and deactivated.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Changes {
     pub(super) on: BTreeSet<StepId>,
     pub(super) off: BTreeSet<StepId>,
-    /// Transitions that cleared, where their actions are still to run.
+    /// Cleared transitions whose actions have not run yet.
     pub(super) cleared: BTreeSet<TransId>,
-    /// Steps and actions whose event happened.
+    /// The steps and actions whose event occurred.
     pub(super) events: BTreeSet<(StepId, usize)>,
 }
 
@@ -33,7 +34,7 @@ impl Changes {
     }
 }
 
-/// Every step of `pre` is active, of a macro-step its exit step.
+/// True if every preceding step is active; for a macro-step its exit step.
 pub(super) fn enabled(m: &Model, s: &State, t: TransId) -> bool {
     m.transitions[t].pre.iter().all(|&p| match m.steps[p].expansion {
         Some((_, _, exit)) => s.active.contains(&exit),
@@ -103,10 +104,9 @@ pub(super) fn pass(
     Ok(changes)
 }
 
-/// JGrafchart's way: each transition in its turn runs the exit actions of its
-/// preceding steps, turns them off, turns the succeeding ones on and runs their
-/// entry actions, before the next one does. Hierarchy and forcing follow, with
-/// the other stored actions.
+/// The order of JGrafchart: each transition runs the exit actions of its preceding steps,
+/// deactivates them, activates the succeeding steps and runs their entry actions, before the next
+/// transition does. Hierarchy and forcing follow, with the other stored actions.
 fn one_after_the_other(
     m: &Model,
     s: &mut State,
@@ -118,7 +118,7 @@ fn one_after_the_other(
 ) -> Run<Changes> {
     let before = s.active.clone();
     let mut all = Changes::default();
-    // Owners of tasks are settled by the situation in which the pass began.
+    // The owners of tasks are decided in the situation at the start of the pass.
     let by_themselves = tasks(m, s, due, chosen);
     for &t in chosen {
         let begun = s.clone();
@@ -151,7 +151,7 @@ fn one_after_the_other(
     Ok(all)
 }
 
-/// Turns a step off, its exit actions first, and after it what it encloses.
+/// Deactivates a step, after its exit actions, and then everything that it encloses.
 fn leave(m: &Model, s: &mut State, step: StepId, all: &mut Changes) -> Run<()> {
     if !s.active.contains(&step) {
         return Ok(());
@@ -169,15 +169,15 @@ fn leave(m: &Model, s: &mut State, step: StepId, all: &mut Changes) -> Run<()> {
     Ok(())
 }
 
-/// Turns a step on, and with it the linked steps of what it encloses; its entry
-/// actions run then. `begun` is the state before the transition cleared.
+/// Activates a step and the linked steps of the charts that it encloses, then runs its entry
+/// actions. `begun` is the state before the transition cleared.
 fn enter(m: &Model, s: &mut State, step: StepId, begun: &State, all: &mut Changes) -> Run<()> {
     if s.active.contains(&step) {
         return Ok(());
     }
     let next = &s.active | &BTreeSet::from([step]);
     all.add(&settle(m, s, next, &BTreeSet::new()));
-    // A token that goes from step to step within does not leave the macro-step.
+    // A token that moves inside the expansion does not leave the macro-step.
     for x in (0..m.steps.len()).filter(|&x| m.steps[x].expansion.is_some()) {
         if begun.is_active(m, x) && s.is_active(m, x) {
             let kept = begun.macro_timing.get(&x).copied().unwrap_or_default();
@@ -196,10 +196,10 @@ fn enter(m: &Model, s: &mut State, step: StepId, begun: &State, all: &mut Change
     Ok(())
 }
 
-/// The situation that the clearings so far lead to.
+/// The situation after the clearings so far.
 struct Flow {
     next: BTreeSet<StepId>,
-    /// Steps turned off on the way, whether or not they came on again.
+    /// The steps deactivated on the way, even if they were activated again.
     left: BTreeSet<StepId>,
 }
 
@@ -214,8 +214,8 @@ impl Flow {
     }
 }
 
-/// The steps that a transition turns off, each with what goes with it: an exit
-/// step before its macro-step, the exit step of a task behind its caller.
+/// The steps that a transition deactivates, each with those that follow it: an exit step before its
+/// macro-step, the exit step of a task after its caller.
 fn leaving(m: &Model, t: TransId) -> Vec<Vec<StepId>> {
     let mut groups = Vec::new();
     for &p in &m.transitions[t].pre {
@@ -227,7 +227,7 @@ fn leaving(m: &Model, t: TransId) -> Vec<Vec<StepId>> {
     groups
 }
 
-/// The steps that a transition turns on: a macro-step before its entry step.
+/// The steps that a transition activates: a macro-step before its entry step.
 fn arriving(m: &Model, t: TransId) -> Vec<Vec<StepId>> {
     let mut groups: Vec<Vec<StepId>> = Vec::new();
     for &p in &m.transitions[t].pre {
@@ -245,12 +245,12 @@ fn flat(groups: Vec<Vec<StepId>>) -> BTreeSet<StepId> {
     groups.into_iter().flatten().collect()
 }
 
-/// Frozen, or not enabled by any step although some step enables it. A macro-step
-/// gives its orders as it does its actions: from its activation to its clearing.
+/// True if a chart is frozen, or if steps have enabling orders for it and none of them is active. A
+/// macro-step gives its orders like its actions: from its activation to its clearing.
 fn held(m: &Model, s: &State, scope: ScopeId) -> bool {
     let root = m.scopes[scope].root;
     let waits = m.enables.get(&root).is_some_and(|by| !by.iter().any(|e| s.active.contains(e)));
-    waits || s.frozen.contains(&root) || s.system(m, "S23")
+    waits || s.frozen.contains(&root) || s.stopped
 }
 
 /// The callers of a task, in the order of the text.
@@ -258,7 +258,7 @@ fn callers(m: &Model, task: ScopeId) -> impl Iterator<Item = StepId> {
     (0..m.steps.len()).filter(move |&c| m.steps[c].calls.contains(&task))
 }
 
-/// The guards of decision 15.
+/// True if the conditions of decision 15 let a transition clear.
 fn task_allows(m: &Model, s: &State, t: TransId) -> bool {
     let transition = &m.transitions[t];
     let scope = transition.scope;
@@ -274,8 +274,8 @@ fn task_allows(m: &Model, s: &State, t: TransId) -> bool {
     })
 }
 
-/// Hands tasks to their callers and back; gives the exit and entry steps of
-/// those that go back by themselves.
+/// Assigns tasks to their callers and releases them; returns the exit and entry steps of the tasks
+/// that return by themselves.
 fn tasks(m: &Model, s: &mut State, due: &[bool], chosen: &[TransId]) -> Vec<(StepId, StepId)> {
     let mut by_themselves = Vec::new();
     let begun = s.clone();
@@ -306,15 +306,15 @@ fn tasks(m: &Model, s: &mut State, due: &[bool], chosen: &[TransId]) -> Vec<(Ste
     by_themselves
 }
 
-/// Which of the transitions that could clear do: those with a true receptivity,
-/// and of these as many as the profile lets share a step.
+/// Chooses the transitions that clear: those with a true receptivity, and of these as many as the
+/// profile lets share a preceding step.
 fn choose(m: &Model, s: &mut State, ready: Vec<TransId>) -> Run<Vec<TransId>> {
     let shares =
         |a: TransId, b: TransId| m.transitions[a].pre.iter().any(|p| m.transitions[b].pre.contains(p));
     let mut is_true =
         |t: TransId| Exec::new(m, s).receptivity(m.transitions[t].scope, &m.transitions[t].receptivity);
     if !m.rules.multi_token {
-        // One behind another: a step that is taken asks no further receptivity.
+        // In order of priority: once a step is used, no further receptivity of it is evaluated.
         let mut ranked = ready;
         ranked.sort_by_key(|&t| (turn(m, t), m.transitions[t].priority.unwrap_or(u32::MAX), t));
         let mut chosen: Vec<TransId> = Vec::new();
@@ -336,7 +336,7 @@ fn choose(m: &Model, s: &mut State, ready: Vec<TransId>) -> Run<Vec<TransId>> {
         return Ok(clearable);
     }
     let beaten = |t: TransId| {
-        // Without a number it has the lowest priority.
+        // A transition without a number has the lowest priority.
         let number = |t: TransId| m.transitions[t].priority.unwrap_or(u32::MAX);
         clearable.iter().any(|&o| shares(o, t) && number(o) < number(t))
     };
@@ -345,15 +345,15 @@ fn choose(m: &Model, s: &mut State, ready: Vec<TransId>) -> Run<Vec<TransId>> {
     Ok(chosen)
 }
 
-/// Where one clears after the other, chart by chart: how many macro-steps lie
-/// round a transition, then the place of its chart in the text.
+/// The order of transitions if they clear one after the other, chart by chart: the number of
+/// enclosing macro-steps, then the position of the chart in the text.
 fn turn(m: &Model, t: TransId) -> (usize, ScopeId) {
     let scope = m.transitions[t].scope;
     let depth = m.scopes[scope].qualified.split('.').count();
     if m.rules.sequential { (depth, scope) } else { (0, 0) }
 }
 
-/// What enclosing steps bring and take, from the outermost inward.
+/// Applies what enclosing steps activate and deactivate, from the outermost inward.
 pub(super) fn hierarchy(
     m: &Model,
     before: &BTreeSet<StepId>,
@@ -381,7 +381,7 @@ pub(super) fn hierarchy(
     }
 }
 
-/// Makes `next` the situation, with the times that follow.
+/// Makes `next` the present situation and updates the times.
 pub(super) fn settle(m: &Model, s: &mut State, next: BTreeSet<StepId>, again: &BTreeSet<StepId>) -> Changes {
     let before = s.clone();
     let again: BTreeSet<StepId> = again.intersection(&next).copied().collect();
@@ -413,8 +413,8 @@ pub(super) fn settle(m: &Model, s: &mut State, next: BTreeSet<StepId>, again: &B
     Changes { on, off, ..Changes::default() }
 }
 
-/// Steps and actions whose `on e:` is due: the step is active and `e` true at
-/// the start of the pass.
+/// The steps and actions whose `on e:` occurs: the step is active and `e` is true at the start of
+/// the pass.
 fn true_events(m: &Model, s: &mut State, due: &[bool]) -> Run<BTreeSet<(StepId, usize)>> {
     let mut events = BTreeSet::new();
     for (id, step) in m.steps.iter().enumerate() {

@@ -1,28 +1,28 @@
-//! Expressions, evaluated recursively on the state as it is.
+//! Evaluates expressions recursively on the present state.
 
 use std::collections::BTreeMap;
 
-use g7_model::{Arg, Expr, ExprKind, Function, Literal, Path, Type, UnaryOp};
+use g7_model::{Arg, BinaryOp, Expr, ExprKind, Function, Literal, Path, Type, UnaryOp};
 
 use super::builtin;
 use super::model::{Model, ScopeId, StepId, VarId, is_name};
-use super::names::Ref;
+use super::resolve::Ref;
 use super::state::State;
 use super::value::{NaiveFault, Run, Typed, Value, bad, binary, negate, zero};
 
-/// The locals of a running function, section or action body.
+/// The local variables of a running function, section or action body.
 pub(super) type Frame = BTreeMap<String, (Type, Value)>;
 
-/// Runs expressions and statements on a state.
+/// Evaluates expressions and runs statements on a state.
 pub(super) struct Exec<'a> {
     pub(super) m: &'a Model,
     pub(super) s: &'a mut State,
     pub(super) frames: Vec<Frame>,
-    /// Variables assigned, whether or not their value changed.
+    /// The assigned variables, even if their value did not change.
     pub(super) written: Vec<VarId>,
 }
 
-/// Most loop iterations of a scan.
+/// Greatest number of loop iterations in a scan.
 const WORK: u32 = 1_000_000;
 
 impl<'a> Exec<'a> {
@@ -52,6 +52,16 @@ impl<'a> Exec<'a> {
             ExprKind::Unary(UnaryOp::Fall, _) => Ok(Typed::bool(self.edge(e).is_some_and(|(b, h)| b && !h))),
             ExprKind::Binary(op, a, b) => {
                 let a = self.eval(scope, a)?;
+                // The right operand is not evaluated where the left one decides (decision 23).
+                match op {
+                    BinaryOp::Or if a.truth()? => return Ok(Typed::bool(true)),
+                    BinaryOp::And | BinaryOp::Dot if !a.truth()? => return Ok(Typed::bool(false)),
+                    BinaryOp::Add if a.ty == Some(Type::Bool) && a.truth()? => return Ok(Typed::bool(true)),
+                    BinaryOp::Mul if a.ty == Some(Type::Bool) && !a.truth()? => {
+                        return Ok(Typed::bool(false));
+                    }
+                    _ => {}
+                }
                 let b = self.eval(scope, b)?;
                 binary(*op, &a, &b)
             }
@@ -67,7 +77,8 @@ impl<'a> Exec<'a> {
         }
     }
 
-    /// The step of `t/X12` (decision 12): a literal activity, no second time.
+    /// The step of `t/X12` (decision 12): the operand is a step variable itself, and there is no
+    /// second time.
     pub(super) fn watched_step(&self, scope: ScopeId, e: &Expr, second: bool) -> Option<StepId> {
         if second || !is_name(e) {
             return None;
@@ -129,8 +140,8 @@ impl<'a> Exec<'a> {
         })
     }
 
-    /// A receptivity. One that is the name of a transition section runs it;
-    /// everything else reads what the section said last.
+    /// Evaluates a receptivity. If it is the name of a transition section, the section runs; any
+    /// other expression reads the section's last result.
     pub(super) fn receptivity(&mut self, scope: ScopeId, e: &Expr) -> Run<bool> {
         if let ExprKind::Path(p) = &e.kind
             && let Some(Ref::Section(s, name)) = self.m.resolve(scope, p)
@@ -189,7 +200,7 @@ impl<'a> Exec<'a> {
         }
     }
 
-    /// Declares the variables of a block's own, with their initial values.
+    /// Declares the local variables of a block, with their initial values.
     pub(super) fn locals(&mut self, scope: ScopeId, block: &g7_model::Block, frame: &mut Frame) -> Run<()> {
         for local in &block.locals {
             let value = match &local.init {
@@ -208,14 +219,14 @@ impl<'a> Exec<'a> {
         Ok(())
     }
 
-    /// Counts one jump back.
+    /// Counts one loop iteration.
     pub(super) fn jump(&mut self) -> Run<()> {
         self.s.work += 1;
         if self.s.work > WORK { Err(NaiveFault::Work) } else { Ok(()) }
     }
 }
 
-/// An expression's memories are found by its address in the model.
+/// The key of an expression's memories: its address in the model.
 pub(super) fn key(e: &Expr) -> usize {
     std::ptr::from_ref(e) as usize
 }
@@ -230,7 +241,7 @@ fn member_of(f: &super::fb::FbState, member: &str) -> Run<Typed> {
 pub(super) fn literal(l: &Literal) -> Run<Typed> {
     let (ty, plain) = match l {
         Literal::Bool(b) => return Ok(Typed::bool(*b)),
-        Literal::Time(t) => return Ok(Typed::time(*t)),
+        Literal::Time(t) => return Ok(Typed::time(t.count())),
         Literal::Str(s) => return Ok(Typed::of(Type::String(u16::MAX), Value::Str(s.to_string()))),
         Literal::Int(n, ty) => (*ty, Value::Int(*n)),
         Literal::Real(text, Some(Type::Real)) => match text.parse() {

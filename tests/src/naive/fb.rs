@@ -1,31 +1,31 @@
-//! The standard function blocks of IEC 61131-3:2003, 2.5.2.3, each written as
-//! the standard's own body.
+//! The standard function blocks of IEC 61131-3:2003, 2.5.2.3, each written like the body in the
+//! standard.
 
 use g7_model::{FbKind, Type};
 
 use super::value::{Run, Value, bad, zero};
 
-/// One instance: its members by name, and what it keeps between calls.
+/// An instance: its members by name, and the values that it keeps between calls.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FbState {
-    /// Which block.
+    /// The kind of block.
     pub kind: FbKind,
     members: Vec<(&'static str, Value)>,
-    /// Edge memories of CU or CLK or IN, and of CD.
+    /// The edge memories of CU, CLK or IN, and of CD.
     last: [bool; 2],
-    /// Instant from which a timer runs.
+    /// The instant at which a timer was started.
     since: Option<i64>,
 }
 
 impl FbState {
-    /// As it is before its first call.
+    /// An instance before its first call.
     pub fn new(kind: FbKind) -> FbState {
         let members = kind.members().iter().map(|(name, ty, _)| (*name, zero(*ty))).collect();
-        // F_TRIG's memory of NOT CLK starts false, so CLK counts as having been true.
+        // The memory of NOT CLK in F_TRIG starts as FALSE, as if CLK had been TRUE before.
         FbState { kind, members, last: [kind == FbKind::FTrig, false], since: None }
     }
 
-    /// The type of a member, in any case.
+    /// The type of a member; its name may be in upper or lower case.
     pub fn member_type(kind: FbKind, name: &str) -> Option<Type> {
         kind.members().iter().find(|m| m.0.eq_ignore_ascii_case(name)).map(|m| m.1)
     }
@@ -35,7 +35,7 @@ impl FbState {
         self.members.iter().find(|m| m.0.eq_ignore_ascii_case(name)).map(|m| &m.1)
     }
 
-    /// Members with their values, in call order.
+    /// The members with their values, in the order of the parameters.
     pub fn members(&self) -> impl Iterator<Item = (&'static str, &Value)> {
         self.members.iter().map(|(n, v)| (*n, v))
     }
@@ -60,7 +60,7 @@ impl FbState {
         if let Some(Value::Time(t)) = self.get(name) { *t } else { 0 }
     }
 
-    /// One call at `now`, with the inputs set before.
+    /// Calls the block at `now`, after its inputs were set.
     pub(super) fn call(&mut self, now: i64) -> Run<()> {
         match self.kind {
             FbKind::Ctu | FbKind::Ctd | FbKind::Ctud => self.count(),

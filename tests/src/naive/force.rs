@@ -1,4 +1,4 @@
-//! Forcing orders (decision 13), and the requests of services.
+//! Forcing orders (decision 4), and the requests of services.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -9,12 +9,12 @@ use super::model::{FILE, Model, ScopeId, StepId};
 use super::state::{Request, State};
 use super::value::{NaiveFault, Run, Value};
 
-/// The charts that orders act on in this pass, each with the situation that it
-/// is forced to; `None` where it is only kept as it is.
+/// The charts under forcing orders in this pass, each with the situation that it is forced to;
+/// `None` if it only keeps its present one.
 pub(super) fn forced_situations(m: &Model, s: &State) -> Run<BTreeMap<ScopeId, Option<BTreeSet<StepId>>>> {
     let mut forced: BTreeMap<ScopeId, Option<BTreeSet<StepId>>> = BTreeMap::new();
-    // The situation that the orders so far lead to, with what enclosing steps
-    // take and bring in it.
+    // The situation after the orders so far, with what enclosing steps activate and deactivate in
+    // it.
     let mut active = s.active.clone();
     for &chart in &m.order {
         let mut order: Option<Option<BTreeSet<StepId>>> = None;
@@ -51,16 +51,16 @@ fn situation(m: &Model, chart: ScopeId, written: &Situation) -> Run<Option<BTree
     Ok(Some(all))
 }
 
-/// Puts a chart and its expansions into a situation; what its enclosing steps
-/// bring and take follows with the hierarchy.
+/// Puts a chart and its expansions into a situation; the consequences for enclosed charts follow
+/// with the hierarchy.
 pub(super) fn impose(m: &Model, chart: ScopeId, set: &BTreeSet<StepId>, next: &mut BTreeSet<StepId>) {
     let mine: BTreeSet<StepId> = m.steps_within(chart).into_iter().collect();
     next.retain(|x| !mine.contains(x));
     next.extend(set.intersection(&mine));
 }
 
-/// The service point between PRE and the evolution (decision 17).
-pub(super) fn services(m: &Model, s: &mut State) -> Changes {
+/// The services between PRE and the evolution (decision 17).
+pub(super) fn services(m: &Model, s: &mut State, first: bool) -> Changes {
     let mut next = s.active.clone();
     for request in std::mem::take(&mut s.requests) {
         match request {
@@ -92,7 +92,7 @@ pub(super) fn services(m: &Model, s: &mut State) -> Changes {
             }
         }
     }
-    system_bits(m, s, &mut next);
+    system_bits(m, s, first, &mut next);
     settle(m, s, next, &BTreeSet::new())
 }
 
@@ -102,18 +102,23 @@ fn clear(m: &Model, chart: ScopeId, next: &mut BTreeSet<StepId>) {
     next.retain(|x| !all.contains(x));
 }
 
-fn system_bits(m: &Model, s: &mut State, next: &mut BTreeSet<StepId>) {
-    if s.system(m, "S21") {
+/// One of the bits acts in a scan, the lowest that is set; the others wait.
+/// `%S0` sets `%S21`. The first scan has the initial situation already, so that
+/// `%S21` takes no turn in it.
+fn system_bits(m: &Model, s: &mut State, first: bool, next: &mut BTreeSet<StepId>) {
+    s.stopped = false;
+    let start = (s.system(m, "S0") || s.system(m, "S21")) && !first;
+    s.set_system(m, "S21", Value::Bool(false));
+    if start {
         *next = m.initial_steps();
         s.owners.clear();
-        s.set_system(m, "S21", Value::Bool(false));
-    }
-    if s.system(m, "S22") {
+    } else if s.system(m, "S22") {
         next.clear();
         s.owners.clear();
         s.set_system(m, "S22", Value::Bool(false));
-    }
-    if s.system(m, "S24") {
+    } else if s.system(m, "S23") {
+        s.stopped = true;
+    } else if s.system(m, "S24") {
         for (word, name) in ["SW22", "SW23", "SW24", "SW25"].iter().enumerate() {
             let Some(Value::Int(bits)) = m.addresses.get(*name).map(|&v| &s.vars[v]) else { continue };
             for bit in (0..16).filter(|b| bits >> b & 1 == 1) {

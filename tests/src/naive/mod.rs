@@ -1,8 +1,7 @@
-//! A second engine, written straight from SEMANTICS and its decisions: it walks
-//! the document as the author wrote it, looks names up when it meets them and
-//! computes everything anew in each pass. Slow on purpose, and independent: it
-//! uses neither `g7-compile` nor `g7-engine`, so that an error would have to be
-//! made twice to stay unseen.
+//! A second engine, written from `docs/spec/semantics.md` and `docs/decisions` alone: it walks
+//! through the document as the author wrote it, looks names up when it meets them, and computes
+//! everything anew in each pass. It is slow on purpose and independent: it uses neither
+//! `g7-compile` nor `g7-engine`, so an error would have to be made twice to remain unseen.
 
 mod builtin;
 mod control;
@@ -11,7 +10,7 @@ mod exec;
 mod fb;
 mod force;
 mod model;
-mod names;
+mod resolve;
 mod sample;
 mod scan;
 mod state;
@@ -31,8 +30,8 @@ use state::State;
 pub use fb::FbState;
 pub use value::{NaiveFault, Value};
 
-/// Variables that stored actions wrote with different values in one pass of the
-/// last scan. Whoever shows them does so once a run for each.
+/// The variables to which stored actions wrote different values in one pass of the last scan. A
+/// user interface reports each once in a run.
 #[derive(Clone, Debug, Default)]
 pub struct Diagnostics {
     latest: Vec<String>,
@@ -44,16 +43,16 @@ impl Diagnostics {
     }
 }
 
-/// What a scan went through, for statistics.
+/// Counts of what a scan did, for statistics.
 #[derive(Clone, Debug, Default)]
 pub struct Marks {
-    /// Transitions cleared, by their place in the text.
+    /// The cleared transitions, by their position in the text.
     pub cleared: Vec<usize>,
-    /// Passes made.
+    /// The number of passes.
     pub passes: usize,
 }
 
-/// A program under the naive engine.
+/// A document that runs under the naive engine.
 #[derive(Clone)]
 pub struct Naive {
     model: Rc<Model>,
@@ -67,11 +66,11 @@ pub struct Naive {
 }
 
 impl Naive {
-    /// Reads a document; `profile` takes the place of the one written in it.
+    /// Reads a document; `profile` replaces the profile written in it.
     ///
     /// # Errors
     ///
-    /// Says why the document has no meaning.
+    /// The reason why the document has no meaning.
     pub fn new(doc: &Document, profile: Option<ProfileName>) -> Result<Naive, String> {
         let words = |f: NaiveFault| if let NaiveFault::Bad(w) = f { w } else { format!("{f:?}") };
         let mut model = Model::new(doc, profile).map_err(words)?;
@@ -97,7 +96,7 @@ impl Naive {
         })
     }
 
-    /// The active steps, macro-steps left out: `G.5`, `G.M3.E`.
+    /// The active steps without macro-steps: `G.5`, `G.M3.E`.
     pub fn active(&self) -> BTreeSet<String> {
         self.situation_of(&self.state)
     }
@@ -108,7 +107,7 @@ impl Naive {
         plain.map(|&x| m.steps[x].qualified.clone()).collect()
     }
 
-    /// Every variable, constants left out, members of blocks as `fb.Q`.
+    /// All variables except constants; members of blocks are named `fb.Q`.
     pub fn variables(&self) -> Vec<(String, Type, Value)> {
         let mut all = Vec::new();
         for (var, value) in self.model.vars.iter().zip(&self.state.vars) {
@@ -126,12 +125,12 @@ impl Naive {
         all
     }
 
-    /// The value of one variable: `v`, `G.v`, `fb.Q`.
+    /// The value of a variable: `v`, `G.v`, `fb.Q`.
     pub fn variable(&self, name: &str) -> Option<Value> {
         self.variables().into_iter().find(|(n, ..)| n == name).map(|(.., v)| v)
     }
 
-    /// What goes to the plant: after a fault the safe values.
+    /// The outputs that the plant receives: after a fault the safe values.
     pub fn outputs(&self) -> BTreeMap<String, Value> {
         if self.fault.is_some() {
             return self.safe.clone();
@@ -142,8 +141,8 @@ impl Naive {
             .collect()
     }
 
-    /// Steps and macro-steps, each with its time in nanoseconds, or in scans
-    /// where the profile counts those, and whether it is no macro-step.
+    /// The time of each step and macro-step, in nanoseconds, or in scans if the profile counts
+    /// scans; the flag is false for macro-steps.
     pub fn step_times(&self) -> Vec<(String, i64, bool)> {
         let m = &self.model;
         let steps = (0..m.steps.len()).filter(|&s| m.is_live(m.steps[s].scope));
@@ -160,49 +159,50 @@ impl Naive {
         self.step_times().into_iter().find(|(n, ..)| n == qualified).map(|(_, t, _)| t)
     }
 
-    /// An expression in the state as it is; edges and timers of its own are false.
+    /// Evaluates an expression on the present state; edges and timers inside it are false.
     ///
     /// # Errors
     ///
-    /// Where it has no value.
+    /// It has no value.
     pub fn eval(&self, e: &Expr) -> Result<Value, NaiveFault> {
         let mut state = self.state.clone();
-        // Expressions of tests see the first chart as their own where names are free.
+        // In a document with one chart, the expressions of tests may use its names without a
+        // prefix.
         let scope = if self.model.scopes.len() == 2 { 1 } else { FILE };
         Ok(Exec::new(&self.model, &mut state).eval(scope, e)?.v)
     }
 
-    /// A constant expression as a value of a type.
+    /// Evaluates a constant expression as a value of a type.
     ///
     /// # Errors
     ///
-    /// Where it is none.
+    /// It is not a constant of this type.
     pub fn constant(&self, e: &Expr, ty: Type) -> Result<Value, NaiveFault> {
         let mut state = self.state.clone();
         Exec::new(&self.model, &mut state).eval_for(FILE, e, ty)
     }
 
-    /// Variables with a diagnostic "conflicting assignment" from the last scan.
+    /// The variables for which the last scan reported conflicting assignments.
     pub fn conflicts(&self) -> &[String] {
         &self.diagnostics.latest
     }
 
-    /// What the last scan went through.
+    /// The counts of the last scan.
     pub fn marks(&self) -> &Marks {
         &self.marks
     }
 
-    /// What ended the run, if anything did.
+    /// The fault that ended the run, if any.
     pub fn fault(&self) -> Option<&NaiveFault> {
         self.fault.as_ref()
     }
 
-    /// Number of transitions in the document.
+    /// The number of transitions in the document.
     pub fn transitions(&self) -> usize {
         self.model.transitions.len()
     }
 
-    /// The type of an input by its name.
+    /// The inputs with their types.
     pub fn inputs(&self) -> Vec<(String, Type)> {
         let inputs = self.model.vars.iter().filter(|v| v.kind == VarKind::Input);
         inputs.map(|v| (v.qualified.clone(), v.ty)).collect()

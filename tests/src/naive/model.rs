@@ -1,12 +1,12 @@
-//! The document with its names in maps: charts as scopes, steps, transitions.
-//! Nothing is lowered; actions and expressions stay as written.
+//! The document with its names in maps: charts as scopes, steps, transitions. Actions and
+//! expressions stay as they were written.
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use g7_model::{
     Action, ActionKind, Block, Body, Chart, ChartItem, ChartKind, Document, Expr, ExprKind, Function, Item,
-    Name, NamedAction, Order, ProfileName, Section, Situation, StepKind, Switch, TargetPlc, Type, VarDecl,
-    VarKind,
+    Name, NamedAction, Nanos, Order, ProfileName, Section, Situation, StepKind, Switch, TargetPlc, Type,
+    VarDecl, VarKind,
 };
 
 use super::value::{Run, bad};
@@ -16,10 +16,10 @@ pub(super) type StepId = usize;
 pub(super) type VarId = usize;
 pub(super) type TransId = usize;
 
-/// The scope of what stands outside of all charts.
+/// The scope outside of all charts.
 pub(super) const FILE: ScopeId = 0;
 
-/// The switches of a profile, after its own lines.
+/// The rules of a profile after the switches of the document.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Rules {
     pub(super) profile: ProfileName,
@@ -65,25 +65,25 @@ impl Rules {
         }
     }
 
-    /// P1 and P0 assignments and bodies are stored actions (decision 8).
+    /// P1 and P0 assignments and bodies are stored actions (decision 10).
     pub(super) fn stored_pulses(self) -> bool {
         !matches!(self.profile, ProfileName::Iec61131 | ProfileName::Unity)
     }
 }
 
-/// A chart, an expansion in its macro-step, a task, or the file itself.
+/// A chart, the expansion of one macro-step, a task, or the file itself.
 pub(super) struct Scope {
-    /// `G`, `G.M3`; empty for the file.
+    /// Its qualified name: `G`, `G.M3`; empty for the file.
     pub(super) qualified: String,
     /// Its name in the document.
     pub(super) name: String,
     pub(super) kind: ChartKind,
     pub(super) every: Option<i64>,
-    /// The macro-step that this expands.
+    /// For an expansion: its macro-step.
     pub(super) macro_step: Option<StepId>,
-    /// The step that encloses this chart.
+    /// For an enclosed chart: the enclosing step.
     pub(super) enclosed_by: Option<StepId>,
-    /// The chart that this is a part of through macro-steps.
+    /// The chart that contains this expansion, directly or through other expansions.
     pub(super) root: ScopeId,
     pub(super) steps: Vec<StepId>,
     pub(super) by_name: BTreeMap<String, StepId>,
@@ -101,10 +101,10 @@ pub(super) struct Step {
     pub(super) initial: bool,
     pub(super) linked: bool,
     pub(super) actions: Vec<Action>,
-    /// Of a macro-step: its expansion, entry step and exit step.
+    /// For a macro-step: its expansion, entry step and exit step.
     pub(super) expansion: Option<(ScopeId, StepId, StepId)>,
     pub(super) encloses: Vec<ScopeId>,
-    /// Tasks called.
+    /// The tasks that the step calls.
     pub(super) calls: Vec<ScopeId>,
 }
 
@@ -134,32 +134,32 @@ pub(super) struct Forcing {
     pub(super) situation: Situation,
 }
 
-/// All of one document.
+/// A whole document.
 pub(super) struct Model {
     pub(super) rules: Rules,
-    /// Nominal scan time.
+    /// The nominal scan time, in nanoseconds.
     pub(super) cycle: i64,
     pub(super) target: Option<TargetPlc>,
     pub(super) scopes: Vec<Scope>,
-    /// In the order of the text.
+    /// All steps, in the order of the text.
     pub(super) steps: Vec<Step>,
-    /// In the order of the text.
+    /// All transitions, in the order of the text.
     pub(super) transitions: Vec<Transition>,
     pub(super) vars: Vec<Var>,
     pub(super) addresses: BTreeMap<String, VarId>,
     pub(super) functions: BTreeMap<String, Function>,
-    /// PRE (true) and POST bodies with their scope, in the order of the text.
+    /// The bodies of PRE (true) and POST with their scopes, in the order of the text.
     pub(super) bodies: Vec<(ScopeId, bool, Block)>,
     pub(super) forcings: Vec<Forcing>,
-    /// Charts with `enable`, and their enabling steps.
+    /// The charts with enabling orders, and the steps that give these.
     pub(super) enables: BTreeMap<ScopeId, Vec<StepId>>,
-    /// Steps that mask a chart.
+    /// The steps that mask a chart.
     pub(super) chart_masks: Vec<(StepId, ScopeId)>,
-    /// Steps that mask a variable.
+    /// The steps that mask a variable.
     pub(super) var_masks: Vec<(StepId, VarId)>,
-    /// Variables whose associations all go through a control block.
+    /// The variables whose associations all go through a control block.
     pub(super) blocked_vars: BTreeSet<VarId>,
-    /// Charts, the forcing ones before the forced ones.
+    /// The charts, each forcing chart before the forced ones.
     pub(super) order: Vec<ScopeId>,
 }
 
@@ -167,11 +167,7 @@ impl Model {
     pub(super) fn new(doc: &Document, profile: Option<ProfileName>) -> Run<Model> {
         let mut model = Model {
             rules: rules(doc, profile),
-            cycle: doc
-                .items
-                .iter()
-                .find_map(|i| if let Item::Cycle(n, _) = i { Some(*n) } else { None })
-                .unwrap_or(10_000_000),
+            cycle: doc.cycle().map_or(10_000_000, Nanos::count),
             target: doc.items.iter().find_map(|i| if let Item::Target(t, _) = i { Some(*t) } else { None }),
             scopes: vec![Scope::new("", ChartKind::Chart, None, FILE)],
             steps: Vec::new(),
@@ -189,7 +185,7 @@ impl Model {
         };
         for chart in doc.charts() {
             let id = model.scopes.len();
-            model.scopes.push(Scope::new(&chart.name.text, chart.kind, chart.every, id));
+            model.scopes.push(Scope::new(&chart.name.text, chart.kind, chart.every.map(Nanos::count), id));
         }
         model.read_items(doc)?;
         model.link_expansions()?;
@@ -334,7 +330,7 @@ impl Model {
         Ok(())
     }
 
-    /// Entry and exit step of an expansion or task.
+    /// The entry and the exit step of an expansion or task.
     pub(super) fn ends(&self, scope: ScopeId) -> Run<(StepId, StepId)> {
         let find =
             |kind: StepKind| self.scopes[scope].steps.iter().copied().find(|&s| self.steps[s].kind == kind);
@@ -389,7 +385,7 @@ impl Model {
         self.scopes[scope].vars.get(name).or_else(|| self.scopes[FILE].vars.get(name)).copied()
     }
 
-    /// Roots and qualified names, from the outermost chart inward.
+    /// Computes roots and qualified names, from the outermost chart inward.
     fn qualify(&mut self) {
         for scope in FILE + 1..self.scopes.len() {
             let mut path = Vec::new();
@@ -398,7 +394,7 @@ impl Model {
                 path.insert(0, self.steps[m].name.clone());
                 at = self.steps[m].scope;
                 if path.len() > self.scopes.len() {
-                    break; // an expansion within itself: refused by `check`
+                    break; // an expansion that contains itself; `check` refuses it
                 }
             }
             path.insert(0, self.scopes[at].name.clone());
@@ -410,7 +406,7 @@ impl Model {
         }
     }
 
-    /// Whether a scope takes part: an expansion does where a macro-step has it.
+    /// True if a scope takes part in the evolution: an expansion only if a macro-step uses it.
     pub(super) fn is_live(&self, scope: ScopeId) -> bool {
         self.scopes[self.scopes[scope].root].kind != ChartKind::Expansion
     }
@@ -419,8 +415,8 @@ impl Model {
         self.scopes[self.steps[step].scope].root
     }
 
-    /// Charts in an order in which a forcing chart stands before those that it
-    /// forces, and an enclosing one before those that it encloses.
+    /// The charts in an order in which a forcing chart comes before those it forces, and an
+    /// enclosing chart before those it encloses.
     fn chart_order(&self) -> Run<Vec<ScopeId>> {
         let roots: Vec<ScopeId> =
             (FILE + 1..self.scopes.len()).filter(|&s| self.scopes[s].root == s).collect();
@@ -444,7 +440,7 @@ impl Model {
         Ok(order)
     }
 
-    /// PL7's system bits and words, as variables.
+    /// Adds the system bits and words of PL7 as variables.
     fn system_words(&mut self) {
         let bits = ["S0", "S1", "S21", "S22", "S23", "S24", "S25"].map(|n| (n, Type::Bool));
         let words = ["SW20", "SW21", "SW22", "SW23", "SW24", "SW25"].map(|n| (n, Type::Int));
@@ -462,7 +458,7 @@ impl Model {
         }
     }
 
-    /// Every step of a scope, those of expansions in it too.
+    /// All steps of a scope, including those of expansions in it.
     pub(super) fn steps_within(&self, scope: ScopeId) -> Vec<StepId> {
         let mut all = Vec::new();
         for &s in &self.scopes[scope].steps {
@@ -499,14 +495,14 @@ fn rules(doc: &Document, profile: Option<ProfileName>) -> Rules {
     let written = doc.profile();
     let name = profile.or(written.map(|p| p.name)).unwrap_or_default();
     let mut rules = Rules::of(name);
-    // Switches belong to the profile that they are written with.
+    // The switches belong to the profile beside which they are written.
     if let Some(p) = written.filter(|p| p.name == name) {
         p.switches.iter().for_each(|(s, _)| rules.set(*s));
     }
     rules
 }
 
-/// The statements of a body; Ladder and Instruction List have none yet.
+/// The statements of a body; bodies in Ladder and Instruction List are refused.
 pub(super) fn st(body: &Body) -> Run<Block> {
     match body {
         Body::St(b) => Ok(b.clone()),
@@ -514,7 +510,7 @@ pub(super) fn st(body: &Body) -> Run<Block> {
     }
 }
 
-/// Whether an expression names just a step's activity, by its form.
+/// True if an expression consists of the name of a step variable only.
 pub(super) fn is_name(e: &Expr) -> bool {
     matches!(e.kind, ExprKind::Path(_) | ExprKind::Direct(_))
 }

@@ -1,5 +1,5 @@
-//! Edges and timers: one memory for each place where one is written, moved on
-//! at the start of each pass (decisions 2 and 12).
+//! Edges and timers: one memory for each place in the text where one is written, updated at the
+//! start of each pass (decisions 2 and 12).
 
 use g7_model::{Action, ActionKind, Block, Body, Expr, ExprKind, Stmt, StmtKind, Target, UnaryOp, Work};
 
@@ -8,7 +8,7 @@ use super::model::{Model, ScopeId};
 use super::state::{Edge, State};
 use super::value::Run;
 
-/// Moves every memory of the charts in `due` on.
+/// Updates all memories of the charts in `due`.
 pub(super) fn sample(m: &Model, s: &mut State, due: &[bool]) -> Run<()> {
     let mut found = Vec::new();
     for (scope, due) in due.iter().enumerate() {
@@ -68,7 +68,7 @@ fn sample_timer(
 
 type Visit<'v, 'm> = &'v mut dyn FnMut(&'m Expr);
 
-/// Every edge and timer in a scope, inner ones before those around them.
+/// Visits every edge and timer in a scope, inner ones before those around them.
 fn occurrences<'m>(m: &'m Model, scope: ScopeId, visit: Visit<'_, 'm>) {
     let s = &m.scopes[scope];
     for &t in &s.transitions {

@@ -15,15 +15,15 @@ use super::stored;
 use super::value::{NaiveFault, Run, Typed, Value, bad};
 use super::{Diagnostics, Marks, Naive};
 
-/// A run that makes so many passes in a scan without bound is not waited for.
+/// A scan without bound that makes this many passes is given up.
 const RUNAWAY: usize = 20_000;
 
 impl Naive {
-    /// One scan.
+    /// Makes one scan.
     ///
     /// # Errors
     ///
-    /// The fault that ended it; after that every scan is refused until [`Naive::restart`].
+    /// The fault that ended it; every later scan is refused until [`Naive::restart`].
     pub fn scan(&mut self, inputs: &BTreeMap<String, Value>, now: i64) -> Result<(), NaiveFault> {
         if self.fault.is_some() {
             return Err(NaiveFault::Stopped);
@@ -48,11 +48,11 @@ impl Naive {
         done
     }
 
-    /// Starts again: warm with the retained variables kept, cold without.
+    /// Restarts: a warm restart keeps the retained variables, a cold one does not.
     ///
     /// # Errors
     ///
-    /// Where an initial value has no value.
+    /// An initial value cannot be evaluated.
     pub fn restart(&mut self, cold: bool) -> Result<(), NaiveFault> {
         let kept = if cold { BTreeMap::new() } else { self.state.retained(&self.model) };
         self.state = State::new(&self.model, &kept)?;
@@ -72,13 +72,19 @@ impl Naive {
         self.read(inputs)?;
         let due = self.due();
         let s = &mut self.state;
-        s.set_system(m, "S0", Value::Bool(self.first && !self.warm));
-        s.set_system(m, "S1", Value::Bool(self.first && self.warm));
+        if self.first {
+            s.set_system(m, "S0", Value::Bool(!self.warm));
+            s.set_system(m, "S1", Value::Bool(self.warm));
+        }
         let mut changes = if self.first { self.initialise()? } else { Changes::default() };
         sample(m, &mut self.state, &due)?;
+        if self.state.system(m, "S0") {
+            self.state.set_system(m, "S21", Value::Bool(true));
+        }
         self.sections(true, &due)?;
         let before = self.state.clone();
-        let requested = services(m, &mut self.state);
+        let restarted = self.state.system(m, "S0");
+        let requested = services(m, &mut self.state, self.first);
         stored::run(m, &mut self.state, &before, &requested, &mut self.diagnostics)?;
         if self.first || !(requested.on.is_empty() && requested.off.is_empty()) {
             super::control::before_evolution(m, &mut self.state, &due)?;
@@ -88,7 +94,13 @@ impl Naive {
         let counted = self.evolve(&due, &mut changes)?;
         self.count(counted);
         super::control::end_of_scan(m, &mut self.state, &due, &Went { start, changes })?;
-        self.sections(false, &due)
+        self.sections(false, &due)?;
+        // Set by an action or by POST, %S0 stays for the next scan.
+        if restarted {
+            self.state.set_system(m, "S0", Value::Bool(false));
+        }
+        self.state.set_system(m, "S1", Value::Bool(false));
+        Ok(())
     }
 
     fn read(&mut self, inputs: &BTreeMap<String, Value>) -> Run<()> {
@@ -101,7 +113,7 @@ impl Naive {
         Ok(())
     }
 
-    /// Which scopes take part in this scan (decision 20).
+    /// The scopes that take part in this scan (decision 20).
     fn due(&mut self) -> Vec<bool> {
         let now = self.state.now;
         let mut due = Vec::new();
@@ -119,7 +131,7 @@ impl Naive {
         self.model.scopes.iter().map(|scope| due[scope.root]).collect()
     }
 
-    /// PRE or POST bodies, in the order of the text.
+    /// Runs the PRE or POST bodies, in the order of the text.
     fn sections(&mut self, pre: bool, due: &[bool]) -> Run<()> {
         let model = std::rc::Rc::clone(&self.model);
         for (scope, is_pre, block) in &model.bodies {
@@ -130,8 +142,8 @@ impl Naive {
         Ok(())
     }
 
-    /// The initial situation, with its stored actions, before all else: no
-    /// action finds a step active before it.
+    /// Makes the initial situation and runs its stored actions before everything else: no action
+    /// finds a step active before.
     fn initialise(&mut self) -> Run<Changes> {
         let m = &*std::rc::Rc::clone(&self.model);
         let before = self.state.clone();
@@ -140,8 +152,8 @@ impl Naive {
         Ok(changes)
     }
 
-    /// The passes; gives the steps turned on and off, and the transitions that
-    /// were enabled at the start.
+    /// Makes the passes; returns the steps that changed and the transitions that were enabled at
+    /// the start.
     fn evolve(&mut self, due: &[bool], changes: &mut Changes) -> Run<Counted> {
         let model = std::rc::Rc::clone(&self.model);
         let m = &*model;
@@ -163,7 +175,7 @@ impl Naive {
             counted.moved += plain(&passed.on) + plain(&passed.off);
             self.check_tables(enabled(&self.state).len())?;
             let s = &self.state;
-            // A macro-step without actions of its own is no more than its expansion.
+            // A macro-step without actions of its own counts only through its expansion.
             let counts = |x: &StepId| m.steps[*x].expansion.is_none() || !m.steps[*x].actions.is_empty();
             let still = !passed.on.iter().chain(&passed.off).any(counts);
             let same = still && before.vars == s.vars && before.owners == s.owners;
@@ -187,7 +199,7 @@ impl Naive {
         }
     }
 
-    /// %SW20 and %SW21.
+    /// Updates %SW20 and %SW21.
     fn count(&mut self, counted: Counted) {
         let m = &*std::rc::Rc::clone(&self.model);
         let enabled: BTreeSet<usize> =
@@ -198,7 +210,7 @@ impl Naive {
         self.state.set_system(m, "SW21", Value::Int(transitions as i128));
     }
 
-    /// The limits of the target PLC.
+    /// Checks the limits of the target PLC.
     fn check_tables(&self, enabled: usize) -> Run<()> {
         let (steps, transitions) = match self.model.target {
             None => return Ok(()),
@@ -211,7 +223,7 @@ impl Naive {
     }
 }
 
-/// What %SW20 and %SW21 count.
+/// The numbers for %SW20 and %SW21.
 struct Counted {
     steps: usize,
     enabled: BTreeSet<usize>,

@@ -1,4 +1,4 @@
-//! Everything that a scan changes, flat and comparable.
+//! Everything that a scan changes, as plain comparable data.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -8,24 +8,24 @@ use super::exec::Exec;
 use super::model::{FILE, Model, ScopeId, StepId, VarId};
 use super::value::{Run, Value, zero};
 
-/// When a step last became active.
+/// When a step was last activated.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Timing {
     pub(super) since: i64,
     pub(super) since_scan: i64,
-    /// Its time when it was last left.
+    /// Its time when it was deactivated last.
     pub(super) kept: i64,
     pub(super) kept_scans: i64,
 }
 
-/// Memory of one `↑e` or `↓e` of the text.
+/// The memory of one `↑e` or `↓e` in the text.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Edge {
     pub(super) before: bool,
     pub(super) here: bool,
 }
 
-/// Memory of one `t1/e/t2` of the text.
+/// The memory of one `t1/e/t2` in the text.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Timer {
     pub(super) input: bool,
@@ -33,37 +33,37 @@ pub(super) struct Timer {
     pub(super) q: bool,
 }
 
-/// What a control block belongs to.
+/// The owner of a control block.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Owner {
     Var(VarId),
     Named(ScopeId, String),
-    /// An assignment or body without a name: step and place of the action in it.
+    /// An assignment or a body without a name: its step, and its number there.
     Own(StepId, usize),
 }
 
-/// Flip-flops and timers of a control block (SEMANTICS section 5).
+/// The flip-flops and timers of a control block (SEMANTICS section 5).
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Control {
     pub(super) s_ff: bool,
     pub(super) sd_ff: bool,
     pub(super) ds_ff: bool,
     pub(super) sl_ff: bool,
-    /// P, P1, P0 as they were.
+    /// The previous values of P, P1 and P0.
     pub(super) last: [bool; 3],
-    /// P1 and P0 seen before the evolution.
+    /// P1 and P0 as seen before the evolution.
     pub(super) early: [bool; 2],
-    /// Starts of the timers L, D, SD, DS, SL while their inputs are true.
+    /// The start times of the timers of L, D, SD, DS and SL, while their inputs are true.
     pub(super) starts: [Option<i64>; 5],
-    /// The times last given for them.
+    /// The times that were last given for them.
     pub(super) times: [i64; 5],
-    /// Q without P1 and P0, of the scan before.
+    /// Q without P1 and P0 in the previous scan.
     pub(super) level: bool,
-    /// What was last written to the variable.
+    /// The value that was last written to the variable.
     pub(super) written: bool,
 }
 
-/// A request of a Unity service, waiting for its point in the scan.
+/// A request of a Unity service that waits for its moment in the scan.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Request {
     Init(ScopeId),
@@ -79,33 +79,35 @@ pub(super) struct State {
     pub(super) now: i64,
     pub(super) scan: i64,
     pub(super) vars: Vec<Value>,
-    /// Active steps; of macro-steps, whether they were activated and not left.
+    /// The active steps; a macro-step is listed from its activation to its deactivation.
     pub(super) active: BTreeSet<StepId>,
-    /// Of macro-steps: of the steps that they are for their own actions.
+    /// The timing of steps; for macro-steps that of the step which runs their own actions.
     pub(super) timing: Vec<Timing>,
-    /// Of the activity of macro-steps.
+    /// The timing of the activity of macro-steps.
     pub(super) macro_timing: BTreeMap<StepId, Timing>,
-    /// When each chart with a period is due next.
+    /// The next instant of each chart with a period.
     pub(super) due_next: BTreeMap<ScopeId, i64>,
-    /// By the address of the expression in the model.
+    /// The edge memories, by the address of the expression in the model.
     pub(super) edges: BTreeMap<usize, Edge>,
     pub(super) timers: BTreeMap<usize, Timer>,
-    /// Which step's call a task is busy with.
+    /// The step for which a task is being executed.
     pub(super) owners: BTreeMap<ScopeId, StepId>,
     pub(super) frozen: BTreeSet<ScopeId>,
+    /// `%S23` acts in this scan.
+    pub(super) stopped: bool,
     pub(super) requests: Vec<Request>,
     pub(super) control: BTreeMap<Owner, Control>,
-    /// Outputs of transition sections, as their transition last computed them.
+    /// The outputs of transition sections, as last computed by their transitions.
     pub(super) sections: BTreeMap<(ScopeId, String), bool>,
-    /// What each qualified action last gave to its block: it stays so while its
-    /// chart is not due.
+    /// The value that each qualified action last gave to its block; it stays while its chart is not
+    /// due.
     pub(super) held: BTreeMap<(StepId, usize), bool>,
-    /// Loop iterations in this scan.
+    /// The number of loop iterations in this scan.
     pub(super) work: u32,
 }
 
 impl State {
-    /// The state before the first scan, with no step active; `kept` are retained values.
+    /// The state before the first scan, with no active step; `kept` are the retained values.
     pub(super) fn new(m: &Model, kept: &BTreeMap<VarId, Value>) -> Run<State> {
         let mut state = State {
             now: 0,
@@ -119,13 +121,14 @@ impl State {
             timers: BTreeMap::new(),
             owners: BTreeMap::new(),
             frozen: BTreeSet::new(),
+            stopped: false,
             requests: Vec::new(),
             control: BTreeMap::new(),
             sections: BTreeMap::new(),
             held: BTreeMap::new(),
             work: 0,
         };
-        // Constants first: initial values may be made of them.
+        // Constants come first, because initial values may use them.
         for constants in [true, false] {
             for (id, var) in m.vars.iter().enumerate() {
                 let Some(init) = &var.init else { continue };
@@ -141,7 +144,8 @@ impl State {
         Ok(state)
     }
 
-    /// Activity: of a macro-step, any step of its expansion, nested ones too.
+    /// True if a step is active; a macro-step is active if a step of its expansion is, at any
+    /// depth.
     pub(super) fn is_active(&self, m: &Model, step: StepId) -> bool {
         match m.steps[step].expansion {
             None => self.active.contains(&step),
@@ -172,7 +176,7 @@ impl State {
         }
     }
 
-    /// The scans since the latest activation.
+    /// The number of scans since the latest activation.
     pub(super) fn scans(&self, m: &Model, step: StepId) -> i64 {
         let t = self.timing_of(m, step);
         if self.is_active(m, step) {
@@ -184,19 +188,19 @@ impl State {
         }
     }
 
-    /// Sets a system bit or word, where the profile has them.
+    /// Sets a system bit or word, if the profile has it.
     pub(super) fn set_system(&mut self, m: &Model, name: &str, value: Value) {
         if let Some(&id) = m.addresses.get(name) {
             self.vars[id] = value;
         }
     }
 
-    /// A system bit.
+    /// The value of a system bit.
     pub(super) fn system(&self, m: &Model, name: &str) -> bool {
         m.addresses.get(name).is_some_and(|&id| self.vars[id] == Value::Bool(true))
     }
 
-    /// Values of retained variables.
+    /// The values of the retained variables.
     pub(super) fn retained(&self, m: &Model) -> BTreeMap<VarId, Value> {
         (0..m.vars.len()).filter(|&v| m.vars[v].retain).map(|v| (v, self.vars[v].clone())).collect()
     }
@@ -204,7 +208,8 @@ impl State {
 
 impl Model {
     /// The situation at the start: initial steps of the charts that no step
-    /// encloses, and what activating them brings; a task waits in its entry step.
+    /// encloses, or an initial one; a task waits in its entry step. Activation
+    /// links bring nothing in.
     pub(super) fn initial_steps(&self) -> BTreeSet<StepId> {
         let mut active = BTreeSet::new();
         for scope in FILE + 1..self.scopes.len() {
@@ -226,9 +231,10 @@ impl Model {
         active
     }
 
-    /// An initial step with all that it brings at initialisation (decision 14).
+    /// An initial step with the initial steps that it encloses.
     fn begin(&self, step: StepId, active: &mut BTreeSet<StepId>) {
-        self.activate(step, active);
+        active.insert(step);
+        active.extend(self.steps[step].expansion.map(|(_, entry, _)| entry));
         for &chart in &self.steps[step].encloses {
             for inner in self.initial_of(chart) {
                 self.begin(inner, active);
@@ -240,8 +246,8 @@ impl Model {
         self.scopes[scope].steps.iter().copied().filter(|&s| self.steps[s].initial).collect()
     }
 
-    /// A step and what comes on with it: the entry step of a macro-step, the
-    /// steps with an activation link of the charts that it encloses.
+    /// Activates a step and the steps that come with it: the entry step of a macro-step, and the
+    /// steps with an activation link in the charts that it encloses.
     pub(super) fn activate(&self, step: StepId, active: &mut BTreeSet<StepId>) {
         active.insert(step);
         if let Some((_, entry, _)) = self.steps[step].expansion {
@@ -256,7 +262,7 @@ impl Model {
         }
     }
 
-    /// What goes off with a step: its expansion, its enclosed charts.
+    /// The steps that are deactivated with a step: its expansion and its enclosed charts.
     pub(super) fn subordinates(&self, step: StepId) -> BTreeSet<StepId> {
         let mut all = BTreeSet::new();
         if let Some((inner, ..)) = self.steps[step].expansion {
@@ -268,7 +274,7 @@ impl Model {
         all
     }
 
-    /// Every step of a chart, of its expansions and of the charts enclosed in it.
+    /// Collects every step of a chart, of its expansions and of the charts enclosed in it.
     pub(super) fn everything_in(&self, scope: ScopeId, all: &mut BTreeSet<StepId>) {
         for &s in &self.scopes[scope].steps {
             all.insert(s);

@@ -1,10 +1,10 @@
-//! Statements of Structured Text.
+//! Executes statements of Structured Text.
 
 use g7_model::{Arg, Block, CaseArm, Expr, ExprKind, Path, Stmt, StmtKind, Type, Work};
 
 use super::exec::{Exec, Frame};
 use super::model::ScopeId;
-use super::names::Ref;
+use super::resolve::Ref;
 use super::state::{Request, Timing};
 use super::value::{Run, Typed, Value, bad};
 
@@ -17,7 +17,7 @@ pub(super) enum Flow {
 }
 
 impl Exec<'_> {
-    /// A body with locals of its own.
+    /// Runs a body that has local variables.
     pub(super) fn body(&mut self, scope: ScopeId, block: &Block) -> Run<()> {
         let mut frame = Frame::new();
         self.locals(scope, block, &mut frame)?;
@@ -27,7 +27,7 @@ impl Exec<'_> {
         ran.map(|_| ())
     }
 
-    /// One assignment or call, or a body.
+    /// Runs an assignment, a call or a body.
     pub(super) fn work(&mut self, scope: ScopeId, work: &Work) -> Run<()> {
         match work {
             Work::Single(s) => self.statement(scope, s).map(|_| ()),
@@ -118,7 +118,7 @@ impl Exec<'_> {
         Ok(false)
     }
 
-    /// FOR: both ends and the step are evaluated once, before the first round.
+    /// Runs FOR: start, end and step are evaluated once, before the first iteration.
     fn repeat_for(
         &mut self,
         scope: ScopeId,

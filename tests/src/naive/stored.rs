@@ -1,4 +1,4 @@
-//! Stored actions of a pass (decision 5).
+//! The stored actions of a pass (decisions 9 and 21).
 
 use std::collections::BTreeMap;
 
@@ -12,7 +12,7 @@ use super::model::{FILE, Model, ScopeId, StepId, VarId};
 use super::state::State;
 use super::value::{Run, Value};
 
-/// The kinds, in their order within a pass with parallel actions.
+/// The kinds of stored actions, in their order within a pass.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum Kind {
     Clearing,
@@ -29,7 +29,7 @@ enum What<'m> {
 
 struct Todo<'m> {
     kind: Kind,
-    /// P1 goes first and P0 last where `pulse-first` is on.
+    /// P1 comes first and P0 last if `pulse-first` is on.
     pulse: i8,
     scope: ScopeId,
     what: What<'m>,
@@ -45,8 +45,8 @@ pub(super) fn run(
     diagnostics: &mut Diagnostics,
 ) -> Run<()> {
     let mut todo = collect(m, happened)?;
+    todo.sort_by_key(|t| t.kind);
     if m.rules.parallel_actions {
-        todo.sort_by_key(|t| t.kind);
         return parallel(m, s, before, &todo, diagnostics);
     }
     if m.rules.pulse_first {
@@ -59,7 +59,7 @@ pub(super) fn run(
     Ok(())
 }
 
-/// Runs the entry or the exit actions of one step, with the state as it is.
+/// Runs the entry or the exit actions of one step on the present state.
 pub(super) fn at_once(m: &Model, s: &mut State, step: StepId, on: bool) -> Run<()> {
     let mut changes = Changes::default();
     let set = if on { &mut changes.on } else { &mut changes.off };
@@ -91,7 +91,7 @@ fn perform(exec: &mut Exec<'_>, t: &Todo<'_>) -> Run<()> {
     }
 }
 
-/// Every action reads the state from before the pass; then all write.
+/// All actions read the state at the start of the pass; after that all of them write.
 fn parallel(
     m: &Model,
     s: &mut State,
@@ -160,7 +160,7 @@ fn of_action<'m>(
             }
             let pulse = matches!(qualifier, Qualifier::P1 | Qualifier::P0);
             if pulse && !m.rules.stored_pulses() {
-                return Ok(()); // at the end of the scan
+                return Ok(()); // it runs at the end of the scan
             }
             let (on, off) = (h.on.contains(&step), h.off.contains(&step));
             let (kind, pulse, happens) = match qualifier {

@@ -1,11 +1,11 @@
-//! Values, and the typed arithmetic of decision 18: every operation is judged
-//! in the type of its result, literals adapt to the other operand.
+//! Values, and the typed arithmetic of decision 18: each operation is computed in the type of its
+//! result; literals adapt to the other operand.
 
 use g7_model::{BinaryOp, Type};
 
 use super::fb::FbState;
 
-/// A value of a variable or an expression.
+/// The value of a variable or an expression.
 #[derive(Clone, Debug)]
 pub enum Value {
     /// BOOL.
@@ -16,7 +16,7 @@ pub enum Value {
     Real(f32),
     /// LREAL.
     Lreal(f64),
-    /// TIME, nanoseconds.
+    /// TIME, in nanoseconds.
     Time(i64),
     /// STRING.
     Str(String),
@@ -25,7 +25,7 @@ pub enum Value {
 }
 
 impl PartialEq for Value {
-    /// Equal to the last bit, so that a state that holds NaN can recur.
+    /// Compares bits, so that a state that contains NaN can recur.
     fn eq(&self, other: &Value) -> bool {
         match (self, other) {
             (Value::Bool(a), Value::Bool(b)) => a == b,
@@ -40,26 +40,26 @@ impl PartialEq for Value {
     }
 }
 
-/// Why a scan ended early.
+/// Why a scan ended with a fault.
 #[derive(Clone, Debug, PartialEq)]
 pub enum NaiveFault {
-    /// A full state recurred within a scan; the situations of the cycle.
+    /// A complete state recurred within a scan; the situations of the cycle.
     Unstable(Vec<Vec<String>>),
     /// More passes than `bound n` allows.
     Passes,
-    /// Two forcing orders disagree about this chart.
+    /// Two forcing orders for this chart conflict.
     Forcing(String),
-    /// A result that its type cannot hold.
+    /// The result does not fit its type.
     Overflow,
     /// Division or modulus by zero.
     Division,
-    /// A selector outside its list.
+    /// A selector or a position is out of range.
     Index,
-    /// More loop iterations than a scan may make.
+    /// More loop iterations than allowed in a scan.
     Work,
-    /// More active steps or valid transitions than the target PLC has.
+    /// More active steps or valid transitions than the target PLC allows.
     Table,
-    /// A scan after a fault.
+    /// A scan was requested after a fault.
     Stopped,
     /// The document has no meaning; `check` would have refused it.
     Bad(String),
@@ -71,7 +71,7 @@ pub(super) fn bad<T>(what: impl Into<String>) -> Run<T> {
     Err(NaiveFault::Bad(what.into()))
 }
 
-/// A value with its type; without one it is a literal, which adapts.
+/// A value with its type; a literal has no type and adapts.
 #[derive(Clone, Debug)]
 pub(super) struct Typed {
     pub(super) ty: Option<Type>,
@@ -95,7 +95,7 @@ impl Typed {
         Typed::of(Type::Time, Value::Time(t))
     }
 
-    /// As a truth value; the literals 0 and 1 are two.
+    /// The value as a BOOL; the literals 0 and 1 count as BOOL.
     pub(super) fn truth(&self) -> Run<bool> {
         match (&self.v, self.ty) {
             (Value::Bool(b), _) => Ok(*b),
@@ -104,22 +104,22 @@ impl Typed {
         }
     }
 
-    /// As a duration.
+    /// The value as a duration.
     pub(super) fn duration(&self) -> Run<i64> {
         if let Value::Time(t) = self.v { Ok(t) } else { bad(format!("{:?} is no TIME", self.v)) }
     }
 
-    /// As a whole number.
+    /// The value as an integer.
     pub(super) fn whole(&self) -> Run<i128> {
         if let Value::Int(n) = self.v { Ok(n) } else { bad(format!("{:?} is no integer", self.v)) }
     }
 
-    /// As the text of a string.
+    /// The value as a text.
     pub(super) fn text(&self) -> Run<&str> {
         if let Value::Str(s) = &self.v { Ok(s) } else { bad(format!("{:?} is no STRING", self.v)) }
     }
 
-    /// As a value of a type, by the implicit conversions.
+    /// The value converted to a type by the implicit conversions.
     pub(super) fn to(&self, ty: Type) -> Run<Value> {
         if let Some((least, most)) = ty.bounds() {
             let n = self.whole()?;
@@ -141,7 +141,7 @@ impl Typed {
     }
 }
 
-/// The first bytes of a text, never half a character.
+/// The first bytes of a text, cut between two characters.
 pub(super) fn cut(s: &str, most: usize) -> String {
     let mut end = most.min(s.len());
     while !s.is_char_boundary(end) {
@@ -150,7 +150,7 @@ pub(super) fn cut(s: &str, most: usize) -> String {
     s[..end].to_owned()
 }
 
-/// The value that a variable of this type has without an initial value.
+/// The value of a variable without an initial value.
 pub(super) fn zero(ty: Type) -> Value {
     match ty {
         Type::Bool => Value::Bool(false),
@@ -170,11 +170,11 @@ pub(super) fn zero(ty: Type) -> Value {
     }
 }
 
-/// The integer types by signedness and size, for the search of a common one.
+/// The signed integer types by size, for the search of a common type.
 const SIGNED: [Type; 4] = [Type::Sint, Type::Int, Type::Dint, Type::Lint];
 const UNSIGNED: [Type; 4] = [Type::Usint, Type::Uint, Type::Udint, Type::Ulint];
 
-/// The smallest type that both integer types widen to.
+/// The smallest type to which both integer types widen.
 pub(super) fn common_integer(a: Type, b: Type) -> Run<Type> {
     let holds = |wide: &Type| {
         [a, b].iter().all(|t| match (wide.bounds(), t.bounds()) {
@@ -189,7 +189,7 @@ pub(super) fn common_integer(a: Type, b: Type) -> Run<Type> {
     }
 }
 
-/// The type in which two operands meet; `None` where both are literals.
+/// The common type of two operands; `None` if both are literals.
 pub(super) fn common(a: &Typed, b: &Typed) -> Run<Option<Type>> {
     let literal_real = |t: &Typed| t.ty.is_none() && matches!(t.v, Value::Lreal(_));
     match (a.ty, b.ty) {
@@ -214,7 +214,7 @@ pub(super) fn common(a: &Typed, b: &Typed) -> Run<Option<Type>> {
     }
 }
 
-/// Arithmetic, comparison or logic on two operands.
+/// Arithmetic, comparison or logic with two operands.
 pub(super) fn binary(op: BinaryOp, a: &Typed, b: &Typed) -> Run<Typed> {
     use BinaryOp as B;
     let boolean = |t: &Typed| t.ty == Some(Type::Bool);
@@ -263,7 +263,7 @@ fn arithmetic(op: BinaryOp, a: &Typed, b: &Typed) -> Run<Typed> {
     }
     let ty = common(a, b)?;
     let (x, y) = match ty {
-        // A literal that its partner's type cannot hold overflows there.
+        // A literal that does not fit the type of the other operand overflows.
         Some(t) => (a.to(t)?, b.to(t)?),
         None => match (&a.v, &b.v) {
             (Value::Int(_), Value::Int(_)) => (a.v.clone(), b.v.clone()),
@@ -301,7 +301,7 @@ fn arithmetic(op: BinaryOp, a: &Typed, b: &Typed) -> Run<Typed> {
     Ok(Typed { ty, v })
 }
 
-/// Integer arithmetic before its result is put into a type.
+/// Integer arithmetic, before the result is checked against its type.
 fn whole(op: BinaryOp, x: i128, y: i128) -> Run<i128> {
     Ok(match op {
         BinaryOp::Add => x + y,
@@ -318,7 +318,7 @@ fn whole(op: BinaryOp, x: i128, y: i128) -> Run<i128> {
     })
 }
 
-/// TIME + TIME, TIME - TIME, TIME * number, TIME / number.
+/// Computes TIME + TIME, TIME - TIME, TIME * number and TIME / number.
 fn with_time(op: BinaryOp, a: &Typed, b: &Typed) -> Run<Option<Typed>> {
     let in_bounds = |n: i128| match i64::try_from(n) {
         Ok(t) => Ok(Some(Typed::time(t))),
@@ -351,7 +351,7 @@ fn with_time(op: BinaryOp, a: &Typed, b: &Typed) -> Run<Option<Typed>> {
     }
 }
 
-/// `-e`.
+/// Computes `-e`.
 pub(super) fn negate(a: &Typed) -> Run<Typed> {
     let v = match &a.v {
         Value::Int(n) => match a.ty {

@@ -1,4 +1,4 @@
-// Where the view stands: d3-zoom for drag and pinch, the wheel to move.
+// The view of the drawing: d3-zoom for dragging and pinching, the wheel for moving.
 import { select } from 'd3-selection';
 import { zoom, zoomIdentity, type D3ZoomEvent, type ZoomBehavior } from 'd3-zoom';
 import type { Box } from '../lib/protocol';
@@ -6,7 +6,7 @@ import type { View } from './editor.svelte';
 
 const LEAST = 0.02;
 const MOST = 4;
-/** Room for what lies over the drawing: the palette, the way to this chart, the zoom. */
+/** Room for the elements over the drawing: the palette, the path of charts, the zoom buttons. */
 const SIDE = 64;
 const TOP = 58;
 const LOW = 40;
@@ -16,7 +16,7 @@ export class Camera {
   #zoom: ZoomBehavior<HTMLElement, unknown>;
   #area: () => Box;
 
-  /** `mayPan` says whether a press on the drawing moves the view. */
+  /** `mayPan` says if a press on the drawing moves the view. */
   constructor(root: HTMLElement, area: () => Box, mayPan: (e: MouseEvent | TouchEvent) => boolean, moved: (view: View) => void) {
     this.#root = root;
     this.#area = area;
@@ -44,7 +44,7 @@ export class Camera {
     this.panBy(-dx * size, -dy * size);
   };
 
-  /** Moves by px of the screen. */
+  /** Moves the view by px of the screen. */
   panBy(dx: number, dy: number): void {
     const k = this.#scale();
     select(this.#root).call(this.#zoom.translateBy, dx / k, dy / k);
@@ -58,12 +58,12 @@ export class Camera {
     select(this.#root).call(this.#zoom.transform, zoomIdentity.translate(view.x, view.y).scale(view.k));
   }
 
-  /** Puts a place of the plane into the middle. */
+  /** Puts a point of the plane into the middle. */
   moveTo(x: number, y: number): void {
     select(this.#root).call(this.#zoom.translateTo, x, y);
   }
 
-  /** All of the chart. */
+  /** Shows the whole chart. */
   fit(most = 1.5): void {
     const { clientWidth: w, clientHeight: h } = this.#root;
     const [ax, ay, aw, ah] = this.#area();
@@ -71,7 +71,7 @@ export class Camera {
     this.set({ k, x: w / 2 - (ax + aw / 2) * k, y: TOP + (h - TOP - LOW) / 2 - (ay + ah / 2) * k });
   }
 
-  /** A first look: all of it where it can be read, else where it begins. */
+  /** The first view: the whole chart if it is readable, otherwise its beginning. */
   begin(first: Box): void {
     const { clientWidth: w, clientHeight: h } = this.#root;
     const [ax, ay, aw, ah] = this.#area();

@@ -1,5 +1,5 @@
-// Every command of the drawing: the keys, the context menu, the buttons at a
-// selected symbol and the list of shortcuts all read this one table.
+// All commands of the drawing. The keys, the context menu, the buttons at a selected symbol and the
+// list of shortcuts all use this table.
 import type { IconName } from '../lib/Icon.svelte';
 import type { Key } from '../lib/i18n';
 import { runs } from '../lib/runs.svelte';
@@ -9,16 +9,16 @@ import { editor } from './editor.svelte';
 export interface Command {
   id: string;
   title: Key;
-  /** As shown; the first one is what `keys` compares. */
+  /** The keys as shown to the user; the first one is compared with the pressed key. */
   keys?: string[];
   icon?: IconName | 'or' | 'and' | 'next' | 'action';
-  /** Beside a selected symbol. */
+  /** True if it is shown beside a selected symbol. */
   near?: boolean;
   when: () => boolean;
-  /** Of what is either set or not: whether it is. */
+  /** For a command that is on or off: true if it is on. */
   checked?: () => boolean;
   run: () => unknown;
-  /** A line above it in the menu. */
+  /** True if a line separates it from the command above. */
   group?: boolean;
 }
 
@@ -32,7 +32,7 @@ const step = () => one('step');
 const transition = () => one('transition');
 const id = () => editor.one?.id ?? '';
 
-/** Where the context menu was called. */
+/** The place where the context menu was opened. */
 const here = () => (editor.menu ? editor.toPlane(editor.menu.x, editor.menu.y) : undefined);
 
 const align = (how: 'left' | 'top' | 'center' | 'distribute_x' | 'distribute_y') =>
@@ -264,13 +264,13 @@ export const commands: Command[] = [
   { id: 'print', title: 'app.print', keys: ['Ctrl+P'], when: () => true, run: () => window.print() },
 ];
 
-/** How a key is written in the table. */
+/** The name of a key as the table writes it. */
 export function keyName(e: KeyboardEvent): string {
   const key = e.key === ' ' ? 'Space' : e.key.length === 1 ? e.key.toUpperCase() : e.key;
   return `${e.ctrlKey || e.metaKey ? 'Ctrl+' : ''}${e.altKey ? 'Alt+' : ''}${e.shiftKey && key.length > 1 ? 'Shift+' : ''}${key}`;
 }
 
-/** The command that a key stands for now. */
+/** The command that a key executes now. */
 export function commandOf(e: KeyboardEvent): Command | undefined {
   const name = keyName(e);
   return commands.find((c) => c.keys?.includes(name) && c.when());

@@ -1,5 +1,5 @@
-// The state of the drawing in view, and what is done to it. One drawing is in
-// view at a time; panels beside it (palette, properties) work on the same state.
+// The state of the visible drawing, and the operations on it. One drawing is visible at a time; the
+// panels beside it (palette, properties) use the same state.
 import type { OpenFile } from '../lib/files.svelte';
 import { actionOf, kindOf } from '../lib/ids';
 import { page } from '../lib/page';
@@ -12,11 +12,11 @@ export type Field = 'name' | 'receptivity' | 'action' | 'comment' | 'label' | 'p
 export interface InPlace {
   id: string;
   field: Field;
-  /** Which action; a new one where absent. */
+  /** The number of the action; absent for a new one. */
   index?: number;
-  /** Typed already when the field opens. */
+  /** Text that is already typed when the field opens. */
   typed?: string;
-  /** A comment that is not there yet: its place. */
+  /** For a comment that does not exist yet: its place. */
   at?: [number, number];
 }
 
@@ -26,13 +26,13 @@ export interface View {
   k: number;
 }
 
-/** What is dragged from the palette. */
+/** A tool that is dragged from the palette. */
 export type Tool = 'step' | 'transition' | 'macro' | 'enclosing' | 'or' | 'and' | 'action' | 'comment';
 
 interface Camera {
   fit(): void;
   zoomBy(factor: number): void;
-  /** Brings a box of the plane into sight. */
+  /** Makes a box of the plane visible. */
   reveal(box: Box, centre?: boolean): void;
   moveTo(x: number, y: number): void;
   focus(): void;
@@ -46,19 +46,19 @@ class Editor {
   width = $state(0);
   height = $state(0);
   inplace: InPlace | null = $state.raw(null);
-  /** The context menu, by its place on the screen. */
+  /** The place of the context menu on the screen. */
   menu: { x: number; y: number } | null = $state.raw(null);
   marquee: Box | null = $state.raw(null);
-  /** Where a drop would go. */
+  /** The id of the symbol or link that a drop would affect. */
   target: string | null = $state(null);
   moving: { ids: ReadonlySet<string>; dx: number; dy: number } | null = $state.raw(null);
   linking: { from: string; x: number; y: number } | null = $state.raw(null);
-  /** Dragged from the palette, by its place on the screen. */
+  /** The dragged tool, with its place on the screen. */
   tool: { what: Tool; x: number; y: number } | null = $state.raw(null);
-  /** Read out to those who do not see the drawing. */
+  /** A text that screen readers read out. */
   said = $state('');
   camera: Camera | null = null;
-  /** Gestures whose result is not there yet. */
+  /** Number of gestures whose results have not arrived. */
   #under = $state(0);
   readonly busy: boolean = $derived(this.#under > 0);
   #copied = '';
@@ -69,7 +69,7 @@ class Editor {
   readonly one: Item | null = $derived(this.selected.length === 1 ? (this.selected[0] ?? null) : null);
   readonly stale: boolean = $derived(this.scene?.drawing.stale ?? false);
 
-  /** A gesture; what was refused is told, what was made is selected. */
+  /** Executes a gesture: shows a refusal to the user, selects the new symbols. */
   async apply(gesture: Gesture): Promise<Edited | undefined> {
     const { file } = this;
     return file ? this.#draw(file, () => file.edit(gesture)) : undefined;
@@ -110,7 +110,7 @@ class Editor {
       this.scene = new Scene(await file.drawing(chart));
     }
     for (const sentence of edited.told ?? []) shell.say(sentence);
-    // What was selected while the gesture was under way stays so.
+    // A selection made during the gesture is kept.
     const free = shell.selection === selection;
     const made = free ? (edited.select ?? []) : [];
     if (made.length > 0) {
@@ -121,7 +121,7 @@ class Editor {
     if (edited.begin && free) this.edit(edited.begin);
   }
 
-  /** Opens the field in which a symbol's text is edited. */
+  /** Opens the field for editing a text of a symbol. */
   edit(id: string, field?: Field, index?: number): void {
     const kind = kindOf(id);
     const of = actionOf(id);
@@ -132,14 +132,14 @@ class Editor {
       : { id, field: field ?? usual, ...(index === undefined ? {} : { index }) };
   }
 
-  /** Opens the field of a comment that is to stand at a place of the plane. */
+  /** Opens the field for a new comment at a place of the plane. */
   note(at: [number, number]): void {
     if (this.chart === null) return;
     this.menu = null;
     this.inplace = { id: this.chart, field: 'comment', at };
   }
 
-  /** What Enter does: opens what can be opened, else edits. */
+  /** The effect of Enter: opens a chart if the symbol has one, otherwise edits the symbol. */
   enter(item: Item): void {
     if (this.open(item)) return;
     if (item.part === 'step') {
@@ -165,7 +165,7 @@ class Editor {
     return charts?.find((chart) => item.source === `enclose ${chart}`);
   }
 
-  /** From one end of a broken-off link to the other. */
+  /** Goes from one end of a broken link to the other. */
   follow(item: Item): void {
     const other = item.ends?.[item.id.endsWith('/leaving') ? 1 : 0];
     if (other && this.file) shell.jump(this.file, other);
@@ -205,7 +205,7 @@ class Editor {
     shell.select(this.scene?.items.filter((i) => ['step', 'transition', 'comment'].includes(i.part)).map((i) => i.id) ?? []);
   }
 
-  /** A free place at the right of the drawing, at the height that is in sight, on the grid. */
+  /** A free place at the right of the drawing, at the visible height, on the grid. */
   beside(): [number, number] {
     const [x, y, w, h] = this.scene?.drawing.area ?? [0, 0, 0, 0];
     const middle = this.toPlane(0, this.height / 2)[1];
@@ -213,7 +213,7 @@ class Editor {
     return [grid(x + w + 30), grid(Math.max(y, Math.min(middle, y + h)))];
   }
 
-  /** From the screen to the plane. */
+  /** Converts a place on the screen to a place of the plane. */
   toPlane(x: number, y: number): [number, number] {
     return [(x - this.view.x) / this.view.k, (y - this.view.y) / this.view.k];
   }

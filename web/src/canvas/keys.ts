@@ -1,4 +1,4 @@
-// Keys of the drawing.
+// The keys of the drawing.
 import { shell } from '../lib/shell.svelte';
 import { commandOf } from './commands';
 import { editor } from './editor.svelte';
@@ -27,7 +27,7 @@ function handled(e: KeyboardEvent): boolean {
     void editor.history('redo');
     return true;
   }
-  // The clipboard comes with its own event.
+  // Pasting is handled by an event of its own.
   if (ctrl && e.key.toLowerCase() === 'v') return false;
   if (!ctrl && (e.key === '+' || e.key === '-')) {
     editor.camera?.zoomBy(e.key === '+' ? 1.25 : 0.8);
@@ -73,7 +73,7 @@ function leave(): boolean {
   return true;
 }
 
-/** To the chart around this one. */
+/** Opens the chart that contains this one. */
 export function upward(): boolean {
   const { file, chart } = editor;
   const of = file?.look.charts.find((c) => c.name === chart)?.of;

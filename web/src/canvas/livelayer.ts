@@ -1,19 +1,19 @@
-// The moving marks of a run, in a layer of their own: one path for each kind of
-// mark, since a path that changes costs the painter far less than nodes that move,
-// and text nodes that are used again. Colour is never the only sign: active has a
-// thick frame and a token, enabled a thick bar, enabled and true a bar with an
-// arrow head, forced a dashed frame and a lock.
+// The moving marks of a run, in a layer of their own: one path for each kind of mark, because
+// changing a path costs the painter far less than moving nodes, and text nodes that are reused.
+// Colour is never the only sign: an active step has a thick frame and a token, an enabled
+// transition a thick bar, an enabled transition with a true receptivity a bar with an arrow head, a
+// forced variable a dashed frame and a lock.
 import type { Live } from '../lib/live.svelte';
 import type { Box, Item } from '../lib/protocol';
 import type { Scene } from './scene';
 
 const SVG = 'http://www.w3.org/2000/svg';
 
-/** Kinds of marks, in the order of painting. */
+/** The kinds of marks, in the order of painting. */
 const KINDS = ['lit', 'flash', 'other', 'on', 'token', 'enabled', 'holds', 'hatch', 'lock', 'break', 'stop', 'far-enabled', 'far-on'] as const;
 type Kind = (typeof KINDS)[number];
 
-/** Texts of one kind: as many nodes as were ever in sight at once. */
+/** The texts of one kind: as many nodes as were ever visible at once. */
 class Texts {
   #made: SVGTextElement[] = [];
   #used = 0;
@@ -43,7 +43,7 @@ class Texts {
     if (inside.data !== text) inside.data = text;
   }
 
-  /** Texts that are not needed now are empty. */
+  /** Empties the texts that are not needed now. */
   end(): void {
     for (let i = this.#used; i < this.#was; i++) (this.#made[i]?.firstChild as Text).data = '';
   }
@@ -116,7 +116,7 @@ export class LiveLayer {
     }
     for (const [id, text] of live.values) {
       const item = sight(id);
-      // Below a receptivity, where its neighbour is not; beside anything else.
+      // Below a receptivity, where no neighbour stands; beside any other symbol.
       if (item?.text) this.#values.put(item.text[0], item.text[1] + item.text[3] + 12, text);
       else if (item) {
         const [bx, by, w, h] = scene.rectangle(item);
@@ -155,7 +155,8 @@ function farMarks(scene: Scene, live: Live, drawn: Map<Kind, string>): void {
   drawn.set('far-enabled', enabled);
 }
 
-/** Where a text ends above a square, before the link: lines beside it go up and down there. */
+/** Where a text above a square ends: to the left of the link, because lines beside the link go up
+ * and down. */
 function above(square: Box): [x: number, y: number] {
   return [square[0] + square[2] / 2 - 5, square[1] - 4];
 }

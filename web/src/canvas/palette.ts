@@ -1,5 +1,5 @@
-// Tools that can be dropped into the drawing: on a link they go into it, near an
-// open end they continue it, else they stand free.
+// Tools that can be dropped into the drawing: on a link they are inserted, near an open end they
+// continue the sequence, elsewhere they stand free.
 import { shell } from '../lib/shell.svelte';
 import { editor, type Tool } from './editor.svelte';
 
@@ -9,13 +9,13 @@ export const tools: Tool[] = ['step', 'transition', 'macro', 'enclosing', 'or', 
 
 const intoLink: ReadonlySet<Tool> = new Set(['step', 'transition', 'macro', 'enclosing']);
 
-/** Where a tool would go at a place of the plane. */
+/** The id of the symbol or link that a tool would affect at a place of the plane. */
 export function targetOf(what: Tool, x: number, y: number): string | null {
   const scene = editor.scene;
   if (!scene) return null;
   const reach = REACH / Math.min(editor.view.k, 1);
   if (!intoLink.has(what)) {
-    // A comment stands free unless it is put onto a symbol.
+    // A comment stands free unless it is dropped on a symbol.
     const over = scene.hit(x, y, reach);
     const wanted = what === 'or' || what === 'action' ? ['step'] : what === 'and' ? ['transition'] : ['step', 'transition', 'comment'];
     return over && wanted.includes(over.part) ? over.id : null;
@@ -23,7 +23,7 @@ export function targetOf(what: Tool, x: number, y: number): string | null {
   return (scene.linkAt(x, y, reach) ?? scene.endAt(x, y, reach * 2))?.id ?? null;
 }
 
-/** Uses a tool at a symbol or link, or free at a place. */
+/** Uses a tool on a symbol or link, or free at a place. */
 export async function useTool(what: Tool, target: string | null, at?: [number, number]): Promise<void> {
   const item = target ? editor.scene?.byId.get(target) : undefined;
   const { chart } = editor;
@@ -42,14 +42,14 @@ export async function useTool(what: Tool, target: string | null, at?: [number, n
   }
 }
 
-/** A step that was made becomes the kind that was asked for. */
+/** Changes a new step to the requested kind. */
 async function turn(what: Tool, made: string[]): Promise<void> {
   if (what !== 'macro' && what !== 'enclosing') return;
   const step = made.find((id) => editor.scene?.byId.get(id)?.part === 'step');
   if (step) await editor.apply({ g: 'kind', id: step, kind: what });
 }
 
-/** A tool was let go, maybe over the drawing. */
+/** A tool was released, possibly over the drawing. */
 export function dropTool(root: HTMLElement, e: PointerEvent): void {
   const tool = editor.tool;
   if (!tool) return;
@@ -65,7 +65,7 @@ export function dropTool(root: HTMLElement, e: PointerEvent): void {
   editor.camera?.focus();
 }
 
-/** Pressed on the palette: at the selection. */
+/** A tool was pressed without being dragged: uses it at the selection. */
 export function pressTool(what: Tool): void {
   const one = editor.one;
   void useTool(what, one?.id ?? null);

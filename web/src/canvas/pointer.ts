@@ -1,11 +1,11 @@
-// What a press on the drawing means: select, move, mark an area, draw a link.
-// The view itself is moved by the camera.
+// The meaning of a press on the drawing: select, move, mark an area, draw a link. The camera moves
+// the view itself.
 import type { Item } from '../lib/protocol';
 import { actionOf } from '../lib/ids';
 import { shell } from '../lib/shell.svelte';
 import { editor } from './editor.svelte';
 
-/** Movements smaller than this are clicks. */
+/** Movements smaller than this are clicks, in px. */
 const CLICK = 4;
 /** Symbols move in steps of half a unit. */
 const SNAP = 5;
@@ -16,7 +16,7 @@ type Doing =
   | { what: 'mark'; item: Item | null; add: boolean }
   | { what: 'link'; from: string };
 
-/** Whether a symbol can be taken hold of: links only follow. */
+/** True if a symbol can be dragged; links only follow their symbols. */
 function held(item: Item | null): boolean {
   return item !== null && ['step', 'transition', 'action', 'comment'].includes(item.part);
 }
@@ -36,14 +36,14 @@ export class Pointer {
     };
   }
 
-  /** What lies under a place of the screen. */
+  /** The symbol at a place of the screen. */
   under(e: { clientX: number; clientY: number }): Item | null {
     const [x, y] = editor.toPlane(...this.#place(e));
     const reach = (this.#touch ? 14 : 6) / Math.min(editor.view.k, 1);
     return editor.scene?.hit(x, y, reach) ?? null;
   }
 
-  /** Whether a press moves the view: on the paper, or with the middle button. */
+  /** True if a press moves the view: on the paper, or with the middle button. */
   mayPan = (e: MouseEvent | TouchEvent): boolean => {
     if ('touches' in e) {
       if (e.touches.length > 1) {
@@ -67,7 +67,7 @@ export class Pointer {
     this.#doing = held(item) || !e.shiftKey ? { what: 'press', item, add } : { what: 'mark', item, add };
   }
 
-  /** Begins a link at a symbol. */
+  /** Starts a link at a symbol. */
   link(e: PointerEvent, from: string): void {
     [this.#at.x, this.#at.y] = this.#place(e);
     this.#doing = { what: 'link', from };
@@ -110,7 +110,8 @@ export class Pointer {
     }
   }
 
-  /** Takes hold of the selection, or of the symbol pressed on; its neighbours come along unless it is to go alone. */
+  /** Starts dragging the selection or the pressed symbol; neighbours come along unless `alone` is
+   * true. */
   #grab(item: Item, add: boolean, alone: boolean): boolean {
     if (!held(item)) return false;
     const id = actionOf(item.id)?.step ?? item.id;
@@ -159,14 +160,14 @@ export class Pointer {
   async #drop(ids: Set<string>): Promise<void> {
     const moving = editor.moving;
     if (moving && (moving.dx !== 0 || moving.dy !== 0)) {
-      // What only came along stays unselected.
+      // Neighbours that only came along stay unselected.
       const selected = [...shell.selection];
       if (await editor.apply({ g: 'move', ids: [...ids], dx: moving.dx, dy: moving.dy })) shell.select(selected);
     }
     editor.moving = null;
   }
 
-  /** What lies in the area marked; without one it was a click. */
+  /** Selects the symbols in the marked area; without an area it was a click. */
   #mark(item: Item | null): void {
     const box = editor.marquee;
     editor.marquee = null;

@@ -1,7 +1,7 @@
-// Printing: all of the chart, on one page, without the frame of the page.
+// Printing: the whole chart on one page, without the rest of the page.
 import { editor } from './editor.svelte';
 
-/** Puts a whole picture into the document while the browser prints. */
+/** Puts a complete picture into the document while the browser prints. */
 export function keepPrintable(): () => void {
   let picture: HTMLElement | null = null;
   const before = () => {

@@ -1,21 +1,21 @@
-// Where something that lies over the drawing covers least of it.
+// Finds the place where an element over the drawing covers least of it.
 import type { Box } from '../lib/protocol';
 import type { Point } from './scene';
 
 interface Room {
-  /** Corners to choose from, the dearest first. */
+  /** The possible places of the upper left corner, the preferred ones first. */
   places: readonly Point[];
   size: readonly [w: number, h: number];
   within: Box;
-  /** What would rather be seen. */
+  /** Boxes that should stay visible. */
   others: readonly Box[];
-  /** What it belongs to: never covered. */
+  /** The box of the symbol that the element belongs to: it is never covered. */
   about: Box;
-  /** What a px farther away counts, in px² covered. */
+  /** The cost of one px of distance, in px² of covered area. */
   far: number;
 }
 
-/** How much of one box lies in another. */
+/** The area of the intersection of two boxes. */
 function overlap([ax, ay, aw, ah]: Box, [bx, by, bw, bh]: Box): number {
   const w = Math.min(ax + aw, bx + bw) - Math.max(ax, bx);
   const h = Math.min(ay + ah, by + bh) - Math.max(ay, by);

@@ -1,5 +1,5 @@
-// A drawing made ready to be looked at: symbols by id, what follows what, what
-// lies where. Knows geometry only.
+// A drawing prepared for queries: symbols by id, which symbol follows which, which lies where. It
+// knows geometry only.
 import { actionOf } from '../lib/ids';
 import type { Box, Drawing, Item } from '../lib/protocol';
 
@@ -11,10 +11,10 @@ export class Scene {
   readonly drawing: Drawing;
   readonly items: Item[];
   readonly byId = new Map<string, Item>();
-  /** Ids of what follows a step or transition. */
+  /** For each step or transition the ids of its followers. */
   readonly after = new Map<string, string[]>();
   readonly before = new Map<string, string[]>();
-  /** Actions by step. */
+  /** For each step its actions. */
   readonly actions = new Map<string, Item[]>();
   #lines = new Map<string, Point[]>();
   #rectangles = new Map<string, Box>();
@@ -43,14 +43,15 @@ export class Scene {
     put(this.before, to, from);
   }
 
-  /** The symbols with the transitions that hang on their steps alone: what a drag takes along. */
+  /** The given symbols, and the transitions that are linked to no other steps: a drag moves them
+   * together. */
   withNeighbours(ids: ReadonlySet<string>): Set<string> {
     const all = new Set(ids);
     const y = (id: string) => this.byId.get(id)?.at?.[1] ?? 0;
     const among = (steps: string[] | undefined) => steps?.every((s) => ids.has(s)) ?? false;
     for (const link of this.items) {
       const [from, to] = link.part === 'link' && link.ends ? link.ends : ['', ''];
-      // A link that runs back upward leads to no neighbour.
+      // A link that runs back upward does not make its ends neighbours.
       if (y(from) >= y(to)) continue;
       if (ids.has(from) && this.byId.get(to)?.part === 'transition' && among(this.before.get(to))) all.add(to);
       if (ids.has(to) && this.byId.get(from)?.part === 'transition' && among(this.after.get(from))) all.add(from);
@@ -74,7 +75,8 @@ export class Scene {
     return box;
   }
 
-  /** How high in a step its token stands: below its name, on its edge where that has two lines. */
+  /** The height of the token in a step: below the name, or on the lower edge if the name has two
+   * lines. */
   tokenAt(id: string): number {
     const known = this.#tokens.get(id);
     if (known !== undefined) return known;
@@ -86,12 +88,12 @@ export class Scene {
     return at;
   }
 
-  /** The outline of a symbol: of an action without its line to the step. */
+  /** The outline of a symbol; for an action without its line to the step. */
   outline(item: Item): Box {
     return item.part === 'action' ? this.rectangle(item) : item.area;
   }
 
-  /** What lies at a place; `reach` is how far beside it still counts. */
+  /** The symbol at a place; `reach` is the distance that still counts. */
   hit(x: number, y: number, reach: number): Item | null {
     let best: Item | null = null;
     let bestAt = Infinity;
@@ -169,7 +171,7 @@ export class Scene {
     return line;
   }
 
-  /** The next symbol in a direction: along links up and down, else the nearest beside. */
+  /** The next symbol in a direction: up and down along links, left and right the nearest one. */
   towards(id: string, way: 'up' | 'down' | 'left' | 'right'): string | null {
     const item = this.byId.get(id);
     if (!item) return null;
@@ -213,7 +215,7 @@ export class Scene {
     return begin ? this.core(begin) : [0, 0, 0, 0];
   }
 
-  /** Steps and transitions as read: from the top, from the left. */
+  /** Steps and transitions in reading order: from top to bottom, from left to right. */
   ordered(): Item[] {
     return this.items
       .filter((i) => i.part === 'step' || i.part === 'transition')
@@ -234,7 +236,7 @@ export function union(boxes: Box[]): Box | null {
   return [x, y, right - x, low - y];
 }
 
-/** The box round some points. */
+/** The smallest box round some points. */
 function round(points: Point[]): Box {
   const [x, y] = [Math.min(...points.map((p) => p[0])), Math.min(...points.map((p) => p[1]))];
   return [x, y, Math.max(...points.map((p) => p[0])) - x, Math.max(...points.map((p) => p[1])) - y];
@@ -251,7 +253,7 @@ function toSegment(x: number, y: number, [ax, ay]: Point, [bx, by]: Point): numb
   return Math.hypot(x - ax - t * dx, y - ay - t * dy);
 }
 
-/** The corners of the first open line of path data made of M, L, H and V. */
+/** The corners of the first open line in path data made of M, L, H and V. */
 function corners(path: string): Point[] {
   const found: Point[] = [];
   let [x, y] = [0, 0];

@@ -1,11 +1,11 @@
-// The still picture: symbols in blocks of the plane, of which only those in sight
-// are in the document. Painting decides the cost, so pan moves one layer, and far
-// away each block is one path without texts.
+// The still picture: symbols in blocks of the plane; only visible blocks are in the document.
+// Painting dominates the cost, so panning moves one layer, and in a zoomed-out view each block is
+// one path without texts.
 import type { Item } from '../lib/protocol';
 import type { Scene } from './scene';
 
 const SVG = 'http://www.w3.org/2000/svg';
-/** Side of a block, px at 100 %. */
+/** Side of a block, in px at 100 %. */
 const BLOCK = 640;
 /** Below this zoom texts cannot be read and are left out. */
 export const FAR = 0.3;
@@ -22,7 +22,7 @@ interface Block {
   shown: 'near' | 'far' | null;
 }
 
-/** What a screen reader is told of a symbol. */
+/** The text for a screen reader that describes a symbol. */
 export type Namer = (item: Item) => string;
 
 export function domId(id: string): string {
@@ -45,7 +45,7 @@ export class Surface {
     root.append(this.#long);
   }
 
-  /** Takes another drawing; blocks that look the same keep their nodes. */
+  /** Shows another drawing; blocks that look the same keep their nodes. */
   set(scene: Scene, again = false): void {
     const old = this.#blocks;
     this.#blocks = new Map();
@@ -79,7 +79,7 @@ export class Surface {
     block.items.push(item);
   }
 
-  /** Shows what lies in a window of the plane; `k` is the zoom. */
+  /** Shows a window of the plane; `k` is the zoom. */
   show(x: number, y: number, right: number, low: number, k: number): void {
     const want = k < FAR ? 'far' : 'near';
     const [enter, leave] = [300 / k, 900 / k];
@@ -95,7 +95,7 @@ export class Surface {
     }
   }
 
-  /** The node of a symbol, where it is in the document. */
+  /** The node of a symbol, if it is in the document. */
   node(id: string): SVGElement | null {
     return this.root.querySelector(`[data-id="${CSS.escape(id)}"]`);
   }

@@ -1,4 +1,4 @@
-// What the frame does with files.
+// The operations of the frame on files.
 import { files, type OpenFile } from '../lib/files.svelte';
 import { t } from '../lib/i18n';
 import { page } from '../lib/page';
@@ -6,7 +6,7 @@ import type { Merged } from '../lib/protocol';
 import { Conflict, server } from '../lib/server';
 import { shell } from '../lib/shell.svelte';
 
-/** A first file: one chart of one step, so that there is something to go on from. */
+/** A first file: one chart with one step, on which the user can build. */
 const FIRST = 'chart G1 {\n  initial step 0\n}\n';
 
 export async function save(file: OpenFile): Promise<void> {
@@ -23,7 +23,7 @@ export async function save(file: OpenFile): Promise<void> {
   }
 }
 
-/** Hands the text to the browser as a file. */
+/** Downloads the text as a file. */
 export function download(file: OpenFile): void {
   handOut(file.name.slice(file.name.lastIndexOf('/') + 1), file.text, 'text/plain');
 }
@@ -36,7 +36,8 @@ export function handOut(name: string, text: string, type: string): void {
   setTimeout(() => URL.revokeObjectURL(link.href), 10_000);
 }
 
-/** Closes a file; one with changes asks first. A new one that nothing was done to has none. */
+/** Closes a file; a file with unsaved changes asks first. A new file that was never changed has
+ * none. */
 export function close(file: OpenFile): void {
   if (file.changed && (file.saved !== null || file.look.can_undo)) {
     shell.closing = file;
@@ -52,7 +53,7 @@ export function newFile(): void {
   void shell.try(() => files.open(`new-${n}.g7`, FIRST));
 }
 
-/** Opens a file of the user's own machine. */
+/** Opens a file of the user's machine. */
 export async function openLocal(input: HTMLInputElement): Promise<void> {
   const chosen = input.files?.[0];
   input.value = '';
@@ -60,7 +61,8 @@ export async function openLocal(input: HTMLInputElement): Promise<void> {
   await openText(chosen.name, await chosen.text());
 }
 
-/** Opens a text from elsewhere: G7's own, or a chart of another tool, which the page knows by its content. */
+/** Opens a text from elsewhere: a .g7 file or a chart of another tool; the page recognizes it by
+ * its content. */
 export async function openText(name: string, text: string): Promise<void> {
   const file = await shell.try(() => files.open(name, text));
   if (!file) return;
@@ -70,7 +72,7 @@ export async function openText(name: string, text: string): Promise<void> {
   } else shell.gallery = false;
 }
 
-/** The state on the disk becomes ours, as one edit that can be undone. */
+/** Takes the text from the disk, as one edit that can be undone. */
 export async function takeTheirs(file: OpenFile): Promise<void> {
   const outside = file.outside;
   if (!outside) return;
@@ -80,7 +82,7 @@ export async function takeTheirs(file: OpenFile): Promise<void> {
   file.outside = null;
 }
 
-/** Theirs and ours as one text, where they changed different lines; else the question stays. */
+/** Merges both versions if they changed different lines; otherwise the question stays. */
 export async function mergeBoth(file: OpenFile): Promise<void> {
   const outside = file.outside;
   if (!outside || file.saved === null) return;
@@ -99,7 +101,7 @@ export async function mergeBoth(file: OpenFile): Promise<void> {
   shell.say(t('app.outside.merged'));
 }
 
-/** Ours stays; saving will write over theirs, which the user has seen now. */
+/** Keeps our text; saving will overwrite the version on the disk, which the user has seen now. */
 export function keepMine(file: OpenFile): void {
   if (!file.outside) return;
   file.saved = file.outside.text;

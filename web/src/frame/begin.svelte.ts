@@ -1,4 +1,5 @@
-// The beginning: server or playground, the first file, unsaved work of the last time.
+// The start of the page: finds the server or the playground, opens the first file, restores unsaved
+// work.
 import { files, type OpenFile } from '../lib/files.svelte';
 import { t } from '../lib/i18n';
 import { prefs } from '../lib/prefs.svelte';
@@ -7,7 +8,7 @@ import { server, type Changed } from '../lib/server';
 import { shell } from '../lib/shell.svelte';
 
 export async function begin(): Promise<void> {
-  // On a narrow window the sides lie over the drawing: they come when they are called.
+  // In a narrow window the sides lie over the drawing, so they are closed at first.
   const narrow = matchMedia('(max-width: 1000px)');
   const shut = () => narrow.matches && (prefs.leftOpen = prefs.rightOpen = false);
   narrow.addEventListener('change', shut);
@@ -24,7 +25,8 @@ export async function begin(): Promise<void> {
   shell.ready = true;
 }
 
-/** A file of the folder is not as it was: take it over where nothing was changed here, else ask. */
+/** A file of the folder has changed: takes the new text if nothing was changed here, otherwise
+ * asks. */
 async function changedOutside({ path, hash }: Changed): Promise<void> {
   shell.folder = (await shell.try(() => server.files())) ?? shell.folder;
   const file = files.find(path);
@@ -38,7 +40,7 @@ async function changedOutside({ path, hash }: Changed): Promise<void> {
   } else file.outside = now;
 }
 
-/** Copies that were kept before a crash are opened again, unsaved. */
+/** Opens the copies that were kept before a crash, as unsaved files. */
 async function recover(): Promise<void> {
   for (const draft of await drafts()) {
     const known = shell.folder.some((f) => f.path === draft.path);
@@ -52,15 +54,17 @@ async function recover(): Promise<void> {
   }
 }
 
-/** Copies of unsaved work: the server's; the browser's where no server keeps any, or it was gone. */
+/** The copies of unsaved work: those of the server; those of the browser if there is no server or
+ * it was away. */
 async function drafts(): Promise<{ path: string; text: string }[]> {
   const kept = server.writes ? await server.drafts().catch(() => []) : [];
-  // The browser's were kept when the server did not answer: they are later.
+  // The browser's copies were made while the server did not answer, so they are newer.
   const own = local.all();
   return [...kept.filter((d) => !own.some((o) => o.path === d.path)), ...own];
 }
 
-/** Keeps copies of what is not saved, a second after the last change; call once, inside a component. */
+/** Keeps copies of unsaved work, one second after the last change; call once, inside a component.
+ * */
 export function keepDrafts(): void {
   const timers = new Map<string, ReturnType<typeof setTimeout>>();
   $effect(() => {

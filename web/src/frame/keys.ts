@@ -1,9 +1,9 @@
-// Shortcuts that hold everywhere. The drawing and the text view have their own.
+// Shortcuts that work everywhere. The drawing and the text view have their own.
 import { files } from '../lib/files.svelte';
 import { shell } from '../lib/shell.svelte';
 import { save } from './actions';
 
-/** Whether keys go into a field of text. */
+/** True if keys go into a text field. */
 export function typing(e: Event): boolean {
   const at = e.target as HTMLElement | null;
   return !!at?.closest('input, textarea, select, [contenteditable], .cm-editor');

@@ -1,7 +1,7 @@
-// All panels of the page, from the folders that have some.
+// All panels of the page, collected from the folders that define them.
 import { panels as canvas } from '../canvas';
 import type { Panel } from '../lib/shell.svelte';
-import { panels as out } from '../out';
+import { panels as out } from '../export';
 import { panels as tables } from '../panels';
 import { panels as run } from '../run';
 import { panels as start } from '../start';

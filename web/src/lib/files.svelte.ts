@@ -1,5 +1,5 @@
-// The open files. The text is kept here and in the worker; changes typed here
-// and changes made there while an answer is under way are carried over each other.
+// The open files. The text is kept here and in the worker. Changes typed here and changes made
+// there while an answer is on its way are rebased on each other.
 import { ChangeSet, type Text } from '@codemirror/state';
 import { local } from './local';
 import { page, type Message } from './page';
@@ -7,7 +7,7 @@ import { prefs } from './prefs.svelte';
 import type { Drawing, Edited, Gesture, Look, Splice } from './protocol';
 import { server } from './server';
 
-/** Who made a change: whoever it was need not be told. */
+/** The origin of a change; a listener that made the change itself can ignore it. */
 export type Origin = 'text' | 'structure' | 'history' | 'disk';
 
 export interface TextChange {
@@ -19,7 +19,7 @@ type Listener = (change: TextChange) => void;
 
 interface Typed {
   changes: ChangeSet;
-  /** Undone by itself. */
+  /** True if it is undone as a unit of its own. */
   unit: boolean;
 }
 
@@ -47,18 +47,18 @@ export class OpenFile {
   readonly name: string;
   look: Look = $state.raw(undefined as unknown as Look);
   text: string = $state.raw('');
-  /** The text as it lies on the disk. */
+  /** The text as it is on the disk. */
   saved: string | null = $state.raw(null);
-  /** The server's name for that state. */
+  /** The server's hash of that text. */
   tag: string | null = null;
-  /** What lies on the disk now, where it is neither ours nor what we read. */
+  /** The present text on the disk, if it is neither ours nor the one that was read. */
   outside: { text: string; hash: string } | null = $state.raw(null);
   readonly changed: boolean = $derived(this.text !== this.saved);
 
   #listeners = new Set<Listener>();
-  /** Typed and not sent yet; each relative to the text after those before it. */
+  /** Typed changes that are not sent yet; each is relative to the text after those before it. */
   #typed: Typed[] = [];
-  /** Whether the worker is at a change of this file. */
+  /** True while the worker processes a change of this file. */
   #busy = false;
   #waiting: (() => void)[] = [];
   #drawings = new Map<string, { version: number; drawing: Promise<Drawing> }>();
@@ -69,28 +69,29 @@ export class OpenFile {
     this.text = text;
   }
 
-  /** Tells of every change of the text. */
+  /** Calls a listener after every change of the text. */
   listen(listener: Listener): () => void {
     this.#listeners.add(listener);
     return () => this.#listeners.delete(listener);
   }
 
-  /** Typed in the text view. What is typed while the worker is busy is sent together afterwards. */
+  /** Takes changes typed in the text view. What is typed while the worker is busy is sent together
+   * afterwards. */
   type(splices: Splice[], unit = false): Promise<void> {
     return this.#put(splices, unit, 'text');
   }
 
-  /** A fix that was offered: one edit of its own. */
+  /** Applies an offered fix, as an edit of its own. */
   fix(splices: Splice[]): Promise<void> {
     return this.#put(splices, true, 'structure');
   }
 
-  /** Waits until the worker has the text as it is here. */
+  /** Waits until the worker has the present text. */
   async settled(): Promise<void> {
     while (this.#busy) await new Promise<void>((done) => this.#waiting.push(done));
   }
 
-  /** An edit by structure. */
+  /** Executes a gesture. */
   edit(gesture: Gesture): Promise<Edited> {
     return this.#change({ do: 'edit', file: this.name, gesture }, 'structure');
   }
@@ -107,7 +108,7 @@ export class OpenFile {
     return this.#change({ do: 'format', file: this.name }, 'structure');
   }
 
-  /** The whole text replaced as one edit that can be undone: a newer state from the disk. */
+  /** Replaces the whole text as one edit that can be undone: a newer version from the disk. */
   async replace(text: string): Promise<void> {
     const now = this.text;
     let from = 0;
@@ -124,7 +125,7 @@ export class OpenFile {
     await this.settled();
   }
 
-  /** A chart as drawn, of the present text. */
+  /** The drawing of a chart, for the present text. */
   drawing(chart: string): Promise<Drawing> {
     const look = prefs.look;
     const key = `${chart}\n${look}\n${prefs.pages}`;
@@ -169,7 +170,7 @@ export class OpenFile {
     }
   }
 
-  /** Sends what was typed, until there is no more. */
+  /** Sends the typed changes until none are left. */
   async #send(): Promise<void> {
     this.#busy = true;
     try {
@@ -197,7 +198,7 @@ class Files {
     return this.list.find((f) => f.name === name);
   }
 
-  /** Opens a text under a name, or shows it where it is open already. */
+  /** Opens a text under a name, or shows the file if it is open already. */
   async open(name: string, text: string, saved: string | null = null, tag: string | null = null): Promise<OpenFile> {
     const known = this.find(name);
     if (known) {
@@ -237,7 +238,7 @@ class Files {
     const at = this.list.indexOf(file);
     this.list = this.list.filter((f) => f !== file);
     if (this.current === file) this.current = this.list[Math.min(at, this.list.length - 1)] ?? null;
-    // Whoever closes a file wants no copy of it back.
+    // A file that is closed on purpose needs no copy.
     local.put(file.name, null);
     if (server.writes) void server.dropDraft(file.name).catch(() => undefined);
     await page.call({ do: 'close', file: file.name });

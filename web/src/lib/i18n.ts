@@ -1,6 +1,6 @@
 // One table of words: key -> [English, French, Portuguese].
 import { canvas } from './words/canvas';
-import { out } from './words/out';
+import { out } from './words/export';
 import { panels } from './words/panels';
 import { run } from './words/run';
 import { shell } from './words/shell';
@@ -17,7 +17,7 @@ export type Language = 'en' | 'fr' | 'pt';
 
 export const languages: Record<Language, string> = { en: 'English', fr: 'Français', pt: 'Português' };
 
-/** The word in the language of the page; `{name}` stands for a value. */
+/** The word in the language of the page; `{name}` is replaced by a value. */
 export function t(key: Key, values: Record<string, string | number> = {}): string {
   const row: readonly [string, string, string] = table[key];
   const at = { en: 0, fr: 1, pt: 2 } as const;

@@ -1,5 +1,5 @@
-// Names of symbols: `Chart/s/Step`, `Chart/a/Step/0`, `Chart/t/3`, … as the Rust
-// crate `g7-edit` writes them; `/ > : %` inside a name are written %2F %3E %3A %25.
+// Ids of symbols: `Chart/s/Step`, `Chart/a/Step/0`, `Chart/t/3`, … as the Rust crate `g7-edit`
+// writes them; the characters `/ > : %` inside a name are written %2F %3E %3A %25.
 
 export type IdKind = 's' | 'a' | 't' | 'l' | 'c' | 'n' | 'x';
 
@@ -14,7 +14,7 @@ export function kindOf(id: string): IdKind | undefined {
   return id.split('/')[1] as IdKind | undefined;
 }
 
-/** The name of a step, or the number of a transition, in an id. */
+/** The name of the step, or the number of the transition, in an id. */
 export function nameIn(id: string): string {
   return decode(id.split('/')[2] ?? '');
 }
@@ -23,7 +23,7 @@ export function stepId(chart: string, step: string): string {
   return `${encode(chart)}/s/${encode(step)}`;
 }
 
-/** The step that an action belongs to, and its place there. */
+/** The step of an action, and the number of the action there. */
 export function actionOf(id: string): { step: string; index: number } | null {
   const [chart, kind, step, index] = id.split('/');
   if (kind !== 'a' || step === undefined) return null;

@@ -1,26 +1,28 @@
-// What the drawing shows of a run, by item id. Whoever runs writes here; the
-// canvas draws it in a layer of its own. Replace the sets, never change them.
+// The marks of a run on the drawing, by item id. The code that runs charts writes here; the canvas
+// draws the marks in a layer of their own. Replace the sets, never change them.
 
 export class Live {
-  /** Whether a run is shown at all. */
+  /** True if a run is shown. */
   running = $state(false);
-  /** Active steps. */
+  /** The active steps. */
   on: ReadonlySet<string> = $state.raw(new Set());
-  /** Time of active steps, as shown. */
+  /** The time of each active step, as shown. */
   times: ReadonlyMap<string, string> = $state.raw(new Map());
-  /** 1 enabled, 2 enabled and true; transitions not in it are not enabled. */
+  /** 1 enabled, 2 enabled and the receptivity is true; transitions that are not enabled are absent.
+   * */
   enabled: ReadonlyMap<string, 0 | 1 | 2> = $state.raw(new Map());
-  /** Values beside symbols, as shown. */
+  /** The values beside symbols, as shown. */
   values: ReadonlyMap<string, string> = $state.raw(new Map());
-  /** Actions whose output is true. */
+  /** The actions whose output is true. */
   lit: ReadonlySet<string> = $state.raw(new Set());
-  /** Symbols that show a forced variable. */
+  /** The symbols that name a forced variable. */
   forced: ReadonlySet<string> = $state.raw(new Set());
   breaks: ReadonlySet<string> = $state.raw(new Set());
-  /** Steps that are active only in the run that this one is compared with, and what that is called. */
+  /** The steps that are active only in the run that this one is compared with, and the name of that
+   * run. */
   others: ReadonlySet<string> = $state.raw(new Set());
   otherName = $state('');
-  /** Transitions that were cleared since the last frame. */
+  /** The transitions cleared since the last frame. */
   cleared: readonly string[] = $state.raw([]);
   /** The symbol at which the run stopped or halted. */
   stopped: string | null = $state(null);

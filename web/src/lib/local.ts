@@ -1,8 +1,8 @@
-// Copies of unsaved work in the browser: of the playground, and of the folder of a
-// server that does not answer.
+// Copies of unsaved work in the browser: for the playground, and for the folder of a server that
+// does not answer.
 import { server } from './server';
 
-/** Folders of several servers may be open under one address. */
+/** Several servers with different folders may use the same address. */
 const place = () => `g7-draft:${server.info?.folder ?? ''}|`;
 
 export const local = {
@@ -15,13 +15,13 @@ export const local = {
     }
   },
 
-  /** Keeps a text; without one it is forgotten. */
+  /** Keeps a text; without a text the copy is deleted. */
   put(path: string, text: string | null): void {
     try {
       if (text === null) localStorage.removeItem(place() + path);
       else localStorage.setItem(place() + path, text);
     } catch {
-      // A full store keeps what it has.
+      // If the storage is full, it keeps its contents.
     }
   },
 };

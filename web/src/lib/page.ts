@@ -1,13 +1,12 @@
-// The Rust crate `g7-page` as wasm in a worker: one JSON message in, one out, in
-// the order asked. The worker keeps parsing, layout and runs off the thread that
-// paints.
+// The Rust crate `g7-page` as wasm in a worker: one JSON message in, one out, in the order of the
+// requests. The worker keeps parsing, layout and runs off the painting thread.
 
 export type Message = { do: string } & Record<string, unknown>;
 
-/** A sentence for the user. */
+/** A refusal: a sentence for the user. */
 export class Refused extends Error {}
 
-/** Who answers messages: the page's own worker, or the server. */
+/** A receiver of messages: the page's own worker, or the server. */
 export interface Answers {
   call<T>(message: Message): Promise<T>;
 }
@@ -17,7 +16,7 @@ interface Waiting {
   reject(reason: Error): void;
 }
 
-/** The answer in its outer form. */
+/** The value of an answer; throws if it is a refusal. */
 export function opened<T>(answer: string): T {
   const said = JSON.parse(answer) as { ok?: T; no?: string };
   if (said.no !== undefined) throw new Refused(said.no);

@@ -1,4 +1,4 @@
-// Holds the wasm module: a message is written into its memory, the answer read out.
+// Holds the wasm module: writes each message into its memory and reads the answer.
 
 interface Door {
   memory: WebAssembly.Memory;
@@ -26,7 +26,7 @@ function ask(door: Door, message: string): string {
   return decoder.decode(new Uint8Array(door.memory.buffer, door.g7_answer(), length));
 }
 
-// One after the other: answers leave in the order of the questions.
+// Messages are processed one after the other, so that answers come in the order of the requests.
 let turn: Promise<void> = Promise.resolve();
 
 self.onmessage = (event: MessageEvent<string | { wasm: string }>) => {

@@ -1,4 +1,4 @@
-// What the user chose and the browser remembers.
+// The user's choices, which the browser remembers.
 import type { Language } from './i18n';
 
 export type Theme = 'auto' | 'light' | 'dark';
@@ -17,7 +17,7 @@ interface Kept {
   look: 'iec60848' | 'sfc';
   pages: boolean;
   minimap: boolean;
-  /** The view goes where steps become active. */
+  /** The view follows the steps that become active. */
   follow: boolean;
   guided: boolean;
 }
@@ -57,14 +57,14 @@ function stored(): Partial<Kept> {
 
 export const prefs: Kept = $state({ ...first, ...stored() });
 
-/** Writes what was chosen whenever it changes; call once, inside a component. */
+/** Stores the choices whenever they change; call once, inside a component. */
 export function keepPrefs(): void {
   $effect(() => {
     const text = JSON.stringify(prefs);
     try {
       localStorage.setItem(KEY, text);
     } catch {
-      // A browser that keeps nothing still works.
+      // The page also works in a browser without storage.
     }
   });
   $effect(() => {

@@ -1,6 +1,6 @@
-// The messages between the page and the Rust crate `g7-page`, which answers them
-// in the page's own worker (as wasm) and in the server. Places in texts are
-// UTF-16 code units; geometry is in px at 100 % zoom.
+// The messages between the page and the Rust crate `g7-page`, which answers them in the page's
+// worker (as wasm) and in the server. Places in texts are UTF-16 code units; geometry is in px at
+// 100 % zoom.
 
 export type Box = [x: number, y: number, w: number, h: number];
 
@@ -26,7 +26,7 @@ export interface Problem {
   line: number;
   column: number;
   related: { from: number; to: number; what: string }[];
-  /** Ids of the symbols that it marks. */
+  /** The ids of the symbols that it marks. */
   items: string[];
   fixes: Fix[];
 }
@@ -41,7 +41,7 @@ export interface ChartRow {
   to: number;
   steps: number;
   transitions: number;
-  /** Chart and step that this is the expansion of, or that enclose it. */
+  /** The chart and the step that this chart is the expansion of, or that enclose it. */
   of?: [chart: string, step: string];
 }
 
@@ -52,20 +52,21 @@ export interface TestRow {
   plant?: string;
 }
 
-/** A switch of the profile: its two words, the profile's own one, the one set beside it. */
+/** A switch of the profile: its two words, the profile's own choice, and the choice of the file if
+ * any. */
 export interface SwitchRow {
   words: [string, string];
   usual: string;
   set?: string;
 }
 
-/** A file at a glance. */
+/** The overview of a file. */
 export interface Look {
   file: string;
   version: number;
   length: number;
   hash: string;
-  /** Parses without syntax errors. */
+  /** True if the text has no syntax errors. */
   clean: boolean;
   imported?: boolean;
   can_undo: boolean;
@@ -74,34 +75,34 @@ export interface Look {
   charts: ChartRow[];
   profile: string;
   switches: SwitchRow[];
-  /** Most passes in a scan. */
+  /** The greatest number of passes in a scan. */
   bound: { usual: number; set?: number };
   scan_ms: number;
   plants: string[];
   tests: TestRow[];
 }
 
-/** A look after a change that the page did not type itself. */
+/** The overview after a change that the page did not type itself. */
 export interface Edited extends Look {
   splices: Splice[];
   select?: string[];
-  /** The symbol whose text is to be edited in place next. */
+  /** The symbol whose text is to be edited next. */
   begin?: string;
-  /** What the user should know of the change. */
+  /** Sentences for the user about the change. */
   told?: string[];
 }
 
 export type Part = 'step' | 'action' | 'transition' | 'link' | 'connector' | 'comment' | 'text';
 
-/** A thing in a drawing that can be pointed at. */
+/** A part of a drawing that can be pointed at. */
 export interface Item {
   id: string;
   part: Part;
-  /** What it covers, texts included. */
+  /** The bounding box, texts included. */
   area: Box;
-  /** Its symbol. */
+  /** The SVG of the symbol. */
   svg: string;
-  /** Path data for a far view. */
+  /** Path data for zoomed-out views. */
   far: string;
   from: number;
   to: number;
@@ -119,24 +120,24 @@ export interface Item {
   /** The receptivity or the action as typed. */
   source?: string;
   priority?: number;
-  /** Names of the steps before and behind a transition. */
+  /** The names of the preceding and succeeding steps of a transition. */
   steps?: [before: string[], after: string[]];
   /** The two ends of a link. */
   ends?: [string, string];
-  /** Anchor. */
+  /** The anchor. */
   at?: [number, number];
 }
 
 export interface Drawing {
   chart: string;
   kind: ChartKind;
-  /** The text has syntax errors; this is the last good drawing. */
+  /** True if this is an earlier drawing, because the text has syntax errors. */
   stale: boolean;
   area: Box;
   items: Item[];
 }
 
-/** Two changes of one text as one; no text where they contradict each other. */
+/** Two changes of one text, merged; no text if they contradict each other. */
 export interface Merged {
   text: string | null;
   conflicts: number;
@@ -207,7 +208,7 @@ export interface SearchHit {
   id?: string;
 }
 
-/** An edit by structure; ids name symbols of one chart. */
+/** A gesture; the ids name symbols of one chart. */
 export type Gesture =
   | { g: 'add_step'; chart: string; at?: [number, number]; kind?: string }
   | { g: 'next'; id: string }
@@ -261,7 +262,7 @@ export interface RunStep {
   id: string;
   name: string;
   chart: string;
-  /** The signal of its activity is called so. */
+  /** The name of the signal of its activity. */
   activity: string;
   macro: boolean;
   inner: boolean;
@@ -277,14 +278,14 @@ export interface Started {
   transitions: { id: string }[];
   plant?: string;
   view?: { file: string; svg?: string; bindings: { element: string; attribute: string }[] };
-  /** The short name of the text that runs, as in a look. */
+  /** The fingerprint of the text that runs, as in the overview of a file. */
   hash: string;
-  /** Steps and transitions at which it stops. */
+  /** The ids of the breakpoints. */
   breaks: string[];
   frame: Frame;
 }
 
-/** What changed in a run since its last frame; a full one has all. */
+/** What changed in a run since its last frame; a full frame contains everything. */
 export interface Frame {
   run: string;
   now_ms: number;
@@ -294,7 +295,7 @@ export interface Frame {
   on: number[];
   off: number[];
   times?: Record<string, number>;
-  /** 0 not enabled, 1 enabled, 2 enabled and the receptivity true. */
+  /** 0 not enabled, 1 enabled, 2 enabled and the receptivity is true. */
   enabled: [number, 0 | 1 | 2][];
   cleared: number[];
   values: [number, string, number][];
@@ -335,16 +336,17 @@ export interface TestAnswer {
 /** A language of logic: Structured Text, Instruction List, Ladder. */
 export type Tongue = 'st' | 'il' | 'ld';
 
-/** A receptivity, a condition or a body in each of them. */
+/** A receptivity, a condition or a body in each language. */
 export interface LogicPiece {
   part: 'receptivity' | 'condition' | 'event' | 'body';
-  /** Its place among the actions of a step. */
+  /** The number of the action in its step. */
   index?: number;
-  /** No text where the language has no form of it; Ladder comes with its picture, SVG. */
+  /** The text is null if the language cannot express the piece; Ladder comes with its picture in
+   * SVG. */
   forms: { tongue: Tongue; text: string | null; picture?: string }[];
 }
 
-/** A form in which a chart can leave. */
+/** A form in which a chart can be exported. */
 export interface Form {
   word: string;
   title: string;
@@ -358,11 +360,11 @@ export interface OutFile {
   marks: { id: string; lines: number[] }[];
 }
 
-/** A chart in another form. */
+/** An exported chart. */
 export interface Out {
   files: OutFile[];
-  /** What it does not carry; places are those of the chart. */
+  /** Parts of the chart that the export does not contain; places are those of the chart. */
   problems: Problem[];
-  /** It does not mean what the chart means. */
+  /** True if the export has another meaning than the chart. */
   lossy: boolean;
 }

@@ -1,6 +1,5 @@
-// The runs of the page: one for each open file, and beside it one under another
-// profile to compare with. Time moves by the clock of the page for runs that the
-// page holds, by the server's for those that it holds.
+// The runs of the page: one for each open file, and one under another profile for a comparison. The
+// time of a run advances by the clock of the page, or by that of the server for shared runs.
 import { differ, type Difference } from '../run/compare';
 import { Run } from '../run/state.svelte';
 import { files, type OpenFile } from './files.svelte';
@@ -18,21 +17,21 @@ export interface Wishes {
   seed?: number;
 }
 
-/** A shared run that moves is heard of more often than that, ms. */
+/** A shared run that moves sends frames at least this often, in ms. */
 const SILENT = 4000;
 
 class Runs {
-  /** By file. */
+  /** The run of each file. */
   #byFile: Map<string, Run> = $state.raw(new Map());
   /** The second run of a comparison. */
   other: Run | null = $state.raw(null);
   difference: Difference | null = $state.raw(null);
-  /** Steps and transitions at which runs stop, by file. */
+  /** The breakpoints of each file. */
   #breaks: Map<string, readonly string[]> = $state.raw(new Map());
   #wishes: Map<string, Wishes> = $state.raw(new Map());
   #heard = false;
 
-  /** The run of the file in view. */
+  /** The run of the visible file. */
   readonly current: Run | null = $derived(files.current ? (this.#byFile.get(files.current.name) ?? null) : null);
 
   of(file: string): Run | null {
@@ -51,7 +50,7 @@ class Runs {
     return this.#breaks.get(file) ?? [];
   }
 
-  /** Starts the run of a file anew, in the page; a comparison begins anew with it. */
+  /** Restarts the run of a file, in the page; a comparison restarts with it. */
   async start(file: OpenFile, wishes: Wishes = this.wishes(file.name)): Promise<Run> {
     const other = this.other?.file === file.name ? this.other.started.profile : null;
     const run = await this.#begin(file, wishes);
@@ -72,7 +71,7 @@ class Runs {
     return run;
   }
 
-  /** The run of a file, begun where there is none. */
+  /** The run of a file; started if there is none. */
   async get(file: OpenFile): Promise<Run> {
     return this.of(file.name) ?? (await this.start(file));
   }
@@ -86,7 +85,8 @@ class Runs {
     else await page.call({ do: 'run_stop', run: run.name });
   }
 
-  /** A message to a run, and to the one that it is compared with; the frames that come back are taken. */
+  /** Sends a message to a run and to the one it is compared with, and takes the frames that come
+   * back. */
   async send(run: Run, message: Message): Promise<void> {
     const other = this.other && this.other.file === run.file && !run.shared ? this.other : null;
     const before = run.now;
@@ -129,7 +129,7 @@ class Runs {
     await run.answers.call({ do: 'run_breaks', run: run.name, ids });
   }
 
-  /** A second run of the file in view under another profile, both from their beginning on. */
+  /** Starts a second run of the visible file under another profile; both begin from the start. */
   async compare(profile: string | null): Promise<void> {
     const old = this.other;
     this.other = null;
@@ -148,7 +148,8 @@ class Runs {
     this.difference = await differ(run, other);
   }
 
-  /** Takes a changed text over into its run; what would be lost is asked about first, unless this is no moment to ask. */
+  /** Continues a run with a changed text; asks first if something would be lost, unless `quiet`
+   * forbids it. */
   async swap(file: OpenFile, force = false, quiet = false): Promise<void> {
     const run = this.of(file.name);
     if (!run || run.hash === file.look.hash) return;
@@ -171,7 +172,7 @@ class Runs {
     }
   }
 
-  /** Hands a run to the server, or joins the one that it holds of this file already. */
+  /** Hands a run to the server, or joins the server's run of this file. */
   async share(file: OpenFile): Promise<void> {
     this.#hear();
     const { runs } = await server.call<{ runs: { run: string; file: string }[] }>({ do: 'runs' });
@@ -181,7 +182,7 @@ class Runs {
       : { do: 'run_start', run: file.name, file: file.name, text: file.text, ...this.wishes(file.name) };
     const started = await server.call<Started & { speed?: number }>(message);
     const before = this.of(file.name);
-    // It is known before anything is waited for: its frames come from now on.
+    // The run must be known before any waiting, because its frames come from now on.
     const run = new Run(started, server as Answers, true);
     run.foreign = run.hash !== file.look.hash;
     this.#paced(run, started.speed ?? 0);
@@ -192,7 +193,7 @@ class Runs {
     if (this.other) await this.compare(null);
   }
 
-  /** Whether the server holds a run of this file. */
+  /** True if the server has a run of this file. */
   async isShared(file: string): Promise<boolean> {
     if (!server.info) return false;
     const { runs } = await server.call<{ runs: { file: string }[] }>({ do: 'runs' });
@@ -208,7 +209,7 @@ class Runs {
     await run.answers.call({ do: 'unwatch', run: run.name }).catch(() => undefined);
   }
 
-  /** What the server says of shared runs by itself. */
+  /** Handles the messages that the server sends on its own about shared runs. */
   #hear(): void {
     if (this.#heard) return;
     this.#heard = true;
@@ -234,7 +235,7 @@ class Runs {
     });
   }
 
-  /** Someone began a shared run anew, or took a changed chart over into it. */
+  /** Another client restarted a shared run, or continued it with a changed chart. */
   #begun(started: Started): void {
     const run = this.all.find((r) => r.shared && r.name === started.run);
     if (!run) return;
@@ -247,7 +248,7 @@ class Runs {
     this.#breaks = new Map(this.#breaks).set(file, ids);
   }
 
-  /** A shared run that moves and was not heard of: the connection was lost, or the server began anew. */
+  /** A shared run that moves was silent: the connection was lost, or the server restarted. */
   async #again(run: Run): Promise<void> {
     if (!run.shared || !run.playing || performance.now() - run.heard < SILENT) return;
     try {
@@ -265,7 +266,7 @@ class Runs {
     this.#byFile = next;
   }
 
-  /** Does something to the run of the file in view, begun where there is none. */
+  /** Does something with the run of the visible file; starts it if there is none. */
   async act(work: (run: Run) => Promise<void>): Promise<void> {
     const file = files.current;
     if (!file) return;

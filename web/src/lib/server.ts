@@ -1,5 +1,5 @@
-// Files and shared runs of `g7 serve`; without a server (the static playground)
-// the examples come from one file beside the page and nothing is written.
+// Files and shared runs of `g7 serve`. Without a server (in the static playground) the examples
+// come from one file beside the page, and nothing is written.
 import { opened, Refused, type Answers, type Message } from './page';
 
 export interface Info {
@@ -47,7 +47,7 @@ function takeToken(): string {
 
 class Server implements Answers {
   info: Info | null = null;
-  /** Files of the static playground. */
+  /** The files of the static playground. */
   #examples = new Map<string, string>();
   #token = '';
   #socket: Promise<WebSocket> | null = null;
@@ -55,7 +55,7 @@ class Server implements Answers {
   #next = 1;
   #heard = new Set<(message: Record<string, unknown>) => void>();
 
-  /** Finds out whether there is a server; else reads the examples. */
+  /** Finds out if there is a server; otherwise reads the examples. */
   async begin(): Promise<void> {
     this.#token = takeToken();
     try {
@@ -96,7 +96,7 @@ class Server implements Answers {
     return { text: await answer.text(), hash: tag(answer) };
   }
 
-  /** Writes a file whole; throws [`Conflict`] when it is not as it was read. */
+  /** Writes a file completely; throws [`Conflict`] if it has changed since it was read. */
   async write(path: string, text: string, hash: string | null): Promise<string> {
     const headers: Record<string, string> = { 'content-type': 'text/plain; charset=utf-8' };
     if (hash === null) headers['if-none-match'] = '*';
@@ -125,7 +125,7 @@ class Server implements Answers {
     await this.#fetch(`api/draft?path=${encodeURIComponent(path)}`, { method: 'DELETE' });
   }
 
-  /** Renames, deletes or makes a file. */
+  /** Renames, deletes or creates a file. */
   async change(what: 'rename' | 'delete' | 'new', body: Record<string, string>): Promise<void> {
     const answer = await this.#fetch(`api/${what}`, {
       method: 'POST',
@@ -135,14 +135,15 @@ class Server implements Answers {
     await this.#ok(answer);
   }
 
-  /** Called with every message that the server sends of itself: frames, changed files. */
+  /** Calls a listener with every message that the server sends on its own: frames, changed files.
+   * */
   hear(listener: (message: Record<string, unknown>) => void): () => void {
     this.#heard.add(listener);
     if (this.info) void this.#live().catch(() => undefined);
     return () => this.#heard.delete(listener);
   }
 
-  /** A message to the server's own page: shared runs. */
+  /** Sends a message to the server's page, for shared runs. */
   async call<T>(message: Message): Promise<T> {
     const socket = await this.#live();
     const id = this.#next++;

@@ -1,5 +1,5 @@
-// What is shown: which chart, what is selected, which dialog is open, and the
-// places where the components of other folders put themselves.
+// The state of the window: the visible chart, the selection, the open dialog, and the places at
+// which components of other folders appear.
 import { tick, type Component } from 'svelte';
 import { files, type OpenFile } from './files.svelte';
 import type { Key } from './i18n';
@@ -8,18 +8,18 @@ import { chartOf } from './ids';
 import { Refused } from './page';
 import type { FileRow } from './server';
 
-/** A component that has a place in the frame. */
+/** A component with a place in the window. */
 export interface Panel {
   id: string;
   title: Key;
   /** `over` lies above everything. */
   region: 'left' | 'right' | 'bottom' | 'top' | 'text' | 'start' | 'over';
   component: Component;
-  /** Lower ones first. */
+  /** Panels with lower numbers come first. */
   order: number;
 }
 
-/** A place in the text that is to be shown. */
+/** A place of the text to be shown. */
 export interface Reveal {
   file: string;
   from: number;
@@ -33,32 +33,32 @@ export interface Notice {
 }
 
 class Shell {
-  /** The chart in view, by file. */
+  /** The visible chart of each file. */
   #charts: Record<string, string> = $state({});
-  /** Ids of the selected symbols of the chart in view. */
+  /** The ids of the selected symbols in the visible chart. */
   selection: ReadonlySet<string> = $state.raw(new Set());
   hover: string | null = $state(null);
-  /** A symbol that the canvas is to bring into view. */
+  /** A symbol that the canvas is asked to show. */
   goto: { id: string; n: number } | null = $state.raw(null);
-  /** A place that the text view is to bring into view. */
+  /** A place that the text view is asked to show. */
   reveal: Reveal | null = $state.raw(null);
   dialog: string | null = $state(null);
   /** The code of the problem that a dialog explains. */
   explained = $state('');
-  /** The open tab by region. */
+  /** The open tab of each region. */
   tabs: Record<string, string> = $state({});
   notices: Notice[] = $state.raw([]);
-  /** Whether the gallery is shown over everything. */
+  /** True if the gallery covers the window. */
   gallery = $state(false);
-  /** The beginning is over: server found, first file open. */
+  /** True after the start: the server is found and the first file is open. */
   ready = $state(false);
-  /** What the server's folder holds, or the examples. */
+  /** The files of the server's folder, or the examples. */
   folder: FileRow[] = $state.raw([]);
-  /** The file that the dialog about closing asks about. */
+  /** The file that the closing dialog asks about. */
   closing: OpenFile | null = $state.raw(null);
   #count = 0;
 
-  /** The chart of a file that is in view: the chosen one, else the first. */
+  /** The visible chart of a file: the chosen one, otherwise the first. */
   chart(file: OpenFile | null): string | null {
     if (!file) return null;
     const chosen = this.#charts[file.name];
@@ -74,7 +74,7 @@ class Shell {
     }
   }
 
-  /** Brings a symbol into view and selects it. */
+  /** Shows a symbol and selects it. */
   jump(file: OpenFile, id: string): void {
     const chart = chartOf(id);
     this.show(file, chart);
@@ -82,7 +82,7 @@ class Shell {
     this.goto = { id, n: ++this.#count };
   }
 
-  /** Brings a place of the text into view. */
+  /** Shows a place of the text. */
   showText(file: OpenFile, from: number, to: number): void {
     files.current = file;
     if (prefs.view === 'chart') prefs.view = 'both';
@@ -95,7 +95,7 @@ class Shell {
     this.tabs.bottom = panel;
   }
 
-  /** Goes to the list of problems, to the one at a place of the text where there is one. */
+  /** Shows the list of problems, and selects the one at a place of the text if there is one. */
   problems(at?: number): void {
     this.below('problems');
     const all = files.current?.look.problems ?? [];
@@ -103,7 +103,7 @@ class Shell {
     void tick().then(() => document.querySelectorAll<HTMLElement>('.problems .problem')[n]?.focus());
   }
 
-  /** Shows the page about a kind of problem. */
+  /** Shows the page on a kind of problem. */
   explain(code: string): void {
     this.explained = code;
     this.dialog = 'explain';
@@ -123,7 +123,7 @@ class Shell {
     this.notices = this.notices.filter((n) => n.id !== id);
   }
 
-  /** Does something that may be refused; a refusal is told to the user. */
+  /** Does something that may be refused; shows a refusal to the user. */
   async try<T>(work: () => Promise<T>): Promise<T | undefined> {
     try {
       return await work();

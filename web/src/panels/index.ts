@@ -1,4 +1,4 @@
-// Tables and tests at the bottom of the page.
+// The panels with tables and tests, at the bottom of the page.
 import type { Panel } from '../lib/shell.svelte';
 import Io from './Io.svelte';
 import Tests from './Tests.svelte';

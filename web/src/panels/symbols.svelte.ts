@@ -1,9 +1,9 @@
-// The variables and steps of the file in view, as the checker knows them.
+// The variables and steps of the visible file, as the checker knows them.
 import { files } from '../lib/files.svelte';
 import { page } from '../lib/page';
 import type { Symbols, VariableRow } from '../lib/protocol';
 
-/** Follows the file in view; call inside a component. */
+/** Follows the visible file; call inside a component. */
 export function symbols(): { readonly rows: VariableRow[]; readonly stale: boolean } {
   let found: Symbols = $state.raw({ variables: [], steps: [] });
   let of = '';

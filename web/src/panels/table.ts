@@ -1,4 +1,4 @@
-// Rows of variables, as the tables sort and name them.
+// The order and the names of rows in the tables of variables.
 import type { VariableRow } from '../lib/protocol';
 
 export type Class = VariableRow['class'];
@@ -9,10 +9,10 @@ export const TYPES = [
   'CTU', 'CTD', 'CTUD', 'TON', 'TOF', 'TP', 'R_TRIG', 'F_TRIG', 'SR', 'RS',
 ];
 
-/** The name by which gestures call it. */
+/** The name that gestures use. */
 export const fullName = (row: VariableRow): string => (row.chart ? `${row.chart}.${row.name}` : row.name);
 
-/** The properties that a class has. */
+/** The properties that each class has. */
 export const HAS: Record<Class, { address: boolean; inverted: boolean; retain: boolean; safe: boolean }> = {
   input: { address: true, inverted: true, retain: false, safe: false },
   output: { address: true, inverted: true, retain: false, safe: true },
@@ -20,7 +20,7 @@ export const HAS: Record<Class, { address: boolean; inverted: boolean; retain: b
   const: { address: false, inverted: false, retain: false, safe: false },
 };
 
-/** What of a row is kept when it becomes of another class. */
+/** The parts of a row that remain when its class changes. */
 export function fitting(row: Partial<VariableRow>, to: Class): Partial<VariableRow> {
   const has = HAS[to];
   return {
@@ -40,7 +40,7 @@ export function matches(row: VariableRow, wanted: string): boolean {
   return [fullName(row), row.type, row.address, row.comment].some((text) => text?.toLowerCase().includes(low));
 }
 
-/** By the kind of address, then by its numbers. */
+/** Orders by the kind of address, then by its numbers. */
 export function byAddress(a: VariableRow, b: VariableRow): number {
   const key = (text = '') => text.replace(/\d+/g, (n) => n.padStart(8, '0'));
   const [x, y] = [key(a.address), key(b.address)];

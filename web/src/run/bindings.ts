@@ -1,4 +1,4 @@
-// What a value does to an element of a picture. The book says it to users:
+// The effects of values on elements of a plant's picture, as the book describes them:
 // docs/book/src/language/plants.md.
 
 type Value = boolean | number | string;
@@ -20,13 +20,14 @@ function move(element: SVGElement, by: Partial<Moved>): void {
   element.style.translate = `${now.dx}px ${now.dy}px`;
 }
 
-/** About the middle of the element, unless the picture says otherwise. */
+/** Rotates about the middle of the element, unless the picture says otherwise. */
 function turn(element: SVGElement, origin: string): void {
   if (!element.style.transformBox) element.style.transformBox = 'fill-box';
   if (!element.style.transformOrigin) element.style.transformOrigin = origin;
 }
 
-/** One child for each letter: its class is the letter, children beyond the text are hidden. */
+/** One child element for each letter: the letter becomes its class; children beyond the text are
+ * hidden. */
 function items(element: SVGElement, text: string): void {
   [...element.children].forEach((child, i) => {
     const letter = text[i];

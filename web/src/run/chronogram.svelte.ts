@@ -1,5 +1,5 @@
-// Which signals a chronogram shows, which part of the time, where its cursors are.
-// Kept while the panel is shut; the edges are asked for when they are to be seen.
+// The signals of the chronogram, its span of time and its cursors. They are kept while the panel is
+// closed; edges are loaded when they become visible.
 import { shell } from '../lib/shell.svelte';
 import { handOut } from '../frame/actions';
 import type { SignalType } from '../lib/protocol';
@@ -12,7 +12,7 @@ interface Lanes {
   lanes: Edge[][];
 }
 
-/** A signal or a step, by the name that stays when the chart changes. */
+/** A signal or a step, by its name, which stays when the chart changes. */
 export interface Source {
   name: string;
   lane: number;
@@ -23,10 +23,10 @@ export interface Source {
 const FIRST = 14;
 
 class Chronogram {
-  /** Names by file. */
+  /** The chosen names of each file. */
   #picked: Map<string, readonly string[]> = $state.raw(new Map());
   span: Span = $state.raw({ from: 0, to: 10_000 });
-  /** The window moves along with the present. */
+  /** The window follows the present. */
   following = $state(true);
   a: number | null = $state(null);
   b: number | null = $state(null);
@@ -35,7 +35,7 @@ class Chronogram {
   #busy = false;
   #again = false;
 
-  /** All that there is to pick from. */
+  /** Everything that can be chosen. */
   sources(run: Run): Source[] {
     const signals = run.started.signals.map((s, lane) => ({ name: s.name, lane, type: s.type, step: false }));
     const from = signals.length;
@@ -49,7 +49,7 @@ class Chronogram {
     return names.flatMap((name) => byName.get(name) ?? []);
   }
 
-  /** To begin with: inputs and outputs, and as many steps as have room. */
+  /** The first choice: inputs and outputs, and as many steps as fit. */
   #first(run: Run): string[] {
     const io = run.started.signals.filter((s) => s.role === 'input' || s.role === 'output').map((s) => s.name);
     const steps = run.started.steps.filter((s) => !s.inner).map((s) => s.activity);
@@ -77,7 +77,7 @@ class Chronogram {
     this.span = { from: 0, to: Math.max(run.end * 1.02, run.started.period_ms * 10) };
   }
 
-  /** The present stays near the right end. */
+  /** Keeps the present near the right end. */
   along(run: Run): void {
     if (!this.following) return;
     const width = this.span.to - this.span.from;
@@ -85,7 +85,7 @@ class Chronogram {
     if (to !== this.span.to) this.span = { from: to - width, to };
   }
 
-  /** Fetches the edges of what is in sight; wishes that come meanwhile are one more fetch. */
+  /** Loads the visible edges; requests during the loading are combined into one. */
   async fetch(run: Run, width: number): Promise<void> {
     if (this.#busy) {
       this.#again = true;
@@ -104,7 +104,7 @@ class Chronogram {
       });
       this.lanes = picked.map((s, i) => ({ name: s.name, type: s.type, step: s.step, edges: answer.lanes[i] ?? [] }));
     } catch {
-      // The run was changed or ended meanwhile: what follows asks anew.
+      // The run was changed or ended meanwhile; later requests load again.
     } finally {
       this.#busy = false;
       if (this.#again) {

@@ -1,18 +1,17 @@
-// The wall clock of runs that the page holds: a message moves the virtual time on,
-// and the next one waits for its answer, so that a slow run makes time slow and not
-// the queue long. It asks as often as something can have changed to be seen: with
-// each picture of the screen where a plant moves, else 25 times a second, and never
-// more often than there are scans.
+// The clock of runs that the page holds. A message advances the virtual time, and the next one
+// waits for its answer; if a run is slow, its time becomes slow instead of a queue growing.
+// Messages are sent as often as visible changes are possible: with each picture of the screen if a
+// plant moves, otherwise 25 times a second, and never more often than there are scans.
 import { runs, type Run } from '../lib/runs.svelte';
 import { files } from '../lib/files.svelte';
 import { shell } from '../lib/shell.svelte';
 
-/** Between two messages, ms: where a picture moves, and where only the drawing does. */
+/** Time between two messages, in ms: if a plant's picture moves, and if only the drawing does. */
 const SMOOTH = 15;
 const CALM = 40;
-/** Slow scans are waited for no longer than that, so that a pause is felt at once. */
+/** Longest wait for slow scans, so that a pause takes effect quickly. */
 const PATIENT = 200;
-/** A page that was hidden does not catch up. */
+/** A page that was hidden does not catch up more than this, in ms. */
 const LONGEST = 400;
 
 class Clock {
@@ -20,7 +19,7 @@ class Clock {
   #owed = 0;
   #going = false;
 
-  /** Goes while something runs. */
+  /** Starts the clock; it runs while a run is playing. */
   go(): void {
     if (this.#going) return;
     this.#going = true;
@@ -30,7 +29,7 @@ class Clock {
   }
 
   #wait(ms: number): void {
-    // A message of a plant's picture goes out with the picture of the screen before it.
+    // If a plant's picture moves, the message is sent in step with the pictures of the screen.
     if (ms <= SMOOTH) requestAnimationFrame(() => void this.#tick());
     else setTimeout(() => void this.#tick(), ms);
   }

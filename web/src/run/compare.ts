@@ -1,9 +1,9 @@
-// Two runs of one chart under two profiles: where they begin to differ.
+// Compares two runs of one chart under two profiles: finds where they start to differ.
 import type { Run } from './state.svelte';
 
 export interface Difference {
   ms: number;
-  /** What differs, with the value in the one and in the other. */
+  /** The signals that differ, with their values in both runs. */
   signals: { name: string; a: string; b: string }[];
   seen: boolean;
 }
@@ -12,7 +12,7 @@ interface Lanes {
   lanes: [number, number, string][][];
 }
 
-/** Steps and outputs by name, with their numbers among the lanes. */
+/** Steps and outputs by name, with the numbers of their signals. */
 function watched(run: Run): Map<string, number> {
   const found = new Map<string, number>();
   run.started.signals.forEach((s, i) => {
@@ -37,9 +37,11 @@ function value(run: Run, lane: number): string {
   return run.active.has(step) ? 'TRUE' : 'FALSE';
 }
 
-/** The first instant, `since` one at which they were the same, at which steps or outputs of the two runs are not. */
+/** The first instant after `since`, at which the runs were equal, at which steps or outputs differ.
+ * */
 export async function differ(a: Run, b: Run, since = 0): Promise<Difference | null> {
-  // Many scans can lie behind one message: equal again is not equal all the time.
+  // Many scans can lie between two messages: runs that are equal now need not have been equal all
+  // the time.
   if (a.now === b.now && a.now <= since && same(a, b)) return null;
   const here = watched(a);
   const there = watched(b);
@@ -69,7 +71,7 @@ export async function differ(a: Run, b: Run, since = 0): Promise<Difference | nu
 
 type Edge = [number, number, string];
 
-/** Where two lanes part. */
+/** The first difference between two lanes. */
 function parting(a: Edge[], b: Edge[], to: number): { ms: number; a: string; b: string } | null {
   const instants = [...new Set([...a, ...b].map((e) => e[0]))].sort((x, y) => x - y);
   let i = -1;

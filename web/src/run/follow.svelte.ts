@@ -1,5 +1,5 @@
-// What follows from elsewhere: a changed text is taken over into its run, closed
-// files end theirs, and an example that was chosen begins to run by itself.
+// Reacts to other parts of the page: continues a run with a changed text, ends the runs of closed
+// files, and starts an example that was chosen.
 import { untrack } from 'svelte';
 import { files, type OpenFile } from '../lib/files.svelte';
 import { t } from '../lib/i18n';
@@ -8,31 +8,31 @@ import { server } from '../lib/server';
 import { shell } from '../lib/shell.svelte';
 
 class Begun {
-  /** Whether the server, if there is one, is known. */
+  /** True if it is known whether there is a server. */
   ready = $derived(shell.ready);
 }
 
 export const begun = new Begun();
 
-/** A text is taken over when no key was pressed for so long. */
+/** A changed text is taken over after this long without typing, in ms. */
 const PAUSE = 600;
 
-/** That a change was taken over is not said again and again. */
+/** The notice of a taken-over change appears at most this often, in ms. */
 const OFTEN = 20_000;
 let said = -OFTEN;
 
-/** Whether a file can be run, and has something that moves. */
+/** True if a file can run and contains something that moves. */
 function lively(file: OpenFile): boolean {
   return file.look.plants.length > 0 && !file.changed && !file.look.problems.some((p) => p.severity === 'error');
 }
 
-/** Files that were in view before. */
+/** Files that were visible before. */
 const seen = new Set<string>();
 
-/** Call inside the component that stands above every file in view. */
+/** Call inside the component that stands above all files. */
 export function follow(): void {
-  // That component comes when a file is chosen in the gallery; or at the beginning,
-  // before the page is ready, with the file that was named to the server.
+  // The component is created when a file is chosen in the gallery; or at the start, before the page
+  // is ready, with the file that the server was given.
   let chosen = untrack(() => shell.ready);
   $effect(() => {
     const file = files.current;
@@ -59,7 +59,7 @@ export function follow(): void {
     if (file.look.problems.some((p) => p.severity === 'error')) return;
     const timer = setTimeout(() => {
       void shell.try(async () => {
-        // A dialog does not come between someone and what is being typed.
+        // No dialog interrupts the user while typing.
         const at = document.activeElement;
         await runs.swap(file, false, !!at?.closest('input, textarea, .cm-editor'));
         if (run.hash !== file.look.hash || performance.now() - said < OFTEN) return;

@@ -1,4 +1,4 @@
-// The components of this folder that have a place in the frame.
+// The components of this folder that have a place in the window.
 import type { Panel } from '../lib/shell.svelte';
 import Chronogram from './Chronogram.svelte';
 import Operate from './Operate.svelte';

@@ -1,4 +1,4 @@
-// Lanes of a chronogram: edges as they come from the run, and how they are painted.
+// The lanes of a chronogram: edges as the run sends them, and their painting.
 import type { SignalType } from '../lib/protocol';
 
 export type Edge = [ms: number, value: number, show: string];
@@ -33,7 +33,7 @@ export interface Colours {
 export const HEIGHT = 30;
 export const AXIS = 24;
 
-/** The last edge at an instant or before it; -1 where there is none. */
+/** The index of the last edge at an instant or before it; -1 if there is none. */
 export function at(edges: readonly Edge[], ms: number): number {
   let low = 0;
   let high = edges.length;
@@ -45,7 +45,7 @@ export function at(edges: readonly Edge[], ms: number): number {
   return low - 1;
 }
 
-/** 1, 2 or 5 times a power of ten: ticks about so far apart. */
+/** The round interval (1, 2 or 5 times a power of ten) nearest to the wished one. */
 export function tick(span: number, wished: number): number {
   const raw = span / Math.max(1, wished);
   const power = 10 ** Math.floor(Math.log10(Math.max(raw, 1e-6)));
@@ -62,7 +62,7 @@ export interface Painting {
   width: number;
   height: number;
   span: Span;
-  /** The present: nothing is known behind it. */
+  /** The present; later values are not known. */
   now: number;
   lanes: readonly Lane[];
   cursors: readonly (number | null)[];
@@ -114,7 +114,7 @@ function grid(g: CanvasRenderingContext2D, { width, height, span, colours }: Pai
   for (const [ms] of ticks(span, width)) line(g, Math.round(x(ms)) + 0.5, 0, Math.round(x(ms)) + 0.5, height);
 }
 
-/** The times above the lanes, and the heads of the cursors. */
+/** Paints the times above the lanes, and the heads of the cursors. */
 export function paintAxis(g: CanvasRenderingContext2D, p: Painting): void {
   const { width, span, colours } = p;
   const x = (ms: number) => (ms - span.from) * (width / Math.max(span.to - span.from, 1e-6));
@@ -145,7 +145,7 @@ export function paintAxis(g: CanvasRenderingContext2D, p: Painting): void {
   });
 }
 
-/** Edges in sight, the one before them included. */
+/** The visible edges, including the one before them. */
 function* inSight(lane: Lane, span: Span): Generator<[Edge, number]> {
   for (let i = Math.max(0, at(lane.edges, span.from)); i < lane.edges.length; i++) {
     const edge = lane.edges[i] as Edge;
@@ -175,7 +175,7 @@ function square(g: CanvasRenderingContext2D, { width, span, colours }: Painting,
   g.stroke();
 }
 
-/** Values as boxes with what they are, where there is room for it. */
+/** Paints values as boxes that contain the value if there is room. */
 function boxes(g: CanvasRenderingContext2D, { width, span, colours }: Painting, lane: Lane, top: number, x: X): void {
   const high = top + 6;
   const low = top + HEIGHT - 6;
@@ -220,7 +220,7 @@ function curve(g: CanvasRenderingContext2D, { span, colours, now }: Painting, la
     if (begun) g.lineTo(x(edge[0]), y(edge[1]));
     else g.moveTo(x(edge[0]), y(edge[1]));
     begun = true;
-    // A value that stayed for long is level, and no slope to the next.
+    // A value that lasted long is drawn level, not as a slope to the next.
     if (until - edge[0] > (span.to - span.from) / 60) g.lineTo(x(Math.min(until, now)), y(edge[1]));
   }
   g.stroke();

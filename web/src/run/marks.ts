@@ -1,23 +1,25 @@
-// What the drawing shows of a run: told at most 25 times a second.
+// The marks of a run on the drawing, updated at most 25 times a second.
 import { live } from '../lib/live.svelte';
 import type { Item } from '../lib/protocol';
 import { transitionNumber } from '../lib/ids';
 import type { Run } from './state.svelte';
 
 const GAP = 40;
-/** Frames that come so much earlier than that are told at once: one painting instead of two. */
+/** A frame that comes less than this before the next update is shown at once, in ms; this saves one
+ * painting. */
 const EARLY = 12;
-/** A time that changes faster than so cannot be read, ms of the wall clock. */
+/** A time that changes faster than this cannot be read, in ms of the wall clock. */
 const READABLE = 100;
-/** How long a cleared transition flashes, ms; and where so many do that none stands out. */
+/** How long a cleared transition flashes, in ms; and the number of flashes at which none stands
+ * out. */
 const FLASH = 300;
 const BRIEF = 60;
 const MANY = 40;
 
-/** The signals that symbols name, by id of the symbol. */
+/** The signals that a symbol names, by the id of the symbol. */
 export type Named = ReadonlyMap<string, readonly number[]>;
 
-/** Finds the names of signals in what is written in symbols. */
+/** Finds the names of signals in the texts of symbols. */
 export function named(run: Run, chart: string, items: readonly Item[]): Named {
   const byName = new Map(run.started.signals.map((s, i) => [s.name, i]));
   const found = new Map<string, number[]>();
@@ -34,7 +36,8 @@ export function named(run: Run, chart: string, items: readonly Item[]): Named {
   return found;
 }
 
-/** A time beside a step: short, in units that do not flicker. While time goes on, none that nobody could read. */
+/** A time beside a step: short, in units that do not flicker. While the time advances, unreadable
+ * digits are left out. */
 export function age(ms: number, grain = 0): string {
   if (ms < grain) return '';
   if (grain > 1) ms = Math.floor(ms / grain + 1e-6) * grain;
@@ -48,12 +51,12 @@ export function age(ms: number, grain = 0): string {
 export class Marks {
   readonly #run: Run;
   #names: Named = new Map();
-  /** Actions that name signals, by step. */
+  /** For each step its actions that name signals. */
   #actions = new Map<string, string[]>();
   #other: Run | null = null;
   #unwatchOther: (() => void) | null = null;
   #told = 0;
-  /** When the latest frame came. */
+  /** The time of the latest frame. */
   #came = 0;
   #timer = 0;
   #unwatch: () => void;
@@ -66,7 +69,7 @@ export class Marks {
     this.tell();
   }
 
-  /** What the symbols in view name. */
+  /** Sets the signals that the visible symbols name. */
   show(names: Named, other: Run | null): void {
     this.#names = names;
     this.#actions = new Map();
@@ -132,7 +135,7 @@ export class Marks {
     this.#beside(on, enabled);
   }
 
-  /** Cleared transitions flash for a moment. */
+  /** Lets cleared transitions flash for a moment. */
   #flash(): void {
     const now = performance.now();
     for (const i of this.#run.cleared) {
@@ -148,7 +151,8 @@ export class Marks {
     }
   }
 
-  /** Values beside names, lit actions, locks: looked at only where something is active. */
+  /** Values beside names, lit actions, and locks; they are computed only where something is active.
+   * */
   #beside(on: ReadonlySet<string>, enabled: ReadonlyMap<string, number>): void {
     const run = this.#run;
     const { signals } = run.started;
@@ -158,7 +162,7 @@ export class Marks {
     const tell = (id: string) => {
       const all = this.#names.get(id) ?? [];
       const numbers = all.filter((s) => signals[s]?.type !== 'bool');
-      // Where one name stands, its value needs no name.
+      // If there is only one signal, its value needs no name.
       const short = (s: number) => (all.length === 1 ? '' : `${brief(signals[s]?.name ?? '')} `);
       if (numbers.length > 0) values.set(id, numbers.map((s) => `${short(s)}= ${run.shows[s]}`).join('   '));
     };
@@ -185,7 +189,7 @@ export class Marks {
   }
 }
 
-/** A name without what it belongs to, and no longer than a glance. */
+/** A name without its prefix, shortened to a glance. */
 function brief(name: string): string {
   const last = name.slice(name.lastIndexOf('.') + 1);
   return last.length <= 16 ? last : `${last.slice(0, 9)}…${last.slice(-6)}`;

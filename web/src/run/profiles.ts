@@ -1,2 +1,2 @@
-// The profiles that a chart can be run under.
+// The profiles under which a chart can run.
 export const profiles = ['iec60848', 'iec61131', 'pl7', 'unity', 'jgrafchart'] as const;

@@ -1,5 +1,5 @@
-// A picture from a file becomes part of the page only with what draws: no scripts,
-// no handlers, nothing from elsewhere. What is not known here is left out.
+// Filters a picture from a file before it becomes part of the page: no scripts, no handlers, no
+// external references. Unknown elements are removed.
 
 const SVG = 'http://www.w3.org/2000/svg';
 const XLINK = 'http://www.w3.org/1999/xlink';
@@ -10,7 +10,7 @@ const ELEMENTS = new Set(
   feFlood feBlend feColorMatrix feComposite feMerge feMergeNode feDropShadow`.split(/\s+/),
 );
 
-/** What may be loaded: nothing but parts of the picture itself. */
+/** True if a text refers to nothing but parts of the picture itself. */
 function inside(text: string): boolean {
   const plain = text.replace(/\/\*[\s\S]*?\*\//g, '').replace(/\\/g, '');
   if (/@import|@font-face|expression\s*\(|javascript:|image(-set)?\s*\(|src\s*\(/i.test(plain)) return false;
@@ -41,7 +41,7 @@ function clean(from: Element): SVGElement | null {
   return made;
 }
 
-/** The picture of a file; throws where it is none. */
+/** The picture in a file; throws if there is none. */
 export function picture(text: string): SVGElement {
   const parsed = new DOMParser().parseFromString(text, 'image/svg+xml');
   const wrong = parsed.querySelector('parsererror');

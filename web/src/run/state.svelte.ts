@@ -1,10 +1,9 @@
-// One run as the page sees it: the frames that came, merged. Frames say only what
-// changed; what the tables show is kept by signal and by step, so that a change of
-// one value touches one row.
+// One run as the page knows it: the merged frames. Frames contain only changes; the data of the
+// tables is kept by signal and by step, so that a changed value affects one row only.
 import type { Answers } from '../lib/page';
 import type { Frame, SignalRow, Started } from '../lib/protocol';
 
-/** While it runs, its time is told in words no more often than can be read, ms. */
+/** While it runs, the time in the bar changes at most this often, in ms, so that it can be read. */
 const READ = 100;
 
 type Watcher = (frame: Frame) => void;
@@ -17,58 +16,59 @@ export interface Halt {
 export class Run {
   readonly name: string;
   readonly file: string;
-  /** Held by the server, and seen by all that watch it. */
+  /** True if the server holds the run, so that all watching pages see it. */
   readonly shared: boolean;
   readonly answers: Answers;
   started: Started = $state.raw(undefined as unknown as Started);
 
-  /** By signal. */
+  /** The shown values, by signal. */
   shows: string[] = $state([]);
   numbers: number[] = $state([]);
   forced: boolean[] = $state([]);
-  /** By step. */
+  /** The activity of the steps, by number. */
   on: boolean[] = $state([]);
 
-  /** Active steps, what of transitions is enabled, times of active steps. */
+  /** The active steps, the marks of enabled transitions, and the times of active steps. */
   readonly active = new Set<number>();
   readonly enabled = new Map<number, 0 | 1 | 2>();
   readonly times = new Map<number, number>();
-  /** Transitions cleared since the drawing was told. */
+  /** Transitions cleared since the drawing was updated. */
   readonly cleared = new Set<number>();
   view: (boolean | number | string | undefined)[] = [];
-  /** Pictures of the plant that are in view. */
+  /** Number of visible pictures of the plant. */
   pictures = 0;
 
   now = $state(0);
-  /** The latest instant that there is. */
+  /** The latest instant of the run. */
   end = $state(0);
   #told: { now: number; end: number } = $state.raw({ now: 0, end: 0 });
   #toldAt = 0;
   scans = $state(0);
   passes = $state(0);
   within = $state(false);
-  /** The present, and no earlier scan that is looked at. */
+  /** True if the present is shown, and not an earlier scan. */
   live = $state(true);
   late = $state(false);
   halt: Halt | null = $state.raw(null);
   stopped: string | null = $state(null);
   playing = $state(false);
   speed = $state(1);
-  /** The time as it is told in words. */
+  /** The time in the bar. */
   readonly clock: { now: number; end: number } = $derived(this.playing ? this.#told : { now: this.now, end: this.end });
-  /** The version of the text that runs. */
+  /** The fingerprint of the text that runs. */
   hash = $state('');
-  /** A shared run of another text than the one here, which others look at: it is changed only on demand. */
+  /** True for a shared run of another text than ours, which other clients watch: it is changed only
+   * on request. */
   foreign = $state(false);
-  /** What an on-line change would lose, while that is asked. */
+  /** The losses of an on-line change, while the user is asked about them. */
   losing: string[] | null = $state.raw(null);
-  /** A changed text that cannot be taken over, and why. */
+  /** The reason why a changed text cannot be taken over. */
   refused: string | null = $state.raw(null);
-  /** What the run has to say: outputs that two actions write against each other, and the like. */
+  /** A message of the run, for instance that two actions write different values to an output. */
   note: string | null = $state(null);
-  /** When the latest frame came, by the clock of the page. */
+  /** The time of the latest frame, by the clock of the page. */
   heard = 0;
-  /** Counts frames: for what is drawn anew as a whole. */
+  /** A counter of frames, for parts that are redrawn as a whole. */
   frames = $state(0);
 
   #watchers = new Set<Watcher>();
@@ -81,7 +81,7 @@ export class Run {
     this.begin(started);
   }
 
-  /** Takes over a start, or a changed chart: the numbers of frames have new meanings. */
+  /** Takes over a start or a changed chart: the numbers in frames get new meanings. */
   begin(started: Started): void {
     this.started = started;
     this.hash = started.hash;
@@ -95,7 +95,7 @@ export class Run {
     this.take({ ...started.frame, full: true });
   }
 
-  /** Told of every frame, after it was merged. */
+  /** Calls a watcher after every merged frame. */
   watch(watcher: Watcher): () => void {
     this.#watchers.add(watcher);
     return () => this.#watchers.delete(watcher);
@@ -146,7 +146,7 @@ export class Run {
     this.#watchers.forEach((watcher) => watcher(frame));
   }
 
-  /** A full frame says what is; whatever it does not name is not. */
+  /** Before a full frame: everything that it does not name is reset. */
   #forget(frame: Frame): void {
     const on = new Set(frame.on);
     for (const step of this.active) if (!on.has(step)) this.on[step] = false;

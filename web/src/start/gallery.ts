@@ -43,13 +43,13 @@ export function groups(rows: FileRow[]): Group[] {
     });
 }
 
-/** A file called `chart` is the one that its folder is about. */
+/** A file named `chart` gets the name of its folder. */
 function label(row: FileRow, folder: string): string {
   const name = row.path.slice(row.path.lastIndexOf('/') + 1);
   return name === 'chart.g7' && folder ? folder : plain(name);
 }
 
-/** How a file is called in a short list. */
+/** The name of a file in a short list. */
 export function short(path: string): string {
   const parts = path.split('/');
   const name = plain(parts.at(-1) ?? path);

@@ -1,4 +1,4 @@
-// The gallery, and what lies over the page for those who begin.
+// The gallery, and the parts for beginners that lie over the page.
 import type { Panel } from '../lib/shell.svelte';
 import Over from './Over.svelte';
 import Start from './Start.svelte';

@@ -1,4 +1,4 @@
-// Files that were open lately, as the browser keeps them.
+// The recently opened files, kept by the browser.
 
 const RECENT = 'g7-recent';
 const MOST = 8;
@@ -21,7 +21,7 @@ class Recent {
     try {
       localStorage.setItem(RECENT, JSON.stringify(this.names));
     } catch {
-      // It is a convenience only.
+      // This list is only a convenience, so a failure is ignored.
     }
   }
 }

@@ -1,4 +1,4 @@
-// Texts that a new file can begin with.
+// Texts with which a new file can begin.
 import type { Key } from '../lib/i18n';
 
 export interface Template {

@@ -1,11 +1,11 @@
-// Small pictures of files for the gallery, drawn by the same crates as the page:
-// one after the other, and only those that come into sight.
+// Small pictures of files for the gallery, drawn by the same crates as the page: one after the
+// other, and only those that become visible.
 import { page } from '../lib/page';
 import type { Box, Drawing, Look } from '../lib/protocol';
 import { server, type FileRow } from '../lib/server';
 
 export interface Thumb {
-  /** First sentence of the notes at the head of the file. */
+  /** The first sentence of the notes at the head of the file. */
   about: string;
   svg: string;
   area: Box;
@@ -65,7 +65,7 @@ function about(text: string): string {
 const LEAST = 400;
 const MOST = 560;
 
-/** What of a drawing is shown: its beginning, at a size that can be read. */
+/** The part of a drawing that is shown: its beginning, at a readable size. */
 export function crop([x, y, w, h]: Box): string {
   const width = Math.min(Math.max(w + 40, LEAST), MOST);
   const height = width * 0.62;

@@ -1,5 +1,5 @@
-// The guided first chart: what to do next, and how to know that it was done. It
-// looks at the file, the drawing and the run, and goes on by itself.
+// The tour through a first chart: the lessons, and how each is recognized as done. It observes the
+// file, the drawing and the run, and advances by itself.
 import { editor } from '../canvas/editor.svelte';
 import { files } from '../lib/files.svelte';
 import type { Key } from '../lib/i18n';
@@ -11,10 +11,10 @@ import { shell } from '../lib/shell.svelte';
 export interface Lesson {
   title: Key;
   what: Key;
-  /** Keys that do it. */
+  /** The keys for the lesson. */
   keys?: string[];
   done: () => boolean;
-  /** Makes what is needed visible. */
+  /** Makes everything visible that the lesson needs. */
   prepare?: () => void;
 }
 
@@ -89,9 +89,9 @@ export const lessons: Lesson[] = [
 ];
 
 class Tour {
-  /** Which lesson; none while the tour is not under way. */
+  /** The number of the lesson; null if the tour is not running. */
   at: number | null = $state(null);
-  /** The file that it is about. */
+  /** The file of the tour. */
   file: string | null = $state(null);
 
   get lesson(): Lesson | null {
@@ -119,7 +119,7 @@ class Tour {
     const prepare = this.lesson?.prepare;
     if (!prepare) return;
     prepare();
-    // The regions have their new sizes by then.
+    // By then the regions have their new sizes.
     setTimeout(() => editor.camera?.fit(), 60);
   }
 

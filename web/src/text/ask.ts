@@ -1,4 +1,4 @@
-// What the text view asks the checker: completion, hover, problems, references.
+// The questions of the text view to the checker: completion, hover, problems, references.
 import type { Completion, CompletionContext, CompletionResult } from '@codemirror/autocomplete';
 import type { Action, Diagnostic } from '@codemirror/lint';
 import type { EditorState } from '@codemirror/state';
@@ -47,7 +47,7 @@ export function hover(file: OpenFile) {
   return hoverTooltip(async (view, at) => {
     const { doc } = view.state;
     await file.settled();
-    // A problem speaks for itself.
+    // The message of the problem is enough here.
     if (file.look.problems.some((p) => p.from <= at && at <= p.to)) return null;
     const found = await page.call<Hover | null>({ do: 'hover', file: file.name, at }).catch(() => null);
     if (!found || view.state.doc !== doc) return null;
@@ -71,7 +71,7 @@ function mend(fix: Fix): Action {
   };
 }
 
-/** What a problem of this kind is about, at its place. */
+/** Explains the kind of a problem, at its place. */
 function why(code: string): Action {
   return {
     name: t('text.why'),
@@ -98,15 +98,15 @@ export function diagnostics(problems: readonly Problem[], length: number): Diagn
 
 export interface Named {
   places: [from: number, to: number][];
-  /** Where it is declared. */
+  /** The place of its declaration. */
   declared: [from: number, to: number];
-  /** How a gesture calls it. */
+  /** The name that a gesture uses. */
   id?: string;
   name?: string;
   word: string;
 }
 
-/** What the name at a place refers to, and wherever else it stands. */
+/** The name at a place, and all other places where it is used. */
 export async function named(file: OpenFile, state: EditorState, at: number): Promise<Named | null> {
   await file.settled();
   const places = await page.call<[number, number][]>({ do: 'references', file: file.name, at }).catch(() => []);

@@ -1,9 +1,9 @@
-// What the braces of a text enclose: for folding and indentation. Notes, comments
-// and strings are stepped over.
+// The parts enclosed by braces, for folding and indentation. Notes, comments and strings are
+// skipped.
 import { foldService, indentService } from '@codemirror/language';
 import { StateField, type EditorState, type Text } from '@codemirror/state';
 
-/** Place of an opening brace -> place of its closing one. */
+/** For each opening brace the place of its closing brace. */
 function pairs(doc: Text): Map<number, number> {
   const found = new Map<number, number>();
   const open: number[] = [];
@@ -52,7 +52,7 @@ const indent = indentService.of((context, at) => {
   const line = context.lineAt(at);
   let before = context.state.doc.lineAt(at);
   if (line.from === before.from && before.number === 1) return 0;
-  // The nearest line above that says something.
+  // The nearest line above that is not blank.
   let text = context.simulatedBreak !== null && context.simulatedBreak <= before.to && at >= context.simulatedBreak ? context.textAfterPos(before.from, -1) : '';
   if (text === '') {
     do {

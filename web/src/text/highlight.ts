@@ -1,5 +1,5 @@
-// Colours of the words in sight, from the lexer of the Rust crates. While an answer
-// is under way the colours that are there go with the text.
+// Colours of the visible words, from the lexer of the Rust crates. While an answer is on its way,
+// the present colours move with the text.
 import { StateEffect, StateField, type Range } from '@codemirror/state';
 import { Decoration, EditorView, ViewPlugin, type DecorationSet, type ViewUpdate } from '@codemirror/view';
 import type { OpenFile } from '../lib/files.svelte';
@@ -7,7 +7,7 @@ import { page } from '../lib/page';
 
 type Token = [from: number, to: number, kind: string];
 
-/** Coloured beyond what is in sight. */
+/** Number of characters beyond the visible text that are coloured too. */
 const MARGIN = 3000;
 const PAUSE = 30;
 

@@ -1,4 +1,4 @@
-// The text view of the middle.
+// The text view in the middle of the window.
 import type { Panel } from '../lib/shell.svelte';
 import TextView from './TextView.svelte';
 

@@ -1,4 +1,4 @@
-// The little Markdown that explanations are written in, as nodes of the page.
+// Converts the small part of Markdown that explanations use to nodes of the page.
 
 function inline(text: string, into: HTMLElement): void {
   for (const part of text.split(/(`[^`]+`|\*\*[^*]+\*\*)/)) {
@@ -14,7 +14,7 @@ function element(name: string, text: string): HTMLElement {
   return made;
 }
 
-/** Code between fences; what is a wrong chart on purpose is marked so. */
+/** Code between fences; a chart that is wrong on purpose is marked. */
 function code(block: string): HTMLElement {
   const [, kind = '', text = ''] = /^```(.*)\n([\s\S]*?)\n?```$/.exec(block) ?? [];
   const pre = element('pre', text);

@@ -1,5 +1,5 @@
-// Marks in the text: what is selected in the drawing, active steps of a run, and
-// the other places of the name at the cursor.
+// Marks in the text: the selection of the drawing, the active steps of a run, and the other places
+// of the name at the cursor.
 import { StateEffect, StateField, type Range } from '@codemirror/state';
 import { Decoration, EditorView, type DecorationSet } from '@codemirror/view';
 
@@ -14,7 +14,7 @@ const picked = line('cm-picked');
 const live = line('cm-live');
 const alike = Decoration.mark({ class: 'cm-same' });
 
-/** Whole lines of spans. */
+/** Marks whole lines of spans. */
 function lines(effect: typeof pick, mark: Decoration) {
   return StateField.define<DecorationSet>({
     create: () => Decoration.none,

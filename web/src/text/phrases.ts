@@ -1,4 +1,4 @@
-// CodeMirror's own words in the language of the page.
+// CodeMirror's own texts in the language of the page.
 import { prefs } from '../lib/prefs.svelte';
 
 const table: Record<string, [fr: string, pt: string]> = {

@@ -1,4 +1,4 @@
-// The sections of a file, for jumping to them.
+// The sections of a file, as targets for jumps.
 import type { Key } from '../lib/i18n';
 import type { Look } from '../lib/protocol';
 

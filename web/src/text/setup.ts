@@ -1,4 +1,4 @@
-// The parts that make up the text view of one file.
+// The extensions that make up the text view of one file.
 import { autocompletion, closeBrackets, closeBracketsKeymap, completionKeymap } from '@codemirror/autocomplete';
 import { defaultKeymap, indentWithTab } from '@codemirror/commands';
 import { bracketMatching, codeFolding, foldGutter, foldKeymap, indentOnInput, indentUnit } from '@codemirror/language';
@@ -40,7 +40,8 @@ export function format(file: OpenFile): void {
   void shell.try(() => file.format());
 }
 
-/** Mends the problem at the cursor where there is one way to; else the list of problems offers the ways. */
+/** Fixes the problem at the cursor if there is exactly one fix; otherwise the list of problems
+ * offers the choices. */
 function mend(file: OpenFile): Command {
   return ({ state }) => {
     const at = state.selection.main.head;
@@ -75,7 +76,7 @@ export function setup(file: OpenFile, more: Extension): Extension {
     },
   });
   return [
-    // Line ends are `\n` alone, so that places are those of the file.
+    // Line ends are `\n` alone, so that places equal those of the file.
     EditorState.lineSeparator.of('\n'),
     EditorView.clipboardInputFilter.of((text) => text.replace(/\r\n?/g, '\n')),
     EditorState.phrases.of(phrases()),

@@ -1,4 +1,4 @@
-// Signs that keyboards lack: `\up` becomes ↑ as soon as it is written out.
+// Signs that are not on the keyboard: `\up` becomes ↑ as soon as it is complete.
 import { EditorView } from '@codemirror/view';
 import type { Key } from '../lib/i18n';
 
@@ -6,7 +6,7 @@ export interface Sign {
   show: string;
   put: string;
   name: Key;
-  /** Written behind a backslash. */
+  /** The word typed after a backslash. */
   word: string;
 }
 

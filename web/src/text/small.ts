@@ -1,4 +1,4 @@
-// Small windows at a name: its new name, and the places where it stands.
+// Small windows at a name: to rename it, and to list the places where it is used.
 import type { Command, EditorView } from '@codemirror/view';
 import type { OpenFile } from '../lib/files.svelte';
 import { t } from '../lib/i18n';
@@ -6,7 +6,7 @@ import { shell } from '../lib/shell.svelte';
 import { named, type Named } from './ask';
 import { leaving, open, shut } from './window';
 
-/** Does something with the name at the cursor. */
+/** Makes a command that works on the name at the cursor. */
 function atName(file: OpenFile, work: (view: EditorView, found: Named) => void): Command {
   return (view) => {
     const at = view.state.selection.main.head;

@@ -1,14 +1,14 @@
-// Keeps the text view and the open file the same: what is typed goes to the file,
-// what is changed elsewhere comes as splices. Undo belongs to the file.
+// Keeps the text view and the open file equal: typed changes go to the file, other changes come
+// back as splices. Undo belongs to the file.
 import { Annotation, Transaction, type ChangeSet, type Text } from '@codemirror/state';
 import { EditorView, type ViewUpdate } from '@codemirror/view';
 import type { OpenFile } from '../lib/files.svelte';
 import type { Splice } from '../lib/protocol';
 import { shell } from '../lib/shell.svelte';
 
-/** A change that came from the file: it is not sent back. */
+/** Marks a change that came from the file and is not sent back. */
 export const fromFile = Annotation.define<boolean>();
-/** Undone by itself, apart from what is typed before and after it. */
+/** Marks a change that is undone as a unit, apart from typing before and after it. */
 export const asUnit = Annotation.define<boolean>();
 
 const UNITS = ['input.paste', 'input.drop', 'input.complete', 'delete.cut', 'move', 'input.replace'];
@@ -30,7 +30,7 @@ export function sync(file: OpenFile) {
       sending = false;
     }
   });
-  /** Takes over what is changed elsewhere, until it is ended. */
+  /** Applies changes made elsewhere until the returned function is called. */
   const follow = (view: EditorView): (() => void) =>
     file.listen(({ splices: changes, origin }) => {
       if (sending) return;
@@ -43,7 +43,7 @@ export function sync(file: OpenFile) {
   return { send, follow };
 }
 
-/** Behind the last change, in the text after it. */
+/** The end of the last change, in the text after it. */
 function after(changes: Splice[]): number {
   let shift = 0;
   let at = 0;

@@ -1,4 +1,4 @@
-// The look of the text view, from the tokens of the page.
+// The style of the text view, made from the design tokens of the page.
 import { EditorView } from '@codemirror/view';
 
 export const theme = EditorView.theme({

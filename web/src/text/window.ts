@@ -21,7 +21,8 @@ export function shut(view: EditorView): void {
 export function leaving(view: EditorView, dom: HTMLElement): void {
   dom.addEventListener('focusout', (e) => {
     if (dom.contains(e.relatedTarget as Node | null)) return;
-    // It is also left when it is taken away, in the midst of an update.
+    // The focus also leaves when the window is removed during an update, so the dispatch is
+    // delayed.
     setTimeout(() => dom.isConnected && view.dispatch({ effects: open.of(null) }));
   });
   dom.addEventListener('keydown', (e) => {
@@ -32,7 +33,7 @@ export function leaving(view: EditorView, dom: HTMLElement): void {
   });
 }
 
-/** Says something at a place until the cursor goes elsewhere. */
+/** Shows a message at a place until the cursor moves away. */
 export function tell(view: EditorView, pos: number, dom: HTMLElement): void {
   dom.className = 'g7-hover';
   dom.tabIndex = 0;

@@ -1,7 +1,5 @@
-//! The equations of a chart: what Structured Text, Instruction List and Ladder
-//! have in common, before it is printed in one of them.
-
-use g7_model::Problem;
+//! What Structured Text, Instruction List and Ladder have in common: the
+//! equations of a chart with names, before they are printed in one of them.
 
 /// A value.
 #[derive(Clone, Debug, PartialEq)]
@@ -141,13 +139,6 @@ impl Ex {
         }
     }
 
-    /// Whether working it out can fail: it divides.
-    pub(crate) fn divides(&self) -> bool {
-        let mut found = false;
-        self.walk(&mut |e| found |= matches!(e, Ex::Op("/" | "MOD", ..)));
-        found
-    }
-
     /// Whether it reads no variable at all.
     fn is_constant(&self) -> bool {
         let mut found = true;
@@ -163,22 +154,21 @@ impl Ex {
         });
         found
     }
-
-    /// Whether it reads a variable.
-    pub(crate) fn reads(&self, name: &str) -> bool {
-        let mut found = false;
-        self.walk(&mut |e| found |= matches!(e, Ex::Var(n) | Ex::Index(n, _) if n == name));
-        found
-    }
 }
 
 /// A statement.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum St {
+    /// The statements that follow belong together.
+    Title(String),
+    /// A comment to the statement that follows.
+    Note(String),
     Assign(Ex, Ex),
     If(Ex, Vec<St>, Vec<St>),
     /// Until EXIT.
     Loop(Vec<St>),
+    /// Again and again, until the condition holds behind the statements.
+    Until(Vec<St>, Ex),
     Exit,
     /// A function block with its inputs.
     Call(String, Vec<(String, Ex)>),
@@ -194,82 +184,25 @@ impl St {
         match condition {
             Ex::Bool(true) => then,
             Ex::Bool(false) => Vec::new(),
-            c if then.is_empty() => {
-                drop(c);
-                Vec::new()
-            }
+            _ if then.is_empty() => Vec::new(),
             c => vec![St::If(c, then, Vec::new())],
         }
     }
-}
 
-/// What a rung does.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) enum What {
-    /// A BOOL follows its equation.
-    Assign(String, Ex),
-    /// A BOOL comes on where the condition holds, and stays.
-    Set(String, Ex),
-    /// A BOOL goes off where the condition holds, and stays.
-    Reset(String, Ex),
-    /// Anything else, where the condition holds.
-    Do(Ex, Vec<St>),
-}
-
-/// An equation with its comment.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Rung {
-    pub(crate) note: String,
-    pub(crate) what: What,
-}
-
-impl Rung {
-    pub(crate) fn assign(note: impl Into<String>, to: impl Into<String>, e: Ex) -> Rung {
-        Rung { note: note.into(), what: What::Assign(to.into(), e) }
-    }
-
-    pub(crate) fn act(note: impl Into<String>, when: Ex, body: Vec<St>) -> Rung {
-        Rung { note: note.into(), what: What::Do(when, body) }
-    }
-}
-
-/// Rungs with a heading.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub(crate) struct Section {
-    pub(crate) title: String,
-    pub(crate) rungs: Vec<Rung>,
-}
-
-impl Section {
-    pub(crate) fn new(title: &str) -> Section {
-        Section { title: title.to_owned(), rungs: Vec::new() }
-    }
-
-    pub(crate) fn push(&mut self, rung: Rung) {
-        let empty = match &rung.what {
-            What::Set(_, e) | What::Reset(_, e) => *e == Ex::Bool(false),
-            What::Do(e, body) => *e == Ex::Bool(false) || body.is_empty(),
-            What::Assign(..) => false,
-        };
-        if !empty {
-            self.rungs.push(rung);
+    /// A BOOL that comes on or goes off where a condition holds, and stays.
+    pub(crate) fn latch(&self) -> Option<(&Ex, &str, bool)> {
+        match self {
+            St::If(c, then, other) if other.is_empty() => match then.as_slice() {
+                [St::Assign(Ex::Var(name), Ex::Bool(on))] => Some((c, name, *on)),
+                _ => None,
+            },
+            _ => None,
         }
     }
 
-    pub(crate) fn assign(&mut self, note: impl Into<String>, to: impl Into<String>, e: Ex) {
-        self.push(Rung::assign(note, to, e));
-    }
-
-    pub(crate) fn set(&mut self, note: impl Into<String>, to: impl Into<String>, when: Ex) {
-        self.push(Rung { note: note.into(), what: What::Set(to.into(), when) });
-    }
-
-    pub(crate) fn reset(&mut self, note: impl Into<String>, to: impl Into<String>, when: Ex) {
-        self.push(Rung { note: note.into(), what: What::Reset(to.into(), when) });
-    }
-
-    pub(crate) fn act(&mut self, note: impl Into<String>, when: Ex, body: Vec<St>) {
-        self.push(Rung::act(note, when, body));
+    /// Title or comment.
+    pub(crate) fn is_remark(&self) -> bool {
+        matches!(self, St::Title(_) | St::Note(_))
     }
 }
 
@@ -295,26 +228,14 @@ pub(crate) struct Declared {
 
 /// The whole of it.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Equations {
+pub(crate) struct Block {
     pub(crate) name: String,
     pub(crate) variables: Vec<Declared>,
-    /// Once a scan, before the evolution.
-    pub(crate) before: Vec<Section>,
-    /// The evolution: once, or until nothing changes.
-    pub(crate) pass: Vec<Section>,
-    /// Most passes, where there is more than one.
-    pub(crate) bound: Option<u32>,
-    /// Once a scan, behind the evolution.
-    pub(crate) after: Vec<Section>,
+    /// The statements of a scan. Where a fault can come, each part runs only
+    /// while none has.
+    pub(crate) parts: Vec<Vec<St>>,
     /// Safe values of the outputs, where a fault can come.
     pub(crate) safe: Option<Vec<St>>,
-    pub(crate) problems: Vec<Problem>,
-}
-
-impl Equations {
-    pub(crate) fn sections(&self) -> impl Iterator<Item = &Section> {
-        self.before.iter().chain(&self.pass).chain(&self.after)
-    }
 }
 
 /// The type of a variable.

@@ -2,15 +2,15 @@
 //!
 //! What must hold: brackets hold contacts only, a loop has its one jump back at
 //! its end, and members of blocks stand behind LD and ST alone. Not every
-//! compiler takes more, and `syntax::il` reads no more back.
+//! compiler takes more, and `iec::il` reads no more back.
 
 use std::fmt::Write;
 
-use super::form::{Class, Declared, Equations, Ex, Section, St, What, operand_type, type_name};
-use super::st::{declarations, expression, plain};
+use super::form::{Block, Class, Declared, Ex, St, operand_type, type_name};
+use super::st::{FAULT_COMES, declarations, expression, plain};
 
 /// The whole function block; steps are set and reset by S and R, or by equations.
-pub(crate) fn print(e: &Equations, set_reset: bool) -> String {
+pub(crate) fn print(e: &Block, set_reset: bool) -> String {
     let mut p = Printer {
         set_reset,
         variables: e.variables.clone(),
@@ -19,42 +19,19 @@ pub(crate) fn print(e: &Equations, set_reset: bool) -> String {
         memories: 0,
         loops: Vec::new(),
     };
-    p.sections(&e.before);
-    let faulty = e.safe.is_some().then(|| p.label());
-    if let Some(label) = &faulty {
-        p.line("LD FAULT");
-        p.line(&format!("JMPC {label}"));
-    }
-    match e.bound {
-        None => p.sections(&e.pass),
-        Some(bound) => {
-            p.comment("The evolution, until nothing changes");
-            p.lines(&["LD 0", "ST PASSES"]);
-            let again = p.label();
-            p.mark(&again);
-            p.lines(&["LD PASSES", "ADD 1", "ST PASSES"]);
-            p.sections(&e.pass);
-            p.lines(&["LD PASSES", &format!("GE {bound}"), "ORN CHANGED", "OR FAULT"]);
-            p.line(&format!("JMPCN {again}"));
-            p.lines(&["LD FAULT", "OR CHANGED", "ST FAULT"]);
+    for part in &e.parts {
+        if e.safe.is_some() {
+            p.when(&Ex::var("FAULT").not(), part);
+        } else {
+            p.block(part);
         }
     }
-    if let (Some(faulty), Some(safe)) = (faulty, &e.safe) {
-        let end = p.label();
-        p.line("LD FAULT");
-        p.line(&format!("JMPC {faulty}"));
-        p.sections(&e.after);
-        p.line(&format!("JMP {end}"));
-        p.mark(&faulty);
-        p.comment("No stable situation, or orders that disagree: the safe values, and no further scan");
-        p.block(safe);
-        p.mark(&end);
-    } else {
-        p.sections(&e.after);
+    if let Some(safe) = e.safe.as_ref().filter(|safe| !safe.is_empty()) {
+        p.comment(FAULT_COMES);
+        p.when(&Ex::var("FAULT"), safe);
     }
     let body = if p.out.trim().is_empty() { "  LD TRUE\n".to_owned() } else { p.out };
-    let head =
-        declarations(&Equations { name: e.name.clone(), variables: p.variables, ..Equations::default() });
+    let head = declarations(&Block { name: e.name.clone(), variables: p.variables, ..Block::default() });
     format!("{head}{body}  RET\nEND_FUNCTION_BLOCK\n")
 }
 
@@ -73,10 +50,6 @@ impl Printer {
         let _ = writeln!(self.out, "  {text}");
     }
 
-    fn lines(&mut self, list: &[&str]) {
-        list.iter().for_each(|l| self.line(l));
-    }
-
     fn comment(&mut self, note: &str) {
         let note = plain(note);
         if !note.is_empty() {
@@ -93,33 +66,6 @@ impl Printer {
         let _ = writeln!(self.out, "{label}:");
     }
 
-    fn sections(&mut self, sections: &[Section]) {
-        for s in sections.iter().filter(|s| !s.rungs.is_empty()) {
-            self.comment(&s.title);
-            for r in &s.rungs {
-                self.comment(&r.note);
-                match &r.what {
-                    What::Assign(to, e) => self.store(e, "ST", to),
-                    What::Set(to, e) if self.set_reset => self.store(e, "S", to),
-                    What::Reset(to, e) if self.set_reset => self.store(e, "R", to),
-                    // matiec takes S and R for calls of function blocks now and then.
-                    What::Set(to, e) => self.store(&e.clone().or(Ex::var(to.clone())), "ST", to),
-                    What::Reset(to, e) => {
-                        self.store(&Ex::var(to.clone()).and(e.clone().not()), "ST", to);
-                    }
-                    What::Do(Ex::Bool(true), body) => self.block(body),
-                    What::Do(e, body) => {
-                        let behind = self.label();
-                        self.load(e);
-                        self.line(&format!("JMPCN {behind}"));
-                        self.block(body);
-                        self.mark(&behind);
-                    }
-                }
-            }
-        }
-    }
-
     fn store(&mut self, e: &Ex, with: &str, to: &str) {
         self.load(e);
         self.line(&format!("{with} {to}"));
@@ -129,22 +75,50 @@ impl Printer {
         body.iter().for_each(|s| self.statement(s));
     }
 
+    /// Statements where a condition holds.
+    fn when(&mut self, c: &Ex, body: &[St]) {
+        let behind = self.label();
+        self.load(c);
+        self.line(&format!("JMPCN {behind}"));
+        self.block(body);
+        self.mark(&behind);
+    }
+
+    /// A BOOL that comes on or goes off, and stays.
+    fn latch(&mut self, c: &Ex, name: &str, on: bool) {
+        if self.set_reset {
+            return self.store(c, if on { "S" } else { "R" }, name);
+        }
+        // matiec takes S and R for calls of function blocks now and then.
+        let own = Ex::var(name);
+        let e = if on { c.clone().or(own) } else { own.and(c.clone().not()) };
+        self.store(&e, "ST", name);
+    }
+
     fn statement(&mut self, s: &St) {
+        if let Some((c, name, on)) = s.latch() {
+            return self.latch(c, name, on);
+        }
         match s {
+            St::Title(note) | St::Note(note) => self.comment(note),
             St::Assign(to, e) => self.store(e, "ST", &expression(to)),
+            St::If(c, then, other) if other.is_empty() => self.when(c, then),
             St::If(c, then, other) => {
                 let (behind, end) = (self.label(), self.label());
                 self.load(c);
                 self.line(&format!("JMPCN {behind}"));
                 self.block(then);
-                if !other.is_empty() {
-                    self.line(&format!("JMP {end}"));
-                }
+                self.line(&format!("JMP {end}"));
                 self.mark(&behind);
-                if !other.is_empty() {
-                    self.block(other);
-                    self.mark(&end);
-                }
+                self.block(other);
+                self.mark(&end);
+            }
+            St::Until(body, c) => {
+                let again = self.label();
+                self.mark(&again);
+                self.block(body);
+                self.load(c);
+                self.line(&format!("JMPCN {again}"));
             }
             St::Loop(body) => {
                 let (again, end) = (self.label(), self.label());

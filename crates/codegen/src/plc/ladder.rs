@@ -4,8 +4,8 @@
 
 use g7_model::{Problem, Span, codes};
 
-use super::form::{Class, Declared, Equations, Ex, Section, St, What, operand_type, type_name, type_of};
-use super::st::expression;
+use super::form::{self, Class, Declared, Ex, St, operand_type, type_name, type_of};
+use super::st::{FAULT_COMES, expression};
 
 /// What power flows through.
 #[derive(Clone, Debug, PartialEq)]
@@ -39,6 +39,8 @@ pub(crate) struct Block {
 pub(crate) enum End {
     Coil(String, Coil),
     Block(Block),
+    /// The rungs behind do not run in this scan.
+    Return,
 }
 
 /// One rung.
@@ -62,21 +64,25 @@ pub(crate) struct Ladder {
 /// # Errors
 ///
 /// What Ladder cannot say.
-pub(crate) fn ladder(e: &Equations, place: Span) -> Result<Ladder, Vec<Problem>> {
+pub(crate) fn ladder(e: &form::Block, place: Span) -> Result<Ladder, Vec<Problem>> {
     let mut l = Maker {
         variables: e.variables.clone(),
         rungs: Vec::new(),
         memories: 0,
         when: Ex::Bool(true),
+        title: String::new(),
+        note: String::new(),
         refused: None,
     };
-    if e.bound.is_some() {
-        l.refused = Some("a search for stability, which is a loop: choose a profile of one pass; it");
-    } else if e.safe.is_some() {
-        l.refused = Some("a fault that stops the rungs behind it");
-    }
-    for s in e.sections() {
-        l.section(s);
+    for part in &e.parts {
+        if e.safe.is_some() {
+            l.end_of_scan();
+        }
+        l.act(&Ex::Bool(true), part);
+        if let Some(safe) = &e.safe {
+            l.remark(&St::Note(FAULT_COMES.to_owned()));
+            l.act(&Ex::var("FAULT"), safe);
+        }
     }
     match l.refused {
         Some(what) => {
@@ -94,32 +100,30 @@ struct Maker {
     /// When the blocks of a value work: its divisor may be zero otherwise, or it may
     /// leave the range.
     when: Ex,
+    /// Title and comment of the next rung.
+    title: String,
+    note: String,
     refused: Option<&'static str>,
 }
 
 impl Maker {
-    fn section(&mut self, s: &Section) {
-        let from = self.rungs.len();
-        for r in &s.rungs {
-            let at = self.rungs.len();
-            match &r.what {
-                What::Assign(to, Ex::Bool(false)) => self.coil(&Ex::Bool(true), to, Coil::Reset),
-                What::Assign(to, e) => self.coil(e, to, Coil::Plain),
-                What::Set(to, e) => self.coil(e, to, Coil::Set),
-                What::Reset(to, e) => self.coil(e, to, Coil::Reset),
-                What::Do(e, body) => self.act(e, body),
-            }
-            if let Some(first) = self.rungs.get_mut(at) {
-                first.note.clone_from(&r.note);
-            }
-        }
-        if let Some(first) = self.rungs.get_mut(from) {
-            first.title.clone_from(&s.title);
+    /// The rungs behind run only while no fault has come.
+    fn end_of_scan(&mut self) {
+        let net = Net::Contact { name: "FAULT".to_owned(), negated: false };
+        self.push(net, End::Return);
+    }
+
+    fn remark(&mut self, s: &St) {
+        match s {
+            St::Title(text) => self.title.clone_from(text),
+            St::Note(text) => self.note.clone_from(text),
+            _ => {}
         }
     }
 
     fn push(&mut self, net: Net, end: End) {
-        self.rungs.push(Rung { title: String::new(), note: String::new(), net, end });
+        let (title, note) = (std::mem::take(&mut self.title), std::mem::take(&mut self.note));
+        self.rungs.push(Rung { title, note, net, end });
     }
 
     fn coil(&mut self, e: &Ex, to: &str, coil: Coil) {
@@ -164,15 +168,31 @@ impl Maker {
     }
 
     fn act(&mut self, when: &Ex, body: &[St]) {
-        let when = if body.len() > 1 { self.kept(when) } else { when.clone() };
+        let many = body.iter().filter(|s| !s.is_remark()).count() > 1;
+        let when = if many { self.kept(when) } else { when.clone() };
+        let always = when == Ex::Bool(true);
         for s in body {
+            if let Some((c, name, on)) = s.latch().filter(|(c, ..)| always || !c.calculates()) {
+                let coil = if on { Coil::Set } else { Coil::Reset };
+                self.coil(&when.clone().and(c.clone()), name, coil);
+                continue;
+            }
             match s {
+                St::Title(_) | St::Note(_) => self.remark(s),
+                St::Assign(Ex::Var(name), e) if always && type_of(&self.variables, name) == "BOOL" => {
+                    let resets = *e == Ex::Bool(false);
+                    let (e, coil) = if resets { (&Ex::Bool(true), Coil::Reset) } else { (e, Coil::Plain) };
+                    self.coil(e, name, coil);
+                }
                 St::Assign(to, e) if e.calculates() && when != Ex::Bool(true) => {
                     let when = self.kept(&when);
                     self.within(&when, |l| l.assign(&when, &expression(to), to, e));
                 }
                 St::Assign(to, e) => self.assign(&when, &expression(to), to, e),
                 St::If(c, then, other) => {
+                    if then.iter().chain(other).all(St::is_remark) {
+                        continue;
+                    }
                     let outer = self.kept(&when);
                     let c = if c.calculates() { self.within(&outer, |l| l.kept(c)) } else { self.kept(c) };
                     self.act(&outer.clone().and(c.clone()), then);
@@ -186,6 +206,10 @@ impl Maker {
                     }
                     let block = Block { ty, instance: Some(name.clone()), inputs: operands, output: None };
                     self.block(&when, block);
+                }
+                St::Until(..) => {
+                    self.refused =
+                        Some("a search for stability, which is a loop: choose a profile of one pass; it");
                 }
                 St::Loop(_) | St::Exit => self.refused = Some("a loop"),
             }

@@ -157,10 +157,14 @@ impl Writer {
         let (last, tall) = match &r.end {
             End::Coil(name, coil) => (self.coil(name, *coil, &ends, x, y), HIGH),
             End::Block(block) => self.block(block, &ends, x, y),
+            End::Return => (self.leave(&ends, x, y), HIGH),
         };
+        if r.end == End::Return {
+            return y + high.max(tall);
+        }
         let right = self.id();
         let from = match &r.end {
-            End::Coil(..) => format!("<connection refLocalId=\"{last}\"/>"),
+            End::Coil(..) | End::Return => format!("<connection refLocalId=\"{last}\"/>"),
             End::Block(_) => format!("<connection refLocalId=\"{last}\" formalParameter=\"ENO\"/>"),
         };
         self.line(&format!(
@@ -208,6 +212,15 @@ impl Writer {
                 ends
             }
         }
+    }
+
+    fn leave(&mut self, from: &[usize], x: usize, y: usize) -> usize {
+        let (id, links) = (self.id(), links(from));
+        self.line(&format!(
+            "<return localId=\"{id}\" height=\"16\" width=\"48\"><position x=\"{x}\" y=\"{y}\"/>\
+             <connectionPointIn><relPosition x=\"0\" y=\"8\"/>{links}</connectionPointIn></return>"
+        ));
+        id
     }
 
     fn coil(&mut self, name: &str, coil: Coil, from: &[usize], x: usize, y: usize) -> usize {

@@ -1,8 +1,8 @@
-//! Code for PLCs, printed from the lowered program of a chart: the same Boolean
-//! equations as Structured Text, Instruction List and Ladder.
+//! Code for PLCs, printed from the equations of a chart: the same as Structured
+//! Text, Instruction List and Ladder.
 //!
 //! ```text
-//! compile::Compiled -> equations -> ST | IL | Ladder (PLCopen XML, drawing)
+//! Equations -> spare (less to read) -> scan, terms (statements with names) -> ST | IL | Ladder
 //! ```
 //!
 //! # Invariants
@@ -10,29 +10,24 @@
 //! - The equations do what the engine does, scan by scan; the tests run both.
 //! - What a form cannot say is refused with its place, never printed wrong.
 
-mod acts;
-mod blocks;
-mod code;
 mod drawn;
 mod form;
 mod il;
 mod ladder;
 mod ld;
-mod moves;
+mod memories;
 mod names;
-mod plan;
+mod native;
+mod scan;
+mod spare;
 mod st;
-mod vars;
+mod terms;
 
 use std::collections::HashMap;
 
 use g7_compile::Compiled;
 use g7_engine::{Addr, StepId};
 use g7_model::{Problem, Severity};
-
-use form::Equations;
-use plan::Plan;
-use vars::Shape;
 
 /// The form of the equations.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -83,64 +78,20 @@ impl Printed {
 ///
 /// What the form cannot say, with its place in the chart.
 pub fn print(compiled: &Compiled, form: Form, name: &str, source: &str) -> Result<Printed, Vec<Problem>> {
-    let plan = equations(compiled, name, source, form == Form::Dolog80)?;
+    let set_reset = form == Form::Dolog80;
+    let (block, memories, problems) = scan::block(compiled, name, source, set_reset);
+    if problems.iter().any(|p| p.severity() == Severity::Error) {
+        return Err(problems);
+    }
     let text = match form {
-        Form::St => st::print(&plan.e),
-        Form::Il | Form::Dolog80 => il::print(&plan.e, form == Form::Dolog80),
+        Form::St => st::print(&block),
+        Form::Il | Form::Dolog80 => il::print(&block, set_reset),
         Form::Ld | Form::Drawing => {
             let place = compiled.symbols.charts.first().map_or(g7_model::Span::default(), |c| c.at);
-            let ladder = ladder::ladder(&plan.e, place)?;
-            if form == Form::Ld {
-                ld::print(&plan.e.name, &ladder)
-            } else {
-                drawn::draw(&plan.e.name, &ladder)
-            }
+            let ladder = ladder::ladder(&block, place)?;
+            if form == Form::Ld { ld::print(&block.name, &ladder) } else { drawn::draw(&block.name, &ladder) }
         }
     };
-    Ok(printed(&plan, text))
-}
-
-/// The equations, with the types of words that have no declaration found out.
-fn equations<'a>(
-    compiled: &'a Compiled,
-    name: &str,
-    source: &'a str,
-    set_reset: bool,
-) -> Result<Plan<'a>, Vec<Problem>> {
-    let mut hidden = HashMap::new();
-    for _ in 0..6 {
-        let mut plan = Plan::make(compiled, name, source, set_reset, hidden.clone());
-        let known = std::mem::take(&mut plan.hidden);
-        if known == hidden {
-            if plan.e.problems.iter().any(|p| p.severity() == Severity::Error) {
-                return Err(std::mem::take(&mut plan.e.problems));
-            }
-            plan.prune();
-            return Ok(plan);
-        }
-        hidden = known;
-    }
-    Err(Vec::new())
-}
-
-fn printed(plan: &Plan<'_>, text: String) -> Printed {
-    let e: &Equations = &plan.e;
-    let steps = (0..plan.t.steps.len() as u32).map(|s| plan.step(StepId(s))).collect();
-    let kept = |name: &str| e.variables.iter().any(|v| v.name == name);
-    let slots = plan.vars.slots.values().filter(|s| kept(&s.name));
-    let variables = slots.filter_map(|s| {
-        let n = match s.shape {
-            Shape::One(_) => 1,
-            Shape::Many(_, n) => n,
-            Shape::Fb(_) | Shape::Text => return None,
-        };
-        Some((s.start, (s.name.clone(), n)))
-    });
-    Printed {
-        text,
-        name: e.name.clone(),
-        problems: e.problems.clone(),
-        steps,
-        variables: variables.collect(),
-    }
+    let variables = memories.shown.into_iter().map(|(addr, name, n)| (addr.0, (name, n))).collect();
+    Ok(Printed { text, name: block.name, problems, steps: memories.steps, variables })
 }

@@ -1,6 +1,6 @@
 //! Names of the chart as identifiers of IEC 61131-3.
 
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 
 use crate::names::letters;
 
@@ -19,6 +19,7 @@ TRANSITION TRUE TRUNC TYPE UDINT UINT ULINT UNTIL USINT VAR VAR_INPUT VAR_OUTPUT
 #[derive(Debug, Default)]
 pub(crate) struct Names {
     given: HashSet<String>,
+    counts: HashMap<String, u32>,
 }
 
 impl Names {
@@ -33,6 +34,14 @@ impl Names {
     pub(crate) fn with(&mut self, before: &str, name: &str) -> String {
         let plain = letters(&format!("a{name}"));
         self.once(format!("{before}_{}", plain.get(1..).unwrap_or("").trim_start_matches('_')))
+    }
+
+    /// A name with the first number that is free.
+    pub(crate) fn counted(&mut self, before: &str) -> String {
+        let count = self.counts.entry(before.to_owned()).or_default();
+        *count += 1;
+        let name = format!("{before}_{count}");
+        self.once(name)
     }
 
     fn once(&mut self, name: String) -> String {

@@ -2,43 +2,33 @@
 
 use std::fmt::Write;
 
-use super::form::{Class, Declared, Equations, Ex, Section, St, What};
+use super::form::{Block, Class, Declared, Ex, St};
+
+/// What stands before the safe values.
+pub(crate) const FAULT_COMES: &str = "A fault: the safe values, and no further scan";
+
+/// Letters of a line up to which an IF with one assignment stands on it.
+const WIDE: usize = 110;
 
 /// The whole function block.
-pub(crate) fn print(e: &Equations) -> String {
-    let mut out = declarations(e);
-    let mut p = Printer { out: String::new(), depth: 0 };
-    p.sections(&e.before);
-    if e.safe.is_some() {
-        p.line("IF NOT FAULT THEN");
-        p.depth += 1;
-    }
-    match e.bound {
-        None => p.sections(&e.pass),
-        Some(bound) => {
-            p.comment("The evolution, until nothing changes");
-            p.line("PASSES := 0;");
-            p.line("REPEAT");
-            p.depth += 1;
-            p.line("PASSES := PASSES + 1;");
-            p.sections(&e.pass);
-            p.depth -= 1;
-            p.line(&format!("UNTIL FAULT OR NOT CHANGED OR PASSES >= {bound} END_REPEAT;"));
-            p.line("FAULT := FAULT OR CHANGED;");
+pub(crate) fn print(e: &Block) -> String {
+    let mut p = Printer { out: String::new(), depth: 0, fresh: true };
+    for part in &e.parts {
+        if e.safe.is_some() {
+            p.guarded("IF NOT FAULT THEN", part);
+        } else {
+            p.block(part);
         }
     }
-    if e.safe.is_some() {
-        p.depth -= 1;
-        p.line("END_IF;");
+    if let Some(safe) = e.safe.as_ref().filter(|safe| !safe.is_empty()) {
+        p.comment(FAULT_COMES);
+        p.guarded("IF FAULT THEN", safe);
     }
-    p.ending(e);
-    out += &p.out;
-    out += "END_FUNCTION_BLOCK\n";
-    out
+    format!("{}{}END_FUNCTION_BLOCK\n", declarations(e), p.out)
 }
 
 /// The head of the function block with its variables.
-pub(crate) fn declarations(e: &Equations) -> String {
+pub(crate) fn declarations(e: &Block) -> String {
     let mut out = format!("FUNCTION_BLOCK {}\n", e.name);
     let heads = [
         (Class::Input, "VAR_INPUT"),
@@ -84,11 +74,14 @@ pub(crate) fn plain(note: &str) -> String {
 struct Printer {
     out: String,
     depth: usize,
+    /// Nothing stands yet where a heading would be set apart from it.
+    fresh: bool,
 }
 
 impl Printer {
     fn line(&mut self, text: &str) {
         let _ = writeln!(self.out, "{}{text}", "  ".repeat(self.depth));
+        self.fresh = false;
     }
 
     fn comment(&mut self, note: &str) {
@@ -98,58 +91,10 @@ impl Printer {
         }
     }
 
-    fn sections(&mut self, sections: &[Section]) {
-        for s in sections.iter().filter(|s| !s.rungs.is_empty()) {
-            self.comment(&s.title);
-            for r in &s.rungs {
-                self.comment(&r.note);
-                match &r.what {
-                    What::Assign(to, e) => self.line(&format!("{to} := {};", expression(e))),
-                    What::Set(to, e) => self.when(e, &[St::set(to, Ex::Bool(true))]),
-                    What::Reset(to, e) => self.when(e, &[St::set(to, Ex::Bool(false))]),
-                    What::Do(e, body) => self.when(e, body),
-                }
-            }
-            self.out.push('\n');
-        }
-    }
-
-    /// What comes behind the evolution, or the safe values after a fault.
-    fn ending(&mut self, e: &Equations) {
-        let Some(safe) = &e.safe else { return self.sections(&e.after) };
-        let works = e.after.iter().any(|s| !s.rungs.is_empty());
-        if works {
-            self.line("IF NOT FAULT THEN");
-            self.depth += 1;
-            self.sections(&e.after);
-            self.depth -= 1;
-        }
-        if !safe.is_empty() {
-            self.line(if works { "ELSE" } else { "IF FAULT THEN" });
-            self.depth += 1;
-            self.comment(
-                "No stable situation, or orders that disagree: the safe values, and no further scan",
-            );
-            self.block(safe);
-            self.depth -= 1;
-        }
-        if works || !safe.is_empty() {
-            self.line("END_IF;");
-        }
-    }
-
-    fn when(&mut self, e: &Ex, body: &[St]) {
-        match e {
-            Ex::Bool(true) => self.block(body),
-            Ex::Bool(false) => {}
-            e => match body {
-                [St::Assign(to, value)] => {
-                    let text = format!("{} := {};", expression(to), expression(value));
-                    self.line(&format!("IF {} THEN {text} END_IF;", expression(e)));
-                }
-                _ => self.statement(&St::If(e.clone(), body.to_vec(), Vec::new())),
-            },
-        }
+    fn guarded(&mut self, head: &str, body: &[St]) {
+        self.line(head);
+        self.inner(body);
+        self.line("END_IF;");
     }
 
     fn block(&mut self, body: &[St]) {
@@ -158,12 +103,31 @@ impl Printer {
 
     fn inner(&mut self, body: &[St]) {
         self.depth += 1;
+        self.fresh = true;
         self.block(body);
         self.depth -= 1;
     }
 
+    /// IF with one assignment on a line, where it is short.
+    fn short(&self, s: &St) -> Option<String> {
+        let St::If(c, then, other) = s else { return None };
+        let ([St::Assign(to, e)], []) = (then.as_slice(), other.as_slice()) else { return None };
+        let text = format!("IF {} THEN {} := {}; END_IF;", expression(c), expression(to), expression(e));
+        (text.len() + 2 * self.depth <= WIDE).then_some(text)
+    }
+
     fn statement(&mut self, s: &St) {
+        if let Some(text) = self.short(s) {
+            return self.line(&text);
+        }
         match s {
+            St::Title(title) => {
+                if !self.fresh {
+                    self.out.push('\n');
+                }
+                self.comment(title);
+            }
+            St::Note(note) => self.comment(note),
             St::Assign(to, e) => self.line(&format!("{} := {};", expression(to), expression(e))),
             St::If(c, then, other) => {
                 self.line(&format!("IF {} THEN", expression(c)));
@@ -190,6 +154,11 @@ impl Printer {
                 self.line(&format!("WHILE {} DO", expression(&c)));
                 self.inner(body);
                 self.line("END_WHILE;");
+            }
+            St::Until(body, c) => {
+                self.line("REPEAT");
+                self.inner(body);
+                self.line(&format!("UNTIL {} END_REPEAT;", expression(c)));
             }
             St::Exit => self.line("EXIT;"),
             St::Call(name, inputs) => {

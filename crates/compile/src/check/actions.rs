@@ -1,8 +1,8 @@
-//! What an action may be, and the events, conditions and times that it has.
+//! Checks actions, and the events, conditions and times in them.
 
 use std::collections::{HashMap, HashSet};
 
-use g7_model::{Problem, Qualifier, Span, codes};
+use g7_model::{Lasting, Problem, Qualifier, Span, codes};
 
 use super::facts::Facts;
 use super::solve::Question;
@@ -25,12 +25,12 @@ pub(super) fn check(facts: &Facts<'_>, problems: &mut Vec<Problem>) {
     times(unit, problems);
 }
 
-/// Whether continuous actions are those of IEC 60848, true in a stable situation.
+/// True if continuous actions are those of IEC 60848, true in a stable situation.
 pub(super) fn is_grafcet(unit: &Unit) -> bool {
     unit.rules.stable && unit.rules.continuous
 }
 
-/// A pulse body that runs twice.
+/// Warns of a body under `P` that runs twice.
 fn pulse(unit: &Unit, action: &Action, problems: &mut Vec<Problem>) {
     if let ActionKind::Named { qualifier: Qualifier::P, .. }
     | ActionKind::Work { qualifier: Qualifier::P, .. } = &action.kind
@@ -56,7 +56,7 @@ fn macro_acts(step: &Step, action: &Action, problems: &mut Vec<Problem>) {
     }
 }
 
-/// The event of a stored action has an edge, without which it is not true.
+/// Warns of an event without an edge: it can stay true, and its action runs again and again.
 fn event(facts: &Facts<'_>, action: &Action, problems: &mut Vec<Problem>) {
     let ActionKind::OnEvent { event, .. } = &action.kind else { return };
     if !has_edge(event) {
@@ -81,7 +81,7 @@ fn event(facts: &Facts<'_>, action: &Action, problems: &mut Vec<Problem>) {
     }
 }
 
-/// The condition of a continuous action has no edge.
+/// Warns of an edge in the condition of a continuous action.
 fn condition(action: &Action, problems: &mut Vec<Problem>) {
     let (ActionKind::Variable { qualifier, condition: Some(c), .. }
     | ActionKind::Named { qualifier, condition: Some(c), .. }
@@ -89,7 +89,7 @@ fn condition(action: &Action, problems: &mut Vec<Problem>) {
     else {
         return;
     };
-    let continuous = matches!(qualifier, Qualifier::N | Qualifier::D | Qualifier::L);
+    let continuous = qualifier.lasting() == Lasting::WithStep;
     if continuous && has_edge(c) {
         problems.push(
             Problem::new(&codes::EDGE_IN_CONDITION, c.at, "the condition of a continuous action has an edge")
@@ -98,15 +98,15 @@ fn condition(action: &Action, problems: &mut Vec<Problem>) {
     }
 }
 
-/// What a timed qualifier governs.
+/// The variable or named action that a timed qualifier drives.
 #[derive(Clone, Copy, PartialEq, Eq, Hash)]
 enum Governed {
     Var(VarId),
     Body(crate::ir::BodyId),
 }
 
-/// One control block has one time: two timed qualifiers of one action in one
-/// step, or in steps that one transition starts together.
+/// Warns if one control block gets two times: two timed qualifiers of one action in one step, or in
+/// steps that one transition activates together.
 fn times(unit: &Unit, problems: &mut Vec<Problem>) {
     let blocked = blocked(unit);
     let mut told: HashSet<Span> = HashSet::new();
@@ -121,7 +121,7 @@ fn times(unit: &Unit, problems: &mut Vec<Problem>) {
                 continue;
             };
             let Some(first) = seen.insert(governed, (action.at, step, qualifier, time)) else { continue };
-            // One block under one qualifier and time from two steps is one input.
+            // The same qualifier and time from two steps are one input of the block.
             let same = first.2 == qualifier && key_of(first.3) == key_of(time) && first.1 != step;
             if same || !told.insert(action.at) {
                 continue;
@@ -145,8 +145,8 @@ fn key_of(time: Option<&Expr>) -> Option<String> {
     time.map(super::tree::key)
 }
 
-/// A timed qualifier that has a control block: `L` and `D` of a variable are
-/// continuous actions of their own in GRAFCET.
+/// Returns a timed qualifier that has a control block. In GRAFCET `L` and `D` of a variable are
+/// continuous actions and have none.
 fn timed<'a>(
     blocked: &HashSet<VarId>,
     continuous: bool,
@@ -163,7 +163,7 @@ fn timed<'a>(
     (qualifier.timed() && !alone).then_some((governed, qualifier, time.as_ref()))
 }
 
-/// Variables with a control block, of which all their qualifiers are inputs.
+/// The variables with a control block: all their qualifiers are inputs of it.
 pub(super) fn blocked(unit: &Unit) -> HashSet<VarId> {
     use Qualifier::{D, L, N, R, S};
     let actions = unit.steps.iter().flat_map(|s| &s.actions);

@@ -1,9 +1,9 @@
-//! Branches of OR divergences that can be true together, and receptivities that
-//! can never be.
+//! Finds branches of an OR divergence that can be true together, and receptivities that are never
+//! true.
 //!
-//! Under multi-token rules a divergence with two true branches starts both. Most
-//! authors mean one: so `check` asks for receptivities that exclude each other,
-//! and offers the three classic cures.
+//! Under multi-token rules both branches of such a divergence clear. Most authors want only one of
+//! them, so `check` asks for receptivities that exclude each other and offers the three usual
+//! remedies.
 
 use std::collections::BTreeSet;
 
@@ -13,7 +13,7 @@ use super::facts::Facts;
 use super::solve::Question;
 use crate::ir::{Expr, ExprKind, StepId, Transition, Unit, Value};
 
-/// Most pairs of branches looked at in one document.
+/// The largest number of pairs of branches that are compared in one document.
 const PAIRS: usize = 20_000;
 
 pub(super) fn check(facts: &Facts<'_>, problems: &mut Vec<Problem>) {
@@ -27,11 +27,11 @@ pub(super) fn check(facts: &Facts<'_>, problems: &mut Vec<Problem>) {
     }
 }
 
-/// A receptivity that is false whatever happens.
+/// Warns of a receptivity that no values make true.
 fn never(facts: &Facts<'_>, t: &Transition, problems: &mut Vec<Problem>) {
     let what = match &t.receptivity.kind {
         ExprKind::Const(Value::Bool(false)) => "this receptivity is never true",
-        // One value by itself can be true: only what is put together cannot.
+        // A single value can always be true; only combinations need the search.
         ExprKind::Binary(..) | ExprKind::Not(_) | ExprKind::StepActive(_) => {
             let mut question = Question::new(facts);
             question.demand(&t.receptivity, true);
@@ -50,7 +50,7 @@ fn never(facts: &Facts<'_>, t: &Transition, problems: &mut Vec<Problem>) {
     problems.push(Problem::new(&codes::NEVER_CLEARS, t.receptivity.at, what));
 }
 
-/// Whether an expression is true whatever its parts are.
+/// True if the expression is true for all values of its parts.
 pub(super) fn always(facts: &Facts<'_>, e: &Expr, active: &[StepId]) -> bool {
     match &e.kind {
         ExprKind::Const(v) => *v == Value::Bool(true),
@@ -64,7 +64,7 @@ pub(super) fn always(facts: &Facts<'_>, e: &Expr, active: &[StepId]) -> bool {
     }
 }
 
-/// Priorities that decide nothing.
+/// Warns of priorities that have no effect.
 fn priorities(facts: &Facts<'_>, problems: &mut Vec<Problem>) {
     let rules = &facts.unit.rules;
     for t in &facts.unit.transitions {
@@ -93,7 +93,7 @@ fn priorities(facts: &Facts<'_>, problems: &mut Vec<Problem>) {
     }
 }
 
-/// For each branch the first one before it with which it can clear.
+/// For each branch, the first branch before it that can clear at the same time.
 fn conflicts(facts: &Facts<'_>, problems: &mut Vec<Problem>) {
     let unit = facts.unit;
     let mut budget = PAIRS;
@@ -110,7 +110,7 @@ fn conflicts(facts: &Facts<'_>, problems: &mut Vec<Problem>) {
                 else {
                     continue;
                 };
-                // Two ways with the same ends: whichever clears, the situation is one.
+                // Two transitions between the same steps lead to one situation, whichever clears.
                 if same(&x.from, &y.from) && same(&x.to, &y.to) {
                     continue;
                 }

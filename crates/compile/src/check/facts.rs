@@ -1,6 +1,6 @@
-//! What is known of a unit before any of its expressions is judged: the charts
-//! in which at most one step is active at a time, and the values that nothing
-//! changes between the moment edges are taken and the moment transitions are judged.
+//! Facts about a unit that later checks rely on: the charts in which at most one step is active at
+//! a time, and the values that cannot change between taking the edges and evaluating the
+//! receptivities.
 
 use g7_model::Type;
 
@@ -11,20 +11,21 @@ use crate::ir::{
     Transition, Unit, VarClass,
 };
 
-/// Most rounds in which charts lose their single token; then all with a choice do.
+/// The search for single-token charts ends after so many rounds; then every chart with a choice
+/// counts as one that can hold several tokens.
 const ROUNDS: usize = 8;
-/// Most pairs of branches judged of one document.
+/// The largest number of pairs of branches that are compared in one document.
 const PAIRS: usize = 20_000;
 
 pub(super) struct Facts<'u> {
     pub(super) unit: &'u Unit,
-    /// By chart: never two of its steps are active at once.
+    /// By chart: true if two of its steps are never active at once.
     single: Vec<bool>,
-    /// By variable: the preliminary processing writes it.
+    /// By variable: true if preliminary processing writes it.
     moved: Vec<bool>,
-    /// Services or system bits can change the situation before the evolution.
+    /// True if services or system bits can change the situation before the evolution.
     serviced: bool,
-    /// Branches behind each step, by transition.
+    /// By step: the transitions that follow it.
     branches: Vec<Vec<u32>>,
 }
 
@@ -33,7 +34,7 @@ impl<'u> Facts<'u> {
         let mut branches = vec![Vec::new(); unit.steps.len()];
         for (i, t) in unit.transitions.iter().enumerate() {
             for from in &t.from {
-                // A step that stands twice on one side counts once.
+                // A step that is written twice on one side counts once.
                 if let Some(list) = branches.get_mut(from.index())
                     && list.last() != Some(&(i as u32))
                 {
@@ -53,18 +54,18 @@ impl<'u> Facts<'u> {
         facts
     }
 
-    /// The transitions behind a step, in text order.
+    /// The transitions that follow a step, in text order.
     pub(super) fn branches(&self, step: StepId) -> &[u32] {
         self.branches.get(step.index()).map_or(&[], Vec::as_slice)
     }
 
-    /// The chart of a step, where only one of the chart's steps is active at a time.
+    /// The chart of a step, if only one of the chart's steps is active at a time.
     pub(super) fn group(&self, step: StepId) -> Option<ChartId> {
         let s = self.unit.steps.get(step.index())?;
         self.single.get(s.chart.index()).copied().unwrap_or(false).then_some(s.chart)
     }
 
-    /// Whether two steps are never active at the same time.
+    /// True if two steps are never active at the same time.
     pub(super) fn exclude(&self, a: StepId, b: StepId) -> bool {
         let (way, other) = (self.way(a), self.way(b));
         way.iter().any(|(chart, step)| {
@@ -73,11 +74,11 @@ impl<'u> Facts<'u> {
         })
     }
 
-    /// A step and the macro-steps in which it lies, each with its chart.
+    /// A step and the macro-steps around it, each with its chart.
     fn way(&self, step: StepId) -> Vec<(ChartId, StepId)> {
         let mut way = Vec::new();
         let mut at = Some(step);
-        // Charts nest without circles; the bound is a seat belt.
+        // Charts do not nest in circles; the bound only guards against an error here.
         while let Some(s) = at.filter(|_| way.len() <= self.unit.charts.len())
             && let Some(row) = self.unit.steps.get(s.index())
         {
@@ -90,8 +91,8 @@ impl<'u> Facts<'u> {
         way
     }
 
-    /// Whether an expression has one value from the moment that edges are taken
-    /// to the moment that receptivities are judged.
+    /// True if an expression keeps its value from the moment when edges are taken until the
+    /// receptivities have been evaluated.
     pub(super) fn steady(&self, e: &Expr) -> bool {
         let mut pending = vec![e];
         while let Some(e) = pending.pop() {
@@ -115,8 +116,8 @@ impl<'u> Facts<'u> {
         true
     }
 
-    /// Whether two transitions that share a step can clear together, as far as
-    /// can be told; `None` where it cannot.
+    /// Tells whether two transitions with a common step can clear together; `None` if that cannot
+    /// be decided.
     pub(super) fn meet(&self, a: &Transition, b: &Transition) -> Option<bool> {
         if self.unit.rules.numbered_exclusive && a.priority != b.priority {
             return Some(false);
@@ -130,8 +131,8 @@ impl<'u> Facts<'u> {
         question.possible()
     }
 
-    /// Charts whose transitions each take one step and give at most one, and
-    /// that nothing else puts a second step into.
+    /// Finds the charts whose transitions each have one preceding step and at most one succeeding
+    /// step, and that nothing else puts a second token into.
     fn shapes(&self) -> Vec<bool> {
         let mut single: Vec<bool> = self.unit.charts.iter().map(|c| self.shape(c)).collect();
         let mut lose = |c: ChartId| {
@@ -168,18 +169,17 @@ impl<'u> Facts<'u> {
         let starts = steps.iter().filter(|s| s.initial || s.linked).count();
         let room = match chart.role {
             ChartRole::Chart => 1,
-            // The entry step is where the token comes in.
+            // The token enters at the entry step.
             ChartRole::Task | ChartRole::Expansion(_) => 0,
             ChartRole::Unused => return false,
         };
-        // What leaves an exit step goes on outside of the chart as well.
+        // A token that leaves by an exit step continues outside of the chart.
         let ends = chart.role == ChartRole::Chart
             || chart.exit.is_some_and(|x| self.branches(x).is_empty()) && chart.entry.is_some();
         starts <= room && ends && transitions.iter().all(|t| t.from.len() == 1 && t.to.len() <= 1)
     }
 
-    /// Takes out the charts in which a choice can double the token, until what is
-    /// left is single on the strength of itself.
+    /// Removes charts in which a choice can double the token, until no more are removed.
     fn settle(&mut self) {
         for round in 0.. {
             let mut budget = PAIRS;
@@ -198,7 +198,7 @@ impl<'u> Facts<'u> {
         }
     }
 
-    /// Whether some step of a chart has several ways out.
+    /// True if some step of a chart is followed by several transitions.
     fn chooses(&self, chart: usize) -> bool {
         let Some(chart) = self.unit.charts.get(chart) else { return false };
         (chart.steps.start..chart.steps.end).any(|s| self.branches(StepId(s)).len() > 1)
@@ -206,7 +206,7 @@ impl<'u> Facts<'u> {
 
     fn stays_single(&self, chart: usize, budget: &mut usize) -> bool {
         let Some(chart) = self.unit.charts.get(chart) else { return false };
-        // A macro-step entered again while it is active gets a second token.
+        // A macro-step that is entered again while it is active gets a second token.
         if let ChartRole::Expansion(m) = chart.role {
             let around = self.unit.steps.get(m.index()).map(|s| s.chart.index());
             if around.and_then(|c| self.single.get(c)) != Some(&true) {
@@ -245,7 +245,7 @@ impl<'u> Facts<'u> {
     }
 }
 
-/// Whether something between the inputs and the evolution changes the situation.
+/// True if something between reading the inputs and the evolution changes the situation.
 fn serviced(unit: &Unit) -> bool {
     let system = |v: crate::ir::VarId| {
         unit.vars.get(v.index()).is_some_and(|v| v.class == VarClass::System && v.ty == Type::Bool)

@@ -1,4 +1,4 @@
-//! Forcing orders and enclosures: who rules whom.
+//! Checks forcing orders and enclosures: which chart controls which.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -23,9 +23,9 @@ struct Order<'u> {
     at: g7_model::Span,
 }
 
-/// The chart that an expansion belongs to at last.
+/// The chart, outside of all expansions, that this chart belongs to.
 fn outermost(unit: &Unit, mut chart: ChartId) -> ChartId {
-    // Nesting is finite (checked by resolve); the bound is a seat belt.
+    // `resolve` has checked that nesting is finite; the bound only guards against an error here.
     for _ in 0..unit.charts.len() {
         match unit.charts.get(chart.index()).map(|c| &c.role) {
             Some(ChartRole::Expansion(m)) => match unit.steps.get(m.index()) {
@@ -56,8 +56,8 @@ fn orders(unit: &Unit) -> Vec<Order<'_>> {
     list
 }
 
-/// A chart that forces itself or what encloses it, directly or through others:
-/// an enclosing step rules what it encloses as an order rules what it forces.
+/// Finds charts that force themselves or a chart that encloses them, directly or through others.
+/// For this an enclosing step controls its charts as a forcing order does.
 fn circles(unit: &Unit, orders: &[Order<'_>], problems: &mut Vec<Problem>) {
     let mut rules: BTreeMap<ChartId, BTreeSet<ChartId>> = BTreeMap::new();
     for order in orders {
@@ -116,8 +116,8 @@ fn both(facts: &Facts<'_>, orders: &[Order<'_>], problems: &mut Vec<Problem>) {
     }
 }
 
-/// Two orders that act at one moment, by one step or by steps that one
-/// transition starts together, and want two situations of one chart.
+/// Finds two orders at one moment, from one step or from steps that one transition activates
+/// together, that demand different situations of one chart.
 fn disagree(unit: &Unit, orders: &[Order<'_>], problems: &mut Vec<Problem>) {
     let mut by_step: BTreeMap<StepId, Vec<usize>> = BTreeMap::new();
     for (i, order) in orders.iter().enumerate() {
@@ -147,7 +147,7 @@ fn disagree(unit: &Unit, orders: &[Order<'_>], problems: &mut Vec<Problem>) {
     }
 }
 
-/// The situation ordered; none for `{*}`, which only holds what is there.
+/// The situation that an order demands; `None` for `{*}`, which keeps the present one.
 fn wanted(unit: &Unit, order: &Order<'_>) -> Option<BTreeSet<StepId>> {
     let (chart, situation) = order.situation;
     match situation {

@@ -1,8 +1,8 @@
-//! Loops that never rest: steps joined in a circle by receptivities that are
-//! always true, through AND divergences and macro-steps too.
+//! Finds loops that never become stable: steps joined in a circle by receptivities that are always
+//! true, also through AND divergences and macro-steps.
 //!
-//! The transitions that always clear are sorted into circles first (a step can
-//! be reached again only within one); then a token is played round each circle.
+//! First the steps are sorted into circles along the transitions that always clear, because a step
+//! can become active again only within its circle. Then a token is moved round each circle.
 
 use std::collections::BTreeSet;
 
@@ -12,13 +12,13 @@ use super::exclusion::always;
 use super::facts::Facts;
 use crate::ir::{StepId, StepSort, Transition, Unit};
 
-/// Starts tried in one circle.
+/// The largest number of starts that are tried in one circle.
 const STARTS: usize = 16;
-/// Most steps of a circle that is played; a larger one is left to the run.
+/// The largest circle that is tried, in steps; larger ones are found in the run.
 const LARGEST: usize = 500;
 /// Most situations named in a message.
 const SHOWN: usize = 8;
-/// Situations played in one circle, beside twice its size.
+/// The number of situations that are tried in one circle, in addition to twice its size.
 const LENGTH: usize = 64;
 
 pub(super) fn check(facts: &Facts<'_>, problems: &mut Vec<Problem>) {
@@ -65,18 +65,19 @@ pub(super) fn check(facts: &Facts<'_>, problems: &mut Vec<Problem>) {
     }
 }
 
-/// The step that becomes active with this one: of a macro-step the entry step.
+/// The step that becomes active together with this one: for a macro-step its entry step.
 fn enters(unit: &Unit, step: StepId) -> StepId {
     end(unit, step, true)
 }
 
-/// The step whose activity counts behind this one: of a macro-step the exit step.
+/// The step whose activity counts for the transitions after this one: for a macro-step its exit
+/// step.
 fn leaves(unit: &Unit, step: StepId) -> StepId {
     end(unit, step, false)
 }
 
 fn end(unit: &Unit, mut step: StepId, entry: bool) -> StepId {
-    // Expansions nest without circles; the bound is a seat belt.
+    // Expansions do not nest in circles; the bound only guards against an error here.
     for _ in 0..=unit.charts.len() {
         let Some(StepSort::Macro(chart)) = unit.steps.get(step.index()).map(|s| &s.sort) else { return step };
         let inner = unit.charts.get(chart.index()).and_then(|c| if entry { c.entry } else { c.exit });
@@ -119,7 +120,7 @@ fn circles(unit: &Unit, ever: &[&Transition]) -> Vec<Vec<StepId>> {
     found
 }
 
-/// The steps reached from one, each after all that it leads to.
+/// The steps that can be reached from one step, each after those that follow it.
 fn walk(start: StepId, next: &[Vec<StepId>], seen: &mut [bool], order: &mut Vec<StepId>) {
     let mut way = vec![(start, 0)];
     if seen.get_mut(start.index()).is_none_or(|s| std::mem::replace(s, true)) {
@@ -142,13 +143,13 @@ fn walk(start: StepId, next: &[Vec<StepId>], seen: &mut [bool], order: &mut Vec<
     }
 }
 
-/// Plays passes from the steps of one transition until a situation comes again
-/// (then the names of the steps on the way round) or nothing moves any more.
+/// Clears transitions, beginning with the steps of one transition, until a situation recurs or
+/// nothing changes. Returns the names of the steps of the cycle, if there is one.
 fn play(unit: &Unit, own: &[&Transition], start: &[StepId], size: usize) -> Option<Vec<String>> {
     let mut now: BTreeSet<StepId> = start.iter().map(|s| leaves(unit, *s)).collect();
     let mut seen: Vec<BTreeSet<StepId>> = Vec::new();
-    // In a circle without AND one walk round is enough; with AND the situations
-    // of its parts mix, and what does not come again soon is left to the run.
+    // In a circle without AND one walk round is enough. With AND the situations of the branches
+    // combine; a cycle that does not appear soon is left to the run.
     for _ in 0..2 * size + LENGTH {
         if let Some(first) = seen.iter().position(|s| *s == now) {
             let round = seen.get(first..).unwrap_or(&[]);

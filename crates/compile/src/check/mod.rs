@@ -1,5 +1,5 @@
-//! What the rules of GRAFCET and SFC say of a chart whose names and types are
-//! right: structure, evolution, actions, the limits of a target.
+//! Applies the rules of GRAFCET and SFC to a chart whose names and types are right: structure,
+//! evolution, actions, the limits of a target.
 //!
 //! # Where this sits
 //!
@@ -8,8 +8,8 @@
 //!                    \-> lower (when no problem is an error)
 //! ```
 //!
-//! Each check reads the unit and reports facts; none changes it. What cannot be
-//! told without running the chart is left to the run or to the prover.
+//! Each check reads the unit and reports facts; none changes it. Questions that only a run can
+//! answer are left to the run or to the prover.
 
 mod actions;
 mod exclusion;
@@ -31,7 +31,7 @@ use g7_model::{Document, Problem};
 use crate::ir::Unit;
 use facts::Facts;
 
-/// All checks of the chart itself, and of its target if it names one.
+/// Runs all checks of the chart, and those of its target if it names one.
 pub fn check(doc: &Document, unit: &Unit) -> Vec<Problem> {
     let facts = Facts::of(unit);
     let mut problems = Vec::new();

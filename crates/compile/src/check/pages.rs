@@ -1,8 +1,8 @@
 //! The pages of a PL7 drawing: eight, each of 14 lines and 11 columns.
 //!
-//! One column of the layout is as wide as the distance of two branches, two
-//! lines (a step and the transition under it) as high as the distance of two
-//! steps; pages lie one below the other.
+//! One column of the layout is as wide as the distance of two branches. Two lines (a step and the
+//! transition under it) are as high as the distance of two steps. Pages follow one another
+//! downward.
 
 use g7_model::{Document, Item, Placed, Problem, codes};
 
@@ -12,8 +12,8 @@ use super::target::Limits;
 const PITCH: i32 = 1300;
 /// Columns of a page.
 const COLUMNS: i32 = 11;
-/// Pages, and lines of steps on each: the first and the last line of the 14 hold
-/// connectors, the others steps and transitions in turn.
+/// Number of pages, and of lines with steps on each. The first and the last of the 14 lines hold
+/// connectors, the others hold steps and transitions in turn.
 const PAGES: i32 = 8;
 const STEP_LINES: i32 = 6;
 

@@ -1,7 +1,7 @@
-//! Steps that no way leads to, and charts that never start.
+//! Finds steps that no path leads to, and charts that never start.
 //!
-//! A token is let run everywhere, receptivities taken for true: what it does not
-//! reach no run reaches.
+//! A token may move everywhere, as if all receptivities were true. A step that it does not reach is
+//! not reached in any run.
 
 use std::collections::BTreeSet;
 
@@ -20,7 +20,7 @@ pub(super) fn check(facts: &Facts<'_>, problems: &mut Vec<Problem>) {
     let mut pending: Vec<StepId> = Vec::new();
     let mut outside = vec![false; unit.charts.len()];
     starts(unit, &mut pending, &mut outside);
-    // A join is passed once all its steps have been reached.
+    // A transition with several preceding steps is passed after all of them have been reached.
     let distinct = |t: &Transition| t.from.iter().collect::<BTreeSet<_>>().len();
     let mut missing: Vec<usize> = unit.transitions.iter().map(distinct).collect();
     pending.extend(unit.transitions.iter().filter(|t| t.from.is_empty()).flat_map(|t| &t.to));
@@ -43,7 +43,7 @@ pub(super) fn check(facts: &Facts<'_>, problems: &mut Vec<Problem>) {
     }
 }
 
-/// Steps that are active at the start or set from elsewhere.
+/// The steps that are active at the start or are set from elsewhere.
 fn starts(unit: &Unit, pending: &mut Vec<StepId>, outside: &mut [bool]) {
     for (i, step) in unit.steps.iter().enumerate() {
         let chart = unit.charts.get(step.chart.index());
@@ -77,7 +77,7 @@ fn starts(unit: &Unit, pending: &mut Vec<StepId>, outside: &mut [bool]) {
     }
 }
 
-/// What becomes active with a step.
+/// Adds the steps that become active together with a step.
 fn follow(unit: &Unit, id: StepId, pending: &mut Vec<StepId>) {
     match unit.steps.get(id.index()).map(|s| &s.sort) {
         Some(StepSort::Macro(chart)) => {
@@ -91,7 +91,7 @@ fn follow(unit: &Unit, id: StepId, pending: &mut Vec<StepId>) {
         }
         Some(StepSort::Plain) | None => {}
     }
-    // A macro-step is active with any step of its expansion.
+    // A macro-step counts as reached with any step of its expansion.
     let chart = unit.steps.get(id.index()).and_then(|s| unit.charts.get(s.chart.index()));
     if let Some(ChartRole::Expansion(m)) = chart.map(|c| &c.role) {
         pending.push(*m);
@@ -99,7 +99,8 @@ fn follow(unit: &Unit, id: StepId, pending: &mut Vec<StepId>) {
 }
 
 fn tell(unit: &Unit, chart: &Chart, outside: bool, reached: &[bool], problems: &mut Vec<Problem>) {
-    // What lies in another chart is said where the step around it cannot be reached.
+    // Steps in another chart are not reported again if the step around that chart cannot be
+    // reached.
     let around = match chart.role {
         ChartRole::Unused => return,
         ChartRole::Expansion(m) => Some(m),

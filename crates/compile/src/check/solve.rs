@@ -1,10 +1,10 @@
-//! Whether Boolean expressions can be true, looked at as formulas.
+//! Decides whether Boolean expressions can be true, by treating them as formulas.
 //!
-//! An expression is taken apart down to its atoms: what the search knows nothing
-//! about (a variable, a call), a number as the intervals between the constants it
-//! is compared with, how two numbers compare. Then values of the atoms are tried
-//! until all formulas hold or none is left. Whatever the values of the variables
-//! are in a run, they are among those tried: what is said to be impossible is.
+//! An expression is split into atoms: a value that the search knows nothing about (a variable, a
+//! call), the interval of a number between the constants that it is compared with, the result of
+//! comparing two numbers. Then values are tried for the atoms until all formulas hold or no values
+//! are left. The values of every run are among those tried, so a formula that fails for all of them
+//! is never true.
 
 use std::cmp::Ordering;
 use std::collections::{BTreeMap, HashMap};
@@ -15,17 +15,17 @@ use super::facts::Facts;
 use super::tree::{has_edge, key};
 use crate::ir::{BinaryOp, ChartId, Expr, ExprKind, StepId, Value};
 
-/// Most assignments tried for one question.
+/// The largest number of assignments that are tried for one question.
 const TRIES: u32 = 20_000;
-/// Deepest expression that is taken apart.
+/// The deepest expression that is split into atoms.
 const DEEPEST: u32 = 200;
-/// Most atoms of one question.
+/// The largest number of atoms in one question.
 const ATOMS: usize = 200;
 
 /// A formula over atoms.
 enum Formula {
     Const(bool),
-    /// The atom has one of these values, as a mask.
+    /// The atom has one of the values in this mask.
     Among(usize, Values),
     Not(Box<Formula>),
     And(Box<Formula>, Box<Formula>),
@@ -35,14 +35,14 @@ enum Formula {
     OneOf(Vec<usize>),
 }
 
-/// Which values of an atom make a comparison true.
+/// The values of an atom that make a comparison true.
 #[derive(Clone)]
 enum Values {
     /// It is true (1).
     True,
-    /// It stands so to a cut of its number.
+    /// The number compares in this way with one of its cuts.
     Side(BinaryOp, Cut),
-    /// The two numbers compare so.
+    /// The two numbers compare in this way.
     Order(BinaryOp),
 }
 
@@ -67,7 +67,7 @@ impl Cut {
 enum Sort {
     /// False or true.
     Truth,
-    /// A value as its place among sorted cuts: 2k below cut k, 2k+1 on it.
+    /// The place of a value among the sorted cuts: 2k below cut k, 2k+1 on it.
     Place(Type, Vec<Cut>),
     /// Less, equal, greater.
     Relation,
@@ -78,13 +78,13 @@ struct Atom<'e> {
     of: &'e Expr,
 }
 
-/// A question: can all the formulas be true together?
+/// A question: can all these formulas be true together?
 pub(super) struct Question<'e, 'f> {
     facts: &'f Facts<'f>,
     index: HashMap<String, usize>,
     atoms: Vec<Atom<'e>>,
     goals: Vec<Formula>,
-    /// Steps that are named, by their atom.
+    /// The steps in the question, by their atom.
     steps: BTreeMap<StepId, usize>,
 }
 
@@ -99,7 +99,7 @@ impl<'e, 'f> Question<'e, 'f> {
         }
     }
 
-    /// The expression is true, or false.
+    /// The expression has this value.
     pub(super) fn demand(&mut self, e: &'e Expr, value: bool) {
         let formula = self.formula(e, 0);
         self.goals.push(if value { formula } else { Formula::Not(Box::new(formula)) });
@@ -122,7 +122,7 @@ impl<'e, 'f> Question<'e, 'f> {
         self.goals.extend(groups.into_values().filter(|g| g.len() > 1).map(Formula::OneOf));
     }
 
-    /// Nothing has an edge: whatever may hide one is false.
+    /// No edge is present, so an atom that may contain one is false.
     pub(super) fn at_rest(&mut self) {
         for (i, atom) in self.atoms.iter().enumerate() {
             let hides = match &atom.of.kind {
@@ -135,7 +135,7 @@ impl<'e, 'f> Question<'e, 'f> {
         }
     }
 
-    /// Whether all can be true together; `None` where that is too much to try.
+    /// Tells whether all formulas can be true together; `None` if the search would be too long.
     pub(super) fn possible(&self) -> Option<bool> {
         if self.atoms.len() > ATOMS {
             return None;
@@ -174,7 +174,7 @@ impl<'e, 'f> Question<'e, 'f> {
         Some(false)
     }
 
-    /// The truth of a formula as far as the values given tell.
+    /// The value of a formula as far as the values tried so far decide it.
     fn truth(&self, f: &Formula, values: &[Option<usize>]) -> Option<bool> {
         match f {
             Formula::Const(v) => Some(*v),
@@ -265,13 +265,15 @@ impl<'e, 'f> Question<'e, 'f> {
         Formula::Among(i, Values::Side(op, cut))
     }
 
-    /// Something not taken apart; what follows from it is demanded with it.
+    /// An atom for an expression that is not split; conditions that follow from it are added to the
+    /// question.
     fn leaf(&mut self, e: &'e Expr, depth: u32) -> Formula {
         let known = self.atoms.len();
         let i = self.atom(key(e), Sort::Truth, e);
         if i == known {
             let consequence = match &e.kind {
-                // An edge up needs its operand true now, an edge down false.
+                // A rising edge needs an operand that is true now, a falling edge one that is
+                // false.
                 ExprKind::Rise(x) if self.facts.steady(x) => Some((x, true)),
                 ExprKind::Fall(x) if self.facts.steady(x) => Some((x, false)),
                 ExprKind::Timer { e: x, t2, .. } if at_once(t2.as_deref()) && self.facts.steady(x) => {
@@ -293,12 +295,12 @@ impl<'e, 'f> Question<'e, 'f> {
     }
 }
 
-/// Whether a timer without this second time ends with its condition.
+/// True if a timer without this second time ends together with its condition.
 fn at_once(t2: Option<&Expr>) -> bool {
     t2.is_none_or(|t| matches!(t.kind, ExprKind::Const(Value::Int(0))))
 }
 
-/// The values an atom can have: for whole numbers only places that hold one.
+/// The values that an atom can have. For a whole number these are the places that hold one.
 fn domain(sort: &Sort) -> Vec<usize> {
     match sort {
         Sort::Truth => vec![0, 1],
@@ -310,7 +312,7 @@ fn domain(sort: &Sort) -> Vec<usize> {
                 Some(Cut::Number(x)) => Some(*x),
                 _ => None,
             };
-            // A gap between two constants, the type's ends included.
+            // True if the gap below cut `k` holds a value; a whole-number type needs a whole number there.
             let room = |k: usize| {
                 let below = if k == 0 { least.map(|x| x - 1.0) } else { at(k - 1) };
                 let above = if k == cuts.len() { most.map(|x| x + 1.0) } else { at(k) };
@@ -367,8 +369,8 @@ fn mirrored(op: BinaryOp) -> BinaryOp {
     }
 }
 
-/// A constant to compare with. Beyond 2^53 neighbours fall together: then two
-/// constants would count as one, so such are left alone.
+/// The value of a constant to compare with. Above 2^53 neighbours become equal as `f64`, and two
+/// constants would count as one, so such constants are left out.
 fn constant(e: &Expr) -> Option<Cut> {
     match &e.kind {
         ExprKind::Const(Value::Int(n)) if n.unsigned_abs() < 1 << 53 => Some(Cut::Number(*n as f64)),

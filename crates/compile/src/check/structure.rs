@@ -1,11 +1,12 @@
-//! Steps, transitions and how they hang together.
+//! Checks steps, transitions and the links between them.
 
 use std::collections::HashMap;
 
 use g7_model::{Problem, codes};
 
 use super::tree::key;
-use crate::ir::{Chart, ChartId, ChartRole, Step, Transition, Unit};
+use crate::circles::closing_calls;
+use crate::ir::{Chart, ChartId, ChartRole, Step, StepSort, Transition, Unit};
 
 pub(super) fn check(unit: &Unit, problems: &mut Vec<Problem>) {
     for chart in &unit.charts {
@@ -15,6 +16,8 @@ pub(super) fn check(unit: &Unit, problems: &mut Vec<Problem>) {
         }
     }
     unused(unit, problems);
+    starts_empty(unit, problems);
+    tasks_in_a_circle(unit, problems);
     for t in &unit.transitions {
         arms(unit, t, problems);
     }
@@ -29,7 +32,7 @@ pub(super) fn transitions_of<'u>(unit: &'u Unit, chart: &Chart) -> &'u [Transiti
     unit.transitions.get(chart.transitions.start as usize..chart.transitions.end as usize).unwrap_or(&[])
 }
 
-/// An expansion and a task have one entry step and one exit step, a chart has none.
+/// An expansion or task has one entry step and one exit step; a chart has neither.
 fn ends(unit: &Unit, chart: &Chart, problems: &mut Vec<Problem>) {
     if chart.role == ChartRole::Chart {
         for (end, word) in [(chart.entry, "an entry step"), (chart.exit, "an exit step")] {
@@ -74,6 +77,68 @@ fn unused(unit: &Unit, problems: &mut Vec<Problem>) {
     }
 }
 
+/// Each chart in an initial enclosing step has an initial step itself: activation
+/// links do not act at the start.
+fn starts_empty(unit: &Unit, problems: &mut Vec<Problem>) {
+    for step in unit.steps.iter().filter(|s| s.initial) {
+        let StepSort::Enclosing(charts) = &step.sort else { continue };
+        for chart in charts.iter().filter_map(|c| unit.charts.get(c.index())) {
+            let steps = steps_of(unit, chart);
+            if steps.is_empty() || steps.iter().any(|s| s.initial) {
+                continue;
+            }
+            let what = format!(
+                "the initial step `{}` encloses `{}`, which has no initial step and starts empty",
+                step.name, chart.name
+            );
+            let problem = Problem::new(&codes::STARTS_EMPTY, step.at, what);
+            problems.push(match steps.iter().find(|s| s.linked) {
+                Some(linked) => problem
+                    .related(linked.at, "this activation link acts at later activations only")
+                    .help(format!("write `initial step {} *`", linked.name)),
+                None => problem.help(format!("mark a step of `{}` `initial`", chart.name)),
+            });
+        }
+    }
+}
+
+/// A task that calls itself, by a step of its own, of an expansion or of an enclosed
+/// chart in it, or through other tasks: the calling step would wait for the exit step of
+/// the task that it is part of.
+fn tasks_in_a_circle(unit: &Unit, problems: &mut Vec<Problem>) {
+    let mut callees = vec![Vec::new(); unit.charts.len()];
+    for step in unit.steps.iter().filter(|s| !s.calls.is_empty()) {
+        let Some(home) = task_round(unit, step.chart) else { continue };
+        let calls = step.calls.iter().map(|(task, at)| (task.index(), *at));
+        callees.get_mut(home.index()).into_iter().for_each(|list| list.extend(calls.clone()));
+    }
+    for (task, at) in closing_calls(&callees) {
+        let Some(task) = unit.charts.get(task) else { continue };
+        let what = format!("the task `{}` is called while it runs", task.name);
+        problems.push(
+            Problem::new(&codes::RECURSION, at, what)
+                .related(task.at, "this task")
+                .help("a task cannot call itself, nor one that calls it; lead a transition back instead"),
+        );
+    }
+}
+
+/// The task that a chart is part of: itself, or the one round it.
+fn task_round(unit: &Unit, chart: ChartId) -> Option<ChartId> {
+    let mut at = chart;
+    // Charts nested in themselves are reported elsewhere; the way up ends here for them.
+    for _ in 0..=unit.charts.len() {
+        let row = unit.charts.get(at.index())?;
+        let round = match row.role {
+            ChartRole::Task => return Some(at),
+            ChartRole::Expansion(step) => Some(step),
+            ChartRole::Chart | ChartRole::Unused => row.enclosed_by,
+        };
+        at = unit.steps.get(round?.index())?.chart;
+    }
+    None
+}
+
 /// The input and the output step of a task have no action.
 fn task(unit: &Unit, chart: &Chart, problems: &mut Vec<Problem>) {
     for id in [chart.entry, chart.exit].into_iter().flatten() {
@@ -113,7 +178,7 @@ fn arms(unit: &Unit, t: &Transition, problems: &mut Vec<Problem>) {
     }
 }
 
-/// Two transitions that are the same in all.
+/// Finds two transitions with the same steps and the same receptivity.
 fn twice(unit: &Unit, problems: &mut Vec<Problem>) {
     let mut seen = HashMap::new();
     for t in &unit.transitions {

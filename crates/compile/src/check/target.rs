@@ -1,7 +1,7 @@
-//! The limits of a PLC (GRAFCET course, implementation in the TSX 37 and 57).
+//! Checks the limits of a PLC (GRAFCET course, implementation in the TSX 37 and 57).
 //!
-//! The number of active steps and of valid transitions at one time shows in the
-//! run: there the table overflows (`%S25`).
+//! The number of active steps and of valid transitions at one time is known only in the run: there
+//! the table overflows (`%S25`).
 
 use std::collections::BTreeMap;
 
@@ -15,7 +15,7 @@ const TRANSITIONS: usize = 1024;
 /// Most branches of a divergence or convergence.
 const BRANCHES: usize = 11;
 
-/// What a PLC has room for.
+/// The limits of a PLC.
 pub(super) struct Limits {
     pub(super) name: &'static str,
     steps: usize,
@@ -41,7 +41,8 @@ pub(super) fn check(doc: &Document, unit: &Unit, plc: TargetPlc, problems: &mut 
     pages::check(doc, &most, problems);
 }
 
-/// How many there are of each. A problem stands at the first that is too many.
+/// Compares the counts with the limits. A problem is reported at the first element that exceeds
+/// one.
 fn sizes(unit: &Unit, most: &Limits, problems: &mut Vec<Problem>) {
     let (mut main, mut inner, mut macros) = (Vec::new(), Vec::new(), Vec::new());
     for step in &unit.steps {
@@ -74,7 +75,7 @@ fn sizes(unit: &Unit, most: &Limits, problems: &mut Vec<Problem>) {
     over(&codes::TARGET_TRANSITIONS, &transitions, TRANSITIONS, "transitions");
 }
 
-/// Divergences and convergences that are too wide.
+/// Finds divergences and convergences with too many branches.
 fn branches(unit: &Unit, problems: &mut Vec<Problem>) {
     let mut wide = |n: usize, what: &str, at: Span| {
         if n > BRANCHES {
@@ -99,8 +100,8 @@ fn branches(unit: &Unit, problems: &mut Vec<Problem>) {
     }
 }
 
-/// What PL7 has no word for: its actions are those on activation, on
-/// deactivation and continuous ones.
+/// Finds actions that PL7 does not have: it knows actions on activation, on deactivation and
+/// continuous ones.
 fn words(unit: &Unit, most: &Limits, problems: &mut Vec<Problem>) {
     let mut cannot = |what: &str, at: Span| {
         let text = format!("a {} has no {what}", most.name);
@@ -141,8 +142,8 @@ fn words(unit: &Unit, most: &Limits, problems: &mut Vec<Problem>) {
     }
 }
 
-/// Steps are numbers, each there once in the main charts and once in each
-/// expansion, where the ends are IN and OUT; macro-steps are `M0` and so on.
+/// Checks that step names are numbers, each used once in the main charts and once in each
+/// expansion. The ends of an expansion are IN and OUT; macro-steps are `M0` and so on.
 fn numbers(unit: &Unit, most: &Limits, problems: &mut Vec<Problem>) {
     let mut main: BTreeMap<usize, Span> = BTreeMap::new();
     for chart in &unit.charts {
@@ -184,7 +185,7 @@ fn numbers_of(
                     );
                 }
             }
-            // Where there are too many steps that has been said.
+            // An excess of steps has been reported before.
             None if crowded && step.name.parse::<usize>().is_ok() => {}
             None => {
                 let text = if is_macro {

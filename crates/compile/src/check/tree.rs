@@ -1,10 +1,10 @@
-//! Looking into expressions and statements.
+//! Looks into expressions and statements.
 
 use std::fmt::Write;
 
 use crate::ir::{ActionKind, Expr, ExprKind, Stmt, StmtKind, Target, Unit, VarId};
 
-/// Every statement that runs, those inside others too; in no special order.
+/// Every statement that runs, also those inside others, in no special order.
 pub(super) fn statements(unit: &Unit) -> Vec<&Stmt> {
     let bodies = unit.pre.iter().chain(&unit.post).chain(&unit.bodies);
     let mut list: Vec<&Stmt> = bodies.flat_map(|b| &b.statements).collect();
@@ -49,7 +49,7 @@ pub(super) fn within<'u>(list: impl IntoIterator<Item = &'u Stmt>) -> Vec<&'u St
     all
 }
 
-/// The variables that a statement itself writes; of a function block, the instance.
+/// The variables that a statement itself writes; for a function block the instance.
 pub(super) fn written(s: &Stmt) -> Vec<VarId> {
     let variable = |t: &Target| match t {
         Target::Var(v) | Target::Element(v, _) | Target::Member(v, _) => *v,
@@ -95,7 +95,7 @@ pub(super) fn operands(e: &Expr) -> Vec<&Expr> {
     }
 }
 
-/// Whether some part of an expression is an edge.
+/// True if some part of an expression is an edge.
 pub(super) fn has_edge(e: &Expr) -> bool {
     let mut pending = vec![e];
     while let Some(e) = pending.pop() {
@@ -107,7 +107,7 @@ pub(super) fn has_edge(e: &Expr) -> bool {
     false
 }
 
-/// The same text for the same expression, wherever it stands.
+/// A text that is equal for equal expressions, wherever they stand.
 pub(super) fn key(e: &Expr) -> String {
     let mut text = String::new();
     write_key(e, &mut text);
@@ -115,7 +115,7 @@ pub(super) fn key(e: &Expr) -> String {
 }
 
 fn write_key(e: &Expr, out: &mut String) {
-    // The head of each form, then its operands in brackets; writing to a String cannot fail.
+    // Writes the head of each form, then its operands in brackets. Writing to a String cannot fail.
     let _ = match &e.kind {
         ExprKind::Const(v) => write!(out, "{v:?}"),
         ExprKind::Var(v) => write!(out, "v{}", v.0),

@@ -1,10 +1,10 @@
-//! Variables that nothing in the document names: neither charts nor plants,
-//! tests or properties.
+//! Finds variables that nothing in the document names: neither charts nor plants, tests or
+//! properties.
 //!
-//! Names are compared as they are written, wherever they stand: a name that means
-//! something else still counts, so what is reported is surely unused. Inputs,
-//! outputs and constants are the face of the chart to others and are left alone;
-//! so are variables with an address or a comment, which are there to be looked at.
+//! Names are compared as written, wherever they stand. A name that means something else still
+//! counts as a use, so every reported variable is unused. Inputs, outputs and constants are the
+//! interface of the chart and are not reported. Variables with an address or a comment are meant to
+//! be watched and are not reported either.
 
 use std::collections::HashSet;
 

@@ -1,5 +1,5 @@
-//! What actions write: variables with two masters, and stored actions that give
-//! one variable two values at one moment.
+//! Checks what actions write: variables that are both driven and assigned, and stored actions that
+//! give one variable two values at one moment.
 
 use std::collections::{BTreeMap, BTreeSet, HashSet};
 
@@ -13,7 +13,7 @@ use crate::ir::{
 
 pub(super) fn check(unit: &Unit, problems: &mut Vec<Problem>) {
     let blocked = blocked(unit);
-    // Where actions run one after the other, the later write is simply the later.
+    // Where actions run one after another, the later write is not in conflict with the earlier one.
     if unit.rules.parallel_actions && !unit.rules.late_actions {
         for step in (0..unit.steps.len() as u32).map(StepId) {
             let mut moment = Moment::default();
@@ -30,14 +30,14 @@ pub(super) fn check(unit: &Unit, problems: &mut Vec<Problem>) {
     classes(unit, &blocked, problems);
 }
 
-/// A constant written by a stored action that runs whatever else is the case.
+/// A constant that a stored action without a condition writes.
 struct Write {
     var: VarId,
     value: String,
     at: Span,
-    /// The action it is part of: its later statements are simply later.
+    /// The action that contains the write; of two writes in one action the later one counts.
     of: Span,
-    /// The step or the clearing it belongs to.
+    /// The step or the clearing that it belongs to.
     group: usize,
 }
 
@@ -49,7 +49,7 @@ struct Moment {
 }
 
 impl Moment {
-    /// What a step writes at its activation (P1) or deactivation (P0).
+    /// Collects the writes of a step at its activation (P1) or deactivation (P0).
     fn step(&mut self, unit: &Unit, blocked: &HashSet<VarId>, step: StepId, when: Qualifier) {
         self.group += 1;
         for action in unit.steps.get(step.index()).map_or(&[][..], |s| &s.actions) {
@@ -76,7 +76,7 @@ impl Moment {
         self.writes.push(Write { var, value, at, of: at, group });
     }
 
-    /// The last constant that a body surely leaves in each variable.
+    /// Collects the last constant that a body leaves in each variable in every case.
     fn body(&mut self, work: &[Stmt], of: Span) {
         let mut last: BTreeMap<VarId, Option<(String, Span)>> = BTreeMap::new();
         for s in work {
@@ -85,7 +85,7 @@ impl Moment {
                     let StmtKind::Assign(_, e) = &s.kind else { continue };
                     last.insert(*v, Some((key(e), s.at)));
                 }
-                // Behind a RETURN nothing is sure.
+                // Statements after a RETURN may not run.
                 StmtKind::Return => break,
                 _ => {
                     for v in within([s]).into_iter().flat_map(written) {
@@ -127,12 +127,12 @@ impl Moment {
     }
 }
 
-/// What surely runs when a transition clears: its own stored action, those on
-/// deactivation of the steps before it, those on activation of the steps behind.
+/// Collects the writes that always happen when a transition clears: its own stored action, those on
+/// deactivation of the preceding steps, those on activation of the succeeding steps.
 fn cleared(unit: &Unit, blocked: &HashSet<VarId>, t: &Transition) -> Moment {
     let mut moment = Moment::default();
     moment.body(&t.on_clearing, t.at);
-    // A step that is on both sides stays active.
+    // A step on both sides stays active.
     let both = |s: &&StepId| t.from.contains(s) && t.to.contains(s);
     for step in t.from.iter().filter(|s| !both(s)) {
         moment.step(unit, blocked, *step, Qualifier::P0);
@@ -143,14 +143,14 @@ fn cleared(unit: &Unit, blocked: &HashSet<VarId>, t: &Transition) -> Moment {
     moment
 }
 
-/// A variable that continuous actions drive and something else writes.
+/// Finds variables that continuous actions drive and something else writes.
 fn classes(unit: &Unit, blocked: &HashSet<VarId>, problems: &mut Vec<Problem>) {
     let mut driven: BTreeMap<VarId, Span> = BTreeMap::new();
     let mut stored: BTreeMap<VarId, Span> = BTreeMap::new();
     for action in unit.steps.iter().flat_map(|s| &s.actions) {
         let ActionKind::Variable { qualifier, var, .. } = &action.kind else { continue };
         let set_reset = matches!(qualifier, Qualifier::S | Qualifier::R) && unit.rules.stored_set_reset;
-        // With a control block of its own, S and R of the variable are inputs of that.
+        // If the variable has a control block, its S and R are inputs of that block.
         if !set_reset {
             driven.entry(*var).or_insert(action.at);
         } else if !blocked.contains(var) {

@@ -1,26 +1,32 @@
 //! Actions: which are stored, which feed a control block, which run each scan.
 //!
-//! The rank of an action is its place among those that run at one moment.
-//! Where stored actions act in parallel the kinds come one after the other
-//! (clearing, deactivation, activation, event), else all go by the text, in some
-//! profiles with the pulses P1 first and P0 last.
+//! The rank of an action is its place among those that run at one moment. In a
+//! pass the kinds come one after the other (clearing, deactivation, activation,
+//! event), and within a kind the text decides. What runs at the end of a scan goes
+//! by the text alone, in some profiles with the pulses P1 first and P0 last.
 
-use g7_engine::{Action, Addr, Cmp, Code, Contribution, ControlBlock, Event, NONE, Num, Op};
-use g7_model::{Qualifier, Span};
+use g7_engine::{Action, Addr, Cmp, Code, Contribution, ControlBlock, Event, NONE};
+use g7_model::{Qualifier, Span, Type};
 
 use super::Lower;
 use super::associations::{Associations, Way};
-use super::code::Buf;
 use super::lists::Lists;
 use super::plan::parent;
+use super::terms::store_word;
 use crate::ir::{ActionKind, BodyId, ChartId, Expr, ExprKind, StepId, Stmt, TransitionId, Value, VarId};
 use crate::symbols::ActionSymbol;
+use crate::tree::{self, Gate};
+
+/// How many kinds of actions a pass has.
+const KINDS: u8 = 4;
 
 /// When an action runs, as far as its rank depends on it.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Moment {
     Clearing,
     Activation,
+    /// S and R where they are assignments on activation: no pulses.
+    Store,
     Deactivation,
     Event,
     /// At the end of the scan; for pulses only, which.
@@ -162,6 +168,8 @@ impl Lower<'_> {
         self.t.blocks.iter_mut().for_each(|b| b.action = to(b.action));
     }
 
+    /// What an action's rank goes by before the text does: its kind, and where
+    /// pulses go first and last and each action sees those before it, its pulse.
     fn class(&self, moment: Moment) -> u8 {
         let rules = &self.unit.rules;
         let pulse = |q: Option<Qualifier>| match q {
@@ -169,20 +177,20 @@ impl Lower<'_> {
             Some(Qualifier::P0) if rules.pulse_first => 2,
             _ => 1,
         };
-        let as_pulse = match moment {
-            Moment::Activation => Some(Qualifier::P1),
-            Moment::Deactivation => Some(Qualifier::P0),
-            Moment::End(q) => q,
-            Moment::Clearing | Moment::Event => None,
+        let (kind, as_pulse) = match moment {
+            Moment::Activation if rules.late_actions => (4, Some(Qualifier::P1)),
+            Moment::Deactivation if rules.late_actions => (4, Some(Qualifier::P0)),
+            Moment::Clearing => (0, None),
+            Moment::Deactivation => (1, Some(Qualifier::P0)),
+            Moment::Activation => (2, Some(Qualifier::P1)),
+            Moment::Store => (2, None),
+            Moment::Event => (3, None),
+            Moment::End(q) => (4, q),
         };
-        match moment {
-            _ if !rules.parallel_actions => pulse(as_pulse),
-            Moment::Activation | Moment::Deactivation if rules.late_actions => 10 + pulse(as_pulse),
-            Moment::End(_) => 10 + pulse(as_pulse),
-            Moment::Clearing => 0,
-            Moment::Deactivation => 1,
-            Moment::Activation => 2,
-            Moment::Event => 3,
+        match kind {
+            4 => 3 * KINDS + pulse(as_pulse),
+            _ if rules.parallel_actions => kind,
+            _ => pulse(as_pulse) * KINDS + kind,
         }
     }
 
@@ -194,10 +202,9 @@ impl Lower<'_> {
     }
 
     /// The code of statements that stand for themselves.
-    fn work(&mut self, period: u32, work: &[Stmt]) -> Code {
-        let mut b = self.buf(period);
-        self.stmts(&mut b, work);
-        self.place(b)
+    fn statements(&mut self, period: u32, list: &[Stmt]) -> Code {
+        let list = self.stmts(period, list);
+        self.work(list)
     }
 
     /// The code of a named action, written once.
@@ -206,7 +213,7 @@ impl Lower<'_> {
             return code;
         }
         let Some(row) = self.unit.bodies.get(body.index()) else { return Code::default() };
-        let code = self.work(all.body(body).period(), &row.statements);
+        let code = self.statements(all.body(body).period(), &row.statements);
         if let Some(slot) = a.code_of_body.get_mut(body.index()) {
             *slot = Some(code);
         }
@@ -226,16 +233,12 @@ impl Lower<'_> {
         if t.on_clearing.is_empty() && owner.is_none() && ended.is_empty() {
             return;
         }
-        let mut b = self.buf(period);
-        for owner in ended {
-            b.op(Op::Push(0), Span::default());
-            b.op(Op::Store(owner), Span::default());
-        }
+        let mut list: Vec<tree::Stmt> = ended.into_iter().map(set_free).collect();
         if let Some(owner) = owner {
-            self.take_over(&mut b, t.chart, owner);
+            list.push(self.take_over(t.chart, owner));
         }
-        self.stmts(&mut b, &t.on_clearing);
-        let body = self.place(b);
+        list.extend(self.stmts(period, &t.on_clearing));
+        let body = self.work(list);
         let at = if t.on_clearing.is_empty() { Span::default() } else { t.at };
         let row = Action { condition: Code::default(), body, period };
         let action = self.add(a, Moment::Clearing, row, at);
@@ -247,10 +250,7 @@ impl Lower<'_> {
     /// A task that goes back by itself is free.
     fn sets_free(&mut self, a: &mut Actions, task: ChartId) {
         let Some(owner) = self.owner(task) else { return };
-        let mut b = self.buf(0);
-        b.op(Op::Push(0), Span::default());
-        b.op(Op::Store(owner), Span::default());
-        let body = self.place(b);
+        let body = self.work(vec![set_free(owner)]);
         let row = Action { condition: Code::default(), body, period: 0 };
         let action = self.add(a, Moment::Clearing, row, Span::default());
         if let Some(slot) = a.clearing.returns.get_mut(task.index()) {
@@ -260,23 +260,23 @@ impl Lower<'_> {
 
     /// Unless the task works for somebody already, notes the first caller, in
     /// text order, that was active as the pass began.
-    fn take_over(&mut self, b: &mut Buf, task: ChartId, owner: Addr) {
+    fn take_over(&mut self, task: ChartId, owner: Addr) -> tree::Stmt {
         let at = Span::default();
         let callers = self.callers(task).to_vec();
-        b.op(Op::Load(owner), at);
-        b.op(Op::Push(0), at);
-        b.op(Op::Compare(Cmp::Eq, Num::I64), at);
-        let mut ends = vec![b.jump(Op::JumpUnless, at)];
+        let mut arms = Vec::new();
         for (i, caller) in callers.iter().enumerate() {
-            let was = self.plan.own(*caller).map_or(Op::Push(0), Op::WasActive);
-            b.op(was, at);
-            let next = b.jump(Op::JumpUnless, at);
-            b.op(Op::Push(i as u64 + 1), at);
-            b.op(Op::Store(owner), at);
-            ends.push(b.jump(Op::Jump, at));
-            b.land(next);
+            let was = self.plan.own(*caller).map(tree::ExprKind::WasActive);
+            let was = was.map_or_else(|| tree::Expr::truth(false, at), |k| tree::Expr::new(k, at));
+            arms.push((was, vec![store_word(Type::Lint, owner, tree::Expr::long(i as i64 + 1, at), at)]));
         }
-        ends.into_iter().for_each(|jump| b.land(jump));
+        let nobody = tree::Expr::new(tree::ExprKind::Word(Type::Lint, owner), at).compare(
+            Cmp::Eq,
+            Type::Lint,
+            tree::Expr::long(0, at),
+            at,
+        );
+        let choose = tree::Stmt { kind: tree::StmtKind::If(arms, Vec::new()), at };
+        tree::Stmt { kind: tree::StmtKind::If(vec![(nobody, vec![choose])], Vec::new()), at }
     }
 
     fn action(&mut self, a: &mut Actions, all: &Associations, place: In, kind: &ActionKind) {
@@ -301,7 +301,7 @@ impl Lower<'_> {
             ActionKind::Work { qualifier, time, work, condition } => {
                 let terms =
                     Terms { qualifier: *qualifier, time: time.as_ref(), condition: condition.as_ref() };
-                let code = self.work(place.period, work);
+                let code = self.statements(place.period, work);
                 if self.is_stored_pulse(*qualifier) && !self.needs_block(place, terms) {
                     self.pulse(a, place, terms, code);
                 } else {
@@ -313,15 +313,16 @@ impl Lower<'_> {
                 }
             }
             ActionKind::OnEvent { event, work } => {
-                let event = self.code_of(place.period, event);
-                let body = self.work(place.period, work);
+                let event = self.expr(place.period, event);
+                let event = self.value(event);
+                let body = self.statements(place.period, work);
                 let row = Action { condition: none, body, period: place.period };
                 let action = self.add(a, Moment::Event, row, place.at);
                 a.events.add(place.number, Event { event, action });
             }
             ActionKind::EachScan { work, condition } => {
                 let condition = self.condition(place.period, condition.as_ref());
-                let body = self.work(place.period, work);
+                let body = self.statements(place.period, work);
                 let row = Action { condition, body, period: place.period };
                 let action = self.add(a, Moment::End(None), row, place.at);
                 a.periodics.add(place.number, action);
@@ -338,7 +339,7 @@ impl Lower<'_> {
         matches!(qualifier, Qualifier::P1 | Qualifier::P0)
     }
 
-    /// Whether a pulse without a name differs from its control block, of which
+    /// True if a pulse without a name differs from its control block, of which
     /// it is the short form in profiles with `late_actions`: where the input of
     /// the block is more than the step, or a step can come and go within a scan.
     fn needs_block(&self, place: In, terms: Terms<'_>) -> bool {
@@ -352,7 +353,10 @@ impl Lower<'_> {
     fn condition(&mut self, period: u32, condition: Option<&Expr>) -> Code {
         match condition {
             Some(Expr { kind: ExprKind::Const(Value::Bool(true)), .. }) | None => Code::default(),
-            Some(e) => self.code_of(period, e),
+            Some(e) => {
+                let tree = self.expr(period, e);
+                self.value(tree)
+            }
         }
     }
 
@@ -370,16 +374,11 @@ impl Lower<'_> {
         let together = all.var(var);
         match self.way(terms.qualifier, together) {
             Way::Store(value) => {
-                let mut b = self.buf(place.period);
-                b.op(Op::Push(u64::from(value)), place.at);
-                self.store(&mut b, var, place.at);
-                let body = self.place(b);
+                let store = self.store(var, tree::Expr::truth(value, place.at), place.at);
+                let body = self.work(vec![store]);
                 let condition = self.condition(place.period, terms.condition);
                 let row = Action { condition, body, period: place.period };
-                // Only pulses come first or last.
-                let moment =
-                    if self.unit.rules.parallel_actions { Moment::Activation } else { Moment::Event };
-                let action = self.add(a, moment, row, place.at);
+                let action = self.add(a, Moment::Store, row, place.at);
                 a.on.add(place.number, action);
             }
             way @ (Way::Block | Way::Delayed | Way::Limited) => {
@@ -410,10 +409,8 @@ impl Lower<'_> {
         let gate = if masks.is_empty() {
             Code::default()
         } else {
-            let mut b = self.buf(together.period());
-            self.any_acting(&mut b, &masks, place.at);
-            b.op(Op::Not, place.at);
-            self.place(b)
+            let free = self.any_acting(&masks, place.at).negated();
+            self.value(free)
         };
         let block =
             self.block(a, (self.words.addr(var), NONE), together.period(), Drives::Variable(var), place.at);
@@ -462,34 +459,26 @@ impl Lower<'_> {
     fn contribute(&mut self, a: &mut Actions, place: In, terms: Terms<'_>, way: Way, block: u32) {
         let masks =
             self.unit.steps.get(place.step.index()).map(|s| self.masking_chart(s.chart)).unwrap_or_default();
-        let mut b = self.buf(place.period);
-        let mut any = false;
-        let mut and = |b: &mut Buf| {
-            if std::mem::replace(&mut any, true) {
-                b.op(Op::And, place.at);
-            }
-        };
+        let mut parts = Vec::new();
         if let Some(e) = terms.condition.filter(|e| !matches!(e.kind, ExprKind::Const(Value::Bool(true)))) {
-            self.expr(&mut b, e);
-            and(&mut b);
+            parts.push(self.expr(place.period, e));
         }
         if let (Way::Delayed | Way::Limited, Some(time)) = (way, terms.time) {
-            self.acting_time(&mut b, place.step, place.at);
-            self.expr(&mut b, time);
+            let age = self.acting_time(place.step, place.at);
+            let time = self.expr(place.period, time);
             let c = if way == Way::Delayed { Cmp::Ge } else { Cmp::Lt };
-            b.op(Op::Compare(c, Num::I64), place.at);
-            and(&mut b);
+            parts.push(age.compare(c, Type::Time, time, place.at));
         }
         if !masks.is_empty() {
-            self.any_acting(&mut b, &masks, place.at);
-            b.op(Op::Not, place.at);
-            and(&mut b);
+            parts.push(self.any_acting(&masks, place.at).negated());
         }
-        let condition = self.place(b);
+        let all = parts.into_iter().reduce(|all, e| all.gate(Gate::And, e, place.at));
+        let condition = all.map(|e| self.value(e)).unwrap_or_default();
         let (input, time) = match (way, terms.time) {
             (Way::Delayed | Way::Limited, _) => (0, Code::default()),
             (_, Some(e)) if terms.qualifier.timed() => {
-                (input(terms.qualifier), self.code_of(place.period, e))
+                let time = self.expr(place.period, e);
+                (input(terms.qualifier), self.value(time))
             }
             _ => (input(terms.qualifier), Code::default()),
         };
@@ -516,6 +505,12 @@ impl Lower<'_> {
     pub(super) fn masking(&self, var: VarId) -> &[StepId] {
         self.masked_vars.get(&var).map_or(&[], Vec::as_slice)
     }
+}
+
+/// A task works for nobody.
+fn set_free(owner: Addr) -> tree::Stmt {
+    let at = Span::default();
+    store_word(Type::Lint, owner, tree::Expr::long(0, at), at)
 }
 
 /// The place of a qualifier in [`g7_engine::INPUTS`].

@@ -42,7 +42,7 @@ impl Association {
         }
     }
 
-    /// Whether a variable's control block is no more than "some N is true".
+    /// True if a variable's control block is no more than "some N is true".
     pub(super) fn is_plain(&self) -> bool {
         !self.full
     }
@@ -170,7 +170,7 @@ impl Lower<'_> {
         }
     }
 
-    /// Whether an unconditional N may write its variable together with the
+    /// True if an unconditional N may write its variable together with the
     /// step's activity: nothing else drives the variable, and nothing looks at
     /// it before the end of the scan, so that nobody sees it between two passes.
     pub(super) fn may_be_direct(&self, step: StepId, var: VarId, all: Association) -> bool {

@@ -79,7 +79,8 @@ impl Lower<'_> {
         for i in 0..self.unit.charts.len() {
             let row = self.plan.chart(ChartId(i as u32));
             let outer = row.and_then(|r| self.plan.outer.get(r as usize));
-            let every = outer.and_then(|c| self.unit.charts.get(c.index())).map_or(0, |c| c.every.max(0));
+            let every = outer.and_then(|c| self.unit.charts.get(c.index())).and_then(|c| c.every);
+            let every = every.map_or(0, |time| time.count().max(0));
             let known = self.t.periods.iter().position(|p| *p == every);
             let row = known.unwrap_or_else(|| {
                 self.t.periods.push(every);
@@ -147,42 +148,36 @@ impl Lower<'_> {
         self.steps_where(group, is_initial)
     }
 
-    /// The situation at the start. A chart that no step encloses starts in its
-    /// initial situation; what an enclosing step active at the start encloses
-    /// starts with the linked steps, and with the initial ones too where that
-    /// step is itself initial.
+    /// The situation at the start: the initial steps of the charts that no step
+    /// encloses, and of those that an initial enclosing step encloses. Activation
+    /// links act at later activations.
     fn start(&self) -> Vec<Number> {
         let unit = self.unit;
         let mut found = Vec::new();
         let mut done = vec![false; self.plan.groups.len()];
-        let mut todo: Vec<(GroupId, bool, bool)> = Vec::new();
+        let mut todo: Vec<GroupId> = Vec::new();
         for chart in &self.plan.outer {
             let row = unit.charts.get(chart.index());
             if let (Some(group), true) =
                 (self.plan.group(*chart), row.is_some_and(|c| c.enclosed_by.is_none()))
             {
-                todo.push((group, true, false));
+                todo.push(group);
             }
         }
-        while let Some((group, with_initial, with_linked)) = todo.pop() {
+        while let Some(group) = todo.pop() {
             match done.get_mut(group.0 as usize) {
                 Some(d) if !*d => *d = true,
                 _ => continue, // enclosed twice, or in a circle: reported
             }
-            let starts = |chart: &ir::Chart, id: StepId, step: &ir::Step| {
-                (with_initial && is_initial(chart, id, step)) || (with_linked && step.linked)
-            };
-            found.extend(self.steps_where(group, starts));
+            found.extend(self.steps_where(group, is_initial));
             for chart in self.within(group) {
                 let Some(row) = unit.charts.get(chart.index()) else { continue };
                 for i in row.steps.clone() {
                     let Some(step) = unit.steps.get(i as usize) else { continue };
                     if let StepSort::Enclosing(charts) = &step.sort
-                        && starts(row, StepId(i), step)
+                        && step.initial
                     {
-                        let initial = with_initial && step.initial;
-                        let groups = charts.iter().filter_map(|c| self.plan.group(*c));
-                        todo.extend(groups.map(|g| (g, initial, true)));
+                        todo.extend(charts.iter().filter_map(|c| self.plan.group(*c)));
                     }
                 }
             }

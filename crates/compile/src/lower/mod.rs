@@ -3,8 +3,9 @@
 //! ```text
 //! ir::Unit -> uses (one look at everything)
 //!          -> plan (which step is which) -> words (which word is which)
-//!          -> charts, actions, transitions, system bits
-//!          -> watches' readers -> Tables, Symbols
+//!          -> charts, actions, transitions, system bits; their code as trees
+//!             (terms, stmts), then as instructions (emit)
+//!          -> watches' readers -> Tables, Symbols, Pieces
 //! ```
 //!
 //! Macro-steps, tasks, `enable`, `mask` and freezing end here: they become arcs,
@@ -15,12 +16,13 @@
 mod actions;
 mod associations;
 mod charts;
-mod code;
+mod emit;
 mod lists;
 mod names;
 mod plan;
 mod stmts;
 mod system;
+mod terms;
 mod transitions;
 mod uses;
 mod watches;
@@ -33,13 +35,14 @@ use g7_model::{Problem, Span, codes};
 
 use crate::ir::{ChartId, Expr, StepId, Unit, VarId};
 use crate::symbols::Symbols;
+use crate::tree::Piece;
 use charts::Freeze;
 use plan::Plan;
 use uses::Uses;
 use watches::Watches;
 use words::Words;
 
-pub use words::{words_for, words_of};
+pub use words::{num, words_for, words_of};
 
 /// The tables of a unit and what their rows are called.
 #[derive(Clone, Debug)]
@@ -50,6 +53,25 @@ pub struct Lowered {
     pub symbols: Symbols,
     /// A code for each query, in their order.
     pub queries: Vec<Code>,
+    /// The tree of each piece of code.
+    pub pieces: Pieces,
+}
+
+/// The trees of a program's code.
+#[derive(Clone, Debug, Default)]
+pub struct Pieces(Vec<(u32, Piece)>);
+
+impl Pieces {
+    /// What a piece of code does; `None` for an empty one.
+    pub fn get(&self, code: Code) -> Option<&Piece> {
+        let at = self.0.binary_search_by_key(&code.start, |p| p.0).ok()?;
+        self.0.get(at).filter(|_| !code.is_empty()).map(|p| &p.1)
+    }
+
+    /// All of them, in the order of the code.
+    pub fn iter(&self) -> impl Iterator<Item = &Piece> {
+        self.0.iter().map(|p| &p.1)
+    }
 }
 
 /// Why a unit that is right in itself does not become a program.
@@ -71,15 +93,25 @@ struct Lower<'a> {
     /// Beside `t.code`.
     places: Vec<Span>,
     watches: Watches,
-    /// Buffers to be used again.
-    spare: Vec<code::Buf>,
+    /// A buffer for instructions, to be used again.
+    buf: emit::Buf,
+    /// The tree of each piece of code, by its first instruction, ascending.
+    pieces: Vec<(u32, Piece)>,
+    /// Nodes of all trees made so far.
+    nodes: usize,
+    /// The first word that is set anew at each run.
+    locals: u32,
     /// Nesting of the expression or statement in hand.
     depth: u32,
     refused: Option<(Refusal, Span)>,
     /// The generator's word.
     random: Option<Addr>,
-    /// `%S23`: while TRUE no transition clears.
+    /// While TRUE no transition clears: what `%S23` says at the service point.
     stop_all: Option<Addr>,
+    /// The words of `%S0` and `%S1`, or what stands for them.
+    restarts: Option<(Addr, Addr)>,
+    /// TRUE until the first service point is over; where system bits act on charts.
+    fresh: Option<Addr>,
     /// By chart: its period's row.
     periods: Vec<u32>,
     /// By chart: the steps that enable it.
@@ -106,10 +138,10 @@ struct Lower<'a> {
 ///
 /// A problem with its place where the unit is too large or nested too deeply
 /// for the engine.
-pub fn program(unit: &Unit, queries: &[Expr]) -> Result<(Program, Symbols, Vec<Code>), Problem> {
-    let Lowered { tables, symbols, queries } = lower(unit, queries)?;
+pub fn program(unit: &Unit, queries: &[Expr]) -> Result<(Program, Symbols, Vec<Code>, Pieces), Problem> {
+    let Lowered { tables, symbols, queries, pieces } = lower(unit, queries)?;
     match Program::new(tables) {
-        Ok(program) => Ok((program, symbols, queries)),
+        Ok(program) => Ok((program, symbols, queries, pieces)),
         Err(error) => Err(refused_by_engine(error, &symbols)),
     }
 }
@@ -160,11 +192,16 @@ pub fn lower<'a>(unit: &'a Unit, queries: &'a [Expr]) -> Result<Lowered, Problem
         t: Tables { rules: unit.rules, ..Tables::default() },
         places: Vec::new(),
         watches: Watches::default(),
-        spare: Vec::new(),
+        buf: emit::Buf::default(),
+        pieces: Vec::new(),
+        nodes: 0,
+        locals: 0,
         depth: 0,
         refused: None,
         random: None,
         stop_all: None,
+        restarts: None,
+        fresh: None,
         periods: Vec::new(),
         enabling: Vec::new(),
         masked_charts: Vec::new(),
@@ -188,7 +225,7 @@ pub fn lower<'a>(unit: &'a Unit, queries: &'a [Expr]) -> Result<Lowered, Problem
     }
     l.t.init = l.words.init;
     symbols.places = l.places;
-    Ok(Lowered { tables: l.t, symbols, queries })
+    Ok(Lowered { tables: l.t, symbols, queries, pieces: Pieces(l.pieces) })
 }
 
 impl Lower<'_> {
@@ -202,24 +239,30 @@ impl Lower<'_> {
         if self.uses.random {
             self.random = Some(self.words.hidden(0));
         }
-        self.stop_all = self.stop_bit();
+        self.look_at_system_bits();
         self.look_at_periods();
         self.look_at_orders();
         for text in std::mem::take(&mut self.uses.texts) {
             self.words.text(text);
         }
-        let locals = self.words.place_locals(self.unit);
+        self.locals = self.words.place_locals(self.unit);
         self.groups();
         self.t.steps = self.steps();
         let mut actions = self.actions();
         let ranks = self.ranks();
         self.transitions(&ranks, &actions.clearing);
         self.system();
-        let queries: Vec<Code> = queries.iter().map(|q| self.code_of(0, q)).collect();
+        let queries: Vec<Code> = queries
+            .iter()
+            .map(|q| {
+                let tree = self.expr(0, q);
+                self.value(tree)
+            })
+            .collect();
         self.extras(&mut actions);
         let symbols = self.symbols(&ranks, &mut actions);
         let end = self.words.init.len() as u32;
-        self.t.locals = if locals < end { Rows { start: locals, end } } else { Rows::default() };
+        self.t.locals = if self.locals < end { Rows { start: self.locals, end } } else { Rows::default() };
         self.t.inputs = self.words.inputs;
         self.t.outputs = self.words.outputs;
         self.t.safe = std::mem::take(&mut self.words.safe);
@@ -236,7 +279,7 @@ impl Lower<'_> {
         self.plan.source.iter().map(row).collect()
     }
 
-    /// Whether a step of the program stands for a macro-step.
+    /// True if a step of the program stands for a macro-step.
     fn is_pseudo(&self, number: u32) -> bool {
         let source = self.plan.source.get(number as usize);
         source.and_then(|id| self.plan.pseudo(*id)).is_some_and(|p| p.0 == number)

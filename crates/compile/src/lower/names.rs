@@ -18,8 +18,8 @@ impl Lower<'_> {
         let unit = self.unit;
         let mut s = Symbols {
             actions: std::mem::take(&mut a.symbols),
-            s0: self.system_var("%S0"),
-            s1: self.system_var("%S1"),
+            s0: self.restarts.map(|r| r.0),
+            s1: self.restarts.map(|r| r.1),
             seed: self.random,
             cycle: unit.cycle,
             ..Symbols::default()

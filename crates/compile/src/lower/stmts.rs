@@ -1,288 +1,246 @@
-//! Statements as instructions.
+//! Typed statements as trees.
 
-use g7_engine::{Addr, Arith, Cmp, Num, Op, Service as Request};
+use g7_engine::{Addr, Arith, Cmp, Service as Request};
 use g7_model::{FbKind, Span, Type};
 
 use super::Lower;
-use super::code::Buf;
-use super::words::{block_of, num};
-use crate::ir::{CaseArm, ChartId, Expr, ExprKind, Service, StepId, Stmt, StmtKind, Target, Value, VarId};
+use super::terms::store_word;
+use super::words::block_of;
+use crate::ir::{self, CaseArm, ChartId, Service, StepId, Target, Value, VarId};
+use crate::tree::{self, Expr, ExprKind, Gate, Stmt, StmtKind};
 
 impl Lower<'_> {
-    /// Statements one after the other.
-    pub(super) fn stmts(&mut self, b: &mut Buf, list: &[Stmt]) {
+    /// Statements one after the other, in a piece of code of a period.
+    pub(super) fn stmts(&mut self, period: u32, list: &[ir::Stmt]) -> Vec<Stmt> {
+        let mut to = Vec::with_capacity(list.len());
         self.depth += 1;
         for s in list {
-            if !self.room(b, s.at) {
+            if !self.room(s.at) {
                 break;
             }
-            self.stmt(b, s);
+            self.stmt(period, s, &mut to);
         }
         self.depth -= 1;
+        to
     }
 
-    /// The statements of a function or section: RETURN goes to their end.
-    pub(super) fn inline(&mut self, b: &mut Buf, list: &[Stmt]) {
-        let loops = std::mem::take(&mut b.loops);
-        b.returns.push(Vec::new());
-        self.stmts(b, list);
-        for jump in b.returns.pop().unwrap_or_default() {
-            b.land(jump);
-        }
-        b.loops = loops;
+    /// The statements of a function or section: RETURN leaves them alone.
+    pub(super) fn inline(&mut self, period: u32, list: &[ir::Stmt]) -> Stmt {
+        let at = list.first().map(|s| s.at).unwrap_or_default();
+        Stmt { kind: StmtKind::Body(self.stmts(period, list)), at }
     }
 
-    fn stmt(&mut self, b: &mut Buf, s: &Stmt) {
+    fn stmt(&mut self, period: u32, s: &ir::Stmt, to: &mut Vec<Stmt>) {
         let at = s.at;
-        match &s.kind {
-            StmtKind::Assign(target, e) => self.assign(b, target, e, at),
-            StmtKind::Fb { var, kind, inputs, outputs } => self.fb(b, (*var, *kind), inputs, outputs, at),
-            StmtKind::If(arms, other) => self.alternatives(b, arms, other),
-            StmtKind::Case(selector, arms, other) => self.case(b, selector, arms, other),
-            StmtKind::For { var, from, to, by, body } => {
-                self.for_loop(b, *var, from, to, by.as_ref(), body, at);
+        let kind = match &s.kind {
+            ir::StmtKind::Assign(target, e) => {
+                let target = self.target(period, target);
+                let value = self.expr(period, e);
+                return to.push(self.store_to(target, value, at));
             }
-            StmtKind::While(e, body) => {
-                let start = b.here();
-                self.expr(b, e);
-                let out = b.jump(Op::JumpUnless, e.at);
-                self.loop_body(b, body, |_, b| {
-                    b.op(Op::Jump(start), at);
-                    b.land(out);
-                });
+            ir::StmtKind::Fb { var, kind, inputs, outputs } => {
+                return self.fb(period, (*var, *kind), inputs, outputs, at, to);
             }
-            StmtKind::Repeat(body, e) => {
-                let start = b.here();
-                self.loop_body(b, body, |l, b| {
-                    l.expr(b, e);
-                    b.op(Op::JumpUnless(start), e.at);
-                });
+            ir::StmtKind::If(arms, other) => {
+                let arms = arms.iter().map(|(c, then)| (self.expr(period, c), self.stmts(period, then)));
+                let arms = arms.collect();
+                StmtKind::If(arms, self.stmts(period, other))
             }
-            StmtKind::Exit => {
-                let jump = b.jump(Op::Jump, at);
-                if let Some(l) = b.loops.last_mut() {
-                    l.push(jump);
-                } else {
-                    b.land(jump); // outside of a loop: reported, and without effect
-                }
+            ir::StmtKind::Case(selector, arms, other) => return self.case(period, selector, arms, other, to),
+            ir::StmtKind::For { var, from, to: last, by, body } => {
+                return self.for_loop(period, *var, [Some(from), Some(last), by.as_ref()], body, at, to);
             }
-            StmtKind::Return => {
-                if b.returns.is_empty() {
-                    return b.op(Op::Return, at);
-                }
-                let jump = b.jump(Op::Jump, at);
-                if let Some(r) = b.returns.last_mut() {
-                    r.push(jump);
-                }
+            ir::StmtKind::While(e, body) => {
+                let mut list = vec![Stmt { kind: StmtKind::LeaveUnless(self.expr(period, e)), at: e.at }];
+                list.extend(self.stmts(period, body));
+                StmtKind::Loop(list, None)
             }
-            StmtKind::Service(service) => self.service(b, service, at),
-        }
+            ir::StmtKind::Repeat(body, e) => {
+                let list = self.stmts(period, body);
+                StmtKind::Loop(list, Some(self.expr(period, e)))
+            }
+            ir::StmtKind::Exit => StmtKind::Leave,
+            ir::StmtKind::Return => StmtKind::Return,
+            ir::StmtKind::Service(service) => return self.service(period, service, at, to),
+        };
+        to.push(Stmt { kind, at });
     }
 
-    /// A loop's statements and what comes behind them; EXIT goes to the end.
-    fn loop_body(&mut self, b: &mut Buf, body: &[Stmt], end: impl FnOnce(&mut Self, &mut Buf)) {
-        b.loops.push(Vec::new());
-        self.stmts(b, body);
-        end(self, b);
-        for jump in b.loops.pop().unwrap_or_default() {
-            b.land(jump);
-        }
-    }
-
-    fn assign(&mut self, b: &mut Buf, target: &Target, e: &Expr, at: Span) {
-        if let Target::Element(_, index) = target {
-            self.expr(b, index);
-        }
-        self.expr(b, e);
-        self.store_to(b, target, at);
-    }
-
-    /// Pops into a target whose index, if any, has been pushed before.
-    fn store_to(&mut self, b: &mut Buf, target: &Target, at: Span) {
+    fn target(&mut self, period: u32, target: &Target) -> To {
         match target {
-            Target::Var(var) => self.store(b, *var, at),
-            Target::Element(var, _) => {
-                let len = self.unit.vars.get(var.index()).map_or(0, |v| v.elements);
-                b.op(Op::StoreAt { base: self.words.addr(*var), len }, at);
+            Target::Var(var) => To::Variable(*var),
+            Target::Element(var, index) => {
+                let index = self.expr(period, index);
+                let v = self.unit.vars.get(var.index());
+                let (len, ty) = v.map_or((0, Type::Bool), |v| (v.elements, v.ty));
+                To::Number(ty, tree::Target::Element(self.words.addr(*var), len, index))
             }
             Target::Member(var, member) => {
-                b.op(Op::Store(Addr(self.words.addr(*var).0 + u32::from(*member))), at);
+                let ty = match self.unit.vars.get(var.index()).map(|v| v.ty) {
+                    Some(Type::Fb(kind)) => kind.members().get(usize::from(*member)).map(|m| m.1),
+                    _ => None,
+                };
+                let word = Addr(self.words.addr(*var).0 + u32::from(*member));
+                To::Number(ty.unwrap_or(Type::Bool), tree::Target::Word(word))
             }
+        }
+    }
+
+    fn store_to(&mut self, target: To, value: Expr, at: Span) -> Stmt {
+        match target {
+            To::Variable(var) => self.store(var, value, at),
+            To::Number(ty, target) => Stmt { kind: StmtKind::Store(ty, target, value), at },
         }
     }
 
     fn fb(
         &mut self,
-        b: &mut Buf,
+        period: u32,
         (var, kind): (VarId, FbKind),
-        inputs: &[(u8, Expr)],
+        inputs: &[(u8, ir::Expr)],
         outputs: &[(u8, Target)],
         at: Span,
+        to: &mut Vec<Stmt>,
     ) {
         let base = self.words.addr(var);
-        for (member, e) in inputs {
-            self.expr(b, e);
-            b.op(Op::Store(Addr(base.0 + u32::from(*member))), e.at);
+        let member = |m: u8| {
+            let ty = kind.members().get(usize::from(m)).map_or(Type::Bool, |m| m.1);
+            (ty, Addr(base.0 + u32::from(m)))
+        };
+        for (m, e) in inputs {
+            let (ty, word) = member(*m);
+            let value = self.expr(period, e);
+            to.push(store_word(ty, word, value, e.at));
         }
-        b.op(Op::Fb(block_of(kind), base), at);
-        for (member, target) in outputs {
-            if let Target::Element(_, index) = target {
-                self.expr(b, index);
-            }
-            b.op(Op::Load(Addr(base.0 + u32::from(*member))), at);
-            self.store_to(b, target, at);
+        to.push(Stmt { kind: StmtKind::Fb(block_of(kind), base), at });
+        for (m, target) in outputs {
+            let (ty, word) = member(*m);
+            let target = self.target(period, target);
+            to.push(self.store_to(target, Expr::new(ExprKind::Word(ty, word), at), at));
         }
     }
 
-    fn alternatives(&mut self, b: &mut Buf, arms: &[(Expr, Vec<Stmt>)], other: &[Stmt]) {
-        let mut ends = Vec::new();
-        for (i, (condition, then)) in arms.iter().enumerate() {
-            self.expr(b, condition);
-            let next = b.jump(Op::JumpUnless, condition.at);
-            self.stmts(b, then);
-            if i + 1 < arms.len() || !other.is_empty() {
-                ends.push(b.jump(Op::Jump, condition.at));
-            }
-            b.land(next);
-        }
-        self.stmts(b, other);
-        ends.into_iter().for_each(|jump| b.land(jump));
-    }
-
-    fn case(&mut self, b: &mut Buf, selector: &Expr, arms: &[CaseArm], other: &[Stmt]) {
+    fn case(
+        &mut self,
+        period: u32,
+        selector: &ir::Expr,
+        arms: &[CaseArm],
+        other: &[ir::Stmt],
+        to: &mut Vec<Stmt>,
+    ) {
         let at = selector.at;
         let chosen = self.words.hidden(0);
-        self.expr(b, selector);
-        b.op(Op::Store(chosen), at);
-        let mut ends = Vec::new();
-        for (ranges, then) in arms {
-            for (i, (low, high)) in ranges.iter().enumerate() {
-                within(b, chosen, *low, *high, at);
-                if i > 0 {
-                    b.op(Op::Or, at);
-                }
-            }
-            if ranges.is_empty() {
-                b.op(Op::Push(0), at);
-            }
-            let next = b.jump(Op::JumpUnless, at);
-            self.stmts(b, then);
-            ends.push(b.jump(Op::Jump, at));
-            b.land(next);
-        }
-        self.stmts(b, other);
-        ends.into_iter().for_each(|jump| b.land(jump));
+        let value = self.expr(period, selector);
+        to.push(store_word(Type::Lint, chosen, value, at));
+        let arms = arms.iter().map(|(ranges, then)| {
+            let mut ranges = ranges.iter().map(|(low, high)| within(chosen, *low, *high, at));
+            let first = ranges.next().unwrap_or_else(|| Expr::truth(false, at));
+            (ranges.fold(first, |any, e| any.gate(Gate::Or, e, at)), self.stmts(period, then))
+        });
+        let arms = arms.collect();
+        to.push(Stmt { kind: StmtKind::If(arms, self.stmts(period, other)), at });
     }
 
     /// FOR. The last value and the step are computed once. A step beyond the end
     /// of the variable's type ends the loop.
-    #[allow(clippy::too_many_arguments, reason = "the parts of one statement")]
     fn for_loop(
         &mut self,
-        b: &mut Buf,
+        period: u32,
         var: VarId,
-        from: &Expr,
-        to: &Expr,
-        by: Option<&Expr>,
-        body: &[Stmt],
+        [from, last, by]: [Option<&ir::Expr>; 3],
+        body: &[ir::Stmt],
         at: Span,
+        to: &mut Vec<Stmt>,
     ) {
+        let (Some(from), Some(last)) = (from, last) else { return };
         let ty = self.unit.vars.get(var.index()).map_or(Type::Lint, |v| v.ty);
-        let (last, step) = (self.words.hidden(0), self.words.hidden(0));
-        self.expr(b, from);
-        self.store(b, var, from.at);
-        self.expr(b, to);
-        b.op(Op::Store(last), to.at);
+        let (limit, step) = (self.words.hidden(0), self.words.hidden(0));
+        let value = self.expr(period, from);
+        to.push(self.store(var, value, from.at));
+        let value = self.expr(period, last);
+        to.push(store_word(ty, limit, value, last.at));
         let fixed = match by.map(|e| &e.kind) {
             None => Some(1),
-            Some(ExprKind::Const(Value::Int(v))) => i64::try_from(*v).ok(),
+            Some(ir::ExprKind::Const(Value::Int(v))) => i64::try_from(*v).ok(),
             Some(_) => None,
         };
         if let (None, Some(by)) = (fixed, by) {
-            self.expr(b, by);
-            b.op(Op::Store(step), by.at);
+            let value = self.expr(period, by);
+            to.push(store_word(ty, step, value, by.at));
         }
-        let loop_var = For { var: self.words.addr(var), last, step, fixed, ty, at };
-        let start = b.here();
-        loop_var.goes_on(b);
-        let out = b.jump(Op::JumpUnless, at);
-        self.loop_body(b, body, |_, b| {
-            loop_var.has_next(b);
-            let end = b.jump(Op::JumpUnless, at);
-            loop_var.advance(b);
-            b.op(Op::Jump(start), at);
-            b.land(out);
-            b.land(end);
-        });
+        let parts = For { var: self.words.addr(var), limit, step, fixed, ty, at };
+        let mut list = parts.by_sign(For::goes_on);
+        list.extend(self.stmts(period, body));
+        list.extend(parts.by_sign(For::has_next));
+        list.push(parts.advance());
+        to.push(Stmt { kind: StmtKind::Loop(list, None), at });
     }
 
-    fn service(&mut self, b: &mut Buf, service: &Service, at: Span) {
+    fn service(&mut self, period: u32, service: &Service, at: Span, to: &mut Vec<Stmt>) {
+        let request = |r| Stmt { kind: StmtKind::Service(r), at };
         match service {
             Service::InitChart(chart) => {
-                if let Some(g) = self.plan.group(*chart) {
-                    b.op(Op::Service(Request::Init(g)), at);
-                }
+                to.extend(self.plan.group(*chart).map(|g| request(Request::Init(g))))
             }
-            Service::ClearChart(chart) => self.empty(b, *chart, at),
+            Service::ClearChart(chart) => to.extend(self.empty(*chart, at)),
             Service::FreezeChart(chart, e) => {
-                self.expr(b, e);
-                match self.freezes.get(chart.index()).copied().flatten() {
-                    Some(freeze) => b.op(Op::Store(freeze.asked), at),
-                    None => b.op(Op::Drop, at),
-                }
+                let value = self.expr(period, e);
+                to.push(match self.freezes.get(chart.index()).copied().flatten() {
+                    Some(freeze) => store_word(Type::Bool, freeze.asked, value, at),
+                    None => Stmt { kind: StmtKind::Evaluate(value), at },
+                });
             }
             Service::SetStep(step) => {
                 let mut steps = Vec::new();
                 self.plan.entering(self.unit, *step, &mut steps);
                 self.plan.around(self.unit, *step, &mut steps);
-                steps.into_iter().for_each(|s| b.op(Op::Service(Request::Set(s)), at));
+                to.extend(steps.into_iter().map(|s| request(Request::Set(s))));
             }
-            Service::ResetStep(step) => self.reset(b, *step, at),
-            Service::ResetTimes => b.op(Op::Service(Request::ResetTimes), at),
+            Service::ResetStep(step) => to.extend(self.reset(*step, at)),
+            Service::ResetTimes => to.push(request(Request::ResetTimes)),
         }
     }
 
-    fn reset(&mut self, b: &mut Buf, step: StepId, at: Span) {
+    fn reset(&self, step: StepId, at: Span) -> Vec<Stmt> {
         match self.plan.expansion(self.unit, step) {
-            Some(chart) => self.empty(b, chart, at),
+            Some(chart) => self.empty(chart, at),
             None => {
-                if let Some(n) = self.plan.own(step) {
-                    b.op(Op::Service(Request::Reset(n)), at);
-                }
+                let request = |n| Stmt { kind: StmtKind::Service(Request::Reset(n)), at };
+                self.plan.own(step).map(request).into_iter().collect()
             }
         }
     }
 
     /// Asks for all steps of a chart to be deactivated, with the pseudo-step of
     /// the macro-step that it expands.
-    pub(super) fn empty(&mut self, b: &mut Buf, chart: ChartId, at: Span) {
-        if let Some(g) = self.plan.group(chart) {
-            b.op(Op::Service(Request::Clear(g)), at);
-        }
-        if let Some(p) = super::plan::parent(self.unit, chart).and_then(|m| self.plan.pseudo(m)) {
-            b.op(Op::Service(Request::Reset(p)), at);
-        }
+    pub(super) fn empty(&self, chart: ChartId, at: Span) -> Vec<Stmt> {
+        let group = self.plan.group(chart).map(Request::Clear);
+        let pseudo = super::plan::parent(self.unit, chart).and_then(|m| self.plan.pseudo(m));
+        let all = group.into_iter().chain(pseudo.map(Request::Reset));
+        all.map(|r| Stmt { kind: StmtKind::Service(r), at }).collect()
     }
 }
 
-/// Pushes whether a word lies within a range.
-fn within(b: &mut Buf, word: Addr, low: i64, high: i64, at: Span) {
-    b.op(Op::Load(word), at);
-    b.op(Op::Push(low as u64), at);
+/// Where a value goes.
+enum To {
+    Variable(VarId),
+    Number(Type, tree::Target),
+}
+
+/// A word lies within a range.
+fn within(word: Addr, low: i64, high: i64, at: Span) -> Expr {
+    let value = || Expr::new(ExprKind::Word(Type::Lint, word), at);
     if low == high {
-        return b.op(Op::Compare(Cmp::Eq, Num::I64), at);
+        return value().compare(Cmp::Eq, Type::Lint, Expr::long(low, at), at);
     }
-    b.op(Op::Compare(Cmp::Ge, Num::I64), at);
-    b.op(Op::Load(word), at);
-    b.op(Op::Push(high as u64), at);
-    b.op(Op::Compare(Cmp::Le, Num::I64), at);
-    b.op(Op::And, at);
+    let from = value().compare(Cmp::Ge, Type::Lint, Expr::long(low, at), at);
+    from.gate(Gate::And, value().compare(Cmp::Le, Type::Lint, Expr::long(high, at), at), at)
 }
 
 /// The running part of a FOR loop.
 struct For {
     var: Addr,
-    last: Addr,
+    limit: Addr,
     /// Holds the step where it is not fixed.
     step: Addr,
     fixed: Option<i64>,
@@ -291,51 +249,46 @@ struct For {
 }
 
 impl For {
-    /// Pushes whether the variable has not passed the last value.
-    fn goes_on(&self, b: &mut Buf) {
-        self.by_sign(b, |f, b, up| {
-            b.op(Op::Load(f.var), f.at);
-            b.op(Op::Load(f.last), f.at);
-            b.op(Op::Compare(if up { Cmp::Le } else { Cmp::Ge }, num(f.ty)), f.at);
-        });
+    fn word(&self, addr: Addr) -> Expr {
+        Expr::new(ExprKind::Word(self.ty, addr), self.at)
     }
 
-    /// Pushes whether one more step stays within the variable's type.
-    fn has_next(&self, b: &mut Buf) {
+    fn constant(&self, value: i128) -> Expr {
+        Expr::new(ExprKind::Const(self.ty, value as u64), self.at)
+    }
+
+    fn step(&self) -> Expr {
+        self.fixed.map_or_else(|| self.word(self.step), |v| self.constant(v.into()))
+    }
+
+    /// The variable has not passed the last value.
+    fn goes_on(&self, up: bool) -> Expr {
+        let c = if up { Cmp::Le } else { Cmp::Ge };
+        self.word(self.var).compare(c, self.ty, self.word(self.limit), self.at)
+    }
+
+    /// One more step stays within the variable's type.
+    fn has_next(&self, up: bool) -> Expr {
         let (least, most) = self.ty.bounds().unwrap_or((i64::MIN.into(), i64::MAX.into()));
-        self.by_sign(b, |f, b, up| {
-            b.op(Op::Load(f.var), f.at);
-            b.op(Op::Push(if up { most } else { least } as u64), f.at);
-            f.push_step(b);
-            b.op(Op::Arith(Arith::Sub, num(f.ty)), f.at);
-            b.op(Op::Compare(if up { Cmp::Le } else { Cmp::Ge }, num(f.ty)), f.at);
-        });
+        let end = self.constant(if up { most } else { least });
+        let room = end.arith(Arith::Sub, self.ty, self.step(), self.at);
+        let c = if up { Cmp::Le } else { Cmp::Ge };
+        self.word(self.var).compare(c, self.ty, room, self.at)
     }
 
-    fn advance(&self, b: &mut Buf) {
-        b.op(Op::Load(self.var), self.at);
-        self.push_step(b);
-        b.op(Op::Arith(Arith::Add, num(self.ty)), self.at);
-        b.op(Op::Store(self.var), self.at);
+    fn advance(&self) -> Stmt {
+        let next = self.word(self.var).arith(Arith::Add, self.ty, self.step(), self.at);
+        store_word(self.ty, self.var, next, self.at)
     }
 
-    fn push_step(&self, b: &mut Buf) {
-        b.op(self.fixed.map_or(Op::Load(self.step), |v| Op::Push(v as u64)), self.at);
-    }
-
-    /// One of two pieces of code, by the sign of the step.
-    fn by_sign(&self, b: &mut Buf, piece: impl Fn(&For, &mut Buf, bool)) {
+    /// Leaves the loop unless a condition holds, which depends on the sign of the step.
+    fn by_sign(&self, condition: impl Fn(&For, bool) -> Expr) -> Vec<Stmt> {
+        let leave = |up| Stmt { kind: StmtKind::LeaveUnless(condition(self, up)), at: self.at };
         if let Some(v) = self.fixed {
-            return piece(self, b, v >= 0);
+            return vec![leave(v >= 0)];
         }
-        b.op(Op::Load(self.step), self.at);
-        b.op(Op::Push(0), self.at);
-        b.op(Op::Compare(Cmp::Ge, num(self.ty)), self.at);
-        let down = b.jump(Op::JumpUnless, self.at);
-        piece(self, b, true);
-        let end = b.jump(Op::Jump, self.at);
-        b.land(down);
-        piece(self, b, false);
-        b.land(end);
+        let rises = self.word(self.step).compare(Cmp::Ge, self.ty, self.constant(0), self.at);
+        let choice = StmtKind::If(vec![(rises, vec![leave(true)])], vec![leave(false)]);
+        vec![Stmt { kind: choice, at: self.at }]
     }
 }

@@ -3,12 +3,13 @@
 //! They act at the service point between PRE and the evolution: what PRE asks
 //! for happens in the same scan, what an action asks for in the next.
 
-use g7_engine::{Addr, Arith, Cmp, Limits, Num, Op, Service};
-use g7_model::{Span, TargetPlc};
+use g7_engine::{Addr, Arith, Cmp, Limits, Service};
+use g7_model::{Span, TargetPlc, Type};
 
 use super::Lower;
-use super::code::Buf;
+use super::terms::store_word;
 use crate::ir::{Body, ChartId, StepId, StepSort, VarClass, VarId};
+use crate::tree::{Expr, ExprKind, Gate, Stmt, StmtKind};
 
 /// Macro-steps that a word of `%SW22` … `%SW25` has a bit for.
 const BITS: u32 = 16;
@@ -20,35 +21,53 @@ impl Lower<'_> {
         Some(self.words.addr(VarId(at as u32)))
     }
 
-    /// `%S23`, where something names it.
-    pub(super) fn stop_bit(&self) -> Option<Addr> {
-        let at = self.unit.vars.iter().position(|v| v.class == VarClass::System && &*v.name == "%S23")?;
-        let named = self.uses.named.get(at).copied().unwrap_or(false);
-        named.then(|| self.words.addr(VarId(at as u32)))
+    /// The words behind the system bits, made before all else: they live on from
+    /// scan to scan. `%S0` and `%S1` belong together, since a restart says which of
+    /// them is TRUE; and the bits that act on charts need `%S0`.
+    pub(super) fn look_at_system_bits(&mut self) {
+        let named = |l: &Self, name| l.system_var(name).is_some();
+        let acts = self.has_acting_bits();
+        if acts || named(self, "%S0") || named(self, "%S1") {
+            let cold = self.system_var("%S0").unwrap_or_else(|| self.words.hidden(0));
+            let warm = self.system_var("%S1").unwrap_or_else(|| self.words.hidden(0));
+            self.restarts = Some((cold, warm));
+            if let Some(word) = self.words.init.get_mut(cold.0 as usize) {
+                *word = 1; // TRUE in the first scan after a cold start
+            }
+        }
+        if named(self, "%S23") {
+            self.stop_all = Some(self.words.hidden(0));
+        }
+        if acts {
+            self.fresh = Some(self.words.hidden(1));
+        }
+    }
+
+    /// A system bit acts on charts: one of `%S21` to `%S24`, or `%S0` where the program
+    /// writes it.
+    fn has_acting_bits(&self) -> bool {
+        let system = |v: &(&crate::ir::Var, &bool)| v.0.class == VarClass::System;
+        self.unit.vars.iter().zip(&self.uses.written).filter(system).any(|(var, written)| match &*var.name {
+            "%S0" => *written,
+            "%S21" | "%S22" | "%S23" | "%S24" => true,
+            _ => false,
+        })
     }
 
     /// Everything that runs besides the chart.
     pub(super) fn system(&mut self) {
         let unit = self.unit;
-        self.t.pre = self.sections(&unit.pre);
-        self.t.post = self.sections(&unit.post);
-        let mut services = self.buf(0);
-        self.freeze(&mut services);
-        self.chart_bits(&mut services);
-        self.macro_bits(&mut services);
-        self.t.services = self.place(services);
-        let mut tail = self.buf(0);
-        for name in ["%S0", "%S1"] {
-            if let Some(bit) = self.system_var(name) {
-                fall(&mut tail, bit);
-            }
-        }
-        self.t.tail = self.place(tail);
-        if let Some(first) = self.system_var("%S0")
-            && let Some(word) = self.words.init.get_mut(first.0 as usize)
-        {
-            *word = 1; // TRUE in the first scan after a cold start
-        }
+        let mut pre = self.before_pre();
+        pre.extend(self.sections(&unit.pre));
+        self.t.pre = self.work(pre);
+        let post = self.sections(&unit.post);
+        self.t.post = self.work(post);
+        let mut services = self.freeze();
+        let seen = self.words.hidden(0);
+        services.extend(self.chart_bits(seen));
+        self.t.services = self.work(services);
+        let tail = self.tail(seen);
+        self.t.tail = self.work(tail);
         let counts = (self.system_var("%SW20"), self.system_var("%SW21"));
         if counts != (None, None) {
             let mut or_hidden = |a: Option<Addr>| a.unwrap_or_else(|| self.words.hidden(0));
@@ -62,77 +81,100 @@ impl Lower<'_> {
 
     /// Sections one behind the other, a RETURN ending only its own. Those of a
     /// chart with a period run when it is due, those of an unused expansion never.
-    fn sections(&mut self, bodies: &[Body]) -> g7_engine::Code {
-        let mut b = self.buf(0);
+    fn sections(&mut self, bodies: &[Body]) -> Vec<Stmt> {
+        let mut list = Vec::new();
         for body in bodies {
             if body.chart.is_some_and(|c| self.plan.chart(c).is_none()) {
                 continue;
             }
-            b.period = body.chart.map_or(0, |c| self.period(c));
-            if b.period == 0 {
-                self.inline(&mut b, &body.statements);
-                continue;
-            }
-            b.op(Op::Due(b.period), body.at);
-            let skip = b.jump(Op::JumpUnless, body.at);
-            self.inline(&mut b, &body.statements);
-            b.land(skip);
+            let period = body.chart.map_or(0, |c| self.period(c));
+            let section = self.inline(period, &body.statements);
+            list.push(match period {
+                0 => section,
+                _ => when(Expr::new(ExprKind::Due(period), body.at), vec![section]),
+            });
         }
-        self.place(b)
+        list
+    }
+
+    /// `%S0` has set `%S21` before PRE begins.
+    fn before_pre(&self) -> Vec<Stmt> {
+        match (self.restarts, self.system_var("%S21")) {
+            (Some((cold, _)), Some(init)) => vec![when(bit(cold), vec![set(init, true)])],
+            _ => Vec::new(),
+        }
+    }
+
+    /// The end of a scan. Set behind the service point, `%S0` stays for that of the
+    /// next scan.
+    fn tail(&self, seen: Addr) -> Vec<Stmt> {
+        let Some((cold, warm)) = self.restarts else { return Vec::new() };
+        let fall = set(cold, false);
+        let cold = if self.fresh.is_some() { when(bit(seen), vec![fall]) } else { fall };
+        vec![cold, set(warm, false)]
     }
 
     /// `FREEZECHART` takes effect here.
-    fn freeze(&mut self, b: &mut Buf) {
-        for freeze in self.freezes.iter().flatten() {
-            b.op(Op::Load(freeze.asked), Span::default());
-            b.op(Op::Store(freeze.holds), Span::default());
-        }
+    fn freeze(&self) -> Vec<Stmt> {
+        let holds = |f: &super::charts::Freeze| store_word(Type::Bool, f.holds, bit(f.asked), NOWHERE);
+        self.freezes.iter().flatten().map(holds).collect()
     }
 
-    /// `%S21`: all charts to their initial situation. `%S22`: all steps off.
-    fn chart_bits(&mut self, b: &mut Buf) {
-        let at = Span::default();
-        let charts: Vec<g7_engine::GroupId> = self.t.charts.iter().map(|c| c.group).collect();
-        for (name, to_initial) in [("%S21", true), ("%S22", false)] {
-            let Some(bit) = self.system_var(name) else { continue };
-            b.op(Op::Load(bit), at);
-            let skip = b.jump(Op::JumpUnless, at);
-            charts.iter().for_each(|g| b.op(Op::Service(Service::Clear(*g)), at));
-            if to_initial {
-                // What is asked to go off and to come on stays.
-                self.t.initial.iter().for_each(|s| b.op(Op::Service(Service::Set(*s)), at));
-            }
-            self.owners.iter().flatten().for_each(|owner| fall(b, *owner));
-            fall(b, bit);
-            b.land(skip);
+    /// One of the bits that are set acts in a scan, the lowest: `%S21` (or `%S0`, which
+    /// sets it): all charts to the initial situation; `%S22`: all steps off; `%S23`: no
+    /// transition clears; `%S24`: macro-steps are emptied. The others wait.
+    fn chart_bits(&self, seen: Addr) -> Vec<Stmt> {
+        let (Some((cold, _)), Some(fresh)) = (self.restarts, self.fresh) else { return Vec::new() };
+        let init = self.system_var("%S21");
+        let asked = init.into_iter().fold(bit(cold), |e, init| e.gate(Gate::Or, bit(init), NOWHERE));
+        let mut start = vec![request(Service::Start)];
+        start.extend(self.free_tasks());
+        let mut arms = vec![(bit(fresh).negated().gate(Gate::And, asked, NOWHERE), start)];
+        if let Some(empty) = self.system_var("%S22") {
+            let mut then: Vec<Stmt> =
+                self.t.charts.iter().map(|c| request(Service::Clear(c.group))).collect();
+            then.extend(self.free_tasks());
+            then.push(set(empty, false));
+            arms.push((bit(empty), then));
         }
+        if let (Some(freeze), Some(stop)) = (self.system_var("%S23"), self.stop_all) {
+            arms.push((bit(freeze), vec![set(stop, true)]));
+        }
+        if let Some(macros) = self.system_var("%S24") {
+            arms.push((bit(macros), self.macro_bits(macros)));
+        }
+        let mut list = vec![store_word(Type::Bool, seen, bit(cold), NOWHERE)];
+        list.extend(self.stop_all.map(|stop| set(stop, false)));
+        list.push(Stmt { kind: StmtKind::If(arms, Vec::new()), at: NOWHERE });
+        // The cold start has made the initial situation: its `%S21` takes no turn.
+        list.extend([Some(fresh), init].into_iter().flatten().map(|word| set(word, false)));
+        list
+    }
+
+    /// Every task is free.
+    fn free_tasks(&self) -> Vec<Stmt> {
+        let free = |owner: &Addr| store_word(Type::Lint, *owner, Expr::long(0, NOWHERE), NOWHERE);
+        self.owners.iter().flatten().map(free).collect()
     }
 
     /// `%S24`: the macro-steps whose bits are set in `%SW22` … `%SW25` are emptied.
-    fn macro_bits(&mut self, b: &mut Buf) {
-        let at = Span::default();
-        let Some(bit) = self.system_var("%S24") else { return };
-        b.op(Op::Load(bit), at);
-        let skip = b.jump(Op::JumpUnless, at);
+    fn macro_bits(&self, asked: Addr) -> Vec<Stmt> {
         let words = ["%SW22", "%SW23", "%SW24", "%SW25"].map(|name| self.system_var(name));
+        let mut then = Vec::new();
         for (number, chart) in self.numbered_macro_steps() {
             let Some(word) = words.get((number / BITS) as usize).copied().flatten() else { continue };
             // Bit i of the word: (w div 2^i) mod 2, of w made positive.
-            b.op(Op::Load(word), at);
-            b.op(Op::Push(1 << BITS), at);
-            b.op(Op::Arith(Arith::Add, Num::I64), at);
-            b.op(Op::Push(1 << (number % BITS)), at);
-            b.op(Op::Arith(Arith::Div, Num::I64), at);
-            b.op(Op::Push(2), at);
-            b.op(Op::Arith(Arith::Mod, Num::I64), at);
-            b.op(Op::Push(1), at);
-            b.op(Op::Compare(Cmp::Eq, Num::I64), at);
-            let next = b.jump(Op::JumpUnless, at);
-            self.empty(b, chart, at);
-            b.land(next);
+            let long = |v| Expr::long(v, NOWHERE);
+            let word = Expr::new(ExprKind::Word(Type::Int, word), NOWHERE);
+            let marked = Expr::new(ExprKind::Convert(Type::Int, Type::Lint, Box::new(word)), NOWHERE)
+                .arith(Arith::Add, Type::Lint, long(1 << BITS), NOWHERE)
+                .arith(Arith::Div, Type::Lint, long(1 << (number % BITS)), NOWHERE)
+                .arith(Arith::Mod, Type::Lint, long(2), NOWHERE)
+                .compare(Cmp::Eq, Type::Lint, long(1), NOWHERE);
+            then.push(when(marked, self.empty(chart, NOWHERE)));
         }
-        fall(b, bit);
-        b.land(skip);
+        then.push(set(asked, false));
+        then
     }
 
     /// Macro-steps called `3` or `M3`, the first of each number in each chart.
@@ -151,9 +193,24 @@ impl Lower<'_> {
     }
 }
 
-fn fall(b: &mut Buf, bit: Addr) {
-    b.op(Op::Push(0), Span::default());
-    b.op(Op::Store(bit), Span::default());
+/// The place of what no text says.
+const NOWHERE: Span = Span { file: g7_model::FileId(0), start: 0, end: 0 };
+
+fn bit(word: Addr) -> Expr {
+    Expr::new(ExprKind::Word(Type::Bool, word), NOWHERE)
+}
+
+fn set(word: Addr, value: bool) -> Stmt {
+    store_word(Type::Bool, word, Expr::truth(value, NOWHERE), NOWHERE)
+}
+
+fn request(service: Service) -> Stmt {
+    Stmt { kind: StmtKind::Service(service), at: NOWHERE }
+}
+
+fn when(condition: Expr, then: Vec<Stmt>) -> Stmt {
+    let at = condition.at;
+    Stmt { kind: StmtKind::If(vec![(condition, then)], Vec::new()), at }
 }
 
 /// What the tables of the PLCs hold (TSX Micro and Premium, PL7 manual): steps

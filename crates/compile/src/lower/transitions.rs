@@ -3,15 +3,15 @@
 //! What a task, an `enable` order or a freeze asks of a transition is ANDed to
 //! its receptivity; what a call needs of the task's steps is added to its arcs.
 
-use g7_engine::{Addr, Cmp, Guard, NONE, Num, Op, Rows, StepId as Number, Transition};
-use g7_model::Span;
+use g7_engine::{Addr, Cmp, NONE, Receptivity, Rows, StepId as Number, Transition};
+use g7_model::{Span, Type};
 
 use super::Lower;
 use super::actions::Clearing;
-use super::code::Buf;
 use super::lists::Lists;
 use super::plan::parent;
 use crate::ir::{self, ChartId, ChartRole, Expr, ExprKind, StepId, TransitionId, Value, VarClass, VarId};
+use crate::tree::{self, Gate};
 
 /// Where a transition of the program comes from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -102,8 +102,7 @@ impl Lower<'_> {
                 Origin::Return(task) => {
                     self.returning(task, &mut p);
                     let at = self.unit.charts.get(task.index()).map(|c| c.at).unwrap_or_default();
-                    let always =
-                        Expr { kind: ExprKind::Const(Value::Bool(true)), ty: g7_model::Type::Bool, at };
+                    let always = Expr { kind: ExprKind::Const(Value::Bool(true)), ty: Type::Bool, at };
                     let on_clearing = clearing.returning(task);
                     let row = self.row(&always, &p.extras, task);
                     (task, Transition { on_clearing, uncounted: true, ..row })
@@ -219,7 +218,7 @@ impl Lower<'_> {
 
     fn row(&mut self, receptivity: &Expr, extras: &[Extra], chart: ChartId) -> Transition {
         Transition {
-            guard: self.guard(receptivity, extras, chart),
+            receptivity: self.guard(receptivity, extras, chart),
             from: Number(NONE),
             to: Number(NONE),
             more_from: Rows::default(),
@@ -234,51 +233,40 @@ impl Lower<'_> {
         }
     }
 
-    fn guard(&mut self, receptivity: &Expr, extras: &[Extra], chart: ChartId) -> Guard {
+    fn guard(&mut self, receptivity: &Expr, extras: &[Extra], chart: ChartId) -> Receptivity {
         if extras.is_empty()
             && let Some(guard) = self.plain_guard(receptivity)
         {
             return guard;
         }
         let at = receptivity.at;
-        let mut b = self.buf(self.period(chart));
-        // What holds a transition back comes first: then its receptivity is not
-        // even looked at, and cannot fail.
-        for (i, e) in extras.iter().enumerate() {
-            self.extra(&mut b, e, at);
-            if i > 0 {
-                b.op(Op::And, at);
+        let held = extras.iter().map(|e| self.extra(e, at)).reduce(|all, e| all.gate(Gate::And, e, at));
+        let tree = match held {
+            None => self.expr(self.period(chart), receptivity),
+            Some(free) if is_true(receptivity) => free,
+            // What holds a transition back comes first: then its receptivity is not
+            // even looked at, and cannot fail.
+            Some(free) => {
+                let receptivity = self.expr(self.period(chart), receptivity);
+                free.gate(Gate::And, receptivity, at)
             }
-        }
-        if extras.is_empty() {
-            self.expr(&mut b, receptivity);
-        } else if self.plain_guard(receptivity).is_none() {
-            let held = b.jump(Op::JumpUnless, at);
-            self.expr(&mut b, receptivity);
-            let end = b.jump(Op::Jump, at);
-            b.land(held);
-            b.op(Op::Push(0), at);
-            b.land(end);
-        } else if !is_true(receptivity) {
-            self.expr(&mut b, receptivity);
-            b.op(Op::And, at);
-        }
-        Guard::Code(self.place(b))
+        };
+        Receptivity::Code(self.value(tree))
     }
 
     /// Receptivities that need no code.
-    fn plain_guard(&self, e: &Expr) -> Option<Guard> {
+    fn plain_guard(&self, e: &Expr) -> Option<Receptivity> {
         if is_true(e) {
-            return Some(Guard::True);
+            return Some(Receptivity::True);
         }
         let word = |var: VarId| {
             let v = self.unit.vars.get(var.index())?;
             (v.class != VarClass::Const).then(|| self.words.addr(var))
         };
         match &e.kind {
-            ExprKind::Var(v) => word(*v).map(Guard::Word),
+            ExprKind::Var(v) => word(*v).map(Receptivity::Word),
             ExprKind::Not(x) => match x.kind {
-                ExprKind::Var(v) => word(v).map(Guard::NotWord),
+                ExprKind::Var(v) => word(v).map(Receptivity::NotWord),
                 _ => None,
             },
             _ => None,
@@ -302,23 +290,19 @@ impl Lower<'_> {
         found
     }
 
-    fn extra(&mut self, b: &mut Buf, e: &Extra, at: Span) {
+    fn extra(&mut self, e: &Extra, at: Span) -> tree::Expr {
         match e {
-            Extra::Any(steps) => self.any_acting(b, steps, at),
-            Extra::Off(word) => {
-                b.op(Op::Load(*word), at);
-                b.op(Op::Not, at);
-            }
-            Extra::OwnedBy(owner, number) => owned_by(b, *owner, *number, at),
+            Extra::Any(steps) => self.any_acting(steps, at),
+            Extra::Off(word) => tree::Expr::new(tree::ExprKind::Word(Type::Bool, *word), at).negated(),
+            Extra::OwnedBy(owner, number) => owned_by(*owner, *number, at),
             Extra::Orphaned(owner, callers) => {
-                b.op(Op::Push(0), at);
+                let mut any = tree::Expr::truth(false, at);
                 for (i, caller) in callers.iter().enumerate() {
-                    owned_by(b, *owner, i as u64 + 1, at);
-                    self.acting(b, *caller, at);
-                    b.op(Op::And, at);
-                    b.op(Op::Or, at);
+                    let active = self.acting(*caller, at);
+                    let works = owned_by(*owner, i as u64 + 1, at).gate(Gate::And, active, at);
+                    any = any.gate(Gate::Or, works, at);
                 }
-                b.op(Op::Not, at);
+                any.negated()
             }
         }
     }
@@ -328,8 +312,7 @@ fn is_true(e: &Expr) -> bool {
     matches!(e.kind, ExprKind::Const(Value::Bool(true)))
 }
 
-fn owned_by(b: &mut Buf, owner: Addr, number: u64, at: Span) {
-    b.op(Op::Load(owner), at);
-    b.op(Op::Push(number), at);
-    b.op(Op::Compare(Cmp::Eq, Num::I64), at);
+fn owned_by(owner: Addr, number: u64, at: Span) -> tree::Expr {
+    let owner = tree::Expr::new(tree::ExprKind::Word(Type::Lint, owner), at);
+    owner.compare(Cmp::Eq, Type::Lint, tree::Expr::long(number as i64, at), at)
 }

@@ -7,13 +7,60 @@
 
 use std::collections::HashMap;
 
-use g7_engine::{Addr, Op, Rows, StepId as Number, Watch, WatchId};
-use g7_model::Span;
+use g7_engine::{Addr, GroupId, Op, Rows, StepId as Number, Watch, WatchId};
+use g7_model::{Span, Type};
 
 use super::Lower;
-use super::code::{Buf, Reads};
 use super::lists::Lists;
-use crate::ir::{Expr, ExprKind};
+use super::words::words_of;
+use crate::ir;
+use crate::tree::{Clock, Expr, ExprKind};
+
+/// What a watched expression reads.
+#[derive(Default)]
+struct Reads {
+    words: Vec<Addr>,
+    steps: Vec<Number>,
+    groups: Vec<GroupId>,
+    watches: Vec<WatchId>,
+    /// It reads a time or a random number, which may differ in each scan.
+    time: bool,
+}
+
+impl Reads {
+    /// `locals`: the first word that is set anew at each run. A value left in
+    /// such a word decides nothing.
+    fn add(&mut self, e: &Expr, locals: u32) {
+        e.visit(&mut |e| match &e.kind {
+            ExprKind::Word(_, addr) => self.range(*addr, 1, locals),
+            ExprKind::Element { base, len, .. } => self.range(*base, *len, locals),
+            ExprKind::Text(addr, cap) => self.range(*addr, words_of(Type::String(*cap)), locals),
+            ExprKind::Active(step) | ExprKind::WasActive(step) => self.steps.push(*step),
+            ExprKind::GroupActive(group) => self.groups.push(*group),
+            // A time goes on by itself, and starts anew within a scan.
+            ExprKind::Time(Clock::Step(step) | Clock::StepAge(step) | Clock::StepScans(step))
+            | ExprKind::Tenths(step) => {
+                self.steps.push(*step);
+                self.time = true;
+            }
+            ExprKind::Time(Clock::Group(group) | Clock::GroupAge(group) | Clock::GroupScans(group)) => {
+                self.groups.push(*group);
+                self.time = true;
+            }
+            ExprKind::Rise(watch) | ExprKind::Fall(watch) | ExprKind::Timer(watch) => {
+                self.watches.push(*watch);
+            }
+            ExprKind::ScanTime | ExprKind::Random(_) => self.time = true,
+            _ => {}
+        });
+    }
+
+    fn range(&mut self, base: Addr, len: u32, locals: u32) {
+        if base.0 < locals {
+            self.words.extend((base.0..base.0 + len).map(Addr));
+        }
+    }
+}
 
 /// What makes two watches the same.
 #[derive(PartialEq, Eq, Hash)]
@@ -34,64 +81,62 @@ pub(super) struct Watches {
 }
 
 impl Lower<'_> {
-    /// Pushes an edge of an expression.
-    pub(super) fn edge(&mut self, b: &mut Buf, e: &Expr, op: fn(WatchId) -> Op, at: Span) {
-        if matches!(e.kind, ExprKind::Const(_)) {
-            return b.op(Op::Push(0), at); // it never changes
+    /// An edge of an expression.
+    pub(super) fn edge(
+        &mut self,
+        period: u32,
+        e: &ir::Expr,
+        edge: fn(WatchId) -> ExprKind,
+        at: Span,
+    ) -> Expr {
+        if matches!(e.kind, ir::ExprKind::Const(_)) {
+            return Expr::truth(false, at); // it never changes
         }
-        let mut code = self.buf(b.period);
-        self.expr(&mut code, e);
-        let watch = self.watch(code, None);
-        b.reads.watches.push(watch);
-        b.op(op(watch), at);
+        let watched = self.expr(period, e);
+        let watch = self.watch(period, watched, None);
+        Expr::new(edge(watch), at)
     }
 
-    /// Pushes the output of a timer.
-    pub(super) fn timer(&mut self, b: &mut Buf, t1: &Expr, e: &Expr, t2: Option<&Expr>, at: Span) {
-        let mut code = self.buf(b.period);
-        self.expr(&mut code, e);
-        let mut on = self.buf(b.period);
-        self.expr(&mut on, t1);
-        let mut off = self.buf(b.period);
-        match t2 {
-            Some(t2) => self.expr(&mut off, t2),
-            None => off.op(Op::Push(0), at),
-        }
-        self.timer_of(b, code, (on, off), at);
+    /// The output of a timer.
+    pub(super) fn timer(
+        &mut self,
+        period: u32,
+        t1: &ir::Expr,
+        e: &ir::Expr,
+        t2: Option<&ir::Expr>,
+        at: Span,
+    ) -> Expr {
+        let watched = self.expr(period, e);
+        let on = self.expr(period, t1);
+        let off =
+            t2.map_or_else(|| Expr::new(ExprKind::Const(Type::Time, 0), at), |t2| self.expr(period, t2));
+        let watch = self.watch(period, watched, Some((on, off)));
+        Expr::new(ExprKind::Timer(watch), at)
     }
 
-    fn timer_of(&mut self, b: &mut Buf, code: Buf, times: (Buf, Buf), at: Span) {
-        let watch = self.watch(code, Some(times));
-        b.reads.watches.push(watch);
-        b.op(Op::Timer(watch), at);
-    }
-
-    fn watch(&mut self, code: Buf, times: Option<(Buf, Buf)>) -> WatchId {
+    fn watch(&mut self, period: u32, watched: Expr, times: Option<(Expr, Expr)>) -> WatchId {
         let id = WatchId(self.t.watches.len() as u32);
-        let known = match (code.ops.as_slice(), &times) {
-            ([Op::Load(word)], None) => *self.watches.of_words.entry((code.period, *word)).or_insert(id),
-            (ops, _) => {
-                let times = times.as_ref().map(|(on, off)| (on.ops.clone(), off.ops.clone()));
-                let key = Key { period: code.period, code: ops.to_vec(), times };
-                *self.watches.known.entry(key).or_insert(id)
+        let known = match (&watched.kind, &times) {
+            (ExprKind::Word(_, word), None) => *self.watches.of_words.entry((period, *word)).or_insert(id),
+            _ => {
+                let code = self.ops(&watched);
+                let times = times.as_ref().map(|(on, off)| (self.ops(on), self.ops(off)));
+                *self.watches.known.entry(Key { period, code, times }).or_insert(id)
             }
         };
         if known != id {
-            let (on, off) = times.unzip();
-            [Some(code), on, off].into_iter().flatten().for_each(|b| self.drop_buf(b));
             return known;
         }
-        let (mut code, mut times) = (code, times);
-        let mut reads = std::mem::take(&mut code.reads);
+        let mut reads = Reads::default();
+        reads.add(&watched, self.locals);
         // A timer that runs goes by its times as they are now.
-        if let Some((on, off)) = &mut times {
-            reads.append(&mut on.reads);
-            reads.append(&mut off.reads);
+        if let Some((on, off)) = &times {
+            reads.add(on, self.locals);
+            reads.add(off, self.locals);
         }
-        let period = code.period;
         let always = reads.time;
-        let code = self.place(code);
-        let times = times.map(|(on, off)| (self.place(on), self.place(off)));
+        let code = self.value(watched);
+        let times = times.map(|(on, off)| (self.value(on), self.value(off)));
         self.t.watches.push(Watch { code, times, always, period, watches: Rows::default() });
         self.watches.reads.push(reads);
         id

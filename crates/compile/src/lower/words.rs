@@ -149,7 +149,7 @@ pub fn words_of(ty: Type) -> u32 {
 }
 
 /// How a value of a type is read as a number; text and instances are none.
-pub(crate) fn num(ty: Type) -> Num {
+pub fn num(ty: Type) -> Num {
     match ty {
         Type::Bool => Num::Bool,
         Type::Sint => Num::I8,

@@ -1,4 +1,4 @@
-//! Pieces of a document, made by hand, each with the place of what it comes from.
+//! Makes pieces of a document, each with the place in the author's text that it comes from.
 
 use g7_model::{
     Arg, BinaryOp, Expr, ExprKind, Literal, Name, Path, Place, Stmt, StmtKind, Type, UnaryOp, VarDecl,
@@ -18,8 +18,8 @@ impl At {
         Expr { kind, at: self.0 }
     }
 
-    /// A variable by its whole name, dots and all: such names cannot be written,
-    /// so they never meet those of an author.
+    /// A variable by its full name with its dots. An author cannot write such a name, so it never
+    /// collides with one of theirs.
     pub(super) fn var(self, name: &str) -> Expr {
         self.expr(ExprKind::Path(Path { names: vec![self.name(name)] }))
     }

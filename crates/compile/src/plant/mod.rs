@@ -11,7 +11,7 @@
 //! then rates, then the rest in the order of the text, then the drives. Host
 //! runs it before each scan of the charts.
 //!
-//! What must hold: every node carries the place of the author's text that it
+//! Every node must carry the place of the author's text that it
 //! comes from, so that problems found later point there.
 
 mod build;
@@ -48,7 +48,7 @@ struct PlantDocument {
     bindings: Vec<(Box<str>, Box<str>, Expr)>,
     /// Its picture, as written.
     view: Option<Box<str>>,
-    /// The questions, as the document understands them.
+    /// The questions, in the names of this document.
     queries: Vec<Expr>,
 }
 
@@ -155,9 +155,9 @@ impl<'d> Maker<'d> {
         }
     }
 
-    /// What the file has for its plants as well: the constants that no name of the
-    /// plant hides, and the functions that it calls. Others may read variables of
-    /// the charts, which a plant does not see.
+    /// The parts of the file that its plants can use: constants that no name of the plant hides,
+    /// and functions that it calls. Other functions may read variables of the charts, which a plant
+    /// does not see.
     fn shared(&self, doc: &Document) -> Vec<Item> {
         let mut bodies: HashMap<&str, Vec<&Block>> = HashMap::new();
         for item in &doc.items {
@@ -187,7 +187,7 @@ impl<'d> Maker<'d> {
         doc.items.iter().filter_map(shared).collect()
     }
 
-    /// The charts' outputs that no name of the plant hides.
+    /// The outputs of the charts that no name of the plant hides.
     fn chart_outputs(&mut self, at: At) -> Vec<Box<str>> {
         let unit = self.unit;
         let outputs =
@@ -234,7 +234,7 @@ impl<'d> Maker<'d> {
 
     fn own(&mut self, names: &'d [Name]) {
         for name in names {
-            // Two variables of one name, the resolver tells apart; parts have none.
+            // The resolver reports two variables of one name; it does not know parts.
             let before = self.own.insert(&name.text, name.at);
             if let (Some(before), true) = (before, self.rewrite.tables.contains_key(&*name.text)) {
                 self.twice(name, before);
@@ -261,7 +261,7 @@ impl<'d> Maker<'d> {
         if p.init.len() > p.max as usize {
             bad(format!("`{}` begins with {} parts but holds {}", p.name.text, p.init.len(), p.max));
         }
-        // The position of a part on a track may stand behind its attributes.
+        // After its attributes, a part on a track may give its position.
         let (least, most) = (p.attributes.len(), p.attributes.len() + usize::from(p.length.is_some()));
         if p.init.iter().any(|part| part.len() < least || part.len() > most) {
             let track = if most > least { ", and perhaps its position" } else { "" };
@@ -300,7 +300,7 @@ impl<'d> Maker<'d> {
                 );
                 return;
             };
-            // Once for all parts, which go the same way.
+            // Made once for all parts: they move at the same rate.
             let way = t.way();
             let mut body = vec![at.assign(&way, at.binary(BinaryOp::Mul, value, at.var(STEP_LREAL)))];
             body.extend(t.advance(r.at, &at.var(&way), &length));
@@ -374,7 +374,7 @@ impl<'d> Maker<'d> {
         name
     }
 
-    /// Counts down a waiting time, which chance lengthens from `least` to `most`.
+    /// Counts down a waiting time, chosen at random between `least` and `most`.
     fn arrival(&mut self, a: &g7_model::Arrivals) {
         let at = At(a.at);
         let left = format!("{}.wait", a.name.text);
@@ -405,8 +405,8 @@ impl<'d> Maker<'d> {
     }
 }
 
-/// How the plant's output behind an input of the charts is called: the plant may
-/// have a state of the input's own name.
+/// The name of the plant's output that drives an input of the charts; the plant may have a state
+/// with the name of the input.
 fn driven(input: &str) -> String {
     format!("@drive.{input}")
 }

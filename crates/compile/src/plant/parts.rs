@@ -1,12 +1,12 @@
-//! Queues and tracks of parts, as plain variables: `max` places, each with its
-//! attributes and, on a track, its position. Place 0 is the part that came
-//! first; what leaves in the middle is closed up.
+//! Queues and tracks of parts, as plain variables: `max` places, each with its attributes and, on a
+//! track, its position. Place 0 holds the part that came first; when a part in the middle leaves,
+//! those behind it move up.
 
 use g7_model::{BinaryOp, Expr, Parts, Place, Stmt, StmtKind, Type, VarDecl, VarKind};
 
 use super::build::At;
 
-/// What is known of one queue or track.
+/// The declaration of one queue or track.
 pub(super) struct Table<'d> {
     pub(super) parts: &'d Parts,
 }
@@ -24,7 +24,7 @@ impl<'d> Table<'d> {
         self.parts.max
     }
 
-    /// How much text one look at all its parts becomes.
+    /// The amount of code that one search through all its parts needs.
     pub(super) fn size(&self) -> usize {
         (self.columns().len() + 1) * self.places() as usize
     }
@@ -55,7 +55,7 @@ impl<'d> Table<'d> {
         format!("{}.lost", self.name())
     }
 
-    /// The variables of the table, filled as the author says.
+    /// The variables of the table, with the initial values that the author gives.
     pub(super) fn declare(&self) -> Vec<VarDecl> {
         let at = At(self.parts.name.at);
         let full = self.parts.init.len().min(self.places() as usize);
@@ -79,12 +79,12 @@ impl<'d> Table<'d> {
         list
     }
 
-    /// Whether there is a part at a place.
+    /// True if there is a part at a place.
     fn taken(&self, at: At, place: u32) -> Expr {
         at.binary(BinaryOp::Gt, at.var(&self.count()), at.int(i128::from(place)))
     }
 
-    /// Whether the part at a place stands in `from .. to` (the end not included).
+    /// True if the part at a place stands in `from .. to` (the end not included).
     fn stands(&self, at: At, place: u32, range: &(Expr, Expr)) -> Expr {
         let position = at.var(&self.cell("position", place));
         let behind = at.binary(BinaryOp::Ge, position.clone(), range.0.clone());
@@ -101,7 +101,7 @@ impl<'d> Table<'d> {
             .unwrap_or_else(|| at.bool(false))
     }
 
-    /// `T.colour(from, to)`: that of the first part there, the type's zero when none.
+    /// `T.colour(from, to)`: the colour of the first part there; zero of its type if there is none.
     pub(super) fn seen(&self, at: At, column: &str, range: &(Expr, Expr)) -> Expr {
         let ty = self.columns().into_iter().find(|(name, _)| *name == column).map_or(Type::Int, |(_, ty)| ty);
         (0..self.places()).rev().fold(zero(at, ty), |rest, place| {
@@ -115,7 +115,7 @@ impl<'d> Table<'d> {
         at.var(&self.cell(column, 0))
     }
 
-    /// `T.last.colour`: of the part that came last; the type's zero when none.
+    /// `T.last.colour`: the colour of the part that came last; zero of its type if there is none.
     pub(super) fn last(&self, at: At, column: &str) -> Expr {
         let ty = self.columns().into_iter().find(|(name, _)| *name == column).map_or(Type::Int, |(_, ty)| ty);
         (0..self.places()).fold(zero(at, ty), |rest, place| {
@@ -123,7 +123,7 @@ impl<'d> Table<'d> {
         })
     }
 
-    /// `T.enter(…)`: a part joins at the back; where there is no room it is lost.
+    /// `T.enter(…)`: a part enters at the back; without room it is lost.
     pub(super) fn enter(&self, at: At, values: Vec<Expr>) -> Vec<Stmt> {
         let mut body: Vec<Stmt> = self
             .attributes()
@@ -148,22 +148,22 @@ impl<'d> Table<'d> {
         body
     }
 
-    /// An attribute of the part that is about to join.
+    /// An attribute of the part that is about to enter.
     fn joining(&self, column: &str) -> String {
         format!("@joins.{}.{column}", self.name())
     }
 
-    /// How far a rate moves the parts.
+    /// The distance by which a rate moves the parts.
     pub(super) fn way(&self) -> String {
         format!("@way.{}", self.name())
     }
 
-    /// The place of the part that is about to go.
+    /// The place of the part that is about to leave.
     fn gone(&self) -> String {
         format!("@goes.{}", self.name())
     }
 
-    /// The part at [`Table::gone`] goes; those behind move up.
+    /// Removes the part at [`Table::gone`]; those behind it move up.
     fn remove(&self, at: At) -> Vec<Stmt> {
         let mut body = Vec::new();
         for to in 0..self.places().saturating_sub(1) {
@@ -182,12 +182,12 @@ impl<'d> Table<'d> {
         body
     }
 
-    /// `T.leave()`: the part that came first goes.
+    /// `T.leave()`: the part that came first leaves.
     pub(super) fn leave(&self, at: At) -> Vec<Stmt> {
         vec![at.assign(&self.gone(), at.int(0)), at.when(self.taken(at, 0), self.remove(at))]
     }
 
-    /// `T.leave_last()`: the part that came last goes.
+    /// `T.leave_last()`: the part that came last leaves.
     pub(super) fn leave_last(&self, at: At) -> Vec<Stmt> {
         let left = at.binary(BinaryOp::Sub, at.var(&self.count()), at.int(1));
         let mut body = vec![at.assign(&self.count(), left)];
@@ -202,7 +202,7 @@ impl<'d> Table<'d> {
         vec![at.when(self.taken(at, 0), body)]
     }
 
-    /// `T.take(from, to)`: the first part there goes.
+    /// `T.take(from, to)`: the first part there leaves.
     pub(super) fn take(&self, at: At, range: &(Expr, Expr)) -> Vec<Stmt> {
         let found = |k: u32| vec![at.assign(&self.gone(), at.int(i128::from(k)))];
         let arms = (0..self.places()).map(|k| (self.stands(at, k, range), found(k))).collect();
@@ -221,7 +221,7 @@ impl<'d> Table<'d> {
         body
     }
 
-    /// Moves every part of a track by a way, held within its length.
+    /// Moves every part of a track by a distance, within its length.
     pub(super) fn advance(&self, place: Place, way: &Expr, length: &Expr) -> Vec<Stmt> {
         let at = At(place);
         (0..self.places())
@@ -240,7 +240,7 @@ pub(super) fn zero(at: At, ty: Type) -> Expr {
     match ty {
         Type::Bool => at.bool(false),
         Type::Real | Type::Lreal => at.real("0.0"),
-        Type::Time => at.expr(g7_model::ExprKind::Literal(g7_model::Literal::Time(0))),
+        Type::Time => at.expr(g7_model::ExprKind::Literal(g7_model::Literal::Time(g7_model::Nanos::ZERO))),
         _ => at.int(0),
     }
 }

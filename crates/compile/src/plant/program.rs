@@ -1,4 +1,4 @@
-//! The program of a plant, and how its words and those of the charts belong together.
+//! The program of a plant, and how its words are coupled to those of the charts.
 
 use g7_engine::{Addr, Code};
 use g7_model::{Document, Expr, Plant, Problem, ProfileName, Severity, Type, codes};
@@ -11,8 +11,8 @@ use crate::{Compiled, compile_with};
 pub struct PlantProgram {
     /// Its name.
     pub name: Box<str>,
-    /// Its program; its states are variables of these names (`level`, `Belt.count`).
-    /// Names with an `@` are its own affair.
+    /// Its program. Its states are variables of these names (`level`, `Belt.count`); names with an
+    /// `@` are internal.
     pub compiled: Compiled,
     /// From outputs of the charts to inputs of the plant.
     pub to_plant: Vec<Link>,
@@ -20,7 +20,7 @@ pub struct PlantProgram {
     pub to_charts: Vec<Link>,
     /// Its picture, as written.
     pub view: Option<Box<str>>,
-    /// What moves in the picture.
+    /// The moving parts of the picture.
     pub bindings: Vec<Binding>,
     /// The questions asked, for `engine::eval` on the plant's state.
     pub queries: Vec<Code>,
@@ -50,10 +50,10 @@ pub struct Binding {
     pub ty: Type,
 }
 
-/// The program of a plant that answers compiled charts.
+/// Compiles a plant for compiled charts.
 ///
-/// `queries` are expressions over the plant's states and the charts' outputs;
-/// those that mean nothing to the plant are problems like any other.
+/// `queries` are expressions over the plant's states and the charts' outputs; a query that the
+/// plant cannot answer is a problem like any other.
 pub fn compile_plant(
     doc: &Document,
     plant: &Plant,
@@ -63,9 +63,9 @@ pub fn compile_plant(
     let (made, mut problems) = document(doc, plant, &charts.unit, queries);
     let mut asked = made.queries;
     asked.extend(made.bindings.iter().map(|(_, _, value)| value.clone()));
-    // One pass a tick, whatever the charts' profile: a plant has no charts.
+    // A tick is one pass in every profile, because a plant has no charts.
     let (compiled, mut wrong) = compile_with(&made.document, Some(ProfileName::Iec61131), &asked);
-    // A state that nothing reads is still there to be looked at.
+    // A state that nothing reads is kept, because it can be watched.
     wrong.retain(|p| p.code != &codes::UNUSED_VARIABLE);
     problems.append(&mut wrong);
     let compiled = compiled.filter(|_| !problems.iter().any(|p| p.severity() == Severity::Error));

@@ -1,4 +1,4 @@
-//! Putting plain variables for what the plant language has of its own.
+//! Replaces the elements that only the plant language has by plain variables.
 
 use std::collections::{HashMap, HashSet};
 
@@ -25,19 +25,18 @@ pub(super) struct Rewrite<'d> {
     pub(super) called: HashSet<Box<str>>,
     /// Variables of blocks, under names of their own.
     pub(super) hidden: Vec<VarDecl>,
-    /// The variables of the block at hand, and what they are called instead.
+    /// The variables of the current block, and the names that replace them.
     pub(super) locals: HashMap<Box<str>, String>,
-    /// What all that concerns parts has become so far, in [`Table::size`].
+    /// The amount of code made for parts so far, in units of [`Table::size`].
     pub(super) spent: usize,
 }
 
-/// Most that parts may become: a plant is a small model.
+/// The largest amount of code for parts: a plant is a small model.
 const MOST: usize = 200_000;
-/// Most operators and operands of what is written out for each part.
+/// The largest number of operators and operands in an expression that is repeated for each part.
 const SMALL: usize = 64;
 
-/// Whether an expression is short and without chance, so that it can stand in
-/// several places.
+/// True if an expression is short and contains no random number, so that it can be repeated.
 fn repeats(e: &Expr) -> bool {
     fn count(e: &Expr, left: &mut usize) -> bool {
         *left = left.saturating_sub(1);
@@ -90,7 +89,7 @@ impl Rewrite<'_> {
                 at.var(name)
             }
             [table, ..] if self.tables.contains_key(table) => self.member(at, table, &names[1..]),
-            // An output of a chart: one name in the plant's own document.
+            // An output of a chart has one name in the document of the plant.
             [chart, name] if self.charts.contains(&chart) => at.var(&format!("{chart}.{name}")),
             _ => at.expr(ExprKind::Path(path.clone())),
         }
@@ -123,7 +122,7 @@ impl Rewrite<'_> {
         }
     }
 
-    /// Two arguments: where a look at a track begins and ends.
+    /// The two arguments of a range: where it begins and ends.
     fn range(&mut self, args: &[Arg]) -> Option<(Expr, Expr)> {
         match args {
             [a, b] => Some((self.bound(&a.value), self.bound(&b.value))),
@@ -131,7 +130,7 @@ impl Rewrite<'_> {
         }
     }
 
-    /// An end of a range: it is written out for each part.
+    /// A bound of a range; it is repeated for each part.
     fn bound(&mut self, e: &Expr) -> Expr {
         let bound = self.expr(e);
         if repeats(&bound) {
@@ -145,7 +144,8 @@ impl Rewrite<'_> {
         At(e.at).expr(ExprKind::Bad)
     }
 
-    /// Whether one more thing may be done with a table; said once where not.
+    /// Counts the code of one more operation on a table; false, and reported once, if it becomes too
+    /// much.
     fn afford(&mut self, at: At, table: &str) -> bool {
         let size = self.tables.get(table).map_or(0, Table::size);
         let before = self.spent <= MOST;
@@ -220,8 +220,8 @@ impl Rewrite<'_> {
         out
     }
 
-    /// Gives the variables of a block names that no other block has, and the
-    /// statements that set them to their initial values.
+    /// Gives the variables of a block unique names; returns the statements that set them to their
+    /// initial values.
     fn declare(&mut self, block: &Block) -> Vec<Stmt> {
         let mut out = Vec::new();
         for local in &block.locals {
@@ -247,7 +247,7 @@ impl Rewrite<'_> {
         out
     }
 
-    /// What a variable is called here.
+    /// The name that replaces a variable in this block.
     fn variable(&self, name: &Name) -> Name {
         let text = self.locals.get(&name.text).map_or_else(|| name.text.clone(), |n| n.as_str().into());
         Name { text, at: name.at }

@@ -1,12 +1,12 @@
-//! What every name of a document refers to: for renaming, for "go to the
-//! definition", for what a hover tells.
+//! Finds what every name of a document refers to: for renaming, for "go to the definition" and for
+//! hovers.
 //!
 //! ```text
 //! model::Document -> resolve (names) -> here: name by name, the whole document
 //! ```
 //!
-//! Names are looked up in the order of `resolve`. A name that means nothing has
-//! no entry. Plants and tests are followed too: they see the charts from outside.
+//! Names are looked up in the order of `resolve`. An unknown name has no entry. Plants and tests
+//! are followed too; they see the charts from outside.
 
 mod walk;
 
@@ -26,21 +26,21 @@ pub enum Definition {
     },
     /// A variable or constant.
     Variable {
-        /// Its chart; none for one of the file.
+        /// Its chart; `None` for one of the file.
         chart: Option<String>,
         /// Its name.
         name: String,
     },
     /// A named action.
     Action {
-        /// Its chart; none for one of the file.
+        /// Its chart; `None` for one of the file.
         chart: Option<String>,
         /// Its name.
         name: String,
     },
     /// A transition section.
     Section {
-        /// Its chart; none for one of the file.
+        /// Its chart; `None` for one of the file.
         chart: Option<String>,
         /// Its name.
         name: String,
@@ -70,15 +70,15 @@ pub enum Definition {
 pub enum Written {
     /// Where it is declared.
     Declared,
-    /// Alone, where only a name can stand.
+    /// Alone, where only a name is allowed.
     Name,
-    /// In a list of steps, where words of the language can stand too.
+    /// In a list of steps, where words of the language are allowed too.
     Step,
     /// In a path.
     Path {
         /// At its beginning.
         first: bool,
-        /// Without anything before or behind it.
+        /// Without anything before or after it.
         only: bool,
     },
     /// Within a direct name, `%X12`.
@@ -90,7 +90,7 @@ pub enum Written {
 pub struct Use {
     /// The whole word, with back-ticks and with the `X` of `X12`.
     pub at: Span,
-    /// What it refers to.
+    /// The definition that it refers to.
     pub definition: Definition,
     /// How it is written.
     pub written: Written,
@@ -105,23 +105,23 @@ pub struct References {
 }
 
 impl References {
-    /// What the name at a byte refers to; just behind a name counts.
+    /// Finds what the name at a byte refers to. The byte just after a name counts as part of it.
     pub fn at(&self, offset: u32) -> Option<&Definition> {
         self.use_at(offset).map(|u| &u.definition)
     }
 
-    /// The name at a byte; just behind a name counts.
+    /// Finds the name at a byte. The byte just after a name counts as part of it.
     pub fn use_at(&self, offset: u32) -> Option<&Use> {
         let near = self.uses.iter().filter(|u| u.at.start <= offset && offset <= u.at.end);
         near.min_by_key(|u| (offset == u.at.end, u.at.end - u.at.start))
     }
 
-    /// Every place of a name, the declaration among them.
+    /// Every place of a name, including its declaration.
     pub fn of(&self, definition: &Definition) -> Vec<Span> {
         self.uses_of(definition).map(|u| u.at).collect()
     }
 
-    /// Every use of a name, the declaration among them.
+    /// Every place where a definition is named, including its declaration.
     pub fn uses_of<'r>(&'r self, definition: &'r Definition) -> impl Iterator<Item = &'r Use> {
         self.uses.iter().filter(move |u| u.definition == *definition)
     }

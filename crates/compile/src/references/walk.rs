@@ -1,7 +1,8 @@
-//! Through the whole document, name by name.
+//! Walks through the whole document, name by name.
 
 use std::collections::HashSet;
 
+use g7_model::visit::Visitor;
 use g7_model::{
     Block, Chart, ChartItem, Document, Item, Name, Order, Placed, Plant, PlantItem, Situation, Span, Step,
     StepKind, Transition, VarDecl,
@@ -9,10 +10,9 @@ use g7_model::{
 
 use super::{Definition, Use, Written};
 use crate::ir::ChartId;
-use crate::mentions::Mentions;
 use crate::resolve::{Tracer, resolve_open};
 
-/// Every name with what it refers to.
+/// Returns every name with what it refers to.
 pub(super) fn uses(doc: &Document) -> Vec<Use> {
     let (mut unit, mut scopes, _) = resolve_open(doc, None);
     let tracer = Tracer::new(&mut unit, &mut scopes);
@@ -34,7 +34,7 @@ pub(super) fn uses(doc: &Document) -> Vec<Use> {
 struct Walk<'u, 'd> {
     tracer: Tracer<'u, 'd>,
     locals: Vec<HashSet<&'d str>>,
-    /// The plant whose names hide those of the charts, with those names.
+    /// The plant that is being walked, and its names; they hide those of the charts.
     plant: Option<(&'d Plant, HashSet<&'d str>)>,
     uses: Vec<Use>,
 }
@@ -73,7 +73,7 @@ impl<'d> Walk<'_, 'd> {
                 if let (Some(name), Some(p)) = (&t.plant, plant) {
                     self.name(name, Some(Definition::Plant(p.name.text.to_string())), Written::Name);
                 }
-                // A condition is put to the plant where the plant has the name.
+                // A condition refers to the plant if the plant declares the name.
                 self.plant = plant.map(|p| (p, plant_names(p)));
                 t.body.iter().for_each(|s| self.test(s));
                 self.plant = None;
@@ -152,7 +152,7 @@ impl<'d> Walk<'_, 'd> {
             let def = Definition::Transition { chart: chart.to_owned(), label: label.text.to_string() };
             self.add(label.at.0, def, Written::Declared);
         }
-        // In a chain the steps before are those of the transition before it.
+        // In a chain the preceding steps are those that the transition before it leads to.
         let before: &[Name] = if t.chained { &[] } else { &t.from };
         for name in before.iter().chain(&t.to) {
             let step = self.tracer.own_step(&name.text);
@@ -177,7 +177,7 @@ impl<'d> Walk<'_, 'd> {
     }
 }
 
-impl<'d> Mentions<'d> for Walk<'_, 'd> {
+impl<'d> Visitor<'d> for Walk<'_, 'd> {
     fn path(&mut self, names: &'d [Name]) {
         let local = |w: &Self, n: &Name| w.locals.iter().any(|l| l.contains(&*n.text));
         let of_plant = match (names.first(), &self.plant) {

@@ -14,14 +14,14 @@ use crate::ir::{
     Value, VarClass, VarId,
 };
 
-/// What a qualifier governs by name.
+/// The variable or named action that a qualifier drives.
 enum Governed {
     Var(VarId),
     Body(BodyId),
 }
 
 impl Resolver<'_, '_> {
-    /// Actions of all steps and all transitions of a chart.
+    /// Resolves the actions of all steps and all transitions of a chart.
     pub(super) fn fill_chart(&mut self, id: ChartId, chart: &WrittenChart) {
         let first = self.unit.charts.get(id.index()).map_or(0, |c| c.steps.start);
         for (step, written) in (first..).map(StepId).zip(chart.steps()) {
@@ -54,10 +54,11 @@ impl Resolver<'_, '_> {
         }
     }
 
-    /// A transition whose steps are all there; a receptivity that has no
-    /// meaning is never true, so that the structure can still be judged.
+    /// Resolves a transition whose steps all exist. A receptivity that cannot be resolved becomes
+    /// FALSE, so that the structure can still be checked.
     fn transition(&mut self, chart: ChartId, t: &WrittenTransition) -> Option<Transition> {
-        // In a chain the preceding steps stand in the text once, as those that the transition before leads to.
+        // In a chain the preceding steps are written once, as the succeeding steps of the
+        // transition before it.
         let from = if t.chained {
             t.from.iter().map(|n| self.scopes.step(chart, &n.text)).collect()
         } else {
@@ -88,12 +89,12 @@ impl Resolver<'_, '_> {
 
     fn steps_named(&mut self, chart: ChartId, names: &[Name]) -> Option<Vec<StepId>> {
         let mut found = Vec::with_capacity(names.len());
-        // All of them are looked at: each unknown one is a problem.
+        // Every name is looked up, so that each unknown one is reported.
         names.iter().for_each(|n| found.extend(self.step_named(chart, n)));
         (found.len() == names.len()).then_some(found)
     }
 
-    /// A BOOL, or a transition section by its name.
+    /// A receptivity: a BOOL expression, or the name of a transition section.
     fn receptivity(&mut self, e: &WrittenExpr) -> Option<Expr> {
         let section = match &e.kind {
             Form::Path(p) => self.section_named(p),
@@ -145,7 +146,8 @@ impl Resolver<'_, '_> {
         }
     }
 
-    /// `None` where an expression is written but has no meaning.
+    /// Resolves an expression that may be absent; the outer `None` means that it was written but is
+    /// wrong.
     #[allow(clippy::option_option, reason = "absent, or present and wrong")]
     fn optional(&mut self, e: Option<&WrittenExpr>, ty: Type) -> Option<Option<Expr>> {
         match e {
@@ -161,7 +163,7 @@ impl Resolver<'_, '_> {
         target: &WrittenTarget,
         condition: Option<&WrittenExpr>,
     ) -> Option<ActionKind> {
-        // A time that is missing or one too many was reported when the text was read.
+        // The parser has reported a time that is missing or not allowed.
         let timed = (time.is_some() == qualifier.timed()).then_some(());
         let time = self.optional(time, Type::Time);
         let condition = self.optional(condition, Type::Bool);
@@ -257,7 +259,7 @@ impl Resolver<'_, '_> {
                 }
                 None
             }
-            // Done when charts were linked.
+            // Charts were linked earlier.
             Order::Enclose(_) => None,
         }
     }
@@ -270,7 +272,7 @@ impl Resolver<'_, '_> {
         })
     }
 
-    /// A chart, else a variable.
+    /// Looks for a chart first, then for a variable.
     fn mask(&mut self, name: &Name) -> Option<ActionKind> {
         if let Some(chart) = self.scopes.chart(&name.text) {
             return Some(ActionKind::MaskChart(chart));

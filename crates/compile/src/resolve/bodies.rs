@@ -7,10 +7,11 @@ use g7_model::{
 
 use super::resolver::{Frame, Resolver, Role};
 use super::scopes::Entity;
+use crate::circles::closing_calls;
 use crate::ir::{Body, BodyId, ChartId, Function, FunctionId, Section, SectionId, Stmt, VarClass};
 
 impl<'d> Resolver<'_, 'd> {
-    /// The row and name of a named action.
+    /// Declares the row and the name of a named action.
     pub(super) fn declare_action(&mut self, chart: Option<ChartId>, action: &'d NamedAction) {
         let id = BodyId(self.unit.bodies.len() as u32);
         self.define(chart, &action.name, Entity::Body(id));
@@ -18,7 +19,7 @@ impl<'d> Resolver<'_, 'd> {
         self.unit.bodies.push(Body { name, chart, statements: Vec::new(), at: action.name.at.0 });
     }
 
-    /// The row, name and output of a transition section.
+    /// Declares the row, the name and the output of a transition section.
     pub(super) fn declare_section(&mut self, chart: Option<ChartId>, section: &'d WrittenSection) {
         let id = SectionId(self.unit.sections.len() as u32);
         let name = self.qualified(chart, &section.name.text);
@@ -29,7 +30,7 @@ impl<'d> Resolver<'_, 'd> {
         self.unit.sections.push(Section { name, output, statements: Vec::new(), at });
     }
 
-    /// The row, name, inputs and result of a function.
+    /// Declares the row, the name, the inputs and the result of a function.
     pub(super) fn declare_function(&mut self, function: &'d WrittenFunction) {
         let id = FunctionId(self.unit.functions.len() as u32);
         let at = function.name.at.0;
@@ -56,7 +57,7 @@ impl<'d> Resolver<'_, 'd> {
         }
     }
 
-    /// All code that belongs to no step, in the order in which it was declared.
+    /// Resolves all code outside of steps, in the order of declaration.
     pub(super) fn fill_bodies(&mut self, doc: &'d Document) {
         let mut next = Next::default();
         for item in &doc.items {
@@ -132,7 +133,7 @@ impl<'d> Resolver<'_, 'd> {
         if pre { self.unit.pre.push(body) } else { self.unit.post.push(body) }
     }
 
-    /// PRE and POST sections were read file first; they run as they stand in the text.
+    /// PRE and POST sections of the file were read first; they run in the order of the text.
     fn in_text_order(&mut self) {
         self.unit.pre.sort_by_key(|b| b.at);
         self.unit.post.sort_by_key(|b| b.at);
@@ -142,7 +143,8 @@ impl<'d> Resolver<'_, 'd> {
         self.block(body.block(), owner)
     }
 
-    /// A function that comes back to itself would need a stack without bound.
+    /// Reports functions that call themselves, directly or through others: they would need an
+    /// unbounded stack.
     fn forbid_recursion(&mut self) {
         let count = self.unit.functions.len();
         let mut callees: Vec<Vec<(usize, Span)>> = vec![Vec::new(); count];
@@ -151,42 +153,12 @@ impl<'d> Resolver<'_, 'd> {
                 list.push((to.index(), at));
             }
         }
-        let mut state = vec![Visit::New; count];
-        for start in 0..count {
-            if state.get(start) == Some(&Visit::New) {
-                self.search_circles(start, &callees, &mut state);
-            }
+        for (function, at) in closing_calls(&callees) {
+            self.recursion(function, at);
         }
     }
 
-    fn search_circles(&mut self, start: usize, callees: &[Vec<(usize, Span)>], state: &mut [Visit]) {
-        let mut way: Vec<(usize, usize)> = vec![(start, 0)];
-        if let Some(s) = state.get_mut(start) {
-            *s = Visit::Open;
-        }
-        while let Some((f, k)) = way.last_mut() {
-            let Some((to, at)) = callees.get(*f).and_then(|list| list.get(*k)).copied() else {
-                if let Some(s) = state.get_mut(*f) {
-                    *s = Visit::Done;
-                }
-                way.pop();
-                continue;
-            };
-            *k += 1;
-            match state.get(to).copied() {
-                Some(Visit::New) => {
-                    if let Some(s) = state.get_mut(to) {
-                        *s = Visit::Open;
-                    }
-                    way.push((to, 0));
-                }
-                Some(Visit::Open) => self.recursion(to, at),
-                Some(Visit::Done) | None => {}
-            }
-        }
-    }
-
-    /// The function loses its statements, so that nobody follows the circle.
+    /// The function loses its statements, so that no later stage follows the circle.
     fn recursion(&mut self, function: usize, at: Span) {
         let Some(f) = self.unit.functions.get_mut(function) else { return };
         f.statements.clear();
@@ -198,7 +170,7 @@ impl<'d> Resolver<'_, 'd> {
         );
     }
 
-    /// Sections that no transition runs.
+    /// Reports sections that no transition uses.
     pub(super) fn unused_sections(&mut self) {
         for (k, s) in self.unit.sections.iter().enumerate() {
             if self.section_uses.contains_key(&SectionId(k as u32)) {
@@ -213,18 +185,10 @@ impl<'d> Resolver<'_, 'd> {
     }
 }
 
-/// The rows to fill next: bodies are read in the order of their declaration.
+/// The rows to fill next; bodies are resolved in the order of their declaration.
 #[derive(Default)]
 struct Next {
     bodies: u32,
     sections: u32,
     functions: u32,
-}
-
-/// Of the search for circles.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Visit {
-    New,
-    Open,
-    Done,
 }

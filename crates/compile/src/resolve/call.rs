@@ -1,16 +1,16 @@
 //! Calls in expressions: functions of the document, standard functions, conversions.
 
 use g7_engine::Builtin;
-use g7_model::{Arg, Name, Path, Problem, Span, Type, codes};
+use g7_model::{Arg, Name, Nanos, Path, Problem, Span, Type, codes};
 
 use super::constant;
 use super::resolver::{Resolver, Role, nearest};
 use super::scopes::Entity;
-use super::types::{self, Typed, common, converted, is_number};
+use super::types::{Typed, common, converted};
 use crate::ir::{BinaryOp, Expr, ExprKind, FunctionId, Value};
 
 /// Nanoseconds of the unit in which TIME is converted to numbers.
-const MILLISECOND: i128 = 1_000_000;
+const MILLISECOND: i128 = Nanos::MILLISECOND.count() as i128;
 
 /// How the arguments of a standard function are typed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -359,8 +359,8 @@ impl Resolver<'_, '_> {
         let want = if matches!(from, Type::String(_)) { Type::String(g7_engine::TEXT) } else { from };
         let e = self.value(&arg.value, want)?;
         match (from, to) {
-            (Type::Time, _) if is_number(to) => self.time_as_number(e, to, at),
-            (_, Type::Time) if is_number(from) => self.number_as_time(e, at),
+            (Type::Time, _) if to.is_number() => self.time_as_number(e, to, at),
+            (_, Type::Time) if from.is_number() => self.number_as_time(e, at),
             (Type::Time, Type::Bool) | (Type::Bool | Type::String(_), Type::Time) => {
                 let what = format!("there is no conversion from {from} to {to}");
                 self.report(Problem::new(&codes::UNKNOWN_NAME, name.at.0, what))
@@ -432,7 +432,7 @@ fn shared(typed: &[Typed], shape: Shape, hint: Option<Type>) -> Option<Type> {
     let real = typed.iter().any(|t| t.literal && matches!(t.value(), Some(Value::Real(_))));
     let ty = match ty {
         // Literals alone: what the place needs, if they can take it.
-        None => match hint.filter(|h| is_number(*h) && (h.is_real() || !real)) {
+        None => match hint.filter(|h| h.is_number() && (h.is_real() || !real)) {
             Some(h) => h,
             None if real || shape == Shape::Real => Type::Lreal,
             None => Type::Dint,
@@ -441,10 +441,10 @@ fn shared(typed: &[Typed], shape: Shape, hint: Option<Type>) -> Option<Type> {
         Some(t) => t,
     };
     let fits = match shape {
-        Shape::Number => is_number(ty) || ty == Type::Time,
+        Shape::Number => ty.is_number() || ty == Type::Time,
         Shape::Real if ty.is_integer() => return common(ty, Type::Real),
         Shape::Real => ty.is_real(),
-        Shape::Ordered | Shape::Limit => is_number(ty) || ty == Type::Time,
+        Shape::Ordered | Shape::Limit => ty.is_number() || ty == Type::Time,
         _ => !matches!(ty, Type::Fb(_)),
     };
     fits.then_some(ty)
@@ -484,7 +484,8 @@ fn result_type(function: Builtin, values: &[Expr]) -> Type {
 fn conversion(name: &str) -> Option<(Type, Type)> {
     let upper = name.to_ascii_uppercase();
     let (from, to) = upper.split_once("_TO_")?;
-    Some((types::named(from)?, types::named(to)?))
+    let elementary = |name: &str| Type::named(name).filter(|ty| ty.elementary().is_some());
+    Some((elementary(from)?, elementary(to)?))
 }
 
 fn counted(n: usize) -> String {

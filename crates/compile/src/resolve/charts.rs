@@ -1,4 +1,4 @@
-//! Charts and steps: their rows and names, and how charts nest.
+//! Charts and steps: their rows, their names and how charts nest.
 
 use g7_model::{
     Action, ActionKind as Written, Chart as WrittenChart, ChartKind, Name, Order, Problem, Span, StepKind,
@@ -17,7 +17,7 @@ const DEEPEST: u32 = 64;
 enum Depth {
     /// Not known yet.
     Unknown,
-    /// On the way that is being climbed.
+    /// On the path that is being followed.
     Climbing,
     /// In so many others.
     Known(u32),
@@ -40,7 +40,7 @@ impl<'d> Resolver<'_, 'd> {
                 None if named => {
                     self.scopes.chart_names.insert(&chart.name.text, id);
                 }
-                None => {} // The name could not be read, and was reported then.
+                None => {} // The name could not be read; the parser has reported it.
             }
             let proper = chart.kind == ChartKind::Chart;
             self.scopes.charts.push(ChartScope { proper, ..ChartScope::default() });
@@ -53,7 +53,7 @@ impl<'d> Resolver<'_, 'd> {
                     ChartKind::Expansion => ChartRole::Unused,
                     ChartKind::Task => ChartRole::Task,
                 },
-                every: chart.every.unwrap_or(0),
+                every: chart.every,
                 steps: start..start,
                 transitions: 0..0,
                 entry: None,
@@ -97,7 +97,7 @@ impl<'d> Resolver<'_, 'd> {
 
     fn name_step(&mut self, chart: ChartId, name: &'d Name, id: StepId) {
         if name.text.is_empty() {
-            return; // Could not be read, and was reported then.
+            return; // The name could not be read; the parser has reported it.
         }
         let before = self.scopes.name_step(chart, &name.text, id);
         if let Some(first) = before.and_then(|s| self.unit.steps.get(s.index())) {
@@ -123,7 +123,7 @@ impl<'d> Resolver<'_, 'd> {
         );
     }
 
-    /// Joins macro-steps with their expansions, enclosing steps with their charts.
+    /// Links macro-steps to their expansions and enclosing steps to their charts.
     pub(super) fn link_charts(&mut self, charts: &[&WrittenChart]) {
         for (k, chart) in charts.iter().enumerate() {
             let first = self.unit.charts.get(k).map_or(0, |c| c.steps.start);
@@ -228,7 +228,7 @@ impl<'d> Resolver<'_, 'd> {
         self.problems.push(Problem::new(&codes::NESTED_IN_ITSELF, at, what));
     }
 
-    /// The step in which a chart lies.
+    /// The step that contains a chart.
     fn outer_step(&self, chart: ChartId) -> Option<StepId> {
         let c = self.unit.charts.get(chart.index())?;
         match c.role {
@@ -241,7 +241,7 @@ impl<'d> Resolver<'_, 'd> {
         self.unit.steps.get(self.outer_step(chart)?.index()).map(|s| s.chart)
     }
 
-    /// Whether a step lies in a chart, at most as deep as charts may nest.
+    /// True if a step lies in a chart, at whatever depth is allowed.
     fn is_within(&self, step: StepId, chart: ChartId) -> bool {
         let mut at = self.unit.steps.get(step.index()).map(|s| s.chart);
         for _ in 0..=DEEPEST {
@@ -254,8 +254,8 @@ impl<'d> Resolver<'_, 'd> {
         false
     }
 
-    /// Cuts nestings that close a circle or go too deep, so that whoever climbs
-    /// from chart to chart comes to an end.
+    /// Cuts nestings that form a circle or are too deep, so that a walk from a chart outward always
+    /// ends.
     fn cut_circles(&mut self) {
         let mut depth = vec![Depth::Unknown; self.unit.charts.len()];
         for start in 0..depth.len() {
@@ -273,8 +273,8 @@ impl<'d> Resolver<'_, 'd> {
         }
     }
 
-    /// The charts from this one outward whose depth is not known, and the depth
-    /// of the last of them. A circle on the way is cut where it closes in the text.
+    /// Returns the charts from this one outward whose depth is not known yet, and the depth of the
+    /// last of them. A circle is cut at the place that closes it in the text.
     fn climb(&mut self, start: ChartId, depth: &mut [Depth]) -> (Vec<ChartId>, u32) {
         let mut way = Vec::new();
         let mut at = start;
@@ -308,7 +308,7 @@ impl<'d> Resolver<'_, 'd> {
         }
     }
 
-    /// Takes a chart out of the step in which it lies.
+    /// Removes a chart from the step that contains it.
     fn cut(&mut self, chart: ChartId, circle: bool) {
         let Some(step) = self.outer_step(chart) else { return };
         let at = self.unit.steps.get(step.index()).map(|s| s.at).unwrap_or_default();
@@ -332,7 +332,7 @@ impl<'d> Resolver<'_, 'd> {
         }
     }
 
-    /// `G.M3`: how steps of an expansion are called in traces. Circles are cut.
+    /// `G.M3`: the prefix of steps of an expansion in traces. Circles are cut.
     fn name_paths(&mut self) {
         for k in 0..self.unit.charts.len() {
             let mut parts: Vec<Box<str>> = Vec::new();

@@ -1,13 +1,13 @@
 //! Arithmetic on constants, with the overflow rules of the engine.
 //!
-//! Untyped literals are computed in `i128` and `f64` and take a type when they
-//! meet one; typed constants are computed in their type.
+//! Untyped literals are computed in `i128` and `f64` and take a type when they meet one. Typed
+//! constants are computed in their type.
 
 use g7_model::Type;
 
 use crate::ir::{BinaryOp, Value};
 
-/// Why constants have no result.
+/// Why a constant expression has no result.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Fault {
     /// Beyond the type.
@@ -16,10 +16,10 @@ pub(super) enum Fault {
     Division,
 }
 
-/// The result, `None` where it is left to the run.
+/// The result; `None` if it is left to the run.
 type Folded = Result<Option<Value>, Fault>;
 
-/// An operator between two untyped literals; the flag says whether the result is one too.
+/// Applies an operator to two untyped literals. The flag is true if the result is untyped too.
 pub(super) fn literals(op: BinaryOp, a: &Value, b: &Value) -> Result<Option<(Value, bool)>, Fault> {
     let compared = |o: Option<std::cmp::Ordering>| Ok(compare(op, o).map(|b| (Value::Bool(b), false)));
     match (a, b) {
@@ -41,7 +41,7 @@ pub(super) fn literals(op: BinaryOp, a: &Value, b: &Value) -> Result<Option<(Val
     }
 }
 
-/// An operator between two constants of one type (the type of the operands).
+/// Applies an operator to two constants of one type.
 pub(super) fn binary(op: BinaryOp, ty: Type, a: &Value, b: &Value) -> Folded {
     match (a, b) {
         (Value::Bool(x), Value::Bool(y)) => Ok(match op {
@@ -68,11 +68,11 @@ pub(super) fn binary(op: BinaryOp, ty: Type, a: &Value, b: &Value) -> Folded {
     }
 }
 
-/// TIME times or by a number.
+/// Multiplies or divides a TIME by a number.
 pub(super) fn scaled(op: BinaryOp, time: &Value, by: &Value) -> Folded {
     match (time, by) {
         (Value::Int(_), Value::Int(_)) => binary(op, Type::Lint, time, by),
-        // The engine's rounding is not repeated here.
+        // Rounding is done by the engine only.
         (Value::Int(_), Value::Real(0.0)) if op == BinaryOp::Div => Err(Fault::Division),
         _ => Ok(None),
     }
@@ -87,7 +87,7 @@ pub(super) fn negate(ty: Type, v: &Value) -> Folded {
     }
 }
 
-/// From one type to another, as the engine converts.
+/// Converts a constant as the engine converts values.
 pub(super) fn convert(v: &Value, to: Type) -> Folded {
     match (v, to) {
         (Value::Bool(_), Type::Bool) | (Value::Str(_), Type::String(_)) => Ok(Some(v.clone())),
@@ -120,7 +120,7 @@ fn real_to_whole(x: f64, to: Type) -> Folded {
     if x.abs() < 1e30 { fit(to, x as i128).map(|n| Some(Value::Int(n))) } else { Err(Fault::Overflow) }
 }
 
-/// Whether a type holds the whole number.
+/// True if a type holds the whole number.
 pub(super) fn fit(ty: Type, v: i128) -> Result<i128, Fault> {
     let (least, most) = match ty {
         Type::Time => (i64::MIN.into(), i64::MAX.into()),
@@ -185,7 +185,7 @@ fn real(op: BinaryOp, a: f64, b: f64) -> Result<Option<f64>, Fault> {
     }))
 }
 
-/// A comparison; "not a number" is only unequal.
+/// Compares two values; "not a number" is unequal to everything.
 fn compare(op: BinaryOp, order: Option<std::cmp::Ordering>) -> Option<bool> {
     let holds = |f: fn(std::cmp::Ordering) -> bool| Some(order.is_some_and(f));
     match op {

@@ -1,8 +1,8 @@
-//! Expressions: names to rows of the tables, and a type for every node.
+//! Expressions: names become rows of the tables, and every node gets a type.
 //!
-//! `infer` finds the type that an expression has by itself; `value` gives it the
-//! type that its place needs. A hint goes downward only for functions whose
-//! result follows the place (TRUNC, SQRT of a literal).
+//! `infer` finds the type that an expression has by itself; `value` gives it the type that its
+//! place needs. A hint goes down only for functions whose result depends on the place (TRUNC, SQRT
+//! of a literal).
 
 use g7_model::{Arg, Expr as Written, ExprKind as Form, Literal, Path, Problem, Span, Type, UnaryOp, codes};
 
@@ -11,11 +11,11 @@ use super::operator;
 use super::refer::{Ref, Unit as TimeUnit};
 use super::resolver::{Resolver, Role};
 use super::scopes::Entity;
-use super::types::{Typed, is_number};
+use super::types::Typed;
 use crate::ir::{Expr, ExprKind, Value, VarClass};
 
 impl Resolver<'_, '_> {
-    /// An expression of the type that is needed here.
+    /// Resolves an expression of the type that is needed here.
     pub(super) fn value(&mut self, e: &Written, want: Type) -> Option<Expr> {
         let typed = self.infer(e, Some(want))?;
         self.coerce(typed, want)
@@ -26,13 +26,13 @@ impl Resolver<'_, '_> {
         self.value(e, Type::Bool)
     }
 
-    /// An expression of whatever type it has.
+    /// Resolves an expression of any type.
     pub(super) fn any_value(&mut self, e: &Written) -> Option<Expr> {
         let typed = self.infer(e, None)?;
         self.settle(typed)
     }
 
-    /// The expression with its own type.
+    /// Resolves an expression in its own type.
     pub(super) fn infer(&mut self, e: &Written, hint: Option<Type>) -> Option<Typed> {
         let at = e.at.0;
         match &e.kind {
@@ -50,8 +50,8 @@ impl Resolver<'_, '_> {
         }
     }
 
-    /// Operators in a row, `a or b or c …`: a loop over the left operands, so
-    /// that a long row costs no stack.
+    /// Resolves a chain of operators, `a or b or c …`, with a loop over the left operands, so that
+    /// a long chain needs no stack.
     fn chain(&mut self, e: &Written, hint: Option<Type>) -> Option<Typed> {
         let Form::Binary(op, left, right) = &e.kind else { return None };
         if !matches!(left.kind, Form::Binary(..)) {
@@ -69,7 +69,8 @@ impl Resolver<'_, '_> {
         }
         let mut result = self.infer(left, hint);
         while let Some((op, right, at, hint)) = rest.pop() {
-            // The right side is read even where the left one failed: its problems count too.
+            // The right side is resolved even if the left one failed, so that its problems are
+            // reported too.
             let right = self.infer(right, hint);
             result = match (result, right) {
                 (Some(a), Some(b)) => self.combine(op, a, b, at),
@@ -90,7 +91,9 @@ impl Resolver<'_, '_> {
                     self.report(Problem::new(&codes::OUT_OF_RANGE, at, what))
                 }
             },
-            Literal::Time(ns) => Some(Typed::constant(Value::Int(i128::from(*ns)), Type::Time, at)),
+            Literal::Time(time) => {
+                Some(Typed::constant(Value::Int(i128::from(time.count())), Type::Time, at))
+            }
             Literal::Str(s) => {
                 let Some(len) = u16::try_from(s.len()).ok().filter(|n| *n <= g7_engine::TEXT) else {
                     let what = format!("a text has at most {} bytes", g7_engine::TEXT);
@@ -115,7 +118,7 @@ impl Resolver<'_, '_> {
         self.read(r, at)
     }
 
-    /// A constant that uses itself, or one declared further down.
+    /// Reports a constant that uses itself, or one that is declared later.
     fn not_yet_known(&mut self, name: &g7_model::Name) -> Option<()> {
         let Some(Entity::Var(v)) = self.entity(&name.text) else { return Some(()) };
         if !self.pending.contains(&v) {
@@ -190,11 +193,11 @@ impl Resolver<'_, '_> {
             return Some(Typed::untyped(negated, at));
         }
         let signed = ty.bounds().is_none_or(|(least, _)| least < 0);
-        if !(is_number(ty) || ty == Type::Time) || !signed {
+        if !(ty.is_number() || ty == Type::Time) || !signed {
             let problem = Problem::new(&codes::WRONG_OPERANDS, at, format!("{ty} has no minus sign"));
             return self.report(match ty {
                 Type::Bool => problem.help("the complement is written `not`"),
-                _ if is_number(ty) => problem.help(format!("convert it first, as in `-{ty}_TO_DINT(…)`")),
+                _ if ty.is_number() => problem.help(format!("convert it first, as in `-{ty}_TO_DINT(…)`")),
                 _ => problem,
             });
         }
@@ -221,7 +224,7 @@ impl Resolver<'_, '_> {
         Some(Typed::of(kind, Type::Bool, at))
     }
 
-    /// A BOOL that is looked at in every pass, outside of any run.
+    /// A BOOL that is evaluated in every pass, outside of any body.
     pub(super) fn watched(&mut self, e: &Written) -> Option<Expr> {
         self.within_watch(|r| r.condition(e))
     }
@@ -233,7 +236,7 @@ impl Resolver<'_, '_> {
         result
     }
 
-    /// Edges and delays remember the scan before; not all code has one.
+    /// Edges and delays need a memory of the scan before, which some code does not have.
     fn allow_watch(&mut self, what: &str, at: Span) -> Option<()> {
         let place = match self.frame.role {
             Role::Code | Role::Section(_) => return Some(()),
@@ -248,7 +251,7 @@ impl Resolver<'_, '_> {
         })
     }
 
-    /// The arguments of a call that failed: their own problems count too.
+    /// Resolves the arguments of a call that failed, so that their problems are reported too.
     pub(super) fn read_all(&mut self, args: &[Arg]) {
         for a in args.iter().filter(|a| !a.output) {
             let _ = self.infer(&a.value, None);

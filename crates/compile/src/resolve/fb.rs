@@ -5,7 +5,7 @@ use g7_model::{Arg, ExprKind as Form, FbKind, Name, Problem, Span, Type, codes};
 use super::resolver::{Resolver, Role, nearest};
 use crate::ir::{Expr, StmtKind, Target, VarId};
 
-/// The place of a member; RESET and LOAD are the standard's long names.
+/// The index of a member; RESET and LOAD are the long names in the standard.
 pub(super) fn member(kind: FbKind, name: &str) -> Option<u8> {
     let find = |n: &str| kind.members().iter().position(|m| m.0.eq_ignore_ascii_case(n));
     let place = find(name).or_else(|| match name.to_ascii_uppercase().as_str() {
@@ -64,7 +64,7 @@ impl Resolver<'_, '_> {
         complete.then_some(StmtKind::Fb { var, kind, inputs, outputs })
     }
 
-    /// Function blocks remember, so functions and sections have none.
+    /// Function blocks have a memory; functions and sections must not have one.
     fn may_call(&mut self, name: &Name) -> Option<()> {
         let place = match self.frame.role {
             Role::Code => return Some(()),

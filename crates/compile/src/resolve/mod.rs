@@ -34,7 +34,7 @@ mod trace;
 mod types;
 mod vars;
 
-use g7_model::{Chart, ChartItem, Document, Expr as Written, Item, Problem, ProfileName, Type, codes};
+use g7_model::{Chart, ChartItem, Document, Expr as Written, Item, Nanos, Problem, ProfileName, Type, codes};
 
 use crate::ir::{ChartId, Expr, Unit};
 use resolver::{Frame, Resolver, Role};
@@ -43,16 +43,15 @@ pub use scopes::Scopes;
 pub(crate) use trace::Tracer;
 
 /// Nominal scan time where none is written: 10 ms.
-const CYCLE: i64 = 10_000_000;
+const CYCLE: Nanos = Nanos::from_millis(10);
 
-/// The typed form of a document, and what was wrong with it. A profile given
-/// here stands in the place of the document's, switches included.
+/// Resolves a document. A profile given here replaces the one of the document, switches included.
 pub fn resolve(doc: &Document, profile: Option<ProfileName>) -> (Unit, Vec<Problem>) {
     let (unit, _, problems) = resolve_open(doc, profile);
     (unit, problems)
 }
 
-/// The same, with the names kept for later questions ([`resolve_query`]).
+/// Resolves a document and keeps the names for later questions ([`resolve_query`]).
 pub fn resolve_open(doc: &Document, profile: Option<ProfileName>) -> (Unit, Scopes<'_>, Vec<Problem>) {
     let mut unit = Unit::default();
     let mut scopes = Scopes::default();
@@ -75,9 +74,9 @@ pub fn resolve_open(doc: &Document, profile: Option<ProfileName>) -> (Unit, Scop
     (unit, scopes, problems)
 }
 
-/// An expression of a test or of the debugger, seen from a chart or from the
-/// file; of whatever type it has, or of the one given. It can read any variable
-/// and any step, but has no edges and no delays: they need a scan before.
+/// Resolves an expression of a test or of the debugger, seen from a chart or from the file, in its
+/// own type or in the one given. It can read any variable and any step. It has no edges and no
+/// delays, because these need a scan before.
 pub fn resolve_query<'d>(
     unit: &mut Unit,
     scopes: &mut Scopes<'d>,
@@ -99,9 +98,9 @@ fn settings(doc: &Document, unit: &mut Unit, problems: &mut Vec<Problem>) {
     let (mut cycle, mut target) = (None, None);
     for item in &doc.items {
         let (what, at, before) = match item {
-            Item::Cycle(ns, at) => {
-                unit.cycle = if cycle.is_none() { *ns } else { unit.cycle };
-                if *ns <= 0 {
+            Item::Cycle(time, at) => {
+                unit.cycle = if cycle.is_none() { *time } else { unit.cycle };
+                if *time <= Nanos::ZERO {
                     problems.push(Problem::new(&codes::OUT_OF_RANGE, at.0, "a scan takes more than no time"));
                 }
                 ("the scan time", at.0, cycle.replace(at.0))
@@ -117,12 +116,12 @@ fn settings(doc: &Document, unit: &mut Unit, problems: &mut Vec<Problem>) {
             problems.push(problem.related(before, "given here first"));
         }
     }
-    if unit.cycle <= 0 {
+    if unit.cycle <= Nanos::ZERO {
         unit.cycle = CYCLE;
     }
 }
 
-/// All names but those of charts and steps; then the values of the variables,
+/// Declares all names except those of charts and steps; then resolves the values of the variables,
 /// those of the file first.
 fn declare_names<'d>(r: &mut Resolver<'_, 'd>, doc: &'d Document, charts: &[&'d Chart]) {
     let mut declared = Vec::new();

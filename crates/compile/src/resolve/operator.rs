@@ -1,40 +1,18 @@
 //! Operators between two typed operands.
 
-use g7_model::{BinaryOp as Sign, Problem, Span, Type, codes};
+use g7_model::{BinaryOp as Sign, Operands, Problem, Span, Type, codes};
 
 use super::constant;
 use super::resolver::Resolver;
-use super::types::{Typed, common, converted, is_number};
+use super::types::{Typed, common, converted};
 use crate::ir::{BinaryOp, Expr, ExprKind, Value};
 
-/// Whether the result has the type of the operands, so that a hint goes down to them.
+/// True if the result has the type of the operands, so that a hint goes down to them.
 pub(super) fn keeps_type(sign: Sign) -> bool {
-    matches!(sign, Sign::Add | Sign::Sub | Sign::Mul | Sign::Div | Sign::Mod | Sign::Pow)
+    sign.row().operands == Operands::Arithmetic
 }
 
-/// As written in messages.
-fn symbol(sign: Sign) -> &'static str {
-    match sign {
-        Sign::Or => "or",
-        Sign::Xor => "xor",
-        Sign::And => "and",
-        Sign::Dot => "·",
-        Sign::Eq => "=",
-        Sign::Ne => "<>",
-        Sign::Lt => "<",
-        Sign::Le => "<=",
-        Sign::Gt => ">",
-        Sign::Ge => ">=",
-        Sign::Add => "+",
-        Sign::Sub => "-",
-        Sign::Mul => "*",
-        Sign::Div => "/",
-        Sign::Mod => "mod",
-        Sign::Pow => "**",
-    }
-}
-
-/// The operator between numbers; `None` for those of BOOL alone.
+/// The operator of the typed tree: there `·` is an AND like any other.
 fn numeric(sign: Sign) -> BinaryOp {
     match sign {
         Sign::Or => BinaryOp::Or,
@@ -56,7 +34,7 @@ fn numeric(sign: Sign) -> BinaryOp {
 }
 
 fn compares(sign: Sign) -> bool {
-    matches!(sign, Sign::Eq | Sign::Ne | Sign::Lt | Sign::Le | Sign::Gt | Sign::Ge)
+    sign.row().operands == Operands::Comparison
 }
 
 impl Resolver<'_, '_> {
@@ -77,10 +55,10 @@ impl Resolver<'_, '_> {
         }
     }
 
-    /// Of BOOL; 0 and 1 count as FALSE and TRUE.
+    /// Resolves a logical operator; its operands are BOOL, or the literals 0 and 1.
     fn logic(&mut self, sign: Sign, op: BinaryOp, a: Typed, b: Typed, at: Span) -> Option<Typed> {
         let logical = |t: &Typed| t.expr.ty == Type::Bool || t.truth_literal();
-        if !logical(&a) && !logical(&b) && is_number(a.expr.ty) && is_number(b.expr.ty) {
+        if !logical(&a) && !logical(&b) && a.expr.ty.is_number() && b.expr.ty.is_number() {
             return self.wrong_operands(sign, &a, &b, at);
         }
         let a = self.coerce(a, Type::Bool);
@@ -88,7 +66,7 @@ impl Resolver<'_, '_> {
         self.finish(op, a?, b?, Type::Bool, at)
     }
 
-    /// Two untyped literals stay one, but for comparisons.
+    /// Two untyped literals give an untyped literal, except in a comparison.
     fn literals(&mut self, sign: Sign, a: Typed, b: Typed, at: Span) -> Option<Typed> {
         let (Some(x), Some(y)) = (a.value(), b.value()) else { return None };
         match constant::literals(numeric(sign), x, y) {
@@ -107,7 +85,7 @@ impl Resolver<'_, '_> {
     }
 
     fn arithmetic(&mut self, sign: Sign, a: Typed, b: Typed, at: Span) -> Option<Typed> {
-        let Some(ty) = meeting(&a, &b).filter(|t| is_number(*t)) else {
+        let Some(ty) = meeting(&a, &b).filter(|t| t.is_number()) else {
             return self.wrong_operands(sign, &a, &b, at);
         };
         if sign == Sign::Mod && !ty.is_integer() {
@@ -118,9 +96,9 @@ impl Resolver<'_, '_> {
         self.finish(numeric(sign), a?, b?, ty, at)
     }
 
-    /// `a ** b` is computed in LREAL; the result is REAL unless LREAL goes in.
+    /// Resolves `a ** b`. It is computed in LREAL; the result is REAL unless an operand is LREAL.
     fn power(&mut self, a: Typed, b: Typed, at: Span) -> Option<Typed> {
-        let fine = |t: &Typed| t.literal || is_number(t.expr.ty);
+        let fine = |t: &Typed| t.literal || t.expr.ty.is_number();
         if !fine(&a) || !fine(&b) {
             return self.wrong_operands(Sign::Pow, &a, &b, at);
         }
@@ -136,10 +114,10 @@ impl Resolver<'_, '_> {
         Some(Typed { expr, literal: false })
     }
 
-    /// Sums of TIME; TIME times and by a number.
+    /// Resolves sums of TIME, and TIME times or divided by a number.
     fn with_time(&mut self, sign: Sign, a: Typed, b: Typed, at: Span) -> Option<Typed> {
         let time = |t: &Typed| !t.literal && t.expr.ty == Type::Time;
-        let number = |t: &Typed| t.literal || is_number(t.expr.ty);
+        let number = |t: &Typed| t.literal || t.expr.ty.is_number();
         match sign {
             Sign::Add | Sign::Sub if time(&a) && time(&b) => {
                 self.finish(numeric(sign), a.expr, b.expr, Type::Time, at)
@@ -168,7 +146,7 @@ impl Resolver<'_, '_> {
         Some(Typed::of(kind, Type::Time, at))
     }
 
-    /// Operands of one type; constants are computed at once.
+    /// Builds an operator whose operands have one type; constants are computed at once.
     fn finish(&mut self, op: BinaryOp, a: Expr, b: Expr, ty: Type, at: Span) -> Option<Typed> {
         if let (ExprKind::Const(x), ExprKind::Const(y)) = (&a.kind, &b.kind) {
             match constant::binary(op, a.ty, x, y) {
@@ -181,7 +159,7 @@ impl Resolver<'_, '_> {
         Some(Typed::of(ExprKind::Binary(op, Box::new(a), Box::new(b)), ty, at))
     }
 
-    /// A division by a written zero fails whatever is divided.
+    /// Reports a division by a literal zero.
     fn sure_division(&mut self, op: BinaryOp, b: &Expr) -> Option<()> {
         let zero = match &b.kind {
             ExprKind::Const(Value::Int(n)) => *n == 0,
@@ -200,7 +178,7 @@ impl Resolver<'_, '_> {
             Some(_) if t.literal => "a whole number".to_owned(),
             _ => t.expr.ty.to_string(),
         };
-        let what = format!("`{}` cannot stand between {} and {}", symbol(sign), name(a), name(b));
+        let what = format!("`{}` cannot stand between {} and {}", sign.row().sign, name(a), name(b));
         let problem = Problem::new(&codes::WRONG_OPERANDS, at, what);
         self.report(match help(sign, a, b) {
             Some(h) => problem.help(h),
@@ -217,7 +195,7 @@ fn meeting(a: &Typed, b: &Typed) -> Option<Type> {
         _ => return common(a.expr.ty, b.expr.ty),
     };
     match literal.value()? {
-        Value::Int(_) if is_number(other) || other == Type::Bool => Some(other),
+        Value::Int(_) if other.is_number() || other == Type::Bool => Some(other),
         Value::Real(_) if other.is_integer() => common(other, Type::Real),
         Value::Real(_) if other.is_real() => Some(other),
         _ => None,
@@ -226,7 +204,7 @@ fn meeting(a: &Typed, b: &Typed) -> Option<Type> {
 
 fn help(sign: Sign, a: &Typed, b: &Typed) -> Option<String> {
     let has = |ty: Type| [a, b].iter().any(|t| !t.literal && t.expr.ty == ty);
-    let numbers = [a, b].iter().all(|t| t.literal || is_number(t.expr.ty));
+    let numbers = [a, b].iter().all(|t| t.literal || t.expr.ty.is_number());
     if has(Type::Time) && (a.literal || b.literal) {
         return Some("write a duration, as in `5s`".to_owned());
     }

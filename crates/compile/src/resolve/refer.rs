@@ -1,9 +1,8 @@
-//! What a path or a direct name stands for (grammar.md, "A `path` names").
+//! Finds what a path or a direct name refers to (grammar.md, "A `path` names").
 //!
-//! In order: a local of the block, a variable of the chart, a variable of the
-//! file, `Chart.variable`, a member of a function block, the activity of a
-//! step, the time since its activation. So a variable called `X12` hides the
-//! activity of step 12.
+//! The order is: a local of the block, a variable of the chart, a variable of the file,
+//! `Chart.variable`, a member of a function block, the activity of a step, the time since its
+//! activation. So a variable called `X12` hides the activity of step 12.
 
 use g7_model::{Name, Problem, ProfileName, Span, Type, codes};
 
@@ -11,7 +10,7 @@ use super::resolver::{Resolver, Role, nearest};
 use super::scopes::{Entity, Home, Homes, normal_address};
 use crate::ir::{ChartId, ChartRole, StepId, StepSort, VarClass, VarId};
 
-/// What a path stands for.
+/// The meaning of a path.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Ref {
     /// A variable, or the output of a section.
@@ -35,7 +34,7 @@ pub(super) enum Unit {
     Seconds,
 }
 
-/// Why a path stands for nothing. Numbers are places in the path.
+/// Why a path refers to nothing. Numbers are positions in the path.
 enum Miss {
     /// No such name, here or in this chart.
     Name(usize, Option<ChartId>),
@@ -56,10 +55,10 @@ enum Miss {
 }
 
 impl Resolver<'_, '_> {
-    /// What the names stand for; reports where they stand for nothing.
+    /// Finds what the names refer to; reports a problem if they refer to nothing.
     pub(super) fn refer(&mut self, names: &[Name]) -> Option<Ref> {
         if names.iter().any(|n| n.text.is_empty()) {
-            return None; // Could not be read, and was reported then.
+            return None; // The name could not be read; the parser has reported it.
         }
         match self.lookup(names) {
             Ok(r) => Some(r),
@@ -108,7 +107,7 @@ impl Resolver<'_, '_> {
         }
     }
 
-    /// A local, then what the chart and the file know by this name.
+    /// Looks for a local, then for a name of the chart and of the file.
     pub(super) fn entity(&self, name: &str) -> Option<Entity> {
         match self.frame.locals.get(name) {
             Some(v) => Some(Entity::Var(*v)),
@@ -127,7 +126,7 @@ impl Resolver<'_, '_> {
         }
     }
 
-    /// `names[k..]` in a chart that has been named.
+    /// Resolves `names[k..]` in the chart that was named before them.
     fn of_chart(&self, chart: ChartId, names: &[Name], k: usize) -> Result<Ref, Miss> {
         let Some(name) = names.get(k) else { return Err(Miss::NoValue(k.saturating_sub(1), "a chart")) };
         let entity = self.scopes.of_chart(chart, &name.text);
@@ -199,7 +198,7 @@ impl Resolver<'_, '_> {
         }
     }
 
-    /// `X12`, `XFill`, `XM3` (of macro-step `M3` or `3`).
+    /// `X12`, `XFill`, `XM3` (of macro-step `M3` or `3`): the activity of a step.
     pub(super) fn activity(&self, chart: Option<ChartId>, name: &str) -> Option<Home> {
         let step = name.strip_prefix('X').filter(|s| !s.is_empty())?;
         let find = |name: &str| match chart {
@@ -227,7 +226,7 @@ impl Resolver<'_, '_> {
         }
     }
 
-    /// The problem behind a miss.
+    /// The problem to report if nothing was found.
     fn explain(&mut self, names: &[Name], miss: &Miss) -> Problem {
         let at = |k: usize| names.get(k).or(names.last()).map_or(Span::default(), |n| n.at.0);
         let text = |k: usize| names.get(k).or(names.last()).map_or("", |n| &*n.text);
@@ -280,8 +279,8 @@ impl Resolver<'_, '_> {
         problem
     }
 
-    /// The BOOL variable meant by a letter with a macron (`ā`), which looks like
-    /// an overline but is a letter of its own.
+    /// The BOOL variable that was probably meant by a letter with a macron (`ā`): it looks like an
+    /// overline but is a letter of its own.
     fn overlined(&self, name: &str, chart: Option<ChartId>) -> Option<String> {
         let base: String = name.chars().map(|c| without_macron(c).unwrap_or(c)).collect();
         if base == name {
@@ -292,7 +291,7 @@ impl Resolver<'_, '_> {
         (self.var(v)?.ty == Type::Bool).then_some(base)
     }
 
-    /// Among the variables of the named chart, or of the file and the chart at hand.
+    /// Searches the variables of the named chart, or of the file and the current chart.
     fn guess(&self, name: &str, chart: Option<&str>) -> Option<String> {
         let here = self.frame.chart.and_then(|c| self.unit.charts.get(c.index())).map(|c| &*c.name);
         let seen = self.unit.vars.iter().filter_map(|v| match v.name.split_once('.') {
@@ -340,7 +339,7 @@ impl Resolver<'_, '_> {
         Problem::new(&codes::UNKNOWN_MEMBER, at, what).help(help)
     }
 
-    /// How the activity of a step is written from anywhere.
+    /// The activity of a step, written so that it is valid anywhere.
     pub(super) fn activity_path(&self, step: StepId) -> String {
         let Some(s) = self.unit.steps.get(step.index()) else { return String::new() };
         let unique = matches!(self.scopes.step_homes.get(&*s.name), Some(Homes::One(..)));
@@ -352,7 +351,7 @@ impl Resolver<'_, '_> {
         }
     }
 
-    /// What a direct name stands for: `text` is upper case, without its `%`.
+    /// Finds what a direct name refers to: `text` is in upper case, without its `%`.
     pub(super) fn refer_direct(&mut self, text: &str, at: Span) -> Option<Ref> {
         if let Some(v) = self.scopes.addresses.get(&normal_address(text)) {
             return Some(Ref::Var(*v));
@@ -372,7 +371,7 @@ impl Resolver<'_, '_> {
         })
     }
 
-    /// The variable behind a system bit or word, made where it is first named.
+    /// The variable of a system bit or word; it is made when it is first named.
     fn system(&mut self, text: &str, ty: Type, at: Span) -> VarId {
         let v = self.add_var(format!("%{text}").into(), VarClass::System, ty, at);
         self.scopes.addresses.insert(text.to_owned(), v);
@@ -416,7 +415,7 @@ impl Resolver<'_, '_> {
         Some(ChartId(k as u32))
     }
 
-    /// Macro-step 3, called `3` or `M3`: of the first chart, else the only one.
+    /// Macro-step 3, called `3` or `M3`: of the current chart, else the only one.
     pub(super) fn macro_step(&self, number: &str) -> Option<StepId> {
         [number.to_owned(), format!("M{number}")].iter().find_map(|name| {
             let own = self.first_chart().and_then(|c| self.scopes.step(c, name));
@@ -432,7 +431,7 @@ impl Resolver<'_, '_> {
         self.macro_step(number).and_then(|s| self.expansion(s))
     }
 
-    /// Whether code in this place may read it; reports where not.
+    /// Checks that code in this place may read it; reports a problem if not.
     pub(super) fn may_read(&mut self, r: Ref, at: Span) -> bool {
         let class = match r {
             Ref::Var(v) => self.var(v).map(|v| v.class),
@@ -487,7 +486,7 @@ fn system_type(text: &str) -> Option<Type> {
     match text {
         "S0" | "S1" | "S21" | "S22" | "S23" | "S24" | "S25" => Some(Type::Bool),
         "SW20" | "SW21" => Some(Type::Int),
-        // Masks of macro-steps: all sixteen bits count.
+        // Masks of macro-steps use all sixteen bits.
         "SW22" | "SW23" | "SW24" | "SW25" => Some(Type::Uint),
         _ => None,
     }

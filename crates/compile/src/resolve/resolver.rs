@@ -2,15 +2,16 @@
 
 use std::collections::{HashMap, HashSet};
 
-use g7_model::{Name, Problem, Span, Type, codes};
+use g7_model::{Holds, Name, Problem, Span, Type, codes};
 
 use super::scopes::Scopes;
 use crate::ir::{ChartId, FunctionId, SectionId, Unit, Value, Var, VarClass, VarId};
 
-/// Unknown names that get a "did you mean": each costs a look at all names.
+/// The number of unknown names that get a "did you mean": each one costs a search through all
+/// names.
 const GUESSES: u32 = 100;
 
-/// What sort of code is being read; it decides what may stand there.
+/// The kind of code that is being resolved; it decides what is allowed there.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) enum Role {
     /// A receptivity, condition, action or body.
@@ -29,15 +30,15 @@ pub(super) enum Role {
 /// The surroundings of the code being read.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Frame {
-    /// Names are looked up in this chart first.
+    /// The chart in which names are looked up first.
     pub(super) chart: Option<ChartId>,
-    /// What sort of code.
+    /// The kind of code.
     pub(super) role: Role,
-    /// Variables of the block's own.
+    /// The variables of the block itself.
     pub(super) locals: HashMap<Box<str>, VarId>,
-    /// Loops around the statement.
+    /// The number of loops around the statement.
     pub(super) loops: u32,
-    /// Inside the operand of an edge or a timer, which is looked at outside of any run.
+    /// True inside the operand of an edge or a timer, which is evaluated outside of any body.
     pub(super) watched: bool,
 }
 
@@ -51,7 +52,7 @@ pub(super) struct Resolver<'u, 'd> {
     pub(super) calls: Vec<(FunctionId, FunctionId, Span)>,
     /// Constants whose values are not computed yet.
     pub(super) pending: HashSet<VarId>,
-    /// The transition that uses each section.
+    /// For each section, the transition that uses it.
     pub(super) section_uses: HashMap<SectionId, Span>,
     guesses: u32,
 }
@@ -70,13 +71,13 @@ impl<'u, 'd> Resolver<'u, 'd> {
         }
     }
 
-    /// Reports a problem; always `None`, so that a lookup can end with it.
+    /// Reports a problem. It always returns `None`, so that a lookup can end with it.
     pub(super) fn report<T>(&mut self, problem: Problem) -> Option<T> {
         self.problems.push(problem);
         None
     }
 
-    /// Reads code in other surroundings.
+    /// Resolves code in other surroundings.
     pub(super) fn within<T>(&mut self, frame: Frame, read: impl FnOnce(&mut Self) -> T) -> T {
         let outer = std::mem::replace(&mut self.frame, frame);
         let result = read(self);
@@ -84,12 +85,12 @@ impl<'u, 'd> Resolver<'u, 'd> {
         result
     }
 
-    /// Reads code of a chart, or of the file.
+    /// Resolves code of a chart, or of the file.
     pub(super) fn in_chart<T>(&mut self, chart: Option<ChartId>, read: impl FnOnce(&mut Self) -> T) -> T {
         self.within(Frame { chart, ..Frame::default() }, read)
     }
 
-    /// A variable, if the table holds it.
+    /// The variable with this id.
     pub(super) fn var(&self, id: VarId) -> Option<&Var> {
         self.unit.vars.get(id.index())
     }
@@ -114,7 +115,7 @@ impl<'u, 'd> Resolver<'u, 'd> {
         id
     }
 
-    /// The name with that of the chart before it.
+    /// The name with the name of its chart before it.
     pub(super) fn qualified(&self, chart: Option<ChartId>, name: &str) -> Box<str> {
         match chart.and_then(|c| self.unit.charts.get(c.index())) {
             Some(c) => format!("{}.{name}", c.name).into(),
@@ -122,7 +123,7 @@ impl<'u, 'd> Resolver<'u, 'd> {
         }
     }
 
-    /// One name, twice in one name space.
+    /// Reports a name that is declared twice in one name space.
     pub(super) fn defined_twice(&mut self, name: &Name, first: Span) {
         self.problems.push(
             Problem::new(&codes::DEFINED_TWICE, name.at.0, format!("`{}` is defined twice", name.text))
@@ -136,7 +137,7 @@ impl<'u, 'd> Resolver<'u, 'd> {
             return Some(c);
         }
         if name.text.is_empty() {
-            return None; // Could not be read, and was reported then.
+            return None; // The name could not be read; the parser has reported it.
         }
         let mut problem =
             Problem::new(&codes::UNKNOWN_CHART, name.at.0, format!("there is no chart `{}`", name.text));
@@ -147,13 +148,13 @@ impl<'u, 'd> Resolver<'u, 'd> {
         self.report(problem)
     }
 
-    /// A step of this very chart.
+    /// Finds a step of this chart.
     pub(super) fn step_named(&mut self, chart: ChartId, name: &Name) -> Option<crate::ir::StepId> {
         if let Some(s) = self.scopes.step(chart, &name.text) {
             return Some(s);
         }
         if name.text.is_empty() {
-            return None; // Could not be read, and was reported then.
+            return None; // The name could not be read; the parser has reported it.
         }
         let home = self.unit.charts.get(chart.index()).map(|c| (c.name.clone(), c.steps.clone()));
         let (chart_name, steps) = home?;
@@ -167,7 +168,7 @@ impl<'u, 'd> Resolver<'u, 'd> {
         self.report(problem)
     }
 
-    /// Whether another "did you mean" may be looked for.
+    /// Takes one of the remaining searches for a "did you mean"; false if none is left.
     pub(super) fn may_guess(&mut self) -> bool {
         let may = self.guesses > 0;
         self.guesses = self.guesses.saturating_sub(1);
@@ -177,27 +178,19 @@ impl<'u, 'd> Resolver<'u, 'd> {
 
 /// The zero of a type.
 pub(super) fn zero(ty: Type) -> Value {
-    match ty {
-        Type::Bool | Type::Fb(_) => Value::Bool(false),
-        Type::Real | Type::Lreal => Value::Real(0.0),
-        Type::String(_) => Value::Str("".into()),
-        Type::Sint
-        | Type::Int
-        | Type::Dint
-        | Type::Lint
-        | Type::Usint
-        | Type::Uint
-        | Type::Udint
-        | Type::Ulint
-        | Type::Time => Value::Int(0),
+    match ty.holds() {
+        Some(Holds::Truth) | None => Value::Bool(false),
+        Some(Holds::Real) => Value::Real(0.0),
+        Some(Holds::Text) => Value::Str("".into()),
+        Some(Holds::Signed | Holds::Unsigned | Holds::Time) => Value::Int(0),
     }
 }
 
-/// The candidate that a mistyped name most likely meant: the same but for case,
-/// or at most a third of its letters away.
+/// The candidate that a mistyped name most likely meant: equal except for case, or at most a third
+/// of its letters different.
 pub(super) fn nearest<'a>(name: &str, candidates: impl Iterator<Item = &'a str>) -> Option<&'a str> {
     let letters: Vec<char> = name.to_lowercase().chars().collect();
-    // Numbers are not mistyped words: 12 is not a slip for 13.
+    // Numbers are not treated as mistyped words: 12 is not a slip for 13.
     if letters.len() > 40 || letters.iter().all(|c| c.is_ascii_digit()) {
         return None;
     }

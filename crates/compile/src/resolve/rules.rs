@@ -1,4 +1,4 @@
-//! Profile and switches to the engine's [`Rules`].
+//! Translates profile and switches to the engine's [`Rules`].
 
 use std::mem::discriminant;
 
@@ -16,8 +16,8 @@ pub fn of_profile(name: ProfileName) -> Rules {
     }
 }
 
-/// The document's profile with its switches; another profile in its place
-/// brings its own switches, so those of the document no longer hold.
+/// The rules of the document's profile with its switches. Another profile replaces it together with
+/// its switches.
 pub(super) fn of_document(
     doc: &Document,
     instead: Option<ProfileName>,
@@ -47,7 +47,7 @@ pub(super) fn of_document(
     (name, rules)
 }
 
-/// Two words for one switch contradict each other, or say it twice.
+/// Reports two words for one switch: they contradict each other, or say it twice.
 fn repeated_switches(p: &Profile, problems: &mut Vec<Problem>) {
     let mut seen: Vec<(Switch, Span)> = Vec::new();
     for (switch, at) in &p.switches {

@@ -1,17 +1,16 @@
-//! Which name means what, and where: the tables that every later lookup reads.
+//! The tables of names that every later lookup reads.
 //!
-//! A chart has one name space for its variables, named actions and sections,
-//! and another one for its steps. Names of the file stand behind those of a
-//! chart; seen from outside, steps of expansions and tasks stand behind those
-//! of proper charts. All lookups are by hash; nothing here is ever iterated, so no order
-//! depends on hashing.
+//! A chart has one name space for its variables, named actions and sections, and another one for
+//! its steps. Names of a chart come before those of the file. Seen from outside, steps of charts
+//! come before those of expansions and tasks. All lookups are by hash and nothing here is iterated,
+//! so no order depends on hashing.
 
 use std::collections::hash_map::Entry;
 use std::collections::{HashMap, HashSet};
 
 use crate::ir::{BodyId, ChartId, FunctionId, SectionId, StepId, VarId};
 
-/// What a name of a file or chart stands for, steps and charts apart.
+/// The meaning of a name of a file or chart, except charts and steps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Entity {
     /// A variable.
@@ -24,7 +23,7 @@ pub(super) enum Entity {
     Function(FunctionId),
 }
 
-/// Where a bare step name leads.
+/// The meaning of a step name without its chart.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Home {
     /// To this step.
@@ -33,8 +32,7 @@ pub(super) enum Home {
     Several(StepId, StepId),
 }
 
-/// The charts that have a step name. Where several have it, each has it in
-/// its own table.
+/// The charts that have a step of this name. If several have it, each has it in its own table too.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Homes {
     /// One chart of the document.
@@ -52,11 +50,11 @@ pub(super) struct ChartScope<'d> {
     /// Steps whose names several charts have; most charts have none of these,
     /// so that a large chart needs one table, not two.
     pub(super) steps: HashMap<&'d str, StepId>,
-    /// It is a chart, no expansion and no task.
+    /// True for a chart that is neither an expansion nor a task.
     pub(super) proper: bool,
 }
 
-/// The names of a document; made by `resolve`, read by queries.
+/// The names of a document; `resolve` makes them, queries read them.
 #[derive(Clone, Debug, Default)]
 pub struct Scopes<'d> {
     pub(super) names: HashMap<&'d str, Entity>,
@@ -97,8 +95,8 @@ impl Scopes<'_> {
         self.charts.get(chart.index())?.names.get(name).copied()
     }
 
-    /// A step by its bare name: of the chart itself, else the only one of the
-    /// document, else the only one of its proper charts.
+    /// Finds a step by its name alone: of the chart itself, else the only one of the document, else
+    /// the only one outside of expansions and tasks.
     pub(super) fn home(&self, chart: Option<ChartId>, name: &str) -> Option<Home> {
         let home = *self.step_homes.get(name)?;
         let own = |c: ChartId| self.step(c, name).map(|s| Home::One(c, s));
@@ -110,7 +108,7 @@ impl Scopes<'_> {
 }
 
 impl<'d> Scopes<'d> {
-    /// Gives a step its name; the one that has it in this chart already, else nothing.
+    /// Gives a step its name; returns the step of this chart that has it already, if there is one.
     pub(super) fn name_step(&mut self, chart: ChartId, name: &'d str, step: StepId) -> Option<StepId> {
         let proper = self.is_proper(chart);
         let before = match self.step_homes.get(name) {

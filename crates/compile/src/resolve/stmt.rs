@@ -19,13 +19,14 @@ impl Resolver<'_, '_> {
         }
     }
 
-    /// A block; its variables are set anew at the start of each run.
+    /// A block; its variables are set again at the start of each run.
     pub(super) fn block(&mut self, block: &Block, owner: &str) -> Vec<Stmt> {
         let outer = (!block.locals.is_empty()).then(|| self.frame.locals.clone());
         let mut statements = Vec::new();
         for local in &block.locals {
             let value = match &local.init {
-                // Read before its names are known, so it cannot mean one of them.
+                // The value is resolved before the names of the variables are known, so it cannot
+                // refer to them.
                 Some(e) => self.value(e, local.ty),
                 None => {
                     let kind = ExprKind::Const(super::resolver::zero(local.ty));
@@ -72,7 +73,7 @@ impl Resolver<'_, '_> {
         Some(v)
     }
 
-    /// The statements that could be resolved, in order.
+    /// The statements that could be resolved, in their order.
     pub(super) fn statements(&mut self, list: &[WrittenStmt]) -> Vec<Stmt> {
         let mut resolved = Vec::with_capacity(list.len());
         list.iter().for_each(|s| resolved.extend(self.statement(s)));
@@ -233,7 +234,7 @@ impl Resolver<'_, '_> {
         }
     }
 
-    /// Of two labels that overlap only the first arm can run for the values they share.
+    /// Reports labels that overlap: for the common values only the first arm can run.
     fn overlaps(&mut self, mut ranges: Vec<(i64, i64, Span)>) {
         ranges.sort_by_key(|r| (r.0, r.2));
         let mut widest: Option<(i64, Span)> = None;
@@ -255,7 +256,7 @@ impl Resolver<'_, '_> {
         }
     }
 
-    /// Where an assignment goes, with its type.
+    /// The target of an assignment, with its type.
     pub(super) fn target(&mut self, e: &Written) -> Option<(Target, Type)> {
         let at = e.at.0;
         let r = match &e.kind {
@@ -283,7 +284,7 @@ impl Resolver<'_, '_> {
         }
     }
 
-    /// A reference as a target, unless it is read-only here.
+    /// A reference as a target; reports a problem if it is read-only here.
     fn writable(&mut self, r: Ref, at: Span) -> Option<(Target, Type)> {
         match r {
             Ref::Var(v) => {
@@ -316,7 +317,7 @@ impl Resolver<'_, '_> {
         }
     }
 
-    /// Whether this code may write this variable; reports where not.
+    /// Checks that this code may write this variable; reports a problem if not.
     pub(super) fn may_write(&mut self, v: VarId, class: VarClass, at: Span) -> Option<()> {
         let name = self.var(v).map(|v| v.name.clone())?;
         let refused = |what: &str| Problem::new(&codes::NOT_WRITABLE, at, format!("`{name}` is {what}"));
@@ -367,13 +368,13 @@ impl Resolver<'_, '_> {
         {
             return kind.map(StmtKind::Service);
         }
-        // A function as a statement: its arguments are judged, its result is lost.
+        // A function called as a statement: its arguments are checked, its result is lost.
         self.call(path, args, None, at)?;
         let what = format!("nothing takes the result of `{}`", path.text());
         self.report(Problem::new(&codes::WRONG_KIND, at, what).help("assign it: `n := …`"))
     }
 
-    /// The call of a function block; outer `None` where the path names none.
+    /// The call of a function block; the outer `None` means that the path names none.
     #[allow(clippy::option_option, reason = "no instance, or an instance called wrongly")]
     fn instance_call(&mut self, path: &Path, args: &[Arg]) -> Option<Option<StmtKind>> {
         let last = path.names.last()?;
@@ -387,7 +388,7 @@ impl Resolver<'_, '_> {
         Some(self.fb_call(v, kind, last, args))
     }
 
-    /// A service of the controller; outer `None` where the name is none.
+    /// A service of the controller; the outer `None` means that the name is not one.
     #[allow(clippy::option_option, reason = "no service, or a service called wrongly")]
     fn service(&mut self, name: &Name, args: &[Arg], at: Span) -> Option<Option<Service>> {
         let wanted = match name.text.to_ascii_uppercase().as_str() {
@@ -452,7 +453,7 @@ impl Resolver<'_, '_> {
     }
 }
 
-/// `%S0`, `%S1` and the counts are written by the system alone.
+/// Only the system writes `%S1` and the counts.
 fn read_only(system: &str) -> bool {
-    matches!(system, "%S0" | "%S1" | "%SW20" | "%SW21")
+    matches!(system, "%S1" | "%SW20" | "%SW21")
 }

@@ -1,5 +1,5 @@
-//! What each name of a path stands for, one by one: the lookup of `refer`, told
-//! step by step for those who follow names through the text. Keeps to its order.
+//! Finds what each name of a path refers to, one by one. It repeats the lookup of `refer` for code
+//! that follows names through the text, and must keep to its order.
 
 use std::collections::HashSet;
 
@@ -43,7 +43,7 @@ impl<'u, 'd> Tracer<'u, 'd> {
         self.0.scopes.step(chart, name).map(|s| self.step(s))
     }
 
-    /// What the names of a path stand for; `locals` hide all else.
+    /// Finds what the names of a path refer to; `locals` hide all other names.
     pub(crate) fn path(&self, names: &[Name], locals: &[HashSet<&str>]) -> Vec<Traced> {
         let Some(first) = names.first() else { return Vec::new() };
         if locals.iter().any(|l| l.contains(&*first.text)) {
@@ -71,7 +71,7 @@ impl<'u, 'd> Tracer<'u, 'd> {
         if !steps.is_empty() {
             return steps;
         }
-        // Not right, but clear enough to follow.
+        // The path is wrong, but what it refers to is clear.
         let near = chart.map(|c| self.of_chart_id(c)).or(entity.map(|(_, def)| def));
         near.map(|def| vec![(0, def, 0)]).unwrap_or_default()
     }
@@ -174,7 +174,7 @@ impl<'u, 'd> Tracer<'u, 'd> {
         }
     }
 
-    /// A name of the chart at hand, else of the file.
+    /// Looks for a name of the current chart, then of the file.
     fn visible(&self, name: &str) -> Option<(Entity, Definition)> {
         let own = self.0.frame.chart.and_then(|c| Some((c, self.0.scopes.of_chart(c, name)?)));
         if let Some((c, e)) = own {

@@ -1,4 +1,4 @@
-//! How types widen, and how a value takes the type that its place needs.
+//! Widening of types, and how a value takes the type that its place needs.
 
 use g7_model::{Problem, Span, Type, codes};
 
@@ -6,8 +6,8 @@ use super::constant::{self, Fault};
 use super::resolver::Resolver;
 use crate::ir::{Expr, ExprKind, Value};
 
-/// An expression, and whether it is an untyped literal: then it is a constant
-/// that adapts to whatever type is needed.
+/// An expression, with a flag for an untyped literal: such a constant adapts to the type that is
+/// needed.
 #[derive(Clone, Debug)]
 pub(super) struct Typed {
     pub(super) expr: Expr,
@@ -25,7 +25,7 @@ impl Typed {
         Typed::of(ExprKind::Const(value), ty, at)
     }
 
-    /// An untyped literal; the type written here is only for messages.
+    /// An untyped literal; its type here serves only for messages.
     pub(super) fn untyped(value: Value, at: Span) -> Typed {
         let ty = if matches!(value, Value::Real(_)) { Type::Lreal } else { Type::Lint };
         Typed { expr: Expr { kind: ExprKind::Const(value), ty, at }, literal: true }
@@ -39,45 +39,27 @@ impl Typed {
         }
     }
 
-    /// Whether it is a plain 0 or 1, which count as FALSE and TRUE.
+    /// True for a literal 0 or 1, which count as FALSE and TRUE.
     pub(super) fn truth_literal(&self) -> bool {
         self.literal && matches!(self.value(), Some(Value::Int(0 | 1)))
     }
 }
 
-/// Numbers, from narrow to wide.
-const NUMBERS: [Type; 10] = [
-    Type::Sint,
-    Type::Usint,
-    Type::Int,
-    Type::Uint,
-    Type::Dint,
-    Type::Udint,
-    Type::Lint,
-    Type::Ulint,
-    Type::Real,
-    Type::Lreal,
-];
-
-/// Whether it is a number: whole or real.
-pub(super) fn is_number(ty: Type) -> bool {
-    ty.is_integer() || ty.is_real()
-}
-
-/// Whether every value of `from` is taken over by `to` without being asked for.
+/// True if every value of `from` is accepted as `to` without a conversion by the author.
 pub(super) fn widens(from: Type, to: Type) -> bool {
     if let (Some((a, b)), Some((c, d))) = (from.bounds(), to.bounds()) {
         return c <= a && b <= d;
     }
     match to {
-        Type::Real => matches!(
-            from,
-            Type::Real | Type::Sint | Type::Int | Type::Dint | Type::Usint | Type::Uint | Type::Udint
-        ),
+        Type::Real => from == Type::Real || from.is_integer() && bits(from) <= bits(Type::Real),
         Type::Lreal => from == Type::Lreal || widens(from, Type::Real),
         Type::String(_) => matches!(from, Type::String(_)),
         _ => from == to,
     }
+}
+
+fn bits(ty: Type) -> u8 {
+    ty.elementary().map_or(0, |row| row.bits)
 }
 
 /// The narrowest type that both widen to.
@@ -86,19 +68,16 @@ pub(super) fn common(a: Type, b: Type) -> Option<Type> {
         (Type::String(m), Type::String(n)) => Some(Type::String(m.max(n))),
         (Type::Fb(_), _) | (_, Type::Fb(_)) => None,
         _ if a == b => Some(a),
-        _ if !is_number(a) || !is_number(b) => None,
-        _ => NUMBERS.into_iter().find(|t| widens(a, *t) && widens(b, *t)),
+        _ if !a.is_number() || !b.is_number() => None,
+        _ => {
+            let both = Type::ELEMENTARY.into_iter().filter(|t| widens(a, *t) && widens(b, *t));
+            both.min_by_key(|t| (t.is_real(), bits(*t)))
+        }
     }
 }
 
-/// The type with this name, in upper or lower case.
-pub(super) fn named(name: &str) -> Option<Type> {
-    let all = NUMBERS.into_iter().chain([Type::Bool, Type::Time, Type::String(80)]);
-    all.into_iter().find(|t| t.to_string().eq_ignore_ascii_case(name))
-}
-
 impl Resolver<'_, '_> {
-    /// The expression in the type that is needed.
+    /// Returns the expression in the type that is needed.
     pub(super) fn coerce(&mut self, t: Typed, want: Type) -> Option<Expr> {
         if t.literal {
             return self.adapt(t, want);
@@ -163,7 +142,7 @@ impl Resolver<'_, '_> {
         self.report(problem)
     }
 
-    /// The type that a literal takes where nothing asks for one.
+    /// The type that a literal takes if nothing asks for one.
     pub(super) fn settle(&mut self, t: Typed) -> Option<Expr> {
         if !t.literal {
             return Some(t.expr);
@@ -190,7 +169,7 @@ impl Resolver<'_, '_> {
     }
 }
 
-/// The same value in a wider type; constants at once.
+/// Converts to a wider type; constants are converted at once.
 pub(super) fn converted(e: Expr, to: Type) -> Expr {
     let at = e.at;
     if let ExprKind::Const(v) = &e.kind
@@ -201,9 +180,9 @@ pub(super) fn converted(e: Expr, to: Type) -> Expr {
     Expr { kind: ExprKind::Convert(Box::new(e)), ty: to, at }
 }
 
-/// In messages about types the length of a text does not matter.
+/// The length of a text is left out of messages about types.
 fn plain(ty: Type) -> Type {
-    if matches!(ty, Type::String(_)) { Type::String(80) } else { ty }
+    if matches!(ty, Type::String(_)) { Type::STRING } else { ty }
 }
 
 fn wrong_type(e: &Expr, want: Type) -> Problem {
@@ -221,14 +200,14 @@ fn wrong_type(e: &Expr, want: Type) -> Problem {
             }
         }
         (_, Type::Fb(_)) => problem,
-        (from, Type::Bool) if is_number(from) => problem.help("compare it, as in `n <> 0`"),
-        (from, to) if is_number(from) && is_number(to) => {
+        (from, Type::Bool) if from.is_number() => problem.help("compare it, as in `n <> 0`"),
+        (from, to) if from.is_number() && to.is_number() => {
             problem.help(format!("convert it with `{from}_TO_{to}(…)`; a value that does not fit is a fault"))
         }
-        (Type::Time, to) if is_number(to) => {
+        (Type::Time, to) if to.is_number() => {
             problem.help(format!("convert it with `TIME_TO_{to}(…)`, in milliseconds"))
         }
-        (from, Type::Time) if is_number(from) => {
+        (from, Type::Time) if from.is_number() => {
             problem.help(format!("convert it with `{from}_TO_TIME(…)`, in milliseconds"))
         }
         _ => problem,

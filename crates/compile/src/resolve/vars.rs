@@ -1,4 +1,4 @@
-//! Variables: their place in the name spaces, their types, their first values.
+//! Variables: their place in the name spaces, their types, their initial values.
 
 use g7_model::{Expr as Written, Name, Problem, Span, Type, VarDecl, VarKind, codes};
 
@@ -7,10 +7,10 @@ use super::scopes::{Entity, normal_address};
 use crate::ir::{ChartId, ExprKind, Value, VarClass, VarId};
 
 impl<'d> Resolver<'_, 'd> {
-    /// Gives a name its meaning, unless it has one in the same name space.
+    /// Gives a name its meaning, unless the name space has that name already.
     pub(super) fn define(&mut self, chart: Option<ChartId>, name: &'d Name, entity: Entity) -> bool {
         if name.text.is_empty() {
-            return false; // Could not be read, and was reported then.
+            return false; // The name could not be read; the parser has reported it.
         }
         let names = match chart {
             None => &mut self.scopes.names,
@@ -39,7 +39,7 @@ impl<'d> Resolver<'_, 'd> {
         .unwrap_or_default()
     }
 
-    /// The names of a declaration; values come when all names are known.
+    /// Declares the names of a declaration; values are resolved after all names are known.
     pub(super) fn declare(&mut self, chart: Option<ChartId>, decl: &'d VarDecl) -> Vec<VarId> {
         if !self.sensible(decl) {
             return Vec::new();
@@ -73,7 +73,7 @@ impl<'d> Resolver<'_, 'd> {
         ids
     }
 
-    /// Function blocks are variables of a chart with nothing to start from.
+    /// Function blocks are variables of a chart and have no initial value.
     fn sensible(&mut self, decl: &VarDecl) -> bool {
         let at = decl.names.first().map_or(decl.at.0, |n| n.at.0);
         if let Type::Fb(kind) = decl.ty {
@@ -97,7 +97,7 @@ impl<'d> Resolver<'_, 'd> {
         self.fitting_string(decl.ty, at).is_some()
     }
 
-    /// A text holds at least one byte, and at most what the engine carries.
+    /// A text holds at least one byte, and at most as many as the engine supports.
     pub(super) fn fitting_string(&mut self, ty: Type, at: Span) -> Option<()> {
         match ty {
             Type::String(n) if n == 0 || n > g7_engine::TEXT => {
@@ -108,7 +108,7 @@ impl<'d> Resolver<'_, 'd> {
         }
     }
 
-    /// A direct address is known by that name too.
+    /// A variable with a direct address is found by that address too.
     fn place_at_address(&mut self, id: VarId, decl: &VarDecl) {
         let Some(address) = decl.address.as_ref().filter(|a| a.text.starts_with('%')) else { return };
         let normal = normal_address(&address.text);
@@ -144,7 +144,7 @@ impl<'d> Resolver<'_, 'd> {
         }
     }
 
-    /// The values that a declaration gives to its names.
+    /// Resolves the values that a declaration gives to its names.
     pub(super) fn give_values(&mut self, chart: Option<ChartId>, decl: &VarDecl, ids: &[VarId]) {
         if matches!(decl.ty, Type::Fb(_)) {
             return;
@@ -163,7 +163,7 @@ impl<'d> Resolver<'_, 'd> {
         }
     }
 
-    /// A value that is known before the chart runs.
+    /// Resolves a value that is known before the chart runs.
     fn constant(&mut self, chart: Option<ChartId>, e: &Written, ty: Type) -> Option<Value> {
         let frame = Frame { chart, role: Role::Constant, ..Frame::default() };
         let value = self.within(frame, |r| r.value(e, ty))?;

@@ -142,10 +142,10 @@ fn stored(text: &str) -> Vec<u64> {
 }
 
 #[test]
-fn the_rank_of_actions_is_the_kind_or_the_text_or_pulses_outside() {
+fn the_rank_of_actions_is_the_kind_or_pulses_outside() {
     assert_eq!(stored(ORDER), [6, 1, 4, 3, 5, 2], "clearing, deactivation, activation, event");
-    assert_eq!(stored(&format!("profile pl7 {ORDER}")), [6, 1, 2, 3, 4, 5], "the text");
-    assert_eq!(stored(&format!("profile unity {ORDER}")), [3, 5, 6, 2, 1, 4], "P1 first, P0 last");
+    assert_eq!(stored(&format!("profile pl7 {ORDER}")), [6, 1, 4, 3, 5, 2], "the same under PL7");
+    assert_eq!(stored(&format!("profile unity {ORDER}")), [6, 2, 3, 5, 1, 4], "at the end P1 first, P0 last");
 }
 
 #[test]
@@ -227,7 +227,7 @@ fn the_time_of_an_active_step_is_no_watch() {
         Op::Compare(g7_engine::Cmp::Ge, g7_engine::Num::I64),
         Op::And,
     ];
-    let g7_engine::Guard::Code(guard) = c.transition("t1").guard else { panic!("code") };
+    let g7_engine::Receptivity::Code(guard) = c.transition("t1").receptivity else { panic!("code") };
     assert_eq!(c.ops(guard), code);
     assert_eq!((t.watches.len(), t.watches[0].always), (1, true), "its edge is one");
     assert_eq!(c.ops(t.watches[0].code), code);

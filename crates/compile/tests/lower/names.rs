@@ -83,3 +83,12 @@ fn values_print_as_literals() {
     assert_eq!(text(Type::Time, &[0]), "T#0s");
     assert_eq!(text(Type::String(8), &[4, u64::from_le_bytes(*b"a'$\n\0\0\0\0")]), "'a$'$$$n'");
 }
+
+#[test]
+fn the_inputs_of_a_control_block_are_the_qualifiers() {
+    let mut inputs = g7_engine::INPUTS.to_vec();
+    let mut qualifiers = g7_model::Qualifier::ALL.map(g7_model::Qualifier::name).to_vec();
+    inputs.sort_unstable();
+    qualifiers.sort_unstable();
+    assert_eq!(inputs, qualifiers);
+}

@@ -1,6 +1,6 @@
 //! Ranks, receptivities, tasks, `enable`, freezing, system bits.
 
-use g7_engine::{Guard, NONE, Op};
+use g7_engine::{NONE, Op, Receptivity};
 
 use crate::support::{Look, compiled};
 
@@ -41,11 +41,12 @@ fn a_single_variable_needs_no_code() {
            t5: 1 -> 1 when FALSE  t6: 1 -> 1 when a and X1 }",
     );
     let a = c.addr("a");
-    let guards: Vec<Guard> = ["t1", "t2", "t3", "t4"].iter().map(|l| c.transition(l).guard).collect();
-    assert_eq!(guards, [Guard::True, Guard::Word(a), Guard::NotWord(a), Guard::True]);
-    let Guard::Code(never) = c.transition("t5").guard else { panic!("code") };
+    let guards: Vec<Receptivity> =
+        ["t1", "t2", "t3", "t4"].iter().map(|l| c.transition(l).receptivity).collect();
+    assert_eq!(guards, [Receptivity::True, Receptivity::Word(a), Receptivity::NotWord(a), Receptivity::True]);
+    let Receptivity::Code(never) = c.transition("t5").receptivity else { panic!("code") };
     assert_eq!(c.ops(never), [Op::Push(0)]);
-    let Guard::Code(both) = c.transition("t6").guard else { panic!("code") };
+    let Receptivity::Code(both) = c.transition("t6").receptivity else { panic!("code") };
     assert_eq!(c.ops(both), [Op::Load(a), Op::Active(c.step("1")), Op::And]);
 }
 
@@ -74,12 +75,12 @@ fn enable_holds_a_chart_and_its_expansions() {
          macrochart E1 { entry step E  exit step S  t2: E -> S when TRUE }
          chart K { initial step 9  t3: 9 -> 9 when a }",
     );
-    let Guard::Code(code) = c.transition("t1").guard else { panic!("code") };
+    let Receptivity::Code(code) = c.transition("t1").receptivity else { panic!("code") };
     let (one, three) = (Op::Active(c.step("1")), Op::Active(c.step("3")));
     assert_eq!(c.ops(code), [one, three, Op::Or, Op::Load(c.addr("a")), Op::And]);
-    let Guard::Code(code) = c.transition("t2").guard else { panic!("code") };
+    let Receptivity::Code(code) = c.transition("t2").receptivity else { panic!("code") };
     assert_eq!(c.ops(code), [one, three, Op::Or]);
-    assert_eq!(c.transition("t3").guard, Guard::Word(c.addr("a")));
+    assert_eq!(c.transition("t3").receptivity, Receptivity::Word(c.addr("a")));
 }
 
 #[test]
@@ -103,7 +104,7 @@ fn a_freeze_takes_effect_at_the_service_point() {
          chart G { initial step 1  step 2  1 -> 2 when a  2 -> 1 when a }
          chart H { initial step 5  t1: 5 -> 5 when a }",
     );
-    assert_eq!(c.transition("t1").guard, Guard::Word(c.addr("a")), "the other chart runs on");
+    assert_eq!(c.transition("t1").receptivity, Receptivity::Word(c.addr("a")), "the other chart runs on");
     let mut run = c.start();
     run.set("a", 1).set("f", 1).scan();
     assert_eq!(run.situation(), "1 5", "frozen by PRE in the same scan");

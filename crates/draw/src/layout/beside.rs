@@ -1,13 +1,13 @@
-//! What stands beside a sequence: at the right what begins or ends by itself, at
-//! the left what leads back, and the vertical lines of loops. What begins lower
-//! stands nearer, so that no line to a sequence farther out runs through one.
+//! Places what stands beside a sequence: at the right, sequences that begin or end by themselves;
+//! at the left, sequences that lead back, and the vertical lines of loops. A sequence that begins
+//! lower stands nearer, so that no line to a sequence farther out crosses one.
 
 use crate::layout::profile::Profile;
 use crate::layout::rooms::{CLEAR, DOUBLE, GAP, LINE, LINK};
-use crate::layout::shape::{Band, Entry, Exit, NOWHERE, Put, Shapes, Side};
+use crate::layout::shape::{Band, Entry, Exit, Put, Shapes, Side};
 use crate::layout::tree::Item;
 
-/// A sequence or loop to be set at the left.
+/// A sequence or a loop that is placed at the left.
 #[derive(Debug)]
 enum Left {
     Side(usize, Side),
@@ -15,7 +15,7 @@ enum Left {
 }
 
 impl Shapes<'_> {
-    /// Sets everything beside a sequence; its height, reach and open ends are known then.
+    /// Places everything beside a sequence; afterwards its height, reach and open ends are known.
     pub(crate) fn beside(&mut self, b: usize) {
         let (left, right) = self.sides(b);
         self.lower_last(b, &left);
@@ -45,8 +45,8 @@ impl Shapes<'_> {
         self.blocks[s.block as usize].height
     }
 
-    /// The sequences beside a block's nodes, at their heights, by side. The block
-    /// moves down where one of them begins above its top.
+    /// The sequences beside a block's nodes, divided into left and right, with their heights. The
+    /// block moves down if one of them begins above its top.
     fn sides(&mut self, b: usize) -> (Vec<Side>, Vec<Side>) {
         let (mut left, mut right, mut heads) = (Vec::new(), Vec::new(), Vec::<Side>::new());
         let mut nodes: Vec<u32> = Vec::new();
@@ -57,7 +57,8 @@ impl Shapes<'_> {
             }
             nodes.push(n);
             for block in self.above[n as usize].clone() {
-                let y = self.above_line[n as usize] - self.blocks[block as usize].foot;
+                let Some(line) = self.above_line[n as usize] else { continue };
+                let y = line - self.blocks[block as usize].foot;
                 heads.push(Side { block, x: 0, y });
             }
         }
@@ -68,7 +69,8 @@ impl Shapes<'_> {
         }
         for n in nodes {
             let step = self.graph.is_step(n);
-            let line = self.below_line[n as usize] + if step { 0 } else { DOUBLE };
+            let Some(line) = self.below_line[n as usize] else { continue };
+            let line = line + if step { 0 } else { DOUBLE };
             for block in self.below[n as usize].clone() {
                 let side = Side { block, x: 0, y: line };
                 let under = heads.iter().any(|h| h.y <= line && line <= h.y + self.low(h));
@@ -81,7 +83,7 @@ impl Shapes<'_> {
         heads.sort_by_key(|h| h.y + self.low(h));
         right.sort_by_key(|s| std::cmp::Reverse(s.y));
         heads.extend(right);
-        // Of those at one node the tallest stands nearest and leaves below the others.
+        // Of several at one node the tallest stands nearest and leaves below the others.
         left.sort_by_key(|s| (std::cmp::Reverse(s.y), std::cmp::Reverse(self.low(s))));
         for k in (1..left.len()).rev() {
             if left[k - 1].y == left[k].y {
@@ -96,23 +98,19 @@ impl Shapes<'_> {
     fn lower(&mut self, b: usize, by: i32) {
         let block = &mut self.blocks[b];
         block.foot += by;
-        if block.head != NOWHERE {
-            block.head += by;
-        }
+        block.head = block.head.map(|y| y + by);
         for put in &mut block.puts {
             put.y += by;
             put.tail += by;
             if let Item::Node(n) = put.item {
                 for line in [&mut self.below_line[n as usize], &mut self.above_line[n as usize]] {
-                    if *line != NOWHERE {
-                        *line += by;
-                    }
+                    *line = line.map(|y| y + by);
                 }
             }
         }
     }
 
-    /// A way back at the end runs below all that stands at the left of it.
+    /// Moves a return at the end of the block below everything that stands at its left.
     fn lower_last(&mut self, b: usize, left: &[Side]) {
         let Some(Put { item: Item::Return(_), y, .. }) = self.blocks[b].puts.last().copied() else { return };
         let low = left.iter().map(|s| s.y + self.low(s)).filter(|low| *low > y - CLEAR).max();
@@ -121,7 +119,7 @@ impl Shapes<'_> {
         }
     }
 
-    /// Down to where it is clear of a line to which it leads, with a double line.
+    /// How far down a sequence needs room: past the line, possibly double, that it leads to.
     fn met(&self, s: &Side) -> i32 {
         self.low(s).max(self.blocks[s.block as usize].foot + DOUBLE) + CLEAR
     }
@@ -159,7 +157,7 @@ impl Shapes<'_> {
         for (k, side) in left.iter().enumerate() {
             for e in std::mem::take(&mut self.blocks[side.block as usize].exits) {
                 ends[k].push(exits.len());
-                // Its edge is known when it has been set.
+                // The edge is not known until the sequence is placed.
                 exits.push(Exit { y: e.y + side.y, edge: -1, ..e });
             }
         }
@@ -218,7 +216,7 @@ impl Shapes<'_> {
                 }
             }
         }
-        // What has not come to its step goes on outside.
+        // A return that has not reached its step leaves the block and goes on outside.
         for (k, e) in exits.iter().enumerate().filter(|(k, _)| !matched[*k]) {
             match solid.most(e.y - CLEAR / 2, e.y + CLEAR / 2) <= edges[k] {
                 true => self.blocks[b].exits.push(*e),
@@ -233,7 +231,7 @@ impl Shapes<'_> {
         self.blocks[b].left = most;
     }
 
-    /// The loops that close in a block.
+    /// The loops that close inside a block.
     fn loops(&self, exits: &[Exit], entries: &[Entry], matched: &mut [bool]) -> Vec<Left> {
         let mut found: Vec<(u32, usize)> = Vec::new();
         for (k, e) in exits.iter().enumerate() {

@@ -1,28 +1,28 @@
-//! The chart as a graph: which symbol leads to which, where its sequences begin,
-//! and which links close a loop.
+//! The chart as a graph: which symbol leads to which, where sequences begin, and which links close
+//! a loop.
 
 use std::collections::HashMap;
 
 use g7_model::{Chart, Step, StepKind};
 
-/// Steps and transitions as nodes (steps first), links in the order of the text.
+/// Steps and transitions as nodes (steps first), and links in the order of the text.
 #[derive(Debug)]
 pub(crate) struct Graph {
-    /// How many of the nodes are steps.
+    /// Number of steps.
     pub(crate) steps: usize,
-    /// How many nodes there are.
+    /// Number of nodes.
     pub(crate) nodes: usize,
-    /// From node, to node.
+    /// The two ends of each link: from node, to node.
     pub(crate) links: Vec<(u32, u32)>,
     /// The links that leave each node.
     pub(crate) out: Lists,
     /// The links that enter each node.
     pub(crate) into: Lists,
-    /// Links that lead back up.
+    /// True for each link that leads back up, that is, closes a loop.
     pub(crate) back: Vec<bool>,
 }
 
-/// A list of numbers for each node, in one piece.
+/// A list of numbers for each node, stored as one array.
 #[derive(Debug, Default)]
 pub(crate) struct Lists {
     starts: Vec<u32>,
@@ -54,7 +54,7 @@ impl Lists {
 }
 
 impl Graph {
-    /// The graph of a chart. Names without a step are passed over.
+    /// Builds the graph of a chart. Names that no step has are ignored.
     pub(crate) fn new(chart: &Chart) -> Graph {
         let steps: Vec<&Step> = chart.steps().collect();
         let mut numbers: HashMap<&str, u32> = HashMap::with_capacity(steps.len());
@@ -84,13 +84,13 @@ impl Graph {
         graph
     }
 
-    /// Whether a node is a step.
+    /// True if a node is a step.
     pub(crate) fn is_step(&self, n: u32) -> bool {
         (n as usize) < self.steps
     }
 
-    /// Marks the links that lead back. A loop is opened at the step where it is
-    /// entered, and never between a step and a transition behind it, if it can be helped.
+    /// Marks the links that close a loop. A loop is opened at the step where it is entered and,
+    /// where possible, never between a step and the transition that follows it.
     fn find_loops(&mut self, steps: &[&Step]) {
         let seeds = self.seeds(steps);
         let mut top = self.tops(&seeds);
@@ -108,7 +108,8 @@ impl Graph {
         }
     }
 
-    /// All nodes, those first where a sequence would begin.
+    /// All nodes, ordered by how likely a sequence begins there: initial steps first. A node may
+    /// occur twice.
     fn seeds(&self, steps: &[&Step]) -> Vec<u32> {
         let mut seeds: Vec<u32> = Vec::with_capacity(2 * self.nodes);
         let of = |which: &dyn Fn(&Step) -> bool| {
@@ -123,8 +124,8 @@ impl Graph {
         seeds
     }
 
-    /// The nodes at which one has to begin so that every node is come to, where a
-    /// transition is passed only when all its preceding steps have been come to.
+    /// The nodes from which a walk has to start so that it reaches every node. The walk passes a
+    /// transition only after it has reached all its preceding steps.
     fn tops(&self, seeds: &[u32]) -> Vec<bool> {
         let mut top = vec![false; self.nodes];
         let mut seen = vec![false; self.nodes];
@@ -151,7 +152,8 @@ impl Graph {
         top
     }
 
-    /// A number for each node; nodes on a common loop have the same.
+    /// A number for each node; nodes on a common loop (a strongly connected component) share a
+    /// number.
     fn knots(&self) -> Vec<u32> {
         const NEW: u32 = u32::MAX;
         let mut knot = vec![NEW; self.nodes];
@@ -177,7 +179,8 @@ impl Graph {
                 }
                 let Some(&l) = links.get(*next) else {
                     stack.pop();
-                    // The first of its loop that was come to: the loop is what has come since.
+                    // This node was reached first in its component; the rest of the component is
+                    // what the path has collected since.
                     while low[at] == first[at] && knot[at] == NEW {
                         let Some(m) = path.pop() else { break };
                         knot[m as usize] = n;
@@ -194,8 +197,8 @@ impl Graph {
         knot
     }
 
-    /// Depth first from the tops: what leads to a node above, or to a top that is
-    /// on the same loop, leads back.
+    /// Walks depth first from the tops. A link closes a loop if it leads to a node on the current
+    /// path or to a top of the same component.
     fn descend(&mut self, seeds: &[u32], top: &[bool], knots: &[u32]) {
         const NEW: u8 = 0;
         const OPEN: u8 = 1;

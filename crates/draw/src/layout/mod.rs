@@ -7,15 +7,15 @@
 //!                                                        \-> moved -/  (layout section)
 //! ```
 //!
-//! A GRAFCET is nearly always sequences with branches in them. So the graph is
-//! reduced to a tree of sequences and branches; widths and heights are found
-//! from the inside out, places from the outside in. What ends or begins by
-//! itself hangs beside the sequence it belongs to, loops go up at the left, and
-//! only a link that fits nowhere is broken and named at both ends.
+//! A GRAFCET nearly always consists of sequences with branches in them. The graph is therefore
+//! reduced to a tree of sequences and branches; widths and heights are computed from the inside
+//! out, places from the outside in. A sequence that ends or begins by itself hangs beside the
+//! sequence it belongs to, loops go up at the left, and only a link that fits nowhere is broken and
+//! named at both ends.
 //!
 //! # Invariants
 //!
-//! - The same chart and sizes give the same placement; no order depends on a hash.
+//! The same chart and sizes give the same placement; no order depends on a hash.
 //! - No recursion: depth costs memory only.
 //! - Where nothing is placed by hand, no symbol, text, double line or connector
 //!   overlaps another and no link runs through one.
@@ -29,6 +29,7 @@ mod profile;
 mod reduce;
 pub(crate) mod rooms;
 mod route;
+pub(crate) mod section;
 mod shape;
 mod tree;
 mod way;
@@ -37,13 +38,14 @@ use g7_model::{Chart, PlaceAt};
 
 use crate::{Placement, Sizes};
 
-/// Farthest place from the origin that a layout section can give.
+/// Greatest coordinate that a layout section can give.
 pub(crate) const FAR: i32 = 10_000_000;
 
-/// Times that links which could not be drawn are broken before all that is left is.
+/// Number of rounds in which the links that could not be drawn are broken; the round after them
+/// breaks all that remain.
 const TRIES: usize = 4;
 
-/// The layout of a chart: automatic, but for what a layout section places.
+/// Lays a chart out: automatically, except for the symbols that the layout section places.
 pub fn layout(chart: &Chart, sizes: &Sizes, places: &[PlaceAt]) -> Placement {
     let graph = graph::Graph::new(chart);
     let mut broken = vec![false; graph.links.len()];

@@ -1,40 +1,30 @@
-//! What a layout section places: symbols go where it says, and the links that
-//! touch them find their way anew. Links of symbols that stay keep their corners.
+//! Applies a layout section: symbols go where it says, and the links that touch them are routed
+//! again. Links between symbols that stay keep their corners.
 
 use std::collections::HashMap;
 
-use g7_model::{Chart, PlaceAt, Placed};
+use g7_model::{Chart, PlaceAt};
 
 use crate::layout::FAR;
 use crate::layout::graph::Graph;
 use crate::layout::rooms::{BAR, CLEAR, DOUBLE, LINK, OVERHANG, SQUARE, extents};
 use crate::layout::route::{area, end, tidy};
+use crate::layout::section::Named;
 use crate::layout::way::Ways;
 use crate::{Bar, End, Extent, Link, Placement, Point, Rect, Sizes};
 
-/// The places a layout section gives, by node.
+/// The places that the layout section gives, by node.
 pub(crate) fn given(chart: &Chart, graph: &Graph, places: &[PlaceAt]) -> Vec<Option<Point>> {
     let mut given = vec![None; graph.nodes];
     if places.is_empty() {
         return given;
     }
-    let mut steps: HashMap<&str, usize> = HashMap::new();
-    for (n, s) in chart.steps().enumerate() {
-        steps.entry(&s.name.text).or_insert(n);
-    }
-    let mut labels: HashMap<&str, usize> = HashMap::new();
-    for (n, t) in chart.transitions().enumerate() {
-        if let Some(label) = &t.label {
-            labels.entry(&label.text).or_insert(n + graph.steps);
-        }
-    }
+    let named = Named::new(chart);
     for place in places {
-        let node = match &place.what {
-            Placed::Step(name) => steps.get(&*name.text).copied(),
-            Placed::Transition(name) => labels.get(&*name.text).copied(),
-            Placed::TransitionNumber(n) => Some(graph.steps + *n as usize),
-            Placed::Comment(_) => None,
-        };
+        let node = named.symbol(&place.what).map(|end| match end {
+            End::Step(n) => n as usize,
+            End::Transition(n) => graph.steps + n as usize,
+        });
         if let Some(slot) = node.and_then(|n| given.get_mut(n)) {
             *slot = Some(Point { x: place.x.clamp(-FAR, FAR), y: place.y.clamp(-FAR, FAR) });
         }
@@ -42,7 +32,7 @@ pub(crate) fn given(chart: &Chart, graph: &Graph, places: &[PlaceAt]) -> Vec<Opt
     given
 }
 
-/// A bend no wider than this is none.
+/// A horizontal offset no greater than this is straightened.
 const ASKEW: i32 = 40;
 
 struct Moved<'a> {
@@ -55,14 +45,15 @@ struct Moved<'a> {
     above: Vec<i32>,
 }
 
-/// The placement with the given places.
+/// The placement after the given places are applied.
 pub(crate) fn moved(graph: &Graph, sizes: &Sizes, auto: Placement, given: &[Option<Point>]) -> Placement {
     let count = given.iter().flatten().count();
     if count == 0 {
         return auto;
     }
     let mut at: Vec<Point> = auto.steps.iter().chain(&auto.transitions).copied().collect();
-    // Of a chart drawn by hand what is new stands as it would to its neighbours.
+    // If most places are given, a person drew the chart: a new symbol then keeps its automatic
+    // offset from a neighbour.
     let by_hand = count * 2 > graph.nodes;
     if by_hand {
         beside_neighbours(graph, &mut at, given);
@@ -78,7 +69,8 @@ pub(crate) fn moved(graph: &Graph, sizes: &Sizes, auto: Placement, given: &[Opti
     m.place(auto, sizes)
 }
 
-/// Transitions that all but stand under or over a step do so, lest their links have a tiny bend.
+/// Moves a transition exactly under or over a step if it nearly stands there, so that its link has
+/// no tiny bend.
 fn straighten(graph: &Graph, at: &mut [Point]) {
     for t in graph.steps as u32..graph.nodes as u32 {
         let before = graph.into.of(t).iter().map(|l| graph.links[*l as usize].0);
@@ -113,7 +105,7 @@ impl Moved<'_> {
         self.at[n as usize].y + if self.graph.is_step(n) { SQUARE } else { 0 }
     }
 
-    /// Where links part below each node and meet above it.
+    /// Sets the height at which links part below each node and meet above it.
     fn lines(&mut self) {
         let nodes = 0..self.graph.nodes as u32;
         let (mut below, mut above) = (Vec::new(), Vec::new());
@@ -136,8 +128,8 @@ impl Moved<'_> {
         (self.below, self.above) = (below, above);
     }
 
-    /// The height at which the links of a step part: below its actions, where
-    /// there is room for that and a link goes their way.
+    /// The height at which the links of a step part: below its actions if there is room and a link
+    /// runs past them.
     fn parting(&self, n: u32, port: i32, room: i32) -> i32 {
         let usual = port + LINK.min(room / 2);
         let low = self.at[n as usize].y + self.extents[n as usize].down + CLEAR;
@@ -193,7 +185,8 @@ impl Moved<'_> {
         p
     }
 
-    /// Double lines of transitions that were touched, over the columns of their links.
+    /// Draws the double lines of transitions that moved or whose neighbours moved; they span the
+    /// columns of their links.
     fn bars(&self, p: &mut Placement, below: &[bool], above: &[bool]) {
         let graph = self.graph;
         for t in graph.steps as u32..graph.nodes as u32 {
@@ -215,8 +208,8 @@ impl Moved<'_> {
         p.bars.sort_by_key(|b| (b.transition, !b.join));
     }
 
-    /// Where a link meets the double line of its transition: over or under the step
-    /// where that is on the right side, else beside the others.
+    /// Where a link meets the double line of its transition: over or under the step if the step
+    /// stands on the right side of it, otherwise beside the other links.
     fn column(&self, link: u32, fork: bool) -> i32 {
         let (from, to) = self.graph.links[link as usize];
         let (t, step) = if fork { (from, to) } else { (to, from) };

@@ -1,45 +1,45 @@
-//! Where everything stands in the end: sizes become places, from the outside in.
+//! Turns sizes into places, from the outside in.
 
 use crate::Point;
 use crate::layout::rooms::{LINE, from_above, only_arrivals};
-use crate::layout::shape::{Block, NOWHERE, Shapes};
-use crate::layout::tree::{Item, NONE};
+use crate::layout::shape::{Block, Shapes};
+use crate::layout::tree::Item;
 
-/// Between parts that nothing connects.
+/// Distance between parts of the chart that no link connects.
 const APART: i32 = 600;
-/// More parts than this are set in rows.
+/// If there are more parts than this, they stand in several rows.
 const IN_A_ROW: usize = 8;
 
-/// Places of all symbols and of the corners of links.
+/// The places of all symbols and of the corners of links.
 #[derive(Debug, Default)]
 pub(crate) struct Places {
-    /// Anchors of all nodes.
+    /// The anchors of all nodes.
     pub(crate) at: Vec<Point>,
-    /// The line below and above each node.
-    pub(crate) below_line: Vec<i32>,
-    pub(crate) above_line: Vec<i32>,
-    /// The column of each link, where it is not that of its upper end: of the
-    /// sequence that it begins, and of the one that it ends.
-    pub(crate) column: Vec<i32>,
-    pub(crate) landing: Vec<i32>,
-    /// The row of each way back, and the column in which it goes up.
+    /// The height of the line below and above each node.
+    pub(crate) below_line: Vec<Option<i32>>,
+    pub(crate) above_line: Vec<Option<i32>>,
+    /// The column of each link where it differs from that of its upper end: the column of the
+    /// sequence it begins, and of the sequence it ends.
+    pub(crate) column: Vec<Option<i32>>,
+    pub(crate) landing: Vec<Option<i32>>,
+    /// The row in which each return leaves, and the column in which it goes up.
     pub(crate) row: Vec<i32>,
     pub(crate) lane: Vec<i32>,
-    /// Broken ends: link, whether it leaves, where its line begins, its tip.
+    /// Broken ends: link, true at its start, where its line begins, its tip.
     pub(crate) broken: Vec<(u32, bool, Point, Point)>,
-    /// How far it all reaches to the right, and down.
+    /// Width and height of the whole placement.
     pub(crate) size: Point,
 }
 
-/// Places of all that the shapes hold.
+/// Computes the places of everything in the shapes.
 pub(crate) fn places(s: &Shapes) -> Places {
     let nodes = s.graph.nodes;
     let mut p = Places {
         at: vec![Point::default(); nodes],
-        below_line: vec![NOWHERE; nodes],
-        above_line: vec![NOWHERE; nodes],
-        column: vec![NOWHERE; s.graph.links.len()],
-        landing: vec![NOWHERE; s.graph.links.len()],
+        below_line: vec![None; nodes],
+        above_line: vec![None; nodes],
+        column: vec![None; s.graph.links.len()],
+        landing: vec![None; s.graph.links.len()],
         row: vec![0; s.tree.returns.len()],
         lane: vec![0; s.tree.returns.len()],
         ..Places::default()
@@ -53,14 +53,14 @@ pub(crate) fn places(s: &Shapes) -> Places {
 }
 
 impl Places {
-    /// The column in which a link runs where it leaves a node, or enters one.
+    /// The column in which a link runs where it leaves (or enters) a node.
     pub(crate) fn column(&self, link: u32, leaving: bool, at: i32) -> i32 {
         let (column, landing) = (self.column[link as usize], self.landing[link as usize]);
         let both = if leaving { [column, landing] } else { [landing, column] };
-        both.into_iter().find(|x| *x != NOWHERE).unwrap_or(at)
+        both.into_iter().flatten().next().unwrap_or(at)
     }
 
-    /// The outermost blocks beside one another, the one with the first step first.
+    /// The outermost blocks beside one another; the block with the first step comes first.
     fn roots(&mut self, s: &Shapes) -> Vec<(u32, i32, i32)> {
         let first = first_steps(s);
         let mut roots: Vec<u32> = (0..s.tree.roots.len() as u32).collect();
@@ -72,7 +72,7 @@ impl Places {
         let total: i64 = roots.iter().map(width).sum();
         let tall = roots.iter().map(|r| i64::from(s.blocks[*r as usize].height)).max().unwrap_or(0) + 1;
         let wide = roots.iter().map(width).max().unwrap_or(0);
-        // In rows where one row would be far wider than high.
+        // Use several rows if one row would be far wider than high.
         let rows = ((total / (3 * tall)).max(1) as f64).sqrt().ceil().max(1.0) as i64;
         let most = match roots.len() > IN_A_ROW {
             true => (total / rows).max(wide),
@@ -95,11 +95,11 @@ impl Places {
     }
 
     fn block(&mut self, s: &Shapes, b: &Block, at: Point, stack: &mut Vec<(u32, i32, i32)>) {
-        if b.branch.first != NONE {
-            self.column[b.branch.first as usize] = at.x;
+        if let Some(link) = b.branch.first {
+            self.column[link as usize] = Some(at.x);
         }
-        if b.branch.last != NONE {
-            self.landing[b.branch.last as usize] = at.x;
+        if let Some(link) = b.branch.last {
+            self.landing[link as usize] = Some(at.x);
         }
         for (back, x) in &b.lanes {
             self.lane[*back as usize] = at.x + x;
@@ -113,7 +113,7 @@ impl Places {
                 Item::Node(n) => {
                     let n = n as usize;
                     self.at[n] = Point { x: at.x, y };
-                    let moved = |line: i32| if line == NOWHERE { NOWHERE } else { line + at.y };
+                    let moved = |line: Option<i32>| line.map(|y| y + at.y);
                     self.below_line[n] = moved(s.below_line[n]);
                     self.above_line[n] = moved(s.above_line[n]);
                 }
@@ -135,8 +135,8 @@ impl Places {
         }
     }
 
-    /// Broken links come in at the right of the link above a step; where there is
-    /// no other, the uppermost comes from above.
+    /// Places the connectors that arrive at a step: at the right of the link above it. If no link
+    /// is drawn there, the uppermost connector arrives from above.
     fn arrivals(&mut self, s: &Shapes) {
         use crate::layout::rooms::{APART, HEAD, ROW, STUB};
         for (step, links) in s.tree.arrivals.iter().enumerate().filter(|(_, l)| !l.is_empty()) {
@@ -157,17 +157,18 @@ impl Places {
     }
 }
 
-/// The first step in the text that each outermost block holds.
-fn first_steps(s: &Shapes) -> Vec<u32> {
+/// The first step, in the order of the text, that each outermost block holds.
+fn first_steps(s: &Shapes) -> Vec<Option<u32>> {
     let mut root: Vec<u32> = (0..s.blocks.len() as u32).collect();
-    let mut first = vec![u32::MAX; s.tree.roots.len()];
+    let mut first: Vec<Option<u32>> = vec![None; s.tree.roots.len()];
     for b in 0..s.blocks.len() {
         let of = root[b];
         for put in &s.blocks[b].puts {
             match put.item {
                 Item::Node(n) => {
                     let key = if s.graph.is_step(n) { n } else { n + s.graph.steps as u32 };
-                    first[of as usize] = first[of as usize].min(key);
+                    let first = &mut first[of as usize];
+                    *first = Some(first.map_or(key, |f| f.min(key)));
                     let beside = [&s.below[n as usize], &s.above[n as usize]];
                     beside.into_iter().flat_map(|r| r.clone()).for_each(|c| root[c as usize] = of);
                 }

@@ -1,21 +1,21 @@
-//! How far a sequence reaches to one side, row by row: asked and raised over
-//! ranges of rows while things are set beside it.
+//! The reach of a sequence to one side, row by row. It is queried and raised over ranges of rows
+//! while other parts are placed beside the sequence.
 
-/// The reach over a range of rows, all of which are known beforehand.
+/// The greatest reach over a range of rows, as a segment tree over rows that are known beforehand.
 #[derive(Debug)]
 pub(crate) struct Profile {
-    /// Where rows begin and end, ascending.
+    /// The boundaries of the rows, ascending.
     rows: Vec<i32>,
-    /// Leaves of the tree over the rows.
+    /// Number of leaves of the tree.
     size: usize,
-    /// The highest reach in the part below a knot.
+    /// The greatest reach in the subtree of each tree node.
     most: Vec<i32>,
-    /// What holds for all of the part below a knot.
+    /// The reach that holds for the whole subtree of each tree node.
     all: Vec<i32>,
 }
 
 impl Profile {
-    /// Reach 0 everywhere, between these bounds in any order.
+    /// A profile with reach 0; `rows` holds the boundaries, in any order.
     pub(crate) fn new(mut rows: Vec<i32>) -> Profile {
         rows.sort_unstable();
         rows.dedup();
@@ -23,19 +23,19 @@ impl Profile {
         Profile { rows, size, most: vec![0; 2 * size], all: vec![0; 2 * size] }
     }
 
-    /// The leaves that rows from `y0` to `y1` touch.
+    /// The leaves that the rows from `y0` to `y1` touch.
     fn range(&self, y0: i32, y1: i32) -> (usize, usize) {
         let from = self.rows.partition_point(|y| *y <= y0).saturating_sub(1);
         let to = self.rows.partition_point(|y| *y < y1.max(y0 + 1)).max(from + 1);
         (from, to.min(self.size))
     }
 
-    /// How far it reaches between two heights.
+    /// The greatest reach between two heights.
     pub(crate) fn most(&self, y0: i32, y1: i32) -> i32 {
         let (from, to) = self.range(y0, y1);
         let (mut from, mut to) = (from + self.size, to + self.size);
         let mut found = 0;
-        // What holds for all of a part above counts for its leaves too.
+        // A reach that holds for a whole subtree holds for its leaves too.
         for mut knot in [from, to - 1] {
             while knot > 0 {
                 found = found.max(self.all[knot]);
@@ -57,7 +57,7 @@ impl Profile {
         found
     }
 
-    /// Lets it reach so far at least between two heights.
+    /// Raises the reach between two heights to at least `reach`.
     pub(crate) fn raise(&mut self, y0: i32, y1: i32, reach: i32) {
         let (from, to) = self.range(y0, y1);
         let (mut left, mut right) = (from + self.size, to + self.size);

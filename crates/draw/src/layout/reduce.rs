@@ -1,17 +1,17 @@
-//! Takes the graph to pieces: a node with one way in and one way out becomes part
-//! of a longer sequence, sequences between the same nodes become branches, what
-//! ends or begins by itself hangs at its neighbour. Where nothing of this fits,
-//! a link that jumps far over little is broken.
+//! Reduces the graph to a tree: a node with one link in and one link out becomes part of a longer
+//! sequence, sequences between the same two nodes become branches, and a sequence that ends or
+//! begins by itself hangs at its neighbour. If no rule applies, a link is broken that passes many
+//! steps but holds few.
 
 use std::collections::HashMap;
 
 use crate::layout::graph::Graph;
-use crate::layout::tree::{Branch, Chain, Item, NONE, Tree};
+use crate::layout::tree::{Branch, Chain, Item, Tree};
 
-/// A link that passes over more rows than this is broken instead of drawn.
+/// A link that skips more rows than this is broken instead of drawn.
 const LONGEST_SKIP: u32 = 60;
 
-/// A sequence from one node to another.
+/// A sequence from one node to another; it acts as one edge of the reduced graph.
 #[derive(Clone, Copy, Debug)]
 struct Edge {
     from: u32,
@@ -20,7 +20,7 @@ struct Edge {
     live: bool,
 }
 
-/// A sequence that ends by itself, perhaps on its way back to a step.
+/// A sequence that ends by itself; `back` says to which step its end returns, and by which links.
 #[derive(Clone, Debug)]
 struct Pendant {
     branch: Branch,
@@ -43,7 +43,7 @@ struct Reduction<'a> {
     live: usize,
 }
 
-/// The pieces of a graph; the links in `broken` are broken from the beginning.
+/// Reduces a graph; the links in `broken` are broken from the start.
 pub(crate) fn reduce(graph: &Graph, broken: &[bool]) -> Tree {
     let mut r = Reduction {
         graph,
@@ -64,13 +64,13 @@ pub(crate) fn reduce(graph: &Graph, broken: &[bool]) -> Tree {
         let at = l as usize;
         if broken[at] || graph.back[at] && graph.is_step(from) {
             let leave = r.leave(l);
-            r.hang(from, Branch { chain: leave, first: l, last: NONE });
+            r.hang(from, Branch { chain: leave, first: Some(l), last: None });
             r.arrive(l, to);
         } else if graph.back[at] {
-            let branch = Branch { chain: Chain::EMPTY, first: l, last: NONE };
+            let branch = Branch { chain: Chain::EMPTY, first: Some(l), last: None };
             r.below[from as usize].push(Pendant { branch, back: Some((to, vec![l])) });
         } else {
-            r.add(from, to, Branch { chain: Chain::EMPTY, first: l, last: l });
+            r.add(from, to, Branch { chain: Chain::EMPTY, first: Some(l), last: Some(l) });
         }
     }
     r.work = (0..graph.nodes as u32).rev().collect();
@@ -123,7 +123,7 @@ impl Reduction<'_> {
         *edge
     }
 
-    /// Another sequence between two nodes that have one.
+    /// Adds a second sequence between two nodes: both become branches.
     fn merge(&mut self, other: u32, branch: Branch) {
         let edge = self.edges[other as usize];
         let (from, to) = (edge.from, edge.to);
@@ -166,20 +166,17 @@ impl Reduction<'_> {
         Chain { rows, ..chain }
     }
 
-    fn only(&mut self, n: u32, leaving: bool) -> u32 {
+    fn only(&mut self, n: u32, leaving: bool) -> Option<u32> {
         let edges = &self.edges;
         let list = if leaving { &mut self.out } else { &mut self.into };
         let list = &mut list[n as usize];
         list.retain(|e| edges[*e as usize].live);
-        list.first().copied().unwrap_or(NONE)
+        list.first().copied()
     }
 
-    /// A node with one way in and one way out.
+    /// Joins a node that has one link in and one link out to its neighbours.
     fn series(&mut self, n: u32) {
-        let (a, b) = (self.only(n, false), self.only(n, true));
-        if a == NONE || b == NONE {
-            return;
-        }
+        let (Some(a), Some(b)) = (self.only(n, false), self.only(n, true)) else { return };
         self.settle(n);
         self.done[n as usize] = true;
         let (a, b) = (self.remove(a), self.remove(b));
@@ -190,7 +187,7 @@ impl Reduction<'_> {
         self.work.extend([a.from, b.to]);
     }
 
-    /// A node that is the beginning or the end of all that hangs at it.
+    /// Handles a node that is the only beginning or end of the parts that hang at it.
     fn end(&mut self, n: u32) {
         let at = n as usize;
         let (ins, outs) = (self.ins[at], self.outs[at]);
@@ -204,17 +201,19 @@ impl Reduction<'_> {
         let node = self.tree.one(Item::Node(n));
         let chain = self.tree.join(head, node);
         let mut chain = self.tree.join(chain, tail);
-        if outs == 1 {
-            let e = self.only(n, true);
+        if outs == 1
+            && let Some(e) = self.only(n, true)
+        {
             let e = self.remove(e);
             chain = self.tree.join(chain, e.branch.chain);
-            self.above[e.to as usize].push(Branch { chain, first: NONE, last: e.branch.last });
+            self.above[e.to as usize].push(Branch { chain, first: None, last: e.branch.last });
             self.work.push(e.to);
-        } else if ins == 1 {
-            let e = self.only(n, false);
+        } else if ins == 1
+            && let Some(e) = self.only(n, false)
+        {
             let e = self.remove(e);
             let chain = self.tree.join(e.branch.chain, chain);
-            let branch = Branch { chain, first: e.branch.first, last: NONE };
+            let branch = Branch { chain, first: e.branch.first, last: None };
             self.below[e.from as usize].push(Pendant { branch, back });
             self.work.push(e.from);
         } else {
@@ -224,7 +223,7 @@ impl Reduction<'_> {
         }
     }
 
-    /// What still hangs at a node that has a main way on, or in, hangs beside it.
+    /// Hangs the remaining parts beside a node that has a main way on or in.
     fn settle(&mut self, n: u32) {
         let groups = self.groups(n, false);
         let closed: Vec<Branch> = groups.into_iter().map(|p| self.closed(p)).collect();
@@ -233,14 +232,14 @@ impl Reduction<'_> {
         self.tree.above[n as usize].extend(above);
     }
 
-    /// A pendant with its way back at the end.
+    /// The branch of a pendant, with its return as the last item.
     fn closed(&mut self, p: Pendant) -> Branch {
         let Some((target, links)) = p.back else { return p.branch };
         let back = self.tree.back(target, links);
         Branch { chain: self.tree.join(p.branch.chain, back), ..p.branch }
     }
 
-    /// What hangs below a node; sequences that lead back to one step have met.
+    /// The parts that hang below a node; sequences that return to the same step are merged.
     fn groups(&mut self, n: u32, whole: bool) -> Vec<Pendant> {
         let mut all = std::mem::take(&mut self.below[n as usize]);
         all.sort_by_key(|p| p.branch.first);
@@ -261,23 +260,24 @@ impl Reduction<'_> {
             let rows = |p: &Pendant| p.branch.chain.rows;
             let (low, high) =
                 (together.iter().map(rows).min().unwrap_or(0), together.iter().map(rows).max().unwrap_or(0));
-            // One short way back beside a long sequence goes up by itself.
+            // A short return beside a long sequence goes up by itself.
             if whole && together.len() == 2 && low * 3 < high {
                 groups.extend(together);
                 continue;
             }
-            let first = together.first().map_or(NONE, |p| p.branch.first);
+            let first = together.first().and_then(|p| p.branch.first);
             let links = together.iter().flat_map(|p| p.back.iter().flat_map(|b| b.1.clone())).collect();
             let branches = together.into_iter().map(|p| p.branch).collect();
             let chain = self.tree.par(branches, false, false);
-            let branch = Branch { chain, first, last: NONE };
+            let branch = Branch { chain, first, last: None };
             groups.push(Pendant { branch, back: Some((target, links)) });
         }
         groups.sort_by_key(|p| p.branch.first);
         groups
     }
 
-    /// All that follows a node without a way on: its main sequence, or equals beside one another.
+    /// Everything that follows a node without another way on: one main sequence, or sequences of
+    /// similar length side by side.
     fn close_below(&mut self, n: u32) -> (Chain, Option<(u32, Vec<u32>)>) {
         let mut groups = self.groups(n, true);
         let Some(most) = groups.iter().map(|p| p.branch.chain.rows).max() else {
@@ -300,7 +300,7 @@ impl Reduction<'_> {
         (main.branch.chain, main.back)
     }
 
-    /// All that precedes a node without a way in.
+    /// Everything that precedes a node without another way in.
     fn close_above(&mut self, n: u32) -> Chain {
         let mut all = std::mem::take(&mut self.above[n as usize]);
         all.sort_by_key(|b| b.last);
@@ -325,11 +325,11 @@ impl Reduction<'_> {
             self.tree.arrivals[to as usize].push(l);
         } else {
             let chain = self.tree.one(Item::Arrive(l));
-            self.above[to as usize].push(Branch { chain, first: NONE, last: l });
+            self.above[to as usize].push(Branch { chain, first: None, last: Some(l) });
         }
     }
 
-    /// Breaks links until something can be taken together again.
+    /// Breaks links until the reduction can go on.
     fn cut(&mut self) {
         let mut found: Vec<(u64, u32)> = Vec::new();
         for e in 0..self.edges.len() as u32 {
@@ -347,22 +347,25 @@ impl Reduction<'_> {
             }
         }
         if found.is_empty() {
-            // Cannot be: a graph without loops always has such a link. Any will do.
+            // A graph without loops always has such a link, so this is never reached; any live edge
+            // would do.
             if let Some(e) = (0..self.edges.len() as u32).find(|e| self.edges[*e as usize].live) {
                 self.cut_edge(e);
             }
         }
     }
 
-    /// How far a sequence jumps in the text for what it holds.
+    /// The gain from breaking a sequence: the number of steps it skips in the text, divided by its
+    /// length.
     fn worth(&self, e: &Edge) -> u64 {
         let span = u64::from(self.place(e.from).abs_diff(self.place(e.to))) + 1;
         let rows = u64::from(e.branch.chain.rows) + 1;
         let worth = span * 4096 / rows;
         let chain = e.branch.chain;
         let single = |item: Option<&Item>| !matches!(item, Some(Item::Par(_)));
-        let last = single(self.tree.items.get(chain.last as usize));
-        let first = single(self.tree.items.get(chain.first as usize));
+        let item = |n: Option<u32>| n.and_then(|n| self.tree.items.get(n as usize));
+        let last = single(item(chain.last));
+        let first = single(item(chain.first));
         match (self.graph.is_step(e.from), self.graph.is_step(e.to)) {
             (_, true) if last => worth,
             (false, false) if first => worth,
@@ -371,7 +374,7 @@ impl Reduction<'_> {
         }
     }
 
-    /// Where a node stands in the text, as a number of a step.
+    /// The position of a node in the text, as the number of a step.
     fn place(&self, n: u32) -> u32 {
         if self.graph.is_step(n) {
             return n;
@@ -382,10 +385,11 @@ impl Reduction<'_> {
         before.or_else(behind).unwrap_or(0)
     }
 
-    /// A transition at the beginning with a step behind it: the link between them.
+    /// If the chain begins with a transition and a step: the link between them.
     fn inner(&self, chain: Chain) -> Option<u32> {
-        let second = *self.tree.next.get(chain.first as usize)?;
-        match (self.tree.items.get(chain.first as usize)?, self.tree.items.get(second as usize)?) {
+        let first = chain.first?;
+        let second = (*self.tree.next.get(first as usize)?)?;
+        match (self.tree.items.get(first as usize)?, self.tree.items.get(second as usize)?) {
             (Item::Node(t), Item::Node(s)) => {
                 let links = self.graph.out.of(*t).iter();
                 links.copied().find(|l| self.graph.links[*l as usize].1 == *s)
@@ -397,32 +401,32 @@ impl Reduction<'_> {
     fn cut_edge(&mut self, e: u32) {
         let Edge { from, to, branch, .. } = self.remove(e);
         let chain = branch.chain;
-        let head = self.tree.items.get(chain.first as usize).copied();
-        match (self.graph.is_step(from), self.graph.is_step(to), head) {
-            // From a transition to a transition: the link to the first step.
-            (false, false, Some(Item::Node(s))) => {
-                let leave = self.leave(branch.first);
-                self.hang(from, Branch { chain: leave, first: branch.first, last: NONE });
-                self.arrive(branch.first, s);
-                self.above[to as usize].push(Branch { first: NONE, ..branch });
+        let head = chain.first.and_then(|n| Some((n, *self.tree.items.get(n as usize)?)));
+        let inner = self.inner(chain);
+        match (self.graph.is_step(from), self.graph.is_step(to), head, branch.first, inner) {
+            // Both ends are transitions: break the link to the first step.
+            (false, false, Some((_, Item::Node(s))), Some(first), _) => {
+                let leave = self.leave(first);
+                self.hang(from, Branch { chain: leave, first: Some(first), last: None });
+                self.arrive(first, s);
+                self.above[to as usize].push(Branch { first: None, ..branch });
             }
-            (true, false, _) if self.inner(chain).is_some() => {
-                let l = self.inner(chain).unwrap_or(NONE);
-                let second = std::mem::replace(&mut self.tree.next[chain.first as usize], NONE);
+            (true, false, Some((head, _)), _, Some(l)) => {
+                let second = self.tree.next[head as usize].take();
                 let leave = self.leave(l);
                 let short = Chain { last: chain.first, rows: 1, ..chain };
                 let short = self.tree.join(short, leave);
-                self.hang(from, Branch { chain: short, first: branch.first, last: NONE });
+                self.hang(from, Branch { chain: short, first: branch.first, last: None });
                 self.arrive(l, self.graph.links[l as usize].1);
                 let rest = Chain { first: second, rows: chain.rows.saturating_sub(1), ..chain };
-                self.above[to as usize].push(Branch { chain: rest, first: NONE, last: branch.last });
+                self.above[to as usize].push(Branch { chain: rest, first: None, last: branch.last });
             }
             _ => self.break_end(from, to, branch),
         }
         self.work.extend([from, to]);
     }
 
-    /// Breaks a sequence off before the node it leads to, with all its branches that end there.
+    /// Breaks a sequence before the node it leads to; each branch that ends there is broken too.
     fn break_end(&mut self, from: u32, to: u32, branch: Branch) {
         let mut open: Vec<u32> = Vec::new();
         let mut branch = branch;
@@ -430,7 +434,7 @@ impl Reduction<'_> {
             Some(Item::Par(p)) => open.push(p),
             _ => branch = self.broken(branch, to),
         }
-        self.hang(from, Branch { last: NONE, ..branch });
+        self.hang(from, Branch { last: None, ..branch });
         while let Some(p) = open.pop() {
             self.tree.pars[p as usize].end_open = true;
             let mut branches = std::mem::take(&mut self.tree.pars[p as usize].branches);
@@ -446,8 +450,9 @@ impl Reduction<'_> {
     }
 
     fn broken(&mut self, b: Branch, to: u32) -> Branch {
-        let leave = self.leave(b.last);
-        self.arrive(b.last, to);
+        let Some(last) = b.last else { return b };
+        let leave = self.leave(last);
+        self.arrive(last, to);
         Branch { chain: self.tree.join(b.chain, leave), ..b }
     }
 }

@@ -1,5 +1,5 @@
-//! How much room each symbol takes with all that is set round it: texts, arriving
-//! connectors, and the row by which loops come back.
+//! The room of each symbol together with what is placed round it: texts, arriving connectors, and
+//! the row in which loops come back.
 
 use crate::layout::graph::Graph;
 use crate::layout::tree::Tree;
@@ -7,32 +7,32 @@ use crate::{Extent, Sizes};
 
 /// Height of a step's square.
 pub(crate) const SQUARE: i32 = 500;
-/// From a symbol to the line or symbol that follows.
+/// Distance from a symbol to the line or symbol that follows.
 pub(crate) const LINK: i32 = 200;
-/// Between the two lines of a synchronisation.
+/// Distance between the two lines of a synchronisation.
 pub(crate) const DOUBLE: i32 = 50;
-/// From a transition's bar to its double line.
+/// Distance from a transition's bar to its double line.
 pub(crate) const BAR: i32 = 150;
 /// How far a double line reaches beyond its outermost links.
 pub(crate) const OVERHANG: i32 = 220;
-/// Between texts and what is below or above them.
+/// Distance between texts and what stands below or above them.
 pub(crate) const CLEAR: i32 = 60;
-/// Between branches.
+/// Distance between branches.
 pub(crate) const GAP: i32 = 250;
-/// Least reach of a link to both sides.
+/// Least reach of a link to each side.
 pub(crate) const LINE: i32 = 60;
 /// Height of one connector.
 pub(crate) const ROW: i32 = 200;
 /// Height of the text box of a connector.
 pub(crate) const ROW_TEXT: i32 = 180;
-/// How far arriving connectors stand above a step into which one of them leads
-/// from above: clear of its arrow head.
+/// How far arriving connectors stand above a step if one of them leads into it from above: clear of
+/// its arrow head.
 pub(crate) const HEAD: i32 = 100;
-/// How far that one begins above the others.
+/// How much higher that connector begins than the others.
 pub(crate) const APART: i32 = 60;
-/// From an arriving connector's tip to its text.
+/// Distance from the tip of an arriving connector to its text.
 pub(crate) const STUB: i32 = 240;
-/// From a vertical connector to its text.
+/// Distance from a vertical connector to its text.
 pub(crate) const ASIDE: i32 = 90;
 
 /// The room of one symbol round its anchor.
@@ -44,18 +44,18 @@ pub(crate) struct Room {
     pub(crate) right: i32,
     /// Texts above the anchor, without connectors.
     pub(crate) text: i32,
-    /// All above the anchor without the row of loops.
+    /// Everything above the anchor except the row of loops.
     pub(crate) up: i32,
-    /// All below the anchor.
+    /// Everything below the anchor.
     pub(crate) down: i32,
     /// From the anchor down to where a link leaves.
     pub(crate) port: i32,
-    /// From the anchor up to the row by which loops come back, 0 where none does.
+    /// From the anchor up to the row in which loops come back; 0 if no loop does.
     pub(crate) entry: i32,
 }
 
 impl Room {
-    /// All above the anchor.
+    /// Everything above the anchor.
     pub(crate) fn top(&self) -> i32 {
         if self.entry == 0 { self.up } else { self.entry + CLEAR }
     }
@@ -65,7 +65,7 @@ fn grid(n: i32) -> i32 {
     (n + 49) / 50 * 50
 }
 
-/// The extents of all nodes, limited so that no sum can overflow, on half units.
+/// The extents of all nodes, rounded to half units and limited so that no sum overflows.
 pub(crate) fn extents(graph: &Graph, sizes: &Sizes) -> Vec<Extent> {
     let most = (1_500_000_000 / (4 * (graph.nodes as i64 + 1))).clamp(300, 100_000) as i32;
     let limit = |n: i32| grid(n.clamp(0, most));
@@ -90,13 +90,13 @@ pub(crate) fn extents(graph: &Graph, sizes: &Sizes) -> Vec<Extent> {
     (0..graph.nodes).map(get).collect()
 }
 
-/// How wide the text of a broken link is, at the end it leaves or at which it arrives.
+/// The width of the text at one end of a broken link.
 pub(crate) fn connector_width(graph: &Graph, sizes: &Sizes, link: u32, leaving: bool) -> i32 {
     let Some(&(from, to)) = graph.links.get(link as usize) else { return 0 };
     let other = if leaving { to } else { from };
     let step = match (graph.is_step(other), leaving) {
         (true, _) => Some(other),
-        // A transition goes by the first step beyond it.
+        // A transition is named after the first step beyond it.
         (false, true) => graph.out.of(other).first().map(|l| graph.links[*l as usize].1),
         (false, false) => graph.into.of(other).first().map(|l| graph.links[*l as usize].0),
     };
@@ -104,12 +104,12 @@ pub(crate) fn connector_width(graph: &Graph, sizes: &Sizes, link: u32, leaving: 
     width.clamp(0, 4000)
 }
 
-/// Whether nothing but broken links leads into a step.
+/// True if only broken links lead into a step.
 pub(crate) fn only_arrivals(graph: &Graph, tree: &Tree, step: u32) -> bool {
     graph.into.of(step).len() == tree.arrivals[step as usize].len()
 }
 
-/// Whether one of several broken links comes into a step from above, the others from its right.
+/// True if one of several broken links enters a step from above and the others from its right.
 pub(crate) fn from_above(graph: &Graph, tree: &Tree, step: u32) -> bool {
     tree.arrivals[step as usize].len() > 1 && only_arrivals(graph, tree, step)
 }

@@ -2,14 +2,13 @@
 
 use crate::layout::place::Places;
 use crate::layout::rooms::{ASIDE, DOUBLE, OVERHANG, ROW_TEXT, STUB, connector_width, extents};
-use crate::layout::shape::{NOWHERE, Shapes};
-use crate::layout::tree::NONE;
+use crate::layout::shape::Shapes;
 use crate::{Bar, Connector, End, Extent, Link, Placement, Point, Rect};
 
-/// Ways back longer than this have an arrow at both ends.
+/// A return longer than this has an arrow at both ends.
 const LONG: i32 = 4000;
 
-/// The end that a node is.
+/// A node as the end of a link.
 pub(crate) fn end(steps: usize, n: u32) -> End {
     match (n as usize) < steps {
         true => End::Step(n),
@@ -17,15 +16,15 @@ pub(crate) fn end(steps: usize, n: u32) -> End {
     }
 }
 
-/// Links, double lines, connectors.
+/// Computes the links, double lines and connectors.
 pub(crate) fn route(s: &Shapes, p: &Places) -> Placement {
     let graph = s.graph;
     let (steps, transitions) = p.at.split_at(graph.steps);
     let mut placement =
         Placement { steps: steps.to_vec(), transitions: transitions.to_vec(), ..Placement::default() };
-    let mut back = vec![NONE; graph.links.len()];
+    let mut back = vec![None; graph.links.len()];
     for (r, of) in (0u32..).zip(&s.tree.returns) {
-        of.links.iter().for_each(|l| back[*l as usize] = r);
+        of.links.iter().for_each(|l| back[*l as usize] = Some(r));
     }
     let mut broken = vec![false; graph.links.len()];
     s.tree.cuts.iter().for_each(|l| broken[*l as usize] = true);
@@ -39,8 +38,8 @@ pub(crate) fn route(s: &Shapes, p: &Places) -> Placement {
         };
         let mut points = start(s, p, l);
         match back[l] {
-            NONE => finish(s, p, l, &mut points),
-            r => link.arrows = up(s, p, r, to, &mut points),
+            None => finish(s, p, l, &mut points),
+            Some(r) => link.arrows = up(s, p, r, to, &mut points),
         }
         link.points = tidy(points);
         placement.links.push(link);
@@ -51,7 +50,7 @@ pub(crate) fn route(s: &Shapes, p: &Places) -> Placement {
     placement
 }
 
-/// What a placement covers.
+/// The bounding box of a placement.
 pub(crate) fn area(p: &Placement, extents: &[Extent]) -> Rect {
     let at = p.steps.iter().chain(&p.transitions).zip(extents).map(|(at, e)| Rect::around(*at, *e));
     let bars = p.bars.iter().map(|b| Rect { x: b.at.x, y: b.at.y, w: b.w, h: DOUBLE });
@@ -61,25 +60,23 @@ pub(crate) fn area(p: &Placement, extents: &[Extent]) -> Rect {
     at.chain(bars).chain(corners).chain(texts).reduce(|a, b| a.union(&b)).unwrap_or_default()
 }
 
-/// From the node above to the link's column.
+/// The first points of a link: from the node above to the link's column.
 fn start(s: &Shapes, p: &Places, l: usize) -> Vec<Point> {
     let from = s.graph.links[l].0 as usize;
     let at = p.at[from];
     let mut points = vec![Point { x: at.x, y: at.y + s.rooms[from].port }];
-    let line = p.below_line[from];
-    if line != NOWHERE {
+    if let Some(line) = p.below_line[from] {
         let x = p.column(l as u32, true, at.x);
         points.extend([Point { x: at.x, y: line }, Point { x, y: line }]);
     }
     points
 }
 
-/// Down to the node below.
+/// Appends the last points of a link: down to the node below.
 fn finish(s: &Shapes, p: &Places, l: usize, points: &mut Vec<Point>) {
     let to = s.graph.links[l].1 as usize;
     let at = p.at[to];
-    let mut line = p.above_line[to];
-    if line != NOWHERE {
+    if let Some(mut line) = p.above_line[to] {
         if !s.graph.is_step(to as u32) {
             line += DOUBLE;
         }
@@ -89,12 +86,12 @@ fn finish(s: &Shapes, p: &Places, l: usize, points: &mut Vec<Point>) {
     points.push(at);
 }
 
-/// To the left, up beside the chart, and into the step from above.
+/// Appends the points of a return (to the left, up beside the chart, into the step from above) and
+/// gives its arrows.
 fn up(s: &Shapes, p: &Places, back: u32, to: u32, points: &mut Vec<Point>) -> Vec<(Point, (i8, i8))> {
     let at = p.at[to as usize];
     let (row, lane) = (p.row[back as usize], p.lane[back as usize]);
-    let line = p.above_line[to as usize];
-    let entry = if line == NOWHERE { at.y - s.entry[to as usize] } else { line };
+    let entry = p.above_line[to as usize].unwrap_or(at.y - s.entry[to as usize]);
     let x = points.last().map_or(at.x, |p| p.x);
     let corners = [(x, row), (lane, row), (lane, entry), (at.x, entry), (at.x, at.y)];
     points.extend(corners.map(|(x, y)| Point { x, y }));
@@ -107,7 +104,7 @@ fn up(s: &Shapes, p: &Places, back: u32, to: u32, points: &mut Vec<Point>) -> Ve
     tips.into_iter().flatten().map(|y| (Point { x: lane, y }, (0, -1))).collect()
 }
 
-/// Without points that turn nothing.
+/// Removes points at which the line does not turn.
 pub(crate) fn tidy(points: Vec<Point>) -> Vec<Point> {
     let mut found: Vec<Point> = Vec::with_capacity(points.len());
     for p in points {
@@ -124,15 +121,13 @@ pub(crate) fn tidy(points: Vec<Point>) -> Vec<Point> {
     found
 }
 
-/// The double lines, as wide as the links that meet at them.
+/// Adds the double lines, as wide as the links that meet at them.
 fn bars(s: &Shapes, p: &Places, placement: &mut Placement) {
     let graph = s.graph;
     for t in graph.steps as u32..graph.nodes as u32 {
         let at = p.at[t as usize];
         for (join, line) in [(true, p.above_line[t as usize]), (false, p.below_line[t as usize])] {
-            if line == NOWHERE {
-                continue;
-            }
+            let Some(line) = line else { continue };
             let links = if join { graph.into.of(t) } else { graph.out.of(t) };
             let column = |l: &u32| p.column(*l, !join, at.x);
             let (from, to) = links.iter().map(column).fold((at.x, at.x), |(a, b), x| (a.min(x), b.max(x)));
@@ -143,13 +138,13 @@ fn bars(s: &Shapes, p: &Places, placement: &mut Placement) {
     }
 }
 
-/// The ends of broken links, with the room for their texts.
+/// Adds the ends of broken links, with the boxes of their texts.
 fn connectors(s: &Shapes, p: &Places, placement: &mut Placement) {
     for &(l, leaving, tail, tip) in &p.broken {
         let (from, to) = s.graph.links[l as usize];
         let mut points = vec![tail, tip];
         if leaving {
-            // From a step the link begins at its square, whatever it has beside it.
+            // The link starts at the step's square, whatever stands beside the step.
             let mut before = start(s, p, l as usize);
             before.extend(points);
             points = tidy(before);

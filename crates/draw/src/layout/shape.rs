@@ -1,5 +1,5 @@
-//! The size of every sequence and group of branches, from the innermost outward:
-//! first the heights in a sequence, then what stands beside it.
+//! The sizes of all sequences and groups of branches, from the innermost outward: first the heights
+//! inside a sequence, then the parts beside it.
 
 use std::ops::Range;
 
@@ -8,82 +8,79 @@ use crate::layout::graph::Graph;
 use crate::layout::rooms::{
     ASIDE, BAR, CLEAR, DOUBLE, GAP, LINE, LINK, OVERHANG, ROW, Room, connector_width, rooms,
 };
-use crate::layout::tree::{Branch, Item, NONE, Tree};
+use crate::layout::tree::{Branch, Item, Tree};
 
-/// A height that is not there.
-pub(crate) const NOWHERE: i32 = i32::MIN;
-
-/// A way back that leaves a part at its left edge.
+/// A return that leaves a part at its left edge.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Exit {
-    /// Which way back.
+    /// The number of the return.
     pub(crate) back: u32,
-    /// At which height.
+    /// The height at which it leaves.
     pub(crate) y: i32,
-    /// How far to the left the part reaches that it leaves.
+    /// The left reach of the part that it leaves.
     pub(crate) edge: i32,
 }
 
-/// A step that a way back can reach from the left edge of a part.
+/// A step that a return can reach from the left edge of a part.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Entry {
     /// The step.
     pub(crate) step: u32,
-    /// At which height.
+    /// The height at which the return enters.
     pub(crate) y: i32,
 }
 
-/// An item at its height in a sequence.
+/// An item and its height in a sequence.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Put {
-    /// What.
+    /// The item.
     pub(crate) item: Item,
-    /// Anchor of a node, top of branches, row of a way back, tip of a connector.
+    /// Anchor of a node, top of a group of branches, row of a return, tip of a connector.
     pub(crate) y: i32,
-    /// Where the link to a connector begins.
+    /// The height at which the link to a connector begins.
     pub(crate) tail: i32,
 }
 
-/// A sequence beside a node.
+/// A sequence that stands beside a node.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Side {
     /// Its block.
     pub(crate) block: u32,
-    /// Where its spine is, from the spine of the sequence it stands beside.
+    /// Its spine, relative to the spine of the sequence that it stands beside.
     pub(crate) x: i32,
-    /// Where its top is.
+    /// Its top.
     pub(crate) y: i32,
 }
 
-/// A sequence, its heights from its top, its widths from its spine.
+/// A sequence: heights are measured from its top, widths from its spine.
 #[derive(Debug)]
 pub(crate) struct Block {
-    /// What it was made from.
+    /// The branch that it shows.
     pub(crate) branch: Branch,
     /// Its items.
     pub(crate) puts: Vec<Put>,
-    /// What stands beside them.
+    /// The sequences that stand beside its items.
     pub(crate) sides: Vec<Side>,
-    /// Vertical lines of loops: which way back, where.
+    /// The vertical lines of loops: number of the return, column.
     pub(crate) lanes: Vec<(u32, i32)>,
     /// Reach to the left.
     pub(crate) left: i32,
     /// Reach to the right.
     pub(crate) right: i32,
-    /// Height of the first anchor, [`NOWHERE`] if it begins otherwise.
-    pub(crate) head: i32,
-    /// Where a line below can be at the earliest.
+    /// Height of the first anchor, if it begins with a symbol.
+    pub(crate) head: Option<i32>,
+    /// The least height at which a line can follow.
     pub(crate) foot: i32,
-    /// Lowest edge of all that is in it.
+    /// The lowest edge of everything in it.
     pub(crate) height: i32,
-    /// Ways back that leave it.
+    /// The returns that leave it.
     pub(crate) exits: Vec<Exit>,
-    /// Steps that ways back can reach.
+    /// The steps that returns from outside can reach.
     pub(crate) entries: Vec<Entry>,
 }
 
 impl Block {
-    /// A way back out of it runs at this height now.
+    /// Records that a return leaves the block at a new height.
     fn deepen(&mut self, back: u32, y: i32) {
         self.exits.iter_mut().filter(|e| e.back == back).for_each(|e| e.y = y);
         self.height = self.height.max(y);
@@ -96,22 +93,22 @@ impl Block {
 pub(crate) struct Group {
     /// Its blocks.
     pub(crate) blocks: Range<u32>,
-    /// The spine of each, from the group's.
+    /// The spine of each block, relative to that of the group.
     pub(crate) xs: Vec<i32>,
-    /// The top of each.
+    /// The top of each block.
     pub(crate) ys: Vec<i32>,
-    /// All columns at its top: a branch that begins with branches has several.
+    /// All columns at the top; a branch that begins with branches has several.
     tops: Vec<i32>,
     left: i32,
     right: i32,
-    head: i32,
+    head: Option<i32>,
     foot: i32,
     height: i32,
     exits: Vec<Exit>,
     entries: Vec<Entry>,
 }
 
-/// All sizes.
+/// The sizes of all parts of a chart.
 pub(crate) struct Shapes<'a> {
     pub(crate) graph: &'a Graph,
     pub(crate) tree: &'a Tree,
@@ -119,32 +116,32 @@ pub(crate) struct Shapes<'a> {
     pub(crate) rooms: Vec<Room>,
     pub(crate) blocks: Vec<Block>,
     pub(crate) groups: Vec<Group>,
-    /// The blocks beside each node, below and above it.
+    /// The blocks beside each node: those that hang below it, and those that enter it from above.
     pub(crate) below: Vec<Range<u32>>,
     pub(crate) above: Vec<Range<u32>>,
     /// The line or double line below and above each node, from the top of its block.
-    pub(crate) below_line: Vec<i32>,
-    pub(crate) above_line: Vec<i32>,
-    /// From each step's anchor up to where loops come in.
+    pub(crate) below_line: Vec<Option<i32>>,
+    pub(crate) above_line: Vec<Option<i32>>,
+    /// For each step: from its anchor up to the row in which loops come in.
     pub(crate) entry: Vec<i32>,
-    /// Ways back to each step that have not found their lane.
+    /// The number of returns to each step that have no column yet.
     pub(crate) waiting: Vec<u32>,
-    /// Links that could not be drawn and have to be broken.
+    /// The links that could not be drawn and have to be broken.
     pub(crate) failed: Vec<u32>,
 }
 
-/// What is above the next item of a sequence.
+/// What stands above the next item of a sequence.
 #[derive(Clone, Copy)]
 enum Above {
-    /// A line from which branches hang, at the level.
+    /// A line from which branches hang, at the current level.
     Line,
-    /// A symbol with its port at the level and its texts down to here.
+    /// A symbol whose link leaves at the current level; its texts reach down to this height.
     Port(i32),
-    /// Branches that meet at the level.
+    /// Branches that meet at the current level.
     Branches,
 }
 
-/// The sizes of all parts; the first blocks are the roots.
+/// Computes the sizes of all parts; the first blocks are the roots.
 pub(crate) fn shapes<'a>(graph: &'a Graph, tree: &'a Tree, sizes: &'a Sizes) -> Shapes<'a> {
     let rooms = rooms(graph, tree, sizes);
     let mut waiting = vec![0; graph.nodes];
@@ -159,8 +156,8 @@ pub(crate) fn shapes<'a>(graph: &'a Graph, tree: &'a Tree, sizes: &'a Sizes) -> 
         groups: vec![Group::default(); tree.pars.len()],
         below: vec![0..0; graph.nodes],
         above: vec![0..0; graph.nodes],
-        below_line: vec![NOWHERE; graph.nodes],
-        above_line: vec![NOWHERE; graph.nodes],
+        below_line: vec![None; graph.nodes],
+        above_line: vec![None; graph.nodes],
         waiting,
         failed: Vec::new(),
     };
@@ -183,10 +180,10 @@ pub(crate) fn shapes<'a>(graph: &'a Graph, tree: &'a Tree, sizes: &'a Sizes) -> 
 }
 
 impl Shapes<'_> {
-    /// Makes a block of every sequence, outer ones before those in them.
+    /// Makes a block of every sequence; outer sequences come before inner ones.
     fn unfold(&mut self) {
         let tree = self.tree;
-        self.add(tree.roots.iter().map(|c| Branch { chain: *c, first: NONE, last: NONE }).collect());
+        self.add(tree.roots.iter().map(|c| Branch { chain: *c, first: None, last: None }).collect());
         let mut b = 0;
         while b < self.blocks.len() {
             let items: Vec<Item> = tree.walk(self.blocks[b].branch.chain).collect();
@@ -203,7 +200,7 @@ impl Shapes<'_> {
                     }
                     Item::Par(p) => {
                         let mut branches = tree.pars[p as usize].branches.clone();
-                        branches.sort_by_key(|b| b.first);
+                        branches.sort_by_key(|b| (b.first.is_none(), b.first));
                         self.groups[p as usize].blocks = self.add(branches);
                     }
                     Item::Return(_) | Item::Leave(_) | Item::Arrive(_) => {}
@@ -222,7 +219,7 @@ impl Shapes<'_> {
             lanes: Vec::new(),
             left: LINE,
             right: LINE,
-            head: NOWHERE,
+            head: None,
             foot: 0,
             height: 0,
             exits: Vec::new(),
@@ -231,12 +228,12 @@ impl Shapes<'_> {
         from..self.blocks.len() as u32
     }
 
-    /// A way back for which there is no way.
+    /// Marks the links of a return that could not be routed.
     pub(crate) fn fail(&mut self, back: u32) {
         self.failed.extend(&self.tree.returns[back as usize].links);
     }
 
-    /// The heights in a sequence.
+    /// Computes the heights inside a sequence.
     fn sequence(&mut self, b: usize) {
         let tree = self.tree;
         let items: Vec<Item> = tree.walk(self.blocks[b].branch.chain).collect();
@@ -274,14 +271,14 @@ impl Shapes<'_> {
             Above::Branches => level,
         };
         block.head = match puts.first() {
-            Some(Put { item: Item::Node(_), y, .. }) => *y,
+            Some(Put { item: Item::Node(_), y, .. }) => Some(*y),
             Some(Put { item: Item::Par(p), .. }) => self.groups[*p as usize].head,
-            _ => NOWHERE,
+            _ => None,
         };
         block.puts = puts;
     }
 
-    /// One symbol: its anchor, and where what follows begins.
+    /// Places one symbol: its anchor, the level below it, and what the next item finds there.
     fn node(&mut self, n: u32, level: i32, above: Above, branches: bool) -> (i32, i32, Above) {
         let at = n as usize;
         let (room, step) = (self.rooms[at], self.graph.is_step(n));
@@ -292,7 +289,7 @@ impl Shapes<'_> {
                 Above::Port(text) => (level + LINK).max(text + CLEAR),
                 Above::Branches => level,
             };
-            self.above_line[at] = line;
+            self.above_line[at] = Some(line);
             match step {
                 true => line + LINK.max(CLEAR + room.up),
                 false => line + DOUBLE + BAR.max(CLEAR + room.up),
@@ -308,26 +305,27 @@ impl Shapes<'_> {
             return (y, port, Above::Port(text));
         }
         let line = if step { (port + LINK).max(text + CLEAR) } else { (port + BAR).max(text + DOUBLE) };
-        self.below_line[at] = line;
+        self.below_line[at] = Some(line);
         (y, if step { line } else { line + DOUBLE }, Above::Line)
     }
 
-    /// The size of a group of branches.
+    /// Computes the size of a group of branches.
     fn group(&mut self, p: usize) {
         let (top_open, end_open) = (self.tree.pars[p].top_open, self.tree.pars[p].end_open);
         let mut group = std::mem::take(&mut self.groups[p]);
         let blocks = group.blocks.clone();
         let range = blocks.start as usize..blocks.end as usize;
         let of = &self.blocks[range.clone()];
-        let head = of.iter().map(|b| b.head).max().unwrap_or(NOWHERE);
+        let head = of.iter().filter_map(|b| b.head).max();
         group.head = head;
-        // First symbols stand in one row; ways back to several tops come in above it.
+        // First symbols stand in one row; returns to several tops come in above that row.
         let entering: usize = of.iter().skip(1).map(|b| b.entries.len()).sum();
         let lift = if top_open { 100 * entering.min(10_000) as i32 } else { 0 };
-        group.ys = of.iter().map(|b| lift + if b.head == NOWHERE { 0 } else { head - b.head }).collect();
+        let below = |b: &Block| head.zip(b.head).map_or(0, |(row, own)| row - own);
+        group.ys = of.iter().map(|b| lift + below(b)).collect();
         columns(&mut group, of, &self.groups);
         let mut row = lift;
-        let mut low = NOWHERE;
+        let mut low = i32::MIN;
         for (k, b) in range.enumerate() {
             let dy = group.ys[k];
             if end_open && k > 0 {
@@ -364,7 +362,7 @@ impl Shapes<'_> {
         self.blocks[b].puts.first().is_some_and(|p| p.item == Item::Node(step))
     }
 
-    /// Lets a way back at the end of a block run lower, or those of the branches at its end.
+    /// Lowers the return at the end of a block, or the returns of the branches at its end, to `y`.
     pub(crate) fn stretch(&mut self, b: usize, y: i32) {
         let Some(last) = self.blocks[b].puts.last().copied() else { return };
         match last.item {
@@ -384,7 +382,7 @@ impl Shapes<'_> {
         }
     }
 
-    /// Lets the ways back of the branches at the end of a block run lower.
+    /// Lowers the returns of the branches at the end of a block.
     fn stretch_all(&mut self, b: usize, p: usize, by: i32) {
         let mut group = std::mem::take(&mut self.groups[p]);
         for inner in group.blocks.clone() {
@@ -395,7 +393,7 @@ impl Shapes<'_> {
             *y += by;
             let (back, row) = (*back, *y);
             self.blocks[inner as usize].deepen(back, row);
-            // Others, from farther inside, stay where they are.
+            // Returns from farther inside stay where they are.
             group.exits.iter_mut().filter(|e| e.back == back).for_each(|e| e.y += by);
         }
         let low = group.exits.iter().map(|e| e.y).max().unwrap_or(0);
@@ -406,7 +404,7 @@ impl Shapes<'_> {
         self.groups[p] = group;
     }
 
-    /// The rows of a sequence with their reach, without what stands beside it.
+    /// The rows of a sequence with their reach, without the parts beside it.
     pub(crate) fn bands(&self, b: usize) -> Vec<Band> {
         let band = |put: &Put| {
             let y = put.y;
@@ -433,20 +431,18 @@ impl Shapes<'_> {
         self.blocks[b].puts.iter().map(band).collect()
     }
 
-    /// The ways back that leave the branches in a sequence or the sequence itself,
-    /// and the steps to which one can come back.
+    /// The returns that leave a sequence or its branches, and the steps that a return can reach.
     pub(crate) fn open_ends(&self, b: usize) -> (Vec<Exit>, Vec<Entry>) {
         let (mut exits, mut entries) = (Vec::new(), Vec::new());
         let mut meeting = LINE;
         for put in &self.blocks[b].puts {
             match put.item {
                 Item::Node(n) if self.waiting[n as usize] > 0 => {
-                    let line = self.above_line[n as usize];
-                    let y = if line == NOWHERE { put.y - self.entry[n as usize] } else { line };
+                    let y = self.above_line[n as usize].unwrap_or(put.y - self.entry[n as usize]);
                     entries.push(Entry { step: n, y });
                     meeting = LINE;
                 }
-                // Branches that meet and go back have that line in common.
+                // Branches that meet and return share one line.
                 Item::Return(back) => exits.push(Exit { back, y: put.y, edge: meeting }),
                 Item::Par(p) => {
                     let g = &self.groups[p as usize];
@@ -461,7 +457,7 @@ impl Shapes<'_> {
     }
 }
 
-/// Rows of a sequence and their reach.
+/// A range of rows of a sequence and its reach to both sides.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Band {
     pub(crate) y0: i32,
@@ -470,11 +466,11 @@ pub(crate) struct Band {
     pub(crate) right: i32,
 }
 
-/// Sets branches beside one another and finds the spine among them.
+/// Places branches beside one another and finds the spine among them.
 fn columns(group: &mut Group, of: &[Block], groups: &[Group]) {
     let Some(last) = of.last() else { return };
     let need: Vec<i32> = of.windows(2).map(|w| (w[0].right + GAP + w[1].left + 99) / 100 * 100).collect();
-    // Even distances where that costs little.
+    // Use equal distances if that costs little width.
     let widest = need.iter().copied().max().unwrap_or(0);
     let total: i64 = need.iter().map(|n| i64::from(*n)).sum();
     let even = need.len() <= 8 && i64::from(widest) * need.len() as i64 * 4 <= total * 5;
@@ -506,7 +502,7 @@ fn columns(group: &mut Group, of: &[Block], groups: &[Group]) {
     group.left = (spine + of[0].left).max(spine + OVERHANG);
     group.right = (x - spine + last.right).max(x - spine + OVERHANG);
     group.xs.iter_mut().for_each(|x| *x -= spine);
-    // A branch between may reach further than the outermost.
+    // An inner branch may reach further than the outermost ones.
     for (x, b) in group.xs.iter().zip(of) {
         group.left = group.left.max(b.left - x);
         group.right = group.right.max(b.right + x);

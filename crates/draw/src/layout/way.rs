@@ -1,22 +1,21 @@
-//! A way from one place to another round the symbols between: a few simple
-//! shapes are tried, the shortest that runs through nothing is taken.
+//! Finds a way from one place to another round the symbols between them: tries a few simple shapes
+//! and takes the shortest that crosses nothing.
 
 use std::collections::HashMap;
 
 use crate::layout::rooms::LINK;
-use crate::layout::tree::NONE;
 use crate::{Point, Rect};
 
-/// Side of a cell of the map.
+/// Side of a cell of the search grid.
 const CELL: i32 = 2000;
-/// A line over more cells is compared with all symbols.
+/// A line over more cells than this is compared with all symbols.
 const MOST_CELLS: i64 = 400;
-/// How often a column is pushed aside by a symbol in its way.
+/// How often a column is moved aside by a symbol in its way.
 const PUSHES: usize = 24;
-/// Between a line and the symbol it passes.
+/// Distance between a line and the symbol that it passes.
 const BESIDE: i32 = 100;
 
-/// The symbols in the way.
+/// The symbols that links must avoid.
 #[derive(Debug)]
 pub(crate) struct Ways {
     boxes: Vec<(u32, Rect)>,
@@ -33,8 +32,8 @@ fn cells(r: &Rect) -> (std::ops::RangeInclusive<i32>, std::ops::RangeInclusive<i
 }
 
 impl Ways {
-    /// A map of boxes with the node each belongs to; those of the nodes themselves
-    /// come first and in their order.
+    /// A grid of boxes with the node that each belongs to; the boxes of the nodes themselves come
+    /// first, in the order of the nodes.
     pub(crate) fn new(boxes: Vec<(u32, Rect)>) -> Ways {
         let mut map: HashMap<(i32, i32), Vec<u32>> = HashMap::new();
         for (n, (_, r)) in (0..).zip(&boxes) {
@@ -46,15 +45,15 @@ impl Ways {
         Ways { boxes, cells: map }
     }
 
-    /// The symbols that a piece runs through, but for the two it belongs to.
-    fn hits(&self, a: Point, b: Point, ends: [u32; 2], mut f: impl FnMut(u32)) {
+    /// Calls `f` for each symbol that a segment crosses, except the two symbols in `ends`.
+    fn hits(&self, a: Point, b: Point, ends: Option<[u32; 2]>, mut f: impl FnMut(u32)) {
         let piece = line(a, b);
         let (xs, ys) = cells(&piece);
         let count = (i64::from(*xs.end()) - i64::from(*xs.start()) + 1)
             * (i64::from(*ys.end()) - i64::from(*ys.start()) + 1);
         let mut look = |n: u32| {
             let (owner, r) = &self.boxes[n as usize];
-            if !ends.contains(owner) && r.overlaps(&piece) {
+            if !ends.is_some_and(|ends| ends.contains(owner)) && r.overlaps(&piece) {
                 f(n);
             }
         };
@@ -69,7 +68,7 @@ impl Ways {
         }
     }
 
-    /// Whether a line runs through a symbol.
+    /// True if a line crosses a symbol.
     pub(crate) fn blocked(&self, points: &[Point], from: u32, to: u32) -> bool {
         self.count(points, [from, to]) > 0
     }
@@ -77,15 +76,15 @@ impl Ways {
     fn count(&self, points: &[Point], ends: [u32; 2]) -> usize {
         let mut count = 0;
         for (k, w) in points.windows(2).enumerate() {
-            // Near its ends a link passes the texts of its own symbols.
-            let own = if k > 1 && k + 3 < points.len() { [NONE; 2] } else { ends };
+            // Only near its ends may a link pass the texts of its own symbols.
+            let own = if k > 1 && k + 3 < points.len() { None } else { Some(ends) };
             self.hits(w[0], w[1], own, |_| count += 1);
         }
         count
     }
 
-    /// The corners from `a`, left downward, to `b`, come to from above. `rows` are
-    /// the heights at which other links part below `a` and meet above `b`.
+    /// The corners of a line from `a`, which it leaves downward, to `b`, which it enters from
+    /// above. `rows` are the heights at which other links part below `a` and meet above `b`.
     pub(crate) fn find(&self, a: Point, b: Point, rows: [Option<i32>; 2], from: u32, to: u32) -> Vec<Point> {
         let ends = [from, to];
         let mut tried: Vec<Vec<Point>> = Vec::new();
@@ -111,14 +110,14 @@ impl Ways {
         let cost = |p: &Vec<Point>| {
             let length: i64 =
                 p.windows(2).map(|w| i64::from((w[0].x - w[1].x).abs() + (w[0].y - w[1].y).abs())).sum();
-            // What goes up does so at the left.
+            // A line that goes up does so at the left.
             let right = b.y <= a.y && p.get(2).is_some_and(|c| c.x > a.x.min(b.x));
             (self.count(p, ends), length + if right { 600 } else { 0 })
         };
         tried.into_iter().min_by_key(cost).unwrap_or_else(|| vec![a, b])
     }
 
-    /// Columns beside the two ends, pushed aside by what stands in them.
+    /// Columns beside the two ends, moved aside by the symbols that stand in them.
     fn columns(&self, y0: i32, y1: i32, ends: [u32; 2]) -> Vec<i32> {
         let mut found = Vec::new();
         let boxes = ends.map(|n| self.boxes[n as usize].1);
@@ -129,7 +128,7 @@ impl Ways {
             let mut x = start;
             for _ in 0..PUSHES {
                 let mut next = x;
-                self.hits(Point { x, y: y0 }, Point { x, y: y1 }, [NONE; 2], |n| {
+                self.hits(Point { x, y: y0 }, Point { x, y: y1 }, None, |n| {
                     let r = self.boxes[n as usize].1;
                     next = if way < 0 { next.min(r.x - BESIDE) } else { next.max(r.x + r.w + BESIDE) };
                 });

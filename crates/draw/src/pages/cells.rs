@@ -1,5 +1,5 @@
-//! Which cell each symbol has: sequences run down a column, branches take further
-//! columns to the right, what does not fit goes on at the top of another column.
+//! Gives each symbol its cell: sequences run down a column, branches take further columns to the
+//! right, and what does not fit continues at the top of another column.
 
 use std::collections::HashMap;
 
@@ -7,37 +7,37 @@ use g7_model::{Chart, StepKind};
 
 use super::{COLUMNS, LINES};
 
-/// A step's cell, or that of a transition under its line.
+/// The cell of a step, or of a transition under that line of steps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub(super) struct Cell {
-    /// From 0.
+    /// The page, from 0.
     pub(super) page: u32,
     /// The line of steps, from 0.
     pub(super) line: u32,
-    /// From 0.
+    /// The column, from 0.
     pub(super) column: u32,
 }
 
-/// The links of a chart by numbers, and the cell of each symbol.
+/// The links of a chart as numbers, and the cell of each symbol.
 #[derive(Debug, Default)]
 pub(super) struct Cells {
     pub(super) steps: Vec<Cell>,
     pub(super) transitions: Vec<Cell>,
-    /// Preceding steps of each transition.
+    /// The preceding steps of each transition.
     pub(super) from: Vec<Vec<u32>>,
-    /// Succeeding steps of each transition.
+    /// The succeeding steps of each transition.
     pub(super) to: Vec<Vec<u32>>,
-    /// Transitions behind each step.
+    /// The transitions that follow each step.
     pub(super) behind: Vec<Vec<u32>>,
-    /// How many pages there are.
+    /// The number of pages.
     pub(super) pages: u32,
 }
 
-/// What is still to be placed.
+/// A symbol that waits for its place.
 enum Open {
-    /// A transition beside those of a step.
+    /// A transition; it goes beside the other transitions of its step.
     Branch(u32, Cell),
-    /// A step beside those behind a transition.
+    /// A step; it goes beside the other succeeding steps of its transition.
     Parallel(u32, Cell),
 }
 
@@ -103,7 +103,7 @@ impl Placing {
         }
     }
 
-    /// Branches, the innermost first: so none crosses another.
+    /// Places the waiting branches, the innermost first, so that none crosses another.
     fn drain(&mut self) {
         while let Some(open) = self.open.pop() {
             match open {
@@ -126,12 +126,12 @@ impl Placing {
         }
     }
 
-    /// The top of a free column, on this page or a new one.
+    /// The top of a free column, on this page or on a new one.
     fn top(&mut self, page: u32) -> Cell {
         self.beside(page, 0)
     }
 
-    /// The top of a column on a later page: this page's columns are for its branches.
+    /// The top of a column on a later page: the columns of this page are kept for its branches.
     fn overleaf(&mut self, page: u32) -> Cell {
         let last = (self.free.len() as u32).saturating_sub(1);
         if last == page {
@@ -140,7 +140,7 @@ impl Placing {
         self.beside((self.free.len() as u32).saturating_sub(1), 0)
     }
 
-    /// A free column at a line; the top of one on the last or a new page where there is none.
+    /// A free column at a line; if there is none, the top of a column on the last or on a new page.
     fn beside(&mut self, page: u32, line: u32) -> Cell {
         let last = (self.free.len() as u32).saturating_sub(1);
         for (page, line) in [(page, line), (last, 0)] {
@@ -175,7 +175,7 @@ impl Placing {
         }
     }
 
-    /// The transition that goes in the column of a step; others wait.
+    /// Places the transition that continues the column of a step; the other transitions wait.
     fn behind(&mut self, s: u32, at: Cell) -> Option<(u32, Cell)> {
         let behind = self.cells.behind.get(s as usize).cloned().unwrap_or_default();
         let mut down = None;
@@ -187,7 +187,8 @@ impl Placing {
             let from = self.cells.from.get(t as usize).cloned().unwrap_or_default();
             let placed: Option<Vec<Cell>> =
                 from.iter().map(|s| self.step_at.get(*s as usize).copied().flatten()).collect();
-            // Where steps meet, the last of them brings the transition.
+            // A transition with several preceding steps is placed when the last of them has its
+            // place.
             let Some(placed) = placed else { continue };
             let place = if placed.iter().all(|c| c.page == at.page) { joined(&placed) } else { Some(at) };
             match place {
@@ -206,7 +207,7 @@ impl Placing {
         self.transition_at.contains(&Some(cell))
     }
 
-    /// The step that goes on in the column of a transition; others wait.
+    /// Places the step that continues the column of a transition; the other steps wait.
     fn follow(&mut self, t: u32, at: Cell) -> Option<(u32, Cell)> {
         let to = self.cells.to.get(t as usize).cloned().unwrap_or_default();
         let mut open = to.into_iter().filter(|s| self.step_at.get(*s as usize).is_some_and(Option::is_none));
@@ -222,7 +223,8 @@ impl Placing {
     }
 
     fn finish(mut self) -> Cells {
-        // A transition whose steps never all came: beside the first of them.
+        // A transition some of whose preceding steps were never placed goes beside the first of
+        // them.
         for t in 0..self.transition_at.len() {
             if self.transition_at[t].is_none() {
                 let cell = self.top(self.free.len().saturating_sub(1) as u32);
@@ -237,7 +239,7 @@ impl Placing {
     }
 }
 
-/// Where steps of one page meet: under the lowest, in the column of the leftmost.
+/// Where the steps of one page meet: under the lowest one, in the column of the leftmost.
 fn joined(from: &[Cell]) -> Option<Cell> {
     let line = from.iter().map(|c| c.line).max()?;
     let column = from.iter().map(|c| c.column).min()?;

@@ -1,4 +1,4 @@
-//! How large the cells are, and how the links run between them.
+//! The size of the cells, and the links between them.
 
 use g7_model::{Chart, Span};
 
@@ -9,49 +9,50 @@ use crate::symbols::{DOUBLE_GAP, SMALL, SQUARE, connector_label, connector_width
 use crate::text::width;
 use crate::{Bar, Connector, End, Item, Link, Part, Placement, Point, Rect, Sizes};
 
-/// A chart on pages.
+/// A chart divided into pages.
 pub(crate) struct Paged {
-    /// Where all is.
+    /// The places of all symbols and links.
     pub(crate) placement: Placement,
-    /// The page of each step, from 1; empty where there is one page.
+    /// The page number of each step, from 1; empty if there is only one page.
     pub(crate) pages: Vec<u32>,
-    /// Frames and numbers of the pages.
+    /// The frames and numbers of the pages.
     pub(crate) frames: Vec<Item>,
 }
 
-/// Narrowest half of a column.
+/// Least half width of a column.
 const HALF: i32 = 450;
-/// Between the texts of two columns.
+/// Distance between the texts of two columns.
 const GUTTER: i32 = 160;
-/// Between two pages.
+/// Distance between two pages.
 const BETWEEN: i32 = 400;
 /// Height of a connector's line.
 const CONNECTOR: i32 = 180;
-/// The link that is seen before an arriving connector's arrow.
+/// Length of the link that is shown before the arrow of an arriving connector.
 const ARRIVING: i32 = 160;
-/// From a symbol to the links beside it.
+/// Distance from a symbol to the links beside it.
 const STUB: i32 = 110;
 
 struct Paper<'a> {
     cells: &'a Cells,
     names: Vec<&'a str>,
-    /// Left edge of each column, and one past the last.
+    /// The left edge of each column, and the right edge of the last one.
     edges: Vec<i32>,
-    /// The link's place in each column.
+    /// The horizontal position of the link in each column.
     middles: Vec<i32>,
-    /// Of each page and line: top of the steps' squares, lowest point of the steps, middle of the bars.
+    /// For each page and line: top of the steps' squares, lowest point of the steps, middle of the
+    /// bars.
     lines: Vec<[(i32, i32, i32); LINES as usize]>,
-    /// Top and bottom of each page.
+    /// The top and bottom of each page.
     spans: Vec<(i32, i32)>,
     /// How far the texts of each transition reach above its bar.
     above: Vec<i32>,
-    /// How far they reach below it.
+    /// How far the texts of each transition reach below its bar.
     below: Vec<i32>,
     /// How far the texts of each step's actions reach above its square.
     over: Vec<i32>,
 }
 
-/// Puts a chart on pages.
+/// Divides a chart into pages.
 pub(crate) fn place(chart: &Chart, sizes: &Sizes) -> Paged {
     let cells = cells(chart);
     let paper = Paper::new(chart, sizes, &cells);
@@ -99,7 +100,7 @@ impl<'a> Paper<'a> {
         connector_label(name, page.filter(|_| self.cells.pages > 1))
     }
 
-    /// As wide as the widest text needs, on every page.
+    /// Computes the width of the columns: on every page as wide as the widest text needs.
     fn columns(&mut self, sizes: &Sizes) {
         let cells = self.cells;
         let widest = |c: Option<(i32, i32)>, e: (i32, i32)| c.map_or(e, |c| (c.0.max(e.0), c.1.max(e.1)));
@@ -128,7 +129,7 @@ impl<'a> Paper<'a> {
         self.edges.push(x);
     }
 
-    /// The lines of a page; tells its lower end.
+    /// Computes the lines of a page; returns its lower end.
     fn page(&mut self, page: u32, top: i32, sizes: &Sizes) -> i32 {
         let cells = self.cells;
         let mut y = top + 2 * CONNECTOR;
@@ -174,8 +175,8 @@ impl<'a> Paper<'a> {
             .unwrap_or_default()
     }
 
-    /// Whether the link from a transition to a step is drawn: to the line below it,
-    /// and of a double line all or none.
+    /// True if the link from a transition to a step is drawn: the step stands in the next line, and
+    /// of the links at one double line either all are drawn or none.
     fn runs_on(&self, t: u32, s: u32) -> bool {
         let to = self.cells.to.get(t as usize).map_or(&[][..], Vec::as_slice);
         match self.cells.transitions.get(t as usize) {
@@ -191,7 +192,7 @@ impl<'a> Paper<'a> {
         }
     }
 
-    /// Whether a step stands in the line below a transition, not left of it.
+    /// True if a step stands in the line below a transition and not left of it.
     fn is_next(&self, t: u32, s: u32) -> bool {
         match (self.cells.transitions.get(t as usize), self.cells.steps.get(s as usize)) {
             (Some(t), Some(s)) => t.page == s.page && t.line + 1 == s.line && s.column >= t.column,
@@ -199,7 +200,8 @@ impl<'a> Paper<'a> {
         }
     }
 
-    /// Whether the link from a step to a transition is drawn; of a double line all or none.
+    /// True if the link from a step to a transition is drawn; of the links at one double line
+    /// either all are drawn or none.
     fn runs_into(&self, s: u32, t: u32) -> bool {
         let from = self.cells.from.get(t as usize).map_or(&[][..], Vec::as_slice);
         let (Some(at), Some(to)) = (self.cells.steps.get(s as usize), self.cells.transitions.get(t as usize))
@@ -209,7 +211,7 @@ impl<'a> Paper<'a> {
         if from.len() < 2 {
             return at.page == to.page && at.line == to.line;
         }
-        // The double line takes the place where other branches would part.
+        // The double line stands where the links to other branches would part.
         let alone = |s: &u32| self.cells.behind.get(*s as usize).is_some_and(|b| b.len() == 1);
         let above = from.iter().filter_map(|s| self.cells.steps.get(*s as usize));
         let crossed = self.between(above.clone().map(|c| c.column), to.column, |column| {
@@ -219,7 +221,7 @@ impl<'a> Paper<'a> {
         !crossed && from.iter().all(alone) && above.clone().all(|c| c.page == to.page && c.line <= to.line)
     }
 
-    /// Whether something is met in a column from the outermost to the outermost of these.
+    /// True if `met` holds for a column between the outermost of these columns.
     fn between(&self, columns: impl Iterator<Item = u32>, own: u32, met: impl Fn(u32) -> bool) -> bool {
         let (least, most) = columns.fold((own, own), |(a, b), c| (a.min(c), b.max(c)));
         (least..=most).any(met)
@@ -229,13 +231,14 @@ impl<'a> Paper<'a> {
         i32::try_from(list.filter(|b| *b).count()).unwrap_or(0)
     }
 
-    /// How many broken links arrive at a step.
+    /// The number of broken links that arrive at a step.
     fn arriving(&self, s: u32) -> i32 {
         let into = (0..).zip(&self.cells.to).filter(|(_, to)| to.contains(&s));
         Paper::count(into.map(|(t, _)| !self.runs_on(t, s)))
     }
 
-    /// How high what arrives at a step stands over it: above the conditions of its actions.
+    /// How high the connectors that arrive at a step stand over it: above the conditions of its
+    /// actions.
     fn arrivals(&self, s: u32) -> i32 {
         match self.arriving(s) {
             0 => 0,
@@ -250,13 +253,13 @@ impl<'a> Paper<'a> {
         SQUARE + if broken > 0 { STUB + broken * CONNECTOR } else { 0 }
     }
 
-    /// How many broken links leave a transition.
+    /// The number of broken links that leave a transition.
     fn leaving(&self, t: u32) -> i32 {
         let to = self.cells.to.get(t as usize).map_or(&[][..], Vec::as_slice);
         Paper::count(to.iter().map(|s| !self.runs_on(t, *s)))
     }
 
-    /// How many broken links enter a transition.
+    /// The number of broken links that enter a transition.
     fn entering(&self, t: u32) -> i32 {
         let from = self.cells.from.get(t as usize).map_or(&[][..], Vec::as_slice);
         Paper::count(from.iter().map(|s| !self.runs_into(*s, t)))
@@ -273,7 +276,7 @@ impl<'a> Paper<'a> {
         }
     }
 
-    /// The height at which the links behind the transitions of a line run.
+    /// The height at which the links below the transitions of a line run.
     fn fork(&self, cell: Cell) -> i32 {
         let below = Cell { line: cell.line + 1, ..cell };
         let next = if below.line < LINES {
@@ -281,7 +284,7 @@ impl<'a> Paper<'a> {
         } else {
             self.spans.get(cell.page as usize).map_or(0, |s| s.1)
         };
-        // Over the connectors that arrive at the steps of the next line.
+        // Above the connectors that arrive at the steps of the next line.
         let arrive =
             (0..).zip(&self.cells.steps).filter(|(_, c)| c.page == below.page && c.line == below.line);
         let most = arrive.map(|(s, _)| self.arrivals(s)).max().unwrap_or(0);
@@ -359,7 +362,7 @@ impl<'a> Paper<'a> {
         if to.len() > 1 && !reach.is_empty() {
             bar(p, t, false, &reach, at.x, fork);
         } else if to.len() > 1 {
-            // All of them are broken off, below the double line they belong to.
+            // All links are broken, so their ends stand below the double line.
             bar(p, t, false, &[at.x - 60, at.x + 60], at.x, low + DOUBLE_GAP);
         }
     }
@@ -393,7 +396,7 @@ impl<'a> Paper<'a> {
     }
 }
 
-/// Down, across at a height, down.
+/// A line that goes down, across at a given height, and down again.
 fn bent(from: Point, to: Point, across: i32) -> Vec<Point> {
     if from.x == to.x {
         return vec![from, to];
@@ -401,7 +404,7 @@ fn bent(from: Point, to: Point, across: i32) -> Vec<Point> {
     vec![from, Point { x: from.x, y: across }, Point { x: to.x, y: across }, to]
 }
 
-/// A double line over what it joins, and the link between it and the transition.
+/// A double line over the links that it joins, and the link between it and the transition.
 fn bar(p: &mut Placement, t: u32, join: bool, reach: &[i32], x: i32, y: i32) {
     let left = reach.iter().copied().min().unwrap_or(x).min(x) - 100;
     let right = reach.iter().copied().max().unwrap_or(x).max(x) + 100;

@@ -7,13 +7,13 @@ use crate::symbols::{ACTION_TEXT, SMALL, SQUARE, quoted};
 use crate::text::{Line, body, clean, set, shortened, width};
 use crate::{Look, Options, Rect};
 
-/// From the square to the actions.
+/// Distance from the square to the actions.
 pub(crate) const GAP: i32 = 200;
-/// Most lines of a body.
+/// Most lines of a body that are shown.
 const LINES: usize = 6;
-/// Widest line of an action.
+/// Greatest width of a line of an action.
 const WIDEST: i32 = 2800;
-/// Left and right of the text in its rectangle.
+/// Margin left and right of the text in its rectangle.
 const PAD: i32 = 80;
 
 /// The frame round an action.
@@ -21,36 +21,36 @@ const PAD: i32 = 80;
 enum Frame {
     /// A plain rectangle.
     Plain,
-    /// A double one: orders to other charts.
+    /// A double rectangle: a forcing order or another order to charts.
     Double,
-    /// With doubled sides: a call.
+    /// Doubled vertical sides: a call.
     Sides,
-    /// With cut corners: an enclosed chart.
+    /// Cut corners: an enclosed chart.
     Cut,
-    /// None: a comment.
+    /// No frame: a comment.
     None,
 }
 
-/// What stands at the left in the rectangle.
+/// The sign at the left inside the rectangle.
 enum Sign {
     Nothing,
     /// Stored on activation.
     Up,
     /// Stored on deactivation.
     Down,
-    /// Run in each scan.
+    /// Executed in each scan.
     Each,
-    /// A qualifier, with its time.
+    /// A qualifier, possibly with its time.
     Box(String),
 }
 
-/// What stands over the rectangle.
+/// The stub over the rectangle.
 enum Stub {
     Condition(Vec<Line>),
     Event(Vec<Line>),
 }
 
-/// An action on its way to the paper.
+/// An action, prepared for drawing.
 struct Row {
     frame: Frame,
     sign: Sign,
@@ -59,17 +59,17 @@ struct Row {
     title: Option<String>,
 }
 
-/// The actions of a step, with the right edge of its square.
+/// Draws the actions of a step; `edge` is the right edge of its square.
 pub(crate) fn actions(step: &Step, list: &[Action], edge: i32, options: &Options) -> Vec<(u32, Picture)> {
     let rows: Vec<Row> = list.iter().map(|a| row(step, a, options.look)).collect();
-    // Boxes of qualifiers make a column.
+    // The boxes of qualifiers have one width, so that they form a column.
     let cell = rows.iter().map(|r| r.sign.width()).max().unwrap_or(0);
     let w = rows.iter().filter(|r| r.frame != Frame::None).map(|r| r.width(cell)).max().unwrap_or(0);
     let x = edge + GAP;
     let mut out = Vec::new();
     let mut low: Option<i32> = None;
     let mut contiguous = false;
-    // Where the line to the actions was last joined.
+    // The lower end of the vertical line that joins the actions.
     let mut bus: Option<i32> = None;
     for (index, row) in (0..).zip(&rows) {
         let h = row.height(rows.len() == 1);
@@ -84,7 +84,7 @@ pub(crate) fn actions(step: &Step, list: &[Action], edge: i32, options: &Options
         };
         let mut p = Picture { title: row.title.clone(), ..Picture::default() };
         if joins && !(low.is_some() && contiguous && stacks) {
-            // From the step, or down from the join above.
+            // The first action hangs at the middle of the square, the others at the vertical line.
             let middle = if low.is_none() { SQUARE / 2 } else { y + h / 2 };
             let bend = edge + GAP / 2;
             match bus {
@@ -104,7 +104,7 @@ pub(crate) fn actions(step: &Step, list: &[Action], edge: i32, options: &Options
     out
 }
 
-/// The lines that are shown, and all of them where some are not.
+/// The lines that are shown; if some are left out, also the full text.
 pub(crate) fn limited(lines: &[Line]) -> (Vec<Line>, Option<String>) {
     let full = || {
         let indent = |l: &Line| " ".repeat(usize::try_from(l.indent / 70).unwrap_or(0));
@@ -157,7 +157,7 @@ fn row(step: &Step, action: &Action, look: Look) -> Row {
     }
 }
 
-/// A qualified action as GRAFCET writes it; what GRAFCET lacks keeps its qualifier.
+/// A qualified action in the notation of GRAFCET; where GRAFCET has none, the qualifier stays.
 fn grafcet(step: &Step, q: Qualifier, time: Option<&Expr>, target: &Target, c: Option<&Expr>) -> Row {
     let work = matches!(target, Target::Work(_));
     let lines = target_lines(target);
@@ -196,7 +196,7 @@ fn grafcet(step: &Step, q: Qualifier, time: Option<&Expr>, target: &Target, c: O
     row
 }
 
-/// `t/X2`, or its complement: the delay and the limit of IEC 60848.
+/// The condition `t/X2` or its complement: the delay and the limit of IEC 60848.
 fn since(step: &Step, t: &Expr, complement: bool) -> Expr {
     let name = if step.name.text.starts_with(|c: char| c.is_ascii_digit()) {
         format!("X{}", step.name.text)
@@ -261,7 +261,7 @@ fn ordered(order: &Order) -> Row {
 }
 
 impl Row {
-    /// Left and right of the text, with the width of the step's qualifier boxes.
+    /// The margins left and right of the text; `cell` is the width of the step's qualifier boxes.
     fn sides(&self, cell: i32) -> (i32, i32) {
         let extra = match self.frame {
             Frame::Double | Frame::Sides => 40,
@@ -323,9 +323,9 @@ impl Row {
         self.sign(p, at, cell);
         let (left, right) = self.sides(cell);
         let text = self.lines.iter().map(|l| l.width(ACTION_TEXT)).max().unwrap_or(0);
-        // Alone it stands in the middle; below one another texts begin alike.
+        // A single action is centred; the texts of several actions start at the same column.
         let left = if alone { left + (w - left - right - text) / 2 } else { left };
-        // One line stands with the middle of its capitals in the middle.
+        // A single line is centred at the height of its capitals.
         let first = match self.lines.as_slice() {
             [_] => y + h / 2 + size * 35 / 100,
             _ => y + (h - height) / 2 + up,
@@ -359,7 +359,7 @@ impl Row {
 }
 
 impl Sign {
-    /// How wide the box of a qualifier is.
+    /// The width of the box of a qualifier.
     fn width(&self) -> i32 {
         match self {
             Sign::Box(text) => width(text, SMALL) + 120,
@@ -368,7 +368,7 @@ impl Sign {
     }
 }
 
-/// The rectangle of an enclosed chart.
+/// Draws the rectangle of an enclosed chart.
 fn cut_box(p: &mut Picture, x: i32, y: i32, w: i32, h: i32) {
     let (c, r, b) = (80, x + w, y + h);
     p.shape(
@@ -377,7 +377,7 @@ fn cut_box(p: &mut Picture, x: i32, y: i32, w: i32, h: i32) {
     );
 }
 
-/// The stub over a rectangle: with a flag for an event.
+/// Draws the stub over a rectangle, with a flag for an event.
 fn draw_stub(p: &mut Picture, stub: &Stub, x: i32, y: i32) {
     let (lines, event) = match stub {
         Stub::Condition(lines) => (lines, false),

@@ -1,14 +1,14 @@
-//! Links broken off: an arrow and the name of the other end; arrows on links.
+//! Connectors of broken links (an arrow and the name of the other end), and arrows on links.
 
 use crate::ink::Picture;
 use crate::symbols::SMALL;
 use crate::text::{clean, shortened, width};
 use crate::{Point, Rect};
 
-/// Longest name in a connector.
+/// Greatest width of a name in a connector.
 const WIDEST: i32 = 1600;
 
-/// What a connector that names a step says.
+/// The text of a connector that names a step, with its page if there are several.
 pub(crate) fn connector_label(name: &str, page: Option<u32>) -> String {
     let (name, _) = shortened(&clean(name), SMALL, WIDEST);
     match page {
@@ -17,18 +17,18 @@ pub(crate) fn connector_label(name: &str, page: Option<u32>) -> String {
     }
 }
 
-/// How wide that is.
+/// The width of a connector with this label.
 pub(crate) fn connector_width(label: &str) -> i32 {
     width(label, SMALL)
 }
 
-/// The text of a connector in its box.
+/// Draws the text of a connector in its box.
 pub(crate) fn connector(p: &mut Picture, text: Rect, label: &str) {
     let y = text.y + text.h / 2 + SMALL * 35 / 100;
     p.text("g7-ref", text.x, y, SMALL, label);
 }
 
-/// An arrow head with its tip at a point.
+/// Draws an arrow head with its tip at a point.
 pub(crate) fn arrow(p: &mut Picture, tip: Point, (dx, dy): (i8, i8)) {
     let (dx, dy) = (i32::from(dx), i32::from(dy));
     let (bx, by) = (tip.x - 120 * dx, tip.y - 120 * dy);

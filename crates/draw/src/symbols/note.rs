@@ -1,17 +1,18 @@
-//! Comments of the layout section: text in quotes (IEC 60848, comment), that
-//! belongs to no symbol and stands where its author put it.
+//! Comments of the layout section: a text in quotes (IEC 60848, comment) that belongs to no symbol
+//! and stands where its author put it.
 
 use crate::Rect;
 use crate::ink::{Picture, stack};
 use crate::symbols::SMALL;
 use crate::text::{Line, wrap_words};
 
-/// Longest line.
+/// Greatest width of a line.
 const WIDEST: i32 = 2400;
-/// Most lines of it all.
+/// Most lines of one comment.
 const LINES: usize = 40;
 
-/// A comment from the upper left corner of its text. A line end is kept, long lines are broken.
+/// Draws a comment; the anchor is the upper left corner of its text. Line ends are kept, long lines
+/// are broken.
 pub(crate) fn note(text: &str) -> Picture {
     let mut picture = Picture::default();
     let quoted = format!("“{text}”");
@@ -21,7 +22,7 @@ pub(crate) fn note(text: &str) -> Picture {
         let (mut set, all) = wrap_words(paragraph, SMALL, WIDEST, LINES);
         whole &= all;
         if set.is_empty() {
-            // An empty line parts two paragraphs.
+            // An empty line separates two paragraphs.
             set.push(String::new());
         }
         lines.extend(set.into_iter().map(Line::plain));
@@ -39,7 +40,7 @@ pub(crate) fn note(text: &str) -> Picture {
     picture
 }
 
-/// The box of a comment at its place.
+/// The box of a comment, relative to its place.
 pub(crate) fn note_area(text: &str) -> Rect {
     note(text).area().unwrap_or_default()
 }

@@ -1,4 +1,4 @@
-//! Steps: the square with its name, and what its kind adds to it.
+//! Steps: the square with its name, and the signs of the kind of step.
 
 use g7_model::{Step, StepKind};
 
@@ -14,24 +14,24 @@ pub(crate) struct StepShape {
     pub(crate) picture: Picture,
     /// The square alone.
     pub(crate) square: Rect,
-    /// Its actions: which one, and how it looks.
+    /// Its actions: the number of each, and its picture.
     pub(crate) actions: Vec<(u32, Picture)>,
-    /// All of it.
+    /// The room of the whole symbol.
     pub(crate) extent: Extent,
 }
 
-/// From the outer to the inner square of an initial step.
+/// Distance from the outer to the inner square of an initial step.
 const INSET: i32 = 55;
-/// What an enclosing step has cut off each corner.
+/// Size of the corners that are cut off the square of an enclosing step.
 const CORNER: i32 = 110;
-/// Longest comment line.
+/// Greatest width of a line of the comment.
 const COMMENT: i32 = 2000;
 
 pub(crate) fn step(step: &Step, options: &Options) -> StepShape {
     let mut picture = Picture::default();
     let inset = if step.initial { INSET } else { 0 };
     let fitted = name_lines(&step.name.text, SQUARE - 2 * inset - 50);
-    // In whole u, so that widened squares stay on the grid.
+    // Rounded to whole u, so that widened squares stay on the grid.
     let w = ((fitted.width + 2 * inset + 50).max(SQUARE) + 99) / 100 * 100;
     let square = Rect { x: -w / 2, y: 0, w, h: SQUARE };
     outline(&mut picture, step, square, inset);
@@ -76,7 +76,7 @@ fn outline(p: &mut Picture, step: &Step, s: Rect, inset: i32) {
     }
 }
 
-/// The name in the middle of the square.
+/// Draws the name in the middle of the square.
 fn name(p: &mut Picture, lines: &[String], size: i32) {
     let cap = size * 698 / 1000;
     let leading = size * 118 / 100;
@@ -87,8 +87,8 @@ fn name(p: &mut Picture, lines: &[String], size: i32) {
     }
 }
 
-/// What stands at the left of the square: the activation link, entry and exit
-/// where the name does not begin with the standard's letter.
+/// Draws the signs at the left of the square: the activation link, and the marks of an entry or
+/// exit step whose name does not begin with the standard's letter.
 fn beside(p: &mut Picture, step: &Step, s: Rect) {
     let mark = match step.kind {
         StepKind::Entry if !step.name.text.starts_with('E') => "E",
@@ -102,8 +102,8 @@ fn beside(p: &mut Picture, step: &Step, s: Rect) {
     }
 }
 
-/// The comment and what a macro-step stands for: at the right of a bare square,
-/// else below the actions.
+/// Draws the comment and the expansion of a macro-step: at the right of a square without actions,
+/// otherwise below the actions.
 fn remarks(p: &mut Picture, step: &Step, s: Rect, actions: Option<i32>) {
     let mut lines = Vec::new();
     if let StepKind::Macro(of) = &step.kind

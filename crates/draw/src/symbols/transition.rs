@@ -1,4 +1,4 @@
-//! Transitions: bar, receptivity, name, priority, what is done on clearing.
+//! Transitions: bar, receptivity, name, priority, action on clearing.
 
 use g7_model::Transition;
 
@@ -14,23 +14,23 @@ pub(crate) struct TransitionShape {
     pub(crate) picture: Picture,
     /// The bar alone.
     pub(crate) bar: Rect,
-    /// The receptivity.
+    /// The box of the receptivity's text.
     pub(crate) text: Rect,
-    /// All of it.
+    /// The room of the whole symbol.
     pub(crate) extent: Extent,
 }
 
 /// Half the thickness of the bar.
 const HALF: i32 = 18;
-/// From the bar to the receptivity.
+/// Distance from the bar to the receptivity.
 const GAP: i32 = 80;
-/// Widest line of a receptivity by the number of alternatives it stands among:
+/// Greatest width of a line of a receptivity, by the number of alternatives it stands among:
 /// branches side by side are as wide as their texts.
 const WIDEST: [i32; 3] = [3200, 2000, 1500];
 /// Most lines of a receptivity.
 const LINES: usize = 10;
 
-/// How wide lines may be among this many alternatives.
+/// The greatest width of a line among this many alternatives.
 pub(crate) fn widest(alternatives: usize) -> i32 {
     let [alone, of_two, of_many] = WIDEST;
     match alternatives {
@@ -40,7 +40,7 @@ pub(crate) fn widest(alternatives: usize) -> i32 {
     }
 }
 
-/// A transition with lines no wider than `widest` where they can be broken.
+/// Draws a transition; lines are no wider than `widest` where they can be broken.
 pub(crate) fn transition(t: &Transition, widest: i32) -> TransitionShape {
     let mut p = Picture::default();
     let bar = Rect { x: -HALF_BAR, y: -HALF, w: 2 * HALF_BAR, h: 2 * HALF };
@@ -69,7 +69,7 @@ pub(crate) fn transition(t: &Transition, widest: i32) -> TransitionShape {
     TransitionShape { picture: p, bar, text, extent }
 }
 
-/// The receptivity, its lines round the height of the bar.
+/// Draws the receptivity, its lines centred at the height of the bar.
 fn condition(p: &mut Picture, t: &Transition, widest: i32) -> Rect {
     let full = receptivity(&t.receptivity);
     let linear = full.linear();
@@ -85,14 +85,14 @@ fn condition(p: &mut Picture, t: &Transition, widest: i32) -> Rect {
     }
     let x = HALF_BAR + GAP;
     let (up, height) = stack(&lines, TEXT);
-    // One line stands with the middle of its capitals at the bar.
+    // A single line is centred at the height of its capitals.
     let first = if lines.len() == 1 { TEXT * 35 / 100 } else { up - height / 2 };
     p.lines("g7-expr", (x, first), TEXT, &lines);
     let w = lines.iter().map(|l| l.width(TEXT)).max().unwrap_or(0);
     Rect { x, y: first - up, w, h: height }
 }
 
-/// The stored action on clearing, hung from the right end of the bar.
+/// Draws the stored action on clearing, which hangs from the right end of the bar.
 fn clearing(p: &mut Picture, lines: &[Line], below: i32) -> i32 {
     let (lines, title) = action::limited(lines);
     let (up, height) = stack(&lines, ACTION_TEXT);
@@ -110,7 +110,7 @@ fn clearing(p: &mut Picture, lines: &[Line], below: i32) -> i32 {
     y + h
 }
 
-/// The number in a circle, over the left half of the bar.
+/// Draws the priority: a number in a circle over the left half of the bar.
 fn priority(p: &mut Picture, n: u32) {
     let text = n.to_string();
     let size = if text.len() > 1 { 90 } else { 110 };
@@ -121,9 +121,9 @@ fn priority(p: &mut Picture, n: u32) {
     p.text("g7-num", x - w / 2, y + size * 35 / 100, size, &text);
 }
 
-/// The two lines of a synchronisation, with the link between them and the bar.
+/// Draws the two lines of a synchronisation, and the link between them and the bar.
 pub(crate) fn double(p: &mut Picture, bar: &Bar, at: Point) {
-    // Links end at the double line: nothing of them shows between its two.
+    // Links end at the double line, so that none shows between its two lines.
     let (x, y, right, low) = (bar.at.x, bar.at.y, bar.at.x + bar.w, bar.at.y + DOUBLE_GAP);
     p.shape("g7-paper", &[(x, y), (right, y), (right, low), (x, low)]);
     for y in [bar.at.y, bar.at.y + DOUBLE_GAP] {

@@ -1,4 +1,4 @@
-//! Durations as people write them.
+//! Prints durations in the units that people use.
 
 /// Nanoseconds as `1m30s`, `2.5s`, `500ms`, `10us`.
 pub(crate) fn duration(ns: i64) -> String {
@@ -17,7 +17,7 @@ pub(crate) fn duration(ns: i64) -> String {
         return text;
     }
     let small = [("s", 1_000_000_000), ("ms", 1_000_000), ("us", 1000), ("ns", 1)];
-    // Behind minutes a fraction of a second stays in seconds: `1m0.5s`.
+    // After minutes, a fraction of a second is still printed in seconds: `1m0.5s`.
     let (unit, size) = if ns >= 1_000_000_000 || ns == 0 {
         ("s", 1_000_000_000)
     } else {

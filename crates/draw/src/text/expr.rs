@@ -1,26 +1,26 @@
-//! Expressions as GRAFCET writes them: `·` and, `+` or, overline not, `[p > 3]`.
+//! Expressions in the notation of GRAFCET: `·` for and, `+` for or, an overline for not, `[p > 3]`.
 
-use g7_model::{Arg, BinaryOp, Expr, ExprKind, Literal, Path, UnaryOp};
+use g7_model::{Arg, BinaryOp, Expr, ExprKind, Literal, Operands, Path, UnaryOp};
 
 use crate::text::line::{Break, Line, Over};
 use crate::text::{clean, duration};
 
-/// The complement of more characters than this is written `¬(…)`, which can break.
+/// The complement of an expression longer than this is written `¬(…)`, which can be broken.
 const LONGEST_OVERLINE: usize = 48;
 
-/// An expression as one line.
+/// Sets an expression on one line.
 pub(crate) fn set(e: &Expr) -> Line {
     let mut setter = Setter { line: Line::default(), fixed: 0 };
     setter.put(e, Level::Sum, 0);
     setter.line
 }
 
-/// A receptivity; the always true one is `1`.
+/// Sets a receptivity; the one that is always true is written `1`.
 pub(crate) fn receptivity(e: &Expr) -> Line {
     set(e)
 }
 
-/// How tightly an operator binds, as set; from the loosest.
+/// How tightly an operator binds, from the loosest to the tightest.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum Level {
     Sum,
@@ -33,7 +33,7 @@ enum Level {
 /// Builds a line.
 pub(super) struct Setter {
     pub(super) line: Line,
-    /// Inside how many overlines: no breaks there.
+    /// The number of enclosing overlines; the line has no break under an overline.
     fixed: u32,
 }
 
@@ -56,7 +56,7 @@ impl Setter {
         self.put(e, Level::Sum, depth);
     }
 
-    /// Puts an expression, in brackets where it binds more loosely than `least`.
+    /// Writes an expression, in brackets if it binds more loosely than `least`.
     fn put(&mut self, e: &Expr, least: Level, depth: u32) {
         let level = level(e);
         if level < least {
@@ -97,7 +97,8 @@ impl Setter {
         }
     }
 
-    /// The complement: an overline over all of it, a level above those inside.
+    /// Writes the complement: an overline over the whole operand, one level above the overlines
+    /// inside.
     fn complement(&mut self, e: &Expr, depth: u32) {
         let (from, first) = (self.line.text.len(), self.line.overs.len());
         let breaks = self.line.breaks.len();
@@ -123,29 +124,23 @@ impl Setter {
     }
 
     fn binary(&mut self, op: BinaryOp, a: &Expr, b: &Expr, depth: u32) {
-        let sign = match op {
-            BinaryOp::Or | BinaryOp::Add => "+",
-            BinaryOp::Xor => "⊕",
-            BinaryOp::And | BinaryOp::Dot | BinaryOp::Mul => "·",
-            BinaryOp::Sub => "−",
-            BinaryOp::Div => "/",
-            BinaryOp::Mod => "mod",
-            BinaryOp::Pow => {
+        let row = op.row();
+        match row.operands {
+            Operands::Comparison => return self.comparison(op, a, b, depth),
+            _ if op == BinaryOp::Pow => {
                 self.put(a, Level::Atom, depth + 1);
-                self.text("**");
+                self.text(row.drawn);
                 return self.put(b, Level::Atom, depth + 1);
             }
-            BinaryOp::Eq | BinaryOp::Ne | BinaryOp::Lt | BinaryOp::Le | BinaryOp::Gt | BinaryOp::Ge => {
-                return self.comparison(op, a, b, depth);
-            }
-        };
+            Operands::Logic | Operands::Arithmetic => {}
+        }
         let level = binary_level(op);
-        // A product below a sum is one level further in.
+        // A product inside a sum is one level deeper.
         let inner = |e: &Expr| if is_chain(e, level) { depth } else { depth + 1 };
         self.put(a, level, inner(a));
         self.text(" ");
         self.may_break(depth);
-        self.text(sign);
+        self.text(row.drawn);
         self.text(" ");
         let associative = !matches!(op, BinaryOp::Sub | BinaryOp::Div | BinaryOp::Mod) && !mixed(op, b);
         let least = if associative { level } else { next(level) };
@@ -153,27 +148,11 @@ impl Setter {
     }
 
     fn comparison(&mut self, op: BinaryOp, a: &Expr, b: &Expr, depth: u32) {
-        let sign = match op {
-            BinaryOp::Ne => " ≠ ",
-            BinaryOp::Lt => " < ",
-            BinaryOp::Le => " ≤ ",
-            BinaryOp::Gt => " > ",
-            BinaryOp::Ge => " ≥ ",
-            BinaryOp::Or
-            | BinaryOp::Xor
-            | BinaryOp::And
-            | BinaryOp::Dot
-            | BinaryOp::Eq
-            | BinaryOp::Add
-            | BinaryOp::Sub
-            | BinaryOp::Mul
-            | BinaryOp::Div
-            | BinaryOp::Mod
-            | BinaryOp::Pow => " = ",
-        };
         self.text("[");
         self.put(a, Level::Sum, depth + 2);
-        self.text(sign);
+        self.text(" ");
+        self.text(op.row().drawn);
+        self.text(" ");
         self.put(b, Level::Sum, depth + 2);
         self.text("]");
     }
@@ -209,18 +188,16 @@ fn binary_level(op: BinaryOp) -> Level {
     match op {
         BinaryOp::Or | BinaryOp::Add | BinaryOp::Sub => Level::Sum,
         BinaryOp::Xor => Level::Exclusive,
-        BinaryOp::And | BinaryOp::Dot | BinaryOp::Mul | BinaryOp::Div | BinaryOp::Mod => Level::Product,
         BinaryOp::Pow => Level::Sign,
-        BinaryOp::Eq | BinaryOp::Ne | BinaryOp::Lt | BinaryOp::Le | BinaryOp::Gt | BinaryOp::Ge => {
-            Level::Atom
-        }
+        op if op.row().operands == Operands::Comparison => Level::Atom,
+        _ => Level::Product,
     }
 }
 
 fn level(e: &Expr) -> Level {
     match &e.kind {
         ExprKind::Binary(op, ..) => binary_level(*op),
-        // An overline holds together what is under it.
+        // An overline binds what is under it.
         ExprKind::Unary(UnaryOp::Not, _) => Level::Atom,
         ExprKind::Unary(..) | ExprKind::Timer { .. } => Level::Sign,
         ExprKind::Literal(_)
@@ -235,15 +212,15 @@ fn is_chain(e: &Expr, of: Level) -> bool {
     matches!(&e.kind, ExprKind::Binary(op, ..) if binary_level(*op) == of)
 }
 
-/// Whether the operand behind `op` needs brackets though it binds alike: the
-/// arithmetic ones do not associate once they are mixed.
+/// True if the right operand of `op` needs brackets although it binds equally: mixed arithmetic
+/// operators are not associative.
 fn mixed(op: BinaryOp, b: &Expr) -> bool {
     let ExprKind::Binary(inner, ..) = &b.kind else { return false };
-    let logic = |op| matches!(op, BinaryOp::Or | BinaryOp::And | BinaryOp::Dot | BinaryOp::Xor);
+    let logic = |op: BinaryOp| op.row().operands == Operands::Logic;
     *inner != op && !(logic(op) && logic(*inner))
 }
 
-/// A name, its dots as written.
+/// A dotted name, as written.
 pub(super) fn path(p: &Path) -> String {
     clean(&p.text())
 }
@@ -256,7 +233,7 @@ fn literal(l: &Literal) -> String {
         Literal::Int(n, Some(ty)) => format!("{ty}#{n}"),
         Literal::Real(text, None) => clean(text),
         Literal::Real(text, Some(ty)) => format!("{ty}#{}", clean(text)),
-        Literal::Time(ns) => duration(*ns),
+        Literal::Time(time) => duration(time.count()),
         Literal::Str(text) => format!("'{}'", clean(text)),
     }
 }

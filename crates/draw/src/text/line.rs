@@ -1,57 +1,57 @@
-//! A line of set text: characters, overlines over parts of it, places to break.
+//! A line of set text: characters, overlines over parts of it, and places where it may break.
 
 use crate::text::{fits, shortened, width};
 
-/// A set line.
+/// A line of set text.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Line {
     /// Its characters.
     pub(crate) text: String,
-    /// Complements, inner ones first.
+    /// The overlines, inner ones first.
     pub(crate) overs: Vec<Over>,
-    /// Where it may break, in the order of the text.
+    /// The places where it may break, in the order of the text.
     pub(crate) breaks: Vec<Break>,
-    /// How far it is indented.
+    /// The width of its indent.
     pub(crate) indent: i32,
 }
 
-/// An overline: the complement of what is under it.
+/// An overline: the complement of the text under it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Over {
-    /// First byte of the text.
+    /// The first byte of the text under it.
     pub(crate) from: usize,
-    /// One past the last byte.
+    /// One past the last byte of that text.
     pub(crate) to: usize,
-    /// 1 close to the text, one more over each overline below it.
+    /// The height: 1 close to the text, one more above each overline that it covers.
     pub(crate) level: u32,
 }
 
-/// A place to break.
+/// A place where the line may break.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Break {
     /// The byte with which the next line begins.
     pub(crate) at: usize,
-    /// 0 at the outermost operator; a low one is the better place.
+    /// The depth of the operator, 0 for the outermost; a break at a lower depth is better.
     pub(crate) depth: u32,
 }
 
 impl Line {
-    /// Plain text.
+    /// A line of plain text.
     pub(crate) fn plain(text: impl Into<String>) -> Line {
         Line { text: text.into(), ..Line::default() }
     }
 
-    /// Its width, indent included.
+    /// The width of the line, indent included.
     pub(crate) fn width(&self, size: i32) -> i32 {
         self.indent + width(&self.text, size)
     }
 
-    /// The highest overline, 0 for none.
+    /// The level of the highest overline; 0 if there is none.
     pub(crate) fn levels(&self) -> u32 {
         self.overs.iter().map(|o| o.level).max().unwrap_or(0)
     }
 
-    /// The line without overlines, for titles: `¬` stands before what is complemented.
+    /// The line without overlines, for titles: `¬` stands before a complemented part.
     pub(crate) fn linear(&self) -> String {
         let mut text = String::new();
         for (i, c) in self.text.char_indices() {
@@ -63,14 +63,14 @@ impl Line {
         text
     }
 
-    /// Broken into lines no wider than `most`, where it has places to break; a line
-    /// far wider for want of such a place is cut and ends in `…`.
+    /// Breaks the line into lines no wider than `most`, at its places to break. A line that is far
+    /// wider because it has no such place is cut and ends in `…`.
     pub(crate) fn wrap(self, size: i32, most: i32) -> Vec<Line> {
         let widest = most + most / 2;
         self.broken(size, most).into_iter().map(|l| l.shortened(size, widest)).collect()
     }
 
-    /// Whether a part of it was left out.
+    /// True if a part of the text was left out.
     pub(crate) fn is_cut(&self) -> bool {
         self.text.ends_with('…')
     }
@@ -105,8 +105,8 @@ impl Line {
         lines
     }
 
-    /// Where the line that begins at a byte ends: the outermost operator that
-    /// leaves it more than half full, else the last place that fits.
+    /// The end of the line that begins at a byte: the outermost operator that leaves the line more
+    /// than half full, otherwise the last place that fits.
     fn line_end(&self, start: usize, size: i32, room: i32) -> usize {
         let span = |end: usize| width(self.text.get(start..end).unwrap_or("").trim_end(), size);
         if fits(self.text.get(start..).unwrap_or(""), size, room) {
@@ -116,7 +116,7 @@ impl Line {
         let mut best: Option<Break> = None;
         for b in ahead {
             if span(b.at) > room {
-                // Nothing fits: the first place there is.
+                // Nothing fits, so take the first place to break.
                 return best.map_or(b.at, |best| best.at);
             }
             let better = best.is_none_or(|best| b.depth <= best.depth || span(best.at) * 2 < room);
@@ -135,7 +135,7 @@ impl Line {
     }
 }
 
-/// How far the lines behind the first are indented.
+/// The indent of all lines after the first.
 const HANG: i32 = 120;
 
 #[cfg(test)]

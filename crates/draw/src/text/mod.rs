@@ -1,6 +1,6 @@
-//! Text measured and set: how wide a line is, where its overlines run, where it
-//! breaks. Works on the advances of the bundled font, so a picture fits its
-//! texts on every machine; whole numbers only.
+//! Measures and sets text: the width of a line, its overlines, its breaks. It uses the advance
+//! widths of the bundled font, so a picture fits its texts on every machine; all numbers are
+//! integers.
 
 mod duration;
 mod expr;
@@ -15,13 +15,13 @@ pub(crate) use line::Line;
 pub(crate) use stmt::body;
 pub(crate) use words::{name_lines, shortened, wrap_words};
 
-/// How wide a text of a size is, both in hundredths of u.
+/// The width of a text at a size, both in hundredths of u.
 pub(crate) fn width(text: &str, size: i32) -> i32 {
     let sum: i64 = text.chars().map(|c| i64::from(advance(c).unwrap_or_else(|| guess(c)))).sum();
     i32::try_from((sum * i64::from(size) + 999) / 1000).unwrap_or(i32::MAX / 4)
 }
 
-/// Whether a text is no wider than that; looks at no more of it than it must.
+/// True if a text is no wider than `most`; stops reading as soon as the answer is known.
 pub(crate) fn fits(text: &str, size: i32, most: i32) -> bool {
     let most = i64::from(most) * 1000;
     let mut sum = 0;
@@ -31,12 +31,12 @@ pub(crate) fn fits(text: &str, size: i32, most: i32) -> bool {
     })
 }
 
-/// Whether the bundled font has every character, so that the width is exact.
+/// True if the bundled font has every character, so that the width is exact.
 pub(crate) fn known(text: &str) -> bool {
     text.chars().all(|c| advance(c).is_some())
 }
 
-/// The advance of a character in thousandths of the size.
+/// The advance width of a character in thousandths of the size.
 fn advance(c: char) -> Option<u16> {
     let code = u32::from(c);
     let run = widths::RUNS.partition_point(|(first, _)| *first <= code).checked_sub(1)?;
@@ -44,7 +44,7 @@ fn advance(c: char) -> Option<u16> {
     widths.get(usize::try_from(code - first).ok()?).copied()
 }
 
-/// Room for a character that another font will draw.
+/// An estimated width for a character that another font will draw.
 fn guess(c: char) -> u16 {
     match u32::from(c) {
         0x300..=0x36F | 0x200B..=0x200F | 0xFE00..=0xFE0F => 0,
@@ -53,7 +53,7 @@ fn guess(c: char) -> u16 {
     }
 }
 
-/// Text as it may stand in a picture: no control characters, one line.
+/// Text that may stand in a picture: one line without control characters.
 pub(crate) fn clean(text: &str) -> String {
     text.chars()
         .map(|c| match c {
@@ -64,12 +64,12 @@ pub(crate) fn clean(text: &str) -> String {
         .collect()
 }
 
-/// The embedded font, for whoever draws the texts.
+/// The embedded font, for the program that draws the texts.
 pub fn font() -> &'static [u8] {
     include_bytes!("../../font/G7Sans-Regular.ttf")
 }
 
-/// The name under which the font is known.
+/// The family name of the font.
 pub const FONT_FAMILY: &str = "G7 Sans";
 
 #[cfg(test)]

@@ -1,14 +1,14 @@
-//! Structured Text of actions as lines.
+//! Sets the statements of actions, written in Structured Text, as lines.
 
 use g7_model::{Stmt, StmtKind};
 
 use crate::text::expr::Setter;
 use crate::text::{Line, clean};
 
-/// How far a nested statement is indented.
+/// The indent of a nested statement.
 const INDENT: i32 = 140;
 
-/// What an action does, a line for each statement.
+/// The body of an action, one line for each statement.
 pub(crate) fn body(list: &[Stmt]) -> Vec<Line> {
     let mut lines = Vec::new();
     block(list, 0, &mut lines);
@@ -27,7 +27,7 @@ fn block(list: &[Stmt], depth: i32, lines: &mut Vec<Line>) {
 fn push(lines: &mut Vec<Line>, depth: i32, build: impl FnOnce(&mut Setter)) {
     let mut setter = Setter::new();
     build(&mut setter);
-    // Deep nesting must not push the text out of the box.
+    // The indent is limited, so that deep nesting does not push the text out of the box.
     setter.line.indent = depth.min(6) * INDENT;
     lines.push(setter.line);
 }

@@ -1,6 +1,6 @@
-//! How far each character of the font reaches: made by `font/subset.py`, never by hand.
+//! The advance width of each character of the font. Made by `font/subset.py`; do not edit by hand.
 
-/// Runs of characters: the first one, and the advances in thousandths of the size.
+/// Runs of characters: the first character, and the advance widths in thousandths of the size.
 #[rustfmt::skip]
 pub(super) const RUNS: &[(u32, &[u16])] = &[
     (0x0020, &[

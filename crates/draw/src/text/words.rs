@@ -1,9 +1,9 @@
-//! Words: comments broken into lines, names fitted into a square.
+//! Plain words: comments broken into lines, names fitted into a square.
 
 use crate::text::{clean, fits, width};
 
-/// Text broken at blanks into at most `lines` lines; the last one ends in `…`
-/// where there was more. Tells whether all of it is there.
+/// Breaks text at blanks into at most `lines` lines; if there was more, the last line ends in `…`.
+/// The flag says that nothing was left out.
 pub(crate) fn wrap_words(text: &str, size: i32, most: i32, lines: usize) -> (Vec<String>, bool) {
     let mut out: Vec<String> = Vec::new();
     let mut whole = true;
@@ -32,7 +32,7 @@ pub(crate) fn wrap_words(text: &str, size: i32, most: i32, lines: usize) -> (Vec
     (out, whole)
 }
 
-/// The text, or as much of it as fits with `…` behind it; and whether it fits.
+/// The text, or as much of it as fits, followed by `…`; the flag says that all of it fits.
 pub(crate) fn shortened(text: &str, size: i32, most: i32) -> (String, bool) {
     if fits(text, size, most) {
         return (text.to_owned(), true);
@@ -51,21 +51,21 @@ pub(crate) fn shortened(text: &str, size: i32, most: i32) -> (String, bool) {
     (cut, false)
 }
 
-/// A step's name set for its square: lines, their size, and the room they need.
+/// A step's name, set for its square: lines, text size, and the room they need.
 pub(crate) struct Fitted {
     pub(crate) lines: Vec<String>,
     pub(crate) size: i32,
     pub(crate) width: i32,
 }
 
-/// Widest name before it is cut.
+/// A name wider than this is cut.
 const WIDEST_NAME: i32 = 2400;
 
-/// Most characters of a name that are looked at.
+/// Characters of a name after these are not looked at.
 const LONGEST_NAME: usize = 200;
 
-/// Fits a name into `room`: as it is, a little smaller, in two lines, and only
-/// then wider than the room.
+/// Fits a name into `room`: at its usual size, a little smaller, or on two lines; if none of these
+/// fits, the square becomes wider.
 pub(crate) fn name_lines(name: &str, room: i32) -> Fitted {
     let name = match name.char_indices().nth(LONGEST_NAME) {
         Some((at, _)) => format!("{}…", clean(name.get(..at).unwrap_or(""))),
@@ -86,13 +86,13 @@ pub(crate) fn name_lines(name: &str, room: i32) -> Fitted {
     Fitted { width: widest(&lines, 120), lines, size: 120 }
 }
 
-/// Whether a name ends in a number that can stand alone: three figures or more.
+/// True if a name ends in a number that can stand on its own line: three digits or more.
 fn is_number(tail: &str) -> bool {
     tail.len() > 2 && tail.bytes().all(|b| b.is_ascii_digit())
 }
 
-/// The name in two lines of nearly the same width where it has a seam: a blank,
-/// `_`, a capital behind a small letter, a number behind letters.
+/// Divides a name into two lines of nearly the same width, at a blank, at `_`, before a capital
+/// that follows a small letter, or before a number that follows letters.
 fn split(name: &str, size: i32) -> Vec<String> {
     let mut best: Option<(i32, usize)> = None;
     let mut before: Option<char> = None;

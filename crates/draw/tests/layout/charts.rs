@@ -1,16 +1,17 @@
-//! The charts of the examples and of the corpus, with their real texts and with random ones.
+//! The charts of the examples and of the corpus, with the sizes of their texts and with random
+//! sizes.
 
 use std::path::{Path, PathBuf};
 
 use g7_draw::{Extent, Options, Sizes, layout, measure};
-use g7_exchange::{import, recognise};
+use g7_exchange::recognise;
 use g7_model::{Chart, Document, FileId, Severity};
 use g7_syntax::parse_bytes;
 
 use crate::geometry::faults;
 use crate::maker::Random;
 
-/// Symbols with texts of random width.
+/// Random room for every symbol of a chart.
 pub(crate) fn random_sizes(chart: &Chart, random: &mut Random) -> Sizes {
     let mut extent = |half: i32, up: i32, down: i32| Extent {
         left: half + if random.below(4) == 0 { random.below(300) as i32 } else { 0 },
@@ -45,25 +46,23 @@ fn check(what: &str, document: &Document) -> usize {
     checked
 }
 
-/// The importable charts of a folder of the corpus, or of all of it (`""`); empty,
-/// with a word, where it is absent.
+/// The importable charts of a folder of the corpus, or of all of it (`""`); none if
+/// it is absent.
 pub(crate) fn corpus(part: &str) -> Vec<(String, Document)> {
-    let corpus = std::env::var_os("G7_CORPUS").map_or_else(|| root().join("../shared/corpus"), PathBuf::from);
     let mut all = Vec::new();
-    files(&corpus.join(part), None, &mut all);
-    if all.is_empty() {
-        println!("skipped: no corpus");
-    }
+    let Some(folder) = g7_peers::corpus(part) else { return Vec::new() };
+    files(&folder, None, &mut all);
+    assert!(!all.is_empty(), "{}: no files", folder.display());
     let read = |file: &PathBuf| {
         let bytes = std::fs::read(file).expect("a file");
         let name = file.display().to_string();
-        let (document, problems) = import(recognise(&name, &bytes)?, &bytes, FileId(0));
+        let (document, problems) = recognise(&name, &bytes)?.read(&bytes, FileId(0))?;
         problems.iter().all(|p| p.severity() != Severity::Error).then_some((name, document))
     };
     all.iter().filter_map(read).collect()
 }
 
-/// The files of a folder with this ending, or all of them.
+/// Collects the files of a folder with this ending, or all its files.
 fn files(folder: &Path, ending: Option<&str>, all: &mut Vec<PathBuf>) {
     let Ok(entries) = std::fs::read_dir(folder) else { return };
     for entry in entries {

@@ -1,4 +1,4 @@
-//! How a chart is drawn by hand: straight sequences, even branches, loops at the left.
+//! The conventions of hand-drawn charts: straight sequences, even branches, loops at the left.
 
 use g7_draw::{End, Placement, layout};
 
@@ -16,7 +16,7 @@ fn drawn(body: &str) -> Placement {
     p
 }
 
-/// The height of the longest horizontal piece of a link.
+/// The height of the longest horizontal segment of a link.
 fn row(p: &Placement, from: End, to: End) -> Option<i32> {
     let link = p.links.iter().find(|l| (l.from, l.to) == (from, to))?;
     let pieces = link.points.windows(2).filter(|w| w[0].y == w[1].y);
@@ -92,19 +92,19 @@ fn a_loop_goes_up_at_the_left_with_an_arrow() {
 #[test]
 fn usual_charts_are_drawn_without_broken_links() {
     let charts = [
-        // A choice of ways of working, each back to the beginning.
+        // A choice among several modes, each of which returns to the beginning.
         "initial step 1 step 2 step 3 step 4 step 5 1 -> 2 when TRUE 1 -> 3 when TRUE 1 -> 4 when TRUE \
          2 -> 1 when TRUE 3 -> 5 when TRUE 5 -> 1 when TRUE 4 -> 1 when TRUE",
-        // Forks in branches, an alternative and a loop in one of them.
+        // Parallel branches in parallel branches, with an alternative and a loop in one of them.
         "initial step 1 step 2 step 3 step 4 step 5 step 6 step 7 step 8 step 9 \
          1 -> (2, 3, 4) when TRUE 2 -> 5 when TRUE 2 -> 6 when TRUE 5 -> 7 when TRUE 6 -> 7 when TRUE \
          3 -> 8 when TRUE 8 -> 3 when FALSE 8 -> 9 when TRUE (7, 9, 4) -> 1 when TRUE",
         // Several initial steps that meet.
         "initial step 1 initial step 2 initial step 3 step 4 step 5 \
          (1, 2, 3) -> 4 when TRUE 4 -> (5, 1) when TRUE 5 -> (2, 3) when TRUE",
-        // A source, a sink, a self-loop.
+        // A source transition, a sink transition, a self-loop.
         "step 1 step 2 () -> 1 when TRUE 1 -> 2 when TRUE 2 -> 2 when FALSE 2 -> () when TRUE",
-        // Back over a skip.
+        // A return past a skip.
         "initial step 1 step 2 step 3 step 4 1 -> 2 when TRUE 1 -> 3 when TRUE 2 -> 3 when TRUE \
          3 -> 2 when TRUE 3 -> 4 when TRUE 4 -> 1 when TRUE",
     ];

@@ -1,11 +1,11 @@
-//! What must hold of every automatic layout.
+//! The rules that every automatic layout must meet.
 
 use std::collections::HashMap;
 
 use g7_draw::{End, Placement, Point, Rect, Sizes};
 use g7_model::Chart;
 
-/// What is wrong with the links of a placement by hand, where symbols may overlap.
+/// The faults in the links of a layout by hand; there, symbols may overlap.
 pub(crate) fn link_faults(chart: &Chart, p: &Placement) -> Vec<String> {
     let mut found = Vec::new();
     whole(chart, p, &mut found);
@@ -13,7 +13,7 @@ pub(crate) fn link_faults(chart: &Chart, p: &Placement) -> Vec<String> {
     found
 }
 
-/// Lines that run through a symbol.
+/// The links that cross a symbol.
 pub(crate) fn runs_through(sizes: &Sizes, p: &Placement) -> Vec<String> {
     let mut found = Vec::new();
     let symbols: Vec<(Solid, Rect)> =
@@ -22,7 +22,7 @@ pub(crate) fn runs_through(sizes: &Sizes, p: &Placement) -> Vec<String> {
     found
 }
 
-/// A thing that takes room.
+/// A part of the drawing that takes room.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Solid {
     Symbol(End),
@@ -30,7 +30,7 @@ pub(crate) enum Solid {
     Connector(End, End),
 }
 
-/// All that is wrong with a placement, in words.
+/// All faults of a placement, as text.
 pub(crate) fn faults(chart: &Chart, sizes: &Sizes, p: &Placement) -> Vec<String> {
     let mut found = Vec::new();
     let solids = solids(sizes, p);
@@ -64,7 +64,7 @@ fn solids(sizes: &Sizes, p: &Placement) -> Vec<(Solid, Rect)> {
     solids
 }
 
-/// A coarse grid over boxes.
+/// A coarse search grid over boxes.
 struct Grid {
     cells: HashMap<(i32, i32), Vec<usize>>,
 }
@@ -109,7 +109,7 @@ fn overlaps(solids: &[(Solid, Rect)], found: &mut Vec<String>) {
     }
 }
 
-/// Each link of the chart is drawn once, or broken with two ends.
+/// Checks that each link of the chart is drawn once, or broken with two ends.
 fn whole(chart: &Chart, p: &Placement, found: &mut Vec<String>) {
     let mut expected: Vec<(End, End)> = Vec::new();
     let mut numbers: HashMap<&str, u32> = HashMap::new();
@@ -154,7 +154,8 @@ fn port(p: &Placement, end: End, leaving: bool) -> Option<Point> {
     }
 }
 
-/// Links are orthogonal, begin and end at their symbols, and show when they run upward.
+/// Checks that links are orthogonal, begin and end at their symbols, and have an arrow if they run
+/// upward.
 fn links(p: &Placement, found: &mut Vec<String>) {
     for l in &p.links {
         if l.points.first().copied() != port(p, l.from, true)
@@ -175,7 +176,7 @@ fn links(p: &Placement, found: &mut Vec<String>) {
     }
 }
 
-/// No line runs through what is not its own.
+/// Checks that no line crosses a part that it does not belong to.
 fn crossings(p: &Placement, solids: &[(Solid, Rect)], found: &mut Vec<String>) {
     let grid = Grid::new(solids);
     let lines = p.links.iter().map(|l| (l.from, l.to, &l.points, true));

@@ -1,4 +1,4 @@
-//! Layouts by geometry: nothing overlaps, no link runs through a symbol.
+//! Checks the geometry of layouts: nothing overlaps, no link crosses a symbol.
 #![allow(clippy::disallowed_methods, reason = "the tests read the examples")]
 
 mod charts;

@@ -1,11 +1,11 @@
-//! Charts made at random: forks, joins, alternatives, loops and jumps. The tests of
-//! the layout and its stopwatch (`benches/src/bin/layout.rs`) use the same ones.
+//! Makes random charts with forks, joins, alternatives, loops and jumps. The tests of the layout
+//! and its benchmark (`benches/src/bin/layout.rs`) share this file.
 
 use std::fmt::Write as _;
 
 use g7_model::{Document, FileId};
 
-/// Random numbers, the same each time.
+/// A pseudo-random generator: the same seed gives the same numbers.
 pub(crate) struct Random(pub(crate) u64);
 
 impl Random {
@@ -15,7 +15,7 @@ impl Random {
     }
 }
 
-/// A chart in the making.
+/// A chart under construction.
 struct Maker {
     random: Random,
     steps: usize,
@@ -36,7 +36,7 @@ impl Maker {
         let _ = writeln!(self.links, "  {} -> {} when TRUE", list(from), list(to));
     }
 
-    /// A sequence with branches; its first and last step.
+    /// Adds a sequence with branches; returns its first and last step.
     fn sequence(&mut self, depth: usize, size: usize) -> (usize, usize) {
         let first = self.step();
         let (mut last, mut used) = (first, 1);
@@ -68,7 +68,7 @@ impl Maker {
                     used += each * count + 1;
                 }
                 2 if self.random.below(3) == 0 => {
-                    // Back to where this sequence began.
+                    // A link back to the start of this sequence.
                     self.link(&[last], &[first]);
                     used += 1;
                 }
@@ -84,8 +84,8 @@ impl Maker {
     }
 }
 
-/// A chart of so many steps with so many jumps from anywhere to anywhere, made of
-/// sequences of at most `piece` steps in one loop.
+/// A chart of `size` steps with `jumps` links between arbitrary steps; its sequences, of at most
+/// `piece` steps each, follow one another in one loop.
 pub(crate) fn random_chart(seed: u64, size: usize, jumps: usize, piece: usize) -> Document {
     let mut m = Maker { random: Random(seed), steps: 0, links: String::new() };
     let (first, mut last) = m.sequence(0, size.min(piece));

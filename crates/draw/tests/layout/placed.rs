@@ -1,4 +1,4 @@
-//! Layout sections: symbols stand where they say, links find their way to them.
+//! Layout sections: symbols stand where the section says, and links reach them there.
 
 use g7_draw::{End, Extent, Placement, Point, Sizes, layout};
 use g7_model::{Chart, Item, Name, PlaceAt, Placed, Span};
@@ -51,7 +51,7 @@ fn a_moved_step_takes_its_links_along() {
     assert_eq!(p.transitions, auto.transitions);
     let found = faults(chart, &sizes, &p);
     assert!(found.is_empty(), "{found:#?}");
-    // The double lines reach to the step.
+    // The double lines reach the step.
     for join in [false, true] {
         let bar = p.bars.iter().find(|b| b.join == join).expect("a double line");
         assert!(bar.at.x < place.x && bar.at.x + bar.w > p.steps[2].x, "{bar:?}");

@@ -1,4 +1,4 @@
-//! Random charts, structured and without any structure; and extreme ones.
+//! Lays out random charts with structure, random charts without structure, and extreme charts.
 
 use std::fmt::Write as _;
 
@@ -20,7 +20,7 @@ pub(crate) fn chart_of(body: &str) -> Document {
     document(&format!("chart G {{\n{body}}}\n"))
 }
 
-/// A chart with no structure at all.
+/// A chart without any structure: random links between random steps.
 fn wild_chart(seed: u64) -> Document {
     let mut random = Random(seed);
     let steps = 1 + random.below(12);

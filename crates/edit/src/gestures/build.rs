@@ -1,16 +1,16 @@
-//! Building on: steps and transitions behind, before and beside others.
+//! Adds steps and transitions after, before and beside others.
 
 use g7_model::{Chart, ChartKind, Span, StepKind};
 
 use super::graph::{add, leaving, may_arrive, may_leave, put_step, put_step_before, put_transition};
-use super::{Node, node, places};
+use super::{Node, layout_section, node, places};
 use crate::draft::Draft;
 use crate::gesture::{Branching, Sort};
 use crate::id::ItemId;
 use crate::{Refusal, refuse};
 
-/// A step by itself; the first one of a chart is initial, the first one of an
-/// expansion or task its entry.
+/// Adds a step without links. The first step of a chart is initial; the first step of an expansion
+/// or task is its entry step.
 pub(crate) fn add_step(
     d: &mut Draft<'_>,
     chart: &str,
@@ -32,13 +32,13 @@ pub(crate) fn add_step(
         d.select.clear();
     }
     if let Some(at) = at {
-        places::place(d, &ItemId::step(chart, name.as_str()), places::point(at)?)?;
+        places::place(d, &ItemId::step(chart, name.as_str()), layout_section::point(at)?)?;
     }
     d.select_step(chart, &name);
     Ok(())
 }
 
-/// Whether a step encloses the chart.
+/// True if the chart is enclosed by a step.
 fn enclosed(d: &Draft<'_>, chart: &str) -> bool {
     use g7_model::{ActionKind, Order};
     let actions = |c: &Chart| c.steps().flat_map(|s| s.actions.clone()).collect::<Vec<_>>();
@@ -48,7 +48,7 @@ fn enclosed(d: &Draft<'_>, chart: &str) -> bool {
     })
 }
 
-/// A fresh plain step behind another in the text; its name.
+/// Adds a plain step; in the text it stands after `behind`. Returns its name.
 pub(crate) fn fresh_step(d: &mut Draft<'_>, chart: &str, behind: Option<&str>) -> Result<String, Refusal> {
     let name = d.step_name(d.chart(chart)?);
     let step = d.new_step(&name);
@@ -56,7 +56,7 @@ pub(crate) fn fresh_step(d: &mut Draft<'_>, chart: &str, behind: Option<&str>) -
     Ok(name)
 }
 
-/// A step more behind a step, with the transition between them.
+/// Adds a transition and a step after a step.
 fn onward(d: &mut Draft<'_>, chart: &str, from: &str) -> Result<(), Refusal> {
     may_leave(d.step(chart, from)?)?;
     let name = d.step_name(d.chart(chart)?);
@@ -76,7 +76,7 @@ pub(crate) fn next(d: &mut Draft<'_>, id: &ItemId) -> Result<(), Refusal> {
         Node::Transition(at) => {
             let there = d.transition(&id.chart, at)?.to.first().map(|n| n.text.to_string());
             match there {
-                // It goes on there already: on we go.
+                // The sequence already goes on: select its next step.
                 Some(step) => d.select_step(&id.chart, &step),
                 None => step_behind(d, &id.chart, at)?,
             }
@@ -85,7 +85,7 @@ pub(crate) fn next(d: &mut Draft<'_>, id: &ItemId) -> Result<(), Refusal> {
     }
 }
 
-/// A new step behind a transition.
+/// Adds a step after a transition.
 fn step_behind(d: &mut Draft<'_>, chart: &str, at: Span) -> Result<(), Refusal> {
     let near = near(d, chart, at)?;
     let name = fresh_step(d, chart, near.as_deref())?;
@@ -94,7 +94,7 @@ fn step_behind(d: &mut Draft<'_>, chart: &str, at: Span) -> Result<(), Refusal> 
     Ok(())
 }
 
-/// The step in the text that a new step behind a transition should follow.
+/// The step after which, in the text, a new succeeding step of the transition is written.
 fn near(d: &Draft<'_>, chart: &str, at: Span) -> Result<Option<String>, Refusal> {
     let t = d.transition(chart, at)?;
     Ok(t.to.last().or(t.from.last()).map(|n| n.text.to_string()))
@@ -133,7 +133,7 @@ pub(crate) fn before(d: &mut Draft<'_>, id: &ItemId) -> Result<(), Refusal> {
     Ok(())
 }
 
-/// A branch more: alternatives begin behind a step, simultaneous ones behind a transition.
+/// Adds a branch: a selection begins after a step, simultaneous sequences begin after a transition.
 pub(crate) fn branch(d: &mut Draft<'_>, id: &ItemId, how: Branching) -> Result<(), Refusal> {
     let chart = id.chart.as_str();
     match (node(d, id)?, how) {

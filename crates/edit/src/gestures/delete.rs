@@ -1,17 +1,18 @@
-//! Taking things away, and joining what was around them.
+//! Deletes parts of a chart and joins what was around them.
 //!
-//! With a step go the transitions that only it enabled; a transition that only
-//! led to it stays, with nothing behind it, to be built on. With `heal`, each
-//! connected part that goes is bridged where that has one meaning:
+//! With a step, the transitions that only this step enabled are deleted. A transition that led only
+//! to this step stays without a succeeding step, so that the user can build on. With `heal`, each
+//! connected region that is deleted is bridged if there is only one way to do it:
 //!
-//! - A transition before and a step behind, or a step before and a transition
-//!   behind: they are joined.
-//! - Transitions on both sides: if there is one behind, and it needs only what
-//!   goes, those before lead to its steps, and it goes too (`A -> x -> B`: the
-//!   receptivity before `x` is kept); else if there is one before, and it leads
-//!   only to what goes, those behind take its steps, and it goes too.
-//! - Steps on both sides: the transition behind the first of them is kept and
-//!   leads to the other.
+//! - A transition before it and a step after it, or a step before it and a
+//!   transition after it: the two are joined.
+//! - Transitions on both sides. If there is one transition after the region and all its preceding
+//!   steps are deleted, the transitions before the region lead to its succeeding steps, and it is
+//!   deleted too (`A -> x -> B`: the receptivity before `x` is kept). Otherwise, if there is one
+//!   transition before the region and all its succeeding steps are deleted, the transitions after
+//!   the region take its preceding steps, and it is deleted too.
+//! - Steps on both sides: the transition after the preceding step is kept and leads to the
+//!   succeeding step.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -23,7 +24,7 @@ use crate::draft::Draft;
 use crate::id::{End, ItemId, Part};
 use crate::{Refusal, refuse};
 
-/// Steps and transitions of one chart.
+/// The chosen steps and transitions of one chart.
 pub(crate) struct Chosen {
     pub(crate) chart: String,
     pub(crate) steps: Vec<String>,
@@ -32,7 +33,7 @@ pub(crate) struct Chosen {
 }
 
 impl Chosen {
-    /// The steps (in the order of the text) and transitions that ids name.
+    /// The steps (in the order of the text) and transitions that the ids name.
     pub(crate) fn new(d: &Draft<'_>, ids: &[ItemId]) -> Result<Chosen, Refusal> {
         let chart = one_chart(ids)?.to_owned();
         let (mut names, mut transitions) = (BTreeSet::new(), BTreeSet::new());
@@ -107,7 +108,7 @@ pub(crate) fn delete(d: &mut Draft<'_>, ids: &[ItemId], heal: bool) -> Result<()
     Ok(())
 }
 
-/// Chart, step and transition of a link, and whether it leaves the step.
+/// The chart, step and transition of a link; the flag is true if the link leaves the step.
 fn link(d: &Draft<'_>, chart: &str, a: &End, b: &End) -> Result<(String, String, Span, bool), Refusal> {
     let (step, number, leaving) = match (a, b) {
         (End::Step(s), End::Transition(t)) => (s, *t, true),
@@ -117,7 +118,7 @@ fn link(d: &Draft<'_>, chart: &str, a: &End, b: &End) -> Result<(String, String,
     Ok((chart.to_owned(), step.clone(), d.number(chart, number)?, leaving))
 }
 
-/// Takes the chosen things out of the chart, and what cannot be without them.
+/// Removes the chosen parts from the chart, and the transitions that cannot exist without them.
 fn take_away(chart: &mut Chart, chosen: &Chosen, extra: &BTreeSet<Span>) {
     chart.items.retain_mut(|item| match item {
         ChartItem::Step(s) => !chosen.has_step(&s.name.text),
@@ -134,14 +135,14 @@ fn take_away(chart: &mut Chart, chosen: &Chosen, extra: &BTreeSet<Span>) {
     });
 }
 
-/// One connected part of what goes, with what is around it.
+/// A connected region that is deleted.
 #[derive(Default)]
 struct Region {
     steps: BTreeSet<String>,
     transitions: BTreeSet<Span>,
 }
 
-/// Bridges each connected part; the transitions that go besides.
+/// Bridges each region; returns the transitions that must be deleted in addition.
 fn heal_all(chart: &mut Chart, chosen: &mut Chosen) -> BTreeSet<Span> {
     let mut extra = BTreeSet::new();
     for region in regions(chart, chosen) {
@@ -186,7 +187,7 @@ fn regions(chart: &Chart, chosen: &Chosen) -> Vec<Region> {
     }
 }
 
-/// What is around a region: transitions before and behind, steps before and behind.
+/// The neighbours of a region: transitions before and after it, steps before and after it.
 struct Around {
     t_before: Vec<Transition>,
     t_behind: Vec<Transition>,
@@ -219,7 +220,7 @@ fn around(chart: &Chart, region: &Region) -> Around {
             }
         }
     }
-    // A loop at the step itself is none of its neighbours.
+    // A transition that leads from the region back to it is not a neighbour.
     let own: Vec<Span> = a.t_before.iter().map(|t| t.at.0).collect();
     let both: Vec<Span> = a.t_behind.iter().map(|t| t.at.0).filter(|t| own.contains(t)).collect();
     a.t_before.retain(|t| !both.contains(&t.at.0));
@@ -227,7 +228,7 @@ fn around(chart: &Chart, region: &Region) -> Around {
     a
 }
 
-/// Bridges a region; the transition that stays although it was chosen.
+/// Bridges a region; returns a chosen transition that must be kept, if there is one.
 fn heal(chart: &mut Chart, region: &Region, extra: &mut BTreeSet<Span>) -> Option<Span> {
     let a = around(chart, region);
     let inside = |n: &Name| region.steps.contains(&*n.text);
@@ -260,7 +261,7 @@ fn heal(chart: &mut Chart, region: &Region, extra: &mut BTreeSet<Span>) -> Optio
     None
 }
 
-/// Changes the transitions that are in the list.
+/// Applies a change to the transitions in the list.
 fn each(chart: &mut Chart, list: &[Transition], change: impl Fn(&mut Transition)) {
     for item in &mut chart.items {
         if let ChartItem::Transition(t) = item
@@ -271,7 +272,7 @@ fn each(chart: &mut Chart, list: &[Transition], change: impl Fn(&mut Transition)
     }
 }
 
-/// Lets the transition behind the step before lead to the step behind.
+/// Makes the transition after the preceding step lead to the succeeding step.
 fn join_steps(chart: &mut Chart, region: &Region, before: &Name, behind: &Name) -> Option<Span> {
     let mut firsts = chart.items.iter_mut().filter_map(|i| match i {
         ChartItem::Transition(t) if region.transitions.contains(&t.at.0) && has(&t.from, &before.text) => {

@@ -1,4 +1,4 @@
-//! The fields of one step, transition or chart.
+//! Changes single fields of steps, transitions and charts.
 
 use g7_model::{Action, ChartItem, ChartKind, FileId, StepKind};
 
@@ -18,7 +18,7 @@ fn transition(d: &Draft<'_>, id: &ItemId) -> Result<g7_model::Span, Refusal> {
     }
 }
 
-/// The step that an id names.
+/// The name of the step that an id names.
 fn step(d: &Draft<'_>, id: &ItemId) -> Result<String, Refusal> {
     match node(d, id)? {
         Node::Step(name) => Ok(name),
@@ -32,7 +32,7 @@ pub(crate) fn receptivity(d: &mut Draft<'_>, id: &ItemId, text: &str) -> Result<
     let typed = if typed.is_empty() { "TRUE" } else { typed };
     let (mut e, problems) = g7_syntax::parse_expr(typed, FileId(0));
     if let Some(problem) = problems.first() {
-        return refuse(format!("this is no receptivity: {problem}"));
+        return refuse(format!("this is not a receptivity: {problem}"));
     }
     e.at = d.fresh_as(typed);
     d.transition_mut(&id.chart, at)?.receptivity = e;
@@ -40,13 +40,13 @@ pub(crate) fn receptivity(d: &mut Draft<'_>, id: &ItemId, text: &str) -> Result<
     Ok(())
 }
 
-/// The actions that a text says, each as typed.
+/// Reads the actions in a text; each keeps the text that was typed.
 pub(crate) fn read_actions(d: &mut Draft<'_>, text: &str) -> Result<Vec<Action>, Refusal> {
     const HEAD: &str = "chart A {\nstep 1 {\n";
     let whole = format!("{HEAD}{text}\n}}\n}}\n");
     let (doc, problems) = g7_syntax::parse(&whole, FileId(0));
     if let Some(problem) = problems.first() {
-        return refuse(format!("this is no action: {problem}"));
+        return refuse(format!("this is not an action: {problem}"));
     }
     let mut charts = doc.charts();
     let items = charts.next().map(|c| c.items.as_slice()).unwrap_or_default();
@@ -55,7 +55,7 @@ pub(crate) fn read_actions(d: &mut Draft<'_>, text: &str) -> Result<Vec<Action>,
     };
     let mut actions = Vec::new();
     for (k, action) in step.actions.iter().enumerate() {
-        // What stands between two actions, notes among it, belongs to the first.
+        // Text between two actions, notes included, belongs to the first of them.
         let from = if k == 0 { HEAD.len() } else { action.at.0.start as usize };
         let to = step.actions.get(k + 1).map_or(whole.len() - 5, |n| n.at.0.start as usize);
         let raw = whole.get(from..to).unwrap_or_default().trim();
@@ -80,7 +80,8 @@ pub(crate) fn action(
         return remove_action(d, &id.chart, &name, k);
     }
     let text = text.trim();
-    // GRAFCET writes a continuous action without a letter, and so a stored one: its arrow is understood.
+    // GRAFCET writes no qualifiers: an assignment is a stored action on activation, any other text
+    // is a continuous action.
     let understood = if text.contains(":=") { "P1" } else { "N" };
     let new = read_actions(d, text)
         .or_else(|refusal| read_actions(d, &format!("{understood} {text}")).map_err(|_| refusal))?;
@@ -154,7 +155,7 @@ pub(crate) fn priority(d: &mut Draft<'_>, id: &ItemId, n: Option<u32>) -> Result
     Ok(())
 }
 
-/// Other steps before or behind a transition.
+/// Changes the preceding or succeeding steps of a transition.
 pub(crate) fn ends(
     d: &mut Draft<'_>,
     id: &ItemId,
@@ -215,7 +216,8 @@ pub(crate) fn kind(d: &mut Draft<'_>, id: &ItemId, sort: Sort) -> Result<(), Ref
     Ok(())
 }
 
-/// Entry and exit steps: one of each, in expansions and tasks only.
+/// Checks that a chart may have this entry or exit step: only expansions and tasks have them, one
+/// of each.
 fn end(d: &Draft<'_>, chart: &str, name: &str, sort: Sort) -> Result<StepKind, Refusal> {
     let home = d.chart(chart)?;
     let entry = sort == Sort::Entry;

@@ -1,20 +1,20 @@
-//! Steps and transitions as neighbours, and where new ones go in the text.
+//! The neighbours of steps and transitions, and where new ones are written in the text.
 //!
-//! In most charts the steps come first and the transitions behind them: a new
-//! step goes behind the step it follows, a new transition behind those that
-//! leave the same step. Where they alternate in the text, the new ones do too.
+//! In most charts the steps are written first and the transitions after them: a new step is written
+//! after the step that it follows, a new transition after those that leave the same step. If steps
+//! and transitions alternate in the text, the new ones alternate too.
 
 use g7_model::{Chart, ChartItem, Name, Span, Step, StepKind, Transition};
 
 use crate::draft::Draft;
 use crate::{Refusal, refuse};
 
-/// Whether a step is among names.
+/// True if the names contain this step.
 pub(crate) fn has(names: &[Name], step: &str) -> bool {
     names.iter().any(|n| *n.text == *step)
 }
 
-/// The transitions behind a step.
+/// The transitions after a step.
 pub(crate) fn leaving<'c>(chart: &'c Chart, step: &'c str) -> impl Iterator<Item = &'c Transition> {
     chart.transitions().filter(move |t| has(&t.from, step))
 }
@@ -24,7 +24,8 @@ pub(crate) fn arriving<'c>(chart: &'c Chart, step: &'c str) -> impl Iterator<Ite
     chart.transitions().filter(move |t| has(&t.to, step))
 }
 
-/// Nothing leaves an exit step: the transitions behind its macro-step or its caller do.
+/// Refuses a link that leaves an exit step: the transitions after its macro-step or caller take
+/// that role.
 pub(crate) fn may_leave(step: &Step) -> Result<(), Refusal> {
     if step.kind == StepKind::Exit {
         return refuse(format!(
@@ -35,7 +36,7 @@ pub(crate) fn may_leave(step: &Step) -> Result<(), Refusal> {
     Ok(())
 }
 
-/// Nothing leads to an entry step: its macro-step or caller activates it.
+/// Refuses a link to an entry step: its macro-step or caller activates it.
 pub(crate) fn may_arrive(step: &Step) -> Result<(), Refusal> {
     if step.kind == StepKind::Entry {
         return refuse(format!(
@@ -46,7 +47,7 @@ pub(crate) fn may_arrive(step: &Step) -> Result<(), Refusal> {
     Ok(())
 }
 
-/// Adds a step to names, unless it is there.
+/// Adds a step to the preceding (or succeeding) steps of a transition, unless it is among them.
 pub(crate) fn add(d: &mut Draft<'_>, chart: &str, at: Span, step: &str, to: bool) -> Result<(), Refusal> {
     let name = d.new_name(step);
     let t = d.transition_mut(chart, at)?;
@@ -59,7 +60,7 @@ pub(crate) fn add(d: &mut Draft<'_>, chart: &str, at: Span, step: &str, to: bool
     Ok(())
 }
 
-/// Puts other names into the place of a step; none stands there twice.
+/// Replaces a step in a list by other names; no name is listed twice.
 pub(crate) fn replace(list: &mut Vec<Name>, step: &str, by: &[Name]) {
     let Some(k) = list.iter().position(|n| *n.text == *step) else { return };
     list.remove(k);
@@ -69,14 +70,14 @@ pub(crate) fn replace(list: &mut Vec<Name>, step: &str, by: &[Name]) {
     }
 }
 
-/// Whether steps and transitions alternate in the text.
+/// True if steps and transitions alternate in the text.
 fn alternating(chart: &Chart) -> bool {
     let first = chart.items.iter().position(|i| matches!(i, ChartItem::Transition(_)));
     let last = chart.items.iter().rposition(|i| matches!(i, ChartItem::Step(_)));
     matches!((first, last), (Some(t), Some(s)) if t < s)
 }
 
-/// Behind the end of the chain that item `k` is in.
+/// The index after the end of the chain that contains item `k`.
 fn chain_end(chart: &Chart, k: usize) -> usize {
     let rest = chart.items.iter().skip(k + 1);
     k + 1 + rest.take_while(|i| matches!(i, ChartItem::Transition(t) if t.chained)).count()
@@ -86,7 +87,7 @@ fn item_of_step(chart: &Chart, step: &str) -> Option<usize> {
     chart.items.iter().position(|i| matches!(i, ChartItem::Step(s) if *s.name.text == *step))
 }
 
-/// Puts a new step into the text behind another step, or behind the last one.
+/// Writes a new step after another step, or after the last one.
 pub(crate) fn put_step(
     d: &mut Draft<'_>,
     chart: &str,
@@ -115,7 +116,7 @@ pub(crate) fn put_step(
     Ok(())
 }
 
-/// Puts a new step into the text before another one.
+/// Writes a new step before another one.
 pub(crate) fn put_step_before(
     d: &mut Draft<'_>,
     chart: &str,
@@ -128,8 +129,8 @@ pub(crate) fn put_step_before(
     Ok(())
 }
 
-/// Puts a new transition into the text behind those that leave a step, else
-/// behind those that lead to it, else at the end.
+/// Writes a new transition after those that leave a step, otherwise after those that lead to it,
+/// otherwise at the end.
 pub(crate) fn put_transition(
     d: &mut Draft<'_>,
     chart: &str,
@@ -157,8 +158,8 @@ pub(crate) fn put_transition(
     Ok(())
 }
 
-/// Puts a new transition into the text just before or behind another, so that
-/// alternatives keep their order.
+/// Writes a new transition directly before or after another, so that the branches of a selection
+/// keep their order.
 pub(crate) fn put_beside(
     d: &mut Draft<'_>,
     chart: &str,

@@ -1,10 +1,9 @@
-//! A sequence put into the expansion of a new macro-step.
+//! Moves a sequence into the expansion of a new macro-step.
 //!
-//! The sequence has one step that is entered and one that is left. They become
-//! the entry and the exit step, if nothing inside leads to the first or leaves
-//! the last; else an entry or exit step of its own is put before or behind them.
-//! Names in what moves are written as the new chart needs them; `X12` of a step
-//! that moved becomes `M3.X12`.
+//! The sequence has one step that is entered from outside and one that is left. They become the
+//! entry and the exit step if no link inside leads to the first or leaves the last; otherwise an
+//! entry or exit step is added. Names in the moved text are adapted to the new chart; `X12` of a
+//! moved step becomes `M3.X12`.
 
 use g7_compile::references::Written;
 use g7_compile::{Definition, references};
@@ -23,7 +22,7 @@ use crate::{Refusal, refuse};
 /// The sequence that moves.
 struct Sequence {
     steps: Vec<Step>,
-    /// Those between its steps.
+    /// The transitions between its steps.
     inner: Vec<Transition>,
     first: String,
     last: String,
@@ -85,7 +84,8 @@ fn sequence(home: &Chart, chosen: &Chosen) -> Result<Sequence, Refusal> {
     Ok(Sequence { steps, inner, first, last, entry, exit })
 }
 
-/// The one step that links from outside meet; without such links the one that fits.
+/// The only step at which links from outside meet; if there are no such links, the only step for
+/// which `fits` holds.
 fn one_end(met: &[&Name], steps: &[Step], fits: impl Fn(&Step) -> bool) -> Option<String> {
     if let Some(first) = met.first() {
         return met.iter().all(|n| n == first).then(|| first.text.to_string());
@@ -104,7 +104,7 @@ fn end_name(sequence: &Sequence, base: &str) -> String {
     (1u64..).map(|n| format!("{base}{n}")).find(|n| !taken(n)).unwrap_or_default()
 }
 
-/// The expansion as text, from the lines that move.
+/// The text of the expansion, made from the lines that move.
 fn expansion_text(
     d: &mut Draft<'_>,
     home: &Chart,
@@ -152,7 +152,7 @@ fn expansion_text(
     Ok(format!("macrochart {} {{\n{}{gap}{}}}\n", show_name(expansion), lines(&steps), lines(&transitions)))
 }
 
-/// The text of something that moves, with its names changed.
+/// The text of a part that moves, with its names adapted.
 fn moved_text(d: &Draft<'_>, at: Span, splices: Vec<Splice>) -> Result<String, Refusal> {
     let (start, end) = (at.start as usize, at.end as usize);
     let mut own: Vec<Splice> = splices
@@ -168,8 +168,8 @@ fn moved_text(d: &Draft<'_>, at: Span, splices: Vec<Splice>) -> Result<String, R
     Ok(reindent(&text, indent, "", "\n"))
 }
 
-/// Names to be written in another way: within what moves they are given back,
-/// those elsewhere become changes besides.
+/// Names that must be written differently: returns the changes inside the moved parts, and adds the
+/// others to `d.besides`.
 fn names(d: &mut Draft<'_>, home: &Chart, sequence: &Sequence, moved: &[Span], name: &str) -> Vec<Splice> {
     let refs = references(d.source.document);
     let within = |at: Span| moved.iter().any(|m| m.start <= at.start && at.end <= m.end);
@@ -186,7 +186,7 @@ fn names(d: &mut Draft<'_>, home: &Chart, sequence: &Sequence, moved: &[Span], n
             }
             Definition::Step { chart, name: step } if *chart == *home.name.text && has(step) => {
                 if first && within(old) {
-                    continue; // In its own chart still.
+                    continue; // still in its own chart
                 }
                 let path = format!("{}.", show_path_name(name, first, false));
                 let splice = Splice::new(start, start, path);
@@ -198,7 +198,7 @@ fn names(d: &mut Draft<'_>, home: &Chart, sequence: &Sequence, moved: &[Span], n
     inside
 }
 
-/// Puts the macro-step into the place of the sequence.
+/// Replaces the sequence by the macro-step.
 fn swap(
     d: &mut Draft<'_>,
     chart: &str,

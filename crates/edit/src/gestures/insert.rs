@@ -1,4 +1,4 @@
-//! Things put into a link or beside a sequence.
+//! Inserts parts into a link or beside a sequence.
 
 use g7_model::{Span, StepKind};
 
@@ -11,7 +11,7 @@ use crate::gesture::What;
 use crate::id::{End, ItemId, Part};
 use crate::{Refusal, refuse};
 
-/// A step and a transition into a link.
+/// Inserts a step and a transition into a link.
 pub(crate) fn insert(d: &mut Draft<'_>, link: &ItemId, what: What) -> Result<(), Refusal> {
     let chart = link.chart.as_str();
     let (from, to) = match &link.part {
@@ -48,7 +48,7 @@ pub(crate) fn insert(d: &mut Draft<'_>, link: &ItemId, what: What) -> Result<(),
     Ok(())
 }
 
-/// Step and transition of a link, and whether the step is before the transition.
+/// The step and the transition of a link; the flag is true if the step comes first.
 fn ends(d: &Draft<'_>, chart: &str, from: &End, to: &End) -> Result<(String, Span, bool), Refusal> {
     let (step, number, leaving) = match (from, to) {
         (End::Step(s), End::Transition(t)) => (s, *t, true),
@@ -59,12 +59,12 @@ fn ends(d: &Draft<'_>, chart: &str, from: &End, to: &End) -> Result<(String, Spa
     let t = d.transition(chart, at)?;
     let list = if leaving { &t.from } else { &t.to };
     if !super::graph::has(list, step) {
-        return refuse("this link is not there any more");
+        return refuse("this link no longer exists");
     }
     Ok((step.clone(), at, leaving))
 }
 
-/// `M3` where steps have numbers and that is free.
+/// The name `M3` if names of steps are numbers and it is free, otherwise the given name.
 pub(crate) fn macro_name(d: &Draft<'_>, chart: &str, name: &str) -> Result<String, Refusal> {
     let number = name.bytes().all(|b| b.is_ascii_digit());
     let wanted = format!("M{name}");
@@ -72,8 +72,8 @@ pub(crate) fn macro_name(d: &Draft<'_>, chart: &str, name: &str) -> Result<Strin
     Ok(if number && !taken { wanted } else { name.to_owned() })
 }
 
-/// A step beside a sequence: the transition before the sequence activates it
-/// too, the one behind the sequence waits for it too.
+/// Adds a step beside a sequence: the transition before the sequence activates it too, and the
+/// transition after the sequence waits for it too.
 pub(crate) fn parallel(d: &mut Draft<'_>, ids: &[ItemId]) -> Result<(), Refusal> {
     let chosen = Chosen::new(d, ids)?;
     let chart = chosen.chart.clone();

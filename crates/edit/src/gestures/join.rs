@@ -1,5 +1,5 @@
-//! Links between things that are there. Steps and transitions alternate: what is
-//! missing between two of a kind is put in.
+//! Adds links between existing parts. Steps and transitions alternate, so a missing one is inserted
+//! between two of the same kind.
 
 use g7_model::{Chart, Name, Span};
 
@@ -44,7 +44,7 @@ pub(crate) fn connect(d: &mut Draft<'_>, from: &ItemId, to: &ItemId) -> Result<(
     Ok(())
 }
 
-/// A transition from steps to a step.
+/// Adds a transition from some steps to a step.
 fn link_steps(d: &mut Draft<'_>, chart: &str, from: &[&str], to: &str) -> Result<(), Refusal> {
     for step in from {
         may_leave(d.step(chart, step)?)?;
@@ -58,7 +58,8 @@ fn link_steps(d: &mut Draft<'_>, chart: &str, from: &[&str], to: &str) -> Result
     Ok(())
 }
 
-/// A link to a step far away. A transition that led to one other step leads there instead.
+/// Adds a link to a step. A transition that leads to exactly one other step leads to this one
+/// instead.
 pub(crate) fn jump(d: &mut Draft<'_>, id: &ItemId, to: &ItemId) -> Result<(), Refusal> {
     if id.chart != to.chart {
         return refuse("a jump stays within its chart");
@@ -86,8 +87,8 @@ pub(crate) fn jump(d: &mut Draft<'_>, id: &ItemId, to: &ItemId) -> Result<(), Re
     }
 }
 
-/// Branches brought together at a step: each by a transition of its own (or), or
-/// all by one (and).
+/// Makes branches converge at a step: each by a transition of its own (or), or all by one
+/// transition (and).
 pub(crate) fn converge(
     d: &mut Draft<'_>,
     ids: &[ItemId],
@@ -118,7 +119,8 @@ pub(crate) fn converge(
     }
 }
 
-/// The step that was chosen, or a new one behind the last step in the text of those that meet.
+/// The step at which the branches converge: the given one, or a new one, written after the last of
+/// the branches' steps.
 fn target(d: &mut Draft<'_>, chart: &str, steps: &[String], to: Option<&ItemId>) -> Result<String, Refusal> {
     let Some(to) = to else {
         let place = |c: &Chart, s: &String| c.steps().position(|x| *x.name.text == **s);

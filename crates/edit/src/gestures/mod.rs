@@ -1,4 +1,4 @@
-//! The gestures, each as a change of the draft.
+//! The gestures: each changes the draft.
 
 mod build;
 mod delete;
@@ -7,6 +7,7 @@ mod graph;
 mod group;
 mod insert;
 mod join;
+mod layout_section;
 mod notes;
 mod paste;
 mod places;
@@ -22,7 +23,7 @@ use crate::gesture::Gesture;
 use crate::id::{ItemId, Part};
 use crate::{Refusal, refuse};
 
-/// Changes the draft; renaming and typing go other ways.
+/// Changes the draft; renaming and typing are handled elsewhere.
 pub(crate) fn carry_out(d: &mut Draft<'_>, gesture: &Gesture) -> Result<(), Refusal> {
     match gesture {
         Gesture::AddStep { chart, at, kind } => build::add_step(d, chart, *at, *kind),
@@ -62,14 +63,15 @@ pub(crate) fn carry_out(d: &mut Draft<'_>, gesture: &Gesture) -> Result<(), Refu
     }
 }
 
-/// A step or transition that an id names.
+/// The step or transition that an id names.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) enum Node {
     Step(String),
     Transition(g7_model::Span),
 }
 
-/// What an id names, if it is a step (or one of its actions) or a transition that is there.
+/// The step (also for an id of one of its actions) or the transition that an id names, if it
+/// exists.
 pub(crate) fn node(d: &Draft<'_>, id: &ItemId) -> Result<Node, Refusal> {
     match &id.part {
         Part::Step(name) => {
@@ -89,7 +91,7 @@ pub(crate) fn node(d: &Draft<'_>, id: &ItemId) -> Result<Node, Refusal> {
     }
 }
 
-/// The one chart that all ids are of.
+/// The chart of all ids; refuses ids of several charts.
 pub(crate) fn one_chart(ids: &[ItemId]) -> Result<&str, Refusal> {
     let Some(first) = ids.first() else { return refuse("nothing is chosen") };
     if ids.iter().any(|id| id.chart != first.chart) {

@@ -4,12 +4,12 @@ use std::collections::BTreeSet;
 
 use g7_model::{Item, Layout, PlaceAt, Placed};
 
-use super::places::{self, point};
+use super::layout_section::{self, point};
 use crate::draft::Draft;
 use crate::id::ItemId;
 use crate::{Refusal, refuse};
 
-/// A comment at a place.
+/// Adds a comment at a place.
 pub(crate) fn add(d: &mut Draft<'_>, chart: &str, text: &str, at: [f64; 2]) -> Result<(), Refusal> {
     d.chart(chart)?;
     let (x, y) = point(at)?;
@@ -21,18 +21,18 @@ pub(crate) fn add(d: &mut Draft<'_>, chart: &str, text: &str, at: [f64; 2]) -> R
     Ok(())
 }
 
-/// The same at a place that is known in hundredths of a unit.
+/// The same, for a place given in hundredths of a unit.
 pub(crate) fn put(d: &mut Draft<'_>, chart: &str, text: &str, (x, y): (i32, i32)) {
     let place = PlaceAt { what: Placed::Comment(text.into()), x, y, at: d.fresh() };
     let mut number = 0;
-    places::with_layout(d, chart, |layout| {
+    layout_section::with_layout(d, chart, |layout| {
         number = comments(layout).count();
         layout.places.push(place);
     });
     d.select(ItemId::note(chart, number));
 }
 
-/// Another text for a comment; none takes it away.
+/// Changes the text of a comment; no text deletes it.
 pub(crate) fn change(d: &mut Draft<'_>, chart: &str, n: usize, text: Option<&str>) -> Result<(), Refusal> {
     let Some(text) = text else { return delete(d, chart, &BTreeSet::from([n])) };
     note_mut(d, chart, n)?.what = Placed::Comment(text.into());
@@ -40,26 +40,26 @@ pub(crate) fn change(d: &mut Draft<'_>, chart: &str, n: usize, text: Option<&str
     Ok(())
 }
 
-/// Another place for a comment.
+/// Moves a comment.
 pub(crate) fn shift(d: &mut Draft<'_>, chart: &str, n: usize, (x, y): (i32, i32)) -> Result<(), Refusal> {
     let place = note_mut(d, chart, n)?;
     (place.x, place.y) = (x, y);
     Ok(())
 }
 
-/// Where a comment stands.
+/// The place of a comment.
 pub(crate) fn at(d: &Draft<'_>, chart: &str, n: usize) -> Result<(i32, i32), Refusal> {
-    let found = places::layout(&d.doc, chart).and_then(|l| comments(l).nth(n));
+    let found = layout_section::layout(&d.doc, chart).and_then(|l| comments(l).nth(n));
     found.map(|p| (p.x, p.y)).ok_or_else(|| none(chart))
 }
 
-/// Takes comments away; a layout that held nothing else goes with them.
+/// Deletes comments; an empty layout section is deleted too.
 pub(crate) fn delete(d: &mut Draft<'_>, chart: &str, gone: &BTreeSet<usize>) -> Result<(), Refusal> {
-    let count = places::layout(&d.doc, chart).map_or(0, |l| comments(l).count());
+    let count = layout_section::layout(&d.doc, chart).map_or(0, |l| comments(l).count());
     if gone.last().is_some_and(|n| *n >= count) {
         return Err(none(chart));
     }
-    places::with_layout(d, chart, |layout| {
+    layout_section::with_layout(d, chart, |layout| {
         let mut number = 0;
         layout.places.retain(|p| {
             let comment = matches!(p.what, Placed::Comment(_));
@@ -68,11 +68,12 @@ pub(crate) fn delete(d: &mut Draft<'_>, chart: &str, gone: &BTreeSet<usize>) -> 
             !goes
         });
     });
-    places::without_empty_layout(d, chart);
+    layout_section::without_empty_layout(d, chart);
     Ok(())
 }
 
-/// The comments of a layout, in the order of the text: their numbers are those of the drawing.
+/// The comments of a layout section, in the order of the text; the drawing numbers them in this
+/// order.
 pub(crate) fn comments(layout: &Layout) -> impl Iterator<Item = &PlaceAt> {
     layout.places.iter().filter(|p| matches!(p.what, Placed::Comment(_)))
 }

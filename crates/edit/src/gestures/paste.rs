@@ -1,5 +1,5 @@
-//! Putting in what was copied: names that clash get new ones, in the fragment
-//! and wherever the fragment refers to them.
+//! Pastes a copied part. Names that already exist are replaced by new ones in the pasted text and
+//! in all references inside it.
 
 use std::collections::{BTreeSet, HashMap};
 
@@ -12,7 +12,7 @@ use g7_model::{
 use super::graph::put_step;
 use super::rename::written;
 use super::table::{declares, put_variable};
-use super::{notes, places};
+use super::{layout_section, notes, places};
 use crate::draft::{Draft, Mark};
 use crate::id::ItemId;
 use crate::needs::needs;
@@ -20,7 +20,7 @@ use crate::splice::spliced;
 use crate::write::{reindent, step_list, variable_text};
 use crate::{Refusal, refuse};
 
-/// Longest fragment, in bytes.
+/// Greatest length of a pasted text, in bytes.
 const MOST: usize = 1 << 20;
 
 pub(crate) fn paste(d: &mut Draft<'_>, chart: &str, text: &str, at: Option<[f64; 2]>) -> Result<(), Refusal> {
@@ -37,7 +37,7 @@ pub(crate) fn paste(d: &mut Draft<'_>, chart: &str, text: &str, at: Option<[f64;
                 paste_step(d, chart, &text, s)?;
             }
             ChartItem::Transition(t) => pasted.transitions.push(paste_transition(d, chart, &text, t)?),
-            // Those that are needed are declared below.
+            // `declare` adds the variables that are needed.
             ChartItem::Var(_) => {}
             _ => return refuse("only steps and transitions are pasted into a chart"),
         }
@@ -46,26 +46,26 @@ pub(crate) fn paste(d: &mut Draft<'_>, chart: &str, text: &str, at: Option<[f64;
         paste_chart(d, &text, expansion);
     }
     declare(d, chart, &doc)?;
-    let at = at.map(places::point).transpose()?;
-    pasted.put(d, chart, places::layout(&doc, &part.name.text), at)?;
+    let at = at.map(layout_section::point).transpose()?;
+    pasted.put(d, chart, layout_section::layout(&doc, &part.name.text), at)?;
     if d.select.is_empty() {
         return refuse("there is nothing to paste");
     }
     Ok(())
 }
 
-/// Steps and transitions of the fragment in its order, as they are in the chart now.
+/// The steps and transitions of the pasted text, in its order, as they are in the chart now.
 #[derive(Default)]
 struct Pasted {
     steps: Vec<String>,
     transitions: Vec<Span>,
 }
 
-/// From a comment to its copy where no place is given, in hundredths of a unit.
+/// Offset of a pasted comment from the original if no place is given, in hundredths of a unit.
 const BESIDE: i32 = 200;
 
 impl Pasted {
-    /// Puts all of it where `at` says, in the same order as on the drawing it comes from.
+    /// Places all parts at `at`, arranged as on the drawing from which they were copied.
     fn put(
         &self,
         d: &mut Draft<'_>,
@@ -94,7 +94,7 @@ impl Pasted {
             let (x, y) = (p.x.saturating_add(dx), p.y.saturating_add(dy));
             match (&p.what, id) {
                 (Placed::Comment(text), _) => notes::put(d, chart, text, (x, y)),
-                // Without a place of their own, symbols stand where the layout puts them.
+                // Without a given place, the layout places the symbols.
                 (_, Some(id)) if at.is_some() => places::place(d, id, (x, y))?,
                 _ => {}
             }
@@ -112,8 +112,8 @@ impl Pasted {
     }
 }
 
-/// Declares what the fragment needs and the file does not have. What the file
-/// has stays as it is; where that is not the same, it is told.
+/// Declares the names that the pasted text needs and the file does not have. Existing declarations
+/// stay; the user is told if they differ.
 fn declare(d: &mut Draft<'_>, chart: &str, doc: &Document) -> Result<(), Refusal> {
     let places: Vec<Span> = doc.charts().map(|c| c.at.0).collect();
     let first = doc.charts().next().map(|c| c.name.text.to_string());
@@ -147,7 +147,7 @@ fn declare(d: &mut Draft<'_>, chart: &str, doc: &Document) -> Result<(), Refusal
     Ok(())
 }
 
-/// What a name means already.
+/// What a name already means.
 enum Meaning {
     Variable(Box<VarDecl>),
     Other(&'static str),
@@ -172,12 +172,12 @@ fn meaning(d: &Draft<'_>, chart: &str, name: &str) -> Option<Meaning> {
     })
 }
 
-/// Whether two declarations mean the same to a chart; addresses and comments do not matter.
+/// True if two declarations mean the same to a chart; addresses and comments do not matter.
 fn same(a: &VarDecl, b: &VarDecl) -> bool {
     (a.kind, &a.ty, &a.init, a.retain) == (b.kind, &b.ty, &b.init, b.retain)
 }
 
-/// A declaration in words: class, type and initial value.
+/// Describes a declaration: class, type and initial value.
 fn sort(v: &VarDecl) -> String {
     let bare = VarDecl { address: None, inverted: false, safe: None, comment: None, ..v.clone() };
     let text = variable_text(&bare, &HashMap::new());
@@ -185,7 +185,7 @@ fn sort(v: &VarDecl) -> String {
     format!("`{}`", text.replacen(&format!("{names} : "), "", 1))
 }
 
-/// A fragment is a small file; the mere lines of a chart will do.
+/// Reads the text to paste: a small file, or only the lines of a chart.
 fn fragment(text: &str) -> Result<(String, Document), Refusal> {
     if text.len() > MOST {
         return refuse("this is too long to be pasted into a chart");
@@ -197,12 +197,12 @@ fn fragment(text: &str) -> Result<(String, Document), Refusal> {
     let wrapped = format!("chart Fragment {{\n{text}\n}}\n");
     let (doc, problems) = g7_syntax::parse(&wrapped, FileId(0));
     match problems.first() {
-        Some(_) => refuse("this is no part of a chart"),
+        Some(_) => refuse("this is not a part of a chart"),
         None => Ok((wrapped, doc)),
     }
 }
 
-/// The fragment with other names for steps, labels and expansions that are there already.
+/// The text with new names for steps, labels and expansions whose names already exist.
 fn without_clashes(
     d: &Draft<'_>,
     chart: &str,
@@ -239,12 +239,12 @@ fn without_clashes(
         }
     }
     splices.sort_by_key(|s| (s.start, s.end));
-    let text = spliced(&text, &splices).ok_or_else(|| Refusal::new("this is no part of a chart"))?;
+    let text = spliced(&text, &splices).ok_or_else(|| Refusal::new("this is not a part of a chart"))?;
     let (doc, problems) = g7_syntax::parse(&text, FileId(0));
-    if problems.is_empty() { Ok((text, doc)) } else { refuse("this is no part of a chart") }
+    if problems.is_empty() { Ok((text, doc)) } else { refuse("this is not a part of a chart") }
 }
 
-/// New names for those that are there already: the next number, or the name with a number behind it.
+/// New names for those that already exist: the next number, or the name with a number appended.
 fn fresh_names(there: &BTreeSet<String>, brought: &BTreeSet<String>) -> Vec<(String, String)> {
     let mut taken: BTreeSet<String> = there.union(brought).cloned().collect();
     let number = |n: &String| n.trim_start_matches('M').parse::<u64>().ok().filter(|n| *n < u64::MAX / 2);
@@ -271,7 +271,7 @@ fn slice(text: &str, at: Span) -> &str {
     text.get(at.start as usize..at.end as usize).unwrap_or_default()
 }
 
-/// The text of something with the indentation of its first line taken away.
+/// The text of a part, without the indentation of its first line.
 fn lines(text: &str, at: Span) -> String {
     let start = text.get(..at.start as usize).unwrap_or_default();
     let line = start.rsplit('\n').next().unwrap_or_default();
@@ -284,7 +284,7 @@ fn paste_step(d: &mut Draft<'_>, chart: &str, text: &str, step: &Step) -> Result
     let mut new = step.clone();
     let mut raw = lines(text, step.at.0);
     if matches!(step.kind, StepKind::Entry | StepKind::Exit) {
-        // A chart has neither, an expansion has its own.
+        // A chart has neither entry nor exit step; an expansion already has its own.
         let of_kind = d.chart(chart)?.steps().any(|s| s.kind == step.kind);
         if home == ChartKind::Chart || of_kind {
             let words = (step.name.at.0.start - step.at.0.start) as usize;
@@ -313,7 +313,7 @@ fn paste_transition(d: &mut Draft<'_>, chart: &str, text: &str, t: &Transition) 
     Ok(at)
 }
 
-/// An expansion that a pasted macro-step brings along.
+/// Adds the expansion that a pasted macro-step needs.
 fn paste_chart(d: &mut Draft<'_>, text: &str, chart: &Chart) {
     let mut new = chart.clone();
     new.at = d.fresh_as(lines(text, chart.at.0));

@@ -1,34 +1,17 @@
-//! The layout section: where symbols were moved to.
+//! Places of symbols: moving, aligning, and returning to the automatic layout.
 
 use std::collections::BTreeMap;
 
-use g7_model::{Document, Item, Layout, Name, PlaceAt, Placed, Span};
+use g7_model::{Item, Name, PlaceAt, Placed, Span};
 
+use super::layout_section::{FARTHEST, point, with_layout, without_empty_layout};
 use super::{Node, node, notes, one_chart};
 use crate::draft::Draft;
 use crate::gesture::Alignment;
 use crate::id::{ItemId, Part};
 use crate::{Refusal, refuse};
 
-/// Farthest place, in hundredths of a unit.
-const FARTHEST: i64 = 100_000_000;
-
-/// Pixels to hundredths of a unit.
-pub(crate) fn point([x, y]: [f64; 2]) -> Result<(i32, i32), Refusal> {
-    Ok((hundredths(x)?, hundredths(y)?))
-}
-
-fn hundredths(px: f64) -> Result<i32, Refusal> {
-    let n = (px * 10.0).round();
-    if n.is_nan() || n.abs() > FARTHEST as f64 {
-        return refuse("this place is too far away");
-    }
-    #[allow(clippy::cast_possible_truncation, reason = "bounded just above")]
-    let n = n as i64;
-    i32::try_from(n).or_else(|_| refuse("this place is too far away"))
-}
-
-/// Gives a step, transition or comment its place.
+/// Gives a step, transition or comment a place.
 pub(crate) fn place(d: &mut Draft<'_>, id: &ItemId, (x, y): (i32, i32)) -> Result<(), Refusal> {
     if let Part::Note(n) = id.part {
         return notes::shift(d, &id.chart, n, (x, y));
@@ -45,7 +28,7 @@ pub(crate) fn place(d: &mut Draft<'_>, id: &ItemId, (x, y): (i32, i32)) -> Resul
     Ok(())
 }
 
-/// A transition as a layout names it.
+/// The name of a transition in a layout section: its label or its number.
 fn placed(d: &Draft<'_>, chart: &str, at: Span) -> Result<Placed, Refusal> {
     if let Some(label) = &d.transition(chart, at)?.label {
         return Ok(Placed::Transition(label.clone()));
@@ -54,33 +37,7 @@ fn placed(d: &Draft<'_>, chart: &str, at: Span) -> Result<Placed, Refusal> {
     Ok(Placed::TransitionNumber(u32::try_from(n).unwrap_or(u32::MAX)))
 }
 
-/// The layout of a chart: the first, as the drawing has it.
-pub(crate) fn layout<'d>(doc: &'d Document, chart: &str) -> Option<&'d Layout> {
-    doc.items.iter().find_map(|i| match i {
-        Item::Layout(l) if *l.chart.text == *chart => Some(l),
-        _ => None,
-    })
-}
-
-/// Takes layouts of a chart away that place nothing.
-pub(crate) fn without_empty_layout(d: &mut Draft<'_>, chart: &str) {
-    let empty = |l: &Layout| *l.chart.text == *chart && l.places.is_empty();
-    d.doc.items.retain(|i| !matches!(i, Item::Layout(l) if empty(l)));
-}
-
-/// Changes the layout of a chart; a new one at the end of the file where there is none.
-pub(crate) fn with_layout(d: &mut Draft<'_>, chart: &str, change: impl FnOnce(&mut Layout)) {
-    let own = |i: &Item| matches!(i, Item::Layout(l) if *l.chart.text == *chart);
-    if !d.doc.items.iter().any(own) {
-        let layout = Layout { chart: d.new_name(chart), places: Vec::new(), at: d.fresh() };
-        d.doc.items.push(Item::Layout(layout));
-    }
-    if let Some(Item::Layout(layout)) = d.doc.items.iter_mut().find(|i| own(i)) {
-        change(layout);
-    }
-}
-
-/// Lets the places of a transition follow its label.
+/// Renames the transition in the layout section when its label changes.
 pub(crate) fn relabel(
     d: &mut Draft<'_>,
     chart: &str,
@@ -107,7 +64,7 @@ pub(crate) fn relabel(
     Ok(())
 }
 
-/// Where a symbol stands: as the layout says, else as it is drawn.
+/// The place of a symbol: as it is drawn if that is known, otherwise as the layout section says.
 fn anchor(d: &Draft<'_>, id: &ItemId) -> Result<(i32, i32), Refusal> {
     if let Part::Note(n) = id.part {
         return notes::at(d, &id.chart, n);
@@ -134,14 +91,14 @@ fn anchor(d: &Draft<'_>, id: &ItemId) -> Result<(i32, i32), Refusal> {
     found.ok_or_else(|| Refusal::new("where this stands on the drawing is not known yet"))
 }
 
-/// The steps, transitions and comments among ids, with where they stand; actions stand with their steps.
+/// The places of the steps, transitions and comments among the ids; an action counts as its step.
 fn anchors(d: &Draft<'_>, ids: &[ItemId]) -> Result<BTreeMap<ItemId, (i32, i32)>, Refusal> {
     let mut found = BTreeMap::new();
     for id in ids {
         let id = match &id.part {
             Part::Action(step, _) => ItemId::step(id.chart.as_str(), step.as_str()),
             Part::Step(_) | Part::Transition(_) | Part::Note(_) => id.clone(),
-            // Links and texts follow what they belong to.
+            // Links and texts follow the symbols they belong to.
             Part::Chart | Part::Link(..) | Part::Connector(..) | Part::Other(_) => continue,
         };
         let at = anchor(d, &id)?;
@@ -198,7 +155,7 @@ pub(crate) fn align(d: &mut Draft<'_>, ids: &[ItemId], how: Alignment) -> Result
     put(d, &places)
 }
 
-/// Equal distances between the first and the last.
+/// Distributes symbols at equal distances between the first and the last.
 fn distribute(
     places: &mut BTreeMap<ItemId, (i32, i32)>,
     part: impl Fn(&mut (i32, i32)) -> &mut i32,
@@ -216,7 +173,7 @@ fn distribute(
     Ok(())
 }
 
-/// Comments stay: they are no places of symbols.
+/// Deletes the places of symbols; comments keep theirs.
 pub(crate) fn tidy(d: &mut Draft<'_>, chart: &str) -> Result<(), Refusal> {
     d.chart(chart)?;
     for item in &mut d.doc.items {

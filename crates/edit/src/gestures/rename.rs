@@ -1,10 +1,8 @@
-//! Another name for a step, chart, variable or other thing that has one,
-//! wherever it is used.
+//! Renames a step, chart, variable or other named part wherever it is used.
 //!
-//! Each use is written as its place asks for: in back-ticks, behind the `X` of
-//! `X12`, within `%X12`. What must hold: afterwards every name of the file
-//! refers to what it referred to before. A new name that would hide another, or
-//! be hidden, is refused.
+//! Each use is written as its place requires: in back-ticks, after the `X` of `X12`, within `%X12`.
+//! Afterwards every name of the file must refer to the same part as before; a new name that would
+//! hide another, or be hidden by one, is refused.
 
 use g7_compile::references::{Use, Written};
 use g7_compile::{Definition, References, references};
@@ -15,7 +13,7 @@ use crate::id::{ItemId, Part};
 use crate::splice::{Splice, spliced, tidied};
 use crate::{Edit, Refusal, Source, refuse};
 
-/// Renames everywhere.
+/// Renames a part everywhere.
 pub(crate) fn rename(
     source: &Source<'_>,
     id: Option<&ItemId>,
@@ -46,7 +44,7 @@ pub(crate) fn rename(
     Ok(Edit { splices, select: selected(id, to), ..Edit::default() })
 }
 
-/// What is to be renamed.
+/// The part to be renamed, under its old and its new name.
 fn defined(
     source: &Source<'_>,
     refs: &References,
@@ -75,13 +73,13 @@ fn defined(
         (None, None) => return refuse("nothing is chosen"),
     };
     if refs.declaration(&found).is_none() {
-        return refuse(format!("there is no {} called so", kind(&found).trim_start_matches("a ")));
+        return refuse(format!("there is no {} with this name", kind(&found).trim_start_matches("a ")));
     }
     Ok(found)
 }
 
-/// A variable by the name that the table has, `Chart.name` for one of a chart;
-/// else whatever else has that name.
+/// The variable with the name that the table shows (`Chart.name` for one of a chart); otherwise any
+/// other part with that name.
 fn by_name(source: &Source<'_>, refs: &References, name: &str) -> Definition {
     let split = source.document.charts().find_map(|c| {
         let rest = name.strip_prefix(&*c.name.text)?.strip_prefix('.')?;
@@ -136,7 +134,7 @@ fn kind(definition: &Definition) -> &'static str {
     }
 }
 
-/// Whether another kind of thing in the same name space has the name.
+/// True if a part of another kind in the same name space has the name.
 fn taken(source: &Source<'_>, new: &Definition) -> bool {
     let (chart, name) = match new {
         Definition::Variable { chart, name }
@@ -169,7 +167,7 @@ fn taken(source: &Source<'_>, new: &Definition) -> bool {
     }
 }
 
-/// A use with the new name.
+/// One use of the part, written with the new name.
 pub(crate) fn written(text: &str, found: &Use, to: &str) -> Result<Splice, Refusal> {
     let (start, end) = (found.at.start as usize, found.at.end as usize);
     let old = text.get(start..end).unwrap_or_default();
@@ -186,7 +184,7 @@ pub(crate) fn written(text: &str, found: &Use, to: &str) -> Result<Splice, Refus
     Ok(Splice::new(start, end, text))
 }
 
-/// `%X12`, `%XM3`, `%X3.12` with another number.
+/// Writes `%X12`, `%XM3` or `%X3.12` with another number.
 fn direct(found: &Use, old: &str, to: &str) -> Result<String, Refusal> {
     let Definition::Step { name, .. } = &found.definition else { return Ok(old.to_owned()) };
     let number = to.strip_prefix('M').filter(|_| name.starts_with('M')).unwrap_or(to);
@@ -199,7 +197,7 @@ fn direct(found: &Use, old: &str, to: &str) -> Result<String, Refusal> {
     let mut parts: Vec<String> = rest.split('.').map(str::to_owned).collect();
     let inner = parts.len() > 1 && parts.get(1).is_some_and(|p| p != "T" && p != "t");
     let named = |part: &String| part.trim_start_matches(['M', 'm']) == digits;
-    // Of `%X3.12` the definition is the macro-step or the step in it.
+    // `%X3.12` refers to the macro-step or to the step in it; the definition says to which.
     let k = match (inner, parts.get(1).is_some_and(named)) {
         (true, true) => 1,
         (true, false)
@@ -215,7 +213,7 @@ fn direct(found: &Use, old: &str, to: &str) -> Result<String, Refusal> {
     Ok(format!("{head}{}", parts.join(".")))
 }
 
-/// Afterwards all names must mean what they meant.
+/// Checks that after the change every name refers to the same part as before.
 fn judge(
     before: &References,
     after: &str,
@@ -242,7 +240,7 @@ fn judge(
     Ok(())
 }
 
-/// What lies in a chart or plant is called after it.
+/// The definition of a part under the new name of the chart or plant that contains it.
 fn within(d: &Definition, old: &Definition, new: &Definition) -> Definition {
     let mut d = d.clone();
     match (old, new, &mut d) {
@@ -268,7 +266,7 @@ fn within(d: &Definition, old: &Definition, new: &Definition) -> Definition {
     d
 }
 
-/// Where a place of the text before begins in the text after.
+/// Where a place of the old text begins in the new text.
 fn shifted(splices: &[Splice], at: Span) -> usize {
     let start = at.start as usize;
     let mut shift = 0isize;

@@ -1,8 +1,8 @@
-//! Settings of the file: its profile, the switches of that, the scan time.
+//! Settings of the file: its profile, the switches of the profile, the scan time.
 
 use std::mem::discriminant;
 
-use g7_model::{Item, Place, Profile, ProfileName, Switch};
+use g7_model::{Item, Nanos, Place, Profile, ProfileName, Switch};
 
 use crate::draft::Draft;
 use crate::{Refusal, refuse};
@@ -15,7 +15,7 @@ pub(crate) fn profile(d: &mut Draft<'_>, name: &str) -> Result<(), Refusal> {
     Ok(())
 }
 
-/// Sets a switch beside the profile by its word, or leaves that to the profile again.
+/// Writes a switch beside the profile, or removes it so that the profile decides.
 pub(crate) fn switch(d: &mut Draft<'_>, word: &str, on: bool) -> Result<(), Refusal> {
     let Some((_, switch)) = g7_syntax::SWITCHES.into_iter().find(|(name, _)| *name == word) else {
         return refuse(format!("there is no switch `{word}`"));
@@ -25,7 +25,7 @@ pub(crate) fn switch(d: &mut Draft<'_>, word: &str, on: bool) -> Result<(), Refu
     Ok(())
 }
 
-/// Most passes in a scan; none leaves that to the profile.
+/// Sets the greatest number of passes in a scan; without a number the profile decides.
 pub(crate) fn bound(d: &mut Draft<'_>, passes: Option<u32>) -> Result<(), Refusal> {
     if passes == Some(0) {
         return refuse("a scan needs at least one pass");
@@ -34,7 +34,7 @@ pub(crate) fn bound(d: &mut Draft<'_>, passes: Option<u32>) -> Result<(), Refusa
     Ok(())
 }
 
-/// Puts a switch into the place of those that it goes instead of.
+/// Replaces the switches that exclude each other by a new one.
 fn change(d: &mut Draft<'_>, instead: impl Fn(&Switch) -> bool, new: Option<Switch>) {
     let there = |i: &Item| matches!(i, Item::Profile(p) if p.switches.iter().any(|(s, _)| instead(s)));
     if new.is_none() && !d.doc.items.iter().any(there) {
@@ -49,7 +49,7 @@ fn change(d: &mut Draft<'_>, instead: impl Fn(&Switch) -> bool, new: Option<Swit
     });
 }
 
-/// Changes the profile of the file; the usual one is written down where there is none.
+/// Changes the profile of the file; if the file names none, the default profile is written.
 fn profile_mut(d: &mut Draft<'_>, change: impl FnOnce(&mut Profile, Place)) {
     let at = d.fresh();
     if !d.doc.items.iter().any(|i| matches!(i, Item::Profile(_))) {
@@ -70,15 +70,15 @@ pub(crate) fn scan(d: &mut Draft<'_>, ms: f64) -> Result<(), Refusal> {
         return refuse("a scan takes more than no time, and at most an hour");
     }
     #[allow(clippy::cast_possible_truncation, reason = "bounded just above")]
-    let ns = ((ms * 1_000_000.0).round() as i64).max(1);
+    let time = Nanos::new(((ms * 1_000_000.0).round() as i64).max(1));
     let at = d.fresh();
     for item in &mut d.doc.items {
         if let Item::Cycle(there, _) = item {
-            *there = ns;
+            *there = time;
             return Ok(());
         }
     }
     let k = d.doc.items.iter().position(|i| matches!(i, Item::Profile(_))).map_or(0, |k| k + 1);
-    d.doc.items.insert(k, Item::Cycle(ns, at));
+    d.doc.items.insert(k, Item::Cycle(time, at));
     Ok(())
 }

@@ -9,7 +9,7 @@ use crate::{Refusal, Source, refuse};
 
 // Charts
 
-/// Puts a chart behind the last one of the file.
+/// Adds a chart after the last one of the file.
 fn put_chart(d: &mut Draft<'_>, chart: Chart) {
     let behind = d.doc.items.iter().rposition(|i| matches!(i, Item::Chart(_)));
     let behind = behind.or_else(|| d.doc.items.iter().rposition(is_head));
@@ -17,7 +17,7 @@ fn put_chart(d: &mut Draft<'_>, chart: Chart) {
     d.doc.items.insert(k, Item::Chart(chart));
 }
 
-/// What stands before the charts.
+/// True for items that stand before the charts.
 fn is_head(item: &Item) -> bool {
     matches!(item, Item::Profile(_) | Item::Cycle(..) | Item::Target(..) | Item::Var(_))
 }
@@ -27,14 +27,14 @@ fn new_chart(d: &mut Draft<'_>, kind: ChartKind, name: &str) -> Chart {
     Chart { kind, name, comment: None, every: None, items: Vec::new(), at }
 }
 
-/// A new expansion with its entry and exit step; its name.
+/// Adds an expansion with an entry and an exit step; returns its name.
 pub(crate) fn add_expansion(d: &mut Draft<'_>, base: &str) -> Result<String, Refusal> {
     let name = d.chart_name(base);
     with_ends(d, ChartKind::Expansion, &name);
     Ok(name)
 }
 
-/// A chart that begins with an entry step and ends with an exit step.
+/// Adds a chart that begins with an entry step and ends with an exit step.
 fn with_ends(d: &mut Draft<'_>, kind: ChartKind, name: &str) {
     let mut chart = new_chart(d, kind, name);
     let (mut entry, mut exit) = (d.new_step("E"), d.new_step("S"));
@@ -91,7 +91,7 @@ pub(crate) fn delete_chart(d: &mut Draft<'_>, chart: &str) -> Result<(), Refusal
 
 // Variables
 
-/// The declarations of a file, or of one of its charts.
+/// The declarations of the file or of one of its charts.
 fn declarations<'d>(d: &'d Draft<'_>, chart: Option<&str>) -> Result<Vec<&'d VarDecl>, Refusal> {
     Ok(match chart {
         Some(chart) => d.chart(chart)?.vars().collect(),
@@ -101,7 +101,7 @@ fn declarations<'d>(d: &'d Draft<'_>, chart: Option<&str>) -> Result<Vec<&'d Var
     })
 }
 
-/// Chart and name of a variable as the table names it.
+/// The chart and the name of a variable, from its name in the table.
 pub(crate) fn split<'n>(d: &Draft<'_>, name: &'n str) -> (Option<&'n str>, &'n str) {
     for (k, _) in name.match_indices('.') {
         if let (Some(chart), Some(rest)) = (name.get(..k), name.get(k + 1..))
@@ -117,7 +117,7 @@ pub(crate) fn declares(v: &VarDecl, name: &str) -> bool {
     v.names.iter().any(|n| *n.text == *name)
 }
 
-/// Takes a name out of its declaration, and the declaration away with its last name.
+/// Removes a name from its declaration; true if the declaration still has a name.
 fn forget(v: &mut VarDecl, name: &str) -> bool {
     v.names.retain(|n| *n.text != *name);
     !v.names.is_empty()
@@ -141,7 +141,8 @@ pub(crate) fn delete_variable(d: &mut Draft<'_>, name: &str) -> Result<(), Refus
     Ok(())
 }
 
-/// The same row for the variable under its new name, if the row gives it one.
+/// The change of a row that remains after the variable has got the row's new name; none if the name
+/// stays.
 pub(crate) fn renamed_row(source: &Source<'_>, name: &str, row: &Row) -> Option<Gesture> {
     let own = source.document.charts().find_map(|c| {
         let own = name.strip_prefix(&*c.name.text)?.strip_prefix('.')?;
@@ -177,13 +178,13 @@ pub(crate) fn variable(d: &mut Draft<'_>, name: Option<&str>, row: &Row) -> Resu
         new.at = before.at;
         return change(d, home, before.at.0, vec![new]);
     }
-    // Declared with others: it gets a line of its own behind them.
+    // It was declared together with others: it gets its own line after them.
     let mut rest = before.clone();
     rest.names.retain(|n| *n.text != *old);
     change(d, home, before.at.0, vec![rest, new])
 }
 
-/// Puts declarations into the place of another.
+/// Replaces a declaration by others.
 fn change(
     d: &mut Draft<'_>,
     home: Option<&str>,
@@ -209,7 +210,7 @@ fn change(
     Ok(())
 }
 
-/// A new declaration goes behind the last of its class, else behind the last one.
+/// Adds a declaration after the last of its class, otherwise after the last declaration.
 pub(crate) fn put_variable(d: &mut Draft<'_>, home: Option<&str>, new: VarDecl) -> Result<(), Refusal> {
     match home {
         Some(chart) => {
@@ -232,14 +233,14 @@ pub(crate) fn put_variable(d: &mut Draft<'_>, home: Option<&str>, new: VarDecl) 
     Ok(())
 }
 
-/// The declaration that a row means, its values as typed.
+/// The declaration that a row describes, with the values as typed.
 fn declared(d: &mut Draft<'_>, row: &Row) -> Result<VarDecl, Refusal> {
     if row.name.trim().is_empty() {
         return refuse("a variable has a name");
     }
     let class = if row.class.is_empty() { "var" } else { row.class.as_str() };
     if !["input", "output", "var", "const"].contains(&class) {
-        return refuse(format!("`{class}` is no class; a variable is input, output, var or const"));
+        return refuse(format!("`{class}` is not a class; a variable is input, output, var or const"));
     }
     let ty = if row.ty.trim().is_empty() { "BOOL" } else { row.ty.trim() };
     let mut line = format!("{class} {} : {ty}", g7_syntax::show_name(row.name.trim()));
@@ -262,7 +263,7 @@ fn declared(d: &mut Draft<'_>, row: &Row) -> Result<VarDecl, Refusal> {
     }
     let (doc, problems) = g7_syntax::parse(&line, FileId(0));
     if let Some(problem) = problems.first() {
-        return refuse(format!("this is no declaration: {problem}"));
+        return refuse(format!("this is not a declaration: {problem}"));
     }
     let [Item::Var(v)] = doc.items.as_slice() else { return refuse("this is more than one declaration") };
     let mut v = v.clone();

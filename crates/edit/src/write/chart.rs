@@ -1,12 +1,12 @@
-//! Charts and what stands in them.
+//! Writes charts and their items.
 
-use g7_model::{Chart, ChartItem, Name, Span};
-use g7_syntax::{Token, TokenKind, show_comment, show_name, show_step_name};
+use g7_model::{Chart, ChartItem, Span};
+use g7_syntax::show_step_name;
 
-use super::file::{edit_variable, printed};
 use super::item;
 use super::lines::{Sheet, reindent};
 use super::list::{Block, Style, changed, list};
+use super::text::{comment, printed, step_list};
 use crate::draft::{Draft, is_fresh};
 
 /// Changes a chart in place.
@@ -22,19 +22,7 @@ pub(crate) fn edit(sheet: &mut Sheet<'_>, draft: &Draft<'_>, old: &Chart, new: &
     list(sheet, &old.items, &new.items, &block, &Items { draft });
 }
 
-/// Changes, removes or adds the comment among the words of a header; a new one
-/// goes behind byte `after`.
-pub(crate) fn comment(sheet: &mut Sheet<'_>, head: &[Token], after: usize, text: Option<&str>) {
-    let there = head.iter().find(|t| t.kind == TokenKind::Comment);
-    match (there, text) {
-        (Some(t), Some(text)) => sheet.put(t.start, t.end, show_comment(text)),
-        (Some(t), None) => sheet.remove_part(t.start, t.end),
-        (None, Some(text)) => sheet.put(after, after, format!(" {}", show_comment(text))),
-        (None, None) => {}
-    }
-}
-
-/// A chart that is new; its things may come from elsewhere in the text.
+/// The text of a new chart; its items may come from elsewhere in the text.
 pub(crate) fn fresh(sheet: &Sheet<'_>, draft: &Draft<'_>, chart: &Chart) -> String {
     let bare = Chart { items: Vec::new(), ..chart.clone() };
     let mut out = printed(g7_model::Item::Chart(bare));
@@ -54,13 +42,13 @@ pub(crate) fn fresh(sheet: &Sheet<'_>, draft: &Draft<'_>, chart: &Chart) -> Stri
     out
 }
 
-/// How the things of a chart are written.
+/// How the items of a chart are written.
 struct Items<'d, 's> {
     draft: &'d Draft<'s>,
 }
 
 impl Items<'_, '_> {
-    /// Where the text has a thing that was moved.
+    /// The original of an item that was moved from elsewhere in the text.
     fn origin(&self, item: &ChartItem) -> Option<&ChartItem> {
         let at = self.at(item);
         if is_fresh(at.into()) {
@@ -89,7 +77,7 @@ impl Style<ChartItem> for Items<'_, '_> {
             (ChartItem::Transition(a), ChartItem::Transition(b)) => {
                 item::edit_transition(sheet, self.draft, a, b);
             }
-            (ChartItem::Var(a), ChartItem::Var(b)) => edit_variable(sheet, self.draft, a, b),
+            (ChartItem::Var(a), ChartItem::Var(b)) => item::edit_variable(sheet, self.draft, a, b),
             _ => {}
         }
     }
@@ -138,7 +126,8 @@ impl Style<ChartItem> for Items<'_, '_> {
     }
 }
 
-/// Things that stand together without a blank line; 3 for those that never do.
+/// The group of an item: items of one group stand together without blank lines; group 3 always has
+/// blank lines.
 fn family(item: &ChartItem) -> u8 {
     match item {
         ChartItem::Var(_) => 0,
@@ -146,38 +135,4 @@ fn family(item: &ChartItem) -> u8 {
         ChartItem::Transition(_) => 2,
         ChartItem::Pre(..) | ChartItem::Post(..) | ChartItem::Action(_) | ChartItem::Section(_) => 3,
     }
-}
-
-/// `5`, `(3, 5)` or `()`.
-pub(crate) fn step_list(names: &[Name]) -> String {
-    match names {
-        [one] => show_step_name(&one.text),
-        _ => format!("({})", names.iter().map(|n| show_step_name(&n.text)).collect::<Vec<_>>().join(", ")),
-    }
-}
-
-/// The words of a step's header.
-pub(crate) fn step_words(kind: &g7_model::StepKind, initial: bool) -> String {
-    use g7_model::StepKind;
-    let sort = match kind {
-        StepKind::Plain => "step",
-        StepKind::Entry => "entry step",
-        StepKind::Exit => "exit step",
-        StepKind::Enclosing => "enclosing step",
-        StepKind::Macro(_) => "macro",
-    };
-    if initial { format!("initial {sort}") } else { sort.to_owned() }
-}
-
-/// `step 5* "comment"`, `macro M3 = Dose`.
-pub(crate) fn step_header(step: &g7_model::Step) -> String {
-    let mut out = format!("{} {}", step_words(&step.kind, step.initial), show_name(&step.name.text));
-    if let g7_model::StepKind::Macro(expansion) = &step.kind {
-        out.push_str(&format!(" = {}", show_name(&expansion.text)));
-    }
-    out.push_str(if step.linked { "*" } else { "" });
-    if let Some(comment) = &step.comment {
-        out.push_str(&format!(" {}", show_comment(comment)));
-    }
-    out
 }

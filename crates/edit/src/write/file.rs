@@ -1,12 +1,12 @@
-//! The items of a file.
+//! Writes the items of a file.
 
-use g7_model::{Document, Item, Layout, PlaceAt, Placed, Span, VarDecl};
-use g7_syntax::show_name;
+use g7_model::{Item, Layout, PlaceAt, Placed, Span};
 
 use super::chart;
 use super::item;
 use super::lines::Sheet;
 use super::list::{Block, Style, list};
+use super::text::printed;
 use crate::draft::{Draft, is_fresh};
 
 /// Writes the whole file.
@@ -20,12 +20,6 @@ struct Items<'d, 's> {
     draft: &'d Draft<'s>,
 }
 
-/// The text that the printer gives a document of one item, without the last line end.
-pub(crate) fn printed(item: Item) -> String {
-    let doc = Document { items: vec![item], notes: Vec::new() };
-    g7_syntax::print(&doc, None).trim_end().to_owned()
-}
-
 impl Style<Item> for Items<'_, '_> {
     fn at(&self, thing: &Item) -> Span {
         place(thing)
@@ -35,7 +29,7 @@ impl Style<Item> for Items<'_, '_> {
         match (old, new) {
             (Item::Chart(a), Item::Chart(b)) => chart::edit(sheet, self.draft, a, b),
             (Item::Layout(a), Item::Layout(b)) => edit_layout(sheet, a, b),
-            (Item::Var(a), Item::Var(b)) => edit_variable(sheet, self.draft, a, b),
+            (Item::Var(a), Item::Var(b)) => item::edit_variable(sheet, self.draft, a, b),
             (Item::Profile(a), Item::Profile(b)) if a.name != b.name => {
                 let tokens = sheet.tokens(a.at.0.start as usize, a.at.0.end as usize);
                 if let Some(word) = tokens.get(1) {
@@ -67,24 +61,6 @@ impl Style<Item> for Items<'_, '_> {
     }
 }
 
-/// A variable where it is declared.
-pub(crate) fn edit_variable(sheet: &mut Sheet<'_>, draft: &Draft<'_>, old: &VarDecl, new: &VarDecl) {
-    if old == new {
-        return;
-    }
-    let list = |v: &VarDecl| v.names.iter().map(|n| show_name(&n.text)).collect::<Vec<_>>().join(", ");
-    let only_names = *old == VarDecl { names: old.names.clone(), ..new.clone() };
-    match (old.names.first(), old.names.last()) {
-        (Some(a), Some(b)) if only_names => {
-            sheet.put(a.at.0.start as usize, b.at.0.end as usize, list(new));
-        }
-        _ => {
-            let (start, end) = (old.at.0.start as usize, old.at.0.end as usize);
-            sheet.put(start, end, item::variable_text(new, &draft.raw));
-        }
-    }
-}
-
 fn edit_layout(sheet: &mut Sheet<'_>, old: &Layout, new: &Layout) {
     let (start, end) = (old.at.0.start as usize, old.at.0.end as usize);
     let Some(open) = sheet.header(start, end).1 else { return };
@@ -93,7 +69,7 @@ fn edit_layout(sheet: &mut Sheet<'_>, old: &Layout, new: &Layout) {
     list(sheet, &old.places, &new.places, &block, &Places);
 }
 
-/// The places of a layout: a line each.
+/// Writes the places of a layout section, one on each line.
 struct Places;
 
 impl Style<PlaceAt> for Places {
@@ -134,7 +110,7 @@ fn place_text(place: &PlaceAt) -> String {
     format!("{what} at ({}, {})", number(place.x), number(place.y))
 }
 
-/// Where an item stands.
+/// The place of an item.
 pub(crate) fn place(item: &Item) -> Span {
     match item {
         Item::Profile(p) => p.at.0,
@@ -151,7 +127,8 @@ pub(crate) fn place(item: &Item) -> Span {
     }
 }
 
-/// Items that stand together without a blank line; 9 for those that never do.
+/// The group of an item: items of one group stand together without blank lines; group 9 always has
+/// blank lines.
 fn family(item: &Item) -> u8 {
     match item {
         Item::Profile(_) | Item::Cycle(..) | Item::Target(..) => 0,

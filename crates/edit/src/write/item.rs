@@ -1,4 +1,4 @@
-//! The fields of steps, transitions and variables.
+//! Writes the fields of steps, transitions and variables.
 
 use std::collections::HashMap;
 
@@ -6,13 +6,12 @@ use g7_model::{Action, ActionKind, Chart, ChartKind, Expr, Item, Place, Span, St
 use g7_model::{ChartItem, Name, VarDecl, VarKind};
 use g7_syntax::{Token, TokenKind, print_expr, show_comment, show_name, show_step_name};
 
-use super::chart::{comment, step_header, step_list, step_words};
-use super::file::printed;
 use super::lines::{Sheet, reindent};
 use super::list::{Block, Style, list};
+use super::text::{comment, printed, step_header, step_list, step_words};
 use crate::draft::{Draft, is_fresh};
 
-/// Texts of new things as they were typed.
+/// The texts of new parts as they were typed, by their places.
 type Raw = HashMap<u32, String>;
 
 fn raw(at: Place, raw: &Raw) -> Option<&String> {
@@ -25,7 +24,7 @@ fn expr_text(e: &Expr, texts: &Raw) -> String {
 
 // Steps
 
-/// A step that is new.
+/// The text of a new step.
 pub(crate) fn step_text(step: &Step, texts: &Raw) -> String {
     let head = step_header(step);
     if step.actions.is_empty() {
@@ -35,7 +34,7 @@ pub(crate) fn step_text(step: &Step, texts: &Raw) -> String {
     format!("{head} {}", braces(&actions, "", "\n"))
 }
 
-/// Actions in their braces: a single short one within the line.
+/// Writes actions in braces; a single short action stays on the line of the step.
 fn braces(actions: &[String], indent: &str, newline: &str) -> String {
     if let [one] = actions
         && one.len() <= 60
@@ -51,7 +50,7 @@ fn braces(actions: &[String], indent: &str, newline: &str) -> String {
     format!("{{{newline}{}{newline}{indent}}}", lines.join(newline))
 }
 
-/// An action that is new.
+/// The text of a new action.
 fn action_text(action: &Action, texts: &Raw) -> String {
     if let Some(text) = raw(action.at, texts) {
         return text.clone();
@@ -132,7 +131,7 @@ fn edit_actions(
     let (start, end) = (old.at.0.start as usize, old.at.0.end as usize);
     let same = old.actions.iter().map(|a| a.at.0).eq(new.actions.iter().map(|a| a.at.0));
     if same {
-        return; // An action is changed by a new one in its place.
+        return; // A changed action is a new one at the same place.
     }
     let outer = sheet.indent(start).to_owned();
     let newline = sheet.newline;
@@ -152,7 +151,7 @@ fn edit_actions(
     list(sheet, &old.actions, &new.actions, &block, &Actions { draft });
 }
 
-/// An action as the text has it, or as it is new.
+/// The text of an action: from the file, or new.
 fn text_of(sheet: &Sheet<'_>, draft: &Draft<'_>, action: &Action) -> String {
     if is_fresh(action.at) {
         return action_text(action, &draft.raw);
@@ -184,7 +183,7 @@ impl Style<Action> for Actions<'_, '_> {
 
 // Transitions
 
-/// A transition that is new.
+/// The text of a new transition.
 pub(crate) fn transition_text(t: &Transition, texts: &Raw) -> String {
     let mut out = t.label.as_ref().map_or(String::new(), |l| format!("{}: ", show_step_name(&l.text)));
     let when = expr_text(&t.receptivity, texts);
@@ -198,16 +197,16 @@ pub(crate) fn transition_text(t: &Transition, texts: &Raw) -> String {
     out
 }
 
-/// The parts of a transition as the text has them.
+/// Where the parts of a transition stand in the text.
 struct Parts {
-    /// Label and colon.
+    /// The label and its colon.
     label: Option<(usize, usize)>,
     from: Option<(usize, usize)>,
     to: (usize, usize),
     receptivity: (usize, usize),
     priority: Option<(usize, usize)>,
     comment: Option<(usize, usize)>,
-    /// Behind the last clause before `on clearing`.
+    /// The end of the last clause before `on clearing`.
     clauses_end: usize,
 }
 
@@ -246,8 +245,8 @@ fn parts(sheet: &Sheet<'_>, t: &Transition) -> Option<Parts> {
     })
 }
 
-/// Changes a transition in place; what comes before its arrow when it leaves a
-/// chain is not this one's business.
+/// Changes a transition in place. If the transition leaves a chain, the caller writes the part
+/// before its arrow.
 pub(crate) fn edit_transition(sheet: &mut Sheet<'_>, draft: &Draft<'_>, old: &Transition, new: &Transition) {
     if old == new && !is_fresh(new.receptivity.at) {
         return;
@@ -291,7 +290,7 @@ fn clause(sheet: &mut Sheet<'_>, there: Option<(usize, usize)>, after: usize, te
 
 // Variables
 
-/// A declaration, with the values as they were typed.
+/// The text of a new declaration, with the values as they were typed.
 pub(crate) fn variable_text(v: &VarDecl, texts: &Raw) -> String {
     let class = match v.kind {
         VarKind::Input => "input",
@@ -319,4 +318,22 @@ pub(crate) fn variable_text(v: &VarDecl, texts: &Raw) -> String {
         out.push_str(&format!(" {}", show_comment(comment)));
     }
     out
+}
+
+/// Changes the declaration of a variable.
+pub(crate) fn edit_variable(sheet: &mut Sheet<'_>, draft: &Draft<'_>, old: &VarDecl, new: &VarDecl) {
+    if old == new {
+        return;
+    }
+    let list = |v: &VarDecl| v.names.iter().map(|n| show_name(&n.text)).collect::<Vec<_>>().join(", ");
+    let only_names = *old == VarDecl { names: old.names.clone(), ..new.clone() };
+    match (old.names.first(), old.names.last()) {
+        (Some(a), Some(b)) if only_names => {
+            sheet.put(a.at.0.start as usize, b.at.0.end as usize, list(new));
+        }
+        _ => {
+            let (start, end) = (old.at.0.start as usize, old.at.0.end as usize);
+            sheet.put(start, end, variable_text(new, &draft.raw));
+        }
+    }
 }

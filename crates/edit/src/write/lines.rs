@@ -1,15 +1,15 @@
-//! Lines of a text: where they begin and end, what stands on them.
+//! The lines of a text: where they begin and end, and what they contain.
 
 use g7_model::{Note, Span};
 use g7_syntax::{Token, TokenKind, tokens};
 
 use crate::splice::Splice;
 
-/// A text with the changes collected so far.
+/// A text and the changes collected so far.
 pub(crate) struct Sheet<'a> {
     pub(crate) text: &'a str,
     pub(crate) notes: &'a [Note],
-    /// `\n` or `\r\n`, as the text has it.
+    /// The line end of the text: `\n` or `\r\n`.
     pub(crate) newline: &'static str,
     pub(crate) splices: Vec<Splice>,
 }
@@ -20,7 +20,7 @@ impl<'a> Sheet<'a> {
         Sheet { text, notes, newline, splices: Vec::new() }
     }
 
-    /// The same text without any change.
+    /// The same text without changes.
     pub(crate) fn blank(&self) -> Sheet<'a> {
         Sheet { text: self.text, notes: self.notes, newline: self.newline, splices: Vec::new() }
     }
@@ -55,19 +55,19 @@ impl<'a> Sheet<'a> {
         at + rest.find('\n').map_or(rest.len(), |n| n + 1)
     }
 
-    /// The blanks at the beginning of the line.
+    /// The indentation of the line.
     pub(crate) fn indent(&self, at: usize) -> &'a str {
         let line = self.slice(self.line_start(at), self.line_end(at));
         line.split_at(line.len() - line.trim_start().len()).0
     }
 
-    /// Whether only blanks stand before it on its line.
+    /// True if only blanks precede the byte on its line.
     pub(crate) fn begins_line(&self, at: usize) -> bool {
         self.slice(self.line_start(at), at).trim().is_empty()
     }
 
-    /// Behind the notes and semicolons that follow on the same line; the line
-    /// may go on with something else.
+    /// The end of the notes and semicolons that follow on the same line; other text may follow
+    /// them.
     pub(crate) fn tail(&self, at: usize) -> usize {
         let mut at = at;
         let first = self.notes.partition_point(|n| (n.at.start as usize) < at);
@@ -87,23 +87,23 @@ impl<'a> Sheet<'a> {
         }
     }
 
-    /// Whether nothing but blanks follows on the line.
+    /// True if only blanks follow on the line.
     pub(crate) fn ends_line(&self, at: usize) -> bool {
         self.slice(at, self.line_end(at)).trim().is_empty()
     }
 
-    /// Whether a line is blank; there must be one.
+    /// True if there is a line at this byte and it is blank.
     pub(crate) fn is_blank_line(&self, start: usize) -> bool {
         start < self.text.len() && self.slice(start, self.line_end(start)).trim().is_empty()
     }
 
-    /// Whether a note begins in these bytes.
+    /// True if a note begins in these bytes.
     pub(crate) fn has_notes(&self, start: usize, end: usize) -> bool {
         let first = self.notes.partition_point(|n| (n.at.start as usize) < start);
         self.notes.get(first).is_some_and(|n| (n.at.start as usize) < end)
     }
 
-    /// The words and signs of a part of the text, notes left out.
+    /// The tokens of a part of the text, without notes.
     pub(crate) fn tokens(&self, start: usize, end: usize) -> Vec<Token> {
         tokens(self.slice(start, end))
             .filter(|t| t.kind != TokenKind::Note)
@@ -111,7 +111,7 @@ impl<'a> Sheet<'a> {
             .collect()
     }
 
-    /// What stands before the first `{`, and that `{`.
+    /// The tokens before the first `{`, and that `{`.
     pub(crate) fn header(&self, start: usize, end: usize) -> (Vec<Token>, Option<Token>) {
         let mut head = Vec::new();
         for t in tokens(self.slice(start, end)) {
@@ -129,7 +129,7 @@ impl<'a> Sheet<'a> {
         self.slice(token.start, token.end)
     }
 
-    /// Takes something away, with its lines where it has them for itself.
+    /// Removes a part, with its lines if nothing else stands on them.
     pub(crate) fn remove(&mut self, start: usize, end: usize) {
         let tail = self.tail(end);
         if !self.begins_line(start) || !self.ends_line(tail) {
@@ -146,13 +146,13 @@ impl<'a> Sheet<'a> {
         let gap = if above && closing { self.line_start(from - 1) } else { from };
         let from = if self.splices.last().is_none_or(|s| s.end <= gap) { gap } else { from };
         let last = to >= self.text.len() && !self.text.ends_with('\n');
-        // Without a line end of its own it takes that of the line before.
+        // The last line has no line end, so the end of the line before is removed.
         let from = if last && from > 0 { self.line_end(self.line_start(from - 1)) } else { from };
         self.put(from, to, "");
     }
 
-    /// Takes a part of a line away, with the blanks before it or, at the
-    /// beginning of a line, those behind it.
+    /// Removes a part of a line and the blanks before it or, at the beginning of a line, those
+    /// after it.
     pub(crate) fn remove_part(&mut self, start: usize, end: usize) {
         let before = self.slice(self.line_start(start), start);
         if before.trim().is_empty() {
@@ -162,8 +162,8 @@ impl<'a> Sheet<'a> {
         self.put(start - (before.len() - before.trim_end().len()), end, "");
     }
 
-    /// Puts lines (each with its indentation) behind what ends at a byte.
-    /// `outer` is the indentation of what follows on the same line.
+    /// Inserts lines (each with its indentation) after a part that ends at a byte. `outer` is the
+    /// indentation of what follows on the same line.
     pub(crate) fn insert_below(&mut self, end: usize, lines: &str, outer: &str) {
         let at = self.tail(end);
         if self.ends_line(at) {
@@ -175,14 +175,14 @@ impl<'a> Sheet<'a> {
         self.put(at, at + blanks, format!("{nl}{lines}{nl}{outer}", nl = self.newline));
     }
 
-    /// Puts lines before the line on which something begins, or before it.
+    /// Inserts lines above the line on which a part begins, or directly before the part.
     pub(crate) fn insert_above(&mut self, start: usize, lines: &str) {
         let at = if self.begins_line(start) { self.line_start(start) } else { start };
         self.put(at, at, format!("{lines}{}", self.newline));
     }
 }
 
-/// A text with another indentation for all its lines; the first has none.
+/// Changes the indentation of all lines of a text; the first line has none.
 pub(crate) fn reindent(text: &str, from: &str, to: &str, newline: &str) -> String {
     let mut out = String::with_capacity(text.len() + 16);
     for (k, line) in text.lines().enumerate() {

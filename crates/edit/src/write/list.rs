@@ -1,8 +1,8 @@
-//! Things one below the other: what stayed, what went, what came between.
+//! Writes lists: which elements stayed, which were removed, which were added.
 //!
-//! Things that share a line form an island. Where only fields change, an island
-//! is changed in place; where something goes out of it or comes into it, it is
-//! laid out anew, one thing a line.
+//! Elements on one line form an island. If only fields change, an island is changed in place; if an
+//! element of it is removed or a new one is added inside, the island is written anew, one element
+//! on a line.
 
 use std::collections::HashMap;
 
@@ -12,39 +12,39 @@ use super::lines::Sheet;
 use crate::draft::FRESH;
 use crate::splice::spliced;
 
-/// How one kind of thing is written.
+/// How one kind of element is written.
 pub(crate) trait Style<T> {
-    /// Its place.
+    /// The place of an element in the text.
     fn at(&self, thing: &T) -> Span;
-    /// Changes its fields in place.
+    /// Changes the fields of an element in place.
     fn edit(&self, sheet: &mut Sheet<'_>, old: &T, new: &T);
-    /// What must come before it because the thing before it no longer says it.
+    /// Text that must precede an element because the element before it no longer implies it.
     fn lead(&self, _old: &T, _new: &T) -> Option<String> {
         None
     }
-    /// It with its indentation, without the last line end.
+    /// The text of a new element with its indentation, without the last line end.
     fn fresh(&self, sheet: &Sheet<'_>, new: &T, indent: &str) -> String;
-    /// Whether a blank line stands between the two where both are to be laid out.
+    /// True if a blank line separates the two elements when both are written anew.
     fn apart(&self, a: &T, b: &T) -> bool;
-    /// Whether it goes on with the one before, farther in.
+    /// True if the element continues the one before it and is indented further.
     fn inner(&self, _thing: &T) -> bool {
         false
     }
 }
 
-/// What encloses the things.
+/// The text that encloses the list.
 pub(crate) struct Block<'a> {
-    /// Behind the `{`; none for a file.
+    /// The byte after the `{`; none for a file.
     pub(crate) open: Option<usize>,
-    /// At the `}`, or the end of the file.
+    /// The byte of the `}`, or the end of the file.
     pub(crate) close: usize,
-    /// The indentation of the things, where none tells.
+    /// The indentation of the elements, used if no element shows it.
     pub(crate) indent: String,
-    /// That of the `}`.
+    /// The indentation of the `}`.
     pub(crate) outer: &'a str,
 }
 
-/// Changes a list of things.
+/// Changes a list.
 pub(crate) fn list<T>(sheet: &mut Sheet<'_>, old: &[T], new: &[T], block: &Block<'_>, style: &impl Style<T>) {
     let mut work = Work::new(sheet, old, new, block, style);
     work.at_start();
@@ -65,9 +65,9 @@ struct Work<'w, 's, 't, T, S> {
     block: &'w Block<'w>,
     style: &'w S,
     indent: String,
-    /// What became of each old thing.
+    /// For each old element its new version; none if it was removed.
     kept: Vec<Option<&'t T>>,
-    /// What came before the first old thing, and behind each of them.
+    /// The elements added before the first old element, and after each of them.
     came: Vec<Vec<&'t T>>,
 }
 
@@ -99,7 +99,7 @@ impl<'w, 's, 't, T, S: Style<T>> Work<'w, 's, 't, T, S> {
         (at.start as usize, at.end as usize)
     }
 
-    /// What stands between an old thing and the next.
+    /// The text between an old element and the next.
     fn between(&self, k: usize) -> &'s str {
         self.sheet.slice(self.span(k).1, self.span(k + 1).0)
     }
@@ -112,7 +112,7 @@ impl<'w, 's, 't, T, S: Style<T>> Work<'w, 's, 't, T, S> {
         Some((self.old.get(k)?, self.kept.get(k).copied().flatten()?))
     }
 
-    /// Lines for new things behind another one.
+    /// Lines for new elements, written after another element.
     fn lines(&self, things: &[&'t T], after: Option<&'t T>) -> String {
         let mut out = String::new();
         let mut before = after;
@@ -159,7 +159,7 @@ impl<'w, 's, 't, T, S: Style<T>> Work<'w, 's, 't, T, S> {
         }
     }
 
-    /// Into braces with at most notes between them.
+    /// Writes into braces that contain nothing or only notes.
     fn fill_empty(&mut self, open: usize, lines: &str, outer: &str) {
         let (close, nl) = (self.block.close, self.sheet.newline);
         let inside = self.sheet.slice(open, close);
@@ -173,7 +173,7 @@ impl<'w, 's, 't, T, S: Style<T>> Work<'w, 's, 't, T, S> {
         }
     }
 
-    /// The things `a..=b`, which share a line.
+    /// Changes the elements `a..=b`, which share a line.
     fn island(&mut self, a: usize, b: usize) {
         if (a..=b).all(|k| self.kept(k).is_none()) {
             return self.sheet.remove(self.span(a).0, self.span(b).1);
@@ -201,7 +201,7 @@ impl<'w, 's, 't, T, S: Style<T>> Work<'w, 's, 't, T, S> {
         self.below(b);
     }
 
-    /// What came behind the last thing of an island.
+    /// Writes the elements added after the last element of an island.
     fn below(&mut self, b: usize) {
         let things = self.new_after(b).to_vec();
         let (Some(last), Some((_, anchor))) = (things.last(), self.kept(b)) else { return };
@@ -209,7 +209,7 @@ impl<'w, 's, 't, T, S: Style<T>> Work<'w, 's, 't, T, S> {
             && self.style.apart(anchor, first)
             && !self.style.apart(last, next)
         {
-            // They belong to what follows.
+            // They belong to the elements that follow.
             let lines = self.lines(&things, None);
             return self.sheet.insert_above(self.span(b + 1).0, &lines);
         }
@@ -217,7 +217,7 @@ impl<'w, 's, 't, T, S: Style<T>> Work<'w, 's, 't, T, S> {
         let end = self.span(b).1;
         let next = (b + 1..self.old.len()).find_map(|k| self.kept(k)).map(|(_, n)| n);
         let line = self.sheet.next_line(self.sheet.tail(end));
-        // Where the author put no blank line between the two, none is put now.
+        // If the author wrote no blank line between the two, none is added.
         let wanted = next.is_some_and(|n| self.style.apart(last, n) && !self.style.apart(anchor, n));
         if wanted && !self.sheet.is_blank_line(line) {
             lines.push_str(self.sheet.newline);
@@ -258,7 +258,7 @@ impl<'w, 's, 't, T, S: Style<T>> Work<'w, 's, 't, T, S> {
         self.sheet.put(start, end, out);
     }
 
-    /// Notes between two things that are no longer joined as they were.
+    /// Keeps the notes between two elements that are no longer joined.
     fn keep_notes(&self, k: usize, out: &mut String) {
         let joined = self.new_after(k).is_empty()
             && self.kept(k + 1).is_some_and(|(o, n)| self.style.lead(o, n).is_none());
@@ -268,13 +268,13 @@ impl<'w, 's, 't, T, S: Style<T>> Work<'w, 's, 't, T, S> {
         }
     }
 
-    /// The text of a thing with its fields changed.
+    /// The text of an element with its fields changed.
     fn changed(&self, old: &T, new: &T) -> String {
         changed(self.sheet, self.style, old, new)
     }
 }
 
-/// The text of a thing with its fields changed.
+/// The text of an element with its fields changed.
 pub(crate) fn changed<T>(sheet: &Sheet<'_>, style: &impl Style<T>, old: &T, new: &T) -> String {
     let mut sub = sheet.blank();
     style.edit(&mut sub, old, new);

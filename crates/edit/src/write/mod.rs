@@ -1,10 +1,11 @@
-//! From the document as it is to be to the least change of the text.
+//! Finds the least change of the text that makes it say what the draft says.
 
 mod chart;
 mod file;
 mod item;
 mod lines;
 mod list;
+mod text;
 
 use std::collections::{BTreeMap, HashMap};
 
@@ -12,13 +13,13 @@ use g7_model::{Chart, ChartItem, Document, Item, Name, Placed, Transition};
 
 use crate::draft::{Draft, is_fresh};
 use crate::splice::{Splice, tidied};
-pub(crate) use chart::step_list;
 pub(crate) use item::variable_text;
 pub(crate) use lines::reindent;
+pub(crate) use text::step_list;
 
 use lines::Sheet;
 
-/// The splices that make the text say what the draft says.
+/// The splices that turn the source text into the text of the draft.
 pub(crate) fn difference(draft: &Draft<'_>) -> Vec<Splice> {
     let source = draft.source;
     let mut sheet = Sheet::new(source.text, &source.document.notes);
@@ -26,8 +27,8 @@ pub(crate) fn difference(draft: &Draft<'_>) -> Vec<Splice> {
     tidied(source.text, sheet.splices)
 }
 
-/// Brings everything into line that follows from other changes: chains whose
-/// parts were separated, places of what is gone, numbers of transitions.
+/// Adapts what depends on other changes: chains whose parts were separated, places of deleted
+/// parts, numbers of transitions.
 pub(crate) fn settle(draft: &mut Draft<'_>) {
     let before = predecessors(draft.source.document);
     for item in &mut draft.doc.items {
@@ -40,7 +41,7 @@ pub(crate) fn settle(draft: &mut Draft<'_>) {
     settle_layouts(draft);
 }
 
-/// The place of the transition that each chained one goes on with.
+/// For each chained transition, the place of the transition that it continues.
 fn predecessors(doc: &Document) -> HashMap<u32, u32> {
     let mut before = HashMap::new();
     for chart in doc.charts() {
@@ -72,7 +73,7 @@ fn unchain(chart: &mut Chart, before: &HashMap<u32, u32>) {
     }
 }
 
-/// Steps that are gone have no place any more; numbers follow the transitions.
+/// Deletes the places of deleted parts and renumbers transitions.
 fn settle_layouts(draft: &mut Draft<'_>) {
     let old = draft.source.document;
     let charts: Vec<Chart> = draft.doc.charts().cloned().collect();

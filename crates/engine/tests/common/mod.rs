@@ -1,7 +1,9 @@
 //! Charts made of tables by hand, for tests that need no compiler.
 #![allow(dead_code, reason = "each test file takes what it needs")]
 
-use g7_engine::{Addr, Chart, Group, GroupId, Guard, NONE, Rows, Rules, Step, StepId, Tables, Transition};
+use g7_engine::{
+    Addr, Chart, Group, GroupId, NONE, Receptivity, Rows, Rules, Step, StepId, Tables, Transition,
+};
 
 /// A transition: preceding steps, succeeding steps, the input it waits for
 /// (`None` for TRUE, a negative one for the complement of input `-1 - n`).
@@ -24,7 +26,7 @@ pub(crate) fn chart(rules: Rules, steps: u32, inputs: u32, initial: &[u32], arcs
     t.initial = initial.iter().map(|s| StepId(*s)).collect();
     let mut watched: Vec<Vec<u32>> = vec![Vec::new(); steps as usize];
     let uses = |s: u32| arcs.iter().filter(|(pre, ..)| pre.contains(&s)).count();
-    for (rank, (pre, post, guard)) in arcs.iter().enumerate() {
+    for (rank, (pre, post, waits_for)) in arcs.iter().enumerate() {
         let more = |t: &mut Tables, list: &[u32]| {
             let start = t.arcs.len() as u32;
             t.arcs.extend(list.iter().skip(1).map(|s| StepId(*s)));
@@ -36,10 +38,10 @@ pub(crate) fn chart(rules: Rules, steps: u32, inputs: u32, initial: &[u32], arcs
             None => t.sources.push(rank as u32),
         }
         t.transitions.push(Transition {
-            guard: match guard {
-                None => Guard::True,
-                Some(i) if *i < 0 => Guard::NotWord(Addr((-1 - i) as u32)),
-                Some(i) => Guard::Word(Addr(*i as u32)),
+            receptivity: match waits_for {
+                None => Receptivity::True,
+                Some(i) if *i < 0 => Receptivity::NotWord(Addr((-1 - i) as u32)),
+                Some(i) => Receptivity::Word(Addr(*i as u32)),
             },
             from: StepId(pre.first().copied().unwrap_or(NONE)),
             to: StepId(post.first().copied().unwrap_or(NONE)),

@@ -1,25 +1,25 @@
 //! Expressions of compare and operate boxes: `@200/1@:=@200/1@+1`, `@220/9@>5`.
 //!
-//! ClassicLadder reads them without blanks, from left to right: `!` and brackets,
-//! then `* / %`, `+ -`, `&`, `^`, `|`. All values are 32 bits with a sign.
+//! ClassicLadder evaluates them without blanks, from left to right: `!` and brackets, then `* / %`,
+//! `+ -`, `&`, `^`, `|`. All values are signed 32-bit numbers.
 
 use std::collections::BTreeSet;
 use std::ops::Range;
 
 use g7_model::{BinaryOp, Expr, Stmt, codes};
 
-use super::plan::Key;
+use super::project::Key;
 use super::tables::table_name;
-use super::vars::{self, Vars, kind};
-use crate::nodes::{self, binary, call, int};
-use crate::report::Report;
+use super::variables::{self, Vars, kind};
+use g7_iec::nodes::{self, binary, call, int};
+use g7_iec::report::Report;
 
-/// Longest expression; ClassicLadder itself has 50 characters.
+/// The longest expression; ClassicLadder itself has 50 characters.
 const MOST_BYTES: usize = 1000;
-/// Deepest brackets.
+/// The deepest nesting of brackets.
 const DEEPEST: usize = 40;
 
-/// Functions that a project needs and the language does not have.
+/// Functions that a project needs and the language lacks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Helper {
     And,
@@ -28,25 +28,25 @@ pub(super) enum Helper {
     Power,
 }
 
-/// Reads one expression.
+/// Parses one expression.
 pub(super) struct Arith<'a, 'b, 'c> {
     pub(super) vars: &'a mut Vars<'b>,
     pub(super) helpers: &'a mut BTreeSet<Helper>,
     pub(super) report: &'c mut Report,
     text: &'a str,
-    /// Place of the text in the file.
+    /// The place of the text in the file.
     start: usize,
     at: usize,
     depth: usize,
 }
 
-/// A variable by its number, or by a number and the value of another one.
+/// A variable by its number, or by a number and the value of another variable.
 enum Named {
     One(Key),
     At(Key, Key),
 }
 
-/// An expression that cannot be read, or not carried over; it has been reported.
+/// The expression cannot be read or carried over; a problem has been reported.
 struct Stop;
 
 type Read = Result<Expr, Stop>;
@@ -62,7 +62,7 @@ impl<'a, 'b, 'c> Arith<'a, 'b, 'c> {
         Arith { vars, helpers, report, text, start: place.start, at: 0, depth: 0 }
     }
 
-    /// A comparison, as a condition.
+    /// A comparison, used as a condition.
     pub(super) fn compare(&mut self) -> Option<Expr> {
         self.fits().ok()?;
         let at = self.whole();
@@ -73,7 +73,7 @@ impl<'a, 'b, 'c> Arith<'a, 'b, 'c> {
         let rest = self.text.get(found..).unwrap_or("");
         let mut chars = rest.chars();
         let (first, second) = (chars.next().unwrap_or('='), chars.next());
-        // As ClassicLadder does: the second character counts only where it is `=` or `>`.
+        // ClassicLadder looks at the second character only if it is `=` or `>`.
         let (op, len) = match (first, second) {
             ('>', Some('=')) => (BinaryOp::Ge, 2),
             ('<', Some('=')) => (BinaryOp::Le, 2),
@@ -123,7 +123,7 @@ impl<'a, 'b, 'c> Arith<'a, 'b, 'c> {
             Named::One(key) => {
                 let target = self.vars.target(key, &place, self.report)?;
                 let mut names = BTreeSet::new();
-                vars::reads(&target, &mut names);
+                variables::reads(&target, &mut names);
                 names.extend(table_name(key.0));
                 Some((nodes::assign(target, truth(value.ok()?), span), names.into_iter().collect()))
             }
@@ -172,7 +172,7 @@ impl<'a, 'b, 'c> Arith<'a, 'b, 'c> {
         found
     }
 
-    /// A whole expression, to the end of the text.
+    /// A whole expression, up to the end of the text.
     fn all(&mut self) -> Read {
         let e = self.bits(0)?;
         if self.at < self.text.len() {
@@ -181,7 +181,7 @@ impl<'a, 'b, 'c> Arith<'a, 'b, 'c> {
         Ok(e)
     }
 
-    /// `|`, `^`, `&` from the loosest to the tightest.
+    /// `|`, `^`, `&`, from the weakest to the strongest binding.
     fn bits(&mut self, level: usize) -> Read {
         let (sign, name, helper) = match level {
             0 => (b'|', "BITS_OR", Helper::Or),
@@ -194,7 +194,7 @@ impl<'a, 'b, 'c> Arith<'a, 'b, 'c> {
         while self.take(sign) {
             let right = self.bits(level + 1)?;
             let span = self.span(start);
-            // Any word with itself: how projects write zero.
+            // Any word XOR itself is zero; projects write zero in this way.
             left = if helper == Helper::Xor && left == right {
                 int(0, span)
             } else {
@@ -311,7 +311,7 @@ impl<'a, 'b, 'c> Arith<'a, 'b, 'c> {
         self.in_range(i128::from_str_radix(text, radix).ok(), negative, start)
     }
 
-    /// A number of 32 bits; from half of their range on it is negative.
+    /// A 32-bit number; the upper half of the range is negative.
     fn in_range(&mut self, value: Option<i128>, negative: bool, start: usize) -> Read {
         let span = self.span(start);
         match value.filter(|v| *v < 1 << 32) {

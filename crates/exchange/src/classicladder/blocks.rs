@@ -3,15 +3,15 @@
 use g7_model::{BinaryOp, Expr, Span, Type, codes};
 
 use super::ladder::{Board, Ladder};
-use super::plan::Cell;
-use super::vars::kind;
-use crate::nodes::{self, and, assign, binary, int, invoke, name, not, path, when};
+use super::project::Cell;
+use super::variables::kind;
+use g7_iec::nodes::{self, and, assign, binary, int, invoke, name, not, path, when};
 
-/// Highest value of a counter; the next one is 0.
+/// The highest value of a counter; the next value is 0.
 const FULL: i128 = 9999;
 
 impl Ladder<'_, '_> {
-    /// An element of two columns: its inputs stand one column before it.
+    /// An element of two columns: its inputs are one column before it.
     pub(super) fn block(&mut self, board: &mut Board, cell: &Cell, x: usize, y: usize) {
         let Some(before) = x.checked_sub(1) else {
             self.report.say(&codes::BAD_VALUE, &cell.at, "a block without room for its inputs");
@@ -28,8 +28,8 @@ impl Ladder<'_, '_> {
         }
     }
 
-    /// The old timer: it runs down while both inputs are on. Where the second is
-    /// on whenever the first is, it is an on-delay.
+    /// The old timer counts down while both inputs are on. If the second input is on whenever the
+    /// first is, it is an on-delay.
     fn timer(&mut self, board: &mut Board, cell: &Cell, (before, y): (usize, usize)) {
         let at = self.report.span(&cell.at);
         let enable = board.left(before, y, at);
@@ -43,7 +43,7 @@ impl Ladder<'_, '_> {
         self.pass(board, before + 1, y + 1, running);
     }
 
-    /// On-delay, off-delay and pulse: the function blocks of the standard.
+    /// On-delay, off-delay and pulse timers: the function blocks of the standard.
     fn standard(&mut self, board: &mut Board, cell: &Cell, (before, y): (usize, usize), key: (u16, u32)) {
         let at = self.report.span(&cell.at);
         let input = board.left(before, y, at);

@@ -1,26 +1,26 @@
-//! From the project to the document.
+//! Builds the document from the project.
 
 use std::collections::{BTreeMap, BTreeSet, HashSet};
 
 use g7_model::{
-    BinaryOp, Block, Body, Chart, ChartItem, ChartKind, Document, Function, Item, Layout, Name, Param,
+    BinaryOp, Block, Body, Chart, ChartItem, ChartKind, Document, Function, Item, Layout, Name, Nanos, Param,
     PlaceAt, Placed, Profile, ProfileName, Step, StepKind, Stmt, StmtKind, Switch, Transition, Type, codes,
 };
 use g7_model::{Expr, Local, Span};
 
 use super::arith::Helper;
 use super::ladder::Ladder;
-use super::plan::{Plan, Section};
-use super::vars::Vars;
-use crate::nodes::{self, Taken, assign, binary, call, int, name, when};
-use crate::report::Report;
+use super::project::{Plan, Section};
+use super::variables::Vars;
+use g7_iec::nodes::{self, Taken, assign, binary, call, int, name, when};
+use g7_iec::report::Report;
 
-/// ClassicLadder's own default, in milliseconds.
+/// ClassicLadder's default period, in milliseconds.
 const DEFAULT_PERIOD: i64 = 50;
-const NS_PER_MS: i64 = 1_000_000;
-/// Most rounds of a page in one scan.
+/// The most rounds of a page in one scan.
 const ROUNDS: u32 = 50;
-/// Hundredths of the drawing's unit between two columns and two lines of a page.
+/// The distance between two columns and between two lines of a page, in hundredths of the drawing's
+/// unit.
 const COLUMN: i32 = 700;
 const LINE: i32 = 600;
 
@@ -38,8 +38,8 @@ pub(super) fn document(plan: &Plan, report: &mut Report) -> Document {
     let (pre, post) = sections(plan, &mut ladder);
     let cells = plan.rungs.values().flat_map(|r| r.rows.iter().flatten());
     let called: BTreeSet<i64> = cells.filter(|c| c.kind == 55).map(|c| i64::from(c.var.1)).collect();
-    for section in plan.sections.iter().filter(|s| s.routine >= 0 && !s.sequential) {
-        if !called.contains(&section.routine) {
+    for section in plan.sections.iter().filter(|s| !s.sequential) {
+        if section.routine.is_some_and(|number| !called.contains(&number)) {
             let what = format!("nothing calls the sub-routine `{}`; it is left out", section.name);
             report.say(&codes::LEFT_OUT, &section.at, what);
         }
@@ -54,7 +54,7 @@ pub(super) fn document(plan: &Plan, report: &mut Report) -> Document {
     let switches = switches.map(|s| (s, at.into())).to_vec();
     let mut items = vec![
         Item::Profile(Profile { name: ProfileName::Iec60848, switches, at: at.into() }),
-        Item::Cycle(plan.period.unwrap_or(DEFAULT_PERIOD).saturating_mul(NS_PER_MS), at.into()),
+        Item::Cycle(Nanos::from_millis(plan.period.unwrap_or(DEFAULT_PERIOD)), at.into()),
     ];
     let tables = vars.tables(at);
     items.extend(vars.finish().into_iter().map(Item::Var));
@@ -73,7 +73,7 @@ pub(super) fn document(plan: &Plan, report: &mut Report) -> Document {
     Document { items, notes: report.take_notes() }
 }
 
-/// The pages that some section runs, with the names of their charts.
+/// The pages that a section runs, with the names of their charts.
 fn pages(plan: &Plan, report: &mut Report) -> Vec<(i64, String)> {
     let mut pages: Vec<(i64, String)> = Vec::new();
     let mut taken = Taken::default();
@@ -107,7 +107,7 @@ fn pages(plan: &Plan, report: &mut Report) -> Vec<(i64, String)> {
     pages
 }
 
-/// The name of each step: its number, which no other step may have.
+/// The name of each step: its number, made unique.
 fn step_names(plan: &Plan, report: &mut Report) -> BTreeMap<u32, String> {
     let mut taken = HashSet::new();
     let mut names = BTreeMap::new();
@@ -222,7 +222,7 @@ fn chart(
     (chart, layout)
 }
 
-/// What the author calls the steps, by their numbers.
+/// The author's names of steps, by number.
 fn step_words(plan: &Plan) -> BTreeMap<u32, Box<str>> {
     let mut all = BTreeMap::new();
     for symbol in &plan.symbols {
@@ -235,9 +235,9 @@ fn step_words(plan: &Plan) -> BTreeMap<u32, Box<str>> {
     all
 }
 
-/// Ladder sections before the first page, and behind it.
+/// The ladder sections before the first page and behind it.
 fn sections<'b>(plan: &'b Plan, ladder: &mut Ladder<'_, 'b>) -> (Vec<Stmt>, Vec<Stmt>) {
-    let main: Vec<&Section> = plan.sections.iter().filter(|s| s.routine < 0).collect();
+    let main: Vec<&Section> = plan.sections.iter().filter(|s| s.routine.is_none()).collect();
     let first = main.iter().position(|s| s.sequential).unwrap_or(main.len());
     let last = main.iter().rposition(|s| s.sequential).unwrap_or(0);
     let (mut pre, mut post) = (Vec::new(), Vec::new());
@@ -257,7 +257,7 @@ fn sections<'b>(plan: &'b Plan, ladder: &mut Ladder<'_, 'b>) -> (Vec<Stmt>, Vec<
     (pre, post)
 }
 
-/// What a project needs and the language does not have.
+/// Declares a function that a project needs and the language lacks.
 fn helper(helper: Helper, at: Span) -> Function {
     let n = |text: &str| name(&[text], at);
     let number = |value: i128| int(value, at);

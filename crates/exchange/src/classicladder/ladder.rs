@@ -1,9 +1,9 @@
-//! Rungs, as Structured Text that does what ClassicLadder does: column by column,
-//! and in a column from the top down.
+//! Translates rungs into Structured Text that executes in ClassicLadder's order: column by column,
+//! each column from top to bottom.
 //!
-//! The power behind each element is kept as an expression until an element uses
-//! it. Before something is written that such an expression reads, and where an
-//! expression grows large, its value is stored in a variable `power_n`.
+//! The power behind each element is kept as an expression until an element uses it. Its value is
+//! stored in a variable `power_n` before a variable that the expression reads is written, and when
+//! the expression becomes large.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
@@ -11,42 +11,42 @@ use std::ops::Range;
 use g7_model::{BinaryOp, CaseArm, Expr, Span, Stmt, StmtKind, Type, codes};
 
 use super::arith::{Arith, Helper};
-use super::plan::{Cell, Key, Plan, Rung, Section};
+use super::project::{Cell, Key, Plan, Rung, Section};
 use super::tables::table_name;
-use super::vars::{self, Vars, either, kind, reads};
-use crate::nodes::{self, and, assign, boolean, int, name, not, when};
-use crate::report::Report;
+use super::variables::{self, Vars, either, kind, reads};
+use g7_iec::nodes::{self, and, assign, boolean, int, name, not, when};
+use g7_iec::report::Report;
 
-/// Statements made from a project: sub-routines are written out at each call.
+/// The most statements made from a project; sub-routines are copied to each call.
 const MOST_STATEMENTS: usize = 50_000;
-/// Names in the power behind an element before it is stored.
+/// The most names in the power behind an element before it is stored.
 const LONGEST_POWER: usize = 24;
 
-/// What an element does, in order.
+/// The effect of an element.
 pub(super) enum Deed {
     Do(Stmt),
-    /// The rung ends here, and goes on with another one, where this is true.
+    /// If this is true, the rung ends here and another rung follows.
     Jump(Expr, i64),
 }
 
-/// Writes rungs as statements.
+/// Translates rungs into statements.
 pub(super) struct Ladder<'a, 'b> {
     pub(super) plan: &'b Plan,
     pub(super) vars: &'a mut Vars<'b>,
     pub(super) helpers: &'a mut BTreeSet<Helper>,
     pub(super) report: &'a mut Report,
-    /// Sub-routines that are being written out.
+    /// The sub-routines that are being copied.
     pub(super) open: Vec<i64>,
-    /// Memories of the contacts for edges, by place in the file.
+    /// The variables that keep the last value of edge contacts, by place in the file.
     pub(super) edges: BTreeMap<usize, String>,
     pub(super) left: usize,
 }
 
-/// One rung at work.
+/// A rung that is being translated.
 pub(super) struct Board<'c> {
     pub(super) rung: &'c Rung,
     power: Vec<Vec<Option<Expr>>>,
-    /// The column at work.
+    /// The current column.
     column: usize,
     pub(super) deeds: Vec<Deed>,
 }
@@ -56,7 +56,7 @@ impl<'c> Board<'c> {
         self.rung.rows.get(y)?.get(x)
     }
 
-    /// What the elements to the left give to `(x, y)`, along the vertical line there.
+    /// The power that reaches `(x, y)` from the left, along the vertical line there.
     pub(super) fn left(&self, x: usize, y: usize, at: Span) -> Expr {
         let Some(before) = x.checked_sub(1) else { return boolean(true, at) };
         let joined = |y: usize| self.cell(x, y).is_some_and(|c| c.joined);
@@ -89,7 +89,7 @@ fn operands(e: &Expr) -> usize {
 }
 
 impl<'b> Ladder<'_, 'b> {
-    /// A section as statements.
+    /// Translates a section into statements.
     pub(super) fn section(&mut self, section: &'b Section) -> Vec<Stmt> {
         if section.first < 0
             || (section.first == section.last && !self.plan.rungs.contains_key(&section.first))
@@ -111,7 +111,7 @@ impl<'b> Ladder<'_, 'b> {
         deeds.filter_map(|d| if let Deed::Do(stmt) = d { Some(stmt) } else { None }).collect()
     }
 
-    /// The rungs that a section can come to: in a row first, then those jumped to.
+    /// The rungs that a section can reach: first those in sequence, then the targets of jumps.
     fn order(&mut self, section: &Section) -> Vec<i64> {
         let mut order = Vec::new();
         let mut seen = BTreeSet::new();
@@ -143,7 +143,7 @@ impl<'b> Ladder<'_, 'b> {
         order
     }
 
-    /// Rungs with jumps: a loop over the number of the rung.
+    /// A section with jumps becomes a loop over the number of the rung.
     fn loop_of(&mut self, section: &Section, rungs: Vec<(i64, Vec<Deed>, i64)>) -> Vec<Stmt> {
         let at = self.report.span(&section.at);
         let here = self.vars.own("rung", Type::Dint, at);
@@ -188,20 +188,20 @@ impl<'b> Ladder<'_, 'b> {
         board.deeds
     }
 
-    /// Puts a statement behind what is there.
+    /// Appends a statement.
     pub(super) fn put(&mut self, board: &mut Board, stmt: Stmt) {
         self.left = self.left.saturating_sub(1);
         board.deeds.push(Deed::Do(stmt));
     }
 
-    /// Puts a statement that writes these names: power that reads one of them is stored first.
+    /// Appends a statement that writes these names. Power that reads one of them is stored first.
     pub(super) fn write(&mut self, board: &mut Board, names: &[String], stmt: Stmt) {
         self.keep(board, |used| names.iter().any(|n| used.contains(n)));
         self.put(board, stmt);
     }
 
     fn keep(&mut self, board: &mut Board, touched: impl Fn(&BTreeSet<String>) -> bool) {
-        // What stands further left nothing will read again.
+        // Nothing reads the power further to the left any more.
         for x in board.column.saturating_sub(4)..board.power.len() {
             for y in 0..board.power.first().map_or(0, Vec::len) {
                 let power = board.power.get(x).and_then(|c| c.get(y)).cloned().flatten();
@@ -216,7 +216,7 @@ impl<'b> Ladder<'_, 'b> {
         }
     }
 
-    /// Stores a value in a variable of its own.
+    /// Stores a value in a new variable.
     fn store(&mut self, board: &mut Board, value: Expr) -> Expr {
         let at = value.at.0;
         let variable = self.vars.own("power", Type::Bool, at);
@@ -224,7 +224,7 @@ impl<'b> Ladder<'_, 'b> {
         name(&[&variable], at)
     }
 
-    /// Passes power on; large expressions are stored.
+    /// Passes power on; a large expression is stored.
     pub(super) fn pass(&mut self, board: &mut Board, x: usize, y: usize, value: Expr) {
         let value = if operands(&value) > LONGEST_POWER { self.store(board, value) } else { value };
         board.give(x, y, value);
@@ -233,8 +233,10 @@ impl<'b> Ladder<'_, 'b> {
     fn element(&mut self, board: &mut Board, cell: &Cell, x: usize, y: usize) {
         let at = self.report.span(&cell.at);
         if cell.index.is_some() && !matches!(cell.kind, 0..=2 | 9 | 50..=53 | 99) {
-            let what =
-                format!("an element of this kind on a variable by index, from {} on", vars::title(cell.var));
+            let what = format!(
+                "an element of this kind on a variable by index, from {} on",
+                variables::title(cell.var)
+            );
             self.report.say(&codes::NOT_CARRIED, &cell.at, what);
             return;
         }
@@ -274,7 +276,7 @@ impl<'b> Ladder<'_, 'b> {
         }
     }
 
-    /// The state of a contact; those for edges keep the value of the run before.
+    /// The state of a contact. An edge contact keeps the value of the previous run.
     fn contact(&mut self, board: &mut Board, cell: &Cell, at: Span) -> Expr {
         let value = match cell.index {
             Some(index) => self.vars.indexed(cell.var, index, &cell.at, self.report),
@@ -290,7 +292,7 @@ impl<'b> Ladder<'_, 'b> {
                 };
                 self.edges.insert(cell.at.start, old.clone());
                 let edge = self.vars.own("edge", Type::Bool, at);
-                let changed = vars::changed(value.clone(), &old, kind == 3, at);
+                let changed = variables::changed(value.clone(), &old, kind == 3, at);
                 self.put(board, assign(name(&[&edge], at), changed, at));
                 self.put(board, assign(name(&[&old], at), value, at));
                 name(&[&edge], at)
@@ -345,12 +347,12 @@ impl<'b> Ladder<'_, 'b> {
         }
     }
 
-    /// A sub-routine is written out where it is called.
+    /// Copies a sub-routine to the place of its call.
     fn call(&mut self, board: &mut Board, cell: &Cell, x: usize, y: usize) {
         let at = self.report.span(&cell.at);
         let left = board.left(x, y, at);
         let number = i64::from(cell.var.1);
-        let found = self.plan.sections.iter().find(|s| s.routine == number && !s.sequential);
+        let found = self.plan.sections.iter().find(|s| s.routine == Some(number) && !s.sequential);
         let Some(section) = found else {
             let what = format!("there is no sub-routine {number}; the call does nothing");
             self.report.say(&codes::LEFT_OUT, &cell.at, what);
@@ -364,7 +366,7 @@ impl<'b> Ladder<'_, 'b> {
         self.open.push(number);
         let body = self.section(section);
         self.open.pop();
-        // It may write anything.
+        // A sub-routine may write any variable.
         self.keep(board, |used| used.iter().any(|n| !n.starts_with("power_")));
         self.put(board, when(left, body, Vec::new(), at));
     }

@@ -1,39 +1,39 @@
-//! ClassicLadder's projects, read into a [`Document`].
+//! Reads ClassicLadder's projects into a [`Document`].
 //!
 //! # Where this sits
 //!
 //! ```text
-//! bytes -> read (sections of the file) -> plan (steps, rungs, expressions)
-//!       -> vars, arith, ladder, blocks -> build (Document)
+//! bytes -> read (sections of the file) -> project (steps, rungs, expressions)
+//!       -> variables, arith, ladder, blocks -> build (Document)
 //! ```
 //!
-//! - `read` cuts a project (`.clp`, `.clprj`), or its `sequential.csv` alone,
-//!   into the little files it is made of, each line with its place.
-//! - `plan` is what these lines say, still with the file's own numbers.
-//! - `vars` finds what a variable `type/number` is, and declares what is used;
-//!   `tables` are variables by index.
-//! - `arith` reads the expressions of compare and operate boxes.
-//! - `ladder` turns rungs into Structured Text in ClassicLadder's own order,
-//!   column by column; `blocks` are its timers, monostables and counters.
+//! - `read` splits a project (`.clp`, `.clprj`), or its `sequential.csv` alone, into the small
+//!   files it consists of, each line with its place.
+//! - `project` holds the content of these lines, with the numbers of the file.
+//! - `variables` finds the meaning of a variable `type/number` and declares the variables that are
+//!   used; `tables` handles variables with an index.
+//! - `arith` parses the expressions of compare and operate boxes.
+//! - `ladder` translates rungs into Structured Text in ClassicLadder's execution order, column by
+//!   column; `blocks` translates timers, monostables and counters.
 //!
 //! # What must hold
 //!
-//! A chart runs as in ClassicLadder: transitions one after the other in the order
-//! of their numbers, again until nothing changes, 50 rounds at most.
+//! A chart runs as in ClassicLadder: transitions one after the other in the order of their numbers,
+//! repeated until nothing changes, at most 50 rounds.
 
 mod arith;
 mod blocks;
 mod build;
 mod ladder;
-mod plan;
+mod project;
 mod read;
 mod tables;
-mod vars;
+mod variables;
 
 use g7_model::{Document, FileId, Problem};
 
-use crate::report::Report;
-use crate::xml;
+use g7_iec::report::Report;
+use g7_iec::xml;
 
 pub(crate) use read::fits;
 
@@ -43,7 +43,7 @@ pub(crate) fn import(bytes: &[u8], file: FileId) -> (Document, Vec<Problem>) {
     let document = xml::text(bytes, &mut report)
         .and_then(|text| read::parts(text, &mut report))
         .map(|parts| {
-            let plan = plan::plan(&parts, &mut report);
+            let plan = project::plan(&parts, &mut report);
             build::document(&plan, &mut report)
         })
         .unwrap_or_default();

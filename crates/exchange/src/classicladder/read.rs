@@ -1,14 +1,14 @@
-//! The little files that a project is made of, line by line.
+//! The small files that a project consists of, line by line.
 
 use std::ops::Range;
 
 use g7_model::codes;
 
-use crate::report::Report;
+use g7_iec::report::Report;
 
-/// First line of a project.
+/// The first line of a project.
 const MARK: &str = "_FILES_CLASSICLADDER";
-/// Lines of a project: each costs memory beyond its text.
+/// The most lines of a project; each costs memory beyond its text.
 const MOST_LINES: usize = 200_000;
 
 /// A line without its end.
@@ -18,25 +18,25 @@ pub(super) struct Line<'a> {
     pub(super) at: Range<usize>,
 }
 
-/// One of the little files.
+/// One of the small files.
 #[derive(Clone, Debug)]
 pub(super) struct Part<'a> {
-    /// `sequential.csv`.
+    /// Its name, for example `sequential.csv`.
     pub(super) name: &'a str,
-    /// Where it begins.
+    /// The place where it begins.
     pub(super) at: Range<usize>,
-    /// Its lines, empty ones and remarks too: rungs and old lists count lines.
+    /// Its lines, including empty ones and remarks, because rungs and old lists count lines.
     pub(super) lines: Vec<Line<'a>>,
 }
 
-/// Whether the file is a project, or one of its charts alone.
-pub(crate) fn fits(bytes: &[u8]) -> bool {
+/// True if the file is a project or one of its charts alone.
+pub(crate) fn fits(_: &str, _: Option<&str>, bytes: &[u8]) -> bool {
     let head = bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes);
     let head = head.get(..head.len().min(4096)).unwrap_or(head);
     head.starts_with(MARK.as_bytes()) || sequential(&String::from_utf8_lossy(head))
 }
 
-/// Whether a text is a `sequential.csv`: remarks, then a page, step or transition by number.
+/// True if a text is a `sequential.csv`: remarks, then a page, step or transition with a number.
 fn sequential(text: &str) -> bool {
     let mut lines = text.lines().filter(|l| !l.starts_with(';') && !l.starts_with("#VER=")).take(1);
     let first = lines.next().unwrap_or("");
@@ -47,7 +47,7 @@ fn sequential(text: &str) -> bool {
     })
 }
 
-/// Cuts a project into its files.
+/// Splits a project into its files.
 pub(super) fn parts<'a>(text: &'a str, report: &mut Report) -> Option<Vec<Part<'a>>> {
     let lines = lines(text, report)?;
     let first = lines.first().map_or("", |l| l.text);
@@ -107,17 +107,17 @@ fn lines<'a>(text: &'a str, report: &mut Report) -> Option<Vec<Line<'a>>> {
 }
 
 impl<'a> Line<'a> {
-    /// The numbers of a line, each separated by a comma; nothing where one is none.
+    /// The numbers of a line, separated by commas; None if one of them is not a number.
     pub(super) fn numbers(&self, from: usize) -> Option<Vec<i64>> {
         self.text.get(from..)?.split(',').map(|n| n.trim().parse().ok()).collect()
     }
 
-    /// What stands behind `#NAME=`.
+    /// The text behind `#NAME=`.
     pub(super) fn value(&self, name: &str) -> Option<&'a str> {
         self.text.strip_prefix('#')?.strip_prefix(name)?.strip_prefix('=')
     }
 
-    /// Whether it says nothing: empty, or a remark.
+    /// True if the line is empty or a remark.
     pub(super) fn is_remark(&self) -> bool {
         self.text.trim().is_empty() || self.text.starts_with(';')
     }

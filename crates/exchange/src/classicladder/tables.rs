@@ -1,19 +1,19 @@
-//! Variables by index: `%W11[%W67]`. There are no arrays; a function chooses among
-//! all variables of a kind, and an assignment stands in a `CASE` over them.
+//! Variables with an index: `%W11[%W67]`. There are no arrays, so a function selects among all
+//! variables of a kind, and an assignment becomes a `CASE` over them.
 
 use std::ops::Range;
 
 use g7_model::{BinaryOp, CaseArm, Expr, Function, Name, Param, Span, Stmt, StmtKind, Type};
 
-use super::plan::Key;
-use super::vars::{Vars, kind, shown};
-use crate::nodes::{self, binary, call, int, name};
-use crate::report::Report;
+use super::project::Key;
+use super::variables::{Vars, kind, shown};
+use g7_iec::nodes::{self, binary, call, int, name};
+use g7_iec::report::Report;
 
-/// Variables of a kind that an index can reach, at most.
+/// The most variables of a kind that an index can reach.
 const LONGEST_TABLE: u32 = 1000;
 
-/// What the project calls the number of variables of a kind, and ClassicLadder's own.
+/// The project's name for the number of variables of a kind, and ClassicLadder's default.
 fn table_size(kind: u16) -> Option<(&'static str, u32)> {
     Some(match kind {
         kind::BIT => ("BITS", 500),
@@ -26,7 +26,7 @@ fn table_size(kind: u16) -> Option<(&'static str, u32)> {
     })
 }
 
-/// The function that chooses a variable of a kind.
+/// The name of the function that selects a variable of a kind.
 pub(super) fn table_name(kind: u16) -> Option<String> {
     table_size(kind)?;
     Some(format!("AT_{}", shown((kind, 0))?.0))
@@ -40,14 +40,14 @@ impl Vars<'_> {
         Some((0..size).map(|n| self.declare((kind, n), at, report)).collect())
     }
 
-    /// `%W11[%W67]`: which one of its kind.
+    /// The index of `%W11[%W67]` within its kind.
     fn place(&mut self, key: Key, index: Key, at: &Range<usize>, report: &mut Report) -> Expr {
         let span = report.span(at);
         let index = self.number(index, at, report);
         if key.1 == 0 { index } else { binary(BinaryOp::Add, int(key.1.into(), span), index, span) }
     }
 
-    /// The value of a variable by index: a function chooses among all of its kind.
+    /// The value of a variable with an index, selected by a function.
     pub(super) fn indexed(&mut self, key: Key, index: Key, at: &Range<usize>, report: &mut Report) -> Expr {
         let Some(table) = table_name(key.0) else { return self.strange(key, at, report) };
         if self.tables.insert(key.0) {
@@ -57,7 +57,7 @@ impl Vars<'_> {
         call(&table, vec![place], report.span(at))
     }
 
-    /// The assignment to a variable by index, with the names that it may write.
+    /// The assignment to a variable with an index, with the names that it may write.
     pub(super) fn indexed_target(
         &mut self,
         key: Key,
@@ -83,7 +83,7 @@ impl Vars<'_> {
         Some((stmt, names))
     }
 
-    /// The functions that choose a variable by its number.
+    /// The functions that select a variable by its number.
     pub(super) fn tables(&self, at: Span) -> Vec<Function> {
         self.tables.iter().filter_map(|kind| self.table(*kind, at)).collect()
     }

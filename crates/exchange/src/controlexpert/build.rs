@@ -1,29 +1,30 @@
-//! From sheets and declarations to the document.
+//! Builds the document from sheets and declarations.
 
 use std::collections::HashMap;
 
 use g7_model::{
     Action, Body, Chart, ChartItem, ChartKind, Document, Expr, ExprKind, Item, Layout, Name, NamedAction,
-    PlaceAt, Placed, Profile, ProfileName, Qualifier, Section, Span, Step, StepKind, Stmt, Target, codes,
+    Nanos, PlaceAt, Placed, Profile, ProfileName, Qualifier, Section, Span, Step, StepKind, Stmt, Target,
+    codes,
 };
 use roxmltree::Node;
 
-use super::data::{self, members};
+use super::declarations::{self, members};
+use super::dialect::Words;
 use super::grid;
 use super::read::{ActionNode, Condition, Sheet, StepNode, StepSort, TransitionNode, kid, kids};
-use super::words::Words;
-use crate::iec;
-use crate::nodes::{self, Taken, assign, name};
-use crate::outside;
-use crate::report::Report;
-use crate::walk;
-use crate::xml::attr::{self, Text};
+use crate::undeclared;
+use g7_iec::nodes::{self, Taken, assign, name};
+use g7_iec::report::Report;
+use g7_iec::xml::attr::{self, Text};
+use g7_iec::{il, st};
+use g7_model::visit_mut;
 
-/// Hundredths of the drawing's unit between two columns and two rows.
+/// The distance between two columns and between two rows, in hundredths of the drawing's unit.
 const COLUMN: i32 = 1300;
 const ROW: i32 = 600;
 
-/// The charts inside of macro-steps, by the names of these in capitals.
+/// The charts within macro-steps, by the names of the macro-steps in upper case.
 type Inner = HashMap<String, String>;
 
 /// The document of a file.
@@ -32,7 +33,7 @@ pub(super) fn document<'a>(root: Node<'a, 'a>, sheets: &[Sheet<'a>], report: &mu
     let mut items =
         vec![Item::Profile(Profile { name: ProfileName::Unity, switches: Vec::new(), at: at.into() })];
     items.extend(cycle(root, report));
-    let data = data::data(root, report);
+    let data = declarations::data(root, report);
     items.extend(data.vars.iter().cloned().map(Item::Var));
     let (pre, post) = programs(root, report);
     items.extend((!pre.is_empty()).then(|| Item::Pre(Body::St(nodes::block(pre, at)), at.into())));
@@ -49,13 +50,13 @@ pub(super) fn document<'a>(root: Node<'a, 'a>, sheets: &[Sheet<'a>], report: &mu
     items.extend((!post.is_empty()).then(|| Item::Post(Body::St(nodes::block(post, at)), at.into())));
     items.extend(layouts);
     let mut document = Document { items, notes: report.take_notes() };
-    walk::document(&mut document, &mut Words);
+    visit_mut::document(&mut document, &mut Words);
     let more = members(&document, &data.open, report);
     document.items.splice(1..1, more.into_iter().map(Item::Var));
-    iec::settle(&mut document);
-    outside::declare(&mut document, report);
-    iec::settle(&mut document);
-    outside::open(&mut document, report);
+    st::settle(&mut document);
+    undeclared::declare(&mut document, report);
+    st::settle(&mut document);
+    undeclared::open(&mut document, report);
     document
 }
 
@@ -68,7 +69,7 @@ fn cycle(root: Node, report: &Report) -> Option<Item> {
     }
     let ms: i64 = task.attribute("valueType")?.trim().parse().ok()?;
     let at = report.span(&attr::head(task));
-    (1..=3_600_000).contains(&ms).then(|| Item::Cycle(ms * 1_000_000, at.into()))
+    (1..=3_600_000).contains(&ms).then(|| Item::Cycle(Nanos::from_millis(ms), at.into()))
 }
 
 fn chart_name(sheet: &Sheet, taken: &mut Taken, report: &mut Report) -> String {
@@ -81,7 +82,7 @@ fn chart_name(sheet: &Sheet, taken: &mut Taken, report: &mut Report) -> String {
     title
 }
 
-/// Sections of text around the charts: those before the first chart, and the others.
+/// The text sections around the charts: those before the first chart, and the others.
 fn programs(root: Node, report: &mut Report) -> (Vec<Stmt>, Vec<Stmt>) {
     let order = |node: Node| -> i64 {
         let ident = node.children().find(|n| n.has_tag_name("identProgram"));
@@ -101,7 +102,7 @@ fn programs(root: Node, report: &mut Report) -> (Vec<Stmt>, Vec<Stmt>) {
     (pre, post)
 }
 
-/// The statements of a section, whatever its language.
+/// The statements of a section in any language.
 fn source(section: Node, report: &mut Report) -> Vec<Stmt> {
     let mut statements = Vec::new();
     for node in section.children().filter(Node::is_element) {
@@ -111,7 +112,7 @@ fn source(section: Node, report: &mut Report) -> Vec<Stmt> {
             "ILSource" => {
                 let text = text();
                 let place = |part: std::ops::Range<usize>| text.place(&part);
-                statements.extend(iec::il_body(&text.text, &place, report));
+                statements.extend(il::statements(&text.text, &place, report));
             }
             tag @ ("LDSource" | "FBDSource" | "LL984Source") => {
                 let what = format!("a section in a drawn language (`{tag}`) is left out");
@@ -125,12 +126,12 @@ fn source(section: Node, report: &mut Report) -> Vec<Stmt> {
 
 fn structured(text: &Text, report: &mut Report) -> Vec<Stmt> {
     let place = |part: std::ops::Range<usize>| text.place(&part);
-    iec::statements(&text.text, &place, report)
+    st::statements(&text.text, &place, report)
 }
 
 fn expression(text: &Text, report: &mut Report) -> Expr {
     let place = |part: std::ops::Range<usize>| text.place(&part);
-    iec::expression(&text.text, &place, report)
+    st::expression(&text.text, &place, report)
 }
 
 fn chart(sheet: &Sheet, title: &str, inner: &Inner, report: &mut Report) -> (Chart, Layout) {
@@ -146,7 +147,7 @@ fn chart(sheet: &Sheet, title: &str, inner: &Inner, report: &mut Report) -> (Cha
         items.push(ChartItem::Step(step));
     }
     let ends = grid::ends(sheet, report);
-    // From left to right: the order in which branches are asked.
+    // Branches are evaluated from left to right.
     let mut order: Vec<usize> = (0..sheet.transitions.len()).collect();
     order.sort_by_key(|i| sheet.transitions.get(*i).map(|t| (t.spot.1, t.spot.0)));
     for (number, index) in (0u32..).zip(order) {
@@ -177,7 +178,7 @@ fn chart(sheet: &Sheet, title: &str, inner: &Inner, report: &mut Report) -> (Cha
     (chart, layout)
 }
 
-/// A name without what no name can have.
+/// A name without the characters that a name cannot have.
 fn clean(text: &str) -> String {
     nodes::line(&text.replace('`', "'"))
 }
@@ -219,7 +220,7 @@ fn action(node: &ActionNode, report: &mut Report) -> Option<Action> {
     let at = report.span(&node.at);
     let qualifier = match node.qualifier.as_str() {
         "NONE" | "" => Some(Qualifier::N),
-        word => Qualifier::ALL.into_iter().find(|q| q.name() == word),
+        word => Qualifier::named(word),
     };
     let Some(qualifier) = qualifier else {
         let what = format!("the qualifier `{}` is not known", nodes::line(&node.qualifier));
@@ -284,7 +285,7 @@ fn section<'a>(node: Node<'a, 'a>, report: &mut Report) -> Option<ChartItem> {
     let text = kid(node, "STSource").map(attr::content);
     let il = kids(node, "ILSource").next().map(attr::content);
     let (statements, short) = match (text, il) {
-        // A section may be nothing but the expression.
+        // A section may consist of only the expression.
         (Some(text), _) if !text.text.contains(":=") => {
             let value = expression(&text, report);
             (vec![assign(name(&[&title.text], at), value, at)], true)
@@ -292,7 +293,7 @@ fn section<'a>(node: Node<'a, 'a>, report: &mut Report) -> Option<ChartItem> {
         (Some(text), _) => (structured(&text, report), false),
         (None, Some(text)) => {
             let place = |part: std::ops::Range<usize>| text.place(&part);
-            let value = iec::il_expression(&text.text, &place, report);
+            let value = il::expression(&text.text, &place, report);
             (vec![assign(name(&[&title.text], at), value, at)], true)
         }
         (None, None) => {

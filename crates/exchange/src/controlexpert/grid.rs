@@ -1,9 +1,9 @@
-//! Which objects touch.
+//! Finds out which objects touch.
 //!
-//! A chart is drawn on a grid, each object in one cell. A line leads from an
-//! object to the one in the cell below. The beginning of branches stands in the
-//! row of what is below it, over all columns of the branches, and their end in
-//! the row of what is above it; its own one line is in the column of its stem.
+//! A chart is drawn on a grid with one object per cell. A line leads from an object to the object
+//! in the cell below. The bar that begins branches is in the row of the objects below it and spans
+//! the columns of the branches; the bar that ends them is in the row of the objects above it. The
+//! single line of a bar is in the column of its stem.
 
 use std::collections::{BTreeMap, HashMap};
 use std::ops::Range;
@@ -12,22 +12,22 @@ use g7_model::codes;
 
 use super::read::{BarNode, Sheet, Spot};
 use crate::flow::{Ends, Flow, Node};
-use crate::report::Report;
+use g7_iec::report::Report;
 
-/// Cells looked at for one chart.
+/// The most cells inspected for one chart.
 const MOST_CELLS: usize = 1_000_000;
 
-/// Something in a column.
+/// An object in a column.
 #[derive(Clone, Copy, Debug)]
 struct Item {
     node: Node,
     row: i32,
-    /// May be entered from above, left below, in this column.
+    /// True if it can be entered from above, false if it can be left below, in this column.
     above: bool,
     below: bool,
 }
 
-/// What stands in each column, with row and level in it, from the top down.
+/// The objects of each column from top to bottom, with row and level.
 type Columns = BTreeMap<i32, Vec<((i32, i32), Item)>>;
 
 /// The ends of each transition of a chart.
@@ -56,7 +56,7 @@ pub(super) fn ends(sheet: &Sheet, report: &mut Report) -> Vec<Ends> {
     flow.ends(&places, report)
 }
 
-/// What stands in each column, from the top down.
+/// The objects of each column, from top to bottom.
 fn columns(sheet: &Sheet, spots: &Spots, report: &mut Report) -> Columns {
     let mut columns = Columns::new();
     let mut left = MOST_CELLS;
@@ -100,9 +100,8 @@ fn columns(sheet: &Sheet, spots: &Spots, report: &mut Report) -> Columns {
     columns
 }
 
-/// Whether a bar stands above what is in its row (0) or below it (2): what its
-/// own line leads to, a transition of parallel branches or a step of
-/// alternative ones, may stand in the same row.
+/// The level of a bar: above the objects of its row (0) or below them (2). The object on its single
+/// line (a transition for parallel branches, a step for alternative ones) may be in the same row.
 fn level(spots: &Spots, bar: &BarNode) -> i32 {
     let stem = (bar.spot.0.saturating_add(bar.stem), bar.spot.1);
     let own =
@@ -110,7 +109,7 @@ fn level(spots: &Spots, bar: &BarNode) -> i32 {
     if bar.opens == own { 2 } else { 0 }
 }
 
-/// A jump leads from what is above it to its step.
+/// A jump leads from the object above it to its step.
 fn jumps(sheet: &Sheet, spots: &Spots, columns: &Columns, flow: &mut Flow, report: &mut Report) {
     for jump in &sheet.jumps {
         let to = spots.names.get(&jump.to.to_uppercase()).copied();
@@ -124,14 +123,14 @@ fn jumps(sheet: &Sheet, spots: &Spots, columns: &Columns, flow: &mut Flow, repor
             (Some((_, item)), Some(step)) => flow.line(item.node, Node::Step(step), &jump.at, report),
             (None, Some(_)) => report.say(&codes::OPEN_LINK, &jump.at, "a jump with nothing above it"),
             (_, None) => {
-                let what = format!("a jump to `{}`, a step that is not there", crate::nodes::line(&jump.to));
+                let what = format!("a jump to `{}`, a step that is not there", g7_iec::nodes::line(&jump.to));
                 report.say(&codes::BAD_LINK, &jump.at, what);
             }
         }
     }
 }
 
-/// What stands where, the first of several in a cell, and steps by name in capitals.
+/// The objects by cell (the first one if several share a cell), and steps by name in upper case.
 struct Spots {
     steps: HashMap<Spot, usize>,
     transitions: HashMap<Spot, usize>,
@@ -141,7 +140,7 @@ struct Spots {
 
 impl Spots {
     fn of(sheet: &Sheet) -> Spots {
-        // From the last to the first: the first one stays.
+        // From the last to the first, so that the first one stays.
         let steps = || sheet.steps.iter().enumerate().rev();
         Spots {
             steps: steps().map(|(i, s)| (s.spot, i)).collect(),

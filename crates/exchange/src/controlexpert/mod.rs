@@ -1,34 +1,34 @@
-//! Files of Control Expert and Unity Pro (`.XSF` of one chart, `.XEF` and `.ZEF`'s
-//! inside of an application), read into a [`Document`].
+//! Reads files of Control Expert and Unity Pro into a [`Document`]: `.XSF` with one chart, `.XEF`
+//! or the content of `.ZEF` with an application.
 //!
 //! # Where this sits
 //!
 //! ```text
-//! bytes -> xml -> read (sheets: what stands where) -> grid (lines) -> build (Document)
-//!              -> data (variables, structures)     ----------------^
+//! bytes -> xml -> read (sheets with their objects)   -> grid (lines) -> build (Document)
+//!              -> declarations (variables, structures) --------------^
 //! ```
 //!
 //! - `read` lists the objects of each chart with their places on the grid.
-//! - `grid` finds which of them touch: the file has no other connections but
-//!   jumps and drawn links.
-//! - `data` reads the declarations; a structure is one variable for each member.
-//! - `build` writes charts, named actions and transition sections; their
-//!   Structured Text is read by `iec`.
+//! - `grid` finds out which of them touch. The file has no other connections except jumps and drawn
+//!   links.
+//! - `declarations` reads variables; a structure becomes one variable for each member.
+//! - `build` makes charts, named actions and transition sections. Their Structured Text is read by
+//!   `iec`; `dialect` rewrites the words that only Control Expert has.
 
 mod build;
-mod data;
+mod declarations;
+mod dialect;
 mod grid;
 mod read;
-mod words;
 
 use g7_model::{Document, FileId, Problem, codes};
 
-use crate::report::Report;
-use crate::xml;
+use g7_iec::report::Report;
+use g7_iec::xml;
 
-/// Whether an element of this name is the root of such a file.
-pub(crate) fn is_root(name: &str) -> bool {
-    matches!(name, "SFCExchangeFile" | "FEFExchangeFile" | "FEXExchangeFile" | "PRGExchangeFile")
+/// True if the first element is the root of such a file.
+pub(crate) fn fits(_: &str, root: Option<&str>, _: &[u8]) -> bool {
+    matches!(root, Some("SFCExchangeFile" | "FEFExchangeFile" | "FEXExchangeFile" | "PRGExchangeFile"))
 }
 
 /// Reads a chart, or an application with charts.

@@ -5,14 +5,14 @@ use std::ops::Range;
 use g7_model::codes;
 use roxmltree::Node;
 
-use crate::nodes;
-use crate::report::Report;
-use crate::xml::attr::{self, Text};
+use g7_iec::nodes;
+use g7_iec::report::Report;
+use g7_iec::xml::attr::{self, Text};
 
-/// A place of the grid.
+/// A cell of the grid.
 pub(super) type Spot = (i32, i32);
 
-/// What sort of step.
+/// The kind of a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum StepSort {
     Plain,
@@ -26,7 +26,7 @@ pub(super) enum StepSort {
 #[derive(Debug)]
 pub(super) struct ActionNode {
     pub(super) qualifier: String,
-    /// The variable, or the action section where `section`.
+    /// The name of the variable, or of the action section if `section`.
     pub(super) name: Text,
     pub(super) section: bool,
     pub(super) time: Text,
@@ -45,7 +45,7 @@ pub(super) struct StepNode {
     pub(super) at: Range<usize>,
 }
 
-/// What a transition waits for.
+/// The condition of a transition.
 #[derive(Debug)]
 pub(super) enum Condition {
     /// A variable or a constant, as text.
@@ -72,7 +72,8 @@ pub(super) struct BarNode {
     pub(super) parallel: bool,
     pub(super) spot: Spot,
     pub(super) width: i32,
-    /// The column of its one line above (below, where it closes), from its left end.
+    /// The column of its single line, counted from its left end. The line is above the bar, or
+    /// below it if the bar ends branches.
     pub(super) stem: i32,
     pub(super) at: Range<usize>,
 }
@@ -97,7 +98,7 @@ pub(super) struct LinkNode {
 #[derive(Debug, Default)]
 pub(super) struct Sheet<'a> {
     pub(super) name: String,
-    /// Inside of a macro-step.
+    /// True within a macro-step.
     pub(super) inner: bool,
     pub(super) steps: Vec<StepNode>,
     pub(super) transitions: Vec<TransitionNode>,
@@ -105,7 +106,7 @@ pub(super) struct Sheet<'a> {
     pub(super) jumps: Vec<JumpNode>,
     pub(super) links: Vec<LinkNode>,
     pub(super) texts: Vec<String>,
-    /// The sections of actions and transitions that stand beside it.
+    /// The sections of actions and transitions that belong to it.
     pub(super) sections: Vec<Node<'a, 'a>>,
     pub(super) at: Range<usize>,
 }
@@ -118,12 +119,12 @@ pub(super) fn kid<'a>(node: Node<'a, 'a>, name: &'static str) -> Option<Node<'a,
     kids(node, name).next()
 }
 
-/// The text of an element as one line.
+/// The text of an element on one line.
 pub(super) fn line(node: Option<Node>) -> String {
     node.map_or_else(String::new, |n| nodes::line(&attr::content(n).text))
 }
 
-/// All charts of a file, macro-steps' insides too.
+/// All charts of a file, including the contents of macro-steps.
 pub(super) fn sheets<'a>(root: Node<'a, 'a>, report: &mut Report) -> Vec<Sheet<'a>> {
     let mut sheets = Vec::new();
     for program in root.descendants().filter(|n| n.has_tag_name("SFCProgram")) {
@@ -181,7 +182,7 @@ fn sheet<'a>(network: Node<'a, 'a>, report: &mut Report) -> Sheet<'a> {
     sheet
 }
 
-/// A number of the grid; drawings are far smaller than the bound.
+/// A coordinate of the grid; real drawings are far smaller than the limit.
 fn number(text: Option<&str>) -> Option<i32> {
     let text = text?.trim();
     let whole = text.split('.').next().unwrap_or(text);

@@ -5,27 +5,22 @@ use g7_model::{
     Action, ActionKind, Expr, ExprKind, Path, Qualifier, Stmt, StmtKind, Target, Type, VarKind, Work,
 };
 
-use super::build::fresh;
 use super::express::Express;
-use super::names::{Meaning, Names};
+use super::limits::MOST_BYTES;
+use super::naming::{Meaning, Names};
 use super::phrase::{self, Deed, Fault, Letter, Statement};
-use super::read::shown;
 use super::sheet::Plan;
-use crate::nodes;
-use crate::report::Report;
-use crate::xml::attr::Text;
+use super::values::initial;
+use g7_iec::nodes;
+use g7_iec::report::{Report, shown};
+use g7_iec::xml::attr::Text;
 
-/// Longest text of one step or transition, in bytes.
-pub(super) const MOST_BYTES: usize = 1 << 16;
-/// Actions and conditions of a file: each costs memory far beyond its text.
-pub(super) const MOST_WORK: usize = 100_000;
-
-/// Reads texts until the file's share is used up.
+/// Reads texts until the limit for the file is reached.
 pub(super) struct Texts<'a> {
     pub(super) plan: &'a Plan,
     pub(super) names: &'a Names,
     pub(super) report: &'a mut Report,
-    /// Actions and conditions that may still be read.
+    /// The number of actions and conditions that may still be read.
     pub(super) left: usize,
 }
 
@@ -62,7 +57,7 @@ impl Texts<'_> {
         }
     }
 
-    /// `v := e` at the beginning of each scan, of a variable that follows an expression.
+    /// For a variable that follows an expression: `v := e` at the beginning of each scan.
     pub(super) fn follow(&mut self, sheet: usize, var: usize, text: &Text) -> Option<Stmt> {
         let ty = self.plan.sheets.get(sheet)?.vars.get(var)?.ty;
         if !self.fits(text) {
@@ -84,7 +79,7 @@ impl Texts<'_> {
         }
     }
 
-    /// What the variables of a called procedure begin with: `P1` actions of its enter step.
+    /// The initial values of a called procedure's variables, as `P1` actions of its enter step.
     pub(super) fn begin(&mut self, inside: usize) -> Vec<Action> {
         let Some(sheet) = self.plan.sheets.get(inside) else { return Vec::new() };
         let (Some(call), Some((caller, _))) = (&sheet.call, sheet.owner) else { return Vec::new() };
@@ -100,7 +95,7 @@ impl Texts<'_> {
             let target = nodes::expr(ExprKind::Path(express.var_path(inside, number, at)), at);
             let value = match value {
                 Some(phrase) => express.value(phrase, var.ty),
-                None => fresh(var, at),
+                None => initial(var, at),
             };
             let work = Work::Single(Box::new(nodes::assign(target, value, at)));
             actions.push(Action { kind: qualified(Qualifier::P1, Target::Work(work), None), at: at.into() });
@@ -112,7 +107,7 @@ impl Texts<'_> {
         Express { plan: self.plan, names: self.names, report: self.report, sheet, home, text }
     }
 
-    /// Whether the text is of a size that anybody writes.
+    /// True if the text is not too long; otherwise reports it.
     fn fits(&mut self, text: &Text) -> bool {
         if text.text.len() > MOST_BYTES {
             let what = format!("a text of {} bytes; at most {MOST_BYTES} are read", text.text.len());
@@ -137,7 +132,7 @@ impl Texts<'_> {
     }
 }
 
-/// One action, or nothing where it has been reported.
+/// One action; None if a problem has been reported.
 fn action(express: &mut Express, statement: &Statement, aborted: Option<&Expr>) -> Option<Action> {
     let at = express.span(&statement.at);
     if statement.letter == Letter::A && aborted.is_none() {
@@ -170,7 +165,7 @@ fn action(express: &mut Express, statement: &Statement, aborted: Option<&Expr>) 
         }
         Deed::Assign { target: (names, place), value } => {
             let Some((path, ty)) = target(express, names, place) else {
-                // Its other mistakes are worth hearing of at once.
+                // Other mistakes in the value are reported as well.
                 express.value(value, Type::Dint);
                 return None;
             };
@@ -180,14 +175,14 @@ fn action(express: &mut Express, statement: &Statement, aborted: Option<&Expr>) 
                 Work::Single(Box::new(Stmt { kind: StmtKind::Assign { target, value }, at: at.into() }));
             match statement.letter {
                 Letter::S => qualified(Qualifier::P1, Target::Work(work), None),
-                // A step that an exception takes off runs `A`, and not `X`.
+                // A step that an exception transition deactivates runs `A` instead of `X`.
                 Letter::X => {
                     let kept = aborted.map(|a| nodes::not(a.clone(), at));
                     qualified(Qualifier::P0, Target::Work(work), kept)
                 }
                 Letter::A => qualified(Qualifier::P0, Target::Work(work), aborted.cloned()),
                 Letter::P => ActionKind::EachScan { work, condition: None },
-                // `N v = e` is none of JGrafchart's forms.
+                // `N v = e` is not a form of JGrafchart.
                 Letter::N => {
                     let what = "`N` takes the name of an output only; `S`, `P` and `X` assign";
                     express.report.say(&codes::BAD_TEXT, &express.text.place(&statement.at), what);

@@ -1,29 +1,27 @@
-//! From workspaces to the document.
+//! Builds the document from workspaces.
 
 use g7_model::codes;
 use g7_model::{
-    Action, ActionKind, Body, Chart, ChartItem, ChartKind, Document, Expr, ExprKind, Item, Layout, Literal,
-    Name, Order, PlaceAt, Placed, Profile, ProfileName, Span, Step, StepKind, Transition, Type, UnaryOp,
-    VarDecl, VarKind,
+    Action, ActionKind, Body, Chart, ChartItem, ChartKind, Document, Expr, Item, Layout, Name, Nanos, Order,
+    PlaceAt, Placed, Profile, ProfileName, Span, Step, StepKind, Transition, Type, VarDecl, VarKind,
 };
 
-use super::actions::{MOST_WORK, Texts};
-use super::express::written;
+use super::actions::Texts;
 use super::guards::Guards;
+use super::limits::MOST_WORK;
 use super::links::{self, Ends};
-use super::names::{self, Names, writable};
-use super::read::name_place;
-use super::sheet::{Plan, Sheet, SheetKind, StepNode, StepSort, Value, Var};
-use crate::nodes;
-use crate::report::Report;
+use super::naming::{self, Names, writable};
+use super::sheet::{Plan, Sheet, SheetKind, StepNode, StepSort, Var, name_place};
+use super::values::{constant_zero, literal};
+use g7_iec::nodes;
+use g7_iec::report::Report;
 
-/// JGrafchart's own default, in milliseconds.
+/// JGrafchart's default time between two scans, in milliseconds.
 const DEFAULT_SCAN: i64 = 40;
-/// Hundredths of the drawing's unit in one of JGrafchart's pixels: its steps are
-/// some 120 apart, ours 13 units.
+/// Hundredths of the drawing's unit per pixel of JGrafchart. Its steps are about 120 pixels apart,
+/// ours 13 units.
 const PER_PIXEL: i32 = 10;
-const NS_PER_MS: i64 = 1_000_000;
-/// Longest time between two scans of a workspace, in milliseconds: a day.
+/// The longest time between two scans of a workspace, in milliseconds: a day.
 const MOST_PACE: i64 = 86_400_000;
 
 /// The document of a file.
@@ -32,11 +30,11 @@ pub(super) fn document(plan: &Plan, report: &mut Report) -> Document {
         return Document { items: Vec::new(), notes: report.take_notes() };
     }
     let at = report.span(&plan.at);
-    let names = names::give(plan, report);
+    let names = naming::give(plan, report);
     let scan = scan(plan, report);
     let mut items = vec![
         Item::Profile(Profile { name: ProfileName::Jgrafchart, switches: Vec::new(), at: at.into() }),
-        Item::Cycle(scan * NS_PER_MS, at.into()),
+        Item::Cycle(Nanos::from_millis(scan), at.into()),
     ];
     for (index, sheet) in plan.sheets.iter().enumerate() {
         let of_file = |(n, _): &(usize, &Var)| names.is_of_file(index, *n);
@@ -108,13 +106,13 @@ impl Builder<'_> {
             kind: if self.is_expansion(index) { ChartKind::Expansion } else { ChartKind::Chart },
             name: Name::new(self.names.chart(index), self.report.span(&name_place(&sheet.name, &sheet.at))),
             comment: None,
-            every: (!self.is_expansion(index) && pace != self.scan).then_some(pace * NS_PER_MS),
+            every: (!self.is_expansion(index) && pace != self.scan).then_some(Nanos::from_millis(pace)),
             items,
             at: at.into(),
         })
     }
 
-    /// Whether a workspace is the expansion of a macro-step, and no chart by itself.
+    /// True if a workspace is the expansion of a macro-step and not a chart of its own.
     fn is_expansion(&self, index: usize) -> bool {
         let inside = self.plan.sheets.get(index).is_some_and(|s| s.kind == SheetKind::Macro);
         inside && !self.guards.enclosed.get(index).copied().unwrap_or(false)
@@ -127,15 +125,15 @@ impl Builder<'_> {
         steps.iter().filter_map(inside).collect()
     }
 
-    /// The variable that tells that an exception takes a workspace.
+    /// The variable that tells that an exception transition deactivates a workspace.
     fn flag(&self, inside: usize) -> Option<VarDecl> {
         let name = self.guards.flag.get(inside)?.as_ref()?;
         let at = self.report.span(&self.plan.sheets.get(inside)?.at);
         Some(nodes::variable(VarKind::Var, name, Type::Bool, at))
     }
 
-    /// What is worked out at the beginning of a scan: variables that follow an
-    /// expression, then which macro-steps an exception takes.
+    /// The body at the beginning of a scan: it computes variables that follow an expression, then
+    /// the flags of macro-steps that an exception transition deactivates.
     fn beginning(&mut self, index: usize, conditions: &[Expr]) -> Option<ChartItem> {
         let sheet = self.plan.sheets.get(index)?;
         let at = self.report.span(&sheet.at);
@@ -161,7 +159,7 @@ impl Builder<'_> {
         matches!(&body, Body::St(b) if !b.statements.is_empty()).then(|| ChartItem::Pre(body, at.into()))
     }
 
-    /// Milliseconds between two scans of a workspace: those of the top one around it.
+    /// The milliseconds between two scans of a workspace: those of the top workspace around it.
     fn pace(&self, sheet: &Sheet) -> i64 {
         let mut top = sheet;
         let mut cycle = sheet.cycle;
@@ -172,7 +170,7 @@ impl Builder<'_> {
         top.speed.unwrap_or(DEFAULT_SCAN).saturating_mul(cycle).min(MOST_PACE)
     }
 
-    /// What each step is; enter and exit steps have their place in macro-steps only.
+    /// The kind of each step. Enter and exit steps are allowed only in macro-steps.
     fn kinds(&mut self, index: usize, sheet: &Sheet) -> Vec<StepKind> {
         let inside = sheet.kind == SheetKind::Macro;
         let expansion = self.is_expansion(index);
@@ -262,17 +260,17 @@ impl Builder<'_> {
         }
     }
 
-    /// The enter step with which a macro-step begins.
+    /// The first enter step of a macro-step.
     fn first_enter(&self, index: usize) -> Option<usize> {
         self.plan.sheets.get(index)?.steps.iter().position(|s| s.sort == StepSort::Enter)
     }
 
-    /// Whether the initial steps of a workspace are active at the start.
+    /// True if the initial steps of a workspace are active at the start.
     fn starts(&self, index: usize) -> bool {
         self.plan.sheets.get(index).is_some_and(|s| s.kind != SheetKind::Macro)
     }
 
-    /// A macro-step that is never left needs no exit step there, but has one here.
+    /// A macro-step that is never left needs no exit step in JGrafchart, but needs one here.
     fn missing_exit(&mut self, index: usize, sheet: &Sheet) -> Option<Step> {
         if !self.is_expansion(index) || sheet.steps.iter().any(|s| s.sort == StepSort::Exit) {
             return None;
@@ -354,7 +352,7 @@ impl Builder<'_> {
     }
 }
 
-/// A text of the drawing without what cannot be written.
+/// A text of the drawing without characters that a comment cannot hold.
 fn comment(text: &str) -> Box<str> {
     let put = |c: char| if c != '\n' && c.is_control() { ' ' } else { c };
     text.trim_end().chars().map(put).collect::<String>().into()
@@ -375,41 +373,4 @@ fn declaration(var: &Var, report: &Report) -> VarDecl {
         comment: None,
         at: at.into(),
     }
-}
-
-/// What a variable of a procedure begins with at each call.
-pub(super) fn fresh(var: &Var, at: Span) -> Expr {
-    literal(var.init.as_ref().unwrap_or(&zero(var.ty)), at)
-}
-
-fn zero(ty: Type) -> Value {
-    match ty {
-        Type::Bool => Value::Bool(false),
-        Type::Dint => Value::Int(0),
-        Type::Lreal => Value::Real(0.0),
-        _ => Value::Str(String::new()),
-    }
-}
-
-/// A constant has a value in any case.
-fn constant_zero(var: &Var, at: Span) -> Option<Expr> {
-    if var.kind != VarKind::Const {
-        return None;
-    }
-    Some(literal(&zero(var.ty), at))
-}
-
-/// A value as it would be written: a sign stands before the number.
-fn literal(value: &Value, at: Span) -> Expr {
-    let (literal, negative) = match value {
-        Value::Bool(b) => (Literal::Bool(*b), false),
-        Value::Int(n) => (Literal::Int(i128::from(*n).abs(), None), *n < 0),
-        Value::Real(r) => (Literal::Real(written(r.abs()).into(), None), *r < 0.0),
-        Value::Str(s) => (Literal::Str(s.as_str().into()), false),
-    };
-    let expr = Expr { kind: ExprKind::Literal(literal), at: at.into() };
-    if !negative {
-        return expr;
-    }
-    Expr { kind: ExprKind::Unary(UnaryOp::Neg, Box::new(expr)), at: at.into() }
 }

@@ -1,69 +1,23 @@
-//! Procedures: each step that calls one has a copy of it, as JGrafchart makes one
-//! whenever the step is activated.
+//! Procedures: each step that calls a procedure gets a copy of it, as JGrafchart makes one whenever
+//! the step is activated.
 //!
-//! What comes of it is a macro-step whose expansion is the copy. Its variables begin
-//! anew with each call, with the values of the parameters; a parameter by reference
-//! is another name for a variable of the caller. A procedure that calls itself, or
-//! one that a text works out, is not carried over.
-
-use std::ops::Range;
+//! The step becomes a macro-step whose expansion is the copy. Its variables are reset at each call
+//! to the values of the parameters. A parameter by reference is another name for a variable of the
+//! caller. A procedure that calls itself, and a procedure whose name is computed by a text, are not
+//! carried over.
 
 use g7_model::codes;
 use roxmltree::Node as Xml;
 
-use super::actions::MOST_BYTES;
+use super::limits::MOST_BYTES;
 use super::phrase::{self, PhraseKind};
-use super::read::{Reader, shown};
+use super::read::{Caller, Procedure, Reader};
 use super::sheet::{Call, Plan, Sheet, SheetKind, StepSort};
-use crate::xml::attr::{self, Text};
+use g7_iec::report::shown;
+use g7_iec::xml::attr::{self, Text};
 
-/// Elements in all copies of procedures.
+/// The most elements in all copies of procedures.
 const MOST_COPIED: usize = 50_000;
-
-/// A procedure of the file.
-pub(super) struct Procedure<'x> {
-    /// The workspace in which it stands.
-    sheet: usize,
-    name: String,
-    xml: Xml<'x, 'x>,
-}
-
-/// A step that calls a procedure.
-pub(super) struct Caller {
-    sheet: usize,
-    step: usize,
-    name: Text,
-    procedure: Text,
-    parameters: Text,
-    at: Range<usize>,
-    /// The procedures in whose copies it stands.
-    chain: Vec<usize>,
-}
-
-impl<'x> Reader<'_, 'x> {
-    /// Remembers a procedure; it is read where it is called.
-    pub(super) fn procedure(&mut self, xml: Xml<'x, 'x>, sheet: usize) {
-        let name = attr::text(xml, "name").unwrap_or_default().text;
-        self.with(sheet, |s| {
-            s.strangers.insert(name.clone(), "GrafcetProcedure".to_string());
-        });
-        self.procedures.push(Procedure { sheet, name, xml });
-    }
-
-    /// Remembers a step that calls a procedure; the step itself is put down by the reader.
-    pub(super) fn caller(&mut self, xml: Xml<'x, 'x>, sheet: usize) {
-        let caller = Caller {
-            sheet,
-            step: self.plan.sheets.get(sheet).map_or(0, |s| s.steps.len()),
-            name: attr::text(xml, "name").unwrap_or_default(),
-            procedure: attr::text(xml, "grafcetProcedure").unwrap_or_default(),
-            parameters: attr::text(xml, "parameters").unwrap_or_default(),
-            at: attr::head(xml),
-            chain: self.chain.clone(),
-        };
-        self.callers.push(caller);
-    }
-}
 
 /// Gives each calling step its copy.
 pub(super) fn expand(reader: &mut Reader<'_, '_>) {
@@ -115,7 +69,7 @@ pub(super) fn expand(reader: &mut Reader<'_, '_>) {
     }
 }
 
-/// A step whose call is not carried over.
+/// Makes a plain step of a step whose call is not carried over.
 fn plain(plan: &mut Plan, caller: usize, callers: &[Caller]) {
     let step = callers.get(caller).and_then(|c| plan.sheets.get_mut(c.sheet)?.steps.get_mut(c.step));
     if let Some(step) = step {
@@ -123,7 +77,7 @@ fn plain(plan: &mut Plan, caller: usize, callers: &[Caller]) {
     }
 }
 
-/// The procedure of this name, from the inside out, then by its full name.
+/// Finds the procedure with this name: from the innermost workspace outward, then by its full name.
 fn find(plan: &Plan, procedures: &[Procedure], caller: &Caller) -> Option<usize> {
     let name = caller.procedure.text.trim();
     let among = |sheet: usize, name: &str| procedures.iter().position(|p| p.sheet == sheet && p.name == name);

@@ -1,24 +1,22 @@
-//! From JGrafchart's loosely typed expressions to typed ones.
+//! Turns JGrafchart's loosely typed expressions into typed ones.
 //!
-//! There, the place where an expression stands decides how all of it is
-//! evaluated: as Boolean, whole number, number or text, and every value is
-//! converted to that (a whole number is true when it is 1, a number is cut to its
-//! whole part). Here, types are strict, so each conversion is written out. A
-//! comparison is made in the widest type of its two sides.
+//! In JGrafchart the context of an expression decides how all of it is evaluated: as Boolean, whole
+//! number, real number or string. Every value is converted to that kind (a whole number is true if
+//! it is 1, a real number is truncated). Here types are strict, so each conversion is written out.
+//! A comparison uses the widest type of its two sides.
 
 use std::ops::Range;
 
 use g7_model::codes;
 use g7_model::{Arg, BinaryOp, Expr, ExprKind, Literal, Name, Path, Place, Span, Type, UnaryOp};
 
-use super::names::{Meaning, Names, Property};
+use super::naming::{Meaning, Names, Property};
 use super::phrase::{Binary, Phrase, PhraseKind, Unary};
-use super::read::shown;
 use super::sheet::Plan;
-use crate::report::Report;
-use crate::xml::attr::Text;
+use g7_iec::report::{Report, shown};
+use g7_iec::xml::attr::Text;
 
-/// How an expression is evaluated.
+/// The kind of evaluation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Sort {
     Bool,
@@ -38,22 +36,23 @@ impl Sort {
     }
 }
 
-/// A typed expression and its type; `None` for a constant, which takes the other side's.
+/// A typed expression and its type; `None` for a constant, which takes the type of the other
+/// operand.
 struct Typed {
     expr: Expr,
     ty: Option<Type>,
 }
 
-/// Turns the expressions of one text into the document's.
+/// Converts the expressions of one text.
 pub(super) struct Express<'a> {
     pub(super) plan: &'a Plan,
     pub(super) names: &'a Names,
     pub(super) report: &'a mut Report,
-    /// The workspace where the text stands, and its names are looked up.
+    /// The workspace of the text, where its names are looked up.
     pub(super) sheet: usize,
-    /// The workspace in whose chart the expression will stand.
+    /// The workspace whose chart will contain the expression.
     pub(super) home: usize,
-    /// The text, for the places.
+    /// The text, to find places in the file.
     pub(super) text: &'a Text,
 }
 
@@ -77,7 +76,7 @@ impl Express<'_> {
         self.report.span(&self.text.place(part))
     }
 
-    /// What a dotted name of this text stands for; unknown ones are reported.
+    /// The meaning of a dotted name in this text; unknown names are reported.
     pub(super) fn find(&mut self, names: &[String], at: &Range<usize>) -> Meaning<'_> {
         let path: Vec<&str> = names.iter().map(String::as_str).collect();
         let meaning = self.names.find(self.plan, self.sheet, &path);
@@ -97,7 +96,7 @@ impl Express<'_> {
         meaning
     }
 
-    /// A variable as the document names it from this workspace.
+    /// A variable, as named in the document from this workspace.
     pub(super) fn var_path(&self, sheet: usize, var: usize, at: Span) -> Path {
         let name =
             self.plan.sheets.get(sheet).and_then(|s| s.vars.get(var)).map_or("", |v| v.name.text.as_str());
@@ -105,7 +104,7 @@ impl Express<'_> {
         if sheet != self.home && !self.names.is_of_file(sheet, var) {
             names.push(Name::new(self.names.chart(sheet), at));
         }
-        names.push(Name::new(super::names::writable(name), at));
+        names.push(Name::new(super::naming::writable(name), at));
         Path { names }
     }
 
@@ -123,7 +122,7 @@ impl Express<'_> {
         self.plan.sheets.get(sheet).and_then(|s| s.vars.get(var)).map_or(Type::Bool, |v| v.ty)
     }
 
-    /// The sort an expression has by itself; `None` for `0` and `1`, which suit any.
+    /// The sort of an expression without context; `None` for `0` and `1`, which fit any.
     fn sort(&self, phrase: &Phrase) -> Option<Sort> {
         match &phrase.kind {
             PhraseKind::Int(0 | 1) | PhraseKind::Call(_) => None,
@@ -270,13 +269,13 @@ impl Express<'_> {
         self.convert(Typed { expr, ty }, wanted, at)
     }
 
-    /// In what a comparison is made: the widest of its sides.
+    /// The sort of a comparison: the widest of its sides.
     fn common(&self, a: &Phrase, b: &Phrase, equality: bool) -> Sort {
         let wide = self.sort(a).max(self.sort(b)).unwrap_or(Sort::Int);
         if equality { wide } else { wide.max(Sort::Int) }
     }
 
-    /// In what a sum or product is made: as the place wants it where that is a number.
+    /// The sort of a sum or product: the wanted one if it is a number.
     fn arithmetic(&self, a: &Phrase, b: &Phrase, wanted: Sort) -> Sort {
         match wanted {
             Sort::Int | Sort::Real => wanted,
@@ -284,7 +283,7 @@ impl Express<'_> {
         }
     }
 
-    /// A count of scans as wide as JGrafchart's whole numbers.
+    /// A count of scans, as wide as JGrafchart's whole numbers.
     fn counted(&self, typed: Typed) -> Typed {
         if typed.ty != Some(Type::Int) {
             return typed;
@@ -293,7 +292,7 @@ impl Express<'_> {
         Typed { expr: call("INT_TO_DINT", vec![typed.expr], at), ty: Some(Type::Dint) }
     }
 
-    /// The conversion that JGrafchart makes by itself.
+    /// The conversion that JGrafchart makes implicitly.
     fn convert(&mut self, typed: Typed, wanted: Sort, at: Span) -> Typed {
         let Some(ty) = typed.ty else { return typed };
         let from = Sort::of(ty);
@@ -330,7 +329,8 @@ impl Express<'_> {
                 self.loose(at, "a text becomes a number; one that is no number stops the chart, not 0");
                 to("LREAL", e, Type::Lreal)
             }
-            // A whole number widens by itself; where two meet, `as_real` has seen to it.
+            // A whole number is widened implicitly. Where two whole numbers meet, `as_real` has
+            // handled them.
             _ => Typed { expr: e, ty: Some(ty) },
         }
     }
@@ -340,7 +340,7 @@ impl Express<'_> {
     }
 }
 
-/// Whether a count of scans meets a constant that does not fit its 16 bits.
+/// True if a count of scans meets a constant that does not fit its 16 bits.
 fn beyond_scans(left: &Typed, right: &Typed) -> bool {
     let wide = |t: &Typed| match &t.expr.kind {
         ExprKind::Literal(Literal::Int(n, _)) => i16::try_from(*n).is_err(),
@@ -349,8 +349,8 @@ fn beyond_scans(left: &Typed, right: &Typed) -> bool {
     wide(left) || wide(right)
 }
 
-/// Makes a real number of one side where no side has a real type, so that `1 / n`
-/// is a fraction where a fraction is wanted.
+/// Makes one side a real number if neither side has a real type, so that `1 / n` gives a fraction
+/// where a real number is wanted.
 fn as_real(left: Typed, right: Typed) -> (Typed, Typed) {
     let real = |t: &Typed| t.ty.is_some_and(Type::is_real);
     if real(&left) || real(&right) {
@@ -365,7 +365,7 @@ fn widened(typed: Typed) -> Typed {
     Typed { expr: call(&format!("{ty}_TO_LREAL"), vec![typed.expr], at), ty: Some(Type::Lreal) }
 }
 
-/// The type of a result of two; a constant takes the other's.
+/// The type of a result of two operands; a constant takes the type of the other.
 fn wider(a: Option<Type>, b: Option<Type>) -> Option<Type> {
     let rank = |ty: Type| match ty {
         Type::Lreal => 4,
@@ -395,7 +395,7 @@ fn real(r: f64, wanted: Sort, at: Span) -> Typed {
     constant(
         match wanted {
             Sort::Bool => Literal::Bool(whole == 1.0),
-            // As the cast there: beyond 32 bits the nearest whole number.
+            // The cast of JGrafchart: beyond 32 bits the nearest whole number.
             Sort::Int => Literal::Int(i128::from(whole as i32), None),
             Sort::Real => Literal::Real(written(r).into(), None),
             Sort::Text => Literal::Str(format!("{r:?}").into()),
@@ -404,7 +404,7 @@ fn real(r: f64, wanted: Sort, at: Span) -> Typed {
     )
 }
 
-/// A text as another sort: what is no number there counts as 0.
+/// A string as another sort; a text that is not a number counts as 0.
 fn text_value(text: &str, wanted: Sort) -> Literal {
     match wanted {
         Sort::Bool => Literal::Bool(text == "1"),
@@ -417,7 +417,7 @@ fn text_value(text: &str, wanted: Sort) -> Literal {
     }
 }
 
-/// A real number as the language writes it: always with a point.
+/// A real number in the spelling of the language, always with a point.
 pub(super) fn written(r: f64) -> String {
     let text = format!("{r:?}");
     match text.split_once('e') {

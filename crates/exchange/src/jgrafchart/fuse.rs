@@ -1,21 +1,20 @@
-//! Step fusion sets: steps that are one step, drawn in several places.
+//! Step fusion sets: one step that is drawn in several places.
 //!
-//! JGrafchart activates all of them with any of them, and one is enabled when all
-//! are. So those of one workspace become one step here, with the lines of all and
-//! the actions of all, in the order of the set. Steps of several workspaces cannot
-//! be one step of a chart.
+//! JGrafchart activates all steps of a set together, and a transition behind one is enabled when
+//! all are active. The steps of one workspace therefore become one step here, with the lines and
+//! the actions of all, in the order of the set. Steps of different workspaces cannot become one
+//! step of a chart.
 
 use std::collections::{HashMap, HashSet};
 
 use g7_model::codes;
 
-use super::actions::MOST_BYTES;
+use super::limits::MOST_BYTES;
 use super::phrase::{self, Letter};
-use super::read::shown;
 use super::sheet::{Node, Plan, Sheet, SheetKind, StepSort};
-use crate::report::Report;
+use g7_iec::report::{Report, shown};
 
-/// Makes one step of each set's steps.
+/// Merges the steps of each set.
 pub(super) fn fuse(plan: &mut Plan, report: &mut Report) {
     for index in 0..plan.sheets.len() {
         let Some(sheet) = plan.sheets.get_mut(index) else { break };
@@ -62,7 +61,7 @@ pub(super) fn fuse(plan: &mut Plan, report: &mut Report) {
     }
 }
 
-/// Why steps cannot become one.
+/// The reason why steps cannot be merged.
 fn obstacle(sheet: &Sheet, members: &[usize], abortive: bool) -> Option<String> {
     for step in members.iter().filter_map(|m| sheet.steps.get(*m)) {
         let name = shown(&step.name.text);
@@ -79,7 +78,7 @@ fn obstacle(sheet: &Sheet, members: &[usize], abortive: bool) -> Option<String> 
             let (statements, _) = phrase::actions(text, usize::from(u16::MAX));
             statements.iter().any(|s| matches!(s.letter, Letter::X | Letter::A))
         };
-        // There, leaving one aborts the others: `A` runs in them, not `X`.
+        // In JGrafchart leaving one step aborts the others, which then run `A`, not `X`.
         if abortive && step.actions.iter().any(|t| leaves(&t.text)) {
             return Some(format!("it is abortive, and `{name}` has actions for its end"));
         }
@@ -87,7 +86,7 @@ fn obstacle(sheet: &Sheet, members: &[usize], abortive: bool) -> Option<String> 
     None
 }
 
-/// The first of the steps takes the lines and actions of the others.
+/// The first step takes over the lines and actions of the others.
 fn unite(sheet: &mut Sheet, members: &[usize]) {
     let Some((&first, others)) = members.split_first() else { return };
     let mut actions = Vec::new();

@@ -1,15 +1,14 @@
-//! Macro-steps that are left at any of their steps.
+//! Macro-steps with exception transitions, which leave them at any of their steps.
 //!
-//! An exception transition is marked while its macro-step is active, before
-//! anything fires; firing, it takes all steps inside off, their marked transitions
-//! no longer fire, and the actions `A` run instead of `X`. An ordinary transition
-//! of the macro-step gives way to it.
+//! JGrafchart marks an exception transition while its macro-step is active, before any transition
+//! is cleared. Clearing it deactivates all steps inside; transitions inside that were marked are no
+//! longer cleared, and the actions `A` run instead of `X`. Ordinary transitions behind the
+//! macro-step have lower priority.
 //!
-//! Here such a macro-step encloses its inside. A variable, worked out at the
-//! beginning of each scan, tells that an exception takes it; what gives way to that
-//! asks for it: the ordinary transitions behind the macro-step, all transitions
-//! inside, and the actions of the end. An ordinary transition waits for its exit
-//! step, so several ways out are no matter either.
+//! Here such a macro-step is an enclosing step. A variable that is computed at the beginning of
+//! each scan tells that an exception transition leaves it. The ordinary transitions behind the
+//! macro-step, all transitions inside, and the actions on deactivation test this variable. An
+//! ordinary transition also tests its exit step, so several exits are possible.
 
 use std::collections::HashSet;
 
@@ -18,20 +17,19 @@ use g7_model::{BinaryOp, Expr, ExprKind, Name, Path, Span, UnaryOp};
 
 use super::lex::{Kind, tokens};
 use super::links::{Ends, exits};
-use super::names::Names;
-use super::read::shown;
+use super::naming::Names;
 use super::sheet::{Plan, SheetKind, StepSort};
-use crate::nodes::{self, Taken};
-use crate::report::Report;
+use g7_iec::nodes::{self, Taken};
+use g7_iec::report::{Report, shown};
 
-/// How the insides of macro-steps are left.
+/// How macro-steps are left.
 pub(super) struct Guards {
-    /// Of each workspace: it is the inside of an enclosing step, not an expansion.
+    /// For each workspace: true if it belongs to an enclosing step, false if it is an expansion.
     pub(super) enclosed: Vec<bool>,
-    /// Of each workspace: the variable that tells that an exception takes it, in the
-    /// chart of the step that it is the inside of.
+    /// For each workspace: the variable that tells that an exception transition leaves it. It is
+    /// declared in the chart that contains the macro-step.
     pub(super) flag: Vec<Option<String>>,
-    /// Of each workspace: the nearest one around it, or itself, with such a variable.
+    /// For each workspace: the nearest workspace with such a variable, itself or one around it.
     above: Vec<Option<usize>>,
     /// The exit steps of each workspace, in the order of the ports.
     exits: Vec<Vec<usize>>,
@@ -69,7 +67,7 @@ impl Guards {
                 *flag = Some(taken.give(&format!("{}_abort", names.step(owner.0, owner.1))));
             }
         }
-        // A workspace stands behind the one with the step that it is the inside of.
+        // A workspace comes after the one that contains its step.
         for index in 0..count {
             let own = guards.flag.get(index).is_some_and(Option::is_some);
             let owner = plan.sheets.get(index).and_then(|s| s.owner.or(Some((s.parent?, 0))));
@@ -81,7 +79,8 @@ impl Guards {
         guards
     }
 
-    /// Whether a workspace is left: an expression of the chart of another, if it can be.
+    /// An expression in the chart `home` that is true when a workspace is left by an exception;
+    /// None if that cannot happen.
     pub(super) fn aborted(
         &self,
         plan: &Plan,
@@ -97,7 +96,7 @@ impl Guards {
         Some(nodes::name(&path, at))
     }
 
-    /// The receptivity of a transition, with all that it waits for and gives way to.
+    /// The complete receptivity of a transition, with everything that it tests.
     pub(super) fn receptivity(
         &self,
         (plan, names): (&Plan, &Names),
@@ -127,7 +126,7 @@ impl Guards {
         if let Some((caller, step)) = home.owner.filter(|_| home.call.is_some())
             && ends.from.iter().any(|s| home.steps.get(*s).is_some_and(|s| s.sort == StepSort::Enter))
         {
-            // A procedure stands still in the scan behind that of its call.
+            // A procedure does not evolve in the scan after its call.
             let path = [names.chart(caller), names.step(caller, step), "t"];
             let late = nodes::binary(BinaryOp::Gt, nodes::name(&path, at), nodes::int(1, at), at);
             whole = both(whole, late, at);
@@ -138,8 +137,8 @@ impl Guards {
         }
     }
 
-    /// What the variable of a workspace is at the beginning of a scan: the macro-step is
-    /// active, and an exception transition is marked or takes what is around it.
+    /// The value of a workspace's variable at the beginning of a scan: the macro-step is active,
+    /// and an exception transition is marked or leaves a workspace around it.
     pub(super) fn marked(
         &self,
         (plan, names): (&Plan, &Names),
@@ -167,7 +166,7 @@ impl Guards {
     }
 }
 
-/// `a and b`; TRUE is worked in.
+/// `a and b`, simplified if one is TRUE.
 pub(super) fn both(a: Expr, b: Expr, at: Span) -> Expr {
     match (nodes::truth(&a), nodes::truth(&b)) {
         (Some(true), _) => b,
@@ -195,7 +194,7 @@ fn all_names(plan: &Plan, names: &Names) -> Taken {
     taken
 }
 
-/// Where an enclosing step is not wholly a macro-step.
+/// Reports differences between an enclosing step and a macro-step.
 fn differences(plan: &Plan, inside: usize, report: &mut Report) {
     let Some(sheet) = plan.sheets.get(inside) else { return };
     let name = shown(&sheet.name.text);
@@ -219,7 +218,7 @@ fn differences(plan: &Plan, inside: usize, report: &mut Report) {
 
 /// The names in a text of actions.
 fn words(text: &str) -> Vec<String> {
-    if text.len() > super::actions::MOST_BYTES {
+    if text.len() > super::limits::MOST_BYTES {
         return Vec::new();
     }
     let name = |kind: Kind| if let Kind::Name(name) = kind { Some(name) } else { None };

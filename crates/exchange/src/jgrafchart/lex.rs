@@ -1,17 +1,17 @@
-//! The words of JGrafchart's action language.
+//! Splits JGrafchart's action language into tokens.
 
 use std::ops::Range;
 
-/// A word with its bytes in the text.
+/// A token with its place in the text.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Token {
     pub(super) kind: Kind,
     pub(super) at: Range<usize>,
-    /// Stands first in its line.
+    /// True if it is the first in its line.
     pub(super) fresh: bool,
 }
 
-/// What sort of word.
+/// The kind of a token.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Kind {
     Name(String),
@@ -20,11 +20,11 @@ pub(super) enum Kind {
     Str(String),
     /// One or two signs: `=`, `==`, `/`, …
     Sign(&'static str),
-    /// A text without its closing quote.
+    /// A string without its closing quote.
     Unclosed,
-    /// A number too large.
+    /// A number that is too large.
     Huge,
-    /// A character without meaning.
+    /// A character without a meaning.
     Odd(char),
     /// The end of the text.
     End,
@@ -35,7 +35,7 @@ const SIGNS: [&str; 24] = [
     "?", ":", ".", "^",
 ];
 
-/// The words of a text, the last one [`Kind::End`].
+/// The tokens of a text, ending with [`Kind::End`].
 pub(super) fn tokens(text: &str) -> Vec<Token> {
     let mut list = Vec::new();
     let mut rest = text;
@@ -57,7 +57,7 @@ pub(super) fn tokens(text: &str) -> Vec<Token> {
     }
 }
 
-/// The first word of a text without blanks before it, and its bytes.
+/// The first token of a text that begins without blanks, and its length in bytes.
 fn word(text: &str) -> (Kind, usize) {
     let Some(first) = text.chars().next() else { return (Kind::End, 0) };
     if first.is_alphabetic() || first == '_' || first == '#' || first == '$' {

@@ -1,32 +1,32 @@
-//! From lines to the steps before and behind each transition.
+//! Finds the steps before and behind each transition from the lines.
 //!
-//! A transition's preceding steps are found by going against the lines through
-//! joins and posts, its succeeding ones by going along them through splits and
-//! posts. Lines that cannot be in a chart are reported and not followed.
+//! The preceding steps are found by following the lines backward through joins and posts, the
+//! succeeding ones by following them forward through splits and posts. Lines that no chart can have
+//! are reported and not followed.
 
 use std::collections::{HashMap, HashSet};
 
 use g7_model::codes;
 
-use super::names::Names;
-use super::read::shown;
+use super::naming::Names;
 use super::sheet::{Node, Plan, Sheet, StepSort};
-use crate::report::Report;
+use g7_iec::report::{Report, shown};
 
-/// Steps of the walk through a workspace's lines; a file of nothing but joins
-/// would otherwise cost their number squared.
+/// The most steps of the walk through a workspace's lines. A file with only joins would otherwise
+/// take quadratic time.
 const MOST_WORK: usize = 4_000_000;
 
 /// The steps before and behind a transition, by number in their workspace.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(super) struct Ends {
     pub(super) from: Vec<usize>,
-    /// By which way out each of them is left, from 0; others than 0 of macro-steps only.
+    /// The exit through which each of them is left, counted from 0. Only a macro-step has others
+    /// than 0.
     pub(super) ways: Vec<usize>,
     pub(super) to: Vec<usize>,
 }
 
-/// The exit steps of a workspace, in the order of the ports: from left to right.
+/// The exit steps of a workspace in the order of the ports, from left to right.
 pub(super) fn exits(sheet: &Sheet) -> Vec<usize> {
     let sort = |(n, s): (usize, &super::sheet::StepNode)| (s.sort == StepSort::Exit).then_some((s.x, n));
     let mut found: Vec<(i32, usize)> = sheet.steps.iter().enumerate().filter_map(sort).collect();
@@ -47,21 +47,21 @@ pub(super) fn ends(plan: &Plan, index: usize, names: &Names, report: &mut Report
     all
 }
 
-/// The lines of one workspace, both ways.
+/// The lines of one workspace, in both directions.
 struct Web<'a> {
     sheet: &'a Sheet,
     index: usize,
     names: &'a Names,
     out: HashMap<Node, Vec<Node>>,
     into: HashMap<Node, Vec<Node>>,
-    /// Ends of lines that are not followed, with the way they would have led; reported.
+    /// Ends of lines that have been reported and are not followed, with the direction of the line.
     cut: HashSet<(Node, bool)>,
-    /// How many ways out the macro-steps have, by their insides.
+    /// The number of exits of each macro-step, by its workspace.
     exits: HashMap<usize, usize>,
     work: usize,
 }
 
-/// One end of a line: what it is at, and the letter or number of the port.
+/// An end of a line: the object, and the letter or number of the port.
 struct End {
     node: Node,
     port: String,
@@ -86,8 +86,8 @@ impl<'a> Web<'a> {
         self.into.entry(to).or_default().push(from);
     }
 
-    /// What an end of a line is at. Ports stand behind the identifier: `L` and `R`
-    /// of a bar, `_1` the second port of a macro-step, `H` history, `E` exception.
+    /// The object at an end of a line. The port follows the identifier: `L` and `R` of a bar, `_1`
+    /// for the second port of a macro-step, `H` for history, `E` for an exception.
     fn end(&self, id: &str) -> Option<End> {
         if let Some(&node) = self.sheet.ids.get(id) {
             return Some(End { node, port: String::new() });
@@ -98,7 +98,7 @@ impl<'a> Web<'a> {
         Some(End { node, port: id.get(cut.1..)?.to_string() })
     }
 
-    /// Reads the lines, left ports of a bar before right ones.
+    /// Reads the lines; left ports of a bar come before right ones.
     fn lines(&mut self, report: &mut Report) {
         let sheet = self.sheet;
         let mut later = Vec::new();
@@ -140,7 +140,7 @@ impl<'a> Web<'a> {
         }
     }
 
-    /// Lines at the ports of a macro-step where there is no line.
+    /// Reports lines at ports of a macro-step that cannot be carried over.
     fn special_port(&self, from: &End, to: &End, at: &std::ops::Range<usize>, report: &mut Report) -> bool {
         let step = |end: &End| matches!(end.node, Node::Step(_));
         let exception = self.is_exception(to.node);
@@ -176,7 +176,7 @@ impl<'a> Web<'a> {
         matches!(node, Node::Step(step) if matches!(sort(step), Some(StepSort::Macro(_))))
     }
 
-    /// Whether a macro-step has an exit step for the port at which a line begins.
+    /// True if a macro-step has an exit step for the port at which a line begins.
     fn has_way(&self, end: &End) -> bool {
         let way = match &*end.port {
             "" | "0" | "N" => return true,
@@ -189,7 +189,7 @@ impl<'a> Web<'a> {
         way.is_some_and(|way| self.exits.get(&inside).is_some_and(|n| way < *n))
     }
 
-    /// Whether a line may lead from one to the other.
+    /// True if a line may connect the two objects.
     fn fits(&self, from: Node, to: Node, at: &std::ops::Range<usize>, report: &mut Report) -> bool {
         if from == Node::Stranger || to == Node::Stranger {
             return false;
@@ -227,7 +227,7 @@ impl<'a> Web<'a> {
         }
     }
 
-    /// Ties each pair of connection posts together.
+    /// Connects each pair of connection posts.
     fn posts(&mut self, plan: &Plan, report: &mut Report) {
         let sheet = self.sheet;
         let prefix = full_name(plan, self.index);
@@ -264,7 +264,7 @@ impl<'a> Web<'a> {
         }
     }
 
-    /// Joins what leads into one post with what leads out of the other.
+    /// Connects the lines into one post with the lines out of the other.
     fn tie(&mut self, inward: usize, outward: usize, report: &mut Report) {
         let into = self.into.get(&Node::PostIn(inward)).cloned().unwrap_or_default();
         let out = self.out.get(&Node::PostOut(outward)).cloned().unwrap_or_default();
@@ -302,8 +302,8 @@ impl<'a> Web<'a> {
         Ends { from, ways, to }
     }
 
-    /// The steps that are reached through bars and posts, in the order of the
-    /// lines, and whether a line was cut on the way.
+    /// The steps reached through bars and posts, in the order of the lines, and whether a line was
+    /// cut on the way.
     fn walk(&mut self, start: Node, forward: bool) -> (Vec<(usize, usize)>, bool) {
         let mut steps = Vec::new();
         let mut seen = HashSet::from([start]);
@@ -334,14 +334,14 @@ impl<'a> Web<'a> {
     }
 }
 
-/// How many exit steps stand inside the macro-steps of a workspace.
+/// The number of exit steps in each macro-step of a workspace.
 fn ways_out(plan: &Plan, sheet: &Sheet) -> HashMap<usize, usize> {
     let inside = sheet.steps.iter().filter_map(|s| if let StepSort::Macro(i) = s.sort { i } else { None });
     let count = |s: &Sheet| s.steps.iter().filter(|s| s.sort == StepSort::Exit).count();
     inside.map(|i| (i, plan.sheets.get(i).map_or(0, count))).collect()
 }
 
-/// What a line may lead from and to.
+/// The ends that a line may have.
 fn allowed(from: Node, to: Node) -> bool {
     use Node::{Join, PostIn, PostOut, Split, Step, Transition, Way};
     match (from, to) {
@@ -355,7 +355,7 @@ fn allowed(from: Node, to: Node) -> bool {
     }
 }
 
-/// `J1.M1.`: what stands before the names of a workspace when told in full.
+/// The prefix of full names in a workspace: `J1.M1.`
 fn full_name(plan: &Plan, index: usize) -> String {
     let mut parts = Vec::new();
     let mut here = Some(index);

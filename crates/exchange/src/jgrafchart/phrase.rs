@@ -1,18 +1,19 @@
-//! JGrafchart's action language as a tree: `S v = e;`, `N out;`, conditions.
+//! Parses JGrafchart's action language into a tree: `S v = e;`, `N out;`, conditions.
 //!
-//! Precedence as in Java: `?:`, `|`, `&`, equality, comparison, sum, product,
-//! then the signs before an operand (`!`, `-`, `/` rising, `\` falling).
+//! The precedence is that of Java: `?:`, `|`, `&`, equality, comparison, sum, product, then the
+//! signs before an operand (`!`, `-`, `/` for a rising and `\` for a falling edge).
 
 use std::ops::Range;
 
 use super::lex::{Kind, Token, tokens};
 
-/// Most brackets and signs within one another.
+/// The deepest nesting of brackets and signs.
 const DEEPEST: u16 = 100;
-/// Tallest tree, from chains like `a | b | c`; what walks it calls itself that often.
+/// The greatest height of a tree, for chains like `a | b | c`; functions on the tree recurse that
+/// deep.
 const TALLEST: u16 = 400;
 
-/// An expression with its bytes in the text.
+/// An expression with its place in the text.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Phrase {
     pub(super) kind: PhraseKind,
@@ -31,7 +32,7 @@ pub(super) enum PhraseKind {
     Binary(Binary, Box<Phrase>, Box<Phrase>),
     /// `c ? a : b`.
     Choice(Box<Phrase>, Box<Phrase>, Box<Phrase>),
-    /// A function or method; its arguments have been read and are of no use.
+    /// A function or method call. Its arguments are parsed and dropped.
     Call(Vec<String>),
 }
 
@@ -73,7 +74,7 @@ pub(super) enum Letter {
     X,
     /// While active.
     N,
-    /// On abortion by an exception transition.
+    /// On deactivation by an exception transition.
     A,
 }
 
@@ -85,7 +86,7 @@ pub(super) struct Statement {
     pub(super) at: Range<usize>,
 }
 
-/// What an action does.
+/// The effect of an action.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Deed {
     /// `v = e`.
@@ -96,14 +97,14 @@ pub(super) enum Deed {
     Call(Vec<String>, Range<usize>),
 }
 
-/// Why a text cannot be read.
+/// The reason why a text cannot be read.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Fault {
     pub(super) at: Range<usize>,
     pub(super) what: String,
 }
 
-/// A condition: one expression and nothing behind it (a `;` is overlooked).
+/// Parses a condition: one expression and nothing behind it (a `;` is allowed).
 pub(super) fn condition(text: &str) -> Result<Phrase, Fault> {
     let tokens = tokens(text);
     let mut reader = Reader { tokens: &tokens, next: 0, depth: 0 };
@@ -115,7 +116,7 @@ pub(super) fn condition(text: &str) -> Result<Phrase, Fault> {
     }
 }
 
-/// The actions of a step; after one that cannot be read it goes on behind the next `;`.
+/// Parses the actions of a step. After one that cannot be read, continues behind the next `;`.
 pub(super) fn actions(text: &str, most: usize) -> (Vec<Statement>, Vec<Fault>) {
     let tokens = tokens(text);
     let mut reader = Reader { tokens: &tokens, next: 0, depth: 0 };
@@ -183,14 +184,14 @@ impl Reader<'_> {
         Fault { at: token.at.clone(), what: format!("{wanted} was expected, not {found}") }
     }
 
-    /// Goes behind the next `;`, or to the next line that begins with a letter.
+    /// Skips to the next `;`, or to the next line that begins with a letter.
     fn recover(&mut self) {
         while self.peek().kind != Kind::End && self.sign() != ";" && self.letter_ahead().is_none() {
             self.next += 1;
         }
     }
 
-    /// The letter of a new action here, where a line begins.
+    /// The letter of a new action, if one begins here at the start of a line.
     fn letter_ahead(&self) -> Option<Letter> {
         if self.peek().fresh { self.letter() } else { None }
     }
@@ -205,7 +206,7 @@ impl Reader<'_> {
             "A" => Letter::A,
             _ => return None,
         };
-        // `S = 1` would be an assignment to a variable `S`.
+        // `S = 1` assigns to a variable `S`.
         let behind = self.tokens.get(self.next + 1).map(|t| &t.kind);
         matches!(behind, Some(Kind::Name(_))).then_some(letter)
     }
@@ -236,7 +237,7 @@ impl Reader<'_> {
         if done { Ok(Statement { letter, deed, at }) } else { Err(self.fault("`;`")) }
     }
 
-    /// The byte behind the last word read.
+    /// The end of the previous token.
     fn end(&self) -> usize {
         self.next.checked_sub(1).and_then(|i| self.tokens.get(i)).map_or(0, |t| t.at.end)
     }
@@ -298,12 +299,12 @@ impl Reader<'_> {
         self.node(PhraseKind::Choice(condition.into(), yes.into(), no.into()), at, depth)
     }
 
-    /// A node one deeper than its parts.
+    /// A node, one higher than its parts.
     fn node(&self, kind: PhraseKind, at: Range<usize>, parts: u16) -> Result<Phrase, Fault> {
         if parts >= TALLEST { Err(self.too_deep()) } else { Ok(Phrase { kind, at, depth: parts + 1 }) }
     }
 
-    /// Operands joined by signs that bind at least as tightly as `least`.
+    /// Parses operands joined by operators that bind at least as strongly as `least`.
     fn binary(&mut self, least: u8) -> Result<Phrase, Fault> {
         let mut left = self.unary()?;
         while let Some((operator, strength)) = operator(self.sign()) {
@@ -346,7 +347,7 @@ impl Reader<'_> {
             Kind::Int(n) => PhraseKind::Int(n),
             Kind::Real(n) => PhraseKind::Real(n),
             Kind::Str(text) => PhraseKind::Str(text),
-            // The letter of the next action: this one lacks its end.
+            // The letter of the next action follows, so this one has no end.
             Kind::Name(_) if self.letter_ahead().is_some() => {
                 return Err(self.fault("a name, a number or `(`"));
             }
@@ -372,7 +373,7 @@ impl Reader<'_> {
     }
 }
 
-/// The operator of a sign, and how tightly it binds.
+/// The operator of a sign, and its binding strength.
 fn operator(sign: &str) -> Option<(Binary, u8)> {
     Some(match sign {
         "|" => (Binary::Or, 1),
@@ -395,14 +396,14 @@ fn operator(sign: &str) -> Option<(Binary, u8)> {
 /// A parameter of the call of a procedure.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Parameter {
-    /// `R`: the name stands for another variable; else `V`: it takes a value.
+    /// True for `R`: the name stands for another variable. False for `V`: it takes a value.
     pub(super) by_reference: bool,
     pub(super) name: String,
     pub(super) value: Phrase,
     pub(super) at: Range<usize>,
 }
 
-/// The parameters of a call, `V x = e; R y = z;`, and what cannot be read of them.
+/// Parses the parameters of a call, `V x = e; R y = z;`, with the faults in them.
 pub(super) fn parameters(text: &str) -> (Vec<Parameter>, Vec<Fault>) {
     let tokens = tokens(text);
     let mut reader = Reader { tokens: &tokens, next: 0, depth: 0 };

@@ -1,4 +1,4 @@
-//! From XML elements to workspaces.
+//! Reads workspaces from XML elements.
 
 use std::collections::btree_map::Entry;
 use std::ops::Range;
@@ -7,30 +7,29 @@ use g7_model::codes;
 use g7_model::{Type, VarKind};
 use roxmltree::{Document, Node as Xml};
 
-use super::calls::{self, Caller, Procedure};
-use super::fuse;
-use super::kinds::{is_data, is_drawing};
+use super::other_elements::{is_data, is_drawing};
 use super::sheet::{
     FreeText, Fusion, Link, Node, Plan, Post, Sheet, SheetKind, StepNode, StepSort, TransitionNode, Value,
     Var,
 };
-use crate::report::Report;
-use crate::xml::attr::{self, Text};
+use g7_iec::report::{Report, shown};
+use g7_iec::xml::attr::{self, Text};
 
-/// Half the width of JGrafchart's step symbol: its axis, in pixels from its left.
+/// Half the width of JGrafchart's step symbol: the distance of its axis from its left side, in
+/// pixels.
 pub(super) const STEP_AXIS: i32 = 30;
-/// The same of its transition symbol.
+/// The same distance for its transition symbol.
 pub(super) const TRANSITION_AXIS: i32 = 15;
-/// Longest text that a string variable holds, in bytes.
+/// The longest string that a variable holds, in bytes.
 pub(super) const STRING_BYTES: u16 = 255;
 
-/// Whether a file with this first element is one of JGrafchart's.
+/// True if a file with this first element is one of JGrafchart's.
 pub(crate) fn is_root(name: &str) -> bool {
     matches!(name, "GCDocument" | "GCDocumentCollection")
 }
 
-/// All workspaces of the file.
-pub(super) fn sheets(tree: &Document<'_>, report: &mut Report) -> Plan {
+/// All workspaces of the file, and the procedures and steps that call them.
+pub(super) fn sheets<'r, 'x>(tree: &'x Document<'x>, report: &'r mut Report) -> Reader<'r, 'x> {
     let root = tree.root_element();
     let plan = Plan { sheets: Vec::new(), at: attr::head(root) };
     let mut reader = Reader { plan, report, procedures: Vec::new(), callers: Vec::new(), chain: Vec::new() };
@@ -50,10 +49,27 @@ pub(super) fn sheets(tree: &Document<'_>, report: &mut Report) -> Plan {
             reader.report.say(&codes::NOT_JGRAFCHART, &reader.plan.at, what);
         }
     }
-    calls::expand(&mut reader);
-    let mut plan = reader.plan;
-    fuse::fuse(&mut plan, report);
-    plan
+    reader
+}
+
+/// A procedure of the file.
+pub(super) struct Procedure<'x> {
+    /// The workspace that contains it.
+    pub(super) sheet: usize,
+    pub(super) name: String,
+    pub(super) xml: Xml<'x, 'x>,
+}
+
+/// A step that calls a procedure.
+pub(super) struct Caller {
+    pub(super) sheet: usize,
+    pub(super) step: usize,
+    pub(super) name: Text,
+    pub(super) procedure: Text,
+    pub(super) parameters: Text,
+    pub(super) at: Range<usize>,
+    /// The procedures in whose copies it is.
+    pub(super) chain: Vec<usize>,
 }
 
 /// Reads workspaces one after the other.
@@ -62,14 +78,14 @@ pub(super) struct Reader<'r, 'x> {
     pub(super) report: &'r mut Report,
     /// The procedures of the file.
     pub(super) procedures: Vec<Procedure<'x>>,
-    /// The steps that call one and are not dealt with yet.
+    /// The steps that call a procedure and have not been handled yet.
     pub(super) callers: Vec<Caller>,
-    /// The procedures within one another that are being read.
+    /// The nested procedures that are being read.
     pub(super) chain: Vec<usize>,
 }
 
 impl<'x> Reader<'_, 'x> {
-    /// A workspace that runs by itself.
+    /// A workspace that runs on its own.
     fn top(&mut self, xml: Xml<'x, 'x>) {
         let name = attr::text(xml, "name").unwrap_or_default();
         let mut sheet = Sheet::new(SheetKind::Top, name, None, attr::head(xml));
@@ -86,14 +102,14 @@ impl<'x> Reader<'_, 'x> {
         self.content(xml, index);
     }
 
-    /// The workspace inside an element, if it has one.
+    /// The workspace within an element, if it has one.
     pub(super) fn inner(&mut self, xml: Xml<'x, 'x>, kind: SheetKind, parent: usize) -> Option<usize> {
         let inside = xml.children().find(|c| c.has_tag_name("GCDocument"))?;
         let name = attr::text(xml, "name").unwrap_or_default();
         let index = self.plan.sheets.len();
         let mut sheet = Sheet::new(kind, name, Some(parent), attr::head(inside));
         if kind == SheetKind::Macro {
-            // The step of a macro-step is put down behind its inside.
+            // The step of a macro-step is added after its workspace.
             sheet.owner = Some((parent, self.plan.sheets.get(parent).map_or(0, |s| s.steps.len())));
         }
         self.plan.sheets.push(sheet);
@@ -181,7 +197,30 @@ impl<'x> Reader<'_, 'x> {
         }
     }
 
-    /// Remembers what an identifier stands for; the first of two keeps it.
+    /// Records a procedure; it is read where it is called.
+    fn procedure(&mut self, xml: Xml<'x, 'x>, sheet: usize) {
+        let name = attr::text(xml, "name").unwrap_or_default().text;
+        self.with(sheet, |s| {
+            s.strangers.insert(name.clone(), "GrafcetProcedure".to_string());
+        });
+        self.procedures.push(Procedure { sheet, name, xml });
+    }
+
+    /// Records a step that calls a procedure; the reader adds the step itself.
+    fn caller(&mut self, xml: Xml<'x, 'x>, sheet: usize) {
+        let caller = Caller {
+            sheet,
+            step: self.plan.sheets.get(sheet).map_or(0, |s| s.steps.len()),
+            name: attr::text(xml, "name").unwrap_or_default(),
+            procedure: attr::text(xml, "grafcetProcedure").unwrap_or_default(),
+            parameters: attr::text(xml, "parameters").unwrap_or_default(),
+            at: attr::head(xml),
+            chain: self.chain.clone(),
+        };
+        self.callers.push(caller);
+    }
+
+    /// Records the object of an identifier; of two with the same one the first wins.
     fn identify(&mut self, xml: Xml<'x, 'x>, sheet: usize, node: Node) {
         let Some(id) = attr::text(xml, "id").filter(|id| !id.text.is_empty()) else { return };
         let Some(known) = self.plan.sheets.get_mut(sheet) else { return };
@@ -206,7 +245,7 @@ impl<'x> Reader<'_, 'x> {
         let index = self.plan.sheets.get(sheet).map_or(0, |s| s.steps.len());
         self.identify(xml, sheet, Node::Step(index));
         self.with(sheet, |s| s.steps.push(step));
-        // Some editors derived from JGrafchart keep more inside a step.
+        // Some editors derived from JGrafchart store more within a step.
         for child in xml.children().filter(Xml::is_element) {
             if !child.has_tag_name("GCDocument") {
                 self.unknown(child);
@@ -250,7 +289,7 @@ impl<'x> Reader<'_, 'x> {
         self.with(sheet, |s| s.links.push(link));
     }
 
-    /// Steps that are one step: texts in a workspace of their own name them.
+    /// A step fusion set: texts in its workspace name the steps.
     fn fusion(&mut self, xml: Xml<'x, 'x>, sheet: usize) {
         let inside = xml.children().find(|c| c.has_tag_name("GCDocument"));
         let mut members = Vec::new();
@@ -265,7 +304,7 @@ impl<'x> Reader<'_, 'x> {
         self.with(sheet, |s| s.fusions.push(Fusion { members, abortive, at: attr::head(xml) }));
     }
 
-    /// A value that a message on a socket brings, or takes away.
+    /// A variable that receives or sends messages on a socket.
     fn socket(&mut self, xml: Xml<'x, 'x>, sheet: usize) {
         let tag = xml.tag_name().name();
         let kind = if tag.ends_with("Out") { VarKind::Output } else { VarKind::Input };
@@ -365,7 +404,7 @@ impl<'x> Reader<'_, 'x> {
         value
     }
 
-    /// An element that is not carried over: reported, kept as a note, never dropped in silence.
+    /// An element that is not carried over: reported and kept as a note.
     fn stranger(&mut self, xml: Xml<'x, 'x>, sheet: usize) {
         let tag = xml.tag_name().name();
         self.identify(xml, sheet, Node::Stranger);
@@ -410,7 +449,7 @@ impl<'x> Reader<'_, 'x> {
         self.report.keep(xml.document().input_text().get(at).unwrap_or(""));
     }
 
-    /// A number from an attribute; absent is fine, unreadable is reported.
+    /// A number from an attribute. A missing one is None; one that cannot be read is reported.
     fn number<N: std::str::FromStr>(&mut self, xml: Xml<'x, 'x>, name: &str) -> Option<N> {
         let text = attr::text(xml, name).filter(|t| !t.text.trim().is_empty())?;
         let number = text.text.trim().parse().ok();
@@ -421,25 +460,10 @@ impl<'x> Reader<'_, 'x> {
         number
     }
 
-    /// A coordinate; drawings do without one, so an unreadable one is 0.
+    /// A coordinate. One that cannot be read is 0, because a drawing is not essential.
     fn pixels(&mut self, xml: Xml<'x, 'x>, name: &str) -> i32 {
         const FAR: f64 = 100_000.0;
         let value = xml.attribute(name).and_then(|v| v.trim().parse::<f64>().ok()).filter(|v| v.is_finite());
         value.map_or(0, |v| v.clamp(-FAR, FAR) as i32)
     }
-}
-
-/// Text from the file, short enough for a message.
-pub(super) fn shown(text: &str) -> String {
-    const LONGEST: usize = 60;
-    let mut short: String = text.chars().take(LONGEST).collect();
-    if short.len() < text.len() {
-        short.push('…');
-    }
-    short
-}
-
-/// The place of a name, or of the element when it has none.
-pub(super) fn name_place(name: &Text, at: &Range<usize>) -> Range<usize> {
-    if name.text.is_empty() { at.clone() } else { name.at.clone() }
 }

@@ -1,46 +1,46 @@
-//! A workspace of the file, in the file's own names and with its own links.
+//! A workspace of the file, with the file's own names and links.
 
 use std::collections::{BTreeMap, HashMap};
 use std::ops::Range;
 
 use g7_model::{Type, VarKind};
 
-use crate::xml::attr::Text;
+use g7_iec::xml::attr::Text;
 
-/// All workspaces of a file; a nested one stands behind the one that holds it.
+/// All workspaces of a file; a nested one comes after the one that contains it.
 #[derive(Default)]
 pub(super) struct Plan {
     pub(super) sheets: Vec<Sheet>,
-    /// The file's first element.
+    /// The first element of the file.
     pub(super) at: Range<usize>,
 }
 
-/// What a workspace belongs to.
+/// The kind of a workspace.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum SheetKind {
     /// A chart of its own.
     Top,
-    /// The inside of a macro-step.
+    /// The content of a macro-step.
     Macro,
-    /// The inside of a workspace object: a name space whose steps run by themselves.
+    /// The content of a workspace object: a name space whose steps run on their own.
     Object,
 }
 
 /// One workspace.
 pub(super) struct Sheet {
     pub(super) kind: SheetKind,
-    /// Its name, or that of the object that holds it; may be empty.
+    /// Its name, or that of the object that contains it; may be empty.
     pub(super) name: Text,
-    /// The workspace around it, where its texts look names up: that which holds it,
-    /// for a procedure that in which the procedure stands.
+    /// The workspace around it, in which its texts look up names: the one that contains it, or for
+    /// a procedure the one where the procedure is declared.
     pub(super) parent: Option<usize>,
-    /// The step that it is the inside of: its workspace and number.
+    /// The step that it belongs to: workspace and number.
     pub(super) owner: Option<(usize, usize)>,
-    /// What is brought along where a procedure is called.
+    /// The parameters, if it is the copy of a called procedure.
     pub(super) call: Option<Call>,
-    /// Time between two scans, in milliseconds, of a top workspace.
+    /// The time between two scans of a top workspace, in milliseconds.
     pub(super) speed: Option<i64>,
-    /// Scans of the workspace around it between two of its own; of a workspace object.
+    /// For a workspace object: one scan of it for so many scans of the workspace around it.
     pub(super) cycle: i64,
     pub(super) at: Range<usize>,
     pub(super) vars: Vec<Var>,
@@ -54,11 +54,11 @@ pub(super) struct Sheet {
     pub(super) fusions: Vec<Fusion>,
     /// Workspace objects: name, index of their workspace.
     pub(super) objects: Vec<(String, usize)>,
-    /// Named objects that are not carried over: name to element.
+    /// Named objects that are not carried over, with the name of the element.
     pub(super) strangers: HashMap<String, String>,
-    /// Parameters by reference: what a name stands for, and in which workspace.
+    /// Parameters by reference: the meaning of a name, with the workspace where it is looked up.
     pub(super) refs: HashMap<String, (usize, Vec<String>)>,
-    /// What an identifier stands for.
+    /// The object of each identifier.
     pub(super) ids: BTreeMap<String, Node>,
 }
 
@@ -89,11 +89,11 @@ impl Sheet {
     }
 }
 
-/// What a link can start or end at.
+/// An object at an end of a line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub(super) enum Node {
     Step(usize),
-    /// A way out of a macro-step with several: the step and the number of the way, from 1.
+    /// An exit of a macro-step with several: the step and the number of the exit, from 1.
     Way(usize, usize),
     Transition(usize),
     /// A parallel split, by its number among the bars.
@@ -102,13 +102,13 @@ pub(super) enum Node {
     Join(usize),
     /// The connection post that lines lead into, by its number among the posts.
     PostIn(usize),
-    /// The connection post that lines lead out of.
+    /// The connection post that lines lead out of, by its number among the posts.
     PostOut(usize),
-    /// Something that is not carried over; it has been reported.
+    /// An object that is not carried over; it has been reported.
     Stranger,
 }
 
-/// What sort of step.
+/// The kind of a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum StepSort {
     Plain,
@@ -123,9 +123,9 @@ pub(super) enum StepSort {
 pub(super) struct StepNode {
     pub(super) sort: StepSort,
     pub(super) name: Text,
-    /// Its texts; several where steps are fused.
+    /// Its texts; several if steps are fused.
     pub(super) actions: Vec<Text>,
-    /// The step that it is one with.
+    /// The step with which it is fused.
     pub(super) fused: Option<usize>,
     pub(super) at: Range<usize>,
     pub(super) x: i32,
@@ -134,7 +134,7 @@ pub(super) struct StepNode {
 
 /// A transition.
 pub(super) struct TransitionNode {
-    /// It leaves its macro-step at any of its steps.
+    /// True for an exception transition, which leaves its macro-step at any of its steps.
     pub(super) exception: bool,
     pub(super) condition: Text,
     pub(super) priority: Option<u32>,
@@ -150,26 +150,26 @@ pub(super) struct FreeText {
     pub(super) y: i32,
 }
 
-/// Steps that are one step.
+/// A set of fused steps.
 pub(super) struct Fusion {
     pub(super) members: Vec<Text>,
     pub(super) abortive: bool,
     pub(super) at: Range<usize>,
 }
 
-/// The call of a procedure, kept with the workspace that it brings about.
+/// The call of a procedure, stored with the workspace that is its copy.
 pub(super) struct Call {
     pub(super) parameters: Text,
-    /// Parameters by value: the variable of the procedure, and where in the text its value stands.
+    /// Parameters by value: the number of the variable, and the expression of its value.
     pub(super) values: Vec<(usize, super::phrase::Phrase)>,
 }
 
 /// A connection post.
 pub(super) struct Post {
     pub(super) name: String,
-    /// The name of the post at the other end, from the top workspace on.
+    /// The name of the post at the other end, starting at the top workspace.
     pub(super) remote: String,
-    /// Lines lead into it.
+    /// True if lines lead into it.
     pub(super) inward: bool,
     pub(super) at: Range<usize>,
 }
@@ -190,16 +190,21 @@ pub(super) struct Var {
     pub(super) channel: Option<Text>,
     pub(super) inverted: bool,
     pub(super) retain: bool,
-    /// It follows this expression, worked out at the beginning of each scan.
+    /// The expression that it follows; it is computed at the beginning of each scan.
     pub(super) follows: Option<Text>,
     pub(super) at: Range<usize>,
 }
 
-/// A value as the file gives it.
+/// A value, as the file gives it.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Value {
     Bool(bool),
     Int(i32),
     Real(f64),
     Str(String),
+}
+
+/// The place of a name, or of the element if it has none.
+pub(super) fn name_place(name: &Text, at: &Range<usize>) -> Range<usize> {
+    if name.text.is_empty() { at.clone() } else { name.at.clone() }
 }

@@ -1,21 +1,21 @@
-//! From the routines of a project to the document.
+//! Builds the document from the routines of a project.
 
 use std::collections::{BTreeMap, HashMap, HashSet};
 
 use g7_model::{
-    Chart, ChartItem, Document, Item, Layout, Path, Profile, ProfileName, Span, Stmt, Switch, Type, VarDecl,
-    VarKind, codes,
+    Chart, ChartItem, Document, Item, Layout, Nanos, Path, Profile, ProfileName, Span, Stmt, Switch, Type,
+    VarDecl, VarKind, codes,
 };
 
 use super::chart::{self, Lines, Read, Xml, kid, kids};
+use super::dialect::{Presets, Words};
 use super::tags::{self, Tags};
-use super::words::{Presets, Words};
-use crate::iec;
-use crate::nodes::{self, Taken};
-use crate::outside;
-use crate::report::Report;
-use crate::walk::{self, Use, Visitor};
-use crate::xml::attr;
+use crate::undeclared;
+use g7_iec::nodes::{self, Taken};
+use g7_iec::report::Report;
+use g7_iec::st;
+use g7_iec::xml::attr;
+use g7_model::visit_mut::{self, Use, Visitor};
 
 /// The document of a file.
 pub(super) fn document(root: Xml, report: &mut Report) -> Document {
@@ -51,21 +51,21 @@ pub(super) fn document(root: Xml, report: &mut Report) -> Document {
     document.items.extend(parts.vars.into_iter().map(Item::Var));
     document.items.extend(parts.charts.into_iter().map(Item::Chart));
     document.items.extend(parts.layouts.into_iter().map(Item::Layout));
-    iec::settle(&mut document);
-    outside::declare(&mut document, report);
-    iec::settle(&mut document);
-    outside::open(&mut document, report);
+    st::settle(&mut document);
+    undeclared::declare(&mut document, report);
+    st::settle(&mut document);
+    undeclared::open(&mut document, report);
     document.notes = report.take_notes();
     document
 }
 
-/// What the charts of one program have around them.
+/// The surroundings of the charts of one program.
 struct Scope<'a> {
     program: Option<Xml<'a>>,
     tags: Tags<'a>,
     presets: Presets,
     routines: HashMap<String, Vec<Stmt>>,
-    /// Routines in text that some chart has called, in capitals.
+    /// The text routines that a chart has called, in upper case.
     called: HashSet<String>,
 }
 
@@ -78,7 +78,7 @@ impl<'a> Scope<'a> {
         Scope { program, tags, presets, routines, called: HashSet::new() }
     }
 
-    /// Routines in text that no chart calls are left out as well.
+    /// Reports text routines that no chart calls; they are left out.
     fn idle(&self, report: &mut Report) {
         let routines = self.program.and_then(|n| kid(n, "Routines"));
         for routine in routines.into_iter().flat_map(|n| kids(n, "Routine")) {
@@ -92,11 +92,11 @@ impl<'a> Scope<'a> {
     }
 }
 
-/// What the document is made of.
+/// The parts of the document.
 #[derive(Default)]
 struct Parts {
     vars: Vec<VarDecl>,
-    /// Places of the variables of the file by name, in capitals.
+    /// The places of the variables of the file, by name in upper case.
     declared: HashMap<String, Span>,
     charts: Vec<Chart>,
     layouts: Vec<Layout>,
@@ -109,12 +109,12 @@ impl Parts {
         let flags = flags.into_iter().map(|n| nodes::variable(VarKind::Output, &n.text, Type::Bool, n.at.0));
         let mut part = Document { items: vec![Item::Chart(chart)], notes: Vec::new() };
         let mut words = Words::new(&scope.presets, &scope.routines, report);
-        walk::document(&mut part, &mut words);
+        visit_mut::document(&mut part, &mut words);
         let called = words.called;
         scope.called.extend(called);
         let vars = used(&mut part, &scope.tags, flags.collect(), report);
-        // A tag is a variable of the file, or of the chart where another program
-        // has another tag of its name.
+        // A tag becomes a variable of the file, or of the chart if another program has a different
+        // tag with this name.
         let mut own = Vec::new();
         for var in vars {
             let key = var.names.first().map_or_else(String::new, |n| n.text.to_uppercase());
@@ -137,7 +137,7 @@ impl Parts {
     }
 }
 
-/// How the controller runs its charts.
+/// The rules by which the controller runs its charts.
 fn switches(controller: Option<Xml>, report: &mut Report) -> Vec<Switch> {
     let mut switches = Vec::new();
     let set = |name: &str| controller.and_then(|n| n.attribute_node(name));
@@ -168,7 +168,7 @@ fn cycle(root: Xml, charts: &[Xml], report: &Report) -> Option<Item> {
         return None;
     }
     let ns: i64 = format!("{:.0}", rate * 1e6).parse().ok()?;
-    Some(Item::Cycle(ns, report.span(&attr::head(task)).into()))
+    Some(Item::Cycle(Nanos::new(ns), report.span(&attr::head(task)).into()))
 }
 
 fn title(content: Xml, taken: &mut Taken) -> String {
@@ -181,7 +181,7 @@ fn title(content: Xml, taken: &mut Taken) -> String {
     if taken.has(&own) { taken.give(&format!("{program}_{own}")) } else { taken.give(&own) }
 }
 
-/// The routines in text beside a chart; those in other languages are left out.
+/// The text routines of a chart's program; those in other languages are left out.
 fn routines(program: Option<Xml>, report: &mut Report) -> HashMap<String, Vec<Stmt>> {
     let mut found = HashMap::new();
     for routine in program.and_then(|n| kid(n, "Routines")).into_iter().flat_map(|n| kids(n, "Routine")) {
@@ -189,7 +189,7 @@ fn routines(program: Option<Xml>, report: &mut Report) -> HashMap<String, Vec<St
         match routine.attribute("Type") {
             Some("SFC") => {}
             Some("ST") => {
-                // Its problems are told where it is called.
+                // Their problems are reported where they are called.
                 let mut silent = Report::new(report.span(&(0..0)).file);
                 found.insert(name.to_uppercase(), Lines::of(Some(routine)).statements(&mut silent));
             }
@@ -204,7 +204,7 @@ fn routines(program: Option<Xml>, report: &mut Report) -> HashMap<String, Vec<St
     found
 }
 
-/// Declarations of the tags that a chart names; aliases become what they stand for.
+/// Declarations of the tags that a chart names; aliases are replaced by their targets.
 fn used(part: &mut Document, tags: &Tags, flags: Vec<VarDecl>, report: &mut Report) -> Vec<VarDecl> {
     struct Aliases<'a, 'b>(&'a Tags<'b>);
     impl Visitor for Aliases<'_, '_> {
@@ -225,9 +225,9 @@ fn used(part: &mut Document, tags: &Tags, flags: Vec<VarDecl>, report: &mut Repo
             self.0.entry(names.join(".").to_uppercase()).or_insert(names);
         }
     }
-    walk::document(part, &mut Aliases(tags));
+    visit_mut::document(part, &mut Aliases(tags));
     let mut found = Found::default();
-    walk::document(part, &mut found);
+    visit_mut::document(part, &mut found);
     let steps: HashSet<String> =
         part.charts().flat_map(|c| c.steps()).map(|s| s.name.text.to_uppercase()).collect();
     let actions: HashSet<String> = part

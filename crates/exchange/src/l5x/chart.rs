@@ -1,21 +1,21 @@
-//! One routine in SFC: its objects, and the lines between them by their numbers.
+//! Reads one SFC routine: its objects, and the lines between them by number.
 
 use std::collections::{HashMap, HashSet};
 use std::ops::Range;
 
 use g7_model::codes;
 use g7_model::{
-    Action, Body, Chart, ChartItem, ChartKind, Expr, Layout, Name, NamedAction, PlaceAt, Placed, Qualifier,
-    Span, Step, Stmt, Target,
+    Action, Body, Chart, ChartItem, ChartKind, Expr, Layout, Name, NamedAction, Nanos, PlaceAt, Placed,
+    Qualifier, Span, Step, Stmt, Target,
 };
 use roxmltree::Node as Element;
 
-use super::words::{self, Presets};
+use super::dialect::{self, Presets};
 use crate::flow::{Flow, Node};
-use crate::iec;
-use crate::nodes::{self, Taken};
-use crate::report::Report;
-use crate::xml::attr::{self, Text};
+use g7_iec::nodes::{self, Taken};
+use g7_iec::report::Report;
+use g7_iec::st;
+use g7_iec::xml::attr::{self, Text};
 
 pub(super) type Xml<'a> = Element<'a, 'a>;
 
@@ -27,15 +27,15 @@ pub(super) fn kid<'a>(node: Xml<'a>, name: &'static str) -> Option<Xml<'a>> {
     kids(node, name).next()
 }
 
-/// A chart with what has to be found for it outside.
+/// A chart with the names that must be declared for it.
 pub(super) struct Read {
     pub(super) chart: Chart,
     pub(super) layout: Layout,
-    /// Outputs of Boolean actions: `Action_000.Q`.
+    /// The outputs of Boolean actions: `Action_000.Q`.
     pub(super) flags: Vec<Name>,
 }
 
-/// The lines of structured text, one behind the other, each with its places.
+/// Lines of structured text joined into one text, each with its place.
 pub(super) struct Lines {
     text: String,
     pieces: Vec<(usize, Text)>,
@@ -69,16 +69,16 @@ impl Lines {
         self.text.trim().is_empty()
     }
 
-    /// As statements; `[:=]` is an assignment here.
+    /// Parses the lines as statements; `[:=]` is read as an assignment.
     pub(super) fn statements(&self, report: &mut Report) -> Vec<Stmt> {
         let place = |part: Range<usize>| self.place(&part);
-        let text = words::retentive(&self.text, &place, report);
-        iec::statements(&text, &place, report)
+        let text = dialect::retentive(&self.text, &place, report);
+        st::statements(&text, &place, report)
     }
 
     fn expression(&self, report: &mut Report) -> Expr {
         let place = |part: Range<usize>| self.place(&part);
-        iec::expression(&self.text, &place, report)
+        st::expression(&self.text, &place, report)
     }
 }
 
@@ -87,7 +87,7 @@ fn milliseconds(node: Xml, name: &str) -> Option<i64> {
     node.attribute(name)?.trim().parse().ok().filter(|n| (0..=i64::from(i32::MAX)).contains(n))
 }
 
-/// Hundredths of the drawing's unit in one of the drawing's pixels.
+/// Hundredths of the drawing's unit per pixel.
 const PER_PIXEL: i32 = 8;
 
 fn spot(node: Xml) -> (i32, i32) {
@@ -99,7 +99,7 @@ fn operand(node: Xml) -> String {
     nodes::line(&node.attribute("Operand").unwrap_or("").replace('`', "'"))
 }
 
-/// The text that describes an element.
+/// The description of an element.
 pub(super) fn description(node: Xml) -> Option<Box<str>> {
     let text = nodes::line(&attr::content(kid(node, "Description")?).text);
     (!text.is_empty()).then(|| text.into())
@@ -158,7 +158,7 @@ pub(super) fn read(content: Xml, title: &str, presets: &mut Presets, report: &mu
     let flow = reader.flow(content, report);
     let places: Vec<Range<usize>> = transitions.iter().map(|n| attr::head(*n)).collect();
     let ends = flow.ends(&places, report);
-    // Of the transitions behind one step, the leftmost is asked first.
+    // Among the transitions behind one step the leftmost is evaluated first.
     let mut order: Vec<usize> = (0..transitions.len()).collect();
     order.sort_by_key(|i| {
         let first = ends.get(*i).and_then(|e| e.from.first().copied());
@@ -204,7 +204,7 @@ struct Reader {
     items: Vec<ChartItem>,
     places: Vec<PlaceAt>,
     flags: Vec<Name>,
-    /// Actions whose bodies are there, in capitals.
+    /// The actions whose bodies are known, in upper case.
     known: HashSet<String>,
 }
 
@@ -290,7 +290,7 @@ impl Reader {
         let own = operand(node);
         let name = Name::new(own.as_str(), at);
         let ms = milliseconds(node, "Preset").or_else(|| presets.actions.get(&own.to_uppercase()).copied());
-        let time = qualifier.timed().then(|| nodes::time(ms.unwrap_or(0).saturating_mul(1_000_000), at));
+        let time = qualifier.timed().then(|| nodes::time(Nanos::from_millis(ms.unwrap_or(0)), at));
         if qualifier.timed() && node.attribute("PresetUsesExpr").is_some_and(|w| w == "true") {
             report.say(&codes::NOT_CARRIED, &range, "a time that is an expression; it is constant here");
         }
@@ -319,7 +319,7 @@ impl Reader {
     }
 }
 
-/// A qualifier by its long name, or its letters.
+/// A qualifier by its long name or its letters.
 fn qualifier(word: &str) -> Option<Qualifier> {
     let plain: String = word.chars().filter(|c| c.is_ascii_alphanumeric()).collect();
     let plain = plain.to_ascii_lowercase().replace("and", "");

@@ -1,12 +1,11 @@
-//! Projects and parts of projects of Studio 5000 Logix Designer (`.L5X`), read
-//! into a [`Document`]: their routines in SFC.
+//! Reads the SFC routines of projects of Studio 5000 Logix Designer (`.L5X`) into a [`Document`].
 //!
 //! # Where this sits
 //!
 //! ```text
 //! bytes -> xml -> chart (steps, transitions, branches of one routine; text -> iec)
-//!              -> words (step members, `[:=]`, JSR)
-//!              -> tags (what the charts name: types, aliases, values)
+//!              -> dialect (step members, `[:=]`, JSR)
+//!              -> tags (the names of the charts: types, aliases, values)
 //!              -> build (Document)
 //! ```
 //!
@@ -14,17 +13,17 @@
 
 mod build;
 mod chart;
+mod dialect;
 mod tags;
-mod words;
 
 use g7_model::{Document, FileId, Problem};
 
-use crate::report::Report;
-use crate::xml;
+use g7_iec::report::Report;
+use g7_iec::xml;
 
-/// Whether an element of this name is the root of such a file.
-pub(crate) fn is_root(name: &str) -> bool {
-    name == "RSLogix5000Content"
+/// True if the first element is the root of such a file.
+pub(crate) fn fits(_: &str, root: Option<&str>, _: &[u8]) -> bool {
+    root == Some("RSLogix5000Content")
 }
 
 /// Reads a project, program or routine.

@@ -7,17 +7,17 @@ use g7_model::codes;
 use g7_model::{Expr, Name, Type, VarDecl, VarKind};
 
 use super::chart::{Xml, description, kid, kids};
-use crate::iec::{self, bits, elementary};
-use crate::nodes;
-use crate::report::Report;
-use crate::xml::attr;
+use g7_iec::nodes;
+use g7_iec::report::Report;
+use g7_iec::st::{self, bits, elementary};
+use g7_iec::xml::attr;
 
-/// Aliases of aliases, and structures in structures.
+/// The longest chain of aliases, and the deepest nesting of structures.
 const DEEPEST: usize = 16;
 
 /// The tags that a chart can name.
 pub(super) struct Tags<'a> {
-    /// Those of the program first, then those of the controller.
+    /// The tags of the program, then those of the controller.
     scopes: Vec<BTreeMap<String, Xml<'a>>>,
     types: HashMap<String, Xml<'a>>,
 }
@@ -41,7 +41,7 @@ impl<'a> Tags<'a> {
         self.scopes.iter().find_map(|s| s.get(&key)).copied()
     }
 
-    /// What an alias of another tag stands for, as names; nothing for an alias of a module's point.
+    /// The target of an alias as names; None for an alias of a module's point.
     pub(super) fn alias(&self, name: &str) -> Option<Vec<String>> {
         let mut here = name.to_string();
         let mut found = None;
@@ -125,7 +125,7 @@ impl<'a> Tags<'a> {
     }
 }
 
-/// The value that a tag has in the file; zero is what it has anyway.
+/// The value of a tag in the file; None for zero, which is the default.
 fn value(tag: Xml, ty: Type, report: &mut Report) -> Option<Expr> {
     let data = kids(tag, "Data").find(|d| d.attribute("Format") == Some("Decorated"))?;
     let value = attr::text(kid(data, "DataValue")?, "Value")?;
@@ -139,11 +139,11 @@ fn value(tag: Xml, ty: Type, report: &mut Report) -> Option<Expr> {
     if ty == Type::Bool {
         return Some(nodes::boolean(true, report.span(&value.at)));
     }
-    Some(iec::expression(&value.text, &place, report))
+    Some(st::expression(&value.text, &place, report))
 }
 
-/// Presets of steps and actions, which the file keeps as values of their tags.
-pub(super) fn presets(tags: &Tags, into: &mut super::words::Presets) {
+/// The presets of steps and actions, which the file stores as values of their tags.
+pub(super) fn presets(tags: &Tags, into: &mut super::dialect::Presets) {
     for scope in tags.scopes.iter().rev() {
         for (name, tag) in scope {
             let list = match tag.attribute("DataType") {

@@ -1,4 +1,4 @@
-//! Actions of a step: a qualifier, perhaps an event, and the words of an operation.
+//! The actions of a step: a qualifier, perhaps an event, and the words of an operation.
 
 use std::collections::HashMap;
 use std::ops::Range;
@@ -8,21 +8,21 @@ use g7_model::{Action, ActionKind, Expr, ExprKind, Path, Qualifier, Span, Stmt, 
 
 use super::network::symbol;
 use super::read::Xml;
-use crate::iec;
-use crate::nodes::{self, assign, boolean, when};
-use crate::report::Report;
-use crate::walk::{self, Use, Visitor};
-use crate::xml::attr;
+use g7_iec::nodes::{self, assign, boolean, when};
+use g7_iec::report::Report;
+use g7_iec::st;
+use g7_iec::xml::attr;
+use g7_model::visit_mut::{self, Use, Visitor};
 
-/// What a step watches and what it is interlocked with.
+/// The supervision and the interlock of a step.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Guards {
     pub(super) interlock: Option<Expr>,
     pub(super) supervision: Option<Expr>,
 }
 
-/// The words of an action as text, with the place of each piece, and names that
-/// no text has.
+/// The words of an action as text, with the place of each piece. Names that a text cannot hold are
+/// replaced by placeholders.
 #[derive(Default)]
 struct Words {
     text: String,
@@ -37,7 +37,7 @@ impl Words {
         self.pieces.push((start..self.text.len(), at.clone()));
     }
 
-    /// A name, behind a word that any parser reads.
+    /// Adds a name as a placeholder that any parser reads.
     fn name(&mut self, names: Vec<String>, at: &Range<usize>) {
         let stand_in = format!("v__{}", self.names.len());
         self.push(&stand_in, at);
@@ -54,7 +54,7 @@ impl Words {
     }
 }
 
-/// Puts the names back.
+/// Replaces the placeholders by the names.
 struct Names<'a>(&'a HashMap<String, Vec<String>>);
 
 impl Visitor for Names<'_> {
@@ -142,9 +142,9 @@ pub(super) fn actions(step: Xml, guards: &Guards, report: &mut Report) -> Vec<Ac
     list
 }
 
-/// What an action does.
+/// The effect of an action.
 enum Deed {
-    /// Names a Boolean, perhaps with a time.
+    /// A Boolean variable, perhaps with a time.
     Variable(Path, Option<Expr>),
     /// Statements.
     Work(Vec<Stmt>),
@@ -191,12 +191,12 @@ fn action(node: Xml, guards: &Guards, report: &mut Report) -> Option<Action> {
     Some(Action { kind, at: at.into() })
 }
 
-/// Reads the words of an action.
+/// Parses the words of an action.
 fn deed(words: &Words, kind: Qualifier, range: &Range<usize>, report: &mut Report) -> Option<Deed> {
     let place = |part: Range<usize>| words.place(&part);
     if words.text.contains(":=") || words.text.contains('(') && kind == Qualifier::N {
-        let mut list = iec::statements(&words.text, &place, report);
-        walk::stmts(&mut list, &mut Names(&words.names));
+        let mut list = st::statements(&words.text, &place, report);
+        visit_mut::stmts(&mut list, &mut Names(&words.names));
         let whole = list.iter().all(|s| matches!(s.kind, StmtKind::Assign { .. } | StmtKind::Call(..)));
         if list.is_empty() || !whole {
             return None;
@@ -207,12 +207,12 @@ fn deed(words: &Words, kind: Qualifier, range: &Range<usize>, report: &mut Repor
         Some((target, time)) => (target, Some((target.len() + 1, time))),
         None => (words.text.as_str(), None),
     };
-    let mut target = iec::expression(target, &place, report);
-    walk::expr(&mut target, &mut Names(&words.names));
+    let mut target = st::expression(target, &place, report);
+    visit_mut::expr(&mut target, &mut Names(&words.names));
     let time = time.map(|(skip, text)| {
         let place = |part: Range<usize>| words.place(&(part.start + skip..part.end + skip));
-        let mut time = iec::expression(text, &place, report);
-        walk::expr(&mut time, &mut Names(&words.names));
+        let mut time = st::expression(text, &place, report);
+        visit_mut::expr(&mut time, &mut Names(&words.names));
         time
     });
     match target.kind {
@@ -225,9 +225,8 @@ fn deed(words: &Words, kind: Qualifier, range: &Range<usize>, report: &mut Repor
     }
 }
 
-/// An action that waits for an event: S1 and S0 the activation and deactivation
-/// of the step, V1 and V0 the begin and end of what is watched, L0 and L1 those
-/// of the interlock.
+/// An action that waits for an event: S1 and S0 are activation and deactivation of the step, V1 and
+/// V0 begin and end of the supervised condition, L0 and L1 those of the interlock.
 fn on_event(
     event: &str,
     kind: Qualifier,

@@ -1,4 +1,4 @@
-//! From a GRAPH block to the document.
+//! Builds the document from a GRAPH block.
 
 use std::collections::BTreeMap;
 
@@ -10,14 +10,14 @@ use g7_model::{
 use super::actions::{Guards, actions};
 use super::network::network;
 use super::read::{self, Sequence, StepNode, Xml, kid, kids, words};
-use crate::iec::{self, bits, elementary};
-use crate::nodes::{self, Taken, boolean};
-use crate::outside;
-use crate::report::Report;
-use crate::walk::{self, Use, Visitor};
-use crate::xml::attr;
+use crate::undeclared;
+use g7_iec::nodes::{self, Taken, boolean};
+use g7_iec::report::Report;
+use g7_iec::st::{self, bits, elementary};
+use g7_iec::xml::attr;
+use g7_model::visit_mut::{self, Use, Visitor};
 
-/// The parameters that every GRAPH block has, and that steer the sequencer itself.
+/// The parameters that every GRAPH block has and that control the sequencer itself.
 const OWN: [&str; 58] = [
     "OFF_SQ",
     "INIT_SQ",
@@ -78,7 +78,7 @@ const OWN: [&str; 58] = [
     "AUTO_ON",
     "MAN_ON",
 ];
-/// More of them.
+/// Further parameters of this kind.
 const MODES: [&str; 2] = ["TAP_ON", "TOP_ON"];
 
 /// The document of a file with a block in GRAPH.
@@ -125,9 +125,9 @@ pub(super) fn document(root: Xml, report: &mut Report) -> Document {
     items.extend((!post.is_empty()).then(|| Item::Post(Body::St(nodes::block(post, at)), at.into())));
     let mut document = Document { items, notes: report.take_notes() };
     addresses(&mut document);
-    iec::settle(&mut document);
-    outside::declare(&mut document, report);
-    iec::settle(&mut document);
+    st::settle(&mut document);
+    undeclared::declare(&mut document, report);
+    st::settle(&mut document);
     document
 }
 
@@ -163,7 +163,7 @@ fn interface(
     vars
 }
 
-/// Declares a member, or those of a structure.
+/// Declares a member, or the members of a structure.
 fn declare(
     member: Xml,
     kind: VarKind,
@@ -181,7 +181,7 @@ fn declare(
         left_out.push((range, name));
         return;
     }
-    // What the sequencer keeps for itself, for each step and for each transition.
+    // The sequencer's own data for each step and each transition.
     if ty.starts_with("G7_") || ty.starts_with("GRAPH_") {
         return;
     }
@@ -215,7 +215,7 @@ fn declare(
     let start = kid(member, "StartValue").map(attr::content).filter(|t| !t.text.trim().is_empty());
     if let Some(text) = start {
         let place = |part: std::ops::Range<usize>| text.place(&part);
-        let value = iec::expression(&text.text, &place, report);
+        let value = st::expression(&text.text, &place, report);
         decl.init = Some(value).filter(|v| nodes::truth(v) != Some(false));
     } else if kind == VarKind::Const {
         decl.init = Some(if known == Type::Bool {
@@ -297,7 +297,7 @@ fn step_names(sequence: &Sequence, report: &mut Report) -> Vec<String> {
     names
 }
 
-/// The supervision and the interlock of a step; several of one sort are alternatives.
+/// The supervision and the interlock of a step; several of the same kind are alternatives.
 fn guards(node: &StepNode, report: &mut Report) -> Guards {
     let mut guards = Guards::default();
     let span = report.span(&node.at);
@@ -322,7 +322,7 @@ fn guards(node: &StepNode, report: &mut Report) -> Guards {
     guards
 }
 
-/// The times of a step are only watched.
+/// Reports the times of a step, which are only supervised.
 fn times(node: &StepNode, report: &mut Report) {
     let set = |name: &str| {
         let word = node.node.attribute(name)?.trim();
@@ -334,7 +334,7 @@ fn times(node: &StepNode, report: &mut Report) {
     }
 }
 
-/// Declares the absolute addresses that are named.
+/// Declares the absolute addresses that are used.
 fn addresses(document: &mut Document) {
     #[derive(Default)]
     struct Found(BTreeMap<String, (bool, Span)>);
@@ -348,7 +348,7 @@ fn addresses(document: &mut Document) {
         }
     }
     let mut found = Found::default();
-    walk::document(document, &mut found);
+    visit_mut::document(document, &mut found);
     let vars = found.0.into_iter().map(|(address, (_, at))| {
         let area = address.chars().nth(1);
         let kind = match area {

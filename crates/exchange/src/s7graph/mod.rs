@@ -1,4 +1,4 @@
-//! S7-GRAPH blocks as TIA Portal's Openness exports them, read into a [`Document`].
+//! Reads S7-GRAPH blocks, as exported by TIA Portal's Openness, into a [`Document`].
 //!
 //! # Where this sits
 //!
@@ -9,10 +9,9 @@
 //!              -> build (Document)
 //! ```
 //!
-//! What a step watches (supervision) holds back the transitions behind it; what
-//! it is interlocked with is the condition of those of its actions that ask for
-//! it. The control inputs of the sequencer's own (modes, acknowledgement) are
-//! left out: it runs in automatic mode.
+//! The supervision of a step blocks the transitions behind it. The interlock of a step is the
+//! condition of those of its actions that ask for it. The control inputs of the sequencer (modes,
+//! acknowledgement) are left out: it runs in automatic mode.
 
 mod actions;
 mod build;
@@ -21,17 +20,17 @@ mod read;
 
 use g7_model::{Document, FileId, Problem, codes};
 
-use crate::report::Report;
-use crate::xml;
+use g7_iec::report::Report;
+use g7_iec::xml;
 
-/// Bytes at the start of a file in which a block of TIA Portal shows itself.
+/// The number of bytes in which a block of TIA Portal is recognised.
 const HEAD: usize = 1 << 16;
 
-/// Whether a file is an export of TIA Portal.
-pub(crate) fn fits(root: &str, bytes: &[u8]) -> bool {
+/// True if a file is an export of TIA Portal.
+pub(crate) fn fits(_: &str, root: Option<&str>, bytes: &[u8]) -> bool {
     let head = bytes.get(..bytes.len().min(HEAD)).unwrap_or(bytes);
     let has = |word: &[u8]| head.windows(word.len()).any(|w| w == word);
-    root == "Document" && (has(b"<SW.Blocks.") || has(b"<Engineering "))
+    root == Some("Document") && (has(b"<SW.Blocks.") || has(b"<Engineering "))
 }
 
 /// Reads a block in the language GRAPH.

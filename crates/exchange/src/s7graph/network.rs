@@ -1,5 +1,5 @@
-//! Networks of contacts, boxes and coils (`FlgNet`): the value that one ends in,
-//! and the statements that it stands for.
+//! Networks of contacts, boxes and coils (`FlgNet`): the value at the end of a network, and its
+//! statements.
 
 use std::collections::HashMap;
 use std::ops::Range;
@@ -8,17 +8,17 @@ use g7_model::codes;
 use g7_model::{BinaryOp, Expr, ExprKind, Span, Stmt, UnaryOp};
 
 use super::read::{Xml, kid, kids};
-use crate::iec;
-use crate::nodes::{self, and, assign, binary, boolean, not, or, when};
-use crate::report::Report;
-use crate::xml::attr;
+use g7_iec::nodes::{self, and, assign, binary, boolean, not, or, when};
+use g7_iec::report::Report;
+use g7_iec::st;
+use g7_iec::xml::attr;
 
-/// Parts visited for one network; a value used twice is worked out twice.
+/// The most parts visited for one network; a value that is used twice is computed twice.
 const MOST_VISITS: usize = 20_000;
-/// Parts one behind the other.
+/// The most parts in series.
 const DEEPEST: usize = 120;
 
-/// Where a wire begins.
+/// The beginning of a wire.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Source<'a> {
     Rail,
@@ -31,15 +31,15 @@ enum Source<'a> {
 pub(super) struct Network<'a> {
     parts: HashMap<&'a str, Xml<'a>>,
     order: Vec<&'a str>,
-    /// Where what leads into a pin comes from.
+    /// The source of each input pin.
     into: HashMap<(&'a str, &'a str), Source<'a>>,
-    /// What a pin leads to: the accesses that it writes.
+    /// The accesses that each output pin writes.
     out: HashMap<(&'a str, &'a str), Vec<&'a str>>,
     left: usize,
     pub(super) at: Range<usize>,
 }
 
-/// The network inside of an element, if it has one.
+/// The network within an element, if it has one.
 pub(super) fn network<'a>(node: Xml<'a>, report: &mut Report) -> Option<Network<'a>> {
     if let Some(other) =
         node.children().find(|n| matches!(n.tag_name().name(), "StatementList" | "StructuredText"))
@@ -69,7 +69,7 @@ pub(super) fn network<'a>(node: Xml<'a>, report: &mut Report) -> Option<Network<
     Some(network)
 }
 
-/// Pins that give a value.
+/// True for pins that give a value.
 fn is_output(pin: &str) -> bool {
     matches!(pin, "out" | "out1" | "eno" | "ENO" | "OUT" | "Q" | "ET" | "q" | "QU" | "QD" | "CV")
 }
@@ -102,7 +102,7 @@ impl<'a> Network<'a> {
         report.span(&attr::head(node))
     }
 
-    /// What kind of part this is.
+    /// The kind of a part.
     fn kind(&self, uid: &str) -> &'a str {
         self.parts.get(uid).map_or("", |n| match n.tag_name().name() {
             "Part" => n.attribute("Name").unwrap_or(""),
@@ -115,7 +115,7 @@ impl<'a> Network<'a> {
         part.is_some_and(|n| kids(*n, "Negated").any(|k| k.attribute("Name") == Some(pin)))
     }
 
-    /// The value that the last coil of a kind gets; `None` where it hangs on the rail alone.
+    /// The value of the last coil of a kind; `None` if it is connected to the rail alone.
     pub(super) fn value(&mut self, coil: &str, report: &mut Report) -> Option<Expr> {
         let uid = *self.order.iter().find(|uid| self.kind(uid) == coil)?;
         match self.into.get(&(uid, "in")) {
@@ -188,7 +188,7 @@ impl<'a> Network<'a> {
         }
     }
 
-    /// What leads into a pin.
+    /// The value at an input pin.
     fn input(&mut self, uid: &str, pin: &str, depth: usize, report: &mut Report) -> Expr {
         let node = self.parts.get(uid).copied();
         let range = node.map_or(self.at.clone(), attr::head);
@@ -204,7 +204,7 @@ impl<'a> Network<'a> {
             Some(Source::Access(access)) => self.access(access, report),
             Some(Source::Pin(from, pin)) => self.output(from, pin, depth + 1, report),
             Some(Source::Open) | None => {
-                // An input that nothing leads to does not hold a box back.
+                // An unconnected enable input does not block a box.
                 boolean(matches!(pin, "en" | "pre"), at)
             }
         };
@@ -280,7 +280,7 @@ impl<'a> Network<'a> {
         if self.negated(uid, pin) { not(value, at) } else { value }
     }
 
-    /// All inputs `in1`, `in2`, … of a box, put together.
+    /// All inputs `in1`, `in2`, … of a box, combined.
     fn joined(
         &mut self,
         uid: &str,
@@ -366,7 +366,7 @@ pub(super) fn access(node: Xml, report: &mut Report) -> Expr {
     if let Some(value) = value {
         let text = attr::content(value);
         let place = |part: Range<usize>| text.place(&part);
-        return iec::expression(&text.text, &place, report);
+        return st::expression(&text.text, &place, report);
     }
     if let Some(address) = kid(node, "Address")
         && let Some(name) = direct(address)

@@ -1,5 +1,5 @@
-//! Elements of a GRAPH block. Its parts have name spaces of several versions, so
-//! only the local names count.
+//! Reads the elements of a GRAPH block. Its parts have name spaces of several versions, so only
+//! local names count.
 
 use std::collections::HashMap;
 use std::ops::Range;
@@ -8,13 +8,13 @@ use g7_model::codes;
 use roxmltree::Node as Element;
 
 use crate::flow::{Ends, Flow, Node};
-use crate::nodes;
-use crate::report::Report;
-use crate::xml::attr;
+use g7_iec::nodes;
+use g7_iec::report::Report;
+use g7_iec::xml::attr;
 
 pub(super) type Xml<'a> = Element<'a, 'a>;
 
-/// The elements directly within that have a name.
+/// The direct children with this name.
 pub(super) fn kids<'a>(node: Xml<'a>, name: &'static str) -> impl Iterator<Item = Xml<'a>> {
     node.children().filter(move |n| n.is_element() && n.tag_name().name() == name)
 }
@@ -23,7 +23,7 @@ pub(super) fn kid<'a>(node: Xml<'a>, name: &'static str) -> Option<Xml<'a>> {
     kids(node, name).next()
 }
 
-/// The first of the languages in which a text is there.
+/// The text in the first language that has one.
 pub(super) fn words(node: Option<Xml>) -> String {
     let texts =
         node.into_iter().flat_map(|n| n.descendants()).filter(|n| n.tag_name().name() == "MultiLanguageText");
@@ -54,7 +54,7 @@ pub(super) struct Sequence<'a> {
     pub(super) at: Range<usize>,
 }
 
-/// The sequence of a `Sequence` element.
+/// Reads a `Sequence` element.
 pub(super) fn sequence<'a>(node: Xml<'a>, report: &mut Report) -> Sequence<'a> {
     let mut numbers: HashMap<(&'static str, String), Node> = HashMap::new();
     let mut steps: Vec<StepNode> = Vec::new();
@@ -88,20 +88,21 @@ pub(super) fn sequence<'a>(node: Xml<'a>, report: &mut Report) -> Sequence<'a> {
     for (transition, ends) in transitions.iter_mut().zip(flow.ends(&places, report)) {
         transition.ends = ends;
     }
-    // Of the transitions behind one step, the left one is asked first.
+    // Among the transitions behind one step the left one is evaluated first.
     let order = flow.order(steps.len(), transitions.len());
-    let mut ordered: Vec<((usize, usize), TransitionNode)> = order.into_iter().zip(transitions).collect();
-    ordered.sort_by_key(|(place, _)| *place);
+    let mut ordered: Vec<(Option<(usize, usize)>, TransitionNode)> =
+        order.into_iter().zip(transitions).collect();
+    ordered.sort_by_key(|(place, _)| (place.is_none(), *place));
     let transitions = ordered.into_iter().map(|(_, t)| t).collect();
     Sequence { title: words(kid(node, "Title")), steps, transitions, at: attr::head(node) }
 }
 
-/// The lines; `EndConnection` leads to the end of the sequence.
+/// Reads the lines; `EndConnection` leads to the end of the sequence.
 fn connections(node: Xml, numbers: &HashMap<(&'static str, String), Node>, report: &mut Report) -> Flow {
     let mut flow = Flow::default();
     let mut list: Vec<Xml> =
         kid(node, "Connections").into_iter().flat_map(|n| kids(n, "Connection")).collect();
-    // The lines of a branch from left to right.
+    // The lines of a branch are sorted from left to right.
     list.sort_by_key(|n| {
         let branch = n.descendants().find(|d| d.tag_name().name() == "BranchRef");
         branch.and_then(|b| b.attribute("Out")).and_then(|o| o.trim().parse::<u32>().ok())
@@ -123,7 +124,7 @@ fn connections(node: Xml, numbers: &HashMap<(&'static str, String), Node>, repor
             report.say(&codes::OPEN_LINK, &at, "a connection without its ends");
             continue;
         };
-        // The end of a sequence: nothing is active behind it.
+        // The end of a sequence: no step is active afterwards.
         if to.tag_name().name() == "EndConnection" {
             continue;
         }

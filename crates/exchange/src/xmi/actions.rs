@@ -1,18 +1,18 @@
-//! Action types and the links that give them to steps, as actions.
+//! Turns action types, and the links that assign them to steps, into actions.
 
 use std::collections::{HashMap, HashSet};
 
 use g7_model::{
-    Action, ActionKind, Expr, ExprKind, Literal, Name, Order, Path, Qualifier, Situation, Span, Stmt,
+    Action, ActionKind, Expr, ExprKind, Literal, Name, Nanos, Order, Path, Qualifier, Situation, Span, Stmt,
     StmtKind, Target, Work, codes,
 };
 
-use super::names::Names;
-use super::read::{Plan, Thing, VarSort, Xml, kind};
-use super::refs::shown;
+use super::naming::Names;
+use super::read::{Plan, Thing, VarSort, kind};
+use super::refs::Xml;
 use super::terms::{Delay, Terms, bad, literal};
-use crate::report::Report;
-use crate::xml::attr;
+use g7_iec::report::{Report, shown};
+use g7_iec::xml::attr;
 
 /// The actions of each step, by chart and number.
 pub(super) type OfSteps = HashMap<(usize, usize), Vec<Action>>;
@@ -39,7 +39,7 @@ pub(super) fn of_steps(plan: &Plan, names: &Names, left: &mut usize, report: &mu
     actions
 }
 
-/// The step and the action that a link ties together.
+/// The step and the action that a link connects.
 fn ends(plan: &Plan, link: Xml, report: &mut Report) -> Option<((usize, usize), usize)> {
     for name in ["step", "actionType"] {
         if link.attribute(name).is_none() {
@@ -112,7 +112,7 @@ impl<'a> Reader<'_, 'a> {
             }
         };
         let delay = self.terms.delay(xml);
-        let timed = |ns: i64| Some(literal(Literal::Time(ns), span));
+        let timed = |time: Nanos| Some(literal(Literal::Time(time), span));
         let (qualifier, time, condition) = match (condition, delay) {
             (None, Delay::None) => (Qualifier::N, None, None),
             // The term of an action without a condition is the activity of its step.
@@ -184,7 +184,7 @@ impl<'a> Reader<'_, 'a> {
         self.terms.read(variable)
     }
 
-    /// What the variable of an action means, without a word where it means nothing.
+    /// The meaning of an action's variable; reports nothing if there is none.
     fn declared(&self, xml: Xml<'a>) -> Option<(Thing, std::ops::Range<usize>)> {
         let text = attr::text(xml, "variableDeclaration")?;
         let target = self.terms.plan.refs.resolve(text.text.trim()).ok()?;

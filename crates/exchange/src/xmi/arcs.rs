@@ -1,17 +1,17 @@
-//! From arcs and synchronisations to the steps before and behind each transition.
+//! Finds the steps before and behind each transition from arcs and synchronisations.
 
 use std::collections::HashSet;
 use std::ops::Range;
 
 use g7_model::codes;
 
-use super::names::Names;
-use super::read::{Plan, Thing, Xml};
-use super::refs::shown;
-use crate::report::Report;
-use crate::xml::attr;
+use super::naming::Names;
+use super::read::{Plan, Thing};
+use super::refs::Xml;
+use g7_iec::report::{Report, shown};
+use g7_iec::xml::attr;
 
-/// Steps named by all transitions of a file; a synchronisation stands for all of its steps.
+/// The most ends of all transitions of a file; a synchronisation counts with all of its steps.
 pub(super) const MOST_ENDS: usize = 400_000;
 
 /// The steps of a transition, by their numbers in the chart.
@@ -21,7 +21,7 @@ pub(super) struct Ends {
     pub(super) to: Vec<usize>,
 }
 
-/// One side of a node: the steps and synchronisations that arcs lead to.
+/// One side of a node: the steps and synchronisations at the other ends of its arcs.
 #[derive(Clone, Debug, Default)]
 struct Side {
     steps: Vec<usize>,
@@ -29,7 +29,7 @@ struct Side {
     transitions: usize,
 }
 
-/// The arcs of a chart, by the nodes that they touch.
+/// The arcs of a chart, by node.
 #[derive(Default)]
 struct Web {
     /// Before and behind each transition.
@@ -38,7 +38,7 @@ struct Web {
     syncs: Vec<(Side, Side)>,
 }
 
-/// The ends of every transition of a chart; `left` is what may still be listed.
+/// The ends of every transition of a chart; `left` is the number that may still be listed.
 pub(super) fn ends(
     plan: &Plan,
     index: usize,
@@ -156,7 +156,7 @@ impl Web {
     }
 }
 
-/// What stands at one end of an arc, when it can.
+/// The node at one end of an arc.
 fn end(plan: &Plan, sheet: usize, arc: Xml, name: &str, report: &mut Report) -> Option<Thing> {
     if arc.attribute(name).is_none() {
         let what = format!("an arc without a `{name}`; it is left out");
@@ -180,7 +180,7 @@ fn end(plan: &Plan, sheet: usize, arc: Xml, name: &str, report: &mut Report) -> 
     Some(thing)
 }
 
-/// What is wrong with a synchronisation by itself.
+/// Reports a synchronisation that is wrong in itself.
 fn judge(xml: Xml, (before, behind): &(Side, Side), report: &mut Report) {
     let at = attr::head(xml);
     let empty = |s: &Side| s.steps.is_empty() && s.syncs.is_empty() && s.transitions == 0;

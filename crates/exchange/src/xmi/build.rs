@@ -1,4 +1,4 @@
-//! From the plan of the file to the document.
+//! Builds the document from the content of the file.
 
 use g7_model::{
     Action, ActionKind, Chart, ChartItem, ChartKind, Document, Item, Name, Note, Order, Profile, ProfileName,
@@ -7,21 +7,21 @@ use g7_model::{
 
 use super::actions::{self, OfSteps};
 use super::arcs::{self, Ends, MOST_ENDS};
-use super::names::{self, Names};
+use super::naming::{self, Names};
 use super::nesting::{self, Nesting};
-use super::read::{Plan, Sheet, StepNode, StepSort, VarSort, Xml};
-use super::refs::shown;
+use super::read::{Plan, Sheet, StepNode, StepSort, VarSort};
+use super::refs::Xml;
 use super::terms::{Delay, MOST_TERMS, Terms, bad};
-use crate::report::Report;
-use crate::xml::attr;
+use g7_iec::report::{Report, shown};
+use g7_iec::xml::attr;
 
-/// How a note begins that keeps the name of the whole file.
+/// The beginning of a note that keeps the name of the whole file.
 pub(super) const NAME_NOTE: &str = "// name: ";
 
 /// The document of a file.
 pub(super) fn document(plan: &Plan, report: &mut Report) -> Document {
     let at = report.span(&plan.at);
-    let names = names::give(plan, report);
+    let names = naming::give(plan, report);
     let nesting = nesting::read(plan, &names, report);
     let mut left = MOST_TERMS;
     let actions = actions::of_steps(plan, &names, &mut left, report);
@@ -44,7 +44,7 @@ struct Builder<'p, 'a> {
     names: &'p Names,
     nesting: Nesting,
     actions: OfSteps,
-    /// Terms and ends of transitions that may still be read.
+    /// The number of terms and ends of transitions that may still be read.
     left: usize,
     ends: usize,
     report: &'p mut Report,

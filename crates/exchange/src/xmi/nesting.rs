@@ -1,26 +1,25 @@
-//! Which step encloses which charts, and the expansion of each macro-step.
+//! Finds the charts that each step encloses, and the expansion of each macro-step.
 
 use std::collections::HashMap;
 
 use g7_model::{Problem, codes};
 
-use super::names::Names;
+use super::naming::Names;
 use super::read::{Plan, StepSort, Thing};
-use super::refs::shown;
-use crate::report::Report;
-use crate::xml::attr;
+use g7_iec::report::{Report, shown};
+use g7_iec::xml::attr;
 
-/// What is nested in each step.
+/// The charts nested in each step.
 pub(super) struct Nesting {
     /// The charts that a step encloses.
     pub(super) enclosed: HashMap<(usize, usize), Vec<usize>>,
     /// The expansion of a macro-step.
     pub(super) expansions: HashMap<(usize, usize), usize>,
-    /// The chart round each chart.
+    /// The chart around each chart.
     outer: HashMap<usize, usize>,
 }
 
-/// Reads what is nested; a chart inside itself is told and not nested.
+/// Reads the nesting. A chart within itself is reported and not nested.
 pub(super) fn read(plan: &Plan, names: &Names, report: &mut Report) -> Nesting {
     let mut nesting = Nesting { enclosed: HashMap::new(), expansions: HashMap::new(), outer: HashMap::new() };
     for (sheet, number) in steps(plan) {
@@ -114,10 +113,10 @@ impl Nesting {
         self.enclosed.entry(step).or_default().push(chart);
     }
 
-    /// Whether a chart would come to stand inside itself.
+    /// True if a chart would be nested within itself.
     fn circle(&self, outer: usize, inner: usize) -> bool {
         let mut here = Some(outer);
-        // No chart is its own outer one, so the way out is no longer than the list.
+        // No chart contains itself, so the path outward is no longer than the list.
         for _ in 0..self.outer.len() + 2 {
             match here {
                 Some(chart) if chart == inner => return true,

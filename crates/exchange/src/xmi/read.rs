@@ -1,4 +1,4 @@
-//! From XML elements to the charts, steps, variables and actions of the file.
+//! Reads the charts, steps, variables and actions of the file from XML elements.
 
 use std::collections::HashMap;
 use std::ops::Range;
@@ -6,30 +6,27 @@ use std::ops::Range;
 use g7_model::{Type, codes};
 use roxmltree::{Document, NodeId};
 
-use super::refs::{self, Refs, shown};
-use crate::report::Report;
-use crate::xml::attr;
+use super::refs::{self, Refs, Xml};
+use g7_iec::report::{Report, shown};
+use g7_iec::xml::attr;
 
-/// An element.
-pub(super) type Xml<'a> = roxmltree::Node<'a, 'a>;
-
-/// What the meta-model calls a chart without a name.
+/// The meta-model's name for a chart without a name.
 pub(super) const DEFAULT_NAME: &str = "GRAFCETChart";
 
-/// All of a file.
+/// The content of a file.
 pub(super) struct Plan<'a> {
-    /// The name of the whole, where it has one.
+    /// The name of the whole file, if it has one.
     pub(super) name: Option<String>,
     pub(super) vars: Vec<Var<'a>>,
     pub(super) sheets: Vec<Sheet<'a>>,
     pub(super) actions: Vec<Xml<'a>>,
     pub(super) refs: Refs<'a>,
-    /// What each element of a chart is.
+    /// The meaning of each element of a chart.
     pub(super) things: HashMap<NodeId, Thing>,
     pub(super) at: Range<usize>,
 }
 
-/// What an element is, by its place in the plan.
+/// The meaning of an element, by its index in the plan.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Thing {
     Var(usize),
@@ -45,11 +42,11 @@ pub(super) struct Var<'a> {
     pub(super) xml: Xml<'a>,
     pub(super) sort: VarSort,
     pub(super) ty: Type,
-    /// The chart that holds it; those of the root are the file's.
+    /// The chart that declares it; None for the file.
     pub(super) sheet: Option<usize>,
 }
 
-/// What a variable is for.
+/// The purpose of a variable.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum VarSort {
     Input,
@@ -78,7 +75,7 @@ pub(super) struct StepNode<'a> {
     pub(super) linked: bool,
 }
 
-/// What sort of step.
+/// The kind of a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum StepSort {
     Plain,
@@ -88,7 +85,7 @@ pub(super) enum StepSort {
     Exit,
 }
 
-/// Reads the file's tree.
+/// Reads the tree of the file.
 pub(super) fn plan<'a>(tree: &'a Document<'a>, report: &mut Report) -> Plan<'a> {
     let root = tree.root_element();
     let name = attr::text(root, "name").map(|n| n.text);
@@ -114,12 +111,12 @@ struct Reader<'a, 'r> {
 }
 
 impl<'a> Reader<'a, '_> {
-    /// A chart, and those inside it.
+    /// Reads a chart and those within it.
     fn sheet(&mut self, xml: Xml<'a>, root: bool) {
         let of_chart = ["steps", "transitions", "synchronizations", "macrosteps", "arcs", "entryStep"];
         let elements = || xml.children().filter(Xml::is_element);
         let empty = match root {
-            // The root holds the variables and the charts, and may be a chart as well.
+            // The root holds the variables and the charts, and may itself be a chart.
             true => !elements().any(|c| of_chart.contains(&c.tag_name().name())),
             false => elements().next().is_none() && xml.attribute("name").is_none(),
         };
@@ -243,7 +240,7 @@ impl<'a> Reader<'a, '_> {
         sheet.steps.push(StepNode { xml, sort, initial, linked });
     }
 
-    /// Something of a chart where no chart is.
+    /// Reports a part of a chart that is outside of any chart.
     fn outside(&mut self, xml: Xml) {
         let tag = xml.tag_name().name();
         let what = format!("`{}` outside a chart is left out", shown(tag));
@@ -283,7 +280,7 @@ impl<'a> Reader<'a, '_> {
         self.plan.vars.push(Var { xml, sort, ty, sheet });
     }
 
-    /// A Boolean attribute, false when absent.
+    /// A Boolean attribute; false if missing.
     fn flag(&mut self, xml: Xml, name: &str) -> bool {
         match xml.attribute(name).map(str::trim) {
             Some("true" | "1") => true,
@@ -301,7 +298,7 @@ impl<'a> Reader<'a, '_> {
         self.report.say(&codes::BAD_VALUE, &at, what);
     }
 
-    /// Says which attributes the meta-model does not have.
+    /// Reports attributes that the meta-model does not have.
     fn attributes(&mut self, xml: Xml, known: &[&str]) {
         for attribute in xml.attributes() {
             let name = attribute.name();
@@ -321,8 +318,8 @@ impl<'a> Reader<'a, '_> {
         }
     }
 
-    /// References to sorts say again what the terms say; where one leads nowhere,
-    /// the file is damaged all the same.
+    /// References to sorts repeat what the terms say; if one leads nowhere, the file is damaged
+    /// nevertheless.
     fn left_over_references(&mut self, root: Xml<'a>) {
         for xml in root.descendants().filter(Xml::is_element) {
             for name in ["sort", "input"] {
@@ -348,12 +345,12 @@ impl<'a> Plan<'a> {
         self.sheets.get(sheet).and_then(|s| s.steps.get(step))
     }
 
-    /// What the one reference of an attribute means; a problem where it means nothing.
+    /// The object of an attribute's single reference; reports a problem if there is none.
     pub(super) fn thing(&self, xml: Xml, name: &str, report: &mut Report) -> Option<(Thing, Range<usize>)> {
         self.things(xml, name, report).into_iter().next()
     }
 
-    /// What the references of an attribute mean.
+    /// The objects of an attribute's references.
     pub(super) fn things(&self, xml: Xml, name: &str, report: &mut Report) -> Vec<(Thing, Range<usize>)> {
         let mut found = Vec::new();
         for reference in refs::list(xml, name) {

@@ -1,20 +1,20 @@
-//! References by place: `//@partialGrafcets.0/@steps.1` is the second `steps` of
-//! the first `partialGrafcets` of the file.
+//! References by position: `//@partialGrafcets.0/@steps.1` is the second `steps` of the first
+//! `partialGrafcets` of the file.
 
 use std::collections::HashMap;
 use std::ops::Range;
 
-use super::read::Xml;
-use crate::xml::attr;
+use g7_iec::report::shown;
+use g7_iec::xml::attr;
 
-/// Longest reference or name that a message repeats.
-const LONGEST: usize = 80;
+/// An element of the file.
+pub(super) type Xml<'a> = roxmltree::Node<'a, 'a>;
 
-/// Every element by its parent and the feature that holds it.
+/// All elements, by their parent and the feature that contains them.
 pub(super) struct Refs<'a> {
     root: Xml<'a>,
     children: HashMap<(roxmltree::NodeId, &'a str), Vec<Xml<'a>>>,
-    /// Elements with an `xmi:id`.
+    /// The elements with an `xmi:id`.
     ids: HashMap<&'a str, Xml<'a>>,
 }
 
@@ -33,7 +33,7 @@ impl<'a> Refs<'a> {
         refs
     }
 
-    /// The element that a reference means, or what is wrong with it.
+    /// The element of a reference, or a description of the mistake.
     pub(super) fn resolve(&self, reference: &str) -> Result<Xml<'a>, String> {
         let path = reference.strip_prefix('#').unwrap_or(reference);
         if path.contains('#') {
@@ -57,7 +57,7 @@ impl<'a> Refs<'a> {
         Ok(here)
     }
 
-    /// One step down, `@steps.1` or `@term`.
+    /// Follows one segment of a path, `@steps.1` or `@term`.
     fn step(&self, here: Xml<'a>, segment: &str, whole: &str) -> Result<Xml<'a>, String> {
         let named = segment.strip_prefix('@').map(|rest| match rest.rsplit_once('.') {
             Some((name, number)) => (name, number.parse::<usize>().ok()),
@@ -77,7 +77,7 @@ impl<'a> Refs<'a> {
 
 /// One reference of an attribute.
 pub(super) struct Reference {
-    /// As written.
+    /// The reference as written.
     pub(super) text: String,
     /// Its place in the file.
     pub(super) at: Range<usize>,
@@ -102,14 +102,4 @@ pub(super) fn list(xml: Xml, name: &str) -> Vec<Reference> {
         }
     }
     found
-}
-
-/// A piece of the file as a message repeats it.
-pub(super) fn shown(text: &str) -> String {
-    let mut short: String =
-        text.chars().take(LONGEST).map(|c| if c.is_control() { ' ' } else { c }).collect();
-    if text.chars().nth(LONGEST).is_some() {
-        short.push('…');
-    }
-    short
 }

@@ -1,27 +1,26 @@
-//! Terms, as expressions.
+//! Turns terms into expressions.
 
-use g7_model::{BinaryOp, Expr, ExprKind, Literal, Span, UnaryOp, codes};
+use g7_model::{BinaryOp, Expr, ExprKind, Literal, Nanos, Span, UnaryOp, codes};
 
-use super::names::Names;
-use super::read::{Plan, Thing, VarSort, Xml, kind};
-use super::refs::shown;
-use crate::report::Report;
-use crate::xml::attr;
+use super::naming::Names;
+use super::read::{Plan, Thing, VarSort, kind};
+use super::refs::Xml;
+use g7_iec::report::{Report, shown};
+use g7_iec::xml::attr;
 
-/// Highest expression that is built; the parser of .g7 reads 500.
+/// The largest height of an expression; the parser of .g7 accepts 500.
 const HIGHEST: usize = 400;
-/// Terms of a file; an action of many steps counts for each.
+/// The most terms of a file; the action of several steps counts for each.
 pub(super) const MOST_TERMS: usize = 400_000;
-const NS_PER_MS: i64 = 1_000_000;
 
 /// Reads the terms of one chart.
 pub(super) struct Terms<'p, 'a> {
     pub(super) plan: &'p Plan<'a>,
     pub(super) names: &'p Names,
     pub(super) report: &'p mut Report,
-    /// Terms that may still be read.
+    /// The number of terms that may still be read.
     pub(super) left: &'p mut usize,
-    /// The chart in which they stand.
+    /// The chart that contains the terms.
     pub(super) sheet: usize,
 }
 
@@ -30,11 +29,11 @@ pub(super) struct Terms<'p, 'a> {
 pub(super) enum Delay {
     None,
     /// `t1/e/t2`.
-    Dependent(i64, i64),
+    Dependent(Nanos, Nanos),
     /// `t1/e`.
-    Delayed(i64),
+    Delayed(Nanos),
     /// `not (t1/e)`.
-    Limited(i64),
+    Limited(Nanos),
 }
 
 impl<'a> Terms<'_, 'a> {
@@ -49,7 +48,7 @@ impl<'a> Terms<'_, 'a> {
         self.term(xml).0
     }
 
-    /// The term and its height.
+    /// A term, with its height.
     fn term(&mut self, xml: Xml<'a>) -> (Expr, usize) {
         let at = attr::head(xml);
         let span = self.report.span(&at);
@@ -99,7 +98,8 @@ impl<'a> Terms<'_, 'a> {
             return (bad(span), 1);
         }
         let parts: Vec<(Expr, usize)> = subterms.into_iter().map(|s| self.term(s)).collect();
-        // Asked before it is built: what is too high could not even be dropped.
+        // Checked before it is built, because an expression that is too high could not even be
+        // dropped.
         let height = parts.iter().map(|p| p.1).max().unwrap_or(0) + parts.len();
         if height > HIGHEST {
             self.report.say(&codes::TOO_DEEP, &at, format!("a term more than {HIGHEST} operators high"));
@@ -167,36 +167,36 @@ impl<'a> Terms<'_, 'a> {
         bad(self.report.span(&at))
     }
 
-    /// How a transition or continuous action delays its term.
+    /// The delay of a transition's or a continuous action's term.
     pub(super) fn delay(&mut self, xml: Xml) -> Delay {
         let unit = match xml.attribute("unit") {
-            None | Some("s" | "second") => 1000 * NS_PER_MS,
-            Some("ms" | "millisecond") => NS_PER_MS,
+            None | Some("s" | "second") => Nanos::SECOND,
+            Some("ms" | "millisecond") => Nanos::MILLISECOND,
             Some(other) => {
                 self.report.say(
                     &codes::BAD_VALUE,
                     &attr::head(xml),
                     format!("the unit `{}`; it is s or ms", shown(other)),
                 );
-                NS_PER_MS
+                Nanos::MILLISECOND
             }
         };
         let t1 = self.time(xml, "delayTime", unit);
         let t2 = self.time(xml, "resetTime", unit);
         match xml.attribute("timeConditionType").unwrap_or("none") {
             "timeDependent" => Delay::Dependent(t1, t2),
-            "timeDelayed" if t2 == 0 => Delay::Delayed(t1),
-            // The generator of the same project hands both times to one block.
+            "timeDelayed" if t2 == Nanos::ZERO => Delay::Delayed(t1),
+            // The generator of the same project passes both times to one block.
             "timeDelayed" => Delay::Dependent(t1, t2),
             "timeLimited" => {
-                if t2 != 0 {
+                if t2 != Nanos::ZERO {
                     let what = "`resetTime` has no effect on what is limited in time; it is left out";
                     self.report.say(&codes::LEFT_OUT, &attr::head(xml), what);
                 }
                 Delay::Limited(t1)
             }
             "none" => {
-                if t1 != 0 || t2 != 0 {
+                if t1 != Nanos::ZERO || t2 != Nanos::ZERO {
                     let what = "the times have no effect: `timeConditionType` is none";
                     self.report.say(&codes::LEFT_OUT, &attr::head(xml), what);
                 }
@@ -211,15 +211,15 @@ impl<'a> Terms<'_, 'a> {
         }
     }
 
-    fn time(&mut self, xml: Xml, name: &str, unit: i64) -> i64 {
+    fn time(&mut self, xml: Xml, name: &str, unit: Nanos) -> Nanos {
         let text = xml.attribute(name).unwrap_or("0").trim();
         match text.parse::<i32>() {
-            Ok(n) if n >= 0 => i64::from(n) * unit,
+            Ok(n) if n >= 0 => unit * i64::from(n),
             _ => {
                 let at = attr::text(xml, name).map_or_else(|| attr::head(xml), |t| t.at);
                 let what = format!("`{name}` is `{}`; it is a whole number, not below 0", shown(text));
                 self.report.say(&codes::BAD_VALUE, &at, what);
-                0
+                Nanos::ZERO
             }
         }
     }
@@ -228,7 +228,7 @@ impl<'a> Terms<'_, 'a> {
 impl Delay {
     /// The term with its delay.
     pub(super) fn around(self, e: Expr, span: Span) -> Expr {
-        let timer = |t1: i64, t2: Option<i64>, e: Expr| Expr {
+        let timer = |t1: Nanos, t2: Option<Nanos>, e: Expr| Expr {
             kind: ExprKind::Timer {
                 t1: Box::new(literal(Literal::Time(t1), span)),
                 e: Box::new(e),
@@ -245,7 +245,7 @@ impl Delay {
     }
 }
 
-/// How subterms go together.
+/// The way to combine subterms.
 #[derive(Clone, Copy)]
 enum Shape {
     Unary(UnaryOp),
@@ -275,7 +275,7 @@ impl Shape {
     }
 }
 
-/// What could not be read; a problem says why.
+/// Stands for a term that could not be read; a problem has been reported.
 pub(super) fn bad(span: Span) -> Expr {
     Expr { kind: ExprKind::Bad, at: span.into() }
 }

@@ -1,6 +1,5 @@
 //! Projects that people drew, where the corpus is at hand.
 
-use g7_exchange::Format;
 use g7_model::Document;
 
 use crate::support::{Bench, corpus, errors, read};
@@ -21,7 +20,7 @@ fn steps(document: &Document) -> usize {
 fn projects_of_the_corpus_come_over_whole() {
     for (name, bytes) in corpus("classicladder", &[".clp", ".clprj"]) {
         let text = String::from_utf8_lossy(&bytes).into_owned();
-        let (document, problems) = read(Format::ClassicLadder, &bytes);
+        let (document, problems) = read("classicladder", &bytes);
         assert_eq!(steps(&document), count(&text, 'S'), "{name}");
         let transitions: usize = document.charts().map(|c| c.transitions().count()).sum();
         assert_eq!(transitions, count(&text, 'T'), "{name}");
@@ -36,7 +35,7 @@ fn projects_of_the_corpus_come_over_whole() {
 fn the_example_with_parallel_branches_goes_round() {
     let files = corpus("classicladder", &["example_sequential.clp"]);
     let Some((_, bytes)) = files.first() else { return };
-    let (document, _) = read(Format::ClassicLadder, bytes);
+    let (document, _) = read("classicladder", bytes);
     let mut bench = Bench::new(&document);
     // Step 0 waits for %B1, which rung 1 sets from the inputs 0, 1 and 2.
     bench.scan();

@@ -1,11 +1,10 @@
 //! Projects made to break the reader.
 
-use g7_exchange::{Format, recognise};
-
 use crate::support::hostile::{changed, refused, survives};
 use crate::support::own;
+use crate::support::recognise;
 
-const FORMAT: Format = Format::ClassicLadder;
+const FORMAT: &str = "classicladder";
 
 #[test]
 fn what_is_no_project_is_refused_with_words() {

@@ -1,12 +1,10 @@
 //! Rungs as Structured Text: what they do, in ClassicLadder's order.
 
-use g7_exchange::Format;
-
 use crate::support::{Bench, errors, lines, own, read};
 
 fn bench(name: &str) -> Bench {
     let bytes = own("classicladder", name);
-    let (document, problems) = read(Format::ClassicLadder, &bytes);
+    let (document, problems) = read("classicladder", &bytes);
     assert!(errors(&problems).is_empty(), "{:?}", lines(&bytes, &problems));
     Bench::new(&document)
 }

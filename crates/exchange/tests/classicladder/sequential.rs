@@ -1,13 +1,12 @@
 //! Pages of steps and transitions, evolving as ClassicLadder has it.
 
-use g7_exchange::Format;
-use g7_model::{Item, ProfileName, Switch};
+use g7_model::{ProfileName, Switch};
 
 use crate::support::{Bench, errors, lines, own, read, text_of};
 
 fn bench(name: &str) -> Bench {
     let bytes = own("classicladder", name);
-    let (document, problems) = read(Format::ClassicLadder, &bytes);
+    let (document, problems) = read("classicladder", &bytes);
     assert!(errors(&problems).is_empty(), "{:?}", lines(&bytes, &problems));
     Bench::new(&document)
 }
@@ -15,7 +14,7 @@ fn bench(name: &str) -> Bench {
 #[test]
 fn a_page_is_a_chart_with_its_steps_by_number() {
     let bytes = own("classicladder", "press.clprj");
-    let (document, problems) = read(Format::ClassicLadder, &bytes);
+    let (document, problems) = read("classicladder", &bytes);
     assert_eq!(lines(&bytes, &problems), Vec::<String>::new());
     let chart = document.charts().next().expect("a chart");
     assert_eq!((&*chart.name.text, chart.comment.as_deref()), ("Press", Some("the press / rest above")));
@@ -30,7 +29,7 @@ fn a_page_is_a_chart_with_its_steps_by_number() {
     {
         assert!(profile.switches.iter().any(|(s, _)| *s == switch), "{switch:?}");
     }
-    assert!(document.items.iter().any(|i| matches!(i, Item::Cycle(20_000_000, _))));
+    assert_eq!(document.cycle(), Some(g7_model::Nanos::from_millis(20)));
     let text = text_of(&document);
     for line in [
         "input start : BOOL at %I0 \"button\"",
@@ -85,7 +84,7 @@ fn a_round_sees_what_it_has_cleared_itself() {
 #[test]
 fn what_has_no_counterpart_is_told_with_its_line() {
     let bytes = own("classicladder", "wrong.clprj");
-    let (_, problems) = read(Format::ClassicLadder, &bytes);
+    let (_, problems) = read("classicladder", &bytes);
     let told = lines(&bytes, &problems);
     for expected in [
         "G0605 5: `ioconf.csv`, which hardware the inputs and outputs are wired to, is left out",

@@ -1,13 +1,12 @@
 //! The grid, the sections and the declarations.
 
-use g7_exchange::Format;
 use g7_model::ProfileName;
 
 use crate::support::{Bench, errors, lines, own, read, text_of};
 
 fn document(name: &str) -> g7_model::Document {
     let bytes = own("controlexpert", name);
-    let (document, problems) = read(Format::ControlExpert, &bytes);
+    let (document, problems) = read("controlexpert", &bytes);
     assert!(errors(&problems).is_empty(), "{:?}", lines(&bytes, &problems));
     document
 }
@@ -92,7 +91,7 @@ fn links_and_macro_steps_come_over() {
 #[test]
 fn what_has_no_counterpart_is_told_with_its_line() {
     let bytes = own("controlexpert", "wrong.xsf");
-    let (_, problems) = read(Format::ControlExpert, &bytes);
+    let (_, problems) = read("controlexpert", &bytes);
     let told = lines(&bytes, &problems);
     for expected in [
         "G0612 9: the qualifier `Q9` is not known",

@@ -1,14 +1,12 @@
 //! Charts that people drew, where the corpus is at hand.
 
-use g7_exchange::Format;
-
 use crate::support::{Bench, corpus, errors, read};
 
 #[test]
 fn charts_of_the_corpus_come_over_whole() {
     for (name, bytes) in corpus("control-expert-xsf", &[".xml", ".XEF"]) {
         let text = String::from_utf8_lossy(&bytes).into_owned();
-        let (document, problems) = read(Format::ControlExpert, &bytes);
+        let (document, problems) = read("controlexpert", &bytes);
         assert!(errors(&problems).is_empty(), "{name}: {:?}", errors(&problems));
         let steps: usize = document.charts().map(|c| c.steps().count()).sum();
         assert_eq!(steps, text.matches("<step ").count(), "{name}");
@@ -28,7 +26,7 @@ fn charts_of_the_corpus_come_over_whole() {
 fn the_packaging_robot_turns_and_moves_its_arms() {
     let files = corpus("control-expert-xsf", &["Packaging_Robot.xml"]);
     let Some((_, bytes)) = files.first() else { return };
-    let (document, _) = read(Format::ControlExpert, bytes);
+    let (document, _) = read("controlexpert", bytes);
     let mut bench = Bench::new(&document);
     bench.set("Belt_running", 0).set("Start_process", 1).scan().scan();
     assert_eq!(bench.active(), ["Rotation"]);

@@ -1,10 +1,9 @@
-//! Charts that people drew, where the corpus is at hand (`G7_CORPUS`, else
-//! `../shared/corpus` beside the repository).
+//! Charts that people drew, from the corpus that `g7_peers` finds.
 
+use crate::support;
+use crate::support::recognise;
 use std::collections::BTreeSet;
-use std::path::PathBuf;
 
-use g7_exchange::{Format, recognise};
 use g7_model::{FileId, Severity};
 
 const FILES: [&str; 5] = [
@@ -14,14 +13,6 @@ const FILES: [&str; 5] = [
     "sugekopp.xml",
     "test_kurz.xml",
 ];
-
-fn folder() -> PathBuf {
-    let root = match std::env::var_os("G7_CORPUS") {
-        Some(path) => PathBuf::from(path),
-        None => [env!("CARGO_MANIFEST_DIR"), "..", "..", "..", "shared", "corpus"].iter().collect(),
-    };
-    root.join("jgrafchart-xml").join("fschimpf").join("examples")
-}
 
 /// How often an element stands in the file, by its opening words.
 fn count(text: &str, tag: &str) -> usize {
@@ -43,16 +34,12 @@ fn named(text: &str, tags: &[&str]) -> BTreeSet<String> {
 
 #[test]
 fn charts_of_the_corpus_come_over_whole() {
-    let folder = folder();
-    if !folder.is_dir() {
-        println!("skipped: no corpus");
-        return;
-    }
+    let Some(folder) = g7_peers::corpus("jgrafchart-xml/fschimpf/examples") else { return };
     for file in FILES {
         let bytes = std::fs::read(folder.join(file)).expect(file);
         let text = String::from_utf8(bytes.clone()).expect(file);
-        assert_eq!(recognise("", &bytes), Some(Format::Jgrafchart), "{file}");
-        let (document, problems) = g7_exchange::import(Format::Jgrafchart, &bytes, FileId(0));
+        assert_eq!(recognise("", &bytes), Some("jgrafchart"), "{file}");
+        let (document, problems) = support::import("jgrafchart", &bytes, FileId(0));
         let errors: Vec<&str> =
             problems.iter().filter(|p| p.severity() == Severity::Error).map(|p| &*p.what).collect();
         assert!(errors.is_empty(), "{file}: {errors:?}");

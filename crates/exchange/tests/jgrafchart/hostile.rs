@@ -1,6 +1,7 @@
 //! Files made to break a reader: it ends soon, with words, never with a panic.
 
-use g7_exchange::{Format, Outlet, recognise};
+use crate::support;
+use crate::support::recognise;
 use g7_model::{Document, FileId, Problem};
 use proptest::prelude::*;
 
@@ -24,7 +25,7 @@ const FILES: [&str; 12] = [
 
 fn read(file: &[u8]) -> (Document, Vec<Problem>) {
     recognise("", file);
-    let (document, problems) = g7_exchange::import(Format::Jgrafchart, file, FileId(0));
+    let (document, problems) = support::import("jgrafchart", file, FileId(0));
     for p in &problems {
         assert!(p.at.start <= p.at.end, "{p:?}");
         assert!(p.at.end as usize <= file.len().max(1), "{p:?}");
@@ -35,8 +36,8 @@ fn read(file: &[u8]) -> (Document, Vec<Problem>) {
 fn import(file: &[u8]) -> (Document, Vec<Problem>) {
     let (document, problems) = read(file);
     // What is written of it is well-formed, and soon there.
-    let written = g7_exchange::export(Outlet::Jgrafchart, &document);
-    let (_, again) = g7_exchange::import(Format::Jgrafchart, written.text.as_bytes(), FileId(1));
+    let written = support::export("jgrafchart", &document);
+    let (_, again) = support::import("jgrafchart", written.text.as_bytes(), FileId(1));
     assert!(again.iter().all(|p| p.code.id != "G0601"), "{again:?}");
     (document, problems)
 }
@@ -63,7 +64,7 @@ fn encodings_other_than_utf_8_are_named() {
     let text = "<?xml version=\"1.0\" encoding=\"UTF-16\"?><GCDocument name=\"J1\"/>";
     let wide = |join: fn(u16) -> [u8; 2]| text.encode_utf16().flat_map(join).collect::<Vec<u8>>();
     for body in [wide(u16::to_le_bytes), wide(u16::to_be_bytes)] {
-        assert_eq!(recognise("", &body), Some(Format::Jgrafchart));
+        assert_eq!(recognise("", &body), Some("jgrafchart"));
         let (_, problems) = import(&body);
         assert_eq!(
             problems.iter().map(|p| &*p.what).collect::<Vec<_>>(),
@@ -72,7 +73,7 @@ fn encodings_other_than_utf_8_are_named() {
     }
     let mut marked = vec![0xFF, 0xFE];
     marked.extend(wide(u16::to_le_bytes));
-    assert_eq!(recognise("", &marked), Some(Format::Jgrafchart));
+    assert_eq!(recognise("", &marked), Some("jgrafchart"));
     assert_eq!(refused(&marked), ["G0001"]);
     let latin = b"<?xml version=\"1.0\" encoding=\"ISO-8859-1\"?><GCDocument name=\"\xE5\"/>";
     let (_, problems) = import(latin);

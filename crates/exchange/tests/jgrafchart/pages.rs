@@ -2,16 +2,16 @@
 //! wrong as they say.
 #![allow(clippy::disallowed_methods, reason = "the pages are read")]
 
+use crate::support;
 use std::path::PathBuf;
 
-use g7_exchange::Format;
 use g7_model::{FileId, codes};
 
 /// The codes that a piece of XML gives; a fragment stands in a workspace.
 fn reported(xml: &str) -> Vec<&'static str> {
     let whole = ["<GCDocument", "<Project"].iter().any(|root| xml.starts_with(root));
     let file = if whole { xml.to_string() } else { format!("<GCDocument name='J1'>{xml}</GCDocument>") };
-    let (_, problems) = g7_exchange::import(Format::Jgrafchart, file.as_bytes(), FileId(0));
+    let (_, problems) = support::import("jgrafchart", file.as_bytes(), FileId(0));
     problems.iter().map(|p| p.code.id).collect()
 }
 

@@ -1,5 +1,6 @@
 //! Whole charts: structure, names, scopes, positions.
 
+use crate::support;
 use g7_model::{ChartKind, Item, Placed, ProfileName, StepKind};
 
 use crate::show::{actions, bytes, chart, import, problems, step, transitions, var, vars};
@@ -8,8 +9,8 @@ use crate::show::{actions, bytes, chart, import, problems, step, transitions, va
 fn the_bead_sorter_comes_over_whole() {
     let (document, found) = import("bead-sorter.xml");
     assert_eq!(document.profile().map(|p| p.name), Some(ProfileName::Jgrafchart));
-    let scan = document.items.iter().find_map(|i| if let Item::Cycle(ns, _) = i { Some(*ns) } else { None });
-    assert_eq!(scan, Some(10_000_000));
+    let scan = document.cycle();
+    assert_eq!(scan, Some(g7_model::Nanos::from_millis(10)));
     assert_eq!(
         vars(&document),
         [
@@ -148,7 +149,7 @@ fn names_are_looked_up_from_the_inside_out() {
     assert_eq!(transitions(chart(&document, "W2_M")), ["#0 -> #1 when W2.X1"]);
     // The file scans as the faster one; the other keeps its pace.
     assert_eq!(chart(&document, "W1").every, None);
-    assert_eq!(chart(&document, "W2").every, Some(40_000_000));
+    assert_eq!(chart(&document, "W2").every, Some(g7_model::Nanos::from_millis(40)));
     assert_eq!(problems(&bytes("workspaces.xml"), &found), Vec::<String>::new());
 }
 
@@ -166,8 +167,7 @@ fn what_is_read_can_be_written_as_text_and_read_again() {
 #[test]
 fn notes_on_what_is_left_out_stand_at_the_head_of_the_text() {
     let file = "<GCDocument name='J1'><GCInitialStep id='a' name='Idle'/><GCRectangle name='*/ frame'/></GCDocument>";
-    let (document, _) =
-        g7_exchange::import(g7_exchange::Format::Jgrafchart, file.as_bytes(), g7_model::FileId(0));
+    let (document, _) = support::import("jgrafchart", file.as_bytes(), g7_model::FileId(0));
     let text = g7_syntax::print(&document, None);
     assert!(text.starts_with("// not carried over: <GCRectangle name='*/ frame'/>\n"), "{text}");
     let (again, found) = g7_syntax::parse(&text, g7_model::FileId(0));

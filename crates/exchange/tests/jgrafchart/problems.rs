@@ -1,6 +1,7 @@
 //! What cannot be carried over is said, with its line.
 
-use g7_exchange::{Format, recognise};
+use crate::support;
+use crate::support::recognise;
 use g7_model::{FileId, Severity};
 
 use crate::show::{actions, bytes, chart, import, problems, step, transitions};
@@ -88,7 +89,7 @@ fn mistakes_of_the_author_have_their_line() {
 
 /// The bytes under a problem.
 fn underlined<'a>(text: &'a str, what: &str) -> &'a str {
-    let (_, found) = g7_exchange::import(Format::Jgrafchart, text.as_bytes(), FileId(7));
+    let (_, found) = support::import("jgrafchart", text.as_bytes(), FileId(7));
     let problem = found.iter().find(|p| p.what.contains(what)).unwrap_or_else(|| panic!("{found:?}"));
     assert_eq!(problem.at.file, FileId(7));
     &text[problem.at.start as usize..problem.at.end as usize]
@@ -112,22 +113,22 @@ fn a_file_of_another_sort_is_refused() {
         ("", "G0601 1: not well-formed XML: the document does not have a root node"),
         ("step 1 { }", "G0601 1: not well-formed XML: unknown token"),
     ] {
-        let (document, found) = g7_exchange::import(Format::Jgrafchart, file.as_bytes(), FileId(0));
+        let (document, found) = support::import("jgrafchart", file.as_bytes(), FileId(0));
         assert_eq!(problems(file.as_bytes(), &found), [what]);
         assert_eq!(document.charts().count(), 0);
-        assert_ne!(recognise("", file.as_bytes()), Some(Format::Jgrafchart));
+        assert_ne!(recognise("", file.as_bytes()), Some("jgrafchart"));
     }
 }
 
 #[test]
 fn charts_are_told_by_their_first_element() {
     for name in ["bead-sorter.xml", "workspaces.xml", "lines.xml"] {
-        assert_eq!(recognise("", &bytes(name)), Some(Format::Jgrafchart), "{name}");
+        assert_eq!(recognise("", &bytes(name)), Some("jgrafchart"), "{name}");
     }
     let marked = b"\xEF\xBB\xBF<?xml version='1.0'?><!-- <x> --> <GCDocument>";
-    assert_eq!(recognise("", marked), Some(Format::Jgrafchart));
-    assert_eq!(recognise("", b"<GCDocument"), Some(Format::Jgrafchart));
-    assert_ne!(recognise("", b"<GCDocumentation/>"), Some(Format::Jgrafchart));
-    assert_ne!(recognise("", b"<!-- <GCDocument> -->"), Some(Format::Jgrafchart));
-    assert_ne!(recognise("", b"chart G { } // <GCDocument"), Some(Format::Jgrafchart));
+    assert_eq!(recognise("", marked), Some("jgrafchart"));
+    assert_eq!(recognise("", b"<GCDocument"), Some("jgrafchart"));
+    assert_ne!(recognise("", b"<GCDocumentation/>"), Some("jgrafchart"));
+    assert_ne!(recognise("", b"<!-- <GCDocument> -->"), Some("jgrafchart"));
+    assert_ne!(recognise("", b"chart G { } // <GCDocument"), Some("jgrafchart"));
 }

@@ -1,12 +1,10 @@
 //! Charts at work: what JGrafchart's language reference says of macro-steps with
 //! exception transitions, procedures, step fusion sets and what comes from outside.
 
-use g7_exchange::Format;
-
 use crate::support::{Bench, errors, lines, own, read};
 
 fn bench(name: &str) -> Bench {
-    let (document, problems) = read(Format::Jgrafchart, &own("jgrafchart", name));
+    let (document, problems) = read("jgrafchart", &own("jgrafchart", name));
     assert_eq!(errors(&problems), Vec::<&str>::new(), "{name}");
     Bench::new(&document)
 }
@@ -14,7 +12,7 @@ fn bench(name: &str) -> Bench {
 /// The problems of a file.
 fn said(name: &str) -> Vec<String> {
     let bytes = own("jgrafchart", name);
-    let (_, problems) = read(Format::Jgrafchart, &bytes);
+    let (_, problems) = read("jgrafchart", &bytes);
     lines(&bytes, &problems)
 }
 

@@ -1,5 +1,6 @@
 //! Documents as short lines to compare with, brackets round every operation.
 
+use crate::support;
 use std::path::PathBuf;
 
 use g7_model::{
@@ -19,7 +20,7 @@ pub(crate) fn bytes(name: &str) -> Vec<u8> {
 
 /// What becomes of it.
 pub(crate) fn import(name: &str) -> (Document, Vec<Problem>) {
-    g7_exchange::import(g7_exchange::Format::Jgrafchart, &bytes(name), FileId(0))
+    support::import("jgrafchart", &bytes(name), FileId(0))
 }
 
 pub(crate) fn chart<'a>(document: &'a Document, name: &str) -> &'a Chart {

@@ -1,12 +1,12 @@
 //! Documents as files of JGrafchart: what is read comes back, what runs runs the
 //! same, what cannot be said is a problem with its place.
 
+use crate::support;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 use g7_compile::Compiled;
 use g7_engine::State;
-use g7_exchange::{Format, Outlet};
 use g7_model::{Document, FileId, Item, Severity};
 
 use crate::support::{corpus, errors, lines, own, text_of};
@@ -26,11 +26,11 @@ const FILES: [&str; 10] = [
 ];
 
 fn comes_back(name: &str, bytes: &[u8]) {
-    let (document, problems) = g7_exchange::import(Format::Jgrafchart, bytes, FileId(0));
+    let (document, problems) = support::import("jgrafchart", bytes, FileId(0));
     assert_eq!(errors(&problems), Vec::<&str>::new(), "{name}");
-    let written = g7_exchange::export(Outlet::Jgrafchart, &document);
+    let written = support::export("jgrafchart", &document);
     assert_eq!(errors(&written.problems), Vec::<&str>::new(), "{name}");
-    let (back, problems) = g7_exchange::import(Format::Jgrafchart, written.text.as_bytes(), FileId(0));
+    let (back, problems) = support::import("jgrafchart", written.text.as_bytes(), FileId(0));
     assert_eq!(errors(&problems), Vec::<&str>::new(), "{name}\n{}", written.text);
     // Notes tell of what the first file had beside its charts.
     if back.items != document.items {
@@ -51,9 +51,8 @@ fn what_is_read_comes_back() {
 
 #[test]
 fn files_have_the_form_of_jgrafchart_s_own() {
-    let (document, _) =
-        g7_exchange::import(Format::Jgrafchart, &own("jgrafchart", "exceptions.xml"), FileId(0));
-    let text = g7_exchange::export(Outlet::Jgrafchart, &document).text;
+    let (document, _) = support::import("jgrafchart", &own("jgrafchart", "exceptions.xml"), FileId(0));
+    let text = support::export("jgrafchart", &document).text;
     let root = "<GCDocument color=\"-1\" dimTicks=\"25\" dpwsInterface=\"\" dpwsPort=\"-1\" horizontalScrollBar=\"1\" modifiable=\"1\" saveVersion=\"8\" simulationMode=\"1\" socketHost=\"\" socketIsServer=\"0\" socketPort=\"-1\" socketSendMode=\"Changed\" tokenLuminance=\"0\" verticalScrollBar=\"1\" name=\"Plant\" threadSpeed=\"40\"";
     for line in [
         "<?xml version=\"1.0\" encoding=\"UTF-8\" standalone=\"yes\"?>",
@@ -213,11 +212,11 @@ fn cases(folder: &str) -> Vec<(String, Document)> {
 fn conformance_cases_run_as_before() {
     let mut carried = Vec::new();
     for (name, document) in cases("jgrafchart").into_iter().chain(cases("litmus")) {
-        let written = g7_exchange::export(Outlet::Jgrafchart, &document);
+        let written = support::export("jgrafchart", &document);
         if written.problems.iter().any(|p| p.severity() == Severity::Error) {
             continue;
         }
-        let (back, problems) = g7_exchange::import(Format::Jgrafchart, written.text.as_bytes(), FileId(0));
+        let (back, problems) = support::import("jgrafchart", written.text.as_bytes(), FileId(0));
         assert_eq!(errors(&problems), Vec::<&str>::new(), "{name}\n{}", written.text);
         runs_the_same(&name, &document, &back);
         carried.push(name);
@@ -249,9 +248,9 @@ fn a_drawing_without_a_layout_is_laid_out() {
          chart G { initial step 1 step 2 step 3 1 -> (2, 3) when a
          (2, 3) -> 1 when not a }",
     );
-    let written = g7_exchange::export(Outlet::Jgrafchart, &document);
+    let written = support::export("jgrafchart", &document);
     assert_eq!(lines(b"", &written.problems), Vec::<String>::new());
-    let (back, problems) = g7_exchange::import(Format::Jgrafchart, written.text.as_bytes(), FileId(0));
+    let (back, problems) = support::import("jgrafchart", written.text.as_bytes(), FileId(0));
     assert_eq!(errors(&problems), Vec::<&str>::new());
     runs_the_same("a fork", &document, &back);
     let layout = back.items.iter().find_map(|i| if let Item::Layout(l) = i { Some(l) } else { None });
@@ -264,7 +263,7 @@ fn a_drawing_without_a_layout_is_laid_out() {
 
 /// The problems of writing a text.
 fn said(text: &str) -> Vec<String> {
-    lines(text.as_bytes(), &g7_exchange::export(Outlet::Jgrafchart, &parse(text)).problems)
+    lines(text.as_bytes(), &support::export("jgrafchart", &parse(text)).problems)
 }
 
 #[test]
@@ -279,7 +278,7 @@ fn what_means_the_same_is_written_with_what_there_is() {
            2 -> 1 when X2 and 2.t > 3 and 2.s >= 0.5
          }
          chart H every 60ms { initial step 9 { P1 n := G.X1.t } }";
-    let written = g7_exchange::export(Outlet::Jgrafchart, &parse(text));
+    let written = support::export("jgrafchart", &parse(text));
     assert_eq!(
         lines(text.as_bytes(), &written.problems),
         [

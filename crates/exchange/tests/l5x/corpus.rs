@@ -1,14 +1,12 @@
 //! Projects that people wrote, where the corpus is at hand.
 
-use g7_exchange::Format;
-
 use crate::support::{Bench, corpus, errors, read};
 
 #[test]
 fn routines_of_the_corpus_come_over_whole() {
     for (name, bytes) in corpus("rockwell-l5x", &[".L5X"]) {
         let text = String::from_utf8_lossy(&bytes).into_owned();
-        let (document, problems) = read(Format::L5x, &bytes);
+        let (document, problems) = read("l5x", &bytes);
         assert!(errors(&problems).is_empty(), "{name}: {:?}", errors(&problems));
         assert_eq!(document.charts().count(), text.matches("<SFCContent").count(), "{name}");
         let steps: usize = document.charts().map(|c| c.steps().count()).sum();
@@ -27,7 +25,7 @@ fn routines_of_the_corpus_come_over_whole() {
 fn the_sorting_chart_waits_for_its_presets() {
     let files = corpus("rockwell-l5x", &["MainProgram.L5X"]);
     let Some((_, bytes)) = files.first() else { return };
-    let (document, _) = read(Format::L5x, bytes);
+    let (document, _) = read("l5x", bytes);
     let mut bench = Bench::new(&document);
     bench.set("pp", 1).set("f0", 1).set("start", 1).scan();
     assert_eq!(bench.active(), ["Step_001"]);

@@ -1,13 +1,12 @@
 //! Charts, tags and text.
 
-use g7_exchange::Format;
 use g7_model::{ProfileName, Switch};
 
 use crate::support::{Bench, errors, lines, own, read, text_of};
 
 fn document() -> g7_model::Document {
     let bytes = own("l5x", "filler.L5X");
-    let (document, problems) = read(Format::L5x, &bytes);
+    let (document, problems) = read("l5x", &bytes);
     assert!(errors(&problems).is_empty(), "{:?}", lines(&bytes, &problems));
     document
 }
@@ -67,7 +66,7 @@ fn the_filler_goes_its_way() {
 #[test]
 fn what_has_no_counterpart_is_told_with_its_line() {
     let bytes = own("l5x", "wrong.L5X");
-    let (document, problems) = read(Format::L5x, &bytes);
+    let (document, problems) = read("l5x", &bytes);
     let told = lines(&bytes, &problems);
     let at = |words: &str| {
         let text = String::from_utf8_lossy(&bytes).into_owned();

@@ -1,13 +1,12 @@
 //! Sequences, networks and actions.
 
-use g7_exchange::Format;
 use g7_model::{ProfileName, Switch};
 
 use crate::support::{Bench, errors, lines, own, read, text_of};
 
 fn document() -> g7_model::Document {
     let bytes = own("s7graph", "press.xml");
-    let (document, problems) = read(Format::S7Graph, &bytes);
+    let (document, problems) = read("s7graph", &bytes);
     assert!(errors(&problems).is_empty(), "{:?}", lines(&bytes, &problems));
     document
 }
@@ -79,7 +78,7 @@ fn the_press_goes_its_way() {
 #[test]
 fn what_has_no_counterpart_is_told_with_its_line() {
     let bytes = own("s7graph", "wrong.xml");
-    let (_, problems) = read(Format::S7Graph, &bytes);
+    let (_, problems) = read("s7graph", &bytes);
     let told = lines(&bytes, &problems);
     for expected in [
         "G0605 7: `strange` is of the type `\"Recipe\"`, which is not known",

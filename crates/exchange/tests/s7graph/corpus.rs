@@ -1,14 +1,12 @@
 //! Blocks that people drew, where the corpus is at hand.
 
-use g7_exchange::Format;
-
 use crate::support::{Bench, corpus, errors, read};
 
 #[test]
 fn blocks_of_the_corpus_come_over_whole() {
     for (name, bytes) in corpus("siemens-graph", &[".xml"]) {
         let text = String::from_utf8_lossy(&bytes).into_owned();
-        let (document, problems) = read(Format::S7Graph, &bytes);
+        let (document, problems) = read("s7graph", &bytes);
         assert!(errors(&problems).is_empty(), "{name}: {:?}", errors(&problems));
         let chart = document.charts().next().expect("a chart");
         assert_eq!(&*chart.name.text, "FB_SEQ_One", "{name}");

@@ -1,11 +1,9 @@
 //! Files made to break the reader.
 
-use g7_exchange::Format;
-
 use crate::support::hostile::{changed, refused, survives};
 use crate::support::own;
 
-const FORMAT: Format = Format::S7Graph;
+const FORMAT: &str = "s7graph";
 
 #[test]
 fn what_is_no_chart_is_refused_with_words() {

@@ -1,14 +1,14 @@
 //! Files made to break a reader: it ends soon, with words, never with a panic.
 
+use super::{import, recognise};
 use std::time::{Duration, Instant};
 
-use g7_exchange::{Format, import, recognise};
 use g7_model::{Document, FileId, Problem};
 use proptest::prelude::*;
 use proptest::test_runner::TestRunner;
 
 /// Reads a file: its problems lie in it, and what came of it goes through the checker.
-pub(crate) fn survives(format: Format, file: &[u8]) -> (Document, Vec<Problem>) {
+pub(crate) fn survives(format: &str, file: &[u8]) -> (Document, Vec<Problem>) {
     recognise("", file);
     let (document, problems) = import(format, file, FileId(0));
     for p in &problems {
@@ -19,7 +19,7 @@ pub(crate) fn survives(format: Format, file: &[u8]) -> (Document, Vec<Problem>) 
 }
 
 /// The codes of a file that gives no chart, soon.
-pub(crate) fn refused(format: Format, file: &[u8]) -> Vec<&'static str> {
+pub(crate) fn refused(format: &str, file: &[u8]) -> Vec<&'static str> {
     let (document, problems) = within(30, || survives(format, file));
     assert_eq!(document.charts().count(), 0);
     problems.iter().map(|p| p.code.id).collect()
@@ -70,7 +70,7 @@ fn apply(file: &mut Vec<u8>, change: &Change) {
 }
 
 /// Reads changed files: `words` are put into them besides bytes and pieces of their own.
-pub(crate) fn changed(format: Format, files: Vec<Vec<u8>>, words: &[&'static str], cases: u32) {
+pub(crate) fn changed(format: &str, files: Vec<Vec<u8>>, words: &[&'static str], cases: u32) {
     changed_for(files, words, (cases, 12), |file| _ = survives(format, file));
 }
 

@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 
 use g7_compile::Compiled;
 use g7_engine::State;
-use g7_exchange::{Format, import, recognise};
+use g7_exchange::Written;
 use g7_model::{Document, FileId, Problem, Severity};
 
 /// A file of `tests/interchange`.
@@ -20,16 +20,11 @@ pub(crate) fn own(folder: &str, name: &str) -> Vec<u8> {
 
 /// The files of a folder of the corpus with one of these endings, by name; none where it is absent.
 pub(crate) fn corpus(folder: &str, endings: &[&str]) -> Vec<(String, Vec<u8>)> {
-    let root = match std::env::var_os("G7_CORPUS") {
-        Some(path) => PathBuf::from(path),
-        None => [env!("CARGO_MANIFEST_DIR"), "..", "..", "..", "shared", "corpus"].iter().collect(),
-    };
+    let Some(root) = g7_peers::corpus(folder) else { return Vec::new() };
     let mut files = Vec::new();
-    collect(&root.join(folder), endings, &mut files);
+    collect(&root, endings, &mut files);
     files.sort();
-    if files.is_empty() {
-        println!("skipped: no corpus");
-    }
+    assert!(!files.is_empty(), "{}: no {endings:?}", root.display());
     files
 }
 
@@ -46,9 +41,24 @@ fn collect(folder: &Path, endings: &[&str], into: &mut Vec<(String, Vec<u8>)>) {
     }
 }
 
+/// The word of the format of which a file is.
+pub(crate) fn recognise(name: &str, bytes: &[u8]) -> Option<&'static str> {
+    g7_exchange::recognise(name, bytes).map(|format| format.word)
+}
+
+/// A file read as one of this format.
+pub(crate) fn import(format: &str, bytes: &[u8], file: FileId) -> (Document, Vec<Problem>) {
+    g7_exchange::named(format).and_then(|f| f.read(bytes, file)).expect("a format that is read")
+}
+
+/// A document written in this format.
+pub(crate) fn export(format: &str, document: &Document) -> Written {
+    g7_exchange::named(format).and_then(|f| f.write(document)).expect("a format that is written")
+}
+
 /// What comes of a file, when it is known as this format; its places lie in the
 /// file, and what is printed reads as the same document.
-pub(crate) fn read(format: Format, bytes: &[u8]) -> (Document, Vec<Problem>) {
+pub(crate) fn read(format: &str, bytes: &[u8]) -> (Document, Vec<Problem>) {
     assert_eq!(recognise("", bytes), Some(format));
     let (document, problems) = import(format, bytes, FileId(0));
     for p in &problems {
@@ -99,7 +109,7 @@ impl Bench {
         let state = State::new(&compiled.program);
         let rows = compiled.program.tables().inputs;
         let inputs = vec![0; (rows.end - rows.start) as usize];
-        let cycle = compiled.symbols.cycle;
+        let cycle = compiled.symbols.cycle.count();
         Bench { compiled, state, inputs, now: 0, cycle }
     }
 

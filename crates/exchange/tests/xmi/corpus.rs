@@ -1,21 +1,13 @@
-//! Charts that people drew, where the corpus is at hand (`G7_CORPUS`, else
-//! `../shared/corpus` beside the repository).
+//! Charts that people drew, from the corpus that `g7_peers` finds.
 
+use crate::support;
+use crate::support::recognise;
 use std::path::{Path, PathBuf};
 
-use g7_exchange::{Format, Outlet, recognise};
 use g7_model::{ActionKind, Document, FileId, Severity};
 
 /// How many charts the corpus has.
 const FILES: usize = 39;
-
-fn folder() -> PathBuf {
-    let root = match std::env::var_os("G7_CORPUS") {
-        Some(path) => PathBuf::from(path),
-        None => [env!("CARGO_MANIFEST_DIR"), "..", "..", "..", "shared", "corpus"].iter().collect(),
-    };
-    root.join("agrafe-xmi")
-}
 
 /// The charts in a folder and below.
 fn charts(folder: &Path, all: &mut Vec<PathBuf>) {
@@ -30,15 +22,19 @@ fn charts(folder: &Path, all: &mut Vec<PathBuf>) {
     }
 }
 
+/// All of them, with their names; none if the corpus is absent.
 fn all() -> Vec<(String, Vec<u8>)> {
+    let Some(folder) = g7_peers::corpus("agrafe-xmi") else { return Vec::new() };
     let mut paths = Vec::new();
-    charts(&folder(), &mut paths);
+    charts(&folder, &mut paths);
     paths.sort();
     let read = |path: &PathBuf| {
-        let name = path.strip_prefix(folder()).expect("a path in the folder").display().to_string();
+        let name = path.strip_prefix(&folder).expect("a path in the folder").display().to_string();
         (name, std::fs::read(path).expect("a file of the corpus"))
     };
-    paths.iter().map(read).collect()
+    let all: Vec<_> = paths.iter().map(read).collect();
+    assert_eq!(all.len(), FILES);
+    all
 }
 
 /// How often an element stands in the file.
@@ -59,16 +55,10 @@ fn whole_links(text: &str) -> usize {
 
 #[test]
 fn charts_of_the_corpus_come_over_whole() {
-    let files = all();
-    if files.is_empty() {
-        println!("skipped: no corpus");
-        return;
-    }
-    assert_eq!(files.len(), FILES);
-    for (name, bytes) in &files {
+    for (name, bytes) in &all() {
         let text = String::from_utf8_lossy(bytes);
-        assert_eq!(recognise("", bytes), Some(Format::Xmi), "{name}");
-        let (document, problems) = g7_exchange::import(Format::Xmi, bytes, FileId(0));
+        assert_eq!(recognise("", bytes), Some("xmi"), "{name}");
+        let (document, problems) = support::import("xmi", bytes, FileId(0));
         let errors: Vec<&str> =
             problems.iter().filter(|p| p.severity() == Severity::Error).map(|p| &*p.what).collect();
         assert!(errors.is_empty(), "{name}: {errors:?}");
@@ -108,11 +98,11 @@ fn printed(document: &Document) -> Document {
 #[test]
 fn charts_of_the_corpus_go_out_and_come_back() {
     for (name, bytes) in all() {
-        let (document, _) = g7_exchange::import(Format::Xmi, &bytes, FileId(0));
+        let (document, _) = support::import("xmi", &bytes, FileId(0));
         assert_eq!(printed(&document), document, "{name}");
-        let written = g7_exchange::export(Outlet::Xmi, &document);
+        let written = support::export("xmi", &document);
         assert_eq!(written.problems, [], "{name}");
-        let (back, problems) = g7_exchange::import(Format::Xmi, written.text.as_bytes(), FileId(0));
+        let (back, problems) = support::import("xmi", written.text.as_bytes(), FileId(0));
         let errors: Vec<_> = problems.iter().filter(|p| p.severity() == Severity::Error).collect();
         assert!(errors.is_empty(), "{name}: {errors:?}");
         assert_eq!(back, document, "{name}");

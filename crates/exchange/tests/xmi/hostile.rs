@@ -1,6 +1,7 @@
 //! Files made to break a reader: it ends soon, with words, never with a panic.
 
-use g7_exchange::{Format, Outlet, recognise};
+use crate::support;
+use crate::support::recognise;
 use g7_model::{Document, FileId, Problem};
 
 use crate::show::bytes;
@@ -11,12 +12,12 @@ const TAIL: &str = "</g:Grafcet>";
 
 fn import(file: &[u8]) -> (Document, Vec<Problem>) {
     recognise("", file);
-    let (document, problems) = g7_exchange::import(Format::Xmi, file, FileId(0));
+    let (document, problems) = support::import("xmi", file, FileId(0));
     for p in &problems {
         assert!(p.at.start <= p.at.end, "{p:?}");
         assert!(p.at.end as usize <= file.len().max(1), "{p:?}");
     }
-    g7_exchange::export(Outlet::Xmi, &document);
+    support::export("xmi", &document);
     (document, problems)
 }
 

@@ -1,8 +1,8 @@
 //! Files of the project, and problems as short lines to compare with.
 
+use crate::support;
 use std::path::PathBuf;
 
-use g7_exchange::Format;
 use g7_model::{Document, FileId, Problem};
 
 /// The bytes of a file of `tests/interchange/xmi`.
@@ -14,7 +14,7 @@ pub(crate) fn bytes(name: &str) -> Vec<u8> {
 
 /// What becomes of an instance.
 pub(crate) fn import(bytes: &[u8]) -> (Document, Vec<Problem>) {
-    g7_exchange::import(Format::Xmi, bytes, FileId(0))
+    support::import("xmi", bytes, FileId(0))
 }
 
 /// A .g7 text without mistakes.

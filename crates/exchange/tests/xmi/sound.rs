@@ -1,13 +1,13 @@
 //! A sound instance means what the .g7 file beside it says.
 
-use g7_exchange::{Format, Outlet, recognise};
-
 use crate::show::{bytes, import, read};
+use crate::support;
+use crate::support::recognise;
 
 #[test]
 fn a_sound_instance_says_what_the_text_beside_it_says() {
     let file = bytes("mixer.grafcet");
-    assert_eq!(recognise("", &file), Some(Format::Xmi));
+    assert_eq!(recognise("", &file), Some("xmi"));
     let (document, problems) = import(&file);
     assert_eq!(problems, []);
     let text = String::from_utf8(bytes("mixer.g7")).expect("UTF-8");
@@ -22,9 +22,9 @@ fn a_sound_instance_says_what_the_text_beside_it_says() {
 #[test]
 fn it_is_written_and_read_again() {
     let (document, _) = import(&bytes("mixer.grafcet"));
-    let written = g7_exchange::export(Outlet::Xmi, &document);
+    let written = support::export("xmi", &document);
     assert_eq!(written.problems, []);
-    assert_eq!(recognise("", written.text.as_bytes()), Some(Format::Xmi));
+    assert_eq!(recognise("", written.text.as_bytes()), Some("xmi"));
     let (back, problems) = import(written.text.as_bytes());
     assert_eq!(problems, []);
     assert_eq!(g7_syntax::print(&back, None), g7_syntax::print(&document, None));

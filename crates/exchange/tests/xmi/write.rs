@@ -1,12 +1,11 @@
 //! What the meta-model cannot hold is said where it stands in the document.
 
-use g7_exchange::Outlet;
-
 use crate::show::{import, lines, read};
+use crate::support;
 
 /// The problems of writing a text, and the text that comes back.
 fn round(text: &str) -> (Vec<String>, String) {
-    let written = g7_exchange::export(Outlet::Xmi, &read(text));
+    let written = support::export("xmi", &read(text));
     let (back, _) = import(written.text.as_bytes());
     (lines(text.as_bytes(), &written.problems), g7_syntax::print(&back, None))
 }

@@ -26,40 +26,41 @@ Exit codes:
   1  the chart cannot be read
   2  bad usage, or something outside the chart: no such file, a full disk";
 
-/// What can be asked of `g7 draw`.
+/// The arguments of `g7 draw`.
 #[derive(clap::Args, Debug)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct Draw {
-    /// A .g7 or JGrafchart file, or a folder with a chart.g7.
+    /// A .g7 file, a file of another tool, or a folder with a chart.g7.
     #[arg(default_value = ".")]
     file: PathBuf,
-    /// Where to: .svg, .png or .pdf, or a folder for a file each; the standard output unless said.
+    /// The file to write (.svg, .png or .pdf), or a folder for one file per chart [default: the
+    /// standard output].
     #[arg(long, short, value_name = "FILE")]
     output: Option<PathBuf>,
-    /// The form, where the name of the output does not say it.
+    /// The format, if the name of the output does not tell it.
     #[arg(long = "as", value_enum, value_name = "FORM")]
     form: Option<Form>,
-    /// Only this chart, expansion or task; may be given several times.
+    /// Draw only this chart, expansion or task; can be given several times.
     #[arg(long = "chart", value_name = "NAME")]
     charts: Vec<String>,
-    /// The manner of drawing.
+    /// The drawing style.
     #[arg(long, value_enum, default_value_t = Manner::Iec60848)]
     look: Manner,
-    /// On pages, as the editor of this PLC has them.
+    /// Divide the drawing into pages like the editor of this PLC.
     #[arg(long, value_enum, value_name = "PLC")]
     pages: Option<Pages>,
-    /// Light on dark.
+    /// Draw light on dark.
     #[arg(long)]
     dark: bool,
-    /// Without the actions of the steps.
+    /// Leave out the actions of the steps.
     #[arg(long)]
     no_actions: bool,
-    /// Pixels of a PNG for each of the picture.
+    /// Pixels of a PNG per pixel of the drawing.
     #[arg(long, default_value_t = 2.0, value_parser = scale, value_name = "NUMBER")]
     scale: f32,
 }
 
-/// The form of a picture.
+/// The format of a picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum Form {
     Svg,
@@ -67,7 +68,7 @@ enum Form {
     Pdf,
 }
 
-/// The manner of drawing.
+/// The drawing style.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum Manner {
     /// GRAFCET, IEC 60848.
@@ -76,7 +77,7 @@ enum Manner {
     Sfc,
 }
 
-/// Whose pages.
+/// The editor whose pages are used.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum Pages {
     /// PL7: 14 lines and 11 columns.
@@ -140,7 +141,7 @@ pub(crate) fn draw(args: &Draw) -> Result<Verdict, Failure> {
     Ok(Verdict::Fine)
 }
 
-/// The charts that are wanted, in the order of the text.
+/// The chosen charts, in the order of the text.
 fn chosen<'a>(args: &Draw, source: &'a Source) -> Result<Vec<&'a Chart>, Failure> {
     let all: Vec<&Chart> = source.document.charts().collect();
     if let Some(name) = args.charts.iter().find(|n| !all.iter().any(|c| *c.name.text == ***n)) {
@@ -155,7 +156,7 @@ fn chosen<'a>(args: &Draw, source: &'a Source) -> Result<Vec<&'a Chart>, Failure
     Ok(all.into_iter().filter(wanted).collect())
 }
 
-/// A folder that is there, or a name that ends as only folders' names do.
+/// True for an existing folder, and for a name that only a folder can have.
 fn is_folder(path: &Path) -> bool {
     path.is_dir() || path.to_string_lossy().ends_with(std::path::MAIN_SEPARATOR)
 }
@@ -171,7 +172,7 @@ fn form(args: &Draw, output: Option<&Path>) -> Result<Form, Failure> {
     }
 }
 
-/// A file for each chart, in a folder. All are made before one is written.
+/// Writes one file per chart into a folder. All pictures are made before the first is written.
 fn each(args: &Draw, drawings: &[Drawing], options: &Options, folder: &Path) -> Result<(), Failure> {
     let form = args.form.unwrap_or(Form::Svg);
     let mut made: Vec<(PathBuf, Vec<u8>)> = Vec::new();
@@ -187,7 +188,7 @@ fn each(args: &Draw, drawings: &[Drawing], options: &Options, folder: &Path) -> 
     made.iter().try_for_each(|(path, bytes)| files::deliver(Some(path), bytes))
 }
 
-/// A chart's name as that of a file: letters, figures, `-` and `_`.
+/// A file name for a chart: letters, digits, `-` and `_`.
 fn file_name(chart: &str) -> String {
     chart.chars().map(|c| if c.is_alphanumeric() || matches!(c, '-' | '_') { c } else { '_' }).collect()
 }

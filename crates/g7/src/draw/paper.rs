@@ -1,4 +1,4 @@
-//! From SVG to what a picture is kept as.
+//! Converts SVG to the format of the output.
 
 use std::sync::Arc;
 
@@ -7,10 +7,10 @@ use resvg::{tiny_skia, usvg};
 use super::Form;
 use crate::failure::Failure;
 
-/// Most pixels of a PNG: 400 MB of memory.
+/// Greatest number of pixels of a PNG: it takes 400 MB of memory.
 const MOST_PIXELS: f64 = 1e8;
 
-/// The bytes of a picture.
+/// The bytes of a picture in a format.
 pub(super) fn print(form: Form, svg: String, scale: f32) -> Result<Vec<u8>, Failure> {
     match form {
         Form::Svg => Ok(svg.into_bytes()),
@@ -19,7 +19,7 @@ pub(super) fn print(form: Form, svg: String, scale: f32) -> Result<Vec<u8>, Fail
     }
 }
 
-/// The picture with its texts set in our own font: no other is looked for.
+/// Parses the SVG; texts use only the bundled font.
 fn tree(svg: &str) -> Result<usvg::Tree, Failure> {
     let mut fonts = usvg::fontdb::Database::new();
     fonts.load_font_data(g7_draw::font().to_vec());

@@ -1,4 +1,4 @@
-//! Runs without a terminal: virtual time, traces, a printed chronogram.
+//! Runs without the terminal view: virtual time, traces, a printed chronogram.
 
 use std::io::{IsTerminal, Write, stdout};
 use std::path::Path;
@@ -14,16 +14,17 @@ use crate::failure::{Failure, Verdict};
 use crate::progress::Progress;
 use crate::sources::Source;
 use crate::{files, style, talk, values};
+use g7_model::Nanos;
 use g7_rig::{Bench, Conflicts, Item, Role};
 
-/// How long it runs where nothing is said.
-const UNSAID: i64 = 10_000_000_000;
-/// Changes kept of a signal where no trace is asked for.
+/// The length of a run if none is given.
+const UNSAID: Nanos = Nanos::from_millis(10_000);
+/// Changes kept for each signal if no trace is written.
 const KEPT: usize = 200_000;
 /// Most lanes of a chronogram.
 const LANES: usize = 40;
 
-/// A trace file's form.
+/// The format of a trace file.
 #[derive(Clone, Copy)]
 enum Form {
     Csv,
@@ -50,10 +51,11 @@ pub(super) fn run(bench: &Bench, source: &Source, args: &Run) -> Result<Verdict,
         runner = runner.with_tape();
     }
     keep::load(bench, &mut runner, args.retain.as_deref())?;
-    // A trace has everything; for a picture the latest changes do, however long it runs.
-    let limit = if trace.is_some() { 0 } else { KEPT };
-    let mut recording = Recording::new(bench.signals()).with_limit(limit);
-    let length = args.duration.unwrap_or(UNSAID);
+    // A trace needs all changes; the chronogram needs only the latest ones, so the memory of a long
+    // run is limited.
+    let whole = Recording::new(bench.signals());
+    let mut recording = if trace.is_some() { whole } else { whole.with_limit(KEPT) };
+    let length = args.duration.unwrap_or(UNSAID).count();
     let mut clock: Box<dyn Clock> =
         if args.real_time { Box::new(WallClock::default()) } else { Box::new(VirtualClock::default()) };
     let mut keeper = Keeper::new(bench, &runner, args.retain.as_deref());
@@ -68,7 +70,7 @@ pub(super) fn run(bench: &Bench, source: &Source, args: &Run) -> Result<Verdict,
         Verdict::Fine
     };
     if runner.missed() > 0 {
-        talk!("{} scans came too late and were left out", runner.missed());
+        talk!("{} scans came too late and were skipped", runner.missed());
     }
     if let Some((path, form)) = trace {
         write_trace(&recording, path, form)?;
@@ -81,7 +83,7 @@ pub(super) fn run(bench: &Bench, source: &Source, args: &Run) -> Result<Verdict,
     Ok(verdict)
 }
 
-/// What is set when: by time, then in the order of the arguments.
+/// The assignments of `--set`, ordered by time, then by their order in the arguments.
 fn script<'b>(bench: &'b Bench, args: &Run) -> Result<Vec<(i64, &'b Item, Value)>, Failure> {
     let mut script = Vec::new();
     for assign in &args.set {
@@ -91,7 +93,7 @@ fn script<'b>(bench: &'b Bench, args: &Run) -> Result<Vec<(i64, &'b Item, Value)
         };
         let value = values::read(&assign.value, item.kind)
             .map_err(|e| Failure::Usage(format!("--set {}: {e}", assign.name)))?;
-        script.push((assign.at, item, value));
+        script.push((assign.at.count(), item, value));
     }
     script.sort_by_key(|(at, ..)| *at);
     Ok(script)
@@ -108,7 +110,7 @@ fn shown(bench: &Bench, args: &Run) -> Result<Vec<usize>, Failure> {
     args.show.iter().map(find).collect()
 }
 
-/// Scans until `length` has passed, the scan at its end included.
+/// Makes scans until `length` has passed, including the scan at its end.
 fn play(
     bench: &Bench,
     runner: &mut Runner,
@@ -163,7 +165,7 @@ fn write_trace(recording: &Recording, path: &Path, form: Form) -> Result<(), Fai
     Ok(())
 }
 
-/// The end of the run, and how it came to it.
+/// Prints the final situation, and the chronogram of the run.
 fn print(
     bench: &Bench,
     runner: &Runner,
@@ -183,7 +185,7 @@ fn print(
         style::STRONG,
         format_time(state.now()),
         state.scans(),
-        format_time(bench.period),
+        format_time(bench.period.count()),
     )?;
     let mut lanes: Vec<usize> = shown.to_vec();
     if lanes.is_empty() {
@@ -196,16 +198,20 @@ fn print(
     let left = lanes.len().saturating_sub(LANES);
     lanes.truncate(LANES);
     let columns = columns(recording, &lanes);
-    let to = recording.end().saturating_add(bench.period);
+    let to = recording.end().saturating_add(bench.period.count());
     let style = Style { columns, from: recording.start(), to, until: to };
     write!(out, "{}", Chronogram::new(recording, lanes, style))?;
     if left > 0 {
-        writeln!(out, "… and {left} more signals that move; --show picks, --trace keeps them all")?;
+        writeln!(
+            out,
+            "… and {left} more signals that changed; --show selects signals, --trace records all of them"
+        )?;
     }
     Ok(out.flush()?)
 }
 
-/// How to set an input, one that is free and if possible a BOOL; nothing where there is none.
+/// Suggests an input to set: one that the plant does not drive, if possible a BOOL; empty if there
+/// is none.
 fn how_to_move(bench: &Bench, runner: &Runner) -> String {
     let inputs = || bench.items.iter().filter(|i| matches!(i.role, Role::Input(_)));
     let free = || inputs().filter(|i| !bench.is_driven(runner, i));
@@ -219,7 +225,7 @@ fn how_to_move(bench: &Bench, runner: &Runner) -> String {
     format!("; `--set {quote}{assign}{quote}` sets an input after 1s")
 }
 
-/// Columns for the lanes: the terminal's width less labels and notes.
+/// The number of columns for the lanes: the width of the terminal without labels and notes.
 fn columns(recording: &Recording, lanes: &[usize]) -> usize {
     let said = || std::env::var("COLUMNS").ok().and_then(|c| c.parse().ok());
     let size = || crossterm::terminal::size().ok().map(|(columns, _)| usize::from(columns));
@@ -230,11 +236,11 @@ fn columns(recording: &Recording, lanes: &[usize]) -> usize {
     width.saturating_sub(label + 20).max(20)
 }
 
-/// Plays a record and holds every state against it.
+/// Replays a record and compares every state.
 pub(super) fn replay(bench: &Bench, args: &Run, path: &Path) -> Result<Verdict, Failure> {
     let text = String::from_utf8(files::read(path)?).unwrap_or_default();
     let Some(tape) = Tape::from_text(&text) else {
-        return Err(Failure::Usage(format!("{} is no record of a run", path.display())));
+        return Err(Failure::Usage(format!("{} is not a record of a run", path.display())));
     };
     let trace = args.trace.as_deref().map(|path| form(path).map(|form| (path, form))).transpose()?;
     let mut recording = Recording::new(bench.signals());

@@ -1,4 +1,4 @@
-//! Retained variables in a file, from run to run.
+//! Keeps retained variables in a file between runs.
 
 use std::path::Path;
 
@@ -12,7 +12,7 @@ fn layout(bench: &Bench) -> Layout {
     Layout { variables: bench.retained().map(row).collect() }
 }
 
-/// Takes over what an earlier run kept: then this start is a warm one.
+/// Loads the values of an earlier run; the start is then a warm one.
 pub(super) fn load(bench: &Bench, runner: &mut Runner, path: Option<&Path>) -> Result<(), Failure> {
     let Some(path) = path else { return Ok(()) };
     match Retained::load(&layout(bench), path) {
@@ -27,7 +27,7 @@ pub(super) fn load(bench: &Bench, runner: &mut Runner, path: Option<&Path>) -> R
     }
 }
 
-/// Writes the retained variables while the charts run, and at the end.
+/// Writes the retained variables during the run and at its end.
 pub(crate) struct Keeper<'a> {
     layout: Layout,
     path: Option<&'a Path>,
@@ -35,7 +35,7 @@ pub(crate) struct Keeper<'a> {
     clock: WallClock,
 }
 
-/// Between two writes: each waits for the disk, nanoseconds.
+/// Least time between two writes, in nanoseconds; each write waits for the disk.
 const PAUSE: i64 = 1_000_000_000;
 
 impl<'a> Keeper<'a> {
@@ -43,8 +43,8 @@ impl<'a> Keeper<'a> {
         Keeper { layout: layout(bench), path, written: runner.retained(), clock: WallClock::default() }
     }
 
-    /// Writes what has changed, once a second at most: no more is lost where
-    /// the run is cut short.
+    /// Writes changed values, at most once a second: if the run is interrupted, no more than that
+    /// is lost.
     pub(crate) fn tick(&mut self, runner: &Runner) -> Result<(), Failure> {
         if self.path.is_none() || self.clock.now() < PAUSE {
             return Ok(());
@@ -56,7 +56,7 @@ impl<'a> Keeper<'a> {
         self.save(runner)
     }
 
-    /// Writes them as they are now.
+    /// Writes the present values.
     pub(crate) fn save(&mut self, runner: &Runner) -> Result<(), Failure> {
         let Some(path) = self.path else { return Ok(()) };
         self.written = runner.retained();

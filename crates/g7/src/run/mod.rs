@@ -1,4 +1,4 @@
-//! `g7 run`: by hand in the terminal, or headless for scripts.
+//! `g7 run`: interactively in the terminal, or without it for scripts.
 
 mod headless;
 mod keep;
@@ -34,7 +34,7 @@ pub(crate) fn run(args: &Run) -> Result<Verdict, Failure> {
     Ok(Verdict::Fine)
 }
 
-/// Compiles, or says what is wrong.
+/// Compiles a source, or prints its problems.
 fn load(source: &Source, args: &Run) -> Result<Option<Bench>, Failure> {
     let options =
         bench::Options { profile: args.profile, scan: args.scan, plant: args.plant.as_deref(), asks: &[] };

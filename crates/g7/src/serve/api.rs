@@ -1,5 +1,5 @@
-//! Files over HTTP: listed, read, written, with the hash of what is known in
-//! `If-Match`; copies of unsaved work.
+//! Files over HTTP: listing, reading, writing (with the known hash in `If-Match`), and copies of
+//! unsaved work.
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -20,9 +20,9 @@ use super::refusal::Refusal;
 
 type Answer = Result<Response, Refusal>;
 
-/// Bodies read at a time: so much memory, and no more.
+/// Greatest number of bodies read at the same time; this bounds the memory.
 static BODIES: Semaphore = Semaphore::const_new(4);
-/// Longest that a body may take.
+/// Longest time that a body may take.
 const SLOWEST: Duration = Duration::from_secs(30);
 
 /// The addresses below `/api`.
@@ -145,7 +145,7 @@ async fn drop_draft(State(shared): State<Shared>, Query(at): Query<At>) -> Answe
     Ok(StatusCode::NO_CONTENT.into_response())
 }
 
-/// Bytes of a file; as plain text, so that no browser runs what is in it.
+/// The bytes of a file, declared as plain text so that no browser executes them.
 fn text(status: StatusCode, bytes: Vec<u8>) -> Response {
     let head = [
         (header::CONTENT_TYPE, "text/plain; charset=utf-8".to_owned()),
@@ -155,7 +155,7 @@ fn text(status: StatusCode, bytes: Vec<u8>) -> Response {
     (status, head, bytes).into_response()
 }
 
-/// What the file must be, by the headers.
+/// The required state of the file, from the headers.
 fn wanted(headers: &HeaderMap) -> Result<Wanted, Refusal> {
     let of = |name| headers.get(name).and_then(|v| v.to_str().ok()).map(str::trim);
     match (of(header::IF_MATCH), of(header::IF_NONE_MATCH)) {
@@ -178,7 +178,7 @@ async fn json_body<T: for<'a> Deserialize<'a>>(request: Request) -> Result<T, Re
     serde_json::from_slice(&bytes).map_err(|e| Refusal::bad(format!("this request means nothing: {e}")))
 }
 
-/// A body of bounded size, in a bounded time.
+/// Reads a body of limited size in a limited time.
 async fn body(request: Request) -> Result<Vec<u8>, Refusal> {
     let too_large = || {
         let text = format!("this is larger than {} MB: nothing was written", LARGEST >> 20);
@@ -200,7 +200,7 @@ async fn body(request: Request) -> Result<Vec<u8>, Refusal> {
     }
 }
 
-/// Disks are slow: what waits for one does not hold up the others.
+/// Runs work that waits for a disk on another thread, so that other requests go on.
 async fn aside<T: Send + 'static>(
     work: impl FnOnce() -> Result<T, Refusal> + Send + 'static,
 ) -> Result<T, Refusal> {

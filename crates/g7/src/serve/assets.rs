@@ -1,5 +1,4 @@
-//! The page itself: built into the binary, or read from a folder while it is
-//! being worked on.
+//! The web page: contained in the binary, or read from a folder during its development.
 
 use std::borrow::Cow;
 use std::path::Path;
@@ -11,13 +10,13 @@ use rust_embed::RustEmbed;
 
 use super::Shared;
 
-/// The built page; empty where it was not built before the binary.
+/// The built page; empty if the page was not built before the binary.
 #[derive(RustEmbed)]
 #[folder = "../../web/dist"]
 #[allow_missing = true]
 struct Built;
 
-/// What `/` says without a page.
+/// The answer to `/` if there is no page.
 const NONE: &str = "<!doctype html><html lang=\"en\"><meta charset=\"utf-8\"><title>G7</title>\
     <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\
     <style>body{font:16px/1.5 system-ui,sans-serif;max-width:36em;margin:4em auto;padding:0 1em;\
@@ -27,7 +26,7 @@ const NONE: &str = "<!doctype html><html lang=\"en\"><meta charset=\"utf-8\"><ti
     <p><code>make web</code> builds the page; then build <code>g7</code> again, \
     or <code>make run</code> does both.</p>";
 
-/// A file of the page.
+/// Answers with a file of the page.
 pub(super) async fn asset(State(shared): State<Shared>, uri: Uri, headers: HeaderMap) -> Response {
     let path = match uri.path().trim_start_matches('/') {
         "" => "index.html",
@@ -45,7 +44,7 @@ pub(super) async fn asset(State(shared): State<Shared>, uri: Uri, headers: Heade
         return (StatusCode::NOT_FOUND, "there is nothing at this address").into_response();
     };
     let tag = format!("\"{}\"", super::hash(&bytes));
-    // Names below `assets` change with what they hold.
+    // Names below `assets` change with their contents.
     let keep = if path.starts_with("assets/") { "public, max-age=31536000, immutable" } else { "no-cache" };
     let head = [
         (header::CONTENT_TYPE, kind(path).to_owned()),

@@ -1,8 +1,8 @@
-//! Opens the user's browser, where there is a screen for it.
+//! Opens the user's browser if there is a screen.
 
 use std::process::{Command, Stdio};
 
-/// Tries; the address is printed in any case.
+/// Tries to open an address; it is printed in any case.
 pub(super) fn open(address: &str) {
     if !has_screen() {
         return;
@@ -18,7 +18,7 @@ pub(super) fn open(address: &str) {
     let child =
         Command::new(program).args(args).arg(address).stdin(quiet()).stdout(quiet()).stderr(quiet()).spawn();
     if let Ok(mut child) = child {
-        // Waited for, so that nothing of it is left behind.
+        // Wait for the process, so that no zombie is left behind.
         std::thread::spawn(move || child.wait());
     }
 }
@@ -26,7 +26,7 @@ pub(super) fn open(address: &str) {
 fn has_screen() -> bool {
     let set = |name: &str| std::env::var_os(name).is_some_and(|v| !v.is_empty());
     if cfg!(any(windows, target_os = "macos")) {
-        // Over a network the screen is elsewhere.
+        // Over SSH the screen belongs to another machine.
         return !set("SSH_CONNECTION");
     }
     set("DISPLAY") || set("WAYLAND_DISPLAY")

@@ -1,9 +1,8 @@
-//! One run at work: its page, its pace, those who watch it.
+//! One shared run: its page, its speed, and the pages that watch it.
 //!
-//! What must hold: frames leave in the order of what they tell, to every
-//! watcher, so that all see the same; the pace follows absolute instants of the
-//! wall clock, whoever asks what in between; a run too heavy for its speed goes
-//! slower, and stays answerable.
+//! Frames are sent to every watcher in the order of the events, so that all see the same. The speed
+//! follows absolute instants of the wall clock, whatever messages come in between. A run that is
+//! too heavy for its speed becomes slower but still answers.
 
 use std::sync::mpsc::{Receiver, RecvTimeoutError};
 use std::sync::{Arc, Weak};
@@ -18,41 +17,41 @@ use serde_json::json;
 use serde_json::value::RawValue;
 
 use super::outbox::Outbox;
-use super::runs::{Order, Runs, What};
+use super::registry::{Order, Registry, What};
 
-/// Nanoseconds between two looks at a run that goes by itself: 25 a second.
+/// Time between two advances of a running run, in nanoseconds: 25 advances a second.
 const TICK: i64 = 40_000_000;
-/// In which only the time has changed, every so many looks are shown.
+/// If only the time has changed, every n-th advance is shown.
 const QUIET: u32 = 5;
-/// Most scans of a look.
+/// Greatest number of scans of one advance.
 const SCANS: u32 = 20_000;
-/// Largest answer, in bytes.
+/// Greatest length of an answer, in bytes.
 const LARGEST: usize = 16 << 20;
 
 /// A run, its clock and its watchers.
 pub(super) struct Desk {
     run: Arc<str>,
     number: u64,
-    runs: Arc<Runs>,
+    registry: Arc<Registry>,
     page: Page,
     watchers: Vec<Weak<Outbox>>,
-    /// Whether the page has the run.
+    /// True while the page has the run.
     started: bool,
     speed: f64,
-    /// Goes at the speed of the run.
+    /// A clock that runs at the speed of the run.
     clock: WallClock,
-    /// Of that clock: up to where the run was taken.
+    /// The time of `clock` up to which the run was advanced.
     given: i64,
     wall: WallClock,
-    /// Instant of the wall at which the run is looked at next.
+    /// The instant of the wall clock at which the run is advanced next.
     due: i64,
-    /// Scans of a look, so that a look stays short.
+    /// Greatest number of scans in the next advance; adapted so that an advance stays short.
     most: u32,
-    /// Looks that showed nothing new.
+    /// Number of advances since the last frame was shown.
     quiet: u32,
 }
 
-/// What is looked at in a frame.
+/// The parts of a frame that the server needs to know.
 #[derive(Deserialize)]
 struct Peek {
     now_ms: f64,
@@ -84,13 +83,13 @@ impl Peek {
 }
 
 impl Desk {
-    pub(super) fn new(run: Arc<str>, number: u64, runs: Arc<Runs>) -> Desk {
+    pub(super) fn new(run: Arc<str>, number: u64, registry: Arc<Registry>) -> Desk {
         let mut clock = WallClock::default();
         clock.hold(true);
         Desk {
             run,
             number,
-            runs,
+            registry,
             page: Page::new(),
             watchers: Vec::new(),
             started: false,
@@ -104,7 +103,7 @@ impl Desk {
         }
     }
 
-    /// Works until the run is stopped.
+    /// Processes orders until the run is stopped.
     pub(super) fn work(mut self, orders: &Receiver<Order>) {
         loop {
             let order = if self.speed == 0.0 {
@@ -118,7 +117,8 @@ impl Desk {
                     let answer = self.answer(&by, what);
                     by.put(answered(id, &answer));
                     if !self.started {
-                        // Told before the page goes on: its next call may start the run again.
+                        // Watchers are told first, because the next call of the page may start the
+                        // run again.
                         self.end();
                         done.send(()).ok();
                         return;
@@ -129,7 +129,7 @@ impl Desk {
                 Err(RecvTimeoutError::Timeout) => {}
                 Err(RecvTimeoutError::Disconnected) => return,
             }
-            // However many ask: the run is taken on when it is due.
+            // The run is advanced when it is due, however many orders come in.
             if self.speed > 0.0 && self.wall.now() >= self.due {
                 self.look();
             }
@@ -163,14 +163,15 @@ impl Desk {
         }
     }
 
-    /// A message of a page for the page of the run.
+    /// Passes a message of a client to the page of the run.
     fn call(&mut self, by: &Arc<Outbox>, message: &str, text: Option<String>) -> String {
         let Ok(mut wish) = serde_json::from_str::<serde_json::Map<_, _>>(message) else {
             return no("this message means nothing");
         };
         let what = wish.get("do").and_then(|w| w.as_str()).unwrap_or_default().to_owned();
         if what == "run_frame" && wish.get("full").is_some_and(|f| f == true) {
-            // A full frame takes back what was told: the others are told before.
+            // A full frame resets what the page regards as sent, so the others must get their
+            // changes first.
             self.flush(None);
             return self.page.call(message);
         }
@@ -179,7 +180,7 @@ impl Desk {
             self.spread(by, &what, &answer);
             return answer;
         };
-        // The file is open for no longer than the run needs it.
+        // The file is open only as long as the run needs it.
         let file = wish.get("file").and_then(|f| f.as_str()).unwrap_or_default().to_owned();
         let opened = self.page.call(&json!({ "do": "open", "file": file, "text": text }).to_string());
         let Some(Opened { file: open }) = ok(&opened).and_then(|v| serde_json::from_str(v.get()).ok()) else {
@@ -197,7 +198,7 @@ impl Desk {
         }
     }
 
-    /// Tells the others what came of a call.
+    /// Sends the effects of a call to the other watchers.
     fn spread(&mut self, by: &Arc<Outbox>, what: &str, answer: &str) {
         let Some(told) = ok(answer) else { return };
         match what {
@@ -225,7 +226,7 @@ impl Desk {
         }
     }
 
-    /// A run that has begun, or goes on in a changed chart.
+    /// Announces a run that has started or continues with a changed chart.
     fn head(&mut self, by: &Arc<Outbox>, told: &RawValue) {
         #[derive(Deserialize)]
         struct Started {
@@ -233,13 +234,13 @@ impl Desk {
             #[serde(rename = "signals")]
             _signals: IgnoredAny,
         }
-        // Where something would be lost, nothing has begun.
+        // If a change would lose something, the answer lists the losses and no run has started.
         let Ok(started) = serde_json::from_str::<Started>(told.get()) else { return };
-        self.runs.tell(&self.run, self.number, |card| card.file = started.file);
+        self.registry.tell(&self.run, self.number, |card| card.file = started.file);
         self.notice(Some(by), &format!(r#"{{"started":{told}}}"#));
     }
 
-    /// Takes the run to where its clock is.
+    /// Advances the run to the time of its clock.
     fn look(&mut self) {
         let began = self.wall.now();
         self.due += TICK;
@@ -254,7 +255,7 @@ impl Desk {
         let Some((told, peek)) =
             ok(&answer).and_then(|t| Some((t, serde_json::from_str::<Peek>(t.get()).ok()?)))
         else {
-            // Nothing goes on in the past.
+            // A run that shows an earlier scan cannot go on.
             self.pace(0.0);
             return;
         };
@@ -274,7 +275,7 @@ impl Desk {
         }
     }
 
-    /// What was not told yet goes to all.
+    /// Sends changes that were not sent yet to all watchers.
     fn flush(&mut self, but: Option<&Arc<Outbox>>) {
         let rest = self.page.call(&json!({ "do": "run_frame", "run": *self.run, "times": true }).to_string());
         let news = |t: &RawValue| serde_json::from_str::<Peek>(t.get()).is_ok_and(|p| p.is_news());
@@ -283,7 +284,7 @@ impl Desk {
         }
     }
 
-    /// One full frame for a page that was left behind.
+    /// Sends one full frame to a client that missed frames.
     fn catch_up(&mut self, outbox: &Arc<Outbox>) {
         self.flush(Some(outbox));
         let wish = json!({ "do": "run_frame", "run": *self.run, "full": true, "times": true });
@@ -304,7 +305,7 @@ impl Desk {
         }
         if self.speed != speed {
             self.speed = speed;
-            self.runs.tell(&self.run, self.number, |card| card.speed = speed);
+            self.registry.tell(&self.run, self.number, |card| card.speed = speed);
             self.notice(None, &json!({ "pace": { "run": *self.run, "speed": speed } }).to_string());
         }
     }
@@ -315,7 +316,7 @@ impl Desk {
         }
     }
 
-    /// Those who watch and are still there.
+    /// The watchers that still exist.
     fn watching(&mut self) -> impl Iterator<Item = Arc<Outbox>> {
         self.watchers.retain(|w| w.strong_count() > 0);
         self.watchers.iter().filter_map(Weak::upgrade)
@@ -335,11 +336,11 @@ impl Desk {
     }
 
     fn end(&mut self) {
-        self.runs.close(&self.run, self.number);
+        self.registry.close(&self.run, self.number);
         self.notice(None, &json!({ "ended": { "run": *self.run } }).to_string());
     }
 
-    /// A beginning, with how fast the run goes.
+    /// Adds the speed of the run to the description of its start.
     fn with_speed(&self, answer: &str) -> String {
         match answer.strip_suffix("}}") {
             Some(front) => format!(r#"{front},"speed":{}}}}}"#, json!(self.speed)),
@@ -349,9 +350,9 @@ impl Desk {
 }
 
 impl Drop for Desk {
-    /// Also where the thread ended as it should not.
+    /// Removes the run even if the thread ended by a panic.
     fn drop(&mut self) {
-        self.runs.close(&self.run, self.number);
+        self.registry.close(&self.run, self.number);
     }
 }
 
@@ -361,7 +362,7 @@ struct Opened {
     file: String,
 }
 
-/// What a page answered, where it is no refusal; `null` is an answer.
+/// The value of a successful answer, which may be `null`; `None` for a refusal.
 fn ok(answer: &str) -> Option<&RawValue> {
     serde_json::from_str(answer.strip_prefix(r#"{"ok":"#)?.strip_suffix('}')?).ok()
 }

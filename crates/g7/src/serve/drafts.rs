@@ -1,7 +1,7 @@
-//! Copies of what is not saved yet: they outlive a crash of page and server.
+//! Copies of unsaved work: they survive a crash of the page or the server.
 //!
-//! They lie outside the user's folder, in the system's place for such data, one
-//! folder for each folder that is served. A copy goes when its file is saved.
+//! They are stored outside the user's folder, in the system's place for such data, in one folder
+//! for each served folder. A copy is deleted when its file is saved.
 
 use std::fs;
 use std::io;
@@ -11,12 +11,12 @@ use std::sync::{Mutex, PoisonError};
 use axum::http::StatusCode;
 use serde::{Deserialize, Serialize};
 
-use super::names;
+use super::file_names;
 use super::refusal::Refusal;
 
-/// Most copies of a folder.
+/// Greatest number of copies for a folder.
 const MOST: usize = 200;
-/// Largest of all together, in bytes on the disk.
+/// Greatest size of all copies together, in bytes on the disk.
 const LARGEST: u64 = 64 << 20;
 
 /// The copies of one folder.
@@ -26,7 +26,7 @@ pub(super) struct Drafts {
     turn: Mutex<()>,
 }
 
-/// A copy: the name of the file, and the text that it should have.
+/// A copy: the name of the file, and the text to be saved.
 #[derive(Debug, Deserialize, PartialEq, Eq, Serialize)]
 pub(super) struct Draft {
     pub(super) path: String,
@@ -34,7 +34,7 @@ pub(super) struct Draft {
 }
 
 impl Drafts {
-    /// Those of this folder, in the system's place for what programs keep.
+    /// The copies for a folder, below the system's place for data of programs.
     pub(super) fn of(root: &Path, state: Option<&Path>) -> Drafts {
         let folder = match state {
             Some(state) => {
@@ -49,9 +49,9 @@ impl Drafts {
         Drafts { folder, turn: Mutex::new(()) }
     }
 
-    /// Keeps a copy in place of the one before.
+    /// Stores a copy and replaces the previous one.
     pub(super) fn keep(&self, path: &str, text: String) -> Result<(), Refusal> {
-        names::path(path).map_err(Refusal::bad)?;
+        file_names::path(path).map_err(Refusal::bad)?;
         let _turn = self.turn.lock().unwrap_or_else(PoisonError::into_inner);
         let place = self.place(path);
         let draft = Draft { path: path.to_owned(), text };
@@ -70,19 +70,19 @@ impl Drafts {
             .map_err(|e| Refusal::io("the unsaved copy", &e))
     }
 
-    /// All copies, by name.
+    /// All copies, ordered by name.
     pub(super) fn list(&self) -> Vec<Draft> {
         let _turn = self.turn.lock().unwrap_or_else(PoisonError::into_inner);
         let readable = |p: PathBuf| serde_json::from_slice::<Draft>(&fs::read(p).ok()?).ok();
         let mut drafts: Vec<Draft> = self.entries().filter_map(readable).collect();
-        drafts.retain(|d| names::path(&d.path).is_ok());
+        drafts.retain(|d| file_names::path(&d.path).is_ok());
         drafts.sort_by(|a, b| a.path.cmp(&b.path));
         drafts
     }
 
-    /// Lets a copy go.
+    /// Deletes a copy.
     pub(super) fn drop(&self, path: &str) -> Result<(), Refusal> {
-        names::path(path).map_err(Refusal::bad)?;
+        file_names::path(path).map_err(Refusal::bad)?;
         let _turn = self.turn.lock().unwrap_or_else(PoisonError::into_inner);
         match fs::remove_file(self.place(path)) {
             Err(e) if e.kind() != io::ErrorKind::NotFound => Err(Refusal::io("the unsaved copy", &e)),
@@ -94,7 +94,7 @@ impl Drafts {
         self.folder.join(format!("{}.json", super::hash(path.as_bytes())))
     }
 
-    /// The copies on the disk; what a write that was cut off left behind is none.
+    /// The copies on the disk, without the remains of an interrupted write.
     fn entries(&self) -> impl Iterator<Item = PathBuf> {
         let entries = fs::read_dir(&self.folder).into_iter().flatten();
         let paths = entries.filter_map(|e| Some(e.ok()?.path()));
@@ -103,7 +103,7 @@ impl Drafts {
         })
     }
 
-    /// Texts may be private: only their owner reads them.
+    /// The texts may be private: only their owner may read them.
     fn make_folder(&self) -> io::Result<()> {
         let mut builder = fs::DirBuilder::new();
         builder.recursive(true);
@@ -116,7 +116,7 @@ impl Drafts {
     }
 }
 
-/// The system's place for what programs keep.
+/// The system's place for data that programs keep.
 pub(super) fn state_folder() -> Option<PathBuf> {
     let var = |name: &str| std::env::var_os(name).map(PathBuf::from).filter(|p| p.is_absolute());
     if let Some(state) = var("XDG_STATE_HOME") {

@@ -1,7 +1,7 @@
-//! The one folder that pages read and write: files by name, whole or not at all.
+//! The folder that clients read and write: files by name, completely or not at all.
 //!
-//! What must hold: nothing outside the folder is read or written, not through a
-//! link either; a file that is not as the page knew it is never replaced.
+//! Nothing outside the folder is read or written, not even through a link; a file that differs from
+//! what the client knows is never replaced.
 
 use std::fs;
 use std::io::{self, Read};
@@ -10,39 +10,39 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use axum::http::StatusCode;
 
-use super::names;
+use super::file_names;
 use super::refusal::Refusal;
 
-/// Largest file that is read or written.
+/// Greatest size of a file that is read or written, in bytes.
 pub(super) const LARGEST: usize = 8 << 20;
 
 /// The folder.
 #[derive(Debug)]
 pub(super) struct Folder {
-    /// Canonical, so that what lies below it can be told.
+    /// The canonical path, so that paths below it can be recognized.
     root: PathBuf,
     read_only: bool,
-    /// One change at a time: between looking and writing nobody else of ours writes.
+    /// Only one change at a time: between the check and the write no other request writes.
     turn: Mutex<()>,
 }
 
-/// What a file must be to be replaced.
+/// The required state of a file before it is replaced.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum Wanted {
-    /// Not there.
+    /// It does not exist.
     Absent,
-    /// There, with this hash.
+    /// It exists and has this hash.
     Hash(String),
-    /// There, whatever it is.
+    /// It exists.
     Any,
 }
 
-/// How a write went.
+/// The result of a write.
 #[derive(Debug, PartialEq, Eq)]
 pub(super) enum Written {
-    /// The file has this hash now.
+    /// The file was written and has this hash.
     Done(String),
-    /// The file is another one: its bytes, or none where it is gone.
+    /// The file has changed: its present bytes, or `None` if it no longer exists.
     Other(Option<Vec<u8>>),
 }
 
@@ -65,7 +65,7 @@ impl Folder {
         self.bytes(&path, name)?.ok_or_else(|| Refusal::io(name, &io::ErrorKind::NotFound.into()))
     }
 
-    /// Replaces or makes a file.
+    /// Replaces or creates a file.
     pub(super) fn write(&self, name: &str, bytes: &[u8], wanted: &Wanted) -> Result<Written, Refusal> {
         let _turn = self.change()?;
         let path = self.place(name)?;
@@ -83,7 +83,7 @@ impl Folder {
         Ok(Written::Done(super::hash(bytes)))
     }
 
-    /// Gives a file another name, which nothing may have.
+    /// Renames a file; the new name must be free.
     pub(super) fn rename(&self, from: &str, to: &str) -> Result<(), Refusal> {
         let _turn = self.change()?;
         let (old, new) = (self.place(from)?, self.place(to)?);
@@ -91,7 +91,8 @@ impl Folder {
             return Err(Refusal::io(from, &io::ErrorKind::NotFound.into()));
         }
         self.make_folders(&new, to)?;
-        // A link fails where the new name is taken, at whatever moment; a rename would replace it.
+        // Creating a link fails if the new name is taken, at any moment; a rename would replace
+        // that file.
         match fs::hard_link(&old, &new) {
             Ok(()) => fs::remove_file(&old).map_err(|e| Refusal::io(from, &e)),
             Err(e) if e.kind() == io::ErrorKind::AlreadyExists => Err(Refusal::io(to, &e)),
@@ -102,7 +103,7 @@ impl Folder {
         }
     }
 
-    /// Removes a file; where a hash is given, only the file with that hash.
+    /// Deletes a file; if a hash is given, only a file with that hash.
     pub(super) fn delete(&self, name: &str, hash: Option<&str>) -> Result<(), Refusal> {
         let _turn = self.change()?;
         let path = self.place(name)?;
@@ -115,7 +116,7 @@ impl Folder {
         fs::remove_file(&path).map_err(|e| Refusal::io(name, &e))
     }
 
-    /// The right to change something.
+    /// Takes the lock for a change; refuses if the folder is read-only.
     fn change(&self) -> Result<MutexGuard<'_, ()>, Refusal> {
         if self.read_only {
             return Err(Refusal::forbidden("this server was started with --read-only: nothing is written"));
@@ -123,9 +124,9 @@ impl Folder {
         Ok(self.turn.lock().unwrap_or_else(PoisonError::into_inner))
     }
 
-    /// Where a file lies, or would: inside the folder, links followed.
+    /// The path of an existing or new file: inside the folder, with links resolved.
     fn place(&self, name: &str) -> Result<PathBuf, Refusal> {
-        let path = self.root.join(names::path(name).map_err(Refusal::bad)?);
+        let path = self.root.join(file_names::path(name).map_err(Refusal::bad)?);
         let outside =
             || Refusal::forbidden(format!("{name} is or goes through a link that leads out of the folder"));
         match fs::canonicalize(&path) {
@@ -134,7 +135,8 @@ impl Folder {
             Err(e) if e.kind() == io::ErrorKind::NotFound => {}
             Err(e) => return Err(Refusal::io(name, &e)),
         }
-        // A link to nothing is there without being there; what is written to it would be made elsewhere.
+        // A link to a missing file looks absent, but a write through it would create the file
+        // elsewhere.
         let mut above = path.as_path();
         loop {
             if fs::symlink_metadata(above).is_ok_and(|m| m.is_symlink()) {
@@ -154,15 +156,15 @@ impl Folder {
         }
     }
 
-    /// The bytes of a file; none where there is no file.
+    /// The bytes of a file; `None` if there is no file.
     fn bytes(&self, path: &Path, name: &str) -> Result<Option<Vec<u8>>, Refusal> {
         let meta = match fs::metadata(path) {
             Err(e) if e.kind() == io::ErrorKind::NotFound => return Ok(None),
             other => other.map_err(|e| Refusal::io(name, &e))?,
         };
-        // Opening a pipe or a device would wait, or do something.
+        // Opening a pipe or a device might block or have an effect.
         if !meta.is_file() {
-            return Err(Refusal::forbidden(format!("{name} is no plain file")));
+            return Err(Refusal::forbidden(format!("{name} is not a regular file")));
         }
         let too_large = || {
             let text = format!("{name} is larger than {} MB: the editor does not open it", LARGEST >> 20);

@@ -1,9 +1,9 @@
-//! Who may ask: pages that this server gave out, with the token of this start.
+//! Access control: only pages of this server with the token of this start are answered.
 //!
-//! What must hold, for every request, WebSocket upgrades too: the host named is
-//! this machine's address (a name could be turned to it by a foreign site), an
-//! origin named is this server's own, and whatever is not the page itself needs
-//! the token. Every answer carries the headers that keep the page to itself.
+//! For every request, including WebSocket upgrades: the named host is an address of this machine (a
+//! foreign site could point a name at it), a named origin is that of this server, and everything
+//! except the page itself requires the token. Every answer carries the headers that isolate the
+//! page.
 
 use std::net::{IpAddr, SocketAddr};
 
@@ -15,7 +15,7 @@ use axum::response::{IntoResponse, Response};
 
 use super::refusal::Refusal;
 
-/// What a request is held against.
+/// What a request is compared with.
 #[derive(Clone, Debug)]
 pub(super) struct Guard {
     pub(super) token: String,
@@ -29,14 +29,14 @@ const POLICY: &str = "default-src 'self'; script-src 'self' 'wasm-unsafe-eval'; 
 const HEADERS: [(HeaderName, &str); 6] = [
     (header::X_CONTENT_TYPE_OPTIONS, "nosniff"),
     (header::X_FRAME_OPTIONS, "DENY"),
-    // The token stands in the address.
+    // The address contains the token, so it must not be sent to other sites.
     (header::REFERRER_POLICY, "no-referrer"),
     (HeaderName::from_static("cross-origin-opener-policy"), "same-origin"),
     (HeaderName::from_static("cross-origin-resource-policy"), "same-origin"),
     (HeaderName::from_static("permissions-policy"), "camera=(), microphone=(), geolocation=()"),
 ];
 
-/// Lets a request pass, or says why not.
+/// Passes a request on, or refuses it.
 pub(super) async fn guard(State(guard): State<Guard>, request: Request, next: Next) -> Response {
     let judged = guard.judge(&request);
     let mut response = match judged {
@@ -86,7 +86,7 @@ impl Guard {
         ))
     }
 
-    /// In a header; in the address where a browser can set no header.
+    /// The token comes in a header, or in the address if the browser cannot set a header.
     fn has_token(&self, request: &Request) -> Result<bool, Refusal> {
         let header = only(request.headers(), &header::AUTHORIZATION)?;
         let given = header.and_then(|h| h.strip_prefix("Bearer "));
@@ -100,7 +100,7 @@ impl Guard {
         Ok(pairs.any(|p| p.strip_prefix("token=").is_some_and(|g| same(g, &self.token))))
     }
 
-    /// Whether a host is this server: by address, or as `localhost`.
+    /// True if a host names this server: by its address, or as `localhost`.
     fn is_ours(&self, host: &str) -> bool {
         let (name, port) = match host.rsplit_once(':') {
             Some((name, port)) if !port.contains(']') => (name, port.parse().ok()),
@@ -122,7 +122,8 @@ impl Guard {
             .is_some_and(|a| a == bound || bound.is_unspecified() || (a.is_loopback() && bound.is_loopback()))
     }
 
-    /// Older browsers do not take a WebSocket for the same place.
+    /// The content security policy. Older browsers do not count a WebSocket as the same origin, so
+    /// it is named.
     fn policy(&self) -> String {
         let port = self.bound.port();
         let mut live = format!("'self' ws://localhost:{port} ws://127.0.0.1:{port}");
@@ -133,7 +134,7 @@ impl Guard {
     }
 }
 
-/// A header that may stand there once.
+/// The value of a header that may occur at most once.
 fn only<'a>(headers: &'a HeaderMap, name: &HeaderName) -> Result<Option<&'a str>, Refusal> {
     let mut all = headers.get_all(name).iter();
     let Some(first) = all.next() else { return Ok(None) };
@@ -141,7 +142,7 @@ fn only<'a>(headers: &'a HeaderMap, name: &HeaderName) -> Result<Option<&'a str>
     text.map(Some).ok_or_else(|| Refusal::forbidden(format!("the header `{name}` means nothing")))
 }
 
-/// Compares in a time that tells nothing of where they differ.
+/// Compares in constant time, so that the time does not reveal where the texts differ.
 fn same(a: &str, b: &str) -> bool {
     a.len() == b.len() && a.bytes().zip(b.bytes()).fold(0, |d, (x, y)| d | (x ^ y)) == 0
 }

@@ -1,4 +1,4 @@
-//! The door: connections come in, so many and no more, and none may dawdle.
+//! Accepts connections: a limited number, each with time limits.
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -10,9 +10,9 @@ use hyper_util::service::TowerToHyperService;
 use tokio::net::{TcpListener, TcpStream};
 use tokio::sync::{OwnedSemaphorePermit, Semaphore};
 
-/// Most connections that are not a page's WebSocket.
+/// Greatest number of connections without the WebSockets of clients.
 const CONNECTIONS: usize = 512;
-/// Longest that the head of a request may take; also how long an idle one is kept.
+/// Longest time for the head of a request, and for an idle connection.
 const HEAD: Duration = Duration::from_secs(15);
 const FULL: &[u8] = b"HTTP/1.1 503 Service Unavailable\r\ncontent-type: text/plain\r\n\
     content-length: 44\r\nconnection: close\r\n\r\ntoo many connections at once: try again soon";
@@ -22,7 +22,7 @@ pub(super) async fn listen(listener: TcpListener, app: Router) {
     let places = Arc::new(Semaphore::new(CONNECTIONS));
     loop {
         let Ok((stream, _)) = listener.accept().await else {
-            // Mostly: no more files may be open. It passes when a page goes.
+            // Usually too many files are open; this ends when a client leaves.
             tokio::time::sleep(Duration::from_millis(50)).await;
             continue;
         };
@@ -45,7 +45,7 @@ async fn serve(stream: TcpStream, app: Router, place: OwnedSemaphorePermit) {
         .max_buf_size(64 << 10)
         .serve_connection(TokioIo::new(stream), TowerToHyperService::new(app))
         .with_upgrades();
-    // A connection that breaks is the other side's affair.
+    // A broken connection is the client's concern.
     served.await.ok();
     drop(place);
 }

@@ -1,9 +1,8 @@
-//! One WebSocket for each page: its calls come in, answers, frames and notices
-//! go out.
+//! One WebSocket for each client: calls come in, answers, frames and notices go out.
 //!
-//! What must hold: a page that never reads, never answers, or sends what means
-//! nothing costs a bounded place and is let go; one call of a page is worked on
-//! at a time, the others wait in the network.
+//! A client that never reads, never answers a ping or sends nonsense takes a bounded amount of
+//! memory and is disconnected. One call of a client is processed at a time; the others wait in the
+//! network.
 
 use std::sync::Arc;
 
@@ -21,7 +20,7 @@ use super::refusal::Refusal;
 use super::runs::letter;
 use super::{Shared, api};
 
-/// A call, as far as the server has to know it.
+/// The parts of a message that the server needs to know.
 #[derive(Deserialize)]
 struct Incoming<'a> {
     id: u64,
@@ -29,7 +28,7 @@ struct Incoming<'a> {
     call: &'a RawValue,
 }
 
-/// Of a call: what, and of which run.
+/// The parts of a call that the server needs to know: its kind and its run.
 #[derive(Deserialize)]
 struct Head {
     r#do: String,
@@ -40,7 +39,7 @@ struct Head {
     speed: Option<f64>,
 }
 
-/// Opens the socket of a page, if there is a place for it.
+/// Opens the WebSocket of a client if there is room for it.
 pub(super) async fn live(State(shared): State<Shared>, upgrade: WebSocketUpgrade) -> Response {
     let Ok(seat) = Arc::clone(&shared.seats).try_acquire_owned() else {
         let text = format!("all {} places are taken: close a page somewhere", shared.limits.clients);
@@ -50,13 +49,13 @@ pub(super) async fn live(State(shared): State<Shared>, upgrade: WebSocketUpgrade
     upgrade
         .max_message_size(most)
         .max_frame_size(most)
-        // The defaults would hold a quarter of a megabyte for each page.
+        // The defaults would take a quarter of a megabyte for each client.
         .read_buffer_size(8 << 10)
         .write_buffer_size(0)
         .on_upgrade(move |socket| attend(socket, shared, seat))
 }
 
-/// Serves a page until it goes, or has to.
+/// Serves a client until it leaves or is disconnected.
 async fn attend(mut socket: WebSocket, shared: Shared, seat: OwnedSemaphorePermit) {
     let outbox = Arc::new(Outbox::default());
     shared.clients.enter(&outbox);
@@ -66,7 +65,7 @@ async fn attend(mut socket: WebSocket, shared: Shared, seat: OwnedSemaphorePermi
     let mut heard = Instant::now();
     loop {
         let out = tokio::select! {
-            // Who does not take the answers asks in vain.
+            // A client that does not read its answers is not read from.
             said = socket.recv(), if !outbox.owes() => match said {
                 Some(Ok(Message::Text(text))) => {
                     heard = Instant::now();
@@ -102,12 +101,12 @@ async fn attend(mut socket: WebSocket, shared: Shared, seat: OwnedSemaphorePermi
             break;
         }
     }
-    // Runs know the page by a weak link only: with it, all that waits goes.
+    // Runs hold the client by a weak reference only, so this frees all waiting messages.
     drop(outbox);
     drop(seat);
 }
 
-/// Works on one message of a page.
+/// Processes one message of a client.
 async fn take(shared: &Shared, outbox: &Arc<Outbox>, text: &str) {
     let Ok(Incoming { id, call }) = serde_json::from_str(text) else {
         outbox.put(letter(&serde_json::json!({ "no": "this message means nothing" })));
@@ -118,7 +117,8 @@ async fn take(shared: &Shared, outbox: &Arc<Outbox>, text: &str) {
     }
 }
 
-/// Hands a call to whom it is for, who puts the answer into the outbox; or says why not.
+/// Passes a call to its receiver, which puts the answer into the outbox; or says why this is
+/// impossible.
 async fn call_of(shared: &Shared, outbox: &Arc<Outbox>, id: u64, call: &RawValue) -> Result<(), String> {
     let head: Head =
         serde_json::from_str(call.get()).map_err(|e| format!("this message means nothing: {e}"))?;

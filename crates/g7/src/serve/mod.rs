@@ -11,23 +11,24 @@
 //!
 //! # Invariants
 //!
-//! - Nothing is answered without the right host and origin; nothing but the page
-//!   itself without the token of this start (`guard`).
-//! - Only the folder given is read or written, links out of it refused (`folder`).
-//! - Whatever pages do, runs go on and memory stays bounded (`outbox`, `desk`).
+//! Nothing is answered without the right host and origin; nothing except the page itself is
+//! answered without the token of this start (`guard`).
+//! Only the given folder is read or written; links that lead out of it are refused (`folder`).
+//! Whatever clients do, runs go on and memory stays bounded (`outbox`, `desk`).
 
 mod api;
 mod assets;
 mod browser;
 mod desk;
 mod drafts;
+mod file_names;
 mod folder;
 mod guard;
 mod listen;
 mod live;
-mod names;
 mod outbox;
 mod refusal;
+mod registry;
 mod runs;
 #[cfg(test)]
 mod tests;
@@ -53,9 +54,9 @@ use outbox::Outbox;
 use runs::Runs;
 use watch::Watch;
 
-/// The port that is tried first where none is asked for.
+/// The port that is tried first if none is given.
 const PORT: u16 = 4700;
-/// Between two looks at the folder.
+/// Time between two searches of the folder for changes.
 const LOOK: Duration = Duration::from_millis(500);
 
 #[derive(Args, Debug)]
@@ -74,40 +75,40 @@ pub(crate) struct Serve {
     /// A folder with charts, or one chart.
     #[arg(default_value = ".", value_name = "FILE or FOLDER")]
     path: PathBuf,
-    /// The port; 4700 unless said, or another where it is taken.
+    /// The port [default: 4700, or another one if that is taken].
     #[arg(long, value_name = "NUMBER")]
     port: Option<u16>,
-    /// The address to listen at; only this machine unless said.
+    /// The address to listen at [default: only this machine].
     #[arg(long, default_value_t = IpAddr::V4(Ipv4Addr::LOCALHOST), value_name = "ADDRESS")]
     host: IpAddr,
-    /// Write nothing; charts can be looked at and run.
+    /// Write nothing; charts can still be viewed and run.
     #[arg(long)]
     read_only: bool,
-    /// Do not open a browser; print the address only.
+    /// Do not open a browser; only print the address.
     #[arg(long)]
     no_open: bool,
     /// The chart to open first, as its path in the folder.
     #[arg(long, value_name = "FILE")]
     start: Option<String>,
-    /// Take the page from this folder (to work on the page).
+    /// Read the page from this folder (for its development).
     #[arg(long, value_name = "FOLDER", hide = true)]
     page_dir: Option<PathBuf>,
 }
 
-/// How much of everything.
+/// The limits of the server.
 #[derive(Clone, Copy, Debug)]
 struct Limits {
-    /// Pages at a time.
+    /// Greatest number of clients.
     clients: usize,
-    /// Shared runs.
+    /// Greatest number of shared runs.
     runs: usize,
-    /// Bytes of a message.
+    /// Greatest length of a message, in bytes.
     message: usize,
-    /// Between two pings.
+    /// Time between two pings.
     ping: Duration,
-    /// Without a sign for so long, a page is let go.
+    /// A client is disconnected if it is silent for this long.
     silence: Duration,
-    /// Longest that a message may take to leave.
+    /// Longest time for sending a message.
     send: Duration,
 }
 
@@ -124,7 +125,7 @@ impl Default for Limits {
     }
 }
 
-/// What requests share.
+/// The data that all requests share.
 #[derive(Debug)]
 struct Inner {
     folder: Arc<Folder>,
@@ -143,7 +144,7 @@ struct Inner {
 
 type Shared = Arc<Inner>;
 
-/// The pages that are there.
+/// The connected clients.
 #[derive(Debug, Default)]
 struct Clients(Mutex<Vec<Weak<Outbox>>>);
 
@@ -160,14 +161,12 @@ impl Clients {
     }
 }
 
-/// Tells contents apart; no secret.
+/// A fingerprint that tells contents apart; it is no protection.
 fn hash(bytes: &[u8]) -> String {
-    let fnv =
-        |start: u64| bytes.iter().fold(start, |h, b| (h ^ u64::from(*b)).wrapping_mul(0x0100_0000_01b3));
-    format!("{:x}-{:016x}", bytes.len(), fnv(0xcbf2_9ce4_8422_2325))
+    format!("{:x}-{:016x}", bytes.len(), g7_host::Fnv::of(bytes))
 }
 
-/// What requests share, for a folder and a place for what is kept.
+/// The shared data for a folder and for the place of unsaved copies.
 fn shared(args: &Serve, limits: Limits, state: Option<&Path>) -> Result<Shared, Failure> {
     let unreadable = |e| Failure::Read(args.path.clone(), e);
     let is_file = std::fs::metadata(&args.path).map_err(unreadable)?.is_file();
@@ -175,7 +174,7 @@ fn shared(args: &Serve, limits: Limits, state: Option<&Path>) -> Result<Shared, 
         (true, Some(parent), Some(name)) => {
             let parent = if parent.as_os_str().is_empty() { Path::new(".") } else { parent };
             let name = name.to_string_lossy().into_owned();
-            names::path(&name).map_err(Failure::Usage)?;
+            file_names::path(&name).map_err(Failure::Usage)?;
             (parent.to_path_buf(), Some(name))
         }
         _ => (args.path.clone(), None),
@@ -211,7 +210,7 @@ fn app(shared: Shared, guard: Guard) -> Router {
         .layer(axum::middleware::from_fn_with_state(guard, guard::guard))
 }
 
-/// Tells every page what changed in the folder.
+/// Notifies every client of changes in the folder.
 async fn tell_changes(shared: Shared) {
     let mut tick = tokio::time::interval(LOOK);
     tick.set_missed_tick_behavior(tokio::time::MissedTickBehavior::Delay);
@@ -230,7 +229,7 @@ async fn tell_changes(shared: Shared) {
     }
 }
 
-/// The secret of this start.
+/// The token of this start.
 fn token() -> Result<String, Failure> {
     let mut bytes = [0u8; 24];
     getrandom::fill(&mut bytes)
@@ -238,7 +237,7 @@ fn token() -> Result<String, Failure> {
     Ok(bytes.iter().map(|b| format!("{b:02x}")).collect())
 }
 
-/// The port that was asked for, or the usual one, or any.
+/// Binds the given port; otherwise the default port or any free one.
 async fn bind(args: &Serve) -> Result<TcpListener, Failure> {
     let at = |port| TcpListener::bind(SocketAddr::new(args.host, port));
     let bound = match args.port {
@@ -254,7 +253,7 @@ async fn bind(args: &Serve) -> Result<TcpListener, Failure> {
     })
 }
 
-/// Runs the command until Ctrl-C.
+/// Executes the command until Ctrl-C.
 pub(crate) fn serve(args: &Serve) -> Result<Verdict, Failure> {
     let shared = shared(args, Limits::default(), drafts::state_folder().as_deref())?;
     let runtime = tokio::runtime::Builder::new_multi_thread().enable_all().worker_threads(2).build();
@@ -284,15 +283,15 @@ pub(crate) fn serve(args: &Serve) -> Result<Verdict, Failure> {
         }
         Ok(Verdict::Fine)
     });
-    // Nothing is left half done: files are written whole or not at all.
+    // Nothing is left incomplete, because files are written completely or not at all.
     runtime.shutdown_background();
     served
 }
 
-/// What the user opens.
+/// The address that the user opens.
 fn address(bound: SocketAddr, token: &str) -> String {
     let shown = match bound.ip() {
-        // One that can be opened; others use this machine's own.
+        // An unspecified address cannot be opened; use that of this machine.
         IpAddr::V4(ip) if ip.is_unspecified() => SocketAddr::new(Ipv4Addr::LOCALHOST.into(), bound.port()),
         IpAddr::V6(ip) if ip.is_unspecified() => SocketAddr::new(Ipv4Addr::LOCALHOST.into(), bound.port()),
         IpAddr::V4(_) | IpAddr::V6(_) => bound,

@@ -1,12 +1,12 @@
-//! What goes out to one page, in order and bounded.
+//! The messages that wait for one client, in order and bounded.
 //!
 //! ```text
-//! runs, watch, answers -> Outbox -> the page's socket
+//! runs, watch, answers -> Outbox -> the client's socket
 //! ```
 //!
-//! What must hold: nobody waits for a slow reader. When it falls behind, the
-//! frames of a run that wait for it are thrown away, and once it has read what
-//! is left it is given one full frame. Where even that is too much, it is let go.
+//! Nobody waits for a slow reader. If a client falls behind, the waiting frames of a run are
+//! dropped; after it has read the rest, it gets one full frame. If even that is too much, the
+//! client is disconnected.
 
 use std::collections::{BTreeSet, VecDeque};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -14,12 +14,12 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use axum::extract::ws::Utf8Bytes;
 use tokio::sync::Notify;
 
-/// Most frames of a run that wait for a page.
+/// Greatest number of frames of one run that wait for a client.
 const FRAMES: usize = 50;
-/// Most bytes that wait for a page.
+/// Greatest number of bytes that wait for a client.
 const BYTES: usize = 4 << 20;
 
-/// What waits for a page.
+/// The messages that wait for a client.
 #[derive(Debug, Default)]
 pub(super) struct Outbox {
     inner: Mutex<Inner>,
@@ -31,7 +31,7 @@ struct Inner {
     queue: VecDeque<Letter>,
     bytes: usize,
     frames: usize,
-    /// Runs of which frames were thrown away.
+    /// The runs whose frames were dropped.
     behind: BTreeSet<Arc<str>>,
     closed: bool,
 }
@@ -39,22 +39,22 @@ struct Inner {
 #[derive(Debug)]
 struct Letter {
     text: Utf8Bytes,
-    /// The run that this is a frame of.
+    /// The run, if the message is a frame.
     run: Option<Arc<str>>,
 }
 
-/// What is next.
+/// The next thing to send.
 #[derive(Debug, PartialEq, Eq)]
 pub(super) enum Next {
     Text(Utf8Bytes),
-    /// All is read, but of this run frames were thrown away.
+    /// Everything was read, but frames of this run were dropped.
     Behind(Arc<str>),
-    /// Too much waits: the page is let go.
+    /// Too much waits: the client is disconnected.
     Closed,
 }
 
 impl Outbox {
-    /// A frame of a run, thrown away where the page is behind.
+    /// Adds a frame of a run; it may be dropped if the client is behind.
     pub(super) fn frame(&self, run: &Arc<str>, text: Utf8Bytes) {
         let mut inner = self.lock();
         if inner.behind.contains(run) {
@@ -70,7 +70,7 @@ impl Outbox {
         self.ring.notify_one();
     }
 
-    /// A frame that has all: what was missed is in it.
+    /// Adds a full frame, which contains everything that was missed.
     pub(super) fn full(&self, run: &Arc<str>, text: Utf8Bytes) {
         let mut inner = self.lock();
         inner.throw_away(run);
@@ -80,10 +80,10 @@ impl Outbox {
         self.ring.notify_one();
     }
 
-    /// An answer or a notice, which cannot be thrown away.
+    /// Adds an answer or a notice; these are never dropped.
     pub(super) fn put(&self, text: Utf8Bytes) {
         let mut inner = self.lock();
-        // One large answer is fine; many that nobody reads are not.
+        // One large answer is allowed; many unread ones are not.
         if inner.bytes > BYTES {
             inner.closed = true;
             inner.queue.clear();
@@ -94,12 +94,12 @@ impl Outbox {
         self.ring.notify_one();
     }
 
-    /// Whether something waits that cannot be thrown away: no more is to be asked for then.
+    /// True if an answer or a notice waits; no further call is read then.
     pub(super) fn owes(&self) -> bool {
         self.lock().queue.iter().any(|l| l.run.is_none())
     }
 
-    /// Waits for what is next.
+    /// Waits for the next thing to send.
     pub(super) async fn next(&self) -> Next {
         loop {
             if let Some(next) = self.take() {

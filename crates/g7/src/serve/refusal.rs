@@ -1,11 +1,11 @@
-//! What a request is told when it cannot be done: a status and a sentence.
+//! The answer to a request that cannot be fulfilled: a status and a sentence.
 
 use std::io;
 
 use axum::http::StatusCode;
 use axum::response::{IntoResponse, Response};
 
-/// Why not, for a person.
+/// A refusal, for the user.
 #[derive(Debug, PartialEq, Eq)]
 pub(super) struct Refusal {
     pub(super) status: StatusCode,
@@ -25,7 +25,7 @@ impl Refusal {
         Refusal::new(StatusCode::BAD_REQUEST, text)
     }
 
-    /// What the system said about a file.
+    /// The refusal after an error of the system with a file.
     pub(super) fn io(path: &str, error: &io::Error) -> Refusal {
         let (status, text) = match error.kind() {
             io::ErrorKind::NotFound => (StatusCode::NOT_FOUND, format!("there is no file {path}")),

@@ -1,15 +1,15 @@
-//! The runs that the server holds: by name, each on a thread of its own.
+//! The shared runs: found by name, each on a thread of its own.
 //!
 //! ```text
 //! live -> Runs -> orders -> Desk (one thread, one Page) -> Outbox of every watcher
+//!            \-> Registry <-/
 //! ```
 //!
-//! What must hold: what one page asks of one run holds up neither the other
-//! runs nor, for longer than that question, the scans of its own.
+//! A request to one run delays neither the other runs nor, beyond the time of the request, the
+//! scans of its own.
 
-use std::collections::BTreeMap;
-use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::Arc;
+use std::sync::mpsc::{Receiver, sync_channel};
 
 use axum::extract::ws::Utf8Bytes;
 use serde::Serialize;
@@ -17,78 +17,33 @@ use tokio::sync::oneshot;
 
 use super::desk::Desk;
 use super::outbox::Outbox;
+use super::registry::{Card, Entry, Order, Registry, What};
 
-/// Orders that wait for a run: more than there can be pages.
+/// Greatest number of orders that wait for a run: more than there are clients.
 const WAITING: usize = 1_024;
 
 /// All runs.
 #[derive(Debug)]
 pub(super) struct Runs {
     most: usize,
-    list: Mutex<List>,
+    registry: Arc<Registry>,
 }
 
-#[derive(Debug, Default)]
-struct List {
-    runs: BTreeMap<Arc<str>, Entry>,
-    /// Number of the next one: a name may come again.
-    next: u64,
-}
-
-#[derive(Debug)]
-struct Entry {
-    number: u64,
-    card: Card,
-    orders: SyncSender<Order>,
-}
-
-/// What is known of a run without asking it.
-#[derive(Clone, Debug, Serialize)]
-pub(super) struct Card {
-    pub(super) run: String,
-    pub(super) file: String,
-    pub(super) speed: f64,
-}
-
-/// What a run is asked.
-pub(super) enum Order {
-    /// By a page, which waits until it is done.
-    Asked { by: Arc<Outbox>, id: u64, what: What, done: oneshot::Sender<()> },
-    /// A page that was left behind has read what there was.
-    CatchUp(Arc<Outbox>),
-}
-
-/// What a page asks.
-pub(super) enum What {
-    Watch,
-    Unwatch,
-    Pace(f64),
-    /// A message for the page of the run, with the text of the file it names.
-    Call {
-        message: String,
-        text: Option<String>,
-    },
-}
-
-/// A message as it goes out.
+/// A value as a message to a client.
 pub(super) fn letter(value: &impl Serialize) -> Utf8Bytes {
     serde_json::to_string(value).unwrap_or_default().into()
 }
 
 impl Runs {
     pub(super) fn new(most: usize) -> Runs {
-        Runs { most, list: Mutex::default() }
-    }
-
-    fn lock(&self) -> MutexGuard<'_, List> {
-        self.list.lock().unwrap_or_else(PoisonError::into_inner)
+        Runs { most, registry: Arc::default() }
     }
 
     pub(super) fn list(&self) -> Vec<Card> {
-        self.lock().runs.values().map(|e| e.card.clone()).collect()
+        self.registry.lock().runs.values().map(|e| e.card.clone()).collect()
     }
 
-    /// Starts a run, or starts it anew.
+    /// Starts a run, or restarts it.
     pub(super) async fn start(
         self: &Arc<Runs>,
         run: &str,
@@ -97,7 +52,7 @@ impl Runs {
         message: &str,
         text: Option<String>,
     ) -> Result<(), String> {
-        // Runs are called like their files.
+        // Runs are named after their files.
         if run.is_empty() || run.len() > 1_024 || run.chars().any(char::is_control) {
             return Err("a run needs a name of at most 1024 letters".to_owned());
         }
@@ -131,29 +86,29 @@ impl Runs {
         self.ask(run, by, id, What::Call { message: message.to_owned(), text }).await
     }
 
-    /// Has a full frame made for a page that was left behind.
+    /// Asks for a full frame for a client that missed frames.
     pub(super) fn catch_up(&self, run: &str, outbox: &Arc<Outbox>) {
-        let list = self.lock();
+        let list = self.registry.lock();
         if let Some(entry) = list.runs.get(run) {
-            // Where the run is that busy, the next frame left out asks again.
+            // If the run is too busy, the next dropped frame asks again.
             entry.orders.try_send(Order::CatchUp(Arc::clone(outbox))).ok();
         }
     }
 
-    /// Hands an order to a run and waits until it is done.
+    /// Sends an order to a run and waits until it is done.
     async fn ask(&self, run: &str, by: &Arc<Outbox>, id: u64, what: What) -> Result<(), String> {
         let gone = || format!("there is no run `{}`", run.chars().take(64).collect::<String>());
         let (done, wait) = oneshot::channel();
-        let orders = self.lock().runs.get(run).map(|e| e.orders.clone()).ok_or_else(gone)?;
+        let orders = self.registry.lock().runs.get(run).map(|e| e.orders.clone()).ok_or_else(gone)?;
         orders
             .try_send(Order::Asked { by: Arc::clone(by), id, what, done })
             .map_err(|_| "this run is busy: try again".to_owned())?;
         wait.await.map_err(|_| gone())
     }
 
-    /// Makes a thread for a run that is not there yet.
+    /// Starts a thread for a run, unless it exists.
     fn open(self: &Arc<Runs>, run: &str) -> Result<(), String> {
-        let mut list = self.lock();
+        let mut list = self.registry.lock();
         if list.runs.contains_key(run) {
             return Ok(());
         }
@@ -165,28 +120,12 @@ impl Runs {
         list.next += 1;
         let (orders, inbox): (_, Receiver<Order>) = sync_channel(WAITING);
         let card = Card { run: run.to_owned(), file: String::new(), speed: 0.0 };
-        let desk = Desk::new(Arc::clone(&name), number, Arc::clone(self));
+        let desk = Desk::new(Arc::clone(&name), number, Arc::clone(&self.registry));
         std::thread::Builder::new()
             .name(format!("run {number}"))
             .spawn(move || desk.work(&inbox))
             .map_err(|e| format!("no run can be started: {}", crate::failure::plain(&e)))?;
         list.runs.insert(name, Entry { number, card, orders });
         Ok(())
-    }
-
-    /// A run tells what is new about it.
-    pub(super) fn tell(&self, run: &str, number: u64, change: impl FnOnce(&mut Card)) {
-        let mut list = self.lock();
-        if let Some(entry) = list.runs.get_mut(run).filter(|e| e.number == number) {
-            change(&mut entry.card);
-        }
-    }
-
-    /// A run has ended.
-    pub(super) fn close(&self, run: &str, number: u64) {
-        let mut list = self.lock();
-        if list.runs.get(run).is_some_and(|e| e.number == number) {
-            list.runs.remove(run);
-        }
     }
 }

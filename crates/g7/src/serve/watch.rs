@@ -1,9 +1,8 @@
-//! Which files there are, and which of them changed: looked up every half
-//! second, so that it works on every disk, network ones too.
+//! Watches the files of the folder by reading it every half second, which works on every disk,
+//! including network drives.
 //!
-//! What must hold: a folder without end costs no more than a bounded look; a
-//! change is told once, and one that a page made itself only after the page
-//! has been answered.
+//! The cost is bounded even for an endless folder. A change is announced once; a change by a client
+//! is announced only after that client has its answer.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -13,14 +12,14 @@ use std::time::SystemTime;
 
 use serde::Serialize;
 
+use super::file_names;
 use super::folder::Folder;
-use super::names;
 
-/// Most files listed.
+/// Greatest number of files in the list.
 const FILES: usize = 5_000;
-/// Most entries of folders looked at.
+/// Greatest number of folder entries that are read.
 const ENTRIES: usize = 50_000;
-/// Looks in which a file that changed is read again: the clock of a disk may be coarse.
+/// Number of times that a changed file is read again, because the disk's clock may be coarse.
 const UNSURE: u8 = 3;
 
 /// A file of the folder.
@@ -29,12 +28,12 @@ pub(super) struct Row {
     pub(super) path: String,
     pub(super) size: u64,
     pub(super) hash: String,
-    /// Its first note.
+    /// The first sentence of its first note.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) title: Option<String>,
 }
 
-/// A change that pages are told; an empty hash is a file that is gone.
+/// A change that is announced to clients; `hash` is empty if the file was deleted.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub(super) struct Changed {
     pub(super) path: String,
@@ -48,7 +47,7 @@ struct Seen {
     unsure: u8,
 }
 
-/// What the latest look found.
+/// The results of the latest search.
 #[derive(Debug)]
 pub(super) struct Watch {
     folder: Arc<Folder>,
@@ -58,9 +57,9 @@ pub(super) struct Watch {
 #[derive(Debug, Default)]
 struct Found {
     files: BTreeMap<String, Seen>,
-    /// What pages were told of each file.
+    /// The hash of each file that clients were told last.
     told: BTreeMap<String, String>,
-    /// Files that a page has just changed: told at the look after the next.
+    /// Files that a client has just changed: they are announced at the search after the next.
     late: BTreeMap<String, u8>,
 }
 
@@ -78,13 +77,13 @@ impl Watch {
         found.files.values().map(|s| s.row.clone()).collect()
     }
 
-    /// A page changes this file: it is answered before all are told.
+    /// Delays the announcement of a change, so that the client that makes it is answered first.
     pub(super) fn put_off(&self, path: &str) {
         let mut found = self.seen.lock().unwrap_or_else(PoisonError::into_inner);
         found.late.insert(path.to_owned(), 2);
     }
 
-    /// What changed since it was asked last.
+    /// The changes since the last call.
     pub(super) fn changes(&self) -> Vec<Changed> {
         let mut found = self.seen.lock().unwrap_or_else(PoisonError::into_inner);
         self.look(&mut found);
@@ -117,7 +116,7 @@ impl Watch {
     }
 }
 
-/// One look at all there is.
+/// One search of the folder.
 struct Walk<'a> {
     folder: &'a Folder,
     old: &'a BTreeMap<String, Seen>,
@@ -134,22 +133,22 @@ impl Walk<'_> {
             }
             self.left -= 1;
             let name = entry.file_name();
-            let Some(name) = name.to_str().filter(|n| names::fault(n).is_none()) else { continue };
+            let Some(name) = name.to_str().filter(|n| file_names::fault(n).is_none()) else { continue };
             let Ok(kind) = entry.file_type() else { continue };
             let full = format!("{above}{name}");
             if kind.is_dir() {
-                // What tools fill with thousands of files, none of them a chart.
-                if depth + 1 < names::DEEPEST && name != "target" && name != "node_modules" {
+                // Tools fill these folders with thousands of files, none of which is a chart.
+                if depth + 1 < file_names::DEEPEST && name != "target" && name != "node_modules" {
                     self.folder(&entry.path(), &format!("{full}/"), depth + 1);
                 }
-            } else if names::is_served(name) {
+            } else if file_names::is_served(name) {
                 self.file(&entry.path(), full);
             }
         }
     }
 
     fn file(&mut self, path: &Path, name: String) {
-        // Follows links: one that leads out of the folder is then not read.
+        // Links are followed; a file outside the folder is not read.
         let Ok(meta) = fs::metadata(path) else { return };
         if !meta.is_file() {
             return;

@@ -1,4 +1,4 @@
-//! `g7 test`: the tests of files, and what to say of them.
+//! `g7 test`: runs the tests of files and prints the results.
 
 mod output;
 
@@ -19,6 +19,7 @@ pub(crate) fn test(args: &Test) -> Result<Verdict, Failure> {
     let options = Options { profile: args.profile, scan: args.scan, filter: args.filter.as_deref() };
     let mut progress = Progress::new("testing", 0);
     let (mut outcomes, mut covered, mut tally) = (Vec::new(), Vec::new(), Tally::default());
+    let mut unproved = Vec::new();
     let mut out = anstream::stdout().lock();
     for path in &paths {
         let source = sources::load(path, 0)?;
@@ -36,6 +37,7 @@ pub(crate) fn test(args: &Test) -> Result<Verdict, Failure> {
         if args.format == Format::Text {
             output::progress_lines(&mut out, &done)?;
         }
+        unproved.append(&mut testing::unproved(&source));
         outcomes.append(&mut done);
         covered.push((source.name.clone(), coverage));
     }
@@ -43,13 +45,17 @@ pub(crate) fn test(args: &Test) -> Result<Verdict, Failure> {
         files::write(path, output::junit(&outcomes).as_bytes())?;
     }
     match args.format {
-        Format::Json => output::json(&mut out, &outcomes, args.coverage.then_some(covered.as_slice()))?,
+        Format::Json => {
+            let covered = args.coverage.then_some(covered.as_slice());
+            output::json(&mut out, &outcomes, covered, &unproved)?;
+        }
         Format::Text => {
             output::failures(&mut out, &outcomes)?;
             if args.coverage {
                 output::coverage(&mut out, &covered)?;
             }
-            output::summary(&mut out, &outcomes)?;
+            write!(out, "{}", report::unproved(&unproved))?;
+            output::summary(&mut out, &outcomes, unproved.len())?;
         }
     }
     out.flush()?;

@@ -1,18 +1,19 @@
-//! Outcomes as people, programs and build servers read them.
+//! Prints the results of tests, for people, programs and build servers.
 
 use std::io::{self, Write};
 
 use g7_host::{format_seconds, format_time};
+use g7_model::Nanos;
 use serde_json::{Value, json};
 
-use crate::style;
-use g7_rig::testing::{Coverage, Defect, Outcome};
+use crate::{report, style};
+use g7_rig::testing::{Coverage, Defect, Outcome, Unproved};
 
-/// A line for each test.
+/// Prints one line for each test.
 pub(super) fn progress_lines(out: &mut dyn Write, outcomes: &[Outcome]) -> io::Result<()> {
     for o in outcomes {
         let (style, word) = if o.defect.is_some() { (style::BAD, "FAILED") } else { (style::GOOD, "ok") };
-        let (faint, time) = (style::FAINT, format_time(o.simulated));
+        let (faint, time) = (style::FAINT, format_time(o.simulated.count()));
         writeln!(out, "{style}{word:>6}{style:#} {}: {} {faint}({time}){faint:#}", o.file, o.title)?;
         for note in &o.notes {
             writeln!(out, "{}  note{:#} {note}", style::WARN, style::WARN)?;
@@ -21,12 +22,12 @@ pub(super) fn progress_lines(out: &mut dyn Write, outcomes: &[Outcome]) -> io::R
     Ok(())
 }
 
-/// Each failure with its place, what was expected, what was there, and how it came.
+/// Prints each failure: its place, the expected and the actual values, and the events before it.
 pub(super) fn failures(out: &mut dyn Write, outcomes: &[Outcome]) -> io::Result<()> {
     for o in outcomes {
         let Some(d) = &o.defect else { continue };
         writeln!(out, "\n{}{}{:#}: {}", style::BAD, o.title, style::BAD, sentence(d))?;
-        writeln!(out, "  at {}, {} after the start", d.place, format_time(d.time))?;
+        writeln!(out, "  at {}, {} after the start", d.place, format_time(d.time.count()))?;
         if let Some(origin) = &d.origin {
             writeln!(out, "  it came up at {origin}")?;
         }
@@ -49,13 +50,17 @@ fn sentence(d: &Defect) -> String {
     if d.expected.is_empty() { d.what.clone() } else { format!("{}: {}", d.what, d.expected) }
 }
 
-/// The closing line.
-pub(super) fn summary(out: &mut dyn Write, outcomes: &[Outcome]) -> io::Result<()> {
+/// Prints the closing line.
+pub(super) fn summary(out: &mut dyn Write, outcomes: &[Outcome], unproved: usize) -> io::Result<()> {
     let failed = outcomes.iter().filter(|o| o.defect.is_some()).count();
-    writeln!(out, "\n{} passed, {failed} failed", outcomes.len() - failed)
+    write!(out, "\n{} passed, {failed} failed", outcomes.len() - failed)?;
+    match unproved {
+        0 => writeln!(out),
+        n => writeln!(out, ", {n} not proved"),
+    }
 }
 
-/// What was reached of each sort, and every row that was not.
+/// Prints the coverage of each kind of element, and every element that was not reached.
 pub(super) fn coverage(out: &mut dyn Write, files: &[(String, Coverage)]) -> io::Result<()> {
     for (file, coverage) in files {
         writeln!(out, "\n{}{file}{:#}", style::STRONG, style::STRONG)?;
@@ -77,15 +82,17 @@ pub(super) fn coverage(out: &mut dyn Write, files: &[(String, Coverage)]) -> io:
     Ok(())
 }
 
-/// One object with all of it.
+/// Prints everything as one JSON object.
 pub(super) fn json(
     out: &mut dyn Write,
     outcomes: &[Outcome],
     coverage: Option<&[(String, Coverage)]>,
+    unproved: &[Unproved],
 ) -> io::Result<()> {
     let failed = outcomes.iter().filter(|o| o.defect.is_some()).count();
     let tests: Vec<Value> = outcomes.iter().map(test_json).collect();
     let mut all = json!({ "passed": outcomes.len() - failed, "failed": failed, "tests": tests });
+    all["not_proved"] = report::unproved_json(unproved);
     if let Some(files) = coverage {
         all["coverage"] = files.iter().map(|(file, c)| coverage_json(file, c)).collect();
     }
@@ -95,14 +102,14 @@ pub(super) fn json(
 fn test_json(o: &Outcome) -> Value {
     let mut test = json!({
         "file": o.file, "title": o.title, "place": o.place, "passed": o.defect.is_none(),
-        "simulated_seconds": o.simulated as f64 / 1e9, "scans": o.scans, "seconds": o.took as f64 / 1e9,
+        "simulated_seconds": o.simulated.as_seconds(), "scans": o.scans, "seconds": o.took.as_seconds(),
         "notes": o.notes,
     });
     if let Some(d) = &o.defect {
         let got: serde_json::Map<String, Value> = d.got.iter().map(|(n, v)| (n.clone(), json!(v))).collect();
         test["failure"] = json!({
             "what": d.what, "expected": d.expected, "got": got, "place": d.place, "origin": d.origin,
-            "time_seconds": d.time as f64 / 1e9, "situation": d.situation, "chronogram": d.chronogram,
+            "time_seconds": d.time.as_seconds(), "situation": d.situation, "chronogram": d.chronogram,
         });
     }
     test
@@ -120,10 +127,11 @@ fn coverage_json(file: &str, coverage: &Coverage) -> Value {
     all
 }
 
-/// The XML that build servers read: a suite for each file.
+/// A JUnit report: a suite for each file.
 pub(super) fn junit(outcomes: &[Outcome]) -> String {
     let failed = |list: &[&Outcome]| list.iter().filter(|o| o.defect.is_some()).count();
-    let took = |list: &[&Outcome]| format_seconds(list.iter().map(|o| o.took).sum());
+    let took =
+        |list: &[&Outcome]| format_seconds(list.iter().fold(Nanos::ZERO, |sum, o| sum + o.took).count());
     let all: Vec<&Outcome> = outcomes.iter().collect();
     let mut files: Vec<&str> = outcomes.iter().map(|o| o.file.as_str()).collect();
     files.dedup();
@@ -144,7 +152,7 @@ pub(super) fn junit(outcomes: &[Outcome]) -> String {
             took(&mine)
         ));
         for o in mine {
-            let (title, time) = (escape(&o.title), format_seconds(o.took));
+            let (title, time) = (escape(&o.title), format_seconds(o.took.count()));
             out.push_str(&format!("    <testcase classname=\"{name}\" name=\"{title}\" time=\"{time}\""));
             match &o.defect {
                 None => out.push_str("/>\n"),
@@ -166,7 +174,7 @@ pub(super) fn junit(outcomes: &[Outcome]) -> String {
     out
 }
 
-/// Text for XML: what it does not allow at all becomes U+FFFD.
+/// Escapes text for XML; characters that XML does not allow become U+FFFD.
 fn escape(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     for c in text.chars() {

@@ -1,21 +1,22 @@
-//! What is looked at, and what can be done with it.
+//! The state of the terminal view and the operations of the user.
 
 use g7_host::{Clock, Halt, Kind, Recording, Runner, Start, Value, WallClock, format_time};
 
 use crate::cli::Run;
 use crate::failure::Failure;
 use crate::values::{self, Assign};
+use g7_model::Nanos;
 use g7_rig::{Bench, Conflicts, Item, Role, Table};
 
-/// The keys that stand for inputs: those that no command needs.
+/// The keys for inputs: those that no command uses.
 pub(super) const INPUT_KEYS: &str = "1234567890abcdefghijklmnoprstuvwxyz";
-/// Speeds that `+` and `-` go through.
+/// The speeds that `+` and `-` select.
 const SPEEDS: [f64; 13] = [0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0];
-/// Changes kept of a signal: an hour of a fast one.
+/// Changes kept for each signal: those of an hour for a fast signal.
 const KEPT: usize = 50_000;
-/// Wall time that one advance may take before the picture is due, ns.
+/// Wall time that one advance may take before the next picture is due, in nanoseconds.
 const BUDGET: i64 = 30_000_000;
-/// Spans of time that the chronogram can show, ns.
+/// Spans of time that the chronogram can show, in nanoseconds.
 const SPANS: [i64; 12] = [
     100_000_000,
     200_000_000,
@@ -31,7 +32,7 @@ const SPANS: [i64; 12] = [
     7_200_000_000_000,
 ];
 
-/// A list that can be selected in.
+/// A list in which the user can select.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Panel {
     Inputs,
@@ -53,10 +54,10 @@ impl Panel {
     }
 }
 
-/// A value being typed.
+/// A value that the user is typing.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Edit {
-    /// Place in [`Bench::items`].
+    /// The position in [`Bench::items`].
     pub(super) item: usize,
     pub(super) text: String,
 }
@@ -71,14 +72,14 @@ pub(super) struct App<'b> {
     pub(super) selected: [usize; 4],
     pub(super) edit: Option<Edit>,
     pub(super) help: bool,
-    /// Queues and tracks of the plant.
+    /// The queues and tracks of the plant.
     pub(super) tables: Vec<Table>,
     pub(super) message: String,
-    /// Time that the chronogram shows: place in [`SPANS`].
+    /// The span of the chronogram, as a position in [`SPANS`].
     span: usize,
-    /// How far its right end lies behind now; 0 follows.
+    /// Distance of the chronogram's right end from the present; 0 follows the run.
     pub(super) back: i64,
-    /// First lane shown.
+    /// The first lane that is shown.
     pub(super) lane: usize,
     speed: usize,
     script: Vec<Assign>,
@@ -117,7 +118,7 @@ impl<'b> App<'b> {
             speed: 6,
             script,
             conflicts: Conflicts::default(),
-            until: args.duration.unwrap_or(i64::MAX),
+            until: args.duration.unwrap_or(Nanos::MAX).count(),
             over: false,
         })
     }
@@ -142,8 +143,8 @@ impl<'b> App<'b> {
         SPANS.get(self.span).copied().unwrap_or(10_000_000_000)
     }
 
-    /// Makes the scans that are due by the clock; where the machine is too
-    /// slow for the speed, time slows down: no scan is left out.
+    /// Makes the scans that are due. If the machine is too slow for the speed, the time runs
+    /// slower; no scan is skipped.
     pub(super) fn advance(&mut self) {
         if !self.is_running() {
             return;
@@ -181,7 +182,7 @@ impl<'b> App<'b> {
     }
 
     fn apply_script(&mut self) {
-        while self.script.last().is_some_and(|a| a.at <= self.runner.due()) {
+        while self.script.last().is_some_and(|a| a.at.count() <= self.runner.due()) {
             let Some(assign) = self.script.pop() else { return };
             let Some(item) = self.bench.item(&assign.name) else { continue };
             if let Ok(value) = values::read(&assign.value, item.kind) {
@@ -190,7 +191,7 @@ impl<'b> App<'b> {
         }
     }
 
-    /// Sets, or holds what would be overwritten.
+    /// Sets an item, or forces it if the plant or the charts would overwrite it.
     fn put(&mut self, item: &Item, value: &Value) {
         let held = self.bench.is_driven(&self.runner, item) || self.bench.is_forced(&self.runner, item);
         if held || item.role == Role::Output {
@@ -208,7 +209,7 @@ impl<'b> App<'b> {
         }
     }
 
-    /// Stops, and makes one scan, or ends the one that is being made pass by pass.
+    /// Pauses and makes one scan, or completes the scan that is executed pass by pass.
     pub(super) fn scan_once(&mut self) {
         self.pause(true);
         if self.runner.halt().is_none() {
@@ -216,7 +217,7 @@ impl<'b> App<'b> {
         }
     }
 
-    /// Stops, and makes one pass of a scan.
+    /// Pauses and makes one pass of a scan.
     pub(super) fn pass_once(&mut self) {
         self.pause(true);
         if self.runner.halt().is_some() {
@@ -240,7 +241,7 @@ impl<'b> App<'b> {
         self.span = self.span.saturating_add_signed(by).min(SPANS.len() - 1);
     }
 
-    /// Moves the chronogram by a quarter of its width; to the left is back in time.
+    /// Moves the chronogram by a quarter of its width; left is back in time.
     pub(super) fn move_time(&mut self, by: i64) {
         let length = self.recording.end().saturating_sub(self.recording.start());
         self.back = (self.back - by * (self.span() / 4)).clamp(0, length.max(0));
@@ -256,15 +257,15 @@ impl<'b> App<'b> {
         .to_owned();
     }
 
-    /// Places of a panel's items in [`Bench::items`]; of a queue or track only
-    /// the number of its parts, which stands for all of it.
+    /// The positions of a panel's items in [`Bench::items`]. A queue or track is represented by its
+    /// number of parts.
     pub(super) fn listed(&self, panel: Panel) -> Vec<usize> {
         let items = self.bench.items.iter().enumerate();
         let own = |at: &usize| !self.tables.iter().any(|t| t.rest.contains(at));
         items.filter(|(_, i)| panel.holds(i)).map(|(at, _)| at).filter(own).collect()
     }
 
-    /// The queue or track that an item stands for.
+    /// The queue or track that an item represents.
     pub(super) fn table(&self, at: usize) -> Option<&Table> {
         self.tables.iter().find(|t| t.count == at)
     }
@@ -285,18 +286,18 @@ impl<'b> App<'b> {
         }
     }
 
-    /// The item selected in the panel in focus.
+    /// The selected item of the focused panel.
     pub(super) fn current(&self) -> Option<usize> {
         let at = self.selected.get(self.panel as usize)?;
         self.listed(self.panel).get(*at).copied()
     }
 
-    /// The key of an input, where it has one.
+    /// The key of an input, if it has one.
     pub(super) fn input_key(&self, number: usize) -> Option<char> {
         INPUT_KEYS.chars().nth(number)
     }
 
-    /// An input's key: a BOOL turns, anything else is typed.
+    /// Handles the key of an input: inverts a BOOL, asks for any other value.
     pub(super) fn press_input(&mut self, key: char) {
         let number = INPUT_KEYS.chars().position(|c| c == key);
         if let Some(at) = number.and_then(|n| self.listed(Panel::Inputs).get(n).copied()) {
@@ -304,7 +305,7 @@ impl<'b> App<'b> {
         }
     }
 
-    /// Turns a BOOL, or asks for a value.
+    /// Inverts a BOOL, or asks for a value.
     pub(super) fn change(&mut self, at: usize) {
         let Some(item) = self.bench.items.get(at) else { return };
         if item.kind == Kind::Bool {
@@ -315,7 +316,7 @@ impl<'b> App<'b> {
         }
     }
 
-    /// The value that the next scan will find.
+    /// The value that the next scan will read.
     fn next_value(&self, item: &Item) -> u64 {
         match item.role {
             Role::Input(index) => self.runner.input(index),
@@ -323,7 +324,7 @@ impl<'b> App<'b> {
         }
     }
 
-    /// Holds the selected item at its present value, or lets it go.
+    /// Forces the selected item to its present value, or releases it.
     pub(super) fn toggle_force(&mut self) {
         let Some(item) = self.current().and_then(|at| self.bench.items.get(at)) else { return };
         if self.bench.is_forced(&self.runner, item) {
@@ -338,7 +339,7 @@ impl<'b> App<'b> {
         }
     }
 
-    /// Ends typing: takes the value, or says what is wrong with it.
+    /// Ends typing: takes the value, or shows what is wrong with it.
     pub(super) fn accept(&mut self) {
         let Some(edit) = self.edit.take() else { return };
         let Some(item) = self.bench.items.get(edit.item) else { return };

@@ -1,33 +1,33 @@
-//! How wide each list is: names, values and times first, comments with what is left.
+//! The widths of the lists: names, values and times come first, comments get the rest.
 
 use super::app::{App, Panel};
-use super::draw::{item_line, step_line};
+use super::lines::{item_line, step_line};
 
-/// Width that a list asks for, at most, before comments are thought of.
+/// Greatest width of a list before comments are considered.
 const MOST: u16 = 32;
-/// A list narrower than this says nothing.
+/// Least useful width of a list.
 const LEAST: u16 = 12;
-/// Width of the steps from which on the other lists grow too.
+/// Width of the list of steps at which the other lists start to grow.
 const GOOD: u16 = 40;
 /// Room for the time of an active step: `1m23s450ms`.
 const TIME: usize = 11;
-/// Room for a value, so that the lists do not jump about with it.
+/// Room for a value, so that changing values do not move the lists.
 const VALUE: usize = 9;
 
-/// A list; `None` is that of the steps.
+/// A list; `None` is the list of steps.
 type List = Option<Panel>;
 
-/// What a list would have.
+/// The widths that a list asks for.
 #[derive(Clone, Copy)]
 struct Wish {
-    /// For all but the comments.
+    /// The width without comments.
     need: u16,
-    /// For everything.
+    /// The width with comments.
     want: u16,
 }
 
-/// The lists shown, and their widths. Where there is no room for all, the steps
-/// and the list in focus go first.
+/// The lists that are shown, and their widths. If there is no room for all, the list of steps and
+/// the focused list are kept.
 pub(super) fn share(app: &App<'_>, width: u16) -> (Vec<List>, Vec<u16>) {
     let mut lists: Vec<List> = vec![None];
     lists.extend(Panel::ALL.into_iter().filter(|p| !app.listed(*p).is_empty()).map(Some));
@@ -46,9 +46,9 @@ pub(super) fn share(app: &App<'_>, width: u16) -> (Vec<List>, Vec<u16>) {
     (lists, widths(&wishes, width))
 }
 
-/// All get what they need; too much of that is taken from the widest. The rest
-/// goes to the first, the steps, up to a good width, then to the narrowest that
-/// has more to say; the steps stay wider than any other.
+/// Gives each list what it needs; if that is too much, takes from the widest. The rest goes to the
+/// list of steps up to a good width, then to the narrowest list that can use more; the list of
+/// steps stays wider than any other.
 fn widths(wishes: &[Wish], width: u16) -> Vec<u16> {
     let mut got: Vec<u16> = wishes.iter().map(|w| w.need).collect();
     let total = |got: &[u16]| got.iter().copied().fold(0, u16::saturating_add);
@@ -65,7 +65,7 @@ fn widths(wishes: &[Wish], width: u16) -> Vec<u16> {
     got
 }
 
-/// Whose turn it is to grow by a cell.
+/// The list that grows next by one cell.
 fn next(got: &[u16], wishes: &[Wish], turn: usize) -> usize {
     let lacks =
         |i: usize, most: u16| got.get(i).zip(wishes.get(i)).is_some_and(|(g, w)| *g < w.want.min(most));
@@ -90,7 +90,7 @@ fn wish(app: &App<'_>, list: List) -> Wish {
     Wish { need, want: u16::try_from(want).unwrap_or(u16::MAX).max(need) }
 }
 
-/// Without and with comments, and the title.
+/// The width without comments, with comments, and of the title.
 fn steps(app: &App<'_>) -> (usize, usize, usize) {
     let name = |s: &g7_rig::StepItem| 2 + s.name.chars().count() + TIME;
     let all = app.bench.steps.iter();
@@ -128,11 +128,11 @@ mod tests {
         assert_eq!(of(&[(20, 20), (12, 12)], 32), [20, 12]);
         assert_eq!(of(&[(20, 40), (12, 60)], 50), [38, 12]);
         assert_eq!(of(&[(20, 90), (12, 30)], 80), [50, 30]);
-        // The steps have all they want: the others grow below them.
+        // The list of steps has all it can use: the others grow, but stay narrower.
         assert_eq!(of(&[(20, 30), (12, 60), (12, 20)], 62), [30, 16, 16]);
-        // Steps with little to say are still the widest.
+        // Even a list of steps with little text is the widest.
         assert_eq!(of(&[(14, 14), (20, 60)], 60), [31, 29]);
-        // Too much is taken from the widest.
+        // The excess is taken from the widest.
         assert_eq!(of(&[(30, 30), (12, 12)], 30), [18, 12]);
         assert_eq!(of(&[(30, 30)], 0), [0]);
         assert!(of(&[], 9).is_empty());

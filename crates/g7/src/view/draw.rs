@@ -1,4 +1,4 @@
-//! From the app to cells, at any size.
+//! Draws the terminal view at any size.
 
 use g7_host::{Chronogram, Kind, Style as Window, format_time};
 use ratatui::Frame;
@@ -10,12 +10,8 @@ use ratatui::widgets::{Block, Borders, Clear, Paragraph};
 use super::app::{App, Panel};
 use super::columns;
 use super::keys::HELP;
-use g7_rig::{Role, StepItem};
+use super::lines::{DIM, HELD, ON, TITLE, item_line, short, step_line};
 
-const ON: Style = Style::new().fg(Color::Green).add_modifier(Modifier::BOLD);
-const DIM: Style = Style::new().add_modifier(Modifier::DIM);
-const TITLE: Style = Style::new().add_modifier(Modifier::BOLD);
-const HELD: Style = Style::new().fg(Color::Yellow);
 const FAULT: Style = Style::new().fg(Color::Red).add_modifier(Modifier::BOLD);
 
 /// Draws everything.
@@ -26,7 +22,7 @@ pub(super) fn draw(frame: &mut Frame<'_>, app: &mut App<'_>) {
         frame.render_widget(Paragraph::new(text), area);
         return;
     }
-    // The lists take what they need, up to half; the chronogram has the rest.
+    // The lists take what they need, up to half of the screen; the chronogram takes the rest.
     let longest = Panel::ALL.into_iter().map(|p| app.listed(p).len()).chain([app.bench.steps.len()]).max();
     let lists = u16::try_from(longest.unwrap_or(0)).unwrap_or(u16::MAX).saturating_add(2);
     let lists = lists.clamp(3, (area.height / 2).max(3));
@@ -63,7 +59,7 @@ fn headline(app: &App<'_>) -> Line<'static> {
     ])
 }
 
-/// Time to the hundredth of a second, so that it does not jump about.
+/// The time to a hundredth of a second, so that its width stays the same.
 fn clock(ns: i64) -> String {
     let hundredths = ns / 10_000_000;
     let (minutes, seconds) = (hundredths / 6000, hundredths % 6000);
@@ -90,22 +86,11 @@ fn draw_steps(frame: &mut Frame<'_>, app: &App<'_>, area: Rect) {
     let room = usize::from(area.height.saturating_sub(2));
     let (active, rest): (Vec<_>, Vec<_>) =
         app.bench.steps.iter().partition(|s| app.bench.is_active(state, s));
-    // Where all have room they keep their places; else the active ones come first.
+    // If there is room for all steps they stay in place; otherwise the active ones come first.
     let all = app.bench.steps.len() <= room;
     let listed = if all { app.bench.steps.iter().collect() } else { [active, rest].concat() };
     let lines: Vec<Line<'_>> = listed.into_iter().take(room).map(|step| step_line(app, step)).collect();
     frame.render_widget(Paragraph::new(lines).block(framed("Steps", false)), area);
-}
-
-/// The comment last: it is what a narrow panel cuts off.
-pub(super) fn step_line<'a>(app: &App<'_>, step: &'a StepItem) -> Line<'a> {
-    let state = app.runner.shown();
-    let on = app.bench.is_active(state, step);
-    let time = app.bench.step_time(state, step).filter(|_| on);
-    let mut spans = vec![Span::raw(format!("{} {}", if on { "■" } else { "□" }, step.name))];
-    spans.extend(time.map(|t| Span::raw(format!(" {t}"))));
-    spans.extend(step.comment.as_ref().map(|c| Span::raw(format!(" {c}"))));
-    Line::from(spans).style(if on { ON } else { DIM })
 }
 
 fn framed(title: &str, focus: bool) -> Block<'_> {
@@ -136,53 +121,6 @@ fn draw_panel(frame: &mut Frame<'_>, app: &App<'_>, panel: Panel, area: Rect) {
         })
         .collect();
     frame.render_widget(Paragraph::new(lines).block(framed(title, focus)), area);
-}
-
-/// The comment last: it is what a narrow panel cuts off.
-pub(super) fn item_line<'a>(app: &App<'a>, at: usize, number: Option<usize>) -> Option<Line<'a>> {
-    let item = app.bench.items.get(at)?;
-    if let (Some(table), Some((_, state))) = (app.table(at), app.runner.plant()) {
-        return Some(Line::raw(table.show(state)));
-    }
-    let value = match item.role {
-        // What will be read next: a key shows at once, even while paused.
-        Role::Input(index) if item.words == 1 => g7_host::Value::Word(app.runner.input(index)),
-        _ => app.bench.value(&app.runner, item),
-    };
-    let mut spans = Vec::new();
-    if let Some(number) = number {
-        let key = app.input_key(number).map_or_else(|| "   ".to_owned(), |k| format!("[{k}]"));
-        spans.push(Span::styled(format!("{key} "), TITLE));
-    }
-    if item.kind == Kind::Bool {
-        let on = value.word() != 0;
-        spans.push(Span::styled(if on { "● " } else { "○ " }, if on { ON } else { DIM }));
-        spans.push(Span::styled(item.name.as_str(), if on { ON } else { Style::new() }));
-    } else {
-        spans.push(Span::raw(format!("{} = {}", item.name, short(&value.show(item.kind)))));
-    }
-    if app.bench.is_forced(&app.runner, item) {
-        spans.push(Span::styled(" held", HELD));
-    } else if app.bench.is_driven(&app.runner, item) {
-        spans.push(Span::styled(" plant", DIM));
-    }
-    if let Some(comment) = &item.comment {
-        spans.push(Span::styled(format!(" {comment}"), DIM));
-    }
-    Some(Line::from(spans))
-}
-
-/// A number without the last dozen of its decimals; control characters shown.
-fn short(text: &str) -> String {
-    let text: String = text.chars().take(40).map(|c| if c.is_control() { '␀' } else { c }).collect();
-    match text.split_once('.') {
-        Some((whole, decimals))
-            if whole.parse::<i64>().is_ok() && decimals.bytes().all(|b| b.is_ascii_digit()) =>
-        {
-            format!("{whole}.{}", decimals.get(..3).unwrap_or(decimals))
-        }
-        _ => text,
-    }
 }
 
 fn draw_chronogram(frame: &mut Frame<'_>, app: &mut App<'_>, area: Rect) {

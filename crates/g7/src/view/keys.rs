@@ -1,11 +1,11 @@
-//! From a key to a doing.
+//! The keys of the terminal view.
 
 use crossterm::event::{KeyCode, KeyEvent, KeyEventKind, KeyModifiers};
 use g7_host::Start;
 
 use super::app::App;
 
-/// The keys, for the help: what to press, what it does.
+/// The keys and their effects, for the help.
 pub(super) const HELP: [(&str, &str); 15] = [
     ("1-9 a-z", "turn the input with that key"),
     ("Space", "run, pause"),
@@ -24,7 +24,7 @@ pub(super) const HELP: [(&str, &str); 15] = [
     ("q Ctrl-C", "quit"),
 ];
 
-/// Does what the key says.
+/// Executes the command of a key.
 pub(super) fn press(app: &mut App<'_>, key: KeyEvent) {
     if key.kind == KeyEventKind::Release {
         return;

@@ -1,13 +1,13 @@
 //! The terminal view of a running chart.
 //!
-//! `app` is what is looked at and what can be done with it, `keys` turns a key
-//! into a doing, `draw` turns the app into cells. Only this file touches the
-//! terminal: the rest is tested without one.
+//! `app` holds the state and the operations, `keys` maps keys to operations, `draw` draws the
+//! state. Only this file accesses the terminal; the rest is tested without one.
 
 mod app;
 mod columns;
 mod draw;
 mod keys;
+mod lines;
 #[cfg(test)]
 mod tests;
 
@@ -22,10 +22,10 @@ use crate::run::Keeper;
 use app::App;
 use g7_rig::Bench;
 
-/// Time between two pictures at most.
+/// Longest time between two pictures.
 const FRAME: Duration = Duration::from_millis(40);
 
-/// Shows the chart at work until the user ends it.
+/// Shows the running chart until the user quits.
 pub(crate) fn run(
     bench: &Bench,
     runner: Runner,
@@ -34,7 +34,7 @@ pub(crate) fn run(
     keeper: &mut Keeper<'_>,
 ) -> Result<(), Failure> {
     let mut app = App::new(bench, runner, title, args)?;
-    // `try_init` also puts the terminal back should we panic.
+    // `try_init` also restores the terminal after a panic.
     let mut terminal = ratatui::try_init()?;
     let ended = turn(&mut terminal, &mut app, keeper);
     ratatui::restore();
@@ -56,7 +56,7 @@ fn turn(
             if let Event::Key(key) = event::read()? {
                 keys::press(app, key);
             }
-            // Resizes need nothing: the next picture is drawn to the new size.
+            // A resize needs no action: the next picture has the new size.
             patience = Duration::ZERO;
         }
     }

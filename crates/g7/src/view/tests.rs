@@ -1,4 +1,4 @@
-//! The view without a terminal: keys in, cells out.
+//! Tests the view without a terminal: keys in, characters out.
 
 use clap::Parser;
 use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};

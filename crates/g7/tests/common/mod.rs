@@ -1,4 +1,4 @@
-//! A folder of its own for each test, and the program under test.
+//! A folder for each test, and the program under test.
 #![allow(dead_code, reason = "each test file uses a part")]
 #![allow(clippy::disallowed_methods, reason = "tests look at what was written")]
 
@@ -10,7 +10,7 @@ use snapbox::cmd::{Command, OutputAssert, cargo_bin};
 
 static NEXT: AtomicU32 = AtomicU32::new(0);
 
-/// A folder that goes away with the test.
+/// A folder that is deleted after the test.
 pub(crate) struct Folder(PathBuf);
 
 impl Folder {
@@ -21,7 +21,7 @@ impl Folder {
         Folder(path)
     }
 
-    /// With one file `chart.g7`.
+    /// A folder with one file `chart.g7`.
     pub(crate) fn with(chart: &str) -> Folder {
         let folder = Folder::new();
         folder.write("chart.g7", chart);
@@ -42,7 +42,7 @@ impl Folder {
         fs::read_to_string(self.path(name)).unwrap_or_else(|e| panic!("{name}: {e}"))
     }
 
-    /// Names in the folder, sorted.
+    /// The names in the folder, sorted.
     pub(crate) fn names(&self) -> Vec<String> {
         let list = fs::read_dir(&self.0).expect("the folder");
         let mut names: Vec<String> =
@@ -75,7 +75,7 @@ impl Drop for Folder {
     }
 }
 
-/// What a run of `g7` came to.
+/// The result of a run of `g7`.
 pub(crate) struct Ran {
     pub(crate) code: i32,
     pub(crate) out: String,
@@ -94,7 +94,7 @@ impl From<OutputAssert> for Ran {
 }
 
 impl Ran {
-    /// Exit code 2, nothing on the standard output, one line that says all of this.
+    /// Asserts exit code 2, no output, and one line of message that contains all of `parts`.
     #[track_caller]
     pub(crate) fn is_refused(&self, parts: &[&str]) {
         assert_eq!((self.code, self.out.as_str()), (2, ""), "{}", self.err);
@@ -111,7 +111,7 @@ impl Ran {
     }
 }
 
-/// Two steps; `a` sets out, `not a` comes back; counts.
+/// Two steps: `a` leads to step 2, `not a` leads back; step 2 is counted.
 pub(crate) const PINGPONG: &str = "\
 input a : BOOL
 output m : BOOL

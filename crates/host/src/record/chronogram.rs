@@ -1,39 +1,39 @@
-//! A recording as lines of text: a lane for each signal over a common time axis.
+//! A recording drawn with characters: one lane for each signal over a common time axis.
 
 use super::{Kind, Recording, Signal, Value, format_time};
 
-/// How wide, and which part of the time.
+/// The width of a chronogram and the span of time that it shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Style {
-    /// Columns of the lanes, without the labels.
+    /// Number of columns of a lane, without the label.
     pub columns: usize,
-    /// First instant shown.
+    /// First instant shown, in nanoseconds.
     pub from: i64,
-    /// Last instant shown.
+    /// Last instant shown, in nanoseconds.
     pub to: i64,
-    /// Up to here values hold; what lies behind is blank.
+    /// Last instant at which values are known; columns after it stay blank.
     pub until: i64,
 }
 
-/// The line of one signal.
+/// The lane of one signal.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Lane {
-    /// Its place in the recording.
+    /// The number of the signal in the recording.
     pub signal: usize,
-    /// Name, shortened where it is long.
+    /// The signal's name, shortened if it is long.
     pub label: String,
-    /// One character a column.
+    /// One character for each column.
     pub cells: String,
-    /// Behind the lane: the last value, or the range of a curve.
+    /// Text after the lane: the last value, or the range of a curve.
     pub note: String,
 }
 
-/// Lanes with their axis.
+/// The lanes and their axis.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Chronogram {
-    /// In the order asked for.
+    /// The lanes, in the order in which the signals were asked for.
     pub lanes: Vec<Lane>,
-    /// Marks and times, one character a column.
+    /// Marks and times, one character for each column.
     pub axis: String,
 }
 
@@ -56,7 +56,7 @@ impl Chronogram {
         Chronogram { lanes, axis: grid.axis() }
     }
 
-    /// Columns that the labels need.
+    /// Number of columns that the labels need.
     pub fn label_width(&self) -> usize {
         self.lanes.iter().map(|l| l.label.chars().count()).max().unwrap_or(0)
     }
@@ -86,19 +86,19 @@ impl Grid {
         Grid { from: style.from, span: span.max(1), columns: style.columns.max(1) }
     }
 
-    /// First instant of a column.
+    /// The first instant of a column.
     fn instant(&self, column: usize) -> i64 {
         let at = i128::from(self.from) + self.span * column as i128 / self.columns as i128;
         i64::try_from(at).unwrap_or(i64::MAX)
     }
 
-    /// The column of an instant; the last one takes the end of the time shown.
+    /// The column of an instant; the last column includes the end of the span.
     fn column(&self, instant: i64) -> Option<usize> {
         let offset = i128::from(instant) - i128::from(self.from);
         if offset < 0 || offset > self.span {
             return None;
         }
-        // Rounded up: column(instant(c)) must be c although instant() rounded down.
+        // Rounded up, because `instant` rounds down and `column(instant(c))` must be `c`.
         let c = (offset * self.columns as i128 + self.columns as i128 - 1) / self.span;
         let mut c = usize::try_from(c).unwrap_or(0).min(self.columns - 1);
         while c > 0 && self.instant(c) > instant {
@@ -124,7 +124,7 @@ impl Grid {
         cells.into_iter().collect()
     }
 
-    /// A round time between marks, so that their labels have room.
+    /// A round interval between marks that leaves room for their labels.
     fn tick(&self) -> i128 {
         let least = (self.span * 12 / self.columns as i128).max(1);
         let seconds = [10, 15, 20, 30, 60, 120, 300, 600, 900, 1800, 3600, 7200, 21600, 43200, 86400];
@@ -154,7 +154,7 @@ fn lane(recording: &Recording, index: usize, signal: &Signal, grid: &Grid) -> La
     Lane { signal: index, label: shorten(&signal.name, LABEL), cells, note }
 }
 
-/// `▁▁╱▔▔╲▁`, and `╳` where it changes more than once within a column.
+/// Draws a BOOL as `▁▁╱▔▔╲▁`; `╳` marks a column in which it changes more than once.
 fn logic(recording: &Recording, index: usize, grid: &Grid) -> String {
     let mut edges: Vec<(u32, bool)> = vec![(0, false); grid.columns];
     for (at, value) in recording.changes(index).skip(1) {
@@ -175,7 +175,7 @@ fn logic(recording: &Recording, index: usize, grid: &Grid) -> String {
     edges.into_iter().enumerate().map(cell).collect()
 }
 
-/// The cell in which the recording begins, blank before it.
+/// The character for the column in which the recording begins; columns before it are blank.
 fn first_later(recording: &Recording, index: usize, grid: &Grid, column: usize) -> char {
     match recording.changes(index).next() {
         Some((at, value)) if grid.column(*at) == Some(column) => {
@@ -189,7 +189,7 @@ fn first_later(recording: &Recording, index: usize, grid: &Grid, column: usize) 
     }
 }
 
-/// Bars between the least and the greatest value shown.
+/// Draws a number as bars between the least and the greatest value shown.
 fn curve(recording: &Recording, index: usize, kind: Kind, grid: &Grid) -> (String, String) {
     let values: Vec<Option<f64>> = (0..grid.columns)
         .map(|c| recording.value_at(index, grid.instant(c + 1) - 1).map(|v| v.number(kind)))
@@ -215,7 +215,7 @@ fn curve(recording: &Recording, index: usize, kind: Kind, grid: &Grid) -> (Strin
     (cells, note)
 }
 
-/// `0····│1····│2`: each value behind the bar where it begins.
+/// Draws values as `0····│1····│2`: each value stands after the bar at which it begins.
 fn bus(recording: &Recording, index: usize, kind: Kind, grid: &Grid) -> String {
     let mut cells = vec!['·'; grid.columns];
     let mut starts: Vec<(usize, Option<&Value>, bool)> =

@@ -1,16 +1,16 @@
-//! A recording as comma-separated values (RFC 4180).
+//! Writes a recording as comma-separated values (RFC 4180).
 
 use std::io::{self, Write};
 
 use super::{Kind, Recording, Value, format_seconds};
 
-/// One row for each instant at which something changed, all signals in each.
+/// Writes one row for each instant at which a signal changed, with the values of all signals.
 ///
-/// The first column is the time in seconds. BOOL is 0 or 1, TIME in seconds.
+/// The first column is the time in seconds. BOOL is 0 or 1, TIME is in seconds.
 ///
 /// # Errors
 ///
-/// The writer's own.
+/// The writer fails.
 pub fn write_csv(recording: &Recording, out: &mut dyn Write) -> io::Result<()> {
     write!(out, "time")?;
     for signal in recording.signals() {
@@ -19,7 +19,7 @@ pub fn write_csv(recording: &Recording, out: &mut dyn Write) -> io::Result<()> {
     writeln!(out)?;
     let mut instants = recording.instants();
     if instants.last().is_some_and(|last| *last < recording.end()) {
-        instants.push(recording.end()); // so that the file says how long it lasted
+        instants.push(recording.end()); // the last row shows how long the recording lasted
     }
     for instant in instants {
         write!(out, "{}", format_seconds(instant))?;

@@ -1,4 +1,4 @@
-//! What the signals did: a list of changes for each, and the forms it is shown in.
+//! Recordings: a list of changes for each signal. The submodules write them in several forms.
 
 pub(crate) mod chronogram;
 pub(crate) mod csv;
@@ -7,39 +7,39 @@ pub(crate) mod vcd;
 use std::collections::VecDeque;
 use std::sync::Arc;
 
-/// How the values of a signal are to be read.
+/// How the words of a signal are to be read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     /// 0 or 1.
     Bool,
-    /// A whole number of so many bits, sign- or zero-extended.
+    /// An integer, sign-extended or zero-extended to 64 bits.
     Int {
-        /// 8, 16, 32 or 64.
+        /// Its size: 8, 16, 32 or 64.
         bits: u8,
-        /// Two's complement.
+        /// True for two's complement.
         signed: bool,
     },
-    /// The bits of an `f32`.
+    /// A floating-point number, stored as the bits of an `f32`.
     Real,
-    /// The bits of an `f64`.
+    /// A floating-point number, stored as the bits of an `f64`.
     Lreal,
-    /// Signed nanoseconds.
+    /// A signed number of nanoseconds.
     Time,
     /// UTF-8 text.
     Text,
 }
 
-/// A value at an instant.
+/// One value of a signal.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Value {
-    /// As the engine keeps it.
+    /// A value of one word, in the engine's representation.
     Word(u64),
-    /// Of a text.
+    /// A text.
     Text(Arc<str>),
 }
 
 impl Value {
-    /// The word; 0 for a text.
+    /// The word; 0 if the value is a text.
     pub fn word(&self) -> u64 {
         match self {
             Value::Word(w) => *w,
@@ -47,7 +47,7 @@ impl Value {
         }
     }
 
-    /// The value as a number, for curves.
+    /// The value as a number, for drawing curves.
     pub fn number(&self, kind: Kind) -> f64 {
         let w = self.word();
         match kind {
@@ -61,7 +61,7 @@ impl Value {
         }
     }
 
-    /// The value as people read it: `TRUE`, `-3`, `2.5`, `1s500ms`, `text`.
+    /// The value as text for the user: `TRUE`, `-3`, `2.5`, `1s500ms`, `text`.
     pub fn show(&self, kind: Kind) -> String {
         let w = self.word();
         match (self, kind) {
@@ -77,7 +77,7 @@ impl Value {
     }
 }
 
-/// A duration as the language writes it: `1h30m`, `2s500ms`, `-40us`, `0s`.
+/// A duration in the notation of the language: `1h30m`, `2s500ms`, `-40us`, `0s`.
 pub fn format_time(ns: i64) -> String {
     if ns == 0 {
         return "0s".to_owned();
@@ -105,7 +105,7 @@ pub fn format_time(ns: i64) -> String {
     out
 }
 
-/// Seconds with as many decimals as needed: `0.01`, `12`, `-0.000000001`.
+/// Nanoseconds as seconds, with as many decimals as needed: `0.01`, `12`, `-0.000000001`.
 pub fn format_seconds(ns: i64) -> String {
     let sign = if ns < 0 { "-" } else { "" };
     let (whole, part) = (ns.unsigned_abs() / 1_000_000_000, ns.unsigned_abs() % 1_000_000_000);
@@ -116,45 +116,44 @@ pub fn format_seconds(ns: i64) -> String {
     format!("{sign}{whole}.{}", decimals.trim_end_matches('0'))
 }
 
-/// Something whose values are kept.
+/// A variable or step whose values are recorded.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Signal {
-    /// Where it belongs: `inputs`, `outputs`, `steps`, …
+    /// The group in which it is shown: `inputs`, `outputs`, `steps`, …
     pub group: &'static str,
-    /// As people call it.
+    /// Its name.
     pub name: String,
-    /// How its values are read.
+    /// How its values are to be read.
     pub kind: Kind,
 }
 
-/// The changes of some signals over a time.
+/// The changes of some signals over a span of time.
 #[derive(Clone, Debug, Default)]
 pub struct Recording {
     signals: Vec<Signal>,
     changes: Vec<VecDeque<(i64, Value)>>,
     start: Option<i64>,
     end: i64,
-    /// Most changes kept of one signal, 0 for all.
-    limit: usize,
+    /// Greatest number of changes kept for one signal; `None` keeps all.
+    limit: Option<usize>,
 }
 
 impl Recording {
     /// An empty recording of these signals.
     pub fn new(signals: Vec<Signal>) -> Recording {
         let changes = signals.iter().map(|_| VecDeque::new()).collect();
-        Recording { signals, changes, start: None, end: 0, limit: 0 }
+        Recording { signals, changes, start: None, end: 0, limit: None }
     }
 
-    /// Forgets the oldest changes of a signal beyond so many.
+    /// Limits the number of changes kept for each signal; the oldest are dropped.
     #[must_use]
     pub fn with_limit(mut self, limit: usize) -> Recording {
-        self.limit = limit;
+        self.limit = Some(limit);
         self
     }
 
-    /// Takes the values of all signals at an instant, in their order.
-    /// Only what differs from before is kept; a later sample of the same
-    /// instant replaces the earlier one.
+    /// Takes the values of all signals at an instant, in the order of the signals. Only changed
+    /// values are stored; a later sample at the same instant replaces the earlier one.
     pub fn sample(&mut self, now: i64, values: impl IntoIterator<Item = Value>) {
         self.start.get_or_insert(now);
         self.end = self.end.max(now);
@@ -166,45 +165,45 @@ impl Recording {
                 continue;
             }
             list.push_back((now, value));
-            if self.limit > 0 && list.len() > self.limit {
+            if self.limit.is_some_and(|limit| list.len() > limit) {
                 list.pop_front();
             }
         }
     }
 
-    /// The signals.
+    /// The recorded signals.
     pub fn signals(&self) -> &[Signal] {
         &self.signals
     }
 
-    /// The changes of a signal, in the order of time.
+    /// The changes of a signal, ordered by time.
     pub fn changes(&self, signal: usize) -> impl DoubleEndedIterator<Item = &(i64, Value)> {
         self.changes.get(signal).into_iter().flatten()
     }
 
-    /// The number of values that a signal took.
+    /// The number of changes stored for a signal, its first value included.
     pub fn count(&self, signal: usize) -> usize {
         self.changes.get(signal).map_or(0, VecDeque::len)
     }
 
-    /// The value of a signal at an instant; `None` before its first.
+    /// The value of a signal at an instant; `None` before its first value.
     pub fn value_at(&self, signal: usize, instant: i64) -> Option<&Value> {
         let list = self.changes.get(signal)?;
         let after = list.partition_point(|(at, _)| *at <= instant);
         list.get(after.checked_sub(1)?).map(|(_, v)| v)
     }
 
-    /// Time of the first sample; 0 without one.
+    /// Instant of the first sample; 0 if there is none.
     pub fn start(&self) -> i64 {
         self.start.unwrap_or(0)
     }
 
-    /// Time of the last sample.
+    /// Instant of the last sample.
     pub fn end(&self) -> i64 {
         self.end
     }
 
-    /// Forgets everything behind an instant.
+    /// Drops all changes after an instant.
     pub fn truncate(&mut self, instant: i64) {
         for list in &mut self.changes {
             while list.back().is_some_and(|(at, _)| *at > instant) {
@@ -214,7 +213,7 @@ impl Recording {
         self.end = self.end.min(instant);
     }
 
-    /// Takes over what another recording has of a signal.
+    /// Copies the changes of a signal from another recording.
     pub fn adopt(&mut self, signal: usize, from: &Recording, other: usize) {
         if let (Some(to), Some(list)) = (self.changes.get_mut(signal), from.changes.get(other)) {
             to.clone_from(list);
@@ -223,7 +222,7 @@ impl Recording {
         }
     }
 
-    /// Some of the signals from one instant to another.
+    /// A recording of some of the signals, limited to a span of time.
     #[must_use]
     pub fn part(&self, signals: &[usize], from: i64, to: i64) -> Recording {
         let (from, to) = (from.max(self.start()), to.min(self.end));
@@ -238,11 +237,11 @@ impl Recording {
             signals: there().map(|(s, _)| s.clone()).collect(),
             start: Some(from),
             end: to.max(from),
-            limit: 0,
+            limit: None,
         }
     }
 
-    /// Every instant at which some signal changed, ascending, each once.
+    /// All instants at which a signal changed, ascending and without repetition.
     pub fn instants(&self) -> Vec<i64> {
         let mut all: Vec<i64> = self.changes.iter().flatten().map(|(at, _)| *at).collect();
         all.sort_unstable();

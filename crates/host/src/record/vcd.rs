@@ -1,16 +1,16 @@
-//! A recording as a value change dump (IEEE 1364-2005, clause 18), with the
-//! string extension that GTKWave reads.
+//! Writes a recording as a value change dump (IEEE 1364-2005, clause 18), with the extension for
+//! strings that GTKWave reads.
 
 use std::collections::BTreeSet;
 use std::io::{self, Write};
 
 use super::{Kind, Recording, Value};
 
-/// Writes the whole dump. The time unit is 1 us, or 1 ns where an instant needs it.
+/// Writes the whole dump. The time unit is 1 us; it is 1 ns if an instant needs it.
 ///
 /// # Errors
 ///
-/// The writer's own.
+/// The writer fails.
 pub fn write_vcd(recording: &Recording, out: &mut dyn Write) -> io::Result<()> {
     let instants = recording.instants();
     let micros = instants.iter().chain([&recording.end()]).all(|t| t % 1000 == 0);
@@ -41,7 +41,7 @@ pub fn write_vcd(recording: &Recording, out: &mut dyn Write) -> io::Result<()> {
     Ok(())
 }
 
-/// The declarations: a scope for each group, and one for each part of a dotted name.
+/// Writes the declarations: a scope for each group, and one for each part of a dotted name.
 fn write_scopes(recording: &Recording, out: &mut dyn Write) -> io::Result<()> {
     let mut open: Vec<String> = Vec::new();
     let mut used = BTreeSet::new();
@@ -79,7 +79,7 @@ fn write_scopes(recording: &Recording, out: &mut dyn Write) -> io::Result<()> {
     Ok(())
 }
 
-/// The code of a signal: digits `!`..`~`, to the base 94.
+/// The identifier code of a signal: its number to the base 94, with the digits `!` to `~`.
 fn identifier(mut number: usize) -> String {
     let mut out = String::new();
     loop {
@@ -92,8 +92,8 @@ fn identifier(mut number: usize) -> String {
     }
 }
 
-/// A name as one word: a reader splits at white space, `[` begins a bit range,
-/// and `$` begins a keyword.
+/// A name as a single word: a reader splits at white space, `[` begins a bit range, and `$` begins
+/// a keyword.
 fn word(part: &str) -> String {
     let clean = |c: char| {
         if c.is_whitespace() || c.is_control() || matches!(c, '[' | ']' | '$' | '\\') { '_' } else { c }
@@ -115,7 +115,8 @@ fn change(value: &Value, kind: Kind, id: &str) -> String {
     }
 }
 
-/// A number that `strtod` reads. An f32 is widened: its shortest text would name another f64.
+/// A number that `strtod` reads. An f32 is widened first, because its own shortest text would name
+/// another f64.
 fn real(x: f64) -> String {
     if x.is_nan() {
         "nan".to_owned()
@@ -126,7 +127,7 @@ fn real(x: f64) -> String {
     }
 }
 
-/// Text as one word: C escapes for what would end or break it.
+/// A text as a single word: C escapes replace the characters that would end it.
 fn escape(text: &str) -> String {
     let mut out = String::new();
     for c in text.chars() {
@@ -161,7 +162,7 @@ mod tests {
         );
     }
 
-    /// Reads a dump back: (scope path and name, sort, bits) and the changes of each.
+    /// Reads a dump back: its time unit, and for each signal (path, kind, number of bits, changes).
     #[allow(clippy::type_complexity, reason = "a table in a test")]
     fn parse(text: &str) -> (String, BTreeMap<String, (String, u32, Vec<(i64, String)>)>) {
         let (mut scale, mut scopes, mut ids) = (String::new(), Vec::new(), BTreeMap::new());

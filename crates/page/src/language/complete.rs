@@ -1,21 +1,21 @@
-//! What could stand at a place of the text.
+//! Completion: the words that are possible at a place of the text.
 
-use g7_model::{Document, ProfileName};
+use g7_model::{Document, ProfileName, Qualifier, Type};
 use g7_syntax::{Token, TokenKind};
 use serde::Serialize;
 
-use super::names::{Meaning, names};
+use super::definitions::{Meaning, names};
 use super::symbols::declaration;
 use crate::file::File;
 
-/// What can be put in, from where on.
+/// The possible words, and the place at which the word begins.
 #[derive(Debug, Serialize)]
 pub(crate) struct Completion {
     from: usize,
     items: Vec<Choice>,
 }
 
-/// One choice.
+/// One possible word.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub(crate) struct Choice {
     label: String,
@@ -24,7 +24,7 @@ pub(crate) struct Choice {
     insert: String,
 }
 
-/// What the braces round a place belong to.
+/// The item whose braces enclose a place.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Around {
     File,
@@ -65,17 +65,6 @@ const CHART: &[(&str, &str)] = &[
     ("action", "a named action of this chart"),
 ];
 const ACTIONS: &[(&str, &str)] = &[
-    ("N", "while the step is active"),
-    ("S", "set"),
-    ("R", "reset"),
-    ("L", "limited in time"),
-    ("D", "delayed"),
-    ("P", "for one scan"),
-    ("P1", "once at activation"),
-    ("P0", "once at deactivation"),
-    ("SD", "set, delayed"),
-    ("DS", "delayed, set"),
-    ("SL", "set, limited"),
     ("on", "stored, at an event"),
     ("each scan:", "in each scan while active"),
     ("force", "a forcing order"),
@@ -109,10 +98,6 @@ const TEST: &[(&str, &str)] = &[
     ("restart", "starts anew"),
     ("repeat", "again and again"),
 ];
-const TYPES: &[&str] = &[
-    "BOOL", "INT", "REAL", "TIME", "DINT", "LREAL", "STRING", "SINT", "LINT", "USINT", "UINT", "UDINT",
-    "ULINT", "TON", "TOF", "TP", "CTU", "CTD", "CTUD", "R_TRIG", "F_TRIG", "SR", "RS",
-];
 const FUNCTIONS: &[(&str, &str)] = &[
     ("rise", "rising edge, ↑"),
     ("fall", "falling edge, ↓"),
@@ -128,17 +113,18 @@ const FUNCTIONS: &[(&str, &str)] = &[
     ("CONCAT", "texts joined"),
 ];
 
-/// What could stand at a code unit.
+/// The completion at a code unit.
 pub(crate) fn complete(file: &File, at: usize) -> Completion {
     let text = file.text();
     let byte = file.positions.byte(text, at);
     let before: Vec<Token> = g7_syntax::tokens(text).take_while(|t| t.start < byte).collect();
-    // A word that goes on to the place is what is being typed.
+    // A word that ends at the place is the one being typed.
     let typed = before.last().filter(|t| t.end >= byte && is_word(t.kind));
     let from = typed.map_or(byte, |t| t.start);
     let before = if typed.is_some() { before.split_last().map_or(&[][..], |(_, b)| b) } else { &before[..] };
-    let good = file.drawn();
-    let place = Place { text, before, document: &good.document, at: u32::try_from(byte).unwrap_or(u32::MAX) };
+    let readable = file.drawn();
+    let place =
+        Place { text, before, document: &readable.document, at: u32::try_from(byte).unwrap_or(u32::MAX) };
     let mut items = place.choices();
     let prefix = text.get(from..byte).unwrap_or("").trim_start_matches('`').to_lowercase();
     items.retain(|c| c.label.to_lowercase().contains(&prefix));
@@ -154,7 +140,7 @@ fn is_word(kind: TokenKind) -> bool {
 
 struct Place<'a> {
     text: &'a str,
-    /// The tokens before what is being typed.
+    /// The tokens before the word being typed.
     before: &'a [Token],
     document: &'a Document,
     at: u32,
@@ -174,11 +160,9 @@ impl Place<'_> {
                 Vec::new()
             }
             (TokenKind::PathDot, _) => self.members(),
-            // A dot with nothing behind it yet.
+            // A dot that nothing follows yet.
             (TokenKind::Sign, ".") if last.end as u32 == self.at => self.members(),
-            (TokenKind::Colon, _) if self.declares() => {
-                TYPES.iter().map(|t| choice(t, "type", "", t)).collect()
-            }
+            (TokenKind::Colon, _) if self.declares() => types(),
             (TokenKind::Arrow, _) => self.steps(),
             (_, "profile") => {
                 ProfileName::ALL.iter().map(|p| choice(p.name(), "profile", "", p.name())).collect()
@@ -188,7 +172,7 @@ impl Place<'_> {
             _ if self.begins(last) => match around {
                 Around::File => keywords(FILE),
                 Around::Chart => [self.steps(), keywords(CHART)].concat(),
-                Around::Step => [keywords(ACTIONS), self.values()].concat(),
+                Around::Step => [qualifiers(), keywords(ACTIONS), self.values()].concat(),
                 Around::Plant => keywords(PLANT),
                 Around::Test => keywords(TEST),
                 Around::Layout => self.steps(),
@@ -211,14 +195,14 @@ impl Place<'_> {
         }
     }
 
-    /// Whether a statement or item begins here.
+    /// True if a statement or an item begins here.
     fn begins(&self, last: &Token) -> bool {
         let between = self.text.get(last.end..self.at as usize).unwrap_or("");
         matches!(last.kind, TokenKind::LBrace | TokenKind::RBrace | TokenKind::Semi)
             || between.contains('\n') && !matches!(last.kind, TokenKind::Sign | TokenKind::Comma)
     }
 
-    /// What the braces round the place belong to: the first word of their item.
+    /// The item whose braces enclose the place, found by its first word.
     fn around(&self) -> Around {
         let mut open: Vec<Around> = Vec::new();
         let mut head: Option<&str> = None;
@@ -258,7 +242,7 @@ impl Place<'_> {
         open.last().copied().unwrap_or(Around::File)
     }
 
-    /// Whether a word or sign stands before on this line.
+    /// True if a word or sign occurs earlier on this line.
     fn after(&self, sign: &str) -> bool {
         let mut end = self.at as usize;
         for t in self.before.iter().rev() {
@@ -273,7 +257,7 @@ impl Place<'_> {
         false
     }
 
-    /// Whether this line declares something.
+    /// True if this line is a declaration.
     fn declares(&self) -> bool {
         ["input", "output", "var", "const", "state", "function", "parts"].iter().any(|w| self.after(w))
     }
@@ -282,7 +266,7 @@ impl Place<'_> {
         self.document.charts().find(|c| c.at.0.start <= self.at && self.at <= c.at.0.end)
     }
 
-    /// What stands behind the dot.
+    /// The names that can follow the dot.
     fn members(&self) -> Vec<Choice> {
         let owner = self.before.iter().rev().nth(1).map(|t| self.word(t).trim_matches('`')).unwrap_or("");
         let mut found = Vec::new();
@@ -359,7 +343,7 @@ impl Place<'_> {
         named.collect()
     }
 
-    /// What an expression can name: variables, steps, charts, parts of plants.
+    /// The names that an expression can use: variables, steps, charts, parts of plants.
     fn values(&self) -> Vec<Choice> {
         let here = self.here().map(|c| c.name.text.clone());
         let mut found = Vec::new();
@@ -396,7 +380,7 @@ impl Place<'_> {
     }
 }
 
-/// The activity of a step as an expression names it.
+/// The step variable of a step, as an expression writes it.
 fn activity(step: &str, chart: &str) -> Choice {
     let text = if step.starts_with(|c: char| c.is_ascii_digit()) {
         format!("X{step}")
@@ -408,6 +392,32 @@ fn activity(step: &str, chart: &str) -> Choice {
 
 fn keywords(list: &[(&str, &str)]) -> Vec<Choice> {
     list.iter().map(|(w, d)| choice(w, "keyword", d, &format!("{w} "))).collect()
+}
+
+/// The qualifiers, each with what it does.
+fn qualifiers() -> Vec<Choice> {
+    let does = |q: Qualifier| match q {
+        Qualifier::N => "while the step is active",
+        Qualifier::S => "set",
+        Qualifier::R => "reset",
+        Qualifier::L => "limited in time",
+        Qualifier::D => "delayed",
+        Qualifier::P => "for one scan",
+        Qualifier::P0 => "once at deactivation",
+        Qualifier::P1 => "once at activation",
+        Qualifier::SD => "set, delayed",
+        Qualifier::DS => "delayed, set",
+        Qualifier::SL => "set, limited",
+    };
+    let list: Vec<(&str, &str)> = Qualifier::ALL.map(|q| (q.name(), does(q))).into();
+    keywords(&list)
+}
+
+/// The types: those used most stand first.
+fn types() -> Vec<Choice> {
+    let often = [Type::Bool, Type::Int, Type::Real, Type::Time].map(Type::name);
+    let others = Type::names().filter(|name| !often.contains(name));
+    often.into_iter().chain(others).map(|t| choice(t, "type", "", t)).collect()
 }
 
 fn functions() -> Vec<Choice> {

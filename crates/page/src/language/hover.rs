@@ -1,13 +1,13 @@
-//! What stands under the pointer, in a few words.
+//! A short explanation of the text under the pointer.
 
+use g7_model::Qualifier;
 use serde::Serialize;
 
-use super::names::{Meaning, Named, meaning, word_at};
+use super::definitions::{Meaning, Named, meaning, word_at};
 use super::symbols::declaration;
 use crate::file::File;
-use crate::problems::units;
 
-/// A note on a piece of the text.
+/// An explanation of a piece of the text.
 #[derive(Debug, Serialize)]
 pub(crate) struct Hover {
     from: usize,
@@ -15,7 +15,7 @@ pub(crate) struct Hover {
     markdown: String,
 }
 
-/// What there is to say of the text at a code unit.
+/// The explanation of the text at a code unit.
 pub(crate) fn hover(file: &File, at: usize) -> Option<Hover> {
     let byte = file.positions.byte(file.text(), at);
     let problem = file.problems.iter().filter(|p| {
@@ -39,7 +39,7 @@ pub(crate) fn hover(file: &File, at: usize) -> Option<Hover> {
                 let range = file.source.range(p.at);
                 range.start <= byte && byte <= range.end
             })?;
-            units(file, first.at)
+            file.units(first.at)
         }
     };
     let about = named.map(|n| describe(&n)).or_else(|| word.and_then(|w| explain(w.text)).map(str::to_owned));
@@ -75,20 +75,12 @@ fn describe(n: &Named<'_>) -> String {
     }
 }
 
-/// The words of the language that are asked for most.
+/// Explains the most frequent words of the language.
 fn explain(word: &str) -> Option<&'static str> {
+    if let Some(qualifier) = Qualifier::named(word) {
+        return Some(explain_qualifier(qualifier));
+    }
     Some(match word {
-        "N" => "**N**: while the step is active",
-        "S" => "**S**: set, and stays so until a reset",
-        "R" => "**R**: reset; goes before everything that sets",
-        "L" => "**L**: while the step is active, for the time at most",
-        "D" => "**D**: while the step is active, once the time has passed",
-        "P" => "**P**: for one scan after activation",
-        "P1" => "**P1**: once, at activation",
-        "P0" => "**P0**: once, at deactivation",
-        "SD" => "**SD**: set at activation, acts once the time has passed, even if the step is left",
-        "DS" => "**DS**: set once the step was active for the time",
-        "SL" => "**SL**: set at activation, for the time",
         "when" => "**when**: the receptivity; the transition clears when it is enabled and this is true",
         "force" => "**force**: a forcing order: the chart is brought into this situation and held in it",
         "enclose" => "**enclose**: the charts that are active inside this step",
@@ -102,4 +94,20 @@ fn explain(word: &str) -> Option<&'static str> {
         "safe" => "**safe**: the value of the output after a fault",
         _ => return None,
     })
+}
+
+fn explain_qualifier(qualifier: Qualifier) -> &'static str {
+    match qualifier {
+        Qualifier::N => "**N**: while the step is active",
+        Qualifier::S => "**S**: set, and stays so until a reset",
+        Qualifier::R => "**R**: reset; goes before everything that sets",
+        Qualifier::L => "**L**: while the step is active, for the time at most",
+        Qualifier::D => "**D**: while the step is active, once the time has passed",
+        Qualifier::P => "**P**: for one scan after activation",
+        Qualifier::P1 => "**P1**: once, at activation",
+        Qualifier::P0 => "**P0**: once, at deactivation",
+        Qualifier::SD => "**SD**: set at activation, acts once the time has passed, even if the step is left",
+        Qualifier::DS => "**DS**: set once the step was active for the time",
+        Qualifier::SL => "**SL**: set at activation, for the time",
+    }
 }

@@ -1,4 +1,4 @@
-//! Words anywhere in a file, with the symbols that they stand in.
+//! Searches a text in a file; each result names the symbol that contains it.
 
 use g7_model::{FileId, Span};
 use serde::Serialize;
@@ -6,13 +6,13 @@ use serde::Serialize;
 use crate::file::File;
 use crate::ids;
 
-/// A hit.
+/// A result.
 #[derive(Debug, Serialize)]
 pub(crate) struct Hit {
     from: usize,
     to: usize,
     line: usize,
-    /// The line that it stands in.
+    /// The line that contains it.
     text: String,
     #[serde(skip_serializing_if = "Option::is_none")]
     id: Option<String>,
@@ -20,10 +20,10 @@ pub(crate) struct Hit {
     chart: Option<String>,
 }
 
-/// Most hits that are told.
+/// Greatest number of results.
 const MOST: usize = 200;
 
-/// Where a text stands in a file, capitals ignored.
+/// Finds a text in a file, regardless of case.
 pub(crate) fn search(file: &File, what: &str) -> Vec<Hit> {
     let wanted = what.trim().to_lowercase();
     if wanted.is_empty() {
@@ -54,8 +54,8 @@ pub(crate) fn search(file: &File, what: &str) -> Vec<Hit> {
     hits
 }
 
-/// The places of a lower-case text in a line; letters whose small form is
-/// longer or shorter are compared one by one.
+/// The places of a lower-case text in a line. Letters whose lower-case form has another length are
+/// compared one by one.
 fn found(line: &str, wanted: &str) -> Vec<std::ops::Range<usize>> {
     let letters: Vec<(usize, char)> = line.char_indices().collect();
     let mut all = Vec::new();

@@ -1,10 +1,10 @@
-//! Variables and steps as tables.
+//! The tables of variables and steps.
 
 use g7_model::{Document, Type, VarDecl, VarKind};
 use serde::Serialize;
 
-use super::names::{Meaning, names};
-use crate::drawing::Good;
+use super::definitions::{Meaning, names};
+use crate::file::Readable;
 use crate::ids;
 
 /// The tables of a file.
@@ -31,7 +31,7 @@ struct Variable {
     chart: Option<String>,
     from: usize,
     to: usize,
-    /// How often the text names it, its declaration left out.
+    /// The number of uses in the text, without the declaration.
     uses: usize,
 }
 
@@ -46,7 +46,7 @@ struct Step {
     to: usize,
 }
 
-/// What a class of variables is called.
+/// The word for a class of variables.
 pub(crate) fn class(kind: VarKind) -> &'static str {
     match kind {
         VarKind::Input => "input",
@@ -56,27 +56,27 @@ pub(crate) fn class(kind: VarKind) -> &'static str {
     }
 }
 
-/// The tables of the text that is drawn.
-pub(crate) fn tables(good: &Good) -> Tables {
-    let document: &Document = &good.document;
+/// The tables of a document.
+pub(crate) fn tables(readable: &Readable) -> Tables {
+    let document: &Document = &readable.document;
     let (mut variables, mut steps) = (Vec::new(), Vec::new());
     let mut counts: std::collections::HashMap<&str, usize> = Default::default();
-    for t in g7_syntax::tokens(&good.text) {
-        let word = good.text.get(t.start..t.end).unwrap_or("").trim_matches('`');
+    for t in g7_syntax::tokens(&readable.text) {
+        let word = readable.text.get(t.start..t.end).unwrap_or("").trim_matches('`');
         *counts.entry(word).or_default() += 1;
     }
     for n in names(document) {
-        let (from, to) = good.units(n.name.at.0);
+        let (from, to) = readable.units(n.name.at.0);
         match n.meaning {
             Meaning::Variable(v, chart) => variables.push(Variable {
                 name: n.name.text.to_string(),
                 class: class(v.kind),
                 ty: v.ty.to_string(),
-                init: v.init.as_ref().map_or(String::new(), |e| good.words(e.at.0)),
+                init: v.init.as_ref().map_or(String::new(), |e| readable.words(e.at.0)),
                 address: v.address.as_ref().map_or(String::new(), |a| a.text.to_string()),
                 inverted: v.inverted,
                 retain: v.retain,
-                safe: v.safe.as_ref().map_or(String::new(), |e| good.words(e.at.0)),
+                safe: v.safe.as_ref().map_or(String::new(), |e| readable.words(e.at.0)),
                 comment: v.comment.as_deref().unwrap_or("").to_owned(),
                 chart: chart.map(|c| c.name.text.to_string()),
                 from,
@@ -95,10 +95,10 @@ pub(crate) fn tables(good: &Good) -> Tables {
             Meaning::Chart(_) | Meaning::Other(..) => {}
         }
     }
-    Tables { stale: good.stale, variables, steps }
+    Tables { stale: readable.stale, variables, steps }
 }
 
-/// A declaration in a line, as it would stand in the text.
+/// A declaration on one line, as it would stand in the text.
 pub(crate) fn declaration(name: &str, v: &VarDecl) -> String {
     let mut line = format!("{} {name} : {}", class(v.kind), v.ty);
     if v.init.is_some() && v.ty != Type::Bool {

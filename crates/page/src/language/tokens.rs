@@ -1,100 +1,22 @@
-//! Colours for a text: each word by what it is.
+//! Colours for a text: the class of each word.
 
 use std::collections::HashSet;
 
+use g7_model::{Type, words};
 use g7_syntax::{Token, TokenKind};
 
-use super::names::{Meaning, names};
+use super::definitions::{Meaning, names};
 use crate::file::File;
 
-/// A token for the page: where it stands in code units, and its class.
+/// A token for the page: its place in code units, and its class.
 pub(crate) type Coloured = (usize, usize, &'static str);
 
-/// Words that are names elsewhere, and begin something where a line begins.
-const BEGINNINGS: &[&str] = &[
-    "scan",
-    "target",
-    "macrochart",
-    "pre",
-    "post",
-    "test",
-    "entry",
-    "exit",
-    "on",
-    "each",
-    "force",
-    "enable",
-    "mask",
-    "call",
-    "enclose",
-    "state",
-    "rate",
-    "drive",
-    "parts",
-    "arrivals",
-    "view",
-    "set",
-    "pulse",
-    "wait",
-    "expect",
-    "always",
-    "release",
-    "restart",
-    "repeat",
-    "N",
-    "S",
-    "R",
-    "L",
-    "D",
-    "P",
-    "P0",
-    "P1",
-    "SD",
-    "DS",
-    "SL",
-];
-/// Words that are names elsewhere, and go on with something within a line.
-const CONTINUATIONS: &[&str] = &[
-    "at",
-    "retain",
-    "inverted",
-    "safe",
-    "every",
-    "with",
-    "seed",
-    "within",
-    "until",
-    "scan",
-    "in",
-    "max",
-    "length",
-    "after",
-    "never",
-    "reachable",
-    "always",
-    "fault",
-    "cold",
-    "st",
-    "il",
-    "ld",
-    "section",
-    "each",
-    "if",
-    "INIT",
-    "stable",
-    "one-pass",
-];
-const TYPES: &[&str] = &[
-    "BOOL", "SINT", "INT", "DINT", "LINT", "USINT", "UINT", "UDINT", "ULINT", "REAL", "LREAL", "TIME",
-    "STRING", "CTU", "CTD", "CTUD", "TON", "TOF", "TP", "R_TRIG", "F_TRIG", "SR", "RS",
-];
-
-/// The tokens between two code units.
+/// The coloured tokens between two code units.
 pub(crate) fn tokens(file: &File, from: usize, to: usize) -> Vec<Coloured> {
     let text = file.text();
-    let good = file.drawn();
+    let readable = file.drawn();
     let (mut variables, mut steps, mut charts) = (HashSet::new(), HashSet::new(), HashSet::new());
-    for n in names(&good.document) {
+    for n in names(&readable.document) {
         let list = match n.meaning {
             Meaning::Step(..) => &mut steps,
             Meaning::Chart(_) => &mut charts,
@@ -119,7 +41,7 @@ pub(crate) fn tokens(file: &File, from: usize, to: usize) -> Vec<Coloured> {
                 let ticked = token.kind == TokenKind::Ticked;
                 if !ticked && is_keyword(text, word, before, token, behind, known) {
                     "keyword"
-                } else if !ticked && TYPES.contains(&word.to_ascii_uppercase().as_str()) && !known {
+                } else if !ticked && Type::named(&word.to_ascii_uppercase()).is_some() && !known {
                     "type"
                 } else if charts.contains(name) {
                     "chart"
@@ -164,7 +86,7 @@ fn is_keyword(
     let between = before.map_or("\n", |b| text.get(b.end..token.start).unwrap_or(""));
     let begins = between.contains('\n')
         || before.is_some_and(|b| matches!(b.kind, TokenKind::LBrace | TokenKind::RBrace | TokenKind::Semi));
-    // What is assigned, led from or dotted is a name.
+    // A word before an assignment, arrow, comma, colon or dot is a name.
     let named = behind.is_some_and(|b| {
         let sign = text.get(b.start..b.end).unwrap_or("");
         matches!(b.kind, TokenKind::Arrow | TokenKind::Comma | TokenKind::PathDot | TokenKind::Colon)
@@ -174,7 +96,7 @@ fn is_keyword(
     if dotted || named {
         return false;
     }
-    begins && BEGINNINGS.contains(&word) || !begins && !known && CONTINUATIONS.contains(&word)
+    begins && words::begins(word) || !begins && !known && words::CONTINUATIONS.contains(&word)
 }
 
 /// `X12`, where there is a step 12.
@@ -182,7 +104,7 @@ fn is_activity(name: &str, steps: &HashSet<String>) -> bool {
     name.strip_prefix('X').is_some_and(|s| steps.contains(s))
 }
 
-/// Whether a number stands where the name of a step does.
+/// True if a number stands where the name of a step is expected.
 fn is_step_place(text: &str, before: Option<&Token>, behind: Option<&Token>) -> bool {
     let word = before.and_then(|b| text.get(b.start..b.end)).unwrap_or("");
     let arrow = |t: Option<&Token>| t.is_some_and(|t| t.kind == TokenKind::Arrow);

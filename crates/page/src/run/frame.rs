@@ -1,4 +1,4 @@
-//! What changed since the frame before.
+//! A frame: what changed in a run since the previous frame.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -8,11 +8,10 @@ use g7_rig::{Activity, Item, Role};
 use serde::Serialize;
 
 use super::Run;
-use super::lanes::ms;
+use super::times::ms;
 use crate::ids;
 
-/// A frame. Steps, transitions, signals and bindings by the numbers that
-/// [`super::Started`] gave them.
+/// A frame. Steps, transitions, signals and bindings are numbered as in [`super::Started`].
 #[derive(Debug, Serialize)]
 pub(crate) struct Frame {
     run: String,
@@ -20,25 +19,25 @@ pub(crate) struct Frame {
     scans: u64,
     passes: u32,
     full: bool,
-    /// Steps that are active now and were not.
+    /// Steps that became active.
     on: Vec<u32>,
-    /// Steps that were and are no more.
+    /// Steps that became inactive.
     off: Vec<u32>,
-    /// Of the active steps: time since activation, ms.
+    /// The time since activation of each active step, in ms.
     #[serde(skip_serializing_if = "Option::is_none")]
     times: Option<BTreeMap<u32, f64>>,
-    /// 0 not enabled, 1 enabled, 2 enabled and the receptivity holds.
+    /// Enabled transitions: 0 not enabled, 1 enabled, 2 enabled and the receptivity is true.
     enabled: Vec<(u32, u8)>,
     cleared: Vec<u32>,
     values: Vec<(u32, String, f64)>,
     forced: Vec<(u32, bool)>,
     view: Vec<(u32, Show)>,
-    /// Between two passes of a scan.
+    /// True between two passes of a scan.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     within: bool,
-    /// The present of the run, and no earlier scan of it.
+    /// True if the frame shows the present and not an earlier scan.
     live: bool,
-    /// More time was asked for than could be run.
+    /// True if the run could not keep up with the requested time.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     late: bool,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -55,7 +54,7 @@ struct Stopped {
     id: String,
 }
 
-/// The fault that ended it; the place in the text that the run was started from.
+/// The fault that ended a run, with its place in the text from which the run was started.
 #[derive(Debug, Serialize)]
 struct Halted {
     what: String,
@@ -78,7 +77,7 @@ fn halted(run: &Run) -> Option<Halted> {
     })
 }
 
-/// A value of the picture.
+/// A value of the plant's picture.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(untagged)]
 pub(super) enum Show {
@@ -87,7 +86,7 @@ pub(super) enum Show {
     Text(String),
 }
 
-/// What the page knows already.
+/// The values that the page already knows.
 #[derive(Debug, Default)]
 pub(super) struct Sent {
     active: BTreeSet<u32>,
@@ -97,7 +96,7 @@ pub(super) struct Sent {
     view: Vec<Show>,
 }
 
-/// The frame since the one before; a full one has all there is.
+/// The frame since the previous one; a full frame contains everything.
 pub(super) fn frame(run: &mut Run, full: bool, times: bool) -> Frame {
     if full {
         run.sent = Sent::default();
@@ -146,8 +145,8 @@ pub(super) fn frame(run: &mut Run, full: bool, times: bool) -> Frame {
     frame
 }
 
-/// A value to be shown: of an input what the next scan will read, so that a
-/// switch is seen to move while the run stands still.
+/// The value of an item to show. For an input it is the value that the next scan will read, so that
+/// a switch moves even while the run is paused.
 fn value(run: &Run, item: &Item) -> Value {
     match item.role {
         Role::Input(index) if item.words == 1 => Value::Word(run.watched().input(index)),
@@ -155,8 +154,8 @@ fn value(run: &Run, item: &Item) -> Value {
     }
 }
 
-/// The enabled transitions of the shown state: 1, or 2 where the receptivity
-/// holds. A receptivity with a fault is said when a scan meets it.
+/// The enabled transitions of the shown state: 1, or 2 if the receptivity is true. A fault in a
+/// receptivity is reported when a scan meets it.
 fn enabled(run: &Run) -> BTreeMap<u32, u8> {
     let mut found = BTreeMap::new();
     let tell = |rank: u32, holds: bool| {
@@ -176,7 +175,7 @@ fn step_times(run: &Run, active: &BTreeSet<u32>) -> BTreeMap<u32, f64> {
             Activity::Step(id) => state.step_age(program, id),
             Activity::Macro(group) => state.group_age(program, group),
         };
-        Some((*i, ns as f64 / 1e6))
+        Some((*i, ms(ns)))
     };
     active.iter().filter_map(time).collect()
 }
@@ -202,12 +201,12 @@ fn view(run: &mut Run) -> Vec<Show> {
     values
 }
 
-/// To a ten-thousandth: what no picture shows is no change.
+/// Rounds to four decimals; smaller changes are not visible in a picture.
 fn rounded(x: f64) -> f64 {
     if x.is_finite() { (x * 1e4).round() / 1e4 } else { 0.0 }
 }
 
-/// A value as people read it; numbers with four decimals at most.
+/// A value as text for the user; numbers have at most four decimals.
 pub(super) fn shown(value: &Value, kind: Kind) -> String {
     let real = matches!(kind, Kind::Real | Kind::Lreal);
     let x = value.number(kind);

@@ -1,21 +1,22 @@
-//! What the signals did: edges for a chronogram, and files of them.
+//! The recorded signals: edges for a chronogram, and export to files.
 
 use g7_host::{Kind, Recording, write_csv, write_vcd};
 use serde::Serialize;
 
 use super::Run;
 use super::frame::shown;
+use super::times::{ms, ns};
 
 /// The lanes of a chronogram.
 #[derive(Debug, Serialize)]
 pub(crate) struct Lanes {
     start_ms: f64,
     end_ms: f64,
-    /// By signal: instant (ms), number, value as people read it.
+    /// For each signal its edges: instant (ms), number, value as text.
     lanes: Vec<Vec<(f64, f64, String)>>,
 }
 
-/// The form of a file of signals.
+/// The format of a file of signals.
 #[derive(Clone, Copy, Debug, serde::Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum Form {
@@ -25,11 +26,11 @@ pub(crate) enum Form {
 }
 
 impl Run {
-    /// The edges of some signals between two instants, at most about so many of each.
+    /// The edges of some signals between two instants, at most about `most` for each signal.
     pub(crate) fn lanes(&self, signals: &[usize], from: f64, to: f64, most: usize) -> Lanes {
         let (from, to) = (ns(from), ns(to));
         let most = most.clamp(2, 100_000);
-        // One lane for each signal asked for, empty where there is none.
+        // One lane for each requested signal; an unknown signal has an empty lane.
         let parts = signals.iter().map(|i| self.recording.part(&[*i], from, to));
         Lanes {
             start_ms: ms(self.recording.start()),
@@ -38,7 +39,7 @@ impl Run {
         }
     }
 
-    /// Some signals (all where none is named) as a file.
+    /// Exports some signals (all if none is named) as a file.
     pub(crate) fn export(
         &self,
         signals: &[usize],
@@ -62,7 +63,7 @@ impl Run {
     }
 }
 
-/// The signals as a chronogram.
+/// Draws the signals as a chronogram.
 fn picture(part: &Recording) -> String {
     let lane = |(i, signal): (usize, &g7_host::Signal)| g7_draw::Lane {
         name: signal.name.clone(),
@@ -86,8 +87,8 @@ fn picture(part: &Recording) -> String {
     g7_draw::chronogram_svg(&chronogram, &g7_draw::Options::default())
 }
 
-/// The edges of a signal; of those that lie closer than can be told apart the
-/// first and the last.
+/// The edges of a signal. Of edges that lie too close to be distinguished, only the first and the
+/// last are kept.
 fn lane(part: &Recording, signal: usize, most: usize) -> Vec<(f64, f64, String)> {
     let Some(kind) = part.signals().get(signal).map(|s| s.kind) else { return Vec::new() };
     let width = ((part.end() - part.start()) / most as i64).max(1);
@@ -102,14 +103,4 @@ fn lane(part: &Recording, signal: usize, most: usize) -> Vec<(f64, f64, String)>
         kept.push(edge);
     }
     kept.into_iter().map(|(at, v)| (ms(*at), v.number(kind), shown(v, kind))).collect()
-}
-
-/// Nanoseconds of a time in ms.
-pub(super) fn ns(ms: f64) -> i64 {
-    if ms.is_finite() { (ms.clamp(-1e12, 1e12) * 1e6).round() as i64 } else { 0 }
-}
-
-/// A time in ms.
-pub(super) fn ms(ns: i64) -> f64 {
-    ns as f64 / 1e6
 }

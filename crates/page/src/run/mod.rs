@@ -1,18 +1,19 @@
-//! A chart at work: on the bench, in virtual time, watched by a page.
+//! A run of a chart on the bench, in virtual time, shown by the page.
 //!
 //! ```text
 //! start -> Run (rig::Bench, host::Runner, Recording) -> frame: what changed
 //!            \-> past: back in time    lanes: chronogram    swap: on-line change
 //! ```
 //!
-//! What must hold: time moves only by messages; a frame says no more than what
-//! differs from the frame before; every scan is recorded.
+//! Time advances only by messages; a frame contains only what differs from the previous frame;
+//! every scan is recorded.
 
 mod frame;
 mod lanes;
 mod past;
 mod start;
 mod swap;
+mod times;
 
 use std::collections::BTreeSet;
 use std::sync::Arc;
@@ -30,11 +31,11 @@ use past::{Event, Past};
 use start::Places;
 pub(crate) use start::{Start, start};
 
-/// Most scans that one message makes.
+/// Greatest number of scans that one message makes.
 const SCANS: u32 = 20_000;
-/// Most changes kept of a signal.
+/// Greatest number of changes kept for one signal.
 const KEPT: usize = 20_000;
-/// Most changes kept of all signals together.
+/// Greatest number of changes kept for all signals together.
 const KEPT_IN_ALL: usize = 2_000_000;
 
 /// A recording of all signals of a bench, in bounded memory.
@@ -47,46 +48,46 @@ fn recording(bench: &Bench) -> Recording {
 /// A run.
 pub(crate) struct Run {
     pub(crate) name: String,
-    /// The file that it was started from.
+    /// The file from which it was started.
     pub(crate) file: String,
     bench: Bench,
-    /// The text it was compiled from.
+    /// The document from which it was compiled.
     document: Arc<Document>,
     text: Arc<str>,
     positions: Arc<Positions>,
-    /// As it was asked for.
+    /// The request that started it.
     wish: Start,
     places: Places,
     runner: Runner,
     past: Past,
-    /// An earlier scan that is looked at: the run as it stood, its number, its instant.
+    /// An earlier scan that the user looks at.
     viewed: Option<Viewed>,
-    /// Virtual time asked for, nanoseconds.
+    /// The virtual time requested so far, in nanoseconds.
     clock: i64,
-    /// Time of the latest scan, nanoseconds.
+    /// The instant of the latest scan, in nanoseconds.
     now: i64,
     recording: Recording,
     conflicts: Conflicts,
     notes: Vec<String>,
-    /// Transitions cleared since the frame before, by index.
+    /// The numbers of the transitions cleared since the previous frame.
     cleared: BTreeSet<u32>,
-    /// Steps and transitions at which a run stops.
+    /// The breakpoints.
     breaks: Breaks,
-    /// Where it did.
+    /// The id of the breakpoint at which the run stopped.
     stopped: Option<String>,
-    /// More time was asked for than could be run.
+    /// True if the run could not keep up with the requested time.
     late: bool,
     sent: Sent,
 }
 
-/// A scan of the past.
+/// A scan of the past, and the run as it was then.
 struct Viewed {
     runner: Runner,
     scans: u64,
     now: i64,
 }
 
-/// Where a run stops: indices of steps and transitions.
+/// The breakpoints: numbers of steps and transitions.
 #[derive(Debug, Default)]
 struct Breaks {
     steps: BTreeSet<u32>,
@@ -98,7 +99,7 @@ impl Run {
         self.bench.items.get(signal).ok_or_else(|| "there is no such signal".to_owned())
     }
 
-    /// Moves the virtual time on, scan by scan, up to a stop.
+    /// Advances the virtual time, scan by scan, until a breakpoint is met.
     pub(crate) fn advance(&mut self, ms: f64, most: Option<u32>) -> Result<(), String> {
         self.only_now()?;
         let step = if ms.is_finite() { (ms.clamp(0.0, 1e12) * 1e6) as i64 } else { 0 };
@@ -120,7 +121,7 @@ impl Run {
         Ok(())
     }
 
-    /// One scan, asked for by itself.
+    /// Makes a single scan.
     pub(crate) fn one_scan(&mut self) -> Result<(), String> {
         self.only_now()?;
         self.scan();
@@ -128,7 +129,7 @@ impl Run {
         Ok(())
     }
 
-    /// Refuses while an earlier scan is looked at.
+    /// Refuses changes while the user looks at an earlier scan.
     fn only_now(&self) -> Result<(), String> {
         match self.viewed {
             Some(_) => Err("this is the past: come back to now, or go on from here".to_owned()),
@@ -136,7 +137,7 @@ impl Run {
         }
     }
 
-    /// One scan; whether the run goes on behind it.
+    /// Makes one scan; returns false if the run stops after it.
     fn scan(&mut self) -> bool {
         if self.runner.halt().is_some() {
             return false;
@@ -144,7 +145,7 @@ impl Run {
         let before = (!self.breaks.steps.is_empty()).then(|| self.active());
         self.now = self.runner.due();
         self.clock = self.clock.max(self.now);
-        // One that is looked at pass by pass has begun already.
+        // A scan that is executed pass by pass was announced at its first pass.
         if !self.runner.is_within_scan() {
             self.past.before_scan(&self.runner);
         }
@@ -153,7 +154,7 @@ impl Run {
         done.is_ok() && self.stopped.is_none()
     }
 
-    /// One pass of the scan that is due.
+    /// Makes one pass of the next scan.
     pub(crate) fn pass(&mut self) -> Result<(), String> {
         self.only_now()?;
         if self.runner.halt().is_some() {
@@ -173,7 +174,7 @@ impl Run {
         Ok(())
     }
 
-    /// Takes in what a scan did.
+    /// Records the results of a scan.
     fn seen(&mut self, before: Option<&BTreeSet<u32>>) {
         self.recording.sample(self.now, self.bench.sample(&self.runner));
         self.notes.extend(self.conflicts.of(&self.bench, &self.runner));
@@ -183,7 +184,7 @@ impl Run {
         self.cleared.extend(cleared);
     }
 
-    /// The breakpoint that a scan met.
+    /// The breakpoint that a scan met, if any.
     fn stop_of(&self, cleared: &[u32], before: Option<&BTreeSet<u32>>) -> Option<String> {
         if let Some(at) = cleared.iter().find(|t| self.breaks.transitions.contains(t)) {
             return self.places.transition_id(*at);
@@ -191,13 +192,13 @@ impl Run {
         let before = before?;
         let mut came = self.active();
         came.retain(|s| !before.contains(s));
-        // Steps that were active only within the scan, or again, came on as well.
+        // A step that was active only within the scan, or was activated again, counts too.
         came.extend(self.entered());
         let at = came.into_iter().find(|s| self.breaks.steps.contains(s))?;
         self.places.step_id(at)
     }
 
-    /// The steps behind the transitions cleared in the latest scan, by index.
+    /// The numbers of the steps after the transitions cleared in the latest scan.
     fn entered(&self) -> BTreeSet<u32> {
         let tables = self.runner.program().tables();
         let rows = self.runner.state().cleared().iter().filter_map(|r| tables.transitions.get(*r as usize));
@@ -213,7 +214,7 @@ impl Run {
         u32::try_from(at).ok()
     }
 
-    /// The active steps and macro-steps, by index.
+    /// The numbers of the active steps and macro-steps.
     fn active(&self) -> BTreeSet<u32> {
         let state = self.watched().shown();
         (0u32..)
@@ -223,18 +224,18 @@ impl Run {
             .collect()
     }
 
-    /// Sets an input, a variable or a state of the plant, once.
+    /// Sets an input, a variable or a state of the plant once.
     pub(crate) fn set(&mut self, signal: usize, value: &str) -> Result<(), String> {
         let item = self.settable(signal)?;
         let value = values::read(value, item.kind)?;
         self.put(signal, &value)
     }
 
-    /// TRUE becomes FALSE, and FALSE TRUE.
+    /// Inverts a BOOL.
     pub(crate) fn toggle(&mut self, signal: usize) -> Result<(), String> {
         let item = self.settable(signal)?;
         if item.kind != Kind::Bool {
-            return Err(format!("`{}` is no BOOL: it cannot be toggled", item.name));
+            return Err(format!("`{}` is not a BOOL, so it cannot be inverted", item.name));
         }
         let now = match item.role {
             Role::Input(index) => self.runner.input(index),
@@ -260,13 +261,13 @@ impl Run {
         Ok(())
     }
 
-    /// Something comes in: it is noted, and done.
+    /// Records an event from outside and executes it.
     fn come(&mut self, event: Event) {
         self.past.note(&self.runner, event.clone());
         past::apply(&self.bench, &mut self.runner, &event);
     }
 
-    /// Holds a signal at a value.
+    /// Forces a signal to a value.
     pub(crate) fn force(&mut self, signal: usize, value: &str) -> Result<(), String> {
         self.only_now()?;
         let item = self.item(signal)?;
@@ -278,7 +279,7 @@ impl Run {
         Ok(())
     }
 
-    /// Lets go of a signal.
+    /// Releases a signal.
     pub(crate) fn release(&mut self, signal: usize) -> Result<(), String> {
         self.only_now()?;
         self.item(signal)?;
@@ -286,7 +287,7 @@ impl Run {
         Ok(())
     }
 
-    /// Lets go of all of them.
+    /// Releases all signals.
     pub(crate) fn release_all(&mut self) -> Result<(), String> {
         self.only_now()?;
         let held =
@@ -296,7 +297,7 @@ impl Run {
         Ok(())
     }
 
-    /// Starts the charts anew, with their first scan.
+    /// Restarts the charts and makes the first scan.
     pub(crate) fn restart(&mut self, warm: bool) -> Result<(), String> {
         self.only_now()?;
         if self.runner.is_within_scan() {
@@ -310,9 +311,9 @@ impl Run {
         Ok(())
     }
 
-    /// Looks at the run as it stood at an instant.
+    /// Shows the run as it was at an instant.
     pub(crate) fn seek(&mut self, ms: f64) -> Result<(), String> {
-        let instant = lanes::ns(ms).max(self.past.begin());
+        let instant = times::ns(ms).max(self.past.begin());
         let found = self.past.at(&self.bench, instant);
         let (runner, scans) = found.ok_or("nothing was recorded yet")?;
         let back = i64::try_from(scans).unwrap_or(1).saturating_sub(1).saturating_mul(runner.period());
@@ -328,8 +329,8 @@ impl Run {
         Ok(())
     }
 
-    /// Comes back to now; or takes the scan looked at for now, and forgets what
-    /// came behind it.
+    /// Returns to the present; with `here`, the scan that is shown becomes the present, and
+    /// everything after it is dropped.
     pub(crate) fn live(&mut self, here: bool) {
         let Some(viewed) = self.viewed.take() else { return };
         if here {
@@ -339,12 +340,12 @@ impl Run {
         }
     }
 
-    /// The run that is looked at.
+    /// The run that is shown: the present one, or that of an earlier scan.
     fn watched(&self) -> &Runner {
         self.viewed.as_ref().map_or(&self.runner, |v| &v.runner)
     }
 
-    /// Stops at these steps and transitions, and at no others.
+    /// Sets the breakpoints; all others are removed.
     pub(crate) fn set_breaks(&mut self, ids: &[String]) {
         self.breaks = Breaks::default();
         for id in ids {
@@ -356,13 +357,13 @@ impl Run {
         }
     }
 
-    /// Where it stops, by id.
+    /// The ids of the breakpoints.
     pub(crate) fn break_ids(&self) -> Vec<String> {
         let steps = self.breaks.steps.iter().filter_map(|s| self.places.step_id(*s));
         steps.chain(self.breaks.transitions.iter().filter_map(|t| self.places.transition_id(*t))).collect()
     }
 
-    /// What a page is told of it.
+    /// The next frame for the page.
     pub(crate) fn frame(&mut self, full: bool, times: bool) -> Frame {
         frame::frame(self, full, times)
     }

@@ -1,13 +1,13 @@
-//! The way back in time: the run as it stood at some scans, and what came in
-//! since. A scan between is made again from the one before it.
+//! The past of a run: copies of the run at some scans, and all events from outside. A scan between
+//! two copies is reached by repeating the scans since the copy before it.
 //!
-//! What must hold: making a scan again gives the state it gave (the engine's
-//! promise); memory is bounded, whatever the length of the run.
+//! Repeating a scan gives the same state (the engine guarantees it); the memory is bounded for runs
+//! of any length.
 
 use g7_host::{Runner, Start, Value};
 use g7_rig::Bench;
 
-/// What came in from outside.
+/// An event from outside.
 #[derive(Clone, Debug)]
 pub(super) enum Event {
     Set(usize, Value),
@@ -16,7 +16,7 @@ pub(super) enum Event {
     Restart(Start),
 }
 
-/// When: behind so many scans, perhaps between two passes of the next one.
+/// When an event came: after how many scans, and if so, between two passes of the next one.
 #[derive(Clone, Debug)]
 struct Entry {
     scans: u64,
@@ -24,35 +24,35 @@ struct Entry {
     event: Event,
 }
 
-/// The run before the scan of this number.
+/// A copy of the run before the scan with this number.
 #[derive(Clone)]
 struct Mark {
     scans: u64,
     runner: Runner,
 }
 
-/// What is kept of a run.
+/// The stored past of a run.
 pub(super) struct Past {
     marks: Vec<Mark>,
-    /// Scans from one mark to the next.
+    /// The number of scans between two copies.
     every: u64,
-    /// Most marks.
+    /// Greatest number of copies.
     room: usize,
     entries: Vec<Entry>,
     scans: u64,
-    /// Instant of the first scan, nanoseconds.
+    /// The instant of the first scan, in nanoseconds.
     begin: i64,
 }
 
-/// Scans from mark to mark at first.
+/// The number of scans between two copies at the start of a run.
 const EVERY: u64 = 64;
-/// Words that all marks may take.
+/// Greatest number of words in all copies together.
 const WORDS: usize = 1 << 20;
-/// Most events that are kept; at more the past begins anew.
+/// Greatest number of events; when it is exceeded, the past begins anew.
 const EVENTS: usize = 100_000;
 
 impl Past {
-    /// A past that begins here.
+    /// A past that begins at the present state of the run.
     pub(super) fn new(runner: &Runner) -> Past {
         let words = |s: &g7_engine::State| s.image().len();
         let size = 2 * words(runner.state()) + runner.plant().map_or(0, |(_, s)| 2 * words(s)) + 256;
@@ -66,12 +66,12 @@ impl Past {
         }
     }
 
-    /// Instant of the first scan.
+    /// The instant of the first scan.
     pub(super) fn begin(&self) -> i64 {
         self.begin
     }
 
-    /// Something comes in.
+    /// Records an event from outside.
     pub(super) fn note(&mut self, runner: &Runner, event: Event) {
         if self.entries.len() >= EVENTS {
             *self = Past::new(runner);
@@ -79,18 +79,18 @@ impl Past {
         self.entries.push(Entry { scans: self.scans, within: runner.is_within_scan(), event });
     }
 
-    /// A scan is about to be made.
+    /// Must be called before each scan.
     pub(super) fn before_scan(&mut self, runner: &Runner) {
         let due =
             self.scans.is_multiple_of(self.every) && self.marks.last().is_none_or(|m| m.scans < self.scans);
-        // Between two passes the scan has begun; the mark before it will do.
+        // Between two passes the scan has already begun; the copy before it is used.
         if due && !runner.is_within_scan() {
             if self.marks.len() >= self.room {
                 self.every = self.every.saturating_mul(2);
                 let every = self.every;
                 self.marks.retain(|m| m.scans.is_multiple_of(every));
             }
-            // What came in at this very instant is made again too: it lies behind the mark.
+            // Events since the last scan are replayed after the copy, so none may be in it already.
             if self.scans.is_multiple_of(self.every)
                 && self.entries.last().is_none_or(|e| e.scans != self.scans)
             {
@@ -100,8 +100,7 @@ impl Past {
         self.scans += 1;
     }
 
-    /// The run behind the scan at an instant or the last one before it, and the
-    /// number of that scan, from 1.
+    /// The run after the last scan at or before an instant, and the number of that scan, from 1.
     pub(super) fn at(&self, bench: &Bench, instant: i64) -> Option<(Runner, u64)> {
         let first = self.marks.first()?;
         let period = first.runner.period();
@@ -123,12 +122,12 @@ impl Past {
         Some((runner, target))
     }
 
-    /// Whether this is the latest scan.
+    /// True if this is the latest scan.
     pub(super) fn is_last(&self, scans: u64) -> bool {
         scans >= self.scans
     }
 
-    /// Forgets what came behind a scan.
+    /// Drops everything after a scan.
     pub(super) fn cut(&mut self, scans: u64) {
         self.scans = scans;
         self.entries.retain(|e| e.scans < scans);
@@ -136,7 +135,7 @@ impl Past {
     }
 }
 
-/// Does to a run what came in.
+/// Executes an event on a run.
 pub(super) fn apply(bench: &Bench, runner: &mut Runner, event: &Event) {
     match event {
         Event::Set(i, value) => {

@@ -1,10 +1,10 @@
-//! How a run begins: compiled, coupled, named for the page.
+//! The start of a run: compiles the text, couples the plant, and numbers everything for the page.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use g7_host::Kind;
-use g7_model::{ProfileName, Severity, Span};
+use g7_model::{Nanos, ProfileName, Severity, Span};
 use g7_rig::{Activity, Bench, Conflicts, Options, Role, Source};
 use serde::{Deserialize, Serialize};
 
@@ -14,7 +14,7 @@ use super::{Breaks, Frame, Run};
 use crate::ids::{self, Thing};
 use crate::positions::Positions;
 
-/// What a page asks to be run.
+/// The page's request to start a run.
 #[derive(Clone, Debug, Deserialize)]
 pub(crate) struct Start {
     pub(crate) file: String,
@@ -26,7 +26,7 @@ pub(crate) struct Start {
     seed: u64,
 }
 
-/// What it is told of a run: the names behind the numbers of its frames.
+/// The description of a run: the names of the numbers in its frames.
 #[derive(Debug, Serialize)]
 pub(crate) struct Started {
     run: String,
@@ -40,9 +40,9 @@ pub(crate) struct Started {
     plant: Option<String>,
     #[serde(skip_serializing_if = "Option::is_none")]
     view: Option<View>,
-    /// The short name of the text that runs, as in a look.
+    /// The fingerprint of the text that runs, as in the overview of a file.
     hash: String,
-    /// Where it stops.
+    /// The ids of the breakpoints.
     breaks: Vec<String>,
     frame: Frame,
 }
@@ -66,7 +66,7 @@ struct StepRow {
     id: String,
     name: String,
     chart: String,
-    /// The signal of its activity is called so.
+    /// The name of the signal of its activity.
     activity: String,
     #[serde(rename = "macro")]
     is_macro: bool,
@@ -90,12 +90,12 @@ struct Binding {
     attribute: String,
 }
 
-/// Ids of what a program has, by the numbers of frames.
+/// The ids of the parts of a program, by their numbers in frames.
 #[derive(Debug, Default)]
 pub(super) struct Places {
     steps: Vec<String>,
     transitions: Vec<String>,
-    /// By rank.
+    /// The number of the transition with each rank.
     ranks: Vec<Option<u32>>,
 }
 
@@ -124,7 +124,7 @@ impl Places {
         places
     }
 
-    /// The number of the transition of this rank.
+    /// The number of the transition with this rank.
     pub(super) fn transition(&self, rank: u32) -> Option<u32> {
         self.ranks.get(rank as usize).copied().flatten()
     }
@@ -146,7 +146,7 @@ impl Places {
     }
 }
 
-/// Compiles and makes the first scan.
+/// Compiles a source and makes the first scan.
 pub(crate) fn start(source: &Source, wish: &Start) -> Result<Run, String> {
     let bench = bench(source, wish)?;
     let runner = bench.runner(wish.seed);
@@ -178,16 +178,16 @@ pub(crate) fn start(source: &Source, wish: &Start) -> Result<Run, String> {
     Ok(run)
 }
 
-/// The bench that is asked for.
+/// Builds the bench for a request.
 pub(super) fn bench(source: &Source, wish: &Start) -> Result<Bench, String> {
     let profile = wish.profile.as_deref().map(profile).transpose()?;
     let scan = match wish.scan_ms {
         Some(ms) if !(0.001..=3.6e6).contains(&ms) => {
             return Err("the scan time must lie between 1 us and 1 h".to_owned());
         }
-        ms => ms.map(|ms| (ms * 1e6) as i64),
+        ms => ms.map(|ms| Nanos::new((ms * 1e6) as i64)),
     };
-    // Of several plants the first is as good as any to begin with.
+    // If there are several plants and none is chosen, the run starts with the first.
     let first = g7_compile::plant::plants(&source.document).next().map(|p| p.name.text.to_string());
     let plant = wish.plant.as_deref().or(first.as_deref());
     let (bench, problems) =
@@ -209,7 +209,7 @@ fn profile(name: &str) -> Result<ProfileName, String> {
 }
 
 impl Run {
-    /// What a page is told at the beginning.
+    /// The description of the run for the page.
     pub(crate) fn started(&mut self) -> Started {
         let frame = self.frame(true, true);
         let bench = &self.bench;
@@ -264,7 +264,7 @@ impl Run {
             transitions: self.places.transitions.iter().map(|id| TransitionRow { id: id.clone() }).collect(),
             plant: bench.plant.as_ref().map(|p| p.name.clone()),
             view,
-            hash: crate::look::hash(&self.text),
+            hash: crate::overview::hash(&self.text),
             breaks: self.break_ids(),
             frame,
         }

@@ -1,4 +1,4 @@
-//! An on-line change: the run goes on in a changed chart.
+//! An on-line change: the run continues with a changed chart.
 
 use std::sync::Arc;
 
@@ -10,13 +10,13 @@ use super::{Breaks, Run};
 use crate::positions::Positions;
 
 impl Run {
-    /// Takes over a changed text behind the scan in hand. Unless it is `forced`,
-    /// nothing is done where something would be lost: that is said instead.
+    /// Continues the run with a changed text after the present scan. Returns what would be lost; if
+    /// anything would be, the change is made only if it is `forced`.
     pub(crate) fn swap(&mut self, source: &Source, forced: bool) -> Result<Vec<String>, String> {
         self.only_now()?;
         let new = bench(source, &self.wish)?;
         let document = Arc::new(source.document.clone());
-        // A scan that is looked at pass by pass comes to its end first.
+        // A scan that is executed pass by pass is completed first.
         if self.runner.is_within_scan() {
             self.scan();
         }

@@ -1,15 +1,15 @@
-//! A page to be asked in tests.
+//! A page that tests can send messages to.
 #![allow(dead_code, reason = "each test file uses some of it")]
 
 use g7_page::Page;
 use serde_json::{Value, json};
 
-/// A page, asked in JSON values.
+/// A page that takes and returns JSON values.
 #[derive(Default)]
 pub(crate) struct Asked(Page);
 
 impl Asked {
-    /// The answer, or the sentence in place of one.
+    /// The answer, or the sentence of a refusal.
     pub(crate) fn ask(&mut self, message: Value) -> Result<Value, String> {
         let mut answer: Value =
             serde_json::from_str(&self.0.call(&message.to_string())).expect("an answer is JSON");
@@ -19,17 +19,17 @@ impl Asked {
         }
     }
 
-    /// The answer to what must be answered.
+    /// The answer to a message that must be accepted.
     pub(crate) fn ok(&mut self, message: Value) -> Value {
         self.ask(message.clone()).unwrap_or_else(|no| panic!("{message}: {no}"))
     }
 
-    /// The sentence to what must be refused.
+    /// The sentence for a message that must be refused.
     pub(crate) fn no(&mut self, message: Value) -> String {
         self.ask(message.clone()).err().unwrap_or_else(|| panic!("{message} was answered"))
     }
 
-    /// Opens `a.g7`.
+    /// Opens a text as `a.g7`.
     pub(crate) fn open(&mut self, text: &str) -> Value {
         self.ok(json!({ "do": "open", "file": "a.g7", "text": text }))
     }
@@ -41,7 +41,7 @@ impl Asked {
     }
 }
 
-/// Chance, the same in every run.
+/// Pseudo-random numbers; every run gives the same ones.
 pub(crate) struct Chance(pub(crate) u64);
 
 impl Chance {
@@ -51,7 +51,7 @@ impl Chance {
         (self.0 >> 33) as usize % bound.max(1)
     }
 
-    /// One of several.
+    /// One element of a list.
     pub(crate) fn one<'a, T>(&mut self, list: &'a [T]) -> &'a T {
         &list[self.below(list.len())]
     }
@@ -63,7 +63,7 @@ pub(crate) fn example(path: &str) -> String {
     std::fs::read_to_string(&path).unwrap_or_else(|e| panic!("{}: {e}", path.display()))
 }
 
-/// Every example, by its path.
+/// All examples, with their paths.
 pub(crate) fn examples() -> Vec<(String, String)> {
     fn walk(folder: &std::path::Path, all: &mut Vec<(String, String)>) {
         for entry in std::fs::read_dir(folder).expect("a folder") {

@@ -1,6 +1,6 @@
-//! The test bench: charts, plant and names, ready to be run by hand or by a test.
+//! The test bench: compiled charts, their plant, and the names of everything in them.
 
-mod names;
+mod build;
 mod tables;
 
 use std::collections::BTreeSet;
@@ -11,65 +11,65 @@ use g7_engine::{Addr, GroupId, State, StepId};
 use g7_host::{
     Coupling, Force, Halt, Kind, Recording, Runner, Signal, Value, format_time, read_text, write_text,
 };
-use g7_model::{Span, Type};
+use g7_model::{Nanos, Span, Type};
 
-pub use names::{Answer, Ask, Options, build};
+pub use build::{Answer, Ask, Options, build};
 pub use tables::Table;
 
-/// What a variable is to the bench.
+/// The role of a variable on the bench.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Role {
-    /// An input of the charts: its first word counted from the first input.
+    /// An input of the charts; the number is that of its first word, counted from the first input
+    /// word.
     Input(u32),
-    /// An output.
+    /// An output of the charts.
     Output,
-    /// A variable of the charts.
+    /// Any other variable of the charts.
     Variable,
     /// A state of the plant.
     Plant,
 }
 
-/// Something with a value and a name.
+/// A named value.
 #[derive(Clone, Debug)]
 pub struct Item {
-    /// As the language has it from outside of all charts.
+    /// Its name, as the language writes it outside of all charts.
     pub name: String,
     /// How its words are to be read.
     pub kind: Kind,
     /// What it is for.
     pub role: Role,
-    /// First word, in the charts' or the plant's variable area.
+    /// The address of its first word, among the variables of the charts or of the plant.
     pub addr: u32,
-    /// How many words it has.
+    /// The number of its words.
     pub words: u32,
-    /// Kept over a restart; its type as written.
+    /// For a retained variable: its type as written.
     pub retain: Option<String>,
-    /// `"…"`.
+    /// The author's comment, without quotes.
     pub comment: Option<String>,
     /// Its type.
     pub ty: Type,
-    /// Where it is declared.
+    /// The place of its declaration.
     pub at: Span,
 }
 
-/// A step or macro-step with its name.
+/// A step or macro-step and its name.
 #[derive(Clone, Debug)]
 pub struct StepItem {
-    /// As in traces.
+    /// Its name, as traces write it.
     pub name: String,
-    /// `"…"`.
+    /// The author's comment, without quotes.
     pub comment: Option<String>,
-    /// Whose activity it is.
+    /// The step or macro-step whose activity it has.
     pub id: Activity,
-    /// Where its name stands.
+    /// The place of its name in the text.
     pub at: Span,
-    /// Of an expansion or a task.
+    /// True if it belongs to an expansion or a task.
     pub inner: bool,
 }
 
 impl StepItem {
-    /// The variable of its activity, as the language has it: `X12`, `G.X12`,
-    /// `XM3`, `Fill.X`.
+    /// The name of its step variable in the language: `X12`, `G.X12`, `XM3`, `Fill.X`.
     pub fn activity(&self) -> String {
         let (before, last) = match self.name.rsplit_once('.') {
             Some((before, last)) => (format!("{before}."), last),
@@ -87,56 +87,57 @@ impl StepItem {
     }
 }
 
-/// Whose activity.
+/// A step or macro-step as the owner of an activity.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Activity {
-    /// A step's own.
+    /// A step: its own activity.
     Step(StepId),
-    /// That of a macro-step: of all steps of its expansion.
+    /// A macro-step: active while a step of its expansion is.
     Macro(GroupId),
 }
 
-/// A plant made ready.
+/// A plant, compiled and coupled.
 #[derive(Debug)]
 pub struct PlantSide {
     /// Its name.
     pub name: String,
     /// Its program.
     pub compiled: g7_compile::Compiled,
-    /// Which words it shares with the charts.
+    /// The words that it shares with the charts.
     pub coupling: Coupling,
     /// Its picture, as written.
     pub view: Option<String>,
-    /// What moves in the picture.
+    /// The moving parts of the picture.
     pub bindings: Vec<plant::Binding>,
-    /// Of the expressions asked of it.
+    /// The code of the expressions that were asked of it.
     pub queries: Vec<g7_engine::Code>,
 }
 
-/// Charts with names, and a plant if there is one.
+/// Compiled charts with names, and their plant if there is one.
 pub struct Bench {
-    /// The charts.
+    /// The compiled charts.
     pub compiled: g7_compile::Compiled,
-    /// Everything with a value.
+    /// All named values.
     pub items: Vec<Item>,
-    /// Everything with an activity.
+    /// All steps and macro-steps.
     pub steps: Vec<StepItem>,
     /// The plant.
     pub plant: Option<PlantSide>,
-    /// Of the expressions asked for.
+    /// The compiled expressions, in the order of `Options::asks`.
     pub answers: Vec<Answer>,
-    /// Time between scans, nanoseconds.
-    pub period: i64,
+    /// The time between two scans.
+    pub period: Nanos,
 }
 
 impl Bench {
-    /// The charts before their first scan, coupled to the plant.
+    /// A run before its first scan, coupled to the plant.
     pub fn runner(&self, seed: u64) -> Runner {
         let symbols = &self.compiled.symbols;
         let flags = symbols.s0.zip(symbols.s1);
         let kept = self.retained().map(|i| i.addr..i.addr + i.words).collect::<Vec<Range<u32>>>();
-        let mut runner =
-            Runner::new(self.compiled.program.clone(), self.period).with_retained(kept).with_flags(flags);
+        let mut runner = Runner::new(self.compiled.program.clone(), self.period.count())
+            .with_retained(kept)
+            .with_flags(flags);
         if let Some(plant) = &self.plant {
             runner = runner.with_plant(plant.compiled.program.clone(), plant.coupling.clone());
             if let Some(addr) = plant.compiled.symbols.seed {
@@ -146,19 +147,19 @@ impl Bench {
         runner
     }
 
-    /// The variables kept over a restart.
+    /// The retained variables.
     pub fn retained(&self) -> impl Iterator<Item = &Item> {
         self.items.iter().filter(|i| i.retain.is_some())
     }
 
-    /// The variable of this name.
+    /// The value with this name.
     pub fn item(&self, name: &str) -> Option<&Item> {
         let plain = |i: &&Item| i.name == name;
         let cased = |i: &&Item| i.name.eq_ignore_ascii_case(name);
         self.items.iter().find(plain).or_else(|| self.items.iter().find(cased))
     }
 
-    /// The names nearest to a name that is not there, for a message.
+    /// Suggests names similar to an unknown name, for a message.
     pub fn suggestions(&self, name: &str) -> String {
         let mut near: Vec<(usize, &str)> = self
             .items
@@ -172,10 +173,10 @@ impl Bench {
         if near.is_empty() { String::new() } else { format!("; is it {}?", near.join(" or ")) }
     }
 
-    /// The value of an item as it stands.
+    /// The present value of an item.
     pub fn value(&self, runner: &Runner, item: &Item) -> Value {
         match item.role {
-            // Before the first scan the variable area has not read them yet.
+            // Before the first scan the inputs are not yet in the state.
             Role::Input(index) if item.words == 1 && !runner.state().is_started() => {
                 Value::Word(runner.input(index))
             }
@@ -195,7 +196,7 @@ impl Bench {
         }
     }
 
-    /// Holds an item at a value; a state of the plant is only set.
+    /// Forces an item to a value; a state of the plant is only set.
     pub fn force(&self, runner: &mut Runner, item: &Item, value: &Value) {
         for (at, word) in words(item, value) {
             match force(item, at) {
@@ -205,7 +206,7 @@ impl Bench {
         }
     }
 
-    /// Lets go of an item.
+    /// Ends the force on an item.
     pub fn release(&self, runner: &mut Runner, item: &Item) {
         for at in 0..item.words {
             if let Some(what) = force(item, at) {
@@ -214,12 +215,12 @@ impl Bench {
         }
     }
 
-    /// Whether an item is held.
+    /// True if an item is forced.
     pub fn is_forced(&self, runner: &Runner, item: &Item) -> bool {
         force(item, 0).is_some_and(|what| runner.is_forced(what))
     }
 
-    /// Whether a step or macro-step is active.
+    /// True if a step or macro-step is active.
     pub fn is_active(&self, state: &State, step: &StepItem) -> bool {
         match step.id {
             Activity::Step(id) => state.is_active(id),
@@ -227,7 +228,8 @@ impl Bench {
         }
     }
 
-    /// Time since a step was activated: nanoseconds, or scans where those are counted.
+    /// The time since a step was activated: a duration, or a number of scans if the profile counts
+    /// scans.
     pub fn step_time(&self, state: &State, step: &StepItem) -> Option<String> {
         let id = match step.id {
             Activity::Step(id) => id,
@@ -241,20 +243,20 @@ impl Bench {
         })
     }
 
-    /// The active steps by name, macro-steps left out.
+    /// The names of the active steps, without macro-steps.
     pub fn situation<'a>(&'a self, state: &'a State) -> Vec<&'a str> {
         self.compiled.symbols.situation(state).collect()
     }
 
-    /// What can be recorded: all items and all steps.
+    /// All signals that can be recorded: all items and all steps.
     pub fn signals(&self) -> Vec<Signal> {
         let item = |i: &Item| Signal { group: group(i.role), name: i.name.clone(), kind: i.kind };
         let step = |s: &StepItem| Signal { group: "steps", name: s.activity(), kind: Kind::Bool };
         self.items.iter().map(item).chain(self.steps.iter().map(step)).collect()
     }
 
-    /// The signals that moved, from cause to effect; what single parts of a
-    /// queue have is left to those who ask for it.
+    /// The signals that changed, ordered from cause to effect. The attributes of single parts in a
+    /// queue are left out.
     pub fn moving(recording: &Recording) -> Vec<usize> {
         let groups = ["inputs", "steps", "outputs", "variables", "plant"];
         let signals = recording.signals();
@@ -268,8 +270,8 @@ impl Bench {
         moving
     }
 
-    /// The signals that moved as they are looked at: what comes in and goes out,
-    /// the variables, the steps of the charts, the plant, the steps of expansions.
+    /// The signals that changed, ordered for reading: inputs and outputs, variables, steps of
+    /// charts, the plant, steps of expansions.
     pub fn lanes(&self, recording: &Recording) -> Vec<usize> {
         let groups = ["inputs", "outputs", "variables", "steps", "plant"];
         let mut moving = Bench::moving(recording);
@@ -282,14 +284,14 @@ impl Bench {
         moving
     }
 
-    /// The values of [`Bench::signals`], in their order.
+    /// The values of [`Bench::signals`], in the same order.
     pub fn sample<'a>(&'a self, runner: &'a Runner) -> impl Iterator<Item = Value> + 'a {
         let state = runner.shown();
         let items = self.items.iter().map(move |i| self.value(runner, i));
         items.chain(self.steps.iter().map(move |s| Value::Word(u64::from(self.is_active(state, s)))))
     }
 
-    /// The same of a state of the charts alone; the plant's are 0.
+    /// The values of [`Bench::signals`] in a state of the charts alone; those of the plant are 0.
     pub fn sample_state<'a>(&'a self, state: &'a State) -> impl Iterator<Item = Value> + 'a {
         let items = self.items.iter().map(move |i| match i.role {
             Role::Input(_) | Role::Output | Role::Variable => read(state, i),
@@ -298,12 +300,12 @@ impl Bench {
         items.chain(self.steps.iter().map(move |s| Value::Word(u64::from(self.is_active(state, s)))))
     }
 
-    /// Whether the plant drives it.
+    /// True if the plant drives the item.
     pub fn is_driven(&self, runner: &Runner, item: &Item) -> bool {
         matches!(item.role, Role::Input(index) if runner.is_driven(index))
     }
 
-    /// What stopped the run, in a sentence.
+    /// A sentence that says why the run stopped.
     pub fn halt(&self, runner: &Runner, halt: Halt) -> String {
         let (who, fault) = match halt {
             Halt::Charts(fault) => ("", fault),
@@ -322,7 +324,7 @@ impl Bench {
         text
     }
 
-    /// The place in the text at which a run was stopped, where there is one.
+    /// The place in the text of the fault that stopped the run, if it has one.
     pub fn halt_place(&self, halt: Halt) -> Option<Span> {
         let (symbols, fault) = match halt {
             Halt::Charts(fault) => (&self.compiled.symbols, fault),
@@ -331,7 +333,7 @@ impl Bench {
         fault.at.map(|at| symbols.place(at))
     }
 
-    /// The situations of an unstable cycle, from where the state stands in it.
+    /// The situations of an unstable cycle, beginning with the present one.
     fn cycle(&self, runner: &Runner, length: u32) -> Vec<String> {
         let mut state = runner.state().clone();
         let mut seen = Vec::new();
@@ -348,13 +350,14 @@ impl Bench {
     }
 }
 
-/// Variables that stored actions of one pass gave different values, each told
-/// once in a run.
+/// Finds variables to which the stored actions of one pass gave different values. Each variable is
+/// reported once per run.
 #[derive(Debug, Default)]
 pub struct Conflicts(BTreeSet<Addr>);
 
 impl Conflicts {
-    /// What the latest scan says of it, in a sentence.
+    /// A sentence about the conflict of the latest scan, if there is one that was not reported
+    /// before.
     pub fn of(&mut self, bench: &Bench, runner: &Runner) -> Option<String> {
         let addr = runner.report().conflict.filter(|a| self.0.insert(*a))?;
         let name = bench.compiled.symbols.variable_at(addr).map_or("a variable", |v| &v.name);
@@ -398,7 +401,7 @@ fn force(item: &Item, at: u32) -> Option<Force> {
     }
 }
 
-/// Edit distance, for suggestions.
+/// The edit distance between two words.
 fn distance(a: &str, b: &str) -> usize {
     let b: Vec<char> = b.chars().flat_map(char::to_lowercase).take(64).collect();
     let mut row: Vec<usize> = (0..=b.len()).collect();

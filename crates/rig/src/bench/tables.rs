@@ -1,11 +1,11 @@
-//! Queues and tracks of the plant, each as one thing: how many parts there are
-//! and what they have, from the first to the last.
+//! Queues and tracks of the plant, shown as one line each: the number of parts and the attributes
+//! of each part, from the first to the last.
 
 use g7_compile::symbols::Symbols;
 use g7_engine::{Addr, State};
 use g7_host::{Kind, Value, read_text};
 
-use super::names::kind;
+use super::build::kind;
 use super::{Bench, Role};
 
 /// A queue or track.
@@ -13,13 +13,13 @@ use super::{Bench, Role};
 pub struct Table {
     /// Its name.
     pub name: String,
-    /// Place of its number of parts in [`Bench::items`].
+    /// The position of its number of parts in [`Bench::items`].
     pub count: usize,
-    /// Places of all else that it has there.
+    /// The positions of its other items there.
     pub rest: Vec<usize>,
     counted: Addr,
     lost: Option<Addr>,
-    /// By place, the part that came first before the others.
+    /// For each place its cells; the part that came first has place 0.
     places: Vec<Vec<Cell>>,
 }
 
@@ -27,12 +27,12 @@ pub struct Table {
 struct Cell {
     addr: Addr,
     kind: Kind,
-    /// Where the part stands, on a track.
+    /// True for the cell that holds the position of a part on a track.
     position: bool,
 }
 
 impl Table {
-    /// The tables of the plant, as it declares them.
+    /// The queues and tracks of the plant, in the order of declaration.
     pub fn all(bench: &Bench) -> Vec<Table> {
         let Some(plant) = &bench.plant else { return Vec::new() };
         let states = || bench.items.iter().enumerate().filter(|(_, i)| i.role == Role::Plant);
@@ -52,7 +52,7 @@ impl Table {
         states().filter_map(|(at, i)| Some(of(at, i.name.strip_suffix(".count")?))).collect()
     }
 
-    /// `One  3: 0 0 1`; on a track with the positions, `Belt  2: 1@0.35 0@0.1`.
+    /// Shows a queue as `One  3: 0 0 1`, a track with positions as `Belt  2: 1@0.35 0@0.1`.
     pub fn show(&self, state: &State) -> String {
         let count = state.word(self.counted);
         let mut text = format!("{}  {count}", self.name);
@@ -68,7 +68,7 @@ impl Table {
     }
 }
 
-/// The cells `T.column.place` of a table, by place.
+/// The cells of a table, by place; the variables are named `T.column.place`.
 fn places(symbols: &Symbols, inner: &str) -> Vec<Vec<Cell>> {
     let mut places: Vec<Vec<Cell>> = Vec::new();
     for v in &symbols.variables {
@@ -77,7 +77,7 @@ fn places(symbols: &Symbols, inner: &str) -> Vec<Vec<Cell>> {
             continue;
         };
         let Some(kind) = kind(v.ty) else { continue };
-        // They are declared place by place.
+        // The variables are declared place by place.
         if place == places.len() {
             places.push(Vec::new());
         }
@@ -88,7 +88,7 @@ fn places(symbols: &Symbols, inner: &str) -> Vec<Vec<Cell>> {
     places
 }
 
-/// What a part has: its attributes, and behind an `@` its position.
+/// The attributes of a part, followed by `@` and its position on a track.
 fn part(cells: &[Cell], state: &State) -> String {
     let value = |c: &Cell| match c.kind {
         Kind::Text => Value::Text(read_text(state.words(), c.addr.0).into()),

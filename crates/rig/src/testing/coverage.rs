@@ -1,4 +1,4 @@
-//! What the tests reached: steps, transitions, actions, branches.
+//! Coverage: the steps, transitions, actions and branches that the tests reached.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -10,21 +10,21 @@ use g7_model::Span;
 use crate::Bench;
 use crate::Source;
 
-/// A thing that tests can reach.
+/// One element that tests can reach.
 #[derive(Clone, Debug)]
 pub struct Row {
-    /// What it is called in reports.
+    /// Its name in reports.
     pub name: String,
-    /// `path:line:column`.
+    /// Its place as `path:line:column`.
     pub place: String,
-    /// Scans in which it was reached.
+    /// The number of scans in which it was reached.
     pub hits: u64,
 }
 
-/// One sort of thing, in the order of the text.
+/// All elements of one kind, in the order of the text.
 pub type Rows = BTreeMap<Span, Row>;
 
-/// What the tests of one file reached.
+/// The coverage of one file.
 #[derive(Clone, Debug, Default)]
 pub struct Coverage {
     /// Steps.
@@ -33,24 +33,25 @@ pub struct Coverage {
     pub transitions: Rows,
     /// Actions.
     pub actions: Rows,
-    /// Transitions that share a preceding step: the ways of a divergence.
+    /// The branches of selections: transitions that share a preceding step.
     pub branches: Rows,
-    /// Actions that hold as long as their steps are active, by step.
+    /// For each step its actions that hold as long as the step is active.
     lasting: BTreeMap<StepId, Vec<Lasting>>,
-    /// Actions (rank) that several steps share: each step's own counts.
+    /// Actions (by rank) that several steps share; their execution is counted for each step.
     shared: BTreeSet<u32>,
 }
 
-/// An action without a moment of its own: `N motor`, `D 5s alarm if c`, `force G := INIT`.
+/// An action that lasts instead of happening at one moment: `N motor`, `D 5s alarm if c`, `force G
+/// := INIT`.
 #[derive(Clone, Copy, Debug)]
 struct Lasting {
     at: Span,
-    /// Empty where the active step is all that it takes.
+    /// Empty if the action has no condition.
     condition: Code,
 }
 
 impl Coverage {
-    /// The four sorts with their headings.
+    /// The four kinds of elements with their headings.
     pub fn sorts(&self) -> [(&'static str, &Rows); 4] {
         [
             ("steps", &self.steps),
@@ -60,7 +61,7 @@ impl Coverage {
         ]
     }
 
-    /// Lists everything that is there.
+    /// Lists all elements of a file.
     pub(super) fn learn(&mut self, bench: &Bench, source: &Source) {
         let symbols = &bench.compiled.symbols;
         let add = |rows: &mut Rows, at: Span, name: &str| {
@@ -90,7 +91,7 @@ impl Coverage {
         }
     }
 
-    /// Takes in what the latest scan did.
+    /// Counts what the latest scan reached.
     pub(super) fn see(&mut self, bench: &Bench, runner: &mut Runner) {
         self.see_lasting(runner);
         let (symbols, state) = (&bench.compiled.symbols, runner.state());
@@ -107,7 +108,7 @@ impl Coverage {
             let at = symbols.transition_place(*rank);
             hit(&mut self.transitions, at);
             hit(&mut self.branches, at);
-            // A step that was active only within the scan was reached as well.
+            // A step counts too if it was active only within the scan.
             if let Some(t) = tables.transitions.get(*rank as usize) {
                 let more = tables.arcs.get(t.more_to.start as usize..t.more_to.end as usize).unwrap_or(&[]);
                 for step in std::iter::once(&t.to).chain(more).filter(|s| !state.is_active(**s)) {
@@ -123,7 +124,7 @@ impl Coverage {
         }
     }
 
-    /// The lasting actions of the steps that are active now, where their conditions hold.
+    /// Counts the lasting actions of the active steps whose conditions hold.
     fn see_lasting(&mut self, runner: &mut Runner) {
         let active: Vec<StepId> = runner.state().active().collect();
         let (program, state) = runner.charts_mut();
@@ -137,14 +138,14 @@ impl Coverage {
     }
 }
 
-/// The actions that run the body of a name, whichever steps asked for it.
+/// The actions that run a named action body for several steps.
 fn shared(bench: &Bench) -> BTreeSet<u32> {
     let blocks = bench.compiled.program.tables().blocks.iter().zip(&bench.compiled.symbols.blocks);
     blocks.filter(|(_, symbol)| !symbol.name.is_empty()).map(|(block, _)| block.action).collect()
 }
 
-/// The actions that no moment of `told` stands for, with the conditions that
-/// their inputs to control blocks have: these lie by step, in the order of the text.
+/// The lasting actions of each step, in the order of the text, with the conditions of their
+/// control-block inputs. Actions in `told` are left out: the engine reports when they happen.
 fn lasting(bench: &Bench, told: &BTreeSet<Span>) -> BTreeMap<StepId, Vec<Lasting>> {
     let (unit, symbols) = (&bench.compiled.unit, &bench.compiled.symbols);
     let tables = bench.compiled.program.tables();
@@ -171,7 +172,7 @@ fn lasting(bench: &Bench, told: &BTreeSet<Span>) -> BTreeMap<StepId, Vec<Lasting
     found
 }
 
-/// Whether an action drives the control block with this name and place.
+/// True if an action drives the control block with this name and place.
 fn drives(unit: &Unit, action: &Action, name: &str, at: Span) -> bool {
     match &action.kind {
         ActionKind::Variable { var, .. } => unit.vars.get(var.index()).is_some_and(|v| *v.name == *name),
@@ -186,7 +187,7 @@ fn drives(unit: &Unit, action: &Action, name: &str, at: Span) -> bool {
     }
 }
 
-/// The author's words at a place, as far as one line goes.
+/// The author's text at a place, up to the end of the line.
 fn first_line(source: &Source, at: Span) -> String {
     let text = source.text.get(source.range(at)).unwrap_or("");
     let line = text.lines().next().unwrap_or("").trim();

@@ -1,43 +1,43 @@
-//! A test at work. One function a statement; the page on tests as code.
+//! Executes a test: one function for each statement. The meaning is the book's page on tests.
 
 use std::collections::BTreeSet;
 
 use g7_engine::eval;
 use g7_host::{Chronogram, Halt, Kind, Recording, Runner, Start, Style, Value, format_time, read_text};
-use g7_model::{Span, Type};
+use g7_model::{Nanos, Span, Type};
 
 use super::coverage::Coverage;
-use super::plan::{Check, Does, Line, Plan};
+use super::statements::{Check, Does, Line, Plan};
 use crate::Source;
 use crate::{Answer, Bench, Conflicts, Item};
 
-/// Why a test failed, with all that helps to see why.
+/// The failure of a test, with what helps to understand it.
 #[derive(Clone, Debug, Default)]
 pub struct Defect {
-    /// The statement.
+    /// The place of the statement.
     pub at: Span,
-    /// `path:line:column` of it.
+    /// The same place as `path:line:column`.
     pub place: String,
-    /// What happened, in a sentence without the expression.
+    /// A sentence that says what happened, without the expression.
     pub what: String,
-    /// The condition as written, where one failed.
+    /// The failed condition as written; empty if no condition failed.
     pub expected: String,
-    /// What it mentions, as it was.
+    /// The names in the condition, with their values.
     pub got: Vec<(String, String)>,
-    /// Time in the test, nanoseconds.
-    pub time: i64,
+    /// The time since the start of the test.
+    pub time: Nanos,
     /// The active steps.
     pub situation: String,
-    /// The signals that matter, up to the failure.
+    /// A chronogram of the relevant signals up to the failure.
     pub chronogram: String,
-    /// Where in charts or plant a fault came up.
+    /// The place in charts or plant at which a fault occurred.
     pub origin: Option<String>,
     expected_at: Option<Span>,
     origin_at: Option<Span>,
 }
 
 impl Defect {
-    /// Fills in what the source knows: places and the author's words.
+    /// Adds what only the source knows: places and the text of the condition.
     pub(super) fn describe(&mut self, source: &Source) {
         self.place = source.place(self.at);
         self.origin = self.origin_at.map(|at| source.place(at));
@@ -48,23 +48,23 @@ impl Defect {
     }
 }
 
-/// How a run of a test ended.
+/// The end of a run of a test.
 pub(super) struct Done {
     pub(super) defect: Option<Box<Defect>>,
-    pub(super) simulated: i64,
+    pub(super) simulated: Nanos,
     pub(super) scans: u64,
-    /// What deserves a look although nothing failed.
+    /// Observations that did not make the test fail.
     pub(super) notes: Vec<String>,
 }
 
-/// Why the statements stop.
+/// Why the execution of the statements stops.
 enum Stop {
     Failed(Box<Defect>),
-    /// A fault that some statement may still expect.
+    /// A fault, which a later statement may expect.
     Fault(Halt),
 }
 
-/// Runs a test from the charts' first scan on.
+/// Runs a test, beginning with the charts' first scan.
 pub(super) fn run<'b>(
     bench: &'b Bench,
     plan: &'b Plan,
@@ -95,10 +95,10 @@ struct Exec<'b, 'c> {
     bench: &'b Bench,
     runner: Runner,
     recording: Option<Recording>,
-    /// Conditions of the `always` blocks that are open.
+    /// The conditions of the enclosing `always` blocks.
     always: Vec<&'b Check>,
     coverage: Option<&'c mut Coverage>,
-    /// The statement in hand.
+    /// The statement that is being executed.
     at: Span,
     conflicts: Conflicts,
     notes: Vec<String>,
@@ -111,7 +111,8 @@ impl<'b> Exec<'b, '_> {
             self.at = line.at;
             match self.line(line) {
                 Err(Stop::Fault(halt)) => match lines.as_slice().first().map(|l| &l.does) {
-                    // The statement that made the fault is cut short; this one expected it.
+                    // The statement that caused the fault ends early, because this one expects the
+                    // fault.
                     Some(Does::ExpectFault(word)) => {
                         self.at = lines.next().map_or(self.at, |l| l.at);
                         self.expect_fault(halt, word.as_deref())?;
@@ -160,11 +161,11 @@ impl<'b> Exec<'b, '_> {
         }
     }
 
-    fn now(&self) -> i64 {
-        self.runner.state().now()
+    fn now(&self) -> Nanos {
+        Nanos::new(self.runner.state().now())
     }
 
-    /// One scan; then what must always hold is looked at.
+    /// Makes one scan, then checks the conditions of the enclosing `always` blocks.
     fn scan(&mut self) -> Result<(), Stop> {
         let done = self.runner.scan();
         if let Some(coverage) = &mut self.coverage {
@@ -181,9 +182,9 @@ impl<'b> Exec<'b, '_> {
         Ok(())
     }
 
-    /// Scans until the time has passed.
-    fn pass_time(&mut self, time: i64) -> Result<(), Stop> {
-        let end = self.now().saturating_add(time);
+    /// Makes scans until the time has passed.
+    fn pass_time(&mut self, time: Nanos) -> Result<(), Stop> {
+        let end = self.now() + time;
         while self.now() < end {
             self.scan()?;
         }
@@ -199,7 +200,7 @@ impl<'b> Exec<'b, '_> {
         self.scan()
     }
 
-    fn pulse(&mut self, item: usize, time: Option<i64>) -> Result<(), Stop> {
+    fn pulse(&mut self, item: usize, time: Option<Nanos>) -> Result<(), Stop> {
         let Some(item) = self.bench.items.get(item) else { return Ok(()) };
         self.bench.set(&mut self.runner, item, &Value::Word(1));
         match time {
@@ -210,11 +211,11 @@ impl<'b> Exec<'b, '_> {
         self.scan()
     }
 
-    fn wait_until(&mut self, check: &'b Check, within: i64) -> Result<(), Stop> {
-        let end = self.now().saturating_add(within);
+    fn wait_until(&mut self, check: &'b Check, within: Nanos) -> Result<(), Stop> {
+        let end = self.now() + within;
         while !self.holds(check)? {
             if self.now() >= end {
-                let what = format!("not true within {}", format_time(within));
+                let what = format!("not true within {}", format_time(within.count()));
                 return Err(self.failed(&what, Some(check)));
             }
             self.scan()?;
@@ -266,14 +267,14 @@ impl<'b> Exec<'b, '_> {
         } else {
             self.runner.charts_mut()
         };
-        // A stopped state still has values to look at.
+        // Expressions can still be evaluated on a stopped state.
         eval(program, state, answer.code).map_err(|fault| {
             let what = format!("this cannot be evaluated: {}", fault.kind);
             self.failed(&what, None)
         })
     }
 
-    /// The value of an expression as an item takes it.
+    /// The value of an expression, converted to the type of an item.
     fn value(&mut self, item: &Item, answer: Option<Answer>) -> Result<Value, Stop> {
         let Some(answer) = answer else { return Ok(Value::Word(0)) };
         let word = self.eval(answer)?;
@@ -291,7 +292,7 @@ impl<'b> Exec<'b, '_> {
         })
     }
 
-    /// The text of what a condition mentions.
+    /// The value of a name in a condition, as text.
     fn mention(&mut self, ask: usize) -> Option<String> {
         let answer = self.answer(ask)?;
         let word = self.eval(answer).ok()?;
@@ -306,7 +307,7 @@ impl<'b> Exec<'b, '_> {
     fn failed(&mut self, what: &str, check: Option<&Check>) -> Stop {
         let mut got = Vec::new();
         for (name, ask) in check.iter().flat_map(|c| &c.mentions) {
-            // No recursion: a mention is a bare path, it has no fault of its own.
+            // A mention is a single name and cannot fail, so this call does not recurse.
             if let Some(text) = self.mention(*ask) {
                 got.push((name.clone(), text));
             }
@@ -340,9 +341,9 @@ impl<'b> Exec<'b, '_> {
         format!("{{{}}}", self.bench.situation(self.runner.state()).join(", "))
     }
 
-    /// What the condition mentions, then what moved lately: steps before
-    /// outputs, inputs and variables. Curves and the plant's own affairs only
-    /// where they are mentioned: they move all the time.
+    /// The chronogram of a failure: first the names in the condition, then the signals that changed
+    /// lately, steps before outputs, inputs and variables. Curves and states of the plant change
+    /// all the time, so they appear only if the condition names them.
     fn chronogram(&self, names: &[&str]) -> String {
         let Some(recording) = &self.recording else { return String::new() };
         let all = || recording.signals().iter().enumerate();
@@ -357,25 +358,25 @@ impl<'b> Exec<'b, '_> {
         let mut instants: Vec<i64> = others.iter().flat_map(|(_, i)| moves(*i)).collect();
         instants.sort_unstable_by(|a, b| b.cmp(a));
         instants.dedup();
-        let least = self.now().saturating_sub(self.bench.period.saturating_mul(20));
+        let least = (self.now() - self.bench.period * 20).count();
         let from = instants.get(12).copied().unwrap_or(recording.start()).min(least).max(recording.start());
         for (_, i) in others {
             if lanes.len() < LANES && moves(i).any(|at| at >= from) {
                 lanes.insert(i);
             }
         }
-        // One scan more than there was, so that the last one has room.
-        let to = recording.end().saturating_add(self.bench.period);
+        // One period more, so that the last scan is visible.
+        let to = recording.end().saturating_add(self.bench.period.count());
         Chronogram::new(recording, lanes, Style { columns: 60, from, to, until: to }).to_string()
     }
 }
 
-/// Which signals matter first.
+/// The groups of signals, the most relevant first.
 const GROUPS: [&str; 4] = ["steps", "outputs", "inputs", "variables"];
 /// Most lanes of a failure's chronogram.
 const LANES: usize = 14;
 
-/// A word of one type as the value of an item, where it can hold it.
+/// Converts a word of one type to the type of an item; `None` if the value does not fit.
 fn convert(word: u64, from: Type, item: &Item) -> Option<Value> {
     let whole = |word: u64| -> Option<i128> {
         let (least, _) = from.bounds()?;

@@ -1,66 +1,65 @@
-//! Scenarios in virtual time.
+//! Runs tests in virtual time.
 //!
 //! ```text
 //! model::Scenario -> plan (names to items, expressions to asks) -> exec on a Bench -> Outcome; Coverage
 //! ```
 //!
-//! What each statement means stands in `docs/book/src/language/tests.md`; `exec`
-//! is that page as code.
+//! The page `docs/book/src/language/tests.md` says what each statement means; `exec` implements it.
 
 mod coverage;
 mod exec;
-mod plan;
 mod sides;
+mod statements;
 
 use std::collections::BTreeSet;
 
 use g7_host::Clock;
-use g7_model::{Problem, ProfileName, Scenario, Severity, Span};
+use g7_model::{Nanos, Problem, ProfileName, Scenario, Severity, Span};
 
 use crate::bench::{self, Bench};
 use crate::{Error, Source};
 pub use coverage::{Coverage, Row, Rows};
 pub use exec::Defect;
-use plan::Plan;
+use statements::Plan;
 
-/// What became of a test.
+/// The result of a test.
 pub struct Outcome {
-    /// The file that it stands in.
+    /// The file that contains it.
     pub file: String,
     /// Its title.
     pub title: String,
-    /// `path:line:column` of it.
+    /// Its place as `path:line:column`.
     pub place: String,
-    /// Where it stands.
+    /// Its place in the text.
     pub at: Span,
-    /// Why it failed, if it did.
+    /// The failure, if it failed.
     pub defect: Option<Box<Defect>>,
-    /// Time that passed in the test, nanoseconds.
-    pub simulated: i64,
-    /// Scans made.
+    /// The simulated time.
+    pub simulated: Nanos,
+    /// The number of scans.
     pub scans: u64,
-    /// Time that it took, nanoseconds.
-    pub took: i64,
-    /// What deserves a look although nothing failed.
+    /// The real time that it took.
+    pub took: Nanos,
+    /// Observations that did not make the test fail.
     pub notes: Vec<String>,
 }
 
-/// What is asked for.
+/// Options of a run of tests.
 #[derive(Clone, Copy, Default)]
 pub struct Options<'a> {
-    /// In place of the file's own.
+    /// The profile that replaces the file's own.
     pub profile: Option<ProfileName>,
-    /// In place of the file's own, nanoseconds.
-    pub scan: Option<i64>,
-    /// Only tests with this in their titles.
+    /// The scan period that replaces the file's own.
+    pub scan: Option<Nanos>,
+    /// Run only tests whose title contains this text.
     pub filter: Option<&'a str>,
 }
 
-/// Runs the tests of a file, a compilation for each plant that they use.
+/// Runs the tests of a file. Compiles the charts once for each plant that the tests use.
 ///
 /// # Errors
 ///
-/// There is no such plant.
+/// A test names a plant that does not exist.
 pub fn file(
     source: &Source,
     options: Options<'_>,
@@ -87,13 +86,13 @@ pub fn file(
     Ok((outcomes.into_iter().map(|(_, o)| o).collect(), problems))
 }
 
-/// Tests that run on one bench, each with its place among all.
+/// The tests that run on one bench, each with its position among all tests.
 struct Group<'s> {
     bench: Bench,
     plans: Vec<(usize, &'s Scenario, Plan)>,
 }
 
-/// Compiles what the tests of a file need and turns them into plans.
+/// Compiles the benches for the tests of a file and prepares the tests.
 fn prepare<'s>(source: &'s Source, options: Options<'_>) -> Result<(Vec<Group<'s>>, Vec<Problem>), Error> {
     let mut problems = Vec::new();
     let mut groups = Vec::new();
@@ -109,7 +108,7 @@ fn prepare<'s>(source: &'s Source, options: Options<'_>) -> Result<(Vec<Group<'s
             asks: &[],
         };
         let mine = || tests.iter().filter(|(_, t)| t.plant.as_ref().map(|p| &*p.text) == *plant);
-        if let Some(problem) = mine().find_map(|(_, t)| plan::unknown_plant(source, t)) {
+        if let Some(problem) = mine().find_map(|(_, t)| statements::unknown_plant(source, t)) {
             problems.push(problem);
             continue;
         }
@@ -119,7 +118,7 @@ fn prepare<'s>(source: &'s Source, options: Options<'_>) -> Result<(Vec<Group<'s
         let mut asks = Vec::new();
         let mut plans = Vec::new();
         for (number, scenario) in mine() {
-            let (plan, found) = plan::plan(scenario, &bench, &mut asks);
+            let (plan, found) = statements::plan(scenario, &bench, &mut asks);
             problems.extend(found);
             plans.push((*number, *scenario, plan));
         }
@@ -131,7 +130,7 @@ fn prepare<'s>(source: &'s Source, options: Options<'_>) -> Result<(Vec<Group<'s
             let Some(bench) = bench else { continue };
             bench
         };
-        problems.extend(plan::judge(&plans, &bench));
+        problems.extend(statements::judge(&plans, &bench));
         groups.push(Group { bench, plans });
     }
     problems.sort_by_key(|p| p.at);
@@ -139,10 +138,10 @@ fn prepare<'s>(source: &'s Source, options: Options<'_>) -> Result<(Vec<Group<'s
     Ok((groups, problems))
 }
 
-/// What is wrong with a file: charts, every plant, every test.
+/// All problems of a file: those of the charts, of every plant and of every test.
 pub fn problems(source: &Source, profile: Option<ProfileName>) -> Result<Vec<Problem>, Error> {
     let mut problems = prepare(source, Options { profile, ..Options::default() })?.1;
-    // A plant that no test uses is compiled as well.
+    // A plant that no test uses is compiled too.
     for plant in g7_compile::plant::plants(&source.document) {
         if source.tests().any(|t| t.plant.as_ref().is_some_and(|p| p.text == plant.name.text)) {
             continue;
@@ -155,7 +154,7 @@ pub fn problems(source: &Source, profile: Option<ProfileName>) -> Result<Vec<Pro
     Ok(problems)
 }
 
-/// Runs a test; where it fails, runs it again with a recording.
+/// Runs a test; if it fails, runs it again with a recording.
 fn one(
     source: &Source,
     bench: &Bench,
@@ -181,7 +180,28 @@ fn one(
         defect: first.defect,
         simulated: first.simulated,
         scans: first.scans,
-        took: clock.now().saturating_sub(begun),
+        took: Nanos::new(clock.now().saturating_sub(begun)),
         notes: first.notes,
     }
+}
+
+/// A property that nothing has proved.
+pub struct Unproved {
+    /// `path:line:column` of it.
+    pub place: String,
+    /// As written, in one line.
+    pub text: String,
+}
+
+/// The properties of a file. Names and types in them are checked with the charts; there is
+/// no prover, so none of them is proved.
+pub fn unproved(source: &Source) -> Vec<Unproved> {
+    let one = |p: &g7_model::Property| {
+        let written = source.text.get(source.range(p.at.0)).unwrap_or_default();
+        Unproved {
+            place: source.place(p.at.0),
+            text: written.split_whitespace().collect::<Vec<_>>().join(" "),
+        }
+    };
+    source.document.properties().map(one).collect()
 }

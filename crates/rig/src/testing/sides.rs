@@ -1,5 +1,5 @@
-//! Whom a condition of a test asks: the charts or the plant. Each is a program
-//! of its own, so an expression can be put to one of them only.
+//! Decides which side a condition of a test asks: the charts or the plant. Each is a program of its
+//! own, so an expression can be evaluated on one of them only.
 
 use g7_compile::ir::VarClass;
 use g7_compile::symbols::Symbols;
@@ -7,8 +7,8 @@ use g7_model::{BinaryOp, Expr, ExprKind, Path, Problem, codes};
 
 use crate::{Activity, Bench, Role};
 
-/// The names of an expression that only one side knows; the first of each.
-/// What both know (constants, the charts' outputs) needs neither.
+/// The first name in an expression that only the charts know, and the first that only the plant
+/// knows. Names that both know (constants, outputs of the charts) do not count.
 #[derive(Debug, Default)]
 pub(super) struct Needs {
     plant: Option<String>,
@@ -22,12 +22,12 @@ impl Needs {
         needs
     }
 
-    /// Whether it is to be put to the plant.
+    /// True if the plant has to be asked.
     pub(super) fn plant(&self) -> bool {
         self.plant.is_some()
     }
 
-    /// The problem of an expression that neither side can answer alone.
+    /// The problem of an expression that neither side can evaluate alone.
     pub(super) fn problem(&self, e: &Expr) -> Option<Problem> {
         let (plant, charts) = (self.plant.as_ref()?, self.charts.as_ref()?);
         let what =
@@ -77,7 +77,7 @@ impl Needs {
     }
 }
 
-/// The conditions that `and` joins into this one, however they are bracketed.
+/// The operands of the outermost `and`, regardless of brackets.
 pub(super) fn conjuncts(e: &Expr) -> Vec<&Expr> {
     match &e.kind {
         ExprKind::Binary(BinaryOp::And | BinaryOp::Dot, a, b) => [conjuncts(a), conjuncts(b)].concat(),
@@ -89,14 +89,15 @@ fn class(symbols: &Symbols, name: &str) -> Option<VarClass> {
     symbols.variable(name).map(|v| v.class)
 }
 
-/// Whether a path asks something of parts: `T.empty`, `T.first.colour`, `T.at(a, b)`.
+/// True if a path asks about the parts of a queue or track: `T.empty`, `T.first.colour`, `T.at(a,
+/// b)`.
 fn of_parts(bench: &Bench, path: &Path) -> bool {
     let Some(first) = path.names.first().filter(|_| path.names.len() > 1) else { return false };
     let count = format!("{}.count", first.text);
     bench.items.iter().any(|i| i.role == Role::Plant && i.name == count)
 }
 
-/// Whether a path asks something of a step: `X12`, `G.X12`, `Fill.t`.
+/// True if a path asks about a step: `X12`, `G.X12`, `Fill.t`.
 fn is_step(bench: &Bench, path: &Path) -> bool {
     let names: Vec<&str> = path.names.iter().map(|n| &*n.text).collect();
     let step = match names.as_slice() {

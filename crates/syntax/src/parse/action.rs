@@ -5,11 +5,20 @@ use crate::lexer::Tok;
 use crate::words;
 use g7_model::{
     Action, ActionKind, Expr, ExprKind, Name, Order, Path, Problem, Qualifier, Situation, Span, Stmt, Target,
-    Work, codes,
+    Work, codes, words::ACTION,
 };
 
+/// Every word that an action can begin with.
+fn beginnings() -> Vec<&'static str> {
+    Qualifier::ALL.into_iter().map(Qualifier::name).chain(ACTION.iter().copied()).collect()
+}
+
+fn begins_action(word: &str) -> bool {
+    ACTION.contains(&word) || Qualifier::named(word).is_some()
+}
+
 impl Parser<'_> {
-    /// Actions up to the closing brace, which is read too; the opening one stands at `open`.
+    /// Reads actions up to the closing brace, and that brace; the opening one stands at `open`.
     pub(super) fn actions(&mut self, open: Span) -> Vec<Action> {
         let mut actions = Vec::new();
         loop {
@@ -23,7 +32,7 @@ impl Parser<'_> {
             }
             let start = self.cur.start;
             let kind = match self.action() {
-                None if self.correct(words::ACTION) => self.action(),
+                None if self.correct(&beginnings()) => self.action(),
                 kind => kind,
             };
             match kind {
@@ -38,7 +47,7 @@ impl Parser<'_> {
         }
     }
 
-    /// Whether something begins here that cannot stand among actions.
+    /// True if a word stands here that begins an item of a chart or file.
     fn at_next_item(&mut self) -> bool {
         self.at_chart_start() || self.at_file_start() || self.var_kind().is_some()
     }
@@ -76,8 +85,8 @@ impl Parser<'_> {
         Some(ActionKind::Order(order))
     }
 
-    /// Whether an assignment without a qualifier stands here, to a variable
-    /// that may be called like a word of an action.
+    /// True if an assignment without a qualifier stands here. Its variable may have the name of a
+    /// word that begins an action.
     fn misplaced_assignment(&mut self) -> bool {
         matches!(self.peek().kind, Tok::Assign | Tok::PathDot)
     }
@@ -141,7 +150,7 @@ impl Parser<'_> {
     /// `P1 n := n + 1`, `L 5s lamp`.
     fn qualified(&mut self) -> Option<ActionKind> {
         let word = self.word();
-        let qualifier = Qualifier::ALL.into_iter().find(|q| q.name() == word)?;
+        let qualifier = Qualifier::named(word)?;
         let at = self.here();
         self.bump();
         let time = self.action_time(qualifier, at);
@@ -224,7 +233,7 @@ impl Parser<'_> {
         Target::Work(Work::Single(Box::new(Stmt { kind, at: self.since(start).into() })))
     }
 
-    /// An unknown word before a target, taken for `N`.
+    /// Reads an unknown word before a target as `N`.
     fn unknown_qualifier(&mut self, start: u32) -> Option<Action> {
         let next = self.peek();
         let before_target = match next.kind {
@@ -234,7 +243,7 @@ impl Parser<'_> {
         if !self.at(Tok::Word) || !self.at_name() || next.newline || !before_target {
             return None;
         }
-        self.unknown(self.word(), "a qualifier", words::ACTION);
+        self.unknown(self.word(), "a qualifier", &beginnings());
         self.duration_if();
         let target = self.target_of_action();
         let condition = self.if_condition();
@@ -242,8 +251,8 @@ impl Parser<'_> {
         Some(Action { kind, at: self.since(start).into() })
     }
 
-    /// Something that begins no action. A variable or an assignment alone is
-    /// taken for the action that was probably meant.
+    /// Reports text that begins no action. A variable or an assignment alone is read as the action
+    /// that was probably meant.
     fn lost_action(&mut self, start: u32) -> Option<Action> {
         let at = self.here();
         if let Some(action) = self.unknown_qualifier(start) {
@@ -272,7 +281,7 @@ impl Parser<'_> {
         if self.cur.start == start {
             self.bump();
         }
-        self.recover(|p| words::ACTION.contains(&p.word()) || p.at_next_item());
+        self.recover(|p| begins_action(p.word()) || p.at_next_item());
         None
     }
 }

@@ -2,8 +2,9 @@
 
 use super::Parser;
 use crate::lexer::Tok;
-use crate::words;
-use g7_model::{Chart, ChartItem, ChartKind, Expr, ExprKind, Name, Place, Span, Step, StepKind, Transition};
+use g7_model::{
+    Chart, ChartItem, ChartKind, Expr, ExprKind, Name, Nanos, Place, Span, Step, StepKind, Transition, words,
+};
 
 impl Parser<'_> {
     /// A chart, an expansion or a task; its first word is in hand.
@@ -26,7 +27,7 @@ impl Parser<'_> {
     }
 
     /// `every 20ms`.
-    fn period(&mut self, kind: ChartKind) -> Option<i64> {
+    fn period(&mut self, kind: ChartKind) -> Option<Nanos> {
         let at = self.here();
         if !self.eat_word("every") {
             return None;
@@ -57,7 +58,7 @@ impl Parser<'_> {
             }
             let start = self.cur.start;
             let read = self.chart_item(items) || self.correct(words::CHART) && self.chart_item(items);
-            // A word of the language before `:` is taken for a label, but is no name.
+            // A reserved word before `:` is read as a label although it is not a name.
             if !read || self.cur.start == start {
                 self.lost_chart_item(start);
             }
@@ -94,7 +95,7 @@ impl Parser<'_> {
         true
     }
 
-    /// Whether a step or a transition begins here.
+    /// True if a step or a transition begins here.
     pub(super) fn at_chart_start(&mut self) -> bool {
         match self.word() {
             "step" | "initial" | "enclosing" | "macro" => true,
@@ -104,7 +105,7 @@ impl Parser<'_> {
         }
     }
 
-    /// Whether a transition begins here: a name before `->` or `:`, or a bracket before an arrow.
+    /// True if a transition begins here: a name before `->` or `:`, or a bracket before an arrow.
     fn at_transition(&mut self) -> bool {
         match self.cur.kind {
             Tok::LParen | Tok::Arrow => true,
@@ -115,7 +116,7 @@ impl Parser<'_> {
         }
     }
 
-    /// Whether `name ->` or `( … ) ->` stands here; at most a few names are looked at.
+    /// True if `name ->` or `( … ) ->` stands here; only a few names are read ahead.
     fn arrow_ahead(&mut self) -> bool {
         if !self.at(Tok::LParen) {
             return self.peek().kind == Tok::Arrow;
@@ -131,7 +132,7 @@ impl Parser<'_> {
         false
     }
 
-    /// Something that begins no item of a chart.
+    /// Reports text that begins no item of a chart.
     fn lost_chart_item(&mut self, start: u32) {
         if self.at_name() {
             self.bump();
@@ -251,7 +252,7 @@ impl Parser<'_> {
         items.push(ChartItem::Transition(last));
     }
 
-    /// What follows the arrow.
+    /// Reads the part after the arrow.
     fn transition(&mut self, start: u32, label: Option<Name>, from: Vec<Name>, chained: bool) -> Transition {
         let to = if self.at_word("when") {
             let at = self.behind();
@@ -282,7 +283,7 @@ impl Parser<'_> {
         t
     }
 
-    /// One of the words behind the receptivity.
+    /// Reads one of the clauses after the receptivity.
     fn transition_clause(&mut self, t: &mut Transition) -> bool {
         if t.comment.is_none() && self.at(Tok::Comment) {
             t.comment = self.comment_if();
@@ -299,7 +300,7 @@ impl Parser<'_> {
         true
     }
 
-    /// `when e`, and what is written for it by mistake.
+    /// Reads `when e`, and words that are written for it by mistake.
     fn receptivity(&mut self, from: &[Name], to: &[Name]) -> Expr {
         if self.eat_word("when") {
             return self.condition();
@@ -341,7 +342,8 @@ impl Parser<'_> {
             self.close(Tok::RParen, "`)` after the steps", open);
             return names;
         }
-        // One step is the rule, in charts of many thousands: no room for more.
+        // Most lists hold one step, and charts may have many thousands, so no more room is
+        // reserved.
         names.reserve_exact(1);
         names.extend(self.step_name(what));
         if self.at(Tok::Comma) {

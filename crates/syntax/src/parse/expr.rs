@@ -1,11 +1,12 @@
-//! Expressions: operators by binding strength, loosest 1.
+//! Expressions: operators by their binding strength, as `model` has it.
 //!
-//! The height of every tree is bounded, long chains (`a or b or …`) included, so
-//! that all later stages may recurse over it.
+//! The height of every tree is bounded, also for long chains (`a or b or …`), so that all later
+//! stages may recurse over it.
 
 use super::Parser;
 use crate::lexer::{Tok, Token};
-use crate::{number, words};
+use crate::words;
+use g7_iec::constant;
 use g7_model::{Arg, BinaryOp, Expr, ExprKind, Literal, Name, Path, Problem, Span, UnaryOp, codes};
 
 /// The largest height of an expression's tree.
@@ -17,27 +18,13 @@ struct Tree {
     height: u32,
 }
 
-/// Binding strength of the operators between operands.
-pub(crate) fn strength(op: BinaryOp) -> u8 {
-    match op {
-        BinaryOp::Or => 1,
-        BinaryOp::Xor => 2,
-        BinaryOp::And => 3,
-        BinaryOp::Eq | BinaryOp::Ne => 4,
-        BinaryOp::Lt | BinaryOp::Le | BinaryOp::Gt | BinaryOp::Ge => 5,
-        BinaryOp::Add | BinaryOp::Sub => 6,
-        BinaryOp::Mul | BinaryOp::Div | BinaryOp::Mod | BinaryOp::Dot => 7,
-        BinaryOp::Pow => 8,
-    }
-}
-
 impl Parser<'_> {
-    /// An expression; `Bad` with a problem where none stands.
+    /// Reads an expression; without one it reports a problem and returns `Bad`.
     pub(crate) fn expr(&mut self) -> Expr {
         self.tree(1).expr
     }
 
-    /// An expression that says whether: `:=` in it is a slip for `=`.
+    /// Reads an expression that is a condition: a `:=` in it is a slip for `=`.
     pub(super) fn condition(&mut self) -> Expr {
         let left = self.tree(1);
         if !self.at(Tok::Assign) {
@@ -49,7 +36,7 @@ impl Parser<'_> {
         self.join(BinaryOp::Eq, left, right).expr
     }
 
-    /// Whether an expression can begin here.
+    /// True if an expression can begin here.
     pub(super) fn at_expr(&self) -> bool {
         match self.cur.kind {
             Tok::Word => {
@@ -86,12 +73,12 @@ impl Parser<'_> {
 
     fn operators(&mut self, mut left: Tree, least: u8) -> Tree {
         while let Some(op) = self.operator() {
-            if strength(op) < least {
+            if op.strength() < least {
                 break;
             }
             self.operator_slip();
             self.bump();
-            let right = self.tree(strength(op) + 1);
+            let right = self.tree(op.strength() + 1);
             left = self.join(op, left, right);
         }
         left
@@ -99,13 +86,7 @@ impl Parser<'_> {
 
     fn operator(&self) -> Option<BinaryOp> {
         Some(match self.cur.kind {
-            Tok::Word => match self.word() {
-                "and" | "AND" => BinaryOp::And,
-                "or" | "OR" => BinaryOp::Or,
-                "xor" | "XOR" => BinaryOp::Xor,
-                "mod" | "MOD" => BinaryOp::Mod,
-                _ => return None,
-            },
+            Tok::Word => return BinaryOp::of_word(self.word()),
             Tok::Amp | Tok::AmpAmp => BinaryOp::And,
             Tok::Bars => BinaryOp::Or,
             Tok::Eq => BinaryOp::Eq,
@@ -124,7 +105,7 @@ impl Parser<'_> {
         })
     }
 
-    /// Signs that other languages have.
+    /// Reports operators of other languages, which are read as the ones meant.
     fn operator_slip(&mut self) {
         let (sign, word) = match self.cur.kind {
             Tok::AmpAmp => ("&&", "and"),
@@ -134,7 +115,7 @@ impl Parser<'_> {
         self.slip(self.here(), &format!("`{sign}` is no operator here"), format!("write `{word}`"));
     }
 
-    /// `a op b`; a tree that grows too high is cut.
+    /// Builds `a op b`; a tree that becomes too high is cut.
     fn join(&mut self, op: BinaryOp, left: Tree, right: Tree) -> Tree {
         let at = left.expr.at.0.to(right.expr.at.0);
         let height = left.height.max(right.height) + 1;
@@ -214,7 +195,7 @@ impl Parser<'_> {
         }
     }
 
-    /// An operand alone: no operator, sign or complement around it.
+    /// Reads an operand without operators, sign or complement.
     pub(super) fn operand(&mut self) -> Expr {
         self.primary().expr
     }
@@ -247,9 +228,9 @@ impl Parser<'_> {
     fn literal(&mut self, token: Token) -> Option<Literal> {
         let text = self.slice(token);
         let read = match token.kind {
-            Tok::Int => number::integer(text).map(|v| Literal::Int(v, None)),
-            Tok::Real => number::real(text).map(|v| Literal::Real(v, None)),
-            Tok::Typed => number::typed(text),
+            Tok::Int => constant::integer(text).map(|v| Literal::Int(v, None)),
+            Tok::Real => constant::real(text).map(|v| Literal::Real(v, None)),
+            Tok::Typed => constant::typed(text),
             Tok::Str => Ok(Literal::Str(self.string(token))),
             _ => return None,
         };
@@ -315,8 +296,8 @@ impl Parser<'_> {
 
     /// The expression of a duration token just read.
     pub(super) fn time_of(&mut self, token: Token) -> Expr {
-        let ns = self.duration_of(token);
-        Expr { kind: ExprKind::Literal(Literal::Time(ns)), at: self.span_of(token).into() }
+        let time = self.duration_of(token);
+        Expr { kind: ExprKind::Literal(Literal::Time(time)), at: self.span_of(token).into() }
     }
 
     /// `rise(e)` and `fall(e)`.
@@ -357,7 +338,7 @@ impl Parser<'_> {
         self.checked(kind, at, height)
     }
 
-    /// `a.b.c`. The caller has seen that a name stands here.
+    /// Reads `a.b.c`. The caller has checked that a name stands here.
     pub(super) fn path(&mut self) -> Path {
         let mut names = vec![self.name("a name")];
         while self.eat(Tok::PathDot) {
@@ -366,7 +347,7 @@ impl Parser<'_> {
         Path { names }
     }
 
-    /// The name behind a dot: any word will do there.
+    /// The name after a dot: every word is allowed there.
     fn member(&mut self) -> Name {
         if self.at(Tok::Word) {
             let token = self.bump();
@@ -375,7 +356,7 @@ impl Parser<'_> {
         self.name("a name after the dot")
     }
 
-    /// Whether the `(` of a call stands here.
+    /// True if the `(` of a call stands here.
     pub(super) fn at_call(&self) -> bool {
         self.at(Tok::LParen) && !self.cur.newline
     }

@@ -20,7 +20,7 @@ impl Parser<'_> {
             let start = self.cur.start;
             match self.item() {
                 Some(item) => items.push(item),
-                None if self.correct(words::FILE) => items.extend(self.item()),
+                None if self.correct(g7_model::words::FILE) => items.extend(self.item()),
                 None => self.lost_item(start),
             }
         }
@@ -62,7 +62,7 @@ impl Parser<'_> {
         })
     }
 
-    /// Something that begins no item: tells what it may have been, and skips it.
+    /// Reports text that begins no item, suggests what was meant, and skips it.
     fn lost_item(&mut self, start: u32) {
         let at = self.here();
         let word = self.word();
@@ -89,7 +89,7 @@ impl Parser<'_> {
             self.bump();
         }
         self.recover(|p| p.at_file_start() || p.var_kind().is_some());
-        // A brace that closes what was skipped.
+        // The brace that closes the skipped text.
         if self.at(Tok::RBrace) {
             self.bump();
         }
@@ -123,7 +123,7 @@ impl Parser<'_> {
         Item::Profile(Profile { name: name.unwrap_or_default(), switches, at })
     }
 
-    /// An unknown word where one of a list belongs; the word is skipped.
+    /// Reports an unknown word and suggests one from the list; the word is skipped.
     pub(super) fn unknown(&mut self, word: &str, what: &str, list: &[&str]) {
         if word.is_empty() {
             self.expected(&format!("{what}: {}", list.join(", ")));

@@ -1,8 +1,8 @@
-//! The lines of an Instruction List: an operator each, with its operand.
+//! The lines of an Instruction List: one operator each, with its operand.
 
 use super::Parser;
-use crate::il::{Instruction, InstructionKind as Kind, Mnemonic, Operand, When, is_input, mnemonic};
 use crate::lexer::Tok;
+use g7_iec::il::{Instruction, InstructionKind as Kind, Mnemonic, Operand, When, is_input, mnemonic};
 use g7_model::{Arg, BinaryOp, Expr, ExprKind, Name, Path, UnaryOp, codes};
 
 impl Parser<'_> {
@@ -25,7 +25,7 @@ impl Parser<'_> {
         }
     }
 
-    /// After a problem: to the next line.
+    /// Continues on the next line after a problem.
     fn next_line(&mut self, start: u32) {
         if self.cur.start == start {
             self.bump();
@@ -75,7 +75,7 @@ impl Parser<'_> {
         })
     }
 
-    /// Whether something stands behind the operator on its line.
+    /// True if the operator has an operand on its line.
     fn on_line(&mut self, what: &str) -> bool {
         let here = !self.cur.newline && !matches!(self.cur.kind, Tok::End | Tok::Semi);
         if !here {
@@ -130,7 +130,7 @@ impl Parser<'_> {
         Expr { kind: ExprKind::Unary(op, Box::new(inner)), at: self.since(start).into() }
     }
 
-    /// What is written: a variable.
+    /// The target of a store: a variable.
     fn stored(&mut self) -> Option<Expr> {
         if !self.on_line("a variable") {
             return None;

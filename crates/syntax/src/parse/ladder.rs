@@ -1,14 +1,14 @@
 //! The rungs of a Ladder Diagram written as text.
 //!
-//! The signs of a rung are read one by one; what stands between its brackets is
-//! read as the expression or statement that it is.
+//! The signs of a rung are read one by one. The text between its brackets is read as an expression
+//! or a statement.
 
 use super::Parser;
-use crate::ladder::{Coil, Element, Rung};
 use crate::lexer::{Lexer, Tok, Token};
-use g7_model::{Expr, ExprKind, FileId, Name, Problem, Span, Stmt, StmtKind, UnaryOp, codes};
+use g7_iec::ld::{Coil, Element, Rung};
+use g7_model::{BinaryOp, Expr, ExprKind, FileId, Name, Problem, Span, Stmt, StmtKind, UnaryOp, codes};
 
-/// Branches within one another.
+/// The deepest nesting of branches.
 const DEEPEST: usize = 60;
 
 /// Reads the rungs of `text` from `start` to its end.
@@ -171,14 +171,14 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// Skips what belongs to no element.
+    /// Skips text that belongs to no element.
     fn skip_unknown(&mut self) {
         let rest = self.rest();
         let stop = |c: char| matches!(c, '\n' | '-' | '|' | '}' | '[' | '(' | '<' | '{');
         self.pos += rest.find(stop).unwrap_or(rest.len());
     }
 
-    /// The text up to the bracket that closes the one in hand; the position goes behind it.
+    /// The text up to the closing bracket; the position moves behind that bracket.
     fn inside(&mut self, open: char, close: char) -> Option<(usize, usize)> {
         let start = self.pos;
         self.pos += open.len_utf8();
@@ -189,7 +189,7 @@ impl<'a> Reader<'a> {
         let mut parens = 0usize;
         let mut before = ' ';
         for (i, c) in self.rest().char_indices() {
-            // Close behind an operand, `'` complements it.
+            // Directly after an operand, `'` complements it.
             let prime =
                 c == '\'' && (before.is_alphanumeric() || matches!(before, '_' | ')' | ']' | '`' | '\''));
             before = c;
@@ -223,7 +223,7 @@ impl<'a> Reader<'a> {
         Parser::portion(self.text.get(..to).unwrap_or(""), self.file, from)
     }
 
-    /// What the parser found wrong; nothing may be left over.
+    /// The problems of the parser; it must have read everything.
     fn done(&mut self, mut parser: Parser) {
         parser.expect_end();
         self.problems.extend(parser.finish().0);
@@ -330,13 +330,12 @@ impl<'a> Reader<'a> {
 }
 
 impl<'a> Parser<'a> {
-    /// The first of two words, where two stand.
+    /// The first of two words, if two follow each other.
     fn two_words(&mut self) -> Option<&'a str> {
         let second = self.peek();
         let both = self.at(Tok::Word) && matches!(second.kind, Tok::Word | Tok::Ticked | Tok::Direct);
         let first = self.slice(self.cur);
-        let operator =
-            matches!(self.slice(second), "and" | "or" | "xor" | "AND" | "OR" | "XOR" | "mod" | "MOD");
+        let operator = BinaryOp::of_word(self.slice(second)).is_some();
         (both && !operator).then_some(first)
     }
 

@@ -1,8 +1,8 @@
 //! Recursive descent over the tokens: grammar rules are functions of [`Parser`].
 //!
-//! Each rule reads as much as it can, reports what is wrong and goes on, so that
-//! one run tells many problems. What must hold: every loop moves on by a token or
-//! ends (linear time), and every recursion passes [`Parser::enter`] (no overflow).
+//! Each rule reads as much as it can, reports what is wrong and continues, so that one run reports
+//! many problems. Two conditions must hold: every loop consumes a token or ends (linear time), and
+//! every recursion passes [`Parser::enter`] (no overflow).
 
 mod action;
 mod chart;
@@ -15,23 +15,24 @@ mod scenario;
 mod st;
 mod variable;
 
-pub(crate) use expr::strength;
 pub use file::SWITCHES;
 
 use crate::lexer::{Lexer, Tok, Token};
-use crate::{number, words};
+use crate::quote;
+use crate::words;
+use g7_iec::constant;
 use g7_model::codes::{self, Code};
-use g7_model::{FileId, Name, Problem, Span};
+use g7_model::{FileId, Name, Nanos, Problem, Span};
 
-/// Brackets, blocks and operands may be nested this deep.
+/// The deepest nesting of brackets, blocks and operands.
 const MOST_NESTED: u32 = 128;
 
-/// Stand for what could not be read: values that are allowed everywhere, so
-/// that no later stage complains of them again.
-const UNREAD_TIME: i64 = 1_000_000_000;
+/// Values for text that could not be read. They are allowed everywhere, so that no later stage
+/// complains again.
+const UNREAD_TIME: Nanos = Nanos::SECOND;
 const UNREAD_NUMBER: u64 = 1;
 
-/// The parser: one token in hand, one looked at.
+/// The parser: the current token, and at most one read ahead.
 pub(crate) struct Parser<'a> {
     lexer: Lexer<'a>,
     text: &'a str,
@@ -40,9 +41,9 @@ pub(crate) struct Parser<'a> {
     next: Option<Token>,
     prev: Token,
     nested: u32,
-    /// Where the token stood at which a problem was told last.
+    /// The start of the token at which a problem was last reported.
     told: Option<u32>,
-    /// A misspelt word, by where it stands, and the word it is read as.
+    /// A misspelt word: its place, and the word it is read as.
     corrected: Option<(u32, &'static str)>,
 }
 
@@ -60,7 +61,7 @@ impl<'a> Parser<'a> {
         Parser { lexer, text, file, cur, next: None, prev, nested: 0, told: None, corrected: None }
     }
 
-    /// What was found wrong, and the notes.
+    /// The problems, and the notes.
     pub(crate) fn finish(self) -> (Vec<Problem>, Vec<g7_model::Note>) {
         (self.lexer.problems.finish(), self.lexer.notes)
     }
@@ -106,7 +107,7 @@ impl<'a> Parser<'a> {
         self.text.get(token.start as usize..token.end as usize).unwrap_or_default()
     }
 
-    /// The word in hand; empty for any other token.
+    /// The current word; empty for any other token.
     fn word(&self) -> &'a str {
         match self.corrected {
             Some((start, word)) if start == self.cur.start => word,
@@ -115,9 +116,8 @@ impl<'a> Parser<'a> {
         }
     }
 
-    /// Reads a misspelt word in hand as the word of the list that was most
-    /// likely meant, if there is one; tells so. Only before something that
-    /// such a word can have behind it.
+    /// Reads a misspelt word as the word of the list that was most likely meant, if there is one,
+    /// and reports it. This happens only before a token that can follow such a word.
     fn correct(&mut self, list: &[&'static str]) -> bool {
         let word = self.word();
         let at = self.here();
@@ -158,7 +158,7 @@ impl<'a> Parser<'a> {
         here
     }
 
-    /// The Structured Text word in hand.
+    /// The current word of Structured Text.
     fn st_word(&self) -> Option<words::St> {
         words::st(self.word())
     }
@@ -191,19 +191,19 @@ impl<'a> Parser<'a> {
         Span { file: self.file, start, end: self.prev.end.max(start) }
     }
 
-    /// Just behind the last token read.
+    /// The place just after the last token.
     fn behind(&self) -> Span {
         Span { file: self.file, start: self.prev.end, end: self.prev.end }
     }
 
     // Problems
 
-    /// Whether a problem was told at the token in hand already, or too many elsewhere.
+    /// True if a problem was reported at this token already, or too many in the text.
     fn silent(&self) -> bool {
         self.told == Some(self.cur.start) || self.lexer.problems.is_full()
     }
 
-    /// Reports a problem, if it is not to be silent.
+    /// Reports a problem, unless [`Parser::silent`] holds.
     fn report(&mut self, at: Span, make: impl FnOnce() -> Problem) {
         if !self.silent() {
             self.told = Some(self.cur.start);
@@ -219,7 +219,7 @@ impl<'a> Parser<'a> {
         self.report(at, || Problem::new(code, at, what).help(help));
     }
 
-    /// A slip whose meaning is clear: it is told, and reading goes on as if it were right.
+    /// Reports a slip whose meaning is clear; reading continues as if it were right.
     fn slip(&mut self, at: Span, what: &str, help: impl Into<String>) {
         if self.silent() {
             return;
@@ -227,7 +227,7 @@ impl<'a> Parser<'a> {
         self.lexer.problems.add(at, || Problem::new(&codes::EXPECTED, at, what).help(help));
     }
 
-    /// The token in hand, in words.
+    /// The current token, in words.
     fn found(&self) -> String {
         match self.cur.kind {
             Tok::End => "the end of the text".into(),
@@ -242,7 +242,7 @@ impl<'a> Parser<'a> {
         }
     }
 
-    /// Reports that something else was expected at the token in hand.
+    /// Reports that something else was expected at this token.
     fn expected(&mut self, what: &str) {
         self.expected_help(what, None);
     }
@@ -261,7 +261,7 @@ impl<'a> Parser<'a> {
         });
     }
 
-    /// Reports that what stands here cannot begin what was expected.
+    /// Reports a token that cannot begin the expected text.
     fn unexpected(&mut self, what: &str, help: Option<&str>) {
         if self.silent() {
             return;
@@ -274,7 +274,7 @@ impl<'a> Parser<'a> {
         });
     }
 
-    /// Where the line ended before the token in hand, the place is that end.
+    /// If the line ended before this token, the problem is placed at that end.
     fn expected_words(&self, what: &str) -> (Span, String) {
         let ended = self.cur.newline && self.prev.kind != Tok::Bad || self.at(Tok::End);
         if ended {
@@ -292,7 +292,7 @@ impl<'a> Parser<'a> {
         here
     }
 
-    /// Expects that nothing follows.
+    /// Reports any text that follows.
     pub(crate) fn expect_end(&mut self) {
         if !self.at(Tok::End) {
             self.expected("nothing more");
@@ -314,7 +314,7 @@ impl<'a> Parser<'a> {
 
     // Nesting
 
-    /// Goes one level deeper, if that is allowed; else skips what is nested here.
+    /// Goes one level deeper; if that is not allowed, skips the nested text.
     fn enter(&mut self) -> bool {
         if self.nested < MOST_NESTED {
             self.nested += 1;
@@ -333,7 +333,7 @@ impl<'a> Parser<'a> {
         self.nested -= 1;
     }
 
-    /// Skips to the bracket that closes the one around the token in hand.
+    /// Skips to the bracket that closes the current one.
     fn skip_nested(&mut self) {
         let mut depth = 0u32;
         loop {
@@ -348,8 +348,8 @@ impl<'a> Parser<'a> {
         }
     }
 
-    /// After a problem: skips to a token that `stop` accepts at the start of a
-    /// line, to a `;`, or to the brace that closes what we are in.
+    /// Continues after a problem: skips to a token at the start of a line that `stop` accepts, to a
+    /// `;`, or to the brace that closes the current block.
     fn recover(&mut self, stop: impl Fn(&mut Parser<'a>) -> bool) {
         let mut depth = 0u32;
         loop {
@@ -368,7 +368,7 @@ impl<'a> Parser<'a> {
         }
     }
 
-    /// Whether something begins here that stands only outside of all braces.
+    /// True if an item begins here that is allowed only outside of all braces.
     fn at_file_start(&mut self) -> bool {
         match self.word() {
             "chart" | "macrochart" | "task" | "plant" | "layout" | "function" => {
@@ -383,7 +383,7 @@ impl<'a> Parser<'a> {
 
     // Names
 
-    /// A name; without one a problem, and an empty name.
+    /// Reads a name; without one it reports a problem and returns an empty name.
     fn name(&mut self, what: &str) -> Name {
         let token = self.cur;
         if token.kind == Tok::Word && words::is_reserved(self.slice(token)) {
@@ -403,7 +403,7 @@ impl<'a> Parser<'a> {
         let name = match token.kind {
             Tok::Word if words::is_reserved(text) => return None,
             Tok::Word => Name::new(text, at),
-            Tok::Ticked => Name::new(number::unquote(text, '`'), at),
+            Tok::Ticked => Name::new(quote::unquote(text, '`'), at),
             Tok::Int if text.bytes().all(|b| b.is_ascii_digit()) => Name::new(text, at),
             _ => return None,
         };
@@ -414,7 +414,7 @@ impl<'a> Parser<'a> {
         Some(name)
     }
 
-    /// A word of the language where a name belongs: taken as the name if what follows fits one.
+    /// Reads a reserved word in the place of a name as that name, if a token follows that fits.
     fn reserved_name(&mut self, what: &str) -> Name {
         let at = self.here();
         let word = self.slice(self.cur);
@@ -452,7 +452,7 @@ impl<'a> Parser<'a> {
         names
     }
 
-    /// Whether a name stands here.
+    /// True if a name stands here.
     fn at_name(&self) -> bool {
         match self.cur.kind {
             Tok::Word => !words::is_reserved(self.slice(self.cur)),
@@ -466,11 +466,11 @@ impl<'a> Parser<'a> {
     fn comment_if(&mut self) -> Option<Box<str>> {
         self.at(Tok::Comment).then(|| {
             let token = self.bump();
-            number::unquote(self.slice(token), '"').into()
+            quote::unquote(self.slice(token), '"').into()
         })
     }
 
-    /// A text in either kind of quotes.
+    /// A text in quotes of either kind.
     fn text_if(&mut self) -> Option<Box<str>> {
         if self.at(Tok::Str) {
             let token = self.bump();
@@ -481,7 +481,7 @@ impl<'a> Parser<'a> {
 
     /// The text of a string token.
     fn string(&mut self, token: Token) -> Box<str> {
-        let (text, wrong) = number::unquote_st(self.slice(token));
+        let (text, wrong) = constant::unquote_st(self.slice(token));
         if let Some(wrong) = wrong {
             let at = self.span_of(token);
             self.lexer.problems.add(at, || Problem::new(&codes::BAD_CHARACTER, at, wrong));
@@ -492,18 +492,18 @@ impl<'a> Parser<'a> {
     // Numbers
 
     /// A duration as written, if one stands here.
-    fn duration_if(&mut self) -> Option<i64> {
+    fn duration_if(&mut self) -> Option<Nanos> {
         self.at(Tok::Time).then(|| {
             let token = self.bump();
             self.duration_of(token)
         })
     }
 
-    fn duration_of(&mut self, token: Token) -> i64 {
+    fn duration_of(&mut self, token: Token) -> Nanos {
         let at = self.span_of(token);
         let text = self.slice(token);
-        match number::duration(text) {
-            Ok(ns) => ns,
+        match constant::duration(text) {
+            Ok(time) => time,
             Err(what) => {
                 let name_like = !text.contains('#');
                 self.lexer.problems.add(at, || {
@@ -522,9 +522,9 @@ impl<'a> Parser<'a> {
     }
 
     /// A duration; without one a problem.
-    fn duration(&mut self, what: &str) -> i64 {
-        if let Some(ns) = self.duration_if() {
-            return ns;
+    fn duration(&mut self, what: &str) -> Nanos {
+        if let Some(time) = self.duration_if() {
+            return time;
         }
         if matches!(self.cur.kind, Tok::Int | Tok::Real) {
             self.expected_help(what, Some("write the unit: `10ms`, `5s`, `1m30s`"));
@@ -540,7 +540,7 @@ impl<'a> Parser<'a> {
         self.at(Tok::Int).then(|| {
             let token = self.bump();
             let at = self.span_of(token);
-            let value = number::integer(self.slice(token)).and_then(|v| {
+            let value = constant::integer(self.slice(token)).and_then(|v| {
                 u64::try_from(v).ok().filter(|v| *v <= most).ok_or_else(|| format!("at most {most} here"))
             });
             value.unwrap_or_else(|what| {

@@ -2,8 +2,7 @@
 
 use super::Parser;
 use crate::lexer::Tok;
-use crate::words;
-use g7_model::{Arrivals, Binding, Drive, Expr, Name, Parts, Plant, PlantItem, Rate, StateVar, View};
+use g7_model::{Arrivals, Binding, Drive, Expr, Name, Parts, Plant, PlantItem, Rate, StateVar, View, words};
 
 impl Parser<'_> {
     /// `plant Name { … }`.

@@ -2,11 +2,11 @@
 
 use super::Parser;
 use crate::lexer::Tok;
-use crate::number;
-use crate::words::{self, St};
+use crate::words::St;
+use g7_iec::constant;
 use g7_model::{
     Expr, Layout, Path, PlaceAt, Placed, Problem, Property, PropertyKind, Scenario, TestStmt, TestStmtKind,
-    codes,
+    codes, words,
 };
 
 impl Parser<'_> {
@@ -279,7 +279,7 @@ impl Parser<'_> {
         }
         let token = self.bump();
         let at = self.span_of(token);
-        let value = number::real(self.slice(token)).ok().and_then(|t| t.parse::<f64>().ok());
+        let value = constant::real(self.slice(token)).ok().and_then(|t| t.parse::<f64>().ok());
         let value = value.map(|v| (v * 100.0).round()).filter(|v| *v <= f64::from(i32::MAX));
         let Some(value) = value else {
             self.lexer.problems.add(at, || {

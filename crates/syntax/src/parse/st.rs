@@ -9,7 +9,7 @@ use g7_model::{
 };
 
 impl Parser<'_> {
-    /// `{ … }`; without a brace a problem, and an empty block.
+    /// Reads `{ … }`; without a brace it reports a problem and returns an empty block.
     pub(super) fn block(&mut self, what: &str) -> Block {
         let open = self.here();
         if !self.at(Tok::LBrace) {
@@ -70,7 +70,7 @@ impl Parser<'_> {
         Body::Other(lang, text, Block { locals: Vec::new(), statements, at })
     }
 
-    /// The statements that a body in another language stands for.
+    /// The statements that a body in another language means.
     fn other_body(&mut self, lang: BodyLang, from: usize, to: usize) -> Vec<Stmt> {
         let text = self.text.get(..to).unwrap_or_default();
         let (statements, problems) = match lang {
@@ -83,7 +83,7 @@ impl Parser<'_> {
         statements
     }
 
-    /// An assignment, a call or a block, as an action does them.
+    /// An assignment, a call or a block, as in an action.
     pub(super) fn work(&mut self) -> Work {
         if self.at(Tok::LBrace) {
             return Work::Block(self.block("`{`"));
@@ -103,7 +103,8 @@ impl Parser<'_> {
         Expr { kind: ExprKind::Bad, at: self.behind().into() }
     }
 
-    /// Statements up to a word or brace that closes them; in an arm of a CASE up to the next label as well.
+    /// Reads statements up to a word or brace that ends them; in an arm of a CASE also up to the
+    /// next label.
     pub(crate) fn statements(&mut self, in_case: bool) -> Vec<Stmt> {
         let mut list = Vec::new();
         loop {
@@ -124,7 +125,7 @@ impl Parser<'_> {
         }
     }
 
-    /// Words that end the statements of some construct, whichever it is.
+    /// The words that end the statements of a construct.
     fn at_closing_word(&self) -> bool {
         matches!(
             self.st_word(),
@@ -141,7 +142,7 @@ impl Parser<'_> {
         )
     }
 
-    /// Whether something begins here that cannot stand among statements.
+    /// True if an item begins here that is not allowed among statements.
     fn at_outer_start(&mut self) -> bool {
         self.at_file_start() || self.at_chart_start()
     }
@@ -190,7 +191,7 @@ impl Parser<'_> {
     fn then_word(&mut self, word: St, text: &str) {
         if !self.eat_st(word) {
             self.expected(&format!("`{text}`"));
-            // The braces of other languages.
+            // Reports the braces of other languages.
             self.eat(Tok::LBrace);
         }
     }
@@ -264,7 +265,7 @@ impl Parser<'_> {
         CaseArm { labels, body: self.statements(true) }
     }
 
-    /// Whether the values of a CASE's arm stand here, and not a statement.
+    /// True if the values of a CASE arm stand here, and not a statement.
     fn at_label(&self) -> bool {
         match self.cur.kind {
             Tok::Word if matches!(self.word(), "TRUE" | "FALSE" | "true" | "false") => true,

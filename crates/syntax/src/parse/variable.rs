@@ -2,17 +2,12 @@
 
 use super::Parser;
 use crate::lexer::Tok;
-use crate::{number, words};
-use g7_model::{Expr, FbKind, Name, Param, Problem, Type, VarDecl, VarKind, codes};
-
-/// Every name of a type, for the nearest one to a misspelt name.
-const TYPES: &[&str] = &[
-    "BOOL", "SINT", "INT", "DINT", "LINT", "USINT", "UINT", "UDINT", "ULINT", "REAL", "LREAL", "TIME",
-    "STRING", "CTU", "CTD", "CTUD", "TON", "TOF", "TP", "R_TRIG", "F_TRIG", "SR", "RS",
-];
+use crate::words;
+use g7_iec::constant;
+use g7_model::{Expr, Name, Param, Problem, Type, VarDecl, VarKind, codes};
 
 impl Parser<'_> {
-    /// What sort of variable is declared here, if one is.
+    /// The kind of variable that is declared here, if one is.
     pub(super) fn var_kind(&self) -> Option<VarKind> {
         Some(match self.word() {
             "input" => VarKind::Input,
@@ -23,7 +18,7 @@ impl Parser<'_> {
         })
     }
 
-    /// A declaration; its first word is in hand.
+    /// Reads a declaration; its first word is the current token.
     pub(super) fn variable(&mut self, kind: VarKind) -> VarDecl {
         let start = self.bump().start;
         let names = self.names("the name of a variable");
@@ -49,13 +44,13 @@ impl Parser<'_> {
         decl
     }
 
-    /// One of the words behind the type.
+    /// Reads one of the clauses after the type.
     fn clause(&mut self, decl: &mut VarDecl) -> bool {
         if decl.comment.is_none() && self.at(Tok::Comment) {
             decl.comment = self.comment_if();
             return true;
         }
-        // In a chart, a step may be called like one of these words.
+        // In a chart, a step may have the name of one of these words.
         let word = self.word();
         if !matches!(word, "at" | "inverted" | "retain" | "safe") || self.before_transition() {
             return false;
@@ -126,11 +121,7 @@ impl Parser<'_> {
     }
 
     fn known_type(&self) -> Option<Type> {
-        let word = self.word();
-        number::elementary(word).or_else(|| {
-            let fits = |k: &&FbKind| k.name() == word || k.name().to_ascii_lowercase() == word;
-            FbKind::ALL.iter().find(fits).map(|k| Type::Fb(*k))
-        })
+        constant::type_named(self.word())
     }
 
     /// A type; BOOL where none can be read.
@@ -162,9 +153,10 @@ impl Parser<'_> {
         }
         let word = self.word();
         let at = self.here();
+        let names: Vec<&str> = Type::names().collect();
         self.report(at, || {
             let problem = Problem::new(&codes::UNKNOWN_WORD, at, format!("there is no type `{word}`"));
-            match (words::similar(word, TYPES), word.to_ascii_uppercase().as_str()) {
+            match (words::similar(word, &names), word.to_ascii_uppercase().as_str()) {
                 (_, "BYTE" | "WORD" | "DWORD" | "LWORD") => {
                     problem.help("there are no bit strings; USINT, UINT, UDINT and ULINT hold as many bits")
                 }

@@ -2,6 +2,7 @@
 
 use super::Printer;
 use super::item::starts;
+use crate::quote;
 use g7_model::{
     Action, ActionKind, Chart, ChartItem, ChartKind, ExprKind, Literal, Name, Order, Situation, Span, Step,
     StepKind, Target, Transition,
@@ -84,7 +85,7 @@ impl Printer<'_> {
         self.actions(step);
     }
 
-    /// The actions in braces: a single short one within the line.
+    /// The actions in braces; a single short one stays on the line.
     fn actions(&mut self, step: &Step) {
         let at = step.at.0;
         let alone = match step.actions.as_slice() {
@@ -143,7 +144,7 @@ impl Printer<'_> {
                 self.if_condition(condition.as_ref());
             }
             ActionKind::Order(order) => self.order(order),
-            ActionKind::Comment(text) => self.push(&crate::number::quote(text, '"')),
+            ActionKind::Comment(text) => self.push(&quote::quote(text, '"')),
         }
     }
 
@@ -228,13 +229,13 @@ impl Printer<'_> {
     }
 }
 
-/// Whether a transition goes on where the one before it ended.
+/// True if a transition continues where the one before it ended.
 fn follows(t: &Transition, before: &ChartItem) -> bool {
     let ChartItem::Transition(b) = before else { return false };
     t.chained && t.label.is_none() && t.from == b.to
 }
 
-/// Whether a block stands in the action, with notes of its own.
+/// True if the action contains a block, which may have notes of its own.
 fn has_block(action: &Action) -> bool {
     use g7_model::Work;
     match &action.kind {
@@ -256,7 +257,8 @@ fn place(item: &ChartItem) -> Span {
     }
 }
 
-/// Items that stand together without a blank line; 3 for those that never do.
+/// The group of an item: items of one group stand together without a blank line, those of group 3
+/// never.
 fn family(item: &ChartItem) -> u8 {
     match item {
         ChartItem::Var(_) => 0,

@@ -1,23 +1,20 @@
 //! Expressions, with the fewest parentheses that keep their meaning.
 
 use super::Printer;
-use crate::number;
-use crate::parse::strength;
+use crate::quote;
+use g7_iec::constant;
 use g7_model::{Arg, BinaryOp, Expr, ExprKind, Literal, Path, UnaryOp};
-
-/// Binding strength of what stands alone.
-const OPERAND: u8 = 9;
 
 impl<'a> Printer<'a> {
     pub(super) fn expr(&mut self, e: &Expr) {
         self.operand(e, 1);
     }
 
-    /// An expression where one of at least this binding strength is wanted.
+    /// Prints an expression where an operand of at least this binding strength is needed.
     fn operand(&mut self, e: &Expr, least: u8) {
         let own = match &e.kind {
-            ExprKind::Binary(op, ..) => strength(*op),
-            _ => OPERAND,
+            ExprKind::Binary(op, ..) => op.strength(),
+            _ => BinaryOp::TIGHTEST,
         };
         if own < least {
             self.in_parens(e);
@@ -50,12 +47,8 @@ impl<'a> Printer<'a> {
 
     fn unary(&mut self, op: UnaryOp, inner: &Expr) {
         let again = matches!(&inner.kind, ExprKind::Unary(UnaryOp::Not | UnaryOp::Rise | UnaryOp::Fall, _));
-        self.push(match op {
-            UnaryOp::Not => "not ",
-            UnaryOp::Neg => "-",
-            UnaryOp::Rise => "↑",
-            UnaryOp::Fall => "↓",
-        });
+        self.push(op.sign());
+        self.push(if op == UnaryOp::Not { " " } else { "" });
         if is_simple(inner) || op == UnaryOp::Not && again {
             self.bare(inner);
         } else {
@@ -64,30 +57,15 @@ impl<'a> Printer<'a> {
     }
 
     fn binary(&mut self, op: BinaryOp, left: &Expr, right: &Expr) {
-        let own = strength(op);
+        let own = op.strength();
         if op == BinaryOp::Div && ends_with_time(left) {
             self.in_parens(left);
         } else {
             self.operand(left, own);
         }
-        self.push(match op {
-            BinaryOp::Or => " or ",
-            BinaryOp::Xor => " xor ",
-            BinaryOp::And => " and ",
-            BinaryOp::Dot => " · ",
-            BinaryOp::Eq => " = ",
-            BinaryOp::Ne => " <> ",
-            BinaryOp::Lt => " < ",
-            BinaryOp::Le => " <= ",
-            BinaryOp::Gt => " > ",
-            BinaryOp::Ge => " >= ",
-            BinaryOp::Add => " + ",
-            BinaryOp::Sub => " - ",
-            BinaryOp::Mul => " * ",
-            BinaryOp::Div => " / ",
-            BinaryOp::Mod => " mod ",
-            BinaryOp::Pow => " ** ",
-        });
+        self.push(" ");
+        self.push(op.row().sign);
+        self.push(" ");
         self.operand(right, own + 1);
     }
 
@@ -122,8 +100,8 @@ impl<'a> Printer<'a> {
                 self.push(".");
                 self.name(&name.text);
             } else if name.text.starts_with(|c: char| c.is_ascii_digit()) {
-                // A number alone would be read as one.
-                self.push(&number::quote(&name.text, '`'));
+                // A bare number would be read as a number, not as a name.
+                self.push(&quote::quote(&name.text, '`'));
             } else {
                 self.name(&name.text);
             }
@@ -156,8 +134,8 @@ impl<'a> Printer<'a> {
             Literal::Int(v, Some(ty)) => format!("{ty}#{v}"),
             Literal::Real(text, None) => text.to_string(),
             Literal::Real(text, Some(ty)) => format!("{ty}#{text}"),
-            Literal::Time(ns) => number::show_duration(*ns),
-            Literal::Str(text) => number::quote_st(text),
+            Literal::Time(time) => time.to_string(),
+            Literal::Str(text) => constant::quote_st(text),
         };
         self.push(&text);
     }
@@ -166,26 +144,26 @@ impl<'a> Printer<'a> {
     fn as_written(&self, literal: &Literal, e: &Expr) -> Option<&'a str> {
         let source = self.source.as_ref()?;
         let at = e.at.0;
-        // Brackets around it are part of its place, but not of the number.
+        // Brackets around a number belong to its place, but not to the number.
         let text = source.text().get(at.start as usize..at.end as usize)?;
         let text = text.trim_matches(|c: char| c.is_whitespace() || matches!(c, '(' | ')' | '[' | ']'));
         if !text.starts_with(|c: char| c.is_ascii_alphanumeric()) {
             return None;
         }
         let same = match literal {
-            Literal::Int(v, None) => number::integer(text).as_ref() == Ok(v),
+            Literal::Int(v, None) => constant::integer(text).as_ref() == Ok(v),
             Literal::Int(_, Some(_)) | Literal::Real(_, Some(_)) => {
-                number::typed(text).as_ref() == Ok(literal)
+                constant::typed(text).as_ref() == Ok(literal)
             }
-            Literal::Real(v, None) => number::real(text).as_ref() == Ok(v),
-            Literal::Time(v) => number::duration(text).as_ref() == Ok(v),
+            Literal::Real(v, None) => constant::real(text).as_ref() == Ok(v),
+            Literal::Time(v) => constant::duration(text).as_ref() == Ok(v),
             Literal::Bool(_) | Literal::Str(_) => false,
         };
         same.then_some(text)
     }
 }
 
-/// Whether it binds so closely that a sign before it can only mean all of it.
+/// True if a sign before it can only refer to all of it.
 fn is_simple(e: &Expr) -> bool {
     match &e.kind {
         ExprKind::Literal(Literal::Int(v, None)) => *v >= 0,
@@ -203,7 +181,7 @@ fn is_time(e: &Expr) -> bool {
     matches!(e.kind, ExprKind::Literal(Literal::Time(_)))
 }
 
-/// Whether a `/` behind it would be read as that of a time operator.
+/// True if a `/` after it would be read as that of a time operator.
 fn ends_with_time(e: &Expr) -> bool {
     match &e.kind {
         ExprKind::Literal(Literal::Time(_)) | ExprKind::Timer { .. } => true,

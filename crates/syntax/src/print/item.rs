@@ -1,8 +1,8 @@
 //! A file and its items, variables among them.
 
 use super::{Printer, is_plain};
-use crate::number;
 use crate::parse::SWITCHES;
+use g7_iec::constant;
 use g7_model::{
     Document, Function, Item, Name, NamedAction, Param, Profile, Section, Span, StmtKind, Switch, VarDecl,
     VarKind,
@@ -19,7 +19,7 @@ impl Printer<'_> {
         self.notes_before(u32::MAX, false);
     }
 
-    /// Whether a blank line stands between two items whatever the source has.
+    /// True if a blank line always separates two items, whatever the source has.
     fn stand_apart(&self, a: &Item, b: &Item) -> bool {
         let (a, b) = (family(a), family(b));
         a == Family::Braces || b == Family::Braces || self.source.is_none() && a != b
@@ -28,7 +28,7 @@ impl Printer<'_> {
     fn item(&mut self, item: &Item, apart: bool) {
         match item {
             Item::Profile(p) => self.line(p.at.0, apart, |s| s.profile(p)),
-            Item::Cycle(ns, at) => self.line(at.0, apart, |s| s.time_clause("scan", Some(*ns), at.0)),
+            Item::Cycle(time, at) => self.line(at.0, apart, |s| s.time_clause("scan", Some(*time), at.0)),
             Item::Target(plc, at) => self.line(at.0, apart, |s| {
                 s.push("target ");
                 s.push(plc.name());
@@ -100,7 +100,7 @@ impl Printer<'_> {
         if is_direct(&address.text) || is_plain(&address.text) {
             self.push(&address.text);
         } else {
-            self.push(&number::quote_st(&address.text));
+            self.push(&constant::quote_st(&address.text));
         }
     }
 
@@ -186,7 +186,7 @@ fn family(item: &Item) -> Family {
     }
 }
 
-/// Whether a text reads as a direct name such as `%I0.1`, in upper case.
+/// True if a text is a direct name such as `%I0.1`, in upper case.
 fn is_direct(text: &str) -> bool {
     let Some(rest) = text.strip_prefix('%') else { return false };
     let fits = |c: char| c.is_ascii_uppercase() || c.is_ascii_digit() || c == '_';

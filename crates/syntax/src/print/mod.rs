@@ -1,9 +1,9 @@
-//! The canonical form of a document: what `g7 fmt` writes.
+//! The canonical form of a document, as `g7 fmt` writes it.
 //!
-//! Two blanks a level, one statement, action or item a line, at most one blank
-//! line between them. Notes keep their place before, behind or after what they
-//! stand at. What must hold: what is printed reads as the same document, and
-//! printing that again changes nothing.
+//! Two blanks for each level, one statement, action or item on each line, at most one blank line
+//! between them. Notes keep their place before, after or at the end of the line of the element that
+//! they belong to. The printed text reads as the same document, and printing that again changes
+//! nothing.
 
 mod chart;
 mod expr;
@@ -12,10 +12,12 @@ mod st;
 mod world;
 
 use crate::lexer::{name_continue, name_start};
-use crate::{LineIndex, number, words};
-use g7_model::{Action, Document, Expr, Note, Span, Stmt};
+use crate::quote;
+use crate::{LineIndex, words};
+use g7_iec::constant;
+use g7_model::{Action, Document, Expr, Nanos, Note, Span, Stmt};
 
-/// Lines that are put together from several parts are no longer than this.
+/// The largest width of a line that is joined from several parts.
 const WIDTH: usize = 100;
 
 /// The canonical text of a document without `Bad` expressions.
@@ -50,13 +52,13 @@ pub fn print_action(action: &Action) -> String {
     printer.out
 }
 
-/// What has been written, and what is still to come of the notes.
+/// The text so far, and the notes that are still to be printed.
 struct Printer<'a> {
     out: String,
     indent: usize,
     notes: &'a [Note],
     source: Option<LineIndex<'a>>,
-    /// Where, in the source, the last thing of this block ended; none at its start.
+    /// The place in the source where the last element of this block ended; `None` at its start.
     last_end: Option<u32>,
 }
 
@@ -70,28 +72,28 @@ impl<'a> Printer<'a> {
         self.out.push_str(text);
     }
 
-    /// A word of the thing at hand and the duration behind it, spelled as in
-    /// the source if that is this duration.
-    fn time_clause(&mut self, word: &str, ns: Option<i64>, at: Span) {
-        let Some(ns) = ns else { return };
+    /// Prints a word and the duration after it, spelled as in the source if the source has this
+    /// duration.
+    fn time_clause(&mut self, word: &str, time: Option<Nanos>, at: Span) {
+        let Some(time) = time else { return };
         if self.out.ends_with(|c: char| !c.is_whitespace()) {
             self.push(" ");
         }
         self.push(word);
         self.push(" ");
-        match self.time_as_written(word, ns, at) {
+        match self.time_as_written(word, time, at) {
             Some(text) => self.out.push_str(text),
-            None => self.push(&number::show_duration(ns)),
+            None => self.push(&time.to_string()),
         }
     }
 
-    /// The tree has only the value: its spelling stands behind the word.
-    fn time_as_written(&self, word: &str, ns: i64, at: Span) -> Option<&'a str> {
+    /// The tree holds only the value; the source has its spelling after the word.
+    fn time_as_written(&self, word: &str, time: Nanos, at: Span) -> Option<&'a str> {
         let text = self.source.as_ref()?.text().get(at.start as usize..at.end as usize)?;
         let mut words = text.split(|c: char| c.is_whitespace() || matches!(c, ';' | '{' | '}'));
         while words.any(|w| w == word) {
             let next = words.clone().find(|w| !w.is_empty())?;
-            if number::duration(next) == Ok(ns) && next.starts_with(|c: char| c.is_ascii_alphanumeric()) {
+            if constant::duration(next) == Ok(time) && next.starts_with(|c: char| c.is_ascii_alphanumeric()) {
                 return Some(next);
             }
         }
@@ -104,7 +106,7 @@ impl<'a> Printer<'a> {
         }
     }
 
-    /// How many characters the line in hand has.
+    /// The number of characters on the current line.
     fn column(&self) -> usize {
         let line = self.out.rsplit('\n').next().unwrap_or_default();
         line.chars().count()
@@ -112,13 +114,13 @@ impl<'a> Printer<'a> {
 
     // Lines and notes
 
-    /// A thing on a line of its own that has no other things in it.
+    /// Prints an element on a line of its own that contains no others.
     fn line(&mut self, at: Span, apart: bool, write: impl FnOnce(&mut Self)) {
         self.group_from(at, at.end, apart, write);
     }
 
-    /// A thing that begins a line and has other things in it, which
-    /// print themselves with their notes.
+    /// Prints an element that begins a line and contains others, which print themselves with their
+    /// notes.
     fn group(&mut self, at: Span, apart: bool, write: impl FnOnce(&mut Self)) {
         self.group_from(at, at.start, apart, write);
     }
@@ -126,21 +128,21 @@ impl<'a> Printer<'a> {
     fn group_from(&mut self, at: Span, notes_to: u32, apart: bool, write: impl FnOnce(&mut Self)) {
         let waiting = self.notes.len();
         self.notes_before(notes_to, apart);
-        // The blank line stands before the notes.
+        // The blank line comes before the notes.
         self.gap(at.start, apart && self.notes.len() == waiting);
         self.start_line();
         write(self);
         self.end_line(at);
     }
 
-    /// Ends a line, behind the notes that stood at the end of the line in the source.
+    /// Ends a line, after the notes that stand at the end of the line in the source.
     fn end_line(&mut self, at: Span) {
         self.last_end = Some(at.end);
         self.notes_behind(at.end, None);
         self.push("\n");
     }
 
-    /// The blank line before a thing, where the source has one or its kind asks for one.
+    /// Prints a blank line before an element if the source has one or its kind needs one.
     fn gap(&mut self, start: u32, apart: bool) {
         let Some(end) = self.last_end else { return };
         if apart || self.source_blank(end, start) {
@@ -151,12 +153,12 @@ impl<'a> Printer<'a> {
     fn source_blank(&self, end: u32, start: u32) -> bool {
         let Some(source) = &self.source else { return false };
         let between = source.text().get(end as usize..start as usize).unwrap_or_default();
-        // The first part is the rest of a line, the last one the start of one.
+        // The first part is the rest of a line, the last part the start of one.
         let whole = between.matches('\n').count().saturating_sub(1);
         between.split('\n').skip(1).take(whole).any(|line| line.trim().is_empty())
     }
 
-    /// The notes that begin before a byte, each on a line of its own.
+    /// Prints the notes that begin before a byte, each on a line of its own.
     fn notes_before(&mut self, byte: u32, apart: bool) {
         let mut apart = apart;
         while let Some((note, rest)) = self.notes.split_first() {
@@ -173,7 +175,7 @@ impl<'a> Printer<'a> {
         }
     }
 
-    /// The notes on the same line of the source behind a byte, with nothing in between.
+    /// Prints the notes that follow a byte directly on its line in the source.
     fn notes_behind(&mut self, byte: u32, limit: Option<u32>) {
         let Some(source) = self.source.take() else { return };
         let mut end = byte;
@@ -198,12 +200,12 @@ impl<'a> Printer<'a> {
         self.source = Some(source);
     }
 
-    /// Whether a note begins in these bytes.
+    /// True if a note begins in these bytes.
     fn notes_in(&self, at: Span) -> bool {
         self.notes.first().is_some_and(|n| n.at.start < at.end && n.at.start >= at.start)
     }
 
-    /// What stands in braces, a thing a line; `first` is where the first one begins.
+    /// Prints elements in braces, one on each line; `first` is the start of the first one.
     fn braces(&mut self, at: Span, first: Option<u32>, write: impl FnOnce(&mut Self)) {
         self.push("{");
         if first.is_none() && !self.notes_in(at) {
@@ -217,7 +219,7 @@ impl<'a> Printer<'a> {
         self.push("}");
     }
 
-    /// Things of a block, one level deeper, and the notes after the last of them.
+    /// Prints the elements of a block one level deeper, and the notes after the last of them.
     fn inside(&mut self, at: Span, write: impl FnOnce(&mut Self)) {
         self.indent += 1;
         self.last_end = None;
@@ -226,7 +228,7 @@ impl<'a> Printer<'a> {
         self.indent -= 1;
     }
 
-    /// Tries to write something within the line; takes it back and says no if it does not fit.
+    /// Tries to print on the current line; undoes it and returns false if it does not fit.
     fn try_inline(&mut self, write: impl FnOnce(&mut Self)) -> bool {
         let (length, last_end) = (self.out.len(), self.last_end);
         write(self);
@@ -240,21 +242,21 @@ impl<'a> Printer<'a> {
 
     // Words
 
-    /// A name where no word of the language can stand.
+    /// A name in a place where no word of the language is allowed.
     fn name(&mut self, name: &str) {
         if is_plain(name) {
             self.push(name);
         } else {
-            self.push(&number::quote(name, '`'));
+            self.push(&quote::quote(name, '`'));
         }
     }
 
-    /// A name where words of the language can stand.
+    /// A name in a place where words of the language are allowed.
     fn first_name(&mut self, name: &str) {
         if is_plain(name) && !words::is_contextual(name) {
             self.push(name);
         } else {
-            self.push(&number::quote(name, '`'));
+            self.push(&quote::quote(name, '`'));
         }
     }
 
@@ -269,12 +271,12 @@ impl<'a> Printer<'a> {
     fn comment(&mut self, comment: Option<&str>) {
         if let Some(comment) = comment {
             self.push(" ");
-            self.push(&number::quote(comment, '"'));
+            self.push(&quote::quote(comment, '"'));
         }
     }
 }
 
-/// Whether a name needs no back-ticks.
+/// True if a name needs no back-ticks.
 pub(crate) fn is_plain(name: &str) -> bool {
     let mut chars = name.chars();
     let Some(first) = chars.next() else { return false };

@@ -4,7 +4,7 @@ use super::Printer;
 use g7_model::{Block, Body, BodyLang, CaseArm, Expr, ExprKind, Literal, Local, Stmt, StmtKind, Work};
 
 impl Printer<'_> {
-    /// `{ … }`: within the line where it is short and of one statement.
+    /// Prints `{ … }`, on the current line if it is short and has one statement.
     pub(super) fn block(&mut self, block: &Block) {
         let at = block.at.0;
         let short = match block.statements.as_slice() {
@@ -62,7 +62,7 @@ impl Printer<'_> {
         }
     }
 
-    /// What an action does.
+    /// Prints the work of an action.
     pub(super) fn work(&mut self, work: &Work) {
         match work {
             Work::Single(statement) => self.statement(statement),
@@ -126,7 +126,7 @@ impl Printer<'_> {
         }
     }
 
-    /// The last statements of a construct, and the start of the line that ends it.
+    /// Prints the last statements of a construct, and the start of the line that ends it.
     fn nested(&mut self, whole: &Stmt, body: &[Stmt]) {
         self.header_end(whole, body);
         self.inside(whole.at.0, |p| p.statements(body));
@@ -225,7 +225,7 @@ impl Printer<'_> {
     }
 }
 
-/// Whether a statement is of one line.
+/// True if a statement needs only one line.
 fn is_short(kind: &StmtKind) -> bool {
     matches!(kind, StmtKind::Assign { .. } | StmtKind::Call(..) | StmtKind::Exit | StmtKind::Return)
 }

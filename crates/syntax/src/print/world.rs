@@ -1,7 +1,8 @@
 //! Plants, tests, properties and the layout.
 
 use super::{Printer, item::starts};
-use crate::number;
+use crate::quote;
+use g7_iec::constant;
 use g7_model::{
     Expr, Layout, Path, PlaceAt, Placed, Plant, PlantItem, Property, PropertyKind, Scenario, Span, TestStmt,
     TestStmtKind,
@@ -124,7 +125,7 @@ impl Printer<'_> {
 
     fn view(&mut self, view: &g7_model::View) {
         self.push("view ");
-        self.push(&number::quote_st(&view.file));
+        self.push(&constant::quote_st(&view.file));
         let Some(first) = view.bindings.first() else { return };
         self.push(" ");
         self.braces(view.at.0, Some(first.element.at.0.start), |p| {
@@ -182,7 +183,7 @@ impl Printer<'_> {
                 self.path(path);
                 self.time_clause("for", *time, s.at.0);
             }
-            TestStmtKind::Wait(ns) => self.time_clause("wait", Some(*ns), s.at.0),
+            TestStmtKind::Wait(time) => self.time_clause("wait", Some(*time), s.at.0),
             TestStmtKind::WaitUntil(e, within) => {
                 self.push("wait until ");
                 self.expr(e);
@@ -195,10 +196,10 @@ impl Printer<'_> {
                 self.push("expect fault");
                 if let Some(name) = name {
                     self.push(" ");
-                    if crate::words::TEST.contains(&&*name.text)
+                    if g7_model::words::TEST.contains(&&*name.text)
                         || !name.text.starts_with(crate::lexer::name_start)
                     {
-                        self.push(&number::quote(&name.text, '`'));
+                        self.push(&quote::quote(&name.text, '`'));
                     } else {
                         self.name(&name.text);
                     }
@@ -224,11 +225,11 @@ impl Printer<'_> {
                 self.push(&format!("repeat {n} "));
                 self.test_block(s.at.0, body);
             }
-            TestStmtKind::Comment(text) => self.push(&number::quote(text, '"')),
+            TestStmtKind::Comment(text) => self.push(&quote::quote(text, '"')),
         }
     }
 
-    /// `expect …`; a variable called `fault` must not be read as the word.
+    /// `expect …`; a variable called `fault` must not be read as that word.
     fn expect(&mut self, list: &[Expr]) {
         self.push("expect ");
         let length = self.out.len();
@@ -254,8 +255,8 @@ impl Printer<'_> {
         };
         self.push(word);
         self.expr(e);
-        if let PropertyKind::After(_, ns, then) = &property.kind {
-            self.time_clause("within", Some(*ns), property.at.0);
+        if let PropertyKind::After(_, time, then) = &property.kind {
+            self.time_clause("within", Some(*time), property.at.0);
             self.push(" expect ");
             self.expr(then);
         }
@@ -289,7 +290,7 @@ impl Printer<'_> {
             Placed::TransitionNumber(n) => self.push(&format!("transition #{n}")),
             Placed::Comment(text) => {
                 self.push("comment ");
-                self.push(&number::quote(text, '"'));
+                self.push(&quote::quote(text, '"'));
             }
         }
         self.push(&format!(" at ({}, {})", hundredths(place.x), hundredths(place.y)));

@@ -4,8 +4,8 @@ use crate::expressions::tree;
 use crate::read;
 use crate::statements::lines;
 use g7_model::{
-    ActionKind, Body, BodyLang, Chart, ChartItem, ChartKind, Order, Qualifier, Situation, Step, StepKind,
-    Target, Transition, Work,
+    ActionKind, Body, BodyLang, Chart, ChartItem, ChartKind, Nanos, Order, Qualifier, Situation, Step,
+    StepKind, Target, Transition, Work,
 };
 
 fn chart(items: &str) -> Chart {
@@ -38,7 +38,7 @@ fn kinds_of_chart() {
     assert_eq!(
         kinds,
         [
-            (ChartKind::Chart, "Main", Some("all of it"), Some(20_000_000)),
+            (ChartKind::Chart, "Main", Some("all of it"), Some(Nanos::from_millis(20))),
             (ChartKind::Expansion, "Dose", None, None),
             (ChartKind::Task, "Grip", Some("x"), None),
         ]

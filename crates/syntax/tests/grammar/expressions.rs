@@ -58,7 +58,7 @@ fn literal(l: &Literal) -> String {
         Literal::Int(v, Some(ty)) => format!("{ty}:{v}"),
         Literal::Real(t, None) => format!("r{t}"),
         Literal::Real(t, Some(ty)) => format!("{ty}:r{t}"),
-        Literal::Time(ns) => format!("{ns}ns"),
+        Literal::Time(time) => format!("{}ns", time.count()),
         Literal::Str(s) => format!("{s:?}"),
     }
 }

@@ -4,8 +4,8 @@ use crate::expressions::tree;
 use crate::read;
 use crate::statements::lines;
 use g7_model::{
-    FbKind, FileId, Item, Name, Placed, PlantItem, ProfileName, PropertyKind, Switch, TargetPlc, TestStmt,
-    TestStmtKind, Type, VarKind,
+    FbKind, FileId, Item, Name, Nanos, Placed, PlantItem, ProfileName, PropertyKind, Switch, TargetPlc,
+    TestStmt, TestStmtKind, Type, VarKind,
 };
 use g7_syntax::{LineColumn, LineIndex, parse, print};
 
@@ -16,7 +16,7 @@ fn head_of_a_file() {
     assert_eq!(profile.name, ProfileName::Iec61131);
     let switches: Vec<_> = profile.switches.iter().map(|(s, _)| *s).collect();
     assert_eq!(switches, [Switch::MultiToken(true), Switch::FinalScan(false), Switch::Bound(50)]);
-    assert!(matches!(d.items[1], Item::Cycle(10_000_000, _)));
+    assert!(matches!(d.items[1], Item::Cycle(time, _) if time == Nanos::from_millis(10)));
     assert!(matches!(d.items[2], Item::Target(TargetPlc::Tsx3720, _)));
     for name in ProfileName::ALL {
         assert_eq!(read(&format!("profile {}", name.name())).profile().map(|p| p.name), Some(name));
@@ -184,9 +184,9 @@ fn test_line(s: &TestStmt) -> String {
             let l: Vec<_> = l.iter().map(|(p, e)| format!("{}={}", p.text(), tree(e))).collect();
             format!("set {}", l.join(" "))
         }
-        TestStmtKind::Pulse(p, t) => format!("pulse {} {t:?}", p.text()),
-        TestStmtKind::Wait(t) => format!("wait {t}"),
-        TestStmtKind::WaitUntil(e, t) => format!("until {} {t:?}", tree(e)),
+        TestStmtKind::Pulse(p, t) => format!("pulse {} {:?}", p.text(), t.map(Nanos::count)),
+        TestStmtKind::Wait(t) => format!("wait {}", t.count()),
+        TestStmtKind::WaitUntil(e, t) => format!("until {} {:?}", tree(e), t.map(Nanos::count)),
         TestStmtKind::Scan(n) => format!("scan {n}"),
         TestStmtKind::Expect(l) => format!("expect {}", list(l)),
         TestStmtKind::ExpectFault(n) => format!("fault {:?}", n.as_ref().map(|n: &Name| n.text.to_string())),
@@ -213,7 +213,7 @@ fn properties_and_layouts() {
             PropertyKind::Always(e) => format!("always {}", tree(e)),
             PropertyKind::Never(e) => format!("never {}", tree(e)),
             PropertyKind::Reachable(e) => format!("reachable {} {:?}", tree(e), p.comment.as_deref()),
-            PropertyKind::After(a, t, b) => format!("after {} {t} {}", tree(a), tree(b)),
+            PropertyKind::After(a, t, b) => format!("after {} {} {}", tree(a), t.count(), tree(b)),
         })
         .collect();
     assert_eq!(

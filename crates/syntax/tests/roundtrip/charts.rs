@@ -235,7 +235,7 @@ fn item() -> impl Strategy<Value = Item> {
     );
     prop_oneof![
         1 => profile,
-        1 => duration().prop_map(|ns| Item::Cycle(ns, at())),
+        1 => duration().prop_map(|time| Item::Cycle(time, at())),
         1 => prop::sample::select(TargetPlc::ALL.to_vec()).prop_map(|t| Item::Target(t, at())),
         3 => variable().prop_map(Item::Var),
         4 => chart().prop_map(Item::Chart),

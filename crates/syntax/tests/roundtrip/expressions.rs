@@ -1,8 +1,8 @@
 //! Random names, expressions and statements.
 
 use g7_model::{
-    Arg, BinaryOp, Block, CaseArm, Expr, ExprKind, FbKind, Literal, Local, Name, Path, Place, Span, Stmt,
-    StmtKind, Type, UnaryOp,
+    Arg, BinaryOp, Block, CaseArm, Expr, ExprKind, FbKind, Literal, Local, Name, Nanos, Path, Place, Span,
+    Stmt, StmtKind, Type, UnaryOp,
 };
 use proptest::prelude::*;
 
@@ -86,13 +86,14 @@ pub(crate) fn ty() -> impl Strategy<Value = Type> {
     ]
 }
 
-pub(crate) fn duration() -> impl Strategy<Value = i64> {
+pub(crate) fn duration() -> impl Strategy<Value = Nanos> {
     prop_oneof![
         0..10_000i64,
         (0..100_000i64).prop_map(|ms| ms * 1_000_000),
         (0..1_000_000i64).prop_map(|s| s * 1_000_000_000),
         any::<i64>(),
     ]
+    .prop_map(Nanos::new)
 }
 
 fn literal() -> impl Strategy<Value = Literal> {
@@ -152,7 +153,7 @@ pub(crate) fn expr() -> impl Strategy<Value = Expr> {
     ];
     leaf.prop_recursive(5, 24, 3, |inner| {
         let boxed = inner.clone().prop_map(Box::new);
-        let time = duration().prop_map(|ns| Box::new(of(ExprKind::Literal(Literal::Time(ns)))));
+        let time = duration().prop_map(|time| Box::new(of(ExprKind::Literal(Literal::Time(time)))));
         let t = prop_oneof![2 => time, 1 => boxed.clone()];
         prop_oneof![
             2 => (prop::sample::select(UNARY.to_vec()), boxed.clone()).prop_map(|(op, e)| of(ExprKind::Unary(op, e))),

@@ -73,7 +73,7 @@ export const run = {
   'run.filter': ['Filter', 'Filtrer', 'Filtrar'],
   'run.more': ['{n} more: filter to see them', '{n} de plus : filtrez pour les voir', 'Mais {n}: filtre para os ver'],
   'run.situation': ['Active steps: {steps}', 'Étapes actives : {steps}', 'Etapas ativas: {steps}'],
-  'run.nothing': ['Nothing is called so.', "Rien ne s'appelle ainsi.", 'Nada tem este nome.'],
+  'run.nothing': ['Nothing has this name.', "Rien ne s'appelle ainsi.", 'Nada tem este nome.'],
   'run.driven': ['driven by the plant', 'donnée par la partie opérative', 'dada pelo processo'],
   'run.force': ['Force {name}', 'Forcer {name}', 'Forçar {name}'],
   'run.release': ['Release {name}', 'Libérer {name}', 'Libertar {name}'],

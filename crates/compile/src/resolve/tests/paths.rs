@@ -1,4 +1,4 @@
-//! What a path names: grammar.md, the end of "Expressions".
+//! Tests of the names in a path: grammar.md, the end of "Expressions".
 
 use super::{ask, outcome, read, resolved};
 
@@ -160,7 +160,7 @@ fn jgrafchart_counts_scans() {
     }
 }
 
-/// What each bare name leads to does not depend on the order of the charts.
+/// The meaning of a step name without its chart does not depend on the order of the charts.
 #[test]
 fn steps_of_charts_come_before_those_of_expansions_and_tasks() {
     const CHART: &str = "chart G { initial step 1  step 2  macro M = D  step 5 { call T }

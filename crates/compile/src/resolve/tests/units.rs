@@ -1,7 +1,7 @@
-//! What resolving makes of whole documents.
+//! Tests of resolving whole documents.
 
 use g7_engine::Rules;
-use g7_model::ProfileName;
+use g7_model::{Nanos, ProfileName};
 
 use super::{read, resolved, show};
 use crate::ir::{ActionKind, ChartRole, Situation, StepSort, Stmt, StmtKind, Target, Unit, Value, VarClass};
@@ -51,7 +51,7 @@ fn profiles_switches_and_overrides() {
     let (unit, problems) = resolve(&doc, None);
     assert!(problems.is_empty());
     let want = Rules { multi_token: true, final_scan: false, bound: 50, ..Rules::IEC61131 };
-    assert_eq!((unit.profile, unit.rules, unit.cycle), (ProfileName::Iec61131, want, 20_000_000));
+    assert_eq!((unit.profile, unit.rules, unit.cycle), (ProfileName::Iec61131, want, Nanos::from_millis(20)));
     // Another profile brings its own switches: those of the document are dropped.
     let (unit, _) = resolve(&doc, Some(ProfileName::Iec61131));
     assert_eq!(unit.rules, Rules::IEC61131);
@@ -59,7 +59,10 @@ fn profiles_switches_and_overrides() {
     assert_eq!((unit.profile, unit.rules), (ProfileName::Pl7, Rules::PL7));
     let empty = read("");
     let (unit, _) = resolve(&empty, None);
-    assert_eq!((unit.profile, unit.rules, unit.cycle), (ProfileName::Iec60848, Rules::IEC60848, 10_000_000));
+    assert_eq!(
+        (unit.profile, unit.rules, unit.cycle),
+        (ProfileName::Iec60848, Rules::IEC60848, Nanos::from_millis(10))
+    );
 }
 
 #[test]
@@ -110,7 +113,7 @@ fn charts_nest_and_steps_lie_together() {
     assert_eq!(unit.steps[m3.index()].sort, StepSort::Macro(scopes.chart("Dose").expect("Dose")));
     assert_eq!(chart("Spare").role, ChartRole::Unused);
     assert_eq!(chart("Grip").role, ChartRole::Task);
-    assert_eq!((chart("H").every, chart("H").enclosed_by.is_some()), (50_000_000, true));
+    assert_eq!((chart("H").every, chart("H").enclosed_by.is_some()), (Some(Nanos::from_millis(50)), true));
     assert_eq!((chart("Dose").entry.is_some(), chart("Dose").exit.is_some()), (true, true));
     for (k, c) in unit.charts.iter().enumerate() {
         assert!(

@@ -1,4 +1,4 @@
-//! Actions of a step, as statements of JGrafchart's action language.
+//! Writes the actions of a step in JGrafchart's action language.
 
 use g7_model::{
     Action, ActionKind, Expr, ExprKind, Order, Place, Qualifier, Stmt, StmtKind, Target, Type, VarKind, Work,
@@ -6,7 +6,7 @@ use g7_model::{
 
 use super::Writer;
 use super::guards;
-use super::look::{Meaning, StepId, Thing, VarId};
+use super::lookup::{Meaning, StepId, Thing, VarId};
 use super::text::Speech;
 
 impl Writer<'_> {
@@ -16,7 +16,7 @@ impl Writer<'_> {
         for action in actions {
             self.action(step, action, &mut lines);
         }
-        // A step without actions has an empty statement there.
+        // A step without actions has an empty statement.
         if lines.is_empty() { ";".to_string() } else { lines.join("\n") }
     }
 
@@ -81,8 +81,8 @@ impl Writer<'_> {
         }
     }
 
-    /// The letters of an action of the end: `X`, `A` where an exception takes the step,
-    /// both where that makes no difference.
+    /// The letters of an action on deactivation: `X`; `A` if an exception transition deactivates
+    /// the step; both if that makes no difference.
     fn end<'e>(
         &self,
         step: StepId,
@@ -96,7 +96,7 @@ impl Writer<'_> {
         }
     }
 
-    /// Assignments, each with the letters.
+    /// Writes assignments, each with the letters.
     fn work(
         &mut self,
         chart: usize,
@@ -146,7 +146,7 @@ impl Writer<'_> {
         let Some(name) = self.name(chart, var, at) else { return };
         let value = match condition {
             None => value,
-            // Where the condition fails the variable takes the value that it has.
+            // If the condition is false, the variable keeps its value.
             Some(c) => match (Speech { look: &mut self.look, chart, home: chart }).condition(c) {
                 Ok(condition) => format!("({condition}) ? ({value}) : {name}"),
                 Err((at, what)) => return self.cannot(at, &what),

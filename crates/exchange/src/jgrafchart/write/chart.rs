@@ -1,25 +1,25 @@
-//! A chart as the content of a workspace: steps, transitions, bars and lines.
+//! Writes a chart as the content of a workspace: steps, transitions, bars and lines.
 
-use g7_model::{Chart, ChartItem, Name, Step, StepKind, Transition};
+use g7_model::{Chart, ChartItem, Name, Nanos, Step, StepKind, Transition};
 
 use super::Writer;
-use super::draw::{self, Places, Port, Spot};
 use super::guards::{Shown, encloses};
-use super::look::is_name;
+use super::lookup::is_name;
+use super::symbols::{self, Places, Port, Spot};
 use super::text::Speech;
 use super::window;
-use crate::xml::element::Element;
+use g7_iec::xml::element::Element;
 
-/// What a step is in the file.
+/// The kind of a step in the file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Sort {
     Plain,
     Initial,
     Enter,
     Exit,
-    /// A macro-step with its inside.
+    /// A macro-step with its chart.
     Macro(usize),
-    /// It is made when the file is read.
+    /// A step that is not written, because reading the file makes it again.
     Unwritten,
 }
 
@@ -30,10 +30,10 @@ struct Node {
     at: Spot,
 }
 
-/// The elements of a workspace and, behind them, its lines.
+/// The elements of a workspace, and its lines, which come after them.
 type Content = (Vec<Element>, Vec<Element>);
 
-/// One end of a line: its name and place.
+/// An end of a line: the identifier and the port.
 type End = (String, Port);
 
 impl<'d> Writer<'d> {
@@ -63,18 +63,18 @@ impl<'d> Writer<'d> {
         (parts, links)
     }
 
-    /// A chart beside the first one.
+    /// A chart other than the first one, as a workspace object.
     pub(super) fn object(&mut self, index: usize) -> Element {
         let Some(chart) = self.look.charts.get(index).copied() else {
             return Element::new("WorkspaceObject");
         };
         if !is_name(&chart.name.text) {
-            // No text can name what is in it, but nothing else is amiss.
+            // No text can name its content, but nothing else is wrong.
             self.say(&g7_model::codes::DIFFERENT, chart.name.at, "texts of JGrafchart cannot hold this name");
         }
         let every = chart.every.unwrap_or(self.scan);
-        let cycle = every.checked_div(self.scan).unwrap_or(1).max(1);
-        if every % self.scan.max(1) != 0 {
+        let cycle = every.count().checked_div(self.scan.count()).unwrap_or(1).max(1);
+        if every.whole(self.scan.max(Nanos::new(1))).is_none() {
             self.cannot(chart.at, "a period that is no multiple of the scan time");
         }
         let nth = self.order.len();
@@ -90,7 +90,7 @@ impl<'d> Writer<'d> {
             .with("verticalScrollBar", 1)
             .child(inside);
         let row = i32::try_from(nth).unwrap_or(0).saturating_mul(100);
-        draw::placed(element, (-200, row), (60, 60))
+        symbols::placed(element, (-200, row), (60, 60))
     }
 
     /// The workspace within an element.
@@ -100,14 +100,14 @@ impl<'d> Writer<'d> {
         window(element).children(parts).children(links)
     }
 
-    /// What a chart holds beside variables, steps and transitions.
+    /// Reports items of a chart other than variables, steps and transitions.
     fn chart_items(&mut self, index: usize, chart: &'d Chart) {
         let period = match self.look.owner.get(index).copied().flatten() {
             Some((owner, _)) => self.look.charts.get(owner).and_then(|c| c.every),
             None if index == self.look.top => None,
             None => chart.every,
         };
-        if chart.every.is_some_and(|ns| ns != self.scan) && chart.every != period {
+        if chart.every.is_some_and(|every| every != self.scan) && chart.every != period {
             self.cannot(chart.at, "a period of such a chart");
         }
         for item in &chart.items {
@@ -149,7 +149,7 @@ impl<'d> Writer<'d> {
             };
             let mut name = self.look.step_name((index, number)).to_string();
             if name == format!("#{unnamed}") {
-                // What JGrafchart calls a step without a name.
+                // JGrafchart's name for a step without a name.
                 unnamed += 1;
                 name.clear();
             }
@@ -163,15 +163,15 @@ impl<'d> Writer<'d> {
             parts.push(match sort {
                 Sort::Macro(inside) => {
                     self.call_inside(chart, step, inside);
-                    draw::macro_step(element.with("resumeMode", "Default"), at).child(self.inner(inside))
+                    symbols::macro_step(element.with("resumeMode", "Default"), at).child(self.inner(inside))
                 }
-                _ => draw::step(element.with("actionBlockVisible", 1), at),
+                _ => symbols::step(element.with("actionBlockVisible", 1), at),
             });
         }
         nodes
     }
 
-    /// An expansion is known by the name of its macro-step there.
+    /// In JGrafchart an expansion has the name of its macro-step.
     fn call_inside(&mut self, chart: &Chart, step: &Step, inside: usize) {
         let name = self.look.charts.get(inside).map(|c| &c.name);
         let Some(name) = name.filter(|n| n.text != step.name.text).cloned() else { return };
@@ -214,7 +214,7 @@ impl<'d> Writer<'d> {
         }
     }
 
-    /// How many workspaces stand round a chart's.
+    /// The number of workspaces around that of a chart.
     fn depth(&self, index: usize) -> usize {
         let mut here = index;
         let mut depth = 0;
@@ -263,7 +263,7 @@ impl<'d> Writer<'d> {
         if let Some(priority) = transition.priority {
             element = element.with("priority", priority);
         }
-        parts.push(draw::transition(element, at, shown.exception));
+        parts.push(symbols::transition(element, at, shown.exception));
         let (inward, outward) = if shown.exception {
             (Port::ExceptionIn(at), Port::ExceptionOut(at))
         } else {
@@ -272,8 +272,8 @@ impl<'d> Writer<'d> {
         let from = self.ends(index, &transition.from, nodes, |w, n, node| w.way_out(n, node, &shown));
         let to = self.ends(index, &transition.to, nodes, |_, _, node| way_in(node));
         if shown.exception {
-            // Several lines lead into an exception transition; no join is needed.
-            links.extend(from.into_iter().map(|(name, port)| draw::link(&name, &id, (port, inward))));
+            // Several lines may lead into an exception transition, so it needs no join.
+            links.extend(from.into_iter().map(|(name, port)| symbols::link(&name, &id, (port, inward))));
         } else {
             self.bars(from, (id.clone(), inward), at, true, (parts, links));
         }
@@ -305,7 +305,7 @@ impl<'d> Writer<'d> {
         (format!("{}_{way}", node.id), Port::MacroOut(node.at, way, ways.len().max(1)))
     }
 
-    /// Lines between a transition and its steps, through bars where there are several.
+    /// Lines between a transition and its steps, through bars if there are several steps.
     fn bars(
         &mut self,
         mut steps: Vec<End>,
@@ -316,7 +316,7 @@ impl<'d> Writer<'d> {
     ) {
         let mut line = |a: &End, b: &End| {
             let (from, to) = if join { (a, b) } else { (b, a) };
-            links.push(draw::link(&from.0, &to.0, (from.1, to.1)));
+            links.push(symbols::link(&from.0, &to.0, (from.1, to.1)));
         };
         let mut toward = transition;
         let mut nth = 0;
@@ -324,9 +324,9 @@ impl<'d> Writer<'d> {
         while steps.len() > 1 {
             let Some(step) = steps.pop() else { break };
             let id = self.id();
-            let place = draw::bar_place(at, nth, join);
+            let place = symbols::bar_place(at, nth, join);
             nth += 1;
-            parts.push(draw::bar(
+            parts.push(symbols::bar(
                 Element::new(if join { "ParallelJoin" } else { "ParallelSplit" }).with("id", &id),
                 place,
             ));
@@ -342,7 +342,7 @@ impl<'d> Writer<'d> {
     }
 }
 
-/// Deepest nesting of workspaces, well within that of XML elements that is read.
+/// The deepest nesting of workspaces that is written; readers accept more.
 const MOST_NESTED: usize = 40;
 
 fn way_in(node: &Node) -> End {
@@ -352,7 +352,7 @@ fn way_in(node: &Node) -> End {
     }
 }
 
-/// An exit step that reading gives a macro-step without one.
+/// True for an exit step that reading adds to a macro-step without one.
 fn unreached(chart: &Chart, step: &Step) -> bool {
     let name = &step.name.text;
     let made = name.trim_end_matches('_') == "no exit" && step.actions.is_empty();
@@ -377,5 +377,5 @@ fn free_text(text: &str, at: Spot) -> Element {
         .with("textColor", -16_777_216)
         .with("transparent", 1)
         .with("underline", 0);
-    draw::placed(element, at, (200, lines.saturating_mul(20)))
+    symbols::placed(element, at, (200, lines.saturating_mul(20)))
 }

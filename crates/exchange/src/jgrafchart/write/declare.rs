@@ -1,23 +1,23 @@
-//! Variables, inputs and outputs as elements.
+//! Writes variables, inputs and outputs as elements.
 
 use g7_model::codes;
 use g7_model::{Expr, ExprKind, Literal, Type, UnaryOp, VarDecl, VarKind};
 
 use super::Writer;
-use super::draw::{Spot, placed};
-use super::look::VarId;
+use super::lookup::VarId;
+use super::symbols::{Spot, placed};
 use crate::jgrafchart::read::STRING_BYTES;
-use crate::xml::element::Element;
+use g7_iec::xml::element::Element;
 
 /// The size of the symbol of a variable.
 const SIZE: (i32, i32) = (80, 60);
-/// Between two of them, and how many stand in a column.
+/// The distance between two of them, and the number of them in a column.
 const ROW: i32 = 90;
 const COLUMN: i32 = 110;
 const ROWS: i32 = 12;
 
 impl Writer<'_> {
-    /// The variables of the file or of a chart, right of its drawing.
+    /// The variables of the file or of a chart, to the right of its drawing.
     pub(super) fn variables(
         &mut self,
         home: Option<usize>,
@@ -80,7 +80,7 @@ impl Writer<'_> {
             }
         };
         self.narrow(decl);
-        // What rests at 1 there begins with TRUE, and nothing else does.
+        // The inverted output is the only one that begins with TRUE.
         let rests = tag == "DigitalOut1";
         let zero = decl.init.as_ref().is_none_or(is_zero);
         if !(if rests { starts } else { zero }) {
@@ -143,13 +143,13 @@ impl Writer<'_> {
             .with("updated", u8::from(follows.is_some()))
             .with("value", &value);
         if matches!(decl.ty, Type::String(_)) && !kept && value.is_empty() && decl.kind == VarKind::Var {
-            // An empty initial value means that the last one is kept.
+            // An empty initial value means that the last value is kept.
             self.say(&codes::DIFFERENT, decl.at, "a text that begins empty is kept over a restart there");
         }
         Some(element)
     }
 
-    /// Types that become wider or narrower.
+    /// Reports types that become wider or narrower.
     fn narrow(&mut self, decl: &VarDecl) {
         let to = match decl.ty {
             Type::Sint | Type::Int | Type::Usint | Type::Uint => "DINT",
@@ -161,7 +161,7 @@ impl Writer<'_> {
     }
 }
 
-/// The whole numbers that fit 32 bits with a sign.
+/// True for whole numbers that fit a signed 32-bit number.
 fn whole(ty: Type) -> bool {
     matches!(ty, Type::Sint | Type::Int | Type::Dint | Type::Usint | Type::Uint)
 }
@@ -174,7 +174,7 @@ fn is_zero(e: &Expr) -> bool {
     constant(e).is_some_and(|v| v.is_empty() || v.parse::<f64>() == Ok(0.0))
 }
 
-/// A constant as the attributes have it.
+/// A constant, as written in attributes.
 fn constant(e: &Expr) -> Option<String> {
     match &e.kind {
         ExprKind::Literal(Literal::Bool(b)) => Some(u8::from(*b).to_string()),

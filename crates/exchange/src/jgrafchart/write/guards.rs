@@ -1,5 +1,5 @@
-//! Which enclosing steps are macro-steps with exception transitions: those that
-//! have the form which reading such a file gives them.
+//! Finds the enclosing steps that can be written as macro-steps with exception transitions: those
+//! with the form that the reader produces.
 
 use std::collections::BTreeMap;
 
@@ -8,34 +8,34 @@ use g7_model::{
     StepKind, Stmt, StmtKind, Transition, Type, UnaryOp, VarKind,
 };
 
-use super::look::{Look, Meaning, Property, StepId, VarId};
-use crate::nodes;
+use super::lookup::{Look, Meaning, Property, StepId, VarId};
+use g7_iec::nodes;
 
-/// What a transition is in the file.
+/// How a transition is written.
 #[derive(Clone, Debug)]
 pub(super) struct Shown {
     /// An exception transition.
     pub(super) exception: bool,
-    /// By which exit step each preceding macro-step is left, where it has several.
+    /// The exit step by which each preceding macro-step is left, if it has several.
     pub(super) exits: BTreeMap<usize, usize>,
     /// Its own condition.
     pub(super) condition: Expr,
 }
 
-/// The enclosing steps that are macro-steps in the file.
+/// The enclosing steps that are written as macro-steps.
 pub(super) struct Guards {
-    /// The variable that tells that an exception takes the inside of a step.
+    /// The variable that tells that an exception transition leaves a step.
     flags: BTreeMap<StepId, VarId>,
-    /// Of each chart: the nearest step round it that has one.
+    /// For each chart: the nearest step around it with such a variable.
     above: Vec<Option<StepId>>,
     /// The exit steps of each enclosed chart.
     pub(super) exits: BTreeMap<usize, Vec<usize>>,
-    /// Transitions of enclosing steps, and others that give way.
+    /// Transitions of enclosing steps, and others that test such a variable.
     shown: BTreeMap<(usize, usize), Shown>,
 }
 
 impl Guards {
-    /// Finds them, and makes their charts the insides of their steps.
+    /// Finds these steps, and makes their charts the contents of the steps.
     pub(super) fn find(look: &mut Look<'_>) -> Guards {
         let mut guards = Guards {
             flags: BTreeMap::new(),
@@ -44,7 +44,7 @@ impl Guards {
             shown: BTreeMap::new(),
         };
         let charts = look.charts.clone();
-        // What variables are given at the beginning of each scan; nothing where twice.
+        // The variables assigned at the beginning of each scan; None if assigned twice.
         let mut given: BTreeMap<VarId, Option<&Expr>> = BTreeMap::new();
         for (index, chart) in charts.iter().enumerate() {
             for (number, step) in chart.steps().enumerate() {
@@ -87,7 +87,7 @@ impl Guards {
         for index in 0..look.charts.len() {
             let mut here = index;
             let mut found = None;
-            // Owners come before what they own, or the way up ends.
+            // The loop ends because an owner comes before the charts that it owns.
             while let Some(owner) = look.owner.get(here).copied().flatten() {
                 if self.flags.contains_key(&owner) {
                     found = Some(owner);
@@ -104,22 +104,22 @@ impl Guards {
         }
     }
 
-    /// The variable that tells that an exception takes a chart.
+    /// The variable that tells that an exception transition leaves a chart.
     pub(super) fn aborted(&self, chart: usize) -> Option<VarId> {
         self.flags.get(&self.above.get(chart).copied()??).copied()
     }
 
-    /// The same for the actions of a step: its own, where it has an inside that can be taken.
+    /// The same for the actions of a step: its own variable if it has one.
     pub(super) fn aborted_step(&self, step: StepId) -> Option<VarId> {
         self.flags.get(&step).copied().or_else(|| self.aborted(step.0))
     }
 
-    /// Whether a variable is only there for this form.
+    /// True if a variable exists only for this form.
     pub(super) fn is_flag(&self, var: VarId) -> bool {
         self.flags.values().any(|v| *v == var)
     }
 
-    /// What a transition is; `None` where it has not the form that it must have.
+    /// How a transition is written; `None` if it does not have the required form.
     pub(super) fn shown(&self, chart: usize, number: usize) -> Option<&Shown> {
         self.shown.get(&(chart, number))
     }
@@ -133,7 +133,7 @@ impl Guards {
         let enclosing = |s: &usize| look.step_at((chart, *s)).is_some_and(|s| s.kind == StepKind::Enclosing);
         let mut exits = BTreeMap::new();
         let mut plain = condition.clone();
-        // The last step's guard stands outermost.
+        // The guard of the last step is outermost.
         let ordinary = from.iter().rev().filter(|s| enclosing(s)).try_for_each(|step| {
             let inside = look.inside_of((chart, *step))?;
             if let Some(flag) = self.flags.get(&(chart, *step)) {
@@ -151,7 +151,7 @@ impl Guards {
         all.then(|| Shown { exception: true, exits: BTreeMap::new(), condition })
     }
 
-    /// Drops what the variables of the form do not say: they must be what reading makes of them.
+    /// Drops variables that differ from those that the reader would make.
     fn keep_sound(&mut self, look: &Look<'_>, given: &BTreeMap<VarId, Option<&Expr>>) {
         let mut exceptions: BTreeMap<StepId, Vec<(Vec<usize>, &Expr)>> = BTreeMap::new();
         let mut numbers: Vec<&(usize, usize)> = self.shown.keys().collect();
@@ -216,7 +216,7 @@ impl Guards {
     }
 }
 
-/// The chart that an enclosing step encloses, if it is one alone.
+/// The chart that an enclosing step encloses, if it is a single one.
 pub(super) fn encloses(step: &Step) -> Option<&str> {
     if step.kind != StepKind::Enclosing {
         return None;
@@ -246,9 +246,9 @@ fn assigned<'s>(look: &Look<'_>, index: usize, s: &'s Stmt) -> Option<(VarId, &'
     }
 }
 
-/// The enclosing step of `flag := Step.x and …`, with a variable of the chart.
+/// The enclosing step of `flag := Step.x and …`, if the chart declares the variable.
 fn tells_of(look: &Look<'_>, index: usize, var: VarId, value: &Expr) -> Option<usize> {
-    // Alone where the exception has no condition.
+    // Without a condition of the exception only the activity remains.
     let first = match &value.kind {
         ExprKind::Binary(BinaryOp::And, first, _) => first,
         _ => value,
@@ -265,7 +265,7 @@ fn tells_of(look: &Look<'_>, index: usize, var: VarId, value: &Expr) -> Option<u
     }
 }
 
-/// An expression without the `and not flag` at its end.
+/// An expression without `and not flag` at its end.
 fn without(look: &Look<'_>, chart: usize, e: Expr, flag: VarId) -> Option<Expr> {
     let at = e.at;
     match e.kind {
@@ -274,17 +274,17 @@ fn without(look: &Look<'_>, chart: usize, e: Expr, flag: VarId) -> Option<Expr> 
     }
 }
 
-/// `not flag`.
+/// True if the expression is `not flag`.
 pub(super) fn is_not(look: &Look<'_>, chart: usize, e: &Expr, flag: VarId) -> bool {
     matches!(&e.kind, ExprKind::Unary(UnaryOp::Not, inner) if is(look, chart, inner, flag))
 }
 
-/// `flag`.
+/// True if the expression is `flag`.
 pub(super) fn is(look: &Look<'_>, chart: usize, e: &Expr, flag: VarId) -> bool {
     matches!(&e.kind, ExprKind::Path(p) if look.path(chart, p) == Some(Meaning::Var(flag)))
 }
 
-/// The exit step that an expression asks for first, and the rest of it.
+/// The exit step that an expression tests first, and the rest of the expression.
 fn behind_exit(look: &Look<'_>, chart: usize, inside: usize, e: Expr) -> Option<(usize, Expr)> {
     let exit = |e: &Expr| match &e.kind {
         ExprKind::Path(p) => match look.path(chart, p) {

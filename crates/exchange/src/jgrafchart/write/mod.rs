@@ -1,36 +1,34 @@
-//! A document as a file of JGrafchart.
+//! Writes a document as a file of JGrafchart.
 //!
-//! The first chart is the workspace of the file, each other one a workspace object
-//! in it; macro-steps hold their expansions. What JGrafchart does not have is a
-//! problem with its place in the document: a warning where the rest means the same,
-//! an error where it does not.
+//! The first chart becomes the workspace of the file, every other chart a workspace object in it;
+//! macro-steps contain their expansions. An element that JGrafchart does not have is a problem with
+//! its place in the document: a warning if the rest means the same, otherwise an error.
 
 mod actions;
 mod chart;
 mod declare;
-mod draw;
 mod guards;
-mod look;
+mod lookup;
+mod symbols;
 mod text;
 
 use std::collections::HashMap;
 
 use g7_model::codes::{self, Code};
 use g7_model::{
-    Body, ChartItem, ChartKind, Document, ExprKind, Item, Place, Problem, ProfileName, Stmt, StmtKind,
+    Body, ChartItem, ChartKind, Document, ExprKind, Item, Nanos, Place, Problem, ProfileName, Stmt, StmtKind,
     VarKind,
 };
 
 use crate::Written;
-use crate::xml::element::Element;
+use g7_iec::xml::element::Element;
 use guards::Guards;
-use look::{Look, Meaning, Thing, VarId};
+use lookup::{Look, Meaning, Thing, VarId};
 use text::Speech;
 
-/// Nominal scan time where the document has none, as everywhere here.
-const SCAN: i64 = 10_000_000;
-const NS_PER_MS: i64 = 1_000_000;
-/// The attributes of a workspace as a fresh one has them.
+/// The nominal scan time of a document without one, as everywhere in G7.
+const SCAN: Nanos = Nanos::from_millis(10);
+/// The attributes of a new workspace.
 const WORKSPACE: [(&str, &str); 14] = [
     ("color", "-1"),
     ("dimTicks", "25"),
@@ -54,7 +52,7 @@ pub(crate) fn export(document: &Document) -> Written {
     let guards = Guards::find(&mut look);
     let mut writer = Writer::new(document, look, guards);
     let mut root = writer.root();
-    // Which names texts cannot hold is known when all texts have been written.
+    // The names that texts cannot hold are known only after all texts have been written.
     if !writer.look.unspeakable.is_empty() {
         writer.look.rename();
         writer = Writer::new(document, writer.look, writer.guards);
@@ -73,22 +71,21 @@ struct Writer<'d> {
     look: Look<'d>,
     guards: Guards,
     problems: Vec<Problem>,
-    /// Identifiers given so far.
+    /// The number of identifiers given so far.
     ids: u64,
     /// Variables that follow an expression, with its text.
     follows: HashMap<VarId, String>,
-    /// The scan time, in nanoseconds.
-    scan: i64,
+    /// The scan time.
+    scan: Nanos,
     /// Charts in the order in which they are written.
     order: Vec<usize>,
-    /// Where the steps of the charts written so far stand.
-    spots: HashMap<usize, Vec<draw::Spot>>,
+    /// The places of the steps of the charts written so far.
+    spots: HashMap<usize, Vec<symbols::Spot>>,
 }
 
 impl<'d> Writer<'d> {
     fn new(document: &'d Document, look: Look<'d>, guards: Guards) -> Writer<'d> {
-        let scan =
-            document.items.iter().find_map(|i| if let Item::Cycle(ns, _) = i { Some(*ns) } else { None });
+        let scan = document.cycle();
         Writer {
             document,
             look,
@@ -106,17 +103,17 @@ impl<'d> Writer<'d> {
         self.problems.push(Problem::new(code, at.0, what));
     }
 
-    /// Something with a meaning that JGrafchart does not have.
+    /// Reports an element with a meaning that JGrafchart does not have.
     fn cannot(&mut self, at: Place, what: &str) {
         self.say(&codes::NOT_CARRIED, at, format!("{what}: JGrafchart has none"));
     }
 
-    /// Something without which the chart means the same.
+    /// Reports an element without which the chart means the same.
     fn leave_out(&mut self, at: Place, what: &str) {
         self.say(&codes::LEFT_OUT, at, format!("{what}: JGrafchart has none; it is left out"));
     }
 
-    /// An identifier like those of newer files.
+    /// A new identifier, in the style of newer files.
     fn id(&mut self) -> String {
         self.ids += 1;
         format!("00000000-0000-4000-8000-{:012x}", self.ids)
@@ -135,7 +132,9 @@ impl<'d> Writer<'d> {
             root = root.with(name, value);
         }
         let name = self.look.charts.get(top).map_or("", |c| &*c.name.text);
-        root = root.with("name", name).with("threadSpeed", (self.scan / NS_PER_MS).max(1));
+        root = root
+            .with("name", name)
+            .with("threadSpeed", (self.scan.count() / Nanos::MILLISECOND.count()).max(1));
         let root = window(root);
         let content = self.workspace(top);
         let mut objects = Vec::new();
@@ -156,7 +155,7 @@ impl<'d> Writer<'d> {
         root.children(parts).children(objects).children(links)
     }
 
-    /// What stands beside charts and variables.
+    /// Writes items other than charts and variables.
     fn item(&mut self, item: &Item) {
         match item {
             Item::Var(_) | Item::Chart(_) | Item::Layout(_) | Item::Pre(..) => {}
@@ -168,7 +167,7 @@ impl<'d> Writer<'d> {
                 );
                 self.say(&codes::NOT_CARRIED, p.at, what);
             }
-            Item::Cycle(ns, at) if ns % NS_PER_MS != 0 || *ns < NS_PER_MS => {
+            Item::Cycle(time, at) if time.whole(Nanos::MILLISECOND).is_none_or(|ms| ms < 1) => {
                 self.cannot(*at, "a scan time that is no whole number of milliseconds");
             }
             Item::Cycle(..) => {}
@@ -183,7 +182,7 @@ impl<'d> Writer<'d> {
         }
     }
 
-    /// Processing before the evolution: a variable there can follow an expression.
+    /// Processing before the evolution: a variable may follow an expression there.
     fn processing(&mut self) {
         let document = self.document;
         let top = self.look.top;
@@ -241,7 +240,7 @@ impl<'d> Writer<'d> {
         true
     }
 
-    /// Charts are read in the order of the file, which decides what fires first.
+    /// Transitions are evaluated in the order of the file, so charts are sorted.
     fn in_order(&mut self) {
         let mut last = None;
         for index in std::mem::take(&mut self.order) {
@@ -258,7 +257,7 @@ impl<'d> Writer<'d> {
         }
     }
 
-    /// Says which names had to change.
+    /// Reports the names that had to be changed.
     fn tell_renamed(&mut self) {
         let renamed: Vec<(Thing, String)> =
             self.look.renamed.iter().map(|(thing, name)| (*thing, name.clone())).collect();

@@ -1,15 +1,15 @@
-//! Expressions in JGrafchart's action language.
+//! Prints expressions in JGrafchart's action language.
 //!
-//! There the place decides how an expression is evaluated, and values are converted
-//! silently; here each conversion is written out. So a conversion is left to the
-//! place where the place makes it, and refused where it would make another.
+//! In JGrafchart the context decides how an expression is evaluated, and values are converted
+//! silently; in a document each conversion is written out. A conversion is therefore left to the
+//! context if the context makes it, and refused if the context would make another one.
 
 use g7_model::{BinaryOp, Expr, ExprKind, Literal, Place, Type, UnaryOp};
 
-use super::look::{Look, Meaning, Property, Thing};
+use super::lookup::{Look, Meaning, Property, Thing};
 use crate::jgrafchart::express::Sort;
 
-/// How tightly an operand binds, from the loosest.
+/// The binding strength of an operator; the weakest comes first.
 type Strength = u8;
 const CHOICE: Strength = 0;
 const OR: Strength = 1;
@@ -21,15 +21,15 @@ const PRODUCT: Strength = 6;
 const SIGN: Strength = 7;
 const ATOM: Strength = 8;
 
-/// What an expression cannot say, and where.
+/// The part that an expression cannot say, and its place.
 pub(super) type Refused = (Place, String);
 
-/// Writes the expressions of a chart.
+/// Prints the expressions of a chart.
 pub(super) struct Speech<'a, 'd> {
     pub(super) look: &'a mut Look<'d>,
-    /// The chart in which the expression stands.
+    /// The chart that contains the expression.
     pub(super) chart: usize,
-    /// The chart whose workspace will hold the text.
+    /// The chart whose workspace will contain the text.
     pub(super) home: usize,
 }
 
@@ -168,7 +168,7 @@ impl Speech<'_, '_> {
         }
     }
 
-    /// `TRUNC(r) = 1`, as a real number is true there.
+    /// `TRUNC(r) = 1` is the truth of a real number in JGrafchart.
     fn truth_of_real(&mut self, a: &Expr, b: &Expr) -> Result<Option<String>, Refused> {
         let (ExprKind::Call(path, args), ExprKind::Literal(Literal::Int(1, None))) = (&a.kind, &b.kind)
         else {
@@ -182,7 +182,7 @@ impl Speech<'_, '_> {
         }
     }
 
-    /// In what a comparison is made there: the widest of its sides.
+    /// The sort in which JGrafchart compares: the widest of the two sides.
     fn common(&self, a: &Expr, b: &Expr, at: Place) -> Result<Sort, Refused> {
         let sort = self.sort(a).max(self.sort(b)).unwrap_or(Sort::Int);
         if self.made(a).max(self.made(b)).is_some_and(|made| made != sort) {
@@ -215,8 +215,8 @@ impl Speech<'_, '_> {
                 let Some((from, to)) = conversion.split_once("_TO_") else { return no() };
                 let (Some(from), Some(to)) = (sort_of_word(from), sort_of_word(to)) else { return no() };
                 let fits = to == wanted || (to == Sort::Int && wanted == Sort::Real);
-                // Whole to whole and real to real is no conversion there, and others come
-                // with the place; but one operand of real numbers makes all of it real.
+                // Whole to whole and real to real is no conversion in JGrafchart, and others come
+                // with the context. But one real operand makes the whole expression real.
                 let whole_in_real = from == Sort::Int && wanted == Sort::Real && !is_leaf(e);
                 let cut = from == Sort::Real && to == Sort::Int;
                 let shown = to != Sort::Text || self.made(e) == self.sort(e);
@@ -226,7 +226,8 @@ impl Speech<'_, '_> {
         }
     }
 
-    /// The sort an expression has there by itself; `None` for `0` and `1`, which suit any.
+    /// The sort of an expression in JGrafchart without context; `None` for `0` and `1`, which fit
+    /// any.
     fn sort(&self, e: &Expr) -> Option<Sort> {
         match &e.kind {
             ExprKind::Literal(Literal::Int(0 | 1, _) | Literal::Bool(_)) => None,
@@ -248,7 +249,7 @@ impl Speech<'_, '_> {
                 ("CONCAT", _) => Some(Sort::Text),
                 ("SEL", [_, a, b]) => self.sort(&a.value).max(self.sort(&b.value)),
                 (conversion, [e]) => match conversion.split_once("_TO_") {
-                    // What it is converted from is what the text shows.
+                    // The text shows the sort from which the value is converted.
                     Some((from, _)) => sort_of_word(from),
                     None => self.sort(&e.value),
                 },
@@ -257,7 +258,7 @@ impl Speech<'_, '_> {
         }
     }
 
-    /// The sort an expression has here, where conversions are written out.
+    /// The sort of an expression in the document, where conversions are written out.
     fn made(&self, e: &Expr) -> Option<Sort> {
         match &e.kind {
             ExprKind::Unary(UnaryOp::Neg, e) => self.made(e).or(Some(Sort::Int)),
@@ -316,7 +317,7 @@ fn literal(l: &Literal, at: Place) -> Result<(String, Strength), Refused> {
     })
 }
 
-/// A text in quotes.
+/// A string in quotes.
 fn quoted(text: &str) -> String {
     let mut out = String::from("\"");
     for c in text.chars() {

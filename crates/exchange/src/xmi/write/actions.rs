@@ -1,16 +1,16 @@
-//! Actions, as action types with the links to their steps.
+//! Writes actions as action types with links to their steps.
 
 use g7_model::{
     Action, ActionKind, Expr, ExprKind, Literal, Name, Order, Place, Qualifier, Situation, Step, Stmt,
     StmtKind, Target, Type, Work,
 };
 
-use super::element::Element;
 use super::lookup::{Meaning, Node};
 use super::{Web, Writer};
+use g7_iec::xml::element::Element;
 
 impl<'d> Writer<'d> {
-    /// The actions of a step; what it encloses was written with it.
+    /// Writes the actions of a step. The enclosed charts were written with the step.
     pub(super) fn actions(&mut self, step: &'d Step, node: Node, web: &mut Web) {
         for action in &step.actions {
             let place = format!("//@partialGrafcets.{}/@actionTypes.{}", self.sheet, web.actions.len());
@@ -32,7 +32,7 @@ impl<'d> Writer<'d> {
             ActionKind::OnEvent { event, work } => {
                 let mut element = self.stored(at, work, Some("event"), place)?;
                 let term = self.condition(event, "term", &format!("{place}/@term"))?;
-                element.children.push(term);
+                element.push(term);
                 Some(element)
             }
             ActionKind::EachScan { .. } => {
@@ -81,7 +81,7 @@ impl<'d> Writer<'d> {
                 let mut element = self.stored(at, work, when, place)?;
                 if let Some(condition) = condition {
                     let term = self.condition(condition, "term", &format!("{place}/@term"))?;
-                    element.children.push(term);
+                    element.push(term);
                 }
                 return Some(element);
             }
@@ -99,7 +99,7 @@ impl<'d> Writer<'d> {
                 let mut element = self.assignment(at, &variable, &value, None, place)?;
                 if let Some(condition) = condition {
                     let term = self.condition(condition, "term", &format!("{place}/@term"))?;
-                    element.children.push(term);
+                    element.push(term);
                 }
                 Some(element)
             }
@@ -130,10 +130,10 @@ impl<'d> Writer<'d> {
             let sort = if qualifier == Qualifier::D { "timeDelayed" } else { "timeLimited" };
             self.times(&mut element, sort, time, None);
         }
-        element.children.push(self.target(variable)?);
+        element.push(self.target(variable)?);
         if let Some(condition) = condition {
             let term = self.timed(condition, &format!("{place}/@term"), &mut element)?;
-            element.children.push(term);
+            element.push(term);
         }
         Some(element)
     }
@@ -170,8 +170,8 @@ impl<'d> Writer<'d> {
             self.cannot(at, "a Boolean value for a number");
             return None;
         }
-        element.children.push(variable);
-        element.children.push(value.element);
+        element.push(variable);
+        element.push(value.element);
         Some(element)
     }
 

@@ -1,4 +1,4 @@
-//! What the names of the document stand for, and the places of it all in the file.
+//! The meaning of names in the document, and the references to everything in the file.
 
 use std::collections::{BTreeMap, HashMap, HashSet};
 
@@ -9,7 +9,7 @@ use g7_model::{
 /// A step: its chart and its number there.
 pub(super) type Node = (usize, usize);
 
-/// What a path stands for.
+/// The meaning of a path.
 pub(super) enum Meaning<'d> {
     /// A variable: the reference to its declaration and its type.
     Var(String, Type),
@@ -21,7 +21,7 @@ pub(super) enum Meaning<'d> {
 
 /// A variable of the file or of a chart.
 struct Var<'d> {
-    /// Its number among those that are written; none for constants.
+    /// Its number among the variables that are written; constants are not counted.
     number: usize,
     declared: &'d VarDecl,
 }
@@ -31,13 +31,13 @@ pub(super) struct Lookup<'d> {
     charts: Vec<&'d Chart>,
     by_name: HashMap<&'d str, usize>,
     file_vars: Vec<&'d VarDecl>,
-    /// By chart (none: the file) and name.
+    /// The variables by chart (None: the file) and name.
     vars: HashMap<(Option<usize>, &'d str), Var<'d>>,
     steps: Vec<HashMap<&'d str, usize>>,
     nodes: Vec<Vec<NodeInfo>>,
-    /// How many variables of the file are written.
+    /// The number of variables of the file that are written.
     declared: usize,
-    /// The steps whose activity a term asks for, each with its declaration's number.
+    /// The steps whose activity a term uses, by the number of the declaration.
     asked: BTreeMap<usize, Node>,
     numbers: HashMap<Node, usize>,
     enclosing: HashMap<&'d str, Node>,
@@ -77,7 +77,7 @@ impl<'d> Lookup<'d> {
         look
     }
 
-    /// Gives the variables of a chart or the file their numbers, and counts them.
+    /// Numbers the variables of a chart or of the file, and returns how many are written.
     fn declare(&mut self, sheet: Option<usize>, vars: Vec<&'d VarDecl>) -> usize {
         let mut number = 0;
         for declared in vars {
@@ -89,7 +89,7 @@ impl<'d> Lookup<'d> {
         number
     }
 
-    /// Gives each step its place and its number: its own where it has one.
+    /// Gives each step its position and its number: its own if it has one.
     fn number_steps(&mut self, sheet: usize, chart: &'d Chart) {
         let mut places: HashMap<&str, usize> = HashMap::new();
         let mut by_name = HashMap::new();
@@ -179,7 +179,7 @@ impl<'d> Lookup<'d> {
         inner.collect::<Vec<_>>().join(" ")
     }
 
-    /// The declaration of a step's activity, made when it is first asked for.
+    /// The declaration of a step's activity, made at its first use.
     pub(super) fn ask(&mut self, node: Node) -> String {
         let next = self.declared + self.asked.len();
         let number = *self.numbers.entry(node).or_insert(next);
@@ -187,13 +187,13 @@ impl<'d> Lookup<'d> {
         format!("//@variableDeclarationContainer/@variableDeclarations.{number}")
     }
 
-    /// The steps whose activity was asked for, in the order of their declarations.
+    /// The steps whose activity is used, in the order of their declarations.
     pub(super) fn take_asked(&mut self) -> Vec<(Node, String)> {
         let asked = std::mem::take(&mut self.asked);
         asked.into_values().map(|node| (node, format!("X{}", self.number(node)))).collect()
     }
 
-    /// What a path in a chart stands for, in the order of the grammar.
+    /// The meaning of a path in a chart, in the order of the grammar.
     pub(super) fn path(&self, sheet: usize, path: &Path) -> Option<Meaning<'d>> {
         let names: Vec<&str> = path.names.iter().map(|n| &*n.text).collect();
         if let [name] = names[..] {
@@ -228,7 +228,7 @@ impl<'d> Lookup<'d> {
         })
     }
 
-    /// `X12`, `Fill.X` or `M3.X12` within a chart that was named.
+    /// `X12`, `Fill.X` or `M3.X12` within a chart that has been named.
     fn step_of(&self, chart: usize, rest: &[&str]) -> Option<Node> {
         let (first, more) = rest.split_first()?;
         match more {
@@ -248,7 +248,7 @@ impl<'d> Lookup<'d> {
         self.home(sheet, name.strip_prefix('X')?)
     }
 
-    /// A step by its name alone: of this chart, else the only one of all.
+    /// A step by its name alone: of this chart, otherwise the only one in all charts.
     fn home(&self, sheet: usize, name: &str) -> Option<Node> {
         self.step_node(sheet, name).or_else(|| {
             let all = |kind: fn(&Chart) -> bool| {
@@ -280,7 +280,7 @@ impl<'d> Lookup<'d> {
     }
 }
 
-/// Whether the meta-model has a declaration for it.
+/// True if the meta-model has a declaration for the variable.
 fn is_written(declared: &VarDecl) -> bool {
     declared.kind != VarKind::Const && (declared.ty == Type::Bool || declared.ty.is_integer())
 }
@@ -290,7 +290,7 @@ fn reference(sheet: Option<usize>, number: usize) -> String {
     format!("{holder}/@variableDeclarationContainer/@variableDeclarations.{number}")
 }
 
-/// The number of a step, where its name is one: `12`, `M3`, `E3`, `S3`.
+/// The number of a step whose name contains one: `12`, `M3`, `E3`, `S3`.
 fn own_number(step: &Step) -> Option<String> {
     let letter = match step.kind {
         StepKind::Plain | StepKind::Enclosing => "",

@@ -1,13 +1,13 @@
-//! A document as an instance of the meta-model.
+//! Writes a document as an instance of the meta-model.
 //!
-//! What the meta-model cannot hold is a problem with its place in the document:
-//! a warning where the rest means the same, an error where it does not.
+//! An element that the meta-model cannot hold is a problem with its place in the document: a
+//! warning if the rest means the same, otherwise an error.
 
 mod actions;
-mod element;
 mod lookup;
 mod terms;
 
+use g7_iec::xml::element::Element;
 use g7_model::codes::{self, Code};
 use g7_model::{
     Chart, ChartItem, ChartKind, Document, Expr, ExprKind, Item, Literal, Place, Problem, ProfileName, Step,
@@ -16,10 +16,9 @@ use g7_model::{
 
 use super::build::NAME_NOTE;
 use crate::Written;
-use element::Element;
 use lookup::{Lookup, Node};
 
-/// The namespaces that the project's own files have.
+/// The namespaces of the project's own files.
 const NAMESPACES: [(&str, &str); 5] = [
     ("xmi:version", "2.0"),
     ("xmlns:xmi", "http://www.omg.org/XMI"),
@@ -53,12 +52,12 @@ impl<'d> Writer<'d> {
         self.problems.push(Problem::new(code, at.0, what));
     }
 
-    /// Something with a meaning that the meta-model does not have.
+    /// Reports an element with a meaning that the meta-model does not have.
     fn cannot(&mut self, at: Place, what: &str) {
         self.say(&codes::NOT_CARRIED, at, format!("{what}: the meta-model has none"));
     }
 
-    /// Something without which the chart means the same.
+    /// Reports an element without which the chart means the same.
     fn leave_out(&mut self, at: Place, what: &str) {
         self.say(&codes::LEFT_OUT, at, format!("{what}: the meta-model has none; it is left out"));
     }
@@ -84,7 +83,7 @@ impl<'d> Writer<'d> {
         }
         let mut container = Element::new("variableDeclarationContainer");
         for var in self.look.file_vars() {
-            container.children.extend(self.variable(var));
+            container.extend(self.variable(var));
         }
         let charts: Vec<&'d Chart> = self.look.charts().to_vec();
         let mut partials = Vec::with_capacity(charts.len());
@@ -92,18 +91,18 @@ impl<'d> Writer<'d> {
             self.sheet = index;
             partials.push(self.chart(chart));
         }
-        // Which steps are asked for is known when all charts are written.
+        // The steps whose activity is used are known only after all charts have been written.
         for (node, name) in self.look.take_asked() {
             let mut declared = self.declaration(&name, "step", Type::Bool);
             declared.set("step", &self.look.place(node));
-            container.children.push(declared);
+            container.push(declared);
         }
-        root.children.push(container);
-        root.children.extend(partials);
+        root.push(container);
+        root.extend(partials);
         root
     }
 
-    /// What stands beside charts and variables.
+    /// Writes items other than charts and variables.
     fn item(&mut self, item: &Item) {
         match item {
             Item::Var(_) | Item::Chart(_) => {}
@@ -135,7 +134,7 @@ impl<'d> Writer<'d> {
             VarKind::Input => "input",
             VarKind::Output => "output",
             VarKind::Var => "internal",
-            // Its value stands where it is used.
+            // The value of a constant is written where it is used.
             VarKind::Const => return Vec::new(),
         };
         match var.ty {
@@ -178,7 +177,7 @@ impl<'d> Writer<'d> {
         if kind != "input" {
             declared.set("variableDeclarationType", kind);
         }
-        declared.children.push(self.sort("sort", ty));
+        declared.push(self.sort("sort", ty));
         declared
     }
 
@@ -230,10 +229,10 @@ impl<'d> Writer<'d> {
         }
         if !vars.is_empty() {
             let mut container = Element::new("variableDeclarationContainer");
-            container.children = vars;
-            partial.children.push(container);
+            container.extend(vars);
+            partial.push(container);
         }
-        partial.children.extend(web.finish());
+        partial.extend(web.finish());
         partial
     }
 
@@ -307,7 +306,7 @@ impl<'d> Writer<'d> {
             self.cannot(transition.at, "a stored action on clearing");
         }
         let term = self.timed(&transition.receptivity, &format!("{place}/@term"), &mut element);
-        element.children.extend(term);
+        element.extend(term);
         web.transitions.push(element);
         let nodes = |names: &[g7_model::Name]| -> Vec<Node> {
             names.iter().filter_map(|n| self.look.step_node(self.sheet, &n.text)).collect()
@@ -328,7 +327,7 @@ impl<'d> Writer<'d> {
     }
 }
 
-/// The parts of a chart, each in its list: references go by the place there.
+/// The parts of a chart, each in its own list, because references count positions there.
 #[derive(Default)]
 struct Web {
     steps: Vec<Element>,
@@ -366,7 +365,7 @@ impl Web {
     }
 }
 
-/// Whether a value is what a variable begins with anyway.
+/// True if a value is the default of its variable.
 fn is_zero(e: &Expr) -> bool {
     match &e.kind {
         ExprKind::Literal(Literal::Bool(b)) => !b,

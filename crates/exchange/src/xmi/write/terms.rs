@@ -1,14 +1,13 @@
-//! Expressions, as terms.
+//! Writes expressions as terms.
 
-use g7_model::{BinaryOp, Expr, ExprKind, Literal, Type, UnaryOp, codes};
+use g7_model::{BinaryOp, Expr, ExprKind, Literal, Nanos, Type, UnaryOp, codes};
 
 use super::Writer;
-use super::element::Element;
 use super::lookup::Meaning;
+use g7_iec::xml::element::Element;
 
-/// Deepest term that is written; the reader takes 100 elements within one another.
+/// The deepest term that is written; the reader accepts 100 nested elements.
 const DEEPEST: usize = 90;
-const NS_PER_MS: i64 = 1_000_000;
 
 /// A term that was written.
 pub(super) struct Term {
@@ -25,7 +24,7 @@ struct Operator {
 }
 
 impl Writer<'_> {
-    /// A receptivity or condition: its delay goes to the element that has it.
+    /// A receptivity or condition; its delay is written to the element that contains it.
     pub(super) fn timed(&mut self, e: &Expr, place: &str, holder: &mut Element) -> Option<Element> {
         let (timer, limited) = match &e.kind {
             ExprKind::Timer { .. } => (e, false),
@@ -50,25 +49,27 @@ impl Writer<'_> {
 
     /// Sets the times of a transition or action.
     pub(super) fn times(&mut self, holder: &mut Element, sort: &'static str, t1: &Expr, t2: Option<&Expr>) {
-        let ns = |e: &Expr| match &e.kind {
-            ExprKind::Literal(Literal::Time(ns)) => Some(*ns),
+        let constant = |e: &Expr| match &e.kind {
+            ExprKind::Literal(Literal::Time(time)) => Some(*time),
             _ => None,
         };
-        let (Some(first), Some(second)) = (ns(t1), t2.map_or(Some(0), ns)) else {
+        let (Some(first), Some(second)) = (constant(t1), t2.map_or(Some(Nanos::ZERO), constant)) else {
             return self.cannot(t1.at, "a time that is computed");
         };
-        let whole = |unit: i64| first % unit == 0 && second % unit == 0;
-        let unit = if whole(1000 * NS_PER_MS) { 1000 * NS_PER_MS } else { NS_PER_MS };
-        let fits = |ns: i64| i32::try_from(ns / unit).is_ok_and(|n| n >= 0);
-        if !whole(unit) || !fits(first) || !fits(second) {
+        let in_units = |unit: Nanos| Some((first.whole(unit)?, second.whole(unit)?));
+        let seconds = in_units(Nanos::SECOND);
+        let fits = |n: &i64| (0..=i64::from(i32::MAX)).contains(n);
+        let Some((first, second)) =
+            seconds.or_else(|| in_units(Nanos::MILLISECOND)).filter(|(a, b)| fits(a) && fits(b))
+        else {
             return self.cannot(t1.at, "a time that is no whole number of seconds or milliseconds");
-        }
-        for (name, ns) in [("delayTime", first), ("resetTime", second)] {
-            if ns != 0 {
-                holder.set(name, &(ns / unit).to_string());
+        };
+        for (name, count) in [("delayTime", first), ("resetTime", second)] {
+            if count != 0 {
+                holder.set(name, &count.to_string());
             }
         }
-        if unit == NS_PER_MS {
+        if seconds.is_none() {
             holder.set("unit", "ms");
         }
         holder.set("timeConditionType", sort);
@@ -79,7 +80,7 @@ impl Writer<'_> {
         self.term(e, tag, place, 0).map(|t| t.element)
     }
 
-    /// One term, unless a problem says why there is none.
+    /// Writes a term; None if a problem has been reported.
     pub(super) fn term(&mut self, e: &Expr, tag: &'static str, place: &str, depth: usize) -> Option<Term> {
         if depth > DEEPEST {
             self.say(&codes::TOO_DEEP, e.at, format!("a term more than {DEEPEST} operators deep"));
@@ -129,7 +130,7 @@ impl Writer<'_> {
     /// `<term xsi:type="terms:Variable" sort=… id=… variableDeclaration=…/>`.
     pub(super) fn variable_term(&mut self, reference: &str, ty: Type, tag: &'static str) -> Term {
         let mut element = Element::new(tag);
-        // The variable of an action has no other class.
+        // The variable of an action has only this class.
         if tag != "variable" {
             element.set("xsi:type", "terms:Variable");
         }
@@ -162,7 +163,7 @@ impl Writer<'_> {
         Some(self.value("terms:IntegerConstant", Type::Dint, text, tag, place))
     }
 
-    /// A constant; the value that the meta-model has by itself is not written.
+    /// Writes a constant; the default value of the meta-model is omitted.
     fn value(
         &mut self,
         class: &'static str,
@@ -193,7 +194,7 @@ impl Writer<'_> {
             (UnaryOp::Fall, _) => "terms:FallingEdge",
             (UnaryOp::Neg, ExprKind::Literal(Literal::Int(n, _))) => return self.integer(e, -n, tag, place),
             (UnaryOp::Neg, _) => {
-                // 0 - e.
+                // `-e` is written as `0 - e`.
                 let zero = Expr { kind: ExprKind::Literal(Literal::Int(0, None)), at: e.at };
                 return self.binary(e, BinaryOp::Sub, (&zero, inner), tag, place, depth);
             }
@@ -211,7 +212,7 @@ impl Writer<'_> {
         place: &str,
         depth: usize,
     ) -> Option<Term> {
-        // `<>`, `<=` and `>=` are complements, and so is XOR of an equality.
+        // `<>`, `<=` and `>=` are complements, as is XOR of an equality.
         let opposite = match op {
             BinaryOp::Ne | BinaryOp::Xor => Some(BinaryOp::Eq),
             BinaryOp::Le => Some(BinaryOp::Gt),
@@ -259,8 +260,8 @@ impl Writer<'_> {
             let inputs: Vec<&str> = parts.iter().map(|p| &*p.sort).collect();
             element.set("input", &inputs.join(" "));
         }
-        element.children = parts.into_iter().map(|p| p.element).collect();
-        element.children.push(self.sort("output", operator.output));
+        element.extend(parts.into_iter().map(|p| p.element));
+        element.push(self.sort("output", operator.output));
         Term { element, sort, ty: operator.output }
     }
 }

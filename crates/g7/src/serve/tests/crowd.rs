@@ -1,8 +1,8 @@
-//! Many pages, and pages that misbehave: the scan goes on.
+//! Many clients, and clients that misbehave: the scans go on.
 
 use super::*;
 
-/// Waits for frames until so many scans more were made.
+/// Waits for frames until `more` further scans were made.
 async fn goes_on(page: &mut Live, more: u64) {
     let scans = |f: &Value| f["scans"].as_u64().expect("scans");
     page.unread.clear();
@@ -34,7 +34,7 @@ async fn there_are_200_places_and_no_more() {
     assert!(text.is_empty() || text.contains("200 places"), "{text}");
     server.get("/api/info").await.is(200);
     goes_on(&mut pages[0], 10).await;
-    // Who goes makes room.
+    // A client that leaves makes room.
     drop(pages.pop());
     while server.try_live(&[]).await.is_err() {
         tokio::time::sleep(Duration::from_millis(20)).await;
@@ -48,7 +48,7 @@ async fn a_page_that_never_reads_holds_up_nobody() {
     let mut mute = server.live().await;
     let watch = json!({ "id": 1, "call": { "do": "watch", "run": "a" } }).to_string();
     mute.send(&watch).await;
-    // Answers that it never takes, as many as the network holds.
+    // Answers that it never reads, as many as the network can hold.
     let flood = async {
         for _ in 0..10_000 {
             if mute.socket.send(Message::text(watch.clone())).await.is_err() {
@@ -114,7 +114,7 @@ async fn garbage_is_answered_and_forgotten() {
             noise.socket.flush().await.expect("sent");
         }
         noise.next += 1;
-        // What is not read would fill the way back.
+        // Unread answers would fill the way back.
         assert!(noise.receive_after_flush().await["no"].is_string());
     }
     goes_on(&mut page, 20).await;
@@ -134,15 +134,15 @@ async fn a_message_of_100_mb_ends_who_sends_it() {
     let mut page = paced(&server).await;
     let mut huge = server.live().await;
     let send = huge.socket.send(Message::text("x".repeat(100 << 20)));
-    // The server hangs up while it is still being sent.
+    // The server closes the connection while the client is still sending.
     let sent = tokio::time::timeout(PATIENCE, send).await.expect("an end");
     if sent.is_ok() {
         while let Ok(Some(Ok(_))) = tokio::time::timeout(PATIENCE, huge.socket.next()).await {}
     }
     goes_on(&mut page, 20).await;
-    // Not a call on the way either: what is in it is never looked at.
+    // Nor is it a call: its contents are never looked at.
     assert_eq!(page.call(json!({ "do": "runs" })).await["runs"].as_array().map(Vec::len), Some(1));
-    // Raw noise in place of HTTP, and a socket that says nothing.
+    // Noise instead of HTTP, and a connection that sends nothing.
     let idle = TcpStream::connect(server.bound).await.expect("a connection");
     let mut noise = TcpStream::connect(server.bound).await.expect("a connection");
     noise.write_all(&[0xff; 10_000]).await.ok();
@@ -160,7 +160,7 @@ async fn who_gives_no_sign_is_let_go() {
     };
     let server = Server::with(|_| {}, limits).await;
     let mut page = paced(&server).await;
-    // It is there, and never reads: it answers no ping.
+    // A client that never reads and therefore answers no ping.
     let mute = server.live().await;
     assert_eq!(refused(server.try_live(&[]).await).0, 503);
     loop {
@@ -180,7 +180,7 @@ async fn a_page_left_behind_is_given_a_full_frame() {
     page.start("a").await;
     let outbox = Arc::new(Outbox::default());
     let run: Arc<str> = Arc::from("a");
-    // More than anyone keeps for a page.
+    // More than the server keeps for any client.
     server.shared.runs.watch("a", &outbox, 1).await.expect("watched");
     for _ in 0..1_000 {
         page.call(json!({ "do": "run_scan", "run": "a" })).await;
@@ -191,7 +191,7 @@ async fn a_page_left_behind_is_given_a_full_frame() {
     let outbox::Next::Text(full) = outbox.next().await else { panic!("a frame") };
     let full: Value = serde_json::from_str(&full).expect("JSON");
     assert_eq!((&full["frame"]["full"], &full["frame"]["scans"]), (&json!(true), &json!(1_001)));
-    // And from there on as the others.
+    // From then on it gets the same frames as the others.
     let frame = page.call(json!({ "do": "run_scan", "run": "a" })).await;
     let outbox::Next::Text(next) = outbox.next().await else { panic!("a frame") };
     assert_eq!(serde_json::from_str::<Value>(&next).expect("JSON")["frame"], frame);

@@ -1,4 +1,4 @@
-//! Files: whole, known, inside the folder.
+//! Files: complete writes, known hashes, only inside the folder.
 
 use super::*;
 
@@ -50,10 +50,10 @@ async fn a_file_changed_outside_is_never_overwritten() {
     let put = server.ask("PUT", &at, &[("If-Match", &known)], "mine").await.is(412);
     assert_eq!(put.text(), "theirs", "the present text comes back");
     assert_eq!(server.on_disk("chart.g7"), "theirs");
-    // With the tag of the answer it is decided.
+    // With the tag of the refused write, the client may overwrite.
     server.ask("PUT", &at, &[("If-Match", &put.tag())], "merged").await.is(204);
     assert_eq!(server.on_disk("chart.g7"), "merged");
-    // Gone is changed as well.
+    // A deleted file counts as changed.
     let known = server.get(&at).await.tag();
     fs::remove_file(server.path("chart.g7")).expect("deleted outside");
     let put = server.ask("PUT", &at, &[("If-Match", &known)], "mine").await.is(412);
@@ -140,7 +140,7 @@ async fn links_out_of_the_folder_are_refused() {
     assert_eq!(files["files"].as_array().map(Vec::len), Some(1), "links out are not listed: {files}");
     assert_eq!(fs::read_to_string(server.root.join("secret.g7")).expect("there"), "secret");
     assert!(!server.root.join("made.g7").exists() && !server.root.join("new.g7").exists());
-    // A link that stays inside stays a link.
+    // A link that stays inside the folder remains a link.
     symlink(server.path("chart.g7"), server.path("inside.g7")).expect("a link");
     server.ask("PUT", &format!("{AT}inside.g7"), &[("If-Match", "*")], "through").await.is(204);
     assert_eq!(server.on_disk("chart.g7"), "through");
@@ -152,7 +152,7 @@ async fn a_pipe_is_not_waited_for() {
     let server = Server::new().await;
     let made = std::process::Command::new("mkfifo").arg(server.path("pipe.g7")).status().expect("mkfifo");
     assert!(made.success());
-    assert!(server.get(&format!("{AT}pipe.g7")).await.is(403).text().contains("no plain file"));
+    assert!(server.get(&format!("{AT}pipe.g7")).await.is(403).text().contains("not a regular file"));
     server.ask("PUT", &format!("{AT}pipe.g7"), &[("If-Match", "*")], "x").await.is(403);
     server.get("/api/files").await.is(200);
 }
@@ -177,7 +177,7 @@ async fn read_only_writes_nothing() {
     server.ask("DELETE", "/api/draft?path=chart.g7", &[], "").await.is(403);
     assert_eq!(server.on_disk("chart.g7"), CHART);
     assert_eq!(fs::read_dir(server.path("")).expect("the folder").count(), 1);
-    // Charts can be run all the same: a run writes nothing.
+    // Charts can still be run, because a run writes nothing.
     assert_eq!(server.live().await.start("a").await["run"], "a");
 }
 
@@ -191,7 +191,7 @@ async fn unsaved_copies_outlive_the_server() {
     assert_eq!(fs::read_dir(server.path("")).expect("the folder").count(), 1, "none beside the sources");
     let drafts = server.get("/api/drafts").await.json();
     assert_eq!(drafts["drafts"][0], json!({ "path": "chart.g7", "text": text }));
-    // Another start for the same folder; what a write that was cut off left is no copy.
+    // After a restart for the same folder; the remains of an interrupted write are not a copy.
     server.task.abort();
     let kept = fs::read_dir(server.root.join("state/g7/drafts")).expect("copies").next();
     let kept = kept.expect("a folder").expect("a folder").path();
@@ -219,7 +219,7 @@ async fn unsaved_copies_outlive_the_server() {
 async fn changes_outside_are_told_once_to_every_page() {
     let server = Server::new().await;
     let (mut one, mut two) = (server.live().await, server.live().await);
-    // Both are there before it happens.
+    // Both clients are connected before the change.
     one.call(json!({ "do": "runs" })).await;
     two.call(json!({ "do": "runs" })).await;
     fs::write(server.path("chart.g7"), "theirs").expect("a change outside");
@@ -227,14 +227,14 @@ async fn changes_outside_are_told_once_to_every_page() {
     for page in [&mut one, &mut two] {
         assert_eq!(page.hear_of("changed").await, json!({ "path": "chart.g7", "hash": hash }));
     }
-    // The same length at the same second is a change as well.
+    // A file of the same length and the same second counts as changed too.
     fs::write(server.path("chart.g7"), "THEIRS").expect("a change outside");
     assert_eq!(one.hear_of("changed").await["hash"], super::super::hash(b"THEIRS"));
     fs::write(server.path("more.g7"), "new").expect("a new file");
     assert_eq!(one.hear_of("changed").await["path"], "more.g7");
     fs::remove_file(server.path("more.g7")).expect("gone");
     assert_eq!(one.hear_of("changed").await, json!({ "path": "more.g7", "hash": "" }));
-    // What a page writes, the others are told.
+    // A write by one client is announced to the others.
     server.ask("PUT", &format!("{AT}chart.g7"), &[("If-Match", "*")], "mine").await.is(204);
     assert_eq!(one.hear_of("changed").await["hash"], super::super::hash(b"mine"));
 }
@@ -251,7 +251,7 @@ async fn a_file_of_100_mb_is_refused_before_it_is_read() {
     };
     let reply = server.raw(head("Content-Length: 104857600").as_bytes()).await.is(413);
     assert!(reply.text().contains("8 MB"), "{}", reply.text());
-    // Without a length it is read as far as the limit.
+    // Without a length, the body is read up to the limit.
     let mut endless = head("Transfer-Encoding: chunked").into_bytes();
     let block = [b"100000\r\n".as_slice(), &vec![b'x'; 1 << 20], b"\r\n"].concat();
     (0..9).for_each(|_| endless.extend_from_slice(&block));
@@ -268,7 +268,7 @@ async fn a_file_of_100_mb_is_refused_before_it_is_read() {
     }
     assert_eq!(&answer, b"HTTP/1.1 413");
     assert_eq!(server.on_disk("chart.g7"), CHART);
-    // A file that large is not opened either.
+    // A file of that size is not opened either.
     fs::File::create(server.path("large.g7")).and_then(|f| f.set_len(100 << 20)).expect("a large file");
     server.get(&format!("{AT}large.g7")).await.is(413);
 }

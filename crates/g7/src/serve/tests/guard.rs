@@ -1,4 +1,4 @@
-//! Who is answered: own hosts, own origins, with the token.
+//! Access: only own hosts and origins, and only with the token.
 
 use super::*;
 
@@ -28,7 +28,7 @@ async fn without_the_token_of_this_start_nothing_is_told() {
         let headers: Vec<_> = headers.iter().copied().chain([("If-Match", "*")]).collect();
         server.bare("PUT", "/api/file?path=chart.g7", &headers, "x").await.is(401);
     }
-    // In the address it is a token only where a browser can set no header.
+    // In the address, the token counts only where a browser can set no header.
     let path = format!("/api/info?token={}", server.token);
     server.bare("GET", &path, &[("Host", &host)], "").await.is(401);
     assert_eq!(server.on_disk("chart.g7"), CHART);
@@ -53,13 +53,13 @@ async fn foreign_hosts_are_refused_whatever_they_know() {
             server.bare("GET", path, &headers, "").await.is(403);
         }
     }
-    // None, and two.
+    // No host, and two hosts.
     let headers = [("Authorization", bearer.as_str())];
     assert!(server.bare("GET", "/api/info", &headers, "").await.status >= 400);
     let own = server.bound.to_string();
     let headers = [("Host", own.as_str()), ("Host", own.as_str()), ("Authorization", bearer.as_str())];
     assert!(server.bare("GET", "/api/info", &headers, "").await.status >= 400);
-    // By name, where the name means this machine.
+    // A name that means this machine.
     let local = format!("localhost:{port}");
     server.bare("GET", "/api/info", &[("Host", &local), ("Authorization", &bearer)], "").await.is(200);
 }

@@ -1,4 +1,4 @@
-//! The server, asked over real sockets.
+//! Tests the server over real sockets.
 #![allow(clippy::disallowed_methods, reason = "tests look at what was written")]
 
 mod crowd;
@@ -22,10 +22,10 @@ use tokio_tungstenite::tungstenite::{Error, Message};
 
 use super::*;
 
-/// Longer than anything takes on a machine that does much else.
+/// Longer than any answer takes on a busy machine.
 const PATIENCE: Duration = Duration::from_secs(120);
 
-/// Two steps; `a` sets out, `not a` comes back; `n` counts the scans in step 2.
+/// Two steps: `a` leads to step 2, `not a` leads back; `n` counts the scans in step 2.
 const CHART: &str = "\
 input a : BOOL
 output m : BOOL
@@ -42,7 +42,7 @@ chart G {
 }
 ";
 
-/// A server with a folder of its own, gone with the test.
+/// A server with a folder of its own, which is deleted after the test.
 struct Server {
     bound: SocketAddr,
     token: String,
@@ -95,7 +95,7 @@ impl Server {
         Server::with(|_| {}, Limits::default()).await
     }
 
-    /// A folder `charts` with `chart.g7`, beside a file that is none of the server's affair.
+    /// A folder `charts` with `chart.g7`, beside a file that the server must not touch.
     async fn with(change: impl FnOnce(&mut Serve), limits: Limits) -> Server {
         static NEXT: AtomicU32 = AtomicU32::new(0);
         let number = NEXT.fetch_add(1, Ordering::Relaxed);
@@ -136,10 +136,10 @@ impl Server {
         fs::read_to_string(self.path(name)).unwrap_or_else(|e| panic!("{name}: {e}"))
     }
 
-    /// A request as it stands; the answer to its end.
+    /// Sends a request as it is; returns the complete answer.
     async fn raw(&self, request: &[u8]) -> Reply {
         let mut stream = TcpStream::connect(self.bound).await.expect("a connection");
-        // A server that has seen enough hangs up; what it said can be read.
+        // The server may close the connection early; its answer can still be read.
         stream.write_all(request).await.ok();
         let mut bytes = Vec::new();
         tokio::time::timeout(PATIENCE, stream.read_to_end(&mut bytes)).await.expect("an answer").ok();
@@ -149,7 +149,7 @@ impl Server {
         Reply { status, head, body: bytes[end + 4..].to_vec() }
     }
 
-    /// A request with these headers only.
+    /// A request with only these headers.
     async fn bare(&self, method: &str, path: &str, headers: &[(&str, &str)], body: &str) -> Reply {
         let mut request = format!("{method} {path} HTTP/1.1\r\nConnection: close\r\n");
         headers.iter().for_each(|(n, v)| request.push_str(&format!("{n}: {v}\r\n")));
@@ -169,7 +169,7 @@ impl Server {
         self.ask("GET", path, &[], "").await
     }
 
-    /// A WebSocket of a page.
+    /// The WebSocket of a page.
     async fn live(&self) -> Live {
         self.try_live(&[]).await.expect("a WebSocket")
     }
@@ -199,11 +199,11 @@ fn refused(result: Result<Live, Error>) -> (u16, String) {
     }
 }
 
-/// A page's WebSocket.
+/// The WebSocket of a page.
 struct Live {
     socket: WebSocketStream<TcpStream>,
     next: u64,
-    /// What came while an answer was waited for.
+    /// Messages that came while the client waited for an answer.
     unread: Vec<Value>,
 }
 
@@ -218,12 +218,12 @@ impl Live {
         }
     }
 
-    /// What the server says of itself.
+    /// The next message that is not an answer.
     async fn hear(&mut self) -> Value {
         if self.unread.is_empty() { self.receive().await } else { self.unread.remove(0) }
     }
 
-    /// Waits for a notice of this kind; those before it are passed over.
+    /// Waits for a notice of this kind; earlier ones are skipped.
     async fn hear_of(&mut self, kind: &str) -> Value {
         loop {
             if let Some(found) = self.hear().await.get(kind) {

@@ -1,10 +1,10 @@
-//! Shared runs: what one does, all see.
+//! Shared runs: all clients see what one of them does.
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::*;
 
-/// A run as a page knows it from its frames.
+/// The knowledge of a client, from the frames it received.
 #[derive(Debug, Default, PartialEq)]
 struct Known {
     on: BTreeSet<u64>,
@@ -43,7 +43,7 @@ impl Known {
         self.scans = number(&frame["scans"]);
     }
 
-    /// Takes all frames up to a pause.
+    /// Receives all frames until the run pauses.
     async fn until_pause(&mut self, page: &mut Live) {
         loop {
             let said = page.hear().await;
@@ -121,11 +121,11 @@ async fn all_who_watch_see_the_same() {
     one.call(json!({ "do": "pace", "run": "a", "speed": 10.0 })).await;
     assert_eq!(two.hear_of("pace").await, json!({ "run": "a", "speed": 10.0 }));
     let a = signal(&started, "a");
-    // A fourth page moves things: its answers are frames for the others.
+    // A fourth client changes things; the others get the changes as frames.
     let mut four = server.live().await;
     for _ in 0..5 {
         four.call(json!({ "do": "run_toggle", "run": "a", "signal": a })).await;
-        // Up to a scan behind it.
+        // Up to one scan after it.
         let before = known[0].scans;
         while known[0].scans <= before {
             known[0].take(&one.hear_of("frame").await);
@@ -158,7 +158,7 @@ async fn a_run_goes_by_the_wall_clock_and_stops_where_it_is_told() {
     page.call(json!({ "do": "run_breaks", "run": "a", "ids": ["G/s/2"] })).await;
     assert_eq!(other.hear_of("breaks").await, json!({ "run": "a", "ids": ["G/s/2"] }));
     page.call(json!({ "do": "pace", "run": "a", "speed": 1.0 })).await;
-    // Nothing changes but the time: it is told, a few times a second.
+    // Only the time changes: frames come a few times a second.
     let first = page.hear_of("frame").await["scans"].as_u64().expect("scans");
     let then = page.hear_of("frame").await["scans"].as_u64().expect("scans");
     assert!(then > first);

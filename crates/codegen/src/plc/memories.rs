@@ -1,0 +1,373 @@
+//! The memories of the equations as declarations of IEC 61131-3: names, types,
+//! comments.
+
+use std::collections::HashSet;
+
+use g7_compile::Compiled;
+use g7_engine::{Addr, INPUTS, StepId};
+use g7_equations::{Class, Equations, Memory, MemoryId, Part, What};
+use g7_model::{FbKind, Type};
+
+use super::form::{self, Declared, Ex};
+use super::names::Names;
+
+/// Names that are not those of memories of the chart.
+const FIXED: [&str; 10] =
+    ["FIRST", "CLOCK", "LAST", "DT", "PASSES", "CHANGED", "FAULT", "OPENING", "STEPPED", "NOW"];
+
+/// What each memory is called.
+pub(crate) struct Memories {
+    /// By memory: its name; none where nothing has to be called.
+    names: Vec<String>,
+    pub(crate) steps: Vec<String>,
+    /// Variables of the chart: first word, name, elements.
+    pub(crate) shown: Vec<(Addr, String, u32)>,
+    pub(crate) declared: Vec<Declared>,
+    pub(crate) given: Names,
+}
+
+/// A type's name; texts and blocks have none here.
+pub(crate) fn type_name(ty: Type) -> &'static str {
+    match ty {
+        Type::Bool => "BOOL",
+        Type::Sint => "SINT",
+        Type::Int => "INT",
+        Type::Dint => "DINT",
+        Type::Lint => "LINT",
+        Type::Usint => "USINT",
+        Type::Uint => "UINT",
+        Type::Udint => "UDINT",
+        Type::Ulint => "ULINT",
+        Type::Real => "REAL",
+        Type::Lreal => "LREAL",
+        Type::Time => "TIME",
+        Type::String(_) => "STRING",
+        Type::Fb(kind) => block_type(kind),
+    }
+}
+
+/// A word of the engine as a literal of its type.
+pub(crate) fn literal(ty: Type, word: u64) -> Ex {
+    match ty {
+        Type::Bool => Ex::Bool(word != 0),
+        Type::Real => Ex::Real(f64::from(f32::from_bits(word as u32))),
+        Type::Lreal => Ex::Real(f64::from_bits(word)),
+        Type::Ulint => Ex::Int(word.into()),
+        Type::Time => Ex::Time(word as i64),
+        _ => Ex::Int((word as i64).into()),
+    }
+}
+
+/// The members of a standard block as the standard calls them.
+pub(crate) fn members(kind: FbKind) -> &'static [&'static str] {
+    match kind {
+        FbKind::Ctu => &["CU", "R", "PV", "Q", "CV"],
+        FbKind::Ctd => &["CD", "LD", "PV", "Q", "CV"],
+        FbKind::Ctud => &["CU", "CD", "R", "LD", "PV", "QU", "QD", "CV"],
+        FbKind::Ton | FbKind::Tof | FbKind::Tp => &["IN", "PT", "Q", "ET"],
+        FbKind::RTrig | FbKind::FTrig => &["CLK", "Q"],
+        FbKind::Sr => &["S1", "R", "Q1"],
+        FbKind::Rs => &["S", "R1", "Q1"],
+    }
+}
+
+fn block_type(kind: FbKind) -> &'static str {
+    match kind {
+        FbKind::Ctu => "CTU",
+        FbKind::Ctd => "CTD",
+        FbKind::Ctud => "CTUD",
+        FbKind::Ton => "TON",
+        FbKind::Tof => "TOF",
+        FbKind::Tp => "TP",
+        FbKind::RTrig => "R_TRIG",
+        FbKind::FTrig => "F_TRIG",
+        FbKind::Sr => "SR",
+        FbKind::Rs => "RS",
+    }
+}
+
+impl Memories {
+    /// Names and declares what the equations use. `native` are the memories that
+    /// the controller's function blocks keep; `calls` those that stand first in a
+    /// call of such a block.
+    pub(crate) fn new(
+        c: &Compiled,
+        e: &Equations,
+        name: &str,
+        calls: &HashSet<MemoryId>,
+    ) -> (String, Memories) {
+        let mut m = Memories {
+            names: vec![String::new(); e.memories.len()],
+            steps: Vec::new(),
+            shown: Vec::new(),
+            declared: Vec::new(),
+            given: Names::default(),
+        };
+        let name = m.given.variable(name);
+        for word in FIXED {
+            m.given.variable(word);
+        }
+        let used = e.used();
+        m.variables(c, e, &used.iter().copied().collect(), calls);
+        m.elements(c, e);
+        for id in used {
+            if m.names.get(id.0 as usize).is_some_and(String::is_empty)
+                && let Some(memory) = e.memory(id)
+            {
+                m.other(c, e, id, memory);
+            }
+        }
+        (name, m)
+    }
+
+    /// The name of a memory.
+    pub(crate) fn name(&self, id: MemoryId) -> &str {
+        self.names.get(id.0 as usize).map_or("", String::as_str)
+    }
+
+    fn call(&mut self, id: MemoryId, name: String) {
+        if let Some(slot) = self.names.get_mut(id.0 as usize) {
+            *slot = name;
+        }
+    }
+
+    /// A declaration of what the chart does not name.
+    pub(crate) fn internal(&mut self, name: &str, ty: &str, note: &str) {
+        let (name, ty, note) = (name.to_owned(), ty.to_owned(), note.to_owned());
+        let class = form::Class::Internal;
+        self.declared.push(Declared { class, name, ty, elements: 1, init: Vec::new(), note });
+    }
+
+    /// The variables of the chart.
+    fn variables(
+        &mut self,
+        c: &Compiled,
+        e: &Equations,
+        used: &HashSet<MemoryId>,
+        calls: &HashSet<MemoryId>,
+    ) {
+        let mut members_until = 0;
+        for v in &c.symbols.variables {
+            if v.words() == 0 || v.addr.0 < members_until {
+                continue; // a member of an instance
+            }
+            let name = self.given.variable(&v.name);
+            if let Type::Fb(kind) = v.ty {
+                members_until = v.addr.0 + v.words();
+                let first = e.find(What::Variable(v.addr));
+                let native = first.is_none_or(|m| calls.contains(&m) || !used.contains(&m));
+                self.instance(e, v.addr, kind, &name, native);
+                let any = (0..v.words())
+                    .any(|i| e.find(What::Variable(Addr(v.addr.0 + i))).is_some_and(|m| used.contains(&m)));
+                if native && any {
+                    self.internal(&name, block_type(kind), "");
+                }
+                continue;
+            }
+            let Some(id) = e.find(What::Variable(v.addr)) else { continue };
+            let Some(memory) = e.memory(id) else { continue };
+            let class = match memory.class {
+                Class::Input => form::Class::Input,
+                Class::Output => form::Class::Output,
+                _ if v.retain => form::Class::Retain,
+                Class::Kept | Class::Scratch | Class::Constant => form::Class::Internal,
+            };
+            let outside = matches!(class, form::Class::Input | form::Class::Output);
+            let stands = memory.class == Class::Constant && memory.elements == 1;
+            self.call(id, name.clone());
+            if stands || !(outside || used.contains(&id)) || matches!(v.ty, Type::String(_)) {
+                continue;
+            }
+            self.shown.push((v.addr, name.clone(), memory.elements));
+            let mut note = if *v.name == *name { String::new() } else { v.name.to_string() };
+            if let Some(address) = v.address.as_deref() {
+                note = format!("{note} at {address}").trim().to_owned();
+            }
+            if let Some(comment) = v.comment.as_deref() {
+                let sign = if note.is_empty() { "" } else { ": " };
+                note = format!("{note}{sign}{comment}");
+            }
+            self.declare(class, &name, memory, note);
+        }
+    }
+
+    fn declare(&mut self, class: form::Class, name: &str, memory: &Memory, note: String) {
+        let zero = memory.init.iter().all(|w| *w == 0);
+        let init = memory.init.iter().filter(|_| !zero).map(|w| literal(memory.ty, *w)).collect();
+        self.declared.push(Declared {
+            class,
+            name: name.to_owned(),
+            ty: type_name(memory.ty).to_owned(),
+            elements: memory.elements,
+            init,
+            note,
+        });
+    }
+
+    /// The members of an instance: those of the controller's block, or memories of
+    /// their own.
+    fn instance(&mut self, e: &Equations, base: Addr, kind: FbKind, name: &str, native: bool) {
+        for (i, member) in (0u32..).zip(members(kind)) {
+            let Some(id) = e.find(What::Variable(Addr(base.0 + i))) else { continue };
+            if native {
+                self.call(id, format!("{name}.{member}"));
+            } else if let Some(memory) = e.memory(id) {
+                let own = self.given.variable(&format!("{name}_{member}"));
+                self.call(id, own.clone());
+                self.declare(form::Class::Internal, &own, memory, String::new());
+            }
+        }
+    }
+
+    /// Steps and transitions.
+    fn elements(&mut self, c: &Compiled, e: &Equations) {
+        let symbols = &c.symbols;
+        for step in (0..symbols.steps()).map(StepId) {
+            let name = self.given.with("X", symbols.step_name(step));
+            let path = symbols.step_path(step);
+            let note = if symbols.is_listed(step) {
+                format!("step {path}")
+            } else {
+                format!("stands for the macro-step {path}")
+            };
+            self.internal(&name, "BOOL", &note);
+            self.steps.push(name.clone());
+            if let Some(id) = e.find(What::Step(step)) {
+                self.call(id, name);
+            }
+        }
+        let used = e.used();
+        for rank in 0..c.program.tables().transitions.len() as u32 {
+            let text = symbols.transition_text(rank);
+            let own = symbols.label(rank).map_or_else(|| text.replace("->", "to"), str::to_owned);
+            let name = self.given.with("T", &own);
+            let clears = e.find(What::Clears(rank)).or(e.find(What::Clearable(rank)));
+            let Some(id) = clears.filter(|id| used.contains(id)) else { continue };
+            self.internal(&name, "BOOL", &format!("transition {text}"));
+            self.call(id, name);
+        }
+    }
+
+    /// The memory of a transition, by what follows its `T_`.
+    fn of_transition(&self, e: &Equations, rank: u32) -> String {
+        let clears = e.find(What::Clears(rank)).or(e.find(What::Clearable(rank)));
+        let name = clears.map_or("", |id| self.name(id));
+        match name.strip_prefix("T_") {
+            Some(rest) => rest.to_owned(),
+            None => (rank + 1).to_string(),
+        }
+    }
+
+    fn of_step(&self, step: StepId) -> String {
+        let name = self.steps.get(step.0 as usize).map_or("", String::as_str);
+        name.trim_start_matches("X_").to_owned()
+    }
+
+    /// A memory that stands for something else.
+    fn other(&mut self, c: &Compiled, e: &Equations, id: MemoryId, memory: &Memory) {
+        let step = |m: &Self, s: StepId| m.of_step(s);
+        let chart = |i: u32| c.symbols.charts.get(i as usize).map_or("", |c| &c.name).to_owned();
+        let number = |n: u32| (n + 1).to_string();
+        let (before, of, note) = match memory.what {
+            What::Started => {
+                self.call(id, "FIRST".into());
+                self.internal("FIRST", "BOOL", "the first scan");
+                if let Some(v) = self.declared.last_mut() {
+                    v.init = vec![Ex::Bool(true)];
+                }
+                return;
+            }
+            What::Dt | What::Opening | What::Changed | What::Stepped => {
+                let (name, note) = match memory.what {
+                    What::Dt => ("DT", "time since the scan before"),
+                    What::Opening => ("OPENING", "the first pass of a scan"),
+                    What::Changed => ("CHANGED", "something changed in this pass"),
+                    _ => ("STEPPED", "a step came on before the evolution"),
+                };
+                self.call(id, name.into());
+                return self.internal(name, type_name(memory.ty), note);
+            }
+            What::Variable(_) => ("H", String::new(), ""),
+            What::BlockClock(_) => ("HT", String::new(), "the time of a block"),
+            What::Work => ("WORK", String::new(), ""),
+            What::Step(s) => ("X", step(self, s), ""),
+            What::Next(s) => ("N", step(self, s), "the next situation"),
+            What::Was(s) => ("W_X", step(self, s), "as the pass began"),
+            What::On(s) => ("ON", step(self, s), "comes on"),
+            What::Off(s) => ("OFF", step(self, s), "goes off"),
+            What::Left(s) => ("LEFT", step(self, s), "left in this pass"),
+            What::Came(s) => ("CAME", step(self, s), "entered in this pass"),
+            What::StepTime(s) => ("XT", step(self, s), "since its activation"),
+            What::StepScans(s) => ("XN", step(self, s), "scans since its activation"),
+            What::GroupWas(g) => ("GW", number(g.0), "was active"),
+            What::GroupTime(g) => ("GT", number(g.0), "since it came on"),
+            What::GroupScans(g) => ("GN", number(g.0), "scans since it came on"),
+            What::Watched(w) => ("WE", number(w.0), ""),
+            What::WatchedBefore(w) => ("WB", number(w.0), "as the pass before began"),
+            What::Rise(w) => ("RE", number(w.0), "rose"),
+            What::Fall(w) => ("FE", number(w.0), "fell"),
+            What::Timer(w) => ("TM", number(w.0), "a delay"),
+            What::TimerClock(w) => ("WT", number(w.0), "since it changed"),
+            What::Until(p) => ("UNTIL", p.to_string(), "time until the period is due"),
+            What::Due(p) => ("DUE", p.to_string(), "the period is due"),
+            What::Receptivity(r) => ("R", self.of_transition(e, r), "its receptivity"),
+            What::Clearable(r) => ("C", self.of_transition(e, r), "clearable"),
+            What::Clears(r) => ("T", self.of_transition(e, r), ""),
+            What::Settled(s) => ("FOUND", step(self, s), "one of its transitions is clearable"),
+            What::Taken(s) => ("TAKEN", step(self, s), "a transition has taken it"),
+            What::Blocked(i) => ("FORCED", chart(i), "its transitions do not clear"),
+            What::Asks(o) => ("ASKS", number(o), "a forcing order acts"),
+            What::Imposes(o) => ("IMPOSES", number(o), "the first order on its chart"),
+            What::Disagree(i) => ("DISAGREE", chart(i), "orders that disagree"),
+            What::Runs(a) => ("A", number(a), "this action runs"),
+            What::Late(a) => ("L", number(a), "runs at the end of the scan"),
+            What::Periodic(r) => ("B", number(r), "its step was active as the scan began"),
+            What::Own(m) => ("OWN", self.name(m).to_owned(), ""),
+            What::OwnWrote(m) => ("OWW", self.name(m).to_owned(), "this action wrote it"),
+            What::Given(m) => ("NX", self.name(m).to_owned(), "what stored actions write"),
+            What::Wrote(m) => ("NXW", self.name(m).to_owned(), "a stored action wrote it"),
+            What::Conflict(m) => ("CONFLICT", self.name(m).to_owned(), ""),
+            What::Begun(m) => ("P", self.name(m).to_owned(), "as the pass began"),
+            What::Condition(r) => ("BC", number(r), "a condition of an action"),
+            What::Control(b, part) => return self.control(c, id, memory, (b, part)),
+            What::RequestStart => ("START", "all".into(), "all charts are to start anew"),
+            What::RequestInit(g) => ("INIT", number(g.0), "is to take its initial situation"),
+            What::RequestClear(g) => ("CLEAR", number(g.0), "is to be cleared"),
+            What::RequestSet(s) => ("SET", step(self, s), "is to be set"),
+            What::RequestReset(s) => ("RESET", step(self, s), "is to be reset"),
+            What::Enabled(r) => ("E", self.of_transition(e, r), "enabled before the evolution"),
+            What::StepCount => ("STEPS", "count".into(), ""),
+            What::TransitionCount => ("TRANSITIONS", "count".into(), ""),
+            What::Returned(n) => ("LEAVE", n.to_string(), "RETURN was reached"),
+            What::Temporary(_) => ("Z", String::new(), ""),
+        };
+        self.named(id, memory, (before, &of), note);
+    }
+
+    /// The part of a control block: `B_motor_S_FF`.
+    fn control(&mut self, c: &Compiled, id: MemoryId, memory: &Memory, (block, part): (u32, Part)) {
+        let own = c.symbols.blocks.get(block as usize).map_or("", |b| &b.name);
+        let own = if own.is_empty() { (block + 1).to_string() } else { own.to_owned() };
+        let input = |k: u8| INPUTS.get(usize::from(k)).copied().unwrap_or("").to_owned();
+        let word = match part {
+            Part::Before(k) => input(k) + "_WAS",
+            Part::Stored => "S_FF".into(),
+            Part::StoredDelayed => "SD_FF".into(),
+            Part::DelayedStored => "DS_FF".into(),
+            Part::StoredLimited => "SL_FF".into(),
+            Part::Time(k) => input(k) + "_TIME",
+            Part::Clock(k) => input(k) + "_CLOCK",
+            Part::Level => "A_WAS".into(),
+            Part::Written => "GIVEN".into(),
+            Part::Early(k) => input(k) + "_EARLY",
+            Part::Q => "Q".into(),
+        };
+        self.named(id, memory, ("B", &format!("{own}_{word}")), "");
+    }
+
+    fn named(&mut self, id: MemoryId, memory: &Memory, (before, of): (&str, &str), note: &str) {
+        let name = if of.is_empty() { self.given.counted(before) } else { self.given.with(before, of) };
+        self.call(id, name.clone());
+        self.declare(form::Class::Internal, &name, memory, note.to_owned());
+    }
+}

@@ -1,0 +1,88 @@
+//! Function blocks: those that the controller's own ones stand for, and those
+//! that are printed as assignments.
+
+use std::collections::{HashMap, HashSet};
+
+use g7_engine::Block;
+use g7_equations::{Equations, MemoryId, Stmt, What};
+
+use super::spare::{operands, sections};
+
+/// The instances that a controller's own function blocks stand for: what they
+/// remember inside is mentioned in their calls alone, and in the count of time.
+/// Gives the memories that the controller keeps; the others are assignments.
+pub(crate) fn native(e: &mut Equations) -> HashSet<MemoryId> {
+    let mut inside: HashMap<MemoryId, Vec<MemoryId>> = HashMap::new();
+    for s in e.sections().flat_map(|s| &s.body) {
+        s.visit(&mut |s| {
+            if let Stmt::Call(block, list) = s {
+                let own = list.get(members(*block)..).unwrap_or_default();
+                if let Some(first) = list.first() {
+                    inside.insert(*first, own.to_vec());
+                }
+            }
+        });
+    }
+    let mut elsewhere: HashSet<MemoryId> = HashSet::new();
+    // The first section counts the time.
+    let others = e.begin.iter().skip(1).chain(&e.pass).chain(&e.finish).flat_map(|s| &s.body);
+    for s in others {
+        s.visit(&mut |s| {
+            s.expressions(&mut |x| elsewhere.extend(operands(x)));
+            match s {
+                Stmt::Set(m, _) | Stmt::SetElement(m, _, _) => drop(elsewhere.insert(*m)),
+                _ => {}
+            }
+        });
+    }
+    let copies: HashSet<MemoryId> = e
+        .memories
+        .iter()
+        .filter_map(|m| match m.what {
+            What::Own(of) | What::Given(of) | What::Begun(of) => Some(of),
+            _ => None,
+        })
+        .collect();
+    let plain = |m: &MemoryId| {
+        e.memory(*m).is_some_and(|m| matches!(m.what, What::Variable(_) | What::BlockClock(_)))
+            && !elsewhere.contains(m)
+            && !copies.contains(m)
+    };
+    let first_is_plain = |m: &MemoryId| e.memory(*m).is_some_and(|m| matches!(m.what, What::Variable(_)));
+    let kept: HashMap<MemoryId, Vec<MemoryId>> = inside
+        .into_iter()
+        .filter(|(first, own)| first_is_plain(first) && !copies.contains(first) && own.iter().all(plain))
+        .collect();
+    let firsts: HashSet<MemoryId> = kept.keys().copied().collect();
+    for s in sections(e) {
+        s.body = expanded(std::mem::take(&mut s.body), &firsts);
+    }
+    kept.into_values().flatten().collect()
+}
+
+/// The words of an instance that have names.
+pub(crate) fn members(block: Block) -> usize {
+    match block {
+        Block::Ctu | Block::Ctd => 5,
+        Block::Ctud => 8,
+        Block::Ton | Block::Tof | Block::Tp => 4,
+        Block::RTrig | Block::FTrig => 2,
+        Block::Sr | Block::Rs => 3,
+    }
+}
+
+/// Calls of other instances as assignments.
+fn expanded(list: Vec<Stmt>, native: &HashSet<MemoryId>) -> Vec<Stmt> {
+    let mut out = Vec::new();
+    for s in list {
+        match s {
+            Stmt::Call(block, memories) if !memories.first().is_some_and(|m| native.contains(m)) => {
+                out.extend(g7_equations::expand(block, &memories));
+            }
+            Stmt::If(c, a, b) => out.push(Stmt::If(c, expanded(a, native), expanded(b, native))),
+            Stmt::Loop(a) => out.push(Stmt::Loop(expanded(a, native))),
+            other => out.push(other),
+        }
+    }
+    out
+}

@@ -1,0 +1,105 @@
+//! The clocks that something reads, and the memories of timer blocks.
+
+use g7_compile::tree::Clock;
+use g7_engine::{Addr, Arith, Block, Builtin, Cmp, GroupId, StepId};
+use g7_model::Type;
+
+use crate::form::{Class, Expr, MemoryId, Stmt, What};
+use crate::make::Make;
+
+impl Make<'_> {
+    /// The memories of an instance: members, then what it remembers.
+    pub(crate) fn instance(&mut self, block: Block, base: Addr) -> Vec<MemoryId> {
+        use Type::{Bool, Int, Time};
+        let types: &[Type] = match block {
+            Block::Ctu | Block::Ctd => &[Bool, Bool, Int, Bool, Int, Bool],
+            Block::Ctud => &[Bool, Bool, Bool, Bool, Int, Bool, Bool, Int, Bool, Bool],
+            Block::Ton | Block::Tof | Block::Tp => &[Bool, Time, Bool, Time, Time, Type::Lint],
+            Block::RTrig | Block::FTrig | Block::Sr | Block::Rs => &[Bool, Bool, Bool],
+        };
+        let timer = matches!(block, Block::Ton | Block::Tof | Block::Tp);
+        let mut list = Vec::new();
+        for (i, ty) in (0u32..).zip(types) {
+            // A clock stands in place of the word that says when the timer started.
+            list.push(if timer && i == 4 {
+                self.memory(What::BlockClock(base), Class::Kept, Type::Time)
+            } else {
+                self.word(Addr(base.0 + i), *ty).0
+            });
+        }
+        if let (true, Some(clock), Some(memory)) = (timer, list.get(4), list.get(5)) {
+            // Of TOF and TP bit 1 says that time runs; TOF leaves 4 behind where it is over.
+            let (op, value) = match block {
+                Block::Tof => (Cmp::Eq, 2),
+                Block::Tp => (Cmp::Ge, 2),
+                _ => (Cmp::Ne, 0),
+            };
+            let runs = Expr::Read(*memory).compare(op, Type::Lint, Expr::long(value));
+            self.runs(*clock, runs);
+        }
+        list
+    }
+
+    /// A clock that something reads.
+    pub(crate) fn clock(&mut self, clock: Clock) -> Expr {
+        let (what, ty) = match clock {
+            Clock::Step(s) | Clock::StepAge(s) => (What::StepTime(s), Type::Time),
+            Clock::StepScans(s) => (What::StepScans(s), Type::Lint),
+            Clock::Group(g) | Clock::GroupAge(g) => (What::GroupTime(g), Type::Time),
+            Clock::GroupScans(g) => (What::GroupScans(g), Type::Lint),
+        };
+        let memory = self.memory(what, Class::Kept, ty);
+        let active = match what {
+            What::StepTime(s) | What::StepScans(s) => self.active(s.0),
+            What::GroupTime(g) | What::GroupScans(g) => self.group_active(g),
+            _ => Expr::truth(true),
+        };
+        self.runs(memory, active);
+        Expr::Read(memory)
+    }
+
+    /// The time of a step in units of 100 ms, at most 9999 (INT).
+    pub(crate) fn tenths(&mut self, step: StepId) -> Expr {
+        let time = self.clock(Clock::Step(step));
+        let nanos = Expr::Convert(Type::Time, Type::Lint, Box::new(time));
+        let tenths = nanos.arith(Arith::Div, Type::Lint, Expr::long(100_000_000));
+        let most = Expr::Call(Builtin::Min, Type::Lint, vec![tenths, Expr::long(9999)]);
+        Expr::Convert(Type::Lint, Type::Int, Box::new(most))
+    }
+
+    pub(crate) fn scan_time(&mut self) -> MemoryId {
+        self.memory(What::Dt, Class::Input, Type::Time)
+    }
+
+    /// RESET_XIT: all step times become 0.
+    pub(crate) fn reset_times(&mut self) -> Vec<Stmt> {
+        let clocks = self.memories.iter().enumerate().filter_map(|(i, m)| {
+            let zero = matches!(
+                m.what,
+                What::StepTime(_) | What::StepScans(_) | What::GroupTime(_) | What::GroupScans(_)
+            );
+            zero.then_some(Stmt::Set(MemoryId(i as u32), Expr::Const(m.ty, 0)))
+        });
+        clocks.collect()
+    }
+
+    /// An edge lives one pass of its own charts: longer than a scan where they
+    /// have a period.
+    pub(crate) fn flag_of_watch(&mut self, what: What, w: g7_engine::WatchId) -> MemoryId {
+        let period = self.t.watches.get(w.0 as usize).map_or(0, |w| w.period);
+        let lasts = self.t.periods.get(period as usize).is_some_and(|p| *p > 0);
+        self.memory(what, if lasts { Class::Kept } else { Class::Scratch }, Type::Bool)
+    }
+
+    /// The groups that some clock counts for.
+    pub(crate) fn timed_groups(&self) -> Vec<GroupId> {
+        let groups = self.memories.iter().filter_map(|m| match m.what {
+            What::GroupTime(g) | What::GroupScans(g) => Some(g),
+            _ => None,
+        });
+        let mut groups: Vec<GroupId> = groups.collect();
+        groups.sort_unstable();
+        groups.dedup();
+        groups
+    }
+}

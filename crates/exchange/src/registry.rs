@@ -1,0 +1,154 @@
+//! The one table of formats: the names of each, the way to recognise it, its reader and its writer.
+//!
+//! The command line, the page and the tests use this table; there is no other list.
+
+use g7_iec::{Written, plcopen, sfc, xml};
+use g7_model::{Document, FileId, Problem};
+
+use crate::{classicladder, controlexpert, jgrafchart, l5x, mermaid, s7graph, xmi};
+
+/// Tells whether a file is of a format, from its name, the name of its first XML
+/// element (if it has one) and its bytes.
+type Fits = fn(name: &str, root: Option<&str>, bytes: &[u8]) -> bool;
+
+/// Returns a document with everything that could be read, and the problems in the order of the
+/// file.
+type Read = fn(bytes: &[u8], file: FileId) -> (Document, Vec<Problem>);
+
+/// Writes a document that was read without errors.
+type Write = fn(&Document) -> Written;
+
+/// A format of another tool.
+#[derive(Debug)]
+pub struct Format {
+    /// The word for it on the command line.
+    pub word: &'static str,
+    /// The name for it in messages.
+    pub title: &'static str,
+    /// The endings of its files, without the dot; the first is that of a file that is written.
+    pub endings: &'static [&'static str],
+    reader: Option<(Fits, Read)>,
+    writer: Option<Write>,
+}
+
+/// All formats, in the order in which a file is asked.
+pub static FORMATS: [Format; 9] = [
+    // JGrafchart 2.x, `saveVersion` up to 8.
+    Format {
+        word: "jgrafchart",
+        title: "JGrafchart",
+        endings: &["xml"],
+        reader: Some((jgrafchart::fits, jgrafchart::import)),
+        writer: Some(jgrafchart::export),
+    },
+    // PLCopen TC6 XML and IEC 61131-10 XML; TC6 XML 2.01 is written.
+    Format {
+        word: "plcopen",
+        title: "PLCopen XML",
+        endings: &["xml"],
+        reader: Some((plcopen::fits, plcopen::import)),
+        writer: Some(plcopen::export),
+    },
+    // EMF/XMI instances of the AGRAFE meta-model of IEC 60848.
+    Format {
+        word: "xmi",
+        title: "XMI",
+        endings: &["grafcet", "xmi"],
+        reader: Some((xmi::fits, xmi::import)),
+        writer: Some(xmi::export),
+    },
+    // ClassicLadder 0.7 to 0.9: a project, or its `sequential.csv` alone.
+    Format {
+        word: "classicladder",
+        title: "ClassicLadder",
+        endings: &["clp", "clprj"],
+        reader: Some((classicladder::fits, classicladder::import)),
+        writer: None,
+    },
+    // Control Expert and Unity Pro: a chart (`.XSF`), or an application with charts (`.XEF`).
+    Format {
+        word: "controlexpert",
+        title: "Control Expert",
+        endings: &["xsf", "xef"],
+        reader: Some((controlexpert::fits, controlexpert::import)),
+        writer: None,
+    },
+    // S7-GRAPH: a block exported by TIA Portal's Openness.
+    Format {
+        word: "s7graph",
+        title: "S7-GRAPH",
+        endings: &["xml"],
+        reader: Some((s7graph::fits, s7graph::import)),
+        writer: None,
+    },
+    // Studio 5000 Logix Designer: routines in SFC.
+    Format {
+        word: "l5x",
+        title: "Logix L5X",
+        endings: &["l5x"],
+        reader: Some((l5x::fits, l5x::import)),
+        writer: None,
+    },
+    // IEC 61131-3 in text. It is the last one that is read, because it is recognised by the name's
+    // ending too.
+    Format {
+        word: "sfc",
+        title: "IEC 61131-3 text",
+        endings: sfc::ENDINGS,
+        reader: Some((sfc::fits, sfc::import)),
+        writer: Some(sfc::export),
+    },
+    // A flowchart in the text of Mermaid, for documents.
+    Format {
+        word: "mermaid",
+        title: "Mermaid flowchart",
+        endings: &["mmd"],
+        reader: None,
+        writer: Some(mermaid::export),
+    },
+];
+
+impl Format {
+    /// True if files of this format are read.
+    pub fn is_read(&self) -> bool {
+        self.reader.is_some()
+    }
+
+    /// True if documents are written in this format.
+    pub fn is_written(&self) -> bool {
+        self.writer.is_some()
+    }
+
+    /// The ending of a written file, without the dot.
+    pub fn ending(&self) -> &'static str {
+        self.endings.first().copied().unwrap_or_default()
+    }
+
+    /// Reads a file; None if the format is not read.
+    ///
+    /// Always returns a document with everything that could be read, and the problems in the order
+    /// of the file.
+    pub fn read(&self, bytes: &[u8], file: FileId) -> Option<(Document, Vec<Problem>)> {
+        self.reader.map(|(_, read)| read(bytes, file))
+    }
+
+    /// Writes a document, which must have been read without errors; None if the format is not
+    /// written.
+    pub fn write(&self, document: &Document) -> Option<Written> {
+        self.writer.map(|write| write(document))
+    }
+}
+
+/// The format with this word.
+pub fn named(word: &str) -> Option<&'static Format> {
+    FORMATS.iter().find(|f| f.word == word)
+}
+
+/// Recognises the format of a foreign file by its content, otherwise by the ending of its name.
+///
+/// A file in UTF-16 is recognised too, so that its reader can report the encoding. None means that
+/// the format is unknown, and the file is taken for a .g7 file. `name` may be empty or any path.
+pub fn recognise(name: &str, bytes: &[u8]) -> Option<&'static Format> {
+    let root = xml::root_name(bytes);
+    FORMATS.iter().find(|f| f.reader.is_some_and(|(fits, _)| fits(name, root.as_deref(), bytes)))
+}

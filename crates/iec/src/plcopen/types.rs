@@ -1,0 +1,143 @@
+//! Types and initial values of variables.
+
+use g7_model::codes;
+use g7_model::{Expr, ExprKind, FbKind, Literal, Nanos, Span, Type, UnaryOp};
+
+use super::read::{duration, type_of};
+use super::tree::{Xml, head, kid, kids, tag, word};
+use crate::report::Report;
+use crate::st;
+use crate::xml::attr;
+
+/// The longest string that a variable may hold.
+const MOST_TEXT: u16 = 1024;
+
+/// The meaning of a declared type.
+pub(super) enum Known {
+    /// A type that G7 has.
+    Type(Type),
+    /// A name that the file may declare.
+    Derived(String),
+    /// A type that cannot be carried over.
+    None,
+}
+
+/// The type of a variable.
+pub(super) fn known(variable: Xml) -> Known {
+    type_of(variable).map_or(Known::None, of)
+}
+
+/// The type within a `type`, `returnType` or `baseType`.
+pub(super) fn of(node: Xml) -> Known {
+    let Some(inner) = kids(node).find(|n| !matches!(tag(*n).as_str(), "addData" | "documentation")) else {
+        return Known::None;
+    };
+    match tag(inner).as_str() {
+        "derived" => named(word(inner, "name").unwrap_or("")),
+        "typeName" => named(attr::content(inner).text.trim()),
+        "string" | "wstring" | "STRING" | "WSTRING" => {
+            let length = word(inner, "length").and_then(|l| l.parse().ok()).unwrap_or(80);
+            Known::Type(Type::String(length.clamp(1, MOST_TEXT)))
+        }
+        "subrangeSigned" | "subrangeUnsigned" => kid(inner, "baseType").map_or(Known::None, of),
+        other => named(other),
+    }
+}
+
+fn named(name: &str) -> Known {
+    let upper = name.to_ascii_uppercase();
+    if let Some((_, length)) = upper.strip_prefix("STRING").and_then(|r| r.split_once(['[', '('])) {
+        let length = length.trim_end_matches([']', ')']).trim().parse().unwrap_or(80);
+        return Known::Type(Type::String(u16::clamp(length, 1, MOST_TEXT)));
+    }
+    let numbers = st::bits(&upper);
+    // Beremiz marks values that are also shown on a screen.
+    let upper = upper.strip_prefix("HMI_").unwrap_or(&upper).to_string();
+    let known = numbers.or_else(|| st::elementary(&upper));
+    known.map_or_else(|| Known::Derived(name.to_string()), Known::Type)
+}
+
+/// Reports the parts of a type that are carried over with a difference or not at all.
+pub(super) fn judge(variable: Xml, report: &mut Report) {
+    let Some(node) = type_of(variable) else { return };
+    for inner in node.descendants().filter(|n| n.is_element()) {
+        match tag(inner).as_str() {
+            bits @ ("BYTE" | "WORD" | "DWORD" | "LWORD") => {
+                let what = format!("bits of `{bits}` are carried over as a whole number without a sign");
+                report.element(&codes::DIFFERENT, bits, &head(inner), &what);
+            }
+            "subrangeSigned" | "subrangeUnsigned" => {
+                let what = "the range of a variable is left out";
+                report.element(&codes::LEFT_OUT, "subrange", &head(inner), what);
+            }
+            "wstring" | "WSTRING" => {
+                let what = "a text of wide characters holds UTF-8, its length in bytes";
+                report.element(&codes::DIFFERENT, "wstring", &head(inner), what);
+            }
+            _ => {}
+        }
+    }
+}
+
+/// An initial value.
+pub(super) fn initial(variable: Xml, ty: Type, report: &mut Report) -> Option<Expr> {
+    let value = kid(variable, "initialValue")?;
+    let Some(simple) = kid(value, "simpleValue") else {
+        let what = "initial values of arrays and structures are not carried over";
+        report.say(&codes::NOT_CARRIED, &head(value), what);
+        return None;
+    };
+    let text = attr::text(simple, "value").filter(|t| !t.text.trim().is_empty())?;
+    let at = report.span(&text.at);
+    let word = text.text.trim();
+    if let Some(kind) = spoken(word, ty) {
+        return Some(Expr { kind, at: at.into() });
+    }
+    Some(with_type(st::expression(&text.text, &|r| text.place(&r), report), ty, at))
+}
+
+/// Values whose meaning depends on the type: `1` of a BOOL, strings without quotes.
+fn spoken(word: &str, ty: Type) -> Option<ExprKind> {
+    let quoted = word.starts_with(['\'', '"']);
+    Some(ExprKind::Literal(match (ty, word.to_ascii_uppercase().as_str()) {
+        (Type::Bool, "1" | "BOOL#1" | "BOOL#TRUE" | "TRUE") => Literal::Bool(true),
+        (Type::Bool, "0" | "BOOL#0" | "BOOL#FALSE" | "FALSE") => Literal::Bool(false),
+        (Type::String(_), _) if !quoted => Literal::Str(word.into()),
+        (Type::Time, upper) if upper.contains('#') && !upper.contains('-') => Literal::Time(duration(word)?),
+        _ => return None,
+    }))
+}
+
+/// A whole number where a real one is expected: `0` becomes `0.0`.
+fn with_type(expr: Expr, ty: Type, at: Span) -> Expr {
+    match (&expr.kind, ty) {
+        (ExprKind::Literal(Literal::Int(n, None)), Type::Real | Type::Lreal) => {
+            Expr { kind: ExprKind::Literal(Literal::Real(format!("{n}.0").into(), None)), at: at.into() }
+        }
+        (ExprKind::Unary(UnaryOp::Neg, inner), Type::Real | Type::Lreal) => {
+            let inner = with_type((**inner).clone(), ty, at);
+            Expr { kind: ExprKind::Unary(UnaryOp::Neg, Box::new(inner)), at: expr.at }
+        }
+        _ => expr,
+    }
+}
+
+/// The zero of the type, for constants without a value.
+pub(super) fn zero(ty: Type, at: Span) -> Expr {
+    let literal = match ty {
+        Type::Bool | Type::Fb(_) => Literal::Bool(false),
+        Type::Real | Type::Lreal => Literal::Real("0.0".into(), None),
+        Type::Time => Literal::Time(Nanos::ZERO),
+        Type::String(_) => Literal::Str("".into()),
+        _ => Literal::Int(0, None),
+    };
+    Expr { kind: ExprKind::Literal(literal), at: at.into() }
+}
+
+/// The function block, if the type is one that must be called.
+pub(super) fn is_block(ty: Option<Type>) -> Option<FbKind> {
+    match ty {
+        Some(Type::Fb(kind)) => Some(kind),
+        _ => None,
+    }
+}

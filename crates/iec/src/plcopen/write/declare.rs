@@ -1,0 +1,84 @@
+//! Declarations of variables.
+
+use g7_model::{Expr, Name, Type, VarDecl, VarKind};
+
+use crate::st::{Known, Writer};
+use crate::xml::element::Element;
+
+/// The type of a variable, a parameter or a result.
+pub(super) fn type_of(ty: Type) -> Element {
+    let inner = match ty {
+        Type::String(length) => Element::new("string").with("length", length),
+        Type::Fb(kind) => Element::new("derived").with("name", kind.name()),
+        other => Element::new(&other.to_string()),
+    };
+    Element::new("type").child(inner)
+}
+
+/// `initialValue`.
+pub(super) fn initial(value: &Expr, ty: Type) -> Element {
+    let types = Known::default();
+    let value = Writer { types: &types }.value(value, ty);
+    Element::new("initialValue").child(Element::new("simpleValue").with("value", value))
+}
+
+/// The element of a list in a program, the name of a global list, and the test for its variables.
+type Sort = (&'static str, &'static str, fn(&VarDecl) -> bool);
+
+/// A list of variables of one sort: `inputVars`, …
+pub(super) fn lists(variables: &[&VarDecl], global: bool) -> Vec<Element> {
+    let sorts: [Sort; 5] = [
+        ("inputVars", "Inputs", |v| v.kind == VarKind::Input),
+        ("outputVars", "Outputs", |v| v.kind == VarKind::Output),
+        ("localVars", "Variables", |v| v.kind == VarKind::Var && !v.retain),
+        ("localVars", "Retained", |v| v.kind == VarKind::Var && v.retain),
+        ("localVars", "Constants", |v| v.kind == VarKind::Const),
+    ];
+    let mut all = Vec::new();
+    for (tag, title, fits) in sorts {
+        let mut list =
+            if global { Element::new("globalVars").with("name", title) } else { Element::new(tag) };
+        match title {
+            "Retained" => list = list.with("retain", true),
+            "Constants" => list = list.with("constant", true),
+            _ => {}
+        }
+        let mut some = false;
+        for decl in variables.iter().filter(|v| fits(v)) {
+            some = true;
+            decl.names.iter().for_each(|n| list.push(variable(decl, n)));
+        }
+        if some {
+            all.push(list);
+        }
+    }
+    all
+}
+
+fn variable(decl: &VarDecl, name: &Name) -> Element {
+    let mut element = Element::new("variable").with("name", &name.text);
+    if let Some(address) = &decl.address {
+        element = element.with("address", &address.text);
+    }
+    element = element.child(type_of(decl.ty));
+    if let Some(init) = &decl.init {
+        element.push(initial(init, decl.ty));
+    }
+    if let Some(comment) = &decl.comment {
+        element.push(Element::formatted("documentation", comment));
+    }
+    element
+}
+
+/// The variables of the file, as a program refers to them.
+pub(super) fn external<'v>(variables: impl Iterator<Item = &'v VarDecl>) -> Option<Element> {
+    let mut list = Element::new("externalVars");
+    let mut some = false;
+    for decl in variables {
+        for name in &decl.names {
+            some = true;
+            list.push(Element::new("variable").with("name", &name.text).child(type_of(decl.ty)));
+        }
+    }
+    some.then_some(list)
+}

@@ -1,0 +1,275 @@
+//! The whole project: programs, functions, tasks.
+
+use g7_model::{
+    Block, Body, Chart, ChartItem, ChartKind, Document, Function, Item, NamedAction, Nanos, Problem, Section,
+    StepKind, VarDecl,
+};
+
+use super::declare::{external, initial, lists, type_of};
+use super::sfc::Sfc;
+use crate::Written;
+use crate::st::{Known, Writer};
+use crate::standard::{Form, standard};
+use crate::xml::element::Element;
+
+/// The nominal scan time where the document has none.
+const SCAN: Nanos = Nanos::from_millis(10);
+/// The format wants a date of creation. It is fixed, so that the same document gives the same file.
+const MADE: &str = "2026-01-01T00:00:00";
+
+/// Writes a document.
+pub(crate) fn export(document: &Document) -> Written {
+    let (document, mut problems) = standard(document, Form::Charts);
+    let project = Project { document: &document, problems: &mut problems }.element();
+    let mut text = String::from("<?xml version=\"1.0\" encoding=\"utf-8\"?>\n");
+    project.print(0, &mut text);
+    problems.sort_by_key(|p| (p.at.start, p.at.end));
+    Written { text, problems }
+}
+
+/// A program and the task that runs it.
+struct Program {
+    name: String,
+    every: Option<Nanos>,
+}
+
+struct Project<'w> {
+    document: &'w Document,
+    problems: &'w mut Vec<Problem>,
+}
+
+impl<'w> Project<'w> {
+    fn charts(&self) -> impl Iterator<Item = &'w Chart> + use<'w> {
+        self.document.charts().filter(|c| c.kind == ChartKind::Chart)
+    }
+
+    fn variables(&self) -> impl Iterator<Item = &'w VarDecl> + Clone + use<'w> {
+        self.document.items.iter().filter_map(|i| if let Item::Var(v) = i { Some(v) } else { None })
+    }
+
+    fn element(&mut self) -> Element {
+        let document = self.document;
+        let bodies = document.items.iter().any(|i| matches!(i, Item::Pre(..) | Item::Post(..)));
+        let single = self.charts().count() == 1 && !bodies;
+        let mut pous = Vec::new();
+        let mut programs = Vec::new();
+        for item in &document.items {
+            if let Item::Function(function) = item {
+                pous.push(self.function(function));
+            }
+        }
+        for item in &document.items {
+            if let Item::Pre(body, _) = item {
+                self.text("Pre", body, &mut pous, &mut programs);
+            }
+        }
+        for chart in self.charts() {
+            let pou = self.chart(chart, single);
+            pous.push(pou);
+            programs.push(Program { name: chart.name.text.to_string(), every: chart.every });
+        }
+        for item in &document.items {
+            if let Item::Post(body, _) = item {
+                self.text("Post", body, &mut pous, &mut programs);
+            }
+        }
+        let title = self.charts().next().map_or_else(|| "Project".to_string(), |c| c.name.text.to_string());
+        let resource = self.resource(single, &programs);
+        let configuration = Element::new("configuration").with("name", "Configuration").child(resource);
+        Element::new("project")
+            .with("xmlns", "http://www.plcopen.org/xml/tc6_0201")
+            .child(
+                Element::new("fileHeader")
+                    .with("companyName", "G7")
+                    .with("productName", "G7")
+                    .with("productVersion", env!("CARGO_PKG_VERSION"))
+                    .with("creationDateTime", MADE),
+            )
+            .child(Element::new("contentHeader").with("name", title).child(coordinates()))
+            .child(
+                Element::new("types")
+                    .child(Element::new("dataTypes"))
+                    .child(Element::new("pous").children(pous)),
+            )
+            .child(Element::new("instances").child(Element::new("configurations").child(configuration)))
+    }
+
+    fn resource(&mut self, single: bool, programs: &[Program]) -> Element {
+        let scan = self.document.cycle();
+        // If the document gives no times, the tasks have none either.
+        let timed = scan.is_some() || programs.iter().any(|p| p.every.is_some());
+        let scan = scan.unwrap_or(SCAN);
+        let mut intervals: Vec<Nanos> = programs.iter().map(|p| p.every.unwrap_or(scan)).collect();
+        intervals.push(scan);
+        intervals.sort_unstable();
+        intervals.dedup();
+        let mut resource = Element::new("resource").with("name", "Resource");
+        for (priority, interval) in intervals.iter().enumerate() {
+            let mut task = Element::new("task").with("name", format!("Task{}", priority + 1));
+            if timed {
+                task = task.with("interval", format!("{interval:#}"));
+            }
+            task = task.with("priority", priority);
+            for program in programs.iter().filter(|p| p.every.unwrap_or(scan) == *interval) {
+                let instance =
+                    Element::new("pouInstance").with("name", &program.name).with("typeName", &program.name);
+                task.push(instance);
+            }
+            resource.push(task);
+        }
+        if !single {
+            resource = resource.children(lists(&self.variables().collect::<Vec<_>>(), true));
+        }
+        resource
+    }
+
+    /// Writes a body before or behind the charts as a program of its own.
+    fn text(&self, title: &str, body: &Body, pous: &mut Vec<Element>, programs: &mut Vec<Program>) {
+        let taken = |name: &str| {
+            let named = |n: &g7_model::Name| n.text.eq_ignore_ascii_case(name);
+            self.document.items.iter().any(|i| match i {
+                Item::Var(v) => v.names.iter().any(named),
+                Item::Function(f) => named(&f.name),
+                Item::Chart(c) => named(&c.name),
+                _ => false,
+            })
+        };
+        let mut name = title.to_string();
+        while taken(&name) {
+            name.push('_');
+        }
+        let types = Known::new(self.document, None);
+        let text = Writer { types: &types }.body(&body.block().statements);
+        let interface = Element::new("interface").children(external(self.variables()));
+        pous.push(
+            Element::new("pou")
+                .with("name", &name)
+                .with("pouType", "program")
+                .child(interface)
+                .child(Element::new("body").child(Element::formatted("ST", &text))),
+        );
+        programs.push(Program { name, every: None });
+    }
+
+    /// A chart as a program.
+    fn chart(&mut self, chart: &'w Chart, single: bool) -> Element {
+        let document = self.document;
+        let types = Known::new(document, Some(chart));
+        let writer = || Writer { types: &types };
+        let mut interface = Element::new("interface");
+        let of_chart = lists(&chart.vars().collect::<Vec<_>>(), false);
+        if single {
+            let of_file = lists(&self.variables().collect::<Vec<_>>(), false);
+            interface = interface.children(of_file).children(of_chart);
+        } else {
+            interface = interface.children(of_chart).children(external(self.variables()));
+        }
+        let mut pou =
+            Element::new("pou").with("name", &chart.name.text).with("pouType", "program").child(interface);
+        let actions: Vec<Element> = self.actions_of(chart).iter().map(|a| action(a, &writer())).collect();
+        if !actions.is_empty() {
+            pou.push(Element::new("actions").children(actions));
+        }
+        let sections: Vec<Element> = self.sections_of(chart).iter().map(|s| section(s, &writer())).collect();
+        if !sections.is_empty() {
+            pou.push(Element::new("transitions").children(sections));
+        }
+        let mut sfc = Sfc { document, chart, writer: writer(), problems: self.problems, next: 0 };
+        let body = sfc.body(chart, 0);
+        pou.push(Element::new("body").child(body));
+        if let Some(comment) = &chart.comment {
+            pou.push(Element::formatted("documentation", comment));
+        }
+        pou
+    }
+
+    /// A chart with the expansions in it, at all levels.
+    fn with_expansions(&self, chart: &'w Chart) -> Vec<&'w Chart> {
+        let mut all = vec![chart];
+        let mut next = 0;
+        while let Some(one) = all.get(next).copied() {
+            next += 1;
+            for step in one.steps() {
+                let StepKind::Macro(name) = &step.kind else { continue };
+                let inner = self.document.charts().find(|c| c.name.text == name.text);
+                if let Some(inner) = inner.filter(|i| !all.iter().any(|a| std::ptr::eq(*a, *i))) {
+                    all.push(inner);
+                }
+            }
+        }
+        all
+    }
+
+    fn actions_of(&self, chart: &'w Chart) -> Vec<&'w NamedAction> {
+        let of = |c: &'w Chart| {
+            c.items.iter().filter_map(|i| if let ChartItem::Action(a) = i { Some(a) } else { None })
+        };
+        self.with_expansions(chart).into_iter().flat_map(of).collect()
+    }
+
+    fn sections_of(&self, chart: &'w Chart) -> Vec<&'w Section> {
+        let of = |c: &'w Chart| {
+            c.items.iter().filter_map(|i| if let ChartItem::Section(s) = i { Some(s) } else { None })
+        };
+        self.with_expansions(chart).into_iter().flat_map(of).collect()
+    }
+
+    fn function(&self, function: &'w Function) -> Element {
+        let mut types = Known::new(self.document, None).own(&function.name.text, function.result);
+        let result = type_of(function.result);
+        let mut interface = Element::new("interface").child(result.renamed("returnType"));
+        let mut inputs = Element::new("inputVars");
+        for param in &function.params {
+            types = types.own(&param.name.text, param.ty);
+            inputs.push(Element::new("variable").with("name", &param.name.text).child(type_of(param.ty)));
+        }
+        if !function.params.is_empty() {
+            interface.push(inputs);
+        }
+        let mut locals = Element::new("localVars");
+        for local in &function.body.locals {
+            for name in &local.names {
+                types = types.own(&name.text, local.ty);
+                let mut variable = Element::new("variable").with("name", &name.text).child(type_of(local.ty));
+                if let Some(init) = &local.init {
+                    variable.push(initial(init, local.ty));
+                }
+                locals.push(variable);
+            }
+        }
+        if !function.body.locals.is_empty() {
+            interface.push(locals);
+        }
+        let text = Writer { types: &types }.body(&function.body.statements);
+        Element::new("pou")
+            .with("name", &function.name.text)
+            .with("pouType", "function")
+            .child(interface)
+            .child(Element::new("body").child(Element::formatted("ST", &text)))
+    }
+}
+
+fn action(action: &NamedAction, writer: &Writer) -> Element {
+    let text = block(action.body.block(), writer);
+    let body = Element::new("body").child(Element::formatted("ST", &text));
+    let mut element = Element::new("action").with("name", &action.name.text).child(body);
+    if let Some(comment) = &action.comment {
+        element.push(Element::formatted("documentation", comment));
+    }
+    element
+}
+
+fn section(section: &Section, writer: &Writer) -> Element {
+    let text = block(&section.body, writer);
+    let body = Element::new("body").child(Element::formatted("ST", &text));
+    Element::new("transition").with("name", &section.name.text).child(body)
+}
+
+fn block(block: &Block, writer: &Writer) -> String {
+    writer.body(&block.statements)
+}
+
+fn coordinates() -> Element {
+    let scaling = |tag: &str| Element::new(tag).child(Element::new("scaling").with("x", 1).with("y", 1));
+    Element::new("coordinateInfo").children(["fbd", "ld", "sfc"].map(scaling))
+}

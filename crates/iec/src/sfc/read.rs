@@ -1,0 +1,474 @@
+//! Reads the units and configurations of a file.
+
+use g7_model::codes;
+use g7_model::{Expr, ExprKind, Literal, Name, Nanos, Path, Qualifier, Stmt};
+
+use super::unit::{Association, Instance, Part, Source, Task, Transition, Unit, UnitKind};
+use crate::st::{Kind, Parser, elementary};
+
+/// Reads the whole file.
+pub(super) fn source(p: &mut Parser) -> Source {
+    let mut source = Source::default();
+    while !p.at_end() {
+        let before = p.mark();
+        if p.at_word("TYPE") {
+            p.type_block(&mut source.types);
+        } else if !p.declarations(&source.types, &mut source.globals) {
+            item(p, &mut source);
+        }
+        if p.mark() == before {
+            p.expected("PROGRAM, FUNCTION_BLOCK, FUNCTION, CONFIGURATION or TYPE");
+            p.bump();
+            p.skip_to(&["PROGRAM", "FUNCTION_BLOCK", "FUNCTION", "CONFIGURATION", "TYPE", "VAR_GLOBAL"]);
+        }
+    }
+    source
+}
+
+fn item(p: &mut Parser, source: &mut Source) {
+    match p.word().as_str() {
+        "PROGRAM" => unit(p, UnitKind::Program, source),
+        "FUNCTION_BLOCK" => unit(p, UnitKind::FunctionBlock, source),
+        "FUNCTION" => unit(p, UnitKind::Function, source),
+        "CONFIGURATION" => configuration(p, source),
+        "RESOURCE" => resource(p, source),
+        "NAMESPACE" => {
+            p.bump();
+            p.name("the name of a namespace");
+        }
+        "END_NAMESPACE" | "END_PROGRAM" | "END_FUNCTION_BLOCK" | "END_FUNCTION" => {
+            if p.word() != "END_NAMESPACE" {
+                p.expected("the beginning of a unit");
+            }
+            p.bump();
+            p.eat(";");
+        }
+        // Some tools write a chart without a unit around it.
+        "INITIAL_STEP" | "STEP" | "TRANSITION" | "ACTION" => {
+            let start = p.token().start;
+            let mut unit = Unit {
+                kind: UnitKind::Program,
+                name: Name::new("Chart", p.span_of(p.token())),
+                result: None,
+                vars: std::mem::take(&mut source.globals),
+                parts: Vec::new(),
+                body: Vec::new(),
+                body_at: 0..0,
+                at: p.since(start),
+            };
+            while part(p, &mut unit) {}
+            unit.at = p.since(start);
+            source.units.push(unit);
+        }
+        _ => {}
+    }
+}
+
+fn unit(p: &mut Parser, kind: UnitKind, source: &mut Source) {
+    let start = p.bump().start;
+    let closing = match kind {
+        UnitKind::Program => "END_PROGRAM",
+        UnitKind::FunctionBlock => "END_FUNCTION_BLOCK",
+        UnitKind::Function => "END_FUNCTION",
+    };
+    while matches!(p.word().as_str(), "FINAL" | "ABSTRACT" | "PUBLIC" | "PRIVATE" | "INTERNAL")
+        && p.ahead(1).kind == Kind::Word
+    {
+        p.bump();
+    }
+    let Some(name) = p.name("the name of the unit") else { return };
+    let result = if kind == UnitKind::Function && p.eat(":") { result_type(p) } else { None };
+    for word in ["EXTENDS", "IMPLEMENTS"] {
+        if p.at_word(word) {
+            let at = p.here();
+            p.say(
+                &codes::NOT_CARRIED,
+                &at,
+                format!("`{word}`: units that build on others have no counterpart"),
+            );
+            p.bump();
+            p.bump();
+        }
+    }
+    let mut unit = Unit {
+        kind,
+        name,
+        result,
+        vars: Vec::new(),
+        parts: Vec::new(),
+        body: Vec::new(),
+        body_at: 0..0,
+        at: p.since(start),
+    };
+    loop {
+        let before = p.mark();
+        while p.eat(";") {}
+        if p.declarations(&source.types, &mut unit.vars) || part(p, &mut unit) {
+            continue;
+        }
+        if p.at_end() || p.word().starts_with("END_") {
+            break;
+        }
+        body(p, &mut unit);
+        if p.mark() == before {
+            p.expected(&format!("`{closing}`"));
+            p.bump();
+        }
+    }
+    if p.word() != closing && p.word().starts_with("END_") && !p.at_end() {
+        p.expected(&format!("`{closing}`"));
+        p.skip_to(&[closing, "PROGRAM", "FUNCTION_BLOCK", "FUNCTION", "CONFIGURATION"]);
+        p.eat_word(closing);
+    } else {
+        p.expect_word(closing);
+    }
+    p.eat(";");
+    unit.at = p.since(start);
+    source.units.push(unit);
+}
+
+fn result_type(p: &mut Parser) -> Option<g7_model::Type> {
+    let at = p.here();
+    let word = p.word();
+    let ty = elementary(&word).or_else(|| crate::st::bits(&word));
+    p.name("a type");
+    if ty.is_none() {
+        p.say(&codes::NOT_CARRIED, &at, "the result of a function has an elementary type");
+    }
+    if p.eat("(") || p.eat("[") {
+        p.bump();
+        p.bump();
+    }
+    ty
+}
+
+/// Statements of the unit itself.
+fn body(p: &mut Parser, unit: &mut Unit) {
+    let start = p.token().start as usize;
+    let mut list = statements(p);
+    let end = p.behind();
+    if unit.body.is_empty() {
+        unit.body_at = p.range(start, end);
+    }
+    unit.body.append(&mut list);
+}
+
+/// Structured Text or Instruction List.
+fn statements(p: &mut Parser) -> Vec<Stmt> {
+    if p.at_instruction() { p.il_statements() } else { p.statements() }
+}
+
+/// Reads an element of a chart; returns false if none stands here.
+fn part(p: &mut Parser, unit: &mut Unit) -> bool {
+    let start = p.token().start;
+    if p.ahead_is(1, ":=") {
+        return false;
+    }
+    let part = match p.word().as_str() {
+        "INITIAL_STEP" => step(p, start, true),
+        "STEP" => step(p, start, false),
+        "TRANSITION" => transition(p, start),
+        "ACTION" => action(p, start),
+        _ => return false,
+    };
+    unit.parts.extend(part);
+    true
+}
+
+const PARTS: [&str; 9] = [
+    "END_STEP",
+    "END_TRANSITION",
+    "END_ACTION",
+    "INITIAL_STEP",
+    "STEP",
+    "TRANSITION",
+    "ACTION",
+    "END_PROGRAM",
+    "END_FUNCTION_BLOCK",
+];
+
+/// Reads the word that ends a part. After a problem, skips the text before it.
+fn close(p: &mut Parser, word: &str) {
+    while p.eat(";") {}
+    if !p.at_word(word) {
+        p.expected(&format!("`{word}`"));
+        p.skip_to(&PARTS);
+    }
+    p.eat_word(word);
+    p.eat(";");
+}
+
+fn step(p: &mut Parser, start: u32, initial: bool) -> Option<Part> {
+    p.bump();
+    let name = p.name("the name of a step")?;
+    let mut associations = Vec::new();
+    // The `:` may stand on the next line or be missing.
+    p.eat(":");
+    while !p.at_end() && !p.at_word("END_STEP") {
+        let before = p.mark();
+        associations.extend(association(p));
+        if !p.eat(";") && !p.at_word("END_STEP") {
+            p.expected("`;`");
+            p.skip_to(&PARTS);
+            break;
+        }
+        if p.mark() == before {
+            break;
+        }
+    }
+    close(p, "END_STEP");
+    Some(Part::Step { name, initial, associations, at: p.since(start) })
+}
+
+/// `Pump(L, T#5s, Ready)`.
+fn association(p: &mut Parser) -> Option<Association> {
+    let start = p.token().start;
+    let target = target(p)?;
+    let mut qualifier = Qualifier::N;
+    let mut time = None;
+    if p.eat("(") {
+        if p.token().kind == Kind::Word {
+            qualifier = qualifier_of(p);
+            if p.eat(",") {
+                time = times(p, qualifier);
+            }
+            while p.eat(",") {
+                indicator(p);
+            }
+        }
+        p.expect(")");
+    }
+    if qualifier.timed() && time.is_none() {
+        let at = p.range(start as usize, p.behind());
+        p.say(&codes::BAD_TEXT, &at, format!("the qualifier {} needs a time", qualifier.name()));
+        qualifier = Qualifier::N;
+    }
+    Some(Association { target, qualifier, time, at: p.since(start) })
+}
+
+fn target(p: &mut Parser) -> Option<Expr> {
+    let start = p.token().start;
+    if p.token().kind == Kind::Direct {
+        return Some(p.expr());
+    }
+    let mut names = vec![p.name("the name of an action")?];
+    while p.eat(".") {
+        names.push(p.name("the name of an action")?);
+    }
+    Some(Expr { kind: ExprKind::Path(Path { names }), at: p.since(start).into() })
+}
+
+fn qualifier_of(p: &mut Parser) -> Qualifier {
+    let word = p.word();
+    let found = Qualifier::named(&word);
+    if found.is_none() {
+        p.expected("a qualifier");
+    }
+    p.bump();
+    found.unwrap_or(Qualifier::N)
+}
+
+/// The part behind the qualifier: its time, or an indicator variable.
+fn times(p: &mut Parser, qualifier: Qualifier) -> Option<Expr> {
+    if !qualifier.timed() {
+        indicator(p);
+        return None;
+    }
+    Some(p.expr())
+}
+
+/// Skips the variable by which the action reports; it is only for the reader.
+fn indicator(p: &mut Parser) {
+    let at = p.here();
+    p.report.element(
+        &codes::LEFT_OUT,
+        "indicator",
+        &at,
+        "an indicator variable is not kept; it is for the reader",
+    );
+    p.expr();
+}
+
+fn transition(p: &mut Parser, start: u32) -> Option<Part> {
+    p.bump();
+    let named = p.token().kind == Kind::Word && !p.at_word("FROM");
+    // A transition may be called FROM; then a second FROM follows.
+    let called_from =
+        p.at_word("FROM") && (p.ahead_word(1, "FROM") || p.ahead_is(1, "(") && p.ahead_word(2, "PRIORITY"));
+    let label = if named || called_from { p.name("the name of a transition") } else { None };
+    let priority = if p.at("(") { priority(p) } else { None };
+    p.expect_word("FROM");
+    let from = steps(p);
+    p.expect_word("TO");
+    let to = steps(p);
+    let receptivity = if p.eat(":=") {
+        let e = p.expr();
+        if !p.eat(";") {
+            p.expected("`;`");
+        }
+        e
+    } else if p.eat(":") {
+        if p.at_instruction() {
+            p.il_expression()
+        } else {
+            let at = p.here();
+            p.say(&codes::NOT_CARRIED, &at, "a receptivity behind `:` is written in Instruction List");
+            p.skip_to(&PARTS);
+            p.bad(start)
+        }
+    } else {
+        p.expected("`:=` and the receptivity");
+        p.skip_to(&PARTS);
+        p.bad(start)
+    };
+    close(p, "END_TRANSITION");
+    let at = p.since(start);
+    Some(Part::Transition(Box::new(Transition { label, priority, from, to, receptivity, at })))
+}
+
+/// `(PRIORITY := 1)`.
+fn priority(p: &mut Parser) -> Option<u32> {
+    p.bump();
+    p.expect_word("PRIORITY");
+    p.expect(":=");
+    let at = p.here();
+    let value = p.expr();
+    p.expect(")");
+    let number = match value.kind {
+        ExprKind::Literal(Literal::Int(n, _)) => u32::try_from(n).ok(),
+        _ => None,
+    };
+    if number.is_none() {
+        p.say(&codes::BAD_VALUE, &at, "a priority is a whole number");
+    }
+    number
+}
+
+/// `A` or `(A, B)`.
+fn steps(p: &mut Parser) -> Vec<Name> {
+    if !p.eat("(") {
+        return p.name("the name of a step").into_iter().collect();
+    }
+    let mut names = Vec::new();
+    while let Some(name) = p.name("the name of a step") {
+        names.push(name);
+        if !p.eat(",") {
+            break;
+        }
+    }
+    p.expect(")");
+    names
+}
+
+fn action(p: &mut Parser, start: u32) -> Option<Part> {
+    p.bump();
+    let name = p.name("the name of an action")?;
+    p.eat(":");
+    let body = statements(p);
+    close(p, "END_ACTION");
+    Some(Part::Action { name, body, at: p.since(start) })
+}
+
+fn configuration(p: &mut Parser, source: &mut Source) {
+    p.bump();
+    p.name("the name of the configuration");
+    while !p.at_end() && !p.at_word("END_CONFIGURATION") {
+        let before = p.mark();
+        if !inside(p, source) || p.mark() == before {
+            p.expected("a resource, a task, a program or `END_CONFIGURATION`");
+            p.skip_to(&["END_CONFIGURATION"]);
+        }
+    }
+    p.expect_word("END_CONFIGURATION");
+    p.eat(";");
+}
+
+/// Reads an element of a configuration.
+fn inside(p: &mut Parser, source: &mut Source) -> bool {
+    if p.declarations(&source.types, &mut source.globals) {
+        return true;
+    }
+    match p.word().as_str() {
+        "RESOURCE" => resource(p, source),
+        "TASK" => task(p, source),
+        "PROGRAM" => instance(p, source),
+        _ => return false,
+    }
+    true
+}
+
+fn resource(p: &mut Parser, source: &mut Source) {
+    p.bump();
+    p.name("the name of the resource");
+    if p.eat_word("ON") {
+        p.name("the type of the resource");
+    }
+    while !p.at_end() && !p.at_word("END_RESOURCE") {
+        let before = p.mark();
+        if !inside(p, source) || p.mark() == before {
+            p.expected("a task, a program or `END_RESOURCE`");
+            p.skip_to(&["END_RESOURCE", "END_CONFIGURATION"]);
+            break;
+        }
+    }
+    p.expect_word("END_RESOURCE");
+    p.eat(";");
+}
+
+/// `TASK fast(INTERVAL := T#10ms, PRIORITY := 1);`.
+fn task(p: &mut Parser, source: &mut Source) {
+    p.bump();
+    let Some(name) = p.name("the name of the task") else { return };
+    let mut interval = None;
+    p.expect("(");
+    while !p.at(")") && !p.at_end() {
+        let at = p.here();
+        let word = p.word();
+        p.bump();
+        p.expect(":=");
+        let value = p.expr();
+        match (word.as_str(), value.kind) {
+            ("INTERVAL", ExprKind::Literal(Literal::Time(t))) if t > Nanos::ZERO => interval = Some(t),
+            ("INTERVAL", _) => p.say(&codes::NOT_CARRIED, &at, "the interval of a task is written as a time"),
+            ("SINGLE", _) => {
+                p.say(&codes::NOT_CARRIED, &at, "a task that an event starts has no counterpart")
+            }
+            _ => {}
+        }
+        if !p.eat(",") {
+            break;
+        }
+    }
+    p.expect(")");
+    p.eat(";");
+    source.tasks.push(Task { name, interval });
+}
+
+/// `PROGRAM main WITH fast : Main(IN := %I0.0, OUT => %Q0.0);`.
+fn instance(p: &mut Parser, source: &mut Source) {
+    let start = p.bump().start;
+    if matches!(p.word().as_str(), "RETAIN" | "NON_RETAIN") && p.ahead(1).kind == Kind::Word {
+        p.bump();
+    }
+    p.name("the name of the program");
+    let task = if p.eat_word("WITH") { p.name("the name of a task") } else { None };
+    p.expect(":");
+    let Some(unit) = p.name("the type of the program") else { return };
+    let mut links = Vec::new();
+    if p.eat("(") {
+        while !p.at(")") && !p.at_end() {
+            let Some(name) = p.name("a variable of the program") else { break };
+            if !p.eat(":=") && !p.eat("=>") {
+                p.expected("`:=` or `=>`");
+                break;
+            }
+            links.push((name, p.expr()));
+            if !p.eat(",") {
+                break;
+            }
+        }
+        p.expect(")");
+    }
+    p.eat(";");
+    source.instances.push(Instance { task, unit, links, at: p.since(start) });
+}

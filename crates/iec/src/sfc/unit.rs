@@ -1,0 +1,91 @@
+//! The content of a file before it becomes a document.
+
+use std::ops::Range;
+
+use g7_model::{Expr, Name, Nanos, Qualifier, Span, Stmt};
+
+use crate::st::{Types, Variable};
+
+/// The whole file.
+#[derive(Debug, Default)]
+pub(super) struct Source {
+    pub(super) units: Vec<Unit>,
+    pub(super) globals: Vec<Variable>,
+    pub(super) tasks: Vec<Task>,
+    pub(super) instances: Vec<Instance>,
+    pub(super) types: Types,
+}
+
+/// The kinds of program organisation unit.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum UnitKind {
+    Program,
+    FunctionBlock,
+    Function,
+}
+
+/// A program organisation unit.
+#[derive(Debug)]
+pub(super) struct Unit {
+    pub(super) kind: UnitKind,
+    pub(super) name: Name,
+    /// The type of a function's result.
+    pub(super) result: Option<g7_model::Type>,
+    pub(super) vars: Vec<Variable>,
+    pub(super) parts: Vec<Part>,
+    /// The statements of a unit without a chart.
+    pub(super) body: Vec<Stmt>,
+    pub(super) body_at: Range<usize>,
+    pub(super) at: Span,
+}
+
+/// An element of a chart.
+#[derive(Debug)]
+pub(super) enum Part {
+    Step { name: Name, initial: bool, associations: Vec<Association>, at: Span },
+    Transition(Box<Transition>),
+    Action { name: Name, body: Vec<Stmt>, at: Span },
+}
+
+#[derive(Debug)]
+pub(super) struct Transition {
+    pub(super) label: Option<Name>,
+    pub(super) priority: Option<u32>,
+    pub(super) from: Vec<Name>,
+    pub(super) to: Vec<Name>,
+    pub(super) receptivity: Expr,
+    pub(super) at: Span,
+}
+
+/// An action of a step with its qualifier.
+#[derive(Debug)]
+pub(super) struct Association {
+    pub(super) target: Expr,
+    pub(super) qualifier: Qualifier,
+    pub(super) time: Option<Expr>,
+    pub(super) at: Span,
+}
+
+/// A task of a resource.
+#[derive(Debug)]
+pub(super) struct Task {
+    pub(super) name: Name,
+    /// How often it runs.
+    pub(super) interval: Option<Nanos>,
+}
+
+/// A program that a resource runs.
+#[derive(Debug)]
+pub(super) struct Instance {
+    pub(super) task: Option<Name>,
+    pub(super) unit: Name,
+    /// Variables of the program with the address or global variable that each is connected to.
+    pub(super) links: Vec<(Name, Expr)>,
+    pub(super) at: Span,
+}
+
+impl Unit {
+    pub(super) fn is_chart(&self) -> bool {
+        self.parts.iter().any(|p| matches!(p, Part::Step { .. } | Part::Transition(_)))
+    }
+}

@@ -1,0 +1,307 @@
+//! Writes a document as IEC 61131-3 text.
+//!
+//! Charts with the same period evolve together, so they become networks of one program, each with
+//! its own initial step. Code before and behind the charts, and charts with another period, become
+//! separate programs that share global variables.
+
+mod chart;
+
+use std::collections::HashSet;
+
+use g7_model::{Body, Chart, ChartItem, Document, Expr, Function, Item, Nanos, Type, VarDecl, VarKind};
+
+use crate::Written;
+use crate::nodes::Taken;
+use crate::st::{Known, Writer};
+use crate::standard::{Form, standard};
+
+/// The content of a program of the file.
+struct Program<'d> {
+    name: String,
+    chart: Option<&'d Chart>,
+    body: String,
+}
+
+/// Writes a document.
+pub fn export(document: &Document) -> Written {
+    let (document, problems) = standard(document, Form::Networks);
+    let text = Exporter::new(&document).text();
+    Written { text, problems }
+}
+
+struct Exporter<'d> {
+    document: &'d Document,
+    taken: Taken,
+}
+
+impl<'d> Exporter<'d> {
+    fn new(document: &'d Document) -> Exporter<'d> {
+        let mut taken = Taken::default();
+        let mut take = |name: &g7_model::Name| _ = taken.take(&name.text);
+        for item in &document.items {
+            match item {
+                Item::Var(v) => v.names.iter().for_each(&mut take),
+                Item::Function(f) => take(&f.name),
+                Item::Chart(c) => {
+                    take(&c.name);
+                    for item in &c.items {
+                        match item {
+                            ChartItem::Var(v) => v.names.iter().for_each(&mut take),
+                            ChartItem::Step(s) => take(&s.name),
+                            ChartItem::Action(a) => take(&a.name),
+                            ChartItem::Transition(t) => t.label.iter().for_each(&mut take),
+                            _ => {}
+                        }
+                    }
+                }
+                _ => {}
+            }
+        }
+        Exporter { document, taken }
+    }
+
+    fn text(&mut self) -> String {
+        let document = self.document;
+        let mut text = String::new();
+        for item in &document.items {
+            if let Item::Function(f) = item {
+                text.push_str(&self.function(f));
+            }
+        }
+        if !text.is_empty() {
+            text.push('\n');
+        }
+        let programs = self.programs();
+        let alone = programs.len() == 1;
+        let globals: Vec<&VarDecl> =
+            document.items.iter().filter_map(|i| if let Item::Var(v) = i { Some(v) } else { None }).collect();
+        let used: Vec<HashSet<&str>> = programs.iter().map(|p| words(&p.body)).collect();
+        for (program, own) in programs.iter().zip(&used) {
+            let mut declarations = Declarations::default();
+            for decl in &globals {
+                for name in &decl.names {
+                    let text = &*name.text;
+                    if alone || local(decl, text, &used) && own.contains(text) {
+                        declarations.own(decl, text);
+                    } else if !local(decl, text, &used) && own.contains(text) {
+                        declarations.external(decl, text);
+                    }
+                }
+            }
+            for decl in program.chart.into_iter().flat_map(Chart::vars) {
+                decl.names.iter().for_each(|n| declarations.own(decl, &n.text));
+            }
+            let body = if program.body.is_empty() { "  ;\n" } else { &program.body };
+            text.push_str(&format!(
+                "PROGRAM {}\n{}\n{body}END_PROGRAM\n",
+                program.name,
+                declarations.print(1)
+            ));
+            if !alone {
+                text.push('\n');
+            }
+        }
+        let mut shared = Declarations::default();
+        for decl in globals.iter().filter(|_| !alone) {
+            for name in decl.names.iter().filter(|n| !local(decl, &n.text, &used)) {
+                shared.global(decl, &name.text);
+            }
+        }
+        let scan = document.cycle();
+        let paced = programs.iter().any(|p| p.chart.is_some_and(|c| c.every.is_some()));
+        if scan.is_some() || paced || !alone {
+            text.push_str(&self.configuration(&programs, scan, &shared));
+        }
+        text
+    }
+
+    /// The resource that runs the programs.
+    fn configuration(&mut self, programs: &[Program], scan: Option<Nanos>, shared: &Declarations) -> String {
+        const SCAN: Nanos = Nanos::from_millis(10);
+        // Some tools require a period in every resource.
+        let scan = scan.unwrap_or(SCAN);
+        let (config, resource) = (self.taken.give("Config"), self.taken.give("Res"));
+        let mut tasks: Vec<(Nanos, String)> = Vec::new();
+        let mut lines = String::new();
+        let mut runs = String::new();
+        // The time of a scan is written even if all charts are slower.
+        let paces = programs.iter().map(|p| p.chart.and_then(|c| c.every).unwrap_or(scan));
+        for pace in std::iter::once(scan).chain(paces.clone()) {
+            if !tasks.iter().any(|t| t.0 == pace) {
+                let (name, number) = (self.taken.give("Cycle"), tasks.len());
+                lines.push_str(&format!("    TASK {name}(INTERVAL := {pace:#}, PRIORITY := {number});\n"));
+                tasks.push((pace, name));
+            }
+        }
+        for (program, pace) in programs.iter().zip(paces) {
+            let task = tasks.iter().find(|t| t.0 == pace).map_or("", |t| &t.1);
+            let instance = self.taken.give("Instance");
+            runs.push_str(&format!("    PROGRAM {instance} WITH {task} : {};\n", program.name));
+        }
+        format!(
+            "\nCONFIGURATION {config}\n{}  RESOURCE {resource} ON PLC\n{lines}{runs}  END_RESOURCE\nEND_CONFIGURATION\n",
+            shared.print(1)
+        )
+    }
+
+    /// The programs in execution order.
+    fn programs(&mut self) -> Vec<Program<'d>> {
+        let document = self.document;
+        let types = Known::new(document, None);
+        let body = |code: &Body| {
+            let mut text = String::new();
+            Writer { types: &types }.statements(&code.block().statements, 1, &mut text);
+            text
+        };
+        let mut programs = Vec::new();
+        let charts = document.charts().count();
+        for item in &document.items {
+            let (name, code) = match item {
+                Item::Pre(code, _) => ("Pre", code),
+                _ => continue,
+            };
+            let name = self.taken.give(if charts == 0 { "Main" } else { name });
+            programs.push(Program { name, chart: None, body: body(code) });
+        }
+        for chart in document.charts() {
+            let body = self.chart(chart);
+            programs.push(Program { name: chart.name.text.to_string(), chart: Some(chart), body });
+        }
+        for item in &document.items {
+            if let Item::Post(code, _) = item {
+                programs.push(Program { name: self.taken.give("Post"), chart: None, body: body(code) });
+            }
+        }
+        if programs.is_empty() {
+            programs.push(Program { name: self.taken.give("Main"), chart: None, body: String::new() });
+        }
+        programs
+    }
+
+    fn function(&self, f: &'d Function) -> String {
+        let mut text = format!("FUNCTION {} : {}\n", f.name.text, type_name(f.result));
+        let mut types = Known::new(self.document, None).own(&f.name.text, f.result);
+        if !f.params.is_empty() {
+            text.push_str("  VAR_INPUT\n");
+            for p in &f.params {
+                text.push_str(&format!("    {} : {};\n", p.name.text, type_name(p.ty)));
+                types = types.own(&p.name.text, p.ty);
+            }
+            text.push_str("  END_VAR\n");
+        }
+        if !f.body.locals.is_empty() {
+            text.push_str("  VAR\n");
+            for local in &f.body.locals {
+                let init = initial(local.init.as_ref(), local.ty);
+                for name in &local.names {
+                    text.push_str(&format!("    {} : {}{init};\n", name.text, type_name(local.ty)));
+                    types = types.own(&name.text, local.ty);
+                }
+            }
+            text.push_str("  END_VAR\n");
+        }
+        Writer { types: &types }.statements(&f.body.statements, 1, &mut text);
+        text.push_str("END_FUNCTION\n\n");
+        text
+    }
+}
+
+/// A function block that only one program uses is declared there, because few tools allow global
+/// ones.
+fn local(decl: &VarDecl, name: &str, used: &[HashSet<&str>]) -> bool {
+    matches!(decl.ty, Type::Fb(_)) && used.iter().filter(|u| u.contains(name)).count() < 2
+}
+
+/// The set of words in a text.
+fn words(text: &str) -> HashSet<&str> {
+    text.split(|c: char| !c.is_ascii_alphanumeric() && c != '_').filter(|w| !w.is_empty()).collect()
+}
+
+/// ` := value`.
+fn initial(init: Option<&Expr>, ty: Type) -> String {
+    let types = Known::default();
+    init.map_or(String::new(), |e| format!(" := {}", Writer { types: &types }.value(e, ty)))
+}
+
+/// A comment must not contain the sign that ends it.
+fn clean(text: &str) -> String {
+    text.replace("*)", "* )").replace("(*", "( *").replace(['\n', '\r'], " ")
+}
+
+fn type_name(ty: Type) -> String {
+    match ty {
+        Type::STRING => "STRING".to_string(),
+        Type::String(n) => format!("STRING[{n}]"),
+        other => other.to_string(),
+    }
+}
+
+/// The sections of declarations, in the order in which they were met.
+#[derive(Default)]
+struct Declarations {
+    sections: Vec<(&'static str, Vec<String>)>,
+}
+
+impl Declarations {
+    fn add(&mut self, section: &'static str, line: String) {
+        match self.sections.last_mut().filter(|(s, _)| *s == section) {
+            Some((_, lines)) => lines.push(line),
+            None => self.sections.push((section, vec![line])),
+        }
+    }
+
+    /// A variable of the program.
+    fn own(&mut self, decl: &VarDecl, name: &str) {
+        let section = match (decl.kind, decl.address.is_some()) {
+            (VarKind::Const, _) => "VAR CONSTANT",
+            (VarKind::Var, true) if decl.retain => "VAR RETAIN (* at addresses *)",
+            (_, true) => "VAR (* at addresses *)",
+            (VarKind::Input, false) => "VAR_INPUT",
+            (VarKind::Output, false) => "VAR_OUTPUT",
+            (VarKind::Var, false) if decl.retain => "VAR RETAIN",
+            (VarKind::Var, false) => "VAR",
+        };
+        self.add(section, line(decl, name));
+    }
+
+    /// Declares a variable of all programs; its comment states its purpose.
+    fn global(&mut self, decl: &VarDecl, name: &str) {
+        let section = match decl.kind {
+            VarKind::Const => "VAR_GLOBAL CONSTANT",
+            VarKind::Input => "VAR_GLOBAL (* inputs *)",
+            VarKind::Output => "VAR_GLOBAL (* outputs *)",
+            VarKind::Var if decl.retain => "VAR_GLOBAL RETAIN",
+            VarKind::Var => "VAR_GLOBAL",
+        };
+        self.add(section, line(decl, name));
+    }
+
+    /// The same variable, as a program refers to it.
+    fn external(&mut self, decl: &VarDecl, name: &str) {
+        let section = match decl.kind {
+            VarKind::Const => "VAR_EXTERNAL CONSTANT",
+            _ => "VAR_EXTERNAL",
+        };
+        self.add(section, format!("{name} : {};", type_name(decl.ty)));
+    }
+
+    fn print(&self, indent: usize) -> String {
+        let pad = "  ".repeat(indent);
+        let mut out = String::new();
+        for (section, lines) in &self.sections {
+            out.push_str(&format!("{pad}{section}\n"));
+            for line in lines {
+                out.push_str(&format!("{pad}  {line}\n"));
+            }
+            out.push_str(&format!("{pad}END_VAR\n"));
+        }
+        out
+    }
+}
+
+fn line(decl: &VarDecl, name: &str) -> String {
+    let at = decl.address.as_ref().map_or(String::new(), |a| format!(" AT {}", a.text));
+    let init = initial(decl.init.as_ref(), decl.ty);
+    let comment = decl.comment.as_ref().map_or(String::new(), |c| format!(" (* {} *)", clean(c)));
+    format!("{name}{at} : {}{init};{comment}", type_name(decl.ty))
+}

@@ -1,0 +1,357 @@
+//! Expressions of Structured Text.
+
+use g7_model::codes;
+use g7_model::{Arg, BinaryOp, Expr, ExprKind, Name, Operands, Path, Span, UnaryOp};
+
+use super::lex::Kind;
+use super::parse::Parser;
+
+/// The largest height of an expression's tree. Later stages recurse over it.
+const MOST_HIGH: u32 = 400;
+
+/// An expression, with the height of its tree.
+pub(crate) struct Tree {
+    pub(crate) expr: Expr,
+    pub(crate) height: u32,
+}
+
+/// Operators in the form of functions: `ADD(a, b, c)`.
+pub(crate) fn operator_function(name: &str) -> Option<BinaryOp> {
+    match name {
+        "ADD_TIME" => Some(BinaryOp::Add),
+        "SUB_TIME" => Some(BinaryOp::Sub),
+        "MUL_TIME" | "MULTIME" => Some(BinaryOp::Mul),
+        "DIV_TIME" | "DIVTIME" => Some(BinaryOp::Div),
+        _ => BinaryOp::of_function(name),
+    }
+}
+
+impl Parser<'_> {
+    /// Reads an expression; returns `Bad` with a problem if there is none.
+    pub(crate) fn expr(&mut self) -> Expr {
+        self.tree(1).expr
+    }
+
+    fn tree(&mut self, least: u8) -> Tree {
+        let mut left = self.unary();
+        while let Some(op) = self.operator().filter(|op| op.strength() >= least) {
+            self.bump();
+            let right = self.tree(op.strength() + 1);
+            left = self.join(op, left, right);
+        }
+        left
+    }
+
+    fn operator(&self) -> Option<BinaryOp> {
+        let token = self.token();
+        let text = self.slice(token);
+        let upper = text.to_ascii_uppercase();
+        match (token.kind, upper.as_str()) {
+            // What CODESYS, and other languages, write besides.
+            (Kind::Sign, "==") => Some(BinaryOp::Eq),
+            (Kind::Sign, "!=") => Some(BinaryOp::Ne),
+            (Kind::Sign, "&" | "&&") | (Kind::Word, "AND_THEN") => Some(BinaryOp::And),
+            (Kind::Sign, "||") | (Kind::Word, "OR_ELSE") => Some(BinaryOp::Or),
+            (Kind::Sign | Kind::Word, sign) => BinaryOp::of_standard(sign),
+            _ => None,
+        }
+    }
+
+    pub(crate) fn join(&mut self, op: BinaryOp, left: Tree, right: Tree) -> Tree {
+        let at = left.expr.at.0.to(right.expr.at.0);
+        let height = left.height.max(right.height) + 1;
+        let kind = ExprKind::Binary(op, Box::new(left.expr), Box::new(right.expr));
+        self.bounded(kind, at, height)
+    }
+
+    pub(crate) fn bounded(&mut self, kind: ExprKind, at: Span, height: u32) -> Tree {
+        if height <= MOST_HIGH {
+            return Tree { expr: Expr { kind, at: at.into() }, height };
+        }
+        let here = self.here();
+        self.say(&codes::TOO_DEEP, &here, format!("an expression more than {MOST_HIGH} operators deep"));
+        Tree { expr: Expr { kind: ExprKind::Bad, at: at.into() }, height: 1 }
+    }
+
+    fn unary(&mut self) -> Tree {
+        let mut ops = Vec::new();
+        loop {
+            let op = match self.word().as_str() {
+                "NOT" => Some(UnaryOp::Not),
+                _ if self.at("!") => Some(UnaryOp::Not),
+                _ if self.at("-") => Some(UnaryOp::Neg),
+                _ if self.at("+") => None,
+                _ => break,
+            };
+            ops.push((op, self.bump()));
+        }
+        let mut tree = self.primary();
+        for (op, token) in ops.into_iter().rev() {
+            let Some(op) = op else { continue };
+            let at = self.span_of(token).to(tree.expr.at.0);
+            tree = self.bounded(ExprKind::Unary(op, Box::new(tree.expr)), at, tree.height + 1);
+        }
+        tree
+    }
+
+    fn primary(&mut self) -> Tree {
+        let token = self.token();
+        let expr = match token.kind {
+            Kind::Number | Kind::Typed | Kind::Str | Kind::WideStr => self.literal(),
+            Kind::Direct => {
+                self.bump();
+                let name = self.slice(token).trim_start_matches('%').to_ascii_uppercase();
+                Expr { kind: ExprKind::Direct(name.into()), at: self.span_of(token).into() }
+            }
+            Kind::Word => return self.word_operand(),
+            Kind::Sign if self.at("(") => return self.grouped(),
+            Kind::Sign if self.at(".") && self.ahead(1).kind == Kind::Word => {
+                // CODESYS marks a global variable with a leading dot.
+                self.bump();
+                return self.word_operand();
+            }
+            _ => {
+                self.expected("an expression");
+                self.bad(token.start)
+            }
+        };
+        Tree { expr, height: 1 }
+    }
+
+    fn grouped(&mut self) -> Tree {
+        let open = self.token();
+        if !self.enter() {
+            return Tree { expr: self.bad(open.start), height: 1 };
+        }
+        self.bump();
+        let mut tree = self.tree(1);
+        self.expect(")");
+        self.leave();
+        tree.expr.at = self.since(open.start).into();
+        tree
+    }
+
+    fn word_operand(&mut self) -> Tree {
+        let token = self.token();
+        let upper = self.word();
+        match upper.as_str() {
+            "TRUE" | "FALSE" => {
+                self.bump();
+                return Tree { expr: self.boolean(token, upper == "TRUE"), height: 1 };
+            }
+            _ if self.ahead_is(1, "(") => return self.call(),
+            word if BinaryOp::of_word(word).is_some() => {
+                self.expected("an expression");
+                return Tree { expr: self.bad(token.start), height: 1 };
+            }
+            "THEN" | "DO" | "OF" | "TO" | "BY" | "END_IF" | "END_TRANSITION" | "END_ACTION" | "END_STEP"
+            | "END_VAR" | "ELSE" | "ELSIF" | "UNTIL" => {
+                self.expected("an expression");
+                return Tree { expr: self.bad(token.start), height: 1 };
+            }
+            _ => {}
+        }
+        let expr = self.variable();
+        Tree { expr, height: 1 }
+    }
+
+    /// A variable: `a`, `Step.X`, `a[1]`, `s.x`.
+    pub(crate) fn variable(&mut self) -> Expr {
+        let start = self.token().start;
+        let mut names: Vec<Name> = Vec::new();
+        let mut fits = true;
+        while let Some(mut name) = self.name("a name") {
+            while self.at("[") {
+                match self.index() {
+                    Some(index) => {
+                        name.text = format!("{}[{index}]", name.text).into();
+                        name.at = self.since(start).into();
+                    }
+                    None => fits = false,
+                }
+            }
+            names.push(name);
+            if self.at("^") {
+                let at = self.here();
+                self.say(&codes::NOT_CARRIED, &at, "there are no pointers");
+                self.bump();
+                fits = false;
+            }
+            if !self.at(".") {
+                break;
+            }
+            self.bump();
+            if self.token().kind == Kind::Number {
+                let at = self.here();
+                self.say(
+                    &codes::NOT_CARRIED,
+                    &at,
+                    "a bit of a word cannot be named; there are no bit strings",
+                );
+                self.bump();
+                fits = false;
+                break;
+            }
+        }
+        if !fits || names.is_empty() {
+            return self.bad(start);
+        }
+        Expr { kind: ExprKind::Path(Path { names }), at: self.since(start).into() }
+    }
+
+    /// `[1, 2]` as text. An index that is not constant has no counterpart.
+    fn index(&mut self) -> Option<String> {
+        let open = self.token().start;
+        if !self.enter() {
+            return None;
+        }
+        self.bump();
+        let mut parts = Vec::new();
+        let mut constant = true;
+        loop {
+            let negative = self.eat("-");
+            let token = self.token();
+            let alone = self.ahead_is(1, ",") || self.ahead_is(1, "]");
+            let number =
+                self.slice(token).parse::<i64>().ok().filter(|_| token.kind == Kind::Number && alone);
+            match number {
+                Some(n) => {
+                    self.bump();
+                    parts.push(if negative { -n } else { n }.to_string());
+                }
+                None => {
+                    constant = false;
+                    self.tree(1);
+                }
+            }
+            if !self.eat(",") {
+                break;
+            }
+        }
+        self.expect("]");
+        self.leave();
+        if !constant {
+            let at = self.range(open as usize, self.behind());
+            self.say(
+                &codes::NOT_CARRIED,
+                &at,
+                "an index that is no constant; arrays are carried as single variables",
+            );
+            return None;
+        }
+        Some(parts.join(","))
+    }
+
+    /// `f(a, n := b, q => c)`.
+    fn call(&mut self) -> Tree {
+        let start = self.token().start;
+        let upper = self.word();
+        let Some(name) = self.name("a function") else {
+            return Tree { expr: self.bad(start), height: 1 };
+        };
+        let args = self.args();
+        self.applied(name, &upper, args, start)
+    }
+
+    /// A function applied to its arguments; becomes an operator where one exists.
+    pub(crate) fn applied(&mut self, name: Name, upper: &str, args: Args, start: u32) -> Tree {
+        let at = self.since(start);
+        let height = args.height + 1;
+        let mut values = args.list;
+        if let Some(op) = operator_function(upper)
+            && values.len() >= 2
+            && values.iter().all(|a| !a.output)
+        {
+            return self.chain(op, values, args.height, at);
+        }
+        if upper == "NOT"
+            && values.len() == 1
+            && let Some(only) = values.pop()
+        {
+            return self.bounded(ExprKind::Unary(UnaryOp::Not, Box::new(only.value)), at, height);
+        }
+        let path = Path { names: vec![name] };
+        self.bounded(ExprKind::Call(path, values), at, height)
+    }
+
+    /// `ADD(a, b, c)` is `a + b + c`; `GT(a, b, c)` is `a > b and b > c`.
+    fn chain(&mut self, op: BinaryOp, args: Vec<Arg>, height: u32, at: Span) -> Tree {
+        let mut values = args.into_iter().map(|a| Tree { expr: a.value, height });
+        let Some(mut left) = values.next() else {
+            return Tree { expr: Expr { kind: ExprKind::Bad, at: at.into() }, height: 1 };
+        };
+        if op.row().operands == Operands::Comparison {
+            let mut all: Option<Tree> = None;
+            for right in values {
+                let next = Tree { expr: right.expr.clone(), height };
+                let one = self.join(op, left, right);
+                all = Some(match all {
+                    Some(all) => self.join(BinaryOp::And, all, one),
+                    None => one,
+                });
+                left = next;
+            }
+            return all.unwrap_or(left);
+        }
+        for right in values {
+            left = self.join(op, left, right);
+        }
+        left.expr.at = at.into();
+        left
+    }
+
+    /// `(…)` behind a name.
+    pub(crate) fn args(&mut self) -> Args {
+        let mut args = Args { list: Vec::new(), height: 0 };
+        if !self.enter() {
+            return args;
+        }
+        self.expect("(");
+        while !self.at(")") && !self.at_end() {
+            let before = self.mark();
+            if let Some((arg, height)) = self.arg() {
+                args.height = args.height.max(height);
+                args.list.push(arg);
+            }
+            if !self.eat(",") || self.mark() == before {
+                break;
+            }
+        }
+        self.expect(")");
+        self.leave();
+        args
+    }
+
+    fn arg(&mut self) -> Option<(Arg, u32)> {
+        let negated = self.at_word("NOT") && self.ahead(1).kind == Kind::Word && self.ahead_is(2, "=>");
+        if negated {
+            let at = self.here();
+            self.say(
+                &codes::NOT_CARRIED,
+                &at,
+                "an output that is negated on its way; assign it behind the call",
+            );
+            self.bump();
+        }
+        let assigned = self.ahead_is(1, ":=");
+        let output = self.ahead_is(1, "=>");
+        if self.token().kind != Kind::Word || !assigned && !output {
+            let tree = self.tree(1);
+            return Some((Arg { name: None, output: false, value: tree.expr }, tree.height));
+        }
+        let name = self.name("an input")?;
+        self.bump();
+        // An output that is not connected: `Q => ,`.
+        if output && (self.at(",") || self.at(")")) {
+            return None;
+        }
+        let tree = self.tree(1);
+        Some((Arg { name: Some(name), output, value: tree.expr }, tree.height))
+    }
+}
+
+/// The arguments of a call, with the height of the highest.
+pub(crate) struct Args {
+    pub(crate) list: Vec<Arg>,
+    pub(crate) height: u32,
+}

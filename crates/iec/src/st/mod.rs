@@ -1,0 +1,60 @@
+//! Structured Text and declarations, wherever they occur.
+//!
+//! # Where this sits
+//!
+//! ```text
+//! text -> lex -> parse -> expr, stmt, decl -> model::{Expr, Stmt, VarDecl}
+//!                parse -> il::read         -> model::{Expr, Stmt}
+//! model::{Expr, Stmt} -> print -> text
+//! ```
+//!
+//! The text may be a file or a part of one, such as an attribute of an XML element: [`Places`] maps
+//! each byte of the text to its place in the file. Names are kept as written. The language ignores
+//! case, so each reader ends with [`settle`], which gives every name the spelling of its
+//! declaration.
+//!
+//! Reading is lenient where dialects differ and the meaning is clear. An element without a
+//! counterpart is a problem with its place.
+
+mod decl;
+pub(crate) mod expr;
+pub(crate) mod lex;
+mod literal;
+pub(crate) mod parse;
+mod print;
+mod settle;
+mod stmt;
+mod types;
+
+use g7_model::{Expr, Stmt};
+
+use crate::report::Report;
+
+/// Prints an expression as an operand of a list or a contact of a rung.
+pub type Spelling<'a> = &'a dyn Fn(&Expr) -> String;
+
+pub(crate) use decl::{Section, Variable, zero};
+pub(crate) use lex::Kind;
+pub(crate) use parse::Parser;
+pub use parse::Places;
+pub(crate) use print::{Types as Known, Writer};
+pub use settle::settle;
+pub(crate) use types::Types;
+pub use types::{bits, elementary};
+
+/// Reads statements of Structured Text; the text must end behind them.
+pub fn statements(text: &str, place: Places, report: &mut Report) -> Vec<Stmt> {
+    let mut parser = Parser::new(text, place, report);
+    let statements = parser.statements();
+    parser.expect_end();
+    statements
+}
+
+/// Reads one expression; `;` may follow.
+pub fn expression(text: &str, place: Places, report: &mut Report) -> Expr {
+    let mut parser = Parser::new(text, place, report);
+    let expr = parser.expr();
+    while parser.eat(";") {}
+    parser.expect_end();
+    expr
+}

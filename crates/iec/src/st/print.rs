@@ -1,0 +1,436 @@
+//! Prints expressions and statements in the spelling of the standard.
+//!
+//! The printer expects the forms that [`crate::standard`] makes: paths are `name`, `block.member`,
+//! `step.X` and `step.T`. The standard has no implicit conversions; where the .g7 language widens a
+//! number, a conversion is written.
+
+use std::collections::HashMap;
+
+use g7_model::{
+    Arg, BinaryOp, Chart, Document, Expr, ExprKind, FbKind, Holds, Item, Literal, Name, Operands, Path, Stmt,
+    StmtKind, Type, UnaryOp, VarDecl,
+};
+
+/// The type of an expression, as far as it is known.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Ty {
+    Known(Type),
+    /// A number without a type of its own.
+    Whole,
+    Real,
+    Unknown,
+}
+
+/// A printed expression.
+pub(crate) struct Text {
+    pub(crate) text: String,
+    pub(crate) ty: Ty,
+    /// The binding strength of its outermost operator; 9 for an operand.
+    strength: u8,
+}
+
+/// The types of names.
+#[derive(Debug, Default)]
+pub(crate) struct Types<'d> {
+    names: HashMap<&'d str, Type>,
+    functions: HashMap<&'d str, Type>,
+}
+
+impl<'d> Types<'d> {
+    /// The types of the names of the file and, if given, of a chart.
+    pub(crate) fn new(document: &'d Document, chart: Option<&'d Chart>) -> Types<'d> {
+        let mut types = Types::default();
+        for item in &document.items {
+            match item {
+                Item::Var(v) => types.declare(v),
+                Item::Function(f) => _ = types.functions.insert(&f.name.text, f.result),
+                _ => {}
+            }
+        }
+        chart.into_iter().flat_map(Chart::vars).for_each(|v| types.declare(v));
+        types
+    }
+
+    fn declare(&mut self, decl: &'d VarDecl) {
+        self.names.extend(decl.names.iter().map(|n| (&*n.text, decl.ty)));
+    }
+
+    /// Adds a name of a function, which hides all others.
+    pub(crate) fn own(mut self, name: &'d str, ty: Type) -> Types<'d> {
+        self.names.insert(name, ty);
+        self
+    }
+}
+
+/// Prints the texts of one place.
+pub(crate) struct Writer<'a> {
+    pub(crate) types: &'a Types<'a>,
+}
+
+/// The operator as the standard has it: `·` is an AND.
+fn standard(op: BinaryOp) -> BinaryOp {
+    if op == BinaryOp::Dot { BinaryOp::And } else { op }
+}
+
+/// The wider of two types, by the widening rules of the .g7 language.
+fn wider(a: Type, b: Type) -> Type {
+    let rank = |t: Type| match t.elementary() {
+        Some(row) if t.is_number() => (t.is_real(), row.bits, row.holds == Holds::Signed),
+        _ => (false, 0, false),
+    };
+    if rank(a) >= rank(b) { a } else { b }
+}
+
+impl Text {
+    fn operand(text: String, ty: Ty) -> Text {
+        Text { text, ty, strength: BinaryOp::TIGHTEST }
+    }
+
+    fn within(self, least: u8) -> String {
+        if self.strength < least { format!("({})", self.text) } else { self.text }
+    }
+
+    fn is(&self, ty: Type) -> bool {
+        self.ty == Ty::Known(ty)
+    }
+
+    /// Converts a number to another type.
+    fn converted(self, to: Type) -> Text {
+        match self.ty {
+            Ty::Known(from) if from != to && from.is_number() && to.is_number() => {
+                Text::operand(format!("{from}_TO_{to}({})", self.text), Ty::Known(to))
+            }
+            Ty::Whole if to.is_real() => {
+                let digits = self.text.trim_start_matches('-').chars().all(|c| c.is_ascii_digit());
+                let text =
+                    if digits { format!("{}.0", self.text) } else { format!("DINT_TO_{to}({})", self.text) };
+                Text { text, ty: Ty::Known(to), strength: self.strength }
+            }
+            // A literal used as a condition.
+            Ty::Whole if to == Type::Bool => {
+                let text = if self.text == "0" { "FALSE" } else { "TRUE" };
+                Text::operand(text.into(), Ty::Known(Type::Bool))
+            }
+            _ => self,
+        }
+    }
+}
+
+impl Writer<'_> {
+    /// Prints an expression as a value of a type.
+    pub(crate) fn value(&self, e: &Expr, ty: Type) -> String {
+        self.text(e).converted(ty).text
+    }
+
+    /// Prints a condition.
+    pub(crate) fn condition(&self, e: &Expr) -> String {
+        self.value(e, Type::Bool)
+    }
+
+    /// Prints an expression of any type.
+    pub(crate) fn plain(&self, e: &Expr) -> String {
+        self.text(e).text
+    }
+
+    fn text(&self, e: &Expr) -> Text {
+        match &e.kind {
+            ExprKind::Literal(literal) => literal_text(literal),
+            ExprKind::Path(path) => self.path(path),
+            ExprKind::Direct(name) => Text::operand(format!("%{name}"), Ty::Unknown),
+            ExprKind::Unary(op, inner) => self.unary(*op, inner),
+            ExprKind::Binary(op, a, b) => self.binary(*op, a, b),
+            ExprKind::Call(path, args) => self.call(path, args),
+            // `standard` has removed these, so they do not occur here.
+            ExprKind::Timer { .. } | ExprKind::Bad => Text::operand("FALSE".into(), Ty::Unknown),
+        }
+    }
+
+    fn unary(&self, op: UnaryOp, inner: &Expr) -> Text {
+        match op {
+            UnaryOp::Not => {
+                let text = self.text(inner).converted(Type::Bool).within(8);
+                Text { text: format!("NOT {text}"), ty: Ty::Known(Type::Bool), strength: 8 }
+            }
+            UnaryOp::Neg => {
+                let inner = self.text(inner);
+                let ty = inner.ty;
+                let text = inner.within(BinaryOp::TIGHTEST);
+                let text = if text.starts_with('-') { format!("-({text})") } else { format!("-{text}") };
+                Text { text, ty, strength: 8 }
+            }
+            UnaryOp::Rise | UnaryOp::Fall => Text::operand("FALSE".into(), Ty::Known(Type::Bool)),
+        }
+    }
+
+    fn binary(&self, op: BinaryOp, a: &Expr, b: &Expr) -> Text {
+        let (left, right) = (self.text(a), self.text(b));
+        let boolean = left.is(Type::Bool) || right.is(Type::Bool);
+        let op = match op {
+            BinaryOp::Add if boolean => BinaryOp::Or,
+            BinaryOp::Mul if boolean => BinaryOp::And,
+            op => standard(op),
+        };
+        let own = op.strength();
+        let operands = op.row().operands;
+        let logical = operands == Operands::Logic;
+        let compares = operands == Operands::Comparison;
+        let (left, right, common) = if logical {
+            (left.converted(Type::Bool), right.converted(Type::Bool), Ty::Known(Type::Bool))
+        } else {
+            alike(left, right, op)
+        };
+        let ty = if logical || compares { Ty::Known(Type::Bool) } else { common };
+        let text = format!("{} {} {}", left.within(own), op.row().standard, right.within(own + 1));
+        Text { text, ty, strength: own }
+    }
+
+    fn path(&self, path: &Path) -> Text {
+        let ty = match path.names.as_slice() {
+            [one] => self.types.names.get(&*one.text).copied(),
+            [first, second] => match self.types.names.get(&*first.text) {
+                Some(Type::Fb(kind)) => member(*kind, &second.text).map(|m| m.1),
+                Some(_) => None,
+                None if &*second.text == "X" => Some(Type::Bool),
+                None => Some(Type::Time),
+            },
+            _ => None,
+        };
+        Text::operand(path.text(), ty.map_or(Ty::Unknown, Ty::Known))
+    }
+
+    fn call(&self, path: &Path, args: &[Arg]) -> Text {
+        let name = path.text();
+        let own = self.types.functions.get(&*name).copied();
+        let texts: Vec<Text> = args.iter().map(|a| self.text(&a.value)).collect();
+        let common = texts.iter().fold(Ty::Whole, |all, t| match (all, t.ty) {
+            (Ty::Known(a), Ty::Known(b)) if a.is_number() && b.is_number() => Ty::Known(wider(a, b)),
+            (Ty::Known(a), _) if a != Type::Bool => Ty::Known(a),
+            (_, ty) => ty,
+        });
+        let upper = name.to_ascii_uppercase();
+        let alike = matches!(upper.as_str(), "MIN" | "MAX" | "LIMIT" | "SEL");
+        let ty = match own {
+            Some(ty) => Ty::Known(ty),
+            None => standard_type(&upper, common),
+        };
+        let mut parts = Vec::new();
+        for (arg, text) in args.iter().zip(texts) {
+            let text = match common {
+                Ty::Known(t) if alike && t.is_number() => text.converted(t).text,
+                _ => text.text,
+            };
+            parts.push(match &arg.name {
+                Some(n) => format!("{} {} {text}", n.text, if arg.output { "=>" } else { ":=" }),
+                None => text,
+            });
+        }
+        let name = if own.is_some() { name } else { upper };
+        Text::operand(format!("{name}({})", parts.join(", ")), ty)
+    }
+
+    /// Prints the statements of a body.
+    pub(crate) fn body(&self, list: &[Stmt]) -> String {
+        let mut text = String::new();
+        self.statements(list, 0, &mut text);
+        text.truncate(text.trim_end().len());
+        text
+    }
+
+    /// Prints statements, each line with its indentation.
+    pub(crate) fn statements(&self, list: &[Stmt], indent: usize, out: &mut String) {
+        for stmt in list {
+            self.statement(stmt, indent, out);
+        }
+    }
+
+    fn statement(&self, stmt: &Stmt, indent: usize, out: &mut String) {
+        let pad = "  ".repeat(indent);
+        let mut line = |text: &str| {
+            out.push_str(&pad);
+            out.push_str(text);
+            out.push('\n');
+        };
+        match &stmt.kind {
+            StmtKind::Assign { target, value } => {
+                let target = self.text(target);
+                let value = self.text(value);
+                let value = match target.ty {
+                    Ty::Known(ty) => value.converted(ty),
+                    _ => value,
+                };
+                line(&format!("{} := {};", target.text, value.text));
+            }
+            StmtKind::Call(path, args) => {
+                let text = self.block_call(path, args);
+                line(&format!("{text};"));
+            }
+            StmtKind::If(arms, otherwise) => {
+                for (i, (condition, body)) in arms.iter().enumerate() {
+                    let word = if i == 0 { "IF" } else { "ELSIF" };
+                    let condition = self.condition(condition);
+                    out.push_str(&format!("{pad}{word} {condition} THEN\n"));
+                    self.statements(body, indent + 1, out);
+                }
+                if !otherwise.is_empty() {
+                    out.push_str(&format!("{pad}ELSE\n"));
+                    self.statements(otherwise, indent + 1, out);
+                }
+                out.push_str(&format!("{pad}END_IF;\n"));
+            }
+            StmtKind::Case(selector, arms, otherwise) => {
+                let selector = self.text(selector).text;
+                out.push_str(&format!("{pad}CASE {selector} OF\n"));
+                for arm in arms {
+                    let labels: Vec<String> =
+                        arm.labels.iter().map(|(a, b)| self.label(a, b.as_ref())).collect();
+                    out.push_str(&format!("{pad}  {}:\n", labels.join(", ")));
+                    self.statements(&arm.body, indent + 2, out);
+                }
+                if !otherwise.is_empty() {
+                    out.push_str(&format!("{pad}ELSE\n"));
+                    self.statements(otherwise, indent + 1, out);
+                }
+                out.push_str(&format!("{pad}END_CASE;\n"));
+            }
+            StmtKind::For { var, from, to, by, body } => {
+                let variable = self.path(&Path { names: vec![var.clone()] });
+                let ty = match variable.ty {
+                    Ty::Known(ty) => ty,
+                    _ => Type::Int,
+                };
+                let (from, to) = (self.value(from, ty), self.value(to, ty));
+                let by = by.as_ref().map_or(String::new(), |by| format!(" BY {}", self.value(by, ty)));
+                out.push_str(&format!("{pad}FOR {} := {from} TO {to}{by} DO\n", variable.text));
+                self.statements(body, indent + 1, out);
+                out.push_str(&format!("{pad}END_FOR;\n"));
+            }
+            StmtKind::While(condition, body) => {
+                let condition = self.condition(condition);
+                out.push_str(&format!("{pad}WHILE {condition} DO\n"));
+                self.statements(body, indent + 1, out);
+                out.push_str(&format!("{pad}END_WHILE;\n"));
+            }
+            StmtKind::Repeat(body, condition) => {
+                out.push_str(&format!("{pad}REPEAT\n"));
+                self.statements(body, indent + 1, out);
+                let condition = self.condition(condition);
+                out.push_str(&format!("{pad}UNTIL {condition}\n{pad}END_REPEAT;\n"));
+            }
+            StmtKind::Exit => line("EXIT;"),
+            StmtKind::Return => line("RETURN;"),
+        }
+    }
+
+    fn label(&self, from: &Expr, to: Option<&Expr>) -> String {
+        let from = self.text(from).text;
+        match to {
+            Some(to) => format!("{from}..{}", self.text(to).text),
+            None => from,
+        }
+    }
+
+    /// A call of a function block.
+    fn block_call(&self, path: &Path, args: &[Arg]) -> String {
+        let kind = match path.names.as_slice() {
+            [one] => self.types.names.get(&*one.text).copied(),
+            _ => None,
+        };
+        let mut parts = Vec::new();
+        for arg in args {
+            let name = arg.name.as_ref().map_or("", |n: &Name| &n.text);
+            let ty = match kind {
+                Some(Type::Fb(kind)) => member(kind, name).map(|m| m.1),
+                _ => None,
+            };
+            let value = match ty {
+                Some(ty) if !arg.output => self.value(&arg.value, ty),
+                _ => self.text(&arg.value).text,
+            };
+            parts.push(format!("{name} {} {value}", if arg.output { "=>" } else { ":=" }));
+        }
+        format!("{}({})", path.text(), parts.join(", "))
+    }
+}
+
+/// Converts both operands to a common type.
+fn alike(left: Text, right: Text, op: BinaryOp) -> (Text, Text, Ty) {
+    let time = left.is(Type::Time) || right.is(Type::Time);
+    if time && matches!(op, BinaryOp::Mul | BinaryOp::Div) {
+        return (left, right, Ty::Known(Type::Time));
+    }
+    match (left.ty, right.ty) {
+        (Ty::Known(a), Ty::Known(b)) if a.is_number() && b.is_number() => {
+            let ty = wider(a, b);
+            (left.converted(ty), right.converted(ty), Ty::Known(ty))
+        }
+        (Ty::Known(a), Ty::Whole) => (left, right.converted(a), Ty::Known(a)),
+        (Ty::Whole, Ty::Known(b)) => (left.converted(b), right, Ty::Known(b)),
+        (Ty::Known(a), Ty::Real) if a.is_integer() => {
+            (left.converted(Type::Lreal), right, Ty::Known(Type::Lreal))
+        }
+        (Ty::Real, Ty::Known(b)) if b.is_integer() => {
+            (left, right.converted(Type::Lreal), Ty::Known(Type::Lreal))
+        }
+        (Ty::Known(t), _) | (_, Ty::Known(t)) => (left, right, Ty::Known(t)),
+        (a, _) => (left, right, a),
+    }
+}
+
+/// The member of a function block with this name, in any case.
+fn member(kind: FbKind, name: &str) -> Option<(&'static str, Type)> {
+    kind.members().iter().find(|m| m.0.eq_ignore_ascii_case(name)).map(|m| (m.0, m.1))
+}
+
+/// The type of the result of a standard function.
+fn standard_type(name: &str, common: Ty) -> Ty {
+    if let Some((_, to)) = name.split_once("_TO_") {
+        return super::elementary(to).map_or(Ty::Unknown, Ty::Known);
+    }
+    match name {
+        "LEN" | "FIND" => Ty::Known(Type::Int),
+        "LEFT" | "RIGHT" | "MID" | "CONCAT" | "INSERT" | "DELETE" | "REPLACE" => Ty::Known(Type::STRING),
+        "TRUNC" => Ty::Unknown,
+        _ => common,
+    }
+}
+
+fn literal_text(literal: &Literal) -> Text {
+    let (text, ty) = match literal {
+        Literal::Bool(b) => (if *b { "TRUE" } else { "FALSE" }.to_string(), Ty::Known(Type::Bool)),
+        Literal::Int(n, None) => (n.to_string(), Ty::Whole),
+        Literal::Int(n, Some(ty)) => (format!("{ty}#{n}"), Ty::Known(*ty)),
+        Literal::Real(text, None) => (real(text), Ty::Real),
+        Literal::Real(text, Some(ty)) => (format!("{ty}#{}", real(text)), Ty::Known(*ty)),
+        Literal::Time(time) => (format!("{time:#}"), Ty::Known(Type::Time)),
+        Literal::Str(text) => (string(text), Ty::Known(Type::STRING)),
+    };
+    let strength = if text.starts_with('-') { 8 } else { BinaryOp::TIGHTEST };
+    Text { text, ty, strength }
+}
+
+/// A real number with a point.
+fn real(text: &str) -> String {
+    let (digits, power) = match text.split_once(['e', 'E']) {
+        Some((digits, power)) => (digits, format!("E{power}")),
+        None => (text, String::new()),
+    };
+    let point = if digits.contains('.') { "" } else { ".0" };
+    format!("{digits}{point}{power}")
+}
+
+fn string(text: &str) -> String {
+    let mut out = String::from("'");
+    for c in text.chars() {
+        match c {
+            '$' => out.push_str("$$"),
+            '\'' => out.push_str("$'"),
+            '\n' => out.push_str("$N"),
+            '\r' => out.push_str("$R"),
+            '\t' => out.push_str("$T"),
+            c if u32::from(c) < 32 => out.push_str(&format!("${:02X}", u32::from(c))),
+            c => out.push(c),
+        }
+    }
+    out.push('\'');
+    out
+}

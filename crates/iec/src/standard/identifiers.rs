@@ -1,0 +1,205 @@
+//! Identifiers of IEC 61131-3: letters, digits and single `_`; case is ignored. Names that a
+//! program declares are visible only in it, all others everywhere.
+
+use std::collections::{HashMap, HashSet};
+
+use g7_model::{Name, Span};
+
+use super::scopes::{Scopes, StepKey};
+use crate::nodes::Taken;
+
+/// The words of the language, its standard functions and function blocks. Operators of Instruction
+/// List and qualifiers are missing, because they have a meaning only in their own places.
+const RESERVED: &str = "ABS ACOS ACTION ADD AND ANY ANY_BIT ANY_DATE ANY_INT ANY_NUM ANY_REAL ARRAY ASIN AT ATAN BOOL BY \
+BYTE CASE CONCAT CONFIGURATION CONSTANT COS CTD CTU CTUD DATE DATE_AND_TIME DELETE DINT DIV DO DT \
+DWORD ELSE ELSIF END_ACTION END_CASE END_CONFIGURATION END_FOR END_FUNCTION END_FUNCTION_BLOCK \
+END_IF END_PROGRAM END_REPEAT END_RESOURCE END_STEP END_STRUCT END_TRANSITION END_TYPE END_VAR \
+END_WHILE EN ENO EQ EXIT EXP EXPT F_EDGE F_TRIG FALSE FIND FOR FROM FUNCTION FUNCTION_BLOCK GE GT IF \
+INITIAL_STEP INSERT INT LE LEFT LEN LIMIT LINT LN LOG LREAL LT LWORD MAX MID MIN MOD MOVE MUL MUX NE \
+NON_RETAIN NOT OF ON OR PROGRAM R_TRIG READ_ONLY READ_WRITE REAL REPEAT REPLACE RESOURCE RETAIN \
+RETURN RIGHT ROL ROR RS SEL SHL SHR SIN SINT SQRT SR STEP STRING STRUCT SUB TAN TASK THEN TIME \
+TIME_OF_DAY TO TOD TOF TON TP TRANSITION TRUE TRUNC TYPE UDINT UINT ULINT UNTIL USINT VAR VAR_ACCESS \
+VAR_CONFIG VAR_EXTERNAL VAR_GLOBAL VAR_IN_OUT VAR_INPUT VAR_OUTPUT VAR_TEMP WHILE WITH WORD WSTRING \
+XOR";
+
+/// The names given so far.
+pub(super) struct Names {
+    reserved: HashSet<&'static str>,
+    /// Names that all programs see, in upper case.
+    global: HashSet<String>,
+    /// Names of each program, in upper case.
+    programs: Vec<HashSet<String>>,
+    vars: HashMap<(Option<usize>, Box<str>), String>,
+    steps: HashMap<StepKey, String>,
+    /// Named actions and sections.
+    parts: HashMap<(Option<usize>, Box<str>), String>,
+    functions: HashMap<Box<str>, String>,
+    /// The last number given for each name, so that many equal names do not take quadratic time.
+    counts: HashMap<(Owner, String), usize>,
+    /// The names of programs that are units of their own.
+    units: Taken,
+    /// Names that had to be changed: the place, the old and the new name.
+    pub(super) renamed: Vec<(Span, Box<str>, String)>,
+}
+
+/// The owner of a name: a program, or None for all programs.
+pub(super) type Owner = Option<usize>;
+
+impl Names {
+    pub(super) fn new(programs: usize) -> Names {
+        Names {
+            reserved: RESERVED.split_whitespace().collect(),
+            global: HashSet::new(),
+            programs: vec![HashSet::new(); programs],
+            vars: HashMap::new(),
+            steps: HashMap::new(),
+            parts: HashMap::new(),
+            functions: HashMap::new(),
+            counts: HashMap::new(),
+            units: Taken::default(),
+            renamed: Vec::new(),
+        }
+    }
+
+    fn has(&self, owner: Owner, upper: &str) -> bool {
+        let inside = match owner {
+            Some(program) => self.programs.get(program).is_some_and(|p| p.contains(upper)),
+            None => self.programs.iter().any(|p| p.contains(upper)),
+        };
+        inside || self.reserved.contains(upper) || self.global.contains(upper)
+    }
+
+    /// Gives a name derived from `wish` that is not taken.
+    pub(super) fn free(&mut self, owner: Owner, wish: &str) -> String {
+        let wish = identifier(wish);
+        let mut text = wish.clone();
+        let key = (owner, wish.to_ascii_uppercase());
+        let mut number = self.counts.get(&key).copied().unwrap_or(1);
+        while self.has(owner, &text.to_ascii_uppercase()) {
+            number += 1;
+            text = format!("{}_{number}", wish.trim_end_matches('_'));
+        }
+        self.counts.insert(key, number);
+        let upper = text.to_ascii_uppercase();
+        match owner.and_then(|p| self.programs.get_mut(p)) {
+            Some(program) => program.insert(upper),
+            None => self.global.insert(upper),
+        };
+        text
+    }
+
+    /// Gives a name as close to the author's as possible.
+    pub(super) fn give(&mut self, owner: Owner, name: &Name, prefix: &str, start: &str) -> String {
+        let plain = identifier(&format!("{start}{}", name.text));
+        let taken = self.has(owner, &plain.to_ascii_uppercase()) && !prefix.is_empty();
+        let text =
+            if taken { self.free(owner, &format!("{prefix}_{plain}")) } else { self.free(owner, &plain) };
+        if *text != *name.text {
+            self.renamed.push((name.at.0, name.text.clone(), text.clone()));
+        }
+        text
+    }
+
+    /// The name of a program whose own names may be equal to it.
+    pub(super) fn give_unit(&mut self, name: &Name) -> String {
+        let wish = identifier(&name.text);
+        let text = loop {
+            let text = self.units.give(&wish);
+            let upper = text.to_ascii_uppercase();
+            if !self.reserved.contains(upper.as_str()) && !self.global.contains(&upper) {
+                break text;
+            }
+        };
+        if *text != *name.text {
+            self.renamed.push((name.at.0, name.text.clone(), text.clone()));
+        }
+        text
+    }
+
+    pub(super) fn give_var(&mut self, owner: Owner, chart: Option<usize>, name: &Name, prefix: &str) {
+        let text = self.give(owner, name, prefix, "");
+        self.vars.insert((chart, name.text.clone()), text);
+    }
+
+    pub(super) fn give_part(&mut self, owner: Owner, chart: Option<usize>, name: &Name, prefix: &str) {
+        let text = self.give(owner, name, prefix, "");
+        self.parts.insert((chart, name.text.clone()), text);
+    }
+
+    pub(super) fn give_function(&mut self, name: &Name) {
+        let text = self.give(None, name, "", "");
+        self.functions.insert(name.text.clone(), text);
+    }
+
+    /// Names of steps share one name space with variables.
+    pub(super) fn give_steps(&mut self, owner: Owner, chart: usize, prefix: &str, scopes: &Scopes) {
+        for (key, step) in scopes.steps_of(chart) {
+            let digit = step.name.text.starts_with(|c: char| c.is_ascii_digit());
+            let text = self.give(owner, &step.name, prefix, if digit { "Step" } else { "" });
+            self.steps.insert(key, text);
+        }
+    }
+
+    pub(super) fn var(&self, chart: Option<usize>, name: &str) -> Option<&str> {
+        self.vars.get(&(chart, name.into())).map(String::as_str)
+    }
+
+    pub(super) fn part(&self, chart: Option<usize>, name: &str) -> Option<&str> {
+        self.parts.get(&(chart, name.into())).map(String::as_str)
+    }
+
+    pub(super) fn step(&self, key: StepKey) -> &str {
+        self.steps.get(&key).map_or("", String::as_str)
+    }
+
+    pub(super) fn function(&self, name: &str) -> Option<&str> {
+        self.functions.get(name).map(String::as_str)
+    }
+
+    /// A name that only its function sees.
+    pub(super) fn inner(&self, name: &str) -> String {
+        let text = identifier(name);
+        if self.reserved.contains(text.to_ascii_uppercase().as_str()) { format!("{text}_2") } else { text }
+    }
+}
+
+/// An identifier of letters, digits and single `_` that begins with a letter or `_`.
+fn identifier(text: &str) -> String {
+    let mut out = String::new();
+    for c in text.chars() {
+        match fold(c) {
+            "" if c.is_ascii_alphanumeric() => out.push(c),
+            "" if !out.ends_with('_') => out.push('_'),
+            "" => {}
+            folded => out.push_str(folded),
+        }
+    }
+    let out = if out.len() > 1 { out.trim_end_matches('_').to_string() } else { out };
+    match out.chars().next() {
+        Some(c) if c.is_ascii_digit() => format!("N{out}"),
+        Some('_') | None => format!("v{out}"),
+        Some(_) => out,
+    }
+}
+
+/// The usual spelling of letters outside ASCII.
+fn fold(c: char) -> &'static str {
+    match c {
+        'ä' | 'å' | 'á' | 'à' | 'â' => "a",
+        'Ä' | 'Å' | 'Á' | 'À' => "A",
+        'ö' | 'ó' | 'ô' | 'ø' => "o",
+        'Ö' | 'Ø' => "O",
+        'ü' | 'ú' | 'ù' | 'û' => "u",
+        'Ü' => "U",
+        'é' | 'è' | 'ê' | 'ë' => "e",
+        'É' | 'È' => "E",
+        'í' | 'ì' | 'î' | 'ï' => "i",
+        'ç' => "c",
+        'ñ' => "n",
+        'ß' => "ss",
+        'æ' => "ae",
+        '+' => "plus",
+        '-' => "minus",
+        _ => "",
+    }
+}

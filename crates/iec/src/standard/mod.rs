@@ -1,0 +1,49 @@
+//! Rewrites a document in the forms of IEC 61131-3.
+//!
+//! # Where this sits
+//!
+//! ```text
+//! Document -> standard -> Document -> write (text, PLCopen XML)
+//! ```
+//!
+//! The result can be printed as it is: its names are identifiers of IEC 61131-3, its paths are
+//! `name`, `block.member`, `step.X` and `step.T`, and each element has a form in the standard.
+//!
+//! # What must hold
+//!
+//! - If no problem is reported, the result means the same as the document. Edges and delays become
+//!   function blocks that a body before the charts calls, conditions of actions become bodies, and a
+//!   step that another program observes drives a variable.
+//! - An element without a form is an error with its place. An element that runs by other rules is a
+//!   warning.
+
+mod actions;
+mod assemble;
+mod bodies;
+mod identifiers;
+mod lower;
+mod scopes;
+mod watch;
+
+use std::collections::HashSet;
+
+use g7_model::{Document, Problem};
+
+pub(crate) use lower::Form;
+use lower::Lower;
+
+/// Rewrites a document; returns it with the problems of what it does not carry.
+pub(crate) fn standard(document: &Document, form: Form) -> (Document, Vec<Problem>) {
+    // The variables that several programs use become known on the way, so this repeats until no new
+    // one is found.
+    let mut shared = HashSet::new();
+    loop {
+        let mut lower = Lower::new(document, form, shared);
+        let out = lower.document();
+        if lower.wanted.is_subset(&lower.shared) {
+            return (out, lower.finish());
+        }
+        shared = std::mem::take(&mut lower.shared);
+        shared.extend(lower.wanted);
+    }
+}

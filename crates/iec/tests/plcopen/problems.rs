@@ -1,0 +1,85 @@
+//! What cannot be carried over is said, with its place.
+
+use crate::show::{bytes, document, errors, import, places};
+use crate::support;
+use crate::support::recognise;
+
+#[test]
+fn each_mistake_has_its_line() {
+    let (_, problems) = import("wrong.xml");
+    let mut found = places(&bytes("wrong.xml"), &problems);
+    found.sort();
+    let mut expected = [
+        "G0605 4",  // a type of one's own
+        "G0615 8",  // two variables of one name
+        "G0604 9",  // a variable of that type
+        "G0605 10", // an address given elsewhere
+        "G0614 10", // bits as a number
+        "G0611 14", // two steps of one name
+        "G0609 14", // a step behind a step
+        "G0606 15", // no condition
+        "G0610 15", // nothing behind
+        "G0609 16", // a wire from nowhere
+        "G0609 16", // no step at all
+        "G0606 17", // a condition that ends too soon
+        "G0610 17", // nothing behind
+        "G0609 18", // a jump to nowhere
+        "G0609 19", // an action block at no step
+        "G0604 21", // a qualifier that is none
+        "G0612 22", // a duration is missing
+        "G0607 23", // an unknown name
+        "G0605 24", // an indicator
+        "G0603 26", // an unknown object
+        "G0604 27", // a coil that belongs to nothing
+    ];
+    expected.sort_unstable();
+    assert_eq!(found, expected, "{:?}", problems.iter().map(|p| &p.what).collect::<Vec<_>>());
+}
+
+#[test]
+fn a_file_is_known_by_its_name_space() {
+    let known = |text: &str| recognise("", text.as_bytes());
+    for space in ["http://www.plcopen.org/xml/tc6_0200", "http://www.plcopen.org/xml/tc6_0201"] {
+        assert_eq!(known(&format!("<project xmlns=\"{space}\"/>")), Some("plcopen"));
+    }
+    let last = "<ppx:Project xmlns:ppx=\"www.iec.ch/public/TC65SC65BWG7TF10\"/>";
+    assert_eq!(known(last), Some("plcopen"));
+    assert_ne!(known("<project/>"), Some("plcopen"));
+}
+
+#[test]
+fn what_iec_61131_does_not_have_is_said_of_an_export() {
+    let text = r#"profile iec60848
+input a : BOOL at 3
+input b : BOOL inverted
+output v : BOOL safe TRUE
+var c : DINT
+chart G {
+  initial step 1 { force H := INIT  on rise(a): c := 1  N v if a }
+  step 2
+  1 -> 2 when rise(a)
+  2 -> 1 when 3s/a/2s on clearing { c := 0 }
+  () -> 2 when b
+}
+chart H { initial step 5 }
+prove always v
+"#;
+    let written = support::export("plcopen", &document(text));
+    let mut found = places(text.as_bytes(), &written.problems);
+    found.sort();
+    let mut expected = [
+        "G0614 1",  // other rules
+        "G0605 2",  // a channel
+        "G0604 3",  // inverted
+        "G0605 4",  // a safe value
+        "G0604 7",  // forcing
+        "G0614 7",  // on event
+        "G0611 7",  // 1 is no identifier, nor 2 and 5
+        "G0614 10", // on clearing
+        "G0614 11", // a source
+        "G0605 14", // a property
+    ];
+    expected.sort_unstable();
+    assert_eq!(found, expected, "{:?}", written.problems.iter().map(|p| &p.what).collect::<Vec<_>>());
+    assert!(!errors(&written.problems).is_empty());
+}

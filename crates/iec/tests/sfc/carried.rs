@@ -1,0 +1,325 @@
+//! What is carried over, and as what.
+
+use crate::support::recognise;
+use g7_model::FileId;
+
+use crate::{carried, errors, file, import};
+
+/// Parses the expected text: spellings of the printer do not matter.
+#[track_caller]
+fn same(document: &g7_model::Document, expected: &str) {
+    let (expected, problems) = g7_syntax::parse(expected, FileId(1));
+    assert_eq!(problems, []);
+    assert_eq!(g7_syntax::print(document, None), g7_syntax::print(&expected, None));
+}
+
+#[test]
+fn a_program_with_everything() {
+    let (document, problems) = import(&file("press.st"));
+    assert_eq!(errors(&problems), <[&str; 0]>::default());
+    assert_eq!(problems.len(), 1, "{problems:?}");
+    assert!(problems[0].what.contains("indicator variable"));
+    same(
+        &document,
+        "profile iec61131
+         scan 20ms
+         input start : BOOL at %IX0.0 \"both buttons\"
+         input door : BOOL \"both buttons\"
+         input Depth : INT
+         output ram : BOOL at %QX0.0
+         output Lamp : BOOL
+         var strokes : DINT := 0 \"since the last oil\"
+         input top : BOOL at %IX0.3
+         output oil : BOOL at %QX1.0
+         const LIMIT_OF : INT := 100
+         var total : UDINT := 1000 retain
+         chart Press {
+           initial step Rest { N Lamp }
+           step Down { S ram  P1 Count  L 1.5s Lamp  D 2s oil }
+           step Up { R ram  SL 500ms oil }
+           go: Rest -> Down when start and not door priority 2
+           Down -> Up when Depth >= LIMIT_OF or Down.T > 3s
+           Up -> Rest when top and not (door and start)
+           action Count {
+             strokes := strokes + 1
+             IF strokes mod 10 = 0 THEN total := total + UDINT#1
+             ELSIF door THEN strokes := ABS(strokes) END_IF
+           }
+         }",
+    );
+    let (_, problems) = g7_compile::compile(&document);
+    assert_eq!(errors(&problems), <[&str; 0]>::default());
+}
+
+#[test]
+fn structures_arrays_enumerations_and_functions() {
+    let (document, problems) = import(&file("fork.st"));
+    assert_eq!(problems, []);
+    same(
+        &document,
+        "profile iec61131
+         const Red : INT := 0
+         const Green : INT := 1
+         const Blue : INT := 2
+         input go : BOOL
+         output done : BOOL
+         var c : INT := Green
+         var `p.a` : INT := 1
+         var `p.b` : INT := 2
+         var `v[1]` : INT := 5
+         var `v[2]` : INT := 7
+         var `v[3]` : INT := 7
+         function Twice(n : INT) : INT { Twice := n * 2 }
+         chart Fork {
+           initial step S0
+           step A { N Work }
+           step B
+           S0 -> (A, B) when go
+           (A, B) -> S0 when c = Blue
+           action Work {
+             `p.b` := Twice(`p.a` + `v[2]`)
+             IF go THEN c := Blue END_IF
+             done := c = Blue
+           }
+         }",
+    );
+    let (_, problems) = g7_compile::compile(&document);
+    assert_eq!(errors(&problems), <[&str; 0]>::default());
+}
+
+#[test]
+fn several_programs_have_their_own_pace() {
+    let (document, problems) = import(&file("two.st"));
+    assert_eq!(problems, []);
+    same(
+        &document,
+        "profile iec61131
+         scan 10ms
+         var full : BOOL
+         chart Feed {
+           var n : INT at %MW1
+           initial step Wait
+           step Give { P More }
+           Wait -> Give when not full
+           Give -> Wait when full
+           action More { n := n + 1 }
+         }
+         chart Drain every 50ms {
+           initial step Wait
+           step Take { R full }
+           Wait -> Take when full
+           Take -> Wait when not full and Take.T >= 1s
+         }",
+    );
+}
+
+#[test]
+fn names_have_the_letters_of_their_declaration() {
+    let text = carried(
+        "PROGRAM p VAR Init : BOOL; END_VAR INITIAL_STEP INIT: END_STEP STEP On: END_STEP \
+         TRANSITION FROM init TO ON := INIT; END_TRANSITION \
+         TRANSITION FROM on TO Init := init.x AND ON.t > T#1s; END_TRANSITION END_PROGRAM",
+    );
+    // A step and a variable of one name: `.X` and `.T` are of the step.
+    assert!(text.contains("`INIT` -> On when Init\n"), "{text}");
+    assert!(text.contains("On -> `INIT` when INIT.X and On.T > 1s"), "{text}");
+}
+
+#[test]
+fn a_number_as_a_condition_is_told() {
+    let (document, problems) = import(
+        "PROGRAM p VAR n : INT; END_VAR INITIAL_STEP A: END_STEP STEP B: END_STEP \
+         TRANSITION FROM A TO B := n; END_TRANSITION END_PROGRAM",
+    );
+    assert!(problems.iter().any(|p| p.code.id == "G0614" && p.what.contains("compared with 0")));
+    assert!(g7_syntax::print(&document, None).contains("A -> B when n <> 0"));
+}
+
+#[test]
+fn dialects_are_read() {
+    let text = carried(
+        "(* outer (* inner *) *) {attribute 'x'}\nPROGRAM p\nVAR a, b : BOOL; n : INT; END_VAR\n\
+         INITIAL_STEP A\n : X(N);\nEND_STEP\n\
+         ACTION X\n a := b := TRUE; n := ADD(n, 2, 3); a S= b; IF GT(3, n, 1) & a THEN n := 16#F; END_IF; END_ACTION\n\
+         END_PROGRAM",
+    );
+    for part in
+        ["b := TRUE", "a := b", "n := n + 2 + 3", "IF b THEN\n      a := TRUE", "3 > n and n > 1 and a"]
+    {
+        assert!(text.contains(part), "{part} in {text}");
+    }
+}
+
+#[test]
+fn a_file_is_known_by_its_content_and_its_name() {
+    let is = |name: &str, text: &str| recognise(name, text.as_bytes()) == Some("sfc");
+    assert!(is("", "(* x *) PROGRAM a END_PROGRAM"));
+    assert!(is("", "function_block F END_FUNCTION_BLOCK"));
+    assert!(is("", "FUNCTION f : INT END_FUNCTION"));
+    assert!(is("chart.SFC", "whatever"));
+    assert!(!is("", "function Full(n : INT) : BOOL { Full := TRUE }"));
+    assert!(!is("", "chart G { initial step 1 }"));
+    assert!(!is("x.g7", "PROGRAM a END_PROGRAM"));
+}
+
+#[test]
+fn a_program_without_steps_runs_before_the_charts() {
+    let text = carried("PROGRAM p VAR n : INT; END_VAR n := n + 1; END_PROGRAM");
+    assert!(text.contains("pre {"), "{text}");
+}
+
+/// Instances of function blocks are their variables, calls what the blocks do.
+#[test]
+fn function_blocks_stand_where_they_are_called() {
+    let (document, problems) = import(
+        "FUNCTION_BLOCK Count
+           VAR_INPUT up : BOOL; most : INT := 3; END_VAR
+           VAR_OUTPUT full : BOOL; END_VAR
+           VAR_IN_OUT sum : INT; END_VAR
+           VAR n : INT; edge : R_TRIG; END_VAR
+           edge(CLK := up);
+           IF NOT edge.Q THEN RETURN; END_IF;
+           n := n + 1; sum := sum + 1;
+           full := n >= most;
+         END_FUNCTION_BLOCK
+         FUNCTION_BLOCK Pair
+           VAR_INPUT a : BOOL; END_VAR
+           VAR one : Count; all : INT; END_VAR
+           LD a
+           ST one.up
+           CAL one(sum := all)
+         END_FUNCTION_BLOCK
+         FUNCTION_BLOCK Unused VAR_INPUT a : BOOL; END_VAR a := FALSE; END_FUNCTION_BLOCK
+         PROGRAM Main
+           VAR_INPUT go : BOOL; END_VAR
+           VAR_OUTPUT done : BOOL; END_VAR
+           VAR c : Count; total : INT; p : Pair; END_VAR
+           INITIAL_STEP A: Work(N); END_STEP
+           STEP B: END_STEP
+           TRANSITION FROM A TO B := c.full AND p.one.n >= 3; END_TRANSITION
+           ACTION Work:
+             c(up := go, most := 2, sum := total, full => done);
+             P(a := go);
+           END_ACTION
+         END_PROGRAM",
+    );
+    let words: Vec<&str> = problems.iter().map(|p| &*p.what).collect();
+    assert_eq!(words, ["the function block `Unused` is not used; it is left out"]);
+    same(
+        &document,
+        "profile iec61131
+         input go : BOOL
+         output done : BOOL
+         var `c.up` : BOOL
+         var `c.most` : INT := 3
+         var `c.full` : BOOL
+         var `c.n` : INT
+         var `c.edge` : R_TRIG
+         var total : INT
+         var `p.a` : BOOL
+         var `p.one.up` : BOOL
+         var `p.one.most` : INT := 3
+         var `p.one.full` : BOOL
+         var `p.one.n` : INT
+         var `p.one.edge` : R_TRIG
+         var `p.all` : INT
+         chart Main {
+           initial step A { N Work }
+           step B
+           A -> B when `c.full` and `p.one.n` >= 3
+           action Work {
+             `c.up` := go
+             `c.most` := 2
+             REPEAT
+               `c.edge`(CLK := `c.up`)
+               IF not `c.edge`.Q THEN EXIT END_IF
+               `c.n` := `c.n` + 1
+               total := total + 1
+               `c.full` := `c.n` >= `c.most`
+             UNTIL TRUE END_REPEAT
+             done := `c.full`
+             `p.a` := go
+             `p.one.up` := `p.a`
+             REPEAT
+               `p.one.edge`(CLK := `p.one.up`)
+               IF not `p.one.edge`.Q THEN EXIT END_IF
+               `p.one.n` := `p.one.n` + 1
+               `p.all` := `p.all` + 1
+               `p.one.full` := `p.one.n` >= `p.one.most`
+             UNTIL TRUE END_REPEAT
+           }
+         }",
+    );
+    let (_, problems) = g7_compile::compile(&document);
+    assert_eq!(errors(&problems), <[&str; 0]>::default());
+}
+
+#[test]
+fn a_function_block_that_contains_itself_is_refused() {
+    let (_, problems) = import(
+        "FUNCTION_BLOCK F VAR f : F; END_VAR f(); END_FUNCTION_BLOCK \
+         PROGRAM p VAR f : F; END_VAR f(); END_PROGRAM",
+    );
+    assert!(problems.iter().any(|p| p.what.contains("contains itself")), "{problems:?}");
+}
+
+/// Beremiz and OpenPLC: the ways of a list meet at a label with their result.
+#[test]
+fn a_result_is_carried_across_a_label() {
+    let text = carried(
+        "PROGRAM p VAR reset : BOOL; cnt, out : INT; END_VAR
+         LD reset
+         JMPC l
+         LD cnt
+         ADD 1
+         JMP q
+         l: LD 5
+         q:
+         ST cnt
+         ST out
+         END_PROGRAM",
+    );
+    for part in ["cnt := cnt + 1", "cnt := 5", "out := cnt"] {
+        assert!(text.contains(part), "{part} in {text}");
+    }
+}
+
+#[test]
+fn a_function_block_alone_runs_as_a_program() {
+    let block = "FUNCTION_BLOCK b VAR n : INT; END_VAR n := n + 1; END_FUNCTION_BLOCK ";
+    assert_eq!(carried(block), carried("PROGRAM b VAR n : INT; END_VAR n := n + 1; END_PROGRAM"));
+    // Beside another unit nothing says that it runs.
+    let (document, problems) =
+        import(&format!("{block} PROGRAM p VAR m : INT; END_VAR m := m + 1; END_PROGRAM"));
+    assert!(problems.iter().any(|p| p.code.id == "G0605" && p.what.contains("`b`")), "{problems:?}");
+    assert!(!g7_syntax::print(&document, None).contains("n + 1"));
+}
+
+#[test]
+fn a_list_with_a_loop_is_read_as_one() {
+    let text = carried(
+        "FUNCTION_BLOCK b VAR_INPUT x : BOOL; END_VAR VAR q : BOOL; i : INT; END_VAR
+         LD x
+         S q
+         LD 0
+         ST i
+         again:
+         LD i
+         ADD 1
+         ST i
+         LD i
+         GE 3
+         OR x
+         JMPCN again
+         LD q
+         R q
+         END_FUNCTION_BLOCK",
+    );
+    let same = "PROGRAM b VAR_INPUT x : BOOL; END_VAR VAR q : BOOL; i : INT; END_VAR
+         IF x THEN q := TRUE; END_IF;
+         i := 0;
+         REPEAT i := i + 1; UNTIL i >= 3 OR x END_REPEAT;
+         IF q THEN q := FALSE; END_IF;
+         END_PROGRAM";
+    assert_eq!(text, carried(same));
+}

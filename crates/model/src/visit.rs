@@ -1,0 +1,274 @@
+//! The visitor of a document: it finds every place where a name may stand, in variables, charts,
+//! actions, statements, expressions, plants and tests.
+//!
+//! The order is that of the text, because the meaning of a name may depend on the blocks around it.
+//! `visit_mut` is the visitor that replaces names and expressions.
+
+use std::slice::from_ref;
+
+use crate::{
+    Action, ActionKind, Arg, Block, Body, Chart, ChartItem, Document, Expr, ExprKind, Item, Name, Order,
+    Path, PlantItem, PropertyKind, Span, Stmt, StmtKind, Target, TestStmt, TestStmtKind, VarDecl, Work,
+};
+
+/// Receives every name of a document; the methods that visit an element visit all within it.
+pub trait Visitor<'d> {
+    /// A name, or several joined by dots.
+    fn path(&mut self, names: &'d [Name]);
+
+    /// A direct name such as `%X12`.
+    fn direct(&mut self, text: &'d str, at: Span);
+
+    /// An order to another chart.
+    fn order(&mut self, order: &'d Order);
+
+    /// The text of a body in another language than Structured Text.
+    fn foreign(&mut self, _text: &'d str) {}
+
+    /// From here on the variables of a block are visible.
+    fn enter(&mut self, _block: &'d Block) {}
+
+    /// From here on they are no longer visible.
+    fn leave(&mut self) {}
+
+    // Elements that contain others
+
+    /// All items of a document.
+    fn document(&mut self, document: &'d Document) {
+        document.items.iter().for_each(|i| self.item(i));
+    }
+
+    /// An item of a file, except for the names that it declares.
+    fn item(&mut self, item: &'d Item) {
+        match item {
+            Item::Var(v) => self.variable(v),
+            Item::Chart(c) => self.chart(c),
+            Item::Action(a) => self.body(&a.body),
+            Item::Section(s) => self.block(&s.body),
+            Item::Function(f) => self.block(&f.body),
+            Item::Pre(b, _) | Item::Post(b, _) => self.body(b),
+            Item::Plant(p) => p.items.iter().for_each(|i| self.plant_item(i)),
+            Item::Test(t) => t.body.iter().for_each(|s| self.test(s)),
+            Item::Prove(p) => self.property(&p.kind),
+            Item::Profile(_) | Item::Cycle(..) | Item::Target(..) | Item::Layout(_) => {}
+        }
+    }
+
+    /// The values of a declaration.
+    fn variable(&mut self, v: &'d VarDecl) {
+        self.exprs(v.init.iter().chain(&v.safe));
+    }
+
+    /// All items of a chart, except for the names that they declare and the steps of transitions.
+    fn chart(&mut self, chart: &'d Chart) {
+        for item in &chart.items {
+            match item {
+                ChartItem::Var(v) => self.variable(v),
+                ChartItem::Step(s) => s.actions.iter().for_each(|a| self.action(a)),
+                ChartItem::Transition(t) => {
+                    self.expr(&t.receptivity);
+                    t.on_clearing.iter().for_each(|b| self.block(b));
+                }
+                ChartItem::Pre(b, _) | ChartItem::Post(b, _) => self.body(b),
+                ChartItem::Action(a) => self.body(&a.body),
+                ChartItem::Section(s) => self.block(&s.body),
+            }
+        }
+    }
+
+    /// An expression.
+    fn expr(&mut self, e: &'d Expr) {
+        match &e.kind {
+            ExprKind::Literal(_) | ExprKind::Bad => {}
+            ExprKind::Direct(text) => self.direct(text, e.at.0),
+            ExprKind::Path(path) => self.path(&path.names),
+            ExprKind::Unary(_, a) => self.expr(a),
+            ExprKind::Binary(_, a, b) => {
+                self.expr(a);
+                self.expr(b);
+            }
+            ExprKind::Timer { t1, e, t2 } => {
+                self.expr(t1);
+                self.expr(e);
+                t2.iter().for_each(|t| self.expr(t));
+            }
+            ExprKind::Call(path, args) => self.call(path, args),
+        }
+    }
+
+    /// Several expressions.
+    fn exprs(&mut self, list: impl IntoIterator<Item = &'d Expr>) {
+        list.into_iter().for_each(|e| self.expr(e));
+    }
+
+    /// The name and the arguments of a call.
+    fn call(&mut self, path: &'d Path, args: &'d [Arg]) {
+        self.path(&path.names);
+        self.exprs(args.iter().map(|a| &a.value));
+    }
+
+    /// The work of an action.
+    fn work(&mut self, work: &'d Work) {
+        match work {
+            Work::Single(s) => self.statement(s),
+            Work::Block(b) => self.block(b),
+        }
+    }
+
+    /// A body in any language.
+    fn body(&mut self, body: &'d Body) {
+        match body {
+            Body::St(block) => self.block(block),
+            Body::Other(_, text, _) => self.foreign(text),
+        }
+    }
+
+    /// A block with its local variables.
+    fn block(&mut self, block: &'d Block) {
+        self.exprs(block.locals.iter().filter_map(|l| l.init.as_ref()));
+        self.enter(block);
+        self.statements(&block.statements);
+        self.leave();
+    }
+
+    /// Several statements.
+    fn statements(&mut self, list: &'d [Stmt]) {
+        list.iter().for_each(|s| self.statement(s));
+    }
+
+    /// A statement.
+    fn statement(&mut self, s: &'d Stmt) {
+        match &s.kind {
+            StmtKind::Assign { target, value } => {
+                self.expr(target);
+                self.expr(value);
+            }
+            StmtKind::Call(path, args) => self.call(path, args),
+            StmtKind::If(arms, rest) => {
+                for (e, body) in arms {
+                    self.expr(e);
+                    self.statements(body);
+                }
+                self.statements(rest);
+            }
+            StmtKind::Case(e, arms, rest) => {
+                self.expr(e);
+                for arm in arms {
+                    for (first, last) in &arm.labels {
+                        self.expr(first);
+                        self.exprs(last);
+                    }
+                    self.statements(&arm.body);
+                }
+                self.statements(rest);
+            }
+            StmtKind::For { var, from, to, by, body } => {
+                self.path(from_ref(var));
+                self.expr(from);
+                self.expr(to);
+                self.exprs(by);
+                self.statements(body);
+            }
+            StmtKind::While(e, body) => {
+                self.expr(e);
+                self.statements(body);
+            }
+            StmtKind::Repeat(body, e) => {
+                self.statements(body);
+                self.expr(e);
+            }
+            StmtKind::Exit | StmtKind::Return => {}
+        }
+    }
+
+    /// An action of a step.
+    fn action(&mut self, action: &'d Action) {
+        match &action.kind {
+            ActionKind::Qualified { time, target, condition, .. } => {
+                self.exprs(time);
+                match target {
+                    Target::Path(path) => self.path(&path.names),
+                    Target::Direct(text, at) => self.direct(text, at.0),
+                    Target::Work(work) => self.work(work),
+                }
+                self.exprs(condition);
+            }
+            ActionKind::OnEvent { event, work } => {
+                self.expr(event);
+                self.work(work);
+            }
+            ActionKind::EachScan { work, condition } => {
+                self.work(work);
+                self.exprs(condition);
+            }
+            ActionKind::Order(order) => self.order(order),
+            ActionKind::Comment(_) => {}
+        }
+    }
+
+    /// A property.
+    fn property(&mut self, kind: &'d PropertyKind) {
+        kind.claims().for_each(|e| self.expr(e));
+    }
+
+    /// An item of a plant, except for the names that it declares.
+    fn plant_item(&mut self, item: &'d PlantItem) {
+        match item {
+            PlantItem::Const { value, .. } => self.expr(value),
+            PlantItem::State(s) => {
+                self.exprs(&s.init);
+                self.exprs(s.limits.iter().flat_map(|(a, b)| [a, b]));
+            }
+            PlantItem::Rate(r) => {
+                self.path(from_ref(&r.state));
+                self.expr(&r.value);
+                self.exprs(&r.when);
+            }
+            PlantItem::Drive(d) => {
+                self.path(from_ref(&d.input));
+                self.expr(&d.value);
+            }
+            PlantItem::On(e, block, _) => {
+                self.expr(e);
+                self.block(block);
+            }
+            PlantItem::Each(block, _) => self.block(block),
+            PlantItem::Parts(p) => self.exprs(p.length.iter().chain(p.init.iter().flatten())),
+            PlantItem::Arrivals(a) => {
+                self.expr(&a.least);
+                self.exprs(a.most.iter().chain(&a.when));
+                self.block(&a.body);
+            }
+            PlantItem::View(v) => self.exprs(v.bindings.iter().map(|b| &b.value)),
+        }
+    }
+
+    /// A statement of a test.
+    fn test(&mut self, s: &'d TestStmt) {
+        match &s.kind {
+            TestStmtKind::Set(list) => {
+                for (path, e) in list {
+                    self.path(&path.names);
+                    self.expr(e);
+                }
+            }
+            TestStmtKind::Pulse(path, _) | TestStmtKind::Release(path) => self.path(&path.names),
+            TestStmtKind::Force(path, e) => {
+                self.path(&path.names);
+                self.expr(e);
+            }
+            TestStmtKind::WaitUntil(e, _) => self.expr(e),
+            TestStmtKind::Expect(list) => self.exprs(list),
+            TestStmtKind::Always(list, body) => {
+                self.exprs(list);
+                body.iter().for_each(|s| self.test(s));
+            }
+            TestStmtKind::Repeat(_, body) => body.iter().for_each(|s| self.test(s)),
+            TestStmtKind::Wait(_)
+            | TestStmtKind::Scan(_)
+            | TestStmtKind::ExpectFault(_)
+            | TestStmtKind::Restart { .. }
+            | TestStmtKind::Comment(_) => {}
+        }
+    }
+}

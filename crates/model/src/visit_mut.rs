@@ -1,0 +1,178 @@
+//! The visitor that changes a document: it sees every statement, expression and path, and may replace
+//! them. `visit` is the one that only reads.
+
+use crate::{
+    Action, ActionKind, Block, Body, Chart, ChartItem, Document, Expr, ExprKind, Item, Path, Span, Stmt,
+    StmtKind, Target, Work,
+};
+
+/// How a variable is named.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Use {
+    /// Its value is used.
+    Read,
+    /// It gets a value.
+    Write,
+    /// A function block is called.
+    Call,
+}
+
+/// Receives every statement, expression and path, inner ones first.
+pub trait Visitor {
+    /// A statement, after all within it.
+    fn stmt(&mut self, _stmt: &mut Stmt) {}
+    /// An expression, after its operands.
+    fn expr(&mut self, _expr: &mut Expr) {}
+    /// A name, and how it is used.
+    fn path(&mut self, _path: &mut Path, _how: Use, _at: Span) {}
+}
+
+/// Visits all of a document.
+pub fn document(document: &mut Document, v: &mut impl Visitor) {
+    for item in &mut document.items {
+        match item {
+            Item::Chart(c) => chart(c, v),
+            Item::Action(a) => body(&mut a.body, v),
+            Item::Section(s) => stmts(&mut s.body.statements, v),
+            Item::Pre(b, _) | Item::Post(b, _) => body(b, v),
+            _ => {}
+        }
+    }
+}
+
+fn chart(chart: &mut Chart, v: &mut impl Visitor) {
+    for item in &mut chart.items {
+        match item {
+            ChartItem::Step(s) => s.actions.iter_mut().for_each(|a| action(a, v)),
+            ChartItem::Transition(t) => {
+                expr(&mut t.receptivity, v);
+                t.on_clearing.iter_mut().for_each(|b| block(b, v));
+            }
+            ChartItem::Pre(b, _) | ChartItem::Post(b, _) => body(b, v),
+            ChartItem::Action(a) => body(&mut a.body, v),
+            ChartItem::Section(s) => block(&mut s.body, v),
+            ChartItem::Var(_) => {}
+        }
+    }
+}
+
+fn action(action: &mut Action, v: &mut impl Visitor) {
+    let at = action.at.0;
+    match &mut action.kind {
+        ActionKind::Qualified { time, target, condition, .. } => {
+            time.iter_mut().chain(condition).for_each(|e| expr(e, v));
+            match target {
+                Target::Path(p) => v.path(p, Use::Write, at),
+                Target::Work(w) => work(w, v),
+                Target::Direct(..) => {}
+            }
+        }
+        ActionKind::OnEvent { event, work: w } => {
+            expr(event, v);
+            work(w, v);
+        }
+        ActionKind::EachScan { work: w, condition } => {
+            work(w, v);
+            condition.iter_mut().for_each(|e| expr(e, v));
+        }
+        ActionKind::Order(_) | ActionKind::Comment(_) => {}
+    }
+}
+
+fn work(work: &mut Work, v: &mut impl Visitor) {
+    match work {
+        Work::Single(s) => stmt(s, v),
+        Work::Block(b) => block(b, v),
+    }
+}
+
+fn body(body: &mut Body, v: &mut impl Visitor) {
+    if let Body::St(b) = body {
+        block(b, v);
+    }
+}
+
+fn block(block: &mut Block, v: &mut impl Visitor) {
+    stmts(&mut block.statements, v);
+}
+
+/// Visits a list of statements.
+pub fn stmts(list: &mut [Stmt], v: &mut impl Visitor) {
+    list.iter_mut().for_each(|s| stmt(s, v));
+}
+
+fn stmt(s: &mut Stmt, v: &mut impl Visitor) {
+    let at = s.at.0;
+    match &mut s.kind {
+        StmtKind::Assign { target, value } => {
+            match &mut target.kind {
+                ExprKind::Path(p) => v.path(p, Use::Write, at),
+                _ => v.expr(target),
+            }
+            expr(value, v);
+        }
+        StmtKind::Call(p, args) => {
+            v.path(p, Use::Call, at);
+            for arg in args {
+                match &mut arg.value.kind {
+                    ExprKind::Path(p) if arg.output => v.path(p, Use::Write, at),
+                    _ => expr(&mut arg.value, v),
+                }
+            }
+        }
+        StmtKind::If(arms, otherwise) => {
+            for (condition, body) in arms {
+                expr(condition, v);
+                stmts(body, v);
+            }
+            stmts(otherwise, v);
+        }
+        StmtKind::Case(selector, arms, otherwise) => {
+            expr(selector, v);
+            arms.iter_mut().for_each(|a| stmts(&mut a.body, v));
+            stmts(otherwise, v);
+        }
+        StmtKind::For { var, from, to, by, body } => {
+            let mut path = Path { names: vec![var.clone()] };
+            v.path(&mut path, Use::Write, at);
+            if let [name] = path.names.as_slice() {
+                *var = name.clone();
+            }
+            expr(from, v);
+            expr(to, v);
+            by.iter_mut().for_each(|e| expr(e, v));
+            stmts(body, v);
+        }
+        StmtKind::While(condition, body) => {
+            expr(condition, v);
+            stmts(body, v);
+        }
+        StmtKind::Repeat(body, condition) => {
+            stmts(body, v);
+            expr(condition, v);
+        }
+        StmtKind::Exit | StmtKind::Return => {}
+    }
+    v.stmt(s);
+}
+
+/// Visits an expression.
+pub fn expr(e: &mut Expr, v: &mut impl Visitor) {
+    let at = e.at.0;
+    match &mut e.kind {
+        ExprKind::Path(p) => v.path(p, Use::Read, at),
+        ExprKind::Unary(_, a) => expr(a, v),
+        ExprKind::Binary(_, a, b) => {
+            expr(a, v);
+            expr(b, v);
+        }
+        ExprKind::Timer { t1, e, t2 } => {
+            expr(t1, v);
+            expr(e, v);
+            t2.iter_mut().for_each(|t| expr(t, v));
+        }
+        ExprKind::Call(_, args) => args.iter_mut().for_each(|a| expr(&mut a.value, v)),
+        ExprKind::Literal(_) | ExprKind::Direct(_) | ExprKind::Bad => {}
+    }
+    v.expr(e);
+}

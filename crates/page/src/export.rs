@@ -1,0 +1,184 @@
+//! Exports: a chart in the form of another tool, as code for a controller, or as a picture.
+
+use std::collections::BTreeMap;
+
+use g7_codegen::{Language, plc};
+use g7_compile::symbols::Symbols;
+use g7_draw::{Drawing, Options};
+use g7_engine::StepId;
+use g7_exchange::FORMATS;
+use g7_model::{Problem, Severity, Span};
+use serde::Serialize;
+
+use crate::file::File;
+use crate::ids::{self, Thing};
+use crate::problems::{Row, row};
+
+/// A form in which a chart can be exported.
+#[derive(Debug, Serialize)]
+pub(crate) struct Form {
+    word: &'static str,
+    title: &'static str,
+    kind: &'static str,
+}
+
+/// An exported chart.
+#[derive(Debug, Serialize)]
+pub(crate) struct Out {
+    files: Vec<OutFile>,
+    /// Problems: parts of the chart that the export does not contain; places are those of the
+    /// chart.
+    problems: Vec<Row>,
+    /// True if the export has another meaning than the chart.
+    lossy: bool,
+}
+
+/// One exported file.
+#[derive(Debug, Serialize)]
+pub(crate) struct OutFile {
+    name: String,
+    text: String,
+    /// The lines that belong to each symbol.
+    marks: Vec<Mark>,
+}
+
+/// The lines of a text, from 0, that belong to a symbol.
+#[derive(Debug, Serialize)]
+struct Mark {
+    id: String,
+    lines: Vec<usize>,
+}
+
+/// The kind of code that is generated.
+#[derive(Clone, Copy)]
+enum Code {
+    Native(Language),
+    /// A form of the equations, and the extension of its file.
+    Plc(plc::Form, &'static str),
+}
+
+/// The languages for controllers: word, title, kind of code.
+const LANGUAGES: [(&str, &str, Code); 8] = [
+    ("c", "C99", Code::Native(Language::C)),
+    ("arduino", "Arduino sketch", Code::Native(Language::Arduino)),
+    ("rust", "Rust module", Code::Native(Language::Rust)),
+    ("st", "Structured Text", Code::Plc(plc::Form::St, "st")),
+    ("il", "Instruction List", Code::Plc(plc::Form::Il, "il")),
+    ("dolog80", "Instruction List, set and reset", Code::Plc(plc::Form::Dolog80, "il")),
+    ("ld", "Ladder (PLCopen XML)", Code::Plc(plc::Form::Ld, "xml")),
+    ("ladder", "Ladder, drawn", Code::Plc(plc::Form::Drawing, "svg")),
+];
+
+/// All forms, in the order in which they are shown.
+pub(crate) fn forms() -> Vec<Form> {
+    let chart = |f: &g7_exchange::Format| Form { word: f.word, title: f.title, kind: "chart" };
+    let code = |(word, title, _)| Form { word, title, kind: "code" };
+    let picture = Form { word: "svg", title: "SVG", kind: "picture" };
+    FORMATS.iter().filter(|f| f.is_written()).map(chart).chain(LANGUAGES.map(code)).chain([picture]).collect()
+}
+
+/// Exports a file in another form.
+pub(crate) fn export(name: &str, file: &File, to: &str) -> Result<Out, String> {
+    if let Some(first) = file.problems.iter().find(|p| p.severity() == Severity::Error) {
+        return Err(format!("the chart has errors: {}", first.what));
+    }
+    let stem = stem(name);
+    if to == "svg" {
+        return Ok(out(file, vec![(format!("{stem}.svg"), picture(file))], &[]));
+    }
+    if let Some((_, _, language)) = LANGUAGES.iter().find(|(word, ..)| *word == to) {
+        return code(file, stem, *language);
+    }
+    let unknown = || format!("there is no form `{to}`");
+    let format = g7_exchange::named(to).ok_or_else(unknown)?;
+    let written = format.write(&file.source.document).ok_or_else(unknown)?;
+    let name = format!("{stem}.{}", format.ending());
+    Ok(out(file, vec![(name, written.text)], &written.problems))
+}
+
+/// The base name of exported files: that of the chart, `tank` for `tank/chart.g7`.
+fn stem(name: &str) -> &str {
+    let mut parts = name.rsplit('/');
+    let own = parts.next().unwrap_or(name);
+    match own.strip_suffix(".g7").unwrap_or(own) {
+        "chart" => parts.next().unwrap_or("chart"),
+        stem => stem,
+    }
+}
+
+fn out(file: &File, files: Vec<(String, String)>, problems: &[Problem]) -> Out {
+    Out {
+        files: files.into_iter().map(|(name, text)| OutFile { name, text, marks: Vec::new() }).collect(),
+        lossy: problems.iter().any(|p| p.severity() == Severity::Error),
+        problems: problems.iter().map(|p| row(file, p)).collect(),
+    }
+}
+
+/// Generates code for a controller and marks the lines of each step.
+fn code(file: &File, name: &str, code: Code) -> Result<Out, String> {
+    let (compiled, _) = g7_compile::compile(&file.source.document);
+    let compiled = compiled.ok_or("the chart has errors")?;
+    let symbols = &compiled.symbols;
+    let printed = match code {
+        Code::Native(language) => {
+            let style = g7_codegen::Style::Structured;
+            let options = g7_codegen::Options { language, style, name, source: file.text() };
+            g7_codegen::print(&compiled, &options).map(|p| {
+                let steps = words(file, symbols, |step| p.places.step(step).to_owned());
+                (p.files.into_iter().map(|f| (f.name, f.text)).collect(), p.problems, steps)
+            })
+        }
+        Code::Plc(form, ending) => plc::print(&compiled, form, name, file.text()).map(|p| {
+            let steps = words(file, symbols, |step| p.step(step).to_owned());
+            (vec![(format!("{name}.{ending}"), p.text)], p.problems, steps)
+        }),
+    };
+    let (files, problems, steps) = match printed {
+        Ok(printed) => printed,
+        Err(problems) => return Ok(out(file, Vec::new(), &problems)),
+    };
+    let mut out = out(file, files, &problems);
+    for file in out.files.iter_mut().filter(|f| !f.name.ends_with(".svg")) {
+        file.marks = marks(&file.text, &steps);
+    }
+    Ok(out)
+}
+
+/// The ids of steps by the word that stands for each step in the code.
+fn words(file: &File, symbols: &Symbols, word: impl Fn(StepId) -> String) -> BTreeMap<String, String> {
+    let ids: BTreeMap<Span, String> = ids::things(&file.source.document)
+        .filter_map(|(_, thing)| match thing {
+            Thing::Step(_, step) => Some((step.name.at.0, thing.id())),
+            Thing::Action(..) | Thing::Transition(..) => None,
+        })
+        .collect();
+    let steps = (0..symbols.steps()).map(StepId).filter(|s| symbols.is_listed(*s));
+    steps.filter_map(|s| Some((word(s), ids.get(&symbols.step_place(s))?.clone()))).collect()
+}
+
+/// Marks the lines that contain the words; public names may carry a prefix.
+fn marks(text: &str, words: &BTreeMap<String, String>) -> Vec<Mark> {
+    let mut lines: BTreeMap<&str, Vec<usize>> = BTreeMap::new();
+    for (number, line) in text.lines().enumerate() {
+        for word in line.split(|c: char| !c.is_alphanumeric() && c != '_') {
+            let ends = word.char_indices().map(|(i, _)| i).filter(|i| *i == 0 || word[..*i].ends_with('_'));
+            let Some((_, id)) = ends.filter_map(|i| words.get_key_value(&word[i..])).next() else { continue };
+            let known = lines.entry(id).or_default();
+            if known.last() != Some(&number) {
+                known.push(number);
+            }
+        }
+    }
+    lines.into_iter().map(|(id, lines)| Mark { id: id.to_owned(), lines }).collect()
+}
+
+/// Draws all charts on one sheet.
+fn picture(file: &File) -> String {
+    let options = Options { font: true, ..Options::default() };
+    let document = &file.source.document;
+    let drawings: Vec<Drawing> = document.charts().map(|c| g7_draw::draw(document, c, &options)).collect();
+    match drawings.as_slice() {
+        [one] => g7_draw::svg(one, &options),
+        several => g7_draw::sheet(document, several, &options),
+    }
+}

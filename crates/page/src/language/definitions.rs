@@ -1,0 +1,177 @@
+//! The names that a document defines, and their meaning.
+
+use g7_model::{Chart, ChartItem, Document, Item, Name, PlantItem, Span, Step, VarDecl};
+use g7_syntax::{Token, TokenKind};
+
+/// The meaning of a name.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Meaning<'d> {
+    /// A variable, with its chart if it belongs to one.
+    Variable(&'d VarDecl, Option<&'d Chart>),
+    Step(&'d Chart, &'d Step),
+    Chart(&'d Chart),
+    /// A named action, function, section, plant, or part of a plant: the word for its kind, and its
+    /// comment.
+    Other(&'static str, Option<&'d str>),
+}
+
+/// A name at its definition.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Named<'d> {
+    pub(crate) name: &'d Name,
+    pub(crate) meaning: Meaning<'d>,
+    /// The part of the text in which it is known; everywhere if absent.
+    pub(crate) scope: Option<Span>,
+}
+
+/// All names that a document defines, in the order of the text.
+pub(crate) fn names(document: &Document) -> Vec<Named<'_>> {
+    let mut all = Vec::new();
+    for item in &document.items {
+        match item {
+            Item::Var(v) => variable(v, None, &mut all),
+            Item::Chart(c) => chart(c, &mut all),
+            Item::Action(a) => other(&a.name, "action", a.comment.as_deref(), None, &mut all),
+            Item::Section(s) => other(&s.name, "transition section", None, None, &mut all),
+            Item::Function(f) => {
+                other(&f.name, "function", None, None, &mut all);
+                f.params.iter().for_each(|p| other(&p.name, "parameter", None, Some(f.at.0), &mut all));
+            }
+            Item::Plant(p) => {
+                other(&p.name, "plant", p.comment.as_deref(), None, &mut all);
+                // Tests set the states of a plant, so these names are known outside the plant too.
+                p.items.iter().for_each(|i| plant(i, &mut all));
+            }
+            Item::Profile(_)
+            | Item::Cycle(..)
+            | Item::Target(..)
+            | Item::Pre(..)
+            | Item::Post(..)
+            | Item::Test(_)
+            | Item::Prove(_)
+            | Item::Layout(_) => {}
+        }
+    }
+    all
+}
+
+fn variable<'d>(v: &'d VarDecl, of: Option<&'d Chart>, all: &mut Vec<Named<'d>>) {
+    all.extend(v.names.iter().map(|name| Named {
+        name,
+        meaning: Meaning::Variable(v, of),
+        scope: of.map(|c| c.at.0),
+    }));
+}
+
+fn other<'d>(
+    name: &'d Name,
+    what: &'static str,
+    comment: Option<&'d str>,
+    scope: Option<Span>,
+    all: &mut Vec<Named<'d>>,
+) {
+    all.push(Named { name, meaning: Meaning::Other(what, comment), scope });
+}
+
+fn chart<'d>(c: &'d Chart, all: &mut Vec<Named<'d>>) {
+    all.push(Named { name: &c.name, meaning: Meaning::Chart(c), scope: None });
+    let scope = Some(c.at.0);
+    for item in &c.items {
+        match item {
+            ChartItem::Var(v) => variable(v, Some(c), all),
+            ChartItem::Step(s) => all.push(Named { name: &s.name, meaning: Meaning::Step(c, s), scope }),
+            ChartItem::Action(a) => other(&a.name, "action", a.comment.as_deref(), scope, all),
+            ChartItem::Section(s) => other(&s.name, "transition section", None, scope, all),
+            ChartItem::Transition(t) => {
+                if let Some(label) = &t.label {
+                    other(label, "transition", t.comment.as_deref(), scope, all);
+                }
+            }
+            ChartItem::Pre(..) | ChartItem::Post(..) => {}
+        }
+    }
+}
+
+fn plant<'d>(item: &'d PlantItem, all: &mut Vec<Named<'d>>) {
+    match item {
+        PlantItem::Const { names, comment, .. } => {
+            names.iter().for_each(|n| other(n, "constant of the plant", comment.as_deref(), None, all));
+        }
+        PlantItem::State(s) => {
+            s.names.iter().for_each(|n| other(n, "state of the plant", s.comment.as_deref(), None, all));
+        }
+        PlantItem::Parts(p) => other(&p.name, "parts of the plant", None, None, all),
+        PlantItem::Arrivals(a) => other(&a.name, "arrivals of the plant", None, None, all),
+        PlantItem::Rate(_)
+        | PlantItem::Drive(_)
+        | PlantItem::On(..)
+        | PlantItem::Each(..)
+        | PlantItem::View(_) => {}
+    }
+}
+
+/// A word of a text, with the path before it.
+pub(crate) struct Word<'t> {
+    pub(crate) token: Token,
+    pub(crate) text: &'t str,
+    /// `Chart` in `Chart.name`.
+    pub(crate) before: Option<&'t str>,
+}
+
+/// The word that contains a byte or ends there.
+pub(crate) fn word_at(text: &str, byte: usize) -> Option<Word<'_>> {
+    let mut before: Option<Token> = None;
+    let mut dotted = false;
+    for token in g7_syntax::tokens(text) {
+        let is_name = matches!(token.kind, TokenKind::Word | TokenKind::Ticked | TokenKind::Number);
+        if token.start > byte {
+            return None;
+        }
+        if is_name && token.start <= byte && byte <= token.end {
+            let chart = before.filter(|_| dotted).and_then(|t| plain(text, t));
+            return Some(Word { token, text: plain(text, token)?, before: chart });
+        }
+        match token.kind {
+            TokenKind::PathDot => dotted = true,
+            _ => (before, dotted) = (is_name.then_some(token), false),
+        }
+    }
+    None
+}
+
+/// A name without its back-ticks.
+fn plain(text: &str, token: Token) -> Option<&str> {
+    let word = text.get(token.start..token.end)?;
+    Some(word.trim_matches('`'))
+}
+
+/// The definition of a word of the text, as far as the place decides it.
+pub(crate) fn meaning<'d>(document: &'d Document, word: &Word<'_>) -> Option<Named<'d>> {
+    let at = u32::try_from(word.token.start).ok()?;
+    let inside = |s: Span| s.start <= at && at < s.end;
+    // `X12` and `Chart.X12` name the step variable of step 12.
+    let stem = word.text.strip_prefix('X').filter(|s| s.starts_with(|c: char| c.is_ascii_digit()));
+    let fits = |n: &Named<'_>| {
+        let step = matches!(n.meaning, Meaning::Step(..));
+        *n.name.text == *word.text || step && stem.is_some_and(|s| *n.name.text == *s)
+    };
+    let chart_of = |n: &Named<'d>| match n.meaning {
+        Meaning::Step(c, _) | Meaning::Variable(_, Some(c)) => Some(&*c.name.text),
+        Meaning::Variable(_, None) | Meaning::Chart(_) | Meaning::Other(..) => None,
+    };
+    let number = word.token.kind == TokenKind::Number;
+    let mut found: Vec<Named<'d>> = names(document).into_iter().filter(fits).collect();
+    found.retain(|n| !number || matches!(n.meaning, Meaning::Step(..)));
+    if let Some(chart) = word.before
+        && let Some(i) = found.iter().position(|n| chart_of(n) == Some(chart))
+    {
+        return Some(found.swap_remove(i));
+    }
+    // Prefer the innermost scope, then the file, then any other.
+    let rank = |n: &Named<'_>| match n.scope {
+        Some(s) if inside(s) => 0,
+        None => 1,
+        Some(_) => 2,
+    };
+    found.into_iter().min_by_key(rank).filter(|n| !number || rank(n) == 0)
+}

@@ -1,0 +1,156 @@
+//! The overview of a file that the frame of the page shows: charts, problems, plants, tests.
+
+use g7_compile::resolve::{of_profile, with_switch};
+use g7_model::{Document, Nanos, ProfileName, Switch};
+use serde::Serialize;
+
+use crate::drawing::{kind, opens};
+use crate::file::File;
+use crate::problems;
+
+/// The overview of a file.
+#[derive(Debug, Serialize)]
+pub(crate) struct Overview {
+    file: String,
+    version: u64,
+    length: usize,
+    hash: String,
+    clean: bool,
+    imported: bool,
+    can_undo: bool,
+    can_redo: bool,
+    problems: Vec<problems::Row>,
+    charts: Vec<ChartRow>,
+    profile: &'static str,
+    switches: Vec<SwitchRow>,
+    bound: Bound,
+    scan_ms: f64,
+    plants: Vec<String>,
+    tests: Vec<TestRow>,
+}
+
+/// A switch of the profile.
+#[derive(Debug, Serialize)]
+struct SwitchRow {
+    /// The words for its two positions.
+    words: [&'static str; 2],
+    /// The position that the profile implies.
+    usual: &'static str,
+    /// The position that the file sets beside the profile, if any.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    set: Option<&'static str>,
+}
+
+/// The greatest number of passes in a scan.
+#[derive(Debug, Serialize)]
+struct Bound {
+    usual: u32,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    set: Option<u32>,
+}
+
+#[derive(Debug, Serialize)]
+struct ChartRow {
+    name: String,
+    kind: &'static str,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    comment: Option<String>,
+    from: usize,
+    to: usize,
+    steps: usize,
+    transitions: usize,
+    /// The chart and the step that this chart is the expansion of, or that enclose it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    of: Option<[String; 2]>,
+}
+
+#[derive(Debug, Serialize)]
+struct TestRow {
+    name: String,
+    from: usize,
+    to: usize,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    plant: Option<String>,
+}
+
+pub(crate) fn overview(name: &str, file: &File) -> Overview {
+    let document = &file.source.document;
+    let tests = file.source.tests().map(|t| {
+        let (from, to) = file.units(t.at.0);
+        TestRow { name: t.title.to_string(), from, to, plant: t.plant.as_ref().map(|p| p.text.to_string()) }
+    });
+    let scan = document.cycle();
+    Overview {
+        file: name.to_owned(),
+        version: file.version,
+        length: file.positions.units(),
+        hash: hash(file.text()),
+        clean: file.is_clean(),
+        imported: file.imported,
+        can_undo: file.history.can_undo(),
+        can_redo: file.history.can_redo(),
+        problems: problems::rows(file),
+        charts: charts(file),
+        profile: document.profile().map_or(g7_model::ProfileName::default(), |p| p.name).name(),
+        switches: switches(document),
+        bound: bound(document),
+        scan_ms: scan.unwrap_or(SCAN).as_millis(),
+        plants: g7_compile::plant::plants(document).map(|p| p.name.text.to_string()).collect(),
+        tests: tests.collect(),
+    }
+}
+
+fn switches(document: &Document) -> Vec<SwitchRow> {
+    let profile = document.profile();
+    let name = profile.map_or(ProfileName::default(), |p| p.name);
+    let set = |s: Switch| profile.is_some_and(|p| p.switches.iter().any(|(there, _)| *there == s));
+    let row = |(one, other): (&(&'static str, Switch), &(&'static str, Switch))| SwitchRow {
+        words: [one.0, other.0],
+        usual: if of_profile(name) == with_switch(of_profile(name), one.1) { one.0 } else { other.0 },
+        set: [one, other].iter().find(|(_, s)| set(*s)).map(|(word, _)| *word),
+    };
+    let all = &g7_syntax::SWITCHES;
+    all.iter().step_by(2).zip(all.iter().skip(1).step_by(2)).map(row).collect()
+}
+
+fn bound(document: &Document) -> Bound {
+    let profile = document.profile();
+    let set = profile.and_then(|p| {
+        p.switches.iter().find_map(|(s, _)| if let Switch::Bound(n) = s { Some(*n) } else { None })
+    });
+    Bound { usual: of_profile(profile.map_or(ProfileName::default(), |p| p.name)).bound, set }
+}
+
+/// The scan time if the file gives none.
+const SCAN: Nanos = Nanos::from_millis(10);
+
+fn charts(file: &File) -> Vec<ChartRow> {
+    let readable = file.drawn();
+    let document = &*readable.document;
+    let row = |c: &g7_model::Chart| {
+        let (from, to) = if readable.stale { (0, 0) } else { file.units(c.at.0) };
+        ChartRow {
+            name: c.name.text.to_string(),
+            kind: kind(c.kind),
+            comment: c.comment.as_deref().map(str::to_owned),
+            from,
+            to,
+            steps: c.steps().count(),
+            transitions: c.transitions().count(),
+            of: owner(document, &c.name.text),
+        }
+    };
+    document.charts().map(row).collect()
+}
+
+/// The macro-step that a chart is the expansion of, or the step that encloses it.
+fn owner(document: &Document, name: &str) -> Option<[String; 2]> {
+    let mut steps = document.charts().flat_map(|c| c.steps().map(move |s| (c, s)));
+    let (chart, step) = steps.find(|(_, s)| opens(s).any(|opened| opened == name))?;
+    Some([chart.name.text.to_string(), step.name.text.to_string()])
+}
+
+/// A fingerprint of a text, in hexadecimal.
+pub(crate) fn hash(text: &str) -> String {
+    format!("{:016x}", g7_host::Fnv::of(text.as_bytes()))
+}

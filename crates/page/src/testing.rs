@@ -1,0 +1,113 @@
+//! Runs the tests of a file in virtual time.
+
+use g7_host::VirtualClock;
+use g7_rig::testing::{self, Coverage, Options};
+use serde::Serialize;
+
+use crate::file::File;
+use crate::ids;
+use crate::problems;
+
+/// The results of the tests of a file.
+#[derive(Debug, Serialize)]
+pub(crate) struct Report {
+    passed: usize,
+    failed: usize,
+    tests: Vec<Row>,
+    coverage: Vec<Reached>,
+    /// The problems because of which no test could run.
+    problems: Vec<problems::Row>,
+}
+
+#[derive(Debug, Serialize)]
+struct Row {
+    name: String,
+    ok: bool,
+    from: usize,
+    to: usize,
+    simulated_ms: f64,
+    scans: u64,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    notes: Vec<String>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    failure: Option<Failure>,
+}
+
+#[derive(Debug, Serialize)]
+struct Failure {
+    message: String,
+    /// The place of the failed statement.
+    from: usize,
+    to: usize,
+    time_ms: f64,
+    got: Vec<(String, String)>,
+    situation: String,
+    chronogram: String,
+}
+
+/// The coverage of one kind of element.
+#[derive(Debug, Serialize)]
+struct Reached {
+    sort: &'static str,
+    total: usize,
+    reached: usize,
+    /// The ids of the symbols that no test reached.
+    missed: Vec<String>,
+}
+
+/// Runs the tests whose titles contain a text, or all.
+pub(crate) fn test(file: &File, filter: Option<&str>) -> Result<Report, String> {
+    let mut coverage = Coverage::default();
+    let options = Options { filter, ..Options::default() };
+    let mut clock = VirtualClock::default();
+    let (outcomes, problems) = testing::file(&file.source, options, &mut coverage, &mut clock, &mut || {})
+        .map_err(|e| e.to_string())?;
+    let failed = outcomes.iter().filter(|o| o.defect.is_some()).count();
+    let errors = problems.iter().filter(|p| p.severity() == g7_model::Severity::Error);
+    let rows = outcomes.iter().map(|o| {
+        let (from, to) = file.units(o.at);
+        Row {
+            name: o.title.clone(),
+            ok: o.defect.is_none(),
+            from,
+            to,
+            simulated_ms: o.simulated.as_millis(),
+            scans: o.scans,
+            notes: o.notes.clone(),
+            failure: o.defect.as_ref().map(|d| {
+                let (from, to) = file.units(d.at);
+                Failure {
+                    message: if d.expected.is_empty() {
+                        d.what.clone()
+                    } else {
+                        format!("{}: {}", d.what, d.expected)
+                    },
+                    from,
+                    to,
+                    time_ms: d.time.as_millis(),
+                    got: d.got.clone(),
+                    situation: d.situation.clone(),
+                    chronogram: d.chronogram.clone(),
+                }
+            }),
+        }
+    });
+    let document = &file.source.document;
+    let sorts = coverage.sorts().map(|(sort, rows)| Reached {
+        sort,
+        total: rows.len(),
+        reached: rows.values().filter(|r| r.hits > 0).count(),
+        missed: rows
+            .iter()
+            .filter(|(_, r)| r.hits == 0)
+            .filter_map(|(at, _)| ids::at(document, *at).map(|t| t.id()))
+            .collect(),
+    });
+    Ok(Report {
+        passed: outcomes.len() - failed,
+        failed,
+        tests: rows.collect(),
+        coverage: sorts.into_iter().collect(),
+        problems: errors.map(|p| problems::row(file, p)).collect(),
+    })
+}

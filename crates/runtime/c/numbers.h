@@ -1,0 +1,168 @@
+/* Time, places in tables, reals. */
+
+/* The place of the lowest bit that is set (de Bruijn). */
+static uint32_t low_bit(uint32_t word)
+{
+    static const uint8_t place_of[32] = {
+        0, 1, 28, 2, 29, 14, 24, 3, 30, 22, 20, 15, 25, 17, 4, 8,
+        31, 27, 13, 23, 21, 19, 16, 7, 26, 12, 18, 6, 11, 5, 10, 9
+    };
+    const uint32_t lowest = word & (~word + UINT32_C(1));
+    return place_of[(uint32_t)(lowest * UINT32_C(0x077CB531)) >> 27];
+}
+
+/* Time gone by; the clock may pass its end. */
+static int64_t since(int64_t now, int64_t then)
+{
+    return (int64_t)((uint64_t)now - (uint64_t)then);
+}
+
+static bool is_due_after(int64_t now, int64_t start, int64_t time)
+{
+    return (start > (INT64_MAX - time)) ? (now == INT64_MAX) : (now >= (start + time));
+}
+
+/* The first fault is the one that is told. */
+static void fail(uint8_t *fault, uint8_t kind)
+{
+    if (*fault == 0) {
+        *fault = kind;
+    }
+}
+
+static uint32_t place(int64_t i, uint32_t length, uint8_t *fault)
+{
+    if ((i < 0) || (i >= (int64_t)length)) {
+        fail(fault, FAULT_RANGE);
+        return 0;
+    }
+    return (uint32_t)i;
+}
+
+/* To a whole number, halves to the even one. */
+static double round_even(double v)
+{
+    double whole;
+    double rest;
+    if (!((v > -4503599627370496.0) && (v < 4503599627370496.0))) {
+        return v;
+    }
+    whole = (double)(int64_t)v;
+    rest = v - whole;
+    if ((rest > 0.5) || ((rest == 0.5) && (((int64_t)v % 2) != 0))) {
+        whole += 1.0;
+    } else if ((rest < -0.5) || ((rest == -0.5) && (((int64_t)v % 2) != 0))) {
+        whole -= 1.0;
+    }
+    return whole;
+}
+
+static double toward_zero(double v)
+{
+    if (!((v > -4503599627370496.0) && (v < 4503599627370496.0))) {
+        return v;
+    }
+    return (double)(int64_t)v;
+}
+
+/* What a division leaves, exact, with the sign of the dividend. */
+static double remainder_of(double a, double b)
+{
+    double rest = (a < 0.0) ? -a : a;
+    const double divisor = (b < 0.0) ? -b : b;
+    double part = divisor;
+    if (!(rest <= 1.7976931348623157e308) || (divisor != divisor)) {
+        return (a - a) / (b - b);
+    }
+    if (rest < divisor) {
+        return a;
+    }
+    while (part <= (rest - part)) {
+        part += part;
+    }
+    while (part >= divisor) {
+        if (rest >= part) {
+            rest -= part;
+        }
+        part /= 2.0;
+    }
+    return (a < 0.0) ? -rest : rest;
+}
+
+static double real_abs(double v)
+{
+    return (v < 0.0) ? -v : ((v == 0.0) ? 0.0 : v);
+}
+
+/* The square root, rounded as IEEE 754 has it, digit by digit. */
+static double real_sqrt(double v)
+{
+    double scale = 1.0;
+    uint64_t number;
+    uint64_t root = 0;
+    uint64_t rest = 0;
+    if ((v != v) || (v == 0.0) || (v > 1.7976931348623157e308)) {
+        return v;
+    }
+    if (v < 0.0) {
+        return (v - v) / (v - v);
+    }
+    while (v >= 4.0) {
+        v /= 4.0;
+        scale *= 2.0;
+    }
+    while (v < 1.0) {
+        v *= 4.0;
+        scale /= 2.0;
+    }
+    number = (uint64_t)(v * 4503599627370496.0);
+    for (uint32_t i = 0; i < 53u; i++) {
+        const uint64_t two = (i < 27u) ? ((number >> (52u - (2u * i))) & 3u) : 0u;
+        rest = (rest << 2) | two;
+        root <<= 1;
+        if (rest >= ((root << 1) + 1u)) {
+            rest -= (root << 1) + 1u;
+            root += 1u;
+        }
+    }
+    if (rest > root) {
+        root += 1u;
+    }
+    return ((double)root / 4503599627370496.0) * scale;
+}
+
+static float div_f32(float a, float b, uint8_t *fault)
+{
+    if (b == 0.0f) {
+        fail(fault, FAULT_DIVISION);
+        return 0.0f;
+    }
+    return a / b;
+}
+
+static float rem_f32(float a, float b, uint8_t *fault)
+{
+    if (b == 0.0f) {
+        fail(fault, FAULT_DIVISION);
+        return 0.0f;
+    }
+    return (float)remainder_of((double)a, (double)b);
+}
+
+static double div_f64(double a, double b, uint8_t *fault)
+{
+    if (b == 0.0) {
+        fail(fault, FAULT_DIVISION);
+        return 0.0;
+    }
+    return a / b;
+}
+
+static double rem_f64(double a, double b, uint8_t *fault)
+{
+    if (b == 0.0) {
+        fail(fault, FAULT_DIVISION);
+        return 0.0;
+    }
+    return remainder_of(a, b);
+}

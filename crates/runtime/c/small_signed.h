@@ -1,0 +1,11 @@
+/* The magnitude of whole numbers of T. */
+
+static T OF(abs)(T a, uint8_t *fault)
+{
+    const int64_t v = (a < 0) ? -(int64_t)a : (int64_t)a;
+    if ((v < T_MIN) || (v > T_MAX)) {
+        fail(fault, FAULT_OVERFLOW);
+        return 0;
+    }
+    return (T)v;
+}

@@ -1,0 +1,213 @@
+//! What tests need from the machine and cannot bring along: compilers, the
+//! runtime of the sanitizers, matiec, and the corpus of charts that people drew.
+//!
+//! A test asks here, and here alone. A peer is tried before a test uses it. If it
+//! is missing, the test goes without that part, and the skip is written to the file
+//! that `G7_SKIPS` names; `make test` counts these lines (`tally`) in its last line.
+#![forbid(unsafe_code)]
+#![allow(clippy::disallowed_methods, reason = "tests look at the machine that they run on")]
+
+pub mod tally;
+
+use std::io::Write as _;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+/// Counts a skip of the running test.
+///
+/// # Panics
+///
+/// If the file that `G7_SKIPS` names cannot be written: an uncounted skip is worse
+/// than a failure.
+pub fn skip(why: &str) {
+    let thread = std::thread::current();
+    let test = thread.name().unwrap_or("a test");
+    println!("skipped: {why}");
+    let Some(file) = std::env::var_os("G7_SKIPS") else { return };
+    note(Path::new(&file), why, test).unwrap_or_else(|e| panic!("{}: {e}", file.display()));
+}
+
+/// One call writes the whole line, so that tests that run side by side do not mix.
+fn note(file: &Path, why: &str, test: &str) -> std::io::Result<()> {
+    let mut file = std::fs::OpenOptions::new().create(true).append(true).open(file)?;
+    file.write_all(format!("{why}\t{test}\n").as_bytes())
+}
+
+/// A folder of the corpus (`""` for all of it), which stands at `G7_CORPUS`, else at
+/// `../shared/corpus` beside the repository.
+///
+/// # Panics
+///
+/// If `G7_CORPUS` names no folder.
+pub fn corpus(part: &str) -> Option<PathBuf> {
+    let named = std::env::var_os("G7_CORPUS").map(PathBuf::from);
+    if let Some(wrong) = named.as_ref().filter(|p| !p.is_dir()) {
+        panic!("G7_CORPUS is no folder: {}", wrong.display());
+    }
+    let beside = || [env!("CARGO_MANIFEST_DIR"), "..", "..", "..", "shared", "corpus"].iter().collect();
+    let root = named.unwrap_or_else(beside);
+    if !root.is_dir() {
+        skip("corpus absent");
+        return None;
+    }
+    let folder = root.join(part);
+    if !folder.is_dir() {
+        skip(&format!("corpus without {part}"));
+        return None;
+    }
+    Some(folder)
+}
+
+/// True if rustc can compile for a target; otherwise the skip is counted.
+pub fn target(name: &str) -> bool {
+    let found = compiles_for(name);
+    if !found {
+        skip(&format!("target {name} missing"));
+    }
+    found
+}
+
+fn compiles_for(target: &str) -> bool {
+    let folder = Scratch::new("target");
+    let arguments = ["--crate-type", "lib", "--target", target, "try.rs"];
+    std::fs::write(folder.0.join("try.rs"), "#![no_std]\n").is_ok()
+        && quiet(Command::new("rustc").args(arguments).current_dir(&folder.0))
+}
+
+/// True if a tool can be started; otherwise the skip is counted.
+pub fn tool(name: &str) -> bool {
+    let found = starts(name);
+    if !found {
+        skip(&format!("{name} missing"));
+    }
+    found
+}
+
+fn starts(name: &str) -> bool {
+    quiet(Command::new(name).arg("--version"))
+}
+
+/// The flags, if a compiler builds a program with them that starts; otherwise none,
+/// and the skip is counted. Debian's clang comes without the runtime of its sanitizers.
+pub fn sanitizers<'f>(compiler: &str, flags: &'f [&'f str]) -> &'f [&'f str] {
+    if builds(compiler, flags) {
+        return flags;
+    }
+    skip(&format!("{compiler} without sanitizers"));
+    &[]
+}
+
+fn builds(compiler: &str, flags: &[&str]) -> bool {
+    let folder = Scratch::new("sanitizers");
+    std::fs::write(folder.0.join("try.c"), "int main(void) { return 0; }\n").is_ok()
+        && quiet(Command::new(compiler).args(flags).args(["try.c", "-o", "try"]).current_dir(&folder.0))
+        && quiet(&mut Command::new(folder.0.join("try")))
+}
+
+/// matiec: `iec2c` on the `PATH`, and its library.
+#[derive(Clone, Debug)]
+pub struct Matiec {
+    /// The compiler.
+    pub tool: PathBuf,
+    /// The folder of `ieclib.txt`.
+    pub lib: PathBuf,
+}
+
+impl Matiec {
+    /// Finds it without trying it or counting anything. The library is looked for in
+    /// `MATIEC_LIB`, then beside the compiler, then where packages put it.
+    pub fn find() -> Option<Matiec> {
+        let path = std::env::var_os("PATH")?;
+        let tool = std::env::split_paths(&path).map(|d| d.join("iec2c")).find(|p| p.is_file())?;
+        let home = tool.parent()?.to_path_buf();
+        let named = std::env::var_os("MATIEC_LIB").map(PathBuf::from);
+        let places = [
+            home.join("lib"),
+            home.join("../lib/matiec"),
+            "/usr/lib/matiec".into(),
+            "/usr/share/matiec/lib".into(),
+        ];
+        let lib = named.into_iter().chain(places).find(|l| l.join("ieclib.txt").is_file())?;
+        Some(Matiec { tool, lib })
+    }
+
+    /// Its call for a file: C goes to the folder in which it runs.
+    ///
+    /// matiec looks at memory that it has not written when it meets S and R, and takes
+    /// them for calls of function blocks then; the C library is told to clear it.
+    pub fn translate(&self, folder: &Path, file: &str) -> Command {
+        let mut command = Command::new(&self.tool);
+        command.env("GLIBC_TUNABLES", "glibc.malloc.perturb=255:glibc.malloc.tcache_count=0");
+        command.current_dir(folder).arg("-I").arg(&self.lib).args(["-T", ".", file]);
+        command
+    }
+}
+
+/// matiec, if it translates a program; otherwise the skip is counted.
+pub fn matiec() -> Option<Matiec> {
+    let Some(matiec) = Matiec::find() else {
+        skip("iec2c missing");
+        return None;
+    };
+    let folder = Scratch::new("matiec");
+    let text = "PROGRAM p\nVAR a : BOOL; END_VAR\na := NOT a;\nEND_PROGRAM\n";
+    let fine = std::fs::write(folder.0.join("try.st"), text).is_ok()
+        && quiet(&mut matiec.translate(&folder.0, "try.st"));
+    if !fine {
+        skip("iec2c does not work");
+    }
+    fine.then_some(matiec)
+}
+
+/// True if a command starts and succeeds; nothing of what it says is shown.
+fn quiet(command: &mut Command) -> bool {
+    command.stdout(Stdio::null()).stderr(Stdio::null()).status().is_ok_and(|s| s.success())
+}
+
+/// A folder of its own for a trial, removed at the end.
+struct Scratch(PathBuf);
+
+impl Scratch {
+    fn new(what: &str) -> Scratch {
+        static TRIALS: AtomicUsize = AtomicUsize::new(0);
+        let trial = TRIALS.fetch_add(1, Ordering::Relaxed);
+        let folder = std::env::temp_dir().join(format!("g7-{what}-{}-{trial}", std::process::id()));
+        std::fs::create_dir_all(&folder).expect("a folder for a trial");
+        Scratch(folder)
+    }
+}
+
+impl Drop for Scratch {
+    fn drop(&mut self) {
+        let _ = std::fs::remove_dir_all(&self.0);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// These do not count their skips: they are no skips of `make test`.
+    #[test]
+    fn what_does_not_work_is_not_used() {
+        assert!(starts("rustc") && !starts("g7-has-no-such-tool"));
+        assert!(!builds("g7-has-no-such-tool", &[]));
+        assert!(!builds("rustc", &["--no-such-flag"]));
+        assert!(!compiles_for("g7-has-no-such-target"));
+    }
+
+    #[test]
+    fn skips_are_lines_with_the_reason_first() {
+        let folder = Scratch::new("skips");
+        let file = folder.0.join("skips");
+        note(&file, "corpus absent", "one").expect("a line");
+        note(&file, "clang missing", "two").expect("a line");
+        let text = std::fs::read_to_string(&file).expect("the lines");
+        assert_eq!(text, "corpus absent\tone\nclang missing\ttwo\n");
+        let mut tally = tally::Tally::default();
+        tally.add_skips(&text);
+        assert!(tally.to_string().ends_with("skipped: 2 (clang missing: 1, corpus absent: 1)"));
+        assert!(note(&folder.0.join("no/skips"), "corpus absent", "one").is_err());
+    }
+}

@@ -1,0 +1,164 @@
+//! Resolves paths and direct names, from the innermost scope outward (grammar, "Expressions").
+
+use g7_model::{ChartKind, Path, Type};
+
+use super::model::{FILE, Model, ScopeId, StepId, VarId};
+
+/// The meaning of a name.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Ref {
+    Var(VarId),
+    Member(VarId, String),
+    Active(StepId),
+    Time(StepId),
+    Seconds(StepId),
+    /// `%X12.T`: the step time in units of 100 ms.
+    Tenths(StepId),
+    Section(ScopeId, String),
+}
+
+impl Model {
+    /// Resolves a path that does not name a local variable of a body.
+    pub(super) fn resolve(&self, scope: ScopeId, path: &Path) -> Option<Ref> {
+        let names: Vec<&str> = path.names.iter().map(|n| &*n.text).collect();
+        let chain = self.chain(scope);
+        if let Some(found) = chain.iter().find_map(|&s| self.variable_in(s, &names)) {
+            return Some(found);
+        }
+        if let Some(found) = chain.iter().find_map(|&s| self.step_in(s, &names)) {
+            return Some(found);
+        }
+        let (&first, rest) = names.split_first()?;
+        if let Some(chart) = self.chart_named(first)
+            && !rest.is_empty()
+        {
+            return self.variable_in(chart, rest).or_else(|| self.step_in(chart, rest));
+        }
+        // Linked charts read each other's steps by number alone (A17): the only such step of the
+        // charts, otherwise the only one of expansions and tasks.
+        let found = |of_charts: bool| {
+            let scopes = FILE + 1..self.scopes.len();
+            let mut all = scopes
+                .filter(|&s| (self.scopes[s].kind == ChartKind::Chart) == of_charts)
+                .filter_map(|s| self.step_in(s, &names));
+            match (all.next(), all.next()) {
+                (Some(only), None) => Some(Some(only)),
+                (None, _) => None,
+                _ => Some(None),
+            }
+        };
+        found(true).or_else(|| found(false)).flatten()
+    }
+
+    /// The scopes in which a name is searched: this one, the charts around an expansion, the file.
+    fn chain(&self, scope: ScopeId) -> Vec<ScopeId> {
+        let mut chain = vec![scope];
+        let mut at = scope;
+        while let Some(m) = self.scopes[at].macro_step {
+            at = self.steps[m].scope;
+            chain.push(at);
+        }
+        if scope != FILE {
+            chain.push(FILE);
+        }
+        chain
+    }
+
+    fn variable_in(&self, scope: ScopeId, names: &[&str]) -> Option<Ref> {
+        let s = &self.scopes[scope];
+        match *names {
+            [one] => match s.vars.get(one) {
+                Some(&v) => Some(Ref::Var(v)),
+                None => s.sections.contains_key(one).then(|| Ref::Section(scope, one.to_owned())),
+            },
+            [instance, member] => {
+                let &v = s.vars.get(instance)?;
+                matches!(self.vars[v].ty, Type::Fb(_)).then(|| Ref::Member(v, member.to_owned()))
+            }
+            _ => None,
+        }
+    }
+
+    fn step_in(&self, scope: ScopeId, names: &[&str]) -> Option<Ref> {
+        match *names {
+            [x] => self.step_behind_x(scope, x).map(Ref::Active),
+            [step, what @ ("t" | "T" | "x" | "X" | "s")] => {
+                let by_name = self.scopes[scope].by_name.get(step).copied();
+                let id = by_name.or_else(|| self.step_behind_x(scope, step))?;
+                Some(match what {
+                    "t" | "T" => Ref::Time(id),
+                    "s" => Ref::Seconds(id),
+                    _ => Ref::Active(id),
+                })
+            }
+            [macro_step, ref rest @ ..] => {
+                let &id = self.scopes[scope].by_name.get(macro_step)?;
+                let (inner, ..) = self.steps[id].expansion?;
+                self.variable_in(inner, rest).or_else(|| self.step_in(inner, rest))
+            }
+            [] => None,
+        }
+    }
+
+    /// The step of `X12`, `XFill` or `XM3` (macro-step `M3` or `3`).
+    fn step_behind_x(&self, scope: ScopeId, text: &str) -> Option<StepId> {
+        let name = text.strip_prefix('X')?;
+        let s = &self.scopes[scope];
+        s.by_name.get(name).copied().or_else(|| {
+            let id = *s.by_name.get(name.strip_prefix('M')?)?;
+            self.steps[id].expansion.is_some().then_some(id)
+        })
+    }
+
+    /// The step of `G.X12`, `X12` or `G.Fill` as the argument of a service.
+    pub(super) fn resolve_step(&self, scope: ScopeId, path: &Path) -> Option<StepId> {
+        if let Some(Ref::Active(id)) = self.resolve(scope, path) {
+            return Some(id);
+        }
+        match &path.names[..] {
+            [step] => self.scopes[scope].by_name.get(&*step.text).copied(),
+            [chart, step] => {
+                let chart = self.chart_named(&chart.text)?;
+                self.scopes[chart].by_name.get(&*step.text).copied()
+            }
+            _ => None,
+        }
+    }
+
+    /// Resolves a direct name, given without its `%`.
+    pub(super) fn resolve_direct(&self, name: &str) -> Option<Ref> {
+        let name = name.to_ascii_uppercase();
+        if let Some(&v) = self.addresses.get(&name) {
+            return Some(Ref::Var(v));
+        }
+        let (body, time) = match name.strip_suffix(".T") {
+            Some(body) => (body, true),
+            None => (&*name, false),
+        };
+        let step = self.direct_step(body.strip_prefix('X')?)?;
+        Some(if time { Ref::Tenths(step) } else { Ref::Active(step) })
+    }
+
+    fn direct_step(&self, text: &str) -> Option<StepId> {
+        let main = (FILE + 1..self.scopes.len()).find(|&s| self.scopes[s].kind == ChartKind::Chart)?;
+        if let Some(number) = text.strip_prefix('M') {
+            return self.numbered_macro(main, number);
+        }
+        let Some((number, inner)) = text.split_once('.') else {
+            return self.scopes[main].by_name.get(text).copied();
+        };
+        let (scope, entry, exit) = self.steps[self.numbered_macro(main, number)?].expansion?;
+        match inner {
+            "IN" => Some(entry),
+            "OUT" => Some(exit),
+            _ => self.scopes[scope].by_name.get(inner).copied(),
+        }
+    }
+
+    /// The macro-step with number 3, whose name is `3` or `M3`.
+    pub(super) fn numbered_macro(&self, scope: ScopeId, number: &str) -> Option<StepId> {
+        let by_name = &self.scopes[scope].by_name;
+        let names = [format!("M{number}"), number.to_owned()];
+        names.iter().filter_map(|n| by_name.get(n).copied()).find(|&s| self.steps[s].expansion.is_some())
+    }
+}
