@@ -78,11 +78,7 @@ class Editor {
   async history(way: 'undo' | 'redo'): Promise<void> {
     const { file, chart } = this;
     if (!file || chart === null) return;
-    await this.#draw(file, async () => {
-      await file.settled();
-      if (way === 'undo') return file.look.can_undo ? file.undo() : null;
-      return file.look.can_redo ? file.redo() : null;
-    });
+    await this.#draw(file, () => (way === 'undo' ? file.undo() : file.redo()));
   }
 
   async #draw(file: OpenFile, change: () => Promise<Edited | null>): Promise<Edited | undefined> {

@@ -9,7 +9,9 @@ import { shell } from '../lib/shell.svelte';
 /** A first file: one chart with one step, on which the user can build. */
 const FIRST = 'chart G1 {\n  initial step 0\n}\n';
 
+/** Saves the text with every change that was asked for before, such as an undo still under way. */
 export async function save(file: OpenFile): Promise<void> {
+  await file.settled();
   if (!server.writes) {
     download(file);
     return;

@@ -58,9 +58,8 @@ export class OpenFile {
   #listeners = new Set<Listener>();
   /** Typed changes that are not sent yet; each is relative to the text after those before it. */
   #typed: Typed[] = [];
-  /** True while the worker processes a change of this file. */
-  #busy = false;
-  #waiting: (() => void)[] = [];
+  /** Ends when every change asked for so far is in the text here and in the worker. */
+  #line: Promise<unknown> = Promise.resolve();
   #drawings = new Map<string, { version: number; drawing: Promise<Drawing> }>();
 
   constructor(look: Look, text: string) {
@@ -86,26 +85,31 @@ export class OpenFile {
     return this.#put(splices, true, 'structure');
   }
 
-  /** Waits until the worker has the present text. */
+  /** Waits until no change is under way: the worker has the present text. */
   async settled(): Promise<void> {
-    while (this.#busy) await new Promise<void>((done) => this.#waiting.push(done));
+    for (let line: Promise<unknown> | undefined; line !== this.#line; ) {
+      line = this.#line;
+      await line;
+    }
   }
 
   /** Executes a gesture. */
   edit(gesture: Gesture): Promise<Edited> {
-    return this.#change({ do: 'edit', file: this.name, gesture }, 'structure');
+    return this.#turn(() => this.#change({ do: 'edit', file: this.name, gesture }, 'structure'));
   }
 
-  undo(): Promise<Edited> {
-    return this.#change({ do: 'undo', file: this.name }, 'history');
+  /** Undoes the last change; null if there is none when its turn comes. */
+  undo(): Promise<Edited | null> {
+    return this.#turn(async () => (this.look.can_undo ? this.#change({ do: 'undo', file: this.name }, 'history') : null));
   }
 
-  redo(): Promise<Edited> {
-    return this.#change({ do: 'redo', file: this.name }, 'history');
+  /** The inverse of undo; null if nothing was undone. */
+  redo(): Promise<Edited | null> {
+    return this.#turn(async () => (this.look.can_redo ? this.#change({ do: 'redo', file: this.name }, 'history') : null));
   }
 
   format(): Promise<Edited> {
-    return this.#change({ do: 'format', file: this.name }, 'structure');
+    return this.#turn(() => this.#change({ do: 'format', file: this.name }, 'structure'));
   }
 
   /** Replaces the whole text as one edit that can be undone: a newer version from the disk. */
@@ -146,42 +150,38 @@ export class OpenFile {
     else this.#typed.push({ changes, unit });
     this.text = apply(this.text, splices);
     this.#tell({ splices, origin });
-    if (!this.#busy) await this.#send();
+    await this.#turn(() => this.#send());
+  }
+
+  /** Does a work when all asked for before it is done. */
+  #turn<T>(work: () => Promise<T>): Promise<T> {
+    const done = this.#line.then(work);
+    // A change that fails tells its caller; those behind it go on.
+    this.#line = done.catch(() => undefined);
+    return done;
   }
 
   async #change(message: Message, origin: Origin): Promise<Edited> {
-    await this.settled();
-    this.#busy = true;
-    try {
-      const edited = await page.call<Edited>(message);
-      let theirs = ChangeSet.of(asSpecs(edited.splices), this.#typed[0]?.changes.length ?? this.text.length);
-      for (const mine of this.#typed) {
-        const after = theirs.map(mine.changes, true);
-        mine.changes = mine.changes.map(theirs);
-        theirs = after;
-      }
-      const splices = asSplices(theirs);
-      this.text = apply(this.text, splices);
-      this.look = edited;
-      this.#tell({ splices, origin });
-      return edited;
-    } finally {
-      await this.#send();
+    const edited = await page.call<Edited>(message);
+    let theirs = ChangeSet.of(asSpecs(edited.splices), this.#typed[0]?.changes.length ?? this.text.length);
+    for (const mine of this.#typed) {
+      const after = theirs.map(mine.changes, true);
+      mine.changes = mine.changes.map(theirs);
+      theirs = after;
     }
+    const splices = asSplices(theirs);
+    this.text = apply(this.text, splices);
+    this.look = edited;
+    this.#tell({ splices, origin });
+    return edited;
   }
 
   /** Sends the typed changes until none are left. */
   async #send(): Promise<void> {
-    this.#busy = true;
-    try {
-      for (let next = this.#typed.shift(); next; next = this.#typed.shift()) {
-        const splices = asSplices(next.changes);
-        if (splices.length === 0) continue;
-        this.look = await page.call<Look>({ do: 'splice', file: this.name, splices, unit: next.unit });
-      }
-    } finally {
-      this.#busy = false;
-      this.#waiting.splice(0).forEach((done) => done());
+    for (let next = this.#typed.shift(); next; next = this.#typed.shift()) {
+      const splices = asSplices(next.changes);
+      if (splices.length === 0) continue;
+      this.look = await page.call<Look>({ do: 'splice', file: this.name, splices, unit: next.unit });
     }
   }
 
