@@ -7,7 +7,7 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
 use g7_compile::plant;
-use g7_model::{FileId, Problem, ProfileName, Severity};
+use g7_model::{FileId, Problem, ProfileName, Severity, StandardFunction};
 use g7_tests::book::{assemble, blocks};
 use g7_tests::generated::cases::Folder;
 use g7_tests::{engine, replay, subject};
@@ -67,6 +67,19 @@ fn problems(text: &str) -> Vec<Problem> {
         problems.append(&mut plant::compile_plant(&doc, p.1, p.0, &[]).1);
     }
     problems
+}
+
+/// The first cells of the page's table are the functions of the language, each once.
+#[test]
+fn the_page_of_functions_lists_each_of_them() {
+    let page = text(&root().join("docs/book/src/language/functions.md"));
+    let cells = page.lines().filter_map(|l| l.strip_prefix("| `")?.split(" |").next());
+    let words = cells.flat_map(|cell| cell.split(['`', ' ']).filter(|w| !w.is_empty()));
+    let mut listed: Vec<&str> = words.collect();
+    let mut functions: Vec<&str> = StandardFunction::ALL.into_iter().map(|f| f.row().name).collect();
+    listed.sort_unstable();
+    functions.sort_unstable();
+    assert_eq!(listed, functions);
 }
 
 #[test]

@@ -291,6 +291,7 @@ mod tests {
             &whole,
         );
         names.extend(of(&["abs"], &signed));
+        names.extend(of(&["shl", "shr", "rol", "ror"], &unsigned));
         names.extend(of(&["div", "rem", "pow", "min", "max"], &reals));
         names.extend(whole.iter().filter(|t| **t != "i64").map(|t| format!("{t}_from_i64")));
         names.extend(whole.iter().filter(|t| **t != "u64").map(|t| format!("{t}_from_u64")));

@@ -426,6 +426,12 @@ impl Flow<'_, '_> {
         let args = self.stack.split_off(from);
         match f {
             Builtin::Sel | Builtin::Mux => return self.select(f, args),
+            _ if f.shifts() => {
+                let kinds = args.iter().zip([n, Num::I64]);
+                let exprs = kinds.map(|(a, n)| self.as_num(a, n)).collect();
+                let name = format!("{f:?}_{}", suffix(n)).to_lowercase();
+                return self.failing(name, exprs, n);
+            }
             Builtin::Abs if !is_real(n) => {
                 let e = args.first().cloned().unwrap_or(Entry::Word(0));
                 let e = self.as_num(&e, n);

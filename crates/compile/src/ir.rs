@@ -410,6 +410,39 @@ pub enum ExprKind {
     Random,
 }
 
+impl Expr {
+    /// Its operands, in their order.
+    pub fn operands(&self) -> Vec<&Expr> {
+        match &self.kind {
+            ExprKind::Const(_)
+            | ExprKind::Var(_)
+            | ExprKind::Member(..)
+            | ExprKind::StepActive(_)
+            | ExprKind::StepTime(_)
+            | ExprKind::StepTenths(_)
+            | ExprKind::StepScans(_)
+            | ExprKind::StepSeconds(_)
+            | ExprKind::Section(_)
+            | ExprKind::ScanTime
+            | ExprKind::Random => Vec::new(),
+            ExprKind::Element(_, a)
+            | ExprKind::Not(a)
+            | ExprKind::Neg(a)
+            | ExprKind::Rise(a)
+            | ExprKind::Fall(a)
+            | ExprKind::Convert(a)
+            | ExprKind::Trunc(a) => vec![a],
+            ExprKind::Binary(_, a, b) => vec![a, b],
+            ExprKind::Timer { t1, e, t2 } => {
+                let mut list: Vec<&Expr> = vec![t1, e];
+                list.extend(t2.as_deref());
+                list
+            }
+            ExprKind::Builtin(_, args) | ExprKind::Call(_, args) => args.iter().collect(),
+        }
+    }
+}
+
 /// Operators between operands; `And`, `Or` and `Xor` join values of type BOOL.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum BinaryOp {

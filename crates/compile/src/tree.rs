@@ -103,7 +103,8 @@ pub enum ExprKind {
     Convert(Type, Type, Box<Expr>),
     /// Toward zero, from a real type to an integer type; out of range is a fault.
     Trunc(Type, Type, Box<Expr>),
-    /// A function of numbers, all of one type; of SEL and MUX, the type of what they choose from.
+    /// A function of numbers, all of one type; of SEL and MUX, the type of what they choose from;
+    /// of a shift, that of its bits.
     Call(Builtin, Type, Vec<Expr>),
     /// A function of texts. LEN and FIND give an INT; the others give a text,
     /// worked out at `to` and cut at `cap` bytes.
@@ -322,6 +323,10 @@ impl Expr {
                 | ExprKind::After(..)
                 | ExprKind::Random(_)
                 | ExprKind::Call(Builtin::Mux, ..) => true,
+                ExprKind::Call(f, _, args) if f.shifts() => {
+                    // A written N is not negative: the resolver has seen to it.
+                    !matches!(args.last().map(|n| &n.kind), Some(ExprKind::Const(..)))
+                }
                 ExprKind::Neg(n, _) | ExprKind::Call(Builtin::Abs, n, _) => !n.is_real(),
                 ExprKind::Arith(op, n, ..) => !n.is_real() || matches!(op, Arith::Div | Arith::Mod),
                 ExprKind::Convert(from, to, _) => narrows(*from, *to),

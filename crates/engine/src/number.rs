@@ -191,6 +191,7 @@ pub fn call(f: Builtin, n: Num, args: &[u64]) -> Result<u64, FaultKind> {
             let k = usize::try_from(arg(0) as i64).map_err(|_| FaultKind::Range)?;
             args.get(1..).unwrap_or(&[]).get(k).copied().ok_or(FaultKind::Range)
         }
+        Builtin::Shl | Builtin::Shr | Builtin::Rol | Builtin::Ror => shift(f, n, arg(0), arg(1) as i64),
         Builtin::Len
         | Builtin::Left
         | Builtin::Right
@@ -201,6 +202,33 @@ pub fn call(f: Builtin, n: Num, args: &[u64]) -> Result<u64, FaultKind> {
         | Builtin::Replace
         | Builtin::Find => Err(FaultKind::Range),
     }
+}
+
+/// The bits of an unsigned kind.
+fn width(n: Num) -> Option<u32> {
+    match n {
+        Num::U8 => Some(8),
+        Num::U16 => Some(16),
+        Num::U32 => Some(32),
+        Num::U64 => Some(64),
+        Num::Bool | Num::I8 | Num::I16 | Num::I32 | Num::I64 | Num::F32 | Num::F64 => None,
+    }
+}
+
+/// SHL, SHR, ROL and ROR (IEC 61131-3:2003, table 25). A shift by the width and more leaves no
+/// bit; a rotation counts modulo the width.
+fn shift(f: Builtin, n: Num, v: u64, by: i64) -> Result<u64, FaultKind> {
+    let (Some(width), Ok(by)) = (width(n), u64::try_from(by)) else { return Err(FaultKind::Range) };
+    let all = u64::MAX >> (64 - width);
+    let bits = u32::try_from(by).unwrap_or(u32::MAX);
+    let left = match f {
+        Builtin::Shl => return Ok(v.checked_shl(bits).unwrap_or(0) & all),
+        Builtin::Shr => return Ok(v.checked_shr(bits).unwrap_or(0)),
+        Builtin::Rol => (by % u64::from(width)) as u32,
+        _ => (width - (by % u64::from(width)) as u32) % width,
+    };
+    // A shift by 64 has no meaning for a word.
+    Ok(((v << left) | v.checked_shr(width - left).unwrap_or(0)) & all)
 }
 
 /// What a generator's word grows by for each random number.

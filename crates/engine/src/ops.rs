@@ -142,6 +142,15 @@ pub enum Builtin {
     Sel,
     /// `MUX(k, in0, in1, …)`: K is LINT; out of range is a fault.
     Mux,
+    /// `SHL(in, n)`, of unsigned kinds: `n` bits to the left, zeros behind; N is LINT, and
+    /// negative it is a fault.
+    Shl,
+    /// `SHR(in, n)`: to the right, zeros before.
+    Shr,
+    /// `ROL(in, n)`: to the left in a ring of the bits of the kind.
+    Rol,
+    /// `ROR(in, n)`: to the right in a ring.
+    Ror,
     /// `LEN(s)`: the number of Unicode characters (INT).
     Len,
     /// `LEFT(s, n)`.
@@ -160,6 +169,13 @@ pub enum Builtin {
     Replace,
     /// `FIND(a, b)`, 0 where absent (INT).
     Find,
+}
+
+impl Builtin {
+    /// Moves bits by a number of places, its second argument.
+    pub const fn shifts(self) -> bool {
+        matches!(self, Builtin::Shl | Builtin::Shr | Builtin::Rol | Builtin::Ror)
+    }
 }
 
 /// The standard function blocks. The words of an instance are the members, in the order
@@ -285,7 +301,7 @@ pub enum Op {
     /// Converts the top toward zero, from the first (real) to the second (integer) kind.
     Trunc(Num, Num),
     /// A function of `n` arguments on numbers of one kind (for SEL and MUX the
-    /// kind does not matter). String functions are [`Op::Text`].
+    /// kind does not matter; the N of a shift is I64). String functions are [`Op::Text`].
     Call(Builtin, Num, u8),
     /// A string function of `n` arguments; writes to the string at `to` of
     /// capacity `cap` bytes and pushes `to`; LEN and FIND push a number instead.

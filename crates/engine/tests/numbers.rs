@@ -191,6 +191,25 @@ fn functions_of_numbers() {
     for k in [-1, 2] {
         assert_eq!(call(Builtin::Mux, Num::I16, &[k, 7, 8]).err(), Some(FaultKind::Range));
     }
+    for (f, by, bits) in [
+        (Builtin::Shl, 3, 0b1011_0000),
+        (Builtin::Shr, 3, 0b0001_0010),
+        (Builtin::Rol, 3, 0b1011_0100),
+        (Builtin::Ror, 3, 0b1101_0010),
+        (Builtin::Shl, 8, 0),
+        (Builtin::Shr, i64::MAX, 0),
+        (Builtin::Rol, 8, 0b1001_0110),
+        (Builtin::Ror, 0, 0b1001_0110),
+    ] {
+        assert_eq!(call(f, Num::U8, &[0b1001_0110, by]), Ok(bits), "{f:?} {by}");
+        assert_eq!(call(f, Num::U8, &[1, -1]).err(), Some(FaultKind::Range));
+        assert_eq!(call(f, Num::I8, &[1, 1]).err(), Some(FaultKind::Range), "no bit string");
+    }
+    assert_eq!(call(Builtin::Ror, Num::U64, &[1, 1]), Ok(i64::MIN));
+    assert_eq!(
+        (call(Builtin::Shr, Num::U64, &[-1, 63]), call(Builtin::Shl, Num::U64, &[1, 64])),
+        (Ok(1), Ok(0))
+    );
     let real = |f, x: f64| f64s(Op::Call(f, Num::F64, 1), &[x]).expect("no fault");
     let single = |f, x: f32| f32s(Op::Call(f, Num::F32, 1), &[x]).expect("no fault");
     assert_eq!((real(Builtin::Abs, -2.5), single(Builtin::Abs, -2.5)), (2.5, 2.5));

@@ -368,22 +368,27 @@ impl Body<'_, '_> {
     fn call(&mut self, f: Builtin, ty: Type, args: &[tree::Expr], at: Span) -> Expr {
         let list: Vec<&tree::Expr> = args.iter().collect();
         let mut values = self.operands(&list);
-        if f == Builtin::Mux
-            && let Some(k) = values.first_mut()
-        {
+        if let Some(k) = values.first_mut().filter(|_| f == Builtin::Mux) {
             let selector = std::mem::replace(k, Expr::truth(false));
-            let index = self.within(selector, args.len().saturating_sub(1) as u32, at);
-            if let Some(k) = values.first_mut() {
-                *k = index;
-            }
+            *k = self.within(selector, args.len().saturating_sub(1) as u32, at);
+        }
+        if let Some(n) = values.last_mut().filter(|_| f.shifts()) {
+            let negative = self.negative(n, Type::Lint);
+            self.fault(negative, FaultKind::Range, at);
         }
         let fails = f == Builtin::Abs && !ty.is_real();
         if fails && let Some(x) = values.first_mut() {
             let e = std::mem::replace(x, Expr::truth(false));
-            let simple = self.simple(e, ty);
-            values = vec![simple];
+            *x = self.simple(e, ty);
         }
         self.checked(Expr::Call(f, ty, values), fails, FaultKind::Overflow, at)
+    }
+
+    /// A count is below 0; then it is named more than once.
+    fn negative(&mut self, count: &mut Expr, ty: Type) -> Expr {
+        let e = std::mem::replace(count, Expr::truth(false));
+        *count = self.simple(e, ty);
+        count.clone().compare(Cmp::Lt, ty, Expr::Const(ty, 0))
     }
 
     fn text_call(&mut self, f: Builtin, args: &[tree::Expr], cap: u16, at: Span) -> Expr {
@@ -392,10 +397,7 @@ impl Body<'_, '_> {
         let mut negative = Vec::new();
         for (value, arg) in values.iter_mut().zip(args) {
             if !matches!(arg.ty(), Type::String(_)) {
-                let e = std::mem::replace(value, Expr::truth(false));
-                let number = self.simple(e, arg.ty());
-                negative.push(number.clone().compare(Cmp::Lt, arg.ty(), Expr::Const(arg.ty(), 0)));
-                *value = number;
+                negative.push(self.negative(value, arg.ty()));
             }
         }
         self.fault(Expr::any(negative), FaultKind::Range, at);

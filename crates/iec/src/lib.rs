@@ -14,6 +14,7 @@
 //! - `st` reads and prints expressions, statements and declarations of Structured Text.
 //! - `il` and `ld` translate instructions and rungs into statements, and print statements as these.
 //! - `standard` rewrites a document in the forms that the standard has.
+//! - `signs` turns functions that do what an operator does into that operator.
 //! - `sfc` reads and writes charts as text, `plcopen` as PLCopen TC6 or IEC 61131-10 XML.
 //! - `xml`, `report` and `nodes` serve every reader of a foreign file, also those of
 //!   `exchange`.
@@ -33,6 +34,7 @@ pub mod nodes;
 pub mod plcopen;
 pub mod report;
 pub mod sfc;
+pub mod signs;
 pub mod st;
 mod standard;
 mod terms;

@@ -22,6 +22,7 @@ mod action;
 mod chart;
 pub mod codes;
 mod expr;
+mod functions;
 mod nanos;
 mod operators;
 mod plant;
@@ -42,6 +43,7 @@ pub use chart::{
     Placed, Profile, ProfileName, Section, Step, StepKind, Switch, TargetPlc, Transition, VarDecl, VarKind,
 };
 pub use expr::{Arg, Expr, ExprKind, Literal, Path};
+pub use functions::{FunctionRow, StandardFunction};
 pub use nanos::Nanos;
 pub use operators::{BinaryOp, Operands, Operator, UnaryOp};
 pub use plant::{Arrivals, Binding, Drive, Parts, Plant, PlantItem, Rate, StateVar, View};

@@ -157,11 +157,6 @@ impl BinaryOp {
     pub fn of_standard(sign: &str) -> Option<BinaryOp> {
         BinaryOp::ALL.into_iter().find(|op| op.row().standard == sign)
     }
-
-    /// The operator that does what a function of IEC 61131-3 does, by its name in capitals.
-    pub fn of_function(name: &str) -> Option<BinaryOp> {
-        BinaryOp::ALL.into_iter().find(|op| op.row().function == name)
-    }
 }
 
 #[cfg(test)]
@@ -173,7 +168,6 @@ mod tests {
         for op in BinaryOp::ALL {
             let found = if op == BinaryOp::Dot { BinaryOp::And } else { op };
             assert_eq!(BinaryOp::of_standard(op.row().standard), Some(found));
-            assert_eq!(BinaryOp::of_function(op.row().function), Some(found));
             let is_word = op.row().sign.chars().all(char::is_alphabetic) && op != BinaryOp::Dot;
             assert_eq!(BinaryOp::of_word(op.row().sign), is_word.then_some(op), "{op:?}");
         }

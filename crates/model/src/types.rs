@@ -197,6 +197,18 @@ impl Type {
         Some(Elementary { name, bits, holds })
     }
 
+    /// The bit string of the standard with as many bits as an unsigned type, which stands for it
+    /// here.
+    pub const fn bit_string(self) -> Option<&'static str> {
+        match self {
+            Type::Usint => Some("BYTE"),
+            Type::Uint => Some("WORD"),
+            Type::Udint => Some("DWORD"),
+            Type::Ulint => Some("LWORD"),
+            _ => None,
+        }
+    }
+
     /// The name of the type, without the length of a text.
     pub const fn name(self) -> &'static str {
         match (self, self.elementary()) {

@@ -79,6 +79,7 @@
 #include "small.h"
 #include "small_product.h"
 #include "text_unsigned.h"
+#include "bits.h"
 #include "order.h"
 #undef T
 #undef OF
@@ -94,6 +95,7 @@
 #include "small.h"
 #include "small_product.h"
 #include "text_unsigned.h"
+#include "bits.h"
 #include "order.h"
 #undef T
 #undef OF
@@ -108,6 +110,7 @@
 #define T_MAX UINT32_MAX
 #include "small.h"
 #include "text_unsigned.h"
+#include "bits.h"
 #include "order.h"
 #undef T
 #undef OF
@@ -117,6 +120,7 @@
 
 #define T uint64_t
 #define OF(op) op##_u64
+#include "bits.h"
 #include "order.h"
 #undef T
 #undef OF

@@ -31,6 +31,14 @@ pub trait Signed: Whole {
     fn checked_abs(self) -> Option<Self>;
 }
 
+/// A whole number without a sign, whose bits can be shifted.
+pub trait Bits: Whole {
+    fn checked_shl(self, by: u32) -> Option<Self>;
+    fn checked_shr(self, by: u32) -> Option<Self>;
+    fn rotate_left(self, by: u32) -> Self;
+    fn rotate_right(self, by: u32) -> Self;
+}
+
 /// A real number.
 pub trait Real:
     Number + Debug + FromStr + core::ops::Div<Output = Self> + core::ops::Rem<Output = Self>
@@ -80,6 +88,25 @@ macro_rules! signed {
     )*};
 }
 
+macro_rules! bits {
+    ($($t:ident)*) => {$(
+        impl Bits for $t {
+            fn checked_shl(self, by: u32) -> Option<$t> {
+                $t::checked_shl(self, by)
+            }
+            fn checked_shr(self, by: u32) -> Option<$t> {
+                $t::checked_shr(self, by)
+            }
+            fn rotate_left(self, by: u32) -> $t {
+                $t::rotate_left(self, by)
+            }
+            fn rotate_right(self, by: u32) -> $t {
+                $t::rotate_right(self, by)
+            }
+        }
+    )*};
+}
+
 macro_rules! real {
     ($($t:ident)*) => {$(
         impl Real for $t {}
@@ -90,6 +117,7 @@ number!(0: i8 i16 i32 i64 u8 u16 u32 u64);
 number!(0.0: f32 f64);
 whole!(i8 i16 i32 i64 u8 u16 u32 u64);
 signed!(i8 i16 i32 i64);
+bits!(u8 u16 u32 u64);
 real!(f32 f64);
 
 pub fn add<T: Whole>(a: T, b: T, fault: &mut u8) -> T {
@@ -162,6 +190,38 @@ pub fn abs<T: Signed>(a: T, fault: &mut u8) -> T {
             T::ZERO
         }
     }
+}
+
+pub fn shl<T: Bits>(v: T, by: i64, fault: &mut u8) -> T {
+    if by < 0 {
+        fail(fault, FAULT_RANGE);
+        return T::ZERO;
+    }
+    v.checked_shl(by.min(64) as u32).unwrap_or(T::ZERO)
+}
+
+pub fn shr<T: Bits>(v: T, by: i64, fault: &mut u8) -> T {
+    if by < 0 {
+        fail(fault, FAULT_RANGE);
+        return T::ZERO;
+    }
+    v.checked_shr(by.min(64) as u32).unwrap_or(T::ZERO)
+}
+
+pub fn rol<T: Bits>(v: T, by: i64, fault: &mut u8) -> T {
+    if by < 0 {
+        fail(fault, FAULT_RANGE);
+        return T::ZERO;
+    }
+    v.rotate_left((by % 64) as u32)
+}
+
+pub fn ror<T: Bits>(v: T, by: i64, fault: &mut u8) -> T {
+    if by < 0 {
+        fail(fault, FAULT_RANGE);
+        return T::ZERO;
+    }
+    v.rotate_right((by % 64) as u32)
 }
 
 pub fn min<T: Number>(a: T, b: T) -> T {

@@ -56,5 +56,6 @@ pub const ALL: Source = Source {
     c: files! {
         "c/helpers.c" "c/faults.h" "c/numbers.h" "c/reals.h" "c/wide.h" "c/text.h" "c/small.h"
         "c/small_product.h" "c/small_signed.h" "c/text_signed.h" "c/text_unsigned.h" "c/order.h"
+        "c/bits.h"
     },
 };

@@ -110,6 +110,25 @@ macro_rules! whole {
     })*};
 }
 
+macro_rules! bits {
+    ($both:ident, $($t:ident)*) => {$({
+        for a in [0, 1, 0x5a, <$t>::MAX / 3, <$t>::MAX / 2 + 1, <$t>::MAX] {
+            for by in [i64::MIN, -1, 0, 1, 7, 8, 9, 31, 32, 33, 63, 64, 65, i64::MAX] {
+                let mut one = |op: &str, f: fn($t, i64, &mut u8) -> $t| {
+                    let mut fault = 0;
+                    let value = f(a, by, &mut fault);
+                    let (t, a, by) = (stringify!($t), written(a.into()), written(by.into()));
+                    $both.add(&format!("{op}_{t}((T_{t}){a}, {by}, &fault)"), true, value, fault);
+                };
+                one("shl", arithmetic::shl);
+                one("shr", arithmetic::shr);
+                one("rol", arithmetic::rol);
+                one("ror", arithmetic::ror);
+            }
+        }
+    })*};
+}
+
 /// A text as a number, by the function that is printed for its type.
 fn to_number<T: arithmetic::Whole + 'static>(text: &[u8], fault: &mut u8) -> T {
     if std::any::TypeId::of::<T>() == std::any::TypeId::of::<u64>() {
@@ -126,6 +145,7 @@ fn both_languages_have_the_same_results() {
     }
     let mut both = Both::default();
     whole!(both, i8 i16 i32 i64 u8 u16 u32 u64);
+    bits!(both, u8 u16 u32 u64);
     for v in [0.0, 2.0, 3.0, 1e-310, 1e300, 0.1, 4503599627370497.0] {
         let bits = numbers::real_sqrt(v).to_bits();
         both.add(&format!("bits(real_sqrt({v:?}))"), true, bits, 0);

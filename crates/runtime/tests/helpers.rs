@@ -1,8 +1,8 @@
 //! The helpers of printed code: limits of types, rounding, texts, function blocks.
 
 use g7_runtime::arithmetic::{
-    Number, abs, add, div, div_real, from_i64, from_u64, max, min, mul, neg, rem, rem_real, round, sub,
-    text_from_real, text_to, text_to_real, text_to_u64, trunc,
+    Number, abs, add, div, div_real, from_i64, from_u64, max, min, mul, neg, rem, rem_real, rol, ror, round,
+    shl, shr, sub, text_from_real, text_to, text_to_real, text_to_u64, trunc,
 };
 use g7_runtime::faults::{FAULT_DIVISION, FAULT_NONE, FAULT_OVERFLOW, FAULT_RANGE};
 use g7_runtime::function_blocks::{
@@ -57,6 +57,19 @@ fn what_a_type_cannot_hold_is_a_fault() {
     assert_eq!(told(|f| from_i64::<u8>(-1, f)), (0, FAULT_OVERFLOW));
     assert_eq!(told(|f| from_u64::<i64>(1 << 63, f)), (0, FAULT_OVERFLOW));
     assert_eq!(told(|f| from_u64::<u8>(255, f)), (255, FAULT_NONE));
+}
+
+#[test]
+fn bits_are_shifted_out_or_go_round() {
+    let plain = |v: u8| (v, FAULT_NONE);
+    let v = 0b1001_0110u8;
+    assert_eq!((told(|f| shl(v, 3, f)), told(|f| shr(v, 3, f))), (plain(0b1011_0000), plain(0b0001_0010)));
+    assert_eq!((told(|f| shl(v, 8, f)), told(|f| shr(v, i64::MAX, f))), (plain(0), plain(0)));
+    assert_eq!((told(|f| rol(v, 3, f)), told(|f| ror(v, 3, f))), (plain(0b1011_0100), plain(0b1101_0010)));
+    assert_eq!((told(|f| rol(v, 8, f)), told(|f| ror(v, 19, f))), (plain(v), plain(0b1101_0010)));
+    for f in [shl, shr, rol, ror] {
+        assert_eq!(told(|fault| f(v, -1, fault)), (0, FAULT_RANGE));
+    }
 }
 
 #[test]

@@ -53,9 +53,35 @@ pub(super) fn call(name: &str, args: &[Typed]) -> Run<Typed> {
             Some(x) => alike(x, rest),
             None => Err(NaiveFault::Index),
         },
+        ("NOT", [x]) => Ok(Typed::bool(!x.truth()?)),
+        ("SHL" | "SHR" | "ROL" | "ROR", [bits, by]) => shifted(&name, bits, by),
         ("TRUNC", [x]) => rounded(&truncated(x)?, Type::Dint),
         _ => text(&name, args),
     }
+}
+
+/// Moves the bits one place at a time (IEC 61131-3:2003, table 25).
+fn shifted(name: &str, bits: &Typed, by: &Typed) -> Run<Typed> {
+    let ty = bits.ty.unwrap_or(Type::Udint);
+    let Some((0, most)) = ty.bounds() else { return bad(format!("{name} of {ty}")) };
+    let by = by.whole()?;
+    if by < 0 {
+        return Err(NaiveFault::Index);
+    }
+    let half = (most + 1) / 2;
+    let mut v = bits.whole()?;
+    // After as many places as there are bits a ring is as it was, and a row is empty.
+    let width = i128::from((most + 1).ilog2());
+    let places = if name.starts_with('R') { by % width } else { by.min(width) };
+    for _ in 0..places {
+        v = match name {
+            "SHL" => v % half * 2,
+            "SHR" => v / 2,
+            "ROL" => v % half * 2 + v / half,
+            _ => v / 2 + v % 2 * half,
+        };
+    }
+    Ok(Typed::of(ty, Value::Int(v)))
 }
 
 fn type_named(name: &str) -> Option<Type> {

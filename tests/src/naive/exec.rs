@@ -2,7 +2,9 @@
 
 use std::collections::BTreeMap;
 
-use g7_model::{Arg, BinaryOp, Expr, ExprKind, Function, Literal, Path, Type, UnaryOp};
+use g7_model::{
+    Arg, BinaryOp, Expr, ExprKind, Function, Literal, Operands, Path, StandardFunction, Type, UnaryOp,
+};
 
 use super::builtin;
 use super::model::{Model, ScopeId, StepId, VarId, is_name};
@@ -52,15 +54,8 @@ impl<'a> Exec<'a> {
             ExprKind::Unary(UnaryOp::Fall, _) => Ok(Typed::bool(self.edge(e).is_some_and(|(b, h)| b && !h))),
             ExprKind::Binary(op, a, b) => {
                 let a = self.eval(scope, a)?;
-                // The right operand is not evaluated where the left one decides (decision 23).
-                match op {
-                    BinaryOp::Or if a.truth()? => return Ok(Typed::bool(true)),
-                    BinaryOp::And | BinaryOp::Dot if !a.truth()? => return Ok(Typed::bool(false)),
-                    BinaryOp::Add if a.ty == Some(Type::Bool) && a.truth()? => return Ok(Typed::bool(true)),
-                    BinaryOp::Mul if a.ty == Some(Type::Bool) && !a.truth()? => {
-                        return Ok(Typed::bool(false));
-                    }
-                    _ => {}
+                if decides(*op, &a)? {
+                    return Ok(Typed::bool(a.truth()?));
                 }
                 let b = self.eval(scope, b)?;
                 binary(*op, &a, &b)
@@ -169,11 +164,35 @@ impl<'a> Exec<'a> {
         if let Some(function) = self.m.functions.get(&name) {
             return self.function(scope, function, args);
         }
+        if let Some(result) = self.operated(scope, &name, args)? {
+            return Ok(result);
+        }
         let mut values = Vec::new();
         for arg in args {
             values.push(self.eval(scope, &arg.value)?);
         }
         builtin::call(&name, &values)
+    }
+
+    /// The function of an operator; one of more than two values goes from one to the next.
+    fn operated(&mut self, scope: ScopeId, name: &str, args: &[Arg]) -> Run<Option<Typed>> {
+        let Some(op) = StandardFunction::operator(name) else { return Ok(None) };
+        let [first, rest @ ..] = args else { return Ok(None) };
+        let mut left = self.eval(scope, &first.value)?;
+        let compares = op.row().operands == Operands::Comparison;
+        for arg in rest {
+            if compares {
+                let right = self.eval(scope, &arg.value)?;
+                if !binary(op, &left, &right)?.truth()? {
+                    return Ok(Some(Typed::bool(false)));
+                }
+                left = right;
+            } else if !decides(op, &left)? {
+                let right = self.eval(scope, &arg.value)?;
+                left = binary(op, &left, &right)?;
+            }
+        }
+        Ok(Some(if compares { Typed::bool(true) } else { left }))
     }
 
     fn function(&mut self, scope: ScopeId, f: &Function, args: &[Arg]) -> Run<Typed> {
@@ -223,6 +242,18 @@ impl<'a> Exec<'a> {
     pub(super) fn jump(&mut self) -> Run<()> {
         self.s.work += 1;
         if self.s.work > WORK { Err(NaiveFault::Work) } else { Ok(()) }
+    }
+}
+
+/// True if the left operand decides, so that the right one is not evaluated (decision 23).
+fn decides(op: BinaryOp, left: &Typed) -> Run<bool> {
+    let is_bool = left.ty == Some(Type::Bool);
+    match op {
+        BinaryOp::Or => left.truth(),
+        BinaryOp::And | BinaryOp::Dot => left.truth().map(|b| !b),
+        BinaryOp::Add if is_bool => left.truth(),
+        BinaryOp::Mul if is_bool => left.truth().map(|b| !b),
+        _ => Ok(false),
     }
 }
 

@@ -2,7 +2,7 @@
 //! and blocks for what is not Boolean. `ld` writes them as PLCopen XML,
 //! `drawn` as a picture.
 
-use g7_model::{Problem, Span, codes};
+use g7_model::{Problem, Span, StandardFunction, codes};
 
 use super::form::{self, Class, Declared, Ex, St, operand_type, type_name, type_of};
 use super::st::{FAULT_COMES, expression};
@@ -278,17 +278,10 @@ impl Maker {
                 plain("SUB", vec![("IN1".into(), zero.into()), ("IN2".into(), inner)])
             }
             Ex::Call(name, args) => {
-                let formal: Vec<String> = match (name.as_str(), args.len()) {
-                    ("SEL", _) => vec!["G".into(), "IN0".into(), "IN1".into()],
-                    ("LIMIT", _) => vec!["MN".into(), "IN".into(), "MX".into()],
-                    (_, 1) => vec!["IN".into()],
-                    ("MUX", n) => {
-                        std::iter::once("K".into()).chain((0..n).map(|i| format!("IN{i}"))).collect()
-                    }
-                    (_, n) => (1..=n).map(|i| format!("IN{i}")).collect(),
-                };
+                let row = StandardFunction::named(name).map(StandardFunction::row);
+                let formal = (0..args.len()).map(|k| row.and_then(|r| r.input(k)).unwrap_or("IN".into()));
                 let mut inputs = Vec::new();
-                for (formal, arg) in formal.into_iter().zip(args) {
+                for (formal, arg) in formal.zip(args) {
                     inputs.push((formal, self.operand_of(e, arg)));
                 }
                 plain(name, inputs)

@@ -279,6 +279,11 @@ impl Scan<'_> {
         if is_text || matches!(ty, Type::String(_)) {
             return self.cannot_ex("a text");
         }
+        if f.shifts()
+            && let [bits, count] = args
+        {
+            return self.shifted(f, ty, bits, count);
+        }
         let mut list: Vec<Ex> = args.iter().map(|e| self.ex(e)).collect();
         if f == Builtin::Mux
             && let Some(k) = list.first_mut()
@@ -286,6 +291,33 @@ impl Scan<'_> {
             *k = narrow(std::mem::replace(k, Ex::Bool(false)));
         }
         Ex::call(format!("{f:?}").to_uppercase(), list)
+    }
+}
+
+impl Scan<'_> {
+    /// Shifts are those of bit strings. What they do by the width and more differs among systems,
+    /// so it is never asked for.
+    fn shifted(&mut self, f: Builtin, ty: Type, bits: &Expr, count: &Expr) -> Ex {
+        let (Some(string), Some(row)) = (ty.bit_string(), ty.elementary()) else {
+            return self.cannot_ex("a shift of this type");
+        };
+        let width = i128::from(row.bits);
+        let x = Ex::call(format!("{}_TO_{string}", row.name), vec![self.ex(bits)]);
+        let by = |n: Ex| {
+            let shifted = Ex::call(format!("{f:?}").to_uppercase(), vec![x, n]);
+            Ex::call(format!("{string}_TO_{}", row.name), vec![shifted])
+        };
+        let ring = matches!(f, Builtin::Rol | Builtin::Ror);
+        match narrow(self.ex(count)) {
+            Ex::Int(n) if ring => by(Ex::Int(n % width)),
+            Ex::Int(n) if n >= width => Ex::Int(0),
+            Ex::Int(n) => by(Ex::Int(n)),
+            n if ring => by(Ex::op("MOD", n, Ex::Int(width))),
+            n => {
+                let beyond = Ex::op(">=", n.clone(), Ex::Int(width));
+                Ex::call("SEL", vec![beyond, by(Ex::call("MIN", vec![n, Ex::Int(width - 1)])), Ex::Int(0)])
+            }
+        }
     }
 }
 

@@ -5,7 +5,7 @@
 use g7_model::Type;
 
 use super::solve::Question;
-use super::tree::{operands, statements, within, written};
+use super::tree::{statements, within, written};
 use crate::ir::{
     ActionKind, Chart, ChartId, ChartRole, Expr, ExprKind, Service, Situation, StepId, StepSort, StmtKind,
     Transition, Unit, VarClass,
@@ -111,7 +111,7 @@ impl<'u> Facts<'u> {
             if !fine {
                 return false;
             }
-            pending.extend(operands(e));
+            pending.extend(e.operands());
         }
         true
     }

@@ -64,37 +64,6 @@ pub(super) fn written(s: &Stmt) -> Vec<VarId> {
     }
 }
 
-/// The operands of an expression.
-pub(super) fn operands(e: &Expr) -> Vec<&Expr> {
-    match &e.kind {
-        ExprKind::Const(_)
-        | ExprKind::Var(_)
-        | ExprKind::Member(..)
-        | ExprKind::StepActive(_)
-        | ExprKind::StepTime(_)
-        | ExprKind::StepTenths(_)
-        | ExprKind::StepScans(_)
-        | ExprKind::StepSeconds(_)
-        | ExprKind::Section(_)
-        | ExprKind::ScanTime
-        | ExprKind::Random => Vec::new(),
-        ExprKind::Element(_, a)
-        | ExprKind::Not(a)
-        | ExprKind::Neg(a)
-        | ExprKind::Rise(a)
-        | ExprKind::Fall(a)
-        | ExprKind::Convert(a)
-        | ExprKind::Trunc(a) => vec![a],
-        ExprKind::Binary(_, a, b) => vec![a, b],
-        ExprKind::Timer { t1, e, t2 } => {
-            let mut list: Vec<&Expr> = vec![t1, e];
-            list.extend(t2.as_deref());
-            list
-        }
-        ExprKind::Builtin(_, args) | ExprKind::Call(_, args) => args.iter().collect(),
-    }
-}
-
 /// True if some part of an expression is an edge.
 pub(super) fn has_edge(e: &Expr) -> bool {
     let mut pending = vec![e];
@@ -102,7 +71,7 @@ pub(super) fn has_edge(e: &Expr) -> bool {
         if matches!(e.kind, ExprKind::Rise(_) | ExprKind::Fall(_)) {
             return true;
         }
-        pending.extend(operands(e));
+        pending.extend(e.operands());
     }
     false
 }
@@ -140,7 +109,7 @@ fn write_key(e: &Expr, out: &mut String) {
         ExprKind::ScanTime => write!(out, "dt"),
         ExprKind::Random => write!(out, "random"),
     };
-    let list = operands(e);
+    let list = e.operands();
     if !list.is_empty() {
         out.push('(');
         for e in list {

@@ -287,6 +287,10 @@ impl Lower<'_> {
             | Builtin::Asin
             | Builtin::Acos
             | Builtin::Atan
+            | Builtin::Shl
+            | Builtin::Shr
+            | Builtin::Rol
+            | Builtin::Ror
             | Builtin::Min
             | Builtin::Max
             | Builtin::Limit

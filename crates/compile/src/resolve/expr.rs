@@ -162,13 +162,7 @@ impl Resolver<'_, '_> {
 
     fn unary(&mut self, op: UnaryOp, operand: &Written, hint: Option<Type>, at: Span) -> Option<Typed> {
         match op {
-            UnaryOp::Not => {
-                let e = self.condition(operand)?;
-                Some(match e.kind {
-                    ExprKind::Const(Value::Bool(b)) => Typed::constant(Value::Bool(!b), Type::Bool, at),
-                    _ => Typed::of(ExprKind::Not(Box::new(e)), Type::Bool, at),
-                })
-            }
+            UnaryOp::Not => self.complement(operand, at),
             UnaryOp::Neg => self.minus(operand, hint, at),
             UnaryOp::Rise | UnaryOp::Fall => {
                 let allowed = self.allow_watch("an edge", at);
@@ -179,6 +173,15 @@ impl Resolver<'_, '_> {
                 Some(Typed::of(kind, Type::Bool, at))
             }
         }
+    }
+
+    /// `not e`.
+    pub(super) fn complement(&mut self, operand: &Written, at: Span) -> Option<Typed> {
+        let e = self.condition(operand)?;
+        Some(match e.kind {
+            ExprKind::Const(Value::Bool(b)) => Typed::constant(Value::Bool(!b), Type::Bool, at),
+            _ => Typed::of(ExprKind::Not(Box::new(e)), Type::Bool, at),
+        })
     }
 
     fn minus(&mut self, operand: &Written, hint: Option<Type>, at: Span) -> Option<Typed> {

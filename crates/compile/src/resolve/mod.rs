@@ -27,6 +27,7 @@ mod refer;
 mod resolver;
 mod rules;
 mod scopes;
+mod standard;
 mod stmt;
 #[cfg(test)]
 mod tests;

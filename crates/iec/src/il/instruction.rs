@@ -1,6 +1,6 @@
 //! The instructions of an Instruction List, after parsing.
 
-use g7_model::{Arg, BinaryOp, Expr, Name, Operands, Path, Span};
+use g7_model::{Arg, BinaryOp, Expr, Name, Operands, Path, Span, StandardFunction};
 
 /// One instruction.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -130,10 +130,10 @@ pub fn mnemonic(word: &str) -> Option<Mnemonic> {
 
 /// `ADD`, `GT`, and of the logical ones `ANDN` too; the list has no EXPT.
 fn operation(word: &str) -> Option<Mnemonic> {
-    if let Some(op) = BinaryOp::of_function(word) {
+    if let Some(op) = StandardFunction::operator(word) {
         return (op != BinaryOp::Pow).then_some(Mnemonic::Operate(op, false));
     }
-    let op = BinaryOp::of_function(word.strip_suffix('N')?)?;
+    let op = StandardFunction::operator(word.strip_suffix('N')?)?;
     (op.row().operands == Operands::Logic).then_some(Mnemonic::Operate(op, true))
 }
 

@@ -1,12 +1,11 @@
 //! Reads an Instruction List in the spelling of the standard.
 
 use g7_model::codes;
-use g7_model::{Arg, Expr, ExprKind, Name, Path, Stmt};
+use g7_model::{Arg, Expr, ExprKind, Name, Path, StandardFunction, Stmt};
 
 use super::instruction::{Instruction, InstructionKind as Kind, Mnemonic, Operand, When, is_input, mnemonic};
 use super::translate::{translate, translate_expr};
 use crate::report::Report;
-use crate::st::expr::operator_function;
 use crate::st::lex;
 use crate::st::parse::{Parser, Places};
 
@@ -254,7 +253,7 @@ impl Parser<'_> {
             let start = name.at.0;
             let args = self.args().list;
             let all = args.iter().all(|a| a.name.is_some());
-            if all && operator_function(word).is_none() {
+            if all && StandardFunction::operator(word).is_none() {
                 let kind = ExprKind::Call(Path { names: vec![name] }, args);
                 let at = start.to(self.since(next.start));
                 return Some(Kind::Load { value: Expr { kind, at: at.into() }, negated: false });

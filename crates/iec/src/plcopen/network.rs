@@ -4,12 +4,13 @@
 use std::collections::HashSet;
 
 use g7_model::codes;
-use g7_model::{Arg, BinaryOp, Expr, ExprKind, Name, Operands, Path, Span, Stmt, StmtKind, UnaryOp};
+use g7_model::{Arg, Expr, ExprKind, Name, Path, Span, StandardFunction, Stmt, StmtKind, UnaryOp};
 
 use super::graph::{Edge, Graph, Input, Object, Slot, Wire};
 use super::tree::{Xml, flag, head, place, word};
 use crate::nodes;
 use crate::report::Report;
+use crate::signs;
 use crate::st;
 use crate::xml::attr::Text;
 
@@ -382,52 +383,24 @@ fn instance(object: &Object, at: Span) -> Vec<Name> {
 
 /// A function applied to its values; an operator if the language has one.
 fn applied(function: &str, args: Vec<(String, Expr)>, at: Span) -> Expr {
-    let upper = function.to_ascii_uppercase();
-    let op = match upper.as_str() {
-        "NOT" | "MOVE" if args.len() == 1 => {
-            let only = args.into_iter().next().map_or_else(|| nodes::bad(at), |(_, v)| v);
-            return if upper == "NOT" { nodes::not(only, at) } else { only };
+    if function.eq_ignore_ascii_case("MOVE") && args.len() == 1 {
+        return args.into_iter().next().map_or_else(|| nodes::bad(at), |(_, v)| v);
+    }
+    // Inputs whose names say another order keep them; those of unknown functions keep all but IN1, IN2.
+    let by_place = match StandardFunction::named(function).map(StandardFunction::row) {
+        Some(row) => {
+            let places: Vec<Option<usize>> = args.iter().map(|(n, _)| row.place(n)).collect();
+            places.contains(&None) || places.iter().enumerate().all(|(k, p)| *p == Some(k))
         }
-        upper => match BinaryOp::of_function(upper) {
-            Some(op) => op,
-            None => return called(function, args, at),
-        },
+        None => args.iter().all(|(n, _)| {
+            n.strip_prefix("IN").is_some_and(|rest| rest.chars().all(|c| c.is_ascii_digit())) || n.is_empty()
+        }),
     };
-    let compares = op.row().operands == Operands::Comparison;
-    if compares && args.len() > 2 {
-        return in_turn(function, op, args, at);
-    }
-    let mut values = args.into_iter().map(|(_, v)| v);
-    let Some(mut left) = values.next() else { return called(function, Vec::new(), at) };
-    for right in values {
-        left = nodes::binary(op, left, right, at);
-    }
-    left
-}
-
-/// `GT(a, b, c)` is `a > b and b > c`. The middle value is written twice, so it must be short;
-/// otherwise nested values would double without bound.
-fn in_turn(function: &str, op: BinaryOp, args: Vec<(String, Expr)>, at: Span) -> Expr {
-    let short = |e: &Expr| matches!(e.kind, ExprKind::Path(_) | ExprKind::Direct(_) | ExprKind::Literal(_));
-    if !args.iter().all(|(_, v)| short(v)) {
-        return called(function, args, at);
-    }
-    let pairs = args.windows(2).filter_map(|pair| match pair {
-        [(_, a), (_, b)] => Some(nodes::binary(op, a.clone(), b.clone(), at)),
-        _ => None,
-    });
-    pairs.reduce(|all, pair| nodes::and(all, pair, at)).unwrap_or_else(|| nodes::bad(at))
-}
-
-fn called(function: &str, args: Vec<(String, Expr)>, at: Span) -> Expr {
-    let plain = |n: &String| {
-        n.strip_prefix("IN").is_some_and(|rest| rest.chars().all(|c| c.is_ascii_digit())) || n.is_empty()
-    };
-    let by_place = args.iter().all(|(n, _)| plain(n));
     let args = args.into_iter().map(|(n, value)| Arg {
         name: (!by_place).then(|| Name::new(n.as_str(), at)),
         output: false,
         value,
     });
-    nodes::expr(ExprKind::Call(nodes::path(&[function], at), args.collect()), at)
+    signs::applied(function, args.collect(), at)
+        .unwrap_or_else(|args| nodes::expr(ExprKind::Call(nodes::path(&[function], at), args), at))
 }

@@ -1,10 +1,11 @@
 //! Expressions of Structured Text.
 
 use g7_model::codes;
-use g7_model::{Arg, BinaryOp, Expr, ExprKind, Name, Operands, Path, Span, UnaryOp};
+use g7_model::{Arg, BinaryOp, Expr, ExprKind, Name, Path, Span, UnaryOp};
 
 use super::lex::Kind;
 use super::parse::Parser;
+use crate::signs;
 
 /// The largest height of an expression's tree. Later stages recurse over it.
 const MOST_HIGH: u32 = 400;
@@ -13,17 +14,6 @@ const MOST_HIGH: u32 = 400;
 pub(crate) struct Tree {
     pub(crate) expr: Expr,
     pub(crate) height: u32,
-}
-
-/// Operators in the form of functions: `ADD(a, b, c)`.
-pub(crate) fn operator_function(name: &str) -> Option<BinaryOp> {
-    match name {
-        "ADD_TIME" => Some(BinaryOp::Add),
-        "SUB_TIME" => Some(BinaryOp::Sub),
-        "MUL_TIME" | "MULTIME" => Some(BinaryOp::Mul),
-        "DIV_TIME" | "DIVTIME" => Some(BinaryOp::Div),
-        _ => BinaryOp::of_function(name),
-    }
 }
 
 impl Parser<'_> {
@@ -256,48 +246,12 @@ impl Parser<'_> {
     /// A function applied to its arguments; becomes an operator where one exists.
     pub(crate) fn applied(&mut self, name: Name, upper: &str, args: Args, start: u32) -> Tree {
         let at = self.since(start);
-        let height = args.height + 1;
-        let mut values = args.list;
-        if let Some(op) = operator_function(upper)
-            && values.len() >= 2
-            && values.iter().all(|a| !a.output)
-        {
-            return self.chain(op, values, args.height, at);
-        }
-        if upper == "NOT"
-            && values.len() == 1
-            && let Some(only) = values.pop()
-        {
-            return self.bounded(ExprKind::Unary(UnaryOp::Not, Box::new(only.value)), at, height);
-        }
-        let path = Path { names: vec![name] };
-        self.bounded(ExprKind::Call(path, values), at, height)
-    }
-
-    /// `ADD(a, b, c)` is `a + b + c`; `GT(a, b, c)` is `a > b and b > c`.
-    fn chain(&mut self, op: BinaryOp, args: Vec<Arg>, height: u32, at: Span) -> Tree {
-        let mut values = args.into_iter().map(|a| Tree { expr: a.value, height });
-        let Some(mut left) = values.next() else {
-            return Tree { expr: Expr { kind: ExprKind::Bad, at: at.into() }, height: 1 };
+        let height = args.height.saturating_add(u32::try_from(args.list.len()).unwrap_or(u32::MAX));
+        let kind = match signs::applied(upper, args.list, at) {
+            Ok(operator) => operator.kind,
+            Err(list) => ExprKind::Call(Path { names: vec![name] }, list),
         };
-        if op.row().operands == Operands::Comparison {
-            let mut all: Option<Tree> = None;
-            for right in values {
-                let next = Tree { expr: right.expr.clone(), height };
-                let one = self.join(op, left, right);
-                all = Some(match all {
-                    Some(all) => self.join(BinaryOp::And, all, one),
-                    None => one,
-                });
-                left = next;
-            }
-            return all.unwrap_or(left);
-        }
-        for right in values {
-            left = self.join(op, left, right);
-        }
-        left.expr.at = at.into();
-        left
+        self.bounded(kind, at, height.max(args.height + 1))
     }
 
     /// `(…)` behind a name.

@@ -7,8 +7,8 @@
 use std::collections::HashMap;
 
 use g7_model::{
-    Arg, BinaryOp, Chart, Document, Expr, ExprKind, FbKind, Holds, Item, Literal, Name, Operands, Path, Stmt,
-    StmtKind, Type, UnaryOp, VarDecl,
+    Arg, BinaryOp, Chart, Document, Expr, ExprKind, FbKind, Holds, Item, Literal, Name, Operands, Path,
+    StandardFunction, Stmt, StmtKind, Type, UnaryOp, VarDecl,
 };
 
 /// The type of an expression, as far as it is known.
@@ -164,6 +164,9 @@ impl Writer<'_> {
 
     fn binary(&self, op: BinaryOp, a: &Expr, b: &Expr) -> Text {
         let (left, right) = (self.text(a), self.text(b));
+        if op == BinaryOp::Pow {
+            return power(left, right);
+        }
         let boolean = left.is(Type::Bool) || right.is(Type::Bool);
         let op = match op {
             BinaryOp::Add if boolean => BinaryOp::Or,
@@ -199,6 +202,9 @@ impl Writer<'_> {
     }
 
     fn call(&self, path: &Path, args: &[Arg]) -> Text {
+        if let Some(shift) = self.shift(path, args) {
+            return shift;
+        }
         let name = path.text();
         let own = self.types.functions.get(&*name).copied();
         let texts: Vec<Text> = args.iter().map(|a| self.text(&a.value)).collect();
@@ -226,6 +232,26 @@ impl Writer<'_> {
         }
         let name = if own.is_some() { name } else { upper };
         Text::operand(format!("{name}({})", parts.join(", ")), ty)
+    }
+
+    /// A shift is one of bit strings in the standard: `WORD_TO_UINT(SHL(UINT_TO_WORD(n), 3))`.
+    fn shift(&self, path: &Path, args: &[Arg]) -> Option<Text> {
+        let name = path.text().to_ascii_uppercase();
+        let standard = StandardFunction::named(&name)?;
+        let shifts = matches!(
+            standard,
+            StandardFunction::Shl | StandardFunction::Shr | StandardFunction::Rol | StandardFunction::Ror
+        );
+        if !shifts || self.types.functions.contains_key(&*path.text()) {
+            return None;
+        }
+        let place = |a: &Arg, k: usize| a.name.as_ref().map_or(Some(k), |n| standard.row().place(&n.text));
+        let at = |want: usize| args.iter().enumerate().find(|(k, a)| place(a, *k) == Some(want));
+        let (bits, count) = (self.text(&at(0)?.1.value), self.text(&at(1)?.1.value));
+        let Ty::Known(ty) = bits.ty else { return None };
+        let string = ty.bit_string()?;
+        let text = format!("{string}_TO_{ty}({name}({ty}_TO_{string}({}), {}))", bits.text, count.text);
+        Some(Text::operand(text, Ty::Known(ty)))
     }
 
     /// Prints the statements of a body.
@@ -350,6 +376,21 @@ impl Writer<'_> {
         }
         format!("{}({})", path.text(), parts.join(", "))
     }
+}
+
+/// A power: its base is a real number in the standard. Here it is computed in LREAL, and the result
+/// is REAL unless an operand is LREAL.
+fn power(left: Text, right: Text) -> Text {
+    let own = BinaryOp::Pow.strength();
+    let long = left.is(Type::Lreal) || right.is(Type::Lreal);
+    let ty = if long { Type::Lreal } else { Type::Real };
+    let whole = matches!(left.ty, Ty::Known(of) if of.is_integer());
+    let base = left.converted(if whole { Type::Lreal } else { ty });
+    let text = format!("{} {} {}", base.within(own), BinaryOp::Pow.row().standard, right.within(own + 1));
+    if whole && !long {
+        return Text::operand(format!("LREAL_TO_REAL({text})"), Ty::Known(ty));
+    }
+    Text { text, ty: Ty::Known(ty), strength: own }
 }
 
 /// Converts both operands to a common type.

@@ -7,8 +7,10 @@ use std::collections::HashMap;
 
 use g7_model::{
     Action, ActionKind, Arg, Block, Body, Chart, ChartItem, Document, Expr, ExprKind, Item, Name, Path, Stmt,
-    StmtKind, Target, Work,
+    StmtKind, Target, Work, visit_mut,
 };
+
+use super::types::conversion;
 
 /// Gives every name in a document the spelling of its declaration.
 pub fn settle(document: &mut Document) {
@@ -50,6 +52,28 @@ pub fn settle(document: &mut Document) {
                 settler.chart(c);
             }
             _ => {}
+        }
+    }
+}
+
+/// Gives conversions of bit strings the number types that stand for these.
+pub fn conversions(document: &mut Document) {
+    visit_mut::document(document, &mut Conversions);
+    for item in &mut document.items {
+        if let Item::Function(f) = item {
+            visit_mut::stmts(&mut f.body.statements, &mut Conversions);
+        }
+    }
+}
+
+struct Conversions;
+
+impl visit_mut::Visitor for Conversions {
+    fn expr(&mut self, e: &mut Expr) {
+        let ExprKind::Call(path, _) = &mut e.kind else { return };
+        let [name] = path.names.as_mut_slice() else { return };
+        if let Some(text) = conversion(&upper(name)) {
+            name.text = text.into();
         }
     }
 }
@@ -290,11 +314,8 @@ impl Settler<'_> {
         let capitals = upper(name);
         if let Some(text) = find(&self.names, &capitals) {
             name.text = text.into();
-        } else if let Some((from, to)) = capitals.split_once("_TO_") {
-            let number = |t: &str| super::types::bits(t).map_or_else(|| t.to_string(), |ty| ty.to_string());
-            name.text = format!("{}_TO_{}", number(from), number(to)).into();
         } else {
-            name.text = capitals.into();
+            name.text = conversion(&capitals).unwrap_or(capitals).into();
         }
     }
 }

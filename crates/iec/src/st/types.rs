@@ -23,13 +23,14 @@ pub fn elementary(upper: &str) -> Option<Type> {
 
 /// The number type with the same number of bits as a bit string.
 pub fn bits(upper: &str) -> Option<Type> {
-    Some(match upper {
-        "BYTE" => Type::Usint,
-        "WORD" => Type::Uint,
-        "DWORD" => Type::Udint,
-        "LWORD" => Type::Ulint,
-        _ => return None,
-    })
+    Type::ELEMENTARY.into_iter().find(|ty| ty.bit_string() == Some(upper))
+}
+
+/// A conversion with number types in place of bit strings: `WORD_TO_INT` is `UINT_TO_INT`.
+pub(super) fn conversion(upper: &str) -> Option<String> {
+    let (from, to) = upper.split_once("_TO_")?;
+    let number = |word: &str| bits(word).map_or_else(|| word.to_owned(), |ty| ty.to_string());
+    (bits(from).is_some() || bits(to).is_some()).then(|| format!("{}_TO_{}", number(from), number(to)))
 }
 
 /// The structure of a type.

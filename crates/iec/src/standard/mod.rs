@@ -29,11 +29,14 @@ use std::collections::HashSet;
 
 use g7_model::{Document, Problem};
 
+use crate::signs;
+
 pub(crate) use lower::Form;
 use lower::Lower;
 
 /// Rewrites a document; returns it with the problems of what it does not carry.
 pub(crate) fn standard(document: &Document, form: Form) -> (Document, Vec<Problem>) {
+    let document = &signs::in_signs(document);
     // The variables that several programs use become known on the way, so this repeats until no new
     // one is found.
     let mut shared = HashSet::new();

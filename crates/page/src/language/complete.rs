@@ -1,6 +1,6 @@
 //! Completion: the words that are possible at a place of the text.
 
-use g7_model::{Document, ProfileName, Qualifier, Type};
+use g7_model::{Document, ProfileName, Qualifier, StandardFunction, Type};
 use g7_syntax::{Token, TokenKind};
 use serde::Serialize;
 
@@ -97,20 +97,6 @@ const TEST: &[(&str, &str)] = &[
     ("release", "lets go"),
     ("restart", "starts anew"),
     ("repeat", "again and again"),
-];
-const FUNCTIONS: &[(&str, &str)] = &[
-    ("rise", "rising edge, ↑"),
-    ("fall", "falling edge, ↓"),
-    ("ABS", "absolute value"),
-    ("SQRT", "square root"),
-    ("MIN", "the least"),
-    ("MAX", "the greatest"),
-    ("LIMIT", "held between two bounds"),
-    ("SEL", "one of two"),
-    ("MUX", "one of several"),
-    ("TRUNC", "whole part"),
-    ("LEN", "length of a text"),
-    ("CONCAT", "texts joined"),
 ];
 
 /// The completion at a code unit.
@@ -421,7 +407,10 @@ fn types() -> Vec<Choice> {
 }
 
 fn functions() -> Vec<Choice> {
-    FUNCTIONS.iter().map(|(f, d)| choice(f, "function", d, &format!("{f}("))).collect()
+    let edges = [("rise", "rising edge, ↑"), ("fall", "falling edge, ↓")];
+    let standard = StandardFunction::ALL.into_iter().map(|f| (f.row().name, f.row().does));
+    let one = |(name, does): (&str, &str)| choice(name, "function", does, &format!("{name}("));
+    edges.into_iter().chain(standard).map(one).collect()
 }
 
 fn choice(label: &str, kind: &'static str, detail: &str, insert: &str) -> Choice {

@@ -1,6 +1,6 @@
 //! A short explanation of the text under the pointer.
 
-use g7_model::Qualifier;
+use g7_model::{Qualifier, StandardFunction};
 use serde::Serialize;
 
 use super::definitions::{Meaning, Named, meaning, word_at};
@@ -42,7 +42,7 @@ pub(crate) fn hover(file: &File, at: usize) -> Option<Hover> {
             file.units(first.at)
         }
     };
-    let about = named.map(|n| describe(&n)).or_else(|| word.and_then(|w| explain(w.text)).map(str::to_owned));
+    let about = named.map(|n| describe(&n)).or_else(|| word.and_then(|w| explain(w.text)));
     let parts: Vec<String> = said.into_iter().chain(about).collect();
     (!parts.is_empty()).then(|| Hover { from, to, markdown: parts.join("\n\n") })
 }
@@ -76,10 +76,18 @@ fn describe(n: &Named<'_>) -> String {
 }
 
 /// Explains the most frequent words of the language.
-fn explain(word: &str) -> Option<&'static str> {
+fn explain(word: &str) -> Option<String> {
     if let Some(qualifier) = Qualifier::named(word) {
-        return Some(explain_qualifier(qualifier));
+        return Some(explain_qualifier(qualifier).to_owned());
     }
+    let standard = StandardFunction::named(word).map(StandardFunction::row).filter(|row| row.name == word);
+    if let Some(row) = standard {
+        return Some(format!("**{}**({}): {}", row.name, row.inputs.join(", "), row.does));
+    }
+    explain_word(word).map(str::to_owned)
+}
+
+fn explain_word(word: &str) -> Option<&'static str> {
     Some(match word {
         "when" => "**when**: the receptivity; the transition clears when it is enabled and this is true",
         "force" => "**force**: a forcing order: the chart is brought into this situation and held in it",

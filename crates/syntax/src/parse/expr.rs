@@ -217,6 +217,12 @@ impl Parser<'_> {
             "rise" => return self.edge(UnaryOp::Rise),
             "fall" => return self.edge(UnaryOp::Fall),
             "delay" => return self.delay(),
+            // The function of the operator: `AND(a, b)`.
+            word if BinaryOp::of_word(word).is_some() && self.peek_call() => {
+                let name = Name::new(word, self.span_of(token));
+                self.bump();
+                return self.called(Path { names: vec![name] }, token.start);
+            }
             word if words::is_reserved(word) => return self.no_operand(),
             _ => return self.path_or_call(),
         };
@@ -361,12 +367,23 @@ impl Parser<'_> {
         self.at(Tok::LParen) && !self.cur.newline
     }
 
+    /// True if the next token is the `(` of a call.
+    fn peek_call(&mut self) -> bool {
+        let next = self.peek();
+        next.kind == Tok::LParen && !next.newline
+    }
+
     fn path_or_call(&mut self) -> Tree {
         let start = self.cur.start;
         let path = self.path();
         if !self.at_call() {
             return self.leaf(ExprKind::Path(path), start);
         }
+        self.called(path, start)
+    }
+
+    /// The call of a function whose name has been read.
+    fn called(&mut self, path: Path, start: u32) -> Tree {
         let (args, height) = self.args();
         let at = self.since(start);
         self.checked(ExprKind::Call(path, args), at, height + 1)

@@ -40,7 +40,14 @@ impl<'a> Printer<'a> {
             ExprKind::Unary(op, inner) => self.unary(*op, inner),
             ExprKind::Binary(op, left, right) => self.binary(*op, left, right),
             ExprKind::Timer { t1, e, t2 } => self.timer(t1, e, t2.as_deref()),
-            ExprKind::Call(path, args) => self.call(path, args),
+            ExprKind::Call(path, args) => match path.names.as_slice() {
+                // Where an operand stands, an operator's word is the name of its function.
+                [name] if BinaryOp::of_word(&name.text).is_some() => {
+                    self.push(&name.text);
+                    self.args(args);
+                }
+                _ => self.call(path, args),
+            },
             ExprKind::Bad => self.push("?"),
         }
     }
@@ -110,6 +117,10 @@ impl<'a> Printer<'a> {
 
     pub(super) fn call(&mut self, path: &Path, args: &[Arg]) {
         self.path(path);
+        self.args(args);
+    }
+
+    fn args(&mut self, args: &[Arg]) {
         self.push("(");
         for (i, arg) in args.iter().enumerate() {
             self.push(if i > 0 { ", " } else { "" });

@@ -18,6 +18,8 @@ pub(crate) fn name() -> impl Strategy<Value = Name> {
         "scan",
         "when",
         "not",
+        "and",
+        "MOD",
         "IF",
         "exit",
         "step",

@@ -21,6 +21,7 @@ use g7_model::{
 };
 
 use crate::Written;
+use g7_iec::signs;
 use g7_iec::xml::element::Element;
 use guards::Guards;
 use lookup::{Look, Meaning, Thing, VarId};
@@ -48,6 +49,7 @@ const WORKSPACE: [(&str, &str); 14] = [
 
 /// Writes the document.
 pub(crate) fn export(document: &Document) -> Written {
+    let document = &signs::in_signs(document);
     let mut look = Look::new(document);
     let guards = Guards::find(&mut look);
     let mut writer = Writer::new(document, look, guards);

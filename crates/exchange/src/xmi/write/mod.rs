@@ -7,6 +7,7 @@ mod actions;
 mod lookup;
 mod terms;
 
+use g7_iec::signs;
 use g7_iec::xml::element::Element;
 use g7_model::codes::{self, Code};
 use g7_model::{
@@ -29,6 +30,7 @@ const NAMESPACES: [(&str, &str); 5] = [
 
 /// Writes the document.
 pub(crate) fn export(document: &Document) -> Written {
+    let document = &signs::in_signs(document);
     let mut writer = Writer { look: Lookup::new(document), problems: Vec::new(), ids: 0, sheet: 0 };
     let root = writer.root(document);
     let mut text = String::from("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n");

@@ -1,0 +1,322 @@
+//! The table of standard functions: the name of each, its inputs, what it does.
+//!
+//! The resolver, readers of other files, the editor and the book read this table.
+
+use crate::BinaryOp;
+
+/// A standard function (IEC 61131-3:2003, tables 23 to 30).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum StandardFunction {
+    /// The function that does what an operator does (tables 24, 26, 28): any but `·`.
+    Operator(BinaryOp),
+    /// NOT (table 26).
+    Not,
+    /// MOVE (table 24).
+    Move,
+    /// ABS (table 23).
+    Abs,
+    /// SQRT.
+    Sqrt,
+    /// LN.
+    Ln,
+    /// LOG, to base 10.
+    Log,
+    /// EXP.
+    Exp,
+    /// SIN, radians.
+    Sin,
+    /// COS.
+    Cos,
+    /// TAN.
+    Tan,
+    /// ASIN.
+    Asin,
+    /// ACOS.
+    Acos,
+    /// ATAN.
+    Atan,
+    /// TRUNC (table 22).
+    Trunc,
+    /// SHL (table 25).
+    Shl,
+    /// SHR.
+    Shr,
+    /// ROL.
+    Rol,
+    /// ROR.
+    Ror,
+    /// MIN (table 27).
+    Min,
+    /// MAX.
+    Max,
+    /// LIMIT.
+    Limit,
+    /// SEL.
+    Sel,
+    /// MUX.
+    Mux,
+    /// LEN (table 29).
+    Len,
+    /// LEFT.
+    Left,
+    /// RIGHT.
+    Right,
+    /// MID.
+    Mid,
+    /// CONCAT.
+    Concat,
+    /// INSERT.
+    Insert,
+    /// DELETE.
+    Delete,
+    /// REPLACE.
+    Replace,
+    /// FIND.
+    Find,
+}
+
+/// A row of the table of standard functions.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct FunctionRow {
+    /// The name as the standard has it.
+    pub name: &'static str,
+    /// The names of the inputs in their order; behind `…` the last one repeats.
+    pub inputs: &'static [&'static str],
+    /// In a few words.
+    pub does: &'static str,
+}
+
+const ONE: &[&str] = &["IN"];
+const TWO: &[&str] = &["IN1", "IN2"];
+const MORE: &[&str] = &["IN1", "IN2", "…"];
+const SHIFT: &[&str] = &["IN", "N"];
+
+impl StandardFunction {
+    /// Most inputs of a function whose last one repeats.
+    pub const MOST: usize = 32;
+
+    /// All of them, in the order of the standard's tables.
+    pub const ALL: [StandardFunction; 47] = [
+        StandardFunction::Trunc,
+        StandardFunction::Abs,
+        StandardFunction::Sqrt,
+        StandardFunction::Ln,
+        StandardFunction::Log,
+        StandardFunction::Exp,
+        StandardFunction::Sin,
+        StandardFunction::Cos,
+        StandardFunction::Tan,
+        StandardFunction::Asin,
+        StandardFunction::Acos,
+        StandardFunction::Atan,
+        StandardFunction::Operator(BinaryOp::Add),
+        StandardFunction::Operator(BinaryOp::Mul),
+        StandardFunction::Operator(BinaryOp::Sub),
+        StandardFunction::Operator(BinaryOp::Div),
+        StandardFunction::Operator(BinaryOp::Mod),
+        StandardFunction::Operator(BinaryOp::Pow),
+        StandardFunction::Move,
+        StandardFunction::Shl,
+        StandardFunction::Shr,
+        StandardFunction::Ror,
+        StandardFunction::Rol,
+        StandardFunction::Operator(BinaryOp::And),
+        StandardFunction::Operator(BinaryOp::Or),
+        StandardFunction::Operator(BinaryOp::Xor),
+        StandardFunction::Not,
+        StandardFunction::Sel,
+        StandardFunction::Max,
+        StandardFunction::Min,
+        StandardFunction::Limit,
+        StandardFunction::Mux,
+        StandardFunction::Operator(BinaryOp::Gt),
+        StandardFunction::Operator(BinaryOp::Ge),
+        StandardFunction::Operator(BinaryOp::Eq),
+        StandardFunction::Operator(BinaryOp::Le),
+        StandardFunction::Operator(BinaryOp::Lt),
+        StandardFunction::Operator(BinaryOp::Ne),
+        StandardFunction::Len,
+        StandardFunction::Left,
+        StandardFunction::Right,
+        StandardFunction::Mid,
+        StandardFunction::Concat,
+        StandardFunction::Insert,
+        StandardFunction::Delete,
+        StandardFunction::Replace,
+        StandardFunction::Find,
+    ];
+
+    /// The row of a function.
+    pub const fn row(self) -> FunctionRow {
+        let (name, inputs, does): (_, &'static [&'static str], _) = match self {
+            StandardFunction::Operator(op) => {
+                let (inputs, does) = of_operator(op);
+                (op.row().function, inputs, does)
+            }
+            StandardFunction::Not => ("NOT", ONE, "complement"),
+            StandardFunction::Move => ("MOVE", ONE, "the value itself"),
+            StandardFunction::Abs => ("ABS", ONE, "absolute value"),
+            StandardFunction::Sqrt => ("SQRT", ONE, "square root"),
+            StandardFunction::Ln => ("LN", ONE, "natural logarithm"),
+            StandardFunction::Log => ("LOG", ONE, "logarithm to base 10"),
+            StandardFunction::Exp => ("EXP", ONE, "power of e"),
+            StandardFunction::Sin => ("SIN", ONE, "sine of radians"),
+            StandardFunction::Cos => ("COS", ONE, "cosine of radians"),
+            StandardFunction::Tan => ("TAN", ONE, "tangent of radians"),
+            StandardFunction::Asin => ("ASIN", ONE, "arc sine, radians"),
+            StandardFunction::Acos => ("ACOS", ONE, "arc cosine, radians"),
+            StandardFunction::Atan => ("ATAN", ONE, "arc tangent, radians"),
+            StandardFunction::Trunc => ("TRUNC", ONE, "whole part"),
+            StandardFunction::Shl => ("SHL", SHIFT, "bits moved to the left"),
+            StandardFunction::Shr => ("SHR", SHIFT, "bits moved to the right"),
+            StandardFunction::Rol => ("ROL", SHIFT, "bits moved to the left in a ring"),
+            StandardFunction::Ror => ("ROR", SHIFT, "bits moved to the right in a ring"),
+            StandardFunction::Min => ("MIN", MORE, "the least"),
+            StandardFunction::Max => ("MAX", MORE, "the greatest"),
+            StandardFunction::Limit => ("LIMIT", &["MN", "IN", "MX"], "held between two bounds"),
+            StandardFunction::Sel => ("SEL", &["G", "IN0", "IN1"], "one of two"),
+            StandardFunction::Mux => ("MUX", &["K", "IN0", "IN1", "…"], "one of several"),
+            StandardFunction::Len => ("LEN", ONE, "length of a text"),
+            StandardFunction::Left => ("LEFT", &["IN", "L"], "first characters of a text"),
+            StandardFunction::Right => ("RIGHT", &["IN", "L"], "last characters of a text"),
+            StandardFunction::Mid => ("MID", &["IN", "L", "P"], "characters from a place in a text"),
+            StandardFunction::Concat => ("CONCAT", MORE, "texts joined"),
+            StandardFunction::Insert => ("INSERT", &["IN1", "IN2", "P"], "a text put into a text"),
+            StandardFunction::Delete => ("DELETE", &["IN", "L", "P"], "a text without some characters"),
+            StandardFunction::Replace => {
+                ("REPLACE", &["IN1", "IN2", "L", "P"], "a text in place of some characters")
+            }
+            StandardFunction::Find => ("FIND", TWO, "place of a text in a text"),
+        };
+        FunctionRow { name, inputs, does }
+    }
+
+    /// The function of this name, in upper or lower case. Sums and products of TIME have names of
+    /// their own besides (table 30; IEC 61131-3:2013, table 35).
+    pub fn named(name: &str) -> Option<StandardFunction> {
+        const OF_TIME: [(&str, BinaryOp); 6] = [
+            ("ADD_TIME", BinaryOp::Add),
+            ("SUB_TIME", BinaryOp::Sub),
+            ("MULTIME", BinaryOp::Mul),
+            ("MUL_TIME", BinaryOp::Mul),
+            ("DIVTIME", BinaryOp::Div),
+            ("DIV_TIME", BinaryOp::Div),
+        ];
+        let of_time = || OF_TIME.iter().find(|(n, _)| n.eq_ignore_ascii_case(name)).map(|(_, op)| *op);
+        let all = StandardFunction::ALL.into_iter();
+        let mut found = all.filter(|f| f.row().name.eq_ignore_ascii_case(name));
+        found.next().or_else(|| of_time().map(StandardFunction::Operator))
+    }
+
+    /// The operator that does the same, by the name of a function.
+    pub fn operator(name: &str) -> Option<BinaryOp> {
+        match StandardFunction::named(name)? {
+            StandardFunction::Operator(op) => Some(op),
+            _ => None,
+        }
+    }
+}
+
+/// The inputs of the function of an operator: AND, ADD, GT and their like take two and more.
+const fn of_operator(op: BinaryOp) -> (&'static [&'static str], &'static str) {
+    match op {
+        BinaryOp::Or => (MORE, "one of the conditions"),
+        BinaryOp::Xor => (MORE, "an odd number of the conditions"),
+        BinaryOp::And | BinaryOp::Dot => (MORE, "all of the conditions"),
+        BinaryOp::Eq => (MORE, "all equal"),
+        BinaryOp::Ne => (TWO, "not equal"),
+        BinaryOp::Lt => (MORE, "each less than the next"),
+        BinaryOp::Le => (MORE, "each at most the next"),
+        BinaryOp::Gt => (MORE, "each greater than the next"),
+        BinaryOp::Ge => (MORE, "each at least the next"),
+        BinaryOp::Add => (MORE, "sum"),
+        BinaryOp::Sub => (TWO, "difference"),
+        BinaryOp::Mul => (MORE, "product"),
+        BinaryOp::Div => (TWO, "quotient"),
+        BinaryOp::Mod => (TWO, "remainder"),
+        BinaryOp::Pow => (TWO, "power"),
+    }
+}
+
+impl FunctionRow {
+    /// True if the last input repeats.
+    pub fn repeats(&self) -> bool {
+        self.inputs.last() == Some(&"…")
+    }
+
+    /// The number of inputs that must be given.
+    pub fn least(&self) -> usize {
+        self.inputs.len() - usize::from(self.repeats())
+    }
+
+    /// The number of inputs that can be given.
+    pub fn most(&self) -> usize {
+        if self.repeats() { StandardFunction::MOST } else { self.least() }
+    }
+
+    /// The name of the input at a place, from 0.
+    pub fn input(&self, place: usize) -> Option<String> {
+        match self.inputs.get(place) {
+            Some(name) if *name != "…" => Some((*name).to_owned()),
+            _ if place >= self.most() => None,
+            _ if self.counts_from_zero() => Some(format!("IN{}", place - 1)),
+            _ => Some(format!("IN{}", place + 1)),
+        }
+    }
+
+    fn counts_from_zero(&self) -> bool {
+        self.inputs.contains(&"IN0")
+    }
+
+    /// The place of a named input, from 0: `IN4` of MUX is place 5.
+    pub fn place(&self, name: &str) -> Option<usize> {
+        if let Some(k) = self.inputs.iter().position(|p| p.eq_ignore_ascii_case(name)) {
+            return Some(k);
+        }
+        let upper = name.to_ascii_uppercase();
+        let number: usize = upper.strip_prefix("IN")?.parse().ok()?;
+        let place = if self.counts_from_zero() { number.checked_add(1)? } else { number.checked_sub(1)? };
+        (self.repeats() && place < self.most()).then_some(place)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::StandardFunction as F;
+    use crate::BinaryOp;
+
+    #[test]
+    fn every_function_is_found_by_its_name_in_any_case() {
+        for f in F::ALL {
+            assert_eq!(F::named(f.row().name), Some(f));
+            assert_eq!(F::named(&f.row().name.to_lowercase()), Some(f));
+        }
+        assert_eq!(F::operator("mul_time"), Some(BinaryOp::Mul));
+        assert_eq!((F::named("NAND"), F::operator("ABS")), (None, None));
+    }
+
+    #[test]
+    fn every_operator_but_the_dot_is_a_function() {
+        for op in BinaryOp::ALL.into_iter().filter(|op| *op != BinaryOp::Dot) {
+            assert!(F::ALL.contains(&F::Operator(op)), "{op:?}");
+            assert_eq!(F::operator(op.row().function), Some(op));
+        }
+    }
+
+    #[test]
+    fn inputs_are_found_by_their_names() {
+        let place = |f: F, name: &str| f.row().place(name);
+        assert_eq!((place(F::Mux, "K"), place(F::Mux, "in4")), (Some(0), Some(5)));
+        assert_eq!(
+            (place(F::Min, "IN1"), place(F::Min, "IN9"), place(F::Min, "IN33")),
+            (Some(0), Some(8), None)
+        );
+        assert_eq!((place(F::Shl, "N"), place(F::Operator(BinaryOp::Sub), "IN3")), (Some(1), None));
+        assert_eq!(place(F::Operator(BinaryOp::Gt), "IN3"), Some(2));
+        for (f, k) in [(F::Mux, 0), (F::Mux, 5), (F::Min, 4), (F::Shl, 1), (F::Limit, 2)] {
+            assert_eq!(f.row().input(k).and_then(|name| place(f, &name)), Some(k));
+        }
+        assert_eq!((F::Limit.row().input(3), F::Mux.row().input(32)), (None, None));
+        assert_eq!((F::Limit.row().least(), F::Limit.row().most(), F::Mux.row().least()), (3, 3, 3));
+    }
+}
