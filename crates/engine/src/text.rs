@@ -275,7 +275,7 @@ pub fn read_number(n: Num, bytes: &[u8]) -> Result<u64, FaultKind> {
             "FALSE" | "0" => Some(0),
             _ => None,
         },
-        Num::U64 => t.parse::<u64>().ok(),
+        Num::U64 => t.parse::<i128>().ok().and_then(|v| u64::try_from(v).ok()),
         _ => t.parse::<i64>().ok().and_then(|v| crate::number::convert(Num::I64, n, v as u64).ok()),
     };
     parsed.ok_or(FaultKind::Range)

@@ -329,7 +329,7 @@ static uint64_t text_to_u64(const uint8_t *a, uint8_t *fault)
 {
     bool negative = false;
     uint64_t v = 0;
-    if (!text_number(a, &v, &negative) || negative) {
+    if (!text_number(a, &v, &negative) || (negative && (v > 0u))) {
         fail(fault, FAULT_RANGE);
         return 0;
     }

@@ -299,7 +299,7 @@ pub fn text_to<T: Whole>(a: &[u8], fault: &mut u8) -> T {
 }
 
 pub fn text_to_u64(a: &[u8], fault: &mut u8) -> u64 {
-    match text_str(a).trim().parse::<u64>().ok() {
+    match text_str(a).trim().parse::<i128>().ok().and_then(|v| u64::try_from(v).ok()) {
         Some(v) => v,
         None => {
             fail(fault, FAULT_RANGE);

@@ -170,8 +170,11 @@ fn as_text(v: &Value) -> Run<String> {
 
 fn from_text(s: &str, to: Type) -> Run<Typed> {
     match s.trim().parse::<i128>() {
-        Ok(n) if to.is_integer() => Ok(Typed::of(to, Typed { ty: None, v: Value::Int(n) }.to(to)?)),
-        _ if to.is_integer() => Err(NaiveFault::Overflow),
+        Ok(n) if to.is_integer() => {
+            let v = Typed { ty: None, v: Value::Int(n) }.to(to).map_err(|_| NaiveFault::Index)?;
+            Ok(Typed::of(to, v))
+        }
+        _ if to.is_integer() => Err(NaiveFault::Index),
         _ => bad("a text as this type"),
     }
 }
