@@ -37,6 +37,7 @@ mod other_elements;
 mod phrase;
 mod read;
 mod sheet;
+mod together;
 mod values;
 mod write;
 
@@ -65,7 +66,9 @@ pub(crate) fn import(bytes: &[u8], file: FileId) -> (Document, Vec<Problem>) {
             calls::expand(&mut reader);
             let mut plan = reader.plan;
             fuse::fuse(&mut plan, &mut report);
-            build::document(&plan, &mut report)
+            let document = build::document(&plan, &mut report);
+            together::tell(&document, &mut report);
+            document
         })
         .unwrap_or_default();
     (document, report.finish())

@@ -46,6 +46,25 @@ fn what_is_not_carried_over_is_reported_where_it_stands() {
     );
 }
 
+/// In chart Branches `b` and `c` run side by side; `a` does not, but a chart with parallel branches
+/// is not looked into. In chart Turns one step follows the other, but
+/// the macro-step is active while the steps in it are. Charts run beside each other.
+#[test]
+fn an_output_of_two_steps_that_may_be_active_together_is_told() {
+    let (_, found) = import("together.xml");
+    let rest = "JGrafchart 2.6.1 sets it FALSE when one of the steps ends, here it stays TRUE as long as one of \
+                them is active";
+    assert_eq!(
+        problems(&bytes("together.xml"), &found),
+        [
+            format!("G0614 8: `lamp` is also driven by `N` of step `a`: {rest}"),
+            format!("G0614 9: `horn` is also driven by `N` of step `b`: {rest}"),
+            format!("G0614 30: `light` is also driven by `N` of step `third`: {rest}"),
+            format!("G0614 48: `pump` is also driven by `N` of step `second`: {rest}"),
+        ]
+    );
+}
+
 #[test]
 fn mistakes_of_the_author_have_their_line() {
     let (document, found) = import("wrong.xml");
