@@ -35,7 +35,7 @@ const ALLOWED: &[Arrows] = &[
     ("runtime", &[], Some(&["libm"])),
     (
         "codegen",
-        &["g7-model", "g7-engine", "g7-compile", "g7-equations", "g7-draw", "g7-runtime"],
+        &["g7-model", "g7-iec", "g7-engine", "g7-compile", "g7-equations", "g7-draw", "g7-runtime"],
         Some(&["syn"]),
     ),
     ("verify", &["g7-engine"], Some(&[])),

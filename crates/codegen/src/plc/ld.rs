@@ -1,60 +1,105 @@
 //! Rungs as PLCopen XML (TC6 2.01): one function block with a Ladder body.
 
-use std::fmt::Write;
+use g7_iec::xml::element::Element;
+use g7_model::FbKind;
 
 use super::form::{Class, Declared};
 use super::ladder::{Block, Coil, End, Ladder, Net, Rung};
 use super::st::expression;
 
-const HEAD: &str = r#"<?xml version="1.0" encoding="UTF-8"?>
-<project xmlns="http://www.plcopen.org/xml/tc6_0201" xmlns:xhtml="http://www.w3.org/1999/xhtml">
-  <fileHeader companyName="G7" productName="G7" productVersion="1" creationDateTime="1970-01-01T00:00:00"/>
-"#;
-
-const SCALING: &str = "<scaling x=\"8\" y=\"8\"/>";
-
-/// The whole project.
-pub(crate) fn print(name: &str, l: &Ladder) -> String {
-    let mut x = Writer { out: HEAD.to_owned(), next: 0 };
-    let _ = writeln!(
-        x.out,
-        "  <contentHeader name=\"{}\">\n    <coordinateInfo>\n      <fbd>{SCALING}</fbd>\n      <ld>{SCALING}</ld>\n      \
-         <sfc>{SCALING}</sfc>\n    </coordinateInfo>\n  </contentHeader>\n  <types>\n    <dataTypes/>\n    <pous>\n      \
-         <pou name=\"{0}\" pouType=\"functionBlock\">",
-        escape(name)
-    );
-    x.interface(&l.variables);
-    x.out += "        <body>\n          <LD>\n";
-    let mut y = 16;
-    for r in &l.rungs {
-        y = x.rung(r, y) + 32;
-    }
-    x.out += "          </LD>\n        </body>\n      </pou>\n    </pous>\n  </types>\n  <instances>\n    <configurations/>\n  </instances>\n</project>\n";
-    x.out
-}
-
-fn escape(text: &str) -> String {
-    let mut out = String::new();
-    for c in text.chars() {
-        match c {
-            '&' => out.push_str("&amp;"),
-            '<' => out.push_str("&lt;"),
-            '>' => out.push_str("&gt;"),
-            '"' => out.push_str("&quot;"),
-            c if c.is_control() => out.push(' '),
-            c => out.push(c),
-        }
-    }
-    out
-}
-
 /// Units wide and high of a contact or coil with the space round it.
 const WIDE: usize = 128;
 const HIGH: usize = 48;
 
-struct Writer {
-    out: String,
+/// Objects are numbered in the order in which they are drawn.
+#[derive(Default)]
+struct Drawing {
+    objects: Vec<Element>,
     next: usize,
+}
+
+/// The whole project.
+pub(crate) fn print(name: &str, l: &Ladder) -> String {
+    let mut drawing = Drawing::default();
+    let mut y = 16;
+    for r in &l.rungs {
+        y = drawing.rung(r, y) + 32;
+    }
+    let body = Element::new("body").child(Element::new("LD").children(drawing.objects));
+    let unit = Element::new("pou").with("name", name).with("pouType", "functionBlock");
+    let unit = unit.child(interface(&l.variables)).child(body);
+    let types =
+        Element::new("types").child(Element::new("dataTypes")).child(Element::new("pous").child(unit));
+    let scaled =
+        |tag: &str| Element::new(tag).child(Element::new("scaling").with("x", 8).with("y", 8)).on_one_line();
+    let header = Element::new("fileHeader")
+        .with("companyName", "G7")
+        .with("productName", "G7")
+        .with("productVersion", "1")
+        .with("creationDateTime", "1970-01-01T00:00:00");
+    let scales = Element::new("coordinateInfo").children(["fbd", "ld", "sfc"].map(scaled));
+    let project = Element::new("project")
+        .with("xmlns", "http://www.plcopen.org/xml/tc6_0201")
+        .with("xmlns:xhtml", "http://www.w3.org/1999/xhtml")
+        .child(header)
+        .child(Element::new("contentHeader").with("name", name).child(scales))
+        .child(types)
+        .child(Element::new("instances").child(Element::new("configurations")));
+    let mut text = String::from("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n");
+    project.print(0, &mut text);
+    text
+}
+
+fn interface(variables: &[Declared]) -> Element {
+    let classes = [
+        (Class::Input, "inputVars"),
+        (Class::Output, "outputVars"),
+        (Class::Retain, "localVars"),
+        (Class::Internal, "localVars"),
+    ];
+    let mut all = Element::new("interface");
+    for (class, tag) in classes {
+        let mut own = variables.iter().filter(|v| v.class == class).map(variable).peekable();
+        if own.peek().is_none() {
+            continue;
+        }
+        let mut list = Element::new(tag);
+        if class == Class::Retain {
+            list.set("retain", "true");
+        }
+        all.push(list.children(own));
+    }
+    all
+}
+
+fn variable(v: &Declared) -> Element {
+    let block = FbKind::ALL.iter().any(|kind| kind.name() == v.ty);
+    let ty = if block { Element::new("derived").with("name", &v.ty) } else { Element::new(&v.ty) };
+    let ty = if v.elements == 1 {
+        ty
+    } else {
+        let dimension = Element::new("dimension").with("lower", 0).with("upper", v.elements - 1);
+        Element::new("array").child(dimension).child(Element::new("baseType").child(ty))
+    };
+    let simple = |text: &str| Element::new("simpleValue").with("value", text);
+    let init = match v.init.as_slice() {
+        [] => None,
+        [one] => Some(simple(&expression(one))),
+        many => {
+            let values = many.iter().map(|e| Element::new("value").child(simple(&expression(e))));
+            Some(Element::new("arrayValue").children(values))
+        }
+    };
+    let mut variable = Element::new("variable").with("name", &v.name).child(Element::new("type").child(ty));
+    variable.extend(init.map(|value| Element::new("initialValue").child(value)));
+    if !v.note.is_empty() {
+        variable.push(Element::new("documentation").child(paragraph(&v.note)));
+    }
+    variable.on_one_line()
+}
+
+fn paragraph(text: &str) -> Element {
+    Element::with_text("xhtml:p", &text.replace(|c: char| c.is_control(), " "))
 }
 
 /// Columns and rows that a network takes.
@@ -67,91 +112,34 @@ pub(crate) fn size(net: &Net) -> (usize, usize) {
     }
 }
 
-impl Writer {
+impl Drawing {
     fn id(&mut self) -> usize {
         self.next += 1;
         self.next
     }
 
-    fn line(&mut self, text: &str) {
-        let _ = writeln!(self.out, "            {text}");
+    /// A new object with its number.
+    fn object(&mut self, tag: &str) -> (usize, Element) {
+        let id = self.id();
+        (id, Element::new(tag).with("localId", id))
     }
 
-    fn interface(&mut self, variables: &[Declared]) {
-        self.out += "        <interface>\n";
-        for (class, tag) in [
-            (Class::Input, "inputVars"),
-            (Class::Output, "outputVars"),
-            (Class::Retain, "localVars retain=\"true\""),
-            (Class::Internal, "localVars"),
-        ] {
-            let own: Vec<&Declared> = variables.iter().filter(|v| v.class == class).collect();
-            if own.is_empty() {
-                continue;
-            }
-            let _ = writeln!(self.out, "          <{tag}>");
-            for v in own {
-                self.variable(v);
-            }
-            let _ = writeln!(self.out, "          </{}>", tag.split(' ').next().unwrap_or(tag));
-        }
-        self.out += "        </interface>\n";
-    }
-
-    fn variable(&mut self, v: &Declared) {
-        let standard = ["TON", "TOF", "TP", "CTU", "CTD", "CTUD", "R_TRIG", "F_TRIG", "SR", "RS"];
-        let ty = if standard.contains(&v.ty.as_str()) {
-            format!("<derived name=\"{}\"/>", v.ty)
-        } else {
-            format!("<{}/>", v.ty)
-        };
-        let ty = if v.elements == 1 {
-            ty
-        } else {
-            let last = v.elements - 1;
-            format!("<array><dimension lower=\"0\" upper=\"{last}\"/><baseType>{ty}</baseType></array>")
-        };
-        let simple = |text: &str| format!("<simpleValue value=\"{}\"/>", escape(text));
-        let init = match v.init.as_slice() {
-            [] => String::new(),
-            [one] => format!("<initialValue>{}</initialValue>", simple(&expression(one))),
-            many => {
-                let values: String =
-                    many.iter().map(|e| format!("<value>{}</value>", simple(&expression(e)))).collect();
-                format!("<initialValue><arrayValue>{values}</arrayValue></initialValue>")
-            }
-        };
-        let note = if v.note.is_empty() {
-            String::new()
-        } else {
-            format!("<documentation><xhtml:p>{}</xhtml:p></documentation>", escape(&v.note))
-        };
-        let _ = writeln!(
-            self.out,
-            "            <variable name=\"{}\"><type>{ty}</type>{init}{note}</variable>",
-            escape(&v.name)
-        );
+    fn draw(&mut self, object: Element) {
+        self.objects.push(object.on_one_line());
     }
 
     /// One rung from `y` on; where it ends.
     fn rung(&mut self, r: &Rung, mut y: usize) -> usize {
         for note in [&r.title, &r.note].into_iter().filter(|n| !n.is_empty()) {
-            let id = self.id();
-            self.line(&format!(
-                "<comment localId=\"{id}\" height=\"16\" width=\"{}\"><position x=\"16\" y=\"{y}\"/><content>\
-                 <xhtml:p>{}</xhtml:p></content></comment>",
-                (8 * note.chars().count()).max(64),
-                escape(note)
-            ));
+            let comment = sized(self.object("comment").1, 16, (8 * note.chars().count()).max(64));
+            self.draw(comment.child(at(16, y)).child(Element::new("content").child(paragraph(note))));
             y += 24;
         }
         let (columns, rows) = size(&r.net);
-        let rail = self.id();
         let high = rows * HIGH;
-        self.line(&format!(
-            "<leftPowerRail localId=\"{rail}\" height=\"{high}\" width=\"8\"><position x=\"16\" y=\"{y}\"/>\
-             <connectionPointOut formalParameter=\"\"><relPosition x=\"8\" y=\"16\"/></connectionPointOut></leftPowerRail>"
-        ));
+        let (rail, left) = self.object("leftPowerRail");
+        let out = point_out(8, 16).with("formalParameter", "");
+        self.draw(sized(left, high, 8).child(at(16, y)).child(out));
         let ends = self.net(&r.net, &[rail], 56, y);
         let x = 56 + columns * WIDE;
         let (last, tall) = match &r.end {
@@ -162,16 +150,12 @@ impl Writer {
         if r.end == End::Return {
             return y + high.max(tall);
         }
-        let right = self.id();
+        let right = sized(self.object("rightPowerRail").1, high, 8);
         let from = match &r.end {
-            End::Coil(..) | End::Return => format!("<connection refLocalId=\"{last}\"/>"),
-            End::Block(_) => format!("<connection refLocalId=\"{last}\" formalParameter=\"ENO\"/>"),
+            End::Coil(..) | End::Return => connection(last),
+            End::Block(_) => connection(last).with("formalParameter", "ENO"),
         };
-        self.line(&format!(
-            "<rightPowerRail localId=\"{right}\" height=\"{high}\" width=\"8\"><position x=\"{}\" y=\"{y}\"/>\
-             <connectionPointIn><relPosition x=\"0\" y=\"16\"/>{from}</connectionPointIn></rightPowerRail>",
-            x + 3 * WIDE
-        ));
+        self.draw(right.child(at(x + 3 * WIDE, y)).child(point_in(16, [from])));
         y + high.max(tall)
     }
 
@@ -180,15 +164,10 @@ impl Writer {
         match net {
             Net::Wire => from.to_vec(),
             Net::Contact { name, negated } => {
-                let id = self.id();
-                let links = links(from);
-                self.line(&format!(
-                    "<contact localId=\"{id}\" negated=\"{negated}\" height=\"16\" width=\"24\"><position x=\"{x}\" \
-                     y=\"{y}\"/><connectionPointIn><relPosition x=\"0\" y=\"8\"/>{links}</connectionPointIn>\
-                     <connectionPointOut><relPosition x=\"24\" y=\"8\"/></connectionPointOut>\
-                     <variable>{}</variable></contact>",
-                    escape(name)
-                ));
+                let (id, contact) = self.object("contact");
+                let contact = sized(contact.with("negated", negated), 16, 24).child(at(x, y));
+                let ports = [point_in(8, links(from)), point_out(24, 8)];
+                self.draw(contact.children(ports).child(Element::with_text("variable", name)));
                 vec![id]
             }
             Net::Series(list) => {
@@ -215,89 +194,80 @@ impl Writer {
     }
 
     fn leave(&mut self, from: &[usize], x: usize, y: usize) -> usize {
-        let (id, links) = (self.id(), links(from));
-        self.line(&format!(
-            "<return localId=\"{id}\" height=\"16\" width=\"48\"><position x=\"{x}\" y=\"{y}\"/>\
-             <connectionPointIn><relPosition x=\"0\" y=\"8\"/>{links}</connectionPointIn></return>"
-        ));
+        let (id, leave) = self.object("return");
+        self.draw(sized(leave, 16, 48).child(at(x, y)).child(point_in(8, links(from))));
         id
     }
 
     fn coil(&mut self, name: &str, coil: Coil, from: &[usize], x: usize, y: usize) -> usize {
-        let id = self.id();
-        let storage = match coil {
-            Coil::Plain => "",
-            Coil::Set => " storage=\"set\"",
-            Coil::Reset => " storage=\"reset\"",
-        };
-        let links = links(from);
-        self.line(&format!(
-            "<coil localId=\"{id}\" negated=\"false\"{storage} height=\"16\" width=\"24\"><position x=\"{x}\" y=\"{y}\"/>\
-             <connectionPointIn><relPosition x=\"0\" y=\"8\"/>{links}</connectionPointIn>\
-             <connectionPointOut><relPosition x=\"24\" y=\"8\"/></connectionPointOut>\
-             <variable>{}</variable></coil>",
-            escape(name)
-        ));
+        let (id, element) = self.object("coil");
+        let mut element = element.with("negated", false);
+        match coil {
+            Coil::Plain => {}
+            Coil::Set => element.set("storage", "set"),
+            Coil::Reset => element.set("storage", "reset"),
+        }
+        let ports = [point_in(8, links(from)), point_out(24, 8)];
+        let element = sized(element, 16, 24).child(at(x, y)).children(ports);
+        self.draw(element.child(Element::with_text("variable", name)));
         id
     }
 
     /// A block with its inputs and output; its number and height.
     fn block(&mut self, b: &Block, from: &[usize], x: usize, y: usize) -> (usize, usize) {
-        let mut inputs = String::new();
+        let mut inputs = Element::new("inputVariables").child(pin("EN", point_in(8, links(from))));
         for (i, (formal, operand)) in b.inputs.iter().enumerate() {
-            let id = self.id();
-            let at = y + 24 * (i + 1);
-            self.line(&format!(
-                "<inVariable localId=\"{id}\" height=\"16\" width=\"96\"><position x=\"{x}\" y=\"{at}\"/>\
-                 <connectionPointOut><relPosition x=\"96\" y=\"8\"/></connectionPointOut>\
-                 <expression>{}</expression></inVariable>",
-                escape(operand)
-            ));
-            let _ = write!(
-                inputs,
-                "<variable formalParameter=\"{}\"><connectionPointIn><relPosition x=\"0\" y=\"{}\"/>\
-                 <connection refLocalId=\"{id}\"/></connectionPointIn></variable>",
-                escape(formal),
-                24 * (i + 1) + 8
-            );
+            let (id, value) = self.object("inVariable");
+            let value = sized(value, 16, 96).child(at(x, y + 24 * (i + 1))).child(point_out(96, 8));
+            self.draw(value.child(Element::with_text("expression", operand)));
+            inputs.push(pin(formal, point_in(24 * (i + 1) + 8, [connection(id)])));
         }
-        let id = self.id();
+        let (id, block) = self.object("block");
+        let mut block = block.with("typeName", &b.ty);
+        if let Some(name) = &b.instance {
+            block.set("instanceName", name);
+        }
         let high = 24 * (b.inputs.len() + 1) + 8;
-        let instance =
-            b.instance.as_ref().map_or(String::new(), |n| format!(" instanceName=\"{}\"", escape(n)));
-        let output = b.output.as_ref().map_or(String::new(), |(formal, _)| {
-            format!(
-                "<variable formalParameter=\"{}\"><connectionPointOut><relPosition x=\"96\" y=\"32\"/>\
-                 </connectionPointOut></variable>",
-                escape(formal)
-            )
-        });
-        let links = links(from);
-        self.line(&format!(
-            "<block localId=\"{id}\" typeName=\"{}\"{instance} height=\"{high}\" width=\"96\"><position x=\"{}\" y=\"{y}\"/>\
-             <inputVariables><variable formalParameter=\"EN\"><connectionPointIn><relPosition x=\"0\" y=\"8\"/>{links}\
-             </connectionPointIn></variable>{inputs}</inputVariables><inOutVariables/><outputVariables>\
-             <variable formalParameter=\"ENO\"><connectionPointOut><relPosition x=\"96\" y=\"8\"/></connectionPointOut>\
-             </variable>{output}</outputVariables></block>",
-            escape(&b.ty),
-            x + WIDE
-        ));
+        let mut outputs = Element::new("outputVariables").child(pin("ENO", point_out(96, 8)));
+        outputs.extend(b.output.iter().map(|(formal, _)| pin(formal, point_out(96, 32))));
+        let ports = [inputs, Element::new("inOutVariables"), outputs];
+        self.draw(sized(block, high, 96).child(at(x + WIDE, y)).children(ports));
         if let Some((formal, to)) = &b.output {
-            let out = self.id();
-            self.line(&format!(
-                "<outVariable localId=\"{out}\" height=\"16\" width=\"96\"><position x=\"{}\" y=\"{}\"/>\
-                 <connectionPointIn><relPosition x=\"0\" y=\"8\"/><connection refLocalId=\"{id}\" \
-                 formalParameter=\"{}\"/></connectionPointIn><expression>{}</expression></outVariable>",
-                x + 2 * WIDE,
-                y + 24,
-                escape(formal),
-                escape(to)
-            ));
+            let out = sized(self.object("outVariable").1, 16, 96).child(at(x + 2 * WIDE, y + 24));
+            let from = connection(id).with("formalParameter", formal);
+            self.draw(out.child(point_in(8, [from])).child(Element::with_text("expression", to)));
         }
         (id, high)
     }
 }
 
-fn links(from: &[usize]) -> String {
-    from.iter().map(|id| format!("<connection refLocalId=\"{id}\"/>")).collect()
+fn sized(element: Element, high: usize, wide: usize) -> Element {
+    element.with("height", high).with("width", wide)
+}
+
+fn at(x: usize, y: usize) -> Element {
+    Element::new("position").with("x", x).with("y", y)
+}
+
+/// A pin of a block.
+fn pin(formal: &str, point: Element) -> Element {
+    Element::new("variable").with("formalParameter", formal).child(point)
+}
+
+/// An input at the left side, with what leads to it.
+fn point_in(y: usize, from: impl IntoIterator<Item = Element>) -> Element {
+    let place = Element::new("relPosition").with("x", 0).with("y", y);
+    Element::new("connectionPointIn").child(place).children(from)
+}
+
+fn point_out(x: usize, y: usize) -> Element {
+    Element::new("connectionPointOut").child(Element::new("relPosition").with("x", x).with("y", y))
+}
+
+fn connection(from: usize) -> Element {
+    Element::new("connection").with("refLocalId", from)
+}
+
+fn links(from: &[usize]) -> Vec<Element> {
+    from.iter().map(|id| connection(*id)).collect()
 }

@@ -8,12 +8,30 @@ pub struct Element {
     attributes: Vec<(&'static str, String)>,
     children: Vec<Element>,
     text: String,
+    on_one_line: bool,
 }
 
 impl Element {
     /// An empty element.
     pub fn new(tag: &str) -> Element {
-        Element { tag: tag.to_string(), attributes: Vec::new(), children: Vec::new(), text: String::new() }
+        Element {
+            tag: tag.to_string(),
+            attributes: Vec::new(),
+            children: Vec::new(),
+            text: String::new(),
+            on_one_line: false,
+        }
+    }
+
+    /// An element with text.
+    pub fn with_text(tag: &str, text: &str) -> Element {
+        Element { text: text.to_string(), ..Element::new(tag) }
+    }
+
+    /// The same element, to be printed on one line with all within it.
+    pub fn on_one_line(mut self) -> Element {
+        self.on_one_line = true;
+        self
     }
 
     /// Adds an attribute.
@@ -60,31 +78,45 @@ impl Element {
 
     /// An element with text in the XHTML paragraph that TC6 requires.
     pub fn formatted(tag: &str, text: &str) -> Element {
-        let mut inner = Element::new("xhtml").with("xmlns", "http://www.w3.org/1999/xhtml");
-        inner.text = text.to_string();
+        let inner = Element::with_text("xhtml", text).with("xmlns", "http://www.w3.org/1999/xhtml");
         Element::new(tag).child(inner)
     }
 
     /// Prints the element with two blanks of indentation for each level.
     pub fn print(&self, level: usize, text: &mut String) {
         let blanks = " ".repeat(2 * level);
-        let _ = write!(text, "{blanks}<{}", self.tag);
-        for (name, value) in &self.attributes {
-            let _ = write!(text, " {name}=\"{}\"", escaped(value, true));
-        }
-        if !self.text.is_empty() {
-            let _ = writeln!(text, ">{}</{}>", escaped(&self.text, false), self.tag);
+        text.push_str(&blanks);
+        if self.on_one_line || self.children.is_empty() {
+            self.closely(text);
+            text.push('\n');
             return;
         }
-        if self.children.is_empty() {
-            text.push_str("/>\n");
-            return;
-        }
+        self.start(text);
         text.push_str(">\n");
         for child in &self.children {
             child.print(level + 1, text);
         }
         let _ = writeln!(text, "{blanks}</{}>", self.tag);
+    }
+
+    /// The start tag, without its end.
+    fn start(&self, text: &mut String) {
+        let _ = write!(text, "<{}", self.tag);
+        for (name, value) in &self.attributes {
+            let _ = write!(text, " {name}=\"{}\"", escaped(value, true));
+        }
+    }
+
+    /// Prints the element without breaking a line.
+    fn closely(&self, text: &mut String) {
+        self.start(text);
+        if self.text.is_empty() && self.children.is_empty() {
+            text.push_str("/>");
+            return;
+        }
+        let _ = write!(text, ">{}", escaped(&self.text, false));
+        self.children.iter().for_each(|child| child.closely(text));
+        let _ = write!(text, "</{}>", self.tag);
     }
 }
 
@@ -148,5 +180,8 @@ mod tests {
         let mut element = Element::new("a").child(Element::new("b").child(Element::new("c")));
         element.extend([Element::new("d")]);
         assert_eq!(printed(&element), "<a>\n  <b>\n    <c/>\n  </b>\n  <d/>\n</a>\n");
+        let close =
+            Element::new("b").child(Element::with_text("c", "x")).child(Element::new("d")).on_one_line();
+        assert_eq!(printed(&Element::new("a").child(close)), "<a>\n  <b><c>x</c><d/></b>\n</a>\n");
     }
 }
