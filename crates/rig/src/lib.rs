@@ -20,9 +20,8 @@ mod source;
 pub mod testing;
 pub mod values;
 
-pub use bench::{
-    Activity, Answer, Ask, Bench, Conflicts, Item, Options, PlantSide, Role, StepItem, Table, build,
-};
+pub use bench::build::build;
+pub use bench::{Activity, Answer, Ask, Bench, Conflicts, Item, Options, PlantSide, Role, StepItem, Table};
 pub use carry::{Carried, carry};
 pub use error::Error;
 pub use source::Source;

@@ -8,44 +8,12 @@ use g7_compile::plant::{self, Link};
 use g7_compile::symbols::{Symbols, Variable};
 use g7_engine::{Code, StepId};
 use g7_host::{Coupling, Kind};
-use g7_model::{ChartKind, Document, Expr, Holds, Nanos, Plant, Problem, ProfileName, Span, Step, Type};
+use g7_model::{ChartKind, Document, Expr, Holds, Nanos, Plant, Problem, Span, Step, Type};
 
+use super::ask::{Answer, Ask, Options};
 use super::{Activity, Bench, Item, PlantSide, Role, StepItem};
 use crate::error::Error;
 use crate::source::Source;
-
-/// How to build a bench.
-#[derive(Clone, Copy, Default)]
-pub struct Options<'a> {
-    /// The profile that replaces the file's own.
-    pub profile: Option<ProfileName>,
-    /// The scan period that replaces the file's own.
-    pub scan: Option<Nanos>,
-    /// The name of the plant, or `none` for no plant. Without it the file's only plant is used.
-    pub plant: Option<&'a str>,
-    /// Expressions to be compiled for evaluation during the run.
-    pub asks: &'a [Ask],
-}
-
-/// An expression to be compiled for evaluation.
-#[derive(Clone, Debug)]
-pub struct Ask {
-    /// The expression.
-    pub expr: Expr,
-    /// True if its names are those of the plant.
-    pub of_plant: bool,
-}
-
-/// A compiled [`Ask`].
-#[derive(Clone, Copy, Debug)]
-pub struct Answer {
-    /// The code, for `engine::eval`.
-    pub code: Code,
-    /// The type of the expression.
-    pub ty: Type,
-    /// True if the code runs on the state of the plant.
-    pub of_plant: bool,
-}
 
 /// Number of elements of a table that get a name each.
 const ELEMENTS: u32 = 32;

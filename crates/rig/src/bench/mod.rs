@@ -1,6 +1,7 @@
 //! The test bench: compiled charts, their plant, and the names of everything in them.
 
-mod build;
+mod ask;
+pub(crate) mod build;
 mod tables;
 
 use std::collections::BTreeSet;
@@ -13,7 +14,7 @@ use g7_host::{
 };
 use g7_model::{Nanos, Span, Type};
 
-pub use build::{Answer, Ask, Options, build};
+pub use ask::{Answer, Ask, Options};
 pub use tables::Table;
 
 /// The role of a variable on the bench.

@@ -112,7 +112,7 @@ fn prepare<'s>(source: &'s Source, options: Options<'_>) -> Result<(Vec<Group<'s
             problems.push(problem);
             continue;
         }
-        let (bench, found) = bench::build(source, &wanted)?;
+        let (bench, found) = bench::build::build(source, &wanted)?;
         problems.extend(found);
         let Some(bench) = bench else { continue };
         let mut asks = Vec::new();
@@ -125,7 +125,7 @@ fn prepare<'s>(source: &'s Source, options: Options<'_>) -> Result<(Vec<Group<'s
         let bench = if asks.is_empty() {
             bench
         } else {
-            let (bench, found) = bench::build(source, &bench::Options { asks: &asks, ..wanted })?;
+            let (bench, found) = bench::build::build(source, &bench::Options { asks: &asks, ..wanted })?;
             problems.extend(found);
             let Some(bench) = bench else { continue };
             bench
@@ -147,7 +147,7 @@ pub fn problems(source: &Source, profile: Option<ProfileName>) -> Result<Vec<Pro
             continue;
         }
         let options = bench::Options { profile, plant: Some(&plant.name.text), ..bench::Options::default() };
-        problems.extend(bench::build(source, &options)?.1);
+        problems.extend(bench::build::build(source, &options)?.1);
     }
     problems.sort_by_key(|p| p.at);
     problems.dedup();
