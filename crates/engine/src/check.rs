@@ -287,11 +287,21 @@ impl Check<'_> {
 
     fn rest(&mut self) -> Checked {
         let t = self.t;
+        // By chart: an order that names steps has been seen.
+        let mut imposed = vec![false; t.charts.len()];
         for (i, o) in t.orders.iter().enumerate() {
             within(o.step.0, t.steps.len(), "orders", i)?;
             within(o.chart, t.charts.len(), "orders", i)?;
-            if let Situation::Steps(r) = o.situation {
-                rows(r, t.arcs.len(), "orders", i)?;
+            let named = imposed.get_mut(o.chart as usize);
+            match o.situation {
+                Situation::Steps(r) => {
+                    rows(r, t.arcs.len(), "orders", i)?;
+                    named.into_iter().for_each(|n| *n = true);
+                }
+                Situation::Current if named.is_some_and(|n| *n) => {
+                    return Err(LoadError::Order { table: "orders", row: i as u32 });
+                }
+                Situation::Current => {}
             }
         }
         for code in [t.pre, t.services, t.post, t.tail] {

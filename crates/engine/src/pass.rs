@@ -11,7 +11,7 @@ use crate::ops::{Addr, StepId};
 use crate::program::Program;
 use crate::run::{holds, value};
 use crate::state::State;
-use crate::tables::{NONE, Rows, Situation, Transition};
+use crate::tables::{NONE, Order, Rows, Situation, Transition};
 
 /// Makes one pass; tells whether it changed a step or a variable.
 pub(crate) fn evolve(p: &Program, s: &mut State) -> Result<bool, Fault> {
@@ -100,8 +100,9 @@ pub(crate) fn block(p: &Program, s: &mut State) {
     }
 }
 
-/// Whether a step gives its orders in this pass: it is active and no order above
-/// deactivates it or its enclosing step, or an order above has just activated it.
+/// Whether a step is active after the orders so far, and so gives its own: it is active
+/// and no order above deactivates it or its enclosing step, or an order above has just
+/// activated it.
 fn acts(s: &State, step: StepId) -> bool {
     marked(&s.scratch.on_mark, step.0)
         || (s.steps.contains(&s.image, step.0) && !marked(&s.scratch.off_mark, step.0))
@@ -111,15 +112,18 @@ fn acts(s: &State, step: StepId) -> bool {
 fn impose(p: &Program, s: &mut State, i: u32) {
     let Some(o) = p.tables.orders.get(i as usize) else { return };
     let chart = o.chart as usize;
-    let Some(first) = s.scratch.forced_by.get_mut(chart) else { return };
-    if *first != NONE {
-        let same = p.tables.orders.get(*first as usize).is_some_and(|f| agree(p, f.situation, o.situation));
-        if !same {
-            *first = CONFLICT;
-        }
+    let Some(&first) = s.scratch.forced_by.get(chart) else { return };
+    let by = match p.tables.orders.get(first as usize) {
+        None if first == NONE => i,
+        Some(f) if agree(p, s, f.situation, o) => return,
+        _ => CONFLICT,
+    };
+    if let Some(f) = s.scratch.forced_by.get_mut(chart) {
+        *f = by;
+    }
+    if by == CONFLICT {
         return;
     }
-    *first = i;
     if let Some(b) = s.scratch.blocked.get_mut(chart) {
         *b = true;
         s.scratch.any_blocked = true;
@@ -142,15 +146,26 @@ fn impose(p: &Program, s: &mut State, i: u32) {
 /// Stands in `forced_by` for "two orders disagree".
 const CONFLICT: u32 = NONE - 1;
 
-fn agree(p: &Program, a: Situation, b: Situation) -> bool {
-    match (a, b) {
+/// Whether an order asks for the situation of one that acts on its chart already.
+fn agree(p: &Program, s: &State, first: Situation, o: &Order) -> bool {
+    match (first, o.situation) {
         (Situation::Current, Situation::Current) => true,
         (Situation::Steps(a), Situation::Steps(b)) => {
             let (a, b) = (arcs(p, a), arcs(p, b));
             a.iter().all(|x| b.contains(x)) && b.iter().all(|x| a.contains(x))
         }
-        (Situation::Current, Situation::Steps(_)) | (Situation::Steps(_), Situation::Current) => false,
+        (Situation::Current, Situation::Steps(rows)) => is_in(p, s, o.chart, arcs(p, rows)),
+        // The tables have the orders that keep a situation first.
+        (Situation::Steps(_), Situation::Current) => false,
     }
+}
+
+/// Whether these steps of a chart and no others are active, after the orders above it.
+fn is_in(p: &Program, s: &State, chart: u32, steps: &[StepId]) -> bool {
+    let group = p.tables.charts.get(chart as usize).and_then(|c| p.tables.groups.get(c.group.0 as usize));
+    group.is_some_and(|g| {
+        (g.steps.start..g.steps.end).all(|k| acts(s, StepId(k)) == steps.contains(&StepId(k)))
+    })
 }
 
 pub(crate) fn arcs(p: &Program, rows: Rows) -> &[StepId] {

@@ -215,7 +215,9 @@ pub struct Watch {
 }
 
 /// A forcing order. Rows follow the partial order of the charts: an order that a
-/// step of a chart gives comes behind every order that acts on that chart.
+/// step of a chart gives comes behind every order that acts on that chart. Of those
+/// on one chart the ones that keep the present situation come first, so that the
+/// others are compared with a situation that no order has touched.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Order {
     /// The step that gives the order.

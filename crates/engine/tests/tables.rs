@@ -159,6 +159,10 @@ fn an_index_past_the_last_row_is_refused_in_every_table() {
 #[test]
 fn tables_that_must_be_sorted_are() {
     let order = |table, row| Some(LoadError::Order { table, row });
+    // An order that keeps the situation stands before those that name one.
+    let kept = |t: &Tables| Order { situation: Situation::Current, ..t.orders[0] };
+    assert_eq!(verdict(|t| t.orders.insert(0, kept(t))), None);
+    assert_eq!(verdict(|t| t.orders.push(kept(t))), order("orders", 1));
     assert_eq!(verdict(|t| t.drops.swap(0, 1)), order("drops", 1));
     assert_eq!(verdict(|t| t.word_watches.swap(1, 2)), order("word_watches", 2));
     // A watch is read by later ones alone.

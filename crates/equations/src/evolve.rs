@@ -110,8 +110,7 @@ impl Make<'_> {
         let t = self.t;
         let Some(o) = t.orders.get(i as usize) else { return };
         to.push(Stmt::About(About::Order(i)));
-        let (on, off) = (self.flag(What::On(o.step)), self.flag(What::Off(o.step)));
-        let acts = Expr::Read(on).or(self.active(o.step.0).and(Expr::Read(off).negated()));
+        let acts = self.after_orders(o.step);
         let asks = self.flag(What::Asks(i));
         to.push(Stmt::Set(asks, acts));
         let asks = Expr::Read(asks);
@@ -123,10 +122,11 @@ impl Make<'_> {
             .collect();
         for (j, situation) in &earlier {
             let imposes = Expr::Read(self.flag(What::Imposes(*j)));
-            if !self.agree(*situation, o.situation) {
+            let differ = self.differ(*situation, o.situation, o.chart);
+            if differ.known() != Some(false) {
                 let known = self.known(What::Disagree(o.chart)).is_some();
                 let flag = self.flag(What::Disagree(o.chart));
-                let both = asks.clone().and(imposes.clone());
+                let both = Expr::all([asks.clone(), imposes.clone(), differ]);
                 to.push(Stmt::Set(flag, if known { Expr::Read(flag).or(both) } else { both }));
             }
             first = first.and(imposes.negated());
@@ -153,15 +153,33 @@ impl Make<'_> {
         }
     }
 
-    fn agree(&self, a: Situation, b: Situation) -> bool {
-        match (a, b) {
-            (Situation::Current, Situation::Current) => true,
+    /// Whether an order asks for another situation than one that acts on its chart already.
+    fn differ(&mut self, first: Situation, own: Situation, chart: u32) -> Expr {
+        match (first, own) {
+            (Situation::Current, Situation::Current) => Expr::truth(false),
             (Situation::Steps(a), Situation::Steps(b)) => {
                 let (a, b) = (self.arcs(a), self.arcs(b));
-                a.iter().all(|x| b.contains(x)) && b.iter().all(|x| a.contains(x))
+                Expr::truth(!(a.iter().all(|x| b.contains(x)) && b.iter().all(|x| a.contains(x))))
             }
-            (Situation::Current, Situation::Steps(_)) | (Situation::Steps(_), Situation::Current) => false,
+            (Situation::Current, Situation::Steps(rows)) => {
+                let wanted: Vec<StepId> = self.arcs(rows).to_vec();
+                let group = self.t.charts.get(chart as usize).map(|c| c.group);
+                let mut other = Vec::new();
+                for step in group.map_or(0..0, |g| self.group_steps(g)) {
+                    let is_in = self.after_orders(StepId(step));
+                    other.push(if wanted.contains(&StepId(step)) { is_in.negated() } else { is_in });
+                }
+                Expr::any(other)
+            }
+            // The tables have the orders that keep a situation first.
+            (Situation::Steps(_), Situation::Current) => Expr::truth(true),
         }
+    }
+
+    /// A step is active after the orders so far.
+    fn after_orders(&mut self, step: StepId) -> Expr {
+        let (on, off) = (self.flag(What::On(step)), self.flag(What::Off(step)));
+        Expr::Read(on).or(self.active(step.0).and(Expr::Read(off).negated()))
     }
 
     /// Which transitions are clearable, in the order in which the engine asks.

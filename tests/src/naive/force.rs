@@ -20,8 +20,13 @@ pub(super) fn forced_situations(m: &Model, s: &State) -> Run<BTreeMap<ScopeId, O
         let mut order: Option<Option<BTreeSet<StepId>>> = None;
         for f in m.forcings.iter().filter(|f| f.chart == chart && active.contains(&f.step)) {
             let situation = situation(m, chart, &f.situation)?;
+            // They agree if they ask for the same active steps of the chart, in whatever form.
+            let mine: BTreeSet<StepId> = m.steps_within(chart).into_iter().collect();
+            let asked = |x: &Option<BTreeSet<StepId>>| -> BTreeSet<StepId> {
+                mine.intersection(x.as_ref().unwrap_or(&active)).copied().collect()
+            };
             match &order {
-                Some(first) if *first != situation => {
+                Some(first) if asked(first) != asked(&situation) => {
                     return Err(NaiveFault::Forcing(m.scopes[chart].name.clone()));
                 }
                 _ => order = Some(situation),

@@ -134,13 +134,20 @@ fn disagree(unit: &Unit, orders: &[Order<'_>], problems: &mut Vec<Problem>) {
         let mut first: BTreeMap<ChartId, &Order<'_>> = BTreeMap::new();
         for order in group {
             let before = *first.entry(order.situation.0).or_insert(order);
-            if wanted(unit, before) != wanted(unit, order) && told.insert(order.at) {
+            let (ones, others) = (wanted(unit, before), wanted(unit, order));
+            if ones != others && told.insert(order.at) {
                 let name = unit.charts.get(order.on.index()).map_or("", |c| &*c.name);
-                let what = format!("chart `{name}` is forced into two situations at one moment");
+                // The present situation may be the one that the other order names.
+                let (is, but) = if ones.is_some() && others.is_some() {
+                    ("is", "")
+                } else {
+                    ("can be", " unless the chart is in the named situation")
+                };
+                let what = format!("chart `{name}` {is} forced into two situations at one moment");
                 problems.push(
                     Problem::new(&codes::ORDERS_DISAGREE, order.at, what)
                         .related(before.at, "another situation is ordered here")
-                        .help("a run stops with a fault there; keep one of the two orders"),
+                        .help(format!("a run stops with a fault there{but}; keep one of the two orders")),
                 );
             }
         }

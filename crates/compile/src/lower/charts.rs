@@ -271,8 +271,12 @@ impl Lower<'_> {
             rows.push((step, Order { step: Number(step), chart: forced, situation }));
         }
         let depth = self.depths(&rows);
-        // By the charts they act on: what rules a chart is settled before it is.
-        rows.sort_by_key(|(step, o)| (depth.get(o.chart as usize).copied().unwrap_or(0), *step));
+        // By the charts they act on: what rules a chart is settled before it is. The present
+        // situation goes before the named ones, which are compared with it.
+        rows.sort_by_key(|(step, o)| {
+            let below = depth.get(o.chart as usize).copied().unwrap_or(0);
+            (below, o.situation != Situation::Current, *step)
+        });
         let mut by_step: Vec<(u32, Rows)> = Vec::new();
         for (step, order) in rows {
             let at = self.t.orders.len() as u32;

@@ -16,8 +16,7 @@ pub(crate) fn block_charts(s: &mut State) {
         }
         s.conflict = false;
         for i in 0..ORDERS {
-            let step: usize = ORDER_STEP[i] as usize;
-            if bit(&s.on_mark, step) || (s.m.x[step] && !bit(&s.off_mark, step)) {
+            if after_orders(s, ORDER_STEP[i] as usize) {
                 impose(s, i);
                 if HAS_HIERARCHY {
                     cascade(s);
@@ -30,19 +29,43 @@ pub(crate) fn block_charts(s: &mut State) {
     }
 }
 
+/// A step is active after the orders so far.
+pub(crate) fn after_orders(s: &State, step: usize) -> bool {
+    bit(&s.on_mark, step) || (s.m.x[step] && !bit(&s.off_mark, step))
+}
+
+/// The chart of an order is in its situation already.
+pub(crate) fn is_in(s: &State, order: usize) -> bool {
+    let group: usize = CHART_GROUP[ORDER_CHART[order] as usize] as usize;
+    let mut same: bool = true;
+    for step in GROUP_FIRST[group] as usize..GROUP_END[group] as usize {
+        let mut wanted: bool = false;
+        let mut i: usize = ORDER_STEPS_AT[order] as usize;
+        while i < ORDER_STEPS_AT[order + 1] as usize {
+            wanted = wanted || ORDER_STEPS[i] as usize == step;
+            i += 1;
+        }
+        same = same && after_orders(s, step) == wanted;
+    }
+    same
+}
+
 /// Marks what a forcing order imposes.
 pub(crate) fn impose(s: &mut State, order: usize) {
     let chart: usize = ORDER_CHART[order] as usize;
     let first: usize = s.forced_by[chart] as usize;
     if first != NO_ORDER {
-        if ORDER_SITUATION[first] != ORDER_SITUATION[order] {
+        // The present situation is number 0, and its orders come first: the others are
+        // compared with a situation that no order has touched.
+        if ORDER_SITUATION[first] != ORDER_SITUATION[order]
+            && (ORDER_SITUATION[first] != 0 || !is_in(s, order))
+        {
             s.conflict = true;
         }
         return;
     }
     s.forced_by[chart] = order as Row;
     s.blocked[chart] = true;
-    // The present situation is number 0.
     if ORDER_SITUATION[order] == 0 {
         return;
     }
