@@ -125,6 +125,12 @@ impl Subject for Engine {
             let Some(v) = self.compiled.symbols.variable(name) else {
                 return Err(Fault::Other(format!("no input {name}")));
             };
+            // A system bit is set by the terminal, before the scan.
+            if v.class == VarClass::System {
+                let word = words(value).first().copied().unwrap_or(0);
+                self.state.set_word(&self.compiled.program, v.addr, word);
+                continue;
+            }
             for (i, word) in words(value).into_iter().enumerate() {
                 if let Some(slot) = self.inputs.get_mut((v.addr.0 - start) as usize + i) {
                     *slot = word;

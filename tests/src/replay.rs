@@ -43,6 +43,13 @@ fn queries(trace: &Trace) -> Result<Vec<g7_model::Expr>, String> {
     let mut all = Vec::new();
     for line in &trace.lines {
         let Line::Row(row) = line else { continue };
+        // What the terminal sets is there, as if the chart named it.
+        for (name, _) in row.inputs.iter().filter(|(name, _)| name.starts_with('%')) {
+            let e = expression(name)?;
+            if !all.contains(&e) {
+                all.push(e);
+            }
+        }
         let out = row.out.iter().flatten().filter(|item| item.contains('='));
         for item in row.vars.iter().chain(out) {
             let e = demand(item)?;
@@ -66,6 +73,17 @@ pub(crate) fn input_values(
         }
     }
     for (name, value) in &row.inputs {
+        // A system bit keeps its value where the row does not name it.
+        if name.starts_with("%S") {
+            let ty = if name.starts_with("%SW") { Type::Uint } else { Type::Bool };
+            let value = match value {
+                None if ty == Type::Bool => Value::Bool(true),
+                None => return Err(format!("line {}: `{name}` needs a value", row.line)),
+                Some(text) => names.constant(&expression(text)?, ty).map_err(|f| format!("{f:?}"))?,
+            };
+            values.insert(name.clone(), value);
+            continue;
+        }
         let mut fits = inputs.iter().filter(|(n, _)| matches(n, name));
         let (Some((full, ty)), None) = (fits.next(), fits.next()) else {
             return Err(format!("line {}: no input `{name}`", row.line));

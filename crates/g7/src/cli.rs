@@ -173,7 +173,7 @@ pub(crate) struct Run {
     /// Write the values of all signals to this file; its name ends in .csv or .vcd.
     #[arg(long, value_name = "FILE")]
     pub(crate) trace: Option<PathBuf>,
-    /// Set an input (or a state of the plant) at a time: `start=1@2s`.
+    /// Set an input, a variable, a system bit (`%S21`) or a state of the plant at a time: `start=1@2s`.
     #[arg(long = "set", value_parser = values::assign, value_name = "NAME=VALUE@TIME")]
     pub(crate) set: Vec<Assign>,
     /// The profile to use instead of the file's own.

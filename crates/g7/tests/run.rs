@@ -164,6 +164,24 @@ fn a_driven_input_that_is_set_is_held_and_a_state_is_put() {
 }
 
 #[test]
+fn a_script_sets_the_system_bits_of_pl7() {
+    let folder = Folder::with(PINGPONG);
+    let args = ["run", "--headless", "--for", "40ms", "--trace", "out.csv", "--profile", "pl7"];
+    let bits = ["--set", "a=1@10ms", "--set", "a=0@30ms", "--set", "%S23=1@30ms", "--set", "%s21=1@40ms"];
+    folder.g7(&[&args[..], &bits].concat()).is(0);
+    let trace = folder.read("out.csv");
+    let lines: Vec<&str> = trace.lines().collect();
+    assert_eq!(lines[0], "time,a,m,n,%S0,%S21,%S22,%S23,X1,X2");
+    assert_eq!(lines[lines.len() - 2..], ["0.03,0,1,1,0,0,0,1,0,1", "0.04,0,0,1,0,0,0,1,1,0"]);
+    let refused = |set: &str, parts: &[&str]| {
+        folder.g7(&["run", "--headless", "--profile", "pl7", "--set", set]).is_refused(parts);
+    };
+    refused("%S24=1", &["nothing at `%S24` can be set", "`%S21`"]);
+    refused("%X2=1", &["`%X2` is the state of a step", "PRE sets"]);
+    folder.g7(&["run", "--headless", "--set", "%S21=1"]).is_refused(&["`%S21`", "`profile pl7`"]);
+}
+
+#[test]
 fn bad_scripts_are_refused_with_the_way_out() {
     let folder = Folder::with(PINGPONG);
     folder.g7(&["run", "--headless", "--set", "b=1"]).is_refused(&["no `b`"]);

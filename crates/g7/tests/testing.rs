@@ -167,6 +167,44 @@ fn a_plant_drives_is_set_and_is_asked() {
 }
 
 #[test]
+fn the_terminal_sets_system_bits_that_no_code_names() {
+    let chart = "profile pl7\ninput a : BOOL at %I0.1\nvar n : INT\nchart G {\n  initial step 1\n  step 2 { P1 n := n + 1 }\n  \
+                 step 3\n  1 -> 2 when a\n  2 -> 3 when a\n}\n";
+    let tests = [
+        "set a := TRUE  expect X2  set %S21 := TRUE  expect X2, n = 2, not %S21  set %I0.1 := FALSE, %S21 := TRUE  expect X1",
+        "set %S22 := TRUE  expect not X1, not %S22  set a := TRUE  expect not X2  pulse %S21  expect X2 or X3",
+        "force %S23 := TRUE  set %I0.1 := TRUE  expect X1, %S23  release %S23  expect X1  set %S23 := FALSE  expect X2",
+        "set a := TRUE  set a := FALSE, %S0 := TRUE  expect X1, not %S0",
+    ];
+    for test in tests {
+        let folder = Folder::with(&format!("{chart}test \"t\" {{ {test} }}"));
+        let ran = folder.g7(&["test"]);
+        assert!(ran.is(0).out.ends_with(", 0 failed\n"), "{test}: {}", ran.out);
+    }
+    for (set, parts) in [
+        ("%X2 := TRUE", ["`%X2` is the state of a step", "PRE sets and resets steps"]),
+        ("%S24 := TRUE", ["nothing at `%S24` can be set", "`%S0`, `%S21`, `%S22`, `%S23`"]),
+        ("%S1 := TRUE", ["`%S1` is kept by the system", "it can be read, not set"]),
+    ] {
+        let folder = Folder::with(&format!("{chart}test \"t\" {{ set {set} }}"));
+        let ran = folder.g7(&["test"]);
+        ran.is(1);
+        assert!(parts.iter().all(|p| ran.err.contains(p)), "{set}: {}", ran.err);
+    }
+}
+
+#[test]
+fn instruction_list_sets_and_resets_steps_in_pre() {
+    let folder = Folder::with(
+        "profile pl7\ninput s, r : BOOL\npre il {\n  LD s\n  S %X2\n  LD r\n  R %X1\n}\n\
+         chart G {\n  initial step 1\n  step 2\n}\n\
+         test \"t\" { expect X1, not X2  set s := TRUE  expect X1, X2  set s := FALSE, r := TRUE  expect not X1, X2 }",
+    );
+    let ran = folder.g7(&["test"]);
+    assert!(ran.is(0).out.ends_with(", 0 failed\n"), "{}", ran.out);
+}
+
+#[test]
 fn a_condition_may_join_charts_and_plant_by_and_alone() {
     passes(&format!(
         "{PLANT}\ntest \"t\" with P {{\n  expect m and level < 1.0\n  wait until ((level > 0.5) · X2) and n = 1\n  \

@@ -1,6 +1,6 @@
 //! Scenario tests and properties.
 
-use crate::{Expr, Name, Nanos, Path, Place};
+use crate::{Expr, Name, Nanos, Place};
 
 /// `test "stops after five bottles" with Belt seed 3 { … }`.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -29,10 +29,11 @@ pub struct TestStmt {
 /// The statements of a test.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum TestStmtKind {
-    /// `set a := TRUE, n := 3`: inputs, or states of the plant.
-    Set(Vec<(Path, Expr)>),
+    /// `set a := TRUE, %S21 := TRUE`: inputs, variables, system bits, or states of the plant;
+    /// each a `Path` or `Direct` expression, here and below.
+    Set(Vec<(Expr, Expr)>),
     /// `pulse a for 1s`: true for one scan, or for the time, then false for one scan.
-    Pulse(Path, Option<Nanos>),
+    Pulse(Expr, Option<Nanos>),
     /// `wait 1s`.
     Wait(Nanos),
     /// `wait until e within 5s`; 10 s when absent.
@@ -46,9 +47,9 @@ pub enum TestStmtKind {
     /// `always e { … }`: holds at the end of each scan of the block.
     Always(Vec<Expr>, Vec<TestStmt>),
     /// `force motor := FALSE`.
-    Force(Path, Expr),
+    Force(Expr, Expr),
     /// `release motor`.
-    Release(Path),
+    Release(Expr),
     /// `restart`: warm (retained variables kept), or `restart cold`.
     Restart {
         /// Retained variables take their initial values too.

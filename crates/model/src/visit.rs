@@ -247,14 +247,14 @@ pub trait Visitor<'d> {
     fn test(&mut self, s: &'d TestStmt) {
         match &s.kind {
             TestStmtKind::Set(list) => {
-                for (path, e) in list {
-                    self.path(&path.names);
+                for (target, e) in list {
+                    self.expr(target);
                     self.expr(e);
                 }
             }
-            TestStmtKind::Pulse(path, _) | TestStmtKind::Release(path) => self.path(&path.names),
-            TestStmtKind::Force(path, e) => {
-                self.path(&path.names);
+            TestStmtKind::Pulse(target, _) | TestStmtKind::Release(target) => self.expr(target),
+            TestStmtKind::Force(target, e) => {
+                self.expr(target);
                 self.expr(e);
             }
             TestStmtKind::WaitUntil(e, _) => self.expr(e),

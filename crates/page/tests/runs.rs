@@ -47,6 +47,24 @@ fn a_run_begins_with_its_initial_situation() {
 }
 
 #[test]
+fn the_page_sets_the_system_bits_of_pl7() {
+    let (mut page, start) = started(&format!("profile pl7\n{CHART}"));
+    let names: Vec<&str> =
+        start["signals"].as_array().expect("signals").iter().filter_map(|s| s["name"].as_str()).collect();
+    assert_eq!(names, ["a", "b", "q", "n", "%S0", "%S21", "%S22", "%S23"]);
+    assert_eq!(start["signals"][5]["role"], "variable");
+    page.ok(json!({ "do": "run_toggle", "run": "r", "signal": A }));
+    assert_eq!(advance(&mut page, 10)["on"], json!([1]));
+    page.ok(json!({ "do": "run_toggle", "run": "r", "signal": A }));
+    let asked = page.ok(json!({ "do": "run_toggle", "run": "r", "signal": 5 }));
+    assert_eq!(value(&asked, 5), Some("TRUE"));
+    let done = advance(&mut page, 10);
+    assert_eq!((&done["on"], &done["off"], value(&done, 5)), (&json!([0]), &json!([1]), Some("FALSE")));
+    page.ok(json!({ "do": "run_set", "run": "r", "signal": 6, "value": "TRUE" }));
+    assert_eq!(advance(&mut page, 10)["off"], json!([0]));
+}
+
+#[test]
 fn a_frame_says_only_what_changed() {
     let (mut page, _) = started(CHART);
     let still = advance(&mut page, 100);

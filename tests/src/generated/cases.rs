@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use g7_model::ProfileName;
 
 use super::Subject;
-use crate::case;
+use crate::case::{self, Line};
 use crate::generate::sample;
 
 /// A folder for a test; it is deleted at the end, unless `G7_KEEP` is set.
@@ -65,7 +65,10 @@ fn add(subjects: &mut Vec<Subject>, file: &Path, title: &str) -> Result<(), Stri
     let case = case::read(&text)?;
     let folder = title.split('/').next().unwrap_or("");
     let doc = case::document(&case.chart)?;
-    for trace in &case.traces {
+    // Printed code has no terminal that sets a system bit.
+    let terminal =
+        |line: &Line| matches!(line, Line::Row(r) if r.inputs.iter().any(|i| i.0.starts_with('%')));
+    for trace in case.traces.iter().filter(|t| !t.lines.iter().any(terminal)) {
         let own = doc.profile().map(|p| p.name);
         let of_folder = || case::profile_named(folder).ok();
         let profile = trace.profile.or_else(of_folder).or(own).unwrap_or_default();

@@ -105,6 +105,11 @@ impl Naive {
 
     fn read(&mut self, inputs: &BTreeMap<String, Value>) -> Run<()> {
         for (name, value) in inputs {
+            if let Some(bit) = name.strip_prefix('%') {
+                let model = std::rc::Rc::clone(&self.model);
+                self.state.set_system(&model, bit, value.clone());
+                continue;
+            }
             let found = self.model.vars.iter().position(|v| v.qualified == *name && v.kind == VarKind::Input);
             let Some(id) = found else { return bad(format!("no input {name}")) };
             let value = Typed { ty: None, v: value.clone() }.to(self.model.vars[id].ty)?;

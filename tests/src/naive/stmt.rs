@@ -172,6 +172,12 @@ impl Exec<'_> {
                 let Value::Fb(f) = &mut self.s.vars[v] else { return bad("a member of no block") };
                 set_member(f, &member, value)
             }
+            // `%X12 := TRUE` of PRE.
+            Some(Ref::Active(step)) => {
+                let set = value.to(Type::Bool)? == Value::Bool(true);
+                self.s.requests.push(if set { Request::Set(step) } else { Request::Reset(step) });
+                Ok(())
+            }
             _ => bad("an assignment to nothing"),
         }
     }

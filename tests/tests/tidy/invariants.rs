@@ -45,7 +45,7 @@ fn profiles_are_told_apart_where_rules_are_chosen() {
     let places = [
         "model/src/chart.rs",
         "compile/src/resolve/rules.rs",
-        // `.x` of JGrafchart; plants run as `iec61131`.
+        // `.x` of JGrafchart and Unity; plants run as `iec61131`.
         "compile/src/resolve/refer.rs",
         "compile/src/plant/program.rs",
         // Readers choose the profile of what they read, writers ask for the one they can write.

@@ -128,7 +128,10 @@ impl<'d> Resolver<'_, 'd> {
 
     fn fill_processing(&mut self, chart: Option<ChartId>, body: &WrittenBody, at: Span, pre: bool) {
         let name = self.qualified(chart, if pre { "pre" } else { "post" });
-        let statements = self.in_chart(chart, |r| r.body(body, &name));
+        let statements = self.in_chart(chart, |r| {
+            r.frame.pre = pre;
+            r.body(body, &name)
+        });
         let body = Body { name, chart, statements, at };
         if pre { self.unit.pre.push(body) } else { self.unit.post.push(body) }
     }

@@ -29,6 +29,7 @@ mod rules;
 mod scopes;
 mod standard;
 mod stmt;
+mod system;
 #[cfg(test)]
 mod tests;
 mod trace;
@@ -41,6 +42,7 @@ use crate::ir::{ChartId, Expr, Unit};
 use resolver::{Frame, Resolver, Role};
 pub use rules::{of_profile, with_switch};
 pub use scopes::Scopes;
+pub use system::{kept_by_system, set_by_terminal, terminal};
 pub(crate) use trace::Tracer;
 
 /// Nominal scan time where none is written: 10 ms.

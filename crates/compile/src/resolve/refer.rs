@@ -186,12 +186,12 @@ impl Resolver<'_, '_> {
         }
     }
 
-    /// `.X`, `.T`, `.t`; in `jgrafchart` also `.x` and `.s`.
+    /// `.X`, `.T`, `.t`; in `jgrafchart` and `unity` also `.x`, in `jgrafchart` `.s`.
     pub(super) fn of_step(&self, step: StepId, name: &str, bare: bool) -> Option<Ref> {
-        let jgrafchart = self.unit.profile == ProfileName::Jgrafchart;
+        let small = matches!(self.unit.profile, ProfileName::Jgrafchart | ProfileName::Unity);
         match name {
             "X" if bare => Some(Ref::Active(step)),
-            "x" if bare && jgrafchart => Some(Ref::Active(step)),
+            "x" if bare && small => Some(Ref::Active(step)),
             "T" | "t" => Some(Ref::Time(step, Unit::Clock)),
             "s" if self.unit.rules.scan_clock => Some(Ref::Time(step, Unit::Seconds)),
             _ => None,
@@ -356,10 +356,10 @@ impl Resolver<'_, '_> {
         if let Some(v) = self.scopes.addresses.get(&normal_address(text)) {
             return Some(Ref::Var(*v));
         }
-        if let Some(rest) = text.strip_prefix('X') {
-            return self.direct_step(text, rest, at);
+        if text.starts_with('X') {
+            return self.direct_step(text, at);
         }
-        if let Some(ty) = system_type(text) {
+        if let Some(ty) = super::system::type_of(text) {
             return Some(Ref::Var(self.system(text, ty, at)));
         }
         let problem = Problem::new(&codes::UNKNOWN_DIRECT, at, format!("nothing is declared at `%{text}`"));
@@ -379,12 +379,23 @@ impl Resolver<'_, '_> {
     }
 
     /// `%X12`, `%XM3`, `%X3.12`, `%X3.IN`, `%X3.OUT`, and `.T` behind these.
-    fn direct_step(&mut self, text: &str, rest: &str, at: Span) -> Option<Ref> {
+    fn direct_step(&mut self, text: &str, at: Span) -> Option<Ref> {
+        self.known_direct_step(text).or_else(|| {
+            let problem = Problem::new(&codes::UNKNOWN_STEP, at, format!("there is no step `%{text}`"));
+            self.report(problem.help(
+                "`%X12` is step 12 of the first chart, `%X3.12` step 12 of the expansion of macro-step 3",
+            ))
+        })
+    }
+
+    /// The same, of a name that may be that of no step.
+    pub(super) fn known_direct_step(&self, text: &str) -> Option<Ref> {
+        let rest = text.strip_prefix('X')?;
         let (name, tenths) = match rest.strip_suffix(".T") {
             Some(n) => (n, true),
             None => (rest, false),
         };
-        let found = match name.split_once('.') {
+        let step = match name.split_once('.') {
             Some((outer, inner)) => self.macro_numbered(outer).and_then(|c| {
                 let chart = self.unit.charts.get(c.index())?;
                 match inner {
@@ -397,17 +408,8 @@ impl Resolver<'_, '_> {
                 Some(number) => self.macro_step(number),
                 None => self.first_chart().and_then(|c| self.scopes.step(c, name)),
             },
-        };
-        match found {
-            Some(s) if tenths => Some(Ref::Time(s, Unit::Tenths)),
-            Some(s) => Some(Ref::Active(s)),
-            None => {
-                let problem = Problem::new(&codes::UNKNOWN_STEP, at, format!("there is no step `%{text}`"));
-                self.report(problem.help(
-                    "`%X12` is step 12 of the first chart, `%X3.12` step 12 of the expansion of macro-step 3",
-                ))
-            }
-        }
+        }?;
+        Some(if tenths { Ref::Time(step, Unit::Tenths) } else { Ref::Active(step) })
     }
 
     pub(super) fn first_chart(&self) -> Option<ChartId> {
@@ -479,15 +481,4 @@ fn without_macron(c: char) -> Option<char> {
         ('ǣ', 'æ'),
     ];
     LETTERS.iter().find(|(with, _)| *with == c).map(|(_, base)| *base)
-}
-
-/// The type of a system bit or word (SEMANTICS section 6).
-fn system_type(text: &str) -> Option<Type> {
-    match text {
-        "S0" | "S1" | "S21" | "S22" | "S23" | "S24" | "S25" => Some(Type::Bool),
-        "SW20" | "SW21" => Some(Type::Int),
-        // Masks of macro-steps use all sixteen bits.
-        "SW22" | "SW23" | "SW24" | "SW25" => Some(Type::Uint),
-        _ => None,
-    }
 }

@@ -40,6 +40,8 @@ pub(super) struct Frame {
     pub(super) loops: u32,
     /// True inside the operand of an edge or a timer, which is evaluated outside of any body.
     pub(super) watched: bool,
+    /// True in PRE.
+    pub(super) pre: bool,
 }
 
 /// Resolves one document, or a question on one.

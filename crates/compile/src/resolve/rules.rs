@@ -16,6 +16,15 @@ pub fn of_profile(name: ProfileName) -> Rules {
     }
 }
 
+/// The system bits and words that a user sets beside the program, by the terminal of the PLC
+/// (PL7 reference manual, system bits): those of `pl7`, upper case without `%`.
+pub(super) fn of_terminal(name: ProfileName) -> &'static [&'static str] {
+    match name {
+        ProfileName::Pl7 => &["S0", "S21", "S22", "S23", "S24", "SW22", "SW23", "SW24", "SW25"],
+        ProfileName::Iec60848 | ProfileName::Iec61131 | ProfileName::Unity | ProfileName::Jgrafchart => &[],
+    }
+}
+
 /// The rules of the document's profile with its switches. Another profile replaces it together with
 /// its switches.
 pub(super) fn of_document(

@@ -108,11 +108,44 @@ impl Resolver<'_, '_> {
     }
 
     fn assignment(&mut self, target: &Written, value: &Written) -> Option<StmtKind> {
+        if let Some(step) = self.step_bit(target) {
+            return self.preset(step, target.at.0, value);
+        }
         match self.target(target) {
             Some((target, ty)) => Some(StmtKind::Assign(target, self.value(value, ty)?)),
             None => {
                 let _ = self.infer(value, None);
                 None
+            }
+        }
+    }
+
+    /// The step of `%X12` where PRE writes it.
+    fn step_bit(&mut self, target: &Written) -> Option<crate::ir::StepId> {
+        match &target.kind {
+            Form::Direct(text) if self.frame.pre => match self.known_direct_step(text)? {
+                Ref::Active(step) => Some(step),
+                _ => None,
+            },
+            _ => None,
+        }
+    }
+
+    /// `%X12 := TRUE` and `%X12 := FALSE` of PRE, as PL7 presets a chart: SET and RESET of a
+    /// step bit, and no other assignment (PL7 reference manual, preliminary processing).
+    fn preset(&mut self, step: crate::ir::StepId, at: Span, value: &Written) -> Option<StmtKind> {
+        let value = self.value(value, Type::Bool)?;
+        let refused = |what: &str| Problem::new(&codes::NOT_WRITABLE, at, what);
+        if self.expansion(step).is_some() {
+            let problem = refused("the activity of a macro-step cannot be assigned");
+            return self.report(problem.help("set a step of its expansion, as in `%X3.IN := TRUE`"));
+        }
+        match value.kind {
+            ExprKind::Const(Value::Bool(true)) => Some(StmtKind::Service(Service::SetStep(step))),
+            ExprKind::Const(Value::Bool(false)) => Some(StmtKind::Service(Service::ResetStep(step))),
+            _ => {
+                let problem = refused("a step is set or reset, it does not follow a value");
+                self.report(problem.help("write `IF … THEN %X12 := TRUE END_IF`"))
             }
         }
     }
@@ -312,7 +345,9 @@ impl Resolver<'_, '_> {
             Ref::Active(_) | Ref::Time(..) => {
                 let problem =
                     Problem::new(&codes::NOT_WRITABLE, at, "the state of a step cannot be assigned");
-                self.report(problem.help("transitions, forcing orders and SETSTEP change it"))
+                self.report(problem.help(
+                    "transitions, forcing orders and SETSTEP change it, and in PRE `%X12 := TRUE` or `FALSE`",
+                ))
             }
         }
     }
@@ -325,7 +360,7 @@ impl Resolver<'_, '_> {
         match class {
             VarClass::Input => return self.report(refused("an input").related(declared, "declared here")),
             VarClass::Const => return self.report(refused("a constant").related(declared, "declared here")),
-            VarClass::System if read_only(&name) => {
+            VarClass::System if super::system::kept_by_system(&name) => {
                 return self.report(refused("kept by the system"));
             }
             VarClass::Output | VarClass::Internal | VarClass::Local | VarClass::System => {}
@@ -451,9 +486,4 @@ impl Resolver<'_, '_> {
         let what = "a step is needed here";
         self.report(Problem::new(&codes::WRONG_ARGUMENTS, at, what).help("write its activity, as in `G.X12`"))
     }
-}
-
-/// Only the system writes `%S1` and the counts.
-fn read_only(system: &str) -> bool {
-    matches!(system, "%S1" | "%SW20" | "%SW21")
 }

@@ -184,11 +184,12 @@ fn forcing_orders_stand_behind_those_that_force_their_own_chart() {
     );
     let t = c.tables();
     let orders: Vec<(&str, u32)> = t.orders.iter().map(|o| (c.symbols.step_name(o.step), o.chart)).collect();
-    // All orders on B before those on C, which B forces; then by their steps.
-    assert_eq!(orders, [("1", 1), ("2", 1), ("3", 0), ("1", 0)]);
+    // All orders on B before those on C, which B forces; then the present situation before the
+    // named ones; then by their steps.
+    assert_eq!(orders, [("1", 1), ("2", 1), ("1", 0), ("3", 0)]);
     let first = c.extra("1").orders;
     assert_eq!((first.start, first.end), (0, 1), "one row stands for the orders of a step");
-    assert_eq!(t.orders[3].situation, Situation::Current);
+    assert_eq!(t.orders[2].situation, Situation::Current);
     let Situation::Steps(rows) = t.orders[0].situation else { panic!("steps") };
     assert_eq!(t.arcs[rows.start as usize..rows.end as usize], [c.step("3")], "INIT of B");
     let Situation::Steps(rows) = t.orders[1].situation else { panic!("steps") };

@@ -88,8 +88,7 @@ fn script<'b>(bench: &'b Bench, args: &Run) -> Result<Vec<(i64, &'b Item, Value)
     let mut script = Vec::new();
     for assign in &args.set {
         let Some(item) = bench.item(&assign.name) else {
-            let near = bench.suggestions(&assign.name);
-            return Err(Failure::Usage(format!("--set: there is no `{}`{near}", assign.name)));
+            return Err(Failure::Usage(format!("--set: {}", bench.unknown(&assign.name))));
         };
         let value = values::read(&assign.value, item.kind)
             .map_err(|e| Failure::Usage(format!("--set {}: {e}", assign.name)))?;

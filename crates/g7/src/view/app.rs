@@ -94,8 +94,7 @@ impl<'b> App<'b> {
         script.sort_by_key(|a| std::cmp::Reverse(a.at));
         for assign in &script {
             let Some(item) = bench.item(&assign.name) else {
-                let near = bench.suggestions(&assign.name);
-                return Err(Failure::Usage(format!("--set: there is no `{}`{near}", assign.name)));
+                return Err(Failure::Usage(format!("--set: {}", bench.unknown(&assign.name))));
             };
             values::read(&assign.value, item.kind)
                 .map_err(|e| Failure::Usage(format!("--set {}: {e}", assign.name)))?;

@@ -143,6 +143,25 @@ fn lists_are_gone_through_and_changed() {
 }
 
 #[test]
+fn the_terminal_has_the_system_bits_of_pl7() {
+    let bench =
+        bench("profile pl7\ninput a : BOOL\nchart G {\n  initial step 1\n  step 2\n  1 -> 2 when a\n}\n");
+    let mut app = app(&bench, &[]);
+    press(&mut app, ".1.1");
+    shows(&mut app, "■ 2");
+    shows(&mut app, "○ %S21");
+    // Behind the inputs stand the variables: %S0 comes first, %S21 second.
+    press(&mut app, "\t");
+    app.select(1);
+    press(&mut app, "\n");
+    shows(&mut app, "● %S21");
+    shows(&mut app, "■ 2");
+    press(&mut app, ".");
+    shows(&mut app, "■ 1");
+    shows(&mut app, "○ %S21");
+}
+
+#[test]
 fn a_restart_keeps_what_is_retained_and_a_cold_one_nothing() {
     let bench = bench(CHART);
     let mut app = app(&bench, &[]);

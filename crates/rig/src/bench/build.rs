@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use g7_compile::Compiled;
 use g7_compile::ir::VarClass;
 use g7_compile::plant::{self, Link};
+use g7_compile::resolve::set_by_terminal;
 use g7_compile::symbols::{Symbols, Variable};
 use g7_engine::{Code, StepId};
 use g7_host::{Coupling, Kind};
@@ -34,7 +35,12 @@ pub fn build(source: &Source, options: &Options<'_>) -> Result<(Option<Bench>, V
     let asks = |of_plant| -> Vec<Expr> {
         options.asks.iter().filter(|a| a.of_plant == of_plant).map(|a| a.expr.clone()).collect()
     };
-    let (charts, found) = g7_compile::compile_with(&source.document, options.profile, &asks(false));
+    // The bench is the terminal too: what that sets is there, whether the text names it or not,
+    // and before all that the questions name, so that the items are the same for any questions.
+    let mut of_charts = g7_compile::resolve::terminal(&source.document, options.profile);
+    let own = of_charts.len();
+    of_charts.extend(asks(false));
+    let (charts, found) = g7_compile::compile_with(&source.document, options.profile, &of_charts);
     problems.extend(found);
     let Some(charts) = charts else { return Ok((None, problems)) };
     let mut items = Vec::new();
@@ -47,7 +53,8 @@ pub fn build(source: &Source, options: &Options<'_>) -> Result<(Option<Bench>, V
         states(&made.compiled.symbols, &mut items);
         side = Some(made);
     }
-    let answers = answers(options.asks, &charts, side.as_ref());
+    system_bits(&charts.symbols, &mut items);
+    let answers = answers(options.asks, &charts, own, side.as_ref());
     let steps = steps(&source.document, &charts.symbols);
     let period = options.scan.unwrap_or(charts.symbols.cycle).max(Nanos::new(1));
     Ok((Some(Bench { items, steps, plant: side, period, answers, compiled: charts }), problems))
@@ -86,12 +93,12 @@ fn words(links: &[Link], outputs: u32, inputs: u32) -> Vec<(u32, u32)> {
     links.iter().flat_map(|link| (0..link.words).map(move |k| pair(link, k))).collect()
 }
 
-/// The compiled expressions, in the order of `asks`.
-fn answers(asks: &[Ask], charts: &Compiled, plant: Option<&PlantSide>) -> Vec<Answer> {
+/// The compiled expressions, in the order of `asks`; those of the charts stand behind `own` others.
+fn answers(asks: &[Ask], charts: &Compiled, own: usize, plant: Option<&PlantSide>) -> Vec<Answer> {
     let of = |queries: &[Code], c: &Compiled| -> Vec<(Code, Type)> {
         queries.iter().copied().zip(c.query_types.iter().copied()).collect()
     };
-    let mut of_charts = of(&charts.queries, charts).into_iter();
+    let mut of_charts = of(&charts.queries, charts).into_iter().skip(own);
     let mut of_plant = plant.map(|p| of(&p.queries, &p.compiled)).unwrap_or_default().into_iter();
     let answer = |ask: &Ask| {
         let (code, ty) = if ask.of_plant { of_plant.next() } else { of_charts.next() }?;
@@ -162,6 +169,12 @@ fn variables(charts: &Compiled, items: &mut Vec<Item>) {
         };
         push(v, role, items);
     }
+}
+
+/// The system bits and words that a terminal sets.
+fn system_bits(symbols: &Symbols, items: &mut Vec<Item>) {
+    let system = |v: &&Variable| v.class == VarClass::System && set_by_terminal(&v.name);
+    symbols.variables.iter().filter(system).for_each(|v| push(v, Role::Variable, items));
 }
 
 /// The states of the plant. Variables that it shares with the charts are listed among the charts'

@@ -8,6 +8,7 @@ use std::collections::BTreeSet;
 use std::ops::Range;
 
 use g7_compile::plant;
+use g7_compile::resolve::kept_by_system;
 use g7_engine::{Addr, GroupId, State, StepId};
 use g7_host::{
     Coupling, Force, Halt, Kind, Recording, Runner, Signal, Value, format_time, read_text, write_text,
@@ -25,7 +26,7 @@ pub enum Role {
     Input(u32),
     /// An output of the charts.
     Output,
-    /// Any other variable of the charts.
+    /// Any other variable of the charts, and the system bits that a terminal sets.
     Variable,
     /// A state of the plant.
     Plant,
@@ -153,11 +154,64 @@ impl Bench {
         self.items.iter().filter(|i| i.retain.is_some())
     }
 
-    /// The value with this name.
+    /// The value with this name, or at this direct name (`%S21`).
     pub fn item(&self, name: &str) -> Option<&Item> {
+        if let Some(direct) = name.strip_prefix('%') {
+            return self.item_at(direct);
+        }
         let plain = |i: &&Item| i.name == name;
         let cased = |i: &&Item| i.name.eq_ignore_ascii_case(name);
         self.items.iter().find(plain).or_else(|| self.items.iter().find(cased))
+    }
+
+    /// The value at a direct name, without `%`: a system bit, or the variable that
+    /// is declared at this address.
+    fn item_at(&self, direct: &str) -> Option<&Item> {
+        let at = |v: &&g7_compile::symbols::Variable| {
+            v.address.as_deref().is_some_and(|a| a.trim_start_matches('%').eq_ignore_ascii_case(direct))
+        };
+        let declared = self.compiled.symbols.variables.iter().find(at);
+        let name =
+            declared.map_or_else(|| format!("%{}", direct.to_ascii_uppercase()), |v| v.name.to_string());
+        self.items.iter().find(|i| i.role != Role::Plant && i.name == name)
+    }
+
+    /// Why nothing of this name can be set, and what can be done instead or names that come
+    /// near (empty where there are none).
+    pub fn no_item(&self, name: &str) -> (String, String) {
+        let near = self.suggestions(name).trim_start_matches("; ").to_owned();
+        match name.strip_prefix('%') {
+            Some(_) if kept_by_system(&name.to_ascii_uppercase()) => {
+                (format!("`{name}` is kept by the system: it can be read, not set"), near)
+            }
+            Some(rest) if rest.starts_with(['X', 'x']) => {
+                let help = "PRE sets and resets steps (`%X12 := TRUE`); the terminal has the system bits";
+                (format!("`{name}` is the state of a step: it cannot be set"), help.to_owned())
+            }
+            Some(_) => {
+                let bits: Vec<String> = self
+                    .items
+                    .iter()
+                    .filter(|i| i.name.starts_with('%'))
+                    .map(|i| format!("`{}`", i.name))
+                    .collect();
+                let help = match bits.join(", ") {
+                    none if none.is_empty() => "the system bits are those of `profile pl7`".to_owned(),
+                    bits => format!("there are {bits}"),
+                };
+                (format!("nothing at `{name}` can be set"), help)
+            }
+            None => (format!("nothing named `{name}` can be set"), near),
+        }
+    }
+
+    /// A sentence that refuses an unknown name.
+    pub fn unknown(&self, name: &str) -> String {
+        if !name.starts_with('%') {
+            return format!("there is no `{name}`{}", self.suggestions(name));
+        }
+        let (what, help) = self.no_item(name);
+        if help.is_empty() { what } else { format!("{what}; {help}") }
     }
 
     /// Suggests names similar to an unknown name, for a message.

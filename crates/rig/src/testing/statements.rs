@@ -100,7 +100,7 @@ impl Planner<'_> {
     fn does(&mut self, s: &TestStmt) -> Does {
         match &s.kind {
             TestStmtKind::Set(list) => Does::Set(list.iter().filter_map(|(p, e)| self.put(p, e)).collect()),
-            TestStmtKind::Pulse(path, time) => self.pulse(path, *time),
+            TestStmtKind::Pulse(target, time) => self.pulse(target, *time),
             TestStmtKind::Wait(time) => Does::Wait(*time),
             TestStmtKind::WaitUntil(e, within) => Does::WaitUntil(self.check(e), within.unwrap_or(PATIENCE)),
             TestStmtKind::Scan(n) => Does::Scan(*n),
@@ -109,29 +109,29 @@ impl Planner<'_> {
             TestStmtKind::Always(list, body) => {
                 Does::Always(list.iter().map(|e| self.check(e)).collect(), self.lines(body))
             }
-            TestStmtKind::Force(path, e) => {
-                let item = self.item(path, true);
+            TestStmtKind::Force(target, e) => {
+                let item = self.item(target, true);
                 match item.and_then(|item| Some((item, self.ask(e)?))) {
                     Some((item, ask)) => Does::Force(item, ask),
                     None => Does::Nothing,
                 }
             }
-            TestStmtKind::Release(path) => self.item(path, true).map_or(Does::Nothing, Does::Release),
+            TestStmtKind::Release(target) => self.item(target, true).map_or(Does::Nothing, Does::Release),
             TestStmtKind::Restart { cold } => Does::Restart { cold: *cold },
             TestStmtKind::Repeat(n, body) => Does::Repeat(*n, self.lines(body)),
             TestStmtKind::Comment(_) => Does::Nothing,
         }
     }
 
-    fn put(&mut self, path: &Path, e: &Expr) -> Option<(ItemId, AskId)> {
-        let item = self.item(path, false)?;
+    fn put(&mut self, target: &Expr, e: &Expr) -> Option<(ItemId, AskId)> {
+        let item = self.item(target, false)?;
         Some((item, self.ask(e)?))
     }
 
-    fn pulse(&mut self, path: &Path, time: Option<Nanos>) -> Does {
-        let Some(item) = self.item(path, false) else { return Does::Nothing };
+    fn pulse(&mut self, target: &Expr, time: Option<Nanos>) -> Does {
+        let Some(item) = self.item(target, false) else { return Does::Nothing };
         if self.bench.items.get(item).is_some_and(|i| i.ty != Type::Bool) {
-            self.wrong(path, format!("`{}` is not a BOOL, so it cannot be pulsed", path.text()), None);
+            self.wrong(target, format!("`{}` is not a BOOL, so it cannot be pulsed", written(target)), None);
         }
         Does::Pulse(item, time)
     }
@@ -146,27 +146,36 @@ impl Planner<'_> {
         Does::ExpectFault(name.map(|n| n.text.to_string()))
     }
 
-    /// Finds the item that a path names; reports a problem if it cannot be set (or, with `hold`,
+    /// Finds the item that a name means; reports a problem if it cannot be set (or, with `hold`,
     /// forced).
-    fn item(&mut self, path: &Path, hold: bool) -> Option<ItemId> {
-        let name = path.text();
-        let Some(at) = self.bench.items.iter().position(|i| i.name == name) else {
-            let near = self.bench.suggestions(&name);
-            self.wrong(path, format!("nothing named `{name}` can be set"), Some(near));
+    fn item(&mut self, target: &Expr, hold: bool) -> Option<ItemId> {
+        let name = written(target);
+        let found = match &target.kind {
+            ExprKind::Direct(_) => self.bench.item(&name).map(|i| i.name.as_str()),
+            _ => Some(name.as_str()),
+        };
+        let at = found.and_then(|name| self.bench.items.iter().position(|i| i.name == name));
+        let Some(at) = at else {
+            let (what, help) = self.bench.no_item(&name);
+            self.wrong(target, what, Some(help));
             return None;
         };
         let item = self.bench.items.get(at)?;
         match item.role {
             Role::Output if !hold => {
                 let help = format!("`force {name} := …` holds an output");
-                self.wrong(path, format!("`{name}` is an output: the charts set it"), Some(help));
+                self.wrong(target, format!("`{name}` is an output: the charts set it"), Some(help));
             }
             Role::Plant if hold => {
-                self.wrong(path, format!("`{name}` is a state of the plant: it can be set, not held"), None);
+                self.wrong(
+                    target,
+                    format!("`{name}` is a state of the plant: it can be set, not held"),
+                    None,
+                );
             }
             Role::Input(index) if !hold && self.is_driven(index) => {
                 let help = format!("`force {name} := …` holds it against the plant");
-                self.wrong(path, format!("`{name}` is driven by the plant"), Some(help));
+                self.wrong(target, format!("`{name}` is driven by the plant"), Some(help));
             }
             Role::Input(_) | Role::Output | Role::Variable | Role::Plant => {}
         }
@@ -178,10 +187,9 @@ impl Planner<'_> {
         plant.is_some_and(|p| p.coupling.to_charts.iter().any(|(_, to)| *to == index))
     }
 
-    fn wrong(&mut self, path: &Path, what: String, help: Option<String>) {
-        let at = path.names.first().zip(path.names.last()).map(|(a, b)| a.at.0.to(b.at.0));
-        let mut problem = Problem::new(&codes::TEST_NAME, at.unwrap_or_default(), what);
-        problem.help = help.map(|h| h.trim_start_matches("; ").to_owned()).filter(|h| !h.is_empty());
+    fn wrong(&mut self, target: &Expr, what: String, help: Option<String>) {
+        let mut problem = Problem::new(&codes::TEST_NAME, target.at.0, what);
+        problem.help = help.filter(|h| !h.is_empty());
         self.problems.push(problem);
     }
 
@@ -224,6 +232,15 @@ impl Planner<'_> {
                 mentions.push((name, self.asks.len() - 1));
             }
         }
+    }
+}
+
+/// The name that a statement sets, as it is written.
+fn written(target: &Expr) -> String {
+    match &target.kind {
+        ExprKind::Path(path) => path.text(),
+        ExprKind::Direct(text) => format!("%{text}"),
+        _ => String::new(),
     }
 }
 

@@ -5,8 +5,8 @@ use crate::lexer::Tok;
 use crate::words::St;
 use g7_iec::constant;
 use g7_model::{
-    Expr, Layout, Path, PlaceAt, Placed, Problem, Property, PropertyKind, Scenario, TestStmt, TestStmtKind,
-    codes, words,
+    Expr, ExprKind, Layout, PlaceAt, Placed, Problem, Property, PropertyKind, Scenario, TestStmt,
+    TestStmtKind, codes, words,
 };
 
 impl Parser<'_> {
@@ -86,9 +86,9 @@ impl Parser<'_> {
             "set" => self.set(),
             "pulse" => {
                 self.bump();
-                let path = self.path_or_empty("the name of an input");
+                let target = self.settable("the name of an input");
                 let time = self.eat_st(St::For).then(|| self.duration("a duration"));
-                TestStmtKind::Pulse(path, time)
+                TestStmtKind::Pulse(target, time)
             }
             "wait" => self.wait(),
             "scan" => {
@@ -105,12 +105,12 @@ impl Parser<'_> {
             }
             "force" => {
                 self.bump();
-                let (path, value) = self.path_and_value();
-                TestStmtKind::Force(path, value)
+                let (target, value) = self.target_and_value();
+                TestStmtKind::Force(target, value)
             }
             "release" => {
                 self.bump();
-                TestStmtKind::Release(self.path_or_empty("the name of a variable"))
+                TestStmtKind::Release(self.settable("the name of a variable"))
             }
             "restart" => {
                 self.bump();
@@ -125,17 +125,29 @@ impl Parser<'_> {
         })
     }
 
-    fn path_and_value(&mut self) -> (Path, Expr) {
-        let path = self.path_or_empty("the name of a variable");
+    /// A name, or a direct name such as `%S21`.
+    fn settable(&mut self, what: &str) -> Expr {
+        let start = self.cur.start;
+        let kind = if self.at(Tok::Direct) {
+            let token = self.bump();
+            ExprKind::Direct(self.direct_name(token))
+        } else {
+            ExprKind::Path(self.path_or_empty(what))
+        };
+        Expr { kind, at: self.since(start).into() }
+    }
+
+    fn target_and_value(&mut self) -> (Expr, Expr) {
+        let target = self.settable("the name of a variable");
         let value = if self.assign_sign() { self.expr() } else { self.bad() };
-        (path, value)
+        (target, value)
     }
 
     fn set(&mut self) -> TestStmtKind {
         self.bump();
-        let mut list = vec![self.path_and_value()];
+        let mut list = vec![self.target_and_value()];
         while self.eat(Tok::Comma) {
-            list.push(self.path_and_value());
+            list.push(self.target_and_value());
         }
         TestStmtKind::Set(list)
     }

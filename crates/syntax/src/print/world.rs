@@ -172,15 +172,15 @@ impl Printer<'_> {
     fn test_statement(&mut self, s: &TestStmt) {
         match &s.kind {
             TestStmtKind::Set(list) => {
-                for (i, (path, value)) in list.iter().enumerate() {
+                for (i, (target, value)) in list.iter().enumerate() {
                     self.push(if i > 0 { ", " } else { "set " });
-                    self.path(path);
+                    self.expr(target);
                     self.initial(Some(value));
                 }
             }
-            TestStmtKind::Pulse(path, time) => {
+            TestStmtKind::Pulse(target, time) => {
                 self.push("pulse ");
-                self.path(path);
+                self.expr(target);
                 self.time_clause("for", *time, s.at.0);
             }
             TestStmtKind::Wait(time) => self.time_clause("wait", Some(*time), s.at.0),
@@ -211,14 +211,14 @@ impl Printer<'_> {
                 self.push(" ");
                 self.test_block(s.at.0, body);
             }
-            TestStmtKind::Force(path, value) => {
+            TestStmtKind::Force(target, value) => {
                 self.push("force ");
-                self.path(path);
+                self.expr(target);
                 self.initial(Some(value));
             }
-            TestStmtKind::Release(path) => {
+            TestStmtKind::Release(target) => {
                 self.push("release ");
-                self.path(path);
+                self.expr(target);
             }
             TestStmtKind::Restart { cold } => self.push(if *cold { "restart cold" } else { "restart" }),
             TestStmtKind::Repeat(n, body) => {

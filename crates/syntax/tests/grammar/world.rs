@@ -152,7 +152,7 @@ fn tests() {
     assert_eq!(
         shown,
         [
-            "set a=true P.n=3",
+            "set a=true P|n=3",
             "pulse a None",
             "pulse b Some(1000000000)",
             "wait 1000000000",
@@ -181,18 +181,18 @@ fn test_line(s: &TestStmt) -> String {
     let body = |body: &[TestStmt]| body.iter().map(test_line).collect::<Vec<_>>().join("; ");
     match &s.kind {
         TestStmtKind::Set(l) => {
-            let l: Vec<_> = l.iter().map(|(p, e)| format!("{}={}", p.text(), tree(e))).collect();
+            let l: Vec<_> = l.iter().map(|(p, e)| format!("{}={}", tree(p), tree(e))).collect();
             format!("set {}", l.join(" "))
         }
-        TestStmtKind::Pulse(p, t) => format!("pulse {} {:?}", p.text(), t.map(Nanos::count)),
+        TestStmtKind::Pulse(p, t) => format!("pulse {} {:?}", tree(p), t.map(Nanos::count)),
         TestStmtKind::Wait(t) => format!("wait {}", t.count()),
         TestStmtKind::WaitUntil(e, t) => format!("until {} {:?}", tree(e), t.map(Nanos::count)),
         TestStmtKind::Scan(n) => format!("scan {n}"),
         TestStmtKind::Expect(l) => format!("expect {}", list(l)),
         TestStmtKind::ExpectFault(n) => format!("fault {:?}", n.as_ref().map(|n: &Name| n.text.to_string())),
         TestStmtKind::Always(l, b) => format!("always {} [{}]", list(l), body(b)),
-        TestStmtKind::Force(p, e) => format!("force {}={}", p.text(), tree(e)),
-        TestStmtKind::Release(p) => format!("release {}", p.text()),
+        TestStmtKind::Force(p, e) => format!("force {}={}", tree(p), tree(e)),
+        TestStmtKind::Release(p) => format!("release {}", tree(p)),
         TestStmtKind::Restart { cold } => format!("restart {cold}"),
         TestStmtKind::Repeat(n, b) => format!("repeat {n} [{}]", body(b)),
         TestStmtKind::Comment(c) => format!("{c:?}"),

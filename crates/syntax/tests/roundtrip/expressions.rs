@@ -180,13 +180,17 @@ fn small_expr() -> impl Strategy<Value = Expr> {
     expr()
 }
 
-pub(crate) fn simple_stmt() -> impl Strategy<Value = Stmt> {
-    let target = prop_oneof![
+/// What is assigned or set.
+pub(crate) fn target() -> impl Strategy<Value = Expr> {
+    prop_oneof![
         3 => path().prop_map(|p| of(ExprKind::Path(p))),
         1 => direct().prop_map(|d| of(ExprKind::Direct(d))),
-    ];
+    ]
+}
+
+pub(crate) fn simple_stmt() -> impl Strategy<Value = Stmt> {
     prop_oneof![
-        3 => (target, small_expr()).prop_map(|(target, value)| StmtKind::Assign { target, value }),
+        3 => (target(), small_expr()).prop_map(|(target, value)| StmtKind::Assign { target, value }),
         1 => (path(), args(small_expr())).prop_map(|(p, a)| StmtKind::Call(p, a)),
     ]
     .prop_map(|kind| Stmt { kind, at: at() })

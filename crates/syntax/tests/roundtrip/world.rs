@@ -1,7 +1,7 @@
 //! Random plants, tests, properties and layouts.
 
 use crate::charts::{at, comment, param};
-use crate::expressions::{block, duration, expr, name, path, text, ty};
+use crate::expressions::{block, duration, expr, name, target, text, ty};
 use g7_model::{
     Arrivals, Binding, Drive, Layout, Parts, PlaceAt, Placed, Plant, PlantItem, Property, PropertyKind, Rate,
     Scenario, StateVar, TestStmt, TestStmtKind, View,
@@ -63,15 +63,15 @@ pub(crate) fn plant() -> impl Strategy<Value = Plant> {
 fn test_stmt() -> impl Strategy<Value = TestStmt> {
     let list = || prop::collection::vec(expr(), 1..3);
     let leaf = prop_oneof![
-        prop::collection::vec((path(), expr()), 1..3).prop_map(TestStmtKind::Set),
-        (path(), prop::option::of(duration())).prop_map(|(p, t)| TestStmtKind::Pulse(p, t)),
+        prop::collection::vec((target(), expr()), 1..3).prop_map(TestStmtKind::Set),
+        (target(), prop::option::of(duration())).prop_map(|(p, t)| TestStmtKind::Pulse(p, t)),
         duration().prop_map(TestStmtKind::Wait),
         (expr(), prop::option::of(duration())).prop_map(|(e, t)| TestStmtKind::WaitUntil(e, t)),
         any::<u32>().prop_map(TestStmtKind::Scan),
         list().prop_map(TestStmtKind::Expect),
         prop::option::of(name()).prop_map(TestStmtKind::ExpectFault),
-        (path(), expr()).prop_map(|(p, e)| TestStmtKind::Force(p, e)),
-        path().prop_map(TestStmtKind::Release),
+        (target(), expr()).prop_map(|(p, e)| TestStmtKind::Force(p, e)),
+        target().prop_map(TestStmtKind::Release),
         any::<bool>().prop_map(|cold| TestStmtKind::Restart { cold }),
         text().prop_map(TestStmtKind::Comment),
     ];
