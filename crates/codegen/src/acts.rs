@@ -2,12 +2,14 @@
 
 use std::collections::BTreeMap;
 
-use g7_engine::{NONE, Num, Op};
+use g7_engine::{NONE, Num};
+use g7_model::Type;
 
 use crate::build::{Gen, memory, s, state};
 use crate::chart::call;
 use crate::facts::counts;
-use crate::flow::{Deferred, Flow};
+use crate::operations::differ;
+use crate::places::{own, own_set};
 use crate::tree::{Arm, Bin, Block, Expr, Field, Stmt, Struct, Ty};
 use crate::vars::{Home, Shape, Slot, members};
 
@@ -51,10 +53,10 @@ impl Gen<'_> {
         let mut written: BTreeMap<u32, Slot> = BTreeMap::new();
         for i in 0..t.actions.len() {
             let label = Expr::size(i);
-            let note = self.c.symbols.actions.get(i).map_or(String::new(), |a| self.text(a.at));
+            let note = self.action_note(i);
             if at_once.get(i) == Some(&true) {
                 let name = format!("action_{i}");
-                let body = self.action(i, None);
+                let body = self.action(i);
                 self.function(&name, &note, vec![state()], body);
                 let body = vec![Stmt::Do(Expr::call(name, vec![s()]))];
                 run.push(Arm { label: label.clone(), note: note.clone(), body });
@@ -62,7 +64,7 @@ impl Gen<'_> {
             if deferred.get(i) == Some(&true) {
                 let slots = self.written(i);
                 let name = format!("deferred_{i}");
-                let body = self.action(i, Some(&slots));
+                let body = self.action_apart(i, &slots);
                 self.function(&name, &note, vec![state()], body);
                 let body = vec![Stmt::Do(Expr::call(name, vec![s()]))];
                 defer.push(Arm { label: label.clone(), note: note.clone(), body });
@@ -79,53 +81,38 @@ impl Gen<'_> {
         self.waiting(&written);
     }
 
-    /// An action where its period is due and its condition holds.
-    fn action(&mut self, i: usize, deferred: Option<&BTreeMap<u32, Slot>>) -> Block {
-        let Some(a) = self.t.actions.get(i).copied() else { return Block::new() };
-        let (condition, fails) = self.condition(a.condition, &format!("condition_of_action_{i}"));
-        let mut flow = Flow::new(self, a.body, None);
-        if let Some(slots) = deferred {
-            let own = slots.values().map(|s| (s.start, format!("own_{}", s.field)));
-            flow.deferred = Some(Deferred { own: own.collect() });
-        }
-        let mut body = flow.body();
-        if let Some(slots) = deferred {
-            let sure: Vec<Sure> = slots.values().map(|s| make_direct(&mut body, s)).collect();
-            let each = || slots.values().zip(&sure);
-            let copies: Block = each().flat_map(|(s, sure)| own_copy(s, *sure)).collect();
-            let back: Block = each().flat_map(|(s, sure)| give_back(s, *sure != Sure::No)).collect();
-            body = [copies, body, back].concat();
-        }
-        let mut all = Block::new();
-        if fails {
-            let name = "holds".to_owned();
-            all.push(Stmt::Let { mutable: false, name: name.clone(), ty: Ty::Bool, value: condition });
-            let fine = s().field("fault").bin(Bin::Eq, Expr::size(0));
-            all.extend(Stmt::when(fine.and(Expr::Name(name)), body));
-        } else {
-            all.extend(Stmt::when(condition, body));
-        }
-        Stmt::when(self.due(a.period), all)
+    /// An action as it stands in the chart.
+    pub(crate) fn action_note(&self, i: usize) -> String {
+        self.c.symbols.actions.get(i).map_or(String::new(), |a| self.text(a.at))
+    }
+
+    /// The statements of an action, with its condition and its period.
+    fn action(&mut self, i: usize) -> Block {
+        self.at_action(i);
+        let list = self.bodies.action(i as u32);
+        self.statements(&list)
+    }
+
+    /// The same on copies of what it writes.
+    fn action_apart(&mut self, i: usize, slots: &BTreeMap<u32, Slot>) -> Block {
+        self.at_action(i);
+        let list = self.bodies.action_apart(i as u32);
+        let mut all: Block = slots.values().flat_map(own_instance).collect();
+        all.extend(self.statements(&list));
+        all
+    }
+
+    fn at_action(&mut self, i: usize) {
+        let body = self.t.actions.get(i).map_or(0, |a| a.body.start);
+        self.at = self.c.symbols.place(body);
     }
 
     /// The variables that an action writes, those that last.
     fn written(&mut self, i: usize) -> BTreeMap<u32, Slot> {
-        let mut all = BTreeMap::new();
-        let Some(a) = self.t.actions.get(i).copied() else { return all };
-        let code = self.t.code.get(a.body.start as usize..a.body.end as usize).unwrap_or(&[]);
-        for op in code {
-            let addr = match *op {
-                Op::Store(a) | Op::Random(a) => a,
-                Op::StoreAt { base, .. } | Op::Fb(_, base) => base,
-                Op::StoreText { to, .. } | Op::Text { to, .. } | Op::ToText { to, .. } => to,
-                _ => continue,
-            };
-            self.reveal(addr.0);
-            if let Some(slot) = self.vars.slot(addr.0).filter(|s| s.home != Home::Locals) {
-                all.insert(slot.start, slot.clone());
-            }
-        }
-        all
+        let Some(a) = self.t.actions.get(i).copied() else { return BTreeMap::new() };
+        let written = self.bodies.written(a.body);
+        let slots = written.into_iter().filter_map(|m| self.slot_of(m)).map(|(slot, _)| slot);
+        slots.filter(|s| s.home != Home::Locals).map(|s| (s.start, s)).collect()
     }
 
     /// Where writes wait, and the functions that make them.
@@ -150,7 +137,7 @@ impl Gen<'_> {
     fn events(&mut self) {
         let mut arms = Vec::new();
         for (i, e) in self.t.events.iter().enumerate() {
-            let (value, fails) = self.value(e.event, Num::Bool, &format!("event_{i}"));
+            let (value, fails) = self.value(e.event, Type::Bool, &format!("event_{i}"));
             let period = self.t.actions.get(e.action as usize).map_or(0, |a| a.period);
             let mut body = vec![Stmt::Let { mutable: false, name: "now".into(), ty: Ty::Bool, value }];
             let run = call("run_in_pass", Expr::size(e.action as usize));
@@ -159,8 +146,7 @@ impl Gen<'_> {
                 c = s().field("fault").bin(Bin::Eq, Expr::size(0)).and(c);
             }
             body.push(Stmt::If(c, vec![run], Vec::new()));
-            let note =
-                self.c.symbols.actions.get(e.action as usize).map_or(String::new(), |a| self.text(a.at));
+            let note = self.action_note(e.action as usize);
             arms.push(Arm { label: Expr::size(i), note, body: Stmt::when(self.due(period), body) });
         }
         self.choice("event", "An action on event of an active step.", "row", arms);
@@ -187,7 +173,7 @@ impl Gen<'_> {
             let timed = [3u8, 4, 8, 9, 10].iter().position(|k| *k == c.input);
             let full = self.full_row(c.block);
             if let (Some(k), Some(full), false) = (timed, full, c.time.is_empty()) {
-                let (time, fails) = self.value(c.time, Num::I64, &format!("time_{i}"));
+                let (time, fails) = self.value(c.time, Type::Time, &format!("time_{i}"));
                 let mut take =
                     vec![Stmt::Let { mutable: false, name: "time".into(), ty: Ty::I64, value: time }];
                 if fails {
@@ -228,13 +214,8 @@ impl Gen<'_> {
 
     fn blocks(&mut self) {
         let places = counts(self.t).0;
-        let (mut arms, mut line) = (Vec::new(), Block::new());
+        let mut arms = Vec::new();
         for (i, b) in self.t.blocks.iter().enumerate() {
-            if self.is_equation(i as u32) {
-                let equation = self.equation(i, b);
-                line.extend(equation);
-                continue;
-            }
             let again = |f: &str| Stmt::Do(Expr::call(f, vec![memory("blocks").passed(), Expr::size(i)]));
             let mut body = vec![again("bit_clear")];
             let (gate, fails) = self.condition(b.gate, &format!("gate_{i}"));
@@ -287,25 +268,17 @@ impl Gen<'_> {
             }
             let note = self.c.symbols.blocks.get(i).map_or(String::new(), |b| b.name.to_string());
             arms.push(Arm { label: Expr::size(i), note, body: Stmt::when(self.due(b.period), body) });
-            let wanted = Expr::call("bit", vec![Expr::Ref(false, Box::new(memory("blocks"))), Expr::size(i)]);
-            let mut look = vec![call("evaluate_block", Expr::size(i))];
-            if fails {
-                let fault = s().field("fault").bin(Bin::Ne, Expr::size(0));
-                look.push(Stmt::If(fault, vec![Stmt::Return(None)], Vec::new()));
-            }
-            line.extend(Stmt::when(wanted, look));
         }
         self.choice("evaluate_block", "A control block.", "block", arms);
-        self.function("control_blocks", "Outputs and control blocks, in order.", vec![state()], line);
     }
 
     /// Writes Q where it has changed: between two changes the variable is free.
-    pub(crate) fn put(&mut self, body: &mut Block, i: usize, output: u32, q: Expr) {
+    fn put(&mut self, body: &mut Block, i: usize, output: u32, q: Expr) {
         if output == NONE {
             return;
         }
         let mut then = vec![Stmt::set(memory("written").at(Expr::size(i)), q.clone())];
-        then.extend(self.assign(output, |_| q.clone()));
+        then.extend(self.assign(output, Type::Bool, |_| q.clone()));
         let differs = q.bin(Bin::Ne, memory("written").at(Expr::size(i)));
         body.push(Stmt::If(differs, then, Vec::new()));
     }
@@ -321,128 +294,22 @@ fn flag_ty(slot: &Slot) -> Ty {
     }
 }
 
-fn own_copy(slot: &Slot, sure: Sure) -> Block {
-    if sure == Sure::Begins {
+/// The copy of a function block that an action works on, and what tells of each of
+/// its words that it was written.
+fn own_instance(slot: &Slot) -> Block {
+    if !matches!(slot.shape, Shape::Fb(_)) {
         return Block::new();
     }
-    let own = format!("own_{}", slot.field);
-    let zero = match flag_ty(slot) {
-        Ty::Bool => Expr::Bool(false),
-        _ => Expr::call("zeroed", Vec::new()),
-    };
-    let flag = Stmt::Let { mutable: true, name: format!("{own}_set"), ty: flag_ty(slot), value: zero };
-    let copy = Stmt::Let { mutable: true, name: own, ty: slot.ty(), value: slot.place() };
-    if sure == Sure::No { vec![copy, flag] } else { vec![copy] }
+    let zero = Expr::call("zeroed", Vec::new());
+    vec![
+        Stmt::Let { mutable: true, name: own(slot), ty: slot.ty(), value: slot.place() },
+        Stmt::Let { mutable: true, name: own_set(slot), ty: flag_ty(slot), value: zero },
+    ]
 }
 
 /// `next` and `wrote` of a variable.
 fn waits(slot: &Slot) -> (Expr, Expr) {
     (s().field("next").field(slot.field.clone()), s().field("wrote").field(slot.field.clone()))
-}
-
-/// Whether an expression or what is in it has one of two names.
-fn mentions(s: &Stmt, names: [&str; 2]) -> bool {
-    let mut found = false;
-    s.walk(&mut |e| found |= matches!(e, Expr::Name(n) if names.contains(&n.as_str())));
-    found
-}
-
-/// Takes assignments to a name away, at every depth.
-fn without(body: &mut Block, name: &str) {
-    body.retain(|s| !matches!(s, Stmt::Assign(None, Expr::Name(n), _) if n == name));
-    for s in body {
-        match s {
-            Stmt::If(_, a, b) => {
-                without(a, name);
-                without(b, name);
-            }
-            Stmt::While(_, inner) | Stmt::For(_, _, _, inner) => without(inner, name),
-            _ => {}
-        }
-    }
-}
-
-/// How often a name is assigned to.
-fn assigned(body: &Block, name: &str) -> usize {
-    let one = |s: &Stmt| match s {
-        Stmt::Assign(_, Expr::Name(n), _) => usize::from(n == name),
-        Stmt::If(_, a, b) => assigned(a, name) + assigned(b, name),
-        Stmt::While(_, inner) | Stmt::For(_, _, _, inner) => assigned(inner, name),
-        _ => 0,
-    };
-    body.iter().map(one).sum()
-}
-
-/// Whether an action writes a variable in any case.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Sure {
-    /// It may, or may not.
-    No,
-    /// It does.
-    Writes,
-    /// It does, before it reads it: its copy begins with that.
-    Begins,
-}
-
-/// Leaves away the flag where the variable is written in any case, and the copy
-/// where it is not read before.
-fn make_direct(body: &mut Block, slot: &Slot) -> Sure {
-    let own = format!("own_{}", slot.field);
-    let flag = format!("{own}_set");
-    let sets = |s: &Stmt| matches!(s, Stmt::Assign(None, Expr::Name(n), _) if *n == flag);
-    if !matches!(slot.shape, Shape::One(_) | Shape::Text(_)) || !body.iter().any(sets) {
-        return Sure::No;
-    }
-    without(body, &flag);
-    let Some(at) = body.iter().position(|s| mentions(s, [&own, &flag])) else { return Sure::Writes };
-    let value = match body.get(at) {
-        Some(Stmt::Assign(None, Expr::Name(n), value)) if *n == own => value.clone(),
-        _ => return Sure::Writes,
-    };
-    if mentions(&Stmt::Do(value.clone()), [&own, &flag]) {
-        return Sure::Writes;
-    }
-    let mutable = assigned(body, &own) > 1;
-    if let Some(s) = body.get_mut(at) {
-        *s = Stmt::Let { mutable, name: own, ty: slot.ty(), value };
-    }
-    Sure::Begins
-}
-
-fn give_back(slot: &Slot, direct: bool) -> Block {
-    let own = Expr::name(format!("own_{}", slot.field));
-    let flag = if direct { Expr::Bool(true) } else { Expr::name(format!("own_{}_set", slot.field)) };
-    let (next, wrote) = waits(slot);
-    let both =
-        |next: Expr, own: Expr, wrote: Expr| vec![Stmt::set(next, own), Stmt::set(wrote, Expr::Bool(true))];
-    match slot.shape {
-        Shape::One(_) | Shape::Text(_) => Stmt::when(flag, both(next, own, wrote)),
-        Shape::Many(_, n) | Shape::Texts(_, n) => {
-            let i = || Expr::name("i");
-            let inner = Stmt::when(flag.at(i()), both(next.at(i()), own.at(i()), wrote.at(i())));
-            vec![Stmt::For("i".into(), Expr::size(0), Expr::size(n as usize), inner)]
-        }
-        Shape::Fb(kind) => {
-            let mut all = Block::new();
-            for (k, (name, _)) in members(kind).iter().enumerate() {
-                let k = Expr::size(k);
-                let inner =
-                    both(next.clone().field(*name), own.clone().field(*name), wrote.clone().at(k.clone()));
-                all.extend(Stmt::when(flag.clone().at(k), inner));
-            }
-            all
-        }
-    }
-}
-
-/// Whether two numbers differ; what is no number is like itself.
-pub(crate) fn differ(n: Num, a: Expr, b: Expr) -> Expr {
-    let differs = a.clone().bin(Bin::Ne, b.clone());
-    if !crate::values::is_real(n) {
-        return differs;
-    }
-    let number = |e: Expr| e.clone().bin(Bin::Eq, e);
-    differs.and(number(a).bin(Bin::Or, number(b)))
 }
 
 fn write_back(slot: &Slot) -> Block {

@@ -1,17 +1,18 @@
 //! From the engine's tables to the tree: what of the runtime a program needs,
 //! and the functions that only it has.
 
-use std::collections::{BTreeSet, HashMap};
+use std::collections::HashMap;
 
 use g7_compile::Compiled;
-use g7_engine::{Code, NONE, Num, Op, Receptivity, Rows, Service, StepId, Tables};
-use g7_model::{Problem, Span, codes};
+use g7_engine::{Addr, Code, NONE, Num, Op, Receptivity, Rows, Service, StepId, Tables};
+use g7_equations::{Bodies, Expr as Term, Stmt as Line};
+use g7_model::{Problem, Span, Type, codes};
 
-use crate::flow::Flow;
+use crate::body::{self, Code as Translated};
 use crate::names::Names;
 use crate::runtime::{self, Facts};
 use crate::tree::{Arm, Block, Expr, Function, Module, Numbers, Stmt, Struct, Ty};
-use crate::vars::{Home, Kind, Vars};
+use crate::vars::{Home, Vars, num};
 
 /// The work in hand.
 pub(crate) struct Gen<'a> {
@@ -21,16 +22,17 @@ pub(crate) struct Gen<'a> {
     source: &'a str,
     pub(crate) vars: Vars,
     pub(crate) names: Names,
-    undeclared: BTreeSet<u32>,
+    /// The chart's code, piece by piece.
+    pub(crate) bodies: Bodies<'a>,
+    /// Names of texts that never change.
+    pub(crate) texts: HashMap<String, String>,
     pub(crate) m: Module,
     pub(crate) facts: Facts,
-    /// Control blocks that are printed as equations of their steps.
-    pub(crate) equations: Vec<bool>,
     pub(crate) steps: Vec<String>,
     pub(crate) transitions: Vec<String>,
     pub(crate) problems: Vec<Problem>,
-    /// The instruction in hand.
-    pub(crate) at: u32,
+    /// The place in the chart of the code in hand.
+    pub(crate) at: Span,
     /// The first function that C and Rust have from elsewhere.
     pub(crate) math: Option<Span>,
     /// The first real that becomes a text or comes from one.
@@ -51,31 +53,29 @@ pub(crate) fn memory(field: &str) -> Expr {
 }
 
 impl<'a> Gen<'a> {
-    pub(crate) fn new(c: &'a Compiled, source: &'a str, flat: bool, hidden: HashMap<u32, Num>) -> Gen<'a> {
+    pub(crate) fn new(c: &'a Compiled, source: &'a str) -> Gen<'a> {
         let t = c.program.tables();
         let mut names = Names::default();
-        let mut vars = Vars::new(t, &c.symbols, &mut names);
-        vars.hidden = hidden;
+        let vars = Vars::new(&c.symbols, &mut names);
         let mut g = Gen {
             c,
             t,
             source,
             vars,
             names,
-            undeclared: BTreeSet::new(),
+            bodies: Bodies::new(c),
+            texts: HashMap::new(),
             m: Module::default(),
             facts: Facts::default(),
-            equations: Vec::new(),
             steps: Vec::new(),
             transitions: Vec::new(),
             problems: Vec::new(),
-            at: 0,
+            at: Span::default(),
             math: None,
             real_text: None,
         };
         g.number();
-        g.facts = crate::facts::of(t, flat);
-        g.find_equations();
+        g.facts = crate::facts::of(t);
         g
     }
 
@@ -123,31 +123,8 @@ impl<'a> Gen<'a> {
     pub(crate) fn cannot(&mut self, what: &str) {
         let text = format!("{what} cannot be printed as code");
         if self.problems.iter().all(|p| p.what != text) {
-            self.problems.push(Problem::new(&codes::NOT_CARRIED, self.c.symbols.place(self.at), text));
+            self.problems.push(Problem::new(&codes::NOT_CARRIED, self.at, text));
         }
-    }
-
-    pub(crate) fn needs_math(&mut self) {
-        self.math.get_or_insert(self.c.symbols.place(self.at));
-    }
-
-    pub(crate) fn needs_real_text(&mut self) {
-        self.real_text.get_or_insert(self.c.symbols.place(self.at));
-    }
-
-    pub(crate) fn reveal(&mut self, addr: u32) {
-        if self.vars.slot(addr).is_none() {
-            self.undeclared.insert(addr);
-            self.vars.reveal(self.t, addr, &mut self.names);
-        }
-    }
-
-    pub(crate) fn reveal_text(&mut self, addr: u32) {
-        self.vars.reveal_text(self.t, addr, &mut self.names);
-    }
-
-    pub(crate) fn is_declared(&self, addr: u32) -> bool {
-        !self.undeclared.contains(&addr) && self.vars.slot(addr).is_some()
     }
 
     pub(crate) fn step(&self, step: StepId) -> Expr {
@@ -195,50 +172,55 @@ impl<'a> Gen<'a> {
         self.m.functions.push(Function { public: false, note, name, parameters, result, body });
     }
 
-    /// The value of code: an expression where it is one, else a function of its own.
-    pub(crate) fn value(&mut self, code: Code, n: Num, name: &str) -> (Expr, bool) {
-        let result = Kind::Num(n);
-        let (block, e, fails) = Flow::new(self, code, Some(result)).value(result);
+    /// The value of code: an expression where it is one, else a function of its own;
+    /// and whether it can end in a fault.
+    pub(crate) fn value(&mut self, code: Code, ty: Type, name: &str) -> (Expr, bool) {
+        self.at = self.c.symbols.place(code.start);
+        let (list, value) = self.bodies.value(code);
+        let n = num(ty).unwrap_or(Num::I64);
+        let Translated { block, value, fails } = body::translate(self, &list, Some((&value, n)));
+        let value = value.unwrap_or(Expr::Bool(false));
         if block.is_empty() {
-            return (e, fails);
+            return (value, false);
         }
         let name = self.names.small(name);
         let mut body = block;
-        body.push(Stmt::Return(Some(e)));
+        body.push(Stmt::Return(Some(value)));
         let result = Some(crate::vars::ty(n));
-        self.m.functions.push(Function {
-            public: false,
-            note: String::new(),
-            name: name.clone(),
-            parameters: vec![state()],
-            result,
-            body,
-        });
-        // It may end in a fault within.
-        (Expr::Call(name, vec![s()]), true)
+        let (parameters, note) = (vec![state()], String::new());
+        let call = Expr::call(name.clone(), vec![s()]);
+        self.m.functions.push(Function { public: false, note, name, parameters, result, body });
+        (call, fails)
     }
 
-    /// Whether a condition holds; an empty one does.
+    /// A condition, which holds where there is none; and whether it can end in a fault.
     pub(crate) fn condition(&mut self, code: Code, name: &str) -> (Expr, bool) {
-        if code.is_empty() { (Expr::Bool(true), false) } else { self.value(code, Num::Bool, name) }
+        if code.is_empty() { (Expr::Bool(true), false) } else { self.value(code, Type::Bool, name) }
     }
 
     pub(crate) fn guard(&mut self, rank: u32) -> (Expr, bool) {
         let Some(tr) = self.t.transitions.get(rank as usize) else { return (Expr::Bool(false), false) };
         match tr.receptivity {
             Receptivity::True => (Expr::Bool(true), false),
-            Receptivity::Word(a) | Receptivity::NotWord(a) => {
-                let mut flow = Flow::new(self, Code::default(), None);
-                let entry = flow.load(a.0);
-                let e = flow.as_kind(&entry, Kind::Num(Num::Bool));
-                (if matches!(tr.receptivity, Receptivity::Word(_)) { e } else { e.not() }, false)
-            }
+            Receptivity::Word(a) => (self.bool_at(a), false),
+            Receptivity::NotWord(a) => (self.bool_at(a).not(), false),
             Receptivity::Code(code) => {
                 let name =
                     format!("guard_{}", self.transitions.get(rank as usize).cloned().unwrap_or_default());
-                self.value(code, Num::Bool, &name)
+                self.value(code, Type::Bool, &name)
             }
         }
+    }
+
+    /// A BOOL variable.
+    fn bool_at(&mut self, addr: Addr) -> Expr {
+        let memory = self.bodies.word(addr, Type::Bool);
+        body::translate(self, &[], Some((&Term::Read(memory), Num::Bool))).value.unwrap_or(Expr::Bool(false))
+    }
+
+    /// Statements of the chart's code.
+    pub(crate) fn statements(&mut self, list: &[Line]) -> Block {
+        body::translate(self, list, None).block
     }
 
     /// A function that does something for one of many numbers.
@@ -248,8 +230,12 @@ impl<'a> Gen<'a> {
         self.function(name, note, parameters, body);
     }
 
-    /// Adds what all charts have in common.
-    pub(crate) fn runtime(&mut self) {
+    /// Everything of the structured style: what is this chart's own, and the runtime
+    /// that all charts have in common.
+    pub(crate) fn structured(&mut self) {
+        self.chart();
+        self.acts();
+        self.limits();
         // The smaller structures first: the larger ones consist of them.
         let (structs, functions) = runtime::of(&self.facts);
         self.m.structs.extend(structs);
@@ -278,7 +264,9 @@ impl<'a> Gen<'a> {
     /// Calls of the section, where there is something in it.
     pub(crate) fn section(&mut self, name: &str, note: &str, code: Code) {
         if !code.is_empty() {
-            let body = Flow::new(self, code, None).body();
+            self.at = self.c.symbols.place(code.start);
+            let list = self.bodies.work(code);
+            let body = self.statements(&list);
             self.function(name, note, vec![state()], body);
         }
     }

@@ -3,13 +3,13 @@
 
 use std::collections::HashMap;
 
-use g7_engine::{NONE, Num, Rows, Situation, StepId, Tables};
+use g7_engine::{Addr, NONE, Num, Rows, Situation, StepId, Tables};
+use g7_model::Type;
 
 use crate::build::{Gen, memory, s, state};
 use crate::facts::counts;
-use crate::flow::Flow;
 use crate::tree::{Arm, Bin, Block, Const, Expr, Function, Known, Stmt, Ty};
-use crate::vars::Kind;
+use crate::vars::{Shape, members};
 
 /// `set[field]` gets or loses a member.
 fn member(field: &str, row: u32, on: bool) -> Stmt {
@@ -27,11 +27,7 @@ impl Gen<'_> {
         let t = self.t;
         let start: Block = t.initial.iter().map(|step| call("mark_on", self.step(*step))).collect();
         self.function("start", "The initial situation.", vec![state()], start);
-        if self.facts.flat {
-            self.flat_evolution();
-        } else {
-            self.receptivities();
-        }
+        self.receptivities();
         self.followers();
         if self.facts.has_on {
             self.step_changes(true);
@@ -93,7 +89,7 @@ impl Gen<'_> {
         all.sort_unstable_by_key(|(addr, _)| *addr);
         let each = all.into_iter().flat_map(|(addr, step)| {
             let active = self.active(step);
-            self.assign(addr, |_| active)
+            self.assign(addr, Type::Bool, |_| active)
         });
         let body = each.collect();
         self.function("follow", "Outputs that follow a step.", vec![state()], body);
@@ -131,9 +127,6 @@ impl Gen<'_> {
         let places = counts(self.t).0;
         for k in rows.start..rows.end {
             let Some(c) = self.t.contributions.get(k as usize) else { continue };
-            if self.is_equation(c.block) {
-                continue;
-            }
             let at = places.get(c.block as usize).copied().unwrap_or(0) + usize::from(c.input);
             let name = self.c.symbols.blocks.get(c.block as usize).map_or("", |b| &b.name);
             let input = g7_engine::INPUTS.get(usize::from(c.input)).copied().unwrap_or("");
@@ -156,7 +149,7 @@ impl Gen<'_> {
         let t = self.t;
         let mut body = Block::new();
         for (i, w) in t.watches.iter().enumerate() {
-            let (now, fails) = self.value(w.code, Num::Bool, &format!("watched_{i}"));
+            let (now, fails) = self.value(w.code, Type::Bool, &format!("watched_{i}"));
             let name = format!("now{i}");
             let mut part = vec![Stmt::Let { mutable: false, name: name.clone(), ty: Ty::Bool, value: now }];
             let leave = || {
@@ -176,8 +169,8 @@ impl Gen<'_> {
                     let runs = Expr::call("timer_runs", vec![s(), row.clone(), Expr::name(name.clone())]);
                     let mut inner = Block::new();
                     let time = format!("time{i}");
-                    let (one, f1) = self.value(up, Num::I64, &format!("time_on_{i}"));
-                    let (two, f2) = self.value(down, Num::I64, &format!("time_off_{i}"));
+                    let (one, f1) = self.value(up, Type::Time, &format!("time_on_{i}"));
+                    let (two, f2) = self.value(down, Type::Time, &format!("time_off_{i}"));
                     let value = if one == two {
                         one
                     } else {
@@ -444,16 +437,20 @@ impl Gen<'_> {
         self.numbers("ORDER_CHART", "The chart that each forces.", &charts);
     }
 
-    /// Assigns a word of a variable.
-    pub(crate) fn assign(&mut self, addr: u32, value: impl FnOnce(Num) -> Expr) -> Block {
-        let mut flow = Flow::new(self, g7_engine::Code::default(), None);
-        match flow.load(addr) {
-            crate::values::Entry::Typed { e, kind: Kind::Num(n), .. } => vec![Stmt::set(e, value(n))],
-            crate::values::Entry::Hidden(addr, e) => {
-                let n = self.vars.hidden.get(&addr).copied().unwrap_or(Num::I64);
-                vec![Stmt::set(e, value(n))]
-            }
-            _ => Block::new(),
-        }
+    /// Assigns a word of a variable, of this type where it has no declaration.
+    pub(crate) fn assign(&mut self, addr: u32, ty: Type, value: impl FnOnce(Num) -> Expr) -> Block {
+        let memory = self.bodies.word(Addr(addr), ty);
+        let Some((slot, part)) = self.slot_of(memory) else { return Block::new() };
+        let place = slot.place();
+        let (place, n) = match slot.shape {
+            Shape::One(n) => (place, n),
+            Shape::Many(n, _) => (place.at(Expr::size(part)), n),
+            Shape::Fb(kind) => match members(kind).get(part) {
+                Some((name, n)) => (place.field(*name), *n),
+                None => return Block::new(),
+            },
+            Shape::Text(_) | Shape::Texts(..) => return Block::new(),
+        };
+        vec![Stmt::set(place, value(n))]
     }
 }

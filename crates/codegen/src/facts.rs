@@ -17,7 +17,7 @@ pub(crate) fn counts(t: &Tables) -> (Vec<usize>, usize) {
     (places, at)
 }
 
-pub(crate) fn of(t: &Tables, flat: bool) -> Facts {
+pub(crate) fn of(t: &Tables) -> Facts {
     let r = t.rules;
     let lists = t.extras.iter().any(|e| !e.on.is_empty() || !e.off.is_empty());
     let clearing = t.transitions.iter().any(|t| t.on_clearing != NONE);
@@ -31,10 +31,6 @@ pub(crate) fn of(t: &Tables, flat: bool) -> Facts {
         let settled = if r.multi_token { x.priority == NONE } else { x.simple };
         x.shares && !settled
     });
-    // Each step's memory may change by itself, before those of the others do.
-    let alone = !(hierarchy || lists || r.parallel_actions && stored)
-        && t.orders.is_empty()
-        && t.group_lists.is_empty();
     let single = |x: &g7_engine::Transition| {
         let ends = x.from.0 != NONE && x.to.0 != NONE;
         ends && x.more_from.is_empty() && x.more_to.is_empty() && !x.drops
@@ -70,8 +66,6 @@ pub(crate) fn of(t: &Tables, flat: bool) -> Facts {
     ];
     let most = most.into_iter().max().unwrap_or(0);
     Facts {
-        flat,
-        alone,
         stable: r.stable,
         multi: r.multi_token,
         exclusive: r.numbered_exclusive,

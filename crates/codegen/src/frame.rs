@@ -1,11 +1,12 @@
 //! Beginning, restart, safety, and whether two pictures are the same.
 
 use g7_engine::Num;
+use g7_model::Type;
 
-use crate::acts::differ;
 use crate::build::{Gen, s, state};
+use crate::operations::differ;
 use crate::tree::{Block, Const, Expr, Function, Known, Module, Stmt, Ty};
-use crate::vars::{Home, Shape, Slot, literal, members, text_words};
+use crate::vars::{Home, Shape, Slot, literal, members, text_bytes, text_words};
 
 impl Gen<'_> {
     /// What stands round the scan.
@@ -34,17 +35,19 @@ impl Gen<'_> {
             }
             self.m.consts.push(Const { public: false, note, name, ty, value });
         }
-        let number = |n: Num, v: Expr| {
-            if n == Num::I64 { v } else { v.cast(crate::vars::ty(n)) }
-        };
+    }
+
+    /// What the runtime tells of the numbers of steps and transitions.
+    pub(crate) fn limits(&mut self) {
+        let number = |n: Num, v: Expr| if n == Num::I64 { v } else { v.cast(crate::vars::ty(n)) };
         if let Some((steps, transitions)) = self.t.counts {
-            let mut body = self.assign(steps.0, |n| number(n, Expr::name("steps")));
-            body.extend(self.assign(transitions.0, |n| number(n, Expr::name("transitions"))));
+            let mut body = self.assign(steps.0, Type::Int, |n| number(n, Expr::name("steps")));
+            body.extend(self.assign(transitions.0, Type::Int, |n| number(n, Expr::name("transitions"))));
             let parameters = vec![state(), ("steps".into(), Ty::I64), ("transitions".into(), Ty::I64)];
             self.function("write_counts", "", parameters, body);
         }
         if let Some((flag, _)) = self.t.limits {
-            let body = self.assign(flag.0, |n| literal(n, 1));
+            let body = self.assign(flag.0, Type::Bool, |n| literal(n, 1));
             self.function("write_overflow", "", vec![state()], body);
         }
     }
@@ -69,7 +72,7 @@ impl Gen<'_> {
     fn all_values(&self, slot: &Slot, words: &[u64]) -> Vec<Expr> {
         match slot.shape {
             Shape::One(n) | Shape::Many(n, _) => words.iter().map(|w| literal(n, *w)).collect(),
-            Shape::Text(cap) => text_bytes(words, cap).into_iter().map(|b| Expr::size(b.into())).collect(),
+            Shape::Text(cap) => words_bytes(words, cap).into_iter().map(|b| Expr::size(b.into())).collect(),
             Shape::Texts(..) | Shape::Fb(_) => Vec::new(),
         }
     }
@@ -132,7 +135,7 @@ impl Gen<'_> {
         body.extend(back);
         for (addr, on) in [(self.c.symbols.s0, 0), (self.c.symbols.s1, 1)] {
             if let Some(addr) = addr {
-                body.extend(self.assign(addr.0, |n| literal(n, on)));
+                body.extend(self.assign(addr.0, Type::Bool, |n| literal(n, on)));
             }
         }
         self.offer("restart", "A warm restart: retained variables keep their values.", body);
@@ -149,16 +152,15 @@ impl Gen<'_> {
     }
 }
 
-fn text_bytes(words: &[u64], cap: u16) -> Vec<u8> {
+/// The bytes of a text in the words of the engine, as the code has them.
+fn words_bytes(words: &[u64], cap: u16) -> Vec<u8> {
     let len = words.first().copied().unwrap_or(0).min(cap.into());
-    let mut bytes = vec![(len & 255) as u8, (len >> 8) as u8];
-    bytes.extend(words.iter().skip(1).flat_map(|w| w.to_le_bytes()).take(len as usize));
-    bytes.resize(usize::from(cap) + 2, 0);
-    bytes
+    let bytes: Vec<u8> = words.iter().skip(1).flat_map(|w| w.to_le_bytes()).take(len as usize).collect();
+    text_bytes(&bytes, usize::from(cap))
 }
 
 fn text_given(place: &Expr, words: &[u64], cap: u16) -> Block {
-    let bytes = text_bytes(words, cap);
+    let bytes = words_bytes(words, cap);
     let set = |(i, b): (usize, &u8)| Stmt::set(place.clone().at(Expr::size(i)), Expr::size((*b).into()));
     bytes.iter().enumerate().filter(|(_, b)| **b != 0).map(set).collect()
 }

@@ -17,21 +17,24 @@
 
 mod acts;
 mod arduino;
+mod body;
 mod build;
 mod c;
 mod chart;
 mod facts;
 mod flat;
-mod flow;
 mod frame;
+mod lets;
 mod names;
+mod operations;
+mod places;
 pub mod plc;
 mod prune;
+mod roll;
 mod runtime;
 mod rust;
-mod stmts;
+mod spare;
 mod tree;
-mod values;
 mod vars;
 
 use std::collections::HashMap;
@@ -131,26 +134,13 @@ impl Places {
 ///
 /// What the language cannot say, with its place in the chart.
 pub fn print(compiled: &Compiled, options: &Options<'_>) -> Result<Printed, Vec<Problem>> {
-    // Kinds of words without a declaration show in their uses: each round knows more.
-    let mut hidden = HashMap::new();
-    let mut made = None;
-    for _ in 0..6 {
-        let flat = options.style == Style::Flat;
-        let mut g = Gen::new(compiled, options.source, flat, hidden.clone());
-        g.chart();
-        g.acts();
-        g.frame();
-        g.structures();
-        g.runtime();
-        let known = std::mem::take(&mut g.vars.hidden);
-        let done = known == hidden;
-        hidden = known;
-        made = Some(g);
-        if done {
-            break;
-        }
+    let mut g = Gen::new(compiled, options.source);
+    match options.style {
+        Style::Structured => g.structured(),
+        Style::Flat => flat::flat(&mut g),
     }
-    let Some(mut g) = made else { return Err(Vec::new()) };
+    g.frame();
+    g.structures();
     let mut module = std::mem::take(&mut g.m);
     let called = prune::prune(&mut module);
     let mut problems = std::mem::take(&mut g.problems);

@@ -144,6 +144,12 @@ pub(crate) fn of(facts: &Facts) -> (Vec<tree::Struct>, Vec<tree::Function>) {
     (STRUCTS.iter().map(|s| s.with(facts)).collect(), FUNCTIONS.iter().map(|f| f.with(facts)).collect())
 }
 
+/// Those of a chart that is printed as equations.
+pub(crate) fn flat(facts: &Facts) -> (Vec<tree::Struct>, Vec<tree::Function>) {
+    let structs = FLAT_STRUCTS.iter().map(|s| s.with(facts)).collect();
+    (structs, FLAT_FUNCTIONS.iter().map(|f| f.with(facts)).collect())
+}
+
 impl Type {
     fn with(self, facts: &Facts) -> Ty {
         match self {
@@ -276,7 +282,7 @@ mod tests {
         helpers(all, &BTreeSet::from([name.to_owned()])).is_ok()
     }
 
-    /// The names that `values.rs` and `stmts.rs` put together from an instruction and a type.
+    /// The names that `operations.rs` puts together from an operation and a type.
     #[test]
     fn every_operation_has_its_helper_for_every_type() {
         let signed = ["i8", "i16", "i32", "i64"];
@@ -316,7 +322,6 @@ mod tests {
             "from_u64",
         ];
         names.extend(texts.iter().map(|f| format!("text_{f}")));
-        names.push("place".to_owned());
         for name in &names {
             assert!(is_there(RUST, name), "`{name}` in Rust");
             assert!(is_there(C, name), "`{name}` in C");

@@ -1,23 +1,15 @@
 //! Where each word of the variable area lives in the code: a field with its type.
 
-use std::collections::{BTreeMap, HashMap};
+use std::collections::BTreeMap;
 
 use g7_compile::ir::VarClass;
 use g7_compile::symbols::Symbols;
-use g7_engine::{Block, Num, Op, Tables};
+use g7_engine::Num;
+use g7_equations::{Class, Memory};
 use g7_model::{FbKind, Type};
 
 use crate::names::Names;
 use crate::tree::{Expr, Field, Ty};
-
-/// What a value is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Kind {
-    /// A number or truth value.
-    Num(Num),
-    /// A text, by its place.
-    Text,
-}
 
 /// The structure in which a variable lives.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -56,8 +48,6 @@ pub(crate) struct Slot {
 #[derive(Debug, Default)]
 pub(crate) struct Vars {
     pub(crate) slots: BTreeMap<u32, Slot>,
-    /// Kinds of words that have no declaration, as their uses tell.
-    pub(crate) hidden: HashMap<u32, Num>,
 }
 
 /// The words' kind of a type, where it has one word.
@@ -151,15 +141,12 @@ pub(crate) fn block_names(kind: FbKind) -> (&'static str, &'static str) {
     }
 }
 
-/// The words of an instance that a call of it writes.
-pub(crate) fn written_by(block: Block) -> &'static [u32] {
-    match block {
-        Block::Ctu | Block::Ctd => &[3, 4, 5],
-        Block::Ctud => &[5, 6, 7, 8, 9],
-        Block::Ton | Block::Tof | Block::Tp => &[2, 3, 4, 5],
-        Block::RTrig | Block::FTrig => &[1, 2],
-        Block::Sr | Block::Rs => &[2],
-    }
+/// A text as the code has it: its length in two bytes, then room for its bytes.
+pub(crate) fn text_bytes(text: &[u8], cap: usize) -> Vec<u8> {
+    let mut bytes = vec![(text.len() & 255) as u8, (text.len() >> 8) as u8];
+    bytes.extend(text);
+    bytes.resize(cap + 2, 0);
+    bytes
 }
 
 pub(crate) fn text_words(cap: u16) -> u32 {
@@ -195,7 +182,7 @@ impl Slot {
 
 impl Vars {
     /// The declared variables.
-    pub(crate) fn new(t: &Tables, symbols: &Symbols, names: &mut Names) -> Vars {
+    pub(crate) fn new(symbols: &Symbols, names: &mut Names) -> Vars {
         let mut vars = Vars::default();
         for v in &symbols.variables {
             let (start, words) = (v.addr.0, v.words());
@@ -223,22 +210,7 @@ impl Vars {
             let slot = Slot { start, words, home, shape, field, note, retain: v.retain };
             vars.slots.insert(start, slot);
         }
-        // Texts that are worked out, and constants of the text.
-        let lasting = if t.locals.is_empty() { u32::MAX } else { t.locals.start };
-        for op in &t.code {
-            if let Op::Text { to, cap, .. } | Op::StoreText { to, cap } | Op::ToText { to, cap, .. } = *op
-                && vars.slot(to.0).is_none()
-            {
-                let home = if to.0 >= lasting { Home::Locals } else { Home::Variables };
-                vars.hide(to.0, text_words(cap), home, Shape::Text(cap), names.small("text"));
-            }
-        }
         vars
-    }
-
-    fn hide(&mut self, start: u32, words: u32, home: Home, shape: Shape, field: String) {
-        self.slots
-            .insert(start, Slot { start, words, home, shape, field, note: String::new(), retain: false });
     }
 
     /// The slot in which a word lies.
@@ -247,24 +219,19 @@ impl Vars {
         (addr < slot.start + slot.words).then_some(slot)
     }
 
-    /// A word without a declaration gets a field.
-    pub(crate) fn reveal(&mut self, t: &Tables, addr: u32, names: &mut Names) {
+    /// A word without a declaration gets a field, if it has none yet.
+    pub(crate) fn reveal(&mut self, addr: u32, memory: &Memory, names: &mut Names) {
         if self.slot(addr).is_some() {
             return;
         }
-        let lasting = if t.locals.is_empty() { u32::MAX } else { t.locals.start };
-        let home = if addr >= lasting { Home::Locals } else { Home::Variables };
-        let n = self.hidden.get(&addr).copied().unwrap_or(Num::I64);
-        self.hide(addr, 1, home, Shape::One(n), names.small("hidden"));
-    }
-
-    /// A text that stands in the program.
-    pub(crate) fn reveal_text(&mut self, t: &Tables, addr: u32, names: &mut Names) {
-        if self.slot(addr).is_some() {
-            return;
-        }
-        let len = t.init.get(addr as usize).copied().unwrap_or(0) as u16;
-        self.hide(addr, text_words(len), Home::Constant, Shape::Text(len), names.small("words"));
+        let home = if memory.class == Class::Scratch { Home::Locals } else { Home::Variables };
+        let (words, shape, name) = match memory.ty {
+            Type::String(cap) => (text_words(cap), Shape::Text(cap), "text"),
+            ty => (1, Shape::One(num(ty).unwrap_or(Num::I64)), "hidden"),
+        };
+        let field = names.small(name);
+        let slot = Slot { start: addr, words, home, shape, field, note: String::new(), retain: false };
+        self.slots.insert(addr, slot);
     }
 
     /// The fields of a home.

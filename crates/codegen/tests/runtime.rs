@@ -37,9 +37,14 @@ fn the_runtime_can_be_read() {
 #[test]
 fn a_function_that_is_not_there_ends_the_build() {
     let why = said(|s| {
-        s.evolution = with(s.evolution, "src/evolution/scan.rs", "    evolve(s);", "    evolves(s);");
+        s.evolution = with(s.evolution, "src/cycle.rs", "    evolve(s);", "    evolves(s);");
     });
     assert!(why.contains("evolves"), "{why}");
+    let why = said(|s| {
+        let wrong = "    sections_in_front(s);";
+        s.flat = with(s.flat, "src/flat/frame.rs", "    sections_before(s);", wrong);
+    });
+    assert!(why.contains("sections_in_front"), "the frame of equations as well: {why}");
     let why = said(|s| s.chart = changed(s.chart, "pub fn follow<S>", "pub fn follows<S>"));
     assert!(why.contains("\"follow\""), "{why}");
 }

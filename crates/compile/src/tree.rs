@@ -64,7 +64,7 @@ pub enum ExprKind {
         ty: Type,
         /// First word.
         base: Addr,
-        /// Typeber of elements.
+        /// Number of elements.
         len: u32,
         /// From 0 (LINT).
         index: Box<Expr>,

@@ -73,6 +73,9 @@ impl Make<'_> {
 
     /// RESET_XIT: all step times become 0.
     pub(crate) fn reset_times(&mut self) -> Vec<Stmt> {
+        if self.apart {
+            return vec![Stmt::Set(self.flag(What::ResetTimes), Expr::truth(true))];
+        }
         let clocks = self.memories.iter().enumerate().filter_map(|(i, m)| {
             let zero = matches!(
                 m.what,

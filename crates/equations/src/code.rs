@@ -10,15 +10,16 @@ use g7_compile::tree::{self, ExprKind, Gate, Piece, StmtKind};
 use g7_engine::{Addr, Arith, Block, Builtin, Cmp, Code, FaultKind, Service, StepId};
 use g7_model::{Span, Type};
 
+use crate::fb;
 use crate::form::{Class, Expr, MemoryId, Stmt, What};
-use crate::make::{Make, lower, raise};
+use crate::make::{Make, lower};
 
 /// Which memories stand in for others while the actions of one pass all read the
 /// values from before it.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Stand {
     /// By memory written: its copy, and the flag that the copy was written.
-    own: HashMap<MemoryId, (MemoryId, MemoryId)>,
+    pub(crate) own: HashMap<MemoryId, (MemoryId, MemoryId)>,
 }
 
 /// One piece of code in translation.
@@ -60,7 +61,7 @@ impl<'a> Make<'a> {
         self.work_in(code, None)
     }
 
-    fn work_in(&mut self, code: Code, stand: Option<Stand>) -> Vec<Stmt> {
+    pub(crate) fn work_in(&mut self, code: Code, stand: Option<Stand>) -> Vec<Stmt> {
         let Some(Piece::Work(list)) = self.piece(code) else { return Vec::new() };
         let mut b = Body { m: self, out: Vec::new(), stand, returned: Vec::new() };
         b.body(list);
@@ -73,40 +74,6 @@ impl<'a> Make<'a> {
         let due = self.due(a.period);
         let (mut list, condition) = self.condition(a.condition);
         let work = self.work(a.body);
-        list.extend(Stmt::when(condition, work));
-        Stmt::when(due, list)
-    }
-
-    /// An action that reads the values from before the pass: it works on copies,
-    /// and what it wrote is noted for [`Make::give`].
-    pub(crate) fn run_apart(&mut self, action: u32) -> Vec<Stmt> {
-        let Some(a) = self.t.actions.get(action as usize).copied() else { return Vec::new() };
-        let due = self.due(a.period);
-        let (mut list, condition) = self.condition(a.condition);
-        let written = self.written(a.body);
-        let mut stand = Stand::default();
-        let mut work = Vec::new();
-        for m in &written {
-            let own = self.beside(What::Own(*m), *m);
-            let wrote = self.flag(What::OwnWrote(*m));
-            stand.own.insert(*m, (own, wrote));
-            work.push(Stmt::Set(own, Expr::Read(*m)));
-            work.push(lower(wrote));
-        }
-        work.extend(self.work_in(a.body, Some(stand)));
-        for m in written {
-            let (own, wrote) = (self.beside(What::Own(m), m), self.flag(What::OwnWrote(m)));
-            let (given, noted) = (self.beside(What::Given(m), m), self.flag(What::Wrote(m)));
-            let mut take = Vec::new();
-            if self.options.conflicts {
-                let ty = self.of(m).map_or(Type::Bool, |m| m.ty);
-                let conflict = self.flag(What::Conflict(m));
-                let differs = Expr::Differs(ty, Box::new(Expr::Read(own)), Box::new(Expr::Read(given)));
-                take.extend(raise(conflict, Expr::Read(noted).and(differs)));
-            }
-            take.extend([Stmt::Set(given, Expr::Read(own)), Stmt::Set(noted, Expr::truth(true))]);
-            work.push(Stmt::If(Expr::Read(wrote), take, Vec::new()));
-        }
         list.extend(Stmt::when(condition, work));
         Stmt::when(due, list)
     }
@@ -124,7 +91,7 @@ impl<'a> Make<'a> {
         for s in &out {
             s.visit(&mut |s| match s {
                 Stmt::Set(m, _) | Stmt::SetElement(m, _, _) => found.push(*m),
-                Stmt::Call(_, list) => found.extend(list),
+                Stmt::Call(block, list) => found.extend(fb::written(*block, list)),
                 _ => {}
             });
         }
@@ -558,7 +525,7 @@ impl Body<'_, '_> {
     fn block(&mut self, block: Block, base: Addr) {
         let memories = self.m.instance(block, base);
         if let Some(stand) = &self.stand {
-            let notes: Vec<Stmt> = memories
+            let notes: Vec<Stmt> = fb::written(block, &memories)
                 .iter()
                 .filter_map(|m| stand.own.get(m))
                 .map(|(_, wrote)| Stmt::Set(*wrote, Expr::truth(true)))

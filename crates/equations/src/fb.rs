@@ -78,6 +78,17 @@ pub fn expand(block: Block, memories: &[MemoryId]) -> Vec<Stmt> {
     }
 }
 
+/// The memories of an instance that a call of it writes: all behind its inputs.
+pub(crate) fn written(block: Block, memories: &[MemoryId]) -> &[MemoryId] {
+    let inputs = match block {
+        Block::Ctu | Block::Ctd => 3,
+        Block::Ctud => 5,
+        Block::Ton | Block::Tof | Block::Tp | Block::Sr | Block::Rs => 2,
+        Block::RTrig | Block::FTrig => 1,
+    };
+    memories.get(inputs..).unwrap_or_default()
+}
+
 fn int(v: i16) -> Expr {
     Expr::Const(Type::Int, i64::from(v) as u64)
 }

@@ -173,6 +173,10 @@ pub enum What {
     StepCount,
     /// Number of transitions enabled, then also enabled anew and no more.
     TransitionCount,
+    /// Some step of a group is active; of [`crate::Bodies`] alone.
+    GroupActive(GroupId),
+    /// Set where all step times are to become 0; of [`crate::Bodies`] alone.
+    ResetTimes,
     /// RETURN has been reached.
     Returned(u32),
     /// A value that is needed further on.

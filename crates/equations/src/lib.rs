@@ -22,9 +22,12 @@
 //!
 //! `form.rs` (what equations consist of), `frame.rs` (a scan), `evolve.rs` (a
 //! pass), `change.rs` (what follows from a change of steps), `control.rs`
-//! (qualifiers), `code.rs` (receptivities, bodies), `run.rs` (the interpreter).
+//! (qualifiers), `code.rs` (receptivities, bodies), `bodies.rs` (the same piece by
+//! piece), `run.rs` (the interpreter).
 #![forbid(unsafe_code)]
 
+mod apart;
+mod bodies;
 mod change;
 mod clocks;
 mod code;
@@ -40,6 +43,7 @@ mod whole;
 use g7_compile::Compiled;
 use g7_engine::Addr;
 
+pub use bodies::Bodies;
 pub use fb::expand;
 pub use form::{About, Class, Expr, Memory, MemoryId, Part, Section, Stmt, What};
 pub use run::{Machine, Value};

@@ -25,6 +25,8 @@ pub(crate) struct Make<'a> {
     pub(crate) c: &'a Compiled,
     pub(crate) t: &'a Tables,
     pub(crate) options: Options,
+    /// Groups and times are kept by somebody else ([`crate::Bodies`]).
+    pub(crate) apart: bool,
     pub(crate) memories: Vec<Memory>,
     known: HashMap<What, MemoryId>,
     /// By word of the variable area.
@@ -41,10 +43,20 @@ pub(crate) struct Make<'a> {
 
 impl<'a> Make<'a> {
     pub(crate) fn new(c: &'a Compiled, options: Options) -> Make<'a> {
+        Make::with(c, options, false)
+    }
+
+    /// For code alone, without an evolution round it.
+    pub(crate) fn apart(c: &'a Compiled) -> Make<'a> {
+        Make::with(c, Options::default(), true)
+    }
+
+    fn with(c: &'a Compiled, options: Options, apart: bool) -> Make<'a> {
         let mut m = Make {
             c,
             t: c.program.tables(),
             options,
+            apart,
             memories: Vec::new(),
             known: HashMap::new(),
             slots: HashMap::new(),
@@ -346,6 +358,9 @@ impl<'a> Make<'a> {
     }
 
     pub(crate) fn group_active(&mut self, group: GroupId) -> Expr {
+        if self.apart {
+            return Expr::Read(self.flag(What::GroupActive(group)));
+        }
         let steps = self.counted(group);
         Expr::any(steps.into_iter().map(|s| self.active(s)))
     }

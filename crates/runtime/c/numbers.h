@@ -30,15 +30,6 @@ static void fail(uint8_t *fault, uint8_t kind)
     }
 }
 
-static uint32_t place(int64_t i, uint32_t length, uint8_t *fault)
-{
-    if ((i < 0) || (i >= (int64_t)length)) {
-        fail(fault, FAULT_RANGE);
-        return 0;
-    }
-    return (uint32_t)i;
-}
-
 /* To a whole number, halves to the even one. */
 static double round_even(double v)
 {

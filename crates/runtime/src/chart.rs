@@ -11,8 +11,6 @@ pub(crate) type Row = u8;
 
 // How the chart evolves.
 
-/// Equations of every step instead of a walk over the active ones.
-pub const FLAT: bool = false;
 /// Passes go on until one changes nothing.
 pub const STABLE: bool = false;
 /// A step may be left by several transitions in one pass.
@@ -34,8 +32,6 @@ pub const PERIODIC_FIRST: bool = false;
 
 // What there is in the chart.
 
-/// Each step's memory may change by itself, before those of the others do.
-pub const ALONE: bool = false;
 /// Forcing orders.
 pub const HAS_ORDERS: bool = false;
 /// Charts that evolve in a period of their own.
@@ -227,10 +223,6 @@ pub fn start<S>(_: &mut S) {}
 pub fn receptivity<S>(_: &mut S, _transition: usize) -> bool {
     false
 }
-/// Sets `cf`, the clearing condition of each transition.
-pub fn clearing_conditions<S>(_: &mut S) {}
-/// Sets and resets each step.
-pub fn step_memories<S>(_: &mut S) {}
 /// Outputs that follow a step.
 pub fn follow<S>(_: &mut S) {}
 /// What comes with a step.
@@ -257,8 +249,6 @@ pub fn event<S>(_: &mut S, _row: usize) {}
 pub fn condition<S>(_: &mut S, _row: usize, _pulses: bool) {}
 /// Evaluates a control block.
 pub fn evaluate_block<S>(_: &mut S, _block: usize) {}
-/// Evaluates all control blocks, in order.
-pub fn control_blocks<S>(_: &mut S) {}
 /// Brings edges and timers up to date.
 pub fn watch<S>(_: &mut S, _fresh: bool) {}
 /// The section PRE.
@@ -275,6 +265,12 @@ pub fn to_safety<S>(_: &mut S) {}
 pub fn write_counts<S>(_: &mut S, _steps: i64, _transitions: i64) {}
 /// Sets the system bit of [`HAS_LIMITS`].
 pub fn write_overflow<S>(_: &mut S) {}
+/// The equations before the passes.
+pub fn sections_before<S>(_: &mut S) {}
+/// The equations of a pass.
+pub fn sections_of_pass<S>(_: &mut S) {}
+/// The equations behind the passes.
+pub fn sections_behind<S>(_: &mut S) {}
 /// Whether two memories are the same.
 pub fn same_memory<M: PartialEq>(a: &M, b: &M) -> bool {
     a == b

@@ -3,8 +3,6 @@
 //! `codegen` prints each function that a chart calls as it stands here; C has its own
 //! in `c/`.
 
-use crate::faults::FAULT_RANGE;
-
 /// The complement of a word. Both languages print it as an operator.
 pub fn inv(word: u32) -> u32 {
     !word
@@ -54,16 +52,6 @@ pub(crate) fn toward_zero(v: f64) -> f64 {
 pub fn fail(fault: &mut u8, kind: u8) {
     if *fault == 0 {
         *fault = kind;
-    }
-}
-
-pub fn place(i: i64, length: usize, fault: &mut u8) -> usize {
-    match usize::try_from(i) {
-        Ok(i) if i < length => i,
-        _ => {
-            fail(fault, FAULT_RANGE);
-            0
-        }
     }
 }
 

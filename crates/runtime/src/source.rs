@@ -18,7 +18,9 @@ pub struct Source {
     pub faults: File,
     /// The evolution, in the order in which it is printed.
     pub evolution: &'static [File],
-    /// Its functions that callers of the printed code may use, beside what each chart offers.
+    /// The frame of a chart that is printed as equations.
+    pub flat: &'static [File],
+    /// The functions of either that callers of the printed code may use, beside what each chart offers.
     pub offered: &'static [&'static str],
     /// The function blocks.
     pub function_blocks: File,
@@ -48,8 +50,9 @@ pub const ALL: Source = Source {
         "src/evolution/memory.rs" "src/evolution/changes.rs" "src/evolution/clearing.rs"
         "src/evolution/scan.rs" "src/evolution/enclosing.rs" "src/evolution/forcing.rs"
         "src/evolution/turns.rs" "src/evolution/watches.rs" "src/evolution/services.rs"
-        "src/evolution/closing.rs" "src/evolution/control_blocks.rs"
+        "src/evolution/closing.rs" "src/evolution/control_blocks.rs" "src/cycle.rs"
     },
+    flat: files! { "src/flat/frame.rs" "src/cycle.rs" },
     offered: &["is_active", "scan", "step_time"],
     function_blocks: file!("src/function_blocks.rs"),
     rust: files! { "src/numbers.rs" "src/text.rs" "src/arithmetic.rs" },

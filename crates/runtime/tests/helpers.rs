@@ -9,7 +9,7 @@ use g7_runtime::function_blocks::{
     Ctd, Ctu, Ctud, FTrig, RTrig, Rs, Sr, Tof, Ton, Tp, call_ctd, call_ctu, call_ctud, call_f_trig,
     call_r_trig, call_rs, call_sr, call_tof, call_ton, call_tp,
 };
-use g7_runtime::numbers::{inv, is_due_after, low_bit, place, real_abs, real_ln, real_log, real_sqrt, since};
+use g7_runtime::numbers::{inv, is_due_after, low_bit, real_abs, real_ln, real_log, real_sqrt, since};
 use g7_runtime::text::{
     text_compare, text_concat, text_copy, text_delete, text_find, text_from_bool, text_from_i64,
     text_from_time, text_from_u64, text_insert, text_left, text_len, text_mid, text_replace, text_right,
@@ -118,9 +118,6 @@ fn time_and_places() {
     assert!(!is_due_after(9, 0, 10));
     assert!(is_due_after(10, 0, 10));
     assert_eq!((low_bit(0x8000_0000), low_bit(6), inv(1)), (31, 1, 0xffff_fffe));
-    assert_eq!(told(|f| place(4, 4, f)), (0, FAULT_RANGE));
-    assert_eq!(told(|f| place(-1, 4, f)), (0, FAULT_RANGE));
-    assert_eq!(told(|f| place(3, 4, f)), (3, FAULT_NONE));
 }
 
 /// A text of 10 bytes.

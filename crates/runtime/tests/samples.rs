@@ -1,7 +1,7 @@
 //! The samples run: what each scan makes of a situation, from the rules of evolution.
 
 use g7_runtime::faults::{FAULT_INPUTS, FAULT_NONE, FAULT_STOPPED};
-use g7_runtime::sample::{press, tank, turns};
+use g7_runtime::sample::{lamp, press, tank, turns};
 
 const MS: i64 = 1_000_000;
 
@@ -18,6 +18,27 @@ fn a_tank_is_filled() {
     assert_eq!(scan(true, false, 10), (false, true, true, 0), "rule 3: the clearing");
     assert_eq!(scan(true, false, 30), (false, true, true, 20 * MS), "the time since its activation");
     assert_eq!(scan(false, true, 40), (true, false, false, 0), "and back");
+}
+
+#[test]
+fn a_lamp_goes_out_by_itself() {
+    use lamp::chart::{Inputs, OFF, ON, Outputs};
+    let (mut s, mut out) = (lamp::State::default(), Outputs::default());
+    let mut scan = |press: bool, ms: i64| {
+        assert_eq!(lamp::scan(&Inputs { press }, &mut out, &mut s, ms * MS), FAULT_NONE);
+        (lamp::is_active(&s, OFF), lamp::is_active(&s, ON), out.lamp, lamp::step_time(&s, ON))
+    };
+    assert_eq!(scan(false, 7), (true, false, false, 0), "rule 1: the initial situation");
+    assert_eq!(scan(true, 10), (false, true, true, 0), "rule 3: the clearing");
+    assert_eq!(scan(false, 2009), (false, true, true, 1999 * MS), "the time since its activation");
+    assert_eq!(scan(false, 2010), (true, false, false, 0), "and back");
+    let mut s = lamp::State::default();
+    let mut out = Outputs::default();
+    assert_eq!(lamp::scan(&Inputs { press: true }, &mut out, &mut s, 5), FAULT_NONE);
+    assert_eq!(lamp::scan(&Inputs { press: true }, &mut out, &mut s, 4), FAULT_INPUTS, "time goes back");
+    assert!(!out.lamp, "the safe value");
+    assert_eq!(lamp::scan(&Inputs { press: true }, &mut out, &mut s, 6), FAULT_STOPPED);
+    assert!(!lamp::is_active(&s, 2) && lamp::step_time(&s, 2) == 0, "no such step");
 }
 
 #[test]

@@ -96,11 +96,11 @@ impl Reader {
         Err(format!("crates/runtime: `pub` are {:?}, and offered are {want:?}", self.offered))
     }
 
-    /// The constants.
-    pub(crate) fn text(&self) -> String {
+    /// The constants, whose names have this in front.
+    pub(crate) fn text(&self, front: &str, of: &str) -> String {
         format!(
-            "/// The structures of the runtime.\npub(crate) static STRUCTS: &[Struct] = &[\n{}];\n\n\
-             /// The functions of the runtime.\npub(crate) static FUNCTIONS: &[Function] = &[\n{}];\n",
+            "/// The structures of {of}.\npub(crate) static {front}STRUCTS: &[Struct] = &[\n{}];\n\n\
+             /// The functions of {of}.\npub(crate) static {front}FUNCTIONS: &[Function] = &[\n{}];\n",
             self.structs, self.code
         )
     }

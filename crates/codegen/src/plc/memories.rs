@@ -340,6 +340,8 @@ impl Memories {
             What::TransitionCount => ("TRANSITIONS", "count".into(), ""),
             What::Returned(n) => ("LEAVE", n.to_string(), "RETURN was reached"),
             What::Temporary(_) => ("Z", String::new(), ""),
+            // No memories of equations.
+            What::GroupActive(_) | What::ResetTimes => return,
         };
         self.named(id, memory, (before, &of), note);
     }

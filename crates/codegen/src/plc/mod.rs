@@ -19,7 +19,6 @@ mod memories;
 mod names;
 mod native;
 mod scan;
-mod spare;
 mod st;
 mod terms;
 

@@ -6,7 +6,7 @@ use std::collections::{HashMap, HashSet};
 use g7_engine::Block;
 use g7_equations::{Equations, MemoryId, Stmt, What};
 
-use super::spare::{operands, sections};
+use crate::spare::{operands, sections};
 
 /// The instances that a controller's own function blocks stand for: what they
 /// remember inside is mentioned in their calls alone, and in the count of time.

@@ -14,7 +14,8 @@ use g7_model::{Problem, Span, Type, codes};
 
 use super::form::{Block, Ex, St};
 use super::memories::{Memories, literal};
-use super::{native, spare};
+use super::native;
+use crate::spare;
 
 /// Most passes in a scan of the controller; the program's own bound may be less.
 const PASSES: u32 = 10_000;
@@ -50,7 +51,7 @@ pub(super) fn block(
         Problem::new(&codes::DIFFERENT, at, text)
     });
     let inside = native::native(&mut e);
-    spare::spare(&mut e, &inside);
+    spare::spare_for_controllers(&mut e, &inside);
     let calls = first_of_calls(&e);
     let (name, memories) = Memories::new(c, &e, name, &calls);
     let at = c.symbols.charts.first().map(|c| c.at).unwrap_or_default();

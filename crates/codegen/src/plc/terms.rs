@@ -7,7 +7,7 @@ use g7_model::Type;
 use super::form::Ex;
 use super::memories::{literal, type_name};
 use super::scan::Scan;
-use super::spare::widens;
+use crate::spare::widens;
 
 /// A tenth of a second.
 const TENTH: i64 = 100_000_000;

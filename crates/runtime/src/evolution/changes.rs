@@ -38,18 +38,16 @@ pub(crate) fn mark_off(s: &mut State, step: usize) {
 
 pub(crate) fn activate(s: &mut State, step: usize) {
     s.m.x[step] = true;
-    if !FLAT {
-        let k: usize = step >> 5;
-        s.m.active[k] |= 1u32 << (step & 31);
-        s.m.top[k >> 5] |= 1u32 << (k & 31);
-    }
+    let k: usize = step >> 5;
+    s.m.active[k] |= 1u32 << (step & 31);
+    s.m.top[k >> 5] |= 1u32 << (k & 31);
     if STABLE {
         s.changed = true;
     }
     if NOTES_STEPS {
         s.stepped = true;
     }
-    if HAS_FOLLOWERS && !FLAT {
+    if HAS_FOLLOWERS {
         s.behind = true;
     }
     if HAS_COUNTS {
@@ -66,12 +64,10 @@ pub(crate) fn activate(s: &mut State, step: usize) {
 
 pub(crate) fn deactivate(s: &mut State, step: usize) {
     s.m.x[step] = false;
-    if !FLAT {
-        let k: usize = step >> 5;
-        s.m.active[k] &= inv(1u32 << (step & 31));
-        if s.m.active[k] == 0 {
-            s.m.top[k >> 5] &= inv(1u32 << (k & 31));
-        }
+    let k: usize = step >> 5;
+    s.m.active[k] &= inv(1u32 << (step & 31));
+    if s.m.active[k] == 0 {
+        s.m.top[k >> 5] &= inv(1u32 << (k & 31));
     }
     if STABLE {
         s.changed = true;
@@ -79,7 +75,7 @@ pub(crate) fn deactivate(s: &mut State, step: usize) {
     if NOTES_STEPS {
         s.stepped = true;
     }
-    if HAS_FOLLOWERS && !FLAT {
+    if HAS_FOLLOWERS {
         s.behind = true;
     }
     if HAS_COUNTS {

@@ -132,26 +132,6 @@ pub(crate) fn clear(s: &mut State, t: usize) {
     }
 }
 
-/// A step's memory: `set` makes it true, `reset` false where it is not set (rule 5).
-pub(crate) fn set_reset(s: &mut State, step: usize, set: bool, reset: bool) {
-    if ALONE {
-        if set {
-            if !s.m.x[step] {
-                activate(s, step);
-            }
-        } else if reset && s.m.x[step] {
-            deactivate(s, step);
-        }
-    } else {
-        if set {
-            mark_on(s, step);
-        }
-        if reset {
-            mark_off(s, step);
-        }
-    }
-}
-
 pub(crate) fn fire(s: &mut State, transition: usize) {
     s.fired[s.fired_count] = transition as Row;
     s.fired_count += 1;

@@ -58,18 +58,10 @@ pub(crate) fn empty_enclosed(s: &mut State, step: usize) {
 }
 
 pub(crate) fn mark_range_off(s: &mut State, first: usize, end: usize) {
-    if FLAT {
-        for k in first..end {
-            if s.m.x[k] {
-                mark_off(s, k);
-            }
-        }
-    } else {
-        let mut k: usize = bit_next(&s.m.active, end, first);
-        while k < end {
-            mark_off(s, k);
-            k = bit_next(&s.m.active, end, k + 1);
-        }
+    let mut k: usize = bit_next(&s.m.active, end, first);
+    while k < end {
+        mark_off(s, k);
+        k = bit_next(&s.m.active, end, k + 1);
     }
 }
 

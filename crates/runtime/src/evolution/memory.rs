@@ -75,12 +75,9 @@ pub struct State {
     pub again: bool,
     pub conflict: bool,
     /// loops made in this scan
-    pub work: u32,
+    pub work: i32,
     /// outputs that follow a step are behind
     pub behind: bool,
-    /// clearing conditions: enabled and the receptivity true; and with nothing in the way
-    pub clearable: [bool; TRANSITIONS],
-    pub cf: [bool; TRANSITIONS],
     /// transitions that clear in this pass
     pub fired: [Row; TRANSITIONS],
     pub fired_count: usize,
@@ -158,11 +155,6 @@ pub(crate) fn bit_next(words: &[u32], count: usize, from: usize) -> usize {
     (k << 5) + low_bit(word)
 }
 
-/// Whether a step is active.
-pub fn is_active(s: &State, step: usize) -> bool {
-    step < STEPS && s.m.x[step]
-}
-
 /// Time since a step was activated in nanoseconds (scans under the scan clock);
 /// how long it was active once it is not.
 pub fn step_time(s: &State, step: usize) -> i64 {
@@ -183,18 +175,6 @@ pub(crate) fn step_age(s: &State, step: usize) -> i64 {
         return since(s.now, s.m.age[step]);
     }
     s.m.age[step]
-}
-
-/// A step's time in tenths of a second.
-pub(crate) fn step_tenths(s: &State, step: usize) -> i64 {
-    let tenths: i64 = step_time(s, step) / 100000000;
-    if tenths < 0 {
-        return 0;
-    }
-    if tenths > 9999 {
-        return 9999;
-    }
-    tenths
 }
 
 pub(crate) fn group_active(s: &State, group: usize) -> bool {

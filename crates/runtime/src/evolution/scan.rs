@@ -1,4 +1,4 @@
-//! A scan: `begin`, passes, `finish`.
+//! The parts of a scan: `begin`, a pass, `finish`.
 
 use super::*;
 
@@ -13,11 +13,7 @@ pub(crate) fn pass(s: &mut State) {
     if LOOKS_BACK {
         s.before = s.m.x;
     }
-    if FLAT {
-        clearing_conditions(s);
-    } else {
-        collect(s);
-    }
+    collect(s);
     if HAS_EVENTS && s.fault == 0 {
         events(s);
     }
@@ -32,21 +28,9 @@ pub(crate) fn pass(s: &mut State) {
         s.before_v = s.v;
         s.before_outputs = s.outputs;
     }
-    if FLAT && SEQUENTIAL {
-        s.fired_count = 0;
-        for t in 0..TRANSITIONS {
-            if s.cf[t] {
-                fire(s, t);
-            }
-        }
-    } else if !FLAT {
-        resolve(s);
-    }
+    resolve(s);
     if SEQUENTIAL {
         in_turn(s);
-    } else if FLAT {
-        step_memories(s);
-        commit(s);
     } else {
         let mut k: usize = 0;
         while k < s.fired_count {
@@ -61,52 +45,15 @@ pub(crate) fn pass(s: &mut State) {
     }
 }
 
-/// Passes until nothing changes, or just one.
-pub(crate) fn evolve(s: &mut State) {
-    pass(s);
-    if STABLE {
-        let mut made: u32 = 0;
-        let mut power: u32 = 1;
-        let mut distance: u32 = 0;
-        while s.changed && s.fault == 0 {
-            made += 1;
-            if made >= BOUND {
-                s.fault = FAULT_BOUND;
-                return;
-            }
-            // Brent's search: a picture, renewed at doubling distances. Time and
-            // inputs stand still, so what comes back comes back for ever.
-            if made > 48 {
-                distance += 1;
-                if came_back(s) {
-                    s.fault = FAULT_UNSTABLE;
-                    return;
-                }
-            }
-            if made == 48 || (made > 48 && distance == power) {
-                s.saved_outputs = s.outputs;
-                s.saved_v = s.v;
-                s.saved_m = s.m;
-                if made > 48 {
-                    power += power;
-                }
-                distance = 0;
-            }
-            if HAS_WATCHES {
-                watch(s, false);
-                if s.fault != 0 {
-                    return;
-                }
-            }
-            pass(s);
+/// Another pass in the same scan.
+pub(crate) fn next_pass(s: &mut State) {
+    if HAS_WATCHES {
+        watch(s, false);
+        if s.fault != 0 {
+            return;
         }
     }
-}
-
-pub(crate) fn came_back(s: &State) -> bool {
-    same_memory(&s.m, &s.saved_m)
-        && same_variables(&s.v, &s.saved_v)
-        && same_outputs(&s.outputs, &s.saved_outputs)
+    pass(s);
 }
 
 /// Inputs, time, edges, PRE, services.
@@ -172,8 +119,12 @@ pub(crate) fn begin(s: &mut State, now: i64) {
     }
 }
 
-/// Control blocks, bodies, POST.
+/// Outputs, control blocks, bodies, POST.
 pub(crate) fn finish(s: &mut State) {
+    if HAS_FOLLOWERS && s.behind {
+        s.behind = false;
+        follow(s);
+    }
     if HAS_COUNTS {
         count_after(s);
     }
@@ -191,11 +142,7 @@ pub(crate) fn finish(s: &mut State) {
         }
     }
     if HAS_BLOCKS {
-        if FLAT {
-            control_blocks(s);
-        } else {
-            evaluate_blocks(s);
-        }
+        evaluate_blocks(s);
         if s.fault != 0 {
             return;
         }
@@ -224,39 +171,4 @@ pub(crate) fn finish(s: &mut State) {
     if HAS_LIMITS {
         judge_limits(s);
     }
-}
-
-/// One scan. `now` never goes back; it is in nanoseconds. Tells a fault by its
-/// number, FAULT_NONE where there is none; after a fault the outputs have their
-/// safe values, and no further scan is made before `init` or `restart`.
-pub fn scan(input: &Inputs, out: &mut Outputs, s: &mut State, now: i64) -> u8 {
-    if s.fault != 0 {
-        *out = s.outputs;
-        return FAULT_STOPPED;
-    }
-    if s.started && now < s.now {
-        s.fault = FAULT_INPUTS;
-    } else {
-        s.inputs = *input;
-        begin(s, now);
-        if s.fault == 0 {
-            evolve(s);
-        }
-        if HAS_FOLLOWERS {
-            if FLAT {
-                follow(s);
-            } else if s.behind {
-                s.behind = false;
-                follow(s);
-            }
-        }
-        if s.fault == 0 {
-            finish(s);
-        }
-    }
-    if s.fault != 0 {
-        to_safety(s);
-    }
-    *out = s.outputs;
-    s.fault
 }

@@ -2,13 +2,6 @@
 
 use super::*;
 
-/// Takes back that steps of a group are to be activated.
-pub(crate) fn forget_sets(s: &mut State, group: usize) {
-    for i in GROUP_FIRST[group] as usize..GROUP_END[group] as usize {
-        bit_clear(&mut s.m.ask_set, i);
-    }
-}
-
 /// All charts take the situation of the start; nothing else that was asked for takes
 /// place.
 fn start_anew(s: &mut State) {

@@ -4,6 +4,7 @@
 //! would print of it. The tests run it.
 #![allow(clippy::duplicate_mod, reason = "the runtime is compiled once for each sample")]
 
+pub mod lamp;
 pub mod press;
 pub mod tank;
 pub mod turns;

@@ -8,12 +8,19 @@ use g7_engine::FaultKind;
 use g7_equations::{Class, Equations, Expr, MemoryId, Section, Stmt, What};
 use g7_model::{Span, Type};
 
-/// The same equations with less to read.
-pub(crate) fn spare(e: &mut Equations, native: &HashSet<MemoryId>) {
+/// The same equations with less to read: those of a controller that judges overflow
+/// and loops by itself, and keeps what is inside its own function blocks (`native`).
+pub(crate) fn spare_for_controllers(e: &mut Equations, native: &HashSet<MemoryId>) {
     for s in sections(e) {
         s.body = left_to_the_controller(std::mem::take(&mut s.body));
     }
     drop_writes(e, native);
+    spare(e, |_| false);
+}
+
+/// The same equations with less to read. Callers of the code ask for variables, steps
+/// and what `asked` names; what else nothing reads is left out.
+pub(crate) fn spare(e: &mut Equations, asked: fn(What) -> bool) {
     // The first pass says by itself whether it changed something.
     if let Some((changed, _)) = e.search {
         for s in &mut e.begin {
@@ -21,7 +28,7 @@ pub(crate) fn spare(e: &mut Equations, native: &HashSet<MemoryId>) {
         }
     }
     start_once(e);
-    drop_unread(e);
+    drop_unread(e, asked);
     for mut list in phases(e) {
         join_raises(&mut list);
     }
@@ -30,7 +37,7 @@ pub(crate) fn spare(e: &mut Equations, native: &HashSet<MemoryId>) {
     }
     one_name_a_value(e);
     in_place(e);
-    drop_unread(e);
+    drop_unread(e, asked);
 }
 
 /// The copies that an action works on are set in a list of statements several
@@ -48,10 +55,11 @@ fn one_name_a_value(e: &mut Equations) {
     e.memories = memories;
 }
 
-/// The first value of a copy, or of the flag that it was written.
-fn begins(what: Option<What>, e: &Expr) -> bool {
+/// The first value of a copy, or of the flag that it was written. A copy ends in the
+/// list that hands it over.
+fn begins(m: MemoryId, what: Option<What>, e: &Expr, handed_over: &HashSet<MemoryId>) -> bool {
     match what {
-        Some(What::Own(of)) => *e == Expr::Read(of),
+        Some(What::Own(of)) => handed_over.contains(&of) && !e.reads(m),
         Some(What::OwnWrote(_)) => e.known() == Some(false),
         _ => false,
     }
@@ -60,13 +68,21 @@ fn begins(what: Option<What>, e: &Expr) -> bool {
 fn values_apart(list: &mut [Stmt], own: &HashSet<MemoryId>, memories: &mut Vec<g7_equations::Memory>) {
     // What is written under a condition keeps its one memory, and so does what was
     // begun in the list around this one.
+    let handed_over: HashSet<MemoryId> = list
+        .iter()
+        .flat_map(written)
+        .filter_map(|m| match memories.get(m.0 as usize).map(|m| m.what) {
+            Some(What::Given(of)) => Some(of),
+            _ => None,
+        })
+        .collect();
     let mut plain: HashSet<MemoryId> = HashSet::new();
     let mut seen: HashSet<MemoryId> = HashSet::new();
     for s in list.iter() {
         if let Stmt::Set(m, e) = s
             && own.contains(m)
             && !seen.contains(m)
-            && begins(memories.get(m.0 as usize).map(|m| m.what), e)
+            && begins(*m, memories.get(m.0 as usize).map(|m| m.what), e, &handed_over)
         {
             plain.insert(*m);
         }
@@ -209,7 +225,7 @@ fn drop_empty(list: &mut Vec<Stmt>) {
 }
 
 /// Drops what is set and never read, but for what users see.
-fn drop_unread(e: &mut Equations) {
+fn drop_unread(e: &mut Equations, asked: fn(What) -> bool) {
     loop {
         let mut read: HashSet<MemoryId> = e.search.iter().map(|s| s.0).collect();
         for s in e.sections().flat_map(|s| &s.body) {
@@ -231,7 +247,7 @@ fn drop_unread(e: &mut Equations) {
         }
         let unread: HashSet<MemoryId> = (0u32..)
             .zip(&e.memories)
-            .filter(|(_, m)| !matches!(m.what, What::Variable(_) | What::Step(_)))
+            .filter(|(_, m)| !(matches!(m.what, What::Variable(_) | What::Step(_)) || asked(m.what)))
             .map(|(i, _)| MemoryId(i))
             .filter(|m| !read.contains(m))
             .collect();
@@ -293,7 +309,7 @@ fn raised(m: MemoryId, e: &Expr) -> Option<Expr> {
 }
 
 /// The memories that a statement reads or writes.
-fn mentioned(s: &Stmt) -> BTreeSet<MemoryId> {
+pub(crate) fn mentioned(s: &Stmt) -> BTreeSet<MemoryId> {
     let mut found = written(s);
     s.visit(&mut |s| s.expressions(&mut |e| found.extend(operands(e))));
     found

@@ -1,0 +1,15 @@
+//! The frame of a chart that is printed as equations: each section of the equations is
+//! a function of the chart, and every step has its memory and its time.
+//!
+//! What may stand here is told in `evolution`.
+
+#[path = "../cycle.rs"]
+mod cycle;
+mod frame;
+
+pub use cycle::*;
+pub use frame::*;
+
+use super::chart::*;
+use crate::faults::*;
+use crate::numbers::since;
