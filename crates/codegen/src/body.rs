@@ -495,7 +495,10 @@ impl Body<'_> {
             }
             Term::Call(f, ty, list) => {
                 let n = num(*ty).unwrap_or(Num::I64);
-                let args = self.each(list, n);
+                let count = list.len().saturating_sub(1);
+                // The last operand of a shift is the number of places.
+                let of = |i: usize| if f.shifts() && i == count { Num::I64 } else { n };
+                let args = list.iter().enumerate().map(|(i, e)| self.number(e, of(i))).collect();
                 (operations::call(*f, n, args, &mut needs), n)
             }
             _ => (Made::Plain(self.none("an operation of this kind")), Num::I64),

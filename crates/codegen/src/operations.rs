@@ -247,6 +247,7 @@ pub(crate) fn call(f: Builtin, n: Num, mut args: Vec<Expr>, needs: &mut Needs) -
             let above = Expr::call(named("max", n), vec![x, low]);
             Made::Plain(Expr::call(named("min", n), vec![above, high]))
         }
+        _ if f.shifts() => Made::Checked(named(&name(f), n), args),
         Builtin::Abs if is_signed(n) => Made::Checked(named("abs", n), args),
         Builtin::Abs if !is_real(n) => Made::Plain(args.pop().unwrap_or(Expr::size(0))),
         _ => {
