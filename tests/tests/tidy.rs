@@ -83,7 +83,7 @@ const ALLOWED: &[Arrows] = &[
 ];
 
 /// Crates whose files still form circles. The list only shrinks: a crate without circles is struck out.
-const CIRCULAR: &[&str] = &["codegen", "compile", "draw", "edit", "g7", "model", "page"];
+const CIRCULAR: &[&str] = &["compile", "draw", "edit", "g7", "model", "page"];
 
 /// Longest file, in lines.
 const LONGEST: usize = 600;
@@ -149,7 +149,7 @@ fn files_of_a_crate_use_each_other_in_one_direction() {
         });
         let circles = circles::circles(&inside.collect::<Vec<_>>());
         match (circles.is_empty(), CIRCULAR.contains(name)) {
-            (true, true) => println!("`{name}` has no circle any more: strike it from CIRCULAR"),
+            (true, true) => found.push(format!("`{name}` has no circle any more: strike it from CIRCULAR")),
             (false, false) => {
                 found.extend(circles.iter().map(|c| format!("circle in `{name}`: {}", c.join(", "))));
             }

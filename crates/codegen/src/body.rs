@@ -12,7 +12,7 @@
 
 use std::collections::HashMap;
 
-use g7_engine::{Block as FunctionBlock, Builtin, Cmp, FaultKind, Num};
+use g7_engine::{Block as FunctionBlock, Builtin, Cmp, Num};
 use g7_equations::{About, Expr as Term, Memory, MemoryId, Stmt as Line, expand};
 use g7_model::{Span, Type};
 
@@ -115,20 +115,6 @@ fn s() -> Expr {
     Expr::name("s")
 }
 
-fn fault_name(kind: FaultKind) -> &'static str {
-    match kind {
-        FaultKind::Unstable { .. } => "FAULT_UNSTABLE",
-        FaultKind::Bound | FaultKind::Work => "FAULT_BOUND",
-        FaultKind::Overflow => "FAULT_OVERFLOW",
-        FaultKind::DivisionByZero => "FAULT_DIVISION",
-        FaultKind::Range => "FAULT_RANGE",
-        FaultKind::Forcing { .. } => "FAULT_FORCING",
-        FaultKind::Table => "FAULT_TABLE",
-        FaultKind::Inputs => "FAULT_INPUTS",
-        FaultKind::Stopped => "FAULT_STOPPED",
-    }
-}
-
 /// The memories that an operation reads.
 fn operands(e: &Term) -> Vec<MemoryId> {
     let mut found = Vec::new();
@@ -185,7 +171,7 @@ impl Body<'_> {
             Line::Exit => self.out.push(Stmt::Break),
             Line::Fault(kind, _) => {
                 self.fails = true;
-                let fault = Stmt::set(s().field("fault"), Expr::name(fault_name(*kind)));
+                let fault = Stmt::set(s().field("fault"), Expr::name(operations::fault(*kind)));
                 let back = self.back();
                 self.out.extend([fault, back]);
             }

@@ -4,7 +4,7 @@
 use std::collections::HashMap;
 
 use g7_compile::Compiled;
-use g7_engine::{Addr, Code, NONE, Num, Op, Receptivity, Rows, Service, StepId, Tables};
+use g7_engine::{Addr, Code, NONE, Num, Receptivity, Rows, StepId, Tables};
 use g7_equations::{Bodies, Expr as Term, Stmt as Line};
 use g7_model::{Problem, Span, Type, codes};
 
@@ -254,11 +254,6 @@ impl<'a> Gen<'a> {
             let fields = self.vars.fields(home);
             self.m.structs.push(Struct { public: true, note: note.into(), name: name.into(), fields });
         }
-    }
-
-    /// Whether services are asked for.
-    pub(crate) fn asks(t: &Tables) -> bool {
-        t.code.iter().any(|op| matches!(op, Op::Service(s) if *s != Service::ResetTimes))
     }
 
     /// Calls of the section, where there is something in it.

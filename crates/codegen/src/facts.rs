@@ -1,8 +1,7 @@
 //! What of the runtime a program needs.
 
-use g7_engine::{NONE, Op, Tables};
+use g7_engine::{NONE, Op, Service, Tables};
 
-use crate::build::Gen;
 use crate::runtime::Facts;
 
 /// Where the inputs of each control block are counted, and how many there are.
@@ -96,7 +95,7 @@ pub(crate) fn of(t: &Tables) -> Facts {
         has_full: full > 0,
         has_conditions: conditional > 0,
         has_watches: !t.watches.is_empty(),
-        has_requests: Gen::asks(t),
+        has_requests: asks(t),
         has_counts: t.counts.is_some(),
         has_limits: t.limits.is_some(),
         has_drops: !t.drops.is_empty(),
@@ -153,4 +152,9 @@ pub(crate) fn of(t: &Tables) -> Facts {
         most_active: t.limits.map_or(0, |l| l.1.active as usize),
         most_enabled: t.limits.map_or(0, |l| l.1.enabled as usize),
     }
+}
+
+/// Some service that sets, resets, initialises or clears is called.
+fn asks(t: &Tables) -> bool {
+    t.code.iter().any(|op| matches!(op, Op::Service(s) if *s != Service::ResetTimes))
 }

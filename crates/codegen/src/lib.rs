@@ -1,14 +1,15 @@
-//! Code for controllers, printed from the lowered program of a chart.
+//! Code for controllers, printed from the equations and the tables of a chart.
 //!
 //! ```text
-//! compile::Compiled (tables, names) -> tree of functions -> C99 | Rust | an Arduino sketch
-//!                                      (tables of the chart, or equations: `flat`)
+//! equations of a scan                     -> flat       -> tree -> C99 | Rust | an Arduino sketch
+//! equations of its code, tables, runtime  -> structured -> tree -> the same
+//! equations of a scan                     -> plc        -> ST | IL | LD
 //! ```
 //!
 //! # Invariants
 //!
-//! - It evolves nothing and decides nothing: the tables of the engine are the
-//!   truth, and the code does what the engine does, scan by scan. The tests run
+//! - It evolves nothing and decides nothing: what the equations and the tables say is
+//!   printed, and the code does what the engine does, scan by scan. The tests run
 //!   both beside each other.
 //! - What a language cannot say is refused with a [`Problem`], never printed wrong.
 //! - The code needs no heap and no library. In the structured style its work follows

@@ -6,7 +6,7 @@
 //! - Both styles and both languages get their operations here.
 //! - The operands are expressions of the operation's own type.
 
-use g7_engine::{Arith, Builtin, Cmp, Num};
+use g7_engine::{Arith, Builtin, Cmp, FaultKind, Num};
 
 use crate::tree::{Bin, Expr, Ty, Un};
 use crate::vars;
@@ -267,4 +267,19 @@ pub(crate) fn name(f: Builtin) -> String {
 /// A function that gives a text has a helper that takes the fault of its numbers.
 pub(crate) fn text_takes_fault(f: Builtin) -> bool {
     f != Builtin::Concat
+}
+
+/// The name of a fault in the code.
+pub(crate) fn fault(kind: FaultKind) -> &'static str {
+    match kind {
+        FaultKind::Unstable { .. } => "FAULT_UNSTABLE",
+        FaultKind::Bound | FaultKind::Work => "FAULT_BOUND",
+        FaultKind::Overflow => "FAULT_OVERFLOW",
+        FaultKind::DivisionByZero => "FAULT_DIVISION",
+        FaultKind::Range => "FAULT_RANGE",
+        FaultKind::Forcing { .. } => "FAULT_FORCING",
+        FaultKind::Table => "FAULT_TABLE",
+        FaultKind::Inputs => "FAULT_INPUTS",
+        FaultKind::Stopped => "FAULT_STOPPED",
+    }
 }

@@ -1,7 +1,7 @@
 //! One pass: what is blocked and forced, which transitions clear, what becomes
 //! of the steps (SEMANTICS section 3).
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use g7_engine::{NONE, Receptivity, Situation, StepId};
 use g7_model::Type;
@@ -263,8 +263,10 @@ impl Make<'_> {
     fn priorities(&mut self) -> Section {
         let mut s = Section::new("Of those that share a step, the best priority clears");
         let t = self.t;
-        let rules = t.rules;
-        let numbered = rules.multi_token && rules.numbered_exclusive;
+        let numbered = t.rules.multi_token && t.rules.numbered_exclusive;
+        if t.rules.multi_token && !numbered {
+            return s;
+        }
         let mut behind: BTreeMap<u32, Vec<u32>> = BTreeMap::new();
         for (rank, tr) in (0u32..).zip(&t.transitions) {
             if tr.shares {
@@ -273,35 +275,78 @@ impl Make<'_> {
                 }
             }
         }
-        for (rank, tr) in (0u32..).zip(&t.transitions) {
-            let settled = tr.simple && !rules.multi_token;
-            if !tr.shares || settled || (rules.multi_token && !numbered) {
-                continue;
+        let contested: Vec<u32> = (0u32..)
+            .zip(&t.transitions)
+            .filter(|(_, tr)| tr.shares && (t.rules.multi_token || !tr.simple))
+            .map(|(rank, _)| rank)
+            .collect();
+        if behind.values().any(|list| list.len() > FEW) {
+            s.body = self.by_step(&behind, &contested, numbered);
+        } else {
+            for rank in contested {
+                self.by_name(rank, &behind, numbered, &mut s.body);
             }
-            let steps: Vec<u32> = self.preceding(tr).collect();
-            let mut rivals: Vec<u32> =
-                steps.iter().filter_map(|s| behind.get(s)).flatten().copied().collect();
-            rivals.sort_unstable();
-            rivals.dedup();
-            let priority = |r: u32| t.transitions.get(r as usize).map_or(NONE, |x| x.priority);
-            let ahead: Vec<u32> = rivals
-                .into_iter()
-                .filter(|r| if numbered { priority(*r) < tr.priority } else { *r < rank })
-                .collect();
-            if ahead.is_empty() {
-                continue;
-            }
-            let mut parts = vec![Expr::Read(self.flag(What::Clearable(rank)))];
-            for other in ahead {
-                let e =
-                    if numbered { Expr::Read(self.flag(What::Clearable(other))) } else { self.clears(other) };
-                parts.push(e.negated());
-            }
-            let to = self.flag(What::Clears(rank));
-            s.body.push(Stmt::About(About::Transition(rank)));
-            s.body.push(Stmt::Set(to, Expr::all(parts)));
         }
         s
+    }
+
+    /// A transition clears unless one of those before it does, each by its name.
+    fn by_name(&mut self, rank: u32, behind: &BTreeMap<u32, Vec<u32>>, numbered: bool, to: &mut Vec<Stmt>) {
+        let Some(tr) = self.t.transitions.get(rank as usize) else { return };
+        let rivals: BTreeSet<u32> =
+            self.preceding(tr).filter_map(|s| behind.get(&s)).flatten().copied().collect();
+        let before = |r: &u32| if numbered { self.priority(*r) < tr.priority } else { *r < rank };
+        let ahead: Vec<u32> = rivals.into_iter().filter(before).collect();
+        if ahead.is_empty() {
+            return;
+        }
+        let mut parts = vec![Expr::Read(self.flag(What::Clearable(rank)))];
+        for other in ahead {
+            let e = if numbered { Expr::Read(self.flag(What::Clearable(other))) } else { self.clears(other) };
+            parts.push(e.negated());
+        }
+        let clears = self.flag(What::Clears(rank));
+        to.push(Stmt::About(About::Transition(rank)));
+        to.push(Stmt::Set(clears, Expr::all(parts)));
+    }
+
+    /// The same with a memory for each step that one of those before has taken it: the
+    /// names of all would be as many as the square of the transitions.
+    fn by_step(&mut self, behind: &BTreeMap<u32, Vec<u32>>, contested: &[u32], numbered: bool) -> Vec<Stmt> {
+        let mut list: Vec<Stmt> =
+            behind.keys().map(|step| lower(self.flag(What::Taken(StepId(*step))))).collect();
+        let mut sharing: Vec<u32> = behind.values().flatten().copied().collect();
+        sharing.sort_unstable();
+        sharing.dedup();
+        if numbered {
+            sharing.sort_by_key(|rank| self.priority(*rank));
+        }
+        let same = |a: &u32, b: &u32| numbered && self.priority(*a) == self.priority(*b);
+        let groups: Vec<Vec<u32>> = sharing.chunk_by(same).map(<[u32]>::to_vec).collect();
+        for group in groups {
+            let mut takes = Vec::new();
+            for rank in group {
+                let Some(tr) = self.t.transitions.get(rank as usize) else { continue };
+                let taken: Vec<_> = self.preceding(tr).map(|s| self.flag(What::Taken(StepId(s)))).collect();
+                let clearable = Expr::Read(self.flag(What::Clearable(rank)));
+                if contested.binary_search(&rank).is_ok() {
+                    let clears = self.flag(What::Clears(rank));
+                    let free = taken.iter().map(|m| Expr::Read(*m).negated());
+                    let parts = std::iter::once(clearable.clone()).chain(free);
+                    list.push(Stmt::About(About::Transition(rank)));
+                    list.push(Stmt::Set(clears, Expr::all(parts)));
+                }
+                // Numbered, a transition keeps those behind it back whether it clears or not.
+                let takes_it = if numbered { clearable } else { self.clears(rank) };
+                takes.extend(taken.into_iter().flat_map(|m| raise(m, takes_it.clone())));
+            }
+            list.extend(takes);
+        }
+        list
+    }
+
+    fn priority(&self, rank: u32) -> u32 {
+        self.t.transitions.get(rank as usize).map_or(NONE, |x| x.priority)
     }
 
     /// A transition clears.

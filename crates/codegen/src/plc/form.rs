@@ -301,3 +301,11 @@ pub(crate) fn operand_type(variables: &[Declared], of: &Ex, operand: &Ex) -> Str
     // A TIME is multiplied by a number and divided by one.
     if wanted == "TIME" { own } else { wanted }
 }
+
+/// A number that was only widened, as it was.
+pub(super) fn narrow(e: Ex) -> Ex {
+    match e {
+        Ex::Call(name, mut args) if name.ends_with("_TO_LINT") && args.len() == 1 => args.remove(0),
+        other => other,
+    }
+}

@@ -12,7 +12,7 @@ use g7_engine::Block as Kind;
 use g7_equations::{About, Equations, Expr, MemoryId, Section, Stmt, What};
 use g7_model::{Problem, Span, Type, codes};
 
-use super::form::{Block, Ex, St};
+use super::form::{Block, Ex, St, narrow};
 use super::memories::{Memories, literal};
 use super::native;
 use crate::spare;
@@ -182,7 +182,7 @@ impl Scan<'_> {
             }
             Stmt::Set(m, e) => self.set(*m, e, out),
             Stmt::SetElement(m, index, e) => {
-                let index = super::terms::narrow(self.ex(index));
+                let index = narrow(self.ex(index));
                 let place = Ex::Index(self.memories.name(*m).to_owned(), Box::new(index));
                 let ty = self.e.memory(*m).map_or(Type::Bool, |m| m.ty);
                 out.push(St::Assign(place, self.ex_as(ty, e)));

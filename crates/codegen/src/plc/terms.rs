@@ -4,7 +4,7 @@ use g7_engine::{Arith, Builtin, Cmp};
 use g7_equations::{Class, Expr, MemoryId, What};
 use g7_model::Type;
 
-use super::form::Ex;
+use super::form::{Ex, narrow};
 use super::memories::{literal, type_name};
 use super::scan::Scan;
 use crate::spare::widens;
@@ -352,14 +352,6 @@ fn narrow_from(from: Type, e: Ex) -> Ex {
         {
             args.remove(0)
         }
-        other => other,
-    }
-}
-
-/// A number that was only widened, as it was.
-pub(super) fn narrow(e: Ex) -> Ex {
-    match e {
-        Ex::Call(name, mut args) if name.ends_with("_TO_LINT") && args.len() == 1 => args.remove(0),
         other => other,
     }
 }
