@@ -70,7 +70,7 @@ pub fn equations(
     )
 }
 
-/// Whether a defect is one of the instructions, which the equations do not read.
+/// True if a defect is one of the instructions, which the equations do not read.
 pub fn is_of_instructions(defect: Break, tables: &Tables) -> bool {
     let mut broken = tables.clone();
     defect(&mut broken);

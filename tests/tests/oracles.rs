@@ -154,7 +154,7 @@ fn walk(e: &Expr, visit: &mut impl FnMut(&Expr)) {
 const UNREACHED: &[(&str, &str)] =
     &[("testInstances_reachability/stepReachability3.grafcet", "GRAFCETChart.3")];
 
-/// Whether every transition that leads to a step never clears, as the analysis
+/// True if every transition that leads to a step never clears, as the analysis
 /// says itself: it lists such steps as reachable all the same.
 fn cut_off(document: &Document, step: &str, never: &BTreeSet<String>) -> bool {
     let Some((chart, name)) = step.split_once('.') else { return false };

@@ -367,7 +367,7 @@ fn a_watch_reads_the_words_that_wake_it() {
     assert!(watches > 500, "{watches} watches");
 }
 
-/// Whether an instruction writes a word of a string.
+/// True if an instruction writes a word of a string.
 fn writes(op: &Op, word: Addr) -> bool {
     match *op {
         Op::StoreText { to, cap } | Op::Text { to, cap, .. } | Op::ToText { to, cap, .. } => {

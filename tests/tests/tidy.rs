@@ -226,7 +226,7 @@ fn nothing_is_left_for_later() {
     none(&found, "words for unfinished work");
 }
 
-/// Whether a word stands in a line, not as a part of a longer one.
+/// True if a word stands in a line, not as a part of a longer one.
 fn has_word(line: &str, word: &str) -> bool {
     line.match_indices(word).any(|(at, _)| {
         let before = line.get(..at).and_then(|s| s.chars().next_back());

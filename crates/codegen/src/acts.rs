@@ -126,7 +126,11 @@ impl Gen<'_> {
             name: name.into(),
             fields,
         };
-        self.m.structs.push(new("Next", "What stored actions have written, until the pass ends.", next));
+        self.m.structs.push(new(
+            "Next",
+            "Values that stored actions have written, until the pass ends.",
+            next,
+        ));
         self.m.structs.push(new("Wrote", "Which of it was written.", wrote));
         for slot in slots.values() {
             let body = write_back(slot);

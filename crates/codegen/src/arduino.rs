@@ -9,7 +9,7 @@ use g7_model::Type;
 use crate::build::Gen;
 use crate::c::comment;
 
-/// What a pin is for.
+/// The use of a pin.
 struct Pin {
     constant: String,
     field: String,

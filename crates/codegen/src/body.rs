@@ -161,7 +161,7 @@ impl Body<'_> {
                 }
             }
             Line::Loop(list) => {
-                // What was checked before the loop may change within it.
+                // A value that was checked before the loop may change within it.
                 let outer = std::mem::take(&mut self.checked);
                 let inner = self.inner(list);
                 self.checked = outer;
@@ -196,7 +196,7 @@ impl Body<'_> {
         found.into_iter().for_each(|m| self.changes(m));
     }
 
-    /// What was checked with this memory as an operand no longer holds.
+    /// Forgets the checks that have this memory as an operand.
     fn changes(&mut self, m: MemoryId) {
         self.checked.retain(|(e, _)| !operands(e).contains(&m));
     }

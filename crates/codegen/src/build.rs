@@ -110,7 +110,7 @@ impl<'a> Gen<'a> {
             .enumerate()
             .map(|(i, (name, note))| ((*name).to_owned(), i, (*note).to_owned()));
         let faults = Numbers {
-            note: "What can stop a scan.".into(),
+            note: "The faults that stop a scan.".into(),
             name: "Fault".into(),
             public: true,
             ty: Some(Ty::U8),
@@ -119,7 +119,7 @@ impl<'a> Gen<'a> {
         self.m.numbers = vec![faults, steps, rows];
     }
 
-    /// What the language of the code cannot say.
+    /// Reports a construct that the language of the code cannot say.
     pub(crate) fn cannot(&mut self, what: &str) {
         let text = format!("{what} cannot be printed as code");
         if self.problems.iter().all(|p| p.what != text) {
@@ -139,7 +139,7 @@ impl<'a> Gen<'a> {
         memory("x").at(self.step(step))
     }
 
-    /// Whether a period is due in this scan.
+    /// True if a period is due in this scan.
     pub(crate) fn due(&self, period: u32) -> Expr {
         let known = self.t.periods.get(period as usize).is_none_or(|p| *p <= 0);
         if known { Expr::Bool(true) } else { s().field("due").at(Expr::size(period as usize)) }
@@ -156,7 +156,7 @@ impl<'a> Gen<'a> {
         }
     }
 
-    /// What a transition is called in comments.
+    /// The name of a transition in comments.
     pub(crate) fn transition_note(&self, rank: u32) -> String {
         let text = self.text(self.c.symbols.transition_place(rank));
         if text.is_empty() || !self.c.symbols.is_written(rank) {
@@ -245,10 +245,10 @@ impl<'a> Gen<'a> {
     /// The structures that hold the variables.
     pub(crate) fn structures(&mut self) {
         let homes = [
-            (Home::Inputs, "Inputs", "What comes in."),
-            (Home::Outputs, "Outputs", "What goes out."),
+            (Home::Inputs, "Inputs", "The inputs."),
+            (Home::Outputs, "Outputs", "The outputs."),
             (Home::Variables, "Variables", "The variables of the chart."),
-            (Home::Locals, "Locals", "What is worked out in between."),
+            (Home::Locals, "Locals", "Intermediate values."),
         ];
         for (home, name, note) in homes {
             let fields = self.vars.fields(home);

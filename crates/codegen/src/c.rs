@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 
 use crate::tree::{Arm, Bin, Block, Const, Expr, Field, Function, Known, Module, Stmt, Struct, Ty, Un};
 
-/// What every name of the module is.
+/// The printer of a module, with the meaning of every name.
 pub(crate) struct Printer<'a> {
     module: &'a Module,
     /// In front of public names.
@@ -58,7 +58,7 @@ impl<'a> Printer<'a> {
         }
     }
 
-    /// What other files may know.
+    /// The declarations for other files.
     pub(crate) fn header(mut self) -> String {
         for numbers in self.module.numbers.iter().filter(|n| n.public) {
             self.note(&numbers.note, "");

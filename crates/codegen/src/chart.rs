@@ -95,7 +95,7 @@ impl Gen<'_> {
         self.function("follow", "Outputs that follow a step.", vec![state()], body);
     }
 
-    /// What comes and goes with the activity of a step.
+    /// The parts that come and go with the activity of a step.
     fn step_changes(&mut self, on: bool) {
         let t = self.t;
         let mut arms = Vec::new();
@@ -118,8 +118,11 @@ impl Gen<'_> {
                 arms.push(Arm { label: self.step(id), note: self.c.symbols.step_path(id).to_owned(), body });
             }
         }
-        let (name, note) =
-            if on { ("step_on", "What comes with a step.") } else { ("step_off", "What goes with a step.") };
+        let (name, note) = if on {
+            ("step_on", "The parts that come with a step.")
+        } else {
+            ("step_off", "The parts that go with a step.")
+        };
         self.choice(name, note, "step", arms);
     }
 
@@ -331,7 +334,7 @@ impl Gen<'_> {
         self.numbers("ON_CLEARING", &note, &actions.collect::<Vec<_>>());
     }
 
-    /// What the runtime looks up.
+    /// The tables that the runtime reads.
     fn tables(&mut self) {
         let t: &Tables = self.t;
         let ids = |steps: Vec<StepId>| steps.into_iter().map(|s| s.0).collect::<Vec<_>>();
@@ -429,7 +432,7 @@ impl Gen<'_> {
             numbers.push(number);
             lists.push(list);
         }
-        self.numbers("ORDER_SITUATION", "What each forcing order imposes.", &numbers);
+        self.numbers("ORDER_SITUATION", "The situation that each forcing order imposes.", &numbers);
         self.lists_of("ORDER_STEPS", "The steps that each forcing order imposes.", &lists);
         let steps: Vec<u32> = t.orders.iter().map(|o| o.step.0).collect();
         self.numbers("ORDER_STEP", "The step that gives each forcing order.", &steps);

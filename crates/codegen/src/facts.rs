@@ -1,4 +1,4 @@
-//! What of the runtime a program needs.
+//! The parts of the runtime that a program needs.
 
 use g7_engine::{NONE, Op, Service, Tables};
 

@@ -188,8 +188,8 @@ impl Flat<'_, '_> {
     /// The structures `Memory` and `Work`, and those of function blocks.
     fn structures(&mut self) {
         for (of, name, note) in [
-            ("m", "Memory", "What lasts from scan to scan, beside the variables."),
-            ("w", "Work", "What is worked out in each scan anew."),
+            ("m", "Memory", "The memories that last from scan to scan, beside the variables."),
+            ("w", "Work", "The memories that are worked out in each scan anew."),
         ] {
             let mut fields: Vec<Field> = Vec::new();
             for ((_, field), row) in self.fields.iter().filter(|((at, _), _)| *at == of) {
@@ -332,7 +332,7 @@ fn member(name: &'static str) -> &'static str {
     if name == "start" { "clock" } else { name }
 }
 
-/// What a field stands for, where its name does not say it all.
+/// The meaning of a field, where its name does not say it all.
 fn explained(field: &str) -> &'static str {
     match field {
         "x" => "the step memories",

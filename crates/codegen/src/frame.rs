@@ -9,7 +9,7 @@ use crate::tree::{Block, Const, Expr, Function, Known, Module, Stmt, Ty};
 use crate::vars::{Home, Shape, Slot, literal, members, text_bytes, text_words};
 
 impl Gen<'_> {
-    /// What stands round the scan.
+    /// The functions round the scan.
     pub(crate) fn frame(&mut self) {
         let slots: Vec<Slot> = self.vars.slots.values().cloned().collect();
         let mut body = vec![Stmt::Clear(Expr::Deref(Box::new(s())), Ty::Named("State".into()))];
@@ -37,7 +37,7 @@ impl Gen<'_> {
         }
     }
 
-    /// What the runtime tells of the numbers of steps and transitions.
+    /// The functions by which the runtime tells the numbers of steps and transitions.
     pub(crate) fn limits(&mut self) {
         let number = |n: Num, v: Expr| if n == Num::I64 { v } else { v.cast(crate::vars::ty(n)) };
         if let Some((steps, transitions)) = self.t.counts {

@@ -71,14 +71,14 @@ pub enum Style {
     Flat,
 }
 
-/// What to print.
+/// The choice of code to print.
 #[derive(Clone, Debug)]
 pub struct Options<'a> {
     /// The language.
     pub language: Language,
     /// How the evolution is written down.
     pub style: Style,
-    /// What files and public names begin with.
+    /// The start of file names and public names.
     pub name: &'a str,
     /// The text of the chart, for comments; may be empty.
     pub source: &'a str,
@@ -89,16 +89,16 @@ pub struct Options<'a> {
 pub struct File {
     /// Its name, without a folder.
     pub name: String,
-    /// What is in it.
+    /// Its content.
     pub text: String,
 }
 
-/// What was printed.
+/// The printed files and their report.
 #[derive(Clone, Debug)]
 pub struct Printed {
     /// The files, the main one last.
     pub files: Vec<File>,
-    /// What is printed with a difference.
+    /// The constructs that are printed with a difference.
     pub problems: Vec<Problem>,
     /// Where the variables and steps went.
     pub places: Places,
@@ -133,7 +133,7 @@ impl Places {
 ///
 /// # Errors
 ///
-/// What the language cannot say, with its place in the chart.
+/// The constructs that the language cannot say, with their places in the chart.
 pub fn print(compiled: &Compiled, options: &Options<'_>) -> Result<Printed, Vec<Problem>> {
     let mut g = Gen::new(compiled, options.source);
     match options.style {
@@ -184,7 +184,7 @@ pub fn print(compiled: &Compiled, options: &Options<'_>) -> Result<Printed, Vec<
         Language::Rust => {
             let head = format!(
                 "//! The chart `{name}`, printed by G7. Call [`init`] once, then [`scan`] in each cycle.\n#![forbid(unsafe_code)]\n\
-                 // What a chart writes for nothing stands as it is, and so do brackets.\n\
+                 // Writes of a chart that nothing reads stand as they are, and so do brackets.\n\
                  #![allow(dead_code, unused_assignments, unused_mut, unused_parens)]\n\n"
             );
             vec![File { name: format!("{name}.rs"), text: head + &rust::print(&module, &helpers.text) }]

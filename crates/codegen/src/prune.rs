@@ -29,7 +29,7 @@ fn types_in(body: &[Stmt], found: &mut HashSet<String>) {
     }
 }
 
-/// Whether a function does nothing.
+/// True if a function does nothing.
 fn is_idle(f: &Function) -> bool {
     f.result.is_none()
         && f.body.iter().all(|s| match s {
@@ -59,7 +59,7 @@ fn without_idle(body: &mut Vec<Stmt>, idle: &HashSet<String>) {
     }
 }
 
-/// What is left of a module when everything is reached from its public functions.
+/// Leaves in a module only the items that its public functions reach.
 /// Tells the functions that are called and not there: those of the language's own part.
 pub(crate) fn prune(m: &mut Module) -> BTreeSet<String> {
     loop {
@@ -73,7 +73,7 @@ pub(crate) fn prune(m: &mut Module) -> BTreeSet<String> {
             break;
         }
     }
-    // What compares is made of the fields that are left.
+    // Comparisons are made of the fields that are left.
     let (functions, _, fields, _) = reach(m);
     m.functions.retain(|f| functions.contains(&f.name));
     keep_fields(m, &fields);

@@ -92,7 +92,7 @@ pub(crate) struct Struct {
 pub(crate) struct Helper {
     name: &'static str,
     text: &'static str,
-    /// Whether C has it from `<math.h>`.
+    /// True if C has it from `<math.h>`.
     math: bool,
     /// Places of those that it needs.
     needs: &'static [usize],

@@ -66,7 +66,7 @@ fn begins(m: MemoryId, what: Option<What>, e: &Expr, handed_over: &HashSet<Memor
 }
 
 fn values_apart(list: &mut [Stmt], own: &HashSet<MemoryId>, memories: &mut Vec<g7_equations::Memory>) {
-    // What is written under a condition keeps its one memory, and so does what was
+    // A copy that is written under a condition keeps its one memory, and so does one that was
     // begun in the list around this one.
     let handed_over: HashSet<MemoryId> = list
         .iter()
@@ -233,7 +233,7 @@ fn drop_unread(e: &mut Equations, asked: fn(What) -> bool) {
                 s.expressions(&mut |x| {
                     x.visit(&mut |x| {
                         if let Expr::Read(m) | Expr::Element(m, _) = x {
-                            // What only hands itself on is not read by it.
+                            // A memory that only hands itself on is not read by it.
                             if !matches!(s, Stmt::Set(to, _) if to == m) {
                                 read.insert(*m);
                             }
@@ -381,7 +381,7 @@ fn in_place(e: &mut Equations) {
     }
 }
 
-/// What has no name of its own in the book of the printed code.
+/// Memories without a name of their own in the printed code.
 fn is_small(what: What, has_clears: &HashSet<u32>) -> bool {
     match what {
         What::Clearable(rank) => has_clears.contains(&rank),
@@ -444,7 +444,7 @@ impl Look {
                 self.all(b.iter());
             }
             Stmt::Loop(a) => {
-                // What is read in a loop is read more than once.
+                // A value that is read in a loop is read more than once.
                 let outer = std::mem::take(&mut self.waiting);
                 self.all(a.iter());
                 self.waiting = outer;

@@ -99,7 +99,7 @@ impl Bin {
         }
     }
 
-    /// Whether its operands may stand without brackets beside the same operator.
+    /// True if its operands may stand without brackets beside the same operator.
     pub(crate) fn chains(self) -> bool {
         matches!(self, Bin::And | Bin::Or | Bin::Add | Bin::Mul | Bin::BitAnd | Bin::BitOr | Bin::BitXor)
     }

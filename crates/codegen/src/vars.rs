@@ -22,7 +22,7 @@ pub(crate) enum Home {
     Constant,
 }
 
-/// What is there.
+/// The form of a variable.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Shape {
     One(Num),

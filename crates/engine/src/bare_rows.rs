@@ -47,7 +47,7 @@ pub(crate) fn output(t: &Tables, l: &Layout, step: u32) -> u32 {
     }
 }
 
-/// Whether a transition leads from one step to one step.
+/// True if a transition leads from one step to one step.
 fn one_to_one(t: &Transition) -> bool {
     t.more_from.is_empty() && t.more_to.is_empty() && t.from.0 != NONE && t.to.0 != NONE
 }

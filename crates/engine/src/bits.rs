@@ -86,7 +86,7 @@ impl Tree {
         tree
     }
 
-    /// Whether words hold a set of members below `n`, with its summaries.
+    /// True if words hold a set of members below `n`, with its summaries.
     pub(crate) fn is_sound(&self, words: &[u64], n: u32) -> bool {
         let mut count = n;
         let mut below: Option<u32> = None;

@@ -43,7 +43,7 @@ pub(crate) const EARLY_P0: u64 = 1 << 22;
 /// Q as it was written last. In a plain block it stands in the word of the count.
 pub(crate) const WRITTEN: u64 = 1 << 63;
 
-/// Whether the timer at this place of [`TIMED`] had a true input at the latest
+/// True if the timer at this place of [`TIMED`] had a true input at the latest
 /// evaluation, so that its start will be read again.
 pub(crate) fn timer_latched(memory: u64, place: u32) -> bool {
     let latch = match TIMED.get(place as usize) {

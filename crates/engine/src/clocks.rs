@@ -272,7 +272,7 @@ impl Reading<'_> {
         Some(most.max(0))
     }
 
-    /// Whether a word is an input, an output, or follows a step or a block.
+    /// True if a word is an input, an output, or follows a step or a block.
     fn is_tied(&self, word: u32) -> bool {
         let t = self.t;
         let within = |r: Rows| (r.start..r.end).contains(&word);
@@ -285,7 +285,7 @@ impl Reading<'_> {
             || counts.into_iter().any(|a| a.0 == word)
     }
 
-    /// Whether anything but calls of a timer reaches the words of its memory.
+    /// True if anything but calls of a timer reaches the words of its memory.
     /// Strings are left out: none lies over an instance.
     fn is_exposed(&self, (base, block, _): (u32, Block, i64)) -> bool {
         (base + 4..base + 6).any(|word| {
@@ -305,7 +305,7 @@ impl Reading<'_> {
     }
 }
 
-/// Whether an instruction can write a word of the variable area.
+/// True if an instruction can write a word of the variable area.
 fn does_write(op: &Op, word: u32) -> bool {
     let first = match *op {
         Op::Store(a) | Op::Random(a) | Op::Fb(_, a) => a,

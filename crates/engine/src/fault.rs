@@ -27,7 +27,7 @@ pub enum FaultKind {
     DivisionByZero,
     /// An index, a MUX selector or a text that is out of range.
     Range,
-    /// More than [`crate::WORK`] jumps in a scan.
+    /// More than [`crate::WORK`] rounds of loops in a scan.
     Work,
     /// Two forcing orders on one chart disagree.
     Forcing {

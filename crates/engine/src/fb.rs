@@ -25,7 +25,7 @@ impl Words<'_> {
         write(self.p, self.s, Addr(self.base + i), v);
     }
 
-    /// Whether input `i` has risen since the last call; memory `m` keeps it.
+    /// True if input `i` has risen since the last call; memory `m` keeps it.
     fn rose(&mut self, i: u32, m: u32) -> bool {
         let (now, before) = (self.get(i), self.get(m));
         self.set(m, now);

@@ -56,7 +56,7 @@ pub fn compare(c: Cmp, n: Num, a: u64, b: u64) -> bool {
     ordered(c, Some(order))
 }
 
-/// Whether a comparison is true. `None` stands for operands of which one is NaN; then
+/// True if a comparison is true. `None` stands for operands of which one is NaN; then
 /// only `<>` is true.
 pub fn ordered(c: Cmp, order: Option<core::cmp::Ordering>) -> bool {
     let Some(o) = order else { return c == Cmp::Ne };
@@ -231,7 +231,7 @@ fn shift(f: Builtin, n: Num, v: u64, by: i64) -> Result<u64, FaultKind> {
     Ok(((v << left) | v.checked_shr(width - left).unwrap_or(0)) & all)
 }
 
-/// What a generator's word grows by for each random number.
+/// The step by which a generator's word grows for each random number.
 pub const RANDOM_STEP: u64 = 0x9E37_79B9_7F4A_7C15;
 
 /// The random number (F64, at least 0 and below 1) of a generator's word:

@@ -8,7 +8,7 @@
 /// Words of stack that code may use.
 pub const STACK: usize = 64;
 
-/// Jumps that the code of one scan may make; more are taken for an endless loop.
+/// Rounds of loops that the code of one scan may make; more are taken for an endless loop.
 pub const WORK: u32 = 1_000_000;
 
 /// Longest STRING, in bytes.
@@ -40,7 +40,7 @@ pub struct Code {
 }
 
 impl Code {
-    /// Whether there is no instruction.
+    /// True if there is no instruction.
     pub const fn is_empty(self) -> bool {
         self.start >= self.end
     }
@@ -327,7 +327,7 @@ pub enum Op {
     ToText {
         /// Kind of the value; I64 prints a plain number.
         from: Num,
-        /// Whether it is TIME.
+        /// True if it is TIME.
         time: bool,
         /// First word of the result.
         to: Addr,

@@ -100,7 +100,7 @@ pub(crate) fn block(p: &Program, s: &mut State) {
     }
 }
 
-/// Whether a step is active after the orders so far, and so gives its own: it is active
+/// True if a step is active after the orders so far, and so gives its own: it is active
 /// and no order above deactivates it or its enclosing step, or an order above has just
 /// activated it.
 fn acts(s: &State, step: StepId) -> bool {
@@ -146,7 +146,7 @@ fn impose(p: &Program, s: &mut State, i: u32) {
 /// Stands in `forced_by` for "two orders disagree".
 const CONFLICT: u32 = NONE - 1;
 
-/// Whether an order asks for the situation of one that acts on its chart already.
+/// True if an order asks for the situation of one that acts on its chart already.
 fn agree(p: &Program, s: &State, first: Situation, o: &Order) -> bool {
     match (first, o.situation) {
         (Situation::Current, Situation::Current) => true,
@@ -160,7 +160,7 @@ fn agree(p: &Program, s: &State, first: Situation, o: &Order) -> bool {
     }
 }
 
-/// Whether these steps of a chart and no others are active, after the orders above it.
+/// True if these steps of a chart and no others are active, after the orders above it.
 fn is_in(p: &Program, s: &State, chart: u32, steps: &[StepId]) -> bool {
     let group = p.tables.charts.get(chart as usize).and_then(|c| p.tables.groups.get(c.group.0 as usize));
     group.is_some_and(|g| {
@@ -235,7 +235,7 @@ fn is_blocked(s: &State, chart: u32) -> bool {
     s.scratch.blocked.get(chart as usize).copied().unwrap_or(false)
 }
 
-/// Whether all preceding steps but the first are active.
+/// True if all preceding steps but the first are active.
 #[inline(always)]
 pub(crate) fn rest_active(p: &Program, s: &State, t: &Transition) -> bool {
     t.more_from.is_empty() || arcs(p, t.more_from).iter().all(|f| s.steps.contains(&s.image, f.0))

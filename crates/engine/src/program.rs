@@ -117,7 +117,7 @@ impl Program {
     }
 }
 
-/// Whether tables consist of steps, transitions and outputs that each follow one
+/// True if tables consist of steps, transitions and outputs that each follow one
 /// step, apart from PRE and POST, hierarchy, periods and stored actions.
 fn is_bare(t: &Tables) -> bool {
     t.orders.is_empty()

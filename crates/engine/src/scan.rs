@@ -400,7 +400,7 @@ pub fn finish(p: &Program, s: &mut State) -> Result<(), Fault> {
     Ok(())
 }
 
-/// Whether an edge, a timer, a request or an action needs the next scan.
+/// True if an edge, a timer, a request or an action needs the next scan.
 fn waits(p: &Program, s: &State) -> bool {
     let l = &p.layout;
     let watched = !p.tables.watches.is_empty()
@@ -465,7 +465,7 @@ fn active_now(p: &Program, s: &State) -> u32 {
     s.active().filter(|step| !stands_in(&step.0)).count() as u32
 }
 
-/// Whether a transition is enabled and counts.
+/// True if a transition is enabled and counts.
 fn is_enabled(p: &Program, s: &State, i: usize) -> bool {
     p.tables
         .transitions

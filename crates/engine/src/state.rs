@@ -104,7 +104,7 @@ impl State {
         if addr.0 >= self.var_words { 0 } else { word(&self.image, (self.vars + addr.0) as usize) }
     }
 
-    /// Whether a step is active.
+    /// True if a step is active.
     pub fn is_active(&self, step: StepId) -> bool {
         (step.0 as usize) < self.scratch.on_mark.len() * 64 && self.steps.contains(&self.image, step.0)
     }
@@ -115,7 +115,7 @@ impl State {
         core::iter::from_fn(move || walk.next(&self.steps, &self.image).map(StepId))
     }
 
-    /// Whether a step of the group is active.
+    /// True if a step of the group is active.
     pub fn group_active(&self, p: &Program, group: GroupId) -> bool {
         word(&self.image, p.layout.groups as usize + group.0 as usize) != 0
     }
@@ -162,12 +162,12 @@ impl State {
         word(&self.image, head::SCANS)
     }
 
-    /// Whether the first scan has begun.
+    /// True if the first scan has begun.
     pub fn is_started(&self) -> bool {
         word(&self.image, head::FLAGS) & STARTED != 0
     }
 
-    /// Whether a fault has stopped the program.
+    /// True if a fault has stopped the program.
     pub fn is_stopped(&self) -> bool {
         word(&self.image, head::FLAGS) & STOPPED != 0
     }
@@ -189,7 +189,7 @@ impl State {
         word(&self.image, if p.tables.rules.scan_clock { head::SCANS } else { head::NOW }) as i64
     }
 
-    /// Whether a row of [`crate::Tables::periods`] is due in this scan.
+    /// True if a row of [`crate::Tables::periods`] is due in this scan.
     #[inline(always)]
     pub(crate) fn is_due(&self, p: &Program, period: u32) -> bool {
         !p.has_periods || self.scratch.due.get(period as usize).copied().unwrap_or(true)

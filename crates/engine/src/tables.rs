@@ -24,7 +24,7 @@ pub struct Rows {
 }
 
 impl Rows {
-    /// Whether there is no row.
+    /// True if there is no row.
     pub const fn is_empty(self) -> bool {
         self.start >= self.end
     }

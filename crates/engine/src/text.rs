@@ -189,7 +189,7 @@ fn assemble(
     Ok(None)
 }
 
-/// What a function of texts gives.
+/// The value of a function of texts.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Applied {
     /// LEN and FIND.

@@ -44,7 +44,7 @@ impl Make<'_> {
         Stmt::when(due, list)
     }
 
-    /// What an action wrote on its copy of a memory is given at the end of the pass.
+    /// Hands the value of a copy over to the end of the pass.
     fn hand_over(&mut self, m: MemoryId, own: MemoryId) -> Vec<Stmt> {
         let (given, noted) = (self.beside(What::Given(m), m), self.flag(What::Wrote(m)));
         let mut take = Vec::new();

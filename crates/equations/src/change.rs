@@ -1,4 +1,4 @@
-//! What follows from a change of steps: stored actions, times, conditions of
+//! The consequences of a change of steps: stored actions, times, conditions of
 //! qualifiers; and transitions that clear one after the other.
 
 use std::collections::BTreeSet;

@@ -1,7 +1,7 @@
 //! Code of the chart (receptivities, conditions, bodies) as statements and total
 //! expressions.
 //!
-//! What can have no value is asked for first, and ends the scan with a fault.
+//! An operation that can have no value is asked about first, and ends the scan with a fault.
 //! RETURN and EXIT become flags and the loop's own exit.
 
 use std::collections::HashMap;
@@ -56,7 +56,7 @@ impl<'a> Make<'a> {
         self.value(code)
     }
 
-    /// What code does.
+    /// The statements of code.
     pub(crate) fn work(&mut self, code: Code) -> Vec<Stmt> {
         self.work_in(code, None)
     }

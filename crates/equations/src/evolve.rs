@@ -45,7 +45,7 @@ impl Make<'_> {
         sections
     }
 
-    /// What is to be remembered of the state as the pass begins.
+    /// The values that are remembered as the pass begins.
     fn as_it_begins(&mut self) -> Section {
         let mut s = Section::new("As the pass begins");
         let looked: Vec<StepId> = self
@@ -153,7 +153,7 @@ impl Make<'_> {
         }
     }
 
-    /// Whether an order asks for another situation than one that acts on its chart already.
+    /// True if an order asks for another situation than one that acts on its chart already.
     fn differ(&mut self, first: Situation, own: Situation, chart: u32) -> Expr {
         match (first, own) {
             (Situation::Current, Situation::Current) => Expr::truth(false),
@@ -474,7 +474,7 @@ impl Make<'_> {
         self.beside(What::Begun(memory), memory)
     }
 
-    /// Whether the pass changed something, where passes go on until none does.
+    /// True if the pass changed something, where passes go on until none does.
     pub(crate) fn changed(&mut self) -> Option<crate::form::MemoryId> {
         self.t.rules.stable.then(|| self.memory(What::Changed, Class::Scratch, Type::Bool))
     }

@@ -22,7 +22,7 @@ impl Instance<'_> {
     }
 }
 
-/// What a call of a function block does to its memories: the members in the order
+/// The effect of a call of a function block on its memories: the members in the order
 /// of the call, then what it remembers.
 ///
 /// Of TON, TOF and TP the memory behind the members is the clock, then a LINT: bit

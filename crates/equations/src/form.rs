@@ -57,7 +57,7 @@ pub enum Part {
     Q,
 }
 
-/// What a memory stands for.
+/// The meaning of a memory.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum What {
     /// A variable of the chart, or what the compiler keeps beside them, by its
@@ -145,7 +145,7 @@ pub enum What {
     Own(MemoryId),
     /// That action has written it.
     OwnWrote(MemoryId),
-    /// What the actions of a pass give a memory.
+    /// The value that the actions of a pass give a memory.
     Given(MemoryId),
     /// An action of the pass has written it.
     Wrote(MemoryId),
@@ -186,7 +186,7 @@ pub enum What {
 /// A memory.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Memory {
-    /// What it stands for.
+    /// Its meaning.
     pub what: What,
     /// How long it lasts.
     pub class: Class,
@@ -242,7 +242,7 @@ pub enum Expr {
     Fails(Box<Expr>),
 }
 
-/// What a statement is about, for comments and messages.
+/// The subject of a statement, for comments and messages.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum About {
     /// Nothing of the text.
@@ -287,7 +287,7 @@ pub enum Stmt {
 /// Statements with a heading.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Section {
-    /// What they do together.
+    /// Their common purpose.
     pub title: &'static str,
     /// The statements.
     pub body: Vec<Stmt>,

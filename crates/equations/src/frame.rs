@@ -1,4 +1,4 @@
-//! What stands round the passes: clocks and periods, edges and delays, PRE and
+//! The parts round the passes: clocks and periods, edges and delays, PRE and
 //! POST, actions of each scan, counts and limits (SEMANTICS section 4).
 
 use g7_engine::{Arith, Cmp, FaultKind, NONE, StepId, WatchId};

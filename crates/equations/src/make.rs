@@ -101,7 +101,7 @@ impl<'a> Make<'a> {
         }
     }
 
-    /// What some code reads, asks for or writes: the evolution has to know it
+    /// Finds the items that some code reads, asks for or writes: the evolution has to know them
     /// before that code is come to.
     fn discover(&mut self) {
         let c = self.c;
@@ -243,7 +243,7 @@ impl<'a> Make<'a> {
         (self.hidden(addr, ty), None)
     }
 
-    /// What the lowering keeps beside the variables.
+    /// A word that the lowering keeps beside the variables.
     fn hidden(&mut self, addr: Addr, ty: Type) -> MemoryId {
         let lasts = self.t.locals.is_empty() || addr.0 < self.t.locals.start;
         let class = if lasts { Class::Kept } else { Class::Scratch };
@@ -275,7 +275,7 @@ impl<'a> Make<'a> {
         Err(text.clone())
     }
 
-    /// What a piece of code does; `None` for an empty one.
+    /// A piece of code; `None` for an empty one.
     pub(crate) fn piece(&self, code: Code) -> Option<&'a Piece> {
         self.c.pieces.get(code)
     }

@@ -11,7 +11,7 @@ use crate::whole::Equations;
 /// Passes before a state that comes back is looked for, as in the engine.
 const PATIENCE: u32 = 48;
 
-/// What a memory holds.
+/// The content of a memory.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Value {
     /// A number, as the engine's word for it; of a table, one an element.
@@ -52,7 +52,7 @@ impl Machine {
         &self.e
     }
 
-    /// What a memory holds.
+    /// The content of a memory.
     pub fn value(&self, id: MemoryId) -> Option<&Value> {
         self.state.get(id.0 as usize)
     }
@@ -76,7 +76,7 @@ impl Machine {
         }
     }
 
-    /// Whether a BOOL memory holds.
+    /// True if a BOOL memory holds.
     pub fn holds(&self, id: MemoryId) -> bool {
         self.word(id) != 0
     }
@@ -219,7 +219,7 @@ fn first(ty: Type, words: &[u64]) -> Value {
     }
 }
 
-/// What an expression gives.
+/// The value of an expression.
 #[derive(Clone, Debug)]
 enum Given {
     Word(u64),

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use crate::form::{Expr, Memory, MemoryId, Section, Stmt, What};
 
-/// What the equations are to say besides what the chart needs.
+/// Options: additions to the equations beyond the needs of the chart.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Options {
     /// The time of each step has a memory, whether or not something reads it.
@@ -29,7 +29,7 @@ pub struct Equations {
     pub search: Option<(MemoryId, u32)>,
     /// Once a scan, behind the evolution.
     pub finish: Vec<Section>,
-    /// What each query of the compiled chart asks: statements, then its value.
+    /// The queries of the compiled chart: statements, then the value.
     pub questions: Vec<(Vec<Stmt>, Expr)>,
     /// Outputs with the words that they take after a fault.
     pub safe: Vec<(MemoryId, Box<[u64]>)>,

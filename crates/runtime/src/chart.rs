@@ -1,4 +1,4 @@
-//! What the runtime asks of a chart: facts, tables, functions, types. Here they are
+//! The items that the runtime asks of a chart: facts, tables, functions, types. Here they are
 //! those of a chart without anything in it.
 //!
 //! `codegen` reads this file while it is built. A `bool` or an integer is a fact: it
@@ -30,7 +30,7 @@ pub const FINAL_SCAN: bool = false;
 /// Actions of each scan run before the control blocks, on the situation before the evolution.
 pub const PERIODIC_FIRST: bool = false;
 
-// What there is in the chart.
+// The parts of the chart.
 
 /// Forcing orders.
 pub const HAS_ORDERS: bool = false;
@@ -98,7 +98,7 @@ pub const HAS_LATE: bool = false;
 pub const HAS_ON: bool = false;
 /// The situation from before the pass is asked for.
 pub const LOOKS_BACK: bool = false;
-/// What changed is told by comparison: an action may undo another.
+/// A change is found by comparison: an action may undo another.
 pub const COMES_AND_GOES: bool = false;
 /// A change of steps is noted.
 pub const NOTES_STEPS: bool = false;
@@ -225,9 +225,9 @@ pub fn receptivity<S>(_: &mut S, _transition: usize) -> bool {
 }
 /// Outputs that follow a step.
 pub fn follow<S>(_: &mut S) {}
-/// What comes with a step.
+/// The parts that come with a step.
 pub fn step_on<S>(_: &mut S, _step: usize) {}
-/// What goes with a step.
+/// The parts that go with a step.
 pub fn step_off<S>(_: &mut S, _step: usize) {}
 /// Collects the actions of a step that comes on.
 pub fn gather_on<S>(_: &mut S, _step: usize) {}
@@ -271,15 +271,15 @@ pub fn sections_before<S>(_: &mut S) {}
 pub fn sections_of_pass<S>(_: &mut S) {}
 /// The equations behind the passes.
 pub fn sections_behind<S>(_: &mut S) {}
-/// Whether two memories are the same.
+/// True if two memories are the same.
 pub fn same_memory<M: PartialEq>(a: &M, b: &M) -> bool {
     a == b
 }
-/// Whether variables are the same; NaN is the same as NaN.
+/// True if variables are the same; NaN is the same as NaN.
 pub fn same_variables<V: PartialEq>(a: &V, b: &V) -> bool {
     a == b
 }
-/// Whether outputs are the same; NaN is the same as NaN.
+/// True if outputs are the same; NaN is the same as NaN.
 pub fn same_outputs<O: PartialEq>(a: &O, b: &O) -> bool {
     a == b
 }

@@ -4,7 +4,7 @@
 
 use super::*;
 
-/// Whether a step is active.
+/// True if a step is active.
 pub fn is_active(s: &State, step: usize) -> bool {
     step < STEPS && s.m.x[step]
 }

@@ -1,4 +1,4 @@
-//! What can stop a scan. The numbers stand in the printed code, each with its note.
+//! The faults that stop a scan. The numbers stand in the printed code, each with its note.
 
 /// no fault
 pub const FAULT_NONE: u8 = 0;

@@ -5,16 +5,16 @@
 pub struct File {
     /// Its path in this crate, for messages.
     pub path: &'static str,
-    /// What is in it.
+    /// Its content.
     pub text: &'static str,
 }
 
 /// All that `codegen` prints of this crate.
 #[derive(Clone, Copy, Debug)]
 pub struct Source {
-    /// What the runtime asks of a chart.
+    /// The items that the runtime asks of a chart.
     pub chart: File,
-    /// What can stop a scan.
+    /// The faults that stop a scan.
     pub faults: File,
     /// The evolution, in the order in which it is printed.
     pub evolution: &'static [File],
@@ -42,7 +42,7 @@ macro_rules! files {
     };
 }
 
-/// What stands in this crate.
+/// The files of this crate.
 pub const ALL: Source = Source {
     chart: file!("src/chart.rs"),
     faults: file!("src/faults.rs"),

@@ -48,7 +48,7 @@ pub enum Moment {
     Fault(Fault),
 }
 
-/// What a search does next, as the caller wants it who was shown a moment.
+/// The caller's choice of how a search goes on after a moment that it was shown.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Next {
     /// This is the moment that was searched.
@@ -61,7 +61,7 @@ pub enum Next {
 }
 
 impl From<bool> for Next {
-    /// Whether the moment is the one that was searched.
+    /// True if the moment is the one that was searched.
     fn from(found: bool) -> Next {
         if found { Next::Stop } else { Next::Go }
     }

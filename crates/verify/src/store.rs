@@ -25,7 +25,7 @@ impl Store {
         self.images.get(number * self.width..(number + 1) * self.width).unwrap_or(&[])
     }
 
-    /// Whether an image is there. Two are equal only if all words agree.
+    /// True if an image is there. Two are equal only if all words agree.
     pub(crate) fn contains(&self, image: &[u64]) -> bool {
         self.slot(image).is_err()
     }

@@ -60,7 +60,7 @@ fn metadata(root: &Path) -> Value {
     serde_json::from_slice(&out.stdout).expect("JSON of cargo metadata")
 }
 
-/// Whether an SPDX expression can be met by licences that are allowed: one side
+/// True if an SPDX expression can be met by licences that are allowed: one side
 /// of each OR, both sides of each AND. No licence at all is none allowed.
 pub(crate) fn fits(expression: &str, allowed: &BTreeSet<String>) -> bool {
     let spaced = expression.replace('(', " ( ").replace(')', " ) ").replace('/', " OR ");

@@ -1,4 +1,4 @@
-//! What the runtime asks of a chart: facts, tables, functions.
+//! The items that the runtime asks of a chart: facts, tables, functions.
 
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
@@ -83,7 +83,7 @@ impl Chart {
     /// The structure in which `codegen` gives every fact its value.
     pub(crate) fn facts(&self) -> String {
         format!(
-            "/// What of the runtime a chart needs, and how much room.\n#[derive(Clone, Debug, Default)]\n\
+            "/// The parts of the runtime that a chart needs, and how much room.\n#[derive(Clone, Debug, Default)]\n\
              pub(crate) struct Facts {{\n    /// Bits of a number of a step, a transition, an action.\n    \
              pub(crate) row_bits: u8,\n{}}}\n\n",
             self.fields

@@ -11,11 +11,11 @@ use super::Result;
 #[derive(Clone, Debug)]
 pub(crate) struct Helper {
     pub(crate) name: String,
-    /// Whether the chart's code may call it.
+    /// True if the chart's code may call it.
     pub(crate) offered: bool,
     /// As it is printed.
     pub(super) text: String,
-    /// Whether C has it from `<math.h>`.
+    /// True if C has it from `<math.h>`.
     pub(super) math: bool,
     /// All that it needs, in the order of the files.
     needs: Vec<usize>,
@@ -27,11 +27,11 @@ impl Helper {
     }
 }
 
-/// What only Rust has: C turns no real into a text or back without a library, and its
+/// Helpers that only Rust has: C turns no real into a text or back without a library, and its
 /// printer writes the complement as an operator.
 const ONLY_RUST: [&str; 5] = ["inv", "text_to_f32", "text_to_f64", "text_from_f32", "text_from_f64"];
 
-/// Whether a name stands in a text as a word before `(` or `::`, and not as a method.
+/// True if a name stands in a text as a word before `(` or `::`, and not as a method.
 fn uses(text: &str, name: &str) -> bool {
     text.match_indices(name).any(|(at, _)| {
         let (before, behind) = (&text[..at], &text[at + name.len()..]);
@@ -108,7 +108,7 @@ pub(super) fn link(all: &mut [Helper]) {
     }
 }
 
-/// What a chart may call in one language it may call in the other.
+/// Checks that a chart may call the same helpers in both languages.
 pub(crate) fn hold_the_same(rust: &[Helper], c: &[Helper]) -> Result<()> {
     let needed = |h: &&Helper| h.offered && !ONLY_RUST.contains(&h.name.as_str());
     let missing: Vec<&str> = rust

@@ -17,7 +17,7 @@ use helpers::Helper;
 /// A mistake in the runtime, with its file.
 pub(crate) type Result<T> = std::result::Result<T, String>;
 
-/// What a file of the runtime says when it is wrong.
+/// The error of a file of the runtime.
 pub(crate) fn wrong<T>(file: &File, why: impl std::fmt::Display) -> Result<T> {
     Err(format!("crates/runtime/{}: {why}", file.path))
 }

@@ -46,7 +46,7 @@ struct Generic {
     text: String,
 }
 
-/// What has been read of the files.
+/// The items read from the files.
 #[derive(Debug, Default)]
 struct Reader {
     helpers: Vec<Helper>,

@@ -9,7 +9,7 @@ use syn::{BinOp, Block, Expr, FnArg, Item, Lit, Member, Pat, RangeLimits, Return
 use super::chart::{Chart, field, note, word};
 use super::{Result, wrong};
 
-/// What has been read so far.
+/// The items read so far.
 #[derive(Debug, Default)]
 pub(crate) struct Reader {
     structs: String,

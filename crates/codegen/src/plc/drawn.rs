@@ -27,7 +27,7 @@ fn rung(r: &Rung) -> g7_draw::Rung {
     g7_draw::Rung { title: r.title.clone(), note: r.note.clone(), label: String::new(), elements }
 }
 
-/// What stands in a row.
+/// An element of a row.
 fn way(net: &Net) -> Vec<Element> {
     match net {
         Net::Wire => Vec::new(),

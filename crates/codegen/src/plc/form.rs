@@ -1,4 +1,4 @@
-//! What Structured Text, Instruction List and Ladder have in common: the
+//! The common part of Structured Text, Instruction List and Ladder: the
 //! equations of a chart with names, before they are printed in one of them.
 
 /// A value.
@@ -139,14 +139,14 @@ impl Ex {
         }
     }
 
-    /// Whether it reads no variable at all.
+    /// True if it reads no variable at all.
     fn is_constant(&self) -> bool {
         let mut found = true;
         self.walk(&mut |e| found &= !matches!(e, Ex::Var(_) | Ex::Index(..)));
         found
     }
 
-    /// Whether working it out can fail or leave the range: it calculates.
+    /// True if working it out can fail or leave the range: it calculates.
     pub(crate) fn calculates(&self) -> bool {
         let mut found = false;
         self.walk(&mut |e| {

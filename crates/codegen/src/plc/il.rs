@@ -331,7 +331,7 @@ fn flat(e: &Ex) -> bool {
     }
 }
 
-/// What can stand behind an operator as it is.
+/// An operand that stands behind an operator as it is.
 fn operand(e: &Ex) -> Option<String> {
     match e {
         Ex::Bool(_) | Ex::Int(_) | Ex::Real(_) | Ex::Time(_) | Ex::Var(_) | Ex::Index(..) => {

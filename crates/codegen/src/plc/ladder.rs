@@ -7,7 +7,7 @@ use g7_model::{Problem, Span, StandardFunction, codes};
 use super::form::{self, Class, Declared, Ex, St, operand_type, type_name, type_of};
 use super::st::{FAULT_COMES, expression};
 
-/// What power flows through.
+/// An element that power flows through.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Net {
     Wire,
@@ -16,7 +16,7 @@ pub(crate) enum Net {
     Parallel(Vec<Net>),
 }
 
-/// What a coil does.
+/// The effect of a coil.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Coil {
     Plain,
@@ -34,7 +34,7 @@ pub(crate) struct Block {
     pub(crate) output: Option<(String, String)>,
 }
 
-/// What stands at the right end.
+/// The element at the right end.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum End {
     Coil(String, Coil),
@@ -63,7 +63,7 @@ pub(crate) struct Ladder {
 ///
 /// # Errors
 ///
-/// What Ladder cannot say.
+/// A construct that Ladder cannot say.
 pub(crate) fn ladder(e: &form::Block, place: Span) -> Result<Ladder, Vec<Problem>> {
     let mut l = Maker {
         variables: e.variables.clone(),

@@ -15,7 +15,7 @@ use super::names::Names;
 const FIXED: [&str; 10] =
     ["FIRST", "CLOCK", "LAST", "DT", "PASSES", "CHANGED", "FAULT", "OPENING", "STEPPED", "NOW"];
 
-/// What each memory is called.
+/// The name of each memory.
 pub(crate) struct Memories {
     /// By memory: its name; none where nothing has to be called.
     names: Vec<String>,

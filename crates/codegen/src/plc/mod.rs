@@ -51,7 +51,7 @@ pub struct Printed {
     pub text: String,
     /// The name of the function block.
     pub name: String,
-    /// What is printed with a difference.
+    /// The constructs that are printed with a difference.
     pub problems: Vec<Problem>,
     steps: Vec<String>,
     variables: HashMap<u32, (String, u32)>,
@@ -75,7 +75,7 @@ impl Printed {
 ///
 /// # Errors
 ///
-/// What the form cannot say, with its place in the chart.
+/// The constructs that the form cannot say, with their places in the chart.
 pub fn print(compiled: &Compiled, form: Form, name: &str, source: &str) -> Result<Printed, Vec<Problem>> {
     let set_reset = form == Form::Dolog80;
     let (block, memories, problems) = scan::block(compiled, name, source, set_reset);

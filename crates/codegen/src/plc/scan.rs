@@ -323,7 +323,7 @@ impl Scan<'_> {
         (n > 0).then_some((n, copies))
     }
 
-    /// What sets and resets the step that `m` is, or will be.
+    /// The conditions that set and reset the step that `m` is, or will be.
     fn turn(&self, m: MemoryId, e: &Expr) -> Option<(MemoryId, Expr, Expr)> {
         let step = match self.e.memory(m)?.what {
             What::Step(_) => m,

@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use super::form::{Block, Class, Declared, Ex, St};
 
-/// What stands before the safe values.
+/// The text before the safe values.
 pub(crate) const FAULT_COMES: &str = "A fault: the safe values, and no further scan";
 
 /// Letters of a line up to which an IF with one assignment stands on it.

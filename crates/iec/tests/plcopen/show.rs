@@ -43,7 +43,7 @@ pub(crate) fn errors(problems: &[Problem]) -> Vec<&str> {
     problems.iter().filter(|p| p.severity() == Severity::Error).map(|p| &*p.what).collect()
 }
 
-/// Whether it can be run.
+/// True if it can be run.
 pub(crate) fn compiles(document: &Document) {
     let (compiled, problems) = g7_compile::compile(document);
     assert!(compiled.is_some(), "{:?}", errors(&problems));

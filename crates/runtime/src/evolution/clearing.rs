@@ -59,7 +59,7 @@ pub(crate) fn watch_step(s: &mut State, step: usize) {
     }
 }
 
-/// Whether a transition that is looked at from its first preceding step is enabled
+/// True if a transition that is looked at from its first preceding step is enabled
 /// and its receptivity true.
 pub(crate) fn is_clearable(s: &mut State, t: usize) -> bool {
     if HAS_JOINS {

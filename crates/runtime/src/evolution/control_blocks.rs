@@ -82,7 +82,7 @@ pub(crate) fn look_early(s: &mut State) {
     }
 }
 
-/// Whether a delay of a block has run off; it starts as its input comes.
+/// True if a delay of a block has run off; it starts as its input comes.
 pub(crate) fn delay_done(s: &mut State, i: usize, now: bool, before: bool) -> bool {
     if now && !before {
         s.m.block_start[i] = s.now;

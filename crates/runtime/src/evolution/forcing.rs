@@ -1,4 +1,4 @@
-//! What comes first in a pass: charts that stand still, forcing orders, actions on event.
+//! The first part of a pass: charts that stand still, forcing orders, actions on event.
 
 use super::*;
 

@@ -1,8 +1,8 @@
-//! What a chart remembers, and the times of its steps.
+//! The memory of a chart, and the times of its steps.
 
 use super::*;
 
-/// What evolves.
+/// The memory that evolves.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Memory {
     /// the step memories: whether each step is active

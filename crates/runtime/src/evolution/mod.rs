@@ -1,9 +1,9 @@
 //! The evolution of one chart. Each sample compiles it over its own `chart` module;
 //! `codegen` prints it in C and Rust behind the facts and tables of a chart.
 //!
-//! # What may stand here
+//! # Forms that may stand here
 //!
-//! What C99 and Rust have in common, or the build of `codegen` fails: functions over
+//! Only forms that C99 and Rust have in common, or the build of `codegen` fails: functions over
 //! [`State`], `let` with a type, `if`, `while`, `for` over a range, no `match`, no
 //! iterators, no references but to structures and arrays that are passed on. A
 //! comment on a line of its own is printed. What callers of the printed code may use

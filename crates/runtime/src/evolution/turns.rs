@@ -126,7 +126,7 @@ pub(crate) fn enter(s: &mut State, first: usize) {
     }
 }
 
-/// What enclosing steps take and bring holds against the turns that came behind.
+/// Enclosing steps decide over the turns that came behind.
 pub(crate) fn enclosures(s: &mut State) {
     let mut k: usize = 0;
     while k < s.left_count {

@@ -10,7 +10,7 @@ pub(crate) fn edge(s: &mut State, i: usize, now: bool, fresh: bool) {
     s.m.fall[i] = before && !now && !fresh;
 }
 
-/// Whether a timer runs now that its condition is known; then it asks for its time.
+/// True if a timer runs now that its condition is known; then it asks for its time.
 pub(crate) fn timer_runs(s: &mut State, i: usize, now: bool) -> bool {
     if s.m.value[i] != now {
         s.m.value[i] = now;

@@ -1,4 +1,4 @@
-//! What a chart remembers, and its sections in order.
+//! The memory of a chart, and its sections in order.
 
 use super::*;
 

@@ -1,7 +1,7 @@
 //! The frame of a chart that is printed as equations: each section of the equations is
 //! a function of the chart, and every step has its memory and its time.
 //!
-//! What may stand here is told in `evolution`.
+//! `evolution` says which forms of Rust may stand here.
 
 #[path = "../cycle.rs"]
 mod cycle;

@@ -33,14 +33,14 @@ pub struct Variables {}
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Locals {}
 
-/// What lasts from scan to scan.
+/// The memories that last from scan to scan.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Memory {
     pub x: [bool; STEPS],
     pub time: [i64; STEPS],
 }
 
-/// What is worked out in each scan anew.
+/// The memories that are worked out in each scan anew.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Work {
     pub clears: [bool; 2],

@@ -196,7 +196,7 @@ pub static PERIOD: [i64; 2] = [0, 10_000_000];
 /// Actions of each scan.
 pub static PERIODIC_ACTION: [u8; 1] = [3];
 
-/// What each forcing order imposes.
+/// The situation that each forcing order imposes.
 pub static ORDER_SITUATION: [u8; 1] = [1];
 
 /// Where each row begins.
@@ -215,7 +215,7 @@ pub static ORDER_CHART: [u8; 1] = [1];
 pub static FROM_AT: [u8; 9] = [0, 1, 2, 3, 4, 5, 6, 7, 8];
 pub static TO_AT: [u8; 9] = [0, 1, 2, 3, 4, 5, 6, 7, 8];
 
-/// What stored actions have written, until the pass ends.
+/// Values that stored actions have written, until the pass ends.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Next {
     pub clamp: bool,
@@ -229,7 +229,7 @@ pub struct Wrote {
     pub pieces: bool,
 }
 
-/// What comes in.
+/// The inputs.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Inputs {
     pub on: bool,
@@ -238,7 +238,7 @@ pub struct Inputs {
     pub far: bool,
 }
 
-/// What goes out.
+/// The outputs.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Outputs {
     pub lamp: bool,
@@ -263,7 +263,7 @@ pub fn start(s: &mut State) {
     mark_on(s, STEP_10);
 }
 
-/// Whether the receptivity of a transition is true.
+/// True if the receptivity of a transition is true.
 pub fn receptivity(s: &mut State, transition: usize) -> bool {
     match transition {
         // 1 -> 2 when stop
@@ -291,7 +291,7 @@ pub fn follow(s: &mut State) {
     s.outputs.lamp = s.m.x[STEP_2];
 }
 
-/// What comes with a step.
+/// The parts that come with a step.
 pub fn step_on(s: &mut State, step: usize) {
     match step {
         // Stroke.30
@@ -315,7 +315,7 @@ pub fn step_on(s: &mut State, step: usize) {
     }
 }
 
-/// What goes with a step.
+/// The parts that go with a step.
 pub fn step_off(s: &mut State, step: usize) {
     match step {
         // Stroke.30

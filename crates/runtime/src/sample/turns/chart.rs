@@ -105,7 +105,7 @@ pub static SHARES: [bool; 5] = [true, true, false, true, true];
 /// Transitions that leave nothing to those behind them.
 pub static SETTLES: [bool; 5] = [true, true, true, false, true];
 
-/// What comes in.
+/// The inputs.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Inputs {
     pub go: bool,
@@ -113,7 +113,7 @@ pub struct Inputs {
     pub first: bool,
 }
 
-/// What goes out.
+/// The outputs.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Outputs {
     pub a: bool,
@@ -141,7 +141,7 @@ pub fn start(s: &mut State) {
     mark_on(s, STEP_1);
 }
 
-/// Whether the receptivity of a transition is true.
+/// True if the receptivity of a transition is true.
 pub fn receptivity(s: &mut State, transition: usize) -> bool {
     match transition {
         // 1 -> 2 when go priority 1
