@@ -51,6 +51,8 @@ int main(void) {
 
 fn main() {
     let quick = std::env::args().any(|a| a == "--quick");
+    let flat = std::env::args().any(|a| a == "--flat");
+    let style = if flat { Style::Flat } else { Style::Structured };
     let peer = Matiec::find();
     if peer.is_none() {
         println!("matiec: skipped, no iec2c on the PATH");
@@ -65,7 +67,7 @@ fn main() {
     let folder = std::env::temp_dir().join(format!("g7-gen-{}", std::process::id()));
     for shape in small.into_iter().chain(large.into_iter().filter(|_| !quick)) {
         let place = folder.join(shape.name().replace(' ', "-"));
-        let ours = match ours(&place.join("g7"), shape) {
+        let ours = match ours(&place.join("g7"), shape, style) {
             Ok(m) => m,
             Err(why) => {
                 println!("{:<16}  {why}", shape.name());
@@ -90,12 +92,12 @@ fn main() {
 }
 
 /// Generates, compiles and times one chart in a folder of its own.
-fn ours(folder: &Path, shape: Shape) -> Result<Measured, String> {
+fn ours(folder: &Path, shape: Shape, style: Style) -> Result<Measured, String> {
     let text = shape.g7();
     let (doc, _) = g7_syntax::parse(&text, FileId(0));
     let (compiled, problems) = g7_compile::compile(&doc);
     let compiled = compiled.ok_or_else(|| format!("{problems:?}"))?;
-    let options = Options { language: Language::C, style: Style::Structured, name: "chart", source: &text };
+    let options = Options { language: Language::C, style, name: "chart", source: &text };
     let printed = g7_codegen::print(&compiled, &options).map_err(|p| format!("{p:?}"))?;
     let io = |e: std::io::Error| e.to_string();
     std::fs::create_dir_all(folder).map_err(io)?;
