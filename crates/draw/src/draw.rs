@@ -6,7 +6,8 @@ use std::collections::HashMap;
 use g7_model::{Chart, Document, Item as Entry, PlaceAt, Placed, Step, Transition};
 
 use crate::ink::Picture;
-use crate::layout::{FAR, layout};
+use crate::layout::layout;
+use crate::layout::section::FAR;
 use crate::pages;
 use crate::symbols::{
     SQUARE, StepShape, TransitionShape, arrow, connector, connector_label, connector_width, double, note,

@@ -38,9 +38,6 @@ use g7_model::{Chart, PlaceAt};
 
 use crate::{Placement, Sizes};
 
-/// Greatest coordinate that a layout section can give.
-pub(crate) const FAR: i32 = 10_000_000;
-
 /// Number of rounds in which the links that could not be drawn are broken; the round after them
 /// breaks all that remain.
 const TRIES: usize = 4;

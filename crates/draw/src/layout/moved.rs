@@ -5,11 +5,10 @@ use std::collections::HashMap;
 
 use g7_model::{Chart, PlaceAt};
 
-use crate::layout::FAR;
 use crate::layout::graph::Graph;
 use crate::layout::rooms::{BAR, CLEAR, DOUBLE, LINK, OVERHANG, SQUARE, extents};
 use crate::layout::route::{area, end, tidy};
-use crate::layout::section::Named;
+use crate::layout::section::{FAR, Named};
 use crate::layout::way::Ways;
 use crate::{Bar, End, Extent, Link, Placement, Point, Rect, Sizes};
 

@@ -1,10 +1,13 @@
-//! Which symbol an entry of a layout section names.
+//! Which symbol an entry of a layout section names, and how far away it can place one.
 
 use std::collections::HashMap;
 
 use g7_model::{Chart, Placed};
 
 use crate::End;
+
+/// Greatest coordinate that a layout section can give.
+pub(crate) const FAR: i32 = 10_000_000;
 
 /// The symbols of a chart by the names that a layout section uses. If a name occurs twice, the first
 /// symbol has it.

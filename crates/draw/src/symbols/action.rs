@@ -3,7 +3,7 @@
 use g7_model::{Action, ActionKind, Expr, ExprKind, Order, Qualifier, Situation, Step, Target, UnaryOp};
 
 use crate::ink::{Picture, stack};
-use crate::symbols::{ACTION_TEXT, SMALL, SQUARE, quoted};
+use crate::symbols::parts::{ACTION_TEXT, SMALL, SQUARE, quoted};
 use crate::text::{Line, body, clean, set, shortened, width};
 use crate::{Look, Options, Rect};
 

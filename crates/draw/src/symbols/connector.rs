@@ -1,7 +1,7 @@
 //! Connectors of broken links (an arrow and the name of the other end), and arrows on links.
 
 use crate::ink::Picture;
-use crate::symbols::SMALL;
+use crate::symbols::parts::SMALL;
 use crate::text::{clean, shortened, width};
 use crate::{Point, Rect};
 

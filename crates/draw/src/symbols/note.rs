@@ -3,7 +3,7 @@
 
 use crate::Rect;
 use crate::ink::{Picture, stack};
-use crate::symbols::SMALL;
+use crate::symbols::parts::SMALL;
 use crate::text::{Line, wrap_words};
 
 /// Greatest width of a line.

@@ -3,7 +3,8 @@
 use g7_model::{Step, StepKind};
 
 use crate::ink::{Picture, rise, stack};
-use crate::symbols::{SMALL, SQUARE, action, extent, quoted};
+use crate::symbols::action;
+use crate::symbols::parts::{SMALL, SQUARE, extent, quoted};
 use crate::text::{Line, clean, name_lines, shortened, width};
 use crate::{Extent, Options, Rect};
 

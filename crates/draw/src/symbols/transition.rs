@@ -3,7 +3,8 @@
 use g7_model::Transition;
 
 use crate::ink::{Picture, stack};
-use crate::symbols::{ACTION_TEXT, DOUBLE_GAP, HALF_BAR, SMALL, TEXT, action, extent, quoted};
+use crate::symbols::action;
+use crate::symbols::parts::{ACTION_TEXT, DOUBLE_GAP, HALF_BAR, SMALL, TEXT, extent, quoted};
 use crate::text::{Line, body, clean, receptivity, shortened, width};
 use crate::{Bar, Extent, Point, Rect};
 
