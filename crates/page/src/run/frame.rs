@@ -7,11 +7,12 @@ use g7_model::Type;
 use g7_rig::{Activity, Item, Role};
 use serde::Serialize;
 
-use super::Run;
+use super::running::Run;
+use super::sent::{Sent, Show};
 use super::times::ms;
 use crate::ids;
 
-/// A frame. Steps, transitions, signals and bindings are numbered as in [`super::Started`].
+/// A frame. Steps, transitions, signals and bindings are numbered as in [`super::start::Started`].
 #[derive(Debug, Serialize)]
 pub(crate) struct Frame {
     run: String,
@@ -77,27 +78,15 @@ fn halted(run: &Run) -> Option<Halted> {
     })
 }
 
-/// A value of the plant's picture.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-#[serde(untagged)]
-pub(super) enum Show {
-    Flag(bool),
-    Number(f64),
-    Text(String),
+impl Run {
+    /// The next frame for the page: the changes since the previous one; a full frame contains
+    /// everything.
+    pub(crate) fn frame(&mut self, full: bool, times: bool) -> Frame {
+        frame(self, full, times)
+    }
 }
 
-/// The values that the page already knows.
-#[derive(Debug, Default)]
-pub(super) struct Sent {
-    active: BTreeSet<u32>,
-    enabled: BTreeMap<u32, u8>,
-    values: Vec<Value>,
-    forced: Vec<bool>,
-    view: Vec<Show>,
-}
-
-/// The frame since the previous one; a full frame contains everything.
-pub(super) fn frame(run: &mut Run, full: bool, times: bool) -> Frame {
+fn frame(run: &mut Run, full: bool, times: bool) -> Frame {
     if full {
         run.sent = Sent::default();
     }

@@ -3,8 +3,8 @@
 use g7_host::{Kind, Recording, write_csv, write_vcd};
 use serde::Serialize;
 
-use super::Run;
 use super::frame::shown;
+use super::running::Run;
 use super::times::{ms, ns};
 
 /// The lanes of a chronogram.

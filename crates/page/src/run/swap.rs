@@ -5,8 +5,9 @@ use std::sync::Arc;
 use g7_rig::Source;
 
 use super::past::Past;
-use super::start::{Places, bench};
-use super::{Breaks, Run};
+use super::places::Places;
+use super::running::{Breaks, Run, recording};
+use super::wish::bench;
 use crate::positions::Positions;
 
 impl Run {
@@ -25,7 +26,7 @@ impl Run {
         if !carried.lost.is_empty() && !forced {
             return Ok(carried.lost);
         }
-        let mut recording = super::recording(&new);
+        let mut recording = recording(&new);
         for (i, signal) in new.signals().iter().enumerate() {
             let same = |s: &g7_host::Signal| {
                 s.name == signal.name && s.group == signal.group && s.kind == signal.kind

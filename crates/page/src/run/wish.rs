@@ -1,0 +1,49 @@
+//! The page's request for a run, and the bench that is built for it.
+//!
+//! A run keeps the request, so that an on-line change builds the new bench in the same way.
+
+use g7_model::{Nanos, ProfileName, Severity};
+use g7_rig::{Bench, Options, Source};
+use serde::Deserialize;
+
+/// The page's request to start a run.
+#[derive(Clone, Debug, Deserialize)]
+pub(crate) struct Start {
+    pub(crate) file: String,
+    pub(crate) run: String,
+    profile: Option<String>,
+    scan_ms: Option<f64>,
+    plant: Option<String>,
+    #[serde(default)]
+    pub(super) seed: u64,
+}
+
+/// Builds the bench for a request.
+pub(super) fn bench(source: &Source, wish: &Start) -> Result<Bench, String> {
+    let profile = wish.profile.as_deref().map(profile).transpose()?;
+    let scan = match wish.scan_ms {
+        Some(ms) if !(0.001..=3.6e6).contains(&ms) => {
+            return Err("the scan time must lie between 1 us and 1 h".to_owned());
+        }
+        ms => ms.map(|ms| Nanos::new((ms * 1e6) as i64)),
+    };
+    // If there are several plants and none is chosen, the run starts with the first.
+    let first = g7_compile::plant::plants(&source.document).next().map(|p| p.name.text.to_string());
+    let plant = wish.plant.as_deref().or(first.as_deref());
+    let (bench, problems) =
+        g7_rig::build(source, &Options { profile, scan, plant, asks: &[] }).map_err(|e| e.to_string())?;
+    bench.ok_or_else(|| {
+        let mut errors = problems.iter().filter(|p| p.severity() == Severity::Error);
+        let first = errors.next().map_or(String::new(), |p| format!(": {}", p.what));
+        let more = match errors.count() {
+            0 => String::new(),
+            n => format!(" (and {n} more)"),
+        };
+        format!("this cannot be run yet{first}{more}")
+    })
+}
+
+fn profile(name: &str) -> Result<ProfileName, String> {
+    let found = ProfileName::ALL.into_iter().find(|p| p.name() == name);
+    found.ok_or_else(|| format!("there is no profile `{name}`"))
+}
