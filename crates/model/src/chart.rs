@@ -1,15 +1,6 @@
 //! Documents, charts, steps and transitions.
 
-use crate::{Action, Block, Body, Expr, Nanos, Place, Plant, Property, Scenario, Span, Type};
-
-/// A name with its place. Text without back-ticks.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Name {
-    /// As the author wrote it.
-    pub text: Box<str>,
-    /// Where it stands.
-    pub at: Place,
-}
+use crate::{Action, Block, Body, Expr, Name, Nanos, Param, Place, Plant, Property, Scenario, Span, Type};
 
 /// All of one file.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -352,15 +343,6 @@ pub struct Function {
     pub at: Place,
 }
 
-/// A parameter of a function, or an attribute of a part.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Param {
-    /// Its name.
-    pub name: Name,
-    /// Its type.
-    pub ty: Type,
-}
-
 /// `layout Conveyor { … }`.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Layout {
@@ -396,13 +378,6 @@ pub enum Placed {
     TransitionNumber(u32),
     /// A comment by its text.
     Comment(Box<str>),
-}
-
-impl Name {
-    /// A name at a place.
-    pub fn new(text: impl Into<Box<str>>, at: Span) -> Name {
-        Name { text: text.into(), at: at.into() }
-    }
 }
 
 impl Document {

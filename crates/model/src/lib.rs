@@ -23,12 +23,14 @@ mod chart;
 pub mod codes;
 mod expr;
 mod functions;
+mod name;
 mod nanos;
 mod operators;
 mod plant;
 mod problem;
 mod qualifier;
 mod scenario;
+mod severity;
 mod span;
 mod types;
 pub mod visit;
@@ -39,16 +41,18 @@ pub use action::{
     Action, ActionKind, Block, Body, BodyLang, CaseArm, Local, Order, Situation, Stmt, StmtKind, Target, Work,
 };
 pub use chart::{
-    Chart, ChartItem, ChartKind, Document, Function, Item, Layout, Name, NamedAction, Note, Param, PlaceAt,
-    Placed, Profile, ProfileName, Section, Step, StepKind, Switch, TargetPlc, Transition, VarDecl, VarKind,
+    Chart, ChartItem, ChartKind, Document, Function, Item, Layout, NamedAction, Note, PlaceAt, Placed,
+    Profile, ProfileName, Section, Step, StepKind, Switch, TargetPlc, Transition, VarDecl, VarKind,
 };
 pub use expr::{Arg, Expr, ExprKind, Literal, Path};
 pub use functions::{FunctionRow, StandardFunction};
+pub use name::{Name, Param};
 pub use nanos::Nanos;
 pub use operators::{BinaryOp, Operands, Operator, UnaryOp};
 pub use plant::{Arrivals, Binding, Drive, Parts, Plant, PlantItem, Rate, StateVar, View};
-pub use problem::{Problem, Severity};
+pub use problem::Problem;
 pub use qualifier::{Lasting, Qualifier};
 pub use scenario::{Property, PropertyKind, Scenario, TestStmt, TestStmtKind};
+pub use severity::Severity;
 pub use span::{FileId, Place, Span};
 pub use types::{Elementary, FbKind, Holds, Type};

@@ -4,16 +4,7 @@
 //! value. Wrong input is never an `Err`: a check returns the parts of the chart that it could use
 //! *and* the problems, so the rest stays usable.
 
-use crate::{Span, codes::Code};
-
-/// The effect of a problem on its chart.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Severity {
-    /// Runs as written, but probably not as intended.
-    Warning,
-    /// Has no meaning in the standard and cannot be compiled.
-    Error,
-}
+use crate::{Severity, Span, codes::Code};
 
 /// A mistake in a chart that its author can correct.
 #[derive(Clone, Debug, PartialEq, Eq)]
