@@ -4,23 +4,16 @@
 
 use g7_model::Type;
 
-use super::solve::Question;
 use super::tree::{statements, within, written};
 use crate::ir::{
-    ActionKind, Chart, ChartId, ChartRole, Expr, ExprKind, Service, Situation, StepId, StepSort, StmtKind,
-    Transition, Unit, VarClass,
+    ActionKind, Chart, ChartId, ChartRole, Expr, ExprKind, Service, Situation, StepId, StmtKind, Unit,
+    VarClass,
 };
-
-/// The search for single-token charts ends after so many rounds; then every chart with a choice
-/// counts as one that can hold several tokens.
-const ROUNDS: usize = 8;
-/// The largest number of pairs of branches that are compared in one document.
-const PAIRS: usize = 20_000;
 
 pub(super) struct Facts<'u> {
     pub(super) unit: &'u Unit,
     /// By chart: true if two of its steps are never active at once.
-    single: Vec<bool>,
+    pub(super) single: Vec<bool>,
     /// By variable: true if preliminary processing writes it.
     moved: Vec<bool>,
     /// True if services or system bits can change the situation before the evolution.
@@ -30,7 +23,8 @@ pub(super) struct Facts<'u> {
 }
 
 impl<'u> Facts<'u> {
-    pub(super) fn of(unit: &'u Unit) -> Facts<'u> {
+    /// The facts that hold by the form of the charts alone; `settle` looks at the receptivities too.
+    pub(super) fn by_form(unit: &'u Unit) -> Facts<'u> {
         let mut branches = vec![Vec::new(); unit.steps.len()];
         for (i, t) in unit.transitions.iter().enumerate() {
             for from in &t.from {
@@ -50,7 +44,6 @@ impl<'u> Facts<'u> {
         }
         let mut facts = Facts { unit, single: Vec::new(), moved, serviced: serviced(unit), branches };
         facts.single = facts.shapes();
-        facts.settle();
         facts
     }
 
@@ -116,21 +109,6 @@ impl<'u> Facts<'u> {
         true
     }
 
-    /// Tells whether two transitions with a common step can clear together; `None` if that cannot
-    /// be decided.
-    pub(super) fn meet(&self, a: &Transition, b: &Transition) -> Option<bool> {
-        if self.unit.rules.numbered_exclusive && a.priority != b.priority {
-            return Some(false);
-        }
-        let mut active = a.from.clone();
-        active.extend(&b.from);
-        let mut question = Question::new(self);
-        question.demand(&a.receptivity, true);
-        question.demand(&b.receptivity, true);
-        question.with_active(&active);
-        question.possible()
-    }
-
     /// Finds the charts whose transitions each have one preceding step and at most one succeeding
     /// step, and that nothing else puts a second token into.
     fn shapes(&self) -> Vec<bool> {
@@ -177,71 +155,6 @@ impl<'u> Facts<'u> {
         let ends = chart.role == ChartRole::Chart
             || chart.exit.is_some_and(|x| self.branches(x).is_empty()) && chart.entry.is_some();
         starts <= room && ends && transitions.iter().all(|t| t.from.len() == 1 && t.to.len() <= 1)
-    }
-
-    /// Removes charts in which a choice can double the token, until no more are removed.
-    fn settle(&mut self) {
-        for round in 0.. {
-            let mut budget = PAIRS;
-            let lost: Vec<usize> = (0..self.single.len())
-                .filter(|c| self.single.get(*c) == Some(&true))
-                .filter(|c| round >= ROUNDS && self.chooses(*c) || !self.stays_single(*c, &mut budget))
-                .collect();
-            if lost.is_empty() {
-                return;
-            }
-            for c in lost {
-                if let Some(s) = self.single.get_mut(c) {
-                    *s = false;
-                }
-            }
-        }
-    }
-
-    /// True if some step of a chart is followed by several transitions.
-    fn chooses(&self, chart: usize) -> bool {
-        let Some(chart) = self.unit.charts.get(chart) else { return false };
-        (chart.steps.start..chart.steps.end).any(|s| self.branches(StepId(s)).len() > 1)
-    }
-
-    fn stays_single(&self, chart: usize, budget: &mut usize) -> bool {
-        let Some(chart) = self.unit.charts.get(chart) else { return false };
-        // A macro-step that is entered again while it is active gets a second token.
-        if let ChartRole::Expansion(m) = chart.role {
-            let around = self.unit.steps.get(m.index()).map(|s| s.chart.index());
-            if around.and_then(|c| self.single.get(c)) != Some(&true) {
-                return false;
-            }
-        }
-        for step in (chart.steps.start..chart.steps.end).map(StepId) {
-            let sort = self.unit.steps.get(step.index()).map(|s| &s.sort);
-            if let Some(StepSort::Macro(inner)) = sort
-                && self.single.get(inner.index()) != Some(&true)
-            {
-                return false;
-            }
-            if self.unit.rules.multi_token && !self.branches_exclude(step, budget) {
-                return false;
-            }
-        }
-        true
-    }
-
-    fn branches_exclude(&self, step: StepId, budget: &mut usize) -> bool {
-        let rows: Vec<&Transition> =
-            self.branches(step).iter().filter_map(|t| self.unit.transitions.get(*t as usize)).collect();
-        for (k, a) in rows.iter().enumerate() {
-            for b in rows.get(k + 1..).unwrap_or(&[]) {
-                if *budget == 0 {
-                    return false;
-                }
-                *budget -= 1;
-                if a.to != b.to && self.meet(a, b) != Some(false) {
-                    return false;
-                }
-            }
-        }
-        true
     }
 }
 

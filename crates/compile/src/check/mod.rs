@@ -19,6 +19,7 @@ mod loops;
 mod named;
 mod pages;
 mod reach;
+mod settle;
 mod solve;
 mod structure;
 mod target;

@@ -6,8 +6,6 @@
 
 use g7_model::{Document, Item, Placed, Problem, codes};
 
-use super::target::Limits;
-
 /// Distance of two branches and of two steps, in hundredths of the drawing's unit.
 const PITCH: i32 = 1300;
 /// Columns of a page.
@@ -17,7 +15,9 @@ const COLUMNS: i32 = 11;
 const PAGES: i32 = 8;
 const STEP_LINES: i32 = 6;
 
-pub(super) fn check(doc: &Document, most: &Limits, problems: &mut Vec<Problem>) {
+/// Reports the first symbol of each layout that stands beyond the last page; `plc` is the name of the
+/// target.
+pub(super) fn check(doc: &Document, plc: &str, problems: &mut Vec<Problem>) {
     for item in &doc.items {
         let Item::Layout(layout) = item else { continue };
         let placed = layout.places.iter().filter(|p| !matches!(p.what, Placed::Comment(_)));
@@ -33,8 +33,8 @@ pub(super) fn check(doc: &Document, most: &Limits, problems: &mut Vec<Problem>) 
         });
         if let Some(first) = beyond {
             let what = format!(
-                "the drawing of `{}` does not fit: a {} has {PAGES} pages of 14 lines and {COLUMNS} columns",
-                layout.chart.text, most.name
+                "the drawing of `{}` does not fit: a {plc} has {PAGES} pages of 14 lines and {COLUMNS} columns",
+                layout.chart.text
             );
             problems.push(
                 Problem::new(&codes::TARGET_PAGES, first.at.0, what)

@@ -16,8 +16,8 @@ const TRANSITIONS: usize = 1024;
 const BRANCHES: usize = 11;
 
 /// The limits of a PLC.
-pub(super) struct Limits {
-    pub(super) name: &'static str,
+struct Limits {
+    name: &'static str,
     steps: usize,
     macros: usize,
     macro_steps: usize,
@@ -38,7 +38,7 @@ pub(super) fn check(doc: &Document, unit: &Unit, plc: TargetPlc, problems: &mut 
     branches(unit, problems);
     words(unit, &most, problems);
     numbers(unit, &most, problems);
-    pages::check(doc, &most, problems);
+    pages::check(doc, most.name, problems);
 }
 
 /// Compares the counts with the limits. A problem is reported at the first element that exceeds

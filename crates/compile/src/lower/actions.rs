@@ -8,11 +8,11 @@
 use g7_engine::{Action, Addr, Cmp, Code, Contribution, ControlBlock, Event, NONE};
 use g7_model::{Qualifier, Span, Type};
 
-use super::Lower;
 use super::associations::{Associations, Way};
 use super::lists::Lists;
 use super::plan::parent;
 use super::terms::store_word;
+use super::work::Lower;
 use crate::ir::{ActionKind, BodyId, ChartId, Expr, ExprKind, StepId, Stmt, TransitionId, Value, VarId};
 use crate::symbols::ActionSymbol;
 use crate::tree::{self, Gate};

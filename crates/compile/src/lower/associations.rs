@@ -3,8 +3,8 @@
 
 use g7_model::{Qualifier, Type};
 
-use super::Lower;
 use super::words::word_of;
+use super::work::Lower;
 use crate::ir::{ActionKind, BodyId, StepId, VarClass, VarId};
 
 /// All associations of one variable or named action.

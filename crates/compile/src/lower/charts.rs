@@ -1,20 +1,12 @@
 //! Charts as groups of steps: initial situations, enclosures, and what steps
 //! order of other charts.
 
-use g7_engine::{Addr, Chart, Group, GroupId, Order, Rows, Situation, StepId as Number};
+use g7_engine::{Chart, Group, GroupId, Order, Rows, Situation, StepId as Number};
 
-use super::Lower;
 use super::lists::Lists;
 use super::plan::parent;
+use super::work::{Freeze, Lower};
 use crate::ir::{self, ActionKind, ChartId, ChartRole, StepId, StepSort};
-
-/// `FREEZECHART`: what the call writes, and what holds back the transitions
-/// from the service point on.
-#[derive(Clone, Copy)]
-pub(super) struct Freeze {
-    pub(super) asked: Addr,
-    pub(super) holds: Addr,
-}
 
 impl Lower<'_> {
     /// Finds who enables, masks and calls what, and gives tasks and frozen

@@ -1,13 +1,11 @@
 //! Trees as instructions of the stack machine.
 //!
-//! Code is written into a [`Buf`] with jumps counted from its own start, and
-//! moved to its place in the table by [`Lower::place`]. The tree of each piece
-//! of code is kept beside it, by its first instruction.
+//! Code is written into a [`Buf`] with jumps counted from its own start; `pieces`
+//! moves it to its place in the table.
 
-use g7_engine::{Code, Op};
+use g7_engine::Op;
 use g7_model::{Span, Type};
 
-use super::Lower;
 use super::words::num;
 use crate::tree::{Clock, Expr, ExprKind, Gate, Piece, Stmt, StmtKind, Target};
 
@@ -15,7 +13,7 @@ use crate::tree::{Clock, Expr, ExprKind, Gate, Piece, Stmt, StmtKind, Target};
 #[derive(Default)]
 pub(super) struct Buf {
     pub(super) ops: Vec<Op>,
-    places: Vec<Span>,
+    pub(super) places: Vec<Span>,
     /// For each loop round this point, the jumps that leave it.
     loops: Vec<Vec<usize>>,
     /// For each body round this point, the jumps to its end.
@@ -256,45 +254,5 @@ impl Buf {
         }
         self.stmts(other);
         ends.into_iter().for_each(|jump| self.land(jump));
-    }
-}
-
-impl Lower<'_> {
-    /// The code of an expression.
-    pub(super) fn value(&mut self, e: Expr) -> Code {
-        self.place(Piece::Value(e))
-    }
-
-    /// The code of statements; empty where there are none.
-    pub(super) fn work(&mut self, list: Vec<Stmt>) -> Code {
-        self.place(Piece::Work(list))
-    }
-
-    /// Writes a piece at the end of the table.
-    fn place(&mut self, piece: Piece) -> Code {
-        let mut b = std::mem::take(&mut self.buf);
-        b.piece(&piece);
-        let start = self.t.code.len() as u32;
-        self.t.code.extend(b.ops.iter().map(|op| match *op {
-            Op::Jump(to) => Op::Jump(to + start),
-            Op::JumpUnless(to) => Op::JumpUnless(to + start),
-            other => other,
-        }));
-        self.places.extend_from_slice(&b.places);
-        b.clear();
-        self.buf = b;
-        let code = Code { start, end: self.t.code.len() as u32 };
-        if !code.is_empty() {
-            self.pieces.push((start, piece));
-        }
-        code
-    }
-
-    /// The instructions of an expression alone, to compare it with others.
-    pub(super) fn ops(&mut self, e: &Expr) -> Vec<Op> {
-        self.buf.expr(e);
-        let ops = self.buf.ops.clone();
-        self.buf.clear();
-        ops
     }
 }

@@ -4,9 +4,11 @@
 //! ir::Unit -> uses (one look at everything)
 //!          -> plan (which step is which) -> words (which word is which)
 //!          -> charts, actions, transitions, system bits; their code as trees
-//!             (terms, stmts), then as instructions (emit)
+//!             (terms, stmts), then as instructions (emit, pieces)
 //!          -> watches' readers -> Tables, Symbols, Pieces
 //! ```
+//!
+//! All of them write into one `Lower` (work).
 //!
 //! Macro-steps, tasks, `enable`, `mask` and freezing end here: they become arcs,
 //! guards and conditions. So do the profiles: what follows knows only
@@ -19,28 +21,31 @@ mod charts;
 mod emit;
 mod lists;
 mod names;
+mod pieces;
 mod plan;
 mod stmts;
 mod system;
 mod terms;
 mod transitions;
 mod uses;
+mod watched;
 mod watches;
 mod words;
+mod work;
 
 use std::collections::BTreeMap;
 
 use g7_engine::{Addr, Code, Extra, LoadError, NONE, Program, Rows, Step, Tables};
 use g7_model::{Problem, Span, codes};
 
-use crate::ir::{ChartId, Expr, StepId, Unit, VarId};
+use crate::ir::{ChartId, Expr, StepId, Unit};
 use crate::symbols::Symbols;
 use crate::tree::Piece;
-use charts::Freeze;
+use emit::Buf;
 use plan::Plan;
-use uses::Uses;
-use watches::Watches;
+use watched::Watches;
 use words::Words;
+use work::{Lower, Refusal};
 
 pub use words::{num, words_for, words_of};
 
@@ -72,64 +77,6 @@ impl Pieces {
     pub fn iter(&self) -> impl Iterator<Item = &Piece> {
         self.0.iter().map(|p| &p.1)
     }
-}
-
-/// Why a unit that is right in itself does not become a program.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Refusal {
-    /// It would be too large.
-    Large,
-    /// Something is nested too deeply.
-    Deep,
-}
-
-/// The work in hand.
-struct Lower<'a> {
-    unit: &'a Unit,
-    uses: Uses<'a>,
-    plan: Plan,
-    words: Words,
-    t: Tables,
-    /// Beside `t.code`.
-    places: Vec<Span>,
-    watches: Watches,
-    /// A buffer for instructions, to be used again.
-    buf: emit::Buf,
-    /// The tree of each piece of code, by its first instruction, ascending.
-    pieces: Vec<(u32, Piece)>,
-    /// Nodes of all trees made so far.
-    nodes: usize,
-    /// The first word that is set anew at each run.
-    locals: u32,
-    /// Nesting of the expression or statement in hand.
-    depth: u32,
-    refused: Option<(Refusal, Span)>,
-    /// The generator's word.
-    random: Option<Addr>,
-    /// While TRUE no transition clears: what `%S23` says at the service point.
-    stop_all: Option<Addr>,
-    /// The words of `%S0` and `%S1`, or what stands for them.
-    restarts: Option<(Addr, Addr)>,
-    /// TRUE until the first service point is over; where system bits act on charts.
-    fresh: Option<Addr>,
-    /// By chart: its period's row.
-    periods: Vec<u32>,
-    /// By chart: the steps that enable it.
-    enabling: Vec<Vec<StepId>>,
-    /// By chart: the steps that mask it.
-    masked_charts: Vec<Vec<StepId>>,
-    masked_vars: BTreeMap<VarId, Vec<StepId>>,
-    /// By task: the steps that call it, in text order.
-    callers: Vec<Vec<StepId>>,
-    /// By task: the word with the number (from 1) of the caller it works for.
-    /// Empty where there is no task.
-    owners: Vec<Option<Addr>>,
-    freezes: Vec<Option<Freeze>>,
-    /// The output of the section in hand and where it is worked out.
-    section: Option<(VarId, Addr)>,
-    /// Some chart is enabled, frozen or can be stopped.
-    has_blockers: bool,
-    has_masks: bool,
 }
 
 /// Lowers a unit, and queries on it, to a program with its symbols.
@@ -192,7 +139,7 @@ pub fn lower<'a>(unit: &'a Unit, queries: &'a [Expr]) -> Result<Lowered, Problem
         t: Tables { rules: unit.rules, ..Tables::default() },
         places: Vec::new(),
         watches: Watches::default(),
-        buf: emit::Buf::default(),
+        buf: Buf::default(),
         pieces: Vec::new(),
         nodes: 0,
         locals: 0,
@@ -229,10 +176,6 @@ pub fn lower<'a>(unit: &'a Unit, queries: &'a [Expr]) -> Result<Lowered, Problem
 }
 
 impl Lower<'_> {
-    fn refuse(&mut self, why: Refusal, at: Span) {
-        self.refused.get_or_insert((why, at));
-    }
-
     fn all(&mut self, queries: &[Expr]) -> (Symbols, Vec<Code>) {
         self.t.code.reserve(self.uses.size);
         self.places.reserve(self.uses.size);
@@ -277,12 +220,6 @@ impl Lower<'_> {
         };
         let row = |id| Step { out: Default::default(), direct: Addr(NONE), extra: NONE, chart: chart_of(id) };
         self.plan.source.iter().map(row).collect()
-    }
-
-    /// True if a step of the program stands for a macro-step.
-    fn is_pseudo(&self, number: u32) -> bool {
-        let source = self.plan.source.get(number as usize);
-        source.and_then(|id| self.plan.pseudo(*id)).is_some_and(|p| p.0 == number)
     }
 
     /// Gives each step what only few have.

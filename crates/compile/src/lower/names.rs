@@ -5,11 +5,11 @@ use std::collections::HashMap;
 use g7_engine::{Addr, StepId as Number};
 use g7_model::Type;
 
-use super::Lower;
 use super::actions::{Actions, Drives};
 use super::plan::parent;
 use super::transitions::Origin;
 use super::words::words_for;
+use super::work::Lower;
 use crate::ir::{self, StepId, StepSort, VarClass, VarId};
 use crate::symbols::{BlockSymbol, ChartSymbol, MacroSymbol, Symbols, Variable};
 

@@ -3,9 +3,9 @@
 use g7_engine::{Addr, Arith, Cmp, Service as Request};
 use g7_model::{FbKind, Span, Type};
 
-use super::Lower;
 use super::terms::store_word;
 use super::words::block_of;
+use super::work::Lower;
 use crate::ir::{self, CaseArm, ChartId, Service, StepId, Target, Value, VarId};
 use crate::tree::{self, Expr, ExprKind, Gate, Stmt, StmtKind};
 

@@ -6,8 +6,8 @@
 use g7_engine::{Addr, Arith, Cmp, Limits, Service};
 use g7_model::{Span, TargetPlc, Type};
 
-use super::Lower;
 use super::terms::store_word;
+use super::work::Lower;
 use crate::ir::{Body, ChartId, StepId, StepSort, VarClass, VarId};
 use crate::tree::{Expr, ExprKind, Gate, Stmt, StmtKind};
 
@@ -116,7 +116,7 @@ impl Lower<'_> {
 
     /// `FREEZECHART` takes effect here.
     fn freeze(&self) -> Vec<Stmt> {
-        let holds = |f: &super::charts::Freeze| store_word(Type::Bool, f.holds, bit(f.asked), NOWHERE);
+        let holds = |f: &super::work::Freeze| store_word(Type::Bool, f.holds, bit(f.asked), NOWHERE);
         self.freezes.iter().flatten().map(holds).collect()
     }
 

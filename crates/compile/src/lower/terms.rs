@@ -8,7 +8,7 @@ use g7_model::{Span, Type};
 
 use super::uses::{DEPTH, timed_step};
 use super::words::{capacity, word_of};
-use super::{Lower, Refusal};
+use super::work::{Lower, Refusal};
 use crate::ir::{self, BinaryOp, FunctionId, SectionId, StepId, StmtKind, Target, Value, VarClass, VarId};
 use crate::tree::{self, Clock, Expr, ExprKind, Gate, Stmt};
 

@@ -6,10 +6,10 @@
 use g7_engine::{Addr, Cmp, NONE, Receptivity, Rows, StepId as Number, Transition};
 use g7_model::{Span, Type};
 
-use super::Lower;
 use super::actions::Clearing;
 use super::lists::Lists;
 use super::plan::parent;
+use super::work::Lower;
 use crate::ir::{self, ChartId, ChartRole, Expr, ExprKind, StepId, TransitionId, Value, VarClass, VarId};
 use crate::tree::{self, Gate};
 

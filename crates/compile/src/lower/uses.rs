@@ -10,7 +10,7 @@ use crate::ir::{
 };
 use g7_model::Qualifier;
 
-/// Nesting beyond which a chart is refused; see [`super::Lower::expr`].
+/// Nesting beyond which a chart is refused; see [`super::work::Lower::expr`].
 pub(super) const DEPTH: u32 = 1000;
 
 /// What is done with what.

@@ -5,80 +5,14 @@
 //! each reads is noted, so that the engine looks only at those that may have
 //! changed.
 
-use std::collections::HashMap;
-
-use g7_engine::{Addr, GroupId, Op, Rows, StepId as Number, Watch, WatchId};
+use g7_engine::{Addr, Rows, StepId as Number, Watch, WatchId};
 use g7_model::{Span, Type};
 
-use super::Lower;
 use super::lists::Lists;
-use super::words::words_of;
+use super::watched::{Key, Reads};
+use super::work::Lower;
 use crate::ir;
-use crate::tree::{Clock, Expr, ExprKind};
-
-/// What a watched expression reads.
-#[derive(Default)]
-struct Reads {
-    words: Vec<Addr>,
-    steps: Vec<Number>,
-    groups: Vec<GroupId>,
-    watches: Vec<WatchId>,
-    /// It reads a time or a random number, which may differ in each scan.
-    time: bool,
-}
-
-impl Reads {
-    /// `locals`: the first word that is set anew at each run. A value left in
-    /// such a word decides nothing.
-    fn add(&mut self, e: &Expr, locals: u32) {
-        e.visit(&mut |e| match &e.kind {
-            ExprKind::Word(_, addr) => self.range(*addr, 1, locals),
-            ExprKind::Element { base, len, .. } => self.range(*base, *len, locals),
-            ExprKind::Text(addr, cap) => self.range(*addr, words_of(Type::String(*cap)), locals),
-            ExprKind::Active(step) | ExprKind::WasActive(step) => self.steps.push(*step),
-            ExprKind::GroupActive(group) => self.groups.push(*group),
-            // A time goes on by itself, and starts anew within a scan.
-            ExprKind::Time(Clock::Step(step) | Clock::StepAge(step) | Clock::StepScans(step))
-            | ExprKind::Tenths(step) => {
-                self.steps.push(*step);
-                self.time = true;
-            }
-            ExprKind::Time(Clock::Group(group) | Clock::GroupAge(group) | Clock::GroupScans(group)) => {
-                self.groups.push(*group);
-                self.time = true;
-            }
-            ExprKind::Rise(watch) | ExprKind::Fall(watch) | ExprKind::Timer(watch) => {
-                self.watches.push(*watch);
-            }
-            ExprKind::ScanTime | ExprKind::Random(_) => self.time = true,
-            _ => {}
-        });
-    }
-
-    fn range(&mut self, base: Addr, len: u32, locals: u32) {
-        if base.0 < locals {
-            self.words.extend((base.0..base.0 + len).map(Addr));
-        }
-    }
-}
-
-/// What makes two watches the same.
-#[derive(PartialEq, Eq, Hash)]
-struct Key {
-    period: u32,
-    code: Vec<Op>,
-    times: Option<(Vec<Op>, Vec<Op>)>,
-}
-
-/// The watches made so far.
-#[derive(Default)]
-pub(super) struct Watches {
-    known: HashMap<Key, WatchId>,
-    /// Edges of a single word, by far the most.
-    of_words: HashMap<(u32, Addr), WatchId>,
-    /// By watch.
-    reads: Vec<Reads>,
-}
+use crate::tree::{Expr, ExprKind};
 
 impl Lower<'_> {
     /// An edge of an expression.

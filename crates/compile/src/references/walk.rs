@@ -8,7 +8,7 @@ use g7_model::{
     StepKind, Transition, VarDecl,
 };
 
-use super::{Definition, Use, Written};
+use super::named::{Definition, Use, Written};
 use crate::ir::ChartId;
 use crate::resolve::{Tracer, resolve_open};
 

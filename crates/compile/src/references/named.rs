@@ -1,0 +1,91 @@
+//! Definitions, and the places where they are named.
+//!
+//! `resolve::trace` gives a definition for each name, `walk` the place and the way of writing.
+
+use g7_model::Span;
+
+/// Something that has a name.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Definition {
+    /// A chart, expansion or task.
+    Chart(String),
+    /// A step or macro-step.
+    Step {
+        /// Its chart.
+        chart: String,
+        /// Its name.
+        name: String,
+    },
+    /// A variable or constant.
+    Variable {
+        /// Its chart; `None` for one of the file.
+        chart: Option<String>,
+        /// Its name.
+        name: String,
+    },
+    /// A named action.
+    Action {
+        /// Its chart; `None` for one of the file.
+        chart: Option<String>,
+        /// Its name.
+        name: String,
+    },
+    /// A transition section.
+    Section {
+        /// Its chart; `None` for one of the file.
+        chart: Option<String>,
+        /// Its name.
+        name: String,
+    },
+    /// A function.
+    Function(String),
+    /// A transition with a label.
+    Transition {
+        /// Its chart.
+        chart: String,
+        /// Its label.
+        label: String,
+    },
+    /// A plant.
+    Plant(String),
+    /// A constant, state or queue of a plant.
+    PlantItem {
+        /// The plant.
+        plant: String,
+        /// Its name.
+        name: String,
+    },
+}
+
+/// How a name is written at a place.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Written {
+    /// Where it is declared.
+    Declared,
+    /// Alone, where only a name is allowed.
+    Name,
+    /// In a list of steps, where words of the language are allowed too.
+    Step,
+    /// In a path.
+    Path {
+        /// At its beginning.
+        first: bool,
+        /// Without anything before or after it.
+        only: bool,
+    },
+    /// Within a direct name, `%X12`.
+    Direct,
+}
+
+/// One place where a name stands.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Use {
+    /// The whole word, with back-ticks and with the `X` of `X12`.
+    pub at: Span,
+    /// The definition that it refers to.
+    pub definition: Definition,
+    /// How it is written.
+    pub written: Written,
+    /// Letters before the name itself: 1 in `X12`, 2 in `XM3` of macro-step `3`.
+    pub before: usize,
+}
