@@ -11,7 +11,7 @@ use std::collections::{BTreeMap, HashMap, HashSet};
 use g7_model::{Chart, Document, Item, PlaceAt, Placed};
 
 use crate::layout::rooms::{BAR, CLEAR, DOUBLE, LINK, SQUARE};
-use crate::layout::section::Named;
+use crate::layout::section::{FAR, Named};
 use crate::symbols::note_area;
 use crate::{End, Extent, Options, Rect, Sizes, layout, measure};
 
@@ -19,8 +19,6 @@ use crate::{End, Extent, Options, Rect, Sizes, layout, measure};
 const MOST: usize = 4_000;
 /// Least distance between two symbols side by side.
 const ASIDE: i64 = 150;
-/// Greatest coordinate of a layout.
-const FAR: i64 = 10_000_000;
 
 /// Spreads the places of each layout until no symbols overlap: rows move down and columns move
 /// right, only as far as necessary, so that symbols in one line stay in one line. If symbols still
@@ -97,7 +95,7 @@ fn apart(chart: &Chart, sizes: &Sizes, places: &[PlaceAt]) -> Option<Vec<PlaceAt
     let ys = shifted(&bodies, 1, &rows);
     let mut out = places.to_vec();
     for ((p, x), y) in out.iter_mut().zip(xs).zip(ys) {
-        if x.abs() > FAR || y.abs() > FAR {
+        if x.abs().max(y.abs()) > FAR.into() {
             return None;
         }
         p.x = i32::try_from(x).ok()?;
