@@ -32,7 +32,10 @@ const LONG: usize = 400;
 /// Prints the equations of a chart into the module at hand.
 pub(crate) fn flat(g: &mut Gen<'_>) {
     let mut e = g7_equations::equations(g.c, Options { all_times: true, ..Options::default() });
-    expand_blocks(&mut e);
+    // Function blocks are assignments here: their clocks are relative.
+    for section in spare::sections(&mut e) {
+        section.body = spare::expanded(std::mem::take(&mut section.body), &|_| false);
+    }
     spare(&mut e, |what| matches!(what, What::StepTime(_) | What::StepScans(_)));
     let phases = [
         ("sections_before", "Before the passes.", std::mem::take(&mut e.begin)),
@@ -86,26 +89,6 @@ fn pieces(sections: Vec<Section>) -> Vec<Piece> {
     }
     all.retain(|p| p.body.iter().any(|l| !matches!(l, Line::About(_))));
     all
-}
-
-/// Function blocks are assignments here: their clocks are relative.
-fn expand_blocks(e: &mut Equations) {
-    for section in spare::sections(e) {
-        section.body = expanded(std::mem::take(&mut section.body));
-    }
-}
-
-fn expanded(list: Vec<Line>) -> Vec<Line> {
-    let mut out = Vec::new();
-    for line in list {
-        match line {
-            Line::Call(block, memories) => out.extend(g7_equations::expand(block, &memories)),
-            Line::If(c, a, b) => out.push(Line::If(c, expanded(a), expanded(b))),
-            Line::Loop(a) => out.push(Line::Loop(expanded(a))),
-            other => out.push(other),
-        }
-    }
-    out
 }
 
 type Phases = [(&'static str, &'static str, Vec<Piece>); 3];

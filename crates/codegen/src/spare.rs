@@ -40,6 +40,22 @@ pub(crate) fn spare(e: &mut Equations, asked: fn(What) -> bool) {
     drop_unread(e, asked);
 }
 
+/// Calls of function blocks as assignments, but for those that stay.
+pub(crate) fn expanded(list: Vec<Stmt>, stays: &dyn Fn(&[MemoryId]) -> bool) -> Vec<Stmt> {
+    let mut out = Vec::new();
+    for s in list {
+        match s {
+            Stmt::Call(block, memories) if !stays(&memories) => {
+                out.extend(g7_equations::expand(block, &memories));
+            }
+            Stmt::If(c, a, b) => out.push(Stmt::If(c, expanded(a, stays), expanded(b, stays))),
+            Stmt::Loop(a) => out.push(Stmt::Loop(expanded(a, stays))),
+            other => out.push(other),
+        }
+    }
+    out
+}
+
 /// The copies that an action works on are set in a list of statements several
 /// times: each value gets a memory of its own, so that it can stand in place.
 fn one_name_a_value(e: &mut Equations) {

@@ -42,7 +42,7 @@ pub(crate) fn type_name(ty: Type) -> &'static str {
         Type::Lreal => "LREAL",
         Type::Time => "TIME",
         Type::String(_) => "STRING",
-        Type::Fb(kind) => block_type(kind),
+        Type::Fb(kind) => kind.name(),
     }
 }
 
@@ -55,34 +55,6 @@ pub(crate) fn literal(ty: Type, word: u64) -> Ex {
         Type::Ulint => Ex::Int(word.into()),
         Type::Time => Ex::Time(word as i64),
         _ => Ex::Int((word as i64).into()),
-    }
-}
-
-/// The members of a standard block as the standard calls them.
-pub(crate) fn members(kind: FbKind) -> &'static [&'static str] {
-    match kind {
-        FbKind::Ctu => &["CU", "R", "PV", "Q", "CV"],
-        FbKind::Ctd => &["CD", "LD", "PV", "Q", "CV"],
-        FbKind::Ctud => &["CU", "CD", "R", "LD", "PV", "QU", "QD", "CV"],
-        FbKind::Ton | FbKind::Tof | FbKind::Tp => &["IN", "PT", "Q", "ET"],
-        FbKind::RTrig | FbKind::FTrig => &["CLK", "Q"],
-        FbKind::Sr => &["S1", "R", "Q1"],
-        FbKind::Rs => &["S", "R1", "Q1"],
-    }
-}
-
-fn block_type(kind: FbKind) -> &'static str {
-    match kind {
-        FbKind::Ctu => "CTU",
-        FbKind::Ctd => "CTD",
-        FbKind::Ctud => "CTUD",
-        FbKind::Ton => "TON",
-        FbKind::Tof => "TOF",
-        FbKind::Tp => "TP",
-        FbKind::RTrig => "R_TRIG",
-        FbKind::FTrig => "F_TRIG",
-        FbKind::Sr => "SR",
-        FbKind::Rs => "RS",
     }
 }
 
@@ -160,7 +132,7 @@ impl Memories {
                 let any = (0..v.words())
                     .any(|i| e.find(What::Variable(Addr(v.addr.0 + i))).is_some_and(|m| used.contains(&m)));
                 if native && any {
-                    self.internal(&name, block_type(kind), "");
+                    self.internal(&name, kind.name(), "");
                 }
                 continue;
             }
@@ -207,7 +179,7 @@ impl Memories {
     /// The members of an instance: those of the controller's block, or memories of
     /// their own.
     fn instance(&mut self, e: &Equations, base: Addr, kind: FbKind, name: &str, native: bool) {
-        for (i, member) in (0u32..).zip(members(kind)) {
+        for (i, (member, ..)) in (0u32..).zip(kind.members()) {
             let Some(id) = e.find(What::Variable(Addr(base.0 + i))) else { continue };
             if native {
                 self.call(id, format!("{name}.{member}"));

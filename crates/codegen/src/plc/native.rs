@@ -6,7 +6,7 @@ use std::collections::{HashMap, HashSet};
 use g7_engine::Block;
 use g7_equations::{Equations, MemoryId, Stmt, What};
 
-use crate::spare::{operands, sections};
+use crate::spare::{expanded, operands, sections};
 
 /// The instances that a controller's own function blocks stand for: what they
 /// remember inside is mentioned in their calls alone, and in the count of time.
@@ -55,7 +55,8 @@ pub(crate) fn native(e: &mut Equations) -> HashSet<MemoryId> {
         .collect();
     let firsts: HashSet<MemoryId> = kept.keys().copied().collect();
     for s in sections(e) {
-        s.body = expanded(std::mem::take(&mut s.body), &firsts);
+        let stays = |m: &[MemoryId]| m.first().is_some_and(|m| firsts.contains(m));
+        s.body = expanded(std::mem::take(&mut s.body), &stays);
     }
     kept.into_values().flatten().collect()
 }
@@ -69,20 +70,4 @@ pub(crate) fn members(block: Block) -> usize {
         Block::RTrig | Block::FTrig => 2,
         Block::Sr | Block::Rs => 3,
     }
-}
-
-/// Calls of other instances as assignments.
-fn expanded(list: Vec<Stmt>, native: &HashSet<MemoryId>) -> Vec<Stmt> {
-    let mut out = Vec::new();
-    for s in list {
-        match s {
-            Stmt::Call(block, memories) if !memories.first().is_some_and(|m| native.contains(m)) => {
-                out.extend(g7_equations::expand(block, &memories));
-            }
-            Stmt::If(c, a, b) => out.push(Stmt::If(c, expanded(a, native), expanded(b, native))),
-            Stmt::Loop(a) => out.push(Stmt::Loop(expanded(a, native))),
-            other => out.push(other),
-        }
-    }
-    out
 }

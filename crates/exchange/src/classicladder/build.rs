@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet, HashSet};
 
 use g7_model::{
     BinaryOp, Block, Body, Chart, ChartItem, ChartKind, Document, Function, Item, Layout, Name, Nanos, Param,
-    PlaceAt, Placed, Profile, ProfileName, Step, StepKind, Stmt, StmtKind, Switch, Transition, Type, codes,
+    PlaceAt, Placed, Profile, ProfileName, Step, StepKind, Stmt, StmtKind, Switch, Type, codes,
 };
 use g7_model::{Expr, Local, Span};
 
@@ -186,17 +186,7 @@ fn chart(
             }
         };
         places.push(place(Placed::TransitionNumber(number), line.x, line.y, at));
-        items.push(ChartItem::Transition(Transition {
-            label: None,
-            from,
-            to,
-            receptivity,
-            priority: None,
-            comment: None,
-            on_clearing: None,
-            chained: false,
-            at: at.into(),
-        }));
+        items.push(ChartItem::Transition(nodes::transition(from, to, receptivity, at)));
     }
     let at = first.unwrap_or_default();
     let remarks = plan.remarks.iter().filter(|(p, _)| *p == page).map(|(_, text)| text);
