@@ -43,7 +43,7 @@ fn queries(trace: &Trace) -> Result<Vec<g7_model::Expr>, String> {
     let mut all = Vec::new();
     for line in &trace.lines {
         let Line::Row(row) = line else { continue };
-        // What the terminal sets is there, as if the chart named it.
+        // Bits that the terminal sets are there, as if the chart named them.
         for (name, _) in row.inputs.iter().filter(|(name, _)| name.starts_with('%')) {
             let e = expression(name)?;
             if !all.contains(&e) {

@@ -67,7 +67,7 @@ fn every_defect_of_the_tables_is_caught_by_a_case_on_the_equations() {
     caught(equations, true);
 }
 
-/// What the equations do not read: the lists by which the engine finds what has
+/// Tables that the equations do not read: the lists by which the engine finds what has
 /// changed, and the clock of step times, which the trees of the code name.
 const ENGINE_ALONE: [&str; 6] = [
     "switch: step times count scans",

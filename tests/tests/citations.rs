@@ -1,4 +1,4 @@
-//! What code and documents cite is there: decisions, sections of the semantics, rows and
+//! Everything that code and documents cite is there: decisions, sections of the semantics, rows and
 //! cases of the rules, problem codes, files, links and headings.
 #![allow(clippy::disallowed_methods, reason = "the tests read the sources")]
 

@@ -1,4 +1,4 @@
-//! What a user interface shows comes true: the transitions that `enabled` reports as true are those
+//! The marks of a user interface come true: the transitions that `enabled` reports as true are those
 //! that clear in the next pass.
 
 use g7_compile::compile;

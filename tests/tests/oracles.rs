@@ -35,7 +35,7 @@ const TOGETHER: usize = 6;
 /// Longer than all delays of the corpus, which are whole seconds.
 const LONG: i64 = 60_000_000_000;
 
-/// What the analysis says of a file.
+/// The verdict of the analysis on a file.
 #[derive(Default)]
 struct Says {
     /// The steps that it lists as reachable: `G1.12`.
@@ -44,7 +44,7 @@ struct Says {
     never: BTreeSet<String>,
 }
 
-/// What the analysis says of each file.
+/// The verdicts of the analysis on each file.
 fn oracles(corpus: &Path) -> BTreeMap<String, Says> {
     let text = std::fs::read_to_string(corpus.join("agrafe-oracles.json")).expect("the analysis");
     let all: serde_json::Value = serde_json::from_str(&text).expect("the oracles are JSON");
@@ -222,7 +222,7 @@ fn charts(folder: &Path, all: &mut Vec<PathBuf>) {
     }
 }
 
-/// What the checker refuses in the corpus, in the order of the paths, and why.
+/// The files of the corpus that the checker refuses, in the order of the paths, and why.
 const REFUSED: &[(&str, &str)] = &[
     // Two outputs are driven by continuous actions and assigned by stored ones.
     ("grafcet.productionSystem.v1/productionSystem.grafcet", "G0306"),

@@ -170,6 +170,23 @@ fn files_are_short_enough_to_be_read() {
     none(&long, "files of more than 600 lines; split them by meaning");
 }
 
+/// "What a step holds" and "Whether a step is active" name no subject; "The content of a
+/// step" and "True if a step is active" do.
+#[test]
+fn comments_begin_with_their_subject() {
+    let mut found = Vec::new();
+    for file in files().into_iter().filter(|f| ends_in(f, &["rs", "ts", "svelte"])) {
+        for (i, line) in read(&file).lines().enumerate() {
+            let words = line.trim_start().trim_start_matches(['/', '!', '*']).trim_start();
+            let is_comment = line.trim_start().starts_with("//");
+            if is_comment && (words.starts_with("What ") || words.starts_with("Whether ")) {
+                found.push(format!("{}:{}", file.display(), i + 1));
+            }
+        }
+    }
+    none(&found, "comments that begin with What or Whether");
+}
+
 #[test]
 fn modules_say_where_they_stand() {
     let mut found = Vec::new();
@@ -338,7 +355,7 @@ fn each_code_has_a_case_and_each_case_a_code() {
     let codes: BTreeSet<String> = codes::ALL.iter().map(|c| c.id.to_owned()).collect();
     let stray: Vec<String> = cases.difference(&codes).cloned().collect();
     none(&stray, "cases in tests/check without a code");
-    // What is no text of a chart (broken bytes, huge files, XML) is tested beside its reader.
+    // Inputs that are no text of a chart (broken bytes, huge files, XML) are tested beside their readers.
     let missing: Vec<String> = codes.difference(&cases).filter(|c| !tested.contains(*c)).cloned().collect();
     none(&missing, "codes without a case");
 }

@@ -20,7 +20,7 @@ fn number(name: &str, otherwise: u64) -> u64 {
     std::env::var(name).ok().and_then(|v| v.parse().ok()).unwrap_or(otherwise)
 }
 
-/// What happened to a chart during its script.
+/// The events of a chart during its script.
 #[derive(Default)]
 struct Ran {
     /// The steps that were active, by the places of their names.

@@ -1,4 +1,4 @@
-//! What is printed: names and texts of the chart, what is refused, and a sketch
+//! Printed code: names and texts of the chart, refused constructs, and a sketch
 //! that compiles. That the code does what the engine does is tested in
 //! `tests/tests/codegen.rs`.
 #![allow(clippy::disallowed_methods, reason = "the tests start a compiler")]

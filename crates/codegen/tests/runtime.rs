@@ -6,7 +6,7 @@ mod read;
 
 use g7_runtime::source::{ALL, File, Source};
 
-/// What the build says when a file reads otherwise.
+/// The error of the build when a file reads otherwise.
 fn said(change: impl FnOnce(&mut Source)) -> String {
     let mut source = ALL;
     change(&mut source);

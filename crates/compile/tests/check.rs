@@ -38,7 +38,7 @@ fn reported(text: &str) -> (Reports, String) {
     (reports, words)
 }
 
-/// What the comments of a case ask for.
+/// The expectations in the comments of a case.
 fn expected(text: &str) -> Reports {
     let mut reports: Reports = Vec::new();
     let mut above = 0;
@@ -88,7 +88,7 @@ fn each_wrong_chart_reports_what_it_lists() {
     assert!(failures.is_empty(), "\n{failures}");
 }
 
-/// What `a` has more than `b`.
+/// The items of `a` that `b` does not have.
 fn difference(a: &Reports, b: &Reports) -> Reports {
     let mut rest = b.clone();
     let mut more = Vec::new();

@@ -87,7 +87,7 @@ pub(crate) fn block(p: &Program, s: &mut State) {
         return;
     }
     // The steps of a forced chart, and those that it encloses, may give orders too.
-    // Whether these act depends on the orders above them, so the rows are taken in
+    // The orders above them decide if these act, so the rows are taken in
     // their order.
     for i in 0..p.tables.orders.len() as u32 {
         let Some(o) = p.tables.orders.get(i as usize) else { break };

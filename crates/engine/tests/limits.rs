@@ -19,7 +19,7 @@ fn fork() -> Tables {
     chart(Rules::IEC61131, 3, 2, &[0], &arcs)
 }
 
-/// What a scan that ends with two active steps and three enabled transitions says
+/// The report of a scan that ends with two active steps and three enabled transitions
 /// under these limits; and whether the flag (a word behind all others) was set.
 fn limited(active: u32, enabled: u32) -> (Option<FaultKind>, u64) {
     let mut t = fork();
@@ -133,7 +133,7 @@ fn a_step_set_from_outside_is_seen_by_the_next_scan() {
     let mut s = State::new(&p);
     scan(&p, &mut s, &[0, 0], 0).expect("no fault");
     let image = s.image().to_vec();
-    // What is so already, and what is not there, changes nothing.
+    // A request for the present state, or for a missing step, changes nothing.
     set_step(&p, &mut s, StepId(0), true);
     set_step(&p, &mut s, StepId(1), false);
     set_step(&p, &mut s, StepId(3), true);

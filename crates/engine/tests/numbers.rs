@@ -6,7 +6,7 @@ mod common;
 use common::chart;
 use g7_engine::{Arith, Builtin, Cmp, Code, FaultKind, Num, Op, Program, Rules, State, eval};
 
-/// What an instruction leaves of these operands.
+/// The result of an instruction on these operands.
 fn done(operands: &[u64], op: Op) -> Result<u64, FaultKind> {
     let mut t = chart(Rules::IEC61131, 1, 0, &[0], &[]);
     t.code = operands.iter().map(|v| Op::Push(*v)).chain([op]).collect();
@@ -126,7 +126,7 @@ fn numbers_compare_by_their_kind() {
     assert_eq!(table(one, one, Num::F64), equal);
     assert_eq!(table(two, one, Num::F64), less);
     assert_eq!(table(one, two, Num::F64), more);
-    // What is not a number is unequal to everything, and in no order with it.
+    // NaN is unequal to everything, and in no order with it.
     assert_eq!(table(none, none, Num::F64), [false, true, false, false, false, false]);
     let (small, none) = (u64::from((-2f32).to_bits()), u64::from(f32::NAN.to_bits()));
     assert_eq!(table(small, u64::from(1f32.to_bits()), Num::F32), less);

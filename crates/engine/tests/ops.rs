@@ -20,7 +20,7 @@ fn program(words: &[u64], code: &[Op]) -> (Program, Code) {
     (Program::new(t).expect("tables are sound"), code)
 }
 
-/// What code leaves on the stack, and the words behind it.
+/// The word that code leaves on the stack, and the words behind it.
 fn done(words: &[u64], code: &[Op]) -> (Result<u64, FaultKind>, Vec<u64>) {
     let (p, code) = program(words, code);
     let mut s = State::new(&p);
@@ -152,7 +152,7 @@ fn a_duration_has_each_unit_once_from_days_to_nanoseconds() {
     assert_eq!(show(i64::MIN), "T#-106751d23h47m16s854ms775us808ns");
 }
 
-/// What a text is as a number.
+/// A text as a number.
 fn read(t: &str, to: Num) -> Result<u64, FaultKind> {
     done(&text(t.as_bytes(), 40), &[Op::Push(0), Op::FromText(to)]).0
 }

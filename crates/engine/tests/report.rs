@@ -1,4 +1,4 @@
-//! What a scan says of itself, and the inputs and times that it refuses.
+//! The report of a scan, and the inputs and times that it refuses.
 
 mod common;
 

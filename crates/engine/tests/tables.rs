@@ -70,7 +70,7 @@ fn sound() -> Tables {
     t
 }
 
-/// What is said of the sound tables after a change.
+/// The verdict on the sound tables after a change.
 fn verdict(change: impl FnOnce(&mut Tables)) -> Option<LoadError> {
     let mut t = sound();
     change(&mut t);
@@ -90,7 +90,7 @@ macro_rules! refused {
 #[test]
 fn sound_tables_are_taken() {
     assert_eq!(verdict(|_| {}), None);
-    // What may be left out.
+    // These may be left out.
     assert_eq!(verdict(|t| t.steps[0].direct = Addr(NONE)), None);
     assert_eq!(verdict(|t| t.transitions[1].from = StepId(NONE)), None);
     assert_eq!(verdict(|t| t.transitions[1].to = StepId(NONE)), None);
@@ -180,7 +180,7 @@ fn tables_are_far_smaller_than_their_indices() {
 /// Puts code into its place of the tables.
 type SetCode = fn(&mut Tables, Code);
 
-/// What is said of these instructions as PRE.
+/// The verdict on these instructions as PRE.
 fn pre(ops: &[Op]) -> Option<LoadError> {
     verdict(|t| {
         // Alone, so that places count from 0.
@@ -218,7 +218,7 @@ fn code_leaves_what_it_should_on_every_way() {
     let start = sound().code.len() as u32;
     assert_eq!(behind(start + 1), None);
     assert_eq!(behind(start), stack(start + 1));
-    // What a Return leaves is the end's affair, and nothing behind it is looked at.
+    // The stack at a Return is checked at the end; nothing behind it is checked.
     assert_eq!(pre(&[Op::Return, drop]), None);
     assert_eq!(pre(&[one, Op::Return]), stack(1));
     // Each code by what it has to leave.
@@ -362,7 +362,7 @@ fn instructions_name_what_is_there_and_balance_the_stack() {
             assert_eq!(used(past, pops, pushes), Some(LoadError::Index { table: "code", row }), "{past:?}");
         }
     }
-    // What is no text function takes more than there is.
+    // A function that is not one of texts takes more than there is.
     let op = Op::Text { function: Builtin::Abs, to: Addr(0), cap: 9 };
     assert_eq!(used(op, STACK, 1), Some(LoadError::Stack { at: STACK as u32 }));
     // Watches.

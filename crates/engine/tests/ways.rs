@@ -72,7 +72,7 @@ fn both_ways_reach_the_same_situations() {
             match (x, y) {
                 (Ok(x), Ok(y)) => {
                     assert_eq!(x.cleared, y.cleared, "round {round}, scan {k}");
-                    // What clears in one pass clears at once: no order to compare.
+                    // Transitions of one pass clear at once: no order to compare.
                     let sorted = |s: &State| {
                         let mut list = s.cleared().to_vec();
                         list.sort_unstable();

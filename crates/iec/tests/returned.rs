@@ -38,7 +38,7 @@ const FORMS: [(&str, Write, Read); 2] =
 /// clearing runs behind the evolution.
 const OTHERWISE: [&str; 1] = ["side-by-side/order-clearing"];
 
-/// What happens: a scan with new inputs, or a start from the beginning.
+/// An event: a scan with new inputs, or a start from the beginning.
 enum Event {
     Scan(i64, Vec<(String, u64)>),
     Restart { cold: bool },
@@ -63,7 +63,7 @@ fn standard(mut document: Document) -> Document {
 /// The expansion of each macro-step.
 type Macros = BTreeMap<String, String>;
 
-/// What a name became: the same, or one made of it.
+/// The new form of a name: the same, or one made of it.
 fn counterpart<'a>(name: &str, there: &'a BTreeSet<String>, macros: &Macros) -> Option<&'a String> {
     if let Some(same) = there.get(name) {
         return Some(same);

@@ -391,7 +391,7 @@ impl Document {
         self.items.iter().find_map(|i| if let Item::Cycle(time, _) = i { Some(*time) } else { None })
     }
 
-    /// What is to be proved, in the order of the text.
+    /// The properties to be proved, in the order of the text.
     pub fn properties(&self) -> impl Iterator<Item = &Property> {
         self.items.iter().filter_map(|i| if let Item::Prove(p) = i { Some(p) } else { None })
     }

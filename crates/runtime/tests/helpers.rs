@@ -128,7 +128,7 @@ fn text(letters: &str) -> [u8; 12] {
     a
 }
 
-/// What a function makes of texts.
+/// The result of a function of texts.
 fn made(f: impl FnOnce(&mut [u8], usize, &mut u8)) -> (String, u8) {
     let (mut to, mut fault) = ([0xffu8; 12], FAULT_NONE);
     f(&mut to, 10, &mut fault);

@@ -41,7 +41,7 @@ fn marked_blocks(page: &str, mark: &str) -> Vec<(usize, String)> {
     found
 }
 
-/// What is wrong with the canonical form of a document, if anything is.
+/// The fault of the canonical form of a document, if it has one.
 fn misprint(text: &str, document: &Document) -> Option<String> {
     for source in [None, Some(text)] {
         let printed = print(document, source);

@@ -8,7 +8,7 @@ use proptest::prelude::*;
 
 const FILE: FileId = FileId(0);
 
-// What statements over Booleans do.
+// Statements over Booleans.
 
 type Values = BTreeMap<String, bool>;
 

@@ -1,4 +1,4 @@
-//! What tests need from the machine and cannot bring along: compilers, the
+//! Tools that tests need from the machine and cannot bring along: compilers, the
 //! runtime of the sanitizers, matiec, and the corpus of charts that people drew.
 //!
 //! A test asks here, and here alone. A peer is tried before a test uses it. If it

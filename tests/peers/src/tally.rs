@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-/// What the logs of a run and its list of skips come to.
+/// The sum of the logs of a run and its list of skips.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Tally {
     passed: usize,

@@ -150,7 +150,7 @@ fn file(module: &Module, tokens: &[String], names: &BTreeSet<Module>) -> File {
     }
     for path in exported {
         let Some(name) = path.last().cloned() else { continue };
-        // What it hands on and uses itself, it uses.
+        // A name that it hands on and uses itself counts as a use.
         if words.contains(&name) {
             file.paths.push(path.clone());
         }

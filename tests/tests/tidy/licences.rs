@@ -1,4 +1,4 @@
-//! What the packages built in are licensed under, and whether that is allowed.
+//! The licences of the packages built in, and if they are allowed.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
@@ -12,7 +12,7 @@ pub(crate) fn allowed(deny: &str) -> BTreeSet<String> {
 }
 
 /// Each package that is built into ours, or used to build it, with its licence.
-/// What only tests use is left out.
+/// Packages that only tests use are left out.
 pub(crate) fn used(root: &Path) -> BTreeMap<String, String> {
     let data = metadata(root);
     let text = |v: &Value| v.as_str().unwrap_or("").to_owned();
@@ -45,7 +45,7 @@ pub(crate) fn used(root: &Path) -> BTreeMap<String, String> {
         .collect()
 }
 
-/// What cargo knows of the workspace, for this machine's platform.
+/// The workspace as cargo knows it, for this machine's platform.
 fn metadata(root: &Path) -> Value {
     let rustc = std::env::var("RUSTC").unwrap_or_else(|_| "rustc".to_owned());
     let version = std::process::Command::new(rustc).arg("-vV").output().expect("rustc");

@@ -1,4 +1,4 @@
-// What the tests said the last time; it stays while other panels are in front.
+// The latest results of the tests; they stay while other panels are in front.
 import type { OpenFile } from '../lib/files.svelte';
 import { page } from '../lib/page';
 import type { TestAnswer, TestResult } from '../lib/protocol';

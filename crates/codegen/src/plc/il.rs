@@ -1,6 +1,6 @@
 //! The equations as Instruction List.
 //!
-//! What must hold: brackets hold contacts only, a loop has its one jump back at
+//! Invariants: brackets hold contacts only, a loop has its one jump back at
 //! its end, and members of blocks stand behind LD and ST alone. Not every
 //! compiler takes more, and `iec::il` reads no more back.
 

@@ -39,7 +39,7 @@ struct Pending {
     symbol: ActionSymbol,
 }
 
-/// What the actions of all steps come to, before ranks are known.
+/// The actions of all steps, before ranks are known.
 #[derive(Default)]
 pub(super) struct Actions {
     pending: Vec<Pending>,
@@ -77,7 +77,7 @@ impl Clearing {
     }
 }
 
-/// What a control block drives.
+/// The target of a control block.
 #[derive(Clone, Copy)]
 pub(super) enum Drives {
     Variable(VarId),
@@ -168,7 +168,7 @@ impl Lower<'_> {
         self.t.blocks.iter_mut().for_each(|b| b.action = to(b.action));
     }
 
-    /// What an action's rank goes by before the text does: its kind, and where
+    /// The part of an action's rank that comes before the text: its kind, and where
     /// pulses go first and last and each action sees those before it, its pulse.
     fn class(&self, moment: Moment) -> u8 {
         let rules = &self.unit.rules;

@@ -64,7 +64,7 @@ impl Association {
     }
 }
 
-/// What becomes of a qualifier on a Boolean variable.
+/// The lowering of a qualifier on a Boolean variable.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Way {
     /// Stored action on activation that writes this value.
@@ -147,7 +147,7 @@ impl Lower<'_> {
         })
     }
 
-    /// What becomes of a qualifier on a variable with these associations.
+    /// The lowering of a qualifier on a variable with these associations.
     pub(super) fn way(&self, qualifier: Qualifier, all: Association) -> Way {
         let rules = &self.unit.rules;
         let continuous = rules.continuous && !all.block_only;

@@ -67,7 +67,7 @@ pub struct Lowered {
 pub struct Pieces(Vec<(u32, Piece)>);
 
 impl Pieces {
-    /// What a piece of code does; `None` for an empty one.
+    /// A piece of code; `None` for an empty one.
     pub fn get(&self, code: Code) -> Option<&Piece> {
         let at = self.0.binary_search_by_key(&code.start, |p| p.0).ok()?;
         self.0.get(at).filter(|_| !code.is_empty()).map(|p| &p.1)

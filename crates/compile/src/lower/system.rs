@@ -213,7 +213,7 @@ fn when(condition: Expr, then: Vec<Stmt>) -> Stmt {
     Stmt { kind: StmtKind::If(vec![(condition, then)], Vec::new()), at }
 }
 
-/// What the tables of the PLCs hold (TSX Micro and Premium, PL7 manual): steps
+/// The sizes of the tables of the PLCs (TSX Micro and Premium, PL7 manual): steps
 /// active and transitions valid at once.
 fn limits(target: TargetPlc) -> Limits {
     match target {

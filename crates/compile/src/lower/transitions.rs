@@ -1,6 +1,6 @@
 //! Transitions: their order, their arcs, their receptivities.
 //!
-//! What a task, an `enable` order or a freeze asks of a transition is ANDed to
+//! The condition that a task, an `enable` order or a freeze asks of a transition is ANDed to
 //! its receptivity; what a call needs of the task's steps is added to its arcs.
 
 use g7_engine::{Addr, Cmp, NONE, Receptivity, Rows, StepId as Number, Transition};
@@ -22,7 +22,7 @@ pub(super) enum Origin {
     Return(ChartId),
 }
 
-/// What must hold besides the receptivity.
+/// The conditions besides the receptivity.
 enum Extra {
     /// One of the steps is active.
     Any(Vec<StepId>),
@@ -34,7 +34,7 @@ enum Extra {
     Orphaned(Addr, Vec<StepId>),
 }
 
-/// What a transition is made of.
+/// The parts of a transition.
 #[derive(Default)]
 struct Parts {
     from: Vec<Number>,
@@ -244,7 +244,7 @@ impl Lower<'_> {
         let tree = match held {
             None => self.expr(self.period(chart), receptivity),
             Some(free) if is_true(receptivity) => free,
-            // What holds a transition back comes first: then its receptivity is not
+            // The conditions that hold a transition back come first: then its receptivity is not
             // even looked at, and cannot fail.
             Some(free) => {
                 let receptivity = self.expr(self.period(chart), receptivity);
@@ -273,7 +273,7 @@ impl Lower<'_> {
         }
     }
 
-    /// What holds back every transition of a chart and of the charts round it.
+    /// The conditions that hold back every transition of a chart and of the charts round it.
     fn blockers(&self, chart: ChartId) -> Vec<Extra> {
         let mut found: Vec<Extra> = self.stop_all.map(Extra::Off).into_iter().collect();
         let mut at = Some(chart);

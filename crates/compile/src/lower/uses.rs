@@ -1,4 +1,4 @@
-//! What the unit does with its variables, steps and charts, found in one walk
+//! The uses of variables, steps and charts in the unit, found in one walk
 //! before anything is emitted.
 //!
 //! The walk decides what costs something at run time: which macro-steps need a
@@ -13,7 +13,7 @@ use g7_model::Qualifier;
 /// Nesting beyond which a chart is refused; see [`super::work::Lower::expr`].
 pub(super) const DEPTH: u32 = 1000;
 
-/// What is done with what.
+/// The uses found.
 pub(super) struct Uses<'a> {
     /// By variable: read by a receptivity, watch, condition or stored action,
     /// which may run before the end of the scan.
@@ -39,7 +39,7 @@ static NO_TIME: Option<Expr> = None;
 struct Walk<'a> {
     unit: &'a Unit,
     uses: Uses<'a>,
-    /// What is read now is read before the end of the scan.
+    /// Reads from here on come before the end of the scan.
     early: bool,
     depth: u32,
 }

@@ -36,7 +36,7 @@ fn an_output_of_one_step_alone_is_written_with_the_step() {
     }
     assert_eq!(direct("output V : BOOL := TRUE chart G { initial step 1 { N V } }"), None);
     assert_eq!(direct("var V : BOOL retain chart G { initial step 1 { N V } }"), None);
-    // What runs at the end of the scan sees no difference.
+    // Actions at the end of the scan see no difference.
     let late = "output V : BOOL output W : BOOL chart G { initial step 1 { N V } } post { W := V }";
     assert_eq!(direct(late), Some(Addr(0)));
 }
@@ -130,7 +130,7 @@ const ORDER: &str = "var n : INT input a : BOOL
       1 -> 2 when a on clearing { n := 6 }
       2 -> 1 when a }";
 
-/// What each action stores, by rank.
+/// The store of each action, by rank.
 fn stored(text: &str) -> Vec<u64> {
     let c = compiled(text);
     let t = c.tables();

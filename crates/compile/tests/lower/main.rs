@@ -1,4 +1,4 @@
-//! What becomes of each construct: from text to the rows of the tables, and,
+//! The lowering of each construct: from text to the rows of the tables, and,
 //! where rows would say little, to what the engine then does.
 
 mod actions;

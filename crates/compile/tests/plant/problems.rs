@@ -1,4 +1,4 @@
-//! What is wrong with a plant, beyond the cases of `tests/check`.
+//! Faults of a plant, beyond the cases of `tests/check`.
 
 use g7_compile::check;
 use g7_model::FileId;

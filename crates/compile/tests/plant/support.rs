@@ -66,7 +66,7 @@ impl Run {
         self.symbols().variable(name).unwrap_or_else(|| panic!("no {name}"))
     }
 
-    /// What the plant sees of an output of the charts.
+    /// An output of the charts as the plant sees it.
     pub(crate) fn output(&mut self, name: &str, value: bool) -> &mut Run {
         let at = self.variable(name).addr.0 - self.program().tables().inputs.start;
         self.inputs[at as usize] = u64::from(value);

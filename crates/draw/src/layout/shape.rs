@@ -130,7 +130,7 @@ pub(crate) struct Shapes<'a> {
     pub(crate) failed: Vec<u32>,
 }
 
-/// What stands above the next item of a sequence.
+/// The item above the next one of a sequence.
 #[derive(Clone, Copy)]
 enum Above {
     /// A line from which branches hang, at the current level.

@@ -147,7 +147,7 @@ fn declare(d: &mut Draft<'_>, chart: &str, doc: &Document) -> Result<(), Refusal
     Ok(())
 }
 
-/// What a name already means.
+/// The present meaning of a name.
 enum Meaning {
     Variable(Box<VarDecl>),
     Other(&'static str),

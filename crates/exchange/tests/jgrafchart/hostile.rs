@@ -35,7 +35,7 @@ fn read(file: &[u8]) -> (Document, Vec<Problem>) {
 
 fn import(file: &[u8]) -> (Document, Vec<Problem>) {
     let (document, problems) = read(file);
-    // What is written of it is well-formed, and soon there.
+    // The written form is well-formed, and soon there.
     let written = support::export("jgrafchart", &document);
     let (_, again) = support::import("jgrafchart", written.text.as_bytes(), FileId(1));
     assert!(again.iter().all(|p| p.code.id != "G0601"), "{again:?}");

@@ -1,4 +1,4 @@
-//! What cannot be carried over is said, with its line.
+//! A construct that cannot be carried over is reported, with its line.
 
 use crate::support;
 use crate::support::recognise;
@@ -102,7 +102,7 @@ fn mistakes_of_the_author_have_their_line() {
     );
     let warnings = found.iter().filter(|p| p.severity() == Severity::Warning).count();
     assert_eq!(warnings, 9);
-    // What could be read is there.
+    // The readable part is there.
     assert_eq!(actions(step(&document, "Wrong", "same")), ["P1 v := 2", "P1 v := 3"]);
 }
 

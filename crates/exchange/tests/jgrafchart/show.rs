@@ -18,7 +18,7 @@ pub(crate) fn bytes(name: &str) -> Vec<u8> {
     std::fs::read(path(name)).expect("the file is part of the repository")
 }
 
-/// What becomes of it.
+/// Its result.
 pub(crate) fn import(name: &str) -> (Document, Vec<Problem>) {
     support::import("jgrafchart", &bytes(name), FileId(0))
 }

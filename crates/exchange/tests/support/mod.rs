@@ -1,4 +1,4 @@
-//! What the tests of several formats share: files, what must hold for each of
+//! The common part of the tests of several formats: files, the laws for each of
 //! them, and a bench to run what came of it.
 #![allow(dead_code, reason = "each test uses a part of it")]
 #![allow(clippy::disallowed_methods, reason = "files are read")]
@@ -56,7 +56,7 @@ pub(crate) fn export(format: &str, document: &Document) -> Written {
     g7_exchange::named(format).and_then(|f| f.write(document)).expect("a format that is written")
 }
 
-/// What comes of a file, when it is known as this format; its places lie in the
+/// The result of a file that is known as this format; its places lie in the
 /// file, and what is printed reads as the same document.
 pub(crate) fn read(format: &str, bytes: &[u8]) -> (Document, Vec<Problem>) {
     assert_eq!(recognise("", bytes), Some(format));

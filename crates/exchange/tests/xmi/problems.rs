@@ -1,4 +1,4 @@
-//! What is wrong with an instance is said where it stands.
+//! Faults of an instance are reported at their places.
 
 use crate::show::{bytes, import, lines};
 

@@ -12,7 +12,7 @@ pub(crate) fn bytes(name: &str) -> Vec<u8> {
     std::fs::read(path).expect("the file is part of the repository")
 }
 
-/// What becomes of an instance.
+/// The result of an instance.
 pub(crate) fn import(bytes: &[u8]) -> (Document, Vec<Problem>) {
     support::import("xmi", bytes, FileId(0))
 }

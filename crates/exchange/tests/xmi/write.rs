@@ -1,4 +1,4 @@
-//! What the meta-model cannot hold is said where it stands in the document.
+//! Constructs that the meta-model cannot hold are reported at their places in the document.
 
 use crate::show::{import, lines, read};
 use crate::support;
@@ -92,7 +92,7 @@ fn what_cannot_be_held_is_a_problem_with_its_place() {
             "G0605 16: a layout: the meta-model has none; it is left out",
         ]
     );
-    // What can be held comes back all the same.
+    // All other constructs come back.
     assert!(back.contains("chart Fill {"), "{back}");
     assert!(back.contains("  initial step 1 { N lamp if ↑a }\n  step 2\n"), "{back}");
 }

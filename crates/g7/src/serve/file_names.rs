@@ -42,7 +42,7 @@ pub(super) fn is_served(name: &str) -> bool {
         .is_some_and(|(stem, end)| !stem.is_empty() && known.any(|known| end.eq_ignore_ascii_case(known)))
 }
 
-/// What is wrong with the name of a file or folder, if anything.
+/// The fault of the name of a file or folder, if it has one.
 pub(super) fn fault(part: &str) -> Option<&'static str> {
     if part.is_empty() {
         return Some("a part of it is empty");

@@ -15,7 +15,7 @@ use axum::response::{IntoResponse, Response};
 
 use super::refusal::Refusal;
 
-/// What a request is compared with.
+/// The values that a request is compared with.
 #[derive(Clone, Debug)]
 pub(super) struct Guard {
     pub(super) token: String,

@@ -37,7 +37,7 @@ impl Parser<'_> {
         let text = self.slice(token);
         let upper = text.to_ascii_uppercase();
         match (token.kind, upper.as_str()) {
-            // What CODESYS, and other languages, write besides.
+            // Further forms of CODESYS and other languages.
             (Kind::Sign, "==") => Some(BinaryOp::Eq),
             (Kind::Sign, "!=") => Some(BinaryOp::Ne),
             (Kind::Sign, "&" | "&&") | (Kind::Word, "AND_THEN") => Some(BinaryOp::And),

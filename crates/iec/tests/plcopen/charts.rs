@@ -1,4 +1,4 @@
-//! What each file means, written as the same chart in G7's own text.
+//! The meaning of each file, written as the same chart in G7's own text.
 
 use g7_model::{Item, Placed};
 

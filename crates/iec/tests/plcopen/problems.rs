@@ -1,4 +1,4 @@
-//! What cannot be carried over is said, with its place.
+//! A construct that cannot be carried over is reported, with its place.
 
 use crate::show::{bytes, document, errors, import, places};
 use crate::support;

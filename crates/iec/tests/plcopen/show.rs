@@ -12,7 +12,7 @@ pub(crate) fn bytes(name: &str) -> Vec<u8> {
     std::fs::read(folder.iter().collect::<PathBuf>().join(name)).expect("the file is part of the repository")
 }
 
-/// What becomes of it.
+/// Its result.
 pub(crate) fn import(name: &str) -> (Document, Vec<Problem>) {
     let bytes = bytes(name);
     assert_eq!(recognise("", &bytes), Some("plcopen"), "{name}");
@@ -38,7 +38,7 @@ pub(crate) fn places(bytes: &[u8], problems: &[Problem]) -> Vec<String> {
     problems.iter().map(|p| format!("{} {}", p.code.id, line(p.at.start))).collect()
 }
 
-/// What is an error, in words.
+/// The errors, in words.
 pub(crate) fn errors(problems: &[Problem]) -> Vec<&str> {
     problems.iter().filter(|p| p.severity() == Severity::Error).map(|p| &*p.what).collect()
 }

@@ -121,7 +121,7 @@ fn imported_projects_come_back() {
     }
 }
 
-/// What comes back of a document, without its head.
+/// A document as it comes back, without its head.
 fn becomes(there: &str, expected: &str) {
     let back = again(&document(&format!("profile iec61131\n{there}")));
     let wanted = document(&format!("profile iec61131\n{expected}"));

@@ -1,4 +1,4 @@
-//! What is carried over, and as what.
+//! The constructs that are carried over, and their forms.
 
 use crate::support::recognise;
 use g7_model::FileId;

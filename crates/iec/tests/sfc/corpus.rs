@@ -62,7 +62,7 @@ fn charts_of_the_corpus_run_or_are_refused_with_their_reason() {
     assert_eq!(ran, 61);
 }
 
-/// What two files give for the same input, scan by scan.
+/// The outputs of two files for the same input, scan by scan.
 fn outputs(folder: &Path, name: &str, input: i64) -> Vec<i64> {
     let bytes = std::fs::read(folder.join(name)).expect(name);
     let (document, problems) = support::import("sfc", &bytes, FileId(0));

@@ -1,4 +1,4 @@
-//! What is told, and where.
+//! The reports, and their places.
 
 use crate::{file, import};
 

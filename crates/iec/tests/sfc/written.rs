@@ -1,4 +1,4 @@
-//! What is written: read back equal, and taken by a compiler that is not ours.
+//! Written files: read back equal, and taken by a compiler that is not ours.
 
 use crate::support;
 use std::path::PathBuf;

@@ -39,7 +39,7 @@ pub struct Item {
     pub name: String,
     /// How its words are to be read.
     pub kind: Kind,
-    /// What it is for.
+    /// Its use.
     pub role: Role,
     /// The address of its first word, among the variables of the charts or of the plant.
     pub addr: u32,

@@ -180,7 +180,7 @@ fn small_expr() -> impl Strategy<Value = Expr> {
     expr()
 }
 
-/// What is assigned or set.
+/// The target of an assignment.
 pub(crate) fn target() -> impl Strategy<Value = Expr> {
     prop_oneof![
         3 => path().prop_map(|p| of(ExprKind::Path(p))),

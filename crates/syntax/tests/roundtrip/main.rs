@@ -1,4 +1,4 @@
-//! What is printed reads as the same document, whatever the document is.
+//! A printed document reads as the same document, whatever it is.
 
 mod charts;
 mod expressions;
