@@ -4,9 +4,9 @@
 
 use g7_model::{Chart, ChartItem, Document, Item, Layout, Name, PlaceAt, Placed, Span, StepKind, Transition};
 
+use crate::change::{Anchors, Source};
 use crate::id::{ItemId, Part};
 use crate::needs::needs;
-use crate::{Anchors, Source};
 
 /// The chosen steps and transitions as the text of a small file. A transition whose steps are all
 /// chosen is copied too; links to other steps are cut.

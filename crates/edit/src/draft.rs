@@ -12,9 +12,9 @@ use g7_model::{
     Transition,
 };
 
+use crate::change::{Anchors, Refusal, Source, refuse};
 use crate::id::ItemId;
 use crate::splice::Splice;
-use crate::{Anchors, Refusal, Source, refuse};
 
 /// The file in which all new parts have their places.
 pub(crate) const FRESH: FileId = FileId(u32::MAX);

@@ -3,11 +3,12 @@
 use g7_model::{Chart, ChartKind, Span, StepKind};
 
 use super::graph::{add, leaving, may_arrive, may_leave, put_step, put_step_before, put_transition};
-use super::{Node, layout_section, node, places};
+use super::nodes::{Node, node};
+use super::{layout_section, places};
+use crate::change::{Refusal, refuse};
 use crate::draft::Draft;
 use crate::gesture::{Branching, Sort};
 use crate::id::ItemId;
-use crate::{Refusal, refuse};
 
 /// Adds a step without links. The first step of a chart is initial; the first step of an expansion
 /// or task is its entry step.

@@ -19,10 +19,10 @@ use std::collections::{BTreeMap, BTreeSet};
 use g7_model::{Chart, ChartItem, Name, Span, Transition};
 
 use super::graph::{has, replace};
-use super::{Node, node, one_chart};
+use super::nodes::{Node, node, one_chart};
+use crate::change::{Refusal, refuse};
 use crate::draft::Draft;
 use crate::id::{End, ItemId, Part};
-use crate::{Refusal, refuse};
 
 /// The chosen steps and transitions of one chart.
 pub(crate) struct Chosen {

@@ -3,12 +3,12 @@
 use g7_model::{Action, ChartItem, ChartKind, FileId, StepKind};
 
 use super::graph::{arriving, leaving, may_arrive, may_leave};
+use super::nodes::{Node, node};
 use super::table::add_expansion;
-use super::{Node, node};
+use crate::change::{Refusal, refuse};
 use crate::draft::Draft;
 use crate::gesture::Sort;
 use crate::id::{ItemId, Part};
-use crate::{Refusal, refuse};
 
 /// The transition that an id names.
 fn transition(d: &Draft<'_>, id: &ItemId) -> Result<g7_model::Span, Refusal> {

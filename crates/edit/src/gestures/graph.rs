@@ -6,8 +6,8 @@
 
 use g7_model::{Chart, ChartItem, Name, Span, Step, StepKind, Transition};
 
+use crate::change::{Refusal, refuse};
 use crate::draft::Draft;
-use crate::{Refusal, refuse};
 
 /// True if the names contain this step.
 pub(crate) fn has(names: &[Name], step: &str) -> bool {

@@ -13,11 +13,11 @@ use g7_syntax::{show_name, show_path_name, show_step_name};
 use super::delete::Chosen;
 use super::graph::replace;
 use super::insert::macro_name;
+use crate::change::{Refusal, refuse};
 use crate::draft::Draft;
 use crate::id::ItemId;
 use crate::splice::{Splice, spliced};
 use crate::write::{reindent, step_list};
-use crate::{Refusal, refuse};
 
 /// The sequence that moves.
 struct Sequence {

@@ -6,10 +6,10 @@ use super::build::fresh_step;
 use super::delete::Chosen;
 use super::graph::{add, put_beside, put_step, replace};
 use super::table::add_expansion;
+use crate::change::{Refusal, refuse};
 use crate::draft::Draft;
 use crate::gesture::What;
 use crate::id::{End, ItemId, Part};
-use crate::{Refusal, refuse};
 
 /// Inserts a step and a transition into a link.
 pub(crate) fn insert(d: &mut Draft<'_>, link: &ItemId, what: What) -> Result<(), Refusal> {

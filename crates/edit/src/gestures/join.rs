@@ -5,11 +5,11 @@ use g7_model::{Chart, Name, Span};
 
 use super::build::fresh_step;
 use super::graph::{add, has, may_arrive, may_leave, put_transition};
-use super::{Node, node, one_chart};
+use super::nodes::{Node, node, one_chart};
+use crate::change::{Refusal, refuse};
 use crate::draft::Draft;
 use crate::gesture::Branching;
 use crate::id::ItemId;
-use crate::{Refusal, refuse};
 
 pub(crate) fn connect(d: &mut Draft<'_>, from: &ItemId, to: &ItemId) -> Result<(), Refusal> {
     if from.chart != to.chart {

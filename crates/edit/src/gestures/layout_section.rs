@@ -2,8 +2,8 @@
 
 use g7_model::{Document, Item, Layout};
 
+use crate::change::{Refusal, refuse};
 use crate::draft::Draft;
-use crate::{Refusal, refuse};
 
 /// Greatest coordinate, in hundredths of a unit.
 pub(crate) const FARTHEST: i64 = 100_000_000;

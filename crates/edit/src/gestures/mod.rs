@@ -8,6 +8,7 @@ mod group;
 mod insert;
 mod join;
 mod layout_section;
+mod nodes;
 mod notes;
 mod paste;
 mod places;
@@ -18,10 +19,9 @@ mod table;
 pub(crate) use rename::rename;
 pub(crate) use table::renamed_row;
 
+use crate::change::{Refusal, refuse};
 use crate::draft::Draft;
 use crate::gesture::Gesture;
-use crate::id::{ItemId, Part};
-use crate::{Refusal, refuse};
 
 /// Changes the draft; renaming and typing are handled elsewhere.
 pub(crate) fn carry_out(d: &mut Draft<'_>, gesture: &Gesture) -> Result<(), Refusal> {
@@ -61,41 +61,4 @@ pub(crate) fn carry_out(d: &mut Draft<'_>, gesture: &Gesture) -> Result<(), Refu
         Gesture::Scan { ms } => settings::scan(d, *ms),
         Gesture::Rename { .. } | Gesture::Text { .. } => refuse("this gesture is not one of the drawing"),
     }
-}
-
-/// The step or transition that an id names.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) enum Node {
-    Step(String),
-    Transition(g7_model::Span),
-}
-
-/// The step (also for an id of one of its actions) or the transition that an id names, if it
-/// exists.
-pub(crate) fn node(d: &Draft<'_>, id: &ItemId) -> Result<Node, Refusal> {
-    match &id.part {
-        Part::Step(name) => {
-            d.step(&id.chart, name)?;
-            Ok(Node::Step(name.clone()))
-        }
-        Part::Action(name, k) => {
-            if d.step(&id.chart, name)?.actions.get(*k).is_none() {
-                return refuse(format!("step `{name}` has no action number {k}"));
-            }
-            Ok(Node::Step(name.clone()))
-        }
-        Part::Transition(n) => Ok(Node::Transition(d.number(&id.chart, *n)?)),
-        Part::Chart | Part::Link(..) | Part::Connector(..) | Part::Note(_) | Part::Other(_) => {
-            refuse("this is done with a step or a transition; choose one")
-        }
-    }
-}
-
-/// The chart of all ids; refuses ids of several charts.
-pub(crate) fn one_chart(ids: &[ItemId]) -> Result<&str, Refusal> {
-    let Some(first) = ids.first() else { return refuse("nothing is chosen") };
-    if ids.iter().any(|id| id.chart != first.chart) {
-        return refuse("the chosen things are of several charts; this is done in one");
-    }
-    Ok(&first.chart)
 }

@@ -5,9 +5,9 @@ use std::collections::BTreeSet;
 use g7_model::{Item, Layout, PlaceAt, Placed};
 
 use super::layout_section::{self, point};
+use crate::change::{Refusal, refuse};
 use crate::draft::Draft;
 use crate::id::ItemId;
-use crate::{Refusal, refuse};
 
 /// Adds a comment at a place.
 pub(crate) fn add(d: &mut Draft<'_>, chart: &str, text: &str, at: [f64; 2]) -> Result<(), Refusal> {

@@ -13,12 +13,12 @@ use super::graph::put_step;
 use super::rename::written;
 use super::table::{declares, put_variable};
 use super::{layout_section, notes, places};
+use crate::change::{Refusal, refuse};
 use crate::draft::{Draft, Mark};
 use crate::id::ItemId;
 use crate::needs::needs;
 use crate::splice::spliced;
 use crate::write::{reindent, step_list, variable_text};
-use crate::{Refusal, refuse};
 
 /// Greatest length of a pasted text, in bytes.
 const MOST: usize = 1 << 20;

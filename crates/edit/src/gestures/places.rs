@@ -5,11 +5,12 @@ use std::collections::BTreeMap;
 use g7_model::{Item, Name, PlaceAt, Placed, Span};
 
 use super::layout_section::{FARTHEST, point, with_layout, without_empty_layout};
-use super::{Node, node, notes, one_chart};
+use super::nodes::{Node, node, one_chart};
+use super::notes;
+use crate::change::{Refusal, refuse};
 use crate::draft::Draft;
 use crate::gesture::Alignment;
 use crate::id::{ItemId, Part};
-use crate::{Refusal, refuse};
 
 /// Gives a step, transition or comment a place.
 pub(crate) fn place(d: &mut Draft<'_>, id: &ItemId, (x, y): (i32, i32)) -> Result<(), Refusal> {

@@ -9,9 +9,9 @@ use g7_compile::{Definition, References, references};
 use g7_model::{FileId, Item, Span};
 use g7_syntax::{show_name, show_path_name, show_step_name};
 
+use crate::change::{Edit, Refusal, Source, refuse};
 use crate::id::{ItemId, Part};
 use crate::splice::{Splice, spliced, tidied};
-use crate::{Edit, Refusal, Source, refuse};
 
 /// Renames a part everywhere.
 pub(crate) fn rename(

@@ -4,8 +4,8 @@ use std::mem::discriminant;
 
 use g7_model::{Item, Nanos, Place, Profile, ProfileName, Switch};
 
+use crate::change::{Refusal, refuse};
 use crate::draft::Draft;
-use crate::{Refusal, refuse};
 
 pub(crate) fn profile(d: &mut Draft<'_>, name: &str) -> Result<(), Refusal> {
     let Some(profile) = ProfileName::ALL.into_iter().find(|p| p.name() == name) else {

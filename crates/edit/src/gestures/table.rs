@@ -2,10 +2,10 @@
 
 use g7_model::{Chart, ChartItem, ChartKind, FileId, Item, Name, StepKind, VarDecl};
 
+use crate::change::{Refusal, Source, refuse};
 use crate::draft::Draft;
 use crate::gesture::{ChartSort, Gesture, Row};
 use crate::id::ItemId;
-use crate::{Refusal, Source, refuse};
 
 // Charts
 

@@ -1,0 +1,45 @@
+//! The steps and transitions that the ids of a gesture name.
+//!
+//! A gesture begins here: its ids come from the drawing and may be out of date, so an id is never
+//! used before the draft has been found to contain its part.
+
+use crate::change::{Refusal, refuse};
+use crate::draft::Draft;
+use crate::id::{ItemId, Part};
+
+/// The step or transition that an id names.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) enum Node {
+    Step(String),
+    Transition(g7_model::Span),
+}
+
+/// The step (also for an id of one of its actions) or the transition that an id names, if it
+/// exists.
+pub(crate) fn node(d: &Draft<'_>, id: &ItemId) -> Result<Node, Refusal> {
+    match &id.part {
+        Part::Step(name) => {
+            d.step(&id.chart, name)?;
+            Ok(Node::Step(name.clone()))
+        }
+        Part::Action(name, k) => {
+            if d.step(&id.chart, name)?.actions.get(*k).is_none() {
+                return refuse(format!("step `{name}` has no action number {k}"));
+            }
+            Ok(Node::Step(name.clone()))
+        }
+        Part::Transition(n) => Ok(Node::Transition(d.number(&id.chart, *n)?)),
+        Part::Chart | Part::Link(..) | Part::Connector(..) | Part::Note(_) | Part::Other(_) => {
+            refuse("this is done with a step or a transition; choose one")
+        }
+    }
+}
+
+/// The chart of all ids; refuses ids of several charts.
+pub(crate) fn one_chart(ids: &[ItemId]) -> Result<&str, Refusal> {
+    let Some(first) = ids.first() else { return refuse("nothing is chosen") };
+    if ids.iter().any(|id| id.chart != first.chart) {
+        return refuse("the chosen things are of several charts; this is done in one");
+    }
+    Ok(&first.chart)
+}
