@@ -7,10 +7,11 @@ use serde_json::json;
 
 use crate::cli::{Check, Format};
 use crate::failure::{Failure, Verdict};
+use crate::message::talk;
 use crate::progress::Progress;
 use crate::report::{self, Tally};
 use crate::sources::{self, Source};
-use crate::{files, style, talk};
+use crate::{files, style};
 
 pub(crate) fn check(args: &Check) -> Result<Verdict, Failure> {
     let paths = files::all(&args.paths)?;

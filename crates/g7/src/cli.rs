@@ -81,7 +81,7 @@ pub(crate) enum Command {
     /// Convert a chart to the format of another tool.
     Export(crate::export::Export),
     /// Generate code for a controller from a chart.
-    Gen(crate::r#gen::Gen),
+    Gen(crate::generate::Gen),
     /// Explain a problem code, or list them all.
     Explain(Explain),
     /// Print the completions for a shell.

@@ -8,8 +8,9 @@ use g7_exchange::{FORMATS, Format};
 use g7_model::Severity;
 
 use crate::failure::{Failure, Verdict};
+use crate::message::talk;
 use crate::report::{self, Tally};
-use crate::{files, sources, talk};
+use crate::{files, sources};
 
 const EXAMPLES: &str = "\
 Examples:

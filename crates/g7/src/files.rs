@@ -6,7 +6,8 @@ use std::io::{self, Read, Write};
 use std::path::{Path, PathBuf};
 
 use crate::failure::Failure;
-use crate::{style, talk};
+use crate::message::talk;
+use crate::style;
 
 /// Longest file that is read; the parser's own limit is lower.
 const LONGEST: u64 = 64 << 20;

@@ -5,9 +5,10 @@ use std::path::Path;
 
 use crate::cli::Fmt;
 use crate::failure::{Failure, Verdict};
+use crate::message::talk;
 use crate::report::{self, Tally};
 use crate::sources;
-use crate::{files, style, talk};
+use crate::{files, style};
 
 pub(crate) fn fmt(args: &Fmt) -> Result<Verdict, Failure> {
     let paths = files::all(&args.paths)?;

@@ -2,9 +2,10 @@
 
 use crate::cli::Import;
 use crate::failure::{Failure, Verdict};
+use crate::files;
+use crate::message::talk;
 use crate::report::{self, Tally};
 use crate::sources;
-use crate::{files, talk};
 
 pub(crate) fn import(args: &Import) -> Result<Verdict, Failure> {
     let source = sources::load(&args.file, 0)?;

@@ -22,8 +22,9 @@ mod export;
 mod failure;
 mod files;
 mod fmt;
-mod r#gen;
+mod generate;
 mod import;
+mod message;
 mod new;
 mod progress;
 mod report;
@@ -42,15 +43,7 @@ use clap::Parser;
 
 use crate::cli::{Cli, Color, Command};
 use crate::failure::{Failure, Verdict};
-
-/// Prints a message to the standard error; a closed standard error is ignored.
-#[macro_export]
-macro_rules! talk {
-    ($($arg:tt)*) => {{
-        use std::io::Write as _;
-        writeln!(anstream::stderr(), $($arg)*).ok();
-    }};
-}
+use crate::message::talk;
 
 fn main() -> ExitCode {
     let cli = Cli::parse();
@@ -81,7 +74,7 @@ fn run(command: &Command) -> Result<Verdict, Failure> {
         Command::Serve(args) => serve::serve(args),
         Command::Import(args) => import::import(args),
         Command::Export(args) => export::export(args),
-        Command::Gen(args) => r#gen::generate(args),
+        Command::Gen(args) => generate::generate(args),
         Command::Explain(args) => explain::explain(args),
         Command::Completions(args) => shell::completions(args),
         Command::Man(args) => shell::man(args),

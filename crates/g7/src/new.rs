@@ -6,7 +6,8 @@ use std::path::Path;
 
 use crate::cli::New;
 use crate::failure::{Failure, Verdict};
-use crate::{files, talk};
+use crate::files;
+use crate::message::talk;
 
 const CHART: &str = include_str!("new/chart.g7");
 const README: &str = include_str!("new/README.md");

@@ -7,7 +7,8 @@ use clap::CommandFactory;
 
 use crate::cli::{Cli, Completions, Man};
 use crate::failure::{Failure, Verdict};
-use crate::{files, talk};
+use crate::files;
+use crate::message::talk;
 
 pub(crate) fn completions(args: &Completions) -> Result<Verdict, Failure> {
     let mut text = Vec::new();

@@ -9,9 +9,11 @@ use g7_draw::{Drawing, Look, Options};
 use g7_model::Chart;
 
 use crate::failure::{Failure, Verdict};
+use crate::files;
+use crate::message::talk;
 use crate::report::{self, Tally};
 use crate::sources::{self, Source};
-use crate::{files, talk};
+use paper::Form;
 
 const EXAMPLES: &str = "\
 Examples:
@@ -60,14 +62,6 @@ pub(crate) struct Draw {
     scale: f32,
 }
 
-/// The format of a picture.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-enum Form {
-    Svg,
-    Png,
-    Pdf,
-}
-
 /// The drawing style.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum Manner {
@@ -82,21 +76,6 @@ enum Manner {
 enum Pages {
     /// PL7: 14 lines and 11 columns.
     Pl7,
-}
-
-impl Form {
-    fn ending(self) -> &'static str {
-        match self {
-            Form::Svg => "svg",
-            Form::Png => "png",
-            Form::Pdf => "pdf",
-        }
-    }
-
-    fn of(path: &Path) -> Option<Form> {
-        let ending = path.extension()?.to_str()?.to_ascii_lowercase();
-        [Form::Svg, Form::Png, Form::Pdf].into_iter().find(|f| f.ending() == ending)
-    }
 }
 
 fn scale(text: &str) -> Result<f32, String> {

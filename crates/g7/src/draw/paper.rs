@@ -1,14 +1,38 @@
-//! Converts SVG to the format of the output.
+//! The formats of pictures, and the conversion of SVG to each.
 
+use std::path::Path;
 use std::sync::Arc;
 
+use clap::ValueEnum;
 use resvg::{tiny_skia, usvg};
 
-use super::Form;
 use crate::failure::Failure;
 
 /// Greatest number of pixels of a PNG: it takes 400 MB of memory.
 const MOST_PIXELS: f64 = 1e8;
+
+/// The format of a picture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(super) enum Form {
+    Svg,
+    Png,
+    Pdf,
+}
+
+impl Form {
+    pub(super) fn ending(self) -> &'static str {
+        match self {
+            Form::Svg => "svg",
+            Form::Png => "png",
+            Form::Pdf => "pdf",
+        }
+    }
+
+    pub(super) fn of(path: &Path) -> Option<Form> {
+        let ending = path.extension()?.to_str()?.to_ascii_lowercase();
+        [Form::Svg, Form::Png, Form::Pdf].into_iter().find(|f| f.ending() == ending)
+    }
+}
 
 /// The bytes of a picture in a format.
 pub(super) fn print(form: Form, svg: String, scale: f32) -> Result<Vec<u8>, Failure> {

@@ -11,9 +11,10 @@ use g7_host::{
 use super::keep::{self, Keeper};
 use crate::cli::Run;
 use crate::failure::{Failure, Verdict};
+use crate::message::talk;
 use crate::progress::Progress;
 use crate::sources::Source;
-use crate::{files, style, talk, values};
+use crate::{files, style, values};
 use g7_model::Nanos;
 use g7_rig::{Bench, Conflicts, Item, Role};
 

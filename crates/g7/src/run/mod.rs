@@ -9,9 +9,10 @@ pub(crate) use keep::Keeper;
 
 use crate::cli::Run;
 use crate::failure::{Failure, Verdict};
+use crate::message::talk;
 use crate::report::{self, Tally};
 use crate::sources::{self, Source};
-use crate::{files, talk, view};
+use crate::{files, view};
 use g7_rig::{self as bench, Bench};
 
 pub(crate) fn run(args: &Run) -> Result<Verdict, Failure> {

@@ -14,9 +14,10 @@ use serde::Deserialize;
 use serde_json::{Value, json};
 use tokio::sync::Semaphore;
 
-use super::Shared;
+use super::fingerprint;
 use super::folder::{LARGEST, Wanted, Written};
 use super::refusal::Refusal;
+use super::shared::Shared;
 
 type Answer = Result<Response, Refusal>;
 
@@ -150,7 +151,7 @@ fn text(status: StatusCode, bytes: Vec<u8>) -> Response {
     let head = [
         (header::CONTENT_TYPE, "text/plain; charset=utf-8".to_owned()),
         (header::CACHE_CONTROL, "no-store".to_owned()),
-        (header::ETAG, format!("\"{}\"", super::hash(&bytes))),
+        (header::ETAG, format!("\"{}\"", fingerprint::hash(&bytes))),
     ];
     (status, head, bytes).into_response()
 }

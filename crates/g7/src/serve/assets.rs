@@ -8,7 +8,8 @@ use axum::http::{HeaderMap, StatusCode, Uri, header};
 use axum::response::{IntoResponse, Response};
 use rust_embed::RustEmbed;
 
-use super::Shared;
+use super::fingerprint;
+use super::shared::Shared;
 
 /// The built page; empty if the page was not built before the binary.
 #[derive(RustEmbed)]
@@ -43,7 +44,7 @@ pub(super) async fn asset(State(shared): State<Shared>, uri: Uri, headers: Heade
         }
         return (StatusCode::NOT_FOUND, "there is nothing at this address").into_response();
     };
-    let tag = format!("\"{}\"", super::hash(&bytes));
+    let tag = format!("\"{}\"", fingerprint::hash(&bytes));
     // Names below `assets` change with their contents.
     let keep = if path.starts_with("assets/") { "public, max-age=31536000, immutable" } else { "no-cache" };
     let head = [

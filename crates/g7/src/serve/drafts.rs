@@ -12,6 +12,7 @@ use axum::http::StatusCode;
 use serde::{Deserialize, Serialize};
 
 use super::file_names;
+use super::fingerprint;
 use super::refusal::Refusal;
 
 /// Greatest number of copies for a folder.
@@ -41,7 +42,7 @@ impl Drafts {
                 let name = root.file_name().unwrap_or_default().to_string_lossy();
                 let plain: String =
                     name.chars().filter(|c| c.is_ascii_alphanumeric() || *c == '-').take(40).collect();
-                let hash = super::hash(root.as_os_str().as_encoded_bytes());
+                let hash = fingerprint::hash(root.as_os_str().as_encoded_bytes());
                 state.join("g7").join("drafts").join(format!("{plain}-{hash}"))
             }
             None => root.join(".g7").join("drafts"),
@@ -91,7 +92,7 @@ impl Drafts {
     }
 
     fn place(&self, path: &str) -> PathBuf {
-        self.folder.join(format!("{}.json", super::hash(path.as_bytes())))
+        self.folder.join(format!("{}.json", fingerprint::hash(path.as_bytes())))
     }
 
     /// The copies on the disk, without the remains of an interrupted write.

@@ -11,6 +11,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 use axum::http::StatusCode;
 
 use super::file_names;
+use super::fingerprint;
 use super::refusal::Refusal;
 
 /// Greatest size of a file that is read or written, in bytes.
@@ -72,7 +73,7 @@ impl Folder {
         let present = self.bytes(&path, name)?;
         let fits = match (wanted, &present) {
             (Wanted::Absent, None) | (Wanted::Any, Some(_)) => true,
-            (Wanted::Hash(hash), Some(bytes)) => *hash == super::hash(bytes),
+            (Wanted::Hash(hash), Some(bytes)) => *hash == fingerprint::hash(bytes),
             (Wanted::Absent, Some(_)) | (Wanted::Hash(_) | Wanted::Any, None) => false,
         };
         if !fits {
@@ -80,7 +81,7 @@ impl Folder {
         }
         self.make_folders(&path, name)?;
         g7_host::write_whole(&path, bytes).map_err(|e| Refusal::io(name, &e))?;
-        Ok(Written::Done(super::hash(bytes)))
+        Ok(Written::Done(fingerprint::hash(bytes)))
     }
 
     /// Renames a file; the new name must be free.
@@ -109,7 +110,7 @@ impl Folder {
         let path = self.place(name)?;
         let present = self.bytes(&path, name)?;
         let present = present.ok_or_else(|| Refusal::io(name, &io::ErrorKind::NotFound.into()))?;
-        if hash.is_some_and(|h| h != super::hash(&present)) {
+        if hash.is_some_and(|h| h != fingerprint::hash(&present)) {
             let text = format!("{name} was changed outside; it is left as it is");
             return Err(Refusal::new(StatusCode::PRECONDITION_FAILED, text));
         }

@@ -15,10 +15,11 @@ use serde_json::value::RawValue;
 use tokio::sync::OwnedSemaphorePermit;
 use tokio::time::{Instant, MissedTickBehavior, interval, timeout};
 
+use super::api;
 use super::outbox::{Next, Outbox};
 use super::refusal::Refusal;
 use super::runs::letter;
-use super::{Shared, api};
+use super::shared::Shared;
 
 /// The parts of a message that the server needs to know.
 #[derive(Deserialize)]

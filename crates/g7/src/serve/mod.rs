@@ -22,6 +22,7 @@ mod browser;
 mod desk;
 mod drafts;
 mod file_names;
+mod fingerprint;
 mod folder;
 mod guard;
 mod listen;
@@ -30,13 +31,14 @@ mod outbox;
 mod refusal;
 mod registry;
 mod runs;
+mod shared;
 #[cfg(test)]
 mod tests;
 mod watch;
 
 use std::net::{IpAddr, Ipv4Addr, SocketAddr};
 use std::path::{Path, PathBuf};
-use std::sync::{Arc, Mutex, PoisonError, Weak};
+use std::sync::Arc;
 use std::time::Duration;
 
 use axum::Router;
@@ -46,12 +48,12 @@ use tokio::net::TcpListener;
 use tokio::sync::Semaphore;
 
 use crate::failure::{Failure, Verdict};
-use crate::talk;
+use crate::message::talk;
 use drafts::Drafts;
 use folder::Folder;
 use guard::Guard;
-use outbox::Outbox;
 use runs::Runs;
+use shared::{Clients, Inner, Limits, Shared};
 use watch::Watch;
 
 /// The port that is tried first if none is given.
@@ -93,77 +95,6 @@ pub(crate) struct Serve {
     /// Read the page from this folder (for its development).
     #[arg(long, value_name = "FOLDER", hide = true)]
     page_dir: Option<PathBuf>,
-}
-
-/// The limits of the server.
-#[derive(Clone, Copy, Debug)]
-struct Limits {
-    /// Greatest number of clients.
-    clients: usize,
-    /// Greatest number of shared runs.
-    runs: usize,
-    /// Greatest length of a message, in bytes.
-    message: usize,
-    /// Time between two pings.
-    ping: Duration,
-    /// A client is disconnected if it is silent for this long.
-    silence: Duration,
-    /// Longest time for sending a message.
-    send: Duration,
-}
-
-impl Default for Limits {
-    fn default() -> Limits {
-        Limits {
-            clients: 200,
-            runs: 16,
-            message: 1 << 20,
-            ping: Duration::from_secs(10),
-            silence: Duration::from_secs(35),
-            send: Duration::from_secs(20),
-        }
-    }
-}
-
-/// The data that all requests share.
-#[derive(Debug)]
-struct Inner {
-    folder: Arc<Folder>,
-    /// The folder as the user named it.
-    title: String,
-    /// The chart to open first.
-    start: Option<String>,
-    page: Option<PathBuf>,
-    drafts: Drafts,
-    watch: Watch,
-    runs: Arc<Runs>,
-    clients: Clients,
-    seats: Arc<Semaphore>,
-    limits: Limits,
-}
-
-type Shared = Arc<Inner>;
-
-/// The connected clients.
-#[derive(Debug, Default)]
-struct Clients(Mutex<Vec<Weak<Outbox>>>);
-
-impl Clients {
-    fn enter(&self, outbox: &Arc<Outbox>) {
-        let mut list = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        list.retain(|w| w.strong_count() > 0);
-        list.push(Arc::downgrade(outbox));
-    }
-
-    fn all(&self) -> Vec<Arc<Outbox>> {
-        let list = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        list.iter().filter_map(Weak::upgrade).collect()
-    }
-}
-
-/// A fingerprint that tells contents apart; it is no protection.
-fn hash(bytes: &[u8]) -> String {
-    format!("{:x}-{:016x}", bytes.len(), g7_host::Fnv::of(bytes))
 }
 
 /// The shared data for a folder and for the place of unsaved copies.

@@ -13,6 +13,7 @@ use std::time::SystemTime;
 use serde::Serialize;
 
 use super::file_names;
+use super::fingerprint;
 use super::folder::Folder;
 
 /// Greatest number of files in the list.
@@ -165,7 +166,7 @@ impl Walk<'_> {
         let row = Row {
             path: name.clone(),
             size: bytes.len() as u64,
-            hash: super::hash(&bytes),
+            hash: fingerprint::hash(&bytes),
             title: title(&name, &bytes),
         };
         self.new.insert(name, Seen { row, written, unsure });

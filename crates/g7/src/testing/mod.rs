@@ -9,10 +9,11 @@ use g7_rig::testing::{self, Coverage, Options};
 
 use crate::cli::{Format, Test};
 use crate::failure::{Failure, Verdict};
+use crate::files;
+use crate::message::talk;
 use crate::progress::Progress;
 use crate::report::{self, Tally};
 use crate::sources;
-use crate::{files, talk};
 
 pub(crate) fn test(args: &Test) -> Result<Verdict, Failure> {
     let paths = files::all(&args.paths)?;

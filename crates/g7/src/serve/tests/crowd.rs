@@ -178,7 +178,7 @@ async fn a_page_left_behind_is_given_a_full_frame() {
     let server = Server::new().await;
     let mut page = server.live().await;
     page.start("a").await;
-    let outbox = Arc::new(Outbox::default());
+    let outbox = Arc::new(outbox::Outbox::default());
     let run: Arc<str> = Arc::from("a");
     // More than the server keeps for any client.
     server.shared.runs.watch("a", &outbox, 1).await.expect("watched");

@@ -223,20 +223,20 @@ async fn changes_outside_are_told_once_to_every_page() {
     one.call(json!({ "do": "runs" })).await;
     two.call(json!({ "do": "runs" })).await;
     fs::write(server.path("chart.g7"), "theirs").expect("a change outside");
-    let hash = hash(b"theirs");
+    let hash = fingerprint::hash(b"theirs");
     for page in [&mut one, &mut two] {
         assert_eq!(page.hear_of("changed").await, json!({ "path": "chart.g7", "hash": hash }));
     }
     // A file of the same length and the same second counts as changed too.
     fs::write(server.path("chart.g7"), "THEIRS").expect("a change outside");
-    assert_eq!(one.hear_of("changed").await["hash"], super::super::hash(b"THEIRS"));
+    assert_eq!(one.hear_of("changed").await["hash"], fingerprint::hash(b"THEIRS"));
     fs::write(server.path("more.g7"), "new").expect("a new file");
     assert_eq!(one.hear_of("changed").await["path"], "more.g7");
     fs::remove_file(server.path("more.g7")).expect("gone");
     assert_eq!(one.hear_of("changed").await, json!({ "path": "more.g7", "hash": "" }));
     // A write by one client is announced to the others.
     server.ask("PUT", &format!("{AT}chart.g7"), &[("If-Match", "*")], "mine").await.is(204);
-    assert_eq!(one.hear_of("changed").await["hash"], super::super::hash(b"mine"));
+    assert_eq!(one.hear_of("changed").await["hash"], fingerprint::hash(b"mine"));
 }
 
 #[tokio::test]

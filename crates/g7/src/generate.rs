@@ -8,9 +8,10 @@ use g7_codegen::{File, Language, Options, Style, plc};
 use g7_model::{Problem, ProfileName, Severity};
 
 use crate::failure::{Failure, Verdict};
+use crate::message::talk;
 use crate::report::{self, Tally};
 use crate::sources::Source;
-use crate::{files, sources, style, talk, values};
+use crate::{files, sources, style, values};
 
 const EXAMPLES: &str = "\
 Examples:

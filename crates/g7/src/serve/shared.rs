@@ -1,0 +1,85 @@
+//! The data that all requests of a server share: its folder, its runs, its clients and its limits.
+//!
+//! `serve` makes it at the start; `api`, `assets` and `live` answer from it.
+//!
+//! # Invariants
+//!
+//! A client that is gone is not kept: the list holds outboxes only as long as their sockets do.
+
+use std::path::PathBuf;
+use std::sync::{Arc, Mutex, PoisonError, Weak};
+use std::time::Duration;
+
+use tokio::sync::Semaphore;
+
+use super::drafts::Drafts;
+use super::folder::Folder;
+use super::outbox::Outbox;
+use super::runs::Runs;
+use super::watch::Watch;
+
+/// The limits of the server.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Limits {
+    /// Greatest number of clients.
+    pub(super) clients: usize,
+    /// Greatest number of shared runs.
+    pub(super) runs: usize,
+    /// Greatest length of a message, in bytes.
+    pub(super) message: usize,
+    /// Time between two pings.
+    pub(super) ping: Duration,
+    /// A client is disconnected if it is silent for this long.
+    pub(super) silence: Duration,
+    /// Longest time for sending a message.
+    pub(super) send: Duration,
+}
+
+impl Default for Limits {
+    fn default() -> Limits {
+        Limits {
+            clients: 200,
+            runs: 16,
+            message: 1 << 20,
+            ping: Duration::from_secs(10),
+            silence: Duration::from_secs(35),
+            send: Duration::from_secs(20),
+        }
+    }
+}
+
+/// The data that all requests share.
+#[derive(Debug)]
+pub(super) struct Inner {
+    pub(super) folder: Arc<Folder>,
+    /// The folder as the user named it.
+    pub(super) title: String,
+    /// The chart to open first.
+    pub(super) start: Option<String>,
+    pub(super) page: Option<PathBuf>,
+    pub(super) drafts: Drafts,
+    pub(super) watch: Watch,
+    pub(super) runs: Arc<Runs>,
+    pub(super) clients: Clients,
+    pub(super) seats: Arc<Semaphore>,
+    pub(super) limits: Limits,
+}
+
+pub(super) type Shared = Arc<Inner>;
+
+/// The connected clients.
+#[derive(Debug, Default)]
+pub(super) struct Clients(Mutex<Vec<Weak<Outbox>>>);
+
+impl Clients {
+    pub(super) fn enter(&self, outbox: &Arc<Outbox>) {
+        let mut list = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        list.retain(|w| w.strong_count() > 0);
+        list.push(Arc::downgrade(outbox));
+    }
+
+    pub(super) fn all(&self) -> Vec<Arc<Outbox>> {
+        let list = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        list.iter().filter_map(Weak::upgrade).collect()
+    }
+}
