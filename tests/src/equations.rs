@@ -7,7 +7,7 @@ use g7_compile::ir::VarClass;
 use g7_compile::symbols::Variable;
 use g7_compile::{Compiled, compile_with};
 use g7_engine::{Addr, FaultKind, StepId, Tables};
-use g7_equations::{Machine, MemoryId, Options, Value as Held, What, equations as made};
+use g7_equations::{Machine, MemoryId, Options, StepTimes, Value as Held, What, equations as made};
 use g7_model::{Document, Expr, ProfileName, Type};
 
 use crate::engine::{value, words};
@@ -33,12 +33,36 @@ pub fn equations(
     changed(doc, profile, queries, |_| {}, |_| {})
 }
 
+/// The same with stamps in place of clocks for step times, as flat code has them.
+///
+/// # Errors
+///
+/// The first problem that is an error.
+pub fn stamped(
+    doc: &Document,
+    profile: Option<ProfileName>,
+    queries: &[Expr],
+) -> Result<Box<dyn Subject>, String> {
+    with_times(doc, profile, queries, StepTimes::Stamps, |_| {}, |_| {})
+}
+
 /// The same from tables that were changed before they are read, and from equations
 /// that were changed before they run.
 pub(crate) fn changed(
     doc: &Document,
     profile: Option<ProfileName>,
     queries: &[Expr],
+    tables: impl FnOnce(&mut Tables),
+    equations: impl FnOnce(&mut g7_equations::Equations),
+) -> Result<Box<dyn Subject>, String> {
+    with_times(doc, profile, queries, StepTimes::All, tables, equations)
+}
+
+fn with_times(
+    doc: &Document,
+    profile: Option<ProfileName>,
+    queries: &[Expr],
+    times: StepTimes,
     tables: impl FnOnce(&mut Tables),
     equations: impl FnOnce(&mut g7_equations::Equations),
 ) -> Result<Box<dyn Subject>, String> {
@@ -51,7 +75,7 @@ pub(crate) fn changed(
     let mut changed = compiled.program.tables().clone();
     tables(&mut changed);
     compiled.program = g7_engine::Program::new(changed).map_err(|e| format!("{e:?}"))?.into();
-    let mut made = made(&compiled, Options { all_times: true, conflicts: true, ..Options::default() });
+    let mut made = made(&compiled, Options { times, conflicts: true, ..Options::default() });
     equations(&mut made);
     let machine = Machine::new(made);
     Ok(Box::new(Equations { compiled, machine, queries: queries.to_vec() }))
@@ -149,13 +173,17 @@ impl Subject for Equations {
     fn step_times(&self) -> BTreeMap<String, i64> {
         let symbols = &self.compiled.symbols;
         let e = self.machine.equations();
-        let time = |s: StepId| {
-            let memory = e.find(What::StepScans(s)).or_else(|| e.find(What::StepTime(s)))?;
-            match self.machine.value(memory)? {
-                Held::Words(w) => w.first().map(|w| *w as i64),
-                Held::Text(_) => None,
-            }
+        let number = |memory: MemoryId| match self.machine.value(memory)? {
+            Held::Words(w) => w.first().map(|w| *w as i64),
+            Held::Text(_) => None,
         };
+        let stamped = |s: StepId| {
+            let stamp = number(e.find(What::Stamp(s))?)?;
+            let is_active = e.find(What::Step(s)).is_some_and(|x| self.machine.holds(x));
+            if is_active { Some(number(e.find(What::Clock)?)?.wrapping_sub(stamp)) } else { Some(stamp) }
+        };
+        let clock = |s: StepId| number(e.find(What::StepScans(s)).or_else(|| e.find(What::StepTime(s)))?);
+        let time = |s: StepId| stamped(s).or_else(|| clock(s));
         let steps = (0..symbols.steps()).map(StepId).filter(|s| symbols.is_listed(*s));
         steps.map(|s| (symbols.step_path(s).to_owned(), time(s).unwrap_or(0))).collect()
     }

@@ -13,7 +13,9 @@
 use std::collections::{BTreeMap, HashMap};
 
 use g7_engine::{Addr, Num, StepId};
-use g7_equations::{About, Class, Equations, Memory, MemoryId, Options, Section, Stmt as Line, What};
+use g7_equations::{
+    About, Class, Equations, Memory, MemoryId, Options, Section, StepTimes, Stmt as Line, What,
+};
 use g7_model::Type;
 
 use crate::body::{self, Home, Places};
@@ -23,6 +25,7 @@ use crate::roll::roll;
 use crate::runtime;
 use crate::spare::{self, spare};
 use crate::tree::{Bin, Block, Expr, Field, Stmt, Struct, Ty};
+use crate::turns::turned;
 use crate::vars::{self, Shape, members, num};
 
 /// Statements up to which a section is one function: compilers take more than their
@@ -31,24 +34,23 @@ const LONG: usize = 400;
 
 /// Prints the equations of a chart into the module at hand.
 pub(crate) fn flat(g: &mut Gen<'_>) {
-    let mut e = g7_equations::equations(g.c, Options { all_times: true, ..Options::default() });
+    let mut e = g7_equations::equations(g.c, Options { times: StepTimes::Stamps, ..Options::default() });
     // Function blocks are assignments here: their clocks are relative.
     for section in spare::sections(&mut e) {
         section.body = spare::expanded(std::mem::take(&mut section.body), &|_| false);
     }
-    spare(&mut e, |what| matches!(what, What::StepTime(_) | What::StepScans(_)));
+    turned(&mut e);
+    spare(&mut e, |what| matches!(what, What::Stamp(_) | What::Clock));
     let phases = [
         ("sections_before", "Before the passes.", std::mem::take(&mut e.begin)),
         ("sections_of_pass", "A pass.", std::mem::take(&mut e.pass)),
         ("sections_behind", "Behind the passes.", std::mem::take(&mut e.finish)),
     ];
     let phases = phases.map(|(name, note, sections)| (name, note, pieces(sections)));
-    let scans = g.t.rules.scan_clock;
     let mut f = Flat {
         locals: locals(&e, &phases),
         g,
         e,
-        scans,
         fields: BTreeMap::new(),
         beside: HashMap::new(),
         rows: HashMap::new(),
@@ -138,8 +140,6 @@ struct Flat<'g, 'a> {
     g: &'g mut Gen<'a>,
     e: Equations,
     locals: Vec<bool>,
-    /// Step times count scans.
-    scans: bool,
     /// By structure (`m` or `w`) and field.
     fields: BTreeMap<(&'static str, String), Row>,
     /// The names of memories that stand beside variables.
@@ -319,7 +319,8 @@ fn member(name: &'static str) -> &'static str {
 fn explained(field: &str) -> &'static str {
     match field {
         "x" => "the step memories",
-        "time" => "time since the activation of a step",
+        "clock" => "time since the start (scans under the scan clock)",
+        "stamp" => "of an active step, the clock at its activation; else how long it was active",
         "clearable" => "enabled, and the receptivity true",
         "clears" => "with nothing better in the way",
         "next" => "the situation to come",
@@ -328,7 +329,7 @@ fn explained(field: &str) -> &'static str {
 }
 
 /// A kind of memory: its field, and the place among those of its kind.
-fn kind(what: What, scans: bool) -> Option<(&'static str, Place)> {
+fn kind(what: What) -> Option<(&'static str, Place)> {
     use Place::{Alone, Number, Step, Transition};
     Some(match what {
         What::Opening => ("opening", Alone),
@@ -341,8 +342,11 @@ fn kind(what: What, scans: bool) -> Option<(&'static str, Place)> {
         What::Off(step) => ("off", Step(step)),
         What::Left(step) => ("left", Step(step)),
         What::Came(step) => ("came", Step(step)),
-        What::StepTime(step) => (if scans { "age" } else { "time" }, Step(step)),
-        What::StepScans(step) => ("time", Step(step)),
+        // Of the kind that has no stamps.
+        What::StepTime(step) => ("age", Step(step)),
+        What::StepScans(step) => ("scans", Step(step)),
+        What::Clock => ("clock", Alone),
+        What::Stamp(step) => ("stamp", Step(step)),
         What::Settled(step) => ("settled", Step(step)),
         What::Taken(step) => ("taken", Step(step)),
         What::RequestSet(step) => ("ask_set", Step(step)),
@@ -406,7 +410,7 @@ impl Places for Flat<'_, '_> {
                 let name = format!("{part:?}").replace(['(', ')'], "").to_lowercase();
                 self.field(of, format!("block_{name}"), ty, Place::Number(block))
             }
-            _ => match kind(what, self.scans) {
+            _ => match kind(what) {
                 Some((name, place)) => self.field(of, name.to_owned(), ty, place),
                 None => self.field(of, format!("value_{}", id.0), ty, Place::Alone),
             },

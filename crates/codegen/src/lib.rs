@@ -36,6 +36,7 @@ mod runtime;
 mod rust;
 mod spare;
 mod tree;
+mod turns;
 mod vars;
 
 use std::collections::HashMap;

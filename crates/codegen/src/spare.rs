@@ -341,7 +341,7 @@ pub(crate) fn operands(e: &Expr) -> Vec<MemoryId> {
     found
 }
 
-fn written(s: &Stmt) -> BTreeSet<MemoryId> {
+pub(crate) fn written(s: &Stmt) -> BTreeSet<MemoryId> {
     let mut found = BTreeSet::new();
     s.visit(&mut |s| match s {
         Stmt::Set(m, _) | Stmt::SetElement(m, _, _) => drop(found.insert(*m)),

@@ -65,9 +65,9 @@ fn the_flat_style_is_equations_with_memories() {
     for want in [
         "s->w.clearable[T_1_TO_FILL] = s->m.x[TANK_STEP_1] && s->inputs.start && !s->inputs.full;",
         "s->w.clearable[T_FILL_TO_1] = s->m.x[TANK_STEP_FILL] && s->inputs.full;",
-        "s->w.next[TANK_STEP_FILL] = s->w.clearable[T_1_TO_FILL] || \
-         (s->m.x[TANK_STEP_FILL] && !s->w.clearable[T_FILL_TO_1]);",
-        "s->m.x[TANK_STEP_FILL] = s->w.next[TANK_STEP_FILL];",
+        "    if (s->w.clearable[T_1_TO_FILL]) {\n        if (!s->m.x[TANK_STEP_FILL]) {\n",
+        "            s->m.x[TANK_STEP_FILL] = true;\n        }\n    \
+         } else if (s->m.x[TANK_STEP_FILL] && s->w.clearable[T_FILL_TO_1]) {\n",
         "s->outputs.valve = s->m.x[TANK_STEP_FILL];",
     ] {
         assert!(text.contains(want), "no `{want}` in\n{text}");

@@ -245,7 +245,24 @@ impl Make<'_> {
 
     /// The times of a step that comes on or goes off.
     fn times_of(&mut self, step: u32, on: bool) -> Vec<Stmt> {
-        if !on && self.t.rules.keep_step_time {
+        let stays = !on && self.t.rules.keep_step_time;
+        if let Some((stamp, clock)) = self.stamp(StepId(step)) {
+            let ty = self.of(stamp).map_or(Type::Time, |m| m.ty);
+            let value = match on {
+                true => clock,
+                false if stays => clock.arith(g7_engine::Arith::Sub, ty, Expr::Read(stamp)),
+                false => Expr::Const(ty, 0),
+            };
+            let mut list = vec![Stmt::Set(stamp, value)];
+            list.extend(self.clocks_of(step, stays));
+            return list;
+        }
+        self.clocks_of(step, stays)
+    }
+
+    /// The clocks of a step that comes on or goes off become 0, unless its time stays.
+    fn clocks_of(&self, step: u32, stays: bool) -> Vec<Stmt> {
+        if stays {
             return Vec::new();
         }
         let whats = [(What::StepTime(StepId(step)), Type::Time), (What::StepScans(StepId(step)), Type::Lint)];
@@ -555,6 +572,8 @@ impl Make<'_> {
         for step in &all {
             let x = self.step(*step);
             on.push(Stmt::Set(x, Expr::truth(true)));
+            let stamp = self.stamp(StepId(*step));
+            on.extend(stamp.map(|(stamp, clock)| Stmt::Set(stamp, clock)));
         }
         if t.rules.parallel_actions {
             let given = self.given();

@@ -6,6 +6,7 @@ use g7_model::Type;
 
 use crate::form::{Class, Expr, MemoryId, Stmt, What};
 use crate::make::Make;
+use crate::whole::StepTimes;
 
 impl Make<'_> {
     /// The memories of an instance: members, then what it remembers.
@@ -48,6 +49,12 @@ impl Make<'_> {
             Clock::Group(g) | Clock::GroupAge(g) => (What::GroupTime(g), Type::Time),
             Clock::GroupScans(g) => (What::GroupScans(g), Type::Lint),
         };
+        if let What::StepTime(step) | What::StepScans(step) = what
+            && self.options.times == StepTimes::Stamps
+            && self.t.rules.scan_clock == (ty == Type::Lint)
+        {
+            return self.stamped(step, ty);
+        }
         let memory = self.memory(what, Class::Kept, ty);
         let active = match what {
             What::StepTime(s) | What::StepScans(s) => self.active(s.0),
@@ -56,6 +63,20 @@ impl Make<'_> {
         };
         self.runs(memory, active);
         Expr::Read(memory)
+    }
+
+    /// The time of a step that has a stamp.
+    fn stamped(&mut self, step: StepId, ty: Type) -> Expr {
+        let stamp = Expr::Read(self.memory(What::Stamp(step), Class::Kept, ty));
+        let clock = self.memory(What::Clock, Class::Kept, ty);
+        self.runs(clock, Expr::truth(true));
+        let since = Expr::Read(clock).arith(Arith::Sub, ty, stamp.clone());
+        Expr::Call(Builtin::Sel, ty, vec![self.active(step.0), stamp, since])
+    }
+
+    /// The stamp of a step, and the clock it is taken from.
+    pub(crate) fn stamp(&self, step: StepId) -> Option<(MemoryId, Expr)> {
+        Some((self.known(What::Stamp(step))?, Expr::Read(self.known(What::Clock)?)))
     }
 
     /// The time of a step in units of 100 ms, at most 9999 (INT).
@@ -76,12 +97,18 @@ impl Make<'_> {
         if self.apart {
             return vec![Stmt::Set(self.flag(What::ResetTimes), Expr::truth(true))];
         }
-        let clocks = self.memories.iter().enumerate().filter_map(|(i, m)| {
-            let zero = matches!(
-                m.what,
-                What::StepTime(_) | What::StepScans(_) | What::GroupTime(_) | What::GroupScans(_)
-            );
-            zero.then_some(Stmt::Set(MemoryId(i as u32), Expr::Const(m.ty, 0)))
+        let all = (0u32..).map(MemoryId).zip(&self.memories);
+        let clocks = all.filter_map(|(id, m)| match m.what {
+            What::StepTime(_) | What::StepScans(_) | What::GroupTime(_) | What::GroupScans(_) => {
+                Some(Stmt::Set(id, Expr::Const(m.ty, 0)))
+            }
+            What::Stamp(step) => {
+                let clock = Expr::Read(self.known(What::Clock)?);
+                let active = Expr::Read(self.known(What::Step(step))?);
+                let zero = Expr::Const(m.ty, 0);
+                Some(Stmt::Set(id, Expr::Call(Builtin::Sel, m.ty, vec![active, zero, clock])))
+            }
+            _ => None,
         });
         clocks.collect()
     }

@@ -6,7 +6,8 @@
 //!   Where an operation of the chart could have none, a statement before it asks
 //!   [`Expr::Fails`] and ends the scan with a [`Stmt::Fault`].
 //! - No memory holds an absolute time: clocks hold the time since something
-//!   happened, and each scan adds [`What::Dt`] to those that run.
+//!   happened, and each scan adds [`What::Dt`] to those that run. [`What::Clock`] and
+//!   [`What::Stamp`] are the exception; only [`crate::StepTimes::Stamps`] makes them.
 
 use g7_engine::{Addr, Arith, Block, Builtin, Cmp, FaultKind, GroupId, StepId, WatchId};
 use g7_model::{Span, Type};
@@ -95,6 +96,10 @@ pub enum What {
     StepTime(StepId),
     /// Scans since its latest activation.
     StepScans(StepId),
+    /// Time since the start; under the scan clock, the number of scans.
+    Clock,
+    /// While a step is active, [`What::Clock`] when its time was 0; else its time.
+    Stamp(StepId),
     /// Some step of a group was active before the change in hand.
     GroupWas(GroupId),
     /// Time since a group became active.

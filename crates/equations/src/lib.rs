@@ -14,7 +14,8 @@
 //!
 //! - Equal to the engine, scan by scan, in every profile: the conformance cases
 //!   and random charts run on both.
-//! - No absolute time and no count of scans: equal memories have equal futures.
+//! - No absolute time and no count of scans: equal memories have equal futures
+//!   (but for [`StepTimes::Stamps`], which printed code asks for).
 //! - The order of the statements is the order of the engine (SEMANTICS sections 3
 //!   and 4), so that the first fault is the same.
 //!
@@ -47,7 +48,7 @@ pub use bodies::Bodies;
 pub use fb::expand;
 pub use form::{About, Class, Expr, Memory, MemoryId, Part, Section, Stmt, What};
 pub use run::{Machine, Value};
-pub use whole::{Equations, Options};
+pub use whole::{Equations, Options, StepTimes};
 
 use form::Class as Lasts;
 use make::{Make, lower};

@@ -10,7 +10,7 @@ use g7_engine::{Addr, Code, Extra, GroupId, NONE, Rows, Service, StepId, Tables,
 use g7_model::Type;
 
 use crate::form::{Class, Expr, Memory, MemoryId, Stmt, What};
-use crate::whole::Options;
+use crate::whole::{Options, StepTimes};
 
 /// A variable that takes more than one word, or one with a name.
 #[derive(Clone, Copy)]
@@ -111,7 +111,7 @@ impl<'a> Make<'a> {
                 Piece::Work(list) => self.discover_all(list),
             }
         }
-        if self.options.all_times {
+        if self.options.times != StepTimes::Read {
             let scans = self.t.rules.scan_clock;
             for step in self.steps().map(StepId) {
                 self.clock(if scans { Clock::StepScans(step) } else { Clock::Step(step) });

@@ -4,11 +4,24 @@ use std::collections::BTreeSet;
 
 use crate::form::{Expr, Memory, MemoryId, Section, Stmt, What};
 
+/// How the equations keep step times.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum StepTimes {
+    /// A clock for each step whose time something reads.
+    #[default]
+    Read,
+    /// A clock for each step.
+    All,
+    /// A stamp for each step ([`What::Stamp`]): nothing is added to it in each scan.
+    /// Memories then hold an absolute time; no use where states are compared.
+    Stamps,
+}
+
 /// Options: additions to the equations beyond the needs of the chart.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Options {
-    /// The time of each step has a memory, whether or not something reads it.
-    pub all_times: bool,
+    /// Step times.
+    pub times: StepTimes,
     /// Stored actions of one pass that give a memory different values are noted.
     pub conflicts: bool,
     /// Each receptivity has a memory of its own (DOLOG80).

@@ -313,7 +313,7 @@ impl Memories {
             What::Returned(n) => ("LEAVE", n.to_string(), "RETURN was reached"),
             What::Temporary(_) => ("Z", String::new(), ""),
             // No memories of equations.
-            What::GroupActive(_) | What::ResetTimes => return,
+            What::GroupActive(_) | What::ResetTimes | What::Clock | What::Stamp(_) => return,
         };
         self.named(id, memory, (before, &of), note);
     }

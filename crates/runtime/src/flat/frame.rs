@@ -31,7 +31,10 @@ pub fn step_time(s: &State, step: usize) -> i64 {
     if step >= STEPS {
         return 0;
     }
-    s.m.time[step]
+    if s.m.x[step] {
+        return since(s.m.clock, s.m.stamp[step]);
+    }
+    s.m.stamp[step]
 }
 
 /// Time, periods, the first scan.

@@ -37,7 +37,8 @@ pub struct Locals {}
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Memory {
     pub x: [bool; STEPS],
-    pub time: [i64; STEPS],
+    pub clock: i64,
+    pub stamp: [i64; STEPS],
 }
 
 /// The memories that are worked out in each scan anew.
@@ -47,11 +48,7 @@ pub struct Work {
 }
 
 pub fn sections_before(s: &mut State) {
-    for i in 0..STEPS {
-        if s.m.x[i] {
-            s.m.time[i] += s.dt;
-        }
-    }
+    s.m.clock += s.dt;
     if !s.started {
         s.m.x[OFF] = true;
         s.started = true;
@@ -60,14 +57,14 @@ pub fn sections_before(s: &mut State) {
 
 pub fn sections_of_pass(s: &mut State) {
     s.w.clears[0] = s.m.x[OFF] && s.inputs.press;
-    s.w.clears[1] = s.m.x[ON] && s.m.time[ON] >= 2_000_000_000 && !s.inputs.press;
+    s.w.clears[1] = s.m.x[ON] && s.m.clock - s.m.stamp[ON] >= 2_000_000_000 && !s.inputs.press;
     s.changed = s.w.clears[0] || s.w.clears[1];
     for i in 0..STEPS {
         if s.w.clears[i] {
             s.m.x[i] = false;
             s.m.x[1 - i] = true;
-            s.m.time[0] = 0;
-            s.m.time[1] = 0;
+            s.m.stamp[i] = 0;
+            s.m.stamp[1 - i] = s.m.clock;
         }
     }
 }

@@ -1,0 +1,221 @@
+//! The situation told by its changes, for speed (before `spare.rs`, flat style).
+//!
+//! The equations give each step its next value, and that value to the step:
+//!
+//! ```text
+//! next := on OR (x AND NOT off);              IF on THEN
+//! ...                                             IF NOT x THEN a; x := TRUE; END_IF
+//! IF next AND NOT x THEN a; END_IF       ->   ELSIF x AND off THEN
+//! IF x AND NOT next THEN b; END_IF                b; x := FALSE;
+//! x := next;                                  END_IF
+//! ```
+//!
+//! Few steps change in a scan, so that code of the second form stores little.
+//!
+//! # Invariants
+//!
+//! - A step is rewritten only where nothing between the two places writes what its
+//!   next value is made of: both forms then do the same.
+
+use std::collections::{BTreeSet, HashMap};
+
+use g7_equations::{About, Equations, Expr, MemoryId, Stmt, What};
+
+use crate::spare::{mentioned, operands, written};
+
+/// Statements with the same meaning: steps change where they change.
+pub(crate) fn turned(e: &mut Equations) {
+    let memories = &e.memories;
+    let what = |m: MemoryId| memories.get(m.0 as usize).map(|m| m.what);
+    let mut list: Vec<&mut Stmt> = e.pass.iter_mut().flat_map(|s| &mut s.body).collect();
+    let lines: Vec<Stmt> = list.iter().map(|s| (**s).clone()).collect();
+    let pass = Pass::of(&lines);
+    let turns: Vec<Turn> = (0..lines.len()).filter_map(|at| pass.turn(at, &what)).collect();
+    let (turns, raises) = pass.with_raises(turns);
+    for turn in turns {
+        for at in turn.from..turn.at {
+            put(&mut list, at, Stmt::About(About::Nothing));
+        }
+        let at = turn.at;
+        put(&mut list, at, turn.stmt());
+    }
+    for (at, stmt) in raises {
+        put(&mut list, at, stmt);
+    }
+}
+
+fn put(list: &mut [&mut Stmt], at: usize, stmt: Stmt) {
+    if let Some(place) = list.get_mut(at) {
+        **place = stmt;
+    }
+}
+
+/// A step that takes its next value.
+struct Turn {
+    step: MemoryId,
+    next: MemoryId,
+    /// The statement that sets its next value.
+    set: usize,
+    /// The first statement on its change, and the one that sets the step.
+    from: usize,
+    at: usize,
+    on: Expr,
+    off: Expr,
+    comes: Vec<Stmt>,
+    goes: Vec<Stmt>,
+}
+
+impl Turn {
+    fn stmt(self) -> Stmt {
+        let Turn { step, on, off, mut comes, mut goes, .. } = self;
+        let active = Expr::Read(step);
+        comes.push(Stmt::Set(step, Expr::truth(true)));
+        goes.push(Stmt::Set(step, Expr::truth(false)));
+        let goes = Stmt::when(active.clone().and(off), goes);
+        if on.known() == Some(false) {
+            let none = Stmt::About(About::Nothing);
+            return goes.into_iter().next().unwrap_or(none);
+        }
+        if goes.is_empty() {
+            return Stmt::If(on.and(active.negated()), comes, goes);
+        }
+        Stmt::If(on, Stmt::when(active.negated(), comes), goes)
+    }
+}
+
+/// The statements of a pass one behind the other, and where they write.
+struct Pass<'l> {
+    lines: &'l [Stmt],
+    writes: HashMap<MemoryId, Vec<usize>>,
+}
+
+impl Pass<'_> {
+    fn of(lines: &[Stmt]) -> Pass<'_> {
+        let mut writes: HashMap<MemoryId, Vec<usize>> = HashMap::new();
+        for (at, line) in lines.iter().enumerate() {
+            for m in written(line) {
+                writes.entry(m).or_default().push(at);
+            }
+        }
+        Pass { lines, writes }
+    }
+
+    /// True if a statement in this range writes the memory.
+    fn writes(&self, m: MemoryId, range: std::ops::Range<usize>) -> bool {
+        let all = self.writes.get(&m).map_or(&[][..], Vec::as_slice);
+        let first = all.partition_point(|at| *at < range.start);
+        all.get(first).is_some_and(|at| *at < range.end)
+    }
+
+    /// The turn of the step that the statement at this place sets.
+    fn turn(&self, at: usize, what: &dyn Fn(MemoryId) -> Option<What>) -> Option<Turn> {
+        let Stmt::Set(step, Expr::Read(next)) = self.lines.get(at)? else { return None };
+        let (step, next) = (*step, *next);
+        let is_turn = matches!((what(step), what(next)),
+            (Some(What::Step(a)), Some(What::Next(b))) if a == b);
+        let [set] = self.writes.get(&next)?.as_slice() else { return None };
+        let (true, Some(Stmt::Set(_, value))) = (is_turn && *set < at, self.lines.get(*set)) else {
+            return None;
+        };
+        let (on, off) = parts(value, step)?;
+        let (active, coming) = (Expr::Read(step), Expr::Read(next));
+        let arrives = coming.clone().and(active.clone().negated());
+        let leaves = active.and(coming.negated());
+        let (mut comes, mut goes) = (Vec::new(), Vec::new());
+        let mut from = at;
+        while let Some(Stmt::If(c, then, other)) = from.checked_sub(1).and_then(|k| self.lines.get(k)) {
+            let either = matches!(c, Expr::Or(list) if *list == [arrives.clone(), leaves.clone()]);
+            if !other.is_empty() || !(either || *c == arrives || *c == leaves) {
+                break;
+            }
+            for (list, here) in [(&mut comes, *c == arrives), (&mut goes, *c == leaves)] {
+                if here || either {
+                    list.splice(0..0, then.iter().cloned());
+                }
+            }
+            from -= 1;
+        }
+        let mut made_of: BTreeSet<MemoryId> = operands(value).into_iter().collect();
+        made_of.extend([step, next]);
+        let inside = comes.iter().chain(&goes).flat_map(mentioned).any(|m| m == step || m == next);
+        if inside || made_of.iter().any(|m| self.writes(*m, set + 1..at)) {
+            return None;
+        }
+        Some(Turn { step, next, set: *set, from, at, on, off, comes, goes })
+    }
+
+    /// The turns with the flags that they raise, and those flags' statements without
+    /// them: `flag := flag OR x XOR next OR ...`. A flag that something looks at before
+    /// the step takes its value stays as it is; its steps then keep their next values.
+    fn with_raises(&self, mut turns: Vec<Turn>) -> (Vec<Turn>, Vec<(usize, Stmt)>) {
+        let place: HashMap<(MemoryId, MemoryId), usize> =
+            turns.iter().enumerate().map(|(k, t)| ((t.step, t.next), k)).collect();
+        let mut raises = Vec::new();
+        let mut looks: HashMap<MemoryId, Vec<usize>> = HashMap::new();
+        for (at, line) in self.lines.iter().enumerate() {
+            let Some((flag, list)) = raise(line) else { continue };
+            let looks = looks.entry(flag).or_insert_with(|| self.looks(flag));
+            let next_look = looks.get(looks.partition_point(|k| *k <= at)).copied().unwrap_or(usize::MAX);
+            let mut kept = Vec::new();
+            for e in list {
+                let turn = of_change(e).and_then(|pair| place.get(&pair)).and_then(|k| turns.get_mut(*k));
+                match turn.filter(|t| t.set < at && at < t.from && t.at < next_look) {
+                    Some(turn) => {
+                        for list in [&mut turn.comes, &mut turn.goes] {
+                            list.push(Stmt::Set(flag, Expr::truth(true)));
+                        }
+                    }
+                    None => kept.push(e.clone()),
+                }
+            }
+            let nothing = kept == [Expr::Read(flag)];
+            let left = if nothing { Stmt::About(About::Nothing) } else { Stmt::Set(flag, Expr::any(kept)) };
+            raises.push((at, left));
+        }
+        (turns, raises)
+    }
+
+    /// The statements that do more with a flag than raise it.
+    fn looks(&self, flag: MemoryId) -> Vec<usize> {
+        let all = self.lines.iter().enumerate();
+        let looks = all
+            .filter(|(_, line)| raise(line).is_none_or(|r| r.0 != flag) && mentioned(line).contains(&flag));
+        looks.map(|(at, _)| at).collect()
+    }
+}
+
+/// A flag and what it is raised by, the flag first.
+fn raise(line: &Stmt) -> Option<(MemoryId, &[Expr])> {
+    match line {
+        Stmt::Set(flag, Expr::Or(list)) if list.first() == Some(&Expr::Read(*flag)) => Some((*flag, list)),
+        _ => None,
+    }
+}
+
+/// The step and its next value, of an expression that they differ.
+fn of_change(e: &Expr) -> Option<(MemoryId, MemoryId)> {
+    match e {
+        Expr::Xor(a, b) => match (&**a, &**b) {
+            (Expr::Read(step), Expr::Read(next)) => Some((*step, *next)),
+            _ => None,
+        },
+        _ => None,
+    }
+}
+
+/// `on` and `off` of `on OR (x AND NOT off)`.
+fn parts(value: &Expr, x: MemoryId) -> Option<(Expr, Expr)> {
+    let list = if let Expr::Or(list) = value { list.as_slice() } else { std::slice::from_ref(value) };
+    let (own, others): (Vec<&Expr>, Vec<&Expr>) = list.iter().partition(|e| e.reads(x));
+    let [own] = own.as_slice() else { return None };
+    let stays: Vec<Expr> = match own {
+        Expr::Read(_) => Vec::new(),
+        Expr::And(all) if all.first() == Some(&Expr::Read(x)) => all.iter().skip(1).cloned().collect(),
+        _ => return None,
+    };
+    if stays.iter().any(|e| e.reads(x)) {
+        return None;
+    }
+    let off = Expr::any(stays.into_iter().map(Expr::negated));
+    Some((Expr::any(others.into_iter().cloned()), off))
+}
