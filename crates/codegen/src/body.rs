@@ -390,7 +390,7 @@ impl Body<'_> {
             }
             Term::Call(Builtin::Sel, _, list) => self.select(list, n),
             Term::Call(Builtin::Mux, _, list) => self.choose(list, n),
-            Term::Neg(ty, x) if !ty.is_real() => operations::fitting_minus(self.number(x, n)),
+            Term::Neg(ty, x) if !ty.is_real() => operations::minus(self.number(x, n)),
             Term::Arith(op, ty, a, b) => {
                 let of = num(*ty).unwrap_or(n);
                 let (x, y) = (self.number(a, of), self.number(b, of));

@@ -96,7 +96,8 @@ pub(crate) fn negate(n: Num, x: Expr) -> Made {
     if is_real(n) { Made::Plain(minus(x)) } else { Made::Checked(named("neg", n), vec![x]) }
 }
 
-fn minus(x: Expr) -> Expr {
+/// Minus of a real number, or of an integer whose result has its place.
+pub(crate) fn minus(x: Expr) -> Expr {
     Expr::Un(Un::Neg, Box::new(x))
 }
 
@@ -133,11 +134,6 @@ pub(crate) fn fitting(op: Arith, n: Num, a: Expr, b: Expr) -> Option<Expr> {
     let e = a.bin(op, b);
     // C works in `int` where the type is smaller.
     Some(if bits(n) < 32 { e.cast(vars::ty(n)) } else { e })
-}
-
-/// Minus of an integer whose result has its place.
-pub(crate) fn fitting_minus(x: Expr) -> Expr {
-    minus(x)
 }
 
 fn comparison(c: Cmp) -> Bin {

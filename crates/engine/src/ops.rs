@@ -176,6 +176,22 @@ impl Builtin {
     pub const fn shifts(self) -> bool {
         matches!(self, Builtin::Shl | Builtin::Shr | Builtin::Rol | Builtin::Ror)
     }
+
+    /// A function of texts: [`Op::Text`], not [`Op::Call`].
+    pub const fn is_of_texts(self) -> bool {
+        matches!(
+            self,
+            Builtin::Len
+                | Builtin::Left
+                | Builtin::Right
+                | Builtin::Mid
+                | Builtin::Concat
+                | Builtin::Insert
+                | Builtin::Delete
+                | Builtin::Replace
+                | Builtin::Find
+        )
+    }
 }
 
 /// The standard function blocks. The words of an instance are the members, in the order

@@ -264,19 +264,7 @@ impl Scan<'_> {
     }
 
     fn call(&mut self, f: Builtin, ty: Type, args: &[Expr]) -> Ex {
-        let is_text = matches!(
-            f,
-            Builtin::Len
-                | Builtin::Left
-                | Builtin::Right
-                | Builtin::Mid
-                | Builtin::Concat
-                | Builtin::Insert
-                | Builtin::Delete
-                | Builtin::Replace
-                | Builtin::Find
-        );
-        if is_text || matches!(ty, Type::String(_)) {
+        if f.is_of_texts() || matches!(ty, Type::String(_)) {
             return self.cannot_ex("a text");
         }
         if f.shifts()

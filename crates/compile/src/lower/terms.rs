@@ -260,42 +260,14 @@ impl Lower<'_> {
 
     fn builtin(&mut self, period: u32, function: Builtin, args: &[ir::Expr], e: &ir::Expr) -> Expr {
         let args: Vec<Expr> = args.iter().map(|a| self.expr(period, a)).collect();
-        let kind = match function {
-            Builtin::Len
-            | Builtin::Find
-            | Builtin::Left
-            | Builtin::Right
-            | Builtin::Mid
-            | Builtin::Concat
-            | Builtin::Insert
-            | Builtin::Delete
-            | Builtin::Replace => {
-                let (to, cap) = match e.ty {
-                    Type::String(n) => (self.words.text_room(capacity(n)), capacity(n)),
-                    _ => (Addr(0), 0),
-                };
-                ExprKind::TextCall { function, args, to, cap }
-            }
-            Builtin::Abs
-            | Builtin::Sqrt
-            | Builtin::Ln
-            | Builtin::Log
-            | Builtin::Exp
-            | Builtin::Sin
-            | Builtin::Cos
-            | Builtin::Tan
-            | Builtin::Asin
-            | Builtin::Acos
-            | Builtin::Atan
-            | Builtin::Shl
-            | Builtin::Shr
-            | Builtin::Rol
-            | Builtin::Ror
-            | Builtin::Min
-            | Builtin::Max
-            | Builtin::Limit
-            | Builtin::Sel
-            | Builtin::Mux => ExprKind::Call(function, e.ty, args),
+        let kind = if function.is_of_texts() {
+            let (to, cap) = match e.ty {
+                Type::String(n) => (self.words.text_room(capacity(n)), capacity(n)),
+                _ => (Addr(0), 0),
+            };
+            ExprKind::TextCall { function, args, to, cap }
+        } else {
+            ExprKind::Call(function, e.ty, args)
         };
         Expr::new(kind, e.at)
     }
