@@ -39,7 +39,7 @@ const ALLOWED: &[Arrows] = &[
         Some(&["syn"]),
     ),
     ("verify", &["g7-engine"], Some(&[])),
-    ("host", &["g7-engine"], None),
+    ("host", &["g7-model", "g7-engine"], None),
     ("draw", &["g7-model"], Some(&[])),
     ("edit", &["g7-model", "g7-syntax", "g7-compile"], Some(&["serde"])),
     (

@@ -1,5 +1,7 @@
 //! Draws chronograms: one lane for each signal, one below the other, over one time axis.
 
+use g7_model::Nanos;
+
 use crate::ink::{Ink, Picture};
 use crate::svg::standalone;
 use crate::text::{duration, shortened, width};
@@ -102,7 +104,7 @@ impl Plot {
         let mut at = self.from.div_euclid(step).saturating_mul(step);
         while at <= self.to {
             if at >= self.from {
-                let (x, text) = (self.x(at), duration(at));
+                let (x, text) = (self.x(at), duration(Nanos::new(at)));
                 p.line("g7-grid", &[(x, AXIS - 60), (x, low)]);
                 p.text("g7-note", x - width(&text, TEXT) / 2, AXIS - 110, TEXT, &text);
             }

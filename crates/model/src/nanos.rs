@@ -69,6 +69,23 @@ impl Nanos {
         self.0 as f64 / Nanos::SECOND.0 as f64
     }
 
+    /// The time for a reader: as .g7 text writes it, but a negative one with a sign alone: `-40us`.
+    pub fn plain(self) -> String {
+        self.to_string().replacen("T#", "", 1)
+    }
+
+    /// The time in seconds, exact, with as many decimals as it needs: `0.01`, `12`, `-0.000000001`.
+    pub fn in_seconds(self) -> String {
+        let sign = if self.0 < 0 { "-" } else { "" };
+        let second = Nanos::SECOND.0.unsigned_abs();
+        let (whole, part) = (self.0.unsigned_abs() / second, self.0.unsigned_abs() % second);
+        if part == 0 {
+            return format!("{sign}{whole}");
+        }
+        let decimals = format!("{part:09}");
+        format!("{sign}{whole}.{}", decimals.trim_end_matches('0'))
+    }
+
     /// How often the unit goes into it, or `None` where a rest remains.
     pub fn whole(self, unit: Nanos) -> Option<i64> {
         (self.0.checked_rem(unit.0)? == 0).then(|| self.0.checked_div(unit.0)).flatten()
@@ -215,6 +232,18 @@ mod tests {
             assert_eq!(Nanos::new(count).to_string(), short);
             assert_eq!(format!("{:#}", Nanos::new(count)), standard);
         }
+    }
+
+    #[test]
+    fn a_reader_sees_a_sign_alone_and_seconds_are_exact() {
+        assert_eq!(Nanos::new(-40_000).plain(), "-40us");
+        assert_eq!(Nanos::new(2_500_000_000).plain(), "2.5s");
+        assert_eq!(Nanos::ZERO.plain(), "0s");
+        assert_eq!(Nanos::new(i64::MIN).plain(), "-106751d23h47m16s854ms775.808us");
+        assert_eq!(Nanos::new(10_000_000).in_seconds(), "0.01");
+        assert_eq!(Nanos::new(12_000_000_000).in_seconds(), "12");
+        assert_eq!(Nanos::new(-1).in_seconds(), "-0.000000001");
+        assert_eq!(Nanos::new(i64::MIN).in_seconds(), "-9223372036.854775808");
     }
 
     #[test]

@@ -1,14 +1,15 @@
 //! The common part of Structured Text, Instruction List and Ladder: the
 //! equations of a chart with names, before they are printed in one of them.
 
+use g7_model::Nanos;
+
 /// A value.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Ex {
     Bool(bool),
     Int(i128),
     Real(f64),
-    /// Nanoseconds.
-    Time(i64),
+    Time(Nanos),
     Var(String),
     Index(String, Box<Ex>),
     Not(Box<Ex>),

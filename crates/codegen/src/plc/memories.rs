@@ -6,7 +6,7 @@ use std::collections::HashSet;
 use g7_compile::Compiled;
 use g7_engine::{Addr, INPUTS, StepId};
 use g7_equations::{Class, Equations, Memory, MemoryId, Part, What};
-use g7_model::{FbKind, Type};
+use g7_model::{FbKind, Nanos, Type};
 
 use super::form::{self, Declared, Ex};
 use super::names::Names;
@@ -53,7 +53,7 @@ pub(crate) fn literal(ty: Type, word: u64) -> Ex {
         Type::Real => Ex::Real(f64::from(f32::from_bits(word as u32))),
         Type::Lreal => Ex::Real(f64::from_bits(word)),
         Type::Ulint => Ex::Int(word.into()),
-        Type::Time => Ex::Time(word as i64),
+        Type::Time => Ex::Time(Nanos::new(word as i64)),
         _ => Ex::Int((word as i64).into()),
     }
 }

@@ -10,7 +10,7 @@ use std::collections::HashSet;
 use g7_compile::Compiled;
 use g7_engine::Block as Kind;
 use g7_equations::{About, Equations, Expr, MemoryId, Section, Stmt, What};
-use g7_model::{Problem, Span, Type, codes};
+use g7_model::{Nanos, Problem, Span, Type, codes};
 
 use super::form::{Block, Ex, St, narrow};
 use super::memories::{Memories, literal};
@@ -131,13 +131,13 @@ impl Scan<'_> {
         }
         self.memories.internal("CLOCK", "TON", "gives the time");
         self.memories.internal("LAST", "TIME", "time of the scan before");
-        let long = Ex::Time(20 * 86_400_000_000_000);
+        let long = Ex::Time(Nanos::DAY * 20);
         let call = |on: bool| {
             St::Call("CLOCK".into(), vec![("IN".into(), Ex::Bool(on)), ("PT".into(), long.clone())])
         };
         let time = Ex::var("CLOCK.ET");
-        let over = Ex::op(">=", Ex::var("LAST"), Ex::Time(3_600_000_000_000));
-        let anew = vec![St::set("LAST", Ex::Time(0)), call(false), call(true)];
+        let over = Ex::op(">=", Ex::var("LAST"), Ex::Time(Nanos::HOUR));
+        let anew = vec![St::set("LAST", Ex::Time(Nanos::ZERO)), call(false), call(true)];
         vec![
             St::Title("A timer that runs on gives the time; it begins anew each hour".into()),
             call(true),
@@ -262,11 +262,11 @@ impl Scan<'_> {
             if let Expr::Arith(g7_engine::Arith::Mul, Type::Lint, _, by) = e
                 && let Expr::Const(_, n) = **by
             {
-                period = Some(n as i64);
+                period = Some(Nanos::new(n as i64));
             }
         });
         let Some(period) = period else { return };
-        let waits = Ex::op(">", Ex::var(name), Ex::Time(0));
+        let waits = Ex::op(">", Ex::var(name), Ex::Time(Nanos::ZERO));
         let more = St::set(name, Ex::op("+", Ex::var(name), Ex::Time(period)));
         out.push(St::Loop(vec![St::If(waits, vec![St::Exit], Vec::new()), more]));
     }

@@ -203,7 +203,7 @@ pub(crate) fn expression(e: &Ex) -> String {
         Ex::Bool(false) => "FALSE".into(),
         Ex::Int(n) => n.to_string(),
         Ex::Real(x) => real(*x),
-        Ex::Time(ns) => time(*ns),
+        Ex::Time(time) => format!("{time:#}"),
         Ex::Var(name) => name.clone(),
         Ex::Index(name, i) => format!("{name}[{}]", expression(i)),
         Ex::Not(inner) => format!("NOT {}", within(inner, 9)),
@@ -230,31 +230,4 @@ pub(crate) fn real(x: f64) -> String {
         Some((m, e)) => format!("{m}.0E{e}"),
         None => text,
     }
-}
-
-/// A TIME literal.
-pub(crate) fn time(ns: i64) -> String {
-    let sign = if ns < 0 { "-" } else { "" };
-    let mut left = ns.unsigned_abs();
-    let mut text = String::new();
-    for (unit, size) in
-        [("d", 86_400_000_000_000u64), ("h", 3_600_000_000_000), ("m", 60_000_000_000), ("s", 1_000_000_000)]
-    {
-        if left >= size {
-            let _ = write!(text, "{}{unit}", left / size);
-            left %= size;
-        }
-    }
-    if left > 0 || text.is_empty() {
-        let (ms, rest) = (left / 1_000_000, left % 1_000_000);
-        if text.is_empty() && left == 0 {
-            text.push_str("0s");
-        } else if rest == 0 {
-            let _ = write!(text, "{ms}ms");
-        } else {
-            let fraction = format!("{rest:06}");
-            let _ = write!(text, "{ms}.{}ms", fraction.trim_end_matches('0'));
-        }
-    }
-    format!("T#{sign}{text}")
 }

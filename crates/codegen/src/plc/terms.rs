@@ -2,7 +2,7 @@
 
 use g7_engine::{Arith, Builtin, Cmp};
 use g7_equations::{Class, Expr, MemoryId, What};
-use g7_model::Type;
+use g7_model::{Nanos, Type};
 
 use super::form::{Ex, narrow};
 use super::memories::{literal, type_name};
@@ -10,7 +10,7 @@ use super::scan::Scan;
 use crate::spare::widens;
 
 /// A tenth of a second.
-const TENTH: i64 = 100_000_000;
+const TENTH: Nanos = Nanos::from_millis(100);
 
 impl Scan<'_> {
     /// An expression.
@@ -31,7 +31,7 @@ impl Scan<'_> {
             Expr::And(list) => Ex::all(list.iter().map(|e| self.ex(e)).collect::<Vec<_>>()),
             Expr::Or(list) => Ex::any(list.iter().map(|e| self.ex(e)).collect::<Vec<_>>()),
             Expr::Xor(a, b) => self.ex(a).xor(self.ex(b)),
-            Expr::Neg(Type::Time, x) => Ex::op("-", Ex::Time(0), self.ex(x)),
+            Expr::Neg(Type::Time, x) => Ex::op("-", Ex::Time(Nanos::ZERO), self.ex(x)),
             Expr::Neg(_, x) => Ex::Neg(Box::new(self.ex(x))),
             Expr::Arith(op, ty, a, b) => self.arith(*op, *ty, a, b),
             Expr::Compare(c, ty, a, b) => self.compare(*c, *ty, a, b),
@@ -138,7 +138,7 @@ impl Scan<'_> {
         if let (Type::Time, Ex::Time(n)) = (ty, &y)
             && self.type_of(a).is_some_and(whole)
         {
-            y = Ex::Int((*n).into());
+            y = Ex::Int(n.count().into());
         }
         // A number that was only made wider is compared with a constant as it is.
         let (x, y) = match (a, b) {
@@ -178,7 +178,7 @@ impl Scan<'_> {
         if !(0..9998).contains(&number) {
             return None;
         }
-        let at = |n: i64| Ex::Time(n * TENTH);
+        let at = |n: i64| Ex::Time(TENTH * n);
         let time = self.ex(&time);
         let from = |n: i64| Ex::op(">=", time.clone(), at(n));
         let below = |n: i64| Ex::op("<", time.clone(), at(n));
@@ -198,7 +198,7 @@ impl Scan<'_> {
             Expr::Convert(Type::Lint | Type::Int, _, x) => self.in_tenths(x),
             Expr::Call(Builtin::Min, Type::Lint, args) => match args.as_slice() {
                 [Expr::Arith(Arith::Div, Type::Lint, x, by), Expr::Const(..)]
-                    if **by == Expr::long(TENTH) =>
+                    if **by == Expr::long(TENTH.count()) =>
                 {
                     match &**x {
                         Expr::Convert(Type::Time, Type::Lint, time) => Some((**time).clone()),
@@ -242,7 +242,7 @@ impl Scan<'_> {
         if from == Type::Time || to == Type::Time {
             return match x {
                 Expr::Const(..) if to == Type::Time => match self.ex(x) {
-                    Ex::Int(n) => Ex::Time(i64::try_from(n).unwrap_or(i64::MAX)),
+                    Ex::Int(n) => Ex::Time(i64::try_from(n).map_or(Nanos::MAX, Nanos::new)),
                     _ => self.cannot_ex("a TIME taken as a number"),
                 },
                 _ => self.cannot_ex("a TIME taken as a number"),

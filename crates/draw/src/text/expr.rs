@@ -233,7 +233,7 @@ fn literal(l: &Literal) -> String {
         Literal::Int(n, Some(ty)) => format!("{ty}#{n}"),
         Literal::Real(text, None) => clean(text),
         Literal::Real(text, Some(ty)) => format!("{ty}#{}", clean(text)),
-        Literal::Time(time) => duration(time.count()),
+        Literal::Time(time) => duration(*time),
         Literal::Str(text) => format!("'{}'", clean(text)),
     }
 }

@@ -2,7 +2,7 @@
 
 use std::io::{self, Write};
 
-use g7_host::{format_seconds, format_time};
+use g7_host::format_time;
 use g7_model::Nanos;
 use serde_json::{Value, json};
 
@@ -130,8 +130,7 @@ fn coverage_json(file: &str, coverage: &Coverage) -> Value {
 /// A JUnit report: a suite for each file.
 pub(super) fn junit(outcomes: &[Outcome]) -> String {
     let failed = |list: &[&Outcome]| list.iter().filter(|o| o.defect.is_some()).count();
-    let took =
-        |list: &[&Outcome]| format_seconds(list.iter().fold(Nanos::ZERO, |sum, o| sum + o.took).count());
+    let took = |list: &[&Outcome]| list.iter().fold(Nanos::ZERO, |sum, o| sum + o.took).in_seconds();
     let all: Vec<&Outcome> = outcomes.iter().collect();
     let mut files: Vec<&str> = outcomes.iter().map(|o| o.file.as_str()).collect();
     files.dedup();
@@ -152,7 +151,7 @@ pub(super) fn junit(outcomes: &[Outcome]) -> String {
             took(&mine)
         ));
         for o in mine {
-            let (title, time) = (escape(&o.title), format_seconds(o.took.count()));
+            let (title, time) = (escape(&o.title), o.took.in_seconds());
             out.push_str(&format!("    <testcase classname=\"{name}\" name=\"{title}\" time=\"{time}\""));
             match &o.defect {
                 None => out.push_str("/>\n"),

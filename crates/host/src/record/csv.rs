@@ -2,7 +2,9 @@
 
 use std::io::{self, Write};
 
-use super::{Kind, Recording, Value, format_seconds};
+use g7_model::Nanos;
+
+use super::{Kind, Recording, Value};
 
 /// Writes one row for each instant at which a signal changed, with the values of all signals.
 ///
@@ -22,7 +24,7 @@ pub fn write_csv(recording: &Recording, out: &mut dyn Write) -> io::Result<()> {
         instants.push(recording.end()); // the last row shows how long the recording lasted
     }
     for instant in instants {
-        write!(out, "{}", format_seconds(instant))?;
+        write!(out, "{}", Nanos::new(instant).in_seconds())?;
         for (i, signal) in recording.signals().iter().enumerate() {
             let value = recording.value_at(i, instant);
             write!(out, ",{}", value.map_or_else(String::new, |v| cell(v, signal.kind)))?;
@@ -35,7 +37,7 @@ pub fn write_csv(recording: &Recording, out: &mut dyn Write) -> io::Result<()> {
 fn cell(value: &Value, kind: Kind) -> String {
     match kind {
         Kind::Bool => value.word().to_string(),
-        Kind::Time => format_seconds(value.word() as i64),
+        Kind::Time => Nanos::new(value.word() as i64).in_seconds(),
         Kind::Int { .. } | Kind::Real | Kind::Lreal | Kind::Text => quote(&value.show(kind)),
     }
 }

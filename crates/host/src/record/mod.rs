@@ -105,17 +105,6 @@ pub fn format_time(ns: i64) -> String {
     out
 }
 
-/// Nanoseconds as seconds, with as many decimals as needed: `0.01`, `12`, `-0.000000001`.
-pub fn format_seconds(ns: i64) -> String {
-    let sign = if ns < 0 { "-" } else { "" };
-    let (whole, part) = (ns.unsigned_abs() / 1_000_000_000, ns.unsigned_abs() % 1_000_000_000);
-    if part == 0 {
-        return format!("{sign}{whole}");
-    }
-    let decimals = format!("{part:09}");
-    format!("{sign}{whole}.{}", decimals.trim_end_matches('0'))
-}
-
 /// A variable or step whose values are recorded.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Signal {
@@ -308,15 +297,11 @@ mod tests {
     }
 
     #[test]
-    fn durations_and_seconds_are_written_exactly() {
+    fn durations_are_written_exactly() {
         assert_eq!(format_time(5_400_000_000_000), "1h30m");
         assert_eq!(format_time(2_500_000_000), "2s500ms");
         assert_eq!(format_time(-40_000), "-40us");
         assert_eq!(format_time(0), "0s");
-        assert_eq!(format_seconds(10_000_000), "0.01");
-        assert_eq!(format_seconds(12_000_000_000), "12");
-        assert_eq!(format_seconds(-1), "-0.000000001");
-        assert_eq!(format_seconds(i64::MIN), "-9223372036.854775808");
     }
 
     #[test]
