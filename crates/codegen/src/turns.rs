@@ -10,18 +10,24 @@
 //! x := next;                                  END_IF
 //! ```
 //!
-//! Few steps change in a scan, so that code of the second form stores little.
+//! Few steps change in a scan, so that code of the second form stores little. In a chart
+//! of many steps, groups of them share the question whether any of them changes.
 //!
 //! # Invariants
 //!
 //! - A step is rewritten only where nothing between the two places writes what its
-//!   next value is made of: both forms then do the same.
+//!   next value is made of: both forms then do the same. So for a group.
 
 use std::collections::{BTreeSet, HashMap};
 
 use g7_equations::{About, Equations, Expr, MemoryId, Stmt, What};
 
 use crate::spare::{mentioned, operands, written};
+
+/// Steps that share one question whether any of them changes.
+const GROUP: usize = 8;
+/// Steps from which on they share it; a small chart is easier to read without.
+const MANY: usize = 4 * GROUP;
 
 /// Statements with the same meaning: steps change where they change.
 pub(crate) fn turned(e: &mut Equations) {
@@ -32,12 +38,15 @@ pub(crate) fn turned(e: &mut Equations) {
     let pass = Pass::of(&lines);
     let turns: Vec<Turn> = (0..lines.len()).filter_map(|at| pass.turn(at, &what)).collect();
     let (turns, raises) = pass.with_raises(turns);
-    for turn in turns {
-        for at in turn.from..turn.at {
-            put(&mut list, at, Stmt::About(About::Nothing));
+    let most = if turns.len() < MANY { 1 } else { GROUP };
+    for group in pass.groups(turns, most) {
+        let (Some(first), Some(last)) = (group.first(), group.last()) else { continue };
+        let (from, at) = (first.from, last.at);
+        let stmt = pass.together(group);
+        for k in from..at {
+            put(&mut list, k, Stmt::About(About::Nothing));
         }
-        let at = turn.at;
-        put(&mut list, at, turn.stmt());
+        put(&mut list, at, stmt);
     }
     for (at, stmt) in raises {
         put(&mut list, at, stmt);
@@ -66,6 +75,11 @@ struct Turn {
 }
 
 impl Turn {
+    /// The memories that ask for a change.
+    fn asked(&self) -> Vec<MemoryId> {
+        [operands(&self.on), operands(&self.off)].concat()
+    }
+
     fn stmt(self) -> Stmt {
         let Turn { step, on, off, mut comes, mut goes, .. } = self;
         let active = Expr::Read(step);
@@ -142,6 +156,46 @@ impl Pass<'_> {
             return None;
         }
         Some(Turn { step, next, set: *set, from, at, on, off, comes, goes })
+    }
+
+    /// Turns one behind the other, with nothing between that does anything, and with
+    /// nothing among them that changes what they depend on.
+    fn groups(&self, turns: Vec<Turn>, most: usize) -> Vec<Vec<Turn>> {
+        let mut groups: Vec<Vec<Turn>> = Vec::new();
+        for turn in turns {
+            let open = groups.last_mut().filter(|group| {
+                let (Some(first), Some(last)) = (group.first(), group.last()) else { return false };
+                let between = self.lines.get(last.at + 1..turn.from).unwrap_or_default();
+                let stands = |m: MemoryId| !self.writes(m, first.from..turn.at + 1);
+                group.len() < most
+                    && between.iter().all(|line| matches!(line, Stmt::About(_)))
+                    && group.iter().chain([&turn]).all(|t| t.asked().into_iter().all(stands))
+            });
+            match open {
+                Some(group) => group.push(turn),
+                None => groups.push(vec![turn]),
+            }
+        }
+        groups
+    }
+
+    /// The statement of a group: where nothing asks for a change, no step is looked at.
+    fn together(&self, group: Vec<Turn>) -> Stmt {
+        let alone = group.len() == 1;
+        let any = Expr::any(group.iter().flat_map(|t| [t.on.clone(), t.off.clone()]));
+        let mut list = Vec::new();
+        for turn in group {
+            if !alone
+                && let Some(about @ Stmt::About(_)) = turn.from.checked_sub(1).and_then(|k| self.lines.get(k))
+            {
+                list.push(about.clone());
+            }
+            list.push(turn.stmt());
+        }
+        match list.pop() {
+            Some(only) if alone => only,
+            last => Stmt::If(any, list.into_iter().chain(last).collect(), Vec::new()),
+        }
     }
 
     /// The turns with the flags that they raise, and those flags' statements without

@@ -12,10 +12,10 @@ use crate::{Options, Point, Rect};
 pub struct Chronogram {
     /// The signals, from top to bottom.
     pub lanes: Vec<Lane>,
-    /// First instant shown, in nanoseconds.
-    pub from: i64,
-    /// Last instant shown, in nanoseconds.
-    pub to: i64,
+    /// First instant shown.
+    pub from: Nanos,
+    /// Last instant shown.
+    pub to: Nanos,
 }
 
 /// One signal.
@@ -45,8 +45,8 @@ pub enum LaneKind {
 /// One change of a signal.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Edge {
-    /// The instant of the change, in nanoseconds.
-    pub at: i64,
+    /// The instant of the change.
+    pub at: Nanos,
     /// The value as a number; a Boolean is 0 or 1.
     pub value: f64,
     /// The value as text, for the reader.
@@ -70,7 +70,7 @@ const NAME: i32 = 2600;
 pub fn chronogram_svg(chronogram: &Chronogram, options: &Options) -> String {
     let names: Vec<String> = chronogram.lanes.iter().map(|l| shortened(&l.name, TEXT, NAME).0).collect();
     let left = names.iter().map(|n| width(n, TEXT)).max().unwrap_or(0) + 120;
-    let plot = Plot { left, from: chronogram.from, to: chronogram.to.max(chronogram.from + 1) };
+    let plot = Plot { left, from: chronogram.from, to: chronogram.to.max(chronogram.from + Nanos::new(1)) };
     let low = AXIS + LANE * i32::try_from(chronogram.lanes.len()).unwrap_or(i32::MAX / LANE - 1);
     let mut p = Picture::default();
     plot.axis(&mut p, low);
@@ -86,25 +86,26 @@ pub fn chronogram_svg(chronogram: &Chronogram, options: &Options) -> String {
 /// The plot area and the span of time that it covers.
 struct Plot {
     left: i32,
-    from: i64,
-    to: i64,
+    from: Nanos,
+    to: Nanos,
 }
 
 impl Plot {
     /// The horizontal position of an instant; instants outside the span lie on its edge.
-    fn x(&self, at: i64) -> i32 {
-        let span = i128::from(self.to) - i128::from(self.from);
-        let into = i128::from(at.clamp(self.from, self.to)) - i128::from(self.from);
+    fn x(&self, at: Nanos) -> i32 {
+        let count = |time: Nanos| i128::from(time.count());
+        let span = count(self.to) - count(self.from);
+        let into = count(at.clamp(self.from, self.to)) - count(self.from);
         self.left + i32::try_from(into * i128::from(PLOT) / span.max(1)).unwrap_or(PLOT)
     }
 
     /// Draws the time axis: about ten grid lines at round times, each with its label.
     fn axis(&self, p: &mut Picture, low: i32) {
-        let step = tick(self.to.saturating_sub(self.from));
-        let mut at = self.from.div_euclid(step).saturating_mul(step);
+        let step = tick(self.to - self.from);
+        let mut at = Nanos::new(self.from.count().div_euclid(step.count())) * step.count();
         while at <= self.to {
             if at >= self.from {
-                let (x, text) = (self.x(at), duration(Nanos::new(at)));
+                let (x, text) = (self.x(at), duration(at));
                 p.line("g7-grid", &[(x, AXIS - 60), (x, low)]);
                 p.text("g7-note", x - width(&text, TEXT) / 2, AXIS - 110, TEXT, &text);
             }
@@ -176,41 +177,41 @@ fn stair(p: &mut Picture, pieces: &[(i32, i32, &Edge)], height: impl Fn(&Edge) -
     }
 }
 
-/// A round interval that divides the span into about ten parts, in nanoseconds.
-fn tick(span: i64) -> i64 {
-    let minute = 60_000_000_000;
-    let long = [1, 2, 5, 10, 15, 30, 60, 120, 360, 720, 1440].map(|m| m * minute);
-    let mut short = 1_i64;
-    while short <= 30_000_000_000 {
-        for step in [short, 2 * short, 5 * short] {
-            if span / step <= 12 && step <= 30_000_000_000 {
+/// A round interval that divides the span into about ten parts.
+fn tick(span: Nanos) -> Nanos {
+    let long = [1, 2, 5, 10, 15, 30, 60, 120, 360, 720, 1440].map(|m| Nanos::MINUTE * m);
+    let longest = Nanos::SECOND * 30;
+    let mut short = Nanos::new(1);
+    while short <= longest {
+        for step in [short, short * 2, short * 5] {
+            if span.count_of(step) <= 12 && step <= longest {
                 return step;
             }
         }
-        short *= 10;
+        short = short * 10;
     }
-    long.into_iter().find(|s| span / s <= 12).unwrap_or(span / 10 + 1)
+    long.into_iter().find(|step| span.count_of(*step) <= 12).unwrap_or(span / 10 + Nanos::new(1))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    const S: i64 = 1_000_000_000;
+    const S: Nanos = Nanos::SECOND;
 
-    fn edge(at: i64, value: f64) -> Edge {
+    fn edge(at: Nanos, value: f64) -> Edge {
         Edge { at, value, show: value.to_string() }
     }
 
     fn one(kind: LaneKind, edges: Vec<Edge>) -> String {
         let lanes = vec![Lane { name: "a<b".to_owned(), kind, edges }];
-        let c = Chronogram { lanes, from: 0, to: 10 * S };
+        let c = Chronogram { lanes, from: Nanos::ZERO, to: S * 10 };
         chronogram_svg(&c, &Options { font: false, ..Options::default() })
     }
 
     #[test]
     fn a_boolean_rises_and_falls_where_its_edges_are() {
-        let svg = one(LaneKind::Bool, vec![edge(0, 0.0), edge(2 * S, 1.0), edge(4 * S, 0.0)]);
+        let svg = one(LaneKind::Bool, vec![edge(Nanos::ZERO, 0.0), edge(S * 2, 1.0), edge(S * 4, 0.0)]);
         // 10 s are 900 px wide; the waveform is 18 px high.
         let wave = svg.split("g7-wave\" d=\"").nth(1).and_then(|s| s.split('"').next()).expect("a wave");
         let x0: f64 = wave[1..].split(' ').next().and_then(|n| n.parse().ok()).expect("its start");
@@ -222,7 +223,7 @@ mod tests {
 
     #[test]
     fn a_step_is_a_bar_for_each_time_it_is_active() {
-        let edges = vec![edge(0, 1.0), edge(S, 0.0), edge(5 * S, 1.0)];
+        let edges = vec![edge(Nanos::ZERO, 1.0), edge(S, 0.0), edge(S * 5, 1.0)];
         let svg = one(LaneKind::Step, edges);
         assert_eq!(svg.matches("class=\"g7-active\"").count(), 2);
         assert!(svg.contains("width=\"90\"") && svg.contains("width=\"450\""));
@@ -230,9 +231,12 @@ mod tests {
 
     #[test]
     fn nothing_to_show_and_numbers_without_measure_are_no_fault() {
-        let c = Chronogram { lanes: Vec::new(), from: i64::MIN, to: i64::MAX };
+        let c = Chronogram { lanes: Vec::new(), from: Nanos::new(i64::MIN), to: Nanos::MAX };
         assert!(chronogram_svg(&c, &Options::default()).starts_with("<svg"));
-        let svg = one(LaneKind::Number, vec![edge(-5, f64::NAN), edge(S, f64::INFINITY), edge(2 * S, 1.0)]);
+        let svg = one(
+            LaneKind::Number,
+            vec![edge(Nanos::new(-5), f64::NAN), edge(S, f64::INFINITY), edge(S * 2, 1.0)],
+        );
         assert!(svg.contains("g7-wave") && !svg.contains("NaN\""));
         assert!(one(LaneKind::Text, Vec::new()).starts_with("<svg"));
     }
@@ -240,10 +244,10 @@ mod tests {
     #[test]
     fn the_axis_has_round_times() {
         for (span, step) in
-            [(10 * S, S), (100 * S, 10 * S), (600 * S, 60 * S), (S, 100_000_000), (3600 * S, 300 * S)]
+            [(S * 10, S), (S * 100, S * 10), (S * 600, S * 60), (S, S / 10), (S * 3600, S * 300)]
         {
             assert_eq!(tick(span), step, "{span}");
         }
-        assert!(tick(i64::MAX) > 0 && tick(0) == 1);
+        assert!(tick(Nanos::MAX) > Nanos::ZERO && tick(Nanos::ZERO) == Nanos::new(1));
     }
 }

@@ -3,6 +3,7 @@
 use std::io::{IsTerminal, stderr};
 
 use g7_host::{Clock, WallClock};
+use g7_model::Nanos;
 use indicatif::{ProgressBar, ProgressStyle};
 
 /// Nothing for the first second, then a bar on the standard error.
@@ -15,7 +16,7 @@ pub(crate) struct Progress {
     on: bool,
 }
 
-const PATIENCE: i64 = 1_000_000_000;
+const PATIENCE: Nanos = Nanos::SECOND;
 
 impl Progress {
     pub(crate) fn new(what: &'static str, total: u64) -> Progress {

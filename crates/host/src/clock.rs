@@ -2,26 +2,28 @@
 
 use std::time::{Duration, Instant};
 
-/// A monotonic clock in nanoseconds since its own start.
+use g7_model::Nanos;
+
+/// A monotonic clock; its times are since its own start.
 pub trait Clock {
-    /// The time now, in nanoseconds.
-    fn now(&mut self) -> i64;
+    /// The time now.
+    fn now(&mut self) -> Nanos;
     /// Returns when `instant` is reached; returns at once if it is past.
-    fn wait_until(&mut self, instant: i64);
+    fn wait_until(&mut self, instant: Nanos);
 }
 
 /// A clock that jumps to the instant it is asked to wait for, so a run is as fast as the machine.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct VirtualClock {
-    now: i64,
+    now: Nanos,
 }
 
 impl Clock for VirtualClock {
-    fn now(&mut self) -> i64 {
+    fn now(&mut self) -> Nanos {
         self.now
     }
 
-    fn wait_until(&mut self, instant: i64) {
+    fn wait_until(&mut self, instant: Nanos) {
         self.now = self.now.max(instant);
     }
 }
@@ -31,7 +33,7 @@ impl Clock for VirtualClock {
 pub struct WallClock {
     /// The wall-clock instant at which this clock showed `base`.
     since: Instant,
-    base: i64,
+    base: Nanos,
     /// Nanoseconds of this clock per nanosecond of the wall clock.
     speed: f64,
     held: bool,
@@ -39,7 +41,7 @@ pub struct WallClock {
 
 impl Default for WallClock {
     fn default() -> WallClock {
-        WallClock { since: wall(), base: 0, speed: 1.0, held: false }
+        WallClock { since: wall(), base: Nanos::ZERO, speed: 1.0, held: false }
     }
 }
 
@@ -49,17 +51,17 @@ fn wall() -> Instant {
 }
 
 impl WallClock {
-    fn elapsed(&self) -> i64 {
+    fn elapsed(&self) -> Nanos {
         if self.held {
-            return 0;
+            return Nanos::ZERO;
         }
         // Computed as a float: at 1000 times the speed an integer product would overflow within
         // weeks.
-        (self.since.elapsed().as_nanos() as f64 * self.speed) as i64
+        Nanos::new((self.since.elapsed().as_nanos() as f64 * self.speed) as i64)
     }
 
     fn rebase(&mut self) {
-        self.base = self.base.saturating_add(self.elapsed());
+        self.base = self.base + self.elapsed();
         self.since = wall();
     }
 
@@ -86,27 +88,27 @@ impl WallClock {
     }
 
     /// Sets the time, for instance after the user made single scans by hand.
-    pub fn set(&mut self, now: i64) {
+    pub fn set(&mut self, now: Nanos) {
         self.base = now;
         self.since = wall();
     }
 
     /// Wall-clock time left until `instant`; `None` while the clock is paused.
-    pub fn until(&mut self, instant: i64) -> Option<Duration> {
+    pub fn until(&mut self, instant: Nanos) -> Option<Duration> {
         if self.held {
             return None;
         }
-        let left = instant.saturating_sub(self.now()).max(0);
+        let left = (instant - self.now()).max(Nanos::ZERO).count();
         Some(Duration::from_nanos((left as f64 / self.speed) as u64))
     }
 }
 
 impl Clock for WallClock {
-    fn now(&mut self) -> i64 {
-        self.base.saturating_add(self.elapsed())
+    fn now(&mut self) -> Nanos {
+        self.base + self.elapsed()
     }
 
-    fn wait_until(&mut self, instant: i64) {
+    fn wait_until(&mut self, instant: Nanos) {
         while let Some(left) = self.until(instant) {
             if left.is_zero() {
                 return;
@@ -123,10 +125,11 @@ mod tests {
     #[test]
     fn a_virtual_clock_jumps_to_what_is_waited_for_and_never_back() {
         let mut clock = VirtualClock::default();
-        clock.wait_until(5_000_000_000);
-        assert_eq!(clock.now(), 5_000_000_000);
-        clock.wait_until(1);
-        assert_eq!(clock.now(), 5_000_000_000);
+        let late = Nanos::SECOND * 5;
+        clock.wait_until(late);
+        assert_eq!(clock.now(), late);
+        clock.wait_until(Nanos::new(1));
+        assert_eq!(clock.now(), late);
     }
 
     #[test]
@@ -134,7 +137,7 @@ mod tests {
         let mut clock = WallClock::default();
         clock.hold(true);
         let at = clock.now();
-        clock.wait_until(at + 3_600_000_000_000);
+        clock.wait_until(at + Nanos::HOUR);
         assert_eq!(clock.now(), at);
     }
 
@@ -142,10 +145,10 @@ mod tests {
     fn a_fast_wall_clock_waits_less() {
         let mut clock = WallClock::default();
         clock.set_speed(1000.0);
-        let due = clock.now() + 1_000_000_000;
+        let due = clock.now() + Nanos::SECOND;
         let real = WallClock::default();
         clock.wait_until(due);
         assert!(clock.now() >= due);
-        assert!(real.elapsed() < 900_000_000, "a second at 1000x takes a millisecond");
+        assert!(real.elapsed() < Nanos::from_millis(900), "a second at 1000x takes a millisecond");
     }
 }

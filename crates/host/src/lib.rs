@@ -40,7 +40,7 @@ pub use io::{Channels, Io, IoError};
 pub use record::chronogram::{Chronogram, Lane, Style};
 pub use record::csv::write_csv;
 pub use record::vcd::write_vcd;
-pub use record::{Kind, Recording, Signal, Value, format_time};
+pub use record::{Kind, Recording, Signal, Value};
 pub use retain::{Layout, RetainError, Retained, write_whole};
 pub use runner::{Coupling, Force, Halt, Runner, Served, Start, serve};
 pub use tape::{Divergence, Tape};

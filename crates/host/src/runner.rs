@@ -5,6 +5,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use g7_engine::{Addr, Fault, Program, Report, State, begin, pass, scan};
+use g7_model::Nanos;
 
 use crate::clock::Clock;
 use crate::io::{Io, IoError};
@@ -72,8 +73,8 @@ pub struct Runner {
     forces: BTreeMap<Force, u64>,
     /// The charts' own values of the forced outputs.
     own: BTreeMap<Addr, u64>,
-    period: i64,
-    due: i64,
+    period: Nanos,
+    due: Nanos,
     missed: u64,
     halt: Option<Halt>,
     report: Report,
@@ -88,7 +89,7 @@ pub struct Runner {
 
 impl Runner {
     /// A cold run before its first scan, which is due at 0.
-    pub fn new(program: impl Into<Arc<Program>>, period: i64) -> Runner {
+    pub fn new(program: impl Into<Arc<Program>>, period: Nanos) -> Runner {
         let program = program.into();
         let rows = program.tables().inputs;
         let mut runner = Runner {
@@ -99,8 +100,8 @@ impl Runner {
             plant: None,
             forces: BTreeMap::new(),
             own: BTreeMap::new(),
-            period: period.max(1),
-            due: 0,
+            period: period.max(Nanos::new(1)),
+            due: Nanos::ZERO,
             missed: 0,
             halt: None,
             report: Report::default(),
@@ -182,13 +183,13 @@ impl Runner {
         self.plant.as_mut().map(|p| (&*p.program, &mut p.state))
     }
 
-    /// The instant of the next scan, in nanoseconds.
-    pub fn due(&self) -> i64 {
+    /// The instant of the next scan.
+    pub fn due(&self) -> Nanos {
         self.due
     }
 
-    /// The time between two scans, in nanoseconds.
-    pub fn period(&self) -> i64 {
+    /// The time between two scans.
+    pub fn period(&self) -> Nanos {
         self.period
     }
 
@@ -279,11 +280,11 @@ impl Runner {
     }
 
     /// Skips the scans that were due before `now`, except the latest of them.
-    pub fn catch_up(&mut self, now: i64) {
-        let late = now.saturating_sub(self.due) / self.period;
+    pub fn catch_up(&mut self, now: Nanos) {
+        let late = (now - self.due).count_of(self.period);
         if late > 0 {
             self.missed = self.missed.saturating_add(late as u64);
-            self.due = self.due.saturating_add(late.saturating_mul(self.period));
+            self.due = self.due + self.period * late;
         }
     }
 
@@ -300,7 +301,7 @@ impl Runner {
         }
         let now = self.due;
         let done = self.prepare(now).and_then(|()| self.evolve(now));
-        self.due = now.saturating_add(self.period);
+        self.due = now + self.period;
         (self.ready, self.slow) = (false, None);
         match done {
             Ok(report) => self.report = report,
@@ -327,7 +328,7 @@ impl Runner {
                     return self.scan().map(|_| true);
                 }
                 let mut state = self.state.clone();
-                if begin(&self.program, &mut state, &self.read, now).is_err() {
+                if begin(&self.program, &mut state, &self.read, now.count()).is_err() {
                     return self.scan().map(|_| true);
                 }
                 state
@@ -356,7 +357,7 @@ impl Runner {
 
     /// Makes the plant's scan and takes the inputs of the scan due at `now`; a second call for the
     /// same scan does nothing.
-    fn prepare(&mut self, now: i64) -> Result<(), Halt> {
+    fn prepare(&mut self, now: Nanos) -> Result<(), Halt> {
         if !self.ready {
             self.move_plant(now).map_err(Halt::Plant)?;
             self.take_inputs();
@@ -365,7 +366,7 @@ impl Runner {
         Ok(())
     }
 
-    fn move_plant(&mut self, now: i64) -> Result<(), Fault> {
+    fn move_plant(&mut self, now: Nanos) -> Result<(), Fault> {
         let Some(p) = &mut self.plant else { return Ok(()) };
         let outputs = self.program.tables().outputs.start;
         for (from, to) in &p.coupling.to_plant {
@@ -373,7 +374,7 @@ impl Runner {
                 *word = self.state.word(Addr(outputs.saturating_add(*from)));
             }
         }
-        scan(&p.program, &mut p.state, &p.inputs, now)?;
+        scan(&p.program, &mut p.state, &p.inputs, now.count())?;
         let driven = p.program.tables().outputs.start;
         for (from, to) in &p.coupling.to_charts {
             if let Some(word) = self.inputs.get_mut(*to as usize) {
@@ -401,8 +402,8 @@ impl Runner {
         }
     }
 
-    fn evolve(&mut self, now: i64) -> Result<Report, Halt> {
-        let done = scan(&self.program, &mut self.state, &self.read, now);
+    fn evolve(&mut self, now: Nanos) -> Result<Report, Halt> {
+        let done = scan(&self.program, &mut self.state, &self.read, now.count());
         if let Some(tape) = &mut self.tape {
             tape.scan(now, &self.read, &self.state);
         }
@@ -443,7 +444,7 @@ impl Runner {
 
     /// Continues from the state of another run; the next scan is at `due`.
     #[must_use]
-    pub fn from_state(mut self, state: State, due: i64) -> Runner {
+    pub fn from_state(mut self, state: State, due: Nanos) -> Runner {
         (self.state, self.due) = (state, due);
         self
     }

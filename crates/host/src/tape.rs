@@ -2,12 +2,13 @@
 
 use crate::hash::Fnv;
 use g7_engine::{Addr, Program, State, scan};
+use g7_model::Nanos;
 
 /// One event of a run.
 #[derive(Clone, Debug, PartialEq, Eq)]
 enum Event {
     /// A scan: its instant, the inputs that changed, and a digest of the state after it.
-    Scan { now: i64, changed: Vec<(u32, u64)>, digest: u64 },
+    Scan { now: Nanos, changed: Vec<(u32, u64)>, digest: u64 },
     /// A variable was written from outside.
     Write(u32, u64),
     /// The charts were restarted.
@@ -27,8 +28,8 @@ pub struct Tape {
 pub struct Divergence {
     /// The number of the scan, from 0.
     pub scan: usize,
-    /// The instant of the scan, in nanoseconds.
-    pub now: i64,
+    /// The instant of the scan.
+    pub now: Nanos,
 }
 
 const HEAD: &str = "g7 tape 1";
@@ -48,7 +49,7 @@ impl Tape {
         self.events.push(Event::Restart);
     }
 
-    pub(crate) fn scan(&mut self, now: i64, inputs: &[u64], state: &State) {
+    pub(crate) fn scan(&mut self, now: Nanos, inputs: &[u64], state: &State) {
         let changed = (0u32..)
             .zip(self.inputs.iter().zip(inputs))
             .filter(|(_, (before, value))| before != value)
@@ -69,7 +70,11 @@ impl Tape {
     /// # Errors
     ///
     /// The first scan whose state differs.
-    pub fn replay(&self, program: &Program, mut seen: impl FnMut(i64, &State)) -> Result<State, Divergence> {
+    pub fn replay(
+        &self,
+        program: &Program,
+        mut seen: impl FnMut(Nanos, &State),
+    ) -> Result<State, Divergence> {
         let mut state = State::new(program);
         let rows = program.tables().inputs;
         let mut inputs = vec![0; (rows.end - rows.start) as usize];
@@ -85,7 +90,7 @@ impl Tape {
                         }
                     }
                     // A fault is recorded in the state, so the comparison covers it.
-                    scan(program, &mut state, &inputs, *now).ok();
+                    scan(program, &mut state, &inputs, now.count()).ok();
                     if digest(&state) != *expected {
                         return Err(Divergence { scan: number, now: *now });
                     }
@@ -105,7 +110,7 @@ impl Tape {
                 Event::Write(addr, value) => out.push_str(&format!("w {addr} {value:x}\n")),
                 Event::Restart => out.push_str("r\n"),
                 Event::Scan { now, changed, digest } => {
-                    out.push_str(&format!("s {now} {digest:x}"));
+                    out.push_str(&format!("s {} {digest:x}", now.count()));
                     for (i, value) in changed {
                         out.push_str(&format!(" {i}={value:x}"));
                     }
@@ -131,7 +136,8 @@ impl Tape {
                 "w" => Event::Write(words.next()?.parse().ok()?, hex(words.next()?)?),
                 "r" => Event::Restart,
                 "s" => {
-                    let (now, digest) = (words.next()?.parse().ok()?, hex(words.next()?)?);
+                    let now = Nanos::new(words.next()?.parse().ok()?);
+                    let digest = hex(words.next()?)?;
                     let change = |w: &str| {
                         let (i, value) = w.split_once('=')?;
                         Some((i.parse().ok()?, hex(value)?))

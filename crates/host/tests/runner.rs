@@ -5,6 +5,7 @@ use g7_engine::{Addr, Arith, Code, FaultKind, Num, Op, Program, Rows, Rules, Tab
 use g7_host::{
     Channels, Clock, Coupling, Force, Halt, Io, IoError, Runner, Served, Start, Tape, VirtualClock, serve,
 };
+use g7_model::Nanos;
 
 /// A program of four words: input, output, kept, other. Each scan does `output := input`, `kept :=
 /// kept + 1`, `other := other + 1`; `kept` is an INT and ends at 32767.
@@ -38,12 +39,15 @@ fn program(code: Vec<Op>, init: Vec<u64>, safe: u64) -> Program {
     .expect("tables are sound")
 }
 
+/// Time between two scans.
+const PERIOD: Nanos = Nanos::new(10);
+
 #[test]
 fn scans_come_at_the_period_with_the_inputs_of_then() {
     let program = counter();
-    let mut runner = Runner::new(program.clone(), 10);
+    let mut runner = Runner::new(program.clone(), PERIOD);
     for (scan, input) in [(0, 0), (1, 1), (2, 0)] {
-        assert_eq!(runner.due(), scan * 10);
+        assert_eq!(runner.due(), PERIOD * scan);
         runner.set_input(0, input);
         runner.scan().unwrap();
         assert_eq!((runner.state().now(), runner.outputs()), (scan * 10, vec![input]));
@@ -54,7 +58,7 @@ fn scans_come_at_the_period_with_the_inputs_of_then() {
 fn the_plant_moves_before_the_charts_read() {
     let (charts, plant) = (counter(), adder());
     let coupling = Coupling { to_plant: vec![(0, 0)], to_charts: vec![(0, 0)] };
-    let mut runner = Runner::new(charts.clone(), 10).with_plant(plant.clone(), coupling);
+    let mut runner = Runner::new(charts.clone(), PERIOD).with_plant(plant.clone(), coupling);
     assert!(runner.is_driven(0));
     // The charts' output is 0 before the first scan, so the plant answers 10, which the first scan
     // reads.
@@ -67,21 +71,21 @@ fn the_plant_moves_before_the_charts_read() {
 #[test]
 fn missed_scans_are_left_out_and_counted() {
     let program = counter();
-    let mut runner = Runner::new(program.clone(), 10);
+    let mut runner = Runner::new(program.clone(), PERIOD);
     runner.scan().unwrap();
-    runner.catch_up(9);
-    assert_eq!((runner.due(), runner.missed()), (10, 0));
-    runner.catch_up(45);
-    assert_eq!((runner.due(), runner.missed()), (40, 3));
+    runner.catch_up(Nanos::new(9));
+    assert_eq!((runner.due(), runner.missed()), (PERIOD, 0));
+    runner.catch_up(Nanos::new(45));
+    assert_eq!((runner.due(), runner.missed()), (PERIOD * 4, 3));
     runner.scan().unwrap();
-    assert_eq!((runner.state().scans(), runner.due()), (2, 50));
+    assert_eq!((runner.state().scans(), runner.due()), (2, PERIOD * 5));
 }
 
 #[test]
 fn a_forced_input_goes_over_plant_and_user_until_released() {
     let (charts, plant) = (counter(), adder());
     let coupling = Coupling { to_plant: Vec::new(), to_charts: vec![(0, 0)] };
-    let mut runner = Runner::new(charts.clone(), 10).with_plant(plant.clone(), coupling);
+    let mut runner = Runner::new(charts.clone(), PERIOD).with_plant(plant.clone(), coupling);
     runner.force(Force::Input(0), 7);
     runner.scan().unwrap();
     assert_eq!(runner.outputs(), [7]);
@@ -94,7 +98,7 @@ fn a_forced_input_goes_over_plant_and_user_until_released() {
 #[test]
 fn a_forced_output_is_seen_outside_and_falls_back_when_released() {
     let program = counter();
-    let mut runner = Runner::new(program.clone(), 10);
+    let mut runner = Runner::new(program.clone(), PERIOD);
     runner.set_input(0, 5);
     runner.force(Force::Output(Addr(1)), 9);
     assert_eq!(runner.outputs(), [9], "at once");
@@ -108,20 +112,20 @@ fn a_forced_output_is_seen_outside_and_falls_back_when_released() {
 fn a_warm_restart_keeps_what_is_retained_and_a_cold_one_nothing() {
     let program = counter();
     let mut runner =
-        Runner::new(program.clone(), 10).with_retained(std::iter::once(2..3).collect()).with_flags(None);
+        Runner::new(program.clone(), PERIOD).with_retained(std::iter::once(2..3).collect()).with_flags(None);
     runner.scan().unwrap();
     runner.scan().unwrap();
     runner.restart(Start::Warm);
     assert_eq!(runner.state().words(), [0, 0, 2, 0]);
     runner.restart(Start::Cold);
     assert_eq!(runner.state().words(), [0, 0, 0, 0]);
-    assert_eq!(runner.due(), 20, "time goes on");
+    assert_eq!(runner.due(), PERIOD * 2, "time goes on");
 }
 
 #[test]
 fn after_a_fault_outputs_are_safe_and_scans_refused_until_restart() {
     let program = counter();
-    let mut runner = Runner::new(program.clone(), 10);
+    let mut runner = Runner::new(program.clone(), PERIOD);
     runner.set_word(Addr(2), 32767);
     let halt = runner.scan().unwrap_err();
     assert!(matches!(halt, Halt::Charts(f) if f.kind == FaultKind::Overflow));
@@ -134,7 +138,7 @@ fn after_a_fault_outputs_are_safe_and_scans_refused_until_restart() {
 #[test]
 fn a_tape_plays_back_to_the_same_bytes_and_notices_another_program() {
     let program = counter();
-    let mut runner = Runner::new(program.clone(), 10).with_tape();
+    let mut runner = Runner::new(program.clone(), PERIOD).with_tape();
     for i in 0..50 {
         runner.set_input(0, i % 3);
         if i == 20 {
@@ -182,14 +186,14 @@ impl Io for Wires {
 #[test]
 fn a_device_that_fails_gets_the_safe_outputs() {
     let program = counter();
-    let mut runner = Runner::new(program.clone(), 10);
+    let mut runner = Runner::new(program.clone(), PERIOD);
     let mut io = Channels::new(Wires { fail_at: 2, ..Wires::default() }, vec![0], Vec::new());
     let mut clock = VirtualClock::default();
     let ended = serve(&mut runner, &mut clock, &mut io, &mut |_| false);
     assert!(matches!(ended, Served::Io(e) if e.to_string() == "channel 0: gone"));
     // The input is inverted: a 0 on the wire is read as 1. The safe value that follows is 1 too.
     assert_eq!(io.device().written, [[1], [1], [1]]);
-    assert_eq!(clock.now(), 20);
+    assert_eq!(clock.now(), PERIOD * 2);
 }
 
 #[test]
@@ -197,8 +201,8 @@ fn serving_ends_when_told_and_at_a_fault() {
     let program = counter();
     let mut io = Wires { fail_at: usize::MAX, ..Wires::default() };
     let mut clock = VirtualClock::default();
-    let mut runner = Runner::new(program.clone(), 10);
-    let ended = serve(&mut runner, &mut clock, &mut io, &mut |r| r.due() >= 30);
+    let mut runner = Runner::new(program.clone(), PERIOD);
+    let ended = serve(&mut runner, &mut clock, &mut io, &mut |r| r.due() >= PERIOD * 3);
     assert_eq!(ended, Served::Stopped);
     assert_eq!(io.written, [[0], [0], [0]]);
     runner.set_word(Addr(2), 32767);
@@ -248,13 +252,13 @@ fn transient() -> Program {
 fn a_scan_made_pass_by_pass_is_the_same_scan() {
     let program = transient();
     let active = |r: &Runner| r.shown().active().map(|s| s.0).collect::<Vec<_>>();
-    let mut slow = Runner::new(program.clone(), 10).with_tape();
+    let mut slow = Runner::new(program.clone(), PERIOD).with_tape();
     assert_eq!((slow.pass(), active(&slow)), (Ok(false), vec![1]));
     assert!(slow.is_within_scan());
     assert_eq!((slow.pass(), active(&slow)), (Ok(false), vec![2]));
     assert_eq!((slow.pass(), active(&slow)), (Ok(true), vec![2]), "a pass that changes nothing ends it");
-    assert_eq!(slow.due(), 10);
-    let mut fast = Runner::new(program.clone(), 10).with_tape();
+    assert_eq!(slow.due(), PERIOD);
+    let mut fast = Runner::new(program.clone(), PERIOD).with_tape();
     fast.scan().unwrap();
     assert_eq!(slow.state().to_bytes(), fast.state().to_bytes());
     assert_eq!(slow.tape().unwrap().to_text(), fast.tape().unwrap().to_text());

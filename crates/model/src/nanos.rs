@@ -1,7 +1,7 @@
 //! Durations and instants: whole nanoseconds, and how they are written.
 
 use std::fmt;
-use std::ops::{Add, AddAssign, Mul, Neg, Sub};
+use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub};
 
 /// A duration, or an instant measured from the start of a run, in whole nanoseconds.
 ///
@@ -86,6 +86,11 @@ impl Nanos {
         format!("{sign}{whole}.{}", decimals.trim_end_matches('0'))
     }
 
+    /// How often the unit goes into it, without the rest; 0 for a unit of 0.
+    pub fn count_of(self, unit: Nanos) -> i64 {
+        self.0.checked_div(unit.0).unwrap_or(0)
+    }
+
     /// How often the unit goes into it, or `None` where a rest remains.
     pub fn whole(self, unit: Nanos) -> Option<i64> {
         (self.0.checked_rem(unit.0)? == 0).then(|| self.0.checked_div(unit.0)).flatten()
@@ -139,6 +144,15 @@ impl Mul<i64> for Nanos {
 
     fn mul(self, factor: i64) -> Nanos {
         Nanos(self.0.saturating_mul(factor))
+    }
+}
+
+impl Div<i64> for Nanos {
+    type Output = Nanos;
+
+    /// Toward zero; 0 for a divisor of 0.
+    fn div(self, divisor: i64) -> Nanos {
+        Nanos(self.0.checked_div(divisor).unwrap_or(0))
     }
 }
 

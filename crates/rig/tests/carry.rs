@@ -4,6 +4,7 @@
 use std::path::{Path, PathBuf};
 
 use g7_host::{Runner, Value};
+use g7_model::Nanos;
 use g7_rig::{Bench, Carried, Item, Options, Role, Source, build, carry};
 
 fn source(text: &str) -> Source {
@@ -57,7 +58,7 @@ fn situation_values_and_step_times_go_on() {
     assert_eq!(word(&bench, &runner, "pump"), 1);
     bench.set(&mut runner, item(&bench, "a"), &Value::Word(0));
     // Step 2 was activated at 10 ms and its time goes on, so 5 s have passed in the scan at 5.02 s.
-    while runner.due() <= 5_010_000_000 {
+    while runner.due() <= Nanos::from_millis(5010) {
         runner.scan().expect("no fault");
         assert_eq!(situation(&bench, &runner), "2", "at {} ns", runner.state().now());
     }

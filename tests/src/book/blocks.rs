@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use g7_draw::{Chronogram, Edge, Lane, LaneKind, Options, chronogram_svg};
-use g7_model::{Document, FbKind, Item, ProfileName, Type};
+use g7_model::{Document, FbKind, Item, Nanos, ProfileName, Type};
 
 use crate::case::{self, Case, Line};
 use crate::engine::engine;
@@ -63,16 +63,16 @@ impl Section {
         let instance = instance(&document, self.kind).ok_or("the chart has no instance of the block")?;
         let names = Naive::new(&document, Some(ProfileName::Iec61131))?;
         let mut subject = engine(&document, Some(ProfileName::Iec61131), &[])?;
-        let mut seen: Vec<(i64, BTreeMap<String, Value>)> = Vec::new();
+        let mut seen: Vec<(Nanos, BTreeMap<String, Value>)> = Vec::new();
         for line in self.case.traces.iter().flat_map(|t| &t.lines) {
             let Line::Row(row) = line else { return Err("a restart has no picture".into()) };
             let inputs = input_values(row, &names.inputs(), &names)?;
             subject.scan(&inputs, row.at).map_err(|fault| format!("line {}: {fault:?}", row.line))?;
-            seen.push((row.at, subject.variables()));
+            seen.push((Nanos::new(row.at), subject.variables()));
         }
         let lanes = self.kind.members().iter().map(|(pin, ty, _)| lane(&seen, &instance, pin, *ty));
         let lanes = lanes.filter(|lane| lane.edges.len() > 1).collect();
-        let at = |row: Option<&(i64, _)>| row.map_or(0, |(at, _)| *at);
+        let at = |row: Option<&(Nanos, _)>| row.map_or(Nanos::ZERO, |(at, _)| *at);
         // The values of the last scan hold for as long as those of the one before.
         let (from, last) = (at(seen.first()), at(seen.last()));
         let before = at(seen.iter().rev().nth(1));
@@ -89,13 +89,13 @@ fn instance(document: &Document, kind: FbKind) -> Option<String> {
     })
 }
 
-fn lane(seen: &[(i64, BTreeMap<String, Value>)], instance: &str, pin: &str, ty: Type) -> Lane {
+fn lane(seen: &[(Nanos, BTreeMap<String, Value>)], instance: &str, pin: &str, ty: Type) -> Lane {
     let mut edges: Vec<Edge> = Vec::new();
     for (at, variables) in seen {
         let (value, show) = match variables.get(&format!("{instance}.{pin}")) {
             Some(Value::Bool(b)) => (f64::from(u8::from(*b)), b.to_string()),
             Some(Value::Int(n)) => (*n as f64, n.to_string()),
-            Some(Value::Time(t)) => (*t as f64, g7_host::format_time(*t)),
+            Some(Value::Time(t)) => (*t as f64, Nanos::new(*t).plain()),
             _ => continue,
         };
         if edges.last().is_none_or(|e| e.show != show) {

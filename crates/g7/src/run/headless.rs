@@ -4,8 +4,8 @@ use std::io::{IsTerminal, Write, stdout};
 use std::path::Path;
 
 use g7_host::{
-    Chronogram, Clock, Kind, Recording, Runner, Style, Tape, Value, VirtualClock, WallClock, format_time,
-    write_csv, write_vcd,
+    Chronogram, Clock, Kind, Recording, Runner, Style, Tape, Value, VirtualClock, WallClock, write_csv,
+    write_vcd,
 };
 
 use super::keep::{self, Keeper};
@@ -56,7 +56,7 @@ pub(super) fn run(bench: &Bench, source: &Source, args: &Run) -> Result<Verdict,
     // run is limited.
     let whole = Recording::new(bench.signals());
     let mut recording = if trace.is_some() { whole } else { whole.with_limit(KEPT) };
-    let length = args.duration.unwrap_or(UNSAID).count();
+    let length = args.duration.unwrap_or(UNSAID);
     let mut clock: Box<dyn Clock> =
         if args.real_time { Box::new(WallClock::default()) } else { Box::new(VirtualClock::default()) };
     let mut keeper = Keeper::new(bench, &runner, args.retain.as_deref());
@@ -64,7 +64,7 @@ pub(super) fn run(bench: &Bench, source: &Source, args: &Run) -> Result<Verdict,
     let halt = play(bench, &mut runner, &mut recording, &script, length, &mut *clock, &mut live)?;
     let verdict = if let Some(halt) = halt {
         let place = bench.halt_place(halt).map_or_else(String::new, |at| format!("{}: ", source.place(at)));
-        let (bad, now) = (style::BAD, format_time(runner.state().now()));
+        let (bad, now) = (style::BAD, Nanos::new(runner.state().now()).plain());
         talk!("{place}{bad}fault{bad:#} at {now}: {}", bench.halt(&runner, halt));
         Verdict::Found
     } else {
@@ -85,7 +85,7 @@ pub(super) fn run(bench: &Bench, source: &Source, args: &Run) -> Result<Verdict,
 }
 
 /// The assignments of `--set`, ordered by time, then by their order in the arguments.
-fn script<'b>(bench: &'b Bench, args: &Run) -> Result<Vec<(i64, &'b Item, Value)>, Failure> {
+fn script<'b>(bench: &'b Bench, args: &Run) -> Result<Vec<(Nanos, &'b Item, Value)>, Failure> {
     let mut script = Vec::new();
     for assign in &args.set {
         let Some(item) = bench.item(&assign.name) else {
@@ -93,7 +93,7 @@ fn script<'b>(bench: &'b Bench, args: &Run) -> Result<Vec<(i64, &'b Item, Value)
         };
         let value = values::read(&assign.value, item.kind)
             .map_err(|e| Failure::Usage(format!("--set {}: {e}", assign.name)))?;
-        script.push((assign.at.count(), item, value));
+        script.push((assign.at, item, value));
     }
     script.sort_by_key(|(at, ..)| *at);
     Ok(script)
@@ -115,12 +115,12 @@ fn play(
     bench: &Bench,
     runner: &mut Runner,
     recording: &mut Recording,
-    script: &[(i64, &Item, Value)],
-    length: i64,
+    script: &[(Nanos, &Item, Value)],
+    length: Nanos,
     clock: &mut dyn Clock,
     live: &mut Option<&mut Keeper<'_>>,
 ) -> Result<Option<g7_host::Halt>, Failure> {
-    let mut progress = Progress::new("running", length.max(1) as u64);
+    let mut progress = Progress::new("running", length.count().max(1) as u64);
     let mut script = script.iter().peekable();
     let mut conflicts = Conflicts::default();
     while runner.due() <= length {
@@ -134,7 +134,7 @@ fn play(
             }
         }
         let done = runner.scan();
-        recording.sample(runner.state().now(), bench.sample(runner));
+        recording.sample(Nanos::new(runner.state().now()), bench.sample(runner));
         if let Err(halt) = done {
             progress.end();
             return Ok(Some(halt));
@@ -146,7 +146,7 @@ fn play(
             keeper.tick(runner)?;
         }
         if runner.state().scans().is_multiple_of(256) {
-            progress.at(runner.due().max(0) as u64);
+            progress.at(runner.due().count().max(0) as u64);
         }
     }
     progress.end();
@@ -183,9 +183,9 @@ fn print(
         style::STRONG,
         source.name,
         style::STRONG,
-        format_time(state.now()),
+        Nanos::new(state.now()).plain(),
         state.scans(),
-        format_time(bench.period.count()),
+        bench.period.plain(),
     )?;
     let mut lanes: Vec<usize> = shown.to_vec();
     if lanes.is_empty() {
@@ -198,7 +198,7 @@ fn print(
     let left = lanes.len().saturating_sub(LANES);
     lanes.truncate(LANES);
     let columns = columns(recording, &lanes);
-    let to = recording.end().saturating_add(bench.period.count());
+    let to = recording.end() + bench.period;
     let style = Style { columns, from: recording.start(), to, until: to };
     write!(out, "{}", Chronogram::new(recording, lanes, style))?;
     if left > 0 {
@@ -259,7 +259,7 @@ pub(super) fn replay(bench: &Bench, args: &Run, path: &Path) -> Result<Verdict, 
             Ok(Verdict::Fine)
         }
         Err(d) => {
-            talk!("differs from the record at scan {} ({})", d.scan, format_time(d.now));
+            talk!("differs from the record at scan {} ({})", d.scan, d.now.plain());
             Ok(Verdict::Found)
         }
     }

@@ -4,6 +4,8 @@ use std::path::Path;
 
 use g7_host::{Clock, Layout, RetainError, Retained, Runner, Start, WallClock};
 
+use g7_model::Nanos;
+
 use crate::failure::Failure;
 use g7_rig::Bench;
 
@@ -35,8 +37,8 @@ pub(crate) struct Keeper<'a> {
     clock: WallClock,
 }
 
-/// Least time between two writes, in nanoseconds; each write waits for the disk.
-const PAUSE: i64 = 1_000_000_000;
+/// Least time between two writes; each write waits for the disk.
+const PAUSE: Nanos = Nanos::SECOND;
 
 impl<'a> Keeper<'a> {
     pub(super) fn new(bench: &Bench, runner: &Runner, path: Option<&'a Path>) -> Keeper<'a> {

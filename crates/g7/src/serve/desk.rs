@@ -10,6 +10,7 @@ use std::time::Duration;
 
 use axum::extract::ws::Utf8Bytes;
 use g7_host::{Clock as _, WallClock};
+use g7_model::Nanos;
 use g7_page::Page;
 use serde::Deserialize;
 use serde::de::IgnoredAny;
@@ -20,7 +21,7 @@ use super::outbox::Outbox;
 use super::registry::{Order, Registry, What};
 
 /// Time between two advances of a running run, in nanoseconds: 25 advances a second.
-const TICK: i64 = 40_000_000;
+const TICK: Nanos = Nanos::from_millis(40);
 /// If only the time has changed, every n-th advance is shown.
 const QUIET: u32 = 5;
 /// Greatest number of scans of one advance.
@@ -41,10 +42,10 @@ pub(super) struct Desk {
     /// A clock that runs at the speed of the run.
     clock: WallClock,
     /// The time of `clock` up to which the run was advanced.
-    given: i64,
+    given: Nanos,
     wall: WallClock,
     /// The instant of the wall clock at which the run is advanced next.
-    due: i64,
+    due: Nanos,
     /// Greatest number of scans in the next advance; adapted so that an advance stays short.
     most: u32,
     /// Number of advances since the last frame was shown.
@@ -95,9 +96,9 @@ impl Desk {
             started: false,
             speed: 0.0,
             clock,
-            given: 0,
+            given: Nanos::ZERO,
             wall: WallClock::default(),
-            due: 0,
+            due: Nanos::ZERO,
             most: SCANS,
             quiet: 0,
         }
@@ -109,8 +110,8 @@ impl Desk {
             let order = if self.speed == 0.0 {
                 orders.recv().map_err(|_| RecvTimeoutError::Disconnected)
             } else {
-                let left = self.due.saturating_sub(self.wall.now()).max(0);
-                orders.recv_timeout(Duration::from_nanos(left as u64))
+                let left = (self.due - self.wall.now()).max(Nanos::ZERO);
+                orders.recv_timeout(Duration::from_nanos(left.count() as u64))
             };
             match order {
                 Ok(Order::Asked { by, id, what, done }) => {
@@ -248,7 +249,7 @@ impl Desk {
             self.due = began + TICK;
         }
         let now = self.clock.now();
-        let ms = (now - self.given) as f64 / 1e6;
+        let ms = (now - self.given).as_millis();
         self.given = now;
         let message = json!({ "do": "run_advance", "run": *self.run, "ms": ms, "most_scans": self.most, "times": true });
         let answer = self.page.call(&message.to_string());

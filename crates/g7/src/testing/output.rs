@@ -2,7 +2,6 @@
 
 use std::io::{self, Write};
 
-use g7_host::format_time;
 use g7_model::Nanos;
 use serde_json::{Value, json};
 
@@ -13,7 +12,7 @@ use g7_rig::testing::{Coverage, Defect, Outcome, Unproved};
 pub(super) fn progress_lines(out: &mut dyn Write, outcomes: &[Outcome]) -> io::Result<()> {
     for o in outcomes {
         let (style, word) = if o.defect.is_some() { (style::BAD, "FAILED") } else { (style::GOOD, "ok") };
-        let (faint, time) = (style::FAINT, format_time(o.simulated.count()));
+        let (faint, time) = (style::FAINT, o.simulated.plain());
         writeln!(out, "{style}{word:>6}{style:#} {}: {} {faint}({time}){faint:#}", o.file, o.title)?;
         for note in &o.notes {
             writeln!(out, "{}  note{:#} {note}", style::WARN, style::WARN)?;
@@ -27,7 +26,7 @@ pub(super) fn failures(out: &mut dyn Write, outcomes: &[Outcome]) -> io::Result<
     for o in outcomes {
         let Some(d) = &o.defect else { continue };
         writeln!(out, "\n{}{}{:#}: {}", style::BAD, o.title, style::BAD, sentence(d))?;
-        writeln!(out, "  at {}, {} after the start", d.place, format_time(d.time.count()))?;
+        writeln!(out, "  at {}, {} after the start", d.place, d.time.plain())?;
         if let Some(origin) = &d.origin {
             writeln!(out, "  it came up at {origin}")?;
         }

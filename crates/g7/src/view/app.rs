@@ -1,6 +1,6 @@
 //! The state of the terminal view and the operations of the user.
 
-use g7_host::{Clock, Halt, Kind, Recording, Runner, Start, Value, WallClock, format_time};
+use g7_host::{Clock, Halt, Kind, Recording, Runner, Start, Value, WallClock};
 
 use crate::cli::Run;
 use crate::failure::Failure;
@@ -14,22 +14,22 @@ pub(super) const INPUT_KEYS: &str = "1234567890abcdefghijklmnoprstuvwxyz";
 const SPEEDS: [f64; 13] = [0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0];
 /// Changes kept for each signal: those of an hour for a fast signal.
 const KEPT: usize = 50_000;
-/// Wall time that one advance may take before the next picture is due, in nanoseconds.
-const BUDGET: i64 = 30_000_000;
-/// Spans of time that the chronogram can show, in nanoseconds.
-const SPANS: [i64; 12] = [
-    100_000_000,
-    200_000_000,
-    500_000_000,
-    1_000_000_000,
-    2_000_000_000,
-    5_000_000_000,
-    10_000_000_000,
-    20_000_000_000,
-    60_000_000_000,
-    300_000_000_000,
-    1_800_000_000_000,
-    7_200_000_000_000,
+/// Wall time that one advance may take before the next picture is due.
+const BUDGET: Nanos = Nanos::from_millis(30);
+/// Spans of time that the chronogram can show.
+const SPANS: [Nanos; 12] = [
+    Nanos::from_millis(100),
+    Nanos::from_millis(200),
+    Nanos::from_millis(500),
+    Nanos::from_millis(1_000),
+    Nanos::from_millis(2_000),
+    Nanos::from_millis(5_000),
+    Nanos::from_millis(10_000),
+    Nanos::from_millis(20_000),
+    Nanos::from_millis(60_000),
+    Nanos::from_millis(300_000),
+    Nanos::from_millis(1_800_000),
+    Nanos::from_millis(7_200_000),
 ];
 
 /// A list in which the user can select.
@@ -78,13 +78,13 @@ pub(super) struct App<'b> {
     /// The span of the chronogram, as a position in [`SPANS`].
     span: usize,
     /// Distance of the chronogram's right end from the present; 0 follows the run.
-    pub(super) back: i64,
+    pub(super) back: Nanos,
     /// The first lane that is shown.
     pub(super) lane: usize,
     speed: usize,
     script: Vec<Assign>,
     conflicts: Conflicts,
-    until: i64,
+    until: Nanos,
     over: bool,
 }
 
@@ -112,12 +112,12 @@ impl<'b> App<'b> {
             tables: Table::all(bench),
             message: String::new(),
             span: 6,
-            back: 0,
+            back: Nanos::ZERO,
             lane: 0,
             speed: 6,
             script,
             conflicts: Conflicts::default(),
-            until: args.duration.unwrap_or(Nanos::MAX).count(),
+            until: args.duration.unwrap_or(Nanos::MAX),
             over: false,
         })
     }
@@ -138,8 +138,8 @@ impl<'b> App<'b> {
         SPEEDS.get(self.speed).copied().unwrap_or(1.0)
     }
 
-    pub(super) fn span(&self) -> i64 {
-        SPANS.get(self.span).copied().unwrap_or(10_000_000_000)
+    pub(super) fn span(&self) -> Nanos {
+        SPANS.get(self.span).copied().unwrap_or(Nanos::SECOND * 10)
     }
 
     /// Makes the scans that are due. If the machine is too slow for the speed, the time runs
@@ -152,7 +152,7 @@ impl<'b> App<'b> {
         while self.runner.due() <= self.clock.now() && self.is_running() {
             if self.runner.due() > self.until {
                 self.pause(true);
-                self.message = format!("{} are over", format_time(self.until));
+                self.message = format!("{} are over", self.until.plain());
                 return;
             }
             self.one_scan();
@@ -170,7 +170,7 @@ impl<'b> App<'b> {
     }
 
     fn after(&mut self, done: Result<(), Halt>) {
-        let now = self.runner.shown().now();
+        let now = Nanos::new(self.runner.shown().now());
         self.recording.sample(now, self.bench.sample(&self.runner));
         if let Some(conflict) = self.conflicts.of(self.bench, &self.runner) {
             self.message = conflict;
@@ -181,7 +181,7 @@ impl<'b> App<'b> {
     }
 
     fn apply_script(&mut self) {
-        while self.script.last().is_some_and(|a| a.at.count() <= self.runner.due()) {
+        while self.script.last().is_some_and(|a| a.at <= self.runner.due()) {
             let Some(assign) = self.script.pop() else { return };
             let Some(item) = self.bench.item(&assign.name) else { continue };
             if let Ok(value) = values::read(&assign.value, item.kind) {
@@ -242,8 +242,8 @@ impl<'b> App<'b> {
 
     /// Moves the chronogram by a quarter of its width; left is back in time.
     pub(super) fn move_time(&mut self, by: i64) {
-        let length = self.recording.end().saturating_sub(self.recording.start());
-        self.back = (self.back - by * (self.span() / 4)).clamp(0, length.max(0));
+        let length = self.recording.end() - self.recording.start();
+        self.back = (self.back - self.span() / 4 * by).clamp(Nanos::ZERO, length.max(Nanos::ZERO));
     }
 
     pub(super) fn restart(&mut self, start: Start) {

@@ -9,7 +9,7 @@ const MOST: u16 = 32;
 const LEAST: u16 = 12;
 /// Width of the list of steps at which the other lists start to grow.
 const GOOD: u16 = 40;
-/// Room for the time of an active step: `1m23s450ms`.
+/// Room for the time of an active step: `1m23.45s`.
 const TIME: usize = 11;
 /// Room for a value, so that changing values do not move the lists.
 const VALUE: usize = 9;

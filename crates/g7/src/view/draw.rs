@@ -1,6 +1,7 @@
 //! Draws the terminal view at any size.
 
-use g7_host::{Chronogram, Kind, Style as Window, format_time};
+use g7_host::{Chronogram, Kind, Style as Window};
+use g7_model::Nanos;
 use ratatui::Frame;
 use ratatui::layout::{Constraint, Layout, Rect};
 use ratatui::style::{Color, Modifier, Style};
@@ -18,7 +19,7 @@ const FAULT: Style = Style::new().fg(Color::Red).add_modifier(Modifier::BOLD);
 pub(super) fn draw(frame: &mut Frame<'_>, app: &mut App<'_>) {
     let area = frame.area();
     if area.width < 24 || area.height < 6 {
-        let text = format!("{} - enlarge the window; q quits", format_time(app.runner.state().now()));
+        let text = format!("{} - enlarge the window; q quits", Nanos::new(app.runner.state().now()).plain());
         frame.render_widget(Paragraph::new(text), area);
         return;
     }
@@ -52,16 +53,16 @@ fn headline(app: &App<'_>) -> Line<'static> {
     Line::from(vec![
         Span::styled(word, style),
         Span::styled(format!("{}{plant}", app.title), TITLE),
-        Span::raw(format!("  {profile}  t = {}", clock(app.runner.shown().now()))),
+        Span::raw(format!("  {profile}  t = {}", clock(Nanos::new(app.runner.shown().now())))),
         Span::raw(format!("  scan {}", app.runner.state().scans())),
-        Span::raw(format!("  {} each", format_time(app.runner.period()))),
+        Span::raw(format!("  {} each", app.runner.period().plain())),
         Span::raw(format!("  ×{}", app.speed())),
     ])
 }
 
 /// The time to a hundredth of a second, so that its width stays the same.
-fn clock(ns: i64) -> String {
-    let hundredths = ns / 10_000_000;
+fn clock(time: Nanos) -> String {
+    let hundredths = time.count_of(Nanos::from_millis(10));
     let (minutes, seconds) = (hundredths / 6000, hundredths % 6000);
     if minutes > 0 {
         format!("{minutes}m{:02}.{:02}s", seconds / 100, seconds % 100)
@@ -124,10 +125,10 @@ fn draw_panel(frame: &mut Frame<'_>, app: &App<'_>, panel: Panel, area: Rect) {
 }
 
 fn draw_chronogram(frame: &mut Frame<'_>, app: &mut App<'_>, area: Rect) {
-    let title = if app.back == 0 {
+    let title = if app.back == Nanos::ZERO {
         "Chronogram".to_owned()
     } else {
-        format!("Chronogram, {} ago (End follows)", format_time(app.back))
+        format!("Chronogram, {} ago (End follows)", app.back.plain())
     };
     let block = framed(&title, false);
     let inner = block.inner(area);
@@ -139,9 +140,9 @@ fn draw_chronogram(frame: &mut Frame<'_>, app: &mut App<'_>, area: Rect) {
     let labels = shown.iter().filter_map(|i| signals.get(*i)).map(|s| s.name.chars().count().min(24));
     let label = labels.max().unwrap_or(0);
     let columns = usize::from(inner.width).saturating_sub(label + 14).max(1);
-    let to = app.recording.end().saturating_sub(app.back).max(app.span());
+    let to = (app.recording.end() - app.back).max(app.span());
     let until = app.recording.end();
-    let window = Window { columns, from: to.saturating_sub(app.span()), to, until };
+    let window = Window { columns, from: to - app.span(), to, until };
     let drawn = Chronogram::new(&app.recording, shown, window);
     let mut lines: Vec<Line<'_>> = drawn
         .lanes

@@ -2,6 +2,7 @@
 
 use crossterm::event::{KeyCode, KeyEvent, KeyEventKind, KeyModifiers};
 use g7_host::Start;
+use g7_model::Nanos;
 
 use super::app::App;
 
@@ -68,7 +69,7 @@ pub(super) fn press(app: &mut App<'_>, key: KeyEvent) {
         }
         KeyCode::Left => app.move_time(-1),
         KeyCode::Right => app.move_time(1),
-        KeyCode::End => app.back = 0,
+        KeyCode::End => app.back = Nanos::ZERO,
         KeyCode::PageUp => app.lane = app.lane.saturating_sub(4),
         KeyCode::PageDown => app.lane = app.lane.saturating_add(4),
         _ => {}

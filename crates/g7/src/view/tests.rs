@@ -9,6 +9,7 @@ use super::app::App;
 use super::{draw, keys};
 use crate::cli::{Cli, Command};
 use crate::sources::Source;
+use g7_model::Nanos;
 use g7_rig::{self as bench, Bench};
 
 const CHART: &str = "\
@@ -101,7 +102,7 @@ fn a_comma_makes_a_pass_and_shows_the_situation_in_between() {
     shows(&mut app, "■ 3");
     press(&mut app, ",");
     shows(&mut app, "the scan is done");
-    assert_eq!(app.runner.due(), 20_000_000);
+    assert_eq!(app.runner.due(), Nanos::from_millis(20));
 }
 
 #[test]
@@ -207,14 +208,14 @@ fn the_chronogram_follows_goes_back_and_zooms() {
     shows(&mut app, "Chronogram");
     shows(&mut app, "╳");
     press(&mut app, "[[[[[[[");
-    assert_eq!(app.span(), 100_000_000);
+    assert_eq!(app.span(), Nanos::from_millis(100));
     for _ in 0..50 {
         press(&mut app, ".");
     }
     app.move_time(-4);
     shows(&mut app, "100ms ago");
     app.move_time(9);
-    assert_eq!(app.back, 0);
+    assert_eq!(app.back, Nanos::ZERO);
 }
 
 const PARTS: &str = "\

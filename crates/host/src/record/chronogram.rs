@@ -1,18 +1,20 @@
 //! A recording drawn with characters: one lane for each signal over a common time axis.
 
-use super::{Kind, Recording, Signal, Value, format_time};
+use g7_model::Nanos;
+
+use super::{Kind, Recording, Signal, Value};
 
 /// The width of a chronogram and the span of time that it shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Style {
     /// Number of columns of a lane, without the label.
     pub columns: usize,
-    /// First instant shown, in nanoseconds.
-    pub from: i64,
-    /// Last instant shown, in nanoseconds.
-    pub to: i64,
+    /// First instant shown.
+    pub from: Nanos,
+    /// Last instant shown.
+    pub to: Nanos,
     /// Last instant at which values are known; columns after it stay blank.
-    pub until: i64,
+    pub until: Nanos,
 }
 
 /// The lane of one signal.
@@ -75,26 +77,26 @@ impl std::fmt::Display for Chronogram {
 
 /// The division of time into columns.
 struct Grid {
-    from: i64,
+    from: Nanos,
     span: i128,
     columns: usize,
 }
 
 impl Grid {
     fn new(style: Style) -> Grid {
-        let span = i128::from(style.to) - i128::from(style.from);
+        let span = i128::from(style.to.count()) - i128::from(style.from.count());
         Grid { from: style.from, span: span.max(1), columns: style.columns.max(1) }
     }
 
     /// The first instant of a column.
-    fn instant(&self, column: usize) -> i64 {
-        let at = i128::from(self.from) + self.span * column as i128 / self.columns as i128;
-        i64::try_from(at).unwrap_or(i64::MAX)
+    fn instant(&self, column: usize) -> Nanos {
+        let at = i128::from(self.from.count()) + self.span * column as i128 / self.columns as i128;
+        i64::try_from(at).map_or(Nanos::MAX, Nanos::new)
     }
 
     /// The column of an instant; the last column includes the end of the span.
-    fn column(&self, instant: i64) -> Option<usize> {
-        let offset = i128::from(instant) - i128::from(self.from);
+    fn column(&self, instant: Nanos) -> Option<usize> {
+        let offset = i128::from(instant.count()) - i128::from(self.from.count());
         if offset < 0 || offset > self.span {
             return None;
         }
@@ -110,12 +112,12 @@ impl Grid {
     fn axis(&self) -> String {
         let mut cells = vec![' '; self.columns];
         let step = self.tick();
-        let first = i128::from(self.from).div_euclid(step) * step;
+        let first = i128::from(self.from.count()).div_euclid(step) * step;
         let mut free = 0;
         for k in 0..=self.columns as i128 {
-            let Ok(at) = i64::try_from(first + k * step) else { break };
+            let Ok(at) = i64::try_from(first + k * step).map(Nanos::new) else { break };
             let Some(column) = self.column(at) else { continue };
-            let label: Vec<char> = std::iter::once('|').chain(format_time(at).chars()).collect();
+            let label: Vec<char> = std::iter::once('|').chain(at.plain().chars()).collect();
             if column >= free && column + label.len() <= self.columns {
                 free = column + label.len() + 1;
                 cells.splice(column..column + label.len(), label);
@@ -139,7 +141,7 @@ impl Grid {
 }
 
 fn lane(recording: &Recording, index: usize, signal: &Signal, grid: &Grid) -> Lane {
-    let end = i64::try_from(i128::from(grid.from) + grid.span).unwrap_or(i64::MAX);
+    let end = i64::try_from(i128::from(grid.from.count()) + grid.span).map_or(Nanos::MAX, Nanos::new);
     let last = recording.value_at(index, end).map_or_else(String::new, |v| v.show(signal.kind));
     let last = last.chars().map(visible).collect();
     let changes = recording.changes(index).filter(|(at, _)| *at >= grid.from && *at <= end).count();
@@ -192,7 +194,7 @@ fn first_later(recording: &Recording, index: usize, grid: &Grid, column: usize) 
 /// Draws a number as bars between the least and the greatest value shown.
 fn curve(recording: &Recording, index: usize, kind: Kind, grid: &Grid) -> (String, String) {
     let values: Vec<Option<f64>> = (0..grid.columns)
-        .map(|c| recording.value_at(index, grid.instant(c + 1) - 1).map(|v| v.number(kind)))
+        .map(|c| recording.value_at(index, grid.instant(c + 1) - Nanos::new(1)).map(|v| v.number(kind)))
         .collect();
     let finite = || values.iter().flatten().copied().filter(|x| x.is_finite());
     let (least, most) = (finite().fold(f64::INFINITY, f64::min), finite().fold(f64::NEG_INFINITY, f64::max));
@@ -262,10 +264,14 @@ mod tests {
     fn one(kind: Kind, samples: &[(i64, Value)], columns: usize, to: i64) -> Lane {
         let mut r = Recording::new(vec![Signal { group: "inputs", name: "a".into(), kind }]);
         for (at, value) in samples {
-            r.sample(*at, [value.clone()]);
+            r.sample(Nanos::new(*at), [value.clone()]);
         }
-        let mut drawn = Chronogram::new(&r, [0], Style { columns, from: 0, to, until: to });
+        let mut drawn = Chronogram::new(&r, [0], style(columns, 0, to, to));
         drawn.lanes.remove(0)
+    }
+
+    fn style(columns: usize, from: i64, to: i64, until: i64) -> Style {
+        Style { columns, from: Nanos::new(from), to: Nanos::new(to), until: Nanos::new(until) }
     }
 
     fn words(values: &[(i64, u64)]) -> Vec<(i64, Value)> {
@@ -281,9 +287,8 @@ mod tests {
     #[test]
     fn what_is_not_known_yet_is_blank() {
         let mut r = Recording::new(vec![Signal { group: "", name: "a".into(), kind: Kind::Bool }]);
-        r.sample(0, [Value::Word(1)]);
-        let style = Style { columns: 10, from: 0, to: 100, until: 40 };
-        assert_eq!(Chronogram::new(&r, [0], style).lanes[0].cells, "▔▔▔▔▔     ");
+        r.sample(Nanos::ZERO, [Value::Word(1)]);
+        assert_eq!(Chronogram::new(&r, [0], style(10, 0, 100, 40)).lanes[0].cells, "▔▔▔▔▔     ");
     }
 
     #[test]
@@ -316,8 +321,7 @@ mod tests {
     #[test]
     fn the_axis_has_round_times_that_do_not_collide() {
         let r = Recording::new(Vec::new());
-        let style = Style { columns: 60, from: 0, to: 60_000_000_000, until: 0 };
-        let axis = Chronogram::new(&r, [], style).axis;
+        let axis = Chronogram::new(&r, [], style(60, 0, 60_000_000_000, 0)).axis;
         assert_eq!(axis, format!("{:60}", "|0s            |15s           |30s           |45s"));
     }
 
@@ -325,8 +329,8 @@ mod tests {
     fn extremes_of_time_and_width_do_no_harm() {
         for (columns, from, to) in [(0, 0, 0), (1, 5, 5), (3, i64::MIN, i64::MAX), (80, 7, 3)] {
             let mut r = Recording::new(vec![Signal { group: "", name: "a".into(), kind: Kind::Bool }]);
-            r.sample(5, [Value::Word(1)]);
-            let drawn = Chronogram::new(&r, [0, 7], Style { columns, from, to, until: to });
+            r.sample(Nanos::new(5), [Value::Word(1)]);
+            let drawn = Chronogram::new(&r, [0, 7], style(columns, from, to, to));
             assert_eq!(drawn.lanes.len(), 1, "a signal that is not there has no lane");
             assert_eq!(drawn.lanes[0].cells.chars().count(), columns.max(1));
         }

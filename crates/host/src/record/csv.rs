@@ -24,7 +24,7 @@ pub fn write_csv(recording: &Recording, out: &mut dyn Write) -> io::Result<()> {
         instants.push(recording.end()); // the last row shows how long the recording lasted
     }
     for instant in instants {
-        write!(out, "{}", Nanos::new(instant).in_seconds())?;
+        write!(out, "{}", instant.in_seconds())?;
         for (i, signal) in recording.signals().iter().enumerate() {
             let value = recording.value_at(i, instant);
             write!(out, ",{}", value.map_or_else(String::new, |v| cell(v, signal.kind)))?;
@@ -63,9 +63,9 @@ mod tests {
             Signal { group: "variables", name: "t".into(), kind: Kind::Time },
         ]);
         let text = |t: &str| Value::Text(t.into());
-        r.sample(0, [Value::Word(0), text("x"), Value::Word(0)]);
-        r.sample(10_000_000, [Value::Word(1), text("y,\"z\""), Value::Word(1_500_000_000)]);
-        r.sample(20_000_000, [Value::Word(1), text("y,\"z\""), Value::Word(1_500_000_000)]);
+        r.sample(Nanos::new(0), [Value::Word(0), text("x"), Value::Word(0)]);
+        r.sample(Nanos::new(10_000_000), [Value::Word(1), text("y,\"z\""), Value::Word(1_500_000_000)]);
+        r.sample(Nanos::new(20_000_000), [Value::Word(1), text("y,\"z\""), Value::Word(1_500_000_000)]);
         let mut out = Vec::new();
         write_csv(&r, &mut out).unwrap();
         let expected = "time,a,\"say, \"\"it\"\"\",t\n0,0,x,0\n0.01,1,\"y,\"\"z\"\"\",1.5\n\

@@ -7,6 +7,8 @@ pub(crate) mod vcd;
 use std::collections::VecDeque;
 use std::sync::Arc;
 
+use g7_model::Nanos;
+
 /// How the words of a signal are to be read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
@@ -56,7 +58,7 @@ impl Value {
             Kind::Int { signed: false, .. } => w as f64,
             Kind::Real => f64::from(f32::from_bits(w as u32)),
             Kind::Lreal => f64::from_bits(w),
-            Kind::Time => w as i64 as f64 / 1e9,
+            Kind::Time => Nanos::new(w as i64).as_seconds(),
             Kind::Text => 0.0,
         }
     }
@@ -71,38 +73,10 @@ impl Value {
             (_, Kind::Int { signed: false, .. }) => w.to_string(),
             (_, Kind::Real) => f32::from_bits(w as u32).to_string(),
             (_, Kind::Lreal) => f64::from_bits(w).to_string(),
-            (_, Kind::Time) => format_time(w as i64),
+            (_, Kind::Time) => Nanos::new(w as i64).plain(),
             (_, Kind::Text) => String::new(),
         }
     }
-}
-
-/// A duration in the notation of the language: `1h30m`, `2s500ms`, `-40us`, `0s`.
-pub fn format_time(ns: i64) -> String {
-    if ns == 0 {
-        return "0s".to_owned();
-    }
-    let mut out = String::new();
-    if ns < 0 {
-        out.push('-');
-    }
-    let mut left = ns.unsigned_abs();
-    let units = [
-        (86_400_000_000_000, "d"),
-        (3_600_000_000_000, "h"),
-        (60_000_000_000, "m"),
-        (1_000_000_000, "s"),
-        (1_000_000, "ms"),
-        (1_000, "us"),
-        (1, "ns"),
-    ];
-    for (unit, name) in units {
-        if left >= unit {
-            out.push_str(&format!("{}{name}", left / unit));
-            left %= unit;
-        }
-    }
-    out
 }
 
 /// A variable or step whose values are recorded.
@@ -120,9 +94,9 @@ pub struct Signal {
 #[derive(Clone, Debug, Default)]
 pub struct Recording {
     signals: Vec<Signal>,
-    changes: Vec<VecDeque<(i64, Value)>>,
-    start: Option<i64>,
-    end: i64,
+    changes: Vec<VecDeque<(Nanos, Value)>>,
+    start: Option<Nanos>,
+    end: Nanos,
     /// Greatest number of changes kept for one signal; `None` keeps all.
     limit: Option<usize>,
 }
@@ -131,7 +105,7 @@ impl Recording {
     /// An empty recording of these signals.
     pub fn new(signals: Vec<Signal>) -> Recording {
         let changes = signals.iter().map(|_| VecDeque::new()).collect();
-        Recording { signals, changes, start: None, end: 0, limit: None }
+        Recording { signals, changes, start: None, end: Nanos::ZERO, limit: None }
     }
 
     /// Limits the number of changes kept for each signal; the oldest are dropped.
@@ -143,7 +117,7 @@ impl Recording {
 
     /// Takes the values of all signals at an instant, in the order of the signals. Only changed
     /// values are stored; a later sample at the same instant replaces the earlier one.
-    pub fn sample(&mut self, now: i64, values: impl IntoIterator<Item = Value>) {
+    pub fn sample(&mut self, now: Nanos, values: impl IntoIterator<Item = Value>) {
         self.start.get_or_insert(now);
         self.end = self.end.max(now);
         for (list, value) in self.changes.iter_mut().zip(values) {
@@ -166,7 +140,7 @@ impl Recording {
     }
 
     /// The changes of a signal, ordered by time.
-    pub fn changes(&self, signal: usize) -> impl DoubleEndedIterator<Item = &(i64, Value)> {
+    pub fn changes(&self, signal: usize) -> impl DoubleEndedIterator<Item = &(Nanos, Value)> {
         self.changes.get(signal).into_iter().flatten()
     }
 
@@ -176,24 +150,24 @@ impl Recording {
     }
 
     /// The value of a signal at an instant; `None` before its first value.
-    pub fn value_at(&self, signal: usize, instant: i64) -> Option<&Value> {
+    pub fn value_at(&self, signal: usize, instant: Nanos) -> Option<&Value> {
         let list = self.changes.get(signal)?;
         let after = list.partition_point(|(at, _)| *at <= instant);
         list.get(after.checked_sub(1)?).map(|(_, v)| v)
     }
 
     /// Instant of the first sample; 0 if there is none.
-    pub fn start(&self) -> i64 {
-        self.start.unwrap_or(0)
+    pub fn start(&self) -> Nanos {
+        self.start.unwrap_or_default()
     }
 
     /// Instant of the last sample.
-    pub fn end(&self) -> i64 {
+    pub fn end(&self) -> Nanos {
         self.end
     }
 
     /// Drops all changes after an instant.
-    pub fn truncate(&mut self, instant: i64) {
+    pub fn truncate(&mut self, instant: Nanos) {
         for list in &mut self.changes {
             while list.back().is_some_and(|(at, _)| *at > instant) {
                 list.pop_back();
@@ -213,7 +187,7 @@ impl Recording {
 
     /// A recording of some of the signals, limited to a span of time.
     #[must_use]
-    pub fn part(&self, signals: &[usize], from: i64, to: i64) -> Recording {
+    pub fn part(&self, signals: &[usize], from: Nanos, to: Nanos) -> Recording {
         let (from, to) = (from.max(self.start()), to.min(self.end));
         let there = || signals.iter().filter_map(|i| Some((self.signals.get(*i)?, *i)));
         let changes = there().map(|(_, i)| {
@@ -231,8 +205,8 @@ impl Recording {
     }
 
     /// All instants at which a signal changed, ascending and without repetition.
-    pub fn instants(&self) -> Vec<i64> {
-        let mut all: Vec<i64> = self.changes.iter().flatten().map(|(at, _)| *at).collect();
+    pub fn instants(&self) -> Vec<Nanos> {
+        let mut all: Vec<Nanos> = self.changes.iter().flatten().map(|(at, _)| *at).collect();
         all.sort_unstable();
         all.dedup();
         all
@@ -243,6 +217,10 @@ impl Recording {
 mod tests {
     use super::*;
 
+    fn at(count: i64) -> Nanos {
+        Nanos::new(count)
+    }
+
     fn bool_signal(name: &str) -> Signal {
         Signal { group: "inputs", name: name.to_owned(), kind: Kind::Bool }
     }
@@ -251,21 +229,21 @@ mod tests {
     fn only_changes_are_kept_and_values_between_them_found() {
         let mut r = Recording::new(vec![bool_signal("a")]);
         for (t, v) in [(0, 0), (10, 0), (20, 1), (30, 1), (40, 0)] {
-            r.sample(t, [Value::Word(v)]);
+            r.sample(at(t), [Value::Word(v)]);
         }
         assert_eq!(r.count(0), 3);
-        assert_eq!(r.instants(), [0, 20, 40]);
-        assert_eq!(r.value_at(0, 39), Some(&Value::Word(1)));
-        assert_eq!(r.value_at(0, -1), None);
-        assert_eq!((r.start(), r.end()), (0, 40));
+        assert_eq!(r.instants(), [0, 20, 40].map(at));
+        assert_eq!(r.value_at(0, at(39)), Some(&Value::Word(1)));
+        assert_eq!(r.value_at(0, at(-1)), None);
+        assert_eq!((r.start(), r.end()), (at(0), at(40)));
     }
 
     #[test]
     fn a_second_sample_of_an_instant_replaces_the_first() {
         let mut r = Recording::new(vec![bool_signal("a")]);
-        r.sample(0, [Value::Word(0)]);
-        r.sample(5, [Value::Word(1)]);
-        r.sample(5, [Value::Word(0)]);
+        r.sample(at(0), [Value::Word(0)]);
+        r.sample(at(5), [Value::Word(1)]);
+        r.sample(at(5), [Value::Word(0)]);
         assert_eq!(r.count(0), 1, "at 5 nothing differs from before");
     }
 
@@ -273,35 +251,27 @@ mod tests {
     fn the_limit_drops_the_oldest() {
         let mut r = Recording::new(vec![bool_signal("a")]).with_limit(2);
         for t in 0..5 {
-            r.sample(t, [Value::Word((t % 2) as u64)]);
+            r.sample(at(t), [Value::Word((t % 2) as u64)]);
         }
-        assert_eq!(r.changes(0).map(|c| c.0).collect::<Vec<_>>(), [3, 4]);
+        assert_eq!(r.changes(0).map(|c| c.0).collect::<Vec<_>>(), [3, 4].map(at));
     }
 
     #[test]
     fn a_part_begins_with_the_values_that_stand_there() {
         let mut r = Recording::new(vec![bool_signal("a"), bool_signal("b")]);
         for (t, a, b) in [(0, 0, 1), (10, 1, 1), (20, 0, 0), (30, 1, 0)] {
-            r.sample(t, [Value::Word(a), Value::Word(b)]);
+            r.sample(at(t), [Value::Word(a), Value::Word(b)]);
         }
-        let part = r.part(&[1, 0, 7], 15, 25);
+        let part = r.part(&[1, 0, 7], at(15), at(25));
         assert_eq!(part.signals().iter().map(|s| s.name.as_str()).collect::<Vec<_>>(), ["b", "a"]);
-        let of = |i| part.changes(i).map(|(t, v)| (*t, v.word())).collect::<Vec<_>>();
+        let of = |i| part.changes(i).map(|(t, v)| (t.count(), v.word())).collect::<Vec<_>>();
         assert_eq!((of(0), of(1)), (vec![(15, 1), (20, 0)], vec![(15, 1), (20, 0)]));
-        assert_eq!((part.start(), part.end()), (15, 25));
-        r.truncate(10);
-        assert_eq!((r.count(0), r.count(1), r.end()), (2, 1, 10));
+        assert_eq!((part.start(), part.end()), (at(15), at(25)));
+        r.truncate(at(10));
+        assert_eq!((r.count(0), r.count(1), r.end()), (2, 1, at(10)));
         let mut other = Recording::new(vec![bool_signal("b")]);
         other.adopt(0, &r, 1);
-        assert_eq!(other.value_at(0, 10), Some(&Value::Word(1)));
-    }
-
-    #[test]
-    fn durations_are_written_exactly() {
-        assert_eq!(format_time(5_400_000_000_000), "1h30m");
-        assert_eq!(format_time(2_500_000_000), "2s500ms");
-        assert_eq!(format_time(-40_000), "-40us");
-        assert_eq!(format_time(0), "0s");
+        assert_eq!(other.value_at(0, at(10)), Some(&Value::Word(1)));
     }
 
     #[test]

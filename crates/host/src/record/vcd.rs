@@ -4,6 +4,8 @@
 use std::collections::BTreeSet;
 use std::io::{self, Write};
 
+use g7_model::Nanos;
+
 use super::{Kind, Recording, Value};
 
 /// Writes the whole dump. The time unit is 1 us; it is 1 ns if an instant needs it.
@@ -13,15 +15,15 @@ use super::{Kind, Recording, Value};
 /// The writer fails.
 pub fn write_vcd(recording: &Recording, out: &mut dyn Write) -> io::Result<()> {
     let instants = recording.instants();
-    let micros = instants.iter().chain([&recording.end()]).all(|t| t % 1000 == 0);
-    let (unit, name) = if micros { (1000, "1 us") } else { (1, "1 ns") };
+    let micros = instants.iter().chain([&recording.end()]).all(|t| t.whole(Nanos::MICROSECOND).is_some());
+    let (unit, name) = if micros { (Nanos::MICROSECOND, "1 us") } else { (Nanos::new(1), "1 ns") };
     writeln!(out, "$version g7 $end\n$timescale {name} $end")?;
     write_scopes(recording, out)?;
     writeln!(out, "$enddefinitions $end")?;
     let mut next: Vec<_> = (0..recording.signals().len()).map(|i| recording.changes(i).peekable()).collect();
     let mut first = true;
     for instant in &instants {
-        writeln!(out, "#{}", instant / unit)?;
+        writeln!(out, "#{}", instant.count_of(unit))?;
         if first {
             writeln!(out, "$dumpvars")?;
         }
@@ -36,7 +38,7 @@ pub fn write_vcd(recording: &Recording, out: &mut dyn Write) -> io::Result<()> {
         }
     }
     if instants.last().is_some_and(|last| *last < recording.end()) {
-        writeln!(out, "#{}", recording.end() / unit)?;
+        writeln!(out, "#{}", recording.end().count_of(unit))?;
     }
     Ok(())
 }
@@ -213,9 +215,9 @@ mod tests {
             let w = Value::Word;
             [w(a), w(n as u64), w(u), w(l.to_bits()), Value::Text(s.into()), w(1), w(0)]
         };
-        r.sample(0, words(0, -1, 200, 0.5, "a b"));
-        r.sample(10_000, words(1, -1, 200, 0.25, "\\"));
-        r.sample(30_000, words(1, 5, 200, 0.25, "\\"));
+        r.sample(Nanos::new(0), words(0, -1, 200, 0.5, "a b"));
+        r.sample(Nanos::new(10_000), words(1, -1, 200, 0.25, "\\"));
+        r.sample(Nanos::new(30_000), words(1, 5, 200, 0.25, "\\"));
         let mut out = Vec::new();
         write_vcd(&r, &mut out).unwrap();
         let (scale, signals) = parse(&String::from_utf8(out).unwrap());
@@ -237,8 +239,8 @@ mod tests {
     #[test]
     fn an_instant_off_the_microsecond_brings_nanoseconds() {
         let mut r = Recording::new(vec![signal("inputs", "a", Kind::Bool)]);
-        r.sample(0, [Value::Word(0)]);
-        r.sample(1_500, [Value::Word(1)]);
+        r.sample(Nanos::new(0), [Value::Word(0)]);
+        r.sample(Nanos::new(1_500), [Value::Word(1)]);
         let mut out = Vec::new();
         write_vcd(&r, &mut out).unwrap();
         let (scale, signals) = parse(&String::from_utf8(out).unwrap());

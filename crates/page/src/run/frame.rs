@@ -3,13 +3,12 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use g7_host::{Kind, Value, read_text};
-use g7_model::Type;
+use g7_model::{Nanos, Type};
 use g7_rig::{Activity, Item, Role};
 use serde::Serialize;
 
 use super::running::Run;
 use super::sent::{Sent, Show};
-use super::times::ms;
 use crate::ids;
 
 /// A frame. Steps, transitions, signals and bindings are numbered as in [`super::start::Started`].
@@ -103,7 +102,7 @@ fn frame(run: &mut Run, full: bool, times: bool) -> Frame {
     marks.extend(sent.enabled.keys().filter(|i| !enabled.contains_key(i)).map(|i| (*i, 0)));
     let frame = Frame {
         run: run.name.clone(),
-        now_ms: ms(run.viewed.as_ref().map_or(run.now, |v| v.now)),
+        now_ms: run.viewed.as_ref().map_or(run.now, |v| v.now).as_millis(),
         scans: run.watched().state().scans(),
         passes: run.watched().report().passes,
         full,
@@ -164,7 +163,7 @@ fn step_times(run: &Run, active: &BTreeSet<u32>) -> BTreeMap<u32, f64> {
             Activity::Step(id) => state.step_age(program, id),
             Activity::Macro(group) => state.group_age(program, group),
         };
-        Some((*i, ms(ns)))
+        Some((*i, Nanos::new(ns).as_millis()))
     };
     active.iter().filter_map(time).collect()
 }
@@ -182,7 +181,7 @@ fn view(run: &mut Run) -> Vec<Show> {
             Type::String(_) => Show::Text(read_text(state.words(), word as u32)),
             Type::Real => Show::Number(rounded(f64::from(f32::from_bits(word as u32)))),
             Type::Lreal => Show::Number(rounded(f64::from_bits(word))),
-            Type::Time => Show::Number(word as i64 as f64 / 1e9),
+            Type::Time => Show::Number(Nanos::new(word as i64).as_seconds()),
             Type::Ulint => Show::Number(word as f64),
             _ => Show::Number(word as i64 as f64),
         });

@@ -1,11 +1,12 @@
 //! The recorded signals: edges for a chronogram, and export to files.
 
 use g7_host::{Kind, Recording, write_csv, write_vcd};
+use g7_model::Nanos;
 use serde::Serialize;
 
 use super::frame::shown;
 use super::running::Run;
-use super::times::{ms, ns};
+use super::times::time;
 
 /// The lanes of a chronogram.
 #[derive(Debug, Serialize)]
@@ -28,13 +29,13 @@ pub(crate) enum Form {
 impl Run {
     /// The edges of some signals between two instants, at most about `most` for each signal.
     pub(crate) fn lanes(&self, signals: &[usize], from: f64, to: f64, most: usize) -> Lanes {
-        let (from, to) = (ns(from), ns(to));
+        let (from, to) = (time(from), time(to));
         let most = most.clamp(2, 100_000);
         // One lane for each requested signal; an unknown signal has an empty lane.
         let parts = signals.iter().map(|i| self.recording.part(&[*i], from, to));
         Lanes {
-            start_ms: ms(self.recording.start()),
-            end_ms: ms(self.recording.end()),
+            start_ms: self.recording.start().as_millis(),
+            end_ms: self.recording.end().as_millis(),
             lanes: parts.map(|part| lane(&part, 0, most)).collect(),
         }
     }
@@ -49,8 +50,8 @@ impl Run {
     ) -> Result<String, String> {
         let all: Vec<usize> = (0..self.recording.signals().len()).collect();
         let signals = if signals.is_empty() { &all } else { signals };
-        let from = from.map_or(self.recording.start(), ns);
-        let to = to.map_or(self.recording.end(), ns);
+        let from = from.map_or(self.recording.start(), time);
+        let to = to.map_or(self.recording.end(), time);
         let part = self.recording.part(signals, from, to);
         let mut out = Vec::new();
         let done = match form {
@@ -91,16 +92,16 @@ fn picture(part: &Recording) -> String {
 /// last are kept.
 fn lane(part: &Recording, signal: usize, most: usize) -> Vec<(f64, f64, String)> {
     let Some(kind) = part.signals().get(signal).map(|s| s.kind) else { return Vec::new() };
-    let width = ((part.end() - part.start()) / most as i64).max(1);
+    let width = ((part.end() - part.start()) / most as i64).max(Nanos::new(1));
     let crowded = part.count(signal) > most;
-    let mut kept: Vec<&(i64, g7_host::Value)> = Vec::new();
+    let mut kept: Vec<&(Nanos, g7_host::Value)> = Vec::new();
     for edge in part.changes(signal) {
-        let slot = |e: &(i64, g7_host::Value)| e.0 / width;
+        let slot = |e: &(Nanos, g7_host::Value)| e.0.count_of(width);
         let full = kept.iter().rev().take(2).filter(|e| slot(e) == slot(edge)).count() == 2;
         if crowded && full {
             kept.pop();
         }
         kept.push(edge);
     }
-    kept.into_iter().map(|(at, v)| (ms(*at), v.number(kind), shown(v, kind))).collect()
+    kept.into_iter().map(|(at, v)| (at.as_millis(), v.number(kind), shown(v, kind))).collect()
 }

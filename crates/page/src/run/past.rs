@@ -5,6 +5,7 @@
 //! of any length.
 
 use g7_host::{Runner, Start, Value};
+use g7_model::Nanos;
 use g7_rig::Bench;
 
 /// An event from outside.
@@ -40,8 +41,8 @@ pub(super) struct Past {
     room: usize,
     entries: Vec<Entry>,
     scans: u64,
-    /// The instant of the first scan, in nanoseconds.
-    begin: i64,
+    /// The instant of the first scan.
+    begin: Nanos,
 }
 
 /// The number of scans between two copies at the start of a run.
@@ -67,7 +68,7 @@ impl Past {
     }
 
     /// The instant of the first scan.
-    pub(super) fn begin(&self) -> i64 {
+    pub(super) fn begin(&self) -> Nanos {
         self.begin
     }
 
@@ -101,10 +102,10 @@ impl Past {
     }
 
     /// The run after the last scan at or before an instant, and the number of that scan, from 1.
-    pub(super) fn at(&self, bench: &Bench, instant: i64) -> Option<(Runner, u64)> {
+    pub(super) fn at(&self, bench: &Bench, instant: Nanos) -> Option<(Runner, u64)> {
         let first = self.marks.first()?;
         let period = first.runner.period();
-        let number = instant.saturating_sub(self.begin).checked_div(period)?.saturating_add(1);
+        let number = (instant - self.begin).count_of(period).saturating_add(1);
         let target = u64::try_from(number).unwrap_or(0).clamp(1, self.scans.max(1));
         let mark = self.marks.iter().rev().find(|m| m.scans < target)?;
         let mut runner = mark.runner.clone();

@@ -8,7 +8,7 @@ use std::sync::Arc;
 
 use g7_engine::StepId;
 use g7_host::{Kind, Recording, Runner, Start as Restart, Value};
-use g7_model::Document;
+use g7_model::{Document, Nanos};
 use g7_rig::{Activity, Bench, Conflicts, Item, Role, values};
 
 use super::past::{self, Event, Past};
@@ -49,10 +49,10 @@ pub(crate) struct Run {
     pub(super) past: Past,
     /// An earlier scan that the user looks at.
     pub(super) viewed: Option<Viewed>,
-    /// The virtual time requested so far, in nanoseconds.
-    pub(super) clock: i64,
-    /// The instant of the latest scan, in nanoseconds.
-    pub(super) now: i64,
+    /// The virtual time requested so far.
+    pub(super) clock: Nanos,
+    /// The instant of the latest scan.
+    pub(super) now: Nanos,
     pub(super) recording: Recording,
     pub(super) conflicts: Conflicts,
     pub(super) notes: Vec<String>,
@@ -71,7 +71,7 @@ pub(crate) struct Run {
 pub(super) struct Viewed {
     pub(super) runner: Runner,
     pub(super) scans: u64,
-    pub(super) now: i64,
+    pub(super) now: Nanos,
 }
 
 /// The breakpoints: numbers of steps and transitions.
@@ -89,8 +89,7 @@ impl Run {
     /// Advances the virtual time, scan by scan, until a breakpoint is met.
     pub(crate) fn advance(&mut self, ms: f64, most: Option<u32>) -> Result<(), String> {
         self.only_now()?;
-        let step = if ms.is_finite() { (ms.clamp(0.0, 1e12) * 1e6) as i64 } else { 0 };
-        self.clock = self.clock.max(self.now).saturating_add(step);
+        self.clock = self.clock.max(self.now) + times::time(ms).max(Nanos::ZERO);
         self.late = false;
         let most = most.unwrap_or(SCANS).min(SCANS);
         let mut made = 0;
@@ -300,11 +299,11 @@ impl Run {
 
     /// Shows the run as it was at an instant.
     pub(crate) fn seek(&mut self, ms: f64) -> Result<(), String> {
-        let instant = times::ns(ms).max(self.past.begin());
+        let instant = times::time(ms).max(self.past.begin());
         let found = self.past.at(&self.bench, instant);
         let (runner, scans) = found.ok_or("nothing was recorded yet")?;
-        let back = i64::try_from(scans).unwrap_or(1).saturating_sub(1).saturating_mul(runner.period());
-        let now = self.past.begin().saturating_add(back);
+        let back = i64::try_from(scans).unwrap_or(1).saturating_sub(1);
+        let now = self.past.begin() + runner.period() * back;
         let last = self.past.is_last(scans);
         self.cleared.clear();
         if last {

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use g7_host::Kind;
+use g7_model::Nanos;
 use g7_rig::{Activity, Conflicts, Role, Source};
 use serde::Serialize;
 
@@ -95,8 +96,8 @@ pub(crate) fn start(source: &Source, wish: &Start) -> Result<Run, String> {
         viewed: None,
         runner,
         bench,
-        clock: 0,
-        now: 0,
+        clock: Nanos::ZERO,
+        now: Nanos::ZERO,
         conflicts: Conflicts::default(),
         notes: Vec::new(),
         cleared: Default::default(),
@@ -160,7 +161,7 @@ impl Run {
             run: self.name.clone(),
             file: self.file.clone(),
             profile: bench.compiled.unit.profile.name(),
-            period_ms: self.runner.period() as f64 / 1e6,
+            period_ms: self.runner.period().as_millis(),
             signals: bench.items.iter().map(signal).collect(),
             steps: bench.steps.iter().zip(&self.places.steps).map(step).collect(),
             transitions: self.places.transitions.iter().map(|id| TransitionRow { id: id.clone() }).collect(),

@@ -1,11 +1,8 @@
-//! Times in messages are in ms; times of the engine are in nanoseconds.
+//! Times in messages are in ms.
 
-/// Converts ms to nanoseconds.
-pub(super) fn ns(ms: f64) -> i64 {
-    if ms.is_finite() { (ms.clamp(-1e12, 1e12) * 1e6).round() as i64 } else { 0 }
-}
+use g7_model::Nanos;
 
-/// Converts nanoseconds to ms.
-pub(super) fn ms(ns: i64) -> f64 {
-    ns as f64 / 1e6
+/// The time of so many ms; no number is no time.
+pub(super) fn time(ms: f64) -> Nanos {
+    Nanos::new(if ms.is_finite() { (ms.clamp(-1e12, 1e12) * 1e6).round() as i64 } else { 0 })
 }

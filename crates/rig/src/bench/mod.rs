@@ -10,9 +10,7 @@ use std::ops::Range;
 use g7_compile::plant;
 use g7_compile::resolve::kept_by_system;
 use g7_engine::{Addr, GroupId, State, StepId};
-use g7_host::{
-    Coupling, Force, Halt, Kind, Recording, Runner, Signal, Value, format_time, read_text, write_text,
-};
+use g7_host::{Coupling, Force, Halt, Kind, Recording, Runner, Signal, Value, read_text, write_text};
 use g7_model::{Nanos, Span, Type};
 
 pub use ask::{Answer, Ask, Options};
@@ -137,9 +135,8 @@ impl Bench {
         let symbols = &self.compiled.symbols;
         let flags = symbols.s0.zip(symbols.s1);
         let kept = self.retained().map(|i| i.addr..i.addr + i.words).collect::<Vec<Range<u32>>>();
-        let mut runner = Runner::new(self.compiled.program.clone(), self.period.count())
-            .with_retained(kept)
-            .with_flags(flags);
+        let mut runner =
+            Runner::new(self.compiled.program.clone(), self.period).with_retained(kept).with_flags(flags);
         if let Some(plant) = &self.plant {
             runner = runner.with_plant(plant.compiled.program.clone(), plant.coupling.clone());
             if let Some(addr) = plant.compiled.symbols.seed {
@@ -294,7 +291,7 @@ impl Bench {
         Some(if self.compiled.unit.rules.scan_clock {
             format!("{time} scans")
         } else {
-            format_time(time / 10_000_000 * 10_000_000)
+            (Nanos::new(time / 10_000_000) * 10_000_000).plain()
         })
     }
 
@@ -416,7 +413,7 @@ impl Conflicts {
     pub fn of(&mut self, bench: &Bench, runner: &Runner) -> Option<String> {
         let addr = runner.report().conflict.filter(|a| self.0.insert(*a))?;
         let name = bench.compiled.symbols.variable_at(addr).map_or("a variable", |v| &v.name);
-        let now = format_time(runner.state().now());
+        let now = Nanos::new(runner.state().now()).plain();
         Some(format!("conflicting assignment: actions of one pass gave `{name}` different values at {now}"))
     }
 }

@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use g7_engine::eval;
-use g7_host::{Chronogram, Halt, Kind, Recording, Runner, Start, Style, Value, format_time, read_text};
+use g7_host::{Chronogram, Halt, Kind, Recording, Runner, Start, Style, Value, read_text};
 use g7_model::{Nanos, Span, Type};
 
 use super::coverage::Coverage;
@@ -172,7 +172,7 @@ impl<'b> Exec<'b, '_> {
             coverage.see(self.bench, &mut self.runner);
         }
         if let Some(recording) = &mut self.recording {
-            recording.sample(self.runner.state().now(), self.bench.sample(&self.runner));
+            recording.sample(Nanos::new(self.runner.state().now()), self.bench.sample(&self.runner));
         }
         done.map_err(Stop::Fault)?;
         self.notes.extend(self.conflicts.of(self.bench, &self.runner));
@@ -215,7 +215,7 @@ impl<'b> Exec<'b, '_> {
         let end = self.now() + within;
         while !self.holds(check)? {
             if self.now() >= end {
-                let what = format!("not true within {}", format_time(within.count()));
+                let what = format!("not true within {}", within.plain());
                 return Err(self.failed(&what, Some(check)));
             }
             self.scan()?;
@@ -355,10 +355,10 @@ impl<'b> Exec<'b, '_> {
             .collect();
         others.sort_unstable();
         let moves = |i: usize| recording.changes(i).skip(1).map(|(at, _)| *at);
-        let mut instants: Vec<i64> = others.iter().flat_map(|(_, i)| moves(*i)).collect();
+        let mut instants: Vec<Nanos> = others.iter().flat_map(|(_, i)| moves(*i)).collect();
         instants.sort_unstable_by(|a, b| b.cmp(a));
         instants.dedup();
-        let least = (self.now() - self.bench.period * 20).count();
+        let least = self.now() - self.bench.period * 20;
         let from = instants.get(12).copied().unwrap_or(recording.start()).min(least).max(recording.start());
         for (_, i) in others {
             if lanes.len() < LANES && moves(i).any(|at| at >= from) {
@@ -366,7 +366,7 @@ impl<'b> Exec<'b, '_> {
             }
         }
         // One period more, so that the last scan is visible.
-        let to = recording.end().saturating_add(self.bench.period.count());
+        let to = recording.end() + self.bench.period;
         Chronogram::new(recording, lanes, Style { columns: 60, from, to, until: to }).to_string()
     }
 }

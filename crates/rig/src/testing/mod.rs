@@ -180,7 +180,7 @@ fn one(
         defect: first.defect,
         simulated: first.simulated,
         scans: first.scans,
-        took: Nanos::new(clock.now().saturating_sub(begun)),
+        took: clock.now() - begun,
         notes: first.notes,
     }
 }
