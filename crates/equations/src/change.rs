@@ -243,48 +243,6 @@ impl Make<'_> {
         })
     }
 
-    /// The times of a step that comes on or goes off.
-    fn times_of(&mut self, step: u32, on: bool) -> Vec<Stmt> {
-        let stays = !on && self.t.rules.keep_step_time;
-        if let Some((stamp, clock)) = self.stamp(StepId(step)) {
-            let ty = self.of(stamp).map_or(Type::Time, |m| m.ty);
-            let value = match on {
-                true => clock,
-                false if stays => clock.arith(g7_engine::Arith::Sub, ty, Expr::Read(stamp)),
-                false => Expr::Const(ty, 0),
-            };
-            let mut list = vec![Stmt::Set(stamp, value)];
-            list.extend(self.clocks_of(step, stays));
-            return list;
-        }
-        self.clocks_of(step, stays)
-    }
-
-    /// The clocks of a step that comes on or goes off become 0, unless its time stays.
-    fn clocks_of(&self, step: u32, stays: bool) -> Vec<Stmt> {
-        if stays {
-            return Vec::new();
-        }
-        let whats = [(What::StepTime(StepId(step)), Type::Time), (What::StepScans(StepId(step)), Type::Lint)];
-        let known = whats.into_iter().filter_map(|(what, ty)| self.known(what).map(|m| (m, ty)));
-        known.map(|(m, ty)| Stmt::Set(m, Expr::Const(ty, 0))).collect()
-    }
-
-    /// The times of a group whose steps have changed.
-    fn group_times(&mut self, g: g7_engine::GroupId) -> Vec<Stmt> {
-        let was = Expr::Read(self.flag(What::GroupWas(g)));
-        let active = self.group_active(g);
-        let whats = [(What::GroupTime(g), Type::Time), (What::GroupScans(g), Type::Lint)];
-        let known: Vec<(MemoryId, Type)> =
-            whats.into_iter().filter_map(|(what, ty)| self.known(what).map(|m| (m, ty))).collect();
-        let zero: Vec<Stmt> = known.into_iter().map(|(m, ty)| Stmt::Set(m, Expr::Const(ty, 0))).collect();
-        let mut list = Stmt::when(active.clone().and(was.clone().negated()), zero.clone());
-        if !self.t.rules.keep_step_time {
-            list.extend(Stmt::when(was.and(active.negated()), zero));
-        }
-        list
-    }
-
     /// The condition of a qualifier no longer holds once its step is left.
     fn forget_conditions(&mut self, moving: &[u32]) -> Vec<Stmt> {
         let mut list = Vec::new();

@@ -13,7 +13,7 @@ use super::names::Names;
 
 /// Names that are not those of memories of the chart.
 const FIXED: [&str; 10] =
-    ["FIRST", "CLOCK", "LAST", "DT", "PASSES", "CHANGED", "FAULT", "OPENING", "STEPPED", "NOW"];
+    ["FIRST", "CLOCK", "LAST", "SCAN_TIME", "PASSES", "CHANGED", "FAULT", "OPENING", "STEPPED", "NOW"];
 
 /// The name of each memory.
 pub(crate) struct Memories {
@@ -251,7 +251,7 @@ impl Memories {
             }
             What::Dt | What::Opening | What::Changed | What::Stepped => {
                 let (name, note) = match memory.what {
-                    What::Dt => ("DT", "time since the scan before"),
+                    What::Dt => ("SCAN_TIME", "time since the scan before"),
                     What::Opening => ("OPENING", "the first pass of a scan"),
                     What::Changed => ("CHANGED", "something changed in this pass"),
                     _ => ("STEPPED", "a step came on before the evolution"),

@@ -141,7 +141,7 @@ impl Scan<'_> {
         vec![
             St::Title("A timer that runs on gives the time; it begins anew each hour".into()),
             call(true),
-            St::set("DT", Ex::op("-", time.clone(), Ex::var("LAST"))),
+            St::set("SCAN_TIME", Ex::op("-", time.clone(), Ex::var("LAST"))),
             St::set("LAST", time),
             St::If(over, anew, Vec::new()),
         ]
