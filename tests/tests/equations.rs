@@ -20,7 +20,7 @@ fn run(profile: ProfileName) {
     let mut seed = number("G7_SEED", 1);
     let mut sound = 0;
     while sound < scans {
-        let form = if seed % 2 == 0 { stamped } else { equations };
+        let form = if seed.is_multiple_of(2) { stamped } else { equations };
         let sample = sample(seed, profile, 50).expect("a random chart can be read");
         match agree(&sample.document, &sample.script, [form, engine]) {
             Ok(statistics) => sound += statistics.sound(),

@@ -61,7 +61,7 @@ impl WallClock {
     }
 
     fn rebase(&mut self) {
-        self.base = self.base + self.elapsed();
+        self.base += self.elapsed();
         self.since = wall();
     }
 

@@ -284,7 +284,7 @@ impl Runner {
         let late = (now - self.due).count_of(self.period);
         if late > 0 {
             self.missed = self.missed.saturating_add(late as u64);
-            self.due = self.due + self.period * late;
+            self.due += self.period * late;
         }
     }
 
