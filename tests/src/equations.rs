@@ -33,7 +33,7 @@ pub fn equations(
     changed(doc, profile, queries, |_| {}, |_| {})
 }
 
-/// The same with stamps in place of clocks for step times, as flat code has them.
+/// The same, but step times are stamps instead of clocks, as in printed code of the flat style.
 ///
 /// # Errors
 ///

@@ -1,6 +1,6 @@
 //! The engine and the equations agree, scan by scan, on random charts: on
-//! situation, outputs, variables, step times, conflicts and faults; every other chart
-//! with stamps in place of clocks, as flat code has them.
+//! situation, outputs, variables, step times, conflicts and faults; every second chart
+//! runs with stamps instead of clocks, as printed code of the flat style does.
 //!
 //! `G7_SCANS` and `G7_SEED` look longer and elsewhere, as in `agree.rs`.
 

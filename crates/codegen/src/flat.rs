@@ -342,7 +342,7 @@ fn kind(what: What) -> Option<(&'static str, Place)> {
         What::Off(step) => ("off", Step(step)),
         What::Left(step) => ("left", Step(step)),
         What::Came(step) => ("came", Step(step)),
-        // Of the kind that has no stamps.
+        // A step has a stamp for the one kind of time; only the other kind has clocks.
         What::StepTime(step) => ("age", Step(step)),
         What::StepScans(step) => ("scans", Step(step)),
         What::Clock => ("clock", Alone),

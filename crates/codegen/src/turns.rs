@@ -10,8 +10,8 @@
 //! x := next;                                  END_IF
 //! ```
 //!
-//! Few steps change in a scan, so that code of the second form stores little. In a chart
-//! of many steps, groups of them share the question whether any of them changes.
+//! Few steps change in a scan, so code of the second form stores little. In a chart of many
+//! steps, the code asks once for each group of steps whether any of them changes.
 //!
 //! # Invariants
 //!
@@ -24,12 +24,13 @@ use g7_equations::{About, Equations, Expr, MemoryId, Stmt, What};
 
 use crate::spare::{mentioned, operands, written};
 
-/// Steps that share one question whether any of them changes.
+/// Number of steps in a group; the code asks once whether any step of a group changes.
 const GROUP: usize = 8;
-/// Steps from which on they share it; a small chart is easier to read without.
+/// Least number of steps for which groups are made; the code of a small chart is easier to
+/// read without groups.
 const MANY: usize = 4 * GROUP;
 
-/// Statements with the same meaning: steps change where they change.
+/// Rewrites the statements of the pass; their meaning stays the same.
 pub(crate) fn turned(e: &mut Equations) {
     let memories = &e.memories;
     let what = |m: MemoryId| memories.get(m.0 as usize).map(|m| m.what);
@@ -65,12 +66,17 @@ struct Turn {
     next: MemoryId,
     /// The statement that sets its next value.
     set: usize,
-    /// The first statement on its change, and the one that sets the step.
+    /// The first of the statements that follow from its change.
     from: usize,
+    /// The statement that gives the step its next value, the last of them.
     at: usize,
+    /// Activates the step.
     on: Expr,
+    /// Deactivates the step, if `on` is FALSE.
     off: Expr,
+    /// Runs where the step becomes active.
     comes: Vec<Stmt>,
+    /// Runs where the step becomes inactive.
     goes: Vec<Stmt>,
 }
 
@@ -97,7 +103,7 @@ impl Turn {
     }
 }
 
-/// The statements of a pass one behind the other, and where they write.
+/// The statements of a pass in their order, and by memory the statements that write it.
 struct Pass<'l> {
     lines: &'l [Stmt],
     writes: HashMap<MemoryId, Vec<usize>>,
@@ -158,8 +164,8 @@ impl Pass<'_> {
         Some(Turn { step, next, set: *set, from, at, on, off, comes, goes })
     }
 
-    /// Turns one behind the other, with nothing between that does anything, and with
-    /// nothing among them that changes what they depend on.
+    /// Divides the turns into groups. Between the turns of a group no statement does anything,
+    /// and none of them writes what another one of the group depends on.
     fn groups(&self, turns: Vec<Turn>, most: usize) -> Vec<Vec<Turn>> {
         let mut groups: Vec<Vec<Turn>> = Vec::new();
         for turn in turns {
@@ -179,7 +185,7 @@ impl Pass<'_> {
         groups
     }
 
-    /// The statement of a group: where nothing asks for a change, no step is looked at.
+    /// One statement for a group; a group of several steps is skipped if none of them changes.
     fn together(&self, group: Vec<Turn>) -> Stmt {
         let alone = group.len() == 1;
         let any = Expr::any(group.iter().flat_map(|t| [t.on.clone(), t.off.clone()]));
@@ -198,9 +204,9 @@ impl Pass<'_> {
         }
     }
 
-    /// The turns with the flags that they raise, and those flags' statements without
-    /// them: `flag := flag OR x XOR next OR ...`. A flag that something looks at before
-    /// the step takes its value stays as it is; its steps then keep their next values.
+    /// Finds the flags that tell of a change: `flag := flag OR x XOR next OR ...`. The turn of
+    /// `x` raises the flag instead, and the statement loses that part. Nothing is changed for a
+    /// turn if a statement reads the flag before the turn.
     fn with_raises(&self, mut turns: Vec<Turn>) -> (Vec<Turn>, Vec<(usize, Stmt)>) {
         let place: HashMap<(MemoryId, MemoryId), usize> =
             turns.iter().enumerate().map(|(k, t)| ((t.step, t.next), k)).collect();
@@ -229,7 +235,7 @@ impl Pass<'_> {
         (turns, raises)
     }
 
-    /// The statements that do more with a flag than raise it.
+    /// The statements that use a flag in another way than to raise it.
     fn looks(&self, flag: MemoryId) -> Vec<usize> {
         let all = self.lines.iter().enumerate();
         let looks = all
@@ -238,7 +244,7 @@ impl Pass<'_> {
     }
 }
 
-/// A flag and what it is raised by, the flag first.
+/// The flag of a statement `flag := flag OR ...`, and all operands of its OR.
 fn raise(line: &Stmt) -> Option<(MemoryId, &[Expr])> {
     match line {
         Stmt::Set(flag, Expr::Or(list)) if list.first() == Some(&Expr::Read(*flag)) => Some((*flag, list)),
@@ -246,7 +252,7 @@ fn raise(line: &Stmt) -> Option<(MemoryId, &[Expr])> {
     }
 }
 
-/// The step and its next value, of an expression that they differ.
+/// The step and its next value, if the expression says that they differ.
 fn of_change(e: &Expr) -> Option<(MemoryId, MemoryId)> {
     match e {
         Expr::Xor(a, b) => match (&**a, &**b) {

@@ -12,8 +12,8 @@ pub enum StepTimes {
     Read,
     /// A clock for each step.
     All,
-    /// A stamp for each step ([`What::Stamp`]): nothing is added to it in each scan.
-    /// Memories then hold an absolute time; no use where states are compared.
+    /// A stamp for each step ([`What::Stamp`]), which costs nothing in a scan that does not
+    /// change the step. Memories then hold an absolute time, so states cannot be compared.
     Stamps,
 }
 
