@@ -38,6 +38,7 @@ pub mod signs;
 pub mod st;
 mod standard;
 mod terms;
+pub mod words;
 pub mod xml;
 
 use g7_model::Problem;

@@ -2,18 +2,9 @@
 
 use std::collections::{HashMap, HashSet};
 
-use crate::names::letters;
+use g7_iec::words::is_word;
 
-/// Words that one of the languages keeps for itself, and names of the standard
-/// functions and blocks.
-const TAKEN: &str = " ABS ACOS ACTION ADD AND ANDN ANY ARRAY ASIN AT ATAN BOOL BY BYTE CAL CALC CALCN CASE CD CLK CONCAT \
-CONFIGURATION CONSTANT COS CTD CTU CTUD CU D DATE DATE_AND_TIME DELETE DINT DIV DO DS DT DWORD ELSE ELSIF EN \
-ENO END_IF EQ ET EXIT EXP EXPT FALSE FIND FOR FROM FUNCTION FUNCTION_BLOCK F_EDGE F_TRIG GE GT IF IN INITIAL_STEP \
-INSERT INT INTERVAL JMP JMPC JMPCN L LD LDN LE LEFT LEN LIMIT LINT LN LOG LREAL LT LWORD MAX MID MIN MOD MOVE \
-MUL MUX N NE NEG NON_RETAIN NOT OF ON OR ORN P P0 P1 PRIORITY PROGRAM PT PV Q Q1 QD QU R R1 READ_ONLY READ_WRITE \
-REAL REPEAT REPLACE RESOURCE RET RETAIN RETC RETCN RETURN RIGHT ROL ROR RS R_EDGE R_TRIG S S1 SD SEL SEMA SHL SHR \
-SIN SINGLE SINT SL SQRT SR ST STEP STN STRING STRUCT SUB TAN TASK THEN TIME TIME_OF_DAY TO TOD TOF TON TP \
-TRANSITION TRUE TRUNC TYPE UDINT UINT ULINT UNTIL USINT VAR VAR_INPUT VAR_OUTPUT WHILE WITH WORD WSTRING XOR XORN CV ";
+use crate::names::letters;
 
 /// Names that are given once, in any case.
 #[derive(Debug, Default)]
@@ -26,8 +17,7 @@ impl Names {
     /// A variable's name.
     pub(crate) fn variable(&mut self, name: &str) -> String {
         let plain = letters(name);
-        let taken = TAKEN.contains(&format!(" {} ", plain.to_uppercase()));
-        self.once(if taken { format!("V_{plain}") } else { plain })
+        self.once(if is_word(&plain) { format!("V_{plain}") } else { plain })
     }
 
     /// A name that begins with what it is for.

@@ -8,6 +8,7 @@ use super::translate::{translate, translate_expr};
 use crate::report::Report;
 use crate::st::lex;
 use crate::st::parse::{Parser, Places};
+use crate::words::closes;
 
 /// Reads an Instruction List as the statements that do the same.
 pub fn statements(text: &str, place: Places, report: &mut Report) -> Vec<Stmt> {
@@ -68,7 +69,7 @@ impl Parser<'_> {
         let mut list = Vec::new();
         loop {
             while self.eat(";") {}
-            if self.at_end() || ends(&self.word()) {
+            if self.at_end() || closes(&self.word()) {
                 return list;
             }
             let before = self.mark();
@@ -274,10 +275,6 @@ impl Parser<'_> {
         }
         Some(Kind::Apply(name, values))
     }
-}
-
-fn ends(word: &str) -> bool {
-    word.starts_with("END_")
 }
 
 /// The most instructions behind a label that are copied to a jump.

@@ -5,6 +5,7 @@ use g7_model::{Expr, ExprKind, Literal, Name, Nanos, Path, Qualifier, Stmt};
 
 use super::unit::{Association, Instance, Part, Source, Task, Transition, Unit, UnitKind};
 use crate::st::{Kind, Parser, elementary};
+use crate::words::closes;
 
 /// Reads the whole file.
 pub(super) fn source(p: &mut Parser) -> Source {
@@ -106,7 +107,7 @@ fn unit(p: &mut Parser, kind: UnitKind, source: &mut Source) {
         if p.declarations(&source.types, &mut unit.vars) || part(p, &mut unit) {
             continue;
         }
-        if p.at_end() || p.word().starts_with("END_") {
+        if p.at_end() || closes(&p.word()) {
             break;
         }
         body(p, &mut unit);
@@ -115,7 +116,7 @@ fn unit(p: &mut Parser, kind: UnitKind, source: &mut Source) {
             p.bump();
         }
     }
-    if p.word() != closing && p.word().starts_with("END_") && !p.at_end() {
+    if p.word() != closing && closes(&p.word()) && !p.at_end() {
         p.expected(&format!("`{closing}`"));
         p.skip_to(&[closing, "PROGRAM", "FUNCTION_BLOCK", "FUNCTION", "CONFIGURATION"]);
         p.eat_word(closing);

@@ -5,6 +5,7 @@ use g7_model::{Arg, CaseArm, Expr, ExprKind, Literal, Path, Stmt, StmtKind};
 
 use super::lex::Kind;
 use super::parse::Parser;
+use crate::words::closes;
 
 impl Parser<'_> {
     /// Reads statements up to a word that ends them or the end of the text.
@@ -50,7 +51,7 @@ impl Parser<'_> {
     fn closed(&self) -> bool {
         let before = self.text.get(..self.behind()).unwrap_or("");
         let word = before.rsplit(|c: char| !c.is_alphanumeric() && c != '_').next().unwrap_or("");
-        word.to_ascii_uppercase().starts_with("END_")
+        closes(word)
     }
 
     fn statement(&mut self, list: &mut Vec<Stmt>) {
@@ -228,12 +229,11 @@ impl Parser<'_> {
     fn simple(&mut self, list: &mut Vec<Stmt>) {
         let start = self.token().start;
         if self.token().kind == Kind::Word && self.ahead_is(1, "(") {
-            let upper = self.word();
             let name = self.name("a function block");
             let args = self.args();
             self.end_statement();
             let Some(name) = name else { return };
-            if name.text.eq_ignore_ascii_case("SUPER") || upper.starts_with("END_") {
+            if name.text.eq_ignore_ascii_case("SUPER") || closes(&name.text) {
                 return;
             }
             let kind = StmtKind::Call(Path { names: vec![name] }, args.list);
@@ -320,7 +320,7 @@ impl Parser<'_> {
 
 /// Words that end a list of statements.
 fn ends(word: &str) -> bool {
-    matches!(word, "ELSE" | "ELSIF" | "UNTIL" | "VAR_GLOBAL") || word.starts_with("END_")
+    matches!(word, "ELSE" | "ELSIF" | "UNTIL" | "VAR_GLOBAL") || closes(word)
 }
 
 /// Words that end a list if a name follows; elsewhere they are names.

@@ -8,20 +8,6 @@ use g7_model::{Name, Span};
 use super::scopes::{Scopes, StepKey};
 use crate::nodes::Taken;
 
-/// The words of the language, its standard functions and function blocks. Operators of Instruction
-/// List and qualifiers are missing, because they have a meaning only in their own places.
-const RESERVED: &str = "ABS ACOS ACTION ADD AND ANY ANY_BIT ANY_DATE ANY_INT ANY_NUM ANY_REAL ARRAY ASIN AT ATAN BOOL BY \
-BYTE CASE CONCAT CONFIGURATION CONSTANT COS CTD CTU CTUD DATE DATE_AND_TIME DELETE DINT DIV DO DT \
-DWORD ELSE ELSIF END_ACTION END_CASE END_CONFIGURATION END_FOR END_FUNCTION END_FUNCTION_BLOCK \
-END_IF END_PROGRAM END_REPEAT END_RESOURCE END_STEP END_STRUCT END_TRANSITION END_TYPE END_VAR \
-END_WHILE EN ENO EQ EXIT EXP EXPT F_EDGE F_TRIG FALSE FIND FOR FROM FUNCTION FUNCTION_BLOCK GE GT IF \
-INITIAL_STEP INSERT INT LE LEFT LEN LIMIT LINT LN LOG LREAL LT LWORD MAX MID MIN MOD MOVE MUL MUX NE \
-NON_RETAIN NOT OF ON OR PROGRAM R_TRIG READ_ONLY READ_WRITE REAL REPEAT REPLACE RESOURCE RETAIN \
-RETURN RIGHT ROL ROR RS SEL SHL SHR SIN SINT SQRT SR STEP STRING STRUCT SUB TAN TASK THEN TIME \
-TIME_OF_DAY TO TOD TOF TON TP TRANSITION TRUE TRUNC TYPE UDINT UINT ULINT UNTIL USINT VAR VAR_ACCESS \
-VAR_CONFIG VAR_EXTERNAL VAR_GLOBAL VAR_IN_OUT VAR_INPUT VAR_OUTPUT VAR_TEMP WHILE WITH WORD WSTRING \
-XOR";
-
 /// The names given so far.
 pub(super) struct Names {
     reserved: HashSet<&'static str>,
@@ -48,7 +34,7 @@ pub(super) type Owner = Option<usize>;
 impl Names {
     pub(super) fn new(programs: usize) -> Names {
         Names {
-            reserved: RESERVED.split_whitespace().collect(),
+            reserved: crate::words::everywhere().collect(),
             global: HashSet::new(),
             programs: vec![HashSet::new(); programs],
             vars: HashMap::new(),
