@@ -92,11 +92,15 @@ impl Gen<'_> {
                 several => format!("{} to {}", path(several.first()), path(several.last())),
             };
             all.sort_unstable_by_key(|(addr, _)| *addr);
-            let each = all.into_iter().flat_map(|(addr, step)| {
+            let mut body = Block::new();
+            for (addr, step) in all {
                 let active = self.active(step);
-                self.assign(addr, Type::Bool, |_| active)
-            });
-            arms.push(Arm { label: Expr::size(group), note, body: each.collect() });
+                body.extend(self.assign(addr, Type::Bool, |_| active));
+                if let Some(slot) = self.vars.slot(addr).filter(|s| matches!(s.shape, Shape::One(_))) {
+                    self.m.followers.insert(slot.field.clone());
+                }
+            }
+            arms.push(Arm { label: Expr::size(group), note, body });
         }
         let body = match arms.as_mut_slice() {
             [one] => std::mem::take(&mut one.body),
