@@ -84,6 +84,19 @@ fn cases_in_rust() {
     agree("cases", "rustc", Style::Flat, &some(&subjects, 3, 4));
 }
 
+/// Sets of steps of many words, and choices that stand in several functions.
+#[test]
+fn wide_charts() {
+    let profiles = [ProfileName::Iec61131, ProfileName::Iec60848];
+    let each = profiles.into_iter().flat_map(|p| [(p, false), (p, true)]);
+    let subjects: Vec<Subject> =
+        each.map(|(p, stored)| cases::wide(p, 450, stored).unwrap_or_else(|e| panic!("{e}"))).collect();
+    let all: Vec<&Subject> = subjects.iter().collect();
+    assert!(all.iter().map(|s| s.sound).sum::<usize>() > 2_500, "the charts run");
+    agree("wide", "gcc", Style::Structured, &all);
+    agree("wide", "rustc", Style::Structured, &some(&subjects, 0, 4));
+}
+
 fn random_charts(profile: ProfileName) {
     let scans = number("G7_SCANS").unwrap_or(2_000) as usize;
     let subjects = random(profile, scans, (scans / 4).clamp(1, 2_000));

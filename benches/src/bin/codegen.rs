@@ -20,15 +20,14 @@ const HARNESS: &str = r#"
 static uint64_t ns(void) { struct timespec t; clock_gettime(CLOCK_MONOTONIC, &t);
   return (uint64_t)t.tv_sec * 1000000000u + (uint64_t)t.tv_nsec; }
 static chart_state s;
-static chart_inputs in;
 static chart_outputs out;
 static int64_t now;
-static void tick(void) { now += 1000000; if (chart_scan(&in, &out, &s, now)) { printf("fault\n"); } }
+static void tick(void) { now += 1000000; if (SCAN) { printf("fault\n"); } }
 int main(void) {
   chart_init(&s);
   uint64_t h = 14695981039346656037u;
-  if (FIRST) { in.go = false; tick(); }
-  in.go = true;
+  if (FIRST) { s.inputs.go = false; tick(); }
+  s.inputs.go = true;
   for (int k = 0; k < LOOKED_AT; k++) {
     tick();
     for (uint32_t i = 0; i < STEPS; i++) if (chart_is_active(&s, i)) { h ^= (uint64_t)i; h *= 1099511628211u; }
@@ -36,7 +35,7 @@ int main(void) {
   }
   double best[2];
   for (int go = 1; go >= 0; go--) {
-    in.go = go; best[go] = 1e18;
+    s.inputs.go = go; best[go] = 1e18;
     for (int r = 0; r < 9; r++) {
       uint64_t a = ns();
       for (int k = 0; k < SCANS; k++) tick();
@@ -49,9 +48,15 @@ int main(void) {
 }
 "#;
 
+/// One scan on the inputs and outputs of the state.
+const IN_PLACE: &str = "((void)out, chart_scan_in_place(&s, now))";
+/// One scan that copies them.
+const COPIED: &str = "(chart_scan(&s.inputs, &out, &s, now))";
+
 fn main() {
     let quick = std::env::args().any(|a| a == "--quick");
     let flat = std::env::args().any(|a| a == "--flat");
+    let copied = std::env::args().any(|a| a == "--copied");
     let style = if flat { Style::Flat } else { Style::Structured };
     let peer = Matiec::find();
     if peer.is_none() {
@@ -67,7 +72,7 @@ fn main() {
     let folder = std::env::temp_dir().join(format!("g7-gen-{}", std::process::id()));
     for shape in small.into_iter().chain(large.into_iter().filter(|_| !quick)) {
         let place = folder.join(shape.name().replace(' ', "-"));
-        let ours = match ours(&place.join("g7"), shape, style) {
+        let ours = match ours(&place.join("g7"), shape, style, copied) {
             Ok(m) => m,
             Err(why) => {
                 println!("{:<16}  {why}", shape.name());
@@ -92,7 +97,7 @@ fn main() {
 }
 
 /// Generates, compiles and times one chart in a folder of its own.
-fn ours(folder: &Path, shape: Shape, style: Style) -> Result<Measured, String> {
+fn ours(folder: &Path, shape: Shape, style: Style, copied: bool) -> Result<Measured, String> {
     let text = shape.g7();
     let (doc, _) = g7_syntax::parse(&text, FileId(0));
     let (compiled, problems) = g7_compile::compile(&doc);
@@ -108,6 +113,7 @@ fn ours(folder: &Path, shape: Shape, style: Style) -> Result<Measured, String> {
     let harness = HARNESS
         .replace("LOOKED_AT", &LOOKED_AT.to_string())
         .replace("SCANS", &scans.to_string())
+        .replace("(SCAN)", if copied { COPIED } else { IN_PLACE })
         .replace("STEPS", &shape.steps().to_string())
         .replace("FIRST", if shape.forks() { "1" } else { "0" });
     std::fs::write(folder.join("main.c"), harness).map_err(io)?;

@@ -1,7 +1,7 @@
 //! From the engine's tables to the tree: what of the runtime a program needs,
 //! and the functions that only it has.
 
-use std::collections::HashMap;
+use std::collections::{BTreeMap, HashMap};
 
 use g7_compile::Compiled;
 use g7_engine::{Addr, Code, NONE, Num, Receptivity, Rows, StepId, Tables};
@@ -11,8 +11,15 @@ use g7_model::{Problem, Span, Type, codes};
 use crate::body::{self, Code as Translated};
 use crate::names::Names;
 use crate::runtime::{self, Facts};
-use crate::tree::{Arm, Block, Expr, Function, Module, Numbers, Stmt, Struct, Ty};
+use crate::tree::{Arm, Bin, Block, Expr, Function, Module, Numbers, Stmt, Struct, Ty};
 use crate::vars::{Home, Vars, num};
+
+/// Arms up to which a choice is one function: compilers take more than their share of time for
+/// longer ones.
+const LONG: usize = 400;
+
+/// The arms of a longer choice stand in functions, one for so many bits of the number.
+const PART: usize = 7;
 
 /// The work in hand.
 pub(crate) struct Gen<'a> {
@@ -225,9 +232,50 @@ impl<'a> Gen<'a> {
 
     /// A function that does something for one of many numbers.
     pub(crate) fn choice(&mut self, name: &str, note: &str, of: &str, arms: Vec<Arm>) {
+        self.choose(name, note, of, None, arms);
+    }
+
+    /// The same with a value, which is FALSE for a number that has no arm.
+    pub(crate) fn question(&mut self, name: &str, note: &str, of: &str, arms: Vec<Arm>) {
+        self.choose(name, note, of, Some(Ty::Bool), arms);
+    }
+
+    fn choose(&mut self, name: &str, note: &str, of: &str, result: Option<Ty>, arms: Vec<Arm>) {
+        if arms.len() <= LONG {
+            self.one_of(name, note, Expr::name(of), of, result, arms);
+            return;
+        }
+        let names = self.steps.iter().enumerate().chain(self.transitions.iter().enumerate());
+        let numbers: HashMap<String, usize> = names.map(|(i, name)| (name.clone(), i)).collect();
+        let mut parts: BTreeMap<usize, Vec<Arm>> = BTreeMap::new();
+        for arm in arms {
+            let number = match &arm.label {
+                Expr::Name(name) => numbers.get(name).copied().unwrap_or(0),
+                Expr::Int(n, _) => *n as usize,
+                _ => 0,
+            };
+            parts.entry(number >> PART).or_default().push(arm);
+        }
+        let mut all = Vec::new();
+        for (part, arms) in parts {
+            let name = format!("{name}_part_{part}");
+            self.one_of(&name, "", Expr::name(of), of, result.clone(), arms);
+            let call = Expr::call(name, vec![s(), Expr::name(of)]);
+            let body = vec![if result.is_some() { Stmt::Return(Some(call)) } else { Stmt::Do(call) }];
+            all.push(Arm { label: Expr::size(part), note: String::new(), body });
+        }
+        let part = Expr::name(of).bin(Bin::Shr, Expr::size(PART));
+        self.one_of(name, note, part, of, result, all);
+    }
+
+    fn one_of(&mut self, name: &str, note: &str, by: Expr, of: &str, result: Option<Ty>, arms: Vec<Arm>) {
         let parameters = vec![state(), (of.to_owned(), Ty::Size)];
-        let body = vec![Stmt::Match(Expr::name(of), arms)];
-        self.function(name, note, parameters, body);
+        let mut body = vec![Stmt::Match(by, arms)];
+        if result.is_some() {
+            body.push(Stmt::Return(Some(Expr::Bool(false))));
+        }
+        let (note, name) = (note.to_owned(), name.to_owned());
+        self.m.functions.push(Function { public: false, note, name, parameters, result, body });
     }
 
     /// Everything of the structured style: what is this chart's own, and the runtime

@@ -1,15 +1,18 @@
 //! The functions that only one chart has: its transitions, what its steps bring,
 //! its edges, its sections.
 
-use std::collections::HashMap;
+use std::collections::{BTreeMap, HashMap};
 
 use g7_engine::{Addr, NONE, Num, Rows, Situation, StepId, Tables};
 use g7_model::Type;
 
 use crate::build::{Gen, memory, s, state};
 use crate::facts::counts;
-use crate::tree::{Arm, Bin, Block, Const, Expr, Function, Known, Stmt, Ty};
+use crate::tree::{Arm, Bin, Block, Const, Expr, Known, Stmt, Ty};
 use crate::vars::{Shape, members};
+
+/// Steps in a word of a set of steps.
+const WORD: usize = 32;
 
 /// `set[field]` gets or loses a member.
 fn member(field: &str, row: u32, on: bool) -> Stmt {
@@ -62,14 +65,7 @@ impl Gen<'_> {
         let shared = arms.len() < when.len();
         self.facts.same_receptivities = shared;
         self.facts.guards_fail = some_fail;
-        self.m.functions.push(Function {
-            public: false,
-            note: "Whether the receptivity of a transition is true.".into(),
-            name: "receptivity".into(),
-            parameters: vec![state(), ("transition".into(), Ty::Size)],
-            result: Some(Ty::Bool),
-            body: vec![Stmt::Match(Expr::name("transition"), arms), Stmt::Return(Some(Expr::Bool(false)))],
-        });
+        self.question("receptivity", "Whether the receptivity of a transition is true.", "transition", arms);
         let note = "Transitions that wait for the same: the first of them.";
         let rows = when.iter().map(|t| vec![self.transition(*t)]).collect();
         let notes = self.transition_notes();
@@ -80,19 +76,38 @@ impl Gen<'_> {
         (0..self.t.transitions.len() as u32).map(|i| self.transition_note(i)).collect()
     }
 
-    /// Outputs that follow one step each.
+    /// Outputs that follow one step each, for all steps of a word: a compiler makes few
+    /// copies of neighbours, and a large chart has a case for each word that changed.
     fn followers(&mut self) {
         let t = self.t;
-        let mut all: Vec<(u32, StepId)> =
-            (0u32..).zip(&t.steps).map(|(i, s)| (s.direct.0, StepId(i))).collect();
-        all.retain(|(addr, _)| *addr != NONE);
-        all.sort_unstable_by_key(|(addr, _)| *addr);
-        let each = all.into_iter().flat_map(|(addr, step)| {
-            let active = self.active(step);
-            self.assign(addr, Type::Bool, |_| active)
-        });
-        let body = each.collect();
-        self.function("follow", "Outputs that follow a step.", vec![state()], body);
+        let mut groups: BTreeMap<usize, Vec<(u32, StepId)>> = BTreeMap::new();
+        for (i, step) in (0u32..).zip(&t.steps).filter(|(_, step)| step.direct.0 != NONE) {
+            groups.entry(i as usize / WORD).or_default().push((step.direct.0, StepId(i)));
+        }
+        let mut arms = Vec::new();
+        for (group, mut all) in groups {
+            let path = |of: Option<&(u32, StepId)>| of.map_or("", |of| self.c.symbols.step_path(of.1));
+            let note = match all.as_slice() {
+                [one] => path(Some(one)).to_owned(),
+                several => format!("{} to {}", path(several.first()), path(several.last())),
+            };
+            all.sort_unstable_by_key(|(addr, _)| *addr);
+            let mut body = Block::new();
+            for (addr, step) in all {
+                let active = self.active(step);
+                body.extend(self.assign(addr, Type::Bool, |_| active));
+                if let Some(slot) = self.vars.slot(addr).filter(|s| matches!(s.shape, Shape::One(_))) {
+                    self.m.followers.insert(slot.field.clone());
+                }
+            }
+            arms.push(Arm { label: Expr::size(group), note, body });
+        }
+        let body = match arms.as_mut_slice() {
+            [one] => std::mem::take(&mut one.body),
+            _ => vec![Stmt::Match(Expr::name("word"), arms)],
+        };
+        let parameters = vec![state(), ("word".into(), Ty::Size)];
+        self.function("follow", "Outputs that follow a step, for 32 steps.", parameters, body);
     }
 
     /// The parts that come and go with the activity of a step.

@@ -26,6 +26,7 @@ pub(crate) fn of(t: &Tables) -> Facts {
     let full = t.blocks.iter().filter(|b| !b.plain).count();
     let conditional =
         t.contributions.iter().filter(|c| !c.condition.is_empty() || !c.time.is_empty()).count();
+    let looks_early = r.late_actions && (conditional > 0 || full > 0);
     let shared = t.transitions.iter().any(|x| {
         let settled = if r.multi_token { x.priority == NONE } else { x.simple };
         x.shares && !settled
@@ -85,6 +86,11 @@ pub(crate) fn of(t: &Tables) -> Facts {
         has_contests: shared,
         has_joins: t.transitions.iter().any(|x| !x.more_from.is_empty()),
         one_to_one: t.transitions.iter().all(single),
+        bare: !(hierarchy || stored || lists || clearing || r.sequential)
+            && t.orders.is_empty()
+            && t.group_lists.is_empty()
+            && t.drops.is_empty(),
+        one_word: words(steps) == 1,
         has_settled: settled && t.transitions.iter().any(|x| x.simple),
         same_receptivities: false,
         has_followers: t.steps.iter().any(|s| s.direct.0 != NONE),
@@ -108,8 +114,8 @@ pub(crate) fn of(t: &Tables) -> Facts {
         has_on: on,
         looks_back: t.code.iter().any(|op| matches!(op, Op::WasActive(_))),
         comes_and_goes,
-        notes_steps: comes_and_goes || r.late_actions,
-        looks_early: r.late_actions && (conditional > 0 || full > 0),
+        notes_steps: comes_and_goes || looks_early,
+        looks_early,
         guards_fail: true,
         has_outs: !t.outs.is_empty(),
 

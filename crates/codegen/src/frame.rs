@@ -165,7 +165,8 @@ fn text_given(place: &Expr, words: &[u64], cap: u16) -> Block {
     bytes.iter().enumerate().filter(|(_, b)| **b != 0).map(set).collect()
 }
 
-/// Functions that compare structures, where some are called.
+/// Functions that compare structures, where some are called. Steps are compared anyway, so
+/// what follows them is not.
 pub(crate) fn comparisons(m: &mut Module) {
     let called = |m: &Module, f: &str| {
         let mut found = false;
@@ -181,7 +182,9 @@ pub(crate) fn comparisons(m: &mut Module) {
     for (f, name) in wanted.into_iter().filter(|(f, _)| called(m, f)) {
         let Some(of) = m.structs.iter().find(|s| s.name == name) else { continue };
         let mut body = Block::new();
-        for field in &of.fields {
+        // A field of the memory may have the name of an output.
+        let follows = |name: &str| of.name != "Memory" && m.followers.contains(name);
+        for field in of.fields.iter().filter(|f| !follows(&f.name)) {
             let (a, b) =
                 (Expr::name("a").field(field.name.clone()), Expr::name("b").field(field.name.clone()));
             body.extend(same(m, &field.ty, a, b, 0));

@@ -59,6 +59,80 @@ fn without_idle(body: &mut Vec<Stmt>, idle: &HashSet<String>) {
     }
 }
 
+/// Every statement, those within others included.
+fn each_statement<'a>(body: &'a [Stmt], f: &mut dyn FnMut(&'a Stmt)) {
+    for s in body {
+        f(s);
+        match s {
+            Stmt::If(_, a, b) => {
+                each_statement(a, f);
+                each_statement(b, f);
+            }
+            Stmt::While(_, body) | Stmt::For(_, _, _, body) => each_statement(body, f),
+            Stmt::Match(_, arms) => arms.iter().for_each(|a| each_statement(&a.body, f)),
+            _ => {}
+        }
+    }
+}
+
+/// The field of the state that a statement writes and does nothing else.
+fn written(s: &Stmt) -> Option<&str> {
+    let Stmt::Assign(_, Expr::Field(of, field), value) = s else { return None };
+    (**of == Expr::name("s") && is_free(value)).then_some(field)
+}
+
+/// True if nothing happens as an expression is evaluated.
+fn is_free(e: &Expr) -> bool {
+    let mut free = true;
+    e.walk(&mut |e| free &= !matches!(e, Expr::Call(f, _) if f != "since"));
+    free
+}
+
+/// Fields of the runtime's state that are written and never read; what callers look at is a structure.
+fn unread(m: &Module) -> HashSet<String> {
+    let mut uses: HashMap<&str, isize> = HashMap::new();
+    for s in m.structs.iter().filter(|s| s.name == "State") {
+        let own = |f: &&crate::tree::Field| !f.kept && !matches!(f.ty, Ty::Named(_));
+        uses.extend(s.fields.iter().filter(own).map(|f| (f.name.as_str(), 0)));
+    }
+    for f in &m.functions {
+        for s in &f.body {
+            s.walk(&mut |e| {
+                if let Expr::Field(_, field) = e
+                    && let Some(n) = uses.get_mut(field.as_str())
+                {
+                    *n += 1;
+                }
+            });
+        }
+        each_statement(&f.body, &mut |s| {
+            if let Some(n) = written(s).and_then(|field| uses.get_mut(field)) {
+                *n -= 1;
+            }
+        });
+    }
+    uses.into_iter().filter(|(_, n)| *n == 0).map(|(field, _)| field.to_owned()).collect()
+}
+
+/// Takes out what writes these fields, and conditions that nothing depends on any more.
+fn without_writes(body: &mut Vec<Stmt>, fields: &HashSet<String>) {
+    for s in body.iter_mut() {
+        match s {
+            Stmt::If(_, a, b) => {
+                without_writes(a, fields);
+                without_writes(b, fields);
+            }
+            Stmt::While(_, body) | Stmt::For(_, _, _, body) => without_writes(body, fields),
+            Stmt::Match(_, arms) => arms.iter_mut().for_each(|a| without_writes(&mut a.body, fields)),
+            _ => {}
+        }
+    }
+    body.retain(|s| match s {
+        Stmt::If(c, a, b) => !(a.is_empty() && b.is_empty() && is_free(c)),
+        _ => written(s).is_none_or(|field| !fields.contains(field)),
+    });
+}
+
 /// Leaves in a module only the items that its public functions reach.
 /// Tells the functions that are called and not there: those of the language's own part.
 pub(crate) fn prune(m: &mut Module) -> BTreeSet<String> {
@@ -74,8 +148,13 @@ pub(crate) fn prune(m: &mut Module) -> BTreeSet<String> {
         }
     }
     // Comparisons are made of the fields that are left.
-    let (functions, _, fields, _) = reach(m);
+    let (functions, _, _, _) = reach(m);
     m.functions.retain(|f| functions.contains(&f.name));
+    let unread = unread(m);
+    for f in &mut m.functions {
+        without_writes(&mut f.body, &unread);
+    }
+    let (_, _, fields, _) = reach(m);
     keep_fields(m, &fields);
     crate::frame::comparisons(m);
     let (functions, names, fields, helpers) = reach(m);

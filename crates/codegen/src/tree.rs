@@ -4,6 +4,8 @@
 //! functions, `if`, `while`, choice by number. No pointers but to a structure or
 //! an array that is passed on, no recursion, no heap.
 
+use std::collections::HashSet;
+
 /// A type.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Ty {
@@ -363,6 +365,8 @@ pub(crate) struct Numbers {
 /// All of it, in the order in which it is printed.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Module {
+    /// Fields of variables that say what steps say: where steps are the same, so are they.
+    pub(crate) followers: HashSet<String>,
     pub(crate) numbers: Vec<Numbers>,
     pub(crate) structs: Vec<Struct>,
     pub(crate) consts: Vec<Const>,

@@ -136,6 +136,52 @@ fn steps_of_a_large_chart_share_the_question_whether_any_changes() {
     assert_eq!((shared(5), shared(39)), (0, 5));
 }
 
+/// A ring of so many steps, each with an output and a receptivity of its own.
+fn ring(n: usize) -> String {
+    let mut text = String::from("profile iec60848\ninput a : INT\n");
+    (0..n).for_each(|i| text += &format!("output q{i} : BOOL\n"));
+    text += "chart G {\n";
+    for i in 0..n {
+        let word = if i == 0 { "initial step" } else { "step" };
+        text += &format!("  {word} {i} {{ N q{i} }}\n  {i} -> {} when a = {i}\n", (i + 1) % n);
+    }
+    text + "}\n"
+}
+
+#[test]
+fn outputs_follow_the_steps_of_a_word() {
+    let c = |n| file(&printed(&ring(n), Language::C).expect("it can be printed"), "tank.c");
+    let (few, many) = (c(32), c(70));
+    assert!(!few.contains("switch (word)") && !few.contains("top["), "{few}");
+    let cases = many.split_once("switch (word) {").and_then(|(_, r)| r.split_once("default:"));
+    assert_eq!(cases.map(|(cases, _)| cases.matches("case ").count()), Some(3));
+    assert!(many.contains("s->outputs.q69 = s->m.x[TANK_STEP_69];"), "{many}");
+    // Where the steps are the same, the outputs that follow them are.
+    assert!(many.contains("same_outputs(") && !many.contains("a->q1 "), "{many}");
+}
+
+#[test]
+fn a_long_choice_stands_in_several_functions() {
+    let c = |n| file(&printed(&ring(n), Language::C).expect("it can be printed"), "tank.c");
+    assert!(!c(400).contains("receptivity_part"));
+    let long = c(401);
+    for want in
+        ["return receptivity_part_3(s, transition);", "bool receptivity_part_0(", "switch (transition >> 7)"]
+    {
+        assert!(long.contains(want), "no `{want}`");
+    }
+}
+
+#[test]
+fn what_nothing_reads_is_left_out() {
+    let text = file(&printed(TANK, Language::C).expect("it can be printed"), "tank.c");
+    assert!(!text.contains("->scans") && !text.contains("->work") && !text.contains("->dt"), "{text}");
+    let uses =
+        TANK.replace("input full", "input work : BOOL\ninput full").replace("not full", "not full and work");
+    let text = file(&printed(&uses, Language::C).expect("it can be printed"), "tank.c");
+    assert!(text.contains("s->inputs.work"), "an input with such a name stays: {text}");
+}
+
 #[test]
 fn what_c_cannot_say_is_refused() {
     let text = "profile iec60848\noutput t : STRING(20)\nvar x : REAL\nchart G {\n  initial step 1 { P1 t := REAL_TO_STRING(x) }\n}\n";

@@ -54,6 +54,10 @@ pub const HAS_CONTESTS: bool = false;
 pub const HAS_JOINS: bool = false;
 /// Each transition has one step before it and one behind.
 pub const ONE_TO_ONE: bool = false;
+/// Steps change as their transitions clear: nothing asks which changes come together.
+pub const BARE: bool = false;
+/// One word holds the set of all steps.
+pub const ONE_WORD: bool = false;
 /// Behind a step, a transition that clears ends the search.
 pub const HAS_SETTLED: bool = false;
 /// Several transitions have the same receptivity.
@@ -223,8 +227,8 @@ pub fn start<S>(_: &mut S) {}
 pub fn receptivity<S>(_: &mut S, _transition: usize) -> bool {
     false
 }
-/// Outputs that follow a step.
-pub fn follow<S>(_: &mut S) {}
+/// Outputs that follow a step, for all steps of a word.
+pub fn follow<S>(_: &mut S, _word: usize) {}
 /// The parts that come with a step.
 pub fn step_on<S>(_: &mut S, _step: usize) {}
 /// The parts that go with a step.

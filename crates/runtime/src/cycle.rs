@@ -51,18 +51,31 @@ pub(crate) fn came_back(s: &State) -> bool {
         && same_outputs(&s.outputs, &s.saved_outputs)
 }
 
+/// True if a scan can be made: no fault has stopped the chart, and time does not go back.
+pub(crate) fn can_scan(s: &State, now: i64) -> bool {
+    s.fault == 0 && (!s.started || now >= s.now)
+}
+
 /// One scan. `now` never goes back; it is in nanoseconds. Tells a fault by its
 /// number, FAULT_NONE where there is none; after a fault the outputs have their
 /// safe values, and no further scan is made before `init` or `restart`.
 pub fn scan(input: &Inputs, out: &mut Outputs, s: &mut State, now: i64) -> u8 {
+    if can_scan(s, now) {
+        s.inputs = *input;
+    }
+    let fault: u8 = scan_in_place(s, now);
+    *out = s.outputs;
+    fault
+}
+
+/// As `scan`, with the inputs and outputs that stand in the state: of many, none is copied.
+pub fn scan_in_place(s: &mut State, now: i64) -> u8 {
     if s.fault != 0 {
-        *out = s.outputs;
         return FAULT_STOPPED;
     }
     if s.started && now < s.now {
         s.fault = FAULT_INPUTS;
     } else {
-        s.inputs = *input;
         begin(s, now);
         if s.fault == 0 {
             evolve(s);
@@ -74,6 +87,5 @@ pub fn scan(input: &Inputs, out: &mut Outputs, s: &mut State, now: i64) -> u8 {
     if s.fault != 0 {
         to_safety(s);
     }
-    *out = s.outputs;
     s.fault
 }

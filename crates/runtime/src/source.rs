@@ -53,7 +53,7 @@ pub const ALL: Source = Source {
         "src/evolution/closing.rs" "src/evolution/control_blocks.rs" "src/cycle.rs"
     },
     flat: files! { "src/flat/frame.rs" "src/cycle.rs" },
-    offered: &["is_active", "scan", "step_time"],
+    offered: &["is_active", "scan", "scan_in_place", "step_time"],
     function_blocks: file!("src/function_blocks.rs"),
     rust: files! { "src/numbers.rs" "src/text.rs" "src/arithmetic.rs" },
     c: files! {

@@ -1,6 +1,6 @@
 //! The samples run: what each scan makes of a situation, from the rules of evolution.
 
-use g7_runtime::faults::{FAULT_INPUTS, FAULT_NONE, FAULT_STOPPED};
+use g7_runtime::faults::{FAULT_INPUTS, FAULT_NONE, FAULT_STOPPED, FAULT_UNSTABLE};
 use g7_runtime::sample::{lamp, press, tank, turns};
 
 const MS: i64 = 1_000_000;
@@ -18,6 +18,22 @@ fn a_tank_is_filled() {
     assert_eq!(scan(true, false, 10), (false, true, true, 0), "rule 3: the clearing");
     assert_eq!(scan(true, false, 30), (false, true, true, 20 * MS), "the time since its activation");
     assert_eq!(scan(false, true, 40), (true, false, false, 0), "and back");
+}
+
+#[test]
+fn a_scan_in_place_takes_and_leaves_what_stands_in_the_state() {
+    use tank::chart::{IDLE, Inputs, Outputs};
+    let mut s = tank::State::default();
+    s.inputs.start = true;
+    assert_eq!(tank::scan_in_place(&mut s, 0), FAULT_NONE);
+    assert!(s.outputs.valve && !tank::is_active(&s, IDLE));
+    s.inputs = Inputs { start: true, full: true };
+    assert_eq!(tank::scan_in_place(&mut s, MS), FAULT_UNSTABLE);
+    assert_eq!(s.outputs, Outputs { valve: false }, "the safe value");
+    let mut out = Outputs { valve: true };
+    assert_eq!(tank::scan(&Inputs::default(), &mut out, &mut s, 2 * MS), FAULT_STOPPED);
+    assert_eq!(s.inputs, Inputs { start: true, full: true }, "a scan that is not made takes no inputs");
+    assert!(!out.valve);
 }
 
 #[test]
@@ -47,7 +63,7 @@ fn an_unstable_chart_ends_in_a_fault() {
     let (mut s, mut out) = (tank::State::default(), Outputs::default());
     let both = Inputs { start: true, full: true };
     let fault = tank::scan(&both, &mut out, &mut s, 0);
-    assert_eq!(fault, g7_runtime::faults::FAULT_UNSTABLE, "Idle and Fill follow one another for ever");
+    assert_eq!(fault, FAULT_UNSTABLE, "Idle and Fill follow one another for ever");
     assert_eq!(tank::scan(&both, &mut out, &mut s, MS), FAULT_STOPPED);
     let mut s = tank::State::default();
     assert_eq!(tank::scan(&Inputs::default(), &mut out, &mut s, 5), FAULT_NONE);

@@ -8,7 +8,8 @@ use g7_model::ProfileName;
 
 use super::Subject;
 use crate::case::{self, Line};
-use crate::generate::sample;
+use crate::generate::{Event, Script, sample};
+use crate::naive::Value;
 
 /// A folder for a test; it is deleted at the end, unless `G7_KEEP` is set.
 #[derive(Debug)]
@@ -83,6 +84,44 @@ fn add(subjects: &mut Vec<Subject>, file: &Path, title: &str) -> Result<(), Stri
         }
     }
     Ok(())
+}
+
+/// A ring of so many steps, each with a receptivity, an output or a delay, and an action of its
+/// own. Tokens go round it, two of them one behind the other; one that waits is caught up with.
+///
+/// # Errors
+///
+/// The text cannot be read.
+pub fn wide(profile: ProfileName, steps: usize, stored: bool) -> Result<Subject, String> {
+    let mut text = format!("profile {}\ninput go : BOOL\ninput n : INT\n", profile.name());
+    text += if stored { "var c : INT\n" } else { "" };
+    let ring: Vec<usize> = (0..steps).collect();
+    ring.iter().for_each(|i| text += &format!("output q{i} : BOOL\n"));
+    text += "chart Ring {\n";
+    for i in &ring {
+        let initial = if i % (steps / 3) == 0 || *i == 1 { "initial " } else { "" };
+        let more = if stored { format!("D 3ms q{i} P1 {{ c := {i} }}") } else { format!("N q{i}") };
+        text += &format!("  {initial}step {i} {{ {more} }}\n");
+    }
+    for i in &ring {
+        text += &format!("  {i} -> {} when go and n <> {i}\n", (i + 1) % steps);
+    }
+    text += "}\n";
+    let title = format!("{} steps of {}{}", steps, profile.name(), if stored { ", stored" } else { "" });
+    let mut subject = Subject::new(&title, &case::document(&text)?, None, &text)?;
+    subject.play(&round(steps as i128))?;
+    Ok(subject)
+}
+
+/// Scans in which the tokens of a ring move one by one, and all together where the profile has
+/// no search for stability.
+fn round(steps: i128) -> Script {
+    let scan = |k: i128, go: bool, n: i128| {
+        let inputs = [("go".to_owned(), Value::Bool(go)), ("n".to_owned(), Value::Int(n))];
+        Event::Scan { now: (k as i64) * 1_000_000, inputs: inputs.into_iter().collect() }
+    };
+    let wait = steps / 3 + 5;
+    (0..3 * steps).map(|k| scan(k, k % 7 != 0, if k < 2 * steps { wait } else { k % steps })).collect()
 }
 
 /// Random charts of a profile, beginning with a seed, until `enough` of them were made; each with

@@ -78,7 +78,7 @@ fn player(subject: &Subject, printed: &Printed, name: &str) -> String {
     let _ = writeln!(
         t,
         "fn play_{name}(w: &mut Wires) {{\n    use charts::{name}::*;\n    let mut s = Box::new(State::new());\n    \
-         let mut input = Inputs::new();\n    let mut out = Outputs::new();\n    let _ = &mut input;\n    while let Some([event]) = w.get::<1>() {{\n        \
+         let mut input = Inputs::new();\n    let mut out = Outputs::new();\n    let _ = &mut input;\n    let mut in_place = false;\n    while let Some([event]) = w.get::<1>() {{\n        \
          if event == 0 {{ break; }}\n        if event == 3 {{ init(&mut s); continue; }}\n        \
          if event == 2 {{ restart(&mut s); continue; }}\n        let now = w.word() as i64;"
     );
@@ -86,8 +86,13 @@ fn player(subject: &Subject, printed: &Printed, name: &str) -> String {
         let path = printed.places.variable(v.addr).unwrap_or("missing").replacen("inputs.", "input.", 1);
         t += &each(&path, v, getter);
     }
-    let _ =
-        writeln!(t, "        let fault = scan(&input, &mut out, &mut s, now);\n        w.put(fault.into());");
+    // Both ways to make a scan take turns.
+    let _ = writeln!(
+        t,
+        "        in_place = !in_place;\n        let fault = if in_place {{ s.inputs = input; \
+         let fault = scan_in_place(&mut s, now); out = s.outputs; fault }} \
+         else {{ scan(&input, &mut out, &mut s, now) }};\n        w.put(fault.into());"
+    );
     let _ =
         writeln!(t, "        w.put(if fault != 0 {{ {outputs} }} else {{ {} }});", all + 2 * symbols.steps());
     t += "        if fault == 0 {\n";

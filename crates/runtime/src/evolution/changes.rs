@@ -38,17 +38,24 @@ pub(crate) fn mark_off(s: &mut State, step: usize) {
 
 pub(crate) fn activate(s: &mut State, step: usize) {
     s.m.x[step] = true;
-    let k: usize = step >> 5;
-    s.m.active[k] |= 1u32 << (step & 31);
-    s.m.top[k >> 5] |= 1u32 << (k & 31);
+    if ONE_WORD {
+        s.m.active[0] |= 1u32 << step;
+        if HAS_FOLLOWERS {
+            s.behind[0] = 1;
+        }
+    } else {
+        let k: usize = step >> 5;
+        s.m.active[k] |= 1u32 << (step & 31);
+        s.m.top[k >> 5] |= 1u32 << (k & 31);
+        if HAS_FOLLOWERS {
+            s.behind[k >> 5] |= 1u32 << (k & 31);
+        }
+    }
     if STABLE {
         s.changed = true;
     }
     if NOTES_STEPS {
         s.stepped = true;
-    }
-    if HAS_FOLLOWERS {
-        s.behind = true;
     }
     if HAS_COUNTS {
         s.moved += 1;
@@ -64,19 +71,26 @@ pub(crate) fn activate(s: &mut State, step: usize) {
 
 pub(crate) fn deactivate(s: &mut State, step: usize) {
     s.m.x[step] = false;
-    let k: usize = step >> 5;
-    s.m.active[k] &= inv(1u32 << (step & 31));
-    if s.m.active[k] == 0 {
-        s.m.top[k >> 5] &= inv(1u32 << (k & 31));
+    if ONE_WORD {
+        s.m.active[0] &= inv(1u32 << step);
+        if HAS_FOLLOWERS {
+            s.behind[0] = 1;
+        }
+    } else {
+        let k: usize = step >> 5;
+        s.m.active[k] &= inv(1u32 << (step & 31));
+        if s.m.active[k] == 0 {
+            s.m.top[k >> 5] &= inv(1u32 << (k & 31));
+        }
+        if HAS_FOLLOWERS {
+            s.behind[k >> 5] |= 1u32 << (k & 31);
+        }
     }
     if STABLE {
         s.changed = true;
     }
     if NOTES_STEPS {
         s.stepped = true;
-    }
-    if HAS_FOLLOWERS {
-        s.behind = true;
     }
     if HAS_COUNTS {
         s.moved += 1;

@@ -17,23 +17,33 @@ pub(crate) fn collect(s: &mut State) {
 }
 
 pub(crate) fn watch_all(s: &mut State) {
+    if ONE_WORD {
+        watch_word(s, 0);
+        return;
+    }
     let mut j: usize = 0;
     while j < TOP {
         let mut words: u32 = s.m.top[j];
         while words != 0 {
-            let k: usize = (j << 5) + low_bit(words);
+            watch_word(s, (j << 5) + low_bit(words));
             words &= words - 1;
-            let mut steps: u32 = s.m.active[k];
-            while steps != 0 {
-                let step: usize = (k << 5) + low_bit(steps);
-                steps &= steps - 1;
-                watch_step(s, step);
-                if GUARDS_FAIL && s.fault != 0 {
-                    return;
-                }
+            if GUARDS_FAIL && s.fault != 0 {
+                return;
             }
         }
         j += 1;
+    }
+}
+
+/// The transitions behind the active steps of one word.
+pub(crate) fn watch_word(s: &mut State, k: usize) {
+    let mut steps: u32 = s.m.active[k];
+    while steps != 0 {
+        watch_step(s, (k << 5) + low_bit(steps));
+        steps &= steps - 1;
+        if GUARDS_FAIL && s.fault != 0 {
+            return;
+        }
     }
 }
 
@@ -129,6 +139,60 @@ pub(crate) fn clear(s: &mut State, t: usize) {
     }
     if HAS_CLEARING && (ON_CLEARING[t] as usize) < ACTIONS {
         run_in_pass(s, ON_CLEARING[t] as usize);
+    }
+}
+
+/// Makes the changes of all transitions that clear, activations first: a step that is
+/// activated stays active (rule 5), and was active before if a transition leaves it.
+pub(crate) fn pass_on(s: &mut State) {
+    let mut k: usize = 0;
+    while k < s.fired_count {
+        let t: usize = s.fired[k] as usize;
+        k += 1;
+        if ONE_TO_ONE {
+            come(s, TO[t] as usize);
+        } else {
+            let mut i: usize = TO_AT[t] as usize;
+            while i < TO_AT[t + 1] as usize {
+                come(s, TO[i] as usize);
+                i += 1;
+            }
+        }
+    }
+    k = 0;
+    while k < s.fired_count {
+        let t: usize = s.fired[k] as usize;
+        k += 1;
+        if ONE_TO_ONE {
+            go(s, FROM[t] as usize);
+        } else {
+            let mut i: usize = FROM_AT[t] as usize;
+            while i < FROM_AT[t + 1] as usize {
+                go(s, FROM[i] as usize);
+                i += 1;
+            }
+        }
+    }
+    if s.stays {
+        s.stays = false;
+        for i in 0..WORDS {
+            s.on_mark[i] = 0;
+        }
+    }
+}
+
+pub(crate) fn come(s: &mut State, step: usize) {
+    if s.m.x[step] {
+        bit_set(&mut s.on_mark, step);
+        s.stays = true;
+    } else {
+        activate(s, step);
+    }
+}
+
+pub(crate) fn go(s: &mut State, step: usize) {
+    if s.m.x[step] && !(s.stays && bit(&s.on_mark, step)) {
+        deactivate(s, step);
     }
 }
 

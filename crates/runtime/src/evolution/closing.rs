@@ -2,6 +2,28 @@
 
 use super::*;
 
+/// Outputs follow the steps that changed. They wait for the end of the scan: nothing sees
+/// them before, and the outputs of neighbours are written together.
+pub(crate) fn catch_up(s: &mut State) {
+    if ONE_WORD {
+        if s.behind[0] != 0 {
+            s.behind[0] = 0;
+            follow(s, 0);
+        }
+        return;
+    }
+    let mut j: usize = 0;
+    while j < TOP {
+        let mut words: u32 = s.behind[j];
+        s.behind[j] = 0;
+        while words != 0 {
+            follow(s, (j << 5) + low_bit(words));
+            words &= words - 1;
+        }
+        j += 1;
+    }
+}
+
 /// Actions of each scan of the active steps.
 pub(crate) fn periodics(s: &mut State) {
     let mut i: usize = bit_next(&s.m.periodics, PERIODICS, 0);

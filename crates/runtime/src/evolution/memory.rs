@@ -76,13 +76,15 @@ pub struct State {
     pub conflict: bool,
     /// loops made in this scan
     pub work: i32,
-    /// outputs that follow a step are behind
-    pub behind: bool,
+    /// words of steps whose outputs are behind, a bit each
+    pub behind: [u32; TOP],
     /// transitions that clear in this pass
     pub fired: [Row; TRANSITIONS],
     pub fired_count: usize,
     pub dropped: [bool; TRANSITIONS],
     pub taken: [u32; WORDS],
+    /// some step is activated that is active already
+    pub stays: bool,
     /// steps to be activated and deactivated: a bit each, and as a list
     pub on_mark: [u32; WORDS],
     pub off_mark: [u32; WORDS],

@@ -31,6 +31,8 @@ pub(crate) fn pass(s: &mut State) {
     resolve(s);
     if SEQUENTIAL {
         in_turn(s);
+    } else if BARE {
+        pass_on(s);
     } else {
         let mut k: usize = 0;
         while k < s.fired_count {
@@ -121,9 +123,8 @@ pub(crate) fn begin(s: &mut State, now: i64) {
 
 /// Outputs, control blocks, bodies, POST.
 pub(crate) fn finish(s: &mut State) {
-    if HAS_FOLLOWERS && s.behind {
-        s.behind = false;
-        follow(s);
+    if HAS_FOLLOWERS {
+        catch_up(s);
     }
     if HAS_COUNTS {
         count_after(s);

@@ -5,4 +5,4 @@ pub mod chart;
 #[path = "../../flat/mod.rs"]
 mod flat;
 
-pub use flat::{State, is_active, scan, step_time};
+pub use flat::{State, is_active, scan, scan_in_place, step_time};

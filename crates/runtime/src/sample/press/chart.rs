@@ -287,7 +287,7 @@ pub fn receptivity(s: &mut State, transition: usize) -> bool {
 }
 
 /// Outputs that follow a step.
-pub fn follow(s: &mut State) {
+pub fn follow(s: &mut State, _word: usize) {
     s.outputs.lamp = s.m.x[STEP_2];
 }
 

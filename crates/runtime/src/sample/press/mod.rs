@@ -16,4 +16,4 @@ pub mod chart;
 #[path = "../../evolution/mod.rs"]
 mod evolution;
 
-pub use evolution::{State, is_active, scan, step_time};
+pub use evolution::{State, is_active, scan, scan_in_place, step_time};

@@ -15,6 +15,8 @@ pub const FILL: usize = 1;
 
 pub const STABLE: bool = true;
 pub const ONE_TO_ONE: bool = true;
+pub const BARE: bool = true;
+pub const ONE_WORD: bool = true;
 pub const HAS_OUTS: bool = true;
 pub const HAS_FOLLOWERS: bool = true;
 pub const STEPS: usize = 2;
@@ -64,7 +66,7 @@ pub fn receptivity(s: &mut State, transition: usize) -> bool {
     }
 }
 
-pub fn follow(s: &mut State) {
+pub fn follow(s: &mut State, _word: usize) {
     s.outputs.valve = s.m.x[FILL];
 }
 

@@ -159,7 +159,7 @@ pub fn receptivity(s: &mut State, transition: usize) -> bool {
 }
 
 /// Outputs that follow a step.
-pub fn follow(s: &mut State) {
+pub fn follow(s: &mut State, _word: usize) {
     s.outputs.a = s.m.x[STEP_2];
     s.outputs.b = s.m.x[STEP_3];
 }
