@@ -147,16 +147,17 @@ async fn tell_changes(shared: Shared) {
     tick.set_missed_tick_behavior(tokio::time::MissedTickBehavior::Delay);
     loop {
         tick.tick().await;
-        if shared.clients.all().is_empty() {
+        if shared.clients.is_empty() {
             continue;
         }
         let of = Arc::clone(&shared);
         let changes = tokio::task::spawn_blocking(move || of.watch.changes()).await.unwrap_or_default();
-        // A client that came during the search must hear of the changes too: each is told once.
-        let pages = shared.clients.all();
+        // The clients are listed after the search, since `changes` returns each change only once:
+        // a client that connected during the search would otherwise never hear of it.
+        let clients = shared.clients.all();
         for change in changes {
             let text = runs::letter(&serde_json::json!({ "changed": change }));
-            pages.iter().for_each(|p| p.put(text.clone()));
+            clients.iter().for_each(|c| c.put(text.clone()));
         }
     }
 }

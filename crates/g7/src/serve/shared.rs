@@ -78,6 +78,11 @@ impl Clients {
         list.push(Arc::downgrade(outbox));
     }
 
+    pub(super) fn is_empty(&self) -> bool {
+        let list = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        list.iter().all(|w| w.strong_count() == 0)
+    }
+
     pub(super) fn all(&self) -> Vec<Arc<Outbox>> {
         let list = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         list.iter().filter_map(Weak::upgrade).collect()
