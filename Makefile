@@ -17,7 +17,7 @@ BOOK := $(abspath $(or $(CARGO_TARGET_DIR),target))/book
 TALLY := $(abspath $(or $(CARGO_TARGET_DIR),target))/tally
 PAGE := $(shell find web/src web/index.html web/public web/*.ts web/*.js -type f 2>/dev/null)
 
-.PHONY: run view install test tally-anew peers lint deny wasm web site pictures page-test page-bench bench book blocks fuzz help FORCE
+.PHONY: run view install test tally-anew peers lint deny wasm web site pictures page-test page-bench bench bench-check book blocks fuzz help FORCE
 
 ## build G7 and open the editor in the browser on the examples (FOLDER=… for another)
 run: web
@@ -109,7 +109,13 @@ page-bench: wasm web/node_modules/.package-lock.json
 ## time of a scan (beside matiec where an iec2c is on the PATH) and of a layout
 bench:
 	benches/scan.sh
+	benches/rows.sh
 	benches/layout.sh
+
+## instructions of a scan in each row, beside those of the table that is kept
+bench-check:
+	@$(call debian,valgrind,valgrind)
+	benches/instructions.sh
 
 ## the book, as HTML in docs/book/book, with every conformance case as a page
 book:

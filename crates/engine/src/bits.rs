@@ -193,6 +193,11 @@ impl Tree {
         }
     }
 
+    /// The word that is 0 while the set is empty.
+    pub(crate) fn top(&self) -> u32 {
+        self.at.get((self.levels as usize).saturating_sub(1)).copied().unwrap_or(0)
+    }
+
     #[inline(always)]
     pub(crate) fn is_empty(&self, words: &[u64]) -> bool {
         match self.levels {

@@ -213,6 +213,7 @@ pub(crate) fn activate(p: &Program, s: &mut State, step: u32) {
     s.scratch.changed = true;
     s.scratch.stepped = true;
     s.scratch.moved += 1;
+    s.scratch.lone = NONE;
     let tree = s.steps;
     if p.looks_back {
         turn(s, step, false);
@@ -240,6 +241,7 @@ pub(crate) fn deactivate(p: &Program, s: &mut State, step: u32) {
     s.scratch.changed = true;
     s.scratch.stepped = true;
     s.scratch.moved += 1;
+    s.scratch.lone = NONE;
     let tree = s.steps;
     if p.looks_back {
         turn(s, step, true);

@@ -134,4 +134,20 @@ impl Layout {
         l.len = next;
         l
     }
+
+    /// The top words of the sets whose members act in a pass or at its end, without those that
+    /// are always empty.
+    pub(crate) fn awake(&self, t: &Tables) -> Box<[u32]> {
+        let sets = [
+            (&self.edged, t.watches.len()),
+            (&self.dirty, t.watches.len()),
+            (&self.running, t.watches.len()),
+            (&self.conditions, t.contributions.len()),
+            (&self.blocks, t.blocks.len()),
+            (&self.events, t.events.len()),
+            (&self.periodics, t.periodics.len()),
+            (&self.orders, t.orders.len()),
+        ];
+        sets.iter().filter(|(_, members)| *members > 0).map(|(set, _)| set.top()).collect()
+    }
 }

@@ -27,7 +27,7 @@
 //!
 //! [`scan`] (`scan.rs`), then one pass (`pass.rs`), then the consequences of a change
 //! of steps (`change.rs`), edges and timers (`watch.rs`), control blocks (`blocks.rs`).
-//! Code runs in `run.rs`. `tables.rs` has the data and `check.rs` checks it;
+//! Code runs in `run.rs`, what is Boolean in `decision.rs`. `tables.rs` has the data and `check.rs` checks it;
 //! `canonical.rs` and `reads.rs` are for those who search.
 //!
 //! Not here: names, places, drawings (`model`), real inputs and clocks (`host`).
@@ -37,8 +37,6 @@
 
 extern crate alloc;
 
-mod bare;
-mod bare_rows;
 mod bits;
 mod block_words;
 mod blocks;
@@ -47,17 +45,20 @@ mod carry;
 mod change;
 mod check;
 mod clocks;
+mod decision;
 mod enabled;
 mod fault;
 mod fb;
 mod fingerprint;
 mod layout;
 mod memory;
+mod moves;
 pub mod number;
 mod ops;
 mod pass;
 mod program;
 mod reads;
+mod rows;
 mod rules;
 mod run;
 mod scan;

@@ -7,6 +7,7 @@ use crate::change::{
 };
 use crate::fault::{Fault, FaultKind};
 use crate::memory::read;
+use crate::moves;
 use crate::ops::{Addr, StepId};
 use crate::program::Program;
 use crate::run::{holds, value};
@@ -44,7 +45,11 @@ pub(crate) fn evolve(p: &Program, s: &mut State) -> Result<bool, Fault> {
     }
     resolve(p, s);
     report(s);
-    if p.tables.rules.sequential {
+    if moves::are_plain(p, &s.scratch) {
+        let changed = moves::clear(p, s);
+        s.scratch.changed |= changed;
+        s.scratch.stepped |= changed;
+    } else if p.tables.rules.sequential {
         in_turn(p, s)?;
     } else {
         mark(p, s);
@@ -182,22 +187,23 @@ fn force(s: &mut State) -> Result<(), Fault> {
 
 /// Collects every transition that is clearable, without regard to the others.
 fn collect(p: &Program, s: &mut State) -> Result<(), Fault> {
+    // Hot steps are judged before the others. That must not matter, so no receptivity may write.
+    if p.judges_freely && !s.scratch.any_blocked {
+        moves::collect(p, s);
+        sources(p, s)?;
+        for k in 0..s.scratch.slow.len() {
+            if let Some(&step) = s.scratch.slow.get(k) {
+                outs(p, s, step)?;
+            }
+        }
+        return Ok(());
+    }
+    s.scratch.lone = NONE;
     sources(p, s)?;
     let tree = s.steps;
     let mut walk = Walk::new(&tree, &s.image);
     while let Some(step) = walk.next(&tree, &s.image) {
         outs(p, s, step)?;
-    }
-    Ok(())
-}
-
-/// The same for the steps that `bare` has not judged.
-pub(crate) fn collect_slow(p: &Program, s: &mut State) -> Result<(), Fault> {
-    sources(p, s)?;
-    for k in 0..s.scratch.slow.len() {
-        if let Some(&step) = s.scratch.slow.get(k) {
-            outs(p, s, step)?;
-        }
     }
     Ok(())
 }
@@ -257,7 +263,7 @@ fn events(p: &Program, s: &mut State) -> Result<(), Fault> {
 }
 
 /// Drops what priority drops, and puts the rest in order of rank where order matters.
-pub(crate) fn resolve(p: &Program, s: &mut State) {
+fn resolve(p: &Program, s: &mut State) {
     let rules = &p.tables.rules;
     if !rules.multi_token && p.has_contests {
         s.scratch.fired.sort_unstable();
@@ -334,7 +340,7 @@ fn is_free(p: &Program, s: &State, t: &Transition) -> bool {
 
 /// Notes the transitions that clear, for coverage and traces.
 #[inline(always)]
-pub(crate) fn report(s: &mut State) {
+fn report(s: &mut State) {
     let scratch = &mut s.scratch;
     scratch.cleared_count = scratch.cleared_count.saturating_add(scratch.fired.len() as u32);
     for i in &scratch.fired {

@@ -4,13 +4,15 @@
 use alloc::boxed::Box;
 use alloc::vec::Vec;
 
-use crate::bare_rows::{Hot, Move, hot, moves};
 use crate::check::{LoadError, check, writes};
 use crate::clocks::{Clocks, clocks};
+use crate::decision::Decisions;
 use crate::fingerprint::fingerprint;
 use crate::layout::Layout;
 use crate::ops::{Op, TEXT};
-use crate::tables::{NONE, Tables};
+use crate::rows::{Hot, Move, hot, moves};
+use crate::scan::PATIENCE;
+use crate::tables::{NONE, Receptivity, Tables};
 
 /// A checked, immutable compiled chart. Only [`Program::new`] makes one.
 #[derive(Clone, Debug)]
@@ -35,8 +37,14 @@ pub struct Program {
     pub(crate) has_periods: bool,
     /// Some transitions share a preceding step and are not settled by their place.
     pub(crate) has_contests: bool,
-    /// There are only steps, transitions and outputs that each follow one step.
-    pub(crate) bare: bool,
+    /// No receptivity writes a variable, so they may be judged in any order.
+    pub(crate) judges_freely: bool,
+    /// A scan in which nothing is awake and no watched input changes may be one of one token.
+    pub(crate) brisk: bool,
+    /// Some watch reads an input.
+    pub(crate) watches_inputs: bool,
+    /// The top words of the sets whose members act in a pass or at its end.
+    pub(crate) awake: Box<[u32]>,
     /// No code reads a time, and no code runs in every scan.
     pub(crate) timeless: bool,
     /// There is PRE, POST or code for system bits.
@@ -47,14 +55,16 @@ pub struct Program {
     pub(crate) commit_room: usize,
     /// Room for one string at work, in bytes; 0 where there are none.
     pub(crate) text_room: usize,
-    /// For bare programs, a row for each step.
+    /// A row for each step.
     pub(crate) hot: Box<[Hot]>,
-    /// For bare programs, a row for each transition.
+    /// A row for each transition.
     pub(crate) moves: Box<[Move]>,
     /// Watches that are evaluated in every scan.
     pub(crate) always: Box<[u32]>,
     /// The words of the image that hold times.
     pub(crate) clocks: Clocks,
+    /// The code that is evaluated as tests.
+    pub(crate) decisions: Decisions,
 }
 
 impl Program {
@@ -86,11 +96,24 @@ impl Program {
         let contest = |t: &crate::tables::Transition| {
             t.shares && !(single && t.simple) && (single || t.priority != NONE)
         };
-        let bare = !frame && !has_hierarchy && !has_periods && stored == 0 && is_bare(&t);
+        let decisions = Decisions::new(&t, &layout);
+        let looks_back = t.code.iter().any(|op| matches!(op, Op::WasActive(_)));
+        let counts = t.counts.is_some() || t.limits.is_some();
+        // Steps under the scan clock count from a scan that is not over yet.
+        let plain = !t.rules.sequential && !t.rules.scan_clock && !looks_back && !counts;
+        let moves = moves(&t, &layout, plain);
+        let calm = !frame && !has_periods && !counts && t.sources.is_empty();
         Program {
-            bare,
-            hot: if bare { hot(&t, &layout) } else { Box::default() },
-            moves: if bare { moves(&t, &layout) } else { Box::default() },
+            judges_freely: t.transitions.iter().all(|tr| !writes_in(&t, tr.receptivity)),
+            brisk: plain
+                && calm
+                && !t.rules.periodic_first
+                && t.rules.bound > PATIENCE
+                && !t.watches.iter().any(|w| w.always),
+            watches_inputs: t.word_watches.iter().any(|(a, _)| (t.inputs.start..t.inputs.end).contains(&a.0)),
+            awake: layout.awake(&t),
+            hot: hot(&t, &layout, &decisions, &moves),
+            moves,
             timeless: !frame
                 && !has_periods
                 && t.counts.is_none()
@@ -99,7 +122,7 @@ impl Program {
             frame,
             locals: if t.locals.is_empty() { u32::MAX } else { t.locals.start },
             comes_and_goes: t.rules.stable && (t.rules.sequential || !t.rules.parallel_actions),
-            looks_back: t.code.iter().any(|op| matches!(op, Op::WasActive(_))),
+            looks_back,
             has_orders: !t.orders.is_empty(),
             has_hierarchy,
             has_periods,
@@ -110,6 +133,7 @@ impl Program {
             always,
             word_index: word_index(&t),
             clocks: clocks(&t, &layout),
+            decisions,
             fingerprint: fingerprint(&t),
             layout,
             tables: t,
@@ -117,22 +141,11 @@ impl Program {
     }
 }
 
-/// True if tables consist of steps, transitions and outputs that each follow one
-/// step, apart from PRE and POST, hierarchy, periods and stored actions.
-fn is_bare(t: &Tables) -> bool {
-    t.orders.is_empty()
-        && !t.rules.sequential
-        && t.group_lists.is_empty()
-        && t.drops.is_empty()
-        && !t.code.iter().any(|op| writes(op) > 0)
-        && t.watches.is_empty()
-        && t.contributions.is_empty()
-        && t.blocks.is_empty()
-        && t.periodics.is_empty()
-        && t.counts.is_none()
-        && t.limits.is_none()
-        // Steps under the scan clock count from a scan that is not over yet.
-        && !t.rules.scan_clock
+/// True if a receptivity writes a variable.
+fn writes_in(t: &Tables, receptivity: Receptivity) -> bool {
+    let Receptivity::Code(code) = receptivity else { return false };
+    let ops = t.code.get(code.start as usize..code.end as usize).unwrap_or(&[]);
+    ops.iter().any(|op| writes(op) > 0)
 }
 
 fn reads_time(op: &Op) -> bool {

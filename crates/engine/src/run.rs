@@ -4,6 +4,7 @@
 //! So only a value can be wrong, and that is a [`Fault`] with its place.
 
 use crate::bits::{bit, set_bit, word};
+use crate::decision::decide;
 use crate::fault::{Fault, FaultKind};
 use crate::layout::{REQUESTS, START, head};
 use crate::memory::{read, write};
@@ -11,7 +12,7 @@ use crate::number::{self, arith, call, compare, convert, negate, truncate};
 use crate::ops::{Addr, Code, GroupId, Op, Service, WORK};
 use crate::program::Program;
 use crate::state::State;
-use crate::tables::Receptivity;
+use crate::tables::{NONE, Receptivity};
 use crate::{fb, text};
 
 #[inline(always)]
@@ -25,7 +26,16 @@ pub(crate) fn holds(p: &Program, s: &mut State, receptivity: Receptivity) -> Res
 }
 
 /// Runs code that pushes one value.
+#[inline]
 pub(crate) fn value(p: &Program, s: &mut State, code: Code) -> Result<u64, Fault> {
+    match p.decisions.of(code) {
+        NONE => interpreted(p, s, code),
+        first => Ok(u64::from(decide(p, &s.image, first))),
+    }
+}
+
+#[inline(never)]
+fn interpreted(p: &Program, s: &mut State, code: Code) -> Result<u64, Fault> {
     run(p, s, code)?;
     Ok(s.scratch.stack.pop().unwrap_or(0))
 }

@@ -11,7 +11,7 @@ use crate::program::Program;
 use crate::run::{run, value};
 use crate::state::State;
 use crate::tables::NONE;
-use crate::{bare, blocks, watch};
+use crate::{blocks, moves, watch};
 
 /// The report of a scan.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -27,7 +27,7 @@ pub struct Report {
 
 /// Passes after which cycles are looked for. Most searches are shorter, and looking
 /// costs a copy of the image.
-const PATIENCE: u32 = 48;
+pub(crate) const PATIENCE: u32 = 48;
 
 /// Runs one scan.
 ///
@@ -47,35 +47,45 @@ pub fn scan(p: &Program, s: &mut State, inputs: &[u64], now: i64) -> Result<Repo
     if s.scratch.quiet && still(p, s, inputs, now) {
         return Ok(Report { passes: 1, cleared: 0, conflict: None });
     }
-    if p.bare && begin_bare(p, s, inputs, now) {
-        if !p.tables.rules.stable
-            && let Some(moved) = bare::one_token(p, s, now as u64)
-        {
-            s.scratch.quiet = !moved && p.timeless;
-            return Ok(Report { passes: 1, cleared: u32::from(moved), conflict: None });
-        }
-        return bare(p, s);
+    if s.scratch.lone != NONE && begin_brisk(p, s, inputs, now) {
+        return brisk(p, s);
     }
     whole(p, s, inputs, now)
 }
 
-/// The rest of a scan on the short way, after [`begin_bare`].
+/// The rest of a scan in which one token acts, after [`begin_brisk`].
+#[inline(always)]
+fn brisk(p: &Program, s: &mut State) -> Result<Report, Fault> {
+    let mut made = 0;
+    while let Some(moved) = moves::one_token(p, s) {
+        made += 1;
+        if !moved || !p.tables.rules.stable {
+            s.scratch.quiet = !moved && p.timeless;
+            let cleared = made - u32::from(!moved);
+            return Ok(Report { passes: made, cleared, conflict: None });
+        }
+        if made + 1 >= PATIENCE {
+            break;
+        }
+    }
+    goes_on(p, s, made)
+}
+
+/// The rest of a scan in which one token made some passes and then came where more can happen.
 #[inline(never)]
-fn bare(p: &Program, s: &mut State) -> Result<Report, Fault> {
-    let scratch = &mut s.scratch;
-    scratch.cleared_count = 0;
-    scratch.passes = 0;
-    scratch.conflict = None;
-    scratch.work = 0;
-    let done = search(p, s, bare::evolve);
-    s.scratch.quiet = p.timeless && s.scratch.idle;
+fn goes_on(p: &Program, s: &mut State, made: u32) -> Result<Report, Fault> {
+    s.scratch.passes = made;
+    s.scratch.cleared_count = made;
+    s.scratch.work = 0;
+    s.scratch.stack.clear();
+    let done = search(p, s, made).and_then(|()| finish(p, s));
     end(p, s, done)
 }
 
 /// The general way.
 #[inline(never)]
 fn whole(p: &Program, s: &mut State, inputs: &[u64], now: i64) -> Result<Report, Fault> {
-    let done = begin(p, s, inputs, now).and_then(|()| search(p, s, pass)).and_then(|()| finish(p, s));
+    let done = begin(p, s, inputs, now).and_then(|()| search(p, s, 0)).and_then(|()| finish(p, s));
     end(p, s, done)
 }
 
@@ -89,23 +99,31 @@ fn end(p: &Program, s: &mut State, done: Result<(), Fault>) -> Result<Report, Fa
     }
 }
 
-/// As [`begin`], for bare programs. Does nothing and returns false before the first
-/// scan, after a fault, or where inputs or time do not fit.
+/// As [`begin`], for a scan in which one token acts. Does nothing and returns false where something
+/// else may act, before the first scan, after a fault, or where inputs or time do not fit.
 #[inline(always)]
-fn begin_bare(p: &Program, s: &mut State, inputs: &[u64], now: i64) -> bool {
+fn begin_brisk(p: &Program, s: &mut State, inputs: &[u64], now: i64) -> bool {
     let (from, to) = ((s.vars + p.tables.inputs.start) as usize, (s.vars + p.tables.inputs.end) as usize);
     let before = s.now();
-    if !s.has_only_flag(STARTED) || now < before {
+    if !p.brisk || !s.has_only_flag(STARTED) || now < before || moves::is_awake(p, &s.image) {
         return false;
     }
     let Some(area) = s.image.get_mut(from..to) else { return false };
-    if area.len() != inputs.len() {
+    if area.len() != inputs.len() || (p.watches_inputs && watched(p, area, inputs)) {
         return false;
     }
     take(area, inputs);
     tick(s, now.wrapping_sub(before), now);
-    s.scratch.cleared.clear();
+    s.scratch.begin_brisk();
     true
+}
+
+/// True if an input that some watch reads changes.
+#[inline(never)]
+fn watched(p: &Program, area: &[u64], inputs: &[u64]) -> bool {
+    let watches = |i: u32| p.word_index.get(i as usize) != p.word_index.get(i as usize + 1);
+    let words = p.tables.inputs.start..;
+    words.zip(area.iter().zip(inputs)).any(|(i, (old, new))| old != new && watches(i))
 }
 
 /// Copies the inputs. A few are copied word by word, which is faster than a call.
@@ -153,13 +171,10 @@ fn report(s: &State) -> Report {
     Report { passes: s.scratch.passes, cleared: s.scratch.cleared_count, conflict: s.scratch.conflict }
 }
 
-/// Makes passes until one changes nothing, or just one without `stable`.
+/// Makes passes until one changes nothing, or just one without `stable`. `made` is the number of
+/// passes that the scan has made before, fewer than [`PATIENCE`].
 #[inline]
-fn search(
-    p: &Program,
-    s: &mut State,
-    pass: impl Fn(&Program, &mut State) -> Result<bool, Fault>,
-) -> Result<(), Fault> {
+fn search(p: &Program, s: &mut State, mut made: u32) -> Result<(), Fault> {
     let rules = &p.tables.rules;
     if !rules.stable {
         return pass(p, s).map(|_| ());
@@ -168,7 +183,6 @@ fn search(
     // doubling distances. Within a scan time and inputs do not change, so an image that
     // recurs once recurs for ever.
     let (mut power, mut distance) = (1u32, 0u32);
-    let mut made = 0u32;
     while pass(p, s)? {
         made += 1;
         if made >= rules.bound {
@@ -212,16 +226,18 @@ pub fn begin(p: &Program, s: &mut State, inputs: &[u64], now: i64) -> Result<(),
     }
     s.scratch.begin();
     s.scratch.quiet = false;
-    s.scratch.lone = NONE;
     let before = if fresh { now } else { s.now() };
     tick(s, now.wrapping_sub(before), now);
     if p.has_periods {
         periods(p, s, now, fresh);
     }
-    for (i, v) in (t.inputs.start..).zip(inputs) {
-        if word(&s.image, (s.vars + i) as usize) != *v {
-            s.set((s.vars + i) as usize, *v);
-            notice(p, s, Addr(i));
+    let (from, to) = ((s.vars + t.inputs.start) as usize, (s.vars + t.inputs.end) as usize);
+    if s.image.get(from..to).is_none_or(|area| area != inputs) {
+        for (i, v) in (t.inputs.start..).zip(inputs) {
+            if word(&s.image, (s.vars + i) as usize) != *v {
+                s.set((s.vars + i) as usize, *v);
+                notice(p, s, Addr(i));
+            }
         }
     }
     if fresh {
@@ -346,7 +362,6 @@ fn start(p: &Program, s: &mut State) -> Result<(), Fault> {
 ///
 /// A [`Fault`] of a receptivity, an action or a forcing order.
 pub fn pass(p: &Program, s: &mut State) -> Result<bool, Fault> {
-    s.scratch.lone = NONE;
     if s.scratch.first_pass {
         s.scratch.first_pass = false;
     } else {

@@ -19,9 +19,9 @@ pub(crate) struct Scratch {
     pub(crate) stack: Vec<u64>,
     /// Transitions (rank) that clear in this pass.
     pub(crate) fired: Vec<u32>,
-    /// The only active step, where that is known; else `NONE` (`bare`).
+    /// The only active step, where that is known; else `NONE` (`moves`).
     pub(crate) lone: u32,
-    /// Active steps whose transitions need a closer look (`bare`).
+    /// Active steps whose transitions need a closer look (`moves`).
     pub(crate) slow: Vec<u32>,
     /// Steps marked to be activated, and to be deactivated.
     pub(crate) on: Vec<u32>,
@@ -125,7 +125,7 @@ impl Scratch {
             stack: Vec::with_capacity(STACK),
             fired: Vec::with_capacity(t.transitions.len()),
             lone: NONE,
-            slow: Vec::with_capacity(if p.bare { steps } else { 0 }),
+            slow: Vec::with_capacity(steps),
             on: Vec::with_capacity(2 * steps),
             off: Vec::with_capacity(2 * steps),
             on_mark: bits(steps),
@@ -206,6 +206,16 @@ impl Scratch {
         self.conflict = None;
         self.work = 0;
         self.late_any = false;
+    }
+
+    /// The same for a scan in which one token acts: the other parts are as the scan before left
+    /// them, or are not used.
+    #[inline(always)]
+    pub(crate) fn begin_brisk(&mut self) {
+        self.cleared.clear();
+        self.ran.clear();
+        self.conflict = None;
+        self.first_pass = false;
     }
 
     /// Drops the changes of steps and the late actions that a scan had in hand when

@@ -1,9 +1,12 @@
-//! The short way for bare programs and the general way agree, scan by scan.
+//! Plain steps, plain transitions and decisions behave as the general way does, scan by scan.
 
 mod common;
 
 use common::{Arc, Chance, chart};
-use g7_engine::{Addr, Code, FaultKind, NONE, Op, Program, Rules, State, StepId, Tables, scan, set_step};
+use g7_engine::{
+    Addr, Arith, Cmp, Code, Extra, FaultKind, NONE, Num, Op, Program, Receptivity, Rules, State, StepId,
+    Tables, scan, set_step,
+};
 
 /// Up to `n` different steps.
 fn some(chance: &mut Chance, n: u32) -> Vec<u32> {
@@ -38,9 +41,68 @@ fn random(chance: &mut Chance, rules: Rules) -> Tables {
     chart(rules, steps, 3, &initial, &arcs)
 }
 
-/// The same tables with a PRE that does nothing: enough to leave the short way.
-fn with_frame(t: &Tables) -> Tables {
+/// A random Boolean expression of inputs, steps and comparisons.
+fn expression(chance: &mut Chance, steps: u32, depth: u32, code: &mut Vec<Op>) {
+    let leaf = depth == 0 || chance.below(3) == 0;
+    if leaf {
+        match chance.below(5) {
+            0 => code.push(Op::Active(StepId(chance.below(steps)))),
+            1 => {
+                code.push(Op::StepTime(StepId(chance.below(steps))));
+                code.push(Op::Push(u64::from(chance.below(30))));
+                code.push(Op::Compare([Cmp::Ge, Cmp::Lt, Cmp::Eq][chance.below(3) as usize], Num::I64));
+            }
+            _ => code.push(Op::Load(Addr(chance.below(3)))),
+        }
+        return;
+    }
+    expression(chance, steps, depth - 1, code);
+    if chance.below(4) == 0 {
+        code.push(Op::Not);
+        return;
+    }
+    expression(chance, steps, depth - 1, code);
+    code.push([Op::And, Op::Or, Op::Xor][chance.below(3) as usize]);
+}
+
+/// Gives some transitions an expression, and some steps a row of extras, so that they are not plain.
+fn mixed(chance: &mut Chance, mut t: Tables) -> Tables {
+    let steps = t.steps.len() as u32;
+    t.extras.push(Extra::default());
+    for step in &mut t.steps {
+        if chance.below(6) == 0 {
+            step.extra = 0;
+        }
+    }
+    for transition in &mut t.transitions {
+        if chance.below(3) == 0 {
+            let start = t.code.len() as u32;
+            expression(chance, steps, 4, &mut t.code);
+            transition.receptivity = Receptivity::Code(Code { start, end: t.code.len() as u32 });
+        }
+    }
+    t
+}
+
+/// The same tables so that no step and no transition is plain and the interpreter evaluates each
+/// receptivity: every step has a row of extras, every receptivity has 0 added to it.
+fn roundabout(t: &Tables) -> Tables {
     let mut t = t.clone();
+    if t.extras.is_empty() {
+        t.extras.push(Extra::default());
+    }
+    t.steps.iter_mut().for_each(|step| step.extra = 0);
+    for transition in &mut t.transitions {
+        let start = t.code.len() as u32;
+        match transition.receptivity {
+            Receptivity::True => t.code.push(Op::Push(1)),
+            Receptivity::Word(a) => t.code.push(Op::Load(a)),
+            Receptivity::NotWord(a) => t.code.extend([Op::Load(a), Op::Not]),
+            Receptivity::Code(code) => t.code.extend_from_within(code.start as usize..code.end as usize),
+        }
+        t.code.extend([Op::Push(0), Op::Arith(Arith::Add, Num::I64)]);
+        transition.receptivity = Receptivity::Code(Code { start, end: t.code.len() as u32 });
+    }
     let start = t.code.len() as u32;
     t.code.extend([Op::Push(0), Op::Drop]);
     t.pre = Code { start, end: start + 2 };
@@ -60,8 +122,11 @@ fn both_ways_reach_the_same_situations() {
         let rules = if round % 3 == 0 { Rules::IEC60848 } else { Rules::IEC61131 };
         let rules =
             Rules { multi_token: chance.below(2) == 0, keep_step_time: chance.below(2) == 0, ..rules };
-        let tables = random(&mut chance, rules);
-        let long = Program::new(with_frame(&tables)).expect("tables are sound");
+        let mut tables = random(&mut chance, rules);
+        if chance.below(2) == 0 {
+            tables = mixed(&mut chance, tables);
+        }
+        let long = Program::new(roundabout(&tables)).expect("tables are sound");
         let short = Program::new(tables).expect("tables are sound");
         let (mut a, mut b) = (State::new(&short), State::new(&long));
         for k in 0..30 {
@@ -135,9 +200,12 @@ fn a_lone_token_goes_the_same_way() {
     for round in 0..200 {
         let rules = if round % 4 == 0 { Rules::IEC60848 } else { Rules::IEC61131 };
         let rules = Rules { keep_step_time: chance.below(2) == 0, ..rules };
-        let tables = walk(&mut chance, rules);
+        let mut tables = walk(&mut chance, rules);
+        if chance.below(2) == 0 {
+            tables = mixed(&mut chance, tables);
+        }
         let steps = tables.steps.len() as u32;
-        let long = Program::new(with_frame(&tables)).expect("tables are sound");
+        let long = Program::new(roundabout(&tables)).expect("tables are sound");
         let short = Program::new(tables).expect("tables are sound");
         let (mut a, mut b) = (State::new(&short), State::new(&long));
         let mut inputs = vec![0; 3];

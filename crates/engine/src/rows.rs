@@ -1,0 +1,125 @@
+//! The rows that a pass reads instead of the tables where steps and transitions are plain
+//! (`moves.rs`).
+//!
+//! A step is plain if nothing but its `direct` output follows it. A transition is plain if clearing
+//! it does no more than change plain steps. Whether a row is plain depends on that row alone: one
+//! step with a stored action leaves all others as they are.
+
+use alloc::boxed::Box;
+
+use crate::decision::Decisions;
+use crate::layout::{Layout, head};
+use crate::tables::{NONE, Receptivity, Rows, Tables, Transition};
+
+/// A step with one transition behind it whose receptivity can be judged at once, and where a
+/// lone token goes from here. A row never straddles two cache lines.
+#[derive(Clone, Copy, Debug)]
+#[repr(align(32))]
+pub(crate) struct Hot {
+    /// A word of the image or the first test of a decision, as `how` says; `NONE` for a step of
+    /// another kind.
+    pub(crate) waits_for: u32,
+    /// The transition.
+    pub(crate) rank: u32,
+    /// The one succeeding step; `NONE` where clearing does more than move a token from one
+    /// plain step to another.
+    pub(crate) to: u32,
+    /// Output that follows this step, or `NONE`.
+    pub(crate) from_output: u32,
+    /// Output that follows the succeeding step, or `NONE`.
+    pub(crate) to_output: u32,
+    /// How the receptivity is judged.
+    pub(crate) how: Wait,
+}
+
+/// How the receptivity of a [`Hot`] row is judged.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Wait {
+    /// The word is not 0.
+    Word,
+    /// The word is 0.
+    NotWord,
+    /// The decision is TRUE.
+    Decision,
+}
+
+/// A transition in a pass where all that clear are plain. Outputs are words of the image.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Move {
+    /// The preceding step; `NONE` for a transition with several steps or none on a side.
+    pub(crate) from: u32,
+    /// The succeeding step.
+    pub(crate) to: u32,
+    /// Output that follows the preceding step, or `NONE`.
+    pub(crate) from_output: u32,
+    /// Output that follows the succeeding step, or `NONE`.
+    pub(crate) to_output: u32,
+    /// The transition is plain.
+    pub(crate) plain: bool,
+}
+
+/// The output that follows a step, as a word of the image.
+pub(crate) fn output(t: &Tables, l: &Layout, step: u32) -> u32 {
+    match t.steps.get(step as usize) {
+        Some(s) if s.direct.0 != NONE => l.vars + s.direct.0,
+        _ => NONE,
+    }
+}
+
+/// True if a transition leads from one step to one step.
+fn one_to_one(t: &Transition) -> bool {
+    t.more_from.is_empty() && t.more_to.is_empty() && t.from.0 != NONE && t.to.0 != NONE
+}
+
+/// True if clearing a transition does no more than change plain steps.
+fn is_plain(t: &Tables, tr: &Transition) -> bool {
+    let plain = |step: u32| step == NONE || t.steps.get(step as usize).is_some_and(|s| s.extra == NONE);
+    let all_plain = |rows: Rows| {
+        let steps = t.arcs.get(rows.start as usize..rows.end as usize).unwrap_or(&[]);
+        steps.iter().all(|step| plain(step.0))
+    };
+    let alone = !tr.drops && tr.on_clearing == NONE;
+    alone && plain(tr.from.0) && plain(tr.to.0) && all_plain(tr.more_from) && all_plain(tr.more_to)
+}
+
+/// A row for each step.
+pub(crate) fn hot(t: &Tables, l: &Layout, d: &Decisions, moves: &[Move]) -> Box<[Hot]> {
+    let none =
+        Hot { waits_for: NONE, rank: NONE, to: NONE, from_output: NONE, to_output: NONE, how: Wait::Word };
+    let row = |step: u32, out: Rows| {
+        let [rank] = t.outs.get(out.start as usize..out.end as usize)? else { return None };
+        let tr = t.transitions.get(*rank as usize)?;
+        if !tr.more_from.is_empty() {
+            return None;
+        }
+        let (waits_for, how) = match tr.receptivity {
+            // This word is not zero while the program runs.
+            Receptivity::True => (head::FLAGS as u32, Wait::Word),
+            Receptivity::Word(a) => (l.vars + a.0, Wait::Word),
+            Receptivity::NotWord(a) => (l.vars + a.0, Wait::NotWord),
+            Receptivity::Code(code) => (d.of(code), Wait::Decision),
+        };
+        let plain = moves.get(*rank as usize).filter(|m| m.plain && m.from == step && m.to != step);
+        let to = plain.map_or(NONE, |m| m.to);
+        let (from_output, to_output) = (output(t, l, step), output(t, l, to));
+        Some(Hot { waits_for, rank: *rank, to, from_output, to_output, how })
+    };
+    (0..).zip(&t.steps).map(|(i, s)| row(i, s.out).unwrap_or(none)).collect()
+}
+
+/// A row for each transition. `any` says that transitions can be plain under the rules.
+pub(crate) fn moves(t: &Tables, l: &Layout, any: bool) -> Box<[Move]> {
+    t.transitions
+        .iter()
+        .map(|tr| {
+            let (from, to) = (tr.from.0, tr.to.0);
+            Move {
+                from: if one_to_one(tr) { from } else { NONE },
+                to,
+                from_output: output(t, l, from),
+                to_output: output(t, l, to),
+                plain: any && is_plain(t, tr),
+            }
+        })
+        .collect()
+}
