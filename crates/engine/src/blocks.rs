@@ -99,7 +99,7 @@ pub(crate) fn evaluate(p: &Program, s: &mut State) -> Result<(), Fault> {
         l.blocks.remove(&mut s.image, i);
         let gate = condition(p, s, b.gate)?;
         let at = base(p, i);
-        let (q, run, live) = if b.plain { plain(s, at, gate) } else { full(p, s, at, gate) };
+        let (q, run, live) = if b.plain { plain(s, at, gate) } else { full(p, s, i, gate) };
         if b.output.0 != NONE {
             put(p, s, (at + if b.plain { 0 } else { MEMORY }) as usize, b.output, q);
         }
@@ -136,12 +136,24 @@ fn plain(s: &State, at: u32, gate: bool) -> (bool, bool, bool) {
     (word(&s.image, at as usize) & !WRITTEN != 0 && gate, false, false)
 }
 
+/// The true inputs of a block that is not plain, a bit each.
+fn inputs(s: &State, at: u32, uses: u16) -> u64 {
+    let (mut rest, mut inputs) = (uses, 0);
+    while rest != 0 {
+        let i = rest.trailing_zeros();
+        inputs |= u64::from(word(&s.image, (at + i) as usize) != 0) << i;
+        rest &= rest - 1;
+    }
+    inputs
+}
+
 /// Evaluates any other block, likewise.
-fn full(p: &Program, s: &mut State, at: u32, gate: bool) -> (bool, bool, bool) {
+fn full(p: &Program, s: &mut State, block: u32, gate: bool) -> (bool, bool, bool) {
+    let at = base(p, block);
+    let uses = p.uses.get(block as usize).copied().unwrap_or(0);
     let now = word(&s.image, head::NOW) as i64;
-    let input = |s: &State, i: u32| word(&s.image, (at + i) as usize) != 0;
-    let inputs: [bool; 11] = core::array::from_fn(|i| input(s, i as u32));
-    let on = |i: u32| inputs.get(i as usize).copied().unwrap_or(false);
+    let inputs = inputs(s, at, uses);
+    let on = |i: u32| inputs & (1 << i) != 0;
     let memory = word(&s.image, (at + MEMORY) as usize);
     let before = |i: u32| memory & (1 << i) != 0;
     let r = on(R);
@@ -152,6 +164,9 @@ fn full(p: &Program, s: &mut State, at: u32, gate: bool) -> (bool, bool, bool) {
     // `live` notes that one still runs.
     let mut live = false;
     let mut ton = |s: &mut State, k: u32, e: bool, e_before: bool| {
+        if TIMED.get(k as usize).is_none_or(|input| uses & (1 << input) == 0) {
+            return false;
+        }
         let start = (at + STARTS + k) as usize;
         if e && !e_before {
             s.set(start, now as u64);
@@ -184,10 +199,7 @@ fn full(p: &Program, s: &mut State, at: u32, gate: bool) -> (bool, bool, bool) {
             || (sl_ff && !sl_done));
     let fell = memory & Q_BEFORE != 0 && !level;
     let written = memory & WRITTEN;
-    let mut keep = written;
-    for (i, v) in inputs.iter().enumerate() {
-        keep |= u64::from(*v) << i;
-    }
+    let mut keep = written | inputs;
     for (flag, v) in [(S_FF, s_ff), (SD_FF, sd_ff), (DS_FF, ds_ff), (SL_FF, sl_ff), (Q_BEFORE, level)] {
         if v {
             keep |= flag;

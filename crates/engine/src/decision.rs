@@ -112,7 +112,7 @@ fn boolean(t: &Tables) -> impl Iterator<Item = Code> + '_ {
 }
 
 /// The value of a decision.
-#[inline]
+#[inline(never)]
 pub(crate) fn decide(p: &Program, image: &[u64], first: u32) -> bool {
     let d = &p.decisions;
     let mut next = 0u16;

@@ -71,6 +71,7 @@ impl State {
     pub fn set_word(&mut self, p: &Program, addr: Addr, value: u64) {
         if addr.0 < self.var_words {
             self.scratch.quiet = false;
+            self.scratch.worked = true;
             write(p, self, addr, value);
         }
     }

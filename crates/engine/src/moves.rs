@@ -7,19 +7,18 @@ use crate::decision::decide;
 use crate::layout::head;
 use crate::pass::{each_from, each_to};
 use crate::program::Program;
-use crate::rows::{Hot, Wait, output};
+use crate::rows::{Hot, output};
 use crate::scratch::Scratch;
 use crate::state::State;
 use crate::tables::NONE;
 
 /// True if the receptivity behind a hot step is true.
 #[inline(always)]
-fn holds(p: &Program, image: &[u64], waits_for: u32, how: Wait) -> bool {
-    match how {
-        Wait::Word => word(image, waits_for as usize) != 0,
-        Wait::NotWord => word(image, waits_for as usize) == 0,
-        Wait::Decision => decide(p, image, waits_for),
+fn holds(p: &Program, image: &[u64], h: &Hot) -> bool {
+    if h.decides {
+        return decide(p, image, h.waits_for);
     }
+    (word(image, h.waits_for as usize) != 0) != h.flip
 }
 
 /// True if something other than plain steps may act in the next pass: an edge, a timer, a control
@@ -36,11 +35,12 @@ pub(crate) fn is_awake(p: &Program, image: &[u64]) -> bool {
 pub(crate) fn one_token(p: &Program, s: &mut State) -> Option<bool> {
     let State { image, scratch, steps, .. } = s;
     let from = scratch.lone;
-    let Hot { waits_for, rank, to, from_output, to_output, how } = *p.hot.get(from as usize)?;
-    if to == NONE || waits_for == NONE {
+    let hot = p.hot.get(from as usize)?;
+    let Hot { rank, to, from_output, to_output, .. } = *hot;
+    if to == NONE {
         return None;
     }
-    if !holds(p, image, waits_for, how) {
+    if !holds(p, image, hot) {
         return Some(false);
     }
     if scratch.cleared.len() < scratch.cleared.capacity() {
@@ -78,7 +78,7 @@ pub(crate) fn collect(p: &Program, s: &mut State) {
         let Some(h) = p.hot.get(step as usize) else { break };
         if h.waits_for == NONE {
             scratch.slow.push(step);
-        } else if holds(p, image, h.waits_for, h.how) {
+        } else if holds(p, image, h) {
             scratch.fired.push(h.rank);
         }
     }
@@ -91,7 +91,7 @@ pub(crate) fn are_plain(p: &Program, scratch: &Scratch) -> bool {
     scratch.on.is_empty()
         && scratch.off.is_empty()
         && scratch.runs.is_empty()
-        && scratch.fired.iter().all(plain)
+        && (p.all_plain || scratch.fired.iter().all(plain))
 }
 
 /// Clears the transitions of a pass in which all are plain. Tells whether a step changed.

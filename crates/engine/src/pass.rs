@@ -190,7 +190,9 @@ fn collect(p: &Program, s: &mut State) -> Result<(), Fault> {
     // Hot steps are judged before the others. That must not matter, so no receptivity may write.
     if p.judges_freely && !s.scratch.any_blocked {
         moves::collect(p, s);
-        sources(p, s)?;
+        if !p.tables.sources.is_empty() {
+            sources(p, s)?;
+        }
         for k in 0..s.scratch.slow.len() {
             if let Some(&step) = s.scratch.slow.get(k) {
                 outs(p, s, step)?;

@@ -2,6 +2,7 @@
 //! to know of them beforehand.
 
 use alloc::boxed::Box;
+use alloc::vec;
 use alloc::vec::Vec;
 
 use crate::check::{LoadError, check, writes};
@@ -11,7 +12,7 @@ use crate::fingerprint::fingerprint;
 use crate::layout::Layout;
 use crate::ops::{Op, TEXT};
 use crate::rows::{Hot, Move, hot, moves};
-use crate::scan::PATIENCE;
+use crate::rules::PATIENCE;
 use crate::tables::{NONE, Receptivity, Tables};
 
 /// A checked, immutable compiled chart. Only [`Program::new`] makes one.
@@ -39,7 +40,7 @@ pub struct Program {
     pub(crate) has_contests: bool,
     /// No receptivity writes a variable, so they may be judged in any order.
     pub(crate) judges_freely: bool,
-    /// A scan in which nothing is awake and no watched input changes may be one of one token.
+    /// Where nothing is awake and no watched input changes, a scan begins with its passes.
     pub(crate) brisk: bool,
     /// Some watch reads an input.
     pub(crate) watches_inputs: bool,
@@ -55,10 +56,14 @@ pub struct Program {
     pub(crate) commit_room: usize,
     /// Room for one string at work, in bytes; 0 where there are none.
     pub(crate) text_room: usize,
+    /// The inputs that each control block has, a bit each.
+    pub(crate) uses: Box<[u16]>,
     /// A row for each step.
     pub(crate) hot: Box<[Hot]>,
     /// A row for each transition.
     pub(crate) moves: Box<[Move]>,
+    /// All transitions are plain.
+    pub(crate) all_plain: bool,
     /// Watches that are evaluated in every scan.
     pub(crate) always: Box<[u32]>,
     /// The words of the image that hold times.
@@ -112,7 +117,9 @@ impl Program {
                 && !t.watches.iter().any(|w| w.always),
             watches_inputs: t.word_watches.iter().any(|(a, _)| (t.inputs.start..t.inputs.end).contains(&a.0)),
             awake: layout.awake(&t),
+            uses: uses(&t),
             hot: hot(&t, &layout, &decisions, &moves),
+            all_plain: moves.iter().all(|m| m.plain),
             moves,
             timeless: !frame
                 && !has_periods
@@ -139,6 +146,16 @@ impl Program {
             tables: t,
         }
     }
+}
+
+fn uses(t: &Tables) -> Box<[u16]> {
+    let mut uses = vec![0u16; t.blocks.len()];
+    for c in &t.contributions {
+        if let Some(u) = uses.get_mut(c.block as usize) {
+            *u |= 1 << c.input;
+        }
+    }
+    uses.into_boxed_slice()
 }
 
 /// True if a receptivity writes a variable.

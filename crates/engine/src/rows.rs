@@ -16,8 +16,8 @@ use crate::tables::{NONE, Receptivity, Rows, Tables, Transition};
 #[derive(Clone, Copy, Debug)]
 #[repr(align(32))]
 pub(crate) struct Hot {
-    /// A word of the image or the first test of a decision, as `how` says; `NONE` for a step of
-    /// another kind.
+    /// A word of the image or, where `decides` says so, the first test of a decision; `NONE` for a
+    /// step of another kind.
     pub(crate) waits_for: u32,
     /// The transition.
     pub(crate) rank: u32,
@@ -28,19 +28,10 @@ pub(crate) struct Hot {
     pub(crate) from_output: u32,
     /// Output that follows the succeeding step, or `NONE`.
     pub(crate) to_output: u32,
-    /// How the receptivity is judged.
-    pub(crate) how: Wait,
-}
-
-/// How the receptivity of a [`Hot`] row is judged.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Wait {
-    /// The word is not 0.
-    Word,
-    /// The word is 0.
-    NotWord,
-    /// The decision is TRUE.
-    Decision,
+    /// The receptivity is the complement of the word.
+    pub(crate) flip: bool,
+    /// The receptivity is a decision.
+    pub(crate) decides: bool,
 }
 
 /// A transition in a pass where all that clear are plain. Outputs are words of the image.
@@ -84,25 +75,34 @@ fn is_plain(t: &Tables, tr: &Transition) -> bool {
 
 /// A row for each step.
 pub(crate) fn hot(t: &Tables, l: &Layout, d: &Decisions, moves: &[Move]) -> Box<[Hot]> {
-    let none =
-        Hot { waits_for: NONE, rank: NONE, to: NONE, from_output: NONE, to_output: NONE, how: Wait::Word };
+    let none = Hot {
+        waits_for: NONE,
+        rank: NONE,
+        to: NONE,
+        from_output: NONE,
+        to_output: NONE,
+        flip: false,
+        decides: false,
+    };
     let row = |step: u32, out: Rows| {
         let [rank] = t.outs.get(out.start as usize..out.end as usize)? else { return None };
         let tr = t.transitions.get(*rank as usize)?;
         if !tr.more_from.is_empty() {
             return None;
         }
-        let (waits_for, how) = match tr.receptivity {
+        let (waits_for, flip) = match tr.receptivity {
             // This word is not zero while the program runs.
-            Receptivity::True => (head::FLAGS as u32, Wait::Word),
-            Receptivity::Word(a) => (l.vars + a.0, Wait::Word),
-            Receptivity::NotWord(a) => (l.vars + a.0, Wait::NotWord),
-            Receptivity::Code(code) => (d.of(code), Wait::Decision),
+            Receptivity::True => (head::FLAGS as u32, false),
+            Receptivity::Word(a) => (l.vars + a.0, false),
+            Receptivity::NotWord(a) => (l.vars + a.0, true),
+            Receptivity::Code(code) => (d.of(code), false),
         };
+        let decides = matches!(tr.receptivity, Receptivity::Code(_));
         let plain = moves.get(*rank as usize).filter(|m| m.plain && m.from == step && m.to != step);
+        let plain = plain.filter(|_| waits_for != NONE);
         let to = plain.map_or(NONE, |m| m.to);
         let (from_output, to_output) = (output(t, l, step), output(t, l, to));
-        Some(Hot { waits_for, rank: *rank, to, from_output, to_output, how })
+        Some(Hot { waits_for, rank: *rank, to, from_output, to_output, flip, decides })
     };
     (0..).zip(&t.steps).map(|(i, s)| row(i, s.out).unwrap_or(none)).collect()
 }

@@ -44,6 +44,10 @@ pub struct Rules {
     pub bound: u32,
 }
 
+/// Passes after which cycles are looked for. Most searches are shorter, and looking
+/// costs a copy of the image.
+pub(crate) const PATIENCE: u32 = 48;
+
 impl Default for Rules {
     fn default() -> Rules {
         Rules::IEC60848

@@ -64,6 +64,7 @@ fn index(s: &mut State, len: u32) -> Result<u32, FaultKind> {
 
 /// Runs code to its end.
 pub(crate) fn run(p: &Program, s: &mut State, code: Code) -> Result<(), Fault> {
+    s.scratch.worked = true;
     let mut pc = code.start;
     while pc < code.end {
         let Some(op) = p.tables.code.get(pc as usize) else { break };

@@ -8,6 +8,7 @@ use crate::memory::{notice, write};
 use crate::ops::{Addr, Code, StepId};
 use crate::pass::{arcs, evolve, rest_active};
 use crate::program::Program;
+use crate::rules::PATIENCE;
 use crate::run::{run, value};
 use crate::state::State;
 use crate::tables::NONE;
@@ -24,10 +25,6 @@ pub struct Report {
     /// (`parallel_actions` only); the first of this scan.
     pub conflict: Option<Addr>,
 }
-
-/// Passes after which cycles are looked for. Most searches are shorter, and looking
-/// costs a copy of the image.
-pub(crate) const PATIENCE: u32 = 48;
 
 /// Runs one scan.
 ///
@@ -47,39 +44,46 @@ pub fn scan(p: &Program, s: &mut State, inputs: &[u64], now: i64) -> Result<Repo
     if s.scratch.quiet && still(p, s, inputs, now) {
         return Ok(Report { passes: 1, cleared: 0, conflict: None });
     }
-    if s.scratch.lone != NONE && begin_brisk(p, s, inputs, now) {
+    if p.brisk && begin_brisk(p, s, inputs, now) {
+        if !p.tables.rules.stable
+            && let Some(moved) = moves::one_token(p, s)
+        {
+            s.scratch.quiet = !moved && p.timeless;
+            return Ok(Report { passes: 1, cleared: u32::from(moved), conflict: None });
+        }
         return brisk(p, s);
     }
     whole(p, s, inputs, now)
 }
 
-/// The rest of a scan in which one token acts, after [`begin_brisk`].
-#[inline(always)]
+/// The rest of a scan after [`begin_brisk`].
+#[inline(never)]
 fn brisk(p: &Program, s: &mut State) -> Result<Report, Fault> {
     let mut made = 0;
-    while let Some(moved) = moves::one_token(p, s) {
-        made += 1;
-        if !moved || !p.tables.rules.stable {
-            s.scratch.quiet = !moved && p.timeless;
-            let cleared = made - u32::from(!moved);
-            return Ok(Report { passes: made, cleared, conflict: None });
-        }
-        if made + 1 >= PATIENCE {
-            break;
+    if p.tables.rules.stable {
+        while made + 1 < PATIENCE
+            && let Some(moved) = moves::one_token(p, s)
+        {
+            if !moved {
+                s.scratch.quiet = p.timeless;
+                return Ok(Report { passes: made + 1, cleared: made, conflict: None });
+            }
+            made += 1;
         }
     }
-    goes_on(p, s, made)
+    s.scratch.begin_passes(made);
+    let done = search(p, s, made).and_then(|()| finish_brisk(p, s));
+    end(p, s, done)
 }
 
-/// The rest of a scan in which one token made some passes and then came where more can happen.
-#[inline(never)]
-fn goes_on(p: &Program, s: &mut State, made: u32) -> Result<Report, Fault> {
-    s.scratch.passes = made;
-    s.scratch.cleared_count = made;
-    s.scratch.work = 0;
-    s.scratch.stack.clear();
-    let done = search(p, s, made).and_then(|()| finish(p, s));
-    end(p, s, done)
+/// As [`finish`], for a scan after [`begin_brisk`].
+#[inline(always)]
+fn finish_brisk(p: &Program, s: &mut State) -> Result<(), Fault> {
+    if s.scratch.late_any || s.scratch.worked || moves::is_awake(p, &s.image) {
+        return finish(p, s);
+    }
+    s.scratch.quiet = p.timeless && s.scratch.idle && !s.scratch.changed && !s.has_flag(REQUESTS);
+    Ok(())
 }
 
 /// The general way.
@@ -99,13 +103,14 @@ fn end(p: &Program, s: &mut State, done: Result<(), Fault>) -> Result<Report, Fa
     }
 }
 
-/// As [`begin`], for a scan in which one token acts. Does nothing and returns false where something
-/// else may act, before the first scan, after a fault, or where inputs or time do not fit.
+/// As [`begin`], for a scan in which nothing but transitions acts at first. Does nothing and returns
+/// false where something else may act, before the first scan, after a fault, or where inputs or time
+/// do not fit.
 #[inline(always)]
 fn begin_brisk(p: &Program, s: &mut State, inputs: &[u64], now: i64) -> bool {
     let (from, to) = ((s.vars + p.tables.inputs.start) as usize, (s.vars + p.tables.inputs.end) as usize);
     let before = s.now();
-    if !p.brisk || !s.has_only_flag(STARTED) || now < before || moves::is_awake(p, &s.image) {
+    if !s.has_only_flag(STARTED) || now < before || moves::is_awake(p, &s.image) {
         return false;
     }
     let Some(area) = s.image.get_mut(from..to) else { return false };
@@ -405,7 +410,7 @@ pub fn finish(p: &Program, s: &mut State) -> Result<(), Fault> {
         write(p, s, flag, 1);
         return Err(FaultKind::Table.nowhere());
     }
-    if !t.locals.is_empty() {
+    if core::mem::take(&mut s.scratch.worked) && !t.locals.is_empty() {
         let (from, to) = (s.vars + t.locals.start, s.vars + t.locals.end);
         if let Some(words) = s.image.get_mut(from as usize..to as usize) {
             words.fill(0);

@@ -78,6 +78,8 @@ pub(crate) struct Scratch {
     pub(crate) emptied: Vec<(u32, (u64, u64))>,
     /// This pass changed a step or a variable.
     pub(crate) changed: bool,
+    /// Code has run since the locals were cleared, so that they may be set.
+    pub(crate) worked: bool,
     /// Jumps made in this scan.
     pub(crate) work: u32,
     /// The image that the search for a cycle compares with.
@@ -125,6 +127,7 @@ impl Scratch {
             stack: Vec::with_capacity(STACK),
             fired: Vec::with_capacity(t.transitions.len()),
             lone: NONE,
+            worked: true,
             slow: Vec::with_capacity(steps),
             on: Vec::with_capacity(2 * steps),
             off: Vec::with_capacity(2 * steps),
@@ -208,14 +211,26 @@ impl Scratch {
         self.late_any = false;
     }
 
-    /// The same for a scan in which one token acts: the other parts are as the scan before left
-    /// them, or are not used.
+    /// Forgets the reports of the scan before, as a scan begins in which nothing is awake.
     #[inline(always)]
     pub(crate) fn begin_brisk(&mut self) {
         self.cleared.clear();
         self.ran.clear();
+    }
+
+    /// Makes ready for the passes of such a scan, of which `made` were made, each with one transition
+    /// cleared. What is not mentioned was left as it must be by the scan before.
+    #[inline(always)]
+    pub(crate) fn begin_passes(&mut self, made: u32) {
+        self.stack.clear();
+        self.runs.clear();
+        self.commits.clear();
+        self.passes = made;
+        self.cleared_count = made;
         self.conflict = None;
-        self.first_pass = false;
+        self.work = 0;
+        // Watches have nothing to look at before the first pass.
+        self.first_pass = true;
     }
 
     /// Drops the changes of steps and the late actions that a scan had in hand when
@@ -233,6 +248,7 @@ impl Scratch {
         self.begin();
         self.drop_marks();
         self.quiet = false;
+        self.worked = true;
         self.lone = NONE;
         self.first_pass = false;
         self.any_blocked = false;
