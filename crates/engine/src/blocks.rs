@@ -147,23 +147,27 @@ fn inputs(s: &State, at: u32, uses: u16) -> u64 {
     inputs
 }
 
-/// Evaluates any other block, likewise.
-fn full(p: &Program, s: &mut State, block: u32, gate: bool) -> (bool, bool, bool) {
-    let at = base(p, block);
-    let uses = p.uses.get(block as usize).copied().unwrap_or(0);
+/// What the timed inputs of a block give.
+#[derive(Default)]
+struct Timed {
+    /// One of them makes Q true.
+    level: bool,
+    /// The flip-flops behind them, as bits of the memory word.
+    latched: u64,
+    /// A timer still runs.
+    live: bool,
+}
+
+/// Brings the timers of a block up to date. `inputs` and `memory` have its inputs now and at the
+/// latest evaluation, a bit each; `r` is its input R.
+#[inline(never)]
+fn timed(s: &mut State, at: u32, uses: u16, inputs: u64, memory: u64, r: bool) -> Timed {
     let now = word(&s.image, head::NOW) as i64;
-    let inputs = inputs(s, at, uses);
     let on = |i: u32| inputs & (1 << i) != 0;
-    let memory = word(&s.image, (at + MEMORY) as usize);
     let before = |i: u32| memory & (1 << i) != 0;
-    let r = on(R);
-    let s_ff = !r && (on(S) || memory & S_FF != 0);
-    let sd_ff = !r && (on(SD) || memory & SD_FF != 0);
-    let sl_ff = !r && (on(SL) || memory & SL_FF != 0);
-    // A TON with its input now and at the latest evaluation; tells whether it is over.
-    // `live` notes that one still runs.
     let mut live = false;
-    let mut ton = |s: &mut State, k: u32, e: bool, e_before: bool| {
+    // A TON with its input now and at the latest evaluation; tells whether it is over.
+    let mut ton = |k: u32, e: bool, e_before: bool| {
         if TIMED.get(k as usize).is_none_or(|input| uses & (1 << input) == 0) {
             return false;
         }
@@ -178,35 +182,46 @@ fn full(p: &Program, s: &mut State, block: u32, gate: bool) -> (bool, bool, bool
         live |= e && !done;
         done
     };
-    let l_done = ton(s, 0, on(L), before(L));
-    let d_done = ton(s, 1, on(D), before(D));
-    let sd_done = ton(s, 2, sd_ff, memory & SD_FF != 0);
-    let ds_done = ton(s, 3, on(DS), before(DS));
-    let sl_done = ton(s, 4, sl_ff, memory & SL_FF != 0);
+    let sd_ff = !r && (on(SD) || memory & SD_FF != 0);
+    let sl_ff = !r && (on(SL) || memory & SL_FF != 0);
+    let l_done = ton(0, on(L), before(L));
+    let d_done = ton(1, on(D), before(D));
+    let sd_done = ton(2, sd_ff, memory & SD_FF != 0);
+    let ds_done = ton(3, on(DS), before(DS));
+    let sl_done = ton(4, sl_ff, memory & SL_FF != 0);
     let ds_ff = !r && (ds_done || memory & DS_FF != 0);
+    Timed {
+        level: (on(L) && !l_done) || d_done || sd_done || ds_ff || (sl_ff && !sl_done),
+        latched: flag(SD_FF, sd_ff) | flag(DS_FF, ds_ff) | flag(SL_FF, sl_ff),
+        live,
+    }
+}
+
+/// A bit of the memory word, where it is set.
+fn flag(bit: u64, on: bool) -> u64 {
+    if on { bit } else { 0 }
+}
+
+/// Evaluates any other block, likewise.
+fn full(p: &Program, s: &mut State, block: u32, gate: bool) -> (bool, bool, bool) {
+    let at = base(p, block);
+    let uses = p.uses.get(block as usize).copied().unwrap_or(0);
+    let inputs = inputs(s, at, uses);
+    let on = |i: u32| inputs & (1 << i) != 0;
+    let memory = word(&s.image, (at + MEMORY) as usize);
+    let before = |i: u32| memory & (1 << i) != 0;
+    let r = on(R);
+    let s_ff = !r && (on(S) || memory & S_FF != 0);
+    let any_timed = u64::from(uses) & TIMED.iter().fold(0, |all, i| all | 1 << i) != 0;
+    let timed = if any_timed { timed(s, at, uses, inputs, memory, r) } else { Timed::default() };
     let p_trig = on(P) && !before(P);
     let p1 = (on(P1) && !before(P1) || memory & EARLY_P1 != 0) && !r && gate;
     let p0 = (!on(P0) && before(P0) || memory & EARLY_P0 != 0) && !r && gate;
-    let level = !r
-        && gate
-        && (on(N)
-            || s_ff
-            || (on(L) && !l_done)
-            || d_done
-            || p_trig
-            || sd_done
-            || ds_ff
-            || (sl_ff && !sl_done));
+    let level = !r && gate && (on(N) || s_ff || p_trig || timed.level);
     let fell = memory & Q_BEFORE != 0 && !level;
-    let written = memory & WRITTEN;
-    let mut keep = written | inputs;
-    for (flag, v) in [(S_FF, s_ff), (SD_FF, sd_ff), (DS_FF, ds_ff), (SL_FF, sl_ff), (Q_BEFORE, level)] {
-        if v {
-            keep |= flag;
-        }
-    }
+    let keep = (memory & WRITTEN) | inputs | timed.latched | flag(S_FF, s_ff) | flag(Q_BEFORE, level);
     s.set((at + MEMORY) as usize, keep);
     let q = level || p1 || p0;
     let run = q || (p.tables.rules.final_scan && fell);
-    (q, run, live || p_trig || p1 || p0)
+    (q, run, timed.live || p_trig || p1 || p0)
 }

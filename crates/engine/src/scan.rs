@@ -430,6 +430,9 @@ fn waits(p: &Program, s: &State) -> bool {
 
 /// Puts the `each scan` actions of the active steps aside for the end of the scan.
 fn periodics(p: &Program, s: &mut State) {
+    if p.tables.periodics.is_empty() {
+        return;
+    }
     let mut walk = Walk::new(&p.layout.periodics, &s.image);
     while let Some(i) = walk.next(&p.layout.periodics, &s.image) {
         if p.tables.rules.periodic_first && !bit(&s.scratch.before, 0, i) {
