@@ -147,7 +147,7 @@ fn inputs(s: &State, at: u32, uses: u16) -> u64 {
     inputs
 }
 
-/// What the timed inputs of a block give.
+/// The result of the timed inputs of a block.
 #[derive(Default)]
 struct Timed {
     /// One of them makes Q true.

@@ -10,11 +10,26 @@ use alloc::boxed::Box;
 use alloc::vec;
 use alloc::vec::Vec;
 
+use crate::bits::word;
 use crate::block_words::TIMED;
 use crate::check::writes;
 use crate::layout::{Layout, head};
 use crate::ops::{Addr, Arith, Block, Builtin, Code, Num, Op};
+use crate::rules::Rules;
 use crate::tables::{NONE, Receptivity, Rows, Tables};
+
+/// The word of the header in which step times count: ns, or scans under the scan clock.
+#[inline(always)]
+pub(crate) fn clock(rules: &Rules) -> usize {
+    if rules.scan_clock { head::SCANS } else { head::NOW }
+}
+
+/// The time since a stamp at a word of the image; the stamp itself where its owner is inactive.
+#[inline(always)]
+pub(crate) fn since(image: &[u64], at: u32, active: bool, now: i64) -> i64 {
+    let stamp = word(image, at as usize) as i64;
+    if active { now.wrapping_sub(stamp) } else { stamp }
+}
 
 /// A cap of a time that is read without end.
 const ENDLESS: i64 = i64::MAX;

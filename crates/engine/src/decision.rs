@@ -10,12 +10,11 @@ use alloc::boxed::Box;
 use alloc::vec;
 use alloc::vec::Vec;
 
-use crate::bits::word;
-use crate::layout::Layout;
+use crate::bits::{bit, word};
+use crate::clocks::{clock, since};
+use crate::layout::{Layout, head};
 use crate::number::compare;
 use crate::ops::{Addr, Cmp, Code, Num, Op, StepId};
-use crate::program::Program;
-use crate::state::{step_age, step_time};
 use crate::tables::{NONE, Receptivity, Tables};
 
 /// Most tests of one decision. Longer code is left to the interpreter.
@@ -53,8 +52,12 @@ enum Operand {
     Constant(u64),
     /// A word of the image.
     Word(u32),
-    StepTime(StepId),
-    StepAge(StepId),
+    /// The time of a step: the words of its stamp and of the time now.
+    Since {
+        stamp: u32,
+        now: u32,
+        step: StepId,
+    },
 }
 
 /// The decisions of a program.
@@ -64,6 +67,8 @@ pub(crate) struct Decisions {
     first: Box<[(u32, u32)]>,
     tests: Box<[Test]>,
     comparisons: Box<[Comparison]>,
+    /// The word where the bits of the steps begin.
+    steps: u32,
 }
 
 impl Decisions {
@@ -83,6 +88,7 @@ impl Decisions {
             first: first.into_boxed_slice(),
             tests: building.tests.into_boxed_slice(),
             comparisons: building.comparisons.into_boxed_slice(),
+            steps: l.steps.base(),
         }
     }
 
@@ -93,6 +99,36 @@ impl Decisions {
             Some((end, first)) if *end == code.end => *first,
             _ => NONE,
         }
+    }
+
+    /// The value of a decision, by its first test.
+    #[inline(never)]
+    pub(crate) fn decide(&self, image: &[u64], first: u32) -> bool {
+        let mut next = 0u16;
+        while let Some(test) = self.tests.get(first as usize + usize::from(next)) {
+            let holds = match test.mask {
+                0 => self.compared(image, test.at),
+                mask => word(image, test.at as usize) & mask != 0,
+            };
+            next = if holds { test.yes } else { test.no };
+            if next >= NO {
+                break;
+            }
+        }
+        next == YES
+    }
+
+    fn compared(&self, image: &[u64], row: u32) -> bool {
+        let Some(c) = self.comparisons.get(row as usize) else { return false };
+        let value = |o: Operand| match o {
+            Operand::Constant(v) => v,
+            Operand::Word(at) => word(image, at as usize),
+            Operand::Since { stamp, now, step } => {
+                let now = word(image, now as usize) as i64;
+                since(image, stamp, bit(image, self.steps, step.0), now) as u64
+            }
+        };
+        compare(c.how, c.kind, value(c.left), value(c.right))
     }
 }
 
@@ -109,35 +145,6 @@ fn boolean(t: &Tables) -> impl Iterator<Item = Code> + '_ {
         .chain(t.contributions.iter().map(|c| c.condition))
         .chain(t.blocks.iter().map(|b| b.gate))
         .filter(|code| !code.is_empty())
-}
-
-/// The value of a decision.
-#[inline(never)]
-pub(crate) fn decide(p: &Program, image: &[u64], first: u32) -> bool {
-    let d = &p.decisions;
-    let mut next = 0u16;
-    while let Some(test) = d.tests.get(first as usize + usize::from(next)) {
-        let holds = match test.mask {
-            0 => compared(p, image, test.at),
-            mask => word(image, test.at as usize) & mask != 0,
-        };
-        next = if holds { test.yes } else { test.no };
-        if next >= NO {
-            break;
-        }
-    }
-    next == YES
-}
-
-fn compared(p: &Program, image: &[u64], row: u32) -> bool {
-    let Some(c) = p.decisions.comparisons.get(row as usize) else { return false };
-    let value = |o: Operand| match o {
-        Operand::Constant(v) => v,
-        Operand::Word(at) => word(image, at as usize),
-        Operand::StepTime(step) => step_time(p, image, step) as u64,
-        Operand::StepAge(step) => step_age(p, image, step) as u64,
-    };
-    compare(c.how, c.kind, value(c.left), value(c.right))
 }
 
 /// A part of a Boolean expression: a leaf, or what joins two parts of [`Code`] before it.
@@ -219,8 +226,13 @@ impl Building<'_> {
         Some(match op {
             Op::Push(v) => Part::Value(Operand::Constant(v)),
             Op::Load(Addr(a)) => Part::Value(Operand::Word(l.vars + a)),
-            Op::StepTime(step) => Part::Value(Operand::StepTime(step)),
-            Op::StepAge(step) => Part::Value(Operand::StepAge(step)),
+            Op::StepTime(step) => {
+                let now = clock(&self.t.rules) as u32;
+                Part::Value(Operand::Since { stamp: l.stamps + step.0, now, step })
+            }
+            Op::StepAge(step) => {
+                Part::Value(Operand::Since { stamp: l.ages + step.0, now: head::NOW as u32, step })
+            }
             Op::Active(step) => bit(l.steps.base(), step.0),
             Op::Rise(w) => bit(l.rise, w.0),
             Op::Fall(w) => bit(l.fall, w.0),

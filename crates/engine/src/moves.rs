@@ -3,9 +3,7 @@
 //! but leave out what cannot occur. `tests/ways.rs` runs the same charts with and without them.
 
 use crate::bits::{Tree, Walk, bit, set_bit, word};
-use crate::decision::decide;
 use crate::layout::head;
-use crate::pass::{each_from, each_to};
 use crate::program::Program;
 use crate::rows::{Hot, output};
 use crate::scratch::Scratch;
@@ -16,7 +14,7 @@ use crate::tables::NONE;
 #[inline(always)]
 fn holds(p: &Program, image: &[u64], h: &Hot) -> bool {
     if h.decides {
-        return decide(p, image, h.waits_for);
+        return p.decisions.decide(image, h.waits_for);
     }
     (word(image, h.waits_for as usize) != 0) != h.flip
 }
@@ -147,12 +145,14 @@ fn each_end(p: &Program, rank: u32, succeeding: bool, mut f: impl FnMut(u32, u32
     }
     ends(p, rank, succeeding, &mut f);
 }
+
 /// The same for a transition with several steps or none on a side.
 fn ends(p: &Program, rank: u32, succeeding: bool, f: &mut dyn FnMut(u32, u32)) {
     let Some(t) = p.tables.transitions.get(rank as usize) else { return };
     let g = |step: u32| f(step, output(&p.tables, &p.layout, step));
-    if succeeding { each_to(p, t, g) } else { each_from(p, t, g) }
+    if succeeding { p.tables.each_to(t, g) } else { p.tables.each_from(t, g) }
 }
+
 /// The parts of a state that change with steps.
 struct Area<'a> {
     image: &'a mut [u64],

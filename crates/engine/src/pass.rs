@@ -134,7 +134,7 @@ fn impose(p: &Program, s: &mut State, i: u32) {
         s.scratch.any_blocked = true;
     }
     let Situation::Steps(rows) = o.situation else { return };
-    for step in arcs(p, rows) {
+    for step in p.tables.arcs(rows) {
         mark_on(s, *step);
     }
     let Some(group) = p.tables.charts.get(chart).and_then(|c| p.tables.groups.get(c.group.0 as usize)) else {
@@ -156,10 +156,10 @@ fn agree(p: &Program, s: &State, first: Situation, o: &Order) -> bool {
     match (first, o.situation) {
         (Situation::Current, Situation::Current) => true,
         (Situation::Steps(a), Situation::Steps(b)) => {
-            let (a, b) = (arcs(p, a), arcs(p, b));
+            let (a, b) = (p.tables.arcs(a), p.tables.arcs(b));
             a.iter().all(|x| b.contains(x)) && b.iter().all(|x| a.contains(x))
         }
-        (Situation::Current, Situation::Steps(rows)) => is_in(p, s, o.chart, arcs(p, rows)),
+        (Situation::Current, Situation::Steps(rows)) => is_in(p, s, o.chart, p.tables.arcs(rows)),
         // The tables have the orders that keep a situation first.
         (Situation::Steps(_), Situation::Current) => false,
     }
@@ -171,10 +171,6 @@ fn is_in(p: &Program, s: &State, chart: u32, steps: &[StepId]) -> bool {
     group.is_some_and(|g| {
         (g.steps.start..g.steps.end).all(|k| acts(s, StepId(k)) == steps.contains(&StepId(k)))
     })
-}
-
-pub(crate) fn arcs(p: &Program, rows: Rows) -> &[StepId] {
-    p.tables.arcs.get(rows.start as usize..rows.end as usize).unwrap_or(&[])
 }
 
 /// Reports two orders that disagree, before any transition of the pass is judged.
@@ -246,7 +242,7 @@ fn is_blocked(s: &State, chart: u32) -> bool {
 /// True if all preceding steps but the first are active.
 #[inline(always)]
 pub(crate) fn rest_active(p: &Program, s: &State, t: &Transition) -> bool {
-    t.more_from.is_empty() || arcs(p, t.more_from).iter().all(|f| s.steps.contains(&s.image, f.0))
+    t.more_from.is_empty() || p.tables.arcs(t.more_from).iter().all(|f| s.steps.contains(&s.image, f.0))
 }
 
 /// Collects the event actions of the steps that are active as the pass begins.
@@ -286,7 +282,7 @@ fn exclude(p: &Program, s: &mut State) {
         let Some(t) = p.tables.transitions.get(*i as usize) else { return false };
         let free = !t.shares || is_free(p, s, t);
         if free && t.shares {
-            each_from(p, t, |f| {
+            p.tables.each_from(t, |f| {
                 set_bit(&mut s.scratch.taken, 0, f, true);
             });
         }
@@ -322,7 +318,7 @@ fn by_number(p: &Program, s: &mut State) {
         }
         for i in fired.get(at..end).unwrap_or(&[]) {
             if let Some(t) = t.get((*i & !DROPPED) as usize) {
-                each_from(p, t, |f| {
+                p.tables.each_from(t, |f| {
                     set_bit(&mut s.scratch.taken, 0, f, true);
                 });
             }
@@ -336,7 +332,7 @@ fn by_number(p: &Program, s: &mut State) {
 
 fn is_free(p: &Program, s: &State, t: &Transition) -> bool {
     let mut free = true;
-    each_from(p, t, |f| free &= !bit(&s.scratch.taken, 0, f));
+    p.tables.each_from(t, |f| free &= !bit(&s.scratch.taken, 0, f));
     free
 }
 
@@ -358,12 +354,12 @@ fn mark(p: &Program, s: &mut State) {
         let Some(t) = s.scratch.fired.get(k).and_then(|i| p.tables.transitions.get(*i as usize)) else {
             break;
         };
-        each_from(p, t, |from| mark_off(s, StepId(from)));
+        p.tables.each_from(t, |from| mark_off(s, StepId(from)));
         if t.drops {
             let rank = s.scratch.fired.get(k).copied().unwrap_or(NONE);
             drops(p, rank).for_each(|step| mark_off(s, step));
         }
-        each_to(p, t, |to| mark_on(s, StepId(to)));
+        p.tables.each_to(t, |to| mark_on(s, StepId(to)));
         if t.on_clearing != NONE {
             s.scratch.runs.push(t.on_clearing);
         }
@@ -374,26 +370,6 @@ fn mark(p: &Program, s: &mut State) {
 fn drops(p: &Program, rank: u32) -> impl Iterator<Item = StepId> + '_ {
     let from = p.tables.drops.partition_point(|d| d.0 < rank);
     p.tables.drops.get(from..).unwrap_or(&[]).iter().take_while(move |d| d.0 == rank).map(|d| d.1)
-}
-
-#[inline(always)]
-pub(crate) fn each_from(p: &Program, t: &Transition, mut f: impl FnMut(u32)) {
-    if t.from.0 != NONE {
-        f(t.from.0);
-    }
-    if !t.more_from.is_empty() {
-        arcs(p, t.more_from).iter().for_each(|s| f(s.0));
-    }
-}
-
-#[inline(always)]
-pub(crate) fn each_to(p: &Program, t: &Transition, mut f: impl FnMut(u32)) {
-    if t.to.0 != NONE {
-        f(t.to.0);
-    }
-    if !t.more_to.is_empty() {
-        arcs(p, t.more_to).iter().for_each(|s| f(s.0));
-    }
 }
 
 /// Clears the transitions one after the other, in order of rank, each with its actions
@@ -413,7 +389,7 @@ fn in_turn(p: &Program, s: &mut State) -> Result<(), Fault> {
             run_action(p, s, t.on_clearing)?;
         }
         let mut done = Ok(());
-        each_from(p, &t, |f| {
+        p.tables.each_from(&t, |f| {
             if done.is_ok() {
                 done = leave(p, s, f);
             }
@@ -426,7 +402,7 @@ fn in_turn(p: &Program, s: &mut State) -> Result<(), Fault> {
                 }
             }
         }
-        each_to(p, &t, |f| {
+        p.tables.each_to(&t, |f| {
             if done.is_ok() {
                 done = enter(p, s, f);
             }
@@ -465,7 +441,7 @@ fn enclosures(p: &Program, s: &mut State) {
         if s.scratch.left.contains(&step) || !s.steps.contains(&s.image, step) {
             continue;
         }
-        for link in extra(p, step).map(|e| arcs(p, e.links)).unwrap_or(&[]) {
+        for link in extra(p, step).map(|e| p.tables.arcs(e.links)).unwrap_or(&[]) {
             mark_on(s, *link);
         }
     }
@@ -528,7 +504,7 @@ fn enter(p: &Program, s: &mut State, step: u32) -> Result<(), Fault> {
         if !e.links.is_empty() && s.scratch.entered.len() < s.scratch.entered.capacity() {
             s.scratch.entered.push(step);
         }
-        s.scratch.chain.extend(arcs(p, e.links).iter().rev().map(|l| l.0));
+        s.scratch.chain.extend(p.tables.arcs(e.links).iter().rev().map(|l| l.0));
     }
     Ok(())
 }

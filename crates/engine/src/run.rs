@@ -4,7 +4,6 @@
 //! So only a value can be wrong, and that is a [`Fault`] with its place.
 
 use crate::bits::{bit, set_bit, word};
-use crate::decision::decide;
 use crate::fault::{Fault, FaultKind};
 use crate::layout::{REQUESTS, START, head};
 use crate::memory::{read, write};
@@ -30,7 +29,7 @@ pub(crate) fn holds(p: &Program, s: &mut State, receptivity: Receptivity) -> Res
 pub(crate) fn value(p: &Program, s: &mut State, code: Code) -> Result<u64, Fault> {
     match p.decisions.of(code) {
         NONE => interpreted(p, s, code),
-        first => Ok(u64::from(decide(p, &s.image, first))),
+        first => Ok(u64::from(p.decisions.decide(&s.image, first))),
     }
 }
 

@@ -6,7 +6,7 @@ use crate::fault::{Fault, FaultKind};
 use crate::layout::{REQUESTS, START, STARTED, STOPPED, head};
 use crate::memory::{notice, write};
 use crate::ops::{Addr, Code, StepId};
-use crate::pass::{arcs, evolve, rest_active};
+use crate::pass::{evolve, rest_active};
 use crate::program::Program;
 use crate::rules::PATIENCE;
 use crate::run::{run, value};
@@ -319,7 +319,7 @@ fn requests(p: &Program, s: &mut State) -> Result<(), Fault> {
             }
         }
         if initialise {
-            for step in arcs(p, group.initial) {
+            for step in p.tables.arcs(group.initial) {
                 mark_on(s, *step);
             }
         }

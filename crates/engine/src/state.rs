@@ -11,6 +11,7 @@ use alloc::boxed::Box;
 use alloc::vec;
 
 use crate::bits::{Tree, Walk, bit, word};
+use crate::clocks::{clock, since};
 use crate::layout::{STARTED, STOPPED, head};
 use crate::ops::{Addr, GroupId, StepId, WatchId};
 use crate::program::Program;
@@ -131,7 +132,7 @@ impl State {
     /// Time since the step's activation, in ns (in scans under the scan clock); how
     /// long it was active, while it is not.
     pub fn step_time(&self, p: &Program, step: StepId) -> i64 {
-        since(&self.image, p.layout.stamps + step.0, self.is_active(step), clock(p, &self.image))
+        since(&self.image, p.layout.stamps + step.0, self.is_active(step), self.clock(p))
     }
 
     /// As [`State::step_time`], in ns under every clock.
@@ -184,7 +185,7 @@ impl State {
     /// The time in which step times count: ns, or scans under the scan clock.
     #[inline(always)]
     pub(crate) fn clock(&self, p: &Program) -> i64 {
-        clock(p, &self.image)
+        word(&self.image, clock(&p.tables.rules)) as i64
     }
 
     /// True if a row of [`crate::Tables::periods`] is due in this scan.
@@ -212,27 +213,4 @@ impl State {
             *w = value;
         }
     }
-}
-
-#[inline(always)]
-fn clock(p: &Program, image: &[u64]) -> i64 {
-    word(image, if p.tables.rules.scan_clock { head::SCANS } else { head::NOW }) as i64
-}
-
-/// The time since a stamp at a word of the image; the stamp itself where its owner is inactive.
-#[inline(always)]
-fn since(image: &[u64], at: u32, active: bool, now: i64) -> i64 {
-    let stamp = word(image, at as usize) as i64;
-    if active { now.wrapping_sub(stamp) } else { stamp }
-}
-
-/// [`State::step_time`] of a step that the program has.
-pub(crate) fn step_time(p: &Program, image: &[u64], step: StepId) -> i64 {
-    since(image, p.layout.stamps + step.0, p.layout.steps.contains(image, step.0), clock(p, image))
-}
-
-/// [`State::step_age`] of a step that the program has.
-pub(crate) fn step_age(p: &Program, image: &[u64], step: StepId) -> i64 {
-    let now = word(image, head::NOW) as i64;
-    since(image, p.layout.ages + step.0, p.layout.steps.contains(image, step.0), now)
 }

@@ -324,3 +324,32 @@ pub struct Tables {
     /// All code.
     pub code: Vec<Op>,
 }
+
+impl Tables {
+    /// The steps of a list; empty where there is no such list.
+    pub(crate) fn arcs(&self, rows: Rows) -> &[StepId] {
+        self.arcs.get(rows.start as usize..rows.end as usize).unwrap_or(&[])
+    }
+
+    /// Calls `f` with each preceding step of a transition.
+    #[inline(always)]
+    pub(crate) fn each_from(&self, t: &Transition, mut f: impl FnMut(u32)) {
+        if t.from.0 != NONE {
+            f(t.from.0);
+        }
+        if !t.more_from.is_empty() {
+            self.arcs(t.more_from).iter().for_each(|s| f(s.0));
+        }
+    }
+
+    /// Calls `f` with each succeeding step of a transition.
+    #[inline(always)]
+    pub(crate) fn each_to(&self, t: &Transition, mut f: impl FnMut(u32)) {
+        if t.to.0 != NONE {
+            f(t.to.0);
+        }
+        if !t.more_to.is_empty() {
+            self.arcs(t.more_to).iter().for_each(|s| f(s.0));
+        }
+    }
+}
