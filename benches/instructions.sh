@@ -24,7 +24,7 @@ count() {
 done >"$new"
 
 if [ "${1:-}" = --write ]; then
-  cp "$new" "$table"
+  cat "$new" >"$table"
   exit
 fi
 awk -F'\t' '

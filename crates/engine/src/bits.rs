@@ -165,6 +165,35 @@ impl Tree {
         }
     }
 
+    /// Removes the member `from` and inserts `to`, which is no member.
+    #[inline(always)]
+    pub(crate) fn hand_on(&self, words: &mut [u64], from: u32, to: u32) {
+        match words.get_mut((self.at[0] + to / 64) as usize) {
+            Some(w) if from / 64 == to / 64 => *w = *w & !(1 << (from % 64)) | 1 << (to % 64),
+            _ => self.pass_far(words, from, to),
+        }
+    }
+
+    /// Calls `f` with each member, in ascending order.
+    #[inline(always)]
+    pub(crate) fn each(&self, words: &[u64], mut f: impl FnMut(u32)) {
+        // The words of the lowest level that are not 0 are a set as well, one level up.
+        let above = Tree {
+            at: [self.at[1], self.at[2], self.at[3], self.at[4], 0],
+            levels: self.levels.saturating_sub(1),
+        };
+        let mut walk = Walk::new(&above, words);
+        let mut next = if self.levels == 1 { Some(0) } else { walk.next(&above, words) };
+        while let Some(i) = next {
+            let mut rest = word(words, (self.at[0] + i) as usize);
+            while rest != 0 {
+                f(i * 64 + rest.trailing_zeros());
+                rest &= rest - 1;
+            }
+            next = walk.next(&above, words);
+        }
+    }
+
     #[inline(never)]
     fn pass_far(&self, words: &mut [u64], from: u32, to: u32) {
         self.take(words, from);

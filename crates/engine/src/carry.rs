@@ -56,8 +56,8 @@ pub fn carry(p: &Program, old: (&Program, &State), common: &Common<'_>) -> Resul
     }
     for (new, old) in common.steps {
         set_step(p, &mut s, *new, from.is_active(*old));
-        stamps(p, &mut s, (p.layout.stamps + new.0, p.layout.ages + new.0), was, from, {
-            (was.layout.stamps + old.0, was.layout.ages + old.0)
+        stamps(p, &mut s, (p.layout.stamp(new.0), p.layout.age(new.0)), was, from, {
+            (was.layout.stamp(old.0), was.layout.age(old.0))
         });
     }
     for step in common.begin {
@@ -84,8 +84,12 @@ pub fn carry(p: &Program, old: (&Program, &State), common: &Common<'_>) -> Resul
     Ok((s, delays(was, from)))
 }
 
-/// Takes over the time of a step or a group, where both programs count in one unit.
+/// Takes over the time of a step or a group, where both programs count in one unit. A time that
+/// the old program does not keep begins with the change.
 fn stamps(p: &Program, s: &mut State, to: (u32, u32), was: &Program, from: &State, at: (u32, u32)) {
+    if at.1 == NONE {
+        return;
+    }
     let age = word(&from.image, at.1 as usize);
     if p.tables.rules.scan_clock == was.tables.rules.scan_clock {
         s.set(to.0 as usize, word(&from.image, at.0 as usize));

@@ -220,9 +220,9 @@ pub(crate) fn activate(p: &Program, s: &mut State, step: u32) {
     }
     tree.insert(&mut s.image, step);
     let now = s.clock(p) as u64;
-    s.set(p.layout.stamps as usize + step as usize, now);
+    s.set(p.layout.stamp(step) as usize, now);
     if p.tables.rules.scan_clock {
-        s.set((p.layout.ages + step) as usize, s.now() as u64);
+        s.set(p.layout.age(step) as usize, s.now() as u64);
     }
     let Some(row) = p.tables.steps.get(step as usize) else { return };
     if row.direct.0 != NONE {
@@ -247,12 +247,12 @@ pub(crate) fn deactivate(p: &Program, s: &mut State, step: u32) {
         turn(s, step, true);
     }
     tree.remove(&mut s.image, step);
-    let at = p.layout.stamps as usize + step as usize;
+    let at = p.layout.stamp(step) as usize;
     let gone =
         if p.tables.rules.keep_step_time { s.clock(p).wrapping_sub(word(&s.image, at) as i64) } else { 0 };
     s.set(at, gone as u64);
     if p.tables.rules.scan_clock {
-        let at = (p.layout.ages + step) as usize;
+        let at = p.layout.age(step) as usize;
         let age = s.now().wrapping_sub(word(&s.image, at) as i64);
         s.set(at, if p.tables.rules.keep_step_time { age as u64 } else { 0 });
     }

@@ -186,17 +186,18 @@ impl Reading<'_> {
     fn stamps(&self, l: &Layout) -> (Box<[Stamp]>, Vec<u32>) {
         let (t, by_scans) = (self.t, self.t.rules.scan_clock);
         let mut caps: Vec<(u32, Owner, bool, Option<i64>)> = Vec::new();
-        let mut place = |base: u32, count: usize, of: fn(u32) -> Owner, scans: bool| {
+        let mut place = |at: &dyn Fn(u32) -> u32, count: usize, of: fn(u32) -> Owner, scans: bool| {
             let first = caps.len();
-            caps.extend((0..count as u32).map(|i| (base + i, of(i), scans, None)));
+            caps.extend((0..count as u32).map(|i| (at(i), of(i), scans, None)));
             first
         };
-        let steps = place(l.stamps, t.steps.len(), Owner::Step, by_scans);
-        let groups = place(l.group_stamps, t.groups.len(), Owner::Group, by_scans);
+        let (s, g) = (t.steps.len(), t.groups.len());
+        let steps = place(&|i| l.stamp(i), s, Owner::Step, by_scans);
+        let groups = place(&|i| l.group_stamps + i, g, Owner::Group, by_scans);
         // Without the scan clock the ages are the stamps.
         let (ages, group_ages) = if by_scans {
-            let ages = place(l.ages, t.steps.len(), Owner::Step, false);
-            (ages, place(l.group_ages, t.groups.len(), Owner::Group, false))
+            let ages = place(&|i| l.age(i), s, Owner::Step, false);
+            (ages, place(&|i| l.group_ages + i, g, Owner::Group, false))
         } else {
             (steps, groups)
         };
@@ -214,7 +215,7 @@ impl Reading<'_> {
                 *known = (*known).max(Some(cap));
             }
         }
-        let unread = caps.iter().filter(|c| c.3.is_none()).map(|c| c.0).collect();
+        let unread = caps.iter().filter(|c| c.3.is_none() && c.0 != NONE).map(|c| c.0).collect();
         let read = caps
             .iter()
             .filter_map(|(at, of, scans, cap)| cap.map(|cap| Stamp { at: *at, of: *of, scans: *scans, cap }));

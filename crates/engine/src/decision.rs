@@ -228,10 +228,10 @@ impl Building<'_> {
             Op::Load(Addr(a)) => Part::Value(Operand::Word(l.vars + a)),
             Op::StepTime(step) => {
                 let now = clock(&self.t.rules) as u32;
-                Part::Value(Operand::Since { stamp: l.stamps + step.0, now, step })
+                Part::Value(Operand::Since { stamp: l.stamp(step.0), now, step })
             }
             Op::StepAge(step) => {
-                Part::Value(Operand::Since { stamp: l.ages + step.0, now: head::NOW as u32, step })
+                Part::Value(Operand::Since { stamp: l.age(step.0), now: head::NOW as u32, step })
             }
             Op::Active(step) => bit(l.steps.base(), step.0),
             Op::Rise(w) => bit(l.rise, w.0),

@@ -1,10 +1,13 @@
 //! The places of all parts of the image of a state.
 
 use alloc::boxed::Box;
+use alloc::vec;
+use alloc::vec::Vec;
 
 use crate::bits::Tree;
 use crate::block_words::BLOCK;
-use crate::tables::Tables;
+use crate::ops::Op;
+use crate::tables::{NONE, Tables};
 
 /// Words of the header.
 pub(crate) mod head {
@@ -41,12 +44,11 @@ pub(crate) struct Layout {
     pub(crate) steps: Tree,
     /// The variable area.
     pub(crate) vars: u32,
-    /// A word for each step: the clock at its activation while it is active, how
-    /// long it was active while it is not.
-    pub(crate) stamps: u32,
-    /// The same in nanoseconds. It is a place of its own under the scan clock, and
-    /// otherwise the same as `stamps`.
-    pub(crate) ages: u32,
+    /// The word of each step that has the clock at its activation while it is active, how
+    /// long it was active while it is not; `NONE` where it is not kept.
+    pub(crate) stamps: Box<[u32]>,
+    /// The same in nanoseconds under the scan clock; otherwise empty, and `stamps` are it.
+    ages: Box<[u32]>,
     /// Watches, a bit each: the value of the expression at the latest look.
     pub(crate) value: u32,
     /// Watches, a bit each: the expression rose in this pass.
@@ -105,8 +107,14 @@ impl Layout {
             at
         }
         l.vars = take(&mut next, n(t.init.len()));
-        l.stamps = take(&mut next, steps);
-        l.ages = if t.rules.scan_clock { take(&mut next, steps) } else { l.stamps };
+        let mut times = |kept: Vec<bool>| {
+            kept.into_iter().map(|kept| if kept { take(&mut next, 1) } else { NONE }).collect()
+        };
+        let (stamps, ages) = kept_times(t);
+        l.stamps = times(stamps);
+        if t.rules.scan_clock {
+            l.ages = times(ages);
+        }
         let bits = watches.div_ceil(64);
         l.value = take(&mut next, bits);
         l.rise = take(&mut next, bits);
@@ -135,6 +143,19 @@ impl Layout {
         l
     }
 
+    /// The word of [`Layout::stamps`] of a step, `NONE` where there is none.
+    #[inline(always)]
+    pub(crate) fn stamp(&self, step: u32) -> u32 {
+        self.stamps.get(step as usize).copied().unwrap_or(NONE)
+    }
+
+    /// As [`Layout::stamp`], in nanoseconds under every clock.
+    #[inline(always)]
+    pub(crate) fn age(&self, step: u32) -> u32 {
+        let ages = if self.ages.is_empty() { &self.stamps } else { &self.ages };
+        ages.get(step as usize).copied().unwrap_or(NONE)
+    }
+
     /// The top words of the sets whose members act in a pass or at its end, without those that
     /// are always empty.
     pub(crate) fn awake(&self, t: &Tables) -> Box<[u32]> {
@@ -150,4 +171,22 @@ impl Layout {
         ];
         sets.iter().filter(|(_, members)| *members > 0).map(|(set, _)| set.top()).collect()
     }
+}
+
+/// The steps whose stamps are kept, and those whose ages are.
+fn kept_times(t: &Tables) -> (Vec<bool>, Vec<bool>) {
+    let all = vec![!t.lean; t.steps.len()];
+    let (mut stamps, mut ages) = (all.clone(), all);
+    for op in &t.code {
+        let (list, step) = match op {
+            Op::StepTime(step) | Op::StepTenths(step) => (&mut stamps, step),
+            Op::StepAge(step) if t.rules.scan_clock => (&mut ages, step),
+            Op::StepAge(step) => (&mut stamps, step),
+            _ => continue,
+        };
+        if let Some(kept) = list.get_mut(step.0 as usize) {
+            *kept = true;
+        }
+    }
+    (stamps, ages)
 }

@@ -2,10 +2,12 @@
 //! which nothing but one token can act. They have the same meaning as `pass.rs` and `change.rs`,
 //! but leave out what cannot occur. `tests/ways.rs` runs the same charts with and without them.
 
-use crate::bits::{Tree, Walk, bit, set_bit, word};
+use core::mem::take;
+
+use crate::bits::{Tree, bit, set_bit, word};
 use crate::layout::head;
 use crate::program::Program;
-use crate::rows::{Hot, output};
+use crate::rows::{Hot, Shift, output};
 use crate::scratch::Scratch;
 use crate::state::State;
 use crate::tables::NONE;
@@ -34,7 +36,7 @@ pub(crate) fn one_token(p: &Program, s: &mut State) -> Option<bool> {
     let State { image, scratch, steps, .. } = s;
     let from = scratch.lone;
     let hot = p.hot.get(from as usize)?;
-    let Hot { rank, to, from_output, to_output, .. } = *hot;
+    let Hot { rank, to, .. } = *hot;
     if to == NONE {
         return None;
     }
@@ -46,40 +48,53 @@ pub(crate) fn one_token(p: &Program, s: &mut State) -> Option<bool> {
     }
     scratch.lone = to;
     steps.pass_on(image, from, to);
-    let now = word(image, head::NOW);
-    let stamps = p.layout.stamps;
-    if let Some(stamp) = image.get_mut((stamps + to) as usize) {
+    shift(image, &hot.shift, word(image, head::NOW), kept(p));
+    Some(true)
+}
+
+/// The bits of the time of a step that are left when it is deactivated: all or none.
+#[inline(always)]
+fn kept(p: &Program) -> u64 {
+    if p.tables.rules.keep_step_time { u64::MAX } else { 0 }
+}
+
+/// Moves the times and outputs of two plain steps along with a token. `kept` is [`kept`].
+#[inline(always)]
+fn shift(image: &mut [u64], at: &Shift, now: u64, kept: u64) {
+    if let Some(stamp) = image.get_mut(at.to_stamp as usize) {
         *stamp = now;
     }
-    if let Some(stamp) = image.get_mut((stamps + from) as usize) {
-        *stamp = if p.tables.rules.keep_step_time { now.wrapping_sub(*stamp) } else { 0 };
+    if let Some(stamp) = image.get_mut(at.from_stamp as usize) {
+        *stamp = now.wrapping_sub(*stamp) & kept;
     }
-    if let Some(o) = image.get_mut(to_output as usize) {
+    if let Some(o) = image.get_mut(at.to_output as usize) {
         *o = 1;
     }
-    if let Some(o) = image.get_mut(from_output as usize) {
+    if let Some(o) = image.get_mut(at.from_output as usize) {
         *o = 0;
     }
-    Some(true)
 }
 
 /// Collects the clearable transitions behind the hot steps, and the other active steps in `slow`.
 #[inline]
 pub(crate) fn collect(p: &Program, s: &mut State) {
     let State { image, scratch, steps, .. } = s;
-    scratch.slow.clear();
-    let mut seen = 0u32;
-    let mut walk = Walk::new(steps, image);
-    while let Some(step) = walk.next(steps, image) {
+    let image: &[u64] = image;
+    // On the stack, these lists need not be written back at each step.
+    let (mut fired, mut slow) = (take(&mut scratch.fired), take(&mut scratch.slow));
+    slow.clear();
+    let (mut seen, mut last) = (0u32, NONE);
+    steps.each(image, |step| {
         seen += 1;
-        scratch.lone = if seen == 1 { step } else { NONE };
-        let Some(h) = p.hot.get(step as usize) else { break };
-        if h.waits_for == NONE {
-            scratch.slow.push(step);
-        } else if holds(p, image, h) {
-            scratch.fired.push(h.rank);
+        last = step;
+        match p.hot.get(step as usize) {
+            Some(h) if h.waits_for == NONE => slow.push(step),
+            Some(h) if holds(p, image, h) => fired.push(h.rank),
+            _ => {}
         }
-    }
+    });
+    scratch.lone = if seen == 1 { last } else { NONE };
+    (scratch.fired, scratch.slow) = (fired, slow);
 }
 
 /// True if all transitions that clear are plain, and nothing else is to be done in the pass.
@@ -97,8 +112,7 @@ pub(crate) fn clear(p: &Program, s: &mut State) -> bool {
     let State { image, scratch, steps, .. } = s;
     let Scratch { fired, on_mark, .. } = scratch;
     let now = word(image, head::NOW);
-    let keep = p.tables.rules.keep_step_time;
-    let mut area = Area { image, steps: *steps, now, stamps: p.layout.stamps, keep, changed: false };
+    let kept = kept(p);
     // After a lone token has moved by one transition, its place is known.
     scratch.lone = match fired[..] {
         [i] if scratch.lone != NONE => {
@@ -106,51 +120,56 @@ pub(crate) fn clear(p: &Program, s: &mut State) -> bool {
         }
         _ => NONE,
     };
-    // Rule 5: a step that is both activated and deactivated stays active. It can
-    // only be one that was active before.
+    let free =
+        |i: &u32| p.moves.get(*i as usize).is_some_and(|m| m.from != NONE && !steps.contains(image, m.to));
+    if fired.iter().all(free) {
+        for m in fired.iter().filter_map(|i| p.moves.get(*i as usize)) {
+            steps.hand_on(image, m.from, m.to);
+            shift(image, &m.shift, now, kept);
+        }
+        return !fired.is_empty();
+    }
+    let mut area = Area { image, steps: *steps, now, kept, changed: false };
+    crowded(p, &mut area, fired, on_mark);
+    area.changed
+}
+
+/// As [`clear`], where a step may be both activated and deactivated: it stays active (rule 5). It
+/// can only be one that was active before.
+#[inline(never)]
+fn crowded(p: &Program, area: &mut Area<'_>, fired: &[u32], on_mark: &mut [u64]) {
     let mut stay = false;
-    for i in fired.iter() {
-        each_end(p, *i, true, |to, output| {
-            if !area.on(to, output) {
+    for i in fired {
+        each_end(p, *i, true, |to| {
+            if !area.on(p, to) {
                 stay = true;
                 set_bit(on_mark, 0, to, true);
             }
         });
     }
-    for i in fired.iter() {
-        each_end(p, *i, false, |from, output| {
+    for i in fired {
+        each_end(p, *i, false, |from| {
             if !stay || !bit(on_mark, 0, from) {
-                area.off(from, output);
+                area.off(p, from);
             }
         });
     }
     if stay {
-        for i in fired.iter() {
-            each_end(p, *i, true, |to, _| {
+        for i in fired {
+            each_end(p, *i, true, |to| {
                 set_bit(on_mark, 0, to, false);
             });
         }
     }
-    area.changed
 }
 
-/// Calls `f` with each succeeding (or preceding) step of a transition and its output.
-#[inline(always)]
-fn each_end(p: &Program, rank: u32, succeeding: bool, mut f: impl FnMut(u32, u32)) {
-    let Some(m) = p.moves.get(rank as usize) else { return };
-    if m.from != NONE {
-        let (step, output) = if succeeding { (m.to, m.to_output) } else { (m.from, m.from_output) };
-        f(step, output);
-        return;
+/// Calls `f` with each succeeding (or preceding) step of a transition.
+fn each_end(p: &Program, rank: u32, succeeding: bool, f: impl FnMut(u32)) {
+    match p.tables.transitions.get(rank as usize) {
+        Some(t) if succeeding => p.tables.each_to(t, f),
+        Some(t) => p.tables.each_from(t, f),
+        None => {}
     }
-    ends(p, rank, succeeding, &mut f);
-}
-
-/// The same for a transition with several steps or none on a side.
-fn ends(p: &Program, rank: u32, succeeding: bool, f: &mut dyn FnMut(u32, u32)) {
-    let Some(t) = p.tables.transitions.get(rank as usize) else { return };
-    let g = |step: u32| f(step, output(&p.tables, &p.layout, step));
-    if succeeding { p.tables.each_to(t, g) } else { p.tables.each_from(t, g) }
 }
 
 /// The parts of a state that change with steps.
@@ -158,38 +177,35 @@ struct Area<'a> {
     image: &'a mut [u64],
     steps: Tree,
     now: u64,
-    stamps: u32,
-    keep: bool,
+    kept: u64,
     changed: bool,
 }
 
 impl Area<'_> {
     /// Activates a step; tells whether it was inactive.
-    #[inline(always)]
-    fn on(&mut self, step: u32, output: u32) -> bool {
+    fn on(&mut self, p: &Program, step: u32) -> bool {
         let new = self.steps.add(self.image, step);
         if new {
-            if let Some(stamp) = self.image.get_mut((self.stamps + step) as usize) {
-                *stamp = self.now;
-            }
-            if let Some(o) = self.image.get_mut(output as usize) {
-                *o = 1;
-            }
+            let to = Shift {
+                to_stamp: p.layout.stamp(step),
+                to_output: output(&p.tables, &p.layout, step),
+                ..Shift::NOTHING
+            };
+            shift(self.image, &to, self.now, self.kept);
             self.changed = true;
         }
         new
     }
 
     /// Deactivates a step.
-    #[inline(always)]
-    fn off(&mut self, step: u32, output: u32) {
+    fn off(&mut self, p: &Program, step: u32) {
         if self.steps.take(self.image, step) {
-            if let Some(stamp) = self.image.get_mut((self.stamps + step) as usize) {
-                *stamp = if self.keep { self.now.wrapping_sub(*stamp) } else { 0 };
-            }
-            if let Some(o) = self.image.get_mut(output as usize) {
-                *o = 0;
-            }
+            let from = Shift {
+                from_stamp: p.layout.stamp(step),
+                from_output: output(&p.tables, &p.layout, step),
+                ..Shift::NOTHING
+            };
+            shift(self.image, &from, self.now, self.kept);
             self.changed = true;
         }
     }

@@ -341,11 +341,9 @@ fn is_free(p: &Program, s: &State, t: &Transition) -> bool {
 fn report(s: &mut State) {
     let scratch = &mut s.scratch;
     scratch.cleared_count = scratch.cleared_count.saturating_add(scratch.fired.len() as u32);
-    for i in &scratch.fired {
-        if scratch.cleared.len() < scratch.cleared.capacity() {
-            scratch.cleared.push(*i);
-        }
-    }
+    let room = scratch.cleared.capacity() - scratch.cleared.len();
+    let fired = scratch.fired.get(..room).unwrap_or(&scratch.fired);
+    scratch.cleared.extend_from_slice(fired);
 }
 
 /// Marks the steps of the transitions that clear, all at once (rules 3 and 4).

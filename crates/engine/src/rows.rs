@@ -24,29 +24,52 @@ pub(crate) struct Hot {
     /// The one succeeding step; `NONE` where clearing does more than move a token from one
     /// plain step to another.
     pub(crate) to: u32,
-    /// Output that follows this step, or `NONE`.
-    pub(crate) from_output: u32,
-    /// Output that follows the succeeding step, or `NONE`.
-    pub(crate) to_output: u32,
+    pub(crate) shift: Shift,
     /// The receptivity is the complement of the word.
     pub(crate) flip: bool,
     /// The receptivity is a decision.
     pub(crate) decides: bool,
 }
 
-/// A transition in a pass where all that clear are plain. Outputs are words of the image.
+/// A transition in a pass where all that clear are plain.
 #[derive(Clone, Copy, Debug)]
+#[repr(align(32))]
 pub(crate) struct Move {
-    /// The preceding step; `NONE` for a transition with several steps or none on a side.
+    /// The preceding step; `NONE` for a transition with several steps or none on a side, or one that
+    /// may clear together with another one behind its step.
     pub(crate) from: u32,
     /// The succeeding step.
     pub(crate) to: u32,
-    /// Output that follows the preceding step, or `NONE`.
-    pub(crate) from_output: u32,
-    /// Output that follows the succeeding step, or `NONE`.
-    pub(crate) to_output: u32,
+    pub(crate) shift: Shift,
     /// The transition is plain.
     pub(crate) plain: bool,
+}
+
+/// The words of the image that change with a token; `NONE` where there is none.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Shift {
+    /// Time of the step that is left.
+    pub(crate) from_stamp: u32,
+    /// Time of the step that is entered.
+    pub(crate) to_stamp: u32,
+    /// Output that follows the step that is left.
+    pub(crate) from_output: u32,
+    /// Output that follows the step that is entered.
+    pub(crate) to_output: u32,
+}
+
+impl Shift {
+    pub(crate) const NOTHING: Shift =
+        Shift { from_stamp: NONE, to_stamp: NONE, from_output: NONE, to_output: NONE };
+
+    fn new(t: &Tables, l: &Layout, from: u32, to: u32) -> Shift {
+        Shift {
+            from_stamp: l.stamp(from),
+            to_stamp: l.stamp(to),
+            from_output: output(t, l, from),
+            to_output: output(t, l, to),
+        }
+    }
 }
 
 /// The output that follows a step, as a word of the image.
@@ -75,15 +98,8 @@ fn is_plain(t: &Tables, tr: &Transition) -> bool {
 
 /// A row for each step.
 pub(crate) fn hot(t: &Tables, l: &Layout, d: &Decisions, moves: &[Move]) -> Box<[Hot]> {
-    let none = Hot {
-        waits_for: NONE,
-        rank: NONE,
-        to: NONE,
-        from_output: NONE,
-        to_output: NONE,
-        flip: false,
-        decides: false,
-    };
+    let none =
+        Hot { waits_for: NONE, rank: NONE, to: NONE, shift: Shift::NOTHING, flip: false, decides: false };
     let row = |step: u32, out: Rows| {
         let [rank] = t.outs.get(out.start as usize..out.end as usize)? else { return None };
         let tr = t.transitions.get(*rank as usize)?;
@@ -101,8 +117,7 @@ pub(crate) fn hot(t: &Tables, l: &Layout, d: &Decisions, moves: &[Move]) -> Box<
         let plain = moves.get(*rank as usize).filter(|m| m.plain && m.from == step && m.to != step);
         let plain = plain.filter(|_| waits_for != NONE);
         let to = plain.map_or(NONE, |m| m.to);
-        let (from_output, to_output) = (output(t, l, step), output(t, l, to));
-        Some(Hot { waits_for, rank: *rank, to, from_output, to_output, flip, decides })
+        Some(Hot { waits_for, rank: *rank, to, shift: Shift::new(t, l, step, to), flip, decides })
     };
     (0..).zip(&t.steps).map(|(i, s)| row(i, s.out).unwrap_or(none)).collect()
 }
@@ -113,11 +128,11 @@ pub(crate) fn moves(t: &Tables, l: &Layout, any: bool) -> Box<[Move]> {
         .iter()
         .map(|tr| {
             let (from, to) = (tr.from.0, tr.to.0);
+            let alone = one_to_one(tr) && !(tr.shares && t.rules.multi_token);
             Move {
-                from: if one_to_one(tr) { from } else { NONE },
+                from: if alone { from } else { NONE },
                 to,
-                from_output: output(t, l, from),
-                to_output: output(t, l, to),
+                shift: Shift::new(t, l, from, to),
                 plain: any && is_plain(t, tr),
             }
         })

@@ -277,8 +277,8 @@ fn reset_times(p: &Program, s: &mut State) {
     let l = &p.layout;
     for i in 0..p.tables.steps.len() as u32 {
         let active = s.steps.contains(&s.image, i);
-        s.set((l.ages + i) as usize, if active { now } else { 0 });
-        s.set((l.stamps + i) as usize, if active { clock } else { 0 });
+        s.set(l.age(i) as usize, if active { now } else { 0 });
+        s.set(l.stamp(i) as usize, if active { clock } else { 0 });
     }
     for g in 0..p.tables.groups.len() as u32 {
         let active = s.group_active(p, GroupId(g));

@@ -132,12 +132,12 @@ impl State {
     /// Time since the step's activation, in ns (in scans under the scan clock); how
     /// long it was active, while it is not.
     pub fn step_time(&self, p: &Program, step: StepId) -> i64 {
-        since(&self.image, p.layout.stamps + step.0, self.is_active(step), self.clock(p))
+        since(&self.image, p.layout.stamp(step.0), self.is_active(step), self.clock(p))
     }
 
     /// As [`State::step_time`], in ns under every clock.
     pub fn step_age(&self, p: &Program, step: StepId) -> i64 {
-        since(&self.image, p.layout.ages + step.0, self.is_active(step), self.now())
+        since(&self.image, p.layout.age(step.0), self.is_active(step), self.now())
     }
 
     /// As [`State::group_time`], in ns under every clock.

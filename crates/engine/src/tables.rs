@@ -323,6 +323,8 @@ pub struct Tables {
     pub limits: Option<(Addr, Limits)>,
     /// All code.
     pub code: Vec<Op>,
+    /// Only the times of steps that some code reads are kept; the others are 0 for who asks.
+    pub lean: bool,
 }
 
 impl Tables {
