@@ -1,7 +1,7 @@
 //! Control blocks (IEC 61131-3:2003, 2.6.4.5): the actions of all steps that name
 //! one variable or body give its block inputs, and the block gives its Q.
 
-use crate::bits::{bit, set_bit, word};
+use crate::bits::{Walk, bit, set_bit, word};
 use crate::block_words::{
     D, DS, DS_FF, EARLY_P0, EARLY_P1, L, MEMORY, N, P, P0, P1, Q_BEFORE, R, S, S_FF, SD, SD_FF, SL, SL_FF,
     STARTS, TIMED, TIMES, WRITTEN,
@@ -62,9 +62,9 @@ pub(crate) fn look(p: &Program, s: &mut State) -> Result<(), Fault> {
 /// selects, and counts them.
 pub(crate) fn conditions(p: &Program, s: &mut State, of: impl Fn(u32) -> bool) -> Result<(), Fault> {
     let l = &p.layout;
-    let mut from = 0;
-    while let Some(row) = l.conditions.next(&s.image, from) {
-        from = row + 1;
+    // The set does not change meanwhile: a condition activates no step.
+    let mut walk = Walk::new(&l.conditions, &s.image);
+    while let Some(row) = walk.next(&l.conditions, &s.image) {
         let Some(c) = p.tables.contributions.get(row as usize) else { break };
         if !of(u32::from(c.input)) || !s.is_due(p, c.period) {
             continue;
@@ -89,9 +89,9 @@ pub(crate) fn conditions(p: &Program, s: &mut State, of: impl Fn(u32) -> bool) -
 /// Evaluates the blocks whose inputs changed or whose timers run, in order.
 pub(crate) fn evaluate(p: &Program, s: &mut State) -> Result<(), Fault> {
     let l = &p.layout;
-    let mut from = 0;
-    while let Some(i) = l.blocks.next(&s.image, from) {
-        from = i + 1;
+    // Of the set, only the members that were met already change meanwhile.
+    let mut walk = Walk::new(&l.blocks, &s.image);
+    while let Some(i) = walk.next(&l.blocks, &s.image) {
         let Some(b) = p.tables.blocks.get(i as usize) else { break };
         if !s.is_due(p, b.period) {
             continue;

@@ -48,7 +48,7 @@ pub fn carry(p: &Program, old: (&Program, &State), common: &Common<'_>) -> Resul
         s.set_word(p, *new, from.word(*old));
     }
     // A block writes its variable where Q differs from the value written last.
-    for (b, row) in (0u32..).zip(&p.tables.blocks) {
+    for (b, row) in (0u32..).zip(&p.tables.blocks).filter(|(b, _)| !p.gates.stands_for(*b)) {
         if row.output.0 != NONE && read(&s, row.output) != 0 {
             crate::blocks::take_as_written(p, &mut s, b);
         }
@@ -70,6 +70,7 @@ pub fn carry(p: &Program, old: (&Program, &State), common: &Common<'_>) -> Resul
             s.set((s.vars + row.direct.0) as usize, on);
         }
     }
+    p.gates.carry(&p.layout, &mut s.image);
     for (new, old) in common.groups {
         if s.group_active(p, *new) == from.group_active(was, *old) {
             stamps(p, &mut s, (p.layout.group_stamps + new.0, p.layout.group_ages + new.0), was, from, {

@@ -275,11 +275,13 @@ fn carry_on(p: &Program, s: &mut State, e: &Extra) {
         let Some(c) = p.tables.contributions.get(row as usize) else { break };
         if c.condition.is_empty() && c.time.is_empty() {
             crate::blocks::count(p, s, c.block, c.input, true);
-        } else {
+        } else if !p.gates.has(row) {
             l.conditions.insert(&mut s.image, row);
         }
     }
-    count_groups(p, s, e, true);
+    if !e.groups.is_empty() {
+        count_groups(p, s, e, true);
+    }
     for i in e.events.start..e.events.end {
         l.events.insert(&mut s.image, i);
     }
@@ -299,6 +301,8 @@ fn carry_off(p: &Program, s: &mut State, e: &Extra) {
         let Some(c) = p.tables.contributions.get(row as usize) else { break };
         if c.condition.is_empty() && c.time.is_empty() {
             crate::blocks::count(p, s, c.block, c.input, false);
+        } else if p.gates.has(row) {
+            p.gates.close(l, &mut s.image, row);
         } else {
             l.conditions.remove(&mut s.image, row);
             if set_bit(&mut s.image, l.counted, row, false) {
@@ -306,7 +310,9 @@ fn carry_off(p: &Program, s: &mut State, e: &Extra) {
             }
         }
     }
-    count_groups(p, s, e, false);
+    if !e.groups.is_empty() {
+        count_groups(p, s, e, false);
+    }
     for i in e.events.start..e.events.end {
         l.events.remove(&mut s.image, i);
     }

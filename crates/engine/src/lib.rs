@@ -50,6 +50,7 @@ mod enabled;
 mod fault;
 mod fb;
 mod fingerprint;
+mod gates;
 mod layout;
 mod memory;
 mod moves;

@@ -5,9 +5,10 @@
 use core::mem::take;
 
 use crate::bits::{Tree, bit, set_bit, word};
+use crate::gates::GATE;
 use crate::layout::head;
 use crate::program::Program;
-use crate::rows::{Hot, Shift, output};
+use crate::rows::{Hot, Shift};
 use crate::scratch::Scratch;
 use crate::state::State;
 use crate::tables::NONE;
@@ -48,7 +49,7 @@ pub(crate) fn one_token(p: &Program, s: &mut State) -> Option<bool> {
     }
     scratch.lone = to;
     steps.pass_on(image, from, to);
-    shift(image, &hot.shift, word(image, head::NOW), kept(p));
+    shift(p, image, &hot.shift, word(image, head::NOW), kept(p));
     Some(true)
 }
 
@@ -60,7 +61,7 @@ fn kept(p: &Program) -> u64 {
 
 /// Moves the times and outputs of two plain steps along with a token. `kept` is [`kept`].
 #[inline(always)]
-fn shift(image: &mut [u64], at: &Shift, now: u64, kept: u64) {
+fn shift(p: &Program, image: &mut [u64], at: &Shift, now: u64, kept: u64) {
     if let Some(stamp) = image.get_mut(at.to_stamp as usize) {
         *stamp = now;
     }
@@ -70,8 +71,10 @@ fn shift(image: &mut [u64], at: &Shift, now: u64, kept: u64) {
     if let Some(o) = image.get_mut(at.to_output as usize) {
         *o = 1;
     }
-    if let Some(o) = image.get_mut(at.from_output as usize) {
-        *o = 0;
+    match image.get_mut(at.from_output as usize) {
+        Some(o) => *o = 0,
+        None if at.from_output != NONE => p.gates.close(&p.layout, image, at.from_output & !GATE),
+        None => {}
     }
 }
 
@@ -125,7 +128,7 @@ pub(crate) fn clear(p: &Program, s: &mut State) -> bool {
     if fired.iter().all(free) {
         for m in fired.iter().filter_map(|i| p.moves.get(*i as usize)) {
             steps.hand_on(image, m.from, m.to);
-            shift(image, &m.shift, now, kept);
+            shift(p, image, &m.shift, now, kept);
         }
         return !fired.is_empty();
     }
@@ -186,12 +189,8 @@ impl Area<'_> {
     fn on(&mut self, p: &Program, step: u32) -> bool {
         let new = self.steps.add(self.image, step);
         if new {
-            let to = Shift {
-                to_stamp: p.layout.stamp(step),
-                to_output: output(&p.tables, &p.layout, step),
-                ..Shift::NOTHING
-            };
-            shift(self.image, &to, self.now, self.kept);
+            let to = Shift::entering(&p.tables, &p.layout, step);
+            shift(p, self.image, &to, self.now, self.kept);
             self.changed = true;
         }
         new
@@ -200,12 +199,8 @@ impl Area<'_> {
     /// Deactivates a step.
     fn off(&mut self, p: &Program, step: u32) {
         if self.steps.take(self.image, step) {
-            let from = Shift {
-                from_stamp: p.layout.stamp(step),
-                from_output: output(&p.tables, &p.layout, step),
-                ..Shift::NOTHING
-            };
-            shift(self.image, &from, self.now, self.kept);
+            let from = Shift::leaving(&p.tables, &p.layout, &p.gates, step);
+            shift(p, self.image, &from, self.now, self.kept);
             self.changed = true;
         }
     }

@@ -9,6 +9,7 @@ use crate::check::{LoadError, check, writes};
 use crate::clocks::{Clocks, clocks};
 use crate::decision::Decisions;
 use crate::fingerprint::fingerprint;
+use crate::gates::{GATE, Gates};
 use crate::layout::Layout;
 use crate::ops::{Op, TEXT};
 use crate::rows::{Hot, Move, hot, moves};
@@ -68,6 +69,8 @@ pub struct Program {
     pub(crate) always: Box<[u32]>,
     /// The words of the image that hold times.
     pub(crate) clocks: Clocks,
+    /// The outputs that follow a step under a condition without a control block.
+    pub(crate) gates: Gates,
     /// The code that is evaluated as tests.
     pub(crate) decisions: Decisions,
 }
@@ -106,7 +109,11 @@ impl Program {
         let counts = t.counts.is_some() || t.limits.is_some();
         // Steps under the scan clock count from a scan that is not over yet.
         let plain = !t.rules.sequential && !t.rules.scan_clock && !looks_back && !counts;
-        let moves = moves(&t, &layout, plain);
+        let gates = match plain && !has_periods && layout.len < GATE {
+            true => Gates::new(&t, &layout, &decisions),
+            false => Gates::default(),
+        };
+        let moves = moves(&t, &layout, &gates, plain);
         let calm = !frame && !has_periods && !counts && t.sources.is_empty();
         Program {
             judges_freely: t.transitions.iter().all(|tr| !writes_in(&t, tr.receptivity)),
@@ -118,7 +125,7 @@ impl Program {
             watches_inputs: t.word_watches.iter().any(|(a, _)| (t.inputs.start..t.inputs.end).contains(&a.0)),
             awake: layout.awake(&t),
             uses: uses(&t),
-            hot: hot(&t, &layout, &decisions, &moves),
+            hot: hot(&t, &layout, &decisions, &gates, &moves),
             all_plain: moves.iter().all(|m| m.plain),
             moves,
             timeless: !frame
@@ -140,6 +147,7 @@ impl Program {
             always,
             word_index: word_index(&t),
             clocks: clocks(&t, &layout),
+            gates,
             decisions,
             fingerprint: fingerprint(&t),
             layout,

@@ -1,15 +1,16 @@
 //! The rows that a pass reads instead of the tables where steps and transitions are plain
 //! (`moves.rs`).
 //!
-//! A step is plain if nothing but its `direct` output follows it. A transition is plain if clearing
+//! A step is plain if nothing but its `direct` output or its gate follows it. A transition is plain if clearing
 //! it does no more than change plain steps. Whether a row is plain depends on that row alone: one
 //! step with a stored action leaves all others as they are.
 
 use alloc::boxed::Box;
 
 use crate::decision::Decisions;
+use crate::gates::{GATE, Gates};
 use crate::layout::{Layout, head};
-use crate::tables::{NONE, Receptivity, Rows, Tables, Transition};
+use crate::tables::{Extra, NONE, Receptivity, Rows, Tables, Transition};
 
 /// A step with one transition behind it whose receptivity can be judged at once, and where a
 /// lone token goes from here. A row never straddles two cache lines.
@@ -52,7 +53,7 @@ pub(crate) struct Shift {
     pub(crate) from_stamp: u32,
     /// Time of the step that is entered.
     pub(crate) to_stamp: u32,
-    /// Output that follows the step that is left.
+    /// Output that follows the step that is left, or its gate ([`GATE`]).
     pub(crate) from_output: u32,
     /// Output that follows the step that is entered.
     pub(crate) to_output: u32,
@@ -62,22 +63,39 @@ impl Shift {
     pub(crate) const NOTHING: Shift =
         Shift { from_stamp: NONE, to_stamp: NONE, from_output: NONE, to_output: NONE };
 
-    fn new(t: &Tables, l: &Layout, from: u32, to: u32) -> Shift {
-        Shift {
-            from_stamp: l.stamp(from),
-            to_stamp: l.stamp(to),
-            from_output: output(t, l, from),
-            to_output: output(t, l, to),
-        }
+    fn new(t: &Tables, l: &Layout, g: &Gates, from: u32, to: u32) -> Shift {
+        Shift { from_stamp: l.stamp(from), from_output: left(t, l, g, from), ..Shift::entering(t, l, to) }
+    }
+
+    /// What changes with a step that is activated.
+    pub(crate) fn entering(t: &Tables, l: &Layout, step: u32) -> Shift {
+        Shift { to_stamp: l.stamp(step), to_output: output(t, l, step), ..Shift::NOTHING }
+    }
+
+    /// What changes with a step that is deactivated.
+    pub(crate) fn leaving(t: &Tables, l: &Layout, g: &Gates, step: u32) -> Shift {
+        Shift { from_stamp: l.stamp(step), from_output: left(t, l, g, step), ..Shift::NOTHING }
     }
 }
 
 /// The output that follows a step, as a word of the image.
-pub(crate) fn output(t: &Tables, l: &Layout, step: u32) -> u32 {
+fn output(t: &Tables, l: &Layout, step: u32) -> u32 {
     match t.steps.get(step as usize) {
         Some(s) if s.direct.0 != NONE => l.vars + s.direct.0,
         _ => NONE,
     }
+}
+
+/// The output that follows a step, or its gate where it has one alone.
+fn left(t: &Tables, l: &Layout, g: &Gates, step: u32) -> u32 {
+    match extra(t, step).and_then(|e| g.alone(e)) {
+        Some(row) => GATE | row,
+        None => output(t, l, step),
+    }
+}
+
+fn extra(t: &Tables, step: u32) -> Option<&Extra> {
+    t.extras.get(t.steps.get(step as usize)?.extra as usize)
 }
 
 /// True if a transition leads from one step to one step.
@@ -86,8 +104,12 @@ fn one_to_one(t: &Transition) -> bool {
 }
 
 /// True if clearing a transition does no more than change plain steps.
-fn is_plain(t: &Tables, tr: &Transition) -> bool {
-    let plain = |step: u32| step == NONE || t.steps.get(step as usize).is_some_and(|s| s.extra == NONE);
+fn is_plain(t: &Tables, g: &Gates, tr: &Transition) -> bool {
+    let direct = |step: u32| t.steps.get(step as usize).is_some_and(|s| s.direct.0 != NONE);
+    let plain = |step: u32| match extra(t, step) {
+        Some(e) => g.alone(e).is_some() && !direct(step),
+        None => true,
+    };
     let all_plain = |rows: Rows| {
         let steps = t.arcs.get(rows.start as usize..rows.end as usize).unwrap_or(&[]);
         steps.iter().all(|step| plain(step.0))
@@ -97,7 +119,7 @@ fn is_plain(t: &Tables, tr: &Transition) -> bool {
 }
 
 /// A row for each step.
-pub(crate) fn hot(t: &Tables, l: &Layout, d: &Decisions, moves: &[Move]) -> Box<[Hot]> {
+pub(crate) fn hot(t: &Tables, l: &Layout, d: &Decisions, g: &Gates, moves: &[Move]) -> Box<[Hot]> {
     let none =
         Hot { waits_for: NONE, rank: NONE, to: NONE, shift: Shift::NOTHING, flip: false, decides: false };
     let row = |step: u32, out: Rows| {
@@ -117,13 +139,13 @@ pub(crate) fn hot(t: &Tables, l: &Layout, d: &Decisions, moves: &[Move]) -> Box<
         let plain = moves.get(*rank as usize).filter(|m| m.plain && m.from == step && m.to != step);
         let plain = plain.filter(|_| waits_for != NONE);
         let to = plain.map_or(NONE, |m| m.to);
-        Some(Hot { waits_for, rank: *rank, to, shift: Shift::new(t, l, step, to), flip, decides })
+        Some(Hot { waits_for, rank: *rank, to, shift: Shift::new(t, l, g, step, to), flip, decides })
     };
     (0..).zip(&t.steps).map(|(i, s)| row(i, s.out).unwrap_or(none)).collect()
 }
 
 /// A row for each transition. `any` says that transitions can be plain under the rules.
-pub(crate) fn moves(t: &Tables, l: &Layout, any: bool) -> Box<[Move]> {
+pub(crate) fn moves(t: &Tables, l: &Layout, g: &Gates, any: bool) -> Box<[Move]> {
     t.transitions
         .iter()
         .map(|tr| {
@@ -132,8 +154,8 @@ pub(crate) fn moves(t: &Tables, l: &Layout, any: bool) -> Box<[Move]> {
             Move {
                 from: if alone { from } else { NONE },
                 to,
-                shift: Shift::new(t, l, from, to),
-                plain: any && is_plain(t, tr),
+                shift: Shift::new(t, l, g, from, to),
+                plain: any && is_plain(t, g, tr),
             }
         })
         .collect()

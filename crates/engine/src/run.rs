@@ -40,6 +40,7 @@ fn interpreted(p: &Program, s: &mut State, code: Code) -> Result<u64, Fault> {
 }
 
 /// True if a condition is true; an empty one is.
+#[inline]
 pub(crate) fn condition(p: &Program, s: &mut State, code: Code) -> Result<bool, Fault> {
     Ok(code.is_empty() || value(p, s, code)? != 0)
 }

@@ -49,6 +49,7 @@ pub fn scan(p: &Program, s: &mut State, inputs: &[u64], now: i64) -> Result<Repo
             && let Some(moved) = moves::one_token(p, s)
         {
             s.scratch.quiet = !moved && p.timeless;
+            gates(p, s);
             return Ok(Report { passes: 1, cleared: u32::from(moved), conflict: None });
         }
         return brisk(p, s);
@@ -66,6 +67,7 @@ fn brisk(p: &Program, s: &mut State) -> Result<Report, Fault> {
         {
             if !moved {
                 s.scratch.quiet = p.timeless;
+                gates(p, s);
                 return Ok(Report { passes: made + 1, cleared: made, conflict: None });
             }
             made += 1;
@@ -82,8 +84,16 @@ fn finish_brisk(p: &Program, s: &mut State) -> Result<(), Fault> {
     if s.scratch.late_any || s.scratch.worked || moves::is_awake(p, &s.image) {
         return finish(p, s);
     }
+    gates(p, s);
     s.scratch.quiet = p.timeless && s.scratch.idle && !s.scratch.changed && !s.has_flag(REQUESTS);
     Ok(())
+}
+
+#[inline(always)]
+fn gates(p: &Program, s: &mut State) {
+    if !p.gates.is_empty() {
+        p.gates.follow(&p.layout, &p.decisions, &mut s.image);
+    }
 }
 
 /// The general way.
@@ -391,6 +401,7 @@ pub fn finish(p: &Program, s: &mut State) -> Result<(), Fault> {
         late(p, s)?;
     }
     if !t.contributions.is_empty() {
+        gates(p, s);
         blocks::conditions(p, s, |_| true)?;
     }
     if !t.blocks.is_empty() {

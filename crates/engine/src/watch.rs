@@ -5,7 +5,7 @@
 //! memory of its own. A pass evaluates only those that read a time or whose operands
 //! have changed.
 
-use crate::bits::{bit, set_bit, word};
+use crate::bits::{Walk, bit, set_bit, word};
 use crate::fault::Fault;
 use crate::layout::head;
 use crate::ops::Code;
@@ -35,14 +35,16 @@ pub(crate) fn update(p: &Program, s: &mut State, first: bool, fresh: bool) -> Re
         for &i in &p.always {
             l.dirty.insert(&mut s.image, i);
         }
-        let mut from = 0;
-        while let Some(i) = l.running.next(&s.image, from) {
+        let mut walk = Walk::new(&l.running, &s.image);
+        while let Some(i) = walk.next(&l.running, &s.image) {
             l.dirty.insert(&mut s.image, i);
-            from = i + 1;
         }
     }
+    // An edge makes watches behind it dirty, so the set is searched anew each time.
     let mut from = 0;
-    while let Some(i) = l.dirty.next(&s.image, from) {
+    while !l.dirty.is_empty(&s.image)
+        && let Some(i) = l.dirty.next(&s.image, from)
+    {
         from = i + 1;
         let Some(w) = p.tables.watches.get(i as usize) else { break };
         if !s.is_due(p, w.period) {
@@ -61,9 +63,8 @@ pub(crate) fn update(p: &Program, s: &mut State, first: bool, fresh: bool) -> Re
 /// Ends the edges whose period is due: an edge lives one pass of its own charts.
 pub(crate) fn forget_edges(p: &Program, image: &mut [u64], is_due: impl Fn(u32) -> bool) {
     let l = &p.layout;
-    let mut from = 0;
-    while let Some(i) = l.edged.next(image, from) {
-        from = i + 1;
+    let mut walk = Walk::new(&l.edged, image);
+    while let Some(i) = walk.next(&l.edged, image) {
         let Some(w) = p.tables.watches.get(i as usize) else { break };
         if is_due(w.period) {
             l.edged.remove(image, i);
@@ -116,7 +117,11 @@ fn timer(p: &Program, s: &mut State, i: u32, w: &Watch, e: bool, times: (Code, C
 }
 
 /// Marks watches as to be evaluated, since something that they read has changed.
+#[inline]
 pub(crate) fn mark(p: &Program, image: &mut [u64], rows: Rows) {
+    if rows.is_empty() {
+        return;
+    }
     for w in p.tables.watch_lists.get(rows.start as usize..rows.end as usize).unwrap_or(&[]) {
         p.layout.dirty.insert(image, w.0);
     }

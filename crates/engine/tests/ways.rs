@@ -4,8 +4,8 @@ mod common;
 
 use common::{Arc, Chance, chart};
 use g7_engine::{
-    Addr, Arith, Cmp, Code, Extra, FaultKind, NONE, Num, Op, Program, Receptivity, Rules, State, StepId,
-    Tables, scan, set_step,
+    Addr, Arith, Cmp, Code, Contribution, ControlBlock, Extra, FaultKind, INPUTS, NONE, Num, Op, Program,
+    Receptivity, Rows, Rules, State, StepId, Tables, scan, set_step,
 };
 
 /// Up to `n` different steps.
@@ -84,14 +84,47 @@ fn mixed(chance: &mut Chance, mut t: Tables) -> Tables {
     t
 }
 
+/// Gives some outputs a condition, and some of these two steps that they follow.
+fn gated(chance: &mut Chance, mut t: Tables) -> Tables {
+    let steps = t.steps.len() as u32;
+    for i in 0..t.steps.len() {
+        let output = t.steps[i].direct;
+        if output.0 == NONE || t.steps[i].extra != NONE || chance.below(2) == 0 {
+            continue;
+        }
+        let start = t.code.len() as u32;
+        expression(chance, steps, 2, &mut t.code);
+        let condition = Code { start, end: t.code.len() as u32 };
+        let new = t.blocks.is_empty() || chance.below(4) > 0;
+        if new {
+            let (gate, action, period) = (Code::default(), NONE, 0);
+            t.blocks.push(ControlBlock { output, action, plain: true, gate, period });
+        }
+        let row = t.contributions.len() as u32;
+        let block = t.blocks.len() as u32 - 1;
+        t.contributions.push(Contribution { block, input: 0, condition, time: Code::default(), period: 0 });
+        t.extras.push(Extra { contributions: Rows { start: row, end: row + 1 }, ..Extra::default() });
+        t.steps[i].direct = Addr(NONE);
+        t.steps[i].extra = t.extras.len() as u32 - 1;
+    }
+    t
+}
+
 /// The same tables so that no step and no transition is plain and the interpreter evaluates each
-/// receptivity: every step has a row of extras, every receptivity has 0 added to it.
+/// receptivity and condition: every step has a row of extras, every such code has 0 added to it.
 fn roundabout(t: &Tables) -> Tables {
     let mut t = t.clone();
-    if t.extras.is_empty() {
-        t.extras.push(Extra::default());
+    let plain = t.extras.len() as u32;
+    t.extras.push(Extra::default());
+    for step in t.steps.iter_mut().filter(|step| step.extra == NONE) {
+        step.extra = plain;
     }
-    t.steps.iter_mut().for_each(|step| step.extra = 0);
+    for c in &mut t.contributions {
+        let start = t.code.len() as u32;
+        t.code.extend_from_within(c.condition.start as usize..c.condition.end as usize);
+        t.code.extend([Op::Push(0), Op::Arith(Arith::Add, Num::I64)]);
+        c.condition = Code { start, end: t.code.len() as u32 };
+    }
     for transition in &mut t.transitions {
         let start = t.code.len() as u32;
         match transition.receptivity {
@@ -234,4 +267,60 @@ fn a_lone_token_goes_the_same_way() {
         }
     }
     assert!(lone > 2_500, "only {lone} moves of a lone token");
+}
+
+/// The active steps, their times where these are read, and the outputs.
+fn shown(p: &Program, s: &State) -> (Vec<(StepId, i64)>, Vec<u64>) {
+    let read = |step| p.tables().code.contains(&Op::StepTime(step));
+    let steps = s.active().map(|step| (step, if read(step) { s.step_time(p, step) } else { 0 })).collect();
+    let Rows { start, end } = p.tables().outputs;
+    (steps, (start..end).map(|a| s.word(Addr(a))).collect())
+}
+
+#[test]
+fn outputs_with_a_condition_have_the_same_values() {
+    assert_eq!(INPUTS[0], "N");
+    let mut chance = Chance(13);
+    let mut changes = 0u64;
+    for round in 0..1500 {
+        let rules = if round % 3 == 0 { Rules::IEC60848 } else { Rules::IEC61131 };
+        let rules =
+            Rules { multi_token: chance.below(2) == 0, keep_step_time: chance.below(2) == 0, ..rules };
+        let tables = if chance.below(4) == 0 { walk(&mut chance, rules) } else { random(&mut chance, rules) };
+        let tables = if chance.below(2) == 0 { mixed(&mut chance, tables) } else { tables };
+        let mut tables = gated(&mut chance, tables);
+        let (outputs, steps) = (tables.outputs, tables.steps.len() as u32);
+        let long = Program::new(roundabout(&tables)).expect("tables are sound");
+        // Times that no code reads make no difference.
+        tables.lean = chance.below(2) == 0;
+        let short = Program::new(tables).expect("tables are sound");
+        let (mut a, mut b) = (State::new(&short), State::new(&long));
+        let mut inputs = vec![0; 3];
+        for k in 0..40 {
+            if chance.below(3) > 0 {
+                inputs = (0..3).map(|_| u64::from(chance.below(2))).collect();
+            }
+            if chance.below(20) == 0 {
+                let (step, on) = (StepId(chance.below(steps)), chance.below(2) == 0);
+                set_step(&short, &mut a, step, on);
+                set_step(&long, &mut b, step, on);
+            // A variable that was written from outside stays so until its step or condition changes.
+            } else if chance.below(10) == 0 {
+                let at = Addr(outputs.start + chance.below(outputs.end - outputs.start));
+                let value = u64::from(chance.below(2));
+                a.set_word(&short, at, value);
+                b.set_word(&long, at, value);
+            }
+            let before = shown(&long, &b).1;
+            let (x, y) = (scan(&short, &mut a, &inputs, k * 7), scan(&long, &mut b, &inputs, k * 7));
+            assert_eq!(x.is_ok(), y.is_ok(), "round {round}, scan {k}: {x:?} {y:?}");
+            if x.is_err() {
+                break;
+            }
+            let (now, general) = (shown(&short, &a), shown(&long, &b));
+            assert_eq!(now, general, "round {round}, scan {k}");
+            changes += u64::from(now.1 != before);
+        }
+    }
+    assert!(changes > 10_000, "only {changes} scans changed an output");
 }
