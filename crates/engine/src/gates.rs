@@ -1,4 +1,4 @@
-//! Gates: outputs that follow one step alone, under a condition (IEC 60848:2013, 4.8.3, the
+//! Gates: outputs that follow one step alone, under a condition (in IEC 60848 the
 //! assignation condition of a continuous action).
 //!
 //! Such an output needs no control block: after the evolution it takes the value of the condition
@@ -66,7 +66,7 @@ impl Gates {
                 && givers.get(c.block as usize) == Some(&1)
                 && used.get(block.output.0 as usize) == Some(&false);
             let condition = d.of(c.condition);
-            (fits && condition != NONE).then_some(Gate { condition, output: l.vars + block.output.0, row })
+            (fits && condition != NONE).then(|| Gate { condition, output: l.vars + block.output.0, row })
         };
         let (mut list, mut of_step) = (Vec::new(), Vec::with_capacity(t.steps.len() + 1));
         let mut outputs = vec![NONE; t.contributions.len()];
