@@ -123,8 +123,9 @@ impl Gates {
     /// The only thing that follows a step with this row, if it is a gate: its contribution.
     pub(crate) fn alone(&self, e: &Extra) -> Option<u32> {
         let Rows { start, end } = e.contributions;
-        let rest = Extra { contributions: Rows::default(), ..*e };
-        (end == start + 1 && self.has(start) && rest == Extra::default()).then_some(start)
+        let lists = [e.on, e.off, e.events, e.periodics, e.groups, e.orders, e.encloses, e.links, e.watches];
+        let alone = end == start + 1 && !e.uncounted && lists.iter().all(Rows::is_empty);
+        (alone && self.has(start)).then_some(start)
     }
 
     /// Gives the outputs of the active steps the values of their conditions.
