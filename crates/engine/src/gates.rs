@@ -124,7 +124,7 @@ impl Gates {
     pub(crate) fn alone(&self, e: &Extra) -> Option<u32> {
         let Rows { start, end } = e.contributions;
         let lists = [e.on, e.off, e.events, e.periodics, e.groups, e.orders, e.encloses, e.links, e.watches];
-        let alone = end == start + 1 && !e.uncounted && lists.iter().all(Rows::is_empty);
+        let alone = end == start + 1 && !e.uncounted && lists.into_iter().all(Rows::is_empty);
         (alone && self.has(start)).then_some(start)
     }
 
