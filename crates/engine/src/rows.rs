@@ -67,12 +67,12 @@ impl Shift {
         Shift { from_stamp: l.stamp(from), from_output: left(t, l, g, from), ..Shift::entering(t, l, to) }
     }
 
-    /// What changes with a step that is activated.
+    /// The words that change with a step that is activated.
     pub(crate) fn entering(t: &Tables, l: &Layout, step: u32) -> Shift {
         Shift { to_stamp: l.stamp(step), to_output: output(t, l, step), ..Shift::NOTHING }
     }
 
-    /// What changes with a step that is deactivated.
+    /// The words that change with a step that is deactivated.
     pub(crate) fn leaving(t: &Tables, l: &Layout, g: &Gates, step: u32) -> Shift {
         Shift { from_stamp: l.stamp(step), from_output: left(t, l, g, step), ..Shift::NOTHING }
     }

@@ -4,8 +4,10 @@ mod common;
 
 use std::hash::{DefaultHasher, Hash, Hasher};
 
-use common::chart;
-use g7_engine::{Addr, GroupId, ImageError, Program, Rules, State, StepId, scan};
+use common::{Arc, chart};
+use g7_engine::{
+    Addr, Code, GroupId, ImageError, NONE, Op, Program, Rows, Rules, State, StepId, Tables, scan,
+};
 
 /// Steps 0 to 1 behind input 0; two inputs, so step `s` has output word `2 + s`.
 fn program() -> Program {
@@ -85,4 +87,23 @@ fn times_run_from_activation_and_stand_after_it() {
     assert!(!s.is_active(StepId(2)) && !s.is_active(StepId(64)) && !s.is_active(StepId(u32::MAX)));
     assert!(!s.group_active(&p, GroupId(1)));
     assert_eq!((s.now(), s.scans()), (70, 4));
+}
+
+#[test]
+fn a_lean_state_has_no_times_that_nobody_reads() {
+    let arcs: Vec<Arc> = (0..1000).map(|i| (vec![i], vec![(i + 1) % 1000], Some(0))).collect();
+    let mut tables = chart(Rules::IEC61131, 1000, 1, &[0], &arcs);
+    tables.steps.iter_mut().for_each(|step| step.direct = Addr(NONE));
+    tables.init.truncate(1);
+    tables.outputs = Rows { start: 1, end: 1 };
+    tables.safe = Vec::new();
+    let bytes = |t: Tables| 8 * State::new(&Program::new(t).expect("tables are sound")).image().len();
+    let all = bytes(tables.clone());
+    let lean = bytes(Tables { lean: true, ..tables.clone() });
+    assert_eq!(all - lean, 8000, "a word for each step");
+    assert!(lean < 1000, "{lean} bytes");
+    // A time that is read is kept.
+    tables.code = vec![Op::StepTime(StepId(7)), Op::Drop];
+    tables.pre = Code { start: 0, end: 2 };
+    assert_eq!(bytes(Tables { lean: true, ..tables }), lean + 8);
 }
