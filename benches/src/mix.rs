@@ -7,6 +7,8 @@
 //! 54 join several variables, 23 are one variable or its complement, 16 compare numbers, 6 are always
 //! true, 1 reads a time; one in 700 is an edge.
 
+#![allow(clippy::disallowed_methods, reason = "a bench reads its charts")]
+
 use std::fmt::Write;
 use std::path::Path;
 
@@ -89,8 +91,8 @@ fn actions(profile: &str, chart: usize, i: usize) -> String {
         10 => actions.push(format!("each scan: n{chart} := n{chart} mod 100")),
         _ => {}
     }
-    if i % 7 == 0 && i % 50 > 2 {
-        let condition = if i % 3 == 0 { format!(" if not I{}", i % INPUTS) } else { String::new() };
+    if i.is_multiple_of(7) && i % 50 > 2 {
+        let condition = if i.is_multiple_of(3) { format!(" if not I{}", i % INPUTS) } else { String::new() };
         actions.push(format!("N Q{i}{condition}"));
     }
     if i % 6 == 1 {
@@ -102,7 +104,7 @@ fn actions(profile: &str, chart: usize, i: usize) -> String {
 fn receptivity(profile: &str, chart: usize, i: usize) -> String {
     let input = |k: usize| format!("I{}", (i * 7 + k * 5) % INPUTS);
     // A ring that can go round without time is unstable there.
-    if profile == "iec60848" && i % STEPS == 0 {
+    if profile == "iec60848" && i.is_multiple_of(STEPS) {
         return format!("{} and X{i}.t >= 3ms", input(0));
     }
     match i * 29 % 50 {

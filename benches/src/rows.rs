@@ -83,7 +83,9 @@ struct Ring<'a> {
 
 impl Ring<'_> {
     fn text(&self, steps: usize) -> String {
-        let or = |text, default| if text == "" { default } else { text };
+        fn or<'t>(text: &'t str, default: &'t str) -> &'t str {
+            if text.is_empty() { default } else { text }
+        }
         let each = if self.each == 0 { steps } else { self.each };
         let mut t = format!("profile {}\n\ninput GO, T : BOOL\n", or(self.profile, "iec61131"));
         for i in 0..self.inputs {

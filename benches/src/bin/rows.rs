@@ -6,6 +6,8 @@
 //! `rows --list` prints the names. `rows --run NAME (moving|waiting) SCANS` makes the scans of one row
 //! inside the function `measured`, for a tool that counts instructions.
 
+#![allow(clippy::disallowed_methods, reason = "a stopwatch reads the clock")]
+
 use std::hint::black_box;
 use std::time::Instant;
 
