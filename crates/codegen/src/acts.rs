@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use g7_engine::{NONE, Num};
+use g7_engine::{ControlBlock, NONE, Num};
 use g7_model::Type;
 
 use crate::build::{Gen, memory, s, state};
@@ -157,7 +157,7 @@ impl Gen<'_> {
     }
 
     fn conditions(&mut self) {
-        let places = counts(self.t).0;
+        let (places, full_rows) = (counts(self.t).0, self.full_rows());
         let mut arms = Vec::new();
         for (i, c) in self.t.contributions.iter().enumerate() {
             if c.condition.is_empty() && c.time.is_empty() {
@@ -175,7 +175,7 @@ impl Gen<'_> {
             }
             let mut inner = Block::new();
             let timed = [3u8, 4, 8, 9, 10].iter().position(|k| *k == c.input);
-            let full = self.full_row(c.block);
+            let full = full_rows.get(c.block as usize).copied().flatten();
             if let (Some(k), Some(full), false) = (timed, full, c.time.is_empty()) {
                 let (time, fails) = self.value(c.time, Type::Time, &format!("time_{i}"));
                 let mut take =
@@ -209,15 +209,19 @@ impl Gen<'_> {
         );
     }
 
-    /// The row of a block among those with memory.
-    fn full_row(&self, block: u32) -> Option<usize> {
-        let all = self.t.blocks.get(..block as usize)?;
-        let this = self.t.blocks.get(block as usize)?;
-        (!this.plain).then(|| all.iter().filter(|b| !b.plain).count())
+    /// By control block: its row among those with memory.
+    fn full_rows(&self) -> Vec<Option<usize>> {
+        let mut next = 0;
+        let row = |b: &ControlBlock| {
+            let own = (!b.plain).then_some(next);
+            next += usize::from(!b.plain);
+            own
+        };
+        self.t.blocks.iter().map(row).collect()
     }
 
     fn blocks(&mut self) {
-        let places = counts(self.t).0;
+        let (places, full_rows) = (counts(self.t).0, self.full_rows());
         let mut arms = Vec::new();
         for (i, b) in self.t.blocks.iter().enumerate() {
             let again = |f: &str| Stmt::Do(Expr::call(f, vec![memory("blocks").passed(), Expr::size(i)]));
@@ -237,7 +241,7 @@ impl Gen<'_> {
             let let_q = |value| Stmt::Let { mutable: false, name: "q".into(), ty: Ty::Bool, value };
             let has =
                 |k: usize| Expr::name("result").bin(Bin::BitAnd, Expr::size(k)).bin(Bin::Ne, Expr::size(0));
-            match self.full_row(i as u32) {
+            match full_rows.get(i).copied().flatten() {
                 None => {
                     let some = memory("counts").at(Expr::size(at)).bin(Bin::Ne, Expr::size(0));
                     body.push(let_q(some.and(gate_here)));

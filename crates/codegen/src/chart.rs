@@ -113,6 +113,7 @@ impl Gen<'_> {
     /// The parts that come and go with the activity of a step.
     fn step_changes(&mut self, on: bool) {
         let t = self.t;
+        let places = counts(t).0;
         let mut arms = Vec::new();
         for (i, step) in t.steps.iter().enumerate() {
             let mut body = Block::new();
@@ -120,7 +121,7 @@ impl Gen<'_> {
                 if e.uncounted && t.counts.is_some() {
                     body.push(Stmt::Assign(Some(Bin::Sub), s().field("moved"), Expr::size(1)));
                 }
-                self.contributions(&mut body, e.contributions, on);
+                self.contributions(&mut body, e.contributions, &places, on);
                 for g in t.group_lists.get(e.groups.start as usize..e.groups.end as usize).unwrap_or(&[]) {
                     let args = vec![s(), Expr::size(g.0 as usize), Expr::Bool(on)];
                     body.push(Stmt::Do(Expr::call("count_group", args)));
@@ -141,8 +142,8 @@ impl Gen<'_> {
         self.choice(name, note, "step", arms);
     }
 
-    fn contributions(&self, body: &mut Block, rows: Rows, on: bool) {
-        let places = counts(self.t).0;
+    /// `places`: by control block, where its inputs are counted.
+    fn contributions(&self, body: &mut Block, rows: Rows, places: &[usize], on: bool) {
         for k in rows.start..rows.end {
             let Some(c) = self.t.contributions.get(k as usize) else { continue };
             let at = places.get(c.block as usize).copied().unwrap_or(0) + usize::from(c.input);
@@ -359,9 +360,10 @@ impl Gen<'_> {
         self.step_lists("FROM", "The steps before each transition.", &from, &notes);
         self.step_lists("TO", "The steps behind each transition.", &to, &notes);
         self.watched();
-        let drops: Vec<Vec<u32>> = (0..t.transitions.len() as u32)
-            .map(|i| t.drops.iter().filter(|d| d.0 == i).map(|d| d.1.0).collect())
-            .collect();
+        let mut drops: Vec<Vec<u32>> = vec![Vec::new(); t.transitions.len()];
+        for (rank, step) in &t.drops {
+            drops.get_mut(*rank as usize).into_iter().for_each(|list| list.push(step.0));
+        }
         self.lists_of("DROPS", "Steps that go off with a transition.", &drops);
         let extra = |row: u32| t.extras.get(row as usize).copied().unwrap_or_default();
         let arcs = |r: Rows| ids(t.arcs.get(r.start as usize..r.end as usize).unwrap_or(&[]).to_vec());
@@ -426,7 +428,7 @@ impl Gen<'_> {
     /// Forcing orders; two with the same situation have the same number for it.
     fn orders(&mut self) {
         let t = self.t;
-        let mut known: Vec<Vec<u32>> = Vec::new();
+        let mut known: HashMap<Vec<u32>, u32> = HashMap::new();
         let (mut numbers, mut lists) = (Vec::new(), Vec::new());
         for o in &t.orders {
             let (number, list) = match o.situation {
@@ -437,11 +439,8 @@ impl Gen<'_> {
                     let mut set = list.clone();
                     set.sort_unstable();
                     set.dedup();
-                    let at = known.iter().position(|k| *k == set).unwrap_or_else(|| {
-                        known.push(set);
-                        known.len() - 1
-                    });
-                    (at as u32 + 1, list)
+                    let next = known.len() as u32 + 1;
+                    (*known.entry(set).or_insert(next), list)
                 }
             };
             numbers.push(number);

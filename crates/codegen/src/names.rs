@@ -1,6 +1,6 @@
 //! Names of the chart as names of the code.
 
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 
 /// Words that C, C++ or Rust keep for themselves, and what the code uses.
 const TAKEN: &[&str] = &[
@@ -114,6 +114,8 @@ const TAKEN: &[&str] = &[
 #[derive(Debug, Default)]
 pub(crate) struct Names {
     given: HashSet<String>,
+    /// By a name that is wanted again and again: the number to try next.
+    next: HashMap<String, u32>,
 }
 
 impl Names {
@@ -132,13 +134,18 @@ impl Names {
     }
 
     fn once(&mut self, name: String) -> String {
-        let mut free = name.clone();
-        let mut k = 2;
-        while !self.given.insert(free.clone()) {
-            free = format!("{name}_{k}");
-            k += 1;
+        if self.given.insert(name.clone()) {
+            return name;
         }
-        free
+        // No name is given back, so the numbers tried before are still taken.
+        let next = self.next.entry(name.clone()).or_insert(2);
+        loop {
+            let free = format!("{name}_{next}");
+            *next += 1;
+            if self.given.insert(free.clone()) {
+                return free;
+            }
+        }
     }
 }
 

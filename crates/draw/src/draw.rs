@@ -29,14 +29,35 @@ pub fn measure(_: &Document, chart: &Chart, options: &Options) -> Sizes {
 
 /// Draws a chart.
 pub fn draw(document: &Document, chart: &Chart, options: &Options) -> Drawing {
+    drawing(chart, places(document, chart), options)
+}
+
+/// Draws several charts of a document.
+pub fn draw_all<'a>(
+    document: &Document,
+    charts: impl IntoIterator<Item = &'a Chart>,
+    options: &Options,
+) -> Vec<Drawing> {
+    let mut layouts: HashMap<&str, &[PlaceAt]> = HashMap::new();
+    for item in &document.items {
+        if let Entry::Layout(l) = item {
+            layouts.entry(&l.chart.text).or_insert(&l.places);
+        }
+    }
+    let places = |c: &Chart| layouts.get(&*c.name.text).copied().unwrap_or(&[]);
+    charts.into_iter().map(|c| drawing(c, places(c), options)).collect()
+}
+
+/// Draws a chart with the entries of its layout section.
+fn drawing(chart: &Chart, places: &[PlaceAt], options: &Options) -> Drawing {
     let symbols = Symbols::new(chart, options);
     if options.pages {
         let paged = pages::place(chart, &symbols.sizes);
         return symbols.put(chart, &paged.placement, paged.frames, &paged.pages);
     }
-    let placement = layout(chart, &symbols.sizes, places(document, chart));
+    let placement = layout(chart, &symbols.sizes, places);
     let mut drawing = symbols.put(chart, &placement, Vec::new(), &[]);
-    for note in notes(document, chart) {
+    for note in notes(places) {
         drawing.area = drawing.area.union(&note.area);
         drawing.items.push(note);
     }
@@ -45,15 +66,19 @@ pub fn draw(document: &Document, chart: &Chart, options: &Options) -> Drawing {
 
 /// The comments in the layout section of a chart, in the order of the text, with their places.
 pub fn comments<'a>(document: &'a Document, chart: &Chart) -> impl Iterator<Item = (&'a str, &'a PlaceAt)> {
-    places(document, chart).iter().filter_map(|p| match &p.what {
+    comments_of(places(document, chart))
+}
+
+fn comments_of(places: &[PlaceAt]) -> impl Iterator<Item = (&str, &PlaceAt)> {
+    places.iter().filter_map(|p| match &p.what {
         Placed::Comment(text) => Some((&**text, p)),
         Placed::Step(_) | Placed::Transition(_) | Placed::TransitionNumber(_) => None,
     })
 }
 
-fn notes(document: &Document, chart: &Chart) -> Vec<Item> {
+fn notes(places: &[PlaceAt]) -> Vec<Item> {
     (0..)
-        .zip(comments(document, chart))
+        .zip(comments_of(places))
         .map(|(comment, (text, p))| {
             let place = Point { x: p.x.clamp(-FAR, FAR), y: p.y.clamp(-FAR, FAR) };
             item(Part::Comment { comment, place }, note(text).moved(place), p.at.0)

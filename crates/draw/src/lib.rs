@@ -31,7 +31,7 @@ mod symbols;
 mod text;
 
 pub use chronogram::{Chronogram, Edge, Lane, LaneKind, chronogram_svg};
-pub use draw::{comments, draw, measure};
+pub use draw::{comments, draw, draw_all, measure};
 pub use drawing::{Drawing, Item, Part};
 pub use geometry::{Extent, Point, Rect, U};
 pub use layout::layout;

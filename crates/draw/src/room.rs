@@ -25,12 +25,16 @@ const ASIDE: i64 = 150;
 /// overlap, the layout is dropped and the chart is laid out automatically, with the comments beside
 /// it.
 pub fn make_room(document: &mut Document) {
+    let mut charts: HashMap<&str, &Chart> = HashMap::new();
+    for chart in document.charts() {
+        charts.entry(&chart.name.text).or_insert(chart);
+    }
     let roomy: Vec<Option<Vec<PlaceAt>>> = document
         .items
         .iter()
         .map(|item| match item {
             Item::Layout(l) => {
-                let chart = document.charts().find(|c| c.name == l.chart)?;
+                let chart = charts.get(&*l.chart.text)?;
                 Some(with_room(document, chart, &l.places))
             }
             _ => None,

@@ -1,9 +1,10 @@
 //! Drawings as standalone files: a style sheet, the font, and the items of one or several charts on
 //! one sheet.
 
+use std::collections::HashMap;
 use std::fmt::Write as _;
 
-use g7_model::{ActionKind, Chart, ChartKind, Document, Order, Step, StepKind};
+use g7_model::{ActionKind, Chart, ChartKind, Document, Order, StepKind};
 
 use crate::ink::{Picture, Px, escape};
 use crate::text::{FONT_FAMILY, clean, font, shortened, width};
@@ -62,7 +63,8 @@ pub fn svg(drawing: &Drawing, options: &Options) -> String {
 
 /// Draws several charts as one SVG file: in rows, each under its name.
 pub fn sheet(document: &Document, drawings: &[Drawing], options: &Options) -> String {
-    let titles: Vec<Picture> = drawings.iter().map(|d| title(document, d)).collect();
+    let nesting = Nesting::of(document);
+    let titles: Vec<Picture> = drawings.iter().map(|d| title(&nesting, d)).collect();
     let boxes: Vec<Rect> = drawings.iter().zip(&titles).map(|(d, t)| with_title(d, t)).collect();
     let places = rows(&boxes);
     let area = boxes.iter().zip(&places).fold(None, |all: Option<Rect>, (b, p)| {
@@ -84,18 +86,19 @@ pub fn sheet(document: &Document, drawings: &[Drawing], options: &Options) -> St
 
 /// The title over a chart: its name, the macro-step or enclosing step it belongs to, and its
 /// comment. An enclosed chart also gets a frame with the name of its enclosing step.
-fn title(document: &Document, drawing: &Drawing) -> Picture {
+fn title(nesting: &Nesting<'_>, drawing: &Drawing) -> Picture {
     let mut p = Picture::default();
-    let Some(chart) = document.charts().find(|c| c.name.text == drawing.chart) else { return p };
-    let name = match (chart.kind, inside_of(document, chart)) {
-        (ChartKind::Expansion, Some(step)) if *step != *chart.name.text => {
-            format!("{} = {}", short(&step), short(&chart.name.text))
+    let name = &*drawing.chart;
+    let Some(chart) = nesting.charts.get(name) else { return p };
+    let name = match (chart.kind, nesting.macro_steps.get(name)) {
+        (ChartKind::Expansion, Some(step)) if *step != name => {
+            format!("{} = {}", short(step), short(name))
         }
         (ChartKind::Chart | ChartKind::Expansion | ChartKind::Task, _) => short(&chart.name.text),
     };
     let (mut x, y) = (drawing.area.x, drawing.area.y - UNDER_TITLE);
-    if let Some(step) = enclosed_by(document, chart) {
-        let (step, _) = shortened(&clean(&step), SUBTITLE, 2000);
+    if let Some(step) = nesting.enclosing.get(&*drawing.chart) {
+        let (step, _) = shortened(&clean(step), SUBTITLE, 2000);
         x += enclosing_mark(&mut p, x, y, &step) + 100;
     }
     let enclosed = !p.ink.is_empty();
@@ -130,21 +133,35 @@ fn enclosing_mark(p: &mut Picture, x: i32, y: i32, step: &str) -> i32 {
     w
 }
 
-/// The enclosing step of a chart, if it has one.
-fn enclosed_by(document: &Document, chart: &Chart) -> Option<Box<str>> {
-    let encloses = |s: &&Step| {
-        s.actions.iter().any(
-            |a| matches!(&a.kind, ActionKind::Order(Order::Enclose(name)) if name.text == chart.name.text),
-        )
-    };
-    document.charts().flat_map(Chart::steps).find(encloses).map(|s| s.name.text.clone())
+/// The charts of a document by name, and the step that each belongs to. Of several with one name
+/// the first in the text counts.
+#[derive(Default)]
+struct Nesting<'a> {
+    charts: HashMap<&'a str, &'a Chart>,
+    /// By the name of an expansion: its macro-step.
+    macro_steps: HashMap<&'a str, &'a str>,
+    /// By the name of an enclosed chart: its enclosing step.
+    enclosing: HashMap<&'a str, &'a str>,
 }
 
-/// The macro-step whose expansion the chart is.
-fn inside_of(document: &Document, chart: &Chart) -> Option<Box<str>> {
-    let steps = document.charts().flat_map(Chart::steps);
-    let mut of = steps.filter(|s| matches!(&s.kind, StepKind::Macro(name) if name.text == chart.name.text));
-    of.next().map(|s| s.name.text.clone())
+impl<'a> Nesting<'a> {
+    fn of(document: &'a Document) -> Nesting<'a> {
+        let mut all = Nesting::default();
+        for chart in document.charts() {
+            all.charts.entry(&chart.name.text).or_insert(chart);
+        }
+        for step in document.charts().flat_map(Chart::steps) {
+            if let StepKind::Macro(expansion) = &step.kind {
+                all.macro_steps.entry(&expansion.text).or_insert(&step.name.text);
+            }
+            for action in &step.actions {
+                if let ActionKind::Order(Order::Enclose(chart)) = &action.kind {
+                    all.enclosing.entry(&chart.text).or_insert(&step.name.text);
+                }
+            }
+        }
+        all
+    }
 }
 
 fn with_title(drawing: &Drawing, title: &Picture) -> Rect {

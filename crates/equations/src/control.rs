@@ -3,7 +3,7 @@
 
 use std::collections::BTreeSet;
 
-use g7_engine::{Cmp, Contribution, NONE};
+use g7_engine::{Addr, Cmp, Contribution, NONE};
 use g7_model::Type;
 
 use crate::form::{About, Class, Expr, MemoryId, Part, Section, Stmt, What};
@@ -183,7 +183,7 @@ impl Make<'_> {
             return Vec::new();
         }
         let (output, _) = self.word(b.output, Type::Bool);
-        if self.drives_alone(i, output) {
+        if self.drives_alone(b.output, output) {
             return vec![Stmt::Set(output, q)];
         }
         let written = self.bit(i, Part::Written);
@@ -195,14 +195,9 @@ impl Make<'_> {
 
     /// Nothing but this block writes the output, so that writing it in each scan
     /// is the same as writing it where it changes.
-    fn drives_alone(&self, block: u32, output: MemoryId) -> bool {
+    fn drives_alone(&self, word: Addr, output: MemoryId) -> bool {
         let alone = self.of(output).is_some_and(|m| m.class == Class::Output && m.init.first() == Some(&0));
-        alone && !self.written_by_code.contains(&output) && {
-            let same = |b: &g7_engine::ControlBlock| {
-                self.t.blocks.get(block as usize).is_some_and(|own| own.output == b.output)
-            };
-            self.t.blocks.iter().filter(|b| same(b)).count() == 1
-        }
+        alone && !self.written_by_code.contains(&output) && self.has_one_driver(word)
     }
 
     fn full(&mut self, i: u32, inputs: &BTreeSet<u8>, gate: Expr, b: g7_engine::ControlBlock) -> Vec<Stmt> {

@@ -1,7 +1,7 @@
 //! One pass: what is blocked and forced, which transitions clear, what becomes
 //! of the steps (SEMANTICS section 3).
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 
 use g7_engine::{NONE, Receptivity, Situation, StepId};
 use g7_model::Type;
@@ -71,16 +71,19 @@ impl Make<'_> {
         if has_orders || self.has_hierarchy() || t.rules.sequential {
             self.clear_marks(&mut s.body);
         }
+        let forced: HashSet<u32> = t.orders.iter().map(|o| o.chart).collect();
         for (i, chart) in (0u32..).zip(&t.charts) {
             let due = self.due(chart.period);
-            let forced = t.orders.iter().any(|o| o.chart == i);
-            if due.known() != Some(true) || forced {
+            if due.known() != Some(true) || forced.contains(&i) {
                 let blocked = self.flag(What::Blocked(i));
                 s.body.push(Stmt::Set(blocked, due.negated()));
             }
         }
-        for i in 0..t.orders.len() {
-            self.order(i as u32, &mut s.body);
+        let mut earlier: HashMap<u32, Vec<(u32, Situation)>> = HashMap::new();
+        for (i, o) in (0u32..).zip(&t.orders) {
+            let on_chart = earlier.entry(o.chart).or_default();
+            self.order(i, on_chart, &mut s.body);
+            on_chart.push((i, o.situation));
         }
         if has_orders {
             for i in 0..t.charts.len() as u32 {
@@ -105,8 +108,9 @@ impl Make<'_> {
         }
     }
 
-    /// A forcing order, behind all that act on the chart of its step.
-    fn order(&mut self, i: u32, to: &mut Vec<Stmt>) {
+    /// A forcing order, behind all that act on the chart of its step; `earlier` are the orders
+    /// before it that act on the same chart.
+    fn order(&mut self, i: u32, earlier: &[(u32, Situation)], to: &mut Vec<Stmt>) {
         let t = self.t;
         let Some(o) = t.orders.get(i as usize) else { return };
         to.push(Stmt::About(About::Order(i)));
@@ -115,12 +119,7 @@ impl Make<'_> {
         to.push(Stmt::Set(asks, acts));
         let asks = Expr::Read(asks);
         let mut first = asks.clone();
-        let earlier: Vec<(u32, Situation)> = (0u32..i)
-            .zip(&t.orders)
-            .filter(|(_, e)| e.chart == o.chart)
-            .map(|(j, e)| (j, e.situation))
-            .collect();
-        for (j, situation) in &earlier {
+        for (j, situation) in earlier {
             let imposes = Expr::Read(self.flag(What::Imposes(*j)));
             let differ = self.differ(*situation, o.situation, o.chart);
             if differ.known() != Some(false) {

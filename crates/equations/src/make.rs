@@ -37,6 +37,12 @@ pub(crate) struct Make<'a> {
     pub(crate) returns: u32,
     /// Each scan adds the scan time to these clocks where their condition holds.
     pub(crate) clocks: Vec<(MemoryId, Expr)>,
+    /// The same clocks, to be found.
+    running: HashSet<MemoryId>,
+    /// Some step encloses charts.
+    hierarchy: bool,
+    /// By output: the control blocks that drive it.
+    drivers: HashMap<Addr, u32>,
     /// Variables that code of the chart writes.
     pub(crate) written_by_code: HashSet<MemoryId>,
 }
@@ -52,9 +58,14 @@ impl<'a> Make<'a> {
     }
 
     fn with(c: &'a Compiled, options: Options, apart: bool) -> Make<'a> {
+        let t = c.program.tables();
+        let mut drivers = HashMap::new();
+        for block in &t.blocks {
+            *drivers.entry(block.output).or_default() += 1;
+        }
         let mut m = Make {
             c,
-            t: c.program.tables(),
+            t,
             options,
             apart,
             memories: Vec::new(),
@@ -64,6 +75,9 @@ impl<'a> Make<'a> {
             temporaries: 0,
             returns: 0,
             clocks: Vec::new(),
+            running: HashSet::new(),
+            hierarchy: t.extras.iter().any(|e| !e.encloses.is_empty() || !e.links.is_empty()),
+            drivers,
             written_by_code: HashSet::new(),
         };
         m.variables();
@@ -333,7 +347,12 @@ impl<'a> Make<'a> {
     }
 
     pub(crate) fn has_hierarchy(&self) -> bool {
-        self.t.extras.iter().any(|e| !e.encloses.is_empty() || !e.links.is_empty())
+        self.hierarchy
+    }
+
+    /// True if one control block alone drives an output.
+    pub(crate) fn has_one_driver(&self, output: Addr) -> bool {
+        self.drivers.get(&output) == Some(&1)
     }
 
     pub(crate) fn step(&mut self, step: u32) -> MemoryId {
@@ -375,7 +394,7 @@ impl<'a> Make<'a> {
 
     /// Adds the scan time to a clock in each scan in which the condition holds.
     pub(crate) fn runs(&mut self, clock: MemoryId, while_: Expr) {
-        if self.clocks.iter().all(|c| c.0 != clock) {
+        if self.running.insert(clock) {
             self.clocks.push((clock, while_));
         }
     }

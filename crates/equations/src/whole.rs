@@ -1,6 +1,6 @@
 //! All the equations of a chart together, and what is asked of them.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeSet, HashMap};
 
 use crate::form::{Expr, Memory, MemoryId, Section, Stmt, What};
 
@@ -58,6 +58,15 @@ impl Equations {
     pub fn find(&self, what: What) -> Option<MemoryId> {
         let at = self.memories.iter().position(|m| m.what == what)?;
         Some(MemoryId(at as u32))
+    }
+
+    /// The memories by what they stand for, for those who look for many of them.
+    pub fn by_meaning(&self) -> HashMap<What, MemoryId> {
+        let mut found = HashMap::with_capacity(self.memories.len());
+        for (id, memory) in (0..).map(MemoryId).zip(&self.memories) {
+            found.entry(memory.what).or_insert(id);
+        }
+        found
     }
 
     /// All sections in their order.

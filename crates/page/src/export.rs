@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use g7_codegen::{Language, plc};
 use g7_compile::symbols::Symbols;
-use g7_draw::{Drawing, Options};
+use g7_draw::Options;
 use g7_engine::StepId;
 use g7_exchange::FORMATS;
 use g7_model::{Problem, Severity, Span};
@@ -176,7 +176,7 @@ fn marks(text: &str, words: &BTreeMap<String, String>) -> Vec<Mark> {
 fn picture(file: &File) -> String {
     let options = Options { font: true, ..Options::default() };
     let document = &file.source.document;
-    let drawings: Vec<Drawing> = document.charts().map(|c| g7_draw::draw(document, c, &options)).collect();
+    let drawings = g7_draw::draw_all(document, document.charts(), &options);
     match drawings.as_slice() {
         [one] => g7_draw::svg(one, &options),
         several => g7_draw::sheet(document, several, &options),

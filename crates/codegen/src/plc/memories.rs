@@ -1,7 +1,7 @@
 //! The memories of the equations as declarations of IEC 61131-3: names, types,
 //! comments.
 
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 
 use g7_compile::Compiled;
 use g7_engine::{Addr, INPUTS, StepId};
@@ -19,6 +19,7 @@ const FIXED: [&str; 10] =
 pub(crate) struct Memories {
     /// By memory: its name; none where nothing has to be called.
     names: Vec<String>,
+    found: HashMap<What, MemoryId>,
     pub(crate) steps: Vec<String>,
     /// Variables of the chart: first word, name, elements.
     pub(crate) shown: Vec<(Addr, String, u32)>,
@@ -70,6 +71,7 @@ impl Memories {
     ) -> (String, Memories) {
         let mut m = Memories {
             names: vec![String::new(); e.memories.len()],
+            found: e.by_meaning(),
             steps: Vec::new(),
             shown: Vec::new(),
             declared: Vec::new(),
@@ -86,7 +88,7 @@ impl Memories {
             if m.names.get(id.0 as usize).is_some_and(String::is_empty)
                 && let Some(memory) = e.memory(id)
             {
-                m.other(c, e, id, memory);
+                m.other(c, id, memory);
             }
         }
         (name, m)
@@ -95,6 +97,11 @@ impl Memories {
     /// The name of a memory.
     pub(crate) fn name(&self, id: MemoryId) -> &str {
         self.names.get(id.0 as usize).map_or("", String::as_str)
+    }
+
+    /// The memory of something, where it has one.
+    pub(crate) fn find(&self, what: What) -> Option<MemoryId> {
+        self.found.get(&what).copied()
     }
 
     fn call(&mut self, id: MemoryId, name: String) {
@@ -126,17 +133,17 @@ impl Memories {
             let name = self.given.variable(&v.name);
             if let Type::Fb(kind) = v.ty {
                 members_until = v.addr.0 + v.words();
-                let first = e.find(What::Variable(v.addr));
+                let first = self.find(What::Variable(v.addr));
                 let native = first.is_none_or(|m| calls.contains(&m) || !used.contains(&m));
                 self.instance(e, v.addr, kind, &name, native);
                 let any = (0..v.words())
-                    .any(|i| e.find(What::Variable(Addr(v.addr.0 + i))).is_some_and(|m| used.contains(&m)));
+                    .any(|i| self.find(What::Variable(Addr(v.addr.0 + i))).is_some_and(|m| used.contains(&m)));
                 if native && any {
                     self.internal(&name, kind.name(), "");
                 }
                 continue;
             }
-            let Some(id) = e.find(What::Variable(v.addr)) else { continue };
+            let Some(id) = self.find(What::Variable(v.addr)) else { continue };
             let Some(memory) = e.memory(id) else { continue };
             let class = match memory.class {
                 Class::Input => form::Class::Input,
@@ -180,7 +187,7 @@ impl Memories {
     /// their own.
     fn instance(&mut self, e: &Equations, base: Addr, kind: FbKind, name: &str, native: bool) {
         for (i, (member, ..)) in (0u32..).zip(kind.members()) {
-            let Some(id) = e.find(What::Variable(Addr(base.0 + i))) else { continue };
+            let Some(id) = self.find(What::Variable(Addr(base.0 + i))) else { continue };
             if native {
                 self.call(id, format!("{name}.{member}"));
             } else if let Some(memory) = e.memory(id) {
@@ -204,7 +211,7 @@ impl Memories {
             };
             self.internal(&name, "BOOL", &note);
             self.steps.push(name.clone());
-            if let Some(id) = e.find(What::Step(step)) {
+            if let Some(id) = self.find(What::Step(step)) {
                 self.call(id, name);
             }
         }
@@ -213,7 +220,7 @@ impl Memories {
             let text = symbols.transition_text(rank);
             let own = symbols.label(rank).map_or_else(|| text.replace("->", "to"), str::to_owned);
             let name = self.given.with("T", &own);
-            let clears = e.find(What::Clears(rank)).or(e.find(What::Clearable(rank)));
+            let clears = self.find(What::Clears(rank)).or(self.find(What::Clearable(rank)));
             let Some(id) = clears.filter(|id| used.contains(id)) else { continue };
             self.internal(&name, "BOOL", &format!("transition {text}"));
             self.call(id, name);
@@ -221,8 +228,8 @@ impl Memories {
     }
 
     /// The memory of a transition, by what follows its `T_`.
-    fn of_transition(&self, e: &Equations, rank: u32) -> String {
-        let clears = e.find(What::Clears(rank)).or(e.find(What::Clearable(rank)));
+    fn of_transition(&self, rank: u32) -> String {
+        let clears = self.find(What::Clears(rank)).or(self.find(What::Clearable(rank)));
         let name = clears.map_or("", |id| self.name(id));
         match name.strip_prefix("T_") {
             Some(rest) => rest.to_owned(),
@@ -236,7 +243,7 @@ impl Memories {
     }
 
     /// A memory that stands for something else.
-    fn other(&mut self, c: &Compiled, e: &Equations, id: MemoryId, memory: &Memory) {
+    fn other(&mut self, c: &Compiled, id: MemoryId, memory: &Memory) {
         let step = |m: &Self, s: StepId| m.of_step(s);
         let chart = |i: u32| c.symbols.charts.get(i as usize).map_or("", |c| &c.name).to_owned();
         let number = |n: u32| (n + 1).to_string();
@@ -282,9 +289,9 @@ impl Memories {
             What::TimerClock(w) => ("WT", number(w.0), "since it changed"),
             What::Until(p) => ("UNTIL", p.to_string(), "time until the period is due"),
             What::Due(p) => ("DUE", p.to_string(), "the period is due"),
-            What::Receptivity(r) => ("R", self.of_transition(e, r), "its receptivity"),
-            What::Clearable(r) => ("C", self.of_transition(e, r), "clearable"),
-            What::Clears(r) => ("T", self.of_transition(e, r), ""),
+            What::Receptivity(r) => ("R", self.of_transition(r), "its receptivity"),
+            What::Clearable(r) => ("C", self.of_transition(r), "clearable"),
+            What::Clears(r) => ("T", self.of_transition(r), ""),
             What::Settled(s) => ("FOUND", step(self, s), "one of its transitions is clearable"),
             What::Taken(s) => ("TAKEN", step(self, s), "a transition has taken it"),
             What::Blocked(i) => ("FORCED", chart(i), "its transitions do not clear"),
@@ -307,7 +314,7 @@ impl Memories {
             What::RequestClear(g) => ("CLEAR", number(g.0), "is to be cleared"),
             What::RequestSet(s) => ("SET", step(self, s), "is to be set"),
             What::RequestReset(s) => ("RESET", step(self, s), "is to be reset"),
-            What::Enabled(r) => ("E", self.of_transition(e, r), "enabled before the evolution"),
+            What::Enabled(r) => ("E", self.of_transition(r), "enabled before the evolution"),
             What::StepCount => ("STEPS", "count".into(), ""),
             What::TransitionCount => ("TRANSITIONS", "count".into(), ""),
             What::Returned(n) => ("LEAVE", n.to_string(), "RETURN was reached"),

@@ -10,6 +10,8 @@ use crate::names::letters;
 #[derive(Debug, Default)]
 pub(crate) struct Names {
     given: HashSet<String>,
+    /// By a name that is wanted again and again, in capitals: the number to try next.
+    next: HashMap<String, u32>,
     counts: HashMap<String, u32>,
 }
 
@@ -36,12 +38,18 @@ impl Names {
 
     fn once(&mut self, name: String) -> String {
         let name = name.trim_end_matches('_').to_owned();
-        let mut free = name.clone();
-        let mut k = 2;
-        while !self.given.insert(free.to_uppercase()) {
-            free = format!("{name}_{k}");
-            k += 1;
+        let plain = name.to_uppercase();
+        if self.given.insert(plain.clone()) {
+            return name;
         }
-        free
+        // No name is given back, so the numbers tried before are still taken.
+        let next = self.next.entry(plain).or_insert(2);
+        loop {
+            let free = format!("{name}_{next}");
+            *next += 1;
+            if self.given.insert(free.to_uppercase()) {
+                return free;
+            }
+        }
     }
 }

@@ -125,7 +125,7 @@ impl Scan<'_> {
 
     /// The time since the scan before, where something reads it.
     fn clock(&mut self) -> Vec<St> {
-        let read = self.e.find(What::Dt).is_some_and(|m| !self.memories.name(m).is_empty());
+        let read = self.memories.find(What::Dt).is_some_and(|m| !self.memories.name(m).is_empty());
         if !read {
             return Vec::new();
         }
@@ -327,7 +327,7 @@ impl Scan<'_> {
     fn turn(&self, m: MemoryId, e: &Expr) -> Option<(MemoryId, Expr, Expr)> {
         let step = match self.e.memory(m)?.what {
             What::Step(_) => m,
-            What::Next(s) => self.e.find(What::Step(s))?,
+            What::Next(s) => self.memories.find(What::Step(s))?,
             _ => return None,
         };
         let own = Expr::Read(step);

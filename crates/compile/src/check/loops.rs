@@ -89,19 +89,21 @@ fn end(unit: &Unit, mut step: StepId, entry: bool) -> StepId {
 
 /// Sets of steps that all lead to each other (strongly connected, by two walks).
 fn circles(unit: &Unit, ever: &[&Transition]) -> Vec<Vec<StepId>> {
-    let count = unit.steps.len();
+    let steps = unit.steps.len();
+    // A transition is a node behind the steps: each of its steps on one side leads to each on the
+    // other, and these pairs can be many more than the steps.
+    let count = steps + ever.len();
     let mut ahead = vec![Vec::new(); count];
     let mut back = vec![Vec::new(); count];
-    for t in ever {
-        for from in &t.from {
-            for to in &t.to {
-                let (from, to) = (leaves(unit, *from), enters(unit, *to));
-                if let (Some(a), Some(b)) = (ahead.get_mut(from.index()), back.get_mut(to.index())) {
-                    a.push(to);
-                    b.push(from);
-                }
-            }
+    let mut lead = |from: StepId, to: StepId| {
+        if let (Some(a), Some(b)) = (ahead.get_mut(from.index()), back.get_mut(to.index())) {
+            a.push(to);
+            b.push(from);
         }
+    };
+    for (t, node) in ever.iter().zip((steps as u32..).map(StepId)) {
+        t.from.iter().for_each(|from| lead(leaves(unit, *from), node));
+        t.to.iter().for_each(|to| lead(node, enters(unit, *to)));
     }
     let mut seen = vec![false; count];
     let mut order = Vec::new();
@@ -113,6 +115,7 @@ fn circles(unit: &Unit, ever: &[&Transition]) -> Vec<Vec<StepId>> {
     for start in order.into_iter().rev() {
         let mut circle = Vec::new();
         walk(start, &back, &mut taken, &mut circle);
+        circle.retain(|s| s.index() < steps);
         if circle.len() > 1 {
             found.push(circle);
         }

@@ -1,6 +1,6 @@
 //! Checks steps, transitions and the links between them.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 use g7_model::{Problem, codes};
 
@@ -60,7 +60,7 @@ fn ends(unit: &Unit, chart: &Chart, problems: &mut Vec<Problem>) {
 
 /// An expansion without its macro-step and a task that no step calls never run.
 fn unused(unit: &Unit, problems: &mut Vec<Problem>) {
-    let called: Vec<ChartId> = unit.steps.iter().flat_map(|s| &s.calls).map(|(c, _)| *c).collect();
+    let called: HashSet<ChartId> = unit.steps.iter().flat_map(|s| &s.calls).map(|(c, _)| *c).collect();
     for (k, chart) in unit.charts.iter().enumerate() {
         let (what, help) = match chart.role {
             ChartRole::Unused => {
@@ -167,8 +167,9 @@ fn arms(unit: &Unit, t: &Transition, problems: &mut Vec<Problem>) {
         );
     }
     for list in [&t.from, &t.to] {
-        for (k, id) in list.iter().enumerate() {
-            if list.get(..k).unwrap_or(&[]).contains(id)
+        let mut seen = HashSet::new();
+        for id in list.iter().filter(|_| list.len() > 1) {
+            if !seen.insert(id)
                 && let Some(step) = unit.steps.get(id.index())
             {
                 let what = format!("step `{}` stands twice on one side of the transition", step.name);

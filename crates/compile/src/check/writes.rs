@@ -1,7 +1,7 @@
 //! Checks what actions write: variables that are both driven and assigned, and stored actions that
 //! give one variable two values at one moment.
 
-use std::collections::{BTreeMap, BTreeSet, HashSet};
+use std::collections::{BTreeMap, HashMap, HashSet};
 
 use g7_model::{Problem, Qualifier, Span, codes};
 
@@ -46,6 +46,30 @@ struct Write {
 struct Moment {
     writes: Vec<Write>,
     group: usize,
+}
+
+/// The writes of one variable so far.
+#[derive(Default)]
+struct Before<'w> {
+    writes: Vec<&'w Write>,
+    /// Two values are among them.
+    differ: bool,
+    told: bool,
+}
+
+impl<'w> Before<'w> {
+    /// Adds a write; returns the first one that gives the variable another value, if that has not
+    /// been told yet.
+    fn other(&mut self, b: &'w Write, meet: bool) -> Option<&'w Write> {
+        self.differ |= self.writes.first().is_some_and(|a| a.value != b.value);
+        let other = |a: &&&Write| a.value != b.value && a.of != b.of && (a.group != b.group) == meet;
+        // Many steps may write one value: they need not be compared.
+        let open = self.differ && !self.told;
+        let found = if open { self.writes.iter().find(other).copied() } else { None };
+        self.told |= found.is_some();
+        self.writes.push(b);
+        found
+    }
 }
 
 impl Moment {
@@ -104,12 +128,9 @@ impl Moment {
     /// Reports each variable that is given two values, once.
     fn tell(&self, unit: &Unit, code: &'static g7_model::codes::Code, problems: &mut Vec<Problem>) {
         let meet = std::ptr::eq(code, &codes::WRITES_MEET);
-        let mut told = BTreeSet::new();
-        for (k, b) in self.writes.iter().enumerate() {
-            let first = self.writes.iter().take(k).find(|a| {
-                a.var == b.var && a.value != b.value && a.of != b.of && (a.group != b.group) == meet
-            });
-            let Some(a) = first.filter(|_| told.insert(b.var)) else { continue };
+        let mut before: HashMap<VarId, Before<'_>> = HashMap::new();
+        for b in &self.writes {
+            let Some(a) = before.entry(b.var).or_default().other(b, meet) else { continue };
             let name = unit.vars.get(b.var.index()).map_or("", |v| &*v.name);
             let (what, help) = if meet {
                 (
@@ -133,11 +154,12 @@ fn cleared(unit: &Unit, blocked: &HashSet<VarId>, t: &Transition) -> Moment {
     let mut moment = Moment::default();
     moment.body(&t.on_clearing, t.at);
     // A step on both sides stays active.
-    let both = |s: &&StepId| t.from.contains(s) && t.to.contains(s);
-    for step in t.from.iter().filter(|s| !both(s)) {
+    let from: HashSet<&StepId> = t.from.iter().collect();
+    let both: HashSet<&StepId> = t.to.iter().filter(|s| from.contains(s)).collect();
+    for step in t.from.iter().filter(|s| !both.contains(s)) {
         moment.step(unit, blocked, *step, Qualifier::P0);
     }
-    for step in t.to.iter().filter(|s| !both(s)) {
+    for step in t.to.iter().filter(|s| !both.contains(s)) {
         moment.step(unit, blocked, *step, Qualifier::P1);
     }
     moment

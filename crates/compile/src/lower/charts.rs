@@ -1,8 +1,11 @@
 //! Charts as groups of steps: initial situations, enclosures, and what steps
 //! order of other charts.
 
+use std::collections::HashMap;
+
 use g7_engine::{Chart, Group, GroupId, Order, Rows, Situation, StepId as Number};
 
+use super::distinct::Distinct;
 use super::lists::Lists;
 use super::plan::parent;
 use super::work::{Freeze, Lower};
@@ -67,19 +70,19 @@ impl Lower<'_> {
     /// Period rows, equal periods sharing one; an expansion has its chart's.
     pub(super) fn look_at_periods(&mut self) {
         self.t.periods = vec![0];
+        let mut known = HashMap::from([(0, 0)]);
         self.periods = vec![0; self.unit.charts.len()];
         for i in 0..self.unit.charts.len() {
             let row = self.plan.chart(ChartId(i as u32));
             let outer = row.and_then(|r| self.plan.outer.get(r as usize));
             let every = outer.and_then(|c| self.unit.charts.get(c.index())).and_then(|c| c.every);
             let every = every.map_or(0, |time| time.count().max(0));
-            let known = self.t.periods.iter().position(|p| *p == every);
-            let row = known.unwrap_or_else(|| {
+            let row = *known.entry(every).or_insert_with(|| {
                 self.t.periods.push(every);
-                self.t.periods.len() - 1
+                self.t.periods.len() as u32 - 1
             });
             if let Some(p) = self.periods.get_mut(i) {
-                *p = row as u32;
+                *p = row;
             }
         }
     }
@@ -123,10 +126,10 @@ impl Lower<'_> {
             for i in row.steps.clone() {
                 let Some(step) = self.unit.steps.get(i as usize) else { continue };
                 if test(row, StepId(i), step) {
-                    let mut steps = Vec::new();
+                    let mut steps = Distinct::default();
                     self.plan.entering(self.unit, StepId(i), &mut steps);
                     self.plan.around(self.unit, StepId(i), &mut steps);
-                    found.extend(steps);
+                    found.extend(steps.as_slice());
                 }
             }
         }
@@ -206,7 +209,7 @@ impl Lower<'_> {
             for chart in charts {
                 let Some(group) = self.plan.group(*chart) else { continue };
                 groups.add(number.0, group);
-                self.linked(group).into_iter().for_each(|s| links.add(number.0, s));
+                self.linked(group).as_slice().iter().for_each(|s| links.add(number.0, *s));
             }
         }
         groups.sort_unique();
@@ -216,8 +219,8 @@ impl Lower<'_> {
 
     /// The linked steps of a group in the order of the text, each with all that
     /// goes on with it.
-    fn linked(&self, group: GroupId) -> Vec<Number> {
-        let mut found = Vec::new();
+    fn linked(&self, group: GroupId) -> Distinct {
+        let mut found = Distinct::default();
         for chart in self.within(group).filter_map(|c| self.unit.charts.get(c.index())) {
             for i in chart.steps.clone() {
                 if self.unit.steps.get(i as usize).is_some_and(|s| s.linked) {
@@ -252,12 +255,12 @@ impl Lower<'_> {
                     Situation::Steps(group.map(|g| g.initial).unwrap_or_default())
                 }
                 ir::Situation::Steps(steps) => {
-                    let mut imposed = Vec::new();
+                    let mut imposed = Distinct::default();
                     for s in steps {
                         self.plan.entering(unit, *s, &mut imposed);
                         self.plan.around(unit, *s, &mut imposed);
                     }
-                    Situation::Steps(self.list(&imposed))
+                    Situation::Steps(self.list(imposed.as_slice()))
                 }
             };
             rows.push((step, Order { step: Number(step), chart: forced, situation }));

@@ -18,6 +18,7 @@
 mod actions;
 mod associations;
 mod charts;
+mod distinct;
 mod emit;
 mod lists;
 mod names;

@@ -9,6 +9,7 @@
 
 use g7_engine::NONE;
 
+use super::distinct::Distinct;
 use super::uses::Uses;
 use crate::ir::{Chart, ChartId, ChartRole, StepId, StepSort, Unit};
 
@@ -168,24 +169,18 @@ impl Plan {
 
     /// The steps that go on when a step does: those of a macro-step are its
     /// pseudo-step and the entry step of its expansion.
-    pub(super) fn entering(&self, unit: &Unit, id: StepId, to: &mut Vec<g7_engine::StepId>) {
+    pub(super) fn entering(&self, unit: &Unit, id: StepId, to: &mut Distinct) {
         let (end, pseudos) = self.end(unit, id, |c| c.entry);
-        pseudos.into_iter().chain(end).for_each(|s| add(to, s));
+        pseudos.into_iter().chain(end).for_each(|s| to.add(s));
     }
 
     /// The step that must be active for a step to be left, and goes off with it:
     /// of a macro-step the exit step of its expansion. Its pseudo-step only goes
     /// off, added to `drops`.
-    pub(super) fn leaving(
-        &self,
-        unit: &Unit,
-        id: StepId,
-        to: &mut Vec<g7_engine::StepId>,
-        drops: &mut Vec<g7_engine::StepId>,
-    ) {
+    pub(super) fn leaving(&self, unit: &Unit, id: StepId, to: &mut Distinct, drops: &mut Distinct) {
         let (end, pseudos) = self.end(unit, id, |c| c.exit);
-        end.into_iter().for_each(|s| add(to, s));
-        pseudos.into_iter().rev().for_each(|s| add(drops, s));
+        end.into_iter().for_each(|s| to.add(s));
+        pseudos.into_iter().rev().for_each(|s| drops.add(s));
     }
 
     /// The entry or exit step behind a macro-step, and the pseudo-steps on the way.
@@ -208,22 +203,15 @@ impl Plan {
     }
 
     /// The pseudo-steps of the macro-steps round a step.
-    pub(super) fn around(&self, unit: &Unit, id: StepId, to: &mut Vec<g7_engine::StepId>) {
+    pub(super) fn around(&self, unit: &Unit, id: StepId, to: &mut Distinct) {
         let mut chart = unit.steps.get(id.index()).map(|s| s.chart);
         for _ in 0..=NESTING {
             let Some(outer) = chart.and_then(|c| parent(unit, c)) else { break };
             if let Some(p) = self.pseudo(outer) {
-                add(to, p);
+                to.add(p);
             }
             chart = unit.steps.get(outer.index()).map(|s| s.chart);
         }
-    }
-}
-
-/// Adds a step that is not there yet.
-pub(super) fn add(to: &mut Vec<g7_engine::StepId>, step: g7_engine::StepId) {
-    if !to.contains(&step) {
-        to.push(step);
     }
 }
 

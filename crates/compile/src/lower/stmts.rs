@@ -3,6 +3,7 @@
 use g7_engine::{Addr, Arith, Cmp, Service as Request};
 use g7_model::{FbKind, Span, Type};
 
+use super::distinct::Distinct;
 use super::terms::store_word;
 use super::words::block_of;
 use super::work::Lower;
@@ -191,10 +192,10 @@ impl Lower<'_> {
                 });
             }
             Service::SetStep(step) => {
-                let mut steps = Vec::new();
+                let mut steps = Distinct::default();
                 self.plan.entering(self.unit, *step, &mut steps);
                 self.plan.around(self.unit, *step, &mut steps);
-                to.extend(steps.into_iter().map(|s| request(Request::Set(s))));
+                to.extend(steps.as_slice().iter().map(|s| request(Request::Set(*s))));
             }
             Service::ResetStep(step) => to.extend(self.reset(*step, at)),
             Service::ResetTimes => to.push(request(Request::ResetTimes)),

@@ -7,6 +7,7 @@ use g7_engine::{Addr, Cmp, NONE, Receptivity, Rows, StepId as Number, Transition
 use g7_model::{Span, Type};
 
 use super::actions::Clearing;
+use super::distinct::Distinct;
 use super::lists::Lists;
 use super::plan::parent;
 use super::work::Lower;
@@ -37,10 +38,10 @@ enum Extra {
 /// The parts of a transition.
 #[derive(Default)]
 struct Parts {
-    from: Vec<Number>,
-    to: Vec<Number>,
+    from: Distinct,
+    to: Distinct,
     /// Go off with it.
-    drops: Vec<Number>,
+    drops: Distinct,
     extras: Vec<Extra>,
 }
 
@@ -109,17 +110,18 @@ impl Lower<'_> {
                 }
             };
             row.chart = self.plan.chart(chart).unwrap_or(0);
-            (row.from, row.more_from) = self.arcs(&p.from);
-            (row.to, row.more_to) = self.arcs(&p.to);
-            row.drops = !p.drops.is_empty();
-            self.t.drops.extend(p.drops.iter().map(|s| (rank as u32, *s)));
-            for s in &p.from {
+            let (from, drops) = (p.from.as_slice(), p.drops.as_slice());
+            (row.from, row.more_from) = self.arcs(from);
+            (row.to, row.more_to) = self.arcs(p.to.as_slice());
+            row.drops = !drops.is_empty();
+            self.t.drops.extend(drops.iter().map(|s| (rank as u32, *s)));
+            for s in from {
                 if let (Some(n), Some(j)) = (uses.get_mut(s.0 as usize), joint.get_mut(s.0 as usize)) {
                     *n = n.saturating_add(1);
-                    *j |= p.from.len() > 1;
+                    *j |= from.len() > 1;
                 }
             }
-            match p.from.first() {
+            match from.first() {
                 Some(s) => outs.add(s.0, rank as u32),
                 None => self.t.sources.push(rank as u32),
             }
@@ -177,7 +179,7 @@ impl Lower<'_> {
     /// task then stands at its entry step again.
     fn hand_back(&self, task: ChartId, caller: StepId, p: &mut Parts) {
         let Some(owner) = self.owner(task) else { return };
-        let Some(number) = self.callers(task).iter().position(|c| *c == caller) else { return };
+        let Ok(number) = self.callers(task).binary_search(&caller) else { return };
         self.to_entry(task, p);
         p.extras.push(Extra::OwnedBy(owner, number as u64 + 1));
     }

@@ -63,16 +63,18 @@ impl Graph {
         }
         let mut links = Vec::new();
         let mut node = steps.len() as u32;
+        // By step: the last side of a transition that named it; a step counts once a side.
+        let mut last = vec![0u32; steps.len()];
+        let mut side = 0;
         for t in chart.transitions() {
-            let mut seen: Vec<u32> = Vec::with_capacity(t.from.len());
-            let number = |name: &g7_model::Name, seen: &mut Vec<u32>| {
-                let n = numbers.get(&*name.text).copied().filter(|n| !seen.contains(n))?;
-                seen.push(n);
-                Some(n)
+            let mut number = |name: &g7_model::Name, side: u32| {
+                let n = numbers.get(&*name.text).copied()?;
+                (std::mem::replace(&mut last[n as usize], side) != side).then_some(n)
             };
-            links.extend(t.from.iter().filter_map(|f| Some((number(f, &mut seen)?, node))));
-            seen.clear();
-            links.extend(t.to.iter().filter_map(|f| Some((node, number(f, &mut seen)?))));
+            side += 1;
+            links.extend(t.from.iter().filter_map(|f| Some((number(f, side)?, node))));
+            side += 1;
+            links.extend(t.to.iter().filter_map(|f| Some((node, number(f, side)?))));
             node += 1;
         }
         let nodes = node as usize;

@@ -2,6 +2,7 @@
 
 mod paper;
 
+use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 
 use clap::ValueEnum;
@@ -103,8 +104,7 @@ pub(crate) fn draw(args: &Draw) -> Result<Verdict, Failure> {
         dark: args.dark,
         font: true,
     };
-    let drawings: Vec<Drawing> =
-        charts.iter().map(|c| g7_draw::draw(&source.document, c, &options)).collect();
+    let drawings = g7_draw::draw_all(&source.document, charts, &options);
     match &args.output {
         Some(folder) if is_folder(folder) => each(args, &drawings, &options, folder)?,
         output => {
@@ -155,9 +155,10 @@ fn form(args: &Draw, output: Option<&Path>) -> Result<Form, Failure> {
 fn each(args: &Draw, drawings: &[Drawing], options: &Options, folder: &Path) -> Result<(), Failure> {
     let form = args.form.unwrap_or(Form::Svg);
     let mut made: Vec<(PathBuf, Vec<u8>)> = Vec::new();
+    let mut taken: HashSet<PathBuf> = HashSet::new();
     for drawing in drawings {
         let path = folder.join(format!("{}.{}", file_name(&drawing.chart), form.ending()));
-        if made.iter().any(|(p, _)| *p == path) {
+        if !taken.insert(path.clone()) {
             let (name, path) = (&drawing.chart, path.display());
             return Err(Failure::Usage(format!("two charts would go to {path}; draw {name} alone")));
         }
