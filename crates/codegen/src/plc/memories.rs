@@ -136,8 +136,9 @@ impl Memories {
                 let first = self.find(What::Variable(v.addr));
                 let native = first.is_none_or(|m| calls.contains(&m) || !used.contains(&m));
                 self.instance(e, v.addr, kind, &name, native);
-                let any = (0..v.words())
-                    .any(|i| self.find(What::Variable(Addr(v.addr.0 + i))).is_some_and(|m| used.contains(&m)));
+                let any = (0..v.words()).any(|i| {
+                    self.find(What::Variable(Addr(v.addr.0 + i))).is_some_and(|m| used.contains(&m))
+                });
                 if native && any {
                     self.internal(&name, kind.name(), "");
                 }
