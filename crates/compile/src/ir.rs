@@ -412,8 +412,8 @@ pub enum ExprKind {
 
 impl Expr {
     /// Its operands, in their order.
-    pub fn operands(&self) -> Vec<&Expr> {
-        match &self.kind {
+    pub fn operands(&self) -> impl Iterator<Item = &Expr> {
+        let (few, many): ([Option<&Expr>; 3], &[Expr]) = match &self.kind {
             ExprKind::Const(_)
             | ExprKind::Var(_)
             | ExprKind::Member(..)
@@ -424,22 +424,19 @@ impl Expr {
             | ExprKind::StepSeconds(_)
             | ExprKind::Section(_)
             | ExprKind::ScanTime
-            | ExprKind::Random => Vec::new(),
+            | ExprKind::Random => ([None; 3], &[]),
             ExprKind::Element(_, a)
             | ExprKind::Not(a)
             | ExprKind::Neg(a)
             | ExprKind::Rise(a)
             | ExprKind::Fall(a)
             | ExprKind::Convert(a)
-            | ExprKind::Trunc(a) => vec![a],
-            ExprKind::Binary(_, a, b) => vec![a, b],
-            ExprKind::Timer { t1, e, t2 } => {
-                let mut list: Vec<&Expr> = vec![t1, e];
-                list.extend(t2.as_deref());
-                list
-            }
-            ExprKind::Builtin(_, args) | ExprKind::Call(_, args) => args.iter().collect(),
-        }
+            | ExprKind::Trunc(a) => ([Some(a), None, None], &[]),
+            ExprKind::Binary(_, a, b) => ([Some(a), Some(b), None], &[]),
+            ExprKind::Timer { t1, e, t2 } => ([Some(t1), Some(e), t2.as_deref()], &[]),
+            ExprKind::Builtin(_, args) | ExprKind::Call(_, args) => ([None; 3], args),
+        };
+        few.into_iter().flatten().chain(many)
     }
 }
 

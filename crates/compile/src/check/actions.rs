@@ -6,7 +6,7 @@ use g7_model::{Lasting, Problem, Qualifier, Span, codes};
 
 use super::facts::Facts;
 use super::solve::Question;
-use super::tree::has_edge;
+use super::tree::{Form, has_edge};
 use crate::ir::{Action, ActionKind, Expr, Step, StepId, StepSort, Unit, VarId};
 
 pub(super) fn check(facts: &Facts<'_>, problems: &mut Vec<Problem>) {
@@ -122,7 +122,7 @@ fn times(unit: &Unit, problems: &mut Vec<Problem>) {
             };
             let Some(first) = seen.insert(governed, (action.at, step, qualifier, time)) else { continue };
             // The same qualifier and time from two steps are one input of the block.
-            let same = first.2 == qualifier && key_of(first.3) == key_of(time) && first.1 != step;
+            let same = first.2 == qualifier && first.3.map(Form) == time.map(Form) && first.1 != step;
             if same || !told.insert(action.at) {
                 continue;
             }
@@ -139,10 +139,6 @@ fn times(unit: &Unit, problems: &mut Vec<Problem>) {
 
 fn of_step(unit: &Unit, step: StepId) -> impl Iterator<Item = (StepId, &Action)> {
     unit.steps.get(step.index()).into_iter().flat_map(|s| &s.actions).map(move |a| (step, a))
-}
-
-fn key_of(time: Option<&Expr>) -> Option<String> {
-    time.map(super::tree::key)
 }
 
 /// Returns a timed qualifier that has a control block. In GRAFCET `L` and `D` of a variable are

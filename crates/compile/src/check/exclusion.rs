@@ -11,10 +11,12 @@ use g7_model::{Problem, codes};
 
 use super::facts::Facts;
 use super::solve::Question;
-use crate::ir::{Expr, ExprKind, StepId, Transition, Unit, Value};
+use crate::ir::{BinaryOp, Expr, ExprKind, StepId, Transition, Unit, Value, VarId};
 
 /// The largest number of pairs of branches that are compared in one document.
 const PAIRS: usize = 20_000;
+/// Most variables of an expression that are compared with each other; longer ones are searched.
+const MOST_FREE: usize = 32;
 
 pub(super) fn check(facts: &Facts<'_>, problems: &mut Vec<Problem>) {
     let unit = facts.unit;
@@ -31,18 +33,17 @@ pub(super) fn check(facts: &Facts<'_>, problems: &mut Vec<Problem>) {
 fn never(facts: &Facts<'_>, t: &Transition, problems: &mut Vec<Problem>) {
     let what = match &t.receptivity.kind {
         ExprKind::Const(Value::Bool(false)) => "this receptivity is never true",
+        _ if is_free(&t.receptivity, &mut Vec::new()) => return,
         // A single value can always be true; only combinations need the search.
         ExprKind::Binary(..) | ExprKind::Not(_) | ExprKind::StepActive(_) => {
             let mut question = Question::new(facts);
             question.demand(&t.receptivity, true);
             if question.possible() == Some(false) {
                 "this receptivity is never true: its parts contradict each other"
-            } else {
-                question.with_active(&t.from);
-                if question.possible() != Some(false) {
-                    return;
-                }
+            } else if question.with_active(&t.from) && question.possible() == Some(false) {
                 "this receptivity is never true while the preceding steps are active"
+            } else {
+                return;
             }
         }
         _ => return,
@@ -50,10 +51,40 @@ fn never(facts: &Facts<'_>, t: &Transition, problems: &mut Vec<Problem>) {
     problems.push(Problem::new(&codes::NEVER_CLEARS, t.receptivity.at, what));
 }
 
+/// True if an expression joins variables of which none stands there twice: each can have both
+/// values, whatever the others have, and so can the expression. No search is needed then.
+fn is_free(e: &Expr, seen: &mut Vec<VarId>) -> bool {
+    match &e.kind {
+        ExprKind::Var(v) if seen.contains(v) || seen.len() > MOST_FREE => false,
+        ExprKind::Var(v) => {
+            seen.push(*v);
+            true
+        }
+        ExprKind::Rise(x) | ExprKind::Fall(x) => matches!(x.kind, ExprKind::Var(_)) && is_free(x, seen),
+        ExprKind::Not(a) => is_free(a, seen),
+        ExprKind::Binary(BinaryOp::And | BinaryOp::Or | BinaryOp::Xor, a, b) => {
+            is_free(a, seen) && is_free(b, seen)
+        }
+        _ => false,
+    }
+}
+
+/// True if an expression is false as soon as some variable has one of its values. No search is
+/// needed then to see that it can be false.
+fn hangs_on_a_variable(e: &Expr) -> bool {
+    match &e.kind {
+        ExprKind::Var(_) => true,
+        ExprKind::Not(a) => matches!(a.kind, ExprKind::Var(_)),
+        ExprKind::Binary(BinaryOp::And, a, b) => hangs_on_a_variable(a) || hangs_on_a_variable(b),
+        _ => false,
+    }
+}
+
 /// True if the expression is true for all values of its parts.
 pub(super) fn always(facts: &Facts<'_>, e: &Expr, active: &[StepId]) -> bool {
     match &e.kind {
         ExprKind::Const(v) => *v == Value::Bool(true),
+        _ if hangs_on_a_variable(e) => false,
         ExprKind::Binary(..) | ExprKind::Not(_) | ExprKind::StepActive(_) => {
             let mut question = Question::new(facts);
             question.demand(e, false);
@@ -128,7 +159,7 @@ fn conflicts(facts: &Facts<'_>, problems: &mut Vec<Problem>) {
 
 fn same(a: &[StepId], b: &[StepId]) -> bool {
     let set = |list: &[StepId]| list.iter().copied().collect::<BTreeSet<_>>();
-    set(a) == set(b)
+    a == b || (a.len() > 1 || b.len() > 1) && set(a) == set(b)
 }
 
 fn conflict(unit: &Unit, step: StepId, a: &Transition, b: &Transition) -> Problem {

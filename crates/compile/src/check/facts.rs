@@ -87,26 +87,19 @@ impl<'u> Facts<'u> {
     /// True if an expression keeps its value from the moment when edges are taken until the
     /// receptivities have been evaluated.
     pub(super) fn steady(&self, e: &Expr) -> bool {
-        let mut pending = vec![e];
-        while let Some(e) = pending.pop() {
-            let fine = match &e.kind {
-                ExprKind::Var(v) | ExprKind::Element(v, _) | ExprKind::Member(v, _) => {
-                    !self.moved.get(v.index()).copied().unwrap_or(true)
-                }
-                ExprKind::StepActive(_)
-                | ExprKind::StepTime(_)
-                | ExprKind::StepTenths(_)
-                | ExprKind::StepScans(_)
-                | ExprKind::StepSeconds(_) => !self.serviced,
-                ExprKind::Section(_) | ExprKind::Call(..) | ExprKind::ScanTime | ExprKind::Random => false,
-                _ => true,
-            };
-            if !fine {
-                return false;
+        let fine = match &e.kind {
+            ExprKind::Var(v) | ExprKind::Element(v, _) | ExprKind::Member(v, _) => {
+                !self.moved.get(v.index()).copied().unwrap_or(true)
             }
-            pending.extend(e.operands());
-        }
-        true
+            ExprKind::StepActive(_)
+            | ExprKind::StepTime(_)
+            | ExprKind::StepTenths(_)
+            | ExprKind::StepScans(_)
+            | ExprKind::StepSeconds(_) => !self.serviced,
+            ExprKind::Section(_) | ExprKind::Call(..) | ExprKind::ScanTime | ExprKind::Random => false,
+            _ => true,
+        };
+        fine && e.operands().all(|e| self.steady(e))
     }
 
     /// Finds the charts whose transitions each have one preceding step and at most one succeeding

@@ -3,15 +3,13 @@
 //! A token may move everywhere, as if all receptivities were true. A step that it does not reach is
 //! not reached in any run.
 
-use std::collections::BTreeSet;
-
 use g7_model::{Problem, codes};
 
 use super::facts::Facts;
 use super::structure::steps_of;
 use super::tree::statements;
 use crate::ir::{
-    ActionKind, Chart, ChartId, ChartRole, Service, Situation, StepId, StepSort, StmtKind, Transition, Unit,
+    ActionKind, Chart, ChartId, ChartRole, Service, Situation, StepId, StepSort, StmtKind, Unit,
 };
 
 pub(super) fn check(facts: &Facts<'_>, problems: &mut Vec<Problem>) {
@@ -21,8 +19,10 @@ pub(super) fn check(facts: &Facts<'_>, problems: &mut Vec<Problem>) {
     let mut outside = vec![false; unit.charts.len()];
     starts(unit, &mut pending, &mut outside);
     // A transition with several preceding steps is passed after all of them have been reached.
-    let distinct = |t: &Transition| t.from.iter().collect::<BTreeSet<_>>().len();
-    let mut missing: Vec<usize> = unit.transitions.iter().map(distinct).collect();
+    let mut missing = vec![0usize; unit.transitions.len()];
+    for t in (0..unit.steps.len() as u32).flat_map(|s| facts.branches(StepId(s))) {
+        missing.get_mut(*t as usize).into_iter().for_each(|n| *n += 1);
+    }
     pending.extend(unit.transitions.iter().filter(|t| t.from.is_empty()).flat_map(|t| &t.to));
     while let Some(id) = pending.pop() {
         let Some(r) = reached.get_mut(id.index()) else { continue };

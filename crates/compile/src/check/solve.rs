@@ -7,12 +7,12 @@
 //! is never true.
 
 use std::cmp::Ordering;
-use std::collections::{BTreeMap, HashMap};
+use std::collections::BTreeMap;
 
 use g7_model::Type;
 
 use super::facts::Facts;
-use super::tree::{has_edge, key};
+use super::tree::{Form, has_edge};
 use crate::ir::{BinaryOp, ChartId, Expr, ExprKind, StepId, Value};
 
 /// The largest number of assignments that are tried for one question.
@@ -22,39 +22,43 @@ const DEEPEST: u32 = 200;
 /// The largest number of atoms in one question.
 const ATOMS: usize = 200;
 
-/// A formula over atoms.
-enum Formula {
+/// A row of [`Question::parts`].
+#[derive(Clone, Copy)]
+struct Part(usize);
+
+/// A formula over atoms, which are rows of [`Question::atoms`].
+enum Formula<'e> {
     Const(bool),
     /// The atom has one of the values in this mask.
-    Among(usize, Values),
-    Not(Box<Formula>),
-    And(Box<Formula>, Box<Formula>),
-    Or(Box<Formula>, Box<Formula>),
-    Xor(Box<Formula>, Box<Formula>),
+    Among(usize, Values<'e>),
+    Not(Part),
+    And(Part, Part),
+    Or(Part, Part),
+    Xor(Part, Part),
     /// At most one of these atoms is true.
     OneOf(Vec<usize>),
 }
 
 /// The values of an atom that make a comparison true.
-#[derive(Clone)]
-enum Values {
+#[derive(Clone, Copy)]
+enum Values<'e> {
     /// It is true (1).
     True,
     /// The number compares in this way with one of its cuts.
-    Side(BinaryOp, Cut),
+    Side(BinaryOp, Cut<'e>),
     /// The two numbers compare in this way.
     Order(BinaryOp),
 }
 
 /// A constant that a value is compared with.
-#[derive(Clone, PartialEq)]
-enum Cut {
+#[derive(Clone, Copy, PartialEq)]
+enum Cut<'e> {
     Number(f64),
-    Text(Box<str>),
+    Text(&'e str),
 }
 
-impl Cut {
-    fn order(&self, other: &Cut) -> Ordering {
+impl Cut<'_> {
+    fn order(&self, other: &Cut<'_>) -> Ordering {
         match (self, other) {
             (Cut::Number(a), Cut::Number(b)) => a.total_cmp(b),
             (Cut::Text(a), Cut::Text(b)) => a.cmp(b),
@@ -64,98 +68,144 @@ impl Cut {
     }
 }
 
-enum Sort {
+enum Sort<'e> {
     /// False or true.
     Truth,
     /// The place of a value among the sorted cuts: 2k below cut k, 2k+1 on it.
-    Place(Type, Vec<Cut>),
-    /// Less, equal, greater.
-    Relation,
+    Place(Type, Vec<Cut<'e>>),
+    /// Less, equal, greater than this value.
+    Relation(&'e Expr),
 }
 
 struct Atom<'e> {
-    sort: Sort,
+    sort: Sort<'e>,
     of: &'e Expr,
 }
 
 /// A question: can all these formulas be true together?
 pub(super) struct Question<'e, 'f> {
     facts: &'f Facts<'f>,
-    index: HashMap<String, usize>,
     atoms: Vec<Atom<'e>>,
-    goals: Vec<Formula>,
-    /// The steps in the question, by their atom.
-    steps: BTreeMap<StepId, usize>,
+    /// More than [`ATOMS`] are needed, so it is not answered.
+    too_long: bool,
+    parts: Vec<Formula<'e>>,
+    goals: Vec<Part>,
 }
 
 impl<'e, 'f> Question<'e, 'f> {
     pub(super) fn new(facts: &'f Facts<'f>) -> Self {
-        Question {
-            facts,
-            index: HashMap::new(),
-            atoms: Vec::new(),
-            goals: Vec::new(),
-            steps: BTreeMap::new(),
-        }
+        // Enough for most questions, so that none of the lists has to grow.
+        let (atoms, parts, goals) = (Vec::with_capacity(8), Vec::with_capacity(16), Vec::with_capacity(8));
+        Question { facts, atoms, too_long: false, parts, goals }
     }
 
     /// The expression has this value.
     pub(super) fn demand(&mut self, e: &'e Expr, value: bool) {
-        let formula = self.formula(e, 0);
-        self.goals.push(if value { formula } else { Formula::Not(Box::new(formula)) });
+        self.demand_at(e, value, 0);
     }
 
-    /// These steps are active.
-    pub(super) fn with_active(&mut self, active: &[StepId]) {
-        let named: Vec<(StepId, usize)> = self.steps.iter().map(|(s, a)| (*s, *a)).collect();
+    /// Several goals are quicker than one that joins them: see [`Question::given`].
+    fn demand_at(&mut self, e: &'e Expr, value: bool, depth: u32) {
+        match &e.kind {
+            ExprKind::Not(a) if depth < DEEPEST => self.demand_at(a, !value, depth + 1),
+            ExprKind::Binary(BinaryOp::And, a, b) if depth < DEEPEST && value => {
+                self.demand_at(a, true, depth + 1);
+                self.demand_at(b, true, depth + 1);
+            }
+            ExprKind::Binary(BinaryOp::Or, a, b) if depth < DEEPEST && !value => {
+                self.demand_at(a, false, depth + 1);
+                self.demand_at(b, false, depth + 1);
+            }
+            _ => {
+                let part = self.formula(e, depth);
+                let goal = if value { part } else { self.part(Formula::Not(part)) };
+                self.goals.push(goal);
+            }
+        }
+    }
+
+    /// These steps are active. Returns false if the question is about no step, so that this adds
+    /// nothing.
+    pub(super) fn with_active(&mut self, active: &[StepId]) -> bool {
+        let named: Vec<(StepId, usize)> = self.atoms.iter().enumerate().filter_map(step_of).collect();
+        if named.is_empty() {
+            return false;
+        }
         let mut groups: BTreeMap<ChartId, Vec<usize>> = BTreeMap::new();
         for (step, atom) in named {
-            let truth = Formula::Among(atom, Values::True);
             if active.contains(&step) {
-                self.goals.push(truth);
+                self.set(atom, true);
             } else if active.iter().any(|a| self.facts.exclude(*a, step)) {
-                self.goals.push(Formula::Not(Box::new(truth)));
+                self.set(atom, false);
             } else if let Some(chart) = self.facts.group(step) {
                 groups.entry(chart).or_default().push(atom);
             }
         }
-        self.goals.extend(groups.into_values().filter(|g| g.len() > 1).map(Formula::OneOf));
+        for group in groups.into_values().filter(|g| g.len() > 1) {
+            let goal = self.part(Formula::OneOf(group));
+            self.goals.push(goal);
+        }
+        true
     }
 
     /// No edge is present, so an atom that may contain one is false.
     pub(super) fn at_rest(&mut self) {
-        for (i, atom) in self.atoms.iter().enumerate() {
+        for i in 0..self.atoms.len() {
+            let Some(atom) = self.atoms.get(i) else { continue };
             let hides = match &atom.of.kind {
                 ExprKind::Section(_) | ExprKind::Call(..) | ExprKind::Member(..) => true,
                 _ => has_edge(atom.of),
             };
             if hides && matches!(atom.sort, Sort::Truth) {
-                self.goals.push(Formula::Not(Box::new(Formula::Among(i, Values::True))));
+                self.set(i, false);
             }
         }
     }
 
     /// Tells whether all formulas can be true together; `None` if the search would be too long.
     pub(super) fn possible(&self) -> Option<bool> {
-        if self.atoms.len() > ATOMS {
+        if self.too_long {
             return None;
         }
         let mut values = vec![None; self.atoms.len()];
+        for (atom, value) in self.goals.iter().filter_map(|g| self.given(*g)) {
+            let slot = values.get_mut(atom)?;
+            if slot.is_some_and(|v| v != value) {
+                return Some(false);
+            }
+            *slot = Some(value);
+        }
         let mut tries = 0;
         self.search(&mut values, 0, &mut tries)
     }
 
-    fn search(&self, values: &mut Vec<Option<usize>>, next: usize, tries: &mut u32) -> Option<bool> {
+    /// The value that a goal alone gives to an atom, so that no other has to be tried.
+    fn given(&self, goal: Part) -> Option<(usize, usize)> {
+        match self.parts.get(goal.0)? {
+            Formula::Among(atom, Values::True) => Some((*atom, 1)),
+            Formula::Not(a) => match self.parts.get(a.0)? {
+                Formula::Among(atom, Values::True) => Some((*atom, 0)),
+                _ => None,
+            },
+            _ => None,
+        }
+    }
+
+    /// Tries values for the atoms from this one on that have none yet.
+    fn search(&self, values: &mut [Option<usize>], from: usize, tries: &mut u32) -> Option<bool> {
         let mut open = false;
         for goal in &self.goals {
-            match self.truth(goal, values) {
+            match self.truth(*goal, values) {
                 Some(false) => return Some(false),
                 Some(true) => {}
                 None => open = true,
             }
         }
-        let Some(atom) = self.atoms.get(next).filter(|_| open) else { return Some(true) };
-        for value in domain(&atom.sort) {
+        let next = (from..values.len()).find(|i| values.get(*i) == Some(&None));
+        let Some((next, atom)) = next.filter(|_| open).and_then(|i| Some((i, self.atoms.get(i)?))) else {
+            return Some(true);
+        };
+        for value in atom.sort.domain() {
             *tries += 1;
             if *tries > TRIES {
                 return None;
@@ -175,21 +225,21 @@ impl<'e, 'f> Question<'e, 'f> {
     }
 
     /// The value of a formula as far as the values tried so far decide it.
-    fn truth(&self, f: &Formula, values: &[Option<usize>]) -> Option<bool> {
-        match f {
+    fn truth(&self, part: Part, values: &[Option<usize>]) -> Option<bool> {
+        match self.parts.get(part.0)? {
             Formula::Const(v) => Some(*v),
-            Formula::Not(a) => self.truth(a, values).map(|v| !v),
-            Formula::And(a, b) => match (self.truth(a, values), self.truth(b, values)) {
-                (Some(false), _) | (_, Some(false)) => Some(false),
-                (Some(true), Some(true)) => Some(true),
-                _ => None,
+            Formula::Not(a) => self.truth(*a, values).map(|v| !v),
+            Formula::And(a, b) => match self.truth(*a, values) {
+                Some(true) => self.truth(*b, values),
+                Some(false) => Some(false),
+                None => self.truth(*b, values).filter(|v| !v),
             },
-            Formula::Or(a, b) => match (self.truth(a, values), self.truth(b, values)) {
-                (Some(true), _) | (_, Some(true)) => Some(true),
-                (Some(false), Some(false)) => Some(false),
-                _ => None,
+            Formula::Or(a, b) => match self.truth(*a, values) {
+                Some(false) => self.truth(*b, values),
+                Some(true) => Some(true),
+                None => self.truth(*b, values).filter(|v| *v),
             },
-            Formula::Xor(a, b) => Some(self.truth(a, values)? != self.truth(b, values)?),
+            Formula::Xor(a, b) => Some(self.truth(*a, values)? != self.truth(*b, values)?),
             Formula::OneOf(list) => {
                 let on = list.iter().filter(|a| values.get(**a) == Some(&Some(1))).count();
                 let open = list.iter().any(|a| values.get(*a) == Some(&None));
@@ -209,57 +259,101 @@ impl<'e, 'f> Question<'e, 'f> {
         }
     }
 
-    fn atom(&mut self, name: String, sort: Sort, of: &'e Expr) -> usize {
-        let count = self.atoms.len();
-        let i = *self.index.entry(name).or_insert(count);
-        if i == count {
-            self.atoms.push(Atom { sort, of });
-        }
-        i
+    fn part(&mut self, formula: Formula<'e>) -> Part {
+        self.parts.push(formula);
+        Part(self.parts.len() - 1)
     }
 
-    fn formula(&mut self, e: &'e Expr, depth: u32) -> Formula {
-        if depth > DEEPEST {
-            return Formula::Among(self.atom(key(e), Sort::Truth, e), Values::True);
+    /// Adds the goal that an atom has this truth.
+    fn set(&mut self, atom: usize, value: bool) {
+        let truth = self.part(Formula::Among(atom, Values::True));
+        let goal = if value { truth } else { self.part(Formula::Not(truth)) };
+        self.goals.push(goal);
+    }
+
+    fn atom(&mut self, sort: Sort<'e>, of: &'e Expr) -> usize {
+        self.too_long |= self.atoms.len() == ATOMS;
+        if !self.too_long {
+            self.atoms.push(Atom { sort, of });
         }
-        let mut part = |e: &'e Expr| Box::new(self.formula(e, depth + 1));
-        match &e.kind {
+        self.atoms.len() - 1
+    }
+
+    /// The atom for an expression that is not split, if there is one already.
+    fn known(&self, e: &Expr) -> Option<usize> {
+        self.atoms.iter().position(|a| matches!(a.sort, Sort::Truth) && Form(a.of) == Form(e))
+    }
+
+    fn formula(&mut self, e: &'e Expr, depth: u32) -> Part {
+        if self.too_long {
+            return self.part(Formula::Const(true));
+        }
+        if depth > DEEPEST {
+            let atom = self.known(e).unwrap_or_else(|| self.atom(Sort::Truth, e));
+            return self.part(Formula::Among(atom, Values::True));
+        }
+        let formula = match &e.kind {
             ExprKind::Const(Value::Bool(v)) => Formula::Const(*v),
-            ExprKind::Not(a) => Formula::Not(part(a)),
-            ExprKind::Binary(BinaryOp::And, a, b) => Formula::And(part(a), part(b)),
-            ExprKind::Binary(BinaryOp::Or, a, b) => Formula::Or(part(a), part(b)),
-            ExprKind::Binary(BinaryOp::Xor, a, b) => Formula::Xor(part(a), part(b)),
+            ExprKind::Not(a) => Formula::Not(self.formula(a, depth + 1)),
+            ExprKind::Binary(op @ (BinaryOp::And | BinaryOp::Or | BinaryOp::Xor), a, b) => {
+                let (a, b) = (self.formula(a, depth + 1), self.formula(b, depth + 1));
+                match op {
+                    BinaryOp::And => Formula::And(a, b),
+                    BinaryOp::Or => Formula::Or(a, b),
+                    _ => Formula::Xor(a, b),
+                }
+            }
             ExprKind::Binary(op, a, b) if compares(*op) && a.ty == Type::Bool => {
-                of_truths(*op, part(a), part(b))
+                let (a, b) = (self.formula(a, depth + 1), self.formula(b, depth + 1));
+                self.of_truths(*op, a, b)
             }
             ExprKind::Binary(op, a, b) if compares(*op) => self.comparison(*op, a, b),
             _ => self.leaf(e, depth),
+        };
+        self.part(formula)
+    }
+
+    fn of_truths(&mut self, op: BinaryOp, a: Part, b: Part) -> Formula<'e> {
+        match op {
+            BinaryOp::Eq => Formula::Not(self.part(Formula::Xor(a, b))),
+            BinaryOp::Lt => Formula::And(self.part(Formula::Not(a)), b),
+            BinaryOp::Le => Formula::Or(self.part(Formula::Not(a)), b),
+            BinaryOp::Gt => Formula::And(a, self.part(Formula::Not(b))),
+            BinaryOp::Ge => Formula::Or(a, self.part(Formula::Not(b))),
+            _ => Formula::Xor(a, b),
         }
     }
 
-    fn comparison(&mut self, op: BinaryOp, a: &'e Expr, b: &'e Expr) -> Formula {
+    fn comparison(&mut self, op: BinaryOp, a: &'e Expr, b: &'e Expr) -> Formula<'e> {
         match (constant(a), constant(b)) {
-            (None, Some(cut)) => self.side(a, op, cut),
-            (Some(cut), None) => self.side(b, mirrored(op), cut),
-            _ => {
-                let (x, y) = (key(a), key(b));
-                if x == y && !a.ty.is_real() {
-                    return Formula::Const(holds(op, Ordering::Equal));
-                }
-                let swap = x > y;
-                let (name, op) =
-                    if swap { (format!("{y}?{x}"), mirrored(op)) } else { (format!("{x}?{y}"), op) };
-                Formula::Among(self.atom(name, Sort::Relation, a), Values::Order(op))
-            }
+            (None, Some(cut)) => return self.side(a, op, cut),
+            (Some(cut), None) => return self.side(b, mirrored(op), cut),
+            _ => {}
         }
+        if Form(a) == Form(b) && !a.ty.is_real() {
+            return Formula::Const(holds(op, Ordering::Equal));
+        }
+        let known = self.atoms.iter().enumerate().find_map(|(i, atom)| {
+            let Sort::Relation(with) = atom.sort else { return None };
+            let (x, y) = (Form(atom.of), Form(with));
+            if (x, y) == (Form(a), Form(b)) {
+                Some((i, op))
+            } else {
+                ((x, y) == (Form(b), Form(a))).then_some((i, mirrored(op)))
+            }
+        });
+        let (atom, op) = known.unwrap_or_else(|| (self.atom(Sort::Relation(b), a), op));
+        Formula::Among(atom, Values::Order(op))
     }
 
-    fn side(&mut self, e: &'e Expr, op: BinaryOp, cut: Cut) -> Formula {
-        let i = self.atom(format!("{}#", key(e)), Sort::Place(e.ty, Vec::new()), e);
+    fn side(&mut self, e: &'e Expr, op: BinaryOp, cut: Cut<'e>) -> Formula<'e> {
+        let place = |a: &Atom<'e>| matches!(a.sort, Sort::Place(..)) && Form(a.of) == Form(e);
+        let known = self.atoms.iter().position(place);
+        let i = known.unwrap_or_else(|| self.atom(Sort::Place(e.ty, Vec::new()), e));
         if let Some(Sort::Place(_, cuts)) = self.atoms.get_mut(i).map(|a| &mut a.sort)
             && !cuts.contains(&cut)
         {
-            cuts.push(cut.clone());
+            cuts.push(cut);
             cuts.sort_by(Cut::order);
         }
         Formula::Among(i, Values::Side(op, cut))
@@ -267,31 +361,38 @@ impl<'e, 'f> Question<'e, 'f> {
 
     /// An atom for an expression that is not split; conditions that follow from it are added to the
     /// question.
-    fn leaf(&mut self, e: &'e Expr, depth: u32) -> Formula {
-        let known = self.atoms.len();
-        let i = self.atom(key(e), Sort::Truth, e);
-        if i == known {
-            let consequence = match &e.kind {
-                // A rising edge needs an operand that is true now, a falling edge one that is
-                // false.
-                ExprKind::Rise(x) if self.facts.steady(x) => Some((x, true)),
-                ExprKind::Fall(x) if self.facts.steady(x) => Some((x, false)),
-                ExprKind::Timer { e: x, t2, .. } if at_once(t2.as_deref()) && self.facts.steady(x) => {
-                    Some((x, true))
-                }
-                _ => None,
-            };
-            if let Some((x, value)) = consequence {
-                let then = Box::new(self.formula(x, depth + 1));
-                let then = if value { then } else { Box::new(Formula::Not(then)) };
-                let not = Box::new(Formula::Not(Box::new(Formula::Among(i, Values::True))));
-                self.goals.push(Formula::Or(not, then));
-            }
-            if let ExprKind::StepActive(step) = e.kind {
-                self.steps.insert(step, i);
-            }
+    fn leaf(&mut self, e: &'e Expr, depth: u32) -> Formula<'e> {
+        if let Some(atom) = self.known(e) {
+            return Formula::Among(atom, Values::True);
         }
-        Formula::Among(i, Values::True)
+        let atom = self.atom(Sort::Truth, e);
+        let consequence = match &e.kind {
+            // A rising edge needs an operand that is true now, a falling edge one that is
+            // false.
+            ExprKind::Rise(x) if self.facts.steady(x) => Some((x, true)),
+            ExprKind::Fall(x) if self.facts.steady(x) => Some((x, false)),
+            ExprKind::Timer { e: x, t2, .. } if at_once(t2.as_deref()) && self.facts.steady(x) => {
+                Some((x, true))
+            }
+            _ => None,
+        };
+        if let Some((x, value)) = consequence {
+            let then = self.formula(x, depth + 1);
+            let then = if value { then } else { self.part(Formula::Not(then)) };
+            let own = self.part(Formula::Among(atom, Values::True));
+            let not = self.part(Formula::Not(own));
+            let goal = self.part(Formula::Or(not, then));
+            self.goals.push(goal);
+        }
+        Formula::Among(atom, Values::True)
+    }
+}
+
+/// The step whose activity an atom is, with the atom.
+fn step_of((i, atom): (usize, &Atom<'_>)) -> Option<(StepId, usize)> {
+    match (&atom.sort, &atom.of.kind) {
+        (Sort::Truth, ExprKind::StepActive(step)) => Some((*step, i)),
+        _ => None,
     }
 }
 
@@ -300,50 +401,43 @@ fn at_once(t2: Option<&Expr>) -> bool {
     t2.is_none_or(|t| matches!(t.kind, ExprKind::Const(Value::Int(0))))
 }
 
-/// The values that an atom can have. For a whole number these are the places that hold one.
-fn domain(sort: &Sort) -> Vec<usize> {
-    match sort {
-        Sort::Truth => vec![0, 1],
-        Sort::Relation => vec![0, 1, 2],
-        Sort::Place(ty, cuts) => {
-            let whole = ty.is_integer() || *ty == Type::Time;
-            let (least, most) = ty.bounds().map_or((None, None), |(a, b)| (Some(a as f64), Some(b as f64)));
-            let at = |k: usize| match cuts.get(k) {
-                Some(Cut::Number(x)) => Some(*x),
-                _ => None,
-            };
-            // True if the gap below cut `k` holds a value; a whole-number type needs a whole number there.
-            let room = |k: usize| {
-                let below = if k == 0 { least.map(|x| x - 1.0) } else { at(k - 1) };
-                let above = if k == cuts.len() { most.map(|x| x + 1.0) } else { at(k) };
-                below.zip(above).is_none_or(|(a, b)| !whole || b.ceil() - a.floor() >= 2.0)
-            };
-            let on = |k: usize| {
-                at(k).is_none_or(|x| {
-                    least.is_none_or(|l| x >= l)
-                        && most.is_none_or(|m| x <= m)
-                        && (!whole || x.fract() == 0.0)
-                })
-            };
-            (0..=2 * cuts.len()).filter(|p| if p % 2 == 0 { room(p / 2) } else { on(p / 2) }).collect()
-        }
+impl Sort<'_> {
+    /// The values that the atom can have. For a whole number these are the places that hold one.
+    fn domain(&self) -> impl Iterator<Item = usize> {
+        let count = match self {
+            Sort::Truth => 2,
+            Sort::Relation(_) => 3,
+            Sort::Place(_, cuts) => 2 * cuts.len() + 1,
+        };
+        (0..count).filter(|p| match self {
+            Sort::Truth | Sort::Relation(_) => true,
+            Sort::Place(ty, cuts) => is_taken(*ty, cuts, *p),
+        })
     }
+}
+
+/// True if some value of a type has this place among the cuts.
+fn is_taken(ty: Type, cuts: &[Cut<'_>], place: usize) -> bool {
+    let whole = ty.is_integer() || ty == Type::Time;
+    let (least, most) = ty.bounds().map_or((None, None), |(a, b)| (Some(a as f64), Some(b as f64)));
+    let at = |k: usize| match cuts.get(k) {
+        Some(Cut::Number(x)) => Some(*x),
+        _ => None,
+    };
+    let k = place / 2;
+    if place % 2 == 1 {
+        return at(k).is_none_or(|x| {
+            least.is_none_or(|l| x >= l) && most.is_none_or(|m| x <= m) && (!whole || x.fract() == 0.0)
+        });
+    }
+    // The gap below cut `k`; a whole-number type needs a whole number there.
+    let below = if k == 0 { least.map(|x| x - 1.0) } else { at(k - 1) };
+    let above = if k == cuts.len() { most.map(|x| x + 1.0) } else { at(k) };
+    below.zip(above).is_none_or(|(a, b)| !whole || b.ceil() - a.floor() >= 2.0)
 }
 
 fn compares(op: BinaryOp) -> bool {
     matches!(op, BinaryOp::Eq | BinaryOp::Ne | BinaryOp::Lt | BinaryOp::Le | BinaryOp::Gt | BinaryOp::Ge)
-}
-
-fn of_truths(op: BinaryOp, a: Box<Formula>, b: Box<Formula>) -> Formula {
-    let not = |f| Box::new(Formula::Not(f));
-    match op {
-        BinaryOp::Eq => Formula::Not(Box::new(Formula::Xor(a, b))),
-        BinaryOp::Lt => Formula::And(not(a), b),
-        BinaryOp::Le => Formula::Or(not(a), b),
-        BinaryOp::Gt => Formula::And(a, not(b)),
-        BinaryOp::Ge => Formula::Or(a, not(b)),
-        _ => Formula::Xor(a, b),
-    }
 }
 
 fn holds(op: BinaryOp, order: Ordering) -> bool {
@@ -371,11 +465,11 @@ fn mirrored(op: BinaryOp) -> BinaryOp {
 
 /// The value of a constant to compare with. Above 2^53 neighbours become equal as `f64`, and two
 /// constants would count as one, so such constants are left out.
-fn constant(e: &Expr) -> Option<Cut> {
+fn constant(e: &Expr) -> Option<Cut<'_>> {
     match &e.kind {
         ExprKind::Const(Value::Int(n)) if n.unsigned_abs() < 1 << 53 => Some(Cut::Number(*n as f64)),
         ExprKind::Const(Value::Real(x)) if x.is_finite() => Some(Cut::Number(*x)),
-        ExprKind::Const(Value::Str(s)) => Some(Cut::Text(s.clone())),
+        ExprKind::Const(Value::Str(s)) => Some(Cut::Text(s)),
         _ => None,
     }
 }

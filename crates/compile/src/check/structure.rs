@@ -4,9 +4,9 @@ use std::collections::{HashMap, HashSet};
 
 use g7_model::{Problem, codes};
 
-use super::tree::key;
+use super::tree::Form;
 use crate::circles::closing_calls;
-use crate::ir::{Chart, ChartId, ChartRole, Step, StepSort, Transition, Unit};
+use crate::ir::{Chart, ChartId, ChartRole, Step, StepId, StepSort, Transition, Unit};
 
 pub(super) fn check(unit: &Unit, problems: &mut Vec<Problem>) {
     for chart in &unit.charts {
@@ -166,9 +166,9 @@ fn arms(unit: &Unit, t: &Transition, problems: &mut Vec<Problem>) {
             .help("a source has a succeeding step, `() -> 1`; a sink a preceding one, `1 -> ()`"),
         );
     }
-    for list in [&t.from, &t.to] {
+    for list in [&t.from, &t.to].into_iter().filter(|list| list.len() > 1) {
         let mut seen = HashSet::new();
-        for id in list.iter().filter(|_| list.len() > 1) {
+        for id in list {
             if !seen.insert(id)
                 && let Some(step) = unit.steps.get(id.index())
             {
@@ -181,14 +181,26 @@ fn arms(unit: &Unit, t: &Transition, problems: &mut Vec<Problem>) {
 
 /// Finds two transitions with the same steps and the same receptivity.
 fn twice(unit: &Unit, problems: &mut Vec<Problem>) {
-    let mut seen = HashMap::new();
-    for t in &unit.transitions {
-        let row = (t.chart, t.from.clone(), t.to.clone(), key(&t.receptivity));
-        if let Some(first) = seen.insert(row, t.at) {
-            problems.push(
-                Problem::new(&codes::SAME_TRANSITION, t.at, "this transition stands in the chart already")
+    let mut all: Vec<&Transition> = unit.transitions.iter().collect();
+    all.sort_by_key(|t| sides(t));
+    // Most transitions are the only ones between their steps, and need no look at receptivities.
+    for between in all.chunk_by(|a, b| sides(a) == sides(b)).filter(|same| same.len() > 1) {
+        let mut seen = HashMap::new();
+        for t in between {
+            if let Some(first) = seen.insert(Form(&t.receptivity), t.at) {
+                problems.push(
+                    Problem::new(
+                        &codes::SAME_TRANSITION,
+                        t.at,
+                        "this transition stands in the chart already",
+                    )
                     .related(first, "the same steps and the same receptivity"),
-            );
+                );
+            }
         }
     }
+}
+
+fn sides(t: &Transition) -> (ChartId, &[StepId], &[StepId]) {
+    (t.chart, &t.from, &t.to)
 }

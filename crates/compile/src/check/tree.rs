@@ -1,8 +1,12 @@
 //! Looks into expressions and statements.
 
-use std::fmt::Write;
+use std::hash::{Hash, Hasher};
+use std::mem::{Discriminant, discriminant};
 
-use crate::ir::{ActionKind, Expr, ExprKind, Stmt, StmtKind, Target, Unit, VarId};
+use g7_engine::Builtin;
+use g7_model::Type;
+
+use crate::ir::{ActionKind, BinaryOp, Expr, ExprKind, Stmt, StmtKind, Target, Unit, Value, VarId};
 
 /// Every statement that runs, also those inside others, in no special order.
 pub(super) fn statements(unit: &Unit) -> Vec<&Stmt> {
@@ -66,56 +70,83 @@ pub(super) fn written(s: &Stmt) -> Vec<VarId> {
 
 /// True if some part of an expression is an edge.
 pub(super) fn has_edge(e: &Expr) -> bool {
-    let mut pending = vec![e];
-    while let Some(e) = pending.pop() {
-        if matches!(e.kind, ExprKind::Rise(_) | ExprKind::Fall(_)) {
-            return true;
-        }
-        pending.extend(e.operands());
+    matches!(e.kind, ExprKind::Rise(_) | ExprKind::Fall(_)) || e.operands().any(has_edge)
+}
+
+/// An expression without its place: it is equal to the same expression elsewhere.
+#[derive(Clone, Copy)]
+pub(super) struct Form<'e>(pub(super) &'e Expr);
+
+impl PartialEq for Form<'_> {
+    fn eq(&self, other: &Self) -> bool {
+        head(self.0) == head(other.0) && self.0.operands().map(Form).eq(other.0.operands().map(Form))
     }
-    false
 }
 
-/// A text that is equal for equal expressions, wherever they stand.
-pub(super) fn key(e: &Expr) -> String {
-    let mut text = String::new();
-    write_key(e, &mut text);
-    text
+impl Eq for Form<'_> {}
+
+impl Hash for Form<'_> {
+    fn hash<H: Hasher>(&self, state: &mut H) {
+        head(self.0).hash(state);
+        self.0.operands().for_each(|e| Form(e).hash(state));
+    }
 }
 
-fn write_key(e: &Expr, out: &mut String) {
-    // Writes the head of each form, then its operands in brackets. Writing to a String cannot fail.
-    let _ = match &e.kind {
-        ExprKind::Const(v) => write!(out, "{v:?}"),
-        ExprKind::Var(v) => write!(out, "v{}", v.0),
-        ExprKind::Element(v, _) => write!(out, "v{}@", v.0),
-        ExprKind::Member(v, m) => write!(out, "v{}.{m}", v.0),
-        ExprKind::StepActive(s) => write!(out, "x{}", s.0),
-        ExprKind::StepTime(s) => write!(out, "t{}", s.0),
-        ExprKind::StepTenths(s) => write!(out, "T{}", s.0),
-        ExprKind::StepScans(s) => write!(out, "n{}", s.0),
-        ExprKind::StepSeconds(s) => write!(out, "s{}", s.0),
-        ExprKind::Not(_) => write!(out, "!"),
-        ExprKind::Neg(_) => write!(out, "-"),
-        ExprKind::Rise(_) => write!(out, "rise"),
-        ExprKind::Fall(_) => write!(out, "fall"),
-        ExprKind::Binary(op, ..) => write!(out, "{op:?}"),
-        ExprKind::Timer { .. } => write!(out, "timer"),
-        ExprKind::Convert(_) => write!(out, "to {:?}", e.ty),
-        ExprKind::Trunc(_) => write!(out, "trunc {:?}", e.ty),
-        ExprKind::Builtin(f, _) => write!(out, "{f:?}"),
-        ExprKind::Call(f, _) => write!(out, "f{}", f.0),
-        ExprKind::Section(s) => write!(out, "section{}", s.0),
-        ExprKind::ScanTime => write!(out, "dt"),
-        ExprKind::Random => write!(out, "random"),
-    };
-    let list = e.operands();
-    if !list.is_empty() {
-        out.push('(');
-        for e in list {
-            write_key(e, out);
-            out.push(',');
+/// What an expression is apart from its operands.
+#[derive(PartialEq, Eq, Hash)]
+enum Head<'e> {
+    Const(Constant<'e>),
+    Operator(BinaryOp),
+    Builtin(Builtin),
+    /// A conversion to a type.
+    To(Discriminant<ExprKind>, Type),
+    /// A form with the number of what it reads or calls and of its member, 0 where it has none.
+    Of(Discriminant<ExprKind>, u32, u8),
+}
+
+fn head(e: &Expr) -> Head<'_> {
+    let form = discriminant(&e.kind);
+    match &e.kind {
+        ExprKind::Const(v) => Head::Const(Constant::of(v)),
+        ExprKind::Binary(op, ..) => Head::Operator(*op),
+        ExprKind::Builtin(f, _) => Head::Builtin(*f),
+        ExprKind::Convert(_) | ExprKind::Trunc(_) => Head::To(form, e.ty),
+        ExprKind::Var(v) | ExprKind::Element(v, _) => Head::Of(form, v.0, 0),
+        ExprKind::Member(v, m) => Head::Of(form, v.0, *m),
+        ExprKind::StepActive(s)
+        | ExprKind::StepTime(s)
+        | ExprKind::StepTenths(s)
+        | ExprKind::StepScans(s)
+        | ExprKind::StepSeconds(s) => Head::Of(form, s.0, 0),
+        ExprKind::Call(f, _) => Head::Of(form, f.0, 0),
+        ExprKind::Section(s) => Head::Of(form, s.0, 0),
+        ExprKind::Not(_)
+        | ExprKind::Neg(_)
+        | ExprKind::Rise(_)
+        | ExprKind::Fall(_)
+        | ExprKind::Timer { .. }
+        | ExprKind::ScanTime
+        | ExprKind::Random => Head::Of(form, 0, 0),
+    }
+}
+
+/// A constant that is equal to itself, as `NaN` is not.
+#[derive(Clone, Copy, PartialEq, Eq, Hash)]
+pub(super) enum Constant<'e> {
+    Bool(bool),
+    Int(i128),
+    /// The bits of a real.
+    Real(u64),
+    Str(&'e str),
+}
+
+impl<'e> Constant<'e> {
+    pub(super) fn of(value: &'e Value) -> Constant<'e> {
+        match value {
+            Value::Bool(v) => Constant::Bool(*v),
+            Value::Int(n) => Constant::Int(*n),
+            Value::Real(x) => Constant::Real(x.to_bits()),
+            Value::Str(s) => Constant::Str(s),
         }
-        out.push(')');
     }
 }

@@ -1,12 +1,12 @@
 //! Checks what actions write: variables that are both driven and assigned, and stored actions that
 //! give one variable two values at one moment.
 
-use std::collections::{BTreeMap, HashMap, HashSet};
+use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 
 use g7_model::{Problem, Qualifier, Span, codes};
 
 use super::actions::{blocked, is_grafcet};
-use super::tree::{key, statements, within, written};
+use super::tree::{Constant, statements, within, written};
 use crate::ir::{
     Action, ActionKind, Expr, ExprKind, StepId, Stmt, StmtKind, Target, Transition, Unit, VarId,
 };
@@ -15,7 +15,9 @@ pub(super) fn check(unit: &Unit, problems: &mut Vec<Problem>) {
     let blocked = blocked(unit);
     // Where actions run one after another, the later write is not in conflict with the earlier one.
     if unit.rules.parallel_actions && !unit.rules.late_actions {
-        for step in (0..unit.steps.len() as u32).map(StepId) {
+        let writers: Vec<bool> = unit.steps.iter().map(|s| s.actions.iter().any(stores)).collect();
+        let writes = |s: &StepId| writers.get(s.index()) == Some(&true);
+        for step in (0..unit.steps.len() as u32).map(StepId).filter(writes) {
             let mut moment = Moment::default();
             moment.step(unit, &blocked, step, Qualifier::P1);
             moment.tell(unit, &codes::TWO_VALUES, problems);
@@ -24,16 +26,27 @@ pub(super) fn check(unit: &Unit, problems: &mut Vec<Problem>) {
             moment.tell(unit, &codes::TWO_VALUES, problems);
         }
         for t in &unit.transitions {
-            cleared(unit, &blocked, t).tell(unit, &codes::WRITES_MEET, problems);
+            if !t.on_clearing.is_empty() || t.from.iter().chain(&t.to).any(writes) {
+                cleared(unit, &blocked, t).tell(unit, &codes::WRITES_MEET, problems);
+            }
         }
     }
     classes(unit, &blocked, problems);
 }
 
+/// True if an action may write when its step is activated or deactivated.
+fn stores(action: &Action) -> bool {
+    match &action.kind {
+        ActionKind::Work { .. } => true,
+        ActionKind::Variable { qualifier, .. } => matches!(qualifier, Qualifier::S | Qualifier::R),
+        _ => false,
+    }
+}
+
 /// A constant that a stored action without a condition writes.
-struct Write {
+struct Write<'u> {
     var: VarId,
-    value: String,
+    value: Constant<'u>,
     at: Span,
     /// The action that contains the write; of two writes in one action the later one counts.
     of: Span,
@@ -43,15 +56,15 @@ struct Write {
 
 /// All writes of one moment.
 #[derive(Default)]
-struct Moment {
-    writes: Vec<Write>,
+struct Moment<'u> {
+    writes: Vec<Write<'u>>,
     group: usize,
 }
 
 /// The writes of one variable so far.
 #[derive(Default)]
 struct Before<'w> {
-    writes: Vec<&'w Write>,
+    writes: Vec<&'w Write<'w>>,
     /// Two values are among them.
     differ: bool,
     told: bool,
@@ -60,7 +73,7 @@ struct Before<'w> {
 impl<'w> Before<'w> {
     /// Adds a write; returns the first one that gives the variable another value, if that has not
     /// been told yet.
-    fn other(&mut self, b: &'w Write, meet: bool) -> Option<&'w Write> {
+    fn other(&mut self, b: &'w Write<'w>, meet: bool) -> Option<&'w Write<'w>> {
         self.differ |= self.writes.first().is_some_and(|a| a.value != b.value);
         let other = |a: &&&Write| a.value != b.value && a.of != b.of && (a.group != b.group) == meet;
         // Many steps may write one value: they need not be compared.
@@ -72,9 +85,9 @@ impl<'w> Before<'w> {
     }
 }
 
-impl Moment {
+impl<'u> Moment<'u> {
     /// Collects the writes of a step at its activation (P1) or deactivation (P0).
-    fn step(&mut self, unit: &Unit, blocked: &HashSet<VarId>, step: StepId, when: Qualifier) {
+    fn step(&mut self, unit: &'u Unit, blocked: &HashSet<VarId>, step: StepId, when: Qualifier) {
         self.group += 1;
         for action in unit.steps.get(step.index()).map_or(&[][..], |s| &s.actions) {
             match &action.kind {
@@ -95,19 +108,17 @@ impl Moment {
     }
 
     fn set_reset(&mut self, action: &Action, var: VarId, value: bool) {
-        let value = format!("Bool({value})");
         let (at, group) = (action.at, self.group);
-        self.writes.push(Write { var, value, at, of: at, group });
+        self.writes.push(Write { var, value: Constant::Bool(value), at, of: at, group });
     }
 
     /// Collects the last constant that a body leaves in each variable in every case.
-    fn body(&mut self, work: &[Stmt], of: Span) {
-        let mut last: BTreeMap<VarId, Option<(String, Span)>> = BTreeMap::new();
+    fn body(&mut self, work: &'u [Stmt], of: Span) {
+        let mut last: BTreeMap<VarId, Option<(Constant<'u>, Span)>> = BTreeMap::new();
         for s in work {
             match &s.kind {
-                StmtKind::Assign(Target::Var(v), Expr { kind: ExprKind::Const(_), .. }) => {
-                    let StmtKind::Assign(_, e) = &s.kind else { continue };
-                    last.insert(*v, Some((key(e), s.at)));
+                StmtKind::Assign(Target::Var(v), Expr { kind: ExprKind::Const(value), .. }) => {
+                    last.insert(*v, Some((Constant::of(value), s.at)));
                 }
                 // Statements after a RETURN may not run.
                 StmtKind::Return => break,
@@ -127,6 +138,10 @@ impl Moment {
 
     /// Reports each variable that is given two values, once.
     fn tell(&self, unit: &Unit, code: &'static g7_model::codes::Code, problems: &mut Vec<Problem>) {
+        // Most moments write nothing or one variable.
+        if self.writes.len() < 2 {
+            return;
+        }
         let meet = std::ptr::eq(code, &codes::WRITES_MEET);
         let mut before: HashMap<VarId, Before<'_>> = HashMap::new();
         for b in &self.writes {
@@ -150,12 +165,12 @@ impl Moment {
 
 /// Collects the writes that always happen when a transition clears: its own stored action, those on
 /// deactivation of the preceding steps, those on activation of the succeeding steps.
-fn cleared(unit: &Unit, blocked: &HashSet<VarId>, t: &Transition) -> Moment {
+fn cleared<'u>(unit: &'u Unit, blocked: &HashSet<VarId>, t: &'u Transition) -> Moment<'u> {
     let mut moment = Moment::default();
     moment.body(&t.on_clearing, t.at);
     // A step on both sides stays active.
-    let from: HashSet<&StepId> = t.from.iter().collect();
-    let both: HashSet<&StepId> = t.to.iter().filter(|s| from.contains(s)).collect();
+    let from: BTreeSet<&StepId> = t.from.iter().collect();
+    let both: BTreeSet<&StepId> = t.to.iter().filter(|s| from.contains(s)).collect();
     for step in t.from.iter().filter(|s| !both.contains(s)) {
         moment.step(unit, blocked, *step, Qualifier::P0);
     }
