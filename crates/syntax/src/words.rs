@@ -7,6 +7,10 @@ use g7_model::{BinaryOp, words};
 
 /// Reserved words: as plain names they would make an expression, a statement or a chart ambiguous.
 pub(crate) fn is_reserved(word: &str) -> bool {
+    // Most names end in a digit and need no comparison: no reserved word does.
+    if word.ends_with(|c: char| c.is_ascii_digit()) {
+        return false;
+    }
     matches!(
         word,
         "rise"

@@ -136,7 +136,7 @@ impl Parser<'_> {
     }
 
     fn unary(&mut self) -> Tree {
-        let mut ops: Vec<(Option<UnaryOp>, u32)> = Vec::new();
+        let outer = self.prefixes.len();
         loop {
             let op = match self.cur.kind {
                 Tok::Bang | Tok::Slash => Some(UnaryOp::Not),
@@ -147,11 +147,13 @@ impl Parser<'_> {
                 Tok::Word if matches!(self.word(), "not" | "NOT") => Some(UnaryOp::Not),
                 _ => break,
             };
-            ops.push((op, self.cur.start));
+            self.prefixes.push((op, self.cur.start));
             self.bump();
         }
         let mut tree = self.postfix();
-        for (op, start) in ops.into_iter().rev() {
+        while self.prefixes.len() > outer
+            && let Some((op, start)) = self.prefixes.pop()
+        {
             let at = Span { start, ..tree.expr.at.0 };
             tree = match op {
                 Some(op) => self.checked(ExprKind::Unary(op, Box::new(tree.expr)), at, tree.height + 1),

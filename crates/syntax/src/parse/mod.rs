@@ -22,7 +22,7 @@ use crate::quote;
 use crate::words;
 use g7_iec::constant;
 use g7_model::codes::{self, Code};
-use g7_model::{FileId, Name, Nanos, Problem, Span};
+use g7_model::{FileId, Name, Nanos, Problem, Span, UnaryOp};
 
 /// The deepest nesting of brackets, blocks and operands.
 const MOST_NESTED: u32 = 128;
@@ -41,6 +41,8 @@ pub(crate) struct Parser<'a> {
     next: Option<Token>,
     prev: Token,
     nested: u32,
+    /// Signs before operands that are being read, each with its start; `+` has no operator.
+    prefixes: Vec<(Option<UnaryOp>, u32)>,
     /// The start of the token at which a problem was last reported.
     told: Option<u32>,
     /// A misspelt word: its place, and the word it is read as.
@@ -58,7 +60,8 @@ impl<'a> Parser<'a> {
         let mut lexer = Lexer::new(text, file, start);
         let cur = lexer.token();
         let prev = Token { kind: Tok::Bad, start: cur.start, end: cur.start, newline: true };
-        Parser { lexer, text, file, cur, next: None, prev, nested: 0, told: None, corrected: None }
+        let prefixes = Vec::new();
+        Parser { lexer, text, file, cur, next: None, prev, nested: 0, prefixes, told: None, corrected: None }
     }
 
     /// The problems, and the notes.
@@ -385,14 +388,14 @@ impl<'a> Parser<'a> {
 
     /// Reads a name; without one it reports a problem and returns an empty name.
     fn name(&mut self, what: &str) -> Name {
-        let token = self.cur;
-        if token.kind == Tok::Word && words::is_reserved(self.slice(token)) {
+        if let Some(name) = self.name_if() {
+            return name;
+        }
+        if self.at(Tok::Word) {
             return self.reserved_name(what);
         }
-        self.name_if().unwrap_or_else(|| {
-            self.expected(what);
-            Name::new("", self.here())
-        })
+        self.expected(what);
+        Name::new("", self.here())
     }
 
     /// A name, if one stands here.
