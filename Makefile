@@ -106,11 +106,12 @@ page-bench: wasm web/node_modules/.package-lock.json
 	@$(call debian,chromium,chromium)
 	cd web && npm run --silent bench
 
-## time of a scan (beside matiec where an iec2c is on the PATH) and of a layout
+## time of a scan (beside matiec where an iec2c is on the PATH), of a layout, and of the stages before
 bench:
 	benches/scan.sh
 	benches/rows.sh
 	benches/layout.sh
+	benches/growth.sh
 
 ## instructions of a scan in each row, beside those of the table that is kept
 bench-check:

@@ -4,8 +4,7 @@
 //! rows of features beside a loop in C.
 
 pub mod active_loop;
-pub mod cells;
 pub mod matiec;
-mod mix;
+pub mod mix;
 pub mod rows;
 pub mod shape;

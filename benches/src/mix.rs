@@ -1,5 +1,5 @@
-//! Charts that users have: those of `examples/`, and one of 300 steps with the mix of the charts that
-//! people drew with other tools.
+//! Charts that users have: those of `examples/`, and some with the mix of the charts that people drew
+//! with other tools.
 //!
 //! The mix was counted in 146 files that `g7 import` reads, of ten tools: 460 charts, 3272 steps, 3531
 //! transitions. Of 100 steps 13 have N, 17 P1, 2 S or R, 3 an action of each scan, 4 an action with a
@@ -15,7 +15,6 @@ use std::path::Path;
 use crate::rows::Drive;
 
 const INPUTS: usize = 24;
-const CHARTS: usize = 20;
 const STEPS: usize = 15;
 
 /// The name, the inputs and the text of each chart.
@@ -32,32 +31,33 @@ pub(crate) fn charts() -> Vec<(String, Drive, String)> {
         example("workcell", Drive::InTurn, "transport-workcell/improved.g7"),
     ];
     for profile in ["iec60848", "iec61131", "pl7", "unity", "jgrafchart"] {
-        charts.push((format!("mix of 300 steps {profile}"), Drive::Random, mix(profile)));
+        charts.push((format!("mix of 300 steps {profile}"), Drive::Random, mix(profile, 300)));
     }
     charts
 }
 
 /// Rings of 15 steps, which the inputs move. Enclosures and orders are those of IEC 60848, so only
 /// its profile has them.
-fn mix(profile: &str) -> String {
+pub fn mix(profile: &str, steps: usize) -> String {
+    let charts = steps.div_ceil(STEPS);
     let mut t = format!("profile {profile}\n\n");
     for i in 0..INPUTS {
         let _ = writeln!(t, "input I{i} : BOOL");
     }
-    for i in 0..CHARTS * STEPS {
+    for i in 0..charts * STEPS {
         if i % 7 == 0 || i % 50 < 3 {
             let _ = writeln!(t, "output Q{i} : BOOL");
         }
     }
-    for c in 0..CHARTS {
+    for c in 0..charts {
         let _ = writeln!(t, "var n{c} : INT");
     }
-    for c in 0..CHARTS {
+    for c in 0..charts {
         let _ = writeln!(t, "\nchart G{c} {{");
         let enclosed = profile == "iec60848" && c % 3 == 2;
         for k in 0..STEPS {
             let i = c * STEPS + k;
-            let encloses = profile == "iec60848" && c % 3 == 1 && k == 4 && c + 1 < CHARTS;
+            let encloses = profile == "iec60848" && c % 3 == 1 && k == 4 && c + 1 < charts;
             let word = match (k, enclosed) {
                 (0, false) => "initial step",
                 _ if encloses => "enclosing step",
@@ -68,7 +68,7 @@ fn mix(profile: &str) -> String {
             if encloses {
                 let _ = write!(t, " enclose G{}", c + 1);
             }
-            if profile == "iec60848" && c % 3 == 0 && k == 7 && c + 3 < CHARTS {
+            if profile == "iec60848" && c % 3 == 0 && k == 7 && c + 3 < charts {
                 let _ = write!(t, " force G{} := {{*}}", c + 3);
             }
             t.push_str(" }\n");

@@ -7,8 +7,8 @@
 
 use std::time::Instant;
 
-use g7_benches::cells::cells;
 use g7_benches::matiec::{self, LOOKED_AT, Measured};
+use g7_benches::mix::mix;
 use g7_benches::shape::Shape;
 use g7_compile::{Compiled, compile};
 use g7_engine::{State, scan};
@@ -52,7 +52,7 @@ fn main() {
     for shape in [Shape::Linear(1000), Shape::Linear(100_000)] {
         println!("{:<16}{:>10.1}", shape.name(), load(&shape.g7()));
     }
-    println!("{:<16}{:>10.1}", "cells 1000", load(&cells(1000)));
+    println!("{:<16}{:>10.1}", "mix 1000", load(&mix("iec60848", 1000)));
 }
 
 fn program(text: &str) -> Compiled {

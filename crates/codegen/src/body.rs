@@ -360,11 +360,11 @@ impl Body<'_> {
             Term::Not(x) => self.truth(x).not(),
             Term::And(list) => {
                 let all = self.each(list, Num::Bool);
-                all.into_iter().reduce(Expr::and).unwrap_or(Expr::Bool(true))
+                Expr::joined(all, Expr::and).unwrap_or(Expr::Bool(true))
             }
             Term::Or(list) => {
                 let all = self.each(list, Num::Bool);
-                all.into_iter().reduce(|a, b| a.bin(Bin::Or, b)).unwrap_or(Expr::Bool(false))
+                Expr::joined(all, |a, b| a.bin(Bin::Or, b)).unwrap_or(Expr::Bool(false))
             }
             Term::Xor(a, b) => {
                 let (a, b) = (self.truth(a), self.truth(b));

@@ -9,7 +9,7 @@ use g7_equations::{Bodies, Expr as Term, Stmt as Line};
 use g7_model::{Problem, Span, Type, codes};
 
 use crate::body::{self, Code as Translated};
-use crate::names::Names;
+use crate::names::{Names, of_transition};
 use crate::runtime::{self, Facts};
 use crate::tree::{Arm, Bin, Block, Expr, Function, Module, Numbers, Stmt, Struct, Ty};
 use crate::vars::{Home, Vars, num};
@@ -106,9 +106,7 @@ impl<'a> Gen<'a> {
             ..Numbers::default()
         };
         for i in 0..self.t.transitions.len() {
-            let symbols = &self.c.symbols;
-            let text = symbols.transition_text(i as u32).replace("->", "to");
-            let name = self.names.capital("T", symbols.label(i as u32).unwrap_or(&text));
+            let name = self.names.capital("T", &of_transition(&self.c.symbols, i as u32));
             rows.rows.push((name.clone(), i, String::new()));
             self.transitions.push(name);
         }

@@ -2,6 +2,13 @@
 
 use std::collections::{HashMap, HashSet};
 
+use g7_compile::symbols::Symbols;
+
+/// The longest side of a transition that is named in full, in steps.
+const MOST: usize = 12;
+/// The steps of a longer side that are named.
+const FIRST: usize = 3;
+
 /// Words that C, C++ or Rust keep for themselves, and what the code uses.
 const TAKEN: &[&str] = &[
     "abstract",
@@ -110,12 +117,37 @@ const TAKEN: &[&str] = &[
     "output",
 ];
 
-/// Names that are given once.
+/// Names that are given once; a name that is wanted again gets a number behind it.
 #[derive(Debug, Default)]
-pub(crate) struct Names {
-    given: HashSet<String>,
+pub(crate) struct Given {
+    taken: HashSet<String>,
     /// By a name that is wanted again and again: the number to try next.
     next: HashMap<String, u32>,
+}
+
+impl Given {
+    /// The name, or the next one that is free; `same` writes those alike that the language takes
+    /// for one.
+    pub(crate) fn once(&mut self, name: String, same: fn(&str) -> String) -> String {
+        if self.taken.insert(same(&name)) {
+            return name;
+        }
+        // No name is given back, so the numbers tried before are still taken.
+        let next = self.next.entry(same(&name)).or_insert(2);
+        loop {
+            let free = format!("{name}_{next}");
+            *next += 1;
+            if self.taken.insert(same(&free)) {
+                return free;
+            }
+        }
+    }
+}
+
+/// Names of C and Rust.
+#[derive(Debug, Default)]
+pub(crate) struct Names {
+    given: Given,
 }
 
 impl Names {
@@ -125,27 +157,33 @@ impl Names {
         if TAKEN.contains(&plain.as_str()) {
             plain.push('_');
         }
-        self.once(plain)
+        self.given.once(plain, str::to_owned)
     }
 
     /// A name of a number, in capitals, behind what it numbers.
     pub(crate) fn capital(&mut self, of: &str, name: &str) -> String {
-        self.once(format!("{of}_{}", letters(&format!("a{name}")).get(1..).unwrap_or("").to_uppercase()))
+        let plain = letters(&format!("a{name}")).get(1..).unwrap_or("").to_uppercase();
+        self.given.once(format!("{of}_{plain}"), str::to_owned)
     }
+}
 
-    fn once(&mut self, name: String) -> String {
-        if self.given.insert(name.clone()) {
-            return name;
+/// What a transition is called: its label, or from where to where it leads.
+pub(crate) fn of_transition(symbols: &Symbols, rank: u32) -> String {
+    match symbols.label(rank) {
+        Some(label) => label.to_owned(),
+        None => symbols.transition_text(rank).split("->").map(side).collect::<Vec<_>>().join("to"),
+    }
+}
+
+/// The steps on one side of a transition. Of very many only the first are named: each of them has
+/// the name of the transition in its own code.
+fn side(text: &str) -> String {
+    let steps: Vec<&str> = text.split(", ").collect();
+    match steps.get(..FIRST) {
+        Some(first) if steps.len() > MOST => {
+            format!("{} and {} more ", first.join(" "), steps.len() - FIRST)
         }
-        // No name is given back, so the numbers tried before are still taken.
-        let next = self.next.entry(name.clone()).or_insert(2);
-        loop {
-            let free = format!("{name}_{next}");
-            *next += 1;
-            if self.given.insert(free.clone()) {
-                return free;
-            }
-        }
+        _ => text.to_owned(),
     }
 }
 

@@ -257,7 +257,8 @@ impl Printer {
             Expr::Bin(op, ..) => {
                 let (inner, around) = (op.tightness(), outer.tightness());
                 // Comparisons do not follow one another.
-                inner > around || (inner == around && inner != 3 && !right)
+                let beside = *op == outer && matches!(op, Bin::And | Bin::Or) || inner != 3 && !right;
+                inner > around || inner == around && beside
             }
             Expr::Cast(..) => !matches!(outer, Bin::Lt | Bin::Shl),
             Expr::If(..) => false,

@@ -163,6 +163,22 @@ impl Expr {
         }
     }
 
+    /// Joins operands in their order, if there are any. The tree is low, so that all that walks over
+    /// it and puts texts together does little for each operand.
+    pub(crate) fn joined(mut parts: Vec<Expr>, join: impl Fn(Expr, Expr) -> Expr) -> Option<Expr> {
+        while parts.len() > 1 {
+            let mut rest = parts.into_iter();
+            parts = Vec::with_capacity(rest.len().div_ceil(2));
+            while let Some(a) = rest.next() {
+                parts.push(match rest.next() {
+                    Some(b) => join(a, b),
+                    None => a,
+                });
+            }
+        }
+        parts.pop()
+    }
+
     /// The complement, without two of them in a row.
     pub(crate) fn not(self) -> Expr {
         match self {

@@ -103,21 +103,29 @@ impl Turn {
     }
 }
 
-/// The statements of a pass in their order, and by memory the statements that write it.
+/// The statements of a pass in their order, with those that use a memory.
 struct Pass<'l> {
     lines: &'l [Stmt],
+    /// By memory: the statements that write it.
     writes: HashMap<MemoryId, Vec<usize>>,
+    /// By memory: the statements that read or write it, but those that raise it as a flag.
+    looks: HashMap<MemoryId, Vec<usize>>,
 }
 
 impl Pass<'_> {
     fn of(lines: &[Stmt]) -> Pass<'_> {
         let mut writes: HashMap<MemoryId, Vec<usize>> = HashMap::new();
+        let mut looks: HashMap<MemoryId, Vec<usize>> = HashMap::new();
         for (at, line) in lines.iter().enumerate() {
             for m in written(line) {
                 writes.entry(m).or_default().push(at);
             }
+            let raised = raise(line).map(|r| r.0);
+            for m in mentioned(line).into_iter().filter(|m| raised != Some(*m)) {
+                looks.entry(m).or_default().push(at);
+            }
         }
-        Pass { lines, writes }
+        Pass { lines, writes, looks }
     }
 
     /// True if a statement in this range writes the memory.
@@ -211,10 +219,9 @@ impl Pass<'_> {
         let place: HashMap<(MemoryId, MemoryId), usize> =
             turns.iter().enumerate().map(|(k, t)| ((t.step, t.next), k)).collect();
         let mut raises = Vec::new();
-        let mut looks: HashMap<MemoryId, Vec<usize>> = HashMap::new();
         for (at, line) in self.lines.iter().enumerate() {
             let Some((flag, list)) = raise(line) else { continue };
-            let looks = looks.entry(flag).or_insert_with(|| self.looks(flag));
+            let looks = self.looks.get(&flag).map_or(&[][..], Vec::as_slice);
             let next_look = looks.get(looks.partition_point(|k| *k <= at)).copied().unwrap_or(usize::MAX);
             let mut kept = Vec::new();
             for e in list {
@@ -233,14 +240,6 @@ impl Pass<'_> {
             raises.push((at, left));
         }
         (turns, raises)
-    }
-
-    /// The statements that use a flag in another way than to raise it.
-    fn looks(&self, flag: MemoryId) -> Vec<usize> {
-        let all = self.lines.iter().enumerate();
-        let looks = all
-            .filter(|(_, line)| raise(line).is_none_or(|r| r.0 != flag) && mentioned(line).contains(&flag));
-        looks.map(|(at, _)| at).collect()
     }
 }
 

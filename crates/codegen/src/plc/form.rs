@@ -3,6 +3,10 @@
 
 use g7_model::Nanos;
 
+/// Parts of a conjunction or disjunction that are compared with each other; in a longer one a part
+/// may stand twice.
+const SHORT: usize = 16;
+
 /// A value.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Ex {
@@ -64,50 +68,34 @@ impl Ex {
 
     /// Conjunction, short where something is known.
     pub(crate) fn all(parts: impl IntoIterator<Item = Ex>) -> Ex {
-        let mut list = Vec::new();
-        for part in parts {
-            match part {
-                Ex::Bool(true) => {}
-                Ex::Bool(false) => return part,
-                Ex::And(inner) => {
-                    for e in inner {
-                        if !list.contains(&e) {
-                            list.push(e);
-                        }
-                    }
-                }
-                other if list.contains(&other) => {}
-                other => list.push(other),
-            }
-        }
-        match list.len() {
-            0 => Ex::Bool(true),
-            1 => list.remove(0),
-            _ => Ex::And(list),
-        }
+        Ex::list(parts, true)
     }
 
     /// Disjunction, short where something is known.
     pub(crate) fn any(parts: impl IntoIterator<Item = Ex>) -> Ex {
+        Ex::list(parts, false)
+    }
+
+    fn list(parts: impl IntoIterator<Item = Ex>, and: bool) -> Ex {
         let mut list = Vec::new();
+        let mut add = |e: Ex| {
+            if list.len() > SHORT || !list.contains(&e) {
+                list.push(e);
+            }
+        };
         for part in parts {
             match part {
-                Ex::Bool(false) => {}
-                Ex::Bool(true) => return part,
-                Ex::Or(inner) => {
-                    for e in inner {
-                        if !list.contains(&e) {
-                            list.push(e);
-                        }
-                    }
-                }
-                other if list.contains(&other) => {}
-                other => list.push(other),
+                Ex::Bool(b) if b == and => {}
+                Ex::Bool(_) => return part,
+                Ex::And(inner) if and => inner.into_iter().for_each(&mut add),
+                Ex::Or(inner) if !and => inner.into_iter().for_each(&mut add),
+                other => add(other),
             }
         }
         match list.len() {
-            0 => Ex::Bool(false),
+            0 => Ex::Bool(and),
             1 => list.remove(0),
+            _ if and => Ex::And(list),
             _ => Ex::Or(list),
         }
     }
@@ -141,7 +129,7 @@ impl Ex {
     }
 
     /// True if it reads no variable at all.
-    fn is_constant(&self) -> bool {
+    pub(crate) fn is_constant(&self) -> bool {
         let mut found = true;
         self.walk(&mut |e| found &= !matches!(e, Ex::Var(_) | Ex::Index(..)));
         found
@@ -237,70 +225,6 @@ pub(crate) struct Block {
     pub(crate) parts: Vec<Vec<St>>,
     /// Safe values of the outputs, where a fault can come.
     pub(crate) safe: Option<Vec<St>>,
-}
-
-/// The type of a variable.
-pub(crate) fn type_of(variables: &[Declared], name: &str) -> String {
-    let name = name.split(['[', '.']).next().unwrap_or(name);
-    variables.iter().find(|v| v.name == name).map_or("DINT".into(), |v| v.ty.clone())
-}
-
-/// The type of a value.
-pub(crate) fn type_name(variables: &[Declared], e: &Ex) -> String {
-    match e {
-        Ex::Bool(_) | Ex::Not(_) | Ex::And(_) | Ex::Or(_) | Ex::Xor(..) => "BOOL".into(),
-        Ex::Op("=" | "<>" | "<" | "<=" | ">" | ">=", ..) => "BOOL".into(),
-        Ex::Int(_) => "DINT".into(),
-        Ex::Real(_) => "LREAL".into(),
-        Ex::Time(_) => "TIME".into(),
-        Ex::Var(n) if n.ends_with(".ET") || n.ends_with(".PT") => "TIME".into(),
-        Ex::Var(n) if n.ends_with(".CV") || n.ends_with(".PV") => "INT".into(),
-        Ex::Var(n) if n.contains('.') => "BOOL".into(),
-        Ex::Var(n) | Ex::Index(n, _) => type_of(variables, n),
-        Ex::Neg(e) => type_name(variables, e),
-        Ex::Op(_, a, b) => type_of_any(variables, [&**a, &**b]),
-        Ex::Call(n, args) => match n.split_once("_TO_").or_else(|| n.split_once("_TRUNC_")) {
-            Some((_, to)) => to.to_owned(),
-            None if n == "TRUNC" => "LINT".into(),
-            None => {
-                let selects = matches!(n.as_str(), "SEL" | "MUX");
-                type_of_any(variables, args.iter().skip(usize::from(selects)))
-            }
-        },
-    }
-}
-
-/// The type of several values together: constants take that of the others.
-fn type_of_any<'a>(variables: &[Declared], list: impl IntoIterator<Item = &'a Ex>) -> String {
-    let mut of_constant = None;
-    for e in list {
-        let ty = type_name(variables, e);
-        // The type of a TIME is written on it.
-        if !e.is_constant() || ty == "TIME" {
-            return ty;
-        }
-        of_constant = of_constant.or(Some(ty));
-    }
-    of_constant.unwrap_or_else(|| "DINT".into())
-}
-
-/// The type of a memory for an operand of a value: a constant takes the type that
-/// is wanted there.
-pub(crate) fn operand_type(variables: &[Declared], of: &Ex, operand: &Ex) -> String {
-    let own = type_name(variables, operand);
-    if !operand.is_constant() || own == "BOOL" || own == "TIME" {
-        return own;
-    }
-    let wanted = match of {
-        Ex::Op(_, a, b) => type_of_any(variables, [&**a, &**b]),
-        Ex::Call(n, args) => match n.split_once("_TO_") {
-            Some((from, _)) => from.to_owned(),
-            None => type_of_any(variables, args.iter().skip(usize::from(n == "SEL" || n == "MUX"))),
-        },
-        _ => own.clone(),
-    };
-    // A TIME is multiplied by a number and divided by one.
-    if wanted == "TIME" { own } else { wanted }
 }
 
 /// A number that was only widened, as it was.

@@ -6,17 +6,17 @@
 
 use std::fmt::Write;
 
-use super::form::{Block, Class, Declared, Ex, St, operand_type, type_name};
+use super::form::{Block, Ex, St};
 use super::st::{FAULT_COMES, declarations, expression, plain};
+use super::variables::Variables;
 
 /// The whole function block; steps are set and reset by S and R, or by equations.
 pub(crate) fn print(e: &Block, set_reset: bool) -> String {
     let mut p = Printer {
         set_reset,
-        variables: e.variables.clone(),
+        variables: Variables::new(e.variables.clone()),
         out: String::new(),
         labels: 0,
-        memories: 0,
         loops: Vec::new(),
     };
     for part in &e.parts {
@@ -31,16 +31,16 @@ pub(crate) fn print(e: &Block, set_reset: bool) -> String {
         p.when(&Ex::var("FAULT"), safe);
     }
     let body = if p.out.trim().is_empty() { "  LD TRUE\n".to_owned() } else { p.out };
-    let head = declarations(&Block { name: e.name.clone(), variables: p.variables, ..Block::default() });
+    let variables = p.variables.into_list();
+    let head = declarations(&Block { name: e.name.clone(), variables, ..Block::default() });
     format!("{head}{body}  RET\nEND_FUNCTION_BLOCK\n")
 }
 
 struct Printer {
     set_reset: bool,
-    variables: Vec<Declared>,
+    variables: Variables,
     out: String,
     labels: usize,
-    memories: usize,
     /// Labels behind the loops round this point.
     loops: Vec<String>,
 }
@@ -146,37 +146,23 @@ impl Printer {
 
     /// A value in a memory of its own, where it is no operand.
     fn kept(&mut self, e: &Ex) -> Ex {
-        let ty = type_name(&self.variables, e);
-        self.kept_as(e, ty)
+        let ty = self.variables.type_name(e).to_owned();
+        self.kept_as(e, &ty)
     }
 
     /// The operand of a value, the same way.
     fn kept_of(&mut self, of: &Ex, e: &Ex) -> Ex {
-        let ty = operand_type(&self.variables, of, e);
-        self.kept_as(e, ty)
+        let ty = self.variables.operand_type(of, e).to_owned();
+        self.kept_as(e, &ty)
     }
 
-    fn kept_as(&mut self, e: &Ex, ty: String) -> Ex {
+    fn kept_as(&mut self, e: &Ex, ty: &str) -> Ex {
         // matiec compares a LINT with a negative literal as if that had no sign.
         let negative = matches!(e, Ex::Int(n) if *n < 0);
         if operand(e).is_some() && !is_member(e) && !negative {
             return e.clone();
         }
-        let name = loop {
-            self.memories += 1;
-            let name = format!("K_{}", self.memories);
-            if self.variables.iter().all(|v| !v.name.eq_ignore_ascii_case(&name)) {
-                break name;
-            }
-        };
-        self.variables.push(Declared {
-            class: Class::Internal,
-            name: name.clone(),
-            ty,
-            elements: 1,
-            init: Vec::new(),
-            note: String::new(),
-        });
+        let name = self.variables.memory(ty);
         self.load(e);
         self.line(&format!("ST {name}"));
         Ex::Var(name)
@@ -252,7 +238,7 @@ impl Printer {
                 self.with("XOR", b);
             }
             Ex::Neg(inner) => {
-                let real = type_name(&self.variables, inner).ends_with("REAL");
+                let real = self.variables.type_name(inner).ends_with("REAL");
                 self.line(if real { "LD 0.0" } else { "LD 0" });
                 self.with("SUB", inner);
             }

@@ -4,8 +4,9 @@
 
 use g7_model::{Problem, Span, StandardFunction, codes};
 
-use super::form::{self, Class, Declared, Ex, St, operand_type, type_name, type_of};
+use super::form::{self, Declared, Ex, St};
 use super::st::{FAULT_COMES, expression};
+use super::variables::Variables;
 
 /// An element that power flows through.
 #[derive(Clone, Debug, PartialEq)]
@@ -66,9 +67,8 @@ pub(crate) struct Ladder {
 /// A construct that Ladder cannot say.
 pub(crate) fn ladder(e: &form::Block, place: Span) -> Result<Ladder, Vec<Problem>> {
     let mut l = Maker {
-        variables: e.variables.clone(),
+        variables: Variables::new(e.variables.clone()),
         rungs: Vec::new(),
-        memories: 0,
         when: Ex::Bool(true),
         title: String::new(),
         note: String::new(),
@@ -89,14 +89,13 @@ pub(crate) fn ladder(e: &form::Block, place: Span) -> Result<Ladder, Vec<Problem
             let text = format!("{what} cannot be printed as Ladder");
             Err(vec![Problem::new(&codes::NOT_CARRIED, place, text)])
         }
-        None => Ok(Ladder { variables: l.variables, rungs: l.rungs }),
+        None => Ok(Ladder { variables: l.variables.into_list(), rungs: l.rungs }),
     }
 }
 
 struct Maker {
-    variables: Vec<Declared>,
+    variables: Variables,
     rungs: Vec<Rung>,
-    memories: usize,
     /// When the blocks of a value work: its divisor may be zero otherwise, or it may
     /// leave the range.
     when: Ex,
@@ -137,30 +136,12 @@ impl Maker {
         self.push(net, End::Coil(to.to_owned(), coil));
     }
 
-    fn memory(&mut self, ty: &str) -> String {
-        loop {
-            self.memories += 1;
-            let name = format!("K_{}", self.memories);
-            if self.variables.iter().all(|v| !v.name.eq_ignore_ascii_case(&name)) {
-                self.variables.push(Declared {
-                    class: Class::Internal,
-                    name: name.clone(),
-                    ty: ty.to_owned(),
-                    elements: 1,
-                    init: Vec::new(),
-                    note: String::new(),
-                });
-                return name;
-            }
-        }
-    }
-
     /// A condition whose value is kept while statements run.
     fn kept(&mut self, e: &Ex) -> Ex {
         match e {
             Ex::Bool(_) => e.clone(),
             e => {
-                let name = self.memory("BOOL");
+                let name = self.variables.memory("BOOL");
                 self.coil(e, &name, Coil::Plain);
                 Ex::Var(name)
             }
@@ -179,7 +160,7 @@ impl Maker {
             }
             match s {
                 St::Title(_) | St::Note(_) => self.remark(s),
-                St::Assign(Ex::Var(name), e) if always && type_of(&self.variables, name) == "BOOL" => {
+                St::Assign(Ex::Var(name), e) if always && self.variables.type_of(name) == "BOOL" => {
                     let resets = *e == Ex::Bool(false);
                     let (e, coil) = if resets { (&Ex::Bool(true), Coil::Reset) } else { (e, Coil::Plain) };
                     self.coil(e, name, coil);
@@ -199,7 +180,7 @@ impl Maker {
                     self.act(&outer.and(c.not()), other);
                 }
                 St::Call(name, inputs) => {
-                    let ty = type_of(&self.variables, name);
+                    let ty = self.variables.type_of(name).to_owned();
                     let mut operands = Vec::new();
                     for (formal, e) in inputs {
                         operands.push((formal.clone(), self.operand(e)));
@@ -231,7 +212,7 @@ impl Maker {
     }
 
     fn assign(&mut self, when: &Ex, to: &str, place: &Ex, e: &Ex) {
-        if matches!(place, Ex::Var(n) if type_of(&self.variables, n) == "BOOL") {
+        if matches!(place, Ex::Var(n) if self.variables.type_of(n) == "BOOL") {
             return match e {
                 Ex::Bool(on) => self.coil(when, to, if *on { Coil::Set } else { Coil::Reset }),
                 e => {
@@ -273,7 +254,7 @@ impl Maker {
                 plain(ty, vec![("IN1".into(), a), ("IN2".into(), b)])
             }
             Ex::Neg(inner) => {
-                let zero = if type_name(&self.variables, inner).ends_with("REAL") { "0.0" } else { "0" };
+                let zero = if self.variables.type_name(inner).ends_with("REAL") { "0.0" } else { "0" };
                 let inner = self.operand(inner);
                 plain("SUB", vec![("IN1".into(), zero.into()), ("IN2".into(), inner)])
             }
@@ -292,13 +273,13 @@ impl Maker {
 
     /// A value as a variable or literal.
     fn operand(&mut self, e: &Ex) -> String {
-        let ty = type_name(&self.variables, e);
+        let ty = self.variables.type_name(e).to_owned();
         self.operand_as(e, &ty)
     }
 
     /// An input of a block, the same way.
     fn operand_of(&mut self, of: &Ex, e: &Ex) -> String {
-        let ty = operand_type(&self.variables, of, e);
+        let ty = self.variables.operand_type(of, e).to_owned();
         self.operand_as(e, &ty)
     }
 
@@ -309,7 +290,7 @@ impl Maker {
             }
             Ex::And(_) | Ex::Or(_) | Ex::Not(_) | Ex::Xor(..) => expression(&self.kept(e)),
             e => {
-                let name = self.memory(ty);
+                let name = self.variables.memory(ty);
                 let mut block = self.value(e);
                 block.output = Some(("OUT".into(), name.clone()));
                 let when = self.when.clone();

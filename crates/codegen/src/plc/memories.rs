@@ -10,6 +10,7 @@ use g7_model::{FbKind, Nanos, Type};
 
 use super::form::{self, Declared, Ex};
 use super::names::Names;
+use crate::names::of_transition;
 
 /// Names that are not those of memories of the chart.
 const FIXED: [&str; 10] =
@@ -218,12 +219,10 @@ impl Memories {
         }
         let used = e.used();
         for rank in 0..c.program.tables().transitions.len() as u32 {
-            let text = symbols.transition_text(rank);
-            let own = symbols.label(rank).map_or_else(|| text.replace("->", "to"), str::to_owned);
-            let name = self.given.with("T", &own);
+            let name = self.given.with("T", &of_transition(symbols, rank));
             let clears = self.find(What::Clears(rank)).or(self.find(What::Clearable(rank)));
             let Some(id) = clears.filter(|id| used.contains(id)) else { continue };
-            self.internal(&name, "BOOL", &format!("transition {text}"));
+            self.internal(&name, "BOOL", &format!("transition {}", symbols.transition_text(rank)));
             self.call(id, name);
         }
     }

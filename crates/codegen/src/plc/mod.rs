@@ -21,6 +21,7 @@ mod native;
 mod scan;
 mod st;
 mod terms;
+mod variables;
 
 use std::collections::HashMap;
 

@@ -1,17 +1,15 @@
 //! Names of the chart as identifiers of IEC 61131-3.
 
-use std::collections::{HashMap, HashSet};
+use std::collections::HashMap;
 
 use g7_iec::words::is_word;
 
-use crate::names::letters;
+use crate::names::{Given, letters};
 
 /// Names that are given once, in any case.
 #[derive(Debug, Default)]
 pub(crate) struct Names {
-    given: HashSet<String>,
-    /// By a name that is wanted again and again, in capitals: the number to try next.
-    next: HashMap<String, u32>,
+    given: Given,
     counts: HashMap<String, u32>,
 }
 
@@ -36,20 +34,8 @@ impl Names {
         self.once(name)
     }
 
+    /// Capitals and small letters are the same there.
     fn once(&mut self, name: String) -> String {
-        let name = name.trim_end_matches('_').to_owned();
-        let plain = name.to_uppercase();
-        if self.given.insert(plain.clone()) {
-            return name;
-        }
-        // No name is given back, so the numbers tried before are still taken.
-        let next = self.next.entry(plain).or_insert(2);
-        loop {
-            let free = format!("{name}_{next}");
-            *next += 1;
-            if self.given.insert(free.to_uppercase()) {
-                return free;
-            }
-        }
+        self.given.once(name.trim_end_matches('_').to_owned(), str::to_uppercase)
     }
 }

@@ -125,10 +125,10 @@ fn circles(unit: &Unit, ever: &[&Transition]) -> Vec<Vec<StepId>> {
 
 /// The steps that can be reached from one step, each after those that follow it.
 fn walk(start: StepId, next: &[Vec<StepId>], seen: &mut [bool], order: &mut Vec<StepId>) {
-    let mut way = vec![(start, 0)];
     if seen.get_mut(start.index()).is_none_or(|s| std::mem::replace(s, true)) {
         return;
     }
+    let mut way = vec![(start, 0)];
     while let Some((step, k)) = way.last_mut() {
         let (step, at) = (*step, *k);
         *k += 1;
