@@ -24,7 +24,7 @@ const FAMILIES: [Family; 5] = [
     ("one output", 1000, one_output),
 ];
 
-/// What is measured, on a document that has been prepared.
+/// A stage, measured on a document that has been prepared.
 type Stage = (&'static str, fn(&Ready));
 
 const STAGES: [Stage; 10] = [

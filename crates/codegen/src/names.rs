@@ -167,7 +167,7 @@ impl Names {
     }
 }
 
-/// What a transition is called: its label, or from where to where it leads.
+/// The name of a transition: its label, or from where to where it leads.
 pub(crate) fn of_transition(symbols: &Symbols, rank: u32) -> String {
     match symbols.label(rank) {
         Some(label) => label.to_owned(),

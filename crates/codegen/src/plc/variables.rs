@@ -5,7 +5,7 @@ use std::collections::{HashMap, HashSet};
 
 use super::form::{Class, Declared, Ex};
 
-/// What the names of these memories begin with.
+/// The beginning of the names of these memories.
 const MEMORY: &str = "K_";
 
 /// Declarations that are found by name.

@@ -92,7 +92,7 @@ impl Hash for Form<'_> {
     }
 }
 
-/// What an expression is apart from its operands.
+/// An expression apart from its operands.
 #[derive(PartialEq, Eq, Hash)]
 enum Head<'e> {
     Const(Constant<'e>),
