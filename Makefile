@@ -15,21 +15,22 @@ debian = command -v $(1) >/dev/null || \
 # Logs of `make test` with the list of what was skipped; the pages of the book, put together.
 BOOK := $(abspath $(or $(CARGO_TARGET_DIR),target))/book
 TALLY := $(abspath $(or $(CARGO_TARGET_DIR),target))/tally
-PAGE := $(shell find web/src web/index.html web/public web/*.ts web/*.js -type f 2>/dev/null)
+PAGE := $(shell find web/src web/index.html web/public web/*.ts web/*.js web/*.mjs -type f 2>/dev/null)
 
 .PHONY: run view install test tally-anew peers lint deny wasm web site pictures page-test page-bench bench bench-check book blocks fuzz help FORCE
 
 ## build G7 and open the editor in the browser on the examples (FOLDER=… for another)
+run: WASM := quick
 run: web
-	cargo run --release --quiet --package g7 -- serve $(FOLDER) $(if $(filter examples,$(FOLDER)),--start bead-sorter/chart.g7)
+	cargo run --profile quick --quiet --package g7 -- serve $(FOLDER) $(if $(filter examples,$(FOLDER)),--start bead-sorter/chart.g7)
 
 ## build G7 and run the bead sorter in the terminal (EXAMPLE=… for another)
 view:
-	cargo run --release --quiet --package g7 -- run $(EXAMPLE)
+	cargo run --profile quick --quiet --package g7 -- run $(EXAMPLE)
 
 ## put g7, with its page, on the PATH
 install: web
-	cargo install --quiet --path crates/g7
+	cargo install --quiet --locked --path crates/g7
 
 ## run every test; the last line counts what passed and what was skipped
 test: export G7_SKIPS = $(TALLY)/skips
@@ -59,15 +60,18 @@ deny:
 	@command -v cargo-deny >/dev/null || cargo install --quiet --locked cargo-deny
 	cargo deny check licenses bans sources
 
+# The profile of the page's wasm: `make run` takes the one that is compiled fast.
+WASM := wasm
+MODULE = $${CARGO_TARGET_DIR:-target}/wasm32-unknown-unknown/$(WASM)/g7_page.wasm
+
 ## the crates as wasm, for the page
 wasm: web/public/g7.wasm
 
 web/public/g7.wasm: FORCE
 	@rustup target list --installed | grep -q wasm32-unknown-unknown || rustup target add wasm32-unknown-unknown
-	cargo build --quiet --profile wasm --target wasm32-unknown-unknown --package g7-page
+	cargo build --quiet --profile $(WASM) --target wasm32-unknown-unknown --package g7-page
 	@mkdir -p web/public
-	@cmp -s $${CARGO_TARGET_DIR:-target}/wasm32-unknown-unknown/wasm/g7_page.wasm $@ || \
-		cp $${CARGO_TARGET_DIR:-target}/wasm32-unknown-unknown/wasm/g7_page.wasm $@
+	@cmp -s $(MODULE) $@ || cp $(MODULE) $@
 
 ## the editor's page, built into g7
 web: web/dist/index.html

@@ -1,11 +1,17 @@
 //! The web page: contained in the binary, or read from a folder during its development.
+//!
+//! The binary holds each file as gzip (`web/pack.mjs`), and sends it so: it is a quarter smaller, and
+//! the page is there sooner over a network. Only a client that does not read gzip (a `curl`, not a
+//! browser) gets the file as it was.
 
 use std::borrow::Cow;
+use std::io::Read as _;
 use std::path::Path;
 
 use axum::extract::State;
-use axum::http::{HeaderMap, StatusCode, Uri, header};
+use axum::http::{HeaderMap, HeaderValue, StatusCode, Uri, header};
 use axum::response::{IntoResponse, Response};
+use flate2::read::GzDecoder;
 use rust_embed::RustEmbed;
 
 use super::fingerprint;
@@ -13,7 +19,7 @@ use super::shared::Shared;
 
 /// The built page; empty if the page was not built before the binary.
 #[derive(RustEmbed)]
-#[folder = "../../web/dist"]
+#[folder = "../../web/packed"]
 #[allow_missing = true]
 struct Built;
 
@@ -33,11 +39,15 @@ pub(super) async fn asset(State(shared): State<Shared>, uri: Uri, headers: Heade
         "" => "index.html",
         path => path,
     };
-    let bytes = match &shared.page {
-        Some(folder) => on_disk(folder, path).map(Cow::Owned),
-        None => Built::get(path).map(|f| f.data),
+    let packed = reads_gzip(&headers);
+    let found = match &shared.page {
+        Some(folder) => on_disk(folder, path).map(|plain| (Cow::Owned(plain), false)),
+        None => Built::get(path).and_then(|file| match packed {
+            true => Some((file.data, true)),
+            false => unpacked(&file.data).map(|plain| (Cow::Owned(plain), false)),
+        }),
     };
-    let Some(bytes) = bytes else {
+    let Some((bytes, packed)) = found else {
         if path == "index.html" {
             let html = [(header::CONTENT_TYPE, "text/html; charset=utf-8")];
             return (StatusCode::SERVICE_UNAVAILABLE, html, NONE).into_response();
@@ -51,11 +61,33 @@ pub(super) async fn asset(State(shared): State<Shared>, uri: Uri, headers: Heade
         (header::CONTENT_TYPE, kind(path).to_owned()),
         (header::CACHE_CONTROL, keep.to_owned()),
         (header::ETAG, tag.clone()),
+        (header::VARY, header::ACCEPT_ENCODING.to_string()),
     ];
     if headers.get(header::IF_NONE_MATCH).is_some_and(|known| known.as_bytes() == tag.as_bytes()) {
         return (StatusCode::NOT_MODIFIED, head).into_response();
     }
-    (head, bytes.into_owned()).into_response()
+    let mut response = (head, bytes.into_owned()).into_response();
+    if packed {
+        response.headers_mut().insert(header::CONTENT_ENCODING, HeaderValue::from_static("gzip"));
+    }
+    response
+}
+
+/// True if the client says that it reads gzip.
+fn reads_gzip(headers: &HeaderMap) -> bool {
+    headers.get_all(header::ACCEPT_ENCODING).iter().filter_map(|v| v.to_str().ok()).any(|encodings| {
+        encodings.split(',').any(|encoding| {
+            let (name, weight) = encoding.split_once(';').unwrap_or((encoding, ""));
+            let refused = weight.trim().strip_prefix("q=").is_some_and(|q| q.parse() == Ok(0.0));
+            name.trim().eq_ignore_ascii_case("gzip") && !refused
+        })
+    })
+}
+
+fn unpacked(bytes: &[u8]) -> Option<Vec<u8>> {
+    let mut plain = Vec::new();
+    GzDecoder::new(bytes).read_to_end(&mut plain).ok()?;
+    Some(plain)
 }
 
 fn on_disk(folder: &Path, path: &str) -> Option<Vec<u8>> {
