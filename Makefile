@@ -20,7 +20,7 @@ PAGE := $(shell find web/src web/index.html web/public web/*.ts web/*.js web/*.m
 .PHONY: run view install test tally-anew peers lint deny wasm web site pictures page-test page-bench bench bench-check book blocks fuzz help FORCE
 
 ## build G7 and open the editor in the browser on the examples (FOLDER=… for another)
-run: WASM := quick
+run: WASM := quick-wasm
 run: web
 	cargo run --profile quick --quiet --package g7 -- serve $(FOLDER) $(if $(filter examples,$(FOLDER)),--start bead-sorter/chart.g7)
 
