@@ -114,3 +114,34 @@ fn kind(path: &str) -> &'static str {
         _ => "application/octet-stream",
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use std::io::Write as _;
+
+    use super::*;
+
+    #[test]
+    fn gzip_is_sent_to_who_reads_it() {
+        let reads = |said: &'static str| {
+            let mut headers = HeaderMap::new();
+            headers.insert(header::ACCEPT_ENCODING, HeaderValue::from_static(said));
+            reads_gzip(&headers)
+        };
+        for said in ["gzip", "deflate, GZIP", "br;q=1.0, gzip;q=0.8, *;q=0.1"] {
+            assert!(reads(said), "{said}");
+        }
+        for said in ["", "identity", "br", "gzip;q=0", "gzip; q=0.0", "x-gzip-not"] {
+            assert!(!reads(said), "{said}");
+        }
+        assert!(!reads_gzip(&HeaderMap::new()));
+    }
+
+    #[test]
+    fn others_get_the_file_as_it_was() {
+        let mut packed = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::best());
+        packed.write_all(NONE.as_bytes()).expect("packed");
+        assert_eq!(unpacked(&packed.finish().expect("packed")).as_deref(), Some(NONE.as_bytes()));
+        assert_eq!(unpacked(NONE.as_bytes()), None, "no gzip");
+    }
+}
