@@ -15,6 +15,7 @@ debian = command -v $(1) >/dev/null || \
 # Logs of `make test` with the list of what was skipped; the pages of the book, put together.
 BOOK := $(abspath $(or $(CARGO_TARGET_DIR),target))/book
 TALLY := $(abspath $(or $(CARGO_TARGET_DIR),target))/tally
+PYTHON := $(abspath $(or $(CARGO_TARGET_DIR),target))/python
 PAGE := $(shell find web/src web/index.html web/public web/*.ts web/*.js web/*.mjs -type f 2>/dev/null)
 
 .PHONY: run view install test tally-anew peers lint deny wasm web site pictures page-test page-bench bench bench-check book blocks fuzz help FORCE
@@ -34,11 +35,19 @@ install: web
 
 ## run every test; the last line counts what passed and what was skipped
 test: export G7_SKIPS = $(TALLY)/skips
-test: tally-anew lint page-test
+test: export G7_PEERS = $(PYTHON)
+test: tally-anew lint page-test $(PYTHON)/bin/pymodbus.simulator
 	cargo test --workspace --quiet 2>&1 | tee $(TALLY)/crates.log
 	cargo run --quiet --package g7 -- check examples
 	cargo run --quiet --package g7 -- test examples | tee $(TALLY)/examples.log
 	@cargo run --quiet --package g7-peers --bin tally -- $(TALLY)
+
+# Programs in Python that tests talk to. Without a network they are skipped, which the tally counts.
+$(PYTHON)/bin/pymodbus.simulator:
+	@$(call debian,python3,python3)
+	@python3 -c 'import ensurepip' 2>/dev/null || $(SUDO) apt-get install -qq --no-install-recommends python3-venv
+	@{ python3 -m venv $(PYTHON) && $(PYTHON)/bin/pip install --quiet 'pymodbus==3.16.*'; } || \
+		echo "pymodbus cannot be installed: its tests are skipped"
 
 tally-anew:
 	@rm -rf $(TALLY) && mkdir -p $(TALLY) && touch $(TALLY)/skips

@@ -158,6 +158,8 @@ Examples:
   g7 run tank --headless --set start=1@2s --set start=0@2.5s
   g7 run tank --profile iec61131 --scan 40ms       under other rules of evolution
   g7 run Sorter.xml                                a file of another tool, here JGrafchart's
+  g7 run sorter.g7 --online                        drives the devices of sorter.io.toml
+  g7 run sorter.g7 --online --simulate line1       the same, with the plant in place of one
 
 {EXIT_CODES}"))]
 pub(crate) struct Run {
@@ -200,6 +202,15 @@ pub(crate) struct Run {
     /// With --headless: record everything that enters the charts, for --replay.
     #[arg(long, value_name = "FILE")]
     pub(crate) record: Option<PathBuf>,
+    /// Drive real devices, those of the io file beside the chart.
+    #[arg(long, conflicts_with_all = ["headless", "trace", "set", "show", "retain", "record", "replay", "real_time"])]
+    pub(crate) online: bool,
+    /// With --online: the io file [default: chart.io.toml for chart.g7].
+    #[arg(long, value_name = "FILE", requires = "online")]
+    pub(crate) io: Option<PathBuf>,
+    /// With --online: take the plant in place of these devices, or of all.
+    #[arg(long, value_name = "DEVICES", requires = "online", num_args = 0.., value_delimiter = ',')]
+    pub(crate) simulate: Option<Vec<String>>,
     /// Replay a record and check that every state is the same.
     #[arg(long, value_name = "FILE", conflicts_with_all = ["record", "set", "duration", "retain"])]
     pub(crate) replay: Option<PathBuf>,

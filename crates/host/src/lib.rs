@@ -4,14 +4,14 @@
 //! # Where this sits
 //!
 //! ```text
-//!           Clock -> Runner -> engine::scan -> outputs -> Io | plant
-//!                      |  ^-------- inputs <-------------- Io | plant
+//!           Clock -> Runner -> engine::scan -> outputs -> devices | plant
+//!                      |  ^-------- inputs <-------------- devices | plant
 //!                      +-> Recording -> CSV, VCD, chronogram
 //!                      +-> Tape -> replay          Retained <-> file
 //! ```
 //!
 //! Simulation and on-line operation use the same loop with different parts: a virtual clock and a
-//! plant (a second program), or the wall clock and an [`Io`].
+//! plant (a second program), or the wall clock and devices (the crate `online`).
 //!
 //! # Invariants
 //!
@@ -27,7 +27,6 @@
 
 mod clock;
 mod hash;
-mod io;
 mod record;
 mod retain;
 mod runner;
@@ -36,12 +35,11 @@ mod text;
 
 pub use clock::{Clock, VirtualClock, WallClock};
 pub use hash::Fnv;
-pub use io::{Channels, Io, IoError};
 pub use record::chronogram::{Chronogram, Lane, Style};
 pub use record::csv::write_csv;
 pub use record::vcd::write_vcd;
 pub use record::{Kind, Recording, Signal, Value};
 pub use retain::{Layout, RetainError, Retained, write_whole};
-pub use runner::{Coupling, Force, Halt, Runner, Served, Start, serve};
+pub use runner::{Coupling, Force, Halt, Runner, Start};
 pub use tape::{Divergence, Tape};
 pub use text::{read_text, write_text};

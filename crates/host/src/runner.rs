@@ -7,8 +7,6 @@ use std::sync::Arc;
 use g7_engine::{Addr, Fault, Program, Report, State, begin, pass, scan};
 use g7_model::Nanos;
 
-use crate::clock::Clock;
-use crate::io::{Io, IoError};
 use crate::tape::Tape;
 
 /// Which words of the charts and of the plant are connected. Words are counted from the first
@@ -125,6 +123,13 @@ impl Runner {
         let inputs = (rows.start..rows.end).map(|a| state.word(Addr(a))).collect();
         self.plant = Some(Plant { program, state, inputs, coupling });
         self
+    }
+
+    /// Connects other words of charts and plant than before.
+    pub fn couple(&mut self, coupling: Coupling) {
+        if let Some(plant) = &mut self.plant {
+            plant.coupling = coupling;
+        }
     }
 
     /// Sets which words are kept over a warm restart.
@@ -449,6 +454,16 @@ impl Runner {
         self
     }
 
+    /// Continues warm from a state of an earlier run: the next scan is one period after that of the
+    /// state, and `%S1` is true in it.
+    #[must_use]
+    pub fn resume(mut self, state: State) -> Runner {
+        let due = Nanos::new(state.now()) + self.period;
+        self = self.from_state(state, due);
+        self.set_flags(Start::Warm);
+        self
+    }
+
     /// Replaces the state of the plant.
     pub fn set_plant_state(&mut self, state: State) {
         if let Some(plant) = &mut self.plant {
@@ -458,7 +473,12 @@ impl Runner {
 
     /// The present values of the words that a warm restart keeps.
     pub fn retained(&self) -> Vec<u64> {
-        self.retained.iter().cloned().flatten().map(|a| self.state.word(Addr(a))).collect()
+        self.retained_words().collect()
+    }
+
+    /// The same words, one after the other.
+    pub fn retained_words(&self) -> impl Iterator<Item = u64> + '_ {
+        self.retained.iter().cloned().flatten().map(|a| self.state.word(Addr(a)))
     }
 
     /// Writes retained values; words beyond the given ones stay unchanged.
@@ -473,48 +493,6 @@ impl Runner {
         if let Some((cold, warm)) = self.flags {
             self.set_word(cold, u64::from(start == Start::Cold));
             self.set_word(warm, u64::from(start == Start::Warm));
-        }
-    }
-}
-
-/// Why [`serve`] ended.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Served {
-    /// The caller asked it to stop.
-    Stopped,
-    /// A fault occurred; the outputs have their safe values.
-    Halted(Halt),
-    /// A device failed; the outputs have their safe values as far as they could still be written.
-    Io(IoError),
-}
-
-/// Runs with real devices until the caller says stop; it is asked before each scan.
-pub fn serve(
-    runner: &mut Runner,
-    clock: &mut dyn Clock,
-    io: &mut dyn Io,
-    stop: &mut dyn FnMut(&Runner) -> bool,
-) -> Served {
-    let program = Arc::clone(&runner.program);
-    let safe = &program.tables().safe;
-    loop {
-        if stop(runner) {
-            return Served::Stopped;
-        }
-        clock.wait_until(runner.due());
-        runner.catch_up(clock.now());
-        if let Err(e) = io.read(&mut runner.inputs) {
-            io.write(safe).ok();
-            return Served::Io(e);
-        }
-        let done = runner.scan();
-        let outputs = if done.is_ok() { runner.outputs() } else { safe.clone() };
-        if let Err(e) = io.write(&outputs) {
-            io.write(safe).ok();
-            return Served::Io(e);
-        }
-        if let Err(halt) = done {
-            return Served::Halted(halt);
         }
     }
 }

@@ -2,9 +2,7 @@
 #![allow(missing_docs, reason = "a test")]
 
 use g7_engine::{Addr, Arith, Code, FaultKind, Num, Op, Program, Rows, Rules, Tables};
-use g7_host::{
-    Channels, Clock, Coupling, Force, Halt, Io, IoError, Runner, Served, Start, Tape, VirtualClock, serve,
-};
+use g7_host::{Coupling, Force, Halt, Runner, Start, Tape};
 use g7_model::Nanos;
 
 /// A program of four words: input, output, kept, other. Each scan does `output := input`, `kept :=
@@ -161,54 +159,6 @@ fn a_tape_plays_back_to_the_same_bytes_and_notices_another_program() {
     for bad in ["", "g7 tape 1 x", "g7 tape 1 1\nz", "g7 tape 1 1\ns 1", "g7 tape 1 1\nw 1"] {
         assert!(Tape::from_text(bad).is_none(), "{bad:?}");
     }
-}
-
-#[derive(Default)]
-struct Wires {
-    written: Vec<Vec<u64>>,
-    fail_at: usize,
-}
-
-impl Io for Wires {
-    fn read(&mut self, inputs: &mut [u64]) -> Result<(), IoError> {
-        if self.written.len() == self.fail_at {
-            return Err(IoError { channel: Some(0), what: "gone".into() });
-        }
-        inputs.fill(0);
-        Ok(())
-    }
-    fn write(&mut self, outputs: &[u64]) -> Result<(), IoError> {
-        self.written.push(outputs.to_vec());
-        Ok(())
-    }
-}
-
-#[test]
-fn a_device_that_fails_gets_the_safe_outputs() {
-    let program = counter();
-    let mut runner = Runner::new(program.clone(), PERIOD);
-    let mut io = Channels::new(Wires { fail_at: 2, ..Wires::default() }, vec![0], Vec::new());
-    let mut clock = VirtualClock::default();
-    let ended = serve(&mut runner, &mut clock, &mut io, &mut |_| false);
-    assert!(matches!(ended, Served::Io(e) if e.to_string() == "channel 0: gone"));
-    // The input is inverted: a 0 on the wire is read as 1. The safe value that follows is 1 too.
-    assert_eq!(io.device().written, [[1], [1], [1]]);
-    assert_eq!(clock.now(), PERIOD * 2);
-}
-
-#[test]
-fn serving_ends_when_told_and_at_a_fault() {
-    let program = counter();
-    let mut io = Wires { fail_at: usize::MAX, ..Wires::default() };
-    let mut clock = VirtualClock::default();
-    let mut runner = Runner::new(program.clone(), PERIOD);
-    let ended = serve(&mut runner, &mut clock, &mut io, &mut |r| r.due() >= PERIOD * 3);
-    assert_eq!(ended, Served::Stopped);
-    assert_eq!(io.written, [[0], [0], [0]]);
-    runner.set_word(Addr(2), 32767);
-    let ended = serve(&mut runner, &mut clock, &mut io, &mut |_| false);
-    assert!(matches!(ended, Served::Halted(Halt::Charts(_))));
-    assert_eq!(io.written.last(), Some(&vec![1]), "safe");
 }
 
 /// Steps 1 -> 2 -> 3 with receptivities that are always true, under search for stability.

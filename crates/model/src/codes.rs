@@ -2,7 +2,7 @@
 //!
 //! `G00xx` files and words, `G01xx` structure, `G02xx` names and types, `G03xx`
 //! evolution and actions, `G04xx` limits of a target PLC, `G05xx` plants and
-//! tests, `G06xx` imported files. Each has a page `docs/book/src/problems/<id>.md`
+//! tests, `G06xx` imported files, `G07xx` io files. Each has a page `docs/book/src/problems/<id>.md`
 //! and a case in `tests/check`; a test holds us to both.
 
 use crate::Severity;
@@ -133,6 +133,12 @@ codes! {
     BAD_MACRO = "G0613" Error "a macro-step without its inside" "IEC 60848:2013, 7.5";
     DIFFERENT = "G0614" Warning "a part that is carried over with a difference" "the language of the file";
     TWICE = "G0615" Error "two variables of one name in a workspace" "names and references of the file";
+
+    // Io files
+    BAD_WIRING = "G0701" Error "a part of an io file that cannot be read" "the io file";
+    UNKNOWN_CHANNEL = "G0702" Error "a variable or device of an io file that is not there" "the io file";
+    WRONG_CHANNEL = "G0703" Error "a point that cannot carry its variable" "the io file";
+    WIRED_TWICE = "G0704" Error "a variable or point that is wired twice" "the io file";
 
     // Plants and tests
     BAD_DRIVE = "G0501" Error "a plant drives what is no free input" "the plant language";

@@ -30,10 +30,16 @@ impl Source {
         let (document, problems) = format
             .and_then(|format| format.read(&bytes, FileId(id)))
             .unwrap_or_else(|| g7_syntax::parse_bytes(&bytes, FileId(id)));
+        Source { document, problems, format, ..Source::plain(name, bytes) }
+    }
+
+    /// A file that is no chart, for the places of its problems.
+    pub fn plain(name: &str, bytes: Vec<u8>) -> Source {
         let text = same_length(&bytes);
         let starts = std::iter::once(0).chain(text.match_indices('\n').map(|(i, _)| i + 1)).collect();
         let name = name.chars().map(|c| if c.is_control() { '?' } else { c }).collect();
-        Source { name, text, bytes, document, problems, format, starts }
+        let (document, problems) = (Document::default(), Vec::new());
+        Source { name, text, bytes, document, problems, format: None, starts }
     }
 
     /// True if one of the problems is an error.

@@ -160,6 +160,23 @@ pub fn matiec() -> Option<Matiec> {
     fine.then_some(matiec)
 }
 
+/// A Python that has a module: that of `make test`, which `G7_PEERS` names, else the system's.
+/// Otherwise the skip is counted.
+pub fn python(module: &str) -> Option<PathBuf> {
+    let own = std::env::var_os("G7_PEERS").map(|folder| Path::new(&folder).join("bin/python"));
+    let has = |python: &PathBuf| quiet(Command::new(python).args(["-c", &format!("import {module}")]));
+    let found = own.into_iter().chain([PathBuf::from("python3")]).find(has);
+    if found.is_none() {
+        skip(&format!("Python's {module} missing"));
+    }
+    found
+}
+
+/// A script of this project that drives a peer.
+pub fn script(name: &str) -> PathBuf {
+    [env!("CARGO_MANIFEST_DIR"), "python", name].iter().collect()
+}
+
 /// True if a command starts and succeeds; nothing of what it says is shown.
 fn quiet(command: &mut Command) -> bool {
     command.stdout(Stdio::null()).stderr(Stdio::null()).status().is_ok_and(|s| s.success())

@@ -2,6 +2,8 @@
 
 mod headless;
 mod keep;
+mod load;
+mod online;
 
 use std::io::{IsTerminal, stdin, stdout};
 
@@ -10,14 +12,16 @@ pub(crate) use keep::Keeper;
 use crate::cli::Run;
 use crate::failure::{Failure, Verdict};
 use crate::message::talk;
-use crate::report::{self, Tally};
-use crate::sources::{self, Source};
+use crate::sources;
 use crate::{files, view};
-use g7_rig::{self as bench, Bench};
 
 pub(crate) fn run(args: &Run) -> Result<Verdict, Failure> {
-    let source = sources::load(&files::one(&args.path)?, 0)?;
-    let Some(bench) = load(&source, args)? else { return Ok(Verdict::Found) };
+    let path = files::one(&args.path)?;
+    let source = sources::load(&path, 0)?;
+    if args.online {
+        return online::run(&path, &source, args);
+    }
+    let Some(bench) = load::load(&source, args)? else { return Ok(Verdict::Found) };
     if let Some(tape) = &args.replay {
         return headless::replay(&bench, args, tape);
     }
@@ -33,16 +37,4 @@ pub(crate) fn run(args: &Run) -> Result<Verdict, Failure> {
     let mut keeper = Keeper::new(&bench, &runner, args.retain.as_deref());
     view::run(&bench, runner, &source.name, args, &mut keeper)?;
     Ok(Verdict::Fine)
-}
-
-/// Compiles a source, or prints its problems.
-fn load(source: &Source, args: &Run) -> Result<Option<Bench>, Failure> {
-    let options =
-        bench::Options { profile: args.profile, scan: args.scan, plant: args.plant.as_deref(), asks: &[] };
-    let (bench, problems) = bench::build(source, &options)?;
-    if !problems.is_empty() {
-        talk!("{}", report::text(source, &problems).trim_end());
-        talk!("{}: {}", source.name, Tally::of(&problems));
-    }
-    Ok(bench)
 }

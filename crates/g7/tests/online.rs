@@ -1,0 +1,280 @@
+//! `g7 run --online`: io files, values that outlive the program, and a Modbus slave that is not ours.
+#![allow(clippy::disallowed_methods, reason = "programs run beside each other, in real time")]
+
+mod common;
+
+use std::io::{BufRead, BufReader, Write};
+use std::process::{Child, ChildStdin, Command, Stdio};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
+use std::time::{Duration, Instant};
+
+use common::Folder;
+use snapbox::cmd::cargo_bin;
+
+const CHART: &str = "\
+profile iec60848
+input go : BOOL
+input level : REAL
+input weight : DINT
+input line1_ok : BOOL
+output valve : BOOL
+output lamp : BOOL inverted
+output speed : INT safe -1
+output sum : LREAL
+var presses : INT := 0 retain
+chart Main {
+  initial step 1 { N lamp }
+  step 2 { N valve  P1 presses := presses + 1  P1 speed := presses + 1  P1 sum := REAL_TO_LREAL(level) + DINT_TO_LREAL(weight) }
+  1 -> 2 when go and line1_ok
+  2 -> 1 when not go
+}
+";
+
+/// The io file for a slave at a port of this machine.
+fn io(port: u16) -> String {
+    format!(
+        "[controller]\nretain = 'kept'\n[devices.line1]\nkind = 'modbus-tcp'\nhost = '127.0.0.1'\nport = {port}\n\
+         timeout = '1s'\nretry = '500ms'\n[inputs]\ngo = 'line1.discrete(3)'\n\
+         level = {{ at = 'line1.input(4)', as = 'f32' }}\nweight = {{ at = 'line1.input(6)', scale = 10 }}\n\
+         line1_ok = 'line1.good()'\n[outputs]\nvalve = 'line1.coil(2)'\nlamp = 'line1.holding(9.4)'\n\
+         speed = 'line1.holding(7)'\nsum = 'line1.holding(20)'\n"
+    )
+}
+
+fn folder(port: u16) -> Folder {
+    let folder = Folder::with(CHART);
+    folder.write("chart.io.toml", io(port));
+    folder
+}
+
+/// A program whose lines are read as they come.
+struct Running {
+    child: Child,
+    stdin: Option<ChildStdin>,
+    lines: Receiver<String>,
+    seen: Vec<String>,
+}
+
+impl Running {
+    fn start(mut command: Command, says: fn(&mut Child) -> Box<dyn std::io::Read + Send>) -> Running {
+        command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
+        let mut child = command.spawn().expect("it starts");
+        let (give, lines) = channel();
+        let out = BufReader::new(says(&mut child));
+        std::thread::spawn(move || out.lines().map_while(Result::ok).try_for_each(|line| give.send(line)));
+        let stdin = child.stdin.take();
+        Running { child, stdin, lines, seen: Vec::new() }
+    }
+
+    fn g7(folder: &Folder, args: &[&str]) -> Running {
+        let mut command = Command::new(cargo_bin!("g7"));
+        command.args(["run", "chart.g7", "--online"]).args(args).current_dir(folder.root());
+        Running::start(command, |child| Box::new(child.stderr.take().expect("piped")))
+    }
+
+    fn say(&mut self, line: &str) {
+        let stdin = self.stdin.as_mut().expect("open");
+        writeln!(stdin, "{line}").expect("it listens");
+    }
+
+    /// The next line.
+    fn line(&mut self) -> String {
+        match self.lines.recv_timeout(Duration::from_secs(20)) {
+            Ok(line) => {
+                self.seen.push(line.clone());
+                line
+            }
+            Err(RecvTimeoutError::Timeout | RecvTimeoutError::Disconnected) => {
+                panic!("no line behind {:#?}", self.seen)
+            }
+        }
+    }
+
+    /// Waits for a line that has this text.
+    fn until(&mut self, text: &str) -> String {
+        loop {
+            let line = self.line();
+            if line.contains(text) {
+                return line;
+            }
+        }
+    }
+
+    /// Ends it by the command and returns its exit code.
+    fn quit(mut self) -> i32 {
+        self.say("quit");
+        self.child.wait().expect("it ends").code().expect("an exit code")
+    }
+}
+
+impl Drop for Running {
+    fn drop(&mut self) {
+        self.child.kill().ok();
+        self.child.wait().ok();
+    }
+}
+
+/// A slave of pymodbus.
+struct Slave {
+    running: Running,
+    port: u16,
+}
+
+impl Slave {
+    /// At a port, or at a free one for 0; `None` without pymodbus.
+    fn start(port: u16) -> Option<Slave> {
+        let mut command = Command::new(g7_peers::python("pymodbus")?);
+        command.arg(g7_peers::script("modbus_slave.py")).arg(port.to_string());
+        let mut running = Running::start(command, |child| Box::new(child.stdout.take().expect("piped")));
+        let port = running.line().parse().expect("its port");
+        Some(Slave { running, port })
+    }
+
+    fn set(&mut self, what: &str) {
+        self.running.say(&format!("set {what}"));
+        assert_eq!(self.running.line(), "ok");
+    }
+
+    fn get(&mut self, what: &str) -> String {
+        self.running.say(&format!("get {what}"));
+        self.running.line()
+    }
+
+    /// Waits until registers or bits have these values.
+    fn becomes(&mut self, what: &str, values: &str) {
+        let begin = Instant::now();
+        let mut found = self.get(what);
+        while found != values {
+            assert!(begin.elapsed() < Duration::from_secs(20), "{what} is {found}, not {values}");
+            std::thread::sleep(Duration::from_millis(10));
+            found = self.get(what);
+        }
+    }
+}
+
+/// Valve; lamp; speed.
+const SAFE: [(&str, &str); 3] = [("coil 2 1", "0"), ("holding 9 1", "16"), ("holding 7 1", "65535")];
+
+#[test]
+fn a_slave_of_pymodbus_is_driven_lost_and_found() {
+    let Some(mut slave) = Slave::start(0) else { return };
+    let folder = folder(slave.port);
+    let mut g7 = Running::g7(&folder, &[]);
+    g7.until("line1 answers");
+    // IEEE 754: 2.5 is 40200000. The lamp is lit, and its wire inverted.
+    slave.set("input 4 16416 0 65535 65533");
+    slave.becomes("holding 9 1", "0");
+    slave.set("discrete 3 1");
+    slave.becomes("coil 2 1", "1");
+    slave.becomes("holding 9 1", "16");
+    slave.becomes("holding 7 1", "1");
+    // 2.5 + 10 * -3 = -27.5, which is C03B800000000000.
+    slave.becomes("holding 20 4", "49211 32768 0 0");
+    g7.say("stop");
+    g7.until("stopped");
+    SAFE.iter().for_each(|(what, values)| slave.becomes(what, values));
+    g7.say("run");
+    slave.becomes("coil 2 1", "1");
+
+    let port = slave.port;
+    drop(slave);
+    g7.until("line1 does not answer");
+    let mut slave = Slave::start(port).expect("it was there before");
+    g7.until("line1 answers");
+    // The slave has forgotten all; it gets each output anew, and the button is up now.
+    slave.becomes("holding 7 1", "1");
+    slave.becomes("coil 2 1", "0");
+    slave.set("discrete 3 1");
+    slave.becomes("coil 2 1", "1");
+    slave.becomes("holding 7 1", "2");
+    assert_eq!(g7.quit(), 0);
+    SAFE.iter().for_each(|(what, values)| assert_eq!(slave.get(what), *values, "{what}"));
+
+    // The next start is a warm one: step 2 is still active, and nothing is counted again.
+    let mut g7 = Running::g7(&folder, &[]);
+    g7.until("warm start");
+    slave.becomes("coil 2 1", "1");
+    slave.becomes("holding 7 1", "2");
+    assert_eq!(g7.quit(), 0);
+}
+
+#[test]
+fn addresses_that_a_slave_does_not_have_are_bad_alone() {
+    let Some(mut slave) = Slave::start(0) else { return };
+    let folder = Folder::with(CHART);
+    folder.write(
+        "chart.io.toml",
+        io(slave.port).replace("input(4)", "input(1000)").replace("holding(7)", "holding(1000)"),
+    );
+    let mut g7 = Running::g7(&folder, &[]);
+    // An output that is refused, and an input without a value, in either order.
+    let lines = [g7.until("line1"), g7.until("line1"), g7.until("line1")].join("\n");
+    assert!(lines.contains("no value for `level`: exception"), "{lines}");
+    assert!(lines.contains("refuses `speed`: exception"), "{lines}");
+    slave.set("discrete 3 1");
+    slave.becomes("coil 2 1", "1");
+    assert_eq!(g7.quit(), 0);
+}
+
+#[test]
+fn without_its_device_a_chart_runs_and_says_so() {
+    // Nobody listens at port 1.
+    let folder = folder(1);
+    let ran = folder.g7(&["run", "--online", "--for", "300ms"]);
+    ran.is(0);
+    assert!(ran.err.contains("line1 does not answer"), "{}", ran.err);
+    assert!(ran.err.contains("the situation is {1}"), "{}", ran.err);
+}
+
+#[test]
+fn the_plant_stands_for_devices_on_request() {
+    let folder = folder(1);
+    let plant = "plant Hand {\n  drive go := TRUE\n  drive line1_ok := TRUE\n}\n";
+    folder.write("chart.g7", format!("{CHART}{plant}"));
+    let ran = folder.g7(&["run", "--online", "--for", "300ms", "--simulate"]);
+    assert!(ran.is(0).err.contains("the situation is {2}"), "{}", ran.err);
+    assert!(!ran.err.contains("line1 does not answer"), "{}", ran.err);
+    // Without the switch there is no plant, though the file has one.
+    folder.g7(&["run", "--online", "--for", "300ms", "--io", "chart.io.toml"]).is(0);
+    folder.g7(&["run", "--online", "--simulate", "line2"]).is_refused(&["no device `line2`", "line1"]);
+}
+
+#[test]
+fn values_of_another_program_are_refused_unless_the_file_says_otherwise() {
+    let folder = folder(1);
+    folder.g7(&["run", "--online", "--for", "300ms"]).is(0);
+    let again = folder.g7(&["run", "--online", "--for", "100ms"]);
+    assert!(again.is(0).err.contains("warm start"), "{}", again.err);
+    folder.write("chart.g7", CHART.replace("1 -> 2 when go", "1 -> 2 when not go"));
+    let kept = std::fs::read(folder.path("kept")).expect("it is there");
+    folder.g7(&["run", "--online", "--for", "100ms"]).is_refused(&["kept", "another program", "fit"]);
+    assert!(std::fs::read(folder.path("kept")).expect("still there") == kept, "it is left as it is");
+    folder.write("chart.io.toml", io(1).replace("retain =", "changed = 'fit'\nretain ="));
+    let fitted = folder.g7(&["run", "--online", "--for", "100ms"]);
+    assert!(fitted.is(0).err.contains("1 of 1 retained variables"), "{}", fitted.err);
+    let warm = folder.g7(&["run", "--online", "--for", "100ms"]);
+    assert!(warm.is(0).err.contains("warm start"), "{}", warm.err);
+    // Both slots are damaged.
+    folder.write("kept", vec![7; kept.len()]);
+    folder.g7(&["run", "--online"]).is_refused(&["kept", "damaged", "move it away"]);
+}
+
+#[test]
+fn mistakes_have_a_place_and_nothing_runs() {
+    let folder = Folder::with(CHART);
+    folder.g7(&["run", "--online"]).is_refused(&["chart.io.toml is missing", "--io"]);
+    folder.write("chart.io.toml", io(1).replace("coil(2)", "discrete(2)").replace("timeout", "timout"));
+    let ran = folder.g7(&["run", "--online"]);
+    ran.is(1);
+    for part in
+        ["chart.io.toml:7:1", "no setting `timout`", "G0701", "cannot be written", "G0703", "2 errors"]
+    {
+        assert!(ran.err.contains(part), "{part}: {}", ran.err);
+    }
+    folder.write("chart.io.toml", b"\xff");
+    folder.g7(&["run", "--online"]).is_refused(&["chart.io.toml", "UTF-8"]);
+    let both = folder.g7(&["run", "--online", "--headless"]);
+    assert!(both.is(2).err.contains("--headless"), "{}", both.err);
+    let alone = folder.g7(&["run", "--io", "x.toml"]);
+    assert!(alone.is(2).err.contains("--online"), "{}", alone.err);
+}

@@ -1,0 +1,334 @@
+//! The controller: one step of it reads the inputs, scans and hands on the outputs.
+//!
+//! A step is called at [`Controller::due`] by the scan thread, or by a simulator. It takes the time
+//! as a number, and neither allocates nor waits.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, AtomicI64, Ordering};
+
+use g7_engine::Addr;
+use g7_host::{Halt, Runner, Start};
+use g7_model::Nanos;
+
+use crate::driver::{Quality, from_device};
+use crate::exchange::{Reader, Writer};
+use crate::keep::Keep;
+use crate::wiring::WhileBad;
+
+/// The state of a controller.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Mode {
+    /// It makes no scans; the outputs are safe.
+    Stop,
+    /// It makes scans.
+    Run,
+    /// It makes no scans until a person acknowledges the reason; the outputs are safe.
+    Fault(Reason),
+}
+
+/// Why a controller is in [`Mode::Fault`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Reason {
+    /// The charts or the plant had a fault.
+    Halt(Halt),
+    /// An input word is bad, and its channel says that the controller stops then.
+    Input(u32),
+    /// A scan took longer than the watchdog allows.
+    Watchdog,
+}
+
+/// A request of a person or of another thread.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Command {
+    /// Make scans; nothing while there is a fault.
+    Run,
+    /// Make no more scans.
+    Stop,
+    /// End a fault; the controller is stopped then.
+    Acknowledge,
+    /// Go back to the initial situation; it does what it did before.
+    Restart(Start),
+}
+
+/// Something that happened in a step.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Event {
+    /// The time of the controller.
+    pub at: Nanos,
+    /// The event itself.
+    pub what: What,
+}
+
+/// The kinds of events of a step.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum What {
+    /// The mode is another one.
+    Mode(Mode),
+    /// So many scans came too late and were left out.
+    Missed(u64),
+}
+
+/// Flags that the controller shares with its drivers and its watchdog.
+#[derive(Clone, Debug, Default)]
+pub struct Shared {
+    /// True while drivers write safe outputs, whatever the scan says.
+    pub safe: Arc<AtomicBool>,
+    /// The end of the latest step, in nanoseconds of the controller's clock.
+    pub beat: Arc<AtomicI64>,
+    /// True where the watchdog has found that a step took too long.
+    pub tripped: Arc<AtomicBool>,
+}
+
+/// The controller's side of a device.
+#[derive(Debug)]
+pub struct Port {
+    /// The words that the driver gives.
+    pub from_device: Reader,
+    /// The words that the driver takes: one for each output.
+    pub to_device: Writer,
+    /// The input words, counted from the first, and what each has while its value is bad.
+    pub inputs: Vec<(u32, WhileBad)>,
+    /// The output words, counted from the first, and the safe value of each.
+    pub outputs: Vec<(u32, u64)>,
+    /// Input words that are 1 while the device answers.
+    pub good: Vec<u32>,
+    /// Values older than this are bad, even if the driver says nothing.
+    pub stale: Nanos,
+}
+
+/// A port with the words that it took last.
+#[derive(Debug)]
+struct Open {
+    port: Port,
+    words: Vec<u64>,
+    /// The words for the outputs.
+    out: Vec<u64>,
+}
+
+/// The time between two hand-overs of the values that are kept.
+const KEPT_EACH: Nanos = Nanos::from_millis(100);
+
+/// The values that are kept, on their way to the one who writes them.
+#[derive(Debug)]
+struct Keeping {
+    keep: Keep,
+    to_disk: Writer,
+    due: Nanos,
+}
+
+/// A controller.
+pub struct Controller {
+    runner: Runner,
+    ports: Vec<Open>,
+    shared: Shared,
+    mode: Mode,
+    /// The controller's time at which the run's clock shows 0. While it is stopped the run's clock
+    /// stands still.
+    base: Nanos,
+    due: Nanos,
+    /// True after the first scan of this controller.
+    begun: bool,
+    /// Until this instant a run waits for the first values of the devices.
+    grace: Nanos,
+    missed: u64,
+    events: rtrb::Producer<Event>,
+    lost: u64,
+    keeping: Option<Keeping>,
+}
+
+impl Controller {
+    /// A controller that is stopped.
+    ///
+    /// `grace` is the longest time that the first scan waits for values of all devices.
+    pub fn new(
+        runner: Runner,
+        ports: Vec<Port>,
+        shared: Shared,
+        grace: Nanos,
+        events: rtrb::Producer<Event>,
+    ) -> Controller {
+        let open = |port: Port| Open {
+            words: vec![0; from_device::words(port.inputs.len())],
+            out: port.outputs.iter().map(|(_, safe)| *safe).collect(),
+            port,
+        };
+        shared.safe.store(true, Ordering::Release);
+        Controller {
+            runner,
+            ports: ports.into_iter().map(open).collect(),
+            shared,
+            mode: Mode::Stop,
+            base: Nanos::ZERO,
+            due: Nanos::ZERO,
+            begun: false,
+            grace,
+            missed: 0,
+            events,
+            lost: 0,
+            keeping: None,
+        }
+    }
+
+    /// From here on hands the values that outlive the program on, each 100 ms.
+    pub(crate) fn keep_by(&mut self, keep: Keep, to_disk: Writer) {
+        self.keeping = Some(Keeping { keep, to_disk, due: Nanos::ZERO });
+    }
+
+    /// The values that outlive the program, as they are now; empty where none are kept.
+    pub fn kept(&mut self) -> &[u64] {
+        match &mut self.keeping {
+            Some(keeping) => keeping.keep.take(&self.runner),
+            None => &[],
+        }
+    }
+
+    /// The instant of the next step.
+    pub fn due(&self) -> Nanos {
+        self.due
+    }
+
+    /// Its state.
+    pub fn mode(&self) -> Mode {
+        self.mode
+    }
+
+    /// The run.
+    pub fn runner(&self) -> &Runner {
+        &self.runner
+    }
+
+    /// The number of events that nobody took in time.
+    pub fn lost(&self) -> u64 {
+        self.lost
+    }
+
+    /// Carries out a command at `now`, between two steps.
+    pub fn command(&mut self, now: Nanos, command: Command) {
+        match (command, self.mode) {
+            (Command::Run, Mode::Stop) => {
+                // The grid of scans begins anew here.
+                self.base = now - self.runner.due();
+                self.due = now;
+                self.shared.tripped.store(false, Ordering::Release);
+                self.shared.beat.store(now.count(), Ordering::Release);
+                self.shared.safe.store(false, Ordering::Release);
+                self.enter(now, Mode::Run);
+            }
+            (Command::Stop, Mode::Run) => self.leave(now, Mode::Stop),
+            (Command::Acknowledge, Mode::Fault(_)) => self.enter(now, Mode::Stop),
+            (Command::Restart(start), _) => self.runner.restart(start),
+            (Command::Run | Command::Stop | Command::Acknowledge, _) => {}
+        }
+    }
+
+    /// Makes the step that is due.
+    pub fn step(&mut self, now: Nanos) {
+        if self.mode == Mode::Run && self.shared.tripped.load(Ordering::Acquire) {
+            self.leave(now, Mode::Fault(Reason::Watchdog));
+        }
+        for open in &mut self.ports {
+            open.port.from_device.take(&mut open.words);
+        }
+        if self.mode == Mode::Run && self.has_values(now) {
+            match self.read(now) {
+                Some(input) => self.leave(now, Mode::Fault(Reason::Input(input))),
+                None => self.scan(now),
+            }
+        }
+        self.write();
+        self.keep(now);
+        self.shared.beat.store(now.count(), Ordering::Release);
+        let period = self.runner.period();
+        self.due = match self.mode {
+            Mode::Run if self.begun => self.base + self.runner.due(),
+            Mode::Run | Mode::Stop | Mode::Fault(_) => self.due.max(now - period) + period,
+        };
+    }
+
+    /// True as soon as each driver has told of its device, or the time of grace is over.
+    fn has_values(&mut self, now: Nanos) -> bool {
+        let told = |open: &Open| open.words.first().is_some_and(|stamp| *stamp != 0);
+        if self.begun || now >= self.grace || self.ports.iter().all(told) {
+            return true;
+        }
+        // The run begins with its first scan.
+        self.base = now + self.runner.period() - self.runner.due();
+        false
+    }
+
+    /// Hands the values of the devices to the run. Returns an input whose value is bad and may not be.
+    fn read(&mut self, now: Nanos) -> Option<u32> {
+        let mut fatal = None;
+        for Open { port, words, .. } in &self.ports {
+            let word = |at: usize| words.get(at).copied().unwrap_or(0);
+            let fresh = now - Nanos::new(word(from_device::STAMP) as i64) <= port.stale;
+            let up = fresh && word(from_device::UP) != 0;
+            for (k, (index, bad)) in port.inputs.iter().enumerate() {
+                let at = from_device::INPUTS + 2 * k;
+                let good = fresh && Quality::of(word(at + 1)) == Quality::Good;
+                match bad {
+                    _ if good => self.runner.set_input(*index, word(at)),
+                    WhileBad::Hold => {}
+                    WhileBad::Word(substitute) => self.runner.set_input(*index, *substitute),
+                    WhileBad::Fault => fatal = fatal.or(Some(*index)),
+                }
+            }
+            for index in &port.good {
+                self.runner.set_input(*index, u64::from(up));
+            }
+        }
+        fatal
+    }
+
+    fn scan(&mut self, now: Nanos) {
+        self.begun = true;
+        let before = self.runner.missed();
+        self.runner.catch_up(now - self.base);
+        if self.runner.missed() > before {
+            self.missed += self.runner.missed() - before;
+            self.tell(now, What::Missed(self.runner.missed() - before));
+        }
+        if let Err(halt) = self.runner.scan() {
+            self.leave(now, Mode::Fault(Reason::Halt(halt)));
+        }
+    }
+
+    /// Hands the outputs to the drivers: those of the run, or the safe ones.
+    fn write(&mut self) {
+        let running = self.mode == Mode::Run && self.begun;
+        let first = self.runner.program().tables().outputs.start;
+        for Open { port, out, .. } in &mut self.ports {
+            for (word, (index, safe)) in out.iter_mut().zip(&port.outputs) {
+                *word = if running { self.runner.state().word(Addr(first + index)) } else { *safe };
+            }
+            port.to_device.put(out.iter().copied());
+        }
+    }
+
+    fn keep(&mut self, now: Nanos) {
+        if let Some(Keeping { keep, to_disk, due }) = &mut self.keeping
+            && now >= *due
+            && self.begun
+        {
+            to_disk.put(keep.take(&self.runner).iter().copied());
+            *due = now + KEPT_EACH;
+        }
+    }
+
+    /// Ends the scans: outputs are safe from here on.
+    fn leave(&mut self, now: Nanos, mode: Mode) {
+        self.shared.safe.store(true, Ordering::Release);
+        self.enter(now, mode);
+    }
+
+    fn enter(&mut self, now: Nanos, mode: Mode) {
+        self.mode = mode;
+        self.tell(now, What::Mode(mode));
+    }
+
+    fn tell(&mut self, at: Nanos, what: What) {
+        if self.events.push(Event { at, what }).is_err() {
+            self.lost += 1;
+        }
+    }
+}

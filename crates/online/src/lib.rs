@@ -1,0 +1,45 @@
+//! The controller of a machine: charts with real inputs and outputs (decision 28).
+//!
+//! # Where this sits
+//!
+//! ```text
+//!   devices -> Exchange -> scan thread: engine::scan -> Exchange -> devices
+//!                             |     ^
+//!                       records     commands         Slots (retained values) <- a thread of its own
+//! ```
+//!
+//! # Invariants
+//!
+//! The scan thread neither allocates nor locks nor waits for anything but its next instant.
+//! It gives and takes words of fixed number, nothing else.
+#![forbid(unsafe_code)]
+
+mod controller;
+mod device;
+mod disk;
+mod driver;
+mod exchange;
+mod keep;
+mod link;
+mod machine;
+mod modbus;
+mod realtime;
+mod runtime;
+pub mod setup;
+mod slots;
+mod value;
+mod wiring;
+
+pub use controller::{Command, Controller, Event, Mode, Port, Reason, Shared, What};
+pub use device::{Absent, Device, Failed};
+pub use disk::RealDisk;
+pub use driver::{Driver, Happened, Out, Quality, Worked};
+pub use exchange::{Reader, Writer, exchange};
+pub use keep::{Keep, KeepError, KeptFile, Started, open};
+pub use link::{Link, Order};
+pub use machine::{Machine, assemble, runner};
+pub use modbus::Client;
+pub use runtime::{AtDevice, Options, Running, start};
+pub use slots::{Disk, Loaded, Slots, SlotsError};
+pub use value::{Holds, Raw, Scaling};
+pub use wiring::{In, OutAt, WhileBad, Wired, Wiring, wire};

@@ -1,0 +1,217 @@
+//! The io file: which devices a machine has, and which inputs and outputs of the chart are wired to
+//! them (decision 28).
+//!
+//! ```toml
+//! [devices.line1]
+//! kind = "modbus-tcp"
+//! host = "10.0.0.7"
+//!
+//! [inputs]
+//! start = "line1.discrete(0)"
+//! level = { at = "line1.input(4)", as = "f32", bad = 0.0 }
+//!
+//! [outputs]
+//! valve = "line1.coil(2)"
+//! ```
+//!
+//! Reading knows nothing of a chart; `wiring` holds the two together.
+
+mod device;
+mod point;
+mod table;
+
+use g7_model::{FileId, Nanos, Problem, Span};
+use toml::de::{DeTable, DeValue};
+
+pub use device::{Device, Kind, Modbus, Tcp, Timing};
+pub use point::{Area, Encoding, Point, Register};
+pub use table::At;
+
+use table::{Found, Row, Table};
+
+/// The longest file that is read.
+const MOST: usize = 4 << 20;
+
+/// The contents of an io file.
+#[derive(Clone, Debug, Default)]
+pub struct Setup {
+    /// How the controller runs.
+    pub controller: Controller,
+    /// The devices, in the order of the file.
+    pub devices: Vec<Device>,
+    /// The inputs of the chart that are wired.
+    pub inputs: Vec<Channel>,
+    /// The outputs of the chart that are wired.
+    pub outputs: Vec<Channel>,
+}
+
+/// The policy for kept values of another program.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Changed {
+    /// It does not start, and says so.
+    #[default]
+    Refuse,
+    /// It starts cold.
+    Cold,
+    /// It keeps the retained variables that are the same, and starts in the initial situation.
+    Fit,
+}
+
+/// How the controller runs: the table `[controller]`.
+#[derive(Clone, Debug, Default)]
+pub struct Controller {
+    /// The time between two scans; without it that of the chart.
+    pub period: Option<At<Nanos>>,
+    /// The longest time between the ends of two scans; without it ten periods, and 100 ms at least.
+    pub watchdog: Option<At<Nanos>>,
+    /// The file of the retained values, beside the io file.
+    pub retain: Option<At<String>>,
+    /// The policy for kept values of another program.
+    pub changed: Changed,
+    /// True if the controller runs as soon as it is started.
+    pub run: bool,
+    /// The priority of the scan among the threads of the system, 1 to 99; without it that of others.
+    pub priority: Option<At<i64>>,
+}
+
+/// The policy for an input whose value is bad.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub enum Bad {
+    /// It holds the last good value.
+    #[default]
+    Hold,
+    /// It has a value of its own.
+    Value(Literal),
+    /// The controller stops with a fault.
+    Fault,
+}
+
+/// A value of the file.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Literal {
+    /// A BOOL.
+    Bool(bool),
+    /// A number.
+    Number(f64),
+}
+
+/// An input or output of the chart, and where it is wired to.
+#[derive(Clone, Debug)]
+pub struct Channel {
+    /// The variable, by name or by address (`%I0.0`).
+    pub variable: At<String>,
+    /// The name of the device, and the point of it.
+    pub device: At<String>,
+    /// The point, as the file writes it.
+    pub point: Point,
+    /// The place of the point.
+    pub at: Span,
+    /// How registers hold the value; without it as the type of the variable suggests.
+    pub encoding: Option<At<Encoding>>,
+    /// The value of the chart is this times the number of the device …
+    pub scale: Option<At<f64>>,
+    /// … plus this.
+    pub offset: Option<At<f64>>,
+    /// An input while its value is bad.
+    pub bad: At<Bad>,
+}
+
+/// Reads an io file. What is wrong is left out and told.
+pub fn read(text: &str, file: FileId) -> (Setup, Vec<Problem>) {
+    let mut found = Found { file, problems: Vec::new() };
+    if text.len() > MOST {
+        found.wrong(Span { file, start: 0, end: 0 }, format!("an io file has at most {MOST} bytes"));
+        return (Setup::default(), found.problems);
+    }
+    let (table, errors) = DeTable::parse_recoverable(text);
+    for error in errors {
+        let at = found.span(error.span().unwrap_or(0..0));
+        found.wrong(at, error.message().to_owned());
+    }
+    let setup = setup(table.get_ref(), &mut found);
+    (setup, found.problems)
+}
+
+fn setup(table: &DeTable<'_>, found: &mut Found) -> Setup {
+    let top = Span { file: found.file, start: 0, end: 0 };
+    let mut top = Table::new(table, top, "an io file");
+    let controller = top.table(found, "controller").map(|table| controller(table, found));
+    let rows = top.rows(found, "devices");
+    let devices = rows.iter().filter_map(|row| device::read(row, found)).collect();
+    let rows = top.rows(found, "inputs");
+    let inputs = rows.iter().filter_map(|row| channel(row, true, found)).collect();
+    let rows = top.rows(found, "outputs");
+    let outputs = rows.iter().filter_map(|row| channel(row, false, found)).collect();
+    top.end(found);
+    Setup { controller: controller.unwrap_or_default(), devices, inputs, outputs }
+}
+
+fn controller(mut table: Table<'_>, found: &mut Found) -> Controller {
+    let read = Controller {
+        period: table.duration(found, "period", Nanos::MICROSECOND * 100, Nanos::MINUTE),
+        watchdog: table.duration(found, "watchdog", Nanos::MILLISECOND, Nanos::HOUR),
+        retain: table.text(found, "retain"),
+        changed: table
+            .word(
+                found,
+                "changed",
+                &[("refuse", Changed::Refuse), ("cold", Changed::Cold), ("fit", Changed::Fit)],
+            )
+            .map_or(Changed::Refuse, |c| c.value),
+        run: table.word(found, "start", &[("run", true), ("stop", false)]).is_none_or(|run| run.value),
+        priority: table.whole(found, "priority", 1..=99),
+    };
+    table.end(found);
+    read
+}
+
+/// A row of `[inputs]` or `[outputs]`: a point, or a table with more.
+fn channel(row: &Row<'_>, input: bool, found: &mut Found) -> Option<Channel> {
+    let variable = At::new(row.name.to_owned(), row.at);
+    if let Some(text) = row.value.as_str() {
+        let (device, point) = point::read(text, row.value_at, found)?;
+        let bad = At::new(Bad::Hold, row.at);
+        let at = row.value_at;
+        return Some(Channel { variable, device, point, at, encoding: None, scale: None, offset: None, bad });
+    }
+    let Some(table) = row.value.as_table() else {
+        found.wrong(row.value_at, format!("`{}` is wired to a text or a table", row.name)).help =
+            Some(format!("write `{} = \"device.point\"`", row.name));
+        return None;
+    };
+    let mut table = Table::new(table, row.at, format!("the channel {}", row.name));
+    let text = table.needed(found, "at", "device.point");
+    let encoding = table.word(found, "as", Encoding::WORDS);
+    let (scale, offset) = (table.number(found, "scale"), table.number(found, "offset"));
+    let bad = if input { table.value(found, "bad") } else { None };
+    let bad = match bad {
+        None => At::new(Bad::Hold, row.at),
+        Some(bad) => At::new(substitute(bad.value, bad.at, found)?, bad.at),
+    };
+    if let Some(scale) = scale.as_ref().filter(|s| s.value == 0.0) {
+        found.wrong(scale.at, "a scale is not 0");
+        return None;
+    }
+    table.end(found);
+    let text = text?;
+    let (device, point) = point::read(&text.value, text.at, found)?;
+    Some(Channel { variable, device, point, at: text.at, encoding, scale, offset, bad })
+}
+
+/// Reads the policy for an input whose value is bad.
+fn substitute(value: &DeValue<'_>, at: Span, found: &mut Found) -> Option<Bad> {
+    if let Some(on) = value.as_bool() {
+        return Some(Bad::Value(Literal::Bool(on)));
+    }
+    if let Some(number) = table::number(value) {
+        return Some(Bad::Value(Literal::Number(number)));
+    }
+    match value.as_str() {
+        Some("hold") => Some(Bad::Hold),
+        Some("fault") => Some(Bad::Fault),
+        _ => {
+            found.wrong(at, "`bad` is \"hold\", \"fault\", or the value that the input takes");
+            None
+        }
+    }
+}

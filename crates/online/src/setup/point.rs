@@ -1,0 +1,176 @@
+//! Points of devices as the io file writes them: `line1.coil(2)`.
+
+use g7_model::Span;
+
+use super::table::{At, Found};
+
+/// A point of a device.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Point {
+    /// A bit or register of Modbus.
+    Modbus(Register),
+    /// True while the device answers.
+    Good,
+}
+
+/// A bit or register of Modbus (Modbus application protocol 1.1b3, 4.3); addresses count from 0.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Register {
+    /// The table that it is in.
+    pub area: Area,
+    /// The address of the bit, or of the first register.
+    pub address: u16,
+    /// One bit of a register, 0 to 15.
+    pub bit: Option<u8>,
+}
+
+/// The four tables of Modbus.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Area {
+    /// Bits that can be written.
+    Coil,
+    /// Bits that can only be read.
+    Discrete,
+    /// Registers that can only be read.
+    Input,
+    /// Registers that can be written.
+    Holding,
+}
+
+impl Area {
+    /// The words of the file.
+    pub const WORDS: [(&'static str, Area); 4] = [
+        ("coil", Area::Coil),
+        ("discrete", Area::Discrete),
+        ("input", Area::Input),
+        ("holding", Area::Holding),
+    ];
+
+    /// The word of the file.
+    pub fn word(self) -> &'static str {
+        match self {
+            Area::Coil => "coil",
+            Area::Discrete => "discrete",
+            Area::Input => "input",
+            Area::Holding => "holding",
+        }
+    }
+
+    /// True if it holds bits.
+    pub fn is_bits(self) -> bool {
+        matches!(self, Area::Coil | Area::Discrete)
+    }
+
+    /// True if it can be written.
+    pub fn is_writable(self) -> bool {
+        matches!(self, Area::Coil | Area::Holding)
+    }
+}
+
+/// How registers hold a number.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Encoding {
+    /// An unsigned number of so many registers.
+    Unsigned(u8),
+    /// A signed number of so many registers, two's complement.
+    Signed(u8),
+    /// IEEE 754, single precision, in two registers.
+    F32,
+    /// IEEE 754, double precision, in four registers.
+    F64,
+}
+
+impl Encoding {
+    /// The words of the file.
+    pub const WORDS: &'static [(&'static str, Encoding)] = &[
+        ("u16", Encoding::Unsigned(1)),
+        ("i16", Encoding::Signed(1)),
+        ("u32", Encoding::Unsigned(2)),
+        ("i32", Encoding::Signed(2)),
+        ("u64", Encoding::Unsigned(4)),
+        ("i64", Encoding::Signed(4)),
+        ("f32", Encoding::F32),
+        ("f64", Encoding::F64),
+    ];
+
+    /// The number of registers.
+    pub fn registers(self) -> u16 {
+        match self {
+            Encoding::Unsigned(n) | Encoding::Signed(n) => u16::from(n),
+            Encoding::F32 => 2,
+            Encoding::F64 => 4,
+        }
+    }
+}
+
+impl std::fmt::Display for Register {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self.bit {
+            None => write!(f, "{}({})", self.area.word(), self.address),
+            Some(bit) => write!(f, "{}({}.{bit})", self.area.word(), self.address),
+        }
+    }
+}
+
+impl std::fmt::Display for Point {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Point::Modbus(register) => register.fmt(f),
+            Point::Good => f.write_str("good()"),
+        }
+    }
+}
+
+/// Reads `device.point(arguments)`.
+pub(super) fn read(text: &str, at: Span, found: &mut Found) -> Option<(At<String>, Point)> {
+    match parts(text).map_or(Err(None), |(device, word, argument)| {
+        point(word, argument).map(|point| (device, point)).map_err(Some)
+    }) {
+        Ok((device, point)) => Some((At::new(device.to_owned(), at), point)),
+        Err(why) => {
+            let what = why.unwrap_or_else(|| format!("\"{text}\" is no point of a device"));
+            found.wrong(at, what).help = Some(
+                "write the device and its point: \"line1.coil(2)\", \"line1.holding(4)\", \
+                 \"line1.holding(4.3)\" for one bit, \"line1.good()\""
+                    .to_owned(),
+            );
+            None
+        }
+    }
+}
+
+fn parts(text: &str) -> Option<(&str, &str, &str)> {
+    let (head, argument) = text.trim().strip_suffix(')')?.split_once('(')?;
+    let (device, word) = head.rsplit_once('.')?;
+    Some((device.trim(), word.trim(), argument.trim()))
+}
+
+fn point(word: &str, argument: &str) -> Result<Point, String> {
+    if word == "good" {
+        return if argument.is_empty() {
+            Ok(Point::Good)
+        } else {
+            Err("`good()` has no argument".to_owned())
+        };
+    }
+    let Some((_, area)) = Area::WORDS.iter().find(|(name, _)| *name == word) else {
+        return Err(format!("no point is called `{word}`"));
+    };
+    let (address, bit) = match argument.split_once('.') {
+        Some((address, bit)) => (address, Some(bit)),
+        None => (argument, None),
+    };
+    let address = digits(address, 65_535).ok_or("an address is a whole number from 0 to 65535")?;
+    let bit = match bit {
+        Some(_) if area.is_bits() => return Err(format!("{word}({address}) is one bit already")),
+        Some(bit) => Some(digits(bit, 15).ok_or("a bit of a register is 0 to 15")? as u8),
+        None => None,
+    };
+    Ok(Point::Modbus(Register { area: *area, address, bit }))
+}
+
+/// A number of plain digits.
+fn digits(text: &str, most: u16) -> Option<u16> {
+    let plain = !text.is_empty() && text.bytes().all(|b| b.is_ascii_digit());
+    text.parse().ok().filter(|n| plain && *n <= most)
+}

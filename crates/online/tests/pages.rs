@@ -1,0 +1,148 @@
+//! The problem pages of io files hold what they say, and so does the book.
+#![allow(clippy::disallowed_methods, reason = "the pages are read")]
+
+use std::path::PathBuf;
+
+use g7_model::{FileId, codes};
+use g7_online::{setup, wire};
+use g7_rig::{Options, Source, build};
+
+const CHART: &str = "\
+profile iec60848
+input start : BOOL at %I0.3
+input line1_ok : BOOL
+input level : REAL
+input weight : DINT
+output valve : BOOL
+output speed : INT
+chart Main {
+  initial step 1
+  step 2 { N valve  P1 speed := 3 }
+  1 -> 2 when start and level > 2.0 and weight > 3
+  2 -> 1 when not start or not line1_ok
+}
+";
+
+/// The ids of the problems of an io file for this chart.
+fn reported(io: &str) -> Vec<&'static str> {
+    let source = Source::new("chart.g7", CHART.as_bytes().to_vec(), 0);
+    let (bench, problems) = build(&source, &Options::default()).expect("no plant is asked for");
+    let bench = bench.unwrap_or_else(|| panic!("{problems:?}"));
+    let (setup, mut problems) = setup::read(io, FileId(1));
+    problems.extend(wire(&bench, &setup).1);
+    for problem in &problems {
+        assert!(problem.at.end as usize <= io.len(), "a place: {problem:?}");
+    }
+    problems.iter().map(|p| p.code.id).collect()
+}
+
+fn book(name: &str) -> String {
+    let file: PathBuf =
+        [env!("CARGO_MANIFEST_DIR"), "..", "..", "docs", "book", "src", name].iter().collect();
+    std::fs::read_to_string(file).expect(name)
+}
+
+/// The TOML blocks of a page; true for those that are wrong.
+fn blocks(page: &str) -> Vec<(bool, &str)> {
+    let mut blocks = Vec::new();
+    for piece in page.split("\n```toml").skip(1) {
+        let (fence, rest) = piece.split_once('\n').expect("a line behind the fence");
+        blocks.push((fence == ",wrong", rest.split("\n```").next().expect("a block")));
+    }
+    blocks
+}
+
+#[test]
+fn each_code_of_io_files_has_a_page_that_holds() {
+    let of_io = codes::ALL.iter().filter(|c| c.id.starts_with("G07"));
+    for code in of_io {
+        let page = book(&format!("problems/{}.md", code.id));
+        assert!(page.starts_with(&format!("# {}: {}\n", code.id, code.title)), "{}: heading", code.id);
+        assert!(page.contains(code.source), "{}: source", code.id);
+        let blocks = blocks(&page);
+        assert!(blocks.iter().any(|(wrong, _)| *wrong), "{}: no example", code.id);
+        for (wrong, toml) in blocks {
+            let reported = reported(toml);
+            if wrong {
+                assert!(
+                    reported.iter().all(|id| *id == code.id) && !reported.is_empty(),
+                    "{toml}\n{reported:?}"
+                );
+            } else {
+                assert!(reported.is_empty(), "{toml}\n{reported:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn the_io_file_of_the_book_has_no_problem() {
+    let page = book("online/io-file.md");
+    let first = blocks(&page)[0].1;
+    // The page names one input by its address and by its name; here each is wired once.
+    assert_eq!(reported(&first.replace("\nstart = \"line1.discrete(0)\"", "")), [""; 0]);
+}
+
+#[test]
+fn every_mistake_has_its_code() {
+    let devices = "[devices.a]\nkind = 'modbus-tcp'\nhost = 'x'\n";
+    let cases: &[(&str, &[&str])] = &[
+        ("[inputs", &["G0701"]),
+        ("inputs = 3", &["G0701"]),
+        ("[surprise]", &["G0701"]),
+        ("[devices.a]\nkind = 'profibus'", &["G0701"]),
+        ("[devices.a]\nkind = 'modbus-tcp'", &["G0701"]),
+        ("[devices.a]\nkind = 'modbus-tcp'\nhost = 'x'\nport = 0", &["G0701"]),
+        ("[devices.a]\nkind = 'modbus-tcp'\nhost = 'x'\npoll = '0s'", &["G0701"]),
+        ("[controller]\nperiod = 10", &["G0701"]),
+        ("[controller]\npriority = 100", &["G0701"]),
+        ("[controller]\nchanged = 'maybe'", &["G0701"]),
+        ("[inputs]\nstart = 'a'", &["G0701"]),
+        ("[inputs]\nstart = 'a.coil(65536)'", &["G0701"]),
+        ("[inputs]\nstart = 'a.coil(1.2)'", &["G0701"]),
+        ("[inputs]\nstart = 'a.holding(1.16)'", &["G0701"]),
+        ("[inputs]\nstart = 'a.good(1)'", &["G0701"]),
+        ("[inputs]\nstart = { bad = true }", &["G0701"]),
+        ("[inputs]\nstart = { at = 'a.coil(1)', bad = 'maybe' }", &["G0701"]),
+        ("[outputs]\nvalve = { at = 'a.coil(1)', bad = true }", &["G0701"]),
+        ("[inputs]\nlevel = { at = 'a.input(1)', scale = 0 }", &["G0701"]),
+        ("[inputs]\nstart = 'b.coil(1)'", &["G0702"]),
+        ("[inputs]\nvalve = 'a.coil(1)'", &["G0702"]),
+        ("[outputs]\nstart = 'a.coil(1)'", &["G0702"]),
+        ("[inputs]\n'%I0.9' = 'a.coil(1)'", &["G0702"]),
+        ("[outputs]\nvalve = 'a.good()'", &["G0703"]),
+        ("[inputs]\nlevel = 'a.good()'", &["G0703"]),
+        ("[inputs]\nlevel = 'a.holding(1.2)'", &["G0703"]),
+        ("[inputs]\nstart = 'a.holding(1)'", &["G0703"]),
+        ("[inputs]\nlevel = 'a.input(65535)'", &["G0703"]),
+        ("[outputs]\nspeed = 'a.input(1)'", &["G0703"]),
+        ("[inputs]\nstart = { at = 'a.coil(1)', scale = 2.0 }", &["G0703"]),
+        ("[inputs]\nstart = { at = 'a.coil(1)', bad = 3 }", &["G0703"]),
+        ("[inputs]\nweight = { at = 'a.input(1)', bad = 2.5 }", &["G0703"]),
+        ("[inputs]\nstart = 'a.coil(1)'\nSTART = 'a.coil(2)'", &["G0704"]),
+        ("[inputs]\nstart = 'a.coil(1)'\n'%I0.3' = 'a.coil(2)'", &["G0704"]),
+        ("[outputs]\nspeed = 'a.holding(3)'\nvalve = 'a.holding(3.15)'", &["G0704"]),
+        ("[outputs]\nvalve = 'a.holding(3.0)'\nspeed = { at = 'a.holding(2)', as = 'i32' }", &["G0704"]),
+    ];
+    for (io, expected) in cases {
+        let io = if io.contains("[devices") || io.starts_with("inputs") {
+            (*io).to_owned()
+        } else {
+            format!("{devices}{io}")
+        };
+        assert_eq!(reported(&io), *expected, "{io}");
+    }
+}
+
+#[test]
+fn no_bytes_make_it_panic() {
+    let whole =
+        "[controller]\nperiod='1s'\n[devices.a]\nkind='modbus-tcp'\nhost='x'\n[inputs]\nstart='a.coil(1)'\n";
+    for end in 0..whole.len() {
+        reported(&whole[..end]);
+        reported(&format!("{}\u{0}{}", &whole[..end], &whole[end..]));
+    }
+    reported(&"[".repeat(10_000));
+    reported(&format!("a = {}", "[".repeat(10_000)));
+    reported(&"é = 'ü'\n".repeat(3));
+}

@@ -1,0 +1,216 @@
+//! Retained values on a disk that loses power, is damaged or is full.
+
+use std::cell::RefCell;
+use std::io;
+use std::rc::Rc;
+
+use g7_online::{Disk, Slots, SlotsError};
+
+/// A small generator (splitmix64).
+struct Chance(u64);
+
+impl Chance {
+    fn below(&mut self, n: u64) -> u64 {
+        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+        (z ^ (z >> 31)) % n
+    }
+}
+
+/// A disk with a cache that a loss of power empties: of the writes since the last sync some sectors
+/// arrive and others do not, in any order.
+#[derive(Default)]
+struct Plates {
+    safe: Vec<u8>,
+    cached: Vec<(usize, Vec<u8>)>,
+    /// Calls until power fails; `None` while it does not.
+    left: Option<u64>,
+    /// No byte can be added to the file.
+    full: bool,
+}
+
+const SECTOR: usize = 512;
+
+impl Plates {
+    fn put(&mut self, at: usize, bytes: &[u8]) {
+        self.safe[at..at + bytes.len()].copy_from_slice(bytes);
+    }
+
+    fn fail(&mut self, chance: &mut Chance) {
+        for (at, bytes) in std::mem::take(&mut self.cached) {
+            for (k, sector) in bytes.chunks(SECTOR).enumerate() {
+                match chance.below(3) {
+                    0 => {}
+                    // A torn sector.
+                    1 => self.put(at + k * SECTOR, &sector[..chance.below(sector.len() as u64 + 1) as usize]),
+                    _ => self.put(at + k * SECTOR, sector),
+                }
+            }
+        }
+        self.left = None;
+    }
+
+    fn step(&mut self) -> io::Result<()> {
+        match &mut self.left {
+            Some(0) => Err(io::Error::other("no power")),
+            Some(n) => {
+                *n -= 1;
+                Ok(())
+            }
+            None => Ok(()),
+        }
+    }
+}
+
+#[derive(Clone, Default)]
+struct Simulated(Rc<RefCell<Plates>>);
+
+impl Disk for Simulated {
+    fn read(&mut self) -> io::Result<Vec<u8>> {
+        let plates = self.0.borrow();
+        assert!(plates.cached.is_empty(), "read after a start only");
+        Ok(plates.safe.clone())
+    }
+
+    fn create(&mut self, bytes: &[u8]) -> io::Result<()> {
+        let mut plates = self.0.borrow_mut();
+        if plates.full {
+            return Err(io::ErrorKind::StorageFull.into());
+        }
+        plates.safe = bytes.to_vec();
+        Ok(())
+    }
+
+    fn write(&mut self, at: u64, bytes: &[u8]) -> io::Result<()> {
+        let mut plates = self.0.borrow_mut();
+        assert!(at as usize + bytes.len() <= plates.safe.len(), "the file does not grow");
+        plates.cached.push((at as usize, bytes.to_vec()));
+        plates.step()
+    }
+
+    fn sync(&mut self) -> io::Result<()> {
+        let mut plates = self.0.borrow_mut();
+        plates.step()?;
+        for (at, bytes) in std::mem::take(&mut plates.cached) {
+            plates.put(at, &bytes);
+        }
+        Ok(())
+    }
+}
+
+const LAYOUT: u64 = 77;
+
+#[test]
+fn after_a_loss_of_power_the_last_values_or_the_next_are_there() {
+    let mut chance = Chance(1);
+    let (mut lost, mut newer, mut torn) = (0, 0, 0);
+    for seed in 0..10_000u64 {
+        let words = [0, 1, 5, 600, 1500][(seed % 5) as usize];
+        let disk = Simulated::default();
+        let (mut slots, none) = Slots::open(disk.clone(), LAYOUT, words).expect("a new file");
+        assert_eq!(none, None);
+        let mut acknowledged = 0;
+        for _ in 0..1 + chance.below(4) {
+            disk.0.borrow_mut().left = Some(chance.below(20));
+            let mut next = acknowledged + 1;
+            while slots.save(&vec![next; words]).is_ok() {
+                (acknowledged, next) = (next, next + 1);
+            }
+            disk.0.borrow_mut().fail(&mut chance);
+            let (opened, loaded) =
+                Slots::open(disk.clone(), LAYOUT, words).unwrap_or_else(|e| panic!("seed {seed}: {e}"));
+            let Some(loaded) = loaded else {
+                assert_eq!(acknowledged, 0, "seed {seed}");
+                slots = opened;
+                lost += 1;
+                continue;
+            };
+            let found = loaded.words.first().copied().unwrap_or(loaded.sequence);
+            torn += u64::from(loaded.other_damaged);
+            assert_eq!(loaded.words, vec![found; words], "seed {seed}: mixed");
+            assert!(found == acknowledged || found == acknowledged + 1, "seed {seed}: {found}");
+            newer += u64::from(found == acknowledged + 1);
+            acknowledged = found;
+            slots = opened;
+        }
+    }
+    let counts = format!("{lost} first saves lost, {newer} unacknowledged saves kept, {torn} saves torn");
+    assert!(lost > 100 && newer > 100 && torn > 100, "{counts}");
+}
+
+fn saved(times: u64) -> Vec<u8> {
+    let disk = Simulated::default();
+    let (mut slots, _) = Slots::open(disk.clone(), LAYOUT, 3).expect("a new file");
+    (1..=times).for_each(|k| slots.save(&[k, 10 * k, 100 * k]).expect("the disk works"));
+    disk.0.take().safe
+}
+
+fn load(bytes: &[u8]) -> Result<Option<g7_online::Loaded>, SlotsError> {
+    let disk = Simulated::default();
+    disk.0.borrow_mut().safe = bytes.to_vec();
+    Slots::open(disk, LAYOUT, 3).map(|(_, loaded)| loaded)
+}
+
+#[test]
+fn every_flipped_bit_and_every_length_is_noticed() {
+    let good = saved(2);
+    assert_eq!(load(&good).expect("whole").expect("saved").words, [2, 20, 200]);
+    let (half, used) = (good.len() / 2, 32 + 3 * 8 + 4);
+    let mut newest_hit = 0;
+    for slot in [0, half] {
+        for bit in 0..8 * used {
+            let mut bad = good.clone();
+            bad[slot + bit / 8] ^= 1 << (bit % 8);
+            let loaded = load(&bad).expect("the other slot is whole").expect("saved");
+            // The second save is in the second slot.
+            let kept = if slot == half { [1, 10, 100] } else { [2, 20, 200] };
+            assert_eq!(loaded.words, kept, "bit {bit} of the slot at {slot}");
+            assert!(loaded.other_damaged, "bit {bit} of the slot at {slot}");
+            newest_hit += u64::from(slot == half);
+        }
+    }
+    assert_eq!(newest_hit, 8 * used as u64);
+    for length in 1..good.len() {
+        match load(&good[..length]) {
+            Ok(Some(loaded)) => assert!([[1, 10, 100], [2, 20, 200]].contains(&[
+                loaded.words[0],
+                loaded.words[1],
+                loaded.words[2]
+            ])),
+            Ok(None) => panic!("{length} bytes count as a new file"),
+            Err(_) => assert!(length < half + used),
+        }
+    }
+    let mut both = good.clone();
+    (both[20], both[half + 20]) = (both[20] ^ 1, both[half + 20] ^ 1);
+    assert!(matches!(load(&both), Err(SlotsError::Damaged)));
+}
+
+#[test]
+fn a_file_of_other_variables_is_refused_and_left_as_it_is() {
+    let disk = Simulated::default();
+    disk.0.borrow_mut().safe = saved(2);
+    let before = disk.0.borrow().safe.clone();
+    let other = |layout, words| match Slots::open(disk.clone(), layout, words) {
+        Err(SlotsError::Layout(loaded)) => (loaded.layout, loaded.words.len()),
+        other => panic!("{:?}", other.map(|(_, loaded)| loaded)),
+    };
+    assert_eq!(other(LAYOUT + 1, 3), (LAYOUT, 3));
+    assert_eq!(other(LAYOUT, 4), (LAYOUT, 3));
+    assert_eq!(disk.0.borrow().safe, before);
+}
+
+#[test]
+fn a_full_disk_is_noticed_at_the_start_and_stops_no_save() {
+    let full = Simulated::default();
+    full.0.borrow_mut().full = true;
+    assert!(
+        matches!(Slots::open(full, LAYOUT, 3), Err(SlotsError::Io(e)) if e.kind() == io::ErrorKind::StorageFull)
+    );
+    let disk = Simulated::default();
+    let (mut slots, _) = Slots::open(disk.clone(), LAYOUT, 3).expect("a new file");
+    disk.0.borrow_mut().full = true;
+    slots.save(&[1, 2, 3]).expect("the room is there already");
+}
