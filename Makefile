@@ -46,7 +46,7 @@ test: tally-anew lint page-test $(PYTHON)/bin/pymodbus.simulator
 $(PYTHON)/bin/pymodbus.simulator:
 	@{ { python3 -c 'import ensurepip' 2>/dev/null || { $(SUDO) apt-get update -qq && \
 			$(SUDO) apt-get install -qq --no-install-recommends python3 python3-venv; }; } && \
-		python3 -m venv $(PYTHON) && $(PYTHON)/bin/pip install --quiet 'pymodbus==3.16.*'; } || \
+		python3 -m venv $(PYTHON) && $(PYTHON)/bin/pip install --quiet 'pymodbus[serial]==3.16.*'; } || \
 		echo "pymodbus cannot be installed: its tests are skipped"
 
 tally-anew:

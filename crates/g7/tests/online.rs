@@ -117,17 +117,27 @@ impl Drop for Running {
 /// A slave of pymodbus.
 struct Slave {
     running: Running,
-    port: u16,
+    /// Its port, or its serial line.
+    place: String,
 }
 
 impl Slave {
-    /// At a port, or at a free one for 0; `None` without pymodbus.
-    fn start(port: u16) -> Option<Slave> {
-        let mut command = Command::new(g7_peers::python("pymodbus")?);
-        command.arg(g7_peers::script("modbus_slave.py")).arg(port.to_string());
+    /// With the arguments of the script; `None` without a module of Python.
+    fn begin(module: &str, arguments: &[&str]) -> Option<Slave> {
+        let mut command = Command::new(g7_peers::python(module)?);
+        command.arg(g7_peers::script("modbus_slave.py")).args(arguments);
         let mut running = Running::start(command, |child| Box::new(child.stdout.take().expect("piped")));
-        let port = running.line().parse().expect("its port");
-        Some(Slave { running, port })
+        let place = running.line();
+        Some(Slave { running, place })
+    }
+
+    /// At a port, or at a free one for 0.
+    fn start(port: u16) -> Option<Slave> {
+        Slave::begin("pymodbus", &[&port.to_string()])
+    }
+
+    fn port(&self) -> u16 {
+        self.place.parse().expect("a port")
     }
 
     fn set(&mut self, what: &str) {
@@ -158,7 +168,7 @@ const SAFE: [(&str, &str); 3] = [("coil 2 1", "0"), ("holding 9 1", "16"), ("hol
 #[test]
 fn a_slave_of_pymodbus_is_driven_lost_and_found() {
     let Some(mut slave) = Slave::start(0) else { return };
-    let folder = folder(slave.port);
+    let folder = folder(slave.port());
     let mut g7 = Running::g7(&folder, &[]);
     g7.until("line1 answers");
     // IEEE 754: 2.5 is 40200000. The lamp is lit, and its wire inverted.
@@ -176,7 +186,7 @@ fn a_slave_of_pymodbus_is_driven_lost_and_found() {
     g7.say("run");
     slave.becomes("coil 2 1", "1");
 
-    let port = slave.port;
+    let port = slave.port();
     drop(slave);
     g7.until("line1 does not answer");
     let mut slave = Slave::start(port).expect("it was there before");
@@ -199,12 +209,43 @@ fn a_slave_of_pymodbus_is_driven_lost_and_found() {
 }
 
 #[test]
+fn two_slaves_share_a_serial_line() {
+    // pymodbus takes `serial` for serial lines.
+    let Some(mut slave) = Slave::begin("serial, pymodbus", &["serial", "1", "7"]) else { return };
+    let folder = Folder::with(CHART);
+    let line = &slave.place;
+    let device = |name: &str, unit: u8| {
+        format!(
+            "[devices.{name}]\nkind = 'modbus-rtu'\nport = '{line}'\nparity = 'none'\nunit = {unit}\n\
+             words = 'low-first'\ntimeout = '300ms'\nretry = '300ms'\n"
+        )
+    };
+    let channels = "[inputs]\ngo = 'a.coil(3)'\nline1_ok = 'b.good()'\nlevel = 'b.input(4)'\n\
+        [outputs]\nvalve = 'b.coil(2)'\nspeed = { at = 'a.holding(7)', as = 'i32' }\n";
+    // Nobody has unit 9: it costs the others time, not values.
+    let devices = device("a", 1) + &device("b", 7) + &device("c", 9);
+    folder.write("chart.io.toml", format!("{devices}{channels}lamp = 'c.coil(1)'\n"));
+    let mut g7 = Running::g7(&folder, &[]);
+    let lines = [g7.until("answer"), g7.until("answer"), g7.until("answer")].join("\n");
+    assert!(lines.contains("a answers") && lines.contains("b answers"), "{lines}");
+    assert!(lines.contains("c does not answer"), "{lines}");
+    slave.set("1 coil 3 1");
+    slave.becomes("7 coil 2 1", "1");
+    // -1 while safe, then 1: the low word first.
+    slave.becomes("1 holding 7 2", "1 0");
+    g7.say("stop");
+    slave.becomes("1 holding 7 2", "65535 65535");
+    slave.becomes("7 coil 2 1", "0");
+    assert_eq!(g7.quit(), 0);
+}
+
+#[test]
 fn addresses_that_a_slave_does_not_have_are_bad_alone() {
     let Some(mut slave) = Slave::start(0) else { return };
     let folder = Folder::with(CHART);
     folder.write(
         "chart.io.toml",
-        io(slave.port).replace("input(4)", "input(1000)").replace("holding(7)", "holding(1000)"),
+        io(slave.port()).replace("input(4)", "input(1000)").replace("holding(7)", "holding(1000)"),
     );
     let mut g7 = Running::g7(&folder, &[]);
     // An output that is refused, and an input without a value, in either order.
@@ -262,6 +303,17 @@ fn values_of_another_program_are_refused_unless_the_file_says_otherwise() {
 #[test]
 fn mistakes_have_a_place_and_nothing_runs() {
     let folder = Folder::with(CHART);
+    // The least file: it runs.
+    folder.write("least.toml", "");
+    let least = folder.g7(&["run", "--online", "--io", "least.toml", "--for", "100ms"]);
+    assert!(
+        least.is(0).err.contains("running") && least.err.contains("no device has go, level"),
+        "{}",
+        least.err
+    );
+    folder.write("stop.toml", "[controller]\nstart = 'stop'\n");
+    let stop = folder.g7(&["run", "--online", "--io", "stop.toml", "--for", "100ms"]);
+    assert!(stop.is(0).err.contains("0 scans"), "{}", stop.err);
     folder.g7(&["run", "--online"]).is_refused(&["chart.io.toml is missing", "--io"]);
     folder.write("chart.io.toml", io(1).replace("coil(2)", "discrete(2)").replace("timeout", "timout"));
     let ran = folder.g7(&["run", "--online"]);

@@ -38,7 +38,7 @@ pub use exchange::{Reader, Writer, exchange};
 pub use keep::{Keep, KeepError, KeptFile, Started, open};
 pub use link::{Link, Order};
 pub use machine::{Machine, assemble, runner};
-pub use modbus::Client;
+pub use modbus::{Client, Clients};
 pub use runtime::{AtDevice, Options, Running, start};
 pub use slots::{Disk, Loaded, Slots, SlotsError};
 pub use value::{Holds, Raw, Scaling};

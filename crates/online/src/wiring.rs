@@ -265,6 +265,9 @@ impl<'a> Wirer<'a> {
         register: Register,
         encoding: Option<Encoding>,
     ) -> bool {
+        // Two names of one unit are one device.
+        let kind = |k: usize| self.wiring.devices.get(k).map(|d| &d.device.kind);
+        let device = (0..device).find(|k| kind(*k) == kind(device)).unwrap_or(device);
         let count = encoding.map_or(1, Encoding::registers);
         let places: Vec<Register> = (0..count)
             .map(|k| Register { address: register.address.saturating_add(k), ..register })

@@ -94,6 +94,17 @@ fn every_mistake_has_its_code() {
         ("[devices.a]\nkind = 'modbus-tcp'", &["G0701"]),
         ("[devices.a]\nkind = 'modbus-tcp'\nhost = 'x'\nport = 0", &["G0701"]),
         ("[devices.a]\nkind = 'modbus-tcp'\nhost = 'x'\npoll = '0s'", &["G0701"]),
+        ("[devices.a]\nkind = 'modbus-rtu'\nport = '/dev/x'\nparity = 'mark'", &["G0701"]),
+        (
+            "[devices.a]\nkind = 'modbus-rtu'\nport = '/dev/x'\n[devices.b]\nkind = 'modbus-rtu'\nport = '/dev/x'\n\
+             unit = 2\nbaud = 9600",
+            &["G0701"],
+        ),
+        (
+            "[devices.a]\nkind = 'modbus-tcp'\nhost = 'x'\n[devices.b]\nkind = 'modbus-tcp'\nhost = 'x'\n\
+             [outputs]\nvalve = 'a.holding(2.0)'\nspeed = 'b.holding(2)'",
+            &["G0704"],
+        ),
         ("[controller]\nperiod = 10", &["G0701"]),
         ("[controller]\npriority = 100", &["G0701"]),
         ("[controller]\nchanged = 'maybe'", &["G0701"]),

@@ -13,7 +13,7 @@ use g7_host::{Clock, Start, WallClock};
 use g7_model::{FileId, Nanos, Problem, Severity};
 use g7_online::setup::{self, Setup};
 use g7_online::{
-    AtDevice, Client, Command, Controller, Device, Happened, KeepError, Mode, Options, RealDisk, Reason,
+    AtDevice, Clients, Command, Controller, Device, Happened, KeepError, Mode, Options, RealDisk, Reason,
     Running, Slots, Started, What, Wired, Wiring,
 };
 use g7_rig::{Bench, Role};
@@ -48,7 +48,8 @@ pub(super) fn run(path: &Path, source: &Source, args: &Run) -> Result<Verdict, F
         talk!("{}note:{:#} no device has {}", style::WARN, style::WARN, wiring.unwired.join(", "));
     }
     let (runner, slots) = kept(&plan, g7_online::runner(bench, wiring, args.seed))?;
-    let device = |wired: &Wired| Client::new(wired).map(|client| Box::new(client) as Box<dyn Device>);
+    let mut clients = Clients::default();
+    let device = |wired: &Wired| clients.client(wired).map(|client| Box::new(client) as Box<dyn Device>);
     let mut machine = g7_online::assemble(runner, wiring, device).map_err(refused)?;
     let kept = slots.map(|slots| machine.keep(bench, slots));
     let watchdog = setup.controller.watchdog.as_ref().map(|w| w.value);

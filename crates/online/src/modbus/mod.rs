@@ -1,59 +1,89 @@
-//! A device of Modbus TCP, which G7 is the client of.
+//! A device of Modbus TCP or Modbus RTU, which G7 is the client of.
 //!
 //! The library is asynchronous; each device has a thread of its own, in which its requests are waited
 //! for one after the other.
 
 mod blocks;
+mod rtu;
 
 use std::net::ToSocketAddrs as _;
+use std::sync::Arc;
 use std::time::Duration;
 
 use g7_model::Nanos;
 use tokio::runtime::{Builder, Runtime};
-use voltage_modbus::{ModbusClient, ModbusError, ModbusTcpClient};
+use voltage_modbus::{GenericModbusClient, ModbusClient, ModbusError, ModbusTcpClient};
 
 use crate::device::{Absent, Device, Failed};
-use crate::setup::{Area, Kind, Modbus, Tcp};
+use crate::setup::{Area, Kind, Modbus, Serial, Tcp};
 use crate::value::Raw;
 use crate::wiring::Wired;
 
 use blocks::{Block, Place, decode, encode, reads, writes};
+use rtu::{Line, Slave};
+
+/// The clients of a machine. Those on one serial line share it.
+#[derive(Default)]
+pub struct Clients {
+    lines: Vec<(String, Arc<Line>)>,
+}
+
+impl Clients {
+    /// A client of a device that is wired.
+    ///
+    /// # Errors
+    ///
+    /// The system has no resources for it.
+    pub fn client(&mut self, wired: &Wired) -> std::io::Result<Client> {
+        let timeout = duration(wired.device.timing.timeout);
+        let (way, modbus) = match wired.device.kind.clone() {
+            Kind::ModbusTcp(tcp, modbus) => (Way::Tcp(tcp, None), modbus),
+            Kind::ModbusRtu(serial, modbus) => {
+                let slave = Slave { line: self.line(serial), timeout };
+                (Way::Rtu(GenericModbusClient::new(slave)), modbus)
+            }
+        };
+        let inputs: Vec<Place> =
+            wired.inputs.iter().map(|i| Place { register: i.register, encoding: i.encoding }).collect();
+        let outputs =
+            wired.outputs.iter().map(|o| Place { register: o.register, encoding: o.encoding }).collect();
+        Ok(Client {
+            way,
+            modbus,
+            timeout,
+            reads: reads(&inputs),
+            inputs,
+            outputs,
+            runtime: Builder::new_current_thread().enable_all().build()?,
+        })
+    }
+
+    fn line(&mut self, serial: Serial) -> Arc<Line> {
+        if let Some((_, line)) = self.lines.iter().find(|(port, _)| *port == serial.port) {
+            return Arc::clone(line);
+        }
+        let port = serial.port.clone();
+        let line = Arc::new(Line::new(serial));
+        self.lines.push((port, Arc::clone(&line)));
+        line
+    }
+}
 
 /// A client of one unit.
 pub struct Client {
-    tcp: Tcp,
+    way: Way,
     modbus: Modbus,
     timeout: Duration,
     inputs: Vec<Place>,
     outputs: Vec<Place>,
     reads: Vec<Block>,
     runtime: Runtime,
-    line: Option<ModbusTcpClient>,
 }
 
-impl Client {
-    /// A client of a device that is wired.
-    ///
-    /// # Errors
-    ///
-    /// The system has no resources for it.
-    pub fn new(wired: &Wired) -> std::io::Result<Client> {
-        let inputs: Vec<Place> =
-            wired.inputs.iter().map(|i| Place { register: i.register, encoding: i.encoding }).collect();
-        let outputs =
-            wired.outputs.iter().map(|o| Place { register: o.register, encoding: o.encoding }).collect();
-        let Kind::ModbusTcp(tcp, modbus) = wired.device.kind.clone();
-        Ok(Client {
-            tcp,
-            modbus,
-            timeout: duration(wired.device.timing.timeout),
-            reads: reads(&inputs),
-            inputs,
-            outputs,
-            runtime: Builder::new_current_thread().enable_all().build()?,
-            line: None,
-        })
-    }
+/// The way to a unit.
+enum Way {
+    Tcp(Tcp, Option<ModbusTcpClient>),
+    Rtu(GenericModbusClient<Slave>),
 }
 
 fn duration(time: Nanos) -> Duration {
@@ -79,7 +109,10 @@ async fn reach(tcp: &Tcp, timeout: Duration) -> Result<ModbusTcpClient, Failed> 
 
 impl Device for Client {
     fn connect(&mut self) -> Result<(), Failed> {
-        self.line = Some(self.runtime.block_on(reach(&self.tcp, self.timeout))?);
+        match &mut self.way {
+            Way::Tcp(tcp, line) => *line = Some(self.runtime.block_on(reach(tcp, self.timeout))?),
+            Way::Rtu(slave) => slave.transport().line.open().map_err(|e| Failed(e.to_string()))?,
+        }
         Ok(())
     }
 
@@ -95,9 +128,10 @@ impl Device for Client {
         let write = Writes { blocks: &blocks, places: &self.outputs, values: outputs };
         let read = Reads { blocks: &self.reads, places: &self.inputs };
         self.runtime.block_on(async {
-            match &mut self.line {
-                Some(line) => to.exchange(line, write, refused, read, inputs).await,
-                None => Err(Failed("there is no connection".to_owned())),
+            match &mut self.way {
+                Way::Tcp(_, Some(line)) => to.exchange(line, write, refused, read, inputs).await,
+                Way::Rtu(line) => to.exchange(line, write, refused, read, inputs).await,
+                Way::Tcp(_, None) => Err(Failed("there is no connection".to_owned())),
             }
         })
     }
@@ -105,8 +139,13 @@ impl Device for Client {
     fn close(&mut self) {
         // The connection ends in any case: a device that is gone cannot answer.
         self.runtime.block_on(async {
-            if let Some(mut line) = self.line.take() {
-                line.close().await.ok();
+            match &mut self.way {
+                Way::Tcp(_, line) => {
+                    if let Some(mut line) = line.take() {
+                        line.close().await.ok();
+                    }
+                }
+                Way::Rtu(line) => drop(line.close().await),
             }
         });
     }

@@ -20,11 +20,13 @@ pub struct Device {
 pub enum Kind {
     /// A server of Modbus TCP, which this is a client of.
     ModbusTcp(Tcp, Modbus),
+    /// A slave on a serial line, which this is the master of.
+    ModbusRtu(Serial, Modbus),
 }
 
 impl Kind {
     /// The words of the file.
-    pub const WORDS: [&'static str; 1] = ["modbus-tcp"];
+    pub const WORDS: [&'static str; 2] = ["modbus-tcp", "modbus-rtu"];
 }
 
 /// The address of a server.
@@ -36,7 +38,32 @@ pub struct Tcp {
     pub port: u16,
 }
 
-/// The settings of Modbus.
+/// A serial line.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Serial {
+    /// The device file.
+    pub port: String,
+    /// Bits per second.
+    pub baud: u32,
+    /// The parity bit.
+    pub parity: Parity,
+    /// Two stop bits instead of one.
+    pub two_stop_bits: bool,
+}
+
+/// The parity bit of a serial line. Modbus over serial line 1.02, 2.5.1: even is the default.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Parity {
+    /// The number of ones is even.
+    #[default]
+    Even,
+    /// The number of ones is odd.
+    Odd,
+    /// There is none.
+    None,
+}
+
+/// The settings that Modbus TCP and Modbus RTU have in common.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Modbus {
     /// The unit that is asked, 0 to 247; behind a gateway there are several.
@@ -82,6 +109,9 @@ pub(super) fn read(row: &Row<'_>, found: &mut Found) -> Option<Device> {
     let kind = table.needed(found, "kind", "modbus-tcp")?;
     let kind = match kind.value.as_str() {
         "modbus-tcp" => tcp(&mut table, found).map(|tcp| Kind::ModbusTcp(tcp, modbus(&mut table, found))),
+        "modbus-rtu" => {
+            serial(&mut table, found).map(|serial| Kind::ModbusRtu(serial, modbus(&mut table, found)))
+        }
         _ => {
             let known: Vec<String> = Kind::WORDS.iter().map(|word| format!("\"{word}\"")).collect();
             found.wrong(kind.at, format!("no kind of device is called \"{}\"", kind.value)).help =
@@ -100,6 +130,15 @@ fn tcp(table: &mut Table<'_>, found: &mut Found) -> Option<Tcp> {
     Some(Tcp { host: host.value, port: u16::try_from(port).ok()? })
 }
 
+fn serial(table: &mut Table<'_>, found: &mut Found) -> Option<Serial> {
+    let baud = table.whole(found, "baud", 300..=4_000_000).map_or(19_200, |baud| baud.value);
+    let parity = [("even", Parity::Even), ("odd", Parity::Odd), ("none", Parity::None)];
+    let parity = table.word(found, "parity", &parity).map_or(Parity::Even, |parity| parity.value);
+    let stop = table.whole(found, "stop-bits", 1..=2).map_or(1, |stop| stop.value);
+    let port = table.needed(found, "port", "/dev/ttyUSB0")?;
+    Some(Serial { port: port.value, baud: u32::try_from(baud).ok()?, parity, two_stop_bits: stop == 2 })
+}
+
 fn modbus(table: &mut Table<'_>, found: &mut Found) -> Modbus {
     let unit = table.whole(found, "unit", 0..=247).map_or(1, |unit| unit.value);
     let low_word_first = table.word(found, "words", &[("high-first", false), ("low-first", true)]);
@@ -116,5 +155,26 @@ fn timing(table: &mut Table<'_>, found: &mut Found) -> Timing {
         timeout: time("timeout", usual.timeout, Nanos::MILLISECOND),
         refresh: time("refresh", usual.refresh, Nanos::MILLISECOND),
         retry: time("retry", usual.retry, Nanos::from_millis(10)),
+    }
+}
+
+/// Devices on one serial port agree about the line.
+pub(super) fn one_line_each(devices: &[Device], found: &mut Found) {
+    let lines = devices.iter().filter_map(|d| match &d.kind {
+        Kind::ModbusRtu(serial, _) => Some((d, serial)),
+        Kind::ModbusTcp(..) => None,
+    });
+    for (k, (device, serial)) in lines.clone().enumerate() {
+        let other = lines.clone().take(k).find(|(_, s)| s.port == serial.port && *s != serial);
+        if let Some((first, _)) = other {
+            let what = format!(
+                "{} and {} set the serial port {} otherwise",
+                first.name.value, device.name.value, serial.port
+            );
+            found
+                .wrong(device.name.at, what)
+                .related
+                .push((first.name.at, "this is the other one".to_owned()));
+        }
     }
 }

@@ -23,7 +23,7 @@ mod table;
 use g7_model::{FileId, Nanos, Problem, Span};
 use toml::de::{DeTable, DeValue};
 
-pub use device::{Device, Kind, Modbus, Tcp, Timing};
+pub use device::{Device, Kind, Modbus, Parity, Serial, Tcp, Timing};
 pub use point::{Area, Encoding, Point, Register};
 pub use table::At;
 
@@ -58,7 +58,7 @@ pub enum Changed {
 }
 
 /// How the controller runs: the table `[controller]`.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub struct Controller {
     /// The time between two scans; without it that of the chart.
     pub period: Option<At<Nanos>>,
@@ -72,6 +72,19 @@ pub struct Controller {
     pub run: bool,
     /// The priority of the scan among the threads of the system, 1 to 99; without it that of others.
     pub priority: Option<At<i64>>,
+}
+
+impl Default for Controller {
+    fn default() -> Controller {
+        Controller {
+            period: None,
+            watchdog: None,
+            retain: None,
+            changed: Changed::Refuse,
+            run: true,
+            priority: None,
+        }
+    }
 }
 
 /// The policy for an input whose value is bad.
@@ -137,7 +150,8 @@ fn setup(table: &DeTable<'_>, found: &mut Found) -> Setup {
     let mut top = Table::new(table, top, "an io file");
     let controller = top.table(found, "controller").map(|table| controller(table, found));
     let rows = top.rows(found, "devices");
-    let devices = rows.iter().filter_map(|row| device::read(row, found)).collect();
+    let devices: Vec<Device> = rows.iter().filter_map(|row| device::read(row, found)).collect();
+    device::one_line_each(&devices, found);
     let rows = top.rows(found, "inputs");
     let inputs = rows.iter().filter_map(|row| channel(row, true, found)).collect();
     let rows = top.rows(found, "outputs");
@@ -147,6 +161,7 @@ fn setup(table: &DeTable<'_>, found: &mut Found) -> Setup {
 }
 
 fn controller(mut table: Table<'_>, found: &mut Found) -> Controller {
+    let usual = Controller::default();
     let read = Controller {
         period: table.duration(found, "period", Nanos::MICROSECOND * 100, Nanos::MINUTE),
         watchdog: table.duration(found, "watchdog", Nanos::MILLISECOND, Nanos::HOUR),
@@ -157,8 +172,8 @@ fn controller(mut table: Table<'_>, found: &mut Found) -> Controller {
                 "changed",
                 &[("refuse", Changed::Refuse), ("cold", Changed::Cold), ("fit", Changed::Fit)],
             )
-            .map_or(Changed::Refuse, |c| c.value),
-        run: table.word(found, "start", &[("run", true), ("stop", false)]).is_none_or(|run| run.value),
+            .map_or(usual.changed, |c| c.value),
+        run: table.word(found, "start", &[("run", true), ("stop", false)]).map_or(usual.run, |run| run.value),
         priority: table.whole(found, "priority", 1..=99),
     };
     table.end(found);

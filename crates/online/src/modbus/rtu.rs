@@ -1,0 +1,254 @@
+//! Frames of Modbus RTU on a serial line (Modbus over serial line 1.02, 2.5.1), and the lines that
+//! several slaves share.
+//!
+//! The library's own serial transport is not used, because what it is built on is not under a
+//! permissive licence.
+
+use std::future::{Future, ready};
+use std::io;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::time::Duration;
+
+use g7_host::{Clock as _, WallClock};
+use g7_model::Nanos;
+use serial2::{CharSize, FlowControl, Parity as Bit, SerialPort, Settings, StopBits};
+use voltage_modbus::{
+    ModbusError, ModbusFunction, ModbusRequest, ModbusResponse, ModbusResult, ModbusTransport, TransportStats,
+};
+
+use crate::setup::{Parity, Serial};
+
+/// Bits of a character: start, eight, parity or a second stop bit, stop.
+const CHARACTER: u64 = 11;
+/// Half characters of silence between two frames.
+const SILENCE: u64 = 7;
+/// The silence of fast lines, above 19,200 baud.
+const LEAST: Duration = Duration::from_micros(1750);
+/// The pause behind a broadcast, in which slaves carry it out.
+const TURNAROUND: Duration = Duration::from_millis(100);
+/// The longest frame.
+const LONGEST: usize = 256;
+
+/// A serial line. Its slaves take turns.
+pub(super) struct Line {
+    serial: Serial,
+    port: Mutex<Option<SerialPort>>,
+}
+
+impl Line {
+    /// A line that is not open yet.
+    pub(crate) fn new(serial: Serial) -> Line {
+        Line { serial, port: Mutex::new(None) }
+    }
+
+    /// Waits until no other slave has the line.
+    fn lock(&self) -> MutexGuard<'_, Option<SerialPort>> {
+        // A port that was in use in a panic is no worse than any other.
+        self.port.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Opens the line, if it is not open.
+    pub(crate) fn open(&self) -> io::Result<()> {
+        let mut port = self.lock();
+        if port.is_none() {
+            *port = Some(SerialPort::open(&self.serial.port, |settings: Settings| self.configure(settings))?);
+        }
+        Ok(())
+    }
+
+    fn configure(&self, mut settings: Settings) -> io::Result<Settings> {
+        settings.set_raw();
+        settings.set_baud_rate(self.serial.baud)?;
+        settings.set_char_size(CharSize::Bits8);
+        settings.set_stop_bits(if self.serial.two_stop_bits { StopBits::Two } else { StopBits::One });
+        settings.set_parity(match self.serial.parity {
+            Parity::Even => Bit::Even,
+            Parity::Odd => Bit::Odd,
+            Parity::None => Bit::None,
+        });
+        settings.set_flow_control(FlowControl::None);
+        Ok(settings)
+    }
+
+    /// The silence between two frames.
+    fn silence(&self) -> Duration {
+        let nanos = CHARACTER * SILENCE * 1_000_000_000 / (2 * u64::from(self.serial.baud.max(1)));
+        Duration::from_nanos(nanos).max(LEAST)
+    }
+}
+
+/// One slave's use of a line.
+pub(super) struct Slave {
+    pub(super) line: Arc<Line>,
+    pub(super) timeout: Duration,
+}
+
+impl Slave {
+    fn ask(&self, request: &ModbusRequest) -> ModbusResult<ModbusResponse> {
+        request.validate()?;
+        let mut frame = vec![request.slave_id];
+        frame.extend_from_slice(request.encode_pdu()?.as_slice());
+        let check = crc(&frame);
+        frame.extend(check.to_le_bytes());
+        let mut slot = self.line.lock();
+        let Some(port) = slot.as_mut() else {
+            return Err(ModbusError::Connection { message: "the serial line is closed".to_owned() });
+        };
+        let answer = self.exchange(port, &frame);
+        if matches!(answer, Err(ModbusError::Io { .. })) {
+            // The adapter is gone; the next attempt opens the line anew.
+            *slot = None;
+        }
+        let Some(answer) = answer? else { return Ok(ModbusResponse::new_broadcast_ack(request.function)) };
+        response(answer, request.slave_id)
+    }
+
+    /// Sends a frame and takes the answer; `None` for a broadcast, which has none.
+    fn exchange(&self, port: &mut SerialPort, frame: &[u8]) -> ModbusResult<Option<Vec<u8>>> {
+        std::thread::sleep(self.line.silence());
+        // An answer to an earlier request that came too late is no answer to this one.
+        port.discard_input_buffer().map_err(broken)?;
+        port.set_write_timeout(self.timeout).map_err(broken)?;
+        port.write_all(frame).map_err(|e| self.late(e))?;
+        port.flush().map_err(broken)?;
+        if frame.first() == Some(&0) {
+            std::thread::sleep(TURNAROUND);
+            return Ok(None);
+        }
+        let mut clock = WallClock::default();
+        let mut answer = Vec::with_capacity(LONGEST);
+        let mut wanted = 2;
+        while answer.len() < wanted {
+            let spent = Duration::from_nanos(clock.now().max(Nanos::ZERO).count().unsigned_abs());
+            let left = self.timeout.checked_sub(spent).filter(|left| !left.is_zero());
+            port.set_read_timeout(left.ok_or_else(|| self.timed_out())?).map_err(broken)?;
+            let mut bytes = [0; LONGEST];
+            let room = bytes.get_mut(..wanted - answer.len()).unwrap_or(&mut []);
+            let count = port.read(room).map_err(|e| self.late(e))?;
+            if count == 0 {
+                return Err(broken(io::ErrorKind::UnexpectedEof.into()));
+            }
+            answer.extend_from_slice(bytes.get(..count).unwrap_or(&[]));
+            wanted = wanted.max(length(&answer)?);
+        }
+        Ok(Some(answer))
+    }
+
+    fn timed_out(&self) -> ModbusError {
+        ModbusError::Timeout { operation: "answer".to_owned(), timeout_ms: self.timeout.as_millis() as u64 }
+    }
+
+    fn late(&self, error: io::Error) -> ModbusError {
+        if error.kind() == io::ErrorKind::TimedOut { self.timed_out() } else { broken(error) }
+    }
+}
+
+fn broken(error: io::Error) -> ModbusError {
+    ModbusError::Io { message: error.to_string() }
+}
+
+/// The bytes of an answer of which these have come; so many as are known to be needed.
+fn length(answer: &[u8]) -> ModbusResult<usize> {
+    Ok(match answer {
+        [] | [_] => 2,
+        // An exception has one byte.
+        [_, function, ..] if function & 0x80 != 0 => 5,
+        [_, 1..=4] => 3,
+        [_, 1..=4, count, ..] => 5 + usize::from(*count),
+        [_, 5 | 6 | 15 | 16, ..] => 8,
+        [_, function, ..] => {
+            return Err(ModbusError::Frame { message: format!("no function {function} was asked for") });
+        }
+    })
+}
+
+fn response(answer: Vec<u8>, unit: u8) -> ModbusResult<ModbusResponse> {
+    let wrong = |message: String| Err(ModbusError::Frame { message });
+    let Some((body, check)) = answer.split_last_chunk::<2>() else {
+        return wrong("a short answer".to_owned());
+    };
+    if u16::from_le_bytes(*check) != crc(body) {
+        return wrong("the checksum of the answer is wrong".to_owned());
+    }
+    let [slave, function, data @ ..] = body else { return wrong("a short answer".to_owned()) };
+    if *slave != unit {
+        return wrong(format!("slave {slave} has answered for {unit}"));
+    }
+    let kind = ModbusFunction::from_u8(function & 0x7f)?;
+    if function & 0x80 != 0 {
+        return Ok(ModbusResponse::new_exception(unit, kind, data.first().copied().unwrap_or(0)));
+    }
+    Ok(ModbusResponse::new_success(unit, kind, data.to_vec()))
+}
+
+/// CRC-16/MODBUS (Modbus over serial line 1.02, 6.2.2).
+fn crc(bytes: &[u8]) -> u16 {
+    crc::Crc::<u16>::new(&crc::CRC_16_MODBUS).checksum(bytes)
+}
+
+impl ModbusTransport for Slave {
+    fn request(
+        &mut self,
+        request: &ModbusRequest,
+    ) -> impl Future<Output = ModbusResult<ModbusResponse>> + Send {
+        // Each device has a thread of its own, which may wait.
+        ready(self.ask(request))
+    }
+
+    fn is_connected(&self) -> bool {
+        self.line.lock().is_some()
+    }
+
+    fn close(&mut self) -> impl Future<Output = ModbusResult<()>> + Send {
+        // The line stays open for its other slaves.
+        ready(Ok(()))
+    }
+
+    fn get_stats(&self) -> TransportStats {
+        TransportStats::default()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The example of the specification (6.2.2): the frame 02 07 ends in 41 12.
+    #[test]
+    fn the_checksum_is_that_of_the_specification() {
+        assert_eq!(crc(&[0x02, 0x07]), 0x1241);
+    }
+
+    #[test]
+    fn the_length_of_an_answer_is_known_from_its_first_bytes() {
+        let known = |bytes: &[u8]| length(bytes).ok();
+        assert_eq!(known(&[1, 3]), Some(3));
+        assert_eq!(known(&[1, 3, 4]), Some(9));
+        assert_eq!(known(&[1, 0x83]), Some(5));
+        assert_eq!(known(&[1, 16]), Some(8));
+        assert_eq!(known(&[1, 99]), None);
+    }
+
+    #[test]
+    fn wrong_answers_are_refused() {
+        let framed = |body: &[u8]| [body, &crc(body).to_le_bytes()].concat();
+        assert!(response(framed(&[1, 3, 2, 0, 7]), 1).is_ok());
+        assert!(response(framed(&[2, 3, 2, 0, 7]), 1).is_err(), "another slave");
+        let mut bad = framed(&[1, 3, 2, 0, 7]);
+        bad[4] ^= 1;
+        assert!(response(bad, 1).is_err(), "checksum");
+        assert!(response(vec![1], 1).is_err());
+        assert!(response(Vec::new(), 1).is_err());
+    }
+
+    #[test]
+    fn frames_are_apart_by_three_and_a_half_characters() {
+        let line = |baud| {
+            let port = "x".to_owned();
+            Line::new(Serial { port, baud, parity: Parity::Even, two_stop_bits: false }).silence()
+        };
+        // 38.5 bits at 9600 baud.
+        assert_eq!(line(9600).as_micros(), 4010);
+        assert_eq!(line(115_200), LEAST);
+    }
+}
