@@ -70,6 +70,8 @@ pub(crate) enum Command {
     Fmt(Fmt),
     /// Run a chart with its plant, in the terminal or without one.
     Run(Run),
+    /// Ask the devices of a chart, or one by hand, what they have.
+    Devices(crate::devices::Devices),
     /// Run the tests of charts in virtual time.
     Test(Test),
     /// Draw charts as SVG, PNG or PDF.

@@ -16,6 +16,7 @@
 
 mod check;
 mod cli;
+mod devices;
 mod draw;
 mod explain;
 mod export;
@@ -36,6 +37,7 @@ mod style;
 mod testing;
 mod values;
 mod view;
+mod wiring;
 
 use std::process::ExitCode;
 
@@ -69,6 +71,7 @@ fn run(command: &Command) -> Result<Verdict, Failure> {
         Command::Check(args) => check::check(args),
         Command::Fmt(args) => fmt::fmt(args),
         Command::Run(args) => run::run(args),
+        Command::Devices(args) => devices::devices(args),
         Command::Test(args) => testing::test(args),
         Command::Draw(args) => draw::draw(args),
         Command::Serve(args) => serve::serve(args),

@@ -143,8 +143,20 @@ fn explain_knows_every_code_and_says_where_it_comes_from() {
 #[test]
 fn completions_and_manual_pages_name_every_command() {
     let folder = Folder::new();
-    let commands =
-        ["new", "check", "fmt", "run", "test", "draw", "import", "export", "explain", "completions", "man"];
+    let commands = [
+        "new",
+        "check",
+        "fmt",
+        "run",
+        "devices",
+        "test",
+        "draw",
+        "import",
+        "export",
+        "explain",
+        "completions",
+        "man",
+    ];
     for shell in ["bash", "zsh", "fish", "elvish", "powershell"] {
         let text = folder.g7(&["completions", shell]).is(0).out.clone();
         assert!(commands.iter().all(|c| text.contains(c)), "{shell}");
@@ -159,7 +171,9 @@ fn completions_and_manual_pages_name_every_command() {
 #[test]
 fn help_teaches_by_example() {
     let folder = Folder::new();
-    for command in ["new", "check", "fmt", "run", "test", "draw", "import", "explain", "completions", "man"] {
+    for command in
+        ["new", "check", "fmt", "run", "devices", "test", "draw", "import", "explain", "completions", "man"]
+    {
         let help = folder.g7(&[command, "--help"]).is(0).out.clone();
         assert!(help.contains("Examples:") && help.contains(&format!("  g7 {command}")), "{command}: {help}");
     }

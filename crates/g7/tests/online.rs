@@ -240,6 +240,57 @@ fn two_slaves_share_a_serial_line() {
 }
 
 #[test]
+fn devices_are_asked_and_nothing_is_written() {
+    let Some(mut slave) = Slave::start(0) else { return };
+    let folder = folder(slave.port());
+    slave.set("input 4 16416 0 65535 65535");
+    slave.set("holding 7 9");
+    slave.set("discrete 3 1");
+    let all = folder.g7(&["devices"]);
+    all.is(0);
+    let address = format!("127.0.0.1:{}", slave.port());
+    assert!(all.out.starts_with(&format!("line1 {address} unit 1 answers in ")), "{}", all.out);
+    let lines: Vec<&str> = all.out.lines().skip(1).collect();
+    // 10 times -1; the wire of the lamp is inverted.
+    let expected = [
+        "  go      discrete(3)   TRUE",
+        "  level   input(4)      2.5",
+        "  weight  input(6)      -10 (from -1)",
+        "  valve   coil(2)       FALSE",
+        "  lamp    holding(9.4)  TRUE (from FALSE)",
+        "  speed   holding(7)    9",
+        "  sum     holding(20)   0",
+    ];
+    assert_eq!(lines, expected);
+    let by_hand = folder.g7(&["devices", "--tcp", &address, "--read", "holding(6)", "--count", "3"]);
+    let lines: Vec<&str> = by_hand.is(0).out.lines().skip(1).map(str::trim).collect();
+    assert_eq!(lines, ["holding(6)  0", "holding(7)  9", "holding(8)  0"]);
+    let float =
+        folder.g7(&["devices", "--tcp", &address, "--read", "input(4)", "--as", "f32", "--read", "coil(1)"]);
+    let lines: Vec<&str> = float.is(0).out.lines().skip(1).map(str::trim).collect();
+    assert_eq!(lines, ["input(4)  2.5", "coil(1)   FALSE"]);
+    let none = folder.g7(&["devices", "--tcp", &address, "--read", "holding(1000)"]);
+    assert!(none.is(1).out.contains("exception"), "{}", none.out);
+    // The outputs have what they had before.
+    assert_eq!(slave.get("holding 7 1"), "9");
+}
+
+#[test]
+fn devices_that_are_not_there_are_told() {
+    let folder = folder(1);
+    let all = folder.g7(&["devices"]);
+    assert!(all.is(1).out.contains("line1 127.0.0.1:1 unit 1 does not answer"), "{}", all.out);
+    let serial = folder.g7(&["devices", "--serial", "/dev/g7-none", "--read", "coil(1)"]);
+    assert!(serial.is(1).out.contains("does not answer"), "{}", serial.out);
+    folder.g7(&["devices", "--read", "coil(1)"]).is_refused(&["--tcp", "--serial"]);
+    for bad in ["coil", "coil(1.2)", "holding(70000)", "good()"] {
+        let refused = folder.g7(&["devices", "--tcp", "x", "--read", bad]);
+        assert!(refused.is(2).err.contains("--read"), "{}", refused.err);
+    }
+    folder.g7(&["devices", "--tcp", "x:y"]).is_refused(&["port is no number"]);
+}
+
+#[test]
 fn addresses_that_a_slave_does_not_have_are_bad_alone() {
     let Some(mut slave) = Slave::start(0) else { return };
     let folder = Folder::with(CHART);

@@ -2,7 +2,6 @@
 
 mod headless;
 mod keep;
-mod load;
 mod online;
 
 use std::io::{IsTerminal, stdin, stdout};
@@ -13,7 +12,8 @@ use crate::cli::Run;
 use crate::failure::{Failure, Verdict};
 use crate::message::talk;
 use crate::sources;
-use crate::{files, view};
+use crate::{files, view, wiring};
+use g7_rig::Options;
 
 pub(crate) fn run(args: &Run) -> Result<Verdict, Failure> {
     let path = files::one(&args.path)?;
@@ -21,7 +21,8 @@ pub(crate) fn run(args: &Run) -> Result<Verdict, Failure> {
     if args.online {
         return online::run(&path, &source, args);
     }
-    let Some(bench) = load::load(&source, args)? else { return Ok(Verdict::Found) };
+    let options = Options { profile: args.profile, scan: args.scan, plant: args.plant.as_deref(), asks: &[] };
+    let Some(bench) = wiring::build(&source, &options)? else { return Ok(Verdict::Found) };
     if let Some(tape) = &args.replay {
         return headless::replay(&bench, args, tape);
     }

@@ -3,28 +3,27 @@
 //! Commands come as lines on the standard input, events go to the standard error.
 
 use std::io::BufRead as _;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, channel};
 use std::time::Duration;
 
 use g7_host::{Clock, Start, WallClock};
-use g7_model::{FileId, Nanos, Problem, Severity};
-use g7_online::setup::{self, Setup};
+use g7_model::Nanos;
 use g7_online::{
     AtDevice, Clients, Command, Controller, Device, Happened, KeepError, Mode, Options, RealDisk, Reason,
-    Running, Slots, Started, What, Wired, Wiring,
+    Running, Slots, Started, What, Wired,
 };
 use g7_rig::{Bench, Role};
 use signal_hook::consts::{SIGINT, SIGTERM};
 
-use super::load::{build, show};
 use crate::cli::Run;
 use crate::failure::{Failure, Verdict, plain};
 use crate::message::talk;
 use crate::sources::Source;
-use crate::{files, style};
+use crate::style;
+use crate::wiring::{self, Plan, Wanted};
 
 /// The pause between two looks at the events.
 const PAUSE: Duration = Duration::from_millis(20);
@@ -32,17 +31,15 @@ const PAUSE: Duration = Duration::from_millis(20);
 const WATCHDOG: (i64, Nanos) = (10, Nanos::from_millis(100));
 const HELP: &str = "commands: run, stop, ack (ends a fault), cold (initial situation), status, quit";
 
-/// A chart with its wiring.
-struct Plan<'a> {
-    source: &'a Source,
-    bench: Bench,
-    setup: Setup,
-    wiring: Wiring,
-    io: PathBuf,
-}
-
 pub(super) fn run(path: &Path, source: &Source, args: &Run) -> Result<Verdict, Failure> {
-    let Some(plan) = plan(path, source, args)? else { return Ok(Verdict::Found) };
+    let wanted = Wanted {
+        io: args.io.as_deref(),
+        simulate: args.simulate.as_deref(),
+        plant: args.plant.as_deref(),
+        profile: args.profile,
+        scan: args.scan,
+    };
+    let Some(plan) = wiring::plan(path, source, &wanted)? else { return Ok(Verdict::Found) };
     let Plan { bench, setup, wiring, .. } = &plan;
     if !wiring.unwired.is_empty() {
         talk!("{}note:{:#} no device has {}", style::WARN, style::WARN, wiring.unwired.join(", "));
@@ -69,49 +66,6 @@ pub(super) fn run(path: &Path, source: &Source, args: &Run) -> Result<Verdict, F
 /// The system has no resources for a thread or a connection.
 fn refused(error: std::io::Error) -> Failure {
     Failure::Usage(format!("the system refuses: {}", plain(&error)))
-}
-
-/// Reads the io file and wires the chart, or prints the problems.
-fn plan<'a>(path: &Path, source: &'a Source, args: &Run) -> Result<Option<Plan<'a>>, Failure> {
-    let io = args.io.clone().unwrap_or_else(|| path.with_extension("io.toml"));
-    if args.io.is_none() && !io.is_file() {
-        let what =
-            format!("{} is missing: it says which devices the inputs and outputs are wired to", io.display());
-        return Err(Failure::Usage(format!("{what}; --io names another file")));
-    }
-    let text = files::read(&io)?;
-    let file = Source::plain(&io.display().to_string(), text);
-    let (mut setup, mut problems) = setup::read(&file.text, FileId(1));
-    if file.text.as_bytes() != file.bytes {
-        return Err(Failure::Usage(format!("{} is not UTF-8 text", io.display())));
-    }
-    simulate(&mut setup, args.simulate.as_deref())?;
-    // Without a plant in place of a device there is none.
-    let plant = args.plant.as_deref().or(if args.simulate.is_none() { Some("none") } else { None });
-    let scan = args.scan.or(setup.controller.period.as_ref().map(|p| p.value));
-    let Some(bench) = build(source, args, plant, scan)? else { return Ok(None) };
-    let (wiring, wrong) = g7_online::wire(&bench, &setup);
-    problems.extend(wrong);
-    show(&file, &problems);
-    let errors = problems.iter().any(|p: &Problem| p.severity() == Severity::Error);
-    Ok((!errors).then_some(Plan { source, bench, setup, wiring, io }))
-}
-
-/// Takes the devices out that the plant stands for.
-fn simulate(setup: &mut Setup, names: Option<&[String]>) -> Result<(), Failure> {
-    let Some(names) = names else { return Ok(()) };
-    let there = |name: &String| setup.devices.iter().any(|d| d.name.value == *name);
-    if let Some(name) = names.iter().find(|name| !there(name)) {
-        let all: Vec<&str> = setup.devices.iter().map(|d| d.name.value.as_str()).collect();
-        return Err(Failure::Usage(format!(
-            "--simulate: the io file has no device `{name}`; it has {}",
-            all.join(", ")
-        )));
-    }
-    let simulated = |name: &String| names.is_empty() || names.contains(name);
-    setup.inputs.retain(|c| !simulated(&c.device.value));
-    setup.outputs.retain(|c| !simulated(&c.device.value));
-    Ok(())
 }
 
 /// Opens the file of the values that are kept, and starts the run with them.

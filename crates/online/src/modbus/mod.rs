@@ -15,7 +15,7 @@ use tokio::runtime::{Builder, Runtime};
 use voltage_modbus::{GenericModbusClient, ModbusClient, ModbusError, ModbusTcpClient};
 
 use crate::device::{Absent, Device, Failed};
-use crate::setup::{Area, Kind, Modbus, Serial, Tcp};
+use crate::setup::{Area, Encoding, Kind, Modbus, Register, Serial, Tcp};
 use crate::value::Raw;
 use crate::wiring::Wired;
 
@@ -84,6 +84,17 @@ pub struct Client {
 enum Way {
     Tcp(Tcp, Option<ModbusTcpClient>),
     Rtu(GenericModbusClient<Slave>),
+}
+
+impl Client {
+    /// Reads these points in place of those that are wired.
+    pub(crate) fn read_points(&mut self, points: &[(Register, Option<Encoding>)]) {
+        self.inputs = points
+            .iter()
+            .map(|(register, encoding)| Place { register: *register, encoding: *encoding })
+            .collect();
+        self.reads = reads(&self.inputs);
+    }
 }
 
 fn duration(time: Nanos) -> Duration {

@@ -145,6 +145,15 @@ pub fn read(text: &str, file: FileId) -> (Setup, Vec<Problem>) {
     (setup, found.problems)
 }
 
+/// Reads a point without its device: `holding(4.3)`.
+///
+/// # Errors
+///
+/// A sentence that says what is wrong with it.
+pub fn read_point(text: &str) -> Result<Point, String> {
+    point::of(text)
+}
+
 fn setup(table: &DeTable<'_>, found: &mut Found) -> Setup {
     let top = Span { file: found.file, start: 0, end: 0 };
     let mut top = Table::new(table, top, "an io file");

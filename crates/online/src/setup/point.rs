@@ -140,9 +140,21 @@ pub(super) fn read(text: &str, at: Span, found: &mut Found) -> Option<(At<String
 }
 
 fn parts(text: &str) -> Option<(&str, &str, &str)> {
-    let (head, argument) = text.trim().strip_suffix(')')?.split_once('(')?;
+    let (head, argument) = called(text)?;
     let (device, word) = head.rsplit_once('.')?;
-    Some((device.trim(), word.trim(), argument.trim()))
+    Some((device.trim(), word.trim(), argument))
+}
+
+/// `head(argument)`.
+fn called(text: &str) -> Option<(&str, &str)> {
+    let (head, argument) = text.trim().strip_suffix(')')?.split_once('(')?;
+    Some((head.trim(), argument.trim()))
+}
+
+/// Reads `point(arguments)`.
+pub(super) fn of(text: &str) -> Result<Point, String> {
+    let (word, argument) = called(text).ok_or_else(|| format!("`{text}` is no point: write `holding(4)`"))?;
+    point(word, argument)
 }
 
 fn point(word: &str, argument: &str) -> Result<Point, String> {

@@ -1,0 +1,228 @@
+//! `g7 devices`: asks the devices of a chart, or one by hand, for their values. It writes nothing.
+
+use std::io::Write as _;
+use std::path::PathBuf;
+
+use clap::Args;
+use g7_host::Value;
+use g7_model::{Nanos, Span};
+use g7_online::setup::{
+    At, Device, Encoding, Kind, Modbus, Parity, Point, Register, Serial, Tcp, Timing, read_point,
+};
+use g7_online::{Absent, Asked, Clients, Raw, Scaling, Wired, probe};
+
+use crate::failure::{Failure, Verdict};
+use crate::wiring::{self, Wanted};
+use crate::{files, sources, style, values};
+
+#[derive(Args, Debug)]
+#[command(after_help = "\
+Examples:
+  g7 devices sorter.g7                                  all channels of sorter.io.toml
+  g7 devices --tcp 10.0.0.7 --read 'holding(0)' --count 10
+  g7 devices --tcp 10.0.0.7:1502 --unit 3 --read 'input(4)' --as f32
+  g7 devices --serial /dev/ttyUSB0 --baud 9600 --read 'coil(0)' --read 'coil(7)'
+
+Nothing is written to a device.
+
+Exit codes:
+  0  every device answers and has what was asked for
+  1  a device does not answer, or refuses a point
+  2  bad usage, or something outside the chart: no such file")]
+pub(crate) struct Devices {
+    /// A chart with an io file, or a folder with a chart.g7.
+    #[arg(default_value = ".", conflicts_with_all = ["tcp", "serial"])]
+    path: PathBuf,
+    /// The io file [default: chart.io.toml for chart.g7].
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["tcp", "serial"])]
+    io: Option<PathBuf>,
+    /// Ask a server of Modbus TCP.
+    #[arg(long, value_name = "HOST[:PORT]", conflicts_with = "serial")]
+    tcp: Option<String>,
+    /// Ask a slave of Modbus RTU on this serial port.
+    #[arg(long, value_name = "PORT")]
+    serial: Option<String>,
+    /// The unit or slave.
+    #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u8).range(0..=247))]
+    unit: u8,
+    /// Bits per second of the serial port.
+    #[arg(long, default_value_t = 19_200, requires = "serial")]
+    baud: u32,
+    /// The parity of the serial port: even, odd or none.
+    #[arg(long, default_value = "even", requires = "serial", value_parser = parity)]
+    parity: Parity,
+    /// A point to read: `coil(2)`, `discrete(0)`, `input(4)`, `holding(4)`, `holding(4.3)`.
+    #[arg(long = "read", value_name = "POINT", value_parser = point)]
+    points: Vec<Register>,
+    /// Read so many points from each on.
+    #[arg(long, default_value_t = 1, requires = "points", value_parser = clap::value_parser!(u16).range(1..=2000))]
+    count: u16,
+    /// The form of the numbers in registers: u16, i16, u32, i32, u64, i64, f32, f64.
+    #[arg(long = "as", default_value = "u16", requires = "points", value_name = "FORM", value_parser = encoding)]
+    encoding: Encoding,
+    /// The longest time of an answer.
+    #[arg(long, default_value = "1s", value_parser = values::duration, value_name = "TIME")]
+    timeout: Nanos,
+}
+
+fn parity(text: &str) -> Result<Parity, String> {
+    let words = [("even", Parity::Even), ("odd", Parity::Odd), ("none", Parity::None)];
+    word(text, &words)
+}
+
+fn encoding(text: &str) -> Result<Encoding, String> {
+    word(text, Encoding::WORDS)
+}
+
+fn word<T: Copy>(text: &str, words: &[(&str, T)]) -> Result<T, String> {
+    let names: Vec<&str> = words.iter().map(|(word, _)| *word).collect();
+    let found = words.iter().find(|(word, _)| *word == text).map(|(_, value)| *value);
+    found.ok_or_else(|| format!("it is one of {}", names.join(", ")))
+}
+
+fn point(text: &str) -> Result<Register, String> {
+    match read_point(text)? {
+        Point::Modbus(register) => Ok(register),
+        Point::Good => Err("this is no point of the device".to_owned()),
+    }
+}
+
+/// A value to read and how it is shown.
+struct Shown {
+    name: String,
+    asked: Asked,
+    scaling: Option<Scaling>,
+}
+
+pub(crate) fn devices(args: &Devices) -> Result<Verdict, Failure> {
+    if let Some(device) = by_hand(args)? {
+        let shown: Vec<Shown> = args.points.iter().flat_map(|from| many(args, *from)).collect();
+        return ask(&mut Clients::default(), &device, &shown);
+    }
+    if !args.points.is_empty() {
+        return Err(Failure::Usage("--read asks one device: name it by --tcp or --serial".to_owned()));
+    }
+    let path = files::one(&args.path)?;
+    let source = sources::load(&path, 0)?;
+    let wanted = Wanted { io: args.io.as_deref(), ..Wanted::default() };
+    let Some(plan) = wiring::plan(&path, &source, &wanted)? else { return Ok(Verdict::Found) };
+    let (mut clients, mut verdict) = (Clients::default(), Verdict::Fine);
+    for wired in &plan.wiring.devices {
+        if ask(&mut clients, &wired.device, &channels(wired))? == Verdict::Found {
+            verdict = Verdict::Found;
+        }
+    }
+    Ok(verdict)
+}
+
+/// The device that the arguments describe.
+fn by_hand(args: &Devices) -> Result<Option<Device>, Failure> {
+    let modbus = Modbus { unit: args.unit, low_word_first: false };
+    let kind = match (&args.tcp, &args.serial) {
+        (Some(tcp), _) => {
+            let (host, port) = match tcp.rsplit_once(':') {
+                Some((host, port)) => (host, port.parse().ok()),
+                None => (tcp.as_str(), Some(502)),
+            };
+            let port = port.ok_or_else(|| Failure::Usage(format!("--tcp {tcp}: the port is no number")))?;
+            Kind::ModbusTcp(Tcp { host: host.trim_matches(['[', ']']).to_owned(), port }, modbus)
+        }
+        (None, Some(port)) => {
+            let (port, baud, parity) = (port.clone(), args.baud, args.parity);
+            Kind::ModbusRtu(Serial { port, baud, parity, two_stop_bits: false }, modbus)
+        }
+        (None, None) => return Ok(None),
+    };
+    let nowhere = Span::default();
+    let timing = Timing { timeout: args.timeout, ..Timing::default() };
+    Ok(Some(Device { name: At { value: String::new(), at: nowhere }, kind, timing }))
+}
+
+/// A point by hand, and those behind it.
+fn many(args: &Devices, from: Register) -> Vec<Shown> {
+    let bit = from.area.is_bits() || from.bit.is_some();
+    let step = if bit { 1 } else { args.encoding.registers() };
+    let asked = |k: u16| {
+        let address = from.address.checked_add(k.checked_mul(step)?)?;
+        Some((Register { address, ..from }, (!bit).then_some(args.encoding)))
+    };
+    let shown = |asked: Asked| Shown { name: asked.0.to_string(), asked, scaling: None };
+    (0..args.count).map_while(asked).map(shown).collect()
+}
+
+/// The channels of a device; the present values of its outputs are read as well.
+fn channels(wired: &Wired) -> Vec<Shown> {
+    let inputs = wired.inputs.iter().map(|i| (&i.name, i.register, i.encoding, i.scaling));
+    let outputs = wired.outputs.iter().map(|o| (&o.name, o.register, o.encoding, o.out.scaling));
+    let all = wired.inputs.iter().map(|i| &i.name).chain(wired.outputs.iter().map(|o| &o.name));
+    let width = all.map(|name| name.chars().count()).max().unwrap_or(0);
+    let shown = |(name, register, encoding, scaling): (&String, Register, Option<Encoding>, Scaling)| Shown {
+        name: format!("{name:<width$}  {register}"),
+        asked: (register, encoding),
+        scaling: Some(scaling),
+    };
+    inputs.chain(outputs).map(shown).collect()
+}
+
+/// Asks a device and prints what it has.
+fn ask(clients: &mut Clients, device: &Device, shown: &[Shown]) -> Result<Verdict, Failure> {
+    let (strong, good, bad, warn) = (style::STRONG, style::GOOD, style::BAD, style::WARN);
+    let asked: Vec<Asked> = shown.iter().map(|s| s.asked).collect();
+    let probed = probe(clients, device, &asked);
+    let mut out = anstream::stdout().lock();
+    let name = [device.name.value.clone(), place(&device.kind)].join(" ");
+    let name = name.trim();
+    let probed = match probed {
+        Ok(probed) => probed,
+        Err(why) => {
+            writeln!(out, "{strong}{name}{strong:#} {bad}does not answer:{bad:#} {why}")?;
+            out.flush()?;
+            return Ok(Verdict::Found);
+        }
+    };
+    let took = probed.took.as_secs_f64() * 1e3;
+    writeln!(out, "{strong}{name}{strong:#} {good}answers{good:#} in {took:.1} ms")?;
+    let width = shown.iter().map(|s| s.name.chars().count()).max().unwrap_or(0);
+    let mut verdict = Verdict::Fine;
+    for (shown, value) in shown.iter().zip(&probed.values) {
+        let text = match value {
+            Ok(raw) => text(*raw, shown.scaling.as_ref()),
+            Err(why) => {
+                verdict = Verdict::Found;
+                let why = match why {
+                    Absent::Unread => "it gave no value",
+                    Absent::Refused(why) => why,
+                };
+                format!("{warn}{why}{warn:#}")
+            }
+        };
+        writeln!(out, "  {:<width$}  {text}", shown.name)?;
+    }
+    out.flush()?;
+    Ok(verdict)
+}
+
+/// How a device is reached.
+fn place(kind: &Kind) -> String {
+    match kind {
+        Kind::ModbusTcp(Tcp { host, port }, modbus) => format!("{host}:{port} unit {}", modbus.unit),
+        Kind::ModbusRtu(serial, modbus) => format!("{} unit {}", serial.port, modbus.unit),
+    }
+}
+
+/// A value of a device, as the chart has it and as it is on the wire.
+fn text(raw: Raw, scaling: Option<&Scaling>) -> String {
+    let plain = match raw {
+        Raw::Bit(on) => if on { "TRUE" } else { "FALSE" }.to_owned(),
+        Raw::Whole(n) => n.to_string(),
+        Raw::Real(x) => x.to_string(),
+    };
+    let Some(scaling) = scaling else { return plain };
+    match scaling.word(raw) {
+        Some(word) => {
+            let value = Value::Word(word).show(scaling.kind);
+            if value == plain { value } else { format!("{value} (from {plain})") }
+        }
+        None => format!("{plain}, which the variable cannot hold"),
+    }
+}

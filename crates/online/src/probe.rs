@@ -1,0 +1,41 @@
+//! A device asked once, by hand: what it is wired to, or any points.
+
+use std::time::Duration;
+
+use g7_host::{Clock as _, WallClock};
+
+use crate::device::{Absent, Device as _, Failed};
+use crate::modbus::Clients;
+use crate::setup::{Device, Encoding, Register};
+use crate::value::Raw;
+use crate::wiring::Wired;
+
+/// A point to read, and how registers hold the number; `None` for a bit.
+pub type Asked = (Register, Option<Encoding>);
+
+/// The answer of a device.
+#[derive(Debug)]
+pub struct Probed {
+    /// The time from the request to the last answer.
+    pub took: Duration,
+    /// The value of each point, in the order in which they were asked for.
+    pub values: Vec<Result<Raw, Absent>>,
+}
+
+/// Reaches a device and reads points once. Writes nothing.
+///
+/// # Errors
+///
+/// The device cannot be reached, or does not answer.
+pub fn probe(clients: &mut Clients, device: &Device, asked: &[Asked]) -> Result<Probed, Failed> {
+    let wired = Wired { device: device.clone(), inputs: Vec::new(), outputs: Vec::new(), good: Vec::new() };
+    let mut client = clients.client(&wired).map_err(|e| Failed(e.to_string()))?;
+    client.read_points(asked);
+    client.connect()?;
+    let mut clock = WallClock::default();
+    let mut values = vec![Err(Absent::Unread); asked.len()];
+    let done = client.exchange(&[], &[], &mut values, &mut []);
+    let took = Duration::from_nanos(clock.now().count().max(0).unsigned_abs());
+    client.close();
+    done.map(|()| Probed { took, values })
+}
