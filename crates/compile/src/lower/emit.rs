@@ -9,6 +9,10 @@ use g7_model::{Span, Type};
 use super::words::num;
 use crate::tree::{Clock, Expr, ExprKind, Gate, Piece, Stmt, StmtKind, Target};
 
+/// Gates and complements within one another that are written as jumps; deeper ones are worked out on
+/// the stack.
+const DEEPEST: u32 = 64;
+
 /// Code being written.
 #[derive(Default)]
 pub(super) struct Buf {
@@ -36,6 +40,39 @@ impl Buf {
         self.ops.len() as u32
     }
 
+    /// Jumps that are made where a condition has this value; code goes on behind where it has the
+    /// other. What one operand of a gate decides is settled by its own jump.
+    fn branch(&mut self, e: &Expr, value: bool, at: Span, deep: u32) -> Vec<usize> {
+        match &e.kind {
+            ExprKind::Not(x) if deep < DEEPEST => self.branch(x, !value, at, deep + 1),
+            ExprKind::Gate(gate @ (Gate::And | Gate::Or), ..) if deep < DEEPEST => {
+                let (mut jumps, mut past) = (Vec::new(), Vec::new());
+                let (last, before) = spine(e, *gate);
+                // FALSE decides an AND, TRUE an OR.
+                let decides = *gate == Gate::Or;
+                for x in before {
+                    let made = self.branch(x, decides, at, deep + 1);
+                    if decides == value { jumps.extend(made) } else { past.extend(made) }
+                }
+                jumps.extend(self.branch(last, value, at, deep + 1));
+                past.into_iter().for_each(|jump| self.land(jump));
+                jumps
+            }
+            _ => {
+                self.expr(e);
+                if value {
+                    self.op(Op::Not, at);
+                }
+                vec![self.jump(Op::JumpUnless, at)]
+            }
+        }
+    }
+
+    /// Jumps that are made unless a condition holds.
+    fn unless(&mut self, condition: &Expr) -> Vec<usize> {
+        self.branch(condition, false, condition.at, 0)
+    }
+
     /// A jump whose target is not known yet.
     fn jump(&mut self, op: fn(u32) -> Op, at: Span) -> usize {
         self.op(op(0), at);
@@ -44,7 +81,10 @@ impl Buf {
 
     /// Sends a jump to the next instruction.
     fn land(&mut self, jump: usize) {
-        let here = self.here();
+        self.send(jump, self.here());
+    }
+
+    fn send(&mut self, jump: usize, here: u32) {
         match self.ops.get_mut(jump) {
             Some(Op::Jump(to) | Op::JumpUnless(to)) => *to = here,
             _ => debug_assert!(false, "not a jump"),
@@ -186,9 +226,9 @@ impl Buf {
             StmtKind::If(arms, other) => self.alternatives(arms, other),
             StmtKind::Loop(body, until) => self.repeat(body, until.as_ref(), at),
             StmtKind::LeaveUnless(e) => {
-                self.expr(e);
-                let jump = self.jump(Op::JumpUnless, e.at);
-                self.leave(jump);
+                for jump in self.unless(e) {
+                    self.leave(jump);
+                }
             }
             StmtKind::Leave => {
                 let jump = self.jump(Op::Jump, at);
@@ -231,8 +271,9 @@ impl Buf {
         self.stmts(body);
         match until {
             Some(e) => {
-                self.expr(e);
-                self.op(Op::JumpUnless(start), e.at);
+                for jump in self.unless(e) {
+                    self.send(jump, start);
+                }
             }
             None => self.op(Op::Jump(start), at),
         }
@@ -244,15 +285,29 @@ impl Buf {
     fn alternatives(&mut self, arms: &[(Expr, Vec<Stmt>)], other: &[Stmt]) {
         let mut ends = Vec::new();
         for (i, (condition, then)) in arms.iter().enumerate() {
-            self.expr(condition);
-            let next = self.jump(Op::JumpUnless, condition.at);
+            let next = self.unless(condition);
             self.stmts(then);
             if i + 1 < arms.len() || !other.is_empty() {
                 ends.push(self.jump(Op::Jump, condition.at));
             }
-            self.land(next);
+            next.into_iter().for_each(|jump| self.land(jump));
         }
         self.stmts(other);
         ends.into_iter().for_each(|jump| self.land(jump));
     }
+}
+
+/// The operands of a gate and of the same gates in its left operands: the last, and those before it.
+fn spine(e: &Expr, gate: Gate) -> (&Expr, Vec<&Expr>) {
+    let (mut e, mut found) = (e, Vec::new());
+    while let ExprKind::Gate(g, left, right) = &e.kind
+        && *g == gate
+    {
+        found.push(&**right);
+        e = left;
+    }
+    found.push(e);
+    found.reverse();
+    let last = found.pop().unwrap_or(e);
+    (last, found)
 }

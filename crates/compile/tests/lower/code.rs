@@ -60,6 +60,72 @@ fn if_takes_the_first_true_arm() {
     }
 }
 
+/// A condition in three operands, and its value by the rules of its operators.
+type Condition = (&'static str, fn(bool, bool, bool) -> bool);
+
+#[test]
+fn a_condition_of_any_form_chooses_the_arm_and_ends_the_loop() {
+    let conditions: [Condition; 9] = [
+        ("a and b or c", |a, b, c| (a && b) || c),
+        ("a or b and c", |a, b, c| a || (b && c)),
+        ("a or b or c", |a, b, c| a || b || c),
+        ("a and b and c", |a, b, c| a && b && c),
+        ("(a or b) and (not b or c)", |a, b, c| (a || b) && (!b || c)),
+        ("not (a and not (b or not c))", |a, b, c| !a || b || !c),
+        ("not (a or b) or not (b or c)", |a, b, c| !(b || a && c)),
+        ("not (a xor b) and c", |a, b, c| a == b && c),
+        ("(a and b) xor (b or c)", |a, b, c| (a && b) != (b || c)),
+    ];
+    let deep = format!("{}(a and b){}", "not (".repeat(71), ")".repeat(71));
+    let all = conditions.into_iter().chain([(deep.as_str(), (|a, b, _| !(a && b)) as _)]);
+    for (condition, holds) in all {
+        let c = compiled(&format!(
+            "input a, b, c : BOOL  var if_, elsif_, while_, until_ : INT
+             post {{
+               IF {condition} THEN if_ := 1; ELSE if_ := 0; END_IF
+               IF FALSE THEN elsif_ := 7; ELSIF {condition} THEN elsif_ := 1; ELSE elsif_ := 0; END_IF
+               while_ := 0; WHILE {condition} DO while_ := 1; EXIT; END_WHILE
+               until_ := 1;
+               REPEAT until_ := until_ - 1; IF until_ < -3 THEN EXIT; END_IF UNTIL {condition} END_REPEAT
+             }}
+             chart G {{ initial step 1 }}",
+        ));
+        for bits in 0..8u64 {
+            let [a, b, c_] = [0, 1, 2].map(|i| bits >> i & 1);
+            let mut run = c.start();
+            run.set("a", a).set("b", b).set("c", c_).scan();
+            let wanted = holds(a == 1, b == 1, c_ == 1);
+            let one = if wanted { "1" } else { "0" };
+            let got = ["if_", "elsif_", "while_", "until_"].map(|name| run.value(name));
+            let rounds = if wanted { "0" } else { "-4" };
+            assert_eq!(got, [one, one, one, rounds], "{condition} with {a} {b} {c_}");
+        }
+    }
+}
+
+/// The right operand is evaluated only where the left one does not decide (decision 23).
+#[test]
+fn a_condition_asks_no_further_than_to_its_decision() {
+    let vars = "var z : INT  var i : INT := 5  var n : INT";
+    let quiet = [
+        ("i <= 2 and 9 / z = 0", "0"),
+        ("i > 2 or 9 / z = 0", "1"),
+        ("not (i > 2 or 9 / z = 0)", "0"),
+        ("not (i <= 2 and 9 / z = 0) and i = 5", "1"),
+        ("i = 4 or i <= 2 and 9 / z = 0 or i = 5", "1"),
+        ("i = 4 and 9 / z = 0 and 9 / z = 1", "0"),
+    ];
+    for (condition, n) in quiet {
+        assert_eq!(value(vars, &format!("IF {condition} THEN n := 1; END_IF"), "n"), n, "{condition}");
+    }
+    let wrong =
+        ["i > 2 and 9 / z = 0", "i <= 2 or 9 / z = 0", "not (i > 2 and 9 / z = 0)", "9 / z = 0 and i = 4"];
+    for condition in wrong {
+        let statement = format!("IF {condition} THEN n := 1; END_IF");
+        assert_eq!(fault(vars, &statement), FaultKind::DivisionByZero, "{condition}");
+    }
+}
+
 #[test]
 fn for_computes_its_ends_once_and_stops_at_the_end_of_its_type() {
     let vars =
