@@ -27,7 +27,8 @@
 //!
 //! [`scan`] (`scan.rs`), then one pass (`pass.rs`), then the consequences of a change
 //! of steps (`change.rs`), edges and timers (`watch.rs`), control blocks (`blocks.rs`).
-//! Code runs in `run.rs`, what is Boolean in `decision.rs`. `tables.rs` has the data and `check.rs` checks it;
+//! Code runs in `run.rs`, its instructions joined in `joined.rs`, what is Boolean in `decision.rs`.
+//! `tables.rs` has the data and `check.rs` checks it;
 //! `canonical.rs` and `reads.rs` are for those who search.
 //!
 //! Not here: names, places, drawings (`model`), real inputs and clocks (`host`).
@@ -51,6 +52,7 @@ mod fault;
 mod fb;
 mod fingerprint;
 mod gates;
+mod joined;
 mod layout;
 mod memory;
 mod moves;
@@ -64,6 +66,7 @@ mod rules;
 mod run;
 mod scan;
 mod scratch;
+mod stack;
 mod state;
 mod tables;
 pub mod text;

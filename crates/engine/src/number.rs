@@ -45,15 +45,33 @@ fn is_real(n: Num) -> bool {
 }
 
 /// Compares two words of a kind; NaN is only unequal.
+#[inline]
 pub fn compare(c: Cmp, n: Num, a: u64, b: u64) -> bool {
-    if is_real(n) {
-        return ordered(c, real(n, a).partial_cmp(&real(n, b)));
+    match n {
+        Num::F64 => is(c, f64::from_bits(a), f64::from_bits(b)),
+        Num::F32 => is(c, f32::from_bits(a as u32), f32::from_bits(b as u32)),
+        Num::I8 | Num::I16 | Num::I32 | Num::I64 => is(c, a as i64, b as i64),
+        Num::Bool | Num::U8 | Num::U16 | Num::U32 | Num::U64 => is(c, a, b),
     }
-    let order = match n {
-        Num::Bool | Num::U8 | Num::U16 | Num::U32 | Num::U64 => a.cmp(&b),
-        Num::I8 | Num::I16 | Num::I32 | Num::I64 | Num::F32 | Num::F64 => (a as i64).cmp(&(b as i64)),
-    };
-    ordered(c, Some(order))
+}
+
+#[inline(always)]
+fn is<T: PartialOrd>(c: Cmp, a: T, b: T) -> bool {
+    match c {
+        Cmp::Eq => a == b,
+        Cmp::Ne => a != b,
+        Cmp::Lt => a < b,
+        Cmp::Le => a <= b,
+        Cmp::Gt => a > b,
+        Cmp::Ge => a >= b,
+    }
+}
+
+/// LIMIT, which the standard defines as `MIN(MAX(v, least), most)`.
+#[inline]
+pub fn limit(n: Num, least: u64, v: u64, most: u64) -> u64 {
+    let low = if compare(Cmp::Lt, n, v, least) { least } else { v };
+    if compare(Cmp::Lt, n, most, low) { most } else { low }
 }
 
 /// True if a comparison is true. `None` stands for operands of which one is NaN; then
@@ -181,11 +199,7 @@ pub fn call(f: Builtin, n: Num, args: &[u64]) -> Result<u64, FaultKind> {
         Builtin::Atan => on_real(libm::atan),
         Builtin::Min => Ok(args.iter().copied().reduce(|a, b| if less(b, a) { b } else { a }).unwrap_or(0)),
         Builtin::Max => Ok(args.iter().copied().reduce(|a, b| if less(a, b) { b } else { a }).unwrap_or(0)),
-        Builtin::Limit => {
-            // The standard defines it as MIN(MAX(in, mn), mx).
-            let low = if less(arg(1), arg(0)) { arg(0) } else { arg(1) };
-            Ok(if less(arg(2), low) { arg(2) } else { low })
-        }
+        Builtin::Limit => Ok(limit(n, arg(0), arg(1), arg(2))),
         Builtin::Sel => Ok(if arg(0) == 0 { arg(1) } else { arg(2) }),
         Builtin::Mux => {
             let k = usize::try_from(arg(0) as i64).map_err(|_| FaultKind::Range)?;

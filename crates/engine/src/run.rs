@@ -5,9 +5,10 @@
 
 use crate::bits::{bit, set_bit, word};
 use crate::fault::{Fault, FaultKind};
+use crate::joined::{Compute, Operand, Sink, Source, Step};
 use crate::layout::{REQUESTS, START, head};
 use crate::memory::{read, write};
-use crate::number::{self, arith, call, compare, convert, negate, truncate};
+use crate::number::{self, arith, call, compare, convert, limit, negate, truncate};
 use crate::ops::{Addr, Code, GroupId, Op, Service, WORK};
 use crate::program::Program;
 use crate::state::State;
@@ -36,7 +37,7 @@ pub(crate) fn value(p: &Program, s: &mut State, code: Code) -> Result<u64, Fault
 #[inline(never)]
 fn interpreted(p: &Program, s: &mut State, code: Code) -> Result<u64, Fault> {
     run(p, s, code)?;
-    Ok(s.scratch.stack.pop().unwrap_or(0))
+    Ok(s.scratch.stack.pop())
 }
 
 /// True if a condition is true; an empty one is.
@@ -45,21 +46,29 @@ pub(crate) fn condition(p: &Program, s: &mut State, code: Code) -> Result<bool, 
     Ok(code.is_empty() || value(p, s, code)? != 0)
 }
 
-fn pop(s: &mut State) -> u64 {
-    s.scratch.stack.pop().unwrap_or(0)
+fn index(s: &mut State, len: u32) -> Result<u32, FaultKind> {
+    let i = s.scratch.stack.pop() as i64;
+    u32::try_from(i).ok().filter(|i| *i < len).ok_or(FaultKind::Range)
 }
 
-/// Applies `f` to the two values on top.
-fn two(s: &mut State, f: impl FnOnce(u64, u64) -> u64) {
-    let b = pop(s);
-    if let Some(a) = s.scratch.stack.last_mut() {
-        *a = f(*a, b);
+/// The value of an operand.
+#[inline(always)]
+fn take(p: &Program, s: &mut State, operand: Operand) -> u64 {
+    match operand.source() {
+        Source::Top => s.scratch.stack.pop(),
+        Source::Word(at) => word(&s.image, at),
+        Source::Constant(at) => match p.tables.code.get(at) {
+            Some(Op::Push(v)) => *v,
+            _ => 0,
+        },
     }
 }
 
-fn index(s: &mut State, len: u32) -> Result<u32, FaultKind> {
-    let i = pop(s) as i64;
-    u32::try_from(i).ok().filter(|i| *i < len).ok_or(FaultKind::Range)
+/// The values of two operands, the last of which is on top.
+#[inline(always)]
+fn take_two(p: &Program, s: &mut State, [a, b, _]: [Operand; 3]) -> (u64, u64) {
+    let b = take(p, s, b);
+    (take(p, s, a), b)
 }
 
 /// Runs code to its end.
@@ -67,80 +76,121 @@ pub(crate) fn run(p: &Program, s: &mut State, code: Code) -> Result<(), Fault> {
     s.scratch.worked = true;
     let mut pc = code.start;
     while pc < code.end {
-        let Some(op) = p.tables.code.get(pc as usize) else { break };
-        let at = pc;
-        pc += 1;
-        match *op {
-            Op::Push(v) => s.scratch.stack.push(v),
-            Op::Load(a) => {
-                let v = read(s, a);
-                s.scratch.stack.push(v);
-            }
-            Op::Store(a) => {
-                let v = pop(s);
-                write(p, s, a, v);
-            }
-            Op::Active(step) => {
-                let v = u64::from(s.steps.contains(&s.image, step.0));
-                s.scratch.stack.push(v);
-            }
-            Op::Rise(w) => {
-                let v = u64::from(bit(&s.image, p.layout.rise, w.0));
-                s.scratch.stack.push(v);
-            }
-            Op::Fall(w) => {
-                let v = u64::from(bit(&s.image, p.layout.fall, w.0));
-                s.scratch.stack.push(v);
-            }
-            Op::Timer(w) => {
-                let v = u64::from(bit(&s.image, p.layout.q, w.0));
-                s.scratch.stack.push(v);
-            }
-            Op::Not => {
-                if let Some(v) = s.scratch.stack.last_mut() {
-                    *v = u64::from(*v == 0);
-                }
-            }
-            Op::And => two(s, |a, b| a & b),
-            Op::Or => two(s, |a, b| a | b),
-            Op::Xor => two(s, |a, b| a ^ b),
-            Op::Compare(c, n) => two(s, |a, b| u64::from(compare(c, n, a, b))),
-            Op::Jump(to) => {
-                work(s, at, to)?;
-                pc = to;
-            }
-            Op::JumpUnless(to) => {
-                if pop(s) == 0 {
-                    work(s, at, to)?;
-                    pc = to;
-                }
-            }
-            Op::Return => break,
-            _ => rare(p, s, *op).map_err(|kind| Fault { kind, at: Some(at) })?,
+        let Some(step) = p.steps.get(pc as usize) else { break };
+        if pc + u32::from(step.len) <= code.end {
+            pc = make(p, s, step, pc)?;
+        } else {
+            // Another code goes on behind the end of this one.
+            pc = make(p, s, &Step::new(&p.tables.code, pc, code.end, s.vars), pc)?;
         }
     }
     Ok(())
 }
 
-/// Counts a jump back: a round of a loop. Jumps ahead come to an end by themselves.
-fn work(s: &mut State, at: u32, to: u32) -> Result<(), Fault> {
-    if to > at {
-        return Ok(());
+/// Makes one step; returns the place of the next one.
+#[inline(always)]
+fn make(p: &Program, s: &mut State, step: &Step, pc: u32) -> Result<u32, Fault> {
+    let next = pc + u32::from(step.len);
+    let fault = |kind| Fault { kind, at: Some(pc + u32::from(step.lead)) };
+    let value = match step.compute {
+        Compute::Same => take(p, s, step.operands[0]),
+        Compute::Not => u64::from(take(p, s, step.operands[0]) == 0),
+        Compute::And => {
+            let (a, b) = take_two(p, s, step.operands);
+            a & b
+        }
+        Compute::Or => {
+            let (a, b) = take_two(p, s, step.operands);
+            a | b
+        }
+        Compute::Xor => {
+            let (a, b) = take_two(p, s, step.operands);
+            a ^ b
+        }
+        Compute::Compare(c, n) => {
+            let (a, b) = take_two(p, s, step.operands);
+            u64::from(compare(c, n, a, b))
+        }
+        Compute::Arith(op, n) => {
+            let (a, b) = take_two(p, s, step.operands);
+            arith(op, n, a, b).map_err(fault)?
+        }
+        Compute::Neg(n) => negate(n, take(p, s, step.operands[0])).map_err(fault)?,
+        Compute::Convert(from, to) => convert(from, to, take(p, s, step.operands[0])).map_err(fault)?,
+        Compute::Limit(n) => {
+            let most = take(p, s, step.operands[2]);
+            let (least, v) = take_two(p, s, step.operands);
+            limit(n, least, v, most)
+        }
+        Compute::Sel => {
+            let on = take(p, s, step.operands[2]);
+            let (chosen, off) = take_two(p, s, step.operands);
+            if chosen == 0 { off } else { on }
+        }
+        Compute::Alone => return alone(p, s, pc),
+    };
+    match step.sink {
+        Sink::Push => s.scratch.stack.push(value),
+        Sink::Store(a) => write(p, s, a, value),
+        Sink::Unless(to) if value == 0 => return jump(s, next - 1, to),
+        Sink::When(to) if value != 0 => return jump(s, next - 1, to),
+        Sink::Unless(_) | Sink::When(_) => {}
     }
-    s.scratch.work += 1;
-    if s.scratch.work > WORK { Err(Fault { kind: FaultKind::Work, at: Some(at) }) } else { Ok(()) }
+    Ok(next)
 }
 
-/// The instructions that receptivities seldom have.
+/// Goes on at `to` behind the jump at `at`. A jump back is counted: a round of a loop. Jumps ahead
+/// come to an end by themselves.
+#[inline(always)]
+fn jump(s: &mut State, at: u32, to: u32) -> Result<u32, Fault> {
+    if to <= at {
+        s.scratch.work += 1;
+        if s.scratch.work > WORK {
+            return Err(Fault { kind: FaultKind::Work, at: Some(at) });
+        }
+    }
+    Ok(to)
+}
+
+/// Runs an instruction that stands alone; returns the place of the next one.
+#[inline(never)]
+fn alone(p: &Program, s: &mut State, pc: u32) -> Result<u32, Fault> {
+    match p.tables.code.get(pc as usize) {
+        Some(Op::Jump(to)) => jump(s, pc, *to),
+        Some(op) if *op != Op::Return => {
+            rare(p, s, *op).map_err(|kind| Fault { kind, at: Some(pc) })?;
+            Ok(pc + 1)
+        }
+        _ => Ok(u32::MAX),
+    }
+}
+
+/// The instructions that are not joined with others.
 fn rare(p: &Program, s: &mut State, op: Op) -> Result<(), FaultKind> {
     match op {
+        Op::Active(step) => {
+            let v = u64::from(s.steps.contains(&s.image, step.0));
+            s.scratch.stack.push(v);
+        }
+        Op::Rise(w) => {
+            let v = u64::from(bit(&s.image, p.layout.rise, w.0));
+            s.scratch.stack.push(v);
+        }
+        Op::Fall(w) => {
+            let v = u64::from(bit(&s.image, p.layout.fall, w.0));
+            s.scratch.stack.push(v);
+        }
+        Op::Timer(w) => {
+            let v = u64::from(bit(&s.image, p.layout.q, w.0));
+            s.scratch.stack.push(v);
+        }
         Op::LoadAt { base, len } => {
             let i = index(s, len)?;
             let v = read(s, Addr(base.0 + i));
             s.scratch.stack.push(v);
         }
         Op::StoreAt { base, len } => {
-            let v = pop(s);
+            let v = s.scratch.stack.pop();
             let i = index(s, len)?;
             write(p, s, Addr(base.0 + i), v);
         }
@@ -178,33 +228,19 @@ fn rare(p: &Program, s: &mut State, op: Op) -> Result<(), FaultKind> {
             let v = (s.step_time(p, step) / 100_000_000).clamp(0, 9999) as u64;
             s.scratch.stack.push(v);
         }
-        Op::Neg(n) => {
-            let v = negate(n, pop(s))?;
-            s.scratch.stack.push(v);
-        }
-        Op::Arith(a, n) => {
-            let r = pop(s);
-            let l = pop(s);
-            s.scratch.stack.push(arith(a, n, l, r)?);
-        }
-        Op::Convert(from, to) => {
-            let v = convert(from, to, pop(s))?;
-            s.scratch.stack.push(v);
-        }
         Op::Trunc(from, to) => {
-            let v = truncate(from, to, pop(s))?;
+            let v = truncate(from, to, s.scratch.stack.pop())?;
             s.scratch.stack.push(v);
         }
         Op::Call(f, n, count) => {
-            let from = s.scratch.stack.len().saturating_sub(usize::from(count));
-            let v = call(f, n, s.scratch.stack.get(from..).unwrap_or(&[]))?;
-            s.scratch.stack.truncate(from);
+            let v = call(f, n, s.scratch.stack.top(usize::from(count)))?;
+            s.scratch.stack.drop(usize::from(count));
             s.scratch.stack.push(v);
         }
         Op::Text { function, to, cap } => text::call(p, s, function, to, cap)?,
         Op::CompareText(c) => text::compare(s, c),
         Op::StoreText { to, cap } => {
-            let from = pop(s);
+            let from = s.scratch.stack.pop();
             text::copy(p, s, from, to, cap);
         }
         Op::ToText { from, time, to, cap } => text::from_number(p, s, from, time, to, cap),
@@ -221,23 +257,23 @@ fn rare(p: &Program, s: &mut State, op: Op) -> Result<(), FaultKind> {
             s.scratch.stack.push(number::random(seed));
         }
         Op::Drop => {
-            pop(s);
+            s.scratch.stack.pop();
         }
-        // `run` does the frequent ones.
+        // `joined.rs` joins them.
         Op::Push(_)
         | Op::Load(_)
         | Op::Store(_)
-        | Op::Active(_)
-        | Op::Rise(_)
-        | Op::Fall(_)
-        | Op::Timer(_)
         | Op::Not
         | Op::And
         | Op::Or
         | Op::Xor
+        | Op::Neg(_)
+        | Op::Arith(..)
         | Op::Compare(..)
-        | Op::Jump(_)
+        | Op::Convert(..)
         | Op::JumpUnless(_)
+        // `alone` has done them.
+        | Op::Jump(_)
         | Op::Return => {}
     }
     Ok(())

@@ -8,15 +8,16 @@ use alloc::boxed::Box;
 use alloc::vec;
 use alloc::vec::Vec;
 
-use crate::ops::{Addr, STACK};
+use crate::ops::Addr;
 use crate::program::Program;
+use crate::stack::Stack;
 use crate::tables::NONE;
 
 /// All lists have their room from the start, so that a scan never allocates.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Scratch {
     /// The stack of running code.
-    pub(crate) stack: Vec<u64>,
+    pub(crate) stack: Stack,
     /// Transitions (rank) that clear in this pass.
     pub(crate) fired: Vec<u32>,
     /// The only active step, where that is known; else `NONE` (`moves`).
@@ -124,7 +125,6 @@ impl Scratch {
         let looked_back = if p.looks_back { steps } else { 0 };
         let counted = if t.counts.is_some() { t.transitions.len() } else { 0 };
         Scratch {
-            stack: Vec::with_capacity(STACK),
             fired: Vec::with_capacity(t.transitions.len()),
             lone: NONE,
             worked: true,
@@ -172,7 +172,6 @@ impl Scratch {
         fn room<T>(to: &mut Vec<T>, of: &Vec<T>) {
             to.reserve_exact(of.capacity().saturating_sub(to.len()));
         }
-        room(&mut self.stack, &of.stack);
         room(&mut self.fired, &of.fired);
         room(&mut self.slow, &of.slow);
         room(&mut self.on, &of.on);

@@ -68,8 +68,8 @@ pub(crate) fn copy(p: &Program, s: &mut State, from: u64, to: Addr, cap: u16) {
 
 pub(crate) fn compare(s: &mut State, c: Cmp) {
     let mut b = buffers(s);
-    let right = s.scratch.stack.pop().unwrap_or(0);
-    let left = s.scratch.stack.pop().unwrap_or(0);
+    let right = s.scratch.stack.pop();
+    let left = s.scratch.stack.pop();
     load(s, left, &mut b[0]);
     load(s, right, &mut b[1]);
     let result = ordered(c, Some(b[0].cmp(&b[1])));
@@ -100,7 +100,7 @@ pub(crate) fn call(p: &Program, s: &mut State, f: Builtin, to: Addr, cap: u16) -
 
 /// Runs a string function: the result is in the third buffer, or is a number.
 fn work(s: &mut State, f: Builtin, b: &mut [Vec<u8>; 3]) -> Result<Option<u64>, FaultKind> {
-    let mut pop = || s.scratch.stack.pop().unwrap_or(0);
+    let mut pop = || s.scratch.stack.pop();
     let (numbers, strings) = match f {
         Builtin::Len => ([0, 0], [Some(pop()), None]),
         Builtin::Left | Builtin::Right => {
@@ -249,7 +249,7 @@ pub fn written(from: Num, time: bool, v: u64) -> String {
 }
 
 pub(crate) fn from_number(p: &Program, s: &mut State, from: Num, time: bool, to: Addr, cap: u16) {
-    let v = s.scratch.stack.pop().unwrap_or(0);
+    let v = s.scratch.stack.pop();
     let mut b = buffers(s);
     b[2].clear();
     let mut out = Out(&mut b[2]);
@@ -282,7 +282,7 @@ pub fn read_number(n: Num, bytes: &[u8]) -> Result<u64, FaultKind> {
 }
 
 pub(crate) fn to_number(s: &mut State, n: Num) -> Result<(), FaultKind> {
-    let at = s.scratch.stack.pop().unwrap_or(0);
+    let at = s.scratch.stack.pop();
     let mut b = buffers(s);
     load(s, at, &mut b[0]);
     let parsed = read_number(n, &b[0]);
