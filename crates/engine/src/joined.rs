@@ -11,6 +11,7 @@
 //! has no other way to run code.
 
 use alloc::boxed::Box;
+use alloc::vec::Vec;
 
 use crate::layout::Layout;
 use crate::ops::{Addr, Arith, Builtin, Cmp, Num, Op};
@@ -19,7 +20,8 @@ use crate::tables::Tables;
 /// Most operands of a step.
 const MOST: usize = 3;
 
-/// What a step computes from its operands.
+/// What a step computes from its operands. What is frequent has a word of its own, so that it is
+/// known after one look.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Compute {
     /// The operand.
@@ -28,16 +30,56 @@ pub(crate) enum Compute {
     And,
     Or,
     Xor,
+    /// Comparisons of signed and unsigned integers and of LREAL.
+    Signed(Orders),
+    Unsigned(Orders),
+    Real(Orders),
+    /// Arithmetic of LREAL, which has no fault.
+    Add,
+    Sub,
+    Mul,
+    /// LIMIT of LREAL.
+    Limit,
+    /// SEL of three operands.
+    Sel,
+    /// A comparison of REAL.
     Compare(Cmp, Num),
     Arith(Arith, Num),
     Neg(Num),
     Convert(Num, Num),
-    /// LIMIT of three operands.
-    Limit(Num),
-    /// SEL of three operands.
-    Sel,
     /// Nothing here: the instruction stands alone, and does with the stack what it does.
     Alone,
+}
+
+/// The orders of two values in which a comparison is true, a bit each.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Orders(u8);
+
+impl Orders {
+    /// One of the values is NaN.
+    const NONE: u8 = 1;
+    const GREATER: u8 = 1 << 1;
+    const LESS: u8 = 1 << 2;
+    const EQUAL: u8 = 1 << 3;
+
+    fn of(c: Cmp) -> Orders {
+        Orders(match c {
+            Cmp::Eq => Orders::EQUAL,
+            Cmp::Ne => Orders::LESS | Orders::GREATER | Orders::NONE,
+            Cmp::Lt => Orders::LESS,
+            Cmp::Le => Orders::LESS | Orders::EQUAL,
+            Cmp::Gt => Orders::GREATER,
+            Cmp::Ge => Orders::GREATER | Orders::EQUAL,
+        })
+    }
+
+    /// 1 if the order of two values is one of these, else 0.
+    #[inline(always)]
+    pub(crate) fn hold<T: PartialOrd>(self, a: T, b: T) -> u64 {
+        // The number of the bit: neither is true of NaN, both are of equal values.
+        let order = u64::from(a >= b) | u64::from(a <= b) << 1;
+        u64::from(self.0) >> order & 1
+    }
 }
 
 /// What becomes of the value of a step.
@@ -52,49 +94,19 @@ pub(crate) enum Sink {
     When(u32),
 }
 
-/// Where an operand comes from: two bits of kind, and a number.
+/// Where an operand comes from: a word of the image by its place, a constant by its place behind
+/// these words, or the stack.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Operand(u32);
-
-/// An [`Operand`], taken apart.
-pub(crate) enum Source {
-    /// Popped.
-    Top,
-    /// A word of the image.
-    Word(usize),
-    /// The constant that this instruction pushes.
-    Constant(usize),
-}
+pub(crate) struct Operand(pub(crate) u32);
 
 impl Operand {
-    const TOP: Operand = Operand(0);
-    const KIND: u32 = 30;
-    const WORD: u32 = 1 << Operand::KIND;
-    const CONSTANT: u32 = 2 << Operand::KIND;
-
-    /// The operand that an instruction pushes. Numbers of 30 bits suffice: `check.rs` refuses larger
-    /// tables.
-    fn of(op: Op, at: u32, vars: u32) -> Option<Operand> {
-        match op {
-            Op::Load(a) => Some(Operand(Operand::WORD | (vars + a.0))),
-            Op::Push(_) => Some(Operand(Operand::CONSTANT | at)),
-            _ => None,
-        }
-    }
-
-    #[inline(always)]
-    pub(crate) fn source(self) -> Source {
-        let number = (self.0 & (Operand::WORD - 1)) as usize;
-        match self.0 >> Operand::KIND {
-            0 => Source::Top,
-            1 => Source::Word(number),
-            _ => Source::Constant(number),
-        }
-    }
+    /// Popped.
+    pub(crate) const TOP: Operand = Operand(u32::MAX);
 }
 
-/// One step.
+/// One step. It is found by a shift of its number.
 #[derive(Clone, Copy, Debug)]
+#[repr(align(32))]
 pub(crate) struct Step {
     pub(crate) compute: Compute,
     pub(crate) sink: Sink,
@@ -106,20 +118,43 @@ pub(crate) struct Step {
     pub(crate) len: u8,
 }
 
-/// A step for each instruction.
-pub(crate) fn steps(t: &Tables, l: &Layout) -> Box<[Step]> {
-    let end = t.code.len() as u32;
-    (0..end).map(|at| Step::new(&t.code, at, end, l.vars)).collect()
+/// The code of a program as steps.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Joined {
+    /// A step for each instruction.
+    pub(crate) steps: Box<[Step]>,
+    /// What instructions push, ascending and without repetition.
+    pub(crate) constants: Box<[u64]>,
+    /// Number of words of the image.
+    pub(crate) words: u32,
+    /// The place of the variable area there.
+    vars: u32,
 }
 
-impl Step {
+impl Joined {
+    pub(crate) fn new(t: &Tables, l: &Layout) -> Joined {
+        let pushed = |op: &Op| if let Op::Push(v) = op { Some(*v) } else { None };
+        let mut constants: Vec<u64> = t.code.iter().filter_map(pushed).collect();
+        constants.sort_unstable();
+        constants.dedup();
+        let mut joined = Joined {
+            constants: constants.into_boxed_slice(),
+            words: l.len,
+            vars: l.vars,
+            ..Joined::default()
+        };
+        let end = t.code.len() as u32;
+        joined.steps = (0..end).map(|at| joined.step(&t.code, at, end)).collect();
+        joined
+    }
+
     /// The step that begins at an instruction and ends no later than `end`.
-    pub(crate) fn new(code: &[Op], at: u32, end: u32, vars: u32) -> Step {
+    pub(crate) fn step(&self, code: &[Op], at: u32, end: u32) -> Step {
         let op = |k: usize| code.get(at as usize + k).copied().filter(|_| at as usize + k < end as usize);
         let mut given = [Operand::TOP; MOST];
         let mut lead = 0;
         for (slot, k) in given.iter_mut().zip(0..) {
-            let Some(operand) = op(k).and_then(|op| Operand::of(op, at + k as u32, vars)) else { break };
+            let Some(operand) = op(k).and_then(|op| self.operand(op)) else { break };
             *slot = operand;
             lead = k + 1;
         }
@@ -137,6 +172,16 @@ impl Step {
         };
         Step { compute, sink, operands: given, lead: lead as u8, len: (lead + own + more) as u8 }
     }
+
+    /// The operand that an instruction pushes. There are fewer words and constants than [`Operand::TOP`]:
+    /// `check.rs` refuses larger tables.
+    fn operand(&self, op: Op) -> Option<Operand> {
+        match op {
+            Op::Load(a) => Some(Operand(self.vars + a.0)),
+            Op::Push(v) => self.constants.binary_search(&v).ok().map(|at| Operand(self.words + at as u32)),
+            _ => None,
+        }
+    }
 }
 
 /// What an instruction computes, from how many operands, and 1 where it is more than a sink.
@@ -149,11 +194,29 @@ fn computation(op: Op) -> (Compute, usize, usize) {
         Op::And => (Compute::And, 2, 1),
         Op::Or => (Compute::Or, 2, 1),
         Op::Xor => (Compute::Xor, 2, 1),
-        Op::Compare(c, n) => (Compute::Compare(c, n), 2, 1),
-        Op::Arith(a, n) => (Compute::Arith(a, n), 2, 1),
-        Op::Call(Builtin::Limit, n, 3) => (Compute::Limit(n), 3, 1),
+        Op::Compare(c, n) => (comparison(c, n), 2, 1),
+        Op::Arith(a, n) => (arithmetic(a, n), 2, 1),
+        Op::Call(Builtin::Limit, Num::F64, 3) => (Compute::Limit, 3, 1),
         Op::Call(Builtin::Sel, _, 3) => (Compute::Sel, 3, 1),
         _ => (Compute::Alone, 0, 1),
+    }
+}
+
+fn comparison(c: Cmp, n: Num) -> Compute {
+    match n {
+        Num::I8 | Num::I16 | Num::I32 | Num::I64 => Compute::Signed(Orders::of(c)),
+        Num::Bool | Num::U8 | Num::U16 | Num::U32 | Num::U64 => Compute::Unsigned(Orders::of(c)),
+        Num::F64 => Compute::Real(Orders::of(c)),
+        Num::F32 => Compute::Compare(c, n),
+    }
+}
+
+fn arithmetic(a: Arith, n: Num) -> Compute {
+    match (a, n) {
+        (Arith::Add, Num::F64) => Compute::Add,
+        (Arith::Sub, Num::F64) => Compute::Sub,
+        (Arith::Mul, Num::F64) => Compute::Mul,
+        _ => Compute::Arith(a, n),
     }
 }
 

@@ -12,12 +12,19 @@ pub(crate) fn read(s: &State, addr: Addr) -> u64 {
 }
 
 /// Writes a word of the variable area, and marks the watches that read it.
-#[inline]
+#[inline(always)]
 pub(crate) fn write(p: &Program, s: &mut State, addr: Addr, value: u64) {
+    // Parallel actions also conflict over a word that one of them leaves unchanged.
+    if s.scratch.logging || read(s, addr) != value {
+        change(p, s, addr, value);
+    }
+}
+
+/// Writes a word that changes, or that an action gives.
+fn change(p: &Program, s: &mut State, addr: Addr, value: u64) {
     let at = (s.vars + addr.0) as usize;
     let old = word(&s.image, at);
     let lasts = addr.0 < p.locals;
-    // Parallel actions also conflict over a word that one of them leaves unchanged.
     if s.scratch.logging && lasts {
         log(s, addr, old);
     }

@@ -10,7 +10,7 @@ use crate::clocks::{Clocks, clocks};
 use crate::decision::Decisions;
 use crate::fingerprint::fingerprint;
 use crate::gates::{GATE, Gates};
-use crate::joined::{Step, steps};
+use crate::joined::Joined;
 use crate::layout::Layout;
 use crate::ops::{Op, TEXT};
 use crate::rows::{Hot, Move, hot, moves};
@@ -74,8 +74,8 @@ pub struct Program {
     pub(crate) gates: Gates,
     /// The code that is evaluated as tests.
     pub(crate) decisions: Decisions,
-    /// The steps in which other code runs, one for each instruction.
-    pub(crate) steps: Box<[Step]>,
+    /// The steps in which other code runs.
+    pub(crate) joined: Joined,
 }
 
 impl Program {
@@ -152,7 +152,7 @@ impl Program {
             clocks: clocks(&t, &layout),
             gates,
             decisions,
-            steps: steps(&t, &layout),
+            joined: Joined::new(&t, &layout),
             fingerprint: fingerprint(&t),
             layout,
             tables: t,

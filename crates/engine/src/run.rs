@@ -5,11 +5,11 @@
 
 use crate::bits::{bit, set_bit, word};
 use crate::fault::{Fault, FaultKind};
-use crate::joined::{Compute, Operand, Sink, Source, Step};
+use crate::joined::{Compute, Operand, Sink, Step};
 use crate::layout::{REQUESTS, START, head};
 use crate::memory::{read, write};
 use crate::number::{self, arith, call, compare, convert, limit, negate, truncate};
-use crate::ops::{Addr, Code, GroupId, Op, Service, WORK};
+use crate::ops::{Addr, Code, GroupId, Num, Op, Service, WORK};
 use crate::program::Program;
 use crate::state::State;
 use crate::tables::{NONE, Receptivity};
@@ -54,14 +54,19 @@ fn index(s: &mut State, len: u32) -> Result<u32, FaultKind> {
 /// The value of an operand.
 #[inline(always)]
 fn take(p: &Program, s: &mut State, operand: Operand) -> u64 {
-    match operand.source() {
-        Source::Top => s.scratch.stack.pop(),
-        Source::Word(at) => word(&s.image, at),
-        Source::Constant(at) => match p.tables.code.get(at) {
-            Some(Op::Push(v)) => *v,
-            _ => 0,
-        },
+    match s.image.get(operand.0 as usize) {
+        Some(word) => *word,
+        None => aside(p, s, operand),
     }
+}
+
+/// The value of an operand that is no word.
+#[inline(always)]
+fn aside(p: &Program, s: &mut State, operand: Operand) -> u64 {
+    if operand == Operand::TOP {
+        return s.scratch.stack.pop();
+    }
+    word(&p.joined.constants, operand.0.wrapping_sub(p.joined.words) as usize)
 }
 
 /// The values of two operands, the last of which is on top.
@@ -71,18 +76,26 @@ fn take_two(p: &Program, s: &mut State, [a, b, _]: [Operand; 3]) -> (u64, u64) {
     (take(p, s, a), b)
 }
 
+/// The same as LREAL.
+#[inline(always)]
+fn take_reals(p: &Program, s: &mut State, operands: [Operand; 3]) -> (f64, f64) {
+    let (a, b) = take_two(p, s, operands);
+    (f64::from_bits(a), f64::from_bits(b))
+}
+
 /// Runs code to its end.
 pub(crate) fn run(p: &Program, s: &mut State, code: Code) -> Result<(), Fault> {
     s.scratch.worked = true;
+    let steps = p.joined.steps.get(..code.end as usize).unwrap_or(&[]);
     let mut pc = code.start;
-    while pc < code.end {
-        let Some(step) = p.steps.get(pc as usize) else { break };
-        if pc + u32::from(step.len) <= code.end {
-            pc = make(p, s, step, pc)?;
-        } else {
+    while let Some(mut step) = steps.get(pc as usize) {
+        let shorter;
+        if pc + u32::from(step.len) > code.end {
             // Another code goes on behind the end of this one.
-            pc = make(p, s, &Step::new(&p.tables.code, pc, code.end, s.vars), pc)?;
+            shorter = p.joined.step(&p.tables.code, pc, code.end);
+            step = &shorter;
         }
+        pc = make(p, s, step, pc)?;
     }
     Ok(())
 }
@@ -91,42 +104,67 @@ pub(crate) fn run(p: &Program, s: &mut State, code: Code) -> Result<(), Fault> {
 #[inline(always)]
 fn make(p: &Program, s: &mut State, step: &Step, pc: u32) -> Result<u32, Fault> {
     let next = pc + u32::from(step.len);
+    let operands = step.operands;
     let fault = |kind| Fault { kind, at: Some(pc + u32::from(step.lead)) };
     let value = match step.compute {
-        Compute::Same => take(p, s, step.operands[0]),
-        Compute::Not => u64::from(take(p, s, step.operands[0]) == 0),
+        Compute::Same => take(p, s, operands[0]),
+        Compute::Not => u64::from(take(p, s, operands[0]) == 0),
         Compute::And => {
-            let (a, b) = take_two(p, s, step.operands);
+            let (a, b) = take_two(p, s, operands);
             a & b
         }
         Compute::Or => {
-            let (a, b) = take_two(p, s, step.operands);
+            let (a, b) = take_two(p, s, operands);
             a | b
         }
         Compute::Xor => {
-            let (a, b) = take_two(p, s, step.operands);
+            let (a, b) = take_two(p, s, operands);
             a ^ b
         }
+        Compute::Signed(orders) => {
+            let (a, b) = take_two(p, s, operands);
+            orders.hold(a as i64, b as i64)
+        }
+        Compute::Unsigned(orders) => {
+            let (a, b) = take_two(p, s, operands);
+            orders.hold(a, b)
+        }
+        Compute::Real(orders) => {
+            let (a, b) = take_reals(p, s, operands);
+            orders.hold(a, b)
+        }
+        Compute::Add => {
+            let (a, b) = take_reals(p, s, operands);
+            (a + b).to_bits()
+        }
+        Compute::Sub => {
+            let (a, b) = take_reals(p, s, operands);
+            (a - b).to_bits()
+        }
+        Compute::Mul => {
+            let (a, b) = take_reals(p, s, operands);
+            (a * b).to_bits()
+        }
+        Compute::Limit => {
+            let most = take(p, s, operands[2]);
+            let (least, v) = take_two(p, s, operands);
+            limit(Num::F64, least, v, most)
+        }
+        Compute::Sel => {
+            let on = take(p, s, operands[2]);
+            let (chosen, off) = take_two(p, s, operands);
+            if chosen == 0 { off } else { on }
+        }
         Compute::Compare(c, n) => {
-            let (a, b) = take_two(p, s, step.operands);
+            let (a, b) = take_two(p, s, operands);
             u64::from(compare(c, n, a, b))
         }
         Compute::Arith(op, n) => {
-            let (a, b) = take_two(p, s, step.operands);
+            let (a, b) = take_two(p, s, operands);
             arith(op, n, a, b).map_err(fault)?
         }
-        Compute::Neg(n) => negate(n, take(p, s, step.operands[0])).map_err(fault)?,
-        Compute::Convert(from, to) => convert(from, to, take(p, s, step.operands[0])).map_err(fault)?,
-        Compute::Limit(n) => {
-            let most = take(p, s, step.operands[2]);
-            let (least, v) = take_two(p, s, step.operands);
-            limit(n, least, v, most)
-        }
-        Compute::Sel => {
-            let on = take(p, s, step.operands[2]);
-            let (chosen, off) = take_two(p, s, step.operands);
-            if chosen == 0 { off } else { on }
-        }
+        Compute::Neg(n) => negate(n, take(p, s, operands[0])).map_err(fault)?,
+        Compute::Convert(from, to) => convert(from, to, take(p, s, operands[0])).map_err(fault)?,
         Compute::Alone => return alone(p, s, pc),
     };
     match step.sink {

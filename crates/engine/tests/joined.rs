@@ -8,7 +8,7 @@ mod common;
 use common::{Chance, chart};
 use g7_engine::{
     Action, Addr, Arith, Builtin, Cmp, Code, Fault, FaultKind, Num, Op, Program, Rows, Rules, State, StepId,
-    WORK, eval,
+    WORK, eval, number,
 };
 
 /// Words that code reads and writes; those behind them count the rounds of loops.
@@ -233,6 +233,70 @@ fn random_code_does_the_same_joined_and_one_instruction_at_a_time() {
         }
     }
     assert!(values > 1000 && faults > 1000, "{values} values, {faults} faults");
+}
+
+/// The values of every kind that are compared and computed with.
+fn values(n: Num) -> Vec<u64> {
+    let reals = [f64::NAN, f64::NEG_INFINITY, -2.5, -0.0, 0.0, 1.0, 1e300, f64::INFINITY];
+    match n {
+        Num::F64 => reals.map(f64::to_bits).to_vec(),
+        Num::F32 => reals.map(|r| u64::from((r as f32).to_bits())).to_vec(),
+        Num::I8 | Num::I16 | Num::I32 | Num::I64 => [-128i64, -1, 0, 1, 127].map(|v| v as u64).to_vec(),
+        Num::Bool => vec![0, 1],
+        Num::U8 | Num::U16 | Num::U32 => vec![0, 1, 255],
+        Num::U64 => vec![0, 1, u64::MAX],
+    }
+}
+
+/// The interpreter computes as `number.rs` does, which has tests of its own against the standard.
+#[test]
+fn instructions_compute_as_the_functions_of_numbers_do() {
+    let kinds = [
+        Num::Bool,
+        Num::I8,
+        Num::I16,
+        Num::I32,
+        Num::I64,
+        Num::U8,
+        Num::U16,
+        Num::U32,
+        Num::U64,
+        Num::F32,
+        Num::F64,
+    ];
+    let comparisons = [Cmp::Eq, Cmp::Ne, Cmp::Lt, Cmp::Le, Cmp::Gt, Cmp::Ge];
+    let operations = [Arith::Add, Arith::Sub, Arith::Mul, Arith::Div, Arith::Mod];
+    for n in kinds {
+        let values = values(n);
+        let pairs = || values.iter().flat_map(|a| values.iter().map(|b| (*a, *b)));
+        for c in comparisons {
+            let code = [Op::Load(Addr(0)), Op::Load(Addr(1)), Op::Compare(c, n)];
+            for (a, b) in pairs() {
+                let wanted = Ok(u64::from(number::compare(c, n, a, b)));
+                assert_eq!(same(&[a, b], &code, 3), wanted, "{c:?} {n:?} {a:x} {b:x}");
+            }
+        }
+        for op in operations {
+            let code = [Op::Load(Addr(0)), Op::Load(Addr(1)), Op::Arith(op, n)];
+            for (a, b) in pairs() {
+                let wanted = number::arith(op, n, a, b).map_err(|kind| Fault { kind, at: Some(2) });
+                assert_eq!(same(&[a, b], &code, 3), wanted, "{op:?} {n:?} {a:x} {b:x}");
+            }
+        }
+        for (f, g) in [(Builtin::Limit, n), (Builtin::Sel, n)] {
+            let code = [Op::Load(Addr(0)), Op::Load(Addr(1)), Op::Load(Addr(2)), Op::Call(f, g, 3)];
+            for (a, b) in pairs() {
+                for c in &values {
+                    let words = [a, b, *c];
+                    assert_eq!(
+                        same(&words, &code, 4).ok(),
+                        number::call(f, g, &words).ok(),
+                        "{f:?} {g:?} {words:x?}"
+                    );
+                }
+            }
+        }
+    }
 }
 
 /// A code may end where another one goes on: a condition within a body, for example.
