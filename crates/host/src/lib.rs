@@ -25,6 +25,7 @@
 //! signals.
 #![forbid(unsafe_code)]
 
+mod chunks;
 mod clock;
 mod hash;
 mod record;

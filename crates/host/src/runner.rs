@@ -219,9 +219,9 @@ impl Runner {
     }
 
     /// The output words that the plant and the devices get.
-    pub fn outputs(&self) -> Vec<u64> {
+    pub fn outputs(&self) -> &[u64] {
         let rows = self.program.tables().outputs;
-        (rows.start..rows.end).map(|a| self.state.word(Addr(a))).collect()
+        self.state.words().get(rows.start as usize..rows.end as usize).unwrap_or(&[])
     }
 
     /// Sets an input word, counted from the first. If the plant drives it, the plant overwrites it
@@ -391,20 +391,23 @@ impl Runner {
 
     fn take_inputs(&mut self) {
         self.read.clone_from(&self.inputs);
-        for (what, value) in self.forces.clone() {
+        // Put back below: what is set meanwhile is the state, and no force.
+        let forces = std::mem::take(&mut self.forces);
+        for (what, value) in &forces {
             match what {
                 Force::Input(index) => {
-                    if let Some(word) = self.read.get_mut(index as usize) {
-                        *word = value;
+                    if let Some(word) = self.read.get_mut(*index as usize) {
+                        *word = *value;
                     }
                 }
                 Force::Output(addr) => {
-                    let own = self.own.get(&addr).copied().unwrap_or(value);
-                    self.set_word(addr, own);
+                    let own = self.own.get(addr).copied().unwrap_or(*value);
+                    self.set_word(*addr, own);
                 }
-                Force::Variable(addr) => self.set_word(addr, value),
+                Force::Variable(addr) => self.set_word(*addr, *value),
             }
         }
+        self.forces = forces;
     }
 
     fn evolve(&mut self, now: Nanos) -> Result<Report, Halt> {
@@ -413,14 +416,16 @@ impl Runner {
             tape.scan(now, &self.read, &self.state);
         }
         if done.is_ok() {
-            for (what, value) in self.forces.clone() {
+            let forces = std::mem::take(&mut self.forces);
+            for (what, value) in &forces {
                 if let Force::Output(addr) = what {
-                    self.own.insert(addr, self.state.word(addr));
+                    self.own.insert(*addr, self.state.word(*addr));
                 }
                 if let Force::Output(addr) | Force::Variable(addr) = what {
-                    self.set_word(addr, value);
+                    self.set_word(*addr, *value);
                 }
             }
+            self.forces = forces;
         }
         done.map_err(Halt::Charts)
     }

@@ -1,6 +1,7 @@
 //! A tape: everything that entered the charts, scan by scan, so that the run can be replayed.
 
-use crate::hash::Fnv;
+use crate::chunks::Chunks;
+use crate::hash::digest;
 use g7_engine::{Addr, Program, State, scan};
 use g7_model::Nanos;
 
@@ -15,10 +16,19 @@ enum Event {
     Restart,
 }
 
+/// The first word of an event: its kind, and above it the address or the number of changed inputs.
+const SCAN: u64 = 0;
+const WRITE: u64 = 1;
+const RESTART: u64 = 2;
+const KIND: u32 = 2;
+
 /// The record of everything that entered a program.
 #[derive(Clone, Debug, Default)]
 pub struct Tape {
-    events: Vec<Event>,
+    /// The events one behind the other: a scan is its first word, instant, digest, and two words for
+    /// each changed input; a write is its first word and the value.
+    words: Chunks,
+    scans: usize,
     /// The inputs that the latest scan read.
     inputs: Vec<u64>,
 }
@@ -32,36 +42,79 @@ pub struct Divergence {
     pub now: Nanos,
 }
 
-const HEAD: &str = "g7 tape 1";
+const HEAD: &str = "g7 tape 2";
 
 impl Tape {
     /// An empty tape, for a program before its first scan.
     pub fn new(program: &Program) -> Tape {
         let rows = program.tables().inputs;
-        Tape { events: Vec::new(), inputs: vec![0; (rows.end - rows.start) as usize] }
+        Tape::of_inputs((rows.end - rows.start) as usize)
+    }
+
+    fn of_inputs(count: usize) -> Tape {
+        Tape { words: Chunks::new(), scans: 0, inputs: vec![0; count] }
     }
 
     pub(crate) fn write(&mut self, addr: Addr, value: u64) {
-        self.events.push(Event::Write(addr.0, value));
+        self.words.push(WRITE | u64::from(addr.0) << KIND);
+        self.words.push(value);
     }
 
     pub(crate) fn restart(&mut self) {
-        self.events.push(Event::Restart);
+        self.words.push(RESTART);
     }
 
     pub(crate) fn scan(&mut self, now: Nanos, inputs: &[u64], state: &State) {
-        let changed = (0u32..)
-            .zip(self.inputs.iter().zip(inputs))
-            .filter(|(_, (before, value))| before != value)
-            .map(|(i, (_, value))| (i, *value))
-            .collect();
-        self.inputs = inputs.to_vec();
-        self.events.push(Event::Scan { now, changed, digest: digest(state) });
+        let changed = || (0u64..).zip(self.inputs.iter().zip(inputs)).filter(|(_, (old, new))| old != new);
+        let words = &mut self.words;
+        words.push(SCAN | (changed().count() as u64) << KIND);
+        words.push(now.count() as u64);
+        words.push(digest_of(state));
+        changed().for_each(|(i, (_, new))| {
+            words.push(i);
+            words.push(*new);
+        });
+        self.inputs.clear();
+        self.inputs.extend_from_slice(inputs);
+        self.scans += 1;
+    }
+
+    /// Adds an event that was read.
+    fn push(&mut self, event: &Event) {
+        match event {
+            Event::Write(addr, value) => self.write(Addr(*addr), *value),
+            Event::Restart => self.restart(),
+            Event::Scan { now, changed, digest } => {
+                let head = [SCAN | (changed.len() as u64) << KIND, now.count() as u64, *digest];
+                head.into_iter().for_each(|word| self.words.push(word));
+                for (i, value) in changed {
+                    self.words.push(u64::from(*i));
+                    self.words.push(*value);
+                }
+                self.scans += 1;
+            }
+        }
+    }
+
+    fn events(&self) -> impl Iterator<Item = Event> + '_ {
+        let mut words = self.words.iter();
+        std::iter::from_fn(move || {
+            let first = words.next()?;
+            Some(match first & ((1 << KIND) - 1) {
+                SCAN => {
+                    let (now, digest) = (Nanos::new(words.next()? as i64), words.next()?);
+                    let change = |_| Some((words.next()? as u32, words.next()?));
+                    Event::Scan { now, changed: (0..first >> KIND).map_while(change).collect(), digest }
+                }
+                WRITE => Event::Write((first >> KIND) as u32, words.next()?),
+                _ => Event::Restart,
+            })
+        })
     }
 
     /// The number of scans.
     pub fn scans(&self) -> usize {
-        self.events.iter().filter(|e| matches!(e, Event::Scan { .. })).count()
+        self.scans
     }
 
     /// Replays the tape and compares every state with the recorded one; `seen` is called with each
@@ -79,22 +132,22 @@ impl Tape {
         let rows = program.tables().inputs;
         let mut inputs = vec![0; (rows.end - rows.start) as usize];
         let mut number = 0;
-        for event in &self.events {
+        for event in self.events() {
             match event {
-                Event::Write(addr, value) => state.set_word(program, Addr(*addr), *value),
+                Event::Write(addr, value) => state.set_word(program, Addr(addr), value),
                 Event::Restart => state = State::new(program),
                 Event::Scan { now, changed, digest: expected } => {
                     for (i, value) in changed {
-                        if let Some(word) = inputs.get_mut(*i as usize) {
-                            *word = *value;
+                        if let Some(word) = inputs.get_mut(i as usize) {
+                            *word = value;
                         }
                     }
                     // A fault is recorded in the state, so the comparison covers it.
                     scan(program, &mut state, &inputs, now.count()).ok();
-                    if digest(&state) != *expected {
-                        return Err(Divergence { scan: number, now: *now });
+                    if digest_of(&state) != expected {
+                        return Err(Divergence { scan: number, now });
                     }
-                    seen(*now, &state);
+                    seen(now, &state);
                     number += 1;
                 }
             }
@@ -105,7 +158,7 @@ impl Tape {
     /// The tape as text, one event per line.
     pub fn to_text(&self) -> String {
         let mut out = format!("{HEAD} {}\n", self.inputs.len());
-        for event in &self.events {
+        for event in self.events() {
             match event {
                 Event::Write(addr, value) => out.push_str(&format!("w {addr} {value:x}\n")),
                 Event::Restart => out.push_str("r\n"),
@@ -129,7 +182,7 @@ impl Tape {
             return None;
         }
         let hex = |w: &str| u64::from_str_radix(w, 16).ok();
-        let mut tape = Tape { events: Vec::new(), inputs: vec![0; inputs] };
+        let mut tape = Tape::of_inputs(inputs);
         for line in lines {
             let mut words = line.split(' ');
             let event = match words.next()? {
@@ -146,17 +199,14 @@ impl Tape {
                 }
                 _ => return None,
             };
-            tape.events.push(event);
+            tape.push(&event);
         }
         Some(tape)
     }
 }
 
-/// A hash of the memory of a state. It tells two runs apart but does not prove them
-/// equal. The first word of the image is left out: it differs between programs, and
-/// a recording is also replayed on a chart that was changed.
-fn digest(state: &State) -> u64 {
-    let mut hash = Fnv::default();
-    state.image().iter().skip(1).for_each(|word| hash.add(&word.to_le_bytes()));
-    hash.value()
+/// A digest of the memory of a state. The first word of the image is left out: it differs between
+/// programs, and a recording is also replayed on a chart that was changed.
+fn digest_of(state: &State) -> u64 {
+    digest(state.image().get(1..).unwrap_or(&[]))
 }

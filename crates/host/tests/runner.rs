@@ -48,7 +48,7 @@ fn scans_come_at_the_period_with_the_inputs_of_then() {
         assert_eq!(runner.due(), PERIOD * scan);
         runner.set_input(0, input);
         runner.scan().unwrap();
-        assert_eq!((runner.state().now(), runner.outputs()), (scan * 10, vec![input]));
+        assert_eq!((runner.state().now(), runner.outputs()), (scan * 10, &[input][..]));
     }
 }
 
@@ -156,7 +156,8 @@ fn a_tape_plays_back_to_the_same_bytes_and_notices_another_program() {
     assert_eq!((state.to_bytes(), seen), (runner.state().to_bytes(), 50));
     let other = adder();
     assert_eq!(read.replay(&other, |_, _| {}).unwrap_err().scan, 0);
-    for bad in ["", "g7 tape 1 x", "g7 tape 1 1\nz", "g7 tape 1 1\ns 1", "g7 tape 1 1\nw 1"] {
+    for bad in ["", "g7 tape 1 1\n", "g7 tape 2 x", "g7 tape 2 1\nz", "g7 tape 2 1\ns 1", "g7 tape 2 1\nw 1"]
+    {
         assert!(Tape::from_text(bad).is_none(), "{bad:?}");
     }
 }
