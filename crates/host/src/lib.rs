@@ -39,7 +39,7 @@ pub use hash::Fnv;
 pub use record::chronogram::{Chronogram, Lane, Style};
 pub use record::csv::write_csv;
 pub use record::vcd::write_vcd;
-pub use record::{Kind, Recording, Signal, Value};
+pub use record::{Kind, Recording, Sample, Signal, Value};
 pub use retain::{Layout, RetainError, Retained, write_whole};
 pub use runner::{Coupling, Force, Halt, Runner, Start};
 pub use tape::{Divergence, Tape};

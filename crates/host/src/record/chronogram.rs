@@ -160,7 +160,7 @@ fn lane(recording: &Recording, index: usize, signal: &Signal, grid: &Grid) -> La
 fn logic(recording: &Recording, index: usize, grid: &Grid) -> String {
     let mut edges: Vec<(u32, bool)> = vec![(0, false); grid.columns];
     for (at, value) in recording.changes(index).skip(1) {
-        if let Some(cell) = grid.column(*at).and_then(|c| edges.get_mut(c)) {
+        if let Some(cell) = grid.column(at).and_then(|c| edges.get_mut(c)) {
             *cell = (cell.0 + 1, value.word() != 0);
         }
     }
@@ -180,7 +180,7 @@ fn logic(recording: &Recording, index: usize, grid: &Grid) -> String {
 /// The character for the column in which the recording begins; columns before it are blank.
 fn first_later(recording: &Recording, index: usize, grid: &Grid, column: usize) -> char {
     match recording.changes(index).next() {
-        Some((at, value)) if grid.column(*at) == Some(column) => {
+        Some((at, value)) if grid.column(at) == Some(column) => {
             if value.word() != 0 {
                 '▔'
             } else {
@@ -220,11 +220,11 @@ fn curve(recording: &Recording, index: usize, kind: Kind, grid: &Grid) -> (Strin
 /// Draws values as `0····│1····│2`: each value stands after the bar at which it begins.
 fn bus(recording: &Recording, index: usize, kind: Kind, grid: &Grid) -> String {
     let mut cells = vec!['·'; grid.columns];
-    let mut starts: Vec<(usize, Option<&Value>, bool)> =
+    let mut starts: Vec<(usize, Option<Value>, bool)> =
         vec![(0, recording.value_at(index, grid.from), false)];
     for (n, (at, value)) in recording.changes(index).enumerate() {
-        let shown = *at > grid.from || (n == 0 && *at == grid.from);
-        if let Some(column) = grid.column(*at).filter(|_| shown) {
+        let shown = at > grid.from || (n == 0 && at == grid.from);
+        if let Some(column) = grid.column(at).filter(|_| shown) {
             starts.push((column, Some(value), n > 0));
         }
     }
@@ -235,7 +235,7 @@ fn bus(recording: &Recording, index: usize, kind: Kind, grid: &Grid) -> String {
             run.fill(blank);
         }
         let mut text: Vec<char> = if *bar { vec!['│'] } else { Vec::new() };
-        text.extend(value.map_or_else(String::new, |v| v.show(kind)).chars().map(visible));
+        text.extend(value.as_ref().map_or_else(String::new, |v| v.show(kind)).chars().map(visible));
         if text.len() > end.saturating_sub(*column) {
             text.truncate(usize::from(*bar));
         }
@@ -260,11 +260,14 @@ fn shorten(name: &str, most: usize) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::{Sample, write_text};
 
     fn one(kind: Kind, samples: &[(i64, Value)], columns: usize, to: i64) -> Lane {
         let mut r = Recording::new(vec![Signal { group: "inputs", name: "a".into(), kind }]);
         for (at, value) in samples {
-            r.sample(Nanos::new(*at), [value.clone()]);
+            let text = write_text(&value.show(kind), 4);
+            let sample = if kind == Kind::Text { Sample::Text(&text) } else { Sample::Word(value.word()) };
+            r.sample(Nanos::new(*at), [sample]);
         }
         let mut drawn = Chronogram::new(&r, [0], style(columns, 0, to, to));
         drawn.lanes.remove(0)
@@ -287,7 +290,7 @@ mod tests {
     #[test]
     fn what_is_not_known_yet_is_blank() {
         let mut r = Recording::new(vec![Signal { group: "", name: "a".into(), kind: Kind::Bool }]);
-        r.sample(Nanos::ZERO, [Value::Word(1)]);
+        r.sample(Nanos::ZERO, [Sample::Word(1)]);
         assert_eq!(Chronogram::new(&r, [0], style(10, 0, 100, 40)).lanes[0].cells, "▔▔▔▔▔     ");
     }
 
@@ -329,7 +332,7 @@ mod tests {
     fn extremes_of_time_and_width_do_no_harm() {
         for (columns, from, to) in [(0, 0, 0), (1, 5, 5), (3, i64::MIN, i64::MAX), (80, 7, 3)] {
             let mut r = Recording::new(vec![Signal { group: "", name: "a".into(), kind: Kind::Bool }]);
-            r.sample(Nanos::new(5), [Value::Word(1)]);
+            r.sample(Nanos::new(5), [Sample::Word(1)]);
             let drawn = Chronogram::new(&r, [0, 7], style(columns, from, to, to));
             assert_eq!(drawn.lanes.len(), 1, "a signal that is not there has no lane");
             assert_eq!(drawn.lanes[0].cells.chars().count(), columns.max(1));

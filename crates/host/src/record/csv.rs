@@ -27,7 +27,7 @@ pub fn write_csv(recording: &Recording, out: &mut dyn Write) -> io::Result<()> {
         write!(out, "{}", instant.in_seconds())?;
         for (i, signal) in recording.signals().iter().enumerate() {
             let value = recording.value_at(i, instant);
-            write!(out, ",{}", value.map_or_else(String::new, |v| cell(v, signal.kind)))?;
+            write!(out, ",{}", value.map_or_else(String::new, |v| cell(&v, signal.kind)))?;
         }
         writeln!(out)?;
     }
@@ -53,7 +53,7 @@ fn quote(text: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Signal;
+    use crate::{Sample, Signal, write_text};
 
     #[test]
     fn rows_at_changes_with_quoting() {
@@ -62,10 +62,10 @@ mod tests {
             Signal { group: "variables", name: "say, \"it\"".into(), kind: Kind::Text },
             Signal { group: "variables", name: "t".into(), kind: Kind::Time },
         ]);
-        let text = |t: &str| Value::Text(t.into());
-        r.sample(Nanos::new(0), [Value::Word(0), text("x"), Value::Word(0)]);
-        r.sample(Nanos::new(10_000_000), [Value::Word(1), text("y,\"z\""), Value::Word(1_500_000_000)]);
-        r.sample(Nanos::new(20_000_000), [Value::Word(1), text("y,\"z\""), Value::Word(1_500_000_000)]);
+        let (x, y) = (write_text("x", 3), write_text("y,\"z\"", 3));
+        r.sample(Nanos::new(0), [Sample::Word(0), Sample::Text(&x), Sample::Word(0)]);
+        r.sample(Nanos::new(10_000_000), [Sample::Word(1), Sample::Text(&y), Sample::Word(1_500_000_000)]);
+        r.sample(Nanos::new(20_000_000), [Sample::Word(1), Sample::Text(&y), Sample::Word(1_500_000_000)]);
         let mut out = Vec::new();
         write_csv(&r, &mut out).unwrap();
         let expected = "time,a,\"say, \"\"it\"\"\",t\n0,0,x,0\n0.01,1,\"y,\"\"z\"\"\",1.5\n\

@@ -29,7 +29,7 @@ pub fn write_vcd(recording: &Recording, out: &mut dyn Write) -> io::Result<()> {
         }
         for (i, (changes, signal)) in next.iter_mut().zip(recording.signals()).enumerate() {
             if let Some((_, value)) = changes.next_if(|(at, _)| at == instant) {
-                writeln!(out, "{}", change(value, signal.kind, &identifier(i)))?;
+                writeln!(out, "{}", change(&value, signal.kind, &identifier(i)))?;
             }
         }
         if first {
@@ -150,7 +150,7 @@ fn escape(text: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Signal;
+    use crate::{Sample, Signal, write_text};
     use std::collections::BTreeMap;
 
     #[test]
@@ -211,13 +211,14 @@ mod tests {
             signal("steps", "Vent på start", Kind::Bool),
             signal("steps", "Vent_på start", Kind::Bool),
         ]);
-        let words = |a: u64, n: i64, u: u64, l: f64, s: &str| {
-            let w = Value::Word;
-            [w(a), w(n as u64), w(u), w(l.to_bits()), Value::Text(s.into()), w(1), w(0)]
+        let mut sample = |at: i64, a: u64, n: i64, u: u64, l: f64, s: &str| {
+            let (w, text) = (Sample::Word, write_text(s, 3));
+            let all = [w(a), w(n as u64), w(u), w(l.to_bits()), Sample::Text(&text), w(1), w(0)];
+            r.sample(Nanos::new(at), all);
         };
-        r.sample(Nanos::new(0), words(0, -1, 200, 0.5, "a b"));
-        r.sample(Nanos::new(10_000), words(1, -1, 200, 0.25, "\\"));
-        r.sample(Nanos::new(30_000), words(1, 5, 200, 0.25, "\\"));
+        sample(0, 0, -1, 200, 0.5, "a b");
+        sample(10_000, 1, -1, 200, 0.25, "\\");
+        sample(30_000, 1, 5, 200, 0.25, "\\");
         let mut out = Vec::new();
         write_vcd(&r, &mut out).unwrap();
         let (scale, signals) = parse(&String::from_utf8(out).unwrap());
@@ -239,8 +240,8 @@ mod tests {
     #[test]
     fn an_instant_off_the_microsecond_brings_nanoseconds() {
         let mut r = Recording::new(vec![signal("inputs", "a", Kind::Bool)]);
-        r.sample(Nanos::new(0), [Value::Word(0)]);
-        r.sample(Nanos::new(1_500), [Value::Word(1)]);
+        r.sample(Nanos::new(0), [Sample::Word(0)]);
+        r.sample(Nanos::new(1_500), [Sample::Word(1)]);
         let mut out = Vec::new();
         write_vcd(&r, &mut out).unwrap();
         let (scale, signals) = parse(&String::from_utf8(out).unwrap());

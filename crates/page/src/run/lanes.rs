@@ -76,11 +76,7 @@ fn picture(part: &Recording) -> String {
         },
         edges: part
             .changes(i)
-            .map(|(at, v)| g7_draw::Edge {
-                at: *at,
-                value: v.number(signal.kind),
-                show: shown(v, signal.kind),
-            })
+            .map(|(at, v)| g7_draw::Edge { at, value: v.number(signal.kind), show: shown(&v, signal.kind) })
             .collect(),
     };
     let lanes = part.signals().iter().enumerate().map(lane).collect();
@@ -94,14 +90,14 @@ fn lane(part: &Recording, signal: usize, most: usize) -> Vec<(f64, f64, String)>
     let Some(kind) = part.signals().get(signal).map(|s| s.kind) else { return Vec::new() };
     let width = ((part.end() - part.start()) / most as i64).max(Nanos::new(1));
     let crowded = part.count(signal) > most;
-    let mut kept: Vec<&(Nanos, g7_host::Value)> = Vec::new();
+    let mut kept: Vec<(Nanos, g7_host::Value)> = Vec::new();
     for edge in part.changes(signal) {
         let slot = |e: &(Nanos, g7_host::Value)| e.0.count_of(width);
-        let full = kept.iter().rev().take(2).filter(|e| slot(e) == slot(edge)).count() == 2;
+        let full = kept.iter().rev().take(2).filter(|e| slot(e) == slot(&edge)).count() == 2;
         if crowded && full {
             kept.pop();
         }
         kept.push(edge);
     }
-    kept.into_iter().map(|(at, v)| (at.as_millis(), v.number(kind), shown(v, kind))).collect()
+    kept.into_iter().map(|(at, v)| (at.as_millis(), v.number(kind), shown(&v, kind))).collect()
 }

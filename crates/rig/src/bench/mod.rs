@@ -10,7 +10,7 @@ use std::ops::Range;
 use g7_compile::plant;
 use g7_compile::resolve::kept_by_system;
 use g7_engine::{Addr, GroupId, State, StepId};
-use g7_host::{Coupling, Force, Halt, Kind, Recording, Runner, Signal, Value, read_text, write_text};
+use g7_host::{Coupling, Force, Halt, Kind, Recording, Runner, Sample, Signal, Value, read_text, write_text};
 use g7_model::{Nanos, Span, Type};
 
 pub use ask::{Answer, Ask, Options};
@@ -337,19 +337,30 @@ impl Bench {
     }
 
     /// The values of [`Bench::signals`], in the same order.
-    pub fn sample<'a>(&'a self, runner: &'a Runner) -> impl Iterator<Item = Value> + 'a {
+    pub fn sample<'a>(&'a self, runner: &'a Runner) -> impl Iterator<Item = Sample<'a>> + 'a {
         let state = runner.shown();
-        let items = self.items.iter().map(move |i| self.value(runner, i));
-        items.chain(self.steps.iter().map(move |s| Value::Word(u64::from(self.is_active(state, s)))))
+        let plant = runner.plant().map_or(&[][..], |(_, state)| state.words());
+        // Before the first scan the inputs are not yet in the state.
+        let early = !runner.state().is_started();
+        let items = self.items.iter().map(move |i| match i.role {
+            Role::Input(index) if early && i.words == 1 => Sample::Word(runner.input(index)),
+            Role::Input(_) | Role::Output | Role::Variable => stands(state.words(), i),
+            Role::Plant => stands(plant, i),
+        });
+        items.chain(self.sample_steps(state))
     }
 
     /// The values of [`Bench::signals`] in a state of the charts alone; those of the plant are 0.
-    pub fn sample_state<'a>(&'a self, state: &'a State) -> impl Iterator<Item = Value> + 'a {
+    pub fn sample_state<'a>(&'a self, state: &'a State) -> impl Iterator<Item = Sample<'a>> + 'a {
         let items = self.items.iter().map(move |i| match i.role {
-            Role::Input(_) | Role::Output | Role::Variable => read(state, i),
-            Role::Plant => Value::Word(0),
+            Role::Input(_) | Role::Output | Role::Variable => stands(state.words(), i),
+            Role::Plant => Sample::Word(0),
         });
-        items.chain(self.steps.iter().map(move |s| Value::Word(u64::from(self.is_active(state, s)))))
+        items.chain(self.sample_steps(state))
+    }
+
+    fn sample_steps<'a>(&'a self, state: &'a State) -> impl Iterator<Item = Sample<'a>> + 'a {
+        self.steps.iter().map(move |s| Sample::Word(u64::from(self.is_active(state, s))))
     }
 
     /// True if the plant drives the item.
@@ -424,6 +435,18 @@ fn group(role: Role) -> &'static str {
         Role::Output => "outputs",
         Role::Variable => "variables",
         Role::Plant => "plant",
+    }
+}
+
+/// The value of an item where it stands.
+#[inline]
+fn stands<'a>(words: &'a [u64], item: &Item) -> Sample<'a> {
+    let at = item.addr as usize;
+    match item.kind {
+        Kind::Text => Sample::Text(words.get(at..at + item.words as usize).unwrap_or(&[])),
+        Kind::Bool | Kind::Int { .. } | Kind::Real | Kind::Lreal | Kind::Time => {
+            Sample::Word(words.get(at).copied().unwrap_or(0))
+        }
     }
 }
 

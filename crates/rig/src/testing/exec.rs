@@ -354,7 +354,7 @@ impl<'b> Exec<'b, '_> {
             .filter_map(|(i, s)| Some((GROUPS.iter().position(|g| *g == s.group)?, i)))
             .collect();
         others.sort_unstable();
-        let moves = |i: usize| recording.changes(i).skip(1).map(|(at, _)| *at);
+        let moves = |i: usize| recording.changes(i).skip(1).map(|(at, _)| at);
         let mut instants: Vec<Nanos> = others.iter().flat_map(|(_, i)| moves(*i)).collect();
         instants.sort_unstable_by(|a, b| b.cmp(a));
         instants.dedup();
