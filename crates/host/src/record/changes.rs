@@ -8,7 +8,7 @@ use std::collections::VecDeque;
 
 use g7_model::Nanos;
 
-use super::{Kind, Value};
+use super::{Kind, Sample, Value};
 use crate::text::read_text;
 
 #[derive(Clone, Debug)]
@@ -18,12 +18,15 @@ pub(super) struct Changes {
     width: usize,
     /// Changes to make room for.
     room: usize,
+    /// The last value, if there is one and it has one word: most values do not change, and this is
+    /// what a scan looks at.
+    last: Option<u64>,
 }
 
 impl Changes {
     /// Nothing yet; the room is made with the first value, which shows how many words it needs.
     pub(super) fn new(room: usize) -> Changes {
-        Changes { words: VecDeque::new(), width: 2, room }
+        Changes { words: VecDeque::new(), width: 2, room, last: None }
     }
 
     pub(super) fn len(&self) -> usize {
@@ -68,13 +71,23 @@ impl Changes {
     }
 
     /// True if the last value is this one.
-    #[inline]
-    pub(super) fn ends_with(&self, value: &[u64]) -> bool {
+    #[inline(always)]
+    pub(super) fn ends_with(&self, value: &Sample<'_>) -> bool {
         match value {
-            // Most signals have one word, and most keep it.
-            [word] if self.width == 2 => self.words.back() == Some(word),
-            _ => self.len() > 0 && self.value(self.len() - 1).eq(self.padded(value)),
+            Sample::Word(word) => {
+                self.last == Some(*word) || (self.width > 2 && self.ends_with_words(&[*word]))
+            }
+            Sample::Text(words) => self.ends_with_words(words),
         }
+    }
+
+    fn ends_with_words(&self, value: &[u64]) -> bool {
+        self.len() > 0 && self.value(self.len() - 1).eq(self.padded(value))
+    }
+
+    /// Brings the last value up to date.
+    fn settle(&mut self) {
+        self.last = self.words.back().copied().filter(|_| self.width == 2);
     }
 
     /// Adds a value that is not the last one. A change at the same instant is replaced; with more
@@ -85,7 +98,7 @@ impl Changes {
         }
         if let Some(last) = self.len().checked_sub(1).filter(|last| self.instant(*last) == now) {
             self.truncate(last);
-            if self.ends_with(value) {
+            if self.ends_with_words(value) {
                 return;
             }
         }
@@ -94,6 +107,7 @@ impl Changes {
         }
         self.words.push_back(now.count() as u64);
         self.words.extend(self.padded(value));
+        self.settle();
     }
 
     /// A value with as many words as there is room for in a change. The text of a variable may be
@@ -113,11 +127,13 @@ impl Changes {
             words.resize((i + 1) * width, 0);
         }
         (self.words, self.width) = (words, width);
+        self.settle();
     }
 
     /// Keeps so many changes, the oldest.
     pub(super) fn truncate(&mut self, count: usize) {
         self.words.truncate(count * self.width);
+        self.settle();
     }
 
     /// The changes between two instants, the first of them with the value that stands there.
@@ -131,6 +147,8 @@ impl Changes {
         {
             *instant = from.count() as u64;
         }
-        Changes { words, width: self.width, room: self.room }
+        let mut part = Changes { words, width: self.width, room: self.room, last: None };
+        part.settle();
+        part
     }
 }

@@ -150,7 +150,7 @@ impl Recording {
         let mut changes = self.changes.iter_mut();
         values.into_iter().for_each(|value| {
             if let Some(list) = changes.next()
-                && !list.ends_with(value.words())
+                && !list.ends_with(&value)
             {
                 list.add(now, value.words(), limit);
             }
