@@ -21,7 +21,7 @@ const EXAMPLES: [(&str, &str); 4] = [
     ("bottle-conveyor", include_str!("../../../examples/bottle-conveyor/chart.g7")),
 ];
 
-/// What is recorded.
+/// The parts of a run that are recorded.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum How {
     Alone,

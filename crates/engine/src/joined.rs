@@ -20,7 +20,7 @@ use crate::tables::Tables;
 /// Most operands of a step.
 const MOST: usize = 3;
 
-/// What a step computes from its operands. What is frequent has a word of its own, so that it is
+/// The computation of a step on its operands. A frequent one has a word of its own, so that it is
 /// known after one look.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Compute {
@@ -82,7 +82,7 @@ impl Orders {
     }
 }
 
-/// What becomes of the value of a step.
+/// The use of the value of a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Sink {
     Push,
@@ -123,7 +123,7 @@ pub(crate) struct Step {
 pub(crate) struct Joined {
     /// A step for each instruction.
     pub(crate) steps: Box<[Step]>,
-    /// What instructions push, ascending and without repetition.
+    /// The constants that instructions push, ascending and without repetition.
     pub(crate) constants: Box<[u64]>,
     /// Number of words of the image.
     pub(crate) words: u32,
@@ -184,7 +184,7 @@ impl Joined {
     }
 }
 
-/// What an instruction computes, from how many operands, and 1 where it is more than a sink.
+/// The computation of an instruction, the number of its operands, and 1 where it is more than a sink.
 fn computation(op: Op) -> (Compute, usize, usize) {
     match op {
         Op::Store(_) | Op::JumpUnless(_) => (Compute::Same, 1, 0),
@@ -220,7 +220,7 @@ fn arithmetic(a: Arith, n: Num) -> Compute {
     }
 }
 
-/// What two instructions behind a computation do with its value, and how many of them.
+/// The use that the two instructions behind a computation make of its value, and how many of them do.
 fn sink(next: Option<Op>, second: Option<Op>) -> (Sink, usize) {
     match (next, second) {
         (Some(Op::Store(a)), _) => (Sink::Store(a), 1),

@@ -126,7 +126,7 @@ impl Writer {
                 let f = self.one_of(&[Builtin::Limit, Builtin::Sel, Builtin::Mux]);
                 self.code.push(Op::Call(f, num, 3));
             }
-            // What one value decides: a jump to behind the other, into whatever follows.
+            // One value decides: a jump to behind the other, into whatever follows.
             5 => {
                 let decided = self.jump(Op::JumpUnless);
                 self.value(depth - 1);

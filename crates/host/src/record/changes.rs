@@ -8,7 +8,7 @@ use std::collections::VecDeque;
 
 use g7_model::Nanos;
 
-use super::{Kind, Sample, Value};
+use super::value::{Kind, Sample, Value};
 use crate::text::read_text;
 
 #[derive(Clone, Debug)]
