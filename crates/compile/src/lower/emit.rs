@@ -3,7 +3,7 @@
 //! Code is written into a [`Buf`] with jumps counted from its own start; `pieces`
 //! moves it to its place in the table.
 
-use g7_engine::Op;
+use g7_engine::{Addr, Op};
 use g7_model::{Span, Type};
 
 use super::words::num;
@@ -12,6 +12,9 @@ use crate::tree::{Clock, Expr, ExprKind, Gate, Piece, Stmt, StmtKind, Target};
 /// Gates and complements within one another that are written as jumps; deeper ones are worked out on
 /// the stack.
 const DEEPEST: u32 = 64;
+
+/// With so many operands the value of a gate is stored by jumps, which are then shorter.
+const LONG: usize = 4;
 
 /// Code being written.
 #[derive(Default)]
@@ -216,6 +219,7 @@ impl Buf {
     fn stmt(&mut self, s: &Stmt) {
         let at = s.at;
         match &s.kind {
+            StmtKind::Store(_, Target::Word(to), e) if operands(e, 0) >= LONG => self.decide(e, *to, at),
             StmtKind::Store(_, Target::Word(to), e) => self.one(e, Op::Store(*to), at),
             StmtKind::Store(_, Target::Element(base, len, index), e) => {
                 self.expr(index);
@@ -257,6 +261,18 @@ impl Buf {
         }
     }
 
+    /// Stores the value of a gate, by jumps over the operands that do not decide.
+    fn decide(&mut self, e: &Expr, to: Addr, at: Span) {
+        let other = self.unless(e);
+        self.op(Op::Push(1), at);
+        self.op(Op::Store(to), at);
+        let end = self.jump(Op::Jump, at);
+        other.into_iter().for_each(|jump| self.land(jump));
+        self.op(Op::Push(0), at);
+        self.op(Op::Store(to), at);
+        self.land(end);
+    }
+
     /// A jump out of the innermost loop; outside of a loop (reported) it has no effect.
     fn leave(&mut self, jump: usize) {
         match self.loops.last_mut() {
@@ -294,6 +310,18 @@ impl Buf {
         }
         self.stmts(other);
         ends.into_iter().for_each(|jump| self.land(jump));
+    }
+}
+
+/// The number of operands that [`Buf::branch`] asks for one by one.
+fn operands(e: &Expr, deep: u32) -> usize {
+    match &e.kind {
+        ExprKind::Not(x) if deep < DEEPEST => operands(x, deep + 1),
+        ExprKind::Gate(gate @ (Gate::And | Gate::Or), ..) if deep < DEEPEST => {
+            let (last, before) = spine(e, *gate);
+            before.into_iter().chain([last]).map(|x| operands(x, deep + 1)).sum()
+        }
+        _ => 1,
     }
 }
 

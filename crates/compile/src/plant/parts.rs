@@ -95,10 +95,12 @@ impl<'d> Table<'d> {
 
     /// `T.at(from, to)`: some part stands there.
     pub(super) fn any(&self, at: At, range: &(Expr, Expr)) -> Expr {
-        (0..self.places())
+        let any = (0..self.places())
             .map(|place| self.stands(at, place, range))
             .reduce(|a, b| at.binary(BinaryOp::Or, a, b))
-            .unwrap_or_else(|| at.bool(false))
+            .unwrap_or_else(|| at.bool(false));
+        // Said once more for all places, so that an empty track is not searched.
+        at.binary(BinaryOp::And, self.taken(at, 0), any)
     }
 
     /// `T.colour(from, to)`: the colour of the first part there; zero of its type if there is none.
@@ -224,14 +226,15 @@ impl<'d> Table<'d> {
     /// Moves every part of a track by a distance, within its length.
     pub(super) fn advance(&self, place: Place, way: &Expr, length: &Expr) -> Vec<Stmt> {
         let at = At(place);
-        (0..self.places())
+        let moves = (0..self.places())
             .map(|k| {
                 let cell = self.cell("position", k);
                 let moved = at.binary(BinaryOp::Add, at.var(&cell), way.clone());
                 let held = at.call("LIMIT", vec![at.real("0.0"), moved, length.clone()]);
                 at.when(self.taken(at, k), vec![at.assign(&cell, held)])
             })
-            .collect()
+            .collect();
+        vec![at.when(self.taken(at, 0), moves)]
     }
 }
 

@@ -65,11 +65,13 @@ type Condition = (&'static str, fn(bool, bool, bool) -> bool);
 
 #[test]
 fn a_condition_of_any_form_chooses_the_arm_and_ends_the_loop() {
-    let conditions: [Condition; 9] = [
+    let conditions: [Condition; 11] = [
         ("a and b or c", |a, b, c| (a && b) || c),
         ("a or b and c", |a, b, c| a || (b && c)),
         ("a or b or c", |a, b, c| a || b || c),
         ("a and b and c", |a, b, c| a && b && c),
+        ("a and (b or c) and not (b and c) and (a or b)", |a, b, c| a && b != c),
+        ("not a and b or b and c or a and not c or c", |a, b, c| a || b || c),
         ("(a or b) and (not b or c)", |a, b, c| (a || b) && (!b || c)),
         ("not (a and not (b or not c))", |a, b, c| !a || b || !c),
         ("not (a or b) or not (b or c)", |a, b, c| !(b || a && c)),
@@ -80,10 +82,11 @@ fn a_condition_of_any_form_chooses_the_arm_and_ends_the_loop() {
     let all = conditions.into_iter().chain([(deep.as_str(), (|a, b, _| !(a && b)) as _)]);
     for (condition, holds) in all {
         let c = compiled(&format!(
-            "input a, b, c : BOOL  var if_, elsif_, while_, until_ : INT
+            "input a, b, c : BOOL  var if_, elsif_, while_, until_ : INT  var stored : BOOL
              post {{
                IF {condition} THEN if_ := 1; ELSE if_ := 0; END_IF
                IF FALSE THEN elsif_ := 7; ELSIF {condition} THEN elsif_ := 1; ELSE elsif_ := 0; END_IF
+               stored := {condition};
                while_ := 0; WHILE {condition} DO while_ := 1; EXIT; END_WHILE
                until_ := 1;
                REPEAT until_ := until_ - 1; IF until_ < -3 THEN EXIT; END_IF UNTIL {condition} END_REPEAT
@@ -97,6 +100,11 @@ fn a_condition_of_any_form_chooses_the_arm_and_ends_the_loop() {
             let wanted = holds(a == 1, b == 1, c_ == 1);
             let one = if wanted { "1" } else { "0" };
             let got = ["if_", "elsif_", "while_", "until_"].map(|name| run.value(name));
+            assert_eq!(
+                run.value("stored"),
+                if wanted { "TRUE" } else { "FALSE" },
+                "{condition} with {a} {b} {c_}"
+            );
             let rounds = if wanted { "0" } else { "-4" };
             assert_eq!(got, [one, one, one, rounds], "{condition} with {a} {b} {c_}");
         }

@@ -115,6 +115,25 @@ fn a_part_is_seen_from_the_begin_of_a_range_to_before_its_end() {
 }
 
 #[test]
+fn one_part_alone_moves_and_is_seen_and_none_on_an_empty_track() {
+    let mut p = run("
+        parts T(c : INT) max 3 length 1.0 := (7)
+        state seen : BOOL
+        rate T := 50.0
+        each { seen := T.at(0.4, 2.0) }
+        on V { T.clear() }");
+    p.ticks(1);
+    assert!(!p.bool("seen"));
+    p.ticks(1);
+    near(p.lreal("T.position.0"), 0.5);
+    assert!(p.bool("seen"));
+    p.output("V", true).ticks(2);
+    assert_eq!(p.int("T.count"), 0);
+    near(p.lreal("T.position.0"), 0.0);
+    assert!(!p.bool("seen"));
+}
+
+#[test]
 fn a_part_is_taken_out_of_the_middle_and_those_behind_close_up() {
     let mut p = run("
         parts T(c : INT) max 4 length 1.0 := (1, 0.8), (2, 0.5), (3, 0.5), (4, 0.1)
