@@ -7,6 +7,8 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 command -v valgrind >/dev/null || { echo "instructions: skipped, valgrind is missing"; exit 0; }
 scans=500
+# callgrind finds the function by its symbol.
+export CARGO_PROFILE_RELEASE_STRIP=none
 cargo build --release --quiet --package g7-benches --bin rows
 rows=${CARGO_TARGET_DIR:-target}/release/rows
 table=benches/instructions.tsv
@@ -16,7 +18,8 @@ trap 'rm -f "$new"' EXIT
 count() {
   valgrind --tool=callgrind --callgrind-out-file=/dev/null '--toggle-collect=*measured*' \
     "$rows" --run "$1" "$2" $scans 2>&1 | sed -n 's/.*Collected : //p' |
-    awk -v scans=$scans '{ printf "%.1f", $1 / scans }'
+    awk -v scans=$scans '$1 > 0 { printf "%.1f", $1 / scans; seen = 1 }
+      END { if (!seen) { print "instructions: nothing was counted" >"/dev/stderr"; exit 1 } }'
 }
 
 "$rows" --list | grep -v ' 10000' | while IFS= read -r row; do
