@@ -7,7 +7,7 @@ use clap::Args;
 use g7_host::Value;
 use g7_model::{Nanos, Span};
 use g7_online::setup::{
-    At, Device, Encoding, Kind, Modbus, Parity, Point, Register, Serial, Tcp, Timing, read_point,
+    At, Device, Encoding, Kind, Listen, Modbus, Parity, Point, Register, Serial, Tcp, Timing, read_point,
 };
 use g7_online::{Absent, Asked, Clients, Raw, Scaling, Wired, probe};
 
@@ -108,7 +108,9 @@ pub(crate) fn devices(args: &Devices) -> Result<Verdict, Failure> {
     let Some(plan) = wiring::plan(&path, &source, &wanted)? else { return Ok(Verdict::Found) };
     let (mut clients, mut verdict) = (Clients::default(), Verdict::Fine);
     for wired in &plan.wiring.devices {
-        if ask(&mut clients, &wired.device, &channels(wired))? == Verdict::Found {
+        if let Kind::ModbusServer(listen) = &wired.device.kind {
+            served(wired, listen)?;
+        } else if ask(&mut clients, &wired.device, &channels(wired))? == Verdict::Found {
             verdict = Verdict::Found;
         }
     }
@@ -207,7 +209,24 @@ fn place(kind: &Kind) -> String {
     match kind {
         Kind::ModbusTcp(Tcp { host, port }, modbus) => format!("{host}:{port} unit {}", modbus.unit),
         Kind::ModbusRtu(serial, modbus) => format!("{} unit {}", serial.port, modbus.unit),
+        Kind::ModbusServer(listen) => listen.address.to_string(),
     }
+}
+
+/// Prints what masters find on a server of our own while the controller runs.
+fn served(wired: &Wired, listen: &Listen) -> Result<(), Failure> {
+    let strong = style::STRONG;
+    let mut out = anstream::stdout().lock();
+    let name = &wired.device.name.value;
+    writeln!(out, "{strong}{name}{strong:#} listens at {} for masters", listen.address)?;
+    let channels = channels(wired);
+    let width = channels.iter().map(|c| c.name.chars().count()).max().unwrap_or(0);
+    for (k, channel) in channels.iter().enumerate() {
+        let use_ = if k < wired.inputs.len() { "written" } else { "read" };
+        writeln!(out, "  {:<width$}  {use_}", channel.name)?;
+    }
+    out.flush()?;
+    Ok(())
 }
 
 /// A value of a device, as the chart has it and as it is on the wire.

@@ -79,6 +79,7 @@ fn simulate(setup: &mut Setup, names: Option<&[String]>) -> Result<(), Failure> 
     let simulated = |name: &String| names.is_empty() || names.contains(name);
     setup.inputs.retain(|c| !simulated(&c.device.value));
     setup.outputs.retain(|c| !simulated(&c.device.value));
+    setup.shown.retain(|c| !simulated(&c.device.value));
     Ok(())
 }
 

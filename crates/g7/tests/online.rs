@@ -1,4 +1,5 @@
-//! `g7 run --online`: io files, values that outlive the program, and a Modbus slave that is not ours.
+//! `g7 run --online`: io files, values that outlive the program, and Modbus slaves and masters that are not
+//! ours.
 #![allow(clippy::disallowed_methods, reason = "programs run beside each other, in real time")]
 
 mod common;
@@ -236,6 +237,130 @@ fn two_slaves_share_a_serial_line() {
     g7.say("stop");
     slave.becomes("1 holding 7 2", "65535 65535");
     slave.becomes("7 coil 2 1", "0");
+    assert_eq!(g7.quit(), 0);
+}
+
+/// A master of pymodbus.
+struct Master(Running);
+
+impl Master {
+    fn start(port: u16) -> Option<Master> {
+        let mut command = Command::new(g7_peers::python("pymodbus")?);
+        command.arg(g7_peers::script("modbus_master.py")).arg(port.to_string());
+        let mut running = Running::start(command, |child| Box::new(child.stdout.take().expect("piped")));
+        assert_eq!(running.line(), "connected");
+        Some(Master(running))
+    }
+
+    fn says(&mut self, what: &str) -> String {
+        self.0.say(what);
+        self.0.line()
+    }
+
+    /// Waits until a line has this answer.
+    fn until(&mut self, what: &str, answer: &str) {
+        let begin = Instant::now();
+        let mut found = self.says(what);
+        while found != answer {
+            assert!(begin.elapsed() < Duration::from_secs(20), "{what}: {found}, not {answer}");
+            std::thread::sleep(Duration::from_millis(10));
+            found = self.says(what);
+        }
+    }
+}
+
+/// A port of this machine that was free a moment ago.
+fn free_port() -> u16 {
+    let listener = std::net::TcpListener::bind("127.0.0.1:0").expect("a port is free");
+    listener.local_addr().expect("it has an address").port()
+}
+
+/// An io file with a server alone: the master has the button and the weight, and sees the rest.
+fn served(port: u16) -> String {
+    format!(
+        "[devices.scada]\nkind = 'modbus-server'\nlisten = '127.0.0.1:{port}'\nsilence = '500ms'\n\
+         [inputs]\ngo = {{ at = 'scada.coil(10)', bad = false }}\nweight = 'scada.holding(4)'\n\
+         line1_ok = 'scada.good()'\n[outputs]\nvalve = 'scada.coil(2)'\nlamp = 'scada.holding(9.4)'\n\
+         speed = 'scada.input(7)'\nsum = 'scada.holding(20)'\n\
+         [shown]\nX2 = 'scada.discrete(0)'\npresses = 'scada.input(8)'\nweight = 'scada.input(0)'\n"
+    )
+}
+
+#[test]
+fn a_master_of_pymodbus_drives_and_watches() {
+    let (folder, port) = (Folder::with(CHART), free_port());
+    folder.write("chart.io.toml", served(port));
+    let mut g7 = Running::g7(&folder, &[]);
+    g7.until("scada has no master: none has asked");
+    let Some(mut master) = Master::start(port) else { return };
+    // Step 1 lights the lamp, whose wire is inverted.
+    master.until("read discrete 0 1", "0");
+    g7.until("scada has a master");
+    assert_eq!(master.says("write holding 4 65535 65533"), "ok");
+    assert_eq!(master.says("write coil 10 1"), "ok");
+    master.until("read discrete 0 1", "1");
+    master.until("read coil 2 1", "1");
+    master.until("read holding 9 1", "16");
+    // A DINT of -3, as the chart has it now; -3 as a LREAL is C008000000000000.
+    master.until("read input 0 2", "65535 65533");
+    master.until("read holding 20 4", "49160 0 0 0");
+    master.until("read input 7 2", "1 1");
+
+    // Addresses that are not wired; points that are not the master's; neither is half done.
+    for (what, number) in [
+        ("read discrete 1 1", 2),
+        ("read discrete 0 2", 2),
+        ("read input 6 1", 2),
+        ("write coil 2 0", 2),
+        ("write holding 20 1 2 3 4", 2),
+        ("write holding 4 7 7 7", 2),
+        ("write holding 9 0", 2),
+    ] {
+        assert_eq!(master.says(what), format!("exception {number}"), "{what}");
+    }
+    assert_eq!(master.says("read coil 2 1"), "1");
+    assert_eq!(master.says("read holding 4 2"), "65535 65533");
+
+    g7.say("stop");
+    g7.until("stopped");
+    // Outputs are safe; what is shown stays as it is.
+    master.until("read coil 2 1", "0");
+    master.until("read input 7 2", "65535 1");
+    assert_eq!(master.says("read discrete 0 1"), "1");
+    g7.say("run");
+    master.until("read coil 2 1", "1");
+
+    // Without a master the button counts as released.
+    drop(master);
+    g7.until("scada has no master: no request for 500ms");
+    let mut master = Master::start(port).expect("it was there before");
+    // It only reads: what was written before it came is no command of its own.
+    master.until("read discrete 0 1", "0");
+    g7.until("scada has a master");
+    assert_eq!(master.says("read input 8 1"), "1");
+    assert_eq!(master.says("write coil 10 1"), "ok");
+    master.until("read input 8 1", "2");
+    assert_eq!(g7.quit(), 0);
+}
+
+#[test]
+fn a_port_in_use_is_told_and_tried_again() {
+    let folder = Folder::with(CHART);
+    let taken = std::net::TcpListener::bind("127.0.0.1:0").expect("a port is free");
+    let port = taken.local_addr().expect("it has an address").port();
+    folder.write("chart.io.toml", served(port));
+    let asked = folder.g7(&["devices"]);
+    let lines: Vec<&str> = asked.is(0).out.lines().collect();
+    assert_eq!(lines[0], format!("scada listens at 127.0.0.1:{port} for masters"));
+    assert!(lines[1].contains("coil(10)") && lines[1].ends_with("written"), "{}", asked.out);
+    assert!(asked.out.lines().any(|l| l.contains("X2") && l.ends_with("read")), "{}", asked.out);
+    let mut g7 = Running::g7(&folder, &[]);
+    let line = g7.until("scada has no master: cannot listen at");
+    assert!(line.contains(&format!("127.0.0.1:{port}")), "{line}");
+    drop(taken);
+    if let Some(mut master) = Master::start(port) {
+        master.until("read discrete 0 1", "0");
+    }
     assert_eq!(g7.quit(), 0);
 }
 

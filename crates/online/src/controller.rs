@@ -6,7 +6,7 @@
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicI64, Ordering};
 
-use g7_engine::Addr;
+use g7_engine::{Addr, GroupId, State, StepId};
 use g7_host::{Halt, Runner, Start};
 use g7_model::Nanos;
 
@@ -79,6 +79,27 @@ pub struct Shared {
     pub tripped: Arc<AtomicBool>,
 }
 
+/// A word of the run that a device gets.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Source {
+    /// A variable.
+    Word(Addr),
+    /// The activity of a step.
+    Step(StepId),
+    /// The activity of a macro-step: that of its expansion.
+    Macro(GroupId),
+}
+
+impl Source {
+    fn word(self, runner: &Runner, state: &State) -> u64 {
+        match self {
+            Source::Word(addr) => state.word(addr),
+            Source::Step(step) => u64::from(state.is_active(step)),
+            Source::Macro(group) => u64::from(state.group_active(runner.program(), group)),
+        }
+    }
+}
+
 /// The controller's side of a device.
 #[derive(Debug)]
 pub struct Port {
@@ -88,8 +109,8 @@ pub struct Port {
     pub to_device: Writer,
     /// The input words, counted from the first, and what each has while its value is bad.
     pub inputs: Vec<(u32, WhileBad)>,
-    /// The output words, counted from the first, and the safe value of each.
-    pub outputs: Vec<(u32, u64)>,
+    /// The words that the device gets, and the safe value of each; `None` for what is only shown.
+    pub outputs: Vec<(Source, Option<u64>)>,
     /// Input words that are 1 while the device answers.
     pub good: Vec<u32>,
     /// Values older than this are bad, even if the driver says nothing.
@@ -149,7 +170,7 @@ impl Controller {
     ) -> Controller {
         let open = |port: Port| Open {
             words: vec![0; from_device::words(port.inputs.len())],
-            out: port.outputs.iter().map(|(_, safe)| *safe).collect(),
+            out: port.outputs.iter().map(|(_, safe)| safe.unwrap_or(0)).collect(),
             port,
         };
         shared.safe.store(true, Ordering::Release);
@@ -296,10 +317,12 @@ impl Controller {
     /// Hands the outputs to the drivers: those of the run, or the safe ones.
     fn write(&mut self) {
         let running = self.mode == Mode::Run && self.begun;
-        let first = self.runner.program().tables().outputs.start;
         for Open { port, out, .. } in &mut self.ports {
-            for (word, (index, safe)) in out.iter_mut().zip(&port.outputs) {
-                *word = if running { self.runner.state().word(Addr(first + index)) } else { *safe };
+            for (word, (source, safe)) in out.iter_mut().zip(&port.outputs) {
+                *word = match safe {
+                    Some(safe) if !running => *safe,
+                    Some(_) | None => source.word(&self.runner, self.runner.state()),
+                };
             }
             port.to_device.put(out.iter().copied());
         }

@@ -61,8 +61,16 @@ pub(crate) mod from_device {
 pub struct Out {
     /// How its word becomes a value.
     pub scaling: Scaling,
-    /// The word that it has while the controller does not run.
-    pub safe: u64,
+    /// The word that it has while the controller does not run; `None` for what is only shown, which
+    /// keeps its word.
+    pub safe: Option<u64>,
+}
+
+impl Out {
+    /// The word that the device gets for the one of the scan.
+    fn word(&self, wanted: u64, safe: bool) -> u64 {
+        self.safe.filter(|_| safe).unwrap_or(wanted)
+    }
 }
 
 /// Something that happened at a device.
@@ -135,9 +143,9 @@ impl Driver {
             device,
             link: Link::new(timing),
             timing,
-            wanted: outputs.iter().map(|o| o.safe).collect(),
+            wanted: outputs.iter().map(|o| o.safe.unwrap_or(0)).collect(),
             written: vec![None; n],
-            raws: outputs.iter().map(|o| o.scaling.raw(o.safe).0).collect(),
+            raws: outputs.iter().map(|o| o.scaling.raw(o.safe.unwrap_or(0)).0).collect(),
             write: vec![false; n],
             limited: vec![false; n],
             read: vec![Err(Absent::Unread); m],
@@ -196,8 +204,8 @@ impl Driver {
             self.refreshed = now;
         }
         for (k, out) in self.outputs.iter().enumerate() {
-            let word = if safe { out.safe } else { self.wanted.get(k).copied().unwrap_or(out.safe) };
-            let (raw, limited) = out.scaling.raw(word);
+            let wanted = self.wanted.get(k).copied().unwrap_or(0);
+            let (raw, limited) = out.scaling.raw(out.word(wanted, safe));
             if limited && !self.limited.get(k).copied().unwrap_or(true) {
                 happened(Happened::Limited(k));
             }
@@ -288,8 +296,8 @@ impl Driver {
     /// Writes the safe values once more and ends the connection: the last act of a driver.
     pub fn end(&mut self) {
         if self.link.is_up() && !self.outputs.is_empty() {
-            for (raw, out) in self.raws.iter_mut().zip(&self.outputs) {
-                *raw = out.scaling.raw(out.safe).0;
+            for ((raw, out), wanted) in self.raws.iter_mut().zip(&self.outputs).zip(&self.wanted) {
+                *raw = out.scaling.raw(out.word(*wanted, true)).0;
             }
             self.write.fill(true);
             // The program ends either way; a device that does not answer has a watchdog of its own.

@@ -31,7 +31,7 @@ mod slots;
 mod value;
 mod wiring;
 
-pub use controller::{Command, Controller, Event, Mode, Port, Reason, Shared, What};
+pub use controller::{Command, Controller, Event, Mode, Port, Reason, Shared, Source, What};
 pub use device::{Absent, Device, Failed};
 pub use disk::RealDisk;
 pub use driver::{Driver, Happened, Out, Quality, Worked};

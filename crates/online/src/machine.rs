@@ -80,7 +80,7 @@ pub fn assemble<E>(
             from_device,
             to_device,
             inputs: wired.inputs.iter().map(|i| (i.index, i.bad)).collect(),
-            outputs: wired.outputs.iter().map(|o| (o.index, o.out.safe)).collect(),
+            outputs: wired.outputs.iter().map(|o| (o.source, o.out.safe)).collect(),
             good: wired.good.clone(),
             stale: stale(timing),
         });

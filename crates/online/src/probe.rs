@@ -29,7 +29,8 @@ pub struct Probed {
 /// The device cannot be reached, or does not answer.
 pub fn probe(clients: &mut Clients, device: &Device, asked: &[Asked]) -> Result<Probed, Failed> {
     let wired = Wired { device: device.clone(), inputs: Vec::new(), outputs: Vec::new(), good: Vec::new() };
-    let mut client = clients.client(&wired).map_err(|e| Failed(e.to_string()))?;
+    let client = clients.client(&wired).map_err(|e| Failed(e.to_string()))?;
+    let mut client = client.ok_or_else(|| Failed("it is the one that asks".to_owned()))?;
     client.read_points(asked);
     client.connect()?;
     let mut clock = WallClock::default();

@@ -2,12 +2,14 @@
 
 use std::collections::BTreeMap;
 
+use g7_engine::Addr;
 use g7_host::Kind;
 use g7_model::{Problem, Span, codes};
-use g7_rig::{Bench, Item, Role};
+use g7_rig::{Activity, Bench, Item, Role};
 
+use crate::controller::Source;
 use crate::driver::Out;
-use crate::setup::{At, Bad, Channel, Device, Encoding, Literal, Point, Register, Setup};
+use crate::setup::{Area, At, Bad, Channel, Device, Encoding, Literal, Point, Register, Setup};
 use crate::value::{Holds, Raw, Scaling};
 
 /// All channels of a machine, by device.
@@ -26,7 +28,7 @@ pub struct Wired {
     pub device: Device,
     /// Its inputs.
     pub inputs: Vec<In>,
-    /// Its outputs.
+    /// Its outputs, and what is shown to the masters of a server.
     pub outputs: Vec<OutAt>,
     /// Input words that are 1 while it answers.
     pub good: Vec<u32>,
@@ -60,13 +62,13 @@ pub enum WhileBad {
     Fault,
 }
 
-/// An output of the chart on a point of a device.
+/// An output of the chart on a point of a device, or what masters read there.
 #[derive(Clone, Debug)]
 pub struct OutAt {
-    /// The variable.
+    /// The variable or step.
     pub name: String,
-    /// The output word, counted from the first.
-    pub index: u32,
+    /// The word of the run.
+    pub source: Source,
     /// The point.
     pub register: Register,
     /// How registers hold the number; `None` for a bit.
@@ -88,7 +90,13 @@ pub fn wire(bench: &Bench, setup: &Setup) -> (Wiring, Vec<Problem>) {
         setup.inputs.iter().map(|c| (c, true)).chain(setup.outputs.iter().map(|c| (c, false)))
     {
         if let Some(item) = wirer.item(channel, input, &mut wired) {
-            wirer.channel(channel, item, input);
+            let subject = wirer.subject(item);
+            wirer.channel(channel, &subject, if input { Class::Input } else { Class::Output });
+        }
+    }
+    for channel in &setup.shown {
+        if let Some(subject) = wirer.shown(channel) {
+            wirer.channel(channel, &subject, Class::Shown);
         }
     }
     wirer.wiring.unwired = bench
@@ -99,6 +107,28 @@ pub fn wire(bench: &Bench, setup: &Setup) -> (Wiring, Vec<Problem>) {
         .collect();
     wirer.wiring.devices.retain(|d| !(d.inputs.is_empty() && d.outputs.is_empty() && d.good.is_empty()));
     (wirer.wiring, wirer.problems)
+}
+
+/// The three ways in which a channel is used.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Class {
+    Input,
+    Output,
+    /// Masters of a server read it.
+    Shown,
+}
+
+/// The variable or step of a channel.
+struct Subject {
+    name: String,
+    kind: Kind,
+    /// Its type, for messages.
+    ty: String,
+    inverted: bool,
+    /// The number of an input word.
+    input: Option<u32>,
+    source: Source,
+    safe: Option<u64>,
 }
 
 struct Wirer<'a> {
@@ -142,7 +172,64 @@ impl<'a> Wirer<'a> {
         Some(item)
     }
 
-    fn channel(&mut self, channel: &Channel, item: &Item, input: bool) {
+    fn subject(&self, item: &Item) -> Subject {
+        let variable = self.bench.compiled.symbols.variable_at(Addr(item.addr));
+        let tables = self.bench.compiled.program.tables();
+        let safe = || {
+            let index = item.addr.saturating_sub(tables.outputs.start);
+            tables.safe.get(index as usize).copied().unwrap_or(0)
+        };
+        Subject {
+            name: item.name.clone(),
+            kind: item.kind,
+            ty: item.ty.to_string(),
+            inverted: variable.is_some_and(|v| v.inverted),
+            input: if let Role::Input(index) = item.role { Some(index) } else { None },
+            source: Source::Word(Addr(item.addr)),
+            safe: (item.role == Role::Output).then(safe),
+        }
+    }
+
+    /// The variable or the step that a channel shows.
+    fn shown(&mut self, channel: &Channel) -> Option<Subject> {
+        let At { value: name, at } = &channel.variable;
+        if let Some(step) = self.bench.steps.iter().find(|s| s.activity().eq_ignore_ascii_case(name)) {
+            let source = match step.id {
+                Activity::Step(id) => Source::Step(id),
+                Activity::Macro(id) => Source::Macro(id),
+            };
+            let (name, ty) = (step.activity(), "BOOL".to_owned());
+            return Some(Subject {
+                name,
+                kind: Kind::Bool,
+                ty,
+                inverted: false,
+                input: None,
+                source,
+                safe: None,
+            });
+        }
+        match self.bench.item(name) {
+            Some(item) if item.role != Role::Plant => Some(self.subject(item)),
+            Some(_) => {
+                self.wrong(
+                    &codes::UNKNOWN_CHANNEL,
+                    *at,
+                    format!("`{name}` belongs to the plant, not to the chart"),
+                );
+                None
+            }
+            None => {
+                let near = self.bench.suggestions(name).trim_start_matches("; ").to_owned();
+                let what = format!("the chart has no variable or step `{name}`");
+                self.wrong(&codes::UNKNOWN_CHANNEL, *at, what).help =
+                    Some(near).filter(|near| !near.is_empty());
+                None
+            }
+        }
+    }
+
+    fn channel(&mut self, channel: &Channel, subject: &Subject, class: Class) {
         let place = self.wiring.devices.iter().position(|d| d.device.name.value == channel.device.value);
         let Some(device) = place else {
             let names: Vec<String> =
@@ -157,51 +244,58 @@ impl<'a> Wirer<'a> {
             return;
         };
         match channel.point {
-            Point::Good => self.good(channel, item, device, input),
-            Point::Modbus(register) => self.register(channel, item, device, register, input),
+            Point::Good => self.good(channel, subject, device, class),
+            Point::Modbus(register) => self.register(channel, subject, device, register, class),
         }
     }
 
     /// An input that tells whether the device answers.
-    fn good(&mut self, channel: &Channel, item: &Item, device: usize, input: bool) {
-        match item.role {
-            Role::Input(index) if input && item.kind == Kind::Bool => {
+    fn good(&mut self, channel: &Channel, subject: &Subject, device: usize, class: Class) {
+        match subject.input {
+            Some(index) if class == Class::Input && subject.kind == Kind::Bool => {
                 if let Some(wired) = self.wiring.devices.get_mut(device) {
                     wired.good.push(index);
                 }
             }
             _ => {
-                let what = format!("`good()` is a BOOL that is read, and `{}` is none", item.name);
+                let what = format!("`good()` is a BOOL that is read, and `{}` is none", subject.name);
                 self.wrong(&codes::WRONG_CHANNEL, channel.at, what);
             }
         }
     }
 
-    fn register(&mut self, channel: &Channel, item: &Item, device: usize, register: Register, input: bool) {
-        if !input && !register.area.is_writable() {
-            self.wrong(&codes::WRONG_CHANNEL, channel.at, format!("`{register}` cannot be written")).help =
-                Some("outputs are coils or holding registers".to_owned());
+    fn register(
+        &mut self,
+        channel: &Channel,
+        subject: &Subject,
+        device: usize,
+        register: Register,
+        class: Class,
+    ) {
+        let server = self.wiring.devices.get(device).is_some_and(|d| d.device.kind.is_server());
+        if let Some((what, help)) = refused(register.area, class, server) {
+            self.wrong(&codes::WRONG_CHANNEL, channel.at, format!("`{register}` {what}")).help =
+                Some(help.to_owned());
             return;
         }
-        let Some((encoding, scaling)) = self.scaling(channel, item, register) else { return };
-        if !input && !self.is_free(channel, item, device, register, encoding) {
+        let Some((encoding, scaling)) = self.scaling(channel, subject, register) else { return };
+        // Several inputs may read one point of a device; a point of a server has one use.
+        if (class != Class::Input || server) && !self.is_free(channel, subject, device, register, encoding) {
             return;
         }
-        let name = item.name.clone();
-        match item.role {
-            Role::Input(index) => {
+        let name = subject.name.clone();
+        match (class, subject.input) {
+            (Class::Input, Some(index)) => {
                 let Some(bad) = self.bad(channel, &scaling) else { return };
                 let Some(wired) = self.wiring.devices.get_mut(device) else { return };
                 wired.inputs.push(In { name, index, register, encoding, scaling, bad });
             }
-            Role::Output => {
-                let tables = self.bench.compiled.program.tables();
-                let index = item.addr.saturating_sub(tables.outputs.start);
-                let safe = tables.safe.get(index as usize).copied().unwrap_or(0);
+            (Class::Input, None) => {}
+            (Class::Output | Class::Shown, _) => {
+                let (source, out) = (subject.source, Out { scaling, safe: subject.safe });
                 let Some(wired) = self.wiring.devices.get_mut(device) else { return };
-                wired.outputs.push(OutAt { name, index, register, encoding, out: Out { scaling, safe } });
+                wired.outputs.push(OutAt { name, source, register, encoding, out });
             }
-            Role::Variable | Role::Plant => {}
         }
     }
 
@@ -209,7 +303,7 @@ impl<'a> Wirer<'a> {
     fn scaling(
         &mut self,
         channel: &Channel,
-        item: &Item,
+        item: &Subject,
         register: Register,
     ) -> Option<(Option<Encoding>, Scaling)> {
         let bit = register.area.is_bits() || register.bit.is_some();
@@ -228,8 +322,7 @@ impl<'a> Wirer<'a> {
             self.wrong(&codes::WRONG_CHANNEL, channel.at, what).help = Some(help.to_owned());
             return None;
         }
-        let variable = self.bench.compiled.symbols.variable_at(g7_engine::Addr(item.addr));
-        let inverted = variable.is_some_and(|v| v.inverted);
+        let inverted = item.inverted;
         let numbers = [&channel.scale, &channel.offset].into_iter().flatten().map(|s| s.at);
         if bit {
             let first = numbers.chain(channel.encoding.as_ref().map(|e| e.at)).next();
@@ -256,11 +349,11 @@ impl<'a> Wirer<'a> {
         Some((Some(encoding), Scaling { kind: item.kind, holds, inverted: false, scale, offset }))
     }
 
-    /// True if no other output has the point, or a part of it.
+    /// True if nothing else has the point, or a part of it.
     fn is_free(
         &mut self,
         channel: &Channel,
-        item: &Item,
+        item: &Subject,
         device: usize,
         register: Register,
         encoding: Option<Encoding>,
@@ -311,6 +404,22 @@ impl<'a> Wirer<'a> {
             self.wrong(&codes::WRONG_CHANNEL, channel.bad.at, what);
         }
         word.map(WhileBad::Word)
+    }
+}
+
+/// Why a use of a table is refused, and what to do instead.
+fn refused(area: Area, class: Class, server: bool) -> Option<(&'static str, &'static str)> {
+    match class {
+        Class::Shown if !server => {
+            Some(("belongs to a device that does not ask", "only a server shows: `kind = \"modbus-server\"`"))
+        }
+        Class::Input if server && !area.is_writable() => {
+            Some(("cannot be written by a master", "inputs from a master are coils or holding registers"))
+        }
+        Class::Output if !server && !area.is_writable() => {
+            Some(("cannot be written", "outputs are coils or holding registers"))
+        }
+        Class::Input | Class::Output | Class::Shown => None,
     }
 }
 

@@ -76,11 +76,13 @@ fn each_code_of_io_files_has_a_page_that_holds() {
 }
 
 #[test]
-fn the_io_file_of_the_book_has_no_problem() {
+fn the_io_files_of_the_book_have_no_problem() {
     let page = book("online/io-file.md");
-    let first = blocks(&page)[0].1;
-    // The page names one input by its address and by its name; here each is wired once.
-    assert_eq!(reported(&first.replace("\nstart = \"line1.discrete(0)\"", "")), [""; 0]);
+    for (wrong, block) in blocks(&page) {
+        // The page names one input by its address and by its name; here each is wired once.
+        assert_eq!(reported(&block.replace("\"%I0.3\" = ", "# ")), [""; 0], "{block}");
+        assert!(!wrong, "{block}");
+    }
 }
 
 #[test]
@@ -105,6 +107,38 @@ fn every_mistake_has_its_code() {
              [outputs]\nvalve = 'a.holding(2.0)'\nspeed = 'b.holding(2)'",
             &["G0704"],
         ),
+        ("[devices.a]\nkind = 'modbus-server'", &["G0701"]),
+        ("[devices.a]\nkind = 'modbus-server'\nlisten = 'here'", &["G0701"]),
+        ("[devices.a]\nkind = 'modbus-server'\nlisten = '0.0.0.0:502'", &["G0701"]),
+        ("[devices.a]\nkind = 'modbus-server'\nlisten = '0.0.0.0:502'\naccess = 'anyone'", &[]),
+        ("[devices.a]\nkind = 'modbus-server'\nlisten = '[::1]:502'", &[]),
+        ("[devices.a]\nkind = 'modbus-server'\nlisten = '[::1]:502'\npoll = '10ms'", &["G0701"]),
+        (
+            "[devices.a]\nkind = 'modbus-server'\nlisten = '[::1]:5'\n[devices.b]\nkind = 'modbus-server'\n\
+             listen = '[::1]:5'",
+            &["G0701"],
+        ),
+        (
+            "[devices.a]\nkind = 'modbus-server'\nlisten = '[::1]:5'\n[inputs]\nstart = 'a.discrete(1)'",
+            &["G0703"],
+        ),
+        (
+            "[devices.a]\nkind = 'modbus-server'\nlisten = '[::1]:5'\n[inputs]\nstart = 'a.coil(1)'\n\
+             [outputs]\nvalve = 'a.coil(1)'",
+            &["G0704"],
+        ),
+        (
+            "[devices.a]\nkind = 'modbus-server'\nlisten = '[::1]:5'\n[outputs]\nvalve = 'a.discrete(1)'\n\
+             [shown]\nvalve = 'a.coil(1)'\nX2 = 'a.coil(2)'\nstart = 'a.coil(3)'\nweight = 'a.input(3)'",
+            &[],
+        ),
+        (
+            "[devices.a]\nkind = 'modbus-server'\nlisten = '[::1]:5'\n[shown]\nX9 = 'a.coil(1)'\n\
+             X2 = 'a.input(2)'",
+            &["G0702", "G0703"],
+        ),
+        ("[shown]\nX2 = 'a.coil(1)'", &["G0703"]),
+        ("[shown]\nX2 = { at = 'a.coil(1)', bad = true }", &["G0701", "G0703"]),
         ("[controller]\nperiod = 10", &["G0701"]),
         ("[controller]\npriority = 100", &["G0701"]),
         ("[controller]\nchanged = 'maybe'", &["G0701"]),

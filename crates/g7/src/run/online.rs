@@ -12,8 +12,8 @@ use std::time::Duration;
 use g7_host::{Clock, Start, WallClock};
 use g7_model::Nanos;
 use g7_online::{
-    AtDevice, Clients, Command, Controller, Device, Happened, KeepError, Mode, Options, RealDisk, Reason,
-    Running, Slots, Started, What, Wired,
+    AtDevice, Clients, Command, Controller, Happened, KeepError, Mode, Options, RealDisk, Reason, Running,
+    Slots, Started, What, Wired,
 };
 use g7_rig::{Bench, Role};
 use signal_hook::consts::{SIGINT, SIGTERM};
@@ -46,8 +46,7 @@ pub(super) fn run(path: &Path, source: &Source, args: &Run) -> Result<Verdict, F
     }
     let (runner, slots) = kept(&plan, g7_online::runner(bench, wiring, args.seed))?;
     let mut clients = Clients::default();
-    let device = |wired: &Wired| clients.client(wired).map(|client| Box::new(client) as Box<dyn Device>);
-    let mut machine = g7_online::assemble(runner, wiring, device).map_err(refused)?;
+    let mut machine = g7_online::assemble(runner, wiring, |wired| clients.device(wired)).map_err(refused)?;
     let kept = slots.map(|slots| machine.keep(bench, slots));
     let watchdog = setup.controller.watchdog.as_ref().map(|w| w.value);
     let options = Options {
@@ -207,7 +206,11 @@ impl Attendant<'_> {
         let output = |k: &usize| outputs.get(*k).map_or("", |o| &o.name);
         let (good, bad, warn) = (style::GOOD, style::BAD, style::WARN);
         match happened {
+            Happened::Up if device.kind.is_server() => format!("{name} {good}has a master{good:#}"),
             Happened::Up => format!("{name} {good}answers{good:#}"),
+            Happened::Down(why) if device.kind.is_server() => {
+                format!("{name} {warn}has no master:{warn:#} {why}")
+            }
             Happened::Down(why) => format!("{name} {bad}does not answer:{bad:#} {why}"),
             Happened::NoInput(k, why) => format!("{name}: {warn}no value{warn:#} for `{}`: {why}", input(k)),
             Happened::Input(k) => format!("{name}: `{}` has a value again", input(k)),

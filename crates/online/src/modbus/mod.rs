@@ -1,10 +1,12 @@
-//! A device of Modbus TCP or Modbus RTU, which G7 is the client of.
+//! Devices of Modbus TCP and Modbus RTU, which G7 is the client of, and masters, which it is the server
+//! of (`server`).
 //!
 //! The library is asynchronous; each device has a thread of its own, in which its requests are waited
 //! for one after the other.
 
 mod blocks;
 mod rtu;
+mod server;
 
 use std::net::ToSocketAddrs as _;
 use std::sync::Arc;
@@ -21,6 +23,7 @@ use crate::wiring::Wired;
 
 use blocks::{Block, Place, decode, encode, reads, writes};
 use rtu::{Line, Slave};
+use server::Server;
 
 /// The clients of a machine. Those on one serial line share it.
 #[derive(Default)]
@@ -29,12 +32,25 @@ pub struct Clients {
 }
 
 impl Clients {
-    /// A client of a device that is wired.
+    /// A device that is wired.
     ///
     /// # Errors
     ///
     /// The system has no resources for it.
-    pub fn client(&mut self, wired: &Wired) -> std::io::Result<Client> {
+    pub fn device(&mut self, wired: &Wired) -> std::io::Result<Box<dyn Device>> {
+        if let Kind::ModbusServer(listen) = &wired.device.kind {
+            return Ok(Box::new(Server::new(listen.clone(), wired)));
+        }
+        let client = self.client(wired)?.ok_or(std::io::ErrorKind::Unsupported)?;
+        Ok(Box::new(client))
+    }
+
+    /// A client of a device that is wired; `None` where it is the device that asks.
+    ///
+    /// # Errors
+    ///
+    /// The system has no resources for it.
+    pub fn client(&mut self, wired: &Wired) -> std::io::Result<Option<Client>> {
         let timeout = duration(wired.device.timing.timeout);
         let (way, modbus) = match wired.device.kind.clone() {
             Kind::ModbusTcp(tcp, modbus) => (Way::Tcp(tcp, None), modbus),
@@ -42,12 +58,13 @@ impl Clients {
                 let slave = Slave { line: self.line(serial), timeout };
                 (Way::Rtu(GenericModbusClient::new(slave)), modbus)
             }
+            Kind::ModbusServer(_) => return Ok(None),
         };
         let inputs: Vec<Place> =
             wired.inputs.iter().map(|i| Place { register: i.register, encoding: i.encoding }).collect();
         let outputs =
             wired.outputs.iter().map(|o| Place { register: o.register, encoding: o.encoding }).collect();
-        Ok(Client {
+        Ok(Some(Client {
             way,
             modbus,
             timeout,
@@ -55,7 +72,7 @@ impl Clients {
             inputs,
             outputs,
             runtime: Builder::new_current_thread().enable_all().build()?,
-        })
+        }))
     }
 
     fn line(&mut self, serial: Serial) -> Arc<Line> {

@@ -1,5 +1,7 @@
 //! A row of `[devices]`.
 
+use std::net::SocketAddr;
+
 use g7_model::Nanos;
 
 use super::table::{At, Found, Row, Table};
@@ -22,11 +24,29 @@ pub enum Kind {
     ModbusTcp(Tcp, Modbus),
     /// A slave on a serial line, which this is the master of.
     ModbusRtu(Serial, Modbus),
+    /// Masters of Modbus TCP, which this is the server of.
+    ModbusServer(Listen),
 }
 
 impl Kind {
     /// The words of the file.
-    pub const WORDS: [&'static str; 2] = ["modbus-tcp", "modbus-rtu"];
+    pub const WORDS: [&'static str; 3] = ["modbus-tcp", "modbus-rtu", "modbus-server"];
+
+    /// True if others ask, and this answers.
+    pub fn is_server(&self) -> bool {
+        matches!(self, Kind::ModbusServer(_))
+    }
+}
+
+/// A server of our own.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Listen {
+    /// The address and port that it listens at.
+    pub address: SocketAddr,
+    /// Without a request for so long there is no master.
+    pub silence: Nanos,
+    /// True if the low word of a value of several registers comes first.
+    pub low_word_first: bool,
 }
 
 /// The address of a server.
@@ -112,6 +132,7 @@ pub(super) fn read(row: &Row<'_>, found: &mut Found) -> Option<Device> {
         "modbus-rtu" => {
             serial(&mut table, found).map(|serial| Kind::ModbusRtu(serial, modbus(&mut table, found)))
         }
+        "modbus-server" => listen(&mut table, found).map(Kind::ModbusServer),
         _ => {
             let known: Vec<String> = Kind::WORDS.iter().map(|word| format!("\"{word}\"")).collect();
             found.wrong(kind.at, format!("no kind of device is called \"{}\"", kind.value)).help =
@@ -119,7 +140,10 @@ pub(super) fn read(row: &Row<'_>, found: &mut Found) -> Option<Device> {
             return None;
         }
     };
-    let timing = timing(&mut table, found);
+    let timing = match &kind {
+        Some(Kind::ModbusServer(_)) => SERVER,
+        Some(Kind::ModbusTcp(..) | Kind::ModbusRtu(..)) | None => timing(&mut table, found),
+    };
     table.end(found);
     Some(Device { name, kind: kind?, timing })
 }
@@ -141,8 +165,46 @@ fn serial(table: &mut Table<'_>, found: &mut Found) -> Option<Serial> {
 
 fn modbus(table: &mut Table<'_>, found: &mut Found) -> Modbus {
     let unit = table.whole(found, "unit", 0..=247).map_or(1, |unit| unit.value);
-    let low_word_first = table.word(found, "words", &[("high-first", false), ("low-first", true)]);
-    Modbus { unit: unit as u8, low_word_first: low_word_first.is_some_and(|low| low.value) }
+    Modbus { unit: unit as u8, low_word_first: low_word_first(table, found) }
+}
+
+fn low_word_first(table: &mut Table<'_>, found: &mut Found) -> bool {
+    let low = table.word(found, "words", &[("high-first", false), ("low-first", true)]);
+    low.is_some_and(|low| low.value)
+}
+
+/// The times of a server: its values are handed over each 10 ms, also while no master asks.
+const SERVER: Timing = Timing {
+    poll: Nanos::from_millis(10),
+    timeout: Nanos::SECOND,
+    refresh: Nanos::SECOND,
+    retry: Nanos::from_millis(100),
+};
+
+fn listen(table: &mut Table<'_>, found: &mut Found) -> Option<Listen> {
+    let address = table.needed(found, "listen", "127.0.0.1:1502");
+    let silence = table.duration(found, "silence", Nanos::from_millis(100), Nanos::HOUR);
+    let open = table.word(found, "access", &[("this-machine", false), ("anyone", true)]);
+    let low_word_first = low_word_first(table, found);
+    let address = address?;
+    let Ok(parsed) = address.value.parse::<SocketAddr>() else {
+        found.wrong(address.at, "`listen` is an address of this machine with a port").help = Some(
+            "write `listen = \"127.0.0.1:1502\"`, or \"0.0.0.0:502\" for all of its addresses".to_owned(),
+        );
+        return None;
+    };
+    if !parsed.ip().is_loopback() && !open.is_some_and(|open| open.value) {
+        found
+            .wrong(address.at, "Modbus has no users and no keys: whoever reaches this address may write")
+            .help =
+            Some("listen at 127.0.0.1, or say `access = \"anyone\"` where the network is closed".to_owned());
+        return None;
+    }
+    Some(Listen {
+        address: parsed,
+        silence: silence.map_or(Nanos::from_millis(5_000), |silence| silence.value),
+        low_word_first,
+    })
 }
 
 fn timing(table: &mut Table<'_>, found: &mut Found) -> Timing {
@@ -162,7 +224,7 @@ fn timing(table: &mut Table<'_>, found: &mut Found) -> Timing {
 pub(super) fn one_line_each(devices: &[Device], found: &mut Found) {
     let lines = devices.iter().filter_map(|d| match &d.kind {
         Kind::ModbusRtu(serial, _) => Some((d, serial)),
-        Kind::ModbusTcp(..) => None,
+        Kind::ModbusTcp(..) | Kind::ModbusServer(_) => None,
     });
     for (k, (device, serial)) in lines.clone().enumerate() {
         let other = lines.clone().take(k).find(|(_, s)| s.port == serial.port && *s != serial);
@@ -171,6 +233,24 @@ pub(super) fn one_line_each(devices: &[Device], found: &mut Found) {
                 "{} and {} set the serial port {} otherwise",
                 first.name.value, device.name.value, serial.port
             );
+            found
+                .wrong(device.name.at, what)
+                .related
+                .push((first.name.at, "this is the other one".to_owned()));
+        }
+    }
+}
+
+/// No two servers listen at one address.
+pub(super) fn one_address_each(devices: &[Device], found: &mut Found) {
+    let servers = devices.iter().filter_map(|d| match &d.kind {
+        Kind::ModbusServer(listen) => Some((d, listen.address)),
+        Kind::ModbusTcp(..) | Kind::ModbusRtu(..) => None,
+    });
+    for (k, (device, address)) in servers.clone().enumerate() {
+        if let Some((first, _)) = servers.clone().take(k).find(|(_, other)| *other == address) {
+            let what =
+                format!("{} and {} listen at one address, {address}", first.name.value, device.name.value);
             found
                 .wrong(device.name.at, what)
                 .related

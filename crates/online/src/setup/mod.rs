@@ -12,6 +12,9 @@
 //!
 //! [outputs]
 //! valve = "line1.coil(2)"
+//!
+//! [shown]
+//! X3 = "scada.discrete(0)"
 //! ```
 //!
 //! Reading knows nothing of a chart; `wiring` holds the two together.
@@ -23,7 +26,7 @@ mod table;
 use g7_model::{FileId, Nanos, Problem, Span};
 use toml::de::{DeTable, DeValue};
 
-pub use device::{Device, Kind, Modbus, Parity, Serial, Tcp, Timing};
+pub use device::{Device, Kind, Listen, Modbus, Parity, Serial, Tcp, Timing};
 pub use point::{Area, Encoding, Point, Register};
 pub use table::At;
 
@@ -43,6 +46,8 @@ pub struct Setup {
     pub inputs: Vec<Channel>,
     /// The outputs of the chart that are wired.
     pub outputs: Vec<Channel>,
+    /// Variables and steps that masters may read.
+    pub shown: Vec<Channel>,
 }
 
 /// The policy for kept values of another program.
@@ -108,7 +113,7 @@ pub enum Literal {
     Number(f64),
 }
 
-/// An input or output of the chart, and where it is wired to.
+/// An input or output of the chart, or what masters read, and where it is wired to.
 #[derive(Clone, Debug)]
 pub struct Channel {
     /// The variable, by name or by address (`%I0.0`).
@@ -161,12 +166,15 @@ fn setup(table: &DeTable<'_>, found: &mut Found) -> Setup {
     let rows = top.rows(found, "devices");
     let devices: Vec<Device> = rows.iter().filter_map(|row| device::read(row, found)).collect();
     device::one_line_each(&devices, found);
+    device::one_address_each(&devices, found);
     let rows = top.rows(found, "inputs");
     let inputs = rows.iter().filter_map(|row| channel(row, true, found)).collect();
     let rows = top.rows(found, "outputs");
     let outputs = rows.iter().filter_map(|row| channel(row, false, found)).collect();
+    let rows = top.rows(found, "shown");
+    let shown = rows.iter().filter_map(|row| channel(row, false, found)).collect();
     top.end(found);
-    Setup { controller: controller.unwrap_or_default(), devices, inputs, outputs }
+    Setup { controller: controller.unwrap_or_default(), devices, inputs, outputs, shown }
 }
 
 fn controller(mut table: Table<'_>, found: &mut Found) -> Controller {
@@ -189,7 +197,7 @@ fn controller(mut table: Table<'_>, found: &mut Found) -> Controller {
     read
 }
 
-/// A row of `[inputs]` or `[outputs]`: a point, or a table with more.
+/// A row of `[inputs]`, `[outputs]` or `[shown]`: a point, or a table with more.
 fn channel(row: &Row<'_>, input: bool, found: &mut Found) -> Option<Channel> {
     let variable = At::new(row.name.to_owned(), row.at);
     if let Some(text) = row.value.as_str() {
