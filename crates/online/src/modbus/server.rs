@@ -311,22 +311,30 @@ mod tests {
     use super::*;
     use crate::setup::{Encoding, Register};
 
-    const PLACES: [(Area, u16, Option<u8>, Option<Encoding>, bool); 6] = [
-        (Area::Coil, 0, None, None, true),
-        (Area::Coil, 1, None, None, true),
-        (Area::Coil, 2, None, None, false),
-        (Area::Holding, 5, None, Some(Encoding::Signed(2)), true),
-        (Area::Holding, 7, Some(3), None, true),
-        (Area::Input, 0, None, Some(Encoding::F32), false),
-    ];
+    /// A place, and true if masters write it.
+    fn places() -> [(Place, bool); 6] {
+        let place =
+            |area, address, bit, encoding| Place { register: Register { area, address, bit }, encoding };
+        [
+            (place(Area::Coil, 0, None, None), true),
+            (place(Area::Coil, 1, None, None), true),
+            (place(Area::Coil, 2, None, None), false),
+            (place(Area::Holding, 5, None, Some(Encoding::Signed(2))), true),
+            (place(Area::Holding, 7, Some(3), None), true),
+            (place(Area::Input, 0, None, Some(Encoding::F32)), false),
+        ]
+    }
 
-    fn place((area, address, bit, encoding, _): (Area, u16, Option<u8>, Option<Encoding>, bool)) -> Place {
-        Place { register: Register { area, address, bit }, encoding }
+    /// The number in the holding registers 5 and 6.
+    fn number(tables: &Tables, low_first: bool) -> Option<Raw> {
+        tables.get(&places()[3].0, low_first)
     }
 
     fn tables() -> Tables {
-        let of =
-            |writable| PLACES.into_iter().filter(move |p| p.4 == writable).map(place).collect::<Vec<Place>>();
+        let of = |master: bool| {
+            let places = places().into_iter().filter(move |(_, written)| *written == master);
+            places.map(|(place, _)| place).collect::<Vec<Place>>()
+        };
         Tables::new(&of(true), &of(false))
     }
 
@@ -343,7 +351,7 @@ mod tests {
     #[test]
     fn requests_are_answered_as_the_protocol_says() {
         let mut t = tables();
-        t.put(&place(PLACES[5]), Raw::Real(1.5), false);
+        t.put(&places()[5].0, Raw::Real(1.5), false);
         // IEEE 754: 1.5 is 3FC00000.
         assert_eq!(ask(&mut t, 4, &[0, 0, 0, 2]), Ok(vec![4, 4, 0x3f, 0xc0, 0, 0]));
         // Coils 0 and 1 at once: the lowest bit is the first.
@@ -352,7 +360,7 @@ mod tests {
         assert_eq!(ask(&mut t, 5, &[0, 0, 0xff, 0]), Ok(vec![5, 0, 0, 0xff, 0]));
         assert_eq!(ask(&mut t, 1, &[0, 0, 0, 1]), Ok(vec![1, 1, 1]));
         assert_eq!(ask(&mut t, 16, &[0, 5, 0, 2, 4, 0xff, 0xff, 0xff, 0xfe]), Ok(vec![16, 0, 5, 0, 2]));
-        assert_eq!(t.get(&place(PLACES[3]), false), Some(Raw::Whole(-2)));
+        assert_eq!(number(&t, false), Some(Raw::Whole(-2)));
         // Of register 7 only bit 3 is the master's.
         assert_eq!(ask(&mut t, 6, &[0, 7, 0xff, 0xff]), Ok(vec![6, 0, 7, 0xff, 0xff]));
         assert_eq!(ask(&mut t, 3, &[0, 7, 0, 1]), Ok(vec![3, 2, 0, 8]));
@@ -361,12 +369,12 @@ mod tests {
     #[test]
     fn a_value_that_is_written_in_part_is_none() {
         let mut t = tables();
-        assert_eq!(t.get(&place(PLACES[3]), false), None);
+        assert_eq!(number(&t, false), None);
         ask(&mut t, 6, &[0, 5, 0, 1]).expect("it is the master's");
-        assert_eq!(t.get(&place(PLACES[3]), false), None);
+        assert_eq!(number(&t, false), None);
         ask(&mut t, 6, &[0, 6, 0, 2]).expect("it is the master's");
-        assert_eq!(t.get(&place(PLACES[3]), false), Some(Raw::Whole(0x0001_0002)));
-        assert_eq!(t.get(&place(PLACES[3]), true), Some(Raw::Whole(0x0002_0001)));
+        assert_eq!(number(&t, false), Some(Raw::Whole(0x0001_0002)));
+        assert_eq!(number(&t, true), Some(Raw::Whole(0x0002_0001)));
     }
 
     #[test]
@@ -414,7 +422,7 @@ mod tests {
             let mut byte = |k: u8| match next() % 8 {
                 0 => next(),
                 // Small numbers behind zeros meet the points that there are.
-                _ if k % 2 == 0 => 0,
+                _ if k.is_multiple_of(2) => 0,
                 _ => next() % 4,
             };
             let data: Vec<u8> = (0..4).map(&mut byte).collect();
