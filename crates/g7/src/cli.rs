@@ -72,6 +72,8 @@ pub(crate) enum Command {
     Run(Run),
     /// Ask the devices of a chart, or one by hand, what they have.
     Devices(crate::devices::Devices),
+    /// Run the plant of a chart in the place of its devices.
+    Plant(crate::plant::Plant),
     /// Run the tests of charts in virtual time.
     Test(Test),
     /// Draw charts as SVG, PNG or PDF.

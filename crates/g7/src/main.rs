@@ -14,6 +14,7 @@
 //! Files are written completely or not at all; a closed pipe ends the program silently.
 #![forbid(unsafe_code)]
 
+mod attendant;
 mod check;
 mod cli;
 mod devices;
@@ -27,6 +28,7 @@ mod generate;
 mod import;
 mod message;
 mod new;
+mod plant;
 mod progress;
 mod report;
 mod run;
@@ -72,6 +74,7 @@ fn run(command: &Command) -> Result<Verdict, Failure> {
         Command::Fmt(args) => fmt::fmt(args),
         Command::Run(args) => run::run(args),
         Command::Devices(args) => devices::devices(args),
+        Command::Plant(args) => plant::plant(args),
         Command::Test(args) => testing::test(args),
         Command::Draw(args) => draw::draw(args),
         Command::Serve(args) => serve::serve(args),

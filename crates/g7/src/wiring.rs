@@ -14,8 +14,7 @@ use crate::report::{self, Tally};
 use crate::sources::Source;
 
 /// A chart with its wiring.
-pub(crate) struct Plan<'a> {
-    pub(crate) source: &'a Source,
+pub(crate) struct Plan {
     pub(crate) bench: Bench,
     pub(crate) setup: Setup,
     pub(crate) wiring: Wiring,
@@ -35,11 +34,7 @@ pub(crate) struct Wanted<'a> {
 }
 
 /// Reads the io file and wires the chart, or prints the problems.
-pub(crate) fn plan<'a>(
-    path: &Path,
-    source: &'a Source,
-    wanted: &Wanted<'_>,
-) -> Result<Option<Plan<'a>>, Failure> {
+pub(crate) fn plan(path: &Path, source: &Source, wanted: &Wanted<'_>) -> Result<Option<Plan>, Failure> {
     let io = wanted.io.map_or_else(|| path.with_extension("io.toml"), Path::to_path_buf);
     if wanted.io.is_none() && !io.is_file() {
         let what =
@@ -62,7 +57,7 @@ pub(crate) fn plan<'a>(
     problems.extend(wrong);
     show(&file, &problems);
     let errors = problems.iter().any(|p: &Problem| p.severity() == Severity::Error);
-    Ok((!errors).then_some(Plan { source, bench, setup, wiring, io }))
+    Ok((!errors).then_some(Plan { bench, setup, wiring, io }))
 }
 
 /// Takes the devices out that the plant stands for.

@@ -149,6 +149,7 @@ fn completions_and_manual_pages_name_every_command() {
         "fmt",
         "run",
         "devices",
+        "plant",
         "test",
         "draw",
         "import",
@@ -171,9 +172,20 @@ fn completions_and_manual_pages_name_every_command() {
 #[test]
 fn help_teaches_by_example() {
     let folder = Folder::new();
-    for command in
-        ["new", "check", "fmt", "run", "devices", "test", "draw", "import", "explain", "completions", "man"]
-    {
+    for command in [
+        "new",
+        "check",
+        "fmt",
+        "run",
+        "devices",
+        "plant",
+        "test",
+        "draw",
+        "import",
+        "explain",
+        "completions",
+        "man",
+    ] {
         let help = folder.g7(&[command, "--help"]).is(0).out.clone();
         assert!(help.contains("Examples:") && help.contains(&format!("  g7 {command}")), "{command}: {help}");
     }

@@ -4,13 +4,8 @@
 
 mod common;
 
-use std::io::{BufRead, BufReader, Write};
-use std::process::{Child, ChildStdin, Command, Stdio};
-use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
-use std::time::{Duration, Instant};
-
 use common::Folder;
-use snapbox::cmd::cargo_bin;
+use common::talk::{Master, Running, Slave, free_port};
 
 const CHART: &str = "\
 profile iec60848
@@ -48,121 +43,6 @@ fn folder(port: u16) -> Folder {
     folder
 }
 
-/// A program whose lines are read as they come.
-struct Running {
-    child: Child,
-    stdin: Option<ChildStdin>,
-    lines: Receiver<String>,
-    seen: Vec<String>,
-}
-
-impl Running {
-    fn start(mut command: Command, says: fn(&mut Child) -> Box<dyn std::io::Read + Send>) -> Running {
-        command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
-        let mut child = command.spawn().expect("it starts");
-        let (give, lines) = channel();
-        let out = BufReader::new(says(&mut child));
-        std::thread::spawn(move || out.lines().map_while(Result::ok).try_for_each(|line| give.send(line)));
-        let stdin = child.stdin.take();
-        Running { child, stdin, lines, seen: Vec::new() }
-    }
-
-    fn g7(folder: &Folder, args: &[&str]) -> Running {
-        let mut command = Command::new(cargo_bin!("g7"));
-        command.args(["run", "chart.g7", "--online"]).args(args).current_dir(folder.root());
-        Running::start(command, |child| Box::new(child.stderr.take().expect("piped")))
-    }
-
-    fn say(&mut self, line: &str) {
-        let stdin = self.stdin.as_mut().expect("open");
-        writeln!(stdin, "{line}").expect("it listens");
-    }
-
-    /// The next line.
-    fn line(&mut self) -> String {
-        match self.lines.recv_timeout(Duration::from_secs(20)) {
-            Ok(line) => {
-                self.seen.push(line.clone());
-                line
-            }
-            Err(RecvTimeoutError::Timeout | RecvTimeoutError::Disconnected) => {
-                panic!("no line behind {:#?}", self.seen)
-            }
-        }
-    }
-
-    /// Waits for a line that has this text.
-    fn until(&mut self, text: &str) -> String {
-        loop {
-            let line = self.line();
-            if line.contains(text) {
-                return line;
-            }
-        }
-    }
-
-    /// Ends it by the command and returns its exit code.
-    fn quit(mut self) -> i32 {
-        self.say("quit");
-        self.child.wait().expect("it ends").code().expect("an exit code")
-    }
-}
-
-impl Drop for Running {
-    fn drop(&mut self) {
-        self.child.kill().ok();
-        self.child.wait().ok();
-    }
-}
-
-/// A slave of pymodbus.
-struct Slave {
-    running: Running,
-    /// Its port, or its serial line.
-    place: String,
-}
-
-impl Slave {
-    /// With the arguments of the script; `None` without a module of Python.
-    fn begin(module: &str, arguments: &[&str]) -> Option<Slave> {
-        let mut command = Command::new(g7_peers::python(module)?);
-        command.arg(g7_peers::script("modbus_slave.py")).args(arguments);
-        let mut running = Running::start(command, |child| Box::new(child.stdout.take().expect("piped")));
-        let place = running.line();
-        Some(Slave { running, place })
-    }
-
-    /// At a port, or at a free one for 0.
-    fn start(port: u16) -> Option<Slave> {
-        Slave::begin("pymodbus", &[&port.to_string()])
-    }
-
-    fn port(&self) -> u16 {
-        self.place.parse().expect("a port")
-    }
-
-    fn set(&mut self, what: &str) {
-        self.running.say(&format!("set {what}"));
-        assert_eq!(self.running.line(), "ok");
-    }
-
-    fn get(&mut self, what: &str) -> String {
-        self.running.say(&format!("get {what}"));
-        self.running.line()
-    }
-
-    /// Waits until registers or bits have these values.
-    fn becomes(&mut self, what: &str, values: &str) {
-        let begin = Instant::now();
-        let mut found = self.get(what);
-        while found != values {
-            assert!(begin.elapsed() < Duration::from_secs(20), "{what} is {found}, not {values}");
-            std::thread::sleep(Duration::from_millis(10));
-            found = self.get(what);
-        }
-    }
-}
-
 /// Valve; lamp; speed.
 const SAFE: [(&str, &str); 3] = [("coil 2 1", "0"), ("holding 9 1", "16"), ("holding 7 1", "65535")];
 
@@ -170,7 +50,7 @@ const SAFE: [(&str, &str); 3] = [("coil 2 1", "0"), ("holding 9 1", "16"), ("hol
 fn a_slave_of_pymodbus_is_driven_lost_and_found() {
     let Some(mut slave) = Slave::start(0) else { return };
     let folder = folder(slave.port());
-    let mut g7 = Running::g7(&folder, &[]);
+    let mut g7 = Running::online(&folder, &[]);
     g7.until("line1 answers");
     // IEEE 754: 2.5 is 40200000. The lamp is lit, and its wire inverted.
     slave.set("input 4 16416 0 65535 65533");
@@ -202,7 +82,7 @@ fn a_slave_of_pymodbus_is_driven_lost_and_found() {
     SAFE.iter().for_each(|(what, values)| assert_eq!(slave.get(what), *values, "{what}"));
 
     // The next start is a warm one: step 2 is still active, and nothing is counted again.
-    let mut g7 = Running::g7(&folder, &[]);
+    let mut g7 = Running::online(&folder, &[]);
     g7.until("warm start");
     slave.becomes("coil 2 1", "1");
     slave.becomes("holding 7 1", "2");
@@ -226,7 +106,7 @@ fn two_slaves_share_a_serial_line() {
     // Nobody has unit 9: it costs the others time, not values.
     let devices = device("a", 1) + &device("b", 7) + &device("c", 9);
     folder.write("chart.io.toml", format!("{devices}{channels}lamp = 'c.coil(1)'\n"));
-    let mut g7 = Running::g7(&folder, &[]);
+    let mut g7 = Running::online(&folder, &[]);
     let lines = [g7.until("answer"), g7.until("answer"), g7.until("answer")].join("\n");
     assert!(lines.contains("a answers") && lines.contains("b answers"), "{lines}");
     assert!(lines.contains("c does not answer"), "{lines}");
@@ -238,41 +118,6 @@ fn two_slaves_share_a_serial_line() {
     slave.becomes("1 holding 7 2", "65535 65535");
     slave.becomes("7 coil 2 1", "0");
     assert_eq!(g7.quit(), 0);
-}
-
-/// A master of pymodbus.
-struct Master(Running);
-
-impl Master {
-    fn start(port: u16) -> Option<Master> {
-        let mut command = Command::new(g7_peers::python("pymodbus")?);
-        command.arg(g7_peers::script("modbus_master.py")).arg(port.to_string());
-        let mut running = Running::start(command, |child| Box::new(child.stdout.take().expect("piped")));
-        assert_eq!(running.line(), "connected");
-        Some(Master(running))
-    }
-
-    fn says(&mut self, what: &str) -> String {
-        self.0.say(what);
-        self.0.line()
-    }
-
-    /// Waits until a line has this answer.
-    fn until(&mut self, what: &str, answer: &str) {
-        let begin = Instant::now();
-        let mut found = self.says(what);
-        while found != answer {
-            assert!(begin.elapsed() < Duration::from_secs(20), "{what}: {found}, not {answer}");
-            std::thread::sleep(Duration::from_millis(10));
-            found = self.says(what);
-        }
-    }
-}
-
-/// A port of this machine that was free a moment ago.
-fn free_port() -> u16 {
-    let listener = std::net::TcpListener::bind("127.0.0.1:0").expect("a port is free");
-    listener.local_addr().expect("it has an address").port()
 }
 
 /// An io file with a server alone: the master has the button and the weight, and sees the rest.
@@ -290,7 +135,7 @@ fn served(port: u16) -> String {
 fn a_master_of_pymodbus_drives_and_watches() {
     let (folder, port) = (Folder::with(CHART), free_port());
     folder.write("chart.io.toml", served(port));
-    let mut g7 = Running::g7(&folder, &[]);
+    let mut g7 = Running::online(&folder, &[]);
     g7.until("scada has no master: none has asked");
     let Some(mut master) = Master::start(port) else { return };
     // Step 1 lights the lamp, whose wire is inverted.
@@ -354,7 +199,7 @@ fn a_port_in_use_is_told_and_tried_again() {
     assert_eq!(lines[0], format!("scada listens at 127.0.0.1:{port} for masters"));
     assert!(lines[1].contains("coil(10)") && lines[1].ends_with("written"), "{}", asked.out);
     assert!(asked.out.lines().any(|l| l.contains("X2") && l.ends_with("read")), "{}", asked.out);
-    let mut g7 = Running::g7(&folder, &[]);
+    let mut g7 = Running::online(&folder, &[]);
     let line = g7.until("scada has no master: cannot listen at");
     assert!(line.contains(&format!("127.0.0.1:{port}")), "{line}");
     drop(taken);
@@ -423,7 +268,7 @@ fn addresses_that_a_slave_does_not_have_are_bad_alone() {
         "chart.io.toml",
         io(slave.port()).replace("input(4)", "input(1000)").replace("holding(7)", "holding(1000)"),
     );
-    let mut g7 = Running::g7(&folder, &[]);
+    let mut g7 = Running::online(&folder, &[]);
     // An output that is refused, and an input without a value, in either order.
     let lines = [g7.until("line1"), g7.until("line1"), g7.until("line1")].join("\n");
     assert!(lines.contains("no value for `level`: exception"), "{lines}");

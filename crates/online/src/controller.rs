@@ -6,7 +6,7 @@
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicI64, Ordering};
 
-use g7_engine::{Addr, GroupId, State, StepId};
+use g7_engine::Addr;
 use g7_host::{Halt, Runner, Start};
 use g7_model::Nanos;
 
@@ -14,6 +14,7 @@ use crate::driver::{Quality, from_device};
 use crate::exchange::{Reader, Writer};
 use crate::keep::Keep;
 use crate::wiring::WhileBad;
+use crate::word::{Source, Target};
 
 /// The state of a controller.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -31,8 +32,8 @@ pub enum Mode {
 pub enum Reason {
     /// The charts or the plant had a fault.
     Halt(Halt),
-    /// An input word is bad, and its channel says that the controller stops then.
-    Input(u32),
+    /// An input is bad, and its channel says that the controller stops then.
+    Input(Target),
     /// A scan took longer than the watchdog allows.
     Watchdog,
 }
@@ -48,6 +49,12 @@ pub enum Command {
     Acknowledge,
     /// Go back to the initial situation; it does what it did before.
     Restart(Start),
+    /// Give an input that no device has a value.
+    SetInput(u32, u64),
+    /// Give a variable a value.
+    SetWord(Addr, u64),
+    /// Give a state of the plant a value.
+    SetPlant(Addr, u64),
 }
 
 /// Something that happened in a step.
@@ -79,27 +86,6 @@ pub struct Shared {
     pub tripped: Arc<AtomicBool>,
 }
 
-/// A word of the run that a device gets.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Source {
-    /// A variable.
-    Word(Addr),
-    /// The activity of a step.
-    Step(StepId),
-    /// The activity of a macro-step: that of its expansion.
-    Macro(GroupId),
-}
-
-impl Source {
-    fn word(self, runner: &Runner, state: &State) -> u64 {
-        match self {
-            Source::Word(addr) => state.word(addr),
-            Source::Step(step) => u64::from(state.is_active(step)),
-            Source::Macro(group) => u64::from(state.group_active(runner.program(), group)),
-        }
-    }
-}
-
 /// The controller's side of a device.
 #[derive(Debug)]
 pub struct Port {
@@ -107,8 +93,8 @@ pub struct Port {
     pub from_device: Reader,
     /// The words that the driver takes: one for each output.
     pub to_device: Writer,
-    /// The input words, counted from the first, and what each has while its value is bad.
-    pub inputs: Vec<(u32, WhileBad)>,
+    /// The words that the device gives, and what each has while its value is bad.
+    pub inputs: Vec<(Target, WhileBad)>,
     /// The words that the device gets, and the safe value of each; `None` for what is only shown.
     pub outputs: Vec<(Source, Option<u64>)>,
     /// Input words that are 1 while the device answers.
@@ -238,6 +224,9 @@ impl Controller {
             (Command::Stop, Mode::Run) => self.leave(now, Mode::Stop),
             (Command::Acknowledge, Mode::Fault(_)) => self.enter(now, Mode::Stop),
             (Command::Restart(start), _) => self.runner.restart(start),
+            (Command::SetInput(index, word), _) => self.runner.set_input(index, word),
+            (Command::SetWord(addr, word), _) => self.runner.set_word(addr, word),
+            (Command::SetPlant(addr, word), _) => self.runner.set_plant_word(addr, word),
             (Command::Run | Command::Stop | Command::Acknowledge, _) => {}
         }
     }
@@ -278,20 +267,27 @@ impl Controller {
     }
 
     /// Hands the values of the devices to the run. Returns an input whose value is bad and may not be.
-    fn read(&mut self, now: Nanos) -> Option<u32> {
+    fn read(&mut self, now: Nanos) -> Option<Target> {
         let mut fatal = None;
         for Open { port, words, .. } in &self.ports {
             let word = |at: usize| words.get(at).copied().unwrap_or(0);
             let fresh = now - Nanos::new(word(from_device::STAMP) as i64) <= port.stale;
             let up = fresh && word(from_device::UP) != 0;
-            for (k, (index, bad)) in port.inputs.iter().enumerate() {
+            for (k, (target, bad)) in port.inputs.iter().enumerate() {
                 let at = from_device::INPUTS + 2 * k;
                 let good = fresh && Quality::of(word(at + 1)) == Quality::Good;
-                match bad {
-                    _ if good => self.runner.set_input(*index, word(at)),
-                    WhileBad::Hold => {}
-                    WhileBad::Word(substitute) => self.runner.set_input(*index, *substitute),
-                    WhileBad::Fault => fatal = fatal.or(Some(*index)),
+                let value = match bad {
+                    _ if good => word(at),
+                    WhileBad::Word(substitute) => *substitute,
+                    WhileBad::Hold => continue,
+                    WhileBad::Fault => {
+                        fatal = fatal.or(Some(*target));
+                        continue;
+                    }
+                };
+                match target {
+                    Target::Input(index) => self.runner.set_input(*index, value),
+                    Target::Word(addr) => self.runner.set_word(*addr, value),
                 }
             }
             for index in &port.good {

@@ -14,6 +14,7 @@ use crate::keep::{Keep, KeptFile};
 use crate::setup::Timing;
 use crate::slots::{Disk, Slots};
 use crate::wiring::{Wired, Wiring};
+use crate::word::Target;
 
 /// Events that wait for their reader; more are counted as lost.
 const EVENTS: usize = 4096;
@@ -45,7 +46,10 @@ impl Machine {
 /// A run of the bench whose plant leaves the wired inputs to their devices.
 pub fn runner(bench: &Bench, wiring: &Wiring, seed: u64) -> Runner {
     let wired = |index: u32| {
-        wiring.devices.iter().any(|d| d.good.contains(&index) || d.inputs.iter().any(|i| i.index == index))
+        wiring
+            .devices
+            .iter()
+            .any(|d| d.good.contains(&index) || d.inputs.iter().any(|i| i.target == Target::Input(index)))
     };
     let mut runner = bench.runner(seed);
     if let Some(plant) = &bench.plant {
@@ -79,7 +83,7 @@ pub fn assemble<E>(
         ports.push(Port {
             from_device,
             to_device,
-            inputs: wired.inputs.iter().map(|i| (i.index, i.bad)).collect(),
+            inputs: wired.inputs.iter().map(|i| (i.target, i.bad)).collect(),
             outputs: wired.outputs.iter().map(|o| (o.source, o.out.safe)).collect(),
             good: wired.good.clone(),
             stale: stale(timing),

@@ -7,10 +7,10 @@ use g7_host::Kind;
 use g7_model::{Problem, Span, codes};
 use g7_rig::{Activity, Bench, Item, Role};
 
-use crate::controller::Source;
 use crate::driver::Out;
 use crate::setup::{Area, At, Bad, Channel, Device, Encoding, Literal, Point, Register, Setup};
 use crate::value::{Holds, Raw, Scaling};
+use crate::word::{Source, Target};
 
 /// All channels of a machine, by device.
 #[derive(Clone, Debug, Default)]
@@ -39,8 +39,8 @@ pub struct Wired {
 pub struct In {
     /// The variable.
     pub name: String,
-    /// The input word, counted from the first.
-    pub index: u32,
+    /// The word of the run.
+    pub target: Target,
     /// The point.
     pub register: Register,
     /// How registers hold the number; `None` for a bit.
@@ -288,7 +288,14 @@ impl<'a> Wirer<'a> {
             (Class::Input, Some(index)) => {
                 let Some(bad) = self.bad(channel, &scaling) else { return };
                 let Some(wired) = self.wiring.devices.get_mut(device) else { return };
-                wired.inputs.push(In { name, index, register, encoding, scaling, bad });
+                wired.inputs.push(In {
+                    name,
+                    target: Target::Input(index),
+                    register,
+                    encoding,
+                    scaling,
+                    bad,
+                });
             }
             (Class::Input, None) => {}
             (Class::Output | Class::Shown, _) => {

@@ -7,7 +7,7 @@ use std::sync::{Arc, Mutex};
 use g7_model::{FileId, Nanos};
 use g7_online::setup;
 use g7_online::{
-    Absent, Command, Device, Driver, Event, Failed, Machine, Mode, Raw, Reason, What, Wired, Worked,
+    Absent, Command, Device, Driver, Event, Failed, Machine, Mode, Raw, Reason, Target, What, Wired, Worked,
     assemble, runner, wire,
 };
 use g7_rig::{Bench, Options, Source, build};
@@ -362,13 +362,13 @@ fn a_bad_input_stops_the_controller_where_the_file_says_so() {
     assert_eq!(s.outputs()[0], Raw::Bit(true));
     s.set(|w| w.fault = Fault::NoButton);
     s.pass(MS * 100);
-    assert_eq!(s.machine.controller.mode(), Mode::Fault(Reason::Input(0)));
+    assert_eq!(s.machine.controller.mode(), Mode::Fault(Reason::Input(Target::Input(0))));
     assert_eq!(s.outputs(), safe());
     // The fault stays until someone acknowledges it, and then nothing runs by itself.
     s.set(|w| w.fault = Fault::None);
     s.command(Command::Run);
     s.pass(MS * 100);
-    assert_eq!(s.machine.controller.mode(), Mode::Fault(Reason::Input(0)));
+    assert_eq!(s.machine.controller.mode(), Mode::Fault(Reason::Input(Target::Input(0))));
     s.command(Command::Acknowledge);
     s.pass(MS * 100);
     assert_eq!((s.machine.controller.mode(), s.outputs()), (Mode::Stop, safe()));

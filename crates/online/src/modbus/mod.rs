@@ -7,12 +7,12 @@
 mod blocks;
 mod rtu;
 mod server;
+mod shared;
 
 use std::net::ToSocketAddrs as _;
 use std::sync::Arc;
 use std::time::Duration;
 
-use g7_model::Nanos;
 use tokio::runtime::{Builder, Runtime};
 use voltage_modbus::{GenericModbusClient, ModbusClient, ModbusError, ModbusTcpClient};
 
@@ -24,6 +24,7 @@ use crate::wiring::Wired;
 use blocks::{Block, Place, decode, encode, reads, writes};
 use rtu::{Line, Slave};
 use server::Server;
+use shared::{duration, set};
 
 /// The clients of a machine. Those on one serial line share it.
 #[derive(Default)]
@@ -112,10 +113,6 @@ impl Client {
             .collect();
         self.reads = reads(&self.inputs);
     }
-}
-
-fn duration(time: Nanos) -> Duration {
-    Duration::from_nanos(time.count().max(0).unsigned_abs())
 }
 
 fn failed(error: &ModbusError) -> Failed {
@@ -292,11 +289,5 @@ fn refusal<T>(result: Result<T, ModbusError>) -> Result<Result<T, String>, Faile
         Ok(value) => Ok(Ok(value)),
         Err(ModbusError::Exception { code, message, .. }) => Ok(Err(format!("exception {code}: {message}"))),
         Err(error) => Err(failed(&error)),
-    }
-}
-
-fn set<T>(list: &mut [T], at: usize, value: T) {
-    if let Some(slot) = list.get_mut(at) {
-        *slot = value;
     }
 }

@@ -21,7 +21,7 @@ use crate::value::Raw;
 use crate::wiring::Wired;
 
 use super::blocks::{Place, decode, encode};
-use super::{duration, set};
+use super::shared::{duration, set};
 
 /// A connection without a request is ended after this time, or after the silence of the io file where
 /// that is longer.

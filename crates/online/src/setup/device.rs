@@ -174,7 +174,7 @@ fn low_word_first(table: &mut Table<'_>, found: &mut Found) -> bool {
 }
 
 /// The times of a server: its values are handed over each 10 ms, also while no master asks.
-const SERVER: Timing = Timing {
+pub(crate) const SERVER: Timing = Timing {
     poll: Nanos::from_millis(10),
     timeout: Nanos::SECOND,
     refresh: Nanos::SECOND,

@@ -26,6 +26,7 @@ mod table;
 use g7_model::{FileId, Nanos, Problem, Span};
 use toml::de::{DeTable, DeValue};
 
+pub(crate) use device::SERVER;
 pub use device::{Device, Kind, Listen, Modbus, Parity, Serial, Tcp, Timing};
 pub use point::{Area, Encoding, Point, Register};
 pub use table::At;
