@@ -52,11 +52,12 @@ $(PYTHON)/bin/pymodbus.simulator:
 tally-anew:
 	@rm -rf $(TALLY) && mkdir -p $(TALLY) && touch $(TALLY)/skips
 
-## install what some tests are skipped without: clang with its sanitizers, g++, a bare target
+## install what some tests are skipped without: clang with its sanitizers, g++, strace, a bare target
 peers:
 	rustup target add thumbv7em-none-eabi
 	@$(call debian,gcc,gcc)
 	@$(call debian,g++,g++)
+	@$(call debian,strace,strace)
 	@$(SUDO) apt-get update -qq && $(SUDO) apt-get install -qq --no-install-recommends clang libclang-rt-dev
 
 ## formatting and lints

@@ -11,7 +11,7 @@ use g7_engine::Addr;
 use g7_host::{Clock, Start, Value, WallClock};
 use g7_model::Nanos;
 use g7_online::{
-    AtDevice, Command, Controller, Happened, Mode, Reason, Running, Target, What, Wired, Wiring,
+    AtDevice, Command, Controller, Happened, Mode, Paces, Reason, Running, Target, What, Wired, Wiring,
 };
 use g7_rig::{Bench, Item, Role};
 use signal_hook::consts::{SIGINT, SIGTERM};
@@ -38,13 +38,15 @@ pub(crate) struct Attendant<'a> {
     wiring: &'a Wiring,
     clock: WallClock,
     mode: Mode,
+    paces: Paces,
     /// Lines `NAME := VALUE` set an input or a state.
     sets: bool,
 }
 
 impl<'a> Attendant<'a> {
     pub(crate) fn new(source: &'a Source, bench: &'a Bench, wiring: &'a Wiring) -> Attendant<'a> {
-        Attendant { source, bench, wiring, clock: WallClock::default(), mode: Mode::Stop, sets: false }
+        let (clock, paces) = (WallClock::default(), Paces::default());
+        Attendant { source, bench, wiring, clock, mode: Mode::Stop, paces, sets: false }
     }
 
     /// Takes lines that set a value as well.
@@ -93,7 +95,10 @@ impl<'a> Attendant<'a> {
                 Ok(command) => command,
                 Err(why) => return talk!("{why}"),
             },
-            "status" => return talk!("{} {}", self.time(), self.mode_text(self.mode)),
+            "status" => {
+                talk!("{} {}", self.time(), self.mode_text(self.mode));
+                return self.tell_pace();
+            }
             _ if self.sets => return talk!("{HELP}, NAME := VALUE"),
             _ => return talk!("{HELP}"),
         };
@@ -128,6 +133,9 @@ impl<'a> Attendant<'a> {
                 }
                 What::Missed(n) => talk!("{} {n} scans came too late and were left out", self.time()),
             }
+        }
+        while let Ok(pace) = running.paces.pop() {
+            self.paces.add(pace);
         }
         while let Ok(AtDevice { device, happened }) = running.devices.try_recv() {
             talk!("{} {}", self.time(), self.device_text(device, &happened));
@@ -189,11 +197,19 @@ impl<'a> Attendant<'a> {
         }
     }
 
+    fn tell_pace(&self) {
+        if self.paces.scans() > 0 {
+            talk!("scans were late: {}", self.paces.late());
+            talk!("scans took: {}", self.paces.took());
+        }
+    }
+
     fn status(&self, controller: &Controller) {
         let (state, bench) = (controller.runner().state(), self.bench);
         let situation = bench.situation(state).join(", ");
         let (scans, missed) = (state.scans(), controller.runner().missed());
         talk!("{scans} scans, {missed} left out; the situation is {{{situation}}}");
+        self.tell_pace();
     }
 }
 

@@ -351,3 +351,31 @@ fn mistakes_have_a_place_and_nothing_runs() {
     let alone = folder.g7(&["run", "--io", "x.toml"]);
     assert!(alone.is(2).err.contains("--online"), "{}", alone.err);
 }
+
+#[test]
+#[cfg(target_os = "linux")]
+fn the_scan_thread_makes_no_system_call_but_its_sleep() {
+    if !g7_peers::tool("strace") {
+        return;
+    }
+    let folder = folder(1);
+    let mut traced = std::process::Command::new("strace");
+    traced.args(["-f", "-o", "calls"]).arg(snapbox::cmd::cargo_bin!("g7"));
+    traced.args(["run", "chart.g7", "--online", "--for", "1s"]).stdin(std::process::Stdio::null());
+    let traced = traced.current_dir(folder.root()).output().expect("it runs");
+    if String::from_utf8_lossy(&traced.stderr).contains("ptrace") {
+        return g7_peers::skip("strace may not trace here");
+    }
+    let calls = folder.read("calls");
+    let named = calls.lines().find(|l| l.contains("PR_SET_NAME, \"scan\"")).expect("the scan thread");
+    let thread = named.split_whitespace().next().expect("its number");
+    let own: Vec<&str> =
+        calls.lines().filter_map(|l| l.strip_prefix(thread)).map(|l| l.trim_start()).collect();
+    let is_sleep = |l: &str| l.contains("clock_nanosleep");
+    let first = own.iter().position(|l| is_sleep(l)).expect("it sleeps");
+    let last = own.iter().rposition(|l| is_sleep(l)).expect("it sleeps");
+    let between = &own[first..=last];
+    assert!(between.len() > 50, "{} calls in a second", between.len());
+    let other: Vec<&&str> = between.iter().filter(|l| !is_sleep(l)).collect();
+    assert!(other.is_empty(), "{other:#?}");
+}

@@ -12,10 +12,11 @@ use std::time::Duration;
 use g7_host::{Clock, WallClock};
 use g7_model::Nanos;
 
-use crate::controller::{Command, Controller, Event, Shared};
+use crate::controller::{Command, Controller, Event, Mode, Shared};
 use crate::driver::{Driver, Happened};
 use crate::keep::KeptFile;
 use crate::machine::Machine;
+use crate::pace::Pace;
 use crate::realtime;
 use crate::slots::{Disk, Slots};
 
@@ -25,6 +26,8 @@ const PAUSE: Duration = Duration::from_millis(20);
 const LAST: usize = 100;
 /// Commands that wait for the scan.
 const COMMANDS: usize = 64;
+/// Paces that wait to be counted: those of some seconds at a scan each millisecond.
+const PACES: usize = 8192;
 
 /// Something that happened at a device: its number in the wiring, and what it was.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -53,6 +56,8 @@ pub struct Running {
     pub events: rtrb::Consumer<Event>,
     /// The events of the devices.
     pub devices: Receiver<AtDevice>,
+    /// The pace of each scan; the latest are left out while nobody takes them.
+    pub paces: rtrb::Consumer<Pace>,
     scan: Option<JoinHandle<Option<Controller>>>,
     threads: Vec<JoinHandle<()>>,
     /// Why the scan has no priority although one was asked for.
@@ -100,6 +105,7 @@ pub fn start<D: Disk + Send + 'static>(
     let (stop, clock) = (Arc::new(Stop::default()), WallClock::default());
     let last = Arc::new(Mutex::new(None));
     let (commands, to_scan) = rtrb::RingBuffer::new(COMMANDS);
+    let (of_scan, paces) = rtrb::RingBuffer::new(PACES);
     let (tell, devices) = channel();
     let (priority_failed, no_priority) = channel();
     let mut threads = Vec::new();
@@ -124,7 +130,7 @@ pub fn start<D: Disk + Send + 'static>(
             // The caller may have gone on without listening.
             priority_failed.send(why).ok();
         }
-        let done = catch_unwind(AssertUnwindSafe(|| scan(controller, clock, to_scan, &scan_stop)));
+        let done = catch_unwind(AssertUnwindSafe(|| scan(controller, clock, to_scan, of_scan, &scan_stop)));
         // Drivers write safe values from here on, also after a panic.
         scan_shared.safe.store(true, Ordering::Release);
         let mut controller = done.ok();
@@ -132,7 +138,8 @@ pub fn start<D: Disk + Send + 'static>(
         *final_words.lock().unwrap_or_else(std::sync::PoisonError::into_inner) = Some(words);
         controller
     })?;
-    Ok(Running { stop, shared, commands, events, devices, scan: Some(scan), threads, no_priority, disk })
+    let scan = Some(scan);
+    Ok(Running { stop, shared, commands, events, devices, paces, scan, threads, no_priority, disk })
 }
 
 fn spawn(name: String, work: impl FnOnce() + Send + 'static) -> std::io::Result<JoinHandle<()>> {
@@ -144,17 +151,24 @@ fn scan(
     mut controller: Controller,
     mut clock: WallClock,
     mut commands: rtrb::Consumer<Command>,
+    mut paces: rtrb::Producer<Pace>,
     stop: &Stop,
 ) -> Controller {
     loop {
-        realtime::sleep_until(&mut clock, controller.due());
+        let due = controller.due();
+        realtime::sleep_until(&mut clock, due);
         if stop.plain.load(Ordering::Acquire) {
             return controller;
         }
         while let Ok(command) = commands.pop() {
             controller.command(clock.now(), command);
         }
-        controller.step(clock.now());
+        let begin = clock.now();
+        controller.step(begin);
+        if controller.mode() == Mode::Run {
+            // Without a reader the ring is full; the scan goes on.
+            paces.push(Pace { late: begin - due, took: clock.now() - begin }).ok();
+        }
     }
 }
 
