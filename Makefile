@@ -18,7 +18,7 @@ TALLY := $(abspath $(or $(CARGO_TARGET_DIR),target))/tally
 PYTHON := $(abspath $(or $(CARGO_TARGET_DIR),target))/python
 PAGE := $(shell find web/src web/index.html web/public web/*.ts web/*.js web/*.mjs -type f 2>/dev/null)
 
-.PHONY: run view install test tally-anew peers lint deny wasm web site pictures page-test page-bench bench bench-check book blocks fuzz help FORCE
+.PHONY: run view install test tally-anew peers lint deny wasm web site pictures page-test page-bench bench bench-check online-bench book blocks fuzz help FORCE
 
 ## build G7 and open the editor in the browser on the examples (FOLDER=… for another)
 run: WASM := quick-wasm
@@ -131,6 +131,12 @@ bench:
 bench-check:
 	@$(call debian,valgrind,valgrind)
 	benches/instructions.sh
+
+## how late scans are beside cyclictest (Linux, as root; rt-tests and stress-ng are installed)
+online-bench:
+	@$(call debian,cyclictest,rt-tests)
+	@$(call debian,stress-ng,stress-ng)
+	benches/lateness.sh
 
 ## the book, as HTML in docs/book/book, with every conformance case as a page
 book:
