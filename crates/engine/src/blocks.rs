@@ -21,14 +21,15 @@ fn base(p: &Program, block: u32) -> u32 {
 
 /// Adds an input to a block or takes it away.
 #[inline]
-pub(crate) fn count(p: &Program, s: &mut State, block: u32, input: u8, on: bool) {
+pub(crate) fn count(p: &Program, image: &mut [u64], block: u32, input: u8, on: bool) {
     let plain = p.tables.blocks.get(block as usize).is_some_and(|b| b.plain);
     let at = base(p, block) as usize + if plain { 0 } else { usize::from(input) };
-    let old = word(&s.image, at);
     // The count of a plain block shares its word with the Q written last. Only what
     // was added is taken away, so the subtraction never borrows from that bit.
-    s.set(at, if on { old.wrapping_add(1) } else { old.wrapping_sub(1) });
-    p.layout.blocks.insert(&mut s.image, block);
+    if let Some(count) = image.get_mut(at) {
+        *count = if on { count.wrapping_add(1) } else { count.wrapping_sub(1) };
+    }
+    p.layout.blocks.insert(image, block);
 }
 
 /// Shows the inputs P1 and P0 the situation before the evolution, after the
@@ -62,6 +63,9 @@ pub(crate) fn look(p: &Program, s: &mut State) -> Result<(), Fault> {
 /// selects, and counts them.
 pub(crate) fn conditions(p: &Program, s: &mut State, of: impl Fn(u32) -> bool) -> Result<(), Fault> {
     let l = &p.layout;
+    if l.conditions.is_empty(&s.image) {
+        return Ok(());
+    }
     // The set does not change meanwhile: a condition activates no step.
     let mut walk = Walk::new(&l.conditions, &s.image);
     while let Some(row) = walk.next(&l.conditions, &s.image) {
@@ -81,7 +85,7 @@ pub(crate) fn conditions(p: &Program, s: &mut State, of: impl Fn(u32) -> bool) -
             s.set((base(p, c.block) + TIMES) as usize + k, time);
         }
         set_bit(&mut s.image, l.counted, row, now);
-        count(p, s, c.block, c.input, now);
+        count(p, &mut s.image, c.block, c.input, now);
     }
     Ok(())
 }
@@ -99,7 +103,11 @@ pub(crate) fn evaluate(p: &Program, s: &mut State) -> Result<(), Fault> {
         l.blocks.remove(&mut s.image, i);
         let gate = condition(p, s, b.gate)?;
         let at = base(p, i);
-        let (q, run, live) = if b.plain { plain(s, at, gate) } else { full(p, s, i, gate) };
+        let (q, run, live) = match p.uses.get(i as usize) {
+            _ if b.plain => plain(s, at, gate),
+            Some(uses) if uses & !LATCH == 0 => latch(p, s, at, gate),
+            _ => full(p, s, i, gate),
+        };
         if b.output.0 != NONE {
             put(p, s, (at + if b.plain { 0 } else { MEMORY }) as usize, b.output, q);
         }
@@ -134,6 +142,23 @@ fn put(p: &Program, s: &mut State, at: usize, output: Addr, q: bool) {
 /// evaluate it in the next scan again.
 fn plain(s: &State, at: u32, gate: bool) -> (bool, bool, bool) {
     (word(&s.image, at as usize) & !WRITTEN != 0 && gate, false, false)
+}
+
+/// The inputs of a latch: N, S and R.
+const LATCH: u16 = 1 << N | 1 << S | 1 << R;
+
+/// Evaluates a block that has no other inputs, as [`full`] does.
+fn latch(p: &Program, s: &mut State, at: u32, gate: bool) -> (bool, bool, bool) {
+    let on = |i: u32| word(&s.image, (at + i) as usize) != 0;
+    let memory = word(&s.image, (at + MEMORY) as usize);
+    let (n, set, r) = (on(N), on(S), on(R));
+    let s_ff = !r && (set || memory & S_FF != 0);
+    let q = !r && gate && (n || s_ff);
+    let inputs = flag(1 << N, n) | flag(1 << S, set) | flag(1 << R, r);
+    let keep = (memory & WRITTEN) | inputs | flag(S_FF, s_ff) | flag(Q_BEFORE, q);
+    s.set((at + MEMORY) as usize, keep);
+    let fell = memory & Q_BEFORE != 0 && !q;
+    (q, q || (p.tables.rules.final_scan && fell), false)
 }
 
 /// The true inputs of a block that is not plain, a bit each.

@@ -274,7 +274,7 @@ fn carry_on(p: &Program, s: &mut State, e: &Extra) {
     for row in e.contributions.start..e.contributions.end {
         let Some(c) = p.tables.contributions.get(row as usize) else { break };
         if c.condition.is_empty() && c.time.is_empty() {
-            crate::blocks::count(p, s, c.block, c.input, true);
+            crate::blocks::count(p, &mut s.image, c.block, c.input, true);
         } else if !p.gates.has(row) {
             l.conditions.insert(&mut s.image, row);
         }
@@ -300,13 +300,13 @@ fn carry_off(p: &Program, s: &mut State, e: &Extra) {
     for row in e.contributions.start..e.contributions.end {
         let Some(c) = p.tables.contributions.get(row as usize) else { break };
         if c.condition.is_empty() && c.time.is_empty() {
-            crate::blocks::count(p, s, c.block, c.input, false);
+            crate::blocks::count(p, &mut s.image, c.block, c.input, false);
         } else if p.gates.has(row) {
             p.gates.close(l, &mut s.image, row);
         } else {
             l.conditions.remove(&mut s.image, row);
             if set_bit(&mut s.image, l.counted, row, false) {
-                crate::blocks::count(p, s, c.block, c.input, false);
+                crate::blocks::count(p, &mut s.image, c.block, c.input, false);
             }
         }
     }

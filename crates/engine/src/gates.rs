@@ -22,6 +22,27 @@ use crate::tables::{Contribution, Extra, NONE, Receptivity, Rows, Tables};
 /// In place of an output in [`crate::rows::Shift`]: the rest is a row of
 /// [`Tables::contributions`]. No image is so long.
 pub(crate) const GATE: u32 = 1 << 31;
+/// Likewise: the rest is a step whose contributions are counted.
+pub(crate) const COUNTED: u32 = GATE | 1 << 30;
+
+/// True if rows, steps and words of the image can be told apart by these bits.
+pub(crate) fn can_tag(t: &Tables, l: &Layout) -> bool {
+    let most = (!COUNTED) as usize;
+    l.len < GATE && t.steps.len() < most && t.contributions.len() < most
+}
+
+/// True if nothing but contributions that are always given follows a step with this row.
+pub(crate) fn is_counted(t: &Tables, e: &Extra) -> bool {
+    let Rows { start, end } = e.contributions;
+    let given = t.contributions.get(start as usize..end as usize).unwrap_or(&[]);
+    nothing_else(e) && !given.is_empty() && given.iter().all(|c| c.condition.is_empty() && c.time.is_empty())
+}
+
+/// True if nothing but its contributions follows a step with this row.
+fn nothing_else(e: &Extra) -> bool {
+    let lists = [e.on, e.off, e.events, e.periodics, e.groups, e.orders, e.encloses, e.links, e.watches];
+    !e.uncounted && lists.into_iter().all(Rows::is_empty)
+}
 
 #[derive(Clone, Copy, Debug)]
 struct Gate {
@@ -123,9 +144,7 @@ impl Gates {
     /// The only thing that follows a step with this row, if it is a gate: its contribution.
     pub(crate) fn alone(&self, e: &Extra) -> Option<u32> {
         let Rows { start, end } = e.contributions;
-        let lists = [e.on, e.off, e.events, e.periodics, e.groups, e.orders, e.encloses, e.links, e.watches];
-        let alone = end == start + 1 && !e.uncounted && lists.into_iter().all(Rows::is_empty);
-        (alone && self.has(start)).then_some(start)
+        (end == start + 1 && nothing_else(e) && self.has(start)).then_some(start)
     }
 
     /// Gives the outputs of the active steps the values of their conditions.

@@ -5,7 +5,9 @@
 use core::mem::take;
 
 use crate::bits::{Tree, bit, set_bit, word};
-use crate::gates::GATE;
+use crate::blocks;
+use crate::change::extra;
+use crate::gates::{COUNTED, GATE};
 use crate::layout::head;
 use crate::program::Program;
 use crate::rows::{Hot, Shift};
@@ -68,13 +70,29 @@ fn shift(p: &Program, image: &mut [u64], at: &Shift, now: u64, kept: u64) {
     if let Some(stamp) = image.get_mut(at.from_stamp as usize) {
         *stamp = now.wrapping_sub(*stamp) & kept;
     }
-    if let Some(o) = image.get_mut(at.to_output as usize) {
-        *o = 1;
+    match image.get_mut(at.to_output as usize) {
+        Some(o) => *o = 1,
+        None if at.to_output != NONE => follow(p, image, at.to_output, true),
+        None => {}
     }
     match image.get_mut(at.from_output as usize) {
         Some(o) => *o = 0,
-        None if at.from_output != NONE => p.gates.close(&p.layout, image, at.from_output & !GATE),
+        None if at.from_output != NONE => follow(p, image, at.from_output, false),
         None => {}
+    }
+}
+
+/// Lets the gate or the control blocks behind a step follow it.
+#[inline(never)]
+fn follow(p: &Program, image: &mut [u64], tagged: u32, on: bool) {
+    if tagged & COUNTED != COUNTED {
+        p.gates.close(&p.layout, image, tagged & !GATE);
+        return;
+    }
+    let Some(e) = extra(p, tagged & !COUNTED) else { return };
+    let rows = e.contributions.start as usize..e.contributions.end as usize;
+    for c in p.tables.contributions.get(rows).unwrap_or(&[]) {
+        blocks::count(p, image, c.block, c.input, on);
     }
 }
 
@@ -127,8 +145,11 @@ pub(crate) fn clear(p: &Program, s: &mut State) -> bool {
         |i: &u32| p.moves.get(*i as usize).is_some_and(|m| m.from != NONE && !steps.contains(image, m.to));
     if fired.iter().all(free) {
         for m in fired.iter().filter_map(|i| p.moves.get(*i as usize)) {
+            // Another token of this pass may have gone there: contributions count once.
+            let again = p.counted && steps.contains(image, m.to);
             steps.hand_on(image, m.from, m.to);
-            shift(p, image, &m.shift, now, kept);
+            let left = Shift { to_output: NONE, ..m.shift };
+            shift(p, image, if again { &left } else { &m.shift }, now, kept);
         }
         return !fired.is_empty();
     }

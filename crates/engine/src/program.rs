@@ -9,7 +9,7 @@ use crate::check::{LoadError, check, writes};
 use crate::clocks::{Clocks, clocks};
 use crate::decision::Decisions;
 use crate::fingerprint::fingerprint;
-use crate::gates::{GATE, Gates};
+use crate::gates::{Gates, can_tag, is_counted};
 use crate::joined::Joined;
 use crate::layout::Layout;
 use crate::ops::{Op, TEXT};
@@ -66,6 +66,8 @@ pub struct Program {
     pub(crate) moves: Box<[Move]>,
     /// All transitions are plain.
     pub(crate) all_plain: bool,
+    /// Moves of a token may change the inputs of control blocks.
+    pub(crate) counted: bool,
     /// Watches that are evaluated in every scan.
     pub(crate) always: Box<[u32]>,
     /// The words of the image that hold times.
@@ -112,11 +114,12 @@ impl Program {
         let counts = t.counts.is_some() || t.limits.is_some();
         // Steps under the scan clock count from a scan that is not over yet.
         let plain = !t.rules.sequential && !t.rules.scan_clock && !looks_back && !counts;
-        let gates = match plain && !has_periods && layout.len < GATE {
+        let tags = plain && !has_periods && can_tag(&t, &layout);
+        let gates = match tags {
             true => Gates::new(&t, &layout, &decisions),
             false => Gates::default(),
         };
-        let moves = moves(&t, &layout, &gates, plain);
+        let moves = moves(&t, &layout, &gates, plain, tags);
         let calm = !frame && !has_periods && !counts && t.sources.is_empty();
         Program {
             judges_freely: t.transitions.iter().all(|tr| !writes_in(&t, tr.receptivity)),
@@ -130,6 +133,7 @@ impl Program {
             uses: uses(&t),
             hot: hot(&t, &layout, &decisions, &gates, &moves),
             all_plain: moves.iter().all(|m| m.plain),
+            counted: tags && t.extras.iter().any(|e| is_counted(&t, e)),
             moves,
             timeless: !frame
                 && !has_periods

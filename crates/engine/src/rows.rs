@@ -1,14 +1,15 @@
 //! The rows that a pass reads instead of the tables where steps and transitions are plain
 //! (`moves.rs`).
 //!
-//! A step is plain if nothing but its `direct` output or its gate follows it. A transition is plain if clearing
-//! it does no more than change plain steps. Whether a row is plain depends on that row alone: one
+//! A step is plain if nothing follows it but its `direct` output, its gate, or contributions to control
+//! blocks without a condition. A transition is plain if clearing it does no more than change plain
+//! steps. Whether a row is plain depends on that row alone: one
 //! step with a stored action leaves all others as they are.
 
 use alloc::boxed::Box;
 
 use crate::decision::Decisions;
-use crate::gates::{GATE, Gates};
+use crate::gates::{COUNTED, GATE, Gates, is_counted};
 use crate::layout::{Layout, head};
 use crate::tables::{Extra, NONE, Receptivity, Rows, Tables, Transition};
 
@@ -53,9 +54,10 @@ pub(crate) struct Shift {
     pub(crate) from_stamp: u32,
     /// Time of the step that is entered.
     pub(crate) to_stamp: u32,
-    /// Output that follows the step that is left, or its gate ([`GATE`]).
+    /// Output that follows the step that is left, or its gate ([`GATE`]), or the step itself where
+    /// contributions follow it ([`COUNTED`]).
     pub(crate) from_output: u32,
-    /// Output that follows the step that is entered.
+    /// Likewise of the step that is entered; gates have nothing to do there.
     pub(crate) to_output: u32,
 }
 
@@ -78,8 +80,11 @@ impl Shift {
     }
 }
 
-/// The output that follows a step, as a word of the image.
+/// The output that follows a step, as a word of the image, or the step where it is counted.
 fn output(t: &Tables, l: &Layout, step: u32) -> u32 {
+    if extra(t, step).is_some_and(|e| is_counted(t, e)) {
+        return COUNTED | step;
+    }
     match t.steps.get(step as usize) {
         Some(s) if s.direct.0 != NONE => l.vars + s.direct.0,
         _ => NONE,
@@ -104,10 +109,10 @@ fn one_to_one(t: &Transition) -> bool {
 }
 
 /// True if clearing a transition does no more than change plain steps.
-fn is_plain(t: &Tables, g: &Gates, tr: &Transition) -> bool {
+fn is_plain(t: &Tables, g: &Gates, tags: bool, tr: &Transition) -> bool {
     let direct = |step: u32| t.steps.get(step as usize).is_some_and(|s| s.direct.0 != NONE);
     let plain = |step: u32| match extra(t, step) {
-        Some(e) => g.alone(e).is_some() && !direct(step),
+        Some(e) => tags && !direct(step) && (g.alone(e).is_some() || is_counted(t, e)),
         None => true,
     };
     let all_plain = |rows: Rows| {
@@ -144,8 +149,9 @@ pub(crate) fn hot(t: &Tables, l: &Layout, d: &Decisions, g: &Gates, moves: &[Mov
     (0..).zip(&t.steps).map(|(i, s)| row(i, s.out).unwrap_or(none)).collect()
 }
 
-/// A row for each transition. `any` says that transitions can be plain under the rules.
-pub(crate) fn moves(t: &Tables, l: &Layout, g: &Gates, any: bool) -> Box<[Move]> {
+/// A row for each transition. `any` says that transitions can be plain under the rules, `tags` that steps
+/// can be plain that have more than an output.
+pub(crate) fn moves(t: &Tables, l: &Layout, g: &Gates, any: bool, tags: bool) -> Box<[Move]> {
     t.transitions
         .iter()
         .map(|tr| {
@@ -155,7 +161,7 @@ pub(crate) fn moves(t: &Tables, l: &Layout, g: &Gates, any: bool) -> Box<[Move]>
                 from: if alone { from } else { NONE },
                 to,
                 shift: Shift::new(t, l, g, from, to),
-                plain: any && is_plain(t, g, tr),
+                plain: any && is_plain(t, g, tags, tr),
             }
         })
         .collect()

@@ -48,6 +48,9 @@ pub fn scan(p: &Program, s: &mut State, inputs: &[u64], now: i64) -> Result<Repo
         if !p.tables.rules.stable
             && let Some(moved) = moves::one_token(p, s)
         {
+            if p.counted && moves::is_awake(p, &s.image) {
+                return counted(p, s, 1, 1);
+            }
             s.scratch.quiet = !moved && p.timeless;
             gates(p, s);
             return Ok(Report { passes: 1, cleared: u32::from(moved), conflict: None });
@@ -66,6 +69,9 @@ fn brisk(p: &Program, s: &mut State) -> Result<Report, Fault> {
             && let Some(moved) = moves::one_token(p, s)
         {
             if !moved {
+                if p.counted && moves::is_awake(p, &s.image) {
+                    return counted(p, s, made + 1, made);
+                }
                 s.scratch.quiet = p.timeless;
                 gates(p, s);
                 return Ok(Report { passes: made + 1, cleared: made, conflict: None });
@@ -75,6 +81,19 @@ fn brisk(p: &Program, s: &mut State) -> Result<Report, Fault> {
     }
     s.scratch.begin_passes(made);
     let done = search(p, s, made).and_then(|()| finish_brisk(p, s));
+    end(p, s, done)
+}
+
+/// Ends a scan in which a lone token alone has moved, and with it the inputs of control blocks.
+#[inline(never)]
+fn counted(p: &Program, s: &mut State, passes: u32, cleared: u32) -> Result<Report, Fault> {
+    s.scratch.begin_passes(cleared);
+    s.scratch.passes = passes;
+    s.scratch.first_pass = false;
+    // A search for stability has made a pass that changed nothing.
+    s.scratch.idle = passes > cleared;
+    s.scratch.changed = !s.scratch.idle;
+    let done = finish(p, s);
     end(p, s, done)
 }
 

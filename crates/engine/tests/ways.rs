@@ -110,6 +110,37 @@ fn gated(chance: &mut Chance, mut t: Tables) -> Tables {
     t
 }
 
+/// Gives some steps contributions to control blocks, without a condition; several steps may have one
+/// block, and a step several.
+fn blocked(chance: &mut Chance, mut t: Tables) -> Tables {
+    let mut own = Vec::new();
+    for i in 0..t.steps.len() {
+        if t.steps[i].direct.0 != NONE && t.steps[i].extra == NONE && chance.below(2) == 0 {
+            own.push(i);
+            let plain = chance.below(3) == 0;
+            let (output, gate) = (t.steps[i].direct, Code::default());
+            t.blocks.push(ControlBlock { output, action: NONE, plain, gate, period: 0 });
+            t.steps[i].direct = Addr(NONE);
+        }
+    }
+    for i in own {
+        let start = t.contributions.len() as u32;
+        for _ in 0..=chance.below(3) {
+            let block = chance.below(t.blocks.len() as u32);
+            let input = if t.blocks[block as usize].plain { 0 } else { USED[chance.below(6) as usize] };
+            let (condition, time) = (Code::default(), Code::default());
+            t.contributions.push(Contribution { block, input, condition, time, period: 0 });
+        }
+        let contributions = Rows { start, end: t.contributions.len() as u32 };
+        t.extras.push(Extra { contributions, ..Extra::default() });
+        t.steps[i].extra = t.extras.len() as u32 - 1;
+    }
+    t
+}
+
+/// N, S, R, P, P1 and P0, as places in [`INPUTS`].
+const USED: [u8; 6] = [0, 1, 2, 5, 6, 7];
+
 /// The same tables so that no step and no transition is plain and the interpreter evaluates each
 /// receptivity and condition: every step has a row of extras, every such code has 0 added to it.
 fn roundabout(t: &Tables) -> Tables {
@@ -119,7 +150,9 @@ fn roundabout(t: &Tables) -> Tables {
     for step in t.steps.iter_mut().filter(|step| step.extra == NONE) {
         step.extra = plain;
     }
-    for c in &mut t.contributions {
+    // Whether a step counts makes no difference where nothing counts steps.
+    t.extras.iter_mut().for_each(|e| e.uncounted = true);
+    for c in t.contributions.iter_mut().filter(|c| !c.condition.is_empty()) {
         let start = t.code.len() as u32;
         t.code.extend_from_within(c.condition.start as usize..c.condition.end as usize);
         t.code.extend([Op::Push(0), Op::Arith(Arith::Add, Num::I64)]);
@@ -323,4 +356,52 @@ fn outputs_with_a_condition_have_the_same_values() {
         }
     }
     assert!(changes > 10_000, "only {changes} scans changed an output");
+}
+
+#[test]
+fn control_blocks_follow_plain_steps() {
+    assert_eq!(USED.map(|input| INPUTS[usize::from(input)]), ["N", "S", "R", "P", "P1", "P0"]);
+    let mut chance = Chance(17);
+    let (mut changes, mut lone) = (0u64, 0u64);
+    for round in 0..1000 {
+        let rules = match round % 4 {
+            0 => Rules::IEC60848,
+            1 => Rules { final_scan: true, ..Rules::IEC61131 },
+            _ => Rules::IEC61131,
+        };
+        let rules =
+            Rules { multi_token: chance.below(2) == 0, keep_step_time: chance.below(2) == 0, ..rules };
+        let tables = if chance.below(4) == 0 { walk(&mut chance, rules) } else { random(&mut chance, rules) };
+        let tables = blocked(&mut chance, tables);
+        let tables = if chance.below(3) == 0 { mixed(&mut chance, tables) } else { tables };
+        let (outputs, steps) = (tables.outputs, tables.steps.len() as u32);
+        let long = Program::new(roundabout(&tables)).expect("tables are sound");
+        let short = Program::new(tables).expect("tables are sound");
+        let (mut a, mut b) = (State::new(&short), State::new(&long));
+        let mut inputs = vec![0; 3];
+        for k in 0..40 {
+            if chance.below(3) > 0 {
+                inputs = (0..3).map(|_| u64::from(chance.below(2))).collect();
+            }
+            if chance.below(20) == 0 {
+                let (step, on) = (StepId(chance.below(steps)), chance.below(2) == 0);
+                set_step(&short, &mut a, step, on);
+                set_step(&long, &mut b, step, on);
+            } else if chance.below(10) == 0 {
+                let at = Addr(outputs.start + chance.below(outputs.end - outputs.start));
+                let value = u64::from(chance.below(2));
+                a.set_word(&short, at, value);
+                b.set_word(&long, at, value);
+            }
+            let before = shown(&long, &b).1;
+            let (x, y) = (scan(&short, &mut a, &inputs, k * 7), scan(&long, &mut b, &inputs, k * 7));
+            assert_eq!(x.is_ok(), y.is_ok(), "round {round}, scan {k}: {x:?} {y:?}");
+            assert_eq!(memory(&a), memory(&b), "round {round}, scan {k}");
+            let (Ok(x), Ok(y)) = (x, y) else { break };
+            assert_eq!(x, y, "round {round}, scan {k}");
+            changes += u64::from(shown(&short, &a).1 != before);
+            lone += u64::from(x.cleared > 0 && a.active().count() == 1);
+        }
+    }
+    assert!(changes > 8_000 && lone > 2_000, "{changes} scans changed an output, {lone} moves alone");
 }
