@@ -18,6 +18,7 @@ use signal_hook::consts::{SIGINT, SIGTERM};
 
 use crate::failure::{Failure, Verdict, plain};
 use crate::message::talk;
+use crate::monitor::Monitor;
 use crate::sources::Source;
 use crate::{style, values};
 
@@ -39,6 +40,7 @@ pub(crate) struct Attendant<'a> {
     clock: WallClock,
     mode: Mode,
     paces: Paces,
+    monitor: Option<Monitor>,
     /// Lines `NAME := VALUE` set an input or a state.
     sets: bool,
 }
@@ -46,7 +48,12 @@ pub(crate) struct Attendant<'a> {
 impl<'a> Attendant<'a> {
     pub(crate) fn new(source: &'a Source, bench: &'a Bench, wiring: &'a Wiring) -> Attendant<'a> {
         let (clock, paces) = (WallClock::default(), Paces::default());
-        Attendant { source, bench, wiring, clock, mode: Mode::Stop, paces, sets: false }
+        Attendant { source, bench, wiring, clock, mode: Mode::Stop, paces, monitor: None, sets: false }
+    }
+
+    /// Tells a monitor what happens.
+    pub(crate) fn with(self, monitor: Option<Monitor>) -> Attendant<'a> {
+        Attendant { monitor, ..self }
     }
 
     /// Takes lines that set a value as well.
@@ -129,22 +136,39 @@ impl<'a> Attendant<'a> {
             match event.what {
                 What::Mode(mode) => {
                     self.mode = mode;
+                    self.monitored(|m| m.mode(mode));
                     talk!("{} {}", self.time(), self.mode_text(mode));
                 }
-                What::Missed(n) => talk!("{} {n} scans came too late and were left out", self.time()),
+                What::Missed(n) => {
+                    self.monitored(|m| m.missed(n));
+                    talk!("{} {n} scans came too late and were left out", self.time());
+                }
             }
         }
         while let Ok(pace) = running.paces.pop() {
             self.paces.add(pace);
+            self.monitored(|m| m.pace(pace));
         }
         while let Ok(AtDevice { device, happened }) = running.devices.try_recv() {
+            if let (Happened::Up | Happened::Down(_), Some(wired)) =
+                (&happened, self.wiring.devices.get(device))
+            {
+                self.monitored(|m| m.device(&wired.device.name.value, happened == Happened::Up));
+            }
             talk!("{} {}", self.time(), self.device_text(device, &happened));
         }
         while let Ok(why) = running.no_priority.try_recv() {
             talk!("{}note:{:#} {why}", style::WARN, style::WARN);
         }
         while let Ok(e) = running.disk.try_recv() {
+            self.monitored(Monitor::unsaved);
             talk!("{} {}values cannot be saved:{:#} {}", self.time(), style::BAD, style::BAD, plain(&e));
+        }
+    }
+
+    fn monitored(&self, tell: impl FnOnce(&Monitor)) {
+        if let Some(monitor) = &self.monitor {
+            tell(monitor);
         }
     }
 

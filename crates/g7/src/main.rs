@@ -27,6 +27,7 @@ mod fmt;
 mod generate;
 mod import;
 mod message;
+mod monitor;
 mod new;
 mod plant;
 mod progress;

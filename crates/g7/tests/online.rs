@@ -379,3 +379,51 @@ fn the_scan_thread_makes_no_system_call_but_its_sleep() {
     let other: Vec<&&str> = between.iter().filter(|l| !is_sleep(l)).collect();
     assert!(other.is_empty(), "{other:#?}");
 }
+
+/// The answer of a server of this machine: status and body.
+fn http(port: u16, path: &str) -> (u16, String) {
+    use std::io::{Read as _, Write as _};
+    let mut stream = std::net::TcpStream::connect(("127.0.0.1", port)).expect("it listens");
+    write!(stream, "GET {path} HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n\r\n").expect("it reads");
+    let mut answer = String::new();
+    stream.read_to_string(&mut answer).expect("it answers");
+    let (head, body) = answer.split_once("\r\n\r\n").expect("a head and a body");
+    (head.split_whitespace().nth(1).and_then(|code| code.parse().ok()).expect("a status"), body.to_owned())
+}
+
+#[test]
+fn a_monitoring_system_finds_what_happened() {
+    let Some(slave) = Slave::start(0) else { return };
+    let (folder, port) = (folder(slave.port()), free_port());
+    let io = io(slave.port()).replace("[controller]", &format!("[controller]\nmetrics = '127.0.0.1:{port}'"));
+    folder.write("chart.io.toml", &io);
+    let mut g7 = Running::online(&folder, &[]);
+    g7.until("line1 answers");
+    assert_eq!(http(port, "/healthz").0, 200);
+    assert_eq!(http(port, "/readyz").0, 200);
+    drop(slave);
+    g7.until("line1 does not answer");
+    g7.say("stop");
+    g7.until("stopped");
+    assert_eq!(http(port, "/readyz").0, 503);
+    let (status, text) = http(port, "/metrics");
+    assert_eq!(status, 200);
+    for line in [
+        "g7_running 0",
+        "g7_fault 0",
+        "g7_device_up{device=\"line1\"} 0",
+        "g7_device_losses_total{device=\"line1\"} 1",
+        "# EOF",
+    ] {
+        assert!(text.lines().any(|l| l == line), "{line}: {text}");
+    }
+    let scans =
+        text.lines().find_map(|l| l.strip_prefix("g7_scan_late_seconds_count ")).expect("a histogram");
+    assert!(scans.parse::<u64>().expect("a number") > 0, "{text}");
+    assert_eq!(http(port, "/other").0, 404);
+    assert_eq!(g7.quit(), 0);
+    // A port in use: nothing runs.
+    let taken = std::net::TcpListener::bind(("127.0.0.1", port)).expect("it is free again");
+    folder.g7(&["run", "--online", "--for", "100ms"]).is_refused(&["cannot listen at", "metrics"]);
+    drop(taken);
+}

@@ -7,8 +7,9 @@ use g7_online::{Clients, Command, KeepError, Options, RealDisk, Slots, Started};
 
 use crate::attendant::{Attendant, HELP, refused};
 use crate::cli::Run;
-use crate::failure::{Failure, Verdict};
+use crate::failure::{Failure, Verdict, plain};
 use crate::message::talk;
+use crate::monitor::Monitor;
 use crate::sources::Source;
 use crate::style;
 use crate::wiring::{self, Plan, Wanted};
@@ -29,6 +30,12 @@ pub(super) fn run(path: &Path, source: &Source, args: &Run) -> Result<Verdict, F
     if !wiring.unwired.is_empty() {
         talk!("{}note:{:#} no device has {}", style::WARN, style::WARN, wiring.unwired.join(", "));
     }
+    let monitor = match &setup.controller.metrics {
+        None => None,
+        Some(at) => Some(Monitor::serve(at.value).map_err(|e| {
+            Failure::Usage(format!("cannot listen at {} for `metrics`: {}", at.value, plain(&e)))
+        })?),
+    };
     let (runner, slots) = kept(&plan, g7_online::runner(bench, wiring, args.seed))?;
     let mut clients = Clients::default();
     let mut machine = g7_online::assemble(runner, wiring, |wired| clients.device(wired)).map_err(refused)?;
@@ -44,7 +51,7 @@ pub(super) fn run(path: &Path, source: &Source, args: &Run) -> Result<Verdict, F
     } else {
         talk!("stopped; {HELP}");
     }
-    Attendant::new(source, bench, wiring).attend(running, args.duration)
+    Attendant::new(source, bench, wiring).with(monitor).attend(running, args.duration)
 }
 
 /// Opens the file of the values that are kept, and starts the run with them.

@@ -18,7 +18,7 @@ const FULL: &[u8] = b"HTTP/1.1 503 Service Unavailable\r\ncontent-type: text/pla
     content-length: 44\r\nconnection: close\r\n\r\ntoo many connections at once: try again soon";
 
 /// Serves until the program ends.
-pub(super) async fn listen(listener: TcpListener, app: Router) {
+pub(crate) async fn listen(listener: TcpListener, app: Router) {
     let places = Arc::new(Semaphore::new(CONNECTIONS));
     loop {
         let Ok((stream, _)) = listener.accept().await else {

@@ -25,7 +25,7 @@ mod file_names;
 mod fingerprint;
 mod folder;
 mod guard;
-mod listen;
+pub(crate) mod listen;
 mod live;
 mod outbox;
 mod refusal;

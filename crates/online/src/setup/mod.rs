@@ -23,6 +23,8 @@ mod device;
 mod point;
 mod table;
 
+use std::net::SocketAddr;
+
 use g7_model::{FileId, Nanos, Problem, Span};
 use toml::de::{DeTable, DeValue};
 
@@ -78,6 +80,8 @@ pub struct Controller {
     pub run: bool,
     /// The priority of the scan among the threads of the system, 1 to 99; without it that of others.
     pub priority: Option<At<i64>>,
+    /// The address of this machine at which a monitoring system asks.
+    pub metrics: Option<At<SocketAddr>>,
 }
 
 impl Default for Controller {
@@ -89,6 +93,7 @@ impl Default for Controller {
             changed: Changed::Refuse,
             run: true,
             priority: None,
+            metrics: None,
         }
     }
 }
@@ -193,9 +198,24 @@ fn controller(mut table: Table<'_>, found: &mut Found) -> Controller {
             .map_or(usual.changed, |c| c.value),
         run: table.word(found, "start", &[("run", true), ("stop", false)]).map_or(usual.run, |run| run.value),
         priority: table.whole(found, "priority", 1..=99),
+        metrics: metrics(&mut table, found),
     };
     table.end(found);
     read
+}
+
+fn metrics(table: &mut Table<'_>, found: &mut Found) -> Option<At<SocketAddr>> {
+    let text = table.text(found, "metrics")?;
+    match text.value.parse::<SocketAddr>() {
+        Ok(address) if address.ip().is_loopback() => Some(At::new(address, text.at)),
+        Ok(_) | Err(_) => {
+            found.wrong(text.at, "`metrics` is an address of this machine alone, with a port").help = Some(
+                "write `metrics = \"127.0.0.1:9464\"`; from elsewhere, ask through an agent or a tunnel"
+                    .to_owned(),
+            );
+            None
+        }
+    }
 }
 
 /// A row of `[inputs]`, `[outputs]` or `[shown]`: a point, or a table with more.
