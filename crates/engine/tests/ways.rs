@@ -150,7 +150,7 @@ fn roundabout(t: &Tables) -> Tables {
     for step in t.steps.iter_mut().filter(|step| step.extra == NONE) {
         step.extra = plain;
     }
-    // Whether a step counts makes no difference where nothing counts steps.
+    // Nothing counts steps here, so this only takes the short way away from them.
     t.extras.iter_mut().for_each(|e| e.uncounted = true);
     for c in t.contributions.iter_mut().filter(|c| !c.condition.is_empty()) {
         let start = t.code.len() as u32;

@@ -1,5 +1,5 @@
-//! What a monitoring system asks a running controller: `/metrics` in the text format of OpenMetrics 1.0,
-//! `/healthz`, `/readyz`.
+//! The answers to a monitoring system that asks a running controller: `/metrics` in the text format of
+//! OpenMetrics 1.0, `/healthz`, `/readyz`.
 //!
 //! The attendant counts; the answers read the counters. Nothing here reaches the scan thread.
 
