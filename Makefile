@@ -7,6 +7,7 @@ SHELL := bash
 
 EXAMPLE ?= examples/bead-sorter
 FOLDER ?= examples
+SEEDS ?= 10000
 
 # What Debian has is installed from there, once, as root or through sudo.
 SUDO := $(shell [ "$$(id -u)" = 0 ] || echo sudo)
@@ -18,7 +19,7 @@ TALLY := $(abspath $(or $(CARGO_TARGET_DIR),target))/tally
 PYTHON := $(abspath $(or $(CARGO_TARGET_DIR),target))/python
 PAGE := $(shell find web/src web/index.html web/public web/*.ts web/*.js web/*.mjs -type f 2>/dev/null)
 
-.PHONY: run view install test tally-anew peers lint deny wasm web site pictures page-test page-bench bench bench-check online-bench book blocks fuzz help FORCE
+.PHONY: run view install deb static test tally-anew peers lint deny wasm web site pictures page-test page-bench bench bench-check online-bench soak book blocks fuzz help FORCE
 
 ## build G7 and open the editor in the browser on the examples (FOLDER=… for another)
 run: WASM := quick-wasm
@@ -33,6 +34,14 @@ view:
 install: web
 	cargo install --quiet --locked --path crates/g7
 
+## a Debian package with a program that needs no system library (MACHINE=aarch64 for another machine)
+deb: web
+	packaging/deb.sh $(MACHINE)
+
+## one program for any Linux, without a system library (MACHINE=aarch64 for another machine)
+static: web
+	packaging/static.sh $(MACHINE)
+
 ## run every test; the last line counts what passed and what was skipped
 test: export G7_SKIPS = $(TALLY)/skips
 test: export G7_PEERS = $(PYTHON)
@@ -46,18 +55,19 @@ test: tally-anew lint page-test $(PYTHON)/bin/pymodbus.simulator
 $(PYTHON)/bin/pymodbus.simulator:
 	@{ { python3 -c 'import ensurepip' 2>/dev/null || { $(SUDO) apt-get update -qq && \
 			$(SUDO) apt-get install -qq --no-install-recommends python3 python3-venv; }; } && \
-		python3 -m venv $(PYTHON) && $(PYTHON)/bin/pip install --quiet 'pymodbus[serial]==3.16.*'; } || \
-		echo "pymodbus cannot be installed: its tests are skipped"
+		python3 -m venv $(PYTHON) && $(PYTHON)/bin/pip install --quiet 'pymodbus[serial]==3.16.*' 'pysparkplug==0.6.*'; } || \
+		echo "pymodbus and pysparkplug cannot be installed: their tests are skipped"
 
 tally-anew:
 	@rm -rf $(TALLY) && mkdir -p $(TALLY) && touch $(TALLY)/skips
 
-## install what some tests are skipped without: clang with its sanitizers, g++, strace, a bare target
+## install what some tests are skipped without: clang with its sanitizers, g++, strace, mosquitto, a bare target
 peers:
 	rustup target add thumbv7em-none-eabi
 	@$(call debian,gcc,gcc)
 	@$(call debian,g++,g++)
 	@$(call debian,strace,strace)
+	@$(call debian,mosquitto_sub,mosquitto mosquitto-clients)
 	@$(SUDO) apt-get update -qq && $(SUDO) apt-get install -qq --no-install-recommends clang libclang-rt-dev
 
 ## formatting and lints
@@ -102,10 +112,11 @@ site: web
 	cp -r web/dist site
 	node web/examples.mjs examples site/examples.json
 
-## the pictures of the examples, for the book and the README
+## the pictures of the examples and of the operator's page, for the book and the README
 pictures: web
 	@$(call debian,chromium,chromium)
-	cd web && npx tsx tests/pictures.ts
+	cargo build --quiet --package g7
+	cd web && G7=$${CARGO_TARGET_DIR:-$(CURDIR)/target}/debug/g7 npx tsx tests/pictures.ts
 
 ## the stories of the page in a real browser
 page-test: web
@@ -123,7 +134,6 @@ page-bench: wasm web/node_modules/.package-lock.json
 ## time of a scan (beside matiec where an iec2c is on the PATH), of a layout, and of the stages before
 bench:
 	benches/scan.sh
-	benches/rows.sh
 	benches/layout.sh
 	benches/growth.sh
 
@@ -137,6 +147,11 @@ online-bench:
 	@$(call debian,cyclictest,rt-tests)
 	@$(call debian,stress-ng,stress-ng)
 	benches/lateness.sh
+
+## the controller with faulty devices in simulated time, 10,000 courses of faults (SEEDS=… for others)
+soak: export G7_SEEDS = $(SEEDS)
+soak:
+	cargo test --package g7-online --test simulation
 
 ## the book, as HTML in docs/book/book, with every conformance case as a page
 book:

@@ -54,14 +54,16 @@ export async function playground(examples: Record<string, string>): Promise<Site
 }
 
 /** Where the servers of a test file keep copies of unsaved work, instead of the user's place. */
-const STATE = mkdtempSync(join(tmpdir(), 'g7-state-'));
+export const STATE = mkdtempSync(join(tmpdir(), 'g7-state-'));
 process.once('exit', () => rmSync(STATE, { recursive: true, force: true }));
 
-/** `g7 serve` for a folder; the variable `G7` names the program. */
+/** The program under test; the variable `G7` names it. */
+export const program = (): string => process.env.G7 ?? join(HERE, '../target/release/g7');
+
+/** `g7 serve` for a folder. */
 export async function serve(folder: string, ...more: string[]): Promise<Site> {
-  const program = process.env.G7 ?? join(HERE, '../target/release/g7');
   const port = more.includes('--port') ? [] : ['--port', '0'];
-  const child = spawn(program, ['serve', folder, ...port, '--no-open', ...more], {
+  const child = spawn(program(), ['serve', folder, ...port, '--no-open', ...more], {
     stdio: ['ignore', 'pipe', 'inherit'],
     env: { ...process.env, XDG_STATE_HOME: STATE },
   });

@@ -1,16 +1,17 @@
 // `make pictures`: a picture of every example at work, for the book and the README. Time is
 // virtual: each message advances a run by the same step up to the wanted instant, so that the
-// pictures show the same situation each time.
-// the instant that is wanted, so that the pictures show the same situation each time.
+// pictures show the same situation each time. The page of the operator is shown with a machine at work.
 import assert from 'node:assert/strict';
 import { mkdirSync, readdirSync, readFileSync, statSync } from 'node:fs';
-import { join, relative } from 'node:path';
+import { dirname, join, relative } from 'node:path';
 import type { Browser, Page } from 'playwright-core';
 import { browser, open, playground, type Site } from './lib';
+import { Machine } from './machine';
 
 const ROOT = new URL('../..', import.meta.url).pathname;
 const BOOK = join(ROOT, 'docs/book/src/examples/img');
 const README = join(ROOT, 'docs/img/editor.jpg');
+const OPERATOR = join(ROOT, 'docs/book/src/online/img/operator.jpg');
 const STEP_MS = 20;
 
 /** An act before the picture: an input is switched, a button is pushed, a value is written, or time
@@ -140,10 +141,38 @@ async function take(page: Page, path: string, most: number): Promise<void> {
   assert.fail(`${path} is larger than ${most} bytes`);
 }
 
+/** The page of the operator: the mixer at work, with one value forced. */
+async function operator(b: Browser): Promise<void> {
+  const machine = await Machine.start();
+  try {
+    const page = await open(b, { url: machine.url, stop: async () => undefined }, undefined, { width: 1280, height: 800 });
+    await page.getByRole('button', { name: 'Start', exact: true }).click();
+    machine.press(true);
+    await page.getByRole('region', { name: 'Active steps' }).getByText('stirring').waitFor();
+    await page.getByRole('button', { name: 'Force lamp' }).click();
+    await page.getByRole('dialog').getByRole('radio', { name: 'TRUE' }).check();
+    await page.getByRole('dialog').getByRole('button', { name: 'Force', exact: true }).click();
+    await page.getByRole('dialog').waitFor({ state: 'detached' });
+    await page.waitForTimeout(1500);
+    // A busy machine may leave a scan out while the browser starts.
+    const seen = page.getByRole('button', { name: 'Acknowledge all' });
+    if (await seen.isVisible()) await seen.click();
+    await page.mouse.move(1, 1);
+    await page.evaluate(() => (document.activeElement as HTMLElement | null)?.blur());
+    await page.waitForTimeout(300);
+    assert.deepEqual(page.errors, [], 'operator');
+    await take(page, OPERATOR, 120_000);
+    await page.context().close();
+  } finally {
+    await machine.done();
+  }
+}
+
 const wanted = process.argv.slice(2);
 const files = examples();
 assert.deepEqual(Object.keys(files).filter((f) => f.endsWith('.g7')).sort(), Object.keys(SCENES).sort(), 'an example without a scene');
 mkdirSync(BOOK, { recursive: true });
+mkdirSync(dirname(OPERATOR), { recursive: true });
 const site = await playground(files);
 const b = await browser();
 try {
@@ -164,6 +193,10 @@ try {
     await take(page, README, 250_000);
     await page.context().close();
     process.stdout.write('README\n');
+  }
+  if (wanted.length === 0 || wanted.includes('operator')) {
+    await operator(b);
+    process.stdout.write('operator\n');
   }
 } finally {
   await b.done();

@@ -8,13 +8,23 @@
 /// Most levels; they make room for `64^5` members.
 pub(crate) const LEVELS: usize = 5;
 
+/// A place beyond the end of every word array, with room for the members of a set after it.
+const NOWHERE: u32 = u32::MAX / 2;
+
 /// Where a set lies in the word array.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug)]
 pub(crate) struct Tree {
     /// First word of each level.
     at: [u32; LEVELS],
     /// Levels in use, at least 1 unless the set can have no member.
     levels: u32,
+}
+
+impl Default for Tree {
+    /// The set that can have no member: it owns no word, so that removing from it changes none.
+    fn default() -> Tree {
+        Tree { at: [NOWHERE; LEVELS], levels: 0 }
+    }
 }
 
 /// The word at a place, or 0 beyond the end, where checked tables never lead.

@@ -6,7 +6,7 @@ use alloc::vec::Vec;
 use crate::bits::{bit, word};
 use crate::block_words::{MEMORY, STARTS, TIMED, TIMES, timer_latched};
 use crate::clocks::{BlockTimers, Instance, Owner, Stamp, Timer};
-use crate::layout::{FLAGS, Layout, head};
+use crate::layout::{FLAGS, Layout, head, timing};
 use crate::ops::Block;
 use crate::program::Program;
 use crate::state::State;
@@ -131,6 +131,7 @@ fn check(l: &Layout, t: &Tables, image: &[u64]) -> Result<(), ImageError> {
         (&l.running, watches),
         (&l.conditions, contributions),
         (&l.blocks, t.blocks.len()),
+        (&l.timing, timing(t) as usize),
         (&l.events, t.events.len()),
         (&l.periodics, t.periodics.len()),
         (&l.orders, t.orders.len()),

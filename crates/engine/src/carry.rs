@@ -4,6 +4,8 @@
 //! A part without a partner begins as in a new state. The change itself causes no
 //! edge and runs no stored action.
 
+use alloc::vec::Vec;
+
 use crate::bits::{bit, word};
 use crate::block_words::{BLOCK, MEMORY, WRITTEN};
 use crate::fault::Fault;
@@ -79,6 +81,10 @@ pub fn carry(p: &Program, old: (&Program, &State), common: &Common<'_>) -> Resul
         }
     }
     blocks(p, &mut s, was, from, common);
+    // A timer that runs takes the time of the new program.
+    for step in s.active().collect::<Vec<_>>() {
+        crate::blocks::set_times(p, &mut s.image, step);
+    }
     crate::watch::update(p, &mut s, true, true)?;
     s.scratch.quiet = false;
     s.scratch.any_blocked = false;
@@ -118,7 +124,7 @@ fn blocks(p: &Program, s: &mut State, was: &Program, from: &State, common: &Comm
 }
 
 fn inputs(p: &Program, step: StepId) -> Option<&[Contribution]> {
-    let extra = crate::change::extra(p, step.0)?;
+    let extra = p.extra(step.0)?;
     p.tables.contributions.get(extra.contributions.start as usize..extra.contributions.end as usize)
 }
 

@@ -5,6 +5,7 @@
 //! actions, and switches the steps. All marks are gone when it returns.
 
 use crate::bits::{bit, set_bit, word};
+use crate::blocks;
 use crate::fault::Fault;
 use crate::memory::{read, write};
 use crate::ops::{Addr, StepId};
@@ -56,12 +57,6 @@ pub(crate) fn marked(marks: &[u64], i: u32) -> bool {
     bit(marks, 0, i)
 }
 
-#[inline(always)]
-pub(crate) fn extra(p: &Program, step: u32) -> Option<&Extra> {
-    let row = p.tables.steps.get(step as usize)?.extra;
-    if row == NONE { None } else { p.tables.extras.get(row as usize) }
-}
-
 /// Makes the marked changes, with everything that follows from them.
 pub(crate) fn commit(p: &Program, s: &mut State) -> Result<(), Fault> {
     if p.has_hierarchy {
@@ -96,7 +91,7 @@ pub(crate) fn cascade(p: &Program, s: &mut State) {
         if marked(&s.scratch.on_mark, step) || !s.steps.contains(&s.image, step) {
             continue;
         }
-        let Some(e) = extra(p, step) else { continue };
+        let Some(e) = p.extra(step) else { continue };
         for g in p.tables.group_lists.get(e.encloses.start as usize..e.encloses.end as usize).unwrap_or(&[]) {
             let Some(group) = p.tables.groups.get(g.0 as usize) else { continue };
             if drop_activations(s, group.steps) {
@@ -115,7 +110,7 @@ pub(crate) fn cascade(p: &Program, s: &mut State) {
         if !marked(&s.scratch.on_mark, step) || s.steps.contains(&s.image, step) {
             continue;
         }
-        let Some(e) = extra(p, step) else { continue };
+        let Some(e) = p.extra(step) else { continue };
         for link in p.tables.arcs.get(e.links.start as usize..e.links.end as usize).unwrap_or(&[]) {
             mark_on(s, *link);
         }
@@ -141,7 +136,7 @@ fn drop_activations(s: &mut State, steps: Rows) -> bool {
 fn gather(p: &Program, s: &mut State) {
     for k in 0..s.scratch.off.len() {
         let Some(&step) = s.scratch.off.get(k) else { break };
-        if let Some(e) = extra(p, step)
+        if let Some(e) = p.extra(step)
             && !e.off.is_empty()
             && !marked(&s.scratch.on_mark, step)
             && s.steps.contains(&s.image, step)
@@ -151,7 +146,7 @@ fn gather(p: &Program, s: &mut State) {
     }
     for k in 0..s.scratch.on.len() {
         let Some(&step) = s.scratch.on.get(k) else { break };
-        if let Some(e) = extra(p, step)
+        if let Some(e) = p.extra(step)
             && !e.on.is_empty()
             && marked(&s.scratch.on_mark, step)
             && !s.steps.contains(&s.image, step)
@@ -272,10 +267,7 @@ pub(crate) fn deactivate(p: &Program, s: &mut State, step: u32) {
 fn carry_on(p: &Program, s: &mut State, e: &Extra) {
     let l = &p.layout;
     for row in e.contributions.start..e.contributions.end {
-        let Some(c) = p.tables.contributions.get(row as usize) else { break };
-        if c.condition.is_empty() && c.time.is_empty() {
-            crate::blocks::count(p, &mut s.image, c.block, c.input, true);
-        } else if !p.gates.has(row) {
+        if !blocks::give(p, &mut s.image, row, true) && !p.gates.has(row) {
             l.conditions.insert(&mut s.image, row);
         }
     }
@@ -298,16 +290,18 @@ fn carry_on(p: &Program, s: &mut State, e: &Extra) {
 fn carry_off(p: &Program, s: &mut State, e: &Extra) {
     let l = &p.layout;
     for row in e.contributions.start..e.contributions.end {
-        let Some(c) = p.tables.contributions.get(row as usize) else { break };
-        if c.condition.is_empty() && c.time.is_empty() {
-            crate::blocks::count(p, &mut s.image, c.block, c.input, false);
-        } else if p.gates.has(row) {
+        if blocks::give(p, &mut s.image, row, false) {
+            continue;
+        }
+        if p.gates.has(row) {
             p.gates.close(l, &mut s.image, row);
-        } else {
-            l.conditions.remove(&mut s.image, row);
-            if set_bit(&mut s.image, l.counted, row, false) {
-                crate::blocks::count(p, &mut s.image, c.block, c.input, false);
-            }
+            continue;
+        }
+        l.conditions.remove(&mut s.image, row);
+        if set_bit(&mut s.image, l.counted, row, false)
+            && let Some(c) = p.tables.contributions.get(row as usize)
+        {
+            blocks::count(p, &mut s.image, c.block, c.input, false);
         }
     }
     if !e.groups.is_empty() {

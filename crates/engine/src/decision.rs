@@ -101,6 +101,14 @@ impl Decisions {
         }
     }
 
+    /// The word and the bits of it that a decision of one test looks at, and whether it is TRUE where one
+    /// of them is set; `None` for any other decision.
+    pub(crate) fn single(&self, first: u32) -> Option<(u32, u64, bool)> {
+        let test = self.tests.get(first as usize)?;
+        let over = test.mask != 0 && test.yes >= NO && test.no >= NO && test.yes != test.no;
+        over.then_some((test.at, test.mask, test.yes == YES))
+    }
+
     /// The value of a decision, by its first test.
     #[inline(never)]
     pub(crate) fn decide(&self, image: &[u64], first: u32) -> bool {

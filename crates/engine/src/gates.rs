@@ -15,6 +15,7 @@ use crate::bits::{Walk, set_bit, word};
 use crate::block_words::N;
 use crate::check::writes;
 use crate::decision::Decisions;
+use crate::given::nothing_else;
 use crate::layout::Layout;
 use crate::ops::{Addr, Op, TEXT};
 use crate::tables::{Contribution, Extra, NONE, Receptivity, Rows, Tables};
@@ -31,27 +32,22 @@ pub(crate) fn can_tag(t: &Tables, l: &Layout) -> bool {
     l.len < GATE && t.steps.len() < most && t.contributions.len() < most
 }
 
-/// True if nothing but contributions that are always given follows a step with this row.
-pub(crate) fn is_counted(t: &Tables, e: &Extra) -> bool {
-    let Rows { start, end } = e.contributions;
-    let given = t.contributions.get(start as usize..end as usize).unwrap_or(&[]);
-    nothing_else(e) && !given.is_empty() && given.iter().all(|c| c.condition.is_empty() && c.time.is_empty())
-}
-
-/// True if nothing but its contributions follows a step with this row.
-fn nothing_else(e: &Extra) -> bool {
-    let lists = [e.on, e.off, e.events, e.periodics, e.groups, e.orders, e.encloses, e.links, e.watches];
-    !e.uncounted && lists.into_iter().all(Rows::is_empty)
-}
-
 #[derive(Clone, Copy, Debug)]
 struct Gate {
-    /// First test of the condition.
-    condition: u32,
+    condition: Condition,
     /// Word of the image.
     output: u32,
     /// Row of [`Tables::contributions`].
     row: u32,
+}
+
+/// The condition of a gate.
+#[derive(Clone, Copy, Debug)]
+enum Condition {
+    /// `on` says whether it is TRUE where one of these bits of a word of the image is set.
+    Bits { at: u32, mask: u64, on: bool },
+    /// The first test of a decision.
+    Tests(u32),
 }
 
 /// The gates of a program.
@@ -87,7 +83,12 @@ impl Gates {
                 && givers.get(c.block as usize) == Some(&1)
                 && used.get(block.output.0 as usize) == Some(&false);
             let condition = d.of(c.condition);
-            (fits && condition != NONE).then(|| Gate { condition, output: l.vars + block.output.0, row })
+            let condition = Some(condition).filter(|first| fits && *first != NONE)?;
+            let condition = match d.single(condition) {
+                Some((at, mask, on)) => Condition::Bits { at, mask, on },
+                None => Condition::Tests(condition),
+            };
+            Some(Gate { condition, output: l.vars + block.output.0, row })
         };
         let (mut list, mut of_step) = (Vec::new(), Vec::with_capacity(t.steps.len() + 1));
         let mut outputs = vec![NONE; t.contributions.len()];
@@ -151,10 +152,12 @@ impl Gates {
     pub(crate) fn follow(&self, l: &Layout, d: &Decisions, image: &mut [u64]) {
         let mut walk = Walk::new(&l.steps, image);
         while let Some(step) = walk.next(&l.steps, image) {
-            let i = step as usize;
-            let (Some(from), Some(to)) = (self.of_step.get(i), self.of_step.get(i + 1)) else { break };
+            let Some([from, to]) = self.of_step.get(step as usize..step as usize + 2) else { break };
             for gate in self.list.get(*from as usize..*to as usize).unwrap_or(&[]) {
-                let value = d.decide(image, gate.condition);
+                let value = match gate.condition {
+                    Condition::Bits { at, mask, on } => (word(image, at as usize) & mask != 0) == on,
+                    Condition::Tests(first) => d.decide(image, first),
+                };
                 if set_bit(image, l.counted, gate.row, value) != value
                     && let Some(output) = image.get_mut(gate.output as usize)
                 {

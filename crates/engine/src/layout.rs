@@ -5,7 +5,7 @@ use alloc::vec;
 use alloc::vec::Vec;
 
 use crate::bits::Tree;
-use crate::block_words::BLOCK;
+use crate::block_words::{BLOCK, TIMED};
 use crate::ops::Op;
 use crate::tables::{NONE, Tables};
 
@@ -80,6 +80,8 @@ pub(crate) struct Layout {
     pub(crate) block_at: Box<[u32]>,
     /// Set of the control blocks to be evaluated.
     pub(crate) blocks: Tree,
+    /// Set of the control blocks that only wait for a timer of theirs.
+    pub(crate) timing: Tree,
     /// Set of the event actions whose step is active.
     pub(crate) events: Tree,
     /// Set of the actions of each scan whose step is active.
@@ -133,6 +135,7 @@ impl Layout {
         l.conditions = Tree::reserve(contributions, &mut next);
         l.block_at = t.blocks.iter().map(|b| take(&mut next, if b.plain { 1 } else { BLOCK })).collect();
         l.blocks = Tree::reserve(n(t.blocks.len()), &mut next);
+        l.timing = Tree::reserve(timing(t), &mut next);
         l.events = Tree::reserve(n(t.events.len()), &mut next);
         l.periodics = Tree::reserve(n(t.periodics.len()), &mut next);
         l.orders = Tree::reserve(n(t.orders.len()), &mut next);
@@ -171,6 +174,12 @@ impl Layout {
         ];
         sets.iter().filter(|(_, members)| *members > 0).map(|(set, _)| set.top()).collect()
     }
+}
+
+/// The number of members of [`Layout::timing`]: all blocks where one has a timer.
+pub(crate) fn timing(t: &Tables) -> u32 {
+    let timed = t.contributions.iter().any(|c| TIMED.contains(&u32::from(c.input)));
+    if timed { u32::try_from(t.blocks.len()).unwrap_or(u32::MAX) } else { 0 }
 }
 
 /// The steps whose stamps are kept, and those whose ages are.

@@ -39,6 +39,7 @@
 extern crate alloc;
 
 mod bits;
+mod block_rows;
 mod block_words;
 mod blocks;
 mod canonical;
@@ -46,12 +47,14 @@ mod carry;
 mod change;
 mod check;
 mod clocks;
+mod counts;
 mod decision;
 mod enabled;
 mod fault;
 mod fb;
 mod fingerprint;
 mod gates;
+mod given;
 mod joined;
 mod layout;
 mod memory;

@@ -6,11 +6,10 @@ use core::mem::take;
 
 use crate::bits::{Tree, bit, set_bit, word};
 use crate::blocks;
-use crate::change::extra;
 use crate::gates::{COUNTED, GATE};
 use crate::layout::head;
 use crate::program::Program;
-use crate::rows::{Hot, Shift};
+use crate::rows::{Hot, Parts, Shift};
 use crate::scratch::Scratch;
 use crate::state::State;
 use crate::tables::NONE;
@@ -51,7 +50,7 @@ pub(crate) fn one_token(p: &Program, s: &mut State) -> Option<bool> {
     }
     scratch.lone = to;
     steps.pass_on(image, from, to);
-    shift(p, image, &hot.shift, word(image, head::NOW), kept(p));
+    shift::<true>(p, image, &hot.shift, word(image, head::NOW), kept(p));
     Some(true)
 }
 
@@ -61,9 +60,10 @@ fn kept(p: &Program) -> u64 {
     if p.tables.rules.keep_step_time { u64::MAX } else { 0 }
 }
 
-/// Moves the times and outputs of two plain steps along with a token. `kept` is [`kept`].
+/// Moves the times and outputs of two plain steps along with a token. `kept` is [`kept`]. Without `TAGS`
+/// no step has a gate or contributions.
 #[inline(always)]
-fn shift(p: &Program, image: &mut [u64], at: &Shift, now: u64, kept: u64) {
+fn shift<const TAGS: bool>(p: &Program, image: &mut [u64], at: &Shift, now: u64, kept: u64) {
     if let Some(stamp) = image.get_mut(at.to_stamp as usize) {
         *stamp = now;
     }
@@ -72,13 +72,26 @@ fn shift(p: &Program, image: &mut [u64], at: &Shift, now: u64, kept: u64) {
     }
     match image.get_mut(at.to_output as usize) {
         Some(o) => *o = 1,
-        None if at.to_output != NONE => follow(p, image, at.to_output, true),
+        None if TAGS && at.to_output != NONE => follow(p, image, at.to_output, true),
         None => {}
     }
     match image.get_mut(at.from_output as usize) {
         Some(o) => *o = 0,
-        None if at.from_output != NONE => follow(p, image, at.from_output, false),
+        None if TAGS && at.from_output != NONE => follow(p, image, at.from_output, false),
         None => {}
+    }
+}
+
+/// Clears plain transitions of which each leads to a step that is not active.
+#[inline(always)]
+fn pass_on<const TAGS: bool>(p: &Program, s: &mut State, now: u64, kept: u64) {
+    let State { image, scratch, steps, .. } = s;
+    for m in scratch.fired.iter().filter_map(|i| p.moves.get(*i as usize)) {
+        // Another token of this pass may have gone there: contributions count once.
+        let again = TAGS && steps.contains(image, m.to);
+        steps.hand_on(image, m.from, m.to);
+        let left = Shift { to_output: NONE, ..m.shift };
+        shift::<TAGS>(p, image, if again { &left } else { &m.shift }, now, kept);
     }
 }
 
@@ -89,10 +102,9 @@ fn follow(p: &Program, image: &mut [u64], tagged: u32, on: bool) {
         p.gates.close(&p.layout, image, tagged & !GATE);
         return;
     }
-    let Some(e) = extra(p, tagged & !COUNTED) else { return };
-    let rows = e.contributions.start as usize..e.contributions.end as usize;
-    for c in p.tables.contributions.get(rows).unwrap_or(&[]) {
-        blocks::count(p, image, c.block, c.input, on);
+    let Some(e) = p.extra(tagged & !COUNTED) else { return };
+    for row in e.contributions.start..e.contributions.end {
+        blocks::give(p, image, row, on);
     }
 }
 
@@ -144,14 +156,13 @@ pub(crate) fn clear(p: &Program, s: &mut State) -> bool {
     let free =
         |i: &u32| p.moves.get(*i as usize).is_some_and(|m| m.from != NONE && !steps.contains(image, m.to));
     if fired.iter().all(free) {
-        for m in fired.iter().filter_map(|i| p.moves.get(*i as usize)) {
-            // Another token of this pass may have gone there: contributions count once.
-            let again = p.counted && steps.contains(image, m.to);
-            steps.hand_on(image, m.from, m.to);
-            let left = Shift { to_output: NONE, ..m.shift };
-            shift(p, image, if again { &left } else { &m.shift }, now, kept);
+        let any = !fired.is_empty();
+        if p.counted || !p.gates.is_empty() {
+            pass_on::<true>(p, s, now, kept);
+        } else {
+            pass_on::<false>(p, s, now, kept);
         }
-        return !fired.is_empty();
+        return any;
     }
     let mut area = Area { image, steps: *steps, now, kept, changed: false };
     crowded(p, &mut area, fired, on_mark);
@@ -196,6 +207,10 @@ fn each_end(p: &Program, rank: u32, succeeding: bool, f: impl FnMut(u32)) {
     }
 }
 
+fn parts(p: &Program) -> Parts<'_> {
+    Parts { t: &p.tables, l: &p.layout, gates: &p.gates, given: &p.given, tags: true }
+}
+
 /// The parts of a state that change with steps.
 struct Area<'a> {
     image: &'a mut [u64],
@@ -210,8 +225,8 @@ impl Area<'_> {
     fn on(&mut self, p: &Program, step: u32) -> bool {
         let new = self.steps.add(self.image, step);
         if new {
-            let to = Shift::entering(&p.tables, &p.layout, step);
-            shift(p, self.image, &to, self.now, self.kept);
+            let to = parts(p).entering(step);
+            shift::<true>(p, self.image, &to, self.now, self.kept);
             self.changed = true;
         }
         new
@@ -220,8 +235,8 @@ impl Area<'_> {
     /// Deactivates a step.
     fn off(&mut self, p: &Program, step: u32) {
         if self.steps.take(self.image, step) {
-            let from = Shift::leaving(&p.tables, &p.layout, &p.gates, step);
-            shift(p, self.image, &from, self.now, self.kept);
+            let from = parts(p).leaving(step);
+            shift::<true>(p, self.image, &from, self.now, self.kept);
             self.changed = true;
         }
     }

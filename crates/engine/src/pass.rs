@@ -2,9 +2,7 @@
 //! it changes any step.
 
 use crate::bits::{Walk, bit, set_bit};
-use crate::change::{
-    activate, add_runs, cascade, commit, deactivate, extra, mark_off, mark_on, marked, run_action,
-};
+use crate::change::{activate, add_runs, cascade, commit, deactivate, mark_off, mark_on, marked, run_action};
 use crate::fault::{Fault, FaultKind};
 use crate::memory::read;
 use crate::moves;
@@ -421,7 +419,7 @@ fn enclosures(p: &Program, s: &mut State) {
         if s.steps.contains(&s.image, step) {
             continue;
         }
-        let Some(e) = extra(p, step) else { continue };
+        let Some(e) = p.extra(step) else { continue };
         for g in p.tables.group_lists.get(e.encloses.start as usize..e.encloses.end as usize).unwrap_or(&[]) {
             let Some(group) = p.tables.groups.get(g.0 as usize) else { continue };
             for i in group.steps.start..group.steps.end {
@@ -439,7 +437,7 @@ fn enclosures(p: &Program, s: &mut State) {
         if s.scratch.left.contains(&step) || !s.steps.contains(&s.image, step) {
             continue;
         }
-        for link in extra(p, step).map(|e| p.tables.arcs(e.links)).unwrap_or(&[]) {
+        for link in p.extra(step).map(|e| p.tables.arcs(e.links)).unwrap_or(&[]) {
             mark_on(s, *link);
         }
     }
@@ -467,7 +465,7 @@ fn leave(p: &Program, s: &mut State, step: u32) -> Result<(), Fault> {
         if !s.steps.contains(&s.image, step) {
             continue;
         }
-        let e = extra(p, step).copied().unwrap_or_default();
+        let e = p.extra(step).copied().unwrap_or_default();
         run_list(p, s, e.off)?;
         deactivate(p, s, step);
         if !e.encloses.is_empty() && s.scratch.left.len() < s.scratch.left.capacity() {
@@ -497,7 +495,7 @@ fn enter(p: &Program, s: &mut State, step: u32) -> Result<(), Fault> {
             continue;
         }
         activate(p, s, step);
-        let e = extra(p, step).copied().unwrap_or_default();
+        let e = p.extra(step).copied().unwrap_or_default();
         run_list(p, s, e.on)?;
         if !e.links.is_empty() && s.scratch.entered.len() < s.scratch.entered.capacity() {
             s.scratch.entered.push(step);

@@ -2,20 +2,21 @@
 //! to know of them beforehand.
 
 use alloc::boxed::Box;
-use alloc::vec;
 use alloc::vec::Vec;
 
+use crate::block_rows::Row;
 use crate::check::{LoadError, check, writes};
 use crate::clocks::{Clocks, clocks};
 use crate::decision::Decisions;
 use crate::fingerprint::fingerprint;
-use crate::gates::{Gates, can_tag, is_counted};
+use crate::gates::{Gates, can_tag};
+use crate::given::Given;
 use crate::joined::Joined;
 use crate::layout::Layout;
 use crate::ops::{Op, TEXT};
-use crate::rows::{Hot, Move, hot, moves};
+use crate::rows::{Hot, Move, Parts};
 use crate::rules::PATIENCE;
-use crate::tables::{NONE, Receptivity, Tables};
+use crate::tables::{Extra, NONE, Receptivity, Tables};
 
 /// A checked, immutable compiled chart. Only [`Program::new`] makes one.
 #[derive(Clone, Debug)]
@@ -58,8 +59,10 @@ pub struct Program {
     pub(crate) commit_room: usize,
     /// Room for one string at work, in bytes; 0 where there are none.
     pub(crate) text_room: usize,
-    /// The inputs that each control block has, a bit each.
-    pub(crate) uses: Box<[u16]>,
+    /// A row for each control block.
+    pub(crate) blocks: Box<[Row]>,
+    /// The contributions that are given as long as their step is active.
+    pub(crate) given: Given,
     /// A row for each step.
     pub(crate) hot: Box<[Hot]>,
     /// A row for each transition.
@@ -96,6 +99,13 @@ impl Program {
         &self.tables
     }
 
+    /// The row of what follows a step, if it has one.
+    #[inline(always)]
+    pub(crate) fn extra(&self, step: u32) -> Option<&Extra> {
+        let row = self.tables.steps.get(step as usize)?.extra;
+        if row == NONE { None } else { self.tables.extras.get(row as usize) }
+    }
+
     fn build(t: Tables) -> Program {
         let layout = Layout::new(&t);
         let always = t.watches.iter().enumerate().filter(|(_, w)| w.always).map(|(i, _)| i as u32).collect();
@@ -119,7 +129,9 @@ impl Program {
             true => Gates::new(&t, &layout, &decisions),
             false => Gates::default(),
         };
-        let moves = moves(&t, &layout, &gates, plain, tags);
+        let given = Given::new(&t, &layout);
+        let parts = Parts { t: &t, l: &layout, gates: &gates, given: &given, tags };
+        let moves = parts.moves(plain);
         let calm = !frame && !has_periods && !counts && t.sources.is_empty();
         Program {
             judges_freely: t.transitions.iter().all(|tr| !writes_in(&t, tr.receptivity)),
@@ -130,10 +142,10 @@ impl Program {
                 && !t.watches.iter().any(|w| w.always),
             watches_inputs: t.word_watches.iter().any(|(a, _)| (t.inputs.start..t.inputs.end).contains(&a.0)),
             awake: layout.awake(&t),
-            uses: uses(&t),
-            hot: hot(&t, &layout, &decisions, &gates, &moves),
+            blocks: Row::all(&t, &layout),
+            hot: parts.hot(&decisions, &moves),
             all_plain: moves.iter().all(|m| m.plain),
-            counted: tags && t.extras.iter().any(|e| is_counted(&t, e)),
+            counted: tags && t.extras.iter().any(|e| given.alone(e)),
             moves,
             timeless: !frame
                 && !has_periods
@@ -155,6 +167,7 @@ impl Program {
             word_index: word_index(&t),
             clocks: clocks(&t, &layout),
             gates,
+            given,
             decisions,
             joined: Joined::new(&t, &layout),
             fingerprint: fingerprint(&t),
@@ -162,16 +175,6 @@ impl Program {
             tables: t,
         }
     }
-}
-
-fn uses(t: &Tables) -> Box<[u16]> {
-    let mut uses = vec![0u16; t.blocks.len()];
-    for c in &t.contributions {
-        if let Some(u) = uses.get_mut(c.block as usize) {
-            *u |= 1 << c.input;
-        }
-    }
-    uses.into_boxed_slice()
 }
 
 /// True if a receptivity writes a variable.

@@ -6,13 +6,13 @@ use crate::fault::{Fault, FaultKind};
 use crate::layout::{REQUESTS, START, STARTED, STOPPED, head};
 use crate::memory::{notice, write};
 use crate::ops::{Addr, Code, StepId};
-use crate::pass::{evolve, rest_active};
+use crate::pass::evolve;
 use crate::program::Program;
 use crate::rules::PATIENCE;
 use crate::run::{run, value};
 use crate::state::State;
 use crate::tables::NONE;
-use crate::{blocks, moves, watch};
+use crate::{blocks, counts, moves, watch};
 
 /// The report of a scan.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -41,26 +41,74 @@ pub struct Report {
 /// IEC 60848:2013, 4.5 (evolution rules) and 4.6 (interpretation);
 /// IEC 61131-3:2003, 2.6.5.
 pub fn scan(p: &Program, s: &mut State, inputs: &[u64], now: i64) -> Result<Report, Fault> {
-    if s.scratch.quiet && still(p, s, inputs, now) {
-        return Ok(Report { passes: 1, cleared: 0, conflict: None });
-    }
-    if p.brisk && begin_brisk(p, s, inputs, now) {
-        if !p.tables.rules.stable
-            && let Some(moved) = moves::one_token(p, s)
-        {
-            if p.counted && moves::is_awake(p, &s.image) {
-                return counted(p, s, 1, 1);
+    match begin_short(p, s, inputs, now) {
+        Begun::Still => Ok(Report { passes: 1, cleared: 0, conflict: None }),
+        Begun::Brisk => {
+            if !p.tables.rules.stable
+                && let Some(moved) = moves::one_token(p, s)
+            {
+                if to_settle(p, s) {
+                    return counted(p, s, 1, u32::from(moved));
+                }
+                s.scratch.quiet = !moved && p.timeless;
+                gates(p, s);
+                return Ok(Report { passes: 1, cleared: u32::from(moved), conflict: None });
             }
-            s.scratch.quiet = !moved && p.timeless;
-            gates(p, s);
-            return Ok(Report { passes: 1, cleared: u32::from(moved), conflict: None });
+            brisk(p, s)
         }
-        return brisk(p, s);
+        Begun::No => whole(p, s, inputs, now),
     }
-    whole(p, s, inputs, now)
 }
 
-/// The rest of a scan after [`begin_brisk`].
+/// How a scan began.
+enum Begun {
+    /// It is over: nothing can happen in it.
+    Still,
+    /// Inputs and time are new, and nothing but transitions acts at first.
+    Brisk,
+    /// Nothing was done yet.
+    No,
+}
+
+/// Begins a scan, and ends it where the one before ended in a situation that a further pass does not
+/// change, nothing waits for the time, and no input differs. Does nothing where something other than
+/// transitions may act, before the first scan, after a fault, or where inputs or time do not fit.
+#[inline(always)]
+fn begin_short(p: &Program, s: &mut State, inputs: &[u64], now: i64) -> Begun {
+    let quiet = s.scratch.quiet;
+    let brisk = p.brisk && s.has_only_flag(STARTED) && !moves::is_awake(p, &s.image);
+    if !quiet && !brisk {
+        return Begun::No;
+    }
+    let (from, to) = ((s.vars + p.tables.inputs.start) as usize, (s.vars + p.tables.inputs.end) as usize);
+    let before = s.now();
+    let Some(area) = s.image.get_mut(from..to) else { return Begun::No };
+    if area.len() != inputs.len() || now < before {
+        return Begun::No;
+    }
+    let still = quiet && now < s.scratch.timers_due && !differ(area, inputs);
+    if !still {
+        if !brisk || p.watches_inputs && watched(p, area, inputs) {
+            return Begun::No;
+        }
+        take(area, inputs);
+    }
+    tick(s, now.wrapping_sub(before), now);
+    s.scratch.begin_brisk();
+    if still { Begun::Still } else { Begun::Brisk }
+}
+
+/// Takes the inputs over. One or two are written faster than by a call.
+#[inline(always)]
+fn take(area: &mut [u64], inputs: &[u64]) {
+    match (area, inputs) {
+        ([a], [i]) => *a = *i,
+        ([a, b], [i, j]) => (*a, *b) = (*i, *j),
+        (area, inputs) => area.copy_from_slice(inputs),
+    }
+}
+
+/// The rest of a scan that began as [`Begun::Brisk`].
 #[inline(never)]
 fn brisk(p: &Program, s: &mut State) -> Result<Report, Fault> {
     let mut made = 0;
@@ -69,7 +117,7 @@ fn brisk(p: &Program, s: &mut State) -> Result<Report, Fault> {
             && let Some(moved) = moves::one_token(p, s)
         {
             if !moved {
-                if p.counted && moves::is_awake(p, &s.image) {
+                if to_settle(p, s) {
                     return counted(p, s, made + 1, made);
                 }
                 s.scratch.quiet = p.timeless;
@@ -84,7 +132,20 @@ fn brisk(p: &Program, s: &mut State) -> Result<Report, Fault> {
     end(p, s, done)
 }
 
-/// Ends a scan in which a lone token alone has moved, and with it the inputs of control blocks.
+/// True if control blocks are to be evaluated at the end of a scan in which nothing was awake as it
+/// began.
+#[inline(always)]
+fn to_settle(p: &Program, s: &State) -> bool {
+    p.counted && moves::is_awake(p, &s.image) || timers_end(s)
+}
+
+/// True if a timer of a control block may end in this scan.
+#[inline(always)]
+fn timers_end(s: &State) -> bool {
+    s.now() >= s.scratch.timers_due
+}
+
+/// Ends a scan in which nothing but a lone token may have moved, and inputs of control blocks with it.
 #[inline(never)]
 fn counted(p: &Program, s: &mut State, passes: u32, cleared: u32) -> Result<Report, Fault> {
     s.scratch.begin_passes(cleared);
@@ -93,14 +154,15 @@ fn counted(p: &Program, s: &mut State, passes: u32, cleared: u32) -> Result<Repo
     // A search for stability has made a pass that changed nothing.
     s.scratch.idle = passes > cleared;
     s.scratch.changed = !s.scratch.idle;
-    let done = finish(p, s);
+    gates(p, s);
+    let done = settle(p, s);
     end(p, s, done)
 }
 
-/// As [`finish`], for a scan after [`begin_brisk`].
+/// As [`finish`], for a scan that began as [`Begun::Brisk`].
 #[inline(always)]
 fn finish_brisk(p: &Program, s: &mut State) -> Result<(), Fault> {
-    if s.scratch.late_any || s.scratch.worked || moves::is_awake(p, &s.image) {
+    if s.scratch.late_any || s.scratch.worked || moves::is_awake(p, &s.image) || timers_end(s) {
         return finish(p, s);
     }
     gates(p, s);
@@ -132,31 +194,6 @@ fn end(p: &Program, s: &mut State, done: Result<(), Fault>) -> Result<Report, Fa
     }
 }
 
-/// As [`begin`], for a scan in which nothing but transitions acts at first. Does nothing and returns
-/// false where something else may act, before the first scan, after a fault, or where inputs or time
-/// do not fit.
-#[inline(always)]
-fn begin_brisk(p: &Program, s: &mut State, inputs: &[u64], now: i64) -> bool {
-    let (from, to) = ((s.vars + p.tables.inputs.start) as usize, (s.vars + p.tables.inputs.end) as usize);
-    let before = s.now();
-    if !s.has_only_flag(STARTED) || now < before || moves::is_awake(p, &s.image) {
-        return false;
-    }
-    let Some(area) = s.image.get_mut(from..to) else { return false };
-    if area.len() != inputs.len() {
-        return false;
-    }
-    if differ(area, inputs) {
-        if p.watches_inputs && watched(p, area, inputs) {
-            return false;
-        }
-        area.copy_from_slice(inputs);
-    }
-    tick(s, now.wrapping_sub(before), now);
-    s.scratch.begin_brisk();
-    true
-}
-
 /// True if an input that some watch reads changes.
 #[inline(never)]
 fn watched(p: &Program, area: &[u64], inputs: &[u64]) -> bool {
@@ -179,23 +216,6 @@ fn tick(s: &mut State, dt: i64, now: i64) {
         head[head::NOW] = now as u64;
         head[head::SCANS] = head[head::SCANS].wrapping_add(1);
     }
-}
-
-/// Makes a scan in which nothing can happen: the one before ended in a situation that
-/// a further pass does not change, and nothing waits for the time. Returns false, and
-/// does nothing, where an input differs.
-#[inline]
-fn still(p: &Program, s: &mut State, inputs: &[u64], now: i64) -> bool {
-    let (from, to) = ((s.vars + p.tables.inputs.start) as usize, (s.vars + p.tables.inputs.end) as usize);
-    let before = s.now();
-    let Some(area) = s.image.get(from..to) else { return false };
-    if area.len() != inputs.len() || now < before || differ(area, inputs) {
-        return false;
-    }
-    tick(s, now.wrapping_sub(before), now);
-    s.scratch.cleared.clear();
-    s.scratch.ran.clear();
-    true
 }
 
 fn report(s: &State) -> Report {
@@ -292,7 +312,7 @@ pub fn begin(p: &Program, s: &mut State, inputs: &[u64], now: i64) -> Result<(),
         blocks::look(p, s)?;
     }
     if t.counts.is_some() {
-        enabled(p, s, false)?;
+        counts::enabled(p, s, false)?;
     }
     s.scratch.moved = 0;
     if t.rules.periodic_first {
@@ -410,7 +430,7 @@ pub fn finish(p: &Program, s: &mut State) -> Result<(), Fault> {
     let t = &p.tables;
     if let Some((steps, transitions)) = t.counts {
         let moved = s.scratch.moved;
-        count(p, s, moved, steps, transitions)?;
+        counts::count(p, s, moved, steps, transitions)?;
     }
     if t.rules.periodic_first {
         periodics(p, s);
@@ -420,7 +440,15 @@ pub fn finish(p: &Program, s: &mut State) -> Result<(), Fault> {
         gates(p, s);
         blocks::conditions(p, s, |_| true)?;
     }
-    if !t.blocks.is_empty() {
+    settle(p, s)
+}
+
+/// The last part of a scan after conditions were evaluated.
+fn settle(p: &Program, s: &mut State) -> Result<(), Fault> {
+    let t = &p.tables;
+    if t.blocks.is_empty() {
+        s.scratch.timers_due = i64::MAX;
+    } else {
         blocks::evaluate(p, s)?;
     }
     if !t.rules.periodic_first {
@@ -432,7 +460,7 @@ pub fn finish(p: &Program, s: &mut State) -> Result<(), Fault> {
         run(p, s, t.tail)?;
     }
     if let Some((flag, limits)) = t.limits
-        && (active_now(p, s) > limits.active || enabled_now(p, s) > limits.enabled)
+        && (counts::active_now(p, s) > limits.active || counts::enabled_now(p, s) > limits.enabled)
     {
         write(p, s, flag, 1);
         return Err(FaultKind::Table.nowhere());
@@ -491,6 +519,7 @@ fn late(p: &Program, s: &mut State) -> Result<(), Fault> {
 /// Stops the program: the outputs take their safe values, and no further scan runs.
 fn stop(p: &Program, s: &mut State) {
     s.set_flag(STOPPED, true);
+    s.scratch.quiet = false;
     s.scratch.drop_marks();
     for (i, v) in (p.tables.outputs.start..p.tables.outputs.end).zip(&p.tables.safe) {
         s.set((s.vars + i) as usize, *v);
@@ -507,54 +536,6 @@ pub fn eval(p: &Program, s: &mut State, code: Code) -> Result<u64, Fault> {
     s.scratch.work = 0;
     s.scratch.stack.clear();
     value(p, s, code)
-}
-
-/// Number of active steps, without those that stand for macro-steps.
-fn active_now(p: &Program, s: &State) -> u32 {
-    let stands_in = |step: &u32| crate::change::extra(p, *step).is_some_and(|e| e.uncounted);
-    s.active().filter(|step| !stands_in(&step.0)).count() as u32
-}
-
-/// True if a transition is enabled and counts.
-fn is_enabled(p: &Program, s: &State, i: usize) -> bool {
-    p.tables
-        .transitions
-        .get(i)
-        .filter(|t| !t.uncounted)
-        .is_some_and(|t| (t.from.0 == NONE || s.steps.contains(&s.image, t.from.0)) && rest_active(p, s, t))
-}
-
-fn enabled_now(p: &Program, s: &State) -> u32 {
-    (0..p.tables.transitions.len()).filter(|i| is_enabled(p, s, *i)).count() as u32
-}
-
-/// Notes which transitions are enabled, before or after the evolution.
-fn enabled(p: &Program, s: &mut State, after: bool) -> Result<(), Fault> {
-    for i in 0..p.tables.transitions.len() {
-        let on = is_enabled(p, s, i);
-        let scratch = &mut s.scratch;
-        set_bit(if after { &mut scratch.enabled_after } else { &mut scratch.enabled }, 0, i as u32, on);
-    }
-    if !after {
-        s.scratch.active_before = active_now(p, s);
-    }
-    Ok(())
-}
-
-/// Writes `%SW20` and `%SW21`: steps that were active or changed in this scan, and
-/// transitions that were enabled or changed.
-fn count(p: &Program, s: &mut State, moved: u32, steps: Addr, transitions: Addr) -> Result<(), Fault> {
-    enabled(p, s, true)?;
-    let (mut was, mut changed) = (0, 0);
-    for (b, a) in s.scratch.enabled.iter().zip(s.scratch.enabled_after.iter()) {
-        was += b.count_ones();
-        changed += (b ^ a).count_ones();
-    }
-    let total = |n: u32| u64::from(n.min(32767));
-    let active = s.scratch.active_before;
-    write(p, s, steps, total(active.saturating_add(moved)));
-    write(p, s, transitions, total(was + changed));
-    Ok(())
 }
 
 /// Activates or deactivates a step from outside, as a debugger does. Its stored actions

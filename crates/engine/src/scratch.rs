@@ -1,8 +1,8 @@
 //! The space that a scan works in.
 //!
 //! Nothing in it carries anything from one scan to the next, except the reports of
-//! the latest scan and two notes that save time ([`Scratch::quiet`] and
-//! [`Scratch::lone`]), without which the next scan has the same result.
+//! the latest scan and notes that save time ([`Scratch::quiet`],
+//! [`Scratch::lone`] and [`Scratch::timers_due`]), without which the next scan has the same result.
 
 use alloc::boxed::Box;
 use alloc::vec;
@@ -98,6 +98,8 @@ pub(crate) struct Scratch {
     pub(crate) idle: bool,
     /// Nothing can happen before an input changes or a caller writes to the state.
     pub(crate) quiet: bool,
+    /// Before this instant, in ns, no timer of a control block ends.
+    pub(crate) timers_due: i64,
     /// Buffers for two operands and the result of string functions.
     pub(crate) text: [Vec<u8>; 3],
     /// Reports of the latest scan: transitions cleared, as far as there is room,
@@ -127,6 +129,7 @@ impl Scratch {
         Scratch {
             fired: Vec::with_capacity(t.transitions.len()),
             lone: NONE,
+            timers_due: i64::MIN,
             worked: true,
             slow: Vec::with_capacity(steps),
             on: Vec::with_capacity(2 * steps),
@@ -249,6 +252,7 @@ impl Scratch {
         self.quiet = false;
         self.worked = true;
         self.lone = NONE;
+        self.timers_due = i64::MIN;
         self.first_pass = false;
         self.any_blocked = false;
     }

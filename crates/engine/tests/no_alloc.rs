@@ -1,42 +1,10 @@
 //! A scan allocates nothing. The compiler cannot see that; this test can.
-#![allow(unsafe_code, reason = "counting allocations needs a GlobalAlloc")]
 
 mod common;
 
-use std::alloc::{GlobalAlloc, Layout, System};
-use std::cell::Cell;
-
+use allocation_counter::measure;
 use common::{Arc, chart};
-use g7_engine::{FaultKind, Program, Rules, State, scan};
-
-struct Counting;
-
-thread_local! {
-    /// Of this thread alone: the tests run side by side.
-    static COUNT: Cell<usize> = const { Cell::new(0) };
-}
-
-fn count() {
-    COUNT.with(|c| c.set(c.get() + 1));
-}
-
-// SAFETY: forwards to `System`, which upholds the contract.
-unsafe impl GlobalAlloc for Counting {
-    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
-        count();
-        unsafe { System.alloc(layout) }
-    }
-    unsafe fn dealloc(&self, ptr: *mut u8, layout: Layout) {
-        unsafe { System.dealloc(ptr, layout) }
-    }
-    unsafe fn realloc(&self, ptr: *mut u8, layout: Layout, new: usize) -> *mut u8 {
-        count();
-        unsafe { System.realloc(ptr, layout, new) }
-    }
-}
-
-#[global_allocator]
-static ALLOC: Counting = Counting;
+use g7_engine::{Fault, FaultKind, Program, Rules, State, scan};
 
 /// A fork into three, a join, an OR divergence and a self-loop.
 fn arcs() -> Vec<Arc> {
@@ -55,16 +23,17 @@ fn scan_allocates_nothing() {
     for rules in [Rules::IEC60848, Rules::IEC61131, Rules::PL7, Rules::UNITY, Rules::JGRAFCHART] {
         let program = Program::new(chart(rules, 6, 2, &[0], &arcs())).expect("tables are sound");
         let mut state = State::new(&program);
-        let before = COUNT.get();
         let mut cleared = 0;
-        for k in 0..200i64 {
-            let inputs = [(k % 3 == 0) as u64, (k % 3 == 1) as u64];
-            // An unstable chart stops; that must not allocate either.
-            if let Ok(report) = scan(&program, &mut state, &inputs, k * 1_000_000) {
-                cleared += report.cleared;
+        let counted = measure(|| {
+            for k in 0..200i64 {
+                let inputs = [(k % 3 == 0) as u64, (k % 3 == 1) as u64];
+                // An unstable chart stops; that must not allocate either.
+                if let Ok(report) = scan(&program, &mut state, &inputs, k * 1_000_000) {
+                    cleared += report.cleared;
+                }
             }
-        }
-        assert_eq!(COUNT.get(), before, "{rules:?}");
+        });
+        assert_eq!(counted.count_total, 0, "{rules:?}");
         assert!(cleared > 2, "{rules:?}: nothing moved");
     }
 }
@@ -76,10 +45,10 @@ fn a_scan_without_end_allocates_nothing() {
     let rules = Rules { bound: 10_000, ..Rules::IEC60848 };
     let program = Program::new(chart(rules, 3, 1, &[0], &ring)).expect("tables are sound");
     let mut state = State::new(&program);
-    let before = COUNT.get();
-    let fault = scan(&program, &mut state, &[0], 0);
-    assert_eq!(COUNT.get(), before);
-    assert!(matches!(fault.map_err(|f| f.kind), Err(FaultKind::Unstable { .. })));
+    let mut done = None;
+    let counted = measure(|| done = Some(scan(&program, &mut state, &[0], 0)));
+    assert_eq!(counted.count_total, 0);
+    assert!(matches!(done, Some(Err(Fault { kind: FaultKind::Unstable { .. }, .. }))), "{done:?}");
 }
 
 /// A search makes millions of these steps: from an image to a state, a scan, and to
@@ -91,13 +60,14 @@ fn a_step_of_a_search_allocates_nothing() {
         let mut state = State::new(&program);
         let mut image = Vec::with_capacity(state.image().len());
         state.canonical(&program, &mut image);
-        let before = COUNT.get();
-        for k in 0..200i64 {
-            state.restore(&program, &image).expect("a canonical image");
-            let inputs = [(k % 2) as u64, ((k / 2) % 2) as u64];
-            scan(&program, &mut state, &inputs, k * 1_000_000).ok();
-            state.canonical(&program, &mut image);
-        }
-        assert_eq!(COUNT.get(), before, "{rules:?}");
+        let counted = measure(|| {
+            for k in 0..200i64 {
+                state.restore(&program, &image).expect("a canonical image");
+                let inputs = [(k % 2) as u64, ((k / 2) % 2) as u64];
+                scan(&program, &mut state, &inputs, k * 1_000_000).ok();
+                state.canonical(&program, &mut image);
+            }
+        });
+        assert_eq!(counted.count_total, 0, "{rules:?}");
     }
 }

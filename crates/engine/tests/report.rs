@@ -3,7 +3,9 @@
 mod common;
 
 use common::{Arc, chart};
-use g7_engine::{Code, FaultKind, Op, Program, Rules, State, StepId, Tables, scan};
+use g7_engine::{
+    Addr, Arith, Cmp, Code, FaultKind, Num, Op, Program, Receptivity, Rules, State, StepId, Tables, scan,
+};
 
 /// Three steps in a row behind one input, then a transition that waits.
 fn row() -> Vec<Arc> {
@@ -75,5 +77,28 @@ fn a_saved_state_goes_on_as_the_first_would() {
         }
         assert!(s.is_active(StepId(3)));
         assert!(State::from_bytes(&p, &[0; 3]).is_err());
+    }
+}
+
+#[test]
+fn a_fault_behind_a_quiet_scan_stops_the_program() {
+    let mut t = chart(Rules::IEC61131, 2, 2, &[0], &[(vec![0], vec![1], Some(0)), (vec![1], vec![0], None)]);
+    // 10 / first input < second input
+    t.code = vec![
+        Op::Push(10),
+        Op::Load(Addr(0)),
+        Op::Arith(Arith::Div, Num::I64),
+        Op::Load(Addr(1)),
+        Op::Compare(Cmp::Lt, Num::I64),
+    ];
+    t.transitions[0].receptivity = Receptivity::Code(Code { start: 0, end: 5 });
+    let p = Program::new(t).expect("tables are sound");
+    let mut s = State::new(&p);
+    for k in 0..4 {
+        assert_eq!(scan(&p, &mut s, &[1, 0], k).map(|r| r.cleared), Ok(0));
+    }
+    assert_eq!(scan(&p, &mut s, &[0, 0], 4).map_err(|f| f.kind).err(), Some(FaultKind::DivisionByZero));
+    for inputs in [[0, 0], [1, 0], [1, 20]] {
+        assert_eq!(scan(&p, &mut s, &inputs, 5).map_err(|f| f.kind).err(), Some(FaultKind::Stopped));
     }
 }

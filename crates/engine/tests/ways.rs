@@ -4,8 +4,8 @@ mod common;
 
 use common::{Arc, Chance, chart};
 use g7_engine::{
-    Addr, Arith, Cmp, Code, Contribution, ControlBlock, Extra, FaultKind, INPUTS, NONE, Num, Op, Program,
-    Receptivity, Rows, Rules, State, StepId, Tables, scan, set_step,
+    Addr, Arith, Cmp, Code, Contribution, ControlBlock, Extra, Fault, FaultKind, INPUTS, NONE, Num, Op,
+    Program, Receptivity, Report, Rows, Rules, State, StepId, Tables, scan, set_step,
 };
 
 /// Up to `n` different steps.
@@ -68,10 +68,11 @@ fn expression(chance: &mut Chance, steps: u32, depth: u32, code: &mut Vec<Op>) {
 /// Gives some transitions an expression, and some steps a row of extras, so that they are not plain.
 fn mixed(chance: &mut Chance, mut t: Tables) -> Tables {
     let steps = t.steps.len() as u32;
+    let empty = t.extras.len() as u32;
     t.extras.push(Extra::default());
     for step in &mut t.steps {
         if chance.below(6) == 0 {
-            step.extra = 0;
+            step.extra = empty;
         }
     }
     for transition in &mut t.transitions {
@@ -112,7 +113,7 @@ fn gated(chance: &mut Chance, mut t: Tables) -> Tables {
 
 /// Gives some steps contributions to control blocks, without a condition; several steps may have one
 /// block, and a step several.
-fn blocked(chance: &mut Chance, mut t: Tables) -> Tables {
+fn blocked(chance: &mut Chance, mut t: Tables, inputs: &[u8]) -> Tables {
     let mut own = Vec::new();
     for i in 0..t.steps.len() {
         if t.steps[i].direct.0 != NONE && t.steps[i].extra == NONE && chance.below(2) == 0 {
@@ -127,8 +128,19 @@ fn blocked(chance: &mut Chance, mut t: Tables) -> Tables {
         let start = t.contributions.len() as u32;
         for _ in 0..=chance.below(3) {
             let block = chance.below(t.blocks.len() as u32);
-            let input = if t.blocks[block as usize].plain { 0 } else { USED[chance.below(6) as usize] };
-            let (condition, time) = (Code::default(), Code::default());
+            let input = if t.blocks[block as usize].plain {
+                0
+            } else {
+                inputs[chance.below(inputs.len() as u32) as usize]
+            };
+            // A scan is 7 ns long.
+            let time = if TIMED.contains(&input) {
+                t.code.push(Op::Push(u64::from(chance.below(40))));
+                Code { start: t.code.len() as u32 - 1, end: t.code.len() as u32 }
+            } else {
+                Code::default()
+            };
+            let condition = Code::default();
             t.contributions.push(Contribution { block, input, condition, time, period: 0 });
         }
         let contributions = Rows { start, end: t.contributions.len() as u32 };
@@ -138,8 +150,9 @@ fn blocked(chance: &mut Chance, mut t: Tables) -> Tables {
     t
 }
 
-/// N, S, R, P, P1 and P0, as places in [`INPUTS`].
-const USED: [u8; 6] = [0, 1, 2, 5, 6, 7];
+/// N, S, R, P, P1, P0 and the timed inputs, as places in [`INPUTS`].
+const USED: [u8; 11] = [0, 1, 2, 5, 6, 7, 3, 4, 8, 9, 10];
+const TIMED: [u8; 5] = [3, 4, 8, 9, 10];
 
 /// The same tables so that no step and no transition is plain and the interpreter evaluates each
 /// receptivity and condition: every step has a row of extras, every such code has 0 added to it.
@@ -152,11 +165,13 @@ fn roundabout(t: &Tables) -> Tables {
     }
     // Nothing counts steps here, so this only takes the short way away from them.
     t.extras.iter_mut().for_each(|e| e.uncounted = true);
-    for c in t.contributions.iter_mut().filter(|c| !c.condition.is_empty()) {
-        let start = t.code.len() as u32;
-        t.code.extend_from_within(c.condition.start as usize..c.condition.end as usize);
-        t.code.extend([Op::Push(0), Op::Arith(Arith::Add, Num::I64)]);
-        c.condition = Code { start, end: t.code.len() as u32 };
+    for c in &mut t.contributions {
+        for code in [&mut c.condition, &mut c.time].into_iter().filter(|code| !code.is_empty()) {
+            let start = t.code.len() as u32;
+            t.code.extend_from_within(code.start as usize..code.end as usize);
+            t.code.extend([Op::Push(0), Op::Arith(Arith::Add, Num::I64)]);
+            *code = Code { start, end: t.code.len() as u32 };
+        }
     }
     for transition in &mut t.transitions {
         let start = t.code.len() as u32;
@@ -168,6 +183,12 @@ fn roundabout(t: &Tables) -> Tables {
         }
         t.code.extend([Op::Push(0), Op::Arith(Arith::Add, Num::I64)]);
         transition.receptivity = Receptivity::Code(Code { start, end: t.code.len() as u32 });
+    }
+    // A block with a gate is evaluated in each scan, not only when a timer ends.
+    for c in t.contributions.iter().filter(|c| !c.time.is_empty()) {
+        let start = t.code.len() as u32;
+        t.code.push(Op::Push(1));
+        t.blocks[c.block as usize].gate = Code { start, end: start + 1 };
     }
     let start = t.code.len() as u32;
     t.code.extend([Op::Push(0), Op::Drop]);
@@ -259,6 +280,57 @@ fn walk(chance: &mut Chance, rules: Rules) -> Tables {
     t
 }
 
+/// A program that runs by the short ways and by the long one, with the same inputs.
+struct Both {
+    short: Program,
+    long: Program,
+    a: State,
+    b: State,
+    inputs: Vec<u64>,
+}
+
+impl Both {
+    fn new(short: Tables, long: Tables) -> Both {
+        let [short, long] = [short, long].map(|tables| Program::new(tables).expect("tables are sound"));
+        let (a, b) = (State::new(&short), State::new(&long));
+        Both { short, long, a, b, inputs: vec![0; 3] }
+    }
+
+    /// Inputs that stand still for a while let the scans be quiet.
+    fn move_inputs(&mut self, chance: &mut Chance) {
+        if chance.below(3) > 0 {
+            self.inputs = (0..3).map(|_| u64::from(chance.below(2))).collect();
+        }
+    }
+
+    /// Now and then a step or an output is written from outside. An output then keeps the value until its
+    /// steps or its condition change.
+    fn disturb(&mut self, chance: &mut Chance) {
+        let Rows { start, end } = self.short.tables().outputs;
+        if chance.below(20) == 0 {
+            let step = StepId(chance.below(self.short.tables().steps.len() as u32));
+            self.set_step(step, chance.below(2) == 0);
+        } else if chance.below(10) == 0 {
+            let at = Addr(start + chance.below(end - start));
+            let value = u64::from(chance.below(2));
+            self.a.set_word(&self.short, at, value);
+            self.b.set_word(&self.long, at, value);
+        }
+    }
+
+    fn set_step(&mut self, step: StepId, on: bool) {
+        set_step(&self.short, &mut self.a, step, on);
+        set_step(&self.long, &mut self.b, step, on);
+    }
+
+    fn scan(&mut self, k: i64) -> [Result<Report, Fault>; 2] {
+        [
+            scan(&self.short, &mut self.a, &self.inputs, k * 7),
+            scan(&self.long, &mut self.b, &self.inputs, k * 7),
+        ]
+    }
+}
+
 #[test]
 fn a_lone_token_goes_the_same_way() {
     let mut chance = Chance(11);
@@ -271,31 +343,24 @@ fn a_lone_token_goes_the_same_way() {
             tables = mixed(&mut chance, tables);
         }
         let steps = tables.steps.len() as u32;
-        let long = Program::new(roundabout(&tables)).expect("tables are sound");
-        let short = Program::new(tables).expect("tables are sound");
-        let (mut a, mut b) = (State::new(&short), State::new(&long));
-        let mut inputs = vec![0; 3];
+        let long = roundabout(&tables);
+        let mut both = Both::new(tables, long);
         for k in 0..60 {
-            // Inputs that stand still for a while let the scans be quiet.
-            if chance.below(3) > 0 {
-                inputs = (0..3).map(|_| u64::from(chance.below(2))).collect();
-            }
+            both.move_inputs(&mut chance);
             if chance.below(30) == 0 {
-                let (step, on) = (StepId(chance.below(steps)), chance.below(2) == 0);
-                set_step(&short, &mut a, step, on);
-                set_step(&long, &mut b, step, on);
+                both.set_step(StepId(chance.below(steps)), chance.below(2) == 0);
             }
-            let (x, y) = (scan(&short, &mut a, &inputs, k * 7), scan(&long, &mut b, &inputs, k * 7));
+            let [x, y] = both.scan(k);
             assert_eq!(
                 x.as_ref().map(|r| r.cleared),
                 y.as_ref().map(|r| r.cleared),
                 "round {round}, scan {k}"
             );
-            assert_eq!(memory(&a), memory(&b), "round {round}, scan {k}");
+            assert_eq!(memory(&both.a), memory(&both.b), "round {round}, scan {k}");
             let Ok(x) = x else { break };
-            lone += u64::from(x.cleared == 1 && a.active().count() == 1);
+            lone += u64::from(x.cleared == 1 && both.a.active().count() == 1);
             if x.cleared == 1 {
-                assert_eq!(a.cleared(), b.cleared(), "round {round}, scan {k}");
+                assert_eq!(both.a.cleared(), both.b.cleared(), "round {round}, scan {k}");
             }
         }
     }
@@ -322,35 +387,20 @@ fn outputs_with_a_condition_have_the_same_values() {
         let tables = if chance.below(4) == 0 { walk(&mut chance, rules) } else { random(&mut chance, rules) };
         let tables = if chance.below(2) == 0 { mixed(&mut chance, tables) } else { tables };
         let mut tables = gated(&mut chance, tables);
-        let (outputs, steps) = (tables.outputs, tables.steps.len() as u32);
-        let long = Program::new(roundabout(&tables)).expect("tables are sound");
+        let long = roundabout(&tables);
         // Times that no code reads make no difference.
         tables.lean = chance.below(2) == 0;
-        let short = Program::new(tables).expect("tables are sound");
-        let (mut a, mut b) = (State::new(&short), State::new(&long));
-        let mut inputs = vec![0; 3];
+        let mut both = Both::new(tables, long);
         for k in 0..40 {
-            if chance.below(3) > 0 {
-                inputs = (0..3).map(|_| u64::from(chance.below(2))).collect();
-            }
-            if chance.below(20) == 0 {
-                let (step, on) = (StepId(chance.below(steps)), chance.below(2) == 0);
-                set_step(&short, &mut a, step, on);
-                set_step(&long, &mut b, step, on);
-            // A variable that was written from outside stays so until its step or condition changes.
-            } else if chance.below(10) == 0 {
-                let at = Addr(outputs.start + chance.below(outputs.end - outputs.start));
-                let value = u64::from(chance.below(2));
-                a.set_word(&short, at, value);
-                b.set_word(&long, at, value);
-            }
-            let before = shown(&long, &b).1;
-            let (x, y) = (scan(&short, &mut a, &inputs, k * 7), scan(&long, &mut b, &inputs, k * 7));
+            both.move_inputs(&mut chance);
+            both.disturb(&mut chance);
+            let before = shown(&both.long, &both.b).1;
+            let [x, y] = both.scan(k);
             assert_eq!(x.is_ok(), y.is_ok(), "round {round}, scan {k}: {x:?} {y:?}");
             if x.is_err() {
                 break;
             }
-            let (now, general) = (shown(&short, &a), shown(&long, &b));
+            let (now, general) = (shown(&both.short, &both.a), shown(&both.long, &both.b));
             assert_eq!(now, general, "round {round}, scan {k}");
             changes += u64::from(now.1 != before);
         }
@@ -360,7 +410,10 @@ fn outputs_with_a_condition_have_the_same_values() {
 
 #[test]
 fn control_blocks_follow_plain_steps() {
-    assert_eq!(USED.map(|input| INPUTS[usize::from(input)]), ["N", "S", "R", "P", "P1", "P0"]);
+    assert_eq!(
+        USED.map(|input| INPUTS[usize::from(input)]),
+        ["N", "S", "R", "P", "P1", "P0", "L", "D", "SD", "DS", "SL"]
+    );
     let mut chance = Chance(17);
     let (mut changes, mut lone) = (0u64, 0u64);
     for round in 0..1000 {
@@ -372,35 +425,29 @@ fn control_blocks_follow_plain_steps() {
         let rules =
             Rules { multi_token: chance.below(2) == 0, keep_step_time: chance.below(2) == 0, ..rules };
         let tables = if chance.below(4) == 0 { walk(&mut chance, rules) } else { random(&mut chance, rules) };
-        let tables = blocked(&mut chance, tables);
+        let inputs = if chance.below(2) == 0 { &USED[..6] } else { &USED };
+        let tables = blocked(&mut chance, tables, inputs);
+        // The long way notes for itself which contributions with a time count at present.
+        let timed = tables.contributions.iter().any(|c| !c.time.is_empty());
         let tables = if chance.below(3) == 0 { mixed(&mut chance, tables) } else { tables };
-        let (outputs, steps) = (tables.outputs, tables.steps.len() as u32);
-        let long = Program::new(roundabout(&tables)).expect("tables are sound");
-        let short = Program::new(tables).expect("tables are sound");
-        let (mut a, mut b) = (State::new(&short), State::new(&long));
-        let mut inputs = vec![0; 3];
+        let long = roundabout(&tables);
+        let mut both = Both::new(tables, long);
         for k in 0..40 {
-            if chance.below(3) > 0 {
-                inputs = (0..3).map(|_| u64::from(chance.below(2))).collect();
-            }
-            if chance.below(20) == 0 {
-                let (step, on) = (StepId(chance.below(steps)), chance.below(2) == 0);
-                set_step(&short, &mut a, step, on);
-                set_step(&long, &mut b, step, on);
-            } else if chance.below(10) == 0 {
-                let at = Addr(outputs.start + chance.below(outputs.end - outputs.start));
-                let value = u64::from(chance.below(2));
-                a.set_word(&short, at, value);
-                b.set_word(&long, at, value);
-            }
-            let before = shown(&long, &b).1;
-            let (x, y) = (scan(&short, &mut a, &inputs, k * 7), scan(&long, &mut b, &inputs, k * 7));
+            both.move_inputs(&mut chance);
+            both.disturb(&mut chance);
+            let before = shown(&both.long, &both.b).1;
+            let [x, y] = both.scan(k);
             assert_eq!(x.is_ok(), y.is_ok(), "round {round}, scan {k}: {x:?} {y:?}");
-            assert_eq!(memory(&a), memory(&b), "round {round}, scan {k}");
+            if timed {
+                assert_eq!(both.a.words(), both.b.words(), "round {round}, scan {k}");
+                assert!(both.a.active().eq(both.b.active()), "round {round}, scan {k}");
+            } else {
+                assert_eq!(memory(&both.a), memory(&both.b), "round {round}, scan {k}");
+            }
             let (Ok(x), Ok(y)) = (x, y) else { break };
             assert_eq!(x, y, "round {round}, scan {k}");
-            changes += u64::from(shown(&short, &a).1 != before);
-            lone += u64::from(x.cleared > 0 && a.active().count() == 1);
+            changes += u64::from(shown(&both.short, &both.a).1 != before);
+            lone += u64::from(x.cleared > 0 && both.a.active().count() == 1);
         }
     }
     assert!(changes > 8_000 && lone > 2_000, "{changes} scans changed an output, {lone} moves alone");

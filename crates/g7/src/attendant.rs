@@ -1,5 +1,5 @@
-//! The one who attends a machine that runs: commands come as lines on the standard input, events go to
-//! the standard error.
+//! The one who attends a machine that runs: wishes come as lines of the standard input and from the page,
+//! events go to the standard error and to the page.
 
 use std::io::BufRead as _;
 use std::sync::Arc;
@@ -8,52 +8,74 @@ use std::sync::mpsc::{Receiver, channel};
 use std::time::Duration;
 
 use g7_engine::Addr;
-use g7_host::{Clock, Start, Value, WallClock};
+use g7_host::{Clock, Value, WallClock};
 use g7_model::Nanos;
-use g7_online::{
-    AtDevice, Command, Controller, Happened, Mode, Paces, Reason, Running, Target, What, Wired, Wiring,
-};
-use g7_rig::{Bench, Item, Role};
+use g7_online::{Answer, AtDevice, Command, Controller, Happened, Mode, Paces, Running, What};
+use g7_rig::Role;
+use serde_json::Value as Json;
 use signal_hook::consts::{SIGINT, SIGTERM};
 
 use crate::failure::{Failure, Verdict, plain};
+use crate::manager::Manager;
 use crate::message::talk;
 use crate::monitor::Monitor;
-use crate::sources::Source;
-use crate::{style, values};
+use crate::operator::{Asker, HELP, Names, Stage, Told, Wish, mode_text};
+use crate::values;
 
 /// The pause between two looks at the events.
 const PAUSE: Duration = Duration::from_millis(20);
-pub(crate) const HELP: &str =
-    "commands: run, stop, ack (ends a fault), cold (initial situation), status, quit";
+/// Greatest number of orders of pages between two looks at the events.
+const ORDERS: usize = 32;
+/// A command that the scan has not answered after this time is given up.
+const PATIENCE: Nanos = Nanos::from_millis(3_000);
 
 /// The system has no resources for a thread or a connection.
 pub(crate) fn refused(error: std::io::Error) -> Failure {
     Failure::Usage(format!("the system refuses: {}", plain(&error)))
 }
 
+/// A command on its way through the scan.
+struct Asked {
+    number: u64,
+    until: Nanos,
+    by: Asker,
+}
+
 /// The one who looks at the events of a running machine and hands the commands on.
 pub(crate) struct Attendant<'a> {
-    source: &'a Source,
-    bench: &'a Bench,
-    wiring: &'a Wiring,
+    names: Names<'a>,
     clock: WallClock,
     mode: Mode,
     paces: Paces,
     monitor: Option<Monitor>,
+    stage: Option<Stage<'a>>,
+    asked: Vec<Asked>,
     /// Lines `NAME := VALUE` set an input or a state.
     sets: bool,
 }
 
 impl<'a> Attendant<'a> {
-    pub(crate) fn new(source: &'a Source, bench: &'a Bench, wiring: &'a Wiring) -> Attendant<'a> {
-        let (clock, paces) = (WallClock::default(), Paces::default());
-        Attendant { source, bench, wiring, clock, mode: Mode::Stop, paces, monitor: None, sets: false }
+    pub(crate) fn new(names: Names<'a>) -> Attendant<'a> {
+        Attendant {
+            names,
+            clock: WallClock::default(),
+            mode: Mode::Stop,
+            paces: Paces::default(),
+            monitor: None,
+            stage: None,
+            asked: Vec::new(),
+            sets: false,
+        }
     }
 
     /// Tells a monitor what happens.
     pub(crate) fn with(self, monitor: Option<Monitor>) -> Attendant<'a> {
         Attendant { monitor, ..self }
+    }
+
+    /// Tells pages what happens, and does what they want.
+    pub(crate) fn on(self, stage: Stage<'a>) -> Attendant<'a> {
+        Attendant { stage: Some(stage), ..self }
     }
 
     /// Takes lines that set a value as well.
@@ -68,18 +90,28 @@ impl<'a> Attendant<'a> {
             signal_hook::flag::register(signal, Arc::clone(&ended)).map_err(refused)?;
         }
         let lines = lines();
+        let mut manager = Manager::ready();
+        manager.status(&mode_text(self.names, self.mode));
         loop {
+            let before = self.mode;
             self.tell(&mut running);
+            if self.mode != before {
+                manager.status(&mode_text(self.names, self.mode));
+            }
+            manager.alive();
+            self.settle(&mut running);
             let over = length.is_some_and(|length| self.clock.now() >= length);
             if over || ended.load(Ordering::Acquire) || !running.is_alive() {
                 break;
             }
+            self.serve(&mut running);
             match lines.try_recv().as_deref() {
                 Ok("quit") => break,
                 Ok(line) => self.obey(line, &mut running),
                 Err(_) => std::thread::sleep(PAUSE),
             }
         }
+        manager.stopping();
         let panicked = !running.is_alive();
         let controller = running.end();
         if panicked || controller.is_none() {
@@ -91,26 +123,67 @@ impl<'a> Attendant<'a> {
         Ok(if matches!(self.mode, Mode::Fault(_)) { Verdict::Found } else { Verdict::Fine })
     }
 
+    /// Does what the pages want and shows them what there is.
+    fn serve(&mut self, running: &mut Running) {
+        let now = self.clock.now();
+        // However many orders come, the events are looked at.
+        for _ in 0..ORDERS {
+            let Some(order) = self.stage.as_mut().and_then(|stage| stage.take(now, &self.paces)) else {
+                break;
+            };
+            if let Some((wish, by)) = order {
+                self.want(&wish, by, running);
+            }
+        }
+        if let Some(stage) = &mut self.stage {
+            stage.tick(now, &self.paces);
+        }
+    }
+
+    /// Hands the command of a wish on.
+    fn want(&mut self, wish: &Wish, by: Asker, running: &mut Running) {
+        let given = self.names.command(wish).and_then(|command| {
+            let command = command.ok_or("this belongs to a page")?;
+            running.command(command).ok_or_else(|| "the scan takes no commands".to_owned())
+        });
+        match given {
+            Ok(number) => self.asked.push(Asked { number, until: self.clock.now() + PATIENCE, by }),
+            Err(why) => answer(by, Err(why)),
+        }
+    }
+
+    /// Gives the answers of the scan to those who asked.
+    fn settle(&mut self, running: &mut Running) {
+        while let Ok(Answer { number, done }) = running.answers.pop() {
+            if let Some(at) = self.asked.iter().position(|asked| asked.number == number) {
+                answer(self.asked.remove(at).by, done.map_err(|why| why.to_string()));
+            }
+        }
+        let now = self.clock.now();
+        for late in self.asked.extract_if(.., |asked| now >= asked.until) {
+            answer(late.by, Err("the scan does not answer".to_owned()));
+        }
+    }
+
     fn obey(&mut self, line: &str, running: &mut Running) {
-        let command = match line {
-            "run" => Command::Run,
-            "stop" => Command::Stop,
-            "ack" => Command::Acknowledge,
-            "cold" => Command::Restart(Start::Cold),
-            "" => return,
-            assigned if self.sets && assigned.contains('=') => match self.assigned(assigned) {
-                Ok(command) => command,
-                Err(why) => return talk!("{why}"),
-            },
-            "status" => {
-                talk!("{} {}", self.time(), self.mode_text(self.mode));
+        if line.is_empty() {
+            return;
+        }
+        let given = match Wish::of_line(line) {
+            Some(Ok(wish)) => return self.want(&wish, Asker::Line, running),
+            Some(Err(why)) => Err(why),
+            None if line == "status" => {
+                talk!("{} {}", self.time(), mode_text(self.names, self.mode));
                 return self.tell_pace();
             }
-            _ if self.sets => return talk!("{HELP}, NAME := VALUE"),
-            _ => return talk!("{HELP}"),
+            None if self.sets && line.contains('=') => self.assigned(line),
+            None if self.sets => Err(format!("{HELP}, NAME := VALUE")),
+            None => Err(HELP.to_owned()),
         };
-        if !running.command(command) {
-            talk!("the scan takes no commands");
+        match given {
+            Err(why) => talk!("{why}"),
+            Ok(command) if running.command(command).is_none() => talk!("the scan takes no commands"),
+            Ok(_) => {}
         }
     }
 
@@ -118,7 +191,8 @@ impl<'a> Attendant<'a> {
     fn assigned(&self, line: &str) -> Result<Command, String> {
         let (name, value) = line.split_once('=').unwrap_or((line, ""));
         let name = name.trim_end_matches(':').trim();
-        let item = self.bench.item(name).ok_or_else(|| self.bench.unknown(name))?;
+        let bench = self.names.bench;
+        let item = bench.item(name).ok_or_else(|| bench.unknown(name))?;
         let word = match values::read(value, item.kind)? {
             Value::Word(word) => word,
             Value::Text(_) => return Err(format!("`{name}` is a text: it cannot be set here")),
@@ -130,39 +204,56 @@ impl<'a> Attendant<'a> {
         })
     }
 
-    /// Prints what happened since the last call.
+    /// Tells what happened since the last call.
     fn tell(&mut self, running: &mut Running) {
         while let Ok(event) = running.events.pop() {
-            match event.what {
+            let told = match event.what {
                 What::Mode(mode) => {
                     self.mode = mode;
                     self.monitored(|m| m.mode(mode));
-                    talk!("{} {}", self.time(), self.mode_text(mode));
+                    Told::Mode(mode)
                 }
                 What::Missed(n) => {
                     self.monitored(|m| m.missed(n));
-                    talk!("{} {n} scans came too late and were left out", self.time());
+                    Told::Missed(n)
                 }
-            }
+                What::Forced(force) => Told::Forced(force),
+                What::Released(what) => Told::Released(what),
+                What::Ended(what) => Told::Ended(what),
+            };
+            self.note(event.at, &told);
         }
         while let Ok(pace) = running.paces.pop() {
             self.paces.add(pace);
             self.monitored(|m| m.pace(pace));
         }
         while let Ok(AtDevice { device, happened }) = running.devices.try_recv() {
-            if let (Happened::Up | Happened::Down(_), Some(wired)) =
-                (&happened, self.wiring.devices.get(device))
+            if let Happened::Up | Happened::Down(_) = happened
+                && let Some(wired) = self.names.wired(device)
             {
                 self.monitored(|m| m.device(&wired.device.name.value, happened == Happened::Up));
             }
-            talk!("{} {}", self.time(), self.device_text(device, &happened));
+            let now = self.clock.now();
+            self.note(now, &Told::Device(device, happened));
         }
         while let Ok(why) = running.no_priority.try_recv() {
-            talk!("{}note:{:#} {why}", style::WARN, style::WARN);
+            let now = self.clock.now();
+            self.note(now, &Told::NoPriority(why));
         }
         while let Ok(e) = running.disk.try_recv() {
             self.monitored(Monitor::unsaved);
-            talk!("{} {}values cannot be saved:{:#} {}", self.time(), style::BAD, style::BAD, plain(&e));
+            let now = self.clock.now();
+            self.note(now, &Told::Unsaved(plain(&e)));
+        }
+    }
+
+    /// Tells the terminal and the pages of an event.
+    fn note(&mut self, at: Nanos, told: &Told) {
+        if let Some(text) = told.text(self.names) {
+            talk!("{} {text}", self.time());
+        }
+        if let Some(stage) = &mut self.stage {
+            stage.note(at, told);
         }
     }
 
@@ -176,51 +267,6 @@ impl<'a> Attendant<'a> {
         format!("{:>10.3}s", self.clock.now().count() as f64 / 1e9)
     }
 
-    fn mode_text(&self, mode: Mode) -> String {
-        let (good, bad) = (style::GOOD, style::BAD);
-        match mode {
-            Mode::Stop => "stopped".to_owned(),
-            Mode::Run => format!("{good}running{good:#}"),
-            Mode::Fault(reason) => {
-                let bench = self.bench;
-                let why = match reason {
-                    Reason::Watchdog => "a scan took longer than the watchdog allows".to_owned(),
-                    Reason::Input(target) => format!("the input `{}` is bad", input(bench, target)),
-                    Reason::Halt(halt) => {
-                        let place = bench.halt_place(halt).map(|at| format!("{}: ", self.source.place(at)));
-                        format!("{}{}", place.unwrap_or_default(), kind(halt))
-                    }
-                };
-                format!("{bad}fault:{bad:#} {why}; outputs are safe (`ack` ends it)")
-            }
-        }
-    }
-
-    fn device_text(&self, device: usize, happened: &Happened) -> String {
-        let Some(Wired { device, inputs, outputs, .. }) = self.wiring.devices.get(device) else {
-            return String::new();
-        };
-        let name = &device.name.value;
-        let input = |k: &usize| inputs.get(*k).map_or("", |i| &i.name);
-        let output = |k: &usize| outputs.get(*k).map_or("", |o| &o.name);
-        let (good, bad, warn) = (style::GOOD, style::BAD, style::WARN);
-        match happened {
-            Happened::Up if device.kind.is_server() => format!("{name} {good}has a master{good:#}"),
-            Happened::Up => format!("{name} {good}answers{good:#}"),
-            Happened::Down(why) if device.kind.is_server() => {
-                format!("{name} {warn}has no master:{warn:#} {why}")
-            }
-            Happened::Down(why) => format!("{name} {bad}does not answer:{bad:#} {why}"),
-            Happened::NoInput(k, why) => format!("{name}: {warn}no value{warn:#} for `{}`: {why}", input(k)),
-            Happened::Input(k) => format!("{name}: `{}` has a value again", input(k)),
-            Happened::NoOutput(k, why) => format!("{name} {warn}refuses{warn:#} `{}`: {why}", output(k)),
-            Happened::Output(k) => format!("{name} takes `{}` again", output(k)),
-            Happened::Limited(k) => {
-                format!("{name}: {warn}`{}` is limited{warn:#} to what its point holds", output(k))
-            }
-        }
-    }
-
     fn tell_pace(&self) {
         if self.paces.scans() > 0 {
             talk!("scans were late: {}", self.paces.late());
@@ -229,28 +275,20 @@ impl<'a> Attendant<'a> {
     }
 
     fn status(&self, controller: &Controller) {
-        let (state, bench) = (controller.runner().state(), self.bench);
-        let situation = bench.situation(state).join(", ");
+        let state = controller.runner().state();
+        let situation = self.names.bench.situation(state).join(", ");
         let (scans, missed) = (state.scans(), controller.runner().missed());
         talk!("{scans} scans, {missed} left out; the situation is {{{situation}}}");
         self.tell_pace();
     }
 }
 
-/// The name of what a device gives.
-fn input(bench: &Bench, target: Target) -> &str {
-    let is = |item: &&Item| match target {
-        Target::Input(index) => item.role == Role::Input(index),
-        Target::Word(addr) => item.role != Role::Plant && item.addr == addr.0,
-    };
-    let found = bench.items.iter().find(is);
-    found.map_or("", |i| &i.name)
-}
-
-fn kind(halt: g7_host::Halt) -> String {
-    match halt {
-        g7_host::Halt::Charts(fault) => fault.kind.to_string(),
-        g7_host::Halt::Plant(fault) => format!("the plant: {}", fault.kind),
+/// Answers who asked; the terminal hears of refusals alone.
+fn answer(by: Asker, done: Result<(), String>) {
+    match (&by, &done) {
+        (Asker::Line, Err(why)) => talk!("{why}"),
+        (Asker::Line, Ok(())) => {}
+        (Asker::Page(..), _) => by.answer(done.map(|()| Json::Null)),
     }
 }
 

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use g7_model::{Nanos, ProfileName, TargetPlc};
 
+use crate::station::Drive;
 use crate::values::{self, Assign};
 
 const EXIT_CODES: &str = "\
@@ -78,8 +79,11 @@ pub(crate) enum Command {
     Test(Test),
     /// Draw charts as SVG, PNG or PDF.
     Draw(crate::draw::Draw),
-    /// Open the editor in the browser.
+    /// Open the editor in the browser, or drive a machine with the page of its operator.
     Serve(crate::serve::Serve),
+    /// Let the system start the controller of a chart (systemd).
+    #[cfg(target_os = "linux")]
+    Service(crate::service::Service),
     /// Convert a file of another tool to a .g7 file.
     Import(Import),
     /// Convert a chart to the format of another tool.
@@ -171,16 +175,16 @@ pub(crate) struct Run {
     #[arg(default_value = ".")]
     pub(crate) path: PathBuf,
     /// Do not open the terminal view; print a chronogram at the end.
-    #[arg(long)]
+    #[arg(conflicts_with = "online", long)]
     pub(crate) headless: bool,
     /// How long to run [default: 10s; no limit in the terminal view].
     #[arg(long = "for", value_parser = values::duration, value_name = "TIME")]
     pub(crate) duration: Option<Nanos>,
     /// Write the values of all signals to this file; its name ends in .csv or .vcd.
-    #[arg(long, value_name = "FILE")]
+    #[arg(conflicts_with = "online", long, value_name = "FILE")]
     pub(crate) trace: Option<PathBuf>,
     /// Set an input, a variable, a system bit (`%S21`) or a state of the plant at a time: `start=1@2s`.
-    #[arg(long = "set", value_parser = values::assign, value_name = "NAME=VALUE@TIME")]
+    #[arg(conflicts_with = "online", long = "set", value_parser = values::assign, value_name = "NAME=VALUE@TIME")]
     pub(crate) set: Vec<Assign>,
     /// The profile to use instead of the file's own.
     #[arg(long, value_parser = values::profile)]
@@ -195,28 +199,21 @@ pub(crate) struct Run {
     #[arg(long, default_value_t = 0, value_name = "NUMBER")]
     pub(crate) seed: u64,
     /// With --headless: run in real time.
-    #[arg(long)]
+    #[arg(conflicts_with = "online", long)]
     pub(crate) real_time: bool,
     /// With --headless: the signals of the chronogram [default: all that change].
-    #[arg(long, value_delimiter = ',', value_name = "NAMES")]
+    #[arg(conflicts_with = "online", long, value_delimiter = ',', value_name = "NAMES")]
     pub(crate) show: Vec<String>,
     /// Keep the retained variables in this file between runs.
-    #[arg(long, value_name = "FILE")]
+    #[arg(conflicts_with = "online", long, value_name = "FILE")]
     pub(crate) retain: Option<PathBuf>,
     /// With --headless: record everything that enters the charts, for --replay.
-    #[arg(long, value_name = "FILE")]
+    #[arg(conflicts_with = "online", long, value_name = "FILE")]
     pub(crate) record: Option<PathBuf>,
-    /// Drive real devices, those of the io file beside the chart.
-    #[arg(long, conflicts_with_all = ["headless", "trace", "set", "show", "retain", "record", "replay", "real_time"])]
-    pub(crate) online: bool,
-    /// With --online: the io file [default: chart.io.toml for chart.g7].
-    #[arg(long, value_name = "FILE", requires = "online")]
-    pub(crate) io: Option<PathBuf>,
-    /// With --online: take the plant in place of these devices, or of all.
-    #[arg(long, value_name = "DEVICES", requires = "online", num_args = 0.., value_delimiter = ',')]
-    pub(crate) simulate: Option<Vec<String>>,
+    #[command(flatten)]
+    pub(crate) drive: Drive,
     /// Replay a record and check that every state is the same.
-    #[arg(long, value_name = "FILE", conflicts_with_all = ["record", "set", "duration", "retain"])]
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["record", "set", "duration", "retain", "online"])]
     pub(crate) replay: Option<PathBuf>,
 }
 

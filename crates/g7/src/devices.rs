@@ -7,9 +7,10 @@ use clap::Args;
 use g7_host::Value;
 use g7_model::{Nanos, Span};
 use g7_online::setup::{
-    At, Device, Encoding, Kind, Listen, Modbus, Parity, Point, Register, Serial, Tcp, Timing, read_point,
+    At, Broker, Device, Encoding, Kind, Listen, Modbus, Parity, Place, Point, Register, Serial, Tcp, Timing,
+    read_point,
 };
-use g7_online::{Absent, Asked, Clients, Raw, Scaling, Wired, probe};
+use g7_online::{Absent, Asked, Clients, Failed, Probed, Raw, Scaling, Wire, Wired, hear, probe};
 
 use crate::failure::{Failure, Verdict};
 use crate::wiring::{self, Wanted};
@@ -83,14 +84,14 @@ fn word<T: Copy>(text: &str, words: &[(&str, T)]) -> Result<T, String> {
 fn point(text: &str) -> Result<Register, String> {
     match read_point(text)? {
         Point::Modbus(register) => Ok(register),
-        Point::Good => Err("this is no point of the device".to_owned()),
+        Point::Good | Point::Topic(_) | Point::Metric(_) => Err("this is no point of Modbus".to_owned()),
     }
 }
 
 /// A value to read and how it is shown.
 struct Shown {
     name: String,
-    asked: Asked,
+    wire: Wire,
     scaling: Option<Scaling>,
 }
 
@@ -108,9 +109,12 @@ pub(crate) fn devices(args: &Devices) -> Result<Verdict, Failure> {
     let Some(plan) = wiring::plan(&path, &source, &wanted)? else { return Ok(Verdict::Found) };
     let (mut clients, mut verdict) = (Clients::default(), Verdict::Fine);
     for wired in &plan.wiring.devices {
-        if let Kind::ModbusServer(listen) = &wired.device.kind {
-            served(wired, listen)?;
-        } else if ask(&mut clients, &wired.device, &channels(wired))? == Verdict::Found {
+        let found = match &wired.device.kind {
+            Kind::ModbusServer(listen) => served(wired, listen)?,
+            Kind::Mqtt(broker) => heard(broker, wired)?,
+            Kind::ModbusTcp(..) | Kind::ModbusRtu(..) => ask(&mut clients, &wired.device, &channels(wired))?,
+        };
+        if found == Verdict::Found {
             verdict = Verdict::Found;
         }
     }
@@ -146,21 +150,24 @@ fn many(args: &Devices, from: Register) -> Vec<Shown> {
     let step = if bit { 1 } else { args.encoding.registers() };
     let asked = |k: u16| {
         let address = from.address.checked_add(k.checked_mul(step)?)?;
-        Some((Register { address, ..from }, (!bit).then_some(args.encoding)))
+        Some(Wire::Modbus(Place {
+            register: Register { address, ..from },
+            encoding: (!bit).then_some(args.encoding),
+        }))
     };
-    let shown = |asked: Asked| Shown { name: asked.0.to_string(), asked, scaling: None };
+    let shown = |wire: Wire| Shown { name: wire.to_string(), wire, scaling: None };
     (0..args.count).map_while(asked).map(shown).collect()
 }
 
 /// The channels of a device; the present values of its outputs are read as well.
 fn channels(wired: &Wired) -> Vec<Shown> {
-    let inputs = wired.inputs.iter().map(|i| (&i.name, i.register, i.encoding, i.scaling));
-    let outputs = wired.outputs.iter().map(|o| (&o.name, o.register, o.encoding, o.out.scaling));
+    let inputs = wired.inputs.iter().map(|i| (&i.name, &i.wire, i.scaling));
+    let outputs = wired.outputs.iter().map(|o| (&o.name, &o.wire, o.out.scaling));
     let all = wired.inputs.iter().map(|i| &i.name).chain(wired.outputs.iter().map(|o| &o.name));
     let width = all.map(|name| name.chars().count()).max().unwrap_or(0);
-    let shown = |(name, register, encoding, scaling): (&String, Register, Option<Encoding>, Scaling)| Shown {
-        name: format!("{name:<width$}  {register}"),
-        asked: (register, encoding),
+    let shown = |(name, wire, scaling): (&String, &Wire, Scaling)| Shown {
+        name: format!("{name:<width$}  {wire}"),
+        wire: wire.clone(),
         scaling: Some(scaling),
     };
     inputs.chain(outputs).map(shown).collect()
@@ -168,11 +175,20 @@ fn channels(wired: &Wired) -> Vec<Shown> {
 
 /// Asks a device and prints what it has.
 fn ask(clients: &mut Clients, device: &Device, shown: &[Shown]) -> Result<Verdict, Failure> {
+    let asked: Vec<Asked> = shown.iter().filter_map(|s| s.wire.place()).collect();
+    print(device, shown, probe(clients, device, &asked))
+}
+
+/// Listens to a broker and prints the last values that it has.
+fn heard(broker: &Broker, wired: &Wired) -> Result<Verdict, Failure> {
+    print(&wired.device, &channels(wired), hear(broker, wired))
+}
+
+/// Prints the answer of a device.
+fn print(device: &Device, shown: &[Shown], probed: Result<Probed, Failed>) -> Result<Verdict, Failure> {
     let (strong, good, bad, warn) = (style::STRONG, style::GOOD, style::BAD, style::WARN);
-    let asked: Vec<Asked> = shown.iter().map(|s| s.asked).collect();
-    let probed = probe(clients, device, &asked);
     let mut out = anstream::stdout().lock();
-    let name = [device.name.value.clone(), place(&device.kind)].join(" ");
+    let name = [device.name.value.clone(), device.kind.place()].join(" ");
     let name = name.trim();
     let probed = match probed {
         Ok(probed) => probed,
@@ -189,6 +205,10 @@ fn ask(clients: &mut Clients, device: &Device, shown: &[Shown]) -> Result<Verdic
     for (shown, value) in shown.iter().zip(&probed.values) {
         let text = match value {
             Ok(raw) => text(*raw, shown.scaling.as_ref()),
+            // A broker that keeps no message is no fault.
+            Err(Absent::Unread) if matches!(shown.wire, Wire::Topic(_)) => "no message".to_owned(),
+            // An edge node is the one who knows the values.
+            Err(Absent::Unread) if matches!(shown.wire, Wire::Metric(_)) => "of this node".to_owned(),
             Err(why) => {
                 verdict = Verdict::Found;
                 let why = match why {
@@ -204,17 +224,8 @@ fn ask(clients: &mut Clients, device: &Device, shown: &[Shown]) -> Result<Verdic
     Ok(verdict)
 }
 
-/// How a device is reached.
-fn place(kind: &Kind) -> String {
-    match kind {
-        Kind::ModbusTcp(Tcp { host, port }, modbus) => format!("{host}:{port} unit {}", modbus.unit),
-        Kind::ModbusRtu(serial, modbus) => format!("{} unit {}", serial.port, modbus.unit),
-        Kind::ModbusServer(listen) => listen.address.to_string(),
-    }
-}
-
 /// Prints what masters find on a server of our own while the controller runs.
-fn served(wired: &Wired, listen: &Listen) -> Result<(), Failure> {
+fn served(wired: &Wired, listen: &Listen) -> Result<Verdict, Failure> {
     let strong = style::STRONG;
     let mut out = anstream::stdout().lock();
     let name = &wired.device.name.value;
@@ -226,7 +237,7 @@ fn served(wired: &Wired, listen: &Listen) -> Result<(), Failure> {
         writeln!(out, "  {:<width$}  {use_}", channel.name)?;
     }
     out.flush()?;
-    Ok(())
+    Ok(Verdict::Fine)
 }
 
 /// A value of a device, as the chart has it and as it is on the wire.

@@ -26,16 +26,21 @@ mod files;
 mod fmt;
 mod generate;
 mod import;
+mod manager;
 mod message;
 mod monitor;
 mod new;
+mod operator;
 mod plant;
 mod progress;
 mod report;
 mod run;
 mod serve;
+#[cfg(target_os = "linux")]
+mod service;
 mod shell;
 mod sources;
+mod station;
 mod style;
 mod testing;
 mod values;
@@ -79,6 +84,8 @@ fn run(command: &Command) -> Result<Verdict, Failure> {
         Command::Test(args) => testing::test(args),
         Command::Draw(args) => draw::draw(args),
         Command::Serve(args) => serve::serve(args),
+        #[cfg(target_os = "linux")]
+        Command::Service(args) => service::service(args),
         Command::Import(args) => import::import(args),
         Command::Export(args) => export::export(args),
         Command::Gen(args) => generate::generate(args),

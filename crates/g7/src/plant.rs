@@ -11,6 +11,7 @@ use g7_rig::Options;
 use crate::attendant::{Attendant, refused};
 use crate::failure::{Failure, Verdict};
 use crate::message::talk;
+use crate::operator::Names;
 use crate::wiring::{self, Wanted};
 use crate::{files, sources, values};
 
@@ -60,7 +61,7 @@ pub(crate) fn plant(args: &Plant) -> Result<Verdict, Failure> {
     let Some(wired) = wiring::plan(&path, &source, &wanted)?.map(|plan| plan.wiring) else {
         return Ok(Verdict::Found);
     };
-    // The controller has the charts.
+    // The charts run in the controller, not here.
     source.document.items.retain(|item| {
         !matches!(item, Item::Chart(_) | Item::Pre(..) | Item::Post(..) | Item::Section(_) | Item::Action(_))
     });
@@ -73,6 +74,11 @@ pub(crate) fn plant(args: &Plant) -> Result<Verdict, Failure> {
     if wiring.devices.is_empty() {
         return Err(Failure::Usage("the io file has no device of Modbus TCP".to_owned()));
     }
+    for wired in &wired.devices {
+        if let g7_online::setup::Kind::Mqtt(_) = &wired.device.kind {
+            talk!("{} is a broker, which the plant does not stand for", wired.device.name.value);
+        }
+    }
     for device in &wiring.devices {
         if let g7_online::setup::Kind::ModbusServer(listen) = &device.device.kind {
             talk!("{} listens at {}", device.device.name.value, listen.address);
@@ -84,5 +90,6 @@ pub(crate) fn plant(args: &Plant) -> Result<Verdict, Failure> {
     let mut running =
         g7_online::start::<g7_online::RealDisk>(machine.map_err(refused)?, None, threads).map_err(refused)?;
     running.command(Command::Run);
-    Attendant::new(&source, &bench, &wiring).that_sets().attend(running, args.duration)
+    let names = Names { source: &source, bench: &bench, wiring: &wiring };
+    Attendant::new(names).that_sets().attend(running, args.duration)
 }

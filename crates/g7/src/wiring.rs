@@ -4,10 +4,10 @@ use std::path::{Path, PathBuf};
 
 use g7_model::{FileId, Nanos, Problem, ProfileName, Severity};
 use g7_online::Wiring;
-use g7_online::setup::{self, Setup};
+use g7_online::setup::{self, Channel, Origin, Setup};
 use g7_rig::{Bench, Options};
 
-use crate::failure::Failure;
+use crate::failure::{Failure, plain};
 use crate::files;
 use crate::message::talk;
 use crate::report::{self, Tally};
@@ -47,22 +47,38 @@ pub(crate) fn plan(path: &Path, source: &Source, wanted: &Wanted<'_>) -> Result<
     if file.text.as_bytes() != file.bytes {
         return Err(Failure::Usage(format!("{} is not UTF-8 text", io.display())));
     }
-    simulate(&mut setup, wanted.simulate)?;
+    let simulated = simulate(&mut setup, wanted.simulate)?;
     // Without a plant in place of a device there is none.
     let plant = wanted.plant.or(if wanted.simulate.is_none() { Some("none") } else { None });
     let scan = wanted.scan.or(setup.controller.period.as_ref().map(|p| p.value));
     let options = Options { profile: wanted.profile, scan, plant, asks: &[] };
     let Some(bench) = build(source, &options)? else { return Ok(None) };
-    let (wiring, wrong) = g7_online::wire(&bench, &setup);
+    problems.extend(setup::read_passwords(&mut setup, |origin| password(&io, origin)));
+    let (mut wiring, wrong) = g7_online::wire(&bench, &setup);
+    wiring.unwired.retain(|name| !simulated.iter().any(|s| bench.item(s).is_some_and(|i| i.name == *name)));
     problems.extend(wrong);
     show(&file, &problems);
     let errors = problems.iter().any(|p: &Problem| p.severity() == Severity::Error);
     Ok((!errors).then_some(Plan { bench, setup, wiring, io }))
 }
 
-/// Takes the devices out that the plant stands for.
-fn simulate(setup: &mut Setup, names: Option<&[String]>) -> Result<(), Failure> {
-    let Some(names) = names else { return Ok(()) };
+/// The bytes of a password, which is never in the io file.
+fn password(io: &Path, origin: &Origin) -> Result<Vec<u8>, String> {
+    match origin {
+        Origin::File(name) => {
+            let path = io.with_file_name(name);
+            std::fs::read(&path).map_err(|e| format!("{}: {}", path.display(), plain(&e)))
+        }
+        Origin::Variable(name) => std::env::var_os(name)
+            .map(std::ffi::OsString::into_encoded_bytes)
+            .ok_or_else(|| format!("the environment has no variable {name}")),
+    }
+}
+
+/// Takes the devices out that the plant stands for. Returns the inputs and outputs that were wired to
+/// them, as the file names them.
+fn simulate(setup: &mut Setup, names: Option<&[String]>) -> Result<Vec<String>, Failure> {
+    let Some(names) = names else { return Ok(Vec::new()) };
     let there = |name: &String| setup.devices.iter().any(|d| d.name.value == *name);
     if let Some(name) = names.iter().find(|name| !there(name)) {
         let all: Vec<&str> = setup.devices.iter().map(|d| d.name.value.as_str()).collect();
@@ -72,10 +88,12 @@ fn simulate(setup: &mut Setup, names: Option<&[String]>) -> Result<(), Failure> 
         )));
     }
     let simulated = |name: &String| names.is_empty() || names.contains(name);
-    setup.inputs.retain(|c| !simulated(&c.device.value));
-    setup.outputs.retain(|c| !simulated(&c.device.value));
+    let gone = |channels: &mut Vec<Channel>| -> Vec<String> {
+        channels.extract_if(.., |c| simulated(&c.device.value)).map(|c| c.variable.value).collect()
+    };
+    let taken = [gone(&mut setup.inputs), gone(&mut setup.outputs)];
     setup.shown.retain(|c| !simulated(&c.device.value));
-    Ok(())
+    Ok(taken.concat())
 }
 
 /// Compiles a source, or prints its problems.

@@ -140,30 +140,32 @@ fn explain_knows_every_code_and_says_where_it_comes_from() {
     folder.g7(&["explain", "G9999"]).is_refused(&["G9999", "g7 explain"]);
 }
 
+const COMMANDS: [&str; 14] = [
+    "new",
+    "check",
+    "fmt",
+    "run",
+    "devices",
+    "plant",
+    "service",
+    "test",
+    "draw",
+    "import",
+    "export",
+    "explain",
+    "completions",
+    "man",
+];
+
 #[test]
 fn completions_and_manual_pages_name_every_command() {
     let folder = Folder::new();
-    let commands = [
-        "new",
-        "check",
-        "fmt",
-        "run",
-        "devices",
-        "plant",
-        "test",
-        "draw",
-        "import",
-        "export",
-        "explain",
-        "completions",
-        "man",
-    ];
     for shell in ["bash", "zsh", "fish", "elvish", "powershell"] {
         let text = folder.g7(&["completions", shell]).is(0).out.clone();
-        assert!(commands.iter().all(|c| text.contains(c)), "{shell}");
+        assert!(COMMANDS.iter().all(|c| text.contains(c)), "{shell}");
     }
     folder.g7(&["man", "--out", "pages"]).is(0);
-    for command in commands {
+    for command in COMMANDS {
         assert!(folder.read(&format!("pages/g7-{command}.1")).contains(".TH"), "{command}");
     }
     assert!(folder.g7(&["man"]).is(0).out.contains("g7"));
@@ -172,20 +174,7 @@ fn completions_and_manual_pages_name_every_command() {
 #[test]
 fn help_teaches_by_example() {
     let folder = Folder::new();
-    for command in [
-        "new",
-        "check",
-        "fmt",
-        "run",
-        "devices",
-        "plant",
-        "test",
-        "draw",
-        "import",
-        "explain",
-        "completions",
-        "man",
-    ] {
+    for command in COMMANDS {
         let help = folder.g7(&[command, "--help"]).is(0).out.clone();
         assert!(help.contains("Examples:") && help.contains(&format!("  g7 {command}")), "{command}: {help}");
     }

@@ -332,6 +332,14 @@ fn mistakes_have_a_place_and_nothing_runs() {
         "{}",
         least.err
     );
+    // The plant stands for the devices of what is wired, and for nothing else.
+    folder.write(
+        "some.toml",
+        "[devices.a]\nkind = 'modbus-tcp'\nhost = '127.0.0.1'\n[inputs]\ngo = 'a.coil(0)'\n",
+    );
+    let some = ["run", "--online", "--io", "some.toml", "--simulate", "--for", "100ms"];
+    let some = folder.g7(&some);
+    assert!(some.is(0).err.contains("no device has level, "), "{}", some.err);
     folder.write("stop.toml", "[controller]\nstart = 'stop'\n");
     let stop = folder.g7(&["run", "--online", "--io", "stop.toml", "--for", "100ms"]);
     assert!(stop.is(0).err.contains("0 scans"), "{}", stop.err);

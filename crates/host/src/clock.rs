@@ -50,6 +50,14 @@ fn wall() -> Instant {
     Instant::now()
 }
 
+/// The time of day in milliseconds since 1970, UTC: for the time stamps of messages to others, never
+/// for a chart.
+#[allow(clippy::disallowed_methods, reason = "the one place where time enters")]
+pub fn utc_millis() -> u64 {
+    let since = std::time::SystemTime::now().duration_since(std::time::UNIX_EPOCH).unwrap_or_default();
+    u64::try_from(since.as_millis()).unwrap_or(u64::MAX)
+}
+
 impl WallClock {
     fn elapsed(&self) -> Nanos {
         if self.held {

@@ -34,7 +34,7 @@ mod runner;
 mod tape;
 mod text;
 
-pub use clock::{Clock, VirtualClock, WallClock};
+pub use clock::{Clock, VirtualClock, WallClock, utc_millis};
 pub use hash::Fnv;
 pub use record::chronogram::{Chronogram, Lane, Style};
 pub use record::csv::write_csv;

@@ -1,6 +1,5 @@
 //! The loop of a run: plant, inputs, scan, outputs, one instant after the other.
 
-use std::collections::BTreeMap;
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -49,6 +48,21 @@ pub enum Halt {
     Plant(Fault),
 }
 
+/// A force in effect.
+#[derive(Clone, Copy, Debug)]
+struct Held {
+    what: Force,
+    value: u64,
+    /// The charts' own value of a forced output.
+    own: u64,
+}
+
+impl Held {
+    fn output(&self) -> Option<Addr> {
+        if let Force::Output(addr) = self.what { Some(addr) } else { None }
+    }
+}
+
 #[derive(Clone)]
 struct Plant {
     program: Arc<Program>,
@@ -68,9 +82,8 @@ pub struct Runner {
     /// The inputs that the latest scan read.
     read: Vec<u64>,
     plant: Option<Plant>,
-    forces: BTreeMap<Force, u64>,
-    /// The charts' own values of the forced outputs.
-    own: BTreeMap<Addr, u64>,
+    /// Ascending by what is forced.
+    forces: Vec<Held>,
     period: Nanos,
     due: Nanos,
     missed: u64,
@@ -96,8 +109,7 @@ impl Runner {
             inputs: Vec::new(),
             read: Vec::new(),
             plant: None,
-            forces: BTreeMap::new(),
-            own: BTreeMap::new(),
+            forces: Vec::new(),
             period: period.max(Nanos::new(1)),
             due: Nanos::ZERO,
             missed: 0,
@@ -234,8 +246,8 @@ impl Runner {
 
     /// The input word that the next scan will read, unless the plant changes it before.
     pub fn input(&self, index: u32) -> u64 {
-        let held = self.forces.get(&Force::Input(index));
-        held.or(self.inputs.get(index as usize)).copied().unwrap_or(0)
+        let held = self.place(Force::Input(index)).ok().and_then(|at| self.forces.get(at));
+        held.map(|h| h.value).or(self.inputs.get(index as usize).copied()).unwrap_or(0)
     }
 
     /// True if the plant drives this input.
@@ -258,12 +270,27 @@ impl Runner {
         }
     }
 
+    /// Makes room for so many forces: within it, forcing allocates nothing.
+    pub fn reserve_forces(&mut self, count: usize) {
+        self.forces.reserve(count);
+    }
+
+    /// The place of a force, or that where it would be.
+    fn place(&self, what: Force) -> Result<usize, usize> {
+        self.forces.binary_search_by_key(&what, |held| held.what)
+    }
+
     /// Forces a variable to a value, from now on until it is released.
     pub fn force(&mut self, what: Force, value: u64) {
-        if let Force::Output(addr) = what {
-            self.own.entry(addr).or_insert_with(|| self.state.word(addr));
+        let own = if let Force::Output(addr) = what { self.state.word(addr) } else { 0 };
+        match self.place(what) {
+            Ok(at) => {
+                if let Some(held) = self.forces.get_mut(at) {
+                    held.value = value;
+                }
+            }
+            Err(at) => self.forces.insert(at, Held { what, value, own }),
         }
-        self.forces.insert(what, value);
         if let Force::Output(addr) | Force::Variable(addr) = what {
             self.set_word(addr, value);
         }
@@ -271,17 +298,33 @@ impl Runner {
 
     /// Ends a force; true if there was one. An output gets the charts' own value again.
     pub fn release(&mut self, what: Force) -> bool {
-        if let Force::Output(addr) = what
-            && let Some(value) = self.own.remove(&addr)
-        {
-            self.set_word(addr, value);
+        let Ok(at) = self.place(what) else { return false };
+        let held = self.forces.remove(at);
+        if let Force::Output(addr) = what {
+            self.set_word(addr, held.own);
         }
-        self.forces.remove(&what).is_some()
+        true
     }
 
     /// True if the variable is forced.
     pub fn is_forced(&self, what: Force) -> bool {
-        self.forces.contains_key(&what)
+        self.place(what).is_ok()
+    }
+
+    /// The forced variables with their values.
+    pub fn forces(&self) -> impl Iterator<Item = (Force, u64)> + '_ {
+        self.forces.iter().map(|held| (held.what, held.value))
+    }
+
+    /// Calls with the state in which forced outputs have the charts' own values.
+    pub fn without_forced_outputs<T>(&mut self, look: impl FnOnce(&Runner) -> T) -> T {
+        let forces = std::mem::take(&mut self.forces);
+        let outputs = || forces.iter().filter_map(|h| Some((h.output()?, h)));
+        outputs().for_each(|(addr, held)| self.state.set_word(&self.program, addr, held.own));
+        let seen = look(self);
+        outputs().for_each(|(addr, held)| self.state.set_word(&self.program, addr, held.value));
+        self.forces = forces;
+        seen
     }
 
     /// Skips the scans that were due before `now`, except the latest of them.
@@ -393,17 +436,14 @@ impl Runner {
         self.read.clone_from(&self.inputs);
         // Put back below: what is set meanwhile is the state, and no force.
         let forces = std::mem::take(&mut self.forces);
-        for (what, value) in &forces {
+        for Held { what, value, own } in &forces {
             match what {
                 Force::Input(index) => {
                     if let Some(word) = self.read.get_mut(*index as usize) {
                         *word = *value;
                     }
                 }
-                Force::Output(addr) => {
-                    let own = self.own.get(addr).copied().unwrap_or(*value);
-                    self.set_word(*addr, own);
-                }
+                Force::Output(addr) => self.set_word(*addr, *own),
                 Force::Variable(addr) => self.set_word(*addr, *value),
             }
         }
@@ -416,13 +456,13 @@ impl Runner {
             tape.scan(now, &self.read, &self.state);
         }
         if done.is_ok() {
-            let forces = std::mem::take(&mut self.forces);
-            for (what, value) in &forces {
-                if let Force::Output(addr) = what {
-                    self.own.insert(*addr, self.state.word(*addr));
+            let mut forces = std::mem::take(&mut self.forces);
+            for held in &mut forces {
+                if let Force::Output(addr) = held.what {
+                    held.own = self.state.word(addr);
                 }
-                if let Force::Output(addr) | Force::Variable(addr) = what {
-                    self.set_word(*addr, *value);
+                if let Force::Output(addr) | Force::Variable(addr) = held.what {
+                    self.set_word(addr, held.value);
                 }
             }
             self.forces = forces;
@@ -438,18 +478,19 @@ impl Runner {
         };
         self.state = State::new(&self.program);
         (self.halt, self.ready, self.slow) = (None, false, None);
-        self.own.clear();
         if let Some(tape) = &mut self.tape {
             tape.restart();
         }
         self.retain(&kept);
         self.set_flags(start);
-        for (what, value) in self.forces.clone() {
-            if let Force::Output(addr) = what {
-                self.own.insert(addr, self.state.word(addr));
-                self.set_word(addr, value);
+        let mut forces = std::mem::take(&mut self.forces);
+        for held in &mut forces {
+            if let Force::Output(addr) = held.what {
+                held.own = self.state.word(addr);
+                self.set_word(addr, held.value);
             }
         }
+        self.forces = forces;
     }
 
     /// Continues from the state of another run; the next scan is at `due`.

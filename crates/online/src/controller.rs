@@ -7,12 +7,14 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicI64, Ordering};
 
 use g7_engine::Addr;
-use g7_host::{Halt, Runner, Start};
+use g7_host::{Force, Halt, Runner, Start};
 use g7_model::Nanos;
 
-use crate::driver::{Quality, from_device};
+use crate::driver::{Quality, Said, from_device};
 use crate::exchange::{Reader, Writer};
+use crate::forces::{FORCES, Forced, Forces, LONGEST};
 use crate::keep::Keep;
+use crate::sight::{Facts, Showing, Sight, sight};
 use crate::wiring::WhileBad;
 use crate::word::{Source, Target};
 
@@ -41,12 +43,18 @@ pub enum Reason {
 /// A request of a person or of another thread.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Command {
-    /// Make scans; nothing while there is a fault.
+    /// Make scans.
     Run,
     /// Make no more scans.
     Stop,
     /// End a fault; the controller is stopped then.
     Acknowledge,
+    /// Force a variable to a value, for so long.
+    Force(Force, u64, Nanos),
+    /// Take a force back.
+    Release(Force),
+    /// Take all forces back.
+    ReleaseAll,
     /// Go back to the initial situation; it does what it did before.
     Restart(Start),
     /// Give an input that no device has a value.
@@ -55,6 +63,32 @@ pub enum Command {
     SetWord(Addr, u64),
     /// Give a state of the plant a value.
     SetPlant(Addr, u64),
+}
+
+/// Why a command is not carried out.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum Refused {
+    /// It runs already.
+    #[error("the controller runs already")]
+    Runs,
+    /// It does not run.
+    #[error("the controller does not run")]
+    Rests,
+    /// A person has to end the fault first.
+    #[error("there is a fault: acknowledge it first")]
+    Fault,
+    /// There is no fault.
+    #[error("there is no fault to acknowledge")]
+    NoFault,
+    /// There are as many forces as there may be.
+    #[error("{FORCES} values are forced already: take one back")]
+    Full,
+    /// The time of a force is none, or longer than a day.
+    #[error("a force lasts longer than 0 and at most {} hours", LONGEST.count() / Nanos::HOUR.count())]
+    Time,
+    /// Nothing of that kind is forced.
+    #[error("it is not forced")]
+    Free,
 }
 
 /// Something that happened in a step.
@@ -73,6 +107,12 @@ pub enum What {
     Mode(Mode),
     /// So many scans came too late and were left out.
     Missed(u64),
+    /// A value is forced.
+    Forced(Forced),
+    /// A force was taken back.
+    Released(Force),
+    /// The time of a force is over.
+    Ended(Force),
 }
 
 /// Flags that the controller shares with its drivers and its watchdog.
@@ -141,6 +181,8 @@ pub struct Controller {
     events: rtrb::Producer<Event>,
     lost: u64,
     keeping: Option<Keeping>,
+    forces: Forces,
+    showing: Option<Showing>,
 }
 
 impl Controller {
@@ -148,7 +190,7 @@ impl Controller {
     ///
     /// `grace` is the longest time that the first scan waits for values of all devices.
     pub fn new(
-        runner: Runner,
+        mut runner: Runner,
         ports: Vec<Port>,
         shared: Shared,
         grace: Nanos,
@@ -161,6 +203,8 @@ impl Controller {
         };
         shared.safe.store(true, Ordering::Release);
         Controller {
+            forces: Forces::new(&mut runner),
+            showing: None,
             runner,
             ports: ports.into_iter().map(open).collect(),
             shared,
@@ -181,10 +225,21 @@ impl Controller {
         self.keeping = Some(Keeping { keep, to_disk, due: Nanos::ZERO });
     }
 
+    /// From here on shows itself.
+    pub(crate) fn show(&mut self) -> Sight {
+        let ports = self.ports.iter().map(|open| (open.port.inputs.len(), open.port.stale));
+        let (showing, seen) = sight(&self.runner, ports);
+        self.showing = Some(showing);
+        seen
+    }
+
     /// The values that outlive the program, as they are now; empty where none are kept.
     pub fn kept(&mut self) -> &[u64] {
         match &mut self.keeping {
-            Some(keeping) => keeping.keep.take(&self.runner),
+            Some(keeping) => {
+                self.runner.without_forced_outputs(|runner| keeping.keep.take(runner).len());
+                keeping.keep.words()
+            }
             None => &[],
         }
     }
@@ -210,7 +265,11 @@ impl Controller {
     }
 
     /// Carries out a command at `now`, between two steps.
-    pub fn command(&mut self, now: Nanos, command: Command) {
+    ///
+    /// # Errors
+    ///
+    /// It cannot be carried out; nothing has changed.
+    pub fn command(&mut self, now: Nanos, command: Command) -> Result<(), Refused> {
         match (command, self.mode) {
             (Command::Run, Mode::Stop) => {
                 // The grid of scans begins anew here.
@@ -221,14 +280,41 @@ impl Controller {
                 self.shared.safe.store(false, Ordering::Release);
                 self.enter(now, Mode::Run);
             }
+            (Command::Run, Mode::Run) => return Err(Refused::Runs),
+            (Command::Run, Mode::Fault(_)) => return Err(Refused::Fault),
             (Command::Stop, Mode::Run) => self.leave(now, Mode::Stop),
+            (Command::Stop, Mode::Stop | Mode::Fault(_)) => return Err(Refused::Rests),
             (Command::Acknowledge, Mode::Fault(_)) => self.enter(now, Mode::Stop),
+            (Command::Acknowledge, Mode::Run | Mode::Stop) => return Err(Refused::NoFault),
             (Command::Restart(start), _) => self.runner.restart(start),
             (Command::SetInput(index, word), _) => self.runner.set_input(index, word),
             (Command::SetWord(addr, word), _) => self.runner.set_word(addr, word),
             (Command::SetPlant(addr, word), _) => self.runner.set_plant_word(addr, word),
-            (Command::Run | Command::Stop | Command::Acknowledge, _) => {}
+            (Command::Force(what, word, lasts), _) => return self.force(now, what, word, lasts),
+            (Command::Release(what), _) if self.forces.release(&mut self.runner, what) => {
+                self.tell(now, What::Released(what));
+            }
+            (Command::Release(_), _) => return Err(Refused::Free),
+            (Command::ReleaseAll, _) if self.forces.all().is_empty() => return Err(Refused::Free),
+            (Command::ReleaseAll, _) => {
+                while let Some(what) = self.forces.pop(&mut self.runner) {
+                    self.tell(now, What::Released(what));
+                }
+            }
         }
+        Ok(())
+    }
+
+    fn force(&mut self, now: Nanos, what: Force, word: u64, lasts: Nanos) -> Result<(), Refused> {
+        if lasts <= Nanos::ZERO || lasts > LONGEST {
+            return Err(Refused::Time);
+        }
+        let force = Forced { what, word, until: now + lasts };
+        if !self.forces.force(&mut self.runner, force) {
+            return Err(Refused::Full);
+        }
+        self.tell(now, What::Forced(force));
+        Ok(())
     }
 
     /// Makes the step that is due.
@@ -239,14 +325,20 @@ impl Controller {
         for open in &mut self.ports {
             open.port.from_device.take(&mut open.words);
         }
+        while let Some(what) = self.forces.end_one(&mut self.runner, now) {
+            self.tell(now, What::Ended(what));
+        }
+        // Also while it does not run, so that who starts it sees the inputs as they are.
+        let fatal = self.read(now);
         if self.mode == Mode::Run && self.has_values(now) {
-            match self.read(now) {
+            match fatal {
                 Some(input) => self.leave(now, Mode::Fault(Reason::Input(input))),
                 None => self.scan(now),
             }
         }
         self.write();
         self.keep(now);
+        self.put_in_sight(now);
         self.shared.beat.store(now.count(), Ordering::Release);
         let period = self.runner.period();
         self.due = match self.mode {
@@ -270,14 +362,11 @@ impl Controller {
     fn read(&mut self, now: Nanos) -> Option<Target> {
         let mut fatal = None;
         for Open { port, words, .. } in &self.ports {
-            let word = |at: usize| words.get(at).copied().unwrap_or(0);
-            let fresh = now - Nanos::new(word(from_device::STAMP) as i64) <= port.stale;
-            let up = fresh && word(from_device::UP) != 0;
+            let said = Said::new(words, now, port.stale);
             for (k, (target, bad)) in port.inputs.iter().enumerate() {
-                let at = from_device::INPUTS + 2 * k;
-                let good = fresh && Quality::of(word(at + 1)) == Quality::Good;
+                let (word, quality) = said.input(k);
                 let value = match bad {
-                    _ if good => word(at),
+                    _ if quality == Quality::Good => word,
                     WhileBad::Word(substitute) => *substitute,
                     WhileBad::Hold => continue,
                     WhileBad::Fault => {
@@ -291,7 +380,7 @@ impl Controller {
                 }
             }
             for index in &port.good {
-                self.runner.set_input(*index, u64::from(up));
+                self.runner.set_input(*index, u64::from(said.is_up()));
             }
         }
         fatal
@@ -312,7 +401,7 @@ impl Controller {
 
     /// Hands the outputs to the drivers: those of the run, or the safe ones.
     fn write(&mut self) {
-        let running = self.mode == Mode::Run && self.begun;
+        let running = self.drives();
         for Open { port, out, .. } in &mut self.ports {
             for (word, (source, safe)) in out.iter_mut().zip(&port.outputs) {
                 *word = match safe {
@@ -329,8 +418,22 @@ impl Controller {
             && now >= *due
             && self.begun
         {
-            to_disk.put(keep.take(&self.runner).iter().copied());
+            self.runner.without_forced_outputs(|runner| to_disk.put(keep.take(runner).iter().copied()));
             *due = now + KEPT_EACH;
+        }
+    }
+
+    /// True while the charts give the outputs.
+    fn drives(&self) -> bool {
+        self.mode == Mode::Run && self.begun
+    }
+
+    fn put_in_sight(&mut self, now: Nanos) {
+        let drives = self.drives();
+        if let Some(showing) = &mut self.showing {
+            let (missed, lost, forces) = (self.missed, self.lost, self.forces.all());
+            let facts = Facts { now, drives, missed, lost, forces };
+            showing.put(facts, &self.runner, self.ports.iter().map(|open| &*open.words));
         }
     }
 

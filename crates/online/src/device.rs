@@ -38,7 +38,7 @@ pub trait Device: Send {
     fn connect(&mut self) -> Result<(), Failed>;
 
     /// Writes those outputs whose `write` is true, then reads all inputs. An input or output that the
-    /// device refuses is noted with it; the others are carried on with.
+    /// device refuses is noted with it, at once or at a later exchange; the others are carried on with.
     ///
     /// # Errors
     ///

@@ -56,6 +56,40 @@ pub(crate) mod from_device {
     }
 }
 
+/// The words of a device, judged at an instant.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Said<'a> {
+    words: &'a [u64],
+    /// Nothing counts that is older.
+    fresh: bool,
+}
+
+impl<'a> Said<'a> {
+    pub(crate) fn new(words: &'a [u64], now: Nanos, stale: Nanos) -> Said<'a> {
+        let said = Said { words, fresh: true };
+        Said { fresh: now - Nanos::new(said.word(from_device::STAMP) as i64) <= stale, ..said }
+    }
+
+    fn word(&self, at: usize) -> u64 {
+        self.words.get(at).copied().unwrap_or(0)
+    }
+
+    /// True while the device answers.
+    pub(crate) fn is_up(&self) -> bool {
+        self.fresh && self.word(from_device::UP) != 0
+    }
+
+    /// The value and the quality of an input, by number.
+    pub(crate) fn input(&self, number: usize) -> (u64, Quality) {
+        let at = from_device::INPUTS + 2 * number;
+        let quality = match Quality::of(self.word(at + 1)) {
+            Quality::Good if !self.fresh => Quality::Bad,
+            said => said,
+        };
+        (self.word(at), quality)
+    }
+}
+
 /// An output of a device.
 #[derive(Clone, Copy, Debug)]
 pub struct Out {
@@ -97,7 +131,6 @@ pub enum Happened {
 pub struct Worked {
     order: Order,
     result: Result<(), Failed>,
-    wrote: bool,
 }
 
 /// One device at work.
@@ -182,21 +215,21 @@ impl Driver {
     pub fn work(&mut self, now: Nanos, happened: &mut dyn FnMut(Happened)) -> Worked {
         let order = self.link.order();
         match order {
-            Order::Connect => Worked { order, result: self.device.connect(), wrote: false },
+            Order::Connect => Worked { order, result: self.device.connect() },
             Order::Exchange => {
-                let wrote = self.take_outputs(now, happened);
+                self.take_outputs(now, happened);
                 for input in &mut self.read {
                     *input = Err(Absent::Unread);
                 }
                 self.refused.fill(None);
                 let result = self.device.exchange(&self.raws, &self.write, &mut self.read, &mut self.refused);
-                Worked { order, result, wrote }
+                Worked { order, result }
             }
         }
     }
 
-    /// Takes the words of the scan and decides which outputs are written; true if any is.
-    fn take_outputs(&mut self, now: Nanos, happened: &mut dyn FnMut(Happened)) -> bool {
+    /// Takes the words of the scan and decides which outputs are written.
+    fn take_outputs(&mut self, now: Nanos, happened: &mut dyn FnMut(Happened)) {
         self.from_scan.take(&mut self.wanted);
         let safe = self.safe.load(Ordering::Acquire);
         let refresh = now - self.refreshed >= self.timing.refresh;
@@ -214,7 +247,6 @@ impl Driver {
             set(&mut self.write, k, refresh || stale);
             set(&mut self.raws, k, raw);
         }
-        self.write.contains(&true)
     }
 
     /// Notes at `now` what came of the order, and tells the scan.
@@ -227,9 +259,7 @@ impl Driver {
                     happened(Happened::Up);
                     self.told_up = Some(true);
                 }
-                if worked.wrote {
-                    self.note_outputs(happened);
-                }
+                self.note_outputs(happened);
                 self.note_inputs(happened);
             }
             Err(failed) => {
@@ -252,10 +282,11 @@ impl Driver {
 
     fn note_outputs(&mut self, happened: &mut dyn FnMut(Happened)) {
         for k in 0..self.outputs.len() {
-            if !self.write.get(k).copied().unwrap_or(false) {
+            let refused = self.refused.get_mut(k).and_then(Option::take);
+            // A refusal may come later than the exchange that wrote.
+            if refused.is_none() && !self.write.get(k).copied().unwrap_or(false) {
                 continue;
             }
-            let refused = self.refused.get_mut(k).and_then(Option::take);
             let fine = refused.is_none();
             let written = self.raws.get(k).copied().filter(|_| fine);
             set(&mut self.written, k, written);

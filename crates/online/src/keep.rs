@@ -83,6 +83,11 @@ impl Keep {
         self.words.is_empty()
     }
 
+    /// The words that were taken last.
+    pub(crate) fn words(&self) -> &[u64] {
+        &self.words
+    }
+
     /// The words of the run as it is now. Allocates only in the first call.
     pub fn take(&mut self, runner: &Runner) -> &[u64] {
         runner.state().canonical(runner.program(), &mut self.image);

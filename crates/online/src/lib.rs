@@ -6,6 +6,8 @@
 //!   devices -> Exchange -> scan thread: engine::scan -> Exchange -> devices
 //!                             |     ^
 //!                       records     commands         Slots (retained values) <- a thread of its own
+//!                             |
+//!                           Sight: all of its words, for the page
 //! ```
 //!
 //! # Invariants
@@ -14,40 +16,49 @@
 //! It gives and takes words of fixed number, nothing else.
 #![forbid(unsafe_code)]
 
+mod clients;
 mod controller;
 mod device;
 mod disk;
 mod driver;
 mod exchange;
+mod forces;
 mod keep;
 mod link;
 mod machine;
+mod messages;
 mod mirror;
 mod modbus;
+mod mqtt;
 mod pace;
 mod probe;
 mod realtime;
 mod runtime;
 pub mod setup;
+mod sight;
 mod slots;
 mod value;
+mod wire;
 mod wiring;
 mod word;
 
-pub use controller::{Command, Controller, Event, Mode, Port, Reason, Shared, What};
+pub use clients::Clients;
+pub use controller::{Command, Controller, Event, Mode, Port, Reason, Refused, Shared, What};
 pub use device::{Absent, Device, Failed};
 pub use disk::RealDisk;
 pub use driver::{Driver, Happened, Out, Quality, Worked};
 pub use exchange::{Reader, Writer, exchange};
+pub use forces::{FORCES, Forced, LONGEST, USUAL};
 pub use keep::{Keep, KeepError, KeptFile, Started, open};
 pub use link::{Link, Order};
 pub use machine::{Machine, assemble, runner};
 pub use mirror::mirror;
-pub use modbus::{Client, Clients};
 pub use pace::{Pace, Paces, Spread};
-pub use probe::{Asked, Probed, probe};
-pub use runtime::{AtDevice, Options, Running, start};
+pub use probe::{Asked, Probed, hear, probe};
+pub use runtime::{Answer, AtDevice, Options, Running, start};
+pub use sight::Sight;
 pub use slots::{Disk, Loaded, Slots, SlotsError};
 pub use value::{Holds, Raw, Scaling};
+pub use wire::{Topic, Wire};
 pub use wiring::{In, OutAt, WhileBad, Wired, Wiring, wire};
 pub use word::{Source, Target};

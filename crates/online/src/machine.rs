@@ -12,6 +12,7 @@ use crate::driver::{Driver, from_device};
 use crate::exchange::exchange;
 use crate::keep::{Keep, KeptFile};
 use crate::setup::Timing;
+use crate::sight::Sight;
 use crate::slots::{Disk, Slots};
 use crate::wiring::{Wired, Wiring};
 use crate::word::Target;
@@ -32,6 +33,11 @@ pub struct Machine {
 }
 
 impl Machine {
+    /// Shows the controller to whoever holds the result.
+    pub fn show(&mut self) -> Sight {
+        self.controller.show()
+    }
+
     /// Keeps the values of the run in these slots from here on; the result goes to
     /// [`crate::start`].
     pub fn keep<D: Disk>(&mut self, bench: &Bench, slots: Slots<D>) -> KeptFile<D> {

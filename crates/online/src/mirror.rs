@@ -38,8 +38,9 @@ pub fn mirror(bench: &Bench, wiring: &Wiring, listen: Option<IpAddr>) -> Result<
                     serial.port
                 ));
             }
-            // The masters of the chart are not part of its machine.
-            Kind::ModbusServer(_) => continue,
+            // The masters of the chart are not part of its machine; nor is a broker, which is there
+            // all the same.
+            Kind::ModbusServer(_) | Kind::Mqtt(_) => continue,
         };
         let at = |w: &&Wired| matches!(&w.device.kind, Kind::ModbusServer(l) if l.address == address);
         if let Some(other) = mirrored.devices.iter().find(at) {
@@ -60,8 +61,7 @@ fn given(bench: &Bench, wired: &Wired) -> Vec<In> {
         Some(In {
             name: out.name.clone(),
             target: Target::Word(Addr(item.addr)),
-            register: out.register,
-            encoding: out.encoding,
+            wire: out.wire.clone(),
             scaling: out.out.scaling,
             bad: out.out.safe.map_or(WhileBad::Hold, WhileBad::Word),
         })
@@ -76,8 +76,7 @@ fn driven(bench: &Bench, wired: &Wired) -> Vec<OutAt> {
         Some(OutAt {
             name: input.name.clone(),
             source: Source::Word(Addr(item.addr)),
-            register: input.register,
-            encoding: input.encoding,
+            wire: input.wire.clone(),
             out: Out { scaling: input.scaling, safe: None },
         })
     };

@@ -16,7 +16,7 @@ pub struct Pace {
     pub took: Nanos,
 }
 
-/// The longest time that is told apart; the histograms have two digits.
+/// Longer times, in ns, count as this one. The histograms keep two decimal digits.
 const MOST: u64 = 60_000_000_000;
 
 /// The paces of many scans.
@@ -28,8 +28,9 @@ pub struct Paces {
 
 impl Default for Paces {
     fn default() -> Paces {
-        // The limits are valid: 1, at least twice that, and up to five digits.
-        let new = || Histogram::new_with_bounds(1, MOST, 2).expect("valid limits");
+        // hdrhistogram accepts these bounds: the lower is 1 or more, the upper at least twice the lower,
+        // and the digits are 5 or fewer.
+        let new = || Histogram::new_with_bounds(1, MOST, 2).expect("valid bounds");
         Paces { late: new(), took: new() }
     }
 }

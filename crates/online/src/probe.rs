@@ -4,14 +4,15 @@ use std::time::Duration;
 
 use g7_host::{Clock as _, WallClock};
 
+use crate::clients::Clients;
 use crate::device::{Absent, Device as _, Failed};
-use crate::modbus::Clients;
-use crate::setup::{Device, Encoding, Register};
+use crate::mqtt;
+use crate::setup::{Broker, Device, Place};
 use crate::value::Raw;
 use crate::wiring::Wired;
 
-/// A point to read, and how registers hold the number; `None` for a bit.
-pub type Asked = (Register, Option<Encoding>);
+/// A point to read.
+pub type Asked = Place;
 
 /// The answer of a device.
 #[derive(Debug)]
@@ -29,7 +30,7 @@ pub struct Probed {
 /// The device cannot be reached, or does not answer.
 pub fn probe(clients: &mut Clients, device: &Device, asked: &[Asked]) -> Result<Probed, Failed> {
     let wired = Wired { device: device.clone(), inputs: Vec::new(), outputs: Vec::new(), good: Vec::new() };
-    let client = clients.client(&wired).map_err(|e| Failed(e.to_string()))?;
+    let client = clients.units.client(&wired).map_err(|e| Failed(e.to_string()))?;
     let mut client = client.ok_or_else(|| Failed("it is the one that asks".to_owned()))?;
     client.read_points(asked);
     client.connect()?;
@@ -39,4 +40,17 @@ pub fn probe(clients: &mut Clients, device: &Device, asked: &[Asked]) -> Result<
     let took = Duration::from_nanos(clock.now().count().max(0).unsigned_abs());
     client.close();
     done.map(|()| Probed { took, values })
+}
+
+/// Reaches a broker and listens for the messages of all inputs and then all outputs that are wired to
+/// it, for the time-out at most. Publishes nothing.
+///
+/// # Errors
+///
+/// The broker cannot be reached, or does not let this client in.
+pub fn hear(broker: &Broker, wired: &Wired) -> Result<Probed, Failed> {
+    let mut clock = WallClock::default();
+    let values = mqtt::listen(broker, wired)?;
+    let took = Duration::from_nanos(clock.now().count().max(0).unsigned_abs());
+    Ok(Probed { took, values })
 }

@@ -12,7 +12,7 @@ use std::time::Duration;
 use g7_host::{Clock, WallClock};
 use g7_model::Nanos;
 
-use crate::controller::{Command, Controller, Event, Mode, Shared};
+use crate::controller::{Command, Controller, Event, Mode, Refused, Shared};
 use crate::driver::{Driver, Happened};
 use crate::keep::KeptFile;
 use crate::machine::Machine;
@@ -38,6 +38,15 @@ pub struct AtDevice {
     pub happened: Happened,
 }
 
+/// The answer to a command.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Answer {
+    /// The number that [`Running::command`] gave the command.
+    pub number: u64,
+    /// Done, or why not.
+    pub done: Result<(), Refused>,
+}
+
 /// How a machine is run.
 #[derive(Clone, Copy, Debug)]
 pub struct Options {
@@ -51,7 +60,11 @@ pub struct Options {
 pub struct Running {
     stop: Arc<Stop>,
     shared: Shared,
-    commands: rtrb::Producer<Command>,
+    commands: rtrb::Producer<(u64, Command)>,
+    /// The number of the next command.
+    next: u64,
+    /// The answers to the commands; left out while nobody takes them.
+    pub answers: rtrb::Consumer<Answer>,
     /// The events of the controller.
     pub events: rtrb::Consumer<Event>,
     /// The events of the devices.
@@ -106,6 +119,8 @@ pub fn start<D: Disk + Send + 'static>(
     let last = Arc::new(Mutex::new(None));
     let (commands, to_scan) = rtrb::RingBuffer::new(COMMANDS);
     let (of_scan, paces) = rtrb::RingBuffer::new(PACES);
+    let (answer, answers) = rtrb::RingBuffer::new(COMMANDS);
+    let asked = (to_scan, answer);
     let (tell, devices) = channel();
     let (priority_failed, no_priority) = channel();
     let mut threads = Vec::new();
@@ -129,7 +144,7 @@ pub fn start<D: Disk + Send + 'static>(
             // The caller may have gone on without listening.
             priority_failed.send(why.clone()).ok();
         }
-        let done = catch_unwind(AssertUnwindSafe(|| scan(controller, clock, to_scan, of_scan, &scan_stop)));
+        let done = catch_unwind(AssertUnwindSafe(|| scan(controller, clock, asked, of_scan, &scan_stop)));
         // Drivers write safe values from here on, also after a panic.
         scan_shared.safe.store(true, Ordering::Release);
         let mut controller = done.ok();
@@ -138,7 +153,21 @@ pub fn start<D: Disk + Send + 'static>(
         controller
     })?;
     let scan = Some(scan);
-    Ok(Running { stop, shared, commands, events, devices, paces, scan, threads, no_priority, disk })
+    let next = 0;
+    Ok(Running {
+        stop,
+        shared,
+        commands,
+        next,
+        answers,
+        events,
+        devices,
+        paces,
+        scan,
+        threads,
+        no_priority,
+        disk,
+    })
 }
 
 fn spawn(name: String, work: impl FnOnce() + Send + 'static) -> std::io::Result<JoinHandle<()>> {
@@ -149,7 +178,7 @@ fn spawn(name: String, work: impl FnOnce() + Send + 'static) -> std::io::Result<
 fn scan(
     mut controller: Controller,
     mut clock: WallClock,
-    mut commands: rtrb::Consumer<Command>,
+    (mut commands, mut answers): (rtrb::Consumer<(u64, Command)>, rtrb::Producer<Answer>),
     mut paces: rtrb::Producer<Pace>,
     stop: &Stop,
 ) -> Controller {
@@ -159,8 +188,9 @@ fn scan(
         if stop.plain.load(Ordering::Acquire) {
             return controller;
         }
-        while let Ok(command) = commands.pop() {
-            controller.command(clock.now(), command);
+        while let Ok((number, command)) = commands.pop() {
+            let done = controller.command(clock.now(), command);
+            answers.push(Answer { number, done }).ok();
         }
         let begin = clock.now();
         controller.step(begin);
@@ -243,9 +273,12 @@ fn watch(shared: &Shared, mut clock: WallClock, most: Nanos, stop: &Stop) {
 }
 
 impl Running {
-    /// Gives a command to the scan; false where too many wait for it.
-    pub fn command(&mut self, command: Command) -> bool {
-        self.commands.push(command).is_ok()
+    /// Gives a command to the scan and returns its number; `None` where too many wait for it.
+    pub fn command(&mut self, command: Command) -> Option<u64> {
+        let number = self.next;
+        self.commands.push((number, command)).ok()?;
+        self.next += 1;
+        Some(number)
     }
 
     /// True while the scan thread works; a panic in it ends it.

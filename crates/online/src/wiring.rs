@@ -8,8 +8,12 @@ use g7_model::{Problem, Span, codes};
 use g7_rig::{Activity, Bench, Item, Role};
 
 use crate::driver::Out;
-use crate::setup::{Area, At, Bad, Channel, Device, Encoding, Literal, Point, Register, Setup};
+use crate::messages::{self, Carried, Refused};
+use crate::setup::{
+    Area, At, Bad, Broker, Channel, Device, Encoding, Kind as Way, Literal, Place, Point, Register, Setup,
+};
 use crate::value::{Holds, Raw, Scaling};
+use crate::wire::Wire;
 use crate::word::{Source, Target};
 
 /// All channels of a machine, by device.
@@ -42,9 +46,7 @@ pub struct In {
     /// The word of the run.
     pub target: Target,
     /// The point.
-    pub register: Register,
-    /// How registers hold the number; `None` for a bit.
-    pub encoding: Option<Encoding>,
+    pub wire: Wire,
     /// How the value becomes a word.
     pub scaling: Scaling,
     /// Its value while that of the device is bad.
@@ -70,16 +72,15 @@ pub struct OutAt {
     /// The word of the run.
     pub source: Source,
     /// The point.
-    pub register: Register,
-    /// How registers hold the number; `None` for a bit.
-    pub encoding: Option<Encoding>,
+    pub wire: Wire,
     /// How the word becomes a value.
     pub out: Out,
 }
 
 /// Wires a chart. A channel that cannot be wired is left out and told.
 pub fn wire(bench: &Bench, setup: &Setup) -> (Wiring, Vec<Problem>) {
-    let mut wirer = Wirer { bench, wiring: Wiring::default(), places: BTreeMap::new(), problems: Vec::new() };
+    let (wiring, places, messages) = (Wiring::default(), BTreeMap::new(), BTreeMap::new());
+    let mut wirer = Wirer { bench, wiring, places, messages, problems: Vec::new() };
     for device in &setup.devices {
         let entry =
             Wired { device: device.clone(), inputs: Vec::new(), outputs: Vec::new(), good: Vec::new() };
@@ -136,6 +137,8 @@ struct Wirer<'a> {
     wiring: Wiring,
     /// By device and point: the output that is wired to it.
     places: BTreeMap<(usize, Register), (String, Span)>,
+    /// By device: the outputs on topics, all metrics, and the will.
+    messages: BTreeMap<(usize, String), (String, Span)>,
     problems: Vec<Problem>,
 }
 
@@ -174,11 +177,6 @@ impl<'a> Wirer<'a> {
 
     fn subject(&self, item: &Item) -> Subject {
         let variable = self.bench.compiled.symbols.variable_at(Addr(item.addr));
-        let tables = self.bench.compiled.program.tables();
-        let safe = || {
-            let index = item.addr.saturating_sub(tables.outputs.start);
-            tables.safe.get(index as usize).copied().unwrap_or(0)
-        };
         Subject {
             name: item.name.clone(),
             kind: item.kind,
@@ -186,7 +184,7 @@ impl<'a> Wirer<'a> {
             inverted: variable.is_some_and(|v| v.inverted),
             input: if let Role::Input(index) = item.role { Some(index) } else { None },
             source: Source::Word(Addr(item.addr)),
-            safe: (item.role == Role::Output).then(safe),
+            safe: self.bench.safe(item),
         }
     }
 
@@ -243,9 +241,16 @@ impl<'a> Wirer<'a> {
             self.wrong(&codes::UNKNOWN_CHANNEL, channel.at, what).help = Some(help);
             return;
         };
-        match channel.point {
-            Point::Good => self.good(channel, subject, device, class),
-            Point::Modbus(register) => self.register(channel, subject, device, register, class),
+        let kind = self.wiring.devices.get(device).map(|d| d.device.kind.clone());
+        match (&channel.point, kind) {
+            (Point::Good, _) => self.good(channel, subject, device, class),
+            (_, Some(Way::Mqtt(broker))) => self.message(channel, subject, (device, &broker), class),
+            (Point::Modbus(register), _) => self.register(channel, subject, device, *register, class),
+            (point @ (Point::Topic(_) | Point::Metric(_)), _) => {
+                let what = format!("`{point}` is no point of `{}`", channel.device.value);
+                self.wrong(&codes::WRONG_CHANNEL, channel.at, what).help =
+                    Some("only a broker has messages: `kind = \"mqtt\"`".to_owned());
+            }
         }
     }
 
@@ -264,6 +269,66 @@ impl<'a> Wirer<'a> {
         }
     }
 
+    /// A topic or metric of a broker.
+    fn message(
+        &mut self,
+        channel: &Channel,
+        subject: &Subject,
+        (device, broker): (usize, &Broker),
+        class: Class,
+    ) {
+        let carried = Carried {
+            name: &subject.name,
+            kind: subject.kind,
+            inverted: subject.inverted,
+            input: class == Class::Input,
+            safe: class == Class::Output,
+        };
+        let (wire, scaling) = match messages::wire(channel, &carried, broker) {
+            Ok(wired) => wired,
+            Err(Refused { at, what, help }) => {
+                self.wrong(&codes::WRONG_CHANNEL, at, what).help = help;
+                return;
+            }
+        };
+        let place = match &wire {
+            // Several inputs may read one topic.
+            Wire::Topic(topic) => (class != Class::Input).then(|| topic.name.clone()),
+            Wire::Metric(name) => Some(name.clone()),
+            Wire::Modbus(_) => None,
+        };
+        let will = matches!(&wire, Wire::Topic(topic) if topic.will).then(|| WILL.to_owned());
+        for place in place.into_iter().chain(will) {
+            if !self.is_unused(channel, subject, device, place) {
+                return;
+            }
+        }
+        self.connect(channel, subject, device, (wire, scaling), class);
+    }
+
+    /// True if nothing else publishes there.
+    fn is_unused(&mut self, channel: &Channel, item: &Subject, device: usize, place: String) -> bool {
+        let of = |k: usize| match self.wiring.devices.get(k).map(|d| &d.device.kind) {
+            Some(Way::Mqtt(broker)) => Some((&broker.host, broker.port, &broker.sparkplug)),
+            Some(Way::ModbusTcp(..) | Way::ModbusRtu(..) | Way::ModbusServer(_)) | None => None,
+        };
+        // Two clients of one broker publish to the same topics, but each has a will of its own.
+        let first = (0..device).find(|k| of(*k) == of(device)).unwrap_or(device);
+        let key = (if place == WILL { device } else { first }, place);
+        if let Some((other, there)) = self.messages.get(&key).cloned() {
+            let what = match key.1.as_str() {
+                WILL => format!("`{}` and `{other}` are both the will of one client", item.name),
+                place => format!("`{}` and `{other}` are wired to one point, {place}", item.name),
+            };
+            self.wrong(&codes::WIRED_TWICE, channel.at, what)
+                .related
+                .push((there, format!("`{other}` is wired here")));
+            return false;
+        }
+        self.messages.insert(key, (item.name.clone(), channel.at));
+        true
+    }
+
     fn register(
         &mut self,
         channel: &Channel,
@@ -272,6 +337,10 @@ impl<'a> Wirer<'a> {
         register: Register,
         class: Class,
     ) {
+        if let Some(at) = channel.message.first() {
+            self.wrong(&codes::WRONG_CHANNEL, at, "only a topic has messages");
+            return;
+        }
         let server = self.wiring.devices.get(device).is_some_and(|d| d.device.kind.is_server());
         if let Some((what, help)) = refused(register.area, class, server) {
             self.wrong(&codes::WRONG_CHANNEL, channel.at, format!("`{register}` {what}")).help =
@@ -283,25 +352,30 @@ impl<'a> Wirer<'a> {
         if (class != Class::Input || server) && !self.is_free(channel, subject, device, register, encoding) {
             return;
         }
+        self.connect(channel, subject, device, (Wire::Modbus(Place { register, encoding }), scaling), class);
+    }
+
+    /// Adds a channel to its device.
+    fn connect(
+        &mut self,
+        channel: &Channel,
+        subject: &Subject,
+        device: usize,
+        (wire, scaling): (Wire, Scaling),
+        class: Class,
+    ) {
         let name = subject.name.clone();
         match (class, subject.input) {
             (Class::Input, Some(index)) => {
                 let Some(bad) = self.bad(channel, &scaling) else { return };
                 let Some(wired) = self.wiring.devices.get_mut(device) else { return };
-                wired.inputs.push(In {
-                    name,
-                    target: Target::Input(index),
-                    register,
-                    encoding,
-                    scaling,
-                    bad,
-                });
+                wired.inputs.push(In { name, target: Target::Input(index), wire, scaling, bad });
             }
             (Class::Input, None) => {}
             (Class::Output | Class::Shown, _) => {
                 let (source, out) = (subject.source, Out { scaling, safe: subject.safe });
                 let Some(wired) = self.wiring.devices.get_mut(device) else { return };
-                wired.outputs.push(OutAt { name, source, register, encoding, out });
+                wired.outputs.push(OutAt { name, source, wire, out });
             }
         }
     }
@@ -414,12 +488,16 @@ impl<'a> Wirer<'a> {
     }
 }
 
+/// The key of the will among the points of a broker; no topic and no metric is empty.
+const WILL: &str = "";
+
 /// Why a use of a table is refused, and what to do instead.
 fn refused(area: Area, class: Class, server: bool) -> Option<(&'static str, &'static str)> {
     match class {
-        Class::Shown if !server => {
-            Some(("belongs to a device that does not ask", "only a server shows: `kind = \"modbus-server\"`"))
-        }
+        Class::Shown if !server => Some((
+            "belongs to a device that does not ask",
+            "only a server or a broker shows: `kind = \"modbus-server\"`, `kind = \"mqtt\"`",
+        )),
         Class::Input if server && !area.is_writable() => {
             Some(("cannot be written by a master", "inputs from a master are coils or holding registers"))
         }

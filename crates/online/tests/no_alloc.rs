@@ -1,37 +1,10 @@
 //! A step of the controller allocates nothing: with values and events of a device, with values that are
-//! kept, forced ones, commands, and a plant in place of other devices.
-#![allow(unsafe_code, reason = "counting allocations needs a GlobalAlloc")]
+//! kept, forced ones, commands, one who looks, and a plant in place of other devices.
 
-use std::alloc::{GlobalAlloc, Layout, System};
-use std::cell::Cell;
-
+use allocation_counter::measure;
 use g7_model::{FileId, Nanos};
 use g7_online::{Absent, Command, Device, Disk, Failed, Raw, Slots, assemble, runner, setup, wire};
 use g7_rig::{Options, Source, build};
-
-struct Counting;
-
-thread_local! {
-    static COUNT: Cell<usize> = const { Cell::new(0) };
-}
-
-// SAFETY: forwards to `System`, which upholds the contract.
-unsafe impl GlobalAlloc for Counting {
-    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
-        COUNT.with(|c| c.set(c.get() + 1));
-        unsafe { System.alloc(layout) }
-    }
-    unsafe fn dealloc(&self, ptr: *mut u8, layout: Layout) {
-        unsafe { System.dealloc(ptr, layout) }
-    }
-    unsafe fn realloc(&self, ptr: *mut u8, layout: Layout, new: usize) -> *mut u8 {
-        COUNT.with(|c| c.set(c.get() + 1));
-        unsafe { System.realloc(ptr, layout, new) }
-    }
-}
-
-#[global_allocator]
-static ALLOC: Counting = Counting;
 
 const IO: &str = "\
 [devices.unit]
@@ -100,34 +73,41 @@ fn a_step_allocates_nothing() {
     let (setup, problems) = setup::read(IO, FileId(1));
     let (wiring, wrong) = wire(&bench, &setup);
     assert!(problems.is_empty() && wrong.is_empty(), "{problems:?} {wrong:?}");
-    let mut run = runner(&bench, &wiring, 0);
-    let led = bench.item("LED").expect("an output");
-    bench.force(&mut run, led, &g7_host::Value::Word(1));
+    let run = runner(&bench, &wiring, 0);
+    let force = |name: &str| bench.item(name).and_then(|item| bench.force_of(item)).expect("one word");
+    let (led, tilt) = (force("LED"), force("Tilt"));
     let device = |_: &_| Ok::<Box<dyn Device>, std::io::Error>(Box::new(Unit(0)));
     let mut machine = assemble(run, &wiring, device).expect("no device fails");
     let slots = Slots::begin(Nowhere, 0, 0).expect("the disk takes all");
     let _kept = machine.keep(&bench, slots);
+    let mut sight = machine.show();
     let period = machine.controller.runner().period();
-    let (mut now, mut allocating, mut events) = (Nanos::ZERO, 0, 0);
+    let (mut now, mut allocating, mut events, mut looks) = (Nanos::ZERO, 0, 0, 0);
     for k in 0..20_000 {
         now += period;
         let driver = &mut machine.drivers[0];
         let worked = driver.work(now, &mut |_| {});
         driver.settle(now, worked, &mut |_| {});
-        let before = COUNT.get();
-        match k % 1000 {
-            0 => machine.controller.command(now, Command::Run),
-            // Late by several periods.
-            700 => now += period * 5,
-            900 => machine.controller.command(now, Command::Stop),
-            _ => {}
-        }
-        machine.controller.step(now);
-        allocating += usize::from(COUNT.get() > before);
+        // Late by several periods.
+        now += period * i64::from(k % 1000 == 700) * 5;
+        let counted = measure(|| {
+            match k % 1000 {
+                0 => machine.controller.command(now, Command::Run).expect("it is stopped"),
+                100 => machine.controller.command(now, Command::Force(led, 1, period * 400)).expect("room"),
+                200 => machine.controller.command(now, Command::Force(tilt, 0, period * 10)).expect("room"),
+                800 => machine.controller.command(now, Command::ReleaseAll).err().map_or((), drop),
+                900 => machine.controller.command(now, Command::Stop).expect("it runs"),
+                _ => {}
+            }
+            machine.controller.step(now);
+        });
+        allocating += usize::from(counted.count_total > 0);
         while machine.events.pop().is_ok() {
             events += 1;
         }
+        looks += usize::from(sight.look());
     }
     assert!(events > 20 && machine.controller.runner().state().scans() > 10_000, "{events} events");
+    assert!(looks > 4_000, "{looks} times shown");
     assert_eq!(allocating, 0, "steps that allocate");
 }

@@ -1,4 +1,4 @@
-//! Reads values that users type: on the command line, in the terminal view, in the page.
+//! Reads values that users type: on the command line, in the terminal view, in the page; and shows values.
 
 use g7_host::{Kind, Value};
 use g7_model::Nanos;
@@ -95,6 +95,18 @@ pub fn read(text: &str, kind: Kind) -> Result<Value, String> {
             Ok(Value::Text(inner.unwrap_or(text).into()))
         }
     }
+}
+
+/// A value as text for the user; numbers have at most four decimals.
+pub fn shown(value: &Value, kind: Kind) -> String {
+    let real = matches!(kind, Kind::Real | Kind::Lreal);
+    let x = value.number(kind);
+    if !real || !x.is_finite() || x != 0.0 && !(1e-3..1e9).contains(&x.abs()) {
+        return value.show(kind);
+    }
+    let text = format!("{x:.4}");
+    let text = text.trim_end_matches('0').trim_end_matches('.');
+    if text == "-0" { "0".to_owned() } else { text.to_owned() }
 }
 
 #[cfg(test)]

@@ -1,41 +1,9 @@
 //! A run of charts with their plant allocates nothing in a scan, recorded as it may be.
-#![allow(unsafe_code, reason = "counting allocations needs a GlobalAlloc")]
 
-use std::alloc::{GlobalAlloc, Layout, System};
-use std::cell::Cell;
-
+use allocation_counter::measure;
 use g7_host::{Recording, Runner, Value};
 use g7_model::Nanos;
 use g7_rig::{Bench, Options, Role, Source, build};
-
-struct Counting;
-
-thread_local! {
-    /// Of this thread alone: the tests run side by side.
-    static COUNT: Cell<usize> = const { Cell::new(0) };
-}
-
-fn count() {
-    COUNT.with(|c| c.set(c.get() + 1));
-}
-
-// SAFETY: forwards to `System`, which upholds the contract.
-unsafe impl GlobalAlloc for Counting {
-    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
-        count();
-        unsafe { System.alloc(layout) }
-    }
-    unsafe fn dealloc(&self, ptr: *mut u8, layout: Layout) {
-        unsafe { System.dealloc(ptr, layout) }
-    }
-    unsafe fn realloc(&self, ptr: *mut u8, layout: Layout, new: usize) -> *mut u8 {
-        count();
-        unsafe { System.realloc(ptr, layout, new) }
-    }
-}
-
-#[global_allocator]
-static ALLOC: Counting = Counting;
 
 const EXAMPLES: [(&str, &str); 4] = [
     ("bead-sorter", include_str!("../../../examples/bead-sorter/chart.g7")),
@@ -65,10 +33,11 @@ fn scans(bench: &Bench, runner: &mut Runner, recording: &mut Recording, scans: u
     for i in 0..scans {
         // A button is pressed and let go.
         set_inputs(bench, runner, u64::from(i % 100 < 50));
-        let before = COUNT.get();
-        runner.scan().expect("the examples run without fault");
-        recording.sample(Nanos::new(runner.state().now()), bench.sample(runner));
-        allocating += usize::from(COUNT.get() > before);
+        let counted = measure(|| {
+            runner.scan().expect("the examples run without fault");
+            recording.sample(Nanos::new(runner.state().now()), bench.sample(runner));
+        });
+        allocating += usize::from(counted.count_total > 0);
     }
     allocating
 }

@@ -172,6 +172,21 @@ pub fn python(module: &str) -> Option<PathBuf> {
     found
 }
 
+/// The broker of mosquitto, with its clients beside it; otherwise the skip is counted. Debian puts it
+/// where only root looks for programs.
+pub fn mosquitto() -> Option<PathBuf> {
+    let path = std::env::var_os("PATH").unwrap_or_default();
+    let places = std::env::split_paths(&path).chain(["/usr/sbin".into(), "/usr/local/sbin".into()]);
+    let found = places.map(|folder| folder.join("mosquitto")).find(|file| file.is_file());
+    // It says its version and ends with an error.
+    let clients = Command::new("mosquitto_sub").arg("--version").stdout(Stdio::null()).status().is_ok();
+    let found = found.filter(|_| clients);
+    if found.is_none() {
+        skip("mosquitto missing");
+    }
+    found
+}
+
 /// A script of this project that drives a peer.
 pub fn script(name: &str) -> PathBuf {
     [env!("CARGO_MANIFEST_DIR"), "python", name].iter().collect()

@@ -1,6 +1,7 @@
 // One table of words: key -> [English, French, Portuguese].
 import { canvas } from './words/canvas';
 import { out } from './words/export';
+import { operator } from './words/operator';
 import { panels } from './words/panels';
 import { run } from './words/run';
 import { shell } from './words/shell';
@@ -10,7 +11,7 @@ import { prefs } from './prefs.svelte';
 
 export type Words = Record<string, readonly [en: string, fr: string, pt: string]>;
 
-const table = { ...shell, ...canvas, ...out, ...panels, ...run, ...start, ...text } as const;
+const table = { ...shell, ...canvas, ...out, ...operator, ...panels, ...run, ...start, ...text } as const;
 
 export type Key = keyof typeof table;
 export type Language = 'en' | 'fr' | 'pt';

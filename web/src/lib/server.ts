@@ -7,6 +7,8 @@ export interface Info {
   version: string;
   read_only: boolean;
   folder: string;
+  /** True if the server drives a machine. */
+  online?: boolean;
   start?: string;
 }
 
@@ -54,6 +56,7 @@ class Server implements Answers {
   #waiting = new Map<number, { resolve(v: unknown): void; reject(e: Error): void }>();
   #next = 1;
   #heard = new Set<(message: Record<string, unknown>) => void>();
+  #linked = new Set<(up: boolean) => void>();
 
   /** Finds out if there is a server; otherwise reads the examples. */
   async begin(): Promise<void> {
@@ -143,6 +146,12 @@ class Server implements Answers {
     return () => this.#heard.delete(listener);
   }
 
+  /** Calls a listener whenever the connection is there or lost. */
+  link(listener: (up: boolean) => void): () => void {
+    this.#linked.add(listener);
+    return () => this.#linked.delete(listener);
+  }
+
   /** Sends a message to the server's page, for shared runs. */
   async call<T>(message: Message): Promise<T> {
     const socket = await this.#live();
@@ -159,13 +168,17 @@ class Server implements Answers {
       address.protocol = address.protocol === 'https:' ? 'wss:' : 'ws:';
       address.searchParams.set('token', this.#token);
       const socket = new WebSocket(address);
-      socket.onopen = () => resolve(socket);
+      socket.onopen = () => {
+        resolve(socket);
+        this.#linked.forEach((listener) => listener(true));
+      };
       socket.onmessage = (event: MessageEvent<string>) => this.#hear(event.data);
       socket.onclose = () => {
         this.#socket = null;
         reject(new Refused('the server is gone'));
         this.#waiting.forEach((w) => w.reject(new Refused('the server is gone')));
         this.#waiting.clear();
+        this.#linked.forEach((listener) => listener(false));
         setTimeout(() => void this.#live().catch(() => undefined), 2000);
       };
     });

@@ -20,8 +20,8 @@ const MANY = 40;
 export type Named = ReadonlyMap<string, readonly number[]>;
 
 /** Finds the names of signals in the texts of symbols. */
-export function named(run: Run, chart: string, items: readonly Item[]): Named {
-  const byName = new Map(run.started.signals.map((s, i) => [s.name, i]));
+export function named(signals: readonly { name: string }[], chart: string, items: readonly Item[]): Named {
+  const byName = new Map(signals.map((s, i) => [s.name, i]));
   const found = new Map<string, number[]>();
   for (const item of items) {
     if (!item.source) continue;

@@ -2,24 +2,27 @@
 
 mod headless;
 mod keep;
-mod online;
 
 use std::io::{IsTerminal, stdin, stdout};
+use std::path::Path;
 
 pub(crate) use keep::Keeper;
 
+use crate::attendant::Attendant;
 use crate::cli::Run;
 use crate::failure::{Failure, Verdict};
 use crate::message::talk;
-use crate::sources;
+use crate::operator::Names;
+use crate::sources::{self, Source};
+use crate::station::{self, More, Station};
 use crate::{files, view, wiring};
 use g7_rig::Options;
 
 pub(crate) fn run(args: &Run) -> Result<Verdict, Failure> {
     let path = files::one(&args.path)?;
     let source = sources::load(&path, 0)?;
-    if args.online {
-        return online::run(&path, &source, args);
+    if args.drive.online {
+        return online(&path, &source, args);
     }
     let options = Options { profile: args.profile, scan: args.scan, plant: args.plant.as_deref(), asks: &[] };
     let Some(bench) = wiring::build(&source, &options)? else { return Ok(Verdict::Found) };
@@ -38,4 +41,15 @@ pub(crate) fn run(args: &Run) -> Result<Verdict, Failure> {
     let mut keeper = Keeper::new(&bench, &runner, args.retain.as_deref());
     view::run(&bench, runner, &source.name, args, &mut keeper)?;
     Ok(Verdict::Fine)
+}
+
+/// The chart drives the devices of its io file, until it is told to end.
+fn online(path: &Path, source: &Source, args: &Run) -> Result<Verdict, Failure> {
+    let more = More { profile: args.profile, scan: args.scan, plant: args.plant.as_deref(), seed: args.seed };
+    let Some(Station { plan, running, monitor, .. }) = station::start(path, source, &args.drive, more)?
+    else {
+        return Ok(Verdict::Found);
+    };
+    let names = Names { source, bench: &plan.bench, wiring: &plan.wiring };
+    Attendant::new(names).with(monitor).attend(running, args.duration)
 }

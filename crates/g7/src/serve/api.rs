@@ -50,6 +50,7 @@ async fn info(State(shared): State<Shared>) -> Json<Value> {
         "version": env!("CARGO_PKG_VERSION"),
         "read_only": shared.folder.is_read_only(),
         "folder": shared.title,
+        "online": shared.station.is_some(),
     });
     if let (Some(start), Some(info)) = (&shared.start, info.as_object_mut()) {
         info.insert("start".to_owned(), json!(start));

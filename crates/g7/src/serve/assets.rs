@@ -37,6 +37,8 @@ const NONE: &str = "<!doctype html><html lang=\"en\"><meta charset=\"utf-8\"><ti
 pub(super) async fn asset(State(shared): State<Shared>, uri: Uri, headers: HeaderMap) -> Response {
     let path = match uri.path().trim_start_matches('/') {
         "" => "index.html",
+        // The same page, which shows itself otherwise there.
+        "operator" if shared.station.is_some() => "index.html",
         path => path,
     };
     let packed = reads_gzip(&headers);

@@ -12,7 +12,7 @@ use axum::http::StatusCode;
 use axum::response::{IntoResponse, Response};
 use serde::Deserialize;
 use serde_json::value::RawValue;
-use tokio::sync::OwnedSemaphorePermit;
+use tokio::sync::{OwnedSemaphorePermit, oneshot};
 use tokio::time::{Instant, MissedTickBehavior, interval, timeout};
 
 use super::api;
@@ -20,6 +20,7 @@ use super::outbox::{Next, Outbox};
 use super::refusal::Refusal;
 use super::runs::letter;
 use super::shared::Shared;
+use crate::operator::{NAME, Order, Wish};
 
 /// The parts of a message that the server needs to know.
 #[derive(Deserialize)]
@@ -86,7 +87,13 @@ async fn attend(mut socket: WebSocket, shared: Shared, seat: OwnedSemaphorePermi
             next = outbox.next() => match next {
                 Next::Text(text) => Message::Text(text),
                 Next::Behind(run) => {
-                    shared.runs.catch_up(&run, &outbox);
+                    match &shared.station {
+                        // If it is too busy, the next dropped frame asks again.
+                        Some(station) if *run == *NAME => {
+                            station.try_send(Order { by: Arc::clone(&outbox), call: None }).ok();
+                        }
+                        Some(_) | None => shared.runs.catch_up(&run, &outbox),
+                    }
                     continue;
                 }
                 Next::Closed => break,
@@ -139,7 +146,20 @@ async fn call_of(shared: &Shared, outbox: &Arc<Outbox>, id: u64, call: &RawValue
         "watch" => runs.watch(&head.run, outbox, id).await,
         "unwatch" => runs.unwatch(&head.run, outbox, id).await,
         "pace" => runs.pace(&head.run, outbox, id, head.speed.unwrap_or(0.0)).await,
+        what if what.starts_with("operator_") => operate(shared, outbox, id, call).await,
         what if what.starts_with("run_") => runs.call(&head.run, outbox, id, call.get(), text).await,
         _ => Err("the server answers for runs; this is answered in the page".to_owned()),
     }
+}
+
+/// Passes a wish on to the attendant of the controller, and waits until it is answered.
+async fn operate(shared: &Shared, outbox: &Arc<Outbox>, id: u64, call: &RawValue) -> Result<(), String> {
+    let station =
+        shared.station.as_ref().ok_or("this server has no controller: `g7 serve --online` has one")?;
+    let wish: Wish =
+        serde_json::from_str(call.get()).map_err(|e| format!("this message means nothing: {e}"))?;
+    let (done, wait) = oneshot::channel();
+    let order = Order { by: Arc::clone(outbox), call: Some((id, wish, done)) };
+    station.try_send(order).map_err(|_| "the controller is busy: try again")?;
+    wait.await.map_err(|_| "the controller has ended".to_owned())
 }

@@ -7,6 +7,7 @@
 //!                            -> api  -> folder, drafts, watch   files
 //!                            -> live -> runs -> desk -> Page    shared runs
 //!                                <- outbox <-+
+//!                                    -> operator::Stage         a running controller (`--online`)
 //! ```
 //!
 //! # Invariants
@@ -27,7 +28,7 @@ mod folder;
 mod guard;
 pub(crate) mod listen;
 mod live;
-mod outbox;
+pub(crate) mod outbox;
 mod refusal;
 mod registry;
 mod runs;
@@ -39,16 +40,22 @@ mod watch;
 use std::net::{IpAddr, Ipv4Addr, SocketAddr};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use std::sync::mpsc::SyncSender;
 use std::time::Duration;
 
 use axum::Router;
 use axum::routing::get;
 use clap::Args;
 use tokio::net::TcpListener;
+use tokio::runtime::Runtime;
 use tokio::sync::Semaphore;
 
+use crate::attendant::Attendant;
 use crate::failure::{Failure, Verdict};
 use crate::message::talk;
+use crate::operator::{Names, Order, Stage};
+use crate::station::{self, Drive, More, Station};
+use crate::{files, sources};
 use drafts::Drafts;
 use folder::Folder;
 use guard::Guard;
@@ -69,10 +76,14 @@ Examples:
   g7 serve tank/chart.g7            a folder, with one chart opened
   g7 serve --read-only examples     for looking, not for changing
   g7 serve --host 0.0.0.0 --no-open on a machine without a screen, for others
+  g7 serve sorter.g7 --online       drives the devices of sorter.io.toml, with the page
+                                    of the operator: start, stop, values, forcing
+  g7 serve sorter.g7 --online --simulate   the same, with the plant in place of devices
 
 The address printed has a token that is made anew at each start: whoever has it
 reads and writes the charts of the folder, nobody else does, and nothing outside
-the folder is touched. Ctrl-C ends the server.")]
+the folder is touched. Ctrl-C ends the server; with --online the outputs are safe then,
+and only an address of this machine is listened at.")]
 pub(crate) struct Serve {
     /// A folder with charts, or one chart.
     #[arg(default_value = ".", value_name = "FILE or FOLDER")]
@@ -81,7 +92,7 @@ pub(crate) struct Serve {
     #[arg(long, value_name = "NUMBER")]
     port: Option<u16>,
     /// The address to listen at [default: only this machine].
-    #[arg(long, default_value_t = IpAddr::V4(Ipv4Addr::LOCALHOST), value_name = "ADDRESS")]
+    #[arg(long, visible_alias = "listen", default_value_t = IpAddr::V4(Ipv4Addr::LOCALHOST), value_name = "ADDRESS")]
     host: IpAddr,
     /// Write nothing; charts can still be viewed and run.
     #[arg(long)]
@@ -92,13 +103,23 @@ pub(crate) struct Serve {
     /// The chart to open first, as its path in the folder.
     #[arg(long, value_name = "FILE")]
     start: Option<String>,
+    #[command(flatten)]
+    drive: Drive,
+    /// With --online: the plant to use if there are several.
+    #[arg(long, value_name = "NAME", requires = "online")]
+    plant: Option<String>,
     /// Read the page from this folder (for its development).
     #[arg(long, value_name = "FOLDER", hide = true)]
     page_dir: Option<PathBuf>,
 }
 
 /// The shared data for a folder and for the place of unsaved copies.
-fn shared(args: &Serve, limits: Limits, state: Option<&Path>) -> Result<Shared, Failure> {
+fn shared(
+    args: &Serve,
+    limits: Limits,
+    state: Option<&Path>,
+    station: Option<SyncSender<Order>>,
+) -> Result<Shared, Failure> {
     let unreadable = |e| Failure::Read(args.path.clone(), e);
     let is_file = std::fs::metadata(&args.path).map_err(unreadable)?.is_file();
     let (root, first) = match (is_file, args.path.parent(), args.path.file_name()) {
@@ -128,6 +149,7 @@ fn shared(args: &Serve, limits: Limits, state: Option<&Path>) -> Result<Shared, 
         clients: Clients::default(),
         seats: Arc::new(Semaphore::new(limits.clients)),
         limits,
+        station,
     }))
 }
 
@@ -186,21 +208,35 @@ async fn bind(args: &Serve) -> Result<TcpListener, Failure> {
     })
 }
 
-/// Executes the command until Ctrl-C.
-pub(crate) fn serve(args: &Serve) -> Result<Verdict, Failure> {
-    let shared = shared(args, Limits::default(), drafts::state_folder().as_deref())?;
-    let runtime = tokio::runtime::Builder::new_multi_thread().enable_all().worker_threads(2).build();
-    let runtime = runtime.map_err(|e| Failure::Usage(format!("the server cannot start: {e}")))?;
-    let served = runtime.block_on(async {
-        let listener = bind(args).await?;
-        let bound = listener.local_addr()?;
-        let token = token()?;
-        let address = address(bound, &token);
+/// A server at work, until it is dropped.
+struct Open {
+    runtime: Option<Runtime>,
+    bound: SocketAddr,
+    token: String,
+}
+
+impl Open {
+    /// Listens, and answers from here on.
+    fn new(args: &Serve, shared: &Shared) -> Result<Open, Failure> {
+        let runtime = tokio::runtime::Builder::new_multi_thread().enable_all().worker_threads(2).build();
+        let runtime = runtime.map_err(|e| Failure::Usage(format!("the server cannot start: {e}")))?;
+        let listener = runtime.block_on(bind(args))?;
+        let (bound, token) = (listener.local_addr()?, token()?);
+        let app = app(Arc::clone(shared), Guard { token: token.clone(), bound });
+        runtime.spawn(tell_changes(Arc::clone(shared)));
+        runtime.spawn(listen::listen(listener, app));
+        Ok(Open { runtime: Some(runtime), bound, token })
+    }
+
+    /// Tells the user where the page is.
+    fn tell(&self, args: &Serve, shared: &Shared) -> Result<(), Failure> {
+        let address =
+            address(self.bound, if shared.station.is_some() { "operator" } else { "" }, &self.token);
         talk!("G7 serves {}{}", shared.title, if args.read_only { ", read-only" } else { "" });
-        if !bound.ip().is_loopback() {
+        if !self.bound.ip().is_loopback() {
             talk!("whoever in the network has this address can use these charts; it is not encrypted");
         }
-        if bound.ip().is_unspecified() {
+        if self.bound.ip().is_unspecified() {
             talk!("others put the address of this machine in place of 127.0.0.1");
         }
         print(&address)?;
@@ -208,28 +244,68 @@ pub(crate) fn serve(args: &Serve) -> Result<Verdict, Failure> {
         if !args.no_open {
             browser::open(&address);
         }
-        tokio::spawn(tell_changes(Arc::clone(&shared)));
-        let app = app(Arc::clone(&shared), Guard { token, bound });
-        tokio::select! {
-            () = listen::listen(listener, app) => {}
-            _ = tokio::signal::ctrl_c() => {}
+        Ok(())
+    }
+}
+
+impl Drop for Open {
+    /// Nothing is left incomplete, because files are written completely or not at all.
+    fn drop(&mut self) {
+        if let Some(runtime) = self.runtime.take() {
+            runtime.shutdown_background();
         }
-        Ok(Verdict::Fine)
-    });
-    // Nothing is left incomplete, because files are written completely or not at all.
-    runtime.shutdown_background();
-    served
+    }
+}
+
+/// Executes the command until Ctrl-C.
+pub(crate) fn serve(args: &Serve) -> Result<Verdict, Failure> {
+    if args.drive.online {
+        return online(args);
+    }
+    let shared = shared(args, Limits::default(), drafts::state_folder().as_deref(), None)?;
+    let open = Open::new(args, &shared)?;
+    open.tell(args, &shared)?;
+    if let Some(runtime) = &open.runtime {
+        runtime.block_on(tokio::signal::ctrl_c())?;
+    }
+    Ok(Verdict::Fine)
+}
+
+/// Serves the page of a controller, which this starts and ends.
+fn online(args: &Serve) -> Result<Verdict, Failure> {
+    if !args.host.is_loopback() {
+        let what = format!("--online drives a machine, and {} is reached from other machines", args.host);
+        return Err(Failure::Usage(format!(
+            "{what}: there are no users and no encryption yet, so it listens at 127.0.0.1 or ::1 alone"
+        )));
+    }
+    let path = files::one(&args.path)?;
+    let source = sources::load(&path, 0)?;
+    let (station, orders) = Stage::door();
+    let limits = Limits::beside_a_machine();
+    let shared = shared(args, limits, drafts::state_folder().as_deref(), Some(station))?;
+    // A port that is taken is found before anything moves.
+    let open = Open::new(args, &shared)?;
+    let more = More { plant: args.plant.as_deref(), ..More::default() };
+    let Some(Station { plan, running, sight, monitor }) = station::start(&path, &source, &args.drive, more)?
+    else {
+        return Ok(Verdict::Found);
+    };
+    open.tell(args, &shared)?;
+    let names = Names { source: &source, bench: &plan.bench, wiring: &plan.wiring };
+    let stage = Stage::new(names, sight, orders);
+    Attendant::new(names).with(monitor).on(stage).attend(running, None)
 }
 
 /// The address that the user opens.
-fn address(bound: SocketAddr, token: &str) -> String {
+fn address(bound: SocketAddr, page: &str, token: &str) -> String {
     let shown = match bound.ip() {
         // An unspecified address cannot be opened; use that of this machine.
         IpAddr::V4(ip) if ip.is_unspecified() => SocketAddr::new(Ipv4Addr::LOCALHOST.into(), bound.port()),
         IpAddr::V6(ip) if ip.is_unspecified() => SocketAddr::new(Ipv4Addr::LOCALHOST.into(), bound.port()),
         IpAddr::V4(_) | IpAddr::V6(_) => bound,
     };
-    format!("http://{shown}/?token={token}")
+    format!("http://{shown}/{page}?token={token}")
 }
 
 fn print(address: &str) -> Result<(), Failure> {

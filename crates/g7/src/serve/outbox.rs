@@ -21,7 +21,7 @@ const BYTES: usize = 4 << 20;
 
 /// The messages that wait for a client.
 #[derive(Debug, Default)]
-pub(super) struct Outbox {
+pub(crate) struct Outbox {
     inner: Mutex<Inner>,
     ring: Notify,
 }
@@ -45,7 +45,7 @@ struct Letter {
 
 /// The next thing to send.
 #[derive(Debug, PartialEq, Eq)]
-pub(super) enum Next {
+pub(crate) enum Next {
     Text(Utf8Bytes),
     /// Everything was read, but frames of this run were dropped.
     Behind(Arc<str>),
@@ -55,7 +55,7 @@ pub(super) enum Next {
 
 impl Outbox {
     /// Adds a frame of a run; it may be dropped if the client is behind.
-    pub(super) fn frame(&self, run: &Arc<str>, text: Utf8Bytes) {
+    pub(crate) fn frame(&self, run: &Arc<str>, text: Utf8Bytes) {
         let mut inner = self.lock();
         if inner.behind.contains(run) {
             return;
@@ -71,7 +71,7 @@ impl Outbox {
     }
 
     /// Adds a full frame, which contains everything that was missed.
-    pub(super) fn full(&self, run: &Arc<str>, text: Utf8Bytes) {
+    pub(crate) fn full(&self, run: &Arc<str>, text: Utf8Bytes) {
         let mut inner = self.lock();
         inner.throw_away(run);
         inner.behind.remove(run);
@@ -81,7 +81,7 @@ impl Outbox {
     }
 
     /// Adds an answer or a notice; these are never dropped.
-    pub(super) fn put(&self, text: Utf8Bytes) {
+    pub(crate) fn put(&self, text: Utf8Bytes) {
         let mut inner = self.lock();
         // One large answer is allowed; many unread ones are not.
         if inner.bytes > BYTES {
@@ -95,12 +95,12 @@ impl Outbox {
     }
 
     /// True if an answer or a notice waits; no further call is read then.
-    pub(super) fn owes(&self) -> bool {
+    pub(crate) fn owes(&self) -> bool {
         self.lock().queue.iter().any(|l| l.run.is_none())
     }
 
     /// Waits for the next thing to send.
-    pub(super) async fn next(&self) -> Next {
+    pub(crate) async fn next(&self) -> Next {
         loop {
             if let Some(next) = self.take() {
                 return next;

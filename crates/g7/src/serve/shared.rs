@@ -7,6 +7,7 @@
 //! A client that is gone is not kept: the list holds outboxes only as long as their sockets do.
 
 use std::path::PathBuf;
+use std::sync::mpsc::SyncSender;
 use std::sync::{Arc, Mutex, PoisonError, Weak};
 use std::time::Duration;
 
@@ -17,6 +18,7 @@ use super::folder::Folder;
 use super::outbox::Outbox;
 use super::runs::Runs;
 use super::watch::Watch;
+use crate::operator::Order;
 
 /// The limits of the server.
 #[derive(Clone, Copy, Debug)]
@@ -33,6 +35,14 @@ pub(super) struct Limits {
     pub(super) silence: Duration,
     /// Longest time for sending a message.
     pub(super) send: Duration,
+}
+
+impl Limits {
+    /// Beside a machine a client that has stopped is let go sooner.
+    pub(super) fn beside_a_machine() -> Limits {
+        let (ping, silence, send) = (Duration::from_secs(2), Duration::from_secs(8), Duration::from_secs(8));
+        Limits { ping, silence, send, ..Limits::default() }
+    }
 }
 
 impl Default for Limits {
@@ -63,6 +73,8 @@ pub(super) struct Inner {
     pub(super) clients: Clients,
     pub(super) seats: Arc<Semaphore>,
     pub(super) limits: Limits,
+    /// The way to a running controller.
+    pub(super) station: Option<SyncSender<Order>>,
 }
 
 pub(super) type Shared = Arc<Inner>;

@@ -2,6 +2,7 @@
 #![allow(dead_code, reason = "each test file uses a part")]
 #![allow(clippy::disallowed_methods, reason = "tests look at what was written")]
 
+pub(crate) mod broker;
 pub(crate) mod talk;
 
 use std::fs;

@@ -44,6 +44,13 @@ impl Running {
         Running::start(command, |child| Box::new(child.stderr.take().expect("piped")))
     }
 
+    /// A script that needs this module of Python; what it prints is read. `None` without the module.
+    fn python(module: &str, script: &str, arguments: &[&str]) -> Option<Running> {
+        let mut command = Command::new(g7_peers::python(module)?);
+        command.arg(g7_peers::script(script)).args(arguments);
+        Some(Running::start(command, |child| Box::new(child.stdout.take().expect("piped"))))
+    }
+
     pub(crate) fn say(&mut self, line: &str) {
         let stdin = self.stdin.as_mut().expect("open");
         writeln!(stdin, "{line}").expect("it listens");
@@ -96,9 +103,7 @@ pub(crate) struct Slave {
 impl Slave {
     /// With the arguments of the script; `None` without a module of Python.
     pub(crate) fn begin(module: &str, arguments: &[&str]) -> Option<Slave> {
-        let mut command = Command::new(g7_peers::python(module)?);
-        command.arg(g7_peers::script("modbus_slave.py")).args(arguments);
-        let mut running = Running::start(command, |child| Box::new(child.stdout.take().expect("piped")));
+        let mut running = Running::python(module, "modbus_slave.py", arguments)?;
         let place = running.line();
         Some(Slave { running, place })
     }
@@ -139,9 +144,7 @@ pub(crate) struct Master(Running);
 
 impl Master {
     pub(crate) fn start(port: u16) -> Option<Master> {
-        let mut command = Command::new(g7_peers::python("pymodbus")?);
-        command.arg(g7_peers::script("modbus_master.py")).arg(port.to_string());
-        let mut running = Running::start(command, |child| Box::new(child.stdout.take().expect("piped")));
+        let mut running = Running::python("pymodbus", "modbus_master.py", &[&port.to_string()])?;
         assert_eq!(running.line(), "connected");
         Some(Master(running))
     }

@@ -3,20 +3,13 @@
 //! Only neighbours share a request: a device may refuse a request because of one address between them
 //! that it does not have.
 
-use crate::setup::{Area, Encoding, Register};
+use crate::setup::{Area, Encoding, Place, Register};
 use crate::value::Raw;
 
 /// Most bits of a request to read (Modbus application protocol 1.1b3, 6.1), and to write (6.11).
 const BITS: (u16, u16) = (2000, 1968);
 /// Most registers of a request to read (6.3), and to write (6.12).
 const REGISTERS: (u16, u16) = (125, 123);
-
-/// A point: its place, and its form where it is a number.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Place {
-    pub(crate) register: Register,
-    pub(crate) encoding: Option<Encoding>,
-}
 
 impl Place {
     fn end(&self) -> u32 {

@@ -17,28 +17,28 @@ use tokio::runtime::{Builder, Runtime};
 use voltage_modbus::{GenericModbusClient, ModbusClient, ModbusError, ModbusTcpClient};
 
 use crate::device::{Absent, Device, Failed};
-use crate::setup::{Area, Encoding, Kind, Modbus, Register, Serial, Tcp};
+use crate::setup::{Area, Kind, Modbus, Place, Serial, Tcp};
 use crate::value::Raw;
 use crate::wiring::Wired;
 
-use blocks::{Block, Place, decode, encode, reads, writes};
+use blocks::{Block, decode, encode, reads, writes};
 use rtu::{Line, Slave};
 use server::Server;
 use shared::{duration, set};
 
-/// The clients of a machine. Those on one serial line share it.
+/// The units of a machine. Those on one serial line share it.
 #[derive(Default)]
-pub struct Clients {
+pub(crate) struct Units {
     lines: Vec<(String, Arc<Line>)>,
 }
 
-impl Clients {
+impl Units {
     /// A device that is wired.
     ///
     /// # Errors
     ///
     /// The system has no resources for it.
-    pub fn device(&mut self, wired: &Wired) -> std::io::Result<Box<dyn Device>> {
+    pub(crate) fn device(&mut self, wired: &Wired) -> std::io::Result<Box<dyn Device>> {
         if let Kind::ModbusServer(listen) = &wired.device.kind {
             return Ok(Box::new(Server::new(listen.clone(), wired)));
         }
@@ -51,7 +51,7 @@ impl Clients {
     /// # Errors
     ///
     /// The system has no resources for it.
-    pub fn client(&mut self, wired: &Wired) -> std::io::Result<Option<Client>> {
+    pub(crate) fn client(&mut self, wired: &Wired) -> std::io::Result<Option<Client>> {
         let timeout = duration(wired.device.timing.timeout);
         let (way, modbus) = match wired.device.kind.clone() {
             Kind::ModbusTcp(tcp, modbus) => (Way::Tcp(tcp, None), modbus),
@@ -59,12 +59,10 @@ impl Clients {
                 let slave = Slave { line: self.line(serial), timeout };
                 (Way::Rtu(GenericModbusClient::new(slave)), modbus)
             }
-            Kind::ModbusServer(_) => return Ok(None),
+            Kind::ModbusServer(_) | Kind::Mqtt(_) => return Ok(None),
         };
-        let inputs: Vec<Place> =
-            wired.inputs.iter().map(|i| Place { register: i.register, encoding: i.encoding }).collect();
-        let outputs =
-            wired.outputs.iter().map(|o| Place { register: o.register, encoding: o.encoding }).collect();
+        let inputs: Vec<Place> = wired.inputs.iter().filter_map(|i| i.wire.place()).collect();
+        let outputs = wired.outputs.iter().filter_map(|o| o.wire.place()).collect();
         Ok(Some(Client {
             way,
             modbus,
@@ -88,7 +86,7 @@ impl Clients {
 }
 
 /// A client of one unit.
-pub struct Client {
+pub(crate) struct Client {
     way: Way,
     modbus: Modbus,
     timeout: Duration,
@@ -106,11 +104,8 @@ enum Way {
 
 impl Client {
     /// Reads these points in place of those that are wired.
-    pub(crate) fn read_points(&mut self, points: &[(Register, Option<Encoding>)]) {
-        self.inputs = points
-            .iter()
-            .map(|(register, encoding)| Place { register: *register, encoding: *encoding })
-            .collect();
+    pub(crate) fn read_points(&mut self, points: &[Place]) {
+        self.inputs = points.to_vec();
         self.reads = reads(&self.inputs);
     }
 }

@@ -16,11 +16,11 @@ use voltage_modbus::server::{
 use voltage_modbus::{ModbusError, ModbusResult};
 
 use crate::device::{Absent, Device, Failed};
-use crate::setup::{Area, Listen};
+use crate::setup::{Area, Listen, Place};
 use crate::value::Raw;
 use crate::wiring::Wired;
 
-use super::blocks::{Place, decode, encode};
+use super::blocks::{decode, encode};
 use super::shared::{duration, set};
 
 /// A connection without a request is ended after this time, or after the silence of the io file where
@@ -68,10 +68,8 @@ pub(super) struct Server {
 impl Server {
     /// A server that does not listen yet. A point that no master has written has no value.
     pub(super) fn new(listen: Listen, wired: &Wired) -> Server {
-        let inputs: Vec<Place> =
-            wired.inputs.iter().map(|i| Place { register: i.register, encoding: i.encoding }).collect();
-        let outputs: Vec<Place> =
-            wired.outputs.iter().map(|o| Place { register: o.register, encoding: o.encoding }).collect();
+        let inputs: Vec<Place> = wired.inputs.iter().filter_map(|i| i.wire.place()).collect();
+        let outputs: Vec<Place> = wired.outputs.iter().filter_map(|o| o.wire.place()).collect();
         let tables = Tables::new(&inputs, &outputs);
         Server { listen, shared: Arc::new(Shared(Mutex::new(tables))), inputs, outputs, at_work: None }
     }

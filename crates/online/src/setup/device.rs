@@ -4,6 +4,7 @@ use std::net::SocketAddr;
 
 use g7_model::Nanos;
 
+use super::broker::{self, Broker};
 use super::table::{At, Found, Row, Table};
 
 /// A device.
@@ -26,13 +27,36 @@ pub enum Kind {
     ModbusRtu(Serial, Modbus),
     /// Masters of Modbus TCP, which this is the server of.
     ModbusServer(Listen),
+    /// A broker of MQTT 5, which this is a client of.
+    Mqtt(Box<Broker>),
 }
 
 impl Kind {
     /// The words of the file.
-    pub const WORDS: [&'static str; 3] = ["modbus-tcp", "modbus-rtu", "modbus-server"];
+    pub const WORDS: [&'static str; 4] = ["modbus-tcp", "modbus-rtu", "modbus-server", "mqtt"];
 
-    /// True if others ask, and this answers.
+    /// Its word in the file.
+    pub fn word(&self) -> &'static str {
+        let [tcp, rtu, server, mqtt] = Kind::WORDS;
+        match self {
+            Kind::ModbusTcp(..) => tcp,
+            Kind::ModbusRtu(..) => rtu,
+            Kind::ModbusServer(_) => server,
+            Kind::Mqtt(_) => mqtt,
+        }
+    }
+
+    /// How it is reached, in a few words.
+    pub fn place(&self) -> String {
+        match self {
+            Kind::ModbusTcp(Tcp { host, port }, modbus) => format!("{host}:{port} unit {}", modbus.unit),
+            Kind::ModbusRtu(serial, modbus) => format!("{} unit {}", serial.port, modbus.unit),
+            Kind::ModbusServer(listen) => listen.address.to_string(),
+            Kind::Mqtt(broker) => format!("{}:{}", broker.host, broker.port),
+        }
+    }
+
+    /// True if G7 is the server: it waits for requests and has no poll period of its own.
     pub fn is_server(&self) -> bool {
         matches!(self, Kind::ModbusServer(_))
     }
@@ -133,6 +157,7 @@ pub(super) fn read(row: &Row<'_>, found: &mut Found) -> Option<Device> {
             serial(&mut table, found).map(|serial| Kind::ModbusRtu(serial, modbus(&mut table, found)))
         }
         "modbus-server" => listen(&mut table, found).map(Kind::ModbusServer),
+        "mqtt" => broker::read(&mut table, found).map(|broker| Kind::Mqtt(Box::new(broker))),
         _ => {
             let known: Vec<String> = Kind::WORDS.iter().map(|word| format!("\"{word}\"")).collect();
             found.wrong(kind.at, format!("no kind of device is called \"{}\"", kind.value)).help =
@@ -142,7 +167,10 @@ pub(super) fn read(row: &Row<'_>, found: &mut Found) -> Option<Device> {
     };
     let timing = match &kind {
         Some(Kind::ModbusServer(_)) => SERVER,
-        Some(Kind::ModbusTcp(..) | Kind::ModbusRtu(..)) | None => timing(&mut table, found),
+        Some(Kind::Mqtt(_)) => timing(&mut table, found, BROKER),
+        Some(Kind::ModbusTcp(..) | Kind::ModbusRtu(..)) | None => {
+            timing(&mut table, found, Timing::default())
+        }
     };
     table.end(found);
     Some(Device { name, kind: kind?, timing })
@@ -207,8 +235,15 @@ fn listen(table: &mut Table<'_>, found: &mut Found) -> Option<Listen> {
     })
 }
 
-fn timing(table: &mut Table<'_>, found: &mut Found) -> Timing {
-    let usual = Timing::default();
+/// The times of a broker, which may be far away. It keeps what it was told, so nothing is repeated.
+const BROKER: Timing = Timing {
+    poll: Nanos::from_millis(20),
+    timeout: Nanos::from_millis(2_000),
+    refresh: Nanos::new(i64::MAX),
+    retry: Nanos::from_millis(2_000),
+};
+
+fn timing(table: &mut Table<'_>, found: &mut Found, usual: Timing) -> Timing {
     let mut time = |key, usual: Nanos, least: Nanos| {
         table.duration(found, key, least, Nanos::HOUR).map_or(usual, |time| time.value)
     };
@@ -224,7 +259,7 @@ fn timing(table: &mut Table<'_>, found: &mut Found) -> Timing {
 pub(super) fn one_line_each(devices: &[Device], found: &mut Found) {
     let lines = devices.iter().filter_map(|d| match &d.kind {
         Kind::ModbusRtu(serial, _) => Some((d, serial)),
-        Kind::ModbusTcp(..) | Kind::ModbusServer(_) => None,
+        Kind::ModbusTcp(..) | Kind::ModbusServer(_) | Kind::Mqtt(_) => None,
     });
     for (k, (device, serial)) in lines.clone().enumerate() {
         let other = lines.clone().take(k).find(|(_, s)| s.port == serial.port && *s != serial);
@@ -245,7 +280,7 @@ pub(super) fn one_line_each(devices: &[Device], found: &mut Found) {
 pub(super) fn one_address_each(devices: &[Device], found: &mut Found) {
     let servers = devices.iter().filter_map(|d| match &d.kind {
         Kind::ModbusServer(listen) => Some((d, listen.address)),
-        Kind::ModbusTcp(..) | Kind::ModbusRtu(..) => None,
+        Kind::ModbusTcp(..) | Kind::ModbusRtu(..) | Kind::Mqtt(_) => None,
     });
     for (k, (device, address)) in servers.clone().enumerate() {
         if let Some((first, _)) = servers.clone().take(k).find(|(_, other)| *other == address) {

@@ -19,6 +19,7 @@
 //!
 //! Reading knows nothing of a chart; `wiring` holds the two together.
 
+mod broker;
 mod device;
 mod point;
 mod table;
@@ -28,9 +29,11 @@ use std::net::SocketAddr;
 use g7_model::{FileId, Nanos, Problem, Span};
 use toml::de::{DeTable, DeValue};
 
+pub(crate) use broker::publishable;
+pub use broker::{Broker, Message, Origin, Password, Secret, Sparkplug};
 pub(crate) use device::SERVER;
 pub use device::{Device, Kind, Listen, Modbus, Parity, Serial, Tcp, Timing};
-pub use point::{Area, Encoding, Point, Register};
+pub use point::{Area, Encoding, Place, Point, Register};
 pub use table::At;
 
 use table::{Found, Row, Table};
@@ -138,6 +141,8 @@ pub struct Channel {
     pub offset: Option<At<f64>>,
     /// An input while its value is bad.
     pub bad: At<Bad>,
+    /// How the messages of a topic are used.
+    pub message: Message,
 }
 
 /// Reads an io file. What is wrong is left out and told.
@@ -163,6 +168,19 @@ pub fn read(text: &str, file: FileId) -> (Setup, Vec<Problem>) {
 /// A sentence that says what is wrong with it.
 pub fn read_point(text: &str) -> Result<Point, String> {
     point::of(text)
+}
+
+/// Gets the passwords that the file names. `from` gives the bytes of a file or variable, or says why
+/// not.
+pub fn read_passwords(
+    setup: &mut Setup,
+    from: impl FnMut(&Origin) -> Result<Vec<u8>, String>,
+) -> Vec<Problem> {
+    let brokers = setup.devices.iter_mut().filter_map(|device| match &mut device.kind {
+        Kind::Mqtt(broker) => Some(broker.as_mut()),
+        Kind::ModbusTcp(..) | Kind::ModbusRtu(..) | Kind::ModbusServer(_) => None,
+    });
+    broker::read_passwords(brokers, from)
 }
 
 fn setup(table: &DeTable<'_>, found: &mut Found) -> Setup {
@@ -225,7 +243,18 @@ fn channel(row: &Row<'_>, input: bool, found: &mut Found) -> Option<Channel> {
         let (device, point) = point::read(text, row.value_at, found)?;
         let bad = At::new(Bad::Hold, row.at);
         let at = row.value_at;
-        return Some(Channel { variable, device, point, at, encoding: None, scale: None, offset: None, bad });
+        let message = Message::default();
+        return Some(Channel {
+            variable,
+            device,
+            point,
+            at,
+            encoding: None,
+            scale: None,
+            offset: None,
+            bad,
+            message,
+        });
     }
     let Some(table) = row.value.as_table() else {
         found.wrong(row.value_at, format!("`{}` is wired to a text or a table", row.name)).help =
@@ -236,6 +265,7 @@ fn channel(row: &Row<'_>, input: bool, found: &mut Found) -> Option<Channel> {
     let text = table.needed(found, "at", "device.point");
     let encoding = table.word(found, "as", Encoding::WORDS);
     let (scale, offset) = (table.number(found, "scale"), table.number(found, "offset"));
+    let message = broker::message(&mut table, input, found);
     let bad = if input { table.value(found, "bad") } else { None };
     let bad = match bad {
         None => At::new(Bad::Hold, row.at),
@@ -248,7 +278,7 @@ fn channel(row: &Row<'_>, input: bool, found: &mut Found) -> Option<Channel> {
     table.end(found);
     let text = text?;
     let (device, point) = point::read(&text.value, text.at, found)?;
-    Some(Channel { variable, device, point, at: text.at, encoding, scale, offset, bad })
+    Some(Channel { variable, device, point, at: text.at, encoding, scale, offset, bad, message })
 }
 
 /// Reads the policy for an input whose value is bad.

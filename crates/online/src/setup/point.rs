@@ -2,6 +2,7 @@
 
 use g7_model::Span;
 
+use super::broker::topic_name;
 use super::table::{At, Found};
 
 /// A point of a device.
@@ -9,6 +10,10 @@ use super::table::{At, Found};
 pub enum Point {
     /// A bit or register of Modbus.
     Modbus(Register),
+    /// A topic of MQTT.
+    Topic(String),
+    /// A metric of Sparkplug; without a name it has that of the variable.
+    Metric(Option<String>),
     /// True while the device answers.
     Good,
 }
@@ -103,6 +108,15 @@ impl Encoding {
     }
 }
 
+/// A point of Modbus: its bit or first register, and its form where it is a number.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Place {
+    /// The bit, or the first register.
+    pub register: Register,
+    /// How registers hold the number; `None` for a bit.
+    pub encoding: Option<Encoding>,
+}
+
 impl std::fmt::Display for Register {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self.bit {
@@ -116,6 +130,8 @@ impl std::fmt::Display for Point {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
             Point::Modbus(register) => register.fmt(f),
+            Point::Topic(topic) => write!(f, "topic({topic})"),
+            Point::Metric(name) => write!(f, "metric({})", name.as_deref().unwrap_or("")),
             Point::Good => f.write_str("good()"),
         }
     }
@@ -131,7 +147,7 @@ pub(super) fn read(text: &str, at: Span, found: &mut Found) -> Option<(At<String
             let what = why.unwrap_or_else(|| format!("\"{text}\" is no point of a device"));
             found.wrong(at, what).help = Some(
                 "write the device and its point: \"line1.coil(2)\", \"line1.holding(4)\", \
-                 \"line1.holding(4.3)\" for one bit, \"line1.good()\""
+                 \"line1.holding(4.3)\" for one bit, \"broker.topic(plant/level)\", \"line1.good()\""
                     .to_owned(),
             );
             None
@@ -164,6 +180,11 @@ fn point(word: &str, argument: &str) -> Result<Point, String> {
         } else {
             Err("`good()` has no argument".to_owned())
         };
+    }
+    match word {
+        "topic" => return topic_name(argument).map(|()| Point::Topic(argument.to_owned())),
+        "metric" => return Ok(Point::Metric(Some(argument.to_owned()).filter(|name| !name.is_empty()))),
+        _ => {}
     }
     let Some((_, area)) = Area::WORDS.iter().find(|(name, _)| *name == word) else {
         return Err(format!("no point is called `{word}`"));

@@ -113,6 +113,11 @@ impl<'t> Table<'t> {
         self.read(found, key, "a number", number)
     }
 
+    /// True or false.
+    pub(super) fn flag(&mut self, found: &mut Found, key: &'static str) -> Option<At<bool>> {
+        self.read(found, key, "true or false", DeValue::as_bool)
+    }
+
     /// A duration within limits.
     pub(super) fn duration(
         &mut self,

@@ -2,9 +2,9 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use g7_host::{Kind, Value, read_text};
+use g7_host::{Value, read_text};
 use g7_model::{Nanos, Type};
-use g7_rig::{Activity, Item, Role};
+use g7_rig::{Activity, Item, Role, values};
 use serde::Serialize;
 
 use super::running::Run;
@@ -111,7 +111,7 @@ fn frame(run: &mut Run, full: bool, times: bool) -> Frame {
         times: times.then(|| step_times(run, &active)),
         enabled: marks,
         cleared: std::mem::take(&mut run.cleared).into_iter().collect(),
-        values: changed.map(|((i, item), v)| (i, shown(v, item.kind), v.number(item.kind))).collect(),
+        values: changed.map(|((i, item), v)| (i, values::shown(v, item.kind), v.number(item.kind))).collect(),
         forced: (0u32..)
             .zip(&forced)
             .filter(|(i, f)| sent.forced.get(*i as usize).copied().unwrap_or(false) != **f)
@@ -192,16 +192,4 @@ fn view(run: &mut Run) -> Vec<Show> {
 /// Rounds to four decimals; smaller changes are not visible in a picture.
 fn rounded(x: f64) -> f64 {
     if x.is_finite() { (x * 1e4).round() / 1e4 } else { 0.0 }
-}
-
-/// A value as text for the user; numbers have at most four decimals.
-pub(super) fn shown(value: &Value, kind: Kind) -> String {
-    let real = matches!(kind, Kind::Real | Kind::Lreal);
-    let x = value.number(kind);
-    if !real || !x.is_finite() || x != 0.0 && !(1e-3..1e9).contains(&x.abs()) {
-        return value.show(kind);
-    }
-    let text = format!("{x:.4}");
-    let text = text.trim_end_matches('0').trim_end_matches('.');
-    if text == "-0" { "0".to_owned() } else { text.to_owned() }
 }

@@ -4,9 +4,9 @@ use g7_host::{Kind, Recording, write_csv, write_vcd};
 use g7_model::Nanos;
 use serde::Serialize;
 
-use super::frame::shown;
 use super::running::Run;
 use super::times::time;
+use g7_rig::values::shown;
 
 /// The lanes of a chronogram.
 #[derive(Debug, Serialize)]

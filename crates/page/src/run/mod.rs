@@ -20,6 +20,7 @@ mod times;
 mod wish;
 
 pub(crate) use lanes::Form;
+pub use places::Places;
 pub(crate) use running::Run;
 pub(crate) use start::start;
 pub(crate) use wish::Start;

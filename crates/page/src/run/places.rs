@@ -9,7 +9,7 @@ use crate::ids::{self, Thing};
 
 /// The ids of the parts of a program, by their numbers in frames.
 #[derive(Debug, Default)]
-pub(super) struct Places {
+pub struct Places {
     pub(super) steps: Vec<String>,
     pub(super) transitions: Vec<String>,
     /// The number of the transition with each rank.
@@ -17,7 +17,8 @@ pub(super) struct Places {
 }
 
 impl Places {
-    pub(super) fn new(source: &Source, bench: &Bench) -> Places {
+    /// The ids for a bench that was built from this source.
+    pub fn new(source: &Source, bench: &Bench) -> Places {
         let mut steps: BTreeMap<Span, String> = BTreeMap::new();
         let mut places = Places::default();
         let mut numbers: BTreeMap<Span, u32> = BTreeMap::new();
@@ -41,8 +42,18 @@ impl Places {
         places
     }
 
+    /// The ids of the steps of the bench, in its order.
+    pub fn steps(&self) -> &[String] {
+        &self.steps
+    }
+
+    /// The ids of the transitions.
+    pub fn transitions(&self) -> &[String] {
+        &self.transitions
+    }
+
     /// The number of the transition with this rank.
-    pub(super) fn transition(&self, rank: u32) -> Option<u32> {
+    pub fn transition(&self, rank: u32) -> Option<u32> {
         self.ranks.get(rank as usize).copied().flatten()
     }
 

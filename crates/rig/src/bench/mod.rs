@@ -258,6 +258,24 @@ impl Bench {
         }
     }
 
+    /// The value of an item of the charts in a state.
+    pub fn value_in(&self, state: &State, item: &Item) -> Value {
+        read(state, item)
+    }
+
+    /// The safe value of an output, that of its first word; `None` for anything else.
+    pub fn safe(&self, item: &Item) -> Option<u64> {
+        let tables = self.compiled.program.tables();
+        let index = item.addr.saturating_sub(tables.outputs.start);
+        (item.role == Role::Output).then(|| tables.safe.get(index as usize).copied().unwrap_or(0))
+    }
+
+    /// The one word of the charts that forcing the item writes; `None` where it is no single word, or one
+    /// of the plant.
+    pub fn force_of(&self, item: &Item) -> Option<Force> {
+        if item.kind == Kind::Text { None } else { force(item, 0) }
+    }
+
     /// Ends the force on an item.
     pub fn release(&self, runner: &mut Runner, item: &Item) {
         for at in 0..item.words {

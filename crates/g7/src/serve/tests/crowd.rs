@@ -100,6 +100,8 @@ async fn garbage_is_answered_and_forgotten() {
         json!({ "do": "run_set", "run": "a" }),
         json!({ "do": "run_lanes", "run": "a", "signals": [0, 1, 99], "from_ms": "x", "to_ms": null }),
         json!({ "do": "watch" }),
+        json!({ "do": "operator_run" }),
+        json!({ "do": "operator_watch" }),
         json!({ "do": "pace", "run": "none", "speed": 1.0 }),
         json!({ "do": "pace", "run": "a", "speed": "fast" }),
     ] {

@@ -204,9 +204,12 @@ async fn unsaved_copies_outlive_the_server() {
         read_only: false,
         no_open: true,
         start: None,
+        drive: Drive { online: false, io: None, simulate: None },
+        plant: None,
         page_dir: None,
     };
-    let again = shared(&args, Limits::default(), Some(&server.root.join("state"))).expect("the same folder");
+    let again =
+        shared(&args, Limits::default(), Some(&server.root.join("state")), None).expect("the same folder");
     let found: Vec<String> = again.drafts.list().into_iter().map(|d| d.path).collect();
     assert_eq!(found, ["chart.g7", "not-there-yet.g7"]);
     again.drafts.drop("chart.g7").expect("dropped");

@@ -110,10 +110,12 @@ impl Server {
             read_only: false,
             no_open: true,
             start: None,
+            drive: Drive { online: false, io: None, simulate: None },
+            plant: None,
             page_dir: Some(root.join("charts")),
         };
         change(&mut args);
-        let shared = shared(&args, limits, Some(&root.join("state"))).expect("a folder to serve");
+        let shared = shared(&args, limits, Some(&root.join("state")), None).expect("a folder to serve");
         let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, 0)).await.expect("a port");
         let bound = listener.local_addr().expect("an address");
         let token = token().expect("a token");

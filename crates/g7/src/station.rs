@@ -1,15 +1,17 @@
-//! `g7 run --online`: the chart drives the devices of its io file, until it is told to end.
+//! A controller with all that belongs to it, from its files: for `run --online` and for
+//! `serve --online`.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
-use g7_model::Nanos;
-use g7_online::{Clients, Command, KeepError, Options, RealDisk, Slots, Started};
+use clap::Args;
+use g7_model::{Nanos, ProfileName};
+use g7_online::{Clients, Command, KeepError, Options, RealDisk, Running, Sight, Slots, Started};
 
-use crate::attendant::{Attendant, HELP, refused};
-use crate::cli::Run;
-use crate::failure::{Failure, Verdict, plain};
+use crate::attendant::refused;
+use crate::failure::{Failure, plain};
 use crate::message::talk;
 use crate::monitor::Monitor;
+use crate::operator::HELP;
 use crate::sources::Source;
 use crate::style;
 use crate::wiring::{self, Plan, Wanted};
@@ -17,15 +19,52 @@ use crate::wiring::{self, Plan, Wanted};
 /// Periods without a step after which the watchdog trips, and the least time for them.
 const WATCHDOG: (i64, Nanos) = (10, Nanos::from_millis(100));
 
-pub(super) fn run(path: &Path, source: &Source, args: &Run) -> Result<Verdict, Failure> {
+/// The arguments that put a chart on line.
+#[derive(Args, Debug)]
+pub(crate) struct Drive {
+    /// Drive real devices, those of the io file beside the chart.
+    #[arg(long)]
+    pub(crate) online: bool,
+    /// With --online: the io file [default: chart.io.toml for chart.g7].
+    #[arg(long, value_name = "FILE", requires = "online")]
+    pub(crate) io: Option<PathBuf>,
+    /// With --online: take the plant in place of these devices, or of all.
+    #[arg(long, value_name = "DEVICES", requires = "online", num_args = 0.., value_delimiter = ',')]
+    pub(crate) simulate: Option<Vec<String>>,
+}
+
+/// The other arguments that change how a chart is driven.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct More<'a> {
+    pub(crate) profile: Option<ProfileName>,
+    pub(crate) scan: Option<Nanos>,
+    pub(crate) plant: Option<&'a str>,
+    pub(crate) seed: u64,
+}
+
+/// A controller that works.
+pub(crate) struct Station {
+    pub(crate) plan: Plan,
+    pub(crate) running: Running,
+    pub(crate) sight: Sight,
+    pub(crate) monitor: Option<Monitor>,
+}
+
+/// Starts the controller of a chart, or prints the problems of its files.
+pub(crate) fn start(
+    path: &Path,
+    source: &Source,
+    drive: &Drive,
+    more: More<'_>,
+) -> Result<Option<Station>, Failure> {
     let wanted = Wanted {
-        io: args.io.as_deref(),
-        simulate: args.simulate.as_deref(),
-        plant: args.plant.as_deref(),
-        profile: args.profile,
-        scan: args.scan,
+        io: drive.io.as_deref(),
+        simulate: drive.simulate.as_deref(),
+        plant: more.plant,
+        profile: more.profile,
+        scan: more.scan,
     };
-    let Some(plan) = wiring::plan(path, source, &wanted)? else { return Ok(Verdict::Found) };
+    let Some(plan) = wiring::plan(path, source, &wanted)? else { return Ok(None) };
     let Plan { bench, setup, wiring, .. } = &plan;
     if !wiring.unwired.is_empty() {
         talk!("{}note:{:#} no device has {}", style::WARN, style::WARN, wiring.unwired.join(", "));
@@ -36,10 +75,11 @@ pub(super) fn run(path: &Path, source: &Source, args: &Run) -> Result<Verdict, F
             Failure::Usage(format!("cannot listen at {} for `metrics`: {}", at.value, plain(&e)))
         })?),
     };
-    let (runner, slots) = kept(&plan, g7_online::runner(bench, wiring, args.seed))?;
+    let (runner, slots) = kept(&plan, g7_online::runner(bench, wiring, more.seed))?;
     let mut clients = Clients::default();
     let mut machine = g7_online::assemble(runner, wiring, |wired| clients.device(wired)).map_err(refused)?;
     let kept = slots.map(|slots| machine.keep(bench, slots));
+    let sight = machine.show();
     let watchdog = setup.controller.watchdog.as_ref().map(|w| w.value);
     let options = Options {
         watchdog: watchdog.unwrap_or((bench.period * WATCHDOG.0).max(WATCHDOG.1)),
@@ -51,7 +91,7 @@ pub(super) fn run(path: &Path, source: &Source, args: &Run) -> Result<Verdict, F
     } else {
         talk!("stopped; {HELP}");
     }
-    Attendant::new(source, bench, wiring).with(monitor).attend(running, args.duration)
+    Ok(Some(Station { plan, running, sight, monitor }))
 }
 
 /// Opens the file of the values that are kept, and starts the run with them.

@@ -1,0 +1,97 @@
+//! The names of what a controller tells by numbers.
+
+use g7_host::{Force, Halt};
+use g7_model::Nanos;
+use g7_online::{Command, Forced, Reason, Target, Wired, Wiring};
+use g7_rig::{Bench, Item, Role, Source};
+
+use super::order::Wish;
+use crate::values;
+
+/// A chart and its wiring, for names.
+#[derive(Clone, Copy)]
+pub(crate) struct Names<'a> {
+    pub(crate) source: &'a Source,
+    pub(crate) bench: &'a Bench,
+    pub(crate) wiring: &'a Wiring,
+}
+
+impl<'a> Names<'a> {
+    /// The name of a device.
+    pub(crate) fn device(self, device: usize) -> &'a str {
+        self.wiring.devices.get(device).map_or("", |wired| &wired.device.name.value)
+    }
+
+    pub(crate) fn wired(self, device: usize) -> Option<&'a Wired> {
+        self.wiring.devices.get(device)
+    }
+
+    /// The name of what a device gives.
+    pub(crate) fn input(self, target: Target) -> &'a str {
+        let is = |item: &&Item| match target {
+            Target::Input(index) => item.role == Role::Input(index),
+            Target::Word(addr) => item.role != Role::Plant && item.addr == addr.0,
+        };
+        self.bench.items.iter().find(is).map_or("", |item| &item.name)
+    }
+
+    /// The forced variable.
+    pub(crate) fn forced(self, what: Force) -> Option<&'a Item> {
+        self.bench.items.iter().find(|item| self.bench.force_of(item) == Some(what))
+    }
+
+    /// The name of a forced variable, and its value as text.
+    pub(crate) fn value_of(self, force: Forced) -> (&'a str, String) {
+        let Some(item) = self.forced(force.what) else { return ("", String::new()) };
+        (&item.name, g7_rig::values::shown(&g7_host::Value::Word(force.word), item.kind))
+    }
+
+    /// Why the charts or the plant ended, with the place in the text.
+    pub(crate) fn halt(self, halt: Halt) -> String {
+        let place = self.bench.halt_place(halt).map(|at| format!("{}: ", self.source.place(at)));
+        let kind = match halt {
+            Halt::Charts(fault) => fault.kind.to_string(),
+            Halt::Plant(fault) => format!("the plant: {}", fault.kind),
+        };
+        format!("{}{kind}", place.unwrap_or_default())
+    }
+
+    /// The reason of a fault in a sentence.
+    pub(crate) fn reason(self, reason: Reason) -> String {
+        match reason {
+            Reason::Watchdog => "a scan took longer than the watchdog allows".to_owned(),
+            Reason::Input(target) => format!("the input `{}` is bad", self.input(target)),
+            Reason::Halt(halt) => self.halt(halt),
+        }
+    }
+
+    /// The command for a wish; `None` for a wish that the controller does not hear of.
+    pub(crate) fn command(self, wish: &Wish) -> Result<Option<Command>, String> {
+        Ok(Some(match wish {
+            Wish::Run => Command::Run,
+            Wish::Stop => Command::Stop,
+            Wish::Acknowledge => Command::Acknowledge,
+            Wish::Cold => Command::Restart(g7_host::Start::Cold),
+            Wish::Force { name, value, seconds } => {
+                let (item, what) = self.forcible(name)?;
+                let word = values::read(value, item.kind)?.word();
+                Command::Force(what, word, Nanos::SECOND * i64::from(*seconds))
+            }
+            Wish::Release { name } => Command::Release(self.forcible(name)?.1),
+            Wish::ReleaseAll => Command::ReleaseAll,
+            Wish::Watch | Wish::Seen { .. } => return Ok(None),
+        }))
+    }
+
+    /// A variable that can be forced.
+    fn forcible(self, name: &str) -> Result<(&'a Item, Force), String> {
+        let item = self.bench.item(name).ok_or_else(|| self.bench.unknown(name))?;
+        match self.bench.force_of(item) {
+            Some(what) => Ok((item, what)),
+            None if item.role == Role::Plant => {
+                Err(format!("`{name}` is a state of the plant: it cannot be forced"))
+            }
+            None => Err(format!("`{name}` is a text: it cannot be forced while a machine runs")),
+        }
+    }
+}

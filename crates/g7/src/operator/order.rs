@@ -1,0 +1,137 @@
+//! A wish of a person, from a line or from the page.
+
+use std::sync::Arc;
+
+use g7_model::Nanos;
+use g7_online::USUAL;
+use serde::Deserialize;
+use tokio::sync::oneshot;
+
+use crate::serve::outbox::Outbox;
+use crate::values;
+
+/// The name under which outboxes keep the frames of the controller. No run has it: names of runs have
+/// no control letters.
+pub(crate) const NAME: &str = "\u{1}operator";
+
+/// The commands that a line can be, for a message.
+pub(crate) const HELP: &str = "commands: run, stop, ack (ends a fault), cold (initial situation), \
+    force NAME := VALUE for TIME, release NAME, release (all), status, quit";
+
+/// A wish of a person.
+#[derive(Clone, Debug, PartialEq, Eq, Deserialize)]
+#[serde(tag = "do")]
+pub(crate) enum Wish {
+    /// See all, and every change from here on.
+    #[serde(rename = "operator_watch")]
+    Watch,
+    /// Make scans.
+    #[serde(rename = "operator_run")]
+    Run,
+    /// Make no more scans.
+    #[serde(rename = "operator_stop")]
+    Stop,
+    /// End a fault.
+    #[serde(rename = "operator_ack")]
+    Acknowledge,
+    /// Go back to the initial situation.
+    #[serde(rename = "operator_cold")]
+    Cold,
+    /// Force a variable, for so many seconds.
+    #[serde(rename = "operator_force")]
+    Force {
+        name: String,
+        value: String,
+        #[serde(default = "usual")]
+        seconds: u32,
+    },
+    /// Take a force back.
+    #[serde(rename = "operator_release")]
+    Release { name: String },
+    /// Take all forces back.
+    #[serde(rename = "operator_release_all")]
+    ReleaseAll,
+    /// An alarm was seen, or all up to this one.
+    #[serde(rename = "operator_seen")]
+    Seen { event: u64, all: bool },
+}
+
+fn usual() -> u32 {
+    u32::try_from(USUAL.count() / Nanos::SECOND.count()).unwrap_or(u32::MAX)
+}
+
+/// A wish of a client.
+pub(crate) struct Order {
+    pub(crate) by: Arc<Outbox>,
+    /// The number of the call; `None` for a client that missed frames and gets a full one.
+    pub(crate) call: Option<(u64, Wish, oneshot::Sender<()>)>,
+}
+
+impl Wish {
+    /// Reads a line; `None` where it is no wish of this kind.
+    pub(crate) fn of_line(line: &str) -> Option<Result<Wish, String>> {
+        let (word, rest) = line.split_once(char::is_whitespace).unwrap_or((line, ""));
+        let rest = rest.trim();
+        let plain = |wish| if rest.is_empty() { Ok(wish) } else { Err(format!("`{word}` stands alone")) };
+        Some(match word {
+            "run" => plain(Wish::Run),
+            "stop" => plain(Wish::Stop),
+            "ack" => plain(Wish::Acknowledge),
+            "cold" => plain(Wish::Cold),
+            "force" => forced(rest),
+            "release" if rest.is_empty() => Ok(Wish::ReleaseAll),
+            "release" => Ok(Wish::Release { name: rest.to_owned() }),
+            _ => return None,
+        })
+    }
+}
+
+/// Reads `NAME := VALUE for TIME`.
+fn forced(text: &str) -> Result<Wish, String> {
+    let (name, rest) = text.split_once('=').ok_or("expected `force NAME := VALUE for TIME`")?;
+    let (value, seconds) = match rest.rsplit_once(" for ") {
+        None => (rest, usual()),
+        Some((value, time)) => {
+            let time = values::duration(time)?;
+            let seconds = time.count() / Nanos::SECOND.count();
+            if Nanos::SECOND * seconds != time {
+                return Err("the time of a force is in whole seconds".to_owned());
+            }
+            (value, u32::try_from(seconds).unwrap_or(u32::MAX))
+        }
+    };
+    let name = name.trim_end().trim_end_matches(':').trim().to_owned();
+    Ok(Wish::Force { name, value: value.trim().to_owned(), seconds })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lines_are_wishes_with_all_that_they_say() {
+        let force = |name: &str, value: &str, seconds| {
+            let (name, value) = (name.to_owned(), value.to_owned());
+            Some(Ok(Wish::Force { name, value, seconds }))
+        };
+        assert_eq!(Wish::of_line("run"), Some(Ok(Wish::Run)));
+        assert_eq!(Wish::of_line("force go := 1"), force("go", "1", 600));
+        assert_eq!(Wish::of_line("force level=2.5 for 1m30s"), force("level", "2.5", 90));
+        assert_eq!(Wish::of_line("release go"), Some(Ok(Wish::Release { name: "go".to_owned() })));
+        assert_eq!(Wish::of_line("release"), Some(Ok(Wish::ReleaseAll)));
+        for wrong in ["run now", "force go", "force go := 1 for soon", "force go := 1 for 100ms"] {
+            assert!(matches!(Wish::of_line(wrong), Some(Err(_))), "{wrong}");
+        }
+        for other in ["", "status", "go := 1", "running"] {
+            assert_eq!(Wish::of_line(other), None, "{other}");
+        }
+    }
+
+    #[test]
+    fn the_page_names_the_time_of_a_force_or_gets_the_usual_one() {
+        let read = |text: &str| serde_json::from_str::<Wish>(text).expect("a wish");
+        let usual = read(r#"{"do":"operator_force","name":"a","value":"1"}"#);
+        assert!(matches!(usual, Wish::Force { seconds: 600, .. }), "{usual:?}");
+        assert!(serde_json::from_str::<Wish>(r#"{"do":"operator_what"}"#).is_err());
+    }
+}

@@ -1,0 +1,202 @@
+//! Something that happened, for the terminal and for the page.
+
+use g7_host::Force;
+use g7_online::{Forced, Happened, Mode, Reason};
+use serde_json::{Value, json};
+
+use super::names::Names;
+use crate::style;
+
+/// Something that happened to a controller.
+#[derive(Clone, Debug)]
+pub(crate) enum Told {
+    /// The mode is another one.
+    Mode(Mode),
+    /// So many scans came too late and were left out.
+    Missed(u64),
+    /// A value is forced.
+    Forced(Forced),
+    /// A force was taken back.
+    Released(Force),
+    /// The time of a force is over.
+    Ended(Force),
+    /// Something happened at a device, by number.
+    Device(usize, Happened),
+    /// The scan has no priority, and why.
+    NoPriority(String),
+    /// Values cannot be saved, and why.
+    Unsaved(String),
+}
+
+/// How much an event concerns an operator.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Level {
+    /// It is only noted.
+    Note,
+    /// It waits until someone has seen it.
+    Warning,
+    /// The same, and something has failed.
+    Alarm,
+}
+
+impl Level {
+    pub(crate) fn word(self) -> &'static str {
+        match self {
+            Level::Note => "note",
+            Level::Warning => "warning",
+            Level::Alarm => "alarm",
+        }
+    }
+}
+
+impl Told {
+    pub(crate) fn level(&self, names: Names<'_>) -> Level {
+        match self {
+            Told::Mode(Mode::Fault(_)) | Told::Unsaved(_) => Level::Alarm,
+            Told::Device(device, Happened::Down(_)) => match names.wired(*device) {
+                Some(wired) if wired.device.kind.is_server() => Level::Warning,
+                Some(_) | None => Level::Alarm,
+            },
+            Told::Device(_, Happened::NoInput(..) | Happened::NoOutput(..))
+            | Told::Missed(_)
+            | Told::Ended(_) => Level::Warning,
+            Told::Mode(Mode::Run | Mode::Stop)
+            | Told::Forced(_)
+            | Told::Released(_)
+            | Told::NoPriority(_)
+            | Told::Device(..) => Level::Note,
+        }
+    }
+
+    /// The thing that fails or is well again; an event of one thing ends the alarms of the same.
+    pub(crate) fn thing(&self) -> Option<(&'static str, usize, usize)> {
+        match self {
+            Told::Mode(_) => Some(("mode", 0, 0)),
+            Told::Device(device, Happened::Up | Happened::Down(_)) => Some(("device", *device, 0)),
+            Told::Device(device, Happened::NoInput(k, _) | Happened::Input(k)) => {
+                Some(("input", *device, *k))
+            }
+            Told::Device(device, Happened::NoOutput(k, _) | Happened::Output(k)) => {
+                Some(("output", *device, *k))
+            }
+            _ => None,
+        }
+    }
+
+    /// The event for the page: its kind and what belongs to it.
+    pub(crate) fn json(&self, names: Names<'_>) -> Value {
+        match self {
+            Told::Mode(Mode::Stop) => json!({ "kind": "stop" }),
+            Told::Mode(Mode::Run) => json!({ "kind": "run" }),
+            Told::Mode(Mode::Fault(reason)) => {
+                json!({ "kind": "fault", "reason": reason_json(names, *reason) })
+            }
+            Told::Missed(n) => json!({ "kind": "missed", "count": n }),
+            Told::Forced(force) => {
+                let (name, value) = names.value_of(*force);
+                json!({ "kind": "forced", "name": name, "value": value })
+            }
+            Told::Released(what) => json!({ "kind": "released", "name": name(names, *what) }),
+            Told::Ended(what) => json!({ "kind": "ended", "name": name(names, *what) }),
+            Told::NoPriority(why) => json!({ "kind": "no-priority", "why": why }),
+            Told::Unsaved(why) => json!({ "kind": "unsaved", "why": why }),
+            Told::Device(device, happened) => device_json(names, *device, happened),
+        }
+    }
+
+    /// The event for the terminal; `None` for one that its device does not have any more.
+    pub(crate) fn text(&self, names: Names<'_>) -> Option<String> {
+        let (bad, warn) = (style::BAD, style::WARN);
+        Some(match self {
+            Told::Mode(mode) => mode_text(names, *mode),
+            Told::Missed(n) => format!("{n} scans came too late and were left out"),
+            Told::Forced(force) => {
+                let (name, value) = names.value_of(*force);
+                format!("`{name}` is {warn}forced{warn:#} to {value} until {:.0}s", seconds(force.until))
+            }
+            Told::Released(what) => format!("`{}` is no longer forced", name(names, *what)),
+            Told::Ended(what) => {
+                format!("`{}` is no longer forced: its time is over", name(names, *what))
+            }
+            Told::NoPriority(why) => format!("{warn}note:{warn:#} {why}"),
+            Told::Unsaved(why) => format!("{bad}values cannot be saved:{bad:#} {why}"),
+            Told::Device(device, happened) => return device_text(names, *device, happened),
+        })
+    }
+}
+
+fn seconds(time: g7_model::Nanos) -> f64 {
+    time.count() as f64 / 1e9
+}
+
+fn name<'a>(names: Names<'a>, what: Force) -> &'a str {
+    names.forced(what).map_or("", |item| &item.name)
+}
+
+/// A fault for the page.
+pub(crate) fn reason_json(names: Names<'_>, reason: Reason) -> Value {
+    match reason {
+        Reason::Watchdog => json!({ "kind": "watchdog" }),
+        Reason::Input(target) => json!({ "kind": "input", "name": names.input(target) }),
+        Reason::Halt(halt) => json!({ "kind": "halt", "why": names.halt(halt) }),
+    }
+}
+
+/// The mode for the terminal.
+pub(crate) fn mode_text(names: Names<'_>, mode: Mode) -> String {
+    let (good, bad) = (style::GOOD, style::BAD);
+    match mode {
+        Mode::Stop => "stopped".to_owned(),
+        Mode::Run => format!("{good}running{good:#}"),
+        Mode::Fault(reason) => {
+            format!("{bad}fault:{bad:#} {}; outputs are safe (`ack` ends it)", names.reason(reason))
+        }
+    }
+}
+
+/// The variable of an event of a device.
+fn channel<'a>(names: Names<'a>, device: usize, happened: &Happened) -> &'a str {
+    let Some(wired) = names.wired(device) else { return "" };
+    match happened {
+        Happened::NoInput(k, _) | Happened::Input(k) => wired.inputs.get(*k).map_or("", |i| &i.name),
+        Happened::NoOutput(k, _) | Happened::Output(k) | Happened::Limited(k) => {
+            wired.outputs.get(*k).map_or("", |o| &o.name)
+        }
+        Happened::Up | Happened::Down(_) => "",
+    }
+}
+
+fn device_json(names: Names<'_>, device: usize, happened: &Happened) -> Value {
+    let server = names.wired(device).is_some_and(|wired| wired.device.kind.is_server());
+    let (kind, why) = match happened {
+        Happened::Up => ("up", None),
+        Happened::Down(why) => ("down", Some(why.to_string())),
+        Happened::NoInput(_, why) => ("no-input", Some(why.clone())),
+        Happened::Input(_) => ("input", None),
+        Happened::NoOutput(_, why) => ("no-output", Some(why.clone())),
+        Happened::Output(_) => ("output", None),
+        Happened::Limited(_) => ("limited", None),
+    };
+    let name = channel(names, device, happened);
+    json!({ "kind": kind, "device": names.device(device), "master": server, "name": name, "why": why })
+}
+
+fn device_text(names: Names<'_>, device: usize, happened: &Happened) -> Option<String> {
+    let wired = names.wired(device)?;
+    let (good, bad, warn) = (style::GOOD, style::BAD, style::WARN);
+    let (name, server) = (names.device(device), wired.device.kind.is_server());
+    let of = channel(names, device, happened);
+    Some(match happened {
+        Happened::Up if server => format!("{name} {good}has a master{good:#}"),
+        Happened::Up => format!("{name} {good}answers{good:#}"),
+        Happened::Down(why) if server => format!("{name} {warn}has no master:{warn:#} {why}"),
+        Happened::Down(why) => format!("{name} {bad}does not answer:{bad:#} {why}"),
+        Happened::NoInput(_, why) => format!("{name}: {warn}no value{warn:#} for `{of}`: {why}"),
+        Happened::Input(_) => format!("{name}: `{of}` has a value again"),
+        Happened::NoOutput(_, why) => format!("{name} {warn}refuses{warn:#} `{of}`: {why}"),
+        Happened::Output(_) => format!("{name} takes `{of}` again"),
+        Happened::Limited(_) => {
+            format!("{name}: {warn}`{of}` is limited{warn:#} to what its point holds")
+        }
+    })
+}

@@ -1,0 +1,118 @@
+// The messages of a running controller, as `crates/g7/src/operator/board.rs` writes them. Times are
+// seconds of the controller's clock.
+
+export interface Signal {
+  name: string;
+  role: 'input' | 'output' | 'variable';
+  bool: boolean;
+  type: string;
+  comment?: string | null;
+  address?: string | null;
+  device?: string | null;
+  point?: string | null;
+  forcible: boolean;
+}
+
+export interface Step {
+  id: string;
+  name: string;
+  chart: string;
+  comment?: string | null;
+  macro: boolean;
+}
+
+export interface Description {
+  /** The name of the machine. */
+  title: string;
+  file: string;
+  text: string;
+  profile: string;
+  period_ms: number;
+  plant?: string | null;
+  signals: Signal[];
+  steps: Step[];
+  transitions: string[];
+  devices: { name: string; kind: 'modbus-tcp' | 'modbus-rtu' | 'modbus-server' | 'mqtt'; place: string }[];
+  force: { usual_s: number; longest_s: number; most: number };
+  frame: Frame;
+}
+
+export type Quality = 'good' | 'bad' | 'substituted' | 'unread' | 'simulated' | 'free' | 'safe' | '';
+
+export interface Reason {
+  kind: 'watchdog' | 'input' | 'halt';
+  name?: string;
+  why?: string;
+}
+
+export interface Mode {
+  is: 'stop' | 'run' | 'fault';
+  since: number;
+  reason: Reason | null;
+  /** True until the devices have given their first values. */
+  waits: boolean;
+}
+
+export interface Spread {
+  p50_us: number;
+  p99_us: number;
+  most_us: number;
+}
+
+export interface Counts {
+  scans: number;
+  missed: number;
+  lost: number;
+  late: Spread;
+  took: Spread;
+}
+
+export interface Forced {
+  signal: number;
+  value: string;
+  until: number;
+}
+
+export interface DeviceState {
+  up: boolean | null;
+  since: number;
+  why: string;
+}
+
+export type Kind =
+  | 'run' | 'stop' | 'fault' | 'missed' | 'forced' | 'released' | 'ended' | 'no-priority' | 'unsaved'
+  | 'up' | 'down' | 'no-input' | 'input' | 'no-output' | 'output' | 'limited';
+
+export interface Event {
+  n: number;
+  at: number;
+  kind: Kind;
+  level: 'note' | 'warning' | 'alarm';
+  /** Its cause is gone. */
+  over: boolean;
+  /** A person has seen it. */
+  seen: boolean;
+  reason?: Reason;
+  name?: string;
+  value?: string;
+  device?: string;
+  master?: boolean;
+  why?: string | null;
+  count?: number;
+}
+
+/** What has changed since the frame before, or all. */
+export interface Frame {
+  full: boolean;
+  now: number;
+  /** The age of all this. */
+  age: number;
+  mode?: Mode;
+  counts?: Counts;
+  on?: [step: number, ms: number][];
+  enabled?: Record<string, 1 | 2>;
+  forced?: Forced[];
+  devices?: DeviceState[];
+  events?: Event[];
+  values?: [signal: number, value: string, quality: Quality][];
+}

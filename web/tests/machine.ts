@@ -1,0 +1,164 @@
+// A machine for the stories of the operator: a mixer whose plant stands behind Modbus TCP (`g7 plant`),
+// and its controller (`g7 serve --online`).
+import { spawn, type ChildProcess } from 'node:child_process';
+import { mkdtempSync, rmSync, writeFileSync } from 'node:fs';
+import { createServer } from 'node:net';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { program, STATE } from './lib';
+
+const CHART = `profile iec60848
+input start : BOOL at %I0.0 "start button"
+input high : BOOL at %I0.1 "tank is full"
+input low : BOOL at %I0.2 "tank is not empty"
+input temperature : REAL "degrees in the tank"
+input io_ok : BOOL "the module answers"
+output fill : BOOL at %Q0.0 "inlet valve"
+output stir : BOOL at %Q0.1 "stirrer"
+output heat : BOOL at %Q0.2 "heating"
+output drain : BOOL at %Q0.3 "outlet valve"
+output lamp : BOOL at %Q0.4 "ready" safe TRUE
+output speed : INT "stirrer, turns a minute" safe 0
+var batches : INT := 0
+var divisor : INT := 1
+
+chart Mixer {
+  initial step 0 "ready" { N lamp }
+  step 1 "filling" { N fill }
+  step 2 "stirring" { N stir  P1 speed := 120 / divisor }
+  step 3 "stirred" { P1 speed := 0 }
+  step 4 "heating" { N heat }
+  step 5 "warm"
+  step 6 "draining" { N drain  P1 batches := batches + 1 }
+  0 -> 1 when start and io_ok
+  1 -> (2, 4) when high
+  2 -> 3 when 6s/X2
+  4 -> 5 when temperature >= 40.0
+  (3, 5) -> 6 when TRUE
+  6 -> 0 when not low
+}
+
+plant Tank {
+  state level : REAL := 0.0 in 0.0 .. 100.0
+  state warm : REAL := 20.0 in 15.0 .. 90.0
+  state pressed : BOOL := FALSE
+  rate level := 50.0 when fill
+  rate level := -40.0 when drain
+  rate warm := 5.0 when heat
+  rate warm := -2.0 when drain
+  drive start := pressed
+  drive high := level > 95.0
+  drive low := level > 2.0
+  drive temperature := warm
+  drive io_ok := TRUE
+}
+`;
+
+const io = (port: number) => `[controller]
+period = "20ms"
+watchdog = "10s"
+start = "stop"
+[devices.rack1]
+kind = "modbus-tcp"
+host = "127.0.0.1"
+port = ${port}
+timeout = "1s"
+retry = "300ms"
+[inputs]
+start = { at = "rack1.discrete(0)", bad = false }
+high = "rack1.discrete(1)"
+low = "rack1.discrete(2)"
+temperature = { at = "rack1.input(0)", as = "f32" }
+io_ok = "rack1.good()"
+[outputs]
+fill = "rack1.coil(0)"
+stir = "rack1.coil(1)"
+heat = "rack1.coil(2)"
+drain = "rack1.coil(3)"
+lamp = "rack1.coil(4)"
+speed = "rack1.holding(0)"
+`;
+
+async function freePort(): Promise<number> {
+  const server = createServer();
+  const port = await new Promise<number>((found) => server.listen(0, '127.0.0.1', () => found((server.address() as { port: number }).port)));
+  await new Promise((done) => server.close(done));
+  return port;
+}
+
+/** A program that is waited for until it says something. */
+async function begun(args: string[], cwd: string, from: 'stdout' | 'stderr', what: RegExp): Promise<{ child: ChildProcess; found: string }> {
+  const child = spawn(program(), args, { cwd, stdio: ['pipe', 'pipe', 'pipe'], env: { ...process.env, XDG_STATE_HOME: STATE } });
+  let said = '';
+  const found = await new Promise<string>((resolve, reject) => {
+    for (const stream of ['stdout', 'stderr'] as const) {
+      child[stream].on('data', (chunk: Buffer) => {
+        if (stream !== from) return;
+        said += chunk.toString();
+        const match = what.exec(said)?.[0];
+        if (match) resolve(match);
+      });
+    }
+    child.once('exit', (code) => reject(new Error(`g7 ${args.join(' ')} ended with ${code}: ${said}`)));
+  });
+  return { child, found };
+}
+
+const ended = (child: ChildProcess, how: NodeJS.Signals) =>
+  new Promise<number | null>((done) => {
+    if (child.exitCode !== null || child.signalCode !== null) return done(child.exitCode);
+    child.once('exit', (code) => done(code));
+    child.kill(how);
+  });
+
+/** The machine, with or without its plant. */
+export class Machine {
+  url = '';
+  #folder = mkdtempSync(join(tmpdir(), 'g7-machine-'));
+  #port = 0;
+  #plant: ChildProcess | null = null;
+  #station: ChildProcess | null = null;
+
+  static async start(): Promise<Machine> {
+    const machine = new Machine();
+    machine.#port = await freePort();
+    writeFileSync(join(machine.#folder, 'mixer.g7'), CHART);
+    writeFileSync(join(machine.#folder, 'mixer.io.toml'), io(machine.#port));
+    await machine.plug();
+    const { child, found } = await begun(['serve', 'mixer.g7', '--online', '--no-open', '--port', '0'], machine.#folder, 'stdout', /http:\/\/\S+/);
+    machine.#station = child;
+    machine.url = found;
+    return machine;
+  }
+
+  /** The device is there. */
+  async plug(): Promise<void> {
+    this.#plant = (await begun(['plant', 'mixer.g7'], this.#folder, 'stderr', /running/)).child;
+  }
+
+  /** The device is gone. */
+  async unplug(): Promise<void> {
+    if (this.#plant) await ended(this.#plant, 'SIGKILL');
+  }
+
+  /** A hand at the machine. */
+  press(on: boolean): void {
+    this.#plant?.stdin?.write(`pressed := ${on ? 'TRUE' : 'FALSE'}\n`);
+  }
+
+  /** The scan and the server stop as if the machine had frozen, or go on. */
+  freeze(on: boolean): void {
+    this.#station?.kill(on ? 'SIGSTOP' : 'SIGCONT');
+  }
+
+  /** The controller ends as by Ctrl-C; its exit code. */
+  async end(): Promise<number | null> {
+    return this.#station ? ended(this.#station, 'SIGINT') : null;
+  }
+
+  async done(): Promise<void> {
+    await this.end();
+    await this.unplug();
+    rmSync(this.#folder, { recursive: true, force: true });
+  }
+}
