@@ -3,7 +3,7 @@
 use std::ops::Range;
 use std::sync::Arc;
 
-use g7_engine::{Addr, Fault, Program, Report, State, begin, pass, scan};
+use g7_engine::{Addr, Fault, ImageError, Program, Report, State, begin, pass, scan};
 use g7_model::Nanos;
 
 use crate::tape::Tape;
@@ -314,6 +314,31 @@ impl Runner {
     /// The forced variables with their values.
     pub fn forces(&self) -> impl Iterator<Item = (Force, u64)> + '_ {
         self.forces.iter().map(|held| (held.what, held.value))
+    }
+
+    /// The charts' own values of the forced outputs.
+    pub fn own_outputs(&self) -> impl Iterator<Item = (Addr, u64)> + '_ {
+        self.forces.iter().filter_map(|held| Some((held.output()?, held.own)))
+    }
+
+    /// Makes this run, a clone of an earlier instant, equal to the other one. Allocates nothing where
+    /// that one has no more forces than there is room for here. What is recorded is left out.
+    ///
+    /// # Errors
+    ///
+    /// The other run is one of another program; this one is as it was.
+    pub fn copy_from(&mut self, other: &Runner) -> Result<(), ImageError> {
+        self.state.restore(&self.program, other.state.image())?;
+        if let (Some(to), Some(from)) = (&mut self.plant, &other.plant) {
+            to.state.restore(&to.program, from.state.image())?;
+            to.inputs.clone_from(&from.inputs);
+        }
+        self.inputs.clone_from(&other.inputs);
+        self.read.clone_from(&other.read);
+        self.forces.clone_from(&other.forces);
+        (self.due, self.missed, self.halt) = (other.due, other.missed, other.halt);
+        (self.report, self.ready, self.slow) = (other.report, other.ready, None);
+        Ok(())
     }
 
     /// Calls with the state in which forced outputs have the charts' own values.

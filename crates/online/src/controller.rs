@@ -10,12 +10,13 @@ use g7_engine::Addr;
 use g7_host::{Force, Halt, Runner, Start};
 use g7_model::Nanos;
 
+use crate::change::{Picture, Successor};
 use crate::driver::{Quality, Said, from_device};
 use crate::exchange::{Reader, Writer};
 use crate::forces::{FORCES, Forced, Forces, LONGEST};
 use crate::keep::Keep;
 use crate::sight::{Facts, Showing, Sight, sight};
-use crate::wiring::WhileBad;
+use crate::wiring::{WhileBad, Wired};
 use crate::word::{Source, Target};
 
 /// The state of a controller.
@@ -113,6 +114,8 @@ pub enum What {
     Released(Force),
     /// The time of a force is over.
     Ended(Force),
+    /// From here on it runs another chart.
+    Changed,
 }
 
 /// Flags that the controller shares with its drivers and its watchdog.
@@ -126,6 +129,28 @@ pub struct Shared {
     pub tripped: Arc<AtomicBool>,
 }
 
+/// The words of a run that a device gives and gets.
+#[derive(Clone, Debug, Default)]
+pub struct Handles {
+    /// The words that the device gives, and what each has while its value is bad.
+    pub inputs: Vec<(Target, WhileBad)>,
+    /// The words that the device gets, and the safe value of each; `None` for what is only shown.
+    pub outputs: Vec<(Source, Option<u64>)>,
+    /// Input words that are 1 while the device answers.
+    pub good: Vec<u32>,
+}
+
+impl Handles {
+    /// Those of a device.
+    pub fn of(wired: &Wired) -> Handles {
+        Handles {
+            inputs: wired.inputs.iter().map(|i| (i.target, i.bad)).collect(),
+            outputs: wired.outputs.iter().map(|o| (o.source, o.out.safe)).collect(),
+            good: wired.good.clone(),
+        }
+    }
+}
+
 /// The controller's side of a device.
 #[derive(Debug)]
 pub struct Port {
@@ -133,12 +158,8 @@ pub struct Port {
     pub from_device: Reader,
     /// The words that the driver takes: one for each output.
     pub to_device: Writer,
-    /// The words that the device gives, and what each has while its value is bad.
-    pub inputs: Vec<(Target, WhileBad)>,
-    /// The words that the device gets, and the safe value of each; `None` for what is only shown.
-    pub outputs: Vec<(Source, Option<u64>)>,
-    /// Input words that are 1 while the device answers.
-    pub good: Vec<u32>,
+    /// The words of the run.
+    pub handles: Handles,
     /// Values older than this are bad, even if the driver says nothing.
     pub stale: Nanos,
 }
@@ -157,10 +178,16 @@ const KEPT_EACH: Nanos = Nanos::from_millis(100);
 
 /// The values that are kept, on their way to the one who writes them.
 #[derive(Debug)]
-struct Keeping {
+pub(crate) struct Keeping {
     keep: Keep,
     to_disk: Writer,
     due: Nanos,
+}
+
+impl Keeping {
+    pub(crate) fn new(keep: Keep, to_disk: Writer) -> Keeping {
+        Keeping { keep, to_disk, due: Nanos::ZERO }
+    }
 }
 
 /// A controller.
@@ -183,6 +210,8 @@ pub struct Controller {
     keeping: Option<Keeping>,
     forces: Forces,
     showing: Option<Showing>,
+    /// Counts whatever changes the run.
+    revision: u64,
 }
 
 impl Controller {
@@ -197,8 +226,8 @@ impl Controller {
         events: rtrb::Producer<Event>,
     ) -> Controller {
         let open = |port: Port| Open {
-            words: vec![0; from_device::words(port.inputs.len())],
-            out: port.outputs.iter().map(|(_, safe)| safe.unwrap_or(0)).collect(),
+            words: vec![0; from_device::words(port.handles.inputs.len())],
+            out: port.handles.outputs.iter().map(|(_, safe)| safe.unwrap_or(0)).collect(),
             port,
         };
         shared.safe.store(true, Ordering::Release);
@@ -217,17 +246,18 @@ impl Controller {
             events,
             lost: 0,
             keeping: None,
+            revision: 0,
         }
     }
 
     /// From here on hands the values that outlive the program on, each 100 ms.
     pub(crate) fn keep_by(&mut self, keep: Keep, to_disk: Writer) {
-        self.keeping = Some(Keeping { keep, to_disk, due: Nanos::ZERO });
+        self.keeping = Some(Keeping::new(keep, to_disk));
     }
 
     /// From here on shows itself.
     pub(crate) fn show(&mut self) -> Sight {
-        let ports = self.ports.iter().map(|open| (open.port.inputs.len(), open.port.stale));
+        let ports = self.ports.iter().map(|open| (open.port.handles.inputs.len(), open.port.stale));
         let (showing, seen) = sight(&self.runner, ports);
         self.showing = Some(showing);
         seen
@@ -259,6 +289,44 @@ impl Controller {
         &self.runner
     }
 
+    /// The scans that came too late and were left out.
+    pub fn missed(&self) -> u64 {
+        self.missed
+    }
+
+    /// Takes a picture, between two steps. Allocates nothing.
+    pub fn look(&self, picture: &mut Picture) {
+        // A picture of another chart is told by its number: no controller has seen so many changes.
+        let same = picture.runner.copy_from(&self.runner).is_ok();
+        picture.revision = if same { self.revision } else { u64::MAX };
+        picture.forces.clear();
+        picture.forces.extend_from_slice(self.forces.all());
+    }
+
+    /// Goes on with another chart at `now`, between two steps, unless something has changed since the
+    /// picture from which it was prepared: false then. The parts of the chart before are in `successor`
+    /// behind it. Allocates and frees nothing.
+    pub fn change(&mut self, now: Nanos, successor: &mut Successor) -> bool {
+        use std::mem::swap;
+        if successor.revision != self.revision || successor.handles.len() != self.ports.len() {
+            return false;
+        }
+        swap(&mut self.runner, &mut successor.runner);
+        self.forces.swap(&mut successor.forces);
+        for (open, handles) in self.ports.iter_mut().zip(&mut successor.handles) {
+            swap(&mut open.port.handles, handles);
+        }
+        if self.keeping.is_some() {
+            swap(&mut self.keeping, &mut successor.keeping);
+        }
+        if self.showing.is_some() {
+            swap(&mut self.showing, &mut successor.showing);
+        }
+        self.revision += 1;
+        self.tell(now, What::Changed);
+        true
+    }
+
     /// The number of events that nobody took in time.
     pub fn lost(&self) -> u64 {
         self.lost
@@ -270,6 +338,7 @@ impl Controller {
     ///
     /// It cannot be carried out; nothing has changed.
     pub fn command(&mut self, now: Nanos, command: Command) -> Result<(), Refused> {
+        self.revision += 1;
         match (command, self.mode) {
             (Command::Run, Mode::Stop) => {
                 // The grid of scans begins anew here.
@@ -326,6 +395,7 @@ impl Controller {
             open.port.from_device.take(&mut open.words);
         }
         while let Some(what) = self.forces.end_one(&mut self.runner, now) {
+            self.revision += 1;
             self.tell(now, What::Ended(what));
         }
         // Also while it does not run, so that who starts it sees the inputs as they are.
@@ -363,7 +433,7 @@ impl Controller {
         let mut fatal = None;
         for Open { port, words, .. } in &self.ports {
             let said = Said::new(words, now, port.stale);
-            for (k, (target, bad)) in port.inputs.iter().enumerate() {
+            for (k, (target, bad)) in port.handles.inputs.iter().enumerate() {
                 let (word, quality) = said.input(k);
                 let value = match bad {
                     _ if quality == Quality::Good => word,
@@ -379,7 +449,7 @@ impl Controller {
                     Target::Word(addr) => self.runner.set_word(*addr, value),
                 }
             }
-            for index in &port.good {
+            for index in &port.handles.good {
                 self.runner.set_input(*index, u64::from(said.is_up()));
             }
         }
@@ -387,6 +457,7 @@ impl Controller {
     }
 
     fn scan(&mut self, now: Nanos) {
+        self.revision += 1;
         self.begun = true;
         let before = self.runner.missed();
         self.runner.catch_up(now - self.base);
@@ -403,7 +474,7 @@ impl Controller {
     fn write(&mut self) {
         let running = self.drives();
         for Open { port, out, .. } in &mut self.ports {
-            for (word, (source, safe)) in out.iter_mut().zip(&port.outputs) {
+            for (word, (source, safe)) in out.iter_mut().zip(&port.handles.outputs) {
                 *word = match safe {
                     Some(safe) if !running => *safe,
                     Some(_) | None => source.word(&self.runner, self.runner.state()),

@@ -91,7 +91,7 @@ impl<'a> Said<'a> {
 }
 
 /// An output of a device.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Out {
     /// How its word becomes a value.
     pub scaling: Scaling,

@@ -69,6 +69,11 @@ impl Forces {
         Some(what)
     }
 
+    /// Exchanges the list; that of the run is exchanged with the run.
+    pub(crate) fn swap(&mut self, others: &mut Vec<Forced>) {
+        std::mem::swap(&mut self.0, others);
+    }
+
     pub(crate) fn all(&self) -> &[Forced] {
         &self.0
     }

@@ -16,6 +16,8 @@
 //! It gives and takes words of fixed number, nothing else.
 #![forbid(unsafe_code)]
 
+mod change;
+mod changer;
 mod clients;
 mod controller;
 mod device;
@@ -42,8 +44,10 @@ mod wire;
 mod wiring;
 mod word;
 
+pub use change::{Chart, Picture, Prepared, Successor, prepare};
+pub use changer::{Change, Changer};
 pub use clients::Clients;
-pub use controller::{Command, Controller, Event, Mode, Port, Reason, Refused, Shared, What};
+pub use controller::{Command, Controller, Event, Handles, Mode, Port, Reason, Refused, Shared, What};
 pub use device::{Absent, Device, Failed};
 pub use disk::RealDisk;
 pub use driver::{Driver, Happened, Out, Quality, Worked};

@@ -6,7 +6,7 @@ use g7_host::{Coupling, Runner};
 use g7_model::Nanos;
 use g7_rig::Bench;
 
-use crate::controller::{Controller, Event, Port, Shared};
+use crate::controller::{Controller, Event, Handles, Port, Shared};
 use crate::device::Device;
 use crate::driver::{Driver, from_device};
 use crate::exchange::exchange;
@@ -51,19 +51,24 @@ impl Machine {
 
 /// A run of the bench whose plant leaves the wired inputs to their devices.
 pub fn runner(bench: &Bench, wiring: &Wiring, seed: u64) -> Runner {
+    let mut runner = bench.runner(seed);
+    if let Some(coupling) = coupling(bench, wiring) {
+        runner.couple(coupling);
+    }
+    runner
+}
+
+/// The words of the plant and the charts without those of wired inputs; `None` without a plant.
+pub(crate) fn coupling(bench: &Bench, wiring: &Wiring) -> Option<Coupling> {
     let wired = |index: u32| {
         wiring
             .devices
             .iter()
             .any(|d| d.good.contains(&index) || d.inputs.iter().any(|i| i.target == Target::Input(index)))
     };
-    let mut runner = bench.runner(seed);
-    if let Some(plant) = &bench.plant {
-        let Coupling { to_plant, to_charts } = plant.coupling.clone();
-        let to_charts = to_charts.into_iter().filter(|(_, input)| !wired(*input)).collect();
-        runner.couple(Coupling { to_plant, to_charts });
-    }
-    runner
+    let Coupling { to_plant, to_charts } = bench.plant.as_ref()?.coupling.clone();
+    let to_charts = to_charts.into_iter().filter(|(_, input)| !wired(*input)).collect();
+    Some(Coupling { to_plant, to_charts })
 }
 
 /// Puts a machine together; `device` makes the device of each row of the wiring.
@@ -86,14 +91,7 @@ pub fn assemble<E>(
         let outputs = wired.outputs.iter().map(|o| o.out).collect();
         let ends = (from_scan, to_scan);
         drivers.push(Driver::new(device(wired)?, timing, inputs, outputs, ends, Arc::clone(&shared.safe)));
-        ports.push(Port {
-            from_device,
-            to_device,
-            inputs: wired.inputs.iter().map(|i| (i.target, i.bad)).collect(),
-            outputs: wired.outputs.iter().map(|o| (o.source, o.out.safe)).collect(),
-            good: wired.good.clone(),
-            stale: stale(timing),
-        });
+        ports.push(Port { from_device, to_device, handles: Handles::of(wired), stale: stale(timing) });
         // Reached, and asked once.
         grace = grace.max(timing.timeout * 2 + timing.poll);
     }
@@ -104,6 +102,6 @@ pub fn assemble<E>(
 
 /// Values older than this are bad even if their driver says nothing: a driver tells of its device at
 /// least after each time-out, and some time is left for scheduling.
-fn stale(timing: Timing) -> Nanos {
+pub(crate) fn stale(timing: Timing) -> Nanos {
     timing.poll + timing.timeout * 2 + timing.retry
 }

@@ -12,8 +12,10 @@ use std::time::Duration;
 use g7_host::{Clock, WallClock};
 use g7_model::Nanos;
 
+use crate::changer::{Changer, FromScan, ToScan};
 use crate::controller::{Command, Controller, Event, Mode, Refused, Shared};
 use crate::driver::{Driver, Happened};
+use crate::exchange::Reader;
 use crate::keep::KeptFile;
 use crate::machine::Machine;
 use crate::pace::Pace;
@@ -77,6 +79,8 @@ pub struct Running {
     pub no_priority: Receiver<String>,
     /// Why values could not be saved; each time it begins to fail.
     pub disk: Receiver<std::io::Error>,
+    /// The one who makes on-line changes; whoever takes it puts it back.
+    pub changer: Option<Changer>,
 }
 
 /// A flag that can be waited for.
@@ -121,6 +125,11 @@ pub fn start<D: Disk + Send + 'static>(
     let (of_scan, paces) = rtrb::RingBuffer::new(PACES);
     let (answer, answers) = rtrb::RingBuffer::new(COMMANDS);
     let asked = (to_scan, answer);
+    // One is on its way at any time.
+    let (ask_change, changes) = rtrb::RingBuffer::new(2);
+    let (changed, of_change) = rtrb::RingBuffer::new(2);
+    let mut renewed = None;
+    let runner = controller.runner().clone();
     let (tell, devices) = channel();
     let (priority_failed, no_priority) = channel();
     let mut threads = Vec::new();
@@ -132,7 +141,9 @@ pub fn start<D: Disk + Send + 'static>(
     let (unsaved, disk) = channel();
     if let Some(kept) = kept {
         let (stop, last) = (Arc::clone(&stop), Arc::clone(&last));
-        threads.push(spawn("values".to_owned(), move || save(kept, &last, &stop, &unsaved))?);
+        let (renew, readers) = channel();
+        renewed = Some(renew);
+        threads.push(spawn("values".to_owned(), move || save(kept, &readers, &last, &stop, &unsaved))?);
     }
     let (watched, watching) = (shared.clone(), Arc::clone(&stop));
     threads.push(spawn("watchdog".to_owned(), move || watch(&watched, clock, options.watchdog, &watching))?);
@@ -144,7 +155,8 @@ pub fn start<D: Disk + Send + 'static>(
             // The caller may have gone on without listening.
             priority_failed.send(why.clone()).ok();
         }
-        let done = catch_unwind(AssertUnwindSafe(|| scan(controller, clock, asked, of_scan, &scan_stop)));
+        let ends = Ends { commands: asked.0, answers: asked.1, changes, changed, paces: of_scan };
+        let done = catch_unwind(AssertUnwindSafe(|| scan(controller, clock, ends, &scan_stop)));
         // Drivers write safe values from here on, also after a panic.
         scan_shared.safe.store(true, Ordering::Release);
         let mut controller = done.ok();
@@ -152,21 +164,21 @@ pub fn start<D: Disk + Send + 'static>(
         *final_words.lock().unwrap_or_else(std::sync::PoisonError::into_inner) = Some(words);
         controller
     })?;
-    let scan = Some(scan);
-    let next = 0;
+    let changer = Some(Changer::new(&runner, (ask_change, of_change), renewed));
     Ok(Running {
         stop,
         shared,
         commands,
-        next,
+        next: 0,
         answers,
         events,
         devices,
         paces,
-        scan,
+        scan: Some(scan),
         threads,
         no_priority,
         disk,
+        changer,
     })
 }
 
@@ -174,29 +186,47 @@ fn spawn(name: String, work: impl FnOnce() + Send + 'static) -> std::io::Result<
     std::thread::Builder::new().name(name).spawn(work)
 }
 
+/// The scan thread's ends of what leads to it and from it.
+struct Ends {
+    commands: rtrb::Consumer<(u64, Command)>,
+    answers: rtrb::Producer<Answer>,
+    changes: rtrb::Consumer<ToScan>,
+    changed: rtrb::Producer<FromScan>,
+    paces: rtrb::Producer<Pace>,
+}
+
 /// The scan thread: commands, a step, and nothing until the next one.
-fn scan(
-    mut controller: Controller,
-    mut clock: WallClock,
-    (mut commands, mut answers): (rtrb::Consumer<(u64, Command)>, rtrb::Producer<Answer>),
-    mut paces: rtrb::Producer<Pace>,
-    stop: &Stop,
-) -> Controller {
+fn scan(mut controller: Controller, mut clock: WallClock, mut ends: Ends, stop: &Stop) -> Controller {
+    // A picture that was asked for; it is taken behind a scan, when most time is left.
+    let mut picture = None;
     loop {
         let due = controller.due();
         realtime::sleep_until(&mut clock, due);
         if stop.plain.load(Ordering::Acquire) {
             return controller;
         }
-        while let Ok((number, command)) = commands.pop() {
+        while let Ok((number, command)) = ends.commands.pop() {
             let done = controller.command(clock.now(), command);
-            answers.push(Answer { number, done }).ok();
+            ends.answers.push(Answer { number, done }).ok();
+        }
+        match ends.changes.pop() {
+            Ok(ToScan::Look(room)) => picture = Some(room),
+            Ok(ToScan::Take(mut successor)) => {
+                let taken = controller.change(clock.now(), &mut successor);
+                // There is room: only one is on its way. So nothing is freed here.
+                ends.changed.push(FromScan::Back(taken, successor)).ok();
+            }
+            Err(_) => {}
         }
         let begin = clock.now();
         controller.step(begin);
         if controller.mode() == Mode::Run {
             // Without a reader the ring is full; the scan goes on.
-            paces.push(Pace { late: begin - due, took: clock.now() - begin }).ok();
+            ends.paces.push(Pace { late: begin - due, took: clock.now() - begin }).ok();
+        }
+        if let Some(mut room) = picture.take() {
+            controller.look(&mut room);
+            ends.changed.push(FromScan::Seen(room)).ok();
         }
     }
 }
@@ -221,6 +251,7 @@ fn drive(mut driver: Driver, device: usize, mut clock: WallClock, stop: &Stop, t
 /// The thread of the values that are kept: it saves them as they come, and the last ones at the end.
 fn save<D: Disk>(
     mut kept: KeptFile<D>,
+    renewed: &Receiver<Reader>,
     last: &Mutex<Option<Vec<u64>>>,
     stop: &Stop,
     unsaved: &Sender<std::io::Error>,
@@ -230,6 +261,9 @@ fn save<D: Disk>(
     let mut keep = |words: &[u64], slots: &mut Slots<D>| {
         if saved == words {
             return;
+        }
+        if slots.words() != words.len() {
+            slots.renew(words.len());
         }
         match slots.save(words) {
             Ok(()) => {
@@ -245,6 +279,10 @@ fn save<D: Disk>(
         }
     };
     while !stop.wait(PAUSE) {
+        if let Ok(reader) = renewed.try_recv() {
+            words = vec![0; reader.words()];
+            kept.from_scan = reader;
+        }
         if kept.from_scan.take(&mut words) {
             keep(&words, &mut kept.slots);
         }

@@ -105,6 +105,8 @@ pub struct Slots<D> {
     next: usize,
     /// The bytes of a save, kept so that a save does not allocate.
     bytes: Vec<u8>,
+    /// The next save makes the file anew: the one that is there has another number of words.
+    anew: bool,
 }
 
 impl<D: Disk> Slots<D> {
@@ -140,7 +142,8 @@ impl<D: Disk> Slots<D> {
             return Err(SlotsError::Layout(Box::new(loaded)));
         }
         let bytes = Vec::with_capacity(stride(words));
-        let slots = Slots { disk, layout, words, sequence: loaded.sequence, next: 1 - newest, bytes };
+        let slots =
+            Slots { disk, layout, words, sequence: loaded.sequence, next: 1 - newest, bytes, anew: false };
         Ok((slots, (loaded.sequence > 0 || loaded.other_damaged).then_some(loaded)))
     }
 
@@ -151,14 +154,31 @@ impl<D: Disk> Slots<D> {
     /// The file cannot be written.
     pub fn begin(disk: D, layout: u64, words: usize) -> Result<Slots<D>, SlotsError> {
         let bytes = Vec::with_capacity(stride(words));
-        let mut slots = Slots { disk, layout, words, sequence: 0, next: 0, bytes };
-        slots.fill(0, &[]);
-        let mut file = slots.bytes.clone();
-        file.resize(stride(words), 0);
-        let slot = file.clone();
-        file.extend(slot);
-        slots.disk.create(&file)?;
+        let mut slots = Slots { disk, layout, words, sequence: 0, next: 0, bytes, anew: false };
+        slots.create(0, &[])?;
         Ok(slots)
+    }
+
+    /// The number of words of a save.
+    pub fn words(&self) -> usize {
+        self.words
+    }
+
+    /// From here on saves another number of words. Until the first of them are saved, the file holds
+    /// those before.
+    pub fn renew(&mut self, words: usize) {
+        (self.words, self.anew) = (words, true);
+    }
+
+    /// Makes the file with these values in the first slot.
+    fn create(&mut self, sequence: u64, words: &[u64]) -> io::Result<()> {
+        let mut file = Vec::with_capacity(2 * stride(self.words));
+        for (sequence, words, end) in [(sequence, words, 1), (0, &[][..], 2)] {
+            self.fill(sequence, words);
+            file.extend(&self.bytes);
+            file.resize(end * stride(self.words), 0);
+        }
+        self.disk.create(&file)
     }
 
     /// Saves values. They count after this has returned; until then, and after an error, those before
@@ -169,6 +189,11 @@ impl<D: Disk> Slots<D> {
     /// The disk failed. A later call tries again, in the same slot.
     pub fn save(&mut self, words: &[u64]) -> io::Result<()> {
         let sequence = self.sequence + 1;
+        if self.anew {
+            self.create(sequence, words)?;
+            (self.sequence, self.next, self.anew) = (sequence, 1, false);
+            return Ok(());
+        }
         self.fill(sequence, words);
         self.disk.write((self.next * stride(self.words)) as u64, &self.bytes)?;
         self.disk.sync()?;

@@ -1,9 +1,12 @@
 //! A step of the controller allocates nothing: with values and events of a device, with values that are
-//! kept, forced ones, commands, one who looks, and a plant in place of other devices.
+//! kept, forced ones, commands, one who looks, on-line changes, and a plant in
+//! place of other devices.
 
 use allocation_counter::measure;
 use g7_model::{FileId, Nanos};
-use g7_online::{Absent, Command, Device, Disk, Failed, Raw, Slots, assemble, runner, setup, wire};
+use g7_online::{
+    Absent, Chart, Command, Device, Disk, Failed, Picture, Raw, Slots, assemble, prepare, runner, setup, wire,
+};
 use g7_rig::{Options, Source, build};
 
 const IO: &str = "\
@@ -81,6 +84,9 @@ fn a_step_allocates_nothing() {
     let slots = Slots::begin(Nowhere, 0, 0).expect("the disk takes all");
     let _kept = machine.keep(&bench, slots);
     let mut sight = machine.show();
+    let chart = Chart { bench: &bench, document: &source.document, wiring: &wiring };
+    let mut picture = Box::new(Picture::of(machine.controller.runner()));
+    let mut changes = 0;
     let period = machine.controller.runner().period();
     let (mut now, mut allocating, mut events, mut looks) = (Nanos::ZERO, 0, 0, 0);
     for k in 0..20_000 {
@@ -102,12 +108,24 @@ fn a_step_allocates_nothing() {
             machine.controller.step(now);
         });
         allocating += usize::from(counted.count_total > 0);
+        if k % 250 == 220 {
+            let looked = measure(|| machine.controller.look(&mut picture));
+            let mut prepared = prepare(chart, chart, &picture).expect("the same chart");
+            let mut taken = false;
+            let changed = measure(|| taken = machine.controller.change(now, &mut prepared.successor));
+            assert!(taken, "{k}");
+            for counted in [looked, changed] {
+                assert_eq!((counted.count_total, counted.count_current), (0, 0), "{k}");
+            }
+            (picture, sight) = (prepared.picture, prepared.sight);
+            changes += 1;
+        }
         while machine.events.pop().is_ok() {
             events += 1;
         }
         looks += usize::from(sight.look());
     }
     assert!(events > 20 && machine.controller.runner().state().scans() > 10_000, "{events} events");
-    assert!(looks > 4_000, "{looks} times shown");
+    assert!(looks > 4_000 && changes == 80, "{looks} times shown, {changes} changes");
     assert_eq!(allocating, 0, "steps that allocate");
 }

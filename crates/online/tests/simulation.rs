@@ -205,7 +205,7 @@ impl Simulation {
             match what {
                 What::Mode(mode) => self.modes.push((at, mode)),
                 What::Missed(n) => self.missed += n,
-                What::Forced(_) | What::Released(_) | What::Ended(_) => {}
+                What::Forced(_) | What::Released(_) | What::Ended(_) | What::Changed => {}
             }
         }
     }

@@ -140,6 +140,36 @@ fn after_a_loss_of_power_the_last_values_or_the_next_are_there() {
     assert!(lost > 100 && newer > 100 && torn > 100, "{counts}");
 }
 
+#[test]
+fn a_file_for_more_words_takes_the_place_of_the_old_one_with_its_first_values() {
+    let disk = Simulated::default();
+    let (mut slots, _) = Slots::open(disk.clone(), LAYOUT, 2).expect("a new file");
+    slots.save(&[7, 8]).expect("the disk is well");
+    slots.renew(1200);
+    let load = |words| {
+        Slots::open(
+            Simulated(Rc::new(RefCell::new(Plates {
+                safe: disk.0.borrow().safe.clone(),
+                ..Plates::default()
+            }))),
+            LAYOUT,
+            words,
+        )
+    };
+    let (_, before) = load(2).expect("the old values");
+    assert_eq!(before.map(|loaded| loaded.words), Some(vec![7, 8]), "nothing was saved since");
+    disk.0.borrow_mut().full = true;
+    assert!(slots.save(&[9; 1200]).is_err());
+    let (_, before) = load(2).expect("the old values, since there is no room for others");
+    assert_eq!(before.map(|loaded| loaded.words), Some(vec![7, 8]));
+    disk.0.borrow_mut().full = false;
+    for value in [9, 10, 11] {
+        slots.save(&[value; 1200]).expect("the disk is well again");
+        let (_, loaded) = load(1200).expect("values of the new length");
+        assert_eq!(loaded.map(|loaded| loaded.words), Some(vec![value; 1200]));
+    }
+}
+
 fn saved(times: u64) -> Vec<u8> {
     let disk = Simulated::default();
     let (mut slots, _) = Slots::open(disk.clone(), LAYOUT, 3).expect("a new file");

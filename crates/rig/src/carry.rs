@@ -39,7 +39,9 @@ pub fn carry(new: (&Bench, &Document), old: (&Bench, &Document), run: &Runner) -
     }
     let (bench, before) = (new.0, old.0);
     let mut lost = Vec::new();
-    let state = charts(new, old, run.state(), &mut lost)?;
+    let mut own = run.state().clone();
+    run.own_outputs().for_each(|(addr, value)| own.set_word(run.program(), addr, value));
+    let state = charts(new, old, &own, &mut lost)?;
     let mut runner = bench.runner(0).from_state(state, run.due());
     plant(bench, before, run, &mut runner, &mut lost)?;
     for item in &before.items {
