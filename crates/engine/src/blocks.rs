@@ -164,6 +164,8 @@ fn block(p: &Program, s: &mut State, i: u32, row: &Row) -> Result<(), Fault> {
     let l = &p.layout;
     let Some(b) = p.tables.blocks.get(i as usize) else { return Ok(()) };
     if !s.is_due(p, b.period) {
+        // It stays in the other set, and is evaluated as soon as its period is over.
+        l.timing.remove(&mut s.image, i);
         return Ok(());
     }
     l.blocks.remove(&mut s.image, i);

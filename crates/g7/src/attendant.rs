@@ -19,7 +19,8 @@ use crate::failure::{Failure, Verdict, plain};
 use crate::manager::Manager;
 use crate::message::talk;
 use crate::monitor::Monitor;
-use crate::operator::{Asker, HELP, Names, Stage, Told, Wish, mode_text};
+use crate::operator::{Adopted, Asker, Changes, HELP, Names, Stage, Told, Wish, mode_text};
+use crate::station::Origin;
 use crate::values;
 
 /// The pause between two looks at the events.
@@ -42,20 +43,21 @@ struct Asked {
 }
 
 /// The one who looks at the events of a running machine and hands the commands on.
-pub(crate) struct Attendant<'a> {
-    names: Names<'a>,
+pub(crate) struct Attendant {
+    names: Names,
     clock: WallClock,
     mode: Mode,
     paces: Paces,
     monitor: Option<Monitor>,
-    stage: Option<Stage<'a>>,
+    stage: Option<Stage>,
+    changes: Option<Changes>,
     asked: Vec<Asked>,
     /// Lines `NAME := VALUE` set an input or a state.
     sets: bool,
 }
 
-impl<'a> Attendant<'a> {
-    pub(crate) fn new(names: Names<'a>) -> Attendant<'a> {
+impl Attendant {
+    pub(crate) fn new(names: Names) -> Attendant {
         Attendant {
             names,
             clock: WallClock::default(),
@@ -63,23 +65,29 @@ impl<'a> Attendant<'a> {
             paces: Paces::default(),
             monitor: None,
             stage: None,
+            changes: None,
             asked: Vec::new(),
             sets: false,
         }
     }
 
     /// Tells a monitor what happens.
-    pub(crate) fn with(self, monitor: Option<Monitor>) -> Attendant<'a> {
+    pub(crate) fn with(self, monitor: Option<Monitor>) -> Attendant {
         Attendant { monitor, ..self }
     }
 
     /// Tells pages what happens, and does what they want.
-    pub(crate) fn on(self, stage: Stage<'a>) -> Attendant<'a> {
+    pub(crate) fn on(self, stage: Stage) -> Attendant {
         Attendant { stage: Some(stage), ..self }
     }
 
+    /// Changes the chart while it runs, on request: its files are read again.
+    pub(crate) fn changing(self, origin: Origin) -> Attendant {
+        Attendant { changes: Some(Changes::new(origin)), ..self }
+    }
+
     /// Takes lines that set a value as well.
-    pub(crate) fn that_sets(self) -> Attendant<'a> {
+    pub(crate) fn that_sets(self) -> Attendant {
         Attendant { sets: true, ..self }
     }
 
@@ -91,15 +99,16 @@ impl<'a> Attendant<'a> {
         }
         let lines = lines();
         let mut manager = Manager::ready();
-        manager.status(&mode_text(self.names, self.mode));
+        manager.status(&mode_text(&self.names, self.mode));
         loop {
             let before = self.mode;
             self.tell(&mut running);
             if self.mode != before {
-                manager.status(&mode_text(self.names, self.mode));
+                manager.status(&mode_text(&self.names, self.mode));
             }
             manager.alive();
             self.settle(&mut running);
+            self.change(&mut running);
             let over = length.is_some_and(|length| self.clock.now() >= length);
             if over || ended.load(Ordering::Acquire) || !running.is_alive() {
                 break;
@@ -136,12 +145,34 @@ impl<'a> Attendant<'a> {
             }
         }
         if let Some(stage) = &mut self.stage {
+            if let Some(changes) = &mut self.changes {
+                stage.tell_file(changes.facts(&self.names, now));
+            }
             stage.tick(now, &self.paces);
         }
     }
 
+    /// Goes on with the chart of a change that was made.
+    fn change(&mut self, running: &mut Running) {
+        let Some(changes) = &mut self.changes else { return };
+        changes.settle(&self.names, running);
+        let Some(Adopted { names, sight, back, lost }) = changes.made() else { return };
+        // What happened until then has the names of the chart before.
+        self.tell(running);
+        self.names = names.clone();
+        if let Some(stage) = &mut self.stage {
+            stage.renew(names, sight);
+        }
+        let now = self.clock.now();
+        self.note(now, &Told::Changed { back, lost });
+    }
+
     /// Hands the command of a wish on.
     fn want(&mut self, wish: &Wish, by: Asker, running: &mut Running) {
+        if let (Wish::Change { anyway } | Wish::Back { anyway }, Some(changes)) = (wish, &mut self.changes) {
+            let back = matches!(wish, Wish::Back { .. });
+            return changes.begin(&self.names, by, back, *anyway, running);
+        }
         let given = self.names.command(wish).and_then(|command| {
             let command = command.ok_or("this belongs to a page")?;
             running.command(command).ok_or_else(|| "the scan takes no commands".to_owned())
@@ -173,7 +204,7 @@ impl<'a> Attendant<'a> {
             Some(Ok(wish)) => return self.want(&wish, Asker::Line, running),
             Some(Err(why)) => Err(why),
             None if line == "status" => {
-                talk!("{} {}", self.time(), mode_text(self.names, self.mode));
+                talk!("{} {}", self.time(), mode_text(&self.names, self.mode));
                 return self.tell_pace();
             }
             None if self.sets && line.contains('=') => self.assigned(line),
@@ -191,7 +222,7 @@ impl<'a> Attendant<'a> {
     fn assigned(&self, line: &str) -> Result<Command, String> {
         let (name, value) = line.split_once('=').unwrap_or((line, ""));
         let name = name.trim_end_matches(':').trim();
-        let bench = self.names.bench;
+        let bench = &self.names.bench;
         let item = bench.item(name).ok_or_else(|| bench.unknown(name))?;
         let word = match values::read(value, item.kind)? {
             Value::Word(word) => word,
@@ -220,6 +251,8 @@ impl<'a> Attendant<'a> {
                 What::Forced(force) => Told::Forced(force),
                 What::Released(what) => Told::Released(what),
                 What::Ended(what) => Told::Ended(what),
+                // Told with its losses by `Attendant::change`.
+                What::Changed => continue,
             };
             self.note(event.at, &told);
         }
@@ -249,7 +282,7 @@ impl<'a> Attendant<'a> {
 
     /// Tells the terminal and the pages of an event.
     fn note(&mut self, at: Nanos, told: &Told) {
-        if let Some(text) = told.text(self.names) {
+        if let Some(text) = told.text(&self.names) {
             talk!("{} {text}", self.time());
         }
         if let Some(stage) = &mut self.stage {

@@ -90,6 +90,6 @@ pub(crate) fn plant(args: &Plant) -> Result<Verdict, Failure> {
     let mut running =
         g7_online::start::<g7_online::RealDisk>(machine.map_err(refused)?, None, threads).map_err(refused)?;
     running.command(Command::Run);
-    let names = Names { source: &source, bench: &bench, wiring: &wiring };
+    let names = Names::new(source, bench, wiring);
     Attendant::new(names).that_sets().attend(running, args.duration)
 }

@@ -11,8 +11,8 @@ use crate::attendant::refused;
 use crate::failure::{Failure, plain};
 use crate::message::talk;
 use crate::monitor::Monitor;
-use crate::operator::HELP;
-use crate::sources::Source;
+use crate::operator::{HELP, Names};
+use crate::sources::{self, Source};
 use crate::style;
 use crate::wiring::{self, Plan, Wanted};
 
@@ -42,9 +42,62 @@ pub(crate) struct More<'a> {
     pub(crate) seed: u64,
 }
 
+/// The files of a chart that is on line, and the arguments with which they are read.
+#[derive(Clone, Debug)]
+pub(crate) struct Origin {
+    path: PathBuf,
+    io: Option<PathBuf>,
+    simulate: Option<Vec<String>>,
+    plant: Option<String>,
+    profile: Option<ProfileName>,
+    scan: Option<Nanos>,
+}
+
+impl Origin {
+    fn new(path: &Path, drive: &Drive, more: More<'_>) -> Origin {
+        Origin {
+            path: path.to_path_buf(),
+            io: drive.io.clone(),
+            simulate: drive.simulate.clone(),
+            plant: more.plant.map(str::to_owned),
+            profile: more.profile,
+            scan: more.scan,
+        }
+    }
+
+    fn wanted(&self) -> Wanted<'_> {
+        Wanted {
+            io: self.io.as_deref(),
+            simulate: self.simulate.as_deref(),
+            plant: self.plant.as_deref(),
+            profile: self.profile,
+            scan: self.scan,
+        }
+    }
+
+    /// The file of the chart.
+    pub(crate) fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Reads the files as they are now.
+    ///
+    /// # Errors
+    ///
+    /// Their problems as plain text.
+    pub(crate) fn read(&self) -> Result<Names, String> {
+        let source = sources::load(&self.path, 0).map_err(|e| e.to_string())?;
+        match wiring::make(&self.path, &source, &self.wanted()).map_err(|e| e.to_string())? {
+            (Some(plan), _) => Ok(Names::new(source, plan.bench, plan.wiring)),
+            (None, told) => Err(anstream::adapter::strip_str(told.trim_end()).to_string()),
+        }
+    }
+}
+
 /// A controller that works.
 pub(crate) struct Station {
-    pub(crate) plan: Plan,
+    pub(crate) names: Names,
+    pub(crate) origin: Origin,
     pub(crate) running: Running,
     pub(crate) sight: Sight,
     pub(crate) monitor: Option<Monitor>,
@@ -53,18 +106,12 @@ pub(crate) struct Station {
 /// Starts the controller of a chart, or prints the problems of its files.
 pub(crate) fn start(
     path: &Path,
-    source: &Source,
+    source: Source,
     drive: &Drive,
     more: More<'_>,
 ) -> Result<Option<Station>, Failure> {
-    let wanted = Wanted {
-        io: drive.io.as_deref(),
-        simulate: drive.simulate.as_deref(),
-        plant: more.plant,
-        profile: more.profile,
-        scan: more.scan,
-    };
-    let Some(plan) = wiring::plan(path, source, &wanted)? else { return Ok(None) };
+    let origin = Origin::new(path, drive, more);
+    let Some(plan) = wiring::plan(path, &source, &origin.wanted())? else { return Ok(None) };
     let Plan { bench, setup, wiring, .. } = &plan;
     if !wiring.unwired.is_empty() {
         talk!("{}note:{:#} no device has {}", style::WARN, style::WARN, wiring.unwired.join(", "));
@@ -91,7 +138,8 @@ pub(crate) fn start(
     } else {
         talk!("stopped; {HELP}");
     }
-    Ok(Some(Station { plan, running, sight, monitor }))
+    let names = Names::new(source, plan.bench, plan.wiring);
+    Ok(Some(Station { names, origin, running, sight, monitor }))
 }
 
 /// Opens the file of the values that are kept, and starts the run with them.

@@ -35,6 +35,20 @@ pub(crate) struct Wanted<'a> {
 
 /// Reads the io file and wires the chart, or prints the problems.
 pub(crate) fn plan(path: &Path, source: &Source, wanted: &Wanted<'_>) -> Result<Option<Plan>, Failure> {
+    let (plan, told) = make(path, source, wanted)?;
+    if !told.is_empty() {
+        talk!("{}", told.trim_end());
+    }
+    Ok(plan)
+}
+
+/// Reads the io file and wires the chart, unless there are errors. Returns the problems as text, in
+/// colours.
+pub(crate) fn make(
+    path: &Path,
+    source: &Source,
+    wanted: &Wanted<'_>,
+) -> Result<(Option<Plan>, String), Failure> {
     let io = wanted.io.map_or_else(|| path.with_extension("io.toml"), Path::to_path_buf);
     if wanted.io.is_none() && !io.is_file() {
         let what =
@@ -52,14 +66,16 @@ pub(crate) fn plan(path: &Path, source: &Source, wanted: &Wanted<'_>) -> Result<
     let plant = wanted.plant.or(if wanted.simulate.is_none() { Some("none") } else { None });
     let scan = wanted.scan.or(setup.controller.period.as_ref().map(|p| p.value));
     let options = Options { profile: wanted.profile, scan, plant, asks: &[] };
-    let Some(bench) = build(source, &options)? else { return Ok(None) };
+    let (bench, of_chart) = g7_rig::build(source, &options)?;
+    let mut told = told_of(source, &of_chart);
+    let Some(bench) = bench else { return Ok((None, told)) };
     problems.extend(setup::read_passwords(&mut setup, |origin| password(&io, origin)));
     let (mut wiring, wrong) = g7_online::wire(&bench, &setup);
     wiring.unwired.retain(|name| !simulated.iter().any(|s| bench.item(s).is_some_and(|i| i.name == *name)));
     problems.extend(wrong);
-    show(&file, &problems);
+    told += &told_of(&file, &problems);
     let errors = problems.iter().any(|p: &Problem| p.severity() == Severity::Error);
-    Ok((!errors).then_some(Plan { bench, setup, wiring, io }))
+    Ok(((!errors).then_some(Plan { bench, setup, wiring, io }), told))
 }
 
 /// The bytes of a password, which is never in the io file.
@@ -99,14 +115,20 @@ fn simulate(setup: &mut Setup, names: Option<&[String]>) -> Result<Vec<String>, 
 /// Compiles a source, or prints its problems.
 pub(crate) fn build(source: &Source, options: &Options<'_>) -> Result<Option<Bench>, Failure> {
     let (bench, problems) = g7_rig::build(source, options)?;
-    show(source, &problems);
+    let told = told_of(source, &problems);
+    if !told.is_empty() {
+        talk!("{}", told.trim_end());
+    }
     Ok(bench)
 }
 
-/// Prints the problems of a file, if it has any.
-fn show(source: &Source, problems: &[Problem]) {
-    if !problems.is_empty() {
-        talk!("{}", report::text(source, problems).trim_end());
-        talk!("{}: {}", source.name, Tally::of(problems));
+/// The problems of a file with their number; nothing if there are none.
+fn told_of(source: &Source, problems: &[Problem]) -> String {
+    match problems {
+        [] => String::new(),
+        _ => {
+            let each = report::text(source, problems);
+            format!("{}\n{}: {}\n", each.trim_end(), source.name, Tally::of(problems))
+        }
     }
 }

@@ -12,7 +12,7 @@ use g7_page::Places;
 use g7_rig::{Activity, Item, Role, values};
 use serde_json::{Map, Value, json};
 
-use super::names::Names;
+use super::names::{Known, Names};
 use super::told::{Level, Told, reason_json};
 
 /// Events that are kept for the page.
@@ -55,6 +55,8 @@ struct State {
 /// An event in the list.
 struct Entry {
     number: u64,
+    /// Those of the chart that ran when it happened.
+    names: Names,
     at: Nanos,
     told: Told,
     level: Level,
@@ -65,8 +67,8 @@ struct Entry {
 }
 
 /// The facts for the page.
-pub(super) struct Board<'a> {
-    names: Names<'a>,
+pub(super) struct Board {
+    names: Names,
     sight: Sight,
     places: Places,
     rows: Vec<Row>,
@@ -79,26 +81,39 @@ pub(super) struct Board<'a> {
     /// The parts of a frame that every watcher has.
     sent: Map<String, Value>,
     sent_values: Vec<(String, &'static str)>,
+    /// How the chart and its file are to each other.
+    file: Value,
 }
 
-impl<'a> Board<'a> {
-    pub(super) fn new(names: Names<'a>, sight: Sight) -> Board<'a> {
-        let places = Places::new(names.source, names.bench);
-        let items = names.bench.items.iter().enumerate();
-        let rows = items.filter(|(_, item)| item.role != Role::Plant);
+impl Board {
+    pub(super) fn new(names: Names, sight: Sight) -> Board {
         Board {
+            devices: vec![State::default(); names.wiring.devices.len()],
+            places: Places::new(&names.source, &names.bench),
+            rows: rows(&names),
             names,
             sight,
-            places,
-            rows: rows.map(|(number, item)| Row { item: number, point: point(names, item) }).collect(),
             mode: (Mode::Stop, Nanos::ZERO),
-            devices: vec![State::default(); names.wiring.devices.len()],
             events: VecDeque::new(),
             next: 1,
             seen: Nanos::ZERO,
             sent: Map::new(),
             sent_values: Vec::new(),
+            file: Value::Null,
         }
+    }
+
+    /// Goes on with another chart; devices, mode and events are the same.
+    pub(super) fn renew(&mut self, names: Names, sight: Sight) {
+        self.places = Places::new(&names.source, &names.bench);
+        self.rows = rows(&names);
+        (self.names, self.sight) = (names, sight);
+        self.sent.clear();
+        self.sent_values.clear();
+    }
+
+    pub(super) fn tell_file(&mut self, facts: Value) {
+        self.file = facts;
     }
 
     /// Notes an event.
@@ -114,10 +129,11 @@ impl<'a> Board<'a> {
         if let Some(thing) = told.thing() {
             self.events.iter_mut().filter(|e| e.told.thing() == Some(thing)).for_each(|e| e.over = true);
         }
-        let level = told.level(self.names);
+        let level = told.level(&self.names);
         let seen = level == Level::Note;
         let over = seen || told.thing().is_none();
-        let entry = Entry { number: self.next, at, told: told.clone(), level, over, seen };
+        let (number, names) = (self.next, self.names.clone());
+        let entry = Entry { number, names, at, told: told.clone(), level, over, seen };
         self.next += 1;
         self.events.push_back(entry);
         if self.events.len() > EVENTS {
@@ -172,7 +188,7 @@ impl<'a> Board<'a> {
 
     /// The names of all that frames have numbers for.
     pub(super) fn description(&self) -> Value {
-        let Names { source, bench, wiring } = self.names;
+        let Known { source, bench, wiring } = &*self.names;
         let steps = bench.steps.iter().zip(self.places.steps()).map(|(step, id)| {
             let chart = id.split_once("/s/").map_or("", |(chart, _)| chart);
             let is_macro = matches!(step.id, Activity::Macro(_));
@@ -198,7 +214,7 @@ impl<'a> Board<'a> {
     }
 
     fn signal(&self, row: &Row) -> Option<Value> {
-        let bench = self.names.bench;
+        let bench = &self.names.bench;
         let item = bench.items.get(row.item)?;
         let role = match item.role {
             Role::Input(_) => "input",
@@ -256,10 +272,10 @@ impl<'a> Board<'a> {
     }
 
     /// The parts of a frame that are sent as a whole.
-    fn parts(&self, paces: &Paces) -> [(&'static str, Value); 7] {
+    fn parts(&self, paces: &Paces) -> [(&'static str, Value); 8] {
         let (mode, since) = self.mode;
         let reason =
-            if let Mode::Fault(reason) = mode { Some(reason_json(self.names, reason)) } else { None };
+            if let Mode::Fault(reason) = mode { Some(reason_json(&self.names, reason)) } else { None };
         let word = match mode {
             Mode::Stop => "stop",
             Mode::Run => "run",
@@ -272,6 +288,7 @@ impl<'a> Board<'a> {
         let counts = json!({ "missed": self.sight.missed(), "lost": self.sight.lost() });
         [
             ("mode", mode),
+            ("file", self.file.clone()),
             ("counts", counts),
             ("on", json!(self.active())),
             ("enabled", json!(if state.is_started() { self.enabled() } else { BTreeMap::new() })),
@@ -287,7 +304,7 @@ impl<'a> Board<'a> {
 
     /// The active steps with the time since their activation, in ms.
     fn active(&self) -> Vec<(u32, i64)> {
-        let (program, state, bench) = (self.sight.program(), self.sight.state(), self.names.bench);
+        let (program, state, bench) = (self.sight.program(), self.sight.state(), &self.names.bench);
         let active = (0u32..).zip(&bench.steps).filter(|(_, step)| bench.is_active(state, step));
         active
             .map(|(number, step)| {
@@ -316,7 +333,7 @@ impl<'a> Board<'a> {
 
     /// The value of a row and its quality.
     fn cell(&self, row: &Row) -> (String, &'static str) {
-        let bench = self.names.bench;
+        let bench = &self.names.bench;
         let Some(item) = bench.items.get(row.item) else { return (String::new(), "") };
         let drives = self.sight.drives();
         let value = match item.role {
@@ -362,7 +379,7 @@ impl<'a> Board<'a> {
     }
 
     fn event(&self, entry: &Entry) -> Value {
-        let mut event = entry.told.json(self.names);
+        let mut event = entry.told.json(&entry.names);
         if let Some(fields) = event.as_object_mut() {
             fields.insert("n".to_owned(), json!(entry.number));
             fields.insert("at".to_owned(), json!(seconds(entry.at)));
@@ -372,6 +389,12 @@ impl<'a> Board<'a> {
         }
         event
     }
+}
+
+/// The variables that the page shows.
+fn rows(names: &Names) -> Vec<Row> {
+    let items = names.bench.items.iter().enumerate().filter(|(_, item)| item.role != Role::Plant);
+    items.map(|(number, item)| Row { item: number, point: point(names, item) }).collect()
 }
 
 /// The name of a machine: that of its chart, or of the folder where the chart is just `chart`.
@@ -407,8 +430,8 @@ fn with_pace(mut counts: Value, paces: &Paces) -> Value {
 }
 
 /// The place to which a variable is wired.
-fn point(names: Names<'_>, item: &Item) -> At {
-    let bench = names.bench;
+fn point(names: &Names, item: &Item) -> At {
+    let bench = &names.bench;
     for (device, wired) in names.wiring.devices.iter().enumerate() {
         match item.role {
             Role::Input(index) => {

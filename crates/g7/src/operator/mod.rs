@@ -7,6 +7,8 @@
 //!                                       Attendant <-> online::Running
 //! page -> serve::live -> Order -> Stage-/    |
 //!      <- Outbox <- frames <- Stage <- Board <- Sight, events
+//!
+//! change, back: Attendant -> Changes -> online::Changer, on a thread of its own -> Names, Sight anew
 //! ```
 //!
 //! # Invariants
@@ -15,6 +17,7 @@
 //! not read holds up nobody: frames go to bounded outboxes.
 
 mod board;
+mod changes;
 mod names;
 mod order;
 mod stage;
@@ -22,6 +25,7 @@ mod stage;
 mod tests;
 mod told;
 
+pub(crate) use changes::{Adopted, Changes};
 pub(crate) use names::Names;
 pub(crate) use order::{HELP, NAME, Order, Wish};
 pub(crate) use stage::{Asker, Stage};

@@ -1,33 +1,58 @@
 //! The names of what a controller tells by numbers.
 
+use std::ops::Deref;
+use std::sync::Arc;
+
 use g7_host::{Force, Halt};
 use g7_model::Nanos;
-use g7_online::{Command, Forced, Reason, Target, Wired, Wiring};
+use g7_online::{Chart, Command, Forced, Reason, Target, Wired, Wiring};
 use g7_rig::{Bench, Item, Role, Source};
 
 use super::order::Wish;
 use crate::values;
 
-/// A chart and its wiring, for names.
-#[derive(Clone, Copy)]
-pub(crate) struct Names<'a> {
-    pub(crate) source: &'a Source,
-    pub(crate) bench: &'a Bench,
-    pub(crate) wiring: &'a Wiring,
+/// A chart and its wiring.
+pub(crate) struct Known {
+    pub(crate) source: Source,
+    pub(crate) bench: Bench,
+    pub(crate) wiring: Wiring,
 }
 
-impl<'a> Names<'a> {
+/// A chart and its wiring, for names; clones are the same.
+#[derive(Clone)]
+pub(crate) struct Names(Arc<Known>);
+
+impl Deref for Names {
+    type Target = Known;
+
+    fn deref(&self) -> &Known {
+        &self.0
+    }
+}
+
+impl Known {
+    /// The chart, for an on-line change.
+    pub(crate) fn chart(&self) -> Chart<'_> {
+        Chart { bench: &self.bench, document: &self.source.document, wiring: &self.wiring }
+    }
+}
+
+impl Names {
+    pub(crate) fn new(source: Source, bench: Bench, wiring: Wiring) -> Names {
+        Names(Arc::new(Known { source, bench, wiring }))
+    }
+
     /// The name of a device.
-    pub(crate) fn device(self, device: usize) -> &'a str {
+    pub(crate) fn device(&self, device: usize) -> &str {
         self.wiring.devices.get(device).map_or("", |wired| &wired.device.name.value)
     }
 
-    pub(crate) fn wired(self, device: usize) -> Option<&'a Wired> {
+    pub(crate) fn wired(&self, device: usize) -> Option<&Wired> {
         self.wiring.devices.get(device)
     }
 
     /// The name of what a device gives.
-    pub(crate) fn input(self, target: Target) -> &'a str {
+    pub(crate) fn input(&self, target: Target) -> &str {
         let is = |item: &&Item| match target {
             Target::Input(index) => item.role == Role::Input(index),
             Target::Word(addr) => item.role != Role::Plant && item.addr == addr.0,
@@ -36,18 +61,18 @@ impl<'a> Names<'a> {
     }
 
     /// The forced variable.
-    pub(crate) fn forced(self, what: Force) -> Option<&'a Item> {
+    pub(crate) fn forced(&self, what: Force) -> Option<&Item> {
         self.bench.items.iter().find(|item| self.bench.force_of(item) == Some(what))
     }
 
     /// The name of a forced variable, and its value as text.
-    pub(crate) fn value_of(self, force: Forced) -> (&'a str, String) {
+    pub(crate) fn value_of(&self, force: Forced) -> (&str, String) {
         let Some(item) = self.forced(force.what) else { return ("", String::new()) };
         (&item.name, g7_rig::values::shown(&g7_host::Value::Word(force.word), item.kind))
     }
 
     /// Why the charts or the plant ended, with the place in the text.
-    pub(crate) fn halt(self, halt: Halt) -> String {
+    pub(crate) fn halt(&self, halt: Halt) -> String {
         let place = self.bench.halt_place(halt).map(|at| format!("{}: ", self.source.place(at)));
         let kind = match halt {
             Halt::Charts(fault) => fault.kind.to_string(),
@@ -57,7 +82,7 @@ impl<'a> Names<'a> {
     }
 
     /// The reason of a fault in a sentence.
-    pub(crate) fn reason(self, reason: Reason) -> String {
+    pub(crate) fn reason(&self, reason: Reason) -> String {
         match reason {
             Reason::Watchdog => "a scan took longer than the watchdog allows".to_owned(),
             Reason::Input(target) => format!("the input `{}` is bad", self.input(target)),
@@ -66,7 +91,7 @@ impl<'a> Names<'a> {
     }
 
     /// The command for a wish; `None` for a wish that the controller does not hear of.
-    pub(crate) fn command(self, wish: &Wish) -> Result<Option<Command>, String> {
+    pub(crate) fn command(&self, wish: &Wish) -> Result<Option<Command>, String> {
         Ok(Some(match wish {
             Wish::Run => Command::Run,
             Wish::Stop => Command::Stop,
@@ -79,12 +104,12 @@ impl<'a> Names<'a> {
             }
             Wish::Release { name } => Command::Release(self.forcible(name)?.1),
             Wish::ReleaseAll => Command::ReleaseAll,
-            Wish::Watch | Wish::Seen { .. } => return Ok(None),
+            Wish::Watch | Wish::Seen { .. } | Wish::Change { .. } | Wish::Back { .. } => return Ok(None),
         }))
     }
 
     /// A variable that can be forced.
-    fn forcible(self, name: &str) -> Result<(&'a Item, Force), String> {
+    fn forcible(&self, name: &str) -> Result<(&Item, Force), String> {
         let item = self.bench.item(name).ok_or_else(|| self.bench.unknown(name))?;
         match self.bench.force_of(item) {
             Some(what) => Ok((item, what)),

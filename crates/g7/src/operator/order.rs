@@ -16,7 +16,8 @@ pub(crate) const NAME: &str = "\u{1}operator";
 
 /// The commands that a line can be, for a message.
 pub(crate) const HELP: &str = "commands: run, stop, ack (ends a fault), cold (initial situation), \
-    force NAME := VALUE for TIME, release NAME, release (all), status, quit";
+    force NAME := VALUE for TIME, release NAME, release (all), change (to the chart as its file is now), \
+    back (to the one before), status, quit";
 
 /// A wish of a person.
 #[derive(Clone, Debug, PartialEq, Eq, Deserialize)]
@@ -51,6 +52,18 @@ pub(crate) enum Wish {
     /// Take all forces back.
     #[serde(rename = "operator_release_all")]
     ReleaseAll,
+    /// Go on with the chart as its file is now; what would be lost is lost only `anyway`.
+    #[serde(rename = "operator_change")]
+    Change {
+        #[serde(default)]
+        anyway: bool,
+    },
+    /// Go on with the chart before the latest change.
+    #[serde(rename = "operator_back")]
+    Back {
+        #[serde(default)]
+        anyway: bool,
+    },
     /// An alarm was seen, or all up to this one.
     #[serde(rename = "operator_seen")]
     Seen { event: u64, all: bool },
@@ -78,6 +91,11 @@ impl Wish {
             "stop" => plain(Wish::Stop),
             "ack" => plain(Wish::Acknowledge),
             "cold" => plain(Wish::Cold),
+            "change" | "back" => match (word, rest) {
+                ("change", "" | "anyway") => Ok(Wish::Change { anyway: !rest.is_empty() }),
+                ("back", "" | "anyway") => Ok(Wish::Back { anyway: !rest.is_empty() }),
+                _ => Err(format!("expected `{word}` or `{word} anyway`")),
+            },
             "force" => forced(rest),
             "release" if rest.is_empty() => Ok(Wish::ReleaseAll),
             "release" => Ok(Wish::Release { name: rest.to_owned() }),
@@ -119,7 +137,10 @@ mod tests {
         assert_eq!(Wish::of_line("force level=2.5 for 1m30s"), force("level", "2.5", 90));
         assert_eq!(Wish::of_line("release go"), Some(Ok(Wish::Release { name: "go".to_owned() })));
         assert_eq!(Wish::of_line("release"), Some(Ok(Wish::ReleaseAll)));
-        for wrong in ["run now", "force go", "force go := 1 for soon", "force go := 1 for 100ms"] {
+        assert_eq!(Wish::of_line("change"), Some(Ok(Wish::Change { anyway: false })));
+        assert_eq!(Wish::of_line("back anyway"), Some(Ok(Wish::Back { anyway: true })));
+        for wrong in ["run now", "change it", "force go", "force go := 1 for soon", "force go := 1 for 100ms"]
+        {
             assert!(matches!(Wish::of_line(wrong), Some(Err(_))), "{wrong}");
         }
         for other in ["", "status", "go := 1", "running"] {

@@ -43,23 +43,34 @@ impl Asker {
 }
 
 /// The stage: the pages before which a controller runs.
-pub(crate) struct Stage<'a> {
-    board: Board<'a>,
+pub(crate) struct Stage {
+    board: Board,
     orders: Receiver<Order>,
     watchers: Vec<Weak<Outbox>>,
     name: Arc<str>,
     due: Nanos,
 }
 
-impl<'a> Stage<'a> {
+impl Stage {
     /// The way in for orders, before there is a stage.
     pub(crate) fn door() -> (SyncSender<Order>, Receiver<Order>) {
         sync_channel(WAITING)
     }
 
-    pub(crate) fn new(names: Names<'a>, sight: Sight, orders: Receiver<Order>) -> Stage<'a> {
+    pub(crate) fn new(names: Names, sight: Sight, orders: Receiver<Order>) -> Stage {
         let board = Board::new(names, sight);
         Stage { board, orders, watchers: Vec::new(), name: Arc::from(NAME), due: Nanos::ZERO }
+    }
+
+    /// Shows another chart from here on; the watchers are told to ask what it has.
+    pub(crate) fn renew(&mut self, names: Names, sight: Sight) {
+        self.board.renew(names, sight);
+        self.spread(&json!({ "renew": true }), None);
+    }
+
+    /// Tells the watchers how the chart and its file are to each other.
+    pub(crate) fn tell_file(&mut self, facts: Value) {
+        self.board.tell_file(facts);
     }
 
     /// Notes an event.

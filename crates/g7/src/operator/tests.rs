@@ -5,7 +5,7 @@ use std::sync::mpsc::SyncSender;
 
 use g7_model::Nanos;
 use g7_online::{Command, Failed, Happened, Machine, Mode, Paces, Reason, Wiring, assemble, runner};
-use g7_rig::{Bench, Options, Source, build};
+use g7_rig::{Options, Source, build};
 use serde_json::{Value, json};
 use tokio::sync::oneshot;
 
@@ -25,36 +25,24 @@ chart G {
 }
 ";
 
-/// The files of a controller, which outlive it.
-struct Files {
-    source: Source,
-    bench: Bench,
-    wiring: Wiring,
-}
-
-impl Files {
-    fn new() -> Files {
-        let source = Source::new("mixers/chart.g7", CHART.as_bytes().to_vec(), 0);
-        let (bench, problems) = build(&source, &Options::default()).expect("no plant");
-        Files { bench: bench.unwrap_or_else(|| panic!("{problems:?}")), source, wiring: Wiring::default() }
-    }
-}
-
-struct Bed<'a> {
+struct Bed {
     machine: Machine,
-    stage: Stage<'a>,
+    stage: Stage,
     orders: SyncSender<Order>,
     now: Nanos,
     paces: Paces,
 }
 
-impl<'a> Bed<'a> {
-    fn new(files: &'a Files) -> Bed<'a> {
-        let Files { source, bench, wiring } = files;
+impl Bed {
+    fn new() -> Bed {
+        let source = Source::new("mixers/chart.g7", CHART.as_bytes().to_vec(), 0);
+        let (bench, problems) = build(&source, &Options::default()).expect("no plant");
+        let bench = bench.unwrap_or_else(|| panic!("{problems:?}"));
+        let wiring = Wiring::default();
         let none = |_: &_| Err::<_, ()>(());
-        let mut machine = assemble(runner(bench, wiring, 0), wiring, none).expect("it has no device");
+        let mut machine = assemble(runner(&bench, &wiring, 0), &wiring, none).expect("it has no device");
         let (orders, door) = Stage::door();
-        let stage = Stage::new(Names { source, bench, wiring }, machine.show(), door);
+        let stage = Stage::new(Names::new(source, bench, wiring), machine.show(), door);
         Bed { machine, stage, orders, now: Nanos::ZERO, paces: Paces::default() }
     }
 
@@ -99,8 +87,7 @@ fn next(outbox: &Outbox) -> Value {
 
 #[test]
 fn a_frame_has_only_what_changed() {
-    let files = Files::new();
-    let mut bed = Bed::new(&files);
+    let mut bed = Bed::new();
     bed.ticks(1);
     let (page, told) = bed.watch();
     assert_eq!((&told["title"], &told["frame"]["full"]), (&json!("mixers"), &json!(true)));
@@ -116,8 +103,7 @@ fn a_frame_has_only_what_changed() {
 
 #[test]
 fn a_page_left_behind_gets_one_whole_frame() {
-    let files = Files::new();
-    let mut bed = Bed::new(&files);
+    let mut bed = Bed::new();
     let (page, _) = bed.watch();
     let (other, _) = bed.watch();
     bed.command(Command::Run);
@@ -136,8 +122,7 @@ fn a_page_left_behind_gets_one_whole_frame() {
 
 #[test]
 fn commands_are_handed_on_and_alarms_are_seen_here() {
-    let files = Files::new();
-    let mut bed = Bed::new(&files);
+    let mut bed = Bed::new();
     let (page, _) = bed.watch();
     let handed = bed.order(&page, Some((7, Wish::Stop)));
     let Some((Wish::Stop, asker)) = handed else { panic!("it is for the controller") };
@@ -159,10 +144,9 @@ fn commands_are_handed_on_and_alarms_are_seen_here() {
 
 #[test]
 fn of_many_events_the_alarms_stay_that_nobody_has_seen() {
-    let files = Files::new();
-    let mut bed = Bed::new(&files);
+    let mut bed = Bed::new();
     bed.stage.note(Nanos::ZERO, &Told::Unsaved("the disk is full".to_owned()));
-    let events = |bed: &mut Bed<'_>| {
+    let events = |bed: &mut Bed| {
         let (_, told) = bed.watch();
         told["frame"]["events"].as_array().expect("a list").clone()
     };

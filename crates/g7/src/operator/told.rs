@@ -20,6 +20,8 @@ pub(crate) enum Told {
     Released(Force),
     /// The time of a force is over.
     Ended(Force),
+    /// It goes on with another chart: that before the latest change, or a new one; and what was lost.
+    Changed { back: bool, lost: Vec<String> },
     /// Something happened at a device, by number.
     Device(usize, Happened),
     /// The scan has no priority, and why.
@@ -50,7 +52,7 @@ impl Level {
 }
 
 impl Told {
-    pub(crate) fn level(&self, names: Names<'_>) -> Level {
+    pub(crate) fn level(&self, names: &Names) -> Level {
         match self {
             Told::Mode(Mode::Fault(_)) | Told::Unsaved(_) => Level::Alarm,
             Told::Device(device, Happened::Down(_)) => match names.wired(*device) {
@@ -63,6 +65,7 @@ impl Told {
             Told::Mode(Mode::Run | Mode::Stop)
             | Told::Forced(_)
             | Told::Released(_)
+            | Told::Changed { .. }
             | Told::NoPriority(_)
             | Told::Device(..) => Level::Note,
         }
@@ -84,7 +87,7 @@ impl Told {
     }
 
     /// The event for the page: its kind and what belongs to it.
-    pub(crate) fn json(&self, names: Names<'_>) -> Value {
+    pub(crate) fn json(&self, names: &Names) -> Value {
         match self {
             Told::Mode(Mode::Stop) => json!({ "kind": "stop" }),
             Told::Mode(Mode::Run) => json!({ "kind": "run" }),
@@ -98,6 +101,9 @@ impl Told {
             }
             Told::Released(what) => json!({ "kind": "released", "name": name(names, *what) }),
             Told::Ended(what) => json!({ "kind": "ended", "name": name(names, *what) }),
+            Told::Changed { back, lost } => {
+                json!({ "kind": if *back { "back" } else { "changed" }, "why": lost.join("; ") })
+            }
             Told::NoPriority(why) => json!({ "kind": "no-priority", "why": why }),
             Told::Unsaved(why) => json!({ "kind": "unsaved", "why": why }),
             Told::Device(device, happened) => device_json(names, *device, happened),
@@ -105,7 +111,7 @@ impl Told {
     }
 
     /// The event for the terminal; `None` for one that its device does not have any more.
-    pub(crate) fn text(&self, names: Names<'_>) -> Option<String> {
+    pub(crate) fn text(&self, names: &Names) -> Option<String> {
         let (bad, warn) = (style::BAD, style::WARN);
         Some(match self {
             Told::Mode(mode) => mode_text(names, *mode),
@@ -118,6 +124,12 @@ impl Told {
             Told::Ended(what) => {
                 format!("`{}` is no longer forced: its time is over", name(names, *what))
             }
+            Told::Changed { back, lost } => {
+                let which = if *back { "the chart before the change" } else { "the changed chart" };
+                let lost =
+                    if lost.is_empty() { String::new() } else { format!("; lost: {}", lost.join("; ")) };
+                format!("goes on with {which}{lost}")
+            }
             Told::NoPriority(why) => format!("{warn}note:{warn:#} {why}"),
             Told::Unsaved(why) => format!("{bad}values cannot be saved:{bad:#} {why}"),
             Told::Device(device, happened) => return device_text(names, *device, happened),
@@ -129,12 +141,12 @@ fn seconds(time: g7_model::Nanos) -> f64 {
     time.count() as f64 / 1e9
 }
 
-fn name<'a>(names: Names<'a>, what: Force) -> &'a str {
+fn name(names: &Names, what: Force) -> &str {
     names.forced(what).map_or("", |item| &item.name)
 }
 
 /// A fault for the page.
-pub(crate) fn reason_json(names: Names<'_>, reason: Reason) -> Value {
+pub(crate) fn reason_json(names: &Names, reason: Reason) -> Value {
     match reason {
         Reason::Watchdog => json!({ "kind": "watchdog" }),
         Reason::Input(target) => json!({ "kind": "input", "name": names.input(target) }),
@@ -143,7 +155,7 @@ pub(crate) fn reason_json(names: Names<'_>, reason: Reason) -> Value {
 }
 
 /// The mode for the terminal.
-pub(crate) fn mode_text(names: Names<'_>, mode: Mode) -> String {
+pub(crate) fn mode_text(names: &Names, mode: Mode) -> String {
     let (good, bad) = (style::GOOD, style::BAD);
     match mode {
         Mode::Stop => "stopped".to_owned(),
@@ -155,7 +167,7 @@ pub(crate) fn mode_text(names: Names<'_>, mode: Mode) -> String {
 }
 
 /// The variable of an event of a device.
-fn channel<'a>(names: Names<'a>, device: usize, happened: &Happened) -> &'a str {
+fn channel<'n>(names: &'n Names, device: usize, happened: &Happened) -> &'n str {
     let Some(wired) = names.wired(device) else { return "" };
     match happened {
         Happened::NoInput(k, _) | Happened::Input(k) => wired.inputs.get(*k).map_or("", |i| &i.name),
@@ -166,7 +178,7 @@ fn channel<'a>(names: Names<'a>, device: usize, happened: &Happened) -> &'a str 
     }
 }
 
-fn device_json(names: Names<'_>, device: usize, happened: &Happened) -> Value {
+fn device_json(names: &Names, device: usize, happened: &Happened) -> Value {
     let server = names.wired(device).is_some_and(|wired| wired.device.kind.is_server());
     let (kind, why) = match happened {
         Happened::Up => ("up", None),
@@ -181,7 +193,7 @@ fn device_json(names: Names<'_>, device: usize, happened: &Happened) -> Value {
     json!({ "kind": kind, "device": names.device(device), "master": server, "name": name, "why": why })
 }
 
-fn device_text(names: Names<'_>, device: usize, happened: &Happened) -> Option<String> {
+fn device_text(names: &Names, device: usize, happened: &Happened) -> Option<String> {
     let wired = names.wired(device)?;
     let (good, bad, warn) = (style::GOOD, style::BAD, style::WARN);
     let (name, server) = (names.device(device), wired.device.kind.is_server());

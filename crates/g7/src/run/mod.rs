@@ -12,7 +12,6 @@ use crate::attendant::Attendant;
 use crate::cli::Run;
 use crate::failure::{Failure, Verdict};
 use crate::message::talk;
-use crate::operator::Names;
 use crate::sources::{self, Source};
 use crate::station::{self, More, Station};
 use crate::{files, view, wiring};
@@ -22,7 +21,7 @@ pub(crate) fn run(args: &Run) -> Result<Verdict, Failure> {
     let path = files::one(&args.path)?;
     let source = sources::load(&path, 0)?;
     if args.drive.online {
-        return online(&path, &source, args);
+        return online(&path, source, args);
     }
     let options = Options { profile: args.profile, scan: args.scan, plant: args.plant.as_deref(), asks: &[] };
     let Some(bench) = wiring::build(&source, &options)? else { return Ok(Verdict::Found) };
@@ -44,12 +43,9 @@ pub(crate) fn run(args: &Run) -> Result<Verdict, Failure> {
 }
 
 /// The chart drives the devices of its io file, until it is told to end.
-fn online(path: &Path, source: &Source, args: &Run) -> Result<Verdict, Failure> {
+fn online(path: &Path, source: Source, args: &Run) -> Result<Verdict, Failure> {
     let more = More { profile: args.profile, scan: args.scan, plant: args.plant.as_deref(), seed: args.seed };
-    let Some(Station { plan, running, monitor, .. }) = station::start(path, source, &args.drive, more)?
-    else {
-        return Ok(Verdict::Found);
-    };
-    let names = Names { source, bench: &plan.bench, wiring: &plan.wiring };
-    Attendant::new(names).with(monitor).attend(running, args.duration)
+    let station = station::start(path, source, &args.drive, more)?;
+    let Some(Station { names, origin, running, monitor, .. }) = station else { return Ok(Verdict::Found) };
+    Attendant::new(names).with(monitor).changing(origin).attend(running, args.duration)
 }

@@ -53,7 +53,7 @@ use tokio::sync::Semaphore;
 use crate::attendant::Attendant;
 use crate::failure::{Failure, Verdict};
 use crate::message::talk;
-use crate::operator::{Names, Order, Stage};
+use crate::operator::{Order, Stage};
 use crate::station::{self, Drive, More, Station};
 use crate::{files, sources};
 use drafts::Drafts;
@@ -287,14 +287,11 @@ fn online(args: &Serve) -> Result<Verdict, Failure> {
     // A port that is taken is found before anything moves.
     let open = Open::new(args, &shared)?;
     let more = More { plant: args.plant.as_deref(), ..More::default() };
-    let Some(Station { plan, running, sight, monitor }) = station::start(&path, &source, &args.drive, more)?
-    else {
-        return Ok(Verdict::Found);
-    };
+    let station = station::start(&path, source, &args.drive, more)?;
+    let Some(Station { names, origin, running, sight, monitor }) = station else { return Ok(Verdict::Found) };
     open.tell(args, &shared)?;
-    let names = Names { source: &source, bench: &plan.bench, wiring: &plan.wiring };
-    let stage = Stage::new(names, sight, orders);
-    Attendant::new(names).with(monitor).on(stage).attend(running, None)
+    let stage = Stage::new(names.clone(), sight, orders);
+    Attendant::new(names).with(monitor).on(stage).changing(origin).attend(running, None)
 }
 
 /// The address that the user opens.
