@@ -20,7 +20,7 @@ use crate::manager::Manager;
 use crate::message::talk;
 use crate::monitor::Monitor;
 use crate::operator::{Adopted, Asker, Changes, HELP, Names, Stage, Told, Wish, mode_text};
-use crate::station::Origin;
+use crate::origin::Origin;
 use crate::values;
 
 /// The pause between two looks at the events.
@@ -157,7 +157,7 @@ impl Attendant {
         let Some(changes) = &mut self.changes else { return };
         changes.settle(&self.names, running);
         let Some(Adopted { names, sight, back, lost }) = changes.made() else { return };
-        // What happened until then has the names of the chart before.
+        // Events until then have the names of the chart before.
         self.tell(running);
         self.names = names.clone();
         if let Some(stage) = &mut self.stage {

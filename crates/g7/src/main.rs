@@ -31,6 +31,7 @@ mod message;
 mod monitor;
 mod new;
 mod operator;
+mod origin;
 mod plant;
 mod progress;
 mod report;

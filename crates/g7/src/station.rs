@@ -12,9 +12,10 @@ use crate::failure::{Failure, plain};
 use crate::message::talk;
 use crate::monitor::Monitor;
 use crate::operator::{HELP, Names};
-use crate::sources::{self, Source};
+use crate::origin::Origin;
+use crate::sources::Source;
 use crate::style;
-use crate::wiring::{self, Plan, Wanted};
+use crate::wiring::{self, Plan};
 
 /// Periods without a step after which the watchdog trips, and the least time for them.
 const WATCHDOG: (i64, Nanos) = (10, Nanos::from_millis(100));
@@ -42,58 +43,6 @@ pub(crate) struct More<'a> {
     pub(crate) seed: u64,
 }
 
-/// The files of a chart that is on line, and the arguments with which they are read.
-#[derive(Clone, Debug)]
-pub(crate) struct Origin {
-    path: PathBuf,
-    io: Option<PathBuf>,
-    simulate: Option<Vec<String>>,
-    plant: Option<String>,
-    profile: Option<ProfileName>,
-    scan: Option<Nanos>,
-}
-
-impl Origin {
-    fn new(path: &Path, drive: &Drive, more: More<'_>) -> Origin {
-        Origin {
-            path: path.to_path_buf(),
-            io: drive.io.clone(),
-            simulate: drive.simulate.clone(),
-            plant: more.plant.map(str::to_owned),
-            profile: more.profile,
-            scan: more.scan,
-        }
-    }
-
-    fn wanted(&self) -> Wanted<'_> {
-        Wanted {
-            io: self.io.as_deref(),
-            simulate: self.simulate.as_deref(),
-            plant: self.plant.as_deref(),
-            profile: self.profile,
-            scan: self.scan,
-        }
-    }
-
-    /// The file of the chart.
-    pub(crate) fn path(&self) -> &Path {
-        &self.path
-    }
-
-    /// Reads the files as they are now.
-    ///
-    /// # Errors
-    ///
-    /// Their problems as plain text.
-    pub(crate) fn read(&self) -> Result<Names, String> {
-        let source = sources::load(&self.path, 0).map_err(|e| e.to_string())?;
-        match wiring::make(&self.path, &source, &self.wanted()).map_err(|e| e.to_string())? {
-            (Some(plan), _) => Ok(Names::new(source, plan.bench, plan.wiring)),
-            (None, told) => Err(anstream::adapter::strip_str(told.trim_end()).to_string()),
-        }
-    }
-}
-
 /// A controller that works.
 pub(crate) struct Station {
     pub(crate) names: Names,
@@ -110,7 +59,14 @@ pub(crate) fn start(
     drive: &Drive,
     more: More<'_>,
 ) -> Result<Option<Station>, Failure> {
-    let origin = Origin::new(path, drive, more);
+    let origin = Origin {
+        path: path.to_path_buf(),
+        io: drive.io.clone(),
+        simulate: drive.simulate.clone(),
+        plant: more.plant.map(str::to_owned),
+        profile: more.profile,
+        scan: more.scan,
+    };
     let Some(plan) = wiring::plan(path, &source, &origin.wanted())? else { return Ok(None) };
     let Plan { bench, setup, wiring, .. } = &plan;
     if !wiring.unwired.is_empty() {

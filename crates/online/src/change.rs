@@ -10,16 +10,15 @@
 //! of the old ones: they go back. A successor that comes too late is not taken, so no scan waits for it.
 //! A change is made as a whole or not at all. Devices, wires and drivers are those of before.
 
-use g7_host::Runner;
 use g7_model::{Document, Nanos};
 use g7_rig::{Bench, Carried};
 
-use crate::controller::{Handles, Keeping};
 use crate::exchange::{Reader, exchange};
 use crate::forces::{FORCES, Forced};
 use crate::keep::Keep;
 use crate::machine::{coupling, stale};
-use crate::sight::{Showing, Sight, sight};
+use crate::parts::{Handles, Keeping, Picture, Successor};
+use crate::sight::{Sight, sight};
 use crate::wiring::{Wired, Wiring};
 
 /// A chart with its wiring.
@@ -33,34 +32,6 @@ pub struct Chart<'a> {
     pub wiring: &'a Wiring,
 }
 
-/// A controller between two scans.
-pub struct Picture {
-    pub(crate) runner: Runner,
-    pub(crate) forces: Vec<Forced>,
-    /// The number of changes that the controller has seen.
-    pub(crate) revision: u64,
-}
-
-impl Picture {
-    /// Room for pictures of a controller with such a run.
-    pub fn of(runner: &Runner) -> Picture {
-        let mut runner = runner.clone();
-        runner.reserve_forces(FORCES);
-        Picture { runner, forces: Vec::with_capacity(FORCES), revision: 0 }
-    }
-}
-
-/// The parts of a controller that belong to its chart; behind a change, those of the chart before.
-pub struct Successor {
-    pub(crate) runner: Runner,
-    pub(crate) forces: Vec<Forced>,
-    /// One for each device.
-    pub(crate) handles: Vec<Handles>,
-    pub(crate) keeping: Option<Keeping>,
-    pub(crate) showing: Option<Showing>,
-    pub(crate) revision: u64,
-}
-
 /// A change that can be made.
 pub struct Prepared {
     /// The parts for the controller.
@@ -69,7 +40,7 @@ pub struct Prepared {
     pub lost: Vec<String>,
     /// Room for pictures behind the change.
     pub picture: Box<Picture>,
-    /// What the controller shows behind the change.
+    /// The sight of the controller behind the change.
     pub sight: Sight,
     /// The values that it keeps behind the change.
     pub kept: Reader,

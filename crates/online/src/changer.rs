@@ -7,8 +7,9 @@ use std::time::Duration;
 use g7_host::{Clock, Runner, WallClock};
 use g7_model::Nanos;
 
-use crate::change::{Chart, Picture, Prepared, Successor, prepare};
+use crate::change::{Chart, Prepared, prepare};
 use crate::exchange::Reader;
+use crate::parts::{Picture, Successor};
 use crate::sight::Sight;
 
 /// The scan is asked so often before the change is given up.
@@ -42,7 +43,7 @@ pub enum Change {
     Made {
         /// A sentence for each part that was lost.
         lost: Vec<String>,
-        /// What the controller shows from here on.
+        /// The sight of the controller from here on.
         sight: Box<Sight>,
     },
 }
@@ -101,7 +102,7 @@ impl Changer {
 
     /// A picture of the controller behind its next scan.
     fn look(&mut self, wait: Nanos) -> Result<Box<Picture>, String> {
-        // What came back after it was given up.
+        // An answer that came after it was given up.
         while let Ok(late) = self.from_scan.pop() {
             if let FromScan::Seen(picture) = late {
                 self.picture = Some(picture);

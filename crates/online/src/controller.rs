@@ -10,14 +10,14 @@ use g7_engine::Addr;
 use g7_host::{Force, Halt, Runner, Start};
 use g7_model::Nanos;
 
-use crate::change::{Picture, Successor};
 use crate::driver::{Quality, Said, from_device};
 use crate::exchange::{Reader, Writer};
 use crate::forces::{FORCES, Forced, Forces, LONGEST};
 use crate::keep::Keep;
+use crate::parts::{Handles, Keeping, Picture, Successor};
 use crate::sight::{Facts, Showing, Sight, sight};
-use crate::wiring::{WhileBad, Wired};
-use crate::word::{Source, Target};
+use crate::wiring::WhileBad;
+use crate::word::Target;
 
 /// The state of a controller.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -129,28 +129,6 @@ pub struct Shared {
     pub tripped: Arc<AtomicBool>,
 }
 
-/// The words of a run that a device gives and gets.
-#[derive(Clone, Debug, Default)]
-pub struct Handles {
-    /// The words that the device gives, and what each has while its value is bad.
-    pub inputs: Vec<(Target, WhileBad)>,
-    /// The words that the device gets, and the safe value of each; `None` for what is only shown.
-    pub outputs: Vec<(Source, Option<u64>)>,
-    /// Input words that are 1 while the device answers.
-    pub good: Vec<u32>,
-}
-
-impl Handles {
-    /// Those of a device.
-    pub fn of(wired: &Wired) -> Handles {
-        Handles {
-            inputs: wired.inputs.iter().map(|i| (i.target, i.bad)).collect(),
-            outputs: wired.outputs.iter().map(|o| (o.source, o.out.safe)).collect(),
-            good: wired.good.clone(),
-        }
-    }
-}
-
 /// The controller's side of a device.
 #[derive(Debug)]
 pub struct Port {
@@ -175,20 +153,6 @@ struct Open {
 
 /// The time between two hand-overs of the values that are kept.
 const KEPT_EACH: Nanos = Nanos::from_millis(100);
-
-/// The values that are kept, on their way to the one who writes them.
-#[derive(Debug)]
-pub(crate) struct Keeping {
-    keep: Keep,
-    to_disk: Writer,
-    due: Nanos,
-}
-
-impl Keeping {
-    pub(crate) fn new(keep: Keep, to_disk: Writer) -> Keeping {
-        Keeping { keep, to_disk, due: Nanos::ZERO }
-    }
-}
 
 /// A controller.
 pub struct Controller {

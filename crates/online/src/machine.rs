@@ -6,11 +6,12 @@ use g7_host::{Coupling, Runner};
 use g7_model::Nanos;
 use g7_rig::Bench;
 
-use crate::controller::{Controller, Event, Handles, Port, Shared};
+use crate::controller::{Controller, Event, Port, Shared};
 use crate::device::Device;
 use crate::driver::{Driver, from_device};
 use crate::exchange::exchange;
 use crate::keep::{Keep, KeptFile};
+use crate::parts::Handles;
 use crate::setup::Timing;
 use crate::sight::Sight;
 use crate::slots::{Disk, Slots};

@@ -14,7 +14,7 @@ use serde_json::{Value, json};
 use super::names::Names;
 use super::stage::Asker;
 use crate::message::talk;
-use crate::station::Origin;
+use crate::origin::Origin;
 
 /// The time between two looks at the file.
 const LOOK: Nanos = Nanos::SECOND;
@@ -133,11 +133,11 @@ impl Changes {
         self.made.take()
     }
 
-    /// What the page shows of it: if the file differs from what runs, and if there is a way back.
+    /// The facts for the page: if the file differs from what runs, and if there is a way back.
     pub(crate) fn facts(&mut self, names: &Names, now: Nanos) -> Value {
         if now >= self.due {
             self.due = now + LOOK;
-            let path = self.origin.path();
+            let path = &self.origin.path;
             let is = std::fs::metadata(path).ok().and_then(|m| Some((m.len(), m.modified().ok()?)));
             if is.is_none() || is != self.file.0 {
                 // A file that cannot be read at the moment is told when the change is asked for.
