@@ -141,6 +141,11 @@ export class Machine {
     if (this.#plant) await ended(this.#plant, 'SIGKILL');
   }
 
+  /** The file of the chart is written anew, as an editor does it. */
+  edit(change: (chart: string) => string): void {
+    writeFileSync(join(this.#folder, 'mixer.g7'), change(CHART));
+  }
+
   /** A hand at the machine. */
   press(on: boolean): void {
     this.#plant?.stdin?.write(`pressed := ${on ? 'TRUE' : 'FALSE'}\n`);

@@ -126,6 +126,53 @@ test('a force is seen until it is taken back or ends', async () => {
   await page.context().close();
 });
 
+test('a changed chart is taken over while the machine runs, and taken back', async () => {
+  const page = await operator();
+  await button(page, 'Start').click();
+  await mode(page, 'run');
+  machine.press(true);
+  const steps = card(page, 'Active steps');
+  await steps.getByText('stirring').waitFor();
+  const bar = card(page, 'On-line change');
+  assert.equal(await bar.count(), 0);
+  // An error is told with its place, and the machine goes on.
+  machine.edit((chart) => chart.replace('when high', 'when hi'));
+  await bar.getByRole('button', { name: 'Take over…' }).click();
+  const dialog = page.getByRole('dialog', { name: 'Take over the changed chart' });
+  await dialog.getByRole('button', { name: 'Take over', exact: true }).click();
+  await dialog.getByRole('alert').getByText(/mixer\.g7:\d+/).waitFor();
+  await dialog.getByRole('button', { name: 'Cancel' }).click();
+  // A step that is active is gone: the page asks first.
+  machine.edit((chart) => chart.replace('step 2 "stirring"', 'step 22 "mixing"').replace('1 -> (2, 4)', '1 -> (22, 4)').replace('2 -> 3 when 6s/X2', '22 -> 3 when 6s/X22'));
+  await bar.getByRole('button', { name: 'Take over…' }).click();
+  await dialog.getByRole('button', { name: 'Take over', exact: true }).click();
+  await dialog.getByText('step `stirring` is active and no longer exists').or(dialog.getByText('step `2` is active and no longer exists')).waitFor();
+  assert.deepEqual(await axe(page), []);
+  await dialog.getByRole('button', { name: 'Cancel' }).click();
+  assert.match(await steps.innerText(), /stirring/);
+  // Another time and another comment: the step goes on.
+  machine.edit((chart) => chart.replace('"stirring"', '"stirring slowly"').replace('6s/X2', '600s/X2').replace('"stirrer, turns a minute"', '"turns of the stirrer"'));
+  await bar.getByRole('button', { name: 'Take over…' }).click();
+  await dialog.getByRole('button', { name: 'Take over', exact: true }).click();
+  await dialog.waitFor({ state: 'hidden' });
+  await steps.getByText('stirring slowly').waitFor();
+  await row(page, 'speed').getByText('turns of the stirrer').waitFor();
+  await shows(page, 'speed', '120');
+  await page.locator('.machine .live path.on:not([d=""])').waitFor({ state: 'attached' });
+  assert.match(await card(page, 'Alarms and events').innerText(), /goes on with the changed chart/);
+  await bar.getByText('The chart was changed while it ran.').waitFor();
+  await page.setViewportSize(PHONE);
+  assert.equal(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth), true, 'it fits a phone');
+  await page.setViewportSize(DESK);
+  await bar.getByRole('button', { name: 'Take the change back' }).click();
+  await page.getByRole('dialog', { name: 'Go back' }).getByRole('button', { name: 'Take the change back' }).click();
+  await bar.getByText('The file of the chart has changed since.').waitFor();
+  await steps.getByText('stirring', { exact: true }).waitFor();
+  await mode(page, 'run');
+  assert.deepEqual(page.errors, []);
+  await page.context().close();
+});
+
 test('a force that ends by itself is told', async () => {
   const page = await operator();
   await button(page, 'Start').click();

@@ -151,7 +151,8 @@ impl Page {
     }
 
     fn take(&mut self, frame: &Value) {
-        for (key, part) in frame.as_object().expect("a frame") {
+        // A message that the folder has changed is no frame.
+        for (key, part) in frame.as_object().into_iter().flatten() {
             if key != "values" {
                 self.seen[key] = part.clone();
                 continue;
@@ -292,6 +293,62 @@ fn a_page_sees_starts_and_stops_the_controller() {
     other.does("stop");
     page.becomes("stop");
     other.no(json!({ "do": "operator_dance" }), "means nothing");
+    assert_eq!(station.interrupt(), 0);
+}
+
+#[test]
+fn a_chart_is_changed_while_it_runs_and_the_change_is_taken_back() {
+    let folder = folder(1);
+    let station = Station::new(&folder, &["--simulate"]);
+    let mut page = station.page();
+    page.becomes("run");
+    page.force("go", "TRUE", 600);
+    page.until("step 2", |page| page.situation() == ["2"]);
+    page.shows("speed", "5", "simulated");
+    assert_eq!(page.seen["file"], json!({ "differs": false, "back": false, "busy": false }));
+    page.no(json!({ "do": "operator_back" }), "no change that could be taken back");
+    // A file with an error is told with the place; the machine goes on.
+    folder.write("chart.g7", format!("{}{PLANT}", CHART.replace("when go", "when gone")));
+    page.until("the file differs", |page| page.seen["file"]["differs"] == true);
+    page.no(json!({ "do": "operator_change" }), "chart.g7:");
+    // Another chart: a step and a variable more, and step 2 has another name.
+    let renamed = CHART
+        .replace("input go", "input spare : BOOL\ninput go")
+        .replace("step 2 {", "step 20 {")
+        .replace("1 -> 2 ", "1 -> 20 ")
+        .replace("2 -> 1 ", "20 -> 1 ");
+    folder.write("chart.g7", format!("{renamed}{PLANT}"));
+    let asks = page.ok(json!({ "do": "operator_change" }));
+    assert_eq!(asks, json!({ "asks": ["step `2` is active and no longer exists"] }));
+    assert_eq!(page.situation(), ["2"], "nothing has changed yet");
+    // One that keeps step 2 goes on in it, with its values and forces.
+    let changed = CHART
+        .replace("input go", "input spare : BOOL\ninput go")
+        .replace("2 -> 1 when not go", "2 -> 4 when not go\n  4 -> 1 when 300ms/X4\n  step 4 { N lamp }");
+    folder.write("chart.g7", format!("{changed}{PLANT}"));
+    assert_eq!(page.ok(json!({ "do": "operator_change" })), json!({ "lost": [] }));
+    page.until("the page is told", |page| page.seen["renew"] == true);
+    let mut page = station.page();
+    page.until("step 2 goes on", |page| page.situation() == ["2"]);
+    page.shows("n", "1", "");
+    page.shows("go", "TRUE", "simulated");
+    page.shows("spare", "FALSE", "free");
+    assert_eq!(page.seen["forced"][0]["signal"], page.signal("go"));
+    page.until("it is noted", |page| page.events().iter().any(|e| e["kind"] == "changed"));
+    assert!(page.has_event("forced", "go"), "events of before keep their names");
+    page.until("the way back", |page| {
+        page.seen["file"] == json!({ "differs": false, "back": true, "busy": false })
+    });
+    page.ok(json!({ "do": "operator_release", "name": "go" }));
+    page.until("the new step", |page| page.situation() == ["4"]);
+    page.until("step 1", |page| page.situation() == ["1"]);
+    // Back: the file is the other one now.
+    assert_eq!(page.ok(json!({ "do": "operator_back" })), json!({ "lost": [] }));
+    let mut page = station.page();
+    page.until("step 1 goes on", |page| page.situation() == ["1"]);
+    page.until("the file differs", |page| page.seen["file"]["differs"] == true);
+    assert!(page.seen["told"]["text"].as_str().expect("the text").starts_with(CHART));
+    page.until("it is noted", |page| page.events().iter().any(|e| e["kind"] == "back"));
     assert_eq!(station.interrupt(), 0);
 }
 
@@ -465,6 +522,46 @@ fn a_page_that_gives_no_sign_is_let_go_and_the_others_go_on() {
     }
     page.does("stop");
     page.becomes("stop");
+}
+
+#[test]
+fn lines_change_the_chart_and_what_is_kept_goes_with_it() {
+    let folder = folder(1);
+    folder.write("chart.g7", format!("{}{PLANT}", CHART.replace("var n : INT", "var n : INT := 7 retain")));
+    folder.write("chart.io.toml", io(1) + "[controller]\nretain = 'kept'\nchanged = 'fit'\n");
+    let mut g7 = Running::online(&folder, &["--simulate"]);
+    g7.until("running");
+    g7.say("back");
+    g7.until("no change that could be taken back");
+    g7.say("force go := 1");
+    g7.until("forced to TRUE");
+    // The values that are kept need another number of words from then on.
+    let many: String = (0..600).map(|k| format!("var b{k} : LREAL retain\n")).collect();
+    let with = |more: &str| {
+        let chart = CHART.replace("var n : INT", &format!("{more}var n : INT := 7 retain"));
+        folder.write(
+            "chart.g7",
+            format!(
+                "{}{PLANT}",
+                chart
+                    .replace("step 2 {", "step 22 {")
+                    .replace("2 -> 1 ", "22 -> 1 ")
+                    .replace("1 -> 2 ", "1 -> 22 ")
+            ),
+        );
+    };
+    with(&many);
+    g7.say("change");
+    g7.until("this would be lost: step `2` is active and no longer exists");
+    g7.say("change anyway");
+    g7.until("goes on with the changed chart; lost: step `2`");
+    with(&format!("{many}nonsense\n"));
+    g7.say("change");
+    g7.until("chart.g7:");
+    assert_eq!(g7.quit(), 0);
+    with(&many);
+    let warm = folder.g7(&["run", "--online", "--simulate", "--for", "100ms"]);
+    assert!(warm.is(0).err.contains("warm start"), "{}", warm.err);
 }
 
 #[test]

@@ -10,6 +10,8 @@ export function reasonOf(reason: Reason): string {
 
 export function textOf(event: Event): string {
   const why = event.reason ? reasonOf(event.reason) : (event.why ?? '');
-  const kind = event.master && (event.kind === 'up' || event.kind === 'down') ? (event.kind === 'up' ? 'masterUp' : 'masterDown') : event.kind;
+  let kind: string = event.kind;
+  if (event.master && (kind === 'up' || kind === 'down')) kind = kind === 'up' ? 'masterUp' : 'masterDown';
+  if (why && (kind === 'changed' || kind === 'back')) kind += 'Lost';
   return t(`op.ev.${kind}` as Key, { why, name: event.name ?? '', value: event.value ?? '', device: event.device ?? '', n: event.count ?? 0 });
 }

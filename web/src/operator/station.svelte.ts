@@ -1,7 +1,7 @@
 // A running controller as the page knows it. Whatever is older than a moment counts as unknown.
 import type { Message } from '../lib/page';
 import { server } from '../lib/server';
-import type { Counts, Description, DeviceState, Event, Forced, Frame, Mode, Quality } from './told';
+import type { ChartFile, Counts, Description, DeviceState, Event, Forced, Frame, Mode, Quality } from './told';
 
 /** Without a frame for so long there is no connection, in ms; 20 frames come in a second. */
 const SILENT = 1200;
@@ -23,6 +23,7 @@ export class Station {
   devices: DeviceState[] = $state.raw([]);
   events: Event[] = $state.raw([]);
   values: Cell[] = $state.raw([]);
+  file: ChartFile = $state.raw({ differs: false, back: false, busy: false });
   /** The time of the controller, in whole s. */
   now = $state(0);
   /** `none`: the server has no controller; `begin`: not connected yet. */
@@ -74,6 +75,12 @@ export class Station {
 
   #take(frame: Frame): void {
     if (!this.#up) return;
+    if (frame.renew) {
+      // The numbers of later frames are those of another chart.
+      this.#up = false;
+      void this.#watch();
+      return;
+    }
     this.#came = performance.now();
     this.#age = frame.age;
     if (frame.mode) this.mode = frame.mode;
@@ -83,6 +90,7 @@ export class Station {
     if (frame.forced) this.forced = frame.forced;
     if (frame.devices) this.devices = frame.devices;
     if (frame.events) this.events = frame.events;
+    if (frame.file) this.file = frame.file;
     if (frame.values) {
       const values = [...this.values];
       for (const [signal, value, quality] of frame.values) values[signal] = { value, quality };
@@ -97,12 +105,17 @@ export class Station {
   /** Gives a command; what is refused is told. */
   async do(message: Message): Promise<boolean> {
     this.refused = '';
+    const answer = await this.ask(message);
+    if ('no' in answer) this.refused = answer.no;
+    return 'ok' in answer;
+  }
+
+  /** Gives a command whose answer its caller shows. */
+  async ask<T>(message: Message): Promise<{ ok: T } | { no: string }> {
     try {
-      await server.call(message);
-      return true;
+      return { ok: await server.call<T>(message) };
     } catch (error) {
-      this.refused = (error as Error).message;
-      return false;
+      return { no: (error as Error).message };
     }
   }
 }

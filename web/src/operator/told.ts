@@ -79,8 +79,17 @@ export interface DeviceState {
   why: string;
 }
 
+/** How the chart that runs and its file are to each other. */
+export interface ChartFile {
+  differs: boolean;
+  /** There is a chart before the latest change. */
+  back: boolean;
+  /** A change is being made. */
+  busy: boolean;
+}
+
 export type Kind =
-  | 'run' | 'stop' | 'fault' | 'missed' | 'forced' | 'released' | 'ended' | 'no-priority' | 'unsaved'
+  | 'changed' | 'back' | 'run' | 'stop' | 'fault' | 'missed' | 'forced' | 'released' | 'ended' | 'no-priority' | 'unsaved'
   | 'up' | 'down' | 'no-input' | 'input' | 'no-output' | 'output' | 'limited';
 
 export interface Event {
@@ -107,6 +116,9 @@ export interface Frame {
   now: number;
   /** The age of all this. */
   age: number;
+  /** It runs another chart from here on: its names are to be asked for. */
+  renew?: true;
+  file?: ChartFile;
   mode?: Mode;
   counts?: Counts;
   on?: [step: number, ms: number][];

@@ -99,7 +99,7 @@ impl Board {
             seen: Nanos::ZERO,
             sent: Map::new(),
             sent_values: Vec::new(),
-            file: Value::Null,
+            file: json!({ "differs": false, "back": false, "busy": false }),
         }
     }
 
