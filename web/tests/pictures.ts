@@ -12,6 +12,7 @@ const ROOT = new URL('../..', import.meta.url).pathname;
 const BOOK = join(ROOT, 'docs/book/src/examples/img');
 const README = join(ROOT, 'docs/img/editor.jpg');
 const OPERATOR = join(ROOT, 'docs/book/src/online/img/operator.jpg');
+const CHANGE = join(ROOT, 'docs/book/src/online/img/change.jpg');
 const STEP_MS = 20;
 
 /** An act before the picture: an input is switched, a button is pushed, a value is written, or time
@@ -162,6 +163,12 @@ async function operator(b: Browser): Promise<void> {
     await page.waitForTimeout(300);
     assert.deepEqual(page.errors, [], 'operator');
     await take(page, OPERATOR, 120_000);
+    machine.edit((chart) => chart.replace('step 2 "stirring"', 'step 22 "mixing"').replace('(2, 4)', '(22, 4)').replace('2 -> 3 when 6s/X2', '22 -> 3 when 6s/X22'));
+    await page.getByRole('button', { name: 'Take over…' }).click();
+    await page.getByRole('button', { name: 'Take over', exact: true }).click();
+    await page.getByText('This would be lost').waitFor();
+    await page.mouse.move(1, 1);
+    await take(page, CHANGE, 120_000);
     await page.context().close();
   } finally {
     await machine.done();
