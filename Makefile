@@ -19,7 +19,7 @@ TALLY := $(abspath $(or $(CARGO_TARGET_DIR),target))/tally
 PYTHON := $(abspath $(or $(CARGO_TARGET_DIR),target))/python
 PAGE := $(shell find web/src web/index.html web/public web/*.ts web/*.js web/*.mjs -type f 2>/dev/null)
 
-.PHONY: run view install deb static test tally-anew peers lint deny wasm web site pictures page-test page-bench bench bench-check online-bench soak book blocks fuzz help FORCE
+.PHONY: run view install deb static test tally-anew peers lint deny wasm web site pictures page-test page-bench bench bench-check online-bench soak faults book blocks fuzz help FORCE
 
 ## build G7 and open the editor in the browser on the examples (FOLDER=… for another)
 run: WASM := quick-wasm
@@ -152,6 +152,12 @@ online-bench:
 soak: export G7_SEEDS = $(SEEDS)
 soak:
 	cargo test --package g7-online --test simulation
+
+## faults around a controller on line, each hundreds of times: what held, and how long it took
+faults: export G7_FAULTS = many
+faults: export G7_PEERS = $(PYTHON)
+faults: $(PYTHON)/bin/pymodbus.simulator
+	cargo test --package g7 --test faults -- --nocapture --test-threads 1
 
 ## the book, as HTML in docs/book/book, with every conformance case as a page
 book:

@@ -1,6 +1,7 @@
 """A Modbus slave of pymodbus for tests.
 
-Arguments: the port of Modbus TCP, 0 for a free one; or `serial` and the units on a serial line. It
+Arguments: the port of Modbus TCP, 0 for a free one, and the seconds after which its own watchdog
+clears the coils where no request comes; or `serial` and the units on a serial line. It
 prints its port or the line, then obeys lines on the standard input: `set AREA ADDRESS VALUE...`,
 `get AREA ADDRESS COUNT`; the unit may stand before the area. The areas are those of an io file;
 each has the addresses 0 to 199.
@@ -11,6 +12,7 @@ import os
 import select
 import sys
 import threading
+import time
 import tty
 
 from pymodbus.server import ModbusSerialServer, ModbusTcpServer
@@ -49,6 +51,14 @@ def serial_line(units):
     return [os.ttyname(end[1]) for end in ends]
 
 
+async def watchdog(server, heard, limit):
+    """Clears the coils once no request has come for so many seconds."""
+    while True:
+        await asyncio.sleep(limit / 20)
+        if time.monotonic() - heard[0] > limit:
+            await server.async_setValues(1, CODES["coil"], 0, [False] * 200)
+
+
 async def start(arguments):
     if arguments[0] == "serial":
         units = [int(unit) for unit in arguments[1:]]
@@ -58,7 +68,16 @@ async def start(arguments):
         task = asyncio.create_task(server.serve_forever())
         await asyncio.sleep(0.3)
         return server, task, other
-    server = ModbusTcpServer(device(1), address=("127.0.0.1", int(arguments[0])))
+    heard = [time.monotonic()]
+
+    def hear(sending, pdu):
+        heard[0] = heard[0] if sending else time.monotonic()
+        return pdu
+
+    address = ("127.0.0.1", int(arguments[0]))
+    server = ModbusTcpServer(device(1), address=address, trace_pdu=hear)
+    if len(arguments) > 1:
+        asyncio.create_task(watchdog(server, heard, float(arguments[1])))
     task = asyncio.create_task(server.serve_forever())
     while not getattr(server, "transport", None) or not server.transport.sockets:
         await asyncio.sleep(0.01)

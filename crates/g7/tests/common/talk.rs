@@ -79,6 +79,12 @@ impl Running {
         }
     }
 
+    /// Sends a signal, by name.
+    pub(crate) fn signal(&self, name: &str) {
+        let pid = self.child.id().to_string();
+        assert!(Command::new("kill").args(["-s", name, &pid]).status().expect("kill is there").success());
+    }
+
     /// Ends it by the command and returns its exit code.
     pub(crate) fn quit(mut self) -> i32 {
         self.say("quit");
@@ -111,6 +117,15 @@ impl Slave {
     /// At a port, or at a free one for 0.
     pub(crate) fn start(port: u16) -> Option<Slave> {
         Slave::begin("pymodbus", &[&port.to_string()])
+    }
+
+    /// With a watchdog that clears its coils after so many seconds without a request.
+    pub(crate) fn with_watchdog(seconds: &str) -> Option<Slave> {
+        Slave::begin("pymodbus", &["0", seconds])
+    }
+
+    pub(crate) fn signal(&self, name: &str) {
+        self.running.signal(name);
     }
 
     pub(crate) fn port(&self) -> u16 {
