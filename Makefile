@@ -19,7 +19,7 @@ TALLY := $(abspath $(or $(CARGO_TARGET_DIR),target))/tally
 PYTHON := $(abspath $(or $(CARGO_TARGET_DIR),target))/python
 PAGE := $(shell find web/src web/index.html web/public web/*.ts web/*.js web/*.mjs -type f 2>/dev/null)
 
-.PHONY: run view install deb static test tally-anew peers lint deny wasm web site pictures page-test page-bench bench bench-check online-bench soak faults book blocks fuzz help FORCE
+.PHONY: run view install online-demo deb static test tally-anew peers lint deny wasm web site pictures page-test page-bench bench bench-check online-bench soak faults book blocks fuzz help FORCE
 
 ## build G7 and open the editor in the browser on the examples (FOLDER=… for another)
 run: WASM := quick-wasm
@@ -29,6 +29,13 @@ run: web
 ## build G7 and run the bead sorter in the terminal (EXAMPLE=… for another)
 view:
 	cargo run --profile quick --quiet --package g7 -- run $(EXAMPLE)
+
+## the bead sorter on line: machine, controller and broker, and a page that unplugs them
+online-demo: WASM := quick-wasm
+online-demo: web
+	@$(call debian,mosquitto_sub,mosquitto mosquitto-clients) || echo "mosquitto cannot be installed: the bench has no broker"
+	cargo build --profile quick --quiet --package g7
+	node demo/bench.mjs $${CARGO_TARGET_DIR:-target}/quick/g7
 
 ## put g7, with its page, on the PATH
 install: web

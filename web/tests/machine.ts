@@ -167,3 +167,19 @@ export class Machine {
     rmSync(this.#folder, { recursive: true, force: true });
   }
 }
+
+const BENCH = new URL('../../demo/bench.mjs', import.meta.url).pathname;
+
+/** The bench of `make online-demo`. */
+export async function bench(): Promise<{ url: string; end(): Promise<void> }> {
+  const child = spawn('node', [BENCH, program(), '--no-open'], { stdio: ['ignore', 'pipe', 'inherit'], env: { ...process.env, XDG_STATE_HOME: STATE } });
+  const gone = new Promise<void>((done) => child.once('exit', () => done()));
+  const url = await new Promise<string>((found) => child.stdout.once('data', (bytes: Buffer) => found(String(bytes).split('\n')[0] ?? '')));
+  return {
+    url,
+    async end() {
+      child.kill('SIGINT');
+      await gone;
+    },
+  };
+}

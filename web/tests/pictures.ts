@@ -6,13 +6,14 @@ import { mkdirSync, readdirSync, readFileSync, statSync } from 'node:fs';
 import { dirname, join, relative } from 'node:path';
 import type { Browser, Page } from 'playwright-core';
 import { browser, open, playground, type Site } from './lib';
-import { Machine } from './machine';
+import { bench, Machine } from './machine';
 
 const ROOT = new URL('../..', import.meta.url).pathname;
 const BOOK = join(ROOT, 'docs/book/src/examples/img');
 const README = join(ROOT, 'docs/img/editor.jpg');
 const OPERATOR = join(ROOT, 'docs/book/src/online/img/operator.jpg');
 const CHANGE = join(ROOT, 'docs/book/src/online/img/change.jpg');
+const DEMO = join(ROOT, 'docs/book/src/online/img/bench.jpg');
 const STEP_MS = 20;
 
 /** An act before the picture: an input is switched, a button is pushed, a value is written, or time
@@ -175,6 +176,20 @@ async function operator(b: Browser): Promise<void> {
   }
 }
 
+/** The bench with its parts at work. */
+async function demo(b: Browser): Promise<void> {
+  const { url, end } = await bench();
+  try {
+    const page = await open(b, { url, stop: async () => undefined }, undefined, { width: 1280, height: 800 });
+    await page.locator('#controller.plugged a').waitFor();
+    await page.waitForTimeout(4000);
+    await take(page, DEMO, 120_000);
+    await page.context().close();
+  } finally {
+    await end();
+  }
+}
+
 const wanted = process.argv.slice(2);
 const files = examples();
 assert.deepEqual(Object.keys(files).filter((f) => f.endsWith('.g7')).sort(), Object.keys(SCENES).sort(), 'an example without a scene');
@@ -203,6 +218,7 @@ try {
   }
   if (wanted.length === 0 || wanted.includes('operator')) {
     await operator(b);
+    await demo(b);
     process.stdout.write('operator\n');
   }
 } finally {

@@ -18,7 +18,7 @@ use crate::style;
 use crate::wiring::{self, Plan};
 
 /// Periods without a step after which the watchdog trips, and the least time for them.
-const WATCHDOG: (i64, Nanos) = (10, Nanos::from_millis(100));
+const WATCHDOG: (i64, Nanos) = (10, Nanos::from_millis(250));
 
 /// The arguments that put a chart on line.
 #[derive(Args, Debug)]

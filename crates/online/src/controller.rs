@@ -176,6 +176,8 @@ pub struct Controller {
     showing: Option<Showing>,
     /// Counts whatever changes the run.
     revision: u64,
+    /// The longest time between the ends of two steps.
+    watchdog: Nanos,
 }
 
 impl Controller {
@@ -211,7 +213,14 @@ impl Controller {
             lost: 0,
             keeping: None,
             revision: 0,
+            watchdog: Nanos::new(i64::MAX),
         }
+    }
+
+    /// From here on a step that comes later than this after the one before is a fault. A thread of its own
+    /// sees a step that does not end (`runtime.rs`); this sees a program that stood still as a whole.
+    pub fn guard(&mut self, watchdog: Nanos) {
+        self.watchdog = watchdog;
     }
 
     /// From here on hands the values that outlive the program on, each 100 ms.
@@ -352,7 +361,9 @@ impl Controller {
 
     /// Makes the step that is due.
     pub fn step(&mut self, now: Nanos) {
-        if self.mode == Mode::Run && self.shared.tripped.load(Ordering::Acquire) {
+        let silent = now - Nanos::new(self.shared.beat.load(Ordering::Acquire));
+        let tripped = silent > self.watchdog || self.shared.tripped.load(Ordering::Acquire);
+        if self.mode == Mode::Run && tripped {
             self.leave(now, Mode::Fault(Reason::Watchdog));
         }
         for open in &mut self.ports {

@@ -118,7 +118,8 @@ pub fn start<D: Disk + Send + 'static>(
     kept: Option<KeptFile<D>>,
     options: Options,
 ) -> std::io::Result<Running> {
-    let Machine { controller, drivers, events, shared } = machine;
+    let Machine { mut controller, drivers, events, shared } = machine;
+    controller.guard(options.watchdog);
     let (stop, clock) = (Arc::new(Stop::default()), WallClock::default());
     let last = Arc::new(Mutex::new(None));
     let (commands, to_scan) = rtrb::RingBuffer::new(COMMANDS);

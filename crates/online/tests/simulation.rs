@@ -411,6 +411,31 @@ fn outputs_are_safe_while_the_watchdog_says_so_whatever_the_scan_gave() {
 }
 
 #[test]
+fn a_program_that_stood_still_for_too_long_is_in_fault_before_its_next_scan() {
+    let mut s = Simulation::new(CHART, IO);
+    s.machine.controller.guard(MS * 100);
+    s.set(|w| w.go = true);
+    s.command(Command::Run);
+    s.pass(MS * 300);
+    assert_eq!(s.outputs(), wrote(true, false, 1));
+    let scans = s.machine.controller.runner().state().scans();
+    // No thread has worked meanwhile, the one of the watchdog neither.
+    s.now += MS * 150;
+    s.machine.controller.step(s.now);
+    s.take_events();
+    assert_eq!(s.modes.last().map(|(_, mode)| *mode), Some(Mode::Fault(Reason::Watchdog)));
+    assert_eq!(s.machine.controller.runner().state().scans(), scans, "it makes no scan");
+    s.pass(MS * 50);
+    assert_eq!(s.outputs(), safe());
+    // After a stop of any length it runs again.
+    s.command(Command::Acknowledge);
+    s.pass(MS * 500);
+    s.command(Command::Run);
+    s.pass(MS * 100);
+    assert_eq!(s.outputs(), wrote(true, false, 1));
+}
+
+#[test]
 fn the_first_scan_waits_for_the_devices_but_not_for_ever() {
     let mut s = Simulation::new(CHART, IO);
     s.set(|w| w.fault = Fault::Silent);

@@ -27,6 +27,12 @@ impl Running {
         let mut child = command.spawn().expect("it starts");
         let (give, lines) = channel();
         let out = BufReader::new(says(&mut child));
+        // A program that writes much to the other pipe would wait for a reader.
+        let (rest, more) = (child.stdout.take(), child.stderr.take());
+        std::thread::spawn(move || {
+            rest.map(|mut pipe| std::io::copy(&mut pipe, &mut std::io::sink()));
+            more.map(|mut pipe| std::io::copy(&mut pipe, &mut std::io::sink()));
+        });
         std::thread::spawn(move || out.lines().map_while(Result::ok).try_for_each(|line| give.send(line)));
         let stdin = child.stdin.take();
         Running { child, stdin, lines, seen: Vec::new() }
