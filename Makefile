@@ -149,11 +149,13 @@ bench-check:
 	@$(call debian,valgrind,valgrind)
 	benches/instructions.sh
 
-## how late scans are beside cyclictest (Linux, as root; rt-tests and stress-ng are installed)
-online-bench:
+## how late scans are beside cyclictest, how long a read of Modbus TCP takes (Linux, as root; rt-tests and stress-ng are installed)
+online-bench: export G7_PEERS = $(PYTHON)
+online-bench: $(PYTHON)/bin/pymodbus.simulator
 	@$(call debian,cyclictest,rt-tests)
 	@$(call debian,stress-ng,stress-ng)
 	benches/lateness.sh
+	cargo run --release --quiet --package g7-benches --bin modbus
 
 ## the controller with faulty devices in simulated time, 10,000 courses of faults (SEEDS=… for others)
 soak: export G7_SEEDS = $(SEEDS)
