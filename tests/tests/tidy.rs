@@ -41,6 +41,7 @@ const ALLOWED: &[Arrows] = &[
     ("verify", &["g7-engine"], Some(&[])),
     ("host", &["g7-model", "g7-engine"], None),
     ("online", &["g7-model", "g7-engine", "g7-host", "g7-rig"], None),
+    ("store", &["g7-model"], None),
     ("draw", &["g7-model"], Some(&[])),
     ("edit", &["g7-model", "g7-syntax", "g7-compile"], Some(&["serde"])),
     (
@@ -76,6 +77,7 @@ const ALLOWED: &[Arrows] = &[
             "g7-codegen",
             "g7-host",
             "g7-online",
+            "g7-store",
             "g7-draw",
             "g7-rig",
             "g7-page",
