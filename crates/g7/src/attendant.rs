@@ -21,6 +21,7 @@ use crate::message::talk;
 use crate::monitor::Monitor;
 use crate::operator::{Adopted, Asker, Changes, HELP, Names, Stage, Told, Wish, mode_text};
 use crate::origin::Origin;
+use crate::post::Post;
 use crate::values;
 
 /// The pause between two looks at the events.
@@ -49,6 +50,7 @@ pub(crate) struct Attendant {
     mode: Mode,
     paces: Paces,
     monitor: Option<Monitor>,
+    post: Option<Post>,
     stage: Option<Stage>,
     changes: Option<Changes>,
     asked: Vec<Asked>,
@@ -64,6 +66,7 @@ impl Attendant {
             mode: Mode::Stop,
             paces: Paces::default(),
             monitor: None,
+            post: None,
             stage: None,
             changes: None,
             asked: Vec::new(),
@@ -71,9 +74,9 @@ impl Attendant {
         }
     }
 
-    /// Tells a monitor what happens.
-    pub(crate) fn with(self, monitor: Option<Monitor>) -> Attendant {
-        Attendant { monitor, ..self }
+    /// Tells a monitor what happens, and brokers each event.
+    pub(crate) fn with(self, monitor: Option<Monitor>, post: Option<Post>) -> Attendant {
+        Attendant { monitor, post, ..self }
     }
 
     /// Tells pages what happens, and does what they want.
@@ -278,15 +281,22 @@ impl Attendant {
             let now = self.clock.now();
             self.note(now, &Told::Unsaved(plain(&e)));
         }
+        for (device, trouble) in self.post.as_ref().map(Post::troubles).unwrap_or_default() {
+            let now = self.clock.now();
+            self.note(now, &Told::Events(device, trouble));
+        }
     }
 
-    /// Tells the terminal and the pages of an event.
+    /// Tells the terminal, the pages and the brokers of an event.
     fn note(&mut self, at: Nanos, told: &Told) {
         if let Some(text) = told.text(&self.names) {
             talk!("{} {text}", self.time());
         }
         if let Some(stage) = &mut self.stage {
             stage.note(at, told);
+        }
+        if let Some(post) = &self.post {
+            post.send(told.event(&self.names));
         }
     }
 

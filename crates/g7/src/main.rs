@@ -33,6 +33,7 @@ mod new;
 mod operator;
 mod origin;
 mod plant;
+mod post;
 mod progress;
 mod report;
 mod run;

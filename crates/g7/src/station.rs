@@ -13,6 +13,7 @@ use crate::message::talk;
 use crate::monitor::Monitor;
 use crate::operator::{HELP, Names};
 use crate::origin::Origin;
+use crate::post::Post;
 use crate::sources::Source;
 use crate::style;
 use crate::wiring::{self, Plan};
@@ -50,6 +51,7 @@ pub(crate) struct Station {
     pub(crate) running: Running,
     pub(crate) sight: Sight,
     pub(crate) monitor: Option<Monitor>,
+    pub(crate) post: Option<Post>,
 }
 
 /// Starts the controller of a chart, or prints the problems of its files.
@@ -80,6 +82,7 @@ pub(crate) fn start(
     };
     let (runner, slots) = kept(&plan, g7_online::runner(bench, wiring, more.seed))?;
     let mut clients = Clients::default();
+    let post = Post::open(wiring, &plan.io, &mut clients)?;
     let mut machine = g7_online::assemble(runner, wiring, |wired| clients.device(wired)).map_err(refused)?;
     let kept = slots.map(|slots| machine.keep(bench, slots));
     let sight = machine.show();
@@ -95,7 +98,7 @@ pub(crate) fn start(
         talk!("stopped; {HELP}");
     }
     let names = Names::new(source, plan.bench, plan.wiring);
-    Ok(Some(Station { names, origin, running, sight, monitor }))
+    Ok(Some(Station { names, origin, running, sight, monitor, post }))
 }
 
 /// Opens the file of the values that are kept, and starts the run with them.

@@ -69,7 +69,7 @@ pub(crate) fn make(
     let (bench, of_chart) = g7_rig::build(source, &options)?;
     let mut told = told_of(source, &of_chart);
     let Some(bench) = bench else { return Ok((None, told)) };
-    problems.extend(setup::read_passwords(&mut setup, |origin| password(&io, origin)));
+    problems.extend(setup::read_secrets(&mut setup, |origin| secret(&io, origin)));
     let (mut wiring, wrong) = g7_online::wire(&bench, &setup);
     wiring.unwired.retain(|name| !simulated.iter().any(|s| bench.item(s).is_some_and(|i| i.name == *name)));
     problems.extend(wrong);
@@ -78,8 +78,8 @@ pub(crate) fn make(
     Ok(((!errors).then_some(Plan { bench, setup, wiring, io }), told))
 }
 
-/// The bytes of a password, which is never in the io file.
-fn password(io: &Path, origin: &Origin) -> Result<Vec<u8>, String> {
+/// The bytes of a password, certificate or key, which is never in the io file.
+fn secret(io: &Path, origin: &Origin) -> Result<Vec<u8>, String> {
     match origin {
         Origin::File(name) => {
             let path = io.with_file_name(name);
@@ -109,6 +109,12 @@ fn simulate(setup: &mut Setup, names: Option<&[String]>) -> Result<Vec<String>, 
     };
     let taken = [gone(&mut setup.inputs), gone(&mut setup.outputs)];
     setup.shown.retain(|c| !simulated(&c.device.value));
+    for device in setup.devices.iter_mut().filter(|d| simulated(&d.name.value)) {
+        // A broker that is not there hears of nothing.
+        if let setup::Kind::Mqtt(broker) = &mut device.kind {
+            broker.events = None;
+        }
+    }
     Ok(taken.concat())
 }
 

@@ -106,7 +106,9 @@ pub fn wire(bench: &Bench, setup: &Setup) -> (Wiring, Vec<Problem>) {
         .filter(|i| matches!(i.role, Role::Input(_) | Role::Output) && !wired.contains_key(&(i.addr)))
         .map(|i| i.name.clone())
         .collect();
-    wirer.wiring.devices.retain(|d| !(d.inputs.is_empty() && d.outputs.is_empty() && d.good.is_empty()));
+    let events = |d: &Wired| matches!(&d.device.kind, Way::Mqtt(broker) if broker.events.is_some());
+    let used = |d: &Wired| !(d.inputs.is_empty() && d.outputs.is_empty() && d.good.is_empty()) || events(d);
+    wirer.wiring.devices.retain(used);
     (wirer.wiring, wirer.problems)
 }
 

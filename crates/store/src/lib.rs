@@ -14,5 +14,7 @@
 #![forbid(unsafe_code)]
 
 mod file;
+mod outbox;
 
 pub use file::{Durable, StoreError, open};
+pub use outbox::{Limits, Outbox, Waiting};

@@ -288,10 +288,12 @@ fn online(args: &Serve) -> Result<Verdict, Failure> {
     let open = Open::new(args, &shared)?;
     let more = More { plant: args.plant.as_deref(), ..More::default() };
     let station = station::start(&path, source, &args.drive, more)?;
-    let Some(Station { names, origin, running, sight, monitor }) = station else { return Ok(Verdict::Found) };
+    let Some(Station { names, origin, running, sight, monitor, post }) = station else {
+        return Ok(Verdict::Found);
+    };
     open.tell(args, &shared)?;
     let stage = Stage::new(names.clone(), sight, orders);
-    Attendant::new(names).with(monitor).on(stage).changing(origin).attend(running, None)
+    Attendant::new(names).with(monitor, post).on(stage).changing(origin).attend(running, None)
 }
 
 /// The address that the user opens.

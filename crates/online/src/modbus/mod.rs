@@ -5,6 +5,7 @@
 //! for one after the other.
 
 mod blocks;
+mod masters;
 mod rtu;
 mod server;
 mod shared;

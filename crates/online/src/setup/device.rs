@@ -157,7 +157,7 @@ pub(super) fn read(row: &Row<'_>, found: &mut Found) -> Option<Device> {
             serial(&mut table, found).map(|serial| Kind::ModbusRtu(serial, modbus(&mut table, found)))
         }
         "modbus-server" => listen(&mut table, found).map(Kind::ModbusServer),
-        "mqtt" => broker::read(&mut table, found).map(|broker| Kind::Mqtt(Box::new(broker))),
+        "mqtt" => broker::read(row.name, &mut table, found).map(|broker| Kind::Mqtt(Box::new(broker))),
         _ => {
             let known: Vec<String> = Kind::WORDS.iter().map(|word| format!("\"{word}\"")).collect();
             found.wrong(kind.at, format!("no kind of device is called \"{}\"", kind.value)).help =
@@ -272,6 +272,23 @@ pub(super) fn one_line_each(devices: &[Device], found: &mut Found) {
                 .wrong(device.name.at, what)
                 .related
                 .push((first.name.at, "this is the other one".to_owned()));
+        }
+    }
+}
+
+/// No two files of events are one, nor is one that of the kept values.
+pub(super) fn one_file_each(devices: &[Device], retain: Option<&At<String>>, found: &mut Found) {
+    let events = devices.iter().filter_map(|d| match &d.kind {
+        Kind::Mqtt(broker) => broker.events.as_ref().map(|events| &events.file),
+        Kind::ModbusTcp(..) | Kind::ModbusRtu(..) | Kind::ModbusServer(_) => None,
+    });
+    for (k, file) in events.clone().enumerate() {
+        let others = retain.into_iter().chain(events.clone().take(k));
+        if let Some(first) = others.into_iter().find(|other| other.value == file.value) {
+            found
+                .wrong(file.at, format!("`{}` would hold two things", file.value))
+                .related
+                .push((first.at, "this is the other one".to_owned()));
         }
     }
 }

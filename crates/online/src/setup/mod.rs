@@ -22,6 +22,7 @@
 mod broker;
 mod device;
 mod point;
+mod secret;
 mod table;
 
 use std::net::SocketAddr;
@@ -30,10 +31,11 @@ use g7_model::{FileId, Nanos, Problem, Span};
 use toml::de::{DeTable, DeValue};
 
 pub(crate) use broker::publishable;
-pub use broker::{Broker, Message, Origin, Password, Secret, Sparkplug};
+pub use broker::{Broker, Events, Message, Sparkplug};
 pub(crate) use device::SERVER;
 pub use device::{Device, Kind, Listen, Modbus, Parity, Serial, Tcp, Timing};
 pub use point::{Area, Encoding, Place, Point, Register};
+pub use secret::{Held, Origin, Secret, Tls};
 pub use table::At;
 
 use table::{Found, Row, Table};
@@ -170,17 +172,14 @@ pub fn read_point(text: &str) -> Result<Point, String> {
     point::of(text)
 }
 
-/// Gets the passwords that the file names. `from` gives the bytes of a file or variable, or says why
-/// not.
-pub fn read_passwords(
-    setup: &mut Setup,
-    from: impl FnMut(&Origin) -> Result<Vec<u8>, String>,
-) -> Vec<Problem> {
+/// Gets the passwords, certificates and keys that the file names. `from` gives the bytes of a file or
+/// variable, or says why not.
+pub fn read_secrets(setup: &mut Setup, from: impl FnMut(&Origin) -> Result<Vec<u8>, String>) -> Vec<Problem> {
     let brokers = setup.devices.iter_mut().filter_map(|device| match &mut device.kind {
-        Kind::Mqtt(broker) => Some(broker.as_mut()),
+        Kind::Mqtt(broker) => Some((broker.password.as_mut(), broker.tls.as_mut())),
         Kind::ModbusTcp(..) | Kind::ModbusRtu(..) | Kind::ModbusServer(_) => None,
     });
-    broker::read_passwords(brokers, from)
+    secret::read(brokers, from)
 }
 
 fn setup(table: &DeTable<'_>, found: &mut Found) -> Setup {
@@ -191,6 +190,8 @@ fn setup(table: &DeTable<'_>, found: &mut Found) -> Setup {
     let devices: Vec<Device> = rows.iter().filter_map(|row| device::read(row, found)).collect();
     device::one_line_each(&devices, found);
     device::one_address_each(&devices, found);
+    let retain = controller.as_ref().and_then(|controller| controller.retain.as_ref());
+    device::one_file_each(&devices, retain, found);
     let rows = top.rows(found, "inputs");
     let inputs = rows.iter().filter_map(|row| channel(row, true, found)).collect();
     let rows = top.rows(found, "outputs");
