@@ -25,6 +25,8 @@ mod disk;
 mod driver;
 mod exchange;
 mod forces;
+#[cfg(all(feature = "gpio", target_os = "linux"))]
+mod gpio;
 mod keep;
 mod link;
 mod machine;
@@ -35,9 +37,12 @@ mod modbus;
 mod mqtt;
 mod pace;
 mod parts;
+mod points;
 mod probe;
 mod realtime;
 mod runtime;
+#[cfg(feature = "s7")]
+mod s7;
 pub mod setup;
 mod sight;
 mod slots;
@@ -49,7 +54,7 @@ mod word;
 
 pub use change::{Chart, Prepared, prepare};
 pub use changer::{Change, Changer};
-pub use clients::Clients;
+pub use clients::{Clients, lacking};
 pub use controller::{Command, Controller, Event, Mode, Port, Reason, Refused, Shared, What};
 pub use device::{Absent, Device, Failed};
 pub use disk::RealDisk;
@@ -68,6 +73,6 @@ pub use runtime::{Answer, AtDevice, Options, Running, start};
 pub use sight::Sight;
 pub use slots::{Disk, Loaded, Slots, SlotsError};
 pub use value::{Holds, Raw, Scaling};
-pub use wire::{Topic, Wire};
+pub use wire::{Cell, Form, Line, Topic, Wire};
 pub use wiring::{In, OutAt, WhileBad, Wired, Wiring, wire};
 pub use word::{Source, Target};

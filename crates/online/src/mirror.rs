@@ -38,6 +38,12 @@ pub fn mirror(bench: &Bench, wiring: &Wiring, listen: Option<IpAddr>) -> Result<
                     serial.port
                 ));
             }
+            Kind::S7(_) | Kind::Gpio(_) => {
+                return Err(format!(
+                    "{name} is of the kind \"{}\": the plant answers over Modbus TCP alone",
+                    wired.device.kind.word()
+                ));
+            }
             // The masters of the chart are not part of its machine; nor is a broker, which is there
             // all the same.
             Kind::ModbusServer(_) | Kind::Mqtt(_) => continue,

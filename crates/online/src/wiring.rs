@@ -9,6 +9,7 @@ use g7_rig::{Activity, Bench, Item, Role};
 
 use crate::driver::Out;
 use crate::messages::{self, Carried, Refused};
+use crate::points;
 use crate::setup::{
     Area, At, Bad, Broker, Channel, Device, Encoding, Kind as Way, Literal, Place, Point, Register, Setup,
 };
@@ -134,6 +135,19 @@ struct Subject {
     safe: Option<u64>,
 }
 
+impl Subject {
+    /// It, as messages and points of other devices see it.
+    fn carried(&self, class: Class) -> Carried<'_> {
+        Carried {
+            name: &self.name,
+            kind: self.kind,
+            inverted: self.inverted,
+            input: class == Class::Input,
+            safe: class == Class::Output,
+        }
+    }
+}
+
 struct Wirer<'a> {
     bench: &'a Bench,
     wiring: Wiring,
@@ -244,14 +258,32 @@ impl<'a> Wirer<'a> {
             return;
         };
         let kind = self.wiring.devices.get(device).map(|d| d.device.kind.clone());
+        let strange = match &kind {
+            Some(Way::Gpio(_)) => channel.message.first().map(|at| (at, "only a topic has messages")),
+            Some(Way::Mqtt(_)) => channel.pin.first().map(|at| (at, NO_PIN)),
+            _ => {
+                let message = channel.message.first().map(|at| (at, "only a topic has messages"));
+                message.or_else(|| channel.pin.first().map(|at| (at, NO_PIN)))
+            }
+        };
+        if let Some((at, what)) = strange {
+            self.wrong(&codes::WRONG_CHANNEL, at, what);
+            return;
+        }
         match (&channel.point, kind) {
             (Point::Good, _) => self.good(channel, subject, device, class),
             (_, Some(Way::Mqtt(broker))) => self.message(channel, subject, (device, &broker), class),
+            (_, Some(Way::S7(_))) => self.point(channel, subject, device, class, points::cell),
+            (_, Some(Way::Gpio(_))) => self.point(channel, subject, device, class, points::line),
             (Point::Modbus(register), _) => self.register(channel, subject, device, *register, class),
-            (point @ (Point::Topic(_) | Point::Metric(_)), _) => {
+            (point, _) => {
                 let what = format!("`{point}` is no point of `{}`", channel.device.value);
-                self.wrong(&codes::WRONG_CHANNEL, channel.at, what).help =
-                    Some("only a broker has messages: `kind = \"mqtt\"`".to_owned());
+                let help = match point {
+                    Point::S7(_) => "only a controller of Siemens has such addresses: `kind = \"s7\"`",
+                    Point::Line(_) => "only a chip has lines: `kind = \"gpio\"`",
+                    _ => "only a broker has messages: `kind = \"mqtt\"`",
+                };
+                self.wrong(&codes::WRONG_CHANNEL, channel.at, what).help = Some(help.to_owned());
             }
         }
     }
@@ -271,6 +303,42 @@ impl<'a> Wirer<'a> {
         }
     }
 
+    /// An address of a controller of Siemens, or a line of a chip.
+    fn point(
+        &mut self,
+        channel: &Channel,
+        subject: &Subject,
+        device: usize,
+        class: Class,
+        read: fn(&Channel, &Carried<'_>) -> Result<(Wire, Scaling), Refused>,
+    ) {
+        if class == Class::Shown {
+            let (what, help) = NOT_SHOWN;
+            let what = format!("`{}` {what}", channel.point);
+            self.wrong(&codes::WRONG_CHANNEL, channel.at, what).help = Some(help.to_owned());
+            return;
+        }
+        let (wire, scaling) = match read(channel, &subject.carried(class)) {
+            Ok(wired) => wired,
+            Err(Refused { at, what, help }) => {
+                self.wrong(&codes::WRONG_CHANNEL, at, what).help = help;
+                return;
+            }
+        };
+        let places = match &wire {
+            // Several inputs may read one address; a line has one use.
+            Wire::S7(cell) if class == Class::Output => points::bits(cell),
+            Wire::Line(_) => vec![wire.to_string()],
+            _ => Vec::new(),
+        };
+        for place in places {
+            if !self.is_unused(channel, subject, device, place) {
+                return;
+            }
+        }
+        self.connect(channel, subject, device, (wire, scaling), class);
+    }
+
     /// A topic or metric of a broker.
     fn message(
         &mut self,
@@ -279,14 +347,7 @@ impl<'a> Wirer<'a> {
         (device, broker): (usize, &Broker),
         class: Class,
     ) {
-        let carried = Carried {
-            name: &subject.name,
-            kind: subject.kind,
-            inverted: subject.inverted,
-            input: class == Class::Input,
-            safe: class == Class::Output,
-        };
-        let (wire, scaling) = match messages::wire(channel, &carried, broker) {
+        let (wire, scaling) = match messages::wire(channel, &subject.carried(class), broker) {
             Ok(wired) => wired,
             Err(Refused { at, what, help }) => {
                 self.wrong(&codes::WRONG_CHANNEL, at, what).help = help;
@@ -297,7 +358,7 @@ impl<'a> Wirer<'a> {
             // Several inputs may read one topic.
             Wire::Topic(topic) => (class != Class::Input).then(|| topic.name.clone()),
             Wire::Metric(name) => Some(name.clone()),
-            Wire::Modbus(_) => None,
+            Wire::Modbus(_) | Wire::S7(_) | Wire::Line(_) => None,
         };
         let will = matches!(&wire, Wire::Topic(topic) if topic.will).then(|| WILL.to_owned());
         for place in place.into_iter().chain(will) {
@@ -310,12 +371,14 @@ impl<'a> Wirer<'a> {
 
     /// True if nothing else publishes there.
     fn is_unused(&mut self, channel: &Channel, item: &Subject, device: usize, place: String) -> bool {
-        let of = |k: usize| match self.wiring.devices.get(k).map(|d| &d.device.kind) {
-            Some(Way::Mqtt(broker)) => Some((&broker.host, broker.port, &broker.sparkplug)),
-            Some(Way::ModbusTcp(..) | Way::ModbusRtu(..) | Way::ModbusServer(_)) | None => None,
+        let kind = |k: usize| self.wiring.devices.get(k).map(|d| &d.device.kind);
+        let of = |broker: &Broker| (broker.host.clone(), broker.port, broker.sparkplug.clone());
+        let same = |k: &usize| match (kind(*k), kind(device)) {
+            (Some(Way::Mqtt(one)), Some(Way::Mqtt(other))) => of(one) == of(other),
+            (one, other) => one == other,
         };
         // Two clients of one broker publish to the same topics, but each has a will of its own.
-        let first = (0..device).find(|k| of(*k) == of(device)).unwrap_or(device);
+        let first = (0..device).find(same).unwrap_or(device);
         let key = (if place == WILL { device } else { first }, place);
         if let Some((other, there)) = self.messages.get(&key).cloned() {
             let what = match key.1.as_str() {
@@ -339,10 +402,6 @@ impl<'a> Wirer<'a> {
         register: Register,
         class: Class,
     ) {
-        if let Some(at) = channel.message.first() {
-            self.wrong(&codes::WRONG_CHANNEL, at, "only a topic has messages");
-            return;
-        }
         let server = self.wiring.devices.get(device).is_some_and(|d| d.device.kind.is_server());
         if let Some((what, help)) = refused(register.area, class, server) {
             self.wrong(&codes::WRONG_CHANNEL, channel.at, format!("`{register}` {what}")).help =
@@ -490,16 +549,22 @@ impl<'a> Wirer<'a> {
     }
 }
 
+/// Why a setting of a line is refused elsewhere.
+const NO_PIN: &str = "only a line of a chip has a bias, a level and a debounce time";
+
 /// The key of the will among the points of a broker; no topic and no metric is empty.
 const WILL: &str = "";
+
+/// Why a device shows nothing, and what to do instead.
+const NOT_SHOWN: (&str, &str) = (
+    "belongs to a device that does not ask",
+    "only a server or a broker shows: `kind = \"modbus-server\"`, `kind = \"mqtt\"`",
+);
 
 /// Why a use of a table is refused, and what to do instead.
 fn refused(area: Area, class: Class, server: bool) -> Option<(&'static str, &'static str)> {
     match class {
-        Class::Shown if !server => Some((
-            "belongs to a device that does not ask",
-            "only a server or a broker shows: `kind = \"modbus-server\"`, `kind = \"mqtt\"`",
-        )),
+        Class::Shown if !server => Some(NOT_SHOWN),
         Class::Input if server && !area.is_writable() => {
             Some(("cannot be written by a master", "inputs from a master are coils or holding registers"))
         }

@@ -5,6 +5,7 @@ use std::net::SocketAddr;
 use g7_model::Nanos;
 
 use super::broker::{self, Broker};
+use super::field::{self, S7};
 use super::table::{At, Found, Row, Table};
 
 /// A device.
@@ -29,20 +30,27 @@ pub enum Kind {
     ModbusServer(Listen),
     /// A broker of MQTT 5, which this is a client of.
     Mqtt(Box<Broker>),
+    /// A controller of Siemens, which this is a client of.
+    S7(S7),
+    /// A chip of lines of this machine: its device file.
+    Gpio(String),
 }
 
 impl Kind {
     /// The words of the file.
-    pub const WORDS: [&'static str; 4] = ["modbus-tcp", "modbus-rtu", "modbus-server", "mqtt"];
+    pub const WORDS: [&'static str; 6] =
+        ["modbus-tcp", "modbus-rtu", "modbus-server", "mqtt", "s7", "gpio"];
 
     /// Its word in the file.
     pub fn word(&self) -> &'static str {
-        let [tcp, rtu, server, mqtt] = Kind::WORDS;
+        let [tcp, rtu, server, mqtt, s7, gpio] = Kind::WORDS;
         match self {
             Kind::ModbusTcp(..) => tcp,
             Kind::ModbusRtu(..) => rtu,
             Kind::ModbusServer(_) => server,
             Kind::Mqtt(_) => mqtt,
+            Kind::S7(_) => s7,
+            Kind::Gpio(_) => gpio,
         }
     }
 
@@ -53,6 +61,8 @@ impl Kind {
             Kind::ModbusRtu(serial, modbus) => format!("{} unit {}", serial.port, modbus.unit),
             Kind::ModbusServer(listen) => listen.address.to_string(),
             Kind::Mqtt(broker) => format!("{}:{}", broker.host, broker.port),
+            Kind::S7(s7) => format!("{}:{} rack {} slot {}", s7.host, s7.port, s7.rack, s7.slot),
+            Kind::Gpio(chip) => chip.clone(),
         }
     }
 
@@ -158,6 +168,8 @@ pub(super) fn read(row: &Row<'_>, found: &mut Found) -> Option<Device> {
         }
         "modbus-server" => listen(&mut table, found).map(Kind::ModbusServer),
         "mqtt" => broker::read(row.name, &mut table, found).map(|broker| Kind::Mqtt(Box::new(broker))),
+        "s7" => field::s7(&mut table, found).map(Kind::S7),
+        "gpio" => field::chip(&mut table, found).map(Kind::Gpio),
         _ => {
             let known: Vec<String> = Kind::WORDS.iter().map(|word| format!("\"{word}\"")).collect();
             found.wrong(kind.at, format!("no kind of device is called \"{}\"", kind.value)).help =
@@ -168,7 +180,7 @@ pub(super) fn read(row: &Row<'_>, found: &mut Found) -> Option<Device> {
     let timing = match &kind {
         Some(Kind::ModbusServer(_)) => SERVER,
         Some(Kind::Mqtt(_)) => timing(&mut table, found, BROKER),
-        Some(Kind::ModbusTcp(..) | Kind::ModbusRtu(..)) | None => {
+        Some(Kind::ModbusTcp(..) | Kind::ModbusRtu(..) | Kind::S7(_) | Kind::Gpio(_)) | None => {
             timing(&mut table, found, Timing::default())
         }
     };
@@ -259,7 +271,7 @@ fn timing(table: &mut Table<'_>, found: &mut Found, usual: Timing) -> Timing {
 pub(super) fn one_line_each(devices: &[Device], found: &mut Found) {
     let lines = devices.iter().filter_map(|d| match &d.kind {
         Kind::ModbusRtu(serial, _) => Some((d, serial)),
-        Kind::ModbusTcp(..) | Kind::ModbusServer(_) | Kind::Mqtt(_) => None,
+        _ => None,
     });
     for (k, (device, serial)) in lines.clone().enumerate() {
         let other = lines.clone().take(k).find(|(_, s)| s.port == serial.port && *s != serial);
@@ -280,7 +292,7 @@ pub(super) fn one_line_each(devices: &[Device], found: &mut Found) {
 pub(super) fn one_file_each(devices: &[Device], retain: Option<&At<String>>, found: &mut Found) {
     let events = devices.iter().filter_map(|d| match &d.kind {
         Kind::Mqtt(broker) => broker.events.as_ref().map(|events| &events.file),
-        Kind::ModbusTcp(..) | Kind::ModbusRtu(..) | Kind::ModbusServer(_) => None,
+        _ => None,
     });
     for (k, file) in events.clone().enumerate() {
         let others = retain.into_iter().chain(events.clone().take(k));
@@ -297,7 +309,7 @@ pub(super) fn one_file_each(devices: &[Device], retain: Option<&At<String>>, fou
 pub(super) fn one_address_each(devices: &[Device], found: &mut Found) {
     let servers = devices.iter().filter_map(|d| match &d.kind {
         Kind::ModbusServer(listen) => Some((d, listen.address)),
-        Kind::ModbusTcp(..) | Kind::ModbusRtu(..) | Kind::Mqtt(_) => None,
+        _ => None,
     });
     for (k, (device, address)) in servers.clone().enumerate() {
         if let Some((first, _)) = servers.clone().take(k).find(|(_, other)| *other == address) {

@@ -21,6 +21,7 @@
 
 mod broker;
 mod device;
+mod field;
 mod point;
 mod secret;
 mod table;
@@ -34,6 +35,7 @@ pub(crate) use broker::publishable;
 pub use broker::{Broker, Events, Message, Sparkplug};
 pub(crate) use device::SERVER;
 pub use device::{Device, Kind, Listen, Modbus, Parity, Serial, Tcp, Timing};
+pub use field::{Address, Bias, Memory, Pin, S7, Width};
 pub use point::{Area, Encoding, Place, Point, Register};
 pub use secret::{Held, Origin, Secret, Tls};
 pub use table::At;
@@ -145,6 +147,8 @@ pub struct Channel {
     pub bad: At<Bad>,
     /// How the messages of a topic are used.
     pub message: Message,
+    /// How a line of a chip is used.
+    pub pin: Pin,
 }
 
 /// Reads an io file. What is wrong is left out and told.
@@ -177,7 +181,7 @@ pub fn read_point(text: &str) -> Result<Point, String> {
 pub fn read_secrets(setup: &mut Setup, from: impl FnMut(&Origin) -> Result<Vec<u8>, String>) -> Vec<Problem> {
     let brokers = setup.devices.iter_mut().filter_map(|device| match &mut device.kind {
         Kind::Mqtt(broker) => Some((broker.password.as_mut(), broker.tls.as_mut())),
-        Kind::ModbusTcp(..) | Kind::ModbusRtu(..) | Kind::ModbusServer(_) => None,
+        _ => None,
     });
     secret::read(brokers, from)
 }
@@ -244,7 +248,7 @@ fn channel(row: &Row<'_>, input: bool, found: &mut Found) -> Option<Channel> {
         let (device, point) = point::read(text, row.value_at, found)?;
         let bad = At::new(Bad::Hold, row.at);
         let at = row.value_at;
-        let message = Message::default();
+        let (message, pin) = (Message::default(), Pin::default());
         return Some(Channel {
             variable,
             device,
@@ -255,6 +259,7 @@ fn channel(row: &Row<'_>, input: bool, found: &mut Found) -> Option<Channel> {
             offset: None,
             bad,
             message,
+            pin,
         });
     }
     let Some(table) = row.value.as_table() else {
@@ -267,6 +272,7 @@ fn channel(row: &Row<'_>, input: bool, found: &mut Found) -> Option<Channel> {
     let encoding = table.word(found, "as", Encoding::WORDS);
     let (scale, offset) = (table.number(found, "scale"), table.number(found, "offset"));
     let message = broker::message(&mut table, input, found);
+    let pin = field::pin(&mut table, input, found);
     let bad = if input { table.value(found, "bad") } else { None };
     let bad = match bad {
         None => At::new(Bad::Hold, row.at),
@@ -279,7 +285,7 @@ fn channel(row: &Row<'_>, input: bool, found: &mut Found) -> Option<Channel> {
     table.end(found);
     let text = text?;
     let (device, point) = point::read(&text.value, text.at, found)?;
-    Some(Channel { variable, device, point, at: text.at, encoding, scale, offset, bad, message })
+    Some(Channel { variable, device, point, at: text.at, encoding, scale, offset, bad, message, pin })
 }
 
 /// Reads the policy for an input whose value is bad.
