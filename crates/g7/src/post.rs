@@ -208,3 +208,81 @@ fn letter(row: Waiting) -> Letter {
     }
     Letter { number, payload: event.to_string().into_bytes() }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn keeper(name: &str, limits: Limits) -> Keeper {
+        let folder = std::env::temp_dir().join(format!("g7-post-{name}-{}", std::process::id()));
+        std::fs::remove_dir_all(&folder).ok();
+        std::fs::create_dir_all(&folder).expect("a folder");
+        let outbox = Outbox::open(&folder.join("events"), limits).expect("made");
+        Keeper::new(0, outbox, Mail::default())
+    }
+
+    /// What a broker gets that takes all.
+    fn taken(keeper: &mut Keeper) -> Vec<Value> {
+        let mut all = Vec::new();
+        loop {
+            keeper.step(&[]);
+            let Some(letter) = keeper.mail.next(0) else { return all };
+            keeper.mail.take(letter.number);
+            all.push(serde_json::from_slice(&letter.payload).expect("JSON"));
+        }
+    }
+
+    /// Row 16: one event a second, and nobody there.
+    #[test]
+    fn a_broker_that_is_away_for_a_day_hears_which_events_were_dropped() {
+        const DAY: u64 = 86_400;
+        const BEGIN: u64 = 1_764_041_726;
+        let limits = Limits { count: 1_000, bytes: 40_000 };
+        let mut keeper = keeper("day", limits);
+        let mut troubles = Vec::new();
+        for from in (0..DAY).step_by(900) {
+            let noted: Vec<Noted> = (from..from + 900)
+                .map(|second| ((BEGIN + second) * 1000, json!({ "kind": "forced", "value": second })))
+                .collect();
+            troubles.extend(keeper.step(&noted));
+            assert!(keeper.outbox.count() <= limits.count, "{}", keeper.outbox.count());
+            assert!(keeper.outbox.bytes() <= limits.bytes, "{}", keeper.outbox.bytes());
+            assert!(keeper.held.is_empty());
+        }
+        // Told once, when it began.
+        assert_eq!(troubles.len(), 1, "{troubles:?}");
+        let mut events = taken(&mut keeper).into_iter();
+        let gap = events.next().expect("the gap is told first");
+        let last = gap["last"].as_u64().expect("a number");
+        assert_eq!((gap["kind"].as_str(), gap["first"].as_u64()), (Some("dropped"), Some(1)));
+        assert_eq!(gap["count"].as_u64(), Some(last));
+        // Each event behind the gap is there, in order, with its own time.
+        let mut number = last;
+        for event in events {
+            number += 1;
+            assert_eq!(event["number"].as_u64(), Some(number));
+            assert_eq!(event["value"].as_u64(), Some(number - 1));
+        }
+        assert_eq!(number, DAY);
+        assert!(DAY - last > 800, "only as many were dropped as had to be: {last}");
+        assert_eq!((keeper.outbox.count(), keeper.outbox.bytes()), (0, 0));
+        println!("row 16: {DAY} events in a day, {last} dropped and told, {} came", DAY - last);
+    }
+
+    #[test]
+    fn events_have_a_number_a_time_and_what_they_are() {
+        let mut keeper = keeper("form", Limits { count: 100, bytes: 100_000 });
+        keeper.step(&[(1_764_041_726_123, json!({ "kind": "stop", "level": "note" }))]);
+        let expected = json!({
+            "number": 1, "at": "2025-11-25T03:35:26.123Z", "kind": "stop", "level": "note"
+        });
+        assert_eq!(taken(&mut keeper), [expected]);
+        // A broker that refuses is told once, and once that it takes events again.
+        keeper.mail.refuse("no".to_owned());
+        assert_eq!(keeper.step(&[]), Some(Some("no".to_owned())));
+        assert_eq!(keeper.step(&[]), None);
+        keeper.step(&[(0, json!({ "kind": "run" }))]);
+        taken(&mut keeper);
+        assert_eq!(keeper.told, None);
+    }
+}

@@ -62,6 +62,9 @@ pub(crate) fn make(
         return Err(Failure::Usage(format!("{} is not UTF-8 text", io.display())));
     }
     let simulated = simulate(&mut setup, wanted.simulate)?;
+    if wanted.simulate.is_none() {
+        problems.extend(g7_online::lacking(&setup));
+    }
     // Without a plant in place of a device there is none.
     let plant = wanted.plant.or(if wanted.simulate.is_none() { Some("none") } else { None });
     let scan = wanted.scan.or(setup.controller.period.as_ref().map(|p| p.value));

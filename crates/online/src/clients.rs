@@ -62,7 +62,8 @@ pub fn lacking(setup: &Setup) -> Vec<Problem> {
         let what = format!("this build of G7 has no devices of the kind \"{word}\"");
         let mut problem = Problem::new(&codes::BAD_WIRING, device.name.at, what);
         let linux = if word == "gpio" { ", for Linux" } else { "" };
-        problem.help = Some(format!("build it with `cargo install --path crates/g7 --features {word}`{linux}"));
+        problem.help =
+            Some(format!("build it with `cargo install --path crates/g7 --features {word}`{linux}"));
         problem
     };
     setup.devices.iter().filter(|device| lacks(&device.kind)).map(wrong).collect()

@@ -217,8 +217,7 @@ mod tests {
         let chip = Paper::default();
         chip.0.lock().expect("free").insert(4, (true, false));
         let outputs = vec![(line(17), true), (line(18), false)];
-        let mut board =
-            Board { chip: chip.clone(), inputs: vec![line(4), line(5)], outputs, lines: None };
+        let mut board = Board { chip: chip.clone(), inputs: vec![line(4), line(5)], outputs, lines: None };
         let mut inputs = vec![Err(Absent::Unread); 2];
         assert!(board.exchange(&[], &[], &mut inputs, &mut []).is_err(), "not asked for yet");
         board.connect().expect("the lines are free");

@@ -62,8 +62,8 @@ impl Mail {
         self.lock().refused.clone()
     }
 
-    /// The first letter behind a number.
-    pub(crate) fn next(&self, number: i64) -> Option<Letter> {
+    /// The first letter behind a number, for the device.
+    pub fn next(&self, number: i64) -> Option<Letter> {
         // Numbers grow, so the letters that are on their way stand in front.
         let tray = self.lock();
         let at = tray.ready.partition_point(|letter| letter.number <= number);
@@ -71,7 +71,7 @@ impl Mail {
     }
 
     /// Notes that the broker has taken a letter.
-    pub(crate) fn take(&self, number: i64) {
+    pub fn take(&self, number: i64) {
         let mut tray = self.lock();
         tray.ready.retain(|letter| letter.number != number);
         tray.taken.push(number);
@@ -79,7 +79,7 @@ impl Mail {
     }
 
     /// Notes that the broker has refused a letter.
-    pub(crate) fn refuse(&self, why: String) {
+    pub fn refuse(&self, why: String) {
         self.lock().refused = Some(why);
     }
 }

@@ -114,13 +114,8 @@ pub(crate) fn line(channel: &Channel, carried: &Carried<'_>) -> Result<(Wire, Sc
         active_low: pin.active_low.as_ref().is_some_and(|low| low.value),
         debounce: pin.debounce.as_ref().map(|time| time.value),
     };
-    let scaling = Scaling {
-        kind: Kind::Bool,
-        holds: Holds::Bit,
-        inverted: carried.inverted,
-        scale: 1.0,
-        offset: 0.0,
-    };
+    let scaling =
+        Scaling { kind: Kind::Bool, holds: Holds::Bit, inverted: carried.inverted, scale: 1.0, offset: 0.0 };
     Ok((Wire::Line(line), scaling))
 }
 

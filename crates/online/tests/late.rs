@@ -180,7 +180,7 @@ fn late_over_serial(knows_echo: bool) {
         let mut request = [0; 8];
         // A slave answers in turn, each at its own time.
         while own.read_exact(&mut request).is_ok() {
-            if random.below(3) == 0 {
+            if random.below(8) == 0 {
                 count.fetch_add(1, Ordering::Relaxed);
                 // Behind one time-out or several, of this request and those that wait.
                 std::thread::sleep(Duration::from_millis(15 + random.below(40)));
@@ -246,7 +246,7 @@ fn row_10_wrong_answers_over_tcp_give_no_value() {
         let serve = |mut stream: TcpStream, random: &mut Random| {
             let mut request = [0; 12];
             while stream.read_exact(&mut request).is_ok() {
-                let (frame, ends) = wrong(random.below(KINDS), &request, random);
+                let (frame, ends) = wrong(random.below(KINDS * 4).min(KINDS - 1), &request, random);
                 if stream.write_all(&frame).is_err() || ends {
                     return;
                 }
@@ -281,7 +281,7 @@ fn row_10_wrong_answers_over_a_serial_line_give_no_value() {
         while own.read_exact(&mut request).is_ok() {
             let mut frame = rtu_answer(&request, true);
             if request[1] != 8 {
-                match random.below(12) {
+                match random.below(40) {
                     0 => frame[0] = 2,
                     1 => frame[1] = 4,
                     2 => frame = framed(&[1, 3, 4, 0, 1, 0, 2]),

@@ -90,6 +90,7 @@ export interface ChartFile {
 
 export type Kind =
   | 'changed' | 'back' | 'run' | 'stop' | 'fault' | 'missed' | 'forced' | 'released' | 'ended' | 'no-priority' | 'unsaved'
+  | 'no-events' | 'events'
   | 'up' | 'down' | 'no-input' | 'input' | 'no-output' | 'output' | 'limited';
 
 export interface Event {

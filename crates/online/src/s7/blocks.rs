@@ -54,9 +54,7 @@ pub(super) fn reads(cells: &[Cell], most: u16) -> Vec<Block> {
         let joined = blocks.last_mut().filter(|block| {
             let Item { memory, byte, bytes } = block.item;
             let (from, end) = (u32::from(byte), u32::from(byte) + u32::from(bytes));
-            memory == cell.memory
-                && u32::from(cell.byte) <= end + GAP
-                && cell.end() - from <= u32::from(most)
+            memory == cell.memory && u32::from(cell.byte) <= end + GAP && cell.end() - from <= u32::from(most)
         });
         match joined {
             Some(block) => {
@@ -127,14 +125,10 @@ mod tests {
             cell(Memory::Block(2), 0, WORD),
             cell(Memory::Flag, 0, WORD),
         ];
-        let found: Vec<_> = reads(&cells, 222).into_iter().map(|b| (b.item.byte, b.item.bytes, b.cells)).collect();
+        let found: Vec<_> =
+            reads(&cells, 222).into_iter().map(|b| (b.item.byte, b.item.bytes, b.cells)).collect();
         // A gap of 16 bytes is closed, one of 17 is not; blocks of data are apart.
-        let expected = [
-            (0, 2, vec![6]),
-            (0, 30, vec![1, 2, 0, 3]),
-            (47, 1, vec![4]),
-            (0, 2, vec![5]),
-        ];
+        let expected = [(0, 2, vec![6]), (0, 30, vec![1, 2, 0, 3]), (47, 1, vec![4]), (0, 2, vec![5])];
         assert_eq!(found, expected);
         let long: Vec<Cell> = (0..200).map(|k| cell(block, k * 2, WORD)).collect();
         assert!(reads(&long, 222).iter().all(|b| b.item.bytes <= 222));

@@ -62,26 +62,7 @@ fn packet(body: &[u8]) -> Vec<u8> {
 /// The request for a connection: resource, rack and slot are the name of the processor.
 pub(super) fn connect(resource: u8, rack: u8, slot: u8) -> Vec<u8> {
     // Length, request, references, class 0; the longest data unit is 1024 bytes; who calls, who is called.
-    packet(&[
-        17,
-        0xe0,
-        0,
-        0,
-        0,
-        1,
-        0,
-        0xc0,
-        1,
-        10,
-        0xc1,
-        2,
-        1,
-        0,
-        0xc2,
-        2,
-        resource,
-        rack << 5 | slot & 0x1f,
-    ])
+    packet(&[17, 0xe0, 0, 0, 0, 1, 0, 0xc0, 1, 10, 0xc1, 2, 1, 0, 0xc2, 2, resource, rack << 5 | slot & 0x1f])
 }
 
 /// True if a packet says that the connection is there.
@@ -206,8 +187,7 @@ pub(super) fn written(packet: &[u8], number: u16) -> Result<Result<(), String>, 
 
 /// The parameters and the data of an answer.
 fn answer(packet: &[u8], number: u16) -> Result<(&[u8], &[u8]), Wrong> {
-    let (_, body) =
-        packet.split_first_chunk::<PACKET>().ok_or(Wrong::Broken("its answer is too short"))?;
+    let (_, body) = packet.split_first_chunk::<PACKET>().ok_or(Wrong::Broken("its answer is too short"))?;
     let Some((&[2, 0xf0, 0x80, 0x32, kind, _, _, a, b, c, d, e, f, class, code], rest)) =
         body.split_first_chunk::<15>()
     else {
@@ -270,14 +250,14 @@ mod tests {
         // As Wireshark shows them for DB1.DBB2, 4 bytes; and for M3.5 := 1.
         let asked = read(5, &[item(Memory::Block(1), 2, 4)]);
         let expected = [
-            3, 0, 0, 31, 2, 0xf0, 0x80, 0x32, 1, 0, 0, 0, 5, 0, 14, 0, 0, 4, 1, 0x12, 10, 0x10, 2, 0, 4, 0, 1,
-            0x84, 0, 0, 16,
+            3, 0, 0, 31, 2, 0xf0, 0x80, 0x32, 1, 0, 0, 0, 5, 0, 14, 0, 0, 4, 1, 0x12, 10, 0x10, 2, 0, 4, 0,
+            1, 0x84, 0, 0, 16,
         ];
         assert_eq!(asked, expected);
         let cell = Cell { memory: Memory::Flag, byte: 3, form: Form::Bit(5) };
         let expected = [
-            3, 0, 0, 36, 2, 0xf0, 0x80, 0x32, 1, 0, 0, 0, 6, 0, 14, 0, 5, 5, 1, 0x12, 10, 0x10, 1, 0, 1, 0, 0,
-            0x83, 0, 0, 29, 0, 3, 0, 1, 1,
+            3, 0, 0, 36, 2, 0xf0, 0x80, 0x32, 1, 0, 0, 0, 6, 0, 14, 0, 5, 5, 1, 0x12, 10, 0x10, 1, 0, 1, 0,
+            0, 0x83, 0, 0, 29, 0, 3, 0, 1, 1,
         ];
         assert_eq!(write(6, &cell, &[1]), expected);
         let cell = Cell { memory: Memory::Output, byte: 4, form: Form::Number(Encoding::Signed(1)) };

@@ -67,8 +67,7 @@ fn failed(error: &std::io::Error) -> Failed {
 impl Client {
     fn reach(&self) -> Result<TcpStream, Failed> {
         let S7 { host, port, .. } = &self.s7;
-        let named =
-            (host.as_str(), *port).to_socket_addrs().map_err(|e| Failed(format!("{host}: {e}")))?;
+        let named = (host.as_str(), *port).to_socket_addrs().map_err(|e| Failed(format!("{host}: {e}")))?;
         let mut last = Failed(format!("{host} has no address"));
         for address in named {
             match TcpStream::connect_timeout(&address, self.timeout) {
@@ -90,8 +89,7 @@ fn ask(stream: &mut TcpStream, packet: &[u8], timeout: Duration) -> Result<Vec<u
     stream.write_all(packet).map_err(|e| failed(&e))?;
     let mut head = [0; PACKET];
     hear(stream, &mut clock, timeout, &mut head)?;
-    let length =
-        frames::length(&head).ok_or_else(|| Failed("it does not speak ISO transport".to_owned()))?;
+    let length = frames::length(&head).ok_or_else(|| Failed("it does not speak ISO transport".to_owned()))?;
     let mut answer = head.to_vec();
     answer.resize(length, 0);
     hear(stream, &mut clock, timeout, answer.get_mut(PACKET..).unwrap_or(&mut []))?;
@@ -189,7 +187,9 @@ impl Device for Client {
         let mut stream = self.reach()?;
         let request = frames::connect(self.s7.resource, self.s7.rack, self.s7.slot);
         if !frames::is_connected(&ask(&mut stream, &request, self.timeout)?) {
-            return Err(Failed("it has no processor at this rack and slot, or no connection free".to_owned()));
+            return Err(Failed(
+                "it has no processor at this rack and slot, or no connection free".to_owned(),
+            ));
         }
         let number = 1;
         let answer = ask(&mut stream, &frames::setup(number), self.timeout)?;

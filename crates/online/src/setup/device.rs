@@ -38,8 +38,7 @@ pub enum Kind {
 
 impl Kind {
     /// The words of the file.
-    pub const WORDS: [&'static str; 6] =
-        ["modbus-tcp", "modbus-rtu", "modbus-server", "mqtt", "s7", "gpio"];
+    pub const WORDS: [&'static str; 6] = ["modbus-tcp", "modbus-rtu", "modbus-server", "mqtt", "s7", "gpio"];
 
     /// Its word in the file.
     pub fn word(&self) -> &'static str {

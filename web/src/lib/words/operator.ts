@@ -117,6 +117,8 @@ export const operator = {
   'op.ev.ended': ['{name} no longer forced: its time is over', "{name} n'est plus forcée : son temps est écoulé", '{name} já não está forçado: o tempo acabou'],
   'op.ev.no-priority': ['no priority for the scan: {why}', 'pas de priorité pour le cycle : {why}', 'sem prioridade para o ciclo: {why}'],
   'op.ev.unsaved': ['values cannot be saved: {why}', "les valeurs ne peuvent pas s'enregistrer : {why}", 'os valores não podem ser guardados: {why}'],
+  'op.ev.no-events': ['{device}: events wait: {why}', '{device} : des événements attendent : {why}', '{device}: há eventos à espera: {why}'],
+  'op.ev.events': ['{device} takes events again', '{device} prend de nouveau les événements', '{device} aceita eventos outra vez'],
   'op.ev.up': ['{device} answers', '{device} répond', '{device} responde'],
   'op.ev.down': ['{device} does not answer: {why}', '{device} ne répond pas : {why}', '{device} não responde: {why}'],
   'op.ev.masterUp': ['{device} has a master', '{device} a un maître', '{device} tem um mestre'],
