@@ -53,7 +53,7 @@ static: web
 test: export G7_SKIPS = $(TALLY)/skips
 test: export G7_PEERS = $(PYTHON)
 test: tally-anew lint page-test $(PYTHON)/bin/pymodbus.simulator
-	cargo test --workspace --quiet 2>&1 | tee $(TALLY)/crates.log
+	cargo test --workspace --features g7/s7,g7/gpio --quiet 2>&1 | tee $(TALLY)/crates.log
 	cargo run --quiet --package g7 -- check examples
 	cargo run --quiet --package g7 -- test examples | tee $(TALLY)/examples.log
 	@cargo run --quiet --package g7-peers --bin tally -- $(TALLY)
@@ -62,8 +62,8 @@ test: tally-anew lint page-test $(PYTHON)/bin/pymodbus.simulator
 $(PYTHON)/bin/pymodbus.simulator:
 	@{ { python3 -c 'import ensurepip' 2>/dev/null || { $(SUDO) apt-get update -qq && \
 			$(SUDO) apt-get install -qq --no-install-recommends python3 python3-venv; }; } && \
-		python3 -m venv $(PYTHON) && $(PYTHON)/bin/pip install --quiet 'pymodbus[serial]==3.16.*' 'pysparkplug==0.6.*'; } || \
-		echo "pymodbus and pysparkplug cannot be installed: their tests are skipped"
+		python3 -m venv $(PYTHON) && $(PYTHON)/bin/pip install --quiet 'pymodbus[serial]==3.16.*' 'pysparkplug==0.6.*' 'python-snap7==3.3.*'; } || \
+		echo "pymodbus, pysparkplug and python-snap7 cannot be installed: their tests are skipped"
 
 tally-anew:
 	@rm -rf $(TALLY) && mkdir -p $(TALLY) && touch $(TALLY)/skips
@@ -80,7 +80,7 @@ peers:
 ## formatting and lints
 lint:
 	cargo fmt --all --check
-	cargo clippy --workspace --all-targets --quiet -- --deny warnings
+	cargo clippy --workspace --all-targets --features g7/s7,g7/gpio --quiet -- --deny warnings
 
 ## licences and sources of what is built in
 deny:
@@ -167,6 +167,8 @@ faults: export G7_FAULTS = many
 faults: export G7_PEERS = $(PYTHON)
 faults: $(PYTHON)/bin/pymodbus.simulator
 	cargo test --package g7 --test faults -- --nocapture --test-threads 1
+	cargo test --package g7-online --test late --test masters -- --nocapture --test-threads 1
+	cargo test --package g7 --test events row_15 -- --nocapture
 
 ## the book, as HTML in docs/book/book, with every conformance case as a page
 book:
