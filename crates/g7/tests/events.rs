@@ -179,7 +179,7 @@ fn events_are_published_with_number_and_time_and_wait_for_a_broker() {
     let broker = Broker::with(port, "allow_anonymous true\n", &[]).expect("it was there before");
     let mut watch = broker.watch();
     // Also over the end of G7.
-    let mut g7 = Running::online(&folder, &[]);
+    let g7 = Running::online(&folder, &[]);
     let events = events_until(&mut watch, "up");
     let kinds: Vec<&str> = events.iter().filter_map(|e| e["kind"].as_str()).collect();
     assert!(kinds.starts_with(&["down", "stop"]), "{kinds:?}");

@@ -59,7 +59,7 @@ fn a_controller_of_siemens_gives_inputs_and_takes_outputs() {
     );
     let expected = [
         "  go     I0.3        FALSE",
-        "  level  DB1.DBD4    15.0 (from 1.5)",
+        "  level  DB1.DBD4    15 (from 1.5)",
         "  far    DB9.DBW0    it has no such data block",
         "  valve  Q4.0        FALSE",
         "  speed  DB1.DBW100  -2",
