@@ -328,8 +328,21 @@ fn plain(error: &ConnectionError) -> String {
             "the broker closed the connection".to_owned()
         }
         ConnectionError::MqttState(StateError::AwaitPingResp) => "the broker is silent".to_owned(),
-        other => other.to_string(),
+        other => of_tls(other).unwrap_or_else(|| other.to_string()),
     }
+}
+
+/// Why TLS has ended the connection, where that is at the root of an error.
+fn of_tls(error: &ConnectionError) -> Option<String> {
+    let mut next = std::error::Error::source(error);
+    while let Some(error) = next {
+        let io = error.downcast_ref::<std::io::Error>();
+        if let Some(why) = io.and_then(|io| tls::refusal(io, "broker")) {
+            return Some(why);
+        }
+        next = error.source();
+    }
+    None
 }
 
 fn refusal(code: ConnectReturnCode) -> String {
