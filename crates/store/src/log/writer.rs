@@ -26,6 +26,8 @@ const AGAIN: Duration = Duration::from_millis(500);
 /// Rows are removed after so many writes at the earliest.
 const PRUNE_EACH: u32 = 256;
 const DAY: u64 = 86_400_000;
+/// The longest wait for the last rows, in ms.
+const END: u64 = 3_000;
 
 /// How much is kept.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -59,6 +61,8 @@ type Shared = Arc<Mutex<State>>;
 
 /// A letter to the thread.
 enum Letter {
+    /// The last one: what comes later is not written.
+    End,
     Event(Entry),
     Deed(Entry, std::sync::mpsc::Sender<Result<(), String>>),
 }
@@ -181,15 +185,19 @@ impl Log {
 
 impl Drop for Log {
     fn drop(&mut self) {
-        self.entrance = None;
-        // Ends when the last entrance is gone; a page that still holds one does not hold up the end.
-        if let Some(thread) = self.thread.take() {
-            for _ in 0..200 {
-                if thread.is_finished() {
-                    break;
-                }
-                std::thread::sleep(Duration::from_millis(5));
+        let (Some(entrance), Some(thread)) = (self.entrance.take(), self.thread.take()) else { return };
+        // Bounded: a disk that does not answer does not hold up the end.
+        for _ in 0..END / 5 {
+            match entrance.give.try_send(Letter::End) {
+                Err(TrySendError::Full(_)) => std::thread::sleep(Duration::from_millis(5)),
+                Ok(()) | Err(TrySendError::Disconnected(_)) => break,
             }
+        }
+        for _ in 0..END / 5 {
+            if thread.is_finished() {
+                break;
+            }
+            std::thread::sleep(Duration::from_millis(5));
         }
     }
 }
@@ -221,8 +229,13 @@ impl Writer {
                 }
             };
             let more = std::iter::from_fn(|| letters.try_recv().ok()).take(BATCH);
-            let batch: Vec<Letter> = first.into_iter().chain(more).collect();
+            let mut batch: Vec<Letter> = first.into_iter().chain(more).collect();
+            let end = batch.iter().position(|letter| matches!(letter, Letter::End));
+            batch.truncate(end.unwrap_or(batch.len()));
             self.write(batch);
+            if end.is_some() {
+                return;
+            }
         }
     }
 
@@ -232,6 +245,7 @@ impl Writer {
         let mut fresh: Vec<Entry> = Vec::new();
         for letter in letters {
             match letter {
+                Letter::End => {}
                 Letter::Event(entry) => fresh.push(entry),
                 Letter::Deed(entry, done) => {
                     fresh.push(entry);

@@ -177,6 +177,7 @@ impl Users {
     pub fn open(path: &Path) -> Result<Users, UserError> {
         let file = file::open(path, KIND, &LAYOUTS, Durable::AtOnce)?;
         file.pragma_update(None, "foreign_keys", true)?;
+        own(path)?;
         Ok(Users { file: Mutex::new(file), nobody: Kept::of(&secret()?)? })
     }
 
@@ -410,6 +411,28 @@ impl Users {
     pub fn version(&self) -> Result<i64, UserError> {
         Ok(self.lock().pragma_query_value(None, "data_version", |row| row.get(0))?)
     }
+}
+
+/// Makes the file that of its owner alone, with what SQLite has beside it.
+#[cfg(unix)]
+fn own(path: &Path) -> Result<(), UserError> {
+    use std::os::unix::fs::PermissionsExt as _;
+    for end in ["", "-wal", "-shm"] {
+        let mut name = path.as_os_str().to_owned();
+        name.push(end);
+        match std::fs::set_permissions(&name, std::fs::Permissions::from_mode(0o600)) {
+            Err(e) if e.kind() != std::io::ErrorKind::NotFound => {
+                return refused(format!("it cannot be made its owner's alone: {e}"));
+            }
+            _ => {}
+        }
+    }
+    Ok(())
+}
+
+#[cfg(not(unix))]
+fn own(_: &Path) -> Result<(), UserError> {
+    Ok(())
 }
 
 fn admins(file: &Connection) -> Result<i64, UserError> {
