@@ -103,7 +103,11 @@ impl Audit {
     pub(crate) fn must(&self, who: &Who, kind: &str, data: &Value) -> Result<(), String> {
         match self.before(who, kind, None, data).0 {
             None => Ok(()),
-            Some(ticket) => ticket.wait(PATIENCE).map_err(|why| unwritten(&why)),
+            Some(ticket) => ticket.wait(PATIENCE).map_err(|why| {
+                // A row that comes later than anyone waits is no deed.
+                self.event("warning", "not-done", None, &json!({ "deed": kind, "user": who.name }));
+                unwritten(&why)
+            }),
         }
     }
 

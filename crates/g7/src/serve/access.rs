@@ -170,19 +170,21 @@ impl Access {
 
     /// Reads the sessions of the file.
     fn read(&self) -> Result<(), UserError> {
-        let version = self.users.version()?;
-        let found = self.users.sessions()?;
-        let mut all = lock(&self.held);
+        self.read_into(&mut lock(&self.held))?;
+        self.changed.send_modify(|count| *count += 1);
+        Ok(())
+    }
+
+    /// The same for who has the list: so no session that begins or ends meanwhile is missed.
+    fn read_into(&self, all: &mut BTreeMap<SessionHash, Held>) -> Result<(), UserError> {
+        *lock(&self.version) = self.users.version()?;
         let mut fresh = BTreeMap::new();
-        for session in found {
+        for session in self.users.sessions()? {
             let seen = all.get(&session.hash).map_or(session.seen, |held| held.seen.max(session.seen));
             let (user, role, created, noted) = (session.user, session.role, session.created, session.seen);
             fresh.insert(session.hash, Held { user, role, created, seen, noted });
         }
         *all = fresh;
-        drop(all);
-        *lock(&self.version) = version;
-        self.changed.send_modify(|count| *count += 1);
         Ok(())
     }
 
@@ -239,18 +241,18 @@ impl Access {
         }
     }
 
-    /// The user with this name and password.
+    /// The user with this name and password, by the name of the file.
     pub(super) async fn prove(
         self: &Arc<Access>,
         name: String,
         password: String,
         from: IpAddr,
-    ) -> Result<(String, Role), Refusal> {
+    ) -> Result<String, Refusal> {
         let _permit = self.guess(from).await?;
         let access = Arc::clone(self);
         aside(move || {
             let found = access.users.check(&name, &password).map_err(refusal)?;
-            found.ok_or_else(|| {
+            found.map(|(name, _)| name).ok_or_else(|| {
                 // A name that nobody has may be a password in the wrong field.
                 let known = access.users.list().unwrap_or_default();
                 let known = known.into_iter().find(|user| user.name.eq_ignore_ascii_case(&name));
@@ -269,9 +271,9 @@ impl Access {
         password: String,
         from: IpAddr,
     ) -> Result<String, Refusal> {
-        let (name, role) = self.prove(name, password, from).await?;
+        let name = self.prove(name, password, from).await?;
         let access = Arc::clone(self);
-        aside(move || access.opened(&name, role, from)).await
+        aside(move || access.opened(&name, from)).await
     }
 
     /// Gives a user who proves the old password a new one, and a session anew.
@@ -283,22 +285,23 @@ impl Access {
         from: IpAddr,
     ) -> Result<String, Refusal> {
         // A session that someone left open does not give the user away.
-        let (name, role) = self.prove(who.name.clone(), old, from).await?;
+        let name = self.prove(who.name.clone(), old, from).await?;
         let access = Arc::clone(self);
         aside(move || {
             let data = json!({ "user": name });
             access.change(&who, "user-password", &data, |users| users.set_password(&name, &new))?;
-            access.opened(&name, role, from)
+            access.opened(&name, from)
         })
         .await
     }
 
-    /// Begins a session for a user who is known.
-    pub(super) fn opened(&self, name: &str, role: Role, from: IpAddr) -> Result<String, Refusal> {
-        let now = utc_millis();
-        let secret = self.users.begin(name, &from.to_string(), now).map_err(refusal)?;
-        let held = Held { user: name.to_owned(), role, created: now, seen: now, noted: now };
-        lock(&self.held).insert(session_hash(&secret), held);
+    /// Begins a session for a user who is known; the role is that of the file at this moment.
+    pub(super) fn opened(&self, name: &str, from: IpAddr) -> Result<String, Refusal> {
+        let mut all = lock(&self.held);
+        let secret = self.users.begin(name, &from.to_string(), utc_millis()).map_err(refusal)?;
+        self.read_into(&mut all).map_err(refusal)?;
+        let role = all.get(&session_hash(&secret)).map_or(Role::Viewer, |held| held.role);
+        drop(all);
         let who = Who { name: name.to_owned(), role, from: from.to_string(), session: None };
         self.audit.note(&who, "login", None, &json!({ "role": role.word() }));
         Ok(secret)
@@ -337,7 +340,7 @@ impl Access {
             access.must(&who, "user-add", &json!({ "user": name, "role": "admin", "first": true }))?;
             access.users.add(&name, Role::Admin, &password, utc_millis(), true).map_err(refusal)?;
             *lock(&access.code) = None;
-            access.opened(&name, Role::Admin, from)
+            access.opened(&name, from)
         })
         .await
     }

@@ -20,6 +20,10 @@ use super::refusal::Refusal;
 use super::shared::{Inner, Shared};
 use crate::who::Who;
 
+/// Greatest size of a small body, and longest time for it.
+const SMALL: usize = 8 << 10;
+const SMALL_SLOWEST: Duration = Duration::from_secs(5);
+
 type Answer = Result<Response, Refusal>;
 
 /// Greatest number of bodies read at the same time; this bounds the memory.
@@ -199,9 +203,20 @@ fn wanted(headers: &HeaderMap) -> Result<Wanted, Refusal> {
     }
 }
 
-pub(super) async fn json_body<T: for<'a> Deserialize<'a>>(request: Request) -> Result<T, Refusal> {
+async fn json_body<T: for<'a> Deserialize<'a>>(request: Request) -> Result<T, Refusal> {
     let bytes = body(request).await?;
     serde_json::from_slice(&bytes).map_err(|e| Refusal::bad(format!("this request means nothing: {e}")))
+}
+
+/// Reads a small body, also of someone who is not known yet: whoever is slow takes nobody's place.
+pub(super) async fn small_json<T: for<'a> Deserialize<'a>>(request: Request) -> Result<T, Refusal> {
+    let bytes = axum::body::to_bytes(Body::new(request.into_body()), SMALL);
+    let bytes = match tokio::time::timeout(SMALL_SLOWEST, bytes).await {
+        Ok(Ok(bytes)) => bytes,
+        Ok(Err(_)) => return Err(Refusal::new(StatusCode::PAYLOAD_TOO_LARGE, "this is too large")),
+        Err(_) => return Err(Refusal::new(StatusCode::REQUEST_TIMEOUT, "this took too long to arrive")),
+    };
+    serde_json::from_slice(&bytes).map_err(|_| Refusal::bad("this request means nothing"))
 }
 
 /// Reads a body of limited size in a limited time.

@@ -25,7 +25,7 @@ use serde::Deserialize;
 use serde_json::{Value, json};
 
 use super::access::{Access, refusal};
-use super::api::{aside, json_body};
+use super::api::{aside, small_json};
 use super::guard::{COOKIE, peer};
 use super::refusal::Refusal;
 use super::shared::Shared;
@@ -87,13 +87,13 @@ fn begun(secret: &str) -> Response {
 
 async fn login(State(shared): State<Shared>, request: Request) -> Answer {
     let (access, from) = (access(&shared)?, peer(&request));
-    let Login { name, password, .. } = json_body(request).await?;
+    let Login { name, password, .. } = small_json(request).await?;
     Ok(begun(&access.login(name, password, from).await?))
 }
 
 async fn first(State(shared): State<Shared>, request: Request) -> Answer {
     let (access, from) = (access(&shared)?, peer(&request));
-    let Login { code, name, password } = json_body(request).await?;
+    let Login { code, name, password } = small_json(request).await?;
     Ok(begun(&access.first(code, name, password, from).await?))
 }
 
@@ -113,7 +113,7 @@ async fn password(State(shared): State<Shared>, Extension(who): Extension<Who>, 
         new: String,
     }
     let (access, from) = (access(&shared)?, peer(&request));
-    let Both { old, new } = json_body(request).await?;
+    let Both { old, new } = small_json(request).await?;
     Ok(begun(&access.renew(who, old, new, from).await?))
 }
 
@@ -143,7 +143,7 @@ enum Deed {
 
 async fn change(State(shared): State<Shared>, Extension(who): Extension<Who>, request: Request) -> Answer {
     let access = access(&shared)?;
-    let deed: Deed = json_body(request).await?;
+    let deed: Deed = small_json(request).await?;
     let role = |word: &str| word.parse::<Role>().map_err(Refusal::bad);
     aside(move || match deed {
         Deed::Add { name, role: word, password } => {

@@ -80,8 +80,8 @@ fn host(table: &mut Table<'_>, found: &mut Found) -> Option<At<IpAddr>> {
 
 pub(super) fn log(table: &mut Table<'_>, found: &mut Found) -> Option<LogFile> {
     let file = table.text(found, "log");
-    let days = table.whole(found, "log_days", 1..=36_500);
-    let mib = table.whole(found, "log_mib", 1..=100_000);
+    let days = table.whole(found, "log-days", 1..=36_500);
+    let mib = table.whole(found, "log-mib", 1..=100_000);
     match file {
         Some(file) => {
             let whole = |n: Option<At<i64>>| n.and_then(|n| u64::try_from(n.value).ok());
