@@ -166,7 +166,8 @@ soak:
 faults: export G7_FAULTS = many
 faults: export G7_PEERS = $(PYTHON)
 faults: $(PYTHON)/bin/pymodbus.simulator
-	cargo test --package g7 --test faults -- --nocapture --test-threads 1
+	cargo test --package g7 --test faults --test guard -- --nocapture --test-threads 1
+	cargo test --package g7 --bin g7 serve::tests::users::row -- --nocapture --test-threads 1
 
 ## the book, as HTML in docs/book/book, with every conformance case as a page
 book:

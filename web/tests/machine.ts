@@ -1,6 +1,6 @@
 // A machine for the stories of the operator: a mixer whose plant stands behind Modbus TCP (`g7 plant`),
 // and its controller (`g7 serve --online`).
-import { spawn, type ChildProcess } from 'node:child_process';
+import { execFileSync, spawn, type ChildProcess } from 'node:child_process';
 import { mkdtempSync, rmSync, writeFileSync } from 'node:fs';
 import { createServer } from 'node:net';
 import { tmpdir } from 'node:os';
@@ -54,7 +54,8 @@ plant Tank {
 }
 `;
 
-const io = (port: number) => `[controller]
+const io = (port: number, server: string) => `[controller]
+${server && "log = 'mixer.log'"}
 period = "20ms"
 watchdog = "10s"
 start = "stop"
@@ -77,7 +78,7 @@ heat = "rack1.coil(2)"
 drain = "rack1.coil(3)"
 lamp = "rack1.coil(4)"
 speed = "rack1.holding(0)"
-`;
+${server}`;
 
 async function freePort(): Promise<number> {
   const server = createServer();
@@ -119,12 +120,28 @@ export class Machine {
   #plant: ChildProcess | null = null;
   #station: ChildProcess | null = null;
 
+  async #lay(server: string): Promise<void> {
+    this.#port = await freePort();
+    writeFileSync(join(this.#folder, 'mixer.g7'), CHART);
+    writeFileSync(join(this.#folder, 'mixer.io.toml'), io(this.#port, server));
+    await this.plug();
+  }
+
+  /** With TLS, a log and no user yet; the code of the console. */
+  static async guarded(): Promise<{ machine: Machine; code: string }> {
+    const machine = new Machine();
+    await machine.#lay("[server]\nusers = 'g7.users'\ncert = 'g7.cert.pem'\nkey = 'g7.key.pem'\n");
+    execFileSync(program(), ['cert'], { cwd: machine.#folder, stdio: 'ignore' });
+    const port = await freePort();
+    const { child, found } = await begun(['serve', 'mixer.g7', '--online', '--no-open', '--port', String(port)], machine.#folder, 'stderr', /code: \S+/);
+    machine.#station = child;
+    machine.url = `https://127.0.0.1:${port}/operator`;
+    return { machine, code: found.replace('code: ', '') };
+  }
+
   static async start(): Promise<Machine> {
     const machine = new Machine();
-    machine.#port = await freePort();
-    writeFileSync(join(machine.#folder, 'mixer.g7'), CHART);
-    writeFileSync(join(machine.#folder, 'mixer.io.toml'), io(machine.#port));
-    await machine.plug();
+    await machine.#lay('');
     const { child, found } = await begun(['serve', 'mixer.g7', '--online', '--no-open', '--port', '0'], machine.#folder, 'stdout', /http:\/\/\S+/);
     machine.#station = child;
     machine.url = found;

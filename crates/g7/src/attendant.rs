@@ -12,9 +12,11 @@ use g7_host::{Clock, Value, WallClock};
 use g7_model::Nanos;
 use g7_online::{Answer, AtDevice, Command, Controller, Happened, Mode, Paces, Running, What};
 use g7_rig::Role;
-use serde_json::Value as Json;
+use g7_store::log::Log;
+use serde_json::{Value as Json, json};
 use signal_hook::consts::{SIGINT, SIGTERM};
 
+use crate::audit::{Audit, Pending};
 use crate::failure::{Failure, Verdict, plain};
 use crate::manager::Manager;
 use crate::message::talk;
@@ -22,11 +24,14 @@ use crate::monitor::Monitor;
 use crate::operator::{Adopted, Asker, Changes, HELP, Names, Stage, Told, Wish, mode_text};
 use crate::origin::Origin;
 use crate::values;
+use crate::who::Who;
 
 /// The pause between two looks at the events.
 const PAUSE: Duration = Duration::from_millis(20);
 /// Greatest number of orders of pages between two looks at the events.
 const ORDERS: usize = 32;
+/// The time between two rows of scans that were left out, and between two looks at the log.
+const SUM: Nanos = Nanos::SECOND;
 /// A command that the scan has not answered after this time is given up.
 const PATIENCE: Nanos = Nanos::from_millis(3_000);
 
@@ -52,6 +57,12 @@ pub(crate) struct Attendant {
     stage: Option<Stage>,
     changes: Option<Changes>,
     asked: Vec<Asked>,
+    log: Option<Log>,
+    audit: Audit,
+    /// Wishes of lines that wait for their row in the log.
+    held: Vec<(Wish, Pending)>,
+    /// Scans that were left out and are no row of the log yet, and the time for it.
+    missed: (u64, Nanos),
     /// Lines `NAME := VALUE` set an input or a state.
     sets: bool,
 }
@@ -67,6 +78,10 @@ impl Attendant {
             stage: None,
             changes: None,
             asked: Vec::new(),
+            log: None,
+            audit: Audit::default(),
+            held: Vec::new(),
+            missed: (0, Nanos::ZERO),
             sets: false,
         }
     }
@@ -74,6 +89,11 @@ impl Attendant {
     /// Tells a monitor what happens.
     pub(crate) fn with(self, monitor: Option<Monitor>) -> Attendant {
         Attendant { monitor, ..self }
+    }
+
+    /// Writes what happens into a log, and what the terminal wants.
+    pub(crate) fn logging(self, log: Option<Log>, audit: Audit) -> Attendant {
+        Attendant { log, audit, ..self }
     }
 
     /// Tells pages what happens, and does what they want.
@@ -98,6 +118,8 @@ impl Attendant {
             signal_hook::flag::register(signal, Arc::clone(&ended)).map_err(refused)?;
         }
         let lines = lines();
+        let begin = json!({ "version": env!("CARGO_PKG_VERSION"), "chart": self.names.source.name });
+        self.audit.event("note", "begin", Some(Nanos::ZERO), &begin);
         let mut manager = Manager::ready();
         manager.status(&mode_text(&self.names, self.mode));
         loop {
@@ -114,6 +136,8 @@ impl Attendant {
                 break;
             }
             self.serve(&mut running);
+            self.held(&mut running);
+            self.left_out(false);
             match lines.try_recv().as_deref() {
                 Ok("quit") => break,
                 Ok(line) => self.obey(line, &mut running),
@@ -123,6 +147,10 @@ impl Attendant {
         manager.stopping();
         let panicked = !running.is_alive();
         let controller = running.end();
+        self.left_out(true);
+        let now = self.clock.now();
+        self.audit.event(if panicked { "alarm" } else { "note" }, "end", Some(now), &json!({}));
+        drop(self.log.take());
         if panicked || controller.is_none() {
             return Err(Failure::Usage("the scan ended by an error of G7; outputs are safe".to_owned()));
         }
@@ -167,6 +195,57 @@ impl Attendant {
         self.note(now, &Told::Changed { back, lost });
     }
 
+    /// Does a wish of the terminal, once it stands in the log where it must.
+    fn line(&mut self, wish: Wish, running: &mut Running) {
+        let Some((kind, data)) = wish.deed() else { return self.want(&wish, Asker::Line, running) };
+        let at = Some(self.clock.now());
+        if wish.waits_for_log() {
+            let pending = self.audit.before(&Who::console(), &kind, at, &data);
+            return self.held.push((wish, pending));
+        }
+        self.audit.note(&Who::console(), &kind, at, &data);
+        self.want(&wish, Asker::Line, running);
+    }
+
+    /// Does the wishes of the terminal that stand in the log now.
+    fn held(&mut self, running: &mut Running) {
+        for (wish, pending) in std::mem::take(&mut self.held) {
+            match pending.look() {
+                None => self.held.push((wish, pending)),
+                Some(Err(why)) => talk!("{why}"),
+                Some(Ok(())) => self.want(&wish, Asker::Line, running),
+            }
+        }
+    }
+
+    /// Writes the scans that were left out as one row a second, and tells the monitor how the log is.
+    fn left_out(&mut self, end: bool) {
+        let now = self.clock.now();
+        let (count, due) = self.missed;
+        if now < due && !end {
+            return;
+        }
+        self.missed = (0, now + SUM);
+        if count > 0 {
+            self.logged(now, &Told::Missed(count));
+        }
+        if let (Some(monitor), Some(state)) = (&self.monitor, self.audit.state()) {
+            monitor.log(&state);
+        }
+    }
+
+    /// Writes an event into the log.
+    fn logged(&self, at: Nanos, told: &Told) {
+        let mut data = told.json(&self.names);
+        let kind = data.as_object_mut().and_then(|fields| fields.remove("kind"));
+        if let (Some(fields), Some(text)) = (data.as_object_mut(), told.text(&self.names)) {
+            fields.retain(|_, value| !value.is_null());
+            fields.insert("text".to_owned(), json!(anstream::adapter::strip_str(&text).to_string()));
+        }
+        let kind = kind.as_ref().and_then(Json::as_str).unwrap_or_default();
+        self.audit.event(told.level(&self.names).word(), kind, Some(at), &data);
+    }
+
     /// Hands the command of a wish on.
     fn want(&mut self, wish: &Wish, by: Asker, running: &mut Running) {
         if let (Wish::Change { anyway } | Wish::Back { anyway }, Some(changes)) = (wish, &mut self.changes) {
@@ -201,7 +280,7 @@ impl Attendant {
             return;
         }
         let given = match Wish::of_line(line) {
-            Some(Ok(wish)) => return self.want(&wish, Asker::Line, running),
+            Some(Ok(wish)) => return self.line(wish, running),
             Some(Err(why)) => Err(why),
             None if line == "status" => {
                 talk!("{} {}", self.time(), mode_text(&self.names, self.mode));
@@ -287,6 +366,10 @@ impl Attendant {
         }
         if let Some(stage) = &mut self.stage {
             stage.note(at, told);
+        }
+        match told {
+            Told::Missed(more) => self.missed.0 = self.missed.0.saturating_add(*more),
+            _ => self.logged(at, told),
         }
     }
 

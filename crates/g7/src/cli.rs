@@ -81,6 +81,12 @@ pub(crate) enum Command {
     Draw(crate::draw::Draw),
     /// Open the editor in the browser, or drive a machine with the page of its operator.
     Serve(crate::serve::Serve),
+    /// Show, add, change and remove the users of a server.
+    Users(crate::users::Users),
+    /// Show, export and check the log of a controller.
+    Log(crate::journal::Journal),
+    /// Make a certificate and its key, for encrypted connections.
+    Cert(crate::certificate::Cert),
     /// Let the system start the controller of a chart (systemd).
     #[cfg(target_os = "linux")]
     Service(crate::service::Service),

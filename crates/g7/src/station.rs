@@ -5,9 +5,12 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use g7_model::{Nanos, ProfileName};
+use g7_online::setup::Setup;
 use g7_online::{Clients, Command, KeepError, Options, RealDisk, Running, Sight, Slots, Started};
+use g7_store::log::Log;
 
 use crate::attendant::refused;
+use crate::audit::{self, Audit};
 use crate::failure::{Failure, plain};
 use crate::message::talk;
 use crate::monitor::Monitor;
@@ -50,6 +53,34 @@ pub(crate) struct Station {
     pub(crate) running: Running,
     pub(crate) sight: Sight,
     pub(crate) monitor: Option<Monitor>,
+}
+
+/// What the io file says of those who use the controller, read before anything else: a log that cannot be
+/// written is found before anything moves.
+pub(crate) struct Settings {
+    pub(crate) setup: Setup,
+    /// The io file.
+    pub(crate) io: PathBuf,
+    pub(crate) log: Option<Log>,
+    pub(crate) audit: Audit,
+    /// The file of the log.
+    pub(crate) log_file: Option<PathBuf>,
+}
+
+/// Reads them. What is wrong with the file is told by [`start`], which reads it again.
+pub(crate) fn settings(path: &Path, drive: &Drive, log: Option<&Path>) -> Result<Settings, Failure> {
+    let io = wiring::io_file(path, drive.io.as_deref());
+    let setup = wiring::settings(&io);
+    let (mut kept, mut log_file) = (None, None);
+    if let Some(path) = log {
+        log_file = Some(path.to_path_buf());
+        kept = Some(audit::open(path, None, None)?);
+    } else if let Some(file) = &setup.controller.log {
+        log_file = Some(io.with_file_name(&file.file.value));
+        kept = Some(audit::of_file(&io, file)?);
+    }
+    let (log, audit) = kept.map_or_else(Default::default, |(log, audit)| (Some(log), audit));
+    Ok(Settings { setup, io, log, audit, log_file })
 }
 
 /// Starts the controller of a chart, or prints the problems of its files.

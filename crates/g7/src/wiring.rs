@@ -33,6 +33,17 @@ pub(crate) struct Wanted<'a> {
     pub(crate) scan: Option<Nanos>,
 }
 
+/// The io file of a chart.
+pub(crate) fn io_file(path: &Path, named: Option<&Path>) -> PathBuf {
+    named.map_or_else(|| path.with_extension("io.toml"), Path::to_path_buf)
+}
+
+/// The settings of an io file; those of a silent one where it cannot be read, which [`make`] tells.
+pub(crate) fn settings(io: &Path) -> Setup {
+    let text = std::fs::read(io).ok().and_then(|bytes| String::from_utf8(bytes).ok());
+    text.map(|text| setup::read(&text, FileId(1)).0).unwrap_or_default()
+}
+
 /// Reads the io file and wires the chart, or prints the problems.
 pub(crate) fn plan(path: &Path, source: &Source, wanted: &Wanted<'_>) -> Result<Option<Plan>, Failure> {
     let (plan, told) = make(path, source, wanted)?;
@@ -49,7 +60,7 @@ pub(crate) fn make(
     source: &Source,
     wanted: &Wanted<'_>,
 ) -> Result<(Option<Plan>, String), Failure> {
-    let io = wanted.io.map_or_else(|| path.with_extension("io.toml"), Path::to_path_buf);
+    let io = io_file(path, wanted.io);
     if wanted.io.is_none() && !io.is_file() {
         let what =
             format!("{} is missing: it says which devices the inputs and outputs are wired to", io.display());

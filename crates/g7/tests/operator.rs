@@ -495,7 +495,7 @@ fn nobody_else_is_let_in() {
     assert!(station.try_page(token, Some(&own)).is_ok());
     for host in ["0.0.0.0", "192.0.2.7", "::"] {
         let refused = folder.g7(&["serve", "chart.g7", "--online", "--simulate", "--listen", host]);
-        refused.is_refused(&[host, "no users and no encryption", "127.0.0.1"]);
+        refused.is_refused(&[host, "without encryption and without users", "g7 cert", "127.0.0.1"]);
     }
     assert!(folder.g7(&["serve", "--io", "x.toml"]).is(2).err.contains("--online"));
     // Without a controller there is no such page, and nothing to command.

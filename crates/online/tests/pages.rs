@@ -305,3 +305,23 @@ fn no_bytes_make_it_panic() {
     reported(&format!("a = {}", "[".repeat(10_000)));
     reported(&"é = 'ü'\n".repeat(3));
 }
+
+#[test]
+fn what_is_half_said_of_users_and_the_log_is_a_problem() {
+    let whole = "[controller]\nlog = 'l'\nlog-days = 30\nlog-mib = 5\n[server]\nhost = '0.0.0.0'\nport = 4700\n\
+        users = 'u'\ncert = 'c'\nkey = 'k'\nidle = '1h'\nsession = '12h'\n";
+    assert!(reported(whole).iter().all(|id| *id != "G0701"), "{:?}", reported(whole));
+    for wrong in [
+        "[server]\nusers = 'u'\n",
+        "[server]\ncert = 'c'\n",
+        "[server]\nkey = 'k'\n",
+        "[server]\nhost = 'localhost'\n",
+        "[server]\nport = 70000\n",
+        "[server]\nidle = '1s'\n",
+        "[server]\npassword = 'x'\n",
+        "[controller]\nlog-days = 3\n",
+        "[controller]\nlog = 'l'\nlog-days = 0\n",
+    ] {
+        assert!(reported(wrong).contains(&"G0701"), "{wrong}: {:?}", reported(wrong));
+    }
+}

@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::time::Duration;
 
-use rusqlite::{Connection, ErrorCode};
+use rusqlite::{Connection, ErrorCode, OpenFlags};
 
 /// The time that a write waits for another connection to the same file.
 const PATIENCE: Duration = Duration::from_millis(2_000);
@@ -77,6 +77,27 @@ pub fn open(path: &Path, kind: i32, layouts: &[&str], durable: Durable) -> Resul
         step.commit()?;
     }
     Ok(file)
+}
+
+/// Opens a file of a kind for reading alone; another program may be writing to it.
+///
+/// # Errors
+///
+/// There is no such file, it belongs to something else or is newer than this program.
+pub fn view(path: &Path, kind: i32, layout: i32) -> Result<Connection, StoreError> {
+    let file = Connection::open_with_flags(path, OpenFlags::SQLITE_OPEN_READ_ONLY)?;
+    file.busy_timeout(PATIENCE)?;
+    let number = |name: &str| file.pragma_query_value(None, name, |row| row.get::<_, i32>(0));
+    match number("application_id") {
+        Ok(found) if found == kind => {}
+        Ok(_) => return Err(StoreError::Foreign),
+        Err(e) if e.sqlite_error_code() == Some(ErrorCode::NotADatabase) => return Err(StoreError::Foreign),
+        Err(e) => return Err(e.into()),
+    }
+    match number("user_version")? {
+        newer if newer > layout => Err(StoreError::Newer(newer)),
+        _ => Ok(file),
+    }
 }
 
 #[cfg(test)]

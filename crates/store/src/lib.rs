@@ -14,5 +14,7 @@
 #![forbid(unsafe_code)]
 
 mod file;
+pub mod log;
+pub mod users;
 
-pub use file::{Durable, StoreError, open};
+pub use file::{Durable, StoreError, open, view};

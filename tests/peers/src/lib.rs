@@ -75,6 +75,38 @@ fn compiles_for(target: &str) -> bool {
         && quiet(Command::new("rustc").args(arguments).current_dir(&folder.0))
 }
 
+/// A file system of its own with a bounded size, which a test fills up. Dropping it ends it.
+pub struct SmallDisk(PathBuf);
+
+impl SmallDisk {
+    /// With so many KiB; `None` where this user may mount none, which is counted.
+    pub fn new(kib: u32) -> Option<SmallDisk> {
+        static NEXT: AtomicUsize = AtomicUsize::new(0);
+        let number = NEXT.fetch_add(1, Ordering::Relaxed);
+        let path = std::env::temp_dir().join(format!("g7-disk-{}-{number}", std::process::id()));
+        let made = std::fs::create_dir_all(&path).is_ok();
+        let size = format!("size={kib}k");
+        if made && quiet(Command::new("mount").args(["-t", "tmpfs", "-o", &size, "tmpfs"]).arg(&path)) {
+            return Some(SmallDisk(path));
+        }
+        std::fs::remove_dir(&path).ok();
+        skip("no file system can be mounted");
+        None
+    }
+
+    /// Its folder.
+    pub fn path(&self) -> &Path {
+        &self.0
+    }
+}
+
+impl Drop for SmallDisk {
+    fn drop(&mut self) {
+        quiet(Command::new("umount").arg(&self.0));
+        std::fs::remove_dir(&self.0).ok();
+    }
+}
+
 /// True if a tool can be started; otherwise the skip is counted.
 pub fn tool(name: &str) -> bool {
     let found = starts(name);

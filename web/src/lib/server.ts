@@ -1,6 +1,7 @@
 // Files and shared runs of `g7 serve`. Without a server (in the static playground) the examples
 // come from one file beside the page, and nothing is written.
 import { opened, Refused, type Answers, type Message } from './page';
+import { session } from './session.svelte';
 
 export interface Info {
   name: string;
@@ -35,6 +36,8 @@ export class Conflict extends Error {
 }
 
 const TOKEN = 'g7-token';
+/** The code with which the server closes a connection whose session is over: the page asks anew who is there. */
+const OVER = 4401;
 
 function takeToken(): string {
   const here = new URL(location.href);
@@ -78,7 +81,7 @@ class Server implements Answers {
   }
 
   get writes(): boolean {
-    return this.info !== null && !this.info.read_only;
+    return this.info !== null && !this.info.read_only && session.may('engineer');
   }
 
   async files(): Promise<FileRow[]> {
@@ -173,7 +176,8 @@ class Server implements Answers {
         this.#linked.forEach((listener) => listener(true));
       };
       socket.onmessage = (event: MessageEvent<string>) => this.#hear(event.data);
-      socket.onclose = () => {
+      socket.onclose = (event) => {
+        if (event.code === OVER) location.reload();
         this.#socket = null;
         reject(new Refused('the server is gone'));
         this.#waiting.forEach((w) => w.reject(new Refused('the server is gone')));
@@ -206,6 +210,7 @@ class Server implements Answers {
   }
 
   async #ok(answer: Response): Promise<Response> {
+    if (answer.status === 401 && session.told.users) location.reload();
     if (!answer.ok) throw new Refused((await answer.text()) || answer.statusText);
     return answer;
   }

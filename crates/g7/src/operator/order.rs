@@ -4,11 +4,14 @@ use std::sync::Arc;
 
 use g7_model::Nanos;
 use g7_online::USUAL;
-use serde::Deserialize;
+use g7_store::users::Role;
+use serde::{Deserialize, Serialize};
+use serde_json::{Value, json};
 use tokio::sync::oneshot;
 
 use crate::serve::outbox::Outbox;
 use crate::values;
+use crate::who::Who;
 
 /// The name under which outboxes keep the frames of the controller. No run has it: names of runs have
 /// no control letters.
@@ -20,7 +23,7 @@ pub(crate) const HELP: &str = "commands: run, stop, ack (ends a fault), cold (in
     back (to the one before), status, quit";
 
 /// A wish of a person.
-#[derive(Clone, Debug, PartialEq, Eq, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Eq, Deserialize, Serialize)]
 #[serde(tag = "do")]
 pub(crate) enum Wish {
     /// See all, and every change from here on.
@@ -81,6 +84,40 @@ pub(crate) struct Order {
 }
 
 impl Wish {
+    /// The role that it needs.
+    pub(crate) fn role(&self) -> Role {
+        match self {
+            Wish::Watch => Role::Viewer,
+            Wish::Run | Wish::Stop | Wish::Acknowledge | Wish::Cold | Wish::Seen { .. } => Role::Operator,
+            Wish::Force { .. }
+            | Wish::Release { .. }
+            | Wish::ReleaseAll
+            | Wish::Change { .. }
+            | Wish::Back { .. } => Role::Engineer,
+        }
+    }
+
+    /// True if it is done only once it stands in the log. To stop, or to take a force back, never waits.
+    pub(crate) fn waits_for_log(&self) -> bool {
+        matches!(self, Wish::Force { .. } | Wish::Change { .. } | Wish::Back { .. })
+    }
+
+    /// Its kind and what belongs to it, for the log; `None` for one that changes nothing.
+    pub(crate) fn deed(&self) -> Option<(String, Value)> {
+        if *self == Wish::Watch {
+            return None;
+        }
+        let mut data = serde_json::to_value(self).ok()?;
+        let kind = data.as_object_mut()?.remove("do")?;
+        Some((kind.as_str()?.trim_start_matches("operator_").to_owned(), data))
+    }
+
+    /// The wish of someone who may not, for the log.
+    pub(crate) fn refused(&self, who: &Who) -> Value {
+        let (kind, data) = self.deed().unwrap_or_default();
+        json!({ "user": who.name, "from": who.from, "needs": self.role().word(), "wish": kind, "data": data })
+    }
+
     /// Reads a line; `None` where it is no wish of this kind.
     pub(crate) fn of_line(line: &str) -> Option<Result<Wish, String>> {
         let (word, rest) = line.split_once(char::is_whitespace).unwrap_or((line, ""));
@@ -146,6 +183,16 @@ mod tests {
         for other in ["", "status", "go := 1", "running"] {
             assert_eq!(Wish::of_line(other), None, "{other}");
         }
+    }
+
+    #[test]
+    fn a_wish_is_a_deed_with_its_words() {
+        let (kind, data) =
+            Wish::of_line("force go := 1 for 5s").expect("a wish").expect("one").deed().expect("it does");
+        assert_eq!((kind.as_str(), data), ("force", json!({ "name": "go", "value": "1", "seconds": 5 })));
+        assert_eq!(Wish::Stop.deed(), Some(("stop".to_owned(), json!({}))));
+        assert_eq!(Wish::Watch.deed(), None);
+        assert!(!Wish::Stop.waits_for_log() && Wish::Change { anyway: false }.waits_for_log());
     }
 
     #[test]

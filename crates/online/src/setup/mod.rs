@@ -22,6 +22,7 @@
 mod broker;
 mod device;
 mod point;
+mod server;
 mod table;
 
 use std::net::SocketAddr;
@@ -34,6 +35,7 @@ pub use broker::{Broker, Message, Origin, Password, Secret, Sparkplug};
 pub(crate) use device::SERVER;
 pub use device::{Device, Kind, Listen, Modbus, Parity, Serial, Tcp, Timing};
 pub use point::{Area, Encoding, Place, Point, Register};
+pub use server::{LogFile, Server};
 pub use table::At;
 
 use table::{Found, Row, Table};
@@ -46,6 +48,8 @@ const MOST: usize = 4 << 20;
 pub struct Setup {
     /// How the controller runs.
     pub controller: Controller,
+    /// Who may use the page of the operator.
+    pub server: Server,
     /// The devices, in the order of the file.
     pub devices: Vec<Device>,
     /// The inputs of the chart that are wired.
@@ -85,6 +89,8 @@ pub struct Controller {
     pub priority: Option<At<i64>>,
     /// The address of this machine at which a monitoring system asks.
     pub metrics: Option<At<SocketAddr>>,
+    /// The log of events and deeds.
+    pub log: Option<LogFile>,
 }
 
 impl Default for Controller {
@@ -97,6 +103,7 @@ impl Default for Controller {
             run: true,
             priority: None,
             metrics: None,
+            log: None,
         }
     }
 }
@@ -187,6 +194,7 @@ fn setup(table: &DeTable<'_>, found: &mut Found) -> Setup {
     let top = Span { file: found.file, start: 0, end: 0 };
     let mut top = Table::new(table, top, "an io file");
     let controller = top.table(found, "controller").map(|table| controller(table, found));
+    let server = top.table(found, "server").map(|table| server::server(table, found)).unwrap_or_default();
     let rows = top.rows(found, "devices");
     let devices: Vec<Device> = rows.iter().filter_map(|row| device::read(row, found)).collect();
     device::one_line_each(&devices, found);
@@ -198,7 +206,7 @@ fn setup(table: &DeTable<'_>, found: &mut Found) -> Setup {
     let rows = top.rows(found, "shown");
     let shown = rows.iter().filter_map(|row| channel(row, false, found)).collect();
     top.end(found);
-    Setup { controller: controller.unwrap_or_default(), devices, inputs, outputs, shown }
+    Setup { controller: controller.unwrap_or_default(), server, devices, inputs, outputs, shown }
 }
 
 fn controller(mut table: Table<'_>, found: &mut Found) -> Controller {
@@ -217,6 +225,7 @@ fn controller(mut table: Table<'_>, found: &mut Found) -> Controller {
         run: table.word(found, "start", &[("run", true), ("stop", false)]).map_or(usual.run, |run| run.value),
         priority: table.whole(found, "priority", 1..=99),
         metrics: metrics(&mut table, found),
+        log: server::log(&mut table, found),
     };
     table.end(found);
     read

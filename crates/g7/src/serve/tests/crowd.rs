@@ -19,7 +19,7 @@ async fn paced(server: &Server) -> Live {
 
 #[tokio::test]
 async fn there_are_200_places_and_no_more() {
-    let server = Server::new().await;
+    let server = Server::with(|_| {}, Limits { clients: 200, ..Limits::default() }).await;
     let mut pages = vec![paced(&server).await];
     while pages.len() < 200 {
         let mut page = server.live().await;
@@ -30,7 +30,7 @@ async fn there_are_200_places_and_no_more() {
         goes_on(page, 1).await;
     }
     let (status, text) = refused(server.try_live(&[]).await);
-    assert_eq!(status, 503);
+    assert_eq!(status, 429);
     assert!(text.is_empty() || text.contains("200 places"), "{text}");
     server.get("/api/info").await.is(200);
     goes_on(&mut pages[0], 10).await;
@@ -164,7 +164,7 @@ async fn who_gives_no_sign_is_let_go() {
     let mut page = paced(&server).await;
     // A client that never reads and therefore answers no ping.
     let mute = server.live().await;
-    assert_eq!(refused(server.try_live(&[]).await).0, 503);
+    assert_eq!(refused(server.try_live(&[]).await).0, 429);
     loop {
         goes_on(&mut page, 1).await;
         if server.try_live(&[]).await.is_ok() {

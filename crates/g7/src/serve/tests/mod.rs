@@ -5,6 +5,7 @@ mod crowd;
 mod files;
 mod guard;
 mod runs;
+mod users;
 
 use std::fs;
 use std::net::SocketAddr;
@@ -90,6 +91,33 @@ impl Reply {
     }
 }
 
+/// The arguments for a folder.
+fn args_of(folder: &Path) -> Serve {
+    Serve {
+        path: folder.to_path_buf(),
+        port: None,
+        host: None,
+        users: None,
+        cert: None,
+        key: None,
+        log: None,
+        read_only: false,
+        no_open: true,
+        start: None,
+        drive: Drive { online: false, io: None, simulate: None },
+        plant: None,
+        page_dir: None,
+    }
+}
+
+/// An answer from its bytes.
+fn reply(bytes: &[u8]) -> Reply {
+    let end = bytes.windows(4).position(|w| w == b"\r\n\r\n").expect("a head");
+    let head = String::from_utf8_lossy(&bytes[..end]).into_owned();
+    let status = head.split(' ').nth(1).and_then(|s| s.parse().ok()).expect("a status");
+    Reply { status, head, body: bytes[end + 4..].to_vec() }
+}
+
 impl Server {
     async fn new() -> Server {
         Server::with(|_| {}, Limits::default()).await
@@ -103,27 +131,20 @@ impl Server {
         fs::create_dir_all(root.join("charts")).expect("a folder for the test");
         fs::write(root.join("charts/chart.g7"), CHART).expect("a chart");
         fs::write(root.join("secret.g7"), "secret").expect("a file outside");
-        let mut args = Serve {
-            path: root.join("charts"),
-            port: None,
-            host: Ipv4Addr::LOCALHOST.into(),
-            read_only: false,
-            no_open: true,
-            start: None,
-            drive: Drive { online: false, io: None, simulate: None },
-            plant: None,
-            page_dir: Some(root.join("charts")),
-        };
+        let mut args = args_of(&root.join("charts"));
+        args.page_dir = Some(root.join("charts"));
         change(&mut args);
-        let shared = shared(&args, limits, Some(&root.join("state")), None).expect("a folder to serve");
+        let rules = Rules::of(&args, None, &crate::audit::Audit::default(), None).expect("they fit");
+        let shared =
+            shared(&args, limits, Some(&root.join("state")), None, &rules).expect("a folder to serve");
         let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, 0)).await.expect("a port");
         let bound = listener.local_addr().expect("an address");
         let token = token().expect("a token");
-        let app = app(Arc::clone(&shared), Guard { token: token.clone(), bound });
+        let app = app(Arc::clone(&shared), rules.guard(Pass::Token(token.clone()), bound));
         let of = Arc::clone(&shared);
         let task = tokio::spawn(async move {
             tokio::select! {
-                () = listen::listen(listener, app) => {}
+                () = listen::listen(listener, app, listen::Door::default()) => {}
                 () = tell_changes(of) => {}
             }
         });
@@ -145,10 +166,7 @@ impl Server {
         stream.write_all(request).await.ok();
         let mut bytes = Vec::new();
         tokio::time::timeout(PATIENCE, stream.read_to_end(&mut bytes)).await.expect("an answer").ok();
-        let end = bytes.windows(4).position(|w| w == b"\r\n\r\n").expect("a head");
-        let head = String::from_utf8_lossy(&bytes[..end]).into_owned();
-        let status = head.split(' ').nth(1).and_then(|s| s.parse().ok()).expect("a status");
-        Reply { status, head, body: bytes[end + 4..].to_vec() }
+        reply(&bytes)
     }
 
     /// A request with only these headers.
