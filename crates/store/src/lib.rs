@@ -14,5 +14,6 @@
 #![forbid(unsafe_code)]
 
 mod file;
+pub mod history;
 
-pub use file::{Durable, StoreError, open};
+pub use file::{Durable, StoreError, open, read};
