@@ -16,6 +16,7 @@ use serde_json::Value as Json;
 use signal_hook::consts::{SIGINT, SIGTERM};
 
 use crate::failure::{Failure, Verdict, plain};
+use crate::history::{Historian, Kept};
 use crate::manager::Manager;
 use crate::message::talk;
 use crate::monitor::Monitor;
@@ -49,6 +50,7 @@ pub(crate) struct Attendant {
     mode: Mode,
     paces: Paces,
     monitor: Option<Monitor>,
+    historian: Option<Historian>,
     stage: Option<Stage>,
     changes: Option<Changes>,
     asked: Vec<Asked>,
@@ -64,6 +66,7 @@ impl Attendant {
             mode: Mode::Stop,
             paces: Paces::default(),
             monitor: None,
+            historian: None,
             stage: None,
             changes: None,
             asked: Vec::new(),
@@ -74,6 +77,11 @@ impl Attendant {
     /// Tells a monitor what happens.
     pub(crate) fn with(self, monitor: Option<Monitor>) -> Attendant {
         Attendant { monitor, ..self }
+    }
+
+    /// Tells how the record of the signals does; it ends behind the run.
+    pub(crate) fn recording(self, historian: Option<Historian>) -> Attendant {
+        Attendant { historian, ..self }
     }
 
     /// Tells pages what happens, and does what they want.
@@ -272,6 +280,16 @@ impl Attendant {
         while let Ok(why) = running.no_priority.try_recv() {
             let now = self.clock.now();
             self.note(now, &Told::NoPriority(why));
+        }
+        while let Some(kept) = self.historian.as_ref().and_then(|h| h.told.try_recv().ok()) {
+            let now = self.clock.now();
+            self.note(
+                now,
+                &match kept {
+                    Kept::Fails(why) => Told::Unrecorded(why),
+                    Kept::Goes(lost) => Told::Recorded(lost),
+                },
+            );
         }
         while let Ok(e) = running.disk.try_recv() {
             self.monitored(Monitor::unsaved);

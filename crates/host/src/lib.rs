@@ -37,7 +37,7 @@ mod text;
 pub use clock::{Clock, VirtualClock, WallClock, utc_millis};
 pub use hash::Fnv;
 pub use record::chronogram::{Chronogram, Lane, Style};
-pub use record::csv::write_csv;
+pub use record::csv::{csv_cell, csv_quote, write_csv};
 pub use record::vcd::write_vcd;
 pub use record::{Kind, Recording, Sample, Signal, Value};
 pub use retain::{Layout, RetainError, Retained, write_whole};

@@ -46,6 +46,8 @@ pub(crate) fn run(args: &Run) -> Result<Verdict, Failure> {
 fn online(path: &Path, source: Source, args: &Run) -> Result<Verdict, Failure> {
     let more = More { profile: args.profile, scan: args.scan, plant: args.plant.as_deref(), seed: args.seed };
     let station = station::start(path, source, &args.drive, more)?;
-    let Some(Station { names, origin, running, monitor, .. }) = station else { return Ok(Verdict::Found) };
-    Attendant::new(names).with(monitor).changing(origin).attend(running, args.duration)
+    let Some(Station { names, origin, running, monitor, historian, .. }) = station else {
+        return Ok(Verdict::Found);
+    };
+    Attendant::new(names).with(monitor).recording(historian).changing(origin).attend(running, args.duration)
 }

@@ -203,7 +203,7 @@ async fn body(request: Request) -> Result<Vec<u8>, Refusal> {
 }
 
 /// Runs work that waits for a disk on another thread, so that other requests go on.
-async fn aside<T: Send + 'static>(
+pub(super) async fn aside<T: Send + 'static>(
     work: impl FnOnce() -> Result<T, Refusal> + Send + 'static,
 ) -> Result<T, Refusal> {
     let done = tokio::task::spawn_blocking(work).await;

@@ -5,6 +5,7 @@
 //! ```text
 //! browser -> listen -> guard -> assets                          the page
 //!                            -> api  -> folder, drafts, watch   files
+//!                            -> history -> store                 the history of a controller
 //!                            -> live -> runs -> desk -> Page    shared runs
 //!                                <- outbox <-+
 //!                                    -> operator::Stage         a running controller (`--online`)
@@ -26,6 +27,7 @@ mod file_names;
 mod fingerprint;
 mod folder;
 mod guard;
+mod history;
 pub(crate) mod listen;
 mod live;
 pub(crate) mod outbox;
@@ -39,8 +41,8 @@ mod watch;
 
 use std::net::{IpAddr, Ipv4Addr, SocketAddr};
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 use std::sync::mpsc::SyncSender;
+use std::sync::{Arc, OnceLock};
 use std::time::Duration;
 
 use axum::Router;
@@ -150,6 +152,7 @@ fn shared(
         seats: Arc::new(Semaphore::new(limits.clients)),
         limits,
         station,
+        history: OnceLock::new(),
     }))
 }
 
@@ -157,6 +160,7 @@ fn shared(
 fn app(shared: Shared, guard: Guard) -> Router {
     Router::new()
         .merge(api::routes())
+        .merge(history::routes())
         .route("/api/live", get(live::live))
         .fallback(get(assets::asset))
         .with_state(shared)
@@ -288,10 +292,16 @@ fn online(args: &Serve) -> Result<Verdict, Failure> {
     let open = Open::new(args, &shared)?;
     let more = More { plant: args.plant.as_deref(), ..More::default() };
     let station = station::start(&path, source, &args.drive, more)?;
-    let Some(Station { names, origin, running, sight, monitor }) = station else { return Ok(Verdict::Found) };
+    let Some(Station { names, origin, running, sight, monitor, historian }) = station else {
+        return Ok(Verdict::Found);
+    };
+    if let Some(historian) = &historian {
+        // It is set once.
+        shared.history.set(historian.path.clone()).ok();
+    }
     open.tell(args, &shared)?;
     let stage = Stage::new(names.clone(), sight, orders);
-    Attendant::new(names).with(monitor).on(stage).changing(origin).attend(running, None)
+    Attendant::new(names).with(monitor).recording(historian).on(stage).changing(origin).attend(running, None)
 }
 
 /// The address that the user opens.

@@ -8,7 +8,7 @@
 
 use std::path::PathBuf;
 use std::sync::mpsc::SyncSender;
-use std::sync::{Arc, Mutex, PoisonError, Weak};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError, Weak};
 use std::time::Duration;
 
 use tokio::sync::Semaphore;
@@ -75,6 +75,8 @@ pub(super) struct Inner {
     pub(super) limits: Limits,
     /// The way to a running controller.
     pub(super) station: Option<SyncSender<Order>>,
+    /// The record of that controller.
+    pub(super) history: OnceLock<PathBuf>,
 }
 
 pub(super) type Shared = Arc<Inner>;

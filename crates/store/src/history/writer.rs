@@ -162,8 +162,13 @@ impl Writer {
     /// From here on there are these signals, and so many changes before were lost. The values of all of
     /// them follow, at the same time.
     pub fn begin(&mut self, at: Nanos, signals: &[Signal], lost: u64) {
-        let at = self.at(at);
         self.table = signals.iter().map(|signal| self.slot(signal)).collect();
+        self.begin_again(at, lost);
+    }
+
+    /// The same with the signals that there are.
+    pub fn begin_again(&mut self, at: Nanos, lost: u64) {
+        let at = self.at(at);
         match &mut self.dropped {
             // The span begins when the disk takes it.
             Some(dropped) => *dropped += lost,
