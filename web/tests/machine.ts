@@ -77,6 +77,8 @@ heat = "rack1.coil(2)"
 drain = "rack1.coil(3)"
 lamp = "rack1.coil(4)"
 speed = "rack1.holding(0)"
+[history]
+file = "mixer.history"
 `;
 
 async function freePort(): Promise<number> {

@@ -66,11 +66,17 @@ pub struct Notes {
     /// The notes, as they come.
     pub notes: rtrb::Consumer<Note>,
     tables: Receiver<Table>,
+    present: Option<u64>,
 }
 
 impl Notes {
-    /// The table of a number that a note has told; `None` where nobody has given it.
+    /// The table of a number that a note has told; `None` where it is that of the note before.
     pub fn table(&mut self, number: u64) -> Option<Table> {
+        if self.present == Some(number) {
+            // A later table may be there already, and stays.
+            return None;
+        }
+        self.present = Some(number);
         // Tables of changes that were not made come in between.
         self.tables.try_iter().find(|table| table.number == number)
     }
@@ -145,7 +151,7 @@ pub(crate) fn pen(table: Table) -> (Pen, Notes, Sender<Table>) {
     let (give, tables) = channel();
     // The receiver is in this function.
     give.send(table).ok();
-    (Pen { notes, begins: true, lost: 0, due: Nanos::ZERO }, Notes { notes: taken, tables }, give)
+    (Pen { notes, begins: true, lost: 0, due: Nanos::ZERO }, Notes { notes: taken, tables, present: None }, give)
 }
 
 impl Pen {

@@ -125,7 +125,7 @@ impl Work {
                         .notes
                         .table(table)
                         .map(|table| table.signals.iter().map(signal).collect::<Vec<_>>());
-                    // Each table is given before its first note; one that began anew is known.
+                    // Each table is given before its first note.
                     match signals {
                         Some(signals) => self.writer.begin(at, &signals, u64::from(lost)),
                         None => self.writer.begin_again(at, u64::from(lost)),

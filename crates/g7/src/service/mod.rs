@@ -118,7 +118,7 @@ fn install(args: &Install) -> Result<Verdict, Failure> {
         of_user: args.user,
         run_as: owner(args, &path)?,
         restart: args.restart,
-        keeps: plan.setup.controller.retain.is_some(),
+        keeps: plan.setup.controller.retain.is_some() || plan.setup.history.is_some(),
         serial: has(&plan, |kind| matches!(kind, Kind::ModbusRtu(..))),
         low_port: has(&plan, |kind| matches!(kind, Kind::ModbusServer(l) if l.address.port() < 1024)),
         realtime: plan.setup.controller.priority.is_some(),

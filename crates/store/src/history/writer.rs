@@ -152,7 +152,8 @@ impl Writer {
 
     /// Notes what the wall clock shows, in us since 1970.
     pub fn clock(&mut self, at: Nanos, utc: i64) {
-        let at = self.at(at);
+        // Notes of an earlier time may still come.
+        let at = micros(at).saturating_add(self.base);
         if self.clock.parts(at, utc) {
             self.clock.add(at, utc);
             self.unsaved_clock.push((at, utc));

@@ -121,6 +121,7 @@ export const operator = {
   'op.ev.recorded': ['the history goes on; changes that were lost: {n}', "l'historique reprend ; changements perdus : {n}", 'o histórico continua; alterações perdidas: {n}'],
   'op.history': ['History', 'Historique', 'Histórico'],
   'op.historyKeys': ['Arrows move the cursor, + and − zoom, Page Up and Page Down move the window, End follows the present.', 'Les flèches déplacent le curseur, + et − zooment, Page préc. et Page suiv. déplacent la fenêtre, Fin suit le présent.', 'As setas movem o cursor, + e − ampliam, Page Up e Page Down movem a janela, End segue o presente.'],
+  'op.historyAll': ['All', 'Tout', 'Tudo'],
   'op.historyNone': ['Choose signals.', 'Choisissez des signaux.', 'Escolha sinais.'],
   'op.historyHint': ['Drag to move, turn the wheel to zoom, click for values.', 'Glissez pour déplacer, tournez la molette pour zoomer, cliquez pour les valeurs.', 'Arraste para mover, rode a roda para ampliar, clique para os valores.'],
   'op.historyUnknown': ['not recorded', 'non enregistré', 'não registado'],
