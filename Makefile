@@ -68,13 +68,15 @@ $(PYTHON)/bin/pymodbus.simulator:
 tally-anew:
 	@rm -rf $(TALLY) && mkdir -p $(TALLY) && touch $(TALLY)/skips
 
-## install what some tests are skipped without: clang with its sanitizers, g++, strace, mosquitto, a bare target
+## install what some tests are skipped without: clang with its sanitizers, g++, strace, mosquitto, faketime, pyarrow, a bare target
 peers:
 	rustup target add thumbv7em-none-eabi
 	@$(call debian,gcc,gcc)
 	@$(call debian,g++,g++)
 	@$(call debian,strace,strace)
 	@$(call debian,mosquitto_sub,mosquitto mosquitto-clients)
+	@$(call debian,faketime,faketime)
+	@test ! -x $(PYTHON)/bin/pip || $(PYTHON)/bin/pip install --quiet 'pyarrow>=20'
 	@$(SUDO) apt-get update -qq && $(SUDO) apt-get install -qq --no-install-recommends clang libclang-rt-dev
 
 ## formatting and lints

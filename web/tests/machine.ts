@@ -78,6 +78,8 @@ heat = "rack1.coil(2)"
 drain = "rack1.coil(3)"
 lamp = "rack1.coil(4)"
 speed = "rack1.holding(0)"
+[history]
+file = "mixer.history"
 ${server}`;
 
 async function freePort(): Promise<number> {

@@ -18,6 +18,7 @@ use signal_hook::consts::{SIGINT, SIGTERM};
 
 use crate::audit::{Audit, Pending};
 use crate::failure::{Failure, Verdict, plain};
+use crate::history::{Historian, Kept};
 use crate::manager::Manager;
 use crate::message::talk;
 use crate::monitor::Monitor;
@@ -54,6 +55,7 @@ pub(crate) struct Attendant {
     mode: Mode,
     paces: Paces,
     monitor: Option<Monitor>,
+    historian: Option<Historian>,
     stage: Option<Stage>,
     changes: Option<Changes>,
     asked: Vec<Asked>,
@@ -75,6 +77,7 @@ impl Attendant {
             mode: Mode::Stop,
             paces: Paces::default(),
             monitor: None,
+            historian: None,
             stage: None,
             changes: None,
             asked: Vec::new(),
@@ -94,6 +97,11 @@ impl Attendant {
     /// Writes what happens into a log, and what the terminal wants.
     pub(crate) fn logging(self, log: Option<Log>, audit: Audit) -> Attendant {
         Attendant { log, audit, ..self }
+    }
+
+    /// Tells how the record of the signals does; it ends behind the run.
+    pub(crate) fn recording(self, historian: Option<Historian>) -> Attendant {
+        Attendant { historian, ..self }
     }
 
     /// Tells pages what happens, and does what they want.
@@ -351,6 +359,16 @@ impl Attendant {
         while let Ok(why) = running.no_priority.try_recv() {
             let now = self.clock.now();
             self.note(now, &Told::NoPriority(why));
+        }
+        while let Some(kept) = self.historian.as_ref().and_then(|h| h.told.try_recv().ok()) {
+            let now = self.clock.now();
+            self.note(
+                now,
+                &match kept {
+                    Kept::Fails(why) => Told::Unrecorded(why),
+                    Kept::Goes(lost) => Told::Recorded(lost),
+                },
+            );
         }
         while let Ok(e) = running.disk.try_recv() {
             self.monitored(Monitor::unsaved);

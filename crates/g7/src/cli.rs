@@ -75,6 +75,8 @@ pub(crate) enum Command {
     Devices(crate::devices::Devices),
     /// Run the plant of a chart in the place of its devices.
     Plant(crate::plant::Plant),
+    /// Show what the history of a controller has, or export it.
+    History(crate::history::History),
     /// Run the tests of charts in virtual time.
     Test(Test),
     /// Draw charts as SVG, PNG or PDF.

@@ -27,6 +27,7 @@ mod failure;
 mod files;
 mod fmt;
 mod generate;
+mod history;
 mod import;
 mod journal;
 mod manager;
@@ -87,6 +88,7 @@ fn run(command: &Command) -> Result<Verdict, Failure> {
         Command::Run(args) => run::run(args),
         Command::Devices(args) => devices::devices(args),
         Command::Plant(args) => plant::plant(args),
+        Command::History(args) => history::history(args),
         Command::Test(args) => testing::test(args),
         Command::Draw(args) => draw::draw(args),
         Command::Serve(args) => serve::serve(args),

@@ -12,6 +12,7 @@ use g7_store::log::Log;
 use crate::attendant::refused;
 use crate::audit::{self, Audit};
 use crate::failure::{Failure, plain};
+use crate::history::{self, Historian};
 use crate::message::talk;
 use crate::monitor::Monitor;
 use crate::operator::{HELP, Names};
@@ -53,6 +54,7 @@ pub(crate) struct Station {
     pub(crate) running: Running,
     pub(crate) sight: Sight,
     pub(crate) monitor: Option<Monitor>,
+    pub(crate) historian: Option<Historian>,
 }
 
 /// What the io file says of those who use the controller, read before anything else: a log that cannot be
@@ -114,19 +116,24 @@ pub(crate) fn start(
     let mut machine = g7_online::assemble(runner, wiring, |wired| clients.device(wired)).map_err(refused)?;
     let kept = slots.map(|slots| machine.keep(bench, slots));
     let sight = machine.show();
+    let record = wiring.history.as_ref().map(|chosen| history::open(&plan.io, chosen)).transpose()?;
+    let notes = machine.record(wiring);
     let watchdog = setup.controller.watchdog.as_ref().map(|w| w.value);
     let options = Options {
         watchdog: watchdog.unwrap_or((bench.period * WATCHDOG.0).max(WATCHDOG.1)),
         priority: setup.controller.priority.as_ref().and_then(|p| u8::try_from(p.value).ok()),
     };
     let mut running = g7_online::start(machine, kept, options).map_err(refused)?;
+    let clock = running.clock;
+    let historian = record.zip(notes).map(|(record, notes)| Historian::start(record, notes, clock));
+    let historian = historian.transpose().map_err(refused)?;
     if setup.controller.run {
         running.command(Command::Run);
     } else {
         talk!("stopped; {HELP}");
     }
     let names = Names::new(source, plan.bench, plan.wiring);
-    Ok(Some(Station { names, origin, running, sight, monitor }))
+    Ok(Some(Station { names, origin, running, sight, monitor, historian }))
 }
 
 /// Opens the file of the values that are kept, and starts the run with them.

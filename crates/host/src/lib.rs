@@ -39,7 +39,7 @@ pub use clock::{Clock, VirtualClock, WallClock, utc_millis};
 pub use date::{utc_day, utc_of, utc_text};
 pub use hash::Fnv;
 pub use record::chronogram::{Chronogram, Lane, Style};
-pub use record::csv::write_csv;
+pub use record::csv::{csv_cell, csv_quote, write_csv};
 pub use record::vcd::write_vcd;
 pub use record::{Kind, Recording, Sample, Signal, Value};
 pub use retain::{Layout, RetainError, Retained, write_private, write_whole};

@@ -60,6 +60,8 @@ pub struct Options {
 
 /// A machine at work. Dropping it ends it as [`Running::end`] does.
 pub struct Running {
+    /// The clock of the controller.
+    pub clock: WallClock,
     stop: Arc<Stop>,
     shared: Shared,
     commands: rtrb::Producer<(u64, Command)>,
@@ -118,7 +120,7 @@ pub fn start<D: Disk + Send + 'static>(
     kept: Option<KeptFile<D>>,
     options: Options,
 ) -> std::io::Result<Running> {
-    let Machine { mut controller, drivers, events, shared } = machine;
+    let Machine { mut controller, drivers, events, shared, tables } = machine;
     controller.guard(options.watchdog);
     let (stop, clock) = (Arc::new(Stop::default()), WallClock::default());
     let last = Arc::new(Mutex::new(None));
@@ -165,8 +167,9 @@ pub fn start<D: Disk + Send + 'static>(
         *final_words.lock().unwrap_or_else(std::sync::PoisonError::into_inner) = Some(words);
         controller
     })?;
-    let changer = Some(Changer::new(&runner, (ask_change, of_change), renewed));
+    let changer = Some(Changer::new(&runner, (ask_change, of_change), renewed, tables));
     Ok(Running {
+        clock,
         stop,
         shared,
         commands,

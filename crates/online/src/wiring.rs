@@ -5,8 +5,9 @@ use std::collections::BTreeMap;
 use g7_engine::Addr;
 use g7_host::Kind;
 use g7_model::{Problem, Span, codes};
-use g7_rig::{Activity, Bench, Item, Role};
+use g7_rig::{Activity, Bench, Item, Role, StepItem};
 
+use crate::chosen::{self, Chosen};
 use crate::driver::Out;
 use crate::messages::{self, Carried, Refused};
 use crate::setup::{
@@ -23,6 +24,8 @@ pub struct Wiring {
     pub devices: Vec<Wired>,
     /// Inputs and outputs of the chart that no device has, by name.
     pub unwired: Vec<String>,
+    /// What is recorded.
+    pub history: Option<Chosen>,
 }
 
 /// A device with its channels.
@@ -107,6 +110,9 @@ pub fn wire(bench: &Bench, setup: &Setup) -> (Wiring, Vec<Problem>) {
         .map(|i| i.name.clone())
         .collect();
     wirer.wiring.devices.retain(|d| !(d.inputs.is_empty() && d.outputs.is_empty() && d.good.is_empty()));
+    if let Some(history) = &setup.history {
+        wirer.wiring.history = Some(chosen::choose(bench, history, &mut wirer.problems));
+    }
     (wirer.wiring, wirer.problems)
 }
 
@@ -190,38 +196,19 @@ impl<'a> Wirer<'a> {
 
     /// The variable or the step that a channel shows.
     fn shown(&mut self, channel: &Channel) -> Option<Subject> {
-        let At { value: name, at } = &channel.variable;
-        if let Some(step) = self.bench.steps.iter().find(|s| s.activity().eq_ignore_ascii_case(name)) {
-            let source = match step.id {
-                Activity::Step(id) => Source::Step(id),
-                Activity::Macro(id) => Source::Macro(id),
-            };
-            let (name, ty) = (step.activity(), "BOOL".to_owned());
-            return Some(Subject {
-                name,
+        match named(self.bench, &channel.variable) {
+            Ok(Named::Item(item)) => Some(self.subject(item)),
+            Ok(Named::Step(step)) => Some(Subject {
+                name: step.activity(),
                 kind: Kind::Bool,
-                ty,
+                ty: "BOOL".to_owned(),
                 inverted: false,
                 input: None,
-                source,
+                source: source_of(step),
                 safe: None,
-            });
-        }
-        match self.bench.item(name) {
-            Some(item) if item.role != Role::Plant => Some(self.subject(item)),
-            Some(_) => {
-                self.wrong(
-                    &codes::UNKNOWN_CHANNEL,
-                    *at,
-                    format!("`{name}` belongs to the plant, not to the chart"),
-                );
-                None
-            }
-            None => {
-                let near = self.bench.suggestions(name).trim_start_matches("; ").to_owned();
-                let what = format!("the chart has no variable or step `{name}`");
-                self.wrong(&codes::UNKNOWN_CHANNEL, *at, what).help =
-                    Some(near).filter(|near| !near.is_empty());
+            }),
+            Err(problem) => {
+                self.problems.push(*problem);
                 None
             }
         }
@@ -485,6 +472,39 @@ impl<'a> Wirer<'a> {
             self.wrong(&codes::WRONG_CHANNEL, channel.bad.at, what);
         }
         word.map(WhileBad::Word)
+    }
+}
+
+/// What a name means: a variable of the chart or a step.
+pub(crate) enum Named<'a> {
+    Item(&'a Item),
+    Step(&'a StepItem),
+}
+
+/// The variable of the chart, or the step by its step variable, that has a name.
+pub(crate) fn named<'a>(bench: &'a Bench, name: &At<String>) -> Result<Named<'a>, Box<Problem>> {
+    let At { value: name, at } = name;
+    if let Some(step) = bench.steps.iter().find(|s| s.activity().eq_ignore_ascii_case(name)) {
+        return Ok(Named::Step(step));
+    }
+    let wrong = |what: String| Box::new(Problem::new(&codes::UNKNOWN_CHANNEL, *at, what));
+    match bench.item(name) {
+        Some(item) if item.role != Role::Plant => Ok(Named::Item(item)),
+        Some(_) => Err(wrong(format!("`{name}` belongs to the plant, not to the chart"))),
+        None => {
+            let near = bench.suggestions(name).trim_start_matches("; ").to_owned();
+            let mut problem = wrong(format!("the chart has no variable or step `{name}`"));
+            problem.help = Some(near).filter(|near| !near.is_empty());
+            Err(problem)
+        }
+    }
+}
+
+/// The word that tells the activity of a step.
+pub(crate) fn source_of(step: &StepItem) -> Source {
+    match step.id {
+        Activity::Step(id) => Source::Step(id),
+        Activity::Macro(id) => Source::Macro(id),
     }
 }
 

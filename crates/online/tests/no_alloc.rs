@@ -1,5 +1,5 @@
 //! A step of the controller allocates nothing: with values and events of a device, with values that are
-//! kept, forced ones, commands, one who looks, on-line changes, and a plant in
+//! kept, forced ones, commands, one who looks, a history of all signals, on-line changes, and a plant in
 //! place of other devices.
 
 use allocation_counter::measure;
@@ -19,6 +19,9 @@ Col = { at = 'unit.input(2)', as = 'f32' }
 [outputs]
 Sol1 = 'unit.coil(0)'
 LED = 'unit.coil(6)'
+[history]
+file = 'record'
+deadband = { Col = 2.5 }
 ";
 
 /// Each exchange turns the unit over, and from time to time it does not answer.
@@ -84,11 +87,12 @@ fn a_step_allocates_nothing() {
     let slots = Slots::begin(Nowhere, 0, 0).expect("the disk takes all");
     let _kept = machine.keep(&bench, slots);
     let mut sight = machine.show();
+    let mut notes = machine.record(&wiring).expect("signals are chosen");
     let chart = Chart { bench: &bench, document: &source.document, wiring: &wiring };
     let mut picture = Box::new(Picture::of(machine.controller.runner()));
     let mut changes = 0;
     let period = machine.controller.runner().period();
-    let (mut now, mut allocating, mut events, mut looks) = (Nanos::ZERO, 0, 0, 0);
+    let (mut now, mut allocating, mut events, mut looks, mut noted) = (Nanos::ZERO, 0, 0, 0, 0);
     for k in 0..20_000 {
         now += period;
         let driver = &mut machine.drivers[0];
@@ -124,8 +128,13 @@ fn a_step_allocates_nothing() {
             events += 1;
         }
         looks += usize::from(sight.look());
+        // For a while nobody takes the notes, and their ring is full.
+        while !(5_000..15_000).contains(&k) && notes.notes.pop().is_ok() {
+            noted += 1;
+        }
     }
     assert!(events > 20 && machine.controller.runner().state().scans() > 10_000, "{events} events");
     assert!(looks > 4_000 && changes == 80, "{looks} times shown, {changes} changes");
+    assert!(noted > 100_000, "{noted} notes");
     assert_eq!(allocating, 0, "steps that allocate");
 }

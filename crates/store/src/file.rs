@@ -79,24 +79,24 @@ pub fn open(path: &Path, kind: i32, layouts: &[&str], durable: Durable) -> Resul
     Ok(file)
 }
 
-/// Opens a file of a kind for reading alone; another program may be writing to it.
+/// Opens a file of a kind for reading alone; another process may be writing it.
 ///
 /// # Errors
 ///
-/// There is no such file, it belongs to something else or is newer than this program.
-pub fn view(path: &Path, kind: i32, layout: i32) -> Result<Connection, StoreError> {
+/// There is no such file, it belongs to something else, has another layout, or cannot be read.
+pub fn read(path: &Path, kind: i32, layouts: &[&str]) -> Result<Connection, StoreError> {
     let file = Connection::open_with_flags(path, OpenFlags::SQLITE_OPEN_READ_ONLY)?;
     file.busy_timeout(PATIENCE)?;
     let number = |name: &str| file.pragma_query_value(None, name, |row| row.get::<_, i32>(0));
-    match number("application_id") {
-        Ok(found) if found == kind => {}
-        Ok(_) => return Err(StoreError::Foreign),
+    let found = match number("application_id") {
         Err(e) if e.sqlite_error_code() == Some(ErrorCode::NotADatabase) => return Err(StoreError::Foreign),
-        Err(e) => return Err(e.into()),
-    }
-    match number("user_version")? {
-        newer if newer > layout => Err(StoreError::Newer(newer)),
-        _ => Ok(file),
+        found => found?,
+    };
+    let layout = number("user_version")?;
+    match usize::try_from(layout) {
+        Ok(have) if found == kind && have == layouts.len() => Ok(file),
+        Ok(have) if found == kind && have > layouts.len() => Err(StoreError::Newer(layout)),
+        Ok(_) | Err(_) => Err(StoreError::Foreign),
     }
 }
 

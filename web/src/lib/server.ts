@@ -141,6 +141,16 @@ class Server implements Answers {
     await this.#ok(answer);
   }
 
+  /** Asks the server for an answer in JSON. */
+  async ask<T>(path: string): Promise<T> {
+    return (await (await this.#ok(await this.#fetch(path))).json()) as T;
+  }
+
+  /** Asks the server for a file. */
+  async bytes(path: string): Promise<ArrayBuffer> {
+    return (await this.#ok(await this.#fetch(path))).arrayBuffer();
+  }
+
   /** Calls a listener with every message that the server sends on its own: frames, changed files.
    * */
   hear(listener: (message: Record<string, unknown>) => void): () => void {

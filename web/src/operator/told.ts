@@ -89,7 +89,7 @@ export interface ChartFile {
 }
 
 export type Kind =
-  | 'changed' | 'back' | 'run' | 'stop' | 'fault' | 'missed' | 'forced' | 'released' | 'ended' | 'no-priority' | 'unsaved'
+  | 'changed' | 'back' | 'run' | 'stop' | 'fault' | 'missed' | 'forced' | 'released' | 'ended' | 'no-priority' | 'unsaved' | 'unrecorded' | 'recorded'
   | 'up' | 'down' | 'no-input' | 'input' | 'no-output' | 'output' | 'limited';
 
 export interface Event {

@@ -73,6 +73,7 @@ fn needed(method: &Method, path: &str) -> Option<Role> {
         (&Method::GET, "/api/info" | "/api/files" | "/api/file" | "/api/drafts" | "/api/live") => {
             Role::Viewer
         }
+        (&Method::GET, "/api/history" | "/api/history/lanes" | "/api/history/export") => Role::Viewer,
         (_, "/api/logout" | "/api/password") => Role::Viewer,
         (&Method::GET, "/api/log") => Role::Operator,
         (_, "/api/file" | "/api/new" | "/api/rename" | "/api/delete" | "/api/draft") => Role::Engineer,
@@ -306,6 +307,8 @@ mod tests {
             (Method::GET, "/api/file", Some(Role::Viewer)),
             (Method::PUT, "/api/file", Some(Role::Engineer)),
             (Method::GET, "/api/log", Some(Role::Operator)),
+            (Method::GET, "/api/history/export", Some(Role::Viewer)),
+            (Method::POST, "/api/history", Some(Role::Admin)),
             (Method::GET, "/api/users", Some(Role::Admin)),
             (Method::GET, "/api/new/thing", Some(Role::Admin)),
         ] {

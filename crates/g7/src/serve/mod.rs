@@ -6,6 +6,7 @@
 //! browser -> listen -> guard -> assets                          the page
 //!             (tls)     |    -> entry -> access                  login, users, the log
 //!                    access  -> api  -> folder, drafts, watch   files
+//!                            -> history -> store                the history of a controller
 //!                            -> live -> runs -> desk -> Page    shared runs
 //!                                <- outbox <-+
 //!                                    -> operator::Stage         a running controller (`--online`)
@@ -30,6 +31,7 @@ mod file_names;
 mod fingerprint;
 mod folder;
 mod guard;
+mod history;
 mod line;
 pub(crate) mod listen;
 mod live;
@@ -48,8 +50,8 @@ mod watch;
 
 use std::net::{IpAddr, Ipv4Addr, SocketAddr};
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 use std::sync::mpsc::SyncSender;
+use std::sync::{Arc, OnceLock};
 use std::time::Duration;
 
 use axum::Router;
@@ -180,6 +182,7 @@ fn shared(
         access: rules.access.clone(),
         audit: rules.audit.clone(),
         log: rules.log.clone(),
+        history: OnceLock::new(),
     }))
 }
 
@@ -188,6 +191,7 @@ fn app(shared: Shared, guard: Guard) -> Router {
     Router::new()
         .merge(api::routes())
         .merge(entry::routes())
+        .merge(history::routes())
         .route("/api/live", get(live::live))
         .fallback(get(assets::asset))
         .with_state(shared)
@@ -345,10 +349,17 @@ fn online(args: &Serve) -> Result<Verdict, Failure> {
     let open = Open::new(&shared, &rules)?;
     let more = More { plant: args.plant.as_deref(), ..More::default() };
     let station = station::start(&path, source, &args.drive, more)?;
-    let Some(Station { names, origin, running, sight, monitor }) = station else { return Ok(Verdict::Found) };
+    let Some(Station { names, origin, running, sight, monitor, historian }) = station else {
+        return Ok(Verdict::Found);
+    };
+    if let Some(historian) = &historian {
+        // It is set once.
+        shared.history.set(historian.path.clone()).ok();
+    }
     open.tell(args, &shared, &rules)?;
     let stage = Stage::new(names.clone(), sight, orders);
-    Attendant::new(names).with(monitor).logging(log, audit).on(stage).changing(origin).attend(running, None)
+    let attendant = Attendant::new(names).with(monitor).logging(log, audit).recording(historian);
+    attendant.on(stage).changing(origin).attend(running, None)
 }
 
 /// The address that the user opens.

@@ -8,7 +8,7 @@
 
 use std::path::PathBuf;
 use std::sync::mpsc::SyncSender;
-use std::sync::{Arc, Mutex, PoisonError, Weak};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError, Weak};
 use std::time::Duration;
 
 use super::access::Access;
@@ -89,6 +89,8 @@ pub(super) struct Inner {
     pub(super) audit: Audit,
     /// The file of the log.
     pub(super) log: Option<PathBuf>,
+    /// The record of that controller.
+    pub(super) history: OnceLock<PathBuf>,
 }
 
 pub(super) type Shared = Arc<Inner>;

@@ -218,5 +218,6 @@ fn systemctl(user: bool, arguments: &[&str]) -> Result<(), Failure> {
 /// True if the controller writes files beside its io file.
 fn writes(setup: &g7_online::setup::Setup) -> bool {
     let controller = &setup.controller;
-    controller.retain.is_some() || controller.log.is_some() || setup.server.users.is_some()
+    let kept = controller.retain.is_some() || controller.log.is_some();
+    kept || setup.server.users.is_some() || setup.history.is_some()
 }

@@ -21,6 +21,7 @@
 
 mod broker;
 mod device;
+mod history;
 mod point;
 mod server;
 mod table;
@@ -34,6 +35,8 @@ pub(crate) use broker::publishable;
 pub use broker::{Broker, Message, Origin, Password, Secret, Sparkplug};
 pub(crate) use device::SERVER;
 pub use device::{Device, Kind, Listen, Modbus, Parity, Serial, Tcp, Timing};
+pub use history::History;
+pub(crate) use history::SIGNALS;
 pub use point::{Area, Encoding, Place, Point, Register};
 pub use server::{LogFile, Server};
 pub use table::At;
@@ -58,6 +61,8 @@ pub struct Setup {
     pub outputs: Vec<Channel>,
     /// Variables and steps that masters may read.
     pub shown: Vec<Channel>,
+    /// What is recorded.
+    pub history: Option<History>,
 }
 
 /// The policy for kept values of another program.
@@ -205,8 +210,9 @@ fn setup(table: &DeTable<'_>, found: &mut Found) -> Setup {
     let outputs = rows.iter().filter_map(|row| channel(row, false, found)).collect();
     let rows = top.rows(found, "shown");
     let shown = rows.iter().filter_map(|row| channel(row, false, found)).collect();
+    let history = top.table(found, "history").and_then(|table| history::history(table, found));
     top.end(found);
-    Setup { controller: controller.unwrap_or_default(), server, devices, inputs, outputs, shown }
+    Setup { controller: controller.unwrap_or_default(), server, devices, inputs, outputs, shown, history }
 }
 
 fn controller(mut table: Table<'_>, found: &mut Found) -> Controller {

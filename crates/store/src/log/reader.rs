@@ -36,7 +36,7 @@ impl Reader {
     ///
     /// There is none, or the file is something else.
     pub fn open(path: &Path) -> Result<Reader, StoreError> {
-        Ok(Reader { file: file::view(path, KIND, LAYOUTS.len() as i32)? })
+        Ok(Reader { file: file::read(path, KIND, &LAYOUTS)? })
     }
 
     /// The rows that a filter wants, newest first, at most so many.
