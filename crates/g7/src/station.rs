@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use g7_model::{Nanos, ProfileName};
-use g7_online::{Clients, Command, KeepError, Options, RealDisk, Running, Sight, Slots, Started};
+use g7_online::{Clients, Command, KeepError, Options, Panels, RealDisk, Running, Sight, Slots, Started};
 
 use crate::attendant::refused;
 use crate::failure::{Failure, plain};
@@ -50,6 +50,7 @@ pub(crate) struct Station {
     pub(crate) running: Running,
     pub(crate) sight: Sight,
     pub(crate) monitor: Option<Monitor>,
+    pub(crate) panels: Panels,
 }
 
 /// Starts the controller of a chart, or prints the problems of its files.
@@ -95,7 +96,7 @@ pub(crate) fn start(
         talk!("stopped; {HELP}");
     }
     let names = Names::new(source, plan.bench, plan.wiring);
-    Ok(Some(Station { names, origin, running, sight, monitor }))
+    Ok(Some(Station { names, origin, running, sight, monitor, panels: clients.panels }))
 }
 
 /// Opens the file of the values that are kept, and starts the run with them.

@@ -16,6 +16,7 @@ pub(crate) const NAME: &str = "\u{1}operator";
 
 /// The commands that a line can be, for a message.
 pub(crate) const HELP: &str = "commands: run, stop, ack (ends a fault), cold (initial situation), \
+    press NAME, set NAME := VALUE (of a panel), \
     force NAME := VALUE for TIME, release NAME, release (all), change (to the chart as its file is now), \
     back (to the one before), status, quit";
 
@@ -64,6 +65,12 @@ pub(crate) enum Wish {
         #[serde(default)]
         anyway: bool,
     },
+    /// A button of a panel is pressed, pressed still, or released.
+    #[serde(rename = "operator_press")]
+    Press { name: String, down: bool },
+    /// A switch, number or choice of a panel is set.
+    #[serde(rename = "operator_set")]
+    Set { name: String, value: String },
     /// An alarm was seen, or all up to this one.
     #[serde(rename = "operator_seen")]
     Seen { event: u64, all: bool },
@@ -95,6 +102,15 @@ impl Wish {
                 ("change", "" | "anyway") => Ok(Wish::Change { anyway: !rest.is_empty() }),
                 ("back", "" | "anyway") => Ok(Wish::Back { anyway: !rest.is_empty() }),
                 _ => Err(format!("expected `{word}` or `{word} anyway`")),
+            },
+            "press" if rest.is_empty() => Err("expected `press NAME`".to_owned()),
+            "press" => Ok(Wish::Press { name: rest.to_owned(), down: true }),
+            "set" => match rest.split_once('=') {
+                Some((name, value)) => {
+                    let name = name.trim_end().trim_end_matches(':').trim().to_owned();
+                    Ok(Wish::Set { name, value: value.trim().to_owned() })
+                }
+                None => Err("expected `set NAME := VALUE`".to_owned()),
             },
             "force" => forced(rest),
             "release" if rest.is_empty() => Ok(Wish::ReleaseAll),
@@ -137,10 +153,21 @@ mod tests {
         assert_eq!(Wish::of_line("force level=2.5 for 1m30s"), force("level", "2.5", 90));
         assert_eq!(Wish::of_line("release go"), Some(Ok(Wish::Release { name: "go".to_owned() })));
         assert_eq!(Wish::of_line("release"), Some(Ok(Wish::ReleaseAll)));
+        let press = Wish::Press { name: "go".to_owned(), down: true };
+        assert_eq!(Wish::of_line("press go"), Some(Ok(press)));
+        let set = Wish::Set { name: "mode".to_owned(), value: "F1".to_owned() };
+        assert_eq!(Wish::of_line("set mode := F1"), Some(Ok(set)));
         assert_eq!(Wish::of_line("change"), Some(Ok(Wish::Change { anyway: false })));
         assert_eq!(Wish::of_line("back anyway"), Some(Ok(Wish::Back { anyway: true })));
-        for wrong in ["run now", "change it", "force go", "force go := 1 for soon", "force go := 1 for 100ms"]
-        {
+        for wrong in [
+            "run now",
+            "press",
+            "set mode",
+            "change it",
+            "force go",
+            "force go := 1 for soon",
+            "force go := 1 for 100ms",
+        ] {
             assert!(matches!(Wish::of_line(wrong), Some(Err(_))), "{wrong}");
         }
         for other in ["", "status", "go := 1", "running"] {

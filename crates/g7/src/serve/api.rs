@@ -19,7 +19,7 @@ use super::folder::{LARGEST, Wanted, Written};
 use super::refusal::Refusal;
 use super::shared::Shared;
 
-type Answer = Result<Response, Refusal>;
+pub(super) type Answer = Result<Response, Refusal>;
 
 /// Greatest number of bodies read at the same time; this bounds the memory.
 static BODIES: Semaphore = Semaphore::const_new(4);
@@ -175,7 +175,7 @@ fn wanted(headers: &HeaderMap) -> Result<Wanted, Refusal> {
     }
 }
 
-async fn json_body<T: for<'a> Deserialize<'a>>(request: Request) -> Result<T, Refusal> {
+pub(super) async fn json_body<T: for<'a> Deserialize<'a>>(request: Request) -> Result<T, Refusal> {
     let bytes = body(request).await?;
     serde_json::from_slice(&bytes).map_err(|e| Refusal::bad(format!("this request means nothing: {e}")))
 }
@@ -203,7 +203,7 @@ async fn body(request: Request) -> Result<Vec<u8>, Refusal> {
 }
 
 /// Runs work that waits for a disk on another thread, so that other requests go on.
-async fn aside<T: Send + 'static>(
+pub(super) async fn aside<T: Send + 'static>(
     work: impl FnOnce() -> Result<T, Refusal> + Send + 'static,
 ) -> Result<T, Refusal> {
     let done = tokio::task::spawn_blocking(work).await;

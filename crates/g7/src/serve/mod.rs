@@ -5,6 +5,7 @@
 //! ```text
 //! browser -> listen -> guard -> assets                          the page
 //!                            -> api  -> folder, drafts, watch   files
+//!                            -> wiring -> folder, online    io files; devices are asked
 //!                            -> live -> runs -> desk -> Page    shared runs
 //!                                <- outbox <-+
 //!                                    -> operator::Stage         a running controller (`--online`)
@@ -36,6 +37,7 @@ mod shared;
 #[cfg(test)]
 mod tests;
 mod watch;
+mod wiring;
 
 use std::net::{IpAddr, Ipv4Addr, SocketAddr};
 use std::path::{Path, PathBuf};
@@ -127,6 +129,9 @@ fn shared(
             let parent = if parent.as_os_str().is_empty() { Path::new(".") } else { parent };
             let name = name.to_string_lossy().into_owned();
             file_names::path(&name).map_err(Failure::Usage)?;
+            if file_names::is_io(&name) {
+                return Err(Failure::Usage(format!("{name} belongs to a chart: serve that one")));
+            }
             (parent.to_path_buf(), Some(name))
         }
         _ => (args.path.clone(), None),
@@ -150,6 +155,7 @@ fn shared(
         seats: Arc::new(Semaphore::new(limits.clients)),
         limits,
         station,
+        asker: wiring::Asker::new(args.host.is_loopback()),
     }))
 }
 
@@ -157,6 +163,7 @@ fn shared(
 fn app(shared: Shared, guard: Guard) -> Router {
     Router::new()
         .merge(api::routes())
+        .merge(wiring::routes())
         .route("/api/live", get(live::live))
         .fallback(get(assets::asset))
         .with_state(shared)
@@ -288,10 +295,12 @@ fn online(args: &Serve) -> Result<Verdict, Failure> {
     let open = Open::new(args, &shared)?;
     let more = More { plant: args.plant.as_deref(), ..More::default() };
     let station = station::start(&path, source, &args.drive, more)?;
-    let Some(Station { names, origin, running, sight, monitor }) = station else { return Ok(Verdict::Found) };
+    let Some(Station { names, origin, running, sight, monitor, panels }) = station else {
+        return Ok(Verdict::Found);
+    };
     open.tell(args, &shared)?;
     let stage = Stage::new(names.clone(), sight, orders);
-    Attendant::new(names).with(monitor).on(stage).changing(origin).attend(running, None)
+    Attendant::new(names).with(monitor).on(stage).at(panels).changing(origin).attend(running, None)
 }
 
 /// The address that the user opens.

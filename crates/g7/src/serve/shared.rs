@@ -18,6 +18,7 @@ use super::folder::Folder;
 use super::outbox::Outbox;
 use super::runs::Runs;
 use super::watch::Watch;
+use super::wiring::Asker;
 use crate::operator::Order;
 
 /// The limits of the server.
@@ -75,6 +76,8 @@ pub(super) struct Inner {
     pub(super) limits: Limits,
     /// The way to a running controller.
     pub(super) station: Option<SyncSender<Order>>,
+    /// The one who asks the devices of an io file.
+    pub(super) asker: Asker,
 }
 
 pub(super) type Shared = Arc<Inner>;
