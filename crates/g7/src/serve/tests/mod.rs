@@ -5,6 +5,7 @@ mod crowd;
 mod files;
 mod guard;
 mod runs;
+mod wiring;
 
 use std::fs;
 use std::net::SocketAddr;
