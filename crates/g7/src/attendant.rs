@@ -10,7 +10,7 @@ use std::time::Duration;
 use g7_engine::Addr;
 use g7_host::{Clock, Value, WallClock};
 use g7_model::Nanos;
-use g7_online::{Answer, AtDevice, Command, Controller, Happened, Mode, Paces, Running, What};
+use g7_online::{Answer, AtDevice, Command, Controller, Happened, Mode, Paces, Panels, Running, What};
 use g7_rig::Role;
 use g7_store::log::Log;
 use serde_json::{Value as Json, json};
@@ -22,7 +22,7 @@ use crate::history::{Historian, Kept};
 use crate::manager::Manager;
 use crate::message::talk;
 use crate::monitor::Monitor;
-use crate::operator::{Adopted, Asker, Changes, HELP, Names, Stage, Told, Wish, mode_text};
+use crate::operator::{Adopted, Asker, Changes, HELP, Names, Stage, Told, Wish, mode_text, operate};
 use crate::origin::Origin;
 use crate::values;
 use crate::who::Who;
@@ -58,6 +58,7 @@ pub(crate) struct Attendant {
     historian: Option<Historian>,
     stage: Option<Stage>,
     changes: Option<Changes>,
+    panels: Panels,
     asked: Vec<Asked>,
     log: Option<Log>,
     audit: Audit,
@@ -80,6 +81,7 @@ impl Attendant {
             historian: None,
             stage: None,
             changes: None,
+            panels: Panels::default(),
             asked: Vec::new(),
             log: None,
             audit: Audit::default(),
@@ -112,6 +114,11 @@ impl Attendant {
     /// Changes the chart while it runs, on request: its files are read again.
     pub(crate) fn changing(self, origin: Origin) -> Attendant {
         Attendant { changes: Some(Changes::new(origin)), ..self }
+    }
+
+    /// Moves the parts of these panels.
+    pub(crate) fn at(self, panels: Panels) -> Attendant {
+        Attendant { panels, ..self }
     }
 
     /// Takes lines that set a value as well.
@@ -181,6 +188,9 @@ impl Attendant {
             }
         }
         if let Some(stage) = &mut self.stage {
+            if stage.is_watched() {
+                self.panels.watched();
+            }
             if let Some(changes) = &mut self.changes {
                 stage.tell_file(changes.facts(&self.names, now));
             }
@@ -260,6 +270,9 @@ impl Attendant {
             let back = matches!(wish, Wish::Back { .. });
             return changes.begin(&self.names, by, back, *anyway, running);
         }
+        if let Wish::Press { .. } | Wish::Set { .. } = wish {
+            return self.operate(wish, by);
+        }
         let given = self.names.command(wish).and_then(|command| {
             let command = command.ok_or("this belongs to a page")?;
             running.command(command).ok_or_else(|| "the scan takes no commands".to_owned())
@@ -268,6 +281,16 @@ impl Attendant {
             Ok(number) => self.asked.push(Asked { number, until: self.clock.now() + PATIENCE, by }),
             Err(why) => answer(by, Err(why)),
         }
+    }
+
+    /// Moves a part of a panel.
+    fn operate(&mut self, wish: &Wish, by: Asker) {
+        let done = operate(&self.panels, &self.names, wish, &by);
+        if let Ok(Some(told)) = &done {
+            let now = self.clock.now();
+            self.note(now, told);
+        }
+        answer(by, done.map(|_| ()));
     }
 
     /// Gives the answers of the scan to those who asked.

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use g7_model::{Nanos, ProfileName};
 use g7_online::setup::Setup;
-use g7_online::{Clients, Command, KeepError, Options, RealDisk, Running, Sight, Slots, Started};
+use g7_online::{Clients, Command, KeepError, Options, Panels, RealDisk, Running, Sight, Slots, Started};
 use g7_store::log::Log;
 
 use crate::attendant::refused;
@@ -54,6 +54,7 @@ pub(crate) struct Station {
     pub(crate) running: Running,
     pub(crate) sight: Sight,
     pub(crate) monitor: Option<Monitor>,
+    pub(crate) panels: Panels,
     pub(crate) historian: Option<Historian>,
 }
 
@@ -133,7 +134,7 @@ pub(crate) fn start(
         talk!("stopped; {HELP}");
     }
     let names = Names::new(source, plan.bench, plan.wiring);
-    Ok(Some(Station { names, origin, running, sight, monitor, historian }))
+    Ok(Some(Station { names, origin, running, sight, monitor, panels: clients.panels, historian }))
 }
 
 /// Opens the file of the values that are kept, and starts the run with them.

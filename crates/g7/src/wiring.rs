@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use g7_model::{FileId, Nanos, Problem, ProfileName, Severity};
 use g7_online::Wiring;
-use g7_online::setup::{self, Channel, Origin, Setup};
+use g7_online::setup::{self, Channel, Kind, Origin, Setup};
 use g7_rig::{Bench, Options};
 
 use crate::failure::{Failure, plain};
@@ -90,7 +90,7 @@ pub(crate) fn make(
 }
 
 /// The bytes of a password, which is never in the io file.
-fn password(io: &Path, origin: &Origin) -> Result<Vec<u8>, String> {
+pub(crate) fn password(io: &Path, origin: &Origin) -> Result<Vec<u8>, String> {
     match origin {
         Origin::File(name) => {
             let path = io.with_file_name(name);
@@ -114,7 +114,15 @@ fn simulate(setup: &mut Setup, names: Option<&[String]>) -> Result<Vec<String>, 
             all.join(", ")
         )));
     }
-    let simulated = |name: &String| names.is_empty() || names.contains(name);
+    // A panel is no part of the machine: the plant does not stand for it unless it is named.
+    let panels: Vec<String> = setup
+        .devices
+        .iter()
+        .filter(|d| matches!(d.kind, Kind::Panel(_)))
+        .map(|d| d.name.value.clone())
+        .collect();
+    let simulated =
+        |name: &String| if names.is_empty() { !panels.contains(name) } else { names.contains(name) };
     let gone = |channels: &mut Vec<Channel>| -> Vec<String> {
         channels.extract_if(.., |c| simulated(&c.device.value)).map(|c| c.variable.value).collect()
     };

@@ -4,14 +4,16 @@ use std::collections::BTreeMap;
 
 use g7_engine::Addr;
 use g7_host::Kind;
-use g7_model::{Problem, Span, codes};
+use g7_model::{Nanos, Problem, Span, codes};
 use g7_rig::{Activity, Bench, Item, Role, StepItem};
 
 use crate::chosen::{self, Chosen};
 use crate::driver::Out;
 use crate::messages::{self, Carried, Refused};
+use crate::panel;
 use crate::setup::{
-    Area, At, Bad, Broker, Channel, Device, Encoding, Kind as Way, Literal, Place, Point, Register, Setup,
+    Area, At, Bad, Broker, Channel, Device, Encoding, Handle, Kind as Way, Literal, Place, Point, Register,
+    Setup,
 };
 use crate::value::{Holds, Raw, Scaling};
 use crate::wire::Wire;
@@ -230,13 +232,21 @@ impl<'a> Wirer<'a> {
         };
         let kind = self.wiring.devices.get(device).map(|d| d.device.kind.clone());
         match (&channel.point, kind) {
+            (_, Some(Way::Panel(_))) => self.panel(channel, subject, device, class),
+            (_, _) if channel.limits.first().is_some() => {
+                let at = channel.limits.first().unwrap_or(channel.at);
+                self.wrong(&codes::WRONG_CHANNEL, at, "only a number of a panel has limits");
+            }
             (Point::Good, _) => self.good(channel, subject, device, class),
             (_, Some(Way::Mqtt(broker))) => self.message(channel, subject, (device, &broker), class),
             (Point::Modbus(register), _) => self.register(channel, subject, device, *register, class),
-            (point @ (Point::Topic(_) | Point::Metric(_)), _) => {
+            (point @ (Point::Topic(_) | Point::Metric(_) | Point::Panel(_)), _) => {
                 let what = format!("`{point}` is no point of `{}`", channel.device.value);
-                self.wrong(&codes::WRONG_CHANNEL, channel.at, what).help =
-                    Some("only a broker has messages: `kind = \"mqtt\"`".to_owned());
+                let help = match point {
+                    Point::Panel(_) => "only a panel has buttons and lamps: `kind = \"panel\"`",
+                    _ => "only a broker has messages: `kind = \"mqtt\"`",
+                };
+                self.wrong(&codes::WRONG_CHANNEL, channel.at, what).help = Some(help.to_owned());
             }
         }
     }
@@ -253,6 +263,29 @@ impl<'a> Wirer<'a> {
                 let what = format!("`good()` is a BOOL that is read, and `{}` is none", subject.name);
                 self.wrong(&codes::WRONG_CHANNEL, channel.at, what);
             }
+        }
+    }
+
+    /// A part of a panel.
+    fn panel(&mut self, channel: &Channel, subject: &Subject, device: usize, class: Class) {
+        let press = match self.wiring.devices.get(device).map(|d| &d.device.kind) {
+            Some(Way::Panel(panel)) => panel.press,
+            Some(_) | None => Nanos::ZERO,
+        };
+        if channel.point == Point::Panel(Handle::Button) && press < self.bench.period {
+            let what = format!(
+                "a press of {} may fall between two scans, one each {}",
+                press.plain(),
+                self.bench.period.plain()
+            );
+            let help =
+                format!("give the panel a longer `press`: `press = \"{}\"`", self.bench.period.plain());
+            self.wrong(&codes::WRONG_CHANNEL, channel.at, what).help = Some(help);
+            return;
+        }
+        match panel::wire(channel, (&subject.name, subject.kind), class == Class::Input) {
+            Ok(wired) => self.connect(channel, subject, device, wired, class),
+            Err(Refused { at, what, help }) => self.wrong(&codes::WRONG_CHANNEL, at, what).help = help,
         }
     }
 
@@ -282,7 +315,7 @@ impl<'a> Wirer<'a> {
             // Several inputs may read one topic.
             Wire::Topic(topic) => (class != Class::Input).then(|| topic.name.clone()),
             Wire::Metric(name) => Some(name.clone()),
-            Wire::Modbus(_) => None,
+            Wire::Modbus(_) | Wire::Panel(_) => None,
         };
         let will = matches!(&wire, Wire::Topic(topic) if topic.will).then(|| WILL.to_owned());
         for place in place.into_iter().chain(will) {
@@ -297,7 +330,9 @@ impl<'a> Wirer<'a> {
     fn is_unused(&mut self, channel: &Channel, item: &Subject, device: usize, place: String) -> bool {
         let of = |k: usize| match self.wiring.devices.get(k).map(|d| &d.device.kind) {
             Some(Way::Mqtt(broker)) => Some((&broker.host, broker.port, &broker.sparkplug)),
-            Some(Way::ModbusTcp(..) | Way::ModbusRtu(..) | Way::ModbusServer(_)) | None => None,
+            Some(Way::ModbusTcp(..) | Way::ModbusRtu(..) | Way::ModbusServer(_) | Way::Panel(_)) | None => {
+                None
+            }
         };
         // Two clients of one broker publish to the same topics, but each has a will of its own.
         let first = (0..device).find(|k| of(*k) == of(device)).unwrap_or(device);

@@ -133,12 +133,24 @@ class Server implements Answers {
 
   /** Renames, deletes or creates a file. */
   async change(what: 'rename' | 'delete' | 'new', body: Record<string, string>): Promise<void> {
-    const answer = await this.#fetch(`api/${what}`, {
-      method: 'POST',
-      headers: { 'content-type': 'application/json' },
-      body: JSON.stringify(body),
-    });
-    await this.#ok(answer);
+    await this.#ok(await this.#post(`api/${what}`, body));
+  }
+
+  async #post(path: string, body: unknown): Promise<Response> {
+    return this.#fetch(path, { method: 'POST', headers: { 'content-type': 'application/json' }, body: JSON.stringify(body) });
+  }
+
+  /** Asks for the wiring of a chart, or for the values at its devices. */
+  async wiring<T>(what: 'look' | 'live', chart: { path: string; text: string }): Promise<T> {
+    return (await (await this.#ok(await this.#post(`api/wiring/${what}`, chart))).json()) as T;
+  }
+
+  /** Changes the io file of a chart. Where it has changed since it was read, nothing is done; both times
+   * the present wiring comes back. */
+  async wiringEdit<T>(body: unknown): Promise<{ done: boolean; told: T }> {
+    const answer = await this.#post('api/wiring/edit', body);
+    if (answer.status !== 412) await this.#ok(answer);
+    return { done: answer.ok, told: (await answer.json()) as T };
   }
 
   /** Asks the server for an answer in JSON. */

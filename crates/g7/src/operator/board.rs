@@ -3,16 +3,19 @@
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
 use std::path::Path;
 
+use g7_engine::State as Image;
 use g7_host::Value as Word;
 use g7_model::Nanos;
 use g7_online::{
-    FORCES, Forced, Happened, LONGEST, Mode, Paces, Quality, Sight, Spread, Target, USUAL, WhileBad,
+    FORCES, Forced, Happened, LONGEST, Mode, Paces, Quality, Sight, Spread, Target, USUAL, WhileBad, Wire,
 };
-use g7_page::Places;
+use g7_page::{Places, Show};
 use g7_rig::{Activity, Item, Role, values};
 use serde_json::{Map, Value, json};
 
 use super::names::{Known, Names};
+use super::panel;
+use super::picture::View;
 use super::told::{Level, Told, reason_json};
 
 /// Events that are kept for the page.
@@ -81,6 +84,9 @@ pub(super) struct Board {
     /// The parts of a frame that every watcher has.
     sent: Map<String, Value>,
     sent_values: Vec<(String, &'static str)>,
+    /// The state of the picture of a machine, and its values as every watcher has them.
+    picture: Option<Image>,
+    sent_view: Vec<Show>,
     /// How the chart and its file are to each other.
     file: Value,
 }
@@ -91,6 +97,7 @@ impl Board {
             devices: vec![State::default(); names.wiring.devices.len()],
             places: Places::new(&names.source, &names.bench),
             rows: rows(&names),
+            picture: names.view.as_ref().and_then(View::state),
             names,
             sight,
             mode: (Mode::Stop, Nanos::ZERO),
@@ -99,6 +106,7 @@ impl Board {
             seen: Nanos::ZERO,
             sent: Map::new(),
             sent_values: Vec::new(),
+            sent_view: Vec::new(),
             file: json!({ "differs": false, "back": false, "busy": false }),
         }
     }
@@ -107,9 +115,11 @@ impl Board {
     pub(super) fn renew(&mut self, names: Names, sight: Sight) {
         self.places = Places::new(&names.source, &names.bench);
         self.rows = rows(&names);
+        self.picture = names.view.as_ref().and_then(View::state);
         (self.names, self.sight) = (names, sight);
         self.sent.clear();
         self.sent_values.clear();
+        self.sent_view.clear();
     }
 
     pub(super) fn tell_file(&mut self, facts: Value) {
@@ -188,7 +198,7 @@ impl Board {
 
     /// The names of all that frames have numbers for.
     pub(super) fn description(&self) -> Value {
-        let Known { source, bench, wiring } = &*self.names;
+        let Known { source, bench, wiring, view } = &*self.names;
         let steps = bench.steps.iter().zip(self.places.steps()).map(|(step, id)| {
             let chart = id.split_once("/s/").map_or("", |(chart, _)| chart);
             let is_macro = matches!(step.id, Activity::Macro(_));
@@ -209,6 +219,7 @@ impl Board {
             "steps": steps.collect::<Vec<_>>(),
             "transitions": self.places.transitions(),
             "devices": devices.collect::<Vec<_>>(),
+            "picture": view.as_ref().and_then(|view| view.json(bench)),
             "force": { "usual_s": seconds(USUAL), "longest_s": seconds(LONGEST), "most": FORCES },
         })
     }
@@ -222,17 +233,13 @@ impl Board {
             Role::Variable | Role::Plant => "variable",
         };
         let address = bench.compiled.symbols.variable(&item.name).and_then(|v| v.address.as_deref());
-        let (device, point) = match row.point {
-            At::Input(device, k, _) => {
-                let point = self.names.wired(device)?.inputs.get(k)?.wire.to_string();
-                (Some(self.names.device(device)), Some(point))
-            }
-            At::Output(device, k) => {
-                let point = self.names.wired(device)?.outputs.get(k)?.wire.to_string();
-                (Some(self.names.device(device)), Some(point))
-            }
+        let (device, wire) = match row.point {
+            At::Input(device, k, _) => (Some(device), Some(&self.names.wired(device)?.inputs.get(k)?.wire)),
+            At::Output(device, k) => (Some(device), Some(&self.names.wired(device)?.outputs.get(k)?.wire)),
             At::Good | At::Plant | At::Free | At::Inside => (None, None),
         };
+        let part =
+            wire.and_then(|wire| if let Wire::Panel(part) = wire { Some(panel::json(part)) } else { None });
         Some(json!({
             "name": item.name,
             "role": role,
@@ -240,8 +247,9 @@ impl Board {
             "type": item.ty.to_string(),
             "comment": item.comment,
             "address": address,
-            "device": device,
-            "point": point,
+            "device": device.map(|device| self.names.device(device)),
+            "point": wire.map(ToString::to_string),
+            "panel": part,
             "forcible": bench.force_of(item).is_some(),
         }))
     }
@@ -263,12 +271,27 @@ impl Board {
         if !values.is_empty() {
             frame.insert("values".to_owned(), json!(values));
         }
+        let view = self.view(full);
+        if !view.is_empty() {
+            frame.insert("view".to_owned(), json!(view));
+        }
         frame.insert("now".to_owned(), json!(seconds(self.sight.now())));
         // The age of all this: a controller that shows nothing any more is not alive.
         frame.insert("age".to_owned(), json!(seconds(now - self.seen)));
         frame.insert("full".to_owned(), json!(full));
         self.sent_values = cells;
         Value::Object(frame)
+    }
+
+    /// The parts of the picture that have moved, or all.
+    fn view(&mut self, full: bool) -> Vec<(u32, Show)> {
+        let Some(view) = &self.names.view else { return Vec::new() };
+        let now = view.values(&self.names.bench, &mut self.sight, self.picture.as_mut());
+        let moved = |k: usize, value: &Show| full || self.sent_view.get(k) != Some(value);
+        let all = (0u32..).zip(&now).filter(|(k, value)| moved(*k as usize, value));
+        let moved = all.map(|(k, value)| (k, value.clone())).collect();
+        self.sent_view = now;
+        moved
     }
 
     /// The parts of a frame that are sent as a whole.

@@ -107,6 +107,11 @@ impl Stage {
         Some(None)
     }
 
+    /// True while a page watches.
+    pub(crate) fn is_watched(&self) -> bool {
+        self.watchers.iter().any(|watcher| watcher.strong_count() > 0)
+    }
+
     /// A whole frame. What it tells counts as sent, so the watchers get their changes first.
     fn whole(&mut self, now: Nanos, paces: &Paces, but: Option<&Arc<Outbox>>) -> Value {
         self.board.look(now);

@@ -22,6 +22,8 @@ pub(crate) enum Told {
     Ended(Force),
     /// It goes on with another chart: that before the latest change, or a new one; and what was lost.
     Changed { back: bool, lost: Vec<String> },
+    /// A part of a panel was pressed, or set to a value; and by whom, where that is known.
+    Moved { name: String, value: Option<String>, who: Option<String> },
     /// Something happened at a device, by number.
     Device(usize, Happened),
     /// The scan has no priority, and why.
@@ -71,6 +73,7 @@ impl Told {
             | Told::Forced(_)
             | Told::Released(_)
             | Told::Changed { .. }
+            | Told::Moved { .. }
             | Told::NoPriority(_)
             | Told::Recorded(0)
             | Told::Device(..) => Level::Note,
@@ -111,6 +114,10 @@ impl Told {
             Told::Changed { back, lost } => {
                 json!({ "kind": if *back { "back" } else { "changed" }, "why": lost.join("; ") })
             }
+            Told::Moved { name, value: None, who } => json!({ "kind": "pressed", "name": name, "who": who }),
+            Told::Moved { name, value, who } => {
+                json!({ "kind": "set", "name": name, "value": value, "who": who })
+            }
             Told::NoPriority(why) => json!({ "kind": "no-priority", "why": why }),
             Told::Unsaved(why) => json!({ "kind": "unsaved", "why": why }),
             Told::Unrecorded(why) => json!({ "kind": "unrecorded", "why": why }),
@@ -138,6 +145,13 @@ impl Told {
                 let lost =
                     if lost.is_empty() { String::new() } else { format!("; lost: {}", lost.join("; ")) };
                 format!("goes on with {which}{lost}")
+            }
+            Told::Moved { name, value, who } => {
+                let deed = match value {
+                    None => format!("`{name}` is pressed"),
+                    Some(value) => format!("`{name}` is set to {value}"),
+                };
+                who.as_ref().map_or_else(|| deed.clone(), |who| format!("{deed}, by {who}"))
             }
             Told::NoPriority(why) => format!("{warn}note:{warn:#} {why}"),
             Told::Unsaved(why) => format!("{bad}values cannot be saved:{bad:#} {why}"),

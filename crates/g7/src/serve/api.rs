@@ -24,7 +24,7 @@ use crate::who::Who;
 const SMALL: usize = 8 << 10;
 const SMALL_SLOWEST: Duration = Duration::from_secs(5);
 
-type Answer = Result<Response, Refusal>;
+pub(super) type Answer = Result<Response, Refusal>;
 
 /// Greatest number of bodies read at the same time; this bounds the memory.
 static BODIES: Semaphore = Semaphore::const_new(4);
@@ -74,7 +74,7 @@ async fn read(State(shared): State<Shared>, Query(at): Query<At>) -> Answer {
 }
 
 /// The deed of a person at a file, in the log before it is done.
-fn told(shared: &Inner, who: &Who, kind: &str, data: &Value) -> Result<(), Refusal> {
+pub(super) fn told(shared: &Inner, who: &Who, kind: &str, data: &Value) -> Result<(), Refusal> {
     let unwritten = |why| Refusal::new(StatusCode::INSUFFICIENT_STORAGE, why);
     shared.audit.must(who, kind, data).map_err(unwritten)
 }
@@ -203,7 +203,7 @@ fn wanted(headers: &HeaderMap) -> Result<Wanted, Refusal> {
     }
 }
 
-async fn json_body<T: for<'a> Deserialize<'a>>(request: Request) -> Result<T, Refusal> {
+pub(super) async fn json_body<T: for<'a> Deserialize<'a>>(request: Request) -> Result<T, Refusal> {
     let bytes = body(request).await?;
     serde_json::from_slice(&bytes).map_err(|e| Refusal::bad(format!("this request means nothing: {e}")))
 }

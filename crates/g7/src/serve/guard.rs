@@ -76,6 +76,8 @@ fn needed(method: &Method, path: &str) -> Option<Role> {
         (&Method::GET, "/api/history" | "/api/history/lanes" | "/api/history/export") => Role::Viewer,
         (_, "/api/logout" | "/api/password") => Role::Viewer,
         (&Method::GET, "/api/log") => Role::Operator,
+        (&Method::POST, "/api/wiring/look") => Role::Viewer,
+        (&Method::POST, "/api/wiring/edit" | "/api/wiring/live") => Role::Engineer,
         (_, "/api/file" | "/api/new" | "/api/rename" | "/api/delete" | "/api/draft") => Role::Engineer,
         _ => Role::Admin,
     })
@@ -308,6 +310,8 @@ mod tests {
             (Method::PUT, "/api/file", Some(Role::Engineer)),
             (Method::GET, "/api/log", Some(Role::Operator)),
             (Method::GET, "/api/history/export", Some(Role::Viewer)),
+            (Method::POST, "/api/wiring/look", Some(Role::Viewer)),
+            (Method::POST, "/api/wiring/live", Some(Role::Engineer)),
             (Method::POST, "/api/history", Some(Role::Admin)),
             (Method::GET, "/api/users", Some(Role::Admin)),
             (Method::GET, "/api/new/thing", Some(Role::Admin)),

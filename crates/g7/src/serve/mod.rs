@@ -6,6 +6,7 @@
 //! browser -> listen -> guard -> assets                          the page
 //!             (tls)     |    -> entry -> access                  login, users, the log
 //!                    access  -> api  -> folder, drafts, watch   files
+//!                            -> wiring -> folder, online        io files; devices are asked
 //!                            -> history -> store                the history of a controller
 //!                            -> live -> runs -> desk -> Page    shared runs
 //!                                <- outbox <-+
@@ -47,6 +48,7 @@ mod tests;
 mod throttle;
 mod tls;
 mod watch;
+mod wiring;
 
 use std::net::{IpAddr, Ipv4Addr, SocketAddr};
 use std::path::{Path, PathBuf};
@@ -156,6 +158,9 @@ fn shared(
             let parent = if parent.as_os_str().is_empty() { Path::new(".") } else { parent };
             let name = name.to_string_lossy().into_owned();
             file_names::path(&name).map_err(Failure::Usage)?;
+            if file_names::is_io(&name) {
+                return Err(Failure::Usage(format!("{name} belongs to a chart: serve that one")));
+            }
             (parent.to_path_buf(), Some(name))
         }
         _ => (args.path.clone(), None),
@@ -183,6 +188,7 @@ fn shared(
         audit: rules.audit.clone(),
         log: rules.log.clone(),
         history: OnceLock::new(),
+        asker: wiring::Asker::new(rules.host.is_loopback()),
     }))
 }
 
@@ -192,6 +198,7 @@ fn app(shared: Shared, guard: Guard) -> Router {
         .merge(api::routes())
         .merge(entry::routes())
         .merge(history::routes())
+        .merge(wiring::routes())
         .route("/api/live", get(live::live))
         .fallback(get(assets::asset))
         .with_state(shared)
@@ -349,7 +356,7 @@ fn online(args: &Serve) -> Result<Verdict, Failure> {
     let open = Open::new(&shared, &rules)?;
     let more = More { plant: args.plant.as_deref(), ..More::default() };
     let station = station::start(&path, source, &args.drive, more)?;
-    let Some(Station { names, origin, running, sight, monitor, historian }) = station else {
+    let Some(Station { names, origin, running, sight, monitor, panels, historian }) = station else {
         return Ok(Verdict::Found);
     };
     if let Some(historian) = &historian {
@@ -359,7 +366,7 @@ fn online(args: &Serve) -> Result<Verdict, Failure> {
     open.tell(args, &shared, &rules)?;
     let stage = Stage::new(names.clone(), sight, orders);
     let attendant = Attendant::new(names).with(monitor).logging(log, audit).recording(historian);
-    attendant.on(stage).changing(origin).attend(running, None)
+    attendant.on(stage).at(panels).changing(origin).attend(running, None)
 }
 
 /// The address that the user opens.

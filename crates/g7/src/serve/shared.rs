@@ -18,6 +18,7 @@ use super::outbox::Outbox;
 use super::places::Places;
 use super::runs::Runs;
 use super::watch::Watch;
+use super::wiring::Asker;
 use crate::audit::Audit;
 use crate::operator::Order;
 
@@ -91,6 +92,8 @@ pub(super) struct Inner {
     pub(super) log: Option<PathBuf>,
     /// The record of that controller.
     pub(super) history: OnceLock<PathBuf>,
+    /// The one who asks the devices of an io file.
+    pub(super) asker: Asker,
 }
 
 pub(super) type Shared = Arc<Inner>;

@@ -20,8 +20,12 @@
 //! Reading knows nothing of a chart; `wiring` holds the two together.
 
 mod broker;
+pub mod catalogue;
 mod device;
+mod edit;
 mod history;
+mod outline;
+mod panel;
 mod point;
 mod server;
 mod table;
@@ -35,8 +39,11 @@ pub(crate) use broker::publishable;
 pub use broker::{Broker, Message, Origin, Password, Secret, Sparkplug};
 pub(crate) use device::SERVER;
 pub use device::{Device, Kind, Listen, Modbus, Parity, Serial, Tcp, Timing};
+pub use edit::{Change, Plain, Uneditable, edit};
 pub use history::History;
 pub(crate) use history::SIGNALS;
+pub use outline::{Entry, outline};
+pub use panel::{Handle, Limits, Panel};
 pub use point::{Area, Encoding, Place, Point, Register};
 pub use server::{LogFile, Server};
 pub use table::At;
@@ -155,6 +162,8 @@ pub struct Channel {
     pub bad: At<Bad>,
     /// How the messages of a topic are used.
     pub message: Message,
+    /// The numbers that a person can enter on a panel.
+    pub limits: Limits,
 }
 
 /// Reads an io file. What is wrong is left out and told.
@@ -190,7 +199,7 @@ pub fn read_passwords(
 ) -> Vec<Problem> {
     let brokers = setup.devices.iter_mut().filter_map(|device| match &mut device.kind {
         Kind::Mqtt(broker) => Some(broker.as_mut()),
-        Kind::ModbusTcp(..) | Kind::ModbusRtu(..) | Kind::ModbusServer(_) => None,
+        Kind::ModbusTcp(..) | Kind::ModbusRtu(..) | Kind::ModbusServer(_) | Kind::Panel(_) => None,
     });
     broker::read_passwords(brokers, from)
 }
@@ -269,6 +278,7 @@ fn channel(row: &Row<'_>, input: bool, found: &mut Found) -> Option<Channel> {
             offset: None,
             bad,
             message,
+            limits: Limits::default(),
         });
     }
     let Some(table) = row.value.as_table() else {
@@ -281,6 +291,7 @@ fn channel(row: &Row<'_>, input: bool, found: &mut Found) -> Option<Channel> {
     let encoding = table.word(found, "as", Encoding::WORDS);
     let (scale, offset) = (table.number(found, "scale"), table.number(found, "offset"));
     let message = broker::message(&mut table, input, found);
+    let limits = if input { panel::limits(&mut table, found) } else { Limits::default() };
     let bad = if input { table.value(found, "bad") } else { None };
     let bad = match bad {
         None => At::new(Bad::Hold, row.at),
@@ -293,7 +304,7 @@ fn channel(row: &Row<'_>, input: bool, found: &mut Found) -> Option<Channel> {
     table.end(found);
     let text = text?;
     let (device, point) = point::read(&text.value, text.at, found)?;
-    Some(Channel { variable, device, point, at: text.at, encoding, scale, offset, bad, message })
+    Some(Channel { variable, device, point, at: text.at, encoding, scale, offset, bad, message, limits })
 }
 
 /// Reads the policy for an input whose value is bad.

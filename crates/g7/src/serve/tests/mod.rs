@@ -6,6 +6,7 @@ mod files;
 mod guard;
 mod runs;
 mod users;
+mod wiring;
 
 use std::fs;
 use std::net::SocketAddr;
