@@ -99,7 +99,7 @@ test('users come in by role, see what they lack, and are put out', async () => {
   // The admin ends the session.
   await button(ana, 'Close').click();
   await button(ana, 'Users').click();
-  await button(ana, 'End the sessions of vi').click();
+  await button(ana, 'End sessions: vi').click();
   await vi.getByRole('heading', { name: 'Log in' }).waitFor();
   await button(ana, 'Remove vi').click();
   await button(ana, 'Press again to remove vi').click();

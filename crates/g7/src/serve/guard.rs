@@ -164,7 +164,7 @@ impl Guard {
             return Err(self.foreign(request, "site"));
         }
         let Some(role) = needed(request.method(), path) else {
-            return Ok(self.known(request)?);
+            return self.known(request);
         };
         let Some(who) = self.known(request)? else {
             let what = match self.pass {
