@@ -151,7 +151,11 @@ pub(crate) fn pen(table: Table) -> (Pen, Notes, Sender<Table>) {
     let (give, tables) = channel();
     // The receiver is in this function.
     give.send(table).ok();
-    (Pen { notes, begins: true, lost: 0, due: Nanos::ZERO }, Notes { notes: taken, tables, present: None }, give)
+    (
+        Pen { notes, begins: true, lost: 0, due: Nanos::ZERO },
+        Notes { notes: taken, tables, present: None },
+        give,
+    )
 }
 
 impl Pen {
