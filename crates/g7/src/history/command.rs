@@ -237,7 +237,7 @@ fn list(asked: &Asked<'_>) -> Result<(), Failure> {
     let lost: u64 = gone.map(|span| span.lost).sum();
     for span in &overview.spans {
         let start = span.start.max(overview.from);
-        let long = Nanos::SECOND * (span.stop.saturating_sub(start) / 1_000_000);
+        let long = Nanos::from_millis(span.stop.saturating_sub(start) / 1_000);
         let lost =
             if span.lost > 0 { format!("  {} changes were lost before", span.lost) } else { String::new() };
         writeln!(out, "{} to {}  {}{lost}", shown(start), shown(span.stop), long.plain())?;

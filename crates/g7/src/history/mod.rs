@@ -22,5 +22,5 @@ pub(crate) mod time;
 pub(crate) use command::{History, history};
 pub(crate) use historian::{Historian, Kept, open};
 #[cfg(feature = "parquet")]
-pub(crate) use parquet::Parquet;
+pub(crate) use self::parquet::Parquet;
 pub(crate) use rows::{Broken, Csv, Sink, rows};

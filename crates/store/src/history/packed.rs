@@ -1,5 +1,5 @@
 //! Changes of one signal in a row, packed: the time since the change before, then the value against the one
-//! before. A change of a BOOL has two or three bytes, one of a number a few more.
+//! before. A change of a BOOL has three or four bytes, one of a number a few more.
 
 use g7_host::{Kind, Value};
 
