@@ -130,10 +130,10 @@ test('a panel is operated, and a button is let go when its page dies', async () 
     await picture.getByText('Dimmed: the machine has no sensor for it.').waitFor();
     const dimmed = () => other.evaluate(() => [...document.querySelectorAll('.picture')].flatMap((e) => [...(e.shadowRoot?.querySelectorAll<SVGElement>('.g7-unknown') ?? [])].map((e) => e.dataset.g7)));
     await until(async () => (await dimmed()).join() === 'bubbles', 'what is not measured');
-    await panel(other).getByLabel('Amount, litres').fill('20');
+    await panel(other).getByLabel('Amount, litres', { exact: true }).fill('20');
     await panel(other).getByRole('button', { name: 'Enter Amount, litres' }).click();
     await panel(other).locator('.lamp.red.on').waitFor();
-    await panel(other).getByLabel('Amount, litres').fill('200');
+    await panel(other).getByLabel('Amount, litres', { exact: true }).fill('200');
     await panel(other).getByRole('button', { name: 'Enter Amount, litres' }).click();
     await other.getByText('the number must be from 0 to 100').waitFor();
     const events = await other.getByRole('region', { name: 'Alarms and events' }).innerText();
