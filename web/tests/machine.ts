@@ -111,7 +111,9 @@ plant Tank {
 }
 `;
 
-const DESK_IO = `[devices.desk]
+const DESK_IO = `[controller]
+watchdog = "10s"
+[devices.desk]
 kind = "panel"
 [inputs]
 mode = "desk.choice(A1, F1, F4, D1)"

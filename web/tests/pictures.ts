@@ -204,7 +204,7 @@ async function panel(b: Browser): Promise<void> {
   try {
     const page = await open(b, { url: machine.url, stop: async () => undefined }, undefined, { width: 1280, height: 860 });
     const desk = page.getByRole('region', { name: 'Panel desk' });
-    await desk.getByText('normal production').click();
+    await desk.getByRole('radio', { name: /F1/ }).click();
     await desk.getByRole('radio', { name: /F1/, checked: true }).waitFor();
     await desk.getByRole('button', { name: 'Start' }).hover();
     await page.mouse.down();
