@@ -162,11 +162,17 @@ soak: export G7_SEEDS = $(SEEDS)
 soak:
 	cargo test --package g7-online --test simulation
 
+# The packages that have tests of faults, which are called `row_...`.
+FAULTY := g7 g7-online g7-store
+
 ## faults around a controller on line, each hundreds of times: what held, and how long it took
 faults: export G7_FAULTS = many
 faults: export G7_PEERS = $(PYTHON)
+faults: export G7_FAULT_ROWS = $(TALLY)/faults
 faults: $(PYTHON)/bin/pymodbus.simulator
-	cargo test --package g7 --test faults -- --nocapture --test-threads 1
+	@mkdir -p $(TALLY) && rm -f $(G7_FAULT_ROWS) && touch $(G7_FAULT_ROWS)
+	cargo test $(FAULTY:%=--package %) --tests -- row_ --nocapture --test-threads 1
+	@cargo run --quiet --package g7-peers --bin faults -- $(G7_FAULT_ROWS)
 
 ## the book, as HTML in docs/book/book, with every conformance case as a page
 book:

@@ -7,6 +7,7 @@
 #![forbid(unsafe_code)]
 #![allow(clippy::disallowed_methods, reason = "tests look at the machine that they run on")]
 
+pub mod faults;
 pub mod tally;
 
 use std::io::Write as _;
@@ -28,10 +29,14 @@ pub fn skip(why: &str) {
     note(Path::new(&file), why, test).unwrap_or_else(|e| panic!("{}: {e}", file.display()));
 }
 
-/// One call writes the whole line, so that tests that run side by side do not mix.
 fn note(file: &Path, why: &str, test: &str) -> std::io::Result<()> {
+    append(file, &format!("{why}\t{test}\n"))
+}
+
+/// One call writes the whole line, so that tests that run side by side do not mix.
+fn append(file: &Path, line: &str) -> std::io::Result<()> {
     let mut file = std::fs::OpenOptions::new().create(true).append(true).open(file)?;
-    file.write_all(format!("{why}\t{test}\n").as_bytes())
+    file.write_all(line.as_bytes())
 }
 
 /// A folder of the corpus (`""` for all of it), which stands at `G7_CORPUS`, else at
