@@ -5,7 +5,17 @@
 //! for each. Times are printed and not judged, but for the limits that the program itself promises.
 #![allow(clippy::disallowed_methods, reason = "programs run beside each other, in real time")]
 
+#[path = "faults/clock.rs"]
+mod clock;
 mod common;
+#[path = "faults/crowd.rs"]
+mod crowd;
+#[path = "faults/disk.rs"]
+mod disk;
+#[path = "faults/load.rs"]
+mod load;
+#[path = "faults/soak.rs"]
+mod soak;
 
 use std::io::{Read as _, Write as _};
 use std::net::{TcpListener, TcpStream};
@@ -55,7 +65,7 @@ fn row_1_a_controller_that_is_killed_goes_on_with_what_it_had_saved() {
         std::thread::sleep(Duration::from_millis(90 + u64::from(k * 37 % 170)));
         g7.signal("KILL");
         drop(g7);
-        let now = saved(&folder);
+        let now = saved(&folder.path("kept"));
         assert!(now >= before, "{now} after {before} in trial {k}");
         before = now;
     }
@@ -63,9 +73,9 @@ fn row_1_a_controller_that_is_killed_goes_on_with_what_it_had_saved() {
     row(1, "", count.into(), 0, format!("whole each time; start to RUN {times}"));
 }
 
-/// The value of `n` in the file of the kept values: that of the newest whole slot.
-fn saved(folder: &Folder) -> u64 {
-    let bytes = std::fs::read(folder.path("kept")).expect("it was laid out at the start");
+/// The value of `n`, the one retained variable, in the file of the kept values: that of the newest whole slot.
+fn saved(file: &std::path::Path) -> u64 {
+    let bytes = std::fs::read(file).expect("it was laid out at the start");
     let slots = bytes.chunks(bytes.len() / 2).filter_map(|slot| {
         let number = |at: usize| Some(u64::from_le_bytes(*slot.get(at..)?.first_chunk()?));
         let length = (number(8)? >> 32) as usize;

@@ -42,6 +42,9 @@ enum At {
     Inside,
 }
 
+/// The value of a row as it is shown, and its quality.
+type Cell = (String, &'static str);
+
 /// A device as the page shows it.
 #[derive(Clone, Default)]
 struct State {
@@ -80,7 +83,7 @@ pub(super) struct Board {
     seen: Nanos,
     /// The parts of a frame that every watcher has.
     sent: Map<String, Value>,
-    sent_values: Vec<(String, &'static str)>,
+    sent_values: Vec<Cell>,
     /// How the chart and its file are to each other.
     file: Value,
 }
@@ -246,20 +249,42 @@ impl Board {
         }))
     }
 
-    /// The next frame: what has changed since the one before, or all.
-    pub(super) fn frame(&mut self, now: Nanos, paces: &Paces, full: bool) -> Value {
-        let cells: Vec<(String, &'static str)> = self.rows.iter().map(|row| self.cell(row)).collect();
-        let changed = (0u32..)
-            .zip(&cells)
-            .filter(|(k, cell)| full || self.sent_values.get(*k as usize).is_none_or(|sent| sent != *cell));
-        let values: Vec<Value> = changed.map(|(k, (text, quality))| json!([k, text, quality])).collect();
-        let mut frame = Map::new();
+    /// All that there is. It does not count as sent: the next frame has the changes for those who watch already.
+    pub(super) fn whole(&self, now: Nanos, paces: &Paces) -> Value {
+        let cells = self.cells();
+        let parts = self.parts(paces).map(|(key, part)| (key.to_owned(), part)).into_iter().collect();
+        self.framed(now, parts, (0..).zip(&cells), true)
+    }
+
+    /// The next frame: what has changed since the one before.
+    pub(super) fn frame(&mut self, now: Nanos, paces: &Paces) -> Value {
+        let cells = self.cells();
+        let mut parts = Map::new();
         for (key, part) in self.parts(paces) {
-            if full || self.sent.get(key) != Some(&part) {
-                frame.insert(key.to_owned(), part.clone());
+            if self.sent.get(key) != Some(&part) {
+                parts.insert(key.to_owned(), part.clone());
+                self.sent.insert(key.to_owned(), part);
             }
-            self.sent.insert(key.to_owned(), part);
         }
+        let is_sent = |k: u32, cell: &Cell| self.sent_values.get(k as usize).is_some_and(|sent| sent == cell);
+        let changed = (0..).zip(&cells).filter(|(k, cell)| !is_sent(*k, *cell));
+        let frame = self.framed(now, parts, changed, false);
+        self.sent_values = cells;
+        frame
+    }
+
+    fn cells(&self) -> Vec<Cell> {
+        self.rows.iter().map(|row| self.cell(row)).collect()
+    }
+
+    fn framed<'c>(
+        &self,
+        now: Nanos,
+        mut frame: Map<String, Value>,
+        cells: impl Iterator<Item = (u32, &'c Cell)>,
+        full: bool,
+    ) -> Value {
+        let values: Vec<Value> = cells.map(|(k, (text, quality))| json!([k, text, quality])).collect();
         if !values.is_empty() {
             frame.insert("values".to_owned(), json!(values));
         }
@@ -267,7 +292,6 @@ impl Board {
         // The age of all this: a controller that shows nothing any more is not alive.
         frame.insert("age".to_owned(), json!(seconds(now - self.seen)));
         frame.insert("full".to_owned(), json!(full));
-        self.sent_values = cells;
         Value::Object(frame)
     }
 

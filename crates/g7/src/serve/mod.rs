@@ -33,6 +33,7 @@ mod refusal;
 mod registry;
 mod runs;
 mod shared;
+mod system;
 #[cfg(test)]
 mod tests;
 mod watch;
@@ -218,7 +219,12 @@ struct Open {
 impl Open {
     /// Listens, and answers from here on.
     fn new(args: &Serve, shared: &Shared) -> Result<Open, Failure> {
-        let runtime = tokio::runtime::Builder::new_multi_thread().enable_all().worker_threads(2).build();
+        system::room_for(shared.limits.clients);
+        let mut threads = tokio::runtime::Builder::new_multi_thread();
+        if shared.station.is_some() {
+            threads.on_thread_start(system::step_back);
+        }
+        let runtime = threads.enable_all().worker_threads(2).build();
         let runtime = runtime.map_err(|e| Failure::Usage(format!("the server cannot start: {e}")))?;
         let listener = runtime.block_on(bind(args))?;
         let (bound, token) = (listener.local_addr()?, token()?);
