@@ -2,6 +2,7 @@
 //! events go to the standard error and to the page.
 
 use std::io::BufRead as _;
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, channel};
@@ -175,8 +176,16 @@ impl Attendant {
         Ok(if matches!(self.mode, Mode::Fault(_)) { Verdict::Found } else { Verdict::Fine })
     }
 
-    /// Does what the pages want and shows them what there is.
+    /// Does what the pages want and shows them what there is. An error of G7 in this ends the pages; the
+    /// machine goes on, and the terminal commands it.
     fn serve(&mut self, running: &mut Running) {
+        if catch_unwind(AssertUnwindSafe(|| self.show(running))).is_err() {
+            self.stage = None;
+            talk!("{} the page ended by an error of G7; the controller goes on", self.time());
+        }
+    }
+
+    fn show(&mut self, running: &mut Running) {
         let now = self.clock.now();
         // However many orders come, the events are looked at.
         for _ in 0..ORDERS {

@@ -83,7 +83,7 @@ mod tests {
             assert_eq!(show(seconds * 1_000_000), text);
             assert_eq!(read(text), Some(seconds * 1_000_000), "{text}");
         }
-        for k in 0..200_000 {
+        for k in 0..200_000_i64 {
             let at = k * 1_234_567_890_123 - 100_000_000_000_000_000;
             if (0..9999).contains(&date(at.div_euclid(DAY)).0) {
                 assert_eq!(read(&show(at)), Some(at), "{}", show(at));

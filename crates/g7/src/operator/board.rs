@@ -45,6 +45,9 @@ enum At {
     Inside,
 }
 
+/// The value of a row as it is shown, and its quality.
+type Cell = (String, &'static str);
+
 /// A device as the page shows it.
 #[derive(Clone, Default)]
 struct State {
@@ -83,7 +86,7 @@ pub(super) struct Board {
     seen: Nanos,
     /// The parts of a frame that every watcher has.
     sent: Map<String, Value>,
-    sent_values: Vec<(String, &'static str)>,
+    sent_values: Vec<Cell>,
     /// The state of the picture of a machine, and its values as every watcher has them.
     picture: Option<Image>,
     sent_view: Vec<Show>,
@@ -254,24 +257,48 @@ impl Board {
         }))
     }
 
-    /// The next frame: what has changed since the one before, or all.
-    pub(super) fn frame(&mut self, now: Nanos, paces: &Paces, full: bool) -> Value {
-        let cells: Vec<(String, &'static str)> = self.rows.iter().map(|row| self.cell(row)).collect();
-        let changed = (0u32..)
-            .zip(&cells)
-            .filter(|(k, cell)| full || self.sent_values.get(*k as usize).is_none_or(|sent| sent != *cell));
-        let values: Vec<Value> = changed.map(|(k, (text, quality))| json!([k, text, quality])).collect();
-        let mut frame = Map::new();
+    /// All that there is. It does not count as sent: the next frame has the changes for those who watch already.
+    pub(super) fn whole(&mut self, now: Nanos, paces: &Paces) -> Value {
+        let (cells, view) = (self.cells(), self.view());
+        let parts = self.parts(paces).map(|(key, part)| (key.to_owned(), part)).into_iter().collect();
+        self.framed(now, parts, (0..).zip(&cells), (0..).zip(&view), true)
+    }
+
+    /// The next frame: what has changed since the one before.
+    pub(super) fn frame(&mut self, now: Nanos, paces: &Paces) -> Value {
+        let (cells, view) = (self.cells(), self.view());
+        let mut parts = Map::new();
         for (key, part) in self.parts(paces) {
-            if full || self.sent.get(key) != Some(&part) {
-                frame.insert(key.to_owned(), part.clone());
+            if self.sent.get(key) != Some(&part) {
+                parts.insert(key.to_owned(), part.clone());
+                self.sent.insert(key.to_owned(), part);
             }
-            self.sent.insert(key.to_owned(), part);
         }
+        let is_sent = |k: u32, cell: &Cell| self.sent_values.get(k as usize).is_some_and(|sent| sent == cell);
+        let changed = (0..).zip(&cells).filter(|(k, cell)| !is_sent(*k, *cell));
+        let moved = (0..).zip(&view).filter(|(k, show)| self.sent_view.get(*k as usize) != Some(*show));
+        let frame = self.framed(now, parts, changed, moved, false);
+        (self.sent_values, self.sent_view) = (cells, view);
+        frame
+    }
+
+    fn cells(&self) -> Vec<Cell> {
+        self.rows.iter().map(|row| self.cell(row)).collect()
+    }
+
+    fn framed<'c>(
+        &self,
+        now: Nanos,
+        mut frame: Map<String, Value>,
+        cells: impl Iterator<Item = (u32, &'c Cell)>,
+        view: impl Iterator<Item = (u32, &'c Show)>,
+        full: bool,
+    ) -> Value {
+        let values: Vec<Value> = cells.map(|(k, (text, quality))| json!([k, text, quality])).collect();
         if !values.is_empty() {
             frame.insert("values".to_owned(), json!(values));
         }
-        let view = self.view(full);
+        let view: Vec<(u32, &Show)> = view.collect();
         if !view.is_empty() {
             frame.insert("view".to_owned(), json!(view));
         }
@@ -279,19 +306,13 @@ impl Board {
         // The age of all this: a controller that shows nothing any more is not alive.
         frame.insert("age".to_owned(), json!(seconds(now - self.seen)));
         frame.insert("full".to_owned(), json!(full));
-        self.sent_values = cells;
         Value::Object(frame)
     }
 
-    /// The parts of the picture that have moved, or all.
-    fn view(&mut self, full: bool) -> Vec<(u32, Show)> {
+    /// The parts of the picture.
+    fn view(&mut self) -> Vec<Show> {
         let Some(view) = &self.names.view else { return Vec::new() };
-        let now = view.values(&self.names.bench, &mut self.sight, self.picture.as_mut());
-        let moved = |k: usize, value: &Show| full || self.sent_view.get(k) != Some(value);
-        let all = (0u32..).zip(&now).filter(|(k, value)| moved(*k as usize, value));
-        let moved = all.map(|(k, value)| (k, value.clone())).collect();
-        self.sent_view = now;
-        moved
+        view.values(&self.names.bench, &mut self.sight, self.picture.as_mut())
     }
 
     /// The parts of a frame that are sent as a whole.

@@ -43,6 +43,7 @@ mod registry;
 mod rules;
 mod runs;
 mod shared;
+mod system;
 #[cfg(test)]
 mod tests;
 mod throttle;
@@ -272,7 +273,12 @@ struct Open {
 impl Open {
     /// Listens, and answers from here on.
     fn new(shared: &Shared, rules: &Rules) -> Result<Open, Failure> {
-        let runtime = tokio::runtime::Builder::new_multi_thread().enable_all().worker_threads(2).build();
+        system::room_for(shared.limits.clients);
+        let mut threads = tokio::runtime::Builder::new_multi_thread();
+        if shared.station.is_some() {
+            threads.on_thread_start(system::step_back);
+        }
+        let runtime = threads.enable_all().worker_threads(2).build();
         let runtime = runtime.map_err(|e| Failure::Usage(format!("the server cannot start: {e}")))?;
         let listener = runtime.block_on(bind(rules.host, rules.port))?;
         let bound = listener.local_addr()?;

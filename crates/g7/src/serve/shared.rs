@@ -47,10 +47,11 @@ impl Limits {
         Limits { from_one: 64, ..self }
     }
 
-    /// Beside a machine a client that has stopped is let go sooner.
+    /// Beside a machine there is room for many who look, and a client that has stopped is let go within
+    /// 10 seconds: at the first ping that comes behind its silence.
     pub(super) fn beside_a_machine() -> Limits {
-        let (ping, silence, send) = (Duration::from_secs(2), Duration::from_secs(8), Duration::from_secs(8));
-        Limits { ping, silence, send, ..Limits::default() }
+        let (ping, silence, send) = (Duration::from_secs(2), Duration::from_secs(7), Duration::from_secs(7));
+        Limits { clients: 1_200, ping, silence, send, ..Limits::default() }
     }
 }
 

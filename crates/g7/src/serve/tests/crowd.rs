@@ -198,3 +198,34 @@ async fn a_page_left_behind_is_given_a_full_frame() {
     let outbox::Next::Text(next) = outbox.next().await else { panic!("a frame") };
     assert_eq!(serde_json::from_str::<Value>(&next).expect("JSON")["frame"], frame);
 }
+
+/// A panic of which nobody reads on the terminal.
+async fn breaks() {
+    std::panic::resume_unwind(Box::new("as the test wants it"))
+}
+
+#[tokio::test]
+async fn row_18_a_handler_that_panics_ends_its_own_connection_and_nothing_else() {
+    let server = Server::new().await;
+    let mut page = paced(&server).await;
+    let broken: Router = Router::new().route("/", get(breaks)).route("/well", get(|| async { "well" }));
+    let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, 0)).await.expect("a port");
+    let beside = listener.local_addr().expect("an address");
+    let task = tokio::spawn(listen::listen(listener, broken));
+    let ask = async |path: &str| {
+        let mut stream = TcpStream::connect(beside).await.expect("a connection");
+        let head = format!("GET {path} HTTP/1.1\r\nHost: x\r\nConnection: close\r\n\r\n");
+        stream.write_all(head.as_bytes()).await.expect("sent");
+        let mut answer = String::new();
+        stream.read_to_string(&mut answer).await.ok();
+        answer
+    };
+    let count = g7_peers::faults::trials(100, 3);
+    for _ in 0..count {
+        assert_eq!(ask("/").await, "", "the connection ends");
+        assert!(ask("/well").await.ends_with("well"), "the next one is served");
+    }
+    goes_on(&mut page, 5).await;
+    task.abort();
+    g7_peers::faults::row(18, "the server", count.into(), 0, "one connection ends, all others go on");
+}

@@ -126,6 +126,11 @@ impl Server {
 
     /// A folder `charts` with `chart.g7`, beside a file that the server must not touch.
     async fn with(change: impl FnOnce(&mut Serve), limits: Limits) -> Server {
+        Server::under(change, |_| {}, limits).await
+    }
+
+    /// The same, with other rules than its arguments give.
+    async fn under(change: impl FnOnce(&mut Serve), rule: impl FnOnce(&mut Rules), limits: Limits) -> Server {
         static NEXT: AtomicU32 = AtomicU32::new(0);
         let number = NEXT.fetch_add(1, Ordering::Relaxed);
         let root = std::env::temp_dir().join(format!("g7-serve-{}-{number}", std::process::id()));
@@ -135,7 +140,8 @@ impl Server {
         let mut args = args_of(&root.join("charts"));
         args.page_dir = Some(root.join("charts"));
         change(&mut args);
-        let rules = Rules::of(&args, None, &crate::audit::Audit::default(), None).expect("they fit");
+        let mut rules = Rules::of(&args, None, &crate::audit::Audit::default(), None).expect("they fit");
+        rule(&mut rules);
         let shared =
             shared(&args, limits, Some(&root.join("state")), None, &rules).expect("a folder to serve");
         let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, 0)).await.expect("a port");

@@ -124,7 +124,8 @@ async fn devices_are_asked_and_those_that_are_silent_are_told() {
 #[tokio::test]
 async fn a_server_in_the_network_asks_no_device() {
     // It listens at this machine alone here; what counts is what it was told.
-    let server = Server::with(|args| args.host = Ipv4Addr::UNSPECIFIED.into(), Limits::default()).await;
+    let reached = |rules: &mut Rules| rules.host = Ipv4Addr::UNSPECIFIED.into();
+    let server = Server::under(|_| {}, reached, Limits::default()).await;
     let told = server.ask("POST", "/api/wiring/live", &[], r#"{"path":"chart.g7"}"#).await.is(200).json();
     assert_eq!(told, json!({ "no": "reached" }));
 }
