@@ -145,16 +145,6 @@ fn builds(compiler: &str, flags: &[&str]) -> bool {
         && quiet(&mut Command::new(folder.0.join("try")))
 }
 
-/// The library of faketime, which gives a program another time of day; otherwise the skip is counted.
-pub fn faketime() -> Option<PathBuf> {
-    let folders = std::fs::read_dir("/usr/lib").into_iter().flatten().flatten();
-    let found = folders.map(|f| f.path().join("faketime/libfaketime.so.1")).find(|library| library.is_file());
-    if found.is_none() {
-        skip("faketime missing");
-    }
-    found
-}
-
 /// matiec: `iec2c` on the `PATH`, and its library.
 #[derive(Clone, Debug)]
 pub struct Matiec {

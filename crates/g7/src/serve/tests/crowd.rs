@@ -211,7 +211,7 @@ async fn row_18_a_handler_that_panics_ends_its_own_connection_and_nothing_else()
     let broken: Router = Router::new().route("/", get(breaks)).route("/well", get(|| async { "well" }));
     let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, 0)).await.expect("a port");
     let beside = listener.local_addr().expect("an address");
-    let task = tokio::spawn(listen::listen(listener, broken));
+    let task = tokio::spawn(listen::listen(listener, broken, listen::Door::default()));
     let ask = async |path: &str| {
         let mut stream = TcpStream::connect(beside).await.expect("a connection");
         let head = format!("GET {path} HTTP/1.1\r\nHost: x\r\nConnection: close\r\n\r\n");
