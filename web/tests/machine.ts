@@ -100,7 +100,7 @@ chart Fill {
   step 2 "full" { N alarm  P1 count := count + 1 }
   0 -> 1 when start and mode = 1 and not hold
   1 -> 2 when level >= amount
-  2 -> 0 when not start
+  2 -> 0 when auto
 }
 plant Tank {
   state height : REAL := 30.0 in 0.0 .. 100.0

@@ -18,7 +18,7 @@ output valve : BOOL
 chart Main {
   initial step 1
   step 2 { N valve }
-  1 -> 2 when go and mode = 1
+  1 -> 2 when ↑go and mode = 1
   2 -> 1 when target > 50.0
 }
 plant Tank {

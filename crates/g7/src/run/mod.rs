@@ -47,9 +47,9 @@ fn online(path: &Path, source: Source, args: &Run) -> Result<Verdict, Failure> {
     let more = More { profile: args.profile, scan: args.scan, plant: args.plant.as_deref(), seed: args.seed };
     let Settings { log, audit, .. } = station::settings(path, &args.drive, None)?;
     let station = station::start(path, source, &args.drive, more)?;
-    let Some(Station { names, origin, running, monitor, historian, .. }) = station else {
+    let Some(Station { names, origin, running, monitor, historian, panels, .. }) = station else {
         return Ok(Verdict::Found);
     };
-    let attendant = Attendant::new(names).with(monitor).logging(log, audit).recording(historian);
+    let attendant = Attendant::new(names).with(monitor).logging(log, audit).recording(historian).at(panels);
     attendant.changing(origin).attend(running, args.duration)
 }
