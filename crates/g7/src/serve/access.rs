@@ -363,7 +363,12 @@ impl Access {
         work: impl FnOnce(&Users) -> Result<(), UserError>,
     ) -> Result<(), Refusal> {
         self.must(who, kind, data)?;
-        work(&self.users).map_err(refusal)?;
+        work(&self.users).map_err(|e| {
+            // Its row is there already.
+            let data = json!({ "deed": kind, "user": who.name, "why": e.to_string() });
+            self.audit.event("warning", "not-done", None, &data);
+            refusal(e)
+        })?;
         self.read().map_err(refusal)
     }
 
