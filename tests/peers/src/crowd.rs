@@ -100,11 +100,11 @@ async fn open(address: SocketAddr, token: &str) -> io::Result<TcpStream> {
          Sec-WebSocket-Version: 13\r\nSec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n\r\n"
     );
     send(&stream, head.as_bytes()).await?;
-    let (mut answer, mut bytes) = (Vec::new(), [0; 512]);
+    // Byte for byte, since a first ping may follow the head at once.
+    let (mut answer, mut byte) = (Vec::new(), [0]);
     while !answer.ends_with(b"\r\n\r\n") {
-        // Byte for byte would be slow, and nothing follows the head before the page asks for it.
-        let count = receive(&stream, &mut bytes).await?;
-        answer.extend_from_slice(&bytes[..count]);
+        receive(&stream, &mut byte).await?;
+        answer.extend_from_slice(&byte);
     }
     if !answer.starts_with(b"HTTP/1.1 101") {
         return Err(ErrorKind::ConnectionRefused.into());

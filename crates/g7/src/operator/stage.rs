@@ -117,6 +117,10 @@ impl Stage {
 
     fn whole(&mut self, now: Nanos, paces: &Paces) -> Value {
         self.board.look(now);
+        if self.watchers.is_empty() {
+            // Nobody waits for these changes, so that the next frame has those behind this one alone.
+            self.board.frame(now, paces);
+        }
         self.board.whole(now, paces)
     }
 
