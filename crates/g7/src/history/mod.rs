@@ -19,8 +19,8 @@ mod parquet;
 mod rows;
 pub(crate) mod time;
 
-pub(crate) use command::{History, history};
-pub(crate) use historian::{Historian, Kept, open};
 #[cfg(feature = "parquet")]
 pub(crate) use self::parquet::Parquet;
+pub(crate) use command::{History, history};
+pub(crate) use historian::{Historian, Kept, open};
 pub(crate) use rows::{Broken, Csv, Sink, rows};
