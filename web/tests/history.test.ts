@@ -54,7 +54,7 @@ test('what the machine did is in its history', async () => {
     await page.keyboard.press('ArrowLeft');
     return (await value(page, 'lamp').innerText()) === '1' && (await value(page, 'fill').innerText()) === '0';
   }, 'the edge at which the valve opened lies behind');
-  assert.match(await card(page).getByRole('status').innerText(), /\d\d:\d\d:\d\d/);
+  assert.match(await card(page).locator('.moment').innerText(), /\d\d:\d\d:\d\d/);
   await page.keyboard.press('+');
   await page.keyboard.press('PageUp');
   assert.equal(await card(page).getByRole('button', { name: 'Follow' }).getAttribute('aria-pressed'), 'false');

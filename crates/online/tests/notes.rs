@@ -244,11 +244,11 @@ fn what_cannot_be_recorded_is_told_with_its_place() {
     let told = |rows: &str| -> Vec<(String, String)> {
         let io = format!("[history]\n{rows}");
         let place = |p: &Problem| io[p.at.start as usize..p.at.end as usize].to_owned();
-        wired(&bench, &io).1.iter().map(|p| (place(p), p.message.clone())).collect()
+        wired(&bench, &io).1.iter().map(|p| (place(p), p.what.to_string())).collect()
     };
     assert_eq!(told("file = 'r'\nsignals = ['go', 'X2', 'LEVEL']\ndays = 7\nmegabytes = 10"), []);
     let cases: &[(&str, &str, &str)] = &[
-        ("signals = 'all'", "history", "[history] has no `file`"),
+        ("signals = 'all'", "[history]", "[history] has no `file`"),
         ("file = 'r'\nsignals = ['gone']", "'gone'", "the chart has no variable or step `gone`"),
         ("file = 'r'\nsignals = ['name']", "'name'", "`name` is a STRING, which cannot be recorded"),
         ("file = 'r'\nsignals = ['go', 'GO']", "'GO'", "`go` is named twice"),

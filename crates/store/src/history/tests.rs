@@ -120,10 +120,13 @@ fn packed_changes_come_back_bit_by_bit() {
     }
 }
 
-/// The record as it ought to be: spans with the changes of each signal, times of the record.
+/// The begin of a span, its end, and its changes.
+type Stretch = (i64, i64, Vec<(i64, String, u64)>);
+
+/// The record as it ought to be, in times of the record.
 #[derive(Clone, Default)]
 struct Truth {
-    spans: Vec<(i64, i64, Vec<(i64, String, u64)>)>,
+    spans: Vec<Stretch>,
 }
 
 impl Truth {
@@ -133,7 +136,7 @@ impl Truth {
     }
 
     fn instants(&self) -> Vec<i64> {
-        let of = |(start, stop, changes): &(i64, i64, Vec<(i64, String, u64)>)| {
+        let of = |(start, stop, changes): &Stretch| {
             let changes = changes.iter().map(|(at, ..)| *at);
             changes.chain([*start, *stop]).collect::<Vec<_>>()
         };
