@@ -8,6 +8,7 @@ use crate::device::Device;
 use crate::mail::Mail;
 use crate::modbus::Units;
 use crate::mqtt;
+use crate::panel::Panels;
 use crate::setup::{Device as Wanted, Kind, Setup};
 use crate::wiring::Wired;
 
@@ -16,6 +17,8 @@ use crate::wiring::Wired;
 pub struct Clients {
     pub(crate) units: Units,
     mail: BTreeMap<String, Mail>,
+    /// The panels of the machine, for those who move them.
+    pub panels: Panels,
 }
 
 impl Clients {
@@ -34,6 +37,7 @@ impl Clients {
             Kind::Mqtt(broker) => {
                 Ok(mqtt::device(broker, wired, self.mail.get(&wired.device.name.value).cloned()))
             }
+            Kind::Panel(panel) => Ok(self.panels.device(panel, wired)),
             Kind::ModbusTcp(..) | Kind::ModbusRtu(..) | Kind::ModbusServer(_) => self.units.device(wired),
             Kind::S7(_) | Kind::Gpio(_) => field(&wired.device.kind, wired, false),
         }

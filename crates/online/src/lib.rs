@@ -8,6 +8,7 @@
 //!                       records     commands         Slots (retained values) <- a thread of its own
 //!                             |
 //!                           Sight: all of its words, for the page
+//!                           Notes: each change of chosen signals, for the history
 //! ```
 //!
 //! # Invariants
@@ -18,6 +19,7 @@
 
 mod change;
 mod changer;
+mod chosen;
 mod clients;
 mod controller;
 mod device;
@@ -35,7 +37,9 @@ mod messages;
 mod mirror;
 mod modbus;
 mod mqtt;
+mod notes;
 mod pace;
+mod panel;
 mod parts;
 mod points;
 mod probe;
@@ -43,6 +47,7 @@ mod realtime;
 mod runtime;
 #[cfg(feature = "s7")]
 mod s7;
+mod saver;
 pub mod setup;
 mod sight;
 mod slots;
@@ -54,6 +59,7 @@ mod word;
 
 pub use change::{Chart, Prepared, prepare};
 pub use changer::{Change, Changer};
+pub use chosen::{Chosen, Recorded};
 pub use clients::{Clients, lacking};
 pub use controller::{Command, Controller, Event, Mode, Port, Reason, Refused, Shared, What};
 pub use device::{Absent, Device, Failed};
@@ -66,10 +72,13 @@ pub use link::{Link, Order};
 pub use machine::{Machine, assemble, runner};
 pub use mail::{Letter, Mail};
 pub use mirror::mirror;
+pub use notes::{Note, Notes, Table};
 pub use pace::{Pace, Paces, Spread};
+pub use panel::{Moved, Panels, Part};
 pub use parts::{Handles, Picture, Successor};
 pub use probe::{Asked, Probed, hear, probe};
 pub use runtime::{Answer, AtDevice, Options, Running, start};
+pub use saver::Saver;
 pub use sight::Sight;
 pub use slots::{Disk, Loaded, Slots, SlotsError};
 pub use value::{Holds, Raw, Scaling};

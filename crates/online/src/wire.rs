@@ -2,10 +2,11 @@
 
 use g7_model::Nanos;
 
+use crate::panel::Part;
 use crate::setup::{Address, Bias, Encoding, Memory, Place, Width};
 
 /// A point of a device.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Wire {
     /// Bits or registers of Modbus.
     Modbus(Place),
@@ -17,6 +18,8 @@ pub enum Wire {
     S7(Cell),
     /// A line of this machine.
     Line(Line),
+    /// A part of a panel.
+    Panel(Part),
 }
 
 /// Bytes or a bit of a controller of Siemens.
@@ -105,7 +108,7 @@ impl Wire {
     pub fn place(&self) -> Option<Place> {
         match self {
             Wire::Modbus(place) => Some(*place),
-            Wire::Topic(_) | Wire::Metric(_) | Wire::S7(_) | Wire::Line(_) => None,
+            Wire::Topic(_) | Wire::Metric(_) | Wire::S7(_) | Wire::Line(_) | Wire::Panel(_) => None,
         }
     }
 }
@@ -119,6 +122,7 @@ impl std::fmt::Display for Wire {
             Wire::Metric(name) => write!(f, "metric({name})"),
             Wire::S7(cell) => cell.address().fmt(f),
             Wire::Line(line) => write!(f, "line({})", line.offset),
+            Wire::Panel(part) => part.handle.fmt(f),
         }
     }
 }

@@ -4,14 +4,17 @@ use std::collections::BTreeMap;
 
 use g7_engine::Addr;
 use g7_host::Kind;
-use g7_model::{Problem, Span, codes};
-use g7_rig::{Activity, Bench, Item, Role};
+use g7_model::{Nanos, Problem, Span, codes};
+use g7_rig::{Activity, Bench, Item, Role, StepItem};
 
+use crate::chosen::{self, Chosen};
 use crate::driver::Out;
 use crate::messages::{self, Carried, Refused};
+use crate::panel;
 use crate::points;
 use crate::setup::{
-    Area, At, Bad, Broker, Channel, Device, Encoding, Kind as Way, Literal, Place, Point, Register, Setup,
+    Area, At, Bad, Broker, Channel, Device, Encoding, Handle, Kind as Way, Literal, Place, Point, Register,
+    Setup,
 };
 use crate::value::{Holds, Raw, Scaling};
 use crate::wire::Wire;
@@ -24,6 +27,8 @@ pub struct Wiring {
     pub devices: Vec<Wired>,
     /// Inputs and outputs of the chart that no device has, by name.
     pub unwired: Vec<String>,
+    /// What is recorded.
+    pub history: Option<Chosen>,
 }
 
 /// A device with its channels.
@@ -110,6 +115,9 @@ pub fn wire(bench: &Bench, setup: &Setup) -> (Wiring, Vec<Problem>) {
     let events = |d: &Wired| matches!(&d.device.kind, Way::Mqtt(broker) if broker.events.is_some());
     let used = |d: &Wired| !(d.inputs.is_empty() && d.outputs.is_empty() && d.good.is_empty()) || events(d);
     wirer.wiring.devices.retain(used);
+    if let Some(history) = &setup.history {
+        wirer.wiring.history = Some(chosen::choose(bench, history, &mut wirer.problems));
+    }
     (wirer.wiring, wirer.problems)
 }
 
@@ -206,38 +214,19 @@ impl<'a> Wirer<'a> {
 
     /// The variable or the step that a channel shows.
     fn shown(&mut self, channel: &Channel) -> Option<Subject> {
-        let At { value: name, at } = &channel.variable;
-        if let Some(step) = self.bench.steps.iter().find(|s| s.activity().eq_ignore_ascii_case(name)) {
-            let source = match step.id {
-                Activity::Step(id) => Source::Step(id),
-                Activity::Macro(id) => Source::Macro(id),
-            };
-            let (name, ty) = (step.activity(), "BOOL".to_owned());
-            return Some(Subject {
-                name,
+        match named(self.bench, &channel.variable) {
+            Ok(Named::Item(item)) => Some(self.subject(item)),
+            Ok(Named::Step(step)) => Some(Subject {
+                name: step.activity(),
                 kind: Kind::Bool,
-                ty,
+                ty: "BOOL".to_owned(),
                 inverted: false,
                 input: None,
-                source,
+                source: source_of(step),
                 safe: None,
-            });
-        }
-        match self.bench.item(name) {
-            Some(item) if item.role != Role::Plant => Some(self.subject(item)),
-            Some(_) => {
-                self.wrong(
-                    &codes::UNKNOWN_CHANNEL,
-                    *at,
-                    format!("`{name}` belongs to the plant, not to the chart"),
-                );
-                None
-            }
-            None => {
-                let near = self.bench.suggestions(name).trim_start_matches("; ").to_owned();
-                let what = format!("the chart has no variable or step `{name}`");
-                self.wrong(&codes::UNKNOWN_CHANNEL, *at, what).help =
-                    Some(near).filter(|near| !near.is_empty());
+            }),
+            Err(problem) => {
+                self.problems.push(*problem);
                 None
             }
         }
@@ -271,6 +260,11 @@ impl<'a> Wirer<'a> {
             return;
         }
         match (&channel.point, kind) {
+            (_, Some(Way::Panel(_))) => self.panel(channel, subject, device, class),
+            (_, _) if channel.limits.first().is_some() => {
+                let at = channel.limits.first().unwrap_or(channel.at);
+                self.wrong(&codes::WRONG_CHANNEL, at, "only a number of a panel has limits");
+            }
             (Point::Good, _) => self.good(channel, subject, device, class),
             (_, Some(Way::Mqtt(broker))) => self.message(channel, subject, (device, &broker), class),
             (_, Some(Way::S7(_))) => self.point(channel, subject, device, class, points::cell),
@@ -281,6 +275,7 @@ impl<'a> Wirer<'a> {
                 let help = match point {
                     Point::S7(_) => "only a controller of Siemens has such addresses: `kind = \"s7\"`",
                     Point::Line(_) => "only a chip has lines: `kind = \"gpio\"`",
+                    Point::Panel(_) => "only a panel has buttons and lamps: `kind = \"panel\"`",
                     _ => "only a broker has messages: `kind = \"mqtt\"`",
                 };
                 self.wrong(&codes::WRONG_CHANNEL, channel.at, what).help = Some(help.to_owned());
@@ -339,6 +334,29 @@ impl<'a> Wirer<'a> {
         self.connect(channel, subject, device, (wire, scaling), class);
     }
 
+    /// A part of a panel.
+    fn panel(&mut self, channel: &Channel, subject: &Subject, device: usize, class: Class) {
+        let press = match self.wiring.devices.get(device).map(|d| &d.device.kind) {
+            Some(Way::Panel(panel)) => panel.press,
+            Some(_) | None => Nanos::ZERO,
+        };
+        if channel.point == Point::Panel(Handle::Button) && press < self.bench.period {
+            let what = format!(
+                "a press of {} may fall between two scans, one each {}",
+                press.plain(),
+                self.bench.period.plain()
+            );
+            let help =
+                format!("give the panel a longer `press`: `press = \"{}\"`", self.bench.period.plain());
+            self.wrong(&codes::WRONG_CHANNEL, channel.at, what).help = Some(help);
+            return;
+        }
+        match panel::wire(channel, (&subject.name, subject.kind), class == Class::Input) {
+            Ok(wired) => self.connect(channel, subject, device, wired, class),
+            Err(Refused { at, what, help }) => self.wrong(&codes::WRONG_CHANNEL, at, what).help = help,
+        }
+    }
+
     /// A topic or metric of a broker.
     fn message(
         &mut self,
@@ -358,7 +376,7 @@ impl<'a> Wirer<'a> {
             // Several inputs may read one topic.
             Wire::Topic(topic) => (class != Class::Input).then(|| topic.name.clone()),
             Wire::Metric(name) => Some(name.clone()),
-            Wire::Modbus(_) | Wire::S7(_) | Wire::Line(_) => None,
+            Wire::Modbus(_) | Wire::S7(_) | Wire::Line(_) | Wire::Panel(_) => None,
         };
         let will = matches!(&wire, Wire::Topic(topic) if topic.will).then(|| WILL.to_owned());
         for place in place.into_iter().chain(will) {
@@ -551,6 +569,39 @@ impl<'a> Wirer<'a> {
 
 /// Why a setting of a line is refused elsewhere.
 const NO_PIN: &str = "only a line of a chip has a bias, a level and a debounce time";
+
+/// What a name means: a variable of the chart or a step.
+pub(crate) enum Named<'a> {
+    Item(&'a Item),
+    Step(&'a StepItem),
+}
+
+/// The variable of the chart, or the step by its step variable, that has a name.
+pub(crate) fn named<'a>(bench: &'a Bench, name: &At<String>) -> Result<Named<'a>, Box<Problem>> {
+    let At { value: name, at } = name;
+    if let Some(step) = bench.steps.iter().find(|s| s.activity().eq_ignore_ascii_case(name)) {
+        return Ok(Named::Step(step));
+    }
+    let wrong = |what: String| Box::new(Problem::new(&codes::UNKNOWN_CHANNEL, *at, what));
+    match bench.item(name) {
+        Some(item) if item.role != Role::Plant => Ok(Named::Item(item)),
+        Some(_) => Err(wrong(format!("`{name}` belongs to the plant, not to the chart"))),
+        None => {
+            let near = bench.suggestions(name).trim_start_matches("; ").to_owned();
+            let mut problem = wrong(format!("the chart has no variable or step `{name}`"));
+            problem.help = Some(near).filter(|near| !near.is_empty());
+            Err(problem)
+        }
+    }
+}
+
+/// The word that tells the activity of a step.
+pub(crate) fn source_of(step: &StepItem) -> Source {
+    match step.id {
+        Activity::Step(id) => Source::Step(id),
+        Activity::Macro(id) => Source::Macro(id),
+    }
+}
 
 /// The key of the will among the points of a broker; no topic and no metric is empty.
 const WILL: &str = "";

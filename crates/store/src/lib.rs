@@ -14,7 +14,10 @@
 #![forbid(unsafe_code)]
 
 mod file;
+pub mod history;
+pub mod log;
 mod outbox;
+pub mod users;
 
-pub use file::{Durable, StoreError, open};
+pub use file::{Durable, StoreError, open, read};
 pub use outbox::{Limits, Outbox, Waiting};

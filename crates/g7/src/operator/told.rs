@@ -22,6 +22,8 @@ pub(crate) enum Told {
     Ended(Force),
     /// It goes on with another chart: that before the latest change, or a new one; and what was lost.
     Changed { back: bool, lost: Vec<String> },
+    /// A part of a panel was pressed, or set to a value; and by whom, where that is known.
+    Moved { name: String, value: Option<String>, who: Option<String> },
     /// Something happened at a device, by number.
     Device(usize, Happened),
     /// The scan has no priority, and why.
@@ -30,6 +32,10 @@ pub(crate) enum Told {
     Unsaved(String),
     /// The events for a broker, by number, have trouble, or none any more.
     Events(usize, Option<String>),
+    /// The history cannot be written, and why.
+    Unrecorded(String),
+    /// The history goes on; so many changes were lost.
+    Recorded(u64),
 }
 
 /// How much an event concerns an operator.
@@ -56,7 +62,7 @@ impl Level {
 impl Told {
     pub(crate) fn level(&self, names: &Names) -> Level {
         match self {
-            Told::Mode(Mode::Fault(_)) | Told::Unsaved(_) => Level::Alarm,
+            Told::Mode(Mode::Fault(_)) | Told::Unsaved(_) | Told::Unrecorded(_) => Level::Alarm,
             Told::Device(device, Happened::Down(_)) => match names.wired(*device) {
                 Some(wired) if wired.device.kind.is_server() => Level::Warning,
                 Some(_) | None => Level::Alarm,
@@ -64,13 +70,16 @@ impl Told {
             Told::Device(_, Happened::NoInput(..) | Happened::NoOutput(..))
             | Told::Events(_, Some(_))
             | Told::Missed(_)
+            | Told::Recorded(1..)
             | Told::Ended(_) => Level::Warning,
             Told::Mode(Mode::Run | Mode::Stop)
             | Told::Forced(_)
             | Told::Released(_)
             | Told::Changed { .. }
+            | Told::Moved { .. }
             | Told::NoPriority(_)
             | Told::Events(_, None)
+            | Told::Recorded(0)
             | Told::Device(..) => Level::Note,
         }
     }
@@ -79,6 +88,7 @@ impl Told {
     pub(crate) fn thing(&self) -> Option<(&'static str, usize, usize)> {
         match self {
             Told::Mode(_) => Some(("mode", 0, 0)),
+            Told::Unrecorded(_) | Told::Recorded(_) => Some(("history", 0, 0)),
             Told::Device(device, Happened::Up | Happened::Down(_)) => Some(("device", *device, 0)),
             Told::Device(device, Happened::NoInput(k, _) | Happened::Input(k)) => {
                 Some(("input", *device, *k))
@@ -123,12 +133,18 @@ impl Told {
             Told::Changed { back, lost } => {
                 json!({ "kind": if *back { "back" } else { "changed" }, "why": lost.join("; ") })
             }
+            Told::Moved { name, value: None, who } => json!({ "kind": "pressed", "name": name, "who": who }),
+            Told::Moved { name, value, who } => {
+                json!({ "kind": "set", "name": name, "value": value, "who": who })
+            }
             Told::NoPriority(why) => json!({ "kind": "no-priority", "why": why }),
             Told::Unsaved(why) => json!({ "kind": "unsaved", "why": why }),
             Told::Events(device, why) => {
                 let kind = if why.is_some() { "no-events" } else { "events" };
                 json!({ "kind": kind, "device": names.device(*device), "why": why })
             }
+            Told::Unrecorded(why) => json!({ "kind": "unrecorded", "why": why }),
+            Told::Recorded(lost) => json!({ "kind": "recorded", "count": lost }),
             Told::Device(device, happened) => device_json(names, *device, happened),
         }
     }
@@ -153,12 +169,22 @@ impl Told {
                     if lost.is_empty() { String::new() } else { format!("; lost: {}", lost.join("; ")) };
                 format!("goes on with {which}{lost}")
             }
+            Told::Moved { name, value, who } => {
+                let deed = match value {
+                    None => format!("`{name}` is pressed"),
+                    Some(value) => format!("`{name}` is set to {value}"),
+                };
+                who.as_ref().map_or_else(|| deed.clone(), |who| format!("{deed}, by {who}"))
+            }
             Told::NoPriority(why) => format!("{warn}note:{warn:#} {why}"),
             Told::Unsaved(why) => format!("{bad}values cannot be saved:{bad:#} {why}"),
             Told::Events(device, Some(why)) => {
                 format!("{}: {warn}events wait:{warn:#} {why}", names.device(*device))
             }
             Told::Events(device, None) => format!("{} takes events again", names.device(*device)),
+            Told::Unrecorded(why) => format!("{bad}the history cannot be written:{bad:#} {why}"),
+            Told::Recorded(0) => "the history goes on".to_owned(),
+            Told::Recorded(lost) => format!("the history goes on; {warn}{lost} changes were lost{warn:#}"),
             Told::Device(device, happened) => return device_text(names, *device, happened),
         })
     }

@@ -6,6 +6,7 @@ use g7_model::Nanos;
 
 use super::broker::{self, Broker};
 use super::field::{self, S7};
+use super::panel::{self, Panel};
 use super::table::{At, Found, Row, Table};
 
 /// A device.
@@ -34,15 +35,18 @@ pub enum Kind {
     S7(S7),
     /// A chip of lines of this machine: its device file.
     Gpio(String),
+    /// Buttons and lamps on the operator page.
+    Panel(Panel),
 }
 
 impl Kind {
     /// The words of the file.
-    pub const WORDS: [&'static str; 6] = ["modbus-tcp", "modbus-rtu", "modbus-server", "mqtt", "s7", "gpio"];
+    pub const WORDS: [&'static str; 7] =
+        ["modbus-tcp", "modbus-rtu", "modbus-server", "mqtt", "s7", "gpio", "panel"];
 
     /// Its word in the file.
     pub fn word(&self) -> &'static str {
-        let [tcp, rtu, server, mqtt, s7, gpio] = Kind::WORDS;
+        let [tcp, rtu, server, mqtt, s7, gpio, panel] = Kind::WORDS;
         match self {
             Kind::ModbusTcp(..) => tcp,
             Kind::ModbusRtu(..) => rtu,
@@ -50,6 +54,7 @@ impl Kind {
             Kind::Mqtt(_) => mqtt,
             Kind::S7(_) => s7,
             Kind::Gpio(_) => gpio,
+            Kind::Panel(_) => panel,
         }
     }
 
@@ -62,6 +67,7 @@ impl Kind {
             Kind::Mqtt(broker) => format!("{}:{}", broker.host, broker.port),
             Kind::S7(s7) => format!("{}:{} rack {} slot {}", s7.host, s7.port, s7.rack, s7.slot),
             Kind::Gpio(chip) => chip.clone(),
+            Kind::Panel(_) => "the operator page".to_owned(),
         }
     }
 
@@ -169,6 +175,7 @@ pub(super) fn read(row: &Row<'_>, found: &mut Found) -> Option<Device> {
         "mqtt" => broker::read(row.name, &mut table, found).map(|broker| Kind::Mqtt(Box::new(broker))),
         "s7" => field::s7(&mut table, found).map(Kind::S7),
         "gpio" => field::chip(&mut table, found).map(Kind::Gpio),
+        "panel" => Some(Kind::Panel(panel::read(&mut table, found))),
         _ => {
             let known: Vec<String> = Kind::WORDS.iter().map(|word| format!("\"{word}\"")).collect();
             found.wrong(kind.at, format!("no kind of device is called \"{}\"", kind.value)).help =
@@ -177,7 +184,7 @@ pub(super) fn read(row: &Row<'_>, found: &mut Found) -> Option<Device> {
         }
     };
     let timing = match &kind {
-        Some(Kind::ModbusServer(_)) => SERVER,
+        Some(Kind::ModbusServer(_) | Kind::Panel(_)) => SERVER,
         Some(Kind::Mqtt(_)) => timing(&mut table, found, BROKER),
         Some(Kind::ModbusTcp(..) | Kind::ModbusRtu(..) | Kind::S7(_) | Kind::Gpio(_)) | None => {
             timing(&mut table, found, Timing::default())

@@ -4,6 +4,7 @@ use g7_model::Span;
 
 use super::broker::topic_name;
 use super::field::{self, Address, whole};
+use super::panel::{self, Handle};
 use super::table::{At, Found};
 
 /// A point of a device.
@@ -19,6 +20,8 @@ pub enum Point {
     S7(Address),
     /// A line of a chip of this machine, by its number there.
     Line(u32),
+    /// A part of a panel.
+    Panel(Handle),
     /// True while the device answers.
     Good,
 }
@@ -139,6 +142,7 @@ impl std::fmt::Display for Point {
             Point::Metric(name) => write!(f, "metric({})", name.as_deref().unwrap_or("")),
             Point::S7(address) => address.fmt(f),
             Point::Line(offset) => write!(f, "line({offset})"),
+            Point::Panel(handle) => handle.fmt(f),
             Point::Good => f.write_str("good()"),
         }
     }
@@ -159,7 +163,7 @@ pub(super) fn read(text: &str, at: Span, found: &mut Found) -> Option<(At<String
             found.wrong(at, what).help = Some(
                 "write the device and its point: \"line1.coil(2)\", \"line1.holding(4)\", \
                  \"line1.holding(4.3)\" for one bit, \"broker.topic(plant/level)\", \"plc.DB1.DBX0.0\", \
-                 \"board.line(17)\", \"line1.good()\""
+                 \"board.line(17)\", \"desk.button()\", \"line1.good()\""
                     .to_owned(),
             );
             None
@@ -210,6 +214,9 @@ fn point(word: &str, argument: &str) -> Result<Point, String> {
         }
         "metric" => return Ok(Point::Metric(Some(argument.to_owned()).filter(|name| !name.is_empty()))),
         _ => {}
+    }
+    if let Some(handle) = panel::handle(word, argument) {
+        return handle.map(Point::Panel);
     }
     let Some((_, area)) = Area::WORDS.iter().find(|(name, _)| *name == word) else {
         return Err(format!("no point is called `{word}`"));
