@@ -58,9 +58,13 @@ impl Clients {
 const OPTIONAL: [(&str, bool); 2] =
     [("s7", cfg!(feature = "s7")), ("gpio", cfg!(all(feature = "gpio", target_os = "linux")))];
 
+/// True if this build has devices of the kind with this word.
+pub fn has(word: &str) -> bool {
+    !OPTIONAL.iter().any(|(kind, there)| *kind == word && !there)
+}
+
 /// The problems of devices of a kind that this build does not have.
 pub fn lacking(setup: &Setup) -> Vec<Problem> {
-    let lacks = |kind: &Kind| OPTIONAL.iter().any(|(word, there)| *word == kind.word() && !there);
     let wrong = |device: &Wanted| {
         let word = device.kind.word();
         let what = format!("this build of G7 has no devices of the kind \"{word}\"");
@@ -70,7 +74,7 @@ pub fn lacking(setup: &Setup) -> Vec<Problem> {
             Some(format!("build it with `cargo install --path crates/g7 --features {word}`{linux}"));
         problem
     };
-    setup.devices.iter().filter(|device| lacks(&device.kind)).map(wrong).collect()
+    setup.devices.iter().filter(|device| !has(device.kind.word())).map(wrong).collect()
 }
 
 /// A device of a kind that not every build has; `looks` for one that only reads and changes nothing.

@@ -60,7 +60,7 @@ mod word;
 pub use change::{Chart, Prepared, prepare};
 pub use changer::{Change, Changer};
 pub use chosen::{Chosen, Recorded};
-pub use clients::{Clients, lacking};
+pub use clients::{Clients, has, lacking};
 pub use controller::{Command, Controller, Event, Mode, Port, Reason, Refused, Shared, What};
 pub use device::{Absent, Device, Failed};
 pub use disk::RealDisk;

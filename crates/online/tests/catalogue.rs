@@ -20,7 +20,7 @@ fn quoted(form: Form, text: &str) -> String {
 fn fitting(setting: &Setting) -> String {
     let (Usual::Needed(text) | Usual::Is(text) | Usual::None(text)) = setting.usual;
     match setting.form {
-        Form::Table(settings) => {
+        Form::Table(settings) | Form::FlagOrTable(settings) => {
             let rows: Vec<String> = settings.iter().map(|s| format!("{} = {}", s.key, fitting(s))).collect();
             format!("{{ {} }}", rows.join(", "))
         }
@@ -55,7 +55,13 @@ fn limits(form: Form) -> (Vec<String>, Vec<String>) {
             vec!["\"other\"".to_owned()],
         ),
         Form::Text => (Vec::new(), vec!["5".to_owned()]),
-        Form::Table(_) => (Vec::new(), vec!["5".to_owned()]),
+        Form::Table(settings) => {
+            let text = settings.first().filter(|s| s.key == "topic").map(fitting);
+            (text.into_iter().collect(), vec!["5".to_owned()])
+        }
+        Form::FlagOrTable(_) => {
+            (vec!["true".to_owned(), "false".to_owned()], vec!["5".to_owned(), "\"true\"".to_owned()])
+        }
     }
 }
 
@@ -157,10 +163,16 @@ fn example(point: &Point) -> String {
         Argument::Nothing => String::new(),
         Argument::Address(most) => most.to_string(),
         Argument::Bit(most) => format!("{most}.15"),
-        Argument::Text(text) | Argument::TextOrName(text) | Argument::List(text) => text.to_owned(),
+        Argument::Text(text) | Argument::TextOrName(text) | Argument::List(text) | Argument::Alone(text) => {
+            text.to_owned()
+        }
         Argument::Word(words) => words.last().copied().unwrap_or("").to_owned(),
     };
-    format!("{}({argument})", point.word)
+    if matches!(point.argument, Argument::Alone(_)) {
+        argument
+    } else {
+        format!("{}({argument})", point.word)
+    }
 }
 
 #[test]

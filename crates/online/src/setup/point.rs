@@ -171,6 +171,18 @@ pub(super) fn read(text: &str, at: Span, found: &mut Found) -> Option<(At<String
     }
 }
 
+/// The text of a channel with another device; `None` where it names another one.
+pub(super) fn renamed(text: &str, from: &str, to: &str) -> Option<String> {
+    let (device, rest) = if addressed(text).is_some() {
+        text.trim().split_once('.')?
+    } else {
+        let head = text.split_once('(').map_or(text, |(head, _)| head);
+        let dot = head.rfind('.')?;
+        (text.get(..dot)?, text.get(dot + 1..)?)
+    };
+    (device.trim() == from).then(|| format!("{to}.{rest}"))
+}
+
 /// `device.DB1.DBX0.0`: the device, and the address or what is wrong with it.
 fn addressed(text: &str) -> Option<(&str, Result<Address, String>)> {
     let (device, address) = text.trim().split_once('.')?;
