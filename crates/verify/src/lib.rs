@@ -23,7 +23,17 @@
 
 mod explore;
 mod inputs;
+mod layer;
+mod model;
+mod question;
 mod store;
+mod values;
+mod verdict;
 
 pub use explore::{Answer, Bound, Explorer, Limits, Moment, Move, Moves, Next};
 pub use inputs::{Inputs, Which};
+pub use layer::{Budget, Layer};
+pub use model::Model;
+pub use question::{Claim, Query, Question};
+pub use values::{Values, values};
+pub use verdict::{Certificate, Evidence, Open, Run, Verdict};
