@@ -59,4 +59,6 @@ pub(crate) enum Verdict {
     Fine,
     /// Exit code 1: problems were found, or a test failed.
     Found,
+    /// Exit code 3: a question is not decided, and nothing worse was found.
+    Open,
 }
