@@ -102,7 +102,7 @@ fn deadlocks_are_told_apart_from_ends() {
     let end = "input a : BOOL\nchart G { initial step 1 step 2 1 -> 2 when a }\n";
     assert_eq!(answer(end, |c| *c == Claim::NoDeadlock), "P");
     // The second join waits for a step that has been left for ever.
-    let dead = "input a : BOOL\nchart G { initial step 1 step 2 step 3 1 -> 2 when a (2, 3) -> 1 when a }\n";
+    let dead = "input a : BOOL\nchart G { initial step 1 step 2 step 3 1 -> 2 when a; (2, 3) -> 1 when a }\n";
     assert_eq!(answer(dead, |c| *c == Claim::NoDeadlock), "R1");
     // A timer leads out, however long it takes.
     let timed = "profile iec61131\nscan 10ms\ninput a : BOOL\nchart G { initial step 1 step 2 1 -> 2 when a 2 -> 1 when 200ms/X2 }\n";
@@ -134,7 +134,7 @@ fn faults_and_opposed_writes_are_found() {
                    1 -> 2 when a 2 -> 1 when not a }\n";
     // n is 1 behind the first activation, 0 in the second: a, not a, a.
     assert_eq!(answer(divides, |c| *c == Claim::NoFault).chars().next(), Some('R'));
-    let writes = "input a : BOOL\nvar n : INT\nchart G { initial step 1 step 2 { P1 n := 1 } step 3 { P1 n := 2 } 1 -> (2, 3) when a (2, 3) -> 1 when not a }\n";
+    let writes = "input a : BOOL\nvar n : INT\nchart G { initial step 1 step 2 { P1 n := 1 } step 3 { P1 n := 2 } 1 -> (2, 3) when a; (2, 3) -> 1 when not a }\n";
     assert_eq!(answer(writes, |c| *c == Claim::NoOpposedWrites), "R1");
 }
 
