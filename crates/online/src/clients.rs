@@ -3,6 +3,7 @@
 use crate::device::Device;
 use crate::modbus::Units;
 use crate::mqtt;
+use crate::panel::Panels;
 use crate::setup::Kind;
 use crate::wiring::Wired;
 
@@ -10,6 +11,8 @@ use crate::wiring::Wired;
 #[derive(Default)]
 pub struct Clients {
     pub(crate) units: Units,
+    /// The panels of the machine, for those who move them.
+    pub panels: Panels,
 }
 
 impl Clients {
@@ -21,6 +24,7 @@ impl Clients {
     pub fn device(&mut self, wired: &Wired) -> std::io::Result<Box<dyn Device>> {
         match &wired.device.kind {
             Kind::Mqtt(broker) => Ok(mqtt::device(broker, wired)),
+            Kind::Panel(panel) => Ok(self.panels.device(panel, wired)),
             Kind::ModbusTcp(..) | Kind::ModbusRtu(..) | Kind::ModbusServer(_) => self.units.device(wired),
         }
     }

@@ -2,10 +2,11 @@
 
 use g7_model::Nanos;
 
+use crate::panel::Part;
 use crate::setup::Place;
 
 /// A point of a device.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Wire {
     /// Bits or registers of Modbus.
     Modbus(Place),
@@ -13,6 +14,8 @@ pub enum Wire {
     Topic(Topic),
     /// A metric of Sparkplug, by name.
     Metric(String),
+    /// A part of a panel.
+    Panel(Part),
 }
 
 /// A topic of MQTT and its messages.
@@ -37,7 +40,7 @@ impl Wire {
     pub fn place(&self) -> Option<Place> {
         match self {
             Wire::Modbus(place) => Some(*place),
-            Wire::Topic(_) | Wire::Metric(_) => None,
+            Wire::Topic(_) | Wire::Metric(_) | Wire::Panel(_) => None,
         }
     }
 }
@@ -49,6 +52,7 @@ impl std::fmt::Display for Wire {
             Wire::Topic(Topic { name, field: None, .. }) => write!(f, "topic({name})"),
             Wire::Topic(Topic { name, field: Some(field), .. }) => write!(f, "topic({name}) {field}"),
             Wire::Metric(name) => write!(f, "metric({name})"),
+            Wire::Panel(part) => part.handle.fmt(f),
         }
     }
 }

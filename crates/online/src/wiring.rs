@@ -4,13 +4,16 @@ use std::collections::BTreeMap;
 
 use g7_engine::Addr;
 use g7_host::Kind;
-use g7_model::{Problem, Span, codes};
-use g7_rig::{Activity, Bench, Item, Role};
+use g7_model::{Nanos, Problem, Span, codes};
+use g7_rig::{Activity, Bench, Item, Role, StepItem};
 
+use crate::chosen::{self, Chosen};
 use crate::driver::Out;
 use crate::messages::{self, Carried, Refused};
+use crate::panel;
 use crate::setup::{
-    Area, At, Bad, Broker, Channel, Device, Encoding, Kind as Way, Literal, Place, Point, Register, Setup,
+    Area, At, Bad, Broker, Channel, Device, Encoding, Handle, Kind as Way, Literal, Place, Point, Register,
+    Setup,
 };
 use crate::value::{Holds, Raw, Scaling};
 use crate::wire::Wire;
@@ -23,6 +26,8 @@ pub struct Wiring {
     pub devices: Vec<Wired>,
     /// Inputs and outputs of the chart that no device has, by name.
     pub unwired: Vec<String>,
+    /// What is recorded.
+    pub history: Option<Chosen>,
 }
 
 /// A device with its channels.
@@ -107,6 +112,9 @@ pub fn wire(bench: &Bench, setup: &Setup) -> (Wiring, Vec<Problem>) {
         .map(|i| i.name.clone())
         .collect();
     wirer.wiring.devices.retain(|d| !(d.inputs.is_empty() && d.outputs.is_empty() && d.good.is_empty()));
+    if let Some(history) = &setup.history {
+        wirer.wiring.history = Some(chosen::choose(bench, history, &mut wirer.problems));
+    }
     (wirer.wiring, wirer.problems)
 }
 
@@ -190,38 +198,19 @@ impl<'a> Wirer<'a> {
 
     /// The variable or the step that a channel shows.
     fn shown(&mut self, channel: &Channel) -> Option<Subject> {
-        let At { value: name, at } = &channel.variable;
-        if let Some(step) = self.bench.steps.iter().find(|s| s.activity().eq_ignore_ascii_case(name)) {
-            let source = match step.id {
-                Activity::Step(id) => Source::Step(id),
-                Activity::Macro(id) => Source::Macro(id),
-            };
-            let (name, ty) = (step.activity(), "BOOL".to_owned());
-            return Some(Subject {
-                name,
+        match named(self.bench, &channel.variable) {
+            Ok(Named::Item(item)) => Some(self.subject(item)),
+            Ok(Named::Step(step)) => Some(Subject {
+                name: step.activity(),
                 kind: Kind::Bool,
-                ty,
+                ty: "BOOL".to_owned(),
                 inverted: false,
                 input: None,
-                source,
+                source: source_of(step),
                 safe: None,
-            });
-        }
-        match self.bench.item(name) {
-            Some(item) if item.role != Role::Plant => Some(self.subject(item)),
-            Some(_) => {
-                self.wrong(
-                    &codes::UNKNOWN_CHANNEL,
-                    *at,
-                    format!("`{name}` belongs to the plant, not to the chart"),
-                );
-                None
-            }
-            None => {
-                let near = self.bench.suggestions(name).trim_start_matches("; ").to_owned();
-                let what = format!("the chart has no variable or step `{name}`");
-                self.wrong(&codes::UNKNOWN_CHANNEL, *at, what).help =
-                    Some(near).filter(|near| !near.is_empty());
+            }),
+            Err(problem) => {
+                self.problems.push(*problem);
                 None
             }
         }
@@ -243,13 +232,21 @@ impl<'a> Wirer<'a> {
         };
         let kind = self.wiring.devices.get(device).map(|d| d.device.kind.clone());
         match (&channel.point, kind) {
+            (_, Some(Way::Panel(_))) => self.panel(channel, subject, device, class),
+            (_, _) if channel.limits.first().is_some() => {
+                let at = channel.limits.first().unwrap_or(channel.at);
+                self.wrong(&codes::WRONG_CHANNEL, at, "only a number of a panel has limits");
+            }
             (Point::Good, _) => self.good(channel, subject, device, class),
             (_, Some(Way::Mqtt(broker))) => self.message(channel, subject, (device, &broker), class),
             (Point::Modbus(register), _) => self.register(channel, subject, device, *register, class),
-            (point @ (Point::Topic(_) | Point::Metric(_)), _) => {
+            (point @ (Point::Topic(_) | Point::Metric(_) | Point::Panel(_)), _) => {
                 let what = format!("`{point}` is no point of `{}`", channel.device.value);
-                self.wrong(&codes::WRONG_CHANNEL, channel.at, what).help =
-                    Some("only a broker has messages: `kind = \"mqtt\"`".to_owned());
+                let help = match point {
+                    Point::Panel(_) => "only a panel has buttons and lamps: `kind = \"panel\"`",
+                    _ => "only a broker has messages: `kind = \"mqtt\"`",
+                };
+                self.wrong(&codes::WRONG_CHANNEL, channel.at, what).help = Some(help.to_owned());
             }
         }
     }
@@ -266,6 +263,29 @@ impl<'a> Wirer<'a> {
                 let what = format!("`good()` is a BOOL that is read, and `{}` is none", subject.name);
                 self.wrong(&codes::WRONG_CHANNEL, channel.at, what);
             }
+        }
+    }
+
+    /// A part of a panel.
+    fn panel(&mut self, channel: &Channel, subject: &Subject, device: usize, class: Class) {
+        let press = match self.wiring.devices.get(device).map(|d| &d.device.kind) {
+            Some(Way::Panel(panel)) => panel.press,
+            Some(_) | None => Nanos::ZERO,
+        };
+        if channel.point == Point::Panel(Handle::Button) && press < self.bench.period {
+            let what = format!(
+                "a press of {} may fall between two scans, one each {}",
+                press.plain(),
+                self.bench.period.plain()
+            );
+            let help =
+                format!("give the panel a longer `press`: `press = \"{}\"`", self.bench.period.plain());
+            self.wrong(&codes::WRONG_CHANNEL, channel.at, what).help = Some(help);
+            return;
+        }
+        match panel::wire(channel, (&subject.name, subject.kind), class == Class::Input) {
+            Ok(wired) => self.connect(channel, subject, device, wired, class),
+            Err(Refused { at, what, help }) => self.wrong(&codes::WRONG_CHANNEL, at, what).help = help,
         }
     }
 
@@ -295,7 +315,7 @@ impl<'a> Wirer<'a> {
             // Several inputs may read one topic.
             Wire::Topic(topic) => (class != Class::Input).then(|| topic.name.clone()),
             Wire::Metric(name) => Some(name.clone()),
-            Wire::Modbus(_) => None,
+            Wire::Modbus(_) | Wire::Panel(_) => None,
         };
         let will = matches!(&wire, Wire::Topic(topic) if topic.will).then(|| WILL.to_owned());
         for place in place.into_iter().chain(will) {
@@ -310,7 +330,9 @@ impl<'a> Wirer<'a> {
     fn is_unused(&mut self, channel: &Channel, item: &Subject, device: usize, place: String) -> bool {
         let of = |k: usize| match self.wiring.devices.get(k).map(|d| &d.device.kind) {
             Some(Way::Mqtt(broker)) => Some((&broker.host, broker.port, &broker.sparkplug)),
-            Some(Way::ModbusTcp(..) | Way::ModbusRtu(..) | Way::ModbusServer(_)) | None => None,
+            Some(Way::ModbusTcp(..) | Way::ModbusRtu(..) | Way::ModbusServer(_) | Way::Panel(_)) | None => {
+                None
+            }
         };
         // Two clients of one broker publish to the same topics, but each has a will of its own.
         let first = (0..device).find(|k| of(*k) == of(device)).unwrap_or(device);
@@ -485,6 +507,39 @@ impl<'a> Wirer<'a> {
             self.wrong(&codes::WRONG_CHANNEL, channel.bad.at, what);
         }
         word.map(WhileBad::Word)
+    }
+}
+
+/// What a name means: a variable of the chart or a step.
+pub(crate) enum Named<'a> {
+    Item(&'a Item),
+    Step(&'a StepItem),
+}
+
+/// The variable of the chart, or the step by its step variable, that has a name.
+pub(crate) fn named<'a>(bench: &'a Bench, name: &At<String>) -> Result<Named<'a>, Box<Problem>> {
+    let At { value: name, at } = name;
+    if let Some(step) = bench.steps.iter().find(|s| s.activity().eq_ignore_ascii_case(name)) {
+        return Ok(Named::Step(step));
+    }
+    let wrong = |what: String| Box::new(Problem::new(&codes::UNKNOWN_CHANNEL, *at, what));
+    match bench.item(name) {
+        Some(item) if item.role != Role::Plant => Ok(Named::Item(item)),
+        Some(_) => Err(wrong(format!("`{name}` belongs to the plant, not to the chart"))),
+        None => {
+            let near = bench.suggestions(name).trim_start_matches("; ").to_owned();
+            let mut problem = wrong(format!("the chart has no variable or step `{name}`"));
+            problem.help = Some(near).filter(|near| !near.is_empty());
+            Err(problem)
+        }
+    }
+}
+
+/// The word that tells the activity of a step.
+pub(crate) fn source_of(step: &StepItem) -> Source {
+    match step.id {
+        Activity::Step(id) => Source::Step(id),
+        Activity::Macro(id) => Source::Macro(id),
     }
 }
 

@@ -5,6 +5,7 @@ use std::net::SocketAddr;
 use g7_model::Nanos;
 
 use super::broker::{self, Broker};
+use super::panel::{self, Panel};
 use super::table::{At, Found, Row, Table};
 
 /// A device.
@@ -29,20 +30,23 @@ pub enum Kind {
     ModbusServer(Listen),
     /// A broker of MQTT 5, which this is a client of.
     Mqtt(Box<Broker>),
+    /// Buttons and lamps on the operator page.
+    Panel(Panel),
 }
 
 impl Kind {
     /// The words of the file.
-    pub const WORDS: [&'static str; 4] = ["modbus-tcp", "modbus-rtu", "modbus-server", "mqtt"];
+    pub const WORDS: [&'static str; 5] = ["modbus-tcp", "modbus-rtu", "modbus-server", "mqtt", "panel"];
 
     /// Its word in the file.
     pub fn word(&self) -> &'static str {
-        let [tcp, rtu, server, mqtt] = Kind::WORDS;
+        let [tcp, rtu, server, mqtt, panel] = Kind::WORDS;
         match self {
             Kind::ModbusTcp(..) => tcp,
             Kind::ModbusRtu(..) => rtu,
             Kind::ModbusServer(_) => server,
             Kind::Mqtt(_) => mqtt,
+            Kind::Panel(_) => panel,
         }
     }
 
@@ -53,6 +57,7 @@ impl Kind {
             Kind::ModbusRtu(serial, modbus) => format!("{} unit {}", serial.port, modbus.unit),
             Kind::ModbusServer(listen) => listen.address.to_string(),
             Kind::Mqtt(broker) => format!("{}:{}", broker.host, broker.port),
+            Kind::Panel(_) => "the operator page".to_owned(),
         }
     }
 
@@ -158,6 +163,7 @@ pub(super) fn read(row: &Row<'_>, found: &mut Found) -> Option<Device> {
         }
         "modbus-server" => listen(&mut table, found).map(Kind::ModbusServer),
         "mqtt" => broker::read(&mut table, found).map(|broker| Kind::Mqtt(Box::new(broker))),
+        "panel" => Some(Kind::Panel(panel::read(&mut table, found))),
         _ => {
             let known: Vec<String> = Kind::WORDS.iter().map(|word| format!("\"{word}\"")).collect();
             found.wrong(kind.at, format!("no kind of device is called \"{}\"", kind.value)).help =
@@ -166,7 +172,7 @@ pub(super) fn read(row: &Row<'_>, found: &mut Found) -> Option<Device> {
         }
     };
     let timing = match &kind {
-        Some(Kind::ModbusServer(_)) => SERVER,
+        Some(Kind::ModbusServer(_) | Kind::Panel(_)) => SERVER,
         Some(Kind::Mqtt(_)) => timing(&mut table, found, BROKER),
         Some(Kind::ModbusTcp(..) | Kind::ModbusRtu(..)) | None => {
             timing(&mut table, found, Timing::default())
@@ -259,7 +265,7 @@ fn timing(table: &mut Table<'_>, found: &mut Found, usual: Timing) -> Timing {
 pub(super) fn one_line_each(devices: &[Device], found: &mut Found) {
     let lines = devices.iter().filter_map(|d| match &d.kind {
         Kind::ModbusRtu(serial, _) => Some((d, serial)),
-        Kind::ModbusTcp(..) | Kind::ModbusServer(_) | Kind::Mqtt(_) => None,
+        Kind::ModbusTcp(..) | Kind::ModbusServer(_) | Kind::Mqtt(_) | Kind::Panel(_) => None,
     });
     for (k, (device, serial)) in lines.clone().enumerate() {
         let other = lines.clone().take(k).find(|(_, s)| s.port == serial.port && *s != serial);
@@ -280,7 +286,7 @@ pub(super) fn one_line_each(devices: &[Device], found: &mut Found) {
 pub(super) fn one_address_each(devices: &[Device], found: &mut Found) {
     let servers = devices.iter().filter_map(|d| match &d.kind {
         Kind::ModbusServer(listen) => Some((d, listen.address)),
-        Kind::ModbusTcp(..) | Kind::ModbusRtu(..) | Kind::Mqtt(_) => None,
+        Kind::ModbusTcp(..) | Kind::ModbusRtu(..) | Kind::Mqtt(_) | Kind::Panel(_) => None,
     });
     for (k, (device, address)) in servers.clone().enumerate() {
         if let Some((first, _)) = servers.clone().take(k).find(|(_, other)| *other == address) {

@@ -20,8 +20,14 @@
 //! Reading knows nothing of a chart; `wiring` holds the two together.
 
 mod broker;
+pub mod catalogue;
 mod device;
+mod edit;
+mod history;
+mod outline;
+mod panel;
 mod point;
+mod server;
 mod table;
 
 use std::net::SocketAddr;
@@ -33,7 +39,13 @@ pub(crate) use broker::publishable;
 pub use broker::{Broker, Message, Origin, Password, Secret, Sparkplug};
 pub(crate) use device::SERVER;
 pub use device::{Device, Kind, Listen, Modbus, Parity, Serial, Tcp, Timing};
+pub use edit::{Change, Plain, Uneditable, edit};
+pub use history::History;
+pub(crate) use history::SIGNALS;
+pub use outline::{Entry, outline};
+pub use panel::{Handle, Limits, Panel};
 pub use point::{Area, Encoding, Place, Point, Register};
+pub use server::{LogFile, Server};
 pub use table::At;
 
 use table::{Found, Row, Table};
@@ -46,6 +58,8 @@ const MOST: usize = 4 << 20;
 pub struct Setup {
     /// How the controller runs.
     pub controller: Controller,
+    /// Who may use the page of the operator.
+    pub server: Server,
     /// The devices, in the order of the file.
     pub devices: Vec<Device>,
     /// The inputs of the chart that are wired.
@@ -54,6 +68,8 @@ pub struct Setup {
     pub outputs: Vec<Channel>,
     /// Variables and steps that masters may read.
     pub shown: Vec<Channel>,
+    /// What is recorded.
+    pub history: Option<History>,
 }
 
 /// The policy for kept values of another program.
@@ -85,6 +101,8 @@ pub struct Controller {
     pub priority: Option<At<i64>>,
     /// The address of this machine at which a monitoring system asks.
     pub metrics: Option<At<SocketAddr>>,
+    /// The log of events and deeds.
+    pub log: Option<LogFile>,
 }
 
 impl Default for Controller {
@@ -97,6 +115,7 @@ impl Default for Controller {
             run: true,
             priority: None,
             metrics: None,
+            log: None,
         }
     }
 }
@@ -143,6 +162,8 @@ pub struct Channel {
     pub bad: At<Bad>,
     /// How the messages of a topic are used.
     pub message: Message,
+    /// The numbers that a person can enter on a panel.
+    pub limits: Limits,
 }
 
 /// Reads an io file. What is wrong is left out and told.
@@ -178,7 +199,7 @@ pub fn read_passwords(
 ) -> Vec<Problem> {
     let brokers = setup.devices.iter_mut().filter_map(|device| match &mut device.kind {
         Kind::Mqtt(broker) => Some(broker.as_mut()),
-        Kind::ModbusTcp(..) | Kind::ModbusRtu(..) | Kind::ModbusServer(_) => None,
+        Kind::ModbusTcp(..) | Kind::ModbusRtu(..) | Kind::ModbusServer(_) | Kind::Panel(_) => None,
     });
     broker::read_passwords(brokers, from)
 }
@@ -187,6 +208,7 @@ fn setup(table: &DeTable<'_>, found: &mut Found) -> Setup {
     let top = Span { file: found.file, start: 0, end: 0 };
     let mut top = Table::new(table, top, "an io file");
     let controller = top.table(found, "controller").map(|table| controller(table, found));
+    let server = top.table(found, "server").map(|table| server::server(table, found)).unwrap_or_default();
     let rows = top.rows(found, "devices");
     let devices: Vec<Device> = rows.iter().filter_map(|row| device::read(row, found)).collect();
     device::one_line_each(&devices, found);
@@ -197,8 +219,9 @@ fn setup(table: &DeTable<'_>, found: &mut Found) -> Setup {
     let outputs = rows.iter().filter_map(|row| channel(row, false, found)).collect();
     let rows = top.rows(found, "shown");
     let shown = rows.iter().filter_map(|row| channel(row, false, found)).collect();
+    let history = top.table(found, "history").and_then(|table| history::history(table, found));
     top.end(found);
-    Setup { controller: controller.unwrap_or_default(), devices, inputs, outputs, shown }
+    Setup { controller: controller.unwrap_or_default(), server, devices, inputs, outputs, shown, history }
 }
 
 fn controller(mut table: Table<'_>, found: &mut Found) -> Controller {
@@ -217,6 +240,7 @@ fn controller(mut table: Table<'_>, found: &mut Found) -> Controller {
         run: table.word(found, "start", &[("run", true), ("stop", false)]).map_or(usual.run, |run| run.value),
         priority: table.whole(found, "priority", 1..=99),
         metrics: metrics(&mut table, found),
+        log: server::log(&mut table, found),
     };
     table.end(found);
     read
@@ -254,6 +278,7 @@ fn channel(row: &Row<'_>, input: bool, found: &mut Found) -> Option<Channel> {
             offset: None,
             bad,
             message,
+            limits: Limits::default(),
         });
     }
     let Some(table) = row.value.as_table() else {
@@ -266,6 +291,7 @@ fn channel(row: &Row<'_>, input: bool, found: &mut Found) -> Option<Channel> {
     let encoding = table.word(found, "as", Encoding::WORDS);
     let (scale, offset) = (table.number(found, "scale"), table.number(found, "offset"));
     let message = broker::message(&mut table, input, found);
+    let limits = if input { panel::limits(&mut table, found) } else { Limits::default() };
     let bad = if input { table.value(found, "bad") } else { None };
     let bad = match bad {
         None => At::new(Bad::Hold, row.at),
@@ -278,7 +304,7 @@ fn channel(row: &Row<'_>, input: bool, found: &mut Found) -> Option<Channel> {
     table.end(found);
     let text = text?;
     let (device, point) = point::read(&text.value, text.at, found)?;
-    Some(Channel { variable, device, point, at: text.at, encoding, scale, offset, bad, message })
+    Some(Channel { variable, device, point, at: text.at, encoding, scale, offset, bad, message, limits })
 }
 
 /// Reads the policy for an input whose value is bad.
