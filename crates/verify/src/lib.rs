@@ -48,6 +48,6 @@ pub use layer::{Budget, Layer};
 pub use look::replay;
 pub use model::Model;
 pub use question::{Claim, Query, Question};
-pub use search::Explicit;
+pub use search::{Explicit, Tried, watch};
 pub use values::{Values, values};
 pub use verdict::{Certificate, Evidence, Open, Run, Verdict};

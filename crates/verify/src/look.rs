@@ -11,7 +11,7 @@ use crate::search::{Scanned, shows};
 use crate::verdict::Run;
 
 /// Passes of a scan that are looked at.
-const PASSES: u32 = 256;
+pub(crate) const PASSES: u32 = 256;
 
 /// What the passes of a scan showed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -11,7 +11,7 @@ use g7_engine::{Fault, FaultKind, Program, Report, State, StepId, scan};
 use crate::asked::{Asking, Places};
 use crate::explore::Move;
 use crate::layer::{Budget, Layer};
-use crate::look::{Passes, allowed, passes, replay, sides};
+use crate::look::{PASSES, Passes, allowed, passes, replay, sides};
 use crate::model::Model;
 use crate::monitor::{IDLE, has_memory, is_of_scans, judge};
 use crate::question::{Claim, Question};
@@ -82,7 +82,33 @@ pub(crate) fn shows(p: &Program, claim: &Claim, scanned: &Scanned<'_>) -> bool {
     }
 }
 
+/// Which inputs are tried in a state.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Tried {
+    /// Those that can matter there.
+    Matter,
+    /// All, which takes longer and finds no more.
+    All,
+}
+
+/// Answers questions like [`Explicit`], with a choice of the inputs that are tried, and shows
+/// each scan: the number of scans before it, and the state behind it. For tests.
+pub fn watch(
+    model: &Model<'_>,
+    questions: &[Question],
+    budget: &Budget<'_>,
+    tried: Tried,
+    look: &mut dyn FnMut(usize, &State),
+) -> Vec<(usize, Verdict)> {
+    let mut search = Search::new(model, budget, questions.iter().enumerate().collect());
+    search.tried = tried;
+    search.look = Some(look);
+    search.run()
+}
+
 struct Search<'a> {
+    tried: Tried,
+    look: Option<&'a mut dyn FnMut(usize, &State)>,
     model: &'a Model<'a>,
     p: &'a Program,
     budget: &'a Budget<'a>,
@@ -117,6 +143,8 @@ impl<'a> Search<'a> {
     fn new(model: &'a Model<'a>, budget: &'a Budget<'a>, open: Vec<(usize, &'a Question)>) -> Search<'a> {
         let p: &Program = &model.compiled.program;
         Search {
+            tried: Tried::Matter,
+            look: None,
             model,
             p,
             budget,
@@ -215,6 +243,9 @@ impl<'a> Search<'a> {
             self.see_passes(at, other, own, &m, now);
             let active: Vec<StepId> = state.active().collect();
             let report = scan(self.p, state, &m.inputs, now);
+            if let Some(look) = &mut self.look {
+                look(self.depth, state);
+            }
             self.see(at, &Scanned { state, report }, &m);
             let Ok(report) = report else {
                 on |= self.memory.is_none();
@@ -252,7 +283,10 @@ impl<'a> Search<'a> {
 
     /// The inputs that are tried in a state; leaves a note where they are not all that matter.
     fn vectors(&mut self, asked: &Places, last: Vec<u64>) -> Vec<Vec<u64>> {
-        let places: Vec<usize> = self.asking.matter(asked).iter().collect();
+        let places: Vec<usize> = match self.tried {
+            Tried::Matter => self.asking.matter(asked).iter().collect(),
+            Tried::All => (0..self.asking.count()).collect(),
+        };
         let tried = |i: usize| self.model.inputs.get(i).map_or(&[][..], |v| &v.tried);
         let count = places.iter().fold(1usize, |n, i| n.saturating_mul(tried(*i).len().max(1)));
         let set = |old: &[u64], i: usize, value: u64| {
@@ -450,13 +484,17 @@ impl<'a> Search<'a> {
     fn close(&mut self) {
         let certificate = Certificate::Search { states: self.store.len(), scans: self.scans };
         let cut = ("a scan does more than it reports".to_owned(), String::new());
+        let cut_passes = (
+            format!("a scan has more than {PASSES} passes"),
+            "make every evolution end first, with an edge (`↑a`) or a step that waits".to_owned(),
+        );
         for (i, q) in std::mem::take(&mut self.open) {
             let hidden = match &q.claim {
-                Claim::Active(_) | Claim::Clears(_) | Claim::Runs(_) => self.cut,
-                Claim::NoConflict | Claim::NoUnsafe => self.cut_passes,
-                _ => false,
+                Claim::Active(_) | Claim::Clears(_) | Claim::Runs(_) => self.cut.then_some(&cut),
+                Claim::NoConflict | Claim::NoUnsafe => self.cut_passes.then_some(&cut_passes),
+                _ => None,
             };
-            let hole = self.hole.clone().or(hidden.then(|| cut.clone()));
+            let hole = self.hole.as_ref().or(hidden).cloned();
             let verdict = match hole {
                 Some((reason, help)) => Verdict::Open(self.so_far(reason, help)),
                 None if q.claim.is_of_some_run() => {

@@ -23,23 +23,29 @@ fn reason(a: &Answered) -> String {
     match &a.verdict {
         Verdict::Open(open) => {
             format!(
-                "no run of up to {} scans decides it ({} states): {}",
-                open.scans, open.states, open.reason
+                "no run of up to {} decides it ({} visited): {}",
+                count(open.scans, "scan"),
+                count(open.states, "state"),
+                open.reason
             )
         }
         Verdict::Proved(e) | Verdict::Refuted(e) => match e {
             Evidence::Run(run) => {
                 let fault = run.fault.map_or(String::new(), |f| format!(", with a fault: {}", f.kind));
-                format!("shown by a run of {} scans, {}{fault}", run.moves.len(), a.time.plain())
+                format!("shown by a run of {}, {}{fault}", count(run.moves.len(), "scan"), a.time.plain())
             }
             Evidence::Certificate(Certificate::Search { states, scans }) => {
-                format!("all {states} states were visited by {scans} scans")
+                format!("all of {} visited by {}", count(*states, "state"), count(*scans, "scan"))
             }
             Evidence::Certificate(Certificate::Invariant { clauses }) => {
                 format!("an invariant of {clauses} clauses, which was checked")
             }
         },
     }
+}
+
+fn count(n: usize, what: &str) -> String {
+    format!("{n} {what}{}", if n == 1 { "" } else { "s" })
 }
 
 fn help(a: &Answered) -> String {
