@@ -93,3 +93,24 @@ fn inputs_that_are_left_out_make_no_difference() {
     println!("{compared} situations with outputs, {answered} answers");
     assert!(compared > 2000 && answered > 300, "{compared} situations, {answered} answers");
 }
+
+/// Steps that become active with others, by links and by orders, read too in the same scan.
+#[test]
+fn enclosed_and_forced_steps_are_followed() {
+    let base = "profile iec60848\ninput a, b : BOOL\noutput q : BOOL\n\
+        chart G { step 10 LINK step 11 { N q } 10 -> 11 when b }\n";
+    let enclosed =
+        "chart M { initial step 1 enclosing step 2 { enclose G } 1 -> 2 when a 2 -> 1 when not a }\n";
+    let forced = "chart M { initial step 1 step 2 { force G := {10} } step 3 1 -> 2 when a 2 -> 3 when not a \
+        3 -> 1 when a and b }\n";
+    for (link, order) in [("*", enclosed), ("", forced)] {
+        let text = base.replace("LINK", link) + order;
+        let (document, problems) = g7_syntax::parse(&text, Default::default());
+        assert!(problems.is_empty(), "{problems:?}");
+        let (asked, problems) = ask(&document, None);
+        let asked = asked.unwrap_or_else(|| panic!("{problems:?}"));
+        let model = Model::new(&asked.compiled, Vec::new());
+        let both = [Tried::All, Tried::Matter].map(|tried| levels(&asked, &model, tried));
+        assert_eq!(both[0], both[1], "{text}");
+    }
+}
