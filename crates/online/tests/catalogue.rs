@@ -142,7 +142,9 @@ fn a_setting_has_the_limits_the_words_and_the_default_of_its_row() {
         }
     }
     for setting in CONTROLLER {
-        let with = |value: &str| format!("[controller]\n{} = {value}\n", setting.key);
+        // What is said of a log needs one.
+        let log = if setting.key.starts_with("log-") { "log = 'a.log'\n" } else { "" };
+        let with = |value: &str| format!("[controller]\n{log}{} = {value}\n", setting.key);
         let (within, beyond) = limits(setting.form);
         for value in within.iter().chain([&fitting(setting)]) {
             assert_eq!(problems(&with(value)), [""; 0], "{} = {value}", setting.key);

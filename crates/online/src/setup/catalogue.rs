@@ -181,6 +181,9 @@ pub const CONTROLLER: &[Setting] = &[
         Usual::None("127.0.0.1:9464"),
         "an address of this machine where a monitoring system asks",
     ),
+    setting("log", Form::Text, Usual::None("sorter.log"), "the file of the log of events and deeds"),
+    setting("log-days", Form::Whole(1, 36_500), Usual::None("400"), "rows of the log that are older go"),
+    setting("log-mib", Form::Whole(1, 100_000), Usual::None("100"), "the greatest size of the log, in MiB"),
 ];
 
 const fn setting(key: &'static str, form: Form, usual: Usual, about: &'static str) -> Setting {
