@@ -58,7 +58,7 @@ pub(crate) struct Station {
     pub(crate) historian: Option<Historian>,
 }
 
-/// What the io file says of those who use the controller, read before anything else: a log that cannot be
+/// The settings of those who use the controller, from the io file, read before anything else: a log that cannot be
 /// written is found before anything moves.
 pub(crate) struct Settings {
     pub(crate) setup: Setup,

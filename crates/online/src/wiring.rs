@@ -5,12 +5,13 @@ use std::collections::BTreeMap;
 use g7_engine::Addr;
 use g7_host::Kind;
 use g7_model::{Nanos, Problem, Span, codes};
-use g7_rig::{Activity, Bench, Item, Role, StepItem};
+use g7_rig::{Bench, Item, Role};
 
 use crate::chosen::{self, Chosen};
 use crate::driver::Out;
+use crate::handles;
 use crate::messages::{self, Carried, Refused};
-use crate::panel;
+use crate::names::{Named, named, source_of};
 use crate::setup::{
     Area, At, Bad, Broker, Channel, Device, Encoding, Handle, Kind as Way, Literal, Place, Point, Register,
     Setup,
@@ -26,7 +27,7 @@ pub struct Wiring {
     pub devices: Vec<Wired>,
     /// Inputs and outputs of the chart that no device has, by name.
     pub unwired: Vec<String>,
-    /// What is recorded.
+    /// The signals that are recorded.
     pub history: Option<Chosen>,
 }
 
@@ -283,7 +284,7 @@ impl<'a> Wirer<'a> {
             self.wrong(&codes::WRONG_CHANNEL, channel.at, what).help = Some(help);
             return;
         }
-        match panel::wire(channel, (&subject.name, subject.kind), class == Class::Input) {
+        match handles::wire(channel, (&subject.name, subject.kind), class == Class::Input) {
             Ok(wired) => self.connect(channel, subject, device, wired, class),
             Err(Refused { at, what, help }) => self.wrong(&codes::WRONG_CHANNEL, at, what).help = help,
         }
@@ -507,39 +508,6 @@ impl<'a> Wirer<'a> {
             self.wrong(&codes::WRONG_CHANNEL, channel.bad.at, what);
         }
         word.map(WhileBad::Word)
-    }
-}
-
-/// What a name means: a variable of the chart or a step.
-pub(crate) enum Named<'a> {
-    Item(&'a Item),
-    Step(&'a StepItem),
-}
-
-/// The variable of the chart, or the step by its step variable, that has a name.
-pub(crate) fn named<'a>(bench: &'a Bench, name: &At<String>) -> Result<Named<'a>, Box<Problem>> {
-    let At { value: name, at } = name;
-    if let Some(step) = bench.steps.iter().find(|s| s.activity().eq_ignore_ascii_case(name)) {
-        return Ok(Named::Step(step));
-    }
-    let wrong = |what: String| Box::new(Problem::new(&codes::UNKNOWN_CHANNEL, *at, what));
-    match bench.item(name) {
-        Some(item) if item.role != Role::Plant => Ok(Named::Item(item)),
-        Some(_) => Err(wrong(format!("`{name}` belongs to the plant, not to the chart"))),
-        None => {
-            let near = bench.suggestions(name).trim_start_matches("; ").to_owned();
-            let mut problem = wrong(format!("the chart has no variable or step `{name}`"));
-            problem.help = Some(near).filter(|near| !near.is_empty());
-            Err(problem)
-        }
-    }
-}
-
-/// The word that tells the activity of a step.
-pub(crate) fn source_of(step: &StepItem) -> Source {
-    match step.id {
-        Activity::Step(id) => Source::Step(id),
-        Activity::Macro(id) => Source::Macro(id),
     }
 }
 
