@@ -20,7 +20,7 @@ const STATES: usize = 400;
 /// A situation with the outputs, and how many scans come before.
 type Seen = BTreeSet<(usize, Vec<u32>, Vec<u64>)>;
 
-/// What a search over all runs sees, and how many of its levels are complete.
+/// The sights of a search over all runs, and how many of its levels are complete.
 fn levels(asked: &Asked, model: &Model<'_>, tried: Tried) -> (Seen, usize) {
     let outputs: Vec<_> =
         asked.compiled.symbols.variables.iter().filter(|v| v.class == VarClass::Output).collect();

@@ -69,6 +69,7 @@ const ALLOWED: &[Arrows] = &[
     (
         "g7",
         &[
+            "g7-verify",
             "g7-model",
             "g7-syntax",
             "g7-exchange",

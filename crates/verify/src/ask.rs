@@ -13,7 +13,7 @@ pub struct Asked {
     pub compiled: Compiled,
     /// The questions, the author's last, in the order of the text.
     pub questions: Vec<Question>,
-    /// What the environment keeps.
+    /// The conditions that the environment keeps.
     pub assume: Vec<Query>,
 }
 

@@ -2,7 +2,7 @@
 //!
 //! From the active steps all transitions are followed that their situation enables, whatever
 //! their receptivities, and from the steps behind these again, as far as one scan can go.
-//! What all these parts read is more than what the scan reads, never less.
+//! These parts read more than the scan reads, never less.
 
 use g7_engine::{Extra, NONE, Op, Program, Rows, Situation, State, StepId, Subject, Tables, WatchId};
 
@@ -40,7 +40,7 @@ struct Arc {
     reads: Places,
 }
 
-/// What each part of a program reads.
+/// The inputs that each part of a program reads.
 pub(crate) struct Asking {
     count: usize,
     arcs: Vec<Arc>,
@@ -173,7 +173,7 @@ fn extra(t: &Tables, step: u32) -> Option<&Extra> {
     t.steps.get(step as usize).and_then(|s| t.extras.get(s.extra as usize))
 }
 
-/// What reads while a step is active, as it becomes so and as it ceases to be.
+/// The parts that read while a step is active, as it becomes so and as it ceases to be.
 fn of_step(t: &Tables, step: u32) -> Vec<Subject> {
     let Some(e) = extra(t, step) else { return Vec::new() };
     let rows = |r: Rows| r.start as usize..r.end as usize;

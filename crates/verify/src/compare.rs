@@ -21,7 +21,7 @@ use crate::verdict::Open;
 /// Most combinations of inputs that are tried in one state.
 const MOST: usize = 1 << 16;
 
-/// What is compared.
+/// The charts and signals that are compared.
 pub struct Compare<'c> {
     /// The two charts.
     pub charts: [&'c Compiled; 2],
@@ -29,7 +29,7 @@ pub struct Compare<'c> {
     pub situations: bool,
 }
 
-/// What the last scan of a run shows.
+/// The difference that the last scan of a run shows.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Difference {
     /// An output has two values.
@@ -54,7 +54,7 @@ pub enum Equality {
     Apart {
         /// The moves of each chart.
         moves: [Vec<Move>; 2],
-        /// What the last scan shows first.
+        /// The first difference in the last scan.
         what: Difference,
     },
     /// Not decided.

@@ -1,4 +1,4 @@
-//! What all layers have in common: they answer what they can of one list of questions.
+//! The common side of all layers: they answer what they can of one list of questions.
 
 use crate::model::Model;
 use crate::question::Question;

@@ -1,19 +1,18 @@
-//! What the passes of a scan show, and runs repeated with `engine::scan`.
+//! The sights of the passes of a scan, and runs repeated with `engine::scan`.
 
-use g7_engine::{Program, State, Tables, begin, enabled, pass, scan};
+use g7_engine::{Fault, FaultKind, Program, Report, State, Tables, begin, enabled, pass, scan};
 
 use crate::asked::Asking;
 use crate::explore::Move;
 use crate::model::Model;
 use crate::monitor::{IDLE, has_memory, holds, is_of_scans, judge};
 use crate::question::Claim;
-use crate::search::{Scanned, shows};
 use crate::verdict::Run;
 
 /// Passes of a scan that are looked at.
 pub(crate) const PASSES: u32 = 256;
 
-/// What the passes of a scan showed.
+/// The sights of the passes of a scan.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Passes {
     /// Two clearable transitions shared a preceding step, and nothing written chooses.
@@ -129,4 +128,32 @@ pub fn replay(model: &Model<'_>, claim: &Claim, run: &Run) -> bool {
         }
     }
     if matches!(claim, Claim::LeadsTo { .. }) { has_memory(claim) && memory != IDLE } else { last }
+}
+
+/// The state behind a scan, with its report.
+pub(crate) struct Scanned<'s> {
+    pub(crate) state: &'s State,
+    pub(crate) report: Result<Report, Fault>,
+}
+
+/// True if a scan shows what the claim is about. For claims that one scan can show as a whole.
+pub(crate) fn shows(p: &Program, claim: &Claim, scanned: &Scanned<'_>) -> bool {
+    let (t, s) = (p.tables(), scanned.state);
+    let fault = scanned.report.err().map(|f| f.kind);
+    match claim {
+        // A step counts too if it was active only within the scan.
+        Claim::Active(step) => {
+            s.is_active(*step) || s.cleared().iter().any(|r| sides(t, *r).1.contains(&step.0))
+        }
+        Claim::Clears(rank) => s.cleared().contains(rank),
+        Claim::Runs(rank) => s.ran().contains(rank),
+        Claim::On(addr) => fault.is_none() && s.word(*addr) != 0,
+        Claim::NoInstability => matches!(fault, Some(FaultKind::Unstable { .. } | FaultKind::Bound)),
+        Claim::NoOpposedOrders => matches!(fault, Some(FaultKind::Forcing { .. })),
+        Claim::NoOpposedWrites => scanned.report.is_ok_and(|r| r.conflict.is_some()),
+        Claim::NoFault => fault.is_some_and(|f| {
+            !matches!(f, FaultKind::Unstable { .. } | FaultKind::Bound | FaultKind::Forcing { .. })
+        }),
+        _ => false,
+    }
 }

@@ -13,7 +13,7 @@ use crate::values::{Values, values};
 pub struct Model<'c> {
     /// The chart, compiled with the conditions of all questions and assumptions.
     pub compiled: &'c Compiled,
-    /// What the environment keeps.
+    /// The conditions that the environment keeps.
     pub assume: Vec<Query>,
     /// Time between two scans, ns.
     pub period: i64,

@@ -8,10 +8,10 @@ use crate::question::{Claim, Query};
 /// Nothing is remembered.
 pub(crate) const IDLE: u64 = 0;
 
-/// What a scan showed.
+/// The judgement of a scan.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Seen {
-    /// What is to be remembered.
+    /// The word to be remembered.
     pub(crate) memory: u64,
     /// The scan breaks the claim; for [`Claim::Reachable`], it shows it.
     pub(crate) hit: bool,

@@ -22,7 +22,7 @@ pub struct Question {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Query(pub u32);
 
-/// What a question claims. "At a scan" means at the end of it; "some run" and "each run" are
+/// The claim of a question. "At a scan" means at the end of it; "some run" and "each run" are
 /// those of the [`crate::Model`].
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Claim {
@@ -72,21 +72,21 @@ pub enum Claim {
     /// From a scan with `from` on, up to but without the first scan with `to`, `holds` is
     /// true at each scan. A scan with both ends it.
     Until {
-        /// What begins it.
+        /// The condition that begins it.
         from: Query,
-        /// What ends it.
+        /// The condition that ends it.
         to: Query,
-        /// What holds meanwhile.
+        /// The condition that holds meanwhile.
         holds: Query,
     },
     /// From a scan with `from` on, up to but without the next scan with `to`, `never` is true
     /// at no scan. If `to` does not come, nothing is claimed.
     Between {
-        /// What begins it.
+        /// The condition that begins it.
         from: Query,
-        /// What ends it.
+        /// The condition that ends it.
         to: Query,
-        /// What does not hold meanwhile.
+        /// The condition that does not hold meanwhile.
         never: Query,
     },
     /// When `cause` holds at a scan, `effect` holds at that scan or a later one, if every

@@ -6,12 +6,12 @@
 //! states follow the order in which they were found, so the first run that shows
 //! something is a shortest one.
 
-use g7_engine::{Fault, FaultKind, Program, Report, State, StepId, scan};
+use g7_engine::{Fault, Program, State, StepId, scan};
 
 use crate::asked::{Asking, Places};
 use crate::explore::Move;
 use crate::layer::{Budget, Layer};
-use crate::look::{PASSES, Passes, allowed, passes, replay, sides};
+use crate::look::{PASSES, Passes, Scanned, allowed, passes, replay, shows};
 use crate::model::Model;
 use crate::monitor::{IDLE, has_memory, is_of_scans, judge};
 use crate::question::{Claim, Question};
@@ -54,34 +54,6 @@ impl Layer for Explicit {
     }
 }
 
-/// The state behind a scan, with its report.
-pub(crate) struct Scanned<'s> {
-    pub(crate) state: &'s State,
-    pub(crate) report: Result<Report, Fault>,
-}
-
-/// True if a scan shows what the claim is about. For claims that one scan can show as a whole.
-pub(crate) fn shows(p: &Program, claim: &Claim, scanned: &Scanned<'_>) -> bool {
-    let (t, s) = (p.tables(), scanned.state);
-    let fault = scanned.report.err().map(|f| f.kind);
-    match claim {
-        // A step counts too if it was active only within the scan.
-        Claim::Active(step) => {
-            s.is_active(*step) || s.cleared().iter().any(|r| sides(t, *r).1.contains(&step.0))
-        }
-        Claim::Clears(rank) => s.cleared().contains(rank),
-        Claim::Runs(rank) => s.ran().contains(rank),
-        Claim::On(addr) => fault.is_none() && s.word(*addr) != 0,
-        Claim::NoInstability => matches!(fault, Some(FaultKind::Unstable { .. } | FaultKind::Bound)),
-        Claim::NoOpposedOrders => matches!(fault, Some(FaultKind::Forcing { .. })),
-        Claim::NoOpposedWrites => scanned.report.is_ok_and(|r| r.conflict.is_some()),
-        Claim::NoFault => fault.is_some_and(|f| {
-            !matches!(f, FaultKind::Unstable { .. } | FaultKind::Bound | FaultKind::Forcing { .. })
-        }),
-        _ => false,
-    }
-}
-
 /// Which inputs are tried in a state.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Tried {
@@ -106,9 +78,12 @@ pub fn watch(
     search.run()
 }
 
+/// Is shown each scan.
+type Look<'a> = &'a mut dyn FnMut(usize, &State);
+
 struct Search<'a> {
     tried: Tried,
-    look: Option<&'a mut dyn FnMut(usize, &State)>,
+    look: Option<Look<'a>>,
     model: &'a Model<'a>,
     p: &'a Program,
     budget: &'a Budget<'a>,

@@ -15,12 +15,12 @@ pub enum Verdict {
     Open(Open),
 }
 
-/// What shows an answer.
+/// The evidence of an answer.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Evidence {
     /// A run that does it (a proof that something can be), or that breaks the claim.
     Run(Run),
-    /// What holds in all runs.
+    /// A proof that holds for all runs.
     Certificate(Certificate),
 }
 
@@ -33,7 +33,7 @@ pub struct Run {
     pub fault: Option<Fault>,
 }
 
-/// What holds in all runs.
+/// A proof that holds for all runs.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Certificate {
     /// All states were visited by all moves that matter.
@@ -57,8 +57,8 @@ pub struct Open {
     pub scans: usize,
     /// Number of states that were visited.
     pub states: usize,
-    /// What was in the way, a sentence.
+    /// The reason, a sentence.
     pub reason: String,
-    /// What would help, a sentence; empty if nothing is known.
+    /// The way out, a sentence; empty if nothing is known.
     pub help: String,
 }

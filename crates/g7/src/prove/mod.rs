@@ -10,33 +10,19 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 
 use g7_host::{Clock, WallClock};
-use g7_model::{Nanos, ProfileName};
+use g7_model::Nanos;
 use g7_rig::Source;
 use g7_verify::{Budget, Evidence, Explicit, Layer, Model, Question, Verdict, ask};
 
 pub(crate) use apart::compare;
+
+use output::Answered;
 
 use crate::cli::{Format, Prove};
 use crate::failure::{self, Failure};
 use crate::message::talk;
 use crate::report::{self, Tally};
 use crate::{files, sources};
-
-/// An answered question, ready to be printed.
-pub(crate) struct Answered {
-    /// `path:line:column` of what is asked about.
-    pub(crate) place: String,
-    /// The claim in words.
-    pub(crate) claim: String,
-    /// The author wrote it.
-    pub(crate) own: bool,
-    /// The answer.
-    pub(crate) verdict: Verdict,
-    /// The run that shows it, drawn; empty without one.
-    pub(crate) chronogram: String,
-    /// The time that the run takes.
-    pub(crate) time: Nanos,
-}
 
 pub(crate) fn prove(args: &Prove) -> Result<failure::Verdict, Failure> {
     let paths = files::all(&args.paths)?;
@@ -106,10 +92,4 @@ fn stop(time: Nanos) -> Result<Arc<dyn Fn() -> bool + Send + Sync>, Failure> {
     Ok(Arc::new(move || {
         pressed.load(Ordering::Relaxed) || clock.lock().unwrap_or_else(PoisonError::into_inner).now() >= time
     }))
-}
-
-/// A bench of the charts alone, or the problems of the file on the standard error.
-fn bench(source: &Source, profile: Option<ProfileName>) -> Result<Option<g7_rig::Bench>, Failure> {
-    let options = g7_rig::Options { profile, plant: Some("none"), ..g7_rig::Options::default() };
-    Ok(g7_rig::build(source, &options)?.0)
 }

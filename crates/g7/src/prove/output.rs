@@ -2,13 +2,30 @@
 
 use std::io::Write;
 
+use g7_model::Nanos;
 use g7_verify::{Certificate, Evidence, Verdict};
 use serde_json::{Value, json};
 
-use super::{Answered, words};
+use super::words;
 use crate::failure::Failure;
 use crate::style;
 use crate::testing::escape;
+
+/// An answered question, ready to be printed.
+pub(crate) struct Answered {
+    /// `path:line:column` of what is asked about.
+    pub(crate) place: String,
+    /// The claim in words.
+    pub(crate) claim: String,
+    /// The author wrote it.
+    pub(crate) own: bool,
+    /// The answer.
+    pub(crate) verdict: Verdict,
+    /// The run that shows it, drawn; empty without one.
+    pub(crate) chronogram: String,
+    /// The time that the run takes.
+    pub(crate) time: Nanos,
+}
 
 fn word(verdict: &Verdict) -> &'static str {
     match verdict {
@@ -18,7 +35,7 @@ fn word(verdict: &Verdict) -> &'static str {
     }
 }
 
-/// What shows the answer, in one line.
+/// The evidence of an answer, in one line.
 fn reason(a: &Answered) -> String {
     match &a.verdict {
         Verdict::Open(open) => {

@@ -19,7 +19,7 @@ pub(super) struct Drawer {
 
 impl Drawer {
     pub(super) fn new(source: &Source, profile: Option<ProfileName>) -> Result<Option<Drawer>, Failure> {
-        Ok(super::bench(source, profile)?.map(|bench| Drawer { bench }))
+        Ok(bench(source, profile)?.map(|bench| Drawer { bench }))
     }
 
     /// The chronogram of a run, and the time of its last scan.
@@ -50,4 +50,10 @@ impl Drawer {
         let style = Style { columns: COLUMNS, from: Nanos::ZERO, to, until: to };
         (Chronogram::new(&recording, lanes, style).to_string(), last)
     }
+}
+
+/// A bench of the charts alone, or the problems of the file on the standard error.
+fn bench(source: &Source, profile: Option<ProfileName>) -> Result<Option<g7_rig::Bench>, Failure> {
+    let options = g7_rig::Options { profile, plant: Some("none"), ..g7_rig::Options::default() };
+    Ok(g7_rig::build(source, &options)?.0)
 }
