@@ -47,7 +47,7 @@ valve = 'desk.lamp(green)'
 #[test]
 fn a_machine_without_a_panel_is_operated_on_the_page() {
     let folder = Folder::with(PANEL);
-    folder.write("chart.io.toml", DESK.to_owned());
+    folder.write("chart.io.toml", DESK);
     let station = Station::new(&folder, &[]);
     let mut page = station.page();
     let told = page.seen["told"].clone();

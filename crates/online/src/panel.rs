@@ -226,6 +226,8 @@ impl Device for Panel {
 
 #[cfg(test)]
 mod tests {
+    use g7_host::Kind;
+
     use super::*;
 
     const MS: Nanos = Nanos::MILLISECOND;

@@ -275,8 +275,8 @@ impl Board {
             }
         }
         let is_sent = |k: u32, cell: &Cell| self.sent_values.get(k as usize).is_some_and(|sent| sent == cell);
-        let changed = (0..).zip(&cells).filter(|(k, cell)| !is_sent(*k, *cell));
-        let moved = (0..).zip(&view).filter(|(k, show)| self.sent_view.get(*k as usize) != Some(*show));
+        let changed = (0..).zip(&cells).filter(|(k, cell)| !is_sent(*k, cell));
+        let moved = (0..).zip(&view).filter(|(k, show)| self.sent_view.get(*k as usize) != Some(show));
         let frame = self.framed(now, parts, changed, moved, false);
         (self.sent_values, self.sent_view) = (cells, view);
         frame
