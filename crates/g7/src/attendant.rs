@@ -18,7 +18,7 @@ use serde_json::{Value as Json, json};
 use signal_hook::consts::{SIGINT, SIGTERM};
 
 use crate::audit::{Audit, Pending};
-use crate::failure::{Failure, Verdict, plain};
+use crate::failure::{Failure, Verdict, plain, refused};
 use crate::history::{Historian, Kept};
 use crate::manager::Manager;
 use crate::message::talk;
@@ -37,11 +37,6 @@ const ORDERS: usize = 32;
 const SUM: Nanos = Nanos::SECOND;
 /// A command that the scan has not answered after this time is given up.
 const PATIENCE: Nanos = Nanos::from_millis(3_000);
-
-/// The system has no resources for a thread or a connection.
-pub(crate) fn refused(error: std::io::Error) -> Failure {
-    Failure::Usage(format!("the system refuses: {}", plain(&error)))
-}
 
 /// A command on its way through the scan.
 struct Asked {

@@ -19,8 +19,7 @@ use g7_online::{Clients, Letter, Mail, Wiring};
 use g7_store::{Limits, Outbox, Waiting};
 use serde_json::{Value, json};
 
-use crate::attendant::refused;
-use crate::failure::Failure;
+use crate::failure::{Failure, refused};
 
 /// The pause between two looks at what a broker has taken.
 const PAUSE: Duration = Duration::from_millis(20);
@@ -73,7 +72,7 @@ impl Post {
         }
     }
 
-    /// What the operator should know since the last call.
+    /// The troubles that the operator should know of since the last call.
     pub(crate) fn troubles(&self) -> Vec<Trouble> {
         self.troubles.try_iter().collect()
     }
@@ -221,7 +220,7 @@ mod tests {
         Keeper::new(0, outbox, Mail::default())
     }
 
-    /// What a broker gets that takes all.
+    /// The events that a broker gets which takes all.
     fn taken(keeper: &mut Keeper) -> Vec<Value> {
         let mut all = Vec::new();
         loop {
@@ -232,9 +231,9 @@ mod tests {
         }
     }
 
-    /// Row 16: one event a second, and nobody there.
+    /// One event a second, and nobody there.
     #[test]
-    fn a_broker_that_is_away_for_a_day_hears_which_events_were_dropped() {
+    fn row_16_a_broker_that_is_away_for_a_day_hears_which_events_were_dropped() {
         const DAY: u64 = 86_400;
         const BEGIN: u64 = 1_764_041_726;
         let limits = Limits { count: 1_000, bytes: 40_000 };
@@ -266,7 +265,8 @@ mod tests {
         assert_eq!(number, DAY);
         assert!(DAY - last > 800, "only as many were dropped as had to be: {last}");
         assert_eq!((keeper.outbox.count(), keeper.outbox.bytes()), (0, 0));
-        println!("row 16: {DAY} events in a day, {last} dropped and told, {} came", DAY - last);
+        let held = format!("{last} dropped and told, {} came, in order", DAY - last);
+        g7_peers::faults::row(16, "one event a second", DAY, 0, held);
     }
 
     #[test]

@@ -9,9 +9,8 @@ use g7_online::setup::Setup;
 use g7_online::{Clients, Command, KeepError, Options, Panels, RealDisk, Running, Sight, Slots, Started};
 use g7_store::log::Log;
 
-use crate::attendant::refused;
 use crate::audit::{self, Audit};
-use crate::failure::{Failure, plain};
+use crate::failure::{Failure, plain, refused};
 use crate::history::{self, Historian};
 use crate::message::talk;
 use crate::monitor::Monitor;
@@ -60,7 +59,7 @@ pub(crate) struct Station {
     pub(crate) historian: Option<Historian>,
 }
 
-/// What the io file says of those who use the controller, read before anything else: a log that cannot be
+/// The settings of those who use the controller, from the io file, read before anything else: a log that cannot be
 /// written is found before anything moves.
 pub(crate) struct Settings {
     pub(crate) setup: Setup,

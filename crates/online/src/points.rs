@@ -3,14 +3,27 @@
 //! Pure: `wiring` holds the channel against the chart and the device, and asks here for the rest.
 
 use g7_host::Kind;
+use g7_model::Span;
 
 use crate::messages::{Carried, Refused};
-use crate::setup::{Address, Channel, Encoding, Memory, Point, Width};
+use crate::setup::{Address, Channel, Encoding, Kind as Way, Memory, Point, Width};
 use crate::value::{Holds, Scaling};
 use crate::wire::{Cell, Form, Line, Wire};
 
-fn refused(at: g7_model::Span, what: impl Into<String>, help: &str) -> Refused {
+fn refused(at: Span, what: impl Into<String>, help: &str) -> Refused {
     Refused { at, what: what.into(), help: Some(help.to_owned()).filter(|help| !help.is_empty()) }
+}
+
+/// A setting of a channel that the points of a kind of device do not have: its place, and who has it.
+pub(crate) fn misplaced(channel: &Channel, kind: Option<&Way>) -> Option<(Span, &'static str)> {
+    let message = channel.message.first().map(|at| (at, "only a topic has messages"));
+    let pin = channel.pin.first();
+    let pin = pin.map(|at| (at, "only a line of a chip has a bias, a level and a debounce time"));
+    match kind {
+        Some(Way::Gpio(_)) => message,
+        Some(Way::Mqtt(_)) => pin,
+        _ => message.or(pin),
+    }
 }
 
 /// The cell of a channel at a controller of Siemens, and how its value becomes a word.

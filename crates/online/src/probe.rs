@@ -31,7 +31,7 @@ pub struct Probed {
 ///
 /// The device cannot be reached, or does not answer.
 pub fn probe(clients: &mut Clients, device: &Device, asked: &[Asked]) -> Result<Probed, Failed> {
-    // What the points are read for does not matter here.
+    // The use of the points does not matter here.
     let scaling =
         Scaling { kind: g7_host::Kind::Bool, holds: Holds::Bit, inverted: false, scale: 1.0, offset: 0.0 };
     let (target, bad) = (Target::Input(0), WhileBad::Hold);

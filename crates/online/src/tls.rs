@@ -30,7 +30,7 @@ pub(crate) struct Files<'a> {
     pub(crate) identity: Option<(&'a [u8], &'a [u8])>,
 }
 
-/// What a connection needs to know of TLS.
+/// The settings of TLS for a connection.
 ///
 /// # Errors
 ///

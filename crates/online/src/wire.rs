@@ -2,7 +2,7 @@
 
 use g7_model::Nanos;
 
-use crate::panel::Part;
+use crate::part::Part;
 use crate::setup::{Address, Bias, Encoding, Memory, Place, Width};
 
 /// A point of a device.

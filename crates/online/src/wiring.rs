@@ -5,12 +5,13 @@ use std::collections::BTreeMap;
 use g7_engine::Addr;
 use g7_host::Kind;
 use g7_model::{Nanos, Problem, Span, codes};
-use g7_rig::{Activity, Bench, Item, Role, StepItem};
+use g7_rig::{Bench, Item, Role};
 
 use crate::chosen::{self, Chosen};
 use crate::driver::Out;
+use crate::handles;
 use crate::messages::{self, Carried, Refused};
-use crate::panel;
+use crate::names::{Named, named, source_of};
 use crate::points;
 use crate::setup::{
     Area, At, Bad, Broker, Channel, Device, Encoding, Handle, Kind as Way, Literal, Place, Point, Register,
@@ -27,7 +28,7 @@ pub struct Wiring {
     pub devices: Vec<Wired>,
     /// Inputs and outputs of the chart that no device has, by name.
     pub unwired: Vec<String>,
-    /// What is recorded.
+    /// The signals that are recorded.
     pub history: Option<Chosen>,
 }
 
@@ -247,15 +248,7 @@ impl<'a> Wirer<'a> {
             return;
         };
         let kind = self.wiring.devices.get(device).map(|d| d.device.kind.clone());
-        let strange = match &kind {
-            Some(Way::Gpio(_)) => channel.message.first().map(|at| (at, "only a topic has messages")),
-            Some(Way::Mqtt(_)) => channel.pin.first().map(|at| (at, NO_PIN)),
-            _ => {
-                let message = channel.message.first().map(|at| (at, "only a topic has messages"));
-                message.or_else(|| channel.pin.first().map(|at| (at, NO_PIN)))
-            }
-        };
-        if let Some((at, what)) = strange {
+        if let Some((at, what)) = points::misplaced(channel, kind.as_ref()) {
             self.wrong(&codes::WRONG_CHANNEL, at, what);
             return;
         }
@@ -299,14 +292,7 @@ impl<'a> Wirer<'a> {
     }
 
     /// An address of a controller of Siemens, or a line of a chip.
-    fn point(
-        &mut self,
-        channel: &Channel,
-        subject: &Subject,
-        device: usize,
-        class: Class,
-        read: fn(&Channel, &Carried<'_>) -> Result<(Wire, Scaling), Refused>,
-    ) {
+    fn point(&mut self, channel: &Channel, subject: &Subject, device: usize, class: Class, read: Read) {
         if class == Class::Shown {
             let (what, help) = NOT_SHOWN;
             let what = format!("`{}` {what}", channel.point);
@@ -351,7 +337,7 @@ impl<'a> Wirer<'a> {
             self.wrong(&codes::WRONG_CHANNEL, channel.at, what).help = Some(help);
             return;
         }
-        match panel::wire(channel, (&subject.name, subject.kind), class == Class::Input) {
+        match handles::wire(channel, (&subject.name, subject.kind), class == Class::Input) {
             Ok(wired) => self.connect(channel, subject, device, wired, class),
             Err(Refused { at, what, help }) => self.wrong(&codes::WRONG_CHANNEL, at, what).help = help,
         }
@@ -567,41 +553,8 @@ impl<'a> Wirer<'a> {
     }
 }
 
-/// Why a setting of a line is refused elsewhere.
-const NO_PIN: &str = "only a line of a chip has a bias, a level and a debounce time";
-
-/// What a name means: a variable of the chart or a step.
-pub(crate) enum Named<'a> {
-    Item(&'a Item),
-    Step(&'a StepItem),
-}
-
-/// The variable of the chart, or the step by its step variable, that has a name.
-pub(crate) fn named<'a>(bench: &'a Bench, name: &At<String>) -> Result<Named<'a>, Box<Problem>> {
-    let At { value: name, at } = name;
-    if let Some(step) = bench.steps.iter().find(|s| s.activity().eq_ignore_ascii_case(name)) {
-        return Ok(Named::Step(step));
-    }
-    let wrong = |what: String| Box::new(Problem::new(&codes::UNKNOWN_CHANNEL, *at, what));
-    match bench.item(name) {
-        Some(item) if item.role != Role::Plant => Ok(Named::Item(item)),
-        Some(_) => Err(wrong(format!("`{name}` belongs to the plant, not to the chart"))),
-        None => {
-            let near = bench.suggestions(name).trim_start_matches("; ").to_owned();
-            let mut problem = wrong(format!("the chart has no variable or step `{name}`"));
-            problem.help = Some(near).filter(|near| !near.is_empty());
-            Err(problem)
-        }
-    }
-}
-
-/// The word that tells the activity of a step.
-pub(crate) fn source_of(step: &StepItem) -> Source {
-    match step.id {
-        Activity::Step(id) => Source::Step(id),
-        Activity::Macro(id) => Source::Macro(id),
-    }
-}
+/// Reads the point of a channel, with what its variable carries.
+type Read = fn(&Channel, &Carried<'_>) -> Result<(Wire, Scaling), Refused>;
 
 /// The key of the will among the points of a broker; no topic and no metric is empty.
 const WILL: &str = "";

@@ -1,4 +1,4 @@
-//! What the catalogue says of an io file, asked of the reader: keys, limits, words and defaults.
+//! The catalogue of an io file, held against the reader: keys, limits, words and defaults.
 
 use g7_model::{FileId, Problem};
 use g7_online::setup::catalogue::{Argument, CONTROLLER, Form, KINDS, KindRow, Point, Setting, Usual};
@@ -148,7 +148,9 @@ fn a_setting_has_the_limits_the_words_and_the_default_of_its_row() {
         }
     }
     for setting in CONTROLLER {
-        let with = |value: &str| format!("[controller]\n{} = {value}\n", setting.key);
+        // A setting of the log needs a log.
+        let log = if setting.key.starts_with("log-") { "log = 'a.log'\n" } else { "" };
+        let with = |value: &str| format!("[controller]\n{log}{} = {value}\n", setting.key);
         let (within, beyond) = limits(setting.form);
         for value in within.iter().chain([&fitting(setting)]) {
             assert_eq!(problems(&with(value)), [""; 0], "{} = {value}", setting.key);

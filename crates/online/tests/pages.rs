@@ -328,7 +328,7 @@ fn a_password_comes_from_elsewhere_and_is_never_shown() {
               [devices.b]\nkind = 'mqtt'\nhost = 'x'\nuser = 'u'\npassword-env = 'GONE'\n";
     let (mut setup, problems) = setup::read(io, FileId(1));
     assert!(problems.is_empty(), "{problems:?}");
-    let problems = setup::read_passwords(&mut setup, |origin| match origin {
+    let problems = setup::read_secrets(&mut setup, |origin| match origin {
         setup::Origin::File(name) if name == "there" => Ok(b"sesame\n".to_vec()),
         setup::Origin::File(_) | setup::Origin::Variable(_) => Err("it is not there".to_owned()),
     });

@@ -1,4 +1,4 @@
-//! What waits until a broker has taken it: events, numbered from 1, oldest first.
+//! Events that wait until a broker has taken them, numbered from 1, oldest first.
 //!
 //! The file is bounded in events and in bytes. Where it would grow beyond, the oldest go, and one row says
 //! in their place from which number to which they are missing. A number is never used twice, also

@@ -294,7 +294,7 @@ impl Device for Plain {
         let connection =
             self.connection.as_ref().ok_or_else(|| Failed("there is no connection".to_owned()))?;
         if let Err(why) = connection.failed() {
-            // What the broker has taken is not published again.
+            // A message that the broker has taken is not published again.
             self.note_answers();
             self.connection = None;
             self.pending.fill(None);

@@ -1,4 +1,4 @@
-//! What an io file can say, as data: the kinds of devices with their settings, their points, and what a
+//! The contents of an io file as data: the kinds of devices with their settings, their points, and what a
 //! channel says of each point. The wizard of the page makes its forms of it.
 //!
 //! The reader (`device`, `broker`, `point`) decides what is accepted. `tests/catalogue.rs` holds the two
@@ -10,7 +10,7 @@
 pub struct KindRow {
     /// The word of the file: `kind = "…"`.
     pub word: &'static str,
-    /// What it is, in a few words.
+    /// Its meaning, in a few words.
     pub about: &'static str,
     /// Its settings; `kind` itself is not among them.
     pub settings: &'static [&'static [Setting]],
@@ -29,7 +29,7 @@ pub struct Setting {
     pub form: Form,
     /// Its value where the file says nothing.
     pub usual: Usual,
-    /// What it is, in a few words.
+    /// Its meaning, in a few words.
     pub about: &'static str,
 }
 
@@ -48,7 +48,7 @@ pub enum Form {
     Words(&'static [&'static str]),
     /// True or false.
     Flag,
-    /// What an input is while it is bad: `"hold"`, `"fault"`, or a value of the variable.
+    /// The policy for an input while it is bad: `"hold"`, `"fault"`, or a value of the variable.
     Bad,
     /// A table with settings of its own; a text alone is the first of them, where that one is needed.
     Table(&'static [Setting]),
@@ -72,23 +72,23 @@ pub enum Usual {
 pub struct Point {
     /// Its word.
     pub word: &'static str,
-    /// What stands in its brackets.
+    /// The contents of its brackets.
     pub argument: Argument,
-    /// What it carries.
+    /// The kind of value that it carries.
     pub carries: Carries,
     /// An input of the chart can be wired to it.
     pub input: bool,
     /// An output of the chart, or something shown, can be wired to it.
     pub output: bool,
-    /// What a channel can say beside the point: of an input.
+    /// The settings of a channel beside the point: of an input.
     pub of_input: &'static [&'static [Setting]],
-    /// What a channel can say beside the point: of an output, or of something shown.
+    /// The settings of a channel beside the point: of an output, or of something shown.
     pub of_output: &'static [&'static [Setting]],
-    /// What it is, in a few words.
+    /// Its meaning, in a few words.
     pub about: &'static str,
 }
 
-/// What stands in the brackets of a point.
+/// The contents of the brackets of a point.
 #[derive(Clone, Copy, Debug)]
 pub enum Argument {
     /// Nothing.
@@ -199,6 +199,9 @@ pub const CONTROLLER: &[Setting] = &[
         Usual::None("127.0.0.1:9464"),
         "an address of this machine where a monitoring system asks",
     ),
+    setting("log", Form::Text, Usual::None("sorter.log"), "the file of the log of events and deeds"),
+    setting("log-days", Form::Whole(1, 36_500), Usual::None("400"), "rows of the log that are older go"),
+    setting("log-mib", Form::Whole(1, 100_000), Usual::None("100"), "the greatest size of the log, in MiB"),
 ];
 
 const fn setting(key: &'static str, form: Form, usual: Usual, about: &'static str) -> Setting {

@@ -147,7 +147,7 @@ pub(super) fn chip(table: &mut Table<'_>, found: &mut Found) -> Option<String> {
 ///
 /// # Errors
 ///
-/// What is wrong with a text that begins like one.
+/// The text begins like one, and this is wrong with it.
 pub(super) fn address(text: &str) -> Option<Result<Address, String>> {
     let upper = text.trim().to_ascii_uppercase();
     let (memory, rest) = if let Some(block) = upper.strip_prefix("DB") {

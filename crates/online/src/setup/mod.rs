@@ -52,10 +52,7 @@ pub use secret::{Held, Origin, Secret, Tls};
 pub use server::{LogFile, Server};
 pub use table::At;
 
-use table::{Found, Row, Table};
-
-/// The longest file that is read.
-const MOST: usize = 4 << 20;
+use table::{Found, MOST, Row, Table};
 
 /// The contents of an io file.
 #[derive(Clone, Debug, Default)]
@@ -72,7 +69,7 @@ pub struct Setup {
     pub outputs: Vec<Channel>,
     /// Variables and steps that masters may read.
     pub shown: Vec<Channel>,
-    /// What is recorded.
+    /// The signals that are recorded.
     pub history: Option<History>,
 }
 

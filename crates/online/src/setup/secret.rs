@@ -1,5 +1,5 @@
-//! What an io file names and does not hold: passwords, certificates and keys, in files beside it or in
-//! variables of the environment.
+//! Passwords, certificates and keys: an io file names them and does not hold them; they are in files beside
+//! it or in variables of the environment.
 
 use g7_model::{Problem, Span, codes};
 

@@ -9,76 +9,45 @@
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex as Lock, PoisonError};
-use std::time::Duration;
 
 use g7_model::Nanos;
 use g7_online::setup::{Device, Kind, Setup, read_secrets};
 use g7_online::{Absent, Clients, Failed, Probed, Scaling, Wire, Wired, hear, probe};
 use serde_json::{Map, Value, json};
-use tokio::sync::Mutex;
-use tokio::time::Instant;
 
-use super::super::api::aside;
+use super::super::aside::aside;
+use super::super::fingerprint;
 use super::super::refusal::Refusal;
 use super::super::shared::Shared;
-use super::Chart;
-use super::sight::Sight;
+use super::sight::{Chart, Sight};
+use super::turn::Latest;
 use crate::devices::{plain, value};
 use crate::wiring::secret;
 
-/// An answer is good for others for so long.
-const FRESH: Duration = Duration::from_millis(700);
 /// The longest time that is waited for a device here, whatever the io file says.
 const PATIENCE: Nanos = Nanos::from_millis(2_000);
 /// Devices that are asked at the same time.
 const AT_ONCE: usize = 16;
-
-/// The latest answer, and what was asked for it.
-#[derive(Debug)]
-struct Latest {
-    question: (String, String),
-    at: Instant,
-    answer: Value,
-}
-
-/// The one who asks.
-#[derive(Debug)]
-pub(in crate::serve) struct Asker {
-    asks: bool,
-    turn: Mutex<Option<Latest>>,
-}
-
-impl Asker {
-    /// One who asks, or does not.
-    pub(in crate::serve) fn new(asks: bool) -> Asker {
-        Asker { asks, turn: Mutex::new(None) }
-    }
-
-    /// True if devices are asked.
-    pub(super) fn asks(&self) -> bool {
-        self.asks
-    }
-}
 
 /// The values of the devices of a chart, or why they are not asked.
 pub(super) async fn live(shared: &Shared, chart: Chart) -> Result<Value, Refusal> {
     if shared.station.is_some() {
         return Ok(json!({ "no": "online" }));
     }
-    if !shared.asker.asks {
+    if !shared.asker.asks() {
         return Ok(json!({ "no": "reached" }));
     }
     let of = shared.clone();
     let asked = chart.clone();
     let sight = aside(move || Sight::new(&of, &asked)).await?;
     let question = (sight.text.clone(), chart.text.unwrap_or_default() + &chart.path);
-    let mut turn = shared.asker.turn.lock().await;
-    if let Some(latest) = turn.as_ref().filter(|l| l.question == question && l.at.elapsed() < FRESH) {
-        return Ok(latest.answer.clone());
+    let mut turn = shared.asker.turn().await;
+    if let Some(answer) = turn.as_ref().and_then(|latest| latest.answers(&question)) {
+        return Ok(answer.clone());
     }
     let io = shared.folder.root().join(&sight.io);
     let answer = aside(move || Ok(ask(sight, &io))).await?;
-    *turn = Some(Latest { question, at: Instant::now(), answer: answer.clone() });
+    *turn = Some(Latest::new(question, answer.clone()));
     Ok(answer)
 }
 
@@ -114,7 +83,7 @@ fn ask(mut sight: Sight, io: &std::path::Path) -> Value {
         let why = "its password or its certificates cannot be read";
         devices.insert(device.name.value, json!({ "is": "silent", "why": why }));
     }
-    let hash = sight.bytes.as_ref().map(|bytes| super::super::fingerprint::hash(bytes));
+    let hash = sight.bytes.as_ref().map(|bytes| fingerprint::hash(bytes));
     json!({ "hash": hash, "devices": devices, "values": values })
 }
 

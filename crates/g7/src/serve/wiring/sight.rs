@@ -8,13 +8,20 @@ use g7_online::setup::catalogue::{
 };
 use g7_online::setup::{self, Entry, Setup};
 use g7_rig::{Bench, Options, Role};
+use serde::Deserialize;
 use serde_json::{Value, json};
 
 use super::super::fingerprint;
 use super::super::refusal::Refusal;
 use super::super::shared::Shared;
-use super::Chart;
 use crate::sources::Source;
+
+/// A chart, whose text may not be saved yet.
+#[derive(Clone, Deserialize)]
+pub(super) struct Chart {
+    pub(super) path: String,
+    pub(super) text: Option<String>,
+}
 
 /// Greatest number of problems that are told.
 const PROBLEMS: usize = 200;
