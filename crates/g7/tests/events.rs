@@ -212,7 +212,10 @@ fn a_broker_that_refuses_events_is_told_and_asked_again() {
     g7.until("hub: events wait: the broker does not allow its topic");
     assert_eq!(g7.quit(), 0);
     folder.write("hub.events", "something else");
-    folder.g7(&["run", "--online"]).is_refused(&["hub.events", "not a file of this kind", "move it away"]);
+    let refused = folder.g7(&["run", "--online"]);
+    for part in ["hub.events", "not a file of this kind", "move it away"] {
+        assert!(refused.is(2).err.contains(part), "{part}: {}", refused.err);
+    }
 }
 
 /// A broker of these tests: it gives each event on and acknowledges most of them. After some it is gone in
@@ -294,7 +297,9 @@ fn row_15_no_event_is_missing_however_often_the_broker_is_gone() {
     let port = listener.local_addr().expect("an address").port();
     let (give, given) = channel();
     std::thread::spawn(move || Fragile { listener, random: 15 }.serve(kills, each, &give));
-    let events = "events = { topic = 'plant/events', most = 1000000, bytes = 1000000000 }\n";
+    // A broker gives a name to a client that has none, which this one does not.
+    let events =
+        "client-id = 'sorter'\nevents = { topic = 'plant/events', most = 1000000, bytes = 1000000000 }\n";
     let folder = event_folder(port, events);
     let mut g7 = Running::online(&folder, &[]);
     g7.until("hub answers");

@@ -9,6 +9,7 @@ use std::time::Duration;
 
 use g7_host::{Clock as _, WallClock};
 use g7_model::Nanos;
+use rumqttc::mqttbytes::Error as PacketError;
 use rumqttc::{
     AsyncClient, ConnectReturnCode, ConnectionError, Event, EventLoop, LastWill, MqttOptions, NetworkOptions,
     Packet, PubAckReason, PublishNotice, PublishNoticeError, PublishOptions, QoS, StateError,
@@ -315,7 +316,9 @@ fn plain(error: &ConnectionError) -> String {
     match error {
         ConnectionError::ConnectionRefused(code)
         | ConnectionError::MqttState(StateError::ConnFail { reason: code }) => refusal(*code),
-        ConnectionError::Io(e)
+        // In TLS 1.3 a broker refuses the certificate of a client behind the handshake.
+        ConnectionError::MqttState(StateError::Deserialization(PacketError::Io(e)))
+        | ConnectionError::Io(e)
         | ConnectionError::Tls(TlsError::Io(e))
         | ConnectionError::MqttState(StateError::Io(e)) => {
             tls::refusal(e, "broker").unwrap_or_else(|| e.to_string())
