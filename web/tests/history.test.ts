@@ -87,6 +87,20 @@ test('what the machine did is in its history', async () => {
   await page.context().close();
 });
 
+test('a record that has just begun has its signals as soon as there are any', async () => {
+  const page = await open(b, { url: machine.url, stop: async () => undefined }, undefined, DESK);
+  await card(page).waitFor();
+  await page.evaluate(() => localStorage.clear());
+  // The first two answers are those of a controller whose first scan is not recorded.
+  const nothing = { title: 'Mixer', signals: [], from: 0, until: 0 };
+  await page.route('**/api/history', (route) => route.fulfill({ json: nothing }), { times: 2 });
+  await page.reload();
+  await card(page).waitFor();
+  await value(page, 'lamp').waitFor();
+  assert.deepEqual(page.errors, []);
+  await page.context().close();
+});
+
 test('the history fits a phone, in three languages, light and dark', async () => {
   const page = await open(b, { url: machine.url, stop: async () => undefined }, undefined, PHONE);
   await card(page).waitFor();

@@ -67,7 +67,8 @@ class Past {
   async begin(): Promise<void> {
     try {
       const told = await server.ask<Overview>('api/history');
-      const first = this.there === null;
+      // A controller that has just started has recorded nothing: the page asks again until there are signals.
+      const first = this.signals.length === 0;
       this.there = true;
       this.signals = told.signals;
       [this.from, this.until, this.#title] = [told.from, told.until, told.title];
