@@ -25,7 +25,7 @@ BUILD := cargo build --quiet --workspace $(FIELD) --bin g7
 PYTHON := $(abspath $(or $(CARGO_TARGET_DIR),target))/python
 PAGE := $(shell find web/src web/index.html web/public web/*.ts web/*.js web/*.mjs -type f 2>/dev/null)
 
-.PHONY: run view install online-demo deb static test tally-anew peers lint deny wasm web site pictures page-test page-bench bench bench-check online-bench soak faults book blocks fuzz help FORCE
+.PHONY: run view install online-demo deb sbom static test tally-anew peers lint deny wasm web site pictures page-test page-bench bench bench-check online-bench soak faults book blocks fuzz help FORCE
 
 ## build G7 and open the editor in the browser on the examples (FOLDER=… for another)
 run: WASM := quick-wasm
@@ -48,8 +48,13 @@ install: web
 	cargo install --quiet --locked --path crates/g7
 
 ## a Debian package with a program that needs no system library (MACHINE=aarch64 for another machine)
-deb: web
+deb: web sbom
 	packaging/deb.sh $(MACHINE)
+
+## what the program and its page are built of, as CycloneDX in target/sbom (MACHINE=aarch64 for another machine)
+sbom:
+	@command -v cargo-cyclonedx >/dev/null || cargo install --quiet --locked cargo-cyclonedx
+	packaging/sbom.sh $(MACHINE)
 
 ## one program for any Linux, without a system library (MACHINE=aarch64 for another machine)
 static: web

@@ -26,6 +26,8 @@ gzip -9n "$tree"/usr/share/man/man1/*
 "$own" completions bash >"$tree/usr/share/bash-completion/completions/g7"
 "$own" completions zsh >"$tree/usr/share/zsh/vendor-completions/_g7"
 "$own" completions fish >"$tree/usr/share/fish/vendor_completions.d/g7.fish"
+# What it is built of, for whoever looks for known weaknesses.
+cp "${CARGO_TARGET_DIR:-target}/sbom/g7.cdx.json" "${CARGO_TARGET_DIR:-target}/sbom/page.cdx.json" "$tree/usr/share/doc/g7/"
 cp -r examples "$tree/usr/share/doc/g7/examples"
 gzip -9n <CHANGELOG.md >"$tree/usr/share/doc/g7/changelog.gz"
 {

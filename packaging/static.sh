@@ -34,5 +34,6 @@ SCRIPT
   chmod +x "$folder/$machine-$tool"
 done
 export "CC_${target//-/_}=$folder/$machine-cc" "AR_${target//-/_}=$folder/$machine-ar"
-cargo build --release --quiet --locked --package g7 --target "$target" >&2
+# Whoever has the program cannot build it anew, so it has the devices that are features of the build.
+cargo build --release --quiet --locked --package g7 --features s7,gpio --target "$target" >&2
 echo "${CARGO_TARGET_DIR:-target}/$target/release/g7"
