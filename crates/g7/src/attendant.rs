@@ -165,13 +165,11 @@ impl Attendant {
         let now = self.clock.now();
         self.audit.event(if panicked { "alarm" } else { "note" }, "end", Some(now), &json!({}));
         drop(self.log.take());
-        if panicked || controller.is_none() {
-            return Err(Failure::Usage("the scan ended by an error of G7; outputs are safe".to_owned()));
-        }
+        let verdict = verdict(controller.as_ref(), self.mode)?;
         if let Some(controller) = &controller {
             self.status(controller);
         }
-        Ok(if matches!(self.mode, Mode::Fault(_)) { Verdict::Found } else { Verdict::Fine })
+        Ok(verdict)
     }
 
     /// Does what the pages want and shows them what there is. An error of G7 in this ends the pages; the
@@ -474,4 +472,26 @@ fn lines() -> Receiver<String> {
         }
     });
     lines
+}
+
+/// How the program ends: with an error where the scan panicked and left no controller.
+fn verdict(controller: Option<&Controller>, mode: Mode) -> Result<Verdict, Failure> {
+    match (controller, mode) {
+        (None, _) => Err(Failure::Usage("the scan ended by an error of G7; outputs are safe".to_owned())),
+        (Some(_), Mode::Fault(_)) => Ok(Verdict::Found),
+        (Some(_), _) => Ok(Verdict::Fine),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_scan_that_panicked_is_an_error_of_the_program_in_every_mode() {
+        for mode in [Mode::Run, Mode::Stop, Mode::Fault(g7_online::Reason::Watchdog)] {
+            let ended = verdict(None, mode);
+            assert!(matches!(ended, Err(ref failure) if !failure.is_quiet()), "exit code 2: {ended:?}");
+        }
+    }
 }
