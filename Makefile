@@ -22,6 +22,9 @@ DEBUG := $(abspath $(or $(CARGO_TARGET_DIR),target))/debug
 # With the kinds of devices that the usual build does not have.
 FIELD := --features g7/s7,g7/gpio
 BUILD := cargo build --quiet --workspace $(FIELD) --bin g7
+TESTS := cargo test --workspace $(FIELD) --quiet --lib --bins --tests
+CLIPPY := cargo clippy --workspace --all-targets $(FIELD) --quiet -- --deny warnings
+STORIES = cd web && npm run --silent check && G7=$(DEBUG)/g7 npm test --silent | tee $(TALLY)/page.log
 PYTHON := $(abspath $(or $(CARGO_TARGET_DIR),target))/python
 PAGE := $(shell find web/src web/index.html web/public web/*.ts web/*.js web/*.mjs -type f 2>/dev/null)
 
@@ -63,9 +66,16 @@ static: web
 ## run every test; the last line counts what passed and what was skipped
 test: export G7_SKIPS = $(TALLY)/skips
 test: export G7_PEERS = $(PYTHON)
-test: tally-anew lint page-test $(PYTHON)/bin/pymodbus.simulator
-	{ cargo test --workspace $(FIELD) --quiet --lib --bins --tests && cargo test --quiet --doc --package g7-engine; } 2>&1 | \
-		tee $(TALLY)/crates.log
+test: WASM := quick-wasm
+test: tally-anew web $(PYTHON)/bin/pymodbus.simulator
+	cargo fmt --all --check
+	@$(call debian,chromium,chromium)
+	@$(call debian,mosquitto_sub,mosquitto mosquitto-clients) || echo "mosquitto cannot be installed: its tests are skipped"
+	$(BUILD)
+	@echo "the stories of the page; meanwhile the tests of the crates are compiled"
+	@{ nice $(CLIPPY) && nice $(TESTS) --no-run; } >$(TALLY)/compiled 2>&1 & compiled=$$!; \
+		told=0; { $(STORIES); } || told=$$?; wait $$compiled || { cat $(TALLY)/compiled; exit 1; }; exit $$told
+	{ $(TESTS) && cargo test --quiet --doc --package g7-engine; } 2>&1 | tee $(TALLY)/crates.log
 	$(DEBUG)/g7 check examples
 	$(DEBUG)/g7 test examples | tee $(TALLY)/examples.log
 	@cargo run --quiet --package g7-peers --bin tally -- $(TALLY)
@@ -96,7 +106,7 @@ peers:
 ## formatting and lints
 lint:
 	cargo fmt --all --check
-	cargo clippy --workspace --all-targets $(FIELD) --quiet -- --deny warnings
+	$(CLIPPY)
 
 ## licences and sources of what is built in
 deny:
@@ -147,7 +157,7 @@ page-test: web
 	@$(call debian,chromium,chromium)
 	$(BUILD)
 	@mkdir -p $(TALLY)
-	cd web && npm run --silent check && G7=$(DEBUG)/g7 npm test --silent | tee $(TALLY)/page.log
+	$(STORIES)
 
 ## main-thread time of the page, beside React Flow
 page-bench: wasm web/node_modules/.package-lock.json
