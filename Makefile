@@ -186,7 +186,7 @@ online-bench: $(PYTHON)/bin/pymodbus.simulator
 ## the controller with faulty devices in simulated time, 10,000 courses of faults (SEEDS=… for others)
 soak: export G7_SEEDS = $(SEEDS)
 soak:
-	cargo test --package g7-online --test simulation -- --nocapture
+	cargo test --profile soak --package g7-online --test simulation -- --nocapture
 
 # The packages that have tests of faults, which are called `row_...`.
 FAULTY := g7 g7-online g7-store

@@ -6,7 +6,7 @@ import { spawn, spawnSync } from 'node:child_process';
 import { copyFileSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { createServer as createHttp } from 'node:http';
 import { createServer } from 'node:net';
-import { tmpdir } from 'node:os';
+import { tmpdir, userInfo } from 'node:os';
 import { dirname, join, resolve } from 'node:path';
 import { fileURLToPath } from 'node:url';
 
@@ -41,9 +41,14 @@ const broker = isThere('mosquitto') && isThere('mosquitto_sub');
 copyFileSync(CHART, join(folder, 'sorter.g7'));
 let io = readFileSync(join(HERE, 'sorter.io.toml'), 'utf8').replace('1502', ports.machine).replace('1883', ports.broker);
 // Without a broker on this machine the bench has none.
-if (!broker) io = io.replace(/\[devices\.broker\][^[]*/, '').replace(/\[shown\][^]*$/, '');
+if (!broker) io = io.replace(/\[devices\.broker\][^[]*/, '').replace(/\[shown\][^[]*/, '');
 writeFileSync(join(folder, 'sorter.io.toml'), io);
-writeFileSync(join(folder, 'mosquitto.conf'), `listener ${ports.broker} 127.0.0.1\nallow_anonymous true\npersistence false\n`);
+// It keeps who listens, so that no event is lost between its own return and that of the listener. As root it
+// would become another user, who may not write here.
+writeFileSync(
+  join(folder, 'mosquitto.conf'),
+  [`listener ${ports.broker} 127.0.0.1`, 'allow_anonymous true', `user ${userInfo().username}`, 'persistence true', `persistence_location ${folder}/`, 'autosave_interval 1', ''].join('\n'),
+);
 
 const pages = new Set();
 const lines = [];
@@ -114,7 +119,7 @@ const parts = {
 };
 if (broker) {
   parts.broker = new Part('broker', 'mosquitto', ['-c', 'mosquitto.conf']);
-  parts.listener = new Part('listener', 'mosquitto_sub', ['-p', String(ports.broker), '-t', 'sorter/#', '-v']);
+  parts.listener = new Part('listener', 'mosquitto_sub', ['-p', String(ports.broker), '-t', 'sorter/#', '-v', '-i', 'listener', '-c', '-q', '1']);
 }
 
 function states() {

@@ -19,6 +19,14 @@ const part = (page: Page, name: string) => page.locator(`#${name}`);
 const act = (page: Page, name: string, word: string) => part(page, name).getByRole('button', { name: word, exact: true }).click();
 const alarms = (page: Page) => page.getByRole('region', { name: 'Alarms and events', exact: true });
 
+/** Does something and waits until the operator is told so once more. */
+async function told(operator: Page, text: string, act: () => Promise<void>): Promise<void> {
+  const all = alarms(operator).getByText(text);
+  const before = await all.count();
+  await act();
+  await all.nth(before).waitFor();
+}
+
 test('each part of the bench is unplugged and plugged, and the operator sees it', async () => {
   const { url, end } = await bench();
   try {
@@ -35,24 +43,25 @@ test('each part of the bench is unplugged and plugged, and the operator sees it'
     await act(page, 'machine', 'Turn over');
     const tilt = operator.locator('.values li').filter({ has: operator.locator('b', { hasText: /^Tilt$/ }) });
     await tilt.locator('output', { hasText: 'TRUE' }).waitFor();
-    await act(page, 'machine', 'Unplug');
-    await alarms(operator).getByText('unit does not answer').waitFor();
+    await told(operator, 'unit does not answer', () => act(page, 'machine', 'Unplug'));
     await tilt.getByText('substituted').waitFor();
     await tilt.locator('output', { hasText: 'FALSE' }).waitFor();
-    await act(page, 'machine', 'Plug in');
-    await alarms(operator).getByText('unit answers').nth(1).waitFor();
-    await act(page, 'machine', 'Freeze');
-    await alarms(operator).getByText('unit does not answer').nth(1).waitFor();
-    await act(page, 'machine', 'Let go on');
-    await alarms(operator).getByText('unit answers').nth(2).waitFor();
+    await told(operator, 'unit answers', () => act(page, 'machine', 'Plug in'));
+    await told(operator, 'unit does not answer', () => act(page, 'machine', 'Freeze'));
+    await told(operator, 'unit answers', () => act(page, 'machine', 'Let go on'));
     await page.locator('#log').getByText('unit does not answer').first().waitFor();
     if ((await part(page, 'broker').locator('.state').innerText()) !== 'not installed') {
       await page.locator('#log').getByText('sorter/status online').first().waitFor();
-      await act(page, 'broker', 'Kill');
-      await alarms(operator).getByText('broker does not answer').waitFor();
+      const missed = page.locator('#log').getByText(/sorter\/events .*"kind":"down","device":"unit"/);
+      await missed.nth(1).waitFor();
+      const heard = await missed.count();
+      await told(operator, 'broker does not answer', () => act(page, 'broker', 'Kill'));
+      // What happens now waits for the broker.
+      await told(operator, 'unit does not answer', () => act(page, 'machine', 'Unplug'));
+      await told(operator, 'unit answers', () => act(page, 'machine', 'Plug in'));
       await operator.locator('.mode.run').waitFor();
-      await act(page, 'broker', 'Plug in');
-      await alarms(operator).getByText('broker answers').nth(1).waitFor();
+      await told(operator, 'broker answers', () => act(page, 'broker', 'Plug in'));
+      await missed.nth(heard).waitFor();
     }
     await act(page, 'controller', 'Freeze');
     await operator.locator('.mode.gone').waitFor();

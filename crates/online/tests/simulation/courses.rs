@@ -38,16 +38,17 @@ fn seeds() -> Vec<u64> {
 
 #[test]
 fn row_26_outputs_follow_the_inputs_after_any_course_of_faults() {
-    let (mut failed, mut simulated, mut tally) = (Vec::new(), Nanos::ZERO, Tally::default());
     let seeds = seeds();
     let begin = clock();
-    for seed in &seeds {
-        // The name of a course stands before its seed.
-        match catch_unwind(AssertUnwindSafe(|| course(*seed, &mut tally))) {
-            Ok(time) => simulated += time,
-            Err(_) => failed.push(seed),
-        }
-    }
+    let threads = std::thread::available_parallelism().map_or(1, usize::from);
+    let parts: Vec<Part> = std::thread::scope(|scope| {
+        let part = |first| seeds.iter().skip(first).step_by(threads).copied();
+        let begun: Vec<_> = (0..threads).map(|first| scope.spawn(move || Part::of(part(first)))).collect();
+        begun.into_iter().map(|part| part.join().expect("panics are caught in it")).collect()
+    });
+    let failed: Vec<u64> = parts.iter().flat_map(|part| part.failed.iter().copied()).collect();
+    let tally = parts.iter().fold(Tally::default(), |sum, part| sum.and(&part.tally));
+    let simulated = parts.iter().fold(Nanos::ZERO, |sum, part| sum + part.simulated);
     assert!(failed.is_empty(), "seeds {failed:?}: add each to tests/simulation/seeds.txt, with its cause");
     let hours = simulated.as_seconds() / 3600.0;
     let a_minute = hours * 60.0 / begin.elapsed().as_secs_f64();
@@ -64,6 +65,28 @@ fn clock() -> std::time::Instant {
     std::time::Instant::now()
 }
 
+/// What one thread has found.
+#[derive(Default)]
+struct Part {
+    failed: Vec<u64>,
+    simulated: Nanos,
+    tally: Tally,
+}
+
+impl Part {
+    fn of(seeds: impl Iterator<Item = u64>) -> Part {
+        let mut part = Part::default();
+        for seed in seeds {
+            // The name of a course stands before its seed.
+            match catch_unwind(AssertUnwindSafe(|| course(seed, &mut part.tally))) {
+                Ok(time) => part.simulated += time,
+                Err(_) => part.failed.push(seed),
+            }
+        }
+        part
+    }
+}
+
 /// How often each kind was met.
 #[derive(Debug, Default)]
 struct Tally {
@@ -76,6 +99,17 @@ struct Tally {
 }
 
 impl Tally {
+    fn and(&self, other: &Tally) -> Tally {
+        Tally {
+            watchdog: self.watchdog + other.watchdog,
+            missed: self.missed + other.missed,
+            unsaved: self.unsaved + other.unsaved,
+            warm: self.warm + other.warm,
+            fitted: self.fitted + other.fitted,
+            newer: self.newer + other.newer,
+        }
+    }
+
     fn is_full(&self) -> bool {
         let Tally { watchdog, missed, unsaved, warm, fitted, newer } = *self;
         [watchdog, missed, unsaved, warm, fitted, newer].iter().all(|n| *n > 0)
