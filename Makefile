@@ -62,8 +62,8 @@ test: tally-anew lint page-test $(PYTHON)/bin/pymodbus.simulator
 $(PYTHON)/bin/pymodbus.simulator:
 	@{ { python3 -c 'import ensurepip' 2>/dev/null || { $(SUDO) apt-get update -qq && \
 			$(SUDO) apt-get install -qq --no-install-recommends python3 python3-venv; }; } && \
-		python3 -m venv $(PYTHON) && $(PYTHON)/bin/pip install --quiet 'pymodbus[serial]==3.16.*' 'pysparkplug==0.6.*'; } || \
-		echo "pymodbus and pysparkplug cannot be installed: their tests are skipped"
+		python3 -m venv $(PYTHON) && $(PYTHON)/bin/pip install --quiet 'pymodbus[serial]==3.16.*' 'pysparkplug==0.6.*' 'asyncua==2.1.*'; } || \
+		echo "pymodbus, pysparkplug and asyncua cannot be installed: their tests are skipped"
 
 tally-anew:
 	@rm -rf $(TALLY) && mkdir -p $(TALLY) && touch $(TALLY)/skips
@@ -156,6 +156,7 @@ online-bench: $(PYTHON)/bin/pymodbus.simulator
 	@$(call debian,stress-ng,stress-ng)
 	benches/lateness.sh
 	cargo run --release --quiet --package g7-benches --bin modbus
+	cargo test --release --quiet --package g7-opcua --test peer thousand -- --nocapture
 
 ## the controller with faulty devices in simulated time, 10,000 courses of faults (SEEDS=… for others)
 soak: export G7_SEEDS = $(SEEDS)
@@ -167,6 +168,7 @@ faults: export G7_FAULTS = many
 faults: export G7_PEERS = $(PYTHON)
 faults: $(PYTHON)/bin/pymodbus.simulator
 	cargo test --package g7 --test faults -- --nocapture --test-threads 1
+	cargo test --package g7-opcua --test peer -- --nocapture --test-threads 1
 
 ## the book, as HTML in docs/book/book, with every conformance case as a page
 book:

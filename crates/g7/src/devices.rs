@@ -7,11 +7,14 @@ use clap::Args;
 use g7_host::Value;
 use g7_model::{Nanos, Span};
 use g7_online::setup::{
-    At, Broker, Device, Encoding, Kind, Listen, Modbus, Parity, Place, Point, Register, Serial, Tcp, Timing,
+    At, Broker, Device, Encoding, Kind, Modbus, Parity, Place, Point, Register, Serial, Tcp, Timing,
     read_point,
 };
-use g7_online::{Absent, Asked, Clients, Failed, Probed, Raw, Scaling, Wire, Wired, hear, probe};
+use g7_online::{
+    Absent, Asked, Clients, Failed, Probed, Raw, Scaling, Wire, Wired, ask as wait, hear, probe,
+};
 
+use crate::brought;
 use crate::failure::{Failure, Verdict};
 use crate::wiring::{self, Wanted};
 use crate::{files, sources, style, values};
@@ -20,6 +23,7 @@ use crate::{files, sources, style, values};
 #[command(after_help = "\
 Examples:
   g7 devices sorter.g7                                  all channels of sorter.io.toml
+  g7 devices sorter.g7 --browse                         and all nodes of its OPC UA servers
   g7 devices --tcp 10.0.0.7 --read 'holding(0)' --count 10
   g7 devices --tcp 10.0.0.7:1502 --unit 3 --read 'input(4)' --as f32
   g7 devices --serial /dev/ttyUSB0 --baud 9600 --read 'coil(0)' --read 'coil(7)'
@@ -37,6 +41,9 @@ pub(crate) struct Devices {
     /// The io file [default: chart.io.toml for chart.g7].
     #[arg(long, value_name = "FILE", conflicts_with_all = ["tcp", "serial"])]
     io: Option<PathBuf>,
+    /// List all points of the devices that can tell them: servers of OPC UA.
+    #[arg(long, conflicts_with_all = ["tcp", "serial"])]
+    browse: bool,
     /// Ask a server of Modbus TCP.
     #[arg(long, value_name = "HOST[:PORT]", conflicts_with = "serial")]
     tcp: Option<String>,
@@ -84,7 +91,9 @@ fn word<T: Copy>(text: &str, words: &[(&str, T)]) -> Result<T, String> {
 fn point(text: &str) -> Result<Register, String> {
     match read_point(text)? {
         Point::Modbus(register) => Ok(register),
-        Point::Good | Point::Topic(_) | Point::Metric(_) => Err("this is no point of Modbus".to_owned()),
+        Point::Good | Point::Topic(_) | Point::Metric(_) | Point::Node(_) => {
+            Err("this is no point of Modbus".to_owned())
+        }
     }
 }
 
@@ -107,14 +116,18 @@ pub(crate) fn devices(args: &Devices) -> Result<Verdict, Failure> {
     let source = sources::load(&path, 0)?;
     let wanted = Wanted { io: args.io.as_deref(), ..Wanted::default() };
     let Some(plan) = wiring::plan(&path, &source, &wanted)? else { return Ok(Verdict::Found) };
-    let (mut clients, mut verdict) = (Clients::default(), Verdict::Fine);
+    let (mut clients, mut verdict) = (brought::clients(), Verdict::Fine);
     for wired in &plan.wiring.devices {
         let found = match &wired.device.kind {
-            Kind::ModbusServer(listen) => served(wired, listen)?,
+            Kind::ModbusServer(_) | Kind::OpcUaServer(_) => served(wired)?,
             Kind::Mqtt(broker) => heard(broker, wired)?,
+            Kind::OpcUa(_) => asked(&mut clients, wired)?,
             Kind::ModbusTcp(..) | Kind::ModbusRtu(..) => ask(&mut clients, &wired.device, &channels(wired))?,
         };
         if found == Verdict::Found {
+            verdict = Verdict::Found;
+        }
+        if args.browse && browse(&clients, &wired.device)? == Verdict::Found {
             verdict = Verdict::Found;
         }
     }
@@ -184,6 +197,40 @@ fn heard(broker: &Broker, wired: &Wired) -> Result<Verdict, Failure> {
     print(&wired.device, &channels(wired), hear(broker, wired))
 }
 
+/// Asks a device that sends its values by itself, and prints them.
+fn asked(clients: &mut Clients, wired: &Wired) -> Result<Verdict, Failure> {
+    print(&wired.device, &channels(wired), wait(clients, wired))
+}
+
+/// Prints the points that a device tells of.
+fn browse(clients: &Clients, device: &Device) -> Result<Verdict, Failure> {
+    let (warn, name) = (style::WARN, &device.name.value);
+    let mut out = anstream::stdout().lock();
+    let verdict = match clients.browse(device) {
+        None => {
+            writeln!(out, "  {name} cannot be asked for its points")?;
+            Verdict::Fine
+        }
+        Some(Err(why)) => {
+            writeln!(out, "  {warn}its points cannot be read:{warn:#} {why}")?;
+            Verdict::Found
+        }
+        Some(Ok(nodes)) => {
+            writeln!(out, "  points of {name}:")?;
+            for node in &nodes {
+                let (indent, point) = ("  ".repeat(node.depth + 2), &node.point);
+                match node.value {
+                    true => writeln!(out, "{indent}{}  {point}", node.name)?,
+                    false => writeln!(out, "{indent}{}", node.name)?,
+                }
+            }
+            Verdict::Fine
+        }
+    };
+    out.flush()?;
+    Ok(verdict)
+}
+
 /// Prints the answer of a device.
 fn print(device: &Device, shown: &[Shown], probed: Result<Probed, Failed>) -> Result<Verdict, Failure> {
     let (strong, good, bad, warn) = (style::STRONG, style::GOOD, style::BAD, style::WARN);
@@ -225,11 +272,11 @@ fn print(device: &Device, shown: &[Shown], probed: Result<Probed, Failed>) -> Re
 }
 
 /// Prints what masters find on a server of our own while the controller runs.
-fn served(wired: &Wired, listen: &Listen) -> Result<Verdict, Failure> {
+fn served(wired: &Wired) -> Result<Verdict, Failure> {
     let strong = style::STRONG;
     let mut out = anstream::stdout().lock();
     let name = &wired.device.name.value;
-    writeln!(out, "{strong}{name}{strong:#} listens at {} for masters", listen.address)?;
+    writeln!(out, "{strong}{name}{strong:#} listens at {} for masters", wired.device.kind.place())?;
     let channels = channels(wired);
     let width = channels.iter().map(|c| c.name.chars().count()).max().unwrap_or(0);
     for (k, channel) in channels.iter().enumerate() {

@@ -15,6 +15,7 @@
 #![forbid(unsafe_code)]
 
 mod attendant;
+mod brought;
 mod check;
 mod cli;
 mod devices;

@@ -5,9 +5,10 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use g7_model::{Nanos, ProfileName};
-use g7_online::{Clients, Command, KeepError, Options, RealDisk, Running, Sight, Slots, Started};
+use g7_online::{Command, KeepError, Options, RealDisk, Running, Sight, Slots, Started};
 
 use crate::attendant::refused;
+use crate::brought;
 use crate::failure::{Failure, plain};
 use crate::message::talk;
 use crate::monitor::Monitor;
@@ -79,7 +80,7 @@ pub(crate) fn start(
         })?),
     };
     let (runner, slots) = kept(&plan, g7_online::runner(bench, wiring, more.seed))?;
-    let mut clients = Clients::default();
+    let mut clients = brought::clients();
     let mut machine = g7_online::assemble(runner, wiring, |wired| clients.device(wired)).map_err(refused)?;
     let kept = slots.map(|slots| machine.keep(bench, slots));
     let sight = machine.show();

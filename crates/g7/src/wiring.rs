@@ -7,6 +7,7 @@ use g7_online::Wiring;
 use g7_online::setup::{self, Channel, Origin, Setup};
 use g7_rig::{Bench, Options};
 
+use crate::brought;
 use crate::failure::{Failure, plain};
 use crate::files;
 use crate::message::talk;
@@ -69,6 +70,8 @@ pub(crate) fn make(
     let (bench, of_chart) = g7_rig::build(source, &options)?;
     let mut told = told_of(source, &of_chart);
     let Some(bench) = bench else { return Ok((None, told)) };
+    problems.extend(setup::missing(&setup, brought::has));
+    setup::settle(&mut setup, io.parent().unwrap_or(Path::new("")));
     problems.extend(setup::read_passwords(&mut setup, |origin| password(&io, origin)));
     let (mut wiring, wrong) = g7_online::wire(&bench, &setup);
     wiring.unwired.retain(|name| !simulated.iter().any(|s| bench.item(s).is_some_and(|i| i.name == *name)));

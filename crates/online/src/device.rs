@@ -51,6 +51,12 @@ pub trait Device: Send {
         refused: &mut [Option<String>],
     ) -> Result<(), Failed>;
 
+    /// Sentences about what has happened at the device since the last call, such as somebody whom it did
+    /// not let in.
+    fn notes(&mut self) -> Vec<String> {
+        Vec::new()
+    }
+
     /// Ends the connection, if there is one.
     fn close(&mut self);
 }

@@ -124,6 +124,8 @@ pub enum Happened {
     Output(usize),
     /// The value of an output was limited to what its point can hold.
     Limited(usize),
+    /// Something that the device tells.
+    Note(String),
 }
 
 /// The result of one order.
@@ -252,6 +254,7 @@ impl Driver {
     /// Notes at `now` what came of the order, and tells the scan.
     pub fn settle(&mut self, now: Nanos, worked: Worked, happened: &mut dyn FnMut(Happened)) {
         self.link.settle(now, worked.order, worked.result.is_ok());
+        self.device.notes().into_iter().for_each(|note| happened(Happened::Note(note)));
         match worked.result {
             Ok(()) if worked.order == Order::Connect => return,
             Ok(()) => {

@@ -38,9 +38,15 @@ pub fn mirror(bench: &Bench, wiring: &Wiring, listen: Option<IpAddr>) -> Result<
                     serial.port
                 ));
             }
+            Kind::OpcUa(server) => {
+                return Err(format!(
+                    "{name} is the OPC UA server {}: the plant answers over Modbus TCP alone",
+                    server.url
+                ));
+            }
             // The masters of the chart are not part of its machine; nor is a broker, which is there
             // all the same.
-            Kind::ModbusServer(_) | Kind::Mqtt(_) => continue,
+            Kind::ModbusServer(_) | Kind::Mqtt(_) | Kind::OpcUaServer(_) => continue,
         };
         let at = |w: &&Wired| matches!(&w.device.kind, Kind::ModbusServer(l) if l.address == address);
         if let Some(other) = mirrored.devices.iter().find(at) {

@@ -1,6 +1,6 @@
 //! The io file held against the chart: which word of the program is which point of which device.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use g7_engine::Addr;
 use g7_host::Kind;
@@ -8,12 +8,14 @@ use g7_model::{Problem, Span, codes};
 use g7_rig::{Activity, Bench, Item, Role};
 
 use crate::driver::Out;
+use crate::forms;
 use crate::messages::{self, Carried, Refused};
+use crate::nodes::{self, Seen};
 use crate::setup::{
     Area, At, Bad, Broker, Channel, Device, Encoding, Kind as Way, Literal, Place, Point, Register, Setup,
 };
 use crate::value::{Holds, Raw, Scaling};
-use crate::wire::Wire;
+use crate::wire::{Folder, Wire};
 use crate::word::{Source, Target};
 
 /// All channels of a machine, by device.
@@ -106,8 +108,45 @@ pub fn wire(bench: &Bench, setup: &Setup) -> (Wiring, Vec<Problem>) {
         .filter(|i| matches!(i.role, Role::Input(_) | Role::Output) && !wired.contains_key(&(i.addr)))
         .map(|i| i.name.clone())
         .collect();
+    for wired in &mut wirer.wiring.devices {
+        if matches!(&wired.device.kind, Way::OpcUaServer(server) if server.all) {
+            expose(bench, wired);
+        }
+    }
     wirer.wiring.devices.retain(|d| !(d.inputs.is_empty() && d.outputs.is_empty() && d.good.is_empty()));
+    judge(&mut wirer.wiring.devices);
     (wirer.wiring, wirer.problems)
+}
+
+/// Adds to a server of our own whatever the chart has and no channel of it shows.
+fn expose(bench: &Bench, server: &mut Wired) {
+    let wires = server.inputs.iter().map(|i| &i.wire).chain(server.outputs.iter().map(|o| &o.wire));
+    let there: BTreeSet<String> = wires.filter_map(nodes::name).map(str::to_owned).collect();
+    let all = nodes::all(bench).filter(|seen| nodes::name(&seen.wire).is_some_and(|n| !there.contains(n)));
+    server.outputs.extend(all.map(OutAt::from));
+}
+
+/// Lets each server of our own tell how good the inputs are that it shows and another device gives.
+fn judge(devices: &mut [Wired]) {
+    let of_device = |(device, wired): (usize, &Wired)| {
+        let inputs = wired.inputs.iter().enumerate();
+        inputs.map(|(k, input)| (input.name.clone(), (device, k))).collect::<Vec<_>>()
+    };
+    let given: BTreeMap<String, (usize, usize)> = devices.iter().enumerate().flat_map(of_device).collect();
+    for (own, wired) in devices.iter_mut().enumerate() {
+        let of = |out: &OutAt| {
+            let (name, (device, input)) = (nodes::name(&out.wire)?, *given.get(&out.name)?);
+            (device != own).then(|| OutAt::from(nodes::worth(name, device, input)))
+        };
+        let judged: Vec<OutAt> = wired.outputs.iter().filter_map(of).collect();
+        wired.outputs.extend(judged);
+    }
+}
+
+impl From<Seen> for OutAt {
+    fn from(Seen { name, source, wire, out }: Seen) -> OutAt {
+        OutAt { name, source, wire, out }
+    }
 }
 
 /// The three ways in which a channel is used.
@@ -130,6 +169,9 @@ struct Subject {
     input: Option<u32>,
     source: Source,
     safe: Option<u64>,
+    /// Where a server of OPC UA shows it.
+    folder: Folder,
+    comment: Option<String>,
 }
 
 struct Wirer<'a> {
@@ -185,6 +227,8 @@ impl<'a> Wirer<'a> {
             input: if let Role::Input(index) = item.role { Some(index) } else { None },
             source: Source::Word(Addr(item.addr)),
             safe: self.bench.safe(item),
+            folder: nodes::folder(item.role).unwrap_or(Folder::Variables),
+            comment: item.comment.clone(),
         }
     }
 
@@ -205,6 +249,8 @@ impl<'a> Wirer<'a> {
                 input: None,
                 source,
                 safe: None,
+                folder: Folder::Steps,
+                comment: step.comment.clone(),
             });
         }
         match self.bench.item(name) {
@@ -245,11 +291,16 @@ impl<'a> Wirer<'a> {
         match (&channel.point, kind) {
             (Point::Good, _) => self.good(channel, subject, device, class),
             (_, Some(Way::Mqtt(broker))) => self.message(channel, subject, (device, &broker), class),
+            (_, Some(Way::OpcUa(_))) => self.node(channel, subject, device, class, false),
+            (_, Some(Way::OpcUaServer(_))) => self.node(channel, subject, device, class, true),
             (Point::Modbus(register), _) => self.register(channel, subject, device, *register, class),
-            (point @ (Point::Topic(_) | Point::Metric(_)), _) => {
+            (point @ (Point::Topic(_) | Point::Metric(_) | Point::Node(_)), _) => {
                 let what = format!("`{point}` is no point of `{}`", channel.device.value);
-                self.wrong(&codes::WRONG_CHANNEL, channel.at, what).help =
-                    Some("only a broker has messages: `kind = \"mqtt\"`".to_owned());
+                let help = match point {
+                    Point::Node(_) => "only OPC UA has nodes: `kind = \"opc-ua\"`",
+                    _ => "only a broker has messages: `kind = \"mqtt\"`",
+                };
+                self.wrong(&codes::WRONG_CHANNEL, channel.at, what).help = Some(help.to_owned());
             }
         }
     }
@@ -277,13 +328,7 @@ impl<'a> Wirer<'a> {
         (device, broker): (usize, &Broker),
         class: Class,
     ) {
-        let carried = Carried {
-            name: &subject.name,
-            kind: subject.kind,
-            inverted: subject.inverted,
-            input: class == Class::Input,
-            safe: class == Class::Output,
-        };
+        let carried = carried(subject, class);
         let (wire, scaling) = match messages::wire(channel, &carried, broker) {
             Ok(wired) => wired,
             Err(Refused { at, what, help }) => {
@@ -295,7 +340,7 @@ impl<'a> Wirer<'a> {
             // Several inputs may read one topic.
             Wire::Topic(topic) => (class != Class::Input).then(|| topic.name.clone()),
             Wire::Metric(name) => Some(name.clone()),
-            Wire::Modbus(_) => None,
+            Wire::Modbus(_) | Wire::Node(_) | Wire::Shown(_) | Wire::Worth(_) => None,
         };
         let will = matches!(&wire, Wire::Topic(topic) if topic.will).then(|| WILL.to_owned());
         for place in place.into_iter().chain(will) {
@@ -306,14 +351,42 @@ impl<'a> Wirer<'a> {
         self.connect(channel, subject, device, (wire, scaling), class);
     }
 
+    /// A node of OPC UA: of another server, or of the one of our own.
+    fn node(&mut self, channel: &Channel, subject: &Subject, device: usize, class: Class, own: bool) {
+        if class == Class::Shown && !own {
+            let (what, help) = NOT_ASKED;
+            let what = format!("`{}` {what}", channel.point);
+            self.wrong(&codes::WRONG_CHANNEL, channel.at, what).help = Some(help.to_owned());
+            return;
+        }
+        let carried = carried(subject, class);
+        let wired = if own {
+            nodes::shown(channel, &carried, subject.folder, subject.comment.as_deref())
+        } else {
+            nodes::wire(channel, &carried)
+        };
+        let (wire, scaling) = match wired {
+            Ok(wired) => wired,
+            Err(Refused { at, what, help }) => {
+                self.wrong(&codes::WRONG_CHANNEL, at, what).help = help;
+                return;
+            }
+        };
+        // Several inputs may read one node of a device; a node of our own has one use.
+        if (class == Class::Input && !own) || self.is_unused(channel, subject, device, wire.to_string()) {
+            self.connect(channel, subject, device, (wire, scaling), class);
+        }
+    }
+
     /// True if nothing else publishes there.
     fn is_unused(&mut self, channel: &Channel, item: &Subject, device: usize, place: String) -> bool {
         let of = |k: usize| match self.wiring.devices.get(k).map(|d| &d.device.kind) {
-            Some(Way::Mqtt(broker)) => Some((&broker.host, broker.port, &broker.sparkplug)),
-            Some(Way::ModbusTcp(..) | Way::ModbusRtu(..) | Way::ModbusServer(_)) | None => None,
+            Some(Way::Mqtt(broker)) => Some((broker.host.as_str(), broker.port, &broker.sparkplug)),
+            Some(Way::OpcUa(server)) => Some((server.url.as_str(), 0, &None)),
+            Some(_) | None => None,
         };
         // Two clients of one broker publish to the same topics, but each has a will of its own.
-        let first = (0..device).find(|k| of(*k) == of(device)).unwrap_or(device);
+        let first = (0..device).find(|k| of(*k).is_some() && of(*k) == of(device)).unwrap_or(device);
         let key = (if place == WILL { device } else { first }, place);
         if let Some((other, there)) = self.messages.get(&key).cloned() {
             let what = match key.1.as_str() {
@@ -339,6 +412,10 @@ impl<'a> Wirer<'a> {
     ) {
         if let Some(at) = channel.message.first() {
             self.wrong(&codes::WRONG_CHANNEL, at, "only a topic has messages");
+            return;
+        }
+        if let Some(unit) = &channel.unit {
+            self.wrong(&codes::WRONG_CHANNEL, unit.at, "a register has no unit");
             return;
         }
         let server = self.wiring.devices.get(device).is_some_and(|d| d.device.kind.is_server());
@@ -414,17 +491,12 @@ impl<'a> Wirer<'a> {
             let scaling = Scaling { kind: item.kind, holds: Holds::Bit, inverted, scale: 1.0, offset: 0.0 };
             return Some((None, scaling));
         }
-        let encoding = channel.encoding.as_ref().map_or_else(|| usual(item.kind), |e| e.value);
+        let encoding = channel.encoding.as_ref().map_or_else(|| forms::usual(item.kind), |e| e.value);
         if u32::from(register.address) + u32::from(encoding.registers()) > 65_536 {
             self.wrong(&codes::WRONG_CHANNEL, channel.at, "the number goes beyond the last register, 65535");
             return None;
         }
-        let holds = match encoding {
-            Encoding::Unsigned(n) => Holds::Whole { bits: n * 16, signed: false },
-            Encoding::Signed(n) => Holds::Whole { bits: n * 16, signed: true },
-            Encoding::F32 => Holds::Single,
-            Encoding::F64 => Holds::Double,
-        };
+        let holds = forms::holds(encoding);
         let value = |number: &Option<At<f64>>, usual| number.as_ref().map_or(usual, |n| n.value);
         let (scale, offset) = (value(&channel.scale, 1.0), value(&channel.offset, 0.0));
         Some((Some(encoding), Scaling { kind: item.kind, holds, inverted: false, scale, offset }))
@@ -491,13 +563,27 @@ impl<'a> Wirer<'a> {
 /// The key of the will among the points of a broker; no topic and no metric is empty.
 const WILL: &str = "";
 
+/// The variable of a channel, as far as messages and nodes must know it.
+fn carried(subject: &Subject, class: Class) -> Carried<'_> {
+    Carried {
+        name: &subject.name,
+        kind: subject.kind,
+        inverted: subject.inverted,
+        input: class == Class::Input,
+        safe: class == Class::Output,
+    }
+}
+
+/// Why a device that is asked shows nothing, and what to do instead.
+const NOT_ASKED: (&str, &str) = (
+    "belongs to a device that does not ask",
+    "only a server or a broker shows: `kind = \"modbus-server\"`, `kind = \"opc-ua-server\"`, `kind = \"mqtt\"`",
+);
+
 /// Why a use of a table is refused, and what to do instead.
 fn refused(area: Area, class: Class, server: bool) -> Option<(&'static str, &'static str)> {
     match class {
-        Class::Shown if !server => Some((
-            "belongs to a device that does not ask",
-            "only a server or a broker shows: `kind = \"modbus-server\"`, `kind = \"mqtt\"`",
-        )),
+        Class::Shown if !server => Some(NOT_ASKED),
         Class::Input if server && !area.is_writable() => {
             Some(("cannot be written by a master", "inputs from a master are coils or holding registers"))
         }
@@ -505,18 +591,5 @@ fn refused(area: Area, class: Class, server: bool) -> Option<(&'static str, &'st
             Some(("cannot be written", "outputs are coils or holding registers"))
         }
         Class::Input | Class::Output | Class::Shown => None,
-    }
-}
-
-/// How registers hold a variable where the file does not say it.
-fn usual(kind: Kind) -> Encoding {
-    match kind {
-        Kind::Int { bits, signed } => {
-            let registers = bits.div_ceil(16);
-            if signed { Encoding::Signed(registers) } else { Encoding::Unsigned(registers) }
-        }
-        Kind::Real => Encoding::F32,
-        Kind::Lreal => Encoding::F64,
-        Kind::Time | Kind::Bool | Kind::Text => Encoding::Signed(2),
     }
 }

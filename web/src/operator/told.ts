@@ -90,7 +90,7 @@ export interface ChartFile {
 
 export type Kind =
   | 'changed' | 'back' | 'run' | 'stop' | 'fault' | 'missed' | 'forced' | 'released' | 'ended' | 'no-priority' | 'unsaved'
-  | 'up' | 'down' | 'no-input' | 'input' | 'no-output' | 'output' | 'limited';
+  | 'up' | 'down' | 'no-input' | 'input' | 'no-output' | 'output' | 'limited' | 'note';
 
 export interface Event {
   n: number;

@@ -59,7 +59,7 @@ impl Told {
                 Some(wired) if wired.device.kind.is_server() => Level::Warning,
                 Some(_) | None => Level::Alarm,
             },
-            Told::Device(_, Happened::NoInput(..) | Happened::NoOutput(..))
+            Told::Device(_, Happened::NoInput(..) | Happened::NoOutput(..) | Happened::Note(_))
             | Told::Missed(_)
             | Told::Ended(_) => Level::Warning,
             Told::Mode(Mode::Run | Mode::Stop)
@@ -174,7 +174,7 @@ fn channel<'n>(names: &'n Names, device: usize, happened: &Happened) -> &'n str 
         Happened::NoOutput(k, _) | Happened::Output(k) | Happened::Limited(k) => {
             wired.outputs.get(*k).map_or("", |o| &o.name)
         }
-        Happened::Up | Happened::Down(_) => "",
+        Happened::Up | Happened::Down(_) | Happened::Note(_) => "",
     }
 }
 
@@ -188,6 +188,7 @@ fn device_json(names: &Names, device: usize, happened: &Happened) -> Value {
         Happened::NoOutput(_, why) => ("no-output", Some(why.clone())),
         Happened::Output(_) => ("output", None),
         Happened::Limited(_) => ("limited", None),
+        Happened::Note(what) => ("note", Some(what.clone())),
     };
     let name = channel(names, device, happened);
     json!({ "kind": kind, "device": names.device(device), "master": server, "name": name, "why": why })
@@ -207,6 +208,7 @@ fn device_text(names: &Names, device: usize, happened: &Happened) -> Option<Stri
         Happened::Input(_) => format!("{name}: `{of}` has a value again"),
         Happened::NoOutput(_, why) => format!("{name} {warn}refuses{warn:#} `{of}`: {why}"),
         Happened::Output(_) => format!("{name} takes `{of}` again"),
+        Happened::Note(what) => format!("{name} {warn}note:{warn:#} {what}"),
         Happened::Limited(_) => {
             format!("{name}: {warn}`{of}` is limited{warn:#} to what its point holds")
         }

@@ -120,7 +120,7 @@ fn install(args: &Install) -> Result<Verdict, Failure> {
         restart: args.restart,
         keeps: plan.setup.controller.retain.is_some(),
         serial: has(&plan, |kind| matches!(kind, Kind::ModbusRtu(..))),
-        low_port: has(&plan, |kind| matches!(kind, Kind::ModbusServer(l) if l.address.port() < 1024)),
+        low_port: has(&plan, |kind| kind.listens().is_some_and(|address| address.port() < 1024)),
         realtime: plan.setup.controller.priority.is_some(),
     };
     let text = unit.text().map_err(Failure::Usage)?;

@@ -59,8 +59,8 @@ pub enum Origin {
 pub struct Secret(Vec<u8>);
 
 impl Secret {
-    /// The bytes, for the broker alone.
-    pub(crate) fn bytes(&self) -> &[u8] {
+    /// The bytes, for the other side alone.
+    pub fn bytes(&self) -> &[u8] {
         &self.0
     }
 }
@@ -116,11 +116,7 @@ pub(super) fn message(table: &mut Table<'_>, input: bool, found: &mut Found) -> 
 pub(super) fn read(table: &mut Table<'_>, found: &mut Found) -> Option<Broker> {
     let port = table.whole(found, "port", 1..=65_535).map_or(1883, |port| port.value);
     let user = table.text(found, "user");
-    let password = password(table, found);
-    if let (Some(password), None) = (&password, &user) {
-        found.wrong(password.from.at, "a password without a `user`").help =
-            Some("name the `user` that the broker knows".to_owned());
-    }
+    let password = password_of(user.as_ref(), table, found);
     let client_id = table.text(found, "client-id");
     if let Some(long) = client_id.as_ref().filter(|id| id.value.is_empty() || id.value.len() > 65_535) {
         found.wrong(long.at, "a `client-id` has 1 to 65535 bytes");
@@ -146,7 +142,29 @@ pub(super) fn read(table: &mut Table<'_>, found: &mut Found) -> Option<Broker> {
     })
 }
 
-fn password(table: &mut Table<'_>, found: &mut Found) -> Option<Password> {
+/// The password of a user, if there is one.
+fn password_of(user: Option<&At<String>>, table: &mut Table<'_>, found: &mut Found) -> Option<Password> {
+    let password = password(table, found);
+    if let (Some(password), None) = (&password, user) {
+        found.wrong(password.from.at, "a password without a `user`").help =
+            Some("name the `user` that the other side knows".to_owned());
+    }
+    password
+}
+
+/// A user who has a password, or none.
+pub(super) fn user_with_password(table: &mut Table<'_>, found: &mut Found) -> Option<(String, Password)> {
+    let user = table.text(found, "user");
+    let password = password_of(user.as_ref(), table, found);
+    if let (Some(user), None) = (&user, &password) {
+        found.wrong(user.at, "a user without a password").help =
+            Some("name its file: `password-file = \"line1.password\"`".to_owned());
+    }
+    user.map(|user| user.value).zip(password)
+}
+
+/// A password, by the settings `password-file` and `password-env`.
+pub(super) fn password(table: &mut Table<'_>, found: &mut Found) -> Option<Password> {
     let file = table.text(found, "password-file").map(|f| At::new(Origin::File(f.value), f.at));
     let variable = table.text(found, "password-env").map(|v| At::new(Origin::Variable(v.value), v.at));
     if let (Some(file), Some(variable)) = (&file, &variable) {
@@ -202,13 +220,13 @@ pub(crate) fn publishable(topic: &str) -> Result<(), String> {
     Ok(())
 }
 
-/// Gets the passwords of brokers. `read` gives the bytes of a file or variable, or says why not.
+/// Gets passwords. `read` gives the bytes of a file or variable, or says why not.
 pub(super) fn read_passwords<'d>(
-    brokers: impl Iterator<Item = &'d mut Broker>,
+    passwords: impl Iterator<Item = &'d mut Password>,
     mut read: impl FnMut(&Origin) -> Result<Vec<u8>, String>,
 ) -> Vec<Problem> {
     let mut problems = Vec::new();
-    for password in brokers.filter_map(|broker| broker.password.as_mut()) {
+    for password in passwords {
         match read(&password.from.value) {
             Ok(mut bytes) => {
                 // Editors end a file with a line end, which is no part of the password.

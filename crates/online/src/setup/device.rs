@@ -5,6 +5,7 @@ use std::net::SocketAddr;
 use g7_model::Nanos;
 
 use super::broker::{self, Broker};
+use super::opcua::{self, OpcUa, OpcUaServer};
 use super::table::{At, Found, Row, Table};
 
 /// A device.
@@ -29,20 +30,27 @@ pub enum Kind {
     ModbusServer(Listen),
     /// A broker of MQTT 5, which this is a client of.
     Mqtt(Box<Broker>),
+    /// A server of OPC UA, which this is a client of.
+    OpcUa(Box<OpcUa>),
+    /// Clients of OPC UA, which this is the server of.
+    OpcUaServer(Box<OpcUaServer>),
 }
 
 impl Kind {
     /// The words of the file.
-    pub const WORDS: [&'static str; 4] = ["modbus-tcp", "modbus-rtu", "modbus-server", "mqtt"];
+    pub const WORDS: [&'static str; 6] =
+        ["modbus-tcp", "modbus-rtu", "modbus-server", "mqtt", "opc-ua", "opc-ua-server"];
 
     /// Its word in the file.
     pub fn word(&self) -> &'static str {
-        let [tcp, rtu, server, mqtt] = Kind::WORDS;
+        let [tcp, rtu, server, mqtt, opcua, opcua_server] = Kind::WORDS;
         match self {
             Kind::ModbusTcp(..) => tcp,
             Kind::ModbusRtu(..) => rtu,
             Kind::ModbusServer(_) => server,
             Kind::Mqtt(_) => mqtt,
+            Kind::OpcUa(_) => opcua,
+            Kind::OpcUaServer(_) => opcua_server,
         }
     }
 
@@ -53,12 +61,31 @@ impl Kind {
             Kind::ModbusRtu(serial, modbus) => format!("{} unit {}", serial.port, modbus.unit),
             Kind::ModbusServer(listen) => listen.address.to_string(),
             Kind::Mqtt(broker) => format!("{}:{}", broker.host, broker.port),
+            Kind::OpcUa(server) => server.url.clone(),
+            Kind::OpcUaServer(server) => server.address.to_string(),
         }
     }
 
     /// True if G7 is the server: it waits for requests and has no poll period of its own.
     pub fn is_server(&self) -> bool {
-        matches!(self, Kind::ModbusServer(_))
+        matches!(self, Kind::ModbusServer(_) | Kind::OpcUaServer(_))
+    }
+
+    /// The address that it listens at, where G7 is the server.
+    pub fn listens(&self) -> Option<SocketAddr> {
+        match self {
+            Kind::ModbusServer(listen) => Some(listen.address),
+            Kind::OpcUaServer(server) => Some(server.address),
+            Kind::ModbusTcp(..) | Kind::ModbusRtu(..) | Kind::Mqtt(_) | Kind::OpcUa(_) => None,
+        }
+    }
+
+    /// The feature of the build that brings it, where not each build has it.
+    pub fn feature(&self) -> Option<&'static str> {
+        match self {
+            Kind::OpcUa(_) | Kind::OpcUaServer(_) => Some("opcua"),
+            Kind::ModbusTcp(..) | Kind::ModbusRtu(..) | Kind::ModbusServer(_) | Kind::Mqtt(_) => None,
+        }
     }
 }
 
@@ -158,6 +185,10 @@ pub(super) fn read(row: &Row<'_>, found: &mut Found) -> Option<Device> {
         }
         "modbus-server" => listen(&mut table, found).map(Kind::ModbusServer),
         "mqtt" => broker::read(&mut table, found).map(|broker| Kind::Mqtt(Box::new(broker))),
+        "opc-ua" => opcua::client(&mut table, found).map(|server| Kind::OpcUa(Box::new(server))),
+        "opc-ua-server" => {
+            opcua::server(row.name, &mut table, found).map(|server| Kind::OpcUaServer(Box::new(server)))
+        }
         _ => {
             let known: Vec<String> = Kind::WORDS.iter().map(|word| format!("\"{word}\"")).collect();
             found.wrong(kind.at, format!("no kind of device is called \"{}\"", kind.value)).help =
@@ -167,7 +198,11 @@ pub(super) fn read(row: &Row<'_>, found: &mut Found) -> Option<Device> {
     };
     let timing = match &kind {
         Some(Kind::ModbusServer(_)) => SERVER,
+        Some(Kind::OpcUaServer(_)) => SHOWN,
         Some(Kind::Mqtt(_)) => timing(&mut table, found, BROKER),
+        Some(Kind::OpcUa(_)) => {
+            timing(&mut table, found, Timing { timeout: BROKER.timeout, ..Timing::default() })
+        }
         Some(Kind::ModbusTcp(..) | Kind::ModbusRtu(..)) | None => {
             timing(&mut table, found, Timing::default())
         }
@@ -208,6 +243,9 @@ pub(crate) const SERVER: Timing = Timing {
     refresh: Nanos::SECOND,
     retry: Nanos::from_millis(100),
 };
+
+/// The times of a server that keeps what it was told: only what has changed is handed over.
+const SHOWN: Timing = Timing { refresh: Nanos::new(i64::MAX), ..SERVER };
 
 fn listen(table: &mut Table<'_>, found: &mut Found) -> Option<Listen> {
     let address = table.needed(found, "listen", "127.0.0.1:1502");
@@ -259,7 +297,11 @@ fn timing(table: &mut Table<'_>, found: &mut Found, usual: Timing) -> Timing {
 pub(super) fn one_line_each(devices: &[Device], found: &mut Found) {
     let lines = devices.iter().filter_map(|d| match &d.kind {
         Kind::ModbusRtu(serial, _) => Some((d, serial)),
-        Kind::ModbusTcp(..) | Kind::ModbusServer(_) | Kind::Mqtt(_) => None,
+        Kind::ModbusTcp(..)
+        | Kind::ModbusServer(_)
+        | Kind::Mqtt(_)
+        | Kind::OpcUa(_)
+        | Kind::OpcUaServer(_) => None,
     });
     for (k, (device, serial)) in lines.clone().enumerate() {
         let other = lines.clone().take(k).find(|(_, s)| s.port == serial.port && *s != serial);
@@ -278,10 +320,7 @@ pub(super) fn one_line_each(devices: &[Device], found: &mut Found) {
 
 /// No two servers listen at one address.
 pub(super) fn one_address_each(devices: &[Device], found: &mut Found) {
-    let servers = devices.iter().filter_map(|d| match &d.kind {
-        Kind::ModbusServer(listen) => Some((d, listen.address)),
-        Kind::ModbusTcp(..) | Kind::ModbusRtu(..) | Kind::Mqtt(_) => None,
-    });
+    let servers = devices.iter().filter_map(|d| d.kind.listens().map(|address| (d, address)));
     for (k, (device, address)) in servers.clone().enumerate() {
         if let Some((first, _)) = servers.clone().take(k).find(|(_, other)| *other == address) {
             let what =

@@ -21,18 +21,21 @@
 
 mod broker;
 mod device;
+mod opcua;
 mod point;
 mod table;
 
 use std::net::SocketAddr;
+use std::path::Path;
 
-use g7_model::{FileId, Nanos, Problem, Span};
+use g7_model::{FileId, Nanos, Problem, Span, codes};
 use toml::de::{DeTable, DeValue};
 
 pub(crate) use broker::publishable;
 pub use broker::{Broker, Message, Origin, Password, Secret, Sparkplug};
 pub(crate) use device::SERVER;
 pub use device::{Device, Kind, Listen, Modbus, Parity, Serial, Tcp, Timing};
+pub use opcua::{Namespace, NodeId, OpcUa, OpcUaServer, Policy, Role, Security, User, read_node};
 pub use point::{Area, Encoding, Place, Point, Register};
 pub use table::At;
 
@@ -143,6 +146,8 @@ pub struct Channel {
     pub bad: At<Bad>,
     /// How the messages of a topic are used.
     pub message: Message,
+    /// The unit of the value, such as `m/s`.
+    pub unit: Option<At<String>>,
 }
 
 /// Reads an io file. What is wrong is left out and told.
@@ -176,11 +181,38 @@ pub fn read_passwords(
     setup: &mut Setup,
     from: impl FnMut(&Origin) -> Result<Vec<u8>, String>,
 ) -> Vec<Problem> {
-    let brokers = setup.devices.iter_mut().filter_map(|device| match &mut device.kind {
-        Kind::Mqtt(broker) => Some(broker.as_mut()),
-        Kind::ModbusTcp(..) | Kind::ModbusRtu(..) | Kind::ModbusServer(_) => None,
+    let passwords = setup.devices.iter_mut().flat_map(|device| match &mut device.kind {
+        Kind::Mqtt(broker) => broker.password.as_mut().into_iter().collect(),
+        Kind::OpcUa(server) => server.passwords().collect(),
+        Kind::OpcUaServer(server) => server.passwords().collect(),
+        Kind::ModbusTcp(..) | Kind::ModbusRtu(..) | Kind::ModbusServer(_) => Vec::new(),
     });
-    broker::read_passwords(brokers, from)
+    broker::read_passwords(passwords, from)
+}
+
+/// The folders that the file names are in this one from here on, that of the io file.
+pub fn settle(setup: &mut Setup, folder: &Path) {
+    for device in &mut setup.devices {
+        match &mut device.kind {
+            Kind::OpcUa(server) => server.settle(folder),
+            Kind::OpcUaServer(server) => server.settle(folder),
+            Kind::Mqtt(_) | Kind::ModbusTcp(..) | Kind::ModbusRtu(..) | Kind::ModbusServer(_) => {}
+        }
+    }
+}
+
+/// The devices of kinds that this program was built without. `has` says of a feature of the build whether
+/// it is there.
+pub fn missing(setup: &Setup, has: impl Fn(&str) -> bool) -> Vec<Problem> {
+    let problem = |device: &Device| {
+        let feature = device.kind.feature().filter(|feature| !has(feature))?;
+        let what = format!("this build of G7 has no \"{}\"", device.kind.word());
+        let mut problem = Problem::new(&codes::BAD_WIRING, device.name.at, what);
+        problem.help =
+            Some(format!("build it with `cargo build --release --package g7 --features {feature}`"));
+        Some(problem)
+    };
+    setup.devices.iter().filter_map(problem).collect()
 }
 
 fn setup(table: &DeTable<'_>, found: &mut Found) -> Setup {
@@ -254,6 +286,7 @@ fn channel(row: &Row<'_>, input: bool, found: &mut Found) -> Option<Channel> {
             offset: None,
             bad,
             message,
+            unit: None,
         });
     }
     let Some(table) = row.value.as_table() else {
@@ -266,6 +299,7 @@ fn channel(row: &Row<'_>, input: bool, found: &mut Found) -> Option<Channel> {
     let encoding = table.word(found, "as", Encoding::WORDS);
     let (scale, offset) = (table.number(found, "scale"), table.number(found, "offset"));
     let message = broker::message(&mut table, input, found);
+    let unit = table.text(found, "unit");
     let bad = if input { table.value(found, "bad") } else { None };
     let bad = match bad {
         None => At::new(Bad::Hold, row.at),
@@ -278,7 +312,7 @@ fn channel(row: &Row<'_>, input: bool, found: &mut Found) -> Option<Channel> {
     table.end(found);
     let text = text?;
     let (device, point) = point::read(&text.value, text.at, found)?;
-    Some(Channel { variable, device, point, at: text.at, encoding, scale, offset, bad, message })
+    Some(Channel { variable, device, point, at: text.at, encoding, scale, offset, bad, message, unit })
 }
 
 /// Reads the policy for an input whose value is bad.

@@ -14,6 +14,8 @@ pub enum Point {
     Topic(String),
     /// A metric of Sparkplug; without a name it has that of the variable.
     Metric(Option<String>),
+    /// A node of OPC UA; on a server of our own, without a name, it has that of the variable.
+    Node(Option<String>),
     /// True while the device answers.
     Good,
 }
@@ -132,6 +134,7 @@ impl std::fmt::Display for Point {
             Point::Modbus(register) => register.fmt(f),
             Point::Topic(topic) => write!(f, "topic({topic})"),
             Point::Metric(name) => write!(f, "metric({})", name.as_deref().unwrap_or("")),
+            Point::Node(name) => write!(f, "node({})", name.as_deref().unwrap_or("")),
             Point::Good => f.write_str("good()"),
         }
     }
@@ -147,7 +150,7 @@ pub(super) fn read(text: &str, at: Span, found: &mut Found) -> Option<(At<String
             let what = why.unwrap_or_else(|| format!("\"{text}\" is no point of a device"));
             found.wrong(at, what).help = Some(
                 "write the device and its point: \"line1.coil(2)\", \"line1.holding(4)\", \
-                 \"line1.holding(4.3)\" for one bit, \"broker.topic(plant/level)\", \"line1.good()\""
+                 \"line1.holding(4.3)\" for one bit, \"broker.topic(plant/level)\", \"line1.node(ns=2;s=Level)\", \"line1.good()\""
                     .to_owned(),
             );
             None
@@ -184,6 +187,7 @@ fn point(word: &str, argument: &str) -> Result<Point, String> {
     match word {
         "topic" => return topic_name(argument).map(|()| Point::Topic(argument.to_owned())),
         "metric" => return Ok(Point::Metric(Some(argument.to_owned()).filter(|name| !name.is_empty()))),
+        "node" => return Ok(Point::Node(Some(argument.to_owned()).filter(|name| !name.is_empty()))),
         _ => {}
     }
     let Some((_, area)) = Area::WORDS.iter().find(|(name, _)| *name == word) else {
