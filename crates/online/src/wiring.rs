@@ -120,9 +120,17 @@ pub fn wire(bench: &Bench, setup: &Setup) -> (Wiring, Vec<Problem>) {
 
 /// Adds to a server of our own whatever the chart has and no channel of it shows.
 fn expose(bench: &Bench, server: &mut Wired) {
-    let wires = server.inputs.iter().map(|i| &i.wire).chain(server.outputs.iter().map(|o| &o.wire));
-    let there: BTreeSet<String> = wires.filter_map(nodes::name).map(str::to_owned).collect();
-    let all = nodes::all(bench).filter(|seen| nodes::name(&seen.wire).is_some_and(|n| !there.contains(n)));
+    let inputs = server.inputs.iter().map(|i| (&i.name, &i.wire));
+    let all = inputs.chain(server.outputs.iter().map(|o| (&o.name, &o.wire)));
+    // By its own name, and by that of its node.
+    let there: BTreeSet<String> = all
+        .flat_map(|(name, wire)| [Some(name.as_str()), nodes::name(wire)])
+        .flatten()
+        .map(str::to_owned)
+        .collect();
+    let all = nodes::all(bench).filter(|seen| {
+        nodes::name(&seen.wire).is_some_and(|n| !there.contains(n) && !there.contains(&seen.name))
+    });
     server.outputs.extend(all.map(OutAt::from));
 }
 

@@ -94,9 +94,12 @@ impl Server {
         self.folder.prepare(&format!("G7 {}", self.name), &uri, &host)?;
         self.folder.expired().into_iter().for_each(|note| self.notes.say(note));
         let builder = self.builder(&uri, &host);
+        // The library starts tasks while it builds.
+        let entered = runtime.enter();
         let (server, handle) = builder.build().map_err(|e| failed(&e))?;
         let nodes = handle.node_managers().get_of_type::<InMemoryNodeManager<Nodes>>();
         let nodes = nodes.ok_or_else(|| failed(&"its nodes are missing"))?;
+        drop(entered);
         let task = runtime.spawn(server.run_with(listener));
         Ok(AtWork { runtime, handle, nodes, task })
     }

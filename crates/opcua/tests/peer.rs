@@ -41,7 +41,7 @@ fn row(port: u16, more: &str) -> String {
 const INPUTS: &str = "\
 [inputs]
 go = { at = 'line.node(nsu=urn:g7:peer;s=Go)', bad = false }
-level = { at = 'line.node(ns=2;s=Level)', scale = 10 }
+level = { at = 'line.node(ns=1;s=Level)', scale = 10 }
 count = 'line.node(nsu=urn:g7:peer;s=Count)'
 seven = 'line.node(nsu=urn:g7:peer;i=7)'
 there = 'line.good()'
@@ -137,10 +137,10 @@ fn what_a_node_cannot_carry_is_refused_with_both_types() {
     let folder = Folder::new();
     let (peer, port) = server(&python, 0, &[]);
     let io = row(port, "security = 'none'")
-        + "[inputs]\ngo = 'line.node(ns=2;s=Count)'\nlevel = 'line.node(ns=2;s=Text)'\n\
-           count = 'line.node(nsu=urn:nobody;s=Count)'\nseven = 'line.node(ns=2;s=Nothing)'\n\
-           [outputs]\nvalve = 'line.node(ns=2;s=Speed)'\nflow = 'line.node(ns=2;s=Count)'\n\
-           fixed = 'line.node(ns=2;s=Fixed)'\n";
+        + "[inputs]\ngo = 'line.node(ns=1;s=Count)'\nlevel = 'line.node(ns=1;s=Text)'\n\
+           count = 'line.node(nsu=urn:nobody;s=Count)'\nseven = 'line.node(ns=1;s=Nothing)'\n\
+           [outputs]\nvalve = 'line.node(ns=1;s=Speed)'\nflow = 'line.node(ns=1;s=Count)'\n\
+           fixed = 'line.node(ns=1;s=Fixed)'\n";
     let mut machine = Machine::start(&folder, CHART, &io);
     let mut lines: Vec<String> = (0..7).map(|_| machine.until("line ")).collect();
     lines.retain(|line| line != "line up");

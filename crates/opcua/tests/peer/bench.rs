@@ -167,9 +167,8 @@ pub(crate) fn wired(folder: &Folder, chart: &str, io: &str) -> Result<(Bench, Wi
     }));
     let (wiring, more) = g7_online::wire(&bench, &setup);
     problems.extend(more);
-    let said = |p: &g7_model::Problem| {
-        format!("{} {}; {}", p.code.id, p.message, p.help.clone().unwrap_or_default())
-    };
+    let said =
+        |p: &g7_model::Problem| format!("{} {}; {}", p.code.id, p.what, p.help.clone().unwrap_or_default());
     if problems.is_empty() { Ok((bench, wiring)) } else { Err(problems.iter().map(said).collect()) }
 }
 
