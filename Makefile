@@ -16,6 +16,10 @@ debian = command -v $(1) >/dev/null || \
 # Logs of `make test` with the list of what was skipped; the pages of the book, put together.
 BOOK := $(abspath $(or $(CARGO_TARGET_DIR),target))/book
 TALLY := $(abspath $(or $(CARGO_TARGET_DIR),target))/tally
+# The program as the tests have it: libraries get the features that the workspace asks for as a whole, so that
+# they are compiled once for all tests.
+DEBUG := $(abspath $(or $(CARGO_TARGET_DIR),target))/debug
+BUILD := cargo build --quiet --workspace --bin g7
 PYTHON := $(abspath $(or $(CARGO_TARGET_DIR),target))/python
 PAGE := $(shell find web/src web/index.html web/public web/*.ts web/*.js web/*.mjs -type f 2>/dev/null)
 
@@ -53,9 +57,10 @@ static: web
 test: export G7_SKIPS = $(TALLY)/skips
 test: export G7_PEERS = $(PYTHON)
 test: tally-anew lint page-test $(PYTHON)/bin/pymodbus.simulator
-	cargo test --workspace --quiet 2>&1 | tee $(TALLY)/crates.log
-	cargo run --quiet --package g7 -- check examples
-	cargo run --quiet --package g7 -- test examples | tee $(TALLY)/examples.log
+	{ cargo test --workspace --quiet --lib --bins --tests && cargo test --quiet --doc --package g7-engine; } 2>&1 | \
+		tee $(TALLY)/crates.log
+	$(DEBUG)/g7 check examples
+	$(DEBUG)/g7 test examples | tee $(TALLY)/examples.log
 	@cargo run --quiet --package g7-peers --bin tally -- $(TALLY)
 
 # Programs in Python that tests talk to. Without a network they are skipped, which the tally counts.
@@ -68,13 +73,17 @@ $(PYTHON)/bin/pymodbus.simulator:
 tally-anew:
 	@rm -rf $(TALLY) && mkdir -p $(TALLY) && touch $(TALLY)/skips
 
-## install what some tests are skipped without: clang with its sanitizers, g++, strace, mosquitto, a bare target
+## install what some tests are skipped without: clang with its sanitizers, g++, strace, faketime, rt-tests, stress-ng, mosquitto, pyarrow, a bare target
 peers:
 	rustup target add thumbv7em-none-eabi
 	@$(call debian,gcc,gcc)
 	@$(call debian,g++,g++)
 	@$(call debian,strace,strace)
+	@$(call debian,faketime,faketime)
+	@$(call debian,cyclictest,rt-tests)
+	@$(call debian,stress-ng,stress-ng)
 	@$(call debian,mosquitto_sub,mosquitto mosquitto-clients)
+	@test ! -x $(PYTHON)/bin/pip || $(PYTHON)/bin/pip install --quiet 'pyarrow>=20'
 	@$(SUDO) apt-get update -qq && $(SUDO) apt-get install -qq --no-install-recommends clang libclang-rt-dev
 
 ## formatting and lints
@@ -122,16 +131,16 @@ site: web
 ## the pictures of the examples and of the operator's page, for the book and the README
 pictures: web
 	@$(call debian,chromium,chromium)
-	cargo build --quiet --package g7
-	cd web && G7=$${CARGO_TARGET_DIR:-$(CURDIR)/target}/debug/g7 npx tsx tests/pictures.ts
+	$(BUILD)
+	cd web && G7=$(DEBUG)/g7 npx tsx tests/pictures.ts
 
 ## the stories of the page in a real browser
+page-test: WASM := quick-wasm
 page-test: web
 	@$(call debian,chromium,chromium)
-	cargo build --quiet --package g7
+	$(BUILD)
 	@mkdir -p $(TALLY)
-	cd web && npm run --silent check && \
-		G7=$${CARGO_TARGET_DIR:-$(CURDIR)/target}/debug/g7 npm test --silent | tee $(TALLY)/page.log
+	cd web && npm run --silent check && G7=$(DEBUG)/g7 npm test --silent | tee $(TALLY)/page.log
 
 ## main-thread time of the page, beside React Flow
 page-bench: wasm web/node_modules/.package-lock.json
@@ -149,7 +158,7 @@ bench-check:
 	@$(call debian,valgrind,valgrind)
 	benches/instructions.sh
 
-## how late scans are beside cyclictest, how long a read of Modbus TCP takes (Linux, as root; rt-tests and stress-ng are installed)
+## how late scans are beside cyclictest, with no page and with 1000, how long a read of Modbus TCP takes (Linux, as root; rt-tests and stress-ng are installed)
 online-bench: export G7_PEERS = $(PYTHON)
 online-bench: $(PYTHON)/bin/pymodbus.simulator
 	@$(call debian,cyclictest,rt-tests)
@@ -161,14 +170,22 @@ online-bench: $(PYTHON)/bin/pymodbus.simulator
 ## the controller with faulty devices in simulated time, 10,000 courses of faults (SEEDS=… for others)
 soak: export G7_SEEDS = $(SEEDS)
 soak:
-	cargo test --package g7-online --test simulation
+	cargo test --package g7-online --test simulation -- --nocapture
+
+# The packages that have tests of faults, which are called `row_...`.
+FAULTY := g7 g7-online g7-store
 
 ## faults around a controller on line, each hundreds of times: what held, and how long it took
 faults: export G7_FAULTS = many
 faults: export G7_PEERS = $(PYTHON)
+faults: export G7_FAULT_ROWS = $(TALLY)/faults
 faults: $(PYTHON)/bin/pymodbus.simulator
-	cargo test --package g7 --test faults -- --nocapture --test-threads 1
-	cargo test --package g7-opcua --test peer -- --nocapture --test-threads 1
+	@$(call debian,faketime,faketime)
+	@$(call debian,cyclictest,rt-tests)
+	@$(call debian,stress-ng,stress-ng)
+	@mkdir -p $(TALLY) && rm -f $(G7_FAULT_ROWS) && touch $(G7_FAULT_ROWS)
+	done=0; cargo test $(FAULTY:%=--package %) --tests --no-fail-fast -- row_ --nocapture --test-threads 1 || done=$$?; \
+		cargo run --quiet --package g7-peers --bin faults -- $(G7_FAULT_ROWS) && exit $$done
 
 ## the book, as HTML in docs/book/book, with every conformance case as a page
 book:

@@ -109,7 +109,7 @@ export async function open(
   size = { width: 1280, height: 720 },
   before?: (context: BrowserContext) => Promise<unknown>,
 ): Promise<Page & { errors: string[] }> {
-  const context = await b.newContext({ viewport: size, locale: 'en-GB' });
+  const context = await b.newContext({ viewport: size, locale: 'en-GB', ignoreHTTPSErrors: true });
   await before?.(context);
   const page = await context.newPage();
   const errors: string[] = [];

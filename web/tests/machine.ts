@@ -1,7 +1,7 @@
 // A machine for the stories of the operator: a mixer whose plant stands behind Modbus TCP (`g7 plant`),
 // and its controller (`g7 serve --online`).
-import { spawn, type ChildProcess } from 'node:child_process';
-import { mkdtempSync, rmSync, writeFileSync } from 'node:fs';
+import { execFileSync, spawn, type ChildProcess } from 'node:child_process';
+import { mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { createServer } from 'node:net';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
@@ -54,7 +54,8 @@ plant Tank {
 }
 `;
 
-const io = (port: number) => `[controller]
+const io = (port: number, server: string) => `[controller]
+${server && "log = 'mixer.log'"}
 period = "20ms"
 watchdog = "10s"
 start = "stop"
@@ -77,7 +78,61 @@ heat = "rack1.coil(2)"
 drain = "rack1.coil(3)"
 lamp = "rack1.coil(4)"
 speed = "rack1.holding(0)"
+[history]
+file = "mixer.history"
+${server}`;
+
+/** A filling station that is operated on the page alone, with a picture of its plant. */
+const DESK = `profile iec60848
+input start : BOOL "Start"
+input hold : BOOL "Hold"
+input mode : INT "Mode"
+input amount : REAL "Amount, litres"
+input auto : BOOL "Automatic"
+input level : REAL "level in the tank"
+output valve : BOOL "Inlet valve"
+output ready : BOOL "Ready"
+output alarm : BOOL "Tank is full"
+output count : INT "Fillings" safe 0
+chart Fill {
+  initial step 0 { N ready }
+  step 1 "filling" { N valve }
+  step 2 "full" { N alarm  P1 count := count + 1 }
+  0 -> 1 when start and mode = 1 and not hold
+  1 -> 2 when level >= amount
+  2 -> 0 when auto
+}
+plant Tank {
+  state height : REAL := 30.0 in 0.0 .. 100.0
+  state foam : REAL := 5.0
+  rate height := 1.0 when valve
+  drive level := height
+  view 'tank.svg' { water.level := height / 100.0  pipe.open := valve  lamp.on := ready  bubbles.dy := foam }
+}
 `;
+
+const DESK_IO = `[controller]
+watchdog = "10s"
+[devices.desk]
+kind = "panel"
+[inputs]
+mode = "desk.choice(A1, F1, F4, D1)"
+start = "desk.button()"
+hold = "desk.switch()"
+auto = "desk.switch()"
+amount = { at = "desk.number()", min = 0, max = 100, initial = 80 }
+level = { at = "desk.number()", initial = 30 }
+[outputs]
+valve = "desk.lamp(blue)"
+ready = "desk.lamp()"
+alarm = "desk.lamp(red)"
+count = "desk.value()"
+`;
+
+const TANK = `<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 320 200"><style>.pipe { fill: #9aa7b8 } .pipe.open { fill: #2b7de0 } .lamp { fill: #8894a5 } .lamp.on { fill: #1c9a4b }</style>
+<path class="pipe" data-g7="pipe" d="M20 30h120v18H20z"/><rect x="110" y="56" width="120" height="124" rx="8" fill="none" stroke="#77859a" stroke-width="4"/>
+<rect data-g7="water" x="114" y="60" width="112" height="116" fill="#5aa4ea"/><g data-g7="bubbles" fill="#8a6fd1"><circle cx="150" cy="90" r="6"/><circle cx="170" cy="80" r="4"/><circle cx="190" cy="94" r="5"/></g>
+<circle class="lamp" data-g7="lamp" cx="280" cy="40" r="14"/></svg>`;
 
 async function freePort(): Promise<number> {
   const server = createServer();
@@ -119,16 +174,62 @@ export class Machine {
   #plant: ChildProcess | null = null;
   #station: ChildProcess | null = null;
 
+  async #lay(server: string): Promise<void> {
+    this.#port = await freePort();
+    writeFileSync(join(this.#folder, 'mixer.g7'), CHART);
+    writeFileSync(join(this.#folder, 'mixer.io.toml'), io(this.#port, server));
+    await this.plug();
+  }
+
+  /** With TLS, a log and no user yet; the code of the console. */
+  static async guarded(): Promise<{ machine: Machine; code: string }> {
+    const machine = new Machine();
+    await machine.#lay("[server]\nusers = 'g7.users'\ncert = 'g7.cert.pem'\nkey = 'g7.key.pem'\n");
+    execFileSync(program(), ['cert'], { cwd: machine.#folder, stdio: 'ignore' });
+    const port = await freePort();
+    const { child, found } = await begun(['serve', 'mixer.g7', '--online', '--no-open', '--port', String(port)], machine.#folder, 'stderr', /code: \S+/);
+    machine.#station = child;
+    machine.url = `https://127.0.0.1:${port}/operator`;
+    return { machine, code: found.replace('code: ', '') };
+  }
+
   static async start(): Promise<Machine> {
     const machine = new Machine();
-    machine.#port = await freePort();
-    writeFileSync(join(machine.#folder, 'mixer.g7'), CHART);
-    writeFileSync(join(machine.#folder, 'mixer.io.toml'), io(machine.#port));
-    await machine.plug();
+    await machine.#lay('');
     const { child, found } = await begun(['serve', 'mixer.g7', '--online', '--no-open', '--port', '0'], machine.#folder, 'stdout', /http:\/\/\S+/);
     machine.#station = child;
     machine.url = found;
     return machine;
+  }
+
+  /** The editor with the mixer's wiring; its devices are there, and no controller. */
+  static async editor(): Promise<Machine> {
+    const machine = new Machine();
+    machine.#port = await freePort();
+    writeFileSync(join(machine.#folder, 'mixer.g7'), CHART);
+    machine.io = io(machine.#port);
+    await machine.plug();
+    const { child, found } = await begun(['serve', 'mixer.g7', '--no-open', '--port', '0'], machine.#folder, 'stdout', /http:\/\/\S+/);
+    [machine.#station, machine.url] = [child, found];
+    return machine;
+  }
+
+  /** A machine that has a panel on the page and no device. */
+  static async desk(): Promise<Machine> {
+    const machine = new Machine();
+    for (const [name, text] of [['filler.g7', DESK], ['filler.io.toml', DESK_IO], ['tank.svg', TANK]] as const) writeFileSync(join(machine.#folder, name), text);
+    const { child, found } = await begun(['serve', 'filler.g7', '--online', '--no-open', '--port', '0'], machine.#folder, 'stdout', /http:\/\/\S+/);
+    [machine.#station, machine.url] = [child, found];
+    return machine;
+  }
+
+  /** The io file, as it is on the disk. */
+  get io(): string {
+    return readFileSync(join(this.#folder, 'mixer.io.toml'), 'utf8');
+  }
+
+  set io(text: string) {
+    writeFileSync(join(this.#folder, 'mixer.io.toml'), text);
   }
 
   /** The device is there. */

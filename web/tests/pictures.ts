@@ -13,6 +13,8 @@ const BOOK = join(ROOT, 'docs/book/src/examples/img');
 const README = join(ROOT, 'docs/img/editor.jpg');
 const OPERATOR = join(ROOT, 'docs/book/src/online/img/operator.jpg');
 const CHANGE = join(ROOT, 'docs/book/src/online/img/change.jpg');
+const WIRING = join(ROOT, 'docs/book/src/online/img/wiring.jpg');
+const PANEL = join(ROOT, 'docs/book/src/online/img/panel.jpg');
 const DEMO = join(ROOT, 'docs/book/src/online/img/bench.jpg');
 const STEP_MS = 20;
 
@@ -176,6 +178,47 @@ async function operator(b: Browser): Promise<void> {
   }
 }
 
+/** The wiring of the mixer, with the form of one wire. */
+async function wiring(b: Browser): Promise<void> {
+  const machine = await Machine.editor();
+  try {
+    const page = await open(b, { url: machine.url, stop: async () => undefined }, undefined, { width: 1280, height: 860 });
+    await page.getByRole('button', { name: 'Wiring', exact: true }).click();
+    await page.getByText('answers', { exact: true }).waitFor();
+    await page.getByRole('button', { name: 'Change high' }).click();
+    await page.getByRole('form', { name: 'Wire high' }).getByLabel('Address, from 0').waitFor();
+    await page.mouse.move(1, 1);
+    await page.evaluate(() => (document.activeElement as HTMLElement | null)?.blur());
+    await page.waitForTimeout(1500);
+    assert.deepEqual(page.errors, [], 'wiring');
+    await take(page, WIRING, 120_000);
+    await page.context().close();
+  } finally {
+    await machine.done();
+  }
+}
+
+/** A panel at work, on the page of the operator. */
+async function panel(b: Browser): Promise<void> {
+  const machine = await Machine.desk();
+  try {
+    const page = await open(b, { url: machine.url, stop: async () => undefined }, undefined, { width: 1280, height: 860 });
+    const desk = page.getByRole('region', { name: 'Panel desk' });
+    await desk.getByRole('radio', { name: /F1/ }).click();
+    await desk.getByRole('radio', { name: /F1/, checked: true }).waitFor();
+    await desk.getByRole('button', { name: 'Start' }).hover();
+    await page.mouse.down();
+    await page.getByRole('region', { name: 'Active steps' }).getByText('filling').waitFor();
+    await page.waitForTimeout(800);
+    assert.deepEqual(page.errors, [], 'panel');
+    await take(page, PANEL, 120_000);
+    await page.mouse.up();
+    await page.context().close();
+  } finally {
+    await machine.done();
+  }
+}
+
 /** The bench with its parts at work. */
 async function demo(b: Browser): Promise<void> {
   const { url, end } = await bench();
@@ -216,8 +259,14 @@ try {
     await page.context().close();
     process.stdout.write('README\n');
   }
+  if (wanted.includes('wiring')) {
+    await wiring(b);
+    await panel(b);
+  }
   if (wanted.length === 0 || wanted.includes('operator')) {
     await operator(b);
+    await wiring(b);
+    await panel(b);
     await demo(b);
     process.stdout.write('operator\n');
   }

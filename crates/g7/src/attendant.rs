@@ -2,6 +2,7 @@
 //! events go to the standard error and to the page.
 
 use std::io::BufRead as _;
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, channel};
@@ -10,23 +11,29 @@ use std::time::Duration;
 use g7_engine::Addr;
 use g7_host::{Clock, Value, WallClock};
 use g7_model::Nanos;
-use g7_online::{Answer, AtDevice, Command, Controller, Happened, Mode, Paces, Running, What};
+use g7_online::{Answer, AtDevice, Command, Controller, Happened, Mode, Paces, Panels, Running, What};
 use g7_rig::Role;
-use serde_json::Value as Json;
+use g7_store::log::Log;
+use serde_json::{Value as Json, json};
 use signal_hook::consts::{SIGINT, SIGTERM};
 
+use crate::audit::{Audit, Pending};
 use crate::failure::{Failure, Verdict, plain};
+use crate::history::{Historian, Kept};
 use crate::manager::Manager;
 use crate::message::talk;
 use crate::monitor::Monitor;
-use crate::operator::{Adopted, Asker, Changes, HELP, Names, Stage, Told, Wish, mode_text};
+use crate::operator::{Adopted, Asker, Changes, HELP, Names, Stage, Told, Wish, mode_text, operate};
 use crate::origin::Origin;
 use crate::values;
+use crate::who::Who;
 
 /// The pause between two looks at the events.
 const PAUSE: Duration = Duration::from_millis(20);
 /// Greatest number of orders of pages between two looks at the events.
 const ORDERS: usize = 32;
+/// The time between two rows of scans that were left out, and between two looks at the log.
+const SUM: Nanos = Nanos::SECOND;
 /// A command that the scan has not answered after this time is given up.
 const PATIENCE: Nanos = Nanos::from_millis(3_000);
 
@@ -49,9 +56,17 @@ pub(crate) struct Attendant {
     mode: Mode,
     paces: Paces,
     monitor: Option<Monitor>,
+    historian: Option<Historian>,
     stage: Option<Stage>,
     changes: Option<Changes>,
+    panels: Panels,
     asked: Vec<Asked>,
+    log: Option<Log>,
+    audit: Audit,
+    /// Wishes of lines that wait for their row in the log.
+    held: Vec<(Wish, Pending)>,
+    /// Scans that were left out and are no row of the log yet, and the time for it.
+    missed: (u64, Nanos),
     /// Lines `NAME := VALUE` set an input or a state.
     sets: bool,
 }
@@ -64,9 +79,15 @@ impl Attendant {
             mode: Mode::Stop,
             paces: Paces::default(),
             monitor: None,
+            historian: None,
             stage: None,
             changes: None,
+            panels: Panels::default(),
             asked: Vec::new(),
+            log: None,
+            audit: Audit::default(),
+            held: Vec::new(),
+            missed: (0, Nanos::ZERO),
             sets: false,
         }
     }
@@ -74,6 +95,16 @@ impl Attendant {
     /// Tells a monitor what happens.
     pub(crate) fn with(self, monitor: Option<Monitor>) -> Attendant {
         Attendant { monitor, ..self }
+    }
+
+    /// Writes what happens into a log, and what the terminal wants.
+    pub(crate) fn logging(self, log: Option<Log>, audit: Audit) -> Attendant {
+        Attendant { log, audit, ..self }
+    }
+
+    /// Tells how the record of the signals does; it ends behind the run.
+    pub(crate) fn recording(self, historian: Option<Historian>) -> Attendant {
+        Attendant { historian, ..self }
     }
 
     /// Tells pages what happens, and does what they want.
@@ -84,6 +115,11 @@ impl Attendant {
     /// Changes the chart while it runs, on request: its files are read again.
     pub(crate) fn changing(self, origin: Origin) -> Attendant {
         Attendant { changes: Some(Changes::new(origin)), ..self }
+    }
+
+    /// Moves the parts of these panels.
+    pub(crate) fn at(self, panels: Panels) -> Attendant {
+        Attendant { panels, ..self }
     }
 
     /// Takes lines that set a value as well.
@@ -98,6 +134,8 @@ impl Attendant {
             signal_hook::flag::register(signal, Arc::clone(&ended)).map_err(refused)?;
         }
         let lines = lines();
+        let begin = json!({ "version": env!("CARGO_PKG_VERSION"), "chart": self.names.source.name });
+        self.audit.event("note", "begin", Some(Nanos::ZERO), &begin);
         let mut manager = Manager::ready();
         manager.status(&mode_text(&self.names, self.mode));
         loop {
@@ -114,6 +152,8 @@ impl Attendant {
                 break;
             }
             self.serve(&mut running);
+            self.held(&mut running);
+            self.left_out(false);
             match lines.try_recv().as_deref() {
                 Ok("quit") => break,
                 Ok(line) => self.obey(line, &mut running),
@@ -123,6 +163,10 @@ impl Attendant {
         manager.stopping();
         let panicked = !running.is_alive();
         let controller = running.end();
+        self.left_out(true);
+        let now = self.clock.now();
+        self.audit.event(if panicked { "alarm" } else { "note" }, "end", Some(now), &json!({}));
+        drop(self.log.take());
         if panicked || controller.is_none() {
             return Err(Failure::Usage("the scan ended by an error of G7; outputs are safe".to_owned()));
         }
@@ -132,8 +176,16 @@ impl Attendant {
         Ok(if matches!(self.mode, Mode::Fault(_)) { Verdict::Found } else { Verdict::Fine })
     }
 
-    /// Does what the pages want and shows them what there is.
+    /// Does what the pages want and shows them what there is. An error of G7 in this ends the pages; the
+    /// machine goes on, and the terminal commands it.
     fn serve(&mut self, running: &mut Running) {
+        if catch_unwind(AssertUnwindSafe(|| self.show(running))).is_err() {
+            self.stage = None;
+            talk!("{} the page ended by an error of G7; the controller goes on", self.time());
+        }
+    }
+
+    fn show(&mut self, running: &mut Running) {
         let now = self.clock.now();
         // However many orders come, the events are looked at.
         for _ in 0..ORDERS {
@@ -145,6 +197,9 @@ impl Attendant {
             }
         }
         if let Some(stage) = &mut self.stage {
+            if stage.is_watched() {
+                self.panels.watched();
+            }
             if let Some(changes) = &mut self.changes {
                 stage.tell_file(changes.facts(&self.names, now));
             }
@@ -167,11 +222,65 @@ impl Attendant {
         self.note(now, &Told::Changed { back, lost });
     }
 
+    /// Does a wish of the terminal, once it stands in the log where it must.
+    fn line(&mut self, wish: Wish, running: &mut Running) {
+        let Some((kind, data)) = wish.deed() else { return self.want(&wish, Asker::Line, running) };
+        let at = Some(self.clock.now());
+        if wish.waits_for_log() {
+            let pending = self.audit.before(&Who::console(), &kind, at, &data);
+            return self.held.push((wish, pending));
+        }
+        self.audit.note(&Who::console(), &kind, at, &data);
+        self.want(&wish, Asker::Line, running);
+    }
+
+    /// Does the wishes of the terminal that stand in the log now.
+    fn held(&mut self, running: &mut Running) {
+        for (wish, pending) in std::mem::take(&mut self.held) {
+            match pending.look() {
+                None => self.held.push((wish, pending)),
+                Some(Err(why)) => talk!("{why}"),
+                Some(Ok(())) => self.want(&wish, Asker::Line, running),
+            }
+        }
+    }
+
+    /// Writes the scans that were left out as one row a second, and tells the monitor how the log is.
+    fn left_out(&mut self, end: bool) {
+        let now = self.clock.now();
+        let (count, due) = self.missed;
+        if now < due && !end {
+            return;
+        }
+        self.missed = (0, now + SUM);
+        if count > 0 {
+            self.logged(now, &Told::Missed(count));
+        }
+        if let (Some(monitor), Some(state)) = (&self.monitor, self.audit.state()) {
+            monitor.log(&state);
+        }
+    }
+
+    /// Writes an event into the log.
+    fn logged(&self, at: Nanos, told: &Told) {
+        let mut data = told.json(&self.names);
+        let kind = data.as_object_mut().and_then(|fields| fields.remove("kind"));
+        if let (Some(fields), Some(text)) = (data.as_object_mut(), told.text(&self.names)) {
+            fields.retain(|_, value| !value.is_null());
+            fields.insert("text".to_owned(), json!(anstream::adapter::strip_str(&text).to_string()));
+        }
+        let kind = kind.as_ref().and_then(Json::as_str).unwrap_or_default();
+        self.audit.event(told.level(&self.names).word(), kind, Some(at), &data);
+    }
+
     /// Hands the command of a wish on.
     fn want(&mut self, wish: &Wish, by: Asker, running: &mut Running) {
         if let (Wish::Change { anyway } | Wish::Back { anyway }, Some(changes)) = (wish, &mut self.changes) {
             let back = matches!(wish, Wish::Back { .. });
             return changes.begin(&self.names, by, back, *anyway, running);
+        }
+        if let Wish::Press { .. } | Wish::Set { .. } = wish {
+            return self.operate(wish, by);
         }
         let given = self.names.command(wish).and_then(|command| {
             let command = command.ok_or("this belongs to a page")?;
@@ -181,6 +290,16 @@ impl Attendant {
             Ok(number) => self.asked.push(Asked { number, until: self.clock.now() + PATIENCE, by }),
             Err(why) => answer(by, Err(why)),
         }
+    }
+
+    /// Moves a part of a panel.
+    fn operate(&mut self, wish: &Wish, by: Asker) {
+        let done = operate(&self.panels, &self.names, wish, &by);
+        if let Ok(Some(told)) = &done {
+            let now = self.clock.now();
+            self.note(now, told);
+        }
+        answer(by, done.map(|_| ()));
     }
 
     /// Gives the answers of the scan to those who asked.
@@ -201,7 +320,7 @@ impl Attendant {
             return;
         }
         let given = match Wish::of_line(line) {
-            Some(Ok(wish)) => return self.want(&wish, Asker::Line, running),
+            Some(Ok(wish)) => return self.line(wish, running),
             Some(Err(why)) => Err(why),
             None if line == "status" => {
                 talk!("{} {}", self.time(), mode_text(&self.names, self.mode));
@@ -273,6 +392,16 @@ impl Attendant {
             let now = self.clock.now();
             self.note(now, &Told::NoPriority(why));
         }
+        while let Some(kept) = self.historian.as_ref().and_then(|h| h.told.try_recv().ok()) {
+            let now = self.clock.now();
+            self.note(
+                now,
+                &match kept {
+                    Kept::Fails(why) => Told::Unrecorded(why),
+                    Kept::Goes(lost) => Told::Recorded(lost),
+                },
+            );
+        }
         while let Ok(e) = running.disk.try_recv() {
             self.monitored(Monitor::unsaved);
             let now = self.clock.now();
@@ -287,6 +416,10 @@ impl Attendant {
         }
         if let Some(stage) = &mut self.stage {
             stage.note(at, told);
+        }
+        match told {
+            Told::Missed(more) => self.missed.0 = self.missed.0.saturating_add(*more),
+            _ => self.logged(at, told),
         }
     }
 

@@ -75,12 +75,20 @@ pub(crate) enum Command {
     Devices(crate::devices::Devices),
     /// Run the plant of a chart in the place of its devices.
     Plant(crate::plant::Plant),
+    /// Show what the history of a controller has, or export it.
+    History(crate::history::History),
     /// Run the tests of charts in virtual time.
     Test(Test),
     /// Draw charts as SVG, PNG or PDF.
     Draw(crate::draw::Draw),
     /// Open the editor in the browser, or drive a machine with the page of its operator.
     Serve(crate::serve::Serve),
+    /// Show, add, change and remove the users of a server.
+    Users(crate::users::Users),
+    /// Show, export and check the log of a controller.
+    Log(crate::journal::Journal),
+    /// Make a certificate and its key, for encrypted connections.
+    Cert(crate::certificate::Cert),
     /// Let the system start the controller of a chart (systemd).
     #[cfg(target_os = "linux")]
     Service(crate::service::Service),

@@ -91,7 +91,7 @@ fn word<T: Copy>(text: &str, words: &[(&str, T)]) -> Result<T, String> {
 fn point(text: &str) -> Result<Register, String> {
     match read_point(text)? {
         Point::Modbus(register) => Ok(register),
-        Point::Good | Point::Topic(_) | Point::Metric(_) | Point::Node(_) => {
+        Point::Good | Point::Topic(_) | Point::Metric(_) | Point::Panel(_) | Point::Node(_) => {
             Err("this is no point of Modbus".to_owned())
         }
     }
@@ -119,9 +119,15 @@ pub(crate) fn devices(args: &Devices) -> Result<Verdict, Failure> {
     let (mut clients, mut verdict) = (brought::clients(), Verdict::Fine);
     for wired in &plan.wiring.devices {
         let found = match &wired.device.kind {
-            Kind::ModbusServer(_) | Kind::OpcUaServer(_) => served(wired)?,
+            Kind::ModbusServer(Listen { address, .. }) => {
+                served(wired, &format!("listens at {address} for masters"))?
+            }
+            Kind::OpcUaServer(server) => {
+                served(wired, &format!("listens at {} for clients", server.address))?
+            }
             Kind::Mqtt(broker) => heard(broker, wired)?,
             Kind::OpcUa(_) => asked(&mut clients, wired)?,
+            Kind::Panel(_) => served(wired, "is on the operator page")?,
             Kind::ModbusTcp(..) | Kind::ModbusRtu(..) => ask(&mut clients, &wired.device, &channels(wired))?,
         };
         if found == Verdict::Found {
@@ -271,12 +277,13 @@ fn print(device: &Device, shown: &[Shown], probed: Result<Probed, Failed>) -> Re
     Ok(verdict)
 }
 
-/// Prints what masters find on a server of our own while the controller runs.
-fn served(wired: &Wired) -> Result<Verdict, Failure> {
+/// Prints what others find at G7 itself while the controller runs: masters on a server of our own,
+/// a person on a panel.
+fn served(wired: &Wired, how: &str) -> Result<Verdict, Failure> {
     let strong = style::STRONG;
     let mut out = anstream::stdout().lock();
     let name = &wired.device.name.value;
-    writeln!(out, "{strong}{name}{strong:#} listens at {} for masters", wired.device.kind.place())?;
+    writeln!(out, "{strong}{name}{strong:#} {how}")?;
     let channels = channels(wired);
     let width = channels.iter().map(|c| c.name.chars().count()).max().unwrap_or(0);
     for (k, channel) in channels.iter().enumerate() {
@@ -289,17 +296,25 @@ fn served(wired: &Wired) -> Result<Verdict, Failure> {
 
 /// A value of a device, as the chart has it and as it is on the wire.
 fn text(raw: Raw, scaling: Option<&Scaling>) -> String {
-    let plain = match raw {
+    let plain = plain(raw);
+    let Some(scaling) = scaling else { return plain };
+    match value(raw, scaling) {
+        Some(value) if value == plain => value,
+        Some(value) => format!("{value} (from {plain})"),
+        None => format!("{plain}, which the variable cannot hold"),
+    }
+}
+
+/// A value as it is on the wire.
+pub(crate) fn plain(raw: Raw) -> String {
+    match raw {
         Raw::Bit(on) => if on { "TRUE" } else { "FALSE" }.to_owned(),
         Raw::Whole(n) => n.to_string(),
         Raw::Real(x) => x.to_string(),
-    };
-    let Some(scaling) = scaling else { return plain };
-    match scaling.word(raw) {
-        Some(word) => {
-            let value = Value::Word(word).show(scaling.kind);
-            if value == plain { value } else { format!("{value} (from {plain})") }
-        }
-        None => format!("{plain}, which the variable cannot hold"),
     }
+}
+
+/// A value as the chart has it; `None` where the variable cannot hold it.
+pub(crate) fn value(raw: Raw, scaling: &Scaling) -> Option<String> {
+    scaling.word(raw).map(|word| Value::Word(word).show(scaling.kind))
 }

@@ -15,7 +15,9 @@
 #![forbid(unsafe_code)]
 
 mod attendant;
+mod audit;
 mod brought;
+mod certificate;
 mod check;
 mod cli;
 mod devices;
@@ -26,7 +28,9 @@ mod failure;
 mod files;
 mod fmt;
 mod generate;
+mod history;
 mod import;
+mod journal;
 mod manager;
 mod message;
 mod monitor;
@@ -45,8 +49,10 @@ mod sources;
 mod station;
 mod style;
 mod testing;
+mod users;
 mod values;
 mod view;
+mod who;
 mod wiring;
 
 use std::process::ExitCode;
@@ -83,9 +89,13 @@ fn run(command: &Command) -> Result<Verdict, Failure> {
         Command::Run(args) => run::run(args),
         Command::Devices(args) => devices::devices(args),
         Command::Plant(args) => plant::plant(args),
+        Command::History(args) => history::history(args),
         Command::Test(args) => testing::test(args),
         Command::Draw(args) => draw::draw(args),
         Command::Serve(args) => serve::serve(args),
+        Command::Users(args) => users::users(args),
+        Command::Log(args) => journal::journal(args),
+        Command::Cert(args) => certificate::certificate(args),
         #[cfg(target_os = "linux")]
         Command::Service(args) => service::service(args),
         Command::Import(args) => import::import(args),

@@ -14,6 +14,7 @@ use axum::response::IntoResponse;
 use axum::routing::get;
 use g7_model::Nanos;
 use g7_online::{Mode, Pace};
+use g7_store::log;
 use prometheus_client::encoding::{EncodeLabelSet, text};
 use prometheus_client::metrics::counter::Counter;
 use prometheus_client::metrics::family::Family;
@@ -23,7 +24,7 @@ use prometheus_client::registry::Registry;
 use tokio::net::TcpListener;
 use tokio::runtime::{Builder, Runtime};
 
-use crate::serve::listen;
+use crate::serve::listen::{self, Door};
 
 const TYPE: &str = "application/openmetrics-text; version=1.0.0; charset=utf-8";
 /// Bounds of the times of scans, in s.
@@ -33,6 +34,19 @@ const TIMES: [f64; 13] =
 #[derive(Clone, Debug, PartialEq, Eq, Hash, EncodeLabelSet)]
 struct OfDevice {
     device: String,
+}
+
+#[derive(Clone, Debug, PartialEq, Eq, Hash, EncodeLabelSet)]
+struct Newest {
+    hash: String,
+}
+
+/// How the log is. Its newest row is kept by whoever asks: so rows that are cut off are found.
+#[derive(Default)]
+struct OfLog {
+    newest: Family<Newest, Gauge>,
+    lost: Gauge,
+    failing: Gauge,
 }
 
 /// The counters of a controller.
@@ -45,6 +59,7 @@ pub(crate) struct Monitor {
     up: Family<OfDevice, Gauge>,
     lost: Family<OfDevice, Counter>,
     unsaved: Counter,
+    log: OfLog,
     shared: Arc<Shared>,
     /// Serves until it is dropped.
     _runtime: Runtime,
@@ -76,6 +91,15 @@ impl Monitor {
         registry.register("device_up", "1 while the device answers", up.clone());
         registry.register("device_losses", "How often the device was lost", lost.clone());
         registry.register("saves_failed", "How often saving of values began to fail", unsaved.clone());
+        let log = OfLog::default();
+        let newest = "The number of the newest row of the log, with its hash";
+        registry.register("log_newest_row", newest, log.newest.clone());
+        registry.register(
+            "log_events_lost",
+            "Events that the log has lost since the start",
+            log.lost.clone(),
+        );
+        registry.register("log_failing", "1 while the log cannot be written", log.failing.clone());
         let shared = Arc::new(Shared { registry, ready: AtomicBool::new(false) });
         let app = Router::new()
             .route("/metrics", get(metrics))
@@ -85,8 +109,8 @@ impl Monitor {
         let runtime =
             Builder::new_multi_thread().worker_threads(1).thread_name("monitor").enable_all().build()?;
         let listener = runtime.block_on(TcpListener::bind(address))?;
-        runtime.spawn(listen::listen(listener, app));
-        Ok(Monitor { running, fault, missed, late, took, up, lost, unsaved, shared, _runtime: runtime })
+        runtime.spawn(listen::listen(listener, app, Door::default()));
+        Ok(Monitor { running, fault, missed, late, took, up, lost, unsaved, log, shared, _runtime: runtime })
     }
 
     /// Notes the mode.
@@ -116,6 +140,16 @@ impl Monitor {
         if !up {
             lost.inc();
         }
+    }
+
+    /// Notes how the log is.
+    pub(crate) fn log(&self, state: &log::State) {
+        let whole = |n: u64| i64::try_from(n).unwrap_or(i64::MAX);
+        self.log.newest.clear();
+        let of = Newest { hash: state.newest.hash.to_string() };
+        self.log.newest.get_or_create(&of).set(whole(state.newest.n));
+        self.log.lost.set(whole(state.lost));
+        self.log.failing.set(i64::from(state.failing.is_some()));
     }
 
     /// Counts that values could not be saved.

@@ -5,11 +5,15 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use g7_model::{Nanos, ProfileName};
-use g7_online::{Command, KeepError, Options, RealDisk, Running, Sight, Slots, Started};
+use g7_online::setup::Setup;
+use g7_online::{Command, KeepError, Options, Panels, RealDisk, Running, Sight, Slots, Started};
+use g7_store::log::Log;
 
 use crate::attendant::refused;
+use crate::audit::{self, Audit};
 use crate::brought;
 use crate::failure::{Failure, plain};
+use crate::history::{self, Historian};
 use crate::message::talk;
 use crate::monitor::Monitor;
 use crate::operator::{HELP, Names};
@@ -51,6 +55,36 @@ pub(crate) struct Station {
     pub(crate) running: Running,
     pub(crate) sight: Sight,
     pub(crate) monitor: Option<Monitor>,
+    pub(crate) panels: Panels,
+    pub(crate) historian: Option<Historian>,
+}
+
+/// What the io file says of those who use the controller, read before anything else: a log that cannot be
+/// written is found before anything moves.
+pub(crate) struct Settings {
+    pub(crate) setup: Setup,
+    /// The io file.
+    pub(crate) io: PathBuf,
+    pub(crate) log: Option<Log>,
+    pub(crate) audit: Audit,
+    /// The file of the log.
+    pub(crate) log_file: Option<PathBuf>,
+}
+
+/// Reads them. What is wrong with the file is told by [`start`], which reads it again.
+pub(crate) fn settings(path: &Path, drive: &Drive, log: Option<&Path>) -> Result<Settings, Failure> {
+    let io = wiring::io_file(path, drive.io.as_deref());
+    let setup = wiring::settings(&io);
+    let (mut kept, mut log_file) = (None, None);
+    if let Some(path) = log {
+        log_file = Some(path.to_path_buf());
+        kept = Some(audit::open(path, None, None)?);
+    } else if let Some(file) = &setup.controller.log {
+        log_file = Some(io.with_file_name(&file.file.value));
+        kept = Some(audit::of_file(&io, file)?);
+    }
+    let (log, audit) = kept.map_or_else(Default::default, |(log, audit)| (Some(log), audit));
+    Ok(Settings { setup, io, log, audit, log_file })
 }
 
 /// Starts the controller of a chart, or prints the problems of its files.
@@ -84,19 +118,24 @@ pub(crate) fn start(
     let mut machine = g7_online::assemble(runner, wiring, |wired| clients.device(wired)).map_err(refused)?;
     let kept = slots.map(|slots| machine.keep(bench, slots));
     let sight = machine.show();
+    let record = wiring.history.as_ref().map(|chosen| history::open(&plan.io, chosen)).transpose()?;
+    let notes = machine.record(wiring);
     let watchdog = setup.controller.watchdog.as_ref().map(|w| w.value);
     let options = Options {
         watchdog: watchdog.unwrap_or((bench.period * WATCHDOG.0).max(WATCHDOG.1)),
         priority: setup.controller.priority.as_ref().and_then(|p| u8::try_from(p.value).ok()),
     };
     let mut running = g7_online::start(machine, kept, options).map_err(refused)?;
+    let clock = running.clock;
+    let historian = record.zip(notes).map(|(record, notes)| Historian::start(record, notes, clock));
+    let historian = historian.transpose().map_err(refused)?;
     if setup.controller.run {
         running.command(Command::Run);
     } else {
         talk!("stopped; {HELP}");
     }
     let names = Names::new(source, plan.bench, plan.wiring);
-    Ok(Some(Station { names, origin, running, sight, monitor }))
+    Ok(Some(Station { names, origin, running, sight, monitor, panels: clients.panels, historian }))
 }
 
 /// Opens the file of the values that are kept, and starts the run with them.

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use g7_model::{FileId, Nanos, Problem, ProfileName, Severity};
 use g7_online::Wiring;
-use g7_online::setup::{self, Channel, Origin, Setup};
+use g7_online::setup::{self, Channel, Kind, Origin, Setup};
 use g7_rig::{Bench, Options};
 
 use crate::brought;
@@ -34,6 +34,17 @@ pub(crate) struct Wanted<'a> {
     pub(crate) scan: Option<Nanos>,
 }
 
+/// The io file of a chart.
+pub(crate) fn io_file(path: &Path, named: Option<&Path>) -> PathBuf {
+    named.map_or_else(|| path.with_extension("io.toml"), Path::to_path_buf)
+}
+
+/// The settings of an io file; those of a silent one where it cannot be read, which [`make`] tells.
+pub(crate) fn settings(io: &Path) -> Setup {
+    let text = std::fs::read(io).ok().and_then(|bytes| String::from_utf8(bytes).ok());
+    text.map(|text| setup::read(&text, FileId(1)).0).unwrap_or_default()
+}
+
 /// Reads the io file and wires the chart, or prints the problems.
 pub(crate) fn plan(path: &Path, source: &Source, wanted: &Wanted<'_>) -> Result<Option<Plan>, Failure> {
     let (plan, told) = make(path, source, wanted)?;
@@ -50,7 +61,7 @@ pub(crate) fn make(
     source: &Source,
     wanted: &Wanted<'_>,
 ) -> Result<(Option<Plan>, String), Failure> {
-    let io = wanted.io.map_or_else(|| path.with_extension("io.toml"), Path::to_path_buf);
+    let io = io_file(path, wanted.io);
     if wanted.io.is_none() && !io.is_file() {
         let what =
             format!("{} is missing: it says which devices the inputs and outputs are wired to", io.display());
@@ -82,7 +93,7 @@ pub(crate) fn make(
 }
 
 /// The bytes of a password, which is never in the io file.
-fn password(io: &Path, origin: &Origin) -> Result<Vec<u8>, String> {
+pub(crate) fn password(io: &Path, origin: &Origin) -> Result<Vec<u8>, String> {
     match origin {
         Origin::File(name) => {
             let path = io.with_file_name(name);
@@ -106,7 +117,15 @@ fn simulate(setup: &mut Setup, names: Option<&[String]>) -> Result<Vec<String>, 
             all.join(", ")
         )));
     }
-    let simulated = |name: &String| names.is_empty() || names.contains(name);
+    // A panel is no part of the machine: the plant does not stand for it unless it is named.
+    let panels: Vec<String> = setup
+        .devices
+        .iter()
+        .filter(|d| matches!(d.kind, Kind::Panel(_)))
+        .map(|d| d.name.value.clone())
+        .collect();
+    let simulated =
+        |name: &String| if names.is_empty() { !panels.contains(name) } else { names.contains(name) };
     let gone = |channels: &mut Vec<Channel>| -> Vec<String> {
         channels.extract_if(.., |c| simulated(&c.device.value)).map(|c| c.variable.value).collect()
     };

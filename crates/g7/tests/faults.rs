@@ -5,7 +5,17 @@
 //! for each. Times are printed and not judged, but for the limits that the program itself promises.
 #![allow(clippy::disallowed_methods, reason = "programs run beside each other, in real time")]
 
+#[path = "faults/clock.rs"]
+mod clock;
 mod common;
+#[path = "faults/crowd.rs"]
+mod crowd;
+#[path = "faults/disk.rs"]
+mod disk;
+#[path = "faults/load.rs"]
+mod load;
+#[path = "faults/soak.rs"]
+mod soak;
 
 use std::io::{Read as _, Write as _};
 use std::net::{TcpListener, TcpStream};
@@ -15,37 +25,13 @@ use std::time::{Duration, Instant};
 
 use common::Folder;
 use common::talk::{Running, Slave, free_port};
+use g7_peers::faults::{Times, many, row, trials};
 
 /// One after the other: their times are those of a machine that does nothing else.
 static ALONE: Mutex<()> = Mutex::new(());
 
 fn alone() -> std::sync::MutexGuard<'static, ()> {
     ALONE.lock().unwrap_or_else(std::sync::PoisonError::into_inner)
-}
-
-/// The number of trials: many for the table, few in each test.
-fn trials(many: u32, few: u32) -> u32 {
-    if std::env::var_os("G7_FAULTS").is_some() { many } else { few }
-}
-
-/// The times that something took.
-#[derive(Default)]
-struct Times(Vec<Duration>);
-
-impl Times {
-    fn add(&mut self, since: Instant) {
-        self.0.push(since.elapsed());
-    }
-}
-
-impl std::fmt::Display for Times {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let mut all = self.0.clone();
-        all.sort();
-        let at = |share: usize| all.get((all.len() * share / 100).min(all.len().saturating_sub(1)));
-        let ms = |time: Option<&Duration>| time.map_or(0.0, |t| t.as_secs_f64() * 1e3);
-        write!(f, "half {:.0} ms, 99 % {:.0} ms, most {:.0} ms", ms(at(50)), ms(at(99)), ms(all.last()))
-    }
 }
 
 const COUNTER: &str = "\
@@ -74,22 +60,22 @@ fn row_1_a_controller_that_is_killed_goes_on_with_what_it_had_saved() {
                 break;
             }
         }
-        times.add(begin);
+        times.add(begin.elapsed());
         // Saves come each 100 ms, so kills fall before, into and behind them.
         std::thread::sleep(Duration::from_millis(90 + u64::from(k * 37 % 170)));
         g7.signal("KILL");
         drop(g7);
-        let now = saved(&folder);
+        let now = saved(&folder.path("kept"));
         assert!(now >= before, "{now} after {before} in trial {k}");
         before = now;
     }
     assert_eq!(warm, count - 1, "all starts but the first are warm");
-    println!("row 1: {count} kills, 0 lost or torn; start to RUN {times}");
+    row(1, "", count.into(), 0, format!("whole each time; start to RUN {times}"));
 }
 
-/// The value of `n` in the file of the kept values: that of the newest whole slot.
-fn saved(folder: &Folder) -> u64 {
-    let bytes = std::fs::read(folder.path("kept")).expect("it was laid out at the start");
+/// The value of `n`, the one retained variable, in the file of the kept values: that of the newest whole slot.
+fn saved(file: &std::path::Path) -> u64 {
+    let bytes = std::fs::read(file).expect("it was laid out at the start");
     let slots = bytes.chunks(bytes.len() / 2).filter_map(|slot| {
         let number = |at: usize| Some(u64::from_le_bytes(*slot.get(at..)?.first_chunk()?));
         let length = (number(8)? >> 32) as usize;
@@ -140,7 +126,11 @@ fn two(ports: [u16; 2]) -> Folder {
 }
 
 /// Takes the device away and gives it back; prints the row.
-fn lost_and_found(row: &str, count: u32, mut take: impl FnMut(Slave) -> Box<dyn FnOnce() -> Slave>) {
+fn lost_and_found(
+    (number, part): (usize, &str),
+    count: u32,
+    mut take: impl FnMut(Slave) -> Box<dyn FnOnce() -> Slave>,
+) {
     let (Some(slave), Some(other)) = (Slave::start(0), Slave::start(0)) else { return };
     let folder = two([slave.port(), other.port()]);
     let mut g7 = Running::online(&folder, &[]);
@@ -155,21 +145,27 @@ fn lost_and_found(row: &str, count: u32, mut take: impl FnMut(Slave) -> Box<dyn 
         let give_back = take(slave);
         let line = g7.until("does not answer");
         assert!(line.contains("line1"), "the other device is unaffected: {line}");
-        bad.add(begin);
+        bad.add(begin.elapsed());
         let begin = Instant::now();
         slave = give_back();
         let line = g7.until("answers");
         assert!(line.contains("line1"), "{line}");
-        back.add(begin);
+        back.add(begin.elapsed());
     }
     assert_eq!(g7.quit(), 0);
-    println!("{row}: {count} times; bad after {bad}; back after {back}");
+    row(
+        number,
+        part,
+        count.into(),
+        0,
+        format!("bad after {bad}; back after {back}; the other one unaffected"),
+    );
 }
 
 #[test]
 fn row_7_a_slave_that_is_killed_is_bad_and_comes_back() {
     let _alone = alone();
-    lost_and_found("row 7, killed", trials(200, 2), |slave| {
+    lost_and_found((7, "killed"), trials(200, 2), |slave| {
         let port = slave.port();
         drop(slave);
         Box::new(move || Slave::start(port).expect("it was there before"))
@@ -179,7 +175,7 @@ fn row_7_a_slave_that_is_killed_is_bad_and_comes_back() {
 #[test]
 fn row_8_a_slave_that_is_silent_is_bad_and_comes_back() {
     let _alone = alone();
-    lost_and_found("row 8, silent", trials(200, 2), |slave| {
+    lost_and_found((8, ""), trials(200, 2), |slave| {
         slave.signal("STOP");
         Box::new(move || {
             slave.signal("CONT");
@@ -201,9 +197,9 @@ fn row_19_the_watchdog_of_a_device_ends_its_outputs_when_the_controller_is_kille
         let begin = Instant::now();
         g7.signal("KILL");
         slave.becomes("coil 0 1", "0");
-        times.add(begin);
+        times.add(begin.elapsed());
     }
-    println!("row 19: {count} kills; outputs off after {times} (the device waits 500 ms)");
+    row(19, "", count.into(), 0, format!("outputs off after {times} (the device waits 500 ms)"));
 }
 
 /// Two steps that alternate; each text has them, with other things beside them.
@@ -220,7 +216,7 @@ fn alternating(more: bool) -> String {
 fn row_23_a_chart_that_is_changed_again_and_again_leaves_no_scan_out() {
     let _alone = alone();
     let folder = Folder::with(&alternating(false));
-    let priority = if trials(1, 0) == 1 { "priority = 50\n" } else { "" };
+    let priority = if many() { "priority = 50\n" } else { "" };
     folder.write("chart.io.toml", format!("[controller]\nperiod = '10ms'\nretain = 'kept'\n{priority}"));
     let mut g7 = Running::online(&folder, &[]);
     g7.until("running");
@@ -237,7 +233,7 @@ fn row_23_a_chart_that_is_changed_again_and_again_leaves_no_scan_out() {
                 break;
             }
         }
-        times.add(begin);
+        times.add(begin.elapsed());
         // A bad change is refused whole.
         if k % 10 == 0 {
             folder.write("chart.g7", "chart Main {");
@@ -246,7 +242,7 @@ fn row_23_a_chart_that_is_changed_again_and_again_leaves_no_scan_out() {
         }
     }
     assert_eq!(g7.quit(), 0);
-    println!("row 23: {count} changes at 10 ms, scans left out {missed} times; a change took {times}");
+    row(23, "", count.into(), missed.into(), format!("bad ones refused whole; a change took {times}"));
 }
 
 /// A slave of Modbus TCP that has only zeros; it tells of each request.
@@ -273,7 +269,7 @@ fn row_11_dead_slaves_do_not_slow_the_others() {
     const DEAD: usize = 30;
     let _alone = alone();
     let (tell, told) = channel();
-    let all = if trials(1, 0) == 1 { 100 } else { 40 };
+    let all = if many() { 100 } else { 40 };
     let (mut io, mut inputs, mut chart) = (String::new(), String::new(), String::new());
     for number in 0..all {
         let listener = TcpListener::bind("127.0.0.1:0").expect("a port is free");
@@ -295,7 +291,7 @@ fn row_11_dead_slaves_do_not_slow_the_others() {
     }
     let folder = Folder::with(&format!("{chart}chart Main {{\n  initial step 1\n  1 -> 1 when FALSE\n}}\n"));
     folder.write("chart.io.toml", io + "[inputs]\n" + &inputs);
-    let seconds = if trials(1, 0) == 1 { 60 } else { 2 };
+    let seconds = if many() { 60 } else { 2 };
     let mut g7 = Running::online(&folder, &[]);
     for _ in DEAD..all {
         g7.until("answers");
@@ -312,7 +308,6 @@ fn row_11_dead_slaves_do_not_slow_the_others() {
     }
     let polls = pauses.0.len() as f64 / (all - DEAD) as f64 / seconds as f64;
     assert!(last.iter().skip(DEAD).all(Option::is_some), "each of the others is asked");
-    println!(
-        "row 11: {all} slaves at 20 ms, {DEAD} of them dead, {seconds} s: {polls:.1} polls a second of each other one; pauses {pauses}"
-    );
+    let held = format!("{seconds} s, {polls:.1} polls a second of each other one; pauses {pauses}");
+    row(11, &format!("{all} at 20 ms, {DEAD} of them dead"), all as u64, 0, held);
 }

@@ -27,6 +27,7 @@
 
 mod chunks;
 mod clock;
+mod date;
 mod hash;
 mod record;
 mod retain;
@@ -35,12 +36,13 @@ mod tape;
 mod text;
 
 pub use clock::{Clock, VirtualClock, WallClock, utc_millis};
+pub use date::{utc_day, utc_of, utc_text};
 pub use hash::Fnv;
 pub use record::chronogram::{Chronogram, Lane, Style};
-pub use record::csv::write_csv;
+pub use record::csv::{csv_cell, csv_quote, write_csv};
 pub use record::vcd::write_vcd;
 pub use record::{Kind, Recording, Sample, Signal, Value};
-pub use retain::{Layout, RetainError, Retained, write_whole};
+pub use retain::{Layout, RetainError, Retained, write_private, write_whole};
 pub use runner::{Coupling, Force, Halt, Runner, Start};
 pub use tape::{Divergence, Tape};
 pub use text::{read_text, write_text};

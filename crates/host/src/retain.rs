@@ -116,6 +116,23 @@ impl Retained {
 ///
 /// The file cannot be written; no half-written file is left behind.
 pub fn write_whole(path: &Path, bytes: &[u8]) -> io::Result<()> {
+    written(path, bytes, None)
+}
+
+/// The same for a secret: on systems that have it, the file is its owner's alone before it has a byte.
+///
+/// # Errors
+///
+/// The file cannot be written; no half-written file is left behind.
+pub fn write_private(path: &Path, bytes: &[u8]) -> io::Result<()> {
+    #[cfg(unix)]
+    let own = Some(std::os::unix::fs::PermissionsExt::from_mode(0o600));
+    #[cfg(not(unix))]
+    let own = None;
+    written(path, bytes, own)
+}
+
+fn written(path: &Path, bytes: &[u8], own: Option<fs::Permissions>) -> io::Result<()> {
     let meta = fs::metadata(path).ok();
     if let Some(meta) = &meta {
         if meta.is_dir() {
@@ -132,7 +149,8 @@ pub fn write_whole(path: &Path, bytes: &[u8]) -> io::Result<()> {
     // A symbolic link stays; the file that it points to is replaced.
     let path = fs::canonicalize(path).unwrap_or_else(|_| path.to_path_buf());
     let aside = beside(&path)?;
-    let written = write_aside(&aside, bytes, meta.as_ref()).and_then(|()| fs::rename(&aside, &path));
+    let written = write_aside(&aside, bytes, own.or(meta.map(|meta| meta.permissions())))
+        .and_then(|()| fs::rename(&aside, &path));
     if written.is_err() {
         fs::remove_file(&aside).ok();
         return written;
@@ -152,10 +170,10 @@ fn beside(path: &Path) -> io::Result<PathBuf> {
     Ok(path.with_file_name(aside))
 }
 
-fn write_aside(aside: &Path, bytes: &[u8], like: Option<&fs::Metadata>) -> io::Result<()> {
+fn write_aside(aside: &Path, bytes: &[u8], like: Option<fs::Permissions>) -> io::Result<()> {
     let mut file = File::options().write(true).create_new(true).open(aside)?;
-    if let Some(meta) = like {
-        file.set_permissions(meta.permissions())?;
+    if let Some(permissions) = like {
+        file.set_permissions(permissions)?;
     }
     file.write_all(bytes)?;
     file.sync_all()

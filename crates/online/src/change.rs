@@ -17,6 +17,7 @@ use crate::exchange::{Reader, exchange};
 use crate::forces::{FORCES, Forced};
 use crate::keep::Keep;
 use crate::machine::{coupling, stale};
+use crate::notes::{Noting, Table};
 use crate::parts::{Handles, Keeping, Picture, Successor};
 use crate::sight::{Sight, sight};
 use crate::wiring::{Wired, Wiring};
@@ -44,6 +45,8 @@ pub struct Prepared {
     pub sight: Sight,
     /// The values that it keeps behind the change.
     pub kept: Reader,
+    /// The signals that are recorded behind the change.
+    pub table: Option<Table>,
 }
 
 /// Prepares the change of a controller from the old chart to the new one.
@@ -65,6 +68,9 @@ pub fn prepare(old: Chart<'_>, new: Chart<'_>, picture: &Picture) -> Result<Prep
     let (showing, sight) = sight(&runner, ports);
     let keep = Keep::new(new.bench, &runner);
     let (to_disk, kept) = exchange(keep.len());
+    // No two changes that are made have the same picture.
+    let number = picture.revision.saturating_add(1);
+    let table = new.wiring.history.as_ref().map(|h| Table { number, signals: h.signals.clone() });
     let next = Box::new(Picture::of(&runner));
     let successor = Successor {
         runner,
@@ -72,9 +78,10 @@ pub fn prepare(old: Chart<'_>, new: Chart<'_>, picture: &Picture) -> Result<Prep
         handles: new.wiring.devices.iter().map(Handles::of).collect(),
         keeping: Some(Keeping::new(keep, to_disk)),
         showing: Some(showing),
+        noting: table.as_ref().map(Noting::new),
         revision: picture.revision,
     };
-    Ok(Prepared { successor: Box::new(successor), lost, picture: next, sight, kept })
+    Ok(Prepared { successor: Box::new(successor), lost, picture: next, sight, kept, table })
 }
 
 /// The same force in the new chart.
@@ -97,10 +104,25 @@ fn fits(old: Chart<'_>, new: Chart<'_>) -> Result<(), String> {
     if let Some(device) = before.iter().find(|d| after.iter().all(|b| name(b) != name(d))) {
         return Err(restart(&format!("the device `{}` has no channels any more", name(device))));
     }
+    same_record(old.wiring, new.wiring).map_err(restart)?;
     for (before, after) in before.iter().zip(after) {
         same_wires(before, after).map_err(|what| restart(&format!("`{}`: {what}", name(after))))?;
     }
     Ok(())
+}
+
+/// Refuses another file or other limits of the record, since its thread has those of the start.
+fn same_record(old: &Wiring, new: &Wiring) -> Result<(), &'static str> {
+    match (&old.history, &new.history) {
+        (None, None) => Ok(()),
+        (Some(was), Some(is))
+            if (&was.file, was.days, was.megabytes) == (&is.file, is.days, is.megabytes) =>
+        {
+            Ok(())
+        }
+        (Some(_), Some(_)) => Err("[history]: the file, `days` or `megabytes` change"),
+        (Some(_), None) | (None, Some(_)) => Err("[history] comes or goes"),
+    }
 }
 
 fn restart(what: &str) -> String {

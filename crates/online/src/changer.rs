@@ -9,6 +9,7 @@ use g7_model::Nanos;
 
 use crate::change::{Chart, Prepared, prepare};
 use crate::exchange::Reader;
+use crate::notes::Table;
 use crate::parts::{Picture, Successor};
 use crate::sight::Sight;
 
@@ -56,6 +57,8 @@ pub struct Changer {
     picture: Option<Box<Picture>>,
     /// The way to the thread that saves values, where there is one.
     saver: Option<Sender<Reader>>,
+    /// The way to the one who records, where there is one.
+    historian: Option<Sender<Table>>,
 }
 
 impl Changer {
@@ -63,8 +66,9 @@ impl Changer {
         runner: &Runner,
         (to_scan, from_scan): (rtrb::Producer<ToScan>, rtrb::Consumer<FromScan>),
         saver: Option<Sender<Reader>>,
+        historian: Option<Sender<Table>>,
     ) -> Changer {
-        Changer { to_scan, from_scan, picture: Some(Box::new(Picture::of(runner))), saver }
+        Changer { to_scan, from_scan, picture: Some(Box::new(Picture::of(runner))), saver, historian }
     }
 
     /// Changes the chart that runs. What would be lost is lost only `anyway`.
@@ -81,9 +85,13 @@ impl Changer {
             let prepared = prepare(old, new, &picture);
             took = clock.now();
             self.picture = Some(picture);
-            let Prepared { successor, lost, picture, sight, kept } = prepared?;
+            let Prepared { successor, lost, picture, sight, kept, table } = prepared?;
             if !lost.is_empty() && !anyway {
                 return Ok(Change::Asks(lost));
+            }
+            if let (Some(historian), Some(table)) = (&self.historian, table) {
+                // Before its first note. Nobody has to record.
+                historian.send(table).ok();
             }
             if self.hand_over(successor, wait)? {
                 self.picture = Some(picture);

@@ -3,6 +3,7 @@
 use crate::device::{Device, Failed};
 use crate::modbus::Units;
 use crate::mqtt;
+use crate::panel::Panels;
 use crate::setup::{self, Kind};
 use crate::wiring::Wired;
 
@@ -33,6 +34,8 @@ pub struct Node {
 pub struct Clients {
     pub(crate) units: Units,
     brought: Vec<Box<dyn Brought>>,
+    /// The panels of the machine, for those who move them.
+    pub panels: Panels,
 }
 
 impl Clients {
@@ -50,6 +53,7 @@ impl Clients {
     pub fn device(&mut self, wired: &Wired) -> std::io::Result<Box<dyn Device>> {
         match &wired.device.kind {
             Kind::Mqtt(broker) => Ok(mqtt::device(broker, wired)),
+            Kind::Panel(panel) => Ok(self.panels.device(panel, wired)),
             Kind::ModbusTcp(..) | Kind::ModbusRtu(..) | Kind::ModbusServer(_) => self.units.device(wired),
             Kind::OpcUa(_) | Kind::OpcUaServer(_) => {
                 let made = self.brought.iter().find_map(|brought| brought.device(wired));

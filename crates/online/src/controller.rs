@@ -14,6 +14,7 @@ use crate::driver::{Quality, Said, from_device};
 use crate::exchange::{Reader, Writer};
 use crate::forces::{FORCES, Forced, Forces, LONGEST};
 use crate::keep::Keep;
+use crate::notes::{Noting, Pen};
 use crate::parts::{Handles, Keeping, Picture, Successor};
 use crate::sight::{Facts, Showing, Sight, sight};
 use crate::wire::Worth;
@@ -175,6 +176,8 @@ pub struct Controller {
     keeping: Option<Keeping>,
     forces: Forces,
     showing: Option<Showing>,
+    /// The pen, and what it notes.
+    noting: Option<(Pen, Noting)>,
     /// Counts whatever changes the run.
     revision: u64,
     /// The longest time between the ends of two steps.
@@ -201,6 +204,7 @@ impl Controller {
         Controller {
             forces: Forces::new(&mut runner),
             showing: None,
+            noting: None,
             runner,
             ports: ports.into_iter().map(open).collect(),
             shared,
@@ -227,6 +231,11 @@ impl Controller {
     /// From here on hands the values that outlive the program on, each 100 ms.
     pub(crate) fn keep_by(&mut self, keep: Keep, to_disk: Writer) {
         self.keeping = Some(Keeping::new(keep, to_disk));
+    }
+
+    /// From here on notes each change of the signals.
+    pub(crate) fn note_by(&mut self, pen: Pen, noting: Noting) {
+        self.noting = Some((pen, noting));
     }
 
     /// From here on shows itself.
@@ -295,6 +304,10 @@ impl Controller {
         }
         if self.showing.is_some() {
             swap(&mut self.showing, &mut successor.showing);
+        }
+        if let (Some((pen, noting)), Some(other)) = (&mut self.noting, &mut successor.noting) {
+            swap(noting, other);
+            pen.begin();
         }
         self.revision += 1;
         self.tell(now, What::Changed);
@@ -384,6 +397,7 @@ impl Controller {
         }
         self.write(now);
         self.keep(now);
+        self.note(now);
         self.put_in_sight(now);
         self.shared.beat.store(now.count(), Ordering::Release);
         let period = self.runner.period();
@@ -496,6 +510,13 @@ impl Controller {
     /// True while the charts give the outputs.
     fn drives(&self) -> bool {
         self.mode == Mode::Run && self.begun
+    }
+
+    fn note(&mut self, now: Nanos) {
+        let drives = self.drives();
+        if let Some((pen, noting)) = &mut self.noting {
+            pen.note(now, drives, &self.runner, noting);
+        }
     }
 
     fn put_in_sight(&mut self, now: Nanos) {

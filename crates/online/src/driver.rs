@@ -4,6 +4,7 @@
 //! two so that a simulator can let time pass between: [`Driver::work`] talks to the device,
 //! [`Driver::settle`] publishes what came of it.
 
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -216,18 +217,31 @@ impl Driver {
     /// Carries out the order that is due, without telling the scan.
     pub fn work(&mut self, now: Nanos, happened: &mut dyn FnMut(Happened)) -> Worked {
         let order = self.link.order();
-        match order {
-            Order::Connect => Worked { order, result: self.device.connect() },
+        let result = match order {
+            Order::Connect => guarded(|| self.device.connect()),
             Order::Exchange => {
                 self.take_outputs(now, happened);
                 for input in &mut self.read {
                     *input = Err(Absent::Unread);
                 }
                 self.refused.fill(None);
-                let result = self.device.exchange(&self.raws, &self.write, &mut self.read, &mut self.refused);
-                Worked { order, result }
+                self.exchange()
             }
-        }
+        };
+        Worked { order, result }
+    }
+
+    fn exchange(&mut self) -> Result<(), Failed> {
+        guarded(|| self.device.exchange(&self.raws, &self.write, &mut self.read, &mut self.refused))
+    }
+
+    fn close(&mut self) {
+        // It is over either way.
+        guarded(|| {
+            self.device.close();
+            Ok(())
+        })
+        .ok();
     }
 
     /// Takes the words of the scan and decides which outputs are written.
@@ -266,7 +280,7 @@ impl Driver {
                 self.note_inputs(happened);
             }
             Err(failed) => {
-                self.device.close();
+                self.close();
                 if self.told_up != Some(false) {
                     happened(Happened::Down(failed));
                     self.told_up = Some(false);
@@ -335,10 +349,16 @@ impl Driver {
             }
             self.write.fill(true);
             // The program ends either way; a device that does not answer has a watchdog of its own.
-            self.device.exchange(&self.raws, &self.write, &mut self.read, &mut self.refused).ok();
+            self.exchange().ok();
         }
-        self.device.close();
+        self.close();
     }
+}
+
+/// Calls a device. Behind it stand libraries, and an error in one must not end the thread that writes the
+/// outputs: a device whose call panics has not answered, and is reached anew.
+fn guarded(call: impl FnOnce() -> Result<(), Failed>) -> Result<(), Failed> {
+    catch_unwind(AssertUnwindSafe(call)).unwrap_or_else(|_| Err(Failed("an error of G7".to_owned())))
 }
 
 fn set<T>(list: &mut [T], at: usize, value: T) {

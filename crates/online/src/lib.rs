@@ -8,6 +8,7 @@
 //!                       records     commands         Slots (retained values) <- a thread of its own
 //!                             |
 //!                           Sight: all of its words, for the page
+//!                           Notes: each change of chosen signals, for the history
 //! ```
 //!
 //! # Invariants
@@ -18,6 +19,7 @@
 
 mod change;
 mod changer;
+mod chosen;
 mod clients;
 mod controller;
 mod device;
@@ -34,14 +36,18 @@ mod mirror;
 mod modbus;
 mod mqtt;
 mod nodes;
+mod notes;
 mod pace;
+mod panel;
 mod parts;
 mod probe;
 mod realtime;
 mod runtime;
+mod saver;
 pub mod setup;
 mod sight;
 mod slots;
+mod subject;
 mod value;
 mod wire;
 mod wiring;
@@ -49,6 +55,7 @@ mod word;
 
 pub use change::{Chart, Prepared, prepare};
 pub use changer::{Change, Changer};
+pub use chosen::{Chosen, Recorded};
 pub use clients::{Brought, Clients, Node};
 pub use controller::{Command, Controller, Event, Mode, Port, Reason, Refused, Shared, What};
 pub use device::{Absent, Device, Failed};
@@ -60,10 +67,13 @@ pub use keep::{Keep, KeepError, KeptFile, Started, open};
 pub use link::{Link, Order};
 pub use machine::{Machine, assemble, runner};
 pub use mirror::mirror;
+pub use notes::{Note, Notes, Table};
 pub use pace::{Pace, Paces, Spread};
+pub use panel::{Moved, Panels, Part};
 pub use parts::{Handles, Picture, Successor};
 pub use probe::{Asked, Probed, ask, hear, probe};
 pub use runtime::{Answer, AtDevice, Options, Running, start};
+pub use saver::Saver;
 pub use sight::Sight;
 pub use slots::{Disk, Loaded, Slots, SlotsError};
 pub use value::{Holds, Raw, Scaling};

@@ -1,6 +1,7 @@
 //! A controller with its drivers, put together from a chart and its wiring.
 
 use std::sync::Arc;
+use std::sync::mpsc::Sender;
 
 use g7_host::{Coupling, Runner};
 use g7_model::Nanos;
@@ -11,6 +12,7 @@ use crate::device::Device;
 use crate::driver::{Driver, from_device};
 use crate::exchange::exchange;
 use crate::keep::{Keep, KeptFile};
+use crate::notes::{Notes, Noting, Table, pen};
 use crate::parts::Handles;
 use crate::setup::Timing;
 use crate::sight::Sight;
@@ -31,12 +33,24 @@ pub struct Machine {
     pub events: rtrb::Consumer<Event>,
     /// The flags that they share.
     pub shared: Shared,
+    /// The way for later tables of signals to the one who records.
+    pub(crate) tables: Option<Sender<Table>>,
 }
 
 impl Machine {
     /// Shows the controller to whoever holds the result.
     pub fn show(&mut self) -> Sight {
         self.controller.show()
+    }
+
+    /// Notes each change of the chosen signals from here on; `None` where the io file chooses none.
+    pub fn record(&mut self, wiring: &Wiring) -> Option<Notes> {
+        let table = Table { number: 0, signals: wiring.history.as_ref()?.signals.clone() };
+        let noting = Noting::new(&table);
+        let (pen, notes, tables) = pen(table);
+        self.controller.note_by(pen, noting);
+        self.tables = Some(tables);
+        Some(notes)
     }
 
     /// Keeps the values of the run in these slots from here on; the result goes to
@@ -98,7 +112,7 @@ pub fn assemble<E>(
     }
     let (producer, events) = rtrb::RingBuffer::new(EVENTS);
     let controller = Controller::new(runner, ports, shared.clone(), grace, producer);
-    Ok(Machine { controller, drivers, events, shared })
+    Ok(Machine { controller, drivers, events, shared, tables: None })
 }
 
 /// Values older than this are bad even if their driver says nothing: a driver tells of its device at

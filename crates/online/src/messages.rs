@@ -42,9 +42,6 @@ pub(crate) fn wire(
     if let Some(form) = &channel.encoding {
         return Err(refused(form.at, "a message has no form of number".to_owned(), None));
     }
-    if let Some(unit) = &channel.unit {
-        return Err(refused(unit.at, "a message has no unit".to_owned(), None));
-    }
     let scaling = number(channel, carried)?;
     let wire = match (&channel.point, &broker.sparkplug) {
         (Point::Topic(name), None) => Wire::Topic(topic(channel, carried, broker, name)?),

@@ -45,8 +45,8 @@ pub fn mirror(bench: &Bench, wiring: &Wiring, listen: Option<IpAddr>) -> Result<
                 ));
             }
             // The masters of the chart are not part of its machine; nor is a broker, which is there
-            // all the same.
-            Kind::ModbusServer(_) | Kind::Mqtt(_) | Kind::OpcUaServer(_) => continue,
+            // all the same, nor is a panel of the page.
+            Kind::ModbusServer(_) | Kind::Mqtt(_) | Kind::Panel(_) | Kind::OpcUaServer(_) => continue,
         };
         let at = |w: &&Wired| matches!(&w.device.kind, Kind::ModbusServer(l) if l.address == address);
         if let Some(other) = mirrored.devices.iter().find(at) {

@@ -2,23 +2,22 @@
 //!
 //! Pure: `wiring` holds the channel against the chart and the device, and asks here for the rest.
 
+use std::collections::{BTreeMap, BTreeSet};
+
 use g7_host::Kind;
 use g7_rig::{Activity, Bench, Item, Role, StepItem};
 
 use crate::driver::Out;
 use crate::forms::holds;
 use crate::messages::{Carried, Refused, number};
-use crate::setup::{Channel, Point, read_node};
+use crate::setup::{self, Channel, Point, read_node};
 use crate::value::{Holds, Scaling};
 use crate::wire::{About, Folder, Shown, Wire};
+use crate::wiring::{OutAt, Wired};
 use crate::word::Source;
 
 /// The point of a channel at a server, and how its value becomes a word.
 pub(crate) fn wire(channel: &Channel, carried: &Carried<'_>) -> Result<(Wire, Scaling), Refused> {
-    if let Some(unit) = &channel.unit {
-        let what = "only an OPC UA server of our own shows a unit".to_owned();
-        return Err(Refused { at: unit.at, what, help: None });
-    }
     let Point::Node(Some(text)) = &channel.point else {
         return Err(no_node(channel, "node(ns=2;s=Tank.Level)"));
     };
@@ -92,7 +91,12 @@ pub(crate) fn all(bench: &Bench) -> impl Iterator<Item = Seen> {
 pub(crate) fn name(wire: &Wire) -> Option<&str> {
     match wire {
         Wire::Shown(shown) => Some(&shown.name),
-        Wire::Worth(_) | Wire::Modbus(_) | Wire::Topic(_) | Wire::Metric(_) | Wire::Node(_) => None,
+        Wire::Worth(_)
+        | Wire::Modbus(_)
+        | Wire::Topic(_)
+        | Wire::Metric(_)
+        | Wire::Panel(_)
+        | Wire::Node(_) => None,
     }
 }
 
@@ -162,5 +166,49 @@ pub(crate) fn worth(name: &str, device: usize, input: usize) -> Seen {
         source: Source::Worth(device, input),
         wire: Wire::Worth(name.to_owned()),
         out: Out { scaling, safe: None },
+    }
+}
+
+/// Adds to each server of our own that shows all whatever no channel of it shows.
+pub(crate) fn expose(bench: &Bench, devices: &mut [Wired]) {
+    for wired in devices {
+        if matches!(&wired.device.kind, setup::Kind::OpcUaServer(server) if server.all) {
+            show_all(bench, wired);
+        }
+    }
+}
+
+/// Adds to a server of our own whatever the chart has and no channel of it shows.
+fn show_all(bench: &Bench, server: &mut Wired) {
+    let inputs = server.inputs.iter().map(|i| (&i.name, &i.wire));
+    let shown = inputs.chain(server.outputs.iter().map(|o| (&o.name, &o.wire)));
+    // By its own name, and by that of its node.
+    let there: BTreeSet<String> =
+        shown.flat_map(|(own, wire)| [Some(own.as_str()), name(wire)]).flatten().map(str::to_owned).collect();
+    let hidden = all(bench)
+        .filter(|seen| name(&seen.wire).is_some_and(|n| !there.contains(n) && !there.contains(&seen.name)));
+    server.outputs.extend(hidden.map(OutAt::from));
+}
+
+/// Lets each server of our own tell how good the inputs are that it shows and another device gives.
+pub(crate) fn judge(devices: &mut [Wired]) {
+    let of_device = |(device, wired): (usize, &Wired)| {
+        let inputs = wired.inputs.iter().enumerate();
+        inputs.map(|(k, input)| (input.name.clone(), (device, k))).collect::<Vec<_>>()
+    };
+    let given: BTreeMap<String, (usize, usize)> = devices.iter().enumerate().flat_map(of_device).collect();
+    for (own, wired) in devices.iter_mut().enumerate() {
+        let of = |out: &OutAt| {
+            let (name, (device, input)) = (name(&out.wire)?, *given.get(&out.name)?);
+            (device != own).then(|| OutAt::from(worth(name, device, input)))
+        };
+        let judged: Vec<OutAt> = wired.outputs.iter().filter_map(of).collect();
+        wired.outputs.extend(judged);
+    }
+}
+
+impl From<Seen> for OutAt {
+    fn from(Seen { name, source, wire, out }: Seen) -> OutAt {
+        OutAt { name, source, wire, out }
     }
 }

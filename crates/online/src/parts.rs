@@ -6,6 +6,7 @@ use g7_model::Nanos;
 use crate::exchange::Writer;
 use crate::forces::{FORCES, Forced};
 use crate::keep::Keep;
+use crate::notes::Noting;
 use crate::sight::Showing;
 use crate::wiring::{WhileBad, Wired};
 use crate::word::{Source, Target};
@@ -71,5 +72,6 @@ pub struct Successor {
     pub(crate) handles: Vec<Handles>,
     pub(crate) keeping: Option<Keeping>,
     pub(crate) showing: Option<Showing>,
+    pub(crate) noting: Option<Noting>,
     pub(crate) revision: u64,
 }

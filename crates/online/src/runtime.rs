@@ -20,7 +20,8 @@ use crate::keep::KeptFile;
 use crate::machine::Machine;
 use crate::pace::Pace;
 use crate::realtime;
-use crate::slots::{Disk, Slots};
+use crate::saver::Saver;
+use crate::slots::Disk;
 
 /// The pause of threads that have nothing else to wait for.
 const PAUSE: Duration = Duration::from_millis(20);
@@ -60,6 +61,8 @@ pub struct Options {
 
 /// A machine at work. Dropping it ends it as [`Running::end`] does.
 pub struct Running {
+    /// The clock of the controller.
+    pub clock: WallClock,
     stop: Arc<Stop>,
     shared: Shared,
     commands: rtrb::Producer<(u64, Command)>,
@@ -118,7 +121,17 @@ pub fn start<D: Disk + Send + 'static>(
     kept: Option<KeptFile<D>>,
     options: Options,
 ) -> std::io::Result<Running> {
-    let Machine { mut controller, drivers, events, shared } = machine;
+    begin(machine, kept, options, scan)
+}
+
+/// Starts a machine whose scan thread does this.
+fn begin<D: Disk + Send + 'static>(
+    machine: Machine,
+    kept: Option<KeptFile<D>>,
+    options: Options,
+    scan: impl FnOnce(Controller, WallClock, Ends, &Stop) -> Controller + Send + 'static,
+) -> std::io::Result<Running> {
+    let Machine { mut controller, drivers, events, shared, tables } = machine;
     controller.guard(options.watchdog);
     let (stop, clock) = (Arc::new(Stop::default()), WallClock::default());
     let last = Arc::new(Mutex::new(None));
@@ -165,8 +178,9 @@ pub fn start<D: Disk + Send + 'static>(
         *final_words.lock().unwrap_or_else(std::sync::PoisonError::into_inner) = Some(words);
         controller
     })?;
-    let changer = Some(Changer::new(&runner, (ask_change, of_change), renewed));
+    let changer = Some(Changer::new(&runner, (ask_change, of_change), renewed, tables));
     Ok(Running {
+        clock,
         stop,
         shared,
         commands,
@@ -251,48 +265,30 @@ fn drive(mut driver: Driver, device: usize, mut clock: WallClock, stop: &Stop, t
 
 /// The thread of the values that are kept: it saves them as they come, and the last ones at the end.
 fn save<D: Disk>(
-    mut kept: KeptFile<D>,
+    kept: KeptFile<D>,
     renewed: &Receiver<Reader>,
     last: &Mutex<Option<Vec<u64>>>,
     stop: &Stop,
     unsaved: &Sender<std::io::Error>,
 ) {
-    let mut words = vec![0; kept.words];
-    let (mut saved, mut failing) = (Vec::new(), false);
-    let mut keep = |words: &[u64], slots: &mut Slots<D>| {
-        if saved == words {
-            return;
-        }
-        if slots.words() != words.len() {
-            slots.renew(words.len());
-        }
-        match slots.save(words) {
-            Ok(()) => {
-                saved = words.to_vec();
-                failing = false;
-            }
-            Err(e) if !failing => {
-                failing = true;
-                // Nobody has to listen.
-                unsaved.send(e).ok();
-            }
-            Err(_) => {}
+    let mut saver = Saver::new(kept);
+    let tell = |done: std::io::Result<()>| {
+        if let Err(e) = done {
+            // Nobody has to listen.
+            unsaved.send(e).ok();
         }
     };
     while !stop.wait(PAUSE) {
         if let Ok(reader) = renewed.try_recv() {
-            words = vec![0; reader.words()];
-            kept.from_scan = reader;
+            saver.renew(reader);
         }
-        if kept.from_scan.take(&mut words) {
-            keep(&words, &mut kept.slots);
-        }
+        tell(saver.save());
     }
     // The scan ends at the same flag; its last values come a moment later.
     for _ in 0..LAST {
         let last = last.lock().unwrap_or_else(std::sync::PoisonError::into_inner).take();
         match last {
-            Some(words) if !words.is_empty() => return keep(&words, &mut kept.slots),
+            Some(words) if !words.is_empty() => return tell(saver.save_these(&words)),
             Some(_) => return,
             None => std::thread::sleep(PAUSE),
         }
@@ -348,3 +344,6 @@ impl Drop for Running {
         self.finish();
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -2,7 +2,7 @@
 //! up.
 //!
 //! ```text
-//! time, begun, missed, lost | forces | inputs | words of each device | image of the charts
+//! time, begun, missed, lost | forces | inputs | words of each device | image of the charts | of the plant
 //! ```
 //!
 //! The controller puts the words of one step as a whole into an exchange, where the reader finds the
@@ -62,7 +62,8 @@ impl Showing {
             .chain((0..FORCES).flat_map(force))
             .chain((0..inputs).map(|index| runner.input(index)))
             .chain(ports.flat_map(|words| words.iter().copied()))
-            .chain(runner.state().image().iter().copied());
+            .chain(runner.state().image().iter().copied())
+            .chain(runner.plant().into_iter().flat_map(|(_, state)| state.image().iter().copied()));
         self.writer.put(words);
     }
 }
@@ -104,6 +105,8 @@ pub struct Sight {
     devices: Vec<At>,
     inputs: usize,
     image: usize,
+    /// The simulated plant, and the place of its image.
+    plant: Option<(Program, State, usize)>,
 }
 
 /// Both sides for a controller whose devices have so many inputs, and values that are too old after such a
@@ -120,10 +123,12 @@ pub(crate) fn sight(runner: &Runner, ports: impl Iterator<Item = (usize, Nanos)>
         next += at.words;
         devices.push(at);
     }
-    let count = next + state.image().len();
+    let after = next + state.image().len();
+    let plant = runner.plant().map(|(program, _)| (program.clone(), State::new(program), after));
+    let count = after + plant.as_ref().map_or(0, |(_, state, _)| state.image().len());
     let (writer, reader) = exchange(count);
     let showing = Showing { writer, due: Nanos::ZERO };
-    (showing, Sight { reader, words: vec![0; count], program, state, devices, inputs, image: next })
+    (showing, Sight { reader, words: vec![0; count], program, state, devices, inputs, image: next, plant })
 }
 
 impl Sight {
@@ -132,9 +137,20 @@ impl Sight {
         if !self.reader.take(&mut self.words) {
             return false;
         }
-        let image = self.words.get(self.image..).unwrap_or(&[]);
-        // The words are those of a state of this program.
+        if let Some((program, state, from)) = &mut self.plant {
+            let image = self.words.get(*from..).unwrap_or(&[]);
+            // The words are those of a state of this program; the picture of a plant may lag behind.
+            state.restore(program, image).ok();
+        }
+        let end = self.plant.as_ref().map_or(self.words.len(), |(.., from)| *from);
+        let image = self.words.get(self.image..end).unwrap_or(&[]);
         self.state.restore(&self.program, image).is_ok()
+    }
+
+    /// The program and the state of the simulated plant, for evaluating expressions; `None` where there
+    /// is none.
+    pub fn plant_mut(&mut self) -> Option<(&Program, &mut State)> {
+        self.plant.as_mut().map(|(program, state, _)| (&*program, state))
     }
 
     fn word(&self, at: usize) -> u64 {

@@ -53,6 +53,12 @@ pub struct Scaling {
 const MILLISECOND: f64 = 1e6;
 
 impl Scaling {
+    /// The same number, or the same bit.
+    pub fn plain(kind: Kind) -> Scaling {
+        let holds = if kind == Kind::Bool { Holds::Bit } else { Holds::Double };
+        Scaling { kind, holds, inverted: false, scale: 1.0, offset: 0.0 }
+    }
+
     fn is_plain(&self) -> bool {
         self.scale == 1.0 && self.offset == 0.0
     }

@@ -2,10 +2,11 @@
 
 use g7_model::Nanos;
 
+use crate::panel::Part;
 use crate::setup::{NodeId, Place};
 
 /// A point of a device.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Wire {
     /// Bits or registers of Modbus.
     Modbus(Place),
@@ -13,6 +14,8 @@ pub enum Wire {
     Topic(Topic),
     /// A metric of Sparkplug, by name.
     Metric(String),
+    /// A part of a panel.
+    Panel(Part),
     /// A node of an OPC UA server.
     Node(NodeId),
     /// A node of the OPC UA server of our own.
@@ -114,7 +117,12 @@ impl Wire {
     pub fn place(&self) -> Option<Place> {
         match self {
             Wire::Modbus(place) => Some(*place),
-            Wire::Topic(_) | Wire::Metric(_) | Wire::Node(_) | Wire::Shown(_) | Wire::Worth(_) => None,
+            Wire::Topic(_)
+            | Wire::Metric(_)
+            | Wire::Panel(_)
+            | Wire::Node(_)
+            | Wire::Shown(_)
+            | Wire::Worth(_) => None,
         }
     }
 }
@@ -129,6 +137,7 @@ impl std::fmt::Display for Wire {
             Wire::Node(node) => write!(f, "node({node})"),
             Wire::Shown(Shown { name, .. }) => write!(f, "node({name})"),
             Wire::Worth(name) => write!(f, "node({name}) status"),
+            Wire::Panel(part) => part.handle.fmt(f),
         }
     }
 }

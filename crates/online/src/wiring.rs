@@ -1,19 +1,23 @@
 //! The io file held against the chart: which word of the program is which point of which device.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 
 use g7_engine::Addr;
 use g7_host::Kind;
-use g7_model::{Problem, Span, codes};
-use g7_rig::{Activity, Bench, Item, Role};
+use g7_model::{Nanos, Problem, Span, codes};
+use g7_rig::{Bench, Item, Role};
 
+use crate::chosen::{self, Chosen};
 use crate::driver::Out;
 use crate::forms;
-use crate::messages::{self, Carried, Refused};
-use crate::nodes::{self, Seen};
+use crate::messages::{self, Refused};
+use crate::nodes;
+use crate::panel;
 use crate::setup::{
-    Area, At, Bad, Broker, Channel, Device, Encoding, Kind as Way, Literal, Place, Point, Register, Setup,
+    Area, At, Bad, Broker, Channel, Device, Encoding, Handle, Kind as Way, Literal, Place, Point, Register,
+    Setup,
 };
+use crate::subject::{Class, Named, Subject, named, source_of};
 use crate::value::{Holds, Raw, Scaling};
 use crate::wire::{Folder, Wire};
 use crate::word::{Source, Target};
@@ -25,6 +29,8 @@ pub struct Wiring {
     pub devices: Vec<Wired>,
     /// Inputs and outputs of the chart that no device has, by name.
     pub unwired: Vec<String>,
+    /// What is recorded.
+    pub history: Option<Chosen>,
 }
 
 /// A device with its channels.
@@ -108,78 +114,13 @@ pub fn wire(bench: &Bench, setup: &Setup) -> (Wiring, Vec<Problem>) {
         .filter(|i| matches!(i.role, Role::Input(_) | Role::Output) && !wired.contains_key(&(i.addr)))
         .map(|i| i.name.clone())
         .collect();
-    for wired in &mut wirer.wiring.devices {
-        if matches!(&wired.device.kind, Way::OpcUaServer(server) if server.all) {
-            expose(bench, wired);
-        }
-    }
+    nodes::expose(bench, &mut wirer.wiring.devices);
     wirer.wiring.devices.retain(|d| !(d.inputs.is_empty() && d.outputs.is_empty() && d.good.is_empty()));
-    judge(&mut wirer.wiring.devices);
+    nodes::judge(&mut wirer.wiring.devices);
+    if let Some(history) = &setup.history {
+        wirer.wiring.history = Some(chosen::choose(bench, history, &mut wirer.problems));
+    }
     (wirer.wiring, wirer.problems)
-}
-
-/// Adds to a server of our own whatever the chart has and no channel of it shows.
-fn expose(bench: &Bench, server: &mut Wired) {
-    let inputs = server.inputs.iter().map(|i| (&i.name, &i.wire));
-    let all = inputs.chain(server.outputs.iter().map(|o| (&o.name, &o.wire)));
-    // By its own name, and by that of its node.
-    let there: BTreeSet<String> = all
-        .flat_map(|(name, wire)| [Some(name.as_str()), nodes::name(wire)])
-        .flatten()
-        .map(str::to_owned)
-        .collect();
-    let all = nodes::all(bench).filter(|seen| {
-        nodes::name(&seen.wire).is_some_and(|n| !there.contains(n) && !there.contains(&seen.name))
-    });
-    server.outputs.extend(all.map(OutAt::from));
-}
-
-/// Lets each server of our own tell how good the inputs are that it shows and another device gives.
-fn judge(devices: &mut [Wired]) {
-    let of_device = |(device, wired): (usize, &Wired)| {
-        let inputs = wired.inputs.iter().enumerate();
-        inputs.map(|(k, input)| (input.name.clone(), (device, k))).collect::<Vec<_>>()
-    };
-    let given: BTreeMap<String, (usize, usize)> = devices.iter().enumerate().flat_map(of_device).collect();
-    for (own, wired) in devices.iter_mut().enumerate() {
-        let of = |out: &OutAt| {
-            let (name, (device, input)) = (nodes::name(&out.wire)?, *given.get(&out.name)?);
-            (device != own).then(|| OutAt::from(nodes::worth(name, device, input)))
-        };
-        let judged: Vec<OutAt> = wired.outputs.iter().filter_map(of).collect();
-        wired.outputs.extend(judged);
-    }
-}
-
-impl From<Seen> for OutAt {
-    fn from(Seen { name, source, wire, out }: Seen) -> OutAt {
-        OutAt { name, source, wire, out }
-    }
-}
-
-/// The three ways in which a channel is used.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Class {
-    Input,
-    Output,
-    /// Masters of a server read it.
-    Shown,
-}
-
-/// The variable or step of a channel.
-struct Subject {
-    name: String,
-    kind: Kind,
-    /// Its type, for messages.
-    ty: String,
-    inverted: bool,
-    /// The number of an input word.
-    input: Option<u32>,
-    source: Source,
-    safe: Option<u64>,
-    /// Where a server of OPC UA shows it.
-    folder: Folder,
-    comment: Option<String>,
 }
 
 struct Wirer<'a> {
@@ -242,40 +183,21 @@ impl<'a> Wirer<'a> {
 
     /// The variable or the step that a channel shows.
     fn shown(&mut self, channel: &Channel) -> Option<Subject> {
-        let At { value: name, at } = &channel.variable;
-        if let Some(step) = self.bench.steps.iter().find(|s| s.activity().eq_ignore_ascii_case(name)) {
-            let source = match step.id {
-                Activity::Step(id) => Source::Step(id),
-                Activity::Macro(id) => Source::Macro(id),
-            };
-            let (name, ty) = (step.activity(), "BOOL".to_owned());
-            return Some(Subject {
-                name,
+        match named(self.bench, &channel.variable) {
+            Ok(Named::Item(item)) => Some(self.subject(item)),
+            Ok(Named::Step(step)) => Some(Subject {
+                name: step.activity(),
                 kind: Kind::Bool,
-                ty,
+                ty: "BOOL".to_owned(),
                 inverted: false,
                 input: None,
-                source,
+                source: source_of(step),
                 safe: None,
                 folder: Folder::Steps,
                 comment: step.comment.clone(),
-            });
-        }
-        match self.bench.item(name) {
-            Some(item) if item.role != Role::Plant => Some(self.subject(item)),
-            Some(_) => {
-                self.wrong(
-                    &codes::UNKNOWN_CHANNEL,
-                    *at,
-                    format!("`{name}` belongs to the plant, not to the chart"),
-                );
-                None
-            }
-            None => {
-                let near = self.bench.suggestions(name).trim_start_matches("; ").to_owned();
-                let what = format!("the chart has no variable or step `{name}`");
-                self.wrong(&codes::UNKNOWN_CHANNEL, *at, what).help =
-                    Some(near).filter(|near| !near.is_empty());
+            }),
+            Err(problem) => {
+                self.problems.push(*problem);
                 None
             }
         }
@@ -296,15 +218,25 @@ impl<'a> Wirer<'a> {
             return;
         };
         let kind = self.wiring.devices.get(device).map(|d| d.device.kind.clone());
+        if let (Some(unit), false) = (&channel.unit, matches!(kind, Some(Way::OpcUaServer(_)))) {
+            self.wrong(&codes::WRONG_CHANNEL, unit.at, "only an OPC UA server of our own shows a unit");
+            return;
+        }
         match (&channel.point, kind) {
+            (_, Some(Way::Panel(_))) => self.panel(channel, subject, device, class),
+            (_, _) if channel.limits.first().is_some() => {
+                let at = channel.limits.first().unwrap_or(channel.at);
+                self.wrong(&codes::WRONG_CHANNEL, at, "only a number of a panel has limits");
+            }
             (Point::Good, _) => self.good(channel, subject, device, class),
             (_, Some(Way::Mqtt(broker))) => self.message(channel, subject, (device, &broker), class),
             (_, Some(Way::OpcUa(_))) => self.node(channel, subject, device, class, false),
             (_, Some(Way::OpcUaServer(_))) => self.node(channel, subject, device, class, true),
             (Point::Modbus(register), _) => self.register(channel, subject, device, *register, class),
-            (point @ (Point::Topic(_) | Point::Metric(_) | Point::Node(_)), _) => {
+            (point @ (Point::Topic(_) | Point::Metric(_) | Point::Panel(_) | Point::Node(_)), _) => {
                 let what = format!("`{point}` is no point of `{}`", channel.device.value);
                 let help = match point {
+                    Point::Panel(_) => "only a panel has buttons and lamps: `kind = \"panel\"`",
                     Point::Node(_) => "only OPC UA has nodes: `kind = \"opc-ua\"`",
                     _ => "only a broker has messages: `kind = \"mqtt\"`",
                 };
@@ -328,6 +260,29 @@ impl<'a> Wirer<'a> {
         }
     }
 
+    /// A part of a panel.
+    fn panel(&mut self, channel: &Channel, subject: &Subject, device: usize, class: Class) {
+        let press = match self.wiring.devices.get(device).map(|d| &d.device.kind) {
+            Some(Way::Panel(panel)) => panel.press,
+            Some(_) | None => Nanos::ZERO,
+        };
+        if channel.point == Point::Panel(Handle::Button) && press < self.bench.period {
+            let what = format!(
+                "a press of {} may fall between two scans, one each {}",
+                press.plain(),
+                self.bench.period.plain()
+            );
+            let help =
+                format!("give the panel a longer `press`: `press = \"{}\"`", self.bench.period.plain());
+            self.wrong(&codes::WRONG_CHANNEL, channel.at, what).help = Some(help);
+            return;
+        }
+        match panel::wire(channel, (&subject.name, subject.kind), class == Class::Input) {
+            Ok(wired) => self.connect(channel, subject, device, wired, class),
+            Err(Refused { at, what, help }) => self.wrong(&codes::WRONG_CHANNEL, at, what).help = help,
+        }
+    }
+
     /// A topic or metric of a broker.
     fn message(
         &mut self,
@@ -336,7 +291,7 @@ impl<'a> Wirer<'a> {
         (device, broker): (usize, &Broker),
         class: Class,
     ) {
-        let carried = carried(subject, class);
+        let carried = subject.carried(class);
         let (wire, scaling) = match messages::wire(channel, &carried, broker) {
             Ok(wired) => wired,
             Err(Refused { at, what, help }) => {
@@ -348,7 +303,7 @@ impl<'a> Wirer<'a> {
             // Several inputs may read one topic.
             Wire::Topic(topic) => (class != Class::Input).then(|| topic.name.clone()),
             Wire::Metric(name) => Some(name.clone()),
-            Wire::Modbus(_) | Wire::Node(_) | Wire::Shown(_) | Wire::Worth(_) => None,
+            Wire::Modbus(_) | Wire::Panel(_) | Wire::Node(_) | Wire::Shown(_) | Wire::Worth(_) => None,
         };
         let will = matches!(&wire, Wire::Topic(topic) if topic.will).then(|| WILL.to_owned());
         for place in place.into_iter().chain(will) {
@@ -367,7 +322,7 @@ impl<'a> Wirer<'a> {
             self.wrong(&codes::WRONG_CHANNEL, channel.at, what).help = Some(help.to_owned());
             return;
         }
-        let carried = carried(subject, class);
+        let carried = subject.carried(class);
         let wired = if own {
             nodes::shown(channel, &carried, subject.folder, subject.comment.as_deref())
         } else {
@@ -420,10 +375,6 @@ impl<'a> Wirer<'a> {
     ) {
         if let Some(at) = channel.message.first() {
             self.wrong(&codes::WRONG_CHANNEL, at, "only a topic has messages");
-            return;
-        }
-        if let Some(unit) = &channel.unit {
-            self.wrong(&codes::WRONG_CHANNEL, unit.at, "a register has no unit");
             return;
         }
         let server = self.wiring.devices.get(device).is_some_and(|d| d.device.kind.is_server());
@@ -570,17 +521,6 @@ impl<'a> Wirer<'a> {
 
 /// The key of the will among the points of a broker; no topic and no metric is empty.
 const WILL: &str = "";
-
-/// The variable of a channel, as far as messages and nodes must know it.
-fn carried(subject: &Subject, class: Class) -> Carried<'_> {
-    Carried {
-        name: &subject.name,
-        kind: subject.kind,
-        inverted: subject.inverted,
-        input: class == Class::Input,
-        safe: class == Class::Output,
-    }
-}
 
 /// Why a device that is asked shows nothing, and what to do instead.
 const NOT_ASKED: (&str, &str) = (

@@ -1,5 +1,5 @@
 //! A step of the controller allocates nothing: with values and events of a device, with values that are
-//! kept, forced ones, commands, one who looks, on-line changes, and a plant in
+//! kept, forced ones, commands, one who looks, a history of all signals, on-line changes, and a plant in
 //! place of other devices.
 
 use allocation_counter::measure;
@@ -19,6 +19,9 @@ Col = { at = 'unit.input(2)', as = 'f32' }
 [outputs]
 Sol1 = 'unit.coil(0)'
 LED = 'unit.coil(6)'
+[history]
+file = 'record'
+deadband = { Col = 2.5 }
 ";
 
 /// Each exchange turns the unit over, and from time to time it does not answer.
@@ -67,7 +70,7 @@ impl Disk for Nowhere {
 }
 
 #[test]
-fn a_step_allocates_nothing() {
+fn row_27_a_step_allocates_nothing() {
     let text = include_str!("../../../examples/bead-sorter/chart.g7")
         .replace("var Sort : BOOL", "var Kept : INT retain\nvar Sort : BOOL");
     let source = Source::new("chart.g7", text.into_bytes(), 0);
@@ -84,12 +87,14 @@ fn a_step_allocates_nothing() {
     let slots = Slots::begin(Nowhere, 0, 0).expect("the disk takes all");
     let _kept = machine.keep(&bench, slots);
     let mut sight = machine.show();
+    let mut notes = machine.record(&wiring).expect("signals are chosen");
     let chart = Chart { bench: &bench, document: &source.document, wiring: &wiring };
     let mut picture = Box::new(Picture::of(machine.controller.runner()));
     let mut changes = 0;
     let period = machine.controller.runner().period();
-    let (mut now, mut allocating, mut events, mut looks) = (Nanos::ZERO, 0, 0, 0);
-    for k in 0..20_000 {
+    let (mut now, mut allocating, mut events, mut looks, mut noted) = (Nanos::ZERO, 0, 0, 0, 0);
+    let steps = g7_peers::faults::trials(1_000_000, 20_000).into();
+    for k in 0..steps {
         now += period;
         let driver = &mut machine.drivers[0];
         let worked = driver.work(now, &mut |_| {});
@@ -124,8 +129,25 @@ fn a_step_allocates_nothing() {
             events += 1;
         }
         looks += usize::from(sight.look());
+        while notes.notes.pop().is_ok() {
+            noted += 1;
+        }
     }
     assert!(events > 20 && machine.controller.runner().state().scans() > 10_000, "{events} events");
-    assert!(looks > 4_000 && changes == 80, "{looks} times shown, {changes} changes");
+    assert!(looks > 4_000 && changes == steps / 250, "{looks} times shown, {changes} changes");
+    assert!(noted > 10_000, "{noted} notes");
+    // Nobody takes the notes, and their ring is full.
+    machine.controller.command(now, Command::Run).expect("it is stopped");
+    for k in 0..80_000 {
+        now += period;
+        let counted = measure(|| {
+            machine.controller.command(now, Command::Force(led, k & 1, period * 2)).expect("room");
+            machine.controller.step(now);
+        });
+        allocating += usize::from(counted.count_total > 0);
+        while machine.events.pop().is_ok() {}
+    }
+    assert!(notes.notes.slots() > 60_000, "{} notes", notes.notes.slots());
     assert_eq!(allocating, 0, "steps that allocate");
+    g7_peers::faults::row(27, "allocations", steps, 0, "none, with commands, forces, changes and events");
 }

@@ -13,6 +13,13 @@ input start : BOOL at %I0.3
 input line1_ok : BOOL
 input level : REAL
 input weight : DINT
+input auto : BOOL
+input attended : BOOL
+input amount : REAL
+input mode : INT
+output ready : BOOL
+output alarm : BOOL
+output count : INT
 output valve : BOOL
 output speed : INT
 chart Main {
@@ -87,6 +94,18 @@ fn the_io_files_of_the_book_have_no_problem() {
 }
 
 #[test]
+fn a_press_is_not_shorter_than_a_scan() {
+    let io = "[devices.p]\nkind = 'panel'\npress = '100ms'\n[inputs]\nstart = 'p.button()'";
+    let of = |scan: &str| {
+        let source = Source::new("chart.g7", format!("{CHART}scan {scan}\n").into_bytes(), 0);
+        let (bench, problems) = build(&source, &Options::default()).expect("no plant is asked for");
+        let bench = bench.unwrap_or_else(|| panic!("{problems:?}"));
+        wire(&bench, &setup::read(io, FileId(1)).0).1.len()
+    };
+    assert_eq!((of("100ms"), of("101ms")), (0, 1));
+}
+
+#[test]
 fn every_mistake_has_its_code() {
     let devices = "[devices.a]\nkind = 'modbus-tcp'\nhost = 'x'\n[devices.m]\nkind = 'mqtt'\nhost = 'x'\n";
     let cases: &[(&str, &[&str])] = &[
@@ -138,6 +157,35 @@ fn every_mistake_has_its_code() {
              X2 = 'a.input(2)'",
             &["G0702", "G0703"],
         ),
+        ("[devices.p]\nkind = 'panel'", &[]),
+        ("[devices.p]\nkind = 'panel'\nrelease = '100ms'", &["G0701"]),
+        ("[devices.p]\nkind = 'panel'\npoll = '10ms'", &["G0701"]),
+        ("[devices.p]\nkind = 'panel'\n[inputs]\nmode = 'p.choice(A1)'", &["G0701"]),
+        ("[devices.p]\nkind = 'panel'\n[inputs]\nmode = 'p.choice(A1, A1)'", &["G0701"]),
+        ("[devices.p]\nkind = 'panel'\n[outputs]\nready = 'p.lamp(pink)'", &["G0701"]),
+        ("[devices.p]\nkind = 'panel'\n[inputs]\nauto = 'p.choice(A1, F1)'", &["G0703"]),
+        ("[devices.p]\nkind = 'panel'\n[inputs]\nauto = 'p.lamp()'", &["G0703"]),
+        ("[devices.p]\nkind = 'panel'\n[inputs]\nauto = 'p.good()'", &["G0703"]),
+        ("[devices.p]\nkind = 'panel'\n[outputs]\nready = 'p.switch()'", &["G0703"]),
+        ("[devices.p]\nkind = 'panel'\n[outputs]\ncount = 'p.lamp()'", &["G0703"]),
+        ("[devices.p]\nkind = 'panel'\npress = '10ms'\n[inputs]\nstart = 'p.button()'", &[]),
+        ("[controller]\nperiod = '20ms'\n[devices.p]\nkind = 'panel'\n[inputs]\nauto = 'p.button()'", &[]),
+        (
+            "[devices.p]\nkind = 'panel'\n[inputs]\namount = { at = 'p.number()', min = 5, max = 1 }",
+            &["G0701"],
+        ),
+        (
+            "[devices.p]\nkind = 'panel'\n[inputs]\namount = { at = 'p.number()', max = 1, initial = 2 }",
+            &["G0701"],
+        ),
+        ("[devices.p]\nkind = 'panel'\n[inputs]\nauto = { at = 'p.switch()', min = 0 }", &["G0703"]),
+        ("[devices.p]\nkind = 'panel'\n[inputs]\namount = { at = 'p.number()', scale = 2 }", &["G0703"]),
+        ("[devices.p]\nkind = 'panel'\n[inputs]\nmode = { at = 'p.number()', initial = 99999 }", &["G0703"]),
+        (
+            "[devices.a]\nkind = 'modbus-tcp'\nhost = 'x'\n[inputs]\nlevel = { at = 'a.input(0)', max = 3 }",
+            &["G0703"],
+        ),
+        ("[devices.a]\nkind = 'modbus-tcp'\nhost = 'x'\n[inputs]\nauto = 'a.button()'", &["G0703"]),
         ("[devices.m]\nkind = 'mqtt'", &["G0701"]),
         ("[devices.m]\nkind = 'mqtt'\nhost = 'x'\nunit = 1", &["G0701"]),
         ("[devices.m]\nkind = 'mqtt'\nhost = 'x'\ntls = true", &["G0701"]),
@@ -304,4 +352,24 @@ fn no_bytes_make_it_panic() {
     reported(&"[".repeat(10_000));
     reported(&format!("a = {}", "[".repeat(10_000)));
     reported(&"é = 'ü'\n".repeat(3));
+}
+
+#[test]
+fn what_is_half_said_of_users_and_the_log_is_a_problem() {
+    let whole = "[controller]\nlog = 'l'\nlog-days = 30\nlog-mib = 5\n[server]\nhost = '0.0.0.0'\nport = 4700\n\
+        users = 'u'\ncert = 'c'\nkey = 'k'\nidle = '1h'\nsession = '12h'\n";
+    assert!(reported(whole).iter().all(|id| *id != "G0701"), "{:?}", reported(whole));
+    for wrong in [
+        "[server]\nusers = 'u'\n",
+        "[server]\ncert = 'c'\n",
+        "[server]\nkey = 'k'\n",
+        "[server]\nhost = 'localhost'\n",
+        "[server]\nport = 70000\n",
+        "[server]\nidle = '1s'\n",
+        "[server]\npassword = 'x'\n",
+        "[controller]\nlog-days = 3\n",
+        "[controller]\nlog = 'l'\nlog-days = 0\n",
+    ] {
+        assert!(reported(wrong).contains(&"G0701"), "{wrong}: {:?}", reported(wrong));
+    }
 }

@@ -1,109 +1,17 @@
 //! Retained values on a disk that loses power, is damaged or is full.
 
-use std::cell::RefCell;
+mod common;
+
 use std::io;
-use std::rc::Rc;
 
-use g7_online::{Disk, Slots, SlotsError};
-
-/// A small generator (splitmix64).
-struct Chance(u64);
-
-impl Chance {
-    fn below(&mut self, n: u64) -> u64 {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        (z ^ (z >> 31)) % n
-    }
-}
-
-/// A disk with a cache that a loss of power empties: of the writes since the last sync some sectors
-/// arrive and others do not, in any order.
-#[derive(Default)]
-struct Plates {
-    safe: Vec<u8>,
-    cached: Vec<(usize, Vec<u8>)>,
-    /// Calls until power fails; `None` while it does not.
-    left: Option<u64>,
-    /// No byte can be added to the file.
-    full: bool,
-}
-
-const SECTOR: usize = 512;
-
-impl Plates {
-    fn put(&mut self, at: usize, bytes: &[u8]) {
-        self.safe[at..at + bytes.len()].copy_from_slice(bytes);
-    }
-
-    fn fail(&mut self, chance: &mut Chance) {
-        for (at, bytes) in std::mem::take(&mut self.cached) {
-            for (k, sector) in bytes.chunks(SECTOR).enumerate() {
-                match chance.below(3) {
-                    0 => {}
-                    // A torn sector.
-                    1 => self.put(at + k * SECTOR, &sector[..chance.below(sector.len() as u64 + 1) as usize]),
-                    _ => self.put(at + k * SECTOR, sector),
-                }
-            }
-        }
-        self.left = None;
-    }
-
-    fn step(&mut self) -> io::Result<()> {
-        match &mut self.left {
-            Some(0) => Err(io::Error::other("no power")),
-            Some(n) => {
-                *n -= 1;
-                Ok(())
-            }
-            None => Ok(()),
-        }
-    }
-}
-
-#[derive(Clone, Default)]
-struct Simulated(Rc<RefCell<Plates>>);
-
-impl Disk for Simulated {
-    fn read(&mut self) -> io::Result<Vec<u8>> {
-        let plates = self.0.borrow();
-        assert!(plates.cached.is_empty(), "read after a start only");
-        Ok(plates.safe.clone())
-    }
-
-    fn create(&mut self, bytes: &[u8]) -> io::Result<()> {
-        let mut plates = self.0.borrow_mut();
-        if plates.full {
-            return Err(io::ErrorKind::StorageFull.into());
-        }
-        plates.safe = bytes.to_vec();
-        Ok(())
-    }
-
-    fn write(&mut self, at: u64, bytes: &[u8]) -> io::Result<()> {
-        let mut plates = self.0.borrow_mut();
-        assert!(at as usize + bytes.len() <= plates.safe.len(), "the file does not grow");
-        plates.cached.push((at as usize, bytes.to_vec()));
-        plates.step()
-    }
-
-    fn sync(&mut self) -> io::Result<()> {
-        let mut plates = self.0.borrow_mut();
-        plates.step()?;
-        for (at, bytes) in std::mem::take(&mut plates.cached) {
-            plates.put(at, &bytes);
-        }
-        Ok(())
-    }
-}
+use common::{Chance, Ill, Simulated};
+use g7_online::{Slots, SlotsError};
+use g7_peers::faults::row;
 
 const LAYOUT: u64 = 77;
 
 #[test]
-fn after_a_loss_of_power_the_last_values_or_the_next_are_there() {
+fn row_2_after_a_loss_of_power_the_last_values_or_the_next_are_there() {
     let mut chance = Chance(1);
     let (mut lost, mut newer, mut torn) = (0, 0, 0);
     for seed in 0..10_000u64 {
@@ -113,12 +21,12 @@ fn after_a_loss_of_power_the_last_values_or_the_next_are_there() {
         assert_eq!(none, None);
         let mut acknowledged = 0;
         for _ in 0..1 + chance.below(4) {
-            disk.0.borrow_mut().left = Some(chance.below(20));
+            disk.plates().left = Some(chance.below(20));
             let mut next = acknowledged + 1;
             while slots.save(&vec![next; words]).is_ok() {
                 (acknowledged, next) = (next, next + 1);
             }
-            disk.0.borrow_mut().fail(&mut chance);
+            disk.plates().fail(&mut chance);
             let (opened, loaded) =
                 Slots::open(disk.clone(), LAYOUT, words).unwrap_or_else(|e| panic!("seed {seed}: {e}"));
             let Some(loaded) = loaded else {
@@ -138,6 +46,7 @@ fn after_a_loss_of_power_the_last_values_or_the_next_are_there() {
     }
     let counts = format!("{lost} first saves lost, {newer} unacknowledged saves kept, {torn} saves torn");
     assert!(lost > 100 && newer > 100 && torn > 100, "{counts}");
+    row(2, "", 10_000, 0, format!("the acknowledged values or the next, whole ({counts})"));
 }
 
 #[test]
@@ -146,23 +55,14 @@ fn a_file_for_more_words_takes_the_place_of_the_old_one_with_its_first_values() 
     let (mut slots, _) = Slots::open(disk.clone(), LAYOUT, 2).expect("a new file");
     slots.save(&[7, 8]).expect("the disk is well");
     slots.renew(1200);
-    let load = |words| {
-        Slots::open(
-            Simulated(Rc::new(RefCell::new(Plates {
-                safe: disk.0.borrow().safe.clone(),
-                ..Plates::default()
-            }))),
-            LAYOUT,
-            words,
-        )
-    };
+    let load = |words| Slots::open(disk.copy(), LAYOUT, words);
     let (_, before) = load(2).expect("the old values");
     assert_eq!(before.map(|loaded| loaded.words), Some(vec![7, 8]), "nothing was saved since");
-    disk.0.borrow_mut().full = true;
+    disk.plates().ill = Ill::Full;
     assert!(slots.save(&[9; 1200]).is_err());
     let (_, before) = load(2).expect("the old values, since there is no room for others");
     assert_eq!(before.map(|loaded| loaded.words), Some(vec![7, 8]));
-    disk.0.borrow_mut().full = false;
+    disk.plates().ill = Ill::Well;
     for value in [9, 10, 11] {
         slots.save(&[value; 1200]).expect("the disk is well again");
         let (_, loaded) = load(1200).expect("values of the new length");
@@ -174,17 +74,15 @@ fn saved(times: u64) -> Vec<u8> {
     let disk = Simulated::default();
     let (mut slots, _) = Slots::open(disk.clone(), LAYOUT, 3).expect("a new file");
     (1..=times).for_each(|k| slots.save(&[k, 10 * k, 100 * k]).expect("the disk works"));
-    disk.0.take().safe
+    std::mem::take(&mut disk.plates().safe)
 }
 
 fn load(bytes: &[u8]) -> Result<Option<g7_online::Loaded>, SlotsError> {
-    let disk = Simulated::default();
-    disk.0.borrow_mut().safe = bytes.to_vec();
-    Slots::open(disk, LAYOUT, 3).map(|(_, loaded)| loaded)
+    Slots::open(Simulated::holding(bytes.to_vec()), LAYOUT, 3).map(|(_, loaded)| loaded)
 }
 
 #[test]
-fn every_flipped_bit_and_every_length_is_noticed() {
+fn row_3_every_flipped_bit_and_every_length_is_noticed() {
     let good = saved(2);
     assert_eq!(load(&good).expect("whole").expect("saved").words, [2, 20, 200]);
     let (half, used) = (good.len() / 2, 32 + 3 * 8 + 4);
@@ -216,31 +114,33 @@ fn every_flipped_bit_and_every_length_is_noticed() {
     let mut both = good.clone();
     (both[20], both[half + 20]) = (both[20] ^ 1, both[half + 20] ^ 1);
     assert!(matches!(load(&both), Err(SlotsError::Damaged)));
+    let count = 2 * 8 * used + good.len() - 1;
+    row(3, "", count as u64, 0, "the older values and a note; both slots bad: an error");
 }
 
 #[test]
 fn a_file_of_other_variables_is_refused_and_left_as_it_is() {
     let disk = Simulated::default();
-    disk.0.borrow_mut().safe = saved(2);
-    let before = disk.0.borrow().safe.clone();
+    disk.plates().safe = saved(2);
+    let before = disk.plates().safe.clone();
     let other = |layout, words| match Slots::open(disk.clone(), layout, words) {
         Err(SlotsError::Layout(loaded)) => (loaded.layout, loaded.words.len()),
         other => panic!("{:?}", other.map(|(_, loaded)| loaded)),
     };
     assert_eq!(other(LAYOUT + 1, 3), (LAYOUT, 3));
     assert_eq!(other(LAYOUT, 4), (LAYOUT, 3));
-    assert_eq!(disk.0.borrow().safe, before);
+    assert_eq!(disk.plates().safe, before);
 }
 
 #[test]
 fn a_full_disk_is_noticed_at_the_start_and_stops_no_save() {
     let full = Simulated::default();
-    full.0.borrow_mut().full = true;
+    full.plates().ill = Ill::Full;
     assert!(
         matches!(Slots::open(full, LAYOUT, 3), Err(SlotsError::Io(e)) if e.kind() == io::ErrorKind::StorageFull)
     );
     let disk = Simulated::default();
     let (mut slots, _) = Slots::open(disk.clone(), LAYOUT, 3).expect("a new file");
-    disk.0.borrow_mut().full = true;
+    disk.plates().ill = Ill::Full;
     slots.save(&[1, 2, 3]).expect("the room is there already");
 }

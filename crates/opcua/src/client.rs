@@ -58,7 +58,7 @@ impl Client {
     pub(crate) fn new(server: &OpcUa, wired: &Wired) -> Client {
         let point = |wire: &Wire, kind| match wire {
             Wire::Node(node) => Some(Point { node: node.clone(), kind }),
-            Wire::Modbus(_) | Wire::Topic(_) | Wire::Metric(_) | Wire::Shown(_) | Wire::Worth(_) => None,
+            _ => None,
         };
         Client {
             server: server.clone(),

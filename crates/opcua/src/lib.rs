@@ -43,18 +43,14 @@ impl Brought for OpcUa {
         match &wired.device.kind {
             Kind::OpcUa(server) => Some(Box::new(client::Client::new(server, wired))),
             Kind::OpcUaServer(row) => Some(Box::new(server::Server::new(row, wired))),
-            Kind::ModbusTcp(..) | Kind::ModbusRtu(..) | Kind::ModbusServer(_) | Kind::Mqtt(_) => None,
+            _ => None,
         }
     }
 
     fn browse(&self, device: &setup::Device) -> Option<Result<Vec<Node>, Failed>> {
         match &device.kind {
             Kind::OpcUa(server) => Some(browse::browse(server, duration(device.timing.timeout))),
-            Kind::OpcUaServer(_)
-            | Kind::ModbusTcp(..)
-            | Kind::ModbusRtu(..)
-            | Kind::ModbusServer(_)
-            | Kind::Mqtt(_) => None,
+            _ => None,
         }
     }
 }

@@ -107,7 +107,7 @@ impl Shared {
 pub(crate) fn shown(wire: &Wire) -> Option<&Shown> {
     match wire {
         Wire::Shown(shown) => Some(shown),
-        Wire::Modbus(_) | Wire::Topic(_) | Wire::Metric(_) | Wire::Node(_) | Wire::Worth(_) => None,
+        _ => None,
     }
 }
 

@@ -327,7 +327,7 @@ fn an_unknown_or_expired_client_is_refused_and_put_aside() {
     assert!(client(&python, port, &[]).is_err());
     assert!(try_it(&options(&good)).is_err());
     let line = machine.until("note");
-    assert!(line.contains("unknown certificate \"panel ["), "{line}");
+    assert!(line.contains("unknown certificate \"CN=panel ["), "{line}");
     folder.trust("pki");
     let begin = Instant::now();
     let mut anna = loop {

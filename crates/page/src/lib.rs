@@ -38,4 +38,4 @@ pub mod wasm;
 
 pub use explain::explain;
 pub use page::Page;
-pub use run::Places;
+pub use run::{Places, Show, show};

@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::time::Duration;
 
-use rusqlite::{Connection, ErrorCode};
+use rusqlite::{Connection, ErrorCode, OpenFlags};
 
 /// The time that a write waits for another connection to the same file.
 const PATIENCE: Duration = Duration::from_millis(2_000);
@@ -77,6 +77,27 @@ pub fn open(path: &Path, kind: i32, layouts: &[&str], durable: Durable) -> Resul
         step.commit()?;
     }
     Ok(file)
+}
+
+/// Opens a file of a kind for reading alone; another process may be writing it.
+///
+/// # Errors
+///
+/// There is no such file, it belongs to something else, has another layout, or cannot be read.
+pub fn read(path: &Path, kind: i32, layouts: &[&str]) -> Result<Connection, StoreError> {
+    let file = Connection::open_with_flags(path, OpenFlags::SQLITE_OPEN_READ_ONLY)?;
+    file.busy_timeout(PATIENCE)?;
+    let number = |name: &str| file.pragma_query_value(None, name, |row| row.get::<_, i32>(0));
+    let found = match number("application_id") {
+        Err(e) if e.sqlite_error_code() == Some(ErrorCode::NotADatabase) => return Err(StoreError::Foreign),
+        found => found?,
+    };
+    let layout = number("user_version")?;
+    match usize::try_from(layout) {
+        Ok(have) if found == kind && have == layouts.len() => Ok(file),
+        Ok(have) if found == kind && have > layouts.len() => Err(StoreError::Newer(layout)),
+        Ok(_) | Err(_) => Err(StoreError::Foreign),
+    }
 }
 
 #[cfg(test)]

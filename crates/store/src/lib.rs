@@ -14,5 +14,8 @@
 #![forbid(unsafe_code)]
 
 mod file;
+pub mod history;
+pub mod log;
+pub mod users;
 
-pub use file::{Durable, StoreError, open};
+pub use file::{Durable, StoreError, open, read};

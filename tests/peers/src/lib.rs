@@ -7,6 +7,10 @@
 #![forbid(unsafe_code)]
 #![allow(clippy::disallowed_methods, reason = "tests look at the machine that they run on")]
 
+#[cfg(feature = "crowd")]
+pub mod crowd;
+pub mod faults;
+pub mod process;
 pub mod tally;
 
 use std::io::Write as _;
@@ -28,10 +32,14 @@ pub fn skip(why: &str) {
     note(Path::new(&file), why, test).unwrap_or_else(|e| panic!("{}: {e}", file.display()));
 }
 
-/// One call writes the whole line, so that tests that run side by side do not mix.
 fn note(file: &Path, why: &str, test: &str) -> std::io::Result<()> {
+    append(file, &format!("{why}\t{test}\n"))
+}
+
+/// One call writes the whole line, so that tests that run side by side do not mix.
+fn append(file: &Path, line: &str) -> std::io::Result<()> {
     let mut file = std::fs::OpenOptions::new().create(true).append(true).open(file)?;
-    file.write_all(format!("{why}\t{test}\n").as_bytes())
+    file.write_all(line.as_bytes())
 }
 
 /// A folder of the corpus (`""` for all of it), which stands at `G7_CORPUS`, else at
@@ -73,6 +81,38 @@ fn compiles_for(target: &str) -> bool {
     let arguments = ["--crate-type", "lib", "--target", target, "try.rs"];
     std::fs::write(folder.0.join("try.rs"), "#![no_std]\n").is_ok()
         && quiet(Command::new("rustc").args(arguments).current_dir(&folder.0))
+}
+
+/// A file system of its own with a bounded size, which a test fills up. Dropping it ends it.
+pub struct SmallDisk(PathBuf);
+
+impl SmallDisk {
+    /// With so many KiB; `None` where this user may mount none, which is counted.
+    pub fn new(kib: u32) -> Option<SmallDisk> {
+        static NEXT: AtomicUsize = AtomicUsize::new(0);
+        let number = NEXT.fetch_add(1, Ordering::Relaxed);
+        let path = std::env::temp_dir().join(format!("g7-disk-{}-{number}", std::process::id()));
+        let made = std::fs::create_dir_all(&path).is_ok();
+        let size = format!("size={kib}k");
+        if made && quiet(Command::new("mount").args(["-t", "tmpfs", "-o", &size, "tmpfs"]).arg(&path)) {
+            return Some(SmallDisk(path));
+        }
+        std::fs::remove_dir(&path).ok();
+        skip("no file system can be mounted");
+        None
+    }
+
+    /// Its folder.
+    pub fn path(&self) -> &Path {
+        &self.0
+    }
+}
+
+impl Drop for SmallDisk {
+    fn drop(&mut self) {
+        quiet(Command::new("umount").arg(&self.0));
+        std::fs::remove_dir(&self.0).ok();
+    }
 }
 
 /// True if a tool can be started; otherwise the skip is counted.
@@ -183,6 +223,49 @@ pub fn mosquitto() -> Option<PathBuf> {
     let found = found.filter(|_| clients);
     if found.is_none() {
         skip("mosquitto missing");
+    }
+    found
+}
+
+/// The library of faketime, which gives a program another time of day; otherwise the skip is counted.
+pub fn faketime() -> Option<PathBuf> {
+    let folders = std::fs::read_dir("/usr/lib").into_iter().flatten().flatten().map(|f| f.path());
+    let library =
+        folders.map(|folder| folder.join("faketime/libfaketimeMT.so.1")).find(|file| file.is_file());
+    let works = |library: &PathBuf| {
+        let mut date = Command::new("date");
+        date.arg("+%Y").env("LD_PRELOAD", library).env("FAKETIME", "@2031-05-01 00:00:00");
+        date.output().is_ok_and(|out| out.stdout == b"2031\n")
+    };
+    let found = library.filter(works);
+    if found.is_none() {
+        skip("faketime missing");
+    }
+    found
+}
+
+/// A command that runs a line of the shell where it may mount file systems that nobody else sees; otherwise
+/// the skip is counted.
+pub fn with_own_mounts() -> Option<Command> {
+    let command = |user: &[&str]| {
+        let mut command = Command::new("unshare");
+        command.arg("--mount").args(user).args(["sh", "-c"]);
+        command
+    };
+    let fine = |user: &[&str]| quiet(command(user).arg("mount -t tmpfs -o size=64k none /tmp"));
+    let found = [&[][..], &["--map-root-user"]].into_iter().find(|user| fine(user));
+    if found.is_none() {
+        skip("no file system can be mounted");
+    }
+    found.map(command)
+}
+
+/// cyclictest and stress-ng, where SCHED_FIFO is allowed; otherwise the skip is counted.
+pub fn load_tools() -> bool {
+    let found = starts("stress-ng")
+        && quiet(Command::new("cyclictest").args(["--priority=50", "--loops=2", "--quiet"]));
+    if !found {
+        skip("cyclictest or stress-ng missing, or no SCHED_FIFO");
     }
     found
 }

@@ -123,3 +123,24 @@ fn files_are_written_whole() {
         "files that are not written by `host::write_whole`",
     );
 }
+
+#[test]
+fn examples_in_comments_stand_where_they_are_run() {
+    let mut found = Vec::new();
+    for (file, text) in sources().into_iter().filter(|(f, _)| !f.starts_with("crates/engine")) {
+        let fences = text.lines().enumerate().filter(|(_, l)| {
+            let line = l.trim_start();
+            (line.starts_with("///") || line.starts_with("//!")) && line.contains("```")
+        });
+        // Every other one ends an example.
+        for (k, line) in fences.step_by(2) {
+            if !["text", "toml", "g7", "ebnf"].iter().any(|word| line.ends_with(&format!("```{word}"))) {
+                found.push(format!("{}:{}: {}", file.display(), k + 1, line.trim()));
+            }
+        }
+    }
+    none(
+        &found,
+        "examples of code that `make test` does not run: it runs those of `g7-engine`, for its speed",
+    );
+}

@@ -30,9 +30,9 @@ export function download(file: OpenFile): void {
   handOut(file.name.slice(file.name.lastIndexOf('/') + 1), file.text, 'text/plain');
 }
 
-export function handOut(name: string, text: string, type: string): void {
+export function handOut(name: string, content: BlobPart, type: string): void {
   const link = document.createElement('a');
-  link.href = URL.createObjectURL(new Blob([text], { type }));
+  link.href = URL.createObjectURL(new Blob([content], { type }));
   link.download = name;
   link.click();
   setTimeout(() => URL.revokeObjectURL(link.href), 10_000);

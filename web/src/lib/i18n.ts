@@ -1,4 +1,5 @@
 // One table of words: key -> [English, French, Portuguese].
+import { access } from './words/access';
 import { canvas } from './words/canvas';
 import { out } from './words/export';
 import { operator } from './words/operator';
@@ -7,11 +8,12 @@ import { run } from './words/run';
 import { shell } from './words/shell';
 import { start } from './words/start';
 import { text } from './words/text';
+import { wiring } from './words/wiring';
 import { prefs } from './prefs.svelte';
 
 export type Words = Record<string, readonly [en: string, fr: string, pt: string]>;
 
-const table = { ...shell, ...canvas, ...out, ...operator, ...panels, ...run, ...start, ...text } as const;
+const table = { ...access, ...shell, ...canvas, ...out, ...operator, ...panels, ...run, ...start, ...text, ...wiring } as const;
 
 export type Key = keyof typeof table;
 export type Language = 'en' | 'fr' | 'pt';

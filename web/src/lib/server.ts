@@ -1,6 +1,7 @@
 // Files and shared runs of `g7 serve`. Without a server (in the static playground) the examples
 // come from one file beside the page, and nothing is written.
 import { opened, Refused, type Answers, type Message } from './page';
+import { session } from './session.svelte';
 
 export interface Info {
   name: string;
@@ -35,6 +36,8 @@ export class Conflict extends Error {
 }
 
 const TOKEN = 'g7-token';
+/** The code with which the server closes a connection whose session is over: the page asks anew who is there. */
+const OVER = 4401;
 
 function takeToken(): string {
   const here = new URL(location.href);
@@ -78,7 +81,7 @@ class Server implements Answers {
   }
 
   get writes(): boolean {
-    return this.info !== null && !this.info.read_only;
+    return this.info !== null && !this.info.read_only && session.may('engineer');
   }
 
   async files(): Promise<FileRow[]> {
@@ -130,12 +133,34 @@ class Server implements Answers {
 
   /** Renames, deletes or creates a file. */
   async change(what: 'rename' | 'delete' | 'new', body: Record<string, string>): Promise<void> {
-    const answer = await this.#fetch(`api/${what}`, {
-      method: 'POST',
-      headers: { 'content-type': 'application/json' },
-      body: JSON.stringify(body),
-    });
-    await this.#ok(answer);
+    await this.#ok(await this.#post(`api/${what}`, body));
+  }
+
+  async #post(path: string, body: unknown): Promise<Response> {
+    return this.#fetch(path, { method: 'POST', headers: { 'content-type': 'application/json' }, body: JSON.stringify(body) });
+  }
+
+  /** Asks for the wiring of a chart, or for the values at its devices. */
+  async wiring<T>(what: 'look' | 'live', chart: { path: string; text: string }): Promise<T> {
+    return (await (await this.#ok(await this.#post(`api/wiring/${what}`, chart))).json()) as T;
+  }
+
+  /** Changes the io file of a chart. Where it has changed since it was read, nothing is done; both times
+   * the present wiring comes back. */
+  async wiringEdit<T>(body: unknown): Promise<{ done: boolean; told: T }> {
+    const answer = await this.#post('api/wiring/edit', body);
+    if (answer.status !== 412) await this.#ok(answer);
+    return { done: answer.ok, told: (await answer.json()) as T };
+  }
+
+  /** Asks the server for an answer in JSON. */
+  async ask<T>(path: string): Promise<T> {
+    return (await (await this.#ok(await this.#fetch(path))).json()) as T;
+  }
+
+  /** Asks the server for a file. */
+  async bytes(path: string): Promise<ArrayBuffer> {
+    return (await this.#ok(await this.#fetch(path))).arrayBuffer();
   }
 
   /** Calls a listener with every message that the server sends on its own: frames, changed files.
@@ -173,7 +198,8 @@ class Server implements Answers {
         this.#linked.forEach((listener) => listener(true));
       };
       socket.onmessage = (event: MessageEvent<string>) => this.#hear(event.data);
-      socket.onclose = () => {
+      socket.onclose = (event) => {
+        if (event.code === OVER) location.reload();
         this.#socket = null;
         reject(new Refused('the server is gone'));
         this.#waiting.forEach((w) => w.reject(new Refused('the server is gone')));
@@ -206,6 +232,7 @@ class Server implements Answers {
   }
 
   async #ok(answer: Response): Promise<Response> {
+    if (answer.status === 401 && session.told.users) location.reload();
     if (!answer.ok) throw new Refused((await answer.text()) || answer.statusText);
     return answer;
   }

@@ -13,5 +13,6 @@ export function textOf(event: Event): string {
   let kind: string = event.kind;
   if (event.master && (kind === 'up' || kind === 'down')) kind = kind === 'up' ? 'masterUp' : 'masterDown';
   if (why && (kind === 'changed' || kind === 'back')) kind += 'Lost';
-  return t(`op.ev.${kind}` as Key, { why, name: event.name ?? '', value: event.value ?? '', device: event.device ?? '', n: event.count ?? 0 });
+  if (event.who && (kind === 'pressed' || kind === 'set')) kind += 'By';
+  return t(`op.ev.${kind}` as Key, { why, name: event.name ?? '', value: event.value ?? '', device: event.device ?? '', n: event.count ?? 0, who: event.who ?? '' });
 }

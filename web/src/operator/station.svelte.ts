@@ -23,6 +23,8 @@ export class Station {
   devices: DeviceState[] = $state.raw([]);
   events: Event[] = $state.raw([]);
   values: Cell[] = $state.raw([]);
+  /** The values of the parts of the picture. */
+  view: (boolean | number | string)[] = $state.raw([]);
   file: ChartFile = $state.raw({ differs: false, back: false, busy: false });
   /** The time of the controller, in whole s. */
   now = $state(0);
@@ -56,6 +58,7 @@ export class Station {
       this.#up = true;
       this.told = told;
       this.values = [];
+      this.view = [];
       this.#take(told.frame);
     } catch {
       this.#lost();
@@ -95,6 +98,11 @@ export class Station {
       const values = [...this.values];
       for (const [signal, value, quality] of frame.values) values[signal] = { value, quality };
       this.values = values;
+    }
+    if (frame.view) {
+      const view = [...this.view];
+      for (const [part, value] of frame.view) view[part] = value;
+      this.view = view;
     }
     this.now = Math.floor(frame.now);
     const zero = Date.now() - frame.now * 1000;

@@ -11,6 +11,24 @@ export interface Signal {
   device?: string | null;
   point?: string | null;
   forcible: boolean;
+  /** The part of a panel that it is. */
+  panel?: Part | null;
+}
+
+/** A part of a panel: what a person finds on this page. */
+export interface Part {
+  is: 'button' | 'switch' | 'number' | 'choice' | 'page' | 'lamp' | 'value';
+  min: number | null;
+  max: number | null;
+  words?: string[];
+  colour?: 'green' | 'red' | 'yellow' | 'blue' | 'white';
+}
+
+/** The picture of the plant. A part that is not known is not measured at the machine. */
+export interface View {
+  file: string;
+  simulated: boolean;
+  bindings: { element: string; attribute: string; known: boolean }[];
 }
 
 export interface Step {
@@ -32,7 +50,8 @@ export interface Description {
   signals: Signal[];
   steps: Step[];
   transitions: string[];
-  devices: { name: string; kind: 'modbus-tcp' | 'modbus-rtu' | 'modbus-server' | 'mqtt'; place: string }[];
+  devices: { name: string; kind: string; place: string }[];
+  picture?: View | null;
   force: { usual_s: number; longest_s: number; most: number };
   frame: Frame;
 }
@@ -89,8 +108,8 @@ export interface ChartFile {
 }
 
 export type Kind =
-  | 'changed' | 'back' | 'run' | 'stop' | 'fault' | 'missed' | 'forced' | 'released' | 'ended' | 'no-priority' | 'unsaved'
-  | 'up' | 'down' | 'no-input' | 'input' | 'no-output' | 'output' | 'limited' | 'note';
+  | 'changed' | 'back' | 'run' | 'stop' | 'fault' | 'missed' | 'forced' | 'released' | 'ended' | 'no-priority' | 'unsaved' | 'unrecorded' | 'recorded'
+  | 'pressed' | 'set' | 'up' | 'down' | 'no-input' | 'input' | 'no-output' | 'output' | 'limited' | 'note';
 
 export interface Event {
   n: number;
@@ -106,6 +125,8 @@ export interface Event {
   value?: string;
   device?: string;
   master?: boolean;
+  /** Who did it, where that is known. */
+  who?: string | null;
   why?: string | null;
   count?: number;
 }
@@ -127,4 +148,5 @@ export interface Frame {
   devices?: DeviceState[];
   events?: Event[];
   values?: [signal: number, value: string, quality: Quality][];
+  view?: [part: number, value: boolean | number | string][];
 }

@@ -1,13 +1,26 @@
 // The lanes of a chronogram: edges as the run sends them, and their painting.
 import type { SignalType } from '../lib/protocol';
 
+/** A value from an instant on; NaN: it is not known. */
 export type Edge = [ms: number, value: number, show: string];
+
+/** Many changes in one place. */
+export interface Busy {
+  from: number;
+  to: number;
+  count: number;
+  low: number;
+  high: number;
+}
 
 export interface Lane {
   name: string;
   type: SignalType;
   step: boolean;
   edges: Edge[];
+  busy?: Busy[];
+  /** In px, if it is not that of all. */
+  height?: number;
 }
 
 export interface Span {
@@ -65,6 +78,10 @@ export interface Painting {
   /** The present; later values are not known. */
   now: number;
   lanes: readonly Lane[];
+  /** Times with their texts, in place of seconds. */
+  ticks?: readonly (readonly [ms: number, text: string])[];
+  /** Spans in which nothing is known. */
+  gaps?: readonly Span[];
   cursors: readonly (number | null)[];
   colours: Colours;
 }
@@ -77,11 +94,12 @@ export function paint(g: CanvasRenderingContext2D, p: Painting): void {
   g.font = `11px ${colours.font}`;
   g.textBaseline = 'middle';
   grid(g, p, x);
-  p.lanes.forEach((lane, i) => {
-    const top = i * HEIGHT;
+  let top = 0;
+  for (const lane of p.lanes) {
+    const high = lane.height ?? HEIGHT;
     g.save();
     g.beginPath();
-    g.rect(0, top, Math.max(0, Math.min(width, x(p.now))), HEIGHT);
+    g.rect(0, top, Math.max(0, Math.min(width, x(p.now))), high);
     g.clip();
     if (lane.type === 'bool') square(g, p, lane, top, x);
     else if (lane.type === 'real') curve(g, p, lane, top, x);
@@ -89,8 +107,10 @@ export function paint(g: CanvasRenderingContext2D, p: Painting): void {
     g.restore();
     g.strokeStyle = colours.grid;
     g.lineWidth = 1;
-    line(g, 0, top + HEIGHT - 0.5, width, top + HEIGHT - 0.5);
-  });
+    line(g, 0, top + high - 0.5, width, top + high - 0.5);
+    top += high;
+  }
+  hatch(g, p, x);
   cursors(g, p, x);
 }
 
@@ -103,15 +123,36 @@ function line(g: CanvasRenderingContext2D, x1: number, y1: number, x2: number, y
   g.stroke();
 }
 
-function* ticks(span: Span, width: number): Generator<[ms: number, step: number]> {
+function* ticks({ span, width, ticks: given }: Painting): Generator<readonly [ms: number, text: string]> {
+  if (given) return yield* given;
   const step = tick(span.to - span.from, width / 90);
-  for (let ms = Math.ceil(span.from / step) * step; ms <= span.to; ms += step) yield [ms, step];
+  for (let ms = Math.ceil(span.from / step) * step; ms <= span.to; ms += step) yield [ms, showTime(ms, step)];
 }
 
-function grid(g: CanvasRenderingContext2D, { width, height, span, colours }: Painting, x: X): void {
+/** Hatches the spans in which nothing is known. */
+function hatch(g: CanvasRenderingContext2D, { width, height, gaps, colours }: Painting, x: X): void {
+  for (const gap of gaps ?? []) {
+    const from = Math.max(0, x(gap.from));
+    const to = Math.min(width, x(gap.to));
+    if (to < 0 || from > width) continue;
+    g.save();
+    g.beginPath();
+    g.rect(from, 0, Math.max(to - from, 2), height);
+    g.clip();
+    g.fillStyle = colours.paper;
+    g.fillRect(from, 0, Math.max(to - from, 2), height);
+    g.strokeStyle = colours.soft;
+    g.lineWidth = 1;
+    for (let k = from - height - ((from - height) % 8); k < to; k += 8) line(g, k, height, k + height, 0);
+    g.restore();
+  }
+}
+
+function grid(g: CanvasRenderingContext2D, p: Painting, x: X): void {
+  const { height, colours } = p;
   g.lineWidth = 1;
   g.strokeStyle = colours.grid;
-  for (const [ms] of ticks(span, width)) line(g, Math.round(x(ms)) + 0.5, 0, Math.round(x(ms)) + 0.5, height);
+  for (const [ms] of ticks(p)) line(g, Math.round(x(ms)) + 0.5, 0, Math.round(x(ms)) + 0.5, height);
 }
 
 /** Paints the times above the lanes, and the heads of the cursors. */
@@ -124,11 +165,11 @@ export function paintAxis(g: CanvasRenderingContext2D, p: Painting): void {
   g.textAlign = 'left';
   g.lineWidth = 1;
   g.strokeStyle = colours.line;
-  for (const [ms, step] of ticks(span, width)) {
+  for (const [ms, text] of ticks(p)) {
     const at = Math.round(x(ms)) + 0.5;
     line(g, at, AXIS - 5, at, AXIS);
     g.fillStyle = colours.soft;
-    g.fillText(showTime(ms, step), at + 3, AXIS / 2);
+    g.fillText(text, at + 3, AXIS / 2);
   }
   line(g, 0, AXIS - 0.5, width, AXIS - 0.5);
   p.cursors.forEach((ms, i) => {
@@ -156,13 +197,17 @@ function* inSight(lane: Lane, span: Span): Generator<[Edge, number]> {
 
 function square(g: CanvasRenderingContext2D, { width, span, colours }: Painting, lane: Lane, top: number, x: X): void {
   const high = top + 7;
-  const low = top + HEIGHT - 7;
+  const low = top + (lane.height ?? HEIGHT) - 7;
   g.fillStyle = lane.step ? colours.greenSoft : colours.accentSoft;
   g.strokeStyle = lane.step ? colours.green : colours.accent;
   g.lineWidth = 1.5;
   g.beginPath();
   let begun = false;
   for (const [edge, until] of inSight(lane, span)) {
+    if (Number.isNaN(edge[1])) {
+      begun = false;
+      continue;
+    }
     const from = Math.max(-2, x(edge[0]));
     const to = Math.min(width + 2, x(until));
     const y = edge[1] ? high : low;
@@ -173,6 +218,9 @@ function square(g: CanvasRenderingContext2D, { width, span, colours }: Painting,
     begun = true;
   }
   g.stroke();
+  // So many edges that they are one block.
+  g.fillStyle = lane.step ? colours.green : colours.accent;
+  for (const { from, to } of lane.busy ?? []) g.fillRect(x(from), high, Math.max(x(to) - x(from), 1.5), low - high);
 }
 
 /** Paints values as boxes that contain the value if there is room. */
@@ -206,17 +254,29 @@ function curve(g: CanvasRenderingContext2D, { span, colours, now }: Painting, la
   let least = Infinity;
   let most = -Infinity;
   for (const [, value] of lane.edges) {
+    if (Number.isNaN(value)) continue;
     least = Math.min(least, value);
     most = Math.max(most, value);
   }
+  for (const { low, high } of lane.busy ?? []) {
+    least = Math.min(least, low);
+    most = Math.max(most, high);
+  }
   if (!Number.isFinite(least) || !Number.isFinite(most)) return;
   const reach = most - least || 1;
-  const y = (value: number) => top + HEIGHT - 6 - ((value - least) / reach) * (HEIGHT - 12);
+  const height = lane.height ?? HEIGHT;
+  const y = (value: number) => top + height - 6 - ((value - least) / reach) * (height - 12);
+  g.fillStyle = colours.violet;
+  for (const { from, to, low, high } of lane.busy ?? []) g.fillRect(x(from), y(high) - 0.5, Math.max(x(to) - x(from), 1), y(low) - y(high) + 1);
   g.strokeStyle = colours.violet;
   g.lineWidth = 1.4;
   g.beginPath();
   let begun = false;
   for (const [edge, until] of inSight(lane, span)) {
+    if (Number.isNaN(edge[1])) {
+      begun = false;
+      continue;
+    }
     if (begun) g.lineTo(x(edge[0]), y(edge[1]));
     else g.moveTo(x(edge[0]), y(edge[1]));
     begun = true;

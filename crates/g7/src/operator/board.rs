@@ -3,16 +3,19 @@
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
 use std::path::Path;
 
+use g7_engine::State as Image;
 use g7_host::Value as Word;
 use g7_model::Nanos;
 use g7_online::{
-    FORCES, Forced, Happened, LONGEST, Mode, Paces, Quality, Sight, Spread, Target, USUAL, WhileBad,
+    FORCES, Forced, Happened, LONGEST, Mode, Paces, Quality, Sight, Spread, Target, USUAL, WhileBad, Wire,
 };
-use g7_page::Places;
+use g7_page::{Places, Show};
 use g7_rig::{Activity, Item, Role, values};
 use serde_json::{Map, Value, json};
 
 use super::names::{Known, Names};
+use super::panel;
+use super::picture::View;
 use super::told::{Level, Told, reason_json};
 
 /// Events that are kept for the page.
@@ -41,6 +44,9 @@ enum At {
     /// It is no input and no output.
     Inside,
 }
+
+/// The value of a row as it is shown, and its quality.
+type Cell = (String, &'static str);
 
 /// A device as the page shows it.
 #[derive(Clone, Default)]
@@ -80,7 +86,10 @@ pub(super) struct Board {
     seen: Nanos,
     /// The parts of a frame that every watcher has.
     sent: Map<String, Value>,
-    sent_values: Vec<(String, &'static str)>,
+    sent_values: Vec<Cell>,
+    /// The state of the picture of a machine, and its values as every watcher has them.
+    picture: Option<Image>,
+    sent_view: Vec<Show>,
     /// How the chart and its file are to each other.
     file: Value,
 }
@@ -91,6 +100,7 @@ impl Board {
             devices: vec![State::default(); names.wiring.devices.len()],
             places: Places::new(&names.source, &names.bench),
             rows: rows(&names),
+            picture: names.view.as_ref().and_then(View::state),
             names,
             sight,
             mode: (Mode::Stop, Nanos::ZERO),
@@ -99,6 +109,7 @@ impl Board {
             seen: Nanos::ZERO,
             sent: Map::new(),
             sent_values: Vec::new(),
+            sent_view: Vec::new(),
             file: json!({ "differs": false, "back": false, "busy": false }),
         }
     }
@@ -107,9 +118,11 @@ impl Board {
     pub(super) fn renew(&mut self, names: Names, sight: Sight) {
         self.places = Places::new(&names.source, &names.bench);
         self.rows = rows(&names);
+        self.picture = names.view.as_ref().and_then(View::state);
         (self.names, self.sight) = (names, sight);
         self.sent.clear();
         self.sent_values.clear();
+        self.sent_view.clear();
     }
 
     pub(super) fn tell_file(&mut self, facts: Value) {
@@ -188,7 +201,7 @@ impl Board {
 
     /// The names of all that frames have numbers for.
     pub(super) fn description(&self) -> Value {
-        let Known { source, bench, wiring } = &*self.names;
+        let Known { source, bench, wiring, view } = &*self.names;
         let steps = bench.steps.iter().zip(self.places.steps()).map(|(step, id)| {
             let chart = id.split_once("/s/").map_or("", |(chart, _)| chart);
             let is_macro = matches!(step.id, Activity::Macro(_));
@@ -209,6 +222,7 @@ impl Board {
             "steps": steps.collect::<Vec<_>>(),
             "transitions": self.places.transitions(),
             "devices": devices.collect::<Vec<_>>(),
+            "picture": view.as_ref().and_then(|view| view.json(bench)),
             "force": { "usual_s": seconds(USUAL), "longest_s": seconds(LONGEST), "most": FORCES },
         })
     }
@@ -222,17 +236,13 @@ impl Board {
             Role::Variable | Role::Plant => "variable",
         };
         let address = bench.compiled.symbols.variable(&item.name).and_then(|v| v.address.as_deref());
-        let (device, point) = match row.point {
-            At::Input(device, k, _) => {
-                let point = self.names.wired(device)?.inputs.get(k)?.wire.to_string();
-                (Some(self.names.device(device)), Some(point))
-            }
-            At::Output(device, k) => {
-                let point = self.names.wired(device)?.outputs.get(k)?.wire.to_string();
-                (Some(self.names.device(device)), Some(point))
-            }
+        let (device, wire) = match row.point {
+            At::Input(device, k, _) => (Some(device), Some(&self.names.wired(device)?.inputs.get(k)?.wire)),
+            At::Output(device, k) => (Some(device), Some(&self.names.wired(device)?.outputs.get(k)?.wire)),
             At::Good | At::Plant | At::Free | At::Inside => (None, None),
         };
+        let part =
+            wire.and_then(|wire| if let Wire::Panel(part) = wire { Some(panel::json(part)) } else { None });
         Some(json!({
             "name": item.name,
             "role": role,
@@ -240,35 +250,69 @@ impl Board {
             "type": item.ty.to_string(),
             "comment": item.comment,
             "address": address,
-            "device": device,
-            "point": point,
+            "device": device.map(|device| self.names.device(device)),
+            "point": wire.map(ToString::to_string),
+            "panel": part,
             "forcible": bench.force_of(item).is_some(),
         }))
     }
 
-    /// The next frame: what has changed since the one before, or all.
-    pub(super) fn frame(&mut self, now: Nanos, paces: &Paces, full: bool) -> Value {
-        let cells: Vec<(String, &'static str)> = self.rows.iter().map(|row| self.cell(row)).collect();
-        let changed = (0u32..)
-            .zip(&cells)
-            .filter(|(k, cell)| full || self.sent_values.get(*k as usize).is_none_or(|sent| sent != *cell));
-        let values: Vec<Value> = changed.map(|(k, (text, quality))| json!([k, text, quality])).collect();
-        let mut frame = Map::new();
+    /// All that there is. It does not count as sent: the next frame has the changes for those who watch already.
+    pub(super) fn whole(&mut self, now: Nanos, paces: &Paces) -> Value {
+        let (cells, view) = (self.cells(), self.view());
+        let parts = self.parts(paces).map(|(key, part)| (key.to_owned(), part)).into_iter().collect();
+        self.framed(now, parts, (0..).zip(&cells), (0..).zip(&view), true)
+    }
+
+    /// The next frame: what has changed since the one before.
+    pub(super) fn frame(&mut self, now: Nanos, paces: &Paces) -> Value {
+        let (cells, view) = (self.cells(), self.view());
+        let mut parts = Map::new();
         for (key, part) in self.parts(paces) {
-            if full || self.sent.get(key) != Some(&part) {
-                frame.insert(key.to_owned(), part.clone());
+            if self.sent.get(key) != Some(&part) {
+                parts.insert(key.to_owned(), part.clone());
+                self.sent.insert(key.to_owned(), part);
             }
-            self.sent.insert(key.to_owned(), part);
         }
+        let is_sent = |k: u32, cell: &Cell| self.sent_values.get(k as usize).is_some_and(|sent| sent == cell);
+        let changed = (0..).zip(&cells).filter(|(k, cell)| !is_sent(*k, *cell));
+        let moved = (0..).zip(&view).filter(|(k, show)| self.sent_view.get(*k as usize) != Some(*show));
+        let frame = self.framed(now, parts, changed, moved, false);
+        (self.sent_values, self.sent_view) = (cells, view);
+        frame
+    }
+
+    fn cells(&self) -> Vec<Cell> {
+        self.rows.iter().map(|row| self.cell(row)).collect()
+    }
+
+    fn framed<'c>(
+        &self,
+        now: Nanos,
+        mut frame: Map<String, Value>,
+        cells: impl Iterator<Item = (u32, &'c Cell)>,
+        view: impl Iterator<Item = (u32, &'c Show)>,
+        full: bool,
+    ) -> Value {
+        let values: Vec<Value> = cells.map(|(k, (text, quality))| json!([k, text, quality])).collect();
         if !values.is_empty() {
             frame.insert("values".to_owned(), json!(values));
+        }
+        let view: Vec<(u32, &Show)> = view.collect();
+        if !view.is_empty() {
+            frame.insert("view".to_owned(), json!(view));
         }
         frame.insert("now".to_owned(), json!(seconds(self.sight.now())));
         // The age of all this: a controller that shows nothing any more is not alive.
         frame.insert("age".to_owned(), json!(seconds(now - self.seen)));
         frame.insert("full".to_owned(), json!(full));
-        self.sent_values = cells;
         Value::Object(frame)
+    }
+
+    /// The parts of the picture.
+    fn view(&mut self) -> Vec<Show> {
+        let Some(view) = &self.names.view else { return Vec::new() };
+        view.values(&self.names.bench, &mut self.sight, self.picture.as_mut())
     }
 
     /// The parts of a frame that are sent as a whole.

@@ -8,6 +8,7 @@
 //! page -> serve::live -> Order -> Stage-/    |
 //!      <- Outbox <- frames <- Stage <- Board <- Sight, events
 //!
+//! press, set: Attendant -> online::Panels -> the device of the panel
 //! change, back: Attendant -> Changes -> online::Changer, on a thread of its own -> Names, Sight anew
 //! ```
 //!
@@ -20,6 +21,8 @@ mod board;
 mod changes;
 mod names;
 mod order;
+mod panel;
+mod picture;
 mod stage;
 #[cfg(test)]
 mod tests;
@@ -28,5 +31,6 @@ mod told;
 pub(crate) use changes::{Adopted, Changes};
 pub(crate) use names::Names;
 pub(crate) use order::{HELP, NAME, Order, Wish};
+pub(crate) use panel::operate;
 pub(crate) use stage::{Asker, Stage};
 pub(crate) use told::{Told, mode_text};

@@ -5,10 +5,11 @@ use std::sync::Arc;
 
 use g7_host::{Force, Halt};
 use g7_model::Nanos;
-use g7_online::{Chart, Command, Forced, Reason, Target, Wired, Wiring};
+use g7_online::{Chart, Command, Forced, Part, Reason, Target, Wire, Wired, Wiring};
 use g7_rig::{Bench, Item, Role, Source};
 
 use super::order::Wish;
+use super::picture::View;
 use crate::values;
 
 /// A chart and its wiring.
@@ -16,6 +17,8 @@ pub(crate) struct Known {
     pub(crate) source: Source,
     pub(crate) bench: Bench,
     pub(crate) wiring: Wiring,
+    /// The picture of the plant.
+    pub(super) view: Option<View>,
 }
 
 /// A chart and its wiring, for names; clones are the same.
@@ -39,7 +42,8 @@ impl Known {
 
 impl Names {
     pub(crate) fn new(source: Source, bench: Bench, wiring: Wiring) -> Names {
-        Names(Arc::new(Known { source, bench, wiring }))
+        let view = View::new(&source, &bench);
+        Names(Arc::new(Known { source, bench, wiring, view }))
     }
 
     /// The name of a device.
@@ -104,8 +108,23 @@ impl Names {
             }
             Wish::Release { name } => Command::Release(self.forcible(name)?.1),
             Wish::ReleaseAll => Command::ReleaseAll,
-            Wish::Watch | Wish::Seen { .. } | Wish::Change { .. } | Wish::Back { .. } => return Ok(None),
+            Wish::Watch
+            | Wish::Seen { .. }
+            | Wish::Press { .. }
+            | Wish::Set { .. }
+            | Wish::Change { .. }
+            | Wish::Back { .. } => return Ok(None),
         }))
+    }
+
+    /// The part of a panel that a variable is wired to, and the name of the variable.
+    pub(crate) fn part(&self, name: &str) -> Result<(&str, &Part), String> {
+        let item = self.bench.item(name).ok_or_else(|| self.bench.unknown(name))?;
+        let mut inputs = self.wiring.devices.iter().flat_map(|device| &device.inputs);
+        match inputs.find(|input| input.name == item.name).map(|input| &input.wire) {
+            Some(Wire::Panel(part)) => Ok((&item.name, part)),
+            Some(_) | None => Err(format!("`{name}` is no input on a panel")),
+        }
     }
 
     /// A variable that can be forced.

@@ -4,11 +4,14 @@ use std::sync::Arc;
 
 use g7_model::Nanos;
 use g7_online::USUAL;
-use serde::Deserialize;
+use g7_store::users::Role;
+use serde::{Deserialize, Serialize};
+use serde_json::{Value, json};
 use tokio::sync::oneshot;
 
 use crate::serve::outbox::Outbox;
 use crate::values;
+use crate::who::Who;
 
 /// The name under which outboxes keep the frames of the controller. No run has it: names of runs have
 /// no control letters.
@@ -16,11 +19,12 @@ pub(crate) const NAME: &str = "\u{1}operator";
 
 /// The commands that a line can be, for a message.
 pub(crate) const HELP: &str = "commands: run, stop, ack (ends a fault), cold (initial situation), \
+    press NAME, set NAME := VALUE (of a panel), \
     force NAME := VALUE for TIME, release NAME, release (all), change (to the chart as its file is now), \
     back (to the one before), status, quit";
 
 /// A wish of a person.
-#[derive(Clone, Debug, PartialEq, Eq, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Eq, Deserialize, Serialize)]
 #[serde(tag = "do")]
 pub(crate) enum Wish {
     /// See all, and every change from here on.
@@ -64,6 +68,12 @@ pub(crate) enum Wish {
         #[serde(default)]
         anyway: bool,
     },
+    /// A button of a panel is pressed, pressed still, or released.
+    #[serde(rename = "operator_press")]
+    Press { name: String, down: bool },
+    /// A switch, number or choice of a panel is set.
+    #[serde(rename = "operator_set")]
+    Set { name: String, value: String },
     /// An alarm was seen, or all up to this one.
     #[serde(rename = "operator_seen")]
     Seen { event: u64, all: bool },
@@ -81,6 +91,52 @@ pub(crate) struct Order {
 }
 
 impl Wish {
+    /// The role that it needs.
+    pub(crate) fn role(&self) -> Role {
+        match self {
+            Wish::Watch => Role::Viewer,
+            Wish::Run
+            | Wish::Stop
+            | Wish::Acknowledge
+            | Wish::Cold
+            | Wish::Press { .. }
+            | Wish::Set { .. }
+            | Wish::Seen { .. } => Role::Operator,
+            Wish::Force { .. }
+            | Wish::Release { .. }
+            | Wish::ReleaseAll
+            | Wish::Change { .. }
+            | Wish::Back { .. } => Role::Engineer,
+        }
+    }
+
+    /// True if it is done only once it stands in the log. To stop, or to take a force back, never waits.
+    pub(crate) fn waits_for_log(&self) -> bool {
+        matches!(self, Wish::Force { .. } | Wish::Change { .. } | Wish::Back { .. })
+    }
+
+    /// Its kind and what belongs to it, for the log; `None` for one that changes nothing, and for deeds at a
+    /// panel: a held button says so again and again, and its event names the person.
+    pub(crate) fn deed(&self) -> Option<(String, Value)> {
+        match self {
+            Wish::Watch | Wish::Press { .. } | Wish::Set { .. } => None,
+            _ => self.parts(),
+        }
+    }
+
+    /// Its kind and what belongs to it.
+    fn parts(&self) -> Option<(String, Value)> {
+        let mut data = serde_json::to_value(self).ok()?;
+        let kind = data.as_object_mut()?.remove("do")?;
+        Some((kind.as_str()?.trim_start_matches("operator_").to_owned(), data))
+    }
+
+    /// The wish of someone who may not, for the log.
+    pub(crate) fn refused(&self, who: &Who) -> Value {
+        let (kind, data) = self.parts().unwrap_or_default();
+        json!({ "user": who.name, "from": who.from, "needs": self.role().word(), "wish": kind, "data": data })
+    }
+
     /// Reads a line; `None` where it is no wish of this kind.
     pub(crate) fn of_line(line: &str) -> Option<Result<Wish, String>> {
         let (word, rest) = line.split_once(char::is_whitespace).unwrap_or((line, ""));
@@ -95,6 +151,15 @@ impl Wish {
                 ("change", "" | "anyway") => Ok(Wish::Change { anyway: !rest.is_empty() }),
                 ("back", "" | "anyway") => Ok(Wish::Back { anyway: !rest.is_empty() }),
                 _ => Err(format!("expected `{word}` or `{word} anyway`")),
+            },
+            "press" if rest.is_empty() => Err("expected `press NAME`".to_owned()),
+            "press" => Ok(Wish::Press { name: rest.to_owned(), down: true }),
+            "set" => match rest.split_once('=') {
+                Some((name, value)) => {
+                    let name = name.trim_end().trim_end_matches(':').trim().to_owned();
+                    Ok(Wish::Set { name, value: value.trim().to_owned() })
+                }
+                None => Err("expected `set NAME := VALUE`".to_owned()),
             },
             "force" => forced(rest),
             "release" if rest.is_empty() => Ok(Wish::ReleaseAll),
@@ -137,15 +202,36 @@ mod tests {
         assert_eq!(Wish::of_line("force level=2.5 for 1m30s"), force("level", "2.5", 90));
         assert_eq!(Wish::of_line("release go"), Some(Ok(Wish::Release { name: "go".to_owned() })));
         assert_eq!(Wish::of_line("release"), Some(Ok(Wish::ReleaseAll)));
+        let press = Wish::Press { name: "go".to_owned(), down: true };
+        assert_eq!(Wish::of_line("press go"), Some(Ok(press)));
+        let set = Wish::Set { name: "mode".to_owned(), value: "F1".to_owned() };
+        assert_eq!(Wish::of_line("set mode := F1"), Some(Ok(set)));
         assert_eq!(Wish::of_line("change"), Some(Ok(Wish::Change { anyway: false })));
         assert_eq!(Wish::of_line("back anyway"), Some(Ok(Wish::Back { anyway: true })));
-        for wrong in ["run now", "change it", "force go", "force go := 1 for soon", "force go := 1 for 100ms"]
-        {
+        for wrong in [
+            "run now",
+            "press",
+            "set mode",
+            "change it",
+            "force go",
+            "force go := 1 for soon",
+            "force go := 1 for 100ms",
+        ] {
             assert!(matches!(Wish::of_line(wrong), Some(Err(_))), "{wrong}");
         }
         for other in ["", "status", "go := 1", "running"] {
             assert_eq!(Wish::of_line(other), None, "{other}");
         }
+    }
+
+    #[test]
+    fn a_wish_is_a_deed_with_its_words() {
+        let (kind, data) =
+            Wish::of_line("force go := 1 for 5s").expect("a wish").expect("one").deed().expect("it does");
+        assert_eq!((kind.as_str(), data), ("force", json!({ "name": "go", "value": "1", "seconds": 5 })));
+        assert_eq!(Wish::Stop.deed(), Some(("stop".to_owned(), json!({}))));
+        assert_eq!(Wish::Watch.deed(), None);
+        assert!(!Wish::Stop.waits_for_log() && Wish::Change { anyway: false }.waits_for_log());
     }
 
     #[test]

@@ -17,6 +17,9 @@ use crate::serve::outbox::Outbox;
 
 /// The time between two frames: 20 frames a second.
 const TICK: Nanos = Nanos::from_millis(50);
+/// Pages that get that many. For each so many more the time is longer by as much, so that a thousand pages
+/// take no more of the machine than these.
+const PAGES: usize = 200;
 /// Greatest number of orders that wait: more than there are clients.
 const WAITING: usize = 1_024;
 
@@ -65,7 +68,7 @@ impl Stage {
     /// Shows another chart from here on; the watchers are told to ask what it has.
     pub(crate) fn renew(&mut self, names: Names, sight: Sight) {
         self.board.renew(names, sight);
-        self.spread(&json!({ "renew": true }), None);
+        self.spread(&json!({ "renew": true }));
     }
 
     /// Tells the watchers how the chart and its file are to each other.
@@ -83,12 +86,12 @@ impl Stage {
         let Order { by, call } = self.orders.try_recv().ok()?;
         match call {
             None => {
-                let frame = self.whole(now, paces, Some(&by));
+                let frame = self.whole(now, paces);
                 by.full(&self.name, letter(&frame));
             }
             Some((id, Wish::Watch, wait)) => {
                 let mut told = self.board.description();
-                let frame = self.whole(now, paces, None);
+                let frame = self.whole(now, paces);
                 if let Some(fields) = told.as_object_mut() {
                     fields.insert("frame".to_owned(), frame);
                 }
@@ -107,12 +110,18 @@ impl Stage {
         Some(None)
     }
 
-    /// A whole frame. What it tells counts as sent, so the watchers get their changes first.
-    fn whole(&mut self, now: Nanos, paces: &Paces, but: Option<&Arc<Outbox>>) -> Value {
+    /// True while a page watches.
+    pub(crate) fn is_watched(&self) -> bool {
+        self.watchers.iter().any(|watcher| watcher.strong_count() > 0)
+    }
+
+    fn whole(&mut self, now: Nanos, paces: &Paces) -> Value {
         self.board.look(now);
-        let changes = self.board.frame(now, paces, false);
-        self.spread(&changes, but);
-        self.board.frame(now, paces, true)
+        if self.watchers.is_empty() {
+            // Nobody waits for these changes, so that the next frame has those behind this one alone.
+            self.board.frame(now, paces);
+        }
+        self.board.whole(now, paces)
     }
 
     /// Sends a frame to all watchers, if it is time for it.
@@ -120,12 +129,13 @@ impl Stage {
         if now < self.due {
             return;
         }
-        self.due = now + TICK;
         self.board.look(now);
         self.watchers.retain(|watcher| watcher.strong_count() > 0);
+        let more = self.watchers.len().saturating_sub(1) / PAGES;
+        self.due = now + TICK * (1 + i64::try_from(more).unwrap_or(0));
         if !self.watchers.is_empty() {
-            let frame = self.board.frame(now, paces, false);
-            self.spread(&frame, None);
+            let frame = self.board.frame(now, paces);
+            self.spread(&frame);
         }
     }
 
@@ -135,11 +145,10 @@ impl Stage {
         }
     }
 
-    fn spread(&self, frame: &Value, but: Option<&Arc<Outbox>>) {
+    fn spread(&self, frame: &Value) {
         let text = letter(frame);
         let all = self.watchers.iter().filter_map(Weak::upgrade);
-        all.filter(|watcher| but.is_none_or(|but| !Arc::ptr_eq(watcher, but)))
-            .for_each(|watcher| watcher.frame(&self.name, text.clone()));
+        all.for_each(|watcher| watcher.frame(&self.name, text.clone()));
     }
 }
 

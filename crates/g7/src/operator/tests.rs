@@ -121,6 +121,25 @@ fn a_page_left_behind_gets_one_whole_frame() {
 }
 
 #[test]
+fn very_many_pages_get_fewer_frames_each() {
+    let mut bed = Bed::new();
+    bed.command(Command::Run);
+    let pages: Vec<_> = (0..401).map(|_| bed.watch().0).collect();
+    let runtime = tokio::runtime::Builder::new_current_thread().build().expect("a runtime");
+    // The page that came last was told all, and no other one heard of it.
+    bed.ticks(1);
+    bed.ticks(3 * 4);
+    let mut frames = 0;
+    while let Ok(next) = runtime.block_on(async {
+        tokio::select! { biased; next = pages[0].next() => Ok(next), () = std::future::ready(()) => Err(()) }
+    }) {
+        assert!(matches!(next, Next::Text(text) if text.contains("\"full\":false")));
+        frames += 1;
+    }
+    assert_eq!(frames, 1 + 4, "each 150 ms in place of each 50 ms");
+}
+
+#[test]
 fn commands_are_handed_on_and_alarms_are_seen_here() {
     let mut bed = Bed::new();
     let (page, _) = bed.watch();

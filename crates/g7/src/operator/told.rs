@@ -22,12 +22,18 @@ pub(crate) enum Told {
     Ended(Force),
     /// It goes on with another chart: that before the latest change, or a new one; and what was lost.
     Changed { back: bool, lost: Vec<String> },
+    /// A part of a panel was pressed, or set to a value; and by whom, where that is known.
+    Moved { name: String, value: Option<String>, who: Option<String> },
     /// Something happened at a device, by number.
     Device(usize, Happened),
     /// The scan has no priority, and why.
     NoPriority(String),
     /// Values cannot be saved, and why.
     Unsaved(String),
+    /// The history cannot be written, and why.
+    Unrecorded(String),
+    /// The history goes on; so many changes were lost.
+    Recorded(u64),
 }
 
 /// How much an event concerns an operator.
@@ -54,19 +60,22 @@ impl Level {
 impl Told {
     pub(crate) fn level(&self, names: &Names) -> Level {
         match self {
-            Told::Mode(Mode::Fault(_)) | Told::Unsaved(_) => Level::Alarm,
+            Told::Mode(Mode::Fault(_)) | Told::Unsaved(_) | Told::Unrecorded(_) => Level::Alarm,
             Told::Device(device, Happened::Down(_)) => match names.wired(*device) {
                 Some(wired) if wired.device.kind.is_server() => Level::Warning,
                 Some(_) | None => Level::Alarm,
             },
             Told::Device(_, Happened::NoInput(..) | Happened::NoOutput(..) | Happened::Note(_))
             | Told::Missed(_)
+            | Told::Recorded(1..)
             | Told::Ended(_) => Level::Warning,
             Told::Mode(Mode::Run | Mode::Stop)
             | Told::Forced(_)
             | Told::Released(_)
             | Told::Changed { .. }
+            | Told::Moved { .. }
             | Told::NoPriority(_)
+            | Told::Recorded(0)
             | Told::Device(..) => Level::Note,
         }
     }
@@ -75,6 +84,7 @@ impl Told {
     pub(crate) fn thing(&self) -> Option<(&'static str, usize, usize)> {
         match self {
             Told::Mode(_) => Some(("mode", 0, 0)),
+            Told::Unrecorded(_) | Told::Recorded(_) => Some(("history", 0, 0)),
             Told::Device(device, Happened::Up | Happened::Down(_)) => Some(("device", *device, 0)),
             Told::Device(device, Happened::NoInput(k, _) | Happened::Input(k)) => {
                 Some(("input", *device, *k))
@@ -104,8 +114,14 @@ impl Told {
             Told::Changed { back, lost } => {
                 json!({ "kind": if *back { "back" } else { "changed" }, "why": lost.join("; ") })
             }
+            Told::Moved { name, value: None, who } => json!({ "kind": "pressed", "name": name, "who": who }),
+            Told::Moved { name, value, who } => {
+                json!({ "kind": "set", "name": name, "value": value, "who": who })
+            }
             Told::NoPriority(why) => json!({ "kind": "no-priority", "why": why }),
             Told::Unsaved(why) => json!({ "kind": "unsaved", "why": why }),
+            Told::Unrecorded(why) => json!({ "kind": "unrecorded", "why": why }),
+            Told::Recorded(lost) => json!({ "kind": "recorded", "count": lost }),
             Told::Device(device, happened) => device_json(names, *device, happened),
         }
     }
@@ -130,8 +146,18 @@ impl Told {
                     if lost.is_empty() { String::new() } else { format!("; lost: {}", lost.join("; ")) };
                 format!("goes on with {which}{lost}")
             }
+            Told::Moved { name, value, who } => {
+                let deed = match value {
+                    None => format!("`{name}` is pressed"),
+                    Some(value) => format!("`{name}` is set to {value}"),
+                };
+                who.as_ref().map_or_else(|| deed.clone(), |who| format!("{deed}, by {who}"))
+            }
             Told::NoPriority(why) => format!("{warn}note:{warn:#} {why}"),
             Told::Unsaved(why) => format!("{bad}values cannot be saved:{bad:#} {why}"),
+            Told::Unrecorded(why) => format!("{bad}the history cannot be written:{bad:#} {why}"),
+            Told::Recorded(0) => "the history goes on".to_owned(),
+            Told::Recorded(lost) => format!("the history goes on; {warn}{lost} changes were lost{warn:#}"),
             Told::Device(device, happened) => return device_text(names, *device, happened),
         })
     }

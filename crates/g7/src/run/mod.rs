@@ -13,7 +13,7 @@ use crate::cli::Run;
 use crate::failure::{Failure, Verdict};
 use crate::message::talk;
 use crate::sources::{self, Source};
-use crate::station::{self, More, Station};
+use crate::station::{self, More, Settings, Station};
 use crate::{files, view, wiring};
 use g7_rig::Options;
 
@@ -45,7 +45,11 @@ pub(crate) fn run(args: &Run) -> Result<Verdict, Failure> {
 /// The chart drives the devices of its io file, until it is told to end.
 fn online(path: &Path, source: Source, args: &Run) -> Result<Verdict, Failure> {
     let more = More { profile: args.profile, scan: args.scan, plant: args.plant.as_deref(), seed: args.seed };
+    let Settings { log, audit, .. } = station::settings(path, &args.drive, None)?;
     let station = station::start(path, source, &args.drive, more)?;
-    let Some(Station { names, origin, running, monitor, .. }) = station else { return Ok(Verdict::Found) };
-    Attendant::new(names).with(monitor).changing(origin).attend(running, args.duration)
+    let Some(Station { names, origin, running, monitor, historian, panels, .. }) = station else {
+        return Ok(Verdict::Found);
+    };
+    let attendant = Attendant::new(names).with(monitor).logging(log, audit).recording(historian).at(panels);
+    attendant.changing(origin).attend(running, args.duration)
 }

@@ -9,7 +9,7 @@ use axum::extract::{Query, Request, State};
 use axum::http::{HeaderMap, StatusCode, header};
 use axum::response::{IntoResponse, Response};
 use axum::routing::{get, post};
-use axum::{Json, Router};
+use axum::{Extension, Json, Router};
 use serde::Deserialize;
 use serde_json::{Value, json};
 use tokio::sync::Semaphore;
@@ -17,9 +17,14 @@ use tokio::sync::Semaphore;
 use super::fingerprint;
 use super::folder::{LARGEST, Wanted, Written};
 use super::refusal::Refusal;
-use super::shared::Shared;
+use super::shared::{Inner, Shared};
+use crate::who::Who;
 
-type Answer = Result<Response, Refusal>;
+/// Greatest size of a small body, and longest time for it.
+const SMALL: usize = 8 << 10;
+const SMALL_SLOWEST: Duration = Duration::from_secs(5);
+
+pub(super) type Answer = Result<Response, Refusal>;
 
 /// Greatest number of bodies read at the same time; this bounds the memory.
 static BODIES: Semaphore = Semaphore::const_new(4);
@@ -68,10 +73,22 @@ async fn read(State(shared): State<Shared>, Query(at): Query<At>) -> Answer {
     Ok(text(StatusCode::OK, bytes))
 }
 
-async fn write(State(shared): State<Shared>, Query(at): Query<At>, request: Request) -> Answer {
+/// The deed of a person at a file, in the log before it is done.
+pub(super) fn told(shared: &Inner, who: &Who, kind: &str, data: &Value) -> Result<(), Refusal> {
+    let unwritten = |why| Refusal::new(StatusCode::INSUFFICIENT_STORAGE, why);
+    shared.audit.must(who, kind, data).map_err(unwritten)
+}
+
+async fn write(
+    State(shared): State<Shared>,
+    Query(at): Query<At>,
+    Extension(who): Extension<Who>,
+    request: Request,
+) -> Answer {
     let wanted = wanted(request.headers())?;
     let bytes = body(request).await?;
     let written = aside(move || {
+        told(&shared, &who, "file-write", &json!({ "file": at.path, "bytes": bytes.len() }))?;
         shared.watch.put_off(&at.path);
         shared.folder.write(&at.path, &bytes, &wanted)
     });
@@ -84,7 +101,7 @@ async fn write(State(shared): State<Shared>, Query(at): Query<At>, request: Requ
     })
 }
 
-async fn new(State(shared): State<Shared>, request: Request) -> Answer {
+async fn new(State(shared): State<Shared>, Extension(who): Extension<Who>, request: Request) -> Answer {
     #[derive(Deserialize)]
     struct New {
         path: String,
@@ -93,7 +110,10 @@ async fn new(State(shared): State<Shared>, request: Request) -> Answer {
     }
     let wish: New = json_body(request).await?;
     let path = wish.path.clone();
-    let written = aside(move || shared.folder.write(&wish.path, wish.text.as_bytes(), &Wanted::Absent));
+    let written = aside(move || {
+        told(&shared, &who, "file-new", &json!({ "file": wish.path }))?;
+        shared.folder.write(&wish.path, wish.text.as_bytes(), &Wanted::Absent)
+    });
     match written.await? {
         Written::Done(hash) => {
             Ok((StatusCode::NO_CONTENT, [(header::ETAG, format!("\"{hash}\""))]).into_response())
@@ -102,25 +122,33 @@ async fn new(State(shared): State<Shared>, request: Request) -> Answer {
     }
 }
 
-async fn rename(State(shared): State<Shared>, request: Request) -> Answer {
+async fn rename(State(shared): State<Shared>, Extension(who): Extension<Who>, request: Request) -> Answer {
     #[derive(Deserialize)]
     struct Rename {
         from: String,
         to: String,
     }
     let wish: Rename = json_body(request).await?;
-    aside(move || shared.folder.rename(&wish.from, &wish.to)).await?;
+    aside(move || {
+        told(&shared, &who, "file-rename", &json!({ "file": wish.from, "to": wish.to }))?;
+        shared.folder.rename(&wish.from, &wish.to)
+    })
+    .await?;
     Ok(StatusCode::NO_CONTENT.into_response())
 }
 
-async fn delete(State(shared): State<Shared>, request: Request) -> Answer {
+async fn delete(State(shared): State<Shared>, Extension(who): Extension<Who>, request: Request) -> Answer {
     #[derive(Deserialize)]
     struct Delete {
         path: String,
         hash: Option<String>,
     }
     let wish: Delete = json_body(request).await?;
-    aside(move || shared.folder.delete(&wish.path, wish.hash.as_deref())).await?;
+    aside(move || {
+        told(&shared, &who, "file-delete", &json!({ "file": wish.path }))?;
+        shared.folder.delete(&wish.path, wish.hash.as_deref())
+    })
+    .await?;
     Ok(StatusCode::NO_CONTENT.into_response())
 }
 
@@ -175,9 +203,20 @@ fn wanted(headers: &HeaderMap) -> Result<Wanted, Refusal> {
     }
 }
 
-async fn json_body<T: for<'a> Deserialize<'a>>(request: Request) -> Result<T, Refusal> {
+pub(super) async fn json_body<T: for<'a> Deserialize<'a>>(request: Request) -> Result<T, Refusal> {
     let bytes = body(request).await?;
     serde_json::from_slice(&bytes).map_err(|e| Refusal::bad(format!("this request means nothing: {e}")))
+}
+
+/// Reads a small body, also of someone who is not known yet: whoever is slow takes nobody's place.
+pub(super) async fn small_json<T: for<'a> Deserialize<'a>>(request: Request) -> Result<T, Refusal> {
+    let bytes = axum::body::to_bytes(Body::new(request.into_body()), SMALL);
+    let bytes = match tokio::time::timeout(SMALL_SLOWEST, bytes).await {
+        Ok(Ok(bytes)) => bytes,
+        Ok(Err(_)) => return Err(Refusal::new(StatusCode::PAYLOAD_TOO_LARGE, "this is too large")),
+        Err(_) => return Err(Refusal::new(StatusCode::REQUEST_TIMEOUT, "this took too long to arrive")),
+    };
+    serde_json::from_slice(&bytes).map_err(|_| Refusal::bad("this request means nothing"))
 }
 
 /// Reads a body of limited size in a limited time.
@@ -203,7 +242,7 @@ async fn body(request: Request) -> Result<Vec<u8>, Refusal> {
 }
 
 /// Runs work that waits for a disk on another thread, so that other requests go on.
-async fn aside<T: Send + 'static>(
+pub(super) async fn aside<T: Send + 'static>(
     work: impl FnOnce() -> Result<T, Refusal> + Send + 'static,
 ) -> Result<T, Refusal> {
     let done = tokio::task::spawn_blocking(work).await;

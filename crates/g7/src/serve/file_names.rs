@@ -25,7 +25,7 @@ pub(super) fn path(name: &str) -> Result<PathBuf, String> {
     if let Some(why) = parts.iter().find_map(|p| fault(p)) {
         return Err(format!("`{}` cannot be used here: {why}", shown(name)));
     }
-    if !is_served(name) {
+    if !is_served(name) && !is_io(name) {
         return Err(format!(
             "`{}` is neither a chart nor an .svg picture: other files are not served",
             shown(name)
@@ -40,6 +40,11 @@ pub(super) fn is_served(name: &str) -> bool {
     let mut known = ENDINGS.iter().chain(foreign);
     name.rsplit_once('.')
         .is_some_and(|(stem, end)| !stem.is_empty() && known.any(|known| end.eq_ignore_ascii_case(known)))
+}
+
+/// True for the name of an io file, which stands beside its chart and is not listed with the charts.
+pub(super) fn is_io(name: &str) -> bool {
+    name.strip_suffix(".io.toml").is_some_and(|stem| !stem.is_empty() && !stem.ends_with('/'))
 }
 
 /// The fault of the name of a file or folder, if it has one.
@@ -91,7 +96,8 @@ mod tests {
 
     #[test]
     fn plain_names_pass() {
-        for name in ["chart.g7", "a/b/Sorter.xml", "tank/view.SVG", "fuellstation süd.g7", "auxiliary.g7"] {
+        for name in ["chart.g7", "a/b/Sorter.xml", "tank/view.SVG", "fuellstation süd.g7", "a/chart.io.toml"]
+        {
             assert!(path(name).is_ok(), "{name}: {:?}", path(name));
         }
     }
@@ -134,7 +140,7 @@ mod tests {
 
     #[test]
     fn other_files_are_not_served() {
-        for name in ["notes.txt", "g7", "x.g7.exe", "key.pem", "x"] {
+        for name in ["notes.txt", "g7", "x.g7.exe", "key.pem", "x", "x.toml", "io.toml", "a/.io.toml"] {
             assert!(path(name).is_err_and(|why| why.contains("not served")), "{name}");
         }
         assert!(path(&"a/".repeat(40)).is_err());

@@ -1,51 +1,127 @@
-//! Accepts connections: a limited number, each with time limits.
+//! Accepts connections: a limited number in all and from an address, each with time limits, in plain text or
+//! by TLS.
 
-use std::sync::Arc;
+use std::net::IpAddr;
 use std::time::Duration;
 
 use axum::Router;
+use hyper::Request;
+use hyper::body::Incoming;
 use hyper::server::conn::http1;
+use hyper::service::{Service as _, service_fn};
 use hyper_util::rt::{TokioIo, TokioTimer};
 use hyper_util::service::TowerToHyperService;
+use tokio::io::AsyncWriteExt as _;
 use tokio::net::{TcpListener, TcpStream};
-use tokio::sync::{OwnedSemaphorePermit, Semaphore};
+use tokio::time::timeout;
+use tokio_rustls::TlsAcceptor;
+
+use super::line::{Line, Stream};
+use super::places::{Place, Places};
 
 /// Greatest number of connections without the WebSockets of clients.
 const CONNECTIONS: usize = 512;
+/// The same from one address.
+const FROM_ONE: usize = 64;
 /// Longest time for the head of a request, and for an idle connection.
 const HEAD: Duration = Duration::from_secs(15);
-const FULL: &[u8] = b"HTTP/1.1 503 Service Unavailable\r\ncontent-type: text/plain\r\n\
-    content-length: 44\r\nconnection: close\r\n\r\ntoo many connections at once: try again soon";
+/// Longest time for an answer to someone who was too slow.
+const LAST: Duration = Duration::from_secs(1);
+const FULL: &[u8] = b"HTTP/1.1 429 Too Many Requests\r\ncontent-type: text/plain\r\n\
+    content-length: 44\r\nconnection: close\r\nretry-after: 5\r\n\r\ntoo many connections at once: try again soon";
+const SLOW: &[u8] = b"HTTP/1.1 408 Request Timeout\r\ncontent-type: text/plain\r\n\
+    content-length: 30\r\nconnection: close\r\n\r\nthis took too long to arrive\r\n";
+const PLAIN: &[u8] = b"HTTP/1.1 400 Bad Request\r\ncontent-type: text/plain\r\n\
+    content-length: 55\r\nconnection: close\r\n\r\nthis server is encrypted: its address begins https://\r\n";
+
+/// The address of the other end, as an extension of each request.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Peer(pub(super) IpAddr);
+
+/// How connections are let in.
+#[derive(Clone)]
+pub(crate) struct Door {
+    /// By TLS alone, where there is a certificate.
+    pub(super) tls: Option<TlsAcceptor>,
+    /// Greatest number of connections from one address.
+    pub(super) from_one: usize,
+    pub(super) all: usize,
+    /// Longest time for the head of a request.
+    pub(super) head: Duration,
+}
+
+impl Default for Door {
+    fn default() -> Door {
+        Door { tls: None, from_one: CONNECTIONS, all: CONNECTIONS, head: HEAD }
+    }
+}
+
+impl Door {
+    /// For an address that others reach: none of them takes all places.
+    pub(super) fn for_others(tls: Option<TlsAcceptor>) -> Door {
+        Door { tls, from_one: FROM_ONE, ..Door::default() }
+    }
+}
 
 /// Serves until the program ends.
-pub(crate) async fn listen(listener: TcpListener, app: Router) {
-    let places = Arc::new(Semaphore::new(CONNECTIONS));
+pub(crate) async fn listen(listener: TcpListener, app: Router, door: Door) {
+    let places = Places::new(door.all, door.from_one);
     loop {
-        let Ok((stream, _)) = listener.accept().await else {
+        let Ok((stream, peer)) = listener.accept().await else {
             // Usually too many files are open; this ends when a client leaves.
             tokio::time::sleep(Duration::from_millis(50)).await;
             continue;
         };
-        match Arc::clone(&places).try_acquire_owned() {
-            Ok(place) => {
-                tokio::spawn(serve(stream, app.clone(), place));
+        match places.take(peer.ip().to_canonical()) {
+            Some(place) => {
+                tokio::spawn(serve(stream, app.clone(), door.clone(), place));
             }
-            Err(_) => {
+            // Nothing is read: under TLS this is no answer, and the connection just ends.
+            None if door.tls.is_none() => {
                 stream.try_write(FULL).ok();
             }
+            None => {}
         }
     }
 }
 
-async fn serve(stream: TcpStream, app: Router, place: OwnedSemaphorePermit) {
+async fn serve(stream: TcpStream, app: Router, door: Door, place: Place) {
     stream.set_nodelay(true).ok();
+    let Some(mut line) = opened(stream, &door).await else { return };
+    let (app, peer) = (TowerToHyperService::new(app), Peer(place.of()));
+    let service = service_fn(move |mut request: Request<Incoming>| {
+        request.extensions_mut().insert(peer);
+        app.call(request)
+    });
     let served = http1::Builder::new()
         .timer(TokioTimer::new())
-        .header_read_timeout(HEAD)
+        .header_read_timeout(door.head)
         .max_buf_size(64 << 10)
-        .serve_connection(TokioIo::new(stream), TowerToHyperService::new(app))
+        .serve_connection(TokioIo::new(line.clone()), service)
         .with_upgrades();
     // A broken connection is the client's concern.
-    served.await.ok();
+    if served.await.is_err_and(|e| e.is_timeout()) {
+        timeout(LAST, line.write_all(SLOW)).await.ok();
+        timeout(LAST, line.shutdown()).await.ok();
+    }
     drop(place);
+}
+
+/// The connection, behind its handshake.
+async fn opened(mut stream: TcpStream, door: &Door) -> Option<Line> {
+    let Some(tls) = &door.tls else { return Some(Line::new(Stream::Plain(stream))) };
+    let mut first = [0];
+    let said = timeout(door.head, stream.peek(&mut first)).await;
+    match said {
+        Ok(Ok(1)) if first == [22] => {
+            let stream = timeout(door.head, tls.accept(stream)).await.ok()?.ok()?;
+            Some(Line::new(Stream::Tls(Box::new(stream))))
+        }
+        // Whoever begins with a letter asks in plain text.
+        Ok(Ok(1)) if first[0].is_ascii_uppercase() => {
+            timeout(LAST, stream.write_all(PLAIN)).await.ok();
+            None
+        }
+        _ => None,
+    }
 }

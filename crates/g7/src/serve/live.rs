@@ -6,21 +6,29 @@
 
 use std::sync::Arc;
 
+use axum::Extension;
 use axum::extract::State;
-use axum::extract::ws::{Message, WebSocket, WebSocketUpgrade};
+use axum::extract::ws::{CloseFrame, Message, WebSocket, WebSocketUpgrade};
 use axum::http::StatusCode;
 use axum::response::{IntoResponse, Response};
+use g7_store::users::Role;
 use serde::Deserialize;
 use serde_json::value::RawValue;
-use tokio::sync::{OwnedSemaphorePermit, oneshot};
+use tokio::sync::{oneshot, watch};
 use tokio::time::{Instant, MissedTickBehavior, interval, timeout};
 
 use super::api;
+use super::listen::Peer;
 use super::outbox::{Next, Outbox};
+use super::places::Place;
 use super::refusal::Refusal;
 use super::runs::letter;
-use super::shared::Shared;
+use super::shared::{Limits, Shared};
 use crate::operator::{NAME, Order, Wish};
+use crate::who::Who;
+
+/// The code with which a socket is closed whose session is over.
+const OVER: u16 = 4401;
 
 /// The parts of a message that the server needs to know.
 #[derive(Deserialize)]
@@ -42,10 +50,18 @@ struct Head {
 }
 
 /// Opens the WebSocket of a client if there is room for it.
-pub(super) async fn live(State(shared): State<Shared>, upgrade: WebSocketUpgrade) -> Response {
-    let Ok(seat) = Arc::clone(&shared.seats).try_acquire_owned() else {
-        let text = format!("all {} places are taken: close a page somewhere", shared.limits.clients);
-        return Refusal::new(StatusCode::SERVICE_UNAVAILABLE, text).into_response();
+pub(super) async fn live(
+    State(shared): State<Shared>,
+    Extension(who): Extension<Who>,
+    Extension(Peer(from)): Extension<Peer>,
+    upgrade: WebSocketUpgrade,
+) -> Response {
+    let Some(seat) = shared.seats.take(from) else {
+        let Limits { clients, from_one, .. } = shared.limits;
+        let text = format!(
+            "all {clients} places are taken, or the {from_one} of this address: close a page somewhere"
+        );
+        return Refusal::new(StatusCode::TOO_MANY_REQUESTS, text).into_response();
     };
     let most = shared.limits.message;
     upgrade
@@ -54,12 +70,13 @@ pub(super) async fn live(State(shared): State<Shared>, upgrade: WebSocketUpgrade
         // The defaults would take a quarter of a megabyte for each client.
         .read_buffer_size(8 << 10)
         .write_buffer_size(0)
-        .on_upgrade(move |socket| attend(socket, shared, seat))
+        .on_upgrade(move |socket| attend(socket, shared, who, seat))
 }
 
 /// Serves a client until it leaves or is disconnected.
-async fn attend(mut socket: WebSocket, shared: Shared, seat: OwnedSemaphorePermit) {
-    let outbox = Arc::new(Outbox::default());
+async fn attend(mut socket: WebSocket, shared: Shared, who: Who, seat: Place) {
+    let outbox = Arc::new(Outbox::of(who));
+    let mut sessions = shared.access.as_ref().map(|access| access.hear());
     shared.clients.enter(&outbox);
     let limits = shared.limits;
     let mut ping = interval(limits.ping);
@@ -98,6 +115,14 @@ async fn attend(mut socket: WebSocket, shared: Shared, seat: OwnedSemaphorePermi
                 }
                 Next::Closed => break,
             },
+            () = changed(&mut sessions) => {
+                if now(&shared, &outbox, false).is_none() {
+                    let close = CloseFrame { code: OVER, reason: "the session is over".into() };
+                    timeout(limits.send, socket.send(Message::Close(Some(close)))).await.ok();
+                    break;
+                }
+                continue;
+            }
             _ = ping.tick() => {
                 if heard.elapsed() > limits.silence {
                     break;
@@ -112,6 +137,26 @@ async fn attend(mut socket: WebSocket, shared: Shared, seat: OwnedSemaphorePermi
     // Runs hold the client by a weak reference only, so this frees all waiting messages.
     drop(outbox);
     drop(seat);
+}
+
+/// Waits until sessions may have ended; for ever where there are none.
+async fn changed(sessions: &mut Option<watch::Receiver<u64>>) {
+    if let Some(sessions) = sessions
+        && sessions.changed().await.is_ok()
+    {
+        return;
+    }
+    std::future::pending().await
+}
+
+/// Who a client is now; `None` once its session is over. A message counts as use, a page that is open does not.
+fn now(shared: &Shared, outbox: &Outbox, used: bool) -> Option<Who> {
+    let who = outbox.who();
+    match (&shared.access, &who.session) {
+        (Some(access), Some(session)) => access.again(session, who.from.parse().ok()?, used),
+        (Some(_), None) => None,
+        (None, _) => Some(who.clone()),
+    }
 }
 
 /// Processes one message of a client.
@@ -130,6 +175,11 @@ async fn take(shared: &Shared, outbox: &Arc<Outbox>, text: &str) {
 async fn call_of(shared: &Shared, outbox: &Arc<Outbox>, id: u64, call: &RawValue) -> Result<(), String> {
     let head: Head =
         serde_json::from_str(call.get()).map_err(|e| format!("this message means nothing: {e}"))?;
+    let who = now(shared, outbox, true).ok_or("the session is over: log in again")?;
+    if !matches!(head.r#do.as_str(), "runs" | "watch" | "unwatch") && !head.r#do.starts_with("operator_") {
+        // Runs of a simulation touch no machine; they are shared with others all the same.
+        who.needs(Role::Operator)?;
+    }
     let runs = &shared.runs;
     let text = match (head.r#do.as_str(), &head.file, head.text) {
         ("run_start" | "run_swap", Some(_), Some(text)) => Some(text),
@@ -146,18 +196,37 @@ async fn call_of(shared: &Shared, outbox: &Arc<Outbox>, id: u64, call: &RawValue
         "watch" => runs.watch(&head.run, outbox, id).await,
         "unwatch" => runs.unwatch(&head.run, outbox, id).await,
         "pace" => runs.pace(&head.run, outbox, id, head.speed.unwrap_or(0.0)).await,
-        what if what.starts_with("operator_") => operate(shared, outbox, id, call).await,
+        what if what.starts_with("operator_") => operate(shared, &who, outbox, id, call).await,
         what if what.starts_with("run_") => runs.call(&head.run, outbox, id, call.get(), text).await,
         _ => Err("the server answers for runs; this is answered in the page".to_owned()),
     }
 }
 
 /// Passes a wish on to the attendant of the controller, and waits until it is answered.
-async fn operate(shared: &Shared, outbox: &Arc<Outbox>, id: u64, call: &RawValue) -> Result<(), String> {
+async fn operate(
+    shared: &Shared,
+    who: &Who,
+    outbox: &Arc<Outbox>,
+    id: u64,
+    call: &RawValue,
+) -> Result<(), String> {
     let station =
         shared.station.as_ref().ok_or("this server has no controller: `g7 serve --online` has one")?;
     let wish: Wish =
         serde_json::from_str(call.get()).map_err(|e| format!("this message means nothing: {e}"))?;
+    if let Err(why) = who.needs(wish.role()) {
+        shared.audit.event("warning", "refused", None, &wish.refused(who));
+        return Err(why);
+    }
+    if let Some((kind, data)) = wish.deed() {
+        if wish.waits_for_log() {
+            let (audit, who) = (shared.audit.clone(), who.clone());
+            let row = api::aside(move || Ok(audit.must(&who, &kind, &data)));
+            row.await.map_err(|refusal| refusal.text)??;
+        } else {
+            shared.audit.note(who, &kind, None, &data);
+        }
+    }
     let (done, wait) = oneshot::channel();
     let order = Order { by: Arc::clone(outbox), call: Some((id, wish, done)) };
     station.try_send(order).map_err(|_| "the controller is busy: try again")?;

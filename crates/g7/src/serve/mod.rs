@@ -4,7 +4,10 @@
 //!
 //! ```text
 //! browser -> listen -> guard -> assets                          the page
-//!                            -> api  -> folder, drafts, watch   files
+//!             (tls)     |    -> entry -> access                  login, users, the log
+//!                    access  -> api  -> folder, drafts, watch   files
+//!                            -> wiring -> folder, online        io files; devices are asked
+//!                            -> history -> store                the history of a controller
 //!                            -> live -> runs -> desk -> Page    shared runs
 //!                                <- outbox <-+
 //!                                    -> operator::Stage         a running controller (`--online`)
@@ -13,34 +16,45 @@
 //! # Invariants
 //!
 //! Nothing is answered without the right host and origin; nothing except the page itself is
-//! answered without the token of this start (`guard`).
+//! answered without the token of this start, or a session of a user whose role allows it (`guard`).
+//! Whoever is reached from other machines has TLS and users, or does not start (`rules`).
 //! Only the given folder is read or written; links that lead out of it are refused (`folder`).
 //! Whatever clients do, runs go on and memory stays bounded (`outbox`, `desk`).
 
+mod access;
 mod api;
 mod assets;
 mod browser;
 mod desk;
 mod drafts;
+mod entry;
 mod file_names;
 mod fingerprint;
 mod folder;
 mod guard;
+mod history;
+mod line;
 pub(crate) mod listen;
 mod live;
 pub(crate) mod outbox;
+mod places;
 mod refusal;
 mod registry;
+mod rules;
 mod runs;
 mod shared;
+mod system;
 #[cfg(test)]
 mod tests;
+mod throttle;
+mod tls;
 mod watch;
+mod wiring;
 
 use std::net::{IpAddr, Ipv4Addr, SocketAddr};
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 use std::sync::mpsc::SyncSender;
+use std::sync::{Arc, OnceLock};
 use std::time::Duration;
 
 use axum::Router;
@@ -48,17 +62,18 @@ use axum::routing::get;
 use clap::Args;
 use tokio::net::TcpListener;
 use tokio::runtime::Runtime;
-use tokio::sync::Semaphore;
 
 use crate::attendant::Attendant;
 use crate::failure::{Failure, Verdict};
 use crate::message::talk;
 use crate::operator::{Order, Stage};
-use crate::station::{self, Drive, More, Station};
-use crate::{files, sources};
+use crate::station::{self, Drive, More, Settings, Station};
+use crate::{audit, files, sources};
 use drafts::Drafts;
 use folder::Folder;
-use guard::Guard;
+use guard::{Guard, Pass};
+use places::Places;
+use rules::Rules;
 use runs::Runs;
 use shared::{Clients, Inner, Limits, Shared};
 use watch::Watch;
@@ -67,6 +82,8 @@ use watch::Watch;
 const PORT: u16 = 4700;
 /// Time between two searches of the folder for changes.
 const LOOK: Duration = Duration::from_millis(500);
+/// Time between two looks at the file of the users: a session that was revoked is over within a second.
+const LOOK_USERS: Duration = Duration::from_millis(300);
 
 #[derive(Args, Debug)]
 #[command(after_help = "\
@@ -75,15 +92,17 @@ Examples:
   g7 serve examples                 those of a folder
   g7 serve tank/chart.g7            a folder, with one chart opened
   g7 serve --read-only examples     for looking, not for changing
-  g7 serve --host 0.0.0.0 --no-open on a machine without a screen, for others
+  g7 serve --host 0.0.0.0 --cert g7.cert.pem --key g7.key.pem --users g7.users
+                                    for others, who log in (`g7 cert`, `g7 users`)
   g7 serve sorter.g7 --online       drives the devices of sorter.io.toml, with the page
                                     of the operator: start, stop, values, forcing
   g7 serve sorter.g7 --online --simulate   the same, with the plant in place of devices
 
 The address printed has a token that is made anew at each start: whoever has it
 reads and writes the charts of the folder, nobody else does, and nothing outside
-the folder is touched. Ctrl-C ends the server; with --online the outputs are safe then,
-and only an address of this machine is listened at.")]
+the folder is touched. With --users there is no token: people log in, and each does
+what the role allows. An address that other machines reach needs users and TLS.
+Ctrl-C ends the server; with --online the outputs are safe then.")]
 pub(crate) struct Serve {
     /// A folder with charts, or one chart.
     #[arg(default_value = ".", value_name = "FILE or FOLDER")]
@@ -91,9 +110,21 @@ pub(crate) struct Serve {
     /// The port [default: 4700, or another one if that is taken].
     #[arg(long, value_name = "NUMBER")]
     port: Option<u16>,
-    /// The address to listen at [default: only this machine].
-    #[arg(long, visible_alias = "listen", default_value_t = IpAddr::V4(Ipv4Addr::LOCALHOST), value_name = "ADDRESS")]
-    host: IpAddr,
+    /// The address to listen at [default: 127.0.0.1, only this machine].
+    #[arg(long, visible_alias = "listen", value_name = "ADDRESS")]
+    host: Option<IpAddr>,
+    /// The file of the users; it is made if it is missing.
+    #[arg(long, value_name = "FILE")]
+    users: Option<PathBuf>,
+    /// The certificate for encrypted connections (PEM).
+    #[arg(long, value_name = "FILE", requires = "key")]
+    cert: Option<PathBuf>,
+    /// The private key of the certificate (PEM).
+    #[arg(long, value_name = "FILE", requires = "cert")]
+    key: Option<PathBuf>,
+    /// The log of events and of what people do; it is made if it is missing.
+    #[arg(long, value_name = "FILE")]
+    log: Option<PathBuf>,
     /// Write nothing; charts can still be viewed and run.
     #[arg(long)]
     read_only: bool,
@@ -119,6 +150,7 @@ fn shared(
     limits: Limits,
     state: Option<&Path>,
     station: Option<SyncSender<Order>>,
+    rules: &Rules,
 ) -> Result<Shared, Failure> {
     let unreadable = |e| Failure::Read(args.path.clone(), e);
     let is_file = std::fs::metadata(&args.path).map_err(unreadable)?.is_file();
@@ -127,6 +159,9 @@ fn shared(
             let parent = if parent.as_os_str().is_empty() { Path::new(".") } else { parent };
             let name = name.to_string_lossy().into_owned();
             file_names::path(&name).map_err(Failure::Usage)?;
+            if file_names::is_io(&name) {
+                return Err(Failure::Usage(format!("{name} belongs to a chart: serve that one")));
+            }
             (parent.to_path_buf(), Some(name))
         }
         _ => (args.path.clone(), None),
@@ -147,9 +182,14 @@ fn shared(
         folder,
         runs: Arc::new(Runs::new(limits.runs)),
         clients: Clients::default(),
-        seats: Arc::new(Semaphore::new(limits.clients)),
+        seats: Places::new(limits.clients, limits.from_one),
         limits,
         station,
+        access: rules.access.clone(),
+        audit: rules.audit.clone(),
+        log: rules.log.clone(),
+        history: OnceLock::new(),
+        asker: wiring::Asker::new(rules.host.is_loopback()),
     }))
 }
 
@@ -157,6 +197,9 @@ fn shared(
 fn app(shared: Shared, guard: Guard) -> Router {
     Router::new()
         .merge(api::routes())
+        .merge(entry::routes())
+        .merge(history::routes())
+        .merge(wiring::routes())
         .route("/api/live", get(live::live))
         .fallback(get(assets::asset))
         .with_state(shared)
@@ -193,9 +236,9 @@ fn token() -> Result<String, Failure> {
 }
 
 /// Binds the given port; otherwise the default port or any free one.
-async fn bind(args: &Serve) -> Result<TcpListener, Failure> {
-    let at = |port| TcpListener::bind(SocketAddr::new(args.host, port));
-    let bound = match args.port {
+async fn bind(host: IpAddr, port: Option<u16>) -> Result<TcpListener, Failure> {
+    let at = |port| TcpListener::bind(SocketAddr::new(host, port));
+    let bound = match port {
         Some(port) => at(port).await,
         None => match at(PORT).await {
             Ok(listener) => Ok(listener),
@@ -203,41 +246,71 @@ async fn bind(args: &Serve) -> Result<TcpListener, Failure> {
         },
     };
     bound.map_err(|e| {
-        let port = args.port.unwrap_or(PORT);
-        Failure::Usage(format!("cannot listen at {} port {port}: {}", args.host, crate::failure::plain(&e)))
+        let port = port.unwrap_or(PORT);
+        Failure::Usage(format!("cannot listen at {host} port {port}: {}", crate::failure::plain(&e)))
     })
+}
+
+/// Looks for changes of the users and of the certificate.
+async fn look_after(rules: Rules) {
+    let mut tick = tokio::time::interval(LOOK_USERS);
+    tick.set_missed_tick_behavior(tokio::time::MissedTickBehavior::Delay);
+    loop {
+        tick.tick().await;
+        let rules = rules.clone();
+        tokio::task::spawn_blocking(move || rules.look()).await.ok();
+    }
 }
 
 /// A server at work, until it is dropped.
 struct Open {
     runtime: Option<Runtime>,
     bound: SocketAddr,
-    token: String,
+    /// The token of this start, where there are no users.
+    token: Option<String>,
 }
 
 impl Open {
     /// Listens, and answers from here on.
-    fn new(args: &Serve, shared: &Shared) -> Result<Open, Failure> {
-        let runtime = tokio::runtime::Builder::new_multi_thread().enable_all().worker_threads(2).build();
+    fn new(shared: &Shared, rules: &Rules) -> Result<Open, Failure> {
+        system::room_for(shared.limits.clients);
+        let mut threads = tokio::runtime::Builder::new_multi_thread();
+        if shared.station.is_some() {
+            threads.on_thread_start(system::step_back);
+        }
+        let runtime = threads.enable_all().worker_threads(2).build();
         let runtime = runtime.map_err(|e| Failure::Usage(format!("the server cannot start: {e}")))?;
-        let listener = runtime.block_on(bind(args))?;
-        let (bound, token) = (listener.local_addr()?, token()?);
-        let app = app(Arc::clone(shared), Guard { token: token.clone(), bound });
+        let listener = runtime.block_on(bind(rules.host, rules.port))?;
+        let bound = listener.local_addr()?;
+        let (pass, token) = match &rules.access {
+            Some(access) => (Pass::Users(Arc::clone(access)), None),
+            None => {
+                let token = token()?;
+                (Pass::Token(token.clone()), Some(token))
+            }
+        };
+        let app = app(Arc::clone(shared), rules.guard(pass, bound));
         runtime.spawn(tell_changes(Arc::clone(shared)));
-        runtime.spawn(listen::listen(listener, app));
+        runtime.spawn(look_after(rules.clone()));
+        runtime.spawn(listen::listen(listener, app, rules.door()?));
         Ok(Open { runtime: Some(runtime), bound, token })
     }
 
     /// Tells the user where the page is.
-    fn tell(&self, args: &Serve, shared: &Shared) -> Result<(), Failure> {
-        let address =
-            address(self.bound, if shared.station.is_some() { "operator" } else { "" }, &self.token);
-        talk!("G7 serves {}{}", shared.title, if args.read_only { ", read-only" } else { "" });
-        if !self.bound.ip().is_loopback() {
-            talk!("whoever in the network has this address can use these charts; it is not encrypted");
+    fn tell(&self, args: &Serve, shared: &Shared, rules: &Rules) -> Result<(), Failure> {
+        let page = if shared.station.is_some() { "operator" } else { "" };
+        let scheme = if rules.certificate.is_some() { "https" } else { "http" };
+        let mut address = format!("{scheme}://{}/{page}", shown(self.bound));
+        if let Some(token) = &self.token {
+            address = format!("{address}?token={token}");
         }
+        talk!("G7 serves {}{}", shared.title, if args.read_only { ", read-only" } else { "" });
         if self.bound.ip().is_unspecified() {
-            talk!("others put the address of this machine in place of 127.0.0.1");
+            talk!("others put the name or the address of this machine in place of 127.0.0.1");
+        }
+        if let Some(code) = rules.access.as_ref().and_then(|access| access.code()) {
+            talk!("there is no admin yet: whoever gives this code in the page becomes the first one");
+            talk!("code: {code}");
         }
         print(&address)?;
         talk!("Ctrl-C ends it");
@@ -262,9 +335,13 @@ pub(crate) fn serve(args: &Serve) -> Result<Verdict, Failure> {
     if args.drive.online {
         return online(args);
     }
-    let shared = shared(args, Limits::default(), drafts::state_folder().as_deref(), None)?;
-    let open = Open::new(args, &shared)?;
-    open.tell(args, &shared)?;
+    let log = args.log.as_deref().map(|path| audit::open(path, None, None)).transpose()?;
+    let (_log, audit) = log.map_or_else(Default::default, |(log, audit)| (Some(log), audit));
+    let rules = Rules::of(args, None, &audit, args.log.clone())?;
+    let limits = rules.limits(Limits::default());
+    let shared = shared(args, limits, drafts::state_folder().as_deref(), None, &rules)?;
+    let open = Open::new(&shared, &rules)?;
+    open.tell(args, &shared, &rules)?;
     if let Some(runtime) = &open.runtime {
         runtime.block_on(tokio::signal::ctrl_c())?;
     }
@@ -273,36 +350,39 @@ pub(crate) fn serve(args: &Serve) -> Result<Verdict, Failure> {
 
 /// Serves the page of a controller, which this starts and ends.
 fn online(args: &Serve) -> Result<Verdict, Failure> {
-    if !args.host.is_loopback() {
-        let what = format!("--online drives a machine, and {} is reached from other machines", args.host);
-        return Err(Failure::Usage(format!(
-            "{what}: there are no users and no encryption yet, so it listens at 127.0.0.1 or ::1 alone"
-        )));
-    }
     let path = files::one(&args.path)?;
     let source = sources::load(&path, 0)?;
+    let Settings { setup, io, log, audit, log_file } =
+        station::settings(&path, &args.drive, args.log.as_deref())?;
+    let rules = Rules::of(args, Some((&setup.server, &io)), &audit, log_file)?;
     let (station, orders) = Stage::door();
-    let limits = Limits::beside_a_machine();
-    let shared = shared(args, limits, drafts::state_folder().as_deref(), Some(station))?;
+    let limits = rules.limits(Limits::beside_a_machine());
+    let shared = shared(args, limits, drafts::state_folder().as_deref(), Some(station), &rules)?;
     // A port that is taken is found before anything moves.
-    let open = Open::new(args, &shared)?;
+    let open = Open::new(&shared, &rules)?;
     let more = More { plant: args.plant.as_deref(), ..More::default() };
     let station = station::start(&path, source, &args.drive, more)?;
-    let Some(Station { names, origin, running, sight, monitor }) = station else { return Ok(Verdict::Found) };
-    open.tell(args, &shared)?;
+    let Some(Station { names, origin, running, sight, monitor, panels, historian }) = station else {
+        return Ok(Verdict::Found);
+    };
+    if let Some(historian) = &historian {
+        // It is set once.
+        shared.history.set(historian.path.clone()).ok();
+    }
+    open.tell(args, &shared, &rules)?;
     let stage = Stage::new(names.clone(), sight, orders);
-    Attendant::new(names).with(monitor).on(stage).changing(origin).attend(running, None)
+    let attendant = Attendant::new(names).with(monitor).logging(log, audit).recording(historian);
+    attendant.on(stage).at(panels).changing(origin).attend(running, None)
 }
 
 /// The address that the user opens.
-fn address(bound: SocketAddr, page: &str, token: &str) -> String {
-    let shown = match bound.ip() {
+fn shown(bound: SocketAddr) -> SocketAddr {
+    match bound.ip() {
         // An unspecified address cannot be opened; use that of this machine.
         IpAddr::V4(ip) if ip.is_unspecified() => SocketAddr::new(Ipv4Addr::LOCALHOST.into(), bound.port()),
         IpAddr::V6(ip) if ip.is_unspecified() => SocketAddr::new(Ipv4Addr::LOCALHOST.into(), bound.port()),
         IpAddr::V4(_) | IpAddr::V6(_) => bound,
-    };
-    format!("http://{shown}/{page}?token={token}")
+    }
 }
 
 fn print(address: &str) -> Result<(), Failure> {

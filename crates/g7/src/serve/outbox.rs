@@ -14,6 +14,8 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use axum::extract::ws::Utf8Bytes;
 use tokio::sync::Notify;
 
+use crate::who::Who;
+
 /// Greatest number of frames of one run that wait for a client.
 const FRAMES: usize = 50;
 /// Greatest number of bytes that wait for a client.
@@ -22,6 +24,8 @@ const BYTES: usize = 4 << 20;
 /// The messages that wait for a client.
 #[derive(Debug, Default)]
 pub(crate) struct Outbox {
+    /// Who reads them, as of the begin of the connection.
+    who: Who,
     inner: Mutex<Inner>,
     ring: Notify,
 }
@@ -54,6 +58,16 @@ pub(crate) enum Next {
 }
 
 impl Outbox {
+    /// The messages for someone.
+    pub(crate) fn of(who: Who) -> Outbox {
+        Outbox { who, ..Outbox::default() }
+    }
+
+    /// Who reads them.
+    pub(crate) fn who(&self) -> &Who {
+        &self.who
+    }
+
     /// Adds a frame of a run; it may be dropped if the client is behind.
     pub(crate) fn frame(&self, run: &Arc<str>, text: Utf8Bytes) {
         let mut inner = self.lock();

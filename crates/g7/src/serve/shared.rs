@@ -8,16 +8,18 @@
 
 use std::path::PathBuf;
 use std::sync::mpsc::SyncSender;
-use std::sync::{Arc, Mutex, PoisonError, Weak};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError, Weak};
 use std::time::Duration;
 
-use tokio::sync::Semaphore;
-
+use super::access::Access;
 use super::drafts::Drafts;
 use super::folder::Folder;
 use super::outbox::Outbox;
+use super::places::Places;
 use super::runs::Runs;
 use super::watch::Watch;
+use super::wiring::Asker;
+use crate::audit::Audit;
 use crate::operator::Order;
 
 /// The limits of the server.
@@ -25,6 +27,8 @@ use crate::operator::Order;
 pub(super) struct Limits {
     /// Greatest number of clients.
     pub(super) clients: usize,
+    /// Greatest number of clients from one address.
+    pub(super) from_one: usize,
     /// Greatest number of shared runs.
     pub(super) runs: usize,
     /// Greatest length of a message, in bytes.
@@ -38,17 +42,24 @@ pub(super) struct Limits {
 }
 
 impl Limits {
-    /// Beside a machine a client that has stopped is let go sooner.
+    /// Where others reach the server, none of them takes all places.
+    pub(super) fn for_others(self) -> Limits {
+        Limits { from_one: 64, ..self }
+    }
+
+    /// Beside a machine there is room for many who look, and a client that has stopped is let go within
+    /// 10 seconds: at the first ping that comes behind its silence.
     pub(super) fn beside_a_machine() -> Limits {
-        let (ping, silence, send) = (Duration::from_secs(2), Duration::from_secs(8), Duration::from_secs(8));
-        Limits { ping, silence, send, ..Limits::default() }
+        let (ping, silence, send) = (Duration::from_secs(2), Duration::from_secs(7), Duration::from_secs(7));
+        Limits { clients: 1_200, ping, silence, send, ..Limits::default() }
     }
 }
 
 impl Default for Limits {
     fn default() -> Limits {
         Limits {
-            clients: 200,
+            clients: 1_200,
+            from_one: 1_200,
             runs: 16,
             message: 1 << 20,
             ping: Duration::from_secs(10),
@@ -71,10 +82,19 @@ pub(super) struct Inner {
     pub(super) watch: Watch,
     pub(super) runs: Arc<Runs>,
     pub(super) clients: Clients,
-    pub(super) seats: Arc<Semaphore>,
+    pub(super) seats: Places,
     pub(super) limits: Limits,
     /// The way to a running controller.
     pub(super) station: Option<SyncSender<Order>>,
+    /// The users, if there are any.
+    pub(super) access: Option<Arc<Access>>,
+    pub(super) audit: Audit,
+    /// The file of the log.
+    pub(super) log: Option<PathBuf>,
+    /// The record of that controller.
+    pub(super) history: OnceLock<PathBuf>,
+    /// The one who asks the devices of an io file.
+    pub(super) asker: Asker,
 }
 
 pub(super) type Shared = Arc<Inner>;

@@ -118,9 +118,10 @@ fn install(args: &Install) -> Result<Verdict, Failure> {
         of_user: args.user,
         run_as: owner(args, &path)?,
         restart: args.restart,
-        keeps: plan.setup.controller.retain.is_some(),
+        keeps: writes(&plan.setup),
         serial: has(&plan, |kind| matches!(kind, Kind::ModbusRtu(..))),
-        low_port: has(&plan, |kind| kind.listens().is_some_and(|address| address.port() < 1024)),
+        low_port: has(&plan, |kind| kind.listens().is_some_and(|address| address.port() < 1024))
+            || plan.setup.server.port.as_ref().is_some_and(|port| (1..1024).contains(&port.value)),
         realtime: plan.setup.controller.priority.is_some(),
     };
     let text = unit.text().map_err(Failure::Usage)?;
@@ -212,4 +213,11 @@ fn systemctl(user: bool, arguments: &[&str]) -> Result<(), Failure> {
     }
     let why = String::from_utf8_lossy(&done.stderr);
     Err(Failure::Usage(format!("`{line}` failed: {}", why.trim())))
+}
+
+/// True if the controller writes files beside its io file.
+fn writes(setup: &g7_online::setup::Setup) -> bool {
+    let controller = &setup.controller;
+    let kept = controller.retain.is_some() || controller.log.is_some();
+    kept || setup.server.users.is_some() || setup.history.is_some()
 }

@@ -1,7 +1,7 @@
 //! The text of a unit of systemd (systemd.service(5), systemd.exec(5)).
 //!
 //! The service may do what a controller needs and no more: it reads the file system, writes the folder
-//! of its retained values alone, and gets no new rights.
+//! of its retained values and its history alone, and gets no new rights.
 
 use std::path::Path;
 
@@ -29,7 +29,7 @@ pub(super) struct Unit<'a> {
     /// The user whose rights it has.
     pub(super) run_as: Option<String>,
     pub(super) restart: bool,
-    /// It writes retained values beside the io file.
+    /// It writes retained values or a history beside the io file.
     pub(super) keeps: bool,
     /// It has a serial line.
     pub(super) serial: bool,

@@ -3,6 +3,7 @@
 #![allow(clippy::disallowed_methods, reason = "tests look at what was written")]
 
 pub(crate) mod broker;
+pub(crate) mod station;
 pub(crate) mod talk;
 
 use std::fs;

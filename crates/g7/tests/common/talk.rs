@@ -85,6 +85,18 @@ impl Running {
         }
     }
 
+    /// Its number in the system.
+    pub(crate) fn pid(&self) -> u32 {
+        self.child.id()
+    }
+
+    /// All lines until it ends, those that were read already too.
+    pub(crate) fn rest(mut self) -> Vec<String> {
+        self.seen.extend(self.lines.iter());
+        self.child.wait().expect("it ends");
+        std::mem::take(&mut self.seen)
+    }
+
     /// Sends a signal, by name.
     pub(crate) fn signal(&self, name: &str) {
         let pid = self.child.id().to_string();

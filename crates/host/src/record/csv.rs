@@ -16,7 +16,7 @@ use super::{Kind, Recording, Value};
 pub fn write_csv(recording: &Recording, out: &mut dyn Write) -> io::Result<()> {
     write!(out, "time")?;
     for signal in recording.signals() {
-        write!(out, ",{}", quote(&signal.name))?;
+        write!(out, ",{}", csv_quote(&signal.name))?;
     }
     writeln!(out)?;
     let mut instants = recording.instants();
@@ -27,22 +27,24 @@ pub fn write_csv(recording: &Recording, out: &mut dyn Write) -> io::Result<()> {
         write!(out, "{}", instant.in_seconds())?;
         for (i, signal) in recording.signals().iter().enumerate() {
             let value = recording.value_at(i, instant);
-            write!(out, ",{}", value.map_or_else(String::new, |v| cell(&v, signal.kind)))?;
+            write!(out, ",{}", value.map_or_else(String::new, |v| csv_cell(&v, signal.kind)))?;
         }
         writeln!(out)?;
     }
     Ok(())
 }
 
-fn cell(value: &Value, kind: Kind) -> String {
+/// A value as a cell: BOOL is 0 or 1, TIME is in seconds.
+pub fn csv_cell(value: &Value, kind: Kind) -> String {
     match kind {
         Kind::Bool => value.word().to_string(),
         Kind::Time => Nanos::new(value.word() as i64).in_seconds(),
-        Kind::Int { .. } | Kind::Real | Kind::Lreal | Kind::Text => quote(&value.show(kind)),
+        Kind::Int { .. } | Kind::Real | Kind::Lreal | Kind::Text => csv_quote(&value.show(kind)),
     }
 }
 
-fn quote(text: &str) -> String {
+/// A text as a cell, in quotes where it needs them.
+pub fn csv_quote(text: &str) -> String {
     if text.contains(['"', ',', '\n', '\r']) || text.starts_with(' ') || text.ends_with(' ') {
         format!("\"{}\"", text.replace('"', "\"\""))
     } else {

@@ -59,7 +59,13 @@ impl Units {
                 let slave = Slave { line: self.line(serial), timeout };
                 (Way::Rtu(GenericModbusClient::new(slave)), modbus)
             }
-            Kind::ModbusServer(_) | Kind::Mqtt(_) | Kind::OpcUa(_) | Kind::OpcUaServer(_) => return Ok(None),
+            Kind::ModbusServer(_)
+            | Kind::Mqtt(_)
+            | Kind::Panel(_)
+            | Kind::OpcUa(_)
+            | Kind::OpcUaServer(_) => {
+                return Ok(None);
+            }
         };
         let inputs: Vec<Place> = wired.inputs.iter().filter_map(|i| i.wire.place()).collect();
         let outputs = wired.outputs.iter().filter_map(|o| o.wire.place()).collect();

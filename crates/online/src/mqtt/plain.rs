@@ -83,7 +83,12 @@ impl Plain {
                 let safe = payload::write(raw, topic.field.as_deref(), &scaling);
                 Some(End { topic: topic.clone(), scaling, safe })
             }
-            Wire::Modbus(_) | Wire::Metric(_) | Wire::Node(_) | Wire::Shown(_) | Wire::Worth(_) => None,
+            Wire::Modbus(_)
+            | Wire::Metric(_)
+            | Wire::Panel(_)
+            | Wire::Node(_)
+            | Wire::Shown(_)
+            | Wire::Worth(_) => None,
         };
         let inputs: Vec<End> = wired.inputs.iter().filter_map(|i| end(&i.wire, i.scaling, None)).collect();
         let outputs: Vec<End> =

@@ -6,6 +6,7 @@ use g7_model::Nanos;
 
 use super::broker::{self, Broker};
 use super::opcua::{self, OpcUa, OpcUaServer};
+use super::panel::{self, Panel};
 use super::table::{At, Found, Row, Table};
 
 /// A device.
@@ -34,16 +35,18 @@ pub enum Kind {
     OpcUa(Box<OpcUa>),
     /// Clients of OPC UA, which this is the server of.
     OpcUaServer(Box<OpcUaServer>),
+    /// Buttons and lamps on the operator page.
+    Panel(Panel),
 }
 
 impl Kind {
     /// The words of the file.
-    pub const WORDS: [&'static str; 6] =
-        ["modbus-tcp", "modbus-rtu", "modbus-server", "mqtt", "opc-ua", "opc-ua-server"];
+    pub const WORDS: [&'static str; 7] =
+        ["modbus-tcp", "modbus-rtu", "modbus-server", "mqtt", "panel", "opc-ua", "opc-ua-server"];
 
     /// Its word in the file.
     pub fn word(&self) -> &'static str {
-        let [tcp, rtu, server, mqtt, opcua, opcua_server] = Kind::WORDS;
+        let [tcp, rtu, server, mqtt, panel, opcua, opcua_server] = Kind::WORDS;
         match self {
             Kind::ModbusTcp(..) => tcp,
             Kind::ModbusRtu(..) => rtu,
@@ -51,6 +54,7 @@ impl Kind {
             Kind::Mqtt(_) => mqtt,
             Kind::OpcUa(_) => opcua,
             Kind::OpcUaServer(_) => opcua_server,
+            Kind::Panel(_) => panel,
         }
     }
 
@@ -63,6 +67,7 @@ impl Kind {
             Kind::Mqtt(broker) => format!("{}:{}", broker.host, broker.port),
             Kind::OpcUa(server) => server.url.clone(),
             Kind::OpcUaServer(server) => server.address.to_string(),
+            Kind::Panel(_) => "the operator page".to_owned(),
         }
     }
 
@@ -76,7 +81,9 @@ impl Kind {
         match self {
             Kind::ModbusServer(listen) => Some(listen.address),
             Kind::OpcUaServer(server) => Some(server.address),
-            Kind::ModbusTcp(..) | Kind::ModbusRtu(..) | Kind::Mqtt(_) | Kind::OpcUa(_) => None,
+            Kind::ModbusTcp(..) | Kind::ModbusRtu(..) | Kind::Mqtt(_) | Kind::Panel(_) | Kind::OpcUa(_) => {
+                None
+            }
         }
     }
 
@@ -84,7 +91,11 @@ impl Kind {
     pub fn feature(&self) -> Option<&'static str> {
         match self {
             Kind::OpcUa(_) | Kind::OpcUaServer(_) => Some("opcua"),
-            Kind::ModbusTcp(..) | Kind::ModbusRtu(..) | Kind::ModbusServer(_) | Kind::Mqtt(_) => None,
+            Kind::ModbusTcp(..)
+            | Kind::ModbusRtu(..)
+            | Kind::ModbusServer(_)
+            | Kind::Mqtt(_)
+            | Kind::Panel(_) => None,
         }
     }
 }
@@ -189,6 +200,7 @@ pub(super) fn read(row: &Row<'_>, found: &mut Found) -> Option<Device> {
         "opc-ua-server" => {
             opcua::server(row.name, &mut table, found).map(|server| Kind::OpcUaServer(Box::new(server)))
         }
+        "panel" => Some(Kind::Panel(panel::read(&mut table, found))),
         _ => {
             let known: Vec<String> = Kind::WORDS.iter().map(|word| format!("\"{word}\"")).collect();
             found.wrong(kind.at, format!("no kind of device is called \"{}\"", kind.value)).help =
@@ -197,7 +209,7 @@ pub(super) fn read(row: &Row<'_>, found: &mut Found) -> Option<Device> {
         }
     };
     let timing = match &kind {
-        Some(Kind::ModbusServer(_)) => SERVER,
+        Some(Kind::ModbusServer(_) | Kind::Panel(_)) => SERVER,
         Some(Kind::OpcUaServer(_)) => SHOWN,
         Some(Kind::Mqtt(_)) => timing(&mut table, found, BROKER),
         Some(Kind::OpcUa(_)) => {
@@ -300,6 +312,7 @@ pub(super) fn one_line_each(devices: &[Device], found: &mut Found) {
         Kind::ModbusTcp(..)
         | Kind::ModbusServer(_)
         | Kind::Mqtt(_)
+        | Kind::Panel(_)
         | Kind::OpcUa(_)
         | Kind::OpcUaServer(_) => None,
     });

@@ -20,9 +20,15 @@
 //! Reading knows nothing of a chart; `wiring` holds the two together.
 
 mod broker;
+pub mod catalogue;
 mod device;
+mod edit;
+mod history;
 mod opcua;
+mod outline;
+mod panel;
 mod point;
+mod server;
 mod table;
 
 use std::net::SocketAddr;
@@ -35,8 +41,14 @@ pub(crate) use broker::publishable;
 pub use broker::{Broker, Message, Origin, Password, Secret, Sparkplug};
 pub(crate) use device::SERVER;
 pub use device::{Device, Kind, Listen, Modbus, Parity, Serial, Tcp, Timing};
+pub use edit::{Change, Plain, Uneditable, edit};
+pub use history::History;
+pub(crate) use history::SIGNALS;
 pub use opcua::{Namespace, NodeId, OpcUa, OpcUaServer, Policy, Role, Security, User, read_node};
+pub use outline::{Entry, outline};
+pub use panel::{Handle, Limits, Panel};
 pub use point::{Area, Encoding, Place, Point, Register};
+pub use server::{LogFile, Server};
 pub use table::At;
 
 use table::{Found, Row, Table};
@@ -49,6 +61,8 @@ const MOST: usize = 4 << 20;
 pub struct Setup {
     /// How the controller runs.
     pub controller: Controller,
+    /// Who may use the page of the operator.
+    pub server: Server,
     /// The devices, in the order of the file.
     pub devices: Vec<Device>,
     /// The inputs of the chart that are wired.
@@ -57,6 +71,8 @@ pub struct Setup {
     pub outputs: Vec<Channel>,
     /// Variables and steps that masters may read.
     pub shown: Vec<Channel>,
+    /// What is recorded.
+    pub history: Option<History>,
 }
 
 /// The policy for kept values of another program.
@@ -88,6 +104,8 @@ pub struct Controller {
     pub priority: Option<At<i64>>,
     /// The address of this machine at which a monitoring system asks.
     pub metrics: Option<At<SocketAddr>>,
+    /// The log of events and deeds.
+    pub log: Option<LogFile>,
 }
 
 impl Default for Controller {
@@ -100,6 +118,7 @@ impl Default for Controller {
             run: true,
             priority: None,
             metrics: None,
+            log: None,
         }
     }
 }
@@ -148,6 +167,8 @@ pub struct Channel {
     pub message: Message,
     /// The unit of the value, such as `m/s`.
     pub unit: Option<At<String>>,
+    /// The numbers that a person can enter on a panel.
+    pub limits: Limits,
 }
 
 /// Reads an io file. What is wrong is left out and told.
@@ -185,7 +206,7 @@ pub fn read_passwords(
         Kind::Mqtt(broker) => broker.password.as_mut().into_iter().collect(),
         Kind::OpcUa(server) => server.passwords().collect(),
         Kind::OpcUaServer(server) => server.passwords().collect(),
-        Kind::ModbusTcp(..) | Kind::ModbusRtu(..) | Kind::ModbusServer(_) => Vec::new(),
+        Kind::ModbusTcp(..) | Kind::ModbusRtu(..) | Kind::ModbusServer(_) | Kind::Panel(_) => Vec::new(),
     });
     broker::read_passwords(passwords, from)
 }
@@ -196,7 +217,11 @@ pub fn settle(setup: &mut Setup, folder: &Path) {
         match &mut device.kind {
             Kind::OpcUa(server) => server.settle(folder),
             Kind::OpcUaServer(server) => server.settle(folder),
-            Kind::Mqtt(_) | Kind::ModbusTcp(..) | Kind::ModbusRtu(..) | Kind::ModbusServer(_) => {}
+            Kind::Mqtt(_)
+            | Kind::ModbusTcp(..)
+            | Kind::ModbusRtu(..)
+            | Kind::ModbusServer(_)
+            | Kind::Panel(_) => {}
         }
     }
 }
@@ -219,6 +244,7 @@ fn setup(table: &DeTable<'_>, found: &mut Found) -> Setup {
     let top = Span { file: found.file, start: 0, end: 0 };
     let mut top = Table::new(table, top, "an io file");
     let controller = top.table(found, "controller").map(|table| controller(table, found));
+    let server = top.table(found, "server").map(|table| server::server(table, found)).unwrap_or_default();
     let rows = top.rows(found, "devices");
     let devices: Vec<Device> = rows.iter().filter_map(|row| device::read(row, found)).collect();
     device::one_line_each(&devices, found);
@@ -229,8 +255,9 @@ fn setup(table: &DeTable<'_>, found: &mut Found) -> Setup {
     let outputs = rows.iter().filter_map(|row| channel(row, false, found)).collect();
     let rows = top.rows(found, "shown");
     let shown = rows.iter().filter_map(|row| channel(row, false, found)).collect();
+    let history = top.table(found, "history").and_then(|table| history::history(table, found));
     top.end(found);
-    Setup { controller: controller.unwrap_or_default(), devices, inputs, outputs, shown }
+    Setup { controller: controller.unwrap_or_default(), server, devices, inputs, outputs, shown, history }
 }
 
 fn controller(mut table: Table<'_>, found: &mut Found) -> Controller {
@@ -249,6 +276,7 @@ fn controller(mut table: Table<'_>, found: &mut Found) -> Controller {
         run: table.word(found, "start", &[("run", true), ("stop", false)]).map_or(usual.run, |run| run.value),
         priority: table.whole(found, "priority", 1..=99),
         metrics: metrics(&mut table, found),
+        log: server::log(&mut table, found),
     };
     table.end(found);
     read
@@ -287,6 +315,7 @@ fn channel(row: &Row<'_>, input: bool, found: &mut Found) -> Option<Channel> {
             bad,
             message,
             unit: None,
+            limits: Limits::default(),
         });
     }
     let Some(table) = row.value.as_table() else {
@@ -300,6 +329,7 @@ fn channel(row: &Row<'_>, input: bool, found: &mut Found) -> Option<Channel> {
     let (scale, offset) = (table.number(found, "scale"), table.number(found, "offset"));
     let message = broker::message(&mut table, input, found);
     let unit = table.text(found, "unit");
+    let limits = if input { panel::limits(&mut table, found) } else { Limits::default() };
     let bad = if input { table.value(found, "bad") } else { None };
     let bad = match bad {
         None => At::new(Bad::Hold, row.at),
@@ -312,7 +342,19 @@ fn channel(row: &Row<'_>, input: bool, found: &mut Found) -> Option<Channel> {
     table.end(found);
     let text = text?;
     let (device, point) = point::read(&text.value, text.at, found)?;
-    Some(Channel { variable, device, point, at: text.at, encoding, scale, offset, bad, message, unit })
+    Some(Channel {
+        variable,
+        device,
+        point,
+        at: text.at,
+        encoding,
+        scale,
+        offset,
+        bad,
+        message,
+        unit,
+        limits,
+    })
 }
 
 /// Reads the policy for an input whose value is bad.

@@ -3,6 +3,7 @@
 use g7_model::Span;
 
 use super::broker::topic_name;
+use super::panel::{self, Handle};
 use super::table::{At, Found};
 
 /// A point of a device.
@@ -16,6 +17,8 @@ pub enum Point {
     Metric(Option<String>),
     /// A node of OPC UA; on a server of our own, without a name, it has that of the variable.
     Node(Option<String>),
+    /// A part of a panel.
+    Panel(Handle),
     /// True while the device answers.
     Good,
 }
@@ -135,6 +138,7 @@ impl std::fmt::Display for Point {
             Point::Topic(topic) => write!(f, "topic({topic})"),
             Point::Metric(name) => write!(f, "metric({})", name.as_deref().unwrap_or("")),
             Point::Node(name) => write!(f, "node({})", name.as_deref().unwrap_or("")),
+            Point::Panel(handle) => handle.fmt(f),
             Point::Good => f.write_str("good()"),
         }
     }
@@ -150,7 +154,7 @@ pub(super) fn read(text: &str, at: Span, found: &mut Found) -> Option<(At<String
             let what = why.unwrap_or_else(|| format!("\"{text}\" is no point of a device"));
             found.wrong(at, what).help = Some(
                 "write the device and its point: \"line1.coil(2)\", \"line1.holding(4)\", \
-                 \"line1.holding(4.3)\" for one bit, \"broker.topic(plant/level)\", \"line1.node(ns=2;s=Level)\", \"line1.good()\""
+                 \"line1.holding(4.3)\" for one bit, \"broker.topic(plant/level)\", \"desk.button()\", \"plc.node(ns=2;s=Level)\", \"line1.good()\""
                     .to_owned(),
             );
             None
@@ -189,6 +193,9 @@ fn point(word: &str, argument: &str) -> Result<Point, String> {
         "metric" => return Ok(Point::Metric(Some(argument.to_owned()).filter(|name| !name.is_empty()))),
         "node" => return Ok(Point::Node(Some(argument.to_owned()).filter(|name| !name.is_empty()))),
         _ => {}
+    }
+    if let Some(handle) = panel::handle(word, argument) {
+        return handle.map(Point::Panel);
     }
     let Some((_, area)) = Area::WORDS.iter().find(|(name, _)| *name == word) else {
         return Err(format!("no point is called `{word}`"));

@@ -197,7 +197,7 @@ pub(super) struct Row<'t> {
 }
 
 /// All rows of a table in the order of the file.
-fn rows<'t>(table: &'t DeTable<'t>, found: &Found) -> Vec<Row<'t>> {
+pub(super) fn rows<'t>(table: &'t DeTable<'t>, found: &Found) -> Vec<Row<'t>> {
     let row = |(key, value): (&'t Spanned<std::borrow::Cow<'t, str>>, &'t Spanned<DeValue<'t>>)| Row {
         name: key.get_ref(),
         at: found.span(key.span()),

@@ -2,6 +2,8 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use g7_compile::plant::Binding;
+use g7_engine::{Program, State};
 use g7_host::{Value, read_text};
 use g7_model::{Nanos, Type};
 use g7_rig::{Activity, Item, Role, values};
@@ -175,18 +177,23 @@ fn view(run: &mut Run) -> Vec<Show> {
     let Some((program, state)) = watched.plant_mut() else { return Vec::new() };
     let mut values = Vec::with_capacity(side.bindings.len());
     for b in &side.bindings {
-        let word = g7_engine::eval(program, state, b.code).unwrap_or(0);
-        values.push(match b.ty {
-            Type::Bool => Show::Flag(word != 0),
-            Type::String(_) => Show::Text(read_text(state.words(), word as u32)),
-            Type::Real => Show::Number(rounded(f64::from(f32::from_bits(word as u32)))),
-            Type::Lreal => Show::Number(rounded(f64::from_bits(word))),
-            Type::Time => Show::Number(Nanos::new(word as i64).as_seconds()),
-            Type::Ulint => Show::Number(word as f64),
-            _ => Show::Number(word as i64 as f64),
-        });
+        values.push(show(program, state, b));
     }
     values
+}
+
+/// The value of a moving part of a plant's picture; 0 where its expression fails.
+pub fn show(program: &Program, state: &mut State, binding: &Binding) -> Show {
+    let word = g7_engine::eval(program, state, binding.code).unwrap_or(0);
+    match binding.ty {
+        Type::Bool => Show::Flag(word != 0),
+        Type::String(_) => Show::Text(read_text(state.words(), word as u32)),
+        Type::Real => Show::Number(rounded(f64::from(f32::from_bits(word as u32)))),
+        Type::Lreal => Show::Number(rounded(f64::from_bits(word))),
+        Type::Time => Show::Number(Nanos::new(word as i64).as_seconds()),
+        Type::Ulint => Show::Number(word as f64),
+        _ => Show::Number(word as i64 as f64),
+    }
 }
 
 /// Rounds to four decimals; smaller changes are not visible in a picture.

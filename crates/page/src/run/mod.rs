@@ -19,8 +19,10 @@ mod swap;
 mod times;
 mod wish;
 
+pub use frame::show;
 pub(crate) use lanes::Form;
 pub use places::Places;
 pub(crate) use running::Run;
+pub use sent::Show;
 pub(crate) use start::start;
 pub(crate) use wish::Start;

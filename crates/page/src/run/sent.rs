@@ -10,9 +10,12 @@ use serde::Serialize;
 /// A value of the plant's picture.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(untagged)]
-pub(super) enum Show {
+pub enum Show {
+    /// A BOOL.
     Flag(bool),
+    /// A number; a TIME in seconds.
     Number(f64),
+    /// A STRING.
     Text(String),
 }
 

@@ -19,7 +19,7 @@ async fn paced(server: &Server) -> Live {
 
 #[tokio::test]
 async fn there_are_200_places_and_no_more() {
-    let server = Server::new().await;
+    let server = Server::with(|_| {}, Limits { clients: 200, ..Limits::default() }).await;
     let mut pages = vec![paced(&server).await];
     while pages.len() < 200 {
         let mut page = server.live().await;
@@ -30,7 +30,7 @@ async fn there_are_200_places_and_no_more() {
         goes_on(page, 1).await;
     }
     let (status, text) = refused(server.try_live(&[]).await);
-    assert_eq!(status, 503);
+    assert_eq!(status, 429);
     assert!(text.is_empty() || text.contains("200 places"), "{text}");
     server.get("/api/info").await.is(200);
     goes_on(&mut pages[0], 10).await;
@@ -164,7 +164,7 @@ async fn who_gives_no_sign_is_let_go() {
     let mut page = paced(&server).await;
     // A client that never reads and therefore answers no ping.
     let mute = server.live().await;
-    assert_eq!(refused(server.try_live(&[]).await).0, 503);
+    assert_eq!(refused(server.try_live(&[]).await).0, 429);
     loop {
         goes_on(&mut page, 1).await;
         if server.try_live(&[]).await.is_ok() {
@@ -197,4 +197,35 @@ async fn a_page_left_behind_is_given_a_full_frame() {
     let frame = page.call(json!({ "do": "run_scan", "run": "a" })).await;
     let outbox::Next::Text(next) = outbox.next().await else { panic!("a frame") };
     assert_eq!(serde_json::from_str::<Value>(&next).expect("JSON")["frame"], frame);
+}
+
+/// A panic of which nobody reads on the terminal.
+async fn breaks() {
+    std::panic::resume_unwind(Box::new("as the test wants it"))
+}
+
+#[tokio::test]
+async fn row_18_a_handler_that_panics_ends_its_own_connection_and_nothing_else() {
+    let server = Server::new().await;
+    let mut page = paced(&server).await;
+    let broken: Router = Router::new().route("/", get(breaks)).route("/well", get(|| async { "well" }));
+    let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, 0)).await.expect("a port");
+    let beside = listener.local_addr().expect("an address");
+    let task = tokio::spawn(listen::listen(listener, broken, listen::Door::default()));
+    let ask = async |path: &str| {
+        let mut stream = TcpStream::connect(beside).await.expect("a connection");
+        let head = format!("GET {path} HTTP/1.1\r\nHost: x\r\nConnection: close\r\n\r\n");
+        stream.write_all(head.as_bytes()).await.expect("sent");
+        let mut answer = String::new();
+        stream.read_to_string(&mut answer).await.ok();
+        answer
+    };
+    let count = g7_peers::faults::trials(100, 3);
+    for _ in 0..count {
+        assert_eq!(ask("/").await, "", "the connection ends");
+        assert!(ask("/well").await.ends_with("well"), "the next one is served");
+    }
+    goes_on(&mut page, 5).await;
+    task.abort();
+    g7_peers::faults::row(18, "the server", count.into(), 0, "one connection ends, all others go on");
 }

@@ -197,19 +197,10 @@ async fn unsaved_copies_outlive_the_server() {
     let kept = kept.expect("a folder").expect("a folder").path();
     fs::write(kept.join(".x.json.1.new"), "{\"pa").expect("a torn file");
     fs::write(kept.join("torn.json"), "{\"pa").expect("a torn file");
-    let args = Serve {
-        path: server.path(""),
-        port: None,
-        host: Ipv4Addr::LOCALHOST.into(),
-        read_only: false,
-        no_open: true,
-        start: None,
-        drive: Drive { online: false, io: None, simulate: None },
-        plant: None,
-        page_dir: None,
-    };
-    let again =
-        shared(&args, Limits::default(), Some(&server.root.join("state")), None).expect("the same folder");
+    let args = args_of(&server.root.join("charts"));
+    let rules = Rules::of(&args, None, &crate::audit::Audit::default(), None).expect("they fit");
+    let again = shared(&args, Limits::default(), Some(&server.root.join("state")), None, &rules)
+        .expect("the same folder");
     let found: Vec<String> = again.drafts.list().into_iter().map(|d| d.path).collect();
     assert_eq!(found, ["chart.g7", "not-there-yet.g7"]);
     again.drafts.drop("chart.g7").expect("dropped");

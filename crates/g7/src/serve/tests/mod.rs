@@ -5,6 +5,8 @@ mod crowd;
 mod files;
 mod guard;
 mod runs;
+mod users;
+mod wiring;
 
 use std::fs;
 use std::net::SocketAddr;
@@ -90,6 +92,33 @@ impl Reply {
     }
 }
 
+/// The arguments for a folder.
+fn args_of(folder: &Path) -> Serve {
+    Serve {
+        path: folder.to_path_buf(),
+        port: None,
+        host: None,
+        users: None,
+        cert: None,
+        key: None,
+        log: None,
+        read_only: false,
+        no_open: true,
+        start: None,
+        drive: Drive { online: false, io: None, simulate: None },
+        plant: None,
+        page_dir: None,
+    }
+}
+
+/// An answer from its bytes.
+fn reply(bytes: &[u8]) -> Reply {
+    let end = bytes.windows(4).position(|w| w == b"\r\n\r\n").expect("a head");
+    let head = String::from_utf8_lossy(&bytes[..end]).into_owned();
+    let status = head.split(' ').nth(1).and_then(|s| s.parse().ok()).expect("a status");
+    Reply { status, head, body: bytes[end + 4..].to_vec() }
+}
+
 impl Server {
     async fn new() -> Server {
         Server::with(|_| {}, Limits::default()).await
@@ -97,33 +126,32 @@ impl Server {
 
     /// A folder `charts` with `chart.g7`, beside a file that the server must not touch.
     async fn with(change: impl FnOnce(&mut Serve), limits: Limits) -> Server {
+        Server::under(change, |_| {}, limits).await
+    }
+
+    /// The same, with other rules than its arguments give.
+    async fn under(change: impl FnOnce(&mut Serve), rule: impl FnOnce(&mut Rules), limits: Limits) -> Server {
         static NEXT: AtomicU32 = AtomicU32::new(0);
         let number = NEXT.fetch_add(1, Ordering::Relaxed);
         let root = std::env::temp_dir().join(format!("g7-serve-{}-{number}", std::process::id()));
         fs::create_dir_all(root.join("charts")).expect("a folder for the test");
         fs::write(root.join("charts/chart.g7"), CHART).expect("a chart");
         fs::write(root.join("secret.g7"), "secret").expect("a file outside");
-        let mut args = Serve {
-            path: root.join("charts"),
-            port: None,
-            host: Ipv4Addr::LOCALHOST.into(),
-            read_only: false,
-            no_open: true,
-            start: None,
-            drive: Drive { online: false, io: None, simulate: None },
-            plant: None,
-            page_dir: Some(root.join("charts")),
-        };
+        let mut args = args_of(&root.join("charts"));
+        args.page_dir = Some(root.join("charts"));
         change(&mut args);
-        let shared = shared(&args, limits, Some(&root.join("state")), None).expect("a folder to serve");
+        let mut rules = Rules::of(&args, None, &crate::audit::Audit::default(), None).expect("they fit");
+        rule(&mut rules);
+        let shared =
+            shared(&args, limits, Some(&root.join("state")), None, &rules).expect("a folder to serve");
         let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, 0)).await.expect("a port");
         let bound = listener.local_addr().expect("an address");
         let token = token().expect("a token");
-        let app = app(Arc::clone(&shared), Guard { token: token.clone(), bound });
+        let app = app(Arc::clone(&shared), rules.guard(Pass::Token(token.clone()), bound));
         let of = Arc::clone(&shared);
         let task = tokio::spawn(async move {
             tokio::select! {
-                () = listen::listen(listener, app) => {}
+                () = listen::listen(listener, app, listen::Door::default()) => {}
                 () = tell_changes(of) => {}
             }
         });
@@ -145,10 +173,7 @@ impl Server {
         stream.write_all(request).await.ok();
         let mut bytes = Vec::new();
         tokio::time::timeout(PATIENCE, stream.read_to_end(&mut bytes)).await.expect("an answer").ok();
-        let end = bytes.windows(4).position(|w| w == b"\r\n\r\n").expect("a head");
-        let head = String::from_utf8_lossy(&bytes[..end]).into_owned();
-        let status = head.split(' ').nth(1).and_then(|s| s.parse().ok()).expect("a status");
-        Reply { status, head, body: bytes[end + 4..].to_vec() }
+        reply(&bytes)
     }
 
     /// A request with only these headers.

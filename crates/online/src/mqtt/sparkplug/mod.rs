@@ -75,7 +75,12 @@ impl Node {
     pub(super) fn new(broker: &Broker, names: &Sparkplug, timeout: Duration, wired: &Wired) -> Node {
         let tag = |wire: &Wire, scaling: Scaling| match wire {
             Wire::Metric(name) => Some(Tag { name: name.clone(), datatype: Datatype::of(&scaling) }),
-            Wire::Modbus(_) | Wire::Topic(_) | Wire::Node(_) | Wire::Shown(_) | Wire::Worth(_) => None,
+            Wire::Modbus(_)
+            | Wire::Topic(_)
+            | Wire::Panel(_)
+            | Wire::Node(_)
+            | Wire::Shown(_)
+            | Wire::Worth(_) => None,
         };
         let mut tags: Vec<Tag> = wired.outputs.iter().filter_map(|o| tag(&o.wire, o.out.scaling)).collect();
         let outputs = tags.len();

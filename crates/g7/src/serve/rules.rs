@@ -1,0 +1,125 @@
+//! Who may use a server and from where, held against each other before anything listens.
+//!
+//! Users need TLS, since their passwords go over the network. Other machines need both, and beside a
+//! controller a log of what people do.
+
+use std::net::{IpAddr, Ipv4Addr, SocketAddr};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use g7_online::setup::Server;
+
+use super::Serve;
+use super::access::{Access, Lasts};
+use super::guard::{Foreign, Guard, Pass};
+use super::listen::Door;
+use super::shared::Limits;
+use super::tls::{Certificate, Files};
+use crate::audit::Audit;
+use crate::failure::Failure;
+
+/// What holds for a server from its start on.
+#[derive(Clone, Debug)]
+pub(super) struct Rules {
+    pub(super) host: IpAddr,
+    pub(super) port: Option<u16>,
+    pub(super) certificate: Option<Arc<Certificate>>,
+    pub(super) access: Option<Arc<Access>>,
+    pub(super) audit: Audit,
+    /// The file of the log.
+    pub(super) log: Option<PathBuf>,
+    foreign: Foreign,
+}
+
+/// A file that the arguments name, or the io file beside itself.
+fn file(argument: Option<&PathBuf>, setting: Option<&String>, io: Option<&Path>) -> Option<PathBuf> {
+    let beside = || Some(io?.with_file_name(setting?));
+    argument.cloned().or_else(beside)
+}
+
+impl Rules {
+    /// Puts the arguments and the io file of a controller together.
+    pub(super) fn of(
+        args: &Serve,
+        controller: Option<(&Server, &Path)>,
+        audit: &Audit,
+        log: Option<PathBuf>,
+    ) -> Result<Rules, Failure> {
+        let (set, io) = controller.unzip();
+        let text = |of: fn(&Server) -> Option<&String>| set.and_then(of);
+        let host = args.host.or(set.and_then(|s| s.host.as_ref()).map(|host| host.value));
+        let host = host.unwrap_or(Ipv4Addr::LOCALHOST.into());
+        let port = set.and_then(|s| s.port.as_ref()).and_then(|port| u16::try_from(port.value).ok());
+        let port = args.port.or(port);
+        let users = file(args.users.as_ref(), text(|s| s.users.as_ref().map(|at| &at.value)), io);
+        let cert = file(args.cert.as_ref(), text(|s| s.cert.as_ref().map(|at| &at.value)), io);
+        let key = file(args.key.as_ref(), text(|s| s.key.as_ref().map(|at| &at.value)), io);
+        let files = cert.zip(key).map(|(cert, key)| Files { cert, key });
+        reachable(host, files.is_some(), users.is_some())?;
+        if controller.is_some() && !host.is_loopback() && !audit.is_kept() {
+            return Err(Failure::Usage(format!(
+                "{host} is reached from other machines: what people do at a machine from there is written down; \
+                 name a `log` in [controller] of the io file"
+            )));
+        }
+        let certificate = files.map(Certificate::open).transpose()?;
+        let time = |of: fn(&Server) -> Option<g7_model::Nanos>| set.and_then(of);
+        let idle = time(|s| s.idle.as_ref().map(|at| at.value));
+        let whole = time(|s| s.session.as_ref().map(|at| at.value));
+        let open = |path: PathBuf| Access::open(&path, Lasts::of(idle, whole), audit.clone()).map(Arc::new);
+        let access = users.map(open).transpose()?;
+        Ok(Rules { host, port, certificate, access, audit: audit.clone(), log, foreign: Foreign::default() })
+    }
+
+    /// What judges requests.
+    pub(super) fn guard(&self, pass: Pass, bound: SocketAddr) -> Guard {
+        let certificate = self.certificate.clone();
+        Guard { pass, bound, certificate, audit: self.audit.clone(), foreign: self.foreign.clone() }
+    }
+
+    /// What lets connections in.
+    pub(super) fn door(&self) -> Result<Door, Failure> {
+        let tls = self.certificate.as_ref().map(Certificate::acceptor).transpose()?;
+        Ok(match self.host.is_loopback() {
+            true => Door { tls, ..Door::default() },
+            false => Door::for_others(tls),
+        })
+    }
+
+    pub(super) fn limits(&self, limits: Limits) -> Limits {
+        if self.host.is_loopback() { limits } else { limits.for_others() }
+    }
+
+    /// Looks at the files of the users and of the certificate, and tells what was refused meanwhile.
+    pub(super) fn look(&self) {
+        if let Some(access) = &self.access {
+            access.look();
+        }
+        if let Some(certificate) = &self.certificate {
+            certificate.look();
+        }
+        self.foreign.tell(&self.audit);
+    }
+}
+
+/// Refuses what would let strangers in, or send passwords in plain text.
+fn reachable(host: IpAddr, encrypted: bool, users: bool) -> Result<(), Failure> {
+    let what = match (host.is_loopback(), encrypted, users) {
+        (true, _, false) | (_, true, true) => return Ok(()),
+        (true, false, true) => "users log in over encrypted connections alone".to_owned(),
+        (false, false, true) => format!("{host} is reached from other machines, and nothing is encrypted"),
+        (false, true, false) => format!("{host} is reached from other machines, and there are no users"),
+        (false, false, false) => {
+            format!("{host} is reached from other machines, without encryption and without users")
+        }
+    };
+    let mut ways = Vec::new();
+    if !encrypted {
+        ways.push("`g7 cert` makes a certificate for --cert and --key");
+    }
+    if !users {
+        ways.push("--users names the file of the users");
+    }
+    let tunnel = if host.is_loopback() { "" } else { "; or stay at 127.0.0.1 and come by `ssh -L`" };
+    Err(Failure::Usage(format!("{what}: {}{tunnel}", ways.join(", "))))
+}

@@ -1,0 +1,41 @@
+//! Who wants something: a user of the server, whoever has the token, or the terminal.
+
+use g7_store::users::{Role, SessionHash};
+
+/// A person, as far as G7 knows.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct Who {
+    /// The name of the user; empty where there are no users.
+    pub(crate) name: String,
+    pub(crate) role: Role,
+    /// The address that it comes from, or `console`.
+    pub(crate) from: String,
+    /// The session, where there are users.
+    pub(crate) session: Option<SessionHash>,
+}
+
+impl Who {
+    /// The one at the terminal, who has started it all.
+    pub(crate) fn console() -> Who {
+        Who { name: String::new(), role: Role::Admin, from: "console".to_owned(), session: None }
+    }
+
+    /// Whoever has the token of this start.
+    pub(crate) fn with_token(from: String) -> Who {
+        Who { name: String::new(), role: Role::Admin, from, session: None }
+    }
+
+    /// Refuses what needs a greater role.
+    pub(crate) fn needs(&self, role: Role) -> Result<(), String> {
+        if self.role >= role {
+            return Ok(());
+        }
+        Err(format!("this needs the role {role}; `{}` is {}", self.name, self.role))
+    }
+}
+
+impl Default for Who {
+    fn default() -> Who {
+        Who::console()
+    }
+}

@@ -1,0 +1,473 @@
+//! What an io file can say, as data: the kinds of devices with their settings, their points, and what a
+//! channel says of each point. The wizard of the page makes its forms of it.
+//!
+//! The reader (`device`, `broker`, `point`) decides what is accepted. `tests/catalogue.rs` holds the two
+//! together: it gives the reader each setting as it is written here, with its limits, its words and its
+//! default, and compares what the reader asks for with what stands here. A kind without a row fails it.
+
+/// A kind of device.
+#[derive(Clone, Copy, Debug)]
+pub struct KindRow {
+    /// The word of the file: `kind = "…"`.
+    pub word: &'static str,
+    /// What it is, in a few words.
+    pub about: &'static str,
+    /// Its settings; `kind` itself is not among them.
+    pub settings: &'static [&'static [Setting]],
+    /// The points that a channel can name.
+    pub points: &'static [Point],
+    /// True if `[shown]` can name its points.
+    pub shows: bool,
+}
+
+/// A setting of a device or of a channel.
+#[derive(Clone, Copy, Debug)]
+pub struct Setting {
+    /// The key of the file.
+    pub key: &'static str,
+    /// The values that it takes.
+    pub form: Form,
+    /// Its value where the file says nothing.
+    pub usual: Usual,
+    /// What it is, in a few words.
+    pub about: &'static str,
+}
+
+/// The values that a setting takes.
+#[derive(Clone, Copy, Debug)]
+pub enum Form {
+    /// A text.
+    Text,
+    /// A whole number within limits.
+    Whole(i64, i64),
+    /// A number.
+    Number,
+    /// A duration within limits, each as the file writes it.
+    Duration(&'static str, &'static str),
+    /// One of some words.
+    Words(&'static [&'static str]),
+    /// True or false.
+    Flag,
+    /// What an input is while it is bad: `"hold"`, `"fault"`, or a value of the variable.
+    Bad,
+    /// A table with settings of its own.
+    Table(&'static [Setting]),
+}
+
+/// The value of a setting where the file says nothing.
+#[derive(Clone, Copy, Debug)]
+pub enum Usual {
+    /// The file must say it; this is an example.
+    Needed(&'static str),
+    /// This, as the file would write it.
+    Is(&'static str),
+    /// There is none; this is an example.
+    None(&'static str),
+}
+
+/// A point of a device.
+#[derive(Clone, Copy, Debug)]
+pub struct Point {
+    /// Its word.
+    pub word: &'static str,
+    /// What stands in its brackets.
+    pub argument: Argument,
+    /// What it carries.
+    pub carries: Carries,
+    /// An input of the chart can be wired to it.
+    pub input: bool,
+    /// An output of the chart, or something shown, can be wired to it.
+    pub output: bool,
+    /// What a channel can say beside the point: of an input.
+    pub of_input: &'static [&'static [Setting]],
+    /// What a channel can say beside the point: of an output, or of something shown.
+    pub of_output: &'static [&'static [Setting]],
+    /// What it is, in a few words.
+    pub about: &'static str,
+}
+
+/// What stands in the brackets of a point.
+#[derive(Clone, Copy, Debug)]
+pub enum Argument {
+    /// Nothing.
+    Nothing,
+    /// An address from 0 to this.
+    Address(u16),
+    /// An address from 0 to this, a dot, and a bit from 0 to 15.
+    Bit(u16),
+    /// A text; this is an example.
+    Text(&'static str),
+    /// A text, or nothing for the name of the variable; this is an example.
+    TextOrName(&'static str),
+    /// One of some words; the first where nothing stands there.
+    Word(&'static [&'static str]),
+    /// Some words, separated by commas; this is an example.
+    List(&'static str),
+}
+
+/// The variables that a point carries.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Carries {
+    /// A BOOL.
+    Bit,
+    /// A number or a TIME.
+    Number,
+    /// A whole number.
+    Whole,
+    /// A BOOL, a number or a TIME.
+    Any,
+}
+
+/// All kinds of devices, in the order in which a person is shown them.
+pub const KINDS: &[KindRow] = &[
+    KindRow {
+        word: "modbus-tcp",
+        about: "a server of Modbus TCP, which G7 asks",
+        settings: &[TCP, MODBUS, DEVICE_TIMES],
+        points: REGISTERS,
+        shows: false,
+    },
+    KindRow {
+        word: "modbus-rtu",
+        about: "a slave of Modbus RTU on a serial line, which G7 asks",
+        settings: &[SERIAL, MODBUS, DEVICE_TIMES],
+        points: REGISTERS,
+        shows: false,
+    },
+    KindRow {
+        word: "modbus-server",
+        about: "masters of Modbus TCP, which ask G7",
+        settings: &[LISTEN],
+        points: TABLES,
+        shows: true,
+    },
+    KindRow {
+        word: "mqtt",
+        about: "a broker of MQTT 5",
+        settings: &[BROKER, BROKER_TIMES],
+        points: MESSAGES,
+        shows: true,
+    },
+    KindRow {
+        word: "panel",
+        about: "buttons and lamps on the operator page",
+        settings: &[PANEL],
+        points: HANDLES,
+        shows: true,
+    },
+];
+
+/// The settings of `[controller]`.
+pub const CONTROLLER: &[Setting] = &[
+    setting("period", Form::Duration("100us", "60s"), Usual::None("10ms"), "the time between two scans"),
+    setting(
+        "watchdog",
+        Form::Duration("1ms", "1h"),
+        Usual::None("250ms"),
+        "the longest time between the ends of two steps",
+    ),
+    setting("start", Form::Words(&["run", "stop"]), Usual::Is("\"run\""), "what it does when G7 starts"),
+    setting("retain", Form::Text, Usual::None("sorter.values"), "the file of the values that are kept"),
+    setting(
+        "changed",
+        Form::Words(&["refuse", "cold", "fit"]),
+        Usual::Is("\"refuse\""),
+        "what happens with kept values of another chart",
+    ),
+    setting("priority", Form::Whole(1, 99), Usual::None("80"), "the priority of the scan"),
+    setting(
+        "metrics",
+        Form::Text,
+        Usual::None("127.0.0.1:9464"),
+        "an address of this machine where a monitoring system asks",
+    ),
+];
+
+const fn setting(key: &'static str, form: Form, usual: Usual, about: &'static str) -> Setting {
+    Setting { key, form, usual, about }
+}
+
+const TCP: &[Setting] = &[
+    setting("host", Form::Text, Usual::Needed("10.0.0.7"), "its name or address"),
+    setting("port", Form::Whole(1, 65_535), Usual::Is("502"), "its port"),
+];
+
+const SERIAL: &[Setting] = &[
+    setting("port", Form::Text, Usual::Needed("/dev/ttyUSB0"), "the serial port"),
+    setting("baud", Form::Whole(300, 4_000_000), Usual::Is("19200"), "bits per second"),
+    setting("parity", Form::Words(&["even", "odd", "none"]), Usual::Is("\"even\""), "the parity bit"),
+    setting("stop-bits", Form::Whole(1, 2), Usual::Is("1"), "stop bits"),
+];
+
+const MODBUS: &[Setting] =
+    &[setting("unit", Form::Whole(0, 247), Usual::Is("1"), "the unit or slave"), WORD_ORDER];
+
+const WORD_ORDER: Setting = setting(
+    "words",
+    Form::Words(&["high-first", "low-first"]),
+    Usual::Is("\"high-first\""),
+    "the order of numbers in several registers",
+);
+
+const DEVICE_TIMES: &[Setting] = &[
+    setting("poll", Form::Duration("1ms", "1h"), Usual::Is("\"20ms\""), "the time between two exchanges"),
+    setting("timeout", Form::Duration("1ms", "1h"), Usual::Is("\"500ms\""), "the longest time of an answer"),
+    setting(
+        "refresh",
+        Form::Duration("1ms", "1h"),
+        Usual::Is("\"1s\""),
+        "outputs that did not change are written again after this time",
+    ),
+    setting(
+        "retry",
+        Form::Duration("10ms", "1h"),
+        Usual::Is("\"2s\""),
+        "the longest time between two attempts to reach it",
+    ),
+];
+
+const LISTEN: &[Setting] = &[
+    setting("listen", Form::Text, Usual::Needed("127.0.0.1:1502"), "an address of this machine, with a port"),
+    setting(
+        "access",
+        Form::Words(&["this-machine", "anyone"]),
+        Usual::Is("\"this-machine\""),
+        "who may reach it: Modbus has no users and no keys",
+    ),
+    setting(
+        "silence",
+        Form::Duration("100ms", "1h"),
+        Usual::Is("\"5s\""),
+        "without a request for so long there is no master",
+    ),
+    WORD_ORDER,
+];
+
+const BROKER: &[Setting] = &[
+    setting("host", Form::Text, Usual::Needed("10.0.0.7"), "its name or address"),
+    setting("port", Form::Whole(1, 65_535), Usual::Is("1883"), "its port"),
+    setting("user", Form::Text, Usual::None("sorter"), "the user that the broker knows"),
+    setting(
+        "password-file",
+        Form::Text,
+        Usual::None("hub.password"),
+        "the file beside the io file that has the password",
+    ),
+    setting(
+        "password-env",
+        Form::Text,
+        Usual::None("HUB_PASSWORD"),
+        "the variable of the environment that has the password",
+    ),
+    setting("client-id", Form::Text, Usual::None("sorter"), "the name of this client"),
+    setting(
+        "keep-alive",
+        Form::Duration("1s", "1h"),
+        Usual::Is("\"10s\""),
+        "a broker that is silent for twice as long is gone",
+    ),
+    setting("status", Form::Text, Usual::None("plant/status"), "a topic that says online or offline"),
+    setting(
+        "sparkplug",
+        Form::Table(&[
+            setting("group", Form::Text, Usual::Needed("plant"), "the group"),
+            setting("node", Form::Text, Usual::Needed("sorter"), "the edge node"),
+            setting("device", Form::Text, Usual::None("plc"), "the device"),
+        ]),
+        Usual::None(""),
+        "Sparkplug B in place of plain topics",
+    ),
+];
+
+const BROKER_TIMES: &[Setting] = &[
+    setting("poll", Form::Duration("1ms", "1h"), Usual::Is("\"20ms\""), "the time between two exchanges"),
+    setting("timeout", Form::Duration("1ms", "1h"), Usual::Is("\"2s\""), "the longest time of an answer"),
+    setting(
+        "refresh",
+        Form::Duration("1ms", "1h"),
+        Usual::None("1m"),
+        "outputs that did not change are published again after this time",
+    ),
+    setting(
+        "retry",
+        Form::Duration("10ms", "1h"),
+        Usual::Is("\"2s\""),
+        "the longest time between two attempts to reach it",
+    ),
+];
+
+const PANEL: &[Setting] = &[
+    setting(
+        "release",
+        Form::Duration("300ms", "10s"),
+        Usual::Is("\"1s\""),
+        "a button is released when its page has been silent for so long",
+    ),
+    setting("press", Form::Duration("10ms", "10s"), Usual::Is("\"200ms\""), "a press lasts at least so long"),
+];
+
+const BAD: &[Setting] =
+    &[setting("bad", Form::Bad, Usual::Is("\"hold\""), "its value while the device gives none")];
+
+const SCALE: &[Setting] = &[
+    setting("scale", Form::Number, Usual::Is("1.0"), "the value is this times the number of the device"),
+    setting("offset", Form::Number, Usual::Is("0.0"), "and this is added"),
+];
+
+const FORM_OF_NUMBER: &[Setting] = &[setting(
+    "as",
+    Form::Words(&["u16", "i16", "u32", "i32", "u64", "i64", "f32", "f64"]),
+    Usual::None("u16"),
+    "the form of the number in registers; that of the type of the variable without it",
+)];
+
+const MESSAGE: &[Setting] = &[
+    setting("field", Form::Text, Usual::None("level"), "the field of a JSON object, or a pointer"),
+    setting("qos", Form::Whole(0, 1), Usual::Is("1"), "the quality of service"),
+];
+
+const SILENCE: &[Setting] = &[setting(
+    "silence",
+    Form::Duration("10ms", "24h"),
+    Usual::None("10s"),
+    "without a message for so long the input is bad",
+)];
+
+const PUBLISHED: &[Setting] = &[
+    setting("retain", Form::Flag, Usual::Is("true"), "the broker keeps the last value"),
+    setting("will", Form::Flag, Usual::Is("false"), "its safe value is the last will"),
+];
+
+const LIMITS: &[Setting] = &[
+    setting("min", Form::Number, Usual::None("0"), "the least number that can be entered"),
+    setting("max", Form::Number, Usual::None("100"), "the greatest number that can be entered"),
+];
+
+const INITIAL: &[Setting] =
+    &[setting("initial", Form::Number, Usual::None("20"), "its value until a person gives one")];
+
+/// The point that each device has which can be gone.
+const GOOD: Point = Point {
+    word: "good",
+    argument: Argument::Nothing,
+    carries: Carries::Bit,
+    input: true,
+    output: false,
+    of_input: &[],
+    of_output: &[],
+    about: "TRUE while the device answers",
+};
+
+const fn bits(word: &'static str, input: bool, output: bool, about: &'static str) -> Point {
+    Point {
+        word,
+        argument: Argument::Address(u16::MAX),
+        carries: Carries::Bit,
+        input,
+        output,
+        of_input: &[BAD],
+        of_output: &[],
+        about,
+    }
+}
+
+const fn numbers(word: &'static str, input: bool, output: bool, about: &'static str) -> Point {
+    Point {
+        carries: Carries::Number,
+        of_input: &[FORM_OF_NUMBER, SCALE, BAD],
+        of_output: &[FORM_OF_NUMBER, SCALE],
+        ..bits(word, input, output, about)
+    }
+}
+
+const fn one_bit(word: &'static str, input: bool, output: bool, about: &'static str) -> Point {
+    Point { argument: Argument::Bit(u16::MAX), ..bits(word, input, output, about) }
+}
+
+/// The points of a device of Modbus that G7 asks.
+const REGISTERS: &[Point] = &[
+    bits("coil", true, true, "a bit that can be written"),
+    bits("discrete", true, false, "a bit that can only be read"),
+    numbers("input", true, false, "a number in registers that can only be read"),
+    numbers("holding", true, true, "a number in registers that can be written"),
+    one_bit("input", true, false, "one bit of a register that can only be read"),
+    one_bit("holding", true, true, "one bit of a register that can be written"),
+    GOOD,
+];
+
+/// The points of a server of Modbus.
+const TABLES: &[Point] = &[
+    bits("coil", true, true, "a bit that a master writes"),
+    bits("discrete", false, true, "a bit that a master only reads"),
+    numbers("input", false, true, "a number that a master only reads"),
+    numbers("holding", true, true, "a number that a master writes"),
+    one_bit("input", false, true, "one bit of a register that a master only reads"),
+    one_bit("holding", true, true, "one bit of a register that a master writes"),
+    Point { about: "TRUE while a master asks", ..GOOD },
+];
+
+const MESSAGES: &[Point] = &[
+    Point {
+        word: "topic",
+        argument: Argument::Text("plant/level"),
+        carries: Carries::Any,
+        input: true,
+        output: true,
+        of_input: &[MESSAGE, SCALE, SILENCE, BAD],
+        of_output: &[MESSAGE, SCALE, PUBLISHED],
+        about: "the messages of a topic",
+    },
+    Point {
+        word: "metric",
+        argument: Argument::TextOrName("Tank/Level"),
+        carries: Carries::Any,
+        input: true,
+        output: true,
+        of_input: &[SCALE, BAD],
+        of_output: &[SCALE],
+        about: "a metric of Sparkplug",
+    },
+    GOOD,
+];
+
+const fn handle(word: &'static str, carries: Carries, about: &'static str) -> Point {
+    Point {
+        word,
+        argument: Argument::Nothing,
+        carries,
+        input: true,
+        output: false,
+        of_input: &[],
+        of_output: &[],
+        about,
+    }
+}
+
+/// The colours of lamps.
+pub const LAMPS: &[&str] = &["green", "red", "yellow", "blue", "white"];
+
+const HANDLES: &[Point] = &[
+    handle("button", Carries::Bit, "TRUE while it is pressed"),
+    handle("switch", Carries::Bit, "TRUE while it is on; off after a start of G7"),
+    Point {
+        of_input: &[LIMITS, INITIAL, BAD],
+        ..handle("number", Carries::Number, "a number that a person enters")
+    },
+    Point {
+        argument: Argument::List("A1, F1, F4"),
+        ..handle("choice", Carries::Whole, "one of some words: 0 for the first, 1 for the second")
+    },
+    handle("page", Carries::Bit, "TRUE while an operator page is open"),
+    Point {
+        argument: Argument::Word(LAMPS),
+        input: false,
+        output: true,
+        ..handle("lamp", Carries::Bit, "a lamp")
+    },
+    Point { input: false, output: true, ..handle("value", Carries::Any, "a value") },
+];
+
+/// The row of a kind.
+pub fn kind(word: &str) -> Option<&'static KindRow> {
+    KINDS.iter().find(|kind| kind.word == word)
+}

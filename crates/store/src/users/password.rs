@@ -1,0 +1,78 @@
+//! Passwords as they are kept: argon2id with a salt of their own.
+//!
+//! Memory and passes are those that the OWASP cheat sheet on password storage asks for at least (19 MiB, 2
+//! passes, 1 lane). They stand beside each hash, so that a later G7 can ask for more.
+
+use argon2::{Algorithm, Argon2, Params, Version};
+
+use super::UserError;
+
+/// Least number of letters of a password.
+pub const LEAST: usize = 10;
+/// Greatest number of bytes of a password.
+const MOST: usize = 512;
+/// KiB of memory, and passes over it.
+const COST: (u32, u32) = (19 * 1024, 2);
+
+/// A password as the file keeps it.
+#[derive(Clone, Debug)]
+pub(super) struct Kept {
+    /// Memory in KiB.
+    pub(super) memory: u32,
+    pub(super) passes: u32,
+    pub(super) salt: [u8; 16],
+    pub(super) hash: [u8; 32],
+}
+
+impl Kept {
+    pub(super) fn of(password: &str) -> Result<Kept, UserError> {
+        let mut salt = [0; 16];
+        getrandom::fill(&mut salt)
+            .map_err(|e| UserError::Refused(format!("the system gives no random numbers: {e}")))?;
+        let (memory, passes) = COST;
+        let hash = hashed(password, &salt, memory, passes)?;
+        Ok(Kept { memory, passes, salt, hash })
+    }
+
+    /// True if it is this password. The time does not tell where they differ.
+    pub(super) fn is(&self, password: &str) -> Result<bool, UserError> {
+        if password.len() > MOST {
+            return Ok(false);
+        }
+        let hash = hashed(password, &self.salt, self.memory, self.passes)?;
+        Ok(hash.iter().zip(self.hash).fold(0, |differs, (a, b)| differs | (a ^ b)) == 0)
+    }
+}
+
+fn hashed(password: &str, salt: &[u8], memory: u32, passes: u32) -> Result<[u8; 32], UserError> {
+    let broken = |e: argon2::Error| UserError::Refused(format!("the password cannot be checked: {e}"));
+    // A file that asks for gigabytes is not served.
+    if memory > 1 << 20 || passes > 64 {
+        return Err(UserError::Refused("the file of the users asks for too much memory".to_owned()));
+    }
+    let params = Params::new(memory, passes, 1, Some(32)).map_err(broken)?;
+    let mut hash = [0; 32];
+    Argon2::new(Algorithm::Argon2id, Version::V0x13, params)
+        .hash_password_into(password.as_bytes(), salt, &mut hash)
+        .map_err(broken)?;
+    Ok(hash)
+}
+
+/// Refuses a password that is guessed at once.
+pub(super) fn fit(name: &str, password: &str) -> Result<(), UserError> {
+    let why = if password.chars().count() < LEAST {
+        format!("a password has at least {LEAST} letters")
+    } else if password.len() > MOST {
+        format!("a password has at most {MOST} bytes")
+    } else if password.to_lowercase().contains(&name.to_lowercase())
+        && !name.is_empty()
+        && password.len() < 2 * LEAST
+    {
+        "the password must not contain the name".to_owned()
+    } else if password.chars().all(|c| password.starts_with(c)) {
+        "one letter again and again is no password".to_owned()
+    } else {
+        return Ok(());
+    };
+    Err(UserError::Refused(why))
+}
