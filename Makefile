@@ -23,7 +23,7 @@ BUILD := cargo build --quiet --workspace --bin g7
 PYTHON := $(abspath $(or $(CARGO_TARGET_DIR),target))/python
 PAGE := $(shell find web/src web/index.html web/public web/*.ts web/*.js web/*.mjs -type f 2>/dev/null)
 
-.PHONY: run view install online-demo deb static test tally-anew peers lint deny wasm web site pictures page-test page-bench bench bench-check online-bench soak faults book blocks fuzz help FORCE
+.PHONY: run view install online-demo deb static test opcua-test tally-anew peers lint deny wasm web site pictures page-test page-bench bench bench-check online-bench soak faults book blocks fuzz help FORCE
 
 ## build G7 and open the editor in the browser on the examples (FOLDER=… for another)
 run: WASM := quick-wasm
@@ -57,7 +57,7 @@ static: web
 test: export G7_SKIPS = $(TALLY)/skips
 test: export G7_PEERS = $(PYTHON)
 test: tally-anew lint page-test $(PYTHON)/bin/pymodbus.simulator
-	{ cargo test --workspace --quiet --lib --bins --tests && cargo test --quiet --doc --package g7-engine; } 2>&1 | \
+	{ cargo test --workspace --exclude g7-opcua --quiet --lib --bins --tests && cargo test --quiet --doc --package g7-engine; } 2>&1 | \
 		tee $(TALLY)/crates.log
 	$(DEBUG)/g7 check examples
 	$(DEBUG)/g7 test examples | tee $(TALLY)/examples.log
@@ -86,10 +86,17 @@ peers:
 	@test ! -x $(PYTHON)/bin/pip || $(PYTHON)/bin/pip install --quiet 'pyarrow>=20'
 	@$(SUDO) apt-get update -qq && $(SUDO) apt-get install -qq --no-install-recommends clang libclang-rt-dev
 
+## OPC UA, which `make test` leaves out: its library alone is minutes of compilation, and no default build has it
+opcua-test: export G7_PEERS = $(PYTHON)
+opcua-test: $(PYTHON)/bin/pymodbus.simulator
+	cargo clippy --package g7-opcua --all-targets --quiet -- --deny warnings
+	cargo test --package g7-opcua --quiet
+	cargo check --package g7 --features opcua --quiet
+
 ## formatting and lints
 lint:
 	cargo fmt --all --check
-	cargo clippy --workspace --all-targets --quiet -- --deny warnings
+	cargo clippy --workspace --exclude g7-opcua --all-targets --quiet -- --deny warnings
 
 ## licences and sources of what is built in
 deny:

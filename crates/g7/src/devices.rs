@@ -7,7 +7,7 @@ use clap::Args;
 use g7_host::Value;
 use g7_model::{Nanos, Span};
 use g7_online::setup::{
-    At, Broker, Device, Encoding, Kind, Modbus, Parity, Place, Point, Register, Serial, Tcp, Timing,
+    At, Broker, Device, Encoding, Kind, Listen, Modbus, Parity, Place, Point, Register, Serial, Tcp, Timing,
     read_point,
 };
 use g7_online::{

@@ -178,7 +178,7 @@ impl Board {
             Happened::Output(k) => {
                 state.refused.remove(k);
             }
-            Happened::NoInput(..) | Happened::Input(_) | Happened::Limited(_) => {}
+            Happened::NoInput(..) | Happened::Input(_) | Happened::Limited(_) | Happened::Note(_) => {}
         }
     }
 
