@@ -19,7 +19,9 @@ TALLY := $(abspath $(or $(CARGO_TARGET_DIR),target))/tally
 # The program as the tests have it: libraries get the features that the workspace asks for as a whole, so that
 # they are compiled once for all tests.
 DEBUG := $(abspath $(or $(CARGO_TARGET_DIR),target))/debug
-BUILD := cargo build --quiet --workspace --bin g7
+# With the kinds of devices that the usual build does not have.
+FIELD := --features g7/s7,g7/gpio
+BUILD := cargo build --quiet --workspace $(FIELD) --bin g7
 PYTHON := $(abspath $(or $(CARGO_TARGET_DIR),target))/python
 PAGE := $(shell find web/src web/index.html web/public web/*.ts web/*.js web/*.mjs -type f 2>/dev/null)
 
@@ -57,7 +59,7 @@ static: web
 test: export G7_SKIPS = $(TALLY)/skips
 test: export G7_PEERS = $(PYTHON)
 test: tally-anew lint page-test $(PYTHON)/bin/pymodbus.simulator
-	{ cargo test --workspace --exclude g7-opcua --quiet --lib --bins --tests && cargo test --quiet --doc --package g7-engine; } 2>&1 | \
+	{ cargo test --workspace --exclude g7-opcua $(FIELD) --quiet --lib --bins --tests && cargo test --quiet --doc --package g7-engine; } 2>&1 | \
 		tee $(TALLY)/crates.log
 	$(DEBUG)/g7 check examples
 	$(DEBUG)/g7 test examples | tee $(TALLY)/examples.log
@@ -67,8 +69,8 @@ test: tally-anew lint page-test $(PYTHON)/bin/pymodbus.simulator
 $(PYTHON)/bin/pymodbus.simulator:
 	@{ { python3 -c 'import ensurepip' 2>/dev/null || { $(SUDO) apt-get update -qq && \
 			$(SUDO) apt-get install -qq --no-install-recommends python3 python3-venv; }; } && \
-		python3 -m venv $(PYTHON) && $(PYTHON)/bin/pip install --quiet 'pymodbus[serial]==3.16.*' 'pysparkplug==0.6.*' 'asyncua==2.1.*'; } || \
-		echo "pymodbus, pysparkplug and asyncua cannot be installed: their tests are skipped"
+		python3 -m venv $(PYTHON) && $(PYTHON)/bin/pip install --quiet 'pymodbus[serial]==3.16.*' 'pysparkplug==0.6.*' 'python-snap7==3.3.*' 'asyncua==2.1.*'; } || \
+		echo "pymodbus, pysparkplug, python-snap7 and asyncua cannot be installed: their tests are skipped"
 
 tally-anew:
 	@rm -rf $(TALLY) && mkdir -p $(TALLY) && touch $(TALLY)/skips
@@ -96,7 +98,7 @@ opcua-test: $(PYTHON)/bin/pymodbus.simulator
 ## formatting and lints
 lint:
 	cargo fmt --all --check
-	cargo clippy --workspace --exclude g7-opcua --all-targets --quiet -- --deny warnings
+	cargo clippy --workspace --exclude g7-opcua --all-targets $(FIELD) --quiet -- --deny warnings
 
 ## licences and sources of what is built in
 deny:
@@ -191,7 +193,7 @@ faults: $(PYTHON)/bin/pymodbus.simulator
 	@$(call debian,cyclictest,rt-tests)
 	@$(call debian,stress-ng,stress-ng)
 	@mkdir -p $(TALLY) && rm -f $(G7_FAULT_ROWS) && touch $(G7_FAULT_ROWS)
-	done=0; cargo test $(FAULTY:%=--package %) --tests --no-fail-fast -- row_ --nocapture --test-threads 1 || done=$$?; \
+	done=0; cargo test $(FAULTY:%=--package %) $(FIELD) --tests --no-fail-fast -- row_ --nocapture --test-threads 1 || done=$$?; \
 		cargo run --quiet --package g7-peers --bin faults -- $(G7_FAULT_ROWS) && exit $$done
 
 ## the book, as HTML in docs/book/book, with every conformance case as a page

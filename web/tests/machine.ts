@@ -207,7 +207,7 @@ export class Machine {
     const machine = new Machine();
     machine.#port = await freePort();
     writeFileSync(join(machine.#folder, 'mixer.g7'), CHART);
-    machine.io = io(machine.#port);
+    machine.io = io(machine.#port, '');
     await machine.plug();
     const { child, found } = await begun(['serve', 'mixer.g7', '--no-open', '--port', '0'], machine.#folder, 'stdout', /http:\/\/\S+/);
     [machine.#station, machine.url] = [child, found];

@@ -108,7 +108,7 @@ test('users come in by role, see what they lack, and are put out', async () => {
   await vi.getByRole('alert').getByText('name or password is wrong').waitFor();
   await button(ana, 'Close').click();
 
-  // What everyone did.
+  // The deeds of everyone.
   await button(ana, 'Log').click();
   const log = ana.getByRole('dialog', { name: 'Log' });
   await log.getByText('started').first().waitFor();

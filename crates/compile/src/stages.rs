@@ -6,7 +6,7 @@
 use std::sync::Arc;
 
 use g7_engine::{Code, Program};
-use g7_model::{Document, Expr, Problem, ProfileName, Severity, Span, Type, codes};
+use g7_model::{Document, Expr, Problem, ProfileName, PropertyKind, Severity, Span, Type, codes};
 
 use crate::symbols::Symbols;
 use crate::{check, ir, lower, resolve};
@@ -78,10 +78,28 @@ fn properties<'d>(doc: &'d Document, unit: &mut ir::Unit, scopes: &mut resolve::
     let mut problems = Vec::new();
     for property in doc.properties() {
         for claim in property.kind.claims() {
-            problems.append(&mut resolve::resolve_query(unit, scopes, claim, None, Some(Type::Bool)).1);
+            let (expr, mut wrong) = resolve::resolve_query(unit, scopes, claim, None, Some(Type::Bool));
+            problems.append(&mut wrong);
+            let is_assumed = matches!(property.kind, PropertyKind::Assume(_));
+            if is_assumed && expr.is_some_and(|e| !reads_input(unit, &e)) {
+                let what = "an assumption tells what values inputs may have, and this one reads no input";
+                let help = "name an input in it, or write what the chart does as `prove always …`";
+                problems.push(Problem::new(&codes::ASSUMPTION, property.at.0, what).help(help));
+            }
         }
     }
     problems
+}
+
+/// True if an expression reads an input.
+fn reads_input(unit: &ir::Unit, e: &ir::Expr) -> bool {
+    match &e.kind {
+        ir::ExprKind::Var(v) | ir::ExprKind::Element(v, _) => {
+            unit.vars.get(v.index()).is_some_and(|v| v.class == ir::VarClass::Input)
+                || e.operands().any(|e| reads_input(unit, e))
+        }
+        _ => e.operands().any(|e| reads_input(unit, e)),
+    }
 }
 
 /// Drops follow-up problems of parts that failed to resolve. An unresolved expression stands for

@@ -18,13 +18,14 @@ use serde_json::{Value as Json, json};
 use signal_hook::consts::{SIGINT, SIGTERM};
 
 use crate::audit::{Audit, Pending};
-use crate::failure::{Failure, Verdict, plain};
+use crate::failure::{Failure, Verdict, plain, refused};
 use crate::history::{Historian, Kept};
 use crate::manager::Manager;
 use crate::message::talk;
 use crate::monitor::Monitor;
 use crate::operator::{Adopted, Asker, Changes, HELP, Names, Stage, Told, Wish, mode_text, operate};
 use crate::origin::Origin;
+use crate::post::Post;
 use crate::values;
 use crate::who::Who;
 
@@ -36,11 +37,6 @@ const ORDERS: usize = 32;
 const SUM: Nanos = Nanos::SECOND;
 /// A command that the scan has not answered after this time is given up.
 const PATIENCE: Nanos = Nanos::from_millis(3_000);
-
-/// The system has no resources for a thread or a connection.
-pub(crate) fn refused(error: std::io::Error) -> Failure {
-    Failure::Usage(format!("the system refuses: {}", plain(&error)))
-}
 
 /// A command on its way through the scan.
 struct Asked {
@@ -56,6 +52,7 @@ pub(crate) struct Attendant {
     mode: Mode,
     paces: Paces,
     monitor: Option<Monitor>,
+    post: Option<Post>,
     historian: Option<Historian>,
     stage: Option<Stage>,
     changes: Option<Changes>,
@@ -79,6 +76,7 @@ impl Attendant {
             mode: Mode::Stop,
             paces: Paces::default(),
             monitor: None,
+            post: None,
             historian: None,
             stage: None,
             changes: None,
@@ -92,9 +90,9 @@ impl Attendant {
         }
     }
 
-    /// Tells a monitor what happens.
-    pub(crate) fn with(self, monitor: Option<Monitor>) -> Attendant {
-        Attendant { monitor, ..self }
+    /// Tells a monitor what happens, and brokers each event.
+    pub(crate) fn with(self, monitor: Option<Monitor>, post: Option<Post>) -> Attendant {
+        Attendant { monitor, post, ..self }
     }
 
     /// Writes what happens into a log, and what the terminal wants.
@@ -407,15 +405,22 @@ impl Attendant {
             let now = self.clock.now();
             self.note(now, &Told::Unsaved(plain(&e)));
         }
+        for (device, trouble) in self.post.as_ref().map(Post::troubles).unwrap_or_default() {
+            let now = self.clock.now();
+            self.note(now, &Told::Events(device, trouble));
+        }
     }
 
-    /// Tells the terminal and the pages of an event.
+    /// Tells the terminal, the pages and the brokers of an event.
     fn note(&mut self, at: Nanos, told: &Told) {
         if let Some(text) = told.text(&self.names) {
             talk!("{} {text}", self.time());
         }
         if let Some(stage) = &mut self.stage {
             stage.note(at, told);
+        }
+        if let Some(post) = &self.post {
+            post.send(told.event(&self.names));
         }
         match told {
             Told::Missed(more) => self.missed.0 = self.missed.0.saturating_add(*more),

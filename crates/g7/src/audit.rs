@@ -1,4 +1,4 @@
-//! What is written into the log of a controller: its events, and the deeds of persons before they are done.
+//! The rows that go into the log of a controller: its events, and the deeds of persons before they are done.
 //!
 //! Without a log nothing is written and nothing is refused for it.
 

@@ -9,8 +9,3 @@ pub(crate) fn clients() -> Clients {
     let clients = clients.with(g7_opcua::OpcUa);
     clients
 }
-
-/// True if this build has a feature.
-pub(crate) fn has(feature: &str) -> bool {
-    feature == "opcua" && cfg!(feature = "opcua")
-}

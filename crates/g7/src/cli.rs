@@ -79,6 +79,10 @@ pub(crate) enum Command {
     History(crate::history::History),
     /// Run the tests of charts in virtual time.
     Test(Test),
+    /// Ask what charts can and cannot do, over all runs.
+    Prove(Prove),
+    /// Compare two charts, or one under two profiles, over all runs.
+    Compare(Compare),
     /// Draw charts as SVG, PNG or PDF.
     Draw(crate::draw::Draw),
     /// Open the editor in the browser, or drive a machine with the page of its operator.
@@ -256,6 +260,78 @@ pub(crate) struct Test {
     /// Time between scans, instead of the file's own (10ms).
     #[arg(long, value_parser = values::duration, value_name = "TIME")]
     pub(crate) scan: Option<Nanos>,
+}
+
+const PROOF_CODES: &str = "\
+Exit codes:
+  0  everything is proved (of two charts: they are equal)
+  1  something is refuted (they differ), or the charts have errors
+  2  bad usage, or something outside the chart: no such file, a full disk
+  3  something is not decided";
+
+#[derive(Args, Debug)]
+#[command(after_help = format!("\
+Examples:
+  g7 prove tank                   every question of every .g7 file in this folder and below
+  g7 prove tank --all             also what is proved of every chart
+  g7 prove tank --time 5s         with the answers that are known by then
+  g7 prove tank --format json     for a program to read
+
+{PROOF_CODES}"))]
+pub(crate) struct Prove {
+    /// Files or folders; `-` reads the standard input.
+    #[arg(default_value = ".")]
+    pub(crate) paths: Vec<PathBuf>,
+    /// Show each answer with its reason, those that are proved too.
+    #[arg(long)]
+    pub(crate) all: bool,
+    /// The profile to use instead of the file's own.
+    #[arg(long, value_parser = values::profile)]
+    pub(crate) profile: Option<ProfileName>,
+    /// Stop after this time.
+    #[arg(long, value_parser = values::duration, value_name = "TIME", default_value = "60s")]
+    pub(crate) time: Nanos,
+    /// Memory for states, in MiB.
+    #[arg(long, value_name = "MIB", default_value_t = 1024)]
+    pub(crate) memory: usize,
+    /// Most states of a search.
+    #[arg(long, value_name = "NUMBER", default_value_t = 20_000_000)]
+    pub(crate) states: usize,
+    /// Write a JUnit report.
+    #[arg(long, value_name = "FILE")]
+    pub(crate) junit: Option<PathBuf>,
+    /// For people or for programs.
+    #[arg(long, value_enum, default_value_t = Format::Text)]
+    pub(crate) format: Format,
+}
+
+#[derive(Args, Debug)]
+#[command(after_help = format!("\
+Examples:
+  g7 compare before.g7 after.g7
+  g7 compare tank.g7 --profiles iec60848,unity
+  g7 compare a.g7 b.g7 --situations      the active steps too, by their names
+
+{PROOF_CODES}"))]
+pub(crate) struct Compare {
+    /// Two files; or one, with --profiles.
+    #[arg(required = true, num_args = 1..=2)]
+    pub(crate) files: Vec<PathBuf>,
+    /// Two profiles, for the first and the second chart.
+    #[arg(long, value_parser = values::profile, value_delimiter = ',', value_name = "PROFILES")]
+    pub(crate) profiles: Vec<ProfileName>,
+    /// Compare situations as well as outputs.
+    #[arg(long)]
+    pub(crate) situations: bool,
+    /// Stop after this time.
+    #[arg(long, value_parser = values::duration, value_name = "TIME", default_value = "60s")]
+    pub(crate) time: Nanos,
+    /// Memory for states, in MiB.
+    #[arg(long, value_name = "MIB", default_value_t = 1024)]
+    pub(crate) memory: usize,
+    /// Most pairs of states.
+    #[arg(long, value_name = "NUMBER", default_value_t = 20_000_000)]
+    pub(crate) states: usize,
 }
 
 #[derive(Args, Debug)]

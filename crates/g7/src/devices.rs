@@ -6,12 +6,13 @@ use std::path::PathBuf;
 use clap::Args;
 use g7_host::Value;
 use g7_model::{Nanos, Span};
+use g7_online::ask as wait;
 use g7_online::setup::{
-    At, Broker, Device, Encoding, Kind, Listen, Modbus, Parity, Place, Point, Register, Serial, Tcp, Timing,
-    read_point,
+    Address, At, Broker, Device, Encoding, Kind, Listen, Modbus, Parity, Place, Point, Register, S7, Serial,
+    Setup, Tcp, Timing, Width, read_point,
 };
 use g7_online::{
-    Absent, Asked, Clients, Failed, Probed, Raw, Scaling, Wire, Wired, ask as wait, hear, probe,
+    Absent, Asked, Cell, Clients, Failed, Form, Line, Probed, Raw, Scaling, Wire, Wired, hear, probe,
 };
 
 use crate::brought;
@@ -27,6 +28,8 @@ Examples:
   g7 devices --tcp 10.0.0.7 --read 'holding(0)' --count 10
   g7 devices --tcp 10.0.0.7:1502 --unit 3 --read 'input(4)' --as f32
   g7 devices --serial /dev/ttyUSB0 --baud 9600 --read 'coil(0)' --read 'coil(7)'
+  g7 devices --s7 10.0.0.8 --slot 2 --read DB1.DBW2 --read M0.0
+  g7 devices --gpio /dev/gpiochip0 --read 'line(17)'
 
 Nothing is written to a device.
 
@@ -36,20 +39,32 @@ Exit codes:
   2  bad usage, or something outside the chart: no such file")]
 pub(crate) struct Devices {
     /// A chart with an io file, or a folder with a chart.g7.
-    #[arg(default_value = ".", conflicts_with_all = ["tcp", "serial"])]
+    #[arg(default_value = ".", conflicts_with_all = ["tcp", "serial", "s7", "gpio"])]
     path: PathBuf,
     /// The io file [default: chart.io.toml for chart.g7].
-    #[arg(long, value_name = "FILE", conflicts_with_all = ["tcp", "serial"])]
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["tcp", "serial", "s7", "gpio"])]
     io: Option<PathBuf>,
     /// List all points of the devices that can tell them: servers of OPC UA.
     #[arg(long, conflicts_with_all = ["tcp", "serial"])]
     browse: bool,
     /// Ask a server of Modbus TCP.
-    #[arg(long, value_name = "HOST[:PORT]", conflicts_with = "serial")]
+    #[arg(long, value_name = "HOST[:PORT]", conflicts_with_all = ["serial", "s7", "gpio"])]
     tcp: Option<String>,
     /// Ask a slave of Modbus RTU on this serial port.
-    #[arg(long, value_name = "PORT")]
+    #[arg(long, value_name = "PORT", conflicts_with_all = ["s7", "gpio"])]
     serial: Option<String>,
+    /// Ask a controller of Siemens.
+    #[arg(long, value_name = "HOST[:PORT]", conflicts_with = "gpio")]
+    s7: Option<String>,
+    /// The rack of its processor.
+    #[arg(long, default_value_t = 0, requires = "s7", value_parser = clap::value_parser!(u8).range(0..=7))]
+    rack: u8,
+    /// The slot of its processor.
+    #[arg(long, default_value_t = 1, requires = "s7", value_parser = clap::value_parser!(u8).range(0..=31))]
+    slot: u8,
+    /// Ask the lines of a chip of this machine.
+    #[arg(long, value_name = "CHIP")]
+    gpio: Option<String>,
     /// The unit or slave.
     #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u8).range(0..=247))]
     unit: u8,
@@ -59,15 +74,16 @@ pub(crate) struct Devices {
     /// The parity of the serial port: even, odd or none.
     #[arg(long, default_value = "even", requires = "serial", value_parser = parity)]
     parity: Parity,
-    /// A point to read: `coil(2)`, `discrete(0)`, `input(4)`, `holding(4)`, `holding(4.3)`.
+    /// A point to read: `coil(2)`, `discrete(0)`, `input(4)`, `holding(4)`, `holding(4.3)`; `DB1.DBW2`,
+    /// `M0.0`; `line(17)`.
     #[arg(long = "read", value_name = "POINT", value_parser = point)]
-    points: Vec<Register>,
+    points: Vec<Point>,
     /// Read so many points from each on.
     #[arg(long, default_value_t = 1, requires = "points", value_parser = clap::value_parser!(u16).range(1..=2000))]
     count: u16,
-    /// The form of the numbers in registers: u16, i16, u32, i32, u64, i64, f32, f64.
-    #[arg(long = "as", default_value = "u16", requires = "points", value_name = "FORM", value_parser = encoding)]
-    encoding: Encoding,
+    /// The form of the numbers: u16, i16, u32, i32, u64, i64, f32, f64 [default: u16, or as wide as the address].
+    #[arg(long = "as", requires = "points", value_name = "FORM", value_parser = encoding)]
+    encoding: Option<Encoding>,
     /// The longest time of an answer.
     #[arg(long, default_value = "1s", value_parser = values::duration, value_name = "TIME")]
     timeout: Nanos,
@@ -88,11 +104,11 @@ fn word<T: Copy>(text: &str, words: &[(&str, T)]) -> Result<T, String> {
     found.ok_or_else(|| format!("it is one of {}", names.join(", ")))
 }
 
-fn point(text: &str) -> Result<Register, String> {
+fn point(text: &str) -> Result<Point, String> {
     match read_point(text)? {
-        Point::Modbus(register) => Ok(register),
+        point @ (Point::Modbus(_) | Point::S7(_) | Point::Line(_)) => Ok(point),
         Point::Good | Point::Topic(_) | Point::Metric(_) | Point::Panel(_) | Point::Node(_) => {
-            Err("this is no point of Modbus".to_owned())
+            Err("this is no point to read by hand".to_owned())
         }
     }
 }
@@ -106,11 +122,16 @@ struct Shown {
 
 pub(crate) fn devices(args: &Devices) -> Result<Verdict, Failure> {
     if let Some(device) = by_hand(args)? {
-        let shown: Vec<Shown> = args.points.iter().flat_map(|from| many(args, *from)).collect();
+        let mut shown = Vec::new();
+        for point in &args.points {
+            shown.extend(many(args, &device.kind, point).map_err(Failure::Usage)?);
+        }
         return ask(&mut Clients::default(), &device, &shown);
     }
     if !args.points.is_empty() {
-        return Err(Failure::Usage("--read asks one device: name it by --tcp or --serial".to_owned()));
+        return Err(Failure::Usage(
+            "--read asks one device: name it by --tcp, --serial, --s7 or --gpio".to_owned(),
+        ));
     }
     let path = files::one(&args.path)?;
     let source = sources::load(&path, 0)?;
@@ -128,7 +149,9 @@ pub(crate) fn devices(args: &Devices) -> Result<Verdict, Failure> {
             Kind::Mqtt(broker) => heard(broker, wired)?,
             Kind::OpcUa(_) => asked(&mut clients, wired)?,
             Kind::Panel(_) => served(wired, "is on the operator page")?,
-            Kind::ModbusTcp(..) | Kind::ModbusRtu(..) => ask(&mut clients, &wired.device, &channels(wired))?,
+            Kind::ModbusTcp(..) | Kind::ModbusRtu(..) | Kind::S7(_) | Kind::Gpio(_) => {
+                ask(&mut clients, &wired.device, &channels(wired))?
+            }
         };
         if found == Verdict::Found {
             verdict = Verdict::Found;
@@ -143,39 +166,97 @@ pub(crate) fn devices(args: &Devices) -> Result<Verdict, Failure> {
 /// The device that the arguments describe.
 fn by_hand(args: &Devices) -> Result<Option<Device>, Failure> {
     let modbus = Modbus { unit: args.unit, low_word_first: false };
-    let kind = match (&args.tcp, &args.serial) {
-        (Some(tcp), _) => {
-            let (host, port) = match tcp.rsplit_once(':') {
-                Some((host, port)) => (host, port.parse().ok()),
-                None => (tcp.as_str(), Some(502)),
-            };
-            let port = port.ok_or_else(|| Failure::Usage(format!("--tcp {tcp}: the port is no number")))?;
-            Kind::ModbusTcp(Tcp { host: host.trim_matches(['[', ']']).to_owned(), port }, modbus)
+    let kind = match (&args.tcp, &args.serial, &args.s7, &args.gpio) {
+        (Some(tcp), ..) => {
+            let (host, port) = place(tcp, 502)?;
+            Kind::ModbusTcp(Tcp { host, port }, modbus)
         }
-        (None, Some(port)) => {
+        (_, Some(port), ..) => {
             let (port, baud, parity) = (port.clone(), args.baud, args.parity);
             Kind::ModbusRtu(Serial { port, baud, parity, two_stop_bits: false }, modbus)
         }
-        (None, None) => return Ok(None),
+        (_, _, Some(s7), _) => {
+            let (host, port) = place(s7, 102)?;
+            Kind::S7(S7 { host, port, rack: args.rack, slot: args.slot, resource: 1 })
+        }
+        (_, _, _, Some(chip)) => Kind::Gpio(chip.clone()),
+        (None, None, None, None) => return Ok(None),
     };
     let nowhere = Span::default();
     let timing = Timing { timeout: args.timeout, ..Timing::default() };
-    Ok(Some(Device { name: At { value: String::new(), at: nowhere }, kind, timing }))
+    let device = Device { name: At { value: String::new(), at: nowhere }, kind, timing };
+    let setup = Setup { devices: vec![device.clone()], ..Setup::default() };
+    if let Some(problem) = g7_online::lacking(&setup).first() {
+        let help = problem.help.clone().unwrap_or_default();
+        return Err(Failure::Usage(format!("{}: {help}", problem.what)));
+    }
+    Ok(Some(device))
+}
+
+/// Reads `HOST` or `HOST:PORT`.
+fn place(text: &str, usual: u16) -> Result<(String, u16), Failure> {
+    let (host, port) = match text.rsplit_once(':') {
+        Some((host, port)) => (host, port.parse().ok()),
+        None => (text, Some(usual)),
+    };
+    let port = port.ok_or_else(|| Failure::Usage(format!("{text}: the port is no number")))?;
+    Ok((host.trim_matches(['[', ']']).to_owned(), port))
 }
 
 /// A point by hand, and those behind it.
-fn many(args: &Devices, from: Register) -> Vec<Shown> {
-    let bit = from.area.is_bits() || from.bit.is_some();
-    let step = if bit { 1 } else { args.encoding.registers() };
-    let asked = |k: u16| {
-        let address = from.address.checked_add(k.checked_mul(step)?)?;
-        Some(Wire::Modbus(Place {
-            register: Register { address, ..from },
-            encoding: (!bit).then_some(args.encoding),
-        }))
+fn many(args: &Devices, kind: &Kind, from: &Point) -> Result<Vec<Shown>, String> {
+    let wires: Vec<Wire> = match (kind, from) {
+        (Kind::ModbusTcp(..) | Kind::ModbusRtu(..), Point::Modbus(register)) => registers(args, *register),
+        (Kind::S7(_), Point::S7(address)) => cells(args, *address)?,
+        (Kind::Gpio(_), Point::Line(offset)) => {
+            let line = |k: u16| Line {
+                offset: offset + u32::from(k),
+                bias: None,
+                active_low: false,
+                debounce: None,
+            };
+            (0..args.count).map(|k| Wire::Line(line(k))).collect()
+        }
+        (kind, point) => {
+            return Err(format!("`{point}` is no point of a device of the kind \"{}\"", kind.word()));
+        }
     };
     let shown = |wire: Wire| Shown { name: wire.to_string(), wire, scaling: None };
-    (0..args.count).map_while(asked).map(shown).collect()
+    Ok(wires.into_iter().map(shown).collect())
+}
+
+/// A bit or register of Modbus, and those behind it.
+fn registers(args: &Devices, from: Register) -> Vec<Wire> {
+    let bit = from.area.is_bits() || from.bit.is_some();
+    let encoding = args.encoding.unwrap_or(Encoding::Unsigned(1));
+    let step = if bit { 1 } else { encoding.registers() };
+    let asked = |k: u16| {
+        let address = from.address.checked_add(k.checked_mul(step)?)?;
+        let register = Register { address, ..from };
+        Some(Wire::Modbus(Place { register, encoding: (!bit).then_some(encoding) }))
+    };
+    (0..args.count).map_while(asked).collect()
+}
+
+/// An address of a controller of Siemens, and those behind it; of a bit, the same bit of the next bytes.
+fn cells(args: &Devices, from: Address) -> Result<Vec<Wire>, String> {
+    let form = match (from.width, args.encoding) {
+        (Width::Bit(bit), _) => Form::Bit(bit),
+        (Width::Byte, None) => Form::Byte { signed: false },
+        (Width::Word, None) => Form::Number(Encoding::Unsigned(1)),
+        (Width::Double, None) => Form::Number(Encoding::Unsigned(2)),
+        (Width::Word, Some(encoding)) if encoding.registers() == 1 => Form::Number(encoding),
+        (Width::Double, Some(encoding)) if encoding.registers() == 2 => Form::Number(encoding),
+        (Width::Byte, Some(encoding)) if encoding.registers() == 4 => Form::Number(encoding),
+        (_, Some(_)) => return Err(format!("--as has not the size of {from}")),
+    };
+    let cell = |k: u16| {
+        let first = Cell { memory: from.memory, byte: from.byte, form };
+        let byte = from.byte.checked_add(k.checked_mul(first.bytes())?)?;
+        byte.checked_add(first.bytes() - 1)?;
+        Some(Wire::S7(Cell { byte, ..first }))
+    };
+    Ok((0..args.count).map_while(cell).collect())
 }
 
 /// The channels of a device; the present values of its outputs are read as well.
@@ -194,7 +275,7 @@ fn channels(wired: &Wired) -> Vec<Shown> {
 
 /// Asks a device and prints what it has.
 fn ask(clients: &mut Clients, device: &Device, shown: &[Shown]) -> Result<Verdict, Failure> {
-    let asked: Vec<Asked> = shown.iter().filter_map(|s| s.wire.place()).collect();
+    let asked: Vec<Asked> = shown.iter().map(|s| s.wire.clone()).collect();
     print(device, shown, probe(clients, device, &asked))
 }
 

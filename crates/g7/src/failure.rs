@@ -52,6 +52,11 @@ pub(crate) fn plain(error: &io::Error) -> String {
     letters.next().map_or_else(String::new, |first| first.to_lowercase().chain(letters).collect())
 }
 
+/// The system has no resources for a thread or a connection.
+pub(crate) fn refused(error: io::Error) -> Failure {
+    Failure::Usage(format!("the system refuses: {}", plain(&error)))
+}
+
 /// The result of a command.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Verdict {
@@ -59,4 +64,6 @@ pub(crate) enum Verdict {
     Fine,
     /// Exit code 1: problems were found, or a test failed.
     Found,
+    /// Exit code 3: a question is not decided, and nothing worse was found.
+    Open,
 }

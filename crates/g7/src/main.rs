@@ -9,7 +9,7 @@
 //! # Invariants
 //!
 //! Data goes to the standard output, messages go to the standard error.
-//! Exit code 0: no problem; 1: problems or failed tests; 2: wrong usage or a failure outside the
+//! Exit code 0: no problem; 1: problems, failed tests or refuted claims; 3: not decided; 2: wrong usage or a failure outside the
 //! chart.
 //! Files are written completely or not at all; a closed pipe ends the program silently.
 #![forbid(unsafe_code)]
@@ -38,7 +38,9 @@ mod new;
 mod operator;
 mod origin;
 mod plant;
+mod post;
 mod progress;
+mod prove;
 mod report;
 mod run;
 mod serve;
@@ -73,6 +75,7 @@ fn main() -> ExitCode {
     match run(&cli.command) {
         Ok(Verdict::Fine) => ExitCode::SUCCESS,
         Ok(Verdict::Found) => ExitCode::from(1),
+        Ok(Verdict::Open) => ExitCode::from(3),
         Err(failure) if failure.is_quiet() => ExitCode::SUCCESS,
         Err(failure) => {
             talk!("{}error:{:#} {failure}", style::BAD, style::BAD);
@@ -91,6 +94,8 @@ fn run(command: &Command) -> Result<Verdict, Failure> {
         Command::Plant(args) => plant::plant(args),
         Command::History(args) => history::history(args),
         Command::Test(args) => testing::test(args),
+        Command::Prove(args) => prove::prove(args),
+        Command::Compare(args) => prove::compare(args),
         Command::Draw(args) => draw::draw(args),
         Command::Serve(args) => serve::serve(args),
         Command::Users(args) => users::users(args),

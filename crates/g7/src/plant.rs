@@ -8,8 +8,8 @@ use g7_model::{Item, Nanos};
 use g7_online::{Clients, Command, Options as Threads};
 use g7_rig::Options;
 
-use crate::attendant::{Attendant, refused};
-use crate::failure::{Failure, Verdict};
+use crate::attendant::Attendant;
+use crate::failure::{Failure, Verdict, refused};
 use crate::message::talk;
 use crate::operator::Names;
 use crate::wiring::{self, Wanted};

@@ -9,15 +9,15 @@ use g7_online::setup::Setup;
 use g7_online::{Command, KeepError, Options, Panels, RealDisk, Running, Sight, Slots, Started};
 use g7_store::log::Log;
 
-use crate::attendant::refused;
 use crate::audit::{self, Audit};
 use crate::brought;
-use crate::failure::{Failure, plain};
+use crate::failure::{Failure, plain, refused};
 use crate::history::{self, Historian};
 use crate::message::talk;
 use crate::monitor::Monitor;
 use crate::operator::{HELP, Names};
 use crate::origin::Origin;
+use crate::post::Post;
 use crate::sources::Source;
 use crate::style;
 use crate::wiring::{self, Plan};
@@ -55,11 +55,12 @@ pub(crate) struct Station {
     pub(crate) running: Running,
     pub(crate) sight: Sight,
     pub(crate) monitor: Option<Monitor>,
+    pub(crate) post: Option<Post>,
     pub(crate) panels: Panels,
     pub(crate) historian: Option<Historian>,
 }
 
-/// What the io file says of those who use the controller, read before anything else: a log that cannot be
+/// The settings of those who use the controller, from the io file, read before anything else: a log that cannot be
 /// written is found before anything moves.
 pub(crate) struct Settings {
     pub(crate) setup: Setup,
@@ -115,6 +116,7 @@ pub(crate) fn start(
     };
     let (runner, slots) = kept(&plan, g7_online::runner(bench, wiring, more.seed))?;
     let mut clients = brought::clients();
+    let post = Post::open(wiring, &plan.io, &mut clients)?;
     let mut machine = g7_online::assemble(runner, wiring, |wired| clients.device(wired)).map_err(refused)?;
     let kept = slots.map(|slots| machine.keep(bench, slots));
     let sight = machine.show();
@@ -135,7 +137,7 @@ pub(crate) fn start(
         talk!("stopped; {HELP}");
     }
     let names = Names::new(source, plan.bench, plan.wiring);
-    Ok(Some(Station { names, origin, running, sight, monitor, panels: clients.panels, historian }))
+    Ok(Some(Station { names, origin, running, sight, monitor, post, panels: clients.panels, historian }))
 }
 
 /// Opens the file of the values that are kept, and starts the run with them.

@@ -7,7 +7,6 @@ use g7_online::Wiring;
 use g7_online::setup::{self, Channel, Kind, Origin, Setup};
 use g7_rig::{Bench, Options};
 
-use crate::brought;
 use crate::failure::{Failure, plain};
 use crate::files;
 use crate::message::talk;
@@ -74,6 +73,9 @@ pub(crate) fn make(
         return Err(Failure::Usage(format!("{} is not UTF-8 text", io.display())));
     }
     let simulated = simulate(&mut setup, wanted.simulate)?;
+    if wanted.simulate.is_none() {
+        problems.extend(g7_online::lacking(&setup));
+    }
     // Without a plant in place of a device there is none.
     let plant = wanted.plant.or(if wanted.simulate.is_none() { Some("none") } else { None });
     let scan = wanted.scan.or(setup.controller.period.as_ref().map(|p| p.value));
@@ -81,9 +83,8 @@ pub(crate) fn make(
     let (bench, of_chart) = g7_rig::build(source, &options)?;
     let mut told = told_of(source, &of_chart);
     let Some(bench) = bench else { return Ok((None, told)) };
-    problems.extend(setup::missing(&setup, brought::has));
     setup::settle(&mut setup, io.parent().unwrap_or(Path::new("")));
-    problems.extend(setup::read_passwords(&mut setup, |origin| password(&io, origin)));
+    problems.extend(setup::read_secrets(&mut setup, |origin| secret(&io, origin)));
     let (mut wiring, wrong) = g7_online::wire(&bench, &setup);
     wiring.unwired.retain(|name| !simulated.iter().any(|s| bench.item(s).is_some_and(|i| i.name == *name)));
     problems.extend(wrong);
@@ -92,8 +93,8 @@ pub(crate) fn make(
     Ok(((!errors).then_some(Plan { bench, setup, wiring, io }), told))
 }
 
-/// The bytes of a password, which is never in the io file.
-pub(crate) fn password(io: &Path, origin: &Origin) -> Result<Vec<u8>, String> {
+/// The bytes of a password, certificate or key, which is never in the io file.
+pub(crate) fn secret(io: &Path, origin: &Origin) -> Result<Vec<u8>, String> {
     match origin {
         Origin::File(name) => {
             let path = io.with_file_name(name);
@@ -131,6 +132,12 @@ fn simulate(setup: &mut Setup, names: Option<&[String]>) -> Result<Vec<String>, 
     };
     let taken = [gone(&mut setup.inputs), gone(&mut setup.outputs)];
     setup.shown.retain(|c| !simulated(&c.device.value));
+    for device in setup.devices.iter_mut().filter(|d| simulated(&d.name.value)) {
+        // A broker that is not there hears of nothing.
+        if let setup::Kind::Mqtt(broker) = &mut device.kind {
+            broker.events = None;
+        }
+    }
     Ok(taken.concat())
 }
 

@@ -4,17 +4,12 @@
 
 mod common;
 
-use std::io::{BufRead as _, BufReader, Read as _, Write as _};
-use std::net::TcpStream;
-use std::process::{Child, Command, Stdio};
-use std::time::{Duration, Instant};
+use std::io::Read as _;
 
 use common::Folder;
-use common::station::{PATIENCE, Page, Station};
+use common::station::{Page, Station};
 use common::talk::{Running, Slave};
-use serde_json::{Value, json};
-use tokio_tungstenite::tungstenite::client::IntoClientRequest as _;
-use tokio_tungstenite::tungstenite::{Error, Message, WebSocket, client};
+use serde_json::json;
 
 /// The button `go` opens the valve; `zero` is a divisor.
 const CHART: &str = "\

@@ -47,7 +47,7 @@ valve = 'desk.lamp(green)'
 #[test]
 fn a_machine_without_a_panel_is_operated_on_the_page() {
     let folder = Folder::with(PANEL);
-    folder.write("chart.io.toml", DESK.to_owned());
+    folder.write("chart.io.toml", DESK);
     let station = Station::new(&folder, &[]);
     let mut page = station.page();
     let told = page.seen["told"].clone();
@@ -56,7 +56,7 @@ fn a_machine_without_a_panel_is_operated_on_the_page() {
         told["signals"][4]["panel"],
         json!({ "is": "lamp", "colour": "green", "min": null, "max": null })
     );
-    // What an input measures is known of the plant, and what an output does; all else is not.
+    // The plant is known where an input measures it or an output drives it; all else is not.
     let known: Vec<&Value> =
         told["picture"]["bindings"].as_array().expect("parts").iter().map(|b| &b["known"]).collect();
     assert_eq!(known, [true, true, false]);

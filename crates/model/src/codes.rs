@@ -116,6 +116,7 @@ codes! {
     TEST_PLANT = "G0550" Error "a test with a plant that is not there" "the .g7 format";
     TEST_NAME = "G0551" Error "a test that sets, holds or expects something it cannot" "the .g7 format";
     TEST_TYPE = "G0552" Error "a value or condition of the wrong type in a test" "the .g7 format";
+    ASSUMPTION = "G0553" Error "an assumption that says nothing about an input" "the .g7 format";
 
     // Imported files
     BAD_XML = "G0601" Error "a file that is no well-formed XML" "XML 1.0";

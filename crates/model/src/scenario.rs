@@ -61,10 +61,10 @@ pub enum TestStmtKind {
     Comment(Box<str>),
 }
 
-/// `prove …`, for the prover.
+/// `prove …` or `assume …`, for the prover.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Property {
-    /// The claim.
+    /// The claim, or what is assumed.
     pub kind: PropertyKind,
     /// `"…"`.
     pub comment: Option<Box<str>>,
@@ -83,15 +83,34 @@ pub enum PropertyKind {
     Reachable(Expr),
     /// Whenever the first holds, the second holds within the time.
     After(Expr, Nanos, Expr),
+    /// `after a until b expect e`: from a scan with the first up to one with the second, the
+    /// third holds.
+    Until(Expr, Expr, Expr),
+    /// `between a and b never e`: the third does not hold from a scan with the first up to
+    /// the next one with the second.
+    Between(Expr, Expr, Expr),
+    /// `a leads to b`: whenever the first holds, the second comes at last.
+    LeadsTo(Expr, Expr),
+    /// `at most 1 of (a, b, c)`: after each scan at most so many of the conditions hold.
+    AtMost(u32, Vec<Expr>),
+    /// `assume e`: no claim, but what the environment keeps before every scan.
+    Assume(Expr),
 }
 
 impl PropertyKind {
     /// The conditions in it, in the order of the text.
     pub fn claims(&self) -> impl Iterator<Item = &Expr> {
-        let (first, second) = match self {
-            PropertyKind::Always(e) | PropertyKind::Never(e) | PropertyKind::Reachable(e) => (e, None),
-            PropertyKind::After(cause, _, effect) => (cause, Some(effect)),
+        let (some, many): ([Option<&Expr>; 3], &[Expr]) = match self {
+            PropertyKind::Always(e)
+            | PropertyKind::Never(e)
+            | PropertyKind::Reachable(e)
+            | PropertyKind::Assume(e) => ([Some(e), None, None], &[]),
+            PropertyKind::After(a, _, b) | PropertyKind::LeadsTo(a, b) => ([Some(a), Some(b), None], &[]),
+            PropertyKind::Until(a, b, e) | PropertyKind::Between(a, b, e) => {
+                ([Some(a), Some(b), Some(e)], &[])
+            }
+            PropertyKind::AtMost(_, list) => ([None; 3], list),
         };
-        std::iter::once(first).chain(second)
+        some.into_iter().flatten().chain(many)
     }
 }

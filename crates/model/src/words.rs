@@ -25,6 +25,7 @@ pub const FILE: &[&str] = &[
     "plant",
     "test",
     "prove",
+    "assume",
     "layout",
 ];
 
@@ -75,6 +76,11 @@ pub const CONTINUATIONS: &[&str] = &[
     "never",
     "reachable",
     "always",
+    "between",
+    "leads",
+    "to",
+    "most",
+    "of",
     "fault",
     "cold",
     "st",

@@ -4,16 +4,16 @@ use g7_host::Kind;
 use g7_model::{Problem, codes};
 use g7_rig::{Bench, Item, Role, StepItem};
 
+use crate::names::{Named, named, source_of};
 use crate::setup::{At, History, SIGNALS};
-use crate::subject::{Named, named, source_of};
 use crate::word::Source;
 
-/// What is recorded, and where.
+/// The signals that are recorded, and where.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Chosen {
     /// The file beside the io file.
     pub file: String,
-    /// What is older than so many days is deleted.
+    /// Changes that are older than so many days are deleted.
     pub days: u32,
     /// The greatest size of the record, in MB.
     pub megabytes: u32,

@@ -1,10 +1,15 @@
 //! The devices of a machine, each made as its kind asks.
 
+use std::collections::BTreeMap;
+
+use g7_model::{Problem, codes};
+
 use crate::device::{Device, Failed};
+use crate::mail::Mail;
 use crate::modbus::Units;
 use crate::mqtt;
 use crate::panel::Panels;
-use crate::setup::{self, Kind};
+use crate::setup::{Device as Wanted, Kind, Setup};
 use crate::wiring::Wired;
 
 /// Devices of kinds that a crate beside this one brings, because not each build has it.
@@ -13,7 +18,7 @@ pub trait Brought: Send {
     fn device(&self, wired: &Wired) -> Option<Box<dyn Device>>;
 
     /// The points of a device; `None` where its kind is another one.
-    fn browse(&self, device: &setup::Device) -> Option<Result<Vec<Node>, Failed>>;
+    fn browse(&self, device: &Wanted) -> Option<Result<Vec<Node>, Failed>>;
 }
 
 /// A point that a device tells of.
@@ -34,6 +39,7 @@ pub struct Node {
 pub struct Clients {
     pub(crate) units: Units,
     brought: Vec<Box<dyn Brought>>,
+    mail: BTreeMap<String, Mail>,
     /// The panels of the machine, for those who move them.
     pub panels: Panels,
 }
@@ -45,6 +51,11 @@ impl Clients {
         self
     }
 
+    /// The broker of this name gets events; they come through the result.
+    pub fn mail(&mut self, broker: &str) -> Mail {
+        self.mail.entry(broker.to_owned()).or_default().clone()
+    }
+
     /// A device that is wired.
     ///
     /// # Errors
@@ -52,13 +63,16 @@ impl Clients {
     /// The system has no resources for it, or this build has no device of its kind.
     pub fn device(&mut self, wired: &Wired) -> std::io::Result<Box<dyn Device>> {
         match &wired.device.kind {
-            Kind::Mqtt(broker) => Ok(mqtt::device(broker, wired)),
+            Kind::Mqtt(broker) => {
+                Ok(mqtt::device(broker, wired, self.mail.get(&wired.device.name.value).cloned()))
+            }
             Kind::Panel(panel) => Ok(self.panels.device(panel, wired)),
             Kind::ModbusTcp(..) | Kind::ModbusRtu(..) | Kind::ModbusServer(_) => self.units.device(wired),
             Kind::OpcUa(_) | Kind::OpcUaServer(_) => {
                 let made = self.brought.iter().find_map(|brought| brought.device(wired));
-                made.ok_or_else(|| std::io::ErrorKind::Unsupported.into())
+                made.ok_or_else(|| no_kind(&wired.device.kind))
             }
+            Kind::S7(_) | Kind::Gpio(_) => field(&wired.device.kind, wired, false),
         }
     }
 
@@ -67,7 +81,69 @@ impl Clients {
     /// # Errors
     ///
     /// It cannot be reached, or does not answer.
-    pub fn browse(&self, device: &setup::Device) -> Option<Result<Vec<Node>, Failed>> {
+    pub fn browse(&self, device: &Wanted) -> Option<Result<Vec<Node>, Failed>> {
         self.brought.iter().find_map(|brought| brought.browse(device))
     }
+}
+
+impl Clients {
+    /// A device that is only looked at: nothing of it changes by that.
+    pub(crate) fn looker(&mut self, wired: &Wired) -> std::io::Result<Box<dyn Device>> {
+        match &wired.device.kind {
+            kind @ Kind::Gpio(_) => field(kind, wired, true),
+            _ => self.device(wired),
+        }
+    }
+}
+
+/// The kinds that not every build has, each with the feature that brings it.
+const OPTIONAL: [(&str, &str, bool); 4] = [
+    ("s7", "s7", cfg!(feature = "s7")),
+    ("gpio", "gpio", cfg!(all(feature = "gpio", target_os = "linux"))),
+    ("opc-ua", "opcua", cfg!(feature = "opcua")),
+    ("opc-ua-server", "opcua", cfg!(feature = "opcua")),
+];
+
+/// The feature that brings devices of the kind with this word, where this build lacks it.
+fn lacks(word: &str) -> Option<&'static str> {
+    OPTIONAL.iter().find(|(kind, _, there)| *kind == word && !there).map(|(_, feature, _)| *feature)
+}
+
+/// True if this build has devices of the kind with this word.
+pub fn has(word: &str) -> bool {
+    lacks(word).is_none()
+}
+
+/// The problems of devices of a kind that this build does not have.
+pub fn lacking(setup: &Setup) -> Vec<Problem> {
+    let wrong = |device: &Wanted| {
+        let word = device.kind.word();
+        let feature = lacks(word)?;
+        let what = format!("this build of G7 has no devices of the kind \"{word}\"");
+        let mut problem = Problem::new(&codes::BAD_WIRING, device.name.at, what);
+        let linux = if word == "gpio" { ", for Linux" } else { "" };
+        problem.help =
+            Some(format!("build it with `cargo install --path crates/g7 --features {feature}`{linux}"));
+        Some(problem)
+    };
+    setup.devices.iter().filter_map(wrong).collect()
+}
+
+/// A device of a kind that not every build has; `looks` for one that only reads and changes nothing.
+pub(crate) fn field(kind: &Kind, wired: &Wired, looks: bool) -> std::io::Result<Box<dyn Device>> {
+    // Where a build lacks both, nothing is asked for.
+    let _ = (wired, looks);
+    match kind {
+        #[cfg(feature = "s7")]
+        Kind::S7(s7) => Ok(crate::s7::device(s7, wired)),
+        #[cfg(all(feature = "gpio", target_os = "linux"))]
+        Kind::Gpio(chip) if looks => Ok(crate::gpio::look(chip, wired)),
+        #[cfg(all(feature = "gpio", target_os = "linux"))]
+        Kind::Gpio(chip) => Ok(crate::gpio::device(chip, wired)),
+        other => Err(no_kind(other)),
+    }
+}
+
+fn no_kind(kind: &Kind) -> std::io::Error {
+    std::io::Error::other(format!("this build has no kind \"{}\"", kind.word()))
 }

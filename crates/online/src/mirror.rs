@@ -38,10 +38,10 @@ pub fn mirror(bench: &Bench, wiring: &Wiring, listen: Option<IpAddr>) -> Result<
                     serial.port
                 ));
             }
-            Kind::OpcUa(server) => {
+            Kind::OpcUa(_) | Kind::S7(_) | Kind::Gpio(_) => {
                 return Err(format!(
-                    "{name} is the OPC UA server {}: the plant answers over Modbus TCP alone",
-                    server.url
+                    "{name} is of the kind \"{}\": the plant answers over Modbus TCP alone",
+                    wired.device.kind.word()
                 ));
             }
             // The masters of the chart are not part of its machine; nor is a broker, which is there

@@ -11,6 +11,7 @@ use crate::driver::Out;
 use crate::forms::holds;
 use crate::messages::{Carried, Refused, number};
 use crate::setup::{self, Channel, Point, read_node};
+use crate::subject::{Class, Subject};
 use crate::value::{Holds, Scaling};
 use crate::wire::{About, Folder, Shown, Wire};
 use crate::wiring::{OutAt, Wired};
@@ -30,21 +31,17 @@ pub(crate) fn wire(channel: &Channel, carried: &Carried<'_>) -> Result<(Wire, Sc
 }
 
 /// The node of a channel on the server of our own.
-pub(crate) fn shown(
-    channel: &Channel,
-    carried: &Carried<'_>,
-    folder: Folder,
-    comment: Option<&str>,
-) -> Result<(Wire, Scaling), Refused> {
+pub(crate) fn shown(channel: &Channel, subject: &Subject, class: Class) -> Result<(Wire, Scaling), Refused> {
     let Point::Node(name) = &channel.point else { return Err(no_node(channel, "node()")) };
-    let name = name.as_deref().unwrap_or(carried.name).to_owned();
+    let name = name.as_deref().unwrap_or(&subject.name).to_owned();
     if name.len() > LONGEST || name.contains(char::is_control) {
         let what = format!("the name of a node has at most {LONGEST} bytes, and no control characters");
         return Err(Refused { at: channel.at, what, help: None });
     }
     let unit = channel.unit.as_ref().map(|unit| unit.value.clone());
-    let about = About { comment: comment.map(str::to_owned), unit };
-    Ok((Wire::Shown(Shown { name, folder, about }), scaling(channel, carried)?))
+    let about = About { comment: subject.comment.clone(), unit };
+    let shown = Shown { name, folder: subject.folder, about };
+    Ok((Wire::Shown(shown), scaling(channel, &subject.carried(class))?))
 }
 
 /// The longest name of a node of our own.
@@ -61,9 +58,6 @@ fn scaling(channel: &Channel, carried: &Carried<'_>) -> Result<Scaling, Refused>
     if carried.kind == Kind::Text {
         let what = format!("`{}` is a STRING, which cannot be wired", carried.name);
         return Err(refused(channel.at, &what));
-    }
-    if let Some(at) = channel.message.first() {
-        return Err(refused(at, "a node has no field, quality of service, retain, will or silence"));
     }
     let scaling = number(channel, carried)?;
     let Some(form) = &channel.encoding else { return Ok(scaling) };
@@ -91,12 +85,7 @@ pub(crate) fn all(bench: &Bench) -> impl Iterator<Item = Seen> {
 pub(crate) fn name(wire: &Wire) -> Option<&str> {
     match wire {
         Wire::Shown(shown) => Some(&shown.name),
-        Wire::Worth(_)
-        | Wire::Modbus(_)
-        | Wire::Topic(_)
-        | Wire::Metric(_)
-        | Wire::Panel(_)
-        | Wire::Node(_) => None,
+        _ => None,
     }
 }
 

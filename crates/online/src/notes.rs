@@ -1,4 +1,4 @@
-//! What is recorded of a controller: each change of a chosen signal, from every scan.
+//! The record of a controller: each change of a chosen signal, from every scan.
 //!
 //! ```text
 //! step -> Pen -> ring of Notes -> a thread of its own -> a file
@@ -110,7 +110,7 @@ impl Watch {
         }
         let number = |word| Value::Word(word).number(self.kind);
         let moved = (number(word) - number(last)).abs();
-        // What is no number differs from every number.
+        // NaN differs from every number.
         moved.is_nan() || moved >= self.band
     }
 }

@@ -12,12 +12,12 @@
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-use g7_host::{Clock as _, Kind, WallClock};
+use g7_host::{Clock as _, WallClock};
 use g7_model::Nanos;
 
 use crate::device::{Absent, Device, Failed};
-use crate::messages::Refused;
-use crate::setup::{self, Channel, Handle, Point};
+use crate::part::{Part, number};
+use crate::setup::{self, Handle};
 use crate::value::{Raw, Scaling};
 use crate::wire::Wire;
 use crate::wiring::Wired;
@@ -26,19 +26,6 @@ use crate::wiring::Wired;
 const HANDS: usize = 16;
 /// A page counts as open for so long after its last sign.
 const OPEN: Nanos = Nanos::from_millis(2_000);
-
-/// A part of a panel, as a channel wires it.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Part {
-    /// What it is.
-    pub handle: Handle,
-    /// The least number that can be entered.
-    pub min: Option<f64>,
-    /// The greatest number that can be entered.
-    pub max: Option<f64>,
-    /// The number until a person enters one.
-    pub initial: Option<f64>,
-}
 
 /// A movement of a person's hand.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -159,11 +146,6 @@ impl Cell {
     }
 }
 
-/// A number as a value: a whole one is exact.
-fn number(x: f64) -> Raw {
-    if x.fract() == 0.0 && x.abs() < 1e18 { Raw::Whole(x as i128) } else { Raw::Real(x) }
-}
-
 impl Cells {
     fn is_open(&self, now: Nanos) -> bool {
         self.page.is_some_and(|at| now - at <= OPEN)
@@ -242,62 +224,10 @@ impl Device for Panel {
     fn close(&mut self) {}
 }
 
-/// The part of a panel that a channel names, and how its value becomes a word.
-pub(crate) fn wire(
-    channel: &Channel,
-    (name, kind): (&str, Kind),
-    input: bool,
-) -> Result<(Wire, Scaling), Refused> {
-    let refused = |at, what: String, help: Option<&str>| Refused { at, what, help: help.map(str::to_owned) };
-    let Point::Panel(handle) = &channel.point else {
-        let what = format!("`{}` is no point of a panel", channel.point);
-        let help =
-            "its points are button(), switch(), number(), choice(A1, F1), page(), lamp(green), value()";
-        return Err(refused(channel.at, what, Some(help)));
-    };
-    if handle.is_input() != input {
-        let what = format!("`{handle}` is {}", if handle.is_input() { "an input" } else { "an output" });
-        let help = "a person moves button, switch, number and choice; lamp and value show an output";
-        return Err(refused(channel.at, what, Some(help)));
-    }
-    let fits = match (handle, kind) {
-        (_, Kind::Text) => false,
-        (Handle::Button | Handle::Switch | Handle::Page | Handle::Lamp(_), kind) => kind == Kind::Bool,
-        (Handle::Number, kind) => kind != Kind::Bool,
-        (Handle::Choice(words), Kind::Int { bits, signed }) => {
-            let most = if signed { bits.saturating_sub(1) } else { bits };
-            most >= 63 || words.len() <= 1 << most
-        }
-        (Handle::Choice(_), _) => false,
-        (Handle::Value, _) => true,
-    };
-    if !fits {
-        let what = format!("`{handle}` cannot carry `{name}`");
-        let help = "button, switch, page and lamp are BOOL, a choice is a whole number, a number is one";
-        return Err(refused(channel.at, what, Some(help)));
-    }
-    let numbers = [&channel.scale, &channel.offset].into_iter().flatten().map(|n| n.at);
-    let other = numbers.chain(channel.encoding.as_ref().map(|e| e.at)).chain(channel.message.first());
-    if let Some(at) = other.into_iter().next() {
-        let what = "a panel has no scale, offset, form of number or messages".to_owned();
-        return Err(refused(at, what, None));
-    }
-    if let (Some(at), false) = (channel.limits.first(), *handle == Handle::Number) {
-        return Err(refused(at, format!("`{handle}` has no limits: `number()` has them"), None));
-    }
-    // TRUE is pressed, whatever the contact of a real button would be.
-    let scaling = Scaling::plain(kind);
-    let limit = |at: &Option<setup::At<f64>>| at.as_ref().map(|x| x.value);
-    let setup::Limits { min, max, initial } = &channel.limits;
-    if let Some(initial) = initial.as_ref().filter(|x| scaling.word(number(x.value)).is_none()) {
-        return Err(refused(initial.at, format!("`{name}` cannot have this value"), None));
-    }
-    let part = Part { handle: handle.clone(), min: limit(min), max: limit(max), initial: limit(initial) };
-    Ok((Wire::Panel(part), scaling))
-}
-
 #[cfg(test)]
 mod tests {
+    use g7_host::Kind;
+
     use super::*;
 
     const MS: Nanos = Nanos::MILLISECOND;

@@ -5,16 +5,16 @@ use std::time::Duration;
 use g7_host::{Clock as _, WallClock};
 
 use crate::clients::Clients;
-use crate::device::{Absent, Device as _, Failed};
+use crate::device::{Absent, Failed};
 use crate::mqtt;
-use crate::setup::{Broker, Device, Place};
-use crate::value::Raw;
-use crate::wiring::Wired;
-use crate::wiring::{In, WhileBad};
+use crate::setup::{Broker, Device};
+use crate::value::{Holds, Raw, Scaling};
+use crate::wire::Wire;
+use crate::wiring::{In, WhileBad, Wired};
 use crate::word::Target;
 
 /// A point to read.
-pub type Asked = Place;
+pub type Asked = Wire;
 
 /// The answer of a device.
 #[derive(Debug)]
@@ -31,10 +31,14 @@ pub struct Probed {
 ///
 /// The device cannot be reached, or does not answer.
 pub fn probe(clients: &mut Clients, device: &Device, asked: &[Asked]) -> Result<Probed, Failed> {
-    let wired = Wired { device: device.clone(), inputs: Vec::new(), outputs: Vec::new(), good: Vec::new() };
-    let client = clients.units.client(&wired).map_err(|e| Failed(e.to_string()))?;
-    let mut client = client.ok_or_else(|| Failed("it is the one that asks".to_owned()))?;
-    client.read_points(asked);
+    // The use of the points does not matter here.
+    let scaling =
+        Scaling { kind: g7_host::Kind::Bool, holds: Holds::Bit, inverted: false, scale: 1.0, offset: 0.0 };
+    let (target, bad) = (Target::Input(0), WhileBad::Hold);
+    let input = |wire: &Wire| In { name: String::new(), target, wire: wire.clone(), scaling, bad };
+    let inputs = asked.iter().map(input).collect();
+    let wired = Wired { device: device.clone(), inputs, outputs: Vec::new(), good: Vec::new() };
+    let mut client = clients.looker(&wired).map_err(|e| Failed(e.to_string()))?;
     client.connect()?;
     let mut clock = WallClock::default();
     let mut values = vec![Err(Absent::Unread); asked.len()];

@@ -2,8 +2,8 @@
 
 use g7_model::Nanos;
 
-use crate::panel::Part;
-use crate::setup::{NodeId, Place};
+use crate::part::Part;
+use crate::setup::{Address, Bias, Encoding, Memory, NodeId, Place, Width};
 
 /// A point of a device.
 #[derive(Clone, Debug, PartialEq)]
@@ -14,6 +14,10 @@ pub enum Wire {
     Topic(Topic),
     /// A metric of Sparkplug, by name.
     Metric(String),
+    /// Bytes or a bit of a controller of Siemens.
+    S7(Cell),
+    /// A line of this machine.
+    Line(Line),
     /// A part of a panel.
     Panel(Part),
     /// A node of an OPC UA server.
@@ -95,6 +99,70 @@ impl Worth {
     }
 }
 
+/// Bytes or a bit of a controller of Siemens.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Cell {
+    /// The memory that it is in.
+    pub memory: Memory,
+    /// The number of the first byte.
+    pub byte: u16,
+    /// How it holds the value.
+    pub form: Form,
+}
+
+/// How bytes hold a value, the highest first.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Form {
+    /// A bit, 0 to 7.
+    Bit(u8),
+    /// A whole number in one byte.
+    Byte {
+        /// Two's complement.
+        signed: bool,
+    },
+    /// A number in two, four or eight bytes.
+    Number(Encoding),
+}
+
+impl Cell {
+    /// The number of bytes.
+    pub fn bytes(&self) -> u16 {
+        match self.form {
+            Form::Bit(_) | Form::Byte { .. } => 1,
+            Form::Number(encoding) => encoding.registers() * 2,
+        }
+    }
+
+    /// The number of the byte behind it.
+    pub(crate) fn end(&self) -> u32 {
+        u32::from(self.byte) + u32::from(self.bytes())
+    }
+
+    /// The address, as people write it.
+    pub fn address(&self) -> Address {
+        let width = match (self.form, self.bytes()) {
+            (Form::Bit(bit), _) => Width::Bit(bit),
+            (_, 2) => Width::Word,
+            (_, 4) => Width::Double,
+            _ => Width::Byte,
+        };
+        Address { memory: self.memory, byte: self.byte, width }
+    }
+}
+
+/// A line of a chip of this machine.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Line {
+    /// Its number on the chip.
+    pub offset: u32,
+    /// The resistor; without it that which the line has.
+    pub bias: Option<Bias>,
+    /// TRUE is the low level.
+    pub active_low: bool,
+    /// An input has to be steady for so long.
+    pub debounce: Option<Nanos>,
+}
+
 /// A topic of MQTT and its messages.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Topic {
@@ -117,12 +185,7 @@ impl Wire {
     pub fn place(&self) -> Option<Place> {
         match self {
             Wire::Modbus(place) => Some(*place),
-            Wire::Topic(_)
-            | Wire::Metric(_)
-            | Wire::Panel(_)
-            | Wire::Node(_)
-            | Wire::Shown(_)
-            | Wire::Worth(_) => None,
+            _ => None,
         }
     }
 }
@@ -137,6 +200,8 @@ impl std::fmt::Display for Wire {
             Wire::Node(node) => write!(f, "node({node})"),
             Wire::Shown(Shown { name, .. }) => write!(f, "node({name})"),
             Wire::Worth(name) => write!(f, "node({name}) status"),
+            Wire::S7(cell) => cell.address().fmt(f),
+            Wire::Line(line) => write!(f, "line({})", line.offset),
             Wire::Panel(part) => part.handle.fmt(f),
         }
     }

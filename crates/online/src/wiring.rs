@@ -10,14 +10,16 @@ use g7_rig::{Bench, Item, Role};
 use crate::chosen::{self, Chosen};
 use crate::driver::Out;
 use crate::forms;
-use crate::messages::{self, Refused};
+use crate::handles;
+use crate::messages::{self, Carried, Refused};
+use crate::names::{Named, named, source_of};
 use crate::nodes;
-use crate::panel;
+use crate::points;
 use crate::setup::{
     Area, At, Bad, Broker, Channel, Device, Encoding, Handle, Kind as Way, Literal, Place, Point, Register,
     Setup,
 };
-use crate::subject::{Class, Named, Subject, named, source_of};
+use crate::subject::{Class, Subject};
 use crate::value::{Holds, Raw, Scaling};
 use crate::wire::{Folder, Wire};
 use crate::word::{Source, Target};
@@ -29,7 +31,7 @@ pub struct Wiring {
     pub devices: Vec<Wired>,
     /// Inputs and outputs of the chart that no device has, by name.
     pub unwired: Vec<String>,
-    /// What is recorded.
+    /// The signals that are recorded.
     pub history: Option<Chosen>,
 }
 
@@ -115,7 +117,9 @@ pub fn wire(bench: &Bench, setup: &Setup) -> (Wiring, Vec<Problem>) {
         .map(|i| i.name.clone())
         .collect();
     nodes::expose(bench, &mut wirer.wiring.devices);
-    wirer.wiring.devices.retain(|d| !(d.inputs.is_empty() && d.outputs.is_empty() && d.good.is_empty()));
+    let events = |d: &Wired| matches!(&d.device.kind, Way::Mqtt(broker) if broker.events.is_some());
+    let used = |d: &Wired| !(d.inputs.is_empty() && d.outputs.is_empty() && d.good.is_empty()) || events(d);
+    wirer.wiring.devices.retain(used);
     nodes::judge(&mut wirer.wiring.devices);
     if let Some(history) = &setup.history {
         wirer.wiring.history = Some(chosen::choose(bench, history, &mut wirer.problems));
@@ -218,8 +222,8 @@ impl<'a> Wirer<'a> {
             return;
         };
         let kind = self.wiring.devices.get(device).map(|d| d.device.kind.clone());
-        if let (Some(unit), false) = (&channel.unit, matches!(kind, Some(Way::OpcUaServer(_)))) {
-            self.wrong(&codes::WRONG_CHANNEL, unit.at, "only an OPC UA server of our own shows a unit");
+        if let Some((at, what)) = points::misplaced(channel, kind.as_ref()) {
+            self.wrong(&codes::WRONG_CHANNEL, at, what);
             return;
         }
         match (&channel.point, kind) {
@@ -230,12 +234,19 @@ impl<'a> Wirer<'a> {
             }
             (Point::Good, _) => self.good(channel, subject, device, class),
             (_, Some(Way::Mqtt(broker))) => self.message(channel, subject, (device, &broker), class),
-            (_, Some(Way::OpcUa(_))) => self.node(channel, subject, device, class, false),
-            (_, Some(Way::OpcUaServer(_))) => self.node(channel, subject, device, class, true),
+            (_, Some(Way::S7(_))) => self.point(channel, subject, device, class, points::cell),
+            (_, Some(Way::Gpio(_))) => self.point(channel, subject, device, class, points::line),
+            (_, Some(Way::OpcUa(_))) => self.point(channel, subject, device, class, nodes::wire),
+            (_, Some(Way::OpcUaServer(_))) => {
+                let shown = nodes::shown(channel, subject, class);
+                self.place(channel, subject, device, class, shown);
+            }
             (Point::Modbus(register), _) => self.register(channel, subject, device, *register, class),
-            (point @ (Point::Topic(_) | Point::Metric(_) | Point::Panel(_) | Point::Node(_)), _) => {
+            (point, _) => {
                 let what = format!("`{point}` is no point of `{}`", channel.device.value);
                 let help = match point {
+                    Point::S7(_) => "only a controller of Siemens has such addresses: `kind = \"s7\"`",
+                    Point::Line(_) => "only a chip has lines: `kind = \"gpio\"`",
                     Point::Panel(_) => "only a panel has buttons and lamps: `kind = \"panel\"`",
                     Point::Node(_) => "only OPC UA has nodes: `kind = \"opc-ua\"`",
                     _ => "only a broker has messages: `kind = \"mqtt\"`",
@@ -260,6 +271,48 @@ impl<'a> Wirer<'a> {
         }
     }
 
+    /// An address of a controller of Siemens, a line of a chip, or a node of a server of OPC UA.
+    fn point(&mut self, channel: &Channel, subject: &Subject, device: usize, class: Class, read: Read) {
+        if class == Class::Shown {
+            let (what, help) = NOT_SHOWN;
+            let what = format!("`{}` {what}", channel.point);
+            self.wrong(&codes::WRONG_CHANNEL, channel.at, what).help = Some(help.to_owned());
+            return;
+        }
+        self.place(channel, subject, device, class, read(channel, &subject.carried(class)));
+    }
+
+    /// A point that nothing else has.
+    fn place(
+        &mut self,
+        channel: &Channel,
+        subject: &Subject,
+        device: usize,
+        class: Class,
+        read: Result<(Wire, Scaling), Refused>,
+    ) {
+        let (wire, scaling) = match read {
+            Ok(wired) => wired,
+            Err(Refused { at, what, help }) => {
+                self.wrong(&codes::WRONG_CHANNEL, at, what).help = help;
+                return;
+            }
+        };
+        let places = match &wire {
+            // Several inputs may read one address or node; a line and a node of our own have one use.
+            Wire::S7(cell) if class == Class::Output => points::bits(cell),
+            Wire::Node(_) if class == Class::Output => vec![wire.to_string()],
+            Wire::Line(_) | Wire::Shown(_) => vec![wire.to_string()],
+            _ => Vec::new(),
+        };
+        for place in places {
+            if !self.is_unused(channel, subject, device, place) {
+                return;
+            }
+        }
+        self.connect(channel, subject, device, (wire, scaling), class);
+    }
+
     /// A part of a panel.
     fn panel(&mut self, channel: &Channel, subject: &Subject, device: usize, class: Class) {
         let press = match self.wiring.devices.get(device).map(|d| &d.device.kind) {
@@ -277,7 +330,7 @@ impl<'a> Wirer<'a> {
             self.wrong(&codes::WRONG_CHANNEL, channel.at, what).help = Some(help);
             return;
         }
-        match panel::wire(channel, (&subject.name, subject.kind), class == Class::Input) {
+        match handles::wire(channel, (&subject.name, subject.kind), class == Class::Input) {
             Ok(wired) => self.connect(channel, subject, device, wired, class),
             Err(Refused { at, what, help }) => self.wrong(&codes::WRONG_CHANNEL, at, what).help = help,
         }
@@ -291,8 +344,7 @@ impl<'a> Wirer<'a> {
         (device, broker): (usize, &Broker),
         class: Class,
     ) {
-        let carried = subject.carried(class);
-        let (wire, scaling) = match messages::wire(channel, &carried, broker) {
+        let (wire, scaling) = match messages::wire(channel, &subject.carried(class), broker) {
             Ok(wired) => wired,
             Err(Refused { at, what, help }) => {
                 self.wrong(&codes::WRONG_CHANNEL, at, what).help = help;
@@ -303,7 +355,7 @@ impl<'a> Wirer<'a> {
             // Several inputs may read one topic.
             Wire::Topic(topic) => (class != Class::Input).then(|| topic.name.clone()),
             Wire::Metric(name) => Some(name.clone()),
-            Wire::Modbus(_) | Wire::Panel(_) | Wire::Node(_) | Wire::Shown(_) | Wire::Worth(_) => None,
+            _ => None,
         };
         let will = matches!(&wire, Wire::Topic(topic) if topic.will).then(|| WILL.to_owned());
         for place in place.into_iter().chain(will) {
@@ -314,42 +366,17 @@ impl<'a> Wirer<'a> {
         self.connect(channel, subject, device, (wire, scaling), class);
     }
 
-    /// A node of OPC UA: of another server, or of the one of our own.
-    fn node(&mut self, channel: &Channel, subject: &Subject, device: usize, class: Class, own: bool) {
-        if class == Class::Shown && !own {
-            let (what, help) = NOT_ASKED;
-            let what = format!("`{}` {what}", channel.point);
-            self.wrong(&codes::WRONG_CHANNEL, channel.at, what).help = Some(help.to_owned());
-            return;
-        }
-        let carried = subject.carried(class);
-        let wired = if own {
-            nodes::shown(channel, &carried, subject.folder, subject.comment.as_deref())
-        } else {
-            nodes::wire(channel, &carried)
-        };
-        let (wire, scaling) = match wired {
-            Ok(wired) => wired,
-            Err(Refused { at, what, help }) => {
-                self.wrong(&codes::WRONG_CHANNEL, at, what).help = help;
-                return;
-            }
-        };
-        // Several inputs may read one node of a device; a node of our own has one use.
-        if (class == Class::Input && !own) || self.is_unused(channel, subject, device, wire.to_string()) {
-            self.connect(channel, subject, device, (wire, scaling), class);
-        }
-    }
-
     /// True if nothing else publishes there.
     fn is_unused(&mut self, channel: &Channel, item: &Subject, device: usize, place: String) -> bool {
-        let of = |k: usize| match self.wiring.devices.get(k).map(|d| &d.device.kind) {
-            Some(Way::Mqtt(broker)) => Some((broker.host.as_str(), broker.port, &broker.sparkplug)),
-            Some(Way::OpcUa(server)) => Some((server.url.as_str(), 0, &None)),
-            Some(_) | None => None,
+        let kind = |k: usize| self.wiring.devices.get(k).map(|d| &d.device.kind);
+        let of = |broker: &Broker| (broker.host.clone(), broker.port, broker.sparkplug.clone());
+        let same = |k: &usize| match (kind(*k), kind(device)) {
+            (Some(Way::Mqtt(one)), Some(Way::Mqtt(other))) => of(one) == of(other),
+            (Some(Way::OpcUa(one)), Some(Way::OpcUa(other))) => one.url == other.url,
+            (one, other) => one == other,
         };
         // Two clients of one broker publish to the same topics, but each has a will of its own.
-        let first = (0..device).find(|k| of(*k).is_some() && of(*k) == of(device)).unwrap_or(device);
+        let first = (0..device).find(same).unwrap_or(device);
         let key = (if place == WILL { device } else { first }, place);
         if let Some((other, there)) = self.messages.get(&key).cloned() {
             let what = match key.1.as_str() {
@@ -373,10 +400,6 @@ impl<'a> Wirer<'a> {
         register: Register,
         class: Class,
     ) {
-        if let Some(at) = channel.message.first() {
-            self.wrong(&codes::WRONG_CHANNEL, at, "only a topic has messages");
-            return;
-        }
         let server = self.wiring.devices.get(device).is_some_and(|d| d.device.kind.is_server());
         if let Some((what, help)) = refused(register.area, class, server) {
             self.wrong(&codes::WRONG_CHANNEL, channel.at, format!("`{register}` {what}")).help =
@@ -519,11 +542,14 @@ impl<'a> Wirer<'a> {
     }
 }
 
+/// Reads the point of a channel, with what its variable carries.
+type Read = fn(&Channel, &Carried<'_>) -> Result<(Wire, Scaling), Refused>;
+
 /// The key of the will among the points of a broker; no topic and no metric is empty.
 const WILL: &str = "";
 
-/// Why a device that is asked shows nothing, and what to do instead.
-const NOT_ASKED: (&str, &str) = (
+/// Why a device shows nothing, and what to do instead.
+const NOT_SHOWN: (&str, &str) = (
     "belongs to a device that does not ask",
     "only a server or a broker shows: `kind = \"modbus-server\"`, `kind = \"opc-ua-server\"`, `kind = \"mqtt\"`",
 );
@@ -531,7 +557,7 @@ const NOT_ASKED: (&str, &str) = (
 /// Why a use of a table is refused, and what to do instead.
 fn refused(area: Area, class: Class, server: bool) -> Option<(&'static str, &'static str)> {
     match class {
-        Class::Shown if !server => Some(NOT_ASKED),
+        Class::Shown if !server => Some(NOT_SHOWN),
         Class::Input if server && !area.is_writable() => {
             Some(("cannot be written by a master", "inputs from a master are coils or holding registers"))
         }

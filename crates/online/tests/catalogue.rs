@@ -1,4 +1,4 @@
-//! What the catalogue says of an io file, asked of the reader: keys, limits, words and defaults.
+//! The catalogue of an io file, held against the reader: keys, limits, words and defaults.
 
 use g7_model::{FileId, Problem};
 use g7_online::setup::catalogue::{Argument, CONTROLLER, Form, KINDS, KindRow, Point, Setting, Usual};
@@ -20,7 +20,7 @@ fn quoted(form: Form, text: &str) -> String {
 fn fitting(setting: &Setting) -> String {
     let (Usual::Needed(text) | Usual::Is(text) | Usual::None(text)) = setting.usual;
     match setting.form {
-        Form::Table(settings) => {
+        Form::Table(settings) | Form::FlagOrTable(settings) => {
             let rows: Vec<String> = settings.iter().map(|s| format!("{} = {}", s.key, fitting(s))).collect();
             format!("{{ {} }}", rows.join(", "))
         }
@@ -55,7 +55,13 @@ fn limits(form: Form) -> (Vec<String>, Vec<String>) {
             vec!["\"other\"".to_owned()],
         ),
         Form::Text => (Vec::new(), vec!["5".to_owned()]),
-        Form::Table(_) => (Vec::new(), vec!["5".to_owned()]),
+        Form::Table(settings) => {
+            let text = settings.first().filter(|s| s.key == "topic").map(fitting);
+            (text.into_iter().collect(), vec!["5".to_owned()])
+        }
+        Form::FlagOrTable(_) => {
+            (vec!["true".to_owned(), "false".to_owned()], vec!["5".to_owned(), "\"true\"".to_owned()])
+        }
     }
 }
 
@@ -142,7 +148,9 @@ fn a_setting_has_the_limits_the_words_and_the_default_of_its_row() {
         }
     }
     for setting in CONTROLLER {
-        let with = |value: &str| format!("[controller]\n{} = {value}\n", setting.key);
+        // A setting of the log needs a log.
+        let log = if setting.key.starts_with("log-") { "log = 'a.log'\n" } else { "" };
+        let with = |value: &str| format!("[controller]\n{log}{} = {value}\n", setting.key);
         let (within, beyond) = limits(setting.form);
         for value in within.iter().chain([&fitting(setting)]) {
             assert_eq!(problems(&with(value)), [""; 0], "{} = {value}", setting.key);
@@ -157,10 +165,16 @@ fn example(point: &Point) -> String {
         Argument::Nothing => String::new(),
         Argument::Address(most) => most.to_string(),
         Argument::Bit(most) => format!("{most}.15"),
-        Argument::Text(text) | Argument::TextOrName(text) | Argument::List(text) => text.to_owned(),
+        Argument::Text(text) | Argument::TextOrName(text) | Argument::List(text) | Argument::Alone(text) => {
+            text.to_owned()
+        }
         Argument::Word(words) => words.last().copied().unwrap_or("").to_owned(),
     };
-    format!("{}({argument})", point.word)
+    if matches!(point.argument, Argument::Alone(_)) {
+        argument
+    } else {
+        format!("{}({argument})", point.word)
+    }
 }
 
 #[test]

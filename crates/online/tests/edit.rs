@@ -145,7 +145,7 @@ fn a_file_that_is_no_toml_is_left_as_it_is() {
     }
     // A path through a value.
     assert!(edit(FILE, &[set("devices/line1/host/more", text("x"))]).is_err());
-    // What is not there is away already.
+    // A setting that is not there is away already.
     assert_eq!(edit(FILE, &[Change::Remove(path("inputs/none"))]).as_deref(), Ok(FILE));
 }
 

@@ -339,7 +339,7 @@ fn row_18_a_device_that_panics_is_lost_and_comes_back_while_all_else_goes_on() {
         let before = bed.exchanges(0);
         wait("the other device", || bed.exchanges(0) > before + 2);
         assert!(bed.outputs()[0], "the output of the other device");
-        // What the device has forgotten is written again.
+        // Outputs that the device has forgotten are written again.
         bed.units[1].output.store(false, Ordering::Release);
         bed.units[1].panics.store(false, Ordering::Release);
         hears(&running, 1, true);

@@ -1,4 +1,4 @@
-//! What is recorded of a controller: each change of each scan, or a loss that is told.
+//! The record of a controller: each change of each scan, or a loss that is told.
 
 use std::collections::BTreeMap;
 

@@ -188,7 +188,54 @@ fn every_mistake_has_its_code() {
         ("[devices.a]\nkind = 'modbus-tcp'\nhost = 'x'\n[inputs]\nauto = 'a.button()'", &["G0703"]),
         ("[devices.m]\nkind = 'mqtt'", &["G0701"]),
         ("[devices.m]\nkind = 'mqtt'\nhost = 'x'\nunit = 1", &["G0701"]),
-        ("[devices.m]\nkind = 'mqtt'\nhost = 'x'\ntls = true", &["G0701"]),
+        ("[devices.m]\nkind = 'mqtt'\nhost = 'x'\ntls = true", &[]),
+        ("[devices.m]\nkind = 'mqtt'\nhost = 'x'\ntls = { ca = 'ca.pem' }", &[]),
+        ("[devices.m]\nkind = 'mqtt'\nhost = 'x'\ntls = 'yes'", &["G0701"]),
+        ("[devices.m]\nkind = 'mqtt'\nhost = 'x'\ntls = { certificate = 'a.pem' }", &["G0701"]),
+        ("[devices.m]\nkind = 'mqtt'\nhost = 'x'\ntls = { cert = 'a.pem' }", &["G0701"]),
+        ("[devices.m]\nkind = 'mqtt'\nhost = 'x'\nevents = 'plant/events'", &[]),
+        ("[devices.m]\nkind = 'mqtt'\nhost = 'x'\nevents = 5", &["G0701"]),
+        ("[devices.m]\nkind = 'mqtt'\nhost = 'x'\nevents = 'plant/#'", &["G0701"]),
+        ("[devices.m]\nkind = 'mqtt'\nhost = 'x'\nevents = '$SYS/a'", &["G0701"]),
+        ("[devices.m]\nkind = 'mqtt'\nhost = 'x'\nevents = { most = 1000 }", &["G0701"]),
+        ("[devices.m]\nkind = 'mqtt'\nhost = 'x'\nevents = { topic = 'a', most = 9 }", &["G0701"]),
+        ("[devices.m]\nkind = 'mqtt'\nhost = 'x'\nevents = { topic = 'a', file = '../b' }", &["G0701"]),
+        (
+            "[devices.m]\nkind = 'mqtt'\nhost = 'x'\nevents = 'a'\nsparkplug = { group = 'g', node = 'n' }",
+            &["G0701"],
+        ),
+        ("[devices.p]\nkind = 's7'", &["G0701"]),
+        ("[devices.p]\nkind = 's7'\nhost = 'x'\nrack = 8", &["G0701"]),
+        ("[devices.p]\nkind = 's7'\nhost = 'x'\nslot = 32", &["G0701"]),
+        ("[devices.p]\nkind = 's7'\nhost = 'x'\nconnection = 'other'", &["G0701"]),
+        ("[devices.p]\nkind = 's7'\nhost = 'x'\n[inputs]\nstart = 'p.I0.3'\nlevel = 'p.DB1.DBD4'", &[]),
+        ("[devices.p]\nkind = 's7'\nhost = 'x'\n[inputs]\nstart = 'p.M0.8'", &["G0701"]),
+        ("[devices.p]\nkind = 's7'\nhost = 'x'\n[inputs]\nstart = 'p.DB0.DBX0.0'", &["G0701"]),
+        ("[devices.p]\nkind = 's7'\nhost = 'x'\n[inputs]\nstart = 'p.DB1.DBW0'", &["G0703"]),
+        ("[devices.p]\nkind = 's7'\nhost = 'x'\n[inputs]\nlevel = 'p.M0.0'", &["G0703"]),
+        ("[devices.p]\nkind = 's7'\nhost = 'x'\n[inputs]\nstart = 'p.coil(1)'", &["G0703"]),
+        ("[devices.p]\nkind = 's7'\nhost = 'x'\n[outputs]\nvalve = 'p.I0.0'", &["G0703"]),
+        ("[devices.p]\nkind = 's7'\nhost = 'x'\n[outputs]\nvalve = 'p.M2.3'\nspeed = 'p.MW2'", &["G0704"]),
+        ("[inputs]\nstart = 'a.M0.0'", &["G0703"]),
+        ("[devices.g]\nkind = 'gpio'", &["G0701"]),
+        (
+            "[devices.g]\nkind = 'gpio'\nchip = '/dev/gpiochip0'\n[inputs]\n\
+             start = { at = 'g.line(4)', bias = 'pull-up', active-low = true, debounce = '5ms' }",
+            &[],
+        ),
+        ("[devices.g]\nkind = 'gpio'\nchip = 'c'\n[inputs]\nstart = 'g.line(x)'", &["G0701"]),
+        ("[devices.g]\nkind = 'gpio'\nchip = 'c'\n[inputs]\nlevel = 'g.line(4)'", &["G0703"]),
+        (
+            "[devices.g]\nkind = 'gpio'\nchip = 'c'\n[inputs]\nstart = { at = 'g.line(4)', bias = 'up' }",
+            &["G0701"],
+        ),
+        (
+            "[devices.g]\nkind = 'gpio'\nchip = 'c'\n[inputs]\nstart = 'g.line(4)'\n\
+             [outputs]\nvalve = 'g.line(4)'",
+            &["G0704"],
+        ),
+        ("[inputs]\nstart = { at = 'a.coil(1)', debounce = '5ms' }", &["G0703"]),
+        ("[inputs]\nstart = 'a.line(4)'", &["G0703"]),
         ("[devices.m]\nkind = 'mqtt'\nhost = 'x'\npassword = 'y'", &["G0701"]),
         ("[devices.m]\nkind = 'mqtt'\nhost = 'x'\npassword-file = 'y'", &["G0701"]),
         ("[devices.m]\nkind = 'mqtt'\nhost = 'x'\nuser = 'u'\npassword-file = 'y'", &[]),
@@ -328,7 +375,7 @@ fn a_password_comes_from_elsewhere_and_is_never_shown() {
               [devices.b]\nkind = 'mqtt'\nhost = 'x'\nuser = 'u'\npassword-env = 'GONE'\n";
     let (mut setup, problems) = setup::read(io, FileId(1));
     assert!(problems.is_empty(), "{problems:?}");
-    let problems = setup::read_passwords(&mut setup, |origin| match origin {
+    let problems = setup::read_secrets(&mut setup, |origin| match origin {
         setup::Origin::File(name) if name == "there" => Ok(b"sesame\n".to_vec()),
         setup::Origin::File(_) | setup::Origin::Variable(_) => Err("it is not there".to_owned()),
     });

@@ -1,4 +1,4 @@
-//! What a controller writes down, in files of SQLite beside its io file.
+//! The files of SQLite that a controller writes beside its io file.
 //!
 //! # Where this sits
 //!
@@ -9,13 +9,15 @@
 //! # Invariants
 //!
 //! Nothing here is called by the scan thread: a write waits for the disk.
-//! What a call has returned as written survives a loss of power, unless its module says otherwise.
+//! A row that a call has returned as written survives a loss of power, unless its module says otherwise.
 //! A full disk is an error of the call; the same process goes on as soon as there is room again.
 #![forbid(unsafe_code)]
 
 mod file;
 pub mod history;
 pub mod log;
+mod outbox;
 pub mod users;
 
 pub use file::{Durable, StoreError, open, read};
+pub use outbox::{Limits, Outbox, Waiting};

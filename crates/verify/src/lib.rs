@@ -1,14 +1,16 @@
-//! Questions about all runs of a program.
+//! Questions about all runs of a chart.
 //!
 //! # Where this sits
 //!
 //! ```text
-//! compile -> Program -> verify: engine::begin, pass, finish from each state that is reached
+//! model::Document -> ask -> Question, Model -> Layer (search) -> Verdict -> g7 prove
+//!                           two charts      -> compare        -> Equality -> g7 compare
 //! ```
 //!
-//! Its first feature is reachability: [`Explorer::search`] tries moves breadth first
-//! from the state before the first scan, and answers with a shortest run, with "no
-//! state has it", or with "not decided" and the bound that ended the search.
+//! `model.rs` has the meaning of a run, `question.rs` that of a claim, `verdict.rs` the
+//! answers. `search.rs` visits all states with `engine::scan`; `asked.rs` tells it which
+//! inputs matter in a state, `values.rs` which values of them. [`Explorer::search`] is a
+//! search by moves that its caller chooses, for tests and tools.
 //!
 //! # Invariants
 //!
@@ -17,13 +19,35 @@
 //! - The order of a search depends on the program, the moves and the bounds alone.
 //! - A verdict about all runs is given only where all states were visited and every
 //!   move that matters was tried.
+//! - A run is given only after `engine::scan` has repeated it from the start.
+//! - No clock: the caller's [`Budget::stop`] ends a search.
 //!
 //! Not here: names, messages (`compile`, `model`), the evolution itself (`engine`).
 #![forbid(unsafe_code)]
 
+mod ask;
+mod asked;
+mod compare;
 mod explore;
 mod inputs;
+mod layer;
+mod look;
+mod model;
+mod monitor;
+mod question;
+mod search;
 mod store;
+mod values;
+mod verdict;
 
+pub use ask::{Asked, ask};
+pub use compare::{Compare, Difference, Equality, compare};
 pub use explore::{Answer, Bound, Explorer, Limits, Moment, Move, Moves, Next};
 pub use inputs::{Inputs, Which};
+pub use layer::{Budget, Layer};
+pub use look::replay;
+pub use model::Model;
+pub use question::{Claim, Query, Question};
+pub use search::{Explicit, Tried, watch};
+pub use values::{Values, values};
+pub use verdict::{Certificate, Evidence, Open, Run, Verdict};

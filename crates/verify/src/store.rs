@@ -30,18 +30,31 @@ impl Store {
         self.slot(image).is_err()
     }
 
+    /// Bytes in use.
+    pub(crate) fn bytes(&self) -> usize {
+        self.images.len() * 8 + self.slots.len() * 4
+    }
+
     /// Adds an image; tells whether it is new.
     pub(crate) fn insert(&mut self, image: &[u64]) -> bool {
+        self.find_or_insert(image).is_none()
+    }
+
+    /// The number of an image that is there; one that is not is added.
+    pub(crate) fn find_or_insert(&mut self, image: &[u64]) -> Option<u32> {
         if (self.len + 1) * 3 > self.slots.len() * 2 {
             self.grow();
         }
-        let Ok(at) = self.slot(image) else { return false };
+        let at = match self.slot(image) {
+            Ok(at) => at,
+            Err(at) => return self.slots.get(at).copied(),
+        };
         if let Some(slot) = self.slots.get_mut(at) {
             *slot = self.len as u32;
         }
         self.images.extend_from_slice(image);
         self.len += 1;
-        true
+        None
     }
 
     /// The free slot for an image that is not there, or the slot of one that is.

@@ -1,4 +1,4 @@
-//! What a process takes of the machine, as Linux tells it.
+//! The memory, threads and descriptors of a process, as Linux tells them.
 
 use std::path::PathBuf;
 

@@ -8,13 +8,15 @@ export interface Named {
   argument: string;
 }
 
-/** Cuts `line1.coil(2)`. */
+/** Cuts `line1.coil(2)`, or `plc.DB1.DBX0.0`, which has no word and no brackets. */
 export function parsed(text: string | null): Named | null {
   const found = /^\s*(.*\S)\s*\.\s*(\w+)\s*\((.*)\)\s*$/.exec(text ?? '');
-  return found ? { device: found[1] ?? '', word: found[2] ?? '', argument: (found[3] ?? '').trim() } : null;
+  if (found) return { device: found[1] ?? '', word: found[2] ?? '', argument: (found[3] ?? '').trim() };
+  const alone = /^\s*([^.()]*[^.()\s])\s*\.\s*([^()]*[^()\s])\s*$/.exec(text ?? '');
+  return alone ? { device: alone[1] ?? '', word: '', argument: alone[2] ?? '' } : null;
 }
 
-export const written = ({ device, word, argument }: Named): string => `${device}.${word}(${argument})`;
+export const written = ({ device, word, argument }: Named): string => (word === '' ? `${device}.${argument}` : `${device}.${word}(${argument})`);
 
 /** The points of a kind that can carry a signal in a table of the io file. */
 export function fitting(kind: Kind | undefined, signal: Signal, table: Table): PointKind[] {
@@ -30,7 +32,7 @@ export function fitting(kind: Kind | undefined, signal: Signal, table: Table): P
 export function pointOf(kind: Kind | undefined, named: Named | null, signal: Signal): PointKind | undefined {
   const bit = /^\d+\.\d+$/.test(named?.argument ?? '');
   const same = kind?.points.filter((p) => p.word === named?.word) ?? [];
-  return same.find((p) => (p.argument.is === 'bit') === bit) ?? same.find((p) => p.carries === signal.carries) ?? same[0];
+  return same.find((p) => (p.argument.is === 'bit') === bit) ?? same.find((p) => p.carries === signal.carries) ?? same.find((p) => p.carries === 'number' && signal.carries === 'whole') ?? same[0];
 }
 
 export const settingsOf = (point: PointKind | undefined, table: Table): Setting[] => (table === 'inputs' ? point?.of_input : point?.of_output) ?? [];
@@ -81,7 +83,7 @@ export function offered(sight: Sight, signal: Signal, device: string, point: Poi
       if (!taken.has(at) && !taken.has(String(Math.floor(k / 16)))) return [at];
     }
   }
-  if (argument.is === 'list' || argument.is === 'text') return [argument.example];
+  if (argument.is === 'list' || argument.is === 'text' || argument.is === 'alone') return [argument.example];
   if (argument.is === 'word') return [argument.words[0] ?? ''];
   return argument.is === 'name' ? [''] : [];
 }

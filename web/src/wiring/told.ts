@@ -10,7 +10,7 @@ export interface Setting {
     | { is: 'whole'; least: number; most: number }
     | { is: 'duration'; least: string; most: string }
     | { is: 'words'; words: string[] }
-    | { is: 'table'; settings: Setting[] };
+    | { is: 'table' | 'flag-or-table'; settings: Setting[] };
   /** `needed`: the file must say it; `is`: the default; `none`: there is none. */
   usual: 'needed' | 'is' | 'none';
   example: string;
@@ -20,7 +20,7 @@ export interface Setting {
 export type Argument =
   | { is: 'nothing' }
   | { is: 'address' | 'bit'; most: number }
-  | { is: 'text' | 'name' | 'list'; example: string }
+  | { is: 'text' | 'name' | 'list' | 'alone'; example: string }
   | { is: 'word'; words: string[] };
 
 export interface PointKind {
@@ -38,6 +38,8 @@ export interface Kind {
   word: string;
   about: string;
   shows: boolean;
+  /** The program has it: not every build has all kinds. */
+  there: boolean;
   settings: Setting[];
   points: PointKind[];
 }

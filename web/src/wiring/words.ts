@@ -1,4 +1,4 @@
-// What the server says of kinds, settings and points, in the language of the page.
+// The words of the server about kinds, settings and points, in the language of the page.
 import { prefs } from '../lib/prefs.svelte';
 import { abouts } from '../lib/words/wiring';
 

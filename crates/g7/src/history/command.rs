@@ -112,7 +112,7 @@ pub(crate) fn history(args: &History) -> Result<Verdict, Failure> {
     Ok(Verdict::Fine)
 }
 
-/// What the user asks for.
+/// The part of a record that the user asks for.
 struct Asked<'a> {
     reader: &'a Reader,
     overview: &'a Overview,

@@ -29,7 +29,7 @@ pub(crate) enum Kept {
 /// The thread that records. Dropping it writes the rest.
 pub(crate) struct Historian {
     pub(crate) path: PathBuf,
-    /// What is to be told.
+    /// News for the operator.
     pub(crate) told: Receiver<Kept>,
     stop: Option<Sender<()>>,
     thread: Option<JoinHandle<()>>,

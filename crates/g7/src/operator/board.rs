@@ -14,7 +14,7 @@ use g7_rig::{Activity, Item, Role, values};
 use serde_json::{Map, Value, json};
 
 use super::names::{Known, Names};
-use super::panel;
+use super::part;
 use super::picture::View;
 use super::told::{Level, Told, reason_json};
 
@@ -242,7 +242,7 @@ impl Board {
             At::Good | At::Plant | At::Free | At::Inside => (None, None),
         };
         let part =
-            wire.and_then(|wire| if let Wire::Panel(part) = wire { Some(panel::json(part)) } else { None });
+            wire.and_then(|wire| if let Wire::Panel(part) = wire { Some(part::json(part)) } else { None });
         Some(json!({
             "name": item.name,
             "role": role,
@@ -275,8 +275,8 @@ impl Board {
             }
         }
         let is_sent = |k: u32, cell: &Cell| self.sent_values.get(k as usize).is_some_and(|sent| sent == cell);
-        let changed = (0..).zip(&cells).filter(|(k, cell)| !is_sent(*k, *cell));
-        let moved = (0..).zip(&view).filter(|(k, show)| self.sent_view.get(*k as usize) != Some(*show));
+        let changed = (0..).zip(&cells).filter(|(k, cell)| !is_sent(*k, cell));
+        let moved = (0..).zip(&view).filter(|(k, show)| self.sent_view.get(*k as usize) != Some(show));
         let frame = self.framed(now, parts, changed, moved, false);
         (self.sent_values, self.sent_view) = (cells, view);
         frame

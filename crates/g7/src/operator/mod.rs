@@ -22,6 +22,7 @@ mod changes;
 mod names;
 mod order;
 mod panel;
+mod part;
 mod picture;
 mod stage;
 #[cfg(test)]

@@ -5,7 +5,6 @@ use std::sync::Arc;
 use g7_host::Value;
 use g7_online::setup::Handle;
 use g7_online::{Moved, Panels, Part};
-use serde_json::{Value as Json, json};
 
 use super::names::Names;
 use super::order::Wish;
@@ -67,18 +66,4 @@ fn number(names: &Names, name: &str, part: &Part, text: &str) -> Result<(f64, St
         g7_online::Raw::Real(x) => x,
     };
     Ok((number, g7_rig::values::shown(&Value::Word(word), item.kind)))
-}
-
-/// A part of a panel for the page.
-pub(super) fn json(part: &Part) -> Json {
-    let mut told = json!({ "is": part.handle.word(), "min": part.min, "max": part.max });
-    let more = match &part.handle {
-        Handle::Choice(words) => Some(("words", json!(words))),
-        Handle::Lamp(colour) => Some(("colour", json!(colour))),
-        _ => None,
-    };
-    if let (Some((key, value)), Some(fields)) = (more, told.as_object_mut()) {
-        fields.insert(key.to_owned(), value);
-    }
-    told
 }

@@ -30,6 +30,8 @@ pub(crate) enum Told {
     NoPriority(String),
     /// Values cannot be saved, and why.
     Unsaved(String),
+    /// The events for a broker, by number, have trouble, or none any more.
+    Events(usize, Option<String>),
     /// The history cannot be written, and why.
     Unrecorded(String),
     /// The history goes on; so many changes were lost.
@@ -66,6 +68,7 @@ impl Told {
                 Some(_) | None => Level::Alarm,
             },
             Told::Device(_, Happened::NoInput(..) | Happened::NoOutput(..) | Happened::Note(_))
+            | Told::Events(_, Some(_))
             | Told::Missed(_)
             | Told::Recorded(1..)
             | Told::Ended(_) => Level::Warning,
@@ -75,6 +78,7 @@ impl Told {
             | Told::Changed { .. }
             | Told::Moved { .. }
             | Told::NoPriority(_)
+            | Told::Events(_, None)
             | Told::Recorded(0)
             | Told::Device(..) => Level::Note,
         }
@@ -92,8 +96,23 @@ impl Told {
             Told::Device(device, Happened::NoOutput(k, _) | Happened::Output(k)) => {
                 Some(("output", *device, *k))
             }
+            Told::Events(device, _) => Some(("events", *device, 0)),
             _ => None,
         }
+    }
+
+    /// The event for brokers: that of the page, with its level and its line.
+    pub(crate) fn event(&self, names: &Names) -> Value {
+        let mut event = self.json(names);
+        if let Some(fields) = event.as_object_mut() {
+            fields.retain(|_, value| !value.is_null());
+            fields.insert("level".to_owned(), json!(self.level(names).word()));
+            if let Some(text) = self.text(names) {
+                let text = anstream::adapter::strip_str(&text).to_string();
+                fields.insert("text".to_owned(), json!(text));
+            }
+        }
+        event
     }
 
     /// The event for the page: its kind and what belongs to it.
@@ -120,6 +139,10 @@ impl Told {
             }
             Told::NoPriority(why) => json!({ "kind": "no-priority", "why": why }),
             Told::Unsaved(why) => json!({ "kind": "unsaved", "why": why }),
+            Told::Events(device, why) => {
+                let kind = if why.is_some() { "no-events" } else { "events" };
+                json!({ "kind": kind, "device": names.device(*device), "why": why })
+            }
             Told::Unrecorded(why) => json!({ "kind": "unrecorded", "why": why }),
             Told::Recorded(lost) => json!({ "kind": "recorded", "count": lost }),
             Told::Device(device, happened) => device_json(names, *device, happened),
@@ -155,6 +178,10 @@ impl Told {
             }
             Told::NoPriority(why) => format!("{warn}note:{warn:#} {why}"),
             Told::Unsaved(why) => format!("{bad}values cannot be saved:{bad:#} {why}"),
+            Told::Events(device, Some(why)) => {
+                format!("{}: {warn}events wait:{warn:#} {why}", names.device(*device))
+            }
+            Told::Events(device, None) => format!("{} takes events again", names.device(*device)),
             Told::Unrecorded(why) => format!("{bad}the history cannot be written:{bad:#} {why}"),
             Told::Recorded(0) => "the history goes on".to_owned(),
             Told::Recorded(lost) => format!("the history goes on; {warn}{lost} changes were lost{warn:#}"),

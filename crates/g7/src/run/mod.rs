@@ -47,9 +47,9 @@ fn online(path: &Path, source: Source, args: &Run) -> Result<Verdict, Failure> {
     let more = More { profile: args.profile, scan: args.scan, plant: args.plant.as_deref(), seed: args.seed };
     let Settings { log, audit, .. } = station::settings(path, &args.drive, None)?;
     let station = station::start(path, source, &args.drive, more)?;
-    let Some(Station { names, origin, running, monitor, historian, panels, .. }) = station else {
+    let Some(Station { names, origin, running, monitor, post, historian, panels, .. }) = station else {
         return Ok(Verdict::Found);
     };
-    let attendant = Attendant::new(names).with(monitor).logging(log, audit).recording(historian).at(panels);
-    attendant.changing(origin).attend(running, args.duration)
+    let attendant = Attendant::new(names).with(monitor, post).logging(log, audit).recording(historian);
+    attendant.at(panels).changing(origin).attend(running, args.duration)
 }

@@ -24,7 +24,7 @@ use g7_store::users::{Role, SessionHash, UserError, Users, session_hash};
 use serde_json::json;
 use tokio::sync::{Semaphore, watch};
 
-use super::api::aside;
+use super::aside::aside;
 use super::refusal::Refusal;
 use super::throttle::Throttle;
 use crate::audit::Audit;

@@ -14,6 +14,7 @@ use serde::Deserialize;
 use serde_json::{Value, json};
 use tokio::sync::Semaphore;
 
+use super::aside::aside;
 use super::fingerprint;
 use super::folder::{LARGEST, Wanted, Written};
 use super::refusal::Refusal;
@@ -239,16 +240,6 @@ async fn body(request: Request) -> Result<Vec<u8>, Refusal> {
         Ok(Err(_)) => Err(too_large()),
         Err(_) => Err(late()),
     }
-}
-
-/// Runs work that waits for a disk on another thread, so that other requests go on.
-pub(super) async fn aside<T: Send + 'static>(
-    work: impl FnOnce() -> Result<T, Refusal> + Send + 'static,
-) -> Result<T, Refusal> {
-    let done = tokio::task::spawn_blocking(work).await;
-    done.unwrap_or_else(|_| {
-        Err(Refusal::new(StatusCode::INTERNAL_SERVER_ERROR, "this failed; nothing was changed"))
-    })
 }
 
 /// The text of a chart, for a run.

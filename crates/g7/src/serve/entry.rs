@@ -25,7 +25,8 @@ use serde::Deserialize;
 use serde_json::{Value, json};
 
 use super::access::{Access, refusal};
-use super::api::{aside, small_json};
+use super::api::small_json;
+use super::aside::aside;
 use super::guard::{COOKIE, peer};
 use super::refusal::Refusal;
 use super::shared::Shared;
@@ -202,7 +203,7 @@ async fn log(State(shared): State<Shared>, Query(wanted): Query<Wanted>) -> Answ
     let more = rows.len() > PAGE;
     let row = |row: &g7_store::log::Row| {
         let entry = &row.entry;
-        // What another program wrote into the file is shown as a text.
+        // Data that another program wrote into the file is shown as a text.
         let data = serde_json::from_str(&entry.data).unwrap_or_else(|_| json!({ "text": entry.data }));
         json!({
             "n": row.n,

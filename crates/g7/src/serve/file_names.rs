@@ -140,9 +140,10 @@ mod tests {
 
     #[test]
     fn other_files_are_not_served() {
-        for name in ["notes.txt", "g7", "x.g7.exe", "key.pem", "x", "x.toml", "io.toml", "a/.io.toml"] {
+        for name in ["notes.txt", "g7", "x.g7.exe", "key.pem", "x", "x.toml", "io.toml"] {
             assert!(path(name).is_err_and(|why| why.contains("not served")), "{name}");
         }
+        assert!(path("a/.io.toml").is_err_and(|why| why.contains("hidden")));
         assert!(path(&"a/".repeat(40)).is_err());
         assert!(path(&format!("{}.g7", "x".repeat(2000))).is_err());
     }

@@ -29,7 +29,7 @@ use crate::who::Who;
 /// The cookie of a session. A browser takes a name with this beginning over TLS alone, for this host alone.
 pub(super) const COOKIE: &str = "__Host-g7";
 
-/// What lets a request in.
+/// The pass that lets a request in.
 #[derive(Clone, Debug)]
 pub(super) enum Pass {
     /// Whoever has the token of this start may do everything.

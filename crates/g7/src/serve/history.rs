@@ -17,7 +17,7 @@ use serde::Deserialize;
 use serde_json::{Value, json};
 use tokio::sync::Semaphore;
 
-use super::api::aside;
+use super::aside::aside;
 use super::refusal::Refusal;
 use super::shared::Shared;
 use crate::history::{Csv, Sink, rows};

@@ -18,6 +18,7 @@ use tokio::sync::{oneshot, watch};
 use tokio::time::{Instant, MissedTickBehavior, interval, timeout};
 
 use super::api;
+use super::aside::aside;
 use super::listen::Peer;
 use super::outbox::{Next, Outbox};
 use super::places::Place;
@@ -221,7 +222,7 @@ async fn operate(
     if let Some((kind, data)) = wish.deed() {
         if wish.waits_for_log() {
             let (audit, who) = (shared.audit.clone(), who.clone());
-            let row = api::aside(move || Ok(audit.must(&who, &kind, &data)));
+            let row = aside(move || Ok(audit.must(&who, &kind, &data)));
             row.await.map_err(|refusal| refusal.text)??;
         } else {
             shared.audit.note(who, &kind, None, &data);

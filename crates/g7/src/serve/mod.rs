@@ -23,6 +23,8 @@
 
 mod access;
 mod api;
+mod args;
+mod aside;
 mod assets;
 mod browser;
 mod desk;
@@ -52,14 +54,13 @@ mod watch;
 mod wiring;
 
 use std::net::{IpAddr, Ipv4Addr, SocketAddr};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::mpsc::SyncSender;
 use std::sync::{Arc, OnceLock};
 use std::time::Duration;
 
 use axum::Router;
 use axum::routing::get;
-use clap::Args;
 use tokio::net::TcpListener;
 use tokio::runtime::Runtime;
 
@@ -67,8 +68,9 @@ use crate::attendant::Attendant;
 use crate::failure::{Failure, Verdict};
 use crate::message::talk;
 use crate::operator::{Order, Stage};
-use crate::station::{self, Drive, More, Settings, Station};
+use crate::station::{self, More, Settings, Station};
 use crate::{audit, files, sources};
+pub(crate) use args::Serve;
 use drafts::Drafts;
 use folder::Folder;
 use guard::{Guard, Pass};
@@ -84,65 +86,6 @@ const PORT: u16 = 4700;
 const LOOK: Duration = Duration::from_millis(500);
 /// Time between two looks at the file of the users: a session that was revoked is over within a second.
 const LOOK_USERS: Duration = Duration::from_millis(300);
-
-#[derive(Args, Debug)]
-#[command(after_help = "\
-Examples:
-  g7 serve                          the charts in this folder and below
-  g7 serve examples                 those of a folder
-  g7 serve tank/chart.g7            a folder, with one chart opened
-  g7 serve --read-only examples     for looking, not for changing
-  g7 serve --host 0.0.0.0 --cert g7.cert.pem --key g7.key.pem --users g7.users
-                                    for others, who log in (`g7 cert`, `g7 users`)
-  g7 serve sorter.g7 --online       drives the devices of sorter.io.toml, with the page
-                                    of the operator: start, stop, values, forcing
-  g7 serve sorter.g7 --online --simulate   the same, with the plant in place of devices
-
-The address printed has a token that is made anew at each start: whoever has it
-reads and writes the charts of the folder, nobody else does, and nothing outside
-the folder is touched. With --users there is no token: people log in, and each does
-what the role allows. An address that other machines reach needs users and TLS.
-Ctrl-C ends the server; with --online the outputs are safe then.")]
-pub(crate) struct Serve {
-    /// A folder with charts, or one chart.
-    #[arg(default_value = ".", value_name = "FILE or FOLDER")]
-    path: PathBuf,
-    /// The port [default: 4700, or another one if that is taken].
-    #[arg(long, value_name = "NUMBER")]
-    port: Option<u16>,
-    /// The address to listen at [default: 127.0.0.1, only this machine].
-    #[arg(long, visible_alias = "listen", value_name = "ADDRESS")]
-    host: Option<IpAddr>,
-    /// The file of the users; it is made if it is missing.
-    #[arg(long, value_name = "FILE")]
-    users: Option<PathBuf>,
-    /// The certificate for encrypted connections (PEM).
-    #[arg(long, value_name = "FILE", requires = "key")]
-    cert: Option<PathBuf>,
-    /// The private key of the certificate (PEM).
-    #[arg(long, value_name = "FILE", requires = "cert")]
-    key: Option<PathBuf>,
-    /// The log of events and of what people do; it is made if it is missing.
-    #[arg(long, value_name = "FILE")]
-    log: Option<PathBuf>,
-    /// Write nothing; charts can still be viewed and run.
-    #[arg(long)]
-    read_only: bool,
-    /// Do not open a browser; only print the address.
-    #[arg(long)]
-    no_open: bool,
-    /// The chart to open first, as its path in the folder.
-    #[arg(long, value_name = "FILE")]
-    start: Option<String>,
-    #[command(flatten)]
-    drive: Drive,
-    /// With --online: the plant to use if there are several.
-    #[arg(long, value_name = "NAME", requires = "online")]
-    plant: Option<String>,
-    /// Read the page from this folder (for its development).
-    #[arg(long, value_name = "FOLDER", hide = true)]
-    page_dir: Option<PathBuf>,
-}
 
 /// The shared data for a folder and for the place of unsaved copies.
 fn shared(
@@ -362,7 +305,7 @@ fn online(args: &Serve) -> Result<Verdict, Failure> {
     let open = Open::new(&shared, &rules)?;
     let more = More { plant: args.plant.as_deref(), ..More::default() };
     let station = station::start(&path, source, &args.drive, more)?;
-    let Some(Station { names, origin, running, sight, monitor, panels, historian }) = station else {
+    let Some(Station { names, origin, running, sight, monitor, post, panels, historian }) = station else {
         return Ok(Verdict::Found);
     };
     if let Some(historian) = &historian {
@@ -371,7 +314,7 @@ fn online(args: &Serve) -> Result<Verdict, Failure> {
     }
     open.tell(args, &shared, &rules)?;
     let stage = Stage::new(names.clone(), sight, orders);
-    let attendant = Attendant::new(names).with(monitor).logging(log, audit).recording(historian);
+    let attendant = Attendant::new(names).with(monitor, post).logging(log, audit).recording(historian);
     attendant.on(stage).at(panels).changing(origin).attend(running, None)
 }
 

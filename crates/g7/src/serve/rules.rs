@@ -9,8 +9,8 @@ use std::sync::Arc;
 
 use g7_online::setup::Server;
 
-use super::Serve;
 use super::access::{Access, Lasts};
+use super::args::Serve;
 use super::guard::{Foreign, Guard, Pass};
 use super::listen::Door;
 use super::shared::Limits;
@@ -18,7 +18,7 @@ use super::tls::{Certificate, Files};
 use crate::audit::Audit;
 use crate::failure::Failure;
 
-/// What holds for a server from its start on.
+/// The rules of a server from its start on.
 #[derive(Clone, Debug)]
 pub(super) struct Rules {
     pub(super) host: IpAddr,
@@ -71,13 +71,13 @@ impl Rules {
         Ok(Rules { host, port, certificate, access, audit: audit.clone(), log, foreign: Foreign::default() })
     }
 
-    /// What judges requests.
+    /// The guard that judges requests.
     pub(super) fn guard(&self, pass: Pass, bound: SocketAddr) -> Guard {
         let certificate = self.certificate.clone();
         Guard { pass, bound, certificate, audit: self.audit.clone(), foreign: self.foreign.clone() }
     }
 
-    /// What lets connections in.
+    /// The door that lets connections in.
     pub(super) fn door(&self) -> Result<Door, Failure> {
         let tls = self.certificate.as_ref().map(Certificate::acceptor).transpose()?;
         Ok(match self.host.is_loopback() {

@@ -1,4 +1,4 @@
-//! What the server asks of the system beside a machine: room for its sockets, and a place behind the scan.
+//! Requests of the server to the system, beside a machine: room for its sockets, and a place behind the scan.
 
 #[cfg(target_os = "linux")]
 use rustix::process::{Resource, Rlimit, getrlimit, setpriority_process, setrlimit};

@@ -1,6 +1,6 @@
 //! The certificate of the server: read, judged, and read again when it is renewed.
 //!
-//! What is wrong with it is found before anything listens. A renewed file is taken while the server works, if
+//! A fault in it is found before anything listens. A renewed file is taken while the server works, if
 //! it is right; otherwise the one of before stays and the reason is told.
 
 use std::path::{Path, PathBuf};
@@ -64,7 +64,7 @@ impl Certificate {
         Ok(Arc::new(Certificate { files, now: Mutex::new(right), seen }))
     }
 
-    /// What takes connections with it.
+    /// The acceptor that takes connections with it.
     pub(super) fn acceptor(self: &Arc<Certificate>) -> Result<TlsAcceptor, Failure> {
         let wrong = |e: rustls::Error| Failure::Usage(format!("no TLS: {e}"));
         let config = ServerConfig::builder_with_provider(Arc::new(ring::default_provider()));

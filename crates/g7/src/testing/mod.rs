@@ -2,6 +2,8 @@
 
 mod output;
 
+pub(crate) use output::escape;
+
 use std::io::Write;
 
 use g7_host::WallClock;

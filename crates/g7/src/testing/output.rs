@@ -173,7 +173,7 @@ pub(super) fn junit(outcomes: &[Outcome]) -> String {
 }
 
 /// Escapes text for XML; characters that XML does not allow become U+FFFD.
-fn escape(text: &str) -> String {
+pub(crate) fn escape(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     for c in text.chars() {
         match c {

@@ -204,3 +204,38 @@ pub(crate) fn free_port() -> u16 {
     let listener = std::net::TcpListener::bind("127.0.0.1:0").expect("a port is free");
     listener.local_addr().expect("it has an address").port()
 }
+
+/// A controller of Siemens: the server of python-snap7.
+pub(crate) struct S7 {
+    running: Running,
+    /// Its port.
+    pub(crate) place: String,
+}
+
+impl S7 {
+    /// `None` where the machine has no python-snap7.
+    pub(crate) fn start() -> Option<S7> {
+        let mut running = Running::python("snap7.server", "s7_server.py", &[])?;
+        let place = running.line();
+        Some(S7 { running, place })
+    }
+
+    pub(crate) fn set(&mut self, what: &str) {
+        self.running.say(&format!("set {what}"));
+        assert_eq!(self.running.line(), "ok");
+    }
+
+    /// Waits until bytes have these values.
+    pub(crate) fn becomes(&mut self, what: &str, values: &str) {
+        let begin = Instant::now();
+        loop {
+            self.running.say(&format!("get {what}"));
+            let found = self.running.line();
+            if found == values {
+                return;
+            }
+            assert!(begin.elapsed() < Duration::from_secs(20), "{what} is {found}, not {values}");
+            std::thread::sleep(Duration::from_millis(10));
+        }
+    }
+}

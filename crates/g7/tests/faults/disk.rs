@@ -30,7 +30,7 @@ fn row_4_a_full_disk_stops_neither_scans_nor_saves() {
     for _ in 0..count {
         fill(&filler);
         let (before, begin) = (saved(&kept), Instant::now());
-        // What was saved once may have been on its way before the disk was full.
+        // Values that were saved once may have been on its way before the disk was full.
         for _ in 0..2 {
             let now = saved(&kept);
             while saved(&kept) == now {

@@ -5,6 +5,7 @@
 //! for one after the other.
 
 mod blocks;
+mod masters;
 mod rtu;
 mod server;
 mod shared;
@@ -46,12 +47,12 @@ impl Units {
         Ok(Box::new(client))
     }
 
-    /// A client of a device that is wired; `None` where it is the device that asks.
+    /// A client of a device that is wired; `None` where it is no slave.
     ///
     /// # Errors
     ///
     /// The system has no resources for it.
-    pub(crate) fn client(&mut self, wired: &Wired) -> std::io::Result<Option<Client>> {
+    fn client(&mut self, wired: &Wired) -> std::io::Result<Option<Client>> {
         let timeout = duration(wired.device.timing.timeout);
         let (way, modbus) = match wired.device.kind.clone() {
             Kind::ModbusTcp(tcp, modbus) => (Way::Tcp(tcp, None), modbus),
@@ -59,13 +60,7 @@ impl Units {
                 let slave = Slave { line: self.line(serial), timeout };
                 (Way::Rtu(GenericModbusClient::new(slave)), modbus)
             }
-            Kind::ModbusServer(_)
-            | Kind::Mqtt(_)
-            | Kind::Panel(_)
-            | Kind::OpcUa(_)
-            | Kind::OpcUaServer(_) => {
-                return Ok(None);
-            }
+            _ => return Ok(None),
         };
         let inputs: Vec<Place> = wired.inputs.iter().filter_map(|i| i.wire.place()).collect();
         let outputs = wired.outputs.iter().filter_map(|o| o.wire.place()).collect();
@@ -92,7 +87,7 @@ impl Units {
 }
 
 /// A client of one unit.
-pub(crate) struct Client {
+struct Client {
     way: Way,
     modbus: Modbus,
     timeout: Duration,
@@ -106,14 +101,6 @@ pub(crate) struct Client {
 enum Way {
     Tcp(Tcp, Option<ModbusTcpClient>),
     Rtu(GenericModbusClient<Slave>),
-}
-
-impl Client {
-    /// Reads these points in place of those that are wired.
-    pub(crate) fn read_points(&mut self, points: &[Place]) {
-        self.inputs = points.to_vec();
-        self.reads = reads(&self.inputs);
-    }
 }
 
 fn failed(error: &ModbusError) -> Failed {

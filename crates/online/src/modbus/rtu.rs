@@ -3,7 +3,13 @@
 //!
 //! The library's own serial transport is not used, because what it is built on is not under a
 //! permissive licence.
+//!
+//! An answer on a serial line does not say what it is an answer to. So after an answer that did not come,
+//! or was none, a slave is first asked for an echo with a number of its own (application protocol 1.1b3,
+//! 6.8): a slave answers in turn, so what comes behind the echo is not late. A slave that does not know the
+//! echo says so, which serves as well.
 
+use std::collections::BTreeMap;
 use std::future::{Future, ready};
 use std::io;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -29,10 +35,27 @@ const TURNAROUND: Duration = Duration::from_millis(100);
 /// The longest frame.
 const LONGEST: usize = 256;
 
+/// The function of diagnostics, of which sub-function 0 is the echo.
+const ECHO: u8 = 8;
+/// Echoes that a slave is asked for in vain. One that knows no diagnostics and is silent about it is asked
+/// without them then; so many time-outs have passed.
+const ECHOES: u8 = 3;
+/// Bytes that are looked through for an echo at most.
+const NOISE: usize = 4096;
+
+/// A line that is open.
+struct Open {
+    port: SerialPort,
+    /// Units that may still answer an earlier request, with the echoes that they were asked for.
+    late: BTreeMap<u8, u8>,
+    /// The number of the last echo.
+    echo: u16,
+}
+
 /// A serial line. Its slaves take turns.
 pub(super) struct Line {
     serial: Serial,
-    port: Mutex<Option<SerialPort>>,
+    port: Mutex<Option<Open>>,
 }
 
 impl Line {
@@ -42,16 +65,17 @@ impl Line {
     }
 
     /// Waits until no other slave has the line.
-    fn lock(&self) -> MutexGuard<'_, Option<SerialPort>> {
+    fn lock(&self) -> MutexGuard<'_, Option<Open>> {
         // A port that was in use in a panic is no worse than any other.
         self.port.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     /// Opens the line, if it is not open.
     pub(crate) fn open(&self) -> io::Result<()> {
-        let mut port = self.lock();
-        if port.is_none() {
-            *port = Some(SerialPort::open(&self.serial.port, |settings: Settings| self.configure(settings))?);
+        let mut slot = self.lock();
+        if slot.is_none() {
+            let port = SerialPort::open(&self.serial.port, |settings: Settings| self.configure(settings))?;
+            *slot = Some(Open { port, late: BTreeMap::new(), echo: 0 });
         }
         Ok(())
     }
@@ -86,31 +110,84 @@ pub(super) struct Slave {
 impl Slave {
     fn ask(&self, request: &ModbusRequest) -> ModbusResult<ModbusResponse> {
         request.validate()?;
-        let mut frame = vec![request.slave_id];
+        let unit = request.slave_id;
+        let mut frame = vec![unit];
         frame.extend_from_slice(request.encode_pdu()?.as_slice());
-        let check = crc(&frame);
-        frame.extend(check.to_le_bytes());
+        let frame = checked(frame);
         let mut slot = self.line.lock();
-        let Some(port) = slot.as_mut() else {
+        let Some(open) = slot.as_mut() else {
             return Err(ModbusError::Connection { message: "the serial line is closed".to_owned() });
         };
-        let answer = self.exchange(port, &frame);
-        if matches!(answer, Err(ModbusError::Io { .. })) {
+        let answer = self.agree(open, unit).and_then(|()| {
+            let answer = self.exchange(&mut open.port, &frame)?;
+            let Some(answer) = answer else { return Ok(ModbusResponse::new_broadcast_ack(request.function)) };
+            response(answer, unit, request.function)
+        });
+        match &answer {
+            Ok(_) => {}
             // The adapter is gone; the next attempt opens the line anew.
-            *slot = None;
+            Err(ModbusError::Io { .. }) => *slot = None,
+            Err(_) => drop(open.late.entry(unit).or_insert(0)),
         }
-        let Some(answer) = answer? else { return Ok(ModbusResponse::new_broadcast_ack(request.function)) };
-        response(answer, request.slave_id)
+        answer
+    }
+
+    /// Waits until a unit has answered all that it was asked before.
+    fn agree(&self, open: &mut Open, unit: u8) -> ModbusResult<()> {
+        let Some(tries) = open.late.get_mut(&unit) else { return Ok(()) };
+        *tries += 1;
+        if *tries > ECHOES {
+            open.late.remove(&unit);
+            return Ok(());
+        }
+        open.echo = open.echo.wrapping_add(1);
+        let [high, low] = open.echo.to_be_bytes();
+        let frame = checked(vec![unit, ECHO, 0, 0, high, low]);
+        self.send(&mut open.port, &frame)?;
+        let mut heard = Vec::new();
+        let mut clock = WallClock::default();
+        while !is_echo(&heard, &frame) {
+            if heard.len() > NOISE {
+                return Err(ModbusError::Frame { message: "nothing but noise".to_owned() });
+            }
+            self.hear(&mut open.port, &mut clock, LONGEST, &mut heard)?;
+        }
+        open.late.remove(&unit);
+        Ok(())
+    }
+
+    /// Sends a frame behind a silence; what has come until then is no answer to it.
+    fn send(&self, port: &mut SerialPort, frame: &[u8]) -> ModbusResult<()> {
+        std::thread::sleep(self.line.silence());
+        port.discard_input_buffer().map_err(broken)?;
+        port.set_write_timeout(self.timeout).map_err(broken)?;
+        port.write_all(frame).map_err(|e| self.late(e))?;
+        port.flush().map_err(broken)
+    }
+
+    /// Reads some bytes, at most so many, in what is left of the time-out.
+    fn hear(
+        &self,
+        port: &mut SerialPort,
+        clock: &mut WallClock,
+        most: usize,
+        heard: &mut Vec<u8>,
+    ) -> ModbusResult<()> {
+        let spent = Duration::from_nanos(clock.now().max(Nanos::ZERO).count().unsigned_abs());
+        let left = self.timeout.checked_sub(spent).filter(|left| !left.is_zero());
+        port.set_read_timeout(left.ok_or_else(|| self.timed_out())?).map_err(broken)?;
+        let mut bytes = [0; LONGEST];
+        let count = port.read(bytes.get_mut(..most).unwrap_or(&mut [])).map_err(|e| self.late(e))?;
+        if count == 0 {
+            return Err(broken(io::ErrorKind::UnexpectedEof.into()));
+        }
+        heard.extend_from_slice(bytes.get(..count).unwrap_or(&[]));
+        Ok(())
     }
 
     /// Sends a frame and takes the answer; `None` for a broadcast, which has none.
     fn exchange(&self, port: &mut SerialPort, frame: &[u8]) -> ModbusResult<Option<Vec<u8>>> {
-        std::thread::sleep(self.line.silence());
-        // An answer to an earlier request that came too late is no answer to this one.
-        port.discard_input_buffer().map_err(broken)?;
-        port.set_write_timeout(self.timeout).map_err(broken)?;
-        port.write_all(frame).map_err(|e| self.late(e))?;
-        port.flush().map_err(broken)?;
+        self.send(port, frame)?;
         if frame.first() == Some(&0) {
             std::thread::sleep(TURNAROUND);
             return Ok(None);
@@ -119,16 +196,7 @@ impl Slave {
         let mut answer = Vec::with_capacity(LONGEST);
         let mut wanted = 2;
         while answer.len() < wanted {
-            let spent = Duration::from_nanos(clock.now().max(Nanos::ZERO).count().unsigned_abs());
-            let left = self.timeout.checked_sub(spent).filter(|left| !left.is_zero());
-            port.set_read_timeout(left.ok_or_else(|| self.timed_out())?).map_err(broken)?;
-            let mut bytes = [0; LONGEST];
-            let room = bytes.get_mut(..wanted - answer.len()).unwrap_or(&mut []);
-            let count = port.read(room).map_err(|e| self.late(e))?;
-            if count == 0 {
-                return Err(broken(io::ErrorKind::UnexpectedEof.into()));
-            }
-            answer.extend_from_slice(bytes.get(..count).unwrap_or(&[]));
+            self.hear(port, &mut clock, wanted - answer.len(), &mut answer)?;
             wanted = wanted.max(length(&answer)?);
         }
         Ok(Some(answer))
@@ -162,7 +230,27 @@ fn length(answer: &[u8]) -> ModbusResult<usize> {
     })
 }
 
-fn response(answer: Vec<u8>, unit: u8) -> ModbusResult<ModbusResponse> {
+/// A frame with its checksum.
+fn checked(mut frame: Vec<u8>) -> Vec<u8> {
+    let check = crc(&frame);
+    frame.extend(check.to_le_bytes());
+    frame
+}
+
+/// True if the bytes have the answer to a request for an echo: the same, or that it is not known.
+fn is_echo(bytes: &[u8], frame: &[u8]) -> bool {
+    let unknown = |five: &[u8]| match five {
+        [unit, function, code, check @ ..] => {
+            frame.first() == Some(unit)
+                && *function == ECHO | 0x80
+                && *check == crc(&[*unit, *function, *code]).to_le_bytes()
+        }
+        _ => false,
+    };
+    bytes.windows(frame.len()).any(|window| window == frame) || bytes.windows(5).any(unknown)
+}
+
+fn response(answer: Vec<u8>, unit: u8, asked: ModbusFunction) -> ModbusResult<ModbusResponse> {
     let wrong = |message: String| Err(ModbusError::Frame { message });
     let Some((body, check)) = answer.split_last_chunk::<2>() else {
         return wrong("a short answer".to_owned());
@@ -175,6 +263,9 @@ fn response(answer: Vec<u8>, unit: u8) -> ModbusResult<ModbusResponse> {
         return wrong(format!("slave {slave} has answered for {unit}"));
     }
     let kind = ModbusFunction::from_u8(function & 0x7f)?;
+    if kind != asked {
+        return wrong(format!("an answer to function {} came for {}", kind.to_u8(), asked.to_u8()));
+    }
     if function & 0x80 != 0 {
         return Ok(ModbusResponse::new_exception(unit, kind, data.first().copied().unwrap_or(0)));
     }
@@ -231,14 +322,31 @@ mod tests {
 
     #[test]
     fn wrong_answers_are_refused() {
-        let framed = |body: &[u8]| [body, &crc(body).to_le_bytes()].concat();
-        assert!(response(framed(&[1, 3, 2, 0, 7]), 1).is_ok());
-        assert!(response(framed(&[2, 3, 2, 0, 7]), 1).is_err(), "another slave");
+        const HOLDING: ModbusFunction = ModbusFunction::ReadHoldingRegisters;
+        let framed = |body: &[u8]| checked(body.to_vec());
+        assert!(response(framed(&[1, 3, 2, 0, 7]), 1, HOLDING).is_ok());
+        assert!(response(framed(&[2, 3, 2, 0, 7]), 1, HOLDING).is_err(), "another slave");
         let mut bad = framed(&[1, 3, 2, 0, 7]);
         bad[4] ^= 1;
-        assert!(response(bad, 1).is_err(), "checksum");
-        assert!(response(vec![1], 1).is_err());
-        assert!(response(Vec::new(), 1).is_err());
+        assert!(response(bad, 1, HOLDING).is_err(), "checksum");
+        let input = ModbusFunction::ReadInputRegisters;
+        assert!(response(framed(&[1, 3, 2, 0, 7]), 1, input).is_err(), "another function");
+        assert!(response(framed(&[1, 0x83, 2]), 1, HOLDING).is_ok(), "an exception");
+        assert!(response(framed(&[1, 0x84, 2]), 1, HOLDING).is_err(), "that of another function");
+        assert!(response(vec![1], 1, HOLDING).is_err());
+        assert!(response(Vec::new(), 1, HOLDING).is_err());
+    }
+
+    #[test]
+    fn an_echo_is_found_behind_what_is_late() {
+        let asked = checked(vec![7, 8, 0, 0, 0x12, 0x34]);
+        let late = checked(vec![7, 3, 2, 0, 9]);
+        assert!(!is_echo(&late, &asked));
+        assert!(is_echo(&[late.clone(), asked.clone()].concat(), &asked));
+        assert!(!is_echo(&checked(vec![7, 8, 0, 0, 0x12, 0x33]), &asked), "the echo before");
+        assert!(is_echo(&[late, checked(vec![7, 0x88, 1])].concat(), &asked), "no such function");
+        assert!(!is_echo(&checked(vec![8, 0x88, 1]), &asked), "another unit");
+        assert!(!is_echo(&[7, 0x88, 1, 0, 0], &asked), "checksum");
     }
 
     #[test]

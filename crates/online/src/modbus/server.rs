@@ -1,7 +1,7 @@
 //! Masters of Modbus TCP, which G7 is the server of.
 //!
-//! The library listens, cuts the stream into requests and answers them; the tables that they ask for
-//! are here. A table has only the points that are wired: for any other the answer is exception 2.
+//! The tables that masters ask for, and the answers to their requests; `masters` has the connections. A
+//! table has only the points that are wired: for any other the answer is exception 2.
 
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -9,11 +9,6 @@ use std::time::Duration;
 
 use g7_host::{Clock as _, WallClock};
 use g7_model::Nanos;
-use tokio::runtime::{Builder, Runtime};
-use voltage_modbus::server::{
-    ModbusServer as _, ModbusService, ModbusTcpServer, ModbusTcpServerConfig, ServiceFuture,
-};
-use voltage_modbus::{ModbusError, ModbusResult};
 
 use crate::device::{Absent, Device, Failed};
 use crate::setup::{Area, Listen, Place};
@@ -21,6 +16,7 @@ use crate::value::Raw;
 use crate::wiring::Wired;
 
 use super::blocks::{decode, encode};
+use super::masters::Masters;
 use super::shared::{duration, set};
 
 /// A connection without a request is ended after this time, or after the silence of the io file where
@@ -45,7 +41,7 @@ struct Tables {
     asked: Option<Nanos>,
 }
 
-/// The tables as the library sees them.
+/// The tables as the connections see them.
 #[derive(Debug, Default)]
 struct Shared(Mutex<Tables>);
 
@@ -62,7 +58,7 @@ pub(super) struct Server {
     shared: Arc<Shared>,
     inputs: Vec<Place>,
     outputs: Vec<Place>,
-    at_work: Option<(Runtime, ModbusTcpServer)>,
+    at_work: Option<Masters>,
 }
 
 impl Server {
@@ -74,24 +70,23 @@ impl Server {
         Server { listen, shared: Arc::new(Shared(Mutex::new(tables))), inputs, outputs, at_work: None }
     }
 
-    fn begin(&self) -> Result<(Runtime, ModbusTcpServer), Failed> {
-        let failed =
-            |e: &dyn std::fmt::Display| Failed(format!("cannot listen at {}: {e}", self.listen.address));
-        let runtime = Builder::new_multi_thread()
-            .worker_threads(1)
-            .thread_name("modbus server")
-            .enable_all()
-            .build()
-            .map_err(|e| failed(&e))?;
-        let mut config = ModbusTcpServerConfig::default();
-        config.bind_address = self.listen.address;
-        config.request_timeout = duration(self.listen.silence).max(IDLE);
-        let mut server = ModbusTcpServer::with_config(config).map_err(|e| failed(&e))?;
-        server.set_service(Arc::<Shared>::clone(&self.shared));
-        runtime.block_on(server.start()).map_err(|e| failed(&e))?;
-        Ok((runtime, server))
+    fn begin(&self) -> Result<Masters, Failed> {
+        let shared = Arc::clone(&self.shared);
+        let answer = move |function: u8, data: &[u8]| {
+            let mut tables = shared.lock();
+            tables.asked = Some(tables.clock.now());
+            tables.answer(function, data)
+        };
+        let idle = duration(self.listen.silence).max(IDLE);
+        Masters::listen(self.listen.address, idle, Arc::new(answer))
+            .map_err(|e| Failed(format!("cannot listen at {}: {e}", self.listen.address)))
     }
 }
+
+/// Exceptions of a server (Modbus application protocol 1.1b3, 7): function, address, value.
+const FUNCTION: u8 = 1;
+const ADDRESS: u8 = 2;
+const VALUE: u8 = 3;
 
 /// The addresses of a place.
 fn addresses(place: &Place) -> impl Iterator<Item = u16> {
@@ -139,14 +134,6 @@ impl Device for Server {
     /// Does nothing: masters come and go, and the server goes on to listen for them until it is
     /// dropped.
     fn close(&mut self) {}
-}
-
-impl Drop for Server {
-    fn drop(&mut self) {
-        if let Some((runtime, _)) = self.at_work.take() {
-            runtime.shutdown_background();
-        }
-    }
 }
 
 impl Tables {
@@ -200,21 +187,20 @@ impl Tables {
     }
 
     /// The values of neighbours.
-    fn read(&self, area: Area, from: u16, count: u16) -> ModbusResult<Vec<u16>> {
-        let missing = || ModbusError::invalid_address(from, count);
-        let end = from.checked_add(count.saturating_sub(1)).ok_or_else(missing)?;
+    fn read(&self, area: Area, from: u16, count: u16) -> Result<Vec<u16>, u8> {
+        let end = from.checked_add(count.saturating_sub(1)).ok_or(ADDRESS)?;
         let values: Vec<u16> =
             self.cells.range((area, from)..=(area, end)).map(|(_, cell)| cell.value).collect();
-        if values.len() == usize::from(count) { Ok(values) } else { Err(missing()) }
+        if values.len() == usize::from(count) { Ok(values) } else { Err(ADDRESS) }
     }
 
     /// Writes neighbours, all or none of them.
-    fn write(&mut self, area: Area, from: u16, values: &[u16]) -> ModbusResult<()> {
+    fn write(&mut self, area: Area, from: u16, values: &[u16]) -> Result<(), u8> {
         let count = u16::try_from(values.len()).unwrap_or(u16::MAX);
         self.read(area, from, count)?;
         let range = (area, from)..=(area, from.saturating_add(count.saturating_sub(1)));
         if self.cells.range(range.clone()).any(|(_, cell)| cell.writable == 0) {
-            return Err(ModbusError::invalid_address(from, count));
+            return Err(ADDRESS);
         }
         for ((_, cell), value) in self.cells.range_mut(range).zip(values) {
             cell.value = cell.value & !cell.writable | value & cell.writable;
@@ -224,15 +210,10 @@ impl Tables {
     }
 
     /// Answers a request (Modbus application protocol 1.1b3, 6). What follows the function code is
-    /// `data`; the answer begins with the function code.
-    fn answer(&mut self, function: u8, data: &[u8]) -> ModbusResult<Vec<u8>> {
-        let wrong = || ModbusError::invalid_data("a request of wrong length or number");
+    /// `data`; the answer begins with the function code. An exception is its number.
+    fn answer(&mut self, function: u8, data: &[u8]) -> Result<Vec<u8>, u8> {
         let Some((head, rest)) = data.split_first_chunk::<4>() else {
-            return Err(if FUNCTIONS.contains(&function) {
-                wrong()
-            } else {
-                ModbusError::invalid_function(function)
-            });
+            return Err(if FUNCTIONS.contains(&function) { VALUE } else { FUNCTION });
         };
         let (from, second) = (u16::from_be_bytes([head[0], head[1]]), u16::from_be_bytes([head[2], head[3]]));
         let within = |count: u16, most: u16| (1..=most).contains(&count);
@@ -263,7 +244,7 @@ impl Tables {
                 let body = rest.split_first().filter(|(n, body)| {
                     within(second, most) && u16::from(**n) == bytes && body.len() == usize::from(bytes)
                 });
-                let (_, body) = body.ok_or_else(wrong)?;
+                let (_, body) = body.ok_or(VALUE)?;
                 if function == 15 {
                     let bit = |k: u16| {
                         body.get(usize::from(k / 8)).map_or(0, |byte| u16::from(byte >> (k % 8) & 1))
@@ -276,8 +257,8 @@ impl Tables {
                 }
                 Ok(echo(function, head))
             }
-            _ if FUNCTIONS.contains(&function) => Err(wrong()),
-            _ => Err(ModbusError::invalid_function(function)),
+            _ if FUNCTIONS.contains(&function) => Err(VALUE),
+            _ => Err(FUNCTION),
         }
     }
 }
@@ -292,16 +273,6 @@ fn counted(function: u8, bytes: Vec<u8>) -> Vec<u8> {
 
 fn echo(function: u8, data: &[u8]) -> Vec<u8> {
     [&[function], data].concat()
-}
-
-impl ModbusService for Shared {
-    fn handle_pdu<'a>(&'a self, function: u8, data: &'a [u8]) -> ServiceFuture<'a> {
-        let mut tables = self.lock();
-        tables.asked = Some(tables.clock.now());
-        let answer = tables.answer(function, data);
-        drop(tables);
-        Box::pin(std::future::ready(answer))
-    }
 }
 
 #[cfg(test)]
@@ -338,12 +309,7 @@ mod tests {
 
     /// The answer, or the number of the exception.
     fn ask(tables: &mut Tables, function: u8, data: &[u8]) -> Result<Vec<u8>, u8> {
-        tables.answer(function, data).map_err(|error| match error {
-            ModbusError::InvalidFunction { .. } => 1,
-            ModbusError::InvalidAddress { .. } => 2,
-            ModbusError::InvalidData { .. } => 3,
-            other => panic!("{other:?}"),
-        })
+        tables.answer(function, data)
     }
 
     #[test]

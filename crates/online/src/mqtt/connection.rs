@@ -9,20 +9,33 @@ use std::time::Duration;
 
 use g7_host::{Clock as _, WallClock};
 use g7_model::Nanos;
+use rumqttc::mqttbytes::Error as PacketError;
 use rumqttc::{
     AsyncClient, ConnectReturnCode, ConnectionError, Event, EventLoop, LastWill, MqttOptions, NetworkOptions,
     Packet, PubAckReason, PublishNotice, PublishNoticeError, PublishOptions, QoS, StateError,
-    SubscribeFilter, SubscribeReasonCode,
+    SubscribeFilter, SubscribeReasonCode, TlsConfiguration, TlsError, Transport,
 };
 use tokio::runtime::{Builder, Runtime};
 
 use crate::device::Failed;
 use crate::setup::Broker;
+use crate::tls;
 
 /// The longest packet that the broker may send.
 const LONGEST: u32 = 256 << 10;
 /// Messages that wait for the broker; the others wait with the one who publishes them.
 const MOST: usize = 64;
+
+/// The subject of a message, for its answer.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum About {
+    /// An output, by number.
+    Output(usize),
+    /// An event, by number.
+    Event(i64),
+    /// Something of this client itself.
+    Own,
+}
 
 /// A message to be published.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -57,8 +70,8 @@ struct State {
     waiting: usize,
     /// The instant at which the broker took one last, or at which the first one began to wait.
     taken: Nanos,
-    /// The answers to messages: the number of the output, and why it was refused, if it was.
-    answers: Vec<(usize, Option<String>)>,
+    /// The answers to messages: what each was about, and why it was refused, if it was.
+    answers: Vec<(About, Option<String>)>,
     clock: WallClock,
 }
 
@@ -107,7 +120,7 @@ impl Connection {
             .enable_all()
             .build()
             .map_err(|e| Failed(e.to_string()))?;
-        let (client, events) = AsyncClient::builder(options(&opening)).capacity(MOST).build();
+        let (client, events) = AsyncClient::builder(options(&opening)?).capacity(MOST).build();
         let shared = Arc::<Shared>::default();
         let mut connection = Connection { runtime: Some(runtime), client, shared, timeout };
         let shared = Arc::clone(&connection.shared);
@@ -162,8 +175,8 @@ impl Connection {
         Ok(())
     }
 
-    /// Publishes a message for an output, by number. False where too many wait: it is to be tried again.
-    pub(super) fn publish(&self, output: usize, message: &Message) -> bool {
+    /// Publishes a message. False where too many wait: it is to be tried again.
+    pub(super) fn publish(&self, about: About, message: &Message) -> bool {
         let mut state = self.shared.lock();
         if state.waiting >= MOST {
             return false;
@@ -176,12 +189,12 @@ impl Connection {
         }
         state.waiting += 1;
         drop(state);
-        self.spawn(note(notice, output, Arc::clone(&self.shared)));
+        self.spawn(note(notice, about, Arc::clone(&self.shared)));
         true
     }
 
-    /// The answers since the last call: the number of the output, and why it was refused, if it was.
-    pub(super) fn answers(&self) -> Vec<(usize, Option<String>)> {
+    /// The answers since the last call: what each was about, and why it was refused, if it was.
+    pub(super) fn answers(&self) -> Vec<(About, Option<String>)> {
         std::mem::take(&mut self.shared.lock().answers)
     }
 
@@ -227,7 +240,7 @@ fn quality(acknowledged: bool) -> QoS {
     if acknowledged { QoS::AtLeastOnce } else { QoS::AtMostOnce }
 }
 
-fn options(opening: &Opening<'_>) -> MqttOptions {
+fn options(opening: &Opening<'_>) -> Result<MqttOptions, Failed> {
     let broker = opening.broker;
     let mut options = MqttOptions::new(opening.client_id, (broker.host.as_str(), broker.port));
     options.set_keep_alive(broker.keep_alive).set_clean_start(true).set_connect_timeout(opening.timeout);
@@ -248,7 +261,11 @@ fn options(opening: &Opening<'_>) -> MqttOptions {
         let (payload, quality) = (will.payload.clone(), quality(will.acknowledged));
         options.set_last_will(LastWill::new(will.topic.as_str(), payload, quality, will.retain, None));
     }
-    options
+    if let Some(tls) = &broker.tls {
+        let config = tls::config(tls.files()).map_err(|(_, why)| Failed(why))?;
+        options.set_transport(Transport::Tls(TlsConfiguration::Rustls(config)));
+    }
+    Ok(options)
 }
 
 /// Lets the library work until the connection ends.
@@ -273,7 +290,7 @@ async fn attend(mut events: EventLoop, shared: Arc<Shared>, mut taker: Taker) {
 }
 
 /// Notes that the broker has taken a message, or that it refused it.
-async fn note(notice: PublishNotice, output: usize, shared: Arc<Shared>) {
+async fn note(notice: PublishNotice, about: About, shared: Arc<Shared>) {
     let result = notice.wait_completion_async().await;
     shared.change(|state| {
         state.waiting = state.waiting.saturating_sub(1);
@@ -290,7 +307,7 @@ async fn note(notice: PublishNotice, output: usize, shared: Arc<Shared>) {
             // The connection ends, which is told on its own.
             Err(_) => return,
         };
-        state.answers.push((output, refused));
+        state.answers.push((about, refused));
     });
 }
 
@@ -299,7 +316,13 @@ fn plain(error: &ConnectionError) -> String {
     match error {
         ConnectionError::ConnectionRefused(code)
         | ConnectionError::MqttState(StateError::ConnFail { reason: code }) => refusal(*code),
-        ConnectionError::Io(e) => e.to_string(),
+        // In TLS 1.3 a broker refuses the certificate of a client behind the handshake.
+        ConnectionError::MqttState(StateError::Deserialization(PacketError::Io(e)))
+        | ConnectionError::Io(e)
+        | ConnectionError::Tls(TlsError::Io(e))
+        | ConnectionError::MqttState(StateError::Io(e)) => {
+            tls::refusal(e, "broker").unwrap_or_else(|| e.to_string())
+        }
         ConnectionError::Timeout(_) => "no answer within the time-out".to_owned(),
         ConnectionError::MqttState(StateError::ServerDisconnect { reason_code, .. }) => {
             format!("the broker ended the connection: {reason_code:?}")
@@ -308,9 +331,21 @@ fn plain(error: &ConnectionError) -> String {
             "the broker closed the connection".to_owned()
         }
         ConnectionError::MqttState(StateError::AwaitPingResp) => "the broker is silent".to_owned(),
-        ConnectionError::MqttState(StateError::Io(e)) => e.to_string(),
-        other => other.to_string(),
+        other => of_tls(other).unwrap_or_else(|| other.to_string()),
     }
+}
+
+/// Why TLS has ended the connection, where that is at the root of an error.
+fn of_tls(error: &ConnectionError) -> Option<String> {
+    let mut next = std::error::Error::source(error);
+    while let Some(error) = next {
+        let io = error.downcast_ref::<std::io::Error>();
+        if let Some(why) = io.and_then(|io| tls::refusal(io, "broker")) {
+            return Some(why);
+        }
+        next = error.source();
+    }
+    None
 }
 
 fn refusal(code: ConnectReturnCode) -> String {

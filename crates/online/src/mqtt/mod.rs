@@ -1,6 +1,7 @@
 //! Brokers of MQTT 5, which G7 is a client of.
 
 mod connection;
+mod events;
 mod payload;
 mod plain;
 mod sparkplug;
@@ -8,6 +9,7 @@ mod sparkplug;
 use std::time::Duration;
 
 use crate::device::{Absent, Device, Failed};
+use crate::mail::Mail;
 use crate::setup::Broker;
 use crate::value::Raw;
 use crate::wiring::Wired;
@@ -15,11 +17,11 @@ use crate::wiring::Wired;
 use plain::Plain;
 use sparkplug::Node;
 
-/// A broker that is wired.
-pub(crate) fn device(broker: &Broker, wired: &Wired) -> Box<dyn Device> {
+/// A broker that is wired; `mail` has the events for it.
+pub(crate) fn device(broker: &Broker, wired: &Wired, mail: Option<Mail>) -> Box<dyn Device> {
     match &broker.sparkplug {
         Some(names) => Box::new(Node::new(broker, names, timeout(wired), wired)),
-        None => Box::new(Plain::new(broker, timeout(wired), wired)),
+        None => Box::new(Plain::new(broker, timeout(wired), wired).with_events(mail)),
     }
 }
 

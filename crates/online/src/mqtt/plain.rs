@@ -11,16 +11,15 @@ use g7_host::{Clock as _, WallClock};
 use g7_model::Nanos;
 
 use crate::device::{Absent, Device, Failed};
+use crate::mail::Mail;
 use crate::setup::Broker;
 use crate::value::{Raw, Scaling};
 use crate::wire::{Topic, Wire};
 use crate::wiring::Wired;
 
-use super::connection::{Connection, Message, Opening};
+use super::connection::{About, Connection, Message, Opening};
+use super::events::Events;
 use super::payload;
-
-/// An output number that none has: the message is that of the status.
-const STATUS: usize = usize::MAX;
 
 /// An output that the broker refuses is published again after this time.
 const AGAIN: Nanos = Nanos::from_millis(2_000);
@@ -70,6 +69,7 @@ pub(super) struct Plain {
     /// Outputs that the broker refuses: why, and when it said so.
     refused: Vec<Option<(String, Nanos)>>,
     connection: Option<Connection>,
+    events: Option<Events>,
     /// It only listens, to the topics of outputs as well, and leaves no trace at the broker.
     listens: bool,
 }
@@ -83,12 +83,7 @@ impl Plain {
                 let safe = payload::write(raw, topic.field.as_deref(), &scaling);
                 Some(End { topic: topic.clone(), scaling, safe })
             }
-            Wire::Modbus(_)
-            | Wire::Metric(_)
-            | Wire::Panel(_)
-            | Wire::Node(_)
-            | Wire::Shown(_)
-            | Wire::Worth(_) => None,
+            _ => None,
         };
         let inputs: Vec<End> = wired.inputs.iter().filter_map(|i| end(&i.wire, i.scaling, None)).collect();
         let outputs: Vec<End> =
@@ -103,8 +98,16 @@ impl Plain {
             inputs,
             outputs,
             connection: None,
+            events: None,
             listens: false,
         }
+    }
+
+    /// Publishes these events as well.
+    pub(super) fn with_events(self, mail: Option<Mail>) -> Plain {
+        let topic = self.broker.events.as_ref().map(|events| events.topic.value.clone());
+        let events = topic.zip(mail).map(|(topic, mail)| Events::new(topic, mail));
+        Plain { events, ..self }
     }
 
     /// A client that listens to all topics, those of outputs too, and publishes nothing.
@@ -156,10 +159,14 @@ impl Plain {
                 acknowledged: end.topic.acknowledged,
                 retain: end.topic.retain,
             };
-            if !connection.publish(k, &message) {
+            if !connection.publish(About::Output(k), &message) {
                 return;
             }
             *pending = None;
+        }
+        if let Some(events) = &mut self.events {
+            let now = self.seen.lock().1.now();
+            events.send(now, connection);
         }
     }
 
@@ -195,14 +202,30 @@ impl Plain {
         }
     }
 
-    /// Notes what the broker answered, and what the scan wants to be published.
-    fn note(&mut self, answers: Vec<(usize, Option<String>)>, outputs: &[Raw], write: &[bool]) {
+    /// Notes what the broker answered.
+    fn note_answers(&mut self) {
+        let Some(connection) = &self.connection else { return };
         let now = self.seen.lock().1.now();
-        for (k, why) in answers {
-            if let Some(refused) = self.refused.get_mut(k) {
-                *refused = why.map(|why| (why, now));
+        for (about, why) in connection.answers() {
+            match about {
+                About::Output(k) => {
+                    if let Some(refused) = self.refused.get_mut(k) {
+                        *refused = why.map(|why| (why, now));
+                    }
+                }
+                About::Event(number) => {
+                    if let Some(events) = &mut self.events {
+                        events.note(now, number, why);
+                    }
+                }
+                About::Own => {}
             }
         }
+    }
+
+    /// Notes what the scan wants to be published.
+    fn note(&mut self, outputs: &[Raw], write: &[bool]) {
+        let now = self.seen.lock().1.now();
         let wanted = self.pending.iter_mut().zip(&self.refused).zip(outputs.iter().zip(write));
         for ((pending, refused), (raw, _)) in wanted.filter(|(_, (_, write))| **write) {
             // A broker that refuses is not asked again at once.
@@ -249,10 +272,13 @@ impl Device for Plain {
             }
         }
         if let Some(status) = self.status("online") {
-            connection.publish(STATUS, &status);
+            connection.publish(About::Own, &status);
         }
         self.connection = Some(connection);
         self.refused.fill(None);
+        if let Some(events) = &mut self.events {
+            events.begin();
+        }
         // Messages that the broker keeps come at once.
         self.wait_for_values(KEPT.min(self.timeout));
         Ok(())
@@ -268,12 +294,14 @@ impl Device for Plain {
         let connection =
             self.connection.as_ref().ok_or_else(|| Failed("there is no connection".to_owned()))?;
         if let Err(why) = connection.failed() {
+            // A message that the broker has taken is not published again.
+            self.note_answers();
             self.connection = None;
             self.pending.fill(None);
             return Err(why);
         }
-        let answers = connection.answers();
-        self.note(answers, outputs, write);
+        self.note_answers();
+        self.note(outputs, write);
         for (to, why) in refused.iter_mut().zip(&self.refused) {
             *to = why.as_ref().map(|(why, _)| why.clone());
         }
@@ -293,10 +321,11 @@ impl Device for Plain {
                 break;
             }
         }
+        self.note_answers();
         let last = self.status("offline");
         let Some(connection) = self.connection.take() else { return };
         // Without these words the broker publishes the will, which says the same.
-        if last.is_none_or(|last| connection.publish(STATUS, &last) && connection.flush()) {
+        if last.is_none_or(|last| connection.publish(About::Own, &last) && connection.flush()) {
             connection.end();
         }
     }

@@ -1,4 +1,4 @@
-//! What the threads around the scan do when the scan itself has an error.
+//! The threads around the scan, when the scan itself has an error.
 
 use g7_model::FileId;
 use g7_peers::faults::{Times, row, trials};

@@ -1,7 +1,8 @@
 //! The row of an MQTT broker, and what channels say about their messages.
 
-use g7_model::{Nanos, Problem, Span, codes};
+use g7_model::{Nanos, Span};
 
+use super::secret::{self, Held, Tls};
 use super::table::{At, Found, Table};
 
 /// A broker of MQTT 5, which this is a client of.
@@ -9,18 +10,22 @@ use super::table::{At, Found, Table};
 pub struct Broker {
     /// Its name or address.
     pub host: String,
-    /// Its port; 1883 is that of MQTT.
+    /// Its port; 1883 is that of MQTT, 8883 that of MQTT over TLS.
     pub port: u16,
     /// The user that it knows this machine by.
     pub user: Option<String>,
     /// The password of the user.
-    pub password: Option<Password>,
+    pub password: Option<Held>,
+    /// How the connection is encrypted; without it it is not.
+    pub tls: Option<Tls>,
     /// The name of this client; empty for one that the broker chooses.
     pub client_id: String,
     /// The longest time without a packet to the broker, in whole seconds.
     pub keep_alive: u16,
     /// The topic that says `online` or `offline`.
     pub status: Option<At<String>>,
+    /// The topic of the events of the controller, and how they are kept.
+    pub events: Option<Events>,
     /// The names of this edge node; without them messages are plain.
     pub sparkplug: Option<Sparkplug>,
 }
@@ -36,39 +41,17 @@ pub struct Sparkplug {
     pub device: Option<String>,
 }
 
-/// A password: where it is, and what it is as soon as somebody has read it.
+/// The events of the controller on their way to a broker.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Password {
-    /// The file or variable.
-    pub from: At<Origin>,
-    /// The password itself.
-    pub secret: Secret,
-}
-
-/// The place of a password, which is never the io file.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Origin {
-    /// A file, beside the io file.
-    File(String),
-    /// A variable of the environment.
-    Variable(String),
-}
-
-/// Bytes that are never shown.
-#[derive(Clone, Default, PartialEq, Eq)]
-pub struct Secret(Vec<u8>);
-
-impl Secret {
-    /// The bytes, for the other side alone.
-    pub fn bytes(&self) -> &[u8] {
-        &self.0
-    }
-}
-
-impl std::fmt::Debug for Secret {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.write_str("Secret")
-    }
+pub struct Events {
+    /// The topic that they are published to.
+    pub topic: At<String>,
+    /// The file in which they wait, beside the io file.
+    pub file: At<String>,
+    /// Events that wait at most.
+    pub most: u64,
+    /// Bytes of them at most.
+    pub bytes: u64,
 }
 
 /// How a channel uses the messages of its topic.
@@ -112,11 +95,17 @@ pub(super) fn message(table: &mut Table<'_>, input: bool, found: &mut Found) -> 
     message
 }
 
-/// Reads the row of a broker.
-pub(super) fn read(table: &mut Table<'_>, found: &mut Found) -> Option<Broker> {
-    let port = table.whole(found, "port", 1..=65_535).map_or(1883, |port| port.value);
+/// Reads the row of a broker of this name.
+pub(super) fn read(name: &str, table: &mut Table<'_>, found: &mut Found) -> Option<Broker> {
+    let tls = secret::tls(table, found);
+    let usual = if tls.is_some() { 8883 } else { 1883 };
+    let port = table.whole(found, "port", 1..=65_535).map_or(usual, |port| port.value);
     let user = table.text(found, "user");
-    let password = password_of(user.as_ref(), table, found);
+    let password = secret::password(table, found);
+    if let (Some(password), None) = (&password, &user) {
+        found.wrong(password.from.at, "a password without a `user`").help =
+            Some("name the `user` that the broker knows".to_owned());
+    }
     let client_id = table.text(found, "client-id");
     if let Some(long) = client_id.as_ref().filter(|id| id.value.is_empty() || id.value.len() > 65_535) {
         found.wrong(long.at, "a `client-id` has 1 to 65535 bytes");
@@ -129,62 +118,72 @@ pub(super) fn read(table: &mut Table<'_>, found: &mut Found) -> Option<Broker> {
         found.wrong(status.at, "an edge node of Sparkplug has no `status`").help =
             Some("its births and deaths say whether it is there".to_owned());
     }
+    let events = events(name, table, found);
+    if let (Some(events), true) = (&events, sparkplug.is_some()) {
+        found.wrong(events.topic.at, "an edge node of Sparkplug publishes metrics, no events").help =
+            Some("declare the broker a second time, without `sparkplug`".to_owned());
+    }
     let host = table.needed(found, "host", "10.0.0.7")?;
     Some(Broker {
         host: host.value,
         port: u16::try_from(port).ok()?,
         user: user.map(|user| user.value),
         password,
+        tls,
         client_id: client_id.map(|id| id.value).unwrap_or_default(),
         keep_alive: u16::try_from(keep_alive.count_of(Nanos::SECOND)).ok()?,
         status,
+        events,
         sparkplug,
     })
 }
 
-/// The password of a user, if there is one.
-fn password_of(user: Option<&At<String>>, table: &mut Table<'_>, found: &mut Found) -> Option<Password> {
-    let password = password(table, found);
-    if let (Some(password), None) = (&password, user) {
-        found.wrong(password.from.at, "a password without a `user`").help =
-            Some("name the `user` that the other side knows".to_owned());
-    }
-    password
-}
-
-/// A user who has a password, or none.
-pub(super) fn user_with_password(table: &mut Table<'_>, found: &mut Found) -> Option<(String, Password)> {
-    let user = table.text(found, "user");
-    let password = password_of(user.as_ref(), table, found);
-    if let (Some(user), None) = (&user, &password) {
-        found.wrong(user.at, "a user without a password").help =
-            Some("name its file: `password-file = \"line1.password\"`".to_owned());
-    }
-    user.map(|user| user.value).zip(password)
-}
-
-/// A password, by the settings `password-file` and `password-env`.
-pub(super) fn password(table: &mut Table<'_>, found: &mut Found) -> Option<Password> {
-    let file = table.text(found, "password-file").map(|f| At::new(Origin::File(f.value), f.at));
-    let variable = table.text(found, "password-env").map(|v| At::new(Origin::Variable(v.value), v.at));
-    if let (Some(file), Some(variable)) = (&file, &variable) {
-        found
-            .wrong(variable.at, "there are two passwords")
-            .related
-            .push((file.at, "this is the other one".to_owned()));
-    }
-    file.or(variable).map(|from| Password { from, secret: Secret::default() })
-}
-
 fn status(table: &mut Table<'_>, found: &mut Found) -> Option<At<String>> {
     let status = table.text(found, "status")?;
-    match topic_name(&status.value).and_then(|()| publishable(&status.value)) {
-        Ok(()) => Some(status),
+    own_topic(status, found)
+}
+
+/// A topic that this client publishes to.
+fn own_topic(topic: At<String>, found: &mut Found) -> Option<At<String>> {
+    match topic_name(&topic.value).and_then(|()| publishable(&topic.value)) {
+        Ok(()) => Some(topic),
         Err(why) => {
-            found.wrong(status.at, why);
+            found.wrong(topic.at, why);
             None
         }
     }
+}
+
+/// Events and bytes of them that wait at most, where the file does not say it.
+const EVENTS: (i64, i64) = (100_000, 64 << 20);
+
+/// Reads `events`: a topic, or a table with more.
+fn events(name: &str, table: &mut Table<'_>, found: &mut Found) -> Option<Events> {
+    let value = table.value(found, "events")?;
+    let (mut topic, mut file, mut most, mut bytes) = (None, None, None, None);
+    if let Some(text) = value.value.as_str() {
+        topic = Some(At::new(text.to_owned(), value.at));
+    } else if let Some(rows) = value.value.as_table() {
+        let mut table = Table::new(rows, value.at, "`events`");
+        topic = table.needed(found, "topic", "plant/sorter/events");
+        file = table.text(found, "file");
+        most = table.whole(found, "most", 100..=10_000_000);
+        bytes = table.whole(found, "bytes", 100_000..=1 << 40);
+        table.end(found);
+    } else {
+        found.wrong(value.at, "`events` is the text of a topic, or a table").help =
+            Some("write `events = \"plant/sorter/events\"`".to_owned());
+    }
+    let topic = own_topic(topic?, found)?;
+    let usual = || At::new(format!("{name}.events"), value.at);
+    let file = file.unwrap_or_else(usual);
+    if file.value.is_empty() || file.value.contains(['/', '\\', '\0']) {
+        found.wrong(file.at, "the `file` of the events is the name of a file beside the io file").help =
+            Some("write `events = { topic = \"plant/sorter/events\", file = \"sorter.events\" }`".to_owned());
+        return None;
+    }
+    let number = |n: Option<At<i64>>, usual: i64| n.map_or(usual, |n| n.value).unsigned_abs();
+    Some(Events { topic, file, most: number(most, EVENTS.0), bytes: number(bytes, EVENTS.1) })
 }
 
 fn sparkplug(mut table: Table<'_>, found: &mut Found) -> Option<Sparkplug> {
@@ -218,28 +217,4 @@ pub(crate) fn publishable(topic: &str) -> Result<(), String> {
         return Err(format!("`{topic}` belongs to the broker: nothing is published there"));
     }
     Ok(())
-}
-
-/// Gets passwords. `read` gives the bytes of a file or variable, or says why not.
-pub(super) fn read_passwords<'d>(
-    passwords: impl Iterator<Item = &'d mut Password>,
-    mut read: impl FnMut(&Origin) -> Result<Vec<u8>, String>,
-) -> Vec<Problem> {
-    let mut problems = Vec::new();
-    for password in passwords {
-        match read(&password.from.value) {
-            Ok(mut bytes) => {
-                // Editors end a file with a line end, which is no part of the password.
-                while bytes.last().is_some_and(|b| matches!(b, b'\n' | b'\r')) {
-                    bytes.pop();
-                }
-                password.secret = Secret(bytes);
-            }
-            Err(why) => {
-                let what = format!("the password cannot be read: {why}");
-                problems.push(Problem::new(&codes::BAD_WIRING, password.from.at, what));
-            }
-        }
-    }
-    problems
 }

@@ -1,4 +1,4 @@
-//! What an io file can say, as data: the kinds of devices with their settings, their points, and what a
+//! The contents of an io file as data: the kinds of devices with their settings, their points, and what a
 //! channel says of each point. The wizard of the page makes its forms of it.
 //!
 //! The reader (`device`, `broker`, `point`) decides what is accepted. `tests/catalogue.rs` holds the two
@@ -10,7 +10,7 @@
 pub struct KindRow {
     /// The word of the file: `kind = "…"`.
     pub word: &'static str,
-    /// What it is, in a few words.
+    /// Its meaning, in a few words.
     pub about: &'static str,
     /// Its settings; `kind` itself is not among them.
     pub settings: &'static [&'static [Setting]],
@@ -29,7 +29,7 @@ pub struct Setting {
     pub form: Form,
     /// Its value where the file says nothing.
     pub usual: Usual,
-    /// What it is, in a few words.
+    /// Its meaning, in a few words.
     pub about: &'static str,
 }
 
@@ -48,10 +48,12 @@ pub enum Form {
     Words(&'static [&'static str]),
     /// True or false.
     Flag,
-    /// What an input is while it is bad: `"hold"`, `"fault"`, or a value of the variable.
+    /// The policy for an input while it is bad: `"hold"`, `"fault"`, or a value of the variable.
     Bad,
-    /// A table with settings of its own.
+    /// A table with settings of its own; a text alone is the first of them, where that one is needed.
     Table(&'static [Setting]),
+    /// True or false, or a table with settings of its own.
+    FlagOrTable(&'static [Setting]),
 }
 
 /// The value of a setting where the file says nothing.
@@ -70,23 +72,23 @@ pub enum Usual {
 pub struct Point {
     /// Its word.
     pub word: &'static str,
-    /// What stands in its brackets.
+    /// The contents of its brackets.
     pub argument: Argument,
-    /// What it carries.
+    /// The kind of value that it carries.
     pub carries: Carries,
     /// An input of the chart can be wired to it.
     pub input: bool,
     /// An output of the chart, or something shown, can be wired to it.
     pub output: bool,
-    /// What a channel can say beside the point: of an input.
+    /// The settings of a channel beside the point: of an input.
     pub of_input: &'static [&'static [Setting]],
-    /// What a channel can say beside the point: of an output, or of something shown.
+    /// The settings of a channel beside the point: of an output, or of something shown.
     pub of_output: &'static [&'static [Setting]],
-    /// What it is, in a few words.
+    /// Its meaning, in a few words.
     pub about: &'static str,
 }
 
-/// What stands in the brackets of a point.
+/// The contents of the brackets of a point.
 #[derive(Clone, Copy, Debug)]
 pub enum Argument {
     /// Nothing.
@@ -103,6 +105,8 @@ pub enum Argument {
     Word(&'static [&'static str]),
     /// Some words, separated by commas; this is an example.
     List(&'static str),
+    /// There are no brackets and no word: the point is this text; this is an example.
+    Alone(&'static str),
 }
 
 /// The variables that a point carries.
@@ -149,6 +153,20 @@ pub const KINDS: &[KindRow] = &[
         shows: true,
     },
     KindRow {
+        word: "s7",
+        about: "a controller of Siemens, which G7 asks",
+        settings: &[S7, DEVICE_TIMES],
+        points: CELLS,
+        shows: false,
+    },
+    KindRow {
+        word: "gpio",
+        about: "lines of this machine",
+        settings: &[CHIP, DEVICE_TIMES],
+        points: LINES,
+        shows: false,
+    },
+    KindRow {
         word: "panel",
         about: "buttons and lamps on the operator page",
         settings: &[PANEL],
@@ -181,6 +199,9 @@ pub const CONTROLLER: &[Setting] = &[
         Usual::None("127.0.0.1:9464"),
         "an address of this machine where a monitoring system asks",
     ),
+    setting("log", Form::Text, Usual::None("sorter.log"), "the file of the log of events and deeds"),
+    setting("log-days", Form::Whole(1, 36_500), Usual::None("400"), "rows of the log that are older go"),
+    setting("log-mib", Form::Whole(1, 100_000), Usual::None("100"), "the greatest size of the log, in MiB"),
 ];
 
 const fn setting(key: &'static str, form: Form, usual: Usual, about: &'static str) -> Setting {
@@ -268,6 +289,32 @@ const BROKER: &[Setting] = &[
     ),
     setting("status", Form::Text, Usual::None("plant/status"), "a topic that says online or offline"),
     setting(
+        "tls",
+        Form::FlagOrTable(&[
+            setting("ca", Form::Text, Usual::None("ca.pem"), "the file of the certificates that are trusted"),
+            setting(
+                "certificate",
+                Form::Text,
+                Usual::None("sorter.pem"),
+                "the file of the certificate of this client",
+            ),
+            setting("key", Form::Text, Usual::None("sorter.key"), "the file of its key"),
+        ]),
+        Usual::Is("false"),
+        "the connection is encrypted; the port is then 8883",
+    ),
+    setting(
+        "events",
+        Form::Table(&[
+            setting("topic", Form::Text, Usual::Needed("plant/sorter/events"), "the topic of the events"),
+            setting("file", Form::Text, Usual::None("hub.events"), "the file in which they wait"),
+            setting("most", Form::Whole(100, 10_000_000), Usual::Is("100000"), "events that wait at most"),
+            setting("bytes", Form::Whole(100_000, 1 << 40), Usual::Is("67108864"), "bytes of them at most"),
+        ]),
+        Usual::None(""),
+        "the events of the controller are published",
+    ),
+    setting(
         "sparkplug",
         Form::Table(&[
             setting("group", Form::Text, Usual::Needed("plant"), "the group"),
@@ -296,6 +343,22 @@ const BROKER_TIMES: &[Setting] = &[
     ),
 ];
 
+const S7: &[Setting] = &[
+    setting("host", Form::Text, Usual::Needed("10.0.0.8"), "its name or address"),
+    setting("port", Form::Whole(1, 65_535), Usual::Is("102"), "its port"),
+    setting("rack", Form::Whole(0, 7), Usual::Is("0"), "the rack of its processor"),
+    setting("slot", Form::Whole(0, 31), Usual::Is("1"), "the slot of its processor"),
+    setting(
+        "connection",
+        Form::Words(&["programmer", "panel", "basic"]),
+        Usual::Is("\"programmer\""),
+        "the kind of connection that it gives",
+    ),
+];
+
+const CHIP: &[Setting] =
+    &[setting("chip", Form::Text, Usual::Needed("/dev/gpiochip0"), "the device file of the chip")];
+
 const PANEL: &[Setting] = &[
     setting(
         "release",
@@ -319,6 +382,23 @@ const FORM_OF_NUMBER: &[Setting] = &[setting(
     Form::Words(&["u16", "i16", "u32", "i32", "u64", "i64", "f32", "f64"]),
     Usual::None("u16"),
     "the form of the number in registers; that of the type of the variable without it",
+)];
+
+const PIN: &[Setting] = &[
+    setting(
+        "bias",
+        Form::Words(&["pull-up", "pull-down", "none"]),
+        Usual::None("pull-up"),
+        "the resistor at the line; as the line has it without it",
+    ),
+    setting("active-low", Form::Flag, Usual::Is("false"), "TRUE is the low level"),
+];
+
+const DEBOUNCE: &[Setting] = &[setting(
+    "debounce",
+    Form::Duration("1us", "4s"),
+    Usual::None("5ms"),
+    "an input has to be steady for so long",
 )];
 
 const MESSAGE: &[Setting] = &[
@@ -404,6 +484,29 @@ const TABLES: &[Point] = &[
     one_bit("input", false, true, "one bit of a register that a master only reads"),
     one_bit("holding", true, true, "one bit of a register that a master writes"),
     Point { about: "TRUE while a master asks", ..GOOD },
+];
+
+/// The points of a controller of Siemens.
+const CELLS: &[Point] = &[
+    Point {
+        argument: Argument::Alone("DB1.DBX0.0"),
+        ..bits("", true, true, "a bit: DB1.DBX0.0, M0.0, I0.0, Q0.0")
+    },
+    Point {
+        argument: Argument::Alone("DB1.DBW2"),
+        ..numbers("", true, true, "a number: B is a byte, W two, D four: DB1.DBW2, MD4")
+    },
+    GOOD,
+];
+
+/// The points of a chip of this machine.
+const LINES: &[Point] = &[
+    Point {
+        of_input: &[PIN, DEBOUNCE, BAD],
+        of_output: &[PIN],
+        ..bits("line", true, true, "a line of the chip")
+    },
+    GOOD,
 ];
 
 const MESSAGES: &[Point] = &[

@@ -5,6 +5,7 @@ use std::net::SocketAddr;
 use g7_model::Nanos;
 
 use super::broker::{self, Broker};
+use super::field::{self, S7};
 use super::opcua::{self, OpcUa, OpcUaServer};
 use super::panel::{self, Panel};
 use super::table::{At, Found, Row, Table};
@@ -31,6 +32,10 @@ pub enum Kind {
     ModbusServer(Listen),
     /// A broker of MQTT 5, which this is a client of.
     Mqtt(Box<Broker>),
+    /// A controller of Siemens, which this is a client of.
+    S7(S7),
+    /// A chip of lines of this machine: its device file.
+    Gpio(String),
     /// A server of OPC UA, which this is a client of.
     OpcUa(Box<OpcUa>),
     /// Clients of OPC UA, which this is the server of.
@@ -41,17 +46,28 @@ pub enum Kind {
 
 impl Kind {
     /// The words of the file.
-    pub const WORDS: [&'static str; 7] =
-        ["modbus-tcp", "modbus-rtu", "modbus-server", "mqtt", "panel", "opc-ua", "opc-ua-server"];
+    pub const WORDS: [&'static str; 9] = [
+        "modbus-tcp",
+        "modbus-rtu",
+        "modbus-server",
+        "mqtt",
+        "s7",
+        "gpio",
+        "panel",
+        "opc-ua",
+        "opc-ua-server",
+    ];
 
     /// Its word in the file.
     pub fn word(&self) -> &'static str {
-        let [tcp, rtu, server, mqtt, panel, opcua, opcua_server] = Kind::WORDS;
+        let [tcp, rtu, server, mqtt, s7, gpio, panel, opcua, opcua_server] = Kind::WORDS;
         match self {
             Kind::ModbusTcp(..) => tcp,
             Kind::ModbusRtu(..) => rtu,
             Kind::ModbusServer(_) => server,
             Kind::Mqtt(_) => mqtt,
+            Kind::S7(_) => s7,
+            Kind::Gpio(_) => gpio,
             Kind::OpcUa(_) => opcua,
             Kind::OpcUaServer(_) => opcua_server,
             Kind::Panel(_) => panel,
@@ -65,6 +81,8 @@ impl Kind {
             Kind::ModbusRtu(serial, modbus) => format!("{} unit {}", serial.port, modbus.unit),
             Kind::ModbusServer(listen) => listen.address.to_string(),
             Kind::Mqtt(broker) => format!("{}:{}", broker.host, broker.port),
+            Kind::S7(s7) => format!("{}:{} rack {} slot {}", s7.host, s7.port, s7.rack, s7.slot),
+            Kind::Gpio(chip) => chip.clone(),
             Kind::OpcUa(server) => server.url.clone(),
             Kind::OpcUaServer(server) => server.address.to_string(),
             Kind::Panel(_) => "the operator page".to_owned(),
@@ -81,21 +99,7 @@ impl Kind {
         match self {
             Kind::ModbusServer(listen) => Some(listen.address),
             Kind::OpcUaServer(server) => Some(server.address),
-            Kind::ModbusTcp(..) | Kind::ModbusRtu(..) | Kind::Mqtt(_) | Kind::Panel(_) | Kind::OpcUa(_) => {
-                None
-            }
-        }
-    }
-
-    /// The feature of the build that brings it, where not each build has it.
-    pub fn feature(&self) -> Option<&'static str> {
-        match self {
-            Kind::OpcUa(_) | Kind::OpcUaServer(_) => Some("opcua"),
-            Kind::ModbusTcp(..)
-            | Kind::ModbusRtu(..)
-            | Kind::ModbusServer(_)
-            | Kind::Mqtt(_)
-            | Kind::Panel(_) => None,
+            _ => None,
         }
     }
 }
@@ -195,7 +199,9 @@ pub(super) fn read(row: &Row<'_>, found: &mut Found) -> Option<Device> {
             serial(&mut table, found).map(|serial| Kind::ModbusRtu(serial, modbus(&mut table, found)))
         }
         "modbus-server" => listen(&mut table, found).map(Kind::ModbusServer),
-        "mqtt" => broker::read(&mut table, found).map(|broker| Kind::Mqtt(Box::new(broker))),
+        "mqtt" => broker::read(row.name, &mut table, found).map(|broker| Kind::Mqtt(Box::new(broker))),
+        "s7" => field::s7(&mut table, found).map(Kind::S7),
+        "gpio" => field::chip(&mut table, found).map(Kind::Gpio),
         "opc-ua" => opcua::client(&mut table, found).map(|server| Kind::OpcUa(Box::new(server))),
         "opc-ua-server" => {
             opcua::server(row.name, &mut table, found).map(|server| Kind::OpcUaServer(Box::new(server)))
@@ -215,7 +221,7 @@ pub(super) fn read(row: &Row<'_>, found: &mut Found) -> Option<Device> {
         Some(Kind::OpcUa(_)) => {
             timing(&mut table, found, Timing { timeout: BROKER.timeout, ..Timing::default() })
         }
-        Some(Kind::ModbusTcp(..) | Kind::ModbusRtu(..)) | None => {
+        Some(Kind::ModbusTcp(..) | Kind::ModbusRtu(..) | Kind::S7(_) | Kind::Gpio(_)) | None => {
             timing(&mut table, found, Timing::default())
         }
     };
@@ -309,12 +315,7 @@ fn timing(table: &mut Table<'_>, found: &mut Found, usual: Timing) -> Timing {
 pub(super) fn one_line_each(devices: &[Device], found: &mut Found) {
     let lines = devices.iter().filter_map(|d| match &d.kind {
         Kind::ModbusRtu(serial, _) => Some((d, serial)),
-        Kind::ModbusTcp(..)
-        | Kind::ModbusServer(_)
-        | Kind::Mqtt(_)
-        | Kind::Panel(_)
-        | Kind::OpcUa(_)
-        | Kind::OpcUaServer(_) => None,
+        _ => None,
     });
     for (k, (device, serial)) in lines.clone().enumerate() {
         let other = lines.clone().take(k).find(|(_, s)| s.port == serial.port && *s != serial);
@@ -327,6 +328,23 @@ pub(super) fn one_line_each(devices: &[Device], found: &mut Found) {
                 .wrong(device.name.at, what)
                 .related
                 .push((first.name.at, "this is the other one".to_owned()));
+        }
+    }
+}
+
+/// No two files of events are one, nor is one that of the kept values.
+pub(super) fn one_file_each(devices: &[Device], retain: Option<&At<String>>, found: &mut Found) {
+    let events = devices.iter().filter_map(|d| match &d.kind {
+        Kind::Mqtt(broker) => broker.events.as_ref().map(|events| &events.file),
+        _ => None,
+    });
+    for (k, file) in events.clone().enumerate() {
+        let others = retain.into_iter().chain(events.clone().take(k));
+        if let Some(first) = others.into_iter().find(|other| other.value == file.value) {
+            found
+                .wrong(file.at, format!("`{}` would hold two things", file.value))
+                .related
+                .push((first.at, "this is the other one".to_owned()));
         }
     }
 }

@@ -91,11 +91,8 @@ fn single(text: &str, change: &Change) -> Result<Vec<Change>, Uneditable> {
                 path.push("at".to_owned());
             }
             let Some(point) = at.unwrap_or(channel).as_str() else { continue };
-            let (device, rest) = point.split_once('(').map_or((point, ""), |(head, rest)| (head, rest));
-            if let Some((device, word)) = device.rsplit_once('.')
-                && device.trim() == from
-            {
-                changes.push(Change::Set(path, Plain::Text(format!("{to}.{word}({rest}"))));
+            if let Some(point) = super::point::renamed(point, from, to) {
+                changes.push(Change::Set(path, Plain::Text(point)));
             }
         }
     }

@@ -25,7 +25,7 @@ pub struct History {
     pub file: At<String>,
     /// The signals by name; `None` for all.
     pub signals: Option<Vec<At<String>>>,
-    /// What is older than so many days is deleted.
+    /// Changes that are older than so many days are deleted.
     pub days: u32,
     /// The greatest size of the record, in MB; beyond it the oldest is deleted.
     pub megabytes: u32,

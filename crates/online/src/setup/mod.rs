@@ -23,38 +23,39 @@ mod broker;
 pub mod catalogue;
 mod device;
 mod edit;
+mod field;
 mod history;
 mod opcua;
 mod outline;
 mod panel;
 mod point;
+mod secret;
 mod server;
 mod table;
 
 use std::net::SocketAddr;
 use std::path::Path;
 
-use g7_model::{FileId, Nanos, Problem, Span, codes};
+use g7_model::{FileId, Nanos, Problem, Span};
 use toml::de::{DeTable, DeValue};
 
 pub(crate) use broker::publishable;
-pub use broker::{Broker, Message, Origin, Password, Secret, Sparkplug};
+pub use broker::{Broker, Events, Message, Sparkplug};
 pub(crate) use device::SERVER;
 pub use device::{Device, Kind, Listen, Modbus, Parity, Serial, Tcp, Timing};
 pub use edit::{Change, Plain, Uneditable, edit};
+pub use field::{Address, Bias, Memory, Pin, S7, Width};
 pub use history::History;
 pub(crate) use history::SIGNALS;
 pub use opcua::{Namespace, NodeId, OpcUa, OpcUaServer, Policy, Role, Security, User, read_node};
 pub use outline::{Entry, outline};
 pub use panel::{Handle, Limits, Panel};
 pub use point::{Area, Encoding, Place, Point, Register};
+pub use secret::{Held, Origin, Secret, Tls};
 pub use server::{LogFile, Server};
 pub use table::At;
 
-use table::{Found, Row, Table};
-
-/// The longest file that is read.
-const MOST: usize = 4 << 20;
+use table::{Found, MOST, Row, Table};
 
 /// The contents of an io file.
 #[derive(Clone, Debug, Default)]
@@ -71,7 +72,7 @@ pub struct Setup {
     pub outputs: Vec<Channel>,
     /// Variables and steps that masters may read.
     pub shown: Vec<Channel>,
-    /// What is recorded.
+    /// The signals that are recorded.
     pub history: Option<History>,
 }
 
@@ -165,6 +166,8 @@ pub struct Channel {
     pub bad: At<Bad>,
     /// How the messages of a topic are used.
     pub message: Message,
+    /// How a line of a chip is used.
+    pub pin: Pin,
     /// The unit of the value, such as `m/s`.
     pub unit: Option<At<String>>,
     /// The numbers that a person can enter on a panel.
@@ -196,19 +199,16 @@ pub fn read_point(text: &str) -> Result<Point, String> {
     point::of(text)
 }
 
-/// Gets the passwords that the file names. `from` gives the bytes of a file or variable, or says why
-/// not.
-pub fn read_passwords(
-    setup: &mut Setup,
-    from: impl FnMut(&Origin) -> Result<Vec<u8>, String>,
-) -> Vec<Problem> {
-    let passwords = setup.devices.iter_mut().flat_map(|device| match &mut device.kind {
-        Kind::Mqtt(broker) => broker.password.as_mut().into_iter().collect(),
-        Kind::OpcUa(server) => server.passwords().collect(),
-        Kind::OpcUaServer(server) => server.passwords().collect(),
-        Kind::ModbusTcp(..) | Kind::ModbusRtu(..) | Kind::ModbusServer(_) | Kind::Panel(_) => Vec::new(),
+/// Gets the passwords, certificates and keys that the file names. `from` gives the bytes of a file or
+/// variable, or says why not.
+pub fn read_secrets(setup: &mut Setup, from: impl FnMut(&Origin) -> Result<Vec<u8>, String>) -> Vec<Problem> {
+    let peers = setup.devices.iter_mut().flat_map(|device| match &mut device.kind {
+        Kind::Mqtt(broker) => vec![(broker.password.as_mut(), broker.tls.as_mut())],
+        Kind::OpcUa(server) => vec![(server.password(), None)],
+        Kind::OpcUaServer(server) => server.passwords().map(|password| (Some(password), None)).collect(),
+        _ => Vec::new(),
     });
-    broker::read_passwords(passwords, from)
+    secret::read(peers, from)
 }
 
 /// The folders that the file names are in this one from here on, that of the io file.
@@ -217,27 +217,9 @@ pub fn settle(setup: &mut Setup, folder: &Path) {
         match &mut device.kind {
             Kind::OpcUa(server) => server.settle(folder),
             Kind::OpcUaServer(server) => server.settle(folder),
-            Kind::Mqtt(_)
-            | Kind::ModbusTcp(..)
-            | Kind::ModbusRtu(..)
-            | Kind::ModbusServer(_)
-            | Kind::Panel(_) => {}
+            _ => {}
         }
     }
-}
-
-/// The devices of kinds that this program was built without. `has` says of a feature of the build whether
-/// it is there.
-pub fn missing(setup: &Setup, has: impl Fn(&str) -> bool) -> Vec<Problem> {
-    let problem = |device: &Device| {
-        let feature = device.kind.feature().filter(|feature| !has(feature))?;
-        let what = format!("this build of G7 has no \"{}\"", device.kind.word());
-        let mut problem = Problem::new(&codes::BAD_WIRING, device.name.at, what);
-        problem.help =
-            Some(format!("build it with `cargo build --release --package g7 --features {feature}`"));
-        Some(problem)
-    };
-    setup.devices.iter().filter_map(problem).collect()
 }
 
 fn setup(table: &DeTable<'_>, found: &mut Found) -> Setup {
@@ -249,6 +231,8 @@ fn setup(table: &DeTable<'_>, found: &mut Found) -> Setup {
     let devices: Vec<Device> = rows.iter().filter_map(|row| device::read(row, found)).collect();
     device::one_line_each(&devices, found);
     device::one_address_each(&devices, found);
+    let retain = controller.as_ref().and_then(|controller| controller.retain.as_ref());
+    device::one_file_each(&devices, retain, found);
     let rows = top.rows(found, "inputs");
     let inputs = rows.iter().filter_map(|row| channel(row, true, found)).collect();
     let rows = top.rows(found, "outputs");
@@ -303,7 +287,7 @@ fn channel(row: &Row<'_>, input: bool, found: &mut Found) -> Option<Channel> {
         let (device, point) = point::read(text, row.value_at, found)?;
         let bad = At::new(Bad::Hold, row.at);
         let at = row.value_at;
-        let message = Message::default();
+        let (message, pin) = (Message::default(), Pin::default());
         return Some(Channel {
             variable,
             device,
@@ -314,6 +298,7 @@ fn channel(row: &Row<'_>, input: bool, found: &mut Found) -> Option<Channel> {
             offset: None,
             bad,
             message,
+            pin,
             unit: None,
             limits: Limits::default(),
         });
@@ -328,6 +313,7 @@ fn channel(row: &Row<'_>, input: bool, found: &mut Found) -> Option<Channel> {
     let encoding = table.word(found, "as", Encoding::WORDS);
     let (scale, offset) = (table.number(found, "scale"), table.number(found, "offset"));
     let message = broker::message(&mut table, input, found);
+    let pin = field::pin(&mut table, input, found);
     let unit = table.text(found, "unit");
     let limits = if input { panel::limits(&mut table, found) } else { Limits::default() };
     let bad = if input { table.value(found, "bad") } else { None };
@@ -352,6 +338,7 @@ fn channel(row: &Row<'_>, input: bool, found: &mut Found) -> Option<Channel> {
         offset,
         bad,
         message,
+        pin,
         unit,
         limits,
     })

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use g7_model::Nanos;
 
-use super::broker::{Password, password, user_with_password};
+use super::secret::{self, Held};
 use super::table::{At, Found, Row, Table};
 
 /// A server of OPC UA, which this is a client of.
@@ -18,7 +18,7 @@ pub struct OpcUa {
     /// The algorithms of signature and encryption.
     pub policy: Policy,
     /// The user that it knows this machine by, with the password.
-    pub user: Option<(String, Password)>,
+    pub user: Option<(String, Held)>,
     /// The folder of the certificates: `own`, `trusted` and `rejected`.
     pub certificates: PathBuf,
     /// The time between two messages of the server with changed values.
@@ -56,7 +56,7 @@ pub struct User {
     /// What the user may do.
     pub role: Role,
     /// The password.
-    pub password: Password,
+    pub password: Held,
 }
 
 /// What a user may do; each role may do what those before it may.
@@ -129,9 +129,9 @@ impl Policy {
 const CERTIFICATES: &str = "opcua-certificates";
 
 impl OpcUa {
-    /// The passwords that its row names.
-    pub(super) fn passwords(&mut self) -> impl Iterator<Item = &mut Password> {
-        self.user.as_mut().map(|(_, password)| password).into_iter()
+    /// The password that its row names.
+    pub(super) fn password(&mut self) -> Option<&mut Held> {
+        self.user.as_mut().map(|(_, password)| password)
     }
 
     /// Its folder, from the folder of the io file.
@@ -142,7 +142,7 @@ impl OpcUa {
 
 impl OpcUaServer {
     /// The passwords that its row names.
-    pub(super) fn passwords(&mut self) -> impl Iterator<Item = &mut Password> {
+    pub(super) fn passwords(&mut self) -> impl Iterator<Item = &mut Held> {
         self.users.iter_mut().map(|user| &mut user.password)
     }
 
@@ -159,7 +159,7 @@ pub(super) fn client(table: &mut Table<'_>, found: &mut Found) -> Option<OpcUa> 
     if let (Some(policy), Some(Security::None)) = (&policy, security.as_ref().map(|s| s.value)) {
         found.wrong(policy.at, "without security there is no policy");
     }
-    let user = user_with_password(table, found);
+    let user = user(table, found);
     let certificates = certificates(table, found, CERTIFICATES.to_owned());
     let interval = table.duration(found, "interval", Nanos::from_millis(10), Nanos::MINUTE);
     let interval = interval.map_or(Nanos::from_millis(100), |i| i.value);
@@ -180,6 +180,24 @@ pub(super) fn client(table: &mut Table<'_>, found: &mut Found) -> Option<OpcUa> 
         keep_alive: keep_alive.map_or(Nanos::SECOND, |k| k.value).max(interval),
         uncertain_is_good: uncertain.is_some_and(|u| u.value),
     })
+}
+
+/// A user who has a password, or none.
+fn user(table: &mut Table<'_>, found: &mut Found) -> Option<(String, Held)> {
+    let user = table.text(found, "user");
+    let password = secret::password(table, found);
+    match (&user, &password) {
+        (None, Some(password)) => {
+            found.wrong(password.from.at, "a password without a `user`").help =
+                Some("name the `user` that the server knows".to_owned());
+        }
+        (Some(user), None) => {
+            found.wrong(user.at, "a user without a password").help =
+                Some("name its file: `password-file = \"line1.password\"`".to_owned());
+        }
+        (None, None) | (Some(_), Some(_)) => {}
+    }
+    user.map(|user| user.value).zip(password)
 }
 
 /// Refuses what is no address of OPC UA over TCP (OPC 10000-6, 7.2).
@@ -212,7 +230,7 @@ pub(super) fn server(name: &str, table: &mut Table<'_>, found: &mut Found) -> Op
     let security = table.word(found, "security", Security::WORDS);
     let anonymous = table.word(found, "anonymous", &[("refuse", false), ("read", true)]);
     let rows = table.rows(found, "users");
-    let users: Vec<User> = rows.iter().filter_map(|row| user(row, found)).collect();
+    let users: Vec<User> = rows.iter().filter_map(|row| user_of(row, found)).collect();
     let certificates = certificates(table, found, format!("opcua-{name}"));
     let all = table.word(found, "expose", &[("shown", false), ("all", true)]);
     let silence = table.duration(found, "silence", Nanos::SECOND, Nanos::HOUR);
@@ -253,7 +271,7 @@ pub(super) fn server(name: &str, table: &mut Table<'_>, found: &mut Found) -> Op
     Some(server)
 }
 
-fn user(row: &Row<'_>, found: &mut Found) -> Option<User> {
+fn user_of(row: &Row<'_>, found: &mut Found) -> Option<User> {
     let Some(table) = row.value.as_table() else {
         found.wrong(row.value_at, format!("the user {} is a table", row.name)).help = Some(format!(
             "write `{} = {{ role = \"operator\", password-file = \"{}.password\" }}`",
@@ -263,7 +281,7 @@ fn user(row: &Row<'_>, found: &mut Found) -> Option<User> {
     };
     let mut table = Table::new(table, row.at, format!("the user {}", row.name));
     let role = table.word(found, "role", Role::WORDS);
-    let password = password(&mut table, found);
+    let password = secret::password(&mut table, found);
     if role.is_none() {
         found.wrong(row.at, format!("the user {} has no `role`", row.name)).help =
             Some("the roles are \"viewer\", \"operator\", \"engineer\" and \"admin\"".to_owned());

@@ -4,7 +4,7 @@ use g7_model::{FileId, Span};
 use serde_json::{Map, Value};
 use toml::de::{DeTable, DeValue};
 
-use super::table::{Found, number, rows};
+use super::table::{Found, MOST, number, rows};
 
 /// Tables within tables that are looked into; a channel or a broker has no more.
 const DEEPEST: usize = 4;
@@ -26,7 +26,7 @@ pub struct Entry {
 /// no TOML it has what can be read.
 pub fn outline(text: &str, file: FileId) -> Vec<Entry> {
     let mut entries = Vec::new();
-    if text.len() <= super::MOST {
+    if text.len() <= MOST {
         let (table, _) = DeTable::parse_recoverable(text);
         walk(table.get_ref(), &[], &Found { file, problems: Vec::new() }, &mut entries);
     }

@@ -3,6 +3,7 @@
 use g7_model::Span;
 
 use super::broker::topic_name;
+use super::field::{self, Address, whole};
 use super::panel::{self, Handle};
 use super::table::{At, Found};
 
@@ -17,6 +18,10 @@ pub enum Point {
     Metric(Option<String>),
     /// A node of OPC UA; on a server of our own, without a name, it has that of the variable.
     Node(Option<String>),
+    /// An address of a controller of Siemens.
+    S7(Address),
+    /// A line of a chip of this machine, by its number there.
+    Line(u32),
     /// A part of a panel.
     Panel(Handle),
     /// True while the device answers.
@@ -78,7 +83,7 @@ impl Area {
 }
 
 /// How registers hold a number.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Encoding {
     /// An unsigned number of so many registers.
     Unsigned(u8),
@@ -138,28 +143,53 @@ impl std::fmt::Display for Point {
             Point::Topic(topic) => write!(f, "topic({topic})"),
             Point::Metric(name) => write!(f, "metric({})", name.as_deref().unwrap_or("")),
             Point::Node(name) => write!(f, "node({})", name.as_deref().unwrap_or("")),
+            Point::S7(address) => address.fmt(f),
+            Point::Line(offset) => write!(f, "line({offset})"),
             Point::Panel(handle) => handle.fmt(f),
             Point::Good => f.write_str("good()"),
         }
     }
 }
 
-/// Reads `device.point(arguments)`.
+/// Reads `device.point(arguments)`, or `device.address` as it is written for controllers of Siemens.
 pub(super) fn read(text: &str, at: Span, found: &mut Found) -> Option<(At<String>, Point)> {
-    match parts(text).map_or(Err(None), |(device, word, argument)| {
-        point(word, argument).map(|point| (device, point)).map_err(Some)
-    }) {
+    let read = match addressed(text) {
+        Some((device, address)) => address.map(|address| (device, Point::S7(address))).map_err(Some),
+        None => parts(text).map_or(Err(None), |(device, word, argument)| {
+            point(word, argument).map(|point| (device, point)).map_err(Some)
+        }),
+    };
+    match read {
         Ok((device, point)) => Some((At::new(device.to_owned(), at), point)),
         Err(why) => {
             let what = why.unwrap_or_else(|| format!("\"{text}\" is no point of a device"));
             found.wrong(at, what).help = Some(
                 "write the device and its point: \"line1.coil(2)\", \"line1.holding(4)\", \
-                 \"line1.holding(4.3)\" for one bit, \"broker.topic(plant/level)\", \"desk.button()\", \"plc.node(ns=2;s=Level)\", \"line1.good()\""
+                 \"line1.holding(4.3)\" for one bit, \"broker.topic(plant/level)\", \"plc.DB1.DBX0.0\", \
+                 \"board.line(17)\", \"desk.button()\", \"plc.node(ns=2;s=Level)\", \"line1.good()\""
                     .to_owned(),
             );
             None
         }
     }
+}
+
+/// The text of a channel with another device; `None` where it names another one.
+pub(super) fn renamed(text: &str, from: &str, to: &str) -> Option<String> {
+    let (device, rest) = if addressed(text).is_some() {
+        text.trim().split_once('.')?
+    } else {
+        let head = text.split_once('(').map_or(text, |(head, _)| head);
+        let dot = head.rfind('.')?;
+        (text.get(..dot)?, text.get(dot + 1..)?)
+    };
+    (device.trim() == from).then(|| format!("{to}.{rest}"))
+}
+
+/// `device.DB1.DBX0.0`: the device, and the address or what is wrong with it.
+fn addressed(text: &str) -> Option<(&str, Result<Address, String>)> {
+    let (device, address) = text.trim().split_once('.')?;
+    field::address(address).map(|address| (device.trim(), address))
 }
 
 fn parts(text: &str) -> Option<(&str, &str, &str)> {
@@ -176,6 +206,9 @@ fn called(text: &str) -> Option<(&str, &str)> {
 
 /// Reads `point(arguments)`.
 pub(super) fn of(text: &str) -> Result<Point, String> {
+    if let Some(address) = field::address(text) {
+        return address.map(Point::S7);
+    }
     let (word, argument) = called(text).ok_or_else(|| format!("`{text}` is no point: write `holding(4)`"))?;
     point(word, argument)
 }
@@ -190,6 +223,10 @@ fn point(word: &str, argument: &str) -> Result<Point, String> {
     }
     match word {
         "topic" => return topic_name(argument).map(|()| Point::Topic(argument.to_owned())),
+        "line" => {
+            let offset = whole(argument, 65_535).ok_or("a line has a number from 0 to 65535")?;
+            return Ok(Point::Line(u32::from(offset)));
+        }
         "metric" => return Ok(Point::Metric(Some(argument.to_owned()).filter(|name| !name.is_empty()))),
         "node" => return Ok(Point::Node(Some(argument.to_owned()).filter(|name| !name.is_empty()))),
         _ => {}
@@ -204,17 +241,11 @@ fn point(word: &str, argument: &str) -> Result<Point, String> {
         Some((address, bit)) => (address, Some(bit)),
         None => (argument, None),
     };
-    let address = digits(address, 65_535).ok_or("an address is a whole number from 0 to 65535")?;
+    let address = whole(address, 65_535).ok_or("an address is a whole number from 0 to 65535")?;
     let bit = match bit {
         Some(_) if area.is_bits() => return Err(format!("{word}({address}) is one bit already")),
-        Some(bit) => Some(digits(bit, 15).ok_or("a bit of a register is 0 to 15")? as u8),
+        Some(bit) => Some(whole(bit, 15).ok_or("a bit of a register is 0 to 15")? as u8),
         None => None,
     };
     Ok(Point::Modbus(Register { area: *area, address, bit }))
-}
-
-/// A number of plain digits.
-fn digits(text: &str, most: u16) -> Option<u16> {
-    let plain = !text.is_empty() && text.bytes().all(|b| b.is_ascii_digit());
-    text.parse().ok().filter(|n| plain && *n <= most)
 }

@@ -1,4 +1,4 @@
-//! What a person needs of a controller: the log in `[controller]`, and `[server]`, which says who may use the
+//! The needs of a person at a controller: the log in `[controller]`, and `[server]`, which says who may use the
 //! page of the operator and from where.
 
 use std::net::IpAddr;

@@ -7,6 +7,9 @@ use g7_model::{FileId, Nanos, Problem, Span, codes};
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
+/// The longest file that is read.
+pub(super) const MOST: usize = 4 << 20;
+
 /// A value with its place.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct At<T> {

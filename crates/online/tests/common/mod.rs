@@ -1,4 +1,4 @@
-//! What several tests need: chance from a seed, and a disk that fails.
+//! Parts that several tests need: chance from a seed, and a disk that fails.
 #![allow(dead_code, reason = "each test file uses a part")]
 
 use std::io;
@@ -24,7 +24,7 @@ pub(crate) fn panics() -> ! {
     std::panic::resume_unwind(Box::new("as the test wants it"))
 }
 
-/// What a disk does at present.
+/// The present state of a disk.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) enum Ill {
     #[default]
@@ -35,7 +35,7 @@ pub(crate) enum Ill {
     NoWrite,
     /// It takes bytes and cannot say that they are safe.
     NoSync,
-    /// What stands behind it has an error.
+    /// The library behind it has an error.
     Panics,
 }
 

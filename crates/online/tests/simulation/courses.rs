@@ -42,7 +42,7 @@ fn row_26_outputs_follow_the_inputs_after_any_course_of_faults() {
     let seeds = seeds();
     let begin = clock();
     for seed in &seeds {
-        // What a course says stands before its seed.
+        // The name of a course stands before its seed.
         match catch_unwind(AssertUnwindSafe(|| course(*seed, &mut tally))) {
             Ok(time) => simulated += time,
             Err(_) => failed.push(seed),

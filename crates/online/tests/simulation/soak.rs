@@ -3,15 +3,9 @@
 use g7_model::Nanos;
 use g7_online::Command;
 use g7_peers::faults::{many, row};
+use g7_peers::process;
 
 use crate::world::{CHART, IO, MS, Simulation};
-
-/// The memory of this program in KiB, where the system tells it.
-fn memory() -> Option<u64> {
-    let text = std::fs::read_to_string("/proc/self/status").ok()?;
-    let line = text.lines().find_map(|l| l.strip_prefix("VmRSS:"))?;
-    line.split_whitespace().next()?.parse().ok()
-}
 
 #[test]
 fn row_26_days_on_end_have_as_many_scans_as_periods() {
@@ -20,7 +14,7 @@ fn row_26_days_on_end_have_as_many_scans_as_periods() {
     s.start();
     s.command(Command::Run);
     s.pass(MS * 10_000);
-    let (before, scans) = (memory(), s.scans());
+    let (before, scans) = (process::memory(std::process::id()), s.scans());
     let end = s.now + Nanos::HOUR * hours;
     let mut turns = 0;
     while s.now < end {
@@ -40,8 +34,9 @@ fn row_26_days_on_end_have_as_many_scans_as_periods() {
     assert!(made.abs_diff(wanted) <= 1, "{made} scans, {wanted} periods");
     assert_eq!(s.missed, 0);
     let (present, saved) = s.presses();
-    assert_eq!((present, saved), (turns / 2 & 0x7fff, present), "each press is counted and kept");
-    let grown = memory().zip(before).map_or(0, |(now, before)| now.saturating_sub(before));
+    assert_eq!((present, saved), ((turns / 2) & 0x7fff, present), "each press is counted and kept");
+    let grown =
+        process::memory(std::process::id()).zip(before).map_or(0, |(now, before)| now.saturating_sub(before));
     assert!(grown <= 1024, "{grown} KiB more than at the start");
     row(
         26,

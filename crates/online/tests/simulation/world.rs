@@ -75,7 +75,7 @@ pub(crate) enum Fault {
     Slow,
     /// It refuses all outputs.
     Stubborn,
-    /// What stands behind it has an error.
+    /// The library behind it has an error.
     Panics,
 }
 

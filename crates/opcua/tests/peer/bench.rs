@@ -161,7 +161,7 @@ pub(crate) fn wired(folder: &Folder, chart: &str, io: &str) -> Result<(Bench, Wi
     let bench = bench.unwrap_or_else(|| panic!("{problems:?}"));
     let (mut setup, mut problems) = setup::read(io, FileId(1));
     setup::settle(&mut setup, &folder.0);
-    problems.extend(setup::read_passwords(&mut setup, |origin| match origin {
+    problems.extend(setup::read_secrets(&mut setup, |origin| match origin {
         Origin::File(name) => fs::read(folder.path(name)).map_err(|e| e.to_string()),
         Origin::Variable(name) => Err(format!("no {name}")),
     }));

@@ -1,4 +1,4 @@
-//! What the wall clock showed at times of the record.
+//! The wall clock at times of the record.
 
 /// A wall clock that differs by more than this from the one expected has jumped, in ms.
 const JUMP: i64 = 500;

@@ -21,7 +21,8 @@
 //! After a full disk the writer goes on; what had no room is a gap with its count.
 
 mod clock;
-mod lane;
+mod lanes;
+mod limits;
 mod packed;
 mod prune;
 mod reader;
@@ -32,9 +33,10 @@ mod writer;
 use g7_host::Kind;
 
 pub use clock::Clock;
-pub use lane::{Lane, Piece, lane};
+pub use lanes::{Lane, Piece, lane};
+pub use limits::Limits;
 pub use reader::{Overview, Reader, Seen, Span};
-pub use writer::{Limits, Writer};
+pub use writer::Writer;
 
 /// The application id of the file: `G7hi`.
 const KIND: i32 = 0x4737_6869;

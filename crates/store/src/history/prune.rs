@@ -1,10 +1,10 @@
-//! What is too old, or too much, is deleted.
+//! Changes that are too old, or too many, are deleted.
 //!
 //! Of each signal the last chunk before the cut stays: it has the value that stands there.
 
 use rusqlite::{Transaction, params};
 
-use super::Limits;
+use super::limits::Limits;
 use crate::file::StoreError;
 
 /// The share of the chunks that goes at a time while there is too much: one in so many.

@@ -20,7 +20,7 @@ pub struct Span {
     pub lost: u64,
 }
 
-/// What a record has.
+/// The signals and the span of a record.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Overview {
     /// Its signals, with their numbers.
@@ -29,7 +29,7 @@ pub struct Overview {
     pub spans: Vec<Span>,
     /// The wall clock beside it.
     pub clock: Clock,
-    /// What is before this was deleted, in us of the record.
+    /// Changes before this were deleted, in us of the record.
     pub from: i64,
     /// The last instant.
     pub until: i64,
@@ -81,7 +81,7 @@ impl Reader {
         Ok(Reader { file })
     }
 
-    /// What the record has.
+    /// The signals and the span of the record.
     ///
     /// # Errors
     ///

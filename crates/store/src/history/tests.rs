@@ -1,4 +1,4 @@
-//! What was recorded is what is read: at any time, over restarts, crashes, losses and clocks that jump.
+//! The changes that were recorded are those that are read: at any time, over restarts, crashes, losses and clocks that jump.
 
 use std::path::{Path, PathBuf};
 

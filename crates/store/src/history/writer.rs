@@ -7,6 +7,7 @@ use g7_host::Kind;
 use g7_model::Nanos;
 use rusqlite::{Connection, Transaction, params};
 
+use super::limits::Limits;
 use super::packed::{Changes, MOST, Packed, put_batch, take_batch};
 use super::prune::prune;
 use super::{Clock, KIND, LAYOUTS, Signal, kind_of, kind_word};
@@ -20,15 +21,6 @@ const SORTED_AT: usize = 1 << 20;
 const WAITING: usize = if cfg!(test) { 32 << 10 } else { 8 << 20 };
 /// A pause between two runs counts as a day at most, in us.
 const PAUSE: i64 = 86_400_000_000;
-
-/// How much is kept.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Limits {
-    /// What is older, by the time of the record, is deleted.
-    pub age: Nanos,
-    /// Beyond so many bytes the oldest is deleted.
-    pub bytes: u64,
-}
 
 /// A signal that the record has seen.
 struct Slot {
@@ -138,7 +130,7 @@ impl Writer {
             sorted: start,
             dropped: None,
         };
-        // What a crash has left.
+        // The batches that a crash has left.
         writer.sort_tail()?;
         writer.clock(now, utc);
         Ok(writer)
@@ -260,7 +252,7 @@ impl Writer {
         self.spans.retain(|span| span.saved);
         if let Some(id) = self.spans.last().map(|span| span.id) {
             let stop = self.file.query_row("SELECT stop FROM span WHERE id = ?1", [id], |row| row.get(0));
-            // What is not known for certain ends where it began.
+            // A value that is not known for certain ends where it began.
             let end = |span: &Present| stop.unwrap_or(span.start);
             if let Some(last) = self.spans.last_mut() {
                 last.stop = end(last);

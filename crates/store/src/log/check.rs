@@ -6,7 +6,7 @@ use super::reader::Reader;
 use super::{COLUMNS, Hash, Mark, PRUNED, chained, row_of};
 use crate::file::StoreError;
 
-/// What a whole log shows.
+/// The state of a whole log.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Checked {
     /// The rows that are there.
@@ -23,7 +23,7 @@ pub struct Checked {
 pub struct Broken {
     /// The number of the row.
     pub n: u64,
-    /// What is wrong.
+    /// The fault.
     pub why: String,
 }
 

@@ -109,7 +109,7 @@ impl FromStr for Mark {
     }
 }
 
-/// What is written.
+/// The contents of a row.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Entry {
     /// The time of day, in ms since 1970, UTC.
@@ -124,7 +124,7 @@ pub struct Entry {
     pub who: String,
     /// The address or terminal of the person, or empty.
     pub from: String,
-    /// What belongs to it: a JSON object.
+    /// Its details: a JSON object.
     pub data: String,
 }
 
@@ -133,7 +133,7 @@ pub struct Entry {
 pub struct Row {
     /// Its number, from 1.
     pub n: u64,
-    /// What was written.
+    /// The contents.
     pub entry: Entry,
     /// Its hash.
     pub hash: Hash,

@@ -12,6 +12,7 @@
 //! A change of role or password, and a removal, end the sessions of the user in the same step.
 //! The last admin is neither removed nor given another role.
 
+mod error;
 mod password;
 
 use std::fmt;
@@ -22,7 +23,8 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 use rusqlite::{Connection, ErrorCode, OptionalExtension as _, Transaction, params};
 use sha2::{Digest as _, Sha256};
 
-use crate::file::{self, Durable, StoreError};
+use crate::file::{self, Durable};
+pub use error::UserError;
 
 use password::Kept;
 pub use password::LEAST;
@@ -48,7 +50,7 @@ CREATE TABLE session (
     seen INTEGER NOT NULL
 ) STRICT;"];
 
-/// What a user may do; each role may do what those before it may.
+/// The rights of a user; each role may do what those before it may.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Role {
     /// Sees everything but the log and the users.
@@ -91,17 +93,6 @@ impl FromStr for Role {
     }
 }
 
-/// Why a change of the users is refused.
-#[derive(Debug, thiserror::Error)]
-pub enum UserError {
-    /// What a person can correct.
-    #[error("{0}")]
-    Refused(String),
-    /// The file cannot be read or written.
-    #[error("the file of the users: {0}")]
-    Store(#[from] StoreError),
-}
-
 impl From<rusqlite::Error> for UserError {
     fn from(error: rusqlite::Error) -> UserError {
         UserError::Store(error.into())
@@ -117,7 +108,7 @@ fn refused<T>(why: impl Into<String>) -> Result<T, UserError> {
 pub struct User {
     /// The name.
     pub name: String,
-    /// What the user may do.
+    /// The rights of the user.
     pub role: Role,
     /// When the user was added, in ms since 1970, UTC.
     pub created: u64,
@@ -147,7 +138,7 @@ pub struct Session {
 #[derive(Debug)]
 pub struct Users {
     file: Mutex<Connection>,
-    /// What the password of nobody is compared with, so that it takes as long as that of a user.
+    /// The hash that the password of nobody is compared with, so that it takes as long as that of a user.
     nobody: Kept,
 }
 

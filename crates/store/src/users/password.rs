@@ -5,7 +5,7 @@
 
 use argon2::{Algorithm, Argon2, Params, Version};
 
-use super::UserError;
+use super::error::UserError;
 
 /// Least number of letters of a password.
 pub const LEAST: usize = 10;

@@ -1,3 +1,5 @@
+//! Passwords, roles and sessions: who is let in, for how long, and what ends it.
+
 use std::path::PathBuf;
 
 use super::*;

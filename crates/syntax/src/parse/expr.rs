@@ -24,6 +24,11 @@ impl Parser<'_> {
         self.tree(1).expr
     }
 
+    /// Reads an expression whose operators all bind tighter than this one.
+    pub(super) fn operand_above(&mut self, op: BinaryOp) -> Expr {
+        self.tree(op.strength() + 1).expr
+    }
+
     /// Reads an expression that is a condition: a `:=` in it is a slip for `=`.
     pub(super) fn condition(&mut self) -> Expr {
         let left = self.tree(1);

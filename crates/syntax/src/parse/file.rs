@@ -57,6 +57,7 @@ impl Parser<'_> {
             "plant" => Item::Plant(self.plant()),
             "test" => Item::Test(self.test()),
             "prove" => Item::Prove(self.property()),
+            "assume" => Item::Prove(self.assumption()),
             "layout" => Item::Layout(self.layout()),
             _ => return None,
         })

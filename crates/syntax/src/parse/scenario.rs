@@ -5,7 +5,7 @@ use crate::lexer::Tok;
 use crate::words::St;
 use g7_iec::constant;
 use g7_model::{
-    Expr, ExprKind, Layout, PlaceAt, Placed, Problem, Property, PropertyKind, Scenario, TestStmt,
+    BinaryOp, Expr, ExprKind, Layout, PlaceAt, Placed, Problem, Property, PropertyKind, Scenario, TestStmt,
     TestStmtKind, codes, words,
 };
 
@@ -202,8 +202,12 @@ impl Parser<'_> {
                 PropertyKind::Reachable(self.condition())
             }
             "after" => self.response(),
+            "between" => self.between(),
+            "at" if self.peek_word("most") => self.at_most(),
+            _ if self.at_expr() && !self.is_before_condition() => self.leads_to(),
             _ => {
-                self.unknown(word, "a form of property", &["always", "never", "reachable", "after"]);
+                let forms = ["always", "never", "reachable", "after", "between", "at most"];
+                self.unknown(word, "a form of property", &forms);
                 PropertyKind::Always(if self.at_expr() { self.condition() } else { self.bad() })
             }
         };
@@ -211,19 +215,92 @@ impl Parser<'_> {
         Property { kind, comment, at: self.since(start).into() }
     }
 
-    /// `after a within 5s expect b`.
+    /// `assume e`.
+    pub(super) fn assumption(&mut self) -> Property {
+        let start = self.bump().start;
+        let kind = PropertyKind::Assume(if self.at_expr() { self.condition() } else { self.bad() });
+        let comment = self.comment_if();
+        Property { kind, comment, at: self.since(start).into() }
+    }
+
+    /// True at a word with a condition right behind it, such as `alwys a`.
+    fn is_before_condition(&mut self) -> bool {
+        let next = self.peek();
+        let word = self.slice(next);
+        self.at(Tok::Word)
+            && !crate::words::is_reserved(self.word())
+            && match next.kind {
+                Tok::Word => {
+                    word != "leads" && (!crate::words::is_reserved(word) || matches!(word, "not" | "NOT"))
+                }
+                kind => kind == Tok::Ticked,
+            }
+    }
+
+    /// A condition that a word of its own leads in.
+    fn claim(&mut self) -> Expr {
+        if self.at_expr() { self.condition() } else { self.bad() }
+    }
+
+    /// `a leads to b`.
+    fn leads_to(&mut self) -> PropertyKind {
+        let cause = self.condition();
+        if !(self.eat_word("leads") && self.eat_word("to")) {
+            self.expected("`leads to` and a condition");
+        }
+        PropertyKind::LeadsTo(cause, self.claim())
+    }
+
+    /// `between a and b never e`. An `and` within the first condition needs parentheses.
+    fn between(&mut self) -> PropertyKind {
+        self.bump();
+        let first = self.operand_above(BinaryOp::And);
+        if !self.eat_word("and") {
+            self.expected("`and` and a condition");
+        }
+        let second = self.claim();
+        if !self.eat_word("never") {
+            self.expected("`never` and a condition");
+        }
+        PropertyKind::Between(first, second, self.claim())
+    }
+
+    /// `at most 1 of (a, b, c)`.
+    fn at_most(&mut self) -> PropertyKind {
+        self.bump();
+        self.bump();
+        let count = self.integer_u32("how many may hold at once");
+        if !self.eat_word("of") {
+            self.expected("`of` and conditions in parentheses");
+        }
+        let open = self.here();
+        let mut list = Vec::new();
+        if self.expect(Tok::LParen, "`(` and conditions") {
+            list = self.conditions();
+            self.close(Tok::RParen, "`)` after the conditions", open);
+        }
+        PropertyKind::AtMost(count, list)
+    }
+
+    /// `after a within 5s expect b`, or `after a until b expect e`.
     fn response(&mut self) -> PropertyKind {
         self.bump();
         let first = self.condition();
+        if self.eat_st(St::Until) {
+            let end = self.claim();
+            if !self.eat_word("expect") {
+                self.expected("`expect` and a condition");
+            }
+            return PropertyKind::Until(first, end, self.claim());
+        }
         if !self.eat_word("within") {
-            self.expected("`within` and a duration");
+            self.expected("`within` and a duration, or `until` and a condition");
         }
         let time = self.duration("a duration");
         if !self.eat_word("expect") {
             self.expected("`expect` and a condition");
         }
-        let second = if self.at_expr() { self.condition() } else { self.bad() };
-        PropertyKind::After(first, time, second)
+        PropertyKind::After(first, time, self.claim())
     }
 
     /// `layout Main { … }`.

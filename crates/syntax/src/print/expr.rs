@@ -10,6 +10,11 @@ impl<'a> Printer<'a> {
         self.operand(e, 1);
     }
 
+    /// Prints an expression whose operators all bind tighter than this one.
+    pub(super) fn operand_above(&mut self, op: BinaryOp, e: &Expr) {
+        self.operand(e, op.strength() + 1);
+    }
+
     /// Prints an expression where an operand of at least this binding strength is needed.
     fn operand(&mut self, e: &Expr, least: u8) {
         let own = match &e.kind {

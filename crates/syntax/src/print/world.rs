@@ -4,8 +4,8 @@ use super::{Printer, item::starts};
 use crate::quote;
 use g7_iec::constant;
 use g7_model::{
-    Expr, Layout, Path, PlaceAt, Placed, Plant, PlantItem, Property, PropertyKind, Scenario, Span, TestStmt,
-    TestStmtKind,
+    BinaryOp, Expr, Layout, Path, PlaceAt, Placed, Plant, PlantItem, Property, PropertyKind, Scenario, Span,
+    TestStmt, TestStmtKind,
 };
 
 impl Printer<'_> {
@@ -247,20 +247,59 @@ impl Printer<'_> {
     }
 
     pub(super) fn property(&mut self, property: &Property) {
-        let (word, e) = match &property.kind {
-            PropertyKind::Always(e) => ("prove always ", e),
-            PropertyKind::Never(e) => ("prove never ", e),
-            PropertyKind::Reachable(e) => ("prove reachable ", e),
-            PropertyKind::After(e, ..) => ("prove after ", e),
-        };
-        self.push(word);
-        self.expr(e);
-        if let PropertyKind::After(_, time, then) = &property.kind {
-            self.time_clause("within", Some(*time), property.at.0);
-            self.push(" expect ");
-            self.expr(then);
+        match &property.kind {
+            PropertyKind::Always(e) => self.claim("prove always ", e),
+            PropertyKind::Never(e) => self.claim("prove never ", e),
+            PropertyKind::Reachable(e) => self.claim("prove reachable ", e),
+            PropertyKind::Assume(e) => self.claim("assume ", e),
+            PropertyKind::After(cause, time, effect) => {
+                self.claim("prove after ", cause);
+                self.time_clause("within", Some(*time), property.at.0);
+                self.claim(" expect ", effect);
+            }
+            PropertyKind::Until(from, to, e) => {
+                self.claim("prove after ", from);
+                self.claim(" until ", to);
+                self.claim(" expect ", e);
+            }
+            PropertyKind::Between(from, to, e) => {
+                self.push("prove between ");
+                self.operand_above(BinaryOp::And, from);
+                self.claim(" and ", to);
+                self.claim(" never ", e);
+            }
+            PropertyKind::LeadsTo(cause, effect) => {
+                self.push("prove ");
+                self.cause(cause);
+                self.claim(" leads to ", effect);
+            }
+            PropertyKind::AtMost(count, list) => {
+                self.push(&format!("prove at most {count} of ("));
+                self.list(list);
+                self.push(")");
+            }
         }
         self.comment(property.comment.as_deref());
+    }
+
+    fn claim(&mut self, words: &str, e: &Expr) {
+        self.push(words);
+        self.expr(e);
+    }
+
+    /// A condition behind `prove`; one that begins with a name stands in parentheses where that
+    /// name would be read as the form of another property.
+    fn cause(&mut self, e: &Expr) {
+        let length = self.out.len();
+        self.expr(e);
+        let text = self.out.get(length..).unwrap_or_default();
+        let word: String = text.chars().take_while(|c| crate::lexer::name_continue(*c)).collect();
+        if matches!(&*word, "always" | "never" | "reachable" | "after" | "between" | "at") {
+            self.out.truncate(length);
+            self.push("(");
+            self.expr(e);
+            self.push(")");
+        }
     }
 
     // Layout

@@ -203,6 +203,8 @@ fn test_line(s: &TestStmt) -> String {
 fn properties_and_layouts() {
     let d = read(
         "prove always not (X0 and motor)\nprove never a\nprove reachable X1 \"c\"\nprove after a within 10ms expect b\n\
+         prove after a until b or c expect X1\nprove between (a and b) and c never X1 and d\n\
+         prove a and b leads to c \"at last\"\nprove at most 2 of (a, b, c)\nassume not (a and b)\n\
          layout G { step 1 at (0, 1.5) transition t7 at (-2.25, 3) transition #0 at (0,0) comment \"x\" at (1, 1) }",
     );
     let properties: Vec<String> = d
@@ -214,11 +216,28 @@ fn properties_and_layouts() {
             PropertyKind::Never(e) => format!("never {}", tree(e)),
             PropertyKind::Reachable(e) => format!("reachable {} {:?}", tree(e), p.comment.as_deref()),
             PropertyKind::After(a, t, b) => format!("after {} {} {}", tree(a), t.count(), tree(b)),
+            PropertyKind::Until(a, b, e) => format!("after {} until {} {}", tree(a), tree(b), tree(e)),
+            PropertyKind::Between(a, b, e) => format!("between {} {} {}", tree(a), tree(b), tree(e)),
+            PropertyKind::LeadsTo(a, b) => format!("{} leads to {}", tree(a), tree(b)),
+            PropertyKind::AtMost(n, list) => {
+                format!("{n} of {}", list.iter().map(tree).collect::<Vec<_>>().join(" "))
+            }
+            PropertyKind::Assume(e) => format!("assume {}", tree(e)),
         })
         .collect();
     assert_eq!(
         properties,
-        ["always (not (and X0 motor))", "never a", "reachable X1 Some(\"c\")", "after a 10000000 b"]
+        [
+            "always (not (and X0 motor))",
+            "never a",
+            "reachable X1 Some(\"c\")",
+            "after a 10000000 b",
+            "after a until (or b c) X1",
+            "between (and a b) c (and X1 d)",
+            "(and a b) leads to c",
+            "2 of a b c",
+            "assume (not (and a b))",
+        ]
     );
     let Some(Item::Layout(layout)) = d.items.last() else { panic!("{d:?}") };
     let places: Vec<_> = layout.places.iter().map(|p| (p.x, p.y)).collect();

@@ -97,6 +97,12 @@ pub(crate) fn property() -> impl Strategy<Value = Property> {
         expr().prop_map(PropertyKind::Never),
         expr().prop_map(PropertyKind::Reachable),
         (expr(), duration(), expr()).prop_map(|(a, t, b)| PropertyKind::After(a, t, b)),
+        (expr(), expr(), expr()).prop_map(|(a, b, e)| PropertyKind::Until(a, b, e)),
+        (expr(), expr(), expr()).prop_map(|(a, b, e)| PropertyKind::Between(a, b, e)),
+        (expr(), expr()).prop_map(|(a, b)| PropertyKind::LeadsTo(a, b)),
+        (any::<u32>(), prop::collection::vec(expr(), 1..4))
+            .prop_map(|(n, list)| PropertyKind::AtMost(n, list)),
+        expr().prop_map(PropertyKind::Assume),
     ];
     (kind, comment()).prop_map(|(kind, comment)| Property { kind, comment, at: at() })
 }

@@ -146,6 +146,8 @@ export const operator = {
   'op.ev.ended': ['{name} no longer forced: its time is over', "{name} n'est plus forcée : son temps est écoulé", '{name} já não está forçado: o tempo acabou'],
   'op.ev.no-priority': ['no priority for the scan: {why}', 'pas de priorité pour le cycle : {why}', 'sem prioridade para o ciclo: {why}'],
   'op.ev.unsaved': ['values cannot be saved: {why}', "les valeurs ne peuvent pas s'enregistrer : {why}", 'os valores não podem ser guardados: {why}'],
+  'op.ev.no-events': ['{device}: events wait: {why}', '{device} : des événements attendent : {why}', '{device}: há eventos à espera: {why}'],
+  'op.ev.events': ['{device} takes events again', '{device} prend de nouveau les événements', '{device} aceita eventos outra vez'],
   'op.ev.unrecorded': ['the history cannot be written: {why}', "l'historique ne peut pas s'écrire : {why}", 'o histórico não pode ser escrito: {why}'],
   'op.ev.recorded': ['the history goes on; changes that were lost: {n}', "l'historique reprend ; changements perdus : {n}", 'o histórico continua; alterações perdidas: {n}'],
   'op.history': ['History', 'Historique', 'Histórico'],

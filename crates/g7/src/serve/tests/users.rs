@@ -277,7 +277,7 @@ async fn row_24_a_session_that_is_over_is_not_taken_again() {
     site.ask("POST", "/api/logout", &secret, "").await.is(204);
     site.ask("GET", "/api/info", &secret, "").await.is(401);
     assert!(matches!(site.live(&secret, &[]).await, Err(Error::Http(answer)) if answer.status() == 401));
-    // What the file has of it lets nobody in.
+    // The hash that the file has of it lets nobody in.
     let hash = g7_store::users::session_hash(&site.session("op"));
     let hash: String = hash.iter().map(|byte| format!("{byte:02x}")).collect();
     site.ask("GET", "/api/info", &hash, "").await.is(401);

@@ -9,76 +9,45 @@
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex as Lock, PoisonError};
-use std::time::Duration;
 
 use g7_model::Nanos;
-use g7_online::setup::{Device, Kind, Setup, read_passwords};
+use g7_online::setup::{Device, Kind, Setup, read_secrets};
 use g7_online::{Absent, Clients, Failed, Probed, Scaling, Wire, Wired, hear, probe};
 use serde_json::{Map, Value, json};
-use tokio::sync::Mutex;
-use tokio::time::Instant;
 
-use super::super::api::aside;
+use super::super::aside::aside;
+use super::super::fingerprint;
 use super::super::refusal::Refusal;
 use super::super::shared::Shared;
-use super::Chart;
-use super::sight::Sight;
+use super::sight::{Chart, Sight};
+use super::turn::Latest;
 use crate::devices::{plain, value};
-use crate::wiring::password;
+use crate::wiring::secret;
 
-/// An answer is good for others for so long.
-const FRESH: Duration = Duration::from_millis(700);
 /// The longest time that is waited for a device here, whatever the io file says.
 const PATIENCE: Nanos = Nanos::from_millis(2_000);
 /// Devices that are asked at the same time.
 const AT_ONCE: usize = 16;
-
-/// The latest answer, and what was asked for it.
-#[derive(Debug)]
-struct Latest {
-    question: (String, String),
-    at: Instant,
-    answer: Value,
-}
-
-/// The one who asks.
-#[derive(Debug)]
-pub(in crate::serve) struct Asker {
-    asks: bool,
-    turn: Mutex<Option<Latest>>,
-}
-
-impl Asker {
-    /// One who asks, or does not.
-    pub(in crate::serve) fn new(asks: bool) -> Asker {
-        Asker { asks, turn: Mutex::new(None) }
-    }
-
-    /// True if devices are asked.
-    pub(super) fn asks(&self) -> bool {
-        self.asks
-    }
-}
 
 /// The values of the devices of a chart, or why they are not asked.
 pub(super) async fn live(shared: &Shared, chart: Chart) -> Result<Value, Refusal> {
     if shared.station.is_some() {
         return Ok(json!({ "no": "online" }));
     }
-    if !shared.asker.asks {
+    if !shared.asker.asks() {
         return Ok(json!({ "no": "reached" }));
     }
     let of = shared.clone();
     let asked = chart.clone();
     let sight = aside(move || Sight::new(&of, &asked)).await?;
     let question = (sight.text.clone(), chart.text.unwrap_or_default() + &chart.path);
-    let mut turn = shared.asker.turn.lock().await;
-    if let Some(latest) = turn.as_ref().filter(|l| l.question == question && l.at.elapsed() < FRESH) {
-        return Ok(latest.answer.clone());
+    let mut turn = shared.asker.turn().await;
+    if let Some(answer) = turn.as_ref().and_then(|latest| latest.answers(&question)) {
+        return Ok(answer.clone());
     }
     let io = shared.folder.root().join(&sight.io);
     let answer = aside(move || Ok(ask(sight, &io))).await?;
-    *turn = Some(Latest { question, at: Instant::now(), answer: answer.clone() });
+    *turn = Some(Latest::new(question, answer.clone()));
     Ok(answer)
 }
 
@@ -91,7 +60,7 @@ struct Heard {
 
 /// Asks all devices of an io file.
 fn ask(mut sight: Sight, io: &std::path::Path) -> Value {
-    let unreadable: Vec<Device> = passwords(&mut sight.setup, io);
+    let unreadable: Vec<Device> = secrets(&mut sight.setup, io);
     let groups = groups(&sight, &unreadable);
     let (next, heard) = (AtomicUsize::new(0), Lock::new(Vec::new()));
     std::thread::scope(|scope| {
@@ -111,23 +80,26 @@ fn ask(mut sight: Sight, io: &std::path::Path) -> Value {
         values.extend(of);
     }
     for device in unreadable {
-        let why = "its password cannot be read";
+        let why = "its password or its certificates cannot be read";
         devices.insert(device.name.value, json!({ "is": "silent", "why": why }));
     }
-    let hash = sight.bytes.as_ref().map(|bytes| super::super::fingerprint::hash(bytes));
+    let hash = sight.bytes.as_ref().map(|bytes| fingerprint::hash(bytes));
     json!({ "hash": hash, "devices": devices, "values": values })
 }
 
-/// Reads the passwords. Returns the devices whose password cannot be read: they are not asked.
-fn passwords(setup: &mut Setup, io: &std::path::Path) -> Vec<Device> {
-    let problems = read_passwords(setup, |origin| password(io, origin));
-    let of = |device: &&Device| match &device.kind {
-        Kind::Mqtt(broker) => {
-            broker.password.as_ref().is_some_and(|p| problems.iter().any(|problem| problem.at == p.from.at))
+/// Reads passwords, certificates and keys. Returns the devices that lack one of theirs: they are not asked.
+fn secrets(setup: &mut Setup, io: &std::path::Path) -> Vec<Device> {
+    let mut lacking = Vec::new();
+    for device in &mut setup.devices {
+        let mut alone = Setup { devices: vec![device.clone()], ..Setup::default() };
+        let problems = read_secrets(&mut alone, |origin| secret(io, origin));
+        if !problems.is_empty() {
+            lacking.push(device.clone());
+        } else if let Some(read) = alone.devices.pop() {
+            *device = read;
         }
-        _ => false,
-    };
-    setup.devices.iter().filter(of).cloned().collect()
+    }
+    lacking
 }
 
 /// The devices that are asked, those on one serial line one after the other.
@@ -169,10 +141,9 @@ fn one(clients: &mut Clients, wired: &Wired) -> Heard {
         Kind::Panel(_) => return Heard { name, device: json!({ "is": "panel" }), values: Vec::new() },
         Kind::Mqtt(broker) => hear(broker, wired),
         Kind::OpcUa(_) => g7_online::ask(clients, wired),
-        Kind::ModbusTcp(..) | Kind::ModbusRtu(..) => {
-            let wires = wires(wired);
-            let places: Vec<_> = wires.iter().filter_map(|(_, wire, _)| wire.place()).collect();
-            probe(clients, &wired.device, &places)
+        Kind::ModbusTcp(..) | Kind::ModbusRtu(..) | Kind::S7(_) | Kind::Gpio(_) => {
+            let asked: Vec<Wire> = wires(wired).into_iter().map(|(_, wire, _)| wire.clone()).collect();
+            probe(clients, &wired.device, &asked)
         }
     };
     told(name, wired, probed)

@@ -8,6 +8,7 @@
 
 mod asker;
 mod sight;
+mod turn;
 
 use axum::extract::{Request, State};
 use axum::http::StatusCode;
@@ -18,10 +19,11 @@ use g7_online::setup::{Change, Plain, edit};
 use serde::Deserialize;
 use serde_json::{Value, json};
 
-pub(super) use asker::Asker;
-use sight::Sight;
+use sight::{Chart, Sight};
+pub(super) use turn::Asker;
 
-use super::api::{Answer, aside, json_body, told};
+use super::api::{Answer, json_body, told};
+use super::aside::aside;
 use super::fingerprint;
 use super::folder::{Wanted, Written};
 use super::refusal::Refusal;
@@ -37,13 +39,6 @@ pub(super) fn routes() -> Router<Shared> {
         .route("/api/wiring/look", post(look))
         .route("/api/wiring/edit", post(change))
         .route("/api/wiring/live", post(live))
-}
-
-/// A chart, whose text may not be saved yet.
-#[derive(Clone, Deserialize)]
-pub(super) struct Chart {
-    path: String,
-    text: Option<String>,
 }
 
 async fn look(State(shared): State<Shared>, request: Request) -> Answer {

@@ -8,13 +8,20 @@ use g7_online::setup::catalogue::{
 };
 use g7_online::setup::{self, Entry, Setup};
 use g7_rig::{Bench, Options, Role};
+use serde::Deserialize;
 use serde_json::{Value, json};
 
 use super::super::fingerprint;
 use super::super::refusal::Refusal;
 use super::super::shared::Shared;
-use super::Chart;
 use crate::sources::Source;
+
+/// A chart, whose text may not be saved yet.
+#[derive(Clone, Deserialize)]
+pub(super) struct Chart {
+    pub(super) path: String,
+    pub(super) text: Option<String>,
+}
 
 /// Greatest number of problems that are told.
 const PROBLEMS: usize = 200;
@@ -62,6 +69,7 @@ impl Sight {
         let (bench, of_chart) =
             g7_rig::build(&source, &options).map_err(|why| Refusal::bad(why.to_string()))?;
         let (setup, mut problems) = setup::read(&text, FileId(1));
+        problems.extend(g7_online::lacking(&setup));
         let mut wiring = Wiring::default();
         if let Some(bench) = &bench {
             let (wired, wrong) = g7_online::wire(bench, &setup);
@@ -189,6 +197,7 @@ fn kind(row: &KindRow) -> Value {
     json!({
         "word": row.word,
         "about": row.about,
+        "there": g7_online::has(row.word),
         "shows": row.shows,
         "settings": row.settings.concat().iter().map(setting).collect::<Vec<_>>(),
         "points": row.points.iter().map(point).collect::<Vec<_>>(),
@@ -206,6 +215,9 @@ fn setting(row: &Setting) -> Value {
         Form::Bad => json!({ "is": "bad" }),
         Form::Table(rows) => {
             json!({ "is": "table", "settings": rows.iter().map(setting).collect::<Vec<_>>() })
+        }
+        Form::FlagOrTable(rows) => {
+            json!({ "is": "flag-or-table", "settings": rows.iter().map(setting).collect::<Vec<_>>() })
         }
     };
     let (usual, text) = match row.usual {
@@ -225,6 +237,7 @@ fn point(row: &Point) -> Value {
         Argument::TextOrName(text) => json!({ "is": "name", "example": text }),
         Argument::Word(words) => json!({ "is": "word", "words": words }),
         Argument::List(text) => json!({ "is": "list", "example": text }),
+        Argument::Alone(text) => json!({ "is": "alone", "example": text }),
     };
     let carries = match row.carries {
         Carries::Bit => "bit",

@@ -15,15 +15,13 @@ use crate::value::{Raw, Scaling};
 use crate::wire::Wire;
 use crate::wiring::Wired;
 
-use super::connection::{Connection, Message, Opening};
+use super::connection::{About, Connection, Message, Opening};
 use payload::{Datatype, Metric, Payload, Value};
 
 /// The command that asks for births (Sparkplug 3.0, 6.4.2: by name and without alias).
 const REBIRTH: &str = "Node Control/Rebirth";
 /// The number that a birth and its death have in common.
 const BDSEQ: &str = "bdSeq";
-/// An output number: no message is that of one output.
-const ALL: usize = usize::MAX;
 
 /// A metric that is wired; its alias is its place in the list.
 #[derive(Clone, Debug)]
@@ -75,12 +73,7 @@ impl Node {
     pub(super) fn new(broker: &Broker, names: &Sparkplug, timeout: Duration, wired: &Wired) -> Node {
         let tag = |wire: &Wire, scaling: Scaling| match wire {
             Wire::Metric(name) => Some(Tag { name: name.clone(), datatype: Datatype::of(&scaling) }),
-            Wire::Modbus(_)
-            | Wire::Topic(_)
-            | Wire::Panel(_)
-            | Wire::Node(_)
-            | Wire::Shown(_)
-            | Wire::Worth(_) => None,
+            _ => None,
         };
         let mut tags: Vec<Tag> = wired.outputs.iter().filter_map(|o| tag(&o.wire, o.out.scaling)).collect();
         let outputs = tags.len();
@@ -156,7 +149,7 @@ impl Node {
         let Some(connection) = &self.connection else { return false };
         let payload = Payload { timestamp: Some(now), metrics, seq: Some(u64::from(self.seq)) };
         let message = Message { topic, payload: payload.bytes(), acknowledged: false, retain: false };
-        let done = connection.publish(ALL, &message);
+        let done = connection.publish(About::Own, &message);
         if done {
             self.seq = self.seq.wrapping_add(1);
         }
@@ -311,7 +304,7 @@ impl Device for Node {
         let last = self.death();
         if let Some(connection) = self.connection.take()
             && connection.flush()
-            && connection.publish(ALL, &last)
+            && connection.publish(About::Own, &last)
             && connection.flush()
         {
             connection.end();

@@ -3,7 +3,7 @@
 
 use g7_host::{Kind, Value};
 
-use super::{Overview, Reader, Seen};
+use super::reader::{Overview, Reader, Seen};
 use crate::file::StoreError;
 
 /// Changes of a column that are shown one by one.

@@ -1,0 +1,33 @@
+//! The common side of all layers: they answer what they can of one list of questions.
+
+use crate::model::Model;
+use crate::question::Question;
+use crate::verdict::Verdict;
+
+/// How much a layer may do.
+pub struct Budget<'b> {
+    /// Most states kept.
+    pub states: usize,
+    /// Most bytes kept.
+    pub bytes: usize,
+    /// True as soon as the layer is to stop: the time is over, or the user asks for it. It is
+    /// asked often, and must be quick.
+    pub stop: &'b (dyn Fn() -> bool + Sync),
+}
+
+/// A way to answer questions.
+pub trait Layer {
+    /// Its name in reports.
+    fn name(&self) -> &'static str;
+
+    /// Answers questions. `answers` has an entry for each question; those that are `None` or
+    /// [`Verdict::Open`] may be replaced, the others stay. Each run that it gives was
+    /// replayed with `engine::scan`.
+    fn answer(
+        &self,
+        model: &Model<'_>,
+        questions: &[Question],
+        answers: &mut [Option<Verdict>],
+        budget: &Budget<'_>,
+    );
+}

@@ -1,0 +1,159 @@
+//! The sights of the passes of a scan, and runs repeated with `engine::scan`.
+
+use g7_engine::{Fault, FaultKind, Program, Report, State, Tables, begin, enabled, pass, scan};
+
+use crate::asked::Asking;
+use crate::explore::Move;
+use crate::model::Model;
+use crate::monitor::{IDLE, has_memory, holds, is_of_scans, judge};
+use crate::question::Claim;
+use crate::verdict::Run;
+
+/// Passes of a scan that are looked at.
+pub(crate) const PASSES: u32 = 256;
+
+/// The sights of the passes of a scan.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Passes {
+    /// Two clearable transitions shared a preceding step, and nothing written chooses.
+    pub(crate) conflict: bool,
+    /// A step was activated while active, and not deactivated in the same pass.
+    pub(crate) unsafe_: bool,
+    /// There were more passes than were looked at.
+    pub(crate) cut: bool,
+}
+
+/// Looks at the passes of the next scan. A fault ends the look; the scan reports it.
+pub(crate) fn passes(p: &Program, s: &mut State, inputs: &[u64], now: i64, conflicts: bool) -> Passes {
+    let mut seen = Passes::default();
+    let t = p.tables();
+    if begin(p, s, inputs, now).is_err() {
+        return seen;
+    }
+    for _ in 0..PASSES {
+        if conflicts && !seen.conflict {
+            seen.conflict = conflict(p, s);
+        }
+        let was: Vec<u32> = s.active().map(|s| s.0).collect();
+        let before = s.cleared().len();
+        let Ok(changed) = pass(p, s) else { return seen };
+        let cleared = s.cleared().get(before..).unwrap_or(&[]);
+        seen.unsafe_ |= is_unsafe(t, &was, cleared);
+        if !changed || !t.rules.stable {
+            return seen;
+        }
+    }
+    seen.cut = true;
+    seen
+}
+
+/// True if two transitions could clear, share a preceding step, and no written priority
+/// that the profile follows chooses between them.
+fn conflict(p: &Program, s: &State) -> bool {
+    let t = p.tables();
+    let mut ready = Vec::new();
+    let shares = |rank: u32| t.transitions.get(rank as usize).is_some_and(|t| t.shares);
+    // A fault of a receptivity shows in the scan itself.
+    let _fault = enabled(p, s, |rank, holds| ready.extend((holds && shares(rank)).then_some(rank)));
+    let chosen = |a: u32, b: u32| {
+        let priority = |r: u32| t.transitions.get(r as usize).map_or(u32::MAX, |t| t.priority);
+        let follows = !t.rules.multi_token || t.rules.numbered_exclusive;
+        follows && priority(a) != priority(b)
+    };
+    let meet = |a: u32, b: u32| {
+        let others = sides(t, b).0;
+        sides(t, a).0.iter().any(|s| others.contains(s))
+    };
+    ready.iter().enumerate().any(|(i, a)| ready.iter().skip(i + 1).any(|b| !chosen(*a, *b) && meet(*a, *b)))
+}
+
+fn is_unsafe(t: &Tables, was: &[u32], cleared: &[u32]) -> bool {
+    let enters = |rank: u32, step: u32| sides(t, rank).1.contains(&step);
+    let leaves = |step: u32| cleared.iter().any(|r| sides(t, *r).0.contains(&step));
+    was.iter().any(|step| cleared.iter().any(|r| enters(*r, *step)) && !leaves(*step))
+}
+
+/// The steps before and behind a transition.
+pub(crate) fn sides(t: &Tables, rank: u32) -> (Vec<u32>, Vec<u32>) {
+    let Some(tr) = t.transitions.get(rank as usize) else { return Default::default() };
+    let side = |first: u32, more: g7_engine::Rows| {
+        let more = t.arcs.get(more.start as usize..more.end as usize).unwrap_or(&[]);
+        std::iter::once(first).filter(|s| *s != g7_engine::NONE).chain(more.iter().map(|s| s.0)).collect()
+    };
+    (side(tr.from.0, tr.more_from), side(tr.to.0, tr.more_to))
+}
+
+/// True if all assumptions hold for these inputs. The state is used up.
+pub(crate) fn allowed(model: &Model<'_>, s: &mut State, m: &Move, now: i64) -> bool {
+    let p = &model.compiled.program;
+    // A fault before the evolution is shown by the scan.
+    begin(p, s, &m.inputs, now).is_err() || model.assume.iter().all(|q| holds(model, s, *q).unwrap_or(false))
+}
+
+/// Repeats a run with `engine::scan` from the state before the first scan, and tells whether
+/// it keeps the assumptions and its last scan shows what the claim is about. What a state
+/// cannot do any more (deadlock, `leads to`) is not for a run to show: there it tells that
+/// the run leads to a situation of this kind without a fault.
+pub fn replay(model: &Model<'_>, claim: &Claim, run: &Run) -> bool {
+    let p = &model.compiled.program;
+    let asking = Asking::new(p, model.compiled.queries.iter().copied());
+    let (mut s, mut memory, mut last) = (State::new(p), IDLE, false);
+    for (k, m) in run.moves.iter().enumerate() {
+        let now = s.now().saturating_add(m.wait);
+        if !model.assume.is_empty() && !allowed(model, &mut s.clone(), m, now) {
+            return false;
+        }
+        let is_last = k + 1 == run.moves.len();
+        let before = s.clone();
+        let done = scan(p, &mut s, &m.inputs, now);
+        if done.is_err() != (is_last && run.fault.is_some()) || is_last && done.err() != run.fault {
+            return false;
+        }
+        if done.is_ok() && is_of_scans(claim) {
+            let Ok(seen) = judge(model, claim, &mut s, memory, m.wait) else { return false };
+            memory = seen.memory;
+            last = seen.hit;
+        }
+        if is_last && !is_of_scans(claim) {
+            last = match claim {
+                Claim::NoConflict => passes(p, &mut before.clone(), &m.inputs, now, true).conflict,
+                Claim::NoUnsafe => passes(p, &mut before.clone(), &m.inputs, now, false).unsafe_,
+                Claim::NoDeadlock => done.is_ok(),
+                Claim::Asked(a) => {
+                    let place = (a.0 - p.tables().inputs.start) as usize;
+                    asking.asked(&before).iter().any(|i| i == place)
+                }
+                _ => shows(p, claim, &Scanned { state: &s, report: done }),
+            };
+        }
+    }
+    if matches!(claim, Claim::LeadsTo { .. }) { has_memory(claim) && memory != IDLE } else { last }
+}
+
+/// The state behind a scan, with its report.
+pub(crate) struct Scanned<'s> {
+    pub(crate) state: &'s State,
+    pub(crate) report: Result<Report, Fault>,
+}
+
+/// True if a scan shows what the claim is about. For claims that one scan can show as a whole.
+pub(crate) fn shows(p: &Program, claim: &Claim, scanned: &Scanned<'_>) -> bool {
+    let (t, s) = (p.tables(), scanned.state);
+    let fault = scanned.report.err().map(|f| f.kind);
+    match claim {
+        // A step counts too if it was active only within the scan.
+        Claim::Active(step) => {
+            s.is_active(*step) || s.cleared().iter().any(|r| sides(t, *r).1.contains(&step.0))
+        }
+        Claim::Clears(rank) => s.cleared().contains(rank),
+        Claim::Runs(rank) => s.ran().contains(rank),
+        Claim::On(addr) => fault.is_none() && s.word(*addr) != 0,
+        Claim::NoInstability => matches!(fault, Some(FaultKind::Unstable { .. } | FaultKind::Bound)),
+        Claim::NoOpposedOrders => matches!(fault, Some(FaultKind::Forcing { .. })),
+        Claim::NoOpposedWrites => scanned.report.is_ok_and(|r| r.conflict.is_some()),
+        Claim::NoFault => fault.is_some_and(|f| {
+            !matches!(f, FaultKind::Unstable { .. } | FaultKind::Bound | FaultKind::Forcing { .. })
+        }),
+        _ => false,
+    }
+}

@@ -1,0 +1,64 @@
+//! Answers: proved, refuted, or not decided, each with what shows it.
+
+use g7_engine::Fault;
+
+use crate::explore::Move;
+
+/// The answer to a question.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Verdict {
+    /// The claim holds.
+    Proved(Evidence),
+    /// The claim fails.
+    Refuted(Evidence),
+    /// Neither was found.
+    Open(Open),
+}
+
+/// The evidence of an answer.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Evidence {
+    /// A run that does it (a proof that something can be), or that breaks the claim.
+    Run(Run),
+    /// A proof that holds for all runs.
+    Certificate(Certificate),
+}
+
+/// A run from the state before the first scan.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Run {
+    /// Its scans. Its last scan shows what was asked for.
+    pub moves: Vec<Move>,
+    /// The fault that stops the last scan.
+    pub fault: Option<Fault>,
+}
+
+/// A proof that holds for all runs.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Certificate {
+    /// All states were visited by all moves that matter.
+    Search {
+        /// Number of states.
+        states: usize,
+        /// Number of scans made.
+        scans: usize,
+    },
+    /// An inductive invariant, verified by a checker with a solver of its own.
+    Invariant {
+        /// Number of its clauses.
+        clauses: usize,
+    },
+}
+
+/// How far a question is decided that is not decided.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Open {
+    /// No run of so many scans decides it.
+    pub scans: usize,
+    /// Number of states that were visited.
+    pub states: usize,
+    /// The reason, a sentence.
+    pub reason: String,
+    /// The way out, a sentence; empty if nothing is known.
+    pub help: String,
+}

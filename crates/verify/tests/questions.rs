@@ -1,0 +1,230 @@
+//! Small charts whose answers follow from the rules, one for each question.
+
+use g7_engine::StepId;
+use g7_model::FileId;
+use g7_syntax::parse;
+use g7_verify::{
+    Asked, Budget, Claim, Compare, Difference, Equality, Evidence, Explicit, Layer, Model, Verdict, ask,
+    compare, replay,
+};
+
+fn budget() -> Budget<'static> {
+    Budget { states: 200_000, bytes: 256 << 20, stop: &|| false }
+}
+
+fn asked(text: &str) -> Asked {
+    let (document, problems) = parse(text, FileId(0));
+    assert!(problems.is_empty(), "{problems:?}");
+    let (asked, problems) = ask(&document, None);
+    asked.unwrap_or_else(|| panic!("{problems:?}"))
+}
+
+/// A letter for each verdict: Proved, Refuted, Open; for a run the number of its scans.
+fn letter(v: &Verdict) -> String {
+    match v {
+        Verdict::Proved(Evidence::Run(r)) => format!("P{}", r.moves.len()),
+        Verdict::Refuted(Evidence::Run(r)) => format!("R{}", r.moves.len()),
+        Verdict::Proved(_) => "P".to_owned(),
+        Verdict::Refuted(_) => "R".to_owned(),
+        Verdict::Open(_) => "O".to_owned(),
+    }
+}
+
+fn answers(text: &str) -> Vec<(Claim, Verdict)> {
+    let asked = asked(text);
+    let model = Model::new(&asked.compiled, asked.assume.clone());
+    let mut answers = vec![None; asked.questions.len()];
+    Explicit.answer(&model, &asked.questions, &mut answers, &budget());
+    let all: Vec<(Claim, Verdict)> = asked
+        .questions
+        .iter()
+        .map(|q| q.claim.clone())
+        .zip(answers.into_iter().map(|a| a.expect("each question has an answer")))
+        .collect();
+    for (claim, verdict) in &all {
+        if let Verdict::Proved(Evidence::Run(run)) | Verdict::Refuted(Evidence::Run(run)) = verdict {
+            assert!(replay(&model, claim, run), "{claim:?}");
+        }
+    }
+    all
+}
+
+fn answer(text: &str, is: impl Fn(&Claim) -> bool) -> String {
+    let all = answers(text);
+    all.iter().find(|(c, _)| is(c)).map(|(_, v)| letter(v)).expect("the question is asked")
+}
+
+/// The answers to the author's questions.
+fn author(text: &str) -> Vec<String> {
+    let mine = |c: &Claim| {
+        matches!(
+            c,
+            Claim::Always(_)
+                | Claim::Never(_)
+                | Claim::Reachable(_)
+                | Claim::AtMost(..)
+                | Claim::Within { .. }
+                | Claim::Until { .. }
+                | Claim::Between { .. }
+                | Claim::LeadsTo { .. }
+        )
+    };
+    answers(text).iter().filter(|(c, _)| mine(c)).map(|(_, v)| letter(v)).collect()
+}
+
+const DOOR: &str = "input a, b : BOOL\noutput m : BOOL\nchart G {\n  initial step 1\n  step 2 { N m }\n  step 3\n  \
+                    1 -> 2 when a\n  2 -> 1 when b\n  2 -> 3 when a and not a\n}\n";
+
+#[test]
+fn what_is_never_reached_is_found() {
+    // Under search for stability 1 -> 2 clears in the first scan, if a comes with it.
+    let step = |n: u32| answer(DOOR, |c| *c == Claim::Active(StepId(n)));
+    assert_eq!([step(0), step(1), step(2)], ["P1", "P1", "R"]);
+    let clears = |n: u32| answer(DOOR, |c| *c == Claim::Clears(n));
+    assert_eq!([clears(0), clears(1), clears(2)], ["P1", "P1", "R"]);
+    assert_eq!(answer(DOOR, |c| matches!(c, Claim::On(_))), "P1");
+    assert_eq!(answer(DOOR, |c| matches!(c, Claim::Asked(_))), "P1");
+    let unread = "input a, b : BOOL\nchart G { initial step 1 step 2 step 3 1 -> 2 when a 3 -> 1 when b }\n";
+    let asked: Vec<String> = answers(unread)
+        .iter()
+        .filter(|(c, _)| matches!(c, Claim::Asked(_)))
+        .map(|(_, v)| letter(v))
+        .collect();
+    assert_eq!(asked, ["P1", "R"], "nothing that is reached waits for b");
+    // a and b together: the search goes round for ever.
+    assert_eq!(answer(DOOR, |c| *c == Claim::NoInstability), "R1");
+}
+
+#[test]
+fn deadlocks_are_told_apart_from_ends() {
+    let wait = "input a, b : BOOL\nchart G { initial step 1 step 2 1 -> 2 when a 2 -> 1 when b }\n";
+    assert_eq!(answer(&format!("profile iec61131\n{wait}"), |c| *c == Claim::NoDeadlock), "P");
+    let end = "input a : BOOL\nchart G { initial step 1 step 2 1 -> 2 when a }\n";
+    assert_eq!(answer(end, |c| *c == Claim::NoDeadlock), "P");
+    // The second join waits for a step that has been left for ever.
+    let dead = "input a : BOOL\nchart G { initial step 1 step 2 step 3 1 -> 2 when a; (2, 3) -> 1 when a }\n";
+    assert_eq!(answer(dead, |c| *c == Claim::NoDeadlock), "R1");
+    // A timer leads out, however long it takes.
+    let timed = "profile iec61131\nscan 10ms\ninput a : BOOL\nchart G { initial step 1 step 2 1 -> 2 when a 2 -> 1 when 200ms/X2 }\n";
+    assert_eq!(answer(timed, |c| *c == Claim::NoDeadlock), "P");
+}
+
+#[test]
+fn conflicts_follow_the_profile() {
+    let chart = |profile: &str, first: &str, second: &str| {
+        format!(
+            "profile {profile}\ninput a, b : BOOL\nchart G {{ initial step 1 step 2 step 3 1 -> 2 when a{first} 1 -> 3 when b{second} \
+             2 -> 1 when not a 3 -> 1 when not b }}\n"
+        )
+    };
+    let conflict = |text: &str| answer(text, |c| *c == Claim::NoConflict);
+    assert_eq!(conflict(&chart("iec60848", "", "")), "R1");
+    assert_eq!(conflict(&chart("iec61131", " priority 1", " priority 2")), "P", "the author has chosen");
+    let apart = "input a, b : BOOL\nchart G { initial step 1 step 2 step 3 1 -> 2 when a and not b 1 -> 3 when b and not a \
+                 2 -> 1 when not a 3 -> 1 when not b }\n";
+    assert_eq!(conflict(apart), "P");
+    // Two tokens in one sequence: 2 is entered while active.
+    let twice = "profile iec60848\ninput a, b : BOOL\nchart G { initial step 1 step 2 step 3 1 -> (2, 3) when a 3 -> 2 when b and not a 2 -> 1 when a and b and X1 }\n";
+    assert_eq!(answer(twice, |c| *c == Claim::NoUnsafe).chars().next(), Some('R'));
+}
+
+#[test]
+fn faults_and_opposed_writes_are_found() {
+    let divides = "profile iec61131\ninput a : BOOL\nvar n : INT := 2\nvar m : INT\nchart G { initial step 1 step 2 { P1 { n := n - 1; m := 10 / n } } \
+                   1 -> 2 when a 2 -> 1 when not a }\n";
+    // n is 1 behind the first activation, 0 in the second: a, not a, a.
+    assert_eq!(answer(divides, |c| *c == Claim::NoFault).chars().next(), Some('R'));
+    let writes = "input a : BOOL\nvar n : INT\nchart G { initial step 1 step 2 { P1 n := 1 } step 3 { P1 n := 2 } 1 -> (2, 3) when a; (2, 3) -> 1 when not a }\n";
+    assert_eq!(answer(writes, |c| *c == Claim::NoOpposedWrites), "R1");
+}
+
+#[test]
+fn the_questions_of_the_author() {
+    let base = "profile iec61131\nscan 10ms\ninput a, b : BOOL\noutput m : BOOL\nchart G { initial step 1 step 2 { N m } \
+                1 -> 2 when a 2 -> 1 when b or 50ms/X2 }\n";
+    let ask = |text: &str| author(&format!("{base}{text}\n"));
+    assert_eq!(
+        ask("prove always X1 or X2\nprove never X1 and X2\nprove reachable m\nprove never X2"),
+        ["P", "P", "P1", "R1"]
+    );
+    assert_eq!(ask("prove at most 1 of (X1, X2)\nprove at most 0 of (X1, X2)"), ["P", "R1"]);
+    // X2 lasts at most 50 ms and one scan for the transition.
+    assert_eq!(ask("prove after X2 within 60ms expect X1"), ["P"]);
+    assert_eq!(ask("prove after X2 within 30ms expect X1"), ["R5"]);
+    assert_eq!(ask("prove X2 leads to X1\nprove X1 leads to X2"), ["P", "P"]);
+    assert_eq!(ask("prove after X2 until X1 expect m"), ["P"]);
+    assert_eq!(ask("prove after X1 until m expect not X2"), ["P"]);
+    assert_eq!(ask("prove after X1 until X7 expect X1".replace("X7", "b and a").as_str()), ["R2"]);
+    assert_eq!(ask("prove between X1 and b and X1 never X2"), ["R3"]);
+    assert_eq!(ask("prove between X2 and X1 never not m"), ["P"]);
+}
+
+#[test]
+fn what_leads_nowhere_is_refuted() {
+    let trap = "input a, b : BOOL\nchart G { initial step 1 step 2 step 3 1 -> 2 when a and not b 2 -> 1 when b and not a 2 -> 3 when a and b }\n\
+                prove X2 leads to X1\nprove X3 leads to X1\n";
+    // X2 may go to 3 instead, from where nothing leads back.
+    let found = author(trap);
+    assert!(found.iter().all(|l| l.starts_with('R')), "{found:?}");
+}
+
+#[test]
+fn assumptions_restrict_the_inputs() {
+    let base = "profile iec61131\ninput a, b : BOOL\nchart G { initial step 1 step 2 step 3 1 -> 2 when a 1 -> 3 when a and b 2 -> 1 when not a 3 -> 1 when not a }\n";
+    assert_eq!(author(&format!("{base}prove never a and b")), ["R1"]);
+    assert_eq!(author(&format!("{base}assume not (a and b)\nprove never a and b")), ["P"]);
+    assert_eq!(answer(&format!("{base}assume not (a and b)\n"), |c| *c == Claim::NoConflict), "P");
+    // With an assumption that nothing satisfies every claim would hold.
+    assert_eq!(author(&format!("{base}assume a and not a\nprove never X1\nprove always X1")), ["O", "O"]);
+}
+
+#[test]
+fn numbers_are_tried_around_the_constants_they_are_compared_with() {
+    let base = "profile iec61131\ninput n : INT\ninput k : INT\nvar s : INT\nchart G { initial step 1 step 2 1 -> 2 when n > 100 2 -> 1 when n = 50 }\n";
+    assert_eq!(
+        author(&format!("{base}prove reachable n = 101 and X2\nprove never n > 100 and X1 and n < 102")),
+        ["P1", "P"]
+    );
+    let sums = "profile iec61131\ninput n : INT\nvar s : INT\nchart G { initial step 1 step 2 { P1 s := n / 2 } 1 -> 2 when n > 100 2 -> 1 when n = 50 }\nprove always X1 or X2\n";
+    assert_eq!(author(sums), ["O"], "its half matters too");
+}
+
+#[test]
+fn a_bound_is_told_with_how_far_it_is_sure() {
+    let asked = asked(
+        "profile iec61131\ninput a : BOOL\nvar n : INT\nchart G { initial step 1 step 2 { P1 n := n + 1 } 1 -> 2 when a 2 -> 1 when not a }\nprove never n = 30000\n",
+    );
+    let model = Model::new(&asked.compiled, Vec::new());
+    let mut answers = vec![None; asked.questions.len()];
+    Explicit.answer(&model, &asked.questions, &mut answers, &Budget { states: 100, ..budget() });
+    let Some(Some(Verdict::Open(open))) = answers.last() else { panic!("{answers:?}") };
+    assert!(open.scans > 10 && open.states > 100 && open.reason.contains("states"), "{open:?}");
+    assert!(!open.help.is_empty());
+}
+
+fn compared(a: &str, b: &str, situations: bool) -> Equality {
+    let (a, b) = (asked(a), asked(b));
+    compare(&Compare { charts: [&a.compiled, &b.compiled], situations }, &budget())
+}
+
+#[test]
+fn equal_charts_and_charts_that_differ() {
+    let two = "profile iec61131\ninput a, b : BOOL\noutput m : BOOL\nchart G { initial step 1 step 2 { N m } 1 -> 2 when a 2 -> 1 when b }\n";
+    let renamed = two.replace("step 2", "step 7").replace("-> 2", "-> 7").replace("2 ->", "7 ->");
+    assert!(matches!(compared(two, &renamed, false), Equality::Equal { .. }));
+    let Equality::Apart { what, .. } = compared(two, &renamed, true) else { panic!("the names differ") };
+    assert_eq!(what, Difference::Step("G.2".into()));
+    // One waits for a alone, the other for a and b: told apart by the first scan, which judges the initial step.
+    let Equality::Apart { moves, what } = compared(two, &two.replace("when a", "when a and not b"), false)
+    else {
+        panic!("they differ")
+    };
+    assert_eq!((moves[0].len(), moves[1].len(), what), (1, 1, Difference::Output("m".into())));
+    assert!(matches!(
+        compared(two, &two.replace("output m : BOOL", "output m, k : BOOL"), false),
+        Equality::Unlike(_)
+    ));
+    // A search for stability passes through 2 in one scan.
+    let stable = two.replace("iec61131", "iec60848");
+    assert!(matches!(compared(two, &stable, false), Equality::Apart { .. }));
+}
