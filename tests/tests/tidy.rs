@@ -41,7 +41,7 @@ const ALLOWED: &[Arrows] = &[
     ("verify", &["g7-model", "g7-engine", "g7-compile"], Some(&[])),
     ("host", &["g7-model", "g7-engine"], None),
     ("online", &["g7-model", "g7-engine", "g7-host", "g7-rig"], None),
-    ("opcua", &["g7-model", "g7-host", "g7-online"], None),
+    ("opcua", &["g7-model", "g7-host", "g7-store", "g7-online"], None),
     ("store", &["g7-model", "g7-host"], None),
     ("draw", &["g7-model"], Some(&[])),
     ("edit", &["g7-model", "g7-syntax", "g7-compile"], Some(&["serde"])),

@@ -288,7 +288,7 @@ fn a_kind_that_this_build_has_not_is_told_with_the_build_that_has_it() {
     for command in [&["run", "--online"][..], &["devices"]] {
         let ran = folder.g7(command);
         assert_eq!(ran.code, 1, "{}", ran.err);
-        for part in ["chart.io.toml:1", "no \"opc-ua\"", "--features opcua"] {
+        for part in ["chart.io.toml:1", "the kind \"opc-ua\"", "--features opcua"] {
             assert!(ran.err.contains(part), "{part}: {}", ran.err);
         }
     }

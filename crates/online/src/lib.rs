@@ -68,7 +68,7 @@ pub use changer::{Change, Changer};
 pub use chosen::{Chosen, Recorded};
 pub use clients::{Brought, Clients, Node, has, lacking};
 pub use controller::{Command, Controller, Event, Mode, Port, Reason, Refused, Shared, What};
-pub use device::{Absent, Device, Failed};
+pub use device::{Absent, Device, Failed, Remark};
 pub use disk::RealDisk;
 pub use driver::{Driver, Happened, Out, Quality, Worked};
 pub use exchange::{Reader, Writer, exchange};

@@ -198,7 +198,7 @@ impl Client {
             return Ok(());
         }
         let session = Arc::clone(&live.connection.session);
-        let answers = live.connection.wait(self.timeout, send(session, writes))?;
+        let answers = live.connection.wait_alive(self.timeout, live.silence, send(session, writes))?;
         let answers = answers.into_iter().chain(std::iter::repeat(StatusCode::BadUnexpectedError));
         for (k, status) in at.into_iter().zip(answers).filter(|(_, status)| status.is_bad()) {
             set(refused, k, Some(node_is(status)));
@@ -295,10 +295,7 @@ impl Device for Client {
         refused: &mut [Option<String>],
     ) -> Result<(), Failed> {
         let Some(live) = &self.live else { return Err(Failed("there is no connection".to_owned())) };
-        let silence = live.connection.life.silence()?;
-        if let Some(most) = live.silence.filter(|most| silence > *most) {
-            return Err(Failed(format!("no sign of life of the subscription for {}", most.plain())));
-        }
+        live.connection.life.alive(live.silence)?;
         self.write(live, outputs, write, refused)?;
         let values = self.values.lock().unwrap_or_else(PoisonError::into_inner);
         for (input, value) in inputs.iter_mut().zip(values.iter()) {

@@ -27,22 +27,26 @@ mod session;
 mod time;
 mod values;
 
+use std::sync::Arc;
+
 use g7_online::setup::{self, Kind};
 use g7_online::{Brought, Device, Failed, Node, Wired};
+use g7_store::users::Users;
 
 use time::duration;
 
-pub use guard::Users;
-
 /// The kinds `opc-ua` and `opc-ua-server`.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct OpcUa;
+#[derive(Clone, Debug, Default)]
+pub struct OpcUa {
+    /// Those who may log in to a server of our own; without them everybody on this machine may use it.
+    pub users: Option<Arc<Users>>,
+}
 
 impl Brought for OpcUa {
     fn device(&self, wired: &Wired) -> Option<Box<dyn Device>> {
         match &wired.device.kind {
             Kind::OpcUa(server) => Some(Box::new(client::Client::new(server, wired))),
-            Kind::OpcUaServer(row) => Some(Box::new(server::Server::new(row, wired))),
+            Kind::OpcUaServer(row) => Some(Box::new(server::Server::new(row, wired, self.users.clone()))),
             _ => None,
         }
     }

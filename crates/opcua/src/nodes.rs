@@ -6,12 +6,13 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-use g7_online::{About, Folder, Raw, Scaling, Shown, Wire, Wired};
+use g7_online::{About, Folder, Raw, Remark, Scaling, Shown, Wire, Wired};
 use opcua::core::sync::RwLock;
 use opcua::server::CreateMonitoredItem;
 use opcua::server::address_space::{
     AccessLevel, AddressSpace, NodeType, ObjectBuilder, VariableBuilder, read_node_value,
 };
+use opcua::server::authenticator::UserToken;
 use opcua::server::diagnostics::NamespaceMetadata;
 use opcua::server::node_manager::memory::InMemoryNodeManagerImpl;
 use opcua::server::node_manager::{ParsedReadValueId, RequestContext, ServerContext, WriteNode};
@@ -20,6 +21,7 @@ use opcua::types::{
     QualifiedName, StatusCode, TimestampsToReturn, UAString, VariableTypeId, Variant,
 };
 
+use crate::guard;
 use crate::values;
 
 /// The namespace of the nodes of a chart.
@@ -28,6 +30,9 @@ pub(crate) const NAMESPACE: &str = "urn:g7:chart";
 /// Sessions that are kept in mind.
 const SESSIONS: usize = 200;
 
+/// Writes that wait to be told; the driver takes them many times a second.
+const DEEDS: usize = 1000;
+
 /// True while a session of a client is there.
 type Lives = Arc<dyn Fn() -> bool + Send + Sync>;
 
@@ -35,8 +40,14 @@ type Lives = Arc<dyn Fn() -> bool + Send + Sync>;
 pub(crate) struct Input {
     pub(crate) name: String,
     scaling: Scaling,
-    /// The value, and the session that has written it.
-    written: Option<(Raw, Lives)>,
+    written: Option<Written>,
+}
+
+/// What a client has written.
+struct Written {
+    value: Raw,
+    who: Option<String>,
+    session: Lives,
 }
 
 /// What the library and the driver share.
@@ -44,23 +55,64 @@ pub(crate) struct Input {
 pub(crate) struct Desk {
     pub(crate) inputs: Vec<Input>,
     /// By number: each client that has asked for a node.
-    sessions: BTreeMap<u32, Lives>,
+    sessions: BTreeMap<u32, Client>,
+    /// What was written and not told yet.
+    deeds: Vec<Remark>,
+}
+
+/// A session of a client.
+struct Client {
+    user: UserToken,
+    lives: Lives,
 }
 
 impl Desk {
     /// The number of clients that are there.
     pub(crate) fn clients(&mut self) -> usize {
-        self.sessions.retain(|_, lives| lives());
+        self.sessions.retain(|_, client| (client.lives)());
         self.sessions.len()
+    }
+
+    /// True if one of them is not let in any more.
+    pub(crate) fn has_stranger(&mut self, knows: impl Fn(&UserToken) -> bool) -> bool {
+        self.clients();
+        self.sessions.values().any(|client| !knows(&client.user))
+    }
+
+    /// What was written since the last call.
+    pub(crate) fn deeds(&mut self) -> Vec<Remark> {
+        std::mem::take(&mut self.deeds)
+    }
+
+    /// Nobody is there any more.
+    pub(crate) fn clear(&mut self) {
+        self.sessions.clear();
+        self.inputs.iter_mut().for_each(|input| input.written = None);
     }
 
     /// The value of an input; `None` where no client has written it who is still there.
     pub(crate) fn value(&mut self, input: usize) -> Option<Raw> {
         let input = self.inputs.get_mut(input)?;
-        if input.written.as_ref().is_some_and(|(_, lives)| !lives()) {
+        if input.written.as_ref().is_some_and(|written| !(written.session)()) {
             input.written = None;
         }
-        input.written.as_ref().map(|(raw, _)| *raw)
+        input.written.as_ref().map(|written| written.value)
+    }
+
+    /// Takes a value for an input. One that is another one, or from somebody else, is told.
+    fn put(&mut self, at: usize, written: Written) -> Result<(), StatusCode> {
+        let was = self.value(at);
+        let Some(input) = self.inputs.get_mut(at) else { return Err(StatusCode::BadNotWritable) };
+        let by = input.written.as_ref().and_then(|written| written.who.as_ref());
+        if was != Some(written.value) || by != written.who.as_ref() {
+            if self.deeds.len() >= DEEDS {
+                return Err(StatusCode::BadTooManyOperations);
+            }
+            let (value, who) = (written.value, written.who.clone());
+            self.deeds.push(Remark::Written { input: at, value, who });
+        }
+        input.written = Some(written);
+        Ok(())
     }
 }
 
@@ -76,7 +128,7 @@ impl Shared {
             written: None,
         };
         let inputs = wired.inputs.iter().map(of).collect();
-        Shared(Arc::new(Mutex::new(Desk { inputs, sessions: BTreeMap::new() })))
+        Shared(Arc::new(Mutex::new(Desk { inputs, ..Desk::default() })))
     }
 
     pub(crate) fn lock(&self) -> MutexGuard<'_, Desk> {
@@ -98,7 +150,8 @@ impl Shared {
         if desk.sessions.len() >= SESSIONS {
             desk.clients();
         }
-        desk.sessions.entry(context.session_id).or_insert_with(|| Arc::clone(&lives));
+        let client = Client { user: context.token.clone(), lives: Arc::clone(&lives) };
+        desk.sessions.insert(context.session_id, client);
         lives
     }
 }
@@ -163,11 +216,17 @@ impl Nodes {
     }
 
     /// Takes what a client writes to an input.
-    fn write(&self, lives: &Lives, node: &NodeType, value: &DataValue) -> Result<(), StatusCode> {
+    fn write(
+        &self,
+        user: &UserToken,
+        lives: &Lives,
+        node: &NodeType,
+        value: &DataValue,
+    ) -> Result<(), StatusCode> {
         let NodeType::Variable(variable) = node else { return Err(StatusCode::BadNotWritable) };
         let name = name_of(node);
         let mut desk = self.shared.lock();
-        let Some(input) = desk.inputs.iter_mut().find(|input| input.name == name) else {
+        let Some((at, input)) = desk.inputs.iter().enumerate().find(|(_, input)| input.name == name) else {
             return Err(StatusCode::BadNotWritable);
         };
         if value.status.is_some_and(|status| !status.is_good()) {
@@ -181,8 +240,8 @@ impl Nodes {
         }
         let raw = values::raw(given, input.scaling.kind).map_err(|_| StatusCode::BadTypeMismatch)?;
         input.scaling.word(raw).ok_or(StatusCode::BadOutOfRange)?;
-        input.written = Some((raw, Arc::clone(lives)));
-        Ok(())
+        let who = guard::name_of(user).map(str::to_owned);
+        desk.put(at, Written { value: raw, who, session: Arc::clone(lives) })
     }
 }
 
@@ -339,7 +398,7 @@ impl InMemoryNodeManagerImpl for Nodes {
                 write.set_status(StatusCode::BadNotWritable);
                 continue;
             }
-            match self.write(&lives, node, &asked.value) {
+            match self.write(&context.token, &lives, node, &asked.value) {
                 Ok(()) => {
                     let value = DataValue::new_now(asked.value.value.clone().unwrap_or_default());
                     if let NodeType::Variable(variable) = node {

@@ -10,9 +10,11 @@ use std::sync::Arc;
 use g7_host::{Clock as _, WallClock};
 use g7_model::Nanos;
 use g7_online::setup::{OpcUaServer, Security};
-use g7_online::{Absent, Device, Failed, OutAt, Raw, Wire, Wired, Worth};
+use g7_online::{Absent, Device, Failed, OutAt, Raw, Remark, Wire, Wired, Worth};
+use g7_store::users::Users;
 use opcua::crypto::SecurityPolicy;
 use opcua::server::address_space::AddressSpace;
+use opcua::server::authenticator::AuthManager;
 use opcua::server::node_manager::ServerContext;
 use opcua::server::node_manager::memory::{InMemoryNodeManager, InMemoryNodeManagerBuilder};
 use opcua::server::{ServerBuilder, ServerEndpoint, ServerHandle};
@@ -28,6 +30,8 @@ use crate::values;
 
 /// The time between two looks at the folder of the certificates.
 const LOOK: Nanos = Nanos::SECOND;
+/// The time between two looks at the file of the users.
+const LOOK_FOR_USERS: Nanos = Nanos::from_millis(300);
 /// The longest message, and the most sessions.
 const LONGEST: usize = 4 << 20;
 const SESSIONS: usize = 50;
@@ -42,6 +46,7 @@ pub(crate) struct Server {
     name: String,
     wired: Wired,
     shared: Shared,
+    guard: Arc<Guard>,
     notes: Notes,
     folder: Folder,
     at_work: Option<AtWork>,
@@ -51,6 +56,7 @@ pub(crate) struct Server {
     written: Vec<bool>,
     clock: WallClock,
     looked: Nanos,
+    looked_for_users: Nanos,
 }
 
 /// A server that listens.
@@ -63,19 +69,22 @@ struct AtWork {
 
 impl Server {
     /// A server that does not listen yet.
-    pub(crate) fn new(row: &OpcUaServer, wired: &Wired) -> Server {
+    pub(crate) fn new(row: &OpcUaServer, wired: &Wired, users: Option<Arc<Users>>) -> Server {
+        let notes = Notes::default();
         Server {
             row: row.clone(),
             name: wired.device.name.value.clone(),
             wired: wired.clone(),
             shared: Shared::of(wired),
-            notes: Notes::default(),
+            guard: Arc::new(Guard::new(users, row.anonymous, notes.clone())),
+            notes,
             folder: Folder::new(&row.certificates),
             at_work: None,
             values: BTreeMap::new(),
             written: vec![false; wired.inputs.len()],
             clock: WallClock::default(),
             looked: Nanos::ZERO,
+            looked_for_users: Nanos::ZERO,
         }
     }
 
@@ -110,7 +119,6 @@ impl Server {
         let nodes = move |context: ServerContext, space: &mut AddressSpace| {
             Nodes::build(&plan, shared, &context, space)
         };
-        let guard = Guard::new(row.users.clone(), row.anonymous, self.notes.clone());
         let mut builder = ServerBuilder::new()
             .application_name(format!("G7 {}", self.name))
             .application_uri(uri)
@@ -124,7 +132,7 @@ impl Server {
             .create_sample_keypair(false)
             .trust_client_certs(false)
             .check_cert_time(true)
-            .with_authenticator(Arc::new(guard))
+            .with_authenticator(Arc::clone(&self.guard) as Arc<dyn AuthManager>)
             .with_node_manager(InMemoryNodeManagerBuilder::new(nodes))
             .max_sessions(SESSIONS)
             .max_session_timeout_ms(duration(row.silence).as_millis() as u64)
@@ -151,6 +159,23 @@ impl Server {
         // What cannot be adopted is told when somebody is refused for it.
         self.folder.adopt().ok();
         self.folder.rejected().into_iter().for_each(|note| self.notes.say(note));
+    }
+
+    /// Looks for changes of the users from time to time. A session of a user who was changed must end, and the
+    /// library ends no single one: so all end, and the others log in again.
+    fn look_for_users(&mut self) -> Result<(), Failed> {
+        let now = self.clock.now();
+        if now - self.looked_for_users < LOOK_FOR_USERS {
+            return Ok(());
+        }
+        self.looked_for_users = now;
+        self.guard.look();
+        if !self.shared.lock().has_stranger(|user| self.guard.knows(user)) {
+            return Ok(());
+        }
+        self.stop();
+        self.shared.lock().clear();
+        Err(Failed("a user who was there is changed: all clients log in again".to_owned()))
     }
 
     /// Takes the values that have changed, and tells the names of their nodes.
@@ -248,6 +273,7 @@ impl Device for Server {
     ) -> Result<(), Failed> {
         self.look();
         let changed = self.take(outputs, write);
+        self.look_for_users()?;
         let Some(at_work) = &self.at_work else { return Err(Failed("it does not listen".to_owned())) };
         if at_work.task.is_finished() {
             return Err(Failed("the server has ended".to_owned()));
@@ -283,8 +309,9 @@ impl Device for Server {
         if clients > 0 { Ok(()) } else { Err(Failed(format!("no client at {}", self.row.address))) }
     }
 
-    fn notes(&mut self) -> Vec<String> {
-        self.notes.take()
+    fn remarks(&mut self) -> Vec<Remark> {
+        let notes = self.notes.take().into_iter().map(Remark::Note);
+        notes.chain(self.shared.lock().deeds()).collect()
     }
 
     /// Does nothing: clients come and go, and the server goes on to listen for them until it is dropped.

@@ -8,6 +8,7 @@ use std::future::Future;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
+use futures_util::future::{Either, select};
 use futures_util::{StreamExt as _, pin_mut};
 use g7_host::{Clock as _, WallClock};
 use g7_model::Nanos;
@@ -66,6 +67,23 @@ impl Life {
             None => Ok(state.clock.now() - state.heard),
         }
     }
+
+    /// Ends the connection when there was no sign of life for longer than `most`.
+    ///
+    /// # Errors
+    ///
+    /// The connection is lost, or silent.
+    pub(crate) fn alive(&self, most: Option<Nanos>) -> Result<(), Failed> {
+        let silence = self.silence()?;
+        match most.filter(|most| silence > *most) {
+            Some(most) => {
+                let why = format!("no sign of life of the subscription for {}", most.plain());
+                self.end(why.clone());
+                Err(Failed(why))
+            }
+            None => Ok(()),
+        }
+    }
 }
 
 /// A connection with its session.
@@ -116,6 +134,37 @@ impl Connection {
     ) -> Result<T, Failed> {
         let Some(runtime) = &self.runtime else { return Err(Failed("there is no connection".to_owned())) };
         runtime.block_on(within(timeout, work))?.map_err(|e| Failed(plain(e.status())))
+    }
+
+    /// The same, as long as the connection lives and the silence of the subscription is not longer than `most`.
+    ///
+    /// # Errors
+    ///
+    /// It takes longer, it failed, or there is no sign of life.
+    pub(crate) fn wait_alive<T: Send + 'static>(
+        &self,
+        timeout: Duration,
+        most: Option<Nanos>,
+        work: impl Future<Output = Result<T, opcua::types::Error>> + Send + 'static,
+    ) -> Result<T, Failed> {
+        let life = self.life.clone();
+        let watched = async move {
+            let lost = async {
+                loop {
+                    if let Err(why) = life.alive(most) {
+                        break why;
+                    }
+                    tokio::time::sleep(LOOK).await;
+                }
+            };
+            pin_mut!(lost, work);
+            match select(work, lost).await {
+                Either::Left((done, _)) => Ok(done),
+                Either::Right((why, _)) => Err(why),
+            }
+        };
+        self.wait(timeout, async move { Ok(watched.await) })?
+            .and_then(|done| done.map_err(|e| Failed(plain(e.status()))))
     }
 
     /// The node as the server knows it now.

@@ -6,8 +6,10 @@ mod bench;
 
 use std::time::{Duration, Instant};
 
-use bench::{Folder, Machine, client, free_port, server, wired};
+use bench::{Folder, Machine, Peer, client, free_port, server, wired};
 use g7_online::Command;
+use g7_peers::faults::{Times, row, trials};
+use g7_store::users::Role;
 
 const CHART: &str = "\
 profile iec60848
@@ -31,7 +33,7 @@ chart Main {
 ";
 
 /// The row of a server of asyncua.
-fn row(port: u16, more: &str) -> String {
+fn peer_row(port: u16, more: &str) -> String {
     format!(
         "[devices.line]\nkind = 'opc-ua'\nurl = 'opc.tcp://127.0.0.1:{port}/peer'\ntimeout = '20s'\nretry = '300ms'\n\
          interval = '50ms'\nkeep-alive = '500ms'\ncertificates = 'pki'\n{more}\n"
@@ -56,13 +58,11 @@ small = 'line.node(nsu=urn:g7:peer;s=Small)'
 ";
 
 #[test]
-fn a_server_of_asyncua_is_driven_lost_and_found() {
+fn a_server_of_asyncua_is_driven() {
     let Some(python) = g7_peers::python("asyncua") else { return };
     let folder = Folder::new();
     let (mut peer, port) = server(&python, 0, &[]);
-    let io = row(port, "security = 'none'") + INPUTS + OUTPUTS;
-    let mut machine = Machine::start(&folder, CHART, &io);
-    machine.until("line up");
+    let mut machine = driven(&folder, port);
     peer.until("get Speed", "-1");
     peer.says("set Count 300");
     peer.says("set Level 2.5");
@@ -86,49 +86,64 @@ fn a_server_of_asyncua_is_driven_lost_and_found() {
     peer.until("get Valve", "false");
     peer.until("get Speed", "-1");
     machine.command(Command::Run);
+}
 
-    // Fault: the server is killed and started, again and again.
-    let many = std::env::var_os("G7_FAULTS").is_some_and(|faults| faults == "many");
-    let (mut bad, mut back) = (Vec::new(), Vec::new());
-    for _ in 0..if many { 50 } else { 2 } {
+/// A machine with a server of asyncua, which it has reached.
+fn driven(folder: &Folder, port: u16) -> Machine {
+    let io = peer_row(port, "security = 'none'") + INPUTS + OUTPUTS;
+    let mut machine = Machine::start(folder, CHART, &io);
+    machine.until("line up");
+    machine
+}
+
+#[test]
+fn row_13_a_server_that_is_killed_is_missed_and_found() {
+    let Some(python) = g7_peers::python("asyncua") else { return };
+    let (folder, count) = (Folder::new(), trials(50, 2));
+    let (mut peer, port) = server(&python, 0, &[]);
+    let mut machine = driven(&folder, port);
+    let (mut bad, mut back) = (Times::default(), Times::default());
+    for _ in 0..count {
         let begin = Instant::now();
         drop(peer);
         machine.until("line down");
-        bad.push(begin.elapsed());
+        bad.add(begin.elapsed());
         peer = server(&python, port, &[]).0;
         let begin = Instant::now();
         // It has forgotten all, so the button is up; it gets each output, and each change comes.
         machine.until("line up");
-        peer.says("set Go true");
-        peer.until("get Valve", "true");
-        peer.says("set Go false");
-        peer.until("get Valve", "false");
-        back.push(begin.elapsed());
+        change(&mut peer, "true");
+        change(&mut peer, "false");
+        back.add(begin.elapsed());
     }
-    told("server killed to bad inputs", &mut bad);
-    told("server started to the second change", &mut back);
+    let held = format!("bad inputs after {bad}; start of the server to the second change {back}");
+    row(13, "", count.into(), 0, held);
+}
 
-    // Fault: it stands still. The connection is there, and no sign of life comes.
-    let mut bad = Vec::new();
-    for _ in 0..if many { 50 } else { 1 } {
+/// Another value at the server comes to the chart, and the output comes back.
+fn change(peer: &mut Peer, to: &str) {
+    peer.says(&format!("set Go {to}"));
+    peer.until("get Valve", to);
+}
+
+#[test]
+fn row_13_a_server_that_stands_still_is_missed_by_its_signs_of_life() {
+    let Some(python) = g7_peers::python("asyncua") else { return };
+    let (folder, count, mut bad) = (Folder::new(), trials(50, 1), Times::default());
+    let (mut peer, port) = server(&python, 0, &[]);
+    let mut machine = driven(&folder, port);
+    for _ in 0..count {
+        // The connection is there, and no sign of life comes.
         peer.signal("STOP");
         let begin = Instant::now();
         let line = machine.until("line down");
-        bad.push(begin.elapsed());
+        bad.add(begin.elapsed());
         assert!(line.contains("no sign of life") || line.contains("answer"), "{line}");
         peer.signal("CONT");
         machine.until("line up");
     }
-    told("server silent to bad inputs (keep-alive 500 ms)", &mut bad);
-    peer.says("set Go true");
-    peer.until("get Valve", "true");
-}
-
-/// Prints how long something took.
-fn told(what: &str, times: &mut [Duration]) {
-    times.sort();
-    let of = |part: usize| times.get(times.len() * part / 100).or(times.last()).copied().unwrap_or_default();
-    println!("{what}: {} times, half {:.1?}, most {:.1?}", times.len(), of(50), of(100));
+    change(&mut peer, "true");
+    row(13, "it stands still (keep-alive 500 ms)", count.into(), 0, format!("bad inputs after {bad}"));
 }
 
 #[test]
@@ -136,7 +151,7 @@ fn what_a_node_cannot_carry_is_refused_with_both_types() {
     let Some(python) = g7_peers::python("asyncua") else { return };
     let folder = Folder::new();
     let (peer, port) = server(&python, 0, &[]);
-    let io = row(port, "security = 'none'")
+    let io = peer_row(port, "security = 'none'")
         + "[inputs]\ngo = 'line.node(ns=1;s=Count)'\nlevel = 'line.node(ns=1;s=Text)'\n\
            count = 'line.node(nsu=urn:nobody;s=Count)'\nseven = 'line.node(ns=1;s=Nothing)'\n\
            [outputs]\nvalve = 'line.node(ns=1;s=Speed)'\nflow = 'line.node(ns=1;s=Count)'\n\
@@ -163,7 +178,7 @@ fn what_a_node_cannot_carry_is_refused_with_both_types() {
 }
 
 #[test]
-fn an_unknown_server_and_a_wrong_password_are_refused() {
+fn row_14_an_unknown_server_and_a_wrong_password_are_refused() {
     let Some(python) = g7_peers::python("asyncua") else { return };
     let folder = Folder::new();
     let (cert, key) = folder.certificate(&python, "peer", 1, 30);
@@ -173,7 +188,7 @@ fn an_unknown_server_and_a_wrong_password_are_refused() {
     folder.write("right", "secret\n");
     folder.write("wrong", "guess\n");
     let io = |password: &str| {
-        row(port, &format!("user = 'anna'\npassword-file = '{password}'")) + INPUTS + OUTPUTS
+        peer_row(port, &format!("user = 'anna'\npassword-file = '{password}'")) + INPUTS + OUTPUTS
     };
     let mut machine = Machine::start(&folder, CHART, &io("wrong"));
     let line = machine.until("line down");
@@ -194,16 +209,17 @@ fn an_unknown_server_and_a_wrong_password_are_refused() {
     drop((machine, peer));
     // Without a password there is nobody, and what the server does not offer is told with what it does.
     let (_peer, port) = server(&python, 0, &options);
-    let mut machine = Machine::start(&folder, CHART, &(row(port, "") + INPUTS));
+    let mut machine = Machine::start(&folder, CHART, &(peer_row(port, "") + INPUTS));
     assert!(machine.until("line down").contains("refuses"));
     drop(machine);
-    let mut machine = Machine::start(&folder, CHART, &(row(port, "security = 'none'") + INPUTS));
+    let mut machine = Machine::start(&folder, CHART, &(peer_row(port, "security = 'none'") + INPUTS));
     let line = machine.until("line down");
     assert!(line.contains("does not offer None") && line.contains("Basic256Sha256 SignAndEncrypt"), "{line}");
+    row(14, "of a server: certificate, password, user, security", 4, 0, "refused, said with the way out");
 }
 
 #[test]
-fn an_expired_certificate_is_refused() {
+fn row_14_an_expired_certificate_of_a_server_is_refused() {
     let Some(python) = g7_peers::python("asyncua") else { return };
     let folder = Folder::new();
     let (cert, key) = folder.certificate(&python, "old", 30, -1);
@@ -211,27 +227,34 @@ fn an_expired_certificate_is_refused() {
     std::fs::create_dir_all(folder.path("pki/trusted")).expect("a folder");
     // A person may give it any name.
     std::fs::copy(&cert, folder.path("pki/trusted/server.der")).expect("it is trusted");
-    let mut machine = Machine::start(&folder, CHART, &(row(port, "") + INPUTS));
+    let mut machine = Machine::start(&folder, CHART, &(peer_row(port, "") + INPUTS));
     let line = machine.until("line down");
     assert!(line.contains("old [") && line.contains("not today"), "{line}");
+    row(14, "an expired certificate of a server, trusted", 1, 0, "refused, said");
 }
 
 /// An io file with a server alone.
 fn served(port: u16, more: &str) -> String {
     format!(
         "[devices.scada]\nkind = 'opc-ua-server'\nlisten = '127.0.0.1:{port}'\ncertificates = 'pki'\n{more}\n\
-         [devices.scada.users]\nanna = {{ role = 'operator', password-file = 'anna' }}\n\
-         view = {{ role = 'viewer', password-file = 'view' }}\n\
          [inputs]\ngo = {{ at = 'scada.node()', bad = false }}\ncount = 'scada.node(Count)'\nthere = 'scada.good()'\n\
          [outputs]\nvalve = 'scada.node()'\nspeed = 'scada.node()'\n\
          [shown]\nX2 = 'scada.node()'\nflow = {{ at = 'scada.node(Flow)', unit = 'm3/h' }}\n"
     )
 }
 
+/// Anna and one who only looks.
 fn users(folder: &Folder) {
-    folder.write("anna", "secret");
-    folder.write("view", "look");
+    let users = folder.users();
+    for (name, role, password) in
+        [("anna", Role::Operator, "a good secret"), ("view", Role::Viewer, "look around")]
+    {
+        users.add(name, role, password, 1, false).expect("added");
+    }
 }
+
+/// The same as an option of a client.
+const ANNA: &str = "user=anna:a good secret";
 
 #[test]
 fn a_client_of_asyncua_reads_and_writes_by_its_role() {
@@ -267,17 +290,24 @@ fn a_client_of_asyncua_reads_and_writes_by_its_role() {
     }
     assert_eq!(anybody.says("write go Boolean true"), "refused BadUserAccessDenied");
 
-    let mut viewer = client(&python, port, &["user=view:look"]).expect("the password is right");
+    let mut viewer = client(&python, port, &["user=view:look around"]).expect("the password is right");
     assert_eq!(viewer.says("write go Boolean true"), "refused BadUserAccessDenied");
-    for (user, why) in [("anna:guess", "an operator"), ("nobody:secret", "nobody")] {
+    for (user, why) in [("anna:a bad guess", "an operator"), ("nobody:a good secret", "nobody")] {
         let refused = client(&python, port, &[&format!("user={user}")]).err();
         assert_eq!(refused.as_deref(), Some("BadUserAccessDenied"), "{why}");
     }
     assert!(machine.until("note").contains("\"anna\": unknown, or another password"));
 
-    let mut anna = client(&python, port, &["user=anna:secret"]).expect("the password is right");
-    assert_eq!(anna.says("write Count Int16 5"), "ok");
+    let mut anna = client(&python, port, &[ANNA]).expect("the password is right");
+    // Each value is told with the name, but not when it is only said again.
+    for value in [5, 5, 6, 5] {
+        assert_eq!(anna.says(&format!("write Count Int16 {value}")), "ok");
+    }
+    for value in [5, 6, 5] {
+        assert_eq!(machine.until("sets"), format!("scada sets count {value} Some(\"anna\")"));
+    }
     assert_eq!(anna.says("write go Boolean true"), "ok");
+    assert_eq!(machine.until("sets"), "scada sets go 1 Some(\"anna\")");
     anna.until("read X2", "true Good");
     anna.until("read valve", "true Good");
     anna.until("read speed", "5 Good");
@@ -308,14 +338,14 @@ fn a_client_of_asyncua_reads_and_writes_by_its_role() {
 }
 
 #[test]
-fn an_unknown_or_expired_client_is_refused_and_put_aside() {
+fn row_14_an_unknown_or_expired_client_is_refused_and_put_aside() {
     let Some(python) = g7_peers::python("asyncua") else { return };
     let (folder, port) = (Folder::new(), free_port());
     users(&folder);
     let mut machine = Machine::start(&folder, CHART, &served(port, ""));
     machine.until("scada down");
     let options = |(cert, key): &(String, String)| {
-        [format!("certificate={cert}"), format!("key={key}"), "user=anna:secret".to_owned()]
+        [format!("certificate={cert}"), format!("key={key}"), ANNA.to_owned()]
     };
     let (good, old) =
         (folder.certificate(&python, "panel", 1, 30), folder.certificate(&python, "old", 30, -1));
@@ -341,12 +371,63 @@ fn an_unknown_or_expired_client_is_refused_and_put_aside() {
     std::fs::copy(&old.0, folder.path("pki/trusted/old.der")).expect("it is trusted");
     assert!(try_it(&options(&old)).is_err());
     drop(anna);
+    row(14, "clients: no security, an unknown and an expired certificate", 3, 0, "refused, put aside, said");
+}
+
+#[test]
+fn row_14_who_has_no_user_or_not_the_role_does_not_write() {
+    let Some(python) = g7_peers::python("asyncua") else { return };
+    let (folder, port) = (Folder::new(), free_port());
+    users(&folder);
+    let io = served(port, "security = 'none'\nanonymous = 'read'");
+    let mut machine = Machine::start(&folder, CHART, &io);
+    machine.until("scada down");
+    for options in [&[][..], &["user=view:look around"]] {
+        let mut peer = client(&python, port, options).expect("it may read");
+        assert_eq!(peer.says("write go Boolean true"), "refused BadUserAccessDenied");
+    }
+    // A user who is changed is there no more, whatever the session.
+    let mut anna = client(&python, port, &[ANNA]).expect("the password is right");
+    assert_eq!(anna.says("write go Boolean true"), "ok");
+    anna.until("read X2", "true Good");
+    folder.users().set_role("anna", Role::Viewer).expect("changed");
+    machine.until("log in again");
+    assert!(anna.says("write go Boolean true").starts_with("refused"));
+    // She logs in anew, and now she only reads; the button is up again.
+    let begin = Instant::now();
+    let mut anna = loop {
+        match client(&python, port, &[ANNA]) {
+            Ok(anna) => break anna,
+            Err(status) => assert!(begin.elapsed() < Duration::from_secs(30), "{status}"),
+        }
+    };
+    anna.until("read X2", "false Good");
+    assert_eq!(anna.says("write go Boolean true"), "refused BadUserAccessDenied");
+    row(
+        14,
+        "writes without a user, as a viewer, and after a change of the role",
+        4,
+        0,
+        "refused; sessions end",
+    );
+}
+
+#[test]
+fn without_users_a_client_of_this_machine_writes() {
+    let Some(python) = g7_peers::python("asyncua") else { return };
+    let (folder, port) = (Folder::new(), free_port());
+    let mut machine = Machine::start(&folder, CHART, &served(port, "security = 'none'"));
+    machine.until("scada down");
+    let mut anybody = client(&python, port, &[]).expect("there are no users");
+    assert_eq!(anybody.says("write go Boolean true"), "ok");
+    assert_eq!(machine.until("sets"), "scada sets go 1 None");
+    anybody.until("read X2", "true Good");
+    assert!(client(&python, port, &[ANNA]).is_err());
 }
 
 #[test]
 fn mistakes_in_the_io_file_have_a_way_out() {
     let folder = Folder::new();
-    users(&folder);
     let fine = served(4840, "");
     assert!(wired(&folder, CHART, &fine).is_ok());
     let line = "[devices.line]\nkind = 'opc-ua'\nurl = 'opc.tcp://a'\n";
@@ -356,17 +437,7 @@ fn mistakes_in_the_io_file_have_a_way_out() {
                 .replace("certificates", "security = 'none'\ncertificates"),
             vec!["without security"],
         ),
-        (
-            "[devices.s]\nkind = 'opc-ua-server'\nlisten = '127.0.0.1:4840'\n".to_owned(),
-            vec!["nobody can come in", "anonymous"],
-        ),
-        (
-            "[devices.s]\nkind = 'opc-ua-server'\nlisten = '10.0.0.1:4840'\nanonymous = 'read'\n".to_owned(),
-            vec!["needs users"],
-        ),
-        (fine.replace("'operator'", "'boss'"), vec!["role", "\"operator\""]),
-        (fine.replace("password-file = 'view'", ""), vec!["view has no password"]),
-        (fine.replace("password-file = 'view'", "password-file = 'none'"), vec!["password cannot be read"]),
+        (fine.replace("[inputs]", "[devices.scada.users]\n[inputs]"), vec!["users"]),
         (fine.replace("scada.node(Count)", "scada.node(go)"), vec!["wired to one point"]),
         (fine.replace("scada.node(Count)", "scada.coil(1)"), vec!["no point of OPC UA"]),
         (line.replace("opc.tcp", "http"), vec!["opc.tcp://"]),
@@ -385,34 +456,4 @@ fn mistakes_in_the_io_file_have_a_way_out() {
         let all = problems.join("\n");
         assert!(parts.iter().all(|part| all.contains(part)), "{parts:?} in {all}");
     }
-}
-
-#[test]
-fn a_thousand_nodes_are_read_at_once() {
-    let Some(python) = g7_peers::python("asyncua") else { return };
-    let (folder, port) = (Folder::new(), free_port());
-    let variables: String = (0..1000).map(|k| format!("var w{k} : INT := {k}\n")).collect();
-    let chart = format!("profile iec60848\n{variables}chart Main {{\n initial step 1\n}}\n");
-    let before = memory();
-    let io = format!(
-        "[devices.scada]\nkind = 'opc-ua-server'\nlisten = '127.0.0.1:{port}'\nsecurity = 'none'\n\
-         anonymous = 'read'\nexpose = 'all'\ncertificates = 'pki'\n"
-    );
-    let mut machine = Machine::start(&folder, &chart, &io);
-    machine.until("scada down");
-    let mut anybody = client(&python, port, &[]).expect("who has no user may read");
-    anybody.until("read w999", "999 Good");
-    let read = anybody.says("many 1000");
-    assert!(read.starts_with("1000 "), "{read}");
-    let subscribed = anybody.says("subscribe 100");
-    assert!(subscribed.starts_with("100 "), "{subscribed}");
-    println!("1000 nodes in one read, the least of 10: {read}; 100 subscriptions: {subscribed}");
-    println!("memory with the server and its client: {} KiB, before: {before} KiB", memory());
-}
-
-/// The memory of this program in KiB; 0 where the system does not tell.
-fn memory() -> u64 {
-    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
-    let line = status.lines().find_map(|line| line.strip_prefix("VmRSS:"));
-    line.and_then(|line| line.split_whitespace().next()?.parse().ok()).unwrap_or(0)
 }

@@ -4,13 +4,14 @@ Arguments: the address; then `user=NAME:PASSWORD`, and `certificate=FILE` with `
 connection that is signed and encrypted. It prints `connected`, or `refused` with the name of the
 status, and then obeys lines on the standard input: `read NODE`, `write NODE TYPE VALUE`, `about NODE`,
 `browse`, `watch NODE`, which lets it print each change, and `many COUNT`, which reads so many nodes
-`w0`, `w1` … in one request and says how long it took, and `subscribe COUNT`, which makes a subscription
-for each of so many of them and says how long it took until each has sent something. Nodes are in the namespace `urn:g7:chart`.
+`w0`, `w1` … in one request and says how long it took, and `latency COUNT TIMES`, which makes a subscription
+for each of `q0`, `q1` …, turns `go` so often and says how long the changes took. Nodes are in the namespace `urn:g7:chart`.
 """
 
 import asyncio
 import json
 import logging
+import random
 import sys
 import threading
 import time
@@ -34,19 +35,42 @@ class Watch:
         print(f"change {node.nodeid.Identifier} {shown(value)}", flush=True)
 
 
-class Count:
-    """Keeps in mind which nodes have sent something."""
+class Arrivals:
+    """Keeps in mind when nodes have sent the value that is waited for."""
 
     def __init__(self):
-        self.seen = set()
+        self.wanted, self.at = None, {}
 
-    def datachange_notification(self, node, _value, _data):
-        self.seen.add(node.nodeid.Identifier)
+    def datachange_notification(self, node, value, _data):
+        if value == self.wanted:
+            self.at.setdefault(node.nodeid.Identifier, time.monotonic())
 
 
 def shown(value):
     plain = json.dumps(value.Value.Value if value.Value else None)
     return f"{plain} {value.StatusCode.name}"
+
+
+async def latency(client, node, count, times):
+    """Turns `go` on and off so often, and returns how long the changes of `q0` … took to come."""
+    arrivals, took = Arrivals(), []
+    for k in range(count):
+        subscription = await client.create_subscription(50, arrivals)
+        await subscription.subscribe_data_change(node(f"q{k}"))
+    for turn in range(times):
+        # The changes fall anywhere between two messages.
+        await asyncio.sleep(0.15 + 0.05 * random.random())
+        arrivals.at, arrivals.wanted = {}, turn % 2 == 0
+        begin = time.monotonic()
+        await node("go").write_value(ua.DataValue(ua.Variant(turn % 2 == 0, ua.VariantType.Boolean)))
+        while len(arrivals.at) < count:
+            if time.monotonic() - begin > 20:
+                return f"only {len(arrivals.at)} of {count} came"
+            await asyncio.sleep(0.005)
+        took += [at - begin for at in arrivals.at.values()]
+    took.sort()
+    half, most, last = took[len(took) // 2], took[len(took) * 99 // 100], took[-1]
+    return f"{len(took)} changes, half {half * 1e3:.0f} ms, 99 % {most * 1e3:.0f} ms, most {last * 1e3:.0f} ms"
 
 
 async def connect(address, options):
@@ -103,20 +127,14 @@ async def obey(client, index, words):
         nodes = [node(f"w{k}") for k in range(int(words[0]))]
         values = await client.read_values(nodes)
         times = []
-        for _ in range(10):
+        for _ in range(50):
             begin = time.monotonic()
             values = await client.read_values(nodes)
             times.append(time.monotonic() - begin)
-        return f"{len(values)} {min(times) * 1e3:.1f} ms"
-    if verb == "subscribe":
-        count = Count()
-        begin = time.monotonic()
-        for k in range(int(words[0])):
-            subscription = await client.create_subscription(100, count)
-            await subscription.subscribe_data_change(node(f"w{k}"))
-        while len(count.seen) < int(words[0]):
-            await asyncio.sleep(0.01)
-        return f"{len(count.seen)} {time.monotonic() - begin:.2f} s"
+        times.sort()
+        return f"{len(values)} {times[0] * 1e3:.1f} {times[len(times) // 2] * 1e3:.1f}"
+    if verb == "latency":
+        return await latency(client, node, int(words[0]), int(words[1]))
     return "no such command"
 
 

@@ -1,6 +1,6 @@
 """An OPC UA server of asyncua for tests.
 
-Arguments: the port, 0 for a free one; then `users`, and `certificate=FILE` with `key=FILE` for
+Arguments: the port, 0 for a free one; then `users`, `many` for 1000 nodes `w0` … of the namespace `urn:g7:chart`, and `certificate=FILE` with `key=FILE` for
 connections that are signed and encrypted alone. It prints its port, then obeys lines on the
 standard input: `set NODE VALUE` with a value of JSON and, behind it, the name of a status;
 `get NODE`; `stall SECONDS`, in which it does nothing at all. The nodes are in the namespace
@@ -66,6 +66,10 @@ async def start(port, options):
     # Numbers, a GUID and bytes name the same value as `Count` does.
     for identifier in [7, ua.uuid.UUID("72962B91-FA75-4AE6-8D28-B404DC7DAF63"), b"seven"]:
         await top.add_variable(ua.NodeId(identifier, index), "Seven", 7, ua.VariantType.Int16)
+    if "many" in options:
+        index = await server.register_namespace("urn:g7:chart")
+        for k in range(1000):
+            await top.add_variable(ua.NodeId(f"w{k}", index), f"w{k}", k, ua.VariantType.Int16)
     await server.start()
     return server, nodes
 

@@ -51,16 +51,16 @@ impl Kind {
         "modbus-rtu",
         "modbus-server",
         "mqtt",
+        "opc-ua",
+        "opc-ua-server",
         "s7",
         "gpio",
         "panel",
-        "opc-ua",
-        "opc-ua-server",
     ];
 
     /// Its word in the file.
     pub fn word(&self) -> &'static str {
-        let [tcp, rtu, server, mqtt, s7, gpio, panel, opcua, opcua_server] = Kind::WORDS;
+        let [tcp, rtu, server, mqtt, opcua, opcua_server, s7, gpio, panel] = Kind::WORDS;
         match self {
             Kind::ModbusTcp(..) => tcp,
             Kind::ModbusRtu(..) => rtu,

@@ -47,7 +47,7 @@ pub use edit::{Change, Plain, Uneditable, edit};
 pub use field::{Address, Bias, Memory, Pin, S7, Width};
 pub use history::History;
 pub(crate) use history::SIGNALS;
-pub use opcua::{Namespace, NodeId, OpcUa, OpcUaServer, Policy, Role, Security, User, read_node};
+pub use opcua::{Namespace, NodeId, OpcUa, OpcUaServer, Policy, Security, read_node};
 pub use outline::{Entry, outline};
 pub use panel::{Handle, Limits, Panel};
 pub use point::{Area, Encoding, Place, Point, Register};
@@ -202,11 +202,10 @@ pub fn read_point(text: &str) -> Result<Point, String> {
 /// Gets the passwords, certificates and keys that the file names. `from` gives the bytes of a file or
 /// variable, or says why not.
 pub fn read_secrets(setup: &mut Setup, from: impl FnMut(&Origin) -> Result<Vec<u8>, String>) -> Vec<Problem> {
-    let peers = setup.devices.iter_mut().flat_map(|device| match &mut device.kind {
-        Kind::Mqtt(broker) => vec![(broker.password.as_mut(), broker.tls.as_mut())],
-        Kind::OpcUa(server) => vec![(server.password(), None)],
-        Kind::OpcUaServer(server) => server.passwords().map(|password| (Some(password), None)).collect(),
-        _ => Vec::new(),
+    let peers = setup.devices.iter_mut().filter_map(|device| match &mut device.kind {
+        Kind::Mqtt(broker) => Some((broker.password.as_mut(), broker.tls.as_mut())),
+        Kind::OpcUa(server) => Some((server.password(), None)),
+        _ => None,
     });
     secret::read(peers, from)
 }
@@ -229,6 +228,7 @@ fn setup(table: &DeTable<'_>, found: &mut Found) -> Setup {
     let server = top.table(found, "server").map(|table| server::server(table, found)).unwrap_or_default();
     let rows = top.rows(found, "devices");
     let devices: Vec<Device> = rows.iter().filter_map(|row| device::read(row, found)).collect();
+    server::encrypted(&server, &devices, found);
     device::one_line_each(&devices, found);
     device::one_address_each(&devices, found);
     let retain = controller.as_ref().and_then(|controller| controller.retain.as_ref());

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use g7_model::Nanos;
 
 use super::secret::{self, Held};
-use super::table::{At, Found, Row, Table};
+use super::table::{Found, Table};
 
 /// A server of OPC UA, which this is a client of.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -36,55 +36,14 @@ pub struct OpcUaServer {
     pub address: SocketAddr,
     /// The least security of a connection; whatever is more is offered as well.
     pub security: Security,
-    /// The users that are let in.
-    pub users: Vec<User>,
-    /// True if a client without a user may read.
-    pub anonymous: bool,
+    /// What the file says of clients without a user: true if they may read, false if they are refused.
+    pub anonymous: Option<bool>,
     /// The folder of the certificates: `own`, `trusted` and `rejected`.
     pub certificates: PathBuf,
     /// True if all variables and steps are shown, not only those of `[shown]`.
     pub all: bool,
     /// A client without a request for so long is gone.
     pub silence: Nanos,
-}
-
-/// A user of a server of our own.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct User {
-    /// The name.
-    pub name: At<String>,
-    /// What the user may do.
-    pub role: Role,
-    /// The password.
-    pub password: Held,
-}
-
-/// What a user may do; each role may do what those before it may.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Role {
-    /// Read.
-    Viewer,
-    /// Write the inputs that the io file gives to clients.
-    Operator,
-    /// The same here.
-    Engineer,
-    /// The same here.
-    Admin,
-}
-
-impl Role {
-    /// The words of the file.
-    pub const WORDS: &'static [(&'static str, Role)] = &[
-        ("viewer", Role::Viewer),
-        ("operator", Role::Operator),
-        ("engineer", Role::Engineer),
-        ("admin", Role::Admin),
-    ];
-
-    /// True if the role may write inputs.
-    pub fn writes(self) -> bool {
-        self >= Role::Operator
-    }
 }
 
 /// How messages are secured (OPC 10000-4, 7.20).
@@ -141,11 +100,6 @@ impl OpcUa {
 }
 
 impl OpcUaServer {
-    /// The passwords that its row names.
-    pub(super) fn passwords(&mut self) -> impl Iterator<Item = &mut Held> {
-        self.users.iter_mut().map(|user| &mut user.password)
-    }
-
     /// Its folder, from the folder of the io file.
     pub(super) fn settle(&mut self, folder: &Path) {
         self.certificates = folder.join(&self.certificates);
@@ -229,8 +183,6 @@ pub(super) fn server(name: &str, table: &mut Table<'_>, found: &mut Found) -> Op
     let address = table.needed(found, "listen", "127.0.0.1:4840");
     let security = table.word(found, "security", Security::WORDS);
     let anonymous = table.word(found, "anonymous", &[("refuse", false), ("read", true)]);
-    let rows = table.rows(found, "users");
-    let users: Vec<User> = rows.iter().filter_map(|row| user_of(row, found)).collect();
     let certificates = certificates(table, found, format!("opcua-{name}"));
     let all = table.word(found, "expose", &[("shown", false), ("all", true)]);
     let silence = table.duration(found, "silence", Nanos::SECOND, Nanos::HOUR);
@@ -244,54 +196,18 @@ pub(super) fn server(name: &str, table: &mut Table<'_>, found: &mut Found) -> Op
     let server = OpcUaServer {
         address: parsed,
         security: security.as_ref().map_or(Security::SignAndEncrypt, |s| s.value),
-        users,
-        anonymous: anonymous.is_some_and(|a| a.value),
+        anonymous: anonymous.map(|a| a.value),
         certificates,
         all: all.is_some_and(|all| all.value),
         silence: silence.map_or(Nanos::SECOND * 30, |s| s.value),
     };
-    // A user that could not be read is told already.
-    let nobody = rows.is_empty();
-    if nobody && !server.anonymous {
-        found.wrong(address.at, "nobody can come in: the server has no users").help =
-            Some("add users, or `anonymous = \"read\"` for those who only read".to_owned());
-    }
-    if !parsed.ip().is_loopback() {
-        if let Some(none) = security.filter(|s| s.value == Security::None) {
-            let what = "without security whoever reaches this address reads along and writes";
-            found.wrong(none.at, what).help = Some("leave `security` out, or listen at 127.0.0.1".to_owned());
-            return None;
-        }
-        if nobody && server.anonymous {
-            found.wrong(address.at, "a server that other machines reach needs users").help =
-                Some("add users, or listen at 127.0.0.1".to_owned());
-            return None;
-        }
+    let others = !parsed.ip().is_loopback();
+    if let Some(none) = security.filter(|s| others && s.value == Security::None) {
+        let what = "without security whoever reaches this address reads along and writes";
+        found.wrong(none.at, what).help = Some("leave `security` out, or listen at 127.0.0.1".to_owned());
+        return None;
     }
     Some(server)
-}
-
-fn user_of(row: &Row<'_>, found: &mut Found) -> Option<User> {
-    let Some(table) = row.value.as_table() else {
-        found.wrong(row.value_at, format!("the user {} is a table", row.name)).help = Some(format!(
-            "write `{} = {{ role = \"operator\", password-file = \"{}.password\" }}`",
-            row.name, row.name
-        ));
-        return None;
-    };
-    let mut table = Table::new(table, row.at, format!("the user {}", row.name));
-    let role = table.word(found, "role", Role::WORDS);
-    let password = secret::password(&mut table, found);
-    if role.is_none() {
-        found.wrong(row.at, format!("the user {} has no `role`", row.name)).help =
-            Some("the roles are \"viewer\", \"operator\", \"engineer\" and \"admin\"".to_owned());
-    }
-    if password.is_none() {
-        found.wrong(row.at, format!("the user {} has no password", row.name)).help =
-            Some(format!("write `password-file = \"{}.password\"`", row.name));
-    }
-    table.end(found);
-    Some(User { name: At::new(row.name.to_owned(), row.at), role: role?.value, password: password? })
 }
 
 /// A node of a server (OPC 10000-6, 5.3.1.10).

@@ -5,6 +5,7 @@ use std::fs;
 use std::io::{BufRead as _, BufReader, Write as _};
 use std::path::{Path, PathBuf};
 use std::process::{Child, ChildStdin, Command as Program, Stdio};
+use std::sync::Arc;
 use std::sync::atomic::{AtomicU32, Ordering};
 use std::sync::mpsc::{Receiver, channel};
 use std::time::{Duration, Instant};
@@ -14,6 +15,7 @@ use g7_online::setup::{self, Origin};
 use g7_online::{Clients, Command, Happened, Options, RealDisk, Running, Wiring};
 use g7_opcua::OpcUa;
 use g7_rig::{Bench, Source};
+use g7_store::users::Users;
 
 /// Longer than anything takes that does not hang.
 const PATIENCE: Duration = Duration::from_secs(60);
@@ -36,6 +38,11 @@ impl Folder {
 
     pub(crate) fn write(&self, name: &str, text: &str) {
         fs::write(self.path(name), text).expect("a file for the test");
+    }
+
+    /// The file of the users.
+    pub(crate) fn users(&self) -> Users {
+        Users::open(&self.path("users")).expect("a file of users")
     }
 
     /// The names in a folder of it, sorted.
@@ -183,7 +190,8 @@ pub(crate) struct Machine {
 impl Machine {
     pub(crate) fn start(folder: &Folder, chart: &str, io: &str) -> Machine {
         let (bench, wiring) = wired(folder, chart, io).expect("no problem");
-        let mut clients = Clients::default().with(OpcUa);
+        let users = folder.path("users").is_file().then(|| Arc::new(folder.users()));
+        let mut clients = Clients::default().with(OpcUa { users });
         let runner = g7_online::runner(&bench, &wiring, 0);
         let machine = g7_online::assemble(runner, &wiring, |wired| clients.device(wired)).expect("devices");
         let options = Options { watchdog: Nanos::MINUTE, priority: None };
@@ -226,6 +234,9 @@ impl Machine {
             Happened::Output(k) => format!("{name} takes {}", wired.outputs[*k].name),
             Happened::Limited(k) => format!("{name} limits {}", wired.outputs[*k].name),
             Happened::Note(what) => format!("{name} note: {what}"),
+            Happened::Written(k, word, who) => {
+                format!("{name} sets {} {word} {who:?}", wired.inputs[*k].name)
+            }
         }
     }
 }
