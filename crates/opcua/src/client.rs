@@ -35,6 +35,9 @@ struct Point {
 /// The values that the server has sent.
 type Values = Arc<Mutex<Vec<Result<Raw, Absent>>>>;
 
+/// The node and the type of an output, or why it cannot be written.
+type Writable = Result<(opcua::types::NodeId, Type), String>;
+
 /// A server as a device.
 pub(crate) struct Client {
     server: OpcUa,
@@ -48,8 +51,7 @@ pub(crate) struct Client {
 /// A connection, and what is known of the nodes of the outputs.
 struct Live {
     connection: Connection,
-    /// The node and the type of each output, or why it cannot be written.
-    outputs: Vec<Result<(opcua::types::NodeId, Type), String>>,
+    outputs: Vec<Writable>,
     /// The longest silence of the subscription; none where there is nothing to hear.
     silence: Option<Nanos>,
 }
@@ -136,10 +138,7 @@ impl Client {
     }
 
     /// Asks for the types of the nodes of the outputs.
-    fn types(
-        &self,
-        connection: &Connection,
-    ) -> Result<Vec<Result<(opcua::types::NodeId, Type), String>>, Failed> {
+    fn types(&self, connection: &Connection) -> Result<Vec<Writable>, Failed> {
         let nodes: Vec<Result<opcua::types::NodeId, String>> =
             self.outputs.iter().map(|point| connection.node(&point.node)).collect();
         let mut asked = Vec::new();

@@ -47,7 +47,8 @@ impl Folder {
 
     /// The names in a folder of it, sorted.
     pub(crate) fn names(&self, part: &str) -> Vec<String> {
-        let list = fs::read_dir(self.path(part)).map(|list| list.flatten().collect()).unwrap_or(Vec::new());
+        let list: Vec<fs::DirEntry> =
+            fs::read_dir(self.path(part)).map(|list| list.flatten().collect()).unwrap_or_default();
         let mut names: Vec<String> =
             list.iter().map(|entry| entry.file_name().to_string_lossy().into_owned()).collect();
         names.sort();
