@@ -97,7 +97,7 @@ opcua-test: export G7_PEERS = $(PYTHON)
 opcua-test: $(PYTHON)/bin/pymodbus.simulator
 	@mkdir -p $(TALLY) && rm -f $(G7_SKIPS) && touch $(G7_SKIPS)
 	cargo clippy $(OPCUA) --all-targets --quiet -- --deny warnings
-	cargo test $(OPCUA) --quiet --lib --test peer
+	cargo test $(OPCUA) --quiet --lib --test peer --test opcua
 	@sort $(G7_SKIPS) | uniq -c
 
 ## figures of the server of OPC UA, beside asyncua
