@@ -10,7 +10,7 @@ use crate::modbus::Units;
 use crate::mqtt;
 use crate::panel::Panels;
 use crate::setup::{Device as Wanted, Kind, Setup};
-use crate::wiring::Wired;
+use crate::wired::Wired;
 
 /// Devices of kinds that a crate beside this one brings, because not each build has it.
 pub trait Brought: Send {

@@ -18,7 +18,7 @@ use crate::notes::{Noting, Pen};
 use crate::parts::{Handles, Keeping, Picture, Successor};
 use crate::sight::{Facts, Showing, Sight, sight};
 use crate::wire::Worth;
-use crate::wiring::WhileBad;
+use crate::wired::WhileBad;
 use crate::word::Target;
 
 /// The state of a controller.

@@ -67,7 +67,7 @@ pub trait Device: Send {
         refused: &mut [Option<String>],
     ) -> Result<(), Failed>;
 
-    /// What has happened at the device since the last call, beside its values.
+    /// The things that have happened at the device since the last call, beside its values.
     fn remarks(&mut self) -> Vec<Remark> {
         Vec::new()
     }

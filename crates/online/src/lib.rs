@@ -60,6 +60,7 @@ mod subject;
 mod tls;
 mod value;
 mod wire;
+mod wired;
 mod wiring;
 mod word;
 
@@ -90,5 +91,6 @@ pub use sight::Sight;
 pub use slots::{Disk, Loaded, Slots, SlotsError};
 pub use value::{Holds, Raw, Scaling};
 pub use wire::{About, Cell, Folder, Form, Line, Shown, Topic, Wire, Worth};
-pub use wiring::{In, OutAt, WhileBad, Wired, Wiring, wire};
+pub use wired::{In, OutAt, WhileBad, Wired, Wiring};
+pub use wiring::wire;
 pub use word::{Source, Target};

@@ -13,7 +13,7 @@ use g7_rig::Bench;
 
 use crate::driver::Out;
 use crate::setup::{Device, Kind, Listen, SERVER, Tcp};
-use crate::wiring::{In, OutAt, WhileBad, Wired, Wiring};
+use crate::wired::{In, OutAt, WhileBad, Wired, Wiring};
 use crate::word::{Source, Target};
 
 /// A controller that is silent for so long is gone: its outputs count as safe, as at a device that has

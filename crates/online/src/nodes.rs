@@ -14,7 +14,7 @@ use crate::setup::{self, Channel, Point, read_node};
 use crate::subject::{Class, Subject};
 use crate::value::{Holds, Scaling};
 use crate::wire::{About, Folder, Shown, Wire};
-use crate::wiring::{OutAt, Wired};
+use crate::wired::{OutAt, Wired};
 use crate::word::Source;
 
 /// The point of a channel at a server, and how its value becomes a word.

@@ -10,7 +10,7 @@ use crate::mqtt;
 use crate::setup::{Broker, Device};
 use crate::value::{Holds, Raw, Scaling};
 use crate::wire::Wire;
-use crate::wiring::{In, WhileBad, Wired};
+use crate::wired::{In, WhileBad, Wired};
 use crate::word::Target;
 
 /// A point to read.

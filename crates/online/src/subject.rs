@@ -1,4 +1,4 @@
-//! What a channel of the io file is about: a variable of the chart, or a step.
+//! The subject of a channel of the io file: a variable of the chart, or a step.
 //!
 //! `wiring` finds it here by its name, and holds it against the point.
 

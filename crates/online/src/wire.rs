@@ -35,7 +35,7 @@ pub struct Shown {
     pub name: String,
     /// Its folder.
     pub folder: Folder,
-    /// What is told about it.
+    /// The words about it.
     pub about: About,
 }
 
@@ -52,7 +52,7 @@ pub enum Folder {
     Steps,
 }
 
-/// What is told about a node. It is no part of the wire, so that a chart with another comment has the same
+/// The words about a node. They are no part of the wire, so that a chart with another comment has the same
 /// wires.
 #[derive(Clone, Debug, Default)]
 pub struct About {

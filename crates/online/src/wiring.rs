@@ -7,7 +7,7 @@ use g7_host::Kind;
 use g7_model::{Nanos, Problem, Span, codes};
 use g7_rig::{Bench, Item, Role};
 
-use crate::chosen::{self, Chosen};
+use crate::chosen;
 use crate::driver::Out;
 use crate::forms;
 use crate::handles;
@@ -16,76 +16,13 @@ use crate::names::{Named, named, source_of};
 use crate::nodes;
 use crate::points;
 use crate::setup::{
-    Area, At, Bad, Broker, Channel, Device, Encoding, Handle, Kind as Way, Literal, Place, Point, Register,
-    Setup,
+    Area, At, Bad, Broker, Channel, Encoding, Handle, Kind as Way, Literal, Place, Point, Register, Setup,
 };
 use crate::subject::{Class, Subject};
 use crate::value::{Holds, Raw, Scaling};
 use crate::wire::{Folder, Wire};
+use crate::wired::{In, OutAt, WhileBad, Wired, Wiring};
 use crate::word::{Source, Target};
-
-/// All channels of a machine, by device.
-#[derive(Clone, Debug, Default)]
-pub struct Wiring {
-    /// The devices that have a channel, in the order of the file.
-    pub devices: Vec<Wired>,
-    /// Inputs and outputs of the chart that no device has, by name.
-    pub unwired: Vec<String>,
-    /// The signals that are recorded.
-    pub history: Option<Chosen>,
-}
-
-/// A device with its channels.
-#[derive(Clone, Debug)]
-pub struct Wired {
-    /// The device.
-    pub device: Device,
-    /// Its inputs.
-    pub inputs: Vec<In>,
-    /// Its outputs, and what is shown to the masters of a server.
-    pub outputs: Vec<OutAt>,
-    /// Input words that are 1 while it answers.
-    pub good: Vec<u32>,
-}
-
-/// An input of the chart on a point of a device.
-#[derive(Clone, Debug)]
-pub struct In {
-    /// The variable.
-    pub name: String,
-    /// The word of the run.
-    pub target: Target,
-    /// The point.
-    pub wire: Wire,
-    /// How the value becomes a word.
-    pub scaling: Scaling,
-    /// Its value while that of the device is bad.
-    pub bad: WhileBad,
-}
-
-/// The value of an input word while that of the device is bad.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum WhileBad {
-    /// The last good value, or the initial one.
-    Hold,
-    /// This word.
-    Word(u64),
-    /// The controller stops.
-    Fault,
-}
-
-/// An output of the chart on a point of a device, or what masters read there.
-#[derive(Clone, Debug)]
-pub struct OutAt {
-    /// The variable or step.
-    pub name: String,
-    /// The word of the run.
-    pub source: Source,
-    /// The point.
-    pub wire: Wire,
-    /// How the word becomes a value.
-    pub out: Out,
-}
 
 /// Wires a chart. A channel that cannot be wired is left out and told.
 pub fn wire(bench: &Bench, setup: &Setup) -> (Wiring, Vec<Problem>) {

@@ -70,7 +70,7 @@ impl Folder {
         })?;
         own.is_application_uri_valid(uri)
             .map_err(|_| Failed(format!("the certificate {} is not for the application {uri}: give this device a folder of its own (`certificates`)", cert.display())))?;
-        // What was rejected before this start is no news.
+        // Certificates that were rejected before this start are no news.
         self.told = self.files(REJECTED).into_iter().collect();
         self.adopt()
     }

@@ -235,7 +235,7 @@ fn judge(value: &DataValue, kind: Kind, uncertain_is_good: bool) -> Result<Raw, 
     values::raw(value.value.as_ref().unwrap_or(&Variant::Empty), kind).map_err(Absent::Refused)
 }
 
-/// What the server says of a node.
+/// The answer of the server about a node, in words.
 fn node_is(status: StatusCode) -> String {
     match status {
         StatusCode::BadNodeIdUnknown => "the server has no such node (BadNodeIdUnknown)".to_owned(),

@@ -53,7 +53,7 @@ struct Guesses {
     at: VecDeque<Nanos>,
 }
 
-/// What a client may do.
+/// The rights of a client.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Rights {
     None,
@@ -145,7 +145,7 @@ impl Guard {
         self.may(token) != Rights::None
     }
 
-    /// What a client may do. Writing needs the role that a part of a panel needs.
+    /// The rights of a client. Writing needs the role that a part of a panel needs.
     fn may(&self, token: &UserToken) -> Rights {
         let Some(user) = name_of(token) else {
             return if token.is_anonymous() { self.anonymous } else { Rights::None };

@@ -43,20 +43,20 @@ pub(crate) struct Input {
     written: Option<Written>,
 }
 
-/// What a client has written.
+/// A value that a client has written.
 struct Written {
     value: Raw,
     who: Option<String>,
     session: Lives,
 }
 
-/// What the library and the driver share.
+/// The things that the library and the driver share.
 #[derive(Default)]
 pub(crate) struct Desk {
     pub(crate) inputs: Vec<Input>,
     /// By number: each client that has asked for a node.
     sessions: BTreeMap<u32, Client>,
-    /// What was written and not told yet.
+    /// Values that were written and not told yet.
     deeds: Vec<Remark>,
 }
 
@@ -79,7 +79,7 @@ impl Desk {
         self.sessions.values().any(|client| !knows(&client.user))
     }
 
-    /// What was written since the last call.
+    /// The values that were written since the last call.
     pub(crate) fn deeds(&mut self) -> Vec<Remark> {
         std::mem::take(&mut self.deeds)
     }

@@ -156,7 +156,7 @@ impl Server {
             return;
         }
         self.looked = now;
-        // What cannot be adopted is told when somebody is refused for it.
+        // A file that cannot be adopted is told when somebody is refused for it.
         self.folder.adopt().ok();
         self.folder.rejected().into_iter().for_each(|note| self.notes.say(note));
     }
@@ -226,7 +226,7 @@ fn host(address: SocketAddr) -> String {
     }
 }
 
-/// What is offered: the least security, and whatever is more.
+/// The endpoints that are offered: the least security, and whatever is more.
 fn endpoints(least: Security) -> Vec<(String, ServerEndpoint)> {
     let modes = [
         (Security::Sign, MessageSecurityMode::Sign),

@@ -75,7 +75,7 @@ fn a_server_of_asyncua_is_driven() {
     let line = machine.until("refuses small");
     assert!(line.contains("300") && line.contains("Byte"), "{line}");
 
-    // What the server doubts is bad, by its name, and so the button counts as released.
+    // A value that the server doubts is bad, by its name, and so the button counts as released.
     peer.says("set Go true UncertainLastUsableValue");
     assert!(machine.until("no go").contains("UncertainLastUsableValue"));
     peer.until("get Valve", "false");

@@ -227,7 +227,7 @@ fn channel<'n>(names: &'n Names, device: usize, happened: &Happened) -> &'n str 
     }
 }
 
-/// What a person has done to an input, for the terminal.
+/// The deed of a person at an input, for the terminal.
 fn moved_text(name: &str, value: Option<&str>, who: Option<&str>) -> String {
     let deed = match value {
         None => format!("`{name}` is pressed"),

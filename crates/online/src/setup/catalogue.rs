@@ -5,6 +5,8 @@
 //! together: it gives the reader each setting as it is written here, with its limits, its words and its
 //! default, and compares what the reader asks for with what stands here. A kind without a row fails it.
 
+mod opcua;
+
 /// A kind of device.
 #[derive(Clone, Copy, Debug)]
 pub struct KindRow {
@@ -155,15 +157,15 @@ pub const KINDS: &[KindRow] = &[
     KindRow {
         word: "opc-ua",
         about: "a server of OPC UA",
-        settings: &[OPC_UA, OPC_UA_TIMES],
-        points: NODES,
+        settings: &[opcua::CLIENT, opcua::CLIENT_TIMES],
+        points: opcua::NODES,
         shows: false,
     },
     KindRow {
         word: "opc-ua-server",
         about: "clients of OPC UA, which G7 is the server of",
-        settings: &[OPC_UA_SERVER],
-        points: OWN_NODES,
+        settings: &[opcua::SERVER],
+        points: opcua::OWN_NODES,
         shows: true,
     },
     KindRow {
@@ -344,97 +346,6 @@ const BROKER: &[Setting] = &[
     ),
 ];
 
-const SECURITY: Setting = setting(
-    "security",
-    Form::Words(&["none", "sign", "sign-and-encrypt"]),
-    Usual::Is("\"sign-and-encrypt\""),
-    "the security of its connections",
-);
-
-const OPC_UA: &[Setting] = &[
-    setting("url", Form::Text, Usual::Needed("opc.tcp://10.0.0.7:4840"), "its address"),
-    SECURITY,
-    setting(
-        "policy",
-        Form::Words(&["Basic256Sha256", "Aes128-Sha256-RsaOaep", "Aes256-Sha256-RsaPss"]),
-        Usual::None("Basic256Sha256"),
-        "the algorithms of signature and encryption",
-    ),
-    setting("user", Form::Text, Usual::None("sorter"), "the user that the server knows"),
-    PASSWORD_FILE,
-    PASSWORD_VARIABLE,
-    setting(
-        "certificates",
-        Form::Text,
-        Usual::Is("\"opcua-certificates\""),
-        "the folder of the certificates, beside the io file",
-    ),
-    setting(
-        "interval",
-        Form::Duration("10ms", "60s"),
-        Usual::Is("\"100ms\""),
-        "the time between two messages of the server",
-    ),
-    setting(
-        "keep-alive",
-        Form::Duration("100ms", "1h"),
-        Usual::Is("\"1s\""),
-        "the time between two signs of life of the server; without three of them it is gone",
-    ),
-    setting(
-        "uncertain",
-        Form::Words(&["bad", "good"]),
-        Usual::Is("\"bad\""),
-        "how a value counts that the server calls uncertain",
-    ),
-];
-
-const OPC_UA_TIMES: &[Setting] = &[
-    setting("poll", Form::Duration("1ms", "1h"), Usual::Is("\"20ms\""), "the time between two exchanges"),
-    setting("timeout", Form::Duration("1ms", "1h"), Usual::Is("\"2s\""), "the longest time of an answer"),
-    setting(
-        "refresh",
-        Form::Duration("1ms", "1h"),
-        Usual::Is("\"1s\""),
-        "outputs that did not change are written again after this time",
-    ),
-    setting(
-        "retry",
-        Form::Duration("10ms", "1h"),
-        Usual::Is("\"2s\""),
-        "the longest time between two attempts to reach it",
-    ),
-];
-
-const OPC_UA_SERVER: &[Setting] = &[
-    setting("listen", Form::Text, Usual::Needed("127.0.0.1:4840"), "an address of this machine, with a port"),
-    SECURITY,
-    setting(
-        "anonymous",
-        Form::Words(&["refuse", "read"]),
-        Usual::None("read"),
-        "what clients without a user may do; without users and without this they write too",
-    ),
-    setting(
-        "expose",
-        Form::Words(&["shown", "all"]),
-        Usual::Is("\"shown\""),
-        "the things that clients see: those that are wired to it, or the whole chart",
-    ),
-    setting(
-        "certificates",
-        Form::Text,
-        Usual::None("opcua-scada"),
-        "the folder of the certificates, beside the io file",
-    ),
-    setting(
-        "silence",
-        Form::Duration("1s", "1h"),
-        Usual::Is("\"30s\""),
-        "a client without a request for so long is gone",
-    ),
-];
-
 const BROKER_TIMES: &[Setting] = &[
     setting("poll", Form::Duration("1ms", "1h"), Usual::Is("\"20ms\""), "the time between two exchanges"),
     setting("timeout", Form::Duration("1ms", "1h"), Usual::Is("\"2s\""), "the longest time of an answer"),
@@ -492,16 +403,6 @@ const FORM_OF_NUMBER: &[Setting] = &[setting(
     Usual::None("u16"),
     "the form of the number in registers; that of the type of the variable without it",
 )];
-
-const FORM_OF_NODE: &[Setting] = &[setting(
-    "as",
-    Form::Words(&["u16", "i16", "u32", "i32", "u64", "i64", "f32", "f64"]),
-    Usual::None("u16"),
-    "the form of the number in the node; that of the type of the variable without it",
-)];
-
-const UNIT: &[Setting] =
-    &[setting("unit", Form::Text, Usual::None("m/s"), "the unit, which is shown with the value")];
 
 const PIN: &[Setting] = &[
     setting(
@@ -650,36 +551,6 @@ const MESSAGES: &[Point] = &[
         about: "a metric of Sparkplug",
     },
     GOOD,
-];
-
-/// The points of a server of OPC UA.
-const NODES: &[Point] = &[
-    Point {
-        word: "node",
-        argument: Argument::Text("ns=2;s=Tank.Level"),
-        carries: Carries::Any,
-        input: true,
-        output: true,
-        of_input: &[FORM_OF_NODE, SCALE, BAD],
-        of_output: &[FORM_OF_NODE, SCALE],
-        about: "a node of the server",
-    },
-    GOOD,
-];
-
-/// The points of the server of our own.
-const OWN_NODES: &[Point] = &[
-    Point {
-        word: "node",
-        argument: Argument::TextOrName("Level"),
-        carries: Carries::Any,
-        input: true,
-        output: true,
-        of_input: &[FORM_OF_NODE, SCALE, UNIT, BAD],
-        of_output: &[FORM_OF_NODE, SCALE, UNIT],
-        about: "a node by this name",
-    },
-    Point { about: "TRUE while a client is there", ..GOOD },
 ];
 
 const fn handle(word: &'static str, carries: Carries, about: &'static str) -> Point {

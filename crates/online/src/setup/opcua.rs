@@ -13,7 +13,7 @@ use super::table::{Found, Table};
 pub struct OpcUa {
     /// Its address: `opc.tcp://10.0.0.7:4840/path`.
     pub url: String,
-    /// What is signed and encrypted.
+    /// The security of the connection.
     pub security: Security,
     /// The algorithms of signature and encryption.
     pub policy: Policy,
@@ -36,7 +36,7 @@ pub struct OpcUaServer {
     pub address: SocketAddr,
     /// The least security of a connection; whatever is more is offered as well.
     pub security: Security,
-    /// What the file says of clients without a user: true if they may read, false if they are refused.
+    /// The rule of the file for clients without a user: true if they may read, false if they are refused.
     pub anonymous: Option<bool>,
     /// The folder of the certificates: `own`, `trusted` and `rejected`.
     pub certificates: PathBuf,
