@@ -417,7 +417,7 @@ fn licences_are_permissive() {
         let name = package.split(' ').next().unwrap_or("");
         exceptions.get(name).is_some_and(|fine| fine == licence)
     };
-    // What most people have is free of the exceptions.
+    // The usual build is free of the exceptions.
     let plain = licences::used(&root(), |name| name == "g7");
     assert!(plain.len() > 20 && !plain.iter().any(|(p, l)| excepted(p, l)), "g7 has an exception by default");
     let bad: Vec<String> = used

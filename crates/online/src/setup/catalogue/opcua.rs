@@ -1,6 +1,6 @@
 //! The rows of OPC UA: servers, and the server of our own.
 
-use super::{
+use super::row::{
     Argument, BAD, Carries, Form, GOOD, PASSWORD_FILE, PASSWORD_VARIABLE, Point, SCALE, Setting, Usual,
     setting,
 };
