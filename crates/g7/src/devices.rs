@@ -6,6 +6,7 @@ use std::path::PathBuf;
 use clap::Args;
 use g7_host::Value;
 use g7_model::{Nanos, Span};
+use g7_online::ask as wait;
 use g7_online::setup::{
     Address, At, Broker, Device, Encoding, Kind, Listen, Modbus, Parity, Place, Point, Register, S7, Serial,
     Setup, Tcp, Timing, Width, read_point,
@@ -14,6 +15,7 @@ use g7_online::{
     Absent, Asked, Cell, Clients, Failed, Form, Line, Probed, Raw, Scaling, Wire, Wired, hear, probe,
 };
 
+use crate::brought;
 use crate::failure::{Failure, Verdict};
 use crate::wiring::{self, Wanted};
 use crate::{files, sources, style, values};
@@ -22,6 +24,7 @@ use crate::{files, sources, style, values};
 #[command(after_help = "\
 Examples:
   g7 devices sorter.g7                                  all channels of sorter.io.toml
+  g7 devices sorter.g7 --browse                         and all nodes of its OPC UA servers
   g7 devices --tcp 10.0.0.7 --read 'holding(0)' --count 10
   g7 devices --tcp 10.0.0.7:1502 --unit 3 --read 'input(4)' --as f32
   g7 devices --serial /dev/ttyUSB0 --baud 9600 --read 'coil(0)' --read 'coil(7)'
@@ -41,6 +44,9 @@ pub(crate) struct Devices {
     /// The io file [default: chart.io.toml for chart.g7].
     #[arg(long, value_name = "FILE", conflicts_with_all = ["tcp", "serial", "s7", "gpio"])]
     io: Option<PathBuf>,
+    /// List all points of the devices that can tell them: servers of OPC UA.
+    #[arg(long, conflicts_with_all = ["tcp", "serial"])]
+    browse: bool,
     /// Ask a server of Modbus TCP.
     #[arg(long, value_name = "HOST[:PORT]", conflicts_with_all = ["serial", "s7", "gpio"])]
     tcp: Option<String>,
@@ -101,7 +107,7 @@ fn word<T: Copy>(text: &str, words: &[(&str, T)]) -> Result<T, String> {
 fn point(text: &str) -> Result<Point, String> {
     match read_point(text)? {
         point @ (Point::Modbus(_) | Point::S7(_) | Point::Line(_)) => Ok(point),
-        Point::Good | Point::Topic(_) | Point::Metric(_) | Point::Panel(_) => {
+        Point::Good | Point::Topic(_) | Point::Metric(_) | Point::Panel(_) | Point::Node(_) => {
             Err("this is no point to read by hand".to_owned())
         }
     }
@@ -131,19 +137,26 @@ pub(crate) fn devices(args: &Devices) -> Result<Verdict, Failure> {
     let source = sources::load(&path, 0)?;
     let wanted = Wanted { io: args.io.as_deref(), ..Wanted::default() };
     let Some(plan) = wiring::plan(&path, &source, &wanted)? else { return Ok(Verdict::Found) };
-    let (mut clients, mut verdict) = (Clients::default(), Verdict::Fine);
+    let (mut clients, mut verdict) = (brought::clients(), Verdict::Fine);
     for wired in &plan.wiring.devices {
         let found = match &wired.device.kind {
             Kind::ModbusServer(Listen { address, .. }) => {
                 served(wired, &format!("listens at {address} for masters"))?
             }
+            Kind::OpcUaServer(server) => {
+                served(wired, &format!("listens at {} for clients", server.address))?
+            }
             Kind::Mqtt(broker) => heard(broker, wired)?,
+            Kind::OpcUa(_) => asked(&mut clients, wired)?,
             Kind::Panel(_) => served(wired, "is on the operator page")?,
             Kind::ModbusTcp(..) | Kind::ModbusRtu(..) | Kind::S7(_) | Kind::Gpio(_) => {
                 ask(&mut clients, &wired.device, &channels(wired))?
             }
         };
         if found == Verdict::Found {
+            verdict = Verdict::Found;
+        }
+        if args.browse && browse(&clients, &wired.device)? == Verdict::Found {
             verdict = Verdict::Found;
         }
     }
@@ -269,6 +282,40 @@ fn ask(clients: &mut Clients, device: &Device, shown: &[Shown]) -> Result<Verdic
 /// Listens to a broker and prints the last values that it has.
 fn heard(broker: &Broker, wired: &Wired) -> Result<Verdict, Failure> {
     print(&wired.device, &channels(wired), hear(broker, wired))
+}
+
+/// Asks a device that sends its values by itself, and prints them.
+fn asked(clients: &mut Clients, wired: &Wired) -> Result<Verdict, Failure> {
+    print(&wired.device, &channels(wired), wait(clients, wired))
+}
+
+/// Prints the points that a device tells of.
+fn browse(clients: &Clients, device: &Device) -> Result<Verdict, Failure> {
+    let (warn, name) = (style::WARN, &device.name.value);
+    let mut out = anstream::stdout().lock();
+    let verdict = match clients.browse(device) {
+        None => {
+            writeln!(out, "  {name} cannot be asked for its points")?;
+            Verdict::Fine
+        }
+        Some(Err(why)) => {
+            writeln!(out, "  {warn}its points cannot be read:{warn:#} {why}")?;
+            Verdict::Found
+        }
+        Some(Ok(nodes)) => {
+            writeln!(out, "  points of {name}:")?;
+            for node in &nodes {
+                let (indent, point) = ("  ".repeat(node.depth + 2), &node.point);
+                match node.value {
+                    true => writeln!(out, "{indent}{}  {point}", node.name)?,
+                    false => writeln!(out, "{indent}{}", node.name)?,
+                }
+            }
+            Verdict::Fine
+        }
+    };
+    out.flush()?;
+    Ok(verdict)
 }
 
 /// Prints the answer of a device.

@@ -16,6 +16,7 @@
 
 mod attendant;
 mod audit;
+mod brought;
 mod certificate;
 mod check;
 mod cli;

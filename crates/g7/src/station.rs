@@ -6,10 +6,11 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use g7_model::{Nanos, ProfileName};
 use g7_online::setup::Setup;
-use g7_online::{Clients, Command, KeepError, Options, Panels, RealDisk, Running, Sight, Slots, Started};
+use g7_online::{Command, KeepError, Options, Panels, RealDisk, Running, Sight, Slots, Started};
 use g7_store::log::Log;
 
 use crate::audit::{self, Audit};
+use crate::brought;
 use crate::failure::{Failure, plain, refused};
 use crate::history::{self, Historian};
 use crate::message::talk;
@@ -45,6 +46,10 @@ pub(crate) struct More<'a> {
     pub(crate) scan: Option<Nanos>,
     pub(crate) plant: Option<&'a str>,
     pub(crate) seed: u64,
+    /// The file of the users.
+    pub(crate) users: Option<&'a Path>,
+    /// True if what people do is written down.
+    pub(crate) logged: bool,
 }
 
 /// A controller that works.
@@ -69,6 +74,8 @@ pub(crate) struct Settings {
     pub(crate) audit: Audit,
     /// The file of the log.
     pub(crate) log_file: Option<PathBuf>,
+    /// The file of the users.
+    pub(crate) users: Option<PathBuf>,
 }
 
 /// Reads them. What is wrong with the file is told by [`start`], which reads it again.
@@ -84,7 +91,8 @@ pub(crate) fn settings(path: &Path, drive: &Drive, log: Option<&Path>) -> Result
         kept = Some(audit::of_file(&io, file)?);
     }
     let (log, audit) = kept.map_or_else(Default::default, |(log, audit)| (Some(log), audit));
-    Ok(Settings { setup, io, log, audit, log_file })
+    let users = setup.server.users.as_ref().map(|users| io.with_file_name(&users.value));
+    Ok(Settings { setup, io, log, audit, log_file, users })
 }
 
 /// Starts the controller of a chart, or prints the problems of its files.
@@ -114,7 +122,7 @@ pub(crate) fn start(
         })?),
     };
     let (runner, slots) = kept(&plan, g7_online::runner(bench, wiring, more.seed))?;
-    let mut clients = Clients::default();
+    let mut clients = brought::serving(wiring, more.users, more.logged)?;
     let post = Post::open(wiring, &plan.io, &mut clients)?;
     let mut machine = g7_online::assemble(runner, wiring, |wired| clients.device(wired)).map_err(refused)?;
     let kept = slots.map(|slots| machine.keep(bench, slots));

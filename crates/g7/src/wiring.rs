@@ -83,6 +83,7 @@ pub(crate) fn make(
     let (bench, of_chart) = g7_rig::build(source, &options)?;
     let mut told = told_of(source, &of_chart);
     let Some(bench) = bench else { return Ok((None, told)) };
+    setup::settle(&mut setup, io.parent().unwrap_or(Path::new("")));
     problems.extend(setup::read_secrets(&mut setup, |origin| secret(&io, origin)));
     let (mut wiring, wrong) = g7_online::wire(&bench, &setup);
     wiring.unwired.retain(|name| !simulated.iter().any(|s| bench.item(s).is_some_and(|i| i.name == *name)));

@@ -278,6 +278,22 @@ fn addresses_that_a_slave_does_not_have_are_bad_alone() {
     assert_eq!(g7.quit(), 0);
 }
 
+#[cfg(not(feature = "opcua"))]
+#[test]
+fn a_kind_that_this_build_has_not_is_told_with_the_build_that_has_it() {
+    let folder = Folder::with(CHART);
+    let io = "[devices.tanks]\nkind = 'opc-ua'\nurl = 'opc.tcp://127.0.0.1:1'\n\
+        [inputs]\ngo = 'tanks.node(ns=2;s=Go)'\n";
+    folder.write("chart.io.toml", io);
+    for command in [&["run", "--online"][..], &["devices"]] {
+        let ran = folder.g7(command);
+        assert_eq!(ran.code, 1, "{}", ran.err);
+        for part in ["chart.io.toml:1", "the kind \"opc-ua\"", "--features opcua"] {
+            assert!(ran.err.contains(part), "{part}: {}", ran.err);
+        }
+    }
+}
+
 #[test]
 fn without_its_device_a_chart_runs_and_says_so() {
     // Nobody listens at port 1.

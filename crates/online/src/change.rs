@@ -20,7 +20,7 @@ use crate::machine::{coupling, stale};
 use crate::notes::{Noting, Table};
 use crate::parts::{Handles, Keeping, Picture, Successor};
 use crate::sight::{Sight, sight};
-use crate::wiring::{Wired, Wiring};
+use crate::wired::{Wired, Wiring};
 
 /// A chart with its wiring.
 #[derive(Clone, Copy)]

@@ -17,7 +17,8 @@ use crate::keep::Keep;
 use crate::notes::{Noting, Pen};
 use crate::parts::{Handles, Keeping, Picture, Successor};
 use crate::sight::{Facts, Showing, Sight, sight};
-use crate::wiring::WhileBad;
+use crate::wire::Worth;
+use crate::wired::WhileBad;
 use crate::word::Target;
 
 /// The state of a controller.
@@ -394,7 +395,7 @@ impl Controller {
                 None => self.scan(now),
             }
         }
-        self.write();
+        self.write(now);
         self.keep(now);
         self.note(now);
         self.put_in_sight(now);
@@ -460,16 +461,39 @@ impl Controller {
     }
 
     /// Hands the outputs to the drivers: those of the run, or the safe ones.
-    fn write(&mut self) {
+    fn write(&mut self, now: Nanos) {
         let running = self.drives();
-        for Open { port, out, .. } in &mut self.ports {
-            for (word, (source, safe)) in out.iter_mut().zip(&port.handles.outputs) {
+        for k in 0..self.ports.len() {
+            // Aside, because what is shown of an input is with the port of its device.
+            let Some(mut out) = self.ports.get_mut(k).map(|open| std::mem::take(&mut open.out)) else {
+                return;
+            };
+            let outputs = self.ports.get(k).map_or(&[][..], |open| &open.port.handles.outputs);
+            for (word, (source, safe)) in out.iter_mut().zip(outputs) {
                 *word = match safe {
                     Some(safe) if !running => *safe,
-                    Some(_) | None => source.word(&self.runner, self.runner.state()),
+                    Some(_) | None => {
+                        let worth = |device, input| self.worth(device, input, now);
+                        source.word(&self.runner, self.runner.state(), worth)
+                    }
                 };
             }
-            port.to_device.put(out.iter().copied());
+            let Some(open) = self.ports.get_mut(k) else { return };
+            open.port.to_device.put(out.iter().copied());
+            open.out = out;
+        }
+    }
+
+    /// How good an input is, by the numbers of its device and of itself.
+    fn worth(&self, device: usize, input: usize, now: Nanos) -> Worth {
+        let Some(Open { port, words, .. }) = self.ports.get(device) else { return Worth::None };
+        let (_, quality) = Said::new(words, now, port.stale).input(input);
+        match (quality, port.handles.inputs.get(input)) {
+            (Quality::Good, _) => Worth::Good,
+            (_, Some((_, WhileBad::Word(_)))) => Worth::Substitute,
+            (Quality::Unread, _) => Worth::Unread,
+            (Quality::Bad, Some((_, WhileBad::Hold))) => Worth::Last,
+            (Quality::Bad, Some((_, WhileBad::Fault)) | None) => Worth::None,
         }
     }
 

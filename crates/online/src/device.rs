@@ -26,6 +26,22 @@ pub enum Absent {
     Refused(String),
 }
 
+/// Something that a device tells beside its values.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Remark {
+    /// A sentence, such as one about somebody whom it did not let in.
+    Note(String),
+    /// Somebody has given an input another value.
+    Written {
+        /// The number of the input.
+        input: usize,
+        /// The value, as the device has it.
+        value: Raw,
+        /// The user, where there are users.
+        who: Option<String>,
+    },
+}
+
 /// A device: it has inputs and outputs of fixed number and order, those of its channels.
 ///
 /// Each call returns within the time-out of the device, apart from scheduling.
@@ -50,6 +66,11 @@ pub trait Device: Send {
         inputs: &mut [Result<Raw, Absent>],
         refused: &mut [Option<String>],
     ) -> Result<(), Failed>;
+
+    /// The things that have happened at the device since the last call, beside its values.
+    fn remarks(&mut self) -> Vec<Remark> {
+        Vec::new()
+    }
 
     /// Ends the connection, if there is one.
     fn close(&mut self);

@@ -10,7 +10,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use g7_model::Nanos;
 
-use crate::device::{Absent, Device, Failed};
+use crate::device::{Absent, Device, Failed, Remark};
 use crate::exchange::{Reader, Writer};
 use crate::link::{Link, Order};
 use crate::setup::Timing;
@@ -125,6 +125,10 @@ pub enum Happened {
     Output(usize),
     /// The value of an output was limited to what its point can hold.
     Limited(usize),
+    /// Something that the device tells.
+    Note(String),
+    /// An input, by number, was given this word by a client; and by which user, where there are users.
+    Written(usize, u64, Option<String>),
 }
 
 /// The result of one order.
@@ -266,6 +270,16 @@ impl Driver {
     /// Notes at `now` what came of the order, and tells the scan.
     pub fn settle(&mut self, now: Nanos, worked: Worked, happened: &mut dyn FnMut(Happened)) {
         self.link.settle(now, worked.order, worked.result.is_ok());
+        for remark in self.device.remarks() {
+            match remark {
+                Remark::Note(note) => happened(Happened::Note(note)),
+                Remark::Written { input, value, who } => {
+                    if let Some(word) = self.inputs.get(input).and_then(|scaling| scaling.word(value)) {
+                        happened(Happened::Written(input, word, who));
+                    }
+                }
+            }
+        }
         match worked.result {
             Ok(()) if worked.order == Order::Connect => return,
             Ok(()) => {

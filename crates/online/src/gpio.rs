@@ -12,7 +12,7 @@ use crate::device::{Absent, Device, Failed};
 use crate::setup::Bias;
 use crate::value::Raw;
 use crate::wire::{Line, Wire};
-use crate::wiring::Wired;
+use crate::wired::Wired;
 
 /// The lines of a chip that were asked for.
 trait Lines: Send {

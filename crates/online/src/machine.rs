@@ -17,7 +17,7 @@ use crate::parts::Handles;
 use crate::setup::Timing;
 use crate::sight::Sight;
 use crate::slots::{Disk, Slots};
-use crate::wiring::{Wired, Wiring};
+use crate::wired::{Wired, Wiring};
 use crate::word::Target;
 
 /// Events that wait for their reader; more are counted as lost.

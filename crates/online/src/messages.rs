@@ -42,7 +42,7 @@ pub(crate) fn wire(
     if let Some(form) = &channel.encoding {
         return Err(refused(form.at, "a message has no form of number".to_owned(), None));
     }
-    let scaling = scaling(channel, carried)?;
+    let scaling = number(channel, carried)?;
     let wire = match (&channel.point, &broker.sparkplug) {
         (Point::Topic(name), None) => Wire::Topic(topic(channel, carried, broker, name)?),
         (Point::Metric(name), Some(_)) => {
@@ -93,7 +93,7 @@ fn topic(channel: &Channel, carried: &Carried<'_>, broker: &Broker, name: &str) 
 }
 
 /// A message carries any number: only the variable and the scale say what is lost.
-fn scaling(channel: &Channel, carried: &Carried<'_>) -> Result<Scaling, Refused> {
+pub(crate) fn number(channel: &Channel, carried: &Carried<'_>) -> Result<Scaling, Refused> {
     let numbers = [&channel.scale, &channel.offset];
     if let (Kind::Bool, Some(number)) = (carried.kind, numbers.into_iter().flatten().next()) {
         let what = "a BOOL has no scale or offset".to_owned();

@@ -13,7 +13,7 @@ use g7_rig::Bench;
 
 use crate::driver::Out;
 use crate::setup::{Device, Kind, Listen, SERVER, Tcp};
-use crate::wiring::{In, OutAt, WhileBad, Wired, Wiring};
+use crate::wired::{In, OutAt, WhileBad, Wired, Wiring};
 use crate::word::{Source, Target};
 
 /// A controller that is silent for so long is gone: its outputs count as safe, as at a device that has
@@ -38,7 +38,7 @@ pub fn mirror(bench: &Bench, wiring: &Wiring, listen: Option<IpAddr>) -> Result<
                     serial.port
                 ));
             }
-            Kind::S7(_) | Kind::Gpio(_) => {
+            Kind::OpcUa(_) | Kind::S7(_) | Kind::Gpio(_) => {
                 return Err(format!(
                     "{name} is of the kind \"{}\": the plant answers over Modbus TCP alone",
                     wired.device.kind.word()
@@ -46,7 +46,7 @@ pub fn mirror(bench: &Bench, wiring: &Wiring, listen: Option<IpAddr>) -> Result<
             }
             // The masters of the chart are not part of its machine; nor is a broker, which is there
             // all the same, nor is a panel of the page.
-            Kind::ModbusServer(_) | Kind::Mqtt(_) | Kind::Panel(_) => continue,
+            Kind::ModbusServer(_) | Kind::Mqtt(_) | Kind::Panel(_) | Kind::OpcUaServer(_) => continue,
         };
         let at = |w: &&Wired| matches!(&w.device.kind, Kind::ModbusServer(l) if l.address == address);
         if let Some(other) = mirrored.devices.iter().find(at) {

@@ -17,6 +17,7 @@ use g7_host::{Kind, Runner, Value};
 use g7_model::Nanos;
 
 use crate::chosen::Recorded;
+use crate::wire::Worth;
 use crate::word::Source;
 
 /// Notes that wait for their reader: more than four times those of one step with all signals.
@@ -97,7 +98,8 @@ impl Watch {
         match (self.input, self.safe) {
             (Some(input), _) if !drives => runner.input(input),
             (None, Some(safe)) if !drives => safe,
-            (_, _) => self.source.word(runner, runner.state()),
+            // No signal tells how good an input is.
+            (_, _) => self.source.word(runner, runner.state(), |_, _| Worth::None),
         }
     }
 

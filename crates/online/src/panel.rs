@@ -20,7 +20,7 @@ use crate::part::{Part, number};
 use crate::setup::{self, Handle};
 use crate::value::{Raw, Scaling};
 use crate::wire::Wire;
-use crate::wiring::Wired;
+use crate::wired::Wired;
 
 /// Pages that press one button at the same time; more are refused.
 const HANDS: usize = 16;

@@ -8,7 +8,7 @@ use crate::forces::{FORCES, Forced};
 use crate::keep::Keep;
 use crate::notes::Noting;
 use crate::sight::Showing;
-use crate::wiring::{WhileBad, Wired};
+use crate::wired::{WhileBad, Wired};
 use crate::word::{Source, Target};
 
 /// The words of a run that a device gives and gets.

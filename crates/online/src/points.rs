@@ -5,6 +5,7 @@
 use g7_host::Kind;
 use g7_model::Span;
 
+use crate::forms;
 use crate::messages::{Carried, Refused};
 use crate::setup::{Address, Channel, Encoding, Kind as Way, Memory, Point, Width};
 use crate::value::{Holds, Scaling};
@@ -19,10 +20,12 @@ pub(crate) fn misplaced(channel: &Channel, kind: Option<&Way>) -> Option<(Span, 
     let message = channel.message.first().map(|at| (at, "only a topic has messages"));
     let pin = channel.pin.first();
     let pin = pin.map(|at| (at, "only a line of a chip has a bias, a level and a debounce time"));
+    let unit = channel.unit.as_ref().map(|unit| (unit.at, "only an OPC UA server of our own shows a unit"));
     match kind {
-        Some(Way::Gpio(_)) => message,
-        Some(Way::Mqtt(_)) => pin,
-        _ => message.or(pin),
+        Some(Way::Gpio(_)) => message.or(unit),
+        Some(Way::Mqtt(_)) => pin.or(unit),
+        Some(Way::OpcUaServer(_)) => message.or(pin),
+        _ => message.or(pin).or(unit),
     }
 }
 
@@ -46,10 +49,7 @@ pub(crate) fn cell(channel: &Channel, carried: &Carried<'_>) -> Result<(Wire, Sc
             Holds::Bit
         }
         Form::Byte { signed } => Holds::Whole { bits: 8, signed },
-        Form::Number(Encoding::Unsigned(n)) => Holds::Whole { bits: n * 16, signed: false },
-        Form::Number(Encoding::Signed(n)) => Holds::Whole { bits: n * 16, signed: true },
-        Form::Number(Encoding::F32) => Holds::Single,
-        Form::Number(Encoding::F64) => Holds::Double,
+        Form::Number(encoding) => forms::holds(encoding),
     };
     let [scale, offset] = [(&channel.scale, 1.0), (&channel.offset, 0.0)]
         .map(|(number, usual)| number.as_ref().map_or(usual, |n| n.value));

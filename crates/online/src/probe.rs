@@ -10,7 +10,7 @@ use crate::mqtt;
 use crate::setup::{Broker, Device};
 use crate::value::{Holds, Raw, Scaling};
 use crate::wire::Wire;
-use crate::wiring::{In, WhileBad, Wired};
+use crate::wired::{In, WhileBad, Wired};
 use crate::word::Target;
 
 /// A point to read.
@@ -60,3 +60,36 @@ pub fn hear(broker: &Broker, wired: &Wired) -> Result<Probed, Failed> {
     let took = Duration::from_nanos(clock.now().count().max(0).unsigned_abs());
     Ok(Probed { took, values })
 }
+
+/// Reaches a device and waits for the values of all inputs and then all outputs that are wired to it, for
+/// the time-out at most. Writes nothing.
+///
+/// # Errors
+///
+/// The device cannot be reached, or does not answer.
+pub fn ask(clients: &mut Clients, wired: &Wired) -> Result<Probed, Failed> {
+    let outputs = wired.outputs.iter().map(|out| In {
+        name: out.name.clone(),
+        target: Target::Input(0),
+        wire: out.wire.clone(),
+        scaling: out.out.scaling,
+        bad: WhileBad::Hold,
+    });
+    let inputs: Vec<In> = wired.inputs.iter().cloned().chain(outputs).collect();
+    let asked = Wired { device: wired.device.clone(), inputs, outputs: Vec::new(), good: Vec::new() };
+    let mut device = clients.device(&asked).map_err(|e| Failed(e.to_string()))?;
+    let mut clock = WallClock::default();
+    let mut values = vec![Err(Absent::Unread); asked.inputs.len()];
+    device.connect()?;
+    let mut done = Ok(());
+    while done.is_ok() && values.contains(&Err(Absent::Unread)) && clock.now() < wired.device.timing.timeout {
+        std::thread::sleep(PAUSE);
+        done = device.exchange(&[], &[], &mut values, &mut []);
+    }
+    let took = Duration::from_nanos(clock.now().count().max(0).unsigned_abs());
+    device.close();
+    done.map(|()| Probed { took, values })
+}
+
+/// The time between two looks at a device that sends its values by itself.
+const PAUSE: Duration = Duration::from_millis(10);

@@ -3,7 +3,7 @@
 use g7_model::Nanos;
 
 use crate::part::Part;
-use crate::setup::{Address, Bias, Encoding, Memory, Place, Width};
+use crate::setup::{Address, Bias, Encoding, Memory, NodeId, Place, Width};
 
 /// A point of a device.
 #[derive(Clone, Debug, PartialEq)]
@@ -20,6 +20,83 @@ pub enum Wire {
     Line(Line),
     /// A part of a panel.
     Panel(Part),
+    /// A node of an OPC UA server.
+    Node(NodeId),
+    /// A node of the OPC UA server of our own.
+    Shown(Shown),
+    /// How good the value of a node of that server is, by the name of the node: a [`Worth`].
+    Worth(String),
+}
+
+/// A node of the OPC UA server of our own.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Shown {
+    /// Its name.
+    pub name: String,
+    /// Its folder.
+    pub folder: Folder,
+    /// The words about it.
+    pub about: About,
+}
+
+/// The folders of the OPC UA server of our own.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Folder {
+    /// Inputs of the chart.
+    Inputs,
+    /// Outputs of the chart.
+    Outputs,
+    /// Other variables.
+    Variables,
+    /// Activities and times of steps.
+    Steps,
+}
+
+/// The words about a node. They are no part of the wire, so that a chart with another comment has the same
+/// wires.
+#[derive(Clone, Debug, Default)]
+pub struct About {
+    /// The author's comment.
+    pub comment: Option<String>,
+    /// The unit of the value.
+    pub unit: Option<String>,
+}
+
+impl PartialEq for About {
+    fn eq(&self, _: &About) -> bool {
+        true
+    }
+}
+
+impl Eq for About {}
+
+/// How good the value of an input is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Worth {
+    /// It has not been read since the start.
+    Unread,
+    /// It is that of its device.
+    Good,
+    /// Its device gives none: it is the last one.
+    Last,
+    /// Its device gives none: it is the substitute.
+    Substitute,
+    /// Its device gives none, and the controller stops for that.
+    None,
+}
+
+impl Worth {
+    const ALL: [Worth; 5] = [Worth::Unread, Worth::Good, Worth::Last, Worth::Substitute, Worth::None];
+
+    /// Its word.
+    pub(crate) fn word(self) -> u64 {
+        Worth::ALL.iter().position(|worth| *worth == self).map_or(0, |at| at as u64)
+    }
+
+    /// The worth of a word.
+    pub fn of(word: i128) -> Worth {
+        usize::try_from(word).ok().and_then(|at| Worth::ALL.get(at).copied()).unwrap_or(Worth::None)
+    }
 }
 
 /// Bytes or a bit of a controller of Siemens.
@@ -108,7 +185,7 @@ impl Wire {
     pub fn place(&self) -> Option<Place> {
         match self {
             Wire::Modbus(place) => Some(*place),
-            Wire::Topic(_) | Wire::Metric(_) | Wire::S7(_) | Wire::Line(_) | Wire::Panel(_) => None,
+            _ => None,
         }
     }
 }
@@ -120,6 +197,9 @@ impl std::fmt::Display for Wire {
             Wire::Topic(Topic { name, field: None, .. }) => write!(f, "topic({name})"),
             Wire::Topic(Topic { name, field: Some(field), .. }) => write!(f, "topic({name}) {field}"),
             Wire::Metric(name) => write!(f, "metric({name})"),
+            Wire::Node(node) => write!(f, "node({node})"),
+            Wire::Shown(Shown { name, .. }) => write!(f, "node({name})"),
+            Wire::Worth(name) => write!(f, "node({name}) status"),
             Wire::S7(cell) => cell.address().fmt(f),
             Wire::Line(line) => write!(f, "line({})", line.offset),
             Wire::Panel(part) => part.handle.fmt(f),

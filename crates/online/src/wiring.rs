@@ -7,82 +7,22 @@ use g7_host::Kind;
 use g7_model::{Nanos, Problem, Span, codes};
 use g7_rig::{Bench, Item, Role};
 
-use crate::chosen::{self, Chosen};
+use crate::chosen;
 use crate::driver::Out;
+use crate::forms;
 use crate::handles;
 use crate::messages::{self, Carried, Refused};
 use crate::names::{Named, named, source_of};
+use crate::nodes;
 use crate::points;
 use crate::setup::{
-    Area, At, Bad, Broker, Channel, Device, Encoding, Handle, Kind as Way, Literal, Place, Point, Register,
-    Setup,
+    Area, At, Bad, Broker, Channel, Encoding, Handle, Kind as Way, Literal, Place, Point, Register, Setup,
 };
+use crate::subject::{Class, Subject};
 use crate::value::{Holds, Raw, Scaling};
-use crate::wire::Wire;
+use crate::wire::{Folder, Wire};
+use crate::wired::{In, OutAt, WhileBad, Wired, Wiring};
 use crate::word::{Source, Target};
-
-/// All channels of a machine, by device.
-#[derive(Clone, Debug, Default)]
-pub struct Wiring {
-    /// The devices that have a channel, in the order of the file.
-    pub devices: Vec<Wired>,
-    /// Inputs and outputs of the chart that no device has, by name.
-    pub unwired: Vec<String>,
-    /// The signals that are recorded.
-    pub history: Option<Chosen>,
-}
-
-/// A device with its channels.
-#[derive(Clone, Debug)]
-pub struct Wired {
-    /// The device.
-    pub device: Device,
-    /// Its inputs.
-    pub inputs: Vec<In>,
-    /// Its outputs, and what is shown to the masters of a server.
-    pub outputs: Vec<OutAt>,
-    /// Input words that are 1 while it answers.
-    pub good: Vec<u32>,
-}
-
-/// An input of the chart on a point of a device.
-#[derive(Clone, Debug)]
-pub struct In {
-    /// The variable.
-    pub name: String,
-    /// The word of the run.
-    pub target: Target,
-    /// The point.
-    pub wire: Wire,
-    /// How the value becomes a word.
-    pub scaling: Scaling,
-    /// Its value while that of the device is bad.
-    pub bad: WhileBad,
-}
-
-/// The value of an input word while that of the device is bad.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum WhileBad {
-    /// The last good value, or the initial one.
-    Hold,
-    /// This word.
-    Word(u64),
-    /// The controller stops.
-    Fault,
-}
-
-/// An output of the chart on a point of a device, or what masters read there.
-#[derive(Clone, Debug)]
-pub struct OutAt {
-    /// The variable or step.
-    pub name: String,
-    /// The word of the run.
-    pub source: Source,
-    /// The point.
-    pub wire: Wire,
-    /// How the word becomes a value.
-    pub out: Out,
-}
 
 /// Wires a chart. A channel that cannot be wired is left out and told.
 pub fn wire(bench: &Bench, setup: &Setup) -> (Wiring, Vec<Problem>) {
@@ -113,48 +53,15 @@ pub fn wire(bench: &Bench, setup: &Setup) -> (Wiring, Vec<Problem>) {
         .filter(|i| matches!(i.role, Role::Input(_) | Role::Output) && !wired.contains_key(&(i.addr)))
         .map(|i| i.name.clone())
         .collect();
+    nodes::expose(bench, &mut wirer.wiring.devices);
     let events = |d: &Wired| matches!(&d.device.kind, Way::Mqtt(broker) if broker.events.is_some());
     let used = |d: &Wired| !(d.inputs.is_empty() && d.outputs.is_empty() && d.good.is_empty()) || events(d);
     wirer.wiring.devices.retain(used);
+    nodes::judge(&mut wirer.wiring.devices);
     if let Some(history) = &setup.history {
         wirer.wiring.history = Some(chosen::choose(bench, history, &mut wirer.problems));
     }
     (wirer.wiring, wirer.problems)
-}
-
-/// The three ways in which a channel is used.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Class {
-    Input,
-    Output,
-    /// Masters of a server read it.
-    Shown,
-}
-
-/// The variable or step of a channel.
-struct Subject {
-    name: String,
-    kind: Kind,
-    /// Its type, for messages.
-    ty: String,
-    inverted: bool,
-    /// The number of an input word.
-    input: Option<u32>,
-    source: Source,
-    safe: Option<u64>,
-}
-
-impl Subject {
-    /// It, as messages and points of other devices see it.
-    fn carried(&self, class: Class) -> Carried<'_> {
-        Carried {
-            name: &self.name,
-            kind: self.kind,
-            inverted: self.inverted,
-            input: class == Class::Input,
-            safe: class == Class::Output,
-        }
-    }
 }
 
 struct Wirer<'a> {
@@ -210,6 +117,8 @@ impl<'a> Wirer<'a> {
             input: if let Role::Input(index) = item.role { Some(index) } else { None },
             source: Source::Word(Addr(item.addr)),
             safe: self.bench.safe(item),
+            folder: nodes::folder(item.role).unwrap_or(Folder::Variables),
+            comment: item.comment.clone(),
         }
     }
 
@@ -225,6 +134,8 @@ impl<'a> Wirer<'a> {
                 input: None,
                 source: source_of(step),
                 safe: None,
+                folder: Folder::Steps,
+                comment: step.comment.clone(),
             }),
             Err(problem) => {
                 self.problems.push(*problem);
@@ -262,6 +173,11 @@ impl<'a> Wirer<'a> {
             (_, Some(Way::Mqtt(broker))) => self.message(channel, subject, (device, &broker), class),
             (_, Some(Way::S7(_))) => self.point(channel, subject, device, class, points::cell),
             (_, Some(Way::Gpio(_))) => self.point(channel, subject, device, class, points::line),
+            (_, Some(Way::OpcUa(_))) => self.point(channel, subject, device, class, nodes::wire),
+            (_, Some(Way::OpcUaServer(_))) => {
+                let shown = nodes::shown(channel, subject, class);
+                self.place(channel, subject, device, class, shown);
+            }
             (Point::Modbus(register), _) => self.register(channel, subject, device, *register, class),
             (point, _) => {
                 let what = format!("`{point}` is no point of `{}`", channel.device.value);
@@ -269,6 +185,7 @@ impl<'a> Wirer<'a> {
                     Point::S7(_) => "only a controller of Siemens has such addresses: `kind = \"s7\"`",
                     Point::Line(_) => "only a chip has lines: `kind = \"gpio\"`",
                     Point::Panel(_) => "only a panel has buttons and lamps: `kind = \"panel\"`",
+                    Point::Node(_) => "only OPC UA has nodes: `kind = \"opc-ua\"`",
                     _ => "only a broker has messages: `kind = \"mqtt\"`",
                 };
                 self.wrong(&codes::WRONG_CHANNEL, channel.at, what).help = Some(help.to_owned());
@@ -291,7 +208,7 @@ impl<'a> Wirer<'a> {
         }
     }
 
-    /// An address of a controller of Siemens, or a line of a chip.
+    /// An address of a controller of Siemens, a line of a chip, or a node of a server of OPC UA.
     fn point(&mut self, channel: &Channel, subject: &Subject, device: usize, class: Class, read: Read) {
         if class == Class::Shown {
             let (what, help) = NOT_SHOWN;
@@ -299,7 +216,19 @@ impl<'a> Wirer<'a> {
             self.wrong(&codes::WRONG_CHANNEL, channel.at, what).help = Some(help.to_owned());
             return;
         }
-        let (wire, scaling) = match read(channel, &subject.carried(class)) {
+        self.place(channel, subject, device, class, read(channel, &subject.carried(class)));
+    }
+
+    /// A point that nothing else has.
+    fn place(
+        &mut self,
+        channel: &Channel,
+        subject: &Subject,
+        device: usize,
+        class: Class,
+        read: Result<(Wire, Scaling), Refused>,
+    ) {
+        let (wire, scaling) = match read {
             Ok(wired) => wired,
             Err(Refused { at, what, help }) => {
                 self.wrong(&codes::WRONG_CHANNEL, at, what).help = help;
@@ -307,9 +236,10 @@ impl<'a> Wirer<'a> {
             }
         };
         let places = match &wire {
-            // Several inputs may read one address; a line has one use.
+            // Several inputs may read one address or node; a line and a node of our own have one use.
             Wire::S7(cell) if class == Class::Output => points::bits(cell),
-            Wire::Line(_) => vec![wire.to_string()],
+            Wire::Node(_) if class == Class::Output => vec![wire.to_string()],
+            Wire::Line(_) | Wire::Shown(_) => vec![wire.to_string()],
             _ => Vec::new(),
         };
         for place in places {
@@ -362,7 +292,7 @@ impl<'a> Wirer<'a> {
             // Several inputs may read one topic.
             Wire::Topic(topic) => (class != Class::Input).then(|| topic.name.clone()),
             Wire::Metric(name) => Some(name.clone()),
-            Wire::Modbus(_) | Wire::S7(_) | Wire::Line(_) | Wire::Panel(_) => None,
+            _ => None,
         };
         let will = matches!(&wire, Wire::Topic(topic) if topic.will).then(|| WILL.to_owned());
         for place in place.into_iter().chain(will) {
@@ -379,6 +309,7 @@ impl<'a> Wirer<'a> {
         let of = |broker: &Broker| (broker.host.clone(), broker.port, broker.sparkplug.clone());
         let same = |k: &usize| match (kind(*k), kind(device)) {
             (Some(Way::Mqtt(one)), Some(Way::Mqtt(other))) => of(one) == of(other),
+            (Some(Way::OpcUa(one)), Some(Way::OpcUa(other))) => one.url == other.url,
             (one, other) => one == other,
         };
         // Two clients of one broker publish to the same topics, but each has a will of its own.
@@ -479,17 +410,12 @@ impl<'a> Wirer<'a> {
             let scaling = Scaling { kind: item.kind, holds: Holds::Bit, inverted, scale: 1.0, offset: 0.0 };
             return Some((None, scaling));
         }
-        let encoding = channel.encoding.as_ref().map_or_else(|| usual(item.kind), |e| e.value);
+        let encoding = channel.encoding.as_ref().map_or_else(|| forms::usual(item.kind), |e| e.value);
         if u32::from(register.address) + u32::from(encoding.registers()) > 65_536 {
             self.wrong(&codes::WRONG_CHANNEL, channel.at, "the number goes beyond the last register, 65535");
             return None;
         }
-        let holds = match encoding {
-            Encoding::Unsigned(n) => Holds::Whole { bits: n * 16, signed: false },
-            Encoding::Signed(n) => Holds::Whole { bits: n * 16, signed: true },
-            Encoding::F32 => Holds::Single,
-            Encoding::F64 => Holds::Double,
-        };
+        let holds = forms::holds(encoding);
         let value = |number: &Option<At<f64>>, usual| number.as_ref().map_or(usual, |n| n.value);
         let (scale, offset) = (value(&channel.scale, 1.0), value(&channel.offset, 0.0));
         Some((Some(encoding), Scaling { kind: item.kind, holds, inverted: false, scale, offset }))
@@ -562,7 +488,7 @@ const WILL: &str = "";
 /// Why a device shows nothing, and what to do instead.
 const NOT_SHOWN: (&str, &str) = (
     "belongs to a device that does not ask",
-    "only a server or a broker shows: `kind = \"modbus-server\"`, `kind = \"mqtt\"`",
+    "only a server or a broker shows: `kind = \"modbus-server\"`, `kind = \"opc-ua-server\"`, `kind = \"mqtt\"`",
 );
 
 /// Why a use of a table is refused, and what to do instead.
@@ -576,18 +502,5 @@ fn refused(area: Area, class: Class, server: bool) -> Option<(&'static str, &'st
             Some(("cannot be written", "outputs are coils or holding registers"))
         }
         Class::Input | Class::Output | Class::Shown => None,
-    }
-}
-
-/// How registers hold a variable where the file does not say it.
-fn usual(kind: Kind) -> Encoding {
-    match kind {
-        Kind::Int { bits, signed } => {
-            let registers = bits.div_ceil(16);
-            if signed { Encoding::Signed(registers) } else { Encoding::Unsigned(registers) }
-        }
-        Kind::Real => Encoding::F32,
-        Kind::Lreal => Encoding::F64,
-        Kind::Time | Kind::Bool | Kind::Text => Encoding::Signed(2),
     }
 }

@@ -111,7 +111,9 @@ fn the_clock_is_read_in_one_place() {
 #[test]
 fn files_are_read_by_the_host_and_the_command_line() {
     let words = ["fs::read", "File::open(path", "fs::metadata", "fs::canonicalize"];
-    none(&outside(&words, &["host/src", "g7/src"]), "files that are read elsewhere");
+    // Certificates come and go while a controller runs.
+    let readers = ["host/src", "g7/src", "opcua/src/certificates.rs"];
+    none(&outside(&words, &readers), "files that are read elsewhere");
 }
 
 #[test]

@@ -11,9 +11,21 @@ pub(crate) fn allowed(deny: &str) -> BTreeSet<String> {
     list.split('"').skip(1).step_by(2).map(str::to_owned).collect()
 }
 
+/// The packages of the list `exceptions` of `deny.toml`, each with the licence that it may have.
+pub(crate) fn exceptions(deny: &str) -> BTreeMap<String, String> {
+    let list = deny.split("exceptions = [\n").nth(1).and_then(|rest| rest.split("\n]").next()).unwrap_or("");
+    let row = |line: &str| {
+        let mut words = line.split('"').skip(1).step_by(2);
+        let (licence, package) = (words.next()?, words.next()?);
+        Some((package.to_owned(), licence.to_owned()))
+    };
+    list.lines().filter_map(row).collect()
+}
+
 /// Each package that is built into ours, or used to build it, with its licence.
 /// Packages that only tests use are left out.
-pub(crate) fn used(root: &Path) -> BTreeMap<String, String> {
+/// `of` says which of the crates of ours count.
+pub(crate) fn used(root: &Path, of: impl Fn(&str) -> bool) -> BTreeMap<String, String> {
     let data = metadata(root);
     let text = |v: &Value| v.as_str().unwrap_or("").to_owned();
     let all = |v: &Value| v.as_array().cloned().unwrap_or_default();
@@ -29,7 +41,8 @@ pub(crate) fn used(root: &Path) -> BTreeMap<String, String> {
         all(&data["packages"]).into_iter().map(|p| (text(&p["id"]), p)).collect();
     let shipped = |id: &String| {
         let path = packages.get(id).map(|p| text(&p["manifest_path"])).unwrap_or_default();
-        Path::new(&path).iter().any(|part| part == "crates")
+        let name = packages.get(id).map(|p| text(&p["name"])).unwrap_or_default();
+        Path::new(&path).iter().any(|part| part == "crates") && of(&name)
     };
     let mut pending: Vec<String> = all(&data["workspace_members"]).iter().map(text).filter(shipped).collect();
     let mut reached = BTreeSet::new();

@@ -110,7 +110,7 @@ export interface ChartFile {
 export type Kind =
   | 'changed' | 'back' | 'run' | 'stop' | 'fault' | 'missed' | 'forced' | 'released' | 'ended' | 'no-priority' | 'unsaved' | 'unrecorded' | 'recorded'
   | 'no-events' | 'events'
-  | 'pressed' | 'set' | 'up' | 'down' | 'no-input' | 'input' | 'no-output' | 'output' | 'limited';
+  | 'pressed' | 'set' | 'up' | 'down' | 'no-input' | 'input' | 'no-output' | 'output' | 'limited' | 'note';
 
 export interface Event {
   n: number;

@@ -178,7 +178,11 @@ impl Board {
             Happened::Output(k) => {
                 state.refused.remove(k);
             }
-            Happened::NoInput(..) | Happened::Input(_) | Happened::Limited(_) => {}
+            Happened::NoInput(..)
+            | Happened::Input(_)
+            | Happened::Limited(_)
+            | Happened::Note(_)
+            | Happened::Written(..) => {}
         }
     }
 

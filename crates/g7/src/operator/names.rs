@@ -64,6 +64,13 @@ impl Names {
         self.bench.items.iter().find(is).map_or("", |item| &item.name)
     }
 
+    /// The value of an input of a device as text.
+    pub(crate) fn given(&self, device: usize, input: usize, word: u64) -> String {
+        let input = self.wired(device).and_then(|wired| wired.inputs.get(input));
+        let kind = input.map_or(g7_host::Kind::Bool, |input| input.scaling.kind);
+        g7_rig::values::shown(&g7_host::Value::Word(word), kind)
+    }
+
     /// The forced variable.
     pub(crate) fn forced(&self, what: Force) -> Option<&Item> {
         self.bench.items.iter().find(|item| self.bench.force_of(item) == Some(what))

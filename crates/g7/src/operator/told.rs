@@ -67,7 +67,7 @@ impl Told {
                 Some(wired) if wired.device.kind.is_server() => Level::Warning,
                 Some(_) | None => Level::Alarm,
             },
-            Told::Device(_, Happened::NoInput(..) | Happened::NoOutput(..))
+            Told::Device(_, Happened::NoInput(..) | Happened::NoOutput(..) | Happened::Note(_))
             | Told::Events(_, Some(_))
             | Told::Missed(_)
             | Told::Recorded(1..)
@@ -169,13 +169,7 @@ impl Told {
                     if lost.is_empty() { String::new() } else { format!("; lost: {}", lost.join("; ")) };
                 format!("goes on with {which}{lost}")
             }
-            Told::Moved { name, value, who } => {
-                let deed = match value {
-                    None => format!("`{name}` is pressed"),
-                    Some(value) => format!("`{name}` is set to {value}"),
-                };
-                who.as_ref().map_or_else(|| deed.clone(), |who| format!("{deed}, by {who}"))
-            }
+            Told::Moved { name, value, who } => moved_text(name, value.as_deref(), who.as_deref()),
             Told::NoPriority(why) => format!("{warn}note:{warn:#} {why}"),
             Told::Unsaved(why) => format!("{bad}values cannot be saved:{bad:#} {why}"),
             Told::Events(device, Some(why)) => {
@@ -223,12 +217,23 @@ pub(crate) fn mode_text(names: &Names, mode: Mode) -> String {
 fn channel<'n>(names: &'n Names, device: usize, happened: &Happened) -> &'n str {
     let Some(wired) = names.wired(device) else { return "" };
     match happened {
-        Happened::NoInput(k, _) | Happened::Input(k) => wired.inputs.get(*k).map_or("", |i| &i.name),
+        Happened::NoInput(k, _) | Happened::Input(k) | Happened::Written(k, ..) => {
+            wired.inputs.get(*k).map_or("", |i| &i.name)
+        }
         Happened::NoOutput(k, _) | Happened::Output(k) | Happened::Limited(k) => {
             wired.outputs.get(*k).map_or("", |o| &o.name)
         }
-        Happened::Up | Happened::Down(_) => "",
+        Happened::Up | Happened::Down(_) | Happened::Note(_) => "",
     }
+}
+
+/// The deed of a person at an input, for the terminal.
+fn moved_text(name: &str, value: Option<&str>, who: Option<&str>) -> String {
+    let deed = match value {
+        None => format!("`{name}` is pressed"),
+        Some(value) => format!("`{name}` is set to {value}"),
+    };
+    who.map_or_else(|| deed.clone(), |who| format!("{deed}, by {who}"))
 }
 
 fn device_json(names: &Names, device: usize, happened: &Happened) -> Value {
@@ -241,6 +246,12 @@ fn device_json(names: &Names, device: usize, happened: &Happened) -> Value {
         Happened::NoOutput(_, why) => ("no-output", Some(why.clone())),
         Happened::Output(_) => ("output", None),
         Happened::Limited(_) => ("limited", None),
+        Happened::Note(what) => ("note", Some(what.clone())),
+        Happened::Written(k, word, who) => {
+            let (name, device_name) = (channel(names, device, happened), names.device(device));
+            let value = names.given(device, *k, *word);
+            return json!({ "kind": "set", "device": device_name, "name": name, "value": value, "who": who });
+        }
     };
     let name = channel(names, device, happened);
     json!({ "kind": kind, "device": names.device(device), "master": server, "name": name, "why": why })
@@ -260,6 +271,11 @@ fn device_text(names: &Names, device: usize, happened: &Happened) -> Option<Stri
         Happened::Input(_) => format!("{name}: `{of}` has a value again"),
         Happened::NoOutput(_, why) => format!("{name} {warn}refuses{warn:#} `{of}`: {why}"),
         Happened::Output(_) => format!("{name} takes `{of}` again"),
+        Happened::Note(what) => format!("{name} {warn}note:{warn:#} {what}"),
+        Happened::Written(k, word, who) => {
+            let value = names.given(device, *k, *word);
+            format!("{name}: {}", moved_text(of, Some(&value), who.as_deref()))
+        }
         Happened::Limited(_) => {
             format!("{name}: {warn}`{of}` is limited{warn:#} to what its point holds")
         }

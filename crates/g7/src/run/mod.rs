@@ -44,8 +44,15 @@ pub(crate) fn run(args: &Run) -> Result<Verdict, Failure> {
 
 /// The chart drives the devices of its io file, until it is told to end.
 fn online(path: &Path, source: Source, args: &Run) -> Result<Verdict, Failure> {
-    let more = More { profile: args.profile, scan: args.scan, plant: args.plant.as_deref(), seed: args.seed };
-    let Settings { log, audit, .. } = station::settings(path, &args.drive, None)?;
+    let Settings { log, audit, users, .. } = station::settings(path, &args.drive, None)?;
+    let more = More {
+        profile: args.profile,
+        scan: args.scan,
+        plant: args.plant.as_deref(),
+        seed: args.seed,
+        users: users.as_deref(),
+        logged: audit.is_kept(),
+    };
     let station = station::start(path, source, &args.drive, more)?;
     let Some(Station { names, origin, running, monitor, post, historian, panels, .. }) = station else {
         return Ok(Verdict::Found);

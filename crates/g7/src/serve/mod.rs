@@ -295,7 +295,7 @@ pub(crate) fn serve(args: &Serve) -> Result<Verdict, Failure> {
 fn online(args: &Serve) -> Result<Verdict, Failure> {
     let path = files::one(&args.path)?;
     let source = sources::load(&path, 0)?;
-    let Settings { setup, io, log, audit, log_file } =
+    let Settings { setup, io, log, audit, log_file, users } =
         station::settings(&path, &args.drive, args.log.as_deref())?;
     let rules = Rules::of(args, Some((&setup.server, &io)), &audit, log_file)?;
     let (station, orders) = Stage::door();
@@ -303,7 +303,9 @@ fn online(args: &Serve) -> Result<Verdict, Failure> {
     let shared = shared(args, limits, drafts::state_folder().as_deref(), Some(station), &rules)?;
     // A port that is taken is found before anything moves.
     let open = Open::new(&shared, &rules)?;
-    let more = More { plant: args.plant.as_deref(), ..More::default() };
+    let users = args.users.clone().or(users);
+    let (plant, users, logged) = (args.plant.as_deref(), users.as_deref(), audit.is_kept());
+    let more = More { plant, users, logged, ..More::default() };
     let station = station::start(&path, source, &args.drive, more)?;
     let Some(Station { names, origin, running, sight, monitor, post, panels, historian }) = station else {
         return Ok(Verdict::Found);

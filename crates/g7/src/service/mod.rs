@@ -120,7 +120,7 @@ fn install(args: &Install) -> Result<Verdict, Failure> {
         restart: args.restart,
         keeps: writes(&plan.setup),
         serial: has(&plan, |kind| matches!(kind, Kind::ModbusRtu(..))),
-        low_port: has(&plan, |kind| matches!(kind, Kind::ModbusServer(l) if l.address.port() < 1024))
+        low_port: has(&plan, |kind| kind.listens().is_some_and(|address| address.port() < 1024))
             || plan.setup.server.port.as_ref().is_some_and(|port| (1..1024).contains(&port.value)),
         realtime: plan.setup.controller.priority.is_some(),
     };

@@ -172,12 +172,20 @@ impl Slave {
     }
 }
 
-/// A master of pymodbus.
+/// A master of pymodbus, or a client of asyncua.
 pub(crate) struct Master(Running);
 
 impl Master {
     pub(crate) fn start(port: u16) -> Option<Master> {
         let mut running = Running::python("pymodbus", "modbus_master.py", &[&port.to_string()])?;
+        assert_eq!(running.line(), "connected");
+        Some(Master(running))
+    }
+
+    /// A client of OPC UA with an option of its script.
+    pub(crate) fn of_opcua(port: u16, option: &str) -> Option<Master> {
+        let address = format!("opc.tcp://127.0.0.1:{port}/");
+        let mut running = Running::python("asyncua", "opcua_client.py", &[&address, option])?;
         assert_eq!(running.line(), "connected");
         Some(Master(running))
     }

@@ -20,7 +20,7 @@ use voltage_modbus::{GenericModbusClient, ModbusClient, ModbusError, ModbusTcpCl
 use crate::device::{Absent, Device, Failed};
 use crate::setup::{Area, Kind, Modbus, Place, Serial, Tcp};
 use crate::value::Raw;
-use crate::wiring::Wired;
+use crate::wired::Wired;
 
 use blocks::{Block, decode, encode, reads, writes};
 use rtu::{Line, Slave};

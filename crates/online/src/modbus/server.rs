@@ -13,7 +13,7 @@ use g7_model::Nanos;
 use crate::device::{Absent, Device, Failed};
 use crate::setup::{Area, Listen, Place};
 use crate::value::Raw;
-use crate::wiring::Wired;
+use crate::wired::Wired;
 
 use super::blocks::{decode, encode};
 use super::masters::Masters;

@@ -12,7 +12,7 @@ use crate::device::{Absent, Device, Failed};
 use crate::mail::Mail;
 use crate::setup::Broker;
 use crate::value::Raw;
-use crate::wiring::Wired;
+use crate::wired::Wired;
 
 use plain::Plain;
 use sparkplug::Node;

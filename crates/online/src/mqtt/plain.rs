@@ -15,7 +15,7 @@ use crate::mail::Mail;
 use crate::setup::Broker;
 use crate::value::{Raw, Scaling};
 use crate::wire::{Topic, Wire};
-use crate::wiring::Wired;
+use crate::wired::Wired;
 
 use super::connection::{About, Connection, Message, Opening};
 use super::events::Events;

@@ -18,7 +18,7 @@ use crate::device::{Absent, Device, Failed};
 use crate::setup::S7;
 use crate::value::Raw;
 use crate::wire::{Cell, Wire};
-use crate::wiring::Wired;
+use crate::wired::Wired;
 
 use blocks::Block;
 use frames::{Item, PACKET, Wrong};

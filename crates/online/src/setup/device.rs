@@ -6,6 +6,7 @@ use g7_model::Nanos;
 
 use super::broker::{self, Broker};
 use super::field::{self, S7};
+use super::opcua::{self, OpcUa, OpcUaServer};
 use super::panel::{self, Panel};
 use super::table::{At, Found, Row, Table};
 
@@ -35,18 +36,31 @@ pub enum Kind {
     S7(S7),
     /// A chip of lines of this machine: its device file.
     Gpio(String),
+    /// A server of OPC UA, which this is a client of.
+    OpcUa(Box<OpcUa>),
+    /// Clients of OPC UA, which this is the server of.
+    OpcUaServer(Box<OpcUaServer>),
     /// Buttons and lamps on the operator page.
     Panel(Panel),
 }
 
 impl Kind {
     /// The words of the file.
-    pub const WORDS: [&'static str; 7] =
-        ["modbus-tcp", "modbus-rtu", "modbus-server", "mqtt", "s7", "gpio", "panel"];
+    pub const WORDS: [&'static str; 9] = [
+        "modbus-tcp",
+        "modbus-rtu",
+        "modbus-server",
+        "mqtt",
+        "opc-ua",
+        "opc-ua-server",
+        "s7",
+        "gpio",
+        "panel",
+    ];
 
     /// Its word in the file.
     pub fn word(&self) -> &'static str {
-        let [tcp, rtu, server, mqtt, s7, gpio, panel] = Kind::WORDS;
+        let [tcp, rtu, server, mqtt, opcua, opcua_server, s7, gpio, panel] = Kind::WORDS;
         match self {
             Kind::ModbusTcp(..) => tcp,
             Kind::ModbusRtu(..) => rtu,
@@ -54,6 +68,8 @@ impl Kind {
             Kind::Mqtt(_) => mqtt,
             Kind::S7(_) => s7,
             Kind::Gpio(_) => gpio,
+            Kind::OpcUa(_) => opcua,
+            Kind::OpcUaServer(_) => opcua_server,
             Kind::Panel(_) => panel,
         }
     }
@@ -67,13 +83,24 @@ impl Kind {
             Kind::Mqtt(broker) => format!("{}:{}", broker.host, broker.port),
             Kind::S7(s7) => format!("{}:{} rack {} slot {}", s7.host, s7.port, s7.rack, s7.slot),
             Kind::Gpio(chip) => chip.clone(),
+            Kind::OpcUa(server) => server.url.clone(),
+            Kind::OpcUaServer(server) => server.address.to_string(),
             Kind::Panel(_) => "the operator page".to_owned(),
         }
     }
 
     /// True if G7 is the server: it waits for requests and has no poll period of its own.
     pub fn is_server(&self) -> bool {
-        matches!(self, Kind::ModbusServer(_))
+        matches!(self, Kind::ModbusServer(_) | Kind::OpcUaServer(_))
+    }
+
+    /// The address that it listens at, where G7 is the server.
+    pub fn listens(&self) -> Option<SocketAddr> {
+        match self {
+            Kind::ModbusServer(listen) => Some(listen.address),
+            Kind::OpcUaServer(server) => Some(server.address),
+            _ => None,
+        }
     }
 }
 
@@ -175,6 +202,10 @@ pub(super) fn read(row: &Row<'_>, found: &mut Found) -> Option<Device> {
         "mqtt" => broker::read(row.name, &mut table, found).map(|broker| Kind::Mqtt(Box::new(broker))),
         "s7" => field::s7(&mut table, found).map(Kind::S7),
         "gpio" => field::chip(&mut table, found).map(Kind::Gpio),
+        "opc-ua" => opcua::client(&mut table, found).map(|server| Kind::OpcUa(Box::new(server))),
+        "opc-ua-server" => {
+            opcua::server(row.name, &mut table, found).map(|server| Kind::OpcUaServer(Box::new(server)))
+        }
         "panel" => Some(Kind::Panel(panel::read(&mut table, found))),
         _ => {
             let known: Vec<String> = Kind::WORDS.iter().map(|word| format!("\"{word}\"")).collect();
@@ -185,7 +216,11 @@ pub(super) fn read(row: &Row<'_>, found: &mut Found) -> Option<Device> {
     };
     let timing = match &kind {
         Some(Kind::ModbusServer(_) | Kind::Panel(_)) => SERVER,
+        Some(Kind::OpcUaServer(_)) => SHOWN,
         Some(Kind::Mqtt(_)) => timing(&mut table, found, BROKER),
+        Some(Kind::OpcUa(_)) => {
+            timing(&mut table, found, Timing { timeout: BROKER.timeout, ..Timing::default() })
+        }
         Some(Kind::ModbusTcp(..) | Kind::ModbusRtu(..) | Kind::S7(_) | Kind::Gpio(_)) | None => {
             timing(&mut table, found, Timing::default())
         }
@@ -226,6 +261,9 @@ pub(crate) const SERVER: Timing = Timing {
     refresh: Nanos::SECOND,
     retry: Nanos::from_millis(100),
 };
+
+/// The times of a server that keeps what it was told: only what has changed is handed over.
+const SHOWN: Timing = Timing { refresh: Nanos::new(i64::MAX), ..SERVER };
 
 fn listen(table: &mut Table<'_>, found: &mut Found) -> Option<Listen> {
     let address = table.needed(found, "listen", "127.0.0.1:1502");
@@ -313,10 +351,7 @@ pub(super) fn one_file_each(devices: &[Device], retain: Option<&At<String>>, fou
 
 /// No two servers listen at one address.
 pub(super) fn one_address_each(devices: &[Device], found: &mut Found) {
-    let servers = devices.iter().filter_map(|d| match &d.kind {
-        Kind::ModbusServer(listen) => Some((d, listen.address)),
-        _ => None,
-    });
+    let servers = devices.iter().filter_map(|d| d.kind.listens().map(|address| (d, address)));
     for (k, (device, address)) in servers.clone().enumerate() {
         if let Some((first, _)) = servers.clone().take(k).find(|(_, other)| *other == address) {
             let what =

@@ -25,6 +25,7 @@ mod device;
 mod edit;
 mod field;
 mod history;
+mod opcua;
 mod outline;
 mod panel;
 mod point;
@@ -33,6 +34,7 @@ mod server;
 mod table;
 
 use std::net::SocketAddr;
+use std::path::Path;
 
 use g7_model::{FileId, Nanos, Problem, Span};
 use toml::de::{DeTable, DeValue};
@@ -45,6 +47,7 @@ pub use edit::{Change, Plain, Uneditable, edit};
 pub use field::{Address, Bias, Memory, Pin, S7, Width};
 pub use history::History;
 pub(crate) use history::SIGNALS;
+pub use opcua::{Namespace, NodeId, OpcUa, OpcUaServer, Policy, Security, read_node};
 pub use outline::{Entry, outline};
 pub use panel::{Handle, Limits, Panel};
 pub use point::{Area, Encoding, Place, Point, Register};
@@ -165,6 +168,8 @@ pub struct Channel {
     pub message: Message,
     /// How a line of a chip is used.
     pub pin: Pin,
+    /// The unit of the value, such as `m/s`.
+    pub unit: Option<At<String>>,
     /// The numbers that a person can enter on a panel.
     pub limits: Limits,
 }
@@ -197,11 +202,23 @@ pub fn read_point(text: &str) -> Result<Point, String> {
 /// Gets the passwords, certificates and keys that the file names. `from` gives the bytes of a file or
 /// variable, or says why not.
 pub fn read_secrets(setup: &mut Setup, from: impl FnMut(&Origin) -> Result<Vec<u8>, String>) -> Vec<Problem> {
-    let brokers = setup.devices.iter_mut().filter_map(|device| match &mut device.kind {
+    let peers = setup.devices.iter_mut().filter_map(|device| match &mut device.kind {
         Kind::Mqtt(broker) => Some((broker.password.as_mut(), broker.tls.as_mut())),
+        Kind::OpcUa(server) => Some((server.password(), None)),
         _ => None,
     });
-    secret::read(brokers, from)
+    secret::read(peers, from)
+}
+
+/// The folders that the file names are in this one from here on, that of the io file.
+pub fn settle(setup: &mut Setup, folder: &Path) {
+    for device in &mut setup.devices {
+        match &mut device.kind {
+            Kind::OpcUa(server) => server.settle(folder),
+            Kind::OpcUaServer(server) => server.settle(folder),
+            _ => {}
+        }
+    }
 }
 
 fn setup(table: &DeTable<'_>, found: &mut Found) -> Setup {
@@ -211,6 +228,7 @@ fn setup(table: &DeTable<'_>, found: &mut Found) -> Setup {
     let server = top.table(found, "server").map(|table| server::server(table, found)).unwrap_or_default();
     let rows = top.rows(found, "devices");
     let devices: Vec<Device> = rows.iter().filter_map(|row| device::read(row, found)).collect();
+    server::encrypted(&server, &devices, found);
     device::one_line_each(&devices, found);
     device::one_address_each(&devices, found);
     let retain = controller.as_ref().and_then(|controller| controller.retain.as_ref());
@@ -281,6 +299,7 @@ fn channel(row: &Row<'_>, input: bool, found: &mut Found) -> Option<Channel> {
             bad,
             message,
             pin,
+            unit: None,
             limits: Limits::default(),
         });
     }
@@ -295,6 +314,7 @@ fn channel(row: &Row<'_>, input: bool, found: &mut Found) -> Option<Channel> {
     let (scale, offset) = (table.number(found, "scale"), table.number(found, "offset"));
     let message = broker::message(&mut table, input, found);
     let pin = field::pin(&mut table, input, found);
+    let unit = table.text(found, "unit");
     let limits = if input { panel::limits(&mut table, found) } else { Limits::default() };
     let bad = if input { table.value(found, "bad") } else { None };
     let bad = match bad {
@@ -308,7 +328,20 @@ fn channel(row: &Row<'_>, input: bool, found: &mut Found) -> Option<Channel> {
     table.end(found);
     let text = text?;
     let (device, point) = point::read(&text.value, text.at, found)?;
-    Some(Channel { variable, device, point, at: text.at, encoding, scale, offset, bad, message, pin, limits })
+    Some(Channel {
+        variable,
+        device,
+        point,
+        at: text.at,
+        encoding,
+        scale,
+        offset,
+        bad,
+        message,
+        pin,
+        unit,
+        limits,
+    })
 }
 
 /// Reads the policy for an input whose value is bad.

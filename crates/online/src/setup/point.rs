@@ -16,6 +16,8 @@ pub enum Point {
     Topic(String),
     /// A metric of Sparkplug; without a name it has that of the variable.
     Metric(Option<String>),
+    /// A node of OPC UA; on a server of our own, without a name, it has that of the variable.
+    Node(Option<String>),
     /// An address of a controller of Siemens.
     S7(Address),
     /// A line of a chip of this machine, by its number there.
@@ -140,6 +142,7 @@ impl std::fmt::Display for Point {
             Point::Modbus(register) => register.fmt(f),
             Point::Topic(topic) => write!(f, "topic({topic})"),
             Point::Metric(name) => write!(f, "metric({})", name.as_deref().unwrap_or("")),
+            Point::Node(name) => write!(f, "node({})", name.as_deref().unwrap_or("")),
             Point::S7(address) => address.fmt(f),
             Point::Line(offset) => write!(f, "line({offset})"),
             Point::Panel(handle) => handle.fmt(f),
@@ -163,7 +166,7 @@ pub(super) fn read(text: &str, at: Span, found: &mut Found) -> Option<(At<String
             found.wrong(at, what).help = Some(
                 "write the device and its point: \"line1.coil(2)\", \"line1.holding(4)\", \
                  \"line1.holding(4.3)\" for one bit, \"broker.topic(plant/level)\", \"plc.DB1.DBX0.0\", \
-                 \"board.line(17)\", \"desk.button()\", \"line1.good()\""
+                 \"board.line(17)\", \"desk.button()\", \"plc.node(ns=2;s=Level)\", \"line1.good()\""
                     .to_owned(),
             );
             None
@@ -225,6 +228,7 @@ fn point(word: &str, argument: &str) -> Result<Point, String> {
             return Ok(Point::Line(u32::from(offset)));
         }
         "metric" => return Ok(Point::Metric(Some(argument.to_owned()).filter(|name| !name.is_empty()))),
+        "node" => return Ok(Point::Node(Some(argument.to_owned()).filter(|name| !name.is_empty()))),
         _ => {}
     }
     if let Some(handle) = panel::handle(word, argument) {

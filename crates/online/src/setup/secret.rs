@@ -21,7 +21,7 @@ pub struct Secret(Vec<u8>);
 
 impl Secret {
     /// The bytes, for the peer alone.
-    pub(crate) fn bytes(&self) -> &[u8] {
+    pub fn bytes(&self) -> &[u8] {
         &self.0
     }
 }

@@ -5,6 +5,7 @@ use std::net::IpAddr;
 
 use g7_model::Nanos;
 
+use super::device::{Device, Kind};
 use super::table::{At, Found, Table};
 
 /// The log of events and deeds.
@@ -58,12 +59,17 @@ pub(super) fn server(mut table: Table<'_>, found: &mut Found) -> Server {
         }
         (Some(_), Some(_)) | (None, None) => {}
     }
-    if let (Some(users), None) = (&read.users, &read.cert) {
+    table.end(found);
+    read
+}
+
+/// Passwords for the page need a certificate; a server of OPC UA has one of its own.
+pub(super) fn encrypted(server: &Server, devices: &[Device], found: &mut Found) {
+    let elsewhere = devices.iter().any(|device| matches!(device.kind, Kind::OpcUaServer(_)));
+    if let (Some(users), None, false) = (&server.users, &server.cert, elsewhere) {
         found.wrong(users.at, "passwords go over encrypted connections alone, and there is no `cert`").help =
             Some("`g7 cert` makes a certificate and its key; name them as `cert` and `key`".to_owned());
     }
-    table.end(found);
-    read
 }
 
 fn host(table: &mut Table<'_>, found: &mut Found) -> Option<At<IpAddr>> {

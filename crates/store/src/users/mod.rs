@@ -32,7 +32,8 @@ pub use password::LEAST;
 /// The application id of the file: `G7US`.
 const KIND: i32 = 0x4737_5553;
 
-const LAYOUTS: [&str; 1] = ["\
+const LAYOUTS: [&str; 2] = [
+    "\
 CREATE TABLE user (
     name TEXT PRIMARY KEY COLLATE NOCASE,
     role TEXT NOT NULL,
@@ -48,7 +49,9 @@ CREATE TABLE session (
     origin TEXT NOT NULL,
     created INTEGER NOT NULL,
     seen INTEGER NOT NULL
-) STRICT;"];
+) STRICT;",
+    "ALTER TABLE user ADD COLUMN changes INTEGER NOT NULL DEFAULT 0;",
+];
 
 /// The rights of a user; each role may do what those before it may.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -114,6 +117,8 @@ pub struct User {
     pub created: u64,
     /// The sessions that are open.
     pub sessions: u64,
+    /// A number that is another one after each change that ends the sessions of the user.
+    pub changes: u64,
 }
 
 /// The SHA-256 of the secret of a session.
@@ -184,15 +189,17 @@ impl Users {
     pub fn list(&self) -> Result<Vec<User>, UserError> {
         let file = self.lock();
         let mut query = file.prepare(
-            "SELECT name, role, created, (SELECT count(*) FROM session WHERE user = name) FROM user ORDER BY name",
+            "SELECT name, role, created, (SELECT count(*) FROM session WHERE user = name), changes
+             FROM user ORDER BY name",
         )?;
         let rows = query.query_map((), |row| {
-            let (created, sessions): (i64, i64) = (row.get(2)?, row.get(3)?);
+            let (created, sessions, changes): (i64, i64, i64) = (row.get(2)?, row.get(3)?, row.get(4)?);
             let user = User {
                 name: row.get(0)?,
                 role: role_of(row.get(1)?)?,
                 created: created as u64,
                 sessions: sessions as u64,
+                changes: changes as u64,
             };
             Ok(user)
         })?;
@@ -231,7 +238,7 @@ impl Users {
         }
         let Kept { memory, passes, salt, hash } = kept;
         let row = params![name, role.word(), memory, passes, salt, hash, now as i64];
-        match step.execute("INSERT INTO user VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7)", row) {
+        match step.execute("INSERT INTO user VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, 0)", row) {
             Err(e) if e.sqlite_error_code() == Some(ErrorCode::ConstraintViolation) => {
                 return refused(format!("there is a user `{name}` already"));
             }
@@ -307,6 +314,7 @@ impl Users {
             .optional()?;
         let Some(was) = was else { return refused(format!("there is no user `{name}`")) };
         step.execute("DELETE FROM session WHERE user = ?1", [name])?;
+        step.execute("UPDATE user SET changes = changes + 1 WHERE name = ?1", [name])?;
         work(&step, was)?;
         Ok(step.commit()?)
     }

@@ -88,8 +88,14 @@ fn each_change_of_a_user_ends_the_sessions() {
         let all = users.sessions().expect("read");
         assert_eq!(all.iter().find(of_bob).map(|s| s.hash), Some(session_hash(&secret)));
         let before = users.version().expect("read");
+        let of = |users: &Users| {
+            let all = users.list().expect("read");
+            all.into_iter().find(|user| user.name == "bob").map(|user| (user.created, user.changes))
+        };
+        let was = of(&users);
         change(&Users::open(&path).expect("another process")).expect("changed");
         assert_ne!(users.version().expect("read"), before);
+        assert_ne!(of(&users), was);
         let all = users.sessions().expect("read");
         assert!(all.iter().all(|s| s.user == "ana") && !all.is_empty());
     }
@@ -99,4 +105,17 @@ fn each_change_of_a_user_ends_the_sessions() {
     assert_eq!(users.sessions().expect("read").iter().find(|s| s.hash == hash).map(|s| s.seen), Some(9));
     users.end(&hash).expect("ended");
     assert!(users.sessions().expect("read").iter().all(|s| s.hash != hash));
+}
+
+#[test]
+fn a_file_of_the_first_layout_is_taken_over() {
+    let path = path("layout");
+    let old = file::open(&path, KIND, &LAYOUTS[..1], Durable::AtOnce).expect("made");
+    let Kept { memory, passes, salt, hash } = Kept::of(PASSWORD).expect("hashed");
+    let row = params!["ana", "admin", memory, passes, salt, hash, 1];
+    old.execute("INSERT INTO user VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7)", row).expect("written");
+    drop(old);
+    let users = Users::open(&path).expect("opened");
+    assert_eq!(users.check("ana", PASSWORD).expect("checked"), Some(("ana".to_owned(), Role::Admin)));
+    assert_eq!(users.list().expect("read")[0].changes, 0);
 }

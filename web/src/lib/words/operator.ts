@@ -169,5 +169,6 @@ export const operator = {
   'op.ev.input': ['{device}: {name} has a value again', '{device} : {name} a de nouveau une valeur', '{device}: {name} tem valor outra vez'],
   'op.ev.no-output': ['{device} refuses {name}: {why}', '{device} refuse {name} : {why}', '{device} recusa {name}: {why}'],
   'op.ev.output': ['{device} takes {name} again', '{device} accepte de nouveau {name}', '{device} aceita {name} outra vez'],
+  'op.ev.note': ['{device}: {why}', '{device} : {why}', '{device}: {why}'],
   'op.ev.limited': ['{device}: {name} is limited to what its point holds', '{device} : {name} est limitée à ce que son point peut tenir', '{device}: {name} está limitado ao que o seu ponto comporta'],
 } as const satisfies Words;

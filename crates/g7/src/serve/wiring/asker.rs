@@ -67,7 +67,7 @@ fn ask(mut sight: Sight, io: &std::path::Path) -> Value {
         for _ in 0..AT_ONCE.min(groups.len()) {
             scope.spawn(|| {
                 while let Some(group) = groups.get(next.fetch_add(1, Ordering::Relaxed)) {
-                    let mut clients = Clients::default();
+                    let mut clients = crate::brought::clients();
                     let all: Vec<Heard> = group.iter().map(|wired| one(&mut clients, wired)).collect();
                     heard.lock().unwrap_or_else(PoisonError::into_inner).extend(all);
                 }
@@ -135,11 +135,12 @@ fn groups(sight: &Sight, but: &[Device]) -> Vec<Vec<Wired>> {
 fn one(clients: &mut Clients, wired: &Wired) -> Heard {
     let name = wired.device.name.value.clone();
     let probed = match &wired.device.kind {
-        Kind::ModbusServer(_) => {
+        Kind::ModbusServer(_) | Kind::OpcUaServer(_) => {
             return Heard { name, device: json!({ "is": "server" }), values: Vec::new() };
         }
         Kind::Panel(_) => return Heard { name, device: json!({ "is": "panel" }), values: Vec::new() },
         Kind::Mqtt(broker) => hear(broker, wired),
+        Kind::OpcUa(_) => g7_online::ask(clients, wired),
         Kind::ModbusTcp(..) | Kind::ModbusRtu(..) | Kind::S7(_) | Kind::Gpio(_) => {
             let asked: Vec<Wire> = wires(wired).into_iter().map(|(_, wire, _)| wire.clone()).collect();
             probe(clients, &wired.device, &asked)

@@ -13,7 +13,7 @@ use crate::device::{Absent, Device, Failed};
 use crate::setup::{Broker, Sparkplug};
 use crate::value::{Raw, Scaling};
 use crate::wire::Wire;
-use crate::wiring::Wired;
+use crate::wired::Wired;
 
 use super::connection::{About, Connection, Message, Opening};
 use payload::{Datatype, Metric, Payload, Value};
