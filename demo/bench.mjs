@@ -47,7 +47,7 @@ writeFileSync(join(folder, 'sorter.io.toml'), io);
 // would become another user, who may not write here.
 writeFileSync(
   join(folder, 'mosquitto.conf'),
-  [`listener ${ports.broker} 127.0.0.1`, 'allow_anonymous true', `user ${userInfo().username}`, 'persistence true', `persistence_location ${folder}/`, 'autosave_interval 1', ''].join('\n'),
+  [`listener ${ports.broker} 127.0.0.1`, 'allow_anonymous true', `user ${userInfo().username}`, 'persistence true', `persistence_location ${folder}/`, 'autosave_interval 1', 'log_type error', 'log_type warning', 'log_type notice', ''].join('\n'),
 );
 
 const pages = new Set();

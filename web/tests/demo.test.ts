@@ -52,7 +52,7 @@ test('each part of the bench is unplugged and plugged, and the operator sees it'
     await page.locator('#log').getByText('unit does not answer').first().waitFor();
     if ((await part(page, 'broker').locator('.state').innerText()) !== 'not installed') {
       await page.locator('#log').getByText('sorter/status online').first().waitFor();
-      const missed = page.locator('#log').getByText(/sorter\/events .*"kind":"down","device":"unit"/);
+      const missed = page.locator('#log').getByText(/sorter\/events .*"device":"unit","kind":"down"/);
       await missed.nth(1).waitFor();
       const heard = await missed.count();
       await told(operator, 'broker does not answer', () => act(page, 'broker', 'Kill'));

@@ -154,6 +154,7 @@ impl Told {
         let (bad, warn) = (style::BAD, style::WARN);
         Some(match self {
             Told::Mode(mode) => mode_text(names, *mode),
+            Told::Missed(1) => "1 scan came too late and was left out".to_owned(),
             Told::Missed(n) => format!("{n} scans came too late and were left out"),
             Told::Forced(force) => {
                 let (name, value) = names.value_of(*force);
