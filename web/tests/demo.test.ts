@@ -56,7 +56,7 @@ test('each part of the bench is unplugged and plugged, and the operator sees it'
       await missed.nth(1).waitFor();
       const heard = await missed.count();
       await told(operator, 'broker does not answer', () => act(page, 'broker', 'Kill'));
-      // What happens now waits for the broker.
+      // The events from here on wait for the broker.
       await told(operator, 'unit does not answer', () => act(page, 'machine', 'Unplug'));
       await told(operator, 'unit answers', () => act(page, 'machine', 'Plug in'));
       await operator.locator('.mode.run').waitFor();

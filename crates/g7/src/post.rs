@@ -171,8 +171,8 @@ impl Keeper {
             if let Some(number) = dropped {
                 self.drops = true;
                 // The row that says so has this number, and follows.
-                self.mail.forget(number);
-                self.last = self.last.min(number - 1);
+                self.mail.begin_anew();
+                self.last = number - 1;
             }
         }
         let room = self.mail.room();
@@ -225,7 +225,7 @@ mod tests {
         let mut all = Vec::new();
         loop {
             keeper.step(&[]);
-            let Some(letter) = keeper.mail.next(0) else { return all };
+            let Some((_, letter)) = keeper.mail.next(0, 0) else { return all };
             keeper.mail.take(letter.number);
             all.push(serde_json::from_slice(&letter.payload).expect("JSON"));
         }
@@ -267,6 +267,45 @@ mod tests {
         assert_eq!((keeper.outbox.count(), keeper.outbox.bytes()), (0, 0));
         let held = format!("{last} dropped and told, {} came, in order", DAY - last);
         g7_peers::faults::row(16, "one event a second", DAY, 0, held);
+    }
+
+    /// A broker that takes less than there is, over connections that break with letters on their way.
+    #[test]
+    fn row_16_a_slow_broker_hears_which_events_were_dropped() {
+        let mut keeper = keeper("slow", Limits { count: 300, bytes: 1 << 20 });
+        let noted: Vec<Noted> = (0..3_000).map(|n| (1_000 * n, json!({ "kind": "forced" }))).collect();
+        let (mut heard, mut turn, mut sent) = (Vec::new(), 0, i64::MIN);
+        let mut on_the_way: Vec<Letter> = Vec::new();
+        for (round, some) in noted.chunks(24).enumerate() {
+            keeper.step(some);
+            if round % 7 == 6 {
+                on_the_way.clear();
+                sent = i64::MIN;
+            }
+            for letter in on_the_way.drain(..) {
+                keeper.mail.take(letter.number);
+                heard.push(letter.payload);
+            }
+            for _ in 0..20 {
+                let Some((of, letter)) = keeper.mail.next(turn, sent) else { break };
+                (turn, sent) = (of, letter.number);
+                on_the_way.push(letter);
+            }
+        }
+        let late = taken(&mut keeper).into_iter();
+        let events = heard.iter().map(|bytes| serde_json::from_slice(bytes).expect("JSON")).chain(late);
+        // Each number is an event, or between the first and the last of those that were dropped.
+        let (mut known, mut drops) = (0, 0);
+        for event in events {
+            let number = event["number"].as_u64().expect("a number");
+            let first = event["first"].as_u64().unwrap_or(number);
+            assert!(first <= known + 1, "{event} follows {known}");
+            known = known.max(number);
+            drops += u64::from(event["kind"] == "dropped");
+        }
+        assert_eq!(known, 3_000);
+        assert!(drops > 1, "the broker was too slow more than once");
+        assert_eq!(keeper.outbox.count(), 0);
     }
 
     #[test]

@@ -4,6 +4,9 @@
 //! The keeper puts letters in, oldest first; the device publishes them and says which the broker has
 //! taken. A letter stays here until then, so that a new connection begins with the oldest one again.
 //! Neither side waits for the other.
+//!
+//! Where the oldest were dropped, the letter that says so stands in front, and each such drop begins a new
+//! turn: what is on its way is sent again behind that letter, so that the order holds.
 
 use std::collections::VecDeque;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -23,6 +26,8 @@ pub struct Letter {
 #[derive(Debug, Default)]
 struct Tray {
     ready: VecDeque<Letter>,
+    /// How often letters were dropped.
+    turn: u64,
     taken: Vec<i64>,
     refused: Option<String>,
 }
@@ -47,9 +52,12 @@ impl Mail {
         self.lock().ready.extend(letters);
     }
 
-    /// Takes the letters out that nobody is to have any more: those up to a number.
-    pub fn forget(&self, number: i64) {
-        self.lock().ready.retain(|letter| letter.number > number);
+    /// Empties the window, because the oldest letters were dropped: the keeper puts the rest in anew, the letter
+    /// that tells of it first.
+    pub fn begin_anew(&self) {
+        let mut tray = self.lock();
+        tray.ready.clear();
+        tray.turn += 1;
     }
 
     /// The numbers of the letters that the broker has taken since the last call.
@@ -62,15 +70,17 @@ impl Mail {
         self.lock().refused.clone()
     }
 
-    /// The first letter behind a number, for the device.
-    pub fn next(&self, number: i64) -> Option<Letter> {
+    /// The first letter behind a number, for the device, and the turn that it belongs to. Where that is another
+    /// one than the device knows, it is the first letter of all.
+    pub fn next(&self, turn: u64, number: i64) -> Option<(u64, Letter)> {
         // Numbers grow, so the letters that are on their way stand in front.
         let tray = self.lock();
-        let at = tray.ready.partition_point(|letter| letter.number <= number);
-        tray.ready.get(at).cloned()
+        let at = if turn == tray.turn { tray.ready.partition_point(|l| l.number <= number) } else { 0 };
+        Some((tray.turn, tray.ready.get(at)?.clone()))
     }
 
-    /// Notes that the broker has taken a letter.
+    /// Notes that the broker has taken a letter. What came before it on the connection was taken as well, so
+    /// it may be the one that tells of a drop up to this number, too.
     pub fn take(&self, number: i64) {
         let mut tray = self.lock();
         tray.ready.retain(|letter| letter.number != number);

@@ -7,7 +7,7 @@
 //! An answer on a serial line does not say what it is an answer to. So after an answer that did not come,
 //! or was none, a slave is first asked for an echo with a number of its own (application protocol 1.1b3,
 //! 6.8): a slave answers in turn, so what comes behind the echo is not late. A slave that does not know the
-//! echo says so, which serves as well.
+//! echo refuses it; as refusals have no number, there must be as many as echoes were asked for.
 
 use std::collections::BTreeMap;
 use std::future::{Future, ready};
@@ -37,17 +37,45 @@ const LONGEST: usize = 256;
 
 /// The function of diagnostics, of which sub-function 0 is the echo.
 const ECHO: u8 = 8;
-/// Echoes that a slave is asked for in vain. One that knows no diagnostics and is silent about it is asked
-/// without them then; so many time-outs have passed.
-const ECHOES: u8 = 3;
+/// A slave that has said nothing for so many time-outs has nothing left to answer. One that was never heard
+/// about an echo is asked without it then.
+const SILENT: u8 = 3;
+/// Echoes that a slave is asked for in vain, whatever it said before: it may be another slave by now.
+const ECHOES: u8 = 100;
 /// Bytes that are looked through for an echo at most.
 const NOISE: usize = 4096;
+
+/// How a slave answers a request for an echo.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+enum Habit {
+    /// It has never answered one.
+    #[default]
+    Unknown,
+    /// By the same bytes.
+    Echoes,
+    /// By an exception.
+    Refuses,
+}
+
+/// The answers of a unit that are outstanding.
+#[derive(Clone, Copy, Debug, Default)]
+struct Unit {
+    habit: Habit,
+    /// It may still answer an earlier request.
+    late: bool,
+    /// Echoes that it was asked for and has neither given nor refused.
+    owed: usize,
+    /// The number of the last of them.
+    number: u16,
+    /// Attempts since the answer that is late, and how many of the last ones heard nothing.
+    tries: u8,
+    silent: u8,
+}
 
 /// A line that is open.
 struct Open {
     port: SerialPort,
-    /// Units that may still answer an earlier request, with the echoes that they were asked for.
-    late: BTreeMap<u8, u8>,
+    units: BTreeMap<u8, Unit>,
     /// The number of the last echo.
     echo: u16,
 }
@@ -75,7 +103,7 @@ impl Line {
         let mut slot = self.lock();
         if slot.is_none() {
             let port = SerialPort::open(&self.serial.port, |settings: Settings| self.configure(settings))?;
-            *slot = Some(Open { port, late: BTreeMap::new(), echo: 0 });
+            *slot = Some(Open { port, units: BTreeMap::new(), echo: 0 });
         }
         Ok(())
     }
@@ -127,39 +155,74 @@ impl Slave {
             Ok(_) => {}
             // The adapter is gone; the next attempt opens the line anew.
             Err(ModbusError::Io { .. }) => *slot = None,
-            Err(_) => drop(open.late.entry(unit).or_insert(0)),
+            Err(_) => open.units.entry(unit).or_default().late = true,
         }
         answer
     }
 
     /// Waits until a unit has answered all that it was asked before.
     fn agree(&self, open: &mut Open, unit: u8) -> ModbusResult<()> {
-        let Some(tries) = open.late.get_mut(&unit) else { return Ok(()) };
-        *tries += 1;
-        if *tries > ECHOES {
-            open.late.remove(&unit);
+        let Open { port, units, echo } = open;
+        let Some(state) = units.get_mut(&unit).filter(|state| state.late) else { return Ok(()) };
+        if state.silent >= SILENT {
+            state.owed = 0;
+        }
+        if state.tries >= ECHOES || (state.silent >= SILENT && state.habit == Habit::Unknown) {
+            *state = Unit::default();
             return Ok(());
         }
-        open.echo = open.echo.wrapping_add(1);
-        let [high, low] = open.echo.to_be_bytes();
-        let frame = checked(vec![unit, ECHO, 0, 0, high, low]);
-        self.send(&mut open.port, &frame)?;
-        let mut heard = Vec::new();
-        let mut clock = WallClock::default();
-        while !is_echo(&heard, &frame) {
+        state.tries += 1;
+        // Refusals of several echoes cannot be told apart, so a new one waits for those before it.
+        if state.owed == 0 || state.habit == Habit::Echoes {
+            *echo = echo.wrapping_add(1);
+            (state.number, state.owed) = (*echo, state.owed + 1);
+            std::thread::sleep(self.line.silence());
+            self.write(port, &request_of_echo(unit, *echo))?;
+        }
+        let (mut heard, mut clock) = (Vec::new(), WallClock::default());
+        let answered = self.hear_echo(port, state, unit, &mut clock, &mut heard);
+        match answered {
+            Ok(habit) => *state = Unit { habit, ..Unit::default() },
+            Err(_) => {
+                state.silent = if heard.is_empty() { state.silent.saturating_add(1) } else { 0 };
+                state.owed = state.owed.saturating_sub(refusals(&heard, unit));
+            }
+        }
+        answered.map(drop)
+    }
+
+    /// Listens until a unit has answered the last echo, and so all that came before; says how.
+    fn hear_echo(
+        &self,
+        port: &mut SerialPort,
+        state: &Unit,
+        unit: u8,
+        clock: &mut WallClock,
+        heard: &mut Vec<u8>,
+    ) -> ModbusResult<Habit> {
+        let frame = request_of_echo(unit, state.number);
+        loop {
+            if heard.windows(frame.len()).any(|window| window == frame) {
+                return Ok(Habit::Echoes);
+            }
+            if refusals(heard, unit) >= state.owed {
+                return Ok(Habit::Refuses);
+            }
             if heard.len() > NOISE {
                 return Err(ModbusError::Frame { message: "nothing but noise".to_owned() });
             }
-            self.hear(&mut open.port, &mut clock, LONGEST, &mut heard)?;
+            self.hear(port, clock, LONGEST, heard)?;
         }
-        open.late.remove(&unit);
-        Ok(())
     }
 
     /// Sends a frame behind a silence; what has come until then is no answer to it.
     fn send(&self, port: &mut SerialPort, frame: &[u8]) -> ModbusResult<()> {
         std::thread::sleep(self.line.silence());
         port.discard_input_buffer().map_err(broken)?;
+        self.write(port, frame)
+    }
+
+    fn write(&self, port: &mut SerialPort, frame: &[u8]) -> ModbusResult<()> {
         port.set_write_timeout(self.timeout).map_err(broken)?;
         port.write_all(frame).map_err(|e| self.late(e))?;
         port.flush().map_err(broken)
@@ -237,17 +300,23 @@ fn checked(mut frame: Vec<u8>) -> Vec<u8> {
     frame
 }
 
-/// True if the bytes have the answer to a request for an echo: the same, or that it is not known.
-fn is_echo(bytes: &[u8], frame: &[u8]) -> bool {
-    let unknown = |five: &[u8]| match five {
-        [unit, function, code, check @ ..] => {
-            frame.first() == Some(unit)
+/// The request for an echo, which is its answer as well.
+fn request_of_echo(unit: u8, number: u16) -> Vec<u8> {
+    let [high, low] = number.to_be_bytes();
+    checked(vec![unit, ECHO, 0, 0, high, low])
+}
+
+/// How often a unit has refused to echo within these bytes.
+fn refusals(bytes: &[u8], unit: u8) -> usize {
+    let refusal = |five: &&[u8]| match five {
+        [from, function, code, check @ ..] => {
+            *from == unit
                 && *function == ECHO | 0x80
-                && *check == crc(&[*unit, *function, *code]).to_le_bytes()
+                && *check == crc(&[*from, *function, *code]).to_le_bytes()
         }
         _ => false,
     };
-    bytes.windows(frame.len()).any(|window| window == frame) || bytes.windows(5).any(unknown)
+    bytes.windows(5).filter(refusal).count()
 }
 
 fn response(answer: Vec<u8>, unit: u8, asked: ModbusFunction) -> ModbusResult<ModbusResponse> {
@@ -338,15 +407,18 @@ mod tests {
     }
 
     #[test]
-    fn an_echo_is_found_behind_what_is_late() {
-        let asked = checked(vec![7, 8, 0, 0, 0x12, 0x34]);
-        let late = checked(vec![7, 3, 2, 0, 9]);
-        assert!(!is_echo(&late, &asked));
-        assert!(is_echo(&[late.clone(), asked.clone()].concat(), &asked));
-        assert!(!is_echo(&checked(vec![7, 8, 0, 0, 0x12, 0x33]), &asked), "the echo before");
-        assert!(is_echo(&[late, checked(vec![7, 0x88, 1])].concat(), &asked), "no such function");
-        assert!(!is_echo(&checked(vec![8, 0x88, 1]), &asked), "another unit");
-        assert!(!is_echo(&[7, 0x88, 1, 0, 0], &asked), "checksum");
+    fn refusals_are_counted_for_their_unit() {
+        let (late, refusal) = (checked(vec![7, 3, 2, 0, 9]), checked(vec![7, 0x88, 1]));
+        assert_eq!(refusals(&late, 7), 0);
+        assert_eq!(refusals(&[late.clone(), refusal.clone(), late, refusal].concat(), 7), 2);
+        assert_eq!(refusals(&checked(vec![8, 0x88, 1]), 7), 0, "another unit");
+        assert_eq!(refusals(&[7, 0x88, 1, 0, 0], 7), 0, "checksum");
+    }
+
+    #[test]
+    fn an_echo_has_its_number() {
+        assert_eq!(request_of_echo(7, 0x1234)[..6], [7, 8, 0, 0, 0x12, 0x34]);
+        assert_ne!(request_of_echo(7, 0x1234), request_of_echo(7, 0x1233));
     }
 
     #[test]

@@ -17,7 +17,8 @@ const AGAIN: Nanos = Nanos::from_millis(2_000);
 pub(super) struct Events {
     topic: String,
     mail: Mail,
-    /// The number of the last letter that this connection has.
+    /// The last letter that this connection has: its turn and its number.
+    turn: u64,
     sent: i64,
     /// Those of them that the broker has not answered.
     open: usize,
@@ -27,7 +28,7 @@ pub(super) struct Events {
 
 impl Events {
     pub(super) fn new(topic: String, mail: Mail) -> Events {
-        Events { topic, mail, sent: i64::MIN, open: 0, refused: None }
+        Events { topic, mail, turn: 0, sent: i64::MIN, open: 0, refused: None }
     }
 
     /// Begins with the oldest letter: the connection is a new one.
@@ -57,13 +58,13 @@ impl Events {
             self.begin();
         }
         while self.open < AHEAD {
-            let Some(letter) = self.mail.next(self.sent) else { return };
+            let Some((turn, letter)) = self.mail.next(self.turn, self.sent) else { return };
             let (topic, payload) = (self.topic.clone(), letter.payload);
             let message = Message { topic, payload, acknowledged: true, retain: false };
             if !connection.publish(About::Event(letter.number), &message) {
                 return;
             }
-            self.sent = letter.number;
+            (self.turn, self.sent) = (turn, letter.number);
             self.open += 1;
         }
     }

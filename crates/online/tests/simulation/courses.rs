@@ -65,7 +65,7 @@ fn clock() -> std::time::Instant {
     std::time::Instant::now()
 }
 
-/// What one thread has found.
+/// The findings of one thread.
 #[derive(Default)]
 struct Part {
     failed: Vec<u64>,
