@@ -97,7 +97,7 @@ fn row_25_a_changed_byte_of_a_log_is_found() {
     }
     folder.write("g7.log", &whole);
     folder.g7(&["log", "g7.log", "--check"]).is(0);
-    println!("row 25: {found} changes of rows, all found");
+    g7_peers::faults::row(25, "changed rows of a log", found, 0, "all found");
 }
 
 #[test]

@@ -2,6 +2,7 @@
 
 use std::net::IpAddr;
 
+use g7_peers::faults::row;
 use g7_store::log::{Filter, Keep, Log, Opened, Reader};
 use g7_store::users::{Role, Users};
 use rcgen::{CertificateParams, KeyPair, date_time_ymd};
@@ -252,7 +253,7 @@ async fn the_first_admin_is_made_with_the_code_of_the_console_once() {
 #[tokio::test]
 async fn row_24_guesses_are_throttled_and_stand_in_the_log() {
     let site = Site::new().await;
-    let guesses = if std::env::var_os("G7_FAULTS").is_some() { 10_000 } else { 60 };
+    let guesses = if g7_peers::faults::many() { 10_000 } else { 60 };
     let (mut checked, mut refused) = (0, 0);
     for k in 0..guesses {
         match site.login("ana", &format!("guess number {k}")).await {
@@ -261,12 +262,18 @@ async fn row_24_guesses_are_throttled_and_stand_in_the_log() {
             other => panic!("{other:?}"),
         }
     }
-    println!("row 24: {guesses} guesses, {checked} checked, {refused} refused");
     assert!(refused > 0 && checked >= 10, "ten a minute are checked");
     assert!(guesses > 1_000 || checked == 10 || checked == 20, "{checked}");
     // Also with the right one: whoever guesses does not learn that it is right.
     assert_eq!(site.login("ana", PASSWORD).await, Err(429));
     assert_eq!(site.rows("login-refused", checked).await.len(), checked);
+    row(
+        24,
+        "guessed passwords",
+        guesses,
+        0,
+        format!("{checked} checked and in the log, {refused} refused at once"),
+    );
 }
 
 #[tokio::test]
@@ -285,6 +292,7 @@ async fn row_24_a_session_that_is_over_is_not_taken_again() {
     let twice = format!("{0}; __Host-g7={0}", site.session("op"));
     site.ask("GET", "/api/info", &twice, "").await.is(401);
     assert_eq!(site.rows("logout", 1).await.len(), 1);
+    row(24, "sessions that are over, stolen hashes, two at once", 4, 0, "refused");
 }
 
 #[tokio::test]
@@ -312,10 +320,9 @@ async fn row_24_a_revoked_session_ends_its_socket_and_a_smaller_role_its_deeds()
     let begin = std::time::Instant::now();
     Users::open(&site.server.root.join("users")).expect("open").revoke("vi").expect("revoked");
     over(&mut live).await;
-    println!(
-        "row 24: a socket ends {} ms after its session was revoked elsewhere",
-        begin.elapsed().as_millis()
-    );
+    let ms = begin.elapsed().as_millis();
+    let held = format!("sockets end with a reason; {ms} ms after another program revoked the session");
+    row(24, "changed, revoked and removed users", 6, 0, held);
     assert_eq!(site.rows("user-role", 2).await.len(), 2);
 }
 
@@ -362,6 +369,7 @@ async fn row_24_foreign_sites_are_refused_with_a_session_as_well_and_stand_in_th
             format!("GET /api/session HTTP/1.1\r\nConnection: close\r\nHost: {host}:{port}\r\n\r\n");
         assert_eq!(site.raw(request.as_bytes()).await.status, status, "{host}");
     }
+    row(24, "foreign sites and names, WebSockets too", 7, 0, "refused, in the log");
 }
 
 #[tokio::test]
@@ -378,6 +386,7 @@ async fn row_25_users_and_files_are_not_changed_while_the_log_cannot_be_written(
     site.ask("POST", "/api/new", &eng, &new).await.is(507);
     assert!(!site.server.path("n.g7").exists());
     site.ask("GET", "/api/file?path=chart.g7", &eng, "").await.is(200);
+    row(25, "a log that cannot be written", 2, 0, "users and files are not changed");
 }
 
 #[tokio::test]
@@ -426,7 +435,7 @@ async fn row_22_without_tls_a_crowd_hears_429() {
         Rules::of(&args_of(&server.root.join("charts")), None, &Audit::default(), None).expect("they fit");
     let app = app(Arc::clone(&server.shared), rules.guard(Pass::Token("t".to_owned()), bound));
     let task = tokio::spawn(listen::listen(listener, app, Door { from_one: 8, ..Door::default() }));
-    let crowd = if std::env::var_os("G7_FAULTS").is_some() { 10_000 } else { 300 };
+    let crowd = if g7_peers::faults::many() { 10_000 } else { 300 };
     let (mut held, mut refused) = (Vec::new(), 0);
     for _ in 0..crowd {
         let mut stream = TcpStream::connect(bound).await.expect("a connection");
@@ -439,7 +448,7 @@ async fn row_22_without_tls_a_crowd_hears_429() {
         assert_eq!(reply(&bytes).status, 429);
         refused += 1;
     }
-    println!("row 22: {crowd} connections from one address, {refused} refused");
+    row(22, "connections from one address, 8 allowed", crowd, 0, format!("{refused} heard 429"));
     drop(held);
     task.abort();
 }
