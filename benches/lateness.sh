@@ -102,7 +102,7 @@ for load in idle busy; do
     for period in 1 10; do
       read -r -a g7s <<<"$(ours $period "$pages")"
       read -r -a cyc <<<"$(theirs $period "$pages")"
-      ratio=$(awk -v a="${g7s[2]}" -v b="${cyc[2]}" 'BEGIN { printf "%.2f", b > 0 ? a / b : 0 }')
+      ratio=$(awk -v a="${g7s[2]}" -v b="${cyc[2]}" 'BEGIN { printf "%.2f", (b > 0) ? a / b : 0 }')
       line "$load, $pages pages, $period ms" "${g7s[@]}" "${cyc[@]}" "$ratio"
     done
   done

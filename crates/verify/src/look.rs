@@ -141,9 +141,11 @@ pub(crate) fn shows(p: &Program, claim: &Claim, scanned: &Scanned<'_>) -> bool {
     let (t, s) = (p.tables(), scanned.state);
     let fault = scanned.report.err().map(|f| f.kind);
     match claim {
-        // A step counts too if it was active only within the scan.
+        // A step counts too if it was active only within the scan, as the initial situation may be.
         Claim::Active(step) => {
-            s.is_active(*step) || s.cleared().iter().any(|r| sides(t, *r).1.contains(&step.0))
+            s.is_active(*step)
+                || t.initial.contains(step)
+                || s.cleared().iter().any(|r| sides(t, *r).1.contains(&step.0))
         }
         Claim::Clears(rank) => s.cleared().contains(rank),
         Claim::Runs(rank) => s.ran().contains(rank),

@@ -95,6 +95,15 @@ fn what_is_never_reached_is_found() {
     assert_eq!(answer(DOOR, |c| *c == Claim::NoInstability), "R1");
 }
 
+/// The initial situation is the first one, also where it is left in the same evolution.
+#[test]
+fn an_initial_step_that_is_left_at_once_was_active() {
+    let chart = "input a : BOOL\nchart G {\n  initial step 1\n  step 2\n  step 3\n  1 -> 2 when TRUE\n  \
+                 2 -> 3 when a\n  3 -> 2 when not a\n}\n";
+    let found = answer(chart, |c| *c == Claim::Active(StepId(0)));
+    assert!(found.starts_with('P'), "{found}");
+}
+
 #[test]
 fn deadlocks_are_told_apart_from_ends() {
     let wait = "input a, b : BOOL\nchart G { initial step 1 step 2 1 -> 2 when a 2 -> 1 when b }\n";
