@@ -27,7 +27,8 @@ chart Main {
 }
 ";
 
-const PATIENCE: Duration = Duration::from_secs(120);
+/// Longer than the longest look at the pages, which is five minutes.
+const PATIENCE: Duration = Duration::from_secs(420);
 
 /// Serves the chart on line; returns the address of the operator's page without `http://`. The events go to the
 /// file `events`.
