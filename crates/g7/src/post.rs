@@ -161,13 +161,19 @@ impl Keeper {
             self.drops = false;
         }
         if !self.held.is_empty() {
-            if self.lost > 0 {
+            let tells = self.lost > 0;
+            if tells {
                 let at = self.held.front().map_or(0, |(at, _)| *at);
                 self.held.push_front((at, lost(self.lost).to_string()));
-                self.lost = 0;
             }
-            let dropped = self.outbox.add(self.held.make_contiguous())?;
+            let added = self.outbox.add(self.held.make_contiguous());
+            if tells && added.is_err() {
+                // It is written anew with the next attempt, by which more may be lost.
+                self.held.pop_front();
+            }
+            let dropped = added?;
             self.held.clear();
+            self.lost = 0;
             if let Some(number) = dropped {
                 self.drops = true;
                 // The row that says so has this number, and follows.
@@ -306,6 +312,30 @@ mod tests {
         assert_eq!(known, 3_000);
         assert!(drops > 1, "the broker was too slow more than once");
         assert_eq!(keeper.outbox.count(), 0);
+    }
+
+    #[test]
+    fn events_that_the_disk_refuses_are_kept_or_counted() {
+        let mut keeper = keeper("refused", Limits { count: 100_000, bytes: 1 << 30 });
+        let other = rusqlite::Connection::open(
+            std::env::temp_dir().join(format!("g7-post-refused-{}/events", std::process::id())),
+        );
+        let other = other.expect("opened");
+        let refuse = "CREATE TRIGGER no BEFORE INSERT ON waiting BEGIN SELECT RAISE(ABORT, 'no'); END";
+        other.execute_batch(refuse).expect("refuses from here on");
+        let some = |from: u64| -> Vec<Noted> {
+            (from..from + 4_000).map(|n| (1_000 * n, json!({ "kind": "forced", "value": n }))).collect()
+        };
+        for from in [0, 4_000, 8_000, 12_000] {
+            keeper.step(&some(from));
+        }
+        assert!(keeper.told.as_ref().is_some_and(|why| why.contains("cannot be written")));
+        other.execute_batch("DROP TRIGGER no").expect("takes them again");
+        let events = taken(&mut keeper);
+        assert_eq!((events[0]["kind"].as_str(), events[0]["count"].as_u64()), (Some("lost"), Some(6_000)));
+        // Those behind the lost ones are all there, in order.
+        let values: Vec<u64> = events[1..].iter().filter_map(|event| event["value"].as_u64()).collect();
+        assert_eq!(values, (6_000..16_000).collect::<Vec<u64>>());
     }
 
     #[test]
