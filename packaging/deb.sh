@@ -4,10 +4,10 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 machine=${1:-$(uname -m)}
-case $machine in
-  x86_64) architecture=amd64 ;;
-  aarch64) architecture=arm64 ;;
-  *) echo "deb: x86_64 or aarch64, not $machine" >&2; exit 2 ;;
+target=$(packaging/target.sh "$machine")
+case $target in
+  aarch64-*) architecture=arm64 ;;
+  *) architecture=amd64 ;;
 esac
 program=$(packaging/static.sh "$machine")
 version=$(sed -n '/^\[workspace.package\]/,/^$/s/^version = "\(.*\)"/\1/p' Cargo.toml)

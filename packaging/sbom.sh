@@ -4,11 +4,7 @@
 # packaging/sbom.sh [x86_64|aarch64]. Prints the paths of the two lists.
 set -euo pipefail
 cd "$(dirname "$0")/.."
-machine=${1:-$(uname -m)}
-case $machine in
-  x86_64 | aarch64) target=$machine-unknown-linux-musl ;;
-  *) echo "sbom: x86_64 or aarch64, not $machine" >&2; exit 2 ;;
-esac
+target=$(packaging/target.sh "${1:-}")
 out=${CARGO_TARGET_DIR:-target}/sbom
 mkdir -p "$out"
 # Written beside each crate of the workspace; the one of the program lists all that it is made of.

@@ -4,10 +4,7 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 machine=${1:-$(uname -m)}
-case $machine in
-  x86_64 | aarch64) target=$machine-unknown-linux-musl ;;
-  *) echo "static: x86_64 or aarch64, not $machine" >&2; exit 2 ;;
-esac
+target=$(packaging/target.sh "$machine")
 rustup target list --installed | grep -qx "$target" || rustup target add "$target" >&2
 folder=$PWD/${CARGO_TARGET_DIR:-target}/zig
 case ${CARGO_TARGET_DIR:-} in /*) folder=$CARGO_TARGET_DIR/zig ;; esac

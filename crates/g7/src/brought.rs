@@ -7,7 +7,7 @@ use std::path::Path;
 use g7_online::setup::{Kind, OpcUaServer};
 use g7_online::{Clients, Wiring};
 
-use crate::failure::Failure;
+use crate::failure::{Failure, unlogged};
 
 /// The clients and servers of a machine, with all kinds of this build. Nobody logs in to them.
 pub(crate) fn clients() -> Clients {
@@ -67,10 +67,7 @@ fn reachable(at: SocketAddr, users: bool, logged: bool) -> Result<(), String> {
         return Err(format!("{at} is reached from other machines, and there are no users: {USERS}, {here}"));
     }
     if !logged {
-        return Err(format!(
-            "{at} is reached from other machines: what people do at a machine from there is written down; name a \
-             `log` in [controller] of the io file"
-        ));
+        return Err(unlogged(&at));
     }
     Ok(())
 }

@@ -57,6 +57,14 @@ pub(crate) fn refused(error: io::Error) -> Failure {
     Failure::Usage(format!("the system refuses: {}", plain(&error)))
 }
 
+/// The deeds of people at a machine from elsewhere are written down, and there is no log for that.
+pub(crate) fn unlogged(at: &dyn std::fmt::Display) -> String {
+    format!(
+        "{at} is reached from other machines: what people do at a machine from there is written down; name a \
+         `log` in [controller] of the io file"
+    )
+}
+
 /// The result of a command.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Verdict {

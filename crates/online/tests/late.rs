@@ -241,6 +241,25 @@ fn wrong(kind: u64, request: &[u8], random: &mut Random) -> (Vec<u8>, bool) {
     (frame, kind != 14)
 }
 
+/// Exchanges with a slave that gives wrong answers of some kinds: a value is right, or there is none.
+fn no_wrong_value(part: &str, rows: &str, wanted: u64, kinds: u64) {
+    let (mut device, mut up, mut good) = (device(rows), false, 0);
+    for _ in 0..wanted {
+        let Some(values) = exchange(&mut *device, &mut up) else { continue };
+        for (value, address) in values.iter().zip(ADDRESSES) {
+            match value {
+                Ok(raw) => assert_eq!(*raw, Raw::Whole(i128::from(1000 + address))),
+                // An exception is an answer.
+                Err(why) => assert!(matches!(why, Absent::Refused(_)), "{why:?}"),
+            }
+        }
+        good += u64::from(values.iter().all(Result::is_ok));
+    }
+    assert!(good > 0, "right answers are taken");
+    let held = format!("{kinds} kinds of answers, {good} exchanges were right, no wrong value");
+    row(10, part, wanted, 0, held);
+}
+
 #[test]
 fn row_10_wrong_answers_over_tcp_give_no_value() {
     let (listener, rows) = listen();
@@ -259,27 +278,7 @@ fn row_10_wrong_answers_over_tcp_give_no_value() {
             serve(stream, &mut random);
         }
     });
-    let (mut device, mut up, mut good) = (device(&rows), false, 0);
-    let wanted = trials(1_000_000, 2_000);
-    for _ in 0..wanted {
-        let Some(values) = exchange(&mut *device, &mut up) else { continue };
-        for (value, address) in values.iter().zip(ADDRESSES) {
-            match value {
-                Ok(raw) => assert_eq!(*raw, Raw::Whole(i128::from(1000 + address))),
-                // An exception is an answer.
-                Err(why) => assert!(matches!(why, Absent::Refused(_)), "{why:?}"),
-            }
-        }
-        good += u64::from(values.iter().all(Result::is_ok));
-    }
-    assert!(good > 0, "right answers are taken");
-    row(
-        10,
-        "TCP",
-        wanted,
-        0,
-        format!("{KINDS} kinds of answers, {good} exchanges were right, no wrong value"),
-    );
+    no_wrong_value("TCP", &rows, trials(1_000_000, 2_000), KINDS);
 }
 
 #[test]
@@ -308,18 +307,5 @@ fn row_10_wrong_answers_over_a_serial_line_give_no_value() {
             }
         }
     });
-    let (mut device, mut up, mut good) = (device(&rows), false, 0);
-    let wanted = trials(20_000, 60);
-    for _ in 0..wanted {
-        let Some(values) = exchange(&mut *device, &mut up) else { continue };
-        for (value, address) in values.iter().zip(ADDRESSES) {
-            match value {
-                Ok(raw) => assert_eq!(*raw, Raw::Whole(i128::from(1000 + address))),
-                Err(why) => assert!(matches!(why, Absent::Refused(_)), "{why:?}"),
-            }
-        }
-        good += u64::from(values.iter().all(Result::is_ok));
-    }
-    assert!(good > 0, "right answers are taken");
-    row(10, "RTU", wanted, 0, format!("9 kinds of answers, {good} exchanges were right, no wrong value"));
+    no_wrong_value("RTU", &rows, trials(20_000, 60), 9);
 }

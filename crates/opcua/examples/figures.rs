@@ -41,10 +41,7 @@ fn main() {
     println!(
         "{SUBSCRIPTIONS} subscriptions at 50 ms, from the write of an input through the scan (10 ms): {took}"
     );
-    println!(
-        "memory (RSS): before {before} KiB, with the server {started} KiB, behind all of it {} KiB",
-        memory()
-    );
+    println!("memory: before {before} KiB, with the server {started} KiB, behind all of it {} KiB", memory());
 }
 
 /// A controller with as many variables, and outputs that one input changes.
@@ -75,7 +72,5 @@ fn read(reader: &mut Peer) -> (f64, f64) {
 
 /// The memory of this program in KiB; 0 where the system does not tell.
 fn memory() -> u64 {
-    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
-    let line = status.lines().find_map(|line| line.strip_prefix("VmRSS:"));
-    line.and_then(|line| line.split_whitespace().next()?.parse().ok()).unwrap_or(0)
+    g7_peers::process::memory(std::process::id()).unwrap_or(0)
 }

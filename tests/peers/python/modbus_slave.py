@@ -15,6 +15,7 @@ import threading
 import time
 import tty
 
+from lines import lines
 from pymodbus.server import ModbusSerialServer, ModbusTcpServer
 from pymodbus.simulator import DataType, SimData, SimDevice
 
@@ -87,15 +88,7 @@ async def start(arguments):
 async def main(arguments):
     server, task, where = await start(arguments)
     print(where, flush=True)
-    loop, lines = asyncio.get_running_loop(), asyncio.Queue()
-
-    def read():
-        for line in sys.stdin:
-            loop.call_soon_threadsafe(lines.put_nowait, line.split())
-        loop.call_soon_threadsafe(lines.put_nowait, None)
-
-    threading.Thread(target=read, daemon=True).start()
-    while words := await lines.get():
+    async for words in lines():
         verb, *words = words
         unit = int(words.pop(0)) if words[0].isdigit() else 1
         code, address = CODES[words[0]], int(words[1])

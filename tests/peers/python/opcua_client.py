@@ -13,9 +13,9 @@ import json
 import logging
 import random
 import sys
-import threading
 import time
 
+from lines import lines
 from asyncua import Client, ua
 from asyncua.crypto.security_policies import SecurityPolicyBasic256Sha256
 
@@ -147,15 +147,7 @@ async def main(arguments):
         return
     index = await client.get_namespace_index("urn:g7:chart")
     print("connected", flush=True)
-    loop, lines = asyncio.get_running_loop(), asyncio.Queue()
-
-    def read():
-        for line in sys.stdin:
-            loop.call_soon_threadsafe(lines.put_nowait, line.split())
-        loop.call_soon_threadsafe(lines.put_nowait, None)
-
-    threading.Thread(target=read, daemon=True).start()
-    while words := await lines.get():
+    async for words in lines():
         try:
             answer = await obey(client, index, words)
         except Exception as error:

@@ -11,9 +11,9 @@ import asyncio
 import json
 import logging
 import sys
-import threading
 import time
 
+from lines import lines
 from asyncua import Server, ua
 from asyncua.crypto.permission_rules import User, UserRole
 
@@ -78,15 +78,7 @@ async def main(arguments):
     logging.disable(logging.CRITICAL)
     server, nodes = await start(int(arguments[0]), arguments[1:])
     print(server.bserver._server.sockets[0].getsockname()[1], flush=True)
-    loop, lines = asyncio.get_running_loop(), asyncio.Queue()
-
-    def read():
-        for line in sys.stdin:
-            loop.call_soon_threadsafe(lines.put_nowait, line.split())
-        loop.call_soon_threadsafe(lines.put_nowait, None)
-
-    threading.Thread(target=read, daemon=True).start()
-    while words := await lines.get():
+    async for words in lines():
         if words[0] == "stall":
             print("ok", flush=True)
             time.sleep(float(words[1]))

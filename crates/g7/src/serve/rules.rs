@@ -16,7 +16,7 @@ use super::listen::Door;
 use super::shared::Limits;
 use super::tls::{Certificate, Files};
 use crate::audit::Audit;
-use crate::failure::Failure;
+use crate::failure::{Failure, unlogged};
 
 /// The rules of a server from its start on.
 #[derive(Clone, Debug)]
@@ -57,10 +57,7 @@ impl Rules {
         let files = cert.zip(key).map(|(cert, key)| Files { cert, key });
         reachable(host, files.is_some(), users.is_some())?;
         if controller.is_some() && !host.is_loopback() && !audit.is_kept() {
-            return Err(Failure::Usage(format!(
-                "{host} is reached from other machines: what people do at a machine from there is written down; \
-                 name a `log` in [controller] of the io file"
-            )));
+            return Err(Failure::Usage(unlogged(&host)));
         }
         let certificate = files.map(Certificate::open).transpose()?;
         let time = |of: fn(&Server) -> Option<g7_model::Nanos>| set.and_then(of);

@@ -9,7 +9,7 @@ mod opcua;
 mod row;
 
 pub use row::{Argument, Carries, Form, KindRow, Point, Setting, Usual};
-use row::{BAD, GOOD, PASSWORD_FILE, PASSWORD_VARIABLE, SCALE, setting};
+use row::{BAD, GOOD, PASSWORD_FILE, PASSWORD_VARIABLE, SCALE, setting, times};
 
 /// All kinds of devices, in the order in which a person is shown them.
 pub const KINDS: &[KindRow] = &[
@@ -129,22 +129,7 @@ const WORD_ORDER: Setting = setting(
     "the order of numbers in several registers",
 );
 
-const DEVICE_TIMES: &[Setting] = &[
-    setting("poll", Form::Duration("1ms", "1h"), Usual::Is("\"20ms\""), "the time between two exchanges"),
-    setting("timeout", Form::Duration("1ms", "1h"), Usual::Is("\"500ms\""), "the longest time of an answer"),
-    setting(
-        "refresh",
-        Form::Duration("1ms", "1h"),
-        Usual::Is("\"1s\""),
-        "outputs that did not change are written again after this time",
-    ),
-    setting(
-        "retry",
-        Form::Duration("10ms", "1h"),
-        Usual::Is("\"2s\""),
-        "the longest time between two attempts to reach it",
-    ),
-];
+const DEVICE_TIMES: &[Setting] = &times("\"500ms\"");
 
 const LISTEN: &[Setting] = &[
     setting("listen", Form::Text, Usual::Needed("127.0.0.1:1502"), "an address of this machine, with a port"),

@@ -2,7 +2,7 @@
 
 use super::row::{
     Argument, BAD, Carries, Form, GOOD, PASSWORD_FILE, PASSWORD_VARIABLE, Point, SCALE, Setting, Usual,
-    setting,
+    setting, times,
 };
 
 const SECURITY: Setting = setting(
@@ -50,22 +50,7 @@ pub(super) const CLIENT: &[Setting] = &[
     ),
 ];
 
-pub(super) const CLIENT_TIMES: &[Setting] = &[
-    setting("poll", Form::Duration("1ms", "1h"), Usual::Is("\"20ms\""), "the time between two exchanges"),
-    setting("timeout", Form::Duration("1ms", "1h"), Usual::Is("\"2s\""), "the longest time of an answer"),
-    setting(
-        "refresh",
-        Form::Duration("1ms", "1h"),
-        Usual::Is("\"1s\""),
-        "outputs that did not change are written again after this time",
-    ),
-    setting(
-        "retry",
-        Form::Duration("10ms", "1h"),
-        Usual::Is("\"2s\""),
-        "the longest time between two attempts to reach it",
-    ),
-];
+pub(super) const CLIENT_TIMES: &[Setting] = &times("\"2s\"");
 
 pub(super) const SERVER: &[Setting] = &[
     setting("listen", Form::Text, Usual::Needed("127.0.0.1:4840"), "an address of this machine, with a port"),

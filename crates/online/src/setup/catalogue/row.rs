@@ -121,6 +121,26 @@ pub(super) const fn setting(key: &'static str, form: Form, usual: Usual, about: 
     Setting { key, form, usual, about }
 }
 
+/// The times of a device that is asked, with the usual longest time of an answer.
+pub(super) const fn times(timeout: &'static str) -> [Setting; 4] {
+    [
+        setting("poll", Form::Duration("1ms", "1h"), Usual::Is("\"20ms\""), "the time between two exchanges"),
+        setting("timeout", Form::Duration("1ms", "1h"), Usual::Is(timeout), "the longest time of an answer"),
+        setting(
+            "refresh",
+            Form::Duration("1ms", "1h"),
+            Usual::Is("\"1s\""),
+            "outputs that did not change are written again after this time",
+        ),
+        setting(
+            "retry",
+            Form::Duration("10ms", "1h"),
+            Usual::Is("\"2s\""),
+            "the longest time between two attempts to reach it",
+        ),
+    ]
+}
+
 pub(super) const PASSWORD_FILE: Setting = setting(
     "password-file",
     Form::Text,
