@@ -238,7 +238,8 @@ fn registers(args: &Devices, from: Register) -> Vec<Wire> {
     (0..args.count).map_while(asked).collect()
 }
 
-/// An address of a controller of Siemens, and those behind it; of a bit, the same bit of the next bytes.
+/// The addresses that are read at a controller of Siemens: the given one, and as many behind it as `--count`
+/// says. After a bit comes the same bit of the next byte.
 fn cells(args: &Devices, from: Address) -> Result<Vec<Wire>, String> {
     let form = match (from.width, args.encoding) {
         (Width::Bit(bit), _) => Form::Bit(bit),

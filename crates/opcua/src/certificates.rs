@@ -28,14 +28,14 @@ const DAYS: u32 = 3650;
 const KEY_BITS: u32 = 2048;
 /// The longest file that is read as a certificate.
 const LONGEST: u64 = 64 << 10;
-/// Rejected certificates that are kept; whoever reaches the port can send others.
+/// The greatest number of rejected certificates that stay on the disk. Anyone who reaches the port can send more.
 const KEPT: usize = 50;
 
 /// The folder of the certificates.
 #[derive(Debug)]
 pub(crate) struct Folder {
     path: PathBuf,
-    /// The rejected files that were told of.
+    /// The rejected files that the operator was told of.
     told: BTreeSet<PathBuf>,
 }
 
@@ -48,7 +48,7 @@ impl Folder {
         &self.path
     }
 
-    /// Makes what is missing: the folders, and the certificate of this machine.
+    /// Makes the folders and the certificate of this machine where they are missing.
     ///
     /// # Errors
     ///
@@ -87,7 +87,7 @@ impl Folder {
         Ok(())
     }
 
-    /// Gives trusted files the names that the library looks for. Who is trusted is not rejected.
+    /// Gives trusted files the names that the library looks for, and removes them from the rejected ones.
     pub(crate) fn adopt(&self) -> Result<(), Failed> {
         for file in self.files(TRUSTED) {
             let Ok(cert) = read(&file) else { continue };

@@ -253,7 +253,7 @@ mod tests {
 
     const PASSWORD: &str = "correct horse";
 
-    /// Users in a file of their own.
+    /// Users in a file that no other test has.
     fn users() -> (Arc<Users>, PathBuf) {
         static NEXT: std::sync::atomic::AtomicU32 = std::sync::atomic::AtomicU32::new(0);
         let number = NEXT.fetch_add(1, std::sync::atomic::Ordering::Relaxed);

@@ -24,10 +24,10 @@ use opcua::types::{
 use crate::guard;
 use crate::values;
 
-/// The namespace of the nodes of a chart.
+/// The URI of the namespace that holds the nodes of a chart.
 pub(crate) const NAMESPACE: &str = "urn:g7:chart";
 
-/// Sessions that are kept in mind.
+/// The number of sessions at which those that have ended are forgotten.
 const SESSIONS: usize = 200;
 
 /// Writes that wait to be told; the driver takes them many times a second.

@@ -210,7 +210,7 @@ impl Drop for Connection {
     }
 }
 
-/// Work as a task of its own, so that a panic in it ends the task alone.
+/// Does the work in a separate task: a panic in it ends that task and nothing else.
 async fn within<T: Send + 'static>(
     timeout: Duration,
     work: impl Future<Output = T> + Send + 'static,

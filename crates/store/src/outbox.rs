@@ -32,7 +32,7 @@ pub struct Limits {
 /// A row that waits.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Waiting {
-    /// Its number; those that were added later have greater ones.
+    /// Its number. It is greater than the numbers of all rows that were added before.
     pub number: i64,
     /// The time of day, UTC, as RFC 3339 has it, to the millisecond.
     pub at: String,

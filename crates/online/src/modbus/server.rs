@@ -83,7 +83,8 @@ impl Server {
     }
 }
 
-/// Exceptions of a server (Modbus application protocol 1.1b3, 7): function, address, value.
+/// Exception codes (Modbus application protocol 1.1b3, 7): illegal function, illegal data address, illegal data
+/// value.
 const FUNCTION: u8 = 1;
 const ADDRESS: u8 = 2;
 const VALUE: u8 = 3;

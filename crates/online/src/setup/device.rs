@@ -34,7 +34,7 @@ pub enum Kind {
     Mqtt(Box<Broker>),
     /// A controller of Siemens, which this is a client of.
     S7(S7),
-    /// A chip of lines of this machine: its device file.
+    /// A chip with digital lines (GPIO) of this machine, by its device file.
     Gpio(String),
     /// A server of OPC UA, which this is a client of.
     OpcUa(Box<OpcUa>),

@@ -134,7 +134,7 @@ pub(super) fn read<'d>(
         if let Some(password) = password {
             match read(&password.from.value) {
                 Ok(mut bytes) => {
-                    // Editors end a file with a line end, which is no part of the password.
+                    // Editors put a line end at the end of a file. It is not part of the password.
                     while bytes.last().is_some_and(|b| matches!(b, b'\n' | b'\r')) {
                         bytes.pop();
                     }
