@@ -47,6 +47,7 @@ mod serve;
 #[cfg(target_os = "linux")]
 mod service;
 mod shell;
+mod sole;
 mod sources;
 mod station;
 mod style;

@@ -1,11 +1,12 @@
 //! A controller with all that belongs to it, from its files: for `run --online` and for
 //! `serve --online`.
 
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
 use g7_model::{Nanos, ProfileName};
-use g7_online::setup::Setup;
+use g7_online::setup::{Kind, Setup};
 use g7_online::{Command, KeepError, Options, Panels, RealDisk, Running, Sight, Slots, Started};
 use g7_store::log::Log;
 
@@ -18,6 +19,7 @@ use crate::monitor::Monitor;
 use crate::operator::{HELP, Names};
 use crate::origin::Origin;
 use crate::post::Post;
+use crate::sole::{self, Sole};
 use crate::sources::Source;
 use crate::style;
 use crate::wiring::{self, Plan};
@@ -62,6 +64,8 @@ pub(crate) struct Station {
     pub(crate) post: Option<Post>,
     pub(crate) panels: Panels,
     pub(crate) historian: Option<Historian>,
+    /// The files that it alone writes.
+    pub(crate) claims: Vec<Sole>,
 }
 
 /// The settings of those who use the controller, from the io file, read before anything else: a log that cannot be
@@ -121,6 +125,7 @@ pub(crate) fn start(
             Failure::Usage(format!("cannot listen at {} for `metrics`: {}", at.value, plain(&e)))
         })?),
     };
+    let claims = claims(&plan)?;
     let (runner, slots) = kept(&plan, g7_online::runner(bench, wiring, more.seed))?;
     let mut clients = brought::serving(wiring, more.users, more.logged)?;
     let post = Post::open(wiring, &plan.io, &mut clients)?;
@@ -144,7 +149,20 @@ pub(crate) fn start(
         talk!("stopped; {HELP}");
     }
     let names = Names::new(source, plan.bench, plan.wiring);
-    Ok(Some(Station { names, origin, running, sight, monitor, post, panels: clients.panels, historian }))
+    let panels = clients.panels;
+    Ok(Some(Station { names, origin, running, sight, monitor, post, panels, historian, claims }))
+}
+
+/// Takes the files that the controller writes, before it opens any of them.
+fn claims(plan: &Plan) -> Result<Vec<Sole>, Failure> {
+    let events = plan.wiring.devices.iter().filter_map(|wired| match &wired.device.kind {
+        Kind::Mqtt(broker) => broker.events.as_ref().map(|events| events.file.value.as_str()),
+        _ => None,
+    });
+    let retain = plan.setup.controller.retain.as_ref().map(|name| name.value.as_str());
+    let history = plan.wiring.history.as_ref().map(|chosen| chosen.file.as_str());
+    let files: BTreeSet<&str> = retain.into_iter().chain(history).chain(events).collect();
+    files.into_iter().map(|file| sole::claim(&plan.io.with_file_name(file))).collect()
 }
 
 /// Opens the file of the values that are kept, and starts the run with them.

@@ -253,6 +253,25 @@ impl Station {
 }
 
 #[test]
+fn two_controllers_do_not_write_the_same_files() {
+    for (io, file) in [(IO, "hall.history"), ("[controller]\nretain = 'hall.values'\n", "hall.values")] {
+        let folder = folder();
+        folder.write("chart.io.toml", io);
+        let station = Station::new(&folder);
+        let again = ["run", "chart.g7", "--online", "--simulate", "--for", "1s"];
+        let refused = folder.g7(&again);
+        assert_eq!(refused.code, 2, "{}", refused.err);
+        let says = format!("{file}: another controller uses it");
+        assert!(refused.err.contains(&says), "{}", refused.err);
+        assert_eq!(station.get("/healthz", &station.token).0, 200, "the first goes on");
+        // A controller that was killed leaves the files free.
+        drop(station);
+        let ran = folder.g7(&again);
+        assert_eq!(ran.code, 0, "{}", ran.err);
+    }
+}
+
+#[test]
 fn the_page_gets_lanes_and_files_of_the_record_that_is_being_written() {
     let folder = folder();
     let station = Station::new(&folder);

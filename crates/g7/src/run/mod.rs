@@ -54,9 +54,8 @@ fn online(path: &Path, source: Source, args: &Run) -> Result<Verdict, Failure> {
         logged: audit.is_kept(),
     };
     let station = station::start(path, source, &args.drive, more)?;
-    let Some(Station { names, origin, running, monitor, post, historian, panels, .. }) = station else {
-        return Ok(Verdict::Found);
-    };
+    let Some(station) = station else { return Ok(Verdict::Found) };
+    let Station { names, origin, running, monitor, post, historian, panels, claims: _claims, .. } = station;
     let attendant = Attendant::new(names).with(monitor, post).logging(log, audit).recording(historian);
     attendant.at(panels).changing(origin).attend(running, args.duration)
 }

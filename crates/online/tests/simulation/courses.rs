@@ -13,7 +13,7 @@ use g7_peers::faults::row;
 
 use crate::common::{Chance, Ill};
 use crate::world::{CHART, Fault, IO, MS, Simulation};
-use crate::{safe, wrote};
+use crate::{clock, safe, wrote};
 
 /// Seeds that have failed.
 const FAILED: &str = include_str!("seeds.txt");
@@ -57,12 +57,6 @@ fn row_26_outputs_follow_the_inputs_after_any_course_of_faults() {
     if seeds.len() > 100 {
         assert!(tally.is_full(), "each kind of fault is met: {tally}");
     }
-}
-
-/// The time that the machine takes is told, never judged.
-#[allow(clippy::disallowed_methods, reason = "how fast the simulation is")]
-fn clock() -> std::time::Instant {
-    std::time::Instant::now()
 }
 
 /// The findings of one thread.
