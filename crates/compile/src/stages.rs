@@ -76,7 +76,8 @@ pub fn compile_with(
 /// Names and types of what is to be proved.
 fn properties<'d>(doc: &'d Document, unit: &mut ir::Unit, scopes: &mut resolve::Scopes<'d>) -> Vec<Problem> {
     let mut problems = Vec::new();
-    for property in doc.properties() {
+    // Those with a plant may ask the plant as well: `verify` compiles them with it.
+    for property in doc.properties().filter(|p| p.plant.is_none()) {
         for claim in property.kind.claims() {
             let (expr, mut wrong) = resolve::resolve_query(unit, scopes, claim, None, Some(Type::Bool));
             problems.append(&mut wrong);

@@ -288,6 +288,9 @@ pub(crate) struct Prove {
     /// The profile to use instead of the file's own.
     #[arg(long, value_parser = values::profile)]
     pub(crate) profile: Option<ProfileName>,
+    /// Ask everything of the closed loop of charts and this plant.
+    #[arg(long, value_name = "PLANT")]
+    pub(crate) plant: Option<String>,
     /// Stop after this time.
     #[arg(long, value_parser = values::duration, value_name = "TIME", default_value = "60s")]
     pub(crate) time: Nanos,

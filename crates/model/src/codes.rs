@@ -113,9 +113,9 @@ codes! {
     TARGET_PAGES = "G0406" Error "a drawing larger than the target's pages" "GRAFCET course, TSX 37 and 57, editor";
 
     // Tests
-    TEST_PLANT = "G0550" Error "a test with a plant that is not there" "the .g7 format";
-    TEST_NAME = "G0551" Error "a test that sets, holds or expects something it cannot" "the .g7 format";
-    TEST_TYPE = "G0552" Error "a value or condition of the wrong type in a test" "the .g7 format";
+    TEST_PLANT = "G0550" Error "a test or a proof with a plant that is not there" "the .g7 format";
+    TEST_NAME = "G0551" Error "a test or a proof that sets, holds or asks something it cannot" "the .g7 format";
+    TEST_TYPE = "G0552" Error "a value or condition of the wrong type in a test or a proof" "the .g7 format";
     ASSUMPTION = "G0553" Error "an assumption that says nothing about an input" "the .g7 format";
 
     // Imported files

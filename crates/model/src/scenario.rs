@@ -66,6 +66,8 @@ pub enum TestStmtKind {
 pub struct Property {
     /// The claim, or what is assumed.
     pub kind: PropertyKind,
+    /// `with Tank`: the plant that drives inputs; without one inputs take any values.
+    pub plant: Option<Name>,
     /// `"…"`.
     pub comment: Option<Box<str>>,
     /// Where it stands.

@@ -1,4 +1,5 @@
-//! The questions of a document: those that are asked of every chart, and its author's.
+//! The questions of a document: those that are asked of every chart, and its author's. Those
+//! `with` a plant are in `closed.rs`.
 
 use g7_compile::Compiled;
 use g7_compile::ir::VarClass;
@@ -19,13 +20,23 @@ pub struct Asked {
 
 /// Compiles a document with its questions; gives nothing if a problem is an error.
 pub fn ask(document: &Document, profile: Option<ProfileName>) -> (Option<Asked>, Vec<Problem>) {
-    let conditions: Vec<Expr> = document.properties().flat_map(|p| p.kind.claims()).cloned().collect();
+    let open = || document.properties().filter(|p| p.plant.is_none());
+    let conditions: Vec<Expr> = open().flat_map(|p| p.kind.claims()).cloned().collect();
     let (compiled, mut problems) = g7_compile::compile_with(document, profile, &conditions);
     problems.dedup();
     let Some(compiled) = compiled else { return (None, problems) };
     let mut questions = of_every_chart(document, &compiled);
+    let assume = of_the_author(open(), &mut questions);
+    (Some(Asked { compiled, questions, assume }), problems)
+}
+
+/// Adds the questions of properties, whose conditions are numbered in their order; gives the assumptions.
+pub(crate) fn of_the_author<'d>(
+    properties: impl Iterator<Item = &'d Property>,
+    questions: &mut Vec<Question>,
+) -> Vec<Query> {
     let (mut assume, mut next) = (Vec::new(), 0u32);
-    for property in document.properties() {
+    for property in properties {
         let first = next;
         next += property.kind.claims().count() as u32;
         match claim(property, first) {
@@ -33,7 +44,7 @@ pub fn ask(document: &Document, profile: Option<ProfileName>) -> (Option<Asked>,
             None => assume.push(Query(first)),
         }
     }
-    (Some(Asked { compiled, questions, assume }), problems)
+    assume
 }
 
 /// The claim of a property whose conditions begin at this query; `None` for an assumption.
@@ -54,7 +65,8 @@ fn claim(property: &Property, first: u32) -> Option<Claim> {
     })
 }
 
-fn of_every_chart(document: &Document, compiled: &Compiled) -> Vec<Question> {
+/// The questions that are asked of every chart.
+pub(crate) fn of_every_chart(document: &Document, compiled: &Compiled) -> Vec<Question> {
     let (t, symbols) = (compiled.program.tables(), &compiled.symbols);
     let mut questions = Vec::new();
     let mut add = |claim, at: Span| questions.push(Question { claim, at });

@@ -4,6 +4,7 @@
 //!
 //! ```text
 //! model::Document -> ask -> Question, Model -> Layer (search) -> Verdict -> g7 prove
+//! rig::Bench (with a plant) -> closed -> Question, Model (the same way)
 //!                           two charts      -> compare        -> Equality -> g7 compare
 //! ```
 //!
@@ -27,6 +28,7 @@
 
 mod ask;
 mod asked;
+mod closed;
 mod compare;
 mod explore;
 mod inputs;
@@ -39,14 +41,16 @@ mod search;
 mod store;
 mod values;
 mod verdict;
+mod world;
 
 pub use ask::{Asked, ask};
+pub use closed::{Closed, ask_with};
 pub use compare::{Compare, Difference, Equality, compare};
 pub use explore::{Answer, Bound, Explorer, Limits, Moment, Move, Moves, Next};
 pub use inputs::{Inputs, Which};
 pub use layer::{Budget, Layer};
 pub use look::replay;
-pub use model::Model;
+pub use model::{Model, Part};
 pub use question::{Claim, Query, Question};
 pub use search::{Explicit, Tried, watch};
 pub use values::{Values, values};

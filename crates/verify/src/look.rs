@@ -5,9 +5,10 @@ use g7_engine::{Fault, FaultKind, Program, Report, State, Tables, begin, enabled
 use crate::asked::Asking;
 use crate::explore::Move;
 use crate::model::Model;
-use crate::monitor::{IDLE, has_memory, holds, is_of_scans, judge};
+use crate::monitor::{IDLE, has_memory, is_of_scans, judge};
 use crate::question::Claim;
 use crate::verdict::Run;
+use crate::world::World;
 
 /// Passes of a scan that are looked at.
 pub(crate) const PASSES: u32 = 256;
@@ -83,11 +84,12 @@ pub(crate) fn sides(t: &Tables, rank: u32) -> (Vec<u32>, Vec<u32>) {
     (side(tr.from.0, tr.more_from), side(tr.to.0, tr.more_to))
 }
 
-/// True if all assumptions hold for these inputs. The state is used up.
-pub(crate) fn allowed(model: &Model<'_>, s: &mut State, m: &Move, now: i64) -> bool {
+/// True if all assumptions hold for these inputs. The state of the charts is used up.
+pub(crate) fn allowed(model: &Model<'_>, world: &mut World<'_>, m: &Move, now: i64) -> bool {
     let p = &model.compiled.program;
     // A fault before the evolution is shown by the scan.
-    begin(p, s, &m.inputs, now).is_err() || model.assume.iter().all(|q| holds(model, s, *q).unwrap_or(false))
+    begin(p, &mut world.charts, &m.inputs, now).is_err()
+        || model.assume.iter().all(|q| world.holds(model, *q).unwrap_or(false))
 }
 
 /// Repeats a run with `engine::scan` from the state before the first scan, and tells whether
@@ -96,21 +98,26 @@ pub(crate) fn allowed(model: &Model<'_>, s: &mut State, m: &Move, now: i64) -> b
 /// the run leads to a situation of this kind without a fault.
 pub fn replay(model: &Model<'_>, claim: &Claim, run: &Run) -> bool {
     let p = &model.compiled.program;
-    let asking = Asking::new(p, model.compiled.queries.iter().copied());
-    let (mut s, mut memory, mut last) = (State::new(p), IDLE, false);
+    let asking = Asking::new(p, model.codes());
+    let (mut world, mut memory, mut last) = (World::new(model), IDLE, false);
     for (k, m) in run.moves.iter().enumerate() {
-        let now = s.now().saturating_add(m.wait);
-        if !model.assume.is_empty() && !allowed(model, &mut s.clone(), m, now) {
+        let mut inputs = m.inputs.clone();
+        let way = run.ways.get(k).copied().unwrap_or(0);
+        if world.tick(m.wait, way, &mut inputs).is_err() || inputs != m.inputs {
+            return false;
+        }
+        let now = world.charts.now().saturating_add(m.wait);
+        if !model.assume.is_empty() && !allowed(model, &mut world.clone(), m, now) {
             return false;
         }
         let is_last = k + 1 == run.moves.len();
-        let before = s.clone();
-        let done = scan(p, &mut s, &m.inputs, now);
+        let before = world.charts.clone();
+        let done = scan(p, &mut world.charts, &m.inputs, now);
         if done.is_err() != (is_last && run.fault.is_some()) || is_last && done.err() != run.fault {
             return false;
         }
         if done.is_ok() && is_of_scans(claim) {
-            let Ok(seen) = judge(model, claim, &mut s, memory, m.wait) else { return false };
+            let Ok(seen) = judge(model, claim, &mut world, memory, m.wait) else { return false };
             memory = seen.memory;
             last = seen.hit;
         }
@@ -123,7 +130,7 @@ pub fn replay(model: &Model<'_>, claim: &Claim, run: &Run) -> bool {
                     let place = (a.0 - p.tables().inputs.start) as usize;
                     asking.asked(&before).iter().any(|i| i == place)
                 }
-                _ => shows(p, claim, &Scanned { state: &s, report: done }),
+                _ => shows(p, claim, &Scanned { state: &world.charts, report: done }),
             };
         }
     }

@@ -1,9 +1,10 @@
 //! Claims about scans one after the other, with what is to be remembered between them.
 
-use g7_engine::{Fault, Program, State, eval};
+use g7_engine::Fault;
 
 use crate::model::Model;
 use crate::question::{Claim, Query};
+use crate::world::World;
 
 /// Nothing is remembered.
 pub(crate) const IDLE: u64 = 0;
@@ -39,11 +40,11 @@ pub(crate) fn has_memory(claim: &Claim) -> bool {
 pub(crate) fn judge(
     model: &Model<'_>,
     claim: &Claim,
-    s: &mut State,
+    world: &mut World<'_>,
     memory: u64,
     wait: i64,
 ) -> Result<Seen, Fault> {
-    let mut is = |q: &Query| holds(model, s, *q);
+    let mut is = |q: &Query| world.holds(model, *q);
     let seen = |memory, hit| Ok(Seen { memory, hit });
     match claim {
         Claim::Always(q) => seen(IDLE, !is(q)?),
@@ -95,11 +96,4 @@ pub(crate) fn judge(
         }
         _ => seen(IDLE, false),
     }
-}
-
-/// The value of a condition in a state.
-pub(crate) fn holds(model: &Model<'_>, s: &mut State, q: Query) -> Result<bool, Fault> {
-    let p: &Program = &model.compiled.program;
-    let code = model.compiled.queries.get(q.0 as usize).copied().unwrap_or_default();
-    Ok(eval(p, s, code)? != 0)
 }

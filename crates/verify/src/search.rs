@@ -17,6 +17,7 @@ use crate::monitor::{IDLE, has_memory, is_of_scans, judge};
 use crate::question::{Claim, Question};
 use crate::store::Store;
 use crate::verdict::{Certificate, Evidence, Open, Run, Verdict};
+use crate::world::{WAYS, World};
 
 /// Most combinations of inputs that are tried in one state.
 const MOST: usize = 1 << 16;
@@ -81,6 +82,20 @@ pub fn watch(
 /// Is shown each scan.
 type Look<'a> = &'a mut dyn FnMut(usize, &State);
 
+/// The moves of one state.
+struct Tries {
+    at: usize,
+    /// The memory of the claim in the state.
+    memory: u64,
+    asked: Places,
+    /// One was made.
+    tried: bool,
+    /// One leads on at once.
+    on: bool,
+    /// The states behind them.
+    next: Vec<u32>,
+}
+
 struct Search<'a> {
     tried: Tried,
     look: Option<Look<'a>>,
@@ -100,6 +115,10 @@ struct Search<'a> {
     parents: Vec<u32>,
     /// For each state: the inputs of the scan that led there.
     inputs: Vec<u64>,
+    /// For each state: the way in which the plant ticked there; empty unless it draws.
+    ways: Vec<u8>,
+    /// The way of the moves in hand.
+    way: u8,
     /// For each state that was expanded: some move leads on at once.
     leads_on: Vec<bool>,
     /// Moves of states that none leads on.
@@ -123,7 +142,7 @@ impl<'a> Search<'a> {
             model,
             p,
             budget,
-            asking: Asking::new(p, model.compiled.queries.iter().copied()),
+            asking: Asking::new(p, model.codes()),
             memory: open.iter().map(|(_, q)| &q.claim).find(|c| has_memory(c)),
             open,
             answers: Vec::new(),
@@ -131,6 +150,8 @@ impl<'a> Search<'a> {
             width: 0,
             parents: Vec::new(),
             inputs: Vec::new(),
+            ways: Vec::new(),
+            way: 0,
             leads_on: Vec::new(),
             edges: Vec::new(),
             scans: 0,
@@ -143,15 +164,21 @@ impl<'a> Search<'a> {
 
     /// Searches, and answers all questions.
     fn run(mut self) -> Vec<(usize, Verdict)> {
-        let (mut state, mut other) = (State::new(self.p), State::new(self.p));
+        let (mut world, mut other) = (World::new(self.model), World::new(self.model));
         let mut image = Vec::new();
-        state.canonical(self.p, &mut image);
+        world.image(&mut image);
         self.width = image.len();
         image.push(IDLE);
         self.store = Store::new(image.len());
         self.store.insert(&image);
         self.parents.push(0);
         self.inputs.extend(self.model.inputs.iter().map(|v| v.tried.first().copied().unwrap_or(0)));
+        if world.has_chance() {
+            self.ways.push(0);
+            let reason = format!("the plant's chance is tried in {WAYS} ways at each tick, of more");
+            let help = "a plant without `random()` and without `arrivals` between two times can be proved";
+            self.hole = Some((reason, help.to_owned()));
+        }
         let (mut at, mut level) = (0usize, 1usize);
         while at < self.store.len() && !self.open.is_empty() {
             if at == level {
@@ -162,7 +189,7 @@ impl<'a> Search<'a> {
                 self.hole = Some((reason, help));
                 break;
             }
-            self.expand(at, &mut state, &mut other, &mut image);
+            self.expand(at, &mut world, &mut other, &mut image);
             at += 1;
         }
         let done = at >= self.store.len();
@@ -190,69 +217,97 @@ impl<'a> Search<'a> {
     }
 
     /// Tries all moves of a state.
-    fn expand(&mut self, at: usize, state: &mut State, other: &mut State, image: &mut Vec<u64>) {
+    fn expand(&mut self, at: usize, world: &mut World<'a>, other: &mut World<'a>, image: &mut Vec<u64>) {
         let from: Vec<u64> = self.store.image(at).to_vec();
         let (own, memory) = from.split_at(self.width.min(from.len()));
         let memory = memory.first().copied().unwrap_or(IDLE);
-        put(self.p, state, own);
-        let asked = self.asking.asked(state);
+        world.put(own);
+        let asked = self.asking.asked(&world.charts);
         let count = self.asking.count();
         let last: Vec<u64> = self.inputs.get(at * count..(at + 1) * count).unwrap_or(&[]).to_vec();
         let wait = if at == 0 { 0 } else { self.model.period };
-        let (mut tried, mut on) = (false, false);
-        let mut next: Vec<u32> = Vec::new();
-        for inputs in self.vectors(&asked, last) {
-            put(self.p, state, own);
-            let now = state.now().saturating_add(wait);
-            let m = Move { inputs, wait };
-            if !self.model.assume.is_empty() {
-                put(self.p, other, own);
-                if !allowed(self.model, other, &m, now) {
-                    continue;
-                }
-            }
-            self.scans += 1;
-            if !std::mem::replace(&mut tried, true) {
-                self.see_asked(at, &asked, &m);
-            }
-            self.see_passes(at, other, own, &m, now);
-            let active: Vec<StepId> = state.active().collect();
-            let report = scan(self.p, state, &m.inputs, now);
-            if let Some(look) = &mut self.look {
-                look(self.depth, state);
-            }
-            self.see(at, &Scanned { state, report }, &m);
-            let Ok(report) = report else {
-                on |= self.memory.is_none();
+        let mut tries = Tries { at, memory, asked, tried: false, on: false, next: Vec::new() };
+        for way in world.ways() {
+            world.put(own);
+            let mut given = last.clone();
+            self.way = way;
+            if let Err(fault) = world.tick(wait, way, &mut given) {
+                let help = "mend the plant: what the chart does behind its fault is not known".to_owned();
+                self.hole.get_or_insert((format!("the plant has a fault: {}", fault.kind), help));
+                tries.tried = true;
                 continue;
-            };
-            let Some(memory) = self.judge(at, state, memory, &m) else { continue };
-            on |= match self.memory {
-                Some(_) => memory == IDLE,
-                None => report.cleared > 0 || !state.active().eq(active.iter().copied()),
-            };
-            state.canonical(self.p, image);
-            image.push(memory);
-            let number = self.store.len() as u32;
-            match self.store.find_or_insert(image) {
-                Some(old) => next.push(old),
-                None => {
-                    next.push(number);
-                    self.parents.push(at as u32);
-                    self.inputs.extend_from_slice(&m.inputs);
-                }
+            }
+            for inputs in self.vectors(&tries.asked, given) {
+                world.put_charts(own);
+                self.attempt(&mut tries, own, Move { inputs, wait }, world, other, image);
             }
         }
-        if !tried && self.hole.is_none() {
+        if !tries.tried && self.hole.is_none() {
             let reason = format!("no input satisfies the assumptions {}", behind(self.depth));
             let help = "weaken the assumptions: without inputs there are no runs, and every claim would hold";
             self.hole = Some((reason, help.to_owned()));
         }
+        let Tries { on, mut next, .. } = tries;
         self.leads_on.push(on);
         if !on {
             next.sort_unstable();
             next.dedup();
             self.edges.extend(next.into_iter().map(|to| (at as u32, to)));
+        }
+    }
+
+    /// Makes one move of a state; the plant has made its own before.
+    fn attempt(
+        &mut self,
+        tries: &mut Tries,
+        own: &[u64],
+        m: Move,
+        world: &mut World<'a>,
+        other: &mut World<'a>,
+        image: &mut Vec<u64>,
+    ) {
+        let at = tries.at;
+        let now = world.charts.now().saturating_add(m.wait);
+        if !self.model.assume.is_empty() {
+            other.put_charts(own);
+            if !allowed(self.model, other, &m, now) {
+                return;
+            }
+        }
+        self.scans += 1;
+        if !std::mem::replace(&mut tries.tried, true) {
+            let asked = tries.asked.clone();
+            self.see_asked(at, &asked, &m);
+        }
+        self.see_passes(at, other, own, &m, now);
+        let active: Vec<StepId> = world.charts.active().collect();
+        let report = scan(self.p, &mut world.charts, &m.inputs, now);
+        if let Some(look) = &mut self.look {
+            look(self.depth, &world.charts);
+        }
+        self.see(at, &Scanned { state: &world.charts, report }, &m);
+        let Ok(report) = report else {
+            tries.on |= self.memory.is_none();
+            return;
+        };
+        let Some(memory) = self.judge(at, world, tries.memory, &m) else { return };
+        tries.on |= match self.memory {
+            Some(_) => memory == IDLE,
+            None => report.cleared > 0 || !world.charts.active().eq(active.iter().copied()),
+        };
+        world.image(image);
+        image.push(memory);
+        let number = self.store.len() as u32;
+        match self.store.find_or_insert(image) {
+            Some(old) => tries.next.push(old),
+            None => {
+                tries.next.push(number);
+                self.parents.push(at as u32);
+                self.inputs.extend_from_slice(&m.inputs);
+                if world.has_chance() {
+                    self.ways.push(self.way);
+                }
+            }
         }
     }
 
@@ -262,6 +317,7 @@ impl<'a> Search<'a> {
             Tried::Matter => self.asking.matter(asked).iter().collect(),
             Tried::All => (0..self.asking.count()).collect(),
         };
+        let places: Vec<usize> = places.into_iter().filter(|i| !self.model.is_driven(*i)).collect();
         let tried = |i: usize| self.model.inputs.get(i).map_or(&[][..], |v| &v.tried);
         let count = places.iter().fold(1usize, |n, i| n.saturating_mul(tried(*i).len().max(1)));
         let set = |old: &[u64], i: usize, value: u64| {
@@ -310,19 +366,19 @@ impl<'a> Search<'a> {
         );
     }
 
-    fn see_passes(&mut self, at: usize, other: &mut State, own: &[u64], m: &Move, now: i64) {
+    fn see_passes(&mut self, at: usize, other: &mut World<'a>, own: &[u64], m: &Move, now: i64) {
         let wants = |c: &Claim| self.open.iter().any(|(_, q)| q.claim == *c);
         let (conflict, safety) = (wants(&Claim::NoConflict), wants(&Claim::NoUnsafe));
         if !conflict && !safety {
             return;
         }
-        put(self.p, other, own);
-        let Passes { conflict, unsafe_, cut } = passes(self.p, other, &m.inputs, now, conflict);
+        other.put_charts(own);
+        let Passes { conflict, unsafe_, cut } = passes(self.p, &mut other.charts, &m.inputs, now, conflict);
         self.cut_passes |= cut;
         if conflict || unsafe_ {
             // A fault in the same scan belongs to the run.
-            put(self.p, other, own);
-            let fault = scan(self.p, other, &m.inputs, now).err();
+            other.put_charts(own);
+            let fault = scan(self.p, &mut other.charts, &m.inputs, now).err();
             self.settle(at, m, fault, |c| match c {
                 Claim::NoConflict => conflict,
                 Claim::NoUnsafe => unsafe_,
@@ -345,12 +401,12 @@ impl<'a> Search<'a> {
 
     /// Judges the claims about the end of a scan; gives what is to be remembered, or nothing
     /// where the search need not go on.
-    fn judge(&mut self, at: usize, s: &mut State, memory: u64, m: &Move) -> Option<u64> {
+    fn judge(&mut self, at: usize, world: &mut World<'a>, memory: u64, m: &Move) -> Option<u64> {
         let mut hits = Vec::new();
         let mut kept = IDLE;
         let open = self.open.clone();
         for (i, q) in open.iter().filter(|(_, q)| is_of_scans(&q.claim)) {
-            match judge(self.model, &q.claim, s, memory, m.wait) {
+            match judge(self.model, &q.claim, world, memory, m.wait) {
                 Ok(seen) => {
                     hits.extend(seen.hit.then_some(*i));
                     kept = if has_memory(&q.claim) { seen.memory } else { kept };
@@ -381,6 +437,9 @@ impl<'a> Search<'a> {
     fn settle_those(&mut self, at: usize, m: &Move, fault: Option<Fault>, hits: &[usize]) {
         let mut run = self.path(at);
         run.moves.push(m.clone());
+        if !self.ways.is_empty() {
+            run.ways.push(self.way);
+        }
         run.fault = fault;
         for i in hits {
             self.show(*i, run.clone());
@@ -410,15 +469,17 @@ impl<'a> Search<'a> {
     /// The run that leads to a state.
     fn path(&self, mut at: usize) -> Run {
         let count = self.asking.count();
-        let mut moves = Vec::new();
+        let (mut moves, mut ways) = (Vec::new(), Vec::new());
         while at > 0 {
+            ways.extend(self.ways.get(at).copied());
             let before = self.parents.get(at).copied().unwrap_or(0) as usize;
             let inputs = self.inputs.get(at * count..(at + 1) * count).unwrap_or(&[]).to_vec();
             moves.push(Move { inputs, wait: if before == 0 { 0 } else { self.model.period } });
             at = before;
         }
         moves.reverse();
-        Run { moves, fault: None }
+        ways.reverse();
+        Run { moves, ways, fault: None }
     }
 
     /// Finds the states from which no run leads on: deadlocks, or causes without their effect.
@@ -450,9 +511,9 @@ impl<'a> Search<'a> {
 
     /// True if no active step has a transition behind it.
     fn is_end(&self, at: usize) -> bool {
-        let mut s = State::new(self.p);
-        put(self.p, &mut s, self.store.image(at).get(..self.width).unwrap_or(&[]));
-        s.active().all(|step| self.asking.behind(step) == 0)
+        let mut world = World::new(self.model);
+        world.put(self.store.image(at).get(..self.width).unwrap_or(&[]));
+        world.charts.active().all(|step| self.asking.behind(step) == 0)
     }
 
     /// Answers what is left over.
@@ -496,10 +557,4 @@ fn more(option: &str) -> String {
 
 fn behind(depth: usize) -> String {
     if depth == 0 { "at the start".to_owned() } else { format!("behind a run of {depth} scans") }
-}
-
-/// Makes a state one of the store, which holds images of the program alone.
-fn put(p: &Program, state: &mut State, image: &[u64]) {
-    let done = state.restore(p, image);
-    debug_assert!(done.is_ok(), "{done:?}");
 }

@@ -29,6 +29,9 @@ pub enum Evidence {
 pub struct Run {
     /// Its scans. Its last scan shows what was asked for.
     pub moves: Vec<Move>,
+    /// For each of them the way in which the plant ticked, by number; empty unless it draws random
+    /// numbers.
+    pub ways: Vec<u8>,
     /// The fault that stops the last scan.
     pub fault: Option<Fault>,
 }

@@ -10,9 +10,10 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 
 use g7_host::{Clock, WallClock};
-use g7_model::Nanos;
+use g7_model::{Nanos, Problem};
 use g7_rig::Source;
-use g7_verify::{Budget, Evidence, Explicit, Layer, Model, Question, Verdict, ask};
+use g7_rig::testing::plants;
+use g7_verify::{Budget, Evidence, Explicit, Layer, Model, Question, Verdict, ask, ask_with};
 
 pub(crate) use apart::compare;
 
@@ -30,24 +31,14 @@ pub(crate) fn prove(args: &Prove) -> Result<failure::Verdict, Failure> {
     let (mut all, mut tally) = (Vec::new(), Tally::default());
     for path in &paths {
         let source = sources::load(path, 0)?;
-        let (asked, found) =
-            if source.has_errors() { (None, Vec::new()) } else { ask(&source.document, args.profile) };
-        let problems: Vec<_> = source.problems.iter().cloned().chain(found).collect();
+        let budget = Budget { states: args.states, bytes: args.memory.saturating_mul(1 << 20), stop: &*stop };
+        let mut file = File { source: &source, args, budget, drawer: None, all: &mut all };
+        let problems = file.prove()?;
         let mine = Tally::of(&problems);
         if mine.errors > 0 {
             talk!("{}", report::text(&source, &problems).trim_end());
         }
         tally.add(mine);
-        let Some(asked) = asked else { continue };
-        let model = Model::new(&asked.compiled, asked.assume.clone());
-        let mut answers = vec![None; asked.questions.len()];
-        let budget = Budget { states: args.states, bytes: args.memory.saturating_mul(1 << 20), stop: &*stop };
-        Explicit.answer(&model, &asked.questions, &mut answers, &budget);
-        let drawer = trace::Drawer::new(&source, args.profile)?;
-        for (question, verdict) in asked.questions.iter().zip(answers) {
-            let Some(verdict) = verdict else { continue };
-            all.push(answered(&source, &model, question, verdict, drawer.as_ref()));
-        }
     }
     match args.format {
         Format::Text => output::text(&all, args.all)?,
@@ -63,6 +54,60 @@ pub(crate) fn prove(args: &Prove) -> Result<failure::Verdict, Failure> {
         (false, true) => failure::Verdict::Open,
         (false, false) => failure::Verdict::Fine,
     })
+}
+
+/// A file with the answers to its questions.
+struct File<'a> {
+    source: &'a Source,
+    args: &'a Prove,
+    budget: Budget<'a>,
+    drawer: Option<trace::Drawer>,
+    all: &'a mut Vec<Answered>,
+}
+
+impl File<'_> {
+    /// Answers the questions of the file; gives the problems of its text.
+    fn prove(&mut self) -> Result<Vec<Problem>, Failure> {
+        let (source, args) = (self.source, self.args);
+        let mut problems = source.problems.clone();
+        if source.has_errors() {
+            return Ok(problems);
+        }
+        let profile = args.profile;
+        self.drawer = trace::Drawer::new(source, profile)?;
+        if args.plant.is_none() {
+            let (asked, found) = ask(&source.document, profile);
+            problems.extend(found);
+            let Some(asked) = asked else { return Ok(problems) };
+            self.answer(&Model::new(&asked.compiled, asked.assume.clone()), &asked.questions, None);
+        }
+        let plants = match &args.plant {
+            Some(plant) => vec![plant.as_str()],
+            None => plants(&source.document),
+        };
+        for plant in plants {
+            let (closed, found) = ask_with(source, profile, plant, args.plant.is_some())?;
+            problems.extend(found.into_iter().filter(|p| !problems.contains(p)).collect::<Vec<_>>());
+            if let Some(closed) = closed {
+                self.answer(&closed.model(), &closed.questions, args.plant.as_deref());
+            }
+        }
+        Ok(problems)
+    }
+
+    /// Answers the questions about a model; those of every chart name their plant.
+    fn answer(&mut self, model: &Model<'_>, questions: &[Question], plant: Option<&str>) {
+        let mut answers = vec![None; questions.len()];
+        Explicit.answer(model, questions, &mut answers, &self.budget);
+        for (question, verdict) in questions.iter().zip(answers) {
+            let Some(verdict) = verdict else { continue };
+            let mut one = answered(self.source, model, question, verdict, self.drawer.as_ref());
+            if let Some(plant) = plant.filter(|_| !one.own) {
+                one.claim = format!("{} with {plant}", one.claim);
+            }
+            self.all.push(one);
+        }
+    }
 }
 
 fn answered(

@@ -8,6 +8,7 @@
 
 mod coverage;
 mod exec;
+mod properties;
 mod sides;
 mod statements;
 
@@ -20,6 +21,7 @@ use crate::bench::{self, Bench};
 use crate::{Error, Source};
 pub use coverage::{Coverage, Row, Rows};
 pub use exec::Defect;
+pub use properties::{Claims, Unproved, claims, plants, unproved};
 use statements::Plan;
 
 /// The result of a test.
@@ -108,7 +110,8 @@ fn prepare<'s>(source: &'s Source, options: Options<'_>) -> Result<(Vec<Group<'s
             asks: &[],
         };
         let mine = || tests.iter().filter(|(_, t)| t.plant.as_ref().map(|p| &*p.text) == *plant);
-        if let Some(problem) = mine().find_map(|(_, t)| statements::unknown_plant(source, t)) {
+        if let Some(problem) = mine().find_map(|(_, t)| statements::unknown_plant(source, t.plant.as_ref()?))
+        {
             problems.push(problem);
             continue;
         }
@@ -138,7 +141,7 @@ fn prepare<'s>(source: &'s Source, options: Options<'_>) -> Result<(Vec<Group<'s
     Ok((groups, problems))
 }
 
-/// All problems of a file: those of the charts, of every plant and of every test.
+/// All problems of a file: those of the charts, of every plant, test and property.
 pub fn problems(source: &Source, profile: Option<ProfileName>) -> Result<Vec<Problem>, Error> {
     let mut problems = prepare(source, Options { profile, ..Options::default() })?.1;
     // A plant that no test uses is compiled too.
@@ -148,6 +151,9 @@ pub fn problems(source: &Source, profile: Option<ProfileName>) -> Result<Vec<Pro
         }
         let options = bench::Options { profile, plant: Some(&plant.name.text), ..bench::Options::default() };
         problems.extend(bench::build::build(source, &options)?.1);
+    }
+    for plant in plants(&source.document) {
+        problems.extend(claims(source, profile, plant)?.1);
     }
     problems.sort_by_key(|p| p.at);
     problems.dedup();
@@ -183,25 +189,4 @@ fn one(
         took: clock.now() - begun,
         notes: first.notes,
     }
-}
-
-/// A property that nothing has proved.
-pub struct Unproved {
-    /// `path:line:column` of it.
-    pub place: String,
-    /// As written, in one line.
-    pub text: String,
-}
-
-/// The properties of a file. Names and types in them are checked with the charts; there is
-/// no prover, so none of them is proved.
-pub fn unproved(source: &Source) -> Vec<Unproved> {
-    let one = |p: &g7_model::Property| {
-        let written = source.text.get(source.range(p.at.0)).unwrap_or_default();
-        Unproved {
-            place: source.place(p.at.0),
-            text: written.split_whitespace().collect::<Vec<_>>().join(" "),
-        }
-    };
-    source.document.properties().map(one).collect()
 }

@@ -5,30 +5,25 @@ use g7_compile::ir::VarClass;
 use g7_compile::symbols::Symbols;
 use g7_model::{BinaryOp, Expr, ExprKind, Path, Problem, codes};
 
-use crate::{Activity, Bench, Role};
+use crate::{Activity, Ask, Bench, Role};
 
 /// The first name in an expression that only the charts know, and the first that only the plant
 /// knows. Names that both know (constants, outputs of the charts) do not count.
 #[derive(Debug, Default)]
-pub(super) struct Needs {
+struct Needs {
     plant: Option<String>,
     charts: Option<String>,
 }
 
 impl Needs {
-    pub(super) fn of(bench: &Bench, e: &Expr) -> Needs {
+    fn of(bench: &Bench, e: &Expr) -> Needs {
         let mut needs = Needs::default();
         needs.look(bench, e);
         needs
     }
 
-    /// True if the plant has to be asked.
-    pub(super) fn plant(&self) -> bool {
-        self.plant.is_some()
-    }
-
     /// The problem of an expression that neither side can evaluate alone.
-    pub(super) fn problem(&self, e: &Expr) -> Option<Problem> {
+    fn problem(&self, e: &Expr) -> Option<Problem> {
         let (plant, charts) = (self.plant.as_ref()?, self.charts.as_ref()?);
         let what =
             format!("`{plant}` is the plant's and `{charts}` the charts': one expression cannot ask both");
@@ -77,8 +72,22 @@ impl Needs {
     }
 }
 
+/// The parts of a condition: if it asks the plant, each operand of `and` is asked of its own side.
+pub(super) fn parts<'e>(bench: &Bench, e: &'e Expr) -> Vec<&'e Expr> {
+    if Needs::of(bench, e).plant.is_some() { conjuncts(e) } else { vec![e] }
+}
+
+/// An expression for the side that knows all of its names; the charts if both do.
+pub(super) fn ask(bench: &Bench, e: &Expr) -> Result<Ask, Problem> {
+    let needs = Needs::of(bench, e);
+    match needs.problem(e) {
+        Some(problem) => Err(problem),
+        None => Ok(Ask { expr: e.clone(), of_plant: needs.plant.is_some() }),
+    }
+}
+
 /// The operands of the outermost `and`, regardless of brackets.
-pub(super) fn conjuncts(e: &Expr) -> Vec<&Expr> {
+fn conjuncts(e: &Expr) -> Vec<&Expr> {
     match &e.kind {
         ExprKind::Binary(BinaryOp::And | BinaryOp::Dot, a, b) => [conjuncts(a), conjuncts(b)].concat(),
         _ => vec![e],

@@ -1,10 +1,10 @@
 //! Prepares the statements of a test for execution: names become items, expressions become asks.
 
 use g7_model::{
-    Expr, ExprKind, Literal, Nanos, Path, Problem, Scenario, Span, TestStmt, TestStmtKind, Type, codes,
+    Expr, ExprKind, Literal, Name, Nanos, Path, Problem, Scenario, Span, TestStmt, TestStmtKind, Type, codes,
 };
 
-use super::sides::{self, Needs};
+use super::sides;
 use crate::Source;
 use crate::{Answer, Ask, Bench, Role};
 
@@ -67,9 +67,8 @@ const PATIENCE: Nanos = Nanos::from_millis(10_000);
 /// Most names shown for one condition.
 const MENTIONS: usize = 8;
 
-/// The problem of a test that names a plant which does not exist.
-pub(super) fn unknown_plant(source: &Source, test: &Scenario) -> Option<Problem> {
-    let name = test.plant.as_ref()?;
+/// The problem of a test or a property that names a plant which does not exist.
+pub(super) fn unknown_plant(source: &Source, name: &Name) -> Option<Problem> {
     let there: Vec<String> =
         g7_compile::plant::plants(&source.document).map(|p| format!("`{}`", p.name.text)).collect();
     if g7_compile::plant::plants(&source.document).any(|p| p.name.text == name.text) {
@@ -136,7 +135,7 @@ impl Planner<'_> {
         Does::Pulse(item, time)
     }
 
-    fn fault(&mut self, name: Option<&g7_model::Name>) -> Does {
+    fn fault(&mut self, name: Option<&Name>) -> Does {
         let words = ["unstable", "bound", "overflow", "division", "range", "forcing", "table"];
         if let Some(name) = name.filter(|n| !words.contains(&&*n.text)) {
             let what = format!("there is no fault `{}`", name.text);
@@ -196,21 +195,20 @@ impl Planner<'_> {
     /// Adds an ask for the side that knows all names of the expression; the charts if both do.
     /// Reports a problem if neither does.
     fn ask(&mut self, e: &Expr) -> Option<AskId> {
-        let needs = Needs::of(self.bench, e);
-        if let Some(problem) = needs.problem(e) {
-            self.problems.push(problem);
-            return None;
+        match sides::ask(self.bench, e) {
+            Ok(ask) => self.asks.push(ask),
+            Err(problem) => {
+                self.problems.push(problem);
+                return None;
+            }
         }
-        self.asks.push(Ask { expr: e.clone(), of_plant: needs.plant() });
         Some(self.asks.len() - 1)
     }
 
-    /// Prepares a condition. If it asks the plant, each operand of `and` is asked of its own side.
+    /// Prepares a condition.
     fn check(&mut self, e: &Expr) -> Check {
-        let plant = Needs::of(self.bench, e).plant();
-        let parts = if plant { sides::conjuncts(e) } else { vec![e] };
         let mut check = Check { asks: Vec::new(), at: e.at.0, mentions: Vec::new() };
-        for part in parts {
+        for part in sides::parts(self.bench, e) {
             let Some(ask) = self.ask(part) else { continue };
             check.asks.push(Asked { ask, at: part.at.0, bit: is_bit(part) });
             self.mention(part, ask, &mut check.mentions);

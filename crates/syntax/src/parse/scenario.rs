@@ -5,7 +5,7 @@ use crate::lexer::Tok;
 use crate::words::St;
 use g7_iec::constant;
 use g7_model::{
-    BinaryOp, Expr, ExprKind, Layout, PlaceAt, Placed, Problem, Property, PropertyKind, Scenario, TestStmt,
+    BinaryOp, Expr, ExprKind, Layout, Name, PlaceAt, Placed, Problem, Property, PropertyKind, Scenario, TestStmt,
     TestStmtKind, codes, words,
 };
 
@@ -17,7 +17,7 @@ impl Parser<'_> {
             self.expected("the title of the test in double quotes");
             "".into()
         });
-        let plant = self.eat_word("with").then(|| self.name("the name of a plant"));
+        let plant = self.with_plant();
         let seed = if self.eat_word("seed") {
             let seed = self.integer_if(u64::MAX);
             if seed.is_none() {
@@ -211,8 +211,14 @@ impl Parser<'_> {
                 PropertyKind::Always(if self.at_expr() { self.condition() } else { self.bad() })
             }
         };
+        let plant = self.with_plant();
         let comment = self.comment_if();
-        Property { kind, comment, at: self.since(start).into() }
+        Property { kind, plant, comment, at: self.since(start).into() }
+    }
+
+    /// `with Tank`.
+    fn with_plant(&mut self) -> Option<Name> {
+        self.eat_word("with").then(|| self.name("the name of a plant"))
     }
 
     /// `assume e`.
@@ -220,7 +226,7 @@ impl Parser<'_> {
         let start = self.bump().start;
         let kind = PropertyKind::Assume(if self.at_expr() { self.condition() } else { self.bad() });
         let comment = self.comment_if();
-        Property { kind, comment, at: self.since(start).into() }
+        Property { kind, plant: None, comment, at: self.since(start).into() }
     }
 
     /// True at a word with a condition right behind it, such as `alwys a`.

@@ -279,6 +279,10 @@ impl Printer<'_> {
                 self.push(")");
             }
         }
+        if let Some(plant) = &property.plant {
+            self.push(" with ");
+            self.name(&plant.text);
+        }
         self.comment(property.comment.as_deref());
     }
 

@@ -204,7 +204,8 @@ fn properties_and_layouts() {
     let d = read(
         "prove always not (X0 and motor)\nprove never a\nprove reachable X1 \"c\"\nprove after a within 10ms expect b\n\
          prove after a until b or c expect X1\nprove between (a and b) and c never X1 and d\n\
-         prove a and b leads to c \"at last\"\nprove at most 2 of (a, b, c)\nassume not (a and b)\n\
+         prove a and b leads to c \"at last\"\nprove at most 2 of (a, b, c)\n\
+         prove never a and b with Tank \"closed\"\nassume not (a and b)\n\
          layout G { step 1 at (0, 1.5) transition t7 at (-2.25, 3) transition #0 at (0,0) comment \"x\" at (1, 1) }",
     );
     let properties: Vec<String> = d
@@ -213,7 +214,10 @@ fn properties_and_layouts() {
         .filter_map(|i| if let Item::Prove(p) = i { Some(p) } else { None })
         .map(|p| match &p.kind {
             PropertyKind::Always(e) => format!("always {}", tree(e)),
-            PropertyKind::Never(e) => format!("never {}", tree(e)),
+            PropertyKind::Never(e) => {
+                let plant = p.plant.as_ref().map_or(String::new(), |plant| format!(" with {}", plant.text));
+                format!("never {}{plant}", tree(e))
+            }
             PropertyKind::Reachable(e) => format!("reachable {} {:?}", tree(e), p.comment.as_deref()),
             PropertyKind::After(a, t, b) => format!("after {} {} {}", tree(a), t.count(), tree(b)),
             PropertyKind::Until(a, b, e) => format!("after {} until {} {}", tree(a), tree(b), tree(e)),
@@ -236,6 +240,7 @@ fn properties_and_layouts() {
             "between (and a b) c (and X1 d)",
             "(and a b) leads to c",
             "2 of a b c",
+            "never (and a b) with Tank",
             "assume (not (and a b))",
         ]
     );

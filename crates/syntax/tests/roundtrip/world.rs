@@ -104,7 +104,10 @@ pub(crate) fn property() -> impl Strategy<Value = Property> {
             .prop_map(|(n, list)| PropertyKind::AtMost(n, list)),
         expr().prop_map(PropertyKind::Assume),
     ];
-    (kind, comment()).prop_map(|(kind, comment)| Property { kind, comment, at: at() })
+    (kind, prop::option::of(name()), comment()).prop_map(|(kind, plant, comment)| {
+        let plant = plant.filter(|_| !matches!(kind, PropertyKind::Assume(_)));
+        Property { kind, plant, comment, at: at() }
+    })
 }
 
 pub(crate) fn layout() -> impl Strategy<Value = Layout> {
