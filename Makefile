@@ -20,10 +20,7 @@ TALLY := $(abspath $(or $(CARGO_TARGET_DIR),target))/tally
 # they are compiled once for all tests.
 DEBUG := $(abspath $(or $(CARGO_TARGET_DIR),target))/debug
 # With the kinds of devices that the usual build does not have.
-FIELD := --features g7/s7,g7/gpio
-# OPC UA is compiled by targets of its own: its library alone takes minutes.
-WORKSPACE := --workspace --exclude g7-opcua $(FIELD)
-OPCUA := --package g7-opcua --package g7 $(FIELD),g7/opcua
+WORKSPACE := --workspace --features g7/s7,g7/gpio,g7/opcua
 BUILD := cargo build --quiet $(WORKSPACE) --bin g7
 TESTS := cargo test $(WORKSPACE) --quiet --lib --bins --tests
 CLIPPY := cargo clippy $(WORKSPACE) --all-targets --quiet -- --deny warnings
@@ -31,7 +28,7 @@ STORIES = cd web && npm run --silent check && G7=$(DEBUG)/g7 npm test --silent |
 PYTHON := $(abspath $(or $(CARGO_TARGET_DIR),target))/python
 PAGE := $(shell find web/src web/index.html web/public web/*.ts web/*.js web/*.mjs -type f 2>/dev/null)
 
-.PHONY: run view install online-demo deb sbom static test opcua-test opcua-bench tally-anew peers lint deny wasm web site pictures page-test page-bench bench bench-check online-bench soak faults book blocks fuzz help FORCE
+.PHONY: run view install online-demo deb sbom static test opcua-bench tally-anew peers lint deny wasm web site pictures page-test page-bench bench bench-check online-bench soak faults book blocks fuzz help FORCE
 
 ## build G7 and open the editor in the browser on the examples (FOLDER=… for another)
 run: WASM := quick-wasm
@@ -105,15 +102,6 @@ peers:
 	@$(call debian,mosquitto_sub,mosquitto mosquitto-clients)
 	@test ! -x $(PYTHON)/bin/pip || $(PYTHON)/bin/pip install --quiet 'pyarrow>=20'
 	@$(SUDO) apt-get update -qq && $(SUDO) apt-get install -qq --no-install-recommends clang libclang-rt-dev
-
-## OPC UA, which `make test` leaves out: its library alone is minutes of compilation, and no default build has it
-opcua-test: export G7_SKIPS = $(TALLY)/skips-opcua
-opcua-test: export G7_PEERS = $(PYTHON)
-opcua-test: $(PYTHON)/bin/pymodbus.simulator
-	@mkdir -p $(TALLY) && rm -f $(G7_SKIPS) && touch $(G7_SKIPS)
-	cargo clippy $(OPCUA) --all-targets --quiet -- --deny warnings
-	cargo test $(OPCUA) --quiet --lib --test peer --test opcua
-	@sort $(G7_SKIPS) | uniq -c
 
 ## figures of the server of OPC UA, beside asyncua
 opcua-bench: export G7_PEERS = $(PYTHON)
@@ -205,9 +193,6 @@ soak: export G7_SEEDS = $(SEEDS)
 soak:
 	cargo test --profile soak --package g7-online --test simulation -- --nocapture
 
-# The packages that have tests of faults, which are called `row_...`.
-FAULTY := g7 g7-online g7-store g7-opcua
-
 ## faults around a controller on line, each hundreds of times: what held, and how long it took
 faults: export G7_FAULTS = many
 faults: export G7_PEERS = $(PYTHON)
@@ -217,7 +202,7 @@ faults: $(PYTHON)/bin/pymodbus.simulator
 	@$(call debian,cyclictest,rt-tests)
 	@$(call debian,stress-ng,stress-ng)
 	@mkdir -p $(TALLY) && rm -f $(G7_FAULT_ROWS) && touch $(G7_FAULT_ROWS)
-	done=0; cargo test $(FAULTY:%=--package %) $(FIELD),g7/opcua --tests --no-fail-fast -- row_ --nocapture --test-threads 1 || done=$$?; \
+	done=0; cargo test $(WORKSPACE) --tests --no-fail-fast -- row_ --nocapture --test-threads 1 || done=$$?; \
 		cargo run --quiet --package g7-peers --bin faults -- $(G7_FAULT_ROWS) && exit $$done
 
 ## the book, as HTML in docs/book/book, with every conformance case as a page
