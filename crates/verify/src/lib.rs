@@ -3,8 +3,9 @@
 //! # Where this sits
 //!
 //! ```text
-//! model::Document -> ask -> Question, Model -> Layer (search) -> Verdict -> g7 prove
-//!                           two charts      -> compare        -> Equality -> g7 compare
+//! model::Document -> ask -> Question, Model -> answer: Layer (search) -> Verdict -> words -> g7 prove, page
+//!                           two charts      -> compare               -> Equality -> g7 compare
+//!                           Run             -> blame: the steps and transitions that take part
 //! ```
 //!
 //! `model.rs` has the meaning of a run, `question.rs` that of a claim, `verdict.rs` the
@@ -22,11 +23,13 @@
 //! - A run is given only after `engine::scan` has repeated it from the start.
 //! - No clock: the caller's [`Budget::stop`] ends a search.
 //!
-//! Not here: names, messages (`compile`, `model`), the evolution itself (`engine`).
+//! Not here: names and problems (`compile`, `model`), the evolution itself (`engine`).
 #![forbid(unsafe_code)]
 
+mod answer;
 mod ask;
 mod asked;
+mod blame;
 mod compare;
 mod explore;
 mod inputs;
@@ -39,8 +42,11 @@ mod search;
 mod store;
 mod values;
 mod verdict;
+pub mod words;
 
+pub use answer::answer;
 pub use ask::{Asked, ask};
+pub use blame::{Blame, blame};
 pub use compare::{Compare, Difference, Equality, compare};
 pub use explore::{Answer, Bound, Explorer, Limits, Moment, Move, Moves, Next};
 pub use inputs::{Inputs, Which};

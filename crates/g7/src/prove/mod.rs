@@ -4,7 +4,6 @@
 mod apart;
 mod output;
 mod trace;
-mod words;
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -12,7 +11,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use g7_host::{Clock, WallClock};
 use g7_model::Nanos;
 use g7_rig::Source;
-use g7_verify::{Budget, Evidence, Explicit, Layer, Model, Question, Verdict, ask};
+use g7_verify::{Budget, Evidence, Model, Question, Verdict, answer, ask, words};
 
 pub(crate) use apart::compare;
 
@@ -42,7 +41,7 @@ pub(crate) fn prove(args: &Prove) -> Result<failure::Verdict, Failure> {
         let model = Model::new(&asked.compiled, asked.assume.clone());
         let mut answers = vec![None; asked.questions.len()];
         let budget = Budget { states: args.states, bytes: args.memory.saturating_mul(1 << 20), stop: &*stop };
-        Explicit.answer(&model, &asked.questions, &mut answers, &budget);
+        answer(&model, &asked.questions, &mut answers, &budget);
         let drawer = trace::Drawer::new(&source, args.profile)?;
         for (question, verdict) in asked.questions.iter().zip(answers) {
             let Some(verdict) = verdict else { continue };
@@ -72,13 +71,17 @@ fn answered(
     verdict: Verdict,
     drawer: Option<&trace::Drawer>,
 ) -> Answered {
-    let (own, claim) = words::claim(source, model.compiled, question);
+    let written = source.text.get(source.range(question.at)).unwrap_or_default();
+    let [claim, ..] = words::claim(written, model.compiled, question);
     let run = match &verdict {
         Verdict::Refuted(Evidence::Run(run)) => Some(run),
         _ => None,
     };
     let drawn = run.zip(drawer).map(|(run, drawer)| drawer.draw(&run.moves)).unwrap_or_default();
-    Answered { place: source.place(question.at), claim, own, verdict, chronogram: drawn.0, time: drawn.1 }
+    let [reason, ..] = words::reason(&verdict, drawn.1);
+    let [help, ..] = words::help(question, &verdict);
+    let own = question.claim.is_own();
+    Answered { place: source.place(question.at), claim, own, reason, help, verdict, chronogram: drawn.0 }
 }
 
 /// Tells when the time is over or Ctrl-C was pressed; what is known by then is printed.
