@@ -64,6 +64,7 @@ const ALLOWED: &[Arrows] = &[
             "g7-draw",
             "g7-edit",
             "g7-rig",
+            "g7-verify",
         ],
         Some(&["diffy", "serde", "serde_json"]),
     ),

@@ -4,7 +4,8 @@
 //!
 //! ```text
 //! page (TypeScript) -> JSON -> Page::call -> Files: syntax, edit, compile, draw
-//!                                        \-> Runs:  rig, host, engine
+//!                                        |-> Runs:  rig, host, engine
+//!                                        \-> prove: verify
 //! ```
 //!
 //! The same [`Page`] runs in the browser (as wasm, through `wasm`) and in the server (for shared
@@ -31,6 +32,7 @@ mod overview;
 mod page;
 mod positions;
 mod problems;
+mod prove;
 mod request;
 mod run;
 mod testing;

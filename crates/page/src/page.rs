@@ -8,6 +8,7 @@ use crate::file::File;
 use crate::language;
 use crate::merge::merge;
 use crate::overview::overview;
+use crate::prove::{self, Proof};
 use crate::request::Request;
 use crate::run::{self, Run};
 use crate::{drawing, edit, export, gestures, logic, testing};
@@ -17,6 +18,8 @@ use crate::{drawing, edit, export, gestures, logic, testing};
 pub struct Page {
     files: BTreeMap<String, File>,
     runs: BTreeMap<String, Run>,
+    /// The answers found so far, by file.
+    proofs: BTreeMap<String, Proof>,
 }
 
 /// Greatest number of open files, and of runs.
@@ -42,6 +45,7 @@ impl Page {
             Request::Open { file, text } => self.open(file, text),
             Request::Close { file } => {
                 self.files.remove(&file);
+                self.proofs.remove(&file);
                 ok(&())
             }
             Request::Look { file } => self.look(&file),
@@ -75,6 +79,8 @@ impl Page {
                 ok(&serde_json::json!({ "markdown": text }))
             }
             Request::Test { file, name } => ok(&testing::test(self.file(&file)?, name.as_deref())?),
+            Request::Prove { file, limits } => self.prove(&file, limits),
+            Request::ProveWays { file, wish } => ok(&prove::ways(self.file(&file)?, &wish)?),
             Request::Tokens { file, from, to } => ok(&language::tokens::tokens(self.file(&file)?, from, to)),
             Request::Complete { file, at } => ok(&language::complete::complete(self.file(&file)?, at)),
             Request::Hover { file, at } => ok(&language::hover::hover(self.file(&file)?, at)),
@@ -145,6 +151,13 @@ impl Page {
 
     fn look(&self, name: &str) -> Answer {
         ok(&overview(name, self.file(name)?))
+    }
+
+    fn prove(&mut self, name: &str, limits: prove::Limits) -> Answer {
+        let known = self.proofs.remove(name);
+        let (proof, report) = prove::prove(self.file(name)?, known, limits);
+        self.proofs.insert(name.to_owned(), proof);
+        ok(&report)
     }
 
     fn start(&mut self, wish: &run::Start) -> Answer {

@@ -84,6 +84,18 @@ pub(crate) enum Request {
         file: String,
         name: Option<String>,
     },
+    /// Answers all questions about the file, as far as the limits go.
+    Prove {
+        file: String,
+        #[serde(flatten)]
+        limits: crate::prove::Limits,
+    },
+    /// The ways on from a refuted claim.
+    ProveWays {
+        file: String,
+        #[serde(flatten)]
+        wish: crate::prove::Wish,
+    },
     Tokens {
         file: String,
         #[serde(default)]

@@ -3,9 +3,10 @@
 //! # Where this sits
 //!
 //! ```text
-//! model::Document -> ask -> Question, Model -> Layer (search) -> Verdict -> g7 prove
-//! rig::Bench (with a plant) -> closed -> Question, Model (the same way)
-//!                           two charts      -> compare        -> Equality -> g7 compare
+//! model::Document -> ask -> Question, Model -> answer: Layer (search) -> Verdict -> words -> g7 prove, page
+//! rig::Source (with a plant) -> closed -> Question, Model (the same way)
+//!                           two charts      -> compare               -> Equality -> g7 compare
+//!                           Run             -> blame: the steps and transitions that take part
 //! ```
 //!
 //! `model.rs` has the meaning of a run, `question.rs` that of a claim, `verdict.rs` the
@@ -23,11 +24,13 @@
 //! - A run is given only after `engine::scan` has repeated it from the start.
 //! - No clock: the caller's [`Budget::stop`] ends a search.
 //!
-//! Not here: names, messages (`compile`, `model`), the evolution itself (`engine`).
+//! Not here: names and problems (`compile`, `model`), the evolution itself (`engine`).
 #![forbid(unsafe_code)]
 
+mod answer;
 mod ask;
 mod asked;
+mod blame;
 mod closed;
 mod compare;
 mod explore;
@@ -42,8 +45,11 @@ mod store;
 mod values;
 mod verdict;
 mod world;
+pub mod words;
 
+pub use answer::answer;
 pub use ask::{Asked, ask};
+pub use blame::{Blame, blame};
 pub use closed::{Closed, ask_with};
 pub use compare::{Compare, Difference, Equality, compare};
 pub use explore::{Answer, Bound, Explorer, Limits, Moment, Move, Moves, Next};

@@ -33,13 +33,13 @@ pub(crate) fn passes(p: &Program, s: &mut State, inputs: &[u64], now: i64, confl
     }
     for _ in 0..PASSES {
         if conflicts && !seen.conflict {
-            seen.conflict = conflict(p, s);
+            seen.conflict = conflict(p, s).is_some();
         }
         let was: Vec<u32> = s.active().map(|s| s.0).collect();
         let before = s.cleared().len();
         let Ok(changed) = pass(p, s) else { return seen };
         let cleared = s.cleared().get(before..).unwrap_or(&[]);
-        seen.unsafe_ |= is_unsafe(t, &was, cleared);
+        seen.unsafe_ |= twice(t, &was, cleared).is_some();
         if !changed || !t.rules.stable {
             return seen;
         }
@@ -48,9 +48,9 @@ pub(crate) fn passes(p: &Program, s: &mut State, inputs: &[u64], now: i64, confl
     seen
 }
 
-/// True if two transitions could clear, share a preceding step, and no written priority
+/// Two transitions that could clear and share a preceding step, where no written priority
 /// that the profile follows chooses between them.
-fn conflict(p: &Program, s: &State) -> bool {
+pub(crate) fn conflict(p: &Program, s: &State) -> Option<(u32, u32)> {
     let t = p.tables();
     let mut ready = Vec::new();
     let shares = |rank: u32| t.transitions.get(rank as usize).is_some_and(|t| t.shares);
@@ -65,13 +65,16 @@ fn conflict(p: &Program, s: &State) -> bool {
         let others = sides(t, b).0;
         sides(t, a).0.iter().any(|s| others.contains(s))
     };
-    ready.iter().enumerate().any(|(i, a)| ready.iter().skip(i + 1).any(|b| !chosen(*a, *b) && meet(*a, *b)))
+    let mut pairs =
+        ready.iter().enumerate().flat_map(|(i, a)| ready.iter().skip(i + 1).map(move |b| (*a, *b)));
+    pairs.find(|(a, b)| !chosen(*a, *b) && meet(*a, *b))
 }
 
-fn is_unsafe(t: &Tables, was: &[u32], cleared: &[u32]) -> bool {
-    let enters = |rank: u32, step: u32| sides(t, rank).1.contains(&step);
+/// A step that was activated while active and not left, with a transition that did it.
+pub(crate) fn twice(t: &Tables, was: &[u32], cleared: &[u32]) -> Option<(u32, u32)> {
     let leaves = |step: u32| cleared.iter().any(|r| sides(t, *r).0.contains(&step));
-    was.iter().any(|step| cleared.iter().any(|r| enters(*r, *step)) && !leaves(*step))
+    let enters = |step: u32| cleared.iter().copied().find(|r| sides(t, *r).1.contains(&step));
+    was.iter().filter(|step| !leaves(**step)).find_map(|step| Some((*step, enters(*step)?)))
 }
 
 /// The steps before and behind a transition.

@@ -112,4 +112,19 @@ impl Claim {
                 | Claim::Reachable(_)
         )
     }
+
+    /// True if the author asks it in the file.
+    pub fn is_own(&self) -> bool {
+        matches!(
+            self,
+            Claim::Always(_)
+                | Claim::Never(_)
+                | Claim::Reachable(_)
+                | Claim::AtMost(..)
+                | Claim::Within { .. }
+                | Claim::Until { .. }
+                | Claim::Between { .. }
+                | Claim::LeadsTo { .. }
+        )
+    }
 }

@@ -3,13 +3,14 @@ import { panels as canvas } from '../canvas';
 import type { Panel } from '../lib/shell.svelte';
 import { panels as out } from '../export';
 import { panels as tables } from '../panels';
+import { panels as prove } from '../prove';
 import { panels as run } from '../run';
 import { panels as start } from '../start';
 import { panels as text } from '../text';
 import { panels as wires } from '../wiring';
 import { panels as frame } from './index';
 
-const all: Panel[] = [...frame, ...canvas, ...tables, ...run, ...start, ...text, ...out, ...wires];
+const all: Panel[] = [...frame, ...canvas, ...tables, ...prove, ...run, ...start, ...text, ...out, ...wires];
 
 export function slots(region: Panel['region']): Panel[] {
   return all.filter((p) => p.region === region).sort((a, b) => a.order - b.order);

@@ -4,6 +4,7 @@ import { canvas } from './words/canvas';
 import { out } from './words/export';
 import { operator } from './words/operator';
 import { panels } from './words/panels';
+import { prove } from './words/prove';
 import { run } from './words/run';
 import { shell } from './words/shell';
 import { start } from './words/start';
@@ -13,17 +14,20 @@ import { prefs } from './prefs.svelte';
 
 export type Words = Record<string, readonly [en: string, fr: string, pt: string]>;
 
-const table = { ...access, ...shell, ...canvas, ...out, ...operator, ...panels, ...run, ...start, ...text, ...wiring } as const;
+const table = { ...access, ...shell, ...canvas, ...out, ...operator, ...panels, ...prove, ...run, ...start, ...text, ...wiring } as const;
 
 export type Key = keyof typeof table;
 export type Language = 'en' | 'fr' | 'pt';
 
 export const languages: Record<Language, string> = { en: 'English', fr: 'Français', pt: 'Português' };
 
+/** The sentence in the language of the page. */
+export function said(row: readonly [en: string, fr: string, pt: string]): string {
+  const at = { en: 0, fr: 1, pt: 2 } as const;
+  return row[at[prefs.language]];
+}
+
 /** The word in the language of the page; `{name}` is replaced by a value. */
 export function t(key: Key, values: Record<string, string | number> = {}): string {
-  const row: readonly [string, string, string] = table[key];
-  const at = { en: 0, fr: 1, pt: 2 } as const;
-  const word = row[at[prefs.language]];
-  return word.replace(/\{(\w+)\}/g, (whole, name: string) => String(values[name] ?? whole));
+  return said(table[key]).replace(/\{(\w+)\}/g, (whole, name: string) => String(values[name] ?? whole));
 }

@@ -23,7 +23,8 @@ export function opened<T>(answer: string): T {
   return said.ok as T;
 }
 
-class Local implements Answers {
+/** A worker with the wasm; it starts with the first message. */
+export class Local implements Answers {
   #worker: Worker | undefined;
   #waiting: Waiting[] = [];
 
@@ -47,13 +48,16 @@ class Local implements Answers {
         waiting?.reject(error as Error);
       }
     };
-    worker.onerror = (event) => {
-      const waiting = this.#waiting.splice(0);
-      waiting.forEach((w) => w.reject(new Error(event.message || 'the worker stopped')));
-      worker.terminate();
-      this.#worker = undefined;
-    };
+    worker.onerror = (event) => this.stop(event.message);
     return worker;
+  }
+
+  /** Ends the worker, whatever it is doing; all messages under way fail, and its files are gone. */
+  stop(why = ''): void {
+    const waiting = this.#waiting.splice(0);
+    this.#worker?.terminate();
+    this.#worker = undefined;
+    waiting.forEach((w) => w.reject(new Error(why || 'the worker stopped')));
   }
 }
 

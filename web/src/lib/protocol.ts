@@ -333,6 +333,54 @@ export interface TestAnswer {
   problems: Problem[];
 }
 
+/** A sentence in each language of the page. */
+export type Said = [en: string, fr: string, pt: string];
+
+/** A scan of a run: the inputs that change, by the number of their word; values as decimal texts. */
+export interface ProofScan {
+  wait_ns: number;
+  set: [number, string][];
+}
+
+/** The answer to one question about all runs. */
+export interface ProofRow {
+  /** The number of the question. */
+  number: number;
+  claim: Said;
+  /** True if the author asks it in the file. */
+  own: boolean;
+  about: 'step' | 'transition' | 'action' | 'variable' | 'deadlock' | 'conflict' | 'chart' | 'property';
+  verdict: 'proved' | 'refuted' | 'open';
+  reason: Said;
+  /** The way out; empty if none is known. */
+  help: Said;
+  from: number;
+  to: number;
+  line: number;
+  /** The symbol that is asked about. */
+  id?: string;
+  /** The symbols that take part in what the last scan of the run shows. */
+  blame?: string[];
+  /** The run that shows the answer. */
+  run?: ProofScan[];
+}
+
+export interface ProofReport {
+  /** The fingerprint of the text that was asked. */
+  hash: string;
+  /** True where errors stand in the way of all questions. */
+  refused: boolean;
+  rows: ProofRow[];
+}
+
+/** The ways on from a refuted claim, each a change of the text. */
+export interface ProofWays {
+  cures: { sort: 'exclusive' | 'parallel' | 'priority' | 'assume'; with: string[]; splices: Splice[] }[];
+  test?: { title: string; splices: Splice[] };
+  /** Why there is no test. */
+  untested?: string;
+}
+
 /** A language of logic: Structured Text, Instruction List, Ladder. */
 export type Tongue = 'st' | 'il' | 'ld';
 

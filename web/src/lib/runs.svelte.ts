@@ -4,7 +4,7 @@ import { differ, type Difference } from '../run/compare';
 import { Run } from '../run/state.svelte';
 import { files, type OpenFile } from './files.svelte';
 import { page, type Answers, type Message } from './page';
-import type { Frame, Started } from './protocol';
+import type { Frame, ProofScan, Started } from './protocol';
 import { server } from './server';
 import { shell } from './shell.svelte';
 
@@ -66,6 +66,19 @@ class Runs {
     const started = await page.call<Started>({ do: 'run_start', file: file.name, run: file.name, ...wishes });
     const run = new Run(started, page, false);
     run.speed = before?.speed ?? 1;
+    this.#put(file.name, run);
+    await this.#tellBreaks(run);
+    return run;
+  }
+
+  /** Repeats a run that a proof found, in the page and without the plant; it takes the place of the
+   * file's run. */
+  async repeat(file: OpenFile, moves: ProofScan[]): Promise<Run> {
+    if (this.other?.file === file.name) await this.compare(null);
+    const before = this.of(file.name);
+    if (before?.shared) await this.#quit(before);
+    const started = await page.call<Started>({ do: 'run_start', file: file.name, run: file.name, plant: 'none', moves });
+    const run = new Run(started, page, false);
     this.#put(file.name, run);
     await this.#tellBreaks(run);
     return run;

@@ -4,7 +4,6 @@
 mod apart;
 mod output;
 mod trace;
-mod words;
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -13,7 +12,7 @@ use g7_host::{Clock, WallClock};
 use g7_model::{Nanos, Problem};
 use g7_rig::Source;
 use g7_rig::testing::plants;
-use g7_verify::{Budget, Evidence, Explicit, Layer, Model, Question, Verdict, ask, ask_with};
+use g7_verify::{Budget, Evidence, Model, Question, Verdict, answer, ask, ask_with, words};
 
 pub(crate) use apart::compare;
 
@@ -98,7 +97,7 @@ impl File<'_> {
     /// Answers the questions about a model; those of every chart name their plant.
     fn answer(&mut self, model: &Model<'_>, questions: &[Question], plant: Option<&str>) {
         let mut answers = vec![None; questions.len()];
-        Explicit.answer(model, questions, &mut answers, &self.budget);
+        answer(model, questions, &mut answers, &self.budget);
         for (question, verdict) in questions.iter().zip(answers) {
             let Some(verdict) = verdict else { continue };
             let mut one = answered(self.source, model, question, verdict, self.drawer.as_ref());
@@ -117,13 +116,17 @@ fn answered(
     verdict: Verdict,
     drawer: Option<&trace::Drawer>,
 ) -> Answered {
-    let (own, claim) = words::claim(source, model.compiled, question);
+    let written = source.text.get(source.range(question.at)).unwrap_or_default();
+    let [claim, ..] = words::claim(written, model.compiled, question);
     let run = match &verdict {
         Verdict::Refuted(Evidence::Run(run)) => Some(run),
         _ => None,
     };
     let drawn = run.zip(drawer).map(|(run, drawer)| drawer.draw(&run.moves)).unwrap_or_default();
-    Answered { place: source.place(question.at), claim, own, verdict, chronogram: drawn.0, time: drawn.1 }
+    let [reason, ..] = words::reason(&verdict, drawn.1);
+    let [help, ..] = words::help(question, &verdict);
+    let own = question.claim.is_own();
+    Answered { place: source.place(question.at), claim, own, reason, help, verdict, chronogram: drawn.0 }
 }
 
 /// Tells when the time is over or Ctrl-C was pressed; what is known by then is printed.

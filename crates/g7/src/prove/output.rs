@@ -2,11 +2,9 @@
 
 use std::io::Write;
 
-use g7_model::Nanos;
-use g7_verify::{Certificate, Evidence, Verdict};
+use g7_verify::{Evidence, Verdict, words};
 use serde_json::{Value, json};
 
-use super::words;
 use crate::failure::Failure;
 use crate::style;
 use crate::testing::escape;
@@ -19,58 +17,19 @@ pub(crate) struct Answered {
     pub(crate) claim: String,
     /// The author wrote it.
     pub(crate) own: bool,
+    /// The evidence in one line.
+    pub(crate) reason: String,
+    /// The way out; empty where none is known.
+    pub(crate) help: String,
     /// The answer.
     pub(crate) verdict: Verdict,
     /// The run that shows it, drawn; empty without one.
     pub(crate) chronogram: String,
-    /// The time that the run takes.
-    pub(crate) time: Nanos,
 }
 
-fn word(verdict: &Verdict) -> &'static str {
-    match verdict {
-        Verdict::Proved(_) => "proved",
-        Verdict::Refuted(_) => "refuted",
-        Verdict::Open(_) => "not decided",
-    }
-}
-
-/// The evidence of an answer, in one line.
-fn reason(a: &Answered) -> String {
-    match &a.verdict {
-        Verdict::Open(open) => {
-            format!(
-                "no run of up to {} decides it ({} visited): {}",
-                count(open.scans, "scan"),
-                count(open.states, "state"),
-                open.reason
-            )
-        }
-        Verdict::Proved(e) | Verdict::Refuted(e) => match e {
-            Evidence::Run(run) => {
-                let fault = run.fault.map_or(String::new(), |f| format!(", with a fault: {}", f.kind));
-                format!("shown by a run of {}, {}{fault}", count(run.moves.len(), "scan"), a.time.plain())
-            }
-            Evidence::Certificate(Certificate::Search { states, scans }) => {
-                format!("all of {} visited by {}", count(*states, "state"), count(*scans, "scan"))
-            }
-            Evidence::Certificate(Certificate::Invariant { clauses }) => {
-                format!("an invariant of {clauses} clauses, which was checked")
-            }
-        },
-    }
-}
-
-fn count(n: usize, what: &str) -> String {
-    format!("{n} {what}{}", if n == 1 { "" } else { "s" })
-}
-
-fn help(a: &Answered) -> String {
-    match &a.verdict {
-        Verdict::Open(open) => open.help.clone(),
-        Verdict::Refuted(_) => words::way_out(&a.claim).unwrap_or_default().to_owned(),
-        Verdict::Proved(_) => String::new(),
-    }
+fn word(verdict: &Verdict) -> String {
+    let [word, ..] = words::verdict(verdict);
+    word
 }
 
 /// Prints what is not proved and the author's properties; with `all` every answer.
@@ -90,13 +49,12 @@ pub(super) fn text(list: &[Answered], all: bool) -> Result<(), Failure> {
         if proved && !all {
             continue;
         }
-        writeln!(out, "  {}", reason(a))?;
+        writeln!(out, "  {}", a.reason)?;
         for line in a.chronogram.lines() {
             writeln!(out, "  {line}")?;
         }
-        let help = help(a);
-        if !help.is_empty() {
-            writeln!(out, "  help: {help}")?;
+        if !a.help.is_empty() {
+            writeln!(out, "  help: {}", a.help)?;
         }
     }
     let [proved, refuted, open] = counts(list);
@@ -113,8 +71,8 @@ pub(super) fn json(list: &[Answered]) -> Result<(), Failure> {
     let [proved, refuted, open] = counts(list);
     let one = |a: &Answered| -> Value {
         let mut row = json!({
-            "place": a.place, "claim": a.claim, "own": a.own, "verdict": word(&a.verdict), "reason": reason(a),
-            "help": help(a),
+            "place": a.place, "claim": a.claim, "own": a.own, "verdict": word(&a.verdict), "reason": a.reason,
+            "help": a.help,
         });
         if !a.chronogram.is_empty() {
             row["chronogram"] = json!(a.chronogram);
@@ -141,7 +99,7 @@ pub(super) fn junit(list: &[Answered]) -> String {
     for a in list {
         let file = a.place.rsplitn(3, ':').last().unwrap_or_default();
         out.push_str(&format!("  <testcase classname=\"{}\" name=\"{}\"", escape(file), escape(&a.claim)));
-        let body = format!("{}\n{}", reason(a), a.chronogram);
+        let body = format!("{}\n{}", a.reason, a.chronogram);
         match a.verdict {
             Verdict::Proved(_) => out.push_str("/>\n"),
             Verdict::Refuted(_) => out.push_str(&format!(
@@ -152,7 +110,7 @@ pub(super) fn junit(list: &[Answered]) -> String {
             Verdict::Open(_) => {
                 out.push_str(&format!(
                     ">\n    <skipped message=\"{}\"/>\n  </testcase>\n",
-                    escape(&reason(a))
+                    escape(&a.reason)
                 ));
             }
         }

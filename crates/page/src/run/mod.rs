@@ -2,6 +2,7 @@
 //!
 //! ```text
 //! wish -> start -> Run (rig::Bench, host::Runner, Recording) -> frame: what changed
+//!         repeat: the scans of a proof
 //!                   \-> past: back in time    lanes: chronogram    swap: on-line change
 //! ```
 //!
@@ -12,7 +13,9 @@ mod frame;
 mod lanes;
 mod past;
 mod places;
+mod repeat;
 mod running;
+mod scans;
 mod sent;
 mod start;
 mod swap;
@@ -23,6 +26,7 @@ pub use frame::show;
 pub(crate) use lanes::Form;
 pub use places::Places;
 pub(crate) use running::Run;
+pub(crate) use scans::Scan;
 pub use sent::Show;
 pub(crate) use start::start;
 pub(crate) use wish::Start;

@@ -248,7 +248,7 @@ impl Run {
     }
 
     /// Records an event from outside and executes it.
-    fn come(&mut self, event: Event) {
+    pub(super) fn come(&mut self, event: Event) {
         self.past.note(&self.runner, event.clone());
         past::apply(&self.bench, &mut self.runner, &event);
     }

@@ -79,7 +79,7 @@ struct Binding {
     attribute: String,
 }
 
-/// Compiles a source and makes the first scan.
+/// Compiles a source and makes the first scan, or those of the run that the page wishes to see.
 pub(crate) fn start(source: &Source, wish: &Start) -> Result<Run, String> {
     let bench = bench(source, wish)?;
     let runner = bench.runner(wish.seed);
@@ -92,7 +92,7 @@ pub(crate) fn start(source: &Source, wish: &Start) -> Result<Run, String> {
         document: Arc::new(source.document.clone()),
         text: source.text.as_str().into(),
         positions: Arc::new(Positions::new(&source.text)),
-        wish: wish.clone(),
+        wish: wish.without_moves(),
         viewed: None,
         runner,
         bench,
@@ -106,7 +106,12 @@ pub(crate) fn start(source: &Source, wish: &Start) -> Result<Run, String> {
         late: false,
         sent: Sent::default(),
     };
-    run.scan();
+    match &wish.moves {
+        Some(scans) => run.repeat(scans),
+        None => {
+            run.scan();
+        }
+    }
     run.clock = run.now;
     Ok(run)
 }

@@ -6,6 +6,8 @@ use g7_model::{Nanos, ProfileName, Severity};
 use g7_rig::{Bench, Options, Source};
 use serde::Deserialize;
 
+use super::scans::Scan;
+
 /// The page's request to start a run.
 #[derive(Clone, Debug, Deserialize)]
 pub(crate) struct Start {
@@ -16,6 +18,15 @@ pub(crate) struct Start {
     plant: Option<String>,
     #[serde(default)]
     pub(super) seed: u64,
+    /// A run to be repeated from the start, without the user.
+    pub(super) moves: Option<Vec<Scan>>,
+}
+
+impl Start {
+    /// The request without its run, of which a changed chart repeats nothing.
+    pub(super) fn without_moves(&self) -> Start {
+        Start { moves: None, ..self.clone() }
+    }
 }
 
 /// Builds the bench for a request.

@@ -1,0 +1,61 @@
+//! The questions of a text, with the answers found so far.
+
+use g7_model::Severity;
+use g7_verify::{Asked, Budget, Model, Verdict, answer, ask};
+use serde::Deserialize;
+
+use super::rows::{self, Report};
+use crate::file::File;
+use crate::overview::hash;
+
+/// The page's request: how far the search may go.
+#[derive(Clone, Copy, Debug, Deserialize)]
+pub(crate) struct Limits {
+    /// Most states kept.
+    states: usize,
+    /// Most memory for them, in MiB.
+    mib: usize,
+}
+
+/// Greatest limits, whatever the page asks for.
+const MOST: Limits = Limits { states: 20_000_000, mib: 1024 };
+
+/// The questions of a text, with the answers found so far.
+pub(crate) struct Proof {
+    /// The fingerprint of the text.
+    hash: String,
+    /// Absent where errors stand in the way.
+    asked: Option<Asked>,
+    answers: Vec<Option<Verdict>>,
+}
+
+/// Searches for the answers that are still open. `known` are those of an earlier call.
+pub(crate) fn prove(file: &File, known: Option<Proof>, limits: Limits) -> (Proof, Report) {
+    let hash = hash(file.text());
+    let mut proof = known.filter(|p| p.hash == hash).unwrap_or_else(|| begin(file, hash));
+    let Some(asked) = &proof.asked else {
+        let report = Report::refused(&proof.hash);
+        return (proof, report);
+    };
+    let model = Model::new(&asked.compiled, asked.assume.clone());
+    let budget = Budget {
+        states: limits.states.min(MOST.states),
+        bytes: limits.mib.min(MOST.mib) << 20,
+        stop: &|| false,
+    };
+    answer(&model, &asked.questions, &mut proof.answers, &budget);
+    let report = rows::report(file, &proof.hash, &model, &asked.questions, &proof.answers);
+    (proof, report)
+}
+
+fn begin(file: &File, hash: String) -> Proof {
+    let asked = questions(file);
+    let answers = asked.as_ref().map_or_else(Vec::new, |a| vec![None; a.questions.len()]);
+    Proof { hash, asked, answers }
+}
+
+/// The questions of a file without errors.
+pub(super) fn questions(file: &File) -> Option<Asked> {
+    let wrong = file.problems.iter().any(|p| p.severity() == Severity::Error);
+    if wrong { None } else { ask(&file.source.document, None).0 }
+}

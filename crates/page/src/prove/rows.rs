@@ -1,0 +1,151 @@
+//! Answers as the panel shows them.
+
+use g7_model::{Document, Nanos, Span};
+use g7_verify::words::{self, Said};
+use g7_verify::{Claim, Evidence, Model, Question, Run, Verdict, blame};
+use serde::Serialize;
+
+use crate::file::File;
+use crate::ids;
+use crate::run::Scan;
+
+/// All answers to the questions of a file.
+#[derive(Debug, Serialize)]
+pub(crate) struct Report {
+    /// The fingerprint of the text that was asked, as in the overview of a file.
+    hash: String,
+    /// True where errors stand in the way of all questions.
+    refused: bool,
+    rows: Vec<Row>,
+}
+
+impl Report {
+    pub(super) fn refused(hash: &str) -> Report {
+        Report { hash: hash.to_owned(), refused: true, rows: Vec::new() }
+    }
+}
+
+/// The answer to one question.
+#[derive(Debug, Serialize)]
+struct Row {
+    /// The number of the question.
+    number: usize,
+    claim: Said,
+    /// True if the author asks it in the file.
+    own: bool,
+    /// The kind of claim, for the panel.
+    about: &'static str,
+    verdict: &'static str,
+    reason: Said,
+    help: Said,
+    /// The place of what is asked about.
+    from: usize,
+    to: usize,
+    line: usize,
+    /// The symbol that is asked about.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    id: Option<String>,
+    /// The symbols that take part in what the last scan of the run shows.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    blame: Vec<String>,
+    /// The run that shows the answer.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    run: Option<Vec<Scan>>,
+}
+
+/// Most scans of a run that comes with a claim that something can be; refuted claims and those of the
+/// author have theirs whatever its length.
+const LONG: usize = 200;
+
+pub(super) fn report(
+    file: &File,
+    hash: &str,
+    model: &Model<'_>,
+    questions: &[Question],
+    answers: &[Option<Verdict>],
+) -> Report {
+    let numbered = questions.iter().zip(answers).enumerate();
+    let rows = numbered.filter_map(|(n, (q, v))| Some(row(file, model, n, q, v.as_ref()?))).collect();
+    Report { hash: hash.to_owned(), refused: false, rows }
+}
+
+fn row(file: &File, model: &Model<'_>, number: usize, question: &Question, verdict: &Verdict) -> Row {
+    let range = file.source.range(question.at);
+    let (line, _) = file.positions.line_column(file.text(), range.start);
+    let written = file.text().get(range).unwrap_or_default();
+    let (from, to) = file.units(question.at);
+    let own = question.claim.is_own();
+    let run = match verdict {
+        Verdict::Proved(Evidence::Run(run)) if own || run.moves.len() <= LONG => Some(run),
+        Verdict::Refuted(Evidence::Run(run)) => Some(run),
+        Verdict::Proved(_) | Verdict::Refuted(_) | Verdict::Open(_) => None,
+    };
+    let time = |run: &Run| Nanos::new(run.moves.iter().fold(0, |sum, m| m.wait.saturating_add(sum)));
+    let time = match verdict {
+        Verdict::Proved(Evidence::Run(run)) | Verdict::Refuted(Evidence::Run(run)) => time(run),
+        Verdict::Proved(_) | Verdict::Refuted(_) | Verdict::Open(_) => Nanos::ZERO,
+    };
+    Row {
+        number,
+        claim: words::claim(written, model.compiled, question),
+        own,
+        about: about(&question.claim),
+        verdict: match verdict {
+            Verdict::Proved(_) => "proved",
+            Verdict::Refuted(_) => "refuted",
+            Verdict::Open(_) => "open",
+        },
+        reason: words::reason(verdict, time),
+        help: match verdict {
+            // The panel has a button for it, and no options.
+            Verdict::Open(open) if open.help.contains("--") => Said::default(),
+            Verdict::Proved(_) | Verdict::Refuted(_) | Verdict::Open(_) => words::help(question, verdict),
+        },
+        from,
+        to,
+        line,
+        id: symbol(&file.source.document, question),
+        blame: match (verdict, run) {
+            (Verdict::Refuted(_), Some(run)) => guilty(&file.source.document, model, &question.claim, run),
+            _ => Vec::new(),
+        },
+        run: run.map(|run| Scan::list(&run.moves)),
+    }
+}
+
+fn about(claim: &Claim) -> &'static str {
+    match claim {
+        Claim::Active(_) => "step",
+        Claim::Clears(_) => "transition",
+        Claim::Runs(_) => "action",
+        Claim::On(_) | Claim::Asked(_) => "variable",
+        Claim::NoDeadlock => "deadlock",
+        Claim::NoConflict => "conflict",
+        Claim::NoUnsafe
+        | Claim::NoInstability
+        | Claim::NoOpposedWrites
+        | Claim::NoOpposedOrders
+        | Claim::NoFault => "chart",
+        _ => "property",
+    }
+}
+
+/// The step, transition or action that a question names.
+fn symbol(document: &Document, question: &Question) -> Option<String> {
+    match question.claim {
+        Claim::Active(_) | Claim::Clears(_) | Claim::Runs(_) => Some(ids::at(document, question.at)?.id()),
+        _ => None,
+    }
+}
+
+fn guilty(document: &Document, model: &Model<'_>, claim: &Claim, run: &Run) -> Vec<String> {
+    let symbols = &model.compiled.symbols;
+    let found = blame(model, claim, run);
+    let steps = found.steps.into_iter().filter(|s| symbols.is_listed(*s)).map(|s| symbols.step_place(s));
+    let ranks = found.transitions.into_iter().filter(|r| symbols.is_written(*r));
+    let places: Vec<Span> = steps.chain(ranks.map(|r| symbols.transition_place(r))).collect();
+    let mut found: Vec<String> =
+        places.into_iter().filter_map(|at| Some(ids::at(document, at)?.id())).collect();
+    found.dedup();
+    found
+}
