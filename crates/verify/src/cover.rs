@@ -10,6 +10,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use g7_engine::State;
 
+use crate::explore::Move;
 use crate::layer::Budget;
 use crate::model::Model;
 use crate::search::{Scene, Search, Until};
@@ -24,13 +25,24 @@ pub struct Reached {
     pub open: Option<Open>,
 }
 
-/// Searches until `count` elements are reached. With `rest` the first scan takes place with the
-/// initial values of the inputs, as that of a test does. `see` gives the numbers of the elements
-/// that a scan reached.
+/// Where a search for elements begins.
+#[derive(Clone, Copy, Debug)]
+pub enum From<'m> {
+    /// Before the first scan, which takes place with any inputs.
+    Start,
+    /// The same, but the first scan takes place with the initial values of the inputs, as that of a
+    /// test does.
+    Rest,
+    /// Behind these scans, which no fault stops. The runs that are found go on from there.
+    Behind(&'m [Move]),
+}
+
+/// Searches until `count` elements are reached. `see` gives the numbers of the elements that a
+/// scan reached.
 pub fn reach(
     model: &Model<'_>,
     budget: &Budget<'_>,
-    rest: bool,
+    from: From<'_>,
     count: usize,
     see: &mut dyn FnMut(&mut State) -> Vec<usize>,
 ) -> Reached {
@@ -48,11 +60,12 @@ pub fn reach(
         all.store(found.len() >= count, Ordering::Relaxed);
     };
     let mut search = Search::new(model, &budget, Vec::new());
-    search.rest = rest;
+    search.rest = matches!(from, From::Rest);
+    search.start = if let From::Behind(moves) = from { moves } else { &[] };
     search.until = Until::Visited;
     search.look = Some(&mut look);
     search.search();
-    let run = |(from, m): &(usize, crate::explore::Move)| {
+    let run = |(from, m): &(usize, Move)| {
         let mut run = search.path(*from);
         run.moves.push(m.clone());
         run

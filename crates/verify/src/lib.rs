@@ -45,7 +45,7 @@ mod verdict;
 
 pub use ask::{Asked, ask};
 pub use compare::{Compare, Difference, Equality, compare};
-pub use cover::{Reached, reach, stuck};
+pub use cover::{From, Reached, reach, stuck};
 pub use cubes::Cube;
 pub use explore::{Answer, Bound, Explorer, Limits, Moment, Move, Moves, Next};
 pub use inputs::{Inputs, Which};

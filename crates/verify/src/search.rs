@@ -125,6 +125,8 @@ pub(crate) struct Search<'a> {
     pub(crate) look: Option<Look<'a>>,
     /// The first scan takes place with the initial values of the inputs.
     pub(crate) rest: bool,
+    /// The search begins behind these scans.
+    pub(crate) start: &'a [Move],
     pub(crate) until: Until,
     model: &'a Model<'a>,
     p: &'a Program,
@@ -169,6 +171,7 @@ impl<'a> Search<'a> {
             tried: Tried::Matter,
             look: None,
             rest: false,
+            start: &[],
             until: Until::Answered,
             model,
             p,
@@ -206,13 +209,24 @@ impl<'a> Search<'a> {
     pub(crate) fn search(&mut self) {
         let (mut state, mut other) = (State::new(self.p), State::new(self.p));
         let mut image = Vec::new();
+        for m in self.start {
+            let now = state.now().saturating_add(m.wait);
+            // The caller has a run without a fault; behind one nothing would be found.
+            let _fault = scan(self.p, &mut state, &m.inputs, now);
+        }
         state.canonical(self.p, &mut image);
         self.width = image.len();
         image.push(IDLE);
         self.store = Store::new(image.len());
         self.store.insert(&image);
         self.parents.push(0);
-        self.inputs.extend(self.model.inputs.iter().map(|v| v.tried.first().copied().unwrap_or(0)));
+        match self.start.last() {
+            Some(m) => self.inputs.extend_from_slice(&m.inputs),
+            None => {
+                let initial = self.model.inputs.iter().map(|v| v.tried.first().copied().unwrap_or(0));
+                self.inputs.extend(initial);
+            }
+        }
         let (mut at, mut level) = (0usize, 1usize);
         while at < self.store.len() && self.goes_on() {
             if at == level {
@@ -267,7 +281,7 @@ impl<'a> Search<'a> {
         let asked = self.asking.asked(state);
         let count = self.asking.count();
         let last: Vec<u64> = self.inputs.get(at * count..(at + 1) * count).unwrap_or(&[]).to_vec();
-        let wait = if at == 0 { 0 } else { self.model.period };
+        let wait = self.wait(at);
         let (mut tried, mut on) = (false, false);
         let mut next: Vec<u32> = Vec::new();
         let places = self.places(&asked);
@@ -352,7 +366,7 @@ impl<'a> Search<'a> {
 
     /// The inputs that are tried in a state; leaves a note where they are not all that matter.
     fn vectors(&mut self, at: usize, places: &[usize], last: Vec<u64>) -> Vec<Vec<u64>> {
-        if self.rest && at == 0 {
+        if self.rest && at == 0 && self.start.is_empty() {
             return vec![last];
         }
         let tried = |i: usize| self.model.inputs.get(i).map_or(&[][..], |v| &v.tried);
@@ -362,12 +376,18 @@ impl<'a> Search<'a> {
             new.get_mut(i).into_iter().for_each(|w| *w = value);
             new
         };
+        // The present value comes first, so that a run changes an input only where it must.
+        let values = |i: usize| {
+            let now = last.get(i).copied();
+            let others = tried(i).iter().copied().filter(move |v| Some(*v) != now);
+            now.filter(|v| tried(i).contains(v)).into_iter().chain(others)
+        };
         let mut list = vec![last.clone()];
         for i in places {
             if count > MOST {
                 list.extend(tried(*i).iter().map(|v| set(&last, *i, *v)).filter(|v| *v != last));
             } else {
-                list = list.iter().flat_map(|old| tried(*i).iter().map(|v| set(old, *i, *v))).collect();
+                list = list.iter().flat_map(|old| values(*i).map(|v| set(old, *i, v))).collect();
             }
         }
         if self.hole.is_none() {
@@ -500,14 +520,19 @@ impl<'a> Search<'a> {
         self.answers.push((i, verdict));
     }
 
-    /// The run that leads to a state.
+    /// The time before the next scan behind a state: the first scan of all is at time 0.
+    fn wait(&self, at: usize) -> i64 {
+        if at == 0 && self.start.is_empty() { 0 } else { self.model.period }
+    }
+
+    /// The run that leads to a state from the beginning of the search.
     pub(crate) fn path(&self, mut at: usize) -> Run {
         let count = self.asking.count();
         let mut moves = Vec::new();
         while at > 0 {
             let before = self.parents.get(at).copied().unwrap_or(0) as usize;
             let inputs = self.inputs.get(at * count..(at + 1) * count).unwrap_or(&[]).to_vec();
-            moves.push(Move { inputs, wait: if before == 0 { 0 } else { self.model.period } });
+            moves.push(Move { inputs, wait: self.wait(before) });
             at = before;
         }
         moves.reverse();

@@ -1,8 +1,15 @@
 //! `g7 prove`: asks every question of charts, and prints each answer with what shows it.
 //! `g7 compare`: two charts, or one under two profiles, beside each other.
 
+mod added;
 mod apart;
+mod cover;
+mod graph;
+mod made;
 mod output;
+mod sarif;
+mod save;
+mod script;
 mod trace;
 mod words;
 
@@ -15,10 +22,11 @@ use g7_rig::Source;
 use g7_verify::{Budget, Evidence, Explicit, Layer, Model, Question, Verdict, ask};
 
 pub(crate) use apart::compare;
+pub(crate) use graph::{Graph, graph};
 
 use output::Answered;
 
-use crate::cli::{Format, Prove};
+use crate::cli::{Answers, Prove};
 use crate::failure::{self, Failure};
 use crate::message::talk;
 use crate::report::{self, Tally};
@@ -26,6 +34,7 @@ use crate::{files, sources};
 
 pub(crate) fn prove(args: &Prove) -> Result<failure::Verdict, Failure> {
     let paths = files::all(&args.paths)?;
+    made::one_file(args, &paths)?;
     let stop = stop(args.time)?;
     let (mut all, mut tally) = (Vec::new(), Tally::default());
     for path in &paths {
@@ -43,6 +52,10 @@ pub(crate) fn prove(args: &Prove) -> Result<failure::Verdict, Failure> {
         let mut answers = vec![None; asked.questions.len()];
         let budget = Budget { states: args.states, bytes: args.memory.saturating_mul(1 << 20), stop: &*stop };
         Explicit.answer(&model, &asked.questions, &mut answers, &budget);
+        if made::contradiction(&source, &model, args.profile, &answers, &budget)? {
+            tally.errors += 1;
+        }
+        made::tests(args, &source, &asked, &model, &answers, &budget)?;
         let drawer = trace::Drawer::new(&source, args.profile)?;
         for (question, verdict) in asked.questions.iter().zip(answers) {
             let Some(verdict) = verdict else { continue };
@@ -50,8 +63,9 @@ pub(crate) fn prove(args: &Prove) -> Result<failure::Verdict, Failure> {
         }
     }
     match args.format {
-        Format::Text => output::text(&all, args.all)?,
-        Format::Json => output::json(&all)?,
+        Answers::Text => output::text(&all, args.all)?,
+        Answers::Json => output::json(&all)?,
+        Answers::Sarif => sarif::print(&all, args.all)?,
     }
     if let Some(path) = &args.junit {
         files::write(path, output::junit(&all).as_bytes())?;
@@ -78,7 +92,10 @@ fn answered(
         _ => None,
     };
     let drawn = run.zip(drawer).map(|(run, drawer)| drawer.draw(&run.moves)).unwrap_or_default();
-    Answered { place: source.place(question.at), claim, own, verdict, chronogram: drawn.0, time: drawn.1 }
+    let scans = run.zip(drawer).map(|(run, drawer)| drawer.scans(&run.moves)).unwrap_or_default();
+    let (chronogram, time) = drawn;
+    let rule = sarif::rule(&question.claim);
+    Answered { place: source.place(question.at), claim, own, verdict, chronogram, time, rule, scans }
 }
 
 /// Tells when the time is over or Ctrl-C was pressed; what is known by then is printed.

@@ -25,9 +25,13 @@ pub(crate) struct Answered {
     pub(crate) chronogram: String,
     /// The time that the run takes.
     pub(crate) time: Nanos,
+    /// The question by its short name.
+    pub(crate) rule: &'static str,
+    /// The scans of the run, each in words.
+    pub(crate) scans: Vec<String>,
 }
 
-fn word(verdict: &Verdict) -> &'static str {
+pub(super) fn word(verdict: &Verdict) -> &'static str {
     match verdict {
         Verdict::Proved(_) => "proved",
         Verdict::Refuted(_) => "refuted",
@@ -36,7 +40,7 @@ fn word(verdict: &Verdict) -> &'static str {
 }
 
 /// The evidence of an answer, in one line.
-fn reason(a: &Answered) -> String {
+pub(super) fn reason(a: &Answered) -> String {
     match &a.verdict {
         Verdict::Open(open) => {
             format!(
@@ -65,7 +69,7 @@ fn count(n: usize, what: &str) -> String {
     format!("{n} {what}{}", if n == 1 { "" } else { "s" })
 }
 
-fn help(a: &Answered) -> String {
+pub(super) fn help(a: &Answered) -> String {
     match &a.verdict {
         Verdict::Open(open) => open.help.clone(),
         Verdict::Refuted(_) => words::way_out(&a.claim).unwrap_or_default().to_owned(),
