@@ -6,17 +6,19 @@
 //! states follow the order in which they were found, so the first run that shows
 //! something is a shortest one.
 
+mod answers;
+
 use g7_engine::{Fault, Program, State, StepId, scan};
 
 use crate::asked::{Asking, Places};
 use crate::explore::Move;
 use crate::layer::{Budget, Layer};
-use crate::look::{PASSES, Passes, Scanned, allowed, passes, replay, shows};
+use crate::look::{Passes, Scanned, allowed, passes, shows};
 use crate::model::Model;
-use crate::monitor::{IDLE, has_memory, is_of_scans, judge};
+use crate::monitor::{IDLE, has_memory};
 use crate::question::{Claim, Question};
 use crate::store::Store;
-use crate::verdict::{Certificate, Evidence, Open, Run, Verdict};
+use crate::verdict::{Open, Verdict};
 use crate::world::{WAYS, World};
 
 /// Most combinations of inputs that are tried in one state.
@@ -73,14 +75,30 @@ pub fn watch(
     tried: Tried,
     look: &mut dyn FnMut(usize, &State),
 ) -> Vec<(usize, Verdict)> {
+    let mut look = |scene: Scene<'_>| look(scene.depth, scene.state);
     let mut search = Search::new(model, budget, questions.iter().enumerate().collect());
     search.tried = tried;
-    search.look = Some(look);
+    search.look = Some(&mut look);
     search.run()
 }
 
-/// Is shown each scan.
-type Look<'a> = &'a mut dyn FnMut(usize, &State);
+/// A scan of the search.
+pub(crate) struct Scene<'s> {
+    /// The number of scans before it.
+    pub(crate) depth: usize,
+    /// The number of the state before it.
+    pub(crate) from: usize,
+    /// The number of the state behind it; none behind a fault, or where the search ends.
+    pub(crate) to: Option<usize>,
+    /// The inputs and the wait.
+    pub(crate) m: &'s Move,
+    /// The inputs that are tried in the state before it, by their places.
+    pub(crate) tried: &'s [usize],
+    /// The state behind it.
+    pub(crate) state: &'s mut State,
+    /// The fault that stopped it.
+    pub(crate) fault: Option<Fault>,
+}
 
 /// The moves of one state.
 struct Tries {
@@ -88,6 +106,8 @@ struct Tries {
     /// The memory of the claim in the state.
     memory: u64,
     asked: Places,
+    /// The places of the inputs that are tried.
+    places: Vec<usize>,
     /// One was made.
     tried: bool,
     /// One leads on at once.
@@ -96,9 +116,37 @@ struct Tries {
     next: Vec<u32>,
 }
 
-struct Search<'a> {
-    tried: Tried,
-    look: Option<Look<'a>>,
+/// How much a search has seen.
+pub(crate) struct Extent {
+    pub(crate) states: usize,
+    /// Scans that were made.
+    pub(crate) scans: usize,
+    /// Why not all runs were seen.
+    pub(crate) open: Option<Open>,
+}
+
+/// Is shown each scan.
+pub(crate) type Look<'a> = &'a mut dyn FnMut(Scene<'_>);
+
+/// When a search ends that has states left to visit.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Until {
+    /// When all questions are answered.
+    Answered,
+    /// When no input satisfies the assumptions in some state.
+    Stuck,
+    /// Only when all states are visited.
+    Visited,
+}
+
+pub(crate) struct Search<'a> {
+    pub(crate) tried: Tried,
+    pub(crate) look: Option<Look<'a>>,
+    /// The first scan takes place with the initial values of the inputs.
+    pub(crate) rest: bool,
+    /// The search begins behind these scans.
+    pub(crate) start: &'a [Move],
+    pub(crate) until: Until,
     model: &'a Model<'a>,
     p: &'a Program,
     budget: &'a Budget<'a>,
@@ -127,6 +175,8 @@ struct Search<'a> {
     depth: usize,
     /// Why not all runs were seen.
     hole: Option<(String, String)>,
+    /// The first state in which no input satisfies the assumptions.
+    pub(crate) stuck: Option<usize>,
     /// Reports of a scan were cut.
     cut: bool,
     /// A scan had more passes than were looked at.
@@ -134,11 +184,18 @@ struct Search<'a> {
 }
 
 impl<'a> Search<'a> {
-    fn new(model: &'a Model<'a>, budget: &'a Budget<'a>, open: Vec<(usize, &'a Question)>) -> Search<'a> {
+    pub(crate) fn new(
+        model: &'a Model<'a>,
+        budget: &'a Budget<'a>,
+        open: Vec<(usize, &'a Question)>,
+    ) -> Search<'a> {
         let p: &Program = &model.compiled.program;
         Search {
             tried: Tried::Matter,
             look: None,
+            rest: false,
+            start: &[],
+            until: Until::Answered,
             model,
             p,
             budget,
@@ -157,6 +214,7 @@ impl<'a> Search<'a> {
             scans: 0,
             depth: 0,
             hole: None,
+            stuck: None,
             cut: false,
             cut_passes: false,
         }
@@ -164,23 +222,44 @@ impl<'a> Search<'a> {
 
     /// Searches, and answers all questions.
     fn run(mut self) -> Vec<(usize, Verdict)> {
+        self.search();
+        if self.hole.is_none() {
+            self.traps();
+        }
+        self.close();
+        self.answers
+    }
+
+    /// Visits all states, or as many as the budget and the questions allow.
+    pub(crate) fn search(&mut self) {
         let (mut world, mut other) = (World::new(self.model), World::new(self.model));
         let mut image = Vec::new();
+        for m in self.start {
+            let now = world.charts.now().saturating_add(m.wait);
+            // The caller has a run without a fault; behind one nothing would be found.
+            let _fault = scan(self.p, &mut world.charts, &m.inputs, now);
+        }
         world.image(&mut image);
         self.width = image.len();
         image.push(IDLE);
         self.store = Store::new(image.len());
         self.store.insert(&image);
         self.parents.push(0);
-        self.inputs.extend(self.model.inputs.iter().map(|v| v.tried.first().copied().unwrap_or(0)));
         if world.has_chance() {
             self.ways.push(0);
             let reason = format!("the plant's chance is tried in {WAYS} ways at each tick, of more");
             let help = "a plant without `random()` and without `arrivals` between two times can be proved";
             self.hole = Some((reason, help.to_owned()));
         }
+        match self.start.last() {
+            Some(m) => self.inputs.extend_from_slice(&m.inputs),
+            None => {
+                let initial = self.model.inputs.iter().map(|v| v.tried.first().copied().unwrap_or(0));
+                self.inputs.extend(initial);
+            }
+        }
         let (mut at, mut level) = (0usize, 1usize);
-        while at < self.store.len() && !self.open.is_empty() {
+        while at < self.store.len() && self.goes_on() {
             if at == level {
                 self.depth += 1;
                 level = self.store.len();
@@ -192,13 +271,21 @@ impl<'a> Search<'a> {
             self.expand(at, &mut world, &mut other, &mut image);
             at += 1;
         }
-        let done = at >= self.store.len();
-        self.depth += usize::from(done);
-        if done && self.hole.is_none() {
-            self.traps();
+        self.depth += usize::from(at >= self.store.len());
+    }
+
+    fn goes_on(&self) -> bool {
+        match self.until {
+            Until::Answered => !self.open.is_empty(),
+            Until::Stuck => self.stuck.is_none(),
+            Until::Visited => true,
         }
-        self.close();
-        self.answers
+    }
+
+    /// How much was seen.
+    pub(crate) fn seen(&self) -> Extent {
+        let open = self.hole.clone().map(|(reason, help)| self.so_far(reason, help));
+        Extent { states: self.store.len(), scans: self.scans, open }
     }
 
     /// Why the search is to stop here.
@@ -225,8 +312,9 @@ impl<'a> Search<'a> {
         let asked = self.asking.asked(&world.charts);
         let count = self.asking.count();
         let last: Vec<u64> = self.inputs.get(at * count..(at + 1) * count).unwrap_or(&[]).to_vec();
-        let wait = if at == 0 { 0 } else { self.model.period };
-        let mut tries = Tries { at, memory, asked, tried: false, on: false, next: Vec::new() };
+        let wait = self.wait(at);
+        let places = self.places(&asked);
+        let mut tries = Tries { at, memory, asked, places, tried: false, on: false, next: Vec::new() };
         for way in world.ways() {
             world.put(own);
             let mut given = last.clone();
@@ -237,15 +325,16 @@ impl<'a> Search<'a> {
                 tries.tried = true;
                 continue;
             }
-            for inputs in self.vectors(&tries.asked, given) {
+            for inputs in self.vectors(at, &tries.places, given) {
                 world.put_charts(own);
-                self.attempt(&mut tries, own, Move { inputs, wait }, world, other, image);
+                self.attempt(&mut tries, own, &Move { inputs, wait }, world, other, image);
             }
         }
-        if !tries.tried && self.hole.is_none() {
+        if !tries.tried && self.stuck.is_none() {
             let reason = format!("no input satisfies the assumptions {}", behind(self.depth));
             let help = "weaken the assumptions: without inputs there are no runs, and every claim would hold";
             self.hole = Some((reason, help.to_owned()));
+            self.stuck = Some(at);
         }
         let Tries { on, mut next, .. } = tries;
         self.leads_on.push(on);
@@ -261,7 +350,7 @@ impl<'a> Search<'a> {
         &mut self,
         tries: &mut Tries,
         own: &[u64],
-        m: Move,
+        m: &Move,
         world: &mut World<'a>,
         other: &mut World<'a>,
         image: &mut Vec<u64>,
@@ -270,7 +359,7 @@ impl<'a> Search<'a> {
         let now = world.charts.now().saturating_add(m.wait);
         if !self.model.assume.is_empty() {
             other.put_charts(own);
-            if !allowed(self.model, other, &m, now) {
+            if !allowed(self.model, other, m, now) {
                 return;
             }
         }
@@ -279,15 +368,13 @@ impl<'a> Search<'a> {
             let asked = tries.asked.clone();
             self.see_asked(at, &asked, &m);
         }
-        self.see_passes(at, other, own, &m, now);
+        self.see_passes(at, other, own, m, now);
         let active: Vec<StepId> = world.charts.active().collect();
         let report = scan(self.p, &mut world.charts, &m.inputs, now);
-        if let Some(look) = &mut self.look {
-            look(self.depth, &world.charts);
-        }
         self.see(at, &Scanned { state: &world.charts, report }, &m);
         let Ok(report) = report else {
             tries.on |= self.memory.is_none();
+            self.show_scan(tries, None, m, world, report.err());
             return;
         };
         let Some(memory) = self.judge(at, world, tries.memory, &m) else { return };
@@ -298,26 +385,47 @@ impl<'a> Search<'a> {
         world.image(image);
         image.push(memory);
         let number = self.store.len() as u32;
-        match self.store.find_or_insert(image) {
-            Some(old) => tries.next.push(old),
-            None => {
-                tries.next.push(number);
-                self.parents.push(at as u32);
-                self.inputs.extend_from_slice(&m.inputs);
-                if world.has_chance() {
-                    self.ways.push(self.way);
-                }
+        let to = self.store.find_or_insert(image).unwrap_or_else(|| {
+            self.parents.push(at as u32);
+            self.inputs.extend_from_slice(&m.inputs);
+            if world.has_chance() {
+                self.ways.push(self.way);
             }
+            number
+        });
+        tries.next.push(to);
+        self.show_scan(tries, Some(to as usize), m, world, None);
+    }
+
+    fn show_scan(
+        &mut self,
+        tries: &Tries,
+        to: Option<usize>,
+        m: &Move,
+        world: &mut World<'a>,
+        fault: Option<Fault>,
+    ) {
+        let depth = self.depth;
+        if let Some(look) = &mut self.look {
+            let state = &mut world.charts;
+            look(Scene { depth, from: tries.at, to, m, tried: &tries.places, state, fault });
         }
     }
 
-    /// The inputs that are tried in a state; leaves a note where they are not all that matter.
-    fn vectors(&mut self, asked: &Places, last: Vec<u64>) -> Vec<Vec<u64>> {
+    /// The places of the inputs that are tried in a state.
+    fn places(&self, asked: &Places) -> Vec<usize> {
         let places: Vec<usize> = match self.tried {
             Tried::Matter => self.asking.matter(asked).iter().collect(),
             Tried::All => (0..self.asking.count()).collect(),
         };
-        let places: Vec<usize> = places.into_iter().filter(|i| !self.model.is_driven(*i)).collect();
+        places.into_iter().filter(|i| !self.model.is_driven(*i)).collect()
+    }
+
+    /// The inputs that are tried in a state; leaves a note where they are not all that matter.
+    fn vectors(&mut self, at: usize, places: &[usize], last: Vec<u64>) -> Vec<Vec<u64>> {
+        if self.rest && at == 0 && self.start.is_empty() {
+            return vec![last];
+        }
         let tried = |i: usize| self.model.inputs.get(i).map_or(&[][..], |v| &v.tried);
         let count = places.iter().fold(1usize, |n, i| n.saturating_mul(tried(*i).len().max(1)));
         let set = |old: &[u64], i: usize, value: u64| {
@@ -325,12 +433,18 @@ impl<'a> Search<'a> {
             new.get_mut(i).into_iter().for_each(|w| *w = value);
             new
         };
+        // The present value comes first, so that a run changes an input only where it must.
+        let values = |i: usize| {
+            let now = last.get(i).copied();
+            let others = tried(i).iter().copied().filter(move |v| Some(*v) != now);
+            now.filter(|v| tried(i).contains(v)).into_iter().chain(others)
+        };
         let mut list = vec![last.clone()];
-        for i in &places {
+        for i in places {
             if count > MOST {
                 list.extend(tried(*i).iter().map(|v| set(&last, *i, *v)).filter(|v| *v != last));
             } else {
-                list = list.iter().flat_map(|old| tried(*i).iter().map(|v| set(old, *i, *v))).collect();
+                list = list.iter().flat_map(|old| values(*i).map(|v| set(old, *i, v))).collect();
             }
         }
         if self.hole.is_none() {
@@ -398,157 +512,6 @@ impl<'a> Search<'a> {
         let p = self.p;
         self.settle(at, m, scanned.report.err(), |c| shows(p, c, scanned));
     }
-
-    /// Judges the claims about the end of a scan; gives what is to be remembered, or nothing
-    /// where the search need not go on.
-    fn judge(&mut self, at: usize, world: &mut World<'a>, memory: u64, m: &Move) -> Option<u64> {
-        let mut hits = Vec::new();
-        let mut kept = IDLE;
-        let open = self.open.clone();
-        for (i, q) in open.iter().filter(|(_, q)| is_of_scans(&q.claim)) {
-            match judge(self.model, &q.claim, world, memory, m.wait) {
-                Ok(seen) => {
-                    hits.extend(seen.hit.then_some(*i));
-                    kept = if has_memory(&q.claim) { seen.memory } else { kept };
-                }
-                Err(fault) => {
-                    let reason = format!("a condition of this property cannot be evaluated: {}", fault.kind);
-                    let help =
-                        "guard it, as in `n > 0 and x / n > 2`, with a condition of its own".to_owned();
-                    self.give(*i, Verdict::Open(self.so_far(reason, help)));
-                }
-            }
-        }
-        if !hits.is_empty() {
-            self.settle_those(at, m, None, &hits);
-        }
-        Some(kept).filter(|_| !self.open.is_empty())
-    }
-
-    /// Answers the open questions that a scan shows.
-    fn settle(&mut self, at: usize, m: &Move, fault: Option<Fault>, is_shown: impl Fn(&Claim) -> bool) {
-        let hits: Vec<usize> =
-            self.open.iter().filter(|(_, q)| is_shown(&q.claim)).map(|(i, _)| *i).collect();
-        if !hits.is_empty() {
-            self.settle_those(at, m, fault, &hits);
-        }
-    }
-
-    fn settle_those(&mut self, at: usize, m: &Move, fault: Option<Fault>, hits: &[usize]) {
-        let mut run = self.path(at);
-        run.moves.push(m.clone());
-        if !self.ways.is_empty() {
-            run.ways.push(self.way);
-        }
-        run.fault = fault;
-        for i in hits {
-            self.show(*i, run.clone());
-        }
-    }
-
-    /// Answers a question with a run, if the run does the same again.
-    fn show(&mut self, i: usize, run: Run) {
-        let Some((_, q)) = self.open.iter().find(|(n, _)| *n == i) else { return };
-        let claim = &q.claim;
-        let verdict = if !replay(self.model, claim, &run) {
-            let help = "please report this: search and engine do not agree".to_owned();
-            Verdict::Open(self.so_far("the run that was found does not show it again".to_owned(), help))
-        } else if claim.is_of_some_run() {
-            Verdict::Proved(Evidence::Run(run))
-        } else {
-            Verdict::Refuted(Evidence::Run(run))
-        };
-        self.give(i, verdict);
-    }
-
-    fn give(&mut self, i: usize, verdict: Verdict) {
-        self.open.retain(|(n, _)| *n != i);
-        self.answers.push((i, verdict));
-    }
-
-    /// The run that leads to a state.
-    fn path(&self, mut at: usize) -> Run {
-        let count = self.asking.count();
-        let (mut moves, mut ways) = (Vec::new(), Vec::new());
-        while at > 0 {
-            ways.extend(self.ways.get(at).copied());
-            let before = self.parents.get(at).copied().unwrap_or(0) as usize;
-            let inputs = self.inputs.get(at * count..(at + 1) * count).unwrap_or(&[]).to_vec();
-            moves.push(Move { inputs, wait: if before == 0 { 0 } else { self.model.period } });
-            at = before;
-        }
-        moves.reverse();
-        ways.reverse();
-        Run { moves, ways, fault: None }
-    }
-
-    /// Finds the states from which no run leads on: deadlocks, or causes without their effect.
-    fn traps(&mut self) {
-        let Some(i) = self.open.iter().find(|(_, q)| asks_for_traps(&q.claim)).map(|(i, _)| *i) else {
-            return;
-        };
-        let mut back: Vec<(u32, u32)> = self.edges.iter().map(|(from, to)| (*to, *from)).collect();
-        back.sort_unstable();
-        let mut good = self.leads_on.clone();
-        for (at, on) in good.iter_mut().enumerate() {
-            *on |= self.memory.is_some() && self.store.image(at).last() == Some(&IDLE);
-        }
-        let mut work: Vec<u32> = (0u32..).zip(&good).filter(|(_, g)| **g).map(|(at, _)| at).collect();
-        while let Some(at) = work.pop() {
-            let first = back.partition_point(|(to, _)| *to < at);
-            for (_, from) in back.iter().skip(first).take_while(|(to, _)| *to == at) {
-                if let Some(g) = good.get_mut(*from as usize).filter(|g| !**g) {
-                    *g = true;
-                    work.push(*from);
-                }
-            }
-        }
-        let bad: Vec<usize> = good.iter().enumerate().filter(|(_, g)| !**g).map(|(at, _)| at).collect();
-        if let Some(at) = bad.into_iter().find(|at| self.memory.is_some() || !self.is_end(*at)) {
-            self.show(i, self.path(at));
-        }
-    }
-
-    /// True if no active step has a transition behind it.
-    fn is_end(&self, at: usize) -> bool {
-        let mut world = World::new(self.model);
-        world.put(self.store.image(at).get(..self.width).unwrap_or(&[]));
-        world.charts.active().all(|step| self.asking.behind(step) == 0)
-    }
-
-    /// Answers what is left over.
-    fn close(&mut self) {
-        let certificate = Certificate::Search { states: self.store.len(), scans: self.scans };
-        let cut = ("a scan does more than it reports".to_owned(), String::new());
-        let cut_passes = (
-            format!("a scan has more than {PASSES} passes"),
-            "make every evolution end first, with an edge (`↑a`) or a step that waits".to_owned(),
-        );
-        for (i, q) in std::mem::take(&mut self.open) {
-            let hidden = match &q.claim {
-                Claim::Active(_) | Claim::Clears(_) | Claim::Runs(_) => self.cut.then_some(&cut),
-                Claim::NoConflict | Claim::NoUnsafe => self.cut_passes.then_some(&cut_passes),
-                _ => None,
-            };
-            let hole = self.hole.as_ref().or(hidden).cloned();
-            let verdict = match hole {
-                Some((reason, help)) => Verdict::Open(self.so_far(reason, help)),
-                None if q.claim.is_of_some_run() => {
-                    Verdict::Refuted(Evidence::Certificate(certificate.clone()))
-                }
-                None => Verdict::Proved(Evidence::Certificate(certificate.clone())),
-            };
-            self.answers.push((i, verdict));
-        }
-    }
-
-    fn so_far(&self, reason: String, help: String) -> Open {
-        Open { scans: self.depth, states: self.store.len(), reason, help }
-    }
-}
-
-fn asks_for_traps(claim: &Claim) -> bool {
-    matches!(claim, Claim::NoDeadlock | Claim::LeadsTo { .. })
 }
 
 fn more(option: &str) -> String {

@@ -1,5 +1,5 @@
 //! `g7 compare`: equal for every sequence of inputs, or a shortest sequence that tells two
-//! charts apart, with both chronograms.
+//! charts apart, with both chronograms in one.
 
 use std::io::Write;
 
@@ -60,12 +60,17 @@ pub(crate) fn compare(args: &cli::Compare) -> Result<failure::Verdict, Failure> 
                 Difference::Fault => "a fault stops one of them only".to_owned(),
             };
             let count = moves.first().map_or(0, Vec::len);
-            writeln!(out, "{}different{:#}: after {count} scans {what}", style::BAD, style::BAD)?;
-            for (side, moves) in sides.iter().zip(&moves) {
-                writeln!(out, "\n  {}", side.name)?;
-                let drawn =
-                    Drawer::new(&side.source, side.profile)?.map(|d| d.draw(moves).0).unwrap_or_default();
-                for line in drawn.lines() {
+            let scans = if count == 1 { "scan" } else { "scans" };
+            writeln!(out, "{}different{:#}: after {count} {scans} {what}", style::BAD, style::BAD)?;
+            for (number, side) in (1..).zip(&sides) {
+                writeln!(out, "  {number}: {}", side.name)?;
+            }
+            let mut drawers = Vec::new();
+            for side in &sides {
+                drawers.extend(Drawer::new(&side.source, side.profile)?);
+            }
+            if let Ok(both) = <[Drawer; 2]>::try_from(drawers) {
+                for line in Drawer::draw_both(&both, &moves).lines() {
                     writeln!(out, "  {line}")?;
                 }
             }

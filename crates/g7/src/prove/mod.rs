@@ -1,8 +1,15 @@
 //! `g7 prove`: asks every question of charts, and prints each answer with what shows it.
 //! `g7 compare`: two charts, or one under two profiles, beside each other.
 
+mod added;
 mod apart;
+mod cover;
+mod graph;
+mod made;
 mod output;
+mod sarif;
+mod save;
+mod script;
 mod trace;
 
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -15,10 +22,11 @@ use g7_rig::testing::plants;
 use g7_verify::{Budget, Evidence, Model, Question, Verdict, answer, ask, ask_with, words};
 
 pub(crate) use apart::compare;
+pub(crate) use graph::{Graph, graph};
 
 use output::Answered;
 
-use crate::cli::{Format, Prove};
+use crate::cli::{Answers, Prove};
 use crate::failure::{self, Failure};
 use crate::message::talk;
 use crate::report::{self, Tally};
@@ -26,22 +34,27 @@ use crate::{files, sources};
 
 pub(crate) fn prove(args: &Prove) -> Result<failure::Verdict, Failure> {
     let paths = files::all(&args.paths)?;
+    made::one_file(args, &paths)?;
     let stop = stop(args.time)?;
     let (mut all, mut tally) = (Vec::new(), Tally::default());
     for path in &paths {
         let source = sources::load(path, 0)?;
         let budget = Budget { states: args.states, bytes: args.memory.saturating_mul(1 << 20), stop: &*stop };
-        let mut file = File { source: &source, args, budget, drawer: None, all: &mut all };
+        let mut file =
+            File { source: &source, args, budget, drawer: None, contradicts: false, all: &mut all };
         let problems = file.prove()?;
+        let contradicts = file.contradicts;
         let mine = Tally::of(&problems);
         if mine.errors > 0 {
             talk!("{}", report::text(&source, &problems).trim_end());
         }
         tally.add(mine);
+        tally.errors += usize::from(contradicts);
     }
     match args.format {
-        Format::Text => output::text(&all, args.all)?,
-        Format::Json => output::json(&all)?,
+        Answers::Text => output::text(&all, args.all)?,
+        Answers::Json => output::json(&all)?,
+        Answers::Sarif => sarif::print(&all, args.all)?,
     }
     if let Some(path) = &args.junit {
         files::write(path, output::junit(&all).as_bytes())?;
@@ -61,6 +74,8 @@ struct File<'a> {
     args: &'a Prove,
     budget: Budget<'a>,
     drawer: Option<trace::Drawer>,
+    /// The assumptions contradict each other.
+    contradicts: bool,
     all: &'a mut Vec<Answered>,
 }
 
@@ -78,7 +93,12 @@ impl File<'_> {
             let (asked, found) = ask(&source.document, profile);
             problems.extend(found);
             let Some(asked) = asked else { return Ok(problems) };
-            self.answer(&Model::new(&asked.compiled, asked.assume.clone()), &asked.questions, None);
+            let model = Model::new(&asked.compiled, asked.assume.clone());
+            let answers = self.answer(&model, &asked.questions, None);
+            if made::contradiction(source, &model, profile, &answers, &self.budget)? {
+                self.contradicts = true;
+            }
+            made::tests(args, source, &asked, &model, &answers, &self.budget)?;
         }
         let plants = match &args.plant {
             Some(plant) => vec![plant.as_str()],
@@ -95,10 +115,15 @@ impl File<'_> {
     }
 
     /// Answers the questions about a model; those of every chart name their plant.
-    fn answer(&mut self, model: &Model<'_>, questions: &[Question], plant: Option<&str>) {
+    fn answer(
+        &mut self,
+        model: &Model<'_>,
+        questions: &[Question],
+        plant: Option<&str>,
+    ) -> Vec<Option<Verdict>> {
         let mut answers = vec![None; questions.len()];
         answer(model, questions, &mut answers, &self.budget);
-        for (question, verdict) in questions.iter().zip(answers) {
+        for (question, verdict) in questions.iter().zip(answers.clone()) {
             let Some(verdict) = verdict else { continue };
             let mut one = answered(self.source, model, question, verdict, self.drawer.as_ref());
             if let Some(plant) = plant.filter(|_| !one.own) {
@@ -106,6 +131,7 @@ impl File<'_> {
             }
             self.all.push(one);
         }
+        answers
     }
 }
 
@@ -123,10 +149,13 @@ fn answered(
         _ => None,
     };
     let drawn = run.zip(drawer).map(|(run, drawer)| drawer.draw(&run.moves)).unwrap_or_default();
-    let [reason, ..] = words::reason(&verdict, drawn.1);
+    let scans = run.zip(drawer).map(|(run, drawer)| drawer.scans(&run.moves)).unwrap_or_default();
+    let (chronogram, time) = drawn;
+    let [reason, ..] = words::reason(&verdict, time);
     let [help, ..] = words::help(question, &verdict);
-    let own = question.claim.is_own();
-    Answered { place: source.place(question.at), claim, own, reason, help, verdict, chronogram: drawn.0 }
+    let (own, rule) = (question.claim.is_own(), sarif::rule(&question.claim));
+    let place = source.place(question.at);
+    Answered { place, claim, own, reason, help, verdict, chronogram, rule, scans }
 }
 
 /// Tells when the time is over or Ctrl-C was pressed; what is known by then is printed.

@@ -308,7 +308,8 @@ fn online(args: &Serve) -> Result<Verdict, Failure> {
     let more = More { plant, users, logged, ..More::default() };
     let station = station::start(&path, source, &args.drive, more)?;
     let Some(station) = station else { return Ok(Verdict::Found) };
-    let Station { names, origin, running, sight, monitor, post, panels, historian, claims: _claims } = station;
+    let Station { names, origin, running, sight, monitor, post, panels, historian, claims: _claims } =
+        station;
     if let Some(historian) = &historian {
         // It is set once.
         shared.history.set(historian.path.clone()).ok();

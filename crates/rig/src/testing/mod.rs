@@ -19,7 +19,7 @@ use g7_model::{Nanos, Problem, ProfileName, Scenario, Severity, Span};
 
 use crate::bench::{self, Bench};
 use crate::{Error, Source};
-pub use coverage::{Coverage, Row, Rows};
+pub use coverage::{Coverage, Row, Rows, Sort};
 pub use exec::Defect;
 pub use properties::{Claims, Unproved, claims, plants, unproved};
 use statements::Plan;

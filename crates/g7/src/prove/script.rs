@@ -1,0 +1,147 @@
+//! Runs of the prover as the statements of a test.
+//!
+//! A test begins with a scan in which all inputs have their initial values, a run with any
+//! values: where they differ, they are set and the charts are started anew (`restart cold`).
+
+use g7_engine::StepId;
+use g7_host::read_text;
+use g7_model::{
+    BinaryOp, Expr, ExprKind, Holds, Literal, Name, Nanos, Path, Place, Scenario, TestStmt, TestStmtKind,
+    Type, UnaryOp,
+};
+use g7_rig::{Activity, Bench, Item, Role};
+use g7_verify::Move;
+
+/// Scans from which on a time is written in the place of their number.
+const MANY: u32 = 10;
+
+/// The statements of a test that is being made.
+pub(super) struct Script<'b> {
+    bench: &'b Bench,
+    /// The present value of each input word.
+    inputs: Vec<u64>,
+    body: Vec<TestStmt>,
+    begun: bool,
+}
+
+impl<'b> Script<'b> {
+    pub(super) fn new(bench: &'b Bench) -> Script<'b> {
+        let t = bench.compiled.program.tables();
+        let inputs = t.init.get(t.inputs.start as usize..t.inputs.end as usize).unwrap_or(&[]).to_vec();
+        Script { bench, inputs, body: Vec::new(), begun: false }
+    }
+
+    /// The next scan of the run.
+    pub(super) fn scan(&mut self, m: &Move) {
+        let puts = self.puts(&m.inputs);
+        self.inputs.clone_from(&m.inputs);
+        match (std::mem::replace(&mut self.begun, true), puts.is_empty()) {
+            (false, true) => {}
+            (false, false) => {
+                self.add(TestStmtKind::Set(puts));
+                self.add(TestStmtKind::Restart { cold: true });
+            }
+            (true, false) => self.add(TestStmtKind::Set(puts)),
+            (true, true) => match self.body.last_mut().map(|s| &mut s.kind) {
+                Some(TestStmtKind::Scan(n)) => *n += 1,
+                _ => self.add(TestStmtKind::Scan(1)),
+            },
+        }
+    }
+
+    pub(super) fn scans(&mut self, moves: &[Move]) {
+        moves.iter().for_each(|m| self.scan(m));
+    }
+
+    pub(super) fn expect(&mut self, conditions: Vec<Expr>) {
+        if !conditions.is_empty() {
+            self.add(TestStmtKind::Expect(conditions));
+        }
+    }
+
+    pub(super) fn wait_until(&mut self, e: Expr, within: Option<Nanos>) {
+        self.add(TestStmtKind::WaitUntil(e, within));
+    }
+
+    pub(super) fn comment(&mut self, text: &str) {
+        self.add(TestStmtKind::Comment(text.into()));
+    }
+
+    fn add(&mut self, kind: TestStmtKind) {
+        self.body.push(TestStmt { kind, at: Place::default() });
+    }
+
+    /// The test. Many scans in a row are written as the time that they take.
+    pub(super) fn end(mut self, title: &str) -> Scenario {
+        for s in &mut self.body {
+            if let TestStmtKind::Scan(n) = s.kind
+                && n >= MANY
+                && let Some(time) = self.bench.period.checked_mul(i64::from(n))
+            {
+                s.kind = TestStmtKind::Wait(time);
+            }
+        }
+        Scenario { title: title.into(), plant: None, seed: None, body: self.body, at: Place::default() }
+    }
+
+    /// What must be set to bring the inputs to these values.
+    fn puts(&self, inputs: &[u64]) -> Vec<(Expr, Expr)> {
+        let words = |all: &[u64], item: &Item, first: u32| {
+            let from = first as usize;
+            all.get(from..from + item.words as usize).unwrap_or(&[]).to_vec()
+        };
+        let items = self.bench.items.iter().filter_map(|i| match i.role {
+            Role::Input(first) => Some((i, words(inputs, i, first), words(&self.inputs, i, first))),
+            _ => None,
+        });
+        items
+            .filter(|(_, new, old)| new != old)
+            .map(|(i, new, _)| (path(&i.name), value(i.ty, &new)))
+            .collect()
+    }
+}
+
+/// An expression without a place.
+pub(super) fn expr(kind: ExprKind) -> Expr {
+    Expr { kind, at: Place::default() }
+}
+
+/// A name as the language writes it outside of all charts.
+pub(super) fn path(name: &str) -> Expr {
+    let names = name.split('.').map(|n| Name { text: n.into(), at: Place::default() }).collect();
+    expr(ExprKind::Path(Path { names }))
+}
+
+/// The opposite of a condition.
+pub(super) fn not(e: Expr) -> Expr {
+    match e.kind {
+        ExprKind::Unary(UnaryOp::Not, inner) => *inner,
+        _ => expr(ExprKind::Unary(UnaryOp::Not, Box::new(e))),
+    }
+}
+
+/// The expressions joined by an operator; `None` without any.
+pub(super) fn join(op: BinaryOp, list: impl IntoIterator<Item = Expr>) -> Option<Expr> {
+    list.into_iter().reduce(|a, b| expr(ExprKind::Binary(op, Box::new(a), Box::new(b))))
+}
+
+/// The activity of a step: `X12`, `G.X12`, `Fill.X`.
+pub(super) fn activity(bench: &Bench, step: StepId) -> Option<Expr> {
+    let item = bench.steps.iter().find(|s| s.id == Activity::Step(step))?;
+    Some(path(&item.activity()))
+}
+
+/// A value as a literal.
+pub(super) fn value(ty: Type, words: &[u64]) -> Expr {
+    let word = words.first().copied().unwrap_or(0);
+    let real = |text: String| Literal::Real(text.into(), None);
+    expr(ExprKind::Literal(match ty.holds() {
+        Some(Holds::Truth) | None => Literal::Bool(word != 0),
+        Some(Holds::Signed) => Literal::Int(i128::from(word as i64), None),
+        Some(Holds::Unsigned) => Literal::Int(i128::from(word), None),
+        Some(Holds::Real) if ty == Type::Real => real(format!("{:?}", f32::from_bits(word as u32))),
+        Some(Holds::Real) => real(format!("{:?}", f64::from_bits(word))),
+        Some(Holds::Time) => Literal::Time(Nanos::new(word as i64)),
+        Some(Holds::Text) => Literal::Str(read_text(words, 0).into()),
+    }))
+}
