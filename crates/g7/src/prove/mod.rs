@@ -7,17 +7,13 @@ mod cover;
 mod graph;
 mod made;
 mod output;
+mod patience;
 mod sarif;
 mod save;
 mod script;
 mod trace;
 mod words;
 
-use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, Mutex, PoisonError};
-
-use g7_host::{Clock, WallClock};
-use g7_model::Nanos;
 use g7_rig::Source;
 use g7_verify::{Budget, Evidence, Explicit, Layer, Model, Question, Verdict, ask};
 
@@ -25,6 +21,7 @@ pub(crate) use apart::compare;
 pub(crate) use graph::{Graph, graph};
 
 use output::Answered;
+use patience::Patience;
 
 use crate::cli::{Answers, Prove};
 use crate::failure::{self, Failure};
@@ -35,7 +32,8 @@ use crate::{files, sources};
 pub(crate) fn prove(args: &Prove) -> Result<failure::Verdict, Failure> {
     let paths = files::all(&args.paths)?;
     made::one_file(args, &paths)?;
-    let stop = stop(args.time)?;
+    let patience = Patience::new()?;
+    let stop = patience.within(args.time);
     let (mut all, mut tally) = (Vec::new(), Tally::default());
     for path in &paths {
         let source = sources::load(path, 0)?;
@@ -55,7 +53,7 @@ pub(crate) fn prove(args: &Prove) -> Result<failure::Verdict, Failure> {
         if made::contradiction(&source, &model, args.profile, &answers, &budget)? {
             tally.errors += 1;
         }
-        made::tests(args, &source, &asked, &model, &answers, &budget)?;
+        made::tests(args, &source, &asked, &model, &answers, &patience)?;
         let drawer = trace::Drawer::new(&source, args.profile)?;
         for (question, verdict) in asked.questions.iter().zip(answers) {
             let Some(verdict) = verdict else { continue };
@@ -91,22 +89,9 @@ fn answered(
         Verdict::Refuted(Evidence::Run(run)) => Some(run),
         _ => None,
     };
-    let drawn = run.zip(drawer).map(|(run, drawer)| drawer.draw(&run.moves)).unwrap_or_default();
+    let drawn = run.zip(drawer).map(|(run, drawer)| drawer.draw(&run.moves, &claim)).unwrap_or_default();
     let scans = run.zip(drawer).map(|(run, drawer)| drawer.scans(&run.moves)).unwrap_or_default();
     let (chronogram, time) = drawn;
     let rule = sarif::rule(&question.claim);
     Answered { place: source.place(question.at), claim, own, verdict, chronogram, time, rule, scans }
-}
-
-/// Tells when the time is over or Ctrl-C was pressed; what is known by then is printed.
-fn stop(time: Nanos) -> Result<Arc<dyn Fn() -> bool + Send + Sync>, Failure> {
-    let pressed = Arc::new(AtomicBool::new(false));
-    for signal in [signal_hook::consts::SIGINT, signal_hook::consts::SIGTERM] {
-        signal_hook::flag::register_conditional_default(signal, pressed.clone())?;
-        signal_hook::flag::register(signal, pressed.clone())?;
-    }
-    let clock = Mutex::new(WallClock::default());
-    Ok(Arc::new(move || {
-        pressed.load(Ordering::Relaxed) || clock.lock().unwrap_or_else(PoisonError::into_inner).now() >= time
-    }))
 }

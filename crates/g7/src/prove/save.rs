@@ -45,8 +45,8 @@ pub(super) fn tests(
         match made {
             Ok(test) if saved.tests.contains(&test) => {}
             Ok(test) if fails(source, &test, profile)? => saved.tests.push(test),
-            Ok(_) => saved.left.push((claim, UNSEEN.to_owned())),
-            Err(reason) => saved.left.push((claim, reason.to_owned())),
+            Ok(_) => saved.left.push((short(&claim), UNSEEN.to_owned())),
+            Err(reason) => saved.left.push((short(&claim), reason.to_owned())),
         }
     }
     Ok(saved)
@@ -62,9 +62,15 @@ const FAULT: &str = "a fault stops the scan that shows it";
 
 /// The title of the test of a claim; the same for the same claim, so that it is replaced.
 fn title(claim: &str) -> String {
-    match claim.strip_prefix("prove ") {
-        Some(_) => claim.replace('"', "'"),
-        None => format!("prove {}", claim.split(": ").next().unwrap_or(claim)),
+    let short = short(claim).replace('"', "'");
+    if claim.starts_with("prove ") { short } else { format!("prove {short}") }
+}
+
+/// A claim without what explains it.
+fn short(claim: &str) -> String {
+    match claim.split_once(": ") {
+        Some((short, _)) if !claim.starts_with("prove ") => short.to_owned(),
+        _ => claim.to_owned(),
     }
 }
 
