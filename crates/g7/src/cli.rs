@@ -60,6 +60,17 @@ pub(crate) enum Format {
     Json,
 }
 
+/// The format of answers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Answers {
+    /// For people.
+    Text,
+    /// For programs: one JSON object.
+    Json,
+    /// For code review: a log of SARIF 2.1.0.
+    Sarif,
+}
+
 /// The commands.
 #[derive(Debug, Subcommand)]
 pub(crate) enum Command {
@@ -83,6 +94,8 @@ pub(crate) enum Command {
     Prove(Prove),
     /// Compare two charts, or one under two profiles, over all runs.
     Compare(Compare),
+    /// Show the situations that a chart reaches, as a graph.
+    Graph(crate::prove::Graph),
     /// Draw charts as SVG, PNG or PDF.
     Draw(crate::draw::Draw),
     /// Open the editor in the browser, or drive a machine with the page of its operator.
@@ -262,7 +275,7 @@ pub(crate) struct Test {
     pub(crate) scan: Option<Nanos>,
 }
 
-const PROOF_CODES: &str = "\
+pub(crate) const PROOF_CODES: &str = "\
 Exit codes:
   0  everything is proved (of two charts: they are equal)
   1  something is refuted (they differ), or the charts have errors
@@ -276,6 +289,9 @@ Examples:
   g7 prove tank --all             also what is proved of every chart
   g7 prove tank --time 5s         with the answers that are known by then
   g7 prove tank --format json     for a program to read
+  g7 prove tank --format sarif > tank.sarif      for code review
+  g7 prove tank.g7 --save tank.g7                what is refuted, as tests that fail, in the same file
+  g7 prove tank.g7 --tests all.g7                scenarios that reach all of the chart
 
 {PROOF_CODES}"))]
 pub(crate) struct Prove {
@@ -300,9 +316,20 @@ pub(crate) struct Prove {
     /// Write a JUnit report.
     #[arg(long, value_name = "FILE")]
     pub(crate) junit: Option<PathBuf>,
-    /// For people or for programs.
-    #[arg(long, value_enum, default_value_t = Format::Text)]
-    pub(crate) format: Format,
+    /// Write the chart with each refuted claim as a test that fails; the chart's own file takes
+    /// the tests too.
+    #[arg(long, value_name = "FILE")]
+    pub(crate) save: Option<PathBuf>,
+    /// Write the chart with a small set of tests that reach every step, transition, action and
+    /// branch that can be reached, for you to confirm.
+    #[arg(long, value_name = "FILE")]
+    pub(crate) tests: Option<PathBuf>,
+    /// With --save and --tests: replace a file that is there and is not the chart's own.
+    #[arg(long)]
+    pub(crate) force: bool,
+    /// For people, for programs or for code review.
+    #[arg(long, value_enum, default_value_t = Answers::Text)]
+    pub(crate) format: Answers,
 }
 
 #[derive(Args, Debug)]

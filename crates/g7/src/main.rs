@@ -96,6 +96,7 @@ fn run(command: &Command) -> Result<Verdict, Failure> {
         Command::Test(args) => testing::test(args),
         Command::Prove(args) => prove::prove(args),
         Command::Compare(args) => prove::compare(args),
+        Command::Graph(args) => prove::graph(args),
         Command::Draw(args) => draw::draw(args),
         Command::Serve(args) => serve::serve(args),
         Command::Users(args) => users::users(args),

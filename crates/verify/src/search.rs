@@ -72,18 +72,62 @@ pub fn watch(
     tried: Tried,
     look: &mut dyn FnMut(usize, &State),
 ) -> Vec<(usize, Verdict)> {
+    let mut look = |scene: Scene<'_>| look(scene.depth, scene.state);
     let mut search = Search::new(model, budget, questions.iter().enumerate().collect());
     search.tried = tried;
-    search.look = Some(look);
+    search.look = Some(&mut look);
     search.run()
 }
 
-/// Is shown each scan.
-type Look<'a> = &'a mut dyn FnMut(usize, &State);
+/// A scan of the search.
+pub(crate) struct Scene<'s> {
+    /// The number of scans before it.
+    pub(crate) depth: usize,
+    /// The number of the state before it.
+    pub(crate) from: usize,
+    /// The number of the state behind it; none behind a fault, or where the search ends.
+    pub(crate) to: Option<usize>,
+    /// The inputs and the wait.
+    pub(crate) m: &'s Move,
+    /// The inputs that are tried in the state before it, by their places.
+    pub(crate) tried: &'s [usize],
+    /// The state behind it.
+    pub(crate) state: &'s mut State,
+    /// The fault that stopped it.
+    pub(crate) fault: Option<Fault>,
+}
 
-struct Search<'a> {
-    tried: Tried,
-    look: Option<Look<'a>>,
+/// How much a search has seen.
+pub(crate) struct Extent {
+    pub(crate) states: usize,
+    /// Scans that were made.
+    pub(crate) scans: usize,
+    /// Why not all runs were seen.
+    pub(crate) open: Option<Open>,
+}
+
+/// Is shown each scan.
+pub(crate) type Look<'a> = &'a mut dyn FnMut(Scene<'_>);
+
+/// When a search ends that has states left to visit.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Until {
+    /// When all questions are answered.
+    Answered,
+    /// When no input satisfies the assumptions in some state.
+    Stuck,
+    /// Only when all states are visited.
+    Visited,
+}
+
+pub(crate) struct Search<'a> {
+    pub(crate) tried: Tried,
+    pub(crate) look: Option<Look<'a>>,
+    /// The first scan takes place with the initial values of the inputs.
+    pub(crate) rest: bool,
+    /// The search begins behind these scans.
+    pub(crate) start: &'a [Move],
+    pub(crate) until: Until,
     model: &'a Model<'a>,
     p: &'a Program,
     budget: &'a Budget<'a>,
@@ -108,6 +152,8 @@ struct Search<'a> {
     depth: usize,
     /// Why not all runs were seen.
     hole: Option<(String, String)>,
+    /// The first state in which no input satisfies the assumptions.
+    pub(crate) stuck: Option<usize>,
     /// Reports of a scan were cut.
     cut: bool,
     /// A scan had more passes than were looked at.
@@ -115,11 +161,18 @@ struct Search<'a> {
 }
 
 impl<'a> Search<'a> {
-    fn new(model: &'a Model<'a>, budget: &'a Budget<'a>, open: Vec<(usize, &'a Question)>) -> Search<'a> {
+    pub(crate) fn new(
+        model: &'a Model<'a>,
+        budget: &'a Budget<'a>,
+        open: Vec<(usize, &'a Question)>,
+    ) -> Search<'a> {
         let p: &Program = &model.compiled.program;
         Search {
             tried: Tried::Matter,
             look: None,
+            rest: false,
+            start: &[],
+            until: Until::Answered,
             model,
             p,
             budget,
@@ -136,6 +189,7 @@ impl<'a> Search<'a> {
             scans: 0,
             depth: 0,
             hole: None,
+            stuck: None,
             cut: false,
             cut_passes: false,
         }
@@ -143,17 +197,38 @@ impl<'a> Search<'a> {
 
     /// Searches, and answers all questions.
     fn run(mut self) -> Vec<(usize, Verdict)> {
+        self.search();
+        if self.hole.is_none() {
+            self.traps();
+        }
+        self.close();
+        self.answers
+    }
+
+    /// Visits all states, or as many as the budget and the questions allow.
+    pub(crate) fn search(&mut self) {
         let (mut state, mut other) = (State::new(self.p), State::new(self.p));
         let mut image = Vec::new();
+        for m in self.start {
+            let now = state.now().saturating_add(m.wait);
+            // The caller has a run without a fault; behind one nothing would be found.
+            let _fault = scan(self.p, &mut state, &m.inputs, now);
+        }
         state.canonical(self.p, &mut image);
         self.width = image.len();
         image.push(IDLE);
         self.store = Store::new(image.len());
         self.store.insert(&image);
         self.parents.push(0);
-        self.inputs.extend(self.model.inputs.iter().map(|v| v.tried.first().copied().unwrap_or(0)));
+        match self.start.last() {
+            Some(m) => self.inputs.extend_from_slice(&m.inputs),
+            None => {
+                let initial = self.model.inputs.iter().map(|v| v.tried.first().copied().unwrap_or(0));
+                self.inputs.extend(initial);
+            }
+        }
         let (mut at, mut level) = (0usize, 1usize);
-        while at < self.store.len() && !self.open.is_empty() {
+        while at < self.store.len() && self.goes_on() {
             if at == level {
                 self.depth += 1;
                 level = self.store.len();
@@ -165,13 +240,21 @@ impl<'a> Search<'a> {
             self.expand(at, &mut state, &mut other, &mut image);
             at += 1;
         }
-        let done = at >= self.store.len();
-        self.depth += usize::from(done);
-        if done && self.hole.is_none() {
-            self.traps();
+        self.depth += usize::from(at >= self.store.len());
+    }
+
+    fn goes_on(&self) -> bool {
+        match self.until {
+            Until::Answered => !self.open.is_empty(),
+            Until::Stuck => self.stuck.is_none(),
+            Until::Visited => true,
         }
-        self.close();
-        self.answers
+    }
+
+    /// How much was seen.
+    pub(crate) fn seen(&self) -> Extent {
+        let open = self.hole.clone().map(|(reason, help)| self.so_far(reason, help));
+        Extent { states: self.store.len(), scans: self.scans, open }
     }
 
     /// Why the search is to stop here.
@@ -198,10 +281,11 @@ impl<'a> Search<'a> {
         let asked = self.asking.asked(state);
         let count = self.asking.count();
         let last: Vec<u64> = self.inputs.get(at * count..(at + 1) * count).unwrap_or(&[]).to_vec();
-        let wait = if at == 0 { 0 } else { self.model.period };
+        let wait = self.wait(at);
         let (mut tried, mut on) = (false, false);
         let mut next: Vec<u32> = Vec::new();
-        for inputs in self.vectors(&asked, last) {
+        let places = self.places(&asked);
+        for inputs in self.vectors(at, &places, last) {
             put(self.p, state, own);
             let now = state.now().saturating_add(wait);
             let m = Move { inputs, wait };
@@ -218,15 +302,16 @@ impl<'a> Search<'a> {
             self.see_passes(at, other, own, &m, now);
             let active: Vec<StepId> = state.active().collect();
             let report = scan(self.p, state, &m.inputs, now);
-            if let Some(look) = &mut self.look {
-                look(self.depth, state);
-            }
             self.see(at, &Scanned { state, report }, &m);
             let Ok(report) = report else {
                 on |= self.memory.is_none();
+                self.show_scan(at, None, &m, &places, state, report.err());
                 continue;
             };
-            let Some(memory) = self.judge(at, state, memory, &m) else { continue };
+            let Some(memory) = self.judge(at, state, memory, &m) else {
+                self.show_scan(at, None, &m, &places, state, None);
+                continue;
+            };
             on |= match self.memory {
                 Some(_) => memory == IDLE,
                 None => report.cleared > 0 || !state.active().eq(active.iter().copied()),
@@ -234,19 +319,19 @@ impl<'a> Search<'a> {
             state.canonical(self.p, image);
             image.push(memory);
             let number = self.store.len() as u32;
-            match self.store.find_or_insert(image) {
-                Some(old) => next.push(old),
-                None => {
-                    next.push(number);
-                    self.parents.push(at as u32);
-                    self.inputs.extend_from_slice(&m.inputs);
-                }
-            }
+            let to = self.store.find_or_insert(image).unwrap_or_else(|| {
+                self.parents.push(at as u32);
+                self.inputs.extend_from_slice(&m.inputs);
+                number
+            });
+            next.push(to);
+            self.show_scan(at, Some(to as usize), &m, &places, state, None);
         }
-        if !tried && self.hole.is_none() {
+        if !tried && self.stuck.is_none() {
             let reason = format!("no input satisfies the assumptions {}", behind(self.depth));
             let help = "weaken the assumptions: without inputs there are no runs, and every claim would hold";
             self.hole = Some((reason, help.to_owned()));
+            self.stuck = Some(at);
         }
         self.leads_on.push(on);
         if !on {
@@ -256,12 +341,34 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// The inputs that are tried in a state; leaves a note where they are not all that matter.
-    fn vectors(&mut self, asked: &Places, last: Vec<u64>) -> Vec<Vec<u64>> {
-        let places: Vec<usize> = match self.tried {
+    fn show_scan(
+        &mut self,
+        from: usize,
+        to: Option<usize>,
+        m: &Move,
+        tried: &[usize],
+        state: &mut State,
+        fault: Option<Fault>,
+    ) {
+        let depth = self.depth;
+        if let Some(look) = &mut self.look {
+            look(Scene { depth, from, to, m, tried, state, fault });
+        }
+    }
+
+    /// The places of the inputs that are tried in a state.
+    fn places(&self, asked: &Places) -> Vec<usize> {
+        match self.tried {
             Tried::Matter => self.asking.matter(asked).iter().collect(),
             Tried::All => (0..self.asking.count()).collect(),
-        };
+        }
+    }
+
+    /// The inputs that are tried in a state; leaves a note where they are not all that matter.
+    fn vectors(&mut self, at: usize, places: &[usize], last: Vec<u64>) -> Vec<Vec<u64>> {
+        if self.rest && at == 0 && self.start.is_empty() {
+            return vec![last];
+        }
         let tried = |i: usize| self.model.inputs.get(i).map_or(&[][..], |v| &v.tried);
         let count = places.iter().fold(1usize, |n, i| n.saturating_mul(tried(*i).len().max(1)));
         let set = |old: &[u64], i: usize, value: u64| {
@@ -269,12 +376,18 @@ impl<'a> Search<'a> {
             new.get_mut(i).into_iter().for_each(|w| *w = value);
             new
         };
+        // The present value comes first, so that a run changes an input only where it must.
+        let values = |i: usize| {
+            let now = last.get(i).copied();
+            let others = tried(i).iter().copied().filter(move |v| Some(*v) != now);
+            now.filter(|v| tried(i).contains(v)).into_iter().chain(others)
+        };
         let mut list = vec![last.clone()];
-        for i in &places {
+        for i in places {
             if count > MOST {
                 list.extend(tried(*i).iter().map(|v| set(&last, *i, *v)).filter(|v| *v != last));
             } else {
-                list = list.iter().flat_map(|old| tried(*i).iter().map(|v| set(old, *i, *v))).collect();
+                list = list.iter().flat_map(|old| values(*i).map(|v| set(old, *i, v))).collect();
             }
         }
         if self.hole.is_none() {
@@ -366,7 +479,7 @@ impl<'a> Search<'a> {
         if !hits.is_empty() {
             self.settle_those(at, m, None, &hits);
         }
-        Some(kept).filter(|_| !self.open.is_empty())
+        Some(kept).filter(|_| self.goes_on())
     }
 
     /// Answers the open questions that a scan shows.
@@ -407,14 +520,19 @@ impl<'a> Search<'a> {
         self.answers.push((i, verdict));
     }
 
-    /// The run that leads to a state.
-    fn path(&self, mut at: usize) -> Run {
+    /// The time before the next scan behind a state: the first scan of all is at time 0.
+    fn wait(&self, at: usize) -> i64 {
+        if at == 0 && self.start.is_empty() { 0 } else { self.model.period }
+    }
+
+    /// The run that leads to a state from the beginning of the search.
+    pub(crate) fn path(&self, mut at: usize) -> Run {
         let count = self.asking.count();
         let mut moves = Vec::new();
         while at > 0 {
             let before = self.parents.get(at).copied().unwrap_or(0) as usize;
             let inputs = self.inputs.get(at * count..(at + 1) * count).unwrap_or(&[]).to_vec();
-            moves.push(Move { inputs, wait: if before == 0 { 0 } else { self.model.period } });
+            moves.push(Move { inputs, wait: self.wait(before) });
             at = before;
         }
         moves.reverse();

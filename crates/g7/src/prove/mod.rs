@@ -1,23 +1,27 @@
 //! `g7 prove`: asks every question of charts, and prints each answer with what shows it.
 //! `g7 compare`: two charts, or one under two profiles, beside each other.
 
+mod added;
 mod apart;
+mod cover;
+mod graph;
+mod made;
 mod output;
+mod patience;
+mod sarif;
+mod save;
 mod trace;
 
-use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, Mutex, PoisonError};
-
-use g7_host::{Clock, WallClock};
-use g7_model::Nanos;
 use g7_rig::Source;
 use g7_verify::{Budget, Evidence, Model, Question, Verdict, answer, ask, words};
 
 pub(crate) use apart::compare;
+pub(crate) use graph::{Graph, graph};
 
 use output::Answered;
+use patience::Patience;
 
-use crate::cli::{Format, Prove};
+use crate::cli::{Answers, Prove};
 use crate::failure::{self, Failure};
 use crate::message::talk;
 use crate::report::{self, Tally};
@@ -25,7 +29,9 @@ use crate::{files, sources};
 
 pub(crate) fn prove(args: &Prove) -> Result<failure::Verdict, Failure> {
     let paths = files::all(&args.paths)?;
-    let stop = stop(args.time)?;
+    made::one_file(args, &paths)?;
+    let patience = Patience::new()?;
+    let stop = patience.within(args.time);
     let (mut all, mut tally) = (Vec::new(), Tally::default());
     for path in &paths {
         let source = sources::load(path, 0)?;
@@ -42,6 +48,10 @@ pub(crate) fn prove(args: &Prove) -> Result<failure::Verdict, Failure> {
         let mut answers = vec![None; asked.questions.len()];
         let budget = Budget { states: args.states, bytes: args.memory.saturating_mul(1 << 20), stop: &*stop };
         answer(&model, &asked.questions, &mut answers, &budget);
+        if made::contradiction(&source, &model, args.profile, &answers, &budget)? {
+            tally.errors += 1;
+        }
+        made::tests(args, &source, &asked, &model, &answers, &patience)?;
         let drawer = trace::Drawer::new(&source, args.profile)?;
         for (question, verdict) in asked.questions.iter().zip(answers) {
             let Some(verdict) = verdict else { continue };
@@ -49,8 +59,9 @@ pub(crate) fn prove(args: &Prove) -> Result<failure::Verdict, Failure> {
         }
     }
     match args.format {
-        Format::Text => output::text(&all, args.all)?,
-        Format::Json => output::json(&all)?,
+        Answers::Text => output::text(&all, args.all)?,
+        Answers::Json => output::json(&all)?,
+        Answers::Sarif => sarif::print(&all, args.all)?,
     }
     if let Some(path) = &args.junit {
         files::write(path, output::junit(&all).as_bytes())?;
@@ -77,22 +88,12 @@ fn answered(
         Verdict::Refuted(Evidence::Run(run)) => Some(run),
         _ => None,
     };
-    let drawn = run.zip(drawer).map(|(run, drawer)| drawer.draw(&run.moves)).unwrap_or_default();
-    let [reason, ..] = words::reason(&verdict, drawn.1);
+    let (chronogram, time) =
+        run.zip(drawer).map(|(run, drawer)| drawer.draw(&run.moves, &claim)).unwrap_or_default();
+    let scans = run.zip(drawer).map(|(run, drawer)| drawer.scans(&run.moves)).unwrap_or_default();
+    let [reason, ..] = words::reason(&verdict, time);
     let [help, ..] = words::help(question, &verdict);
-    let own = question.claim.is_own();
-    Answered { place: source.place(question.at), claim, own, reason, help, verdict, chronogram: drawn.0 }
-}
-
-/// Tells when the time is over or Ctrl-C was pressed; what is known by then is printed.
-fn stop(time: Nanos) -> Result<Arc<dyn Fn() -> bool + Send + Sync>, Failure> {
-    let pressed = Arc::new(AtomicBool::new(false));
-    for signal in [signal_hook::consts::SIGINT, signal_hook::consts::SIGTERM] {
-        signal_hook::flag::register_conditional_default(signal, pressed.clone())?;
-        signal_hook::flag::register(signal, pressed.clone())?;
-    }
-    let clock = Mutex::new(WallClock::default());
-    Ok(Arc::new(move || {
-        pressed.load(Ordering::Relaxed) || clock.lock().unwrap_or_else(PoisonError::into_inner).now() >= time
-    }))
+    let (own, rule) = (question.claim.is_own(), sarif::rule(&question.claim));
+    let place = source.place(question.at);
+    Answered { place, claim, own, reason, help, verdict, chronogram, rule, scans }
 }

@@ -25,9 +25,13 @@ pub(crate) struct Answered {
     pub(crate) verdict: Verdict,
     /// The run that shows it, drawn; empty without one.
     pub(crate) chronogram: String,
+    /// The question by its short name.
+    pub(crate) rule: &'static str,
+    /// The scans of the run, each in words.
+    pub(crate) scans: Vec<String>,
 }
 
-fn word(verdict: &Verdict) -> String {
+pub(super) fn word(verdict: &Verdict) -> String {
     let [word, ..] = words::verdict(verdict);
     word
 }

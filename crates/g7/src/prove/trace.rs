@@ -1,8 +1,8 @@
 //! Runs of the prover as chronograms, made by a run of the bench.
 
-use g7_host::{Chronogram, Recording, Style};
+use g7_host::{Chronogram, Recording, Runner, Signal, Style};
 use g7_model::{Nanos, ProfileName};
-use g7_rig::{Bench, Source};
+use g7_rig::{Bench, Role, Source};
 use g7_verify::Move;
 
 use crate::failure::Failure;
@@ -11,6 +11,8 @@ use crate::failure::Failure;
 const COLUMNS: usize = 60;
 /// Most lanes of a chronogram.
 const LANES: usize = 16;
+/// The groups of signals, from cause to effect.
+const GROUPS: [&str; 4] = ["inputs", "outputs", "variables", "steps"];
 
 /// Draws runs of one file.
 pub(super) struct Drawer {
@@ -22,38 +24,140 @@ impl Drawer {
         Ok(bench(source, profile)?.map(|bench| Drawer { bench }))
     }
 
-    /// The chronogram of a run, and the time of its last scan.
-    pub(super) fn draw(&self, moves: &[Move]) -> (String, Nanos) {
-        let bench = &self.bench;
-        let mut runner = bench.runner(0);
-        let mut recording = Recording::new(bench.signals());
-        for m in moves {
-            for (index, value) in (0u32..).zip(&m.inputs) {
-                runner.set_input(index, *value);
+    /// The scans of a run in words.
+    pub(super) fn scans(&self, moves: &[Move]) -> Vec<String> {
+        in_words(&self.bench, moves)
+    }
+
+    /// The chronogram of a run, and the time of its last scan. What the claim names is in it, whether it
+    /// changes or not.
+    pub(super) fn draw(&self, moves: &[Move], claim: &str) -> (String, Nanos) {
+        let recording = self.record(moves);
+        let mut lanes = self.bench.lanes(&recording);
+        let words: Vec<&str> = claim.split(|c: char| !c.is_alphanumeric() && !"_.".contains(c)).collect();
+        let named = |i: &usize| recording.signals().get(*i).is_some_and(|s| words.contains(&&*s.name));
+        let all = || 0..recording.signals().len();
+        for i in all().filter(named).chain(all().filter(|i| is_on(&recording, *i))) {
+            if !lanes.contains(&i) {
+                lanes.push(i);
             }
-            let halted = runner.scan().is_err();
-            recording.sample(Nanos::new(runner.state().now()), bench.sample(&runner));
-            if halted {
-                break;
-            }
-        }
-        let last = Nanos::new(runner.state().now());
-        let count = i64::try_from(moves.len()).unwrap_or(i64::MAX);
-        let to = Nanos::new(bench.period.count().saturating_mul(count.max(1)));
-        let mut lanes = bench.lanes(&recording);
-        if lanes.is_empty() {
-            let listed = ["inputs", "outputs", "steps"];
-            let signals = recording.signals().iter().enumerate();
-            lanes = signals.filter(|(_, s)| listed.contains(&s.group)).map(|(i, _)| i).collect();
         }
         lanes.truncate(LANES);
+        let group =
+            |i: &usize| recording.signals().get(*i).and_then(|s| GROUPS.iter().position(|g| *g == s.group));
+        lanes.sort_by_key(group);
+        (self.chronogram(&recording, lanes, moves.len()), recording.end())
+    }
+
+    /// The two runs of a comparison in one chronogram. A signal that takes the same course in both
+    /// has one lane, any other one for each chart: `1: m` above `2: m`.
+    pub(super) fn draw_both(both: &[Drawer; 2], moves: &[Vec<Move>; 2]) -> String {
+        let [a, b] = both;
+        let [first, second] = moves;
+        let (one, two) = (a.record(first), b.record(second));
+        let find = |r: &Recording, s: &Signal| r.signals().iter().position(|o| o == s);
+        let mut lanes: Vec<(Signal, &Recording, usize)> = Vec::new();
+        for group in GROUPS {
+            let mine = |r: &Recording| -> Vec<(usize, Signal)> {
+                r.signals().iter().cloned().enumerate().filter(|(_, s)| s.group == group).collect()
+            };
+            for (i, s) in mine(&one) {
+                match find(&two, &s) {
+                    Some(j) if one.changes(i).eq(two.changes(j)) => {
+                        lanes.extend(is_on(&one, i).then(|| (s.clone(), &one, i)));
+                    }
+                    Some(j) => lanes.extend([(numbered(&s, 1), &one, i), (numbered(&s, 2), &two, j)]),
+                    None => lanes.extend(is_on(&one, i).then(|| (numbered(&s, 1), &one, i))),
+                }
+            }
+            let alone = mine(&two).into_iter().filter(|(j, s)| find(&one, s).is_none() && is_on(&two, *j));
+            lanes.extend(alone.map(|(j, s)| (numbered(&s, 2), &two, j)));
+        }
+        lanes.truncate(2 * LANES);
+        let mut joined = Recording::new(lanes.iter().map(|(s, ..)| s.clone()).collect());
+        for (to, (_, recording, from)) in lanes.iter().enumerate() {
+            joined.adopt(to, recording, *from);
+        }
+        a.chronogram(&joined, (0..lanes.len()).collect(), first.len())
+    }
+
+    /// The fault that ends a run, in words.
+    pub(super) fn fault(&self, moves: &[Move]) -> Option<String> {
+        let mut fault = None;
+        repeat(&self.bench, moves, |runner| {
+            fault = runner.halt().map(|halt| self.bench.halt(runner, halt));
+        });
+        fault
+    }
+
+    fn record(&self, moves: &[Move]) -> Recording {
+        let bench = &self.bench;
+        let mut recording = Recording::new(bench.signals());
+        repeat(bench, moves, |runner| {
+            recording.sample(Nanos::new(runner.state().now()), bench.sample(runner));
+        });
+        recording
+    }
+
+    fn chronogram(&self, recording: &Recording, lanes: Vec<usize>, scans: usize) -> String {
+        let count = i64::try_from(scans).unwrap_or(i64::MAX);
+        let to = Nanos::new(self.bench.period.count().saturating_mul(count.max(1)));
         let style = Style { columns: COLUMNS, from: Nanos::ZERO, to, until: to };
-        (Chronogram::new(&recording, lanes, style).to_string(), last)
+        Chronogram::new(recording, lanes, style).to_string()
     }
 }
 
+/// True for an input, output or step that changes, or has all the time another value than 0.
+fn is_on(recording: &Recording, signal: usize) -> bool {
+    let listed = ["inputs", "outputs", "steps"];
+    let group = recording.signals().get(signal).map_or("", |s| s.group);
+    let value = || recording.value_at(signal, recording.end());
+    recording.count(signal) > 1 || listed.contains(&group) && value().is_some_and(|v| v.word() != 0)
+}
+
+/// A signal of one of two charts.
+fn numbered(s: &Signal, chart: u8) -> Signal {
+    Signal { name: format!("{chart}: {}", s.name), ..s.clone() }
+}
+
+/// Repeats a run up to a fault; `see` is shown the runner behind each scan.
+fn repeat(bench: &Bench, moves: &[Move], mut see: impl FnMut(&Runner)) {
+    let mut runner = bench.runner(0);
+    for m in moves {
+        for (index, value) in (0u32..).zip(&m.inputs) {
+            runner.set_input(index, *value);
+        }
+        let halted = runner.scan().is_err();
+        see(&runner);
+        if halted {
+            break;
+        }
+    }
+}
+
+/// The scans of a run in words: the time, the inputs that change, the situation behind it.
+fn in_words(bench: &Bench, moves: &[Move]) -> Vec<String> {
+    let (mut before, mut found) = (Vec::new(), Vec::new());
+    repeat(bench, moves, |runner| {
+        let inputs = bench.items.iter().filter(|i| matches!(i.role, Role::Input(_)));
+        let all: Vec<String> = inputs
+            .map(|i| format!("{} = {}", i.name, bench.value_in(runner.state(), i).show(i.kind)))
+            .collect();
+        let new: Vec<&str> = all.iter().filter(|text| !before.contains(*text)).map(String::as_str).collect();
+        let inputs = if new.is_empty() { "the same inputs".to_owned() } else { new.join(", ") };
+        let now = Nanos::new(runner.state().now()).plain();
+        let end = match runner.halt() {
+            Some(halt) => format!("a fault: {}", bench.halt(runner, halt)),
+            None => format!("{{{}}}", bench.situation(runner.state()).join(", ")),
+        };
+        found.push(format!("at {now}: {inputs}; then {end}"));
+        before = all;
+    });
+    found
+}
+
 /// A bench of the charts alone, or the problems of the file on the standard error.
-fn bench(source: &Source, profile: Option<ProfileName>) -> Result<Option<g7_rig::Bench>, Failure> {
+pub(super) fn bench(source: &Source, profile: Option<ProfileName>) -> Result<Option<g7_rig::Bench>, Failure> {
     let options = g7_rig::Options { profile, plant: Some("none"), ..g7_rig::Options::default() };
     Ok(g7_rig::build(source, &options)?.0)
 }

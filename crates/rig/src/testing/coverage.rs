@@ -3,8 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use g7_compile::ir::{Action, ActionKind, Unit};
-use g7_engine::{Code, Contribution, StepId, eval};
-use g7_host::Runner;
+use g7_engine::{Code, Contribution, State, StepId, eval};
 use g7_model::Span;
 
 use crate::Bench;
@@ -19,6 +18,24 @@ pub struct Row {
     pub place: String,
     /// The number of scans in which it was reached.
     pub hits: u64,
+}
+
+/// A kind of elements.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Sort {
+    /// A step.
+    Step,
+    /// A transition.
+    Transition,
+    /// An action.
+    Action,
+    /// A branch.
+    Branch,
+}
+
+impl Sort {
+    /// All, in the order of [`Coverage::sorts`].
+    pub const ALL: [Sort; 4] = [Sort::Step, Sort::Transition, Sort::Action, Sort::Branch];
 }
 
 /// All elements of one kind, in the order of the text.
@@ -61,6 +78,13 @@ impl Coverage {
         ]
     }
 
+    /// All elements of a file, none of them reached.
+    pub fn of(bench: &Bench, source: &Source) -> Coverage {
+        let mut coverage = Coverage::default();
+        coverage.learn(bench, source);
+        coverage
+    }
+
     /// Lists all elements of a file.
     pub(super) fn learn(&mut self, bench: &Bench, source: &Source) {
         let symbols = &bench.compiled.symbols;
@@ -85,56 +109,63 @@ impl Coverage {
         for (_, action) in own() {
             add(&mut self.actions, action.at, &first_line(source, action.at));
         }
-        self.lasting = lasting(bench, &own().map(|(_, a)| a.at).collect());
+        self.lasting = lasting_of(bench, &own().map(|(_, a)| a.at).collect());
         for action in self.lasting.values().flatten() {
             add(&mut self.actions, action.at, &first_line(source, action.at));
         }
     }
 
     /// Counts what the latest scan reached.
-    pub(super) fn see(&mut self, bench: &Bench, runner: &mut Runner) {
-        self.see_lasting(runner);
-        let (symbols, state) = (&bench.compiled.symbols, runner.state());
-        let tables = bench.compiled.program.tables();
-        let hit = |rows: &mut Rows, at: Span| {
+    pub(super) fn see(&mut self, bench: &Bench, state: &mut State) {
+        for (sort, at) in self.reached(bench, state) {
+            let rows = match sort {
+                Sort::Step => &mut self.steps,
+                Sort::Transition => &mut self.transitions,
+                Sort::Action => &mut self.actions,
+                Sort::Branch => &mut self.branches,
+            };
             if let Some(row) = rows.get_mut(&at) {
                 row.hits += 1;
-            }
-        };
-        for step in state.active() {
-            hit(&mut self.steps, symbols.step_place(step));
-        }
-        for rank in state.cleared() {
-            let at = symbols.transition_place(*rank);
-            hit(&mut self.transitions, at);
-            hit(&mut self.branches, at);
-            // A step counts too if it was active only within the scan.
-            if let Some(t) = tables.transitions.get(*rank as usize) {
-                let more = tables.arcs.get(t.more_to.start as usize..t.more_to.end as usize).unwrap_or(&[]);
-                for step in std::iter::once(&t.to).chain(more).filter(|s| !state.is_active(**s)) {
-                    hit(&mut self.steps, symbols.step_place(*step));
-                }
-            }
-        }
-        for rank in state.ran() {
-            if let Some(action) = symbols.actions.get(*rank as usize).filter(|_| !self.shared.contains(rank))
-            {
-                hit(&mut self.actions, action.at);
             }
         }
     }
 
-    /// Counts the lasting actions of the active steps whose conditions hold.
-    fn see_lasting(&mut self, runner: &mut Runner) {
-        let active: Vec<StepId> = runner.state().active().collect();
-        let (program, state) = runner.charts_mut();
-        for action in active.iter().filter_map(|s| self.lasting.get(s)).flatten() {
-            let holds = action.condition.is_empty()
-                || eval(program, state, action.condition).is_ok_and(|word| word != 0);
-            if let Some(row) = self.actions.get_mut(&action.at).filter(|_| holds) {
-                row.hits += 1;
+    /// The elements that the latest scan reached, as [`Coverage::sorts`] has them; some that are no
+    /// elements may be among them.
+    pub fn reached(&self, bench: &Bench, state: &mut State) -> Vec<(Sort, Span)> {
+        let mut found = self.holding(bench, state);
+        let symbols = &bench.compiled.symbols;
+        let tables = bench.compiled.program.tables();
+        found.extend(state.active().map(|step| (Sort::Step, symbols.step_place(step))));
+        // The initial situation too, if it was left in the first scan.
+        if state.scans() == 1 {
+            found.extend(tables.initial.iter().map(|step| (Sort::Step, symbols.step_place(*step))));
+        }
+        for rank in state.cleared() {
+            let at = symbols.transition_place(*rank);
+            found.extend([(Sort::Transition, at), (Sort::Branch, at)]);
+            // A step counts too if it was active only within the scan.
+            if let Some(t) = tables.transitions.get(*rank as usize) {
+                let more = tables.arcs.get(t.more_to.start as usize..t.more_to.end as usize).unwrap_or(&[]);
+                let left = std::iter::once(&t.to).chain(more).filter(|s| !state.is_active(**s));
+                found.extend(left.map(|step| (Sort::Step, symbols.step_place(*step))));
             }
         }
+        let own = state.ran().iter().filter(|rank| !self.shared.contains(rank));
+        let own = own.filter_map(|rank| symbols.actions.get(*rank as usize));
+        found.extend(own.map(|action| (Sort::Action, action.at)));
+        found
+    }
+
+    /// The lasting actions of the active steps whose conditions hold.
+    fn holding(&self, bench: &Bench, state: &mut State) -> Vec<(Sort, Span)> {
+        let active: Vec<StepId> = state.active().collect();
+        let actions = active.iter().filter_map(|s| self.lasting.get(s)).flatten();
+        let holds = |action: &&Lasting| {
+            action.condition.is_empty()
+                || eval(&bench.compiled.program, state, action.condition).is_ok_and(|word| word != 0)
+        };
+        actions.filter(holds).map(|action| (Sort::Action, action.at)).collect()
     }
 }
 
@@ -146,7 +177,7 @@ fn shared(bench: &Bench) -> BTreeSet<u32> {
 
 /// The lasting actions of each step, in the order of the text, with the conditions of their
 /// control-block inputs. Actions in `told` are left out: the engine reports when they happen.
-fn lasting(bench: &Bench, told: &BTreeSet<Span>) -> BTreeMap<StepId, Vec<Lasting>> {
+fn lasting_of(bench: &Bench, told: &BTreeSet<Span>) -> BTreeMap<StepId, Vec<Lasting>> {
     let (unit, symbols) = (&bench.compiled.unit, &bench.compiled.symbols);
     let tables = bench.compiled.program.tables();
     let places: BTreeMap<Span, StepId> =

@@ -169,7 +169,7 @@ impl<'b> Exec<'b, '_> {
     fn scan(&mut self) -> Result<(), Stop> {
         let done = self.runner.scan();
         if let Some(coverage) = &mut self.coverage {
-            coverage.see(self.bench, &mut self.runner);
+            coverage.see(self.bench, self.runner.charts_mut().1);
         }
         if let Some(recording) = &mut self.recording {
             recording.sample(Nanos::new(self.runner.state().now()), self.bench.sample(&self.runner));

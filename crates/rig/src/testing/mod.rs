@@ -8,6 +8,7 @@
 
 mod coverage;
 mod exec;
+pub mod script;
 mod sides;
 mod statements;
 
@@ -18,7 +19,7 @@ use g7_model::{Nanos, Problem, ProfileName, Scenario, Severity, Span};
 
 use crate::bench::{self, Bench};
 use crate::{Error, Source};
-pub use coverage::{Coverage, Row, Rows};
+pub use coverage::{Coverage, Row, Rows, Sort};
 pub use exec::Defect;
 use statements::Plan;
 

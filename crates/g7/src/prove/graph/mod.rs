@@ -1,0 +1,275 @@
+//! `g7 graph`: the situations that a chart reaches, for Graphviz, as data, or as a picture.
+
+mod picture;
+
+use std::path::{Path, PathBuf};
+
+use clap::ValueEnum;
+use g7_compile::symbols::Symbols;
+use g7_engine::Addr;
+use g7_model::{Nanos, ProfileName};
+use g7_verify::{Budget, Cube, Edge, Kind, Model, Node, ask, situations};
+use serde_json::{Value, json};
+
+use crate::failure::{Failure, Verdict};
+use crate::message::talk;
+use crate::report::{self, Tally};
+use crate::{files, sources, values};
+
+const EXAMPLES: &str = "\
+Examples:
+  g7 graph tank -o tank.svg           a picture of up to some hundred situations
+  g7 graph tank | dot -Tpdf > g.pdf   drawn by Graphviz
+  g7 graph tank -o tank.json          as data, of any size
+
+A node is a situation: the active steps. It stands for all states with these steps, whatever their
+times and variables. An edge has the inputs under which one scan leads from one situation to the
+other in some state, `a · not b + c`; where no input matters, the transitions that clear.
+
+Exit codes:
+  0  the graph is complete
+  1  the chart has errors
+  2  bad usage, or something outside the chart: no such file, a full disk
+  3  the graph is not complete";
+
+/// The arguments of `g7 graph`.
+#[derive(clap::Args, Debug)]
+#[command(after_help = EXAMPLES)]
+pub(crate) struct Graph {
+    /// A .g7 file, a file of another tool, or a folder with a chart.g7.
+    #[arg(default_value = ".")]
+    file: PathBuf,
+    /// The file to write: .dot, .json or .svg [default: the standard output].
+    #[arg(long, short, value_name = "FILE")]
+    output: Option<PathBuf>,
+    /// The format, if the name of the output does not tell it.
+    #[arg(long = "as", value_enum, value_name = "FORM")]
+    form: Option<Form>,
+    /// Most situations of a drawing.
+    #[arg(long, value_name = "NUMBER", default_value_t = 300)]
+    most: usize,
+    /// The profile to use instead of the file's own.
+    #[arg(long, value_parser = values::profile)]
+    profile: Option<ProfileName>,
+    /// Stop after this time.
+    #[arg(long, value_parser = values::duration, value_name = "TIME", default_value = "60s")]
+    time: Nanos,
+    /// Memory for states, in MiB.
+    #[arg(long, value_name = "MIB", default_value_t = 1024)]
+    memory: usize,
+    /// Most states of the search.
+    #[arg(long, value_name = "NUMBER", default_value_t = 20_000_000)]
+    states: usize,
+}
+
+/// The form of a graph.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Form {
+    /// For Graphviz.
+    Dot,
+    /// For programs: one JSON object.
+    Json,
+    /// A picture.
+    Svg,
+}
+
+/// The graph with its words.
+struct Named<'g> {
+    symbols: &'g Symbols,
+    /// The address of the first input word.
+    first: u32,
+    graph: &'g g7_verify::Graph,
+}
+
+pub(crate) fn graph(args: &Graph) -> Result<Verdict, Failure> {
+    let form = form(args)?;
+    let source = sources::load(&files::one(&args.file)?, 0)?;
+    let (asked, found) =
+        if source.has_errors() { (None, Vec::new()) } else { ask(&source.document, args.profile) };
+    let problems: Vec<_> = source.problems.iter().cloned().chain(found).collect();
+    let Some(asked) = asked.filter(|_| Tally::of(&problems).errors == 0) else {
+        talk!("{}", report::text(&source, &problems).trim_end());
+        return Ok(Verdict::Found);
+    };
+    let model = Model::new(&asked.compiled, asked.assume.clone());
+    let stop = super::patience::Patience::new()?.within(args.time);
+    let budget = Budget { states: args.states, bytes: args.memory.saturating_mul(1 << 20), stop: &*stop };
+    let graph = situations(&model, &budget);
+    let named = Named {
+        symbols: &asked.compiled.symbols,
+        first: asked.compiled.program.tables().inputs.start,
+        graph: &graph,
+    };
+    let drawn = graph.nodes.iter().filter(|n| n.kind == Kind::Situation).count();
+    if form != Form::Json && drawn > args.most {
+        return Err(Failure::Usage(format!(
+            "{drawn} situations are too many for a drawing: write data with --as json, draw one chart alone, \
+             assume what the environment keeps, or allow more than {} with --most",
+            args.most
+        )));
+    }
+    let text = match form {
+        Form::Dot => named.dot(),
+        Form::Json => format!("{:#}\n", named.json(&source.name)),
+        Form::Svg => picture::svg(&named),
+    };
+    files::deliver(args.output.as_deref(), text.as_bytes())?;
+    talk!(
+        "{drawn} situations and {} edges, from {} states by {} scans",
+        graph.edges.len(),
+        graph.states,
+        graph.scans
+    );
+    Ok(match &graph.open {
+        None => Verdict::Fine,
+        Some(open) => {
+            talk!("the graph is not complete: {}; {}", open.reason, open.help);
+            Verdict::Open
+        }
+    })
+}
+
+fn form(args: &Graph) -> Result<Form, Failure> {
+    let ending = |path: &Path| path.extension().and_then(|e| e.to_str()).map(str::to_ascii_lowercase);
+    match (args.form, &args.output) {
+        (Some(form), _) => Ok(form),
+        (None, None) => Ok(Form::Dot),
+        (None, Some(path)) => match ending(path).as_deref() {
+            Some("dot" | "gv") => Ok(Form::Dot),
+            Some("json") => Ok(Form::Json),
+            Some("svg") => Ok(Form::Svg),
+            _ => {
+                let name = path.display();
+                Err(Failure::Usage(format!("{name} ends in none of .dot, .json, .svg; --as says the form")))
+            }
+        },
+    }
+}
+
+/// Most products of a label.
+const PRODUCTS: usize = 3;
+
+impl Named<'_> {
+    /// A node in a drawing: its situation.
+    fn node(&self, node: &Node) -> String {
+        match node.kind {
+            Kind::Start => "start".to_owned(),
+            Kind::Situation => format!("{{{}}}", self.steps(node).join(", ")),
+            Kind::Fault(word) => format!("fault: {word}"),
+        }
+    }
+
+    fn steps(&self, node: &Node) -> Vec<&str> {
+        node.steps.iter().map(|s| self.symbols.step_name(*s)).collect()
+    }
+
+    fn transitions(&self, edge: &Edge) -> Vec<&str> {
+        edge.transitions.iter().map(|r| self.symbols.transition_text(*r)).collect()
+    }
+
+    /// The condition of an edge, `a · not b + c`; empty if no input matters.
+    fn condition(&self, cubes: &[Cube], most: usize) -> String {
+        let products = cubes.iter().filter(|c| !c.is_empty());
+        let mut words: Vec<String> = products.map(|c| self.product(c)).collect();
+        if words.len() > most {
+            words.truncate(most);
+            words.push("…".to_owned());
+        }
+        words.join(" + ")
+    }
+
+    fn product(&self, cube: &Cube) -> String {
+        let literal = |(place, value): &(usize, u64)| {
+            let addr = Addr(self.first + *place as u32);
+            let Some(v) = self.symbols.variable_at(addr) else { return String::new() };
+            match Symbols::value_text(v.ty, &[*value]).as_str() {
+                "TRUE" => v.name.to_string(),
+                "FALSE" => format!("not {}", v.name),
+                text => format!("{} = {text}", v.name),
+            }
+        };
+        cube.iter().map(literal).collect::<Vec<_>>().join(" · ")
+    }
+
+    /// The label of an edge in a drawing.
+    fn label(&self, edge: &Edge) -> String {
+        let condition = match &edge.when {
+            None => "many inputs".to_owned(),
+            Some(cubes) => self.condition(cubes, PRODUCTS),
+        };
+        match condition {
+            none if none.is_empty() => self.transitions(edge).join(", "),
+            condition => condition,
+        }
+    }
+
+    fn json(&self, file: &str) -> Value {
+        let node = |(id, n): (usize, &Node)| {
+            let (kind, fault) = match n.kind {
+                Kind::Start => ("start", None),
+                Kind::Situation => ("situation", None),
+                Kind::Fault(word) => ("fault", Some(word)),
+            };
+            let mut row = json!({
+                "id": id, "kind": kind, "steps": self.steps(n), "states": n.states, "scans": n.scans,
+            });
+            if let Some(word) = fault {
+                row["fault"] = json!(word);
+            }
+            row
+        };
+        let edge = |e: &Edge| {
+            let inputs = e.when.as_ref().map(|cubes| self.condition(cubes, usize::MAX));
+            let by_itself = e.when.as_ref().map(|cubes| cubes.iter().any(Vec::is_empty));
+            json!({
+                "from": e.from, "to": e.to, "inputs": inputs, "without_inputs": by_itself,
+                "transitions": self.transitions(e),
+            })
+        };
+        let graph = self.graph;
+        let mut all = json!({
+            "file": file, "complete": graph.open.is_none(), "states": graph.states, "scans": graph.scans,
+            "nodes": graph.nodes.iter().enumerate().map(node).collect::<Vec<_>>(),
+            "edges": graph.edges.iter().map(edge).collect::<Vec<_>>(),
+        });
+        if let Some(open) = &graph.open {
+            all["reason"] = json!(open.reason);
+        }
+        all
+    }
+
+    fn dot(&self) -> String {
+        let mut out = String::from("digraph situations {\n  node [shape=box, fontname=\"sans-serif\"];\n");
+        out.push_str("  edge [fontname=\"sans-serif\", fontsize=10];\n");
+        for (id, node) in self.graph.nodes.iter().enumerate() {
+            let shape = match node.kind {
+                Kind::Start => ", shape=point",
+                Kind::Situation => "",
+                Kind::Fault(_) => ", shape=octagon",
+            };
+            let tip = format!("states: {}; scans from the start: {}", node.states, node.scans);
+            out.push_str(&format!(
+                "  n{id} [label={}, tooltip={}{shape}];\n",
+                quoted(&self.node(node)),
+                quoted(&tip)
+            ));
+        }
+        for e in &self.graph.edges {
+            let (label, tip) = (self.label(e), self.transitions(e).join(", "));
+            out.push_str(&format!(
+                "  n{} -> n{} [label={}, tooltip={}];\n",
+                e.from,
+                e.to,
+                quoted(&label),
+                quoted(&tip)
+            ));
+        }
+        out.push_str("}\n");
+        out
+    }
+}
+
+/// Text of a label for Graphviz.
+fn quoted(text: &str) -> String {
+    format!("\"{}\"", text.replace('\\', "\\\\").replace('"', "\\\""))
+}

@@ -1,0 +1,130 @@
+//! What `g7 prove` makes beside its answers: files of tests, and the error of assumptions that
+//! contradict each other.
+
+use std::path::PathBuf;
+
+use g7_model::{Nanos, ProfileName, PropertyKind};
+use g7_rig::Source;
+use g7_verify::{Asked, Budget, Model, Verdict, stuck};
+
+use super::patience::Patience;
+use super::{added, cover, save, trace};
+use crate::cli::Prove;
+use crate::failure::Failure;
+use crate::files;
+use crate::message::talk;
+use crate::style;
+
+/// Refuses the files of several charts, or two files in one place, before anything is searched.
+pub(super) fn one_file(args: &Prove, paths: &[PathBuf]) -> Result<(), Failure> {
+    let several = |option: &str| {
+        Failure::Usage(format!(
+            "{option} takes one chart, and there are {}: name the one you mean",
+            paths.len()
+        ))
+    };
+    for (option, file) in [("--save", &args.save), ("--tests", &args.tests)] {
+        let Some(file) = file else { continue };
+        if paths.len() > 1 {
+            return Err(several(option));
+        }
+        if !paths.iter().any(|p| added::is_same(file, p)) {
+            files::refuse_present(Some(file), args.force)?;
+        }
+    }
+    match (&args.save, &args.tests) {
+        (Some(a), Some(b)) if a == b => {
+            Err(Failure::Usage("--save and --tests name one file: each writes a file of its own".to_owned()))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Writes the files of tests that are wanted.
+pub(super) fn tests(
+    args: &Prove,
+    source: &Source,
+    asked: &Asked,
+    model: &Model<'_>,
+    answers: &[Option<Verdict>],
+    patience: &Patience,
+) -> Result<(), Failure> {
+    if let Some(path) = &args.save {
+        let saved = save::tests(source, asked, model, answers, args.profile)?;
+        if saved.tests.is_empty() {
+            let none = saved.left.is_empty();
+            let why = if none { "no claim is refuted" } else { "no test can state what is refuted" };
+            talk!("nothing to save: {why}");
+        } else {
+            added::write(path, source, &saved.tests)?;
+            wrote(path, &count(saved.tests.len(), "test of a refuted claim", "tests of refuted claims"));
+        }
+        for (claim, reason) in &saved.left {
+            talk!("  not saved: {claim}: {reason}");
+        }
+    }
+    let Some(path) = &args.tests else { return Ok(()) };
+    // The answers may have used up their time: the scenarios have as much again.
+    let half = Nanos::new(args.time.count() / 2);
+    let (first, whole) = (patience.within(half), patience.within(args.time));
+    let budget = |stop| Budget { states: args.states, bytes: args.memory.saturating_mul(1 << 20), stop };
+    let known = cover::Known::of(asked, answers);
+    let made = cover::cover(source, args.profile, &known, [&budget(&*first), &budget(&*whole)])?;
+    if made.tests.is_empty() {
+        talk!("no scenario was found");
+    } else {
+        added::write(path, source, &made.tests)?;
+        wrote(path, &count(made.tests.len(), "scenario", "scenarios"));
+    }
+    for (sort, rows) in made.coverage.sorts() {
+        let reached = rows.values().filter(|r| r.hits > 0).count();
+        talk!("  {reached} of {} {sort} reached", rows.len());
+    }
+    for title in &made.unlike {
+        talk!("  {title} was left out: `g7 test` shows another run than the search");
+    }
+    if let Some(open) = made.open {
+        talk!("  some run may reach more, or fewer scenarios do: {}; {}", open.reason, open.help);
+    }
+    Ok(())
+}
+
+fn wrote(path: &std::path::Path, what: &str) {
+    talk!("{}wrote{:#} {}: {what}", style::GOOD, style::GOOD, path.display());
+}
+
+fn count(n: usize, one: &str, many: &str) -> String {
+    format!("{n} {}", if n == 1 { one } else { many })
+}
+
+/// Tells where the assumptions contradict each other: behind some run no input satisfies them, so
+/// what would be proved there would mean nothing. True if that is so.
+pub(super) fn contradiction(
+    source: &Source,
+    model: &Model<'_>,
+    profile: Option<ProfileName>,
+    answers: &[Option<Verdict>],
+    budget: &Budget<'_>,
+) -> Result<bool, Failure> {
+    let is_open = |a: &Option<Verdict>| !matches!(a, Some(Verdict::Proved(_) | Verdict::Refuted(_)));
+    if model.assume.is_empty() || !answers.iter().any(is_open) {
+        return Ok(false);
+    }
+    let Some(run) = stuck(model, budget) else { return Ok(false) };
+    let assumed = source.document.properties().find(|p| matches!(p.kind, PropertyKind::Assume(_)));
+    let place = assumed.map_or_else(|| source.name.clone(), |p| source.place(p.at.0));
+    let which = if model.assume.len() == 1 { "this assumption" } else { "the assumptions of this file" };
+    let style = style::BAD;
+    match run.moves.len() {
+        0 => talk!("{place}: {style}error{style:#}: no input satisfies {which}"),
+        n => {
+            let scans = count(n, "scan", "scans");
+            talk!("{place}: {style}error{style:#}: behind a run of {scans} no input satisfies {which}");
+            if let Some(drawer) = trace::Drawer::new(source, profile)? {
+                drawer.draw(&run.moves, "").0.lines().for_each(|line| talk!("  {line}"));
+            }
+        }
+    }
+    talk!("  help: weaken it: where no input is left there are no runs, and every claim would hold");
+    Ok(true)
+}

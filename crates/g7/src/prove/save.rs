@@ -1,0 +1,58 @@
+//! `g7 prove --save`: refuted claims as tests that fail.
+//!
+//! A test states what the claim expects of the shortest run that breaks it. Each one was run
+//! before it is written, and it fails where the claim does.
+
+use g7_model::{ProfileName, Scenario};
+use g7_page::saved::{Given, NO_RUN, UNSEEN, of_run, short, title};
+use g7_rig::Source;
+use g7_verify::{Asked, Evidence, Model, Verdict, words};
+
+use super::{added, trace};
+use crate::failure::Failure;
+
+/// The tests of refuted claims.
+#[derive(Default)]
+pub(super) struct Saved {
+    /// The tests, in the order of the questions.
+    pub(super) tests: Vec<Scenario>,
+    /// Claims that are refuted without a test, each with the reason.
+    pub(super) left: Vec<(String, String)>,
+}
+
+/// Makes the tests of the refuted claims of a file.
+pub(super) fn tests(
+    source: &Source,
+    asked: &Asked,
+    model: &Model<'_>,
+    answers: &[Option<Verdict>],
+    profile: Option<ProfileName>,
+) -> Result<Saved, Failure> {
+    let Some(bench) = trace::bench(source, profile)? else { return Ok(Saved::default()) };
+    let mut saved = Saved::default();
+    for (question, verdict) in asked.questions.iter().zip(answers) {
+        let Some(Verdict::Refuted(evidence)) = verdict else { continue };
+        let written = source.text.get(source.range(question.at)).unwrap_or_default();
+        let [claim, ..] = words::claim(written, model.compiled, question);
+        let title = title(&claim);
+        let made = match evidence {
+            Evidence::Run(run) => of_run(&Given { source, bench: &bench, model, question, run }, &title),
+            Evidence::Certificate(_) => Err(NO_RUN),
+        };
+        match made {
+            Ok(test) if saved.tests.contains(&test) => {}
+            Ok(test) if fails(source, &test, profile)? => saved.tests.push(test),
+            Ok(_) => saved.left.push((short(&claim), UNSEEN.to_owned())),
+            Err(reason) => saved.left.push((short(&claim), reason.to_owned())),
+        }
+    }
+    Ok(saved)
+}
+
+/// True if a test fails in its last statement, or in the one before where the last is a comment.
+fn fails(source: &Source, test: &Scenario, profile: Option<ProfileName>) -> Result<bool, Failure> {
+    let (made, outcomes, _) = added::run(source, std::slice::from_ref(test), profile)?;
+    let last = made.tests().last().and_then(|t| t.body.last()).map(|s| s.at.0);
+    let at = outcomes.last().and_then(|o| o.defect.as_ref()).map(|d| d.at);
+    Ok(matches!((last, at), (Some(last), Some(at)) if last.start <= at.start && at.end <= last.end))
+}
