@@ -40,4 +40,5 @@ pub mod wasm;
 
 pub use explain::explain;
 pub use page::Page;
+pub use prove::saved;
 pub use run::{Places, Show, show};

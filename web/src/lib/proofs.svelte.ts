@@ -8,7 +8,7 @@ import { runs, type Run } from './runs.svelte';
 /** The worker has one file, whichever that is. */
 const FILE = 'asked.g7';
 /** The limits of the search while the user types, in states, and its longest time in ms. */
-const QUICK: readonly number[] = [250, 1_000, 4_000];
+const QUICK: readonly number[] = [25, 250, 1_000, 4_000];
 const QUICK_TIME = 3_000;
 /** The same for the search that the user asks for. */
 const WHOLE: readonly number[] = [16_000, 64_000, 256_000, 1_000_000];
@@ -49,6 +49,8 @@ class Proofs {
   #byFile: ReadonlyMap<string, Proof> = $state.raw(new Map());
   work: Work | null = $state.raw(null);
   failed = $state('');
+  /** The text whose search took too long. */
+  cut = $state('');
   shown: Shown | null = $state.raw(null);
   #worker = new Local();
   /** The text that the worker has. */
@@ -82,7 +84,8 @@ class Proofs {
   /** Asks all questions as far as is quick; the answers of other texts wait no longer. */
   quick(file: OpenFile): Promise<void> {
     const known = this.#byFile.get(file.name);
-    if (known?.hash === file.look.hash || this.work?.hash === file.look.hash) return Promise.resolve();
+    const { hash } = file.look;
+    if (known?.hash === hash || this.work?.hash === hash || this.cut === hash) return Promise.resolve();
     return this.#search(file, QUICK, QUICK_TIME, false);
   }
 
@@ -118,7 +121,11 @@ class Proofs {
       if (this.#opened !== text) await this.#worker.call({ do: 'open', file: FILE, text });
       if (!mine()) return;
       this.#opened = text;
-      late = window.setTimeout(() => mine() && this.stop(), time);
+      late = window.setTimeout(() => {
+        if (!mine()) return;
+        this.cut = hash;
+        this.stop();
+      }, time);
       const from = this.#byFile.get(file.name);
       for (const states of rounds) {
         if (from?.hash === hash && states < from.states) continue;

@@ -37,7 +37,7 @@ pub(crate) fn compare(args: &cli::Compare) -> Result<failure::Verdict, Failure> 
         compiled.extend(charts);
     }
     let [a, b] = compiled.as_slice() else { return Ok(failure::Verdict::Found) };
-    let stop = super::stop(args.time)?;
+    let stop = super::patience::Patience::new()?.within(args.time);
     let budget = Budget { states: args.states, bytes: args.memory.saturating_mul(1 << 20), stop: &*stop };
     let what = Compare { charts: [&a.compiled, &b.compiled], situations: args.situations };
     let mut out = anstream::stdout().lock();
@@ -54,25 +54,26 @@ pub(crate) fn compare(args: &cli::Compare) -> Result<failure::Verdict, Failure> 
             Ok(failure::Verdict::Fine)
         }
         Equality::Apart { moves, what } => {
-            let what = match what {
-                Difference::Output(name) => format!("output `{name}` has two values"),
-                Difference::Step(name) => format!("step {name} is active in one of them only"),
-                Difference::Fault => "a fault stops one of them only".to_owned(),
-            };
-            let count = moves.first().map_or(0, Vec::len);
-            let scans = if count == 1 { "scan" } else { "scans" };
-            writeln!(out, "{}different{:#}: after {count} {scans} {what}", style::BAD, style::BAD)?;
-            for (number, side) in (1..).zip(&sides) {
-                writeln!(out, "  {number}: {}", side.name)?;
-            }
             let mut drawers = Vec::new();
             for side in &sides {
                 drawers.extend(Drawer::new(&side.source, side.profile)?);
             }
-            if let Ok(both) = <[Drawer; 2]>::try_from(drawers) {
-                for line in Drawer::draw_both(&both, &moves).lines() {
-                    writeln!(out, "  {line}")?;
-                }
+            let both = <[Drawer; 2]>::try_from(drawers).ok();
+            let count = moves.first().map_or(0, Vec::len);
+            let scans = if count == 1 { "scan" } else { "scans" };
+            let what = match what {
+                Difference::Output(name) => format!("output `{name}` has two values"),
+                Difference::Step(name) => format!("step {name} is active in one of them only"),
+                Difference::Fault => "a fault stops one of them only, or each has another".to_owned(),
+            };
+            writeln!(out, "{}different{:#}: after {count} {scans} {what}", style::BAD, style::BAD)?;
+            for (number, (side, moves)) in (1..).zip(sides.iter().zip(&moves)) {
+                let drawer = both.as_ref().and_then(|b| b.get(number - 1));
+                let fault = drawer.and_then(|d| d.fault(moves)).map(|f| format!(": fault: {f}"));
+                writeln!(out, "  {number}: {}{}", side.name, fault.unwrap_or_default())?;
+            }
+            for line in both.map(|b| Drawer::draw_both(&b, &moves)).unwrap_or_default().lines() {
+                writeln!(out, "  {line}")?;
             }
             Ok(failure::Verdict::Found)
         }

@@ -13,11 +13,13 @@ use g7_engine::{State, StepId, scan};
 use g7_model::{BinaryOp, Expr, ExprKind, Holds, ProfileName, PropertyKind, Scenario, Span};
 use g7_rig::testing::{Coverage, Sort};
 use g7_rig::{Ask, Bench, Options, Source};
-use g7_verify::{Budget, From, Model, Move, Open, Query, Reached, Run, reach};
+use g7_verify::{
+    Asked, Budget, Claim, Evidence, From, Model, Move, Open, Query, Reached, Run, Verdict, reach,
+};
 
 use super::added;
-use super::script::{Script, activity, expr, not, path, value};
 use crate::failure::Failure;
+use g7_rig::testing::script::{Script, activity, expr, not, path, value};
 
 /// Scenarios with what they reach.
 #[derive(Default)]
@@ -32,13 +34,47 @@ pub(super) struct Covering {
     pub(super) unlike: Vec<String>,
 }
 
-type Element = (Sort, Span);
+pub(super) type Element = (Sort, Span);
 
-/// Makes the scenarios of a file without errors.
+/// What the answers have shown of elements.
+#[derive(Default)]
+pub(super) struct Known {
+    /// Elements that no run reaches.
+    never: BTreeSet<Element>,
+    /// Runs that reach elements.
+    runs: BTreeMap<Element, Run>,
+}
+
+impl Known {
+    pub(super) fn of(asked: &Asked, answers: &[Option<Verdict>]) -> Known {
+        let mut known = Known::default();
+        for (q, answer) in asked.questions.iter().zip(answers) {
+            let sorts: &[Sort] = match q.claim {
+                Claim::Active(_) => &[Sort::Step],
+                Claim::Clears(_) => &[Sort::Transition, Sort::Branch],
+                Claim::Runs(_) => &[Sort::Action],
+                _ => continue,
+            };
+            let elements = sorts.iter().map(|sort| (*sort, q.at));
+            match answer {
+                Some(Verdict::Refuted(_)) => known.never.extend(elements),
+                Some(Verdict::Proved(Evidence::Run(run))) => {
+                    known.runs.extend(elements.map(|e| (e, run.clone())));
+                }
+                _ => {}
+            }
+        }
+        known
+    }
+}
+
+/// Makes the scenarios of a file without errors. What is known is not searched again. The first
+/// budget is for finding what is reached at all, the second one for all.
 pub(super) fn cover(
     source: &Source,
     profile: Option<ProfileName>,
-    budget: &Budget<'_>,
+    known: &Known,
+    budgets: [&Budget<'_>; 2],
 ) -> Result<Covering, Failure> {
     let assumed: Vec<Ask> = source
         .document
@@ -53,8 +89,8 @@ pub(super) fn cover(
     let assume = (first..).take(assumed.len()).map(Query).collect();
     let model = Model::new(&bench.compiled, assume);
     let coverage = Coverage::of(&bench, source);
-    let search = Search { bench: &bench, coverage: &coverage, model: &model, budget };
-    let (tours, open) = search.tours();
+    let search = Search { bench: &bench, coverage: &coverage, model: &model, budgets };
+    let (tours, open) = search.tours(known);
     let tests: Vec<Scenario> =
         (1..).zip(&tours).map(|(number, tour)| scenario(&bench, &coverage, number, tour)).collect();
     let (_, outcomes, _) = added::run(source, &tests, profile)?;
@@ -76,23 +112,29 @@ struct Search<'a> {
     bench: &'a Bench,
     coverage: &'a Coverage,
     model: &'a Model<'a>,
-    budget: &'a Budget<'a>,
+    budgets: [&'a Budget<'a>; 2],
 }
 
 impl Search<'_> {
     /// Scenarios that reach everything, and why there may be more to reach. The first ones begin as
     /// tests do; one that begins with other inputs is used only for what these do not reach.
-    fn tours(&self) -> (Vec<Tour>, Option<Open>) {
+    fn tours(&self, known: &Known) -> (Vec<Tour>, Option<Open>) {
+        let [first_budget, budget] = self.budgets;
         let mut left = elements(self.coverage);
+        left.retain(|e| !known.never.contains(e));
         let (mut tours, mut open) = (Vec::new(), None);
         for from in [From::Rest, From::Start] {
-            let first = self.reach(from, &left, left.len());
+            let first = self.reach(first_budget, from, &left, left.len());
             let mut mine: BTreeMap<Element, Run> = BTreeMap::new();
             for (number, run) in first.runs {
                 mine.extend(left.iter().nth(number).map(|e| (*e, run)));
             }
+            if matches!(from, From::Start) {
+                let there = known.runs.iter().filter(|(e, _)| left.contains(e));
+                mine.extend(there.map(|(e, run)| (*e, run.clone())));
+            }
             left.retain(|e| !mine.contains_key(e));
-            open = first.open;
+            open = first.open.filter(|_| !left.is_empty());
             while !mine.is_empty() {
                 let before = mine.len();
                 tours.push(self.tour(from, &mut mine));
@@ -103,6 +145,7 @@ impl Search<'_> {
                     let mut tour = Tour::default();
                     self.go_on(&mut tour, run.moves, &mut mine);
                     tours.push(tour);
+                    open = open.or_else(|| stopped(budget));
                 }
             }
             if left.is_empty() {
@@ -117,7 +160,7 @@ impl Search<'_> {
         let mut tour = Tour::default();
         while !left.is_empty() {
             let from = if tour.moves.is_empty() { from } else { From::Behind(&tour.moves) };
-            let found = self.reach(from, &left.keys().copied().collect(), 1);
+            let found = self.reach(self.budgets[1], from, &left.keys().copied().collect(), 1);
             let Some(next) = found.runs.into_values().min_by_key(|run| run.moves.len()) else { break };
             self.go_on(&mut tour, next.moves, left);
         }
@@ -142,14 +185,24 @@ impl Search<'_> {
     }
 
     /// The nearest scans with so many of the elements; each has its place among them as its number.
-    fn reach(&self, from: From<'_>, left: &BTreeSet<Element>, count: usize) -> Reached {
+    fn reach(&self, budget: &Budget<'_>, from: From<'_>, left: &BTreeSet<Element>, count: usize) -> Reached {
         let numbers: BTreeMap<&Element, usize> = left.iter().zip(0..).collect();
         let mut see = |state: &mut State| {
             let reached = self.coverage.reached(self.bench, state);
             reached.iter().filter_map(|e| numbers.get(e).copied()).collect()
         };
-        reach(self.model, self.budget, from, count, &mut see)
+        reach(self.model, budget, from, count, &mut see)
     }
+}
+
+/// Why there may be fewer scenarios, if the search for them was stopped.
+fn stopped(budget: &Budget<'_>) -> Option<Open> {
+    let open = || Open {
+        reason: "the search was stopped".to_owned(),
+        help: "allow more with --time".to_owned(),
+        ..Open::default()
+    };
+    (budget.stop)().then(open)
 }
 
 /// All that a test can reach.
@@ -198,7 +251,7 @@ fn scenario(bench: &Bench, coverage: &Coverage, number: usize, tour: &Tour) -> S
             }
         }
         if let Some(m) = tour.moves.get(scan) {
-            script.scan(m);
+            script.scan(&m.inputs);
             script.expect(shown.changes(bench, state));
         }
     });

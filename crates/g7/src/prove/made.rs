@@ -3,10 +3,11 @@
 
 use std::path::PathBuf;
 
-use g7_model::{ProfileName, PropertyKind};
+use g7_model::{Nanos, ProfileName, PropertyKind};
 use g7_rig::Source;
 use g7_verify::{Asked, Budget, Model, Verdict, stuck};
 
+use super::patience::Patience;
 use super::{added, cover, save, trace};
 use crate::cli::Prove;
 use crate::failure::Failure;
@@ -46,12 +47,14 @@ pub(super) fn tests(
     asked: &Asked,
     model: &Model<'_>,
     answers: &[Option<Verdict>],
-    budget: &Budget<'_>,
+    patience: &Patience,
 ) -> Result<(), Failure> {
     if let Some(path) = &args.save {
         let saved = save::tests(source, asked, model, answers, args.profile)?;
         if saved.tests.is_empty() {
-            talk!("nothing to save: no refuted claim can be stated by a test");
+            let none = saved.left.is_empty();
+            let why = if none { "no claim is refuted" } else { "no test can state what is refuted" };
+            talk!("nothing to save: {why}");
         } else {
             added::write(path, source, &saved.tests)?;
             wrote(path, &count(saved.tests.len(), "test of a refuted claim", "tests of refuted claims"));
@@ -61,7 +64,12 @@ pub(super) fn tests(
         }
     }
     let Some(path) = &args.tests else { return Ok(()) };
-    let made = cover::cover(source, args.profile, budget)?;
+    // The answers may have used up their time: the scenarios have as much again.
+    let half = Nanos::new(args.time.count() / 2);
+    let (first, whole) = (patience.within(half), patience.within(args.time));
+    let budget = |stop| Budget { states: args.states, bytes: args.memory.saturating_mul(1 << 20), stop };
+    let known = cover::Known::of(asked, answers);
+    let made = cover::cover(source, args.profile, &known, [&budget(&*first), &budget(&*whole)])?;
     if made.tests.is_empty() {
         talk!("no scenario was found");
     } else {
@@ -76,7 +84,7 @@ pub(super) fn tests(
         talk!("  {title} was left out: `g7 test` shows another run than the search");
     }
     if let Some(open) = made.open {
-        talk!("  some run may reach more: {}; {}", open.reason, open.help);
+        talk!("  some run may reach more, or fewer scenarios do: {}; {}", open.reason, open.help);
     }
     Ok(())
 }
@@ -113,7 +121,7 @@ pub(super) fn contradiction(
             let scans = count(n, "scan", "scans");
             talk!("{place}: {style}error{style:#}: behind a run of {scans} no input satisfies {which}");
             if let Some(drawer) = trace::Drawer::new(source, profile)? {
-                drawer.draw(&run.moves).0.lines().for_each(|line| talk!("  {line}"));
+                drawer.draw(&run.moves, "").0.lines().for_each(|line| talk!("  {line}"));
             }
         }
     }

@@ -7,16 +7,12 @@ mod cover;
 mod graph;
 mod made;
 mod output;
+mod patience;
 mod sarif;
 mod save;
-mod script;
 mod trace;
 
-use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, Mutex, PoisonError};
-
-use g7_host::{Clock, WallClock};
-use g7_model::{Nanos, Problem};
+use g7_model::Problem;
 use g7_rig::Source;
 use g7_rig::testing::plants;
 use g7_verify::{Budget, Evidence, Model, Question, Verdict, answer, ask, ask_with, words};
@@ -25,6 +21,7 @@ pub(crate) use apart::compare;
 pub(crate) use graph::{Graph, graph};
 
 use output::Answered;
+use patience::Patience;
 
 use crate::cli::{Answers, Prove};
 use crate::failure::{self, Failure};
@@ -35,13 +32,21 @@ use crate::{files, sources};
 pub(crate) fn prove(args: &Prove) -> Result<failure::Verdict, Failure> {
     let paths = files::all(&args.paths)?;
     made::one_file(args, &paths)?;
-    let stop = stop(args.time)?;
+    let patience = Patience::new()?;
+    let stop = patience.within(args.time);
     let (mut all, mut tally) = (Vec::new(), Tally::default());
     for path in &paths {
         let source = sources::load(path, 0)?;
         let budget = Budget { states: args.states, bytes: args.memory.saturating_mul(1 << 20), stop: &*stop };
-        let mut file =
-            File { source: &source, args, budget, drawer: None, contradicts: false, all: &mut all };
+        let mut file = File {
+            source: &source,
+            args,
+            budget,
+            patience: &patience,
+            drawer: None,
+            contradicts: false,
+            all: &mut all,
+        };
         let problems = file.prove()?;
         let contradicts = file.contradicts;
         let mine = Tally::of(&problems);
@@ -73,6 +78,7 @@ struct File<'a> {
     source: &'a Source,
     args: &'a Prove,
     budget: Budget<'a>,
+    patience: &'a Patience,
     drawer: Option<trace::Drawer>,
     /// The assumptions contradict each other.
     contradicts: bool,
@@ -98,7 +104,7 @@ impl File<'_> {
             if made::contradiction(source, &model, profile, &answers, &self.budget)? {
                 self.contradicts = true;
             }
-            made::tests(args, source, &asked, &model, &answers, &self.budget)?;
+            made::tests(args, source, &asked, &model, &answers, self.patience)?;
         }
         let plants = match &args.plant {
             Some(plant) => vec![plant.as_str()],
@@ -148,25 +154,12 @@ fn answered(
         Verdict::Refuted(Evidence::Run(run)) => Some(run),
         _ => None,
     };
-    let drawn = run.zip(drawer).map(|(run, drawer)| drawer.draw(&run.moves)).unwrap_or_default();
+    let (chronogram, time) =
+        run.zip(drawer).map(|(run, drawer)| drawer.draw(&run.moves, &claim)).unwrap_or_default();
     let scans = run.zip(drawer).map(|(run, drawer)| drawer.scans(&run.moves)).unwrap_or_default();
-    let (chronogram, time) = drawn;
     let [reason, ..] = words::reason(&verdict, time);
     let [help, ..] = words::help(question, &verdict);
     let (own, rule) = (question.claim.is_own(), sarif::rule(&question.claim));
     let place = source.place(question.at);
     Answered { place, claim, own, reason, help, verdict, chronogram, rule, scans }
-}
-
-/// Tells when the time is over or Ctrl-C was pressed; what is known by then is printed.
-fn stop(time: Nanos) -> Result<Arc<dyn Fn() -> bool + Send + Sync>, Failure> {
-    let pressed = Arc::new(AtomicBool::new(false));
-    for signal in [signal_hook::consts::SIGINT, signal_hook::consts::SIGTERM] {
-        signal_hook::flag::register_conditional_default(signal, pressed.clone())?;
-        signal_hook::flag::register(signal, pressed.clone())?;
-    }
-    let clock = Mutex::new(WallClock::default());
-    Ok(Arc::new(move || {
-        pressed.load(Ordering::Relaxed) || clock.lock().unwrap_or_else(PoisonError::into_inner).now() >= time
-    }))
 }

@@ -87,9 +87,8 @@ fn result(a: &Answered) -> Value {
         Verdict::Open(_) => ("open", "none"),
     };
     let mut text = format!("{}: {}; {}", word(&a.verdict), a.claim, a.reason);
-    let help = &a.help;
-    if !help.is_empty() {
-        text.push_str(&format!(". Help: {help}"));
+    if !a.help.is_empty() {
+        text.push_str(&format!(". Help: {}", a.help));
     }
     let index = RULES.iter().position(|(id, _)| *id == a.rule);
     let mut row = json!({

@@ -3,13 +3,12 @@
 //! A test states what the claim expects of the shortest run that breaks it. Each one was run
 //! before it is written, and it fails where the claim does.
 
-use g7_engine::{State, eval, scan};
-use g7_model::{BinaryOp, Expr, ExprKind, Name, Nanos, Path, Place, ProfileName, PropertyKind, Scenario};
-use g7_rig::{Bench, Source};
-use g7_verify::{Asked, Claim, Evidence, Model, Move, Query, Question, Run, Verdict};
+use g7_model::{ProfileName, Scenario};
+use g7_page::saved::{Given, NO_RUN, UNSEEN, of_run, short, title};
+use g7_rig::Source;
+use g7_verify::{Asked, Evidence, Model, Verdict, words};
 
-use super::script::{Script, activity, expr, join, not, value};
-use super::{added, trace, words};
+use super::{added, trace};
 use crate::failure::Failure;
 
 /// The tests of refuted claims.
@@ -33,39 +32,21 @@ pub(super) fn tests(
     let mut saved = Saved::default();
     for (question, verdict) in asked.questions.iter().zip(answers) {
         let Some(Verdict::Refuted(evidence)) = verdict else { continue };
-        let claim = words::claim(source, model.compiled, question).1;
+        let written = source.text.get(source.range(question.at)).unwrap_or_default();
+        let [claim, ..] = words::claim(written, model.compiled, question);
         let title = title(&claim);
         let made = match evidence {
-            Evidence::Run(run) => {
-                let run = &as_tests_begin(model, question, run);
-                of_run(&Given { source, bench: &bench, model, question, run }, &title)
-            }
+            Evidence::Run(run) => of_run(&Given { source, bench: &bench, model, question, run }, &title),
             Evidence::Certificate(_) => Err(NO_RUN),
         };
         match made {
             Ok(test) if saved.tests.contains(&test) => {}
             Ok(test) if fails(source, &test, profile)? => saved.tests.push(test),
-            Ok(_) => saved.left.push((claim, UNSEEN.to_owned())),
-            Err(reason) => saved.left.push((claim, reason.to_owned())),
+            Ok(_) => saved.left.push((short(&claim), UNSEEN.to_owned())),
+            Err(reason) => saved.left.push((short(&claim), reason.to_owned())),
         }
     }
     Ok(saved)
-}
-
-const NO_RUN: &str = "it says that some run does something, and none does";
-const UNSEEN: &str = "a test sees the ends of scans, and they do not show it";
-const SETTLED: &str =
-    "a test sees the ends of scans: one of the transitions was cleared, and the other one waits unseen";
-const TWICE: &str = "a test does not see that an active step was activated once more";
-const WRITES: &str = "a test sees the last of the values; `g7 test` notes such a pass in every scenario";
-const FAULT: &str = "a fault stops the scan that shows it";
-
-/// The title of the test of a claim; the same for the same claim, so that it is replaced.
-fn title(claim: &str) -> String {
-    match claim.strip_prefix("prove ") {
-        Some(_) => claim.replace('"', "'"),
-        None => format!("prove {}", claim.split(": ").next().unwrap_or(claim)),
-    }
 }
 
 /// True if a test fails in its last statement, or in the one before where the last is a comment.
@@ -74,241 +55,4 @@ fn fails(source: &Source, test: &Scenario, profile: Option<ProfileName>) -> Resu
     let last = made.tests().last().and_then(|t| t.body.last()).map(|s| s.at.0);
     let at = outcomes.last().and_then(|o| o.defect.as_ref()).map(|d| d.at);
     Ok(matches!((last, at), (Some(last), Some(at)) if last.start <= at.start && at.end <= last.end))
-}
-
-/// A run that begins as tests do, with the initial values of the inputs: one scan more, if it
-/// shows the same; else the run as it is.
-fn as_tests_begin(model: &Model<'_>, question: &Question, run: &Run) -> Run {
-    let initial: Vec<u64> = model.inputs.iter().map(|v| v.tried.first().copied().unwrap_or(0)).collect();
-    let Some(first) = run.moves.first().filter(|m| m.inputs != initial) else { return run.clone() };
-    let mut longer = run.clone();
-    longer.moves.insert(0, Move { inputs: initial, wait: first.wait });
-    if let Some(second) = longer.moves.get_mut(1) {
-        second.wait = model.period;
-    }
-    let same = g7_verify::replay(model, &question.claim, &longer)
-        && match question.claim {
-            // What a state cannot do any more is the same only where the state is.
-            Claim::NoDeadlock | Claim::LeadsTo { .. } => image(model, run) == image(model, &longer),
-            _ => true,
-        };
-    if same { longer } else { run.clone() }
-}
-
-/// What decides about the future behind a run.
-fn image(model: &Model<'_>, run: &Run) -> Vec<u64> {
-    let mut image = Vec::new();
-    end(model, run).0.canonical(&model.compiled.program, &mut image);
-    image
-}
-
-/// A refuted claim with its run.
-struct Given<'a> {
-    source: &'a Source,
-    bench: &'a Bench,
-    model: &'a Model<'a>,
-    question: &'a Question,
-    run: &'a Run,
-}
-
-fn of_run(given: &Given<'_>, title: &str) -> Result<Scenario, &'static str> {
-    let mut script = Script::new(given.bench);
-    let claim = &given.question.claim;
-    let faults = matches!(claim, Claim::NoFault | Claim::NoInstability | Claim::NoOpposedOrders);
-    if given.run.fault.is_some() && !faults {
-        return Err(FAULT);
-    }
-    match claim {
-        Claim::NoFault | Claim::NoInstability | Claim::NoOpposedOrders => {
-            if let Some((last, before)) = given.run.moves.split_last() {
-                script.scans(before);
-                script.comment("no fault may come up in the next scan");
-                script.scan(last);
-            }
-        }
-        Claim::NoDeadlock => deadlock(given, &mut script)?,
-        Claim::NoConflict => conflict(given, &mut script)?,
-        Claim::NoUnsafe => return Err(TWICE),
-        Claim::NoOpposedWrites => return Err(WRITES),
-        _ => author(given, &mut script)?,
-    }
-    Ok(script.end(title))
-}
-
-/// A claim of the author.
-fn author(given: &Given<'_>, script: &mut Script<'_>) -> Result<(), &'static str> {
-    let (claim, moves) = (&given.question.claim, &given.run.moves);
-    let property = given.source.document.properties().find(|p| p.at.0 == given.question.at);
-    let property = property.ok_or(UNSEEN)?;
-    let seen = |q: &Query| conditions(given.model, given.run, *q);
-    match (&property.kind, claim) {
-        (PropertyKind::Always(e), _) => {
-            script.scans(moves);
-            script.expect(vec![e.clone()]);
-        }
-        (PropertyKind::Never(e), _) => {
-            script.scans(moves);
-            script.expect(vec![not(e.clone())]);
-        }
-        (PropertyKind::AtMost(most, list), _) => {
-            script.scans(moves);
-            script.expect(vec![at_most(*most, list)]);
-        }
-        (PropertyKind::After(_, within, e), Claim::Within { cause, effect, .. }) => {
-            let first = begins(&seen(cause), &seen(effect)).ok_or(UNSEEN)?;
-            after(given, script, first, *within, e);
-        }
-        (PropertyKind::Until(a, b, e), Claim::Until { from, to, .. }) => {
-            script.scans(moves);
-            let begins_here = begins(&seen(from), &seen(to)) == moves.len().checked_sub(1);
-            script.expect(vec![meanwhile(e.clone(), a, b, begins_here)]);
-        }
-        (PropertyKind::Between(a, b, e), Claim::Between { from, to, never }) => {
-            let start = begins(&seen(from), &seen(to)).ok_or(UNSEEN)?;
-            let at = seen(never).iter().skip(start).position(|on| *on).ok_or(UNSEEN)? + start;
-            script.scans(moves.get(..=at).unwrap_or(moves));
-            script.expect(vec![meanwhile(not(e.clone()), a, b, start == at)]);
-        }
-        (PropertyKind::LeadsTo(_, e), _) => {
-            script.scans(moves);
-            script.comment("from here on nothing brings it: write here what must");
-            script.wait_until(e.clone(), None);
-        }
-        _ => return Err(NO_RUN),
-    }
-    Ok(())
-}
-
-/// The scan that the last one of a run looks back to: the first one with the beginning behind the
-/// latest end before the last scan.
-fn begins(starts: &[bool], ends: &[bool]) -> Option<usize> {
-    let before = ends.split_last().map_or(&[][..], |(_, before)| before);
-    let from = before.iter().rposition(|on| *on).map_or(0, |at| at + 1);
-    Some(starts.iter().skip(from).position(|on| *on)? + from)
-}
-
-/// What holds at a scan between one with `a` and one with `b`: nothing is claimed at one with `b`, nor
-/// where the time begins with this scan and `a` does not hold.
-fn meanwhile(holds: Expr, a: &Expr, b: &Expr, begins_here: bool) -> Expr {
-    let or = |x: Expr, y: Expr| expr(ExprKind::Binary(BinaryOp::Or, Box::new(x), Box::new(y)));
-    let claimed = or(holds, b.clone());
-    if begins_here { or(claimed, not(a.clone())) } else { claimed }
-}
-
-/// At most so many of the conditions hold.
-fn at_most(most: u32, list: &[Expr]) -> Expr {
-    let one = |e: &Expr| {
-        let name = Name { text: "BOOL_TO_INT".into(), at: Place::default() };
-        let arg = g7_model::Arg { name: None, output: false, value: e.clone() };
-        expr(ExprKind::Call(Path { names: vec![name] }, vec![arg]))
-    };
-    let count = join(BinaryOp::Add, list.iter().map(one)).unwrap_or_else(|| value(g7_model::Type::Int, &[0]));
-    let most = value(g7_model::Type::Int, &[u64::from(most)]);
-    expr(ExprKind::Binary(BinaryOp::Le, Box::new(count), Box::new(most)))
-}
-
-/// `after a within t expect e`, where `a` came at the scan `first` and `e` did not come in time.
-fn after(given: &Given<'_>, script: &mut Script<'_>, first: usize, within: Nanos, e: &Expr) {
-    let (model, run) = (given.model, given.run);
-    let whole = Nanos::new(within.count() / model.period * model.period);
-    // Inputs that stay as they were with the cause, if that breaks the claim too: then one can wait.
-    let mut held = run.clone();
-    let cause = held.moves.get(first).map(|m| m.inputs.clone()).unwrap_or_default();
-    held.moves.iter_mut().skip(first + 1).for_each(|m| m.inputs.clone_from(&cause));
-    if g7_verify::replay(model, &given.question.claim, &held) {
-        script.scans(held.moves.get(..=first).unwrap_or(&held.moves));
-        if whole == Nanos::ZERO {
-            script.expect(vec![e.clone()]);
-        } else {
-            script.wait_until(e.clone(), Some(whole));
-        }
-    } else {
-        // The last scan of the run is the first one behind the time.
-        let last = run.moves.len().saturating_sub(1);
-        script.scans(run.moves.get(..last).unwrap_or(&run.moves));
-        script.comment("the time is over with this scan; it may have come before");
-        script.expect(vec![e.clone()]);
-    }
-}
-
-/// From the last situation nothing leads on: the test waits that it changes.
-fn deadlock(given: &Given<'_>, script: &mut Script<'_>) -> Result<(), &'static str> {
-    script.scans(&given.run.moves);
-    let (state, _) = end(given.model, given.run);
-    let symbols = &given.bench.compiled.symbols;
-    let active = state.active().filter(|s| symbols.is_listed(*s)).filter_map(|s| activity(given.bench, s));
-    let situation = join(BinaryOp::And, active).ok_or(UNSEEN)?;
-    script.comment("from here on no input leads on: write here what must");
-    script.wait_until(not(situation), None);
-    Ok(())
-}
-
-/// Both transitions were cleared: then steps behind both are active.
-fn conflict(given: &Given<'_>, script: &mut Script<'_>) -> Result<(), &'static str> {
-    script.scans(&given.run.moves);
-    let (state, cleared) = end(given.model, given.run);
-    let t = given.bench.compiled.program.tables();
-    let ends = |rank: u32, before: bool| -> Vec<u32> {
-        let Some(tr) = t.transitions.get(rank as usize) else { return Vec::new() };
-        let (first, more) = if before { (tr.from, tr.more_from) } else { (tr.to, tr.more_to) };
-        let more = t.arcs.get(more.start as usize..more.end as usize).unwrap_or(&[]);
-        std::iter::once(first.0).chain(more.iter().map(|s| s.0)).collect()
-    };
-    let active = |rank: u32| ends(rank, false).into_iter().find(|s| state.is_active(g7_engine::StepId(*s)));
-    let pairs = cleared.iter().flat_map(|a| cleared.iter().map(move |b| (*a, *b))).filter(|(a, b)| a < b);
-    let both = pairs
-        .filter(|(a, b)| ends(*a, true).iter().any(|s| ends(*b, true).contains(s)))
-        .find_map(|(a, b)| Some((active(a)?, active(b)?)).filter(|(a, b)| a != b));
-    let (a, b) = both.ok_or(SETTLED)?;
-    let steps = [a, b].map(|s| activity(given.bench, g7_engine::StepId(s)));
-    let both = join(BinaryOp::And, steps.into_iter().flatten()).ok_or(SETTLED)?;
-    script.expect(vec![not(both)]);
-    Ok(())
-}
-
-/// The state behind the run, and the transitions that its last scan cleared.
-fn end(model: &Model<'_>, run: &Run) -> (State, Vec<u32>) {
-    let p = &model.compiled.program;
-    let mut s = State::new(p);
-    for m in &run.moves {
-        let now = s.now().saturating_add(m.wait);
-        if scan(p, &mut s, &m.inputs, now).is_err() {
-            break;
-        }
-    }
-    let cleared = s.cleared().to_vec();
-    (s, cleared)
-}
-
-/// The value of a condition at the end of each scan of the run.
-fn conditions(model: &Model<'_>, run: &Run, q: Query) -> Vec<bool> {
-    let p = &model.compiled.program;
-    let code = model.compiled.queries.get(q.0 as usize).copied().unwrap_or_default();
-    let mut s = State::new(p);
-    let each = run.moves.iter().map(|m| {
-        let now = s.now().saturating_add(m.wait);
-        scan(p, &mut s, &m.inputs, now).is_ok() && eval(p, &mut s, code).is_ok_and(|w| w != 0)
-    });
-    each.collect()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::{begins, title};
-
-    #[test]
-    fn the_beginning_is_the_first_one_behind_the_latest_end() {
-        let scans = |text: &str| text.chars().map(|c| c == '1').collect::<Vec<_>>();
-        assert_eq!(begins(&scans("01010"), &scans("00000")), Some(1));
-        assert_eq!(begins(&scans("01010"), &scans("00100")), Some(3));
-        // A scan with both ends it; the end in the last scan comes too late to count.
-        assert_eq!(begins(&scans("01010"), &scans("01001")), Some(3));
-        assert_eq!(begins(&scans("01000"), &scans("00100")), None);
-    }
-
-    #[test]
-    fn titles_are_short_and_of_one_kind() {
-        assert_eq!(title("no conflict: no two transitions of one step are clearable"), "prove no conflict");
-        assert_eq!(title("prove never X1 and X2 \"apart\""), "prove never X1 and X2 'apart'");
-    }
 }

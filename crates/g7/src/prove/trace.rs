@@ -1,6 +1,6 @@
 //! Runs of the prover as chronograms, made by a run of the bench.
 
-use g7_host::{Chronogram, Recording, Signal, Style};
+use g7_host::{Chronogram, Recording, Runner, Signal, Style};
 use g7_model::{Nanos, ProfileName};
 use g7_rig::{Bench, Role, Source};
 use g7_verify::Move;
@@ -11,6 +11,8 @@ use crate::failure::Failure;
 const COLUMNS: usize = 60;
 /// Most lanes of a chronogram.
 const LANES: usize = 16;
+/// The groups of signals, from cause to effect.
+const GROUPS: [&str; 4] = ["inputs", "outputs", "variables", "steps"];
 
 /// Draws runs of one file.
 pub(super) struct Drawer {
@@ -27,16 +29,22 @@ impl Drawer {
         in_words(&self.bench, moves)
     }
 
-    /// The chronogram of a run, and the time of its last scan.
-    pub(super) fn draw(&self, moves: &[Move]) -> (String, Nanos) {
+    /// The chronogram of a run, and the time of its last scan. What the claim names is in it, whether it
+    /// changes or not.
+    pub(super) fn draw(&self, moves: &[Move], claim: &str) -> (String, Nanos) {
         let recording = self.record(moves);
         let mut lanes = self.bench.lanes(&recording);
-        let others = (0..recording.signals().len()).filter(|i| !lanes.contains(i) && is_on(&recording, *i));
-        lanes.extend(others.collect::<Vec<_>>());
+        let words: Vec<&str> = claim.split(|c: char| !c.is_alphanumeric() && !"_.".contains(c)).collect();
+        let named = |i: &usize| recording.signals().get(*i).is_some_and(|s| words.contains(&&*s.name));
+        let all = || 0..recording.signals().len();
+        for i in all().filter(named).chain(all().filter(|i| is_on(&recording, *i))) {
+            if !lanes.contains(&i) {
+                lanes.push(i);
+            }
+        }
         lanes.truncate(LANES);
-        let groups = ["inputs", "outputs", "variables", "steps"];
         let group =
-            |i: &usize| recording.signals().get(*i).and_then(|s| groups.iter().position(|g| *g == s.group));
+            |i: &usize| recording.signals().get(*i).and_then(|s| GROUPS.iter().position(|g| *g == s.group));
         lanes.sort_by_key(group);
         (self.chronogram(&recording, lanes, moves.len()), recording.end())
     }
@@ -46,55 +54,48 @@ impl Drawer {
     pub(super) fn draw_both(both: &[Drawer; 2], moves: &[Vec<Move>; 2]) -> String {
         let [a, b] = both;
         let [first, second] = moves;
-        let of = [a.record(first), b.record(second)];
-        let groups = ["inputs", "outputs", "variables", "steps"];
-        let mut lanes: Vec<(Signal, usize, usize)> = Vec::new();
-        for group in groups {
-            let mine = |r: &Recording| {
-                let signals = r.signals().iter().enumerate().filter(|(_, s)| s.group == group);
-                signals.map(|(i, s)| (i, s.clone())).collect::<Vec<_>>()
+        let (one, two) = (a.record(first), b.record(second));
+        let find = |r: &Recording, s: &Signal| r.signals().iter().position(|o| o == s);
+        let mut lanes: Vec<(Signal, &Recording, usize)> = Vec::new();
+        for group in GROUPS {
+            let mine = |r: &Recording| -> Vec<(usize, Signal)> {
+                r.signals().iter().cloned().enumerate().filter(|(_, s)| s.group == group).collect()
             };
-            let [left, right] = [mine(&of[0]), mine(&of[1])];
-            let course = |side: usize, i: usize| of[side].changes(i).collect::<Vec<_>>();
-            for (i, s) in &left {
-                let other = right.iter().find(|(_, o)| o.name == s.name);
-                match other {
-                    Some((j, _)) if course(0, *i) == course(1, *j) => {
-                        lanes.extend(is_on(&of[0], *i).then(|| (s.clone(), 0, *i)));
+            for (i, s) in mine(&one) {
+                match find(&two, &s) {
+                    Some(j) if one.changes(i).eq(two.changes(j)) => {
+                        lanes.extend(is_on(&one, i).then(|| (s.clone(), &one, i)));
                     }
-                    Some((j, o)) => {
-                        lanes.extend([(numbered(s, 1), 0, *i), (numbered(o, 2), 1, *j)]);
-                    }
-                    None => lanes.extend(is_on(&of[0], *i).then(|| (numbered(s, 1), 0, *i))),
+                    Some(j) => lanes.extend([(numbered(&s, 1), &one, i), (numbered(&s, 2), &two, j)]),
+                    None => lanes.extend(is_on(&one, i).then(|| (numbered(&s, 1), &one, i))),
                 }
             }
-            let alone = right.iter().filter(|(_, s)| !left.iter().any(|(_, o)| o.name == s.name));
-            lanes.extend(alone.filter(|(j, _)| is_on(&of[1], *j)).map(|(j, s)| (numbered(s, 2), 1, *j)));
+            let alone = mine(&two).into_iter().filter(|(j, s)| find(&one, s).is_none() && is_on(&two, *j));
+            lanes.extend(alone.map(|(j, s)| (numbered(&s, 2), &two, j)));
         }
         lanes.truncate(2 * LANES);
-        let mut joined = Recording::new(lanes.iter().map(|(s, _, _)| s.clone()).collect());
-        for (to, (_, side, from)) in lanes.iter().enumerate() {
-            if let Some(recording) = of.get(*side) {
-                joined.adopt(to, recording, *from);
-            }
+        let mut joined = Recording::new(lanes.iter().map(|(s, ..)| s.clone()).collect());
+        for (to, (_, recording, from)) in lanes.iter().enumerate() {
+            joined.adopt(to, recording, *from);
         }
         a.chronogram(&joined, (0..lanes.len()).collect(), first.len())
     }
 
+    /// The fault that ends a run, in words.
+    pub(super) fn fault(&self, moves: &[Move]) -> Option<String> {
+        let mut fault = None;
+        repeat(&self.bench, moves, |runner| {
+            fault = runner.halt().map(|halt| self.bench.halt(runner, halt));
+        });
+        fault
+    }
+
     fn record(&self, moves: &[Move]) -> Recording {
         let bench = &self.bench;
-        let mut runner = bench.runner(0);
         let mut recording = Recording::new(bench.signals());
-        for m in moves {
-            for (index, value) in (0u32..).zip(&m.inputs) {
-                runner.set_input(index, *value);
-            }
-            let halted = runner.scan().is_err();
-            recording.sample(Nanos::new(runner.state().now()), bench.sample(&runner));
-            if halted {
-                break;
-            }
-        }
+        repeat(bench, moves, |runner| {
+            recording.sample(Nanos::new(runner.state().now()), bench.sample(runner));
+        });
         recording
     }
 
@@ -119,27 +120,40 @@ fn numbered(s: &Signal, chart: u8) -> Signal {
     Signal { name: format!("{chart}: {}", s.name), ..s.clone() }
 }
 
-/// The scans of a run in words: the time, the inputs that change, the situation behind it.
-fn in_words(bench: &Bench, moves: &[Move]) -> Vec<String> {
+/// Repeats a run up to a fault; `see` is shown the runner behind each scan.
+fn repeat(bench: &Bench, moves: &[Move], mut see: impl FnMut(&Runner)) {
     let mut runner = bench.runner(0);
-    let mut before: Vec<String> = Vec::new();
-    let mut scan = |m: &Move| {
+    for m in moves {
         for (index, value) in (0u32..).zip(&m.inputs) {
             runner.set_input(index, *value);
         }
         let halted = runner.scan().is_err();
+        see(&runner);
+        if halted {
+            break;
+        }
+    }
+}
+
+/// The scans of a run in words: the time, the inputs that change, the situation behind it.
+fn in_words(bench: &Bench, moves: &[Move]) -> Vec<String> {
+    let (mut before, mut found) = (Vec::new(), Vec::new());
+    repeat(bench, moves, |runner| {
         let inputs = bench.items.iter().filter(|i| matches!(i.role, Role::Input(_)));
         let all: Vec<String> = inputs
             .map(|i| format!("{} = {}", i.name, bench.value_in(runner.state(), i).show(i.kind)))
             .collect();
-        let new: Vec<&str> = all.iter().filter(|text| !before.contains(text)).map(String::as_str).collect();
+        let new: Vec<&str> = all.iter().filter(|text| !before.contains(*text)).map(String::as_str).collect();
         let inputs = if new.is_empty() { "the same inputs".to_owned() } else { new.join(", ") };
         let now = Nanos::new(runner.state().now()).plain();
-        let end = if halted { "a fault".to_owned() } else { bench.situation(runner.state()).join(", ") };
+        let end = match runner.halt() {
+            Some(halt) => format!("a fault: {}", bench.halt(runner, halt)),
+            None => format!("{{{}}}", bench.situation(runner.state()).join(", ")),
+        };
+        found.push(format!("at {now}: {inputs}; then {end}"));
         before = all;
-        format!("at {now}: {inputs}; then {{{end}}}")
-    };
-    moves.iter().map(&mut scan).collect()
+    });
+    found
 }
 
 /// A bench of the charts alone, or the problems of the file on the standard error.

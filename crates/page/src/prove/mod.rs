@@ -13,8 +13,7 @@ mod asked;
 mod cures;
 mod place;
 mod rows;
-mod saved;
-mod script;
+pub mod saved;
 mod ways;
 
 pub(crate) use asked::{Limits, Proof, prove};

@@ -1,17 +1,18 @@
-//! Refuted claims as tests that fail.
+//! Refuted claims as tests that fail, for the page and for `g7 prove --save`.
 //!
-//! A test states what the claim expects of the shortest run that breaks it. Whoever offers a test runs
+//! A test states what the claim expects of the shortest run that breaks it. Whoever takes a test runs
 //! it first: it is to fail where the claim does.
 
 use g7_engine::{State, eval, scan};
 use g7_model::{BinaryOp, Expr, ExprKind, Name, Nanos, Path, Place, PropertyKind, Scenario};
+use g7_rig::testing::script::{Script, activity, expr, join, not, value};
 use g7_rig::{Bench, Source};
-use g7_verify::{Claim, Model, Query, Question, Run};
+use g7_verify::{Claim, Model, Move, Query, Question, Run};
 
-use super::script::{Script, activity, expr, join, not, value};
-
-const NO_RUN: &str = "it says that some run does something, and none does";
-pub(super) const UNSEEN: &str = "a test sees the ends of scans, and they do not show it";
+/// Why there is no test of a claim that some run does something.
+pub const NO_RUN: &str = "it says that some run does something, and none does";
+/// Why there is no test where a made one does not fail in its last statement.
+pub const UNSEEN: &str = "a test sees the ends of scans, and they do not show it";
 const SETTLED: &str =
     "a test sees the ends of scans: one of the transitions was cleared, and the other one waits unseen";
 const TWICE: &str = "a test does not see that an active step was activated once more";
@@ -19,24 +20,70 @@ const WRITES: &str = "a test sees the last of the values; `g7 test` notes such a
 const FAULT: &str = "a fault stops the scan that shows it";
 
 /// The title of the test of a claim; the same for the same claim, so that it is replaced.
-pub(super) fn title(claim: &str) -> String {
-    match claim.strip_prefix("prove ") {
-        Some(_) => claim.replace('"', "'"),
-        None => format!("prove {}", claim.split(": ").next().unwrap_or(claim)),
+pub fn title(claim: &str) -> String {
+    let short = short(claim).replace('"', "'");
+    if claim.starts_with("prove ") { short } else { format!("prove {short}") }
+}
+
+/// A claim without what explains it.
+pub fn short(claim: &str) -> String {
+    match claim.split_once(": ") {
+        Some((short, _)) if !claim.starts_with("prove ") => short.to_owned(),
+        _ => claim.to_owned(),
     }
 }
 
-/// A refuted claim with its run.
-pub(super) struct Given<'a> {
-    pub(super) source: &'a Source,
-    pub(super) bench: &'a Bench,
-    pub(super) model: &'a Model<'a>,
-    pub(super) question: &'a Question,
-    pub(super) run: &'a Run,
+/// A run that begins as tests do, with the initial values of the inputs: one scan more, if it
+/// shows the same; else the run as it is.
+fn as_tests_begin(model: &Model<'_>, question: &Question, run: &Run) -> Run {
+    let initial: Vec<u64> = model.inputs.iter().map(|v| v.tried.first().copied().unwrap_or(0)).collect();
+    let Some(first) = run.moves.first().filter(|m| m.inputs != initial) else { return run.clone() };
+    let mut longer = run.clone();
+    longer.moves.insert(0, Move { inputs: initial, wait: first.wait });
+    if let Some(second) = longer.moves.get_mut(1) {
+        second.wait = model.period;
+    }
+    let same = g7_verify::replay(model, &question.claim, &longer)
+        && match question.claim {
+            // What a state cannot do any more is the same only where the state is.
+            Claim::NoDeadlock | Claim::LeadsTo { .. } => image(model, run) == image(model, &longer),
+            _ => true,
+        };
+    if same { longer } else { run.clone() }
 }
 
-/// The test of a refuted claim, or why there is none.
-pub(super) fn of_run(given: &Given<'_>, title: &str) -> Result<Scenario, &'static str> {
+/// What decides about the future behind a run.
+fn image(model: &Model<'_>, run: &Run) -> Vec<u64> {
+    let mut image = Vec::new();
+    end(model, run).0.canonical(&model.compiled.program, &mut image);
+    image
+}
+
+/// A refuted claim with its run.
+pub struct Given<'a> {
+    /// The file.
+    pub source: &'a Source,
+    /// Its charts without a plant.
+    pub bench: &'a Bench,
+    /// The charts with their questions.
+    pub model: &'a Model<'a>,
+    /// The question.
+    pub question: &'a Question,
+    /// The run that refutes it.
+    pub run: &'a Run,
+}
+
+/// The test of a refuted claim.
+///
+/// # Errors
+///
+/// A sentence that says why a test cannot show it.
+pub fn of_run(given: &Given<'_>, title: &str) -> Result<Scenario, &'static str> {
+    let run = &as_tests_begin(given.model, given.question, given.run);
+    written(&Given { run, ..*given }, title)
+}
+
+fn written(given: &Given<'_>, title: &str) -> Result<Scenario, &'static str> {
     let mut script = Script::new(given.bench);
     let claim = &given.question.claim;
     let faults = matches!(claim, Claim::NoFault | Claim::NoInstability | Claim::NoOpposedOrders);
@@ -46,9 +93,9 @@ pub(super) fn of_run(given: &Given<'_>, title: &str) -> Result<Scenario, &'stati
     match claim {
         Claim::NoFault | Claim::NoInstability | Claim::NoOpposedOrders => {
             if let Some((last, before)) = given.run.moves.split_last() {
-                script.scans(before);
+                scans(&mut script, before);
                 script.comment("no fault may come up in the next scan");
-                script.scan(last);
+                script.scan(&last.inputs);
             }
         }
         Claim::NoDeadlock => deadlock(given, &mut script)?,
@@ -60,6 +107,10 @@ pub(super) fn of_run(given: &Given<'_>, title: &str) -> Result<Scenario, &'stati
     Ok(script.end(title))
 }
 
+fn scans(script: &mut Script<'_>, moves: &[Move]) {
+    moves.iter().for_each(|m| script.scan(&m.inputs));
+}
+
 /// A claim of the author.
 fn author(given: &Given<'_>, script: &mut Script<'_>) -> Result<(), &'static str> {
     let (claim, moves) = (&given.question.claim, &given.run.moves);
@@ -68,15 +119,15 @@ fn author(given: &Given<'_>, script: &mut Script<'_>) -> Result<(), &'static str
     let seen = |q: &Query| conditions(given.model, given.run, *q);
     match (&property.kind, claim) {
         (PropertyKind::Always(e), _) => {
-            script.scans(moves);
+            scans(script, moves);
             script.expect(vec![e.clone()]);
         }
         (PropertyKind::Never(e), _) => {
-            script.scans(moves);
+            scans(script, moves);
             script.expect(vec![not(e.clone())]);
         }
         (PropertyKind::AtMost(most, list), _) => {
-            script.scans(moves);
+            scans(script, moves);
             script.expect(vec![at_most(*most, list)]);
         }
         (PropertyKind::After(_, within, e), Claim::Within { cause, effect, .. }) => {
@@ -84,21 +135,18 @@ fn author(given: &Given<'_>, script: &mut Script<'_>) -> Result<(), &'static str
             after(given, script, first, *within, e);
         }
         (PropertyKind::Until(a, b, e), Claim::Until { from, to, .. }) => {
-            script.scans(moves);
-            let mut allowed = vec![e.clone(), b.clone()];
-            if begins(&seen(from), &seen(to)) == moves.len().checked_sub(1) {
-                allowed.push(not(a.clone()));
-            }
-            script.expect(join(BinaryOp::Or, allowed).into_iter().collect());
+            scans(script, moves);
+            let begins_here = begins(&seen(from), &seen(to)) == moves.len().checked_sub(1);
+            script.expect(vec![meanwhile(e.clone(), a, b, begins_here)]);
         }
-        (PropertyKind::Between(_, _, e), Claim::Between { from, to, never }) => {
+        (PropertyKind::Between(a, b, e), Claim::Between { from, to, never }) => {
             let start = begins(&seen(from), &seen(to)).ok_or(UNSEEN)?;
             let at = seen(never).iter().skip(start).position(|on| *on).ok_or(UNSEEN)? + start;
-            script.scans(moves.get(..=at).unwrap_or(moves));
-            script.expect(vec![not(e.clone())]);
+            scans(script, moves.get(..=at).unwrap_or(moves));
+            script.expect(vec![meanwhile(not(e.clone()), a, b, start == at)]);
         }
         (PropertyKind::LeadsTo(_, e), _) => {
-            script.scans(moves);
+            scans(script, moves);
             script.comment("from here on nothing brings it: write here what must");
             script.wait_until(e.clone(), None);
         }
@@ -113,6 +161,14 @@ fn begins(starts: &[bool], ends: &[bool]) -> Option<usize> {
     let before = ends.split_last().map_or(&[][..], |(_, before)| before);
     let from = before.iter().rposition(|on| *on).map_or(0, |at| at + 1);
     Some(starts.iter().skip(from).position(|on| *on)? + from)
+}
+
+/// What holds at a scan between one with `a` and one with `b`: nothing is claimed at one with `b`, nor
+/// where the time begins with this scan and `a` does not hold.
+fn meanwhile(holds: Expr, a: &Expr, b: &Expr, begins_here: bool) -> Expr {
+    let or = |x: Expr, y: Expr| expr(ExprKind::Binary(BinaryOp::Or, Box::new(x), Box::new(y)));
+    let claimed = or(holds, b.clone());
+    if begins_here { or(claimed, not(a.clone())) } else { claimed }
 }
 
 /// At most so many of the conditions hold.
@@ -136,7 +192,7 @@ fn after(given: &Given<'_>, script: &mut Script<'_>, first: usize, within: Nanos
     let cause = held.moves.get(first).map(|m| m.inputs.clone()).unwrap_or_default();
     held.moves.iter_mut().skip(first + 1).for_each(|m| m.inputs.clone_from(&cause));
     if g7_verify::replay(model, &given.question.claim, &held) {
-        script.scans(held.moves.get(..=first).unwrap_or(&held.moves));
+        scans(script, held.moves.get(..=first).unwrap_or(&held.moves));
         if whole == Nanos::ZERO {
             script.expect(vec![e.clone()]);
         } else {
@@ -145,7 +201,7 @@ fn after(given: &Given<'_>, script: &mut Script<'_>, first: usize, within: Nanos
     } else {
         // The last scan of the run is the first one behind the time.
         let last = run.moves.len().saturating_sub(1);
-        script.scans(run.moves.get(..last).unwrap_or(&run.moves));
+        scans(script, run.moves.get(..last).unwrap_or(&run.moves));
         script.comment("the time is over with this scan; it may have come before");
         script.expect(vec![e.clone()]);
     }
@@ -153,8 +209,8 @@ fn after(given: &Given<'_>, script: &mut Script<'_>, first: usize, within: Nanos
 
 /// From the last situation nothing leads on: the test waits that it changes.
 fn deadlock(given: &Given<'_>, script: &mut Script<'_>) -> Result<(), &'static str> {
-    script.scans(&given.run.moves);
-    let (state, _) = end(given);
+    scans(script, &given.run.moves);
+    let (state, _) = end(given.model, given.run);
     let symbols = &given.bench.compiled.symbols;
     let active = state.active().filter(|s| symbols.is_listed(*s)).filter_map(|s| activity(given.bench, s));
     let situation = join(BinaryOp::And, active).ok_or(UNSEEN)?;
@@ -165,8 +221,8 @@ fn deadlock(given: &Given<'_>, script: &mut Script<'_>) -> Result<(), &'static s
 
 /// Both transitions were cleared: then steps behind both are active.
 fn conflict(given: &Given<'_>, script: &mut Script<'_>) -> Result<(), &'static str> {
-    script.scans(&given.run.moves);
-    let (state, cleared) = end(given);
+    scans(script, &given.run.moves);
+    let (state, cleared) = end(given.model, given.run);
     let t = given.bench.compiled.program.tables();
     let ends = |rank: u32, before: bool| -> Vec<u32> {
         let Some(tr) = t.transitions.get(rank as usize) else { return Vec::new() };
@@ -187,12 +243,11 @@ fn conflict(given: &Given<'_>, script: &mut Script<'_>) -> Result<(), &'static s
 }
 
 /// The state behind the run, and the transitions that its last scan cleared.
-fn end(given: &Given<'_>) -> (State, Vec<u32>) {
-    let p = &given.model.compiled.program;
+fn end(model: &Model<'_>, run: &Run) -> (State, Vec<u32>) {
+    let p = &model.compiled.program;
     let mut s = State::new(p);
-    for m in &given.run.moves {
+    for m in &run.moves {
         let now = s.now().saturating_add(m.wait);
-        // A run without a fault, which `of_run` asks for.
         if scan(p, &mut s, &m.inputs, now).is_err() {
             break;
         }
@@ -215,7 +270,17 @@ fn conditions(model: &Model<'_>, run: &Run, q: Query) -> Vec<bool> {
 
 #[cfg(test)]
 mod tests {
-    use super::title;
+    use super::{begins, title};
+
+    #[test]
+    fn the_beginning_is_the_first_one_behind_the_latest_end() {
+        let scans = |text: &str| text.chars().map(|c| c == '1').collect::<Vec<_>>();
+        assert_eq!(begins(&scans("01010"), &scans("00000")), Some(1));
+        assert_eq!(begins(&scans("01010"), &scans("00100")), Some(3));
+        // A scan with both ends it; the end in the last scan comes too late to count.
+        assert_eq!(begins(&scans("01010"), &scans("01001")), Some(3));
+        assert_eq!(begins(&scans("01000"), &scans("00100")), None);
+    }
 
     #[test]
     fn titles_are_short_and_of_one_kind() {

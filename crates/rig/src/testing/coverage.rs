@@ -137,6 +137,10 @@ impl Coverage {
         let symbols = &bench.compiled.symbols;
         let tables = bench.compiled.program.tables();
         found.extend(state.active().map(|step| (Sort::Step, symbols.step_place(step))));
+        // The initial situation too, if it was left in the first scan.
+        if state.scans() == 1 {
+            found.extend(tables.initial.iter().map(|step| (Sort::Step, symbols.step_place(*step))));
+        }
         for rank in state.cleared() {
             let at = symbols.transition_place(*rank);
             found.extend([(Sort::Transition, at), (Sort::Branch, at)]);

@@ -9,6 +9,7 @@
 mod coverage;
 mod exec;
 mod properties;
+pub mod script;
 mod sides;
 mod statements;
 

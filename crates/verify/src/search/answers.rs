@@ -39,7 +39,13 @@ impl<'a> Search<'a> {
     }
 
     /// Answers the open questions that a scan shows.
-    pub(super) fn settle(&mut self, at: usize, m: &Move, fault: Option<Fault>, is_shown: impl Fn(&Claim) -> bool) {
+    pub(super) fn settle(
+        &mut self,
+        at: usize,
+        m: &Move,
+        fault: Option<Fault>,
+        is_shown: impl Fn(&Claim) -> bool,
+    ) {
         let hits: Vec<usize> =
             self.open.iter().filter(|(_, q)| is_shown(&q.claim)).map(|(i, _)| *i).collect();
         if !hits.is_empty() {

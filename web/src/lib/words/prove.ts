@@ -9,6 +9,7 @@ export const prove = {
   'prove.searching': ['Searching: {n} of {of} answered, now among {states} states', 'Recherche : {n} sur {of} avec réponse, parmi {states} états', 'A procurar: {n} de {of} com resposta, entre {states} estados'],
   'prove.progress': ['Questions answered', 'Questions avec réponse', 'Perguntas com resposta'],
   'prove.done': ['Everything is answered.', 'Tout a reçu une réponse.', 'Tudo tem resposta.'],
+  'prove.left': ['Not everything is decided.', 'Tout n’est pas décidé.', 'Nem tudo está decidido.'],
   'prove.errors': ['The file has errors: mend them first, then every question is asked.', 'Le fichier a des erreurs : corrigez-les d’abord, ensuite chaque question est posée.', 'O ficheiro tem erros: corrija-os primeiro; depois faz-se cada pergunta.'],
   'prove.large': ['This file is large: its questions are asked on the button.', 'Ce fichier est grand : ses questions sont posées par le bouton.', 'Este ficheiro é grande: as perguntas fazem-se com o botão.'],
   'prove.failed': ['The search failed: {why}', 'La recherche a échoué : {why}', 'A procura falhou: {why}'],

@@ -92,7 +92,7 @@ pub(crate) fn graph(args: &Graph) -> Result<Verdict, Failure> {
         return Ok(Verdict::Found);
     };
     let model = Model::new(&asked.compiled, asked.assume.clone());
-    let stop = super::stop(args.time)?;
+    let stop = super::patience::Patience::new()?.within(args.time);
     let budget = Budget { states: args.states, bytes: args.memory.saturating_mul(1 << 20), stop: &*stop };
     let graph = situations(&model, &budget);
     let named = Named {

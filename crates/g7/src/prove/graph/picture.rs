@@ -1,198 +1,184 @@
 //! The graph of situations as a picture.
 //!
-//! A row has the situations that are reached by as many scans; no scan leads further than to the
-//! next row, so only the ways back pass by others. Within a row the order follows the neighbours
-//! (barycentres), which leaves few crossings in small graphs.
+//! The situations stand one below the other in the order in which they are reached. Each edge is a
+//! line of its own with its condition, so that no two texts meet; it runs to the rail of the
+//! situation at which it ends. A rail is as long as the edges that join it need.
 
 use std::fmt::Write;
 
-use g7_verify::{Edge, Kind};
+use g7_verify::Kind;
 
 use super::Named;
 
-/// Distance of two rows, height of a box, gap between two boxes, margin; in pixels.
-const ROW: f64 = 96.0;
-const BOX: f64 = 28.0;
-const GAP: f64 = 44.0;
+/// Height of an edge, distance of two boxes, margin, distance of two rails; in pixels.
+const LINE: f64 = 20.0;
+const GAP: f64 = 18.0;
 const MARGIN: f64 = 24.0;
+const RAIL: f64 = 12.0;
 /// Width of a letter, with some room.
-const LETTER: f64 = 7.4;
-/// Times that each row is put in order.
-const SWEEPS: usize = 12;
+const LETTER: f64 = 7.2;
+/// Colours of rails, dark enough for thin lines on white.
+const COLOURS: [&str; 6] = ["#1f5a99", "#a8480f", "#2b7339", "#8a2a5d", "#5b4ba3", "#666666"];
 
-struct Spot {
-    x: f64,
-    y: f64,
-    half: f64,
+/// A row: a situation with the edges that begin there.
+struct Row {
+    top: f64,
+    height: f64,
+    /// The labels of its edges, with the numbers of the rows at which they end.
+    edges: Vec<(String, String, usize)>,
+    /// Where the rail comes in, if one does.
+    port: Option<f64>,
+}
+
+/// A vertical line to which all edges to one situation run.
+struct Rail {
+    to: usize,
+    top: f64,
+    bottom: f64,
+    place: usize,
 }
 
 pub(super) fn svg(graph: &Named<'_>) -> String {
-    let rows = rows(graph);
-    let spots = spots(graph, &rows);
-    let widest = spots.iter().map(|s| s.x + s.half).fold(0.0, f64::max);
-    let (lines, right) = edges(graph, &spots);
-    let width = widest.max(right) + MARGIN;
-    let height = rows.len() as f64 * ROW - (ROW - BOX) + 2.0 * MARGIN;
+    let names: Vec<String> = graph.graph.nodes.iter().map(|n| graph.node(n)).collect();
+    let rows = rows(graph, &names);
+    let rails = rails(&rows);
+    let wide = |texts: &mut dyn Iterator<Item = &String>| {
+        texts.map(|t| t.chars().count()).max().unwrap_or(0) as f64 * LETTER
+    };
+    let right = MARGIN + (wide(&mut names.iter()) + 20.0).max(48.0);
+    let first = right + wide(&mut rows.iter().flat_map(|r| r.edges.iter().map(|e| &e.0))) + 24.0;
+    let x_of = |place: usize| first + place as f64 * RAIL;
+    let most = rails.iter().map(|r| r.place).max().unwrap_or(0);
+    let width = x_of(most) + MARGIN;
+    let height = rows.last().map_or(0.0, |r| r.top + r.height) + MARGIN;
     let mut out = String::new();
     // Writing to a text does not fail.
     let _text = writeln!(
         out,
         "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width:.0}\" height=\"{height:.0}\" \
          viewBox=\"0 0 {width:.0} {height:.0}\" font-family=\"sans-serif\" font-size=\"12\">\n\
-         <defs><marker id=\"tip\" viewBox=\"0 0 8 8\" refX=\"8\" refY=\"4\" markerWidth=\"8\" \
-         markerHeight=\"8\" orient=\"auto\"><path d=\"M0 0L8 4L0 8z\"/></marker></defs>\n\
          <rect width=\"100%\" height=\"100%\" fill=\"white\"/>"
     );
-    out.push_str(&lines);
-    for (node, spot) in graph.graph.nodes.iter().zip(&spots) {
-        let (x, y) = (spot.x, spot.y);
-        if node.kind == Kind::Start {
-            let _text = writeln!(out, "<circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"6\"/>");
-            continue;
-        }
-        let fill = if node.kind == Kind::Situation { "#f4f4f4" } else { "#ffd9d0" };
-        let (left, top, wide) = (x - spot.half, y - BOX / 2.0, 2.0 * spot.half);
+    for rail in &rails {
+        let (x, colour) = (x_of(rail.place), colour(rail.to));
+        let Some(port) = rows.get(rail.to).and_then(|r| r.port) else { continue };
+        let (top, bottom) = (rail.top.min(port), rail.bottom.max(port));
         let _text = writeln!(
             out,
-            "<g><title>{}</title><rect x=\"{left:.1}\" y=\"{top:.1}\" width=\"{wide:.1}\" height=\"{BOX}\" \
-             fill=\"{fill}\" stroke=\"black\"/><text x=\"{x:.1}\" y=\"{:.1}\" \
-             text-anchor=\"middle\">{}</text></g>",
-            escaped(&format!("states: {}; scans from the start: {}", node.states, node.scans)),
-            y + 4.0,
-            escaped(&graph.node(node))
+            "<path d=\"M{x:.0} {top:.0}V{bottom:.0}M{x:.0} {port:.0}H{right:.0}\" fill=\"none\" stroke=\"{colour}\"/>\
+             <path d=\"M{right:.0} {port:.0}l8 -4v8z\" fill=\"{colour}\"/>"
         );
+    }
+    for (node, (row, name)) in graph.graph.nodes.iter().zip(rows.iter().zip(&names)) {
+        boxed(
+            &mut out,
+            node.kind,
+            row,
+            name,
+            [MARGIN, right],
+            &format!("states: {}; scans from the start: {}", node.states, node.scans),
+        );
+        for (number, (label, tip, to)) in row.edges.iter().enumerate() {
+            let y = row.top + (number as f64 + 0.75) * LINE;
+            let x = rails.iter().find(|r| r.to == *to).map_or(right, |r| x_of(r.place));
+            let colour = colour(*to);
+            let _text = writeln!(
+                out,
+                "<g><title>{}</title><path d=\"M{right:.0} {y:.0}H{x:.0}\" stroke=\"{colour}\"/>\
+                 <circle cx=\"{x:.0}\" cy=\"{y:.0}\" r=\"2.5\" fill=\"{colour}\"/>\
+                 <text x=\"{:.0}\" y=\"{:.0}\" font-size=\"11\">{}</text></g>",
+                escaped(tip),
+                right + 12.0,
+                y - 4.0,
+                escaped(label)
+            );
+        }
     }
     out.push_str("</svg>\n");
     out
 }
 
-/// The nodes of each row, from left to right.
-fn rows(graph: &Named<'_>) -> Vec<Vec<usize>> {
-    let nodes = &graph.graph.nodes;
-    let last = nodes.iter().map(|n| n.scans).max().unwrap_or(0);
-    let mut rows = vec![Vec::new(); last + 1];
-    for (id, node) in nodes.iter().enumerate() {
-        if let Some(row) = rows.get_mut(node.scans) {
-            row.push(id);
-        }
-    }
-    let row_of = |id: usize| nodes.get(id).map_or(0, |n| n.scans);
-    let mut near: Vec<Vec<usize>> = vec![Vec::new(); nodes.len()];
-    for e in graph.graph.edges.iter().filter(|e| row_of(e.from).abs_diff(row_of(e.to)) == 1) {
-        near.get_mut(e.from).into_iter().for_each(|n| n.push(e.to));
-        near.get_mut(e.to).into_iter().for_each(|n| n.push(e.from));
-    }
-    let mut place = vec![0.0; nodes.len()];
-    let note = |row: &[usize], place: &mut [f64]| {
-        for (i, id) in row.iter().enumerate() {
-            if let Some(p) = place.get_mut(*id) {
-                *p = i as f64 - row.len() as f64 / 2.0;
-            }
-        }
+fn colour(to: usize) -> &'static str {
+    COLOURS.get(to % COLOURS.len()).copied().unwrap_or("black")
+}
+
+/// A situation; the start is a dot, a fault is red.
+fn boxed(out: &mut String, kind: Kind, row: &Row, name: &str, [left, right]: [f64; 2], tip: &str) {
+    let middle = row.top + row.height / 2.0;
+    let _text = match kind {
+        Kind::Start => writeln!(
+            out,
+            "<path d=\"M{:.0} {middle:.0}H{right:.0}\" stroke=\"black\"/>\
+            <circle cx=\"{:.0}\" cy=\"{middle:.0}\" r=\"6\"/>\
+            <path d=\"M{right:.0} {:.0}V{:.0}\" stroke=\"black\"/>",
+            right - 14.0,
+            right - 20.0,
+            row.top,
+            row.top + row.height
+        ),
+        Kind::Situation | Kind::Fault(_) => writeln!(
+            out,
+            "<g><title>{}</title><rect x=\"{left:.0}\" y=\"{:.0}\" width=\"{:.0}\" height=\"{:.0}\" \
+             fill=\"{}\" stroke=\"black\"/><text x=\"{:.1}\" y=\"{:.0}\" text-anchor=\"middle\">{}</text></g>",
+            escaped(tip),
+            row.top,
+            right - left,
+            row.height,
+            if kind == Kind::Situation { "#f4f4f4" } else { "#ffd9d0" },
+            (left + right) / 2.0,
+            middle + 4.0,
+            escaped(name)
+        ),
     };
-    rows.iter().for_each(|row| note(row, &mut place));
-    for sweep in 0..SWEEPS {
-        // Downwards, then upwards.
-        let order: Vec<usize> =
-            if sweep % 2 == 0 { (0..rows.len()).collect() } else { (0..rows.len()).rev().collect() };
-        for at in order {
-            let Some(row) = rows.get_mut(at) else { continue };
-            let other = if sweep % 2 == 0 { at.checked_sub(1) } else { Some(at + 1) };
-            let key = |id: usize| {
-                let mine = near.get(id).into_iter().flatten().filter(|n| Some(row_of(**n)) == other);
-                let places: Vec<f64> = mine.filter_map(|n| place.get(*n).copied()).collect();
-                let own = place.get(id).copied().unwrap_or(0.0);
-                if places.is_empty() { own } else { places.iter().sum::<f64>() / places.len() as f64 }
-            };
-            let mut keyed: Vec<(f64, usize)> = row.iter().map(|id| (key(*id), *id)).collect();
-            keyed.sort_by(|a, b| a.0.total_cmp(&b.0));
-            *row = keyed.into_iter().map(|(_, id)| id).collect();
-            note(row, &mut place);
-        }
+}
+
+fn rows(graph: &Named<'_>, names: &[String]) -> Vec<Row> {
+    let edges = &graph.graph.edges;
+    let (mut rows, mut top) = (Vec::new(), MARGIN);
+    for at in 0..graph.graph.nodes.len() {
+        let mine = edges.iter().filter(|e| e.from == at).map(|e| {
+            let to = names.get(e.to).map_or("", String::as_str);
+            (format!("{} → {to}", graph.label(e)), graph.transitions(e).join(", "), e.to)
+        });
+        let mine: Vec<_> = mine.collect();
+        let comes_in = edges.iter().any(|e| e.to == at);
+        let lines = mine.len() + usize::from(comes_in);
+        let height = lines.max(1) as f64 * LINE + LINE / 4.0;
+        let port = comes_in.then(|| top + (mine.len() as f64 + 0.75) * LINE);
+        rows.push(Row { top, height, edges: mine, port });
+        top += height + GAP;
     }
     rows
 }
 
-fn spots(graph: &Named<'_>, rows: &[Vec<usize>]) -> Vec<Spot> {
-    let nodes = &graph.graph.nodes;
-    let half = |id: usize| match nodes.get(id) {
-        Some(node) if node.kind != Kind::Start => {
-            (graph.node(node).chars().count() as f64 * LETTER / 2.0 + 8.0).max(24.0)
-        }
-        _ => 8.0,
-    };
-    let wide = |row: &[usize]| {
-        row.iter().map(|id| 2.0 * half(*id)).sum::<f64>() + GAP * row.len().saturating_sub(1) as f64
-    };
-    let widest = rows.iter().map(|r| wide(r)).fold(0.0, f64::max);
-    let mut spots: Vec<Spot> = nodes.iter().map(|_| Spot { x: 0.0, y: 0.0, half: 0.0 }).collect();
-    for (at, row) in rows.iter().enumerate() {
-        let mut x = MARGIN + (widest - wide(row)) / 2.0;
-        for id in row {
-            let half = half(*id);
-            let y = MARGIN + BOX / 2.0 + at as f64 * ROW;
-            if let Some(spot) = spots.get_mut(*id) {
-                *spot = Spot { x: x + half, y, half };
+/// The rails, each in the first place from the left where it meets no other one; short ones come
+/// first.
+fn rails(rows: &[Row]) -> Vec<Rail> {
+    let mut rails: Vec<Rail> = Vec::new();
+    for (to, row) in rows.iter().enumerate() {
+        let Some(port) = row.port else { continue };
+        let mut rail = Rail { to, top: port, bottom: port, place: 0 };
+        for from in rows {
+            for (number, _) in from.edges.iter().enumerate().filter(|(_, e)| e.2 == to) {
+                let y = from.top + (number as f64 + 0.75) * LINE;
+                rail.top = rail.top.min(y);
+                rail.bottom = rail.bottom.max(y);
             }
-            x += 2.0 * half + GAP;
         }
+        rails.push(rail);
     }
-    spots
-}
-
-/// The edges, and the right end of what they need.
-fn edges(graph: &Named<'_>, spots: &[Spot]) -> (String, f64) {
-    let (mut paths, mut labels, mut right) = (String::new(), String::new(), 0.0f64);
-    let mut count = vec![0usize; spots.len()];
-    for e in &graph.graph.edges {
-        let (Some(a), Some(b)) = (spots.get(e.from), spots.get(e.to)) else { continue };
-        let number = count.get_mut(e.from).map_or(0, |n| std::mem::replace(n, *n + 1));
-        let [p, q, r, s] = curve(e, a, b);
-        // Labels of one node's edges stand at different heights.
-        let t = 0.4 + 0.1 * (number % 3) as f64;
-        let at = |i: usize| {
-            let [p, q, r, s] = [p, q, r, s].map(|p: [f64; 2]| p.get(i).copied().unwrap_or(0.0));
-            let u = 1.0 - t;
-            u * u * u * p + 3.0 * u * u * t * q + 3.0 * u * t * t * r + t * t * t * s
+    rails.sort_by(|a, b| (a.bottom - a.top).total_cmp(&(b.bottom - b.top)));
+    let mut placed: Vec<Rail> = Vec::new();
+    for mut rail in rails {
+        let meets = |place: usize| {
+            placed
+                .iter()
+                .any(|o| o.place == place && o.top < rail.bottom + LINE && rail.top < o.bottom + LINE)
         };
-        let label = graph.label(e);
-        let (x, y) = (at(0), at(1));
-        right = right.max(x + label.chars().count() as f64 * LETTER / 2.0);
-        let point = |p: [f64; 2]| format!("{:.1} {:.1}", p[0], p[1]);
-        let _text = writeln!(
-            paths,
-            "<path d=\"M{} C{}, {}, {}\" fill=\"none\" stroke=\"#555\" marker-end=\"url(#tip)\"/>",
-            point(p),
-            point(q),
-            point(r),
-            point(s)
-        );
-        let _text = writeln!(
-            labels,
-            "<g><title>{}</title><text x=\"{x:.1}\" y=\"{y:.1}\" text-anchor=\"middle\" font-size=\"11\" \
-             stroke=\"white\" stroke-width=\"4\" paint-order=\"stroke\">{}</text></g>",
-            escaped(&graph.transitions(e).join(", ")),
-            escaped(&label)
-        );
+        rail.place = (0..).find(|place| !meets(*place)).unwrap_or(0);
+        placed.push(rail);
     }
-    (paths + &labels, right)
-}
-
-/// A cubic curve: down to the next row, beside the boxes back, or round from a box to itself.
-fn curve(e: &Edge, a: &Spot, b: &Spot) -> [[f64; 2]; 4] {
-    let (half, bend) = (BOX / 2.0, ROW / 2.0);
-    if e.from == e.to {
-        let x = a.x + a.half;
-        [[x, a.y - 6.0], [x + 40.0, a.y - 24.0], [x + 40.0, a.y + 24.0], [x, a.y + 6.0]]
-    } else if b.y > a.y {
-        [[a.x, a.y + half], [a.x, a.y + bend], [b.x, b.y - bend], [b.x, b.y - half]]
-    } else if b.y == a.y {
-        let below = a.y + half + 34.0;
-        [[a.x, a.y + half], [a.x, below], [b.x, below], [b.x, b.y + half]]
-    } else {
-        let out = (a.x + a.half).max(b.x + b.half) + 24.0 + (a.y - b.y) / 6.0;
-        [[a.x + a.half, a.y], [out, a.y], [out, b.y], [b.x + b.half, b.y]]
-    }
+    placed
 }
 
 fn escaped(text: &str) -> String {

@@ -1,4 +1,4 @@
-//! Runs of the prover as the statements of a test.
+//! Runs as the statements of a test.
 //!
 //! A test begins with a scan in which all inputs have their initial values, a run with any
 //! values: where they differ, they are set and the charts are started anew (`restart cold`).
@@ -9,14 +9,14 @@ use g7_model::{
     BinaryOp, Expr, ExprKind, Holds, Literal, Name, Nanos, Path, Place, Scenario, TestStmt, TestStmtKind,
     Type, UnaryOp,
 };
-use g7_rig::{Activity, Bench, Item, Role};
-use g7_verify::Move;
+
+use crate::{Activity, Bench, Item, Role};
 
 /// Scans from which on a time is written in the place of their number.
 const MANY: u32 = 10;
 
 /// The statements of a test that is being made.
-pub(super) struct Script<'b> {
+pub struct Script<'b> {
     bench: &'b Bench,
     /// The present value of each input word.
     inputs: Vec<u64>,
@@ -25,16 +25,17 @@ pub(super) struct Script<'b> {
 }
 
 impl<'b> Script<'b> {
-    pub(super) fn new(bench: &'b Bench) -> Script<'b> {
+    /// A test of the charts on a bench, without statements.
+    pub fn new(bench: &'b Bench) -> Script<'b> {
         let t = bench.compiled.program.tables();
         let inputs = t.init.get(t.inputs.start as usize..t.inputs.end as usize).unwrap_or(&[]).to_vec();
         Script { bench, inputs, body: Vec::new(), begun: false }
     }
 
-    /// The next scan of the run.
-    pub(super) fn scan(&mut self, m: &Move) {
-        let puts = self.puts(&m.inputs);
-        self.inputs.clone_from(&m.inputs);
+    /// The next scan of the run, with these input words.
+    pub fn scan(&mut self, inputs: &[u64]) {
+        let puts = self.puts(inputs);
+        self.inputs = inputs.to_vec();
         match (std::mem::replace(&mut self.begun, true), puts.is_empty()) {
             (false, true) => {}
             (false, false) => {
@@ -49,21 +50,20 @@ impl<'b> Script<'b> {
         }
     }
 
-    pub(super) fn scans(&mut self, moves: &[Move]) {
-        moves.iter().for_each(|m| self.scan(m));
-    }
-
-    pub(super) fn expect(&mut self, conditions: Vec<Expr>) {
+    /// Conditions that must be true now.
+    pub fn expect(&mut self, conditions: Vec<Expr>) {
         if !conditions.is_empty() {
             self.add(TestStmtKind::Expect(conditions));
         }
     }
 
-    pub(super) fn wait_until(&mut self, e: Expr, within: Option<Nanos>) {
+    /// Scans until a condition is true.
+    pub fn wait_until(&mut self, e: Expr, within: Option<Nanos>) {
         self.add(TestStmtKind::WaitUntil(e, within));
     }
 
-    pub(super) fn comment(&mut self, text: &str) {
+    /// A comment for the reader.
+    pub fn comment(&mut self, text: &str) {
         self.add(TestStmtKind::Comment(text.into()));
     }
 
@@ -72,7 +72,7 @@ impl<'b> Script<'b> {
     }
 
     /// The test. Many scans in a row are written as the time that they take.
-    pub(super) fn end(mut self, title: &str) -> Scenario {
+    pub fn end(mut self, title: &str) -> Scenario {
         for s in &mut self.body {
             if let TestStmtKind::Scan(n) = s.kind
                 && n >= MANY
@@ -102,18 +102,18 @@ impl<'b> Script<'b> {
 }
 
 /// An expression without a place.
-pub(super) fn expr(kind: ExprKind) -> Expr {
+pub fn expr(kind: ExprKind) -> Expr {
     Expr { kind, at: Place::default() }
 }
 
 /// A name as the language writes it outside of all charts.
-pub(super) fn path(name: &str) -> Expr {
+pub fn path(name: &str) -> Expr {
     let names = name.split('.').map(|n| Name { text: n.into(), at: Place::default() }).collect();
     expr(ExprKind::Path(Path { names }))
 }
 
 /// The opposite of a condition.
-pub(super) fn not(e: Expr) -> Expr {
+pub fn not(e: Expr) -> Expr {
     match e.kind {
         ExprKind::Unary(UnaryOp::Not, inner) => *inner,
         _ => expr(ExprKind::Unary(UnaryOp::Not, Box::new(e))),
@@ -121,18 +121,18 @@ pub(super) fn not(e: Expr) -> Expr {
 }
 
 /// The expressions joined by an operator; `None` without any.
-pub(super) fn join(op: BinaryOp, list: impl IntoIterator<Item = Expr>) -> Option<Expr> {
+pub fn join(op: BinaryOp, list: impl IntoIterator<Item = Expr>) -> Option<Expr> {
     list.into_iter().reduce(|a, b| expr(ExprKind::Binary(op, Box::new(a), Box::new(b))))
 }
 
 /// The activity of a step: `X12`, `G.X12`, `Fill.X`.
-pub(super) fn activity(bench: &Bench, step: StepId) -> Option<Expr> {
+pub fn activity(bench: &Bench, step: StepId) -> Option<Expr> {
     let item = bench.steps.iter().find(|s| s.id == Activity::Step(step))?;
     Some(path(&item.activity()))
 }
 
 /// A value as a literal.
-pub(super) fn value(ty: Type, words: &[u64]) -> Expr {
+pub fn value(ty: Type, words: &[u64]) -> Expr {
     let word = words.first().copied().unwrap_or(0);
     let real = |text: String| Literal::Real(text.into(), None);
     expr(ExprKind::Literal(match ty.holds() {
