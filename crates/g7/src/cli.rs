@@ -305,7 +305,7 @@ pub(crate) struct Prove {
     #[arg(long, value_parser = values::profile)]
     pub(crate) profile: Option<ProfileName>,
     /// Ask everything of the closed loop of charts and this plant.
-    #[arg(long, value_name = "PLANT")]
+    #[arg(long, value_name = "PLANT", conflicts_with = "tests")]
     pub(crate) plant: Option<String>,
     /// Stop after this time.
     #[arg(long, value_parser = values::duration, value_name = "TIME", default_value = "60s")]

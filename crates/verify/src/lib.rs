@@ -60,7 +60,7 @@ pub use cubes::Cube;
 pub use explore::{Answer, Bound, Explorer, Limits, Moment, Move, Moves, Next};
 pub use inputs::{Inputs, Which};
 pub use layer::{Budget, Layer};
-pub use look::replay;
+pub use look::{replay, seen};
 pub use model::{Model, Part};
 pub use question::{Claim, Query, Question};
 pub use search::{Explicit, Tried, watch};

@@ -6,7 +6,7 @@ use crate::asked::Asking;
 use crate::explore::Move;
 use crate::model::Model;
 use crate::monitor::{IDLE, has_memory, is_of_scans, judge};
-use crate::question::Claim;
+use crate::question::{Claim, Query};
 use crate::verdict::Run;
 use crate::world::World;
 
@@ -138,6 +138,20 @@ pub fn replay(model: &Model<'_>, claim: &Claim, run: &Run) -> bool {
         }
     }
     if matches!(claim, Claim::LeadsTo { .. }) { has_memory(claim) && memory != IDLE } else { last }
+}
+
+/// The value of a condition at the end of each scan of a run.
+pub fn seen(model: &Model<'_>, run: &Run, q: Query) -> Vec<bool> {
+    let p = &model.compiled.program;
+    let mut world = World::new(model);
+    let each = run.moves.iter().enumerate().map(|(k, m)| {
+        let way = run.ways.get(k).copied().unwrap_or(0);
+        let now = world.charts.now().saturating_add(m.wait);
+        world.tick(m.wait, way, &mut m.inputs.clone()).is_ok()
+            && scan(p, &mut world.charts, &m.inputs, now).is_ok()
+            && world.holds(model, q).unwrap_or(false)
+    });
+    each.collect()
 }
 
 /// The state behind a scan, with its report.

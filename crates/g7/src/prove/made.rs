@@ -40,29 +40,31 @@ pub(super) fn one_file(args: &Prove, paths: &[PathBuf]) -> Result<(), Failure> {
     }
 }
 
-/// Writes the files of tests that are wanted.
-pub(super) fn tests(
+/// Writes the file of the tests of refuted claims, if it is wanted.
+pub(super) fn saved(args: &Prove, source: &Source, saved: &save::Saved) -> Result<(), Failure> {
+    let Some(path) = &args.save else { return Ok(()) };
+    if saved.tests.is_empty() {
+        let none = saved.left.is_empty();
+        let why = if none { "no claim is refuted" } else { "no test can state what is refuted" };
+        talk!("nothing to save: {why}");
+    } else {
+        added::write(path, source, &saved.tests)?;
+        wrote(path, &count(saved.tests.len(), "test of a refuted claim", "tests of refuted claims"));
+    }
+    for (claim, reason) in &saved.left {
+        talk!("  not saved: {claim}: {reason}");
+    }
+    Ok(())
+}
+
+/// Writes the file of scenarios, if it is wanted.
+pub(super) fn scenarios(
     args: &Prove,
     source: &Source,
     asked: &Asked,
-    model: &Model<'_>,
     answers: &[Option<Verdict>],
     patience: &Patience,
 ) -> Result<(), Failure> {
-    if let Some(path) = &args.save {
-        let saved = save::tests(source, asked, model, answers, args.profile)?;
-        if saved.tests.is_empty() {
-            let none = saved.left.is_empty();
-            let why = if none { "no claim is refuted" } else { "no test can state what is refuted" };
-            talk!("nothing to save: {why}");
-        } else {
-            added::write(path, source, &saved.tests)?;
-            wrote(path, &count(saved.tests.len(), "test of a refuted claim", "tests of refuted claims"));
-        }
-        for (claim, reason) in &saved.left {
-            talk!("  not saved: {claim}: {reason}");
-        }
-    }
     let Some(path) = &args.tests else { return Ok(()) };
     // The answers may have used up their time: the scenarios have as much again.
     let half = Nanos::new(args.time.count() / 2);

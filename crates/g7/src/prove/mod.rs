@@ -95,6 +95,7 @@ impl File<'_> {
         }
         let profile = args.profile;
         self.drawer = trace::Drawer::new(source, profile)?;
+        let mut saved = save::Saved::default();
         if args.plant.is_none() {
             let (asked, found) = ask(&source.document, profile);
             problems.extend(found);
@@ -104,7 +105,11 @@ impl File<'_> {
             if made::contradiction(source, &model, profile, &answers, &self.budget)? {
                 self.contradicts = true;
             }
-            made::tests(args, source, &asked, &model, &answers, self.patience)?;
+            if let Some(bench) = trace::bench(source, profile)?.filter(|_| args.save.is_some()) {
+                let answered = (&*asked.questions, &*answers);
+                save::tests(&mut saved, source, &bench, &model, answered, profile)?;
+            }
+            made::scenarios(args, source, &asked, &answers, self.patience)?;
         }
         let plants = match &args.plant {
             Some(plant) => vec![plant.as_str()],
@@ -114,9 +119,15 @@ impl File<'_> {
             let (closed, found) = ask_with(source, profile, plant, args.plant.is_some())?;
             problems.extend(found.into_iter().filter(|p| !problems.contains(p)).collect::<Vec<_>>());
             if let Some(closed) = closed {
-                self.answer(&closed.model(), &closed.questions, args.plant.as_deref());
+                let model = closed.model();
+                let answers = self.answer(&model, &closed.questions, args.plant.as_deref());
+                if args.save.is_some() {
+                    let answered = (&*closed.questions, &*answers);
+                    save::tests(&mut saved, source, &closed.bench, &model, answered, profile)?;
+                }
             }
         }
+        made::saved(args, source, &saved)?;
         Ok(problems)
     }
 

@@ -5,10 +5,10 @@
 
 use g7_model::{ProfileName, Scenario};
 use g7_page::saved::{Given, NO_RUN, UNSEEN, of_run, short, title};
-use g7_rig::Source;
-use g7_verify::{Asked, Evidence, Model, Verdict, words};
+use g7_rig::{Bench, Source};
+use g7_verify::{Evidence, Model, Question, Verdict, words};
 
-use super::{added, trace};
+use super::added;
 use crate::failure::Failure;
 
 /// The tests of refuted claims.
@@ -20,23 +20,22 @@ pub(super) struct Saved {
     pub(super) left: Vec<(String, String)>,
 }
 
-/// Makes the tests of the refuted claims of a file.
+/// Adds the tests of refuted claims about charts on a bench.
 pub(super) fn tests(
+    saved: &mut Saved,
     source: &Source,
-    asked: &Asked,
+    bench: &Bench,
     model: &Model<'_>,
-    answers: &[Option<Verdict>],
+    answered: (&[Question], &[Option<Verdict>]),
     profile: Option<ProfileName>,
-) -> Result<Saved, Failure> {
-    let Some(bench) = trace::bench(source, profile)? else { return Ok(Saved::default()) };
-    let mut saved = Saved::default();
-    for (question, verdict) in asked.questions.iter().zip(answers) {
+) -> Result<(), Failure> {
+    for (question, verdict) in answered.0.iter().zip(answered.1) {
         let Some(Verdict::Refuted(evidence)) = verdict else { continue };
         let written = source.text.get(source.range(question.at)).unwrap_or_default();
         let [claim, ..] = words::claim(written, model.compiled, question);
         let title = title(&claim);
         let made = match evidence {
-            Evidence::Run(run) => of_run(&Given { source, bench: &bench, model, question, run }, &title),
+            Evidence::Run(run) => of_run(&Given { source, bench, model, question, run }, &title),
             Evidence::Certificate(_) => Err(NO_RUN),
         };
         match made {
@@ -46,7 +45,7 @@ pub(super) fn tests(
             Err(reason) => saved.left.push((short(&claim), reason.to_owned())),
         }
     }
-    Ok(saved)
+    Ok(())
 }
 
 /// True if a test fails in its last statement, or in the one before where the last is a comment.

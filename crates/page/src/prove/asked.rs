@@ -1,10 +1,11 @@
 //! The questions of a text, with the answers found so far.
 
 use g7_model::Severity;
-use g7_verify::{Asked, Budget, Model, Verdict, answer, ask};
+use g7_rig::testing::plants;
+use g7_verify::{Asked, Budget, Closed, Model, Verdict, answer, ask, ask_with};
 use serde::Deserialize;
 
-use super::rows::{self, Report};
+use super::rows::Report;
 use crate::file::File;
 use crate::overview::hash;
 
@@ -27,6 +28,8 @@ pub(crate) struct Proof {
     /// Absent where errors stand in the way.
     asked: Option<Asked>,
     answers: Vec<Option<Verdict>>,
+    /// The questions with a plant, with their answers.
+    closed: Vec<(Closed, Vec<Option<Verdict>>)>,
 }
 
 /// Searches for the answers that are still open. `known` are those of an earlier call.
@@ -44,14 +47,25 @@ pub(crate) fn prove(file: &File, known: Option<Proof>, limits: Limits) -> (Proof
         stop: &|| false,
     };
     answer(&model, &asked.questions, &mut proof.answers, &budget);
-    let report = rows::report(file, &proof.hash, &model, &asked.questions, &proof.answers);
+    let mut report = Report::new(&proof.hash);
+    report.add(file, &model, &asked.questions, &proof.answers);
+    for (closed, answers) in &mut proof.closed {
+        let model = closed.model();
+        answer(&model, &closed.questions, answers, &budget);
+        report.add(file, &model, &closed.questions, answers);
+    }
     (proof, report)
 }
 
 fn begin(file: &File, hash: String) -> Proof {
     let asked = questions(file);
     let answers = asked.as_ref().map_or_else(Vec::new, |a| vec![None; a.questions.len()]);
-    Proof { hash, asked, answers }
+    // Their problems are among those of the file.
+    let closed = |plant: &str| ask_with(&file.source, None, plant, false).ok()?.0;
+    let plants = if asked.is_some() { plants(&file.source.document) } else { Vec::new() };
+    let closed = plants.into_iter().filter_map(closed);
+    let closed = closed.map(|c| (vec![None; c.questions.len()], c)).map(|(a, c)| (c, a)).collect();
+    Proof { hash, asked, answers, closed }
 }
 
 /// The questions of a file without errors.

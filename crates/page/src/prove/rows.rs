@@ -17,11 +17,32 @@ pub(crate) struct Report {
     /// True where errors stand in the way of all questions.
     refused: bool,
     rows: Vec<Row>,
+    /// The number of questions.
+    #[serde(skip)]
+    asked: usize,
 }
 
 impl Report {
+    pub(super) fn new(hash: &str) -> Report {
+        Report { hash: hash.to_owned(), refused: false, rows: Vec::new(), asked: 0 }
+    }
+
     pub(super) fn refused(hash: &str) -> Report {
-        Report { hash: hash.to_owned(), refused: true, rows: Vec::new() }
+        Report { refused: true, ..Report::new(hash) }
+    }
+
+    /// Adds the answers to questions; their numbers follow those of the earlier ones.
+    pub(super) fn add(
+        &mut self,
+        file: &File,
+        model: &Model<'_>,
+        questions: &[Question],
+        answers: &[Option<Verdict>],
+    ) {
+        let first = self.asked;
+        self.asked += questions.len();
+        let numbered = (first..).zip(questions.iter().zip(answers));
+        self.rows.extend(numbered.filter_map(|(n, (q, v))| Some(row(file, model, n, q, v.as_ref()?))));
     }
 }
 
@@ -56,18 +77,6 @@ struct Row {
 /// Most scans of a run that comes with a claim that something can be; refuted claims and those of the
 /// author have theirs whatever its length.
 const LONG: usize = 200;
-
-pub(super) fn report(
-    file: &File,
-    hash: &str,
-    model: &Model<'_>,
-    questions: &[Question],
-    answers: &[Option<Verdict>],
-) -> Report {
-    let numbered = questions.iter().zip(answers).enumerate();
-    let rows = numbered.filter_map(|(n, (q, v))| Some(row(file, model, n, q, v.as_ref()?))).collect();
-    Report { hash: hash.to_owned(), refused: false, rows }
-}
 
 fn row(file: &File, model: &Model<'_>, number: usize, question: &Question, verdict: &Verdict) -> Row {
     let range = file.source.range(question.at);

@@ -3,7 +3,7 @@
 //! A test states what the claim expects of the shortest run that breaks it. Whoever takes a test runs
 //! it first: it is to fail where the claim does.
 
-use g7_engine::{State, eval, scan};
+use g7_engine::{State, scan};
 use g7_model::{BinaryOp, Expr, ExprKind, Name, Nanos, Path, Place, PropertyKind, Scenario};
 use g7_rig::testing::script::{Script, activity, expr, join, not, value};
 use g7_rig::{Bench, Source};
@@ -17,6 +17,7 @@ const SETTLED: &str =
     "a test sees the ends of scans: one of the transitions was cleared, and the other one waits unseen";
 const TWICE: &str = "a test does not see that an active step was activated once more";
 const WRITES: &str = "a test sees the last of the values; `g7 test` notes such a pass in every scenario";
+const CHANCE: &str = "its plant draws random numbers, and no seed draws these";
 const FAULT: &str = "a fault stops the scan that shows it";
 
 /// The title of the test of a claim; the same for the same claim, so that it is replaced.
@@ -36,6 +37,10 @@ pub fn short(claim: &str) -> String {
 /// A run that begins as tests do, with the initial values of the inputs: one scan more, if it
 /// shows the same; else the run as it is.
 fn as_tests_begin(model: &Model<'_>, question: &Question, run: &Run) -> Run {
+    if model.plant.is_some() {
+        // A scan more would be a tick of the plant more.
+        return run.clone();
+    }
     let initial: Vec<u64> = model.inputs.iter().map(|v| v.tried.first().copied().unwrap_or(0)).collect();
     let Some(first) = run.moves.first().filter(|m| m.inputs != initial) else { return run.clone() };
     let mut longer = run.clone();
@@ -63,7 +68,7 @@ fn image(model: &Model<'_>, run: &Run) -> Vec<u64> {
 pub struct Given<'a> {
     /// The file.
     pub source: &'a Source,
-    /// Its charts without a plant.
+    /// Its charts, with the plant of a closed loop.
     pub bench: &'a Bench,
     /// The charts with their questions.
     pub model: &'a Model<'a>,
@@ -79,6 +84,9 @@ pub struct Given<'a> {
 ///
 /// A sentence that says why a test cannot show it.
 pub fn of_run(given: &Given<'_>, title: &str) -> Result<Scenario, &'static str> {
+    if !given.run.ways.is_empty() {
+        return Err(CHANCE);
+    }
     let run = &as_tests_begin(given.model, given.question, given.run);
     written(&Given { run, ..*given }, title)
 }
@@ -116,7 +124,7 @@ fn author(given: &Given<'_>, script: &mut Script<'_>) -> Result<(), &'static str
     let (claim, moves) = (&given.question.claim, &given.run.moves);
     let property = given.source.document.properties().find(|p| p.at.0 == given.question.at);
     let property = property.ok_or(UNSEEN)?;
-    let seen = |q: &Query| conditions(given.model, given.run, *q);
+    let seen = |q: &Query| g7_verify::seen(given.model, given.run, *q);
     match (&property.kind, claim) {
         (PropertyKind::Always(e), _) => {
             scans(script, moves);
@@ -254,18 +262,6 @@ fn end(model: &Model<'_>, run: &Run) -> (State, Vec<u32>) {
     }
     let cleared = s.cleared().to_vec();
     (s, cleared)
-}
-
-/// The value of a condition at the end of each scan of the run.
-fn conditions(model: &Model<'_>, run: &Run, q: Query) -> Vec<bool> {
-    let p = &model.compiled.program;
-    let code = model.compiled.queries.get(q.0 as usize).copied().unwrap_or_default();
-    let mut s = State::new(p);
-    let each = run.moves.iter().map(|m| {
-        let now = s.now().saturating_add(m.wait);
-        scan(p, &mut s, &m.inputs, now).is_ok() && eval(p, &mut s, code).is_ok_and(|w| w != 0)
-    });
-    each.collect()
 }
 
 #[cfg(test)]

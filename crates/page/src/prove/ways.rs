@@ -53,7 +53,10 @@ pub(crate) fn ways(file: &File, wish: &Wish) -> Result<Ways, String> {
     let asked = questions(file).filter(|_| hash(file.text()) == wish.hash);
     let asked = asked.ok_or("the text has changed since: ask again")?;
     let model = Model::new(&asked.compiled, asked.assume.clone());
-    let question = asked.questions.get(wish.question).ok_or("there is no such question")?;
+    let Some(question) = asked.questions.get(wish.question) else {
+        let untested = "a plant takes part: `g7 prove --save` writes a test with it".to_owned();
+        return Ok(Ways { cures: Vec::new(), test: None, untested: Some(untested) });
+    };
     let moves = Scan::moves(&wish.run, model.inputs.len());
     let run = ended(&model, moves);
     let cures = match question.claim {
@@ -79,7 +82,7 @@ fn ended(model: &Model<'_>, moves: Vec<Move>) -> Run {
             break;
         }
     }
-    Run { moves, fault }
+    Run { moves, fault, ..Run::default() }
 }
 
 /// The test of a run, if it fails in its last statement.

@@ -81,17 +81,26 @@ impl<'b> Script<'b> {
                 s.kind = TestStmtKind::Wait(time);
             }
         }
-        Scenario { title: title.into(), plant: None, seed: None, body: self.body, at: Place::default() }
+        let plant = self.bench.plant.as_ref();
+        let plant = plant.map(|p| Name { text: p.name.as_str().into(), at: Place::default() });
+        Scenario { title: title.into(), plant, seed: None, body: self.body, at: Place::default() }
     }
 
-    /// What must be set to bring the inputs to these values.
+    fn is_driven(&self, input: u32) -> bool {
+        let plant = self.bench.plant.as_ref();
+        plant.is_some_and(|p| p.coupling.to_charts.iter().any(|(_, to)| *to == input))
+    }
+
+    /// What must be set to bring the inputs to these values; the plant sets those that it drives.
     fn puts(&self, inputs: &[u64]) -> Vec<(Expr, Expr)> {
         let words = |all: &[u64], item: &Item, first: u32| {
             let from = first as usize;
             all.get(from..from + item.words as usize).unwrap_or(&[]).to_vec()
         };
         let items = self.bench.items.iter().filter_map(|i| match i.role {
-            Role::Input(first) => Some((i, words(inputs, i, first), words(&self.inputs, i, first))),
+            Role::Input(first) if !self.is_driven(first) => {
+                Some((i, words(inputs, i, first), words(&self.inputs, i, first)))
+            }
             _ => None,
         });
         items
