@@ -16,7 +16,29 @@ const CHANGE = join(ROOT, 'docs/book/src/online/img/change.jpg');
 const WIRING = join(ROOT, 'docs/book/src/online/img/wiring.jpg');
 const PANEL = join(ROOT, 'docs/book/src/online/img/panel.jpg');
 const DEMO = join(ROOT, 'docs/book/src/online/img/bench.jpg');
+const PROVE = join(ROOT, 'docs/book/src/prove/img/panel.jpg');
 const STEP_MS = 20;
+
+/** A chart with a conflict and a step that nothing reaches, for the panel of proofs. */
+const FORK = `input start, left, right, arrived : BOOL
+output run : BOOL
+chart Trolley {
+  initial step 1
+  step 2 { N run }
+  step 3
+  step 4
+  step 5 "service"
+  1 -> 2 when ↑start
+  2 -> 3 when left
+  2 -> 4 when right
+  3 -> 1 when ↑arrived
+  4 -> 1 when ↑arrived
+  5 -> 1 when ↑arrived
+}
+
+prove never X3 and X4
+prove X2 leads to X1
+`;
 
 /** An act before the picture: an input is switched, a button is pushed, a value is written, or time
  * passes. */
@@ -233,11 +255,30 @@ async function demo(b: Browser): Promise<void> {
   }
 }
 
+/** The panel of proofs, with a run that breaks a claim. */
+async function proofs(b: Browser): Promise<void> {
+  const site = await playground({ 'trolley.g7': FORK });
+  try {
+    const kept = JSON.stringify({ language: 'en', theme: 'light', bottomOpen: true, bottom: 330, minimap: false });
+    const page = await open(b, site, 'trolley.g7', { width: 1280, height: 860 }, (c) => c.addInitScript((text) => localStorage.setItem('g7-prefs', text), kept));
+    await page.getByRole('tab', { name: /^Prove/ }).click();
+    await page.getByText('Everything is answered.').waitFor();
+    await page.getByRole('button', { name: 'Play the run on the chart: prove never X3 and X4' }).click();
+    await page.getByRole('button', { name: 'Save as a test' }).waitFor();
+    await page.waitForTimeout(3000);
+    await take(page, PROVE, 100_000);
+    await page.context().close();
+  } finally {
+    await site.stop();
+  }
+}
+
 const wanted = process.argv.slice(2);
 const files = examples();
 assert.deepEqual(Object.keys(files).filter((f) => f.endsWith('.g7')).sort(), Object.keys(SCENES).sort(), 'an example without a scene');
 mkdirSync(BOOK, { recursive: true });
 mkdirSync(dirname(OPERATOR), { recursive: true });
+mkdirSync(dirname(PROVE), { recursive: true });
 const site = await playground(files);
 const b = await browser();
 try {
@@ -258,6 +299,10 @@ try {
     await take(page, README, 250_000);
     await page.context().close();
     process.stdout.write('README\n');
+  }
+  if (wanted.length === 0 || wanted.includes('proofs')) {
+    await proofs(b);
+    process.stdout.write('proofs\n');
   }
   if (wanted.includes('wiring')) {
     await wiring(b);

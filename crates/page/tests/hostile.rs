@@ -48,6 +48,8 @@ fn messages(text: &str) -> Vec<Value> {
         json!({ "do": "format", "file": file }),
         json!({ "do": "explain", "code": "G0101" }),
         json!({ "do": "style", "dark": true }),
+        json!({ "do": "prove", "file": file, "states": 4, "mib": 1 }),
+        json!({ "do": "run_start", "file": file, "run": "p", "plant": "none", "moves": [{ "wait_ns": 0, "set": [[0, "1"]] }] }),
         json!({ "do": "run_start", "file": file, "run": "r", "scan_ms": 20, "seed": 4 }),
         json!({ "do": "run_advance", "run": "r", "ms": 250, "times": true }),
         json!({ "do": "run_toggle", "run": "r", "signal": 17 }),
