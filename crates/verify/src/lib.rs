@@ -35,6 +35,7 @@ mod look;
 mod model;
 mod monitor;
 mod question;
+pub mod sat;
 mod search;
 mod store;
 mod values;

@@ -1,0 +1,4 @@
+//! Questions about transition systems of bits.
+
+pub mod graph;
+pub mod simulate;
