@@ -20,7 +20,7 @@ use crate::verdict::{Certificate, Evidence, Open, Run, Verdict};
 
 /// Most combinations of inputs that are tried in one state.
 const MOST: usize = 1 << 16;
-/// States between two questions whether to stop.
+/// States, and combinations of inputs of a state, between two questions whether to stop.
 const PATIENCE: usize = 64;
 
 /// The explicit search as a layer.
@@ -162,7 +162,9 @@ impl<'a> Search<'a> {
                 self.hole = Some((reason, help));
                 break;
             }
-            self.expand(at, &mut state, &mut other, &mut image);
+            if !self.expand(at, &mut state, &mut other, &mut image) {
+                break;
+            }
             at += 1;
         }
         let done = at >= self.store.len();
@@ -185,12 +187,19 @@ impl<'a> Search<'a> {
             let mib = self.budget.bytes >> 20;
             return Some((format!("the states need more than {mib} MiB"), more("--memory")));
         }
-        (at.is_multiple_of(PATIENCE) && (self.budget.stop)())
-            .then(|| ("the search was stopped".to_owned(), more("--time")))
+        at.is_multiple_of(PATIENCE).then(|| self.stopped()).flatten()
     }
 
-    /// Tries all moves of a state.
-    fn expand(&mut self, at: usize, state: &mut State, other: &mut State, image: &mut Vec<u64>) {
+    /// Tells that the search is to stop.
+    fn stopped(&self) -> Option<(String, String)> {
+        if self.scans >= self.budget.scans {
+            return Some((format!("more than {} scans are needed", self.budget.scans), more("--time")));
+        }
+        (self.budget.stop)().then(|| ("the search was stopped".to_owned(), more("--time")))
+    }
+
+    /// Tries all moves of a state; false if it was stopped meanwhile.
+    fn expand(&mut self, at: usize, state: &mut State, other: &mut State, image: &mut Vec<u64>) -> bool {
         let from: Vec<u64> = self.store.image(at).to_vec();
         let (own, memory) = from.split_at(self.width.min(from.len()));
         let memory = memory.first().copied().unwrap_or(IDLE);
@@ -201,7 +210,14 @@ impl<'a> Search<'a> {
         let wait = if at == 0 { 0 } else { self.model.period };
         let (mut tried, mut on) = (false, false);
         let mut next: Vec<u32> = Vec::new();
-        for inputs in self.vectors(&asked, last) {
+        for (k, inputs) in self.vectors(&asked, last).into_iter().enumerate() {
+            if k.is_multiple_of(PATIENCE)
+                && k > 0
+                && let Some(hole) = self.stopped()
+            {
+                self.hole = Some(hole);
+                return false;
+            }
             put(self.p, state, own);
             let now = state.now().saturating_add(wait);
             let m = Move { inputs, wait };
@@ -254,6 +270,7 @@ impl<'a> Search<'a> {
             next.dedup();
             self.edges.extend(next.into_iter().map(|to| (at as u32, to)));
         }
+        true
     }
 
     /// The inputs that are tried in a state; leaves a note where they are not all that matter.
