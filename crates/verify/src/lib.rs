@@ -38,6 +38,7 @@ mod question;
 pub mod sat;
 mod search;
 mod store;
+mod system;
 mod values;
 mod verdict;
 
