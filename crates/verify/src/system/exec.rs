@@ -21,7 +21,7 @@ use crate::model::Model;
 use crate::sat::{Graph, Signal, System};
 
 /// Rounds of a loop of which it is not known when it ends.
-const ROUNDS: usize = 40;
+const ROUNDS: usize = 64;
 /// Nodes beyond which nothing is unrolled further.
 pub(crate) const NODES: usize = 150_000;
 
@@ -300,7 +300,8 @@ impl<'a> Exec<'a> {
             if on == Signal::FALSE {
                 break;
             }
-            let most = if on == Signal::TRUE { 100 * ROUNDS } else { ROUNDS };
+            // No exit has been open so far: then the end of the loop is known.
+            let most = if inside == outer { 100 * ROUNDS } else { ROUNDS };
             if made >= most || self.system.graph.nodes().len() > NODES {
                 let here = self.here();
                 self.leave_uncovered(here);

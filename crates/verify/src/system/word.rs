@@ -307,6 +307,7 @@ pub(crate) fn divide(g: &mut Graph, a: &Word, b: &Word) -> (Word, Word) {
 
 /// The same for two numbers that are not negative, the second not 0.
 fn magnitudes(g: &mut Graph, n: &Word, d: &Word) -> (Word, Word) {
+    let (n, d) = (&n.scaled(g, 1), &d.scaled(g, 1));
     let mut rest = Word::constant(0);
     let mut quotient = vec![Signal::FALSE; n.bits.len()];
     for i in (0..n.bits.len().saturating_sub(1)).rev() {
