@@ -14,7 +14,7 @@ use g7_engine::FaultKind;
 use g7_equations::{About, Equations, Expr, MemoryId, Stmt, What, expand};
 use g7_model::{Span, Type};
 
-use super::Limit;
+use super::limit::{Limit, Unknown};
 use super::value::{Value, choose};
 use super::word;
 use crate::model::Model;
@@ -24,13 +24,6 @@ use crate::sat::{Graph, Signal, System};
 const ROUNDS: usize = 64;
 /// Nodes beyond which nothing is unrolled further.
 pub(crate) const NODES: usize = 150_000;
-
-/// A limit, with the inputs that stand for what is not known.
-#[derive(Clone, Debug)]
-pub(crate) struct Unknown {
-    pub(crate) limit: Limit,
-    pub(crate) bits: Vec<Signal>,
-}
 
 /// The state of the execution.
 pub(crate) struct Exec<'a> {

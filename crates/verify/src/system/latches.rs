@@ -74,11 +74,6 @@ impl Latches {
     }
 }
 
-/// The value from which on values of a memory act alike, where it is capped.
-pub(crate) fn capped(ranges: &Ranges, m: MemoryId) -> Option<i128> {
-    ranges.cap_of(m)
-}
-
 /// The latches of one element, and its value as a scan begins.
 fn one(
     id: MemoryId,
@@ -96,7 +91,7 @@ fn one(
         return Value::Real(latches);
     }
     let range = ranges.of(id);
-    let cap = capped(ranges, id);
+    let cap = ranges.cap_of(id);
     let step = range.step.max(1);
     let (low, high) = (range.low / step, cap.unwrap_or(range.high) / step);
     let init = cap.map_or(number(m.ty, word), |c| number(m.ty, word).min(c)) / step;
@@ -140,14 +135,12 @@ fn written(e: &Equations) -> BTreeSet<MemoryId> {
     found
 }
 
-/// 1 if two lists of memories have the same content, of those that last.
-pub(crate) fn alike(x: &mut Exec<'_>, a: &[Vec<Value>], b: &[Vec<Value>]) -> Signal {
+/// 1 if these memories have the same content in both lists.
+pub(crate) fn alike(x: &mut Exec<'_>, of: &[MemoryId], a: &[Vec<Value>], b: &[Vec<Value>]) -> Signal {
     let mut same = Vec::new();
-    for (i, (a, b)) in a.iter().zip(b).enumerate() {
-        let class = x.e.memories.get(i).map(|m| m.class);
-        if !matches!(class, Some(Class::Kept | Class::Output)) {
-            continue;
-        }
+    for m in of {
+        let at = m.0 as usize;
+        let (Some(a), Some(b)) = (a.get(at), b.get(at)) else { continue };
         for (a, b) in a.iter().zip(b) {
             same.push(match (a, b) {
                 (Value::Text(None), _) | (_, Value::Text(None)) => Signal::FALSE,

@@ -29,7 +29,9 @@ mod claims;
 mod exec;
 mod expr;
 mod latches;
+mod limit;
 mod moves;
+mod parts;
 mod range;
 mod scan;
 #[cfg(test)]
@@ -50,21 +52,13 @@ use crate::model::Model;
 use crate::question::{Claim, Question};
 use crate::sat::{Init, Node, Signal, System};
 use claims::End;
-use exec::{Exec, Unknown};
+use exec::Exec;
 use latches::Latches;
+use limit::{Limit, Unknown};
 use moves::Sources;
 use range::Ranges;
 use scan::Scan;
 use value::Value;
-
-/// What bits cannot express.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) struct Limit {
-    /// The subject: "arithmetic of floating-point numbers".
-    pub reason: String,
-    /// The step, transition or action that it stands in; empty if it is none of these.
-    pub at: Span,
-}
 
 /// How exact the outputs are.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -171,7 +165,7 @@ pub(crate) fn system(model: &Model<'_>, questions: &[Question], observed: Observ
     let uncovered = x.uncovered.clone();
     let uncovered = x.g().any(uncovered);
     let sound = x.g().and(run, !stopped);
-    let caps = (0..e.memories.len() as u32).map(|m| latches::capped(&ranges, MemoryId(m))).collect();
+    let caps = (0..e.memories.len() as u32).map(|m| ranges.cap_of(MemoryId(m))).collect();
     let (cells, faults) = (x.cells().to_vec(), x.faults.clone());
     let (system, unknown) = (std::mem::take(&mut x.system), std::mem::take(&mut x.unknown));
     drop(x);

@@ -10,12 +10,14 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use g7_engine::{FaultKind, StepId};
-use g7_equations::{MemoryId, Section, Stmt, What};
+use g7_equations::{Class, MemoryId, Section, Stmt, What};
 
 use super::exec::{Exec, NODES};
 use super::latches::alike;
+use super::parts::{Part, parts};
+use super::value::Value;
 use crate::look::sides;
-use crate::sat::Signal;
+use crate::sat::{Effort, Found, Init, Signal, System, decide};
 
 /// Most passes that are unrolled.
 const PASSES: usize = 32;
@@ -108,9 +110,11 @@ impl<'x, 'a> Scan<'x, 'a> {
     }
 
     /// Passes until none changes anything. A state that comes back within a scan comes back
-    /// for ever.
+    /// for ever, and so does that of a part.
     fn search(&mut self, changed: MemoryId, bound: usize) {
-        let most = (2 * self.clears.len() + 2).clamp(4, PASSES);
+        let parts = parts(self.x.e);
+        let steps = parts.iter().map(|p| p.steps).max().unwrap_or(self.clears.len());
+        let most = (2 * steps + 2).clamp(4, PASSES);
         let mut seen = vec![self.x.cells().to_vec()];
         loop {
             let on = self.going(changed);
@@ -119,6 +123,11 @@ impl<'x, 'a> Scan<'x, 'a> {
             }
             if seen.len() >= bound {
                 self.end_search(on, FaultKind::Bound);
+                return;
+            }
+            if !is_possible(&self.x.system, on) {
+                // It is left to the proof: no state has a further pass.
+                self.x.leave_uncovered(on);
                 return;
             }
             if seen.len() >= most || self.x.system.graph.nodes().len() > NODES {
@@ -130,17 +139,36 @@ impl<'x, 'a> Scan<'x, 'a> {
             seen.push(self.x.cells().to_vec());
         }
         let on = self.going(changed);
-        let (Some(last), mut again) = (seen.pop(), Vec::new()) else { return };
-        for image in seen.iter().rev() {
-            again.push(alike(self.x, &last, image));
-        }
-        let again = self.x.g().any(again);
+        let again = self.comes_back(&parts, &seen);
         let unstable = self.x.g().and(on, again);
         self.end_search(unstable, FaultKind::Unstable { cycle: 0 });
         let open = self.x.g().and(on, !again);
         if open != Signal::FALSE {
             self.x.leave_uncovered(open);
         }
+    }
+
+    /// 1 where the last of these states was there before, as a whole or in a part that was
+    /// something else in between.
+    fn comes_back(&mut self, parts: &[Part], seen: &[Vec<Vec<Value>>]) -> Signal {
+        let Some((last, before)) = seen.split_last() else { return Signal::FALSE };
+        let lasting = (0u32..).map(MemoryId).zip(&self.x.e.memories);
+        let all: Vec<MemoryId> = lasting
+            .filter(|(_, m)| matches!(m.class, Class::Kept | Class::Output))
+            .map(|(id, _)| id)
+            .collect();
+        let mut again = Vec::new();
+        for image in before {
+            again.push(alike(self.x, &all, last, image));
+        }
+        for part in parts {
+            for (image, next) in before.iter().zip(seen.iter().skip(1)) {
+                let back = alike(self.x, &part.memories, last, image);
+                let stayed = alike(self.x, &part.memories, image, next);
+                again.push(self.x.g().and(back, !stayed));
+            }
+        }
+        self.x.g().any(again)
     }
 
     /// 1 where the latest pass has changed something.
@@ -222,7 +250,7 @@ impl<'x, 'a> Scan<'x, 'a> {
             .filter(|(_, m)| matches!(m.what, What::Clearable(_) | What::Settled(_)))
             .map(|(id, _)| id)
             .collect();
-        let off = || vec![super::value::Value::truth(Signal::FALSE)];
+        let off = || vec![Value::truth(Signal::FALSE)];
         let holds = self.x.glance(|x| {
             x.run = run;
             aside.iter().for_each(|m| x.put(*m, off()));
@@ -257,4 +285,14 @@ impl<'x, 'a> Scan<'x, 'a> {
         let found = self.x.g().and(any, here);
         self.sights.conflict = self.x.g().or(self.sights.conflict, found);
     }
+}
+
+/// False if no state and no inputs make the signal 1.
+fn is_possible(system: &System, s: Signal) -> bool {
+    let mut any = system.clone();
+    for l in &mut any.latches {
+        (l.init, l.next) = (Init::Free, l.signal);
+    }
+    let effort = Effort { bytes: usize::MAX, turns: 1, stop: &|| false };
+    !matches!(decide(&any, &[s], &effort).first(), Some(Found::Never(_)))
 }

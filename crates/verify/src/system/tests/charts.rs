@@ -133,6 +133,27 @@ fn times_are_seen_at_the_scan_at_which_they_are_over() {
     }
 }
 
+/// The time of a step that was left is still read, where the profile keeps it.
+#[test]
+fn times_of_steps_that_were_left() {
+    for time in ["10ms", "20ms", "29ms", "40ms"] {
+        for profile in ["iec60848", "iec61131", "pl7", "unity", "jgrafchart"] {
+            for compared in ["X2.t >= TIME", "X2.t > TIME", "X2.t = TIME", "X2.t <> TIME"] {
+                let compared = compared.replace("TIME", time);
+                let text = format!(
+                    "profile {profile}\nscan 10ms\ninput a, b, c : BOOL\noutput q : BOOL\nchart G {{ initial step 1 \
+                     step 2 step 3 {{ N q }} 1 -> 2 when a and not b 2 -> 1 when b and not a \
+                     1 -> 3 when a and b and {compared} 3 -> 1 when not a and not b and c }}\n"
+                );
+                let (document, problems) = g7_syntax::parse(&text, Default::default());
+                if problems.is_empty() && asked(&document, None).is_some() {
+                    same(&text, 24);
+                }
+            }
+        }
+    }
+}
+
 /// Delays of qualifiers, with times around multiples of the period.
 #[test]
 fn qualifiers_with_times() {
