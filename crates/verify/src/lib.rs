@@ -3,13 +3,14 @@
 //! # Where this sits
 //!
 //! ```text
-//! model::Document -> ask -> Question, Model -> Layer (search) -> Verdict -> g7 prove
-//!                           two charts      -> compare        -> Equality -> g7 compare
+//! model::Document -> ask -> Question, Model -> Layer (search, sat) -> Verdict -> g7 prove
+//!                           two charts      -> compare             -> Equality -> g7 compare
 //! ```
 //!
 //! `model.rs` has the meaning of a run, `question.rs` that of a claim, `verdict.rs` the
 //! answers. `search.rs` visits all states with `engine::scan`; `asked.rs` tells it which
-//! inputs matter in a state, `values.rs` which values of them. [`Explorer::search`] is a
+//! inputs matter in a state, `values.rs` which values of them. `system` is the chart as a system of
+//! bits, about which `sat` asks a solver. `turns.rs` has both work in turns. [`Explorer::search`] is a
 //! search by moves that its caller chooses, for tests and tools.
 //!
 //! # Invariants
@@ -39,6 +40,7 @@ pub mod sat;
 mod search;
 mod store;
 mod system;
+mod turns;
 mod values;
 mod verdict;
 
@@ -50,6 +52,8 @@ pub use layer::{Budget, Layer};
 pub use look::replay;
 pub use model::Model;
 pub use question::{Claim, Query, Question};
+pub use sat::Satisfiability;
 pub use search::{Explicit, Tried, watch};
+pub use turns::Turns;
 pub use values::{Values, values};
 pub use verdict::{Certificate, Evidence, Open, Run, Verdict};

@@ -12,7 +12,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use g7_host::{Clock, WallClock};
 use g7_model::Nanos;
 use g7_rig::Source;
-use g7_verify::{Budget, Evidence, Explicit, Layer, Model, Question, Verdict, ask};
+use g7_verify::{Budget, Evidence, Layer, Model, Question, Turns, Verdict, ask};
 
 pub(crate) use apart::compare;
 
@@ -41,8 +41,9 @@ pub(crate) fn prove(args: &Prove) -> Result<failure::Verdict, Failure> {
         let Some(asked) = asked else { continue };
         let model = Model::new(&asked.compiled, asked.assume.clone());
         let mut answers = vec![None; asked.questions.len()];
-        let budget = Budget { states: args.states, bytes: args.memory.saturating_mul(1 << 20), stop: &*stop };
-        Explicit.answer(&model, &asked.questions, &mut answers, &budget);
+        let bytes = args.memory.saturating_mul(1 << 20);
+        let budget = Budget { states: args.states, scans: usize::MAX, bytes, stop: &*stop };
+        Turns.answer(&model, &asked.questions, &mut answers, &budget);
         let drawer = trace::Drawer::new(&source, args.profile)?;
         for (question, verdict) in asked.questions.iter().zip(answers) {
             let Some(verdict) = verdict else { continue };

@@ -55,7 +55,10 @@ fn reason(a: &Answered) -> String {
                 format!("all of {} visited by {}", count(*states, "state"), count(*scans, "scan"))
             }
             Evidence::Certificate(Certificate::Invariant { clauses }) => {
-                format!("an invariant of {clauses} clauses, which was checked")
+                format!("an invariant of {}, which was checked", count(*clauses, "clause"))
+            }
+            Evidence::Certificate(Certificate::Induction { depth }) => {
+                format!("induction over {}, which was checked", count(*depth, "scan"))
             }
         },
     }

@@ -18,7 +18,7 @@ pub(crate) struct Bounded<'a> {
 impl<'a> Bounded<'a> {
     pub(crate) fn new(system: &'a System, stop: &'a (dyn Fn() -> bool + Sync)) -> Bounded<'a> {
         let mut solver = Batsat::new(stop);
-        let steps = Steps::new(system, &mut solver, Start::First, true);
+        let steps = Steps::new(system, &mut solver, Start::First, false);
         Bounded { system, solver, steps, done: 0 }
     }
 
@@ -128,7 +128,7 @@ pub(crate) struct Induction<'a> {
 impl<'a> Induction<'a> {
     pub(crate) fn new(system: &'a System, stop: &'a (dyn Fn() -> bool + Sync)) -> Induction<'a> {
         let mut solver = Batsat::new(stop);
-        let steps = Steps::new(system, &mut solver, Start::Any, true);
+        let steps = Steps::new(system, &mut solver, Start::Any, false);
         Induction { system, solver, steps }
     }
 

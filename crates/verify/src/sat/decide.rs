@@ -34,6 +34,8 @@ pub enum Proof {
 
 /// Ticks of the first turn.
 const FIRST: u64 = 4_000;
+/// Signals for which a turn has its ticks each; more share what these have.
+const SHARES: u64 = 8;
 /// Most steps of an induction.
 const DEEPEST: usize = 32;
 
@@ -99,8 +101,9 @@ impl<'a> Decide<'a> {
             let ticks = FIRST << turn.min(40);
             // A search that finds nothing is the longest part of a turn.
             self.search(ticks / 4);
-            self.induce(ticks);
-            self.prove(ticks);
+            let share = |open: usize| ticks * SHARES / SHARES.max(open as u64);
+            self.induce(share(self.open().len()) / 4);
+            self.prove(share(self.open().len()));
             if self.open().is_empty() || (self.effort.stop)() {
                 break;
             }
@@ -172,7 +175,11 @@ impl<'a> Decide<'a> {
     fn induce(&mut self, ticks: u64) {
         let most = self.bounded.done().min(DEEPEST);
         for i in self.open() {
-            self.induction.allow(ticks / 4);
+            // To make clauses of a large part of the system is work as well.
+            if self.wanted.get(i).is_some_and(|w| w.size as u64 > ticks * 16) {
+                continue;
+            }
+            self.induction.allow(ticks);
             let Some((signal, tried)) =
                 self.wanted.get(i).filter(|w| w.long.is_none()).map(|w| (w.signal, w.tried))
             else {
@@ -199,7 +206,8 @@ impl<'a> Decide<'a> {
         for i in self.open() {
             let kept: usize = self.wanted.iter().filter_map(|w| w.search.as_ref()).map(Pdr::bytes).sum();
             let Some(w) = self.wanted.get_mut(i).filter(|w| w.long.is_none()) else { continue };
-            if (self.effort.stop)() || kept > share && w.search.is_none() {
+            let is_new = w.search.is_none();
+            if (self.effort.stop)() || is_new && (kept > share || w.size as u64 > ticks * 16) {
                 continue;
             }
             let lemmas = &self.lemmas;

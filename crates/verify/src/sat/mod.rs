@@ -3,8 +3,9 @@
 //! # Where this sits
 //!
 //! ```text
-//! system (from a chart) -> graph -> decide -> bounded, induction, pdr -> solver
-//!                                          -> check (proofs), simulate (runs)
+//! Question -> layer -> crate::system -> graph -> decide -> bounded, pdr -> solver
+//!                                                       -> check (proofs), simulate (runs)
+//!                                   -> dead (constraints that cannot be kept)
 //! ```
 //!
 //! # Invariants
@@ -25,6 +26,7 @@ mod dead;
 mod decide;
 mod frames;
 pub mod graph;
+mod layer;
 mod pdr;
 pub mod simulate;
 mod solver;
@@ -33,4 +35,5 @@ pub use aiger::aiger;
 pub use dead::{Ends, ends};
 pub use decide::{Effort, Found, Proof, decide};
 pub use graph::{Graph, Init, Latch, Node, Signal, System};
+pub use layer::Satisfiability;
 pub use simulate::{Trace, Values, evaluate, shows};

@@ -66,11 +66,13 @@ pub(crate) trait Solver {
 }
 
 /// Decisions between two questions whether to stop.
-const PATIENCE: u32 = 128;
+const PATIENCE: u32 = 32;
 /// Ticks of a conflict, beside those for the literals of the clause that is learnt from it.
 const CONFLICT: u64 = 16;
-/// Literals that follow from others, for one tick.
+/// Literals that follow from others, or that stand in a new clause, for one tick.
 const FOLLOWING: u64 = 16;
+/// Decisions of the first part of a call.
+const PART: u64 = 512;
 
 /// Counts what the solver does, and tells it to stop.
 struct Watch<'b> {
@@ -144,18 +146,22 @@ impl Solver for Batsat<'_> {
     }
 
     fn solve(&mut self, assumptions: &[Literal]) -> Answer {
-        let left = self.most.saturating_sub(self.ticks());
-        let watch = self.inner.cb();
-        watch.most.set(watch.ticks.get().saturating_add(left));
-        if watch.stopped.get() || left == 0 {
-            return Answer::Stopped;
-        }
         self.buffer.clear();
         self.buffer.extend(assumptions.iter().map(|l| lit(*l)));
-        match self.inner.solve_limited(&self.buffer) {
-            answer if answer == lbool::TRUE => Answer::Yes,
-            answer if answer == lbool::FALSE => Answer::No,
-            _ => Answer::Stopped,
+        // The library shows decisions alone while it works, so it works in parts.
+        let mut part = PART;
+        loop {
+            let left = self.most.saturating_sub(self.ticks());
+            let watch = self.inner.cb();
+            watch.most.set(watch.ticks.get().saturating_add(left.min(part)));
+            if watch.stopped.get() || left == 0 {
+                return Answer::Stopped;
+            }
+            match self.inner.solve_limited(&self.buffer) {
+                answer if answer == lbool::TRUE => return Answer::Yes,
+                answer if answer == lbool::FALSE => return Answer::No,
+                _ => part = part.saturating_mul(2),
+            }
         }
     }
 
@@ -168,7 +174,8 @@ impl Solver for Batsat<'_> {
     }
 
     fn ticks(&self) -> u64 {
-        self.inner.cb().ticks.get() + self.inner.num_propagations() / FOLLOWING
+        let quick = self.inner.num_propagations() + self.literals as u64;
+        self.inner.cb().ticks.get() + quick / FOLLOWING
     }
 
     fn bytes(&self) -> usize {
