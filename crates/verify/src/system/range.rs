@@ -133,7 +133,7 @@ impl Ranges {
         for round in 0.. {
             let mut moved = false;
             for (to, value) in &sets {
-                let new = self.range(e, value);
+                let new = self.range(value);
                 let Some(old) = self.ranges.get_mut(to.0 as usize) else { continue };
                 let mut joined = old.join(new);
                 if joined == *old {
@@ -154,7 +154,7 @@ impl Ranges {
     }
 
     /// The values of an expression.
-    pub(crate) fn range(&self, e: &Equations, x: &Expr) -> Range {
+    pub(crate) fn range(&self, x: &Expr) -> Range {
         let truth = Range::new(0, 1);
         match x {
             Expr::Const(ty, v) if is_whole(*ty) => Range::one(number(*ty, *v)),
@@ -168,20 +168,20 @@ impl Ranges {
             | Expr::Differs(..)
             | Expr::Fails(_) => truth,
             Expr::Neg(ty, a) => {
-                let a = self.range(e, a);
+                let a = self.range(a);
                 fit(*ty, Range { low: -a.high, high: -a.low, step: a.step })
             }
-            Expr::Arith(op, ty, a, b) => fit(*ty, arith(*op, *ty, self.range(e, a), self.range(e, b))),
+            Expr::Arith(op, ty, a, b) => fit(*ty, arith(*op, *ty, self.range(a), self.range(b))),
             Expr::Convert(from, to, a) if is_whole(*from) && is_whole(*to) => {
                 if *to == Type::Bool {
                     truth
                 } else {
-                    fit(*to, self.range(e, a))
+                    fit(*to, self.range(a))
                 }
             }
             Expr::Convert(_, ty, _) | Expr::Trunc(_, ty, _) => whole_type(*ty),
             Expr::Call(f, ty, args) => {
-                let mut list = args.iter().map(|a| self.range(e, a));
+                let mut list = args.iter().map(|a| self.range(a));
                 match f {
                     Builtin::Sel | Builtin::Mux => {
                         let all = list.skip(1).reduce(Range::join);
@@ -355,7 +355,7 @@ impl Needs<'_> {
 
     /// The greatest value of an expression, where it has one short of its type's.
     fn bound(&self, x: &Expr) -> Option<i128> {
-        let high = self.ranges.range(self.e, x).high;
+        let high = self.ranges.range(x).high;
         (high < LONGEST).then_some(high)
     }
 
@@ -403,11 +403,11 @@ impl Needs<'_> {
             }
             Expr::Convert(Type::Time, Type::Lint, a) => self.demand(a, need),
             Expr::Arith(Arith::Div, _, a, b) if matches!(**b, Expr::Const(..)) => {
-                let by = self.ranges.range(self.e, b).low;
+                let by = self.ranges.range(b).low;
                 self.demand(a, need.filter(|_| by > 0).and_then(|n| n.checked_mul(by)));
             }
             Expr::Arith(Arith::Add, Type::Lint | Type::Time, a, b) => {
-                let grows = [a, b].iter().all(|x| self.ranges.range(self.e, x).low >= 0);
+                let grows = [a, b].iter().all(|x| self.ranges.range(x).low >= 0);
                 let need = need.filter(|_| grows);
                 self.demand(a, need);
                 self.demand(b, need);

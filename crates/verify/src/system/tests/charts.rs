@@ -204,6 +204,15 @@ fn searches_for_stability() {
                  1 -> 2 when a 2 -> 3 when a 3 -> 4 when a 4 -> 5 when a 5 -> 1 when not a }\nprove never n = 3\n";
     let done = same(chain, 20);
     assert!(done.uncovered == 0 && done.faults == 0, "{done:?}");
+    // Forty passes end, but are more than are unrolled; the chart beside it rests.
+    let steps: String = (2..=41).map(|i| format!(" step {i}")).collect();
+    let ways: String = (1..=40).map(|i| format!(" {i} -> {} when a", i + 1)).collect();
+    let long = format!(
+        "input a, b : BOOL\nchart G {{ initial step 1{steps}{ways} 41 -> 1 when not a }}\n\
+         chart H {{ initial step 1 step 2 1 -> 2 when b 2 -> 1 when not b }}\n"
+    );
+    let done = same(&long, 6);
+    assert!(done.uncovered > 100 && done.faults == 0, "{done:?}");
     // It counts to its overflow, in more passes than are unrolled.
     let counts = "input a : BOOL\nvar n : INT\nchart G { initial step 1 step 2 { P1 n := n + 1 } 1 -> 2 when a 2 -> 1 when a }\n";
     let done = same(counts, 5);

@@ -171,19 +171,32 @@ impl<'m> Pair<'m> {
             }
             let values = evaluate(&sys.graph, &latches, &inputs);
             let next: Vec<u64> = sys.latches.iter().map(|l| values.get(l.next)).collect();
-            let mut again = 0u64;
+            let (mut again, mut faulted) = (0u64, 0u64);
             for (k, lane) in lanes.iter_mut().enumerate() {
                 let bits = inputs.iter().map(|w| w >> k & 1 != 0).collect();
                 let mut m = self.translated.moves(&[bits]).remove(0);
                 m.wait = if lane.fresh { 0 } else { self.model.period };
-                if !self.step(lane, &m, &values, k, &mut count)? {
+                let faults = count.faults;
+                let goes_on = self.step(lane, &m, &values, k, &mut count)?;
+                faulted |= u64::from(count.faults > faults) << k;
+                if !goes_on {
                     *lane = new();
                     again |= 1 << k;
                 }
             }
+            if faulted != 0 {
+                self.ended(&evaluate(&sys.graph, &next, &inputs), faulted)?;
+            }
             latches = next.iter().zip(&start).map(|(n, s)| n & !again | s & again).collect();
         }
         Ok(count)
+    }
+
+    /// Nothing happens any more in the lanes that a fault has ended.
+    fn ended(&self, values: &Values, faulted: u64) -> Result<(), String> {
+        let asked = self.translated.asked.iter().flatten().flat_map(|a| [a.bad, a.unsure]);
+        let some = asked.chain([self.translated.sound]).any(|s| values.get(s) & faulted != 0);
+        if some { Err("a scan follows a fault".to_owned()) } else { Ok(()) }
     }
 
     /// One scan of one lane; gives whether it goes on.
