@@ -1,9 +1,15 @@
 //! Charts for one thing each, beside the engine, and what is known of their systems by count.
 
-use g7_engine::FaultKind;
+use g7_engine::{Arith, FaultKind};
+use g7_equations::{Class, Equations, Expr, Machine, Memory, MemoryId, Section, Stmt, Value as Held, What};
+use g7_model::Type;
 
 use super::{Count, asked, parsed, side_by_side};
 use crate::model::Model;
+use crate::sat::{Signal, System, evaluate};
+use crate::system::exec::Exec;
+use crate::system::value::Value;
+use crate::system::word::Word;
 use crate::system::{Observed, system};
 
 /// Compares a chart with the engine, observed in both ways.
@@ -260,4 +266,52 @@ fn monitors() {
     }
     let done = same(&text, 60);
     assert!(done.shown > 10_000, "{done:?}");
+}
+
+/// Tables, which only plants have, beside the interpreter of the equations.
+#[test]
+fn tables() {
+    let memory = |n, ty, init: &[u64]| Memory {
+        what: What::Temporary(n),
+        class: Class::Kept,
+        ty,
+        elements: init.len() as u32,
+        init: init.into(),
+        retain: false,
+    };
+    let [table, index, read, sum] = [0, 1, 2, 3].map(MemoryId);
+    let element = |e| Expr::Element(table, Box::new(e));
+    let body = vec![
+        Stmt::Set(read, element(Expr::Read(index))),
+        Stmt::SetElement(table, Expr::Read(index), Expr::Const(Type::Int, 9)),
+        Stmt::Set(sum, element(Expr::long(1)).arith(Arith::Add, Type::Int, element(Expr::Read(index)))),
+    ];
+    let e = Equations {
+        memories: vec![
+            memory(1, Type::Int, &[5, 6, 7]),
+            memory(2, Type::Lint, &[0]),
+            memory(3, Type::Int, &[0]),
+            memory(4, Type::Int, &[0]),
+        ],
+        begin: vec![Section { title: "", body }],
+        ..Equations::default()
+    };
+    let asked = asked(&parsed("chart G { initial step 1 }\n"), None).expect("a chart");
+    let model = Model::new(&asked.compiled, Vec::new());
+    let cells =
+        e.memories.iter().map(|m| m.init.iter().map(|w| Value::of_word(m.ty, *w)).collect()).collect();
+    let mut x = Exec::new(&e, &model, cells, System::default());
+    let bits = vec![x.system.input(), x.system.input(), Signal::FALSE];
+    x.put(index, vec![Value::Whole(Word::of(bits, 1, 0, 3))]);
+    e.begin.iter().for_each(|s| x.all(&s.body));
+    for k in 0..4u64 {
+        let mut machine = Machine::new(e.clone());
+        machine.set(index, &[k]);
+        machine.scan(0).expect("no fault");
+        let values = evaluate(&x.system.graph, &[], &[k & 1, k >> 1]);
+        for m in [table, read, sum] {
+            let mine = x.cell(m).iter().map(|v| v.whole().read(|s| values.bit(s)) as u64).collect();
+            assert_eq!(Some(&Held::Words(mine)), machine.value(m), "{m:?} at {k}");
+        }
+    }
 }
