@@ -27,7 +27,7 @@ fn levels(asked: &Asked, model: &Model<'_>, tried: Tried) -> (Seen, usize) {
     let (mut scans, mut last) = (0, 0);
     let mut cut = None;
     let mut seen = Seen::new();
-    let budget = Budget { states: STATES, bytes: 64 << 20, stop: &|| false };
+    let budget = Budget { states: STATES, scans: usize::MAX, bytes: 64 << 20, stop: &|| false };
     // A claim that every run keeps, so that the search goes on.
     let all = [Question { claim: Claim::AtMost(9, Vec::new()), at: Default::default() }];
     let answers = watch(model, &all, &budget, tried, &mut |level, s| {
@@ -81,7 +81,7 @@ fn inputs_that_are_left_out_make_no_difference() {
             assert!(all.is_subset(&some), "{:?}\n{}", all.difference(&some).next(), at());
             compared += all.len();
             if far == usize::MAX {
-                let budget = Budget { states: STATES, bytes: 64 << 20, stop: &|| false };
+                let budget = Budget { states: STATES, scans: usize::MAX, bytes: 64 << 20, stop: &|| false };
                 let mine: Vec<Question> =
                     asked.questions.iter().filter(|q| !matches!(q.claim, Claim::Asked(_))).cloned().collect();
                 let answers = |tried| letters(&mut watch(&model, &mine, &budget, tried, &mut |_, _| {}));

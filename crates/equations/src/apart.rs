@@ -23,7 +23,7 @@ impl Make<'_> {
             stand.own.insert(*m, (own, wrote));
         }
         let mut body = self.work_in(a.body, Some(stand.clone()));
-        let (mut work, mut back) = (Vec::new(), Vec::new());
+        let (mut work, mut back) = (self.note_run(action), Vec::new());
         for m in written {
             let Some((own, wrote)) = stand.own.get(&m).copied() else { continue };
             let sure = is_surely_written(&body, own);

@@ -73,9 +73,18 @@ impl<'a> Make<'a> {
         let Some(a) = self.t.actions.get(action as usize).copied() else { return Vec::new() };
         let due = self.due(a.period);
         let (mut list, condition) = self.condition(a.condition);
-        let work = self.work(a.body);
+        let mut work = self.note_run(action);
+        work.extend(self.work(a.body));
         list.extend(Stmt::when(condition, work));
         Stmt::when(due, list)
+    }
+
+    /// Notes that an action runs, where that is asked for.
+    pub(crate) fn note_run(&mut self, action: u32) -> Vec<Stmt> {
+        if !self.options.runs {
+            return Vec::new();
+        }
+        vec![Stmt::Set(self.flag(What::Ran(action)), Expr::truth(true))]
     }
 
     /// The lasting memories that code writes, in the order of their rows.

@@ -144,6 +144,8 @@ pub enum What {
     Runs(u32),
     /// An action (rank) runs at the end of the scan.
     Late(u32),
+    /// An action (rank) has run in this scan, of [`crate::Options::runs`].
+    Ran(u32),
     /// An action of each scan had its step active before the evolution.
     Periodic(u32),
     /// The copy of a memory that one of the actions of a pass works on.

@@ -88,10 +88,10 @@ pub fn equations(compiled: &Compiled, options: Options) -> Equations {
     }
     begin.push(frame);
     begin.push(start);
-    let conflicts: Vec<What> =
-        m.memories.iter().map(|m| m.what).filter(|w| matches!(w, What::Conflict(_))).collect();
+    let is_note = |w: &What| matches!(w, What::Conflict(_) | What::Ran(_));
+    let notes: Vec<What> = m.memories.iter().map(|m| m.what).filter(is_note).collect();
     if let Some(frame) = begin.get_mut(2) {
-        frame.body.extend(conflicts.into_iter().map(|what| lower(m.flag(what))));
+        frame.body.extend(notes.into_iter().map(|what| lower(m.flag(what))));
     }
     let questions = compiled.queries.iter().map(|q| m.value(*q)).collect();
     let mut e =

@@ -26,6 +26,8 @@ pub struct Options {
     pub conflicts: bool,
     /// Each receptivity has a memory of its own (DOLOG80).
     pub receptivities: bool,
+    /// Actions that run are noted.
+    pub runs: bool,
 }
 
 /// One scan of a chart.

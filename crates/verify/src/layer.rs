@@ -8,6 +8,8 @@ use crate::verdict::Verdict;
 pub struct Budget<'b> {
     /// Most states kept.
     pub states: usize,
+    /// Most scans made.
+    pub scans: usize,
     /// Most bytes kept.
     pub bytes: usize,
     /// True as soon as the layer is to stop: the time is over, or the user asks for it. It is

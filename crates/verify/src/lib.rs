@@ -3,15 +3,16 @@
 //! # Where this sits
 //!
 //! ```text
-//! model::Document -> ask -> Question, Model -> answer: Layer (search) -> Verdict -> words -> g7 prove, page
+//! model::Document -> ask -> Question, Model -> answer: Layer (search, sat) -> Verdict -> words -> g7 prove, page
 //! rig::Source (with a plant) -> closed -> Question, Model (the same way)
-//!                           two charts      -> compare               -> Equality -> g7 compare
+//!                           two charts      -> compare                    -> Equality -> g7 compare
 //!                           Run             -> blame: the steps and transitions that take part
 //! ```
 //!
 //! `model.rs` has the meaning of a run, `question.rs` that of a claim, `verdict.rs` the
 //! answers. `search.rs` visits all states with `engine::scan`; `asked.rs` tells it which
-//! inputs matter in a state, `values.rs` which values of them. [`Explorer::search`] is a
+//! inputs matter in a state, `values.rs` which values of them. `system` is the chart as a system of
+//! bits, about which `sat` asks a solver. `turns.rs` has both work in turns. [`Explorer::search`] is a
 //! search by moves that its caller chooses, for tests and tools.
 //!
 //! # Invariants
@@ -42,15 +43,18 @@ mod look;
 mod model;
 mod monitor;
 mod question;
+pub mod sat;
 mod search;
 mod situations;
 mod store;
+mod system;
+mod turns;
 mod values;
 mod verdict;
 pub mod words;
 mod world;
 
-pub use answer::answer;
+pub use answer::{answer, attempt};
 pub use ask::{Asked, ask};
 pub use blame::{Blame, blame};
 pub use closed::{Closed, ask_with};
@@ -63,7 +67,9 @@ pub use layer::{Budget, Layer};
 pub use look::{replay, seen};
 pub use model::{Model, Part};
 pub use question::{Claim, Query, Question};
+pub use sat::Satisfiability;
 pub use search::{Explicit, Tried, watch};
 pub use situations::{Edge, Graph, Kind, Node, situations};
+pub use turns::Turns;
 pub use values::{Values, values};
 pub use verdict::{Certificate, Evidence, Open, Run, Verdict};

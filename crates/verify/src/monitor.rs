@@ -44,7 +44,21 @@ pub(crate) fn judge(
     memory: u64,
     wait: i64,
 ) -> Result<Seen, Fault> {
-    let mut is = |q: &Query| world.holds(model, *q);
+    step(claim, memory, wait, |q| world.holds(model, q))
+}
+
+/// The same where `holds` tells the conditions: the one definition of what each claim means.
+///
+/// # Errors
+///
+/// The first error of a condition that is asked for.
+pub(crate) fn step<E>(
+    claim: &Claim,
+    memory: u64,
+    wait: i64,
+    mut holds: impl FnMut(Query) -> Result<bool, E>,
+) -> Result<Seen, E> {
+    let mut is = |q: &Query| holds(*q);
     let seen = |memory, hit| Ok(Seen { memory, hit });
     match claim {
         Claim::Always(q) => seen(IDLE, !is(q)?),

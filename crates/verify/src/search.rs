@@ -23,7 +23,7 @@ use crate::world::{WAYS, World};
 
 /// Most combinations of inputs that are tried in one state.
 const MOST: usize = 1 << 16;
-/// States between two questions whether to stop.
+/// States, and combinations of inputs of a state, between two questions whether to stop.
 const PATIENCE: usize = 64;
 
 /// The explicit search as a layer.
@@ -268,7 +268,9 @@ impl<'a> Search<'a> {
                 self.hole = Some((reason, help));
                 break;
             }
-            self.expand(at, &mut world, &mut other, &mut image);
+            if !self.expand(at, &mut world, &mut other, &mut image) {
+                break;
+            }
             at += 1;
         }
         self.depth += usize::from(at >= self.store.len());
@@ -299,12 +301,25 @@ impl<'a> Search<'a> {
             let mib = self.budget.bytes >> 20;
             return Some((format!("the states need more than {mib} MiB"), more("--memory")));
         }
-        (at.is_multiple_of(PATIENCE) && (self.budget.stop)())
-            .then(|| ("the search was stopped".to_owned(), more("--time")))
+        at.is_multiple_of(PATIENCE).then(|| self.stopped()).flatten()
     }
 
-    /// Tries all moves of a state.
-    fn expand(&mut self, at: usize, world: &mut World<'a>, other: &mut World<'a>, image: &mut Vec<u64>) {
+    /// Tells that the search is to stop.
+    fn stopped(&self) -> Option<(String, String)> {
+        if self.scans >= self.budget.scans {
+            return Some((format!("more than {} scans are needed", self.budget.scans), more("--time")));
+        }
+        (self.budget.stop)().then(|| ("the search was stopped".to_owned(), more("--time")))
+    }
+
+    /// Tries all moves of a state; false if it was stopped meanwhile.
+    fn expand(
+        &mut self,
+        at: usize,
+        world: &mut World<'a>,
+        other: &mut World<'a>,
+        image: &mut Vec<u64>,
+    ) -> bool {
         let from: Vec<u64> = self.store.image(at).to_vec();
         let (own, memory) = from.split_at(self.width.min(from.len()));
         let memory = memory.first().copied().unwrap_or(IDLE);
@@ -325,7 +340,14 @@ impl<'a> Search<'a> {
                 tries.tried = true;
                 continue;
             }
-            for inputs in self.vectors(at, &tries.places, given) {
+            for (k, inputs) in self.vectors(at, &tries.places, given).into_iter().enumerate() {
+                if k.is_multiple_of(PATIENCE)
+                    && k > 0
+                    && let Some(hole) = self.stopped()
+                {
+                    self.hole = Some(hole);
+                    return false;
+                }
                 world.put_charts(own);
                 self.attempt(&mut tries, own, &Move { inputs, wait }, world, other, image);
             }
@@ -343,6 +365,7 @@ impl<'a> Search<'a> {
             next.dedup();
             self.edges.extend(next.into_iter().map(|to| (at as u32, to)));
         }
+        true
     }
 
     /// Makes one move of a state; the plant has made its own before.
@@ -366,18 +389,21 @@ impl<'a> Search<'a> {
         self.scans += 1;
         if !std::mem::replace(&mut tries.tried, true) {
             let asked = tries.asked.clone();
-            self.see_asked(at, &asked, &m);
+            self.see_asked(at, &asked, m);
         }
         self.see_passes(at, other, own, m, now);
         let active: Vec<StepId> = world.charts.active().collect();
         let report = scan(self.p, &mut world.charts, &m.inputs, now);
-        self.see(at, &Scanned { state: &world.charts, report }, &m);
+        self.see(at, &Scanned { state: &world.charts, report }, m);
         let Ok(report) = report else {
             tries.on |= self.memory.is_none();
             self.show_scan(tries, None, m, world, report.err());
             return;
         };
-        let Some(memory) = self.judge(at, world, tries.memory, &m) else { return };
+        let Some(memory) = self.judge(at, world, tries.memory, m) else {
+            self.show_scan(tries, None, m, world, None);
+            return;
+        };
         tries.on |= match self.memory {
             Some(_) => memory == IDLE,
             None => report.cleared > 0 || !world.charts.active().eq(active.iter().copied()),

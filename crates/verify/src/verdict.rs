@@ -51,6 +51,12 @@ pub enum Certificate {
         /// Number of its clauses.
         clauses: usize,
     },
+    /// What did not happen in so many scans does not happen in the next, and it does not happen
+    /// in the first ones. Verified as an invariant is.
+    Induction {
+        /// Number of scans.
+        depth: usize,
+    },
 }
 
 /// How far a question is decided that is not decided.

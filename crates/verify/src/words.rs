@@ -59,6 +59,11 @@ const INVARIANT: Row = [
     "un invariant de {}, qui a été vérifié",
     "um invariante de {}, que foi verificado",
 ];
+const INDUCTION: Row = [
+    "induction over {}, which was checked",
+    "une récurrence sur {}, qui a été vérifiée",
+    "uma indução sobre {}, que foi verificada",
+];
 const SO_FAR: Row = [
     "no run of up to {} decides it ({} visited): {}",
     "aucune exécution de {} au plus n’en décide ({} visités) : {}",
@@ -163,6 +168,9 @@ pub fn reason(verdict: &Verdict, time: Nanos) -> Said {
             }
             Evidence::Certificate(Certificate::Invariant { clauses }) => {
                 say(INVARIANT, &[count(*clauses, CLAUSES)])
+            }
+            Evidence::Certificate(Certificate::Induction { depth }) => {
+                say(INDUCTION, &[count(*depth, SCANS)])
             }
         },
     }

@@ -52,6 +52,12 @@ impl<'a> World<'a> {
         World { p, charts: State::new(p), plant }
     }
 
+    /// These charts, with the plant before its first tick.
+    #[cfg(test)]
+    pub(crate) fn of(model: &Model<'a>, charts: State) -> World<'a> {
+        World { charts, ..World::new(model) }
+    }
+
     /// The ways in which the plant may tick.
     pub(crate) fn ways(&self) -> std::ops::Range<u8> {
         0..if self.has_chance() { WAYS } else { 1 }

@@ -31,7 +31,7 @@ fn answers(text: &str, every: bool) -> Vec<(Claim, String)> {
     let closed = closed.unwrap_or_else(|| panic!("{problems:?}"));
     let model = closed.model();
     let mut answers = vec![None; closed.questions.len()];
-    let budget = Budget { states: 100_000, bytes: 256 << 20, stop: &|| false };
+    let budget = Budget { states: 100_000, scans: usize::MAX, bytes: 256 << 20, stop: &|| false };
     Explicit.answer(&model, &closed.questions, &mut answers, &budget);
     let letter = |(question, answer): (&g7_verify::Question, Option<Verdict>)| {
         let letter = match answer.expect("each question has an answer") {
@@ -77,7 +77,7 @@ fn without_the_plant_all_is_possible() {
     let asked = asked.expect("no errors");
     let model = g7_verify::Model::new(&asked.compiled, asked.assume.clone());
     let mut answers = vec![None; asked.questions.len()];
-    let budget = Budget { states: 1_000, bytes: 1 << 20, stop: &|| false };
+    let budget = Budget { states: 1_000, scans: usize::MAX, bytes: 1 << 20, stop: &|| false };
     Explicit.answer(&model, &asked.questions, &mut answers, &budget);
     let last = answers.pop().flatten().expect("it has an answer");
     assert!(matches!(last, Verdict::Refuted(Evidence::Run(run)) if run.moves.len() == 1));

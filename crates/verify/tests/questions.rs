@@ -4,12 +4,12 @@ use g7_engine::StepId;
 use g7_model::FileId;
 use g7_syntax::parse;
 use g7_verify::{
-    Asked, Budget, Claim, Compare, Difference, Equality, Evidence, Explicit, Layer, Model, Verdict, ask,
-    compare, replay,
+    Asked, Budget, Claim, Compare, Difference, Equality, Evidence, Explicit, Layer, Model, Satisfiability,
+    Verdict, ask, compare, replay,
 };
 
 fn budget() -> Budget<'static> {
-    Budget { states: 200_000, bytes: 256 << 20, stop: &|| false }
+    Budget { states: 200_000, scans: usize::MAX, bytes: 256 << 20, stop: &|| false }
 }
 
 fn asked(text: &str) -> Asked {
@@ -30,18 +30,28 @@ fn letter(v: &Verdict) -> String {
     }
 }
 
+/// The answers of a layer by itself.
+fn of_layer(asked: &Asked, model: &Model<'_>, layer: &dyn Layer) -> Vec<(Claim, Verdict)> {
+    let mut answers = vec![None; asked.questions.len()];
+    layer.answer(model, &asked.questions, &mut answers, &budget());
+    let claims = asked.questions.iter().map(|q| q.claim.clone());
+    claims.zip(answers.into_iter().map(|a| a.expect("each question has an answer"))).collect()
+}
+
+/// The answers of the search, with which those of the solver agree.
 fn answers(text: &str) -> Vec<(Claim, Verdict)> {
     let asked = asked(text);
     let model = Model::new(&asked.compiled, asked.assume.clone());
-    let mut answers = vec![None; asked.questions.len()];
-    Explicit.answer(&model, &asked.questions, &mut answers, &budget());
-    let all: Vec<(Claim, Verdict)> = asked
-        .questions
-        .iter()
-        .map(|q| q.claim.clone())
-        .zip(answers.into_iter().map(|a| a.expect("each question has an answer")))
-        .collect();
-    for (claim, verdict) in &all {
+    let all = of_layer(&asked, &model, &Explicit);
+    let solved = of_layer(&asked, &model, &Satisfiability { turns: 12 });
+    for ((claim, a), (_, b)) in all.iter().zip(&solved) {
+        let agree = [a, b].iter().any(|v| letter(v) == "O")
+            || letter(a) == letter(b)
+            // Its runs are found in those of other questions.
+            || matches!(claim, Claim::Asked(_)) && letter(a)[..1] == letter(b)[..1];
+        assert!(agree, "{claim:?}: {a:?} or {b:?}\n{text}");
+    }
+    for (claim, verdict) in all.iter().chain(&solved) {
         if let Verdict::Proved(Evidence::Run(run)) | Verdict::Refuted(Evidence::Run(run)) = verdict {
             assert!(replay(&model, claim, run), "{claim:?}");
         }

@@ -300,6 +300,7 @@ impl Memories {
             What::Disagree(i) => ("DISAGREE", chart(i), "orders that disagree"),
             What::Runs(a) => ("A", number(a), "this action runs"),
             What::Late(a) => ("L", number(a), "runs at the end of the scan"),
+            What::Ran(a) => ("RAN", number(a), "has run in this scan"),
             What::Periodic(r) => ("B", number(r), "its step was active as the scan began"),
             What::Own(m) => ("OWN", self.name(m).to_owned(), ""),
             What::OwnWrote(m) => ("OWW", self.name(m).to_owned(), "this action wrote it"),

@@ -38,7 +38,8 @@ pub(crate) fn compare(args: &cli::Compare) -> Result<failure::Verdict, Failure> 
     }
     let [a, b] = compiled.as_slice() else { return Ok(failure::Verdict::Found) };
     let stop = super::patience::Patience::new()?.within(args.time);
-    let budget = Budget { states: args.states, bytes: args.memory.saturating_mul(1 << 20), stop: &*stop };
+    let bytes = args.memory.saturating_mul(1 << 20);
+    let budget = Budget { states: args.states, scans: usize::MAX, bytes, stop: &*stop };
     let what = Compare { charts: [&a.compiled, &b.compiled], situations: args.situations };
     let mut out = anstream::stdout().lock();
     match g7_verify::compare(&what, &budget) {

@@ -69,7 +69,8 @@ pub(super) fn scenarios(
     // The answers may have used up their time: the scenarios have as much again.
     let half = Nanos::new(args.time.count() / 2);
     let (first, whole) = (patience.within(half), patience.within(args.time));
-    let budget = |stop| Budget { states: args.states, bytes: args.memory.saturating_mul(1 << 20), stop };
+    let bytes = args.memory.saturating_mul(1 << 20);
+    let budget = |stop| Budget { states: args.states, scans: usize::MAX, bytes, stop };
     let known = cover::Known::of(asked, answers);
     let made = cover::cover(source, args.profile, &known, [&budget(&*first), &budget(&*whole)])?;
     if made.tests.is_empty() {

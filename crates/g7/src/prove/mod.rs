@@ -37,7 +37,8 @@ pub(crate) fn prove(args: &Prove) -> Result<failure::Verdict, Failure> {
     let (mut all, mut tally) = (Vec::new(), Tally::default());
     for path in &paths {
         let source = sources::load(path, 0)?;
-        let budget = Budget { states: args.states, bytes: args.memory.saturating_mul(1 << 20), stop: &*stop };
+        let bytes = args.memory.saturating_mul(1 << 20);
+        let budget = Budget { states: args.states, scans: usize::MAX, bytes, stop: &*stop };
         let mut file = File {
             source: &source,
             args,

@@ -2,7 +2,7 @@
 
 use g7_model::Severity;
 use g7_rig::testing::plants;
-use g7_verify::{Asked, Budget, Closed, Model, Verdict, answer, ask, ask_with};
+use g7_verify::{Asked, Budget, Closed, Model, Verdict, ask, ask_with, attempt};
 use serde::Deserialize;
 
 use super::rows::Report;
@@ -20,6 +20,9 @@ pub(crate) struct Limits {
 
 /// Greatest limits, whatever the page asks for.
 const MOST: Limits = Limits { states: 20_000_000, mib: 1024 };
+
+/// States from which on a search is long enough that a solver may try as well.
+const SOLVED: usize = 100_000;
 
 /// The questions of a text, with the answers found so far.
 pub(crate) struct Proof {
@@ -43,15 +46,18 @@ pub(crate) fn prove(file: &File, known: Option<Proof>, limits: Limits) -> (Proof
     let model = Model::new(&asked.compiled, asked.assume.clone());
     let budget = Budget {
         states: limits.states.min(MOST.states),
+        scans: usize::MAX,
         bytes: limits.mib.min(MOST.mib) << 20,
         stop: &|| false,
     };
-    answer(&model, &asked.questions, &mut proof.answers, &budget);
+    // The quick search while somebody types has fewer states.
+    let solve = limits.states >= SOLVED;
+    attempt(&model, &asked.questions, &mut proof.answers, &budget, solve);
     let mut report = Report::new(&proof.hash);
     report.add(file, &model, &asked.questions, &proof.answers);
     for (closed, answers) in &mut proof.closed {
         let model = closed.model();
-        answer(&model, &closed.questions, answers, &budget);
+        attempt(&model, &closed.questions, answers, &budget, solve);
         report.add(file, &model, &closed.questions, answers);
     }
     (proof, report)

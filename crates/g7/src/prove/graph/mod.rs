@@ -93,7 +93,8 @@ pub(crate) fn graph(args: &Graph) -> Result<Verdict, Failure> {
     };
     let model = Model::new(&asked.compiled, asked.assume.clone());
     let stop = super::patience::Patience::new()?.within(args.time);
-    let budget = Budget { states: args.states, bytes: args.memory.saturating_mul(1 << 20), stop: &*stop };
+    let bytes = args.memory.saturating_mul(1 << 20);
+    let budget = Budget { states: args.states, scans: usize::MAX, bytes, stop: &*stop };
     let graph = situations(&model, &budget);
     let named = Named {
         symbols: &asked.compiled.symbols,

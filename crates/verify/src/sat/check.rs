@@ -1,0 +1,129 @@
+//! The checker of proofs. It shares no code with the engines that find them but the graph,
+//! the clauses of one step and the solver, of which it has one of its own.
+//!
+//! Cubes that no run reaches are certified in turn: each list holds at the first step, and is
+//! kept by each step together with those that were certified before. A signal that cannot
+//! be 1 outside of them is never 1.
+
+use crate::sat::cnf::{Start, Steps};
+use crate::sat::cone::{Cube, next, touches_start};
+use crate::sat::graph::{Signal, System};
+use crate::sat::solver::{Answer, Batsat, Literal, Solver};
+
+/// A checker, with what it has certified so far.
+pub(crate) struct Checker<'a> {
+    system: &'a System,
+    solver: Batsat<'a>,
+    steps: Steps,
+}
+
+impl<'a> Checker<'a> {
+    /// A checker that has certified nothing.
+    pub(crate) fn new(system: &'a System, stop: &'a (dyn Fn() -> bool + Sync)) -> Checker<'a> {
+        let mut solver = Batsat::new(stop);
+        let steps = Steps::new(system, &mut solver, Start::Any, true);
+        Checker { system, solver, steps }
+    }
+
+    fn literal(&mut self, s: Signal) -> Literal {
+        self.steps.literal(self.system, &mut self.solver, 0, s)
+    }
+
+    /// True if these cubes, with those that were certified before, are an invariant that
+    /// excludes the signal. Then they are certified too. A solver that stops certifies nothing.
+    pub(crate) fn certifies(&mut self, cubes: &[Cube], bad: Signal) -> bool {
+        let system = self.system;
+        if cubes.iter().any(|cube| touches_start(system, cube)) {
+            return false;
+        }
+        // For this question alone until it is answered.
+        let switch = self.solver.variable(true);
+        for cube in cubes {
+            let mut clause: Vec<Literal> = cube.iter().map(|s| !self.literal(*s)).collect();
+            clause.push(!switch);
+            self.solver.add(&clause);
+        }
+        let is_kept = cubes.iter().all(|cube| {
+            let mut entered = vec![switch];
+            entered.extend(cube.iter().map(|s| self.literal(next(system, *s))));
+            self.solver.solve(&entered) == Answer::No
+        });
+        let bad = self.literal(bad);
+        let certified = is_kept && self.solver.solve(&[switch, bad]) == Answer::No;
+        self.solver.add(&[switch.negated_if(!certified)]);
+        certified
+    }
+}
+
+/// True if a signal is 0 at the first steps, so many of them, and a signal that is 0 at so many
+/// steps is 0 at the next.
+pub(crate) fn certifies_induction(
+    system: &System,
+    bad: Signal,
+    depth: usize,
+    stop: &(dyn Fn() -> bool + Sync),
+) -> bool {
+    let shows = |start: Start| {
+        let mut solver = Batsat::new(stop);
+        let mut steps = Steps::new(system, &mut solver, start, true);
+        let count = if start == Start::First { depth } else { depth + 1 };
+        (1..count).for_each(|_| steps.grow(system, &mut solver));
+        let bad: Vec<Literal> = (0..count).map(|k| steps.literal(system, &mut solver, k, bad)).collect();
+        match bad.split_last() {
+            Some((last, before)) if start == Start::Any => {
+                before.iter().for_each(|l| solver.add(&[!*l]));
+                solver.add(&[*last]);
+            }
+            _ => solver.add(&bad),
+        }
+        solver.solve(&[])
+    };
+    depth > 0 && shows(Start::First) == Answer::No && shows(Start::Any) == Answer::No
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sat::graph::Init;
+
+    /// Two bits that exchange their values.
+    fn swap() -> (System, [Signal; 2]) {
+        let mut s = System::default();
+        let (a, b) = (s.latch(Init::One), s.latch(Init::Zero));
+        s.set_next(a, b);
+        s.set_next(b, a);
+        (s, [a, b])
+    }
+
+    #[test]
+    fn a_right_certificate_is_accepted() {
+        let (mut s, [a, b]) = swap();
+        let both = s.graph.and(a, b);
+        let mut checker = Checker::new(&s, &|| false);
+        assert!(checker.certifies(&[vec![a, b]], both));
+        assert!(checker.certifies(&[], both), "what was certified stays so");
+        assert!(checker.certifies(&[vec![!a, !b]], Signal::FALSE));
+    }
+
+    #[test]
+    fn a_wrong_certificate_is_refused() {
+        let (mut s, [a, b]) = swap();
+        let (both, one) = (s.graph.and(a, b), s.graph.or(a, b));
+        let mut checker = Checker::new(&s, &|| false);
+        assert!(!checker.certifies(&[], both), "nothing excludes it");
+        assert!(!checker.certifies(&[vec![a]], both), "a is 1 at the first step");
+        assert!(!checker.certifies(&[vec![b]], both), "b becomes 1");
+        assert!(!checker.certifies(&[vec![a, b]], one), "it holds, but says nothing of this signal");
+        assert!(!checker.certifies(&[], both), "what was refused does not stay");
+        assert!(checker.certifies(&[vec![a, b]], both));
+    }
+
+    #[test]
+    fn a_checker_that_is_stopped_certifies_nothing() {
+        let (mut s, [a, b]) = swap();
+        let both = s.graph.and(a, b);
+        // Enough cubes that it asks.
+        let cubes = vec![vec![a, b]; 500];
+        assert!(!Checker::new(&s, &|| true).certifies(&cubes, both));
+    }
+}

@@ -1,0 +1,231 @@
+//! The SAT layer: the questions of a chart that ask what happens in a scan, by its system of
+//! bits.
+
+use g7_engine::{State, scan};
+
+use crate::asked::Asking;
+use crate::explore::Move;
+use crate::layer::{Budget, Layer};
+use crate::look::replay;
+use crate::model::Model;
+use crate::question::{Claim, Question};
+use crate::sat::dead::{Ends, ends};
+use crate::sat::decide::{Effort, Found, Proof, decide};
+use crate::sat::graph::Signal;
+use crate::system::{Asked, Observed, Translated, system};
+use crate::verdict::{Certificate, Evidence, Open, Run, Verdict};
+
+/// Bounded search, induction and PDR as a layer.
+#[derive(Clone, Copy, Debug)]
+pub struct Satisfiability {
+    /// Most turns, each with twice the work of the one before.
+    pub turns: u32,
+}
+
+impl Default for Satisfiability {
+    /// As many turns as the time allows.
+    fn default() -> Satisfiability {
+        Satisfiability { turns: 40 }
+    }
+}
+
+impl Layer for Satisfiability {
+    fn name(&self) -> &'static str {
+        "sat"
+    }
+
+    fn answer(
+        &self,
+        model: &Model<'_>,
+        questions: &[Question],
+        answers: &mut [Option<Verdict>],
+        budget: &Budget<'_>,
+    ) {
+        let is_open = |a: &Option<Verdict>| matches!(a, None | Some(Verdict::Open(_)));
+        let open: Vec<usize> =
+            (0..questions.len()).filter(|i| answers.get(*i).is_some_and(is_open)).collect();
+        let mine: Vec<Question> = open.iter().filter_map(|i| questions.get(*i)).cloned().collect();
+        // A plant is no part of the system of bits.
+        if mine.is_empty() || model.plant.is_some() {
+            return;
+        }
+        let translated = system(model, &mine, Observed::Asked);
+        let effort = Effort { bytes: budget.bytes, turns: self.turns, stop: budget.stop };
+        let work = Work { model, translated: &translated, effort: &effort };
+        for (i, verdict) in open.iter().zip(work.verdicts(&mine)) {
+            if let Some(slot) = answers.get_mut(*i) {
+                *slot = Some(joined(slot.take(), verdict));
+            }
+        }
+        let runs = runs(answers);
+        for i in open {
+            let (Some(q), Some(slot)) = (questions.get(i), answers.get_mut(i)) else { continue };
+            if let (Claim::Asked(_), true) = (&q.claim, is_open(slot))
+                && let Some(run) = asks(model, &q.claim, &runs)
+            {
+                *slot = Some(Verdict::Proved(Evidence::Run(run)));
+            }
+        }
+    }
+}
+
+/// Two answers to one question: what is open twice is sure as far as one of them is.
+fn joined(old: Option<Verdict>, new: Verdict) -> Verdict {
+    match (old, new) {
+        (Some(Verdict::Open(old)), Verdict::Open(new)) => {
+            let further = if new.reason.is_empty() { &old } else { &new };
+            let (reason, help) = (further.reason.clone(), further.help.clone());
+            Verdict::Open(Open {
+                scans: old.scans.max(new.scans),
+                states: old.states.max(new.states),
+                reason,
+                help,
+            })
+        }
+        (_, new) => new,
+    }
+}
+
+/// The runs of answers, the shortest first.
+fn runs(answers: &[Option<Verdict>]) -> Vec<Run> {
+    let run = |a: &Option<Verdict>| match a {
+        Some(Verdict::Proved(Evidence::Run(r)) | Verdict::Refuted(Evidence::Run(r))) => Some(r.clone()),
+        _ => None,
+    };
+    let mut runs: Vec<Run> = answers.iter().filter_map(run).collect();
+    runs.sort_by_key(|r| r.moves.len());
+    runs
+}
+
+/// The shortest beginning of these runs at which an input is asked for.
+fn asks(model: &Model<'_>, claim: &Claim, runs: &[Run]) -> Option<Run> {
+    let Claim::Asked(addr) = claim else { return None };
+    let p = &model.compiled.program;
+    let asking = Asking::new(p, model.compiled.queries.iter().copied());
+    let place = (addr.0 - p.tables().inputs.start) as usize;
+    let first = |run: &Run| -> Option<Run> {
+        let mut s = State::new(p);
+        for (k, m) in run.moves.iter().enumerate() {
+            let asked = asking.asked(&s).iter().any(|i| i == place);
+            let now = s.now().saturating_add(m.wait);
+            let fault = scan(p, &mut s, &m.inputs, now).err();
+            if asked {
+                let moves = run.moves.iter().take(k + 1).cloned().collect();
+                return Some(Run { moves, fault, ..Run::default() });
+            }
+        }
+        None
+    };
+    let found = runs.iter().filter_map(first).min_by_key(|r| r.moves.len())?;
+    replay(model, claim, &found).then_some(found)
+}
+
+struct Work<'a> {
+    model: &'a Model<'a>,
+    translated: &'a Translated,
+    effort: &'a Effort<'a>,
+}
+
+impl Work<'_> {
+    fn verdicts(&self, questions: &[Question]) -> Vec<Verdict> {
+        let asked: Vec<&Asked> = self.translated.asked.iter().flatten().collect();
+        let mut signals: Vec<Signal> = asked.iter().flat_map(|a| [a.bad, a.unsure]).collect();
+        signals.sort_unstable();
+        signals.dedup();
+        let found = decide(&self.translated.system, &signals, self.effort);
+        let of = |s: Signal| {
+            let at = signals.binary_search(&s).ok();
+            at.and_then(|at| found.get(at)).unwrap_or(&Found::Open(0))
+        };
+        let proofs = asked.iter().any(|a| matches!(of(a.bad), Found::Never(_)));
+        let ends = if proofs { ends(&self.translated.system, self.effort) } else { Ends::None };
+        let one = |(q, a): (&Question, &Result<Asked, String>)| match a {
+            Ok(a) => self.verdict(&q.claim, a, [of(a.bad), of(a.unsure)], &ends),
+            Err(reason) => open(0, reason.clone(), "this is answered by a search of all states only"),
+        };
+        questions.iter().zip(&self.translated.asked).map(one).collect()
+    }
+
+    /// The answer to a question for which this was found of its signal, and of the one that
+    /// says that a scan is not known whole.
+    fn verdict(&self, claim: &Claim, asked: &Asked, found: [&Found; 2], ends: &Ends) -> Verdict {
+        match found {
+            [Found::Reached(trace), _] => {
+                let scans = trace.inputs.len() - 1;
+                match repeat(self.model, self.translated.moves(&trace.inputs)) {
+                    Some(run) if replay(self.model, claim, &run) => {
+                        let run = Evidence::Run(run);
+                        if claim.is_of_some_run() { Verdict::Proved(run) } else { Verdict::Refuted(run) }
+                    }
+                    _ => self.limited(asked.bad, scans),
+                }
+            }
+            [Found::Never(proof), Found::Never(_)] => match ends {
+                Ends::None => {
+                    let proof = Evidence::Certificate(certificate(proof));
+                    if claim.is_of_some_run() { Verdict::Refuted(proof) } else { Verdict::Proved(proof) }
+                }
+                Ends::Behind(n) => {
+                    let behind = if *n == 0 {
+                        "at the start".to_owned()
+                    } else {
+                        format!("behind a run of {n} scans")
+                    };
+                    let help = "weaken the assumptions: without inputs there are no runs, and every claim would hold";
+                    open(*n, format!("no input satisfies the assumptions {behind}"), help)
+                }
+                Ends::Open => {
+                    let reason = "it is not known whether some input always satisfies the assumptions";
+                    open(0, reason.to_owned(), "let the assumptions depend on inputs alone, or weaken them")
+                }
+            },
+            [Found::Never(_), Found::Reached(trace)] => {
+                let reason =
+                    "some scan has more passes or loops than are followed, or a condition has no value there";
+                let help = "make every evolution end first, with an edge (`↑a`) or a step that waits";
+                open(trace.inputs.len() - 1, reason.to_owned(), help)
+            }
+            [Found::Never(_), Found::Open(scans)] | [Found::Open(scans), _] => open(
+                *scans,
+                "the search was stopped".to_owned(),
+                "allow more with --time, or assume what the environment keeps",
+            ),
+        }
+    }
+
+    /// A run that the engine does not repeat: the system has more runs than the chart.
+    fn limited(&self, bad: Signal, scans: usize) -> Verdict {
+        let limits = self.translated.limits(&[bad]);
+        let reason = match limits.first() {
+            Some(limit) => format!("{} can be followed by a search of all states only", limit.reason),
+            None => "please report this: the system and the engine do not agree".to_owned(),
+        };
+        open(scans, reason, "compare the number with constants only, or give it a smaller type")
+    }
+}
+
+fn open(scans: usize, reason: String, help: &str) -> Verdict {
+    Verdict::Open(Open { scans, states: 0, reason, help: help.to_owned() })
+}
+
+fn certificate(proof: &Proof) -> Certificate {
+    match proof {
+        Proof::Invariant(clauses) => Certificate::Invariant { clauses: clauses.len() },
+        Proof::Induction(depth) => Certificate::Induction { depth: *depth },
+    }
+}
+
+/// A run with these moves; nothing if a fault stops it before its last scan.
+fn repeat(model: &Model<'_>, moves: Vec<Move>) -> Option<Run> {
+    let p = &model.compiled.program;
+    let mut s = State::new(p);
+    let mut fault = None;
+    for m in &moves {
+        if fault.is_some() {
+            return None;
+        }
+        let now = s.now().saturating_add(m.wait);
+        fault = scan(p, &mut s, &m.inputs, now).err();
+    }
+    Some(Run { moves, fault, ..Run::default() })
+}

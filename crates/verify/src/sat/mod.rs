@@ -1,0 +1,39 @@
+//! Questions about transition systems of bits, answered with a solver for clauses.
+//!
+//! # Where this sits
+//!
+//! ```text
+//! Question -> layer -> crate::system -> graph -> decide -> bounded, pdr -> solver
+//!                                                       -> check (proofs), simulate (runs)
+//!                                   -> dead (constraints that cannot be kept)
+//! ```
+//!
+//! # Invariants
+//!
+//! - *Never* is said only after the checker agreed, which has a solver of its own; *reached*
+//!   only after the simulator showed it.
+//! - What is found depends on the system and the ticks of the solvers, not on a clock. The
+//!   caller's `stop` ends the work, inside a call of a solver too.
+
+mod aiger;
+mod bounded;
+#[cfg(test)]
+mod brute;
+mod check;
+mod cnf;
+mod cone;
+mod dead;
+mod decide;
+mod frames;
+pub mod graph;
+mod layer;
+mod pdr;
+pub mod simulate;
+mod solver;
+
+pub use aiger::aiger;
+pub use dead::{Ends, ends};
+pub use decide::{Effort, Found, Proof, decide};
+pub use graph::{Graph, Init, Latch, Node, Signal, System};
+pub use layer::Satisfiability;
+pub use simulate::{Trace, Values, evaluate, shows};

@@ -1,0 +1,21 @@
+//! What bits cannot express, with its place.
+
+use g7_model::Span;
+
+use crate::sat::Signal;
+
+/// What bits cannot express.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct Limit {
+    /// The subject: "arithmetic of floating-point numbers".
+    pub(crate) reason: String,
+    /// The step, transition or action that it stands in; empty if it is none of these.
+    pub(crate) at: Span,
+}
+
+/// A limit, with the inputs that stand for what is not known.
+#[derive(Clone, Debug)]
+pub(crate) struct Unknown {
+    pub(crate) limit: Limit,
+    pub(crate) bits: Vec<Signal>,
+}

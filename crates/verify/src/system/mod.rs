@@ -1,0 +1,220 @@
+//! A chart's equations as a transition system of bits, for the SAT layer.
+//!
+//! ```text
+//! Model, Question -> equations::Equations -> range (how many bits a memory needs)
+//!                                         -> latches, moves (state, inputs)
+//!                                         -> scan, exec, expr, word (one scan)
+//!                                         -> claims (what each question looks for) -> Translated
+//! ```
+//!
+//! One step of the system is one scan, as in `model.rs`: the inputs of the step are those of
+//! the scan, the latches the memories that last. The reference is `equations::Machine`; tests
+//! compare the system with the engine itself.
+//!
+//! # Invariants
+//!
+//! - What cannot be expressed (arithmetic of floating point, texts, large products) is any
+//!   value of its type, from inputs of its own, and has a [`Limit`]. So the system has every
+//!   run of the chart and perhaps more: what it never reaches, the chart never reaches; a run
+//!   that it shows is repeated with `engine::scan` before it counts ([`crate::replay`]).
+//! - Passes and loops are unrolled up to bounds. Where more could follow, the signal "unsure"
+//!   of each question is 1 and no scan follows. A search for stability that comes back to a
+//!   state is the fault that it is in the engine.
+//! - Behind a fault no scan follows.
+//! - Times are numbers of periods where all that is added to them is, and end where nothing
+//!   tells longer ones apart (`range.rs` says why that is exact).
+
+mod claims;
+mod exec;
+mod expr;
+mod latches;
+mod limit;
+mod moves;
+mod parts;
+mod range;
+mod scan;
+#[cfg(test)]
+mod tests;
+mod value;
+mod word;
+
+use g7_compile::ir::VarClass;
+use g7_engine::{FaultKind, StepId, Tables};
+use g7_equations::{Equations, MemoryId, Options, What, equations};
+use g7_model::Span;
+
+pub(crate) use claims::Asked;
+
+use crate::explore::Move;
+use crate::look::sides;
+use crate::model::Model;
+use crate::question::{Claim, Question};
+use crate::sat::{Init, Node, Signal, System};
+use claims::End;
+use exec::Exec;
+use latches::Latches;
+use limit::{Limit, Unknown};
+use moves::Sources;
+use range::Ranges;
+use scan::Scan;
+use value::Value;
+
+/// How exact the outputs are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Observed {
+    /// As exact as the chart and its questions need.
+    Asked,
+    /// All outputs and variables as they are, for a comparison.
+    All,
+}
+
+/// A chart as a transition system.
+#[cfg_attr(not(test), expect(dead_code, reason = "what a scan leaves behind is compared in the tests"))]
+pub(crate) struct Translated {
+    /// The system. Its list of bad signals is empty.
+    pub(crate) system: System,
+    /// For each question its signals, or why it cannot be asked in this way.
+    pub(crate) asked: Vec<Result<Asked, String>>,
+    /// The scan has ended without a fault, and no earlier one had any.
+    pub(crate) sound: Signal,
+    /// The outputs behind the scan, safe ones behind a fault.
+    pub(crate) outputs: Vec<(MemoryId, Vec<Value>)>,
+    /// Activity of each step behind the scan.
+    pub(crate) steps: Vec<Signal>,
+    shown: Shown,
+    sources: Sources,
+    unknown: Vec<Unknown>,
+}
+
+/// What the tests compare with the engine.
+#[cfg_attr(not(test), expect(dead_code, reason = "it is compared in the tests"))]
+struct Shown {
+    equations: Equations,
+    cells: Vec<Vec<Value>>,
+    caps: Vec<Option<i128>>,
+    faults: Vec<(FaultKind, Span, Signal)>,
+    uncovered: Signal,
+}
+
+impl Translated {
+    /// The moves of a trace of the system: for each scan the values of [`System::inputs`].
+    pub(crate) fn moves(&self, trace: &[Vec<bool>]) -> Vec<Move> {
+        self.sources.moves(trace)
+    }
+
+    /// The limits that these signals depend on, over all scans.
+    pub(crate) fn limits(&self, of: &[Signal]) -> Vec<&Limit> {
+        let cone = cone(&self.system, of);
+        let touched = |u: &&Unknown| u.bits.iter().any(|b| cone.get(b.node() as usize) == Some(&true));
+        let mut found: Vec<&Limit> = self.unknown.iter().filter(touched).map(|u| &u.limit).collect();
+        found.dedup();
+        found
+    }
+}
+
+/// The nodes that signals depend on, in this step and those before; constraints are left out.
+fn cone(system: &System, of: &[Signal]) -> Vec<bool> {
+    let mut found = vec![false; system.graph.nodes().len()];
+    let mut work: Vec<Signal> = of.to_vec();
+    while let Some(s) = work.pop() {
+        if found.get_mut(s.node() as usize).is_none_or(|f| std::mem::replace(f, true)) {
+            continue;
+        }
+        match system.graph.node(s) {
+            Node::And(a, b) => work.extend([a, b]),
+            Node::Latch(i) => work.extend(system.latches.get(i as usize).map(|l| l.next)),
+            Node::False | Node::Input(_) => {}
+        }
+    }
+    found
+}
+
+/// The system of a chart, with the signals of its questions.
+pub(crate) fn system(model: &Model<'_>, questions: &[Question], observed: Observed) -> Translated {
+    let e = equations(model.compiled, Options { conflicts: true, runs: true, ..Options::default() });
+    let t = model.compiled.program.tables();
+    let ranges = Ranges::new(&e, model, |what| is_observed(model, questions, observed, what));
+    let mut system = System::default();
+    let (latches, cells) = Latches::new(&e, &ranges, &mut system);
+    let mut sources = Sources::new(model);
+    let mut x = Exec::new(&e, model, cells, system);
+    for (id, m, at) in moves::inputs(&e) {
+        let value = sources.memory(model, &mut x.system, m, at);
+        x.put(id, value);
+    }
+    if let Some(dt) = e.find(What::Dt) {
+        let started = x.holds(e.find(What::Started));
+        let bits = vec![started, Signal::FALSE];
+        x.put(dt, vec![Value::Whole(word::Word::of(bits, model.period.into(), 0, 1))]);
+    }
+    let stopped = x.system.latch(Init::Zero);
+    let asks = questions.iter().any(|q| q.claim == Claim::NoConflict);
+    let rivals = if asks { rivals(t) } else { Vec::new() };
+    let mut scan = Scan::new(&mut x, rivals);
+    scan.run(|x| assume(x, model, stopped));
+    let sights = scan.sights;
+    let mut end = End::new(&mut x, &sights, stopped);
+    let asked = questions.iter().map(|q| end.asked(&q.claim)).collect();
+    latches.take_over(&mut x);
+    let run = x.run;
+    let over = x.g().or(stopped, !run);
+    x.system.set_next(stopped, over);
+    let outputs = e.safe.iter().map(|(id, words)| (*id, latches::safe(&mut x, *id, words))).collect();
+    let known = e.by_meaning();
+    let steps =
+        (0..t.steps.len() as u32).map(|s| x.holds(known.get(&What::Step(StepId(s))).copied())).collect();
+    let uncovered = x.uncovered.clone();
+    let uncovered = x.g().any(uncovered);
+    let sound = x.g().and(run, !stopped);
+    let caps = (0..e.memories.len() as u32).map(|m| ranges.cap_of(MemoryId(m))).collect();
+    let (cells, faults) = (x.cells().to_vec(), x.faults.clone());
+    let (system, unknown) = (std::mem::take(&mut x.system), std::mem::take(&mut x.unknown));
+    drop(x);
+    let shown = Shown { equations: e, cells, caps, faults, uncovered };
+    Translated { system, asked, sound, outputs, steps, shown, sources, unknown }
+}
+
+/// The assumptions bind the inputs, unless the scan has met a fault before the evolution.
+fn assume(x: &mut Exec<'_>, model: &Model<'_>, stopped: Signal) {
+    let mut all = Vec::new();
+    for q in &model.assume {
+        let (holds, without) = claims::value_of(x, *q);
+        all.push(holds);
+        all.push(!without);
+    }
+    let (all, run) = (x.g().all(all), x.run);
+    let free = x.g().or(stopped, !run);
+    let constraint = x.g().or(all, free);
+    x.system.constraints.push(constraint);
+}
+
+/// Pairs of transitions that share a preceding step, where nothing written chooses: as
+/// `look.rs` says.
+fn rivals(t: &Tables) -> Vec<(u32, u32)> {
+    let follows = !t.rules.multi_token || t.rules.numbered_exclusive;
+    let shared: Vec<(u32, u32, Vec<u32>)> = (0u32..)
+        .zip(&t.transitions)
+        .filter(|(_, tr)| tr.shares)
+        .map(|(rank, tr)| (rank, tr.priority, sides(t, rank).0))
+        .collect();
+    let mut pairs = Vec::new();
+    for (i, (a, first, from)) in shared.iter().enumerate() {
+        for (b, second, other) in shared.iter().skip(i + 1) {
+            let chosen = follows && first != second;
+            if !chosen && from.iter().any(|s| other.contains(s)) {
+                pairs.push((*a, *b));
+            }
+        }
+    }
+    pairs
+}
+
+/// True for memories that are looked at from outside, so that they are kept as they are.
+fn is_observed(model: &Model<'_>, questions: &[Question], observed: Observed, what: What) -> bool {
+    let What::Variable(at) = what else { return false };
+    if observed == Observed::All {
+        let class = model.compiled.symbols.variable_at(at).map(|v| v.class);
+        return class.is_some_and(|c| c != VarClass::Const);
+    }
+    questions.iter().any(|q| q.claim == Claim::On(at))
+}
