@@ -12,9 +12,9 @@ use crate::search::Explicit;
 use crate::verdict::Verdict;
 
 /// Scans of the first turn.
-const SCANS: usize = 20_000;
+const SCANS: usize = 200_000;
 /// Turns of the solver in the first turn.
-const SOLVER: u32 = 5;
+const SOLVER: u32 = 4;
 
 /// All layers in turns.
 #[derive(Clone, Copy, Debug, Default)]
@@ -44,8 +44,8 @@ impl Layer for Turns {
             if done || (budget.stop)() || before == answers {
                 return;
             }
-            scans = scans.saturating_mul(16);
-            solver.turns += 4;
+            scans = scans.saturating_mul(8);
+            solver.turns += 3;
         }
     }
 }

@@ -51,8 +51,8 @@ pub enum Certificate {
         /// Number of its clauses.
         clauses: usize,
     },
-    /// What did not happen in so many scans does not happen in the next, and it does not happen
-    /// in the first ones. Verified as an invariant is.
+    /// Something that did not happen in so many scans does not happen in the next, and it does
+    /// not happen in the first ones. Verified as an invariant is.
     Induction {
         /// Number of scans.
         depth: usize,

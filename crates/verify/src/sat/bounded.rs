@@ -64,7 +64,7 @@ impl<'a> Bounded<'a> {
             let answer = self.solver.solve(&[switch]);
             self.solver.add(&[!switch]);
             match answer {
-                // What was found stays found.
+                // A run that was found counts.
                 Answer::Stopped if found.is_empty() => return Err(Stopped),
                 Answer::Stopped => return Ok(found),
                 Answer::No => {

@@ -138,7 +138,7 @@ impl Graph {
         new
     }
 
-    /// What `a and b` is, where the operands of `b` show it.
+    /// A shorter form of `a and b`, where the operands of `b` allow one.
     fn shorter(&mut self, a: Signal, b: Signal) -> Option<Signal> {
         let Node::And(c, d) = self.node(b) else { return None };
         if !b.is_negated() {

@@ -73,7 +73,8 @@ impl Layer for Satisfiability {
 fn joined(old: Option<Verdict>, new: Verdict) -> Verdict {
     match (old, new) {
         (Some(Verdict::Open(old)), Verdict::Open(new)) => {
-            let further = if new.reason.is_empty() { &old } else { &new };
+            // A question that the solver could not be asked keeps the reason of the search.
+            let further = if new.scans == 0 { &old } else { &new };
             let (reason, help) = (further.reason.clone(), further.help.clone());
             Verdict::Open(Open {
                 scans: old.scans.max(new.scans),

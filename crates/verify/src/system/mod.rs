@@ -39,7 +39,7 @@ mod value;
 mod word;
 
 use g7_compile::ir::VarClass;
-use g7_engine::{FaultKind, StepId, Tables};
+use g7_engine::{FaultKind, NONE, StepId, Tables};
 use g7_equations::{Equations, MemoryId, Options, What, equations};
 use g7_model::Span;
 
@@ -176,12 +176,23 @@ pub(crate) fn system(model: &Model<'_>, questions: &[Question], observed: Observ
 
 /// The assumptions bind the inputs, unless the scan has met a fault before the evolution.
 fn assume(x: &mut Exec<'_>, model: &Model<'_>, stopped: Signal) {
-    let mut all = Vec::new();
-    for q in &model.assume {
-        let (holds, without) = claims::value_of(x, *q);
-        all.push(holds);
-        all.push(!without);
-    }
+    let t = model.compiled.program.tables();
+    let all = x.glance(|x| {
+        // An output that follows one step is on as soon as the step is, in the initial situation too.
+        for (i, step) in (0u32..).zip(&t.steps).filter(|(_, s)| s.direct.0 != NONE) {
+            let active = x.holds(x.e.find(What::Step(StepId(i))));
+            if let Some(output) = x.e.find(What::Variable(step.direct)) {
+                x.put(output, vec![Value::truth(active)]);
+            }
+        }
+        let mut all = Vec::new();
+        for q in &model.assume {
+            let (holds, without) = claims::value_of(x, *q);
+            all.push(holds);
+            all.push(!without);
+        }
+        all
+    });
     let (all, run) = (x.g().all(all), x.run);
     let free = x.g().or(stopped, !run);
     let constraint = x.g().or(all, free);

@@ -64,6 +64,7 @@ impl Sources {
                 let n = values.tried.len().next_power_of_two().trailing_zeros();
                 let bits: Vec<usize> = (0..n).map(|_| bit(&mut signals)).collect();
                 let mut list: Vec<Value> = values.tried.iter().map(|w| Value::of_word(ty, *w)).collect();
+                list.resize(1 << n, list.last().cloned().unwrap_or(Value::zero(ty)));
                 for s in &signals {
                     let pairs = list.chunks(2).map(|pair| match pair {
                         [a, b] => choose(&mut system.graph, *s, b, a),

@@ -246,6 +246,10 @@ fn assumptions() {
                 assume not (a and b)\nassume b or not X2 or a\nprove never a and b\nprove at most 1 of (X1, X2, q)\n";
     let done = same(text, 40);
     assert!(done.forbidden > 100 && done.pairs > 500, "{done:?}");
+    // The output of the initial step is on before the first evolution.
+    let first = "profile iec61131\ninput a, b : BOOL\noutput q : BOOL\nchart G { initial step 1 { N q } step 2 1 -> 2 when a 2 -> 1 when b }\n\
+                 assume a or not q\n";
+    assert!(same(first, 10).forbidden > 100);
 }
 
 /// All claims about scans one after the other, on charts in which each of them is hit.
