@@ -84,7 +84,7 @@ impl<'b> Script<'b> {
         Scenario { title: title.into(), plant: None, seed: None, body: self.body, at: Place::default() }
     }
 
-    /// What must be set to bring the inputs to these values.
+    /// The values that must be set to bring the inputs to these values.
     fn puts(&self, inputs: &[u64]) -> Vec<(Expr, Expr)> {
         let words = |all: &[u64], item: &Item, first: u32| {
             let from = first as usize;
