@@ -59,7 +59,7 @@ fn a_refuted_claim_is_a_test_that_fails_at_the_scan_that_breaks_it() {
     assert!(test.out.contains("prove never m and not a: expected: not (m and not a)"), "{}", test.out);
     assert!(test.out.contains("20ms after the start"), "{}", test.out);
     mended(&folder, "2 -> 1 when b or", "2 -> 1 when b or not a or");
-    // What is refuted anew takes the place of the old test.
+    // A claim that is refuted anew takes the place of the old test.
     folder.write("chart.g7", folder.read("chart.g7").replace("b or not a or", "b or"));
     folder.g7(&["prove", "chart.g7", "--save", "chart.g7"]).is(1);
     assert_eq!(folder.read("chart.g7").matches("test \"prove never m and not a\"").count(), 1);
@@ -244,7 +244,7 @@ chart G {
     assert_eq!(missing.len(), 3, "{missing:?}");
     assert!(missing.iter().all(|l| l.contains("step 4") || l.contains("3 -> 4")), "{missing:?}");
     let text = folder.read("all.g7");
-    // What changes is expected, and nothing else.
+    // All that changes is expected, and nothing else.
     for part in ["expect X2, not X1, m", "  scan 9\n", "k = 7", "set b := TRUE", "n := 101", "reaches "] {
         assert!(text.contains(part), "{part}: {text}");
     }

@@ -13,7 +13,8 @@ use g7_engine::State;
 use crate::explore::Move;
 use crate::layer::Budget;
 use crate::model::Model;
-use crate::search::{Scene, Search, Until};
+use crate::scene::{Scene, Until};
+use crate::search::Search;
 use crate::verdict::{Open, Run};
 
 /// The runs that reach elements.

@@ -17,6 +17,7 @@ use crate::look::{Passes, Scanned, allowed, passes, shows};
 use crate::model::Model;
 use crate::monitor::{IDLE, has_memory};
 use crate::question::{Claim, Question};
+use crate::scene::{Extent, Look, Scene, Tried, Until};
 use crate::store::Store;
 use crate::verdict::{Open, Verdict};
 use crate::world::{WAYS, World};
@@ -57,15 +58,6 @@ impl Layer for Explicit {
     }
 }
 
-/// Which inputs are tried in a state.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Tried {
-    /// Those that can matter there.
-    Matter,
-    /// All, which takes longer and finds no more.
-    All,
-}
-
 /// Answers questions like [`Explicit`], with a choice of the inputs that are tried, and shows
 /// each scan: the number of scans before it, and the state behind it. For tests.
 pub fn watch(
@@ -82,24 +74,6 @@ pub fn watch(
     search.run()
 }
 
-/// A scan of the search.
-pub(crate) struct Scene<'s> {
-    /// The number of scans before it.
-    pub(crate) depth: usize,
-    /// The number of the state before it.
-    pub(crate) from: usize,
-    /// The number of the state behind it; none behind a fault, or where the search ends.
-    pub(crate) to: Option<usize>,
-    /// The inputs and the wait.
-    pub(crate) m: &'s Move,
-    /// The inputs that are tried in the state before it, by their places.
-    pub(crate) tried: &'s [usize],
-    /// The state behind it.
-    pub(crate) state: &'s mut State,
-    /// The fault that stopped it.
-    pub(crate) fault: Option<Fault>,
-}
-
 /// The moves of one state.
 struct Tries {
     at: usize,
@@ -114,29 +88,6 @@ struct Tries {
     on: bool,
     /// The states behind them.
     next: Vec<u32>,
-}
-
-/// How much a search has seen.
-pub(crate) struct Extent {
-    pub(crate) states: usize,
-    /// Scans that were made.
-    pub(crate) scans: usize,
-    /// Why not all runs were seen.
-    pub(crate) open: Option<Open>,
-}
-
-/// Is shown each scan.
-pub(crate) type Look<'a> = &'a mut dyn FnMut(Scene<'_>);
-
-/// When a search ends that has states left to visit.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Until {
-    /// When all questions are answered.
-    Answered,
-    /// When no input satisfies the assumptions in some state.
-    Stuck,
-    /// Only when all states are visited.
-    Visited,
 }
 
 pub(crate) struct Search<'a> {

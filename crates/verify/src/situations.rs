@@ -12,7 +12,8 @@ use g7_engine::StepId;
 use crate::cubes::{Cube, fewest};
 use crate::layer::Budget;
 use crate::model::Model;
-use crate::search::{Scene, Search, Until};
+use crate::scene::{Scene, Until};
+use crate::search::Search;
 use crate::verdict::Open;
 
 /// Most conditions of one edge that are kept.

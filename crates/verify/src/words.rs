@@ -70,7 +70,7 @@ const SO_FAR: Row = [
     "nenhuma execução de até {} o decide ({} visitados): {}",
 ];
 
-/// What is counted: one of it, and more.
+/// A thing that is counted: one of it, and more.
 type Counted = [Row; 2];
 const SCANS: Counted = [["{} scan", "{} cycle", "{} ciclo"], ["{} scans", "{} cycles", "{} ciclos"]];
 const STATES: Counted = [["{} state", "{} état", "{} estado"], ["{} states", "{} états", "{} estados"]];

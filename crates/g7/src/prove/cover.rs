@@ -26,7 +26,7 @@ use g7_rig::testing::script::{Script, activity, expr, not, path, value};
 pub(super) struct Covering {
     /// The tests.
     pub(super) tests: Vec<Scenario>,
-    /// What they reach, as `g7 test --coverage` counts it.
+    /// The elements that they reach, as `g7 test --coverage` counts it.
     pub(super) coverage: Coverage,
     /// Why elements may be left over that some run reaches.
     pub(super) open: Option<Open>,
@@ -36,7 +36,7 @@ pub(super) struct Covering {
 
 pub(super) type Element = (Sort, Span);
 
-/// What the answers have shown of elements.
+/// The elements that the answers have shown.
 #[derive(Default)]
 pub(super) struct Known {
     /// Elements that no run reaches.
@@ -84,7 +84,7 @@ pub(super) fn cover(
         .collect();
     let options = Options { profile, plant: Some("none"), asks: &assumed, ..Options::default() };
     let Some(bench) = g7_rig::build(source, &options)?.0 else { return Ok(Covering::default()) };
-    // What was asked stands last among the conditions of the program.
+    // The conditions that were asked stand last among the conditions of the program.
     let first = bench.compiled.queries.len().saturating_sub(assumed.len()) as u32;
     let assume = (first..).take(assumed.len()).map(Query).collect();
     let model = Model::new(&bench.compiled, assume);
@@ -270,7 +270,7 @@ impl Shown {
         Shown { active: BTreeSet::new(), outputs: outputs(bench).map(|v| v.value(&state).to_vec()).collect() }
     }
 
-    /// What is otherwise than it was: steps in the order of the program, then outputs.
+    /// The values that are not as they were: steps in the order of the program, then outputs.
     fn changes(&mut self, bench: &Bench, state: &State) -> Vec<Expr> {
         let symbols = &bench.compiled.symbols;
         let active: BTreeSet<StepId> = state.active().filter(|s| symbols.is_listed(*s)).collect();

@@ -1,4 +1,4 @@
-//! What `g7 prove` makes beside its answers: files of tests, and the error of assumptions that
+//! Things that `g7 prove` makes beside its answers: files of tests, and the error of assumptions that
 //! contradict each other.
 
 use std::path::PathBuf;

@@ -50,14 +50,14 @@ fn as_tests_begin(model: &Model<'_>, question: &Question, run: &Run) -> Run {
     }
     let same = g7_verify::replay(model, &question.claim, &longer)
         && match question.claim {
-            // What a state cannot do any more is the same only where the state is.
+            // Equal states cannot do the same any more.
             Claim::NoDeadlock | Claim::LeadsTo { .. } => image(model, run) == image(model, &longer),
             _ => true,
         };
     if same { longer } else { run.clone() }
 }
 
-/// What decides about the future behind a run.
+/// The canonical image behind a run, which decides about its future.
 fn image(model: &Model<'_>, run: &Run) -> Vec<u64> {
     let mut image = Vec::new();
     end(model, run).0.canonical(&model.compiled.program, &mut image);
@@ -171,7 +171,7 @@ fn begins(starts: &[bool], ends: &[bool]) -> Option<usize> {
     Some(starts.iter().skip(from).position(|on| *on)? + from)
 }
 
-/// What holds at a scan between one with `a` and one with `b`: nothing is claimed at one with `b`, nor
+/// The condition at a scan between one with `a` and one with `b`: nothing is claimed at one with `b`, nor
 /// where the time begins with this scan and `a` does not hold.
 fn meanwhile(holds: Expr, a: &Expr, b: &Expr, begins_here: bool) -> Expr {
     let or = |x: Expr, y: Expr| expr(ExprKind::Binary(BinaryOp::Or, Box::new(x), Box::new(y)));

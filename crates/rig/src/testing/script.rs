@@ -91,7 +91,7 @@ impl<'b> Script<'b> {
         plant.is_some_and(|p| p.coupling.to_charts.iter().any(|(_, to)| *to == input))
     }
 
-    /// What must be set to bring the inputs to these values; the plant sets those that it drives.
+    /// The values that must be set to bring the inputs to these values; the plant sets those that it drives.
     fn puts(&self, inputs: &[u64]) -> Vec<(Expr, Expr)> {
         let words = |all: &[u64], item: &Item, first: u32| {
             let from = first as usize;

@@ -61,6 +61,13 @@ impl<'x, 'a> End<'x, 'a> {
         let (bad, unsure) =
             if is_of_scans(claim) { self.of_scans(claim) } else { (self.shows(claim), Signal::FALSE) };
         let unsure = self.x.g().or(unsure, open);
+        let unsure = if is_within(claim) {
+            let beside = self.x.beside.clone();
+            let beside = self.x.g().any(beside);
+            self.x.g().or(unsure, beside)
+        } else {
+            unsure
+        };
         Ok(Asked { bad: self.x.g().and(bad, !stopped), unsure: self.x.g().and(unsure, !stopped) })
     }
 
@@ -258,4 +265,12 @@ pub(crate) fn value_of(x: &mut Exec<'_>, q: Query) -> (Signal, Signal) {
         let holds = x.truth(value);
         (holds, !x.run)
     })
+}
+
+/// True if a claim is about what happens within a scan, in any of its passes.
+fn is_within(claim: &Claim) -> bool {
+    matches!(
+        claim,
+        Claim::Active(_) | Claim::Clears(_) | Claim::Runs(_) | Claim::NoConflict | Claim::NoUnsafe
+    )
 }

@@ -139,8 +139,11 @@ impl<'x, 'a> Scan<'x, 'a> {
             seen.push(self.x.cells().to_vec());
         }
         let on = self.going(changed);
-        let again = self.comes_back(&parts, &seen);
+        let (whole, part) = self.comes_back(&parts, &seen);
+        let again = self.x.g().or(whole, part);
         let unstable = self.x.g().and(on, again);
+        let beside = self.x.g().and(unstable, !whole);
+        self.x.beside.push(beside);
         self.end_search(unstable, FaultKind::Unstable { cycle: 0 });
         let open = self.x.g().and(on, !again);
         if open != Signal::FALSE {
@@ -148,18 +151,18 @@ impl<'x, 'a> Scan<'x, 'a> {
         }
     }
 
-    /// 1 where the last of these states was there before, as a whole or in a part that was
-    /// something else in between.
-    fn comes_back(&mut self, parts: &[Part], seen: &[Vec<Vec<Value>>]) -> Signal {
-        let Some((last, before)) = seen.split_last() else { return Signal::FALSE };
+    /// 1 where the last of these states was there before as a whole; and where a part of it was, and
+    /// was something else in between.
+    fn comes_back(&mut self, parts: &[Part], seen: &[Vec<Vec<Value>>]) -> (Signal, Signal) {
+        let Some((last, before)) = seen.split_last() else { return (Signal::FALSE, Signal::FALSE) };
         let lasting = (0u32..).map(MemoryId).zip(&self.x.e.memories);
         let all: Vec<MemoryId> = lasting
             .filter(|(_, m)| matches!(m.class, Class::Kept | Class::Output))
             .map(|(id, _)| id)
             .collect();
-        let mut again = Vec::new();
+        let (mut whole, mut again) = (Vec::new(), Vec::new());
         for image in before {
-            again.push(alike(self.x, &all, last, image));
+            whole.push(alike(self.x, &all, last, image));
         }
         for part in parts {
             for (image, next) in before.iter().zip(seen.iter().skip(1)) {
@@ -168,7 +171,7 @@ impl<'x, 'a> Scan<'x, 'a> {
                 again.push(self.x.g().and(back, !stayed));
             }
         }
-        self.x.g().any(again)
+        (self.x.g().any(whole), self.x.g().any(again))
     }
 
     /// 1 where the latest pass has changed something.
