@@ -263,7 +263,7 @@ fn two_controllers_do_not_write_the_same_files() {
         assert_eq!(refused.code, 2, "{}", refused.err);
         let says = format!("{file}: another controller uses it");
         assert!(refused.err.contains(&says), "{}", refused.err);
-        assert_eq!(station.get("/healthz", &station.token).0, 200, "the first goes on");
+        assert_eq!(station.get("/operator", &station.token).0, 200, "the first goes on");
         // A controller that was killed leaves the files free.
         drop(station);
         let ran = folder.g7(&again);

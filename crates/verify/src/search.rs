@@ -19,7 +19,7 @@ use crate::monitor::{IDLE, has_memory};
 use crate::question::{Claim, Question};
 use crate::scene::{Extent, Look, Scene, Tried, Until};
 use crate::store::Store;
-use crate::verdict::{Open, Verdict};
+use crate::verdict::Verdict;
 use crate::world::{WAYS, World};
 
 /// Most combinations of inputs that are tried in one state.

@@ -138,8 +138,10 @@ prove always colour < 1.0 with Line
 
 #[test]
 fn a_fault_of_the_plant_hides_what_comes_behind_it() {
-    let text = TANK
-        .replace("  drive low", "  each { IF level > 80.0 THEN level := level / (level - level) END_IF }\n  drive low");
+    let text = TANK.replace(
+        "  drive low",
+        "  each { IF level > 80.0 THEN level := level / (level - level) END_IF }\n  drive low",
+    );
     let found = author(&format!("{text}prove never X1 with Tank\n"));
     assert!(found[0].starts_with("the plant has a fault"), "{found:?}");
 }

@@ -5,8 +5,8 @@ use crate::lexer::Tok;
 use crate::words::St;
 use g7_iec::constant;
 use g7_model::{
-    BinaryOp, Expr, ExprKind, Layout, Name, PlaceAt, Placed, Problem, Property, PropertyKind, Scenario, TestStmt,
-    TestStmtKind, codes, words,
+    BinaryOp, Expr, ExprKind, Layout, Name, PlaceAt, Placed, Problem, Property, PropertyKind, Scenario,
+    TestStmt, TestStmtKind, codes, words,
 };
 
 impl Parser<'_> {
