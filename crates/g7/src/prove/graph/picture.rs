@@ -144,7 +144,7 @@ fn rows(graph: &Named<'_>, names: &[String]) -> Vec<Row> {
         let comes_in = edges.iter().any(|e| e.to == at);
         let lines = mine.len() + usize::from(comes_in);
         let height = lines.max(1) as f64 * LINE + LINE / 4.0;
-        let port = comes_in.then(|| top + (mine.len() as f64 + 0.75) * LINE);
+        let port = comes_in.then_some(top + (mine.len() as f64 + 0.75) * LINE);
         rows.push(Row { top, height, edges: mine, port });
         top += height + GAP;
     }
