@@ -38,7 +38,7 @@ const ALLOWED: &[Arrows] = &[
         &["g7-model", "g7-iec", "g7-engine", "g7-compile", "g7-equations", "g7-draw", "g7-runtime"],
         Some(&["syn"]),
     ),
-    ("verify", &["g7-model", "g7-engine", "g7-compile", "g7-equations"], Some(&["batsat"])),
+    ("verify", &["g7-model", "g7-engine", "g7-compile", "g7-equations", "g7-rig"], Some(&["batsat"])),
     ("host", &["g7-model", "g7-engine"], None),
     ("online", &["g7-model", "g7-engine", "g7-host", "g7-rig"], None),
     ("opcua", &["g7-model", "g7-host", "g7-store", "g7-online"], None),

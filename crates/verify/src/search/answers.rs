@@ -1,5 +1,5 @@
-//! What a search has found becomes answers: runs that show something, states that nothing leaves, and all that
-//! is left over at the end.
+//! Findings of a search become answers: runs that show something, states that nothing leaves, and at the end all
+//! that is left over.
 
 use g7_engine::Fault;
 

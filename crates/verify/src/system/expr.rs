@@ -337,7 +337,7 @@ fn folded(e: &Expr, ty: Type, args: &[Value]) -> Option<(Value, Signal)> {
     };
     match done {
         Ok(word) => Some((Value::of_word(ty, word), Signal::FALSE)),
-        // What does not fit may wrap; the circuits know how.
+        // A value that does not fit may wrap; the circuits know how.
         Err(_) if args.iter().all(|a| matches!(a, Value::Whole(_))) => None,
         Err(_) => Some((Value::zero(ty), Signal::TRUE)),
     }

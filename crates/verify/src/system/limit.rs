@@ -1,10 +1,10 @@
-//! What bits cannot express, with its place.
+//! Parts of a chart that bits cannot express, with their places.
 
 use g7_model::Span;
 
 use crate::sat::Signal;
 
-/// What bits cannot express.
+/// A part that bits cannot express.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Limit {
     /// The subject: "arithmetic of floating-point numbers".

@@ -86,7 +86,7 @@ pub(crate) struct Translated {
     unknown: Vec<Unknown>,
 }
 
-/// What the tests compare with the engine.
+/// The values that the tests compare with the engine.
 #[cfg_attr(not(test), expect(dead_code, reason = "it is compared in the tests"))]
 struct Shown {
     equations: Equations,

@@ -9,7 +9,7 @@
 //!   the period as long as all that is added to them is, so they count periods.
 //! - A memory need not be told apart beyond the greatest number that it, or a memory that it
 //!   is copied to, is ever compared with. Sums with what is not negative keep that order.
-//!   What anything else reads (a difference, a sum that may overflow, an output that is
+//!   A value that anything else reads (a difference, a sum that may overflow, an output that is
 //!   observed) is kept as it is.
 //! - Clocks that are read in another way end at [`LONGEST`], since no run lasts so long.
 
@@ -229,7 +229,7 @@ impl Ranges {
             }
         }
         if needs.moved {
-            // What did not settle is kept as it is.
+            // A need that did not settle is kept as it is.
             needs.needs.fill(None);
         }
         let is_clock = |m: &g7_equations::Memory| {
@@ -263,7 +263,7 @@ fn whole_type(ty: Type) -> Range {
     Range::new(low, high)
 }
 
-/// What the type can hold of a result; without a value it is 0.
+/// The part of a result that the type can hold; without a value it is 0.
 fn fit(ty: Type, r: Range) -> Range {
     if !is_whole(ty) {
         return Range::one(0);

@@ -239,7 +239,7 @@ fn a_fault_ends_the_run() {
     assert!(same(text, 30).faults > 50);
 }
 
-/// What the environment keeps holds at each scan; what it does not, is not tried.
+/// An assumption holds at each scan; inputs that break it are not tried.
 #[test]
 fn assumptions() {
     let text = "profile iec61131\ninput a, b : BOOL\nvar n : INT\noutput q : BOOL\nchart G { initial step 1 step 2 { N q } 1 -> 2 when a 2 -> 1 when b }\n\

@@ -26,7 +26,7 @@ use crate::world::World;
 /// Runs side by side.
 const LANES: usize = 64;
 
-/// What was compared.
+/// The amount that was compared.
 #[derive(Clone, Copy, Debug, Default)]
 struct Count {
     /// Charts.
@@ -137,7 +137,7 @@ impl<'m> Pair<'m> {
         let clear = cells.map(|c| free(&c.iter().flat_map(signals).collect::<Vec<_>>())).collect();
         let asked = translated.asked.iter();
         let sure = asked.map(|a| a.as_ref().is_ok_and(|a| free(&[a.bad, a.unsure]))).collect();
-        // What ends the scan decides all the rest.
+        // The end of the scan decides all the rest.
         let mut ends: Vec<Signal> = translated.shown.faults.iter().map(|f| f.2).collect();
         ends.extend([translated.sound, translated.shown.uncovered]);
         let control = free(&ends);
