@@ -156,7 +156,7 @@ test('rename, declaration and uses by keys', async () => {
   await page.keyboard.press('F12');
   await page.getByText('Line 2, column').waitFor();
   await page.keyboard.press('Shift+F12');
-  await page.locator('.g7-places button').first().waitFor();
+  await page.locator('.g7-places button:focus').waitFor();
   assert.equal(await page.locator('.g7-places button').count(), 3);
   await page.keyboard.press('ArrowDown');
   await page.keyboard.press('Enter');
