@@ -58,6 +58,11 @@ impl<'x, 'a> End<'x, 'a> {
         if matches!(claim, Claim::LeadsTo { .. } | Claim::NoDeadlock | Claim::Asked(_)) {
             return Err("it asks what can follow, not what happens in a scan".to_owned());
         }
+        // In an endless search with a fault, engine and system do not always see the same passes: a chart
+        // of `system/tests/random.rs` (iec60848, seed 1243) shows it. The explicit search answers.
+        if *claim == Claim::NoUnsafe && self.x.model.compiled.program.tables().rules.stable {
+            return Err("under search for stability the passes of a scan are looked at one by one".to_owned());
+        }
         let (bad, unsure) =
             if is_of_scans(claim) { self.of_scans(claim) } else { (self.shows(claim), Signal::FALSE) };
         let unsure = self.x.g().or(unsure, open);
