@@ -1,15 +1,21 @@
 //! All layers: the one place that says which there are.
+//!
+//! The explicit search answers small charts at once, timers included; the solver answers charts with
+//! many sequences side by side. They take turns, and each turn allows several times the work of the one
+//! before. Work is counted in scans and ticks, not in seconds: unless the caller stops it, the
+//! answers depend on the chart alone.
 
 use crate::layer::{Budget, Layer};
 use crate::model::Model;
 use crate::question::Question;
 use crate::sat::Satisfiability;
 use crate::search::Explicit;
-use crate::turns::Turns;
-use crate::verdict::Verdict;
+use crate::verdict::{Verdict, is_open};
 
-/// Turns of the solver that take a moment.
-const FEW: u32 = 5;
+/// Scans of the search in the first turn.
+const SCANS: usize = 200_000;
+/// Turns of the solver in the first turn: they take a moment.
+const SOLVER: u32 = 5;
 
 /// Answers questions with all layers, until the budget is used up. `answers` has an entry for each
 /// question; those that are decided already stay.
@@ -19,7 +25,20 @@ pub fn answer(
     answers: &mut [Option<Verdict>],
     budget: &Budget<'_>,
 ) {
-    Turns.answer(model, questions, answers, budget);
+    let mut scans = SCANS;
+    let mut solver = Satisfiability { turns: SOLVER };
+    loop {
+        let before = answers.to_vec();
+        let small = Budget { scans: scans.min(budget.scans), ..*budget };
+        Explicit.answer(model, questions, answers, &small);
+        solver.answer(model, questions, answers, budget);
+        // More work changes nothing where both have come to their end.
+        if !answers.iter().any(is_open) || (budget.stop)() || before == answers {
+            return;
+        }
+        scans = scans.saturating_mul(16);
+        solver.turns += 4;
+    }
 }
 
 /// The same for a caller whose budget cannot stop a solver: a search within the budget, and then, with
@@ -33,6 +52,6 @@ pub fn attempt(
 ) {
     Explicit.answer(model, questions, answers, budget);
     if solve {
-        Satisfiability { turns: FEW }.answer(model, questions, answers, budget);
+        Satisfiability { turns: SOLVER }.answer(model, questions, answers, budget);
     }
 }

@@ -51,7 +51,7 @@ pub(crate) fn judge(
 ///
 /// # Errors
 ///
-/// The first error of a condition that is asked for.
+/// `holds` gave an error for a condition that the claim needs.
 pub(crate) fn step<E>(
     claim: &Claim,
     memory: u64,

@@ -19,7 +19,7 @@ use crate::monitor::{IDLE, has_memory};
 use crate::question::{Claim, Question};
 use crate::scene::{Extent, Look, Scene, Tried, Until};
 use crate::store::Store;
-use crate::verdict::Verdict;
+use crate::verdict::{Verdict, is_open};
 use crate::world::{WAYS, World};
 
 /// Most combinations of inputs that are tried in one state.
@@ -43,7 +43,6 @@ impl Layer for Explicit {
         answers: &mut [Option<Verdict>],
         budget: &Budget<'_>,
     ) {
-        let is_open = |a: &Option<Verdict>| matches!(a, None | Some(Verdict::Open(_)));
         let rows =
             || questions.iter().enumerate().zip(answers.iter()).filter(|(_, a)| is_open(a)).map(|(q, _)| q);
         let (alone, together): (Vec<_>, Vec<_>) = rows().partition(|(_, q)| has_memory(&q.claim));

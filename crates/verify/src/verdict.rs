@@ -15,6 +15,11 @@ pub enum Verdict {
     Open(Open),
 }
 
+/// True where nothing is decided yet.
+pub fn is_open(answer: &Option<Verdict>) -> bool {
+    matches!(answer, None | Some(Verdict::Open(_)))
+}
+
 /// The evidence of an answer.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Evidence {

@@ -12,7 +12,7 @@ use g7_rig::PlantSide;
 use crate::model::Model;
 use crate::question::Query;
 
-/// The ways in which a plant that draws random numbers may tick.
+/// Number of ways in which the search lets a plant with random numbers tick.
 pub(crate) const WAYS: u8 = 8;
 
 /// The state of the plant.

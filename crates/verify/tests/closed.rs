@@ -100,8 +100,8 @@ fn inputs_that_no_plant_drives_are_free() {
     let text =
         TANK.replace("input low, high", "input low, high, go").replace("when high", "when high and go");
     let asked = "prove X0 leads to X1 with Tank\nprove after high within 1s expect X1 with Tank\n";
-    // Whoever turns `go` may wait, but can always turn it. `high` comes with scan 46 and stays, and the
-    // fifth scan behind it is the first one that is later than a second.
+    // Whoever turns `go` may wait, but can always turn it. `high` is true from scan 46 on. The scans
+    // after it come each 250 ms, so the fifth one is the first that is more than a second later.
     assert_eq!(author(&format!("{text}{asked}")), ["P", "R51"]);
     let assumed = "assume go = high\nprove after high within 1s expect X1 with Tank\n";
     assert_eq!(author(&format!("{text}{assumed}")), ["P"]);

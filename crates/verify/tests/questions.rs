@@ -66,20 +66,7 @@ fn answer(text: &str, is: impl Fn(&Claim) -> bool) -> String {
 
 /// The answers to the author's questions.
 fn author(text: &str) -> Vec<String> {
-    let mine = |c: &Claim| {
-        matches!(
-            c,
-            Claim::Always(_)
-                | Claim::Never(_)
-                | Claim::Reachable(_)
-                | Claim::AtMost(..)
-                | Claim::Within { .. }
-                | Claim::Until { .. }
-                | Claim::Between { .. }
-                | Claim::LeadsTo { .. }
-        )
-    };
-    answers(text).iter().filter(|(c, _)| mine(c)).map(|(_, v)| letter(v)).collect()
+    answers(text).iter().filter(|(c, _)| c.is_own()).map(|(_, v)| letter(v)).collect()
 }
 
 const DOOR: &str = "input a, b : BOOL\noutput m : BOOL\nchart G {\n  initial step 1\n  step 2 { N m }\n  step 3\n  \

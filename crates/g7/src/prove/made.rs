@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use g7_model::{Nanos, ProfileName, PropertyKind};
 use g7_rig::Source;
-use g7_verify::{Asked, Budget, Model, Verdict, stuck};
+use g7_verify::{Asked, Budget, Model, Verdict, is_open, stuck};
 
 use super::patience::Patience;
 use super::{added, cover, save, trace};
@@ -109,7 +109,6 @@ pub(super) fn contradiction(
     answers: &[Option<Verdict>],
     budget: &Budget<'_>,
 ) -> Result<bool, Failure> {
-    let is_open = |a: &Option<Verdict>| !matches!(a, Some(Verdict::Proved(_) | Verdict::Refuted(_)));
     if model.assume.is_empty() || !answers.iter().any(is_open) {
         return Ok(false);
     }

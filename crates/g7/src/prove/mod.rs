@@ -106,7 +106,9 @@ impl File<'_> {
             if made::contradiction(source, &model, profile, &answers, &self.budget)? {
                 self.contradicts = true;
             }
-            if let Some(bench) = trace::bench(source, profile)?.filter(|_| args.save.is_some()) {
+            if args.save.is_some()
+                && let Some(bench) = trace::bench(source, profile)?
+            {
                 let answered = (&*asked.questions, &*answers);
                 save::tests(&mut saved, source, &bench, &model, answered, profile)?;
             }

@@ -29,8 +29,8 @@ impl<'a> Checker<'a> {
         self.steps.literal(self.system, &mut self.solver, 0, s)
     }
 
-    /// True if these cubes, with those that were certified before, are an invariant that
-    /// excludes the signal. Then they are certified too. A solver that stops certifies nothing.
+    /// Checks that no state of a run lies in one of these cubes, or in one certified before, and that then
+    /// the signal is never 1. If so, the cubes are certified too. If the solver was stopped, the answer is false.
     pub(crate) fn certifies(&mut self, cubes: &[Cube], bad: Signal) -> bool {
         let system = self.system;
         if cubes.iter().any(|cube| touches_start(system, cube)) {

@@ -1,9 +1,9 @@
 //! Decides for many signals of a system whether a run shows them: bounded search, induction
 //! and PDR in turns, each with twice the work of the turn before.
 //!
-//! Turns are measured in ticks of the solvers, so answers depend on the system alone as long
-//! as the caller does not stop. A proof counts only if the checker agrees, a run only if
-//! the simulator shows it.
+//! The work of a turn is counted in ticks of the solvers. So the answers depend on the system alone,
+//! unless the caller stops the work. A proof is given only if the checker accepts it, and a run only
+//! if the simulator repeats it.
 
 use crate::sat::bounded::{Bounded, Induction};
 use crate::sat::check::{Checker, certifies_induction};

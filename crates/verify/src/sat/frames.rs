@@ -44,7 +44,7 @@ pub(crate) struct Frames<'a> {
     switches: Vec<Literal>,
     lift: Lift,
     spent: usize,
-    /// Ticks of solvers that were given up.
+    /// Ticks used by solvers that were replaced.
     ticks: u64,
     /// Ticks at which the work stops.
     most: u64,
@@ -214,8 +214,8 @@ impl<'a> Frames<'a> {
         answer
     }
 
-    /// The part of a cube that the solver needed, and one literal more if that could be a
-    /// first state.
+    /// The literals of a cube that the solver needed. If these allow an initial state, one literal that
+    /// excludes it is added.
     fn needed(&self, cube: &[Signal], nexts: &[Literal]) -> Cube {
         let mut smaller: Cube =
             cube.iter().zip(nexts).filter(|(_, l)| self.solver.is_needed(**l)).map(|(s, _)| *s).collect();
@@ -227,7 +227,7 @@ impl<'a> Frames<'a> {
         smaller
     }
 
-    /// The state of the model, as far as the targets and the constraints need it.
+    /// The values of latches and inputs in the solver's model, for those that the targets and constraints depend on.
     fn before(&mut self, targets: &[Signal]) -> Before {
         let system = self.system;
         let (solver, steps) = (&self.solver, &self.steps);

@@ -13,7 +13,7 @@ use crate::sat::dead::{Ends, ends};
 use crate::sat::decide::{Effort, Found, Proof, decide};
 use crate::sat::graph::Signal;
 use crate::system::{Asked, Observed, Translated, system};
-use crate::verdict::{Certificate, Evidence, Open, Run, Verdict};
+use crate::verdict::{Certificate, Evidence, Open, Run, Verdict, is_open};
 
 /// Bounded search, induction and PDR as a layer.
 #[derive(Clone, Copy, Debug)]
@@ -41,7 +41,6 @@ impl Layer for Satisfiability {
         answers: &mut [Option<Verdict>],
         budget: &Budget<'_>,
     ) {
-        let is_open = |a: &Option<Verdict>| matches!(a, None | Some(Verdict::Open(_)));
         let open: Vec<usize> =
             (0..questions.len()).filter(|i| answers.get(*i).is_some_and(is_open)).collect();
         let mine: Vec<Question> = open.iter().filter_map(|i| questions.get(*i)).cloned().collect();

@@ -25,7 +25,7 @@ const ROUNDS: usize = 64;
 /// Nodes beyond which nothing is unrolled further.
 pub(crate) const NODES: usize = 150_000;
 
-/// The state of the execution.
+/// Executes the statements of a scan on signals in place of values.
 pub(crate) struct Exec<'a> {
     pub(crate) e: &'a Equations,
     pub(crate) model: &'a Model<'a>,
@@ -231,7 +231,7 @@ impl<'a> Exec<'a> {
         }
     }
 
-    /// Runs something and takes it back; gives the memories that it changed.
+    /// Executes `f`, restores all memories, and returns the values of those that `f` had changed.
     fn apart(&mut self, f: impl FnOnce(&mut Self)) -> BTreeMap<usize, Vec<Value>> {
         self.before.push(BTreeMap::new());
         f(self);

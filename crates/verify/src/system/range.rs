@@ -22,7 +22,7 @@ use crate::model::Model;
 
 /// 146 years in nanoseconds.
 const LONGEST: i128 = 1 << 62;
-/// Rounds before bounds that still move are given up.
+/// Most rounds: a bound that still changes in the last one becomes that of the type.
 const ROUNDS: usize = 6;
 
 /// The values of a memory.
