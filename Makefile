@@ -26,6 +26,7 @@ TESTS := cargo test $(WORKSPACE) --quiet --lib --bins --tests
 CLIPPY := cargo clippy $(WORKSPACE) --all-targets --quiet -- --deny warnings
 STORIES = cd web && npm run --silent check && G7=$(DEBUG)/g7 npm test --silent | tee $(TALLY)/page.log
 PYTHON := $(abspath $(or $(CARGO_TARGET_DIR),target))/python
+NODE := $(PYTHON)/node
 PAGE := $(shell find web/src web/index.html web/public web/*.ts web/*.js web/*.mjs -type f 2>/dev/null)
 
 .PHONY: run view install online-demo deb sbom static test opcua-bench tally-anew peers lint deny wasm web site pictures page-test page-bench bench bench-check online-bench soak faults book blocks fuzz help FORCE
@@ -67,7 +68,7 @@ static: web
 test: export G7_SKIPS = $(TALLY)/skips
 test: export G7_PEERS = $(PYTHON)
 test: WASM := quick-wasm
-test: tally-anew web $(PYTHON)/bin/pymodbus.simulator
+test: tally-anew web $(PYTHON)/bin/pymodbus.simulator $(NODE)/node_modules/.package-lock.json
 	cargo fmt --all --check
 	@$(call debian,chromium,chromium)
 	@$(call debian,mosquitto_sub,mosquitto mosquitto-clients) || echo "mosquitto cannot be installed: its tests are skipped"
@@ -86,6 +87,12 @@ $(PYTHON)/bin/pymodbus.simulator:
 			$(SUDO) apt-get install -qq --no-install-recommends python3 python3-venv; }; } && \
 		python3 -m venv $(PYTHON) && $(PYTHON)/bin/pip install --quiet 'pymodbus[serial]==3.16.*' 'pysparkplug==0.6.*' 'python-snap7==3.3.*' 'asyncua==2.1.*'; } || \
 		echo "pymodbus, pysparkplug, python-snap7 and asyncua cannot be installed: their tests are skipped"
+
+# Packages of Node that tests talk to.
+$(NODE)/node_modules/.package-lock.json: tests/peers/node/package-lock.json
+	@mkdir -p $(NODE) && cp tests/peers/node/package*.json $(NODE)
+	@cd $(NODE) && npm ci --silent --no-audit --no-fund && touch node_modules/.package-lock.json || \
+		echo "mqtt and sparkplug-payload cannot be installed: their tests are skipped"
 
 tally-anew:
 	@rm -rf $(TALLY) && mkdir -p $(TALLY) && touch $(TALLY)/skips
