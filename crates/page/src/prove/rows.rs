@@ -107,7 +107,7 @@ fn row(file: &File, model: &Model<'_>, number: usize, question: &Question, verdi
         reason: words::reason(verdict, time),
         help: match verdict {
             // The panel has a button for it, and no options.
-            Verdict::Open(open) if open.help.contains("--") => Said::default(),
+            Verdict::Open(open) if open.reason.is_of_budget() => Said::default(),
             Verdict::Proved(_) | Verdict::Refuted(_) | Verdict::Open(_) => words::help(question, verdict),
         },
         from,
