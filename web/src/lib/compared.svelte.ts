@@ -1,6 +1,7 @@
 // A comparison for every sequence of inputs: the visible file beside another one, itself under another
 // profile, an earlier text, or what is read back from an export. A worker of its own searches; the runs
 // that tell them apart are repeated in the page.
+import type { Edge, Lane } from '../run/lanes';
 import { Run } from '../run/state.svelte';
 import { files, type OpenFile } from './files.svelte';
 import { Local, page } from './page';
@@ -29,6 +30,8 @@ export interface Told {
   side: Side;
   look: Look;
   run: Run;
+  /** Inputs, outputs and steps over the whole run. */
+  lanes: readonly Lane[];
 }
 
 class Comparison {
@@ -113,7 +116,8 @@ class Comparison {
     for (const [n, side] of sides.entries()) {
       const look = await page.call<Look>({ do: 'open', file: `\u0000compared/${n}/${side.name}`, text: side.text });
       const started = await page.call<Started>({ do: 'run_start', file: look.file, run: look.file, plant: 'none', profile: side.profile, moves: runs[n] });
-      told.push({ side, look, run: new Run(started, page, false) });
+      const run = new Run(started, page, false);
+      told.push({ side, look, run, lanes: await lanesOf(run) });
     }
     const [left, right] = told;
     if (!mine() || !left || !right) return;
@@ -151,6 +155,17 @@ class Comparison {
     this.#walk++;
     this.playing = false;
   }
+}
+
+/** The edges of all inputs, outputs and steps of a run. */
+async function lanesOf(run: Run): Promise<Lane[]> {
+  const { signals, steps } = run.started;
+  const shown = signals.map((s, lane) => ({ name: s.name, lane, type: s.type, step: false, role: s.role })).filter((s) => s.role === 'input' || s.role === 'output');
+  const active = steps.map((s, i) => ({ name: s.activity, lane: signals.length + i, type: 'bool' as const, step: true, inner: s.inner })).filter((s) => !s.inner);
+  const all = [...shown, ...active];
+  const message = { do: 'run_lanes', run: run.name, signals: all.map((s) => s.lane), from_ms: 0, to_ms: run.end + run.started.period_ms, most: 4000 };
+  const found = await run.answers.call<{ lanes: Edge[][] }>(message);
+  return all.map(({ name, type, step }, i) => ({ name, type, step, edges: found.lanes[i] ?? [] }));
 }
 
 export const comparison = new Comparison();

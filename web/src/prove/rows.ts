@@ -1,13 +1,7 @@
 // The signals of the chronograms of a comparison: inputs and outputs, and the steps that both charts have.
-import type { SignalType } from '../lib/protocol';
+import type { Told } from '../lib/compared.svelte';
 import type { Run } from '../lib/runs.svelte';
-
-export interface Row {
-  name: string;
-  lane: number;
-  type: SignalType;
-  step: boolean;
-}
+import type { Lane } from '../run/lanes';
 
 /** Most rows of one chronogram. */
 const MOST = 14;
@@ -27,14 +21,14 @@ export function differences(run: Run, other: Run): ReadonlySet<string> {
   return found;
 }
 
-/** The rows of one side; if there are too many, those that differ stay. */
-export function rows(run: Run, other: Run): Row[] {
-  const differing = differences(run, other);
-  const there = new Set(other.started.steps.map((s) => s.activity));
-  const from = run.started.signals.length;
-  const signals = run.started.signals.map((s, lane): Row & { shown: boolean } => ({ name: s.name, lane, type: s.type, step: false, shown: s.role === 'input' || s.role === 'output' }));
-  const steps = run.started.steps.map((s, i) => ({ name: s.activity, lane: from + i, type: 'bool' as const, step: true, shown: there.has(s.activity) && !s.inner }));
-  const all = [...signals, ...steps].filter((r) => r.shown);
-  const chosen = new Set([...all.filter((r) => differing.has(r.name)), ...all].slice(0, MOST));
-  return all.filter((r) => chosen.has(r));
+/** The rows of one side: what is ever other than 0 in one of the runs. If there are too many, those that
+ * differ stay. */
+export function rows(told: Told, other: Told): Lane[] {
+  const differing = differences(told.run, other.run);
+  const there = new Set(other.lanes.map((l) => l.name));
+  const moves = (lane: Lane) => lane.edges.length > 1 || lane.edges.some((e) => e[1] !== 0);
+  const moving = new Set([...told.lanes, ...other.lanes].filter(moves).map((l) => l.name));
+  const all = told.lanes.filter((l) => there.has(l.name) && (moving.has(l.name) || differing.has(l.name)));
+  const chosen = new Set([...all.filter((l) => differing.has(l.name)), ...all].slice(0, MOST));
+  return all.filter((l) => chosen.has(l));
 }

@@ -35,11 +35,11 @@ pub(super) struct Refuted<'a> {
 impl Refuted<'_> {
     /// The assumption, as it is written, with its place in the text.
     pub(super) fn assumed(&self) -> Option<(String, Splice)> {
-        let conflict = match self.question.claim {
-            Claim::NoConflict => both(self.file, self.model, self.run),
-            _ => None,
+        let condition = match self.question.claim {
+            // Edges and situations are the chart's own: such a conflict is cured there.
+            Claim::NoConflict => both(self.file, self.model, self.run)?,
+            _ => self.condition()?,
         };
-        let condition = conflict.or_else(|| self.condition())?;
         let text = match condition.strip_prefix("not ") {
             Some(plain) if !plain.contains(' ') => format!("assume {plain}"),
             None if !condition.contains(' ') => format!("assume not {condition}"),

@@ -364,3 +364,51 @@ pub fn unlike(why: &Unlike) -> Said {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use g7_engine::{Builtin, FaultKind};
+
+    use super::{way_on, why};
+    use crate::reason::{Part, Reason};
+
+    #[test]
+    fn each_reason_has_its_sentence_and_way_on_in_each_language() {
+        let mut all = vec![
+            Reason::Stopped,
+            Reason::States(7),
+            Reason::Memory(7),
+            Reason::Scans(7),
+            Reason::Combinations(7),
+            Reason::Values("level".to_owned()),
+            Reason::Inputs,
+            Reason::NoInput(0),
+            Reason::NoInput(7),
+            Reason::Assumptions,
+            Reason::Chance(8),
+            Reason::Plant(FaultKind::DivisionByZero),
+            Reason::Condition(FaultKind::Unstable { cycle: 7 }),
+            Reason::Reports,
+            Reason::Passes(7),
+            Reason::Loops,
+            Reason::Future,
+            Reason::SinglePasses,
+            Reason::NotRepeated,
+        ];
+        let parts = [Part::Floating, Part::Conversion, Part::Product, Part::Division, Part::Random];
+        all.extend(
+            parts
+                .into_iter()
+                .chain([Part::Function(Builtin::Sqrt), Part::Texts, Part::Length])
+                .map(Reason::Part),
+        );
+        for reason in &all {
+            let [english, french, portuguese] = why(reason);
+            assert!(!english.is_empty() && english != french && french != portuguese, "{reason:?}");
+            assert!(![&english, &french, &portuguese].iter().any(|s| s.contains("{}")), "{english}");
+            let ways = way_on(reason).map(|s| !s.is_empty());
+            assert!(ways == [true; 3] || *reason == Reason::Reports, "{reason:?}");
+        }
+        assert_eq!(why(&Reason::NoInput(1))[0], "no input satisfies the assumptions behind a run of 1 scan");
+    }
+}
