@@ -14,6 +14,7 @@ use g7_model::Type;
 use crate::asked::Asking;
 use crate::explore::Move;
 use crate::layer::Budget;
+use crate::reason::Reason;
 use crate::store::Store;
 use crate::values::{Values, values};
 use crate::verdict::Open;
@@ -59,8 +60,24 @@ pub enum Equality {
     },
     /// Not decided.
     Open(Open),
-    /// They cannot be compared: a sentence.
-    Unlike(String),
+    /// They cannot be compared.
+    Unlike(Unlike),
+}
+
+/// The reason why two charts cannot be compared.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Unlike {
+    /// They are scanned at different periods.
+    Periods,
+    /// An output is in one chart only.
+    Only {
+        /// Its name.
+        output: String,
+        /// The chart: 0 is the first, 1 the second.
+        side: usize,
+    },
+    /// The input or output with this name has two types.
+    Types(String),
 }
 
 /// A pair of words of the same meaning.
@@ -79,7 +96,7 @@ struct Input {
 pub fn compare(what: &Compare<'_>, budget: &Budget<'_>) -> Equality {
     match Sides::new(what) {
         Ok(sides) => sides.search(budget),
-        Err(sentence) => Equality::Unlike(sentence),
+        Err(why) => Equality::Unlike(why),
     }
 }
 
@@ -97,11 +114,11 @@ fn of_class(c: &Compiled, class: VarClass) -> impl Iterator<Item = &Variable> {
 }
 
 impl<'c> Sides<'c> {
-    fn new(what: &Compare<'c>) -> Result<Sides<'c>, String> {
+    fn new(what: &Compare<'c>) -> Result<Sides<'c>, Unlike> {
         let [a, b] = what.charts;
         let period = a.symbols.cycle.count().max(1);
         if period != b.symbols.cycle.count().max(1) {
-            return Err("they are scanned at different periods: write the same `scan` in both".to_owned());
+            return Err(Unlike::Periods);
         }
         let asking = [a, b].map(|c| Asking::new(&c.program, std::iter::empty()));
         let mut inputs: Vec<(String, Input)> = Vec::new();
@@ -139,14 +156,14 @@ impl<'c> Sides<'c> {
         for v in of_class(a, VarClass::Output) {
             same_type(a, b, v)?;
             let other = of_class(b, VarClass::Output).find(|o| o.name == v.name);
-            let other = other.ok_or_else(|| only(&v.name, "first"))?;
+            let other = other.ok_or_else(|| only(&v.name, 0))?;
             let pair =
                 |k| Pair { name: v.name.to_string(), at: [Addr(v.addr.0 + k), Addr(other.addr.0 + k)] };
             outputs.extend((0..v.words()).map(pair));
         }
         let gone = of_class(b, VarClass::Output).find(|v| !outputs.iter().any(|o| *o.name == *v.name));
         if let Some(v) = gone {
-            return Err(only(&v.name, "second"));
+            return Err(only(&v.name, 1));
         }
         let steps = if what.situations { steps(a, b) } else { Vec::new() };
         let inputs = inputs.into_iter().map(|(_, i)| i).collect();
@@ -186,25 +203,21 @@ impl<'c> Sides<'c> {
             self.inputs.iter().map(|i| i.values.tried.first().copied().unwrap_or(0)).collect();
         let (mut at, mut level, mut depth, mut scans) = (0usize, 1usize, 0usize, 0usize);
         let mut hole = None;
-        let open = |depth, states, reason: &str, help: &str| {
-            Equality::Open(Open { scans: depth, states, reason: reason.to_owned(), help: help.to_owned() })
-        };
+        let open = |scans, states, reason| Equality::Open(Open { scans, states, reason });
         while at < store.len() {
             if at == level {
                 depth += 1;
                 level = store.len();
             }
             let bytes = store.bytes() + inputs.len() * 8 + parents.len() * 4;
-            if store.len() > budget.states || bytes > budget.bytes {
-                return open(
-                    depth,
-                    store.len(),
-                    "there are more states than allowed",
-                    "allow more with --states or --memory",
-                );
+            if store.len() > budget.states {
+                return open(depth, store.len(), Reason::States(budget.states));
+            }
+            if bytes > budget.bytes {
+                return open(depth, store.len(), Reason::Memory(budget.bytes >> 20));
             }
             if at.is_multiple_of(64) && (budget.stop)() {
-                return open(depth, store.len(), "the search was stopped", "allow more with --time");
+                return open(depth, store.len(), Reason::Stopped);
             }
             let from = store.image(at).to_vec();
             let (own, other) = from.split_at(width.min(from.len()));
@@ -249,12 +262,7 @@ impl<'c> Sides<'c> {
         }
         match hole {
             None => Equality::Equal { states: store.len(), scans },
-            Some(depth) => open(
-                depth,
-                store.len(),
-                "some input takes more values, or more inputs matter at once, than are tried",
-                "compare inputs with constants only, or give them smaller types",
-            ),
+            Some(depth) => open(depth, store.len(), Reason::Inputs),
         }
     }
 
@@ -320,17 +328,17 @@ impl<'c> Sides<'c> {
     }
 }
 
-fn only(name: &str, which: &str) -> String {
-    format!("the output `{name}` is in the {which} chart only")
+fn only(name: &str, side: usize) -> Unlike {
+    Unlike::Only { output: name.to_owned(), side }
 }
 
 /// An input or output has one type in both charts.
-fn same_type(a: &Compiled, b: &Compiled, v: &Variable) -> Result<(), String> {
+fn same_type(a: &Compiled, b: &Compiled, v: &Variable) -> Result<(), Unlike> {
     let shape = |c: &Compiled| -> Option<(Type, u32)> {
         of_class(c, v.class).find(|o| o.name == v.name).map(|o| (o.ty, o.elements))
     };
     match (shape(a), shape(b)) {
-        (Some(x), Some(y)) if x != y => Err(format!("`{}` has two types", v.name)),
+        (Some(x), Some(y)) if x != y => Err(Unlike::Types(v.name.to_string())),
         _ => Ok(()),
     }
 }

@@ -10,7 +10,7 @@
 //! ```
 //!
 //! `model.rs` has the meaning of a run, `question.rs` that of a claim, `verdict.rs` the
-//! answers. `search.rs` visits all states with `engine::scan`; `asked.rs` tells it which
+//! answers, `reason.rs` why there is none. `search.rs` visits all states with `engine::scan`; `asked.rs` tells it which
 //! inputs matter in a state, `values.rs` which values of them. `system` is the chart as a system of
 //! bits, about which `sat` asks a solver. `turns.rs` has both work in turns. [`Explorer::search`] is a
 //! search by moves that its caller chooses, for tests and tools.
@@ -43,6 +43,7 @@ mod look;
 mod model;
 mod monitor;
 mod question;
+mod reason;
 pub mod sat;
 mod scene;
 mod search;
@@ -58,7 +59,7 @@ pub use answer::{answer, attempt};
 pub use ask::{Asked, ask};
 pub use blame::{Blame, blame};
 pub use closed::{Closed, ask_with};
-pub use compare::{Compare, Difference, Equality, compare};
+pub use compare::{Compare, Difference, Equality, Unlike, compare};
 pub use cover::{From, Reached, reach, stuck};
 pub use cubes::Cube;
 pub use explore::{Answer, Bound, Explorer, Limits, Moment, Move, Moves, Next};
@@ -67,6 +68,7 @@ pub use layer::{Budget, Layer};
 pub use look::{replay, seen};
 pub use model::{Model, Part};
 pub use question::{Claim, Query, Question};
+pub use reason::{Part as Unfollowed, Reason};
 pub use sat::Satisfiability;
 pub use scene::Tried;
 pub use search::{Explicit, watch};

@@ -17,6 +17,7 @@ use crate::look::{Passes, Scanned, allowed, passes, shows};
 use crate::model::Model;
 use crate::monitor::{IDLE, has_memory};
 use crate::question::{Claim, Question};
+use crate::reason::Reason;
 use crate::scene::{Extent, Look, Scene, Tried, Until};
 use crate::store::Store;
 use crate::verdict::{Verdict, is_open};
@@ -124,7 +125,7 @@ pub(crate) struct Search<'a> {
     scans: usize,
     depth: usize,
     /// Why not all runs were seen.
-    hole: Option<(String, String)>,
+    hole: Option<Reason>,
     /// The first state in which no input satisfies the assumptions.
     pub(crate) stuck: Option<usize>,
     /// Reports of a scan were cut.
@@ -197,9 +198,7 @@ impl<'a> Search<'a> {
         self.parents.push(0);
         if world.has_chance() {
             self.ways.push(0);
-            let reason = format!("the plant's chance is tried in {WAYS} ways at each tick, of more");
-            let help = "a plant without `random()` and without `arrivals` between two times can be proved";
-            self.hole = Some((reason, help.to_owned()));
+            self.hole = Some(Reason::Chance(WAYS.into()));
         }
         match self.start.last() {
             Some(m) => self.inputs.extend_from_slice(&m.inputs),
@@ -214,8 +213,8 @@ impl<'a> Search<'a> {
                 self.depth += 1;
                 level = self.store.len();
             }
-            if let Some((reason, help)) = self.bound(at) {
-                self.hole = Some((reason, help));
+            if let Some(reason) = self.bound(at) {
+                self.hole = Some(reason);
                 break;
             }
             if !self.expand(at, &mut world, &mut other, &mut image) {
@@ -236,30 +235,29 @@ impl<'a> Search<'a> {
 
     /// How much was seen.
     pub(crate) fn seen(&self) -> Extent {
-        let open = self.hole.clone().map(|(reason, help)| self.so_far(reason, help));
+        let open = self.hole.clone().map(|reason| self.so_far(reason));
         Extent { states: self.store.len(), scans: self.scans, open }
     }
 
     /// Why the search is to stop here.
-    fn bound(&self, at: usize) -> Option<(String, String)> {
+    fn bound(&self, at: usize) -> Option<Reason> {
         let bytes =
             self.store.bytes() + self.parents.len() * 5 + self.inputs.len() * 8 + self.edges.len() * 8;
         if self.store.len() > self.budget.states {
-            return Some((format!("there are more than {} states", self.budget.states), more("--states")));
+            return Some(Reason::States(self.budget.states));
         }
         if bytes > self.budget.bytes {
-            let mib = self.budget.bytes >> 20;
-            return Some((format!("the states need more than {mib} MiB"), more("--memory")));
+            return Some(Reason::Memory(self.budget.bytes >> 20));
         }
         at.is_multiple_of(PATIENCE).then(|| self.stopped()).flatten()
     }
 
     /// Tells that the search is to stop.
-    fn stopped(&self) -> Option<(String, String)> {
+    fn stopped(&self) -> Option<Reason> {
         if self.scans >= self.budget.scans {
-            return Some((format!("more than {} scans are needed", self.budget.scans), more("--time")));
+            return Some(Reason::Scans(self.budget.scans));
         }
-        (self.budget.stop)().then(|| ("the search was stopped".to_owned(), more("--time")))
+        (self.budget.stop)().then_some(Reason::Stopped)
     }
 
     /// Tries all moves of a state; false if it was stopped meanwhile.
@@ -285,8 +283,7 @@ impl<'a> Search<'a> {
             let mut given = last.clone();
             self.way = way;
             if let Err(fault) = world.tick(wait, way, &mut given) {
-                let help = "mend the plant: what the chart does behind its fault is not known".to_owned();
-                self.hole.get_or_insert((format!("the plant has a fault: {}", fault.kind), help));
+                self.hole.get_or_insert(Reason::Plant(fault.kind));
                 tries.tried = true;
                 continue;
             }
@@ -303,9 +300,7 @@ impl<'a> Search<'a> {
             }
         }
         if !tries.tried && self.stuck.is_none() {
-            let reason = format!("no input satisfies the assumptions {}", behind(self.depth));
-            let help = "weaken the assumptions: without inputs there are no runs, and every claim would hold";
-            self.hole = Some((reason, help.to_owned()));
+            self.hole = Some(Reason::NoInput(self.depth));
             self.stuck = Some(at);
         }
         let Tries { on, mut next, .. } = tries;
@@ -426,15 +421,8 @@ impl<'a> Search<'a> {
         if self.hole.is_none() {
             let open = places.iter().find(|i| self.model.inputs.get(**i).is_some_and(|v| !v.whole));
             self.hole = match open {
-                _ if count > MOST => Some((
-                    format!("{} inputs matter at once, in more combinations than are tried", places.len()),
-                    "assume what the environment keeps, such as limit switches that exclude each other"
-                        .to_owned(),
-                )),
-                Some(i) => Some((
-                    format!("the input `{}` takes more values than are tried", self.name(*i)),
-                    "compare it with constants only, or give it a smaller type".to_owned(),
-                )),
+                _ if count > MOST => Some(Reason::Combinations(places.len())),
+                Some(i) => Some(Reason::Values(self.name(*i).to_owned())),
                 None => None,
             };
         }
@@ -488,12 +476,4 @@ impl<'a> Search<'a> {
         let p = self.p;
         self.settle(at, m, scanned.report.err(), |c| shows(p, c, scanned));
     }
-}
-
-fn more(option: &str) -> String {
-    format!("allow more with {option}, or assume what the environment keeps")
-}
-
-fn behind(depth: usize) -> String {
-    if depth == 0 { "at the start".to_owned() } else { format!("behind a run of {depth} scans") }
 }

@@ -3,6 +3,7 @@
 use g7_engine::Fault;
 
 use crate::explore::Move;
+use crate::reason::Reason;
 
 /// The answer to a question.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -71,8 +72,6 @@ pub struct Open {
     pub scans: usize,
     /// Number of states that were visited.
     pub states: usize,
-    /// The reason, a sentence.
-    pub reason: String,
-    /// The way out, a sentence; empty if nothing is known.
-    pub help: String,
+    /// The reason; `words` has its sentence and the way out.
+    pub reason: Reason,
 }

@@ -1,7 +1,7 @@
 //! Charts with their plant: the answers follow from the rules of a tick (the book, "Plants").
 
 use g7_rig::Source;
-use g7_verify::{Budget, Claim, Evidence, Explicit, Layer, Verdict, ask_with, replay};
+use g7_verify::{Budget, Claim, Evidence, Explicit, Layer, Verdict, ask_with, replay, words};
 
 /// A scan each 250 ms; while V is on, 2 are added in each tick, while W is on 2 are taken away.
 const TANK: &str = "\
@@ -42,7 +42,7 @@ fn answers(text: &str, every: bool) -> Vec<(Claim, String)> {
             }
             Verdict::Proved(_) => "P".to_owned(),
             Verdict::Refuted(_) => "R".to_owned(),
-            Verdict::Open(open) => open.reason,
+            Verdict::Open(open) => words::why(&open.reason)[0].clone(),
         };
         (question.claim.clone(), letter)
     };

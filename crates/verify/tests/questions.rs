@@ -4,8 +4,8 @@ use g7_engine::StepId;
 use g7_model::FileId;
 use g7_syntax::parse;
 use g7_verify::{
-    Asked, Budget, Claim, Compare, Difference, Equality, Evidence, Explicit, Layer, Model, Satisfiability,
-    Verdict, ask, compare, replay,
+    Asked, Budget, Claim, Compare, Difference, Equality, Evidence, Explicit, Layer, Model, Reason,
+    Satisfiability, Verdict, ask, compare, replay,
 };
 
 fn budget() -> Budget<'static> {
@@ -204,8 +204,7 @@ fn a_bound_is_told_with_how_far_it_is_sure() {
     let mut answers = vec![None; asked.questions.len()];
     Explicit.answer(&model, &asked.questions, &mut answers, &Budget { states: 100, ..budget() });
     let Some(Some(Verdict::Open(open))) = answers.last() else { panic!("{answers:?}") };
-    assert!(open.scans > 10 && open.states > 100 && open.reason.contains("states"), "{open:?}");
-    assert!(!open.help.is_empty());
+    assert!(open.scans > 10 && open.states > 100 && matches!(open.reason, Reason::States(_)), "{open:?}");
 }
 
 fn compared(a: &str, b: &str, situations: bool) -> Equality {

@@ -5,7 +5,7 @@ use std::io::Write;
 
 use g7_model::ProfileName;
 use g7_rig::Source;
-use g7_verify::{Budget, Compare, Difference, Equality};
+use g7_verify::{Budget, Compare, Equality, words};
 
 use super::trace::Drawer;
 use crate::cli;
@@ -62,11 +62,7 @@ pub(crate) fn compare(args: &cli::Compare) -> Result<failure::Verdict, Failure> 
             let both = <[Drawer; 2]>::try_from(drawers).ok();
             let count = moves.first().map_or(0, Vec::len);
             let scans = if count == 1 { "scan" } else { "scans" };
-            let what = match what {
-                Difference::Output(name) => format!("output `{name}` has two values"),
-                Difference::Step(name) => format!("step {name} is active in one of them only"),
-                Difference::Fault => "a fault stops one of them only, or each has another".to_owned(),
-            };
+            let [what, ..] = words::difference(&what);
             writeln!(out, "{}different{:#}: after {count} {scans} {what}", style::BAD, style::BAD)?;
             for (number, (side, moves)) in (1..).zip(sides.iter().zip(&moves)) {
                 let drawer = both.as_ref().and_then(|b| b.get(number - 1));
@@ -79,16 +75,18 @@ pub(crate) fn compare(args: &cli::Compare) -> Result<failure::Verdict, Failure> 
             Ok(failure::Verdict::Found)
         }
         Equality::Open(open) => {
-            writeln!(out, "{}not decided{:#}: {}", style::WARN, style::WARN, open.reason)?;
+            let ([why, ..], [help, ..]) = (words::why(&open.reason), words::way_on(&open.reason));
+            writeln!(out, "{}not decided{:#}: {why}", style::WARN, style::WARN)?;
             writeln!(
                 out,
                 "  equal for all runs of up to {} scans ({} pairs of states)",
                 open.scans, open.states
             )?;
-            writeln!(out, "  help: {}", open.help)?;
+            writeln!(out, "  help: {help}")?;
             Ok(failure::Verdict::Open)
         }
-        Equality::Unlike(sentence) => {
+        Equality::Unlike(why) => {
+            let [sentence, ..] = words::unlike(&why);
             Err(Failure::Usage(format!("these charts cannot be compared: {sentence}")))
         }
     }

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use g7_model::{Nanos, ProfileName, PropertyKind};
 use g7_rig::Source;
-use g7_verify::{Asked, Budget, Model, Verdict, is_open, stuck};
+use g7_verify::{Asked, Budget, Model, Verdict, is_open, stuck, words};
 
 use super::patience::Patience;
 use super::{added, cover, save, trace};
@@ -87,7 +87,8 @@ pub(super) fn scenarios(
         talk!("  {title} was left out: `g7 test` shows another run than the search");
     }
     if let Some(open) = made.open {
-        talk!("  some run may reach more, or fewer scenarios do: {}; {}", open.reason, open.help);
+        let ([why, ..], [help, ..]) = (words::why(&open.reason), words::way_on(&open.reason));
+        talk!("  some run may reach more, or fewer scenarios do: {why}; {help}");
     }
     Ok(())
 }

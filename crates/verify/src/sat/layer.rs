@@ -9,6 +9,7 @@ use crate::layer::{Budget, Layer};
 use crate::look::replay;
 use crate::model::Model;
 use crate::question::{Claim, Question};
+use crate::reason::Reason;
 use crate::sat::dead::{Ends, ends};
 use crate::sat::decide::{Effort, Found, Proof, decide};
 use crate::sat::graph::Signal;
@@ -74,12 +75,11 @@ fn joined(old: Option<Verdict>, new: Verdict) -> Verdict {
         (Some(Verdict::Open(old)), Verdict::Open(new)) => {
             // A question that the solver could not be asked keeps the reason of the search.
             let further = if new.scans == 0 { &old } else { &new };
-            let (reason, help) = (further.reason.clone(), further.help.clone());
+            let reason = further.reason.clone();
             Verdict::Open(Open {
                 scans: old.scans.max(new.scans),
                 states: old.states.max(new.states),
                 reason,
-                help,
             })
         }
         (_, new) => new,
@@ -139,9 +139,9 @@ impl Work<'_> {
         };
         let proofs = asked.iter().any(|a| matches!(of(a.bad), Found::Never(_)));
         let ends = if proofs { ends(&self.translated.system, self.effort) } else { Ends::None };
-        let one = |(q, a): (&Question, &Result<Asked, String>)| match a {
+        let one = |(q, a): (&Question, &Result<Asked, Reason>)| match a {
             Ok(a) => self.verdict(&q.claim, a, [of(a.bad), of(a.unsure)], &ends),
-            Err(reason) => open(0, reason.clone(), "this is answered by a search of all states only"),
+            Err(reason) => open(0, reason.clone()),
         };
         questions.iter().zip(&self.translated.asked).map(one).collect()
     }
@@ -165,47 +165,23 @@ impl Work<'_> {
                     let proof = Evidence::Certificate(certificate(proof));
                     if claim.is_of_some_run() { Verdict::Refuted(proof) } else { Verdict::Proved(proof) }
                 }
-                Ends::Behind(n) => {
-                    let behind = if *n == 0 {
-                        "at the start".to_owned()
-                    } else {
-                        format!("behind a run of {n} scans")
-                    };
-                    let help = "weaken the assumptions: without inputs there are no runs, and every claim would hold";
-                    open(*n, format!("no input satisfies the assumptions {behind}"), help)
-                }
-                Ends::Open => {
-                    let reason = "it is not known whether some input always satisfies the assumptions";
-                    open(0, reason.to_owned(), "let the assumptions depend on inputs alone, or weaken them")
-                }
+                Ends::Behind(n) => open(*n, Reason::NoInput(*n)),
+                Ends::Open => open(0, Reason::Assumptions),
             },
-            [Found::Never(_), Found::Reached(trace)] => {
-                let reason =
-                    "some scan has more passes or loops than are followed, or a condition has no value there";
-                let help = "make every evolution end first, with an edge (`↑a`) or a step that waits";
-                open(trace.inputs.len() - 1, reason.to_owned(), help)
-            }
-            [Found::Never(_), Found::Open(scans)] | [Found::Open(scans), _] => open(
-                *scans,
-                "the search was stopped".to_owned(),
-                "allow more with --time, or assume what the environment keeps",
-            ),
+            [Found::Never(_), Found::Reached(trace)] => open(trace.inputs.len() - 1, Reason::Loops),
+            [Found::Never(_), Found::Open(scans)] | [Found::Open(scans), _] => open(*scans, Reason::Stopped),
         }
     }
 
     /// A run that the engine does not repeat: the system has more runs than the chart.
     fn limited(&self, bad: Signal, scans: usize) -> Verdict {
         let limits = self.translated.limits(&[bad]);
-        let reason = match limits.first() {
-            Some(limit) => format!("{} can be followed by a search of all states only", limit.reason),
-            None => "please report this: the system and the engine do not agree".to_owned(),
-        };
-        open(scans, reason, "compare the number with constants only, or give it a smaller type")
+        open(scans, limits.first().map_or(Reason::NotRepeated, |limit| Reason::Part(limit.part)))
     }
 }
 
-fn open(scans: usize, reason: String, help: &str) -> Verdict {
-    Verdict::Open(Open { scans, states: 0, reason, help: help.to_owned() })
+fn open(scans: usize, reason: Reason) -> Verdict {
+    Verdict::Open(Open { scans, states: 0, reason })
 }
 
 fn certificate(proof: &Proof) -> Certificate {

@@ -8,6 +8,7 @@ use crate::explore::Move;
 use crate::look::{PASSES, replay};
 use crate::monitor::{IDLE, has_memory, is_of_scans, judge};
 use crate::question::Claim;
+use crate::reason::Reason;
 use crate::verdict::{Certificate, Evidence, Open, Run, Verdict};
 use crate::world::World;
 
@@ -25,10 +26,7 @@ impl<'a> Search<'a> {
                     kept = if has_memory(&q.claim) { seen.memory } else { kept };
                 }
                 Err(fault) => {
-                    let reason = format!("a condition of this property cannot be evaluated: {}", fault.kind);
-                    let help =
-                        "guard it, as in `n > 0 and x / n > 2`, with a condition of its own".to_owned();
-                    self.give(*i, Verdict::Open(self.so_far(reason, help)));
+                    self.give(*i, Verdict::Open(self.so_far(Reason::Condition(fault.kind))));
                 }
             }
         }
@@ -70,8 +68,7 @@ impl<'a> Search<'a> {
         let Some((_, q)) = self.open.iter().find(|(n, _)| *n == i) else { return };
         let claim = &q.claim;
         let verdict = if !replay(self.model, claim, &run) {
-            let help = "please report this: search and engine do not agree".to_owned();
-            Verdict::Open(self.so_far("the run that was found does not show it again".to_owned(), help))
+            Verdict::Open(self.so_far(Reason::NotRepeated))
         } else if claim.is_of_some_run() {
             Verdict::Proved(Evidence::Run(run))
         } else {
@@ -143,20 +140,14 @@ impl<'a> Search<'a> {
     /// Answers what is left over.
     pub(super) fn close(&mut self) {
         let certificate = Certificate::Search { states: self.store.len(), scans: self.scans };
-        let cut = ("a scan does more than it reports".to_owned(), String::new());
-        let cut_passes = (
-            format!("a scan has more than {PASSES} passes"),
-            "make every evolution end first, with an edge (`↑a`) or a step that waits".to_owned(),
-        );
         for (i, q) in std::mem::take(&mut self.open) {
             let hidden = match &q.claim {
-                Claim::Active(_) | Claim::Clears(_) | Claim::Runs(_) => self.cut.then_some(&cut),
-                Claim::NoConflict | Claim::NoUnsafe => self.cut_passes.then_some(&cut_passes),
+                Claim::Active(_) | Claim::Clears(_) | Claim::Runs(_) => self.cut.then_some(Reason::Reports),
+                Claim::NoConflict | Claim::NoUnsafe => self.cut_passes.then_some(Reason::Passes(PASSES)),
                 _ => None,
             };
-            let hole = self.hole.as_ref().or(hidden).cloned();
-            let verdict = match hole {
-                Some((reason, help)) => Verdict::Open(self.so_far(reason, help)),
+            let verdict = match self.hole.clone().or(hidden) {
+                Some(reason) => Verdict::Open(self.so_far(reason)),
                 None if q.claim.is_of_some_run() => {
                     Verdict::Refuted(Evidence::Certificate(certificate.clone()))
                 }
@@ -166,8 +157,8 @@ impl<'a> Search<'a> {
         }
     }
 
-    pub(super) fn so_far(&self, reason: String, help: String) -> Open {
-        Open { scans: self.depth, states: self.store.len(), reason, help }
+    pub(super) fn so_far(&self, reason: Reason) -> Open {
+        Open { scans: self.depth, states: self.store.len(), reason }
     }
 }
 

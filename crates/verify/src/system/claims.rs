@@ -16,6 +16,7 @@ use super::word::{self, Word, width};
 use crate::look::sides;
 use crate::monitor::{IDLE, is_of_scans, step};
 use crate::question::{Claim, Query};
+use crate::reason::{Part, Reason};
 use crate::sat::{Init, Signal};
 
 /// A question in the system.
@@ -51,17 +52,17 @@ impl<'x, 'a> End<'x, 'a> {
     /// # Errors
     ///
     /// Why the claim cannot be asked of one scan after the other.
-    pub(crate) fn asked(&mut self, claim: &Claim) -> Result<Asked, String> {
+    pub(crate) fn asked(&mut self, claim: &Claim) -> Result<Asked, Reason> {
         let open = self.x.uncovered.clone();
         let open = self.x.g().any(open);
         let stopped = self.stopped;
         if matches!(claim, Claim::LeadsTo { .. } | Claim::NoDeadlock | Claim::Asked(_)) {
-            return Err("it asks what can follow, not what happens in a scan".to_owned());
+            return Err(Reason::Future);
         }
         // In an endless search with a fault, engine and system do not always see the same passes: a chart
         // of `system/tests/random.rs` (iec60848, seed 1243) shows it. The explicit search answers.
         if *claim == Claim::NoUnsafe && self.x.model.compiled.program.tables().rules.stable {
-            return Err("under search for stability the passes of a scan are looked at one by one".to_owned());
+            return Err(Reason::SinglePasses);
         }
         let (bad, unsure) =
             if is_of_scans(claim) { self.of_scans(claim) } else { (self.shows(claim), Signal::FALSE) };
@@ -135,7 +136,7 @@ impl<'x, 'a> End<'x, 'a> {
             Some(Value::Real(bits)) => self.x.g().any(bits),
             // The first word of a text is its length.
             Some(Value::Text(_)) => {
-                let free = self.x.unknown(g7_model::Type::Bool, "the length of a text").whole();
+                let free = self.x.unknown(g7_model::Type::Bool, Part::Length).whole();
                 word::is_true(self.x.g(), &free)
             }
             None => Signal::FALSE,

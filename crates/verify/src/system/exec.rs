@@ -18,6 +18,7 @@ use super::limit::{Limit, Unknown};
 use super::value::{Value, choose};
 use super::word;
 use crate::model::Model;
+use crate::reason::Part;
 use crate::sat::{Graph, Signal, System};
 
 /// Rounds of a loop of which it is not known when it ends.
@@ -115,7 +116,7 @@ impl<'a> Exec<'a> {
         self.g().all([path, run, inside])
     }
 
-    pub(crate) fn note_limit(&mut self, reason: &str, bits: &[Signal]) {
+    pub(crate) fn note_limit(&mut self, part: Part, bits: &[Signal]) {
         let symbols = &self.model.compiled.symbols;
         let at = match self.about {
             About::Step(s) => symbols.step_place(s),
@@ -123,7 +124,7 @@ impl<'a> Exec<'a> {
             About::Action(rank) => symbols.actions.get(rank as usize).map_or(Span::default(), |a| a.at),
             About::Nothing | About::Block(_) | About::Watch(_) | About::Order(_) => Span::default(),
         };
-        self.unknown.push(Unknown { limit: Limit { reason: reason.to_owned(), at }, bits: bits.to_vec() });
+        self.unknown.push(Unknown { limit: Limit { part, at }, bits: bits.to_vec() });
     }
 
     /// Statements, one after the other.

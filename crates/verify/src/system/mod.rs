@@ -49,6 +49,7 @@ use crate::explore::Move;
 use crate::look::sides;
 use crate::model::Model;
 use crate::question::{Claim, Question};
+use crate::reason::Reason;
 use crate::sat::{Init, Node, Signal, System};
 use claims::End;
 use exec::Exec;
@@ -74,7 +75,7 @@ pub(crate) struct Translated {
     /// The system. Its list of bad signals is empty.
     pub(crate) system: System,
     /// For each question its signals, or why it cannot be asked in this way.
-    pub(crate) asked: Vec<Result<Asked, String>>,
+    pub(crate) asked: Vec<Result<Asked, Reason>>,
     /// The scan has ended without a fault, and no earlier one had any.
     pub(crate) sound: Signal,
     /// The outputs behind the scan, safe ones behind a fault.
