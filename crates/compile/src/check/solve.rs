@@ -7,6 +7,8 @@
 //! so a formula that fails for all of them is never true.
 
 mod clauses;
+#[cfg(test)]
+mod tests;
 
 use std::cmp::Ordering;
 use std::collections::BTreeMap;
