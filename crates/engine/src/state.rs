@@ -182,6 +182,12 @@ impl State {
         &self.scratch.ran
     }
 
+    /// Empties the lists of [`State::cleared`] and [`State::ran`]. Who makes the passes of a scan one by
+    /// one calls this before each: then the lists have room for all that one pass does.
+    pub fn forget_reports(&mut self) {
+        self.scratch.begin_brisk();
+    }
+
     /// The time in which step times count: ns, or scans under the scan clock.
     #[inline(always)]
     pub(crate) fn clock(&self, p: &Program) -> i64 {

@@ -215,7 +215,7 @@ impl<'p> Explorer<'p> {
             if !changed || !p.tables().rules.stable {
                 break;
             }
-            if made == PASSES {
+            if made == PASSES.min(p.tables().rules.bound) {
                 let mut whole = s.clone();
                 put(p, &mut whole, self.store.image(at));
                 scan(p, &mut whole, &m.inputs, now)?;

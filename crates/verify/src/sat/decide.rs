@@ -9,6 +9,7 @@ use crate::sat::bounded::{Bounded, Induction};
 use crate::sat::check::{Checker, certifies_induction};
 use crate::sat::cone::{Cube, cone};
 use crate::sat::graph::{Signal, System};
+use crate::sat::kept::kept;
 use crate::sat::pdr::{Outcome, Pdr};
 use crate::sat::simulate::{Trace, shows};
 
@@ -36,6 +37,8 @@ pub enum Proof {
 const FIRST: u64 = 4_000;
 /// Signals for which a turn has its ticks each; more share what these have.
 const SHARES: u64 = 8;
+/// Most ticks to find out which candidates are never reached.
+const LEARNING: u64 = 1 << 20;
 /// Most steps of an induction.
 const DEEPEST: usize = 32;
 
@@ -52,6 +55,18 @@ pub struct Effort<'b> {
 /// Decides for each of these signals whether a run shows it.
 pub fn decide(system: &System, signals: &[Signal], effort: &Effort<'_>) -> Vec<Found> {
     Decide::new(system, signals, effort).run()
+}
+
+/// The same, with cubes that are thought never to be reached. Those of which one step shows it help the search.
+pub(crate) fn decide_with(
+    system: &System,
+    signals: &[Signal],
+    candidates: &[Cube],
+    effort: &Effort<'_>,
+) -> Vec<Found> {
+    let mut work = Decide::new(system, signals, effort);
+    work.learn(candidates);
+    work.run()
 }
 
 /// A signal that is not decided.
@@ -93,6 +108,22 @@ impl<'a> Decide<'a> {
             induction: Induction::new(system, effort.stop),
             checker: Checker::new(system, effort.stop),
             lemmas: Vec::new(),
+        }
+    }
+
+    /// Certifies those of these cubes that are never reached, and sees what follows from them at once.
+    fn learn(&mut self, candidates: &[Cube]) {
+        let wanted = self.wanted.iter().map(|w| w.signal);
+        let inside = cone(self.system, self.system.constraints.iter().copied().chain(wanted));
+        let is_inside = |c: &&Cube| c.iter().all(|s| inside.get(s.node() as usize) == Some(&true));
+        let cubes: Vec<Cube> = candidates.iter().filter(is_inside).cloned().collect();
+        if cubes.is_empty() || self.effort.turns == 0 {
+            return;
+        }
+        let Some(cubes) = kept(self.system, cubes, LEARNING, self.effort) else { return };
+        if self.checker.certifies(&cubes, Signal::FALSE) {
+            self.lemmas = cubes;
+            self.prove(FIRST);
         }
     }
 

@@ -11,7 +11,7 @@ use crate::model::Model;
 use crate::question::{Claim, Question};
 use crate::reason::Reason;
 use crate::sat::dead::{Ends, ends};
-use crate::sat::decide::{Effort, Found, Proof, decide};
+use crate::sat::decide::{Effort, Found, Proof, decide_with};
 use crate::sat::graph::Signal;
 use crate::system::{Asked, Observed, Translated, system};
 use crate::verdict::{Certificate, Evidence, Open, Run, Verdict, is_open};
@@ -132,7 +132,8 @@ impl Work<'_> {
         let mut signals: Vec<Signal> = asked.iter().flat_map(|a| [a.bad, a.unsure]).collect();
         signals.sort_unstable();
         signals.dedup();
-        let found = decide(&self.translated.system, &signals, self.effort);
+        let candidates = &self.translated.exclusive;
+        let found = decide_with(&self.translated.system, &signals, candidates, self.effort);
         let of = |s: Signal| {
             let at = signals.binary_search(&s).ok();
             at.and_then(|at| found.get(at)).unwrap_or(&Found::Open(0))

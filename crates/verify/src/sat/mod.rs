@@ -5,6 +5,7 @@
 //! ```text
 //! Question -> layer -> crate::system -> graph -> decide -> bounded, pdr -> solver
 //!                                                       -> check (proofs), simulate (runs)
+//!                                   -> kept (what the chart suggests, as far as it holds) -> decide
 //!                                   -> dead (constraints that cannot be kept)
 //! ```
 //!
@@ -26,14 +27,18 @@ mod dead;
 mod decide;
 mod frames;
 pub mod graph;
+mod kept;
 mod layer;
 mod pdr;
 pub mod simulate;
-mod solver;
 
 pub use aiger::aiger;
+pub(crate) use cone::Cube;
 pub use dead::{Ends, ends};
 pub use decide::{Effort, Found, Proof, decide};
 pub use graph::{Graph, Init, Latch, Node, Signal, System};
 pub use layer::Satisfiability;
 pub use simulate::{Trace, Values, evaluate, shows};
+
+/// The solver is that of `compile` too.
+pub(crate) use g7_sat as solver;

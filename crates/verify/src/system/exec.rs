@@ -44,9 +44,6 @@ pub(crate) struct Exec<'a> {
     pub(crate) faults: Vec<(FaultKind, Span, Signal)>,
     /// A loop goes on, or passes do, beyond what was unrolled.
     pub(crate) uncovered: Vec<Signal>,
-    /// The search for stability does not end because a part comes back: other parts may do more
-    /// in passes that were not unrolled.
-    pub(crate) beside: Vec<Signal>,
     pub(crate) unknown: Vec<Unknown>,
     about: About,
 }
@@ -69,7 +66,6 @@ impl<'a> Exec<'a> {
             inside: Signal::TRUE,
             faults: Vec::new(),
             uncovered: Vec::new(),
-            beside: Vec::new(),
             unknown: Vec::new(),
             about: About::Nothing,
         }
@@ -277,14 +273,13 @@ impl<'a> Exec<'a> {
     /// Looks at what something would give, and leaves no trace of it: memories, faults.
     pub(crate) fn glance<T>(&mut self, f: impl FnOnce(&mut Self) -> T) -> T {
         let (run, inside, path, about) = (self.run, self.inside, self.path, self.about);
-        let (faults, uncovered, beside) = (self.faults.len(), self.uncovered.len(), self.beside.len());
+        let (faults, uncovered) = (self.faults.len(), self.uncovered.len());
         self.before.push(BTreeMap::new());
         let value = f(self);
         self.take_back();
         (self.run, self.inside, self.path, self.about) = (run, inside, path, about);
         self.faults.truncate(faults);
         self.uncovered.truncate(uncovered);
-        self.beside.truncate(beside);
         value
     }
 

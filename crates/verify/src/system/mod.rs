@@ -31,6 +31,7 @@ mod latches;
 mod limit;
 mod moves;
 mod parts;
+mod places;
 mod range;
 mod scan;
 #[cfg(test)]
@@ -50,7 +51,7 @@ use crate::look::sides;
 use crate::model::Model;
 use crate::question::{Claim, Question};
 use crate::reason::Reason;
-use crate::sat::{Init, Node, Signal, System};
+use crate::sat::{Cube, Init, Node, Signal, System};
 use claims::End;
 use exec::Exec;
 use latches::Latches;
@@ -80,6 +81,8 @@ pub(crate) struct Translated {
     pub(crate) sound: Signal,
     /// The outputs behind the scan, safe ones behind a fault.
     pub(crate) outputs: Vec<(MemoryId, Vec<Value>)>,
+    /// Pairs of steps, as a scan begins, that are thought never to be active at once.
+    pub(crate) exclusive: Vec<Cube>,
     /// Activity of each step behind the scan.
     pub(crate) steps: Vec<Signal>,
     shown: Shown,
@@ -138,6 +141,10 @@ pub(crate) fn system(model: &Model<'_>, questions: &[Question], observed: Observ
     let mut system = System::default();
     let (latches, cells) = Latches::new(&e, &ranges, &mut system);
     let mut sources = Sources::new(model);
+    let known = e.by_meaning();
+    let first =
+        |s: u32| known.get(&What::Step(StepId(s))).and_then(|m| cells.get(m.0 as usize)?.first()).cloned();
+    let exclusive = exclusive(t, &system, first);
     let mut x = Exec::new(&e, model, cells, system);
     for (id, m, at) in moves::inputs(&e) {
         let value = sources.memory(model, &mut x.system, m, at);
@@ -151,7 +158,12 @@ pub(crate) fn system(model: &Model<'_>, questions: &[Question], observed: Observ
     let stopped = x.system.latch(Init::Zero);
     let asks = questions.iter().any(|q| q.claim == Claim::NoConflict);
     let rivals = if asks { rivals(t) } else { Vec::new() };
-    let mut scan = Scan::new(&mut x, rivals);
+    let watched = questions.iter().filter_map(|q| match q.claim {
+        Claim::Active(s) => e.find(What::Step(s)),
+        Claim::Runs(rank) => e.find(What::Ran(rank)),
+        _ => None,
+    });
+    let mut scan = Scan::new(&mut x, rivals, watched.collect());
     scan.run(|x| assume(x, model, stopped));
     let sights = scan.sights;
     let mut end = End::new(&mut x, &sights, stopped);
@@ -161,7 +173,6 @@ pub(crate) fn system(model: &Model<'_>, questions: &[Question], observed: Observ
     let over = x.g().or(stopped, !run);
     x.system.set_next(stopped, over);
     let outputs = e.safe.iter().map(|(id, words)| (*id, latches::safe(&mut x, *id, words))).collect();
-    let known = e.by_meaning();
     let steps =
         (0..t.steps.len() as u32).map(|s| x.holds(known.get(&What::Step(StepId(s))).copied())).collect();
     let uncovered = x.uncovered.clone();
@@ -172,7 +183,23 @@ pub(crate) fn system(model: &Model<'_>, questions: &[Question], observed: Observ
     let (system, unknown) = (std::mem::take(&mut x.system), std::mem::take(&mut x.unknown));
     drop(x);
     let shown = Shown { equations: e, cells, caps, faults, uncovered };
-    Translated { system, asked, sound, outputs, steps, shown, sources, unknown }
+    Translated { system, asked, sound, outputs, exclusive, steps, shown, sources, unknown }
+}
+
+/// The pairs of steps of `places.rs`, by what the steps are as a scan begins.
+fn exclusive(t: &Tables, system: &System, step: impl Fn(u32) -> Option<Value>) -> Vec<Cube> {
+    let latch = |s: u32| match step(s)? {
+        Value::Whole(w) => {
+            w.bits().first().copied().filter(|b| matches!(system.graph.node(*b), Node::Latch(_)))
+        }
+        Value::Real(_) | Value::Text(_) => None,
+    };
+    let cube = |(a, b)| {
+        let mut cube = vec![latch(a)?, latch(b)?];
+        cube.sort_unstable();
+        Some(cube)
+    };
+    places::exclusive(t).into_iter().filter_map(cube).collect()
 }
 
 /// The assumptions bind the inputs, unless the scan has met a fault before the evolution.

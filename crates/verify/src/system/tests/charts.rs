@@ -13,7 +13,7 @@ use crate::system::word::Word;
 use crate::system::{Observed, system};
 
 /// Compares a chart with the engine, observed in both ways.
-fn same(text: &str, scans: usize) -> Count {
+pub(super) fn same(text: &str, scans: usize) -> Count {
     let asked = asked(&parsed(text), None).unwrap_or_else(|| panic!("{text}"));
     let mut count = Count::default();
     for observed in [Observed::All, Observed::Asked] {

@@ -2,8 +2,9 @@
 //!
 //! A solver is asked again and again, with other assumptions and more clauses each time. It
 //! asks inside a call whether to stop, and counts what it does in *ticks* (decisions,
-//! assumptions, conflicts and what follows from them, each with its weight). Ticks depend on the clauses alone, never on a clock: work that is divided by
-//! them gives the same answers on every machine.
+//! assumptions, conflicts and what follows from them, each with its weight). Ticks depend on the
+//! clauses alone, never on a clock: work that is divided by them gives the same answers on every
+//! machine.
 
 use std::cell::Cell;
 use std::ops::Not;
@@ -12,10 +13,12 @@ use batsat::{Callbacks, Lit, SolverInterface, SolverOpts, Var, lbool};
 
 /// A variable of a solver or its negation: variable * 2, and 1 more if it is negated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub(crate) struct Literal(u32);
+pub struct Literal(u32);
 
 impl Literal {
-    pub(crate) fn negated_if(self, negate: bool) -> Literal {
+    /// The literal itself, or its negation where `negate` holds.
+    #[must_use]
+    pub fn negated_if(self, negate: bool) -> Literal {
         Literal(self.0 ^ u32::from(negate))
     }
 }
@@ -29,7 +32,7 @@ impl Not for Literal {
 
 /// The answer of a solver.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Answer {
+pub enum Answer {
     /// There is a model: [`Solver::value`].
     Yes,
     /// There is none, because of some assumptions: [`Solver::is_needed`].
@@ -39,7 +42,7 @@ pub(crate) enum Answer {
 }
 
 /// A solver that can be asked again.
-pub(crate) trait Solver {
+pub trait Solver {
     /// A new variable. One that follows from others by its clauses need not be decided.
     fn variable(&mut self, decide: bool) -> Literal;
 
@@ -106,7 +109,7 @@ impl Callbacks for Watch<'_> {
 }
 
 /// The library `batsat`, a solver of the family of MiniSat.
-pub(crate) struct Batsat<'b> {
+pub struct Batsat<'b> {
     inner: batsat::Solver<Watch<'b>>,
     buffer: Vec<Lit>,
     literals: usize,
@@ -115,7 +118,7 @@ pub(crate) struct Batsat<'b> {
 
 impl<'b> Batsat<'b> {
     /// A solver without clauses.
-    pub(crate) fn new(stop: &'b (dyn Fn() -> bool + Sync)) -> Batsat<'b> {
+    pub fn new(stop: &'b (dyn Fn() -> bool + Sync)) -> Batsat<'b> {
         let watch = Watch {
             stop,
             patience: Cell::new(PATIENCE),
