@@ -58,7 +58,9 @@ pub use answer::{answer, attempt};
 pub use ask::{Asked, ask};
 pub use blame::{Blame, blame};
 pub use closed::{Closed, ask_with};
-pub use compare::{Compare, Difference, Equality, compare};
+pub use compare::{
+    Compare, Difference, Equality, compare, compare_by_search, compare_by_solver, miter,
+};
 pub use cover::{From, Reached, reach, stuck};
 pub use cubes::Cube;
 pub use explore::{Answer, Bound, Explorer, Limits, Moment, Move, Moves, Next};

@@ -6,6 +6,8 @@
 //! Question -> layer -> crate::system -> graph -> decide -> bounded, pdr -> solver
 //!                                                       -> check (proofs), simulate (runs)
 //!                                   -> dead (constraints that cannot be kept)
+//!                                   -> traps (what can follow no more), stays (a trap judged by a search)
+//! Compare  -> crate::compare -> joined (two systems as one) -> relate (latches that belong together) -> decide
 //! ```
 //!
 //! # Invariants
@@ -26,14 +28,21 @@ mod dead;
 mod decide;
 mod frames;
 pub mod graph;
+mod joined;
 mod layer;
 mod pdr;
+mod relate;
 pub mod simulate;
 mod solver;
+mod stays;
+mod traps;
+mod unrolled;
 
 pub use aiger::aiger;
 pub use dead::{Ends, ends};
+pub(crate) use decide::decide_related;
 pub use decide::{Effort, Found, Proof, decide};
 pub use graph::{Graph, Init, Latch, Node, Signal, System};
+pub(crate) use joined::{join, mapped};
 pub use layer::Satisfiability;
 pub use simulate::{Trace, Values, evaluate, shows};
