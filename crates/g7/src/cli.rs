@@ -353,6 +353,10 @@ pub(crate) struct Compare {
     /// Compare situations as well as outputs.
     #[arg(long)]
     pub(crate) situations: bool,
+    /// Write both charts as one system in the form of AIGER, for other model checkers: its first bad
+    /// signal is 1 where they differ.
+    #[arg(long, value_name = "FILE")]
+    pub(crate) aiger: Option<PathBuf>,
     /// Stop after this time.
     #[arg(long, value_parser = values::duration, value_name = "TIME", default_value = "60s")]
     pub(crate) time: Nanos,

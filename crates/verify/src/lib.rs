@@ -59,7 +59,9 @@ pub use answer::{answer, attempt};
 pub use ask::{Asked, ask};
 pub use blame::{Blame, blame};
 pub use closed::{Closed, ask_with};
-pub use compare::{Compare, Difference, Equality, Unlike, compare};
+pub use compare::{
+    Compare, Difference, Equality, Unlike, compare, compare_by_search, compare_by_solver, compare_once, miter,
+};
 pub use cover::{From, Reached, reach, stuck};
 pub use cubes::Cube;
 pub use explore::{Answer, Bound, Explorer, Limits, Moment, Move, Moves, Next};

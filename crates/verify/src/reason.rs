@@ -40,8 +40,8 @@ pub enum Reason {
     Part(Part),
     /// The claim is about what can follow, which the solver is not asked.
     Future,
-    /// The claim is about the passes of a scan, which the solver does not see under search for stability.
-    SinglePasses,
+    /// No proof was found that each state leads on within a few scans.
+    LeadsOn,
     /// A run that was found does not show it again in the engine.
     NotRepeated,
 }

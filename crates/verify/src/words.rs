@@ -11,7 +11,7 @@ use crate::question::{Claim, Question};
 use crate::verdict::{Certificate, Evidence, Open, Verdict};
 pub use open::{difference, fault, unlike, way_on, why};
 pub use row::Said;
-use row::{Counted, Row, SCANS, STATES, count, same, say};
+use row::{Counted, PAIRS, Row, SCANS, STATES, count, same, say};
 
 const ACTIVE: Row = ["step {} can be active", "l’étape {} peut être active", "a etapa {} pode estar ativa"];
 const CLEARS: Row =
@@ -135,16 +135,23 @@ pub fn reason(verdict: &Verdict, time: Nanos) -> Said {
                 let fault = say(FAULT, &[fault(stopped.kind)]);
                 say(["{}{}", "{}{}", "{}{}"], &[shown, fault])
             }
-            Evidence::Certificate(Certificate::Search { states, scans }) => {
-                say(SEARCH, &[count(*states, STATES), count(*scans, SCANS)])
-            }
-            Evidence::Certificate(Certificate::Invariant { clauses }) => {
-                say(INVARIANT, &[count(*clauses, CLAUSES)])
-            }
-            Evidence::Certificate(Certificate::Induction { depth }) => {
-                say(INDUCTION, &[count(*depth, SCANS)])
-            }
+            Evidence::Certificate(c) => certificate(c, STATES),
         },
+    }
+}
+
+/// The proof that two charts are equal, in one line: its states are pairs of states.
+pub fn equal(proof: &Certificate) -> Said {
+    certificate(proof, PAIRS)
+}
+
+fn certificate(proof: &Certificate, of_states: Counted) -> Said {
+    match proof {
+        Certificate::Search { states, scans } => {
+            say(SEARCH, &[count(*states, of_states), count(*scans, SCANS)])
+        }
+        Certificate::Invariant { clauses } => say(INVARIANT, &[count(*clauses, CLAUSES)]),
+        Certificate::Induction { depth } => say(INDUCTION, &[count(*depth, SCANS)]),
     }
 }
 

@@ -209,7 +209,8 @@ fn a_bound_is_told_with_how_far_it_is_sure() {
 
 fn compared(a: &str, b: &str, situations: bool) -> Equality {
     let (a, b) = (asked(a), asked(b));
-    compare(&Compare { charts: [&a.compiled, &b.compiled], situations }, &budget())
+    let assume = [a.assume.clone(), b.assume.clone()];
+    compare(&Compare { charts: [&a.compiled, &b.compiled], assume, situations }, &budget())
 }
 
 #[test]

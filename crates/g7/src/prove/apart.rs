@@ -5,14 +5,14 @@ use std::io::Write;
 
 use g7_model::ProfileName;
 use g7_rig::Source;
-use g7_verify::{Budget, Compare, Equality, words};
+use g7_verify::{Budget, Compare, Equality, Unlike, words};
 
 use super::trace::Drawer;
 use crate::cli;
 use crate::failure::{self, Failure};
 use crate::message::talk;
 use crate::report::{self, Tally};
-use crate::{sources, style};
+use crate::{files, sources, style};
 
 /// A chart of a comparison.
 struct Side {
@@ -40,18 +40,22 @@ pub(crate) fn compare(args: &cli::Compare) -> Result<failure::Verdict, Failure> 
     let stop = super::patience::Patience::new()?.within(args.time);
     let bytes = args.memory.saturating_mul(1 << 20);
     let budget = Budget { states: args.states, scans: usize::MAX, bytes, stop: &*stop };
-    let what = Compare { charts: [&a.compiled, &b.compiled], situations: args.situations };
+    let assume = [a.assume.clone(), b.assume.clone()];
+    let assumed = assume.iter().any(|list| !list.is_empty());
+    let what = Compare { charts: [&a.compiled, &b.compiled], assume, situations: args.situations };
+    if let Some(path) = &args.aiger {
+        let system = g7_verify::miter(&what).map_err(unlike)?;
+        files::write(path, &system)?;
+    }
     let mut out = anstream::stdout().lock();
     match g7_verify::compare(&what, &budget) {
-        Equality::Equal { states, scans } => {
+        Equality::Equal(certificate) => {
             let what = if args.situations { "outputs and situations" } else { "outputs" };
-            writeln!(
-                out,
-                "{}equal{:#}: the same {what} for every sequence of inputs",
-                style::GOOD,
-                style::GOOD
-            )?;
-            writeln!(out, "  all {states} pairs of states were visited by {scans} scans")?;
+            let which = if assumed { " that the assumptions of both allow" } else { "" };
+            let good = style::GOOD;
+            writeln!(out, "{good}equal{good:#}: the same {what} for every sequence of inputs{which}")?;
+            let [proof, ..] = words::equal(&certificate);
+            writeln!(out, "  {proof}")?;
             Ok(failure::Verdict::Fine)
         }
         Equality::Apart { moves, what } => {
@@ -85,11 +89,13 @@ pub(crate) fn compare(args: &cli::Compare) -> Result<failure::Verdict, Failure> 
             writeln!(out, "  help: {help}")?;
             Ok(failure::Verdict::Open)
         }
-        Equality::Unlike(why) => {
-            let [sentence, ..] = words::unlike(&why);
-            Err(Failure::Usage(format!("these charts cannot be compared: {sentence}")))
-        }
+        Equality::Unlike(why) => Err(unlike(&why)),
     }
+}
+
+fn unlike(why: &Unlike) -> Failure {
+    let [sentence, ..] = words::unlike(why);
+    Failure::Usage(format!("these charts cannot be compared: {sentence}"))
 }
 
 fn sides(args: &cli::Compare) -> Result<Vec<Side>, Failure> {

@@ -31,7 +31,7 @@ pub(crate) struct Both {
 pub(crate) struct Compared {
     /// `equal`, `apart`, `open`, `unlike`, or `errors`.
     is: &'static str,
-    /// The reason: the first difference, what is in the way, why they cannot be compared.
+    /// The reason: the proof, the first difference, what is in the way, why they cannot be compared.
     reason: Said,
     /// The way on; empty if none is known.
     help: Said,
@@ -57,7 +57,7 @@ pub(crate) fn compared(files: [&File; 2], wish: &Both) -> Result<Compared, Strin
         let wrong = file.problems.iter().any(|p| p.severity() == Severity::Error);
         match ask(&file.source.document, profile) {
             (Some(asked), problems) if !wrong && problems.iter().all(|p| p.severity() != Severity::Error) => {
-                sides.push(asked.compiled);
+                sides.push(asked);
             }
             _ => return Ok(Compared { is: "errors", side: Some(side), ..Compared::default() }),
         }
@@ -69,9 +69,12 @@ pub(crate) fn compared(files: [&File; 2], wish: &Both) -> Result<Compared, Strin
         bytes: wish.limits.mib.min(MOST.mib) << 20,
         stop: &|| false,
     };
-    let what = Compare { charts: [a, b], situations: wish.situations };
-    Ok(match g7_verify::compare(&what, &budget) {
-        Equality::Equal { states, scans } => Compared { is: "equal", states, scans, ..Compared::default() },
+    let assume = [a.assume.clone(), b.assume.clone()];
+    let what = Compare { charts: [&a.compiled, &b.compiled], assume, situations: wish.situations };
+    Ok(match g7_verify::compare_once(&what, &budget) {
+        Equality::Equal(proof) => {
+            Compared { is: "equal", reason: words::equal(&proof), ..Compared::default() }
+        }
         Equality::Apart { moves, what } => Compared {
             is: "apart",
             reason: words::difference(&what),

@@ -11,6 +11,7 @@ use crate::sat::cone::{Cube, cone};
 use crate::sat::graph::{Signal, System};
 use crate::sat::kept::kept;
 use crate::sat::pdr::{Outcome, Pdr};
+use crate::sat::relate::relations;
 use crate::sat::simulate::{Trace, shows};
 
 /// The answer for a signal.
@@ -69,6 +70,25 @@ pub(crate) fn decide_with(
     work.run()
 }
 
+/// The same until a run shows one of them: then it is a shortest one that shows any, and the others stay
+/// open. Begins with relations between latches, which help where the system is two charts side by side;
+/// gives their number, which every proof counts on.
+pub(crate) fn decide_related(
+    system: &System,
+    signals: &[Signal],
+    effort: &Effort<'_>,
+) -> (Vec<Found>, usize) {
+    let mut work = Decide::new(system, signals, effort);
+    work.first = true;
+    let cubes = relations(system, signals, FIRST << effort.turns.min(40), effort);
+    // An invariant by themselves, they hold whatever the signals are.
+    if work.checker.certifies(&cubes, Signal::FALSE) {
+        work.lemmas = cubes;
+    }
+    let count = work.lemmas.len();
+    (work.run(), count)
+}
+
 /// A signal that is not decided.
 struct Wanted<'a> {
     signal: Signal,
@@ -91,6 +111,8 @@ struct Decide<'a> {
     checker: Checker<'a>,
     /// Cubes that the checker certified.
     lemmas: Vec<Cube>,
+    /// A run that shows one signal ends the work.
+    first: bool,
 }
 
 impl<'a> Decide<'a> {
@@ -108,6 +130,7 @@ impl<'a> Decide<'a> {
             induction: Induction::new(system, effort.stop),
             checker: Checker::new(system, effort.stop),
             lemmas: Vec::new(),
+            first: false,
         }
     }
 
@@ -132,10 +155,13 @@ impl<'a> Decide<'a> {
             let ticks = FIRST << turn.min(40);
             // A search that finds nothing is the longest part of a turn.
             self.search(ticks / 4);
+            if self.is_over() {
+                break;
+            }
             let share = |open: usize| ticks * SHARES / SHARES.max(open as u64);
             self.induce(share(self.open().len()) / 4);
             self.prove(share(self.open().len()));
-            if self.open().is_empty() || (self.effort.stop)() {
+            if self.is_over() {
                 break;
             }
         }
@@ -145,6 +171,12 @@ impl<'a> Decide<'a> {
             answer.unwrap_or_else(|| w.long.map_or(Found::Open(steps), Found::Reached))
         });
         rest.collect()
+    }
+
+    /// True if there is nothing left to do, or no time.
+    fn is_over(&self) -> bool {
+        let reached = || self.answers.iter().any(|a| matches!(a, Some(Found::Reached(_))));
+        self.answers.iter().all(Option::is_some) || self.first && reached() || (self.effort.stop)()
     }
 
     /// The numbers of the signals that are not decided, those that depend on little first.
@@ -174,7 +206,7 @@ impl<'a> Decide<'a> {
         let end = self.bounded.ticks() + ticks;
         // Steps that are decided without a tick grow the solver too.
         let mut left = 1 + ticks / 64;
-        while !wanted.is_empty() && self.bounded.ticks() < end && left > 0 && !(self.effort.stop)() {
+        while !wanted.is_empty() && self.bounded.ticks() < end && left > 0 && !self.is_over() {
             if self.bounded.bytes() > self.effort.bytes / 2 {
                 break;
             }

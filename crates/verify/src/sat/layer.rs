@@ -13,7 +13,10 @@ use crate::reason::Reason;
 use crate::sat::dead::{Ends, ends};
 use crate::sat::decide::{Effort, Found, Proof, decide_with};
 use crate::sat::graph::Signal;
-use crate::system::{Asked, Observed, Translated, system};
+use crate::sat::simulate::Trace;
+use crate::sat::stays::{is_trap, shortened};
+use crate::sat::traps::{Clauses, Trap, Way, traps};
+use crate::system::{Asked, Follows, Observed, Translated, system};
 use crate::verdict::{Certificate, Evidence, Open, Run, Verdict, is_open};
 
 /// Bounded search, induction and PDR as a layer.
@@ -51,7 +54,7 @@ impl Layer for Satisfiability {
         }
         let translated = system(model, &mine, Observed::Asked);
         let effort = Effort { bytes: budget.bytes, turns: self.turns, stop: budget.stop };
-        let work = Work { model, translated: &translated, effort: &effort };
+        let work = Work { model, translated: &translated, effort: &effort, budget };
         for (i, verdict) in open.iter().zip(work.verdicts(&mine)) {
             if let Some(slot) = answers.get_mut(*i) {
                 *slot = Some(joined(slot.take(), verdict));
@@ -124,6 +127,7 @@ struct Work<'a> {
     model: &'a Model<'a>,
     translated: &'a Translated,
     effort: &'a Effort<'a>,
+    budget: &'a Budget<'a>,
 }
 
 impl Work<'_> {
@@ -140,11 +144,48 @@ impl Work<'_> {
         };
         let proofs = asked.iter().any(|a| matches!(of(a.bad), Found::Never(_)));
         let ends = if proofs { ends(&self.translated.system, self.effort) } else { Ends::None };
-        let one = |(q, a): (&Question, &Result<Asked, Reason>)| match a {
-            Ok(a) => self.verdict(&q.claim, a, [of(a.bad), of(a.unsure)], &ends),
-            Err(reason) => open(0, reason.clone()),
+        let one = |((q, a), f): ((&Question, &Result<Asked, Reason>), &Option<Follows>)| match (a, f) {
+            (Ok(a), None) => self.verdict(&q.claim, a, [of(a.bad), of(a.unsure)], &ends),
+            (Ok(a), Some(f)) => match self.follows(&q.claim, a, f) {
+                // A proof counts as one of any other claim does.
+                Ok(clauses) => {
+                    let proof = Found::Never(Proof::Invariant(clauses));
+                    self.verdict(&q.claim, a, [&proof, of(a.unsure)], &ends)
+                }
+                Err(verdict) => verdict,
+            },
+            (Err(reason), _) => open(0, reason.clone()),
         };
-        questions.iter().zip(&self.translated.asked).map(one).collect()
+        let t = self.translated;
+        questions.iter().zip(&t.asked).zip(&t.follows).map(one).collect()
+    }
+
+    /// What can follow each state: the clauses of a proof that it is always what the claim asks for, or
+    /// another verdict.
+    fn follows(&self, claim: &Claim, asked: &Asked, follows: &Follows) -> Result<Clauses, Verdict> {
+        let Follows { waits, goal } = *follows;
+        // A value that is not known may be the one that leads on.
+        if let Some(limit) = self.translated.limits(&[waits, goal]).first() {
+            return Err(open(0, Reason::Part(limit.part)));
+        }
+        let t = self.translated;
+        let before = |trace: &Trace| {
+            let scans = trace.inputs.len().saturating_sub(1);
+            t.moves(trace.inputs.get(..scans).unwrap_or(&[]))
+        };
+        let mut judge = |trace: &Trace| is_trap(self.model, claim, &before(trace), self.budget);
+        match traps(&t.system, &Trap { waits, goal, words: &t.words }, self.effort, &mut judge) {
+            Way::Always(clauses) => Ok(clauses),
+            Way::Trap(trace) => {
+                let run = Run { moves: before(&trace), ..Run::default() };
+                if !replay(self.model, claim, &run) {
+                    return Err(self.limited(asked.bad, run.moves.len()));
+                }
+                let run = shortened(self.model, claim, run, self.budget);
+                Err(Verdict::Refuted(Evidence::Run(run)))
+            }
+            Way::Open(scans) => Err(open(scans, Reason::LeadsOn)),
+        }
     }
 
     /// The answer to a question for which this was found of its signal, and of the one that

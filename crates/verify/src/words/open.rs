@@ -97,7 +97,7 @@ pub fn why(reason: &Reason) -> Said {
         | Reason::Reports
         | Reason::Loops
         | Reason::Future
-        | Reason::SinglePasses
+        | Reason::LeadsOn
         | Reason::NotRepeated => say(plain(reason), &[]),
     }
 }
@@ -130,10 +130,10 @@ fn plain(reason: &Reason) -> Row {
             "elle demande ce qui peut suivre, non ce qui arrive dans un cycle",
             "pergunta o que pode seguir-se, não o que acontece num ciclo",
         ],
-        Reason::SinglePasses => [
-            "under search for stability the passes of a scan are looked at one by one",
-            "avec recherche de stabilité, les passages d’un cycle sont vus un à un",
-            "com procura de estabilidade, as passagens de um ciclo são vistas uma a uma",
+        Reason::LeadsOn => [
+            "no proof was found that each state leads on within a few scans",
+            "on n’a pas prouvé que chaque état mène plus loin en quelques cycles",
+            "não se provou que cada estado leva adiante em poucos ciclos",
         ],
         Reason::NotRepeated => [
             "the run that was found does not show it again",
@@ -248,7 +248,12 @@ pub fn way_on(reason: &Reason) -> Said {
             "faites d’abord finir toute évolution, par un front (`↑a`) ou une étape qui attend",
             "faça primeiro terminar toda a evolução, com um flanco (`↑a`) ou uma etapa que espera",
         ],
-        Reason::Future | Reason::SinglePasses => [
+        Reason::LeadsOn => [
+            "allow the search of all states more with --time, or assume what the environment keeps",
+            "accordez plus à la recherche de tous les états avec --time, ou supposez ce que l’environnement respecte",
+            "dê mais à procura de todos os estados com --time, ou suponha o que o ambiente respeita",
+        ],
+        Reason::Future => [
             "this is answered by a search of all states only",
             "seule une recherche de tous les états y répond",
             "só uma procura de todos os estados responde a isto",
@@ -392,7 +397,7 @@ mod tests {
             Reason::Passes(7),
             Reason::Loops,
             Reason::Future,
-            Reason::SinglePasses,
+            Reason::LeadsOn,
             Reason::NotRepeated,
         ];
         let parts = [Part::Floating, Part::Conversion, Part::Product, Part::Division, Part::Random];

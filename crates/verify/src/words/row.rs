@@ -12,6 +12,10 @@ pub(super) const SCANS: Counted =
     [["{} scan", "{} cycle", "{} ciclo"], ["{} scans", "{} cycles", "{} ciclos"]];
 pub(super) const STATES: Counted =
     [["{} state", "{} état", "{} estado"], ["{} states", "{} états", "{} estados"]];
+pub(super) const PAIRS: Counted = [
+    ["{} pair of states", "{} paire d’états", "{} par de estados"],
+    ["{} pairs of states", "{} paires d’états", "{} pares de estados"],
+];
 
 /// A row with its places filled, each with its own language.
 pub(super) fn say(row: Row, with: &[Said]) -> Said {

@@ -142,8 +142,8 @@ impl<'m> Pair<'m> {
         let asked = translated.asked.iter();
         let sure = asked.map(|a| a.as_ref().is_ok_and(|a| free(&[a.bad, a.unsure]))).collect();
         // The end of the scan decides all the rest.
-        let mut ends: Vec<Signal> = translated.shown.faults.iter().map(|f| f.2).collect();
-        ends.extend([translated.sound, translated.shown.uncovered]);
+        let mut ends: Vec<Signal> = translated.faults.iter().map(|f| f.2).collect();
+        ends.extend([translated.sound, translated.uncovered]);
         let control = free(&ends);
         Pair { model, questions, translated, clear, sure, control, touched }
     }
@@ -233,7 +233,7 @@ impl<'m> Pair<'m> {
             count.forbidden += 1;
             return Ok(false);
         }
-        if bit(t.shown.uncovered) {
+        if bit(t.uncovered) {
             count.uncovered += 1;
             return Ok(false);
         }
@@ -310,7 +310,7 @@ impl<'m> Pair<'m> {
 
     fn same_end(&self, fault: &Option<Fault>, bit: impl Fn(Signal) -> bool) -> Result<(), String> {
         let t = &self.translated;
-        let mine: Vec<FaultKind> = t.shown.faults.iter().filter(|f| bit(f.2)).map(|f| f.0).collect();
+        let mine: Vec<FaultKind> = t.faults.iter().filter(|f| bit(f.2)).map(|f| f.0).collect();
         let search = |k: &FaultKind| matches!(k, FaultKind::Unstable { .. } | FaultKind::Bound);
         let alike = match (fault, mine.as_slice()) {
             (None, []) => bit(t.sound),
@@ -372,19 +372,18 @@ impl<'m> Pair<'m> {
 
     fn same_outputs(&self, s: &State, v: &Values, k: usize) -> Result<(), String> {
         let shown = &self.translated.shown;
-        for (id, values) in &self.translated.outputs {
-            let (Some(m), Some(true)) = (shown.equations.memory(*id), self.clear.get(id.0 as usize)) else {
+        for (id, at, values) in &self.translated.outputs {
+            if self.clear.get(id.0 as usize) != Some(&true) {
                 continue;
-            };
+            }
             if shown.caps.get(id.0 as usize).copied().flatten().is_some() {
                 continue;
             }
-            let What::Variable(at) = m.what else { continue };
             for (i, value) in values.iter().enumerate() {
                 let Some(mine) = word_of(value, v, k) else { continue };
                 let theirs = s.words().get(at.0 as usize + i).copied().unwrap_or(0);
                 if mine != theirs {
-                    return Err(format!("output {:?}: {theirs} in the engine, {mine} in the system", m.what));
+                    return Err(format!("output at {at:?}: {theirs} in the engine, {mine} in the system"));
                 }
             }
         }

@@ -1,0 +1,169 @@
+//! Relations between latches: pairs that are equal or opposite, that exclude or imply each other, and
+//! latches that never change.
+//!
+//! Two charts that do the same have steps that are active together, and a proof of it needs to
+//! know which. Random runs show which relations may hold; those that a step does not keep are given up
+//! until all that are left are kept together. After C. A. J. van Eijk, "Sequential equivalence checking
+//! based on structural similarities" (IEEE Transactions on CAD, 2000), with implications as well.
+
+use std::collections::BTreeMap;
+
+use crate::sat::cnf::{Start, Steps};
+use crate::sat::cone::{Cube, cone, next};
+use crate::sat::decide::Effort;
+use crate::sat::graph::{Signal, System};
+use crate::sat::simulate::evaluate;
+use crate::sat::solver::{Answer, Batsat, Literal, Solver};
+
+/// Steps of the random runs, each of which is 64 runs at once.
+const STEPS: usize = 192;
+/// Most latches whose pairs are all looked at.
+const LATCHES: usize = 3000;
+/// Most relations that are tried; equal and opposite pairs come first.
+const MOST: usize = 30_000;
+
+/// Cubes that no run reaches, of one or two latches that these signals depend on. They are kept by
+/// each step together; the caller has them certified. None if the ticks or the time are used up.
+pub(crate) fn relations(system: &System, of: &[Signal], ticks: u64, effort: &Effort<'_>) -> Vec<Cube> {
+    let inside = cone(system, of.iter().chain(&system.constraints).copied());
+    let all = system.latches.iter().enumerate();
+    let latches: Vec<usize> =
+        all.filter(|(_, l)| inside.get(l.signal.node() as usize) == Some(&true)).map(|(i, _)| i).collect();
+    if (effort.stop)() {
+        return Vec::new();
+    }
+    let mut candidates = candidates(system, &latches, &history(system));
+    candidates.truncate(MOST);
+    kept(system, candidates, ticks, effort).unwrap_or_default()
+}
+
+/// The values of each latch in random runs from the first step.
+fn history(system: &System) -> Vec<Vec<u64>> {
+    let mut random = 0x9E37_79B9_7F4A_7C15u64;
+    let mut draw = || {
+        random ^= random << 13;
+        random ^= random >> 7;
+        random ^= random << 17;
+        random
+    };
+    let first = |l: &crate::sat::graph::Latch, free: u64| match l.init.value() {
+        Some(true) => u64::MAX,
+        Some(false) => 0,
+        None => free,
+    };
+    let mut latches: Vec<u64> = system.latches.iter().map(|l| first(l, draw())).collect();
+    let mut inputs: Vec<u64> = system.inputs.iter().map(|_| draw()).collect();
+    let mut history = vec![Vec::with_capacity(STEPS); latches.len()];
+    for step in 0..STEPS {
+        for (row, word) in history.iter_mut().zip(&latches) {
+            row.push(*word);
+        }
+        let values = evaluate(&system.graph, &latches, &inputs);
+        // A run whose inputs break a constraint stays where it is, and tries others.
+        let goes_on = system.constraints.iter().fold(u64::MAX, |w, c| w & values.get(*c));
+        for (l, word) in system.latches.iter().zip(&mut latches) {
+            *word = values.get(l.next) & goes_on | *word & !goes_on;
+        }
+        for word in &mut inputs {
+            *word ^= match step % 3 {
+                0 => draw(),
+                1 => draw() & draw(),
+                _ => draw() & draw() & draw(),
+            };
+        }
+    }
+    history
+}
+
+/// The relations that the runs show no exception to.
+fn candidates(system: &System, latches: &[usize], history: &[Vec<u64>]) -> Vec<Cube> {
+    let none = Vec::new();
+    let row = |i: usize| history.get(i).unwrap_or(&none);
+    let signal = |i: usize| system.latches.get(i).map_or(Signal::FALSE, |l| l.signal);
+    // Latches of a class are equal but for their first value.
+    let mut classes: BTreeMap<Vec<u64>, Vec<Signal>> = BTreeMap::new();
+    let mut heads: Vec<(usize, bool)> = Vec::new();
+    let mut cubes = Vec::new();
+    for i in latches {
+        let negated = row(*i).first().is_some_and(|w| w & 1 != 0);
+        let key: Vec<u64> = row(*i).iter().map(|w| if negated { !w } else { *w }).collect();
+        let mine = signal(*i).negated_if(negated);
+        if key.iter().all(|w| *w == 0) {
+            cubes.push(vec![mine]);
+            continue;
+        }
+        let class = classes.entry(key).or_default();
+        match class.first() {
+            Some(head) => cubes.extend([sorted([*head, !mine]), sorted([!*head, mine])]),
+            None => heads.push((*i, negated)),
+        }
+        class.push(mine);
+    }
+    if heads.len() > LATCHES {
+        return cubes;
+    }
+    for (k, (i, _)) in heads.iter().enumerate() {
+        for (j, _) in heads.iter().skip(k + 1) {
+            let mut seen = [false; 4];
+            for (a, b) in row(*i).iter().zip(row(*j)) {
+                for (s, word) in seen.iter_mut().zip([a & b, a & !b, !a & b, !a & !b]) {
+                    *s |= word != 0;
+                }
+                if seen == [true; 4] {
+                    break;
+                }
+            }
+            let (a, b) = (signal(*i), signal(*j));
+            for (seen, pair) in seen.iter().zip([[a, b], [a, !b], [!a, b], [!a, !b]]) {
+                cubes.extend((!seen).then(|| sorted(pair)));
+            }
+        }
+    }
+    cubes
+}
+
+fn sorted(pair: [Signal; 2]) -> Cube {
+    let mut cube = pair.to_vec();
+    cube.sort_unstable();
+    cube
+}
+
+/// Those of the cubes that no step enters from outside of all of them.
+fn kept(system: &System, mut cubes: Vec<Cube>, ticks: u64, effort: &Effort<'_>) -> Option<Vec<Cube>> {
+    let mut left = ticks;
+    loop {
+        let mut solver = Batsat::new(effort.stop);
+        solver.stop_at(left);
+        let mut steps = Steps::new(system, &mut solver, Start::Any, false);
+        let mut literal = |solver: &mut Batsat<'_>, s: Signal| steps.literal(system, solver, 0, s);
+        let behind: Vec<Vec<Literal>> = cubes
+            .iter()
+            .map(|cube| cube.iter().map(|s| literal(&mut solver, next(system, *s))).collect())
+            .collect();
+        for cube in &cubes {
+            let clause: Vec<Literal> = cube.iter().map(|s| !literal(&mut solver, *s)).collect();
+            solver.add(&clause);
+        }
+        let mut lost = vec![false; cubes.len()];
+        for (i, assumed) in behind.iter().enumerate() {
+            if lost.get(i) == Some(&true) {
+                continue;
+            }
+            match solver.solve(assumed) {
+                Answer::Stopped => return None,
+                Answer::No => {}
+                Answer::Yes => {
+                    for (lost, literals) in lost.iter_mut().zip(&behind) {
+                        *lost |= literals.iter().all(|l| solver.value(*l));
+                    }
+                }
+            }
+        }
+        left = left.saturating_sub(solver.ticks());
+        if !lost.contains(&true) {
+            return Some(cubes);
+        }
+        let mut gone = lost.iter();
+        cubes.retain(|_| gone.next() == Some(&false));
+    }
+}
