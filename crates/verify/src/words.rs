@@ -74,6 +74,10 @@ const SO_FAR: Row = [
 type Counted = [Row; 2];
 const SCANS: Counted = [["{} scan", "{} cycle", "{} ciclo"], ["{} scans", "{} cycles", "{} ciclos"]];
 const STATES: Counted = [["{} state", "{} état", "{} estado"], ["{} states", "{} états", "{} estados"]];
+const ZONES: Counted = [
+    ["{} set of states", "{} ensemble d’états", "{} conjunto de estados"],
+    ["{} sets of states", "{} ensembles d’états", "{} conjuntos de estados"],
+];
 const CLAUSES: Counted =
     [["{} clause", "{} clause", "{} cláusula"], ["{} clauses", "{} clauses", "{} cláusulas"]];
 
@@ -165,6 +169,9 @@ pub fn reason(verdict: &Verdict, time: Nanos) -> Said {
             }
             Evidence::Certificate(Certificate::Search { states, scans }) => {
                 say(SEARCH, &[count(*states, STATES), count(*scans, SCANS)])
+            }
+            Evidence::Certificate(Certificate::Zones { zones, scans }) => {
+                say(SEARCH, &[count(*zones, ZONES), count(*scans, SCANS)])
             }
             Evidence::Certificate(Certificate::Invariant { clauses }) => {
                 say(INVARIANT, &[count(*clauses, CLAUSES)])
