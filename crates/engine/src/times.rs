@@ -14,6 +14,7 @@ use crate::layout::{STARTED, head};
 use crate::number::{arith, call, compare, convert};
 use crate::ops::{Addr, Arith, Block, Builtin, Cmp, Code, Num, Op};
 use crate::program::Program;
+use crate::tables::Receptivity;
 
 /// A time in the image of a state, such as that of a step or a timer.
 #[derive(Clone, Debug)]
@@ -31,7 +32,8 @@ pub struct Time {
 
 #[derive(Clone, Copy, Debug)]
 enum Kind {
-    Stamp(Owner),
+    /// Of a step or a group; whether some code may read it when that is not active.
+    Stamp(Owner, bool),
     /// Of this watch.
     Timer(u32),
     /// Of the control block at this word; place in [`TIMED`].
@@ -62,15 +64,12 @@ impl Time {
     pub fn elapsed(&self, p: &Program, image: &[u64]) -> Elapsed {
         let value = word(image, self.at as usize) as i64;
         let runs = match self.kind {
-            Kind::Stamp(of) => {
-                let active = match of {
-                    Owner::Step(i) => p.layout.steps.contains(image, i),
-                    Owner::Group(i) => word(image, (p.layout.groups + i) as usize) != 0,
-                };
-                if !active {
+            Kind::Stamp(of, lasts) => {
+                let active = is_active(p, image, of);
+                if !active && lasts {
                     return Elapsed::Still(value);
                 }
-                true
+                active
             }
             Kind::Timer(watch) => p.layout.running.contains(image, watch),
             Kind::Block(at, place) => timer_latched(word(image, (at + MEMORY) as usize), place),
@@ -102,15 +101,31 @@ impl Time {
         }
     }
 
-    /// Makes a word that follows the time, and that nobody reads, one of few values: ET of a timer.
-    pub fn smooth(&self, image: &mut [u64]) {
-        if let (Kind::Instance(at, _, true), Some(bounds)) = (self.kind, &self.bounds)
-            && let Some(et) = image.get_mut((at + 3) as usize)
-            && *et != 0
-            && !bounds.contains(&(*et as i64))
-        {
-            *et = UNDER_WAY;
+    /// Makes a word one of few values where nobody reads more of it: the time itself when it is off, and ET
+    /// of a timer.
+    pub fn smooth(&self, p: &Program, image: &mut [u64]) {
+        let Some(bounds) = &self.bounds else { return };
+        match self.kind {
+            Kind::Stamp(of, false) if !is_active(p, image, of) => {
+                image.get_mut(self.at as usize).into_iter().for_each(|w| *w = 0);
+            }
+            Kind::Instance(at, _, true) => {
+                if let Some(et) = image.get_mut((at + 3) as usize)
+                    && *et != 0
+                    && !bounds.contains(&(*et as i64))
+                {
+                    *et = UNDER_WAY;
+                }
+            }
+            _ => {}
         }
+    }
+}
+
+fn is_active(p: &Program, image: &[u64], of: Owner) -> bool {
+    match of {
+        Owner::Step(i) => p.layout.steps.contains(image, i),
+        Owner::Group(i) => word(image, (p.layout.groups + i) as usize) != 0,
     }
 }
 
@@ -132,7 +147,8 @@ impl Program {
             times.push(Time { kind, at, scans, period, bounds: bounds.map(sorted) });
         };
         for s in &c.stamps {
-            add(Kind::Stamp(s.of), s.at, s.scans, code.of_stamp(s.of, s.scans));
+            let bounds = code.of_stamp(s.of, s.scans);
+            add(Kind::Stamp(s.of, code.lasts(s.of)), s.at, s.scans, bounds);
         }
         for timer in &c.timers {
             let times = t.watches.get(timer.watch as usize).and_then(|w| w.times);
@@ -239,6 +255,44 @@ impl Bounds<'_> {
             }
         }
         Some(found)
+    }
+
+    /// True if code may read a time when its step or group is not active. A receptivity is judged only when all
+    /// steps before its transition are active, and `5s/X1` asks for the activity of the step.
+    fn lasts(&self, of: Owner) -> bool {
+        let t = self.code.t;
+        (0..t.code.len()).any(|pc| {
+            let (asks, mine) = match (t.code.get(pc), of) {
+                (Some(Op::StepTime(s) | Op::StepTenths(s) | Op::StepAge(s)), Owner::Step(i)) => {
+                    (Op::Active(*s), s.0 == i)
+                }
+                (Some(Op::GroupTime(g) | Op::GroupAge(g)), Owner::Group(i)) => {
+                    (Op::GroupActive(*g), g.0 == i)
+                }
+                _ => return false,
+            };
+            let before = pc.checked_sub(1).and_then(|b| t.code.get(b));
+            let behind = [pc + 1, pc + 2, pc + 3].map(|at| self.code.op(at));
+            let asked = before == Some(&asks)
+                && self.code.op(pc).is_some()
+                && matches!(behind, [Some(Op::Push(_)), Some(Op::Compare(..)), Some(Op::And)]);
+            mine && !asked && !self.is_of_receptivity(pc, of)
+        })
+    }
+
+    /// True if code stands in the receptivity of a transition behind a step. No other code shares it.
+    fn is_of_receptivity(&self, pc: usize, of: Owner) -> bool {
+        let (t, Owner::Step(step)) = (self.code.t, of) else { return false };
+        let mut mine = t.transitions.iter().filter(|tr| match tr.receptivity {
+            Receptivity::Code(code) => (code.start as usize..code.end as usize).contains(&pc),
+            _ => false,
+        });
+        let follows = |tr: &crate::tables::Transition| {
+            let mut found = false;
+            t.each_from(tr, |s| found |= s == step);
+            found
+        };
+        mine.next().is_some_and(follows) && mine.all(follows)
     }
 
     /// The bounds of the comparison to which a time goes that is pushed at `pc`.

@@ -187,7 +187,7 @@ impl<'a> Clocks<'a> {
                 }
             }
             if let Word::Time(time) = &clock.word {
-                time.smooth(&mut image);
+                time.smooth(self.p, &mut image);
             }
         }
         Some(Moved { shape: Shape { image, runs }, to })
