@@ -3,7 +3,7 @@
 //! # Where this sits
 //!
 //! ```text
-//! model::Document -> ask -> Question, Model -> answer: Layer (search, sat) -> Verdict -> words -> g7 prove, page
+//! model::Document -> ask -> Question, Model -> answer: Layer (search, zones, sat) -> Verdict -> words -> g7 prove, page
 //! rig::Source (with a plant) -> closed -> Question, Model (the same way)
 //!                           two charts      -> compare                    -> Equality -> g7 compare
 //!                           Run             -> blame: the steps and transitions that take part
@@ -11,8 +11,9 @@
 //!
 //! `model.rs` has the meaning of a run, `question.rs` that of a claim, `verdict.rs` the
 //! answers, `reason.rs` why there is none. `search.rs` visits all states with `engine::scan`; `asked.rs` tells it which
-//! inputs matter in a state, `values.rs` which values of them. `system` is the chart as a system of
-//! bits, about which `sat` asks a solver. `turns.rs` has both work in turns. [`Explorer::search`] is a
+//! inputs matter in a state, `values.rs` which values of them. `zones` visits sets of states that
+//! differ in times alone. `system` is the chart as a system of bits, about which `sat` asks a
+//! solver. `answer.rs` has them work in turns. [`Explorer::search`] is a
 //! search by moves that its caller chooses, for tests and tools.
 //!
 //! # Invariants
@@ -54,6 +55,7 @@ mod values;
 mod verdict;
 pub mod words;
 mod world;
+mod zones;
 
 pub use answer::{answer, attempt};
 pub use ask::{Asked, ask};
@@ -77,3 +79,4 @@ pub use search::{Explicit, watch};
 pub use situations::{Edge, Graph, Kind, Node, situations};
 pub use values::{Values, values};
 pub use verdict::{Certificate, Evidence, Open, Run, Verdict, is_open};
+pub use zones::Zones;

@@ -42,6 +42,10 @@ pub enum Reason {
     Future,
     /// No proof was found that each state leads on within a few scans.
     LeadsOn,
+    /// A time is read in another way than by comparing it with constants.
+    Times,
+    /// Too many times side by side decide if some run leads on.
+    ManyTimes,
     /// A run that was found does not show it again in the engine.
     NotRepeated,
 }

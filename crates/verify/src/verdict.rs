@@ -52,6 +52,14 @@ pub enum Certificate {
         /// Number of scans made.
         scans: usize,
     },
+    /// All sets of states were visited, each with any number of times that its clocks may have, by all
+    /// moves that matter.
+    Zones {
+        /// Number of sets.
+        zones: usize,
+        /// Number of scans made.
+        scans: usize,
+    },
     /// An inductive invariant, verified by a checker with a solver of its own.
     Invariant {
         /// Number of its clauses.

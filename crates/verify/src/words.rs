@@ -11,7 +11,7 @@ use crate::question::{Claim, Question};
 use crate::verdict::{Certificate, Evidence, Open, Verdict};
 pub use open::{difference, fault, unlike, way_on, why};
 pub use row::Said;
-use row::{Counted, PAIRS, Row, SCANS, STATES, count, same, say};
+use row::{Counted, PAIRS, Row, SCANS, STATES, ZONES, count, same, say};
 
 const ACTIVE: Row = ["step {} can be active", "l’étape {} peut être active", "a etapa {} pode estar ativa"];
 const CLEARS: Row =
@@ -150,6 +150,7 @@ fn certificate(proof: &Certificate, of_states: Counted) -> Said {
         Certificate::Search { states, scans } => {
             say(SEARCH, &[count(*states, of_states), count(*scans, SCANS)])
         }
+        Certificate::Zones { zones, scans } => say(SEARCH, &[count(*zones, ZONES), count(*scans, SCANS)]),
         Certificate::Invariant { clauses } => say(INVARIANT, &[count(*clauses, CLAUSES)]),
         Certificate::Induction { depth } => say(INDUCTION, &[count(*depth, SCANS)]),
     }

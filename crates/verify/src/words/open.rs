@@ -98,6 +98,8 @@ pub fn why(reason: &Reason) -> Said {
         | Reason::Loops
         | Reason::Future
         | Reason::LeadsOn
+        | Reason::Times
+        | Reason::ManyTimes
         | Reason::NotRepeated => say(plain(reason), &[]),
     }
 }
@@ -134,6 +136,16 @@ fn plain(reason: &Reason) -> Row {
             "no proof was found that each state leads on within a few scans",
             "on n’a pas prouvé que chaque état mène plus loin en quelques cycles",
             "não se provou que cada estado leva adiante em poucos ciclos",
+        ],
+        Reason::Times => [
+            "a time is read in another way than by comparing it with constants",
+            "une durée est lue autrement que comparée à des constantes",
+            "um tempo é lido de outra forma que comparado com constantes",
+        ],
+        Reason::ManyTimes => [
+            "too many times side by side decide if some run leads on",
+            "trop de durées en parallèle décident si une exécution mène plus loin",
+            "demasiados tempos em paralelo decidem se uma execução leva adiante",
         ],
         Reason::NotRepeated => [
             "the run that was found does not show it again",
@@ -257,6 +269,16 @@ pub fn way_on(reason: &Reason) -> Said {
             "this is answered by a search of all states only",
             "seule une recherche de tous les états y répond",
             "só uma procura de todos os estados responde a isto",
+        ],
+        Reason::Times => [
+            "compare it with constants alone",
+            "ne la comparez qu’à des constantes",
+            "compare-o só com constantes",
+        ],
+        Reason::ManyTimes => [
+            "ask for it with fewer times side by side",
+            "posez la question avec moins de durées en parallèle",
+            "pergunte com menos tempos em paralelo",
         ],
         Reason::NotRepeated => [
             "please report this: search and engine do not agree",
@@ -398,6 +420,8 @@ mod tests {
             Reason::Loops,
             Reason::Future,
             Reason::LeadsOn,
+            Reason::Times,
+            Reason::ManyTimes,
             Reason::NotRepeated,
         ];
         let parts = [Part::Floating, Part::Conversion, Part::Product, Part::Division, Part::Random];

@@ -16,6 +16,10 @@ pub(super) const PAIRS: Counted = [
     ["{} pair of states", "{} paire d’états", "{} par de estados"],
     ["{} pairs of states", "{} paires d’états", "{} pares de estados"],
 ];
+pub(super) const ZONES: Counted = [
+    ["{} set of states", "{} ensemble d’états", "{} conjunto de estados"],
+    ["{} sets of states", "{} ensembles d’états", "{} conjuntos de estados"],
+];
 
 /// A row with its places filled, each with its own language.
 pub(super) fn say(row: Row, with: &[Said]) -> Said {
