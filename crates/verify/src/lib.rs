@@ -38,6 +38,7 @@ mod compare;
 mod cover;
 mod cubes;
 mod explore;
+mod export;
 mod inputs;
 mod layer;
 mod look;
@@ -67,6 +68,7 @@ pub use compare::{
 pub use cover::{From, Reached, reach, stuck};
 pub use cubes::Cube;
 pub use explore::{Answer, Bound, Explorer, Limits, Moment, Move, Moves, Next};
+pub use export::{Exported, Row, exported};
 pub use inputs::{Inputs, Which};
 pub use layer::{Budget, Layer};
 pub use look::{replay, seen};

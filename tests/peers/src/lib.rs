@@ -7,6 +7,7 @@
 #![forbid(unsafe_code)]
 #![allow(clippy::disallowed_methods, reason = "tests look at the machine that they run on")]
 
+pub mod checkers;
 #[cfg(feature = "crowd")]
 pub mod crowd;
 pub mod faults;
