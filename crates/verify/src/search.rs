@@ -197,9 +197,6 @@ impl<'a> Search<'a> {
         self.parents.push(0);
         if world.has_chance() {
             self.ways.push(0);
-            let reason = format!("the plant's chance is tried in {WAYS} ways at each tick, of more");
-            let help = "a plant without `random()` and without `arrivals` between two times can be proved";
-            self.hole = Some((reason, help.to_owned()));
         }
         match self.start.last() {
             Some(m) => self.inputs.extend_from_slice(&m.inputs),
@@ -284,7 +281,16 @@ impl<'a> Search<'a> {
             world.put(own);
             let mut given = last.clone();
             self.way = way;
-            if let Err(fault) = world.tick(wait, way, &mut given) {
+            let ticked = world.tick(wait, way, &mut given);
+            if way > 0 && !world.drew() {
+                break;
+            }
+            if world.drew() && self.hole.is_none() {
+                let reason = format!("the plant's chance is tried in {WAYS} ways at each tick, of more");
+                let help = "a plant whose ticks draw no random number can be proved";
+                self.hole = Some((reason, help.to_owned()));
+            }
+            if let Err(fault) = ticked {
                 let help = "mend the plant: what the chart does behind its fault is not known".to_owned();
                 self.hole.get_or_insert((format!("the plant has a fault: {}", fault.kind), help));
                 tries.tried = true;
