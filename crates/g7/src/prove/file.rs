@@ -1,6 +1,5 @@
 //! The questions of one file with their answers, as `g7 prove` prints them.
 
-use std::collections::BTreeMap;
 use std::path::Path;
 
 use g7_model::{Nanos, Problem};
@@ -8,36 +7,14 @@ use g7_rig::Source;
 use g7_rig::testing::plants;
 use g7_verify::{Budget, Evidence, Model, Question, Verdict, answer, ask, ask_with, is_open, words};
 
+use super::found::{Answered, Found, LISTED};
 use super::made;
-use super::output::Answered;
 use super::patience::{Patience, Phase, Progress, Share, Stop};
 use super::{guilt, sarif, save, trace};
 use crate::cli::{Answers, Prove};
 use crate::failure::Failure;
 use crate::report::{self, Tally};
 use crate::sources;
-
-/// Questions without an answer that are listed for a file, unless all are wanted.
-pub(super) const LISTED: usize = 12;
-
-/// The result of a file.
-#[derive(Default)]
-pub(super) struct Found {
-    /// Its name in messages.
-    pub(super) name: String,
-    /// The answers, in the order of the questions.
-    pub(super) answers: Vec<Answered>,
-    /// The number of further questions that are not decided, by their rules.
-    pub(super) more: BTreeMap<&'static str, usize>,
-    /// The problems of its text, and those that contradicting assumptions are.
-    pub(super) tally: Tally,
-    /// The problems in words, with excerpts of the text.
-    pub(super) trouble: String,
-    /// Why nothing was asked.
-    pub(super) unasked: Option<String>,
-    /// A search was stopped before all was decided.
-    pub(super) is_stopped: bool,
-}
 
 /// The work on a file.
 pub(super) struct Work {
@@ -153,15 +130,23 @@ impl File<'_> {
         answer(model, questions, &mut answers, &self.work.budget(&stop));
         self.found.is_stopped |= stop() && answers.iter().any(is_open);
         self.work.progress.enter(Phase::Tell);
-        let mut open = 0;
+        let mut reason: Option<(&Verdict, String)> = None;
         for (question, verdict) in questions.iter().zip(&answers) {
             let Some(verdict) = verdict else { continue };
-            if matches!(verdict, Verdict::Open(_)) && !question.claim.is_own() {
-                open += 1;
-                if open > LISTED && !self.work.tells_all() {
-                    *self.found.more.entry(sarif::rule(&question.claim)).or_default() += 1;
+            if matches!(verdict, Verdict::Open(_)) && !question.claim.is_own() && !self.work.tells_all() {
+                // Most of many questions have the reason of the one before.
+                let known = reason.take().filter(|(v, _)| *v == verdict).map(|(_, words)| words);
+                let words = known.unwrap_or_else(|| {
+                    let [words, ..] = words::reason(verdict, Nanos::ZERO);
+                    words
+                });
+                let more = self.found.more.entry(words.clone()).or_default();
+                reason = Some((verdict, words));
+                if more.listed >= LISTED {
+                    *more.hidden.entry(sarif::rule(&question.claim)).or_default() += 1;
                     continue;
                 }
+                more.listed += 1;
             }
             let mut one = self.answered(model, question, verdict)?;
             if let Some(plant) = plant.filter(|_| !one.own) {

@@ -1,12 +1,12 @@
 //! Answers as a JUnit report, for build servers.
 //!
-//! The format has no standard; the elements and attributes are those of the schema `junit-10.xsd` of Jenkins (xUnit
-//! plugin), which other readers understand too: a suite for each file, a case for each question. What is refuted is a failure, what is not decided is skipped, a file that cannot be
-//! asked is an error.
+//! The format has no standard; the elements and attributes are those of the schema `junit-10.xsd` of Jenkins
+//! (xUnit plugin), which other readers understand too: a suite for each file, a case for each question. What is
+//! refuted is a failure, what is not decided is skipped, a file that cannot be asked is an error.
 
 use g7_verify::Verdict;
 
-use super::file::Found;
+use super::found::Found;
 use super::output::{counts, trouble};
 use crate::testing::escape;
 

@@ -5,6 +5,7 @@ mod added;
 mod apart;
 mod cover;
 mod file;
+mod found;
 mod graph;
 mod guilt;
 mod junit;
@@ -22,7 +23,8 @@ use g7_verify::Verdict;
 pub(crate) use apart::{compare, read_back};
 pub(crate) use graph::{Graph, graph};
 
-use file::{Found, Work};
+use file::Work;
+use found::Found;
 use patience::{Patience, Phase, Progress, Share};
 
 use crate::cli::{Answers, Prove};
@@ -49,7 +51,7 @@ pub(crate) fn prove(args: &Prove) -> Result<failure::Verdict, Failure> {
     }
     let is_open = |f: &Found| {
         let open = f.answers.iter().any(|a| matches!(a.verdict, Verdict::Open(_)));
-        open || !f.more.is_empty() || f.unasked.is_some()
+        open || f.hidden() > 0 || f.unasked.is_some()
     };
     let open = all.iter().any(is_open);
     match args.format {

@@ -1,37 +1,14 @@
 //! Prints answers, for people and programs.
 
+use std::collections::BTreeSet;
 use std::io::Write;
 
 use g7_verify::{Evidence, Verdict, words};
 use serde_json::{Value, json};
 
-use super::file::{Found, LISTED};
+use super::found::{Answered, Found, LISTED};
 use crate::failure::Failure;
 use crate::style;
-
-/// An answered question, ready to be printed.
-pub(crate) struct Answered {
-    /// `path:line:column` of what is asked about.
-    pub(crate) place: String,
-    /// The claim in words.
-    pub(crate) claim: String,
-    /// The author wrote it.
-    pub(crate) own: bool,
-    /// The evidence in one line.
-    pub(crate) reason: String,
-    /// The steps and transitions that break the claim, in a sentence; empty where nothing is to be added.
-    pub(crate) guilt: String,
-    /// The way out; empty where none is known.
-    pub(crate) help: String,
-    /// The answer.
-    pub(crate) verdict: Verdict,
-    /// The run that shows it, drawn; empty without one.
-    pub(crate) chronogram: String,
-    /// The question by its short name.
-    pub(crate) rule: &'static str,
-    /// The scans of the run, each in words.
-    pub(crate) scans: Vec<String>,
-}
 
 pub(super) fn word(verdict: &Verdict) -> String {
     let [word, ..] = words::verdict(verdict);
@@ -46,30 +23,30 @@ pub(super) fn text(found: &Found, all: bool) -> Result<(), Failure> {
         writeln!(out, "{}: {style}not decided{style:#}: {why}", found.name)?;
         writeln!(out, "  help: allow more with --time")?;
     }
-    for (k, a) in found.answers.iter().enumerate() {
+    let mut told: BTreeSet<&str> = BTreeSet::new();
+    for a in &found.answers {
         let proved = matches!(a.verdict, Verdict::Proved(_));
-        if proved && !a.own && !all {
+        if proved && !a.own && !all || !all && is_open(a) && told.contains(&*a.reason) {
             continue;
         }
-        let group: Vec<&Answered> = found.answers.iter().filter(|b| is_like(a, b)).collect();
-        let hidden: usize = found.more.values().sum();
-        if !all && group.len() + hidden > 1 && is_like(a, a) {
+        if !all && is_open(a) {
             // All of one reason stand where the first of them does.
-            let is_first = found.answers.iter().position(|b| is_like(a, b)) == Some(k);
-            if is_first {
+            told.insert(&a.reason);
+            let group: Vec<&Answered> =
+                found.answers.iter().filter(|b| is_open(b) && b.reason == a.reason).collect();
+            if group.len() > 1 {
                 undecided(&mut out, found, &group)?;
+                continue;
             }
-            continue;
         }
         one(&mut out, a, proved && !all)?;
     }
     Ok(())
 }
 
-/// True for answers of every chart that are not decided for one reason.
-fn is_like(a: &Answered, b: &Answered) -> bool {
-    let open = |a: &Answered| !a.own && matches!(a.verdict, Verdict::Open(_));
-    open(a) && open(b) && (&a.reason, &a.help) == (&b.reason, &b.help)
+/// True for a question of every chart that is not decided.
+fn is_open(a: &Answered) -> bool {
+    !a.own && matches!(a.verdict, Verdict::Open(_))
 }
 
 fn one(out: &mut impl Write, a: &Answered, short: bool) -> Result<(), Failure> {
@@ -101,15 +78,15 @@ fn one(out: &mut impl Write, a: &Answered, short: bool) -> Result<(), Failure> {
 /// Prints questions that are not decided for one reason: the first ones with their places.
 fn undecided(out: &mut impl Write, found: &Found, group: &[&Answered]) -> Result<(), Failure> {
     let Some(first) = group.first() else { return Ok(()) };
-    let (style, hidden) = (style::WARN, found.more.values().sum::<usize>());
-    let n = group.len() + hidden;
+    let style = style::WARN;
+    let mut more = found.more.get(&first.reason).map(|m| m.hidden.clone()).unwrap_or_default();
+    let n = group.len() + more.values().sum::<usize>();
     writeln!(out, "{}: {style}not decided{style:#}: {n} questions", found.name)?;
     writeln!(out, "  of each: {}", first.reason)?;
     for a in group.iter().take(LISTED) {
         let place = a.place.strip_prefix(&found.name).unwrap_or(&a.place).trim_start_matches(':');
         writeln!(out, "  {place}: {}", a.claim)?;
     }
-    let mut more = found.more.clone();
     for a in group.iter().skip(LISTED) {
         *more.entry(a.rule).or_default() += 1;
     }
@@ -140,16 +117,12 @@ pub(super) fn summary(all: &[Found], stopped: Option<&str>) -> Result<(), Failur
 pub(super) fn counts(all: &[Found]) -> [usize; 3] {
     let mut counts = [0; 3];
     let answers = all.iter().flat_map(|f| &f.answers);
-    for (place, n) in answers.map(|a| (place(&a.verdict), 1)).chain(hidden(all).map(|n| (2, n))) {
+    for (place, n) in answers.map(|a| (place(&a.verdict), 1)).chain(all.iter().map(|f| (2, f.hidden()))) {
         if let Some(count) = counts.get_mut(place) {
             *count += n;
         }
     }
     counts
-}
-
-fn hidden(all: &[Found]) -> impl Iterator<Item = usize> + '_ {
-    all.iter().flat_map(|f| f.more.values().copied())
 }
 
 fn place(verdict: &Verdict) -> usize {

@@ -9,8 +9,8 @@ use std::io::Write;
 use g7_verify::{Claim, Verdict};
 use serde_json::{Value, json};
 
-use super::file::Found;
-use super::output::{Answered, trouble, word};
+use super::found::{Answered, Found};
+use super::output::{trouble, word};
 use crate::failure::Failure;
 
 /// The questions as rules: name, and what is claimed.
