@@ -3,6 +3,7 @@
 
 use crate::model::Model;
 use crate::question::Question;
+use crate::reason::{Part as Unfollowed, Reason};
 use crate::sat::{Signal, aiger};
 use crate::system::{Observed, system};
 
@@ -12,7 +13,7 @@ pub struct Exported {
     /// The bytes of the file, AIGER 1.9. One step of it is one scan.
     pub file: Vec<u8>,
     /// For each question its place in the file, or why it cannot be asked of one scan after the other.
-    pub rows: Vec<Result<Row, String>>,
+    pub rows: Vec<Result<Row, Reason>>,
 }
 
 /// The place of a question in a file.
@@ -23,7 +24,7 @@ pub struct Row {
     /// The number of the one that is 1 behind a scan that is not followed to its end.
     pub unsure: usize,
     /// The reasons why the file has more runs than the chart, as far as the question depends on them.
-    pub limits: Vec<String>,
+    pub limits: Vec<Unfollowed>,
 }
 
 /// Writes the questions of a chart.
@@ -31,10 +32,14 @@ pub fn exported(model: &Model<'_>, questions: &[Question]) -> Exported {
     let translated = system(model, questions, Observed::Asked);
     let mut bad: Vec<Signal> = Vec::new();
     let mut rows = Vec::new();
-    for asked in &translated.asked {
-        rows.push(asked.clone().map(|asked| {
+    for (asked, follows) in translated.asked.iter().zip(&translated.follows) {
+        let asked = match follows {
+            Some(_) => Err(Reason::Future),
+            None => asked.clone(),
+        };
+        rows.push(asked.map(|asked| {
             let limits = translated.limits(&[asked.bad, asked.unsure]);
-            let limits = limits.iter().map(|l| l.reason.to_string()).collect();
+            let limits = limits.iter().map(|l| l.part).collect();
             bad.extend([asked.bad, asked.unsure]);
             Row { bad: bad.len() - 2, unsure: bad.len() - 1, limits }
         }));

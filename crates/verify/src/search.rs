@@ -198,7 +198,6 @@ impl<'a> Search<'a> {
         self.parents.push(0);
         if world.has_chance() {
             self.ways.push(0);
-            self.hole = Some(Reason::Chance(WAYS.into()));
         }
         match self.start.last() {
             Some(m) => self.inputs.extend_from_slice(&m.inputs),
@@ -282,7 +281,14 @@ impl<'a> Search<'a> {
             world.put(own);
             let mut given = last.clone();
             self.way = way;
-            if let Err(fault) = world.tick(wait, way, &mut given) {
+            let ticked = world.tick(wait, way, &mut given);
+            if way > 0 && !world.drew() {
+                break;
+            }
+            if world.drew() && self.hole.is_none() {
+                self.hole = Some(Reason::Chance(WAYS.into()));
+            }
+            if let Err(fault) = ticked {
                 self.hole.get_or_insert(Reason::Plant(fault.kind));
                 tries.tried = true;
                 continue;

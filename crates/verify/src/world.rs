@@ -25,6 +25,8 @@ struct Beside<'a> {
     chance: Option<Addr>,
     /// The word with which it begins a tick, for each way.
     begins: Vec<u64>,
+    /// The last tick drew a number.
+    drew: bool,
 }
 
 /// The state of the charts and of their plant.
@@ -47,7 +49,7 @@ impl<'a> World<'a> {
             let inputs = (rows.start..rows.end).map(|a| state.word(Addr(a))).collect();
             let chance = chance(side);
             let begins = chance.map_or(Vec::new(), |_| (0..WAYS).map(begin_of).collect());
-            Beside { side, state, inputs, chance, begins }
+            Beside { side, state, inputs, chance, begins, drew: false }
         });
         World { p, charts: State::new(p), plant }
     }
@@ -66,6 +68,11 @@ impl<'a> World<'a> {
     /// True if the plant draws random numbers.
     pub(crate) fn has_chance(&self) -> bool {
         self.plant.as_ref().is_some_and(|p| p.chance.is_some())
+    }
+
+    /// True if the last tick drew a random number. One that did not is the same in each way.
+    pub(crate) fn drew(&self) -> bool {
+        self.plant.as_ref().is_some_and(|p| p.drew)
     }
 
     /// Makes an image of it. Equal images have equal futures.
@@ -109,15 +116,17 @@ impl<'a> World<'a> {
                 *word = self.charts.word(Addr(outputs.saturating_add(*from)));
             }
         }
+        let begin = plant.begins.get(usize::from(way)).copied().unwrap_or(0);
         if let Some(addr) = plant.chance {
-            let begin = plant.begins.get(usize::from(way)).copied().unwrap_or(0);
             plant.state.set_word(program, addr, begin);
         }
         let now = plant.state.now().saturating_add(wait);
-        scan(program, &mut plant.state, &plant.inputs, now)?;
+        let done = scan(program, &mut plant.state, &plant.inputs, now);
         if let Some(addr) = plant.chance {
+            plant.drew = plant.state.word(addr) != begin;
             plant.state.set_word(program, addr, 0);
         }
+        done?;
         let driven = program.tables().outputs.start;
         for (from, to) in &plant.side.coupling.to_charts {
             if let Some(word) = inputs.get_mut(*to as usize) {

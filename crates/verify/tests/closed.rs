@@ -137,6 +137,33 @@ prove always colour < 1.0 with Line
 }
 
 #[test]
+fn chance_that_is_never_asked_hides_nothing() {
+    let text = "\
+input red : BOOL
+output lamp : BOOL
+chart Show {
+  initial step 0
+  step 1 { N lamp }
+  0 -> 1 when red -> 0 when not red
+}
+plant Line {
+  state mixed : BOOL
+  state count : INT in 0 .. 5
+  state colour : LREAL
+  each {
+    count := count + 1
+    IF mixed and count > 3 THEN colour := random(); END_IF
+  }
+  drive red := colour > 0.8
+}
+prove never lamp with Line
+";
+    assert_eq!(author(text), ["P"]);
+    // Drawn late, it is drawn in each way all the same.
+    assert_eq!(author(&text.replace("mixed : BOOL", "mixed : BOOL := TRUE")), ["R4"]);
+}
+
+#[test]
 fn a_fault_of_the_plant_hides_what_comes_behind_it() {
     let text = TANK.replace(
         "  drive low",

@@ -22,9 +22,18 @@ struct Side {
 }
 
 pub(crate) fn compare(args: &cli::Compare) -> Result<failure::Verdict, Failure> {
-    let sides = sides(args)?;
+    beside(&sides(args)?, args)
+}
+
+/// Compares the outputs of a chart with those of the same chart in another form, as `g7 compare` does.
+pub(crate) fn read_back(before: Source, after: Source) -> Result<failure::Verdict, Failure> {
+    let side = |source: Source| Side { name: source.name.clone(), source, profile: None };
+    beside(&[side(before), side(after)], &cli::Compare::of_outputs())
+}
+
+fn beside(sides: &[Side], args: &cli::Compare) -> Result<failure::Verdict, Failure> {
     let mut compiled = Vec::new();
-    for side in &sides {
+    for side in sides {
         let (charts, found) = if side.source.has_errors() {
             (None, Vec::new())
         } else {
@@ -44,7 +53,7 @@ pub(crate) fn compare(args: &cli::Compare) -> Result<failure::Verdict, Failure> 
     let assumed = assume.iter().any(|list| !list.is_empty());
     let what = Compare { charts: [&a.compiled, &b.compiled], assume, situations: args.situations };
     if let Some(path) = &args.aiger {
-        let system = g7_verify::miter(&what).map_err(unlike)?;
+        let system = g7_verify::miter(&what).map_err(|why| unlike(&why))?;
         files::write(path, &system)?;
     }
     let mut out = anstream::stdout().lock();
@@ -60,7 +69,7 @@ pub(crate) fn compare(args: &cli::Compare) -> Result<failure::Verdict, Failure> 
         }
         Equality::Apart { moves, what } => {
             let mut drawers = Vec::new();
-            for side in &sides {
+            for side in sides {
                 drawers.extend(Drawer::new(&side.source, side.profile)?);
             }
             let both = <[Drawer; 2]>::try_from(drawers).ok();

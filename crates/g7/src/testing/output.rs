@@ -144,7 +144,7 @@ pub(super) fn junit(outcomes: &[Outcome]) -> String {
         let mine: Vec<&Outcome> = outcomes.iter().filter(|o| o.file == file).collect();
         let name = escape(file);
         out.push_str(&format!(
-            "  <testsuite name=\"{name}\" tests=\"{}\" failures=\"{}\" time=\"{}\">\n",
+            "  <testsuite name=\"{name}\" tests=\"{}\" failures=\"{}\" errors=\"0\" time=\"{}\">\n",
             mine.len(),
             failed(&mine),
             took(&mine)

@@ -27,7 +27,9 @@ pub fn unproved(source: &Source) -> Vec<Unproved> {
             text: written.split_whitespace().collect::<Vec<_>>().join(" "),
         }
     };
-    source.document.properties().map(one).collect()
+    // An assumption is nothing to be proved.
+    let claims = source.document.properties().filter(|p| !matches!(p.kind, PropertyKind::Assume(_)));
+    claims.map(one).collect()
 }
 
 /// The plants with which properties of a document are asked, each once, in the order of the text.

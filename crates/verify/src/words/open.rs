@@ -241,9 +241,9 @@ pub fn way_on(reason: &Reason) -> Said {
             "faça as hipóteses depender só de entradas, ou enfraqueça-as",
         ],
         Reason::Chance(_) => [
-            "a plant without `random()` and without `arrivals` between two times can be proved",
-            "une partie opérative sans `random()` ni `arrivals` entre deux durées peut être prouvée",
-            "uma instalação sem `random()` e sem `arrivals` entre dois tempos pode ser provada",
+            "a plant whose ticks draw no random number can be proved",
+            "une partie opérative dont aucun pas ne tire de nombre au hasard peut être prouvée",
+            "uma instalação cujos passos não sorteiam nenhum número pode ser provada",
         ],
         Reason::Plant(_) => [
             "mend the plant: what the chart does behind its fault is not known",

@@ -1,0 +1,68 @@
+//! The answers to the questions of a file, ready to be told.
+
+use std::collections::BTreeMap;
+
+use g7_verify::Verdict;
+
+use crate::report::Tally;
+
+/// Questions without an answer that are listed for a file, unless all are wanted.
+pub(super) const LISTED: usize = 12;
+
+/// Questions that are not decided for one reason: the number that is listed, and of those that are not
+/// the numbers by their rules.
+#[derive(Default)]
+pub(super) struct More {
+    pub(super) listed: usize,
+    pub(super) hidden: BTreeMap<&'static str, usize>,
+}
+
+/// The result of a file.
+#[derive(Default)]
+pub(super) struct Found {
+    /// Its name in messages.
+    pub(super) name: String,
+    /// The answers, in the order of the questions.
+    pub(super) answers: Vec<Answered>,
+    /// Further questions that are not decided, by the reason.
+    pub(super) more: BTreeMap<String, More>,
+    /// The problems of its text, and those that contradicting assumptions are.
+    pub(super) tally: Tally,
+    /// The problems in words, with excerpts of the text.
+    pub(super) trouble: String,
+    /// Why nothing was asked.
+    pub(super) unasked: Option<String>,
+    /// A search was stopped before all was decided.
+    pub(super) is_stopped: bool,
+}
+
+/// An answered question, ready to be printed.
+pub(crate) struct Answered {
+    /// `path:line:column` of what is asked about.
+    pub(crate) place: String,
+    /// The claim in words.
+    pub(crate) claim: String,
+    /// The author wrote it.
+    pub(crate) own: bool,
+    /// The evidence in one line.
+    pub(crate) reason: String,
+    /// The steps and transitions that break the claim, in a sentence; empty where nothing is to be added.
+    pub(crate) guilt: String,
+    /// The way out; empty where none is known.
+    pub(crate) help: String,
+    /// The answer.
+    pub(crate) verdict: Verdict,
+    /// The run that shows it, drawn; empty without one.
+    pub(crate) chronogram: String,
+    /// The question by its short name.
+    pub(crate) rule: &'static str,
+    /// The scans of the run, each in words.
+    pub(crate) scans: Vec<String>,
+}
+
+impl Found {
+    /// The number of questions that are not decided and not listed.
+    pub(super) fn hidden(&self) -> usize {
+        self.more.values().flat_map(|more| more.hidden.values()).sum()
+    }
+}
