@@ -32,9 +32,9 @@ pub(crate) fn relations(system: &System, of: &[Signal], ticks: u64, effort: &Eff
     if (effort.stop)() {
         return Vec::new();
     }
-    let (alike, mut pairs) = candidates(system, &latches, &history(system));
+    let (classes, mut pairs) = candidates(system, &latches, &history(system));
     // What is equal is kept without the rest; the rest is looked at with the help of it.
-    let mut all = kept(system, &[], alike, ticks, effort).unwrap_or_default();
+    let mut all = refined(system, classes, ticks, effort).unwrap_or_default();
     pairs.truncate(MOST);
     let more = kept(system, &all, pairs, ticks, effort).unwrap_or_default();
     all.extend(more);
@@ -79,36 +79,31 @@ fn history(system: &System) -> Vec<Vec<u64>> {
     history
 }
 
-/// The relations that the runs show no exception to: latches that never change or are equal or opposite, and
-/// pairs of others that exclude or imply each other.
-fn candidates(system: &System, latches: &[usize], history: &[Vec<u64>]) -> (Vec<Cube>, Vec<Cube>) {
+/// The relations that the runs show no exception to: classes of latches that are equal (negated, where they are
+/// opposite), those that never change with the constant first, and pairs of others that exclude or imply each other.
+fn candidates(system: &System, latches: &[usize], history: &[Vec<u64>]) -> (Vec<Vec<Signal>>, Vec<Cube>) {
     let none = Vec::new();
     let row = |i: usize| history.get(i).unwrap_or(&none);
     let signal = |i: usize| system.latches.get(i).map_or(Signal::FALSE, |l| l.signal);
-    // Latches of a class are equal but for their first value.
     let mut classes: BTreeMap<Vec<u64>, Vec<Signal>> = BTreeMap::new();
-    let mut heads: Vec<(usize, bool)> = Vec::new();
-    let (mut alike, mut pairs) = (Vec::new(), Vec::new());
+    classes.insert(vec![0; STEPS], vec![Signal::FALSE]);
+    let mut heads: Vec<usize> = Vec::new();
     for i in latches {
         let negated = row(*i).first().is_some_and(|w| w & 1 != 0);
         let key: Vec<u64> = row(*i).iter().map(|w| if negated { !w } else { *w }).collect();
-        let mine = signal(*i).negated_if(negated);
-        if key.iter().all(|w| *w == 0) {
-            alike.push(vec![mine]);
-            continue;
-        }
         let class = classes.entry(key).or_default();
-        match class.first() {
-            Some(head) => alike.extend([sorted([*head, !mine]), sorted([!*head, mine])]),
-            None => heads.push((*i, negated)),
+        if class.is_empty() {
+            heads.push(*i);
         }
-        class.push(mine);
+        class.push(signal(*i).negated_if(negated));
     }
+    let alike = classes.into_values().collect();
+    let mut pairs = Vec::new();
     if heads.len() > LATCHES {
         return (alike, pairs);
     }
-    for (k, (i, _)) in heads.iter().enumerate() {
-        for (j, _) in heads.iter().skip(k + 1) {
+    for (k, i) in heads.iter().enumerate() {
+        for j in heads.iter().skip(k + 1) {
             let mut seen = [false; 4];
             for (a, b) in row(*i).iter().zip(row(*j)) {
                 for (s, word) in seen.iter_mut().zip([a & b, a & !b, !a & b, !a & !b]) {
@@ -131,6 +126,78 @@ fn sorted(pair: [Signal; 2]) -> Cube {
     let mut cube = pair.to_vec();
     cube.sort_unstable();
     cube
+}
+
+/// That two signals are equal.
+fn alike(a: Signal, b: Signal) -> Vec<Cube> {
+    if a == Signal::FALSE { vec![vec![b]] } else { vec![sorted([a, !b]), sorted([!a, b])] }
+}
+
+/// Divides classes until each step keeps what they say; gives the cubes that they exclude. None if the
+/// ticks or the time are used up.
+fn refined(
+    system: &System,
+    mut classes: Vec<Vec<Signal>>,
+    ticks: u64,
+    effort: &Effort<'_>,
+) -> Option<Vec<Cube>> {
+    let mut left = ticks;
+    loop {
+        classes.retain(|class| class.len() > 1);
+        let cubes: Vec<Cube> = classes
+            .iter()
+            .flat_map(|class| {
+                class.iter().skip(1).flat_map(|s| alike(class.first().copied().unwrap_or(*s), *s))
+            })
+            .collect();
+        let mut solver = Batsat::new(effort.stop);
+        solver.stop_at(left);
+        let mut steps = Steps::new(system, &mut solver, Start::Any, false);
+        let mut literal = |solver: &mut Batsat<'_>, s: Signal| steps.literal(system, solver, 0, s);
+        for cube in &cubes {
+            let clause: Vec<Literal> = cube.iter().map(|s| !literal(&mut solver, *s)).collect();
+            solver.add(&clause);
+        }
+        // All signals one behind the other, with the place of the first of their class and their present class.
+        let mut rows: Vec<(Signal, Literal, usize)> = Vec::new();
+        let mut label: Vec<usize> = Vec::new();
+        for (k, class) in classes.iter().enumerate() {
+            let head = rows.len();
+            for s in class {
+                rows.push((*s, literal(&mut solver, next(system, *s)), head));
+                label.push(k);
+            }
+        }
+        let before = label.clone();
+        for (i, (_, mine, head)) in rows.iter().enumerate() {
+            let Some((_, first, _)) = rows.get(*head).filter(|_| i != *head) else { continue };
+            for assumed in [[*first, !*mine], [!*first, *mine]] {
+                if label.get(i) != label.get(*head) {
+                    break;
+                }
+                match solver.solve(&assumed) {
+                    Answer::Stopped => return None,
+                    Answer::No => {}
+                    Answer::Yes => {
+                        let mut known: BTreeMap<(usize, bool), usize> = BTreeMap::new();
+                        for ((_, l, _), label) in rows.iter().zip(&mut label) {
+                            let count = known.len();
+                            *label = *known.entry((*label, solver.value(*l))).or_insert(count);
+                        }
+                    }
+                }
+            }
+        }
+        left = left.saturating_sub(solver.ticks());
+        let mut divided: BTreeMap<usize, Vec<Signal>> = BTreeMap::new();
+        for ((s, _, _), label) in rows.iter().zip(&label) {
+            divided.entry(*label).or_default().push(*s);
+        }
+        if divided.len() == before.last().map_or(0, |last| last + 1) {
+            return Some(cubes);
+        }
+        classes = divided.into_values().collect();
+    }
 }
 
 /// Those of the cubes that no step enters from outside of all of them and of those that are known. None if
