@@ -14,7 +14,7 @@ use crate::sat::dead::{Ends, ends};
 use crate::sat::decide::{Effort, Found, Proof, decide_with};
 use crate::sat::graph::Signal;
 use crate::sat::simulate::Trace;
-use crate::sat::stays::{is_trap, shortened};
+use crate::sat::stays::is_trap;
 use crate::sat::traps::{Clauses, Trap, Way, traps};
 use crate::system::{Asked, Follows, Observed, Translated, system};
 use crate::verdict::{Certificate, Evidence, Open, Run, Verdict, is_open};
@@ -146,6 +146,11 @@ impl Work<'_> {
         let ends = if proofs { ends(&self.translated.system, self.effort) } else { Ends::None };
         let one = |((q, a), f): ((&Question, &Result<Asked, Reason>), &Option<Follows>)| match (a, f) {
             (Ok(a), None) => self.verdict(&q.claim, a, [of(a.bad), of(a.unsure)], &ends),
+            // Where runs come to an end without a choice of inputs, nothing is said about what follows.
+            (Ok(a), Some(_)) if ends != Ends::None => {
+                let nothing = Found::Never(Proof::Invariant(Vec::new()));
+                self.verdict(&q.claim, a, [&nothing, &nothing], &ends)
+            }
             (Ok(a), Some(f)) => match self.follows(&q.claim, a, f) {
                 // A proof counts as one of any other claim does.
                 Ok(clauses) => {
@@ -163,9 +168,9 @@ impl Work<'_> {
     /// What can follow each state: the clauses of a proof that it is always what the claim asks for, or
     /// another verdict.
     fn follows(&self, claim: &Claim, asked: &Asked, follows: &Follows) -> Result<Clauses, Verdict> {
-        let Follows { waits, goal } = *follows;
+        let Follows { waits, goal, may } = *follows;
         // A value that is not known may be the one that leads on.
-        if let Some(limit) = self.translated.limits(&[waits, goal]).first() {
+        if let Some(limit) = self.translated.limits(&[waits, may]).first() {
             return Err(open(0, Reason::Part(limit.part)));
         }
         let t = self.translated;
@@ -174,14 +179,13 @@ impl Work<'_> {
             t.moves(trace.inputs.get(..scans).unwrap_or(&[]))
         };
         let mut judge = |trace: &Trace| is_trap(self.model, claim, &before(trace), self.budget);
-        match traps(&t.system, &Trap { waits, goal, words: &t.words }, self.effort, &mut judge) {
+        match traps(&t.system, &Trap { waits, goal, may, words: &t.words }, self.effort, &mut judge) {
             Way::Always(clauses) => Ok(clauses),
             Way::Trap(trace) => {
                 let run = Run { moves: before(&trace), ..Run::default() };
                 if !replay(self.model, claim, &run) {
                     return Err(self.limited(asked.bad, run.moves.len()));
                 }
-                let run = shortened(self.model, claim, run, self.budget);
                 Err(Verdict::Refuted(Evidence::Run(run)))
             }
             Way::Open(scans) => Err(open(scans, Reason::LeadsOn)),

@@ -19,11 +19,11 @@ use crate::sat::solver::{Answer, Batsat, Literal, Solver};
 const STEPS: usize = 192;
 /// Most latches whose pairs are all looked at.
 const LATCHES: usize = 3000;
-/// Most relations that are tried; equal and opposite pairs come first.
+/// Most pairs that are tried.
 const MOST: usize = 30_000;
 
 /// Cubes that no run reaches, of one or two latches that these signals depend on. They are kept by
-/// each step together; the caller has them certified. None if the ticks or the time are used up.
+/// each step together; the caller has them certified. Fewer if the ticks or the time are used up.
 pub(crate) fn relations(system: &System, of: &[Signal], ticks: u64, effort: &Effort<'_>) -> Vec<Cube> {
     let inside = cone(system, of.iter().chain(&system.constraints).copied());
     let all = system.latches.iter().enumerate();
@@ -32,9 +32,13 @@ pub(crate) fn relations(system: &System, of: &[Signal], ticks: u64, effort: &Eff
     if (effort.stop)() {
         return Vec::new();
     }
-    let mut candidates = candidates(system, &latches, &history(system));
-    candidates.truncate(MOST);
-    kept(system, candidates, ticks, effort).unwrap_or_default()
+    let (classes, mut pairs) = candidates(system, &latches, &history(system));
+    // What is equal is kept without the rest; the rest is looked at with the help of it.
+    let mut all = refined(system, classes, ticks, effort).unwrap_or_default();
+    pairs.truncate(MOST);
+    let more = kept(system, &all, pairs, ticks, effort).unwrap_or_default();
+    all.extend(more);
+    all
 }
 
 /// The values of each latch in random runs from the first step.
@@ -75,35 +79,31 @@ fn history(system: &System) -> Vec<Vec<u64>> {
     history
 }
 
-/// The relations that the runs show no exception to.
-fn candidates(system: &System, latches: &[usize], history: &[Vec<u64>]) -> Vec<Cube> {
+/// The relations that the runs show no exception to: classes of latches that are equal (negated, where they are
+/// opposite), those that never change with the constant first, and pairs of others that exclude or imply each other.
+fn candidates(system: &System, latches: &[usize], history: &[Vec<u64>]) -> (Vec<Vec<Signal>>, Vec<Cube>) {
     let none = Vec::new();
     let row = |i: usize| history.get(i).unwrap_or(&none);
     let signal = |i: usize| system.latches.get(i).map_or(Signal::FALSE, |l| l.signal);
-    // Latches of a class are equal but for their first value.
     let mut classes: BTreeMap<Vec<u64>, Vec<Signal>> = BTreeMap::new();
-    let mut heads: Vec<(usize, bool)> = Vec::new();
-    let mut cubes = Vec::new();
+    classes.insert(vec![0; STEPS], vec![Signal::FALSE]);
+    let mut heads: Vec<usize> = Vec::new();
     for i in latches {
         let negated = row(*i).first().is_some_and(|w| w & 1 != 0);
         let key: Vec<u64> = row(*i).iter().map(|w| if negated { !w } else { *w }).collect();
-        let mine = signal(*i).negated_if(negated);
-        if key.iter().all(|w| *w == 0) {
-            cubes.push(vec![mine]);
-            continue;
-        }
         let class = classes.entry(key).or_default();
-        match class.first() {
-            Some(head) => cubes.extend([sorted([*head, !mine]), sorted([!*head, mine])]),
-            None => heads.push((*i, negated)),
+        if class.is_empty() {
+            heads.push(*i);
         }
-        class.push(mine);
+        class.push(signal(*i).negated_if(negated));
     }
+    let alike = classes.into_values().collect();
+    let mut pairs = Vec::new();
     if heads.len() > LATCHES {
-        return cubes;
+        return (alike, pairs);
     }
-    for (k, (i, _)) in heads.iter().enumerate() {
-        for (j, _) in heads.iter().skip(k + 1) {
+    for (k, i) in heads.iter().enumerate() {
+        for j in heads.iter().skip(k + 1) {
             let mut seen = [false; 4];
             for (a, b) in row(*i).iter().zip(row(*j)) {
                 for (s, word) in seen.iter_mut().zip([a & b, a & !b, !a & b, !a & !b]) {
@@ -115,11 +115,11 @@ fn candidates(system: &System, latches: &[usize], history: &[Vec<u64>]) -> Vec<C
             }
             let (a, b) = (signal(*i), signal(*j));
             for (seen, pair) in seen.iter().zip([[a, b], [a, !b], [!a, b], [!a, !b]]) {
-                cubes.extend((!seen).then(|| sorted(pair)));
+                pairs.extend((!seen).then(|| sorted(pair)));
             }
         }
     }
-    cubes
+    (alike, pairs)
 }
 
 fn sorted(pair: [Signal; 2]) -> Cube {
@@ -128,8 +128,87 @@ fn sorted(pair: [Signal; 2]) -> Cube {
     cube
 }
 
-/// Those of the cubes that no step enters from outside of all of them.
-fn kept(system: &System, mut cubes: Vec<Cube>, ticks: u64, effort: &Effort<'_>) -> Option<Vec<Cube>> {
+/// That two signals are equal.
+fn alike(a: Signal, b: Signal) -> Vec<Cube> {
+    if a == Signal::FALSE { vec![vec![b]] } else { vec![sorted([a, !b]), sorted([!a, b])] }
+}
+
+/// Divides classes until each step keeps what they say; gives the cubes that they exclude. None if the
+/// ticks or the time are used up.
+fn refined(
+    system: &System,
+    mut classes: Vec<Vec<Signal>>,
+    ticks: u64,
+    effort: &Effort<'_>,
+) -> Option<Vec<Cube>> {
+    let mut left = ticks;
+    loop {
+        classes.retain(|class| class.len() > 1);
+        let cubes: Vec<Cube> = classes
+            .iter()
+            .flat_map(|class| {
+                class.iter().skip(1).flat_map(|s| alike(class.first().copied().unwrap_or(*s), *s))
+            })
+            .collect();
+        let mut solver = Batsat::new(effort.stop);
+        solver.stop_at(left);
+        let mut steps = Steps::new(system, &mut solver, Start::Any, false);
+        let mut literal = |solver: &mut Batsat<'_>, s: Signal| steps.literal(system, solver, 0, s);
+        for cube in &cubes {
+            let clause: Vec<Literal> = cube.iter().map(|s| !literal(&mut solver, *s)).collect();
+            solver.add(&clause);
+        }
+        // All signals one behind the other, with the place of the first of their class and their present class.
+        let mut rows: Vec<(Signal, Literal, usize)> = Vec::new();
+        let mut label: Vec<usize> = Vec::new();
+        for (k, class) in classes.iter().enumerate() {
+            let head = rows.len();
+            for s in class {
+                rows.push((*s, literal(&mut solver, next(system, *s)), head));
+                label.push(k);
+            }
+        }
+        let before = label.clone();
+        for (i, (_, mine, head)) in rows.iter().enumerate() {
+            let Some((_, first, _)) = rows.get(*head).filter(|_| i != *head) else { continue };
+            for assumed in [[*first, !*mine], [!*first, *mine]] {
+                if label.get(i) != label.get(*head) {
+                    break;
+                }
+                match solver.solve(&assumed) {
+                    Answer::Stopped => return None,
+                    Answer::No => {}
+                    Answer::Yes => {
+                        let mut known: BTreeMap<(usize, bool), usize> = BTreeMap::new();
+                        for ((_, l, _), label) in rows.iter().zip(&mut label) {
+                            let count = known.len();
+                            *label = *known.entry((*label, solver.value(*l))).or_insert(count);
+                        }
+                    }
+                }
+            }
+        }
+        left = left.saturating_sub(solver.ticks());
+        let mut divided: BTreeMap<usize, Vec<Signal>> = BTreeMap::new();
+        for ((s, _, _), label) in rows.iter().zip(&label) {
+            divided.entry(*label).or_default().push(*s);
+        }
+        if divided.len() == before.last().map_or(0, |last| last + 1) {
+            return Some(cubes);
+        }
+        classes = divided.into_values().collect();
+    }
+}
+
+/// Those of the cubes that no step enters from outside of all of them and of those that are known. None if
+/// the ticks or the time are used up.
+fn kept(
+    system: &System,
+    known: &[Cube],
+    mut cubes: Vec<Cube>,
+    ticks: u64,
+    effort: &Effort<'_>,
+) -> Option<Vec<Cube>> {
     let mut left = ticks;
     loop {
         let mut solver = Batsat::new(effort.stop);
@@ -140,7 +219,7 @@ fn kept(system: &System, mut cubes: Vec<Cube>, ticks: u64, effort: &Effort<'_>) 
             .iter()
             .map(|cube| cube.iter().map(|s| literal(&mut solver, next(system, *s))).collect())
             .collect();
-        for cube in &cubes {
+        for cube in known.iter().chain(&cubes) {
             let clause: Vec<Literal> = cube.iter().map(|s| !literal(&mut solver, *s)).collect();
             solver.add(&clause);
         }
@@ -165,5 +244,61 @@ fn kept(system: &System, mut cubes: Vec<Cube>, ticks: u64, effort: &Effort<'_>) 
         }
         let mut gone = lost.iter();
         cubes.retain(|_| gone.next() == Some(&false));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sat::brute::{shortest, system};
+    use crate::sat::check::Checker;
+    use crate::sat::graph::Init;
+
+    fn effort() -> Effort<'static> {
+        Effort { bytes: 1 << 28, turns: 10, stop: &|| false }
+    }
+
+    /// Each relation holds in all states that are reached, and the checker agrees.
+    #[test]
+    fn relations_hold_in_every_state_that_is_reached() {
+        let mut count = 0;
+        for seed in 0..1500 {
+            let (s, bad) = system(seed);
+            let found = relations(&s, &[bad], 1 << 30, &effort());
+            assert!(Checker::new(&s, &|| false).certifies(&found, Signal::FALSE), "seed {seed}");
+            for cube in &found {
+                let mut s = s.clone();
+                let inside = s.graph.all(cube.iter().copied());
+                assert_eq!(shortest(&s, inside), None, "seed {seed}: {cube:?}");
+            }
+            count += found.len();
+        }
+        assert!(count > 1500, "{count}");
+    }
+
+    /// A ring of three steps beside the same ring whose second step is kept as its opposite.
+    #[test]
+    fn steps_that_belong_together_are_found() {
+        let mut s = System::default();
+        let go = s.input();
+        let mut rings = Vec::new();
+        for opposite in [false, true] {
+            let init = |i: usize| Init::from((i == 0) != (opposite && i == 1));
+            let ring: Vec<Signal> = (0..3).map(|i| s.latch(init(i)).negated_if(opposite && i == 1)).collect();
+            for i in 0..3 {
+                let next = s.graph.mux(go, ring[(i + 2) % 3], ring[i]);
+                s.set_next(ring[i], next);
+            }
+            rings.push(ring);
+        }
+        let all: Vec<Signal> = rings.concat();
+        let found = relations(&s, &all, 1 << 30, &effort());
+        for i in 0..3 {
+            let (a, b) = (rings[0][i], rings[1][i]);
+            for cube in [[a, !b], [!a, b]] {
+                assert!(found.contains(&sorted(cube)), "{i}: {found:?}");
+            }
+            assert!(found.contains(&sorted([a, rings[0][(i + 1) % 3]])), "steps exclude each other");
+        }
     }
 }

@@ -10,7 +10,6 @@ use crate::model::Model;
 use crate::question::{Claim, Query};
 use crate::scene::{Scene, Until};
 use crate::search::Search;
-use crate::verdict::Run;
 
 /// Most states that follow a run.
 const STATES: usize = 20_000;
@@ -65,16 +64,4 @@ fn holds(model: &Model<'_>, state: &mut State, q: Query) -> Option<bool> {
         all &= eval(&model.compiled.program, state, part.code).ok()? != 0;
     }
     Some(all)
-}
-
-/// The shortest beginning of a run that ends in a trap behind which the rest of the run stays.
-pub(crate) fn shortened(model: &Model<'_>, claim: &Claim, run: Run, budget: &Budget<'_>) -> Run {
-    let mut moves = run.moves;
-    while let Some((_, before)) = moves.split_last()
-        && crate::look::replay(model, claim, &Run { moves: before.to_vec(), ..Run::default() })
-        && is_trap(model, claim, before, budget)
-    {
-        moves.pop();
-    }
-    Run { moves, ..Run::default() }
 }

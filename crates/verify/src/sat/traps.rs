@@ -2,7 +2,8 @@
 //!
 //! For a proof, a few sequences of inputs are tried in every state at once: is there a state that waits and
 //! in which none of them reaches the goal? If there is one, the solver looks for a sequence that does, which
-//! is tried too from then on. If it finds none, the state may be a trap: the caller looks at it with a search.
+//! is tried too from then on. If it finds none, the state may be a trap: then no run from there reaches the goal,
+//! which is proved as for any other signal, or by the caller with a search.
 //!
 //! Time passes without a bound on it: while some inputs are held, a state without a way to the goal comes
 //! to rest, if each memory only rises or only falls there. Then only states at rest are asked about, in
@@ -12,8 +13,8 @@ use crate::sat::cnf::{Start, Steps};
 use crate::sat::cone::cone;
 use crate::sat::dead::state;
 use crate::sat::decide::{Effort, Found, Proof, decide};
-use crate::sat::graph::{Node, Signal, System};
-use crate::sat::simulate::Trace;
+use crate::sat::graph::{Init, Node, Signal, System};
+use crate::sat::simulate::{Trace, evaluate};
 use crate::sat::solver::{Answer, Batsat, Literal, Solver};
 use crate::sat::unrolled::Unrolled;
 
@@ -32,6 +33,8 @@ pub(crate) struct Trap<'a> {
     pub(crate) waits: Signal,
     /// The step reaches what is waited for.
     pub(crate) goal: Signal,
+    /// The step reaches it, or it is not known whether it does.
+    pub(crate) may: Signal,
     /// Latches that make a number together, the lowest bit first.
     pub(crate) words: &'a [Vec<Signal>],
 }
@@ -44,7 +47,7 @@ pub(crate) type Clauses = Vec<Vec<Signal>>;
 pub(crate) enum Way {
     /// From each state that waits some steps lead to the goal; with the clauses of the proof.
     Always(Clauses),
-    /// The caller has found a trap behind this run: its last step begins in the trap.
+    /// There is a trap behind this run: its last step begins in the trap.
     Trap(Trace),
     /// Not decided: no run of so many steps leads to a trap.
     Open(usize),
@@ -65,7 +68,8 @@ pub(crate) fn traps(
         work.none = work.open.graph.and(work.none, rest);
     }
     let ones = vec![true; system.inputs.len()];
-    for first in [vec![ones.clone()], vec![held.clone(), ones.clone()], vec![ones, held]] {
+    let turn = |a: &[bool], b: &[bool]| [a, b, a, b].map(<[bool]>::to_vec);
+    for first in [turn(&ones, &ones), turn(&held, &ones), turn(&ones, &held)] {
         work.try_also(&first);
     }
     let mut sure = 0;
@@ -80,8 +84,12 @@ pub(crate) fn traps(
                 sure = trace.inputs.len() - 1;
                 match work.way(&state(&work.open, &trace)) {
                     Some(Some(sequence)) => work.try_also(&sequence),
-                    Some(None) if is_trap(&trace) => return Way::Trap(trace),
-                    Some(None) | None => break,
+                    Some(None) => match work.first_trap(&trace) {
+                        Some(trace) => return Way::Trap(trace),
+                        None if is_trap(&trace) => return Way::Trap(trace),
+                        None => break,
+                    },
+                    None => break,
                 }
             }
             Some(Found::Open(steps)) => return Way::Open(steps),
@@ -216,6 +224,34 @@ impl Work<'_> {
         matches!(decide(&open, &[bad], self.effort).first(), Some(Found::Never(_)))
     }
 
+    /// The shortest beginning of a run to a trap that leads there too; none if no trap was proved.
+    fn first_trap(&self, trace: &Trace) -> Option<Trace> {
+        let mut found = None;
+        for steps in (1..=trace.inputs.len()).rev() {
+            let inputs = trace.inputs.get(..steps)?.to_vec();
+            let shorter = Trace { latches: trace.latches.clone(), inputs };
+            let latches = state(&self.open, &shorter);
+            if !self.is_trap(&latches) {
+                break;
+            }
+            found = Some(shorter);
+        }
+        found
+    }
+
+    /// True if a state waits and a proof says that no run from it reaches the goal.
+    fn is_trap(&self, latches: &[bool]) -> bool {
+        let word: Vec<u64> = latches.iter().map(|b| u64::from(*b)).collect();
+        if !evaluate(&self.system.graph, &word, &[]).bit(self.trap.waits) {
+            return false;
+        }
+        let mut from = self.system.clone();
+        for (latch, value) in from.latches.iter_mut().zip(latches) {
+            latch.init = Init::from(*value);
+        }
+        matches!(decide(&from, &[self.trap.may], self.effort).first(), Some(Found::Never(_)))
+    }
+
     /// Inputs with which a state reaches the goal; no answer if the solver was stopped.
     fn way(&self, latches: &[bool]) -> Option<Option<Vec<Vec<bool>>>> {
         let system = self.system;
@@ -264,8 +300,6 @@ fn less(solver: &mut Batsat<'_>, a: &[Literal], b: &[Literal]) -> Literal {
 mod tests {
     use super::*;
     use crate::sat::brute::{Random, system};
-    use crate::sat::graph::Init;
-    use crate::sat::simulate::evaluate;
     use std::collections::BTreeSet;
 
     fn effort() -> Effort<'static> {
@@ -330,15 +364,19 @@ mod tests {
             let is_bad =
                 |state: &Vec<bool>| bit(state) && states.iter().any(|(other, good)| other == state && !good);
             let expected = states.iter().any(|(state, _)| is_bad(state));
-            let trap = Trap { waits, goal, words: &[] };
+            let trap = Trap { waits, goal, may: goal, words: &[] };
             let mut judged = |trace: &Trace| is_bad(&state(&s, trace));
+            // By a proof alone, or with the help of the caller.
+            if let Way::Trap(trace) = traps(&s, &trap, &effort(), &mut |_| false) {
+                assert!(is_bad(&state(&s, &trace)), "seed {seed}");
+            }
             match traps(&s, &trap, &effort(), &mut judged) {
                 Way::Always(_) => {
                     assert!(!expected, "seed {seed}");
                     proved += 1;
                 }
-                Way::Trap(_) => {
-                    assert!(expected, "seed {seed}");
+                Way::Trap(trace) => {
+                    assert!(is_bad(&state(&s, &trace)), "seed {seed}");
                     found += 1;
                 }
                 Way::Open(_) => open += 1,

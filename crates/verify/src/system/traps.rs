@@ -18,6 +18,8 @@ pub(crate) struct Follows {
     pub(crate) waits: Signal,
     /// The scan reaches what is waited for.
     pub(crate) goal: Signal,
+    /// The scan reaches it, or it is not known whether it does.
+    pub(crate) may: Signal,
 }
 
 /// The signals of a claim, if it is of this kind. `before` has the activity of each step before the scan.
@@ -61,6 +63,8 @@ pub(crate) fn follows(end: &mut End<'_, '_>, claim: &Claim, before: &[Signal]) -
     };
     let g = end.x.g();
     let unsure = g.or(open, fails);
-    let follows = Follows { waits: g.and(waits, on), goal: g.all([goal, on, !open]) };
+    let reached = g.any([goal, unsure]);
+    let follows =
+        Follows { waits: g.and(waits, on), goal: g.all([goal, on, !open]), may: g.and(reached, on) };
     Some((Asked { bad: Signal::FALSE, unsure: g.and(unsure, on) }, follows))
 }
