@@ -35,8 +35,12 @@ pub mod simulate;
 pub use aiger::aiger;
 pub(crate) use cone::Cube;
 pub use dead::{Ends, ends};
+#[cfg(test)]
+pub(crate) use decide::decide_with;
 pub use decide::{Effort, Found, Proof, decide};
 pub use graph::{Graph, Init, Latch, Node, Signal, System};
+#[cfg(test)]
+pub(crate) use kept::kept;
 pub use layer::Satisfiability;
 pub use simulate::{Trace, Values, evaluate, shows};
 
