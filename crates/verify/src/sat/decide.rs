@@ -120,7 +120,7 @@ impl<'a> Decide<'a> {
         if cubes.is_empty() || self.effort.turns == 0 {
             return;
         }
-        let Some(cubes) = kept(self.system, cubes, LEARNING, self.effort) else { return };
+        let Some(cubes) = kept(self.system, cubes, LEARNING, self.effort.stop) else { return };
         if self.checker.certifies(&cubes, Signal::FALSE) {
             self.lemmas = cubes;
             self.prove(FIRST);
@@ -254,7 +254,7 @@ impl<'a> Decide<'a> {
                 Outcome::Proved(cubes) => {
                     let signal = w.signal;
                     if self.checker.certifies(&cubes, signal) {
-                        // What it was given is a part of the proof.
+                        // The lemmas that it was given are a part of the proof.
                         let inside = cone(system, system.constraints.iter().copied().chain([signal]));
                         let is_inside =
                             |c: &&Cube| c.iter().all(|s| inside.get(s.node() as usize) == Some(&true));

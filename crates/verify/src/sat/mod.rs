@@ -31,6 +31,7 @@ mod kept;
 mod layer;
 mod pdr;
 pub mod simulate;
+mod solver;
 
 pub use aiger::aiger;
 pub(crate) use cone::Cube;
@@ -43,6 +44,3 @@ pub use graph::{Graph, Init, Latch, Node, Signal, System};
 pub(crate) use kept::kept;
 pub use layer::Satisfiability;
 pub use simulate::{Trace, Values, evaluate, shows};
-
-/// The solver is that of `compile` too.
-pub(crate) use g7_sat as solver;
