@@ -6,7 +6,6 @@
 //! says whether all formulas can hold together. The values of every run are among those of the atoms,
 //! so a formula that fails for all of them is never true.
 
-mod clauses;
 #[cfg(test)]
 mod tests;
 
@@ -15,7 +14,9 @@ use std::collections::BTreeMap;
 
 use g7_model::Type;
 
+use super::clauses;
 use super::facts::Facts;
+use super::formula::{Atom, Cut, Formula, Part, Sort, Values, holds};
 use super::tree::{Form, has_edge};
 use crate::ir::{BinaryOp, ChartId, Expr, ExprKind, StepId, Value};
 
@@ -23,66 +24,6 @@ use crate::ir::{BinaryOp, ChartId, Expr, ExprKind, StepId, Value};
 const DEEPEST: u32 = 200;
 /// The largest number of atoms in one question.
 const ATOMS: usize = 500;
-
-/// A row of [`Question::parts`].
-#[derive(Clone, Copy)]
-struct Part(usize);
-
-/// A formula over atoms, which are rows of [`Question::atoms`].
-enum Formula<'e> {
-    Const(bool),
-    /// The atom has one of the values in this mask.
-    Among(usize, Values<'e>),
-    Not(Part),
-    And(Part, Part),
-    Or(Part, Part),
-    Xor(Part, Part),
-    /// At most one of these atoms is true. It stands for itself, not within another formula.
-    OneOf(Vec<usize>),
-}
-
-/// The values of an atom that make a comparison true.
-#[derive(Clone, Copy)]
-enum Values<'e> {
-    /// It is true (1).
-    True,
-    /// The number compares in this way with one of its cuts.
-    Side(BinaryOp, Cut<'e>),
-    /// The two numbers compare in this way.
-    Order(BinaryOp),
-}
-
-/// A constant that a value is compared with.
-#[derive(Clone, Copy, PartialEq)]
-enum Cut<'e> {
-    Number(f64),
-    Text(&'e str),
-}
-
-impl Cut<'_> {
-    fn order(&self, other: &Cut<'_>) -> Ordering {
-        match (self, other) {
-            (Cut::Number(a), Cut::Number(b)) => a.total_cmp(b),
-            (Cut::Text(a), Cut::Text(b)) => a.cmp(b),
-            (Cut::Number(_), Cut::Text(_)) => Ordering::Less,
-            (Cut::Text(_), Cut::Number(_)) => Ordering::Greater,
-        }
-    }
-}
-
-enum Sort<'e> {
-    /// False or true.
-    Truth,
-    /// The place of a value among the sorted cuts: 2k below cut k, 2k+1 on it.
-    Place(Type, Vec<Cut<'e>>),
-    /// Less, equal, greater than this value.
-    Relation(&'e Expr),
-}
-
-struct Atom<'e> {
-    sort: Sort<'e>,
-    of: &'e Expr,
-}
 
 /// A question: can all these formulas be true together?
 pub(super) struct Question<'e, 'f> {
@@ -183,7 +124,7 @@ impl<'e, 'f> Question<'e, 'f> {
             *slot = Some(value);
         }
         // Most branches ask for other variables than those beside them: that is seen without clauses.
-        if all { Some(true) } else { clauses::possible(self) }
+        if all { Some(true) } else { clauses::possible(&self.atoms, &self.parts, &self.goals) }
     }
 
     /// The value that a goal alone gives to an atom.
@@ -340,40 +281,8 @@ fn at_once(t2: Option<&Expr>) -> bool {
     t2.is_none_or(|t| matches!(t.kind, ExprKind::Const(Value::Int(0))))
 }
 
-/// True if some value of a type has this place among the cuts.
-fn is_taken(ty: Type, cuts: &[Cut<'_>], place: usize) -> bool {
-    let whole = ty.is_integer() || ty == Type::Time;
-    let (least, most) = ty.bounds().map_or((None, None), |(a, b)| (Some(a as f64), Some(b as f64)));
-    let at = |k: usize| match cuts.get(k) {
-        Some(Cut::Number(x)) => Some(*x),
-        _ => None,
-    };
-    let k = place / 2;
-    if place % 2 == 1 {
-        return at(k).is_none_or(|x| {
-            least.is_none_or(|l| x >= l) && most.is_none_or(|m| x <= m) && (!whole || x.fract() == 0.0)
-        });
-    }
-    // The gap below cut `k`; a whole-number type needs a whole number there.
-    let below = if k == 0 { least.map(|x| x - 1.0) } else { at(k - 1) };
-    let above = if k == cuts.len() { most.map(|x| x + 1.0) } else { at(k) };
-    below.zip(above).is_none_or(|(a, b)| !whole || b.ceil() - a.floor() >= 2.0)
-}
-
 fn compares(op: BinaryOp) -> bool {
     matches!(op, BinaryOp::Eq | BinaryOp::Ne | BinaryOp::Lt | BinaryOp::Le | BinaryOp::Gt | BinaryOp::Ge)
-}
-
-fn holds(op: BinaryOp, order: Ordering) -> bool {
-    match op {
-        BinaryOp::Eq => order.is_eq(),
-        BinaryOp::Ne => order.is_ne(),
-        BinaryOp::Lt => order.is_lt(),
-        BinaryOp::Le => order.is_le(),
-        BinaryOp::Gt => order.is_gt(),
-        BinaryOp::Ge => order.is_ge(),
-        _ => false,
-    }
 }
 
 /// The operator with its operands exchanged.

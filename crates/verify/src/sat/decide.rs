@@ -143,7 +143,7 @@ impl<'a> Decide<'a> {
         if cubes.is_empty() || self.effort.turns == 0 {
             return;
         }
-        let Some(cubes) = kept(self.system, cubes, LEARNING, self.effort) else { return };
+        let Some(cubes) = kept(self.system, cubes, LEARNING, self.effort.stop) else { return };
         if self.checker.certifies(&cubes, Signal::FALSE) {
             self.lemmas = cubes;
             self.prove(FIRST);
@@ -286,7 +286,12 @@ impl<'a> Decide<'a> {
                 Outcome::Proved(cubes) => {
                     let signal = w.signal;
                     if self.checker.certifies(&cubes, signal) {
-                        let clauses = cubes.iter().map(|c| c.iter().map(|s| !*s).collect()).collect();
+                        // The lemmas that it was given are a part of the proof.
+                        let inside = cone(system, system.constraints.iter().copied().chain([signal]));
+                        let is_inside =
+                            |c: &&Cube| c.iter().all(|s| inside.get(s.node() as usize) == Some(&true));
+                        let all = cubes.iter().chain(self.lemmas.iter().filter(is_inside));
+                        let clauses = all.map(|c| c.iter().map(|s| !*s).collect()).collect();
                         self.lemmas.extend(cubes);
                         self.answer(i, Found::Never(Proof::Invariant(clauses)));
                     }

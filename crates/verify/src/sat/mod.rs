@@ -35,6 +35,7 @@ mod layer;
 mod pdr;
 mod relate;
 pub mod simulate;
+mod solver;
 mod stays;
 mod traps;
 mod unrolled;
@@ -43,11 +44,12 @@ pub use aiger::aiger;
 pub(crate) use cone::Cube;
 pub use dead::{Ends, ends};
 pub(crate) use decide::decide_related;
+#[cfg(test)]
+pub(crate) use decide::decide_with;
 pub use decide::{Effort, Found, Proof, decide};
 pub use graph::{Graph, Init, Latch, Node, Signal, System};
 pub(crate) use joined::{join, mapped};
+#[cfg(test)]
+pub(crate) use kept::kept;
 pub use layer::Satisfiability;
 pub use simulate::{Trace, Values, evaluate, shows};
-
-/// The solver is that of `compile` too.
-pub(crate) use g7_sat as solver;

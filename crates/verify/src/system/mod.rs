@@ -40,6 +40,8 @@ mod traps;
 mod value;
 mod word;
 
+use std::collections::BTreeSet;
+
 use g7_compile::ir::VarClass;
 use g7_engine::{Addr, FaultKind, NONE, StepId, Tables};
 use g7_equations::{Equations, MemoryId, Options, What, equations};
@@ -95,7 +97,7 @@ pub(crate) struct Translated {
     pub(crate) uncovered: Signal,
     /// The outputs behind the scan, safe ones behind a fault.
     pub(crate) outputs: Vec<(MemoryId, Addr, Vec<Value>)>,
-    /// Pairs of steps, as a scan begins, that are thought never to be active at once.
+    /// Situations, as a scan begins, that are thought never to be reached: most are two steps of a sequence.
     pub(crate) exclusive: Vec<Cube>,
     /// Activity of each step behind the scan.
     pub(crate) steps: Vec<Signal>,
@@ -160,9 +162,13 @@ pub(crate) fn system(model: &Model<'_>, questions: &[Question], observed: Observ
     let (latches, cells) = Latches::new(&e, &ranges, &mut system);
     let mut sources = Sources::new(model);
     let known = e.by_meaning();
-    let first =
-        |s: u32| known.get(&What::Step(StepId(s))).and_then(|m| cells.get(m.0 as usize)?.first()).cloned();
-    let exclusive = exclusive(t, &system, first);
+    let latch = |what| match cells.get(known.get(&what)?.0 as usize)?.first()? {
+        Value::Whole(w) => {
+            w.bits().first().copied().filter(|b| matches!(system.graph.node(*b), Node::Latch(_)))
+        }
+        Value::Real(_) | Value::Text(_) => None,
+    };
+    let exclusive = exclusive(t, latch);
     let mut x = Exec::new(&e, model, cells, system);
     for (id, m, at) in moves::inputs(&e) {
         let value = sources.memory(model, &mut x.system, m, at);
@@ -236,20 +242,15 @@ fn steps(x: &mut Exec<'_>) -> Vec<Signal> {
     (0..count).map(|s| x.holds(known.get(&What::Step(StepId(s))).copied())).collect()
 }
 
-/// The pairs of steps of `places.rs`, by what the steps are as a scan begins.
-fn exclusive(t: &Tables, system: &System, step: impl Fn(u32) -> Option<Value>) -> Vec<Cube> {
-    let latch = |s: u32| match step(s)? {
-        Value::Whole(w) => {
-            w.bits().first().copied().filter(|b| matches!(system.graph.node(*b), Node::Latch(_)))
-        }
-        Value::Real(_) | Value::Text(_) => None,
-    };
-    let cube = |(a, b)| {
-        let mut cube = vec![latch(a)?, latch(b)?];
-        cube.sort_unstable();
-        Some(cube)
-    };
-    places::exclusive(t).into_iter().filter_map(cube).collect()
+/// The pairs of steps of `places.rs`, as a scan begins; and that none of them is active before the first.
+fn exclusive(t: &Tables, latch: impl Fn(What) -> Option<Signal>) -> Vec<Cube> {
+    let step = |s: u32| latch(What::Step(StepId(s)));
+    let cube = |a: Signal, b: Signal| vec![a.min(b), a.max(b)];
+    let pairs = places::exclusive(t);
+    let steps: BTreeSet<u32> = pairs.iter().flat_map(|(a, b)| [*a, *b]).collect();
+    let started = latch(What::Started);
+    let fresh = steps.into_iter().filter_map(|s| Some(cube(!started?, step(s)?)));
+    fresh.chain(pairs.iter().filter_map(|(a, b)| Some(cube(step(*a)?, step(*b)?)))).collect()
 }
 
 /// The assumptions bind the inputs, unless the scan has met a fault before the evolution.

@@ -174,3 +174,72 @@ impl Net {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::Model;
+    use crate::sat::{Effort, Found, Proof};
+    use crate::system::{Observed, system};
+
+    /// Two cells that share a resource, each of five steps; the second holds it in its steps 23 and 24.
+    fn cells(profile: &str) -> String {
+        format!(
+            "profile {profile}\ninput a, b, c, d, e, f, g : BOOL\nchart G {{\n  initial step 1\n  initial step 11\n  step 12\n  \
+             step 13\n  step 14\n  step 15\n  initial step 21\n  step 22\n  step 23\n  step 24\n  step 25\n  11 -> 12 when a\n  \
+             (12, 1) -> 13 when b priority 1\n  13 -> 14 when c\n  14 -> (15, 1) when d\n  15 -> 11 when e\n  21 -> 22 when f\n  \
+             (22, 1) -> 23 when g priority 2\n  23 -> 24 when c\n  24 -> (25, 1) when d\n  25 -> 21 when e\n}}\n\
+             prove never (X13 or X14) and (X23 or X24)\n"
+        )
+    }
+
+    fn asked(text: &str) -> crate::ask::Asked {
+        let (document, problems) = g7_syntax::parse(text, g7_model::FileId(0));
+        assert!(problems.is_empty(), "{problems:?}");
+        crate::ask::ask(&document, None).0.expect("a chart")
+    }
+
+    #[test]
+    fn sequences_are_cells_and_what_they_share() {
+        let asked = asked(&cells("iec61131"));
+        let name = |s: &u32| asked.compiled.symbols.step_path(g7_engine::StepId(*s)).to_string();
+        let found: Vec<Vec<String>> = sequences(asked.compiled.program.tables())
+            .iter()
+            .map(|l| l.iter().map(name).map(|n| n.trim_start_matches("G.").to_owned()).collect())
+            .collect();
+        let all = ["1 13 14 23 24", "11 12 13 14 15", "21 22 23 24 25"];
+        let mut found: Vec<String> = found.into_iter().map(|l| l.join(" ").replace('X', "")).collect();
+        found.sort();
+        assert_eq!(found, all);
+    }
+
+    /// Where both cells can take the resource at once its sequence is broken, and the others are not.
+    #[test]
+    fn sequences_that_a_step_keeps_prove_at_once() {
+        for (profile, safe) in [("iec61131", true), ("pl7", false)] {
+            let asked = asked(&cells(profile));
+            let model = Model::new(&asked.compiled, Vec::new());
+            let question = asked.questions.last().cloned().expect("a question");
+            let t = system(&model, &[question], Observed::Asked);
+            let bad = t.asked[0].as_ref().expect("it is asked").bad;
+            let effort = Effort { bytes: 1 << 28, turns: 12, stop: &|| false };
+            let kept = crate::sat::kept(&t.system, t.exclusive.clone(), 1 << 30, &|| false).expect("time");
+            assert_eq!(
+                kept.len() == t.exclusive.len(),
+                safe,
+                "{profile}: {} of {}",
+                kept.len(),
+                t.exclusive.len()
+            );
+            assert!(kept.len() > 20, "{profile}");
+            let found = crate::sat::decide_with(&t.system, &[bad], &t.exclusive, &effort);
+            match found.first() {
+                Some(Found::Never(Proof::Invariant(clauses))) => {
+                    assert!(safe && clauses.len() <= t.exclusive.len(), "{profile}: {clauses:?}");
+                }
+                Some(Found::Reached(_)) => assert!(!safe, "{profile}"),
+                other => panic!("{profile}: {other:?}"),
+            }
+        }
+    }
+}

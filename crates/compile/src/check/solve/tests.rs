@@ -68,7 +68,7 @@ impl Condition {
                 _ => Condition::Step(rng.below(3) as usize),
             };
         }
-        let mut part = |rng: &mut Rng| Box::new(Condition::random(rng, depth - 1));
+        let part = |rng: &mut Rng| Box::new(Condition::random(rng, depth - 1));
         match rng.below(8) {
             0 => Condition::Not(part(rng)),
             1 => Condition::Both("xor", part(rng), part(rng)),

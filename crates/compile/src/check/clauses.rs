@@ -8,20 +8,20 @@ use std::cmp::Ordering;
 
 use g7_sat::{Answer, Batsat, Literal, Solver};
 
-use super::{Formula, Part, Question, Sort, Values, holds, is_taken};
+use super::formula::{Atom, Formula, Part, Sort, Values, holds, is_taken};
 
 /// Most work for one question, in ticks of the solver.
 const TICKS: u64 = 200_000;
 
 /// Tells whether all goals of a question can be true together; `None` if that takes too much work.
-pub(super) fn possible(question: &Question<'_, '_>) -> Option<bool> {
-    let mut coding = Coding::new(question);
-    let parts: Vec<Literal> = question.parts.iter().fold(Vec::new(), |mut known, formula| {
+pub(super) fn possible(atoms: &[Atom<'_>], parts: &[Formula<'_>], goals: &[Part]) -> Option<bool> {
+    let mut coding = Coding::new(atoms);
+    let parts: Vec<Literal> = parts.iter().fold(Vec::new(), |mut known, formula| {
         let literal = coding.formula(formula, &known);
         known.push(literal);
         known
     });
-    for goal in &question.goals {
+    for goal in goals {
         let literal = coding.of(&parts, *goal);
         coding.solver.add(&[literal]);
     }
@@ -32,8 +32,8 @@ pub(super) fn possible(question: &Question<'_, '_>) -> Option<bool> {
     }
 }
 
-struct Coding<'q, 'e, 'f> {
-    question: &'q Question<'e, 'f>,
+struct Coding<'q, 'e> {
+    question: &'q [Atom<'e>],
     solver: Batsat<'static>,
     /// It is true.
     yes: Literal,
@@ -41,14 +41,14 @@ struct Coding<'q, 'e, 'f> {
     atoms: Vec<Vec<Literal>>,
 }
 
-impl<'q, 'e, 'f> Coding<'q, 'e, 'f> {
-    fn new(question: &'q Question<'e, 'f>) -> Coding<'q, 'e, 'f> {
+impl<'q, 'e> Coding<'q, 'e> {
+    fn new(question: &'q [Atom<'e>]) -> Coding<'q, 'e> {
         let mut solver = Batsat::new(&|| false);
         solver.stop_at(TICKS);
         let yes = solver.variable(true);
         solver.add(&[yes]);
         let mut coding = Coding { question, solver, yes, atoms: Vec::new() };
-        for atom in &question.atoms {
+        for atom in question {
             let count = match &atom.sort {
                 Sort::Truth => 1,
                 Sort::Relation(_) => 2,
@@ -60,7 +60,7 @@ impl<'q, 'e, 'f> Coding<'q, 'e, 'f> {
             }
             coding.atoms.push(row);
         }
-        for (i, atom) in question.atoms.iter().enumerate() {
+        for (i, atom) in question.iter().enumerate() {
             let Sort::Place(ty, cuts) = &atom.sort else { continue };
             for place in (0..=2 * cuts.len()).filter(|p| !is_taken(*ty, cuts, *p)) {
                 let (from, beyond) = (coding.at_least(i, place), coding.at_least(i, place + 1));
@@ -121,7 +121,7 @@ impl<'q, 'e, 'f> Coding<'q, 'e, 'f> {
     }
 
     fn among(&mut self, atom: usize, values: &Values<'_>) -> Literal {
-        let (op, equal) = match (values, self.question.atoms.get(atom).map(|a| &a.sort)) {
+        let (op, equal) = match (values, self.question.get(atom).map(|a| &a.sort)) {
             (Values::Side(op, cut), Some(Sort::Place(_, cuts))) => {
                 (*op, 2 * cuts.iter().position(|c| c == cut).unwrap_or(0) + 1)
             }
