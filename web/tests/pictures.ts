@@ -276,8 +276,9 @@ async function proofs(b: Browser): Promise<void> {
 
 /** The panel of comparisons, with two charts at their first difference. */
 async function compared(b: Browser): Promise<void> {
-  const other = FORK.replace('2 -> 4 when right', '2 -> 4 when right and not left').replace('step 3\n', 'step 3 { N run }\n');
-  const site = await playground({ 'trolley.g7': FORK, 'trolley-2.g7': other });
+  const one = FORK.replace('output run', 'output run, horn').replace('step 4\n', 'step 4 { N horn }\n');
+  const other = one.replace('when right', 'when right and not left');
+  const site = await playground({ 'trolley.g7': one, 'trolley-2.g7': other });
   try {
     const kept = JSON.stringify({ language: 'en', theme: 'light', bottomOpen: true, bottom: 620, minimap: false, leftOpen: false, rightOpen: false });
     const page = await open(b, site, 'trolley.g7', { width: 1280, height: 860 }, (c) => c.addInitScript((text) => localStorage.setItem('g7-prefs', text), kept));
