@@ -31,7 +31,7 @@ let b: Awaited<ReturnType<typeof browser>>;
 let site: Site;
 
 before(async () => {
-  site = await playground({ 'line.g7': LINE, 'other.g7': OTHER, 'quick.g7': QUICK, 'many.g7': MANY, 'more.g7': LINE.replace('output M, N', 'output M'), 'wrong.g7': LINE.replace('when ↑go', 'when nothing') });
+  site = await playground({ 'line.g7': LINE, 'other.g7': OTHER, 'iec.g7': `profile iec61131\n${LINE}`, 'renamed.g7': LINE.replace(/\b2\b/g, '9'), 'quick.g7': QUICK, 'many.g7': MANY, 'more.g7': LINE.replace('output M, N', 'output M'), 'wrong.g7': LINE.replace('when ↑go', 'when nothing') });
   b = await browser();
 });
 
@@ -102,11 +102,20 @@ test('a chart under two profiles, before its last change, and read back from an 
   await page.getByText(/^(Equal|Different)/).waitFor();
   await page.getByRole('button', { name: 'Undo', exact: true }).click();
   await page.getByText('The text has changed since this comparison.').waitFor();
-  await compare(page, 'PLCopen XML');
+  await done(page);
+  const exported = await panel('iec.g7');
+  await compare(exported, 'PLCopen XML');
+  await exported.getByText(/^Equal: the same outputs for every sequence of inputs/).waitFor();
+  await done(exported);
+});
+
+test('situations are compared on request', async () => {
+  const page = await panel('line.g7');
+  await compare(page, 'renamed.g7');
   await page.getByText(/^Equal: the same outputs for every sequence of inputs/).waitFor();
   await page.getByRole('checkbox', { name: 'situations as well' }).check();
-  await compare(page, 'PLCopen XML');
-  await page.getByText(/^Equal: the same outputs and situations/).waitFor();
+  await compare(page, 'renamed.g7');
+  await page.getByText(/^Different: in scan 2 step .* is active in one of them only/).waitFor();
   await done(page);
 });
 

@@ -21,7 +21,7 @@ export interface Side {
   /** The name decides how the text is read. */
   name: string;
   text: string;
-  /** Null: that of the text. */
+  /** Null: that of the text, whose rules belong to what is compared. */
   profile: string | null;
 }
 

@@ -418,6 +418,8 @@ export interface Form {
   word: string;
   title: string;
   kind: 'chart' | 'code' | 'picture';
+  /** G7 reads it back as a chart. */
+  read: boolean;
 }
 
 export interface OutFile {

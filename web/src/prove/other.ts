@@ -8,10 +8,10 @@ import { server } from '../lib/server';
 
 const base = (path: string) => path.slice(path.lastIndexOf('/') + 1);
 
-/** The forms that keep a chart and can be read back. */
+/** The forms that are read back. */
 let known: Promise<Form[]> | undefined;
 export function forms(): Promise<Form[]> {
-  known ??= page.call<Form[]>({ do: 'forms' }).then((all) => all.filter((f) => f.kind === 'chart'));
+  known ??= page.call<Form[]>({ do: 'forms' }).then((all) => all.filter((f) => f.read));
   return known;
 }
 
@@ -20,10 +20,10 @@ export async function sides(file: OpenFile, choice: string): Promise<readonly [S
   await file.settled();
   const { profile } = file.look;
   const name = base(file.name);
-  const mine: Side = { title: name, name, text: file.text, profile };
+  const mine: Side = { title: name, name, text: file.text, profile: null };
   const at = choice.indexOf(':');
   const [sort, what] = at < 0 ? [choice, ''] : [choice.slice(0, at), choice.slice(at + 1)];
-  if (sort === 'profile') return [{ ...mine, title: profile }, { ...mine, title: what, profile: what }];
+  if (sort === 'profile') return [{ ...mine, title: profile, profile }, { ...mine, title: what, profile: what }];
   if (sort === 'before') {
     const { text } = await page.call<{ text: string | null }>({ do: 'before', file: file.name });
     if (text === null) throw new Refused(t('compare.nothing'));
@@ -33,8 +33,7 @@ export async function sides(file: OpenFile, choice: string): Promise<readonly [S
     const made = await page.call<{ files: OutFile[] }>({ do: 'export', file: file.name, to: what });
     const out = made.files.at(-1);
     if (!out) throw new Refused(t('compare.unwritten'));
-    // Such a file need not name its profile: the chart is compared, not the rule of its tool.
-    return [mine, { title: base(out.name), name: base(out.name), text: out.text, profile }];
+    return [mine, { title: base(out.name), name: base(out.name), text: out.text, profile: null }];
   }
   const open = files.find(what);
   await open?.settled();

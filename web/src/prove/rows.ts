@@ -21,12 +21,12 @@ export function differences(run: Run, other: Run): ReadonlySet<string> {
   return found;
 }
 
-/** The rows of one side: what is ever other than 0 in one of the runs. If there are too many, those that
- * differ stay. */
+/** The rows of one side: steps that change in one of the runs, inputs and outputs that are ever other than 0.
+ * If there are too many, those that differ stay. */
 export function rows(told: Told, other: Told): Lane[] {
   const differing = differences(told.run, other.run);
   const there = new Set(other.lanes.map((l) => l.name));
-  const moves = (lane: Lane) => lane.edges.length > 1 || lane.edges.some((e) => e[1] !== 0);
+  const moves = (lane: Lane) => lane.edges.length > 1 || (!lane.step && lane.edges.some((e) => e[1] !== 0));
   const moving = new Set([...told.lanes, ...other.lanes].filter(moves).map((l) => l.name));
   const all = told.lanes.filter((l) => there.has(l.name) && (moving.has(l.name) || differing.has(l.name)));
   const chosen = new Set([...all.filter((l) => differing.has(l.name)), ...all].slice(0, MOST));
