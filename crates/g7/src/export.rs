@@ -10,7 +10,7 @@ use g7_model::Severity;
 use crate::failure::{Failure, Verdict};
 use crate::message::talk;
 use crate::report::{self, Tally};
-use crate::{files, prove, sources};
+use crate::{files, sources};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -66,7 +66,10 @@ impl ValueEnum for Form {
     }
 }
 
-pub(crate) fn export(args: &Export) -> Result<Verdict, Failure> {
+/// Compares a chart with what was read back.
+pub(crate) type ReadBack = fn(sources::Source, sources::Source) -> Result<Verdict, Failure>;
+
+pub(crate) fn export(args: &Export, read_back: ReadBack) -> Result<Verdict, Failure> {
     let to = form(args)?;
     let source = sources::load(&files::one(&args.file)?, 0)?;
     files::refuse_present(args.output.as_deref(), args.force)?;
@@ -97,7 +100,7 @@ pub(crate) fn export(args: &Export) -> Result<Verdict, Failure> {
     }
     files::deliver(args.output.as_deref(), written.text.as_bytes())?;
     match &args.output {
-        Some(path) if args.compare => prove::read_back(source, sources::load(path, 0)?),
+        Some(path) if args.compare => read_back(source, sources::load(path, 0)?),
         _ => Ok(Verdict::Fine),
     }
 }

@@ -35,7 +35,7 @@ fn shows(place: &str, wanted: &str, ran: &Ran) {
     }
 }
 
-/// What the author of a chart claims is proved, unless a note behind the claim says `refuted`.
+/// The claims of the author of a chart are proved, unless a note behind the claim says `refuted`.
 #[track_caller]
 fn claims(place: &str, chart: &str, ran: &Ran) {
     for (number, line) in (1..).zip(chart.lines()).filter(|(_, l)| l.starts_with("prove ")) {
@@ -117,7 +117,7 @@ fn what_is_not_decided_for_one_reason_stands_together() {
         assert!(out.contains(part), "{part}: {out}");
     }
     assert!(!out.contains("step 20 can"), "{out}");
-    // What the author has claimed stands alone.
+    // A claim of the author stands alone.
     assert!(out.contains("not decided: prove never x > 1000.0"), "{out}");
     let all = folder.g7(&["prove", "chart.g7", "--all"]);
     assert!(all.is(3).out.contains("not decided: step 20 can be active"), "{}", all.out);

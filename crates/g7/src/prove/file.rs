@@ -7,7 +7,7 @@ use g7_rig::Source;
 use g7_rig::testing::plants;
 use g7_verify::{Budget, Evidence, Model, Question, Verdict, answer, ask, ask_with, is_open, words};
 
-use super::found::{Answered, Found, LISTED};
+use super::found::{Answered, Found};
 use super::made;
 use super::patience::{Patience, Phase, Progress, Share, Stop};
 use super::{guilt, sarif, save, trace};
@@ -130,23 +130,14 @@ impl File<'_> {
         answer(model, questions, &mut answers, &self.work.budget(&stop));
         self.found.is_stopped |= stop() && answers.iter().any(is_open);
         self.work.progress.enter(Phase::Tell);
-        let mut reason: Option<(&Verdict, String)> = None;
         for (question, verdict) in questions.iter().zip(&answers) {
             let Some(verdict) = verdict else { continue };
-            if matches!(verdict, Verdict::Open(_)) && !question.claim.is_own() && !self.work.tells_all() {
-                // Most of many questions have the reason of the one before.
-                let known = reason.take().filter(|(v, _)| *v == verdict).map(|(_, words)| words);
-                let words = known.unwrap_or_else(|| {
-                    let [words, ..] = words::reason(verdict, Nanos::ZERO);
-                    words
-                });
-                let more = self.found.more.entry(words.clone()).or_default();
-                reason = Some((verdict, words));
-                if more.listed >= LISTED {
-                    *more.hidden.entry(sarif::rule(&question.claim)).or_default() += 1;
-                    continue;
-                }
-                more.listed += 1;
+            if let Verdict::Open(open) = verdict
+                && !question.claim.is_own()
+                && !self.work.tells_all()
+                && self.found.hides(open, verdict, sarif::rule(&question.claim))
+            {
+                continue;
             }
             let mut one = self.answered(model, question, verdict)?;
             if let Some(plant) = plant.filter(|_| !one.own) {

@@ -2,7 +2,8 @@
 
 use std::collections::BTreeMap;
 
-use g7_verify::Verdict;
+use g7_model::Nanos;
+use g7_verify::{Open, Verdict, words};
 
 use crate::report::Tally;
 
@@ -10,10 +11,12 @@ use crate::report::Tally;
 pub(super) const LISTED: usize = 12;
 
 /// Questions that are not decided for one reason: the number that is listed, and of those that are not
-/// the numbers by their rules.
+/// the numbers by their rules. They are sure up to different numbers of scans; the least counts.
 #[derive(Default)]
 pub(super) struct More {
     pub(super) listed: usize,
+    /// The least number of scans, and the reason with it in words.
+    pub(super) least: Option<(usize, String)>,
     pub(super) hidden: BTreeMap<&'static str, usize>,
 }
 
@@ -61,6 +64,24 @@ pub(crate) struct Answered {
 }
 
 impl Found {
+    /// Counts a question that is not decided; true if it is not to be listed.
+    pub(super) fn hides(&mut self, open: &Open, verdict: &Verdict, rule: &'static str) -> bool {
+        let more = match self.more.get_mut(&open.reason) {
+            Some(more) => more,
+            None => self.more.entry(open.reason.clone()).or_default(),
+        };
+        if more.least.as_ref().is_none_or(|(scans, _)| open.scans < *scans) {
+            let [words, ..] = words::reason(verdict, Nanos::ZERO);
+            more.least = Some((open.scans, words));
+        }
+        if more.listed < LISTED {
+            more.listed += 1;
+            return false;
+        }
+        *more.hidden.entry(rule).or_default() += 1;
+        true
+    }
+
     /// The number of questions that are not decided and not listed.
     pub(super) fn hidden(&self) -> usize {
         self.more.values().flat_map(|more| more.hidden.values()).sum()

@@ -36,7 +36,7 @@ pub(crate) fn prove(args: &Prove) -> Result<failure::Verdict, Failure> {
     let paths = files::all(&args.paths)?;
     made::one_file(args, &paths)?;
     let patience = Patience::new()?;
-    // What a file leaves over is for those behind it.
+    // The time that a file leaves over is for those behind it.
     let time = patience.share(args.time);
     let mut all = Vec::new();
     for (path, files) in paths.iter().zip((1..=paths.len()).rev()) {

@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 use std::io::Write;
 
-use g7_verify::{Evidence, Verdict, words};
+use g7_verify::{Evidence, Open, Verdict, words};
 use serde_json::{Value, json};
 
 use super::found::{Answered, Found, LISTED};
@@ -26,14 +26,18 @@ pub(super) fn text(found: &Found, all: bool) -> Result<(), Failure> {
     let mut told: BTreeSet<&str> = BTreeSet::new();
     for a in &found.answers {
         let proved = matches!(a.verdict, Verdict::Proved(_));
-        if proved && !a.own && !all || !all && is_open(a) && told.contains(&*a.reason) {
+        if proved && !a.own && !all {
             continue;
         }
-        if !all && is_open(a) {
+        if let Some(open) = open(a)
+            && !all
+        {
             // All of one reason stand where the first of them does.
-            told.insert(&a.reason);
-            let group: Vec<&Answered> =
-                found.answers.iter().filter(|b| is_open(b) && b.reason == a.reason).collect();
+            if !told.insert(&open.reason) {
+                continue;
+            }
+            let is_like = |b: &&Answered| self::open(b).is_some_and(|o| o.reason == open.reason);
+            let group: Vec<&Answered> = found.answers.iter().filter(is_like).collect();
             if group.len() > 1 {
                 undecided(&mut out, found, &group)?;
                 continue;
@@ -44,9 +48,12 @@ pub(super) fn text(found: &Found, all: bool) -> Result<(), Failure> {
     Ok(())
 }
 
-/// True for a question of every chart that is not decided.
-fn is_open(a: &Answered) -> bool {
-    !a.own && matches!(a.verdict, Verdict::Open(_))
+/// How far a question of every chart is decided that is not decided.
+fn open(a: &Answered) -> Option<&Open> {
+    match &a.verdict {
+        Verdict::Open(open) if !a.own => Some(open),
+        _ => None,
+    }
 }
 
 fn one(out: &mut impl Write, a: &Answered, short: bool) -> Result<(), Failure> {
@@ -79,10 +86,14 @@ fn one(out: &mut impl Write, a: &Answered, short: bool) -> Result<(), Failure> {
 fn undecided(out: &mut impl Write, found: &Found, group: &[&Answered]) -> Result<(), Failure> {
     let Some(first) = group.first() else { return Ok(()) };
     let style = style::WARN;
-    let mut more = found.more.get(&first.reason).map(|m| m.hidden.clone()).unwrap_or_default();
+    let known = open(first).and_then(|open| found.more.get(&open.reason));
+    let mut more = known.map(|m| m.hidden.clone()).unwrap_or_default();
+    let listed = group.iter().filter_map(|a| Some((open(a)?.scans, &*a.reason)));
+    let counted = known.and_then(|m| m.least.as_ref()).map(|(scans, words)| (*scans, &**words));
+    let reason = listed.chain(counted).min_by_key(|(scans, _)| *scans).map_or("", |(_, words)| words);
     let n = group.len() + more.values().sum::<usize>();
     writeln!(out, "{}: {style}not decided{style:#}: {n} questions", found.name)?;
-    writeln!(out, "  of each: {}", first.reason)?;
+    writeln!(out, "  of each: {reason}")?;
     for a in group.iter().take(LISTED) {
         let place = a.place.strip_prefix(&found.name).unwrap_or(&a.place).trim_start_matches(':');
         writeln!(out, "  {place}: {}", a.claim)?;
