@@ -1,5 +1,5 @@
-//! Search and solver never contradict each other: random charts of each profile, and the
-//! examples, every question asked of both.
+//! Search and solver never contradict each other: random charts of each profile, every question
+//! asked of both. (`make prove-table` does the same with the examples, the litmus charts and the corpus.)
 
 use std::collections::BTreeMap;
 

@@ -6,6 +6,7 @@
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
+use std::time::Instant;
 
 use crate::{Scratch, skip};
 
@@ -162,12 +163,14 @@ pub fn one_of(file: &[u8], signal: usize) -> Vec<u8> {
 }
 
 /// The end of a search by Spin that visited all states.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Searched {
     /// States.
     pub states: usize,
     /// Assertions that failed.
     pub errors: usize,
+    /// Seconds of the search alone.
+    pub seconds: f64,
     /// The output, with what the model itself has written.
     pub text: String,
 }
@@ -184,29 +187,41 @@ impl Spin {
             return None;
         };
         let small = "byte n; active proctype p() { do :: d_step { n < 5 -> n++ } :: n == 5 -> break od }\n";
-        if spin.search(small, &[], 100).is_ok_and(|s| s.errors == 0 && s.states > 5) {
+        if spin.search(small, &[], 100, 10).is_ok_and(|s| s.errors == 0 && s.states > 5) {
             return Some(spin);
         }
         skip("spin does not work");
         None
     }
 
-    /// Searches all states of a model, with these options of the C compiler and this bound on the depth.
+    /// Searches all states of a model, with these options of the C compiler and these bounds on the depth and the
+    /// seconds.
     ///
     /// # Errors
     ///
     /// The output of Spin or the compiler where they fail; and where the search was cut: Spin says
     /// "errors: 0" there too.
-    pub fn search(&self, model: &str, options: &[&str], depth: usize) -> Result<Searched, String> {
+    pub fn search(
+        &self,
+        model: &str,
+        options: &[&str],
+        depth: usize,
+        seconds: u32,
+    ) -> Result<Searched, String> {
         let folder = Scratch::new("spin");
         std::fs::write(folder.0.join("model.pml"), model).map_err(|e| e.to_string())?;
         run(Command::new(&self.0).args(["-a", "model.pml"]), &folder.0)?;
         let flags = ["-O1", "-w", "-DSAFETY", "-DNOREDUCE", "-o", "pan", "pan.c"];
         run(Command::new("cc").args(options).args(flags), &folder.0)?;
-        let mut search = Command::new(folder.0.join("pan"));
         // Every error is counted. A process that rests for ever is none.
-        let text = run(search.arg(format!("-m{depth}")).args(["-c0", "-E", "-w20"]), &folder.0)?;
-        searched(&text).ok_or(text)
+        let mut search = Command::new("timeout");
+        search.arg(seconds.to_string()).arg(folder.0.join("pan"));
+        let table = if depth > 1 << 20 { "-w24" } else { "-w20" };
+        search.arg(format!("-m{depth}")).args(["-c0", "-E", table]);
+        let begun = Instant::now();
+        let text = run(&mut search, &folder.0)?;
+        let seconds = begun.elapsed().as_secs_f64();
+        searched(&text).map(|found| Searched { seconds, ..found }).ok_or(text)
     }
 }
 
@@ -217,7 +232,7 @@ fn searched(text: &str) -> Option<Searched> {
     let number = |line: Option<&str>| line?.split_whitespace().next()?.parse().ok();
     let errors = number(text.split_once("errors: ").map(|(_, rest)| rest))?;
     let states = number(text.lines().find(|l| l.ends_with("states, stored")))?;
-    Some(Searched { states, errors, text: text.to_owned() })
+    Some(Searched { states, errors, seconds: 0.0, text: text.to_owned() })
 }
 
 fn run(command: &mut Command, folder: &Path) -> Result<String, String> {

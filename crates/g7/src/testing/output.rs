@@ -55,7 +55,7 @@ pub(super) fn summary(out: &mut dyn Write, outcomes: &[Outcome], unproved: usize
     write!(out, "\n{} passed, {failed} failed", outcomes.len() - failed)?;
     match unproved {
         0 => writeln!(out),
-        n => writeln!(out, ", {n} not proved"),
+        n => writeln!(out, ", {n} left to g7 prove"),
     }
 }
 
