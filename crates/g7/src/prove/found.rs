@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use g7_model::Nanos;
-use g7_verify::{Open, Verdict, words};
+use g7_verify::{Open, Reason, Verdict, words};
 
 use crate::report::Tally;
 
@@ -27,8 +27,8 @@ pub(super) struct Found {
     pub(super) name: String,
     /// The answers, in the order of the questions.
     pub(super) answers: Vec<Answered>,
-    /// Further questions that are not decided, by the reason.
-    pub(super) more: BTreeMap<String, More>,
+    /// Further questions that are not decided, by the reason. There are few reasons.
+    pub(super) more: Vec<(Reason, More)>,
     /// The problems of its text, and those that contradicting assumptions are.
     pub(super) tally: Tally,
     /// The problems in words, with excerpts of the text.
@@ -66,10 +66,12 @@ pub(crate) struct Answered {
 impl Found {
     /// Counts a question that is not decided; true if it is not to be listed.
     pub(super) fn hides(&mut self, open: &Open, verdict: &Verdict, rule: &'static str) -> bool {
-        let more = match self.more.get_mut(&open.reason) {
-            Some(more) => more,
-            None => self.more.entry(open.reason.clone()).or_default(),
-        };
+        let known = self.more.iter().position(|(reason, _)| *reason == open.reason);
+        let at = known.unwrap_or_else(|| {
+            self.more.push((open.reason.clone(), More::default()));
+            self.more.len() - 1
+        });
+        let Some((_, more)) = self.more.get_mut(at) else { return false };
         if more.least.as_ref().is_none_or(|(scans, _)| open.scans < *scans) {
             let [words, ..] = words::reason(verdict, Nanos::ZERO);
             more.least = Some((open.scans, words));
@@ -84,6 +86,6 @@ impl Found {
 
     /// The number of questions that are not decided and not listed.
     pub(super) fn hidden(&self) -> usize {
-        self.more.values().flat_map(|more| more.hidden.values()).sum()
+        self.more.iter().flat_map(|(_, more)| more.hidden.values()).sum()
     }
 }

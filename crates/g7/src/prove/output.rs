@@ -1,9 +1,8 @@
 //! Prints answers, for people and programs.
 
-use std::collections::BTreeSet;
 use std::io::Write;
 
-use g7_verify::{Evidence, Open, Verdict, words};
+use g7_verify::{Evidence, Open, Reason, Verdict, words};
 use serde_json::{Value, json};
 
 use super::found::{Answered, Found, LISTED};
@@ -23,7 +22,7 @@ pub(super) fn text(found: &Found, all: bool) -> Result<(), Failure> {
         writeln!(out, "{}: {style}not decided{style:#}: {why}", found.name)?;
         writeln!(out, "  help: allow more with --time")?;
     }
-    let mut told: BTreeSet<&str> = BTreeSet::new();
+    let mut told: Vec<&Reason> = Vec::new();
     for a in &found.answers {
         let proved = matches!(a.verdict, Verdict::Proved(_));
         if proved && !a.own && !all {
@@ -33,9 +32,10 @@ pub(super) fn text(found: &Found, all: bool) -> Result<(), Failure> {
             && !all
         {
             // All of one reason stand where the first of them does.
-            if !told.insert(&open.reason) {
+            if told.contains(&&open.reason) {
                 continue;
             }
+            told.push(&open.reason);
             let is_like = |b: &&Answered| self::open(b).is_some_and(|o| o.reason == open.reason);
             let group: Vec<&Answered> = found.answers.iter().filter(is_like).collect();
             if group.len() > 1 {
@@ -86,7 +86,8 @@ fn one(out: &mut impl Write, a: &Answered, short: bool) -> Result<(), Failure> {
 fn undecided(out: &mut impl Write, found: &Found, group: &[&Answered]) -> Result<(), Failure> {
     let Some(first) = group.first() else { return Ok(()) };
     let style = style::WARN;
-    let known = open(first).and_then(|open| found.more.get(&open.reason));
+    let known = open(first).and_then(|open| found.more.iter().find(|(reason, _)| *reason == open.reason));
+    let known = known.map(|(_, more)| more);
     let mut more = known.map(|m| m.hidden.clone()).unwrap_or_default();
     let listed = group.iter().filter_map(|a| Some((open(a)?.scans, &*a.reason)));
     let counted = known.and_then(|m| m.least.as_ref()).map(|(scans, words)| (*scans, &**words));
