@@ -178,7 +178,7 @@ impl<'c> Sides<'c> {
         let width = image.len();
         b.canonical(pb, &mut second);
         image.extend_from_slice(&second);
-        let mut store = Store::new(image.len());
+        let mut store = Store::new();
         store.insert(&image);
         let count = self.inputs.len();
         let mut parents = vec![0u32];
@@ -206,7 +206,7 @@ impl<'c> Sides<'c> {
             if at.is_multiple_of(64) && (budget.stop)() {
                 return open(depth, store.len(), "the search was stopped", "allow more with --time");
             }
-            let from = store.image(at).to_vec();
+            let from = store.image(at);
             let (own, other) = from.split_at(width.min(from.len()));
             put(pa, &mut a, own);
             put(pb, &mut b, other);
