@@ -256,12 +256,11 @@ impl Asking {
         &self,
         mut show: impl FnMut(&mut dyn Iterator<Item = u32>, &mut dyn Iterator<Item = usize>),
     ) {
-        let places = |list: &[u32]| list.to_vec().into_iter().map(|i| i as usize);
         for arc in &self.arcs {
-            show(&mut arc.from.iter().chain(&arc.to).copied(), &mut places(&arc.reads));
+            show(&mut arc.from.iter().chain(&arc.to).copied(), &mut arc.reads.iter().map(|i| *i as usize));
         }
         for ((s, reads), with) in (0u32..).zip(&self.steps).zip(&self.with) {
-            show(&mut std::iter::once(s).chain(with.iter().copied()), &mut places(reads));
+            show(&mut std::iter::once(s).chain(with.iter().copied()), &mut reads.iter().map(|i| *i as usize));
         }
     }
 

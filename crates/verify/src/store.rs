@@ -158,7 +158,7 @@ mod tests {
     /// Images whose words begin to vary one after the other, and get wider.
     fn image(x: u64, n: u64) -> Vec<u64> {
         let time = 0u64.wrapping_sub((x >> 45) % 30 * 10_000_000);
-        vec![8, (x >> 40) % 100, if n > 4000 { time } else { 0 }, (x >> 50) % 6 << (n / 4000 * 9), 1]
+        vec![8, (x >> 40) % 100, if n > 4000 { time } else { 0 }, ((x >> 50) % 6) << (n / 4000 * 9), 1]
     }
 
     #[test]
@@ -175,8 +175,8 @@ mod tests {
             assert_eq!(store.len(), set.len());
         }
         assert!(set.len() > 9000, "{}", set.len());
-        for (image, number) in &set {
-            assert_eq!(&store.image(*number as usize), image);
+        for number in 0..store.len() {
+            assert_eq!(set.get(&store.image(number)), Some(&(number as u32)));
         }
     }
 }
