@@ -7,26 +7,30 @@
 //! something is a shortest one.
 
 mod answers;
+mod parts;
 
-use g7_engine::{Fault, Program, State, StepId, scan};
+use g7_engine::{Program, State};
 
-use crate::asked::{Asking, Places};
+use self::answers::asks_for_traps;
+use self::parts::{divided, jobs};
+use crate::expand::{Expanded, Expander, Gap, Here, Step};
 use crate::explore::Move;
 use crate::layer::{Budget, Layer};
-use crate::look::{Passes, Scanned, allowed, passes, shows};
 use crate::model::Model;
-use crate::monitor::{IDLE, has_memory};
+use crate::monitor::has_memory;
 use crate::question::{Claim, Question};
 use crate::reason::Reason;
+use crate::rows::{Key, Rows};
 use crate::scene::{Extent, Look, Scene, Tried, Until};
 use crate::store::Store;
 use crate::verdict::{Verdict, is_open};
-use crate::world::{WAYS, World};
+use crate::world::WAYS;
 
-/// Most combinations of inputs that are tried in one state.
-const MOST: usize = 1 << 16;
-/// States, and combinations of inputs of a state, between two questions whether to stop.
+/// States, and scans of a state, between two questions whether to stop.
 const PATIENCE: usize = 64;
+
+/// Scans of a search that comes before others.
+const SMALL: usize = 20_000;
 
 /// The explicit search as a layer.
 #[derive(Clone, Copy, Debug, Default)]
@@ -44,16 +48,59 @@ impl Layer for Explicit {
         answers: &mut [Option<Verdict>],
         budget: &Budget<'_>,
     ) {
-        let rows =
-            || questions.iter().enumerate().zip(answers.iter()).filter(|(_, a)| is_open(a)).map(|(q, _)| q);
-        let (alone, together): (Vec<_>, Vec<_>) = rows().partition(|(_, q)| has_memory(&q.claim));
-        let groups = std::iter::once(together).chain(alone.into_iter().map(|q| vec![q]));
-        let found: Vec<(usize, Verdict)> =
-            groups.filter(|g| !g.is_empty()).flat_map(|g| Search::new(model, budget, g).run()).collect();
-        for (i, verdict) in found {
-            if let Some(answer) = answers.get_mut(i) {
-                *answer = Some(verdict);
-            }
+        answer(model, questions, answers, budget, threads());
+    }
+}
+
+/// Searches that may run at a time.
+fn threads() -> usize {
+    if cfg!(target_family = "wasm") { 1 } else { std::thread::available_parallelism().map_or(1, usize::from) }
+}
+
+/// Answers questions with so many searches at a time. A small search comes first: most charts need no
+/// more. Then the chart is divided, if it consists of parts. What is left is searched as far as the budget
+/// allows.
+fn answer(
+    model: &Model<'_>,
+    questions: &[Question],
+    answers: &mut [Option<Verdict>],
+    budget: &Budget<'_>,
+    threads: usize,
+) {
+    let small = Budget { scans: SMALL.min(budget.scans), ..*budget };
+    if !whole(model, questions, answers, &small, threads) {
+        return;
+    }
+    let found = divided(model, &open(questions, answers), budget, threads);
+    give(answers, found);
+    if small.scans < budget.scans {
+        whole(model, questions, answers, budget, threads);
+    }
+}
+
+/// Searches the whole chart for what is open; tells whether more scans would have told more.
+fn whole(
+    model: &Model<'_>,
+    questions: &[Question],
+    answers: &mut [Option<Verdict>],
+    budget: &Budget<'_>,
+    threads: usize,
+) -> bool {
+    let found = parts::run(model, &jobs(&open(questions, answers), None), budget, threads);
+    let short = found.iter().any(|f| f.short);
+    found.into_iter().for_each(|f| give(answers, f.answers));
+    short
+}
+
+/// The questions without an answer, with their numbers.
+fn open<'q>(questions: &'q [Question], answers: &[Option<Verdict>]) -> Vec<(usize, &'q Question)> {
+    questions.iter().enumerate().zip(answers).filter(|(_, a)| is_open(a)).map(|(q, _)| q).collect()
+}
+
+fn give(answers: &mut [Option<Verdict>], found: Vec<(usize, Verdict)>) {
+    for (i, verdict) in found {
+        if let Some(answer) = answers.get_mut(i) {
+            *answer = Some(verdict);
         }
     }
 }
@@ -71,23 +118,7 @@ pub fn watch(
     let mut search = Search::new(model, budget, questions.iter().enumerate().collect());
     search.tried = tried;
     search.look = Some(&mut look);
-    search.run()
-}
-
-/// The moves of one state.
-struct Tries {
-    at: usize,
-    /// The memory of the claim in the state.
-    memory: u64,
-    asked: Places,
-    /// The places of the inputs that are tried.
-    places: Vec<usize>,
-    /// One was made.
-    tried: bool,
-    /// One leads on at once.
-    on: bool,
-    /// The states behind them.
-    next: Vec<u32>,
+    search.run().0
 }
 
 pub(crate) struct Search<'a> {
@@ -98,26 +129,30 @@ pub(crate) struct Search<'a> {
     /// The search begins behind these scans.
     pub(crate) start: &'a [Move],
     pub(crate) until: Until,
+    /// The places of the only inputs that change.
+    within: Option<Vec<usize>>,
     model: &'a Model<'a>,
     p: &'a Program,
     budget: &'a Budget<'a>,
-    asking: Asking,
+    expander: Option<Expander<'a>>,
     /// Questions without an answer, with their numbers.
     open: Vec<(usize, &'a Question)>,
     answers: Vec<(usize, Verdict)>,
     /// The claim that remembers something.
     memory: Option<&'a Claim>,
     store: Store,
-    /// Words of an image without the memory.
-    width: usize,
     /// For each state: the state before.
     parents: Vec<u32>,
     /// For each state: the inputs of the scan that led there.
-    inputs: Vec<u64>,
+    inputs: Rows,
+    /// Room for a packed row of them.
+    key: Key,
     /// For each state: the way in which the plant ticked there; empty unless it draws.
     ways: Vec<u8>,
-    /// The way of the moves in hand.
-    way: u8,
+    /// An image and inputs: room for the work.
+    room: (Vec<u64>, Vec<u64>),
+    /// Some question asks for the states that nothing leaves.
+    traps: bool,
     /// For each state that was expanded: some move leads on at once.
     leads_on: Vec<bool>,
     /// Moves of states that none leads on.
@@ -142,24 +177,26 @@ impl<'a> Search<'a> {
     ) -> Search<'a> {
         let p: &Program = &model.compiled.program;
         Search {
-            tried: Tried::Matter,
+            tried: Tried::Classes,
             look: None,
             rest: false,
             start: &[],
             until: Until::Answered,
+            within: None,
             model,
             p,
             budget,
-            asking: Asking::new(p, model.codes()),
+            expander: None,
             memory: open.iter().map(|(_, q)| &q.claim).find(|c| has_memory(c)),
             open,
             answers: Vec::new(),
-            store: Store::new(0),
-            width: 0,
+            store: Store::new(),
             parents: Vec::new(),
-            inputs: Vec::new(),
+            inputs: Rows::new(),
+            key: Key::new(),
             ways: Vec::new(),
-            way: 0,
+            room: Default::default(),
+            traps: false,
             leads_on: Vec::new(),
             edges: Vec::new(),
             scans: 0,
@@ -171,40 +208,42 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Searches, and answers all questions.
-    fn run(mut self) -> Vec<(usize, Verdict)> {
+    /// Searches, and answers all questions; gives the number of scans as well.
+    fn run(mut self) -> (Vec<(usize, Verdict)>, usize) {
         self.search();
         if self.hole.is_none() {
             self.traps();
         }
         self.close();
-        self.answers
+        (self.answers, self.scans)
     }
 
     /// Visits all states, or as many as the budget and the questions allow.
     pub(crate) fn search(&mut self) {
-        let (mut world, mut other) = (World::new(self.model), World::new(self.model));
-        let mut image = Vec::new();
-        for m in self.start {
-            let now = world.charts.now().saturating_add(m.wait);
-            // The caller has a run without a fault; behind one nothing would be found.
-            let _fault = scan(self.p, &mut world.charts, &m.inputs, now);
+        // Of a chart that is very large, a look at its tables takes longer than there is time.
+        if (self.budget.stop)() {
+            self.hole = Some(Reason::Stopped);
+            return;
         }
-        world.image(&mut image);
-        self.width = image.len();
-        image.push(IDLE);
-        self.store = Store::new(image.len());
+        let mut expander = Expander::new(self.model, &self.open);
+        expander.tried = match self.tried {
+            // Who looks on is shown all combinations.
+            Tried::Classes if self.look.is_some() => Tried::Matter,
+            tried => tried,
+        };
+        expander.rest = self.rest;
+        if let Some(inputs) = &self.within {
+            expander.keep_to(inputs);
+        }
+        self.traps = self.open.iter().any(|(_, q)| asks_for_traps(&q.claim));
+        expander.stop_when(self.budget.stop);
+        let (image, inputs) = expander.behind(self.start);
+        self.store = Store::new();
         self.store.insert(&image);
         self.parents.push(0);
-        if world.has_chance() {
+        self.inputs.push(&inputs, &mut self.key);
+        if expander.has_chance() {
             self.ways.push(0);
-        }
-        match self.start.last() {
-            Some(m) => self.inputs.extend_from_slice(&m.inputs),
-            None => {
-                let initial = self.model.inputs.iter().map(|v| v.tried.first().copied().unwrap_or(0));
-                self.inputs.extend(initial);
-            }
         }
         let (mut at, mut level) = (0usize, 1usize);
         while at < self.store.len() && self.goes_on() {
@@ -216,12 +255,13 @@ impl<'a> Search<'a> {
                 self.hole = Some(reason);
                 break;
             }
-            if !self.expand(at, &mut world, &mut other, &mut image) {
+            if !self.expand(at, &mut expander) {
                 break;
             }
             at += 1;
         }
         self.depth += usize::from(at >= self.store.len());
+        self.expander = Some(expander);
     }
 
     fn goes_on(&self) -> bool {
@@ -238,10 +278,20 @@ impl<'a> Search<'a> {
         Extent { states: self.store.len(), scans: self.scans, open }
     }
 
+    /// Bytes in use: for the states, and for the runs that lead to them.
+    pub(crate) fn kept(&self) -> (usize, usize) {
+        (self.store.bytes(), self.parents.len() * 4 + self.ways.len() + self.inputs.bytes())
+    }
+
+    /// The fewest scans that lead to the last state.
+    pub(crate) fn last(&self) -> usize {
+        self.path(self.store.len().saturating_sub(1)).moves.len()
+    }
+
     /// Why the search is to stop here.
     fn bound(&self, at: usize) -> Option<Reason> {
-        let bytes =
-            self.store.bytes() + self.parents.len() * 5 + self.inputs.len() * 8 + self.edges.len() * 8;
+        let (states, runs) = self.kept();
+        let bytes = states + runs + self.leads_on.len() + self.edges.len() * 8;
         if self.store.len() > self.budget.states {
             return Some(Reason::States(self.budget.states));
         }
@@ -260,58 +310,29 @@ impl<'a> Search<'a> {
     }
 
     /// Tries all moves of a state; false if it was stopped meanwhile.
-    fn expand(
-        &mut self,
-        at: usize,
-        world: &mut World<'a>,
-        other: &mut World<'a>,
-        image: &mut Vec<u64>,
-    ) -> bool {
-        let from: Vec<u64> = self.store.image(at).to_vec();
-        let (own, memory) = from.split_at(self.width.min(from.len()));
-        let memory = memory.first().copied().unwrap_or(IDLE);
-        world.put(own);
-        let asked = self.asking.asked(&world.charts);
-        let count = self.asking.count();
-        let last: Vec<u64> = self.inputs.get(at * count..(at + 1) * count).unwrap_or(&[]).to_vec();
-        let wait = self.wait(at);
-        let places = self.places(&asked);
-        let mut tries = Tries { at, memory, asked, places, tried: false, on: false, next: Vec::new() };
-        for way in world.ways() {
-            world.put(own);
-            let mut given = last.clone();
-            self.way = way;
-            let ticked = world.tick(wait, way, &mut given);
-            if way > 0 && !world.drew() {
-                break;
-            }
-            if world.drew() && self.hole.is_none() {
-                self.hole = Some(Reason::Chance(WAYS.into()));
-            }
-            if let Err(fault) = ticked {
-                self.hole.get_or_insert(Reason::Plant(fault.kind));
-                tries.tried = true;
-                continue;
-            }
-            for (k, inputs) in self.vectors(at, &tries.places, given).into_iter().enumerate() {
-                if k.is_multiple_of(PATIENCE)
-                    && k > 0
-                    && let Some(hole) = self.stopped()
-                {
-                    self.hole = Some(hole);
-                    return false;
-                }
-                world.put_charts(own);
-                self.attempt(&mut tries, own, &Move { inputs, wait }, world, other, image);
-            }
+    fn expand(&mut self, at: usize, expander: &mut Expander<'a>) -> bool {
+        let (mut image, mut inputs) = std::mem::take(&mut self.room);
+        self.store.get(at, &mut image);
+        self.inputs.get(at, &mut inputs);
+        let here = Here { image: &image, inputs: &inputs, first: self.is_first(at) };
+        let (mut on, mut next) = (false, Vec::new());
+        let done = expander.expand(here, |step| {
+            on |= step.leads_on;
+            let to = self.take(at, step);
+            next.extend(to.filter(|_| self.traps && !on));
+            self.scans += 1;
+            self.scans < self.budget.scans || !self.scans.is_multiple_of(PATIENCE)
+        });
+        self.room = (image, inputs);
+        self.note(at, &done);
+        if done.stopped {
+            self.hole = Some(self.stopped().unwrap_or(Reason::Stopped));
+            return false;
         }
-        if !tries.tried && self.stuck.is_none() {
-            self.hole = Some(Reason::NoInput(self.depth));
-            self.stuck = Some(at);
+        if self.traps {
+            self.leads_on.push(on);
         }
-        let Tries { on, mut next, .. } = tries;
-        self.leads_on.push(on);
-        if !on {
+        if self.traps && !on {
             next.sort_unstable();
             next.dedup();
             self.edges.extend(next.into_iter().map(|to| (at as u32, to)));
@@ -319,167 +340,49 @@ impl<'a> Search<'a> {
         true
     }
 
-    /// Makes one move of a state; the plant has made its own before.
-    fn attempt(
-        &mut self,
-        tries: &mut Tries,
-        own: &[u64],
-        m: &Move,
-        world: &mut World<'a>,
-        other: &mut World<'a>,
-        image: &mut Vec<u64>,
-    ) {
-        let at = tries.at;
-        let now = world.charts.now().saturating_add(m.wait);
-        if !self.model.assume.is_empty() {
-            other.put_charts(own);
-            if !allowed(self.model, other, m, now) {
-                return;
-            }
+    /// Takes a scan into the answers and its state into the store; gives the number of the state.
+    fn take(&mut self, at: usize, step: Step<'_>) -> Option<u32> {
+        for shown in step.shown {
+            self.settle(at, step.m, step.way, shown);
         }
-        self.scans += 1;
-        if !std::mem::replace(&mut tries.tried, true) {
-            let asked = tries.asked.clone();
-            self.see_asked(at, &asked, m);
-        }
-        self.see_passes(at, other, own, m, now);
-        let active: Vec<StepId> = world.charts.active().collect();
-        let report = scan(self.p, &mut world.charts, &m.inputs, now);
-        self.see(at, &Scanned { state: &world.charts, report }, m);
-        let Ok(report) = report else {
-            tries.on |= self.memory.is_none();
-            self.show_scan(tries, None, m, world, report.err());
-            return;
-        };
-        let Some(memory) = self.judge(at, world, tries.memory, m) else {
-            self.show_scan(tries, None, m, world, None);
-            return;
-        };
-        tries.on |= match self.memory {
-            Some(_) => memory == IDLE,
-            None => report.cleared > 0 || !world.charts.active().eq(active.iter().copied()),
-        };
-        world.image(image);
-        image.push(memory);
-        let number = self.store.len() as u32;
-        let to = self.store.find_or_insert(image).unwrap_or_else(|| {
-            self.parents.push(at as u32);
-            self.inputs.extend_from_slice(&m.inputs);
-            if world.has_chance() {
-                self.ways.push(self.way);
-            }
-            number
+        let to = step.next.filter(|_| self.goes_on()).map(|image| {
+            let number = self.store.len() as u32;
+            self.store.find_or_insert(image).unwrap_or_else(|| {
+                self.parents.push(at as u32);
+                self.inputs.push(&step.m.inputs, &mut self.key);
+                if !self.ways.is_empty() {
+                    self.ways.push(step.way);
+                }
+                number
+            })
         });
-        tries.next.push(to);
-        self.show_scan(tries, Some(to as usize), m, world, None);
-    }
-
-    fn show_scan(
-        &mut self,
-        tries: &Tries,
-        to: Option<usize>,
-        m: &Move,
-        world: &mut World<'a>,
-        fault: Option<Fault>,
-    ) {
-        let depth = self.depth;
         if let Some(look) = &mut self.look {
-            let state = &mut world.charts;
-            look(Scene { depth, from: tries.at, to, m, tried: &tries.places, state, fault });
+            let Step { m, tried, state, fault, .. } = step;
+            look(Scene { depth: self.depth, from: at, to: to.map(|t| t as usize), m, tried, state, fault });
         }
+        to
     }
 
-    /// The places of the inputs that are tried in a state.
-    fn places(&self, asked: &Places) -> Vec<usize> {
-        let places: Vec<usize> = match self.tried {
-            Tried::Matter => self.asking.matter(asked).iter().collect(),
-            Tried::All => (0..self.asking.count()).collect(),
-        };
-        places.into_iter().filter(|i| !self.model.is_driven(*i)).collect()
-    }
-
-    /// The inputs that are tried in a state; leaves a note where they are not all that matter.
-    fn vectors(&mut self, at: usize, places: &[usize], last: Vec<u64>) -> Vec<Vec<u64>> {
-        if self.rest && at == 0 && self.start.is_empty() {
-            return vec![last];
+    /// Notes why not all runs are seen.
+    fn note(&mut self, at: usize, done: &Expanded) {
+        self.cut |= done.cut;
+        self.cut_passes |= done.cut_passes;
+        if let Some(gap) = done.gap.filter(|_| self.hole.is_none()) {
+            self.hole = Some(match gap {
+                Gap::Combinations(count) => Reason::Combinations(count),
+                Gap::Values(place) => Reason::Values(self.name(place).to_owned()),
+                Gap::Plant(kind) => Reason::Plant(kind),
+                Gap::Chance => Reason::Chance(WAYS.into()),
+            });
         }
-        let tried = |i: usize| self.model.inputs.get(i).map_or(&[][..], |v| &v.tried);
-        let count = places.iter().fold(1usize, |n, i| n.saturating_mul(tried(*i).len().max(1)));
-        let set = |old: &[u64], i: usize, value: u64| {
-            let mut new = old.to_vec();
-            new.get_mut(i).into_iter().for_each(|w| *w = value);
-            new
-        };
-        // The present value comes first, so that a run changes an input only where it must.
-        let values = |i: usize| {
-            let now = last.get(i).copied();
-            let others = tried(i).iter().copied().filter(move |v| Some(*v) != now);
-            now.filter(|v| tried(i).contains(v)).into_iter().chain(others)
-        };
-        let mut list = vec![last.clone()];
-        for i in places {
-            if count > MOST {
-                list.extend(tried(*i).iter().map(|v| set(&last, *i, *v)).filter(|v| *v != last));
-            } else {
-                list = list.iter().flat_map(|old| values(*i).map(|v| set(old, *i, v))).collect();
-            }
+        if done.stuck && !done.stopped && self.stuck.is_none() {
+            self.hole = Some(Reason::NoInput(self.depth));
+            self.stuck = Some(at);
         }
-        if self.hole.is_none() {
-            let open = places.iter().find(|i| self.model.inputs.get(**i).is_some_and(|v| !v.whole));
-            self.hole = match open {
-                _ if count > MOST => Some(Reason::Combinations(places.len())),
-                Some(i) => Some(Reason::Values(self.name(*i).to_owned())),
-                None => None,
-            };
-        }
-        list
     }
 
     fn name(&self, place: usize) -> &str {
         let addr = g7_engine::Addr(self.p.tables().inputs.start + place as u32);
         self.model.compiled.symbols.variable_at(addr).map_or("", |v| &v.name)
-    }
-
-    fn see_asked(&mut self, at: usize, asked: &Places, m: &Move) {
-        let first = self.p.tables().inputs.start;
-        self.settle(
-            at,
-            m,
-            None,
-            |c| matches!(c, Claim::Asked(a) if asked.iter().any(|i| i as u32 + first == a.0)),
-        );
-    }
-
-    fn see_passes(&mut self, at: usize, other: &mut World<'a>, own: &[u64], m: &Move, now: i64) {
-        let wants = |c: &Claim| self.open.iter().any(|(_, q)| q.claim == *c);
-        let (conflict, safety) = (wants(&Claim::NoConflict), wants(&Claim::NoUnsafe));
-        if !conflict && !safety {
-            return;
-        }
-        other.put_charts(own);
-        let Passes { conflict, unsafe_, cut } = passes(self.p, &mut other.charts, &m.inputs, now, conflict);
-        self.cut_passes |= cut;
-        if conflict || unsafe_ {
-            // A fault in the same scan belongs to the run.
-            other.put_charts(own);
-            let fault = scan(self.p, &mut other.charts, &m.inputs, now).err();
-            self.settle(at, m, fault, |c| match c {
-                Claim::NoConflict => conflict,
-                Claim::NoUnsafe => unsafe_,
-                _ => false,
-            });
-        }
-    }
-
-    fn see(&mut self, at: usize, scanned: &Scanned<'_>, m: &Move) {
-        let s = scanned.state;
-        let t = self.p.tables();
-        // As much as the reports of a scan have room for.
-        let (most_run, most_cleared) = (t.actions.len() + 64, 2 * t.transitions.len() + 64);
-        let listed = scanned.report.map_or(0, |r| r.cleared as usize);
-        let cleared = s.cleared().len();
-        self.cut |= s.ran().len() >= most_run || cleared < listed || cleared >= most_cleared;
-        let p = self.p;
-        self.settle(at, m, scanned.report.err(), |c| shows(p, c, scanned));
     }
 }

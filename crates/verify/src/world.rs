@@ -35,6 +35,8 @@ pub(crate) struct World<'a> {
     p: &'a Program,
     /// The charts.
     pub(crate) charts: State,
+    /// The charts as [`World::put`] left them.
+    base: State,
     plant: Option<Beside<'a>>,
 }
 
@@ -51,7 +53,7 @@ impl<'a> World<'a> {
             let begins = chance.map_or(Vec::new(), |_| (0..WAYS).map(begin_of).collect());
             Beside { side, state, inputs, chance, begins, drew: false }
         });
-        World { p, charts: State::new(p), plant }
+        World { p, charts: State::new(p), base: State::new(p), plant }
     }
 
     /// These charts, with the plant before its first tick.
@@ -87,19 +89,29 @@ impl<'a> World<'a> {
 
     /// Becomes the state of an image that [`World::image`] has made.
     pub(crate) fn put(&mut self, image: &[u64]) {
-        let width = self.charts.image().len();
-        self.put_charts(image);
+        let width = self.base.image().len();
+        let done = self.base.restore(self.p, image.get(..width).unwrap_or(&[]));
+        debug_assert!(done.is_ok(), "{done:?}");
+        self.back();
         if let Some(plant) = &mut self.plant {
             let done = plant.state.restore(&plant.side.compiled.program, image.get(width..).unwrap_or(&[]));
             debug_assert!(done.is_ok(), "{done:?}");
         }
     }
 
-    /// The same for the charts alone.
-    pub(crate) fn put_charts(&mut self, image: &[u64]) {
-        let width = self.charts.image().len();
-        let done = self.charts.restore(self.p, image.get(..width).unwrap_or(&[]));
-        debug_assert!(done.is_ok(), "{done:?}");
+    /// The charts as [`World::put`] left them.
+    pub(crate) fn base(&self) -> &State {
+        &self.base
+    }
+
+    /// The charts are again as [`World::put`] left them.
+    pub(crate) fn back(&mut self) {
+        self.charts.become_as(&self.base);
+    }
+
+    /// The charts are as [`World::put`] left those of another world.
+    pub(crate) fn back_to(&mut self, other: &World<'_>) {
+        self.charts.become_as(&other.base);
     }
 
     /// Lets the plant tick, and puts the inputs that it drives into `inputs`.

@@ -66,12 +66,8 @@ impl Sides<'_> {
         b.canonical(pb, &mut second);
         image.extend_from_slice(&second);
         let first = self.inputs.iter().map(|i| i.values.tried.first().copied().unwrap_or(0)).collect();
-        let mut pairs = Pairs {
-            store: Store::new(image.len()),
-            parents: vec![0],
-            inputs: first,
-            count: self.inputs.len(),
-        };
+        let mut pairs =
+            Pairs { store: Store::new(), parents: vec![0], inputs: first, count: self.inputs.len() };
         pairs.store.insert(&image);
         let assumed = self.models.iter().any(|m| !m.assume.is_empty());
         let mut worlds = [World::new(&self.models[0]), World::new(&self.models[1])];
@@ -96,7 +92,7 @@ impl Sides<'_> {
             if at.is_multiple_of(PATIENCE) && (budget.stop)() {
                 return open(depth, states, Reason::Stopped, hole);
             }
-            let from = pairs.store.image(at).to_vec();
+            let from = pairs.store.image(at);
             let (own, other) = from.split_at(width.min(from.len()));
             put(pa, &mut a, own);
             put(pb, &mut b, other);

@@ -1,65 +1,31 @@
 //! Findings of a search become answers: runs that show something, states that nothing leaves, and at the end all
 //! that is left over.
 
-use g7_engine::Fault;
-
 use super::Search;
+use crate::expand::Shown;
 use crate::explore::Move;
 use crate::look::{PASSES, replay};
-use crate::monitor::{IDLE, has_memory, is_of_scans, judge};
+use crate::monitor::IDLE;
 use crate::question::Claim;
 use crate::reason::Reason;
 use crate::verdict::{Certificate, Evidence, Open, Run, Verdict};
-use crate::world::World;
 
 impl<'a> Search<'a> {
-    /// Judges the claims about the end of a scan; gives what is to be remembered, or nothing
-    /// where the search need not go on.
-    pub(super) fn judge(&mut self, at: usize, world: &mut World<'a>, memory: u64, m: &Move) -> Option<u64> {
-        let mut hits = Vec::new();
-        let mut kept = IDLE;
-        let open = self.open.clone();
-        for (i, q) in open.iter().filter(|(_, q)| is_of_scans(&q.claim)) {
-            match judge(self.model, &q.claim, world, memory, m.wait) {
-                Ok(seen) => {
-                    hits.extend(seen.hit.then_some(*i));
-                    kept = if has_memory(&q.claim) { seen.memory } else { kept };
+    /// Answers a question that a scan shows.
+    pub(super) fn settle(&mut self, at: usize, m: &Move, way: u8, shown: &Shown) {
+        match *shown {
+            Shown::Run { question, fault } => {
+                let mut run = self.path(at);
+                run.moves.push(m.clone());
+                if !self.ways.is_empty() {
+                    run.ways.push(way);
                 }
-                Err(fault) => {
-                    self.give(*i, Verdict::Open(self.so_far(Reason::Condition(fault.kind))));
-                }
+                run.fault = fault;
+                self.show(question, run);
             }
-        }
-        if !hits.is_empty() {
-            self.settle_those(at, m, None, &hits);
-        }
-        Some(kept).filter(|_| self.goes_on())
-    }
-
-    /// Answers the open questions that a scan shows.
-    pub(super) fn settle(
-        &mut self,
-        at: usize,
-        m: &Move,
-        fault: Option<Fault>,
-        is_shown: impl Fn(&Claim) -> bool,
-    ) {
-        let hits: Vec<usize> =
-            self.open.iter().filter(|(_, q)| is_shown(&q.claim)).map(|(i, _)| *i).collect();
-        if !hits.is_empty() {
-            self.settle_those(at, m, fault, &hits);
-        }
-    }
-
-    pub(super) fn settle_those(&mut self, at: usize, m: &Move, fault: Option<Fault>, hits: &[usize]) {
-        let mut run = self.path(at);
-        run.moves.push(m.clone());
-        if !self.ways.is_empty() {
-            run.ways.push(self.way);
-        }
-        run.fault = fault;
-        for i in hits {
-            self.show(*i, run.clone());
+            Shown::Unclear { question, fault } => {
+                self.give(question, Verdict::Open(self.so_far(Reason::Condition(fault.kind))));
+            }
         }
     }
 
@@ -82,20 +48,21 @@ impl<'a> Search<'a> {
         self.answers.push((i, verdict));
     }
 
-    /// The time before the next scan behind a state: the first scan of all is at time 0.
-    pub(super) fn wait(&self, at: usize) -> i64 {
-        if at == 0 && self.start.is_empty() { 0 } else { self.model.period }
+    /// True before the first scan of all, which is at time 0.
+    pub(super) fn is_first(&self, at: usize) -> bool {
+        at == 0 && self.start.is_empty()
     }
 
     /// The run that leads to a state from the beginning of the search.
     pub(crate) fn path(&self, mut at: usize) -> Run {
-        let count = self.asking.count();
         let (mut moves, mut ways) = (Vec::new(), Vec::new());
         while at > 0 {
             ways.extend(self.ways.get(at).copied());
             let before = self.parents.get(at).copied().unwrap_or(0) as usize;
-            let inputs = self.inputs.get(at * count..(at + 1) * count).unwrap_or(&[]).to_vec();
-            moves.push(Move { inputs, wait: self.wait(before) });
+            let wait = if self.is_first(before) { 0 } else { self.model.period };
+            let mut inputs = Vec::new();
+            self.inputs.get(at, &mut inputs);
+            moves.push(Move { inputs, wait });
             at = before;
         }
         moves.reverse();
@@ -112,7 +79,7 @@ impl<'a> Search<'a> {
         back.sort_unstable();
         let mut good = self.leads_on.clone();
         for (at, on) in good.iter_mut().enumerate() {
-            *on |= self.memory.is_some() && self.store.image(at).last() == Some(&IDLE);
+            *on |= self.memory.is_some() && self.store.last_word(at) == Some(IDLE);
         }
         let mut work: Vec<u32> = (0u32..).zip(&good).filter(|(_, g)| **g).map(|(at, _)| at).collect();
         while let Some(at) = work.pop() {
@@ -125,16 +92,11 @@ impl<'a> Search<'a> {
             }
         }
         let bad: Vec<usize> = good.iter().enumerate().filter(|(_, g)| !**g).map(|(at, _)| at).collect();
-        if let Some(at) = bad.into_iter().find(|at| self.memory.is_some() || !self.is_end(*at)) {
+        let Some(mut expander) = self.expander.take() else { return };
+        let mut is_end = |at: usize| expander.is_end(&self.store.image(at));
+        if let Some(at) = bad.into_iter().find(|at| self.memory.is_some() || !is_end(*at)) {
             self.show(i, self.path(at));
         }
-    }
-
-    /// True if no active step has a transition behind it.
-    fn is_end(&self, at: usize) -> bool {
-        let mut world = World::new(self.model);
-        world.put(self.store.image(at).get(..self.width).unwrap_or(&[]));
-        world.charts.active().all(|step| self.asking.behind(step) == 0)
     }
 
     /// Answers what is left over.
@@ -162,6 +124,6 @@ impl<'a> Search<'a> {
     }
 }
 
-fn asks_for_traps(claim: &Claim) -> bool {
+pub(super) fn asks_for_traps(claim: &Claim) -> bool {
     matches!(claim, Claim::NoDeadlock | Claim::LeadsTo { .. })
 }

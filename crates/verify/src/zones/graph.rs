@@ -45,7 +45,7 @@ impl Graph {
     /// The state before the first scan.
     pub(super) fn new(start: &Shape) -> Graph {
         let mut graph = Graph {
-            store: Store::new(start.image.len()),
+            store: Store::new(),
             runs: Vec::new(),
             of_shape: Vec::new(),
             nodes: Vec::new(),
@@ -61,12 +61,12 @@ impl Graph {
 
     pub(super) fn shape(&self, node: &Node) -> Shape {
         let runs = self.runs.get(node.shape as usize).cloned().unwrap_or_default();
-        Shape { image: self.store.image(node.shape as usize).to_vec(), runs }
+        Shape { image: self.store.image(node.shape as usize), runs }
     }
 
     /// The image of a node's shape.
-    pub(super) fn image(&self, node: usize) -> &[u64] {
-        self.nodes.get(node).map_or(&[], |n| self.store.image(n.shape as usize))
+    pub(super) fn image(&self, node: usize) -> Vec<u64> {
+        self.nodes.get(node).map_or(Vec::new(), |n| self.store.image(n.shape as usize))
     }
 
     /// The node that has these states: one that is there, or a new one. Of the nodes that the new one

@@ -162,7 +162,7 @@ impl<'a> Search<'a> {
             if least != greatest {
                 self.clocks.image(&shape, &greatest, &mut images[1]);
             }
-            self.eye.world.put_charts(&images[0]);
+            self.eye.world.put(&images[0]);
             let asked = self.asking.asked(&self.eye.world.charts);
             let mut tries = Tries { at, shape: &shape, part: &part, elapse, images, asked, tried: false };
             turn.begin_part();

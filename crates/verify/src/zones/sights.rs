@@ -56,7 +56,7 @@ impl<'a> Eye<'a> {
         if self.model.assume.is_empty() {
             return true;
         }
-        self.other.put_charts(image);
+        self.other.put(image);
         let now = self.other.charts.now().saturating_add(m.wait);
         allowed(self.model, &mut self.other, m, now)
     }
@@ -72,7 +72,7 @@ impl<'a> Eye<'a> {
     ) -> Sight {
         let p = &self.model.compiled.program;
         let memory = image.last().copied().unwrap_or(IDLE);
-        self.world.put_charts(image);
+        self.world.put(image);
         let now = self.world.charts.now().saturating_add(m.wait);
         let seen = self.passes(image, m, now, open);
         let active: Vec<StepId> = self.world.charts.active().collect();
@@ -128,7 +128,7 @@ impl<'a> Eye<'a> {
         if !conflict && !wants(&Claim::NoUnsafe) {
             return Passes::default();
         }
-        self.other.put_charts(image);
+        self.other.put(image);
         passes(&self.model.compiled.program, &mut self.other.charts, &m.inputs, now, conflict)
     }
 }

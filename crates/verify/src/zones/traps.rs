@@ -136,7 +136,7 @@ impl Search<'_> {
     /// True if no active step has a transition behind it.
     fn is_end(&self, node: usize) -> bool {
         let mut world = crate::world::World::new(self.model);
-        world.put_charts(self.graph.image(node));
+        world.put(&self.graph.image(node));
         world.charts.active().all(|step| self.asking.behind(step) == 0)
     }
 }
