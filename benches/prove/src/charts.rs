@@ -7,7 +7,7 @@ use std::fmt::Write as _;
 pub fn cells(count: usize) -> String {
     let mut text = String::from("profile iec61131\n");
     for c in 1..=count {
-        let _ = writeln!(text, "input a{c}, b{c}, c{c}, d{c}, e{c} : BOOL");
+        let _ = writeln!(text, "input a{c}, b{c}, c{c}, d{c}, e{c} : BOOL\noutput q{c} : BOOL");
     }
     let _ = writeln!(text, "chart G {{");
     body(&mut text, count, "");
