@@ -230,10 +230,7 @@ fn search_and_solver_agree_about_what_can_follow() {
         }
     }
     println!("{proved} proved, {refuted} refuted, {open} open");
-    assert!(
-        charts < 12 || proved > 20 && refuted > 10,
-        "{proved} proved, {refuted} refuted, {open} open"
-    );
+    assert!(charts < 12 || proved > 20 && refuted > 10, "{proved} proved, {refuted} refuted, {open} open");
 }
 
 /// The solver answers for times that a search would wait through, and for more sequences than it can visit.
