@@ -101,13 +101,14 @@ fn edited(text: &str, seed: u64) -> Option<String> {
     Some(format!("{}{to}{}", &text[..at], &text[at + from.len()..]))
 }
 
+/// `G7_CHARTS` is the number of charts a profile, `G7_SEED` the first of them.
 #[test]
 fn search_and_solver_agree_on_random_charts_and_their_edits() {
     let number = |name: &str, otherwise: u64| {
         #[allow(clippy::disallowed_methods, reason = "how much a test does is told by its environment")]
         std::env::var(name).ok().and_then(|v| v.parse().ok()).unwrap_or(otherwise)
     };
-    let (first, count) = (number("G7_SEED", 1), number("G7_CHARTS", 3));
+    let (first, count) = (number("G7_SEED", 1), number("G7_CHARTS", 1));
     let all = [
         ProfileName::Iec60848,
         ProfileName::Iec61131,
@@ -142,7 +143,10 @@ fn search_and_solver_agree_on_random_charts_and_their_edits() {
         all_done.open += done.open;
     }
     let decided = all_done.equal + all_done.apart;
-    assert!(count < 3 || decided > all_done.open && all_done.equal > 5 && all_done.apart > 5, "{all_done:?}");
+    assert!(
+        count < 12 || decided > all_done.open && all_done.equal > 20 && all_done.apart > 20,
+        "{all_done:?}"
+    );
 }
 
 /// Cells of five steps, each transition with an input of its own; two cells share a resource, which they hold
