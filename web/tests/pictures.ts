@@ -287,6 +287,7 @@ async function compared(b: Browser): Promise<void> {
     await page.getByRole('tabpanel').getByRole('button', { name: 'Compare' }).click();
     await page.getByText(/^Different/).waitFor();
     await page.locator('[data-apart]').first().waitFor({ state: 'attached' });
+    await page.locator('.sides').evaluate((e) => e.scrollIntoView());
     await take(page, COMPARE, 100_000);
     await page.context().close();
   } finally {
