@@ -199,7 +199,7 @@ fn singled(mut values: Vec<i64>) -> Vec<i64> {
     values.into_iter().flat_map(|v| [v, v.saturating_add(1)]).collect()
 }
 
-/// What is done with a time before it is compared. Each keeps the order of its values.
+/// An operation on a time before it is compared. Each keeps the order of its values.
 #[derive(Clone, Copy)]
 enum Follow {
     Div(Num, u64),
@@ -341,7 +341,7 @@ impl Bounds<'_> {
 
     /// The least times at which a comparison with a constant changes.
     fn flips(&self, chain: &[Follow], c: Cmp, n: Num, constant: u64) -> Option<Vec<i64>> {
-        // What has no fault at both ends has none between them.
+        // A chain without a fault at both ends has none between them.
         follow(chain, 0)?;
         follow(chain, i64::MAX)?;
         let least = |c: Cmp| -> Option<Vec<i64>> {

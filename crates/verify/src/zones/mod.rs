@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! Model -> clocks (which words are times, and their bounds) -> search: Graph of sets of states
-//!          sights (one scan of one state of a set)           -> traps (deadlock, leads to) -> Verdict
+//!          sights (one scan of one state of a set)           -> search/traps (deadlock, leads to) -> Verdict
 //! ```
 //!
 //! It sees the same runs as `search.rs`. A node is a shape of an image with a zone (`matrix.rs`): the
@@ -30,7 +30,7 @@ mod search;
 mod sights;
 #[cfg(test)]
 mod tests;
-mod traps;
+mod turns;
 mod vectors;
 
 use crate::layer::{Budget, Layer};
@@ -67,7 +67,7 @@ impl Layer for Zones {
         let searches = groups.filter(|g| !g.is_empty()).filter_map(|g| Search::new(model, budget, g));
         let found: Vec<(usize, Verdict)> = searches.flat_map(Search::run).collect();
         for (i, verdict) in found {
-            // What another layer knows of an open question is more than the number of zones.
+            // Another layer may know more of an open question than a number of zones.
             if let Some(answer) = answers.get_mut(i)
                 && (answer.is_none() || !matches!(verdict, Verdict::Open(_)))
             {

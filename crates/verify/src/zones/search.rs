@@ -1,10 +1,12 @@
 //! Visits the sets of states, breadth first, and answers the questions.
 
+mod traps;
+
 use super::clocks::{Clocks, Moved, Shape};
 use super::graph::{Edge, Graph};
 use super::matrix::{From, Span, Zone};
 use super::sights::{Eye, Sight};
-use super::traps::Turn;
+use super::turns::Turn;
 use super::vectors::vectors;
 use crate::asked::{Asking, Places};
 use crate::explore::Move;
@@ -275,7 +277,7 @@ impl<'a> Search<'a> {
             tries.elapse > 0 && shape == *tries.shape && !to.is_empty() && to.iter().enumerate().all(stays);
         let zone = tries.part.zone.moved(&to);
         let limits = tries.part.limits.clone();
-        // What is not empty before it goes on is not empty behind it.
+        // A zone that is not empty is not empty later.
         let zone = if repeats { zone.ever_later().within(&limits).unwrap_or(zone) } else { zone };
         let edge = Edge { inputs: m.inputs.clone(), limits, to, repeats };
         let number = self.graph.add(&shape, zone, Some((tries.at as u32, edge)), tries.at + 1);

@@ -4,52 +4,17 @@
 //! of another. So there are two questions. A node is *good* where each part has inputs with which each
 //! of its states leads on, at once or by a node that is good: then every state of it is. A node is *bad* where
 //! nothing that is tried in any part leads on, and all nodes behind it are bad: then every state of it is a trap.
-//! What is neither is not decided.
+//! A node that is neither is not decided.
 //!
 //! In a part that a move leads back to the same node because time goes on in it, the move cannot be made for ever:
 //! some clock meets its bound. So this part is good if all others of the node are, and there are others.
 
-use super::search::Search;
+use super::Search;
 use crate::monitor::IDLE;
 use crate::question::Claim;
 use crate::reason::Reason;
 use crate::verdict::Verdict;
-
-/// The moves of a part of a node.
-#[derive(Default)]
-struct Moves {
-    /// One leads on at once.
-    on: bool,
-    /// One lets time go on in the node.
-    waits: bool,
-    /// The nodes behind the moves, but for that one.
-    to: Vec<u32>,
-}
-
-/// The moves of a node, by its parts.
-#[derive(Default)]
-pub(super) struct Turn {
-    parts: Vec<Moves>,
-}
-
-impl Turn {
-    /// Begins the next part.
-    pub(super) fn begin_part(&mut self) {
-        self.parts.push(Moves::default());
-    }
-
-    /// Adds a move of the part in hand: whether it leads on at once, and the node behind it, with a flag if
-    /// it is the same one, in which time has gone on.
-    pub(super) fn add(&mut self, on: bool, to: Option<(u32, bool)>) {
-        let Some(part) = self.parts.last_mut() else { return };
-        part.on |= on;
-        match to {
-            Some((_, true)) => part.waits = true,
-            Some((node, false)) if !part.to.contains(&node) => part.to.push(node),
-            _ => {}
-        }
-    }
-}
+use crate::zones::turns::Moves;
 
 impl Search<'_> {
     /// Answers the question that asks for traps.
@@ -85,7 +50,7 @@ impl Search<'_> {
         let mut good = done.to_vec();
         loop {
             let mut changed = false;
-            // What leads on stands behind what it leads on.
+            // Nodes that lead on stand mostly behind those that they make good.
             for n in self.graph.met().collect::<Vec<_>>().into_iter().rev() {
                 if good.get(n) == Some(&true) {
                     continue;
