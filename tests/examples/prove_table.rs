@@ -236,9 +236,8 @@ fn row(
         row.counts[group(&q.claim)][column] += 1;
         match a {
             Some(Verdict::Proved(Evidence::Run(run)) | Verdict::Refuted(Evidence::Run(run))) => {
-                if !replay(model, &q.claim, run) {
-                    find(format!("{:?}: the run does not repeat", q.claim));
-                }
+                let repeats = replay(model, &q.claim, run);
+                (!repeats).then(|| find(format!("{:?}: the run does not repeat", q.claim)));
             }
             Some(Verdict::Open(open)) => {
                 if open.reason == g7_verify::Reason::NotRepeated {

@@ -171,6 +171,7 @@ pub fn miter(what: &Compare<'_>) -> Result<Vec<u8>, Unlike> {
 /// What is open in two ways is sure as far as one of them is.
 fn joined(a: Open, b: Open) -> Open {
     let (scans, states) = (a.scans.max(b.scans), a.states.max(b.states));
-    let further = if b.scans >= a.scans { b } else { a };
+    // What a larger search may decide is said as such, whatever the solver cannot follow.
+    let further = if a.reason.is_of_budget() || a.scans > b.scans { a } else { b };
     Open { scans, states, ..further }
 }
