@@ -41,7 +41,25 @@ pub fn answer(
     }
 }
 
-/// The same for a caller whose budget cannot stop a solver: a search within the budget, and then, with
+/// Asks the solver alone, until the budget is used up: for a caller that has searched already.
+pub fn solve(
+    model: &Model<'_>,
+    questions: &[Question],
+    answers: &mut [Option<Verdict>],
+    budget: &Budget<'_>,
+) {
+    let mut solver = Satisfiability { turns: SOLVER };
+    loop {
+        let before = answers.to_vec();
+        solver.answer(model, questions, answers, budget);
+        if !answers.iter().any(is_open) || (budget.stop)() || before == answers {
+            return;
+        }
+        solver.turns += 4;
+    }
+}
+
+/// As [`answer`], for a caller whose budget cannot stop a solver: a search within the budget, and then, with
 /// `solve`, a short attempt of the solver at what is open.
 pub fn attempt(
     model: &Model<'_>,

@@ -179,6 +179,11 @@ impl<'a> Expander<'a> {
         self.memory = self.open.iter().map(|(_, c)| *c).find(|c| has_memory(c));
     }
 
+    /// Tries these inputs from now on.
+    pub fn try_inputs(&mut self, tried: Tried) {
+        self.tried = tried;
+    }
+
     /// Lets `stop` end an expansion that has many combinations of inputs to try. It is asked often.
     pub fn stop_when(&mut self, stop: &'a (dyn Fn() -> bool + Sync)) {
         self.stop = Some(stop);

@@ -8,17 +8,18 @@
 
 mod answers;
 
-use g7_engine::{Program, State};
+use g7_engine::State;
 
-use crate::expand::{Expanded, Expander, Gap, Here, Step};
+use crate::expand::{Expanded, Expander, Here, Step};
 use crate::explore::Move;
 use crate::layer::{Budget, Layer};
 use crate::model::Model;
 use crate::monitor::has_memory;
+use crate::outcome::{halted, more, stuck_behind, too_large, too_many};
 use crate::question::{Claim, Question};
 use crate::scene::{Extent, Look, Scene, Tried, Until};
 use crate::store::Store;
-use crate::verdict::{Verdict, is_open};
+use crate::verdict::{Open, Verdict, is_open};
 use crate::world::WAYS;
 
 /// States, and scans of a state, between two questions whether to stop.
@@ -79,7 +80,6 @@ pub(crate) struct Search<'a> {
     pub(crate) start: &'a [Move],
     pub(crate) until: Until,
     model: &'a Model<'a>,
-    p: &'a Program,
     budget: &'a Budget<'a>,
     expander: Option<Expander<'a>>,
     /// Number of the inputs.
@@ -118,7 +118,6 @@ impl<'a> Search<'a> {
         budget: &'a Budget<'a>,
         open: Vec<(usize, &'a Question)>,
     ) -> Search<'a> {
-        let p: &Program = &model.compiled.program;
         Search {
             tried: Tried::Matter,
             look: None,
@@ -126,7 +125,6 @@ impl<'a> Search<'a> {
             start: &[],
             until: Until::Answered,
             model,
-            p,
             budget,
             expander: None,
             count: model.inputs.len(),
@@ -203,7 +201,13 @@ impl<'a> Search<'a> {
 
     /// How much was seen.
     pub(crate) fn seen(&self) -> Extent {
-        let open = self.hole.clone().map(|(reason, help)| self.so_far(reason, help));
+        let end = self.outcome();
+        let open = self.hole.clone().map(|(reason, help)| Open {
+            scans: end.depth,
+            states: end.states,
+            reason,
+            help,
+        });
         Extent { states: self.store.len(), scans: self.scans, open }
     }
 
@@ -212,11 +216,10 @@ impl<'a> Search<'a> {
         let bytes =
             self.store.bytes() + self.parents.len() * 5 + self.inputs.len() * 8 + self.edges.len() * 8;
         if self.store.len() > self.budget.states {
-            return Some((format!("there are more than {} states", self.budget.states), more("--states")));
+            return Some(too_many(self.budget.states));
         }
         if bytes > self.budget.bytes {
-            let mib = self.budget.bytes >> 20;
-            return Some((format!("the states need more than {mib} MiB"), more("--memory")));
+            return Some(too_large(self.budget.bytes));
         }
         at.is_multiple_of(PATIENCE).then(|| self.stopped()).flatten()
     }
@@ -283,44 +286,11 @@ impl<'a> Search<'a> {
         self.cut |= done.cut;
         self.cut_passes |= done.cut_passes;
         if let Some(gap) = done.gap.filter(|_| self.hole.is_none()) {
-            self.hole = Some(match gap {
-                Gap::Combinations(count) => (
-                    format!("{count} inputs matter at once, in more combinations than are tried"),
-                    "assume what the environment keeps, such as limit switches that exclude each other"
-                        .to_owned(),
-                ),
-                Gap::Values(place) => (
-                    format!("the input `{}` takes more values than are tried", self.name(place)),
-                    "compare it with constants only, or give it a smaller type".to_owned(),
-                ),
-                Gap::Plant(kind) => (
-                    format!("the plant has a fault: {kind}"),
-                    "mend the plant: what the chart does behind its fault is not known".to_owned(),
-                ),
-            });
+            self.hole = Some(gap.why(self.model));
         }
         if done.stuck && !done.stopped && self.stuck.is_none() {
-            let reason = format!("no input satisfies the assumptions {}", behind(self.depth));
-            let help = "weaken the assumptions: without inputs there are no runs, and every claim would hold";
-            self.hole = Some((reason, help.to_owned()));
+            self.hole = Some(stuck_behind(self.depth));
             self.stuck = Some(at);
         }
     }
-
-    fn name(&self, place: usize) -> &str {
-        let addr = g7_engine::Addr(self.p.tables().inputs.start + place as u32);
-        self.model.compiled.symbols.variable_at(addr).map_or("", |v| &v.name)
-    }
-}
-
-fn halted() -> (String, String) {
-    ("the search was stopped".to_owned(), more("--time"))
-}
-
-fn more(option: &str) -> String {
-    format!("allow more with {option}, or assume what the environment keeps")
-}
-
-fn behind(depth: usize) -> String {
-    if depth == 0 { "at the start".to_owned() } else { format!("behind a run of {depth} scans") }
 }

@@ -1,7 +1,7 @@
 //! A set of images of equal length, numbered in the order in which they came.
 
-/// The images stand one behind the other; a table of slots finds them.
-pub(crate) struct Store {
+/// A set of images of equal length, which stand one behind the other; a table of slots finds them.
+pub struct Store {
     /// Words of an image.
     width: usize,
     images: Vec<u64>,
@@ -13,15 +13,23 @@ pub(crate) struct Store {
 const FREE: u32 = u32::MAX;
 
 impl Store {
-    pub(crate) fn new(width: usize) -> Store {
+    /// An empty set of images of so many words.
+    pub fn new(width: usize) -> Store {
         Store { width, images: Vec::new(), len: 0, slots: vec![FREE; 64] }
     }
 
-    pub(crate) fn len(&self) -> usize {
+    /// The number of images.
+    pub fn len(&self) -> usize {
         self.len
     }
 
-    pub(crate) fn image(&self, number: usize) -> &[u64] {
+    /// True if there is no image.
+    pub fn is_empty(&self) -> bool {
+        self.len == 0
+    }
+
+    /// An image by its number; empty if there is none.
+    pub fn image(&self, number: usize) -> &[u64] {
         self.images.get(number * self.width..(number + 1) * self.width).unwrap_or(&[])
     }
 
@@ -30,8 +38,13 @@ impl Store {
         self.slot(image).is_err()
     }
 
+    /// The number of an image that is there.
+    pub fn find(&self, image: &[u64]) -> Option<u32> {
+        self.slot(image).err().and_then(|at| self.slots.get(at).copied())
+    }
+
     /// Bytes in use.
-    pub(crate) fn bytes(&self) -> usize {
+    pub fn bytes(&self) -> usize {
         self.images.len() * 8 + self.slots.len() * 4
     }
 
@@ -41,7 +54,7 @@ impl Store {
     }
 
     /// The number of an image that is there; one that is not is added.
-    pub(crate) fn find_or_insert(&mut self, image: &[u64]) -> Option<u32> {
+    pub fn find_or_insert(&mut self, image: &[u64]) -> Option<u32> {
         if (self.len + 1) * 3 > self.slots.len() * 2 {
             self.grow();
         }

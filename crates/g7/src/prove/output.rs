@@ -73,23 +73,33 @@ fn counts(list: &[Answered]) -> [usize; 3] {
 /// Prints all answers as one JSON object.
 pub(super) fn json(list: &[Answered]) -> Result<(), Failure> {
     let [proved, refuted, open] = counts(list);
-    let one = |a: &Answered| -> Value {
-        let mut row = json!({
-            "place": a.place, "claim": a.claim, "own": a.own, "verdict": word(&a.verdict), "reason": a.reason,
-            "help": a.help,
-        });
-        if !a.chronogram.is_empty() {
-            row["chronogram"] = json!(a.chronogram);
-        }
-        if let Verdict::Proved(Evidence::Run(run)) | Verdict::Refuted(Evidence::Run(run)) = &a.verdict {
-            row["run"] = run.moves.iter().map(|m| json!({ "inputs": m.inputs, "wait_ns": m.wait })).collect();
-        }
-        row
-    };
-    let answers: Vec<Value> = list.iter().map(one).collect();
+    let answers: Vec<Value> = list.iter().map(row).collect();
     let all = json!({ "proved": proved, "refuted": refuted, "not_decided": open, "answers": answers });
     writeln!(anstream::stdout().lock(), "{all:#}")?;
     Ok(())
+}
+
+/// Prints each answer as a line of JSON.
+pub(super) fn lines(list: &[Answered]) -> Result<(), Failure> {
+    let mut out = anstream::stdout().lock();
+    list.iter().try_for_each(|a| writeln!(out, "{}", row(a)))?;
+    out.flush()?;
+    Ok(())
+}
+
+/// An answer as an object.
+fn row(a: &Answered) -> Value {
+    let mut row = json!({
+        "place": a.place, "claim": a.claim, "own": a.own, "verdict": word(&a.verdict), "reason": a.reason,
+        "help": a.help,
+    });
+    if !a.chronogram.is_empty() {
+        row["chronogram"] = json!(a.chronogram);
+    }
+    if let Verdict::Proved(Evidence::Run(run)) | Verdict::Refuted(Evidence::Run(run)) = &a.verdict {
+        row["run"] = run.moves.iter().map(|m| json!({ "inputs": m.inputs, "wait_ns": m.wait })).collect();
+    }
+    row
 }
 
 /// A JUnit report: a case for each answer; what is not decided counts as skipped.

@@ -24,6 +24,24 @@ impl Patience {
         Ok(Patience { pressed })
     }
 
+    /// True as soon as Ctrl-C was pressed.
+    pub(super) fn pressed(&self) -> Arc<dyn Fn() -> bool + Send + Sync> {
+        let pressed = self.pressed.clone();
+        Arc::new(move || pressed.load(Ordering::Relaxed))
+    }
+
+    /// Counts the end of the standard input as Ctrl-C.
+    pub(super) fn until_input_ends(&self) -> Result<(), Failure> {
+        let pressed = self.pressed.clone();
+        let watch = move || {
+            // An input that cannot be read has ended too.
+            let _end = std::io::copy(&mut std::io::stdin().lock(), &mut std::io::sink());
+            pressed.store(true, Ordering::Relaxed);
+        };
+        std::thread::Builder::new().spawn(watch).map_err(crate::failure::refused)?;
+        Ok(())
+    }
+
     /// True as soon as this time is over, counted from now, or Ctrl-C was pressed.
     pub(super) fn within(&self, time: Nanos) -> Arc<dyn Fn() -> bool + Send + Sync> {
         let (pressed, clock) = (self.pressed.clone(), Mutex::new(WallClock::default()));

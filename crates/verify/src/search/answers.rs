@@ -4,10 +4,9 @@
 use super::Search;
 use crate::expand::Shown;
 use crate::explore::Move;
-use crate::look::{PASSES, replay};
 use crate::monitor::IDLE;
-use crate::question::Claim;
-use crate::verdict::{Certificate, Evidence, Open, Run, Verdict};
+use crate::outcome::{Outcome, asks_for_traps};
+use crate::verdict::{Run, Verdict};
 
 impl<'a> Search<'a> {
     /// Answers a question that a scan shows.
@@ -23,9 +22,7 @@ impl<'a> Search<'a> {
                 self.show(question, run);
             }
             Shown::Unclear { question, fault } => {
-                let reason = format!("a condition of this property cannot be evaluated: {}", fault.kind);
-                let help = "guard it, as in `n > 0 and x / n > 2`, with a condition of its own".to_owned();
-                self.give(question, Verdict::Open(self.so_far(reason, help)));
+                self.give(question, self.outcome().unclear(&fault.kind.to_string()));
             }
         }
     }
@@ -34,14 +31,7 @@ impl<'a> Search<'a> {
     fn show(&mut self, i: usize, run: Run) {
         let Some((_, q)) = self.open.iter().find(|(n, _)| *n == i) else { return };
         let claim = &q.claim;
-        let verdict = if !replay(self.model, claim, &run) {
-            let help = "please report this: search and engine do not agree".to_owned();
-            Verdict::Open(self.so_far("the run that was found does not show it again".to_owned(), help))
-        } else if claim.is_of_some_run() {
-            Verdict::Proved(Evidence::Run(run))
-        } else {
-            Verdict::Refuted(Evidence::Run(run))
-        };
+        let verdict = self.outcome().shown(self.model, claim, run);
         self.give(i, verdict);
     }
 
@@ -106,35 +96,21 @@ impl<'a> Search<'a> {
 
     /// Answers what is left over.
     pub(super) fn close(&mut self) {
-        let certificate = Certificate::Search { states: self.store.len(), scans: self.scans };
-        let cut = ("a scan does more than it reports".to_owned(), String::new());
-        let cut_passes = (
-            format!("a scan has more than {PASSES} passes"),
-            "make every evolution end first, with an edge (`↑a`) or a step that waits".to_owned(),
-        );
+        let end = self.outcome();
         for (i, q) in std::mem::take(&mut self.open) {
-            let hidden = match &q.claim {
-                Claim::Active(_) | Claim::Clears(_) | Claim::Runs(_) => self.cut.then_some(&cut),
-                Claim::NoConflict | Claim::NoUnsafe => self.cut_passes.then_some(&cut_passes),
-                _ => None,
-            };
-            let hole = self.hole.as_ref().or(hidden).cloned();
-            let verdict = match hole {
-                Some((reason, help)) => Verdict::Open(self.so_far(reason, help)),
-                None if q.claim.is_of_some_run() => {
-                    Verdict::Refuted(Evidence::Certificate(certificate.clone()))
-                }
-                None => Verdict::Proved(Evidence::Certificate(certificate.clone())),
-            };
-            self.answers.push((i, verdict));
+            self.answers.push((i, end.left_over(&q.claim)));
         }
     }
 
-    pub(super) fn so_far(&self, reason: String, help: String) -> Open {
-        Open { scans: self.depth, states: self.store.len(), reason, help }
+    /// How far the search has come.
+    pub(super) fn outcome(&self) -> Outcome {
+        Outcome {
+            states: self.store.len(),
+            scans: self.scans,
+            depth: self.depth,
+            hole: self.hole.clone(),
+            cut: self.cut,
+            cut_passes: self.cut_passes,
+        }
     }
-}
-
-fn asks_for_traps(claim: &Claim) -> bool {
-    matches!(claim, Claim::NoDeadlock | Claim::LeadsTo { .. })
 }
