@@ -17,7 +17,7 @@ use serde_json::Value;
 fn cells(count: usize) -> String {
     let names = |c| format!("a{c}, b{c}, c{c}");
     let all: Vec<String> = (0..count).map(names).collect();
-    let mut text = format!("profile iec60848\nscan 10ms\ninput {} : BOOL\n", all.join(", "));
+    let mut text = format!("profile iec61131\nscan 10ms\ninput {} : BOOL\n", all.join(", "));
     for c in 0..count {
         let other = c ^ 1;
         text.push_str(&format!(

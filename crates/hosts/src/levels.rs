@@ -2,7 +2,7 @@
 //! ended.
 //!
 //! A file is written aside and renamed when it is whole, so a process that is killed leaves whole files
-//! only. It is synchronised while the next level is searched. Its end has a hash of all, so after a power
+//! only. It is synchronised while the next levels are searched. Its end has a hash of all, so after a power
 //! cut a file that is not whole counts as missing.
 //!
 //! A level is a list of records in the order in which one thread finds its states: the rank in the level,
@@ -78,23 +78,26 @@ impl Levels {
         self.folder.join(format!("search-{job}"))
     }
 
-    /// Writes a level as a whole.
+    /// Writes a level as a whole. While the disk is still busy with an earlier one, it is not asked to
+    /// take this one at once.
     ///
     /// # Errors
     ///
     /// The disk is full, or refuses.
     pub(crate) fn keep(&mut self, job: usize, number: usize, level: &Level) -> Result<(), Error> {
-        self.synchronised()?;
         let path = self.level(job, number);
         let [task, me, _] = self.work;
         let head = [MAGIC, task, me, number as u64, level.width as u64, level.records.len() as u64];
         let file = self.write(&path, &[&head, &level.records, &level.rest])?;
-        self.sync = Some(std::thread::spawn(move || file.sync_all()));
+        if self.sync.as_ref().is_none_or(JoinHandle::is_finished) {
+            self.synchronised()?;
+            self.sync = Some(std::thread::spawn(move || file.sync_all()));
+        }
         Ok(())
     }
 
-    /// Waits until the last level is on disk.
-    pub(crate) fn synchronised(&mut self) -> Result<(), Error> {
+    /// Waits until the disk has what it was asked to take.
+    fn synchronised(&mut self) -> Result<(), Error> {
         let done = self.sync.take().map_or(Ok(()), |t| t.join().unwrap_or(Ok(())));
         done.map_err(|e| self.error(&self.folder, &e))
     }

@@ -52,7 +52,6 @@ pub(crate) fn search(
             keep(task, &worker, levels, level, &known)?;
         }
     }
-    levels.synchronised()?;
     let complete = halt.is_none() && known.hole.is_none() && known.stuck.is_none();
     if let Some(question) = trap.filter(|q| complete && !known.hits.contains_key(q))
         && let Some(at) = traps::first(task, question, &mut worker, &mut phases)?

@@ -14,7 +14,7 @@ pub(crate) const STEP: u32 = 24;
 /// The bit of a key that says: the image follows as it is, since it does not fit.
 const PLAIN: u64 = 1 << 63;
 /// Entries of the table of images that were sent.
-const RECENT: usize = 1 << 17;
+const RECENT: usize = 1 << 18;
 
 /// The states of a worker.
 pub(crate) struct Shelf {

@@ -10,7 +10,9 @@ use g7_tests::generate::sample;
 use g7_verify::{Asked, Budget, Evidence, Explicit, Layer, Model, Verdict, ask};
 
 /// Most states of a search. One that has more is left out: it ends at another place.
-const STATES: usize = 3000;
+const STATES: usize = 400;
+/// Most combinations of inputs of a random chart.
+const WIDE: usize = 64;
 
 fn budget(states: usize) -> Budget<'static> {
     Budget { states, scans: usize::MAX, bytes: 256 << 20, stop: &|| false }
@@ -57,7 +59,7 @@ fn alone(asked: &Asked, states: usize) -> Vec<Verdict> {
 
 /// True for a search that a bound has ended.
 fn is_bounded(v: &Verdict) -> bool {
-    matches!(v, Verdict::Open(open) if open.reason.contains("more than"))
+    matches!(v, Verdict::Open(open) if open.reason.starts_with("there are more than"))
 }
 
 #[track_caller]
@@ -77,6 +79,10 @@ fn equal(expected: &[Verdict], found: Answers, at: &str) {
 /// Asks 1, 2 and 3 workers; gives the number of answers, of runs among them, and of states.
 fn same(document: &Document, at: &str) -> (usize, usize, usize) {
     let Some(asked) = ask(document, None).0 else { return (0, 0, 0) };
+    let inputs = Model::new(&asked.compiled, Vec::new()).inputs;
+    if inputs.iter().fold(1usize, |n, v| n.saturating_mul(v.tried.len().max(1))) > WIDE {
+        return (0, 0, 0);
+    }
     let expected = alone(&asked, STATES);
     if expected.iter().any(is_bounded) {
         return (0, 0, 0);
@@ -102,7 +108,7 @@ fn same(document: &Document, at: &str) -> (usize, usize, usize) {
 fn random_charts() {
     let (mut answers, mut runs, mut states) = (0, 0, 0);
     for profile in ProfileName::ALL {
-        for seed in 1..=40 {
+        for seed in 1..=25 {
             let sample = sample(seed, profile, 1).expect("a random chart can be read");
             let (a, r, s) =
                 same(&sample.document, &format!("{} seed {seed}\n{}", profile.name(), sample.text));
@@ -110,7 +116,7 @@ fn random_charts() {
         }
     }
     println!("{answers} answers, {runs} runs, {states} states");
-    assert!(answers > 1000 && runs > 400 && states > 5000, "{answers} {runs} {states}");
+    assert!(answers > 600 && runs > 250 && states > 2000, "{answers} {runs} {states}");
 }
 
 fn document(text: &str) -> Document {
@@ -120,10 +126,10 @@ fn document(text: &str) -> Document {
 }
 
 /// Cells that run side by side, each step with its own input, and two cells share a resource.
-fn cells(count: usize) -> String {
+fn cells(count: usize, profile: &str) -> String {
     let inputs = |c| format!("a{c}, b{c}, c{c}");
     let all: Vec<String> = (0..count).map(inputs).collect();
-    let mut text = format!("profile iec60848\ninput {} : BOOL\noutput q : BOOL\n", all.join(", "));
+    let mut text = format!("profile {profile}\ninput {} : BOOL\noutput q : BOOL\n", all.join(", "));
     for c in 0..count {
         let other = c ^ 1;
         text.push_str(&format!(
@@ -136,13 +142,14 @@ fn cells(count: usize) -> String {
 
 #[test]
 fn charts_with_all_forms_of_claims() {
-    let claims = "assume at most 4 of (a0, b0, c0, a1, b1, c1)\nprove never C0.X3 and C1.X3\n\
+    let claims = "prove never C0.X3 and C1.X3\n\
         prove reachable C0.X3 and C1.X2\nprove after C0.X2 until C0.X3 expect not C0.X1\n\
         prove between C0.X2 and C0.X3 never C0.X1\nprove C0.X2 leads to C0.X3\nprove C0.X1 leads to C1.X3\n\
         prove after a0 within 30ms expect C0.X2\nprove at most 1 of (C0.X2, C1.X2)\n";
-    let claims = claims.replace("assume at most 4 of (a0, b0, c0, a1, b1, c1)\n", "");
-    let (answers, runs, states) = same(&document(&(cells(2) + &claims)), "cells");
-    assert!(answers > 20 && runs > 8 && states > 8, "{answers} {runs} {states}");
+    for profile in ["iec60848", "iec61131"] {
+        let (answers, runs, states) = same(&document(&(cells(2, profile) + claims)), profile);
+        assert!(answers > 20 && runs > 8 && states > 8, "{profile}: {answers} {runs} {states}");
+    }
     // A state that nothing leaves, found by going back from the good ones.
     let stuck = "profile iec61131\ninput a, b : BOOL\nchart G {\n  initial step 1\n  step 2\n  step 3\n  step 4\n\
         1 -> 2 when a\n  2 -> 1 when b and not a\n  1 -> 3 when b\n  3 -> 4 when false\n}\n\
@@ -191,7 +198,7 @@ impl Exchange for Frail {
 
 #[test]
 fn a_worker_that_is_lost_costs_no_more_than_a_level() {
-    let text = cells(4)
+    let text = cells(4, "iec61131")
         + "prove never C0.X3 and C1.X3\nprove reachable C0.X3 and C2.X3 and not C3.X1\n\
         prove C0.X2 leads to C0.X3\n";
     let asked = ask(&document(&text), None).0.expect("it compiles");
@@ -214,7 +221,7 @@ fn a_worker_that_is_lost_costs_no_more_than_a_level() {
         lost += 1;
         let again = by(&asked, Near::net(3), &folder, STATES);
         equal(&expected, again.into_iter().next().expect("a worker"), &format!("{left} packets"));
-        left += 7;
+        left += 4;
     }
     assert!(lost > 20, "lost {lost} times");
 }
