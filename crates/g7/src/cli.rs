@@ -340,8 +340,7 @@ pub(crate) struct Prove {
     pub(crate) shared: Shared,
 }
 
-/// A proof whose work is shared. Processes talk without encryption and believe each other: use a network
-/// that you trust.
+// A proof whose work is shared. A comment of documentation here would take the place of the command's own.
 #[derive(Args, Debug)]
 pub(crate) struct Shared {
     /// Share the search over states among so many processes. Without --process all of them are started
@@ -349,6 +348,7 @@ pub(crate) struct Shared {
     #[arg(long, value_name = "NUMBER", value_parser = clap::value_parser!(u16).range(1..=256), conflicts_with_all = ["plant", "tests"])]
     pub(crate) workers: Option<u16>,
     /// The addresses of the processes, `host:port`, one a line; without it they are on this machine only.
+    /// They talk without encryption and believe each other: use a network that you trust.
     #[arg(long, value_name = "FILE", conflicts_with_all = ["plant", "tests"])]
     pub(crate) hosts: Option<PathBuf>,
     /// Be the process with this number, from 0, in the file of hosts. Process 0 prints the answers.

@@ -7,7 +7,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use g7_hosts::{Error, Exchange, Near, answer_over};
 use g7_model::{Document, ProfileName};
 use g7_tests::generate::sample;
-use g7_verify::{Asked, Budget, Evidence, Explicit, Layer, Model, Verdict, ask};
+use g7_verify::{Asked, Budget, Evidence, Expander, Model, Question, Tried, Verdict, ask, watch};
 
 /// Most states of a search. One that has more is left out: it ends at another place.
 const STATES: usize = 400;
@@ -49,11 +49,20 @@ fn by<E: Exchange + Send>(asked: &Asked, ends: Vec<E>, folder: &Folder, states: 
     })
 }
 
-/// The answers of one thread, in the order of the questions.
+/// The answers of one thread, in the order of the questions. Each question that remembers something has a
+/// search of its own.
 fn alone(asked: &Asked, states: usize) -> Vec<Verdict> {
     let model = Model::new(&asked.compiled, asked.assume.clone());
+    let rows = || asked.questions.iter().enumerate();
+    let (alone, together): (Vec<_>, Vec<_>) = rows().partition(|(_, q)| Expander::remembers(q));
+    let groups = std::iter::once(together).chain(alone.into_iter().map(|q| vec![q]));
     let mut answers = vec![None; asked.questions.len()];
-    Explicit.answer(&model, &asked.questions, &mut answers, &budget(states));
+    for group in groups {
+        let questions: Vec<Question> = group.iter().map(|(_, q)| (*q).clone()).collect();
+        for (k, verdict) in watch(&model, &questions, &budget(states), Tried::Matter, &mut |_, _| {}) {
+            answers[group[k].0] = Some(verdict);
+        }
+    }
     answers.into_iter().map(|a| a.expect("each question has an answer")).collect()
 }
 
