@@ -68,11 +68,12 @@ pub fn answer_over(
     model: &Model<'_>,
     questions: &[Question],
     budget: &Budget<'_>,
+    tried: Option<Tried>,
     wire: &mut dyn Exchange,
     folder: &Path,
 ) -> Result<Vec<(usize, Verdict)>, Error> {
     let mut levels = Levels::open(folder, 0, wire.me(), wire.peers())?;
-    searches(model, questions, budget, None, wire, &mut levels)
+    searches(model, questions, budget, tried, wire, &mut levels)
 }
 
 /// All searches, the ones that have ended before not again.

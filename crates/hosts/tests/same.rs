@@ -41,7 +41,7 @@ type Answers = Result<Vec<(usize, Verdict)>, Error>;
 fn by<E: Exchange + Send>(asked: &Asked, ends: Vec<E>, folder: &Folder, states: usize) -> Vec<Answers> {
     let one = |mut end: E| {
         let model = Model::new(&asked.compiled, asked.assume.clone());
-        answer_over(&model, &asked.questions, &budget(states), &mut end, &folder.0)
+        answer_over(&model, &asked.questions, &budget(states), Some(Tried::Matter), &mut end, &folder.0)
     };
     std::thread::scope(|scope| {
         let all: Vec<_> = ends.into_iter().map(|end| scope.spawn(move || one(end))).collect();
