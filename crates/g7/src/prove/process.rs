@@ -118,7 +118,7 @@ pub(super) fn answer(
         work: work(args, source, asked, model),
         folder,
         tried: None,
-        tell: &|line| talk!("process {me}: {line}"),
+        tell: &|line: &str| talk!("process {me}: {line}"),
     };
     let mut answers = vec![None; asked.questions.len()];
     for (i, verdict) in g7_hosts::answer(model, &asked.questions, budget, &place).map_err(failure)? {

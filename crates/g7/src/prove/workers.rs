@@ -101,7 +101,9 @@ impl Workers {
                     _ if self.starts.get(number).is_some_and(|n| *n <= AGAIN) && !stop() => {
                         talk!("process {number} has ended ({status}); it is started again");
                         let child = self.start(number)?;
-                        self.running.get_mut(number).into_iter().for_each(|r| *r = Some(child));
+                        if let Some(place) = self.running.get_mut(number) {
+                            *place = Some(child);
+                        }
                         continue;
                     }
                     _ => {
