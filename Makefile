@@ -15,6 +15,7 @@ debian = command -v $(1) >/dev/null || \
 	{ $(SUDO) apt-get update -qq && $(SUDO) apt-get install -qq --no-install-recommends $(2); }
 # Logs of `make test` with the list of what was skipped; the pages of the book, put together.
 BOOK := $(abspath $(or $(CARGO_TARGET_DIR),target))/book
+PROVE := $(abspath $(or $(CARGO_TARGET_DIR),target))/prove-bench
 TALLY := $(abspath $(or $(CARGO_TARGET_DIR),target))/tally
 # The program as the tests have it: libraries get the features that the workspace asks for as a whole, so that
 # they are compiled once for all tests.
@@ -26,9 +27,10 @@ TESTS := cargo test $(WORKSPACE) --quiet --lib --bins --tests
 CLIPPY := cargo clippy $(WORKSPACE) --all-targets --quiet -- --deny warnings
 STORIES = cd web && npm run --silent check && G7=$(DEBUG)/g7 npm test --silent | tee $(TALLY)/page.log
 PYTHON := $(abspath $(or $(CARGO_TARGET_DIR),target))/python
+NODE := $(PYTHON)/node
 PAGE := $(shell find web/src web/index.html web/public web/*.ts web/*.js web/*.mjs -type f 2>/dev/null)
 
-.PHONY: run view install online-demo deb sbom static test opcua-bench tally-anew peers lint deny wasm web site pictures page-test page-bench bench bench-check online-bench soak faults book blocks fuzz help FORCE
+.PHONY: run view install online-demo deb sbom static test opcua-bench tally-anew peers checkers lint deny wasm web site pictures page-test page-bench bench bench-check prove-bench prove-table online-bench soak faults book blocks fuzz help FORCE
 
 ## build G7 and open the editor in the browser on the examples (FOLDER=… for another)
 run: WASM := quick-wasm
@@ -67,7 +69,7 @@ static: web
 test: export G7_SKIPS = $(TALLY)/skips
 test: export G7_PEERS = $(PYTHON)
 test: WASM := quick-wasm
-test: tally-anew web $(PYTHON)/bin/pymodbus.simulator
+test: tally-anew web $(PYTHON)/bin/pymodbus.simulator $(NODE)/node_modules/.package-lock.json
 	cargo fmt --all --check
 	@$(call debian,chromium,chromium)
 	@$(call debian,mosquitto_sub,mosquitto mosquitto-clients) || echo "mosquitto cannot be installed: its tests are skipped"
@@ -87,11 +89,17 @@ $(PYTHON)/bin/pymodbus.simulator:
 		python3 -m venv $(PYTHON) && $(PYTHON)/bin/pip install --quiet 'pymodbus[serial]==3.16.*' 'pysparkplug==0.6.*' 'python-snap7==3.3.*' 'asyncua==2.1.*'; } || \
 		echo "pymodbus, pysparkplug, python-snap7 and asyncua cannot be installed: their tests are skipped"
 
+# Packages of Node that tests talk to.
+$(NODE)/node_modules/.package-lock.json: tests/peers/node/package-lock.json
+	@mkdir -p $(NODE) && cp tests/peers/node/package*.json $(NODE)
+	@cd $(NODE) && npm ci --silent --no-audit --no-fund && touch node_modules/.package-lock.json || \
+		echo "mqtt and sparkplug-payload cannot be installed: their tests are skipped"
+
 tally-anew:
 	@rm -rf $(TALLY) && mkdir -p $(TALLY) && touch $(TALLY)/skips
 
-## install what some tests are skipped without: clang with its sanitizers, g++, strace, faketime, rt-tests, stress-ng, mosquitto, pyarrow, a bare target
-peers:
+## install what some tests are skipped without: clang with its sanitizers, g++, strace, faketime, rt-tests, stress-ng, mosquitto, pyarrow, a bare target, the model checkers ABC, Spin and rIC3
+peers: checkers
 	rustup target add thumbv7em-none-eabi
 	@$(call debian,gcc,gcc)
 	@$(call debian,g++,g++)
@@ -102,6 +110,14 @@ peers:
 	@$(call debian,mosquitto_sub,mosquitto mosquitto-clients)
 	@test ! -x $(PYTHON)/bin/pip || $(PYTHON)/bin/pip install --quiet 'pyarrow>=20'
 	@$(SUDO) apt-get update -qq && $(SUDO) apt-get install -qq --no-install-recommends clang libclang-rt-dev
+
+# rIC3 is GPL: it is asked, never linked. Its libraries use parts of the language that are not stable yet.
+checkers:
+	@$(call debian,berkeley-abc,berkeley-abc)
+	@$(call debian,spin,spin)
+	@$(call debian,cmake,cmake)
+	@command -v rIC3 >/dev/null || RUSTC_BOOTSTRAP=1 cargo install --quiet --locked rIC3@1.4.1 || \
+		echo "rIC3 cannot be installed: its tests are skipped"
 
 ## figures of the server of OPC UA, beside asyncua
 opcua-bench: export G7_PEERS = $(PYTHON)
@@ -180,6 +196,15 @@ bench-check:
 	@$(call debian,valgrind,valgrind)
 	benches/instructions.sh
 
+## the prover beside ABC, rIC3, Spin and Stateright: seconds, memory, ratios (ROWS="timers equivalence" for some)
+prove-bench: checkers
+	cargo run --release --quiet --manifest-path benches/prove/Cargo.toml --target-dir $(PROVE) --features stateright -- $(ROWS)
+
+## every question asked of the examples, the litmus charts and the corpus, as a table (LIMIT=… seconds for each chart)
+prove-table:
+	cargo run --profile soak --quiet --package g7-tests --example prove_table -- $(or $(LIMIT),5) examples tests/spec/litmus \
+		$(or $(G7_CORPUS),$(wildcard ../shared/corpus))
+
 ## how late scans are beside cyclictest, with no page and with 1000, how long a read of Modbus TCP takes (Linux, as root; rt-tests and stress-ng are installed)
 online-bench: export G7_PEERS = $(PYTHON)
 online-bench: $(PYTHON)/bin/pymodbus.simulator
@@ -222,4 +247,4 @@ fuzz: peers
 	fuzz/run.sh 60
 
 help:
-	@grep -B1 -E '^[a-z-]+:' Makefile | grep -E '^(##|[a-z-]+:)' | paste - - | sed -E 's/^## (.*)\t([a-z-]+):.*/  make \2\t\1/' | expand -t 18
+	@awk '/^## /{text=substr($$0, 4)} /^[a-z-]+:/ && text {split($$0, name, ":"); printf "  make %-14s %s\n", name[1], text; text=""}' Makefile

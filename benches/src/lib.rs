@@ -4,6 +4,7 @@
 //! rows of features beside a loop in C.
 
 pub mod active_loop;
+pub mod cells;
 pub mod matiec;
 pub mod mix;
 pub mod rows;

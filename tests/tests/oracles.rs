@@ -7,8 +7,12 @@
 //! state that brings a new step, or a new value of a variable while a step is
 //! active, goes first. Bounded by a number of scans; charts with counters have no end.
 //!
+//! `oracles/prover.rs` asks the prover what the analysis says of transitions and concurrent steps.
 //! The corpus is found by `g7_peers::corpus`.
 #![allow(clippy::disallowed_methods, reason = "the corpus is read")]
+
+#[path = "oracles/prover.rs"]
+mod prover;
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -169,6 +173,13 @@ fn steps_of(item: &mut Item) -> Option<impl Iterator<Item = &mut Step>> {
     Some(chart.items.iter_mut().filter_map(|i| if let ChartItem::Step(s) = i { Some(s) } else { None }))
 }
 
+/// No condition of the meta-model reads an output, so continuous actions move nothing; some charts drive
+/// and assign one output, which the checker refuses.
+fn without_continuous(document: &mut Document) {
+    let actions = document.items.iter_mut().filter_map(steps_of).flatten().map(|s| &mut s.actions);
+    actions.for_each(|a| a.retain(|a| !is_continuous(&a.kind)));
+}
+
 fn is_continuous(kind: &ActionKind) -> bool {
     matches!(kind, ActionKind::Qualified { target: Target::Path(_), .. })
 }
@@ -183,10 +194,7 @@ fn reachable_steps_are_those_of_the_analysis() {
         let path = corpus.join("agrafe-xmi").join("Project-AGRAFE").join(file);
         let bytes = std::fs::read(&path).expect("a file of the corpus");
         let (mut document, _) = xmi(&bytes);
-        let actions = document.items.iter_mut().filter_map(steps_of).flatten().map(|s| &mut s.actions);
-        // No condition of the meta-model reads an output, so these move nothing;
-        // some charts drive and assign one output, which the checker refuses.
-        actions.for_each(|a| a.retain(|a| !is_continuous(&a.kind)));
+        without_continuous(&mut document);
         let (compiled, problems) = g7_compile::compile(&document);
         let Some(compiled) = compiled else {
             if !REFUSED.iter().any(|(end, _)| file.ends_with(end)) {

@@ -17,6 +17,7 @@ const WIRING = join(ROOT, 'docs/book/src/online/img/wiring.jpg');
 const PANEL = join(ROOT, 'docs/book/src/online/img/panel.jpg');
 const DEMO = join(ROOT, 'docs/book/src/online/img/bench.jpg');
 const PROVE = join(ROOT, 'docs/book/src/prove/img/panel.jpg');
+const COMPARE = join(ROOT, 'docs/book/src/prove/img/compare.jpg');
 const STEP_MS = 20;
 
 /** A chart with a conflict and a step that nothing reaches, for the panel of proofs. */
@@ -273,6 +274,27 @@ async function proofs(b: Browser): Promise<void> {
   }
 }
 
+/** The panel of comparisons, with two charts at their first difference. */
+async function compared(b: Browser): Promise<void> {
+  const one = FORK.replace('output run', 'output run, horn').replace('step 4\n', 'step 4 { N horn }\n');
+  const other = one.replace('when right', 'when right and not left');
+  const site = await playground({ 'trolley.g7': one, 'trolley-2.g7': other });
+  try {
+    const kept = JSON.stringify({ language: 'en', theme: 'light', bottomOpen: true, bottom: 620, minimap: false, leftOpen: false, rightOpen: false });
+    const page = await open(b, site, 'trolley.g7', { width: 1280, height: 860 }, (c) => c.addInitScript((text) => localStorage.setItem('g7-prefs', text), kept));
+    await page.getByRole('tab', { name: /^Compare/ }).click();
+    await page.getByRole('tabpanel').getByRole('combobox').first().selectOption('trolley-2.g7');
+    await page.getByRole('tabpanel').getByRole('button', { name: 'Compare' }).click();
+    await page.getByText(/^Different/).waitFor();
+    await page.locator('[data-apart]').first().waitFor({ state: 'attached' });
+    await page.locator('.sides').evaluate((e) => e.scrollIntoView());
+    await take(page, COMPARE, 100_000);
+    await page.context().close();
+  } finally {
+    await site.stop();
+  }
+}
+
 const wanted = process.argv.slice(2);
 const files = examples();
 assert.deepEqual(Object.keys(files).filter((f) => f.endsWith('.g7')).sort(), Object.keys(SCENES).sort(), 'an example without a scene');
@@ -302,6 +324,7 @@ try {
   }
   if (wanted.length === 0 || wanted.includes('proofs')) {
     await proofs(b);
+    await compared(b);
     process.stdout.write('proofs\n');
   }
   if (wanted.includes('wiring')) {

@@ -44,11 +44,32 @@ const MANY =
   Array.from({ length: CELLS }, (_, i) => `chart C${i} {\n  initial step 0\n${[1, 2, 3, 4].map((n) => `  step ${n}\n`).join('')}${[0, 1, 2, 3, 4].map((n) => `  ${n} -> ${(n + 1) % 5} when ↑a${i}\n`).join('')}}\n`).join('') +
   `prove never ${Array.from({ length: CELLS }, (_, i) => `C${i}.X4`).join(' and ')} and a0 and not a0\n`;
 
+/** The plant gives both inputs; 82 comes 41 scans after the first. */
+const TANK = `profile iec61131
+scan 250ms
+input low, high : BOOL
+output V, W : BOOL
+chart Fill {
+  initial step 0 { N V }
+  step 1 { N W }
+  0 -> 1 when high
+  1 -> 0 when low
+}
+plant Tank {
+  state level : REAL := 0.0 in 0.0 .. 100.0
+  rate level := 8.0 when V
+  rate level := -8.0 when W
+  drive high := level >= 90.0
+  drive low := level < 2.0
+}
+prove always level <= 80.0 with Tank
+`;
+
 let b: Awaited<ReturnType<typeof browser>>;
 let site: Site;
 
 before(async () => {
-  site = await playground({ 'fork.g7': FORK, 'line.g7': LINE, 'many.g7': MANY, 'wrong.g7': FORK.replace('when ↑back', 'when nothing') });
+  site = await playground({ 'fork.g7': FORK, 'line.g7': LINE, 'many.g7': MANY, 'tank.g7': TANK, 'wrong.g7': FORK.replace('when ↑back', 'when nothing') });
   b = await browser();
 });
 
@@ -142,6 +163,43 @@ test('a refuted answer is saved as a test that fails, and taken back', async () 
   await page.getByText('1 of 1 failed').waitFor();
   await page.getByRole('button', { name: 'Undo', exact: true }).click();
   await until(async () => (await textOf(page)) === LINE, 'one undo takes the test out');
+  await done(page);
+});
+
+test('a refuted claim about chart and plant is saved as a test with the plant', async () => {
+  const page = await prove('tank.g7');
+  const claim = 'prove always level <= 80.0 with Tank';
+  await is(page, claim, 'refuted');
+  await page.getByRole('button', { name: `Ways on: ${claim}` }).click();
+  await page.getByRole('button', { name: 'Save as a test' }).click();
+  await page.getByText('undo takes it out').waitFor();
+  assert.equal(await page.getByRole('button', { name: 'Assume that this cannot happen' }).count(), 0, 'the plant gives the inputs');
+  const text = await textOf(page);
+  assert.match(text, /test "[^"]*" with Tank \{\n  wait 10\.25s\n  expect level <= 80\.0\n\}/);
+  await page.getByRole('tab', { name: 'Tests' }).click();
+  await page.getByRole('button', { name: 'Run all tests' }).click();
+  await page.getByText('1 of 1 failed').waitFor();
+  await done(page);
+});
+
+test('what the inputs of the last scan decide is assumed away, and undo takes the assumption back', async () => {
+  const page = await prove('line.g7');
+  await is(page, 'prove never M', 'refuted');
+  await page.getByRole('button', { name: 'Ways on: prove never M' }).click();
+  await page.getByText('assume not (X2 and go)').waitFor();
+  await page.getByRole('button', { name: 'Assume that this cannot happen' }).click();
+  await is(page, 'prove never M', 'proved');
+  assert.ok((await textOf(page)).endsWith('prove never M\nassume not (X2 and go)\n'));
+  await page.getByRole('button', { name: 'Undo', exact: true }).click();
+  await is(page, 'prove never M', 'refuted');
+  assert.equal(await textOf(page), LINE);
+  await done(page);
+});
+
+test('the reason of what is not decided is in the language of the page', async () => {
+  const page = await prove('many.g7', undefined, { language: 'fr' });
+  await page.getByRole('button', { name: /^Non décidées/ }).click();
+  await page.getByText(/aucune exécution de \d+ cycles? au plus n’en décide \(\d+ états visités\) : il y a plus de \d+ états/).first().waitFor();
   await done(page);
 });
 

@@ -16,12 +16,13 @@ use g7_model::{Document, FileId};
 /// A family of documents: its name, its smaller size, the text of each size.
 type Family = (&'static str, usize, fn(usize) -> String);
 
-const FAMILIES: [Family; 5] = [
+const FAMILIES: [Family; 6] = [
     ("steps", 1000, |n| Shape::Linear(n).g7()),
     ("charts", 500, charts),
     ("enclosed charts", 500, enclosed),
     ("fork", 1000, fork),
     ("one output", 1000, one_output),
+    ("choices", 1000, choices),
 ];
 
 /// A stage, measured on a document that has been prepared.
@@ -150,5 +151,37 @@ fn one_output(n: usize) -> String {
         let _ = writeln!(t, "  {k} -> {} when a", (k + 1) % n);
     }
     t.push_str("}\n");
+    t
+}
+
+/// Charts of 25 steps in which every other step has three branches, whose receptivities exclude each other:
+/// only a solver sees that one step at a time is active.
+fn choices(n: usize) -> String {
+    let mut t = String::from("profile iec60848\ninput a, b, c, d : BOOL\ninput n : INT\noutput q : BOOL\n");
+    for chart in 0..n / 25 {
+        let _ = writeln!(t, "chart C{chart} {{");
+        for k in 0..25 {
+            let _ = writeln!(
+                t,
+                "  {}step {k} {{ N q if a or X{k}.t > 1s }}",
+                if k == 0 { "initial " } else { "" }
+            );
+        }
+        for k in 0..25 {
+            let [next, second, third] = [1, 2, 3].map(|i| (k + i) % 25);
+            if k % 2 == 1 {
+                let _ = writeln!(t, "  {k} -> {next} when a xor (b and n > {k})");
+                continue;
+            }
+            let _ = writeln!(t, "  {k} -> {next} when (a or b) and n < {k} and not (c and d)");
+            let _ = writeln!(t, "  {k} -> {second} when (not a or c) and n >= {k} and n < {}", k + 10);
+            let _ = writeln!(
+                t,
+                "  {k} -> {third} when ((b or d) and n > {} or (a and c and d and n < {k}))",
+                k + 9
+            );
+        }
+        t.push_str("}\n");
+    }
     t
 }

@@ -135,14 +135,14 @@ fn dead(t: &Tables, l: &Layout, mut words: Vec<u32>, absolute: bool) -> Box<[Row
 }
 
 /// The code of a program, to be searched for reads of times.
-struct Reading<'a> {
-    t: &'a Tables,
+pub(crate) struct Reading<'a> {
+    pub(crate) t: &'a Tables,
     /// Instructions that some jump leads to.
     targets: Vec<bool>,
 }
 
 impl Reading<'_> {
-    fn new(t: &Tables) -> Reading<'_> {
+    pub(crate) fn new(t: &Tables) -> Reading<'_> {
         let mut targets = vec![false; t.code.len() + 1];
         for op in &t.code {
             if let Op::Jump(to) | Op::JumpUnless(to) = op
@@ -155,7 +155,7 @@ impl Reading<'_> {
     }
 
     /// The instruction at a place that is reached from the one before it alone.
-    fn op(&self, pc: usize) -> Option<Op> {
+    pub(crate) fn op(&self, pc: usize) -> Option<Op> {
         let joined = self.targets.get(pc).copied().unwrap_or(true);
         self.t.code.get(pc).copied().filter(|_| !joined)
     }
@@ -271,8 +271,13 @@ impl Reading<'_> {
 
     /// The largest value that a word ever has, where code writes constants alone.
     fn most(&self, word: u32) -> Option<i64> {
+        Some(self.values(word)?.into_iter().fold(0, i64::max))
+    }
+
+    /// The values that a word ever has, where code writes constants alone.
+    pub(crate) fn values(&self, word: u32) -> Option<Vec<i64>> {
         let t = self.t;
-        let mut most = t.init.get(word as usize).map(|v| *v as i64)?;
+        let mut values = vec![t.init.get(word as usize).map(|v| *v as i64)?];
         if self.is_tied(word) {
             return None;
         }
@@ -281,11 +286,11 @@ impl Reading<'_> {
             match (op, before) {
                 // A call leaves the times that it is given as they are.
                 (Op::Fb(Block::Ton | Block::Tof | Block::Tp, base), _) if base.0 + 1 == word => {}
-                (Op::Store(_), Some(Op::Push(v))) if self.op(pc).is_some() => most = most.max(*v as i64),
+                (Op::Store(_), Some(Op::Push(v))) if self.op(pc).is_some() => values.push(*v as i64),
                 _ => return None,
             }
         }
-        Some(most.max(0))
+        Some(values)
     }
 
     /// True if a word is an input, an output, or follows a step or a block.
@@ -302,22 +307,25 @@ impl Reading<'_> {
     }
 
     /// True if anything but calls of a timer reaches the words of its memory.
-    /// Strings are left out: none lies over an instance.
     fn is_exposed(&self, (base, block, _): (u32, Block, i64)) -> bool {
-        (base + 4..base + 6).any(|word| {
-            let guarded = self.t.transitions.iter().any(|t| match t.receptivity {
-                Receptivity::Word(a) | Receptivity::NotWord(a) => a.0 == word,
-                Receptivity::True | Receptivity::Code(_) => false,
-            });
-            let reached = |op: &Op| match *op {
-                Op::Fb(b, at) if b == block && at.0 == base => false,
-                Op::Fb(b, at) => (at.0..at.0 + b.words()).contains(&word),
-                Op::Load(a) => a.0 == word,
-                Op::LoadAt { base: at, len } => (at.0..at.0.saturating_add(len)).contains(&word),
-                _ => does_write(op, word),
-            };
-            guarded || self.is_tied(word) || self.t.code.iter().any(reached)
-        })
+        (base + 4..base + 6).any(|word| self.is_reached(base, block, word))
+    }
+
+    /// True if anything but calls of the timer at `base` reaches this word of it. Strings are left out:
+    /// none lies over an instance.
+    pub(crate) fn is_reached(&self, base: u32, block: Block, word: u32) -> bool {
+        let guarded = self.t.transitions.iter().any(|t| match t.receptivity {
+            Receptivity::Word(a) | Receptivity::NotWord(a) => a.0 == word,
+            Receptivity::True | Receptivity::Code(_) => false,
+        });
+        let reached = |op: &Op| match *op {
+            Op::Fb(b, at) if b == block && at.0 == base => false,
+            Op::Fb(b, at) => (at.0..at.0 + b.words()).contains(&word),
+            Op::Load(a) => a.0 == word,
+            Op::LoadAt { base: at, len } => (at.0..at.0.saturating_add(len)).contains(&word),
+            _ => does_write(op, word),
+        };
+        guarded || self.is_tied(word) || self.t.code.iter().any(reached)
     }
 }
 

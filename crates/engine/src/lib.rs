@@ -29,7 +29,7 @@
 //! of steps (`change.rs`), edges and timers (`watch.rs`), control blocks (`blocks.rs`).
 //! Code runs in `run.rs`, its instructions joined in `joined.rs`, what is Boolean in `decision.rs`.
 //! `tables.rs` has the data and `check.rs` checks it;
-//! `canonical.rs` and `reads.rs` are for those who search.
+//! `canonical.rs`, `times.rs` and `reads.rs` are for those who search.
 //!
 //! Not here: names, places, drawings (`model`), real inputs and clocks (`host`).
 #![no_std]
@@ -73,6 +73,7 @@ mod stack;
 mod state;
 mod tables;
 pub mod text;
+mod times;
 mod watch;
 
 pub use canonical::ImageError;
@@ -93,3 +94,4 @@ pub use tables::{
     Rows, Situation, Step, Tables, Transition, Watch,
 };
 pub use text::Duration;
+pub use times::{Elapsed, Time};

@@ -83,6 +83,16 @@ impl State {
         }
     }
 
+    /// Becomes what another state of the same program is between two scans: with its image, and without
+    /// reports. Does nothing if the images differ in length. Allocates nothing; a search calls it for
+    /// each scan that it tries.
+    pub fn become_as(&mut self, other: &State) {
+        if self.image.len() == other.image.len() {
+            self.image.copy_from_slice(&other.image);
+            self.scratch.reset();
+        }
+    }
+
     /// All that decides the future, as words. The program fixes their places; two
     /// states of one program with equal images have equal futures. Word 0 is the
     /// fingerprint of the program, the others are the memory.
@@ -180,6 +190,12 @@ impl State {
     /// Actions (ranks) that ran in the latest scan; a long search may be cut.
     pub fn ran(&self) -> &[u32] {
         &self.scratch.ran
+    }
+
+    /// Empties the lists of [`State::cleared`] and [`State::ran`]. Who makes the passes of a scan one by
+    /// one calls this before each: then the lists have room for all that one pass does.
+    pub fn forget_reports(&mut self) {
+        self.scratch.begin_brisk();
     }
 
     /// The time in which step times count: ns, or scans under the scan clock.

@@ -275,6 +275,11 @@ pub(crate) struct Test {
     pub(crate) scan: Option<Nanos>,
 }
 
+/// Bounds of a search, unless the user says others.
+const TIME: &str = "60s";
+const MEMORY: usize = 1024;
+const STATES: usize = 20_000_000;
+
 pub(crate) const PROOF_CODES: &str = "\
 Exit codes:
   0  everything is proved (of two charts: they are equal)
@@ -282,7 +287,7 @@ Exit codes:
   2  bad usage, or something outside the chart: no such file, a full disk
   3  something is not decided";
 
-#[derive(Args, Debug)]
+#[derive(Args, Clone, Debug)]
 #[command(after_help = format!("\
 Examples:
   g7 prove tank                   every question of every .g7 file in this folder and below
@@ -310,14 +315,14 @@ pub(crate) struct Prove {
     /// Ask everything of the closed loop of charts and this plant.
     #[arg(long, value_name = "PLANT", conflicts_with = "tests")]
     pub(crate) plant: Option<String>,
-    /// Stop after this time.
-    #[arg(long, value_parser = values::duration, value_name = "TIME", default_value = "60s")]
+    /// Stop after this time, all included: reading, compiling, answering.
+    #[arg(long, value_parser = values::duration, value_name = "TIME", default_value = TIME)]
     pub(crate) time: Nanos,
-    /// Memory for states, in MiB.
-    #[arg(long, value_name = "MIB", default_value_t = 1024)]
+    /// Memory for states, in MiB; the charts themselves come on top.
+    #[arg(long, value_name = "MIB", default_value_t = MEMORY)]
     pub(crate) memory: usize,
     /// Most states of a search.
-    #[arg(long, value_name = "NUMBER", default_value_t = 20_000_000)]
+    #[arg(long, value_name = "NUMBER", default_value_t = STATES)]
     pub(crate) states: usize,
     /// Write a JUnit report.
     #[arg(long, value_name = "FILE")]
@@ -341,7 +346,7 @@ pub(crate) struct Prove {
 }
 
 // A proof whose work is shared. A comment of documentation here would take the place of the command's own.
-#[derive(Args, Debug)]
+#[derive(Args, Clone, Debug)]
 pub(crate) struct Shared {
     /// Share the search over states among so many processes. Without --process all of them are started
     /// here.
@@ -384,15 +389,35 @@ pub(crate) struct Compare {
     /// Compare situations as well as outputs.
     #[arg(long)]
     pub(crate) situations: bool,
+    /// Write both charts as one system in the form of AIGER, for other model checkers: its first bad
+    /// signal is 1 where they differ.
+    #[arg(long, value_name = "FILE")]
+    pub(crate) aiger: Option<PathBuf>,
     /// Stop after this time.
-    #[arg(long, value_parser = values::duration, value_name = "TIME", default_value = "60s")]
+    #[arg(long, value_parser = values::duration, value_name = "TIME", default_value = TIME)]
     pub(crate) time: Nanos,
     /// Memory for states, in MiB.
-    #[arg(long, value_name = "MIB", default_value_t = 1024)]
+    #[arg(long, value_name = "MIB", default_value_t = MEMORY)]
     pub(crate) memory: usize,
     /// Most pairs of states.
-    #[arg(long, value_name = "NUMBER", default_value_t = 20_000_000)]
+    #[arg(long, value_name = "NUMBER", default_value_t = STATES)]
     pub(crate) states: usize,
+}
+
+impl Compare {
+    /// A comparison of outputs within the usual bounds.
+    pub(crate) fn of_outputs() -> Compare {
+        let time = values::duration(TIME).unwrap_or(Nanos::MAX);
+        Compare {
+            files: Vec::new(),
+            profiles: Vec::new(),
+            situations: false,
+            aiger: None,
+            time,
+            memory: MEMORY,
+            states: STATES,
+        }
+    }
 }
 
 #[derive(Args, Debug)]
@@ -400,6 +425,7 @@ pub(crate) struct Compare {
 Examples:
   g7 import Sorter.xml                  to the standard output
   g7 import Sorter.xml -o sorter.g7     to a file, which must not be there yet
+  g7 import Sorter.xml -o sorter.g7 --compare   and prove that it does the same
 
 What the importer does not know is reported with its line, never dropped in silence.
 
@@ -413,6 +439,9 @@ pub(crate) struct Import {
     /// Replace the output file if it exists.
     #[arg(long)]
     pub(crate) force: bool,
+    /// Read the output back, and compare it with the file over all runs, as `g7 compare` does.
+    #[arg(long, requires = "output")]
+    pub(crate) compare: bool,
 }
 
 #[derive(Args, Debug)]

@@ -16,13 +16,15 @@ const EXAMPLES: &str = "\
 Examples:
   g7 export tank --to mermaid           to the standard output
   g7 export tank -o tank.mmd            to a file; its ending says the form
+  g7 export tank --to plcopen -o t.xml --compare   and prove that it does the same
 
 What the form cannot carry is reported with its place, never dropped in silence.
 
 Exit codes:
   0  fine
-  1  the chart has errors, or the form cannot carry what it means
-  2  bad usage, or something outside the chart: no such file, a full disk";
+  1  the chart has errors, the form cannot carry what it means, or --compare shows a difference
+  2  bad usage, or something outside the chart: no such file, a full disk
+  3  --compare is not decided";
 
 /// The arguments of `g7 export`.
 #[derive(clap::Args, Debug)]
@@ -43,6 +45,9 @@ pub(crate) struct Export {
     /// Write the file even if it would not have the same meaning.
     #[arg(long)]
     lossy: bool,
+    /// Read the file back, and compare it with the chart over all runs, as `g7 compare` does.
+    #[arg(long, requires = "output")]
+    compare: bool,
 }
 
 /// A format, as a word of the command line.
@@ -61,10 +66,19 @@ impl ValueEnum for Form {
     }
 }
 
-pub(crate) fn export(args: &Export) -> Result<Verdict, Failure> {
+/// Compares a chart with what was read back.
+pub(crate) type ReadBack = fn(sources::Source, sources::Source) -> Result<Verdict, Failure>;
+
+pub(crate) fn export(args: &Export, read_back: ReadBack) -> Result<Verdict, Failure> {
     let to = form(args)?;
     let source = sources::load(&files::one(&args.file)?, 0)?;
     files::refuse_present(args.output.as_deref(), args.force)?;
+    if args.compare && !to.is_read() {
+        return Err(Failure::Usage(format!(
+            "{} is not read back: there is nothing to compare with",
+            to.title
+        )));
+    }
     let mut problems = source.problems.clone();
     if !source.has_errors() {
         problems.extend(g7_compile::check(&source.document));
@@ -85,7 +99,10 @@ pub(crate) fn export(args: &Export) -> Result<Verdict, Failure> {
         return Ok(Verdict::Found);
     }
     files::deliver(args.output.as_deref(), written.text.as_bytes())?;
-    Ok(Verdict::Fine)
+    match &args.output {
+        Some(path) if args.compare => read_back(source, sources::load(path, 0)?),
+        _ => Ok(Verdict::Fine),
+    }
 }
 
 fn found(source: &sources::Source, problems: &[g7_model::Problem]) -> Verdict {

@@ -4,6 +4,7 @@ use crate::cli::Import;
 use crate::failure::{Failure, Verdict};
 use crate::files;
 use crate::message::talk;
+use crate::prove;
 use crate::report::{self, Tally};
 use crate::sources;
 
@@ -27,5 +28,8 @@ pub(crate) fn import(args: &Import) -> Result<Verdict, Failure> {
     g7_draw::make_room(&mut document);
     let text = g7_syntax::print(&document, None);
     files::deliver(args.output.as_deref(), text.as_bytes())?;
-    Ok(Verdict::Fine)
+    match &args.output {
+        Some(path) if args.compare => prove::read_back(source, sources::load(path, 0)?),
+        _ => Ok(Verdict::Fine),
+    }
 }

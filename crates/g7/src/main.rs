@@ -106,7 +106,7 @@ fn run(command: &Command) -> Result<Verdict, Failure> {
         #[cfg(target_os = "linux")]
         Command::Service(args) => service::service(args),
         Command::Import(args) => import::import(args),
-        Command::Export(args) => export::export(args),
+        Command::Export(args) => export::export(args, prove::read_back),
         Command::Gen(args) => generate::generate(args),
         Command::Explain(args) => explain::explain(args),
         Command::Completions(args) => shell::completions(args),

@@ -48,10 +48,10 @@ impl std::fmt::Display for Tally {
     }
 }
 
-/// A line for each property that nothing has proved.
+/// A line for each property that another command asks.
 pub(crate) fn unproved(list: &[Unproved]) -> String {
     let line =
-        |p: &Unproved| format!("{}: {}not proved{:#}: {}\n", p.place, style::WARN, style::WARN, p.text);
+        |p: &Unproved| format!("{}: {}left to g7 prove{:#}: {}\n", p.place, style::WARN, style::WARN, p.text);
     list.iter().map(line).collect()
 }
 

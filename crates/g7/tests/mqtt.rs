@@ -17,6 +17,7 @@ output valve : BOOL
 output speed : INT safe -1
 output sum : LREAL
 var presses : INT := 0
+var big : UDINT := 4000000000
 chart Main {
   initial step 1
   step 2 { N valve  P1 presses := presses + 1  P1 speed := presses + 1  P1 sum := REAL_TO_LREAL(level) + DINT_TO_LREAL(weight) }
@@ -313,17 +314,38 @@ fn node(port: u16, device: &str) -> String {
          [inputs]\ngo = {{ at = 'scada.metric()', bad = false }}\nlevel = 'scada.metric(Tank/Level)'\n\
          weight = 'scada.metric()'\nbroker_ok = 'scada.good()'\n\
          [outputs]\nvalve = 'scada.metric()'\nspeed = 'scada.metric()'\nsum = 'scada.metric(Tank/Sum)'\n\
-         [shown]\nX2 = 'scada.metric(Step2)'\n"
+         [shown]\nX2 = 'scada.metric(Step2)'\nbig = 'scada.metric()'\n"
     )
 }
 
-/// A host that sees what a node publishes.
-fn host(port: u16) -> Option<Running> {
-    let mut command = std::process::Command::new(g7_peers::python("pysparkplug")?);
-    command.arg(g7_peers::script("sparkplug_host.py")).args([&port.to_string(), "plant", "sorter"]);
-    let mut host = Running::start(command, |child| Box::new(child.stdout.take().expect("piped")));
-    assert_eq!(host.line(), "ready");
-    Some(host)
+/// A program that plays a host: it sees what a node publishes, and commands it.
+#[derive(Clone, Copy)]
+enum Host {
+    /// pysparkplug.
+    Python,
+    /// The library of Eclipse Tahu for Node.
+    Tahu,
+}
+
+impl Host {
+    fn command(self) -> Option<std::process::Command> {
+        match self {
+            Host::Python => {
+                let mut command = std::process::Command::new(g7_peers::python("pysparkplug")?);
+                command.arg(g7_peers::script("sparkplug_host.py"));
+                Some(command)
+            }
+            Host::Tahu => g7_peers::node("sparkplug-payload", "sparkplug_host.cjs"),
+        }
+    }
+
+    fn start(self, port: u16) -> Option<Running> {
+        let mut command = self.command()?;
+        command.args([&port.to_string(), "plant", "sorter"]);
+        let mut host = Running::start(command, |child| Box::new(child.stdout.take().expect("piped")));
+        assert_eq!(host.line(), "ready");
+        Some(host)
+    }
 }
 
 /// Waits for a line of the host that begins and goes on so; none is a gap.
@@ -338,15 +360,32 @@ fn told(host: &mut Running, kind: &str, parts: &[&str]) -> String {
 }
 
 #[test]
-fn a_sparkplug_host_drives_and_watches_a_device() {
+fn a_host_of_pysparkplug_drives_and_watches_a_device() {
+    drives_and_watches_a_device(Host::Python);
+}
+
+#[test]
+fn a_host_of_tahu_drives_and_watches_a_device() {
+    drives_and_watches_a_device(Host::Tahu);
+}
+
+fn drives_and_watches_a_device(peer: Host) {
     let Some(broker) = Broker::start() else { return };
-    let Some(mut host) = host(broker.port) else { return };
+    let Some(mut host) = peer.start(broker.port) else { return };
     let folder = Folder::with(CHART);
     folder.write("chart.io.toml", node(broker.port, ", device = 'plc'"));
     let mut g7 = Running::online(&folder, &[]);
     // Births have quality of service 0, are not retained, and number from 0.
     told(&mut host, "NBIRTH 0 0 0 ", &["bdSeq=0", "Node Control/Rebirth=False"]);
-    let all = ["valve=False", "speed=", "Tank/Sum=0.0", "Step2=False", "go=None", "Tank/Level=None"];
+    let all = [
+        "valve=False",
+        "speed=-1",
+        "Tank/Sum=0.0",
+        "Step2=False",
+        "big=4000000000",
+        "go=None",
+        "Tank/Level=None",
+    ];
     told(&mut host, "DBIRTH 0 0 1 ", &all);
     // Commands by name and by alias; each is told back as data.
     host.say("name DCMD Tank/Level FLOAT 2.5");
@@ -366,9 +405,18 @@ fn a_sparkplug_host_drives_and_watches_a_device() {
 }
 
 #[test]
-fn a_sparkplug_node_is_born_again() {
+fn a_node_is_born_again_for_pysparkplug() {
+    is_born_again(Host::Python);
+}
+
+#[test]
+fn a_node_is_born_again_for_tahu() {
+    is_born_again(Host::Tahu);
+}
+
+fn is_born_again(peer: Host) {
     let Some(broker) = Broker::start() else { return };
-    let Some(mut host) = host(broker.port) else { return };
+    let Some(mut host) = peer.start(broker.port) else { return };
     let folder = Folder::with(CHART);
     folder.write("chart.io.toml", node(broker.port, ""));
     let mut g7 = Running::online(&folder, &[]);
@@ -387,7 +435,7 @@ fn a_sparkplug_node_is_born_again() {
     let broker = broker.again();
     g7.until("scada does not answer");
     g7.until("scada answers");
-    let mut host = self::host(broker.port).expect("it was there before");
+    let mut host = peer.start(broker.port).expect("it was there before");
     broker.publish_with("spBv1.0/plant/NCMD/sorter", "no protocol buffer", &[]);
     // The will is that of this connection.
     drop(g7);

@@ -307,7 +307,7 @@ fn the_report_for_build_servers_counts() {
     folder.g7(&["prove", "chart.g7", "--junit", "out.xml"]).is(1);
     let text = folder.read("out.xml");
     let count = |what: &str| text.matches(what).count();
-    let head = text.lines().nth(1).expect("the suite");
+    let head = text.lines().nth(2).expect("the suite");
     for (attribute, what) in [("tests", "<testcase"), ("failures", "<failure"), ("skipped", "<skipped")] {
         assert!(head.contains(&format!("{attribute}=\"{}\"", count(what))), "{head}\n{text}");
     }

@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 
 use g7_verify::{Expanded, Gap, Shown};
 
-use crate::words::{Words, put_text};
+use crate::words::Words;
 
 /// A state, by its level and its rank there. The order is that in which one thread visits states.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
@@ -27,12 +27,12 @@ pub(crate) struct Hit {
 }
 
 /// The kind of an answer.
-#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Kind {
     /// The run shows it; with or without the fault that ends its last scan.
     Run { fault: bool },
-    /// A condition cannot be evaluated, with the fault in words.
-    Unclear(String),
+    /// A condition has a fault there.
+    Unclear,
     /// The run leads to the state: it has no scan more.
     Trap,
 }
@@ -69,7 +69,7 @@ impl Known {
             Gap::Combinations(count) => (0, count as u64),
             Gap::Values(place) => (1, place as u64),
             // Chart and plant are not searched here.
-            Gap::Plant(_) => (2, 0),
+            Gap::Plant(_) | Gap::Chance => (2, 0),
         });
         self.hole = first(self.hole.take(), gap.map(|gap| Hole { at, gap }));
         self.stuck = first(self.stuck, (done.stuck && !done.stopped).then_some(at));
@@ -79,7 +79,7 @@ impl Known {
     pub(crate) fn show(&mut self, at: Place, step: u64, shown: &Shown) {
         let (question, kind) = match shown {
             Shown::Run { question, fault } => (*question, Kind::Run { fault: fault.is_some() }),
-            Shown::Unclear { question, fault } => (*question, Kind::Unclear(fault.kind.to_string())),
+            Shown::Unclear { question, .. } => (*question, Kind::Unclear),
         };
         self.hit(question as u64, Hit { at, step, kind });
     }
@@ -117,10 +117,7 @@ impl Known {
             match &hit.kind {
                 Kind::Run { fault } => into.push(u64::from(*fault)),
                 Kind::Trap => into.push(2),
-                Kind::Unclear(text) => {
-                    into.push(3);
-                    put_text(into, text);
-                }
+                Kind::Unclear => into.push(3),
             }
         }
     }
@@ -146,7 +143,7 @@ impl Known {
             let step = words.next()?;
             let kind = match words.next()? {
                 2 => Kind::Trap,
-                3 => Kind::Unclear(words.text()?),
+                3 => Kind::Unclear,
                 fault => Kind::Run { fault: fault != 0 },
             };
             known.hits.insert(question, Hit { at, step, kind });

@@ -1,6 +1,6 @@
 //! One search: from the last level that all workers have on disk, level after level, to its outcome.
 
-use g7_verify::{Gap, Outcome, Why, asks_for_traps, halted, stuck_behind, too_large, too_many};
+use g7_verify::{Gap, Outcome, Reason, asks_for_traps};
 
 use crate::Error;
 use crate::exchange::{Exchange, Lost, Phases};
@@ -70,21 +70,22 @@ pub(crate) fn search(
 }
 
 /// Why not all runs were seen.
-fn why(task: &Task<'_, '_>, halt: Option<Halt>, known: &Known) -> Option<Why> {
+fn why(task: &Task<'_, '_>, halt: Option<Halt>, known: &Known) -> Option<Reason> {
     match halt {
-        Some(Halt::Stopped) => return Some(halted()),
-        Some(Halt::States) => return Some(too_many(task.budget.states)),
-        Some(Halt::Memory) => return Some(too_large(task.budget.bytes)),
+        Some(Halt::Stopped) => return Some(Reason::Stopped),
+        Some(Halt::States) => return Some(Reason::States(task.budget.states)),
+        Some(Halt::Memory) => return Some(Reason::Memory(task.budget.bytes >> 20)),
         None => {}
     }
     if let Some(at) = known.stuck {
-        return Some(stuck_behind(at.level as usize));
+        return Some(Reason::NoInput(at.level as usize));
     }
     let gap = match known.hole?.gap {
         (0, count) => Gap::Combinations(count as usize),
-        (_, place) => Gap::Values(place as usize),
+        (1, place) => Gap::Values(place as usize),
+        _ => Gap::Chance,
     };
-    Some(gap.why(task.model))
+    Some(gap.reason(task.model))
 }
 
 /// Writes a level, with all that is known by then.

@@ -45,7 +45,7 @@ pub(crate) struct Shelf {
 impl Shelf {
     pub(crate) fn new(pack: Pack, inputs: Pack) -> Shelf {
         Shelf {
-            store: Store::new(pack.words()),
+            store: Store::new(),
             from: 0,
             keys: Vec::new(),
             last: Vec::new(),
@@ -194,10 +194,10 @@ impl Shelf {
     }
 
     fn pack_anew(&mut self, old: &Pack) {
-        let mut store = Store::new(self.pack.words());
+        let mut store = Store::new();
         let (mut image, mut packed) = (Vec::new(), Vec::new());
         for number in 0..self.store.len() {
-            old.unpack(self.store.image(number), &mut image);
+            old.unpack(&self.store.image(number), &mut image);
             packed.clear();
             self.pack.pack(&image, &mut packed);
             store.find_or_insert(&packed);

@@ -5,7 +5,7 @@
 //! them makes the scans again from the start.
 
 use g7_engine::Fault;
-use g7_verify::{Here, Model, Outcome, Question, Run, Tried, Verdict};
+use g7_verify::{Here, Model, Outcome, Question, Reason, Run, Tried, Verdict, unclear};
 
 use crate::Error;
 use crate::exchange::Phases;
@@ -43,7 +43,7 @@ pub(crate) fn trace(
     for (question, hit) in &known.hits {
         let last = Some(hit.step).filter(|_| hit.kind != Kind::Trap);
         let steps: Vec<u64> = last.into_iter().collect();
-        shown.push(Shown { question: *question, kind: hit.kind.clone(), steps });
+        shown.push(Shown { question: *question, kind: hit.kind, steps });
     }
     let mut ranks: Vec<u64> = known.hits.values().map(|h| h.at.rank).collect();
     let starts: Vec<u64> = known.hits.values().map(|h| h.at.level).collect();
@@ -80,9 +80,13 @@ impl Ended {
         let one = |(i, q): &(usize, &Question)| {
             let verdict = match self.shown.iter().find(|s| s.question == *i as u64) {
                 None => self.outcome.left_over(&q.claim),
-                Some(Shown { kind: Kind::Unclear(fault), .. }) => self.outcome.unclear(fault),
                 Some(Shown { kind, steps, .. }) => {
                     let (mut run, fault) = follow(model, steps, tried);
+                    if *kind == Kind::Unclear {
+                        let fault = unclear(model, &q.claim, &run);
+                        let reason = fault.map_or(Reason::NotRepeated, Reason::Condition);
+                        return (*i, Verdict::Open(self.outcome.so_far(reason)));
+                    }
                     run.fault = fault.filter(|_| matches!(kind, Kind::Run { fault: true }));
                     self.outcome.shown(model, &q.claim, run)
                 }
@@ -95,44 +99,35 @@ impl Ended {
     pub(crate) fn put(&self, into: &mut Vec<u64>) {
         let o = &self.outcome;
         into.extend([o.states, o.scans, o.depth].map(|n| n as u64));
-        into.extend([o.cut, o.cut_passes, o.hole.is_some()].map(u64::from));
-        if let Some((reason, help)) = &o.hole {
-            put_text(into, reason);
-            put_text(into, help);
-        }
+        into.extend([o.cut, o.cut_passes].map(u64::from));
+        put_reason(into, o.hole.as_ref());
         into.push(self.shown.len() as u64);
         for shown in &self.shown {
             into.push(shown.question);
             match &shown.kind {
                 Kind::Run { fault } => into.push(u64::from(*fault)),
                 Kind::Trap => into.push(2),
-                Kind::Unclear(text) => {
-                    into.push(3);
-                    put_text(into, text);
-                }
+                Kind::Unclear => into.push(3),
             }
             put_list(into, &shown.steps);
         }
     }
 
     pub(crate) fn get(words: &mut Words<'_>) -> Option<Ended> {
-        let mut outcome = Outcome {
+        let outcome = Outcome {
             states: words.count()?,
             scans: words.count()?,
             depth: words.count()?,
             cut: words.next()? != 0,
             cut_passes: words.next()? != 0,
-            hole: None,
+            hole: get_reason(words)?,
         };
-        if words.next()? != 0 {
-            outcome.hole = Some((words.text()?, words.text()?));
-        }
         let mut shown = Vec::new();
         for _ in 0..words.next()? {
             let question = words.next()?;
             let kind = match words.next()? {
                 2 => Kind::Trap,
-                3 => Kind::Unclear(words.text()?),
+                3 => Kind::Unclear,
                 fault => Kind::Run { fault: fault != 0 },
             };
             shown.push(Shown { question, kind, steps: words.list()?.to_vec() });
@@ -163,4 +158,42 @@ fn follow(model: &Model<'_>, steps: &[u64], tried: Option<Tried>) -> (Run, Optio
         image = next;
     }
     (run, fault)
+}
+
+/// Writes the reason why a shared search has not seen all runs, if there is one.
+fn put_reason(into: &mut Vec<u64>, reason: Option<&Reason>) {
+    let (tag, number) = match reason {
+        None => (0, 0),
+        Some(Reason::States(n)) => (2, *n),
+        Some(Reason::Memory(n)) => (3, *n),
+        Some(Reason::Combinations(n)) => (4, *n),
+        Some(Reason::NoInput(n)) => (5, *n),
+        Some(Reason::Chance(n)) => (6, *n),
+        Some(Reason::Values(name)) => {
+            into.push(7);
+            return put_text(into, name);
+        }
+        // A shared search ends for no other reason.
+        Some(_) => (1, 0),
+    };
+    into.extend([tag, number as u64]);
+}
+
+/// Reads what [`put_reason`] has written.
+fn get_reason(words: &mut Words<'_>) -> Option<Option<Reason>> {
+    let tag = words.next()?;
+    if tag == 7 {
+        return Some(Some(Reason::Values(words.text()?)));
+    }
+    let number = words.count()?;
+    Some(Some(match tag {
+        0 => return Some(None),
+        1 => Reason::Stopped,
+        2 => Reason::States(number),
+        3 => Reason::Memory(number),
+        4 => Reason::Combinations(number),
+        5 => Reason::NoInput(number),
+        6 => Reason::Chance(number),
+        _ => return None,
+    }))
 }

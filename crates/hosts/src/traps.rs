@@ -32,7 +32,7 @@ pub(crate) fn first(
     let mut list = Vec::new();
     for blocked in &worker.blocked {
         let number = blocked.number as usize;
-        worker.shelf.pack.unpack(worker.shelf.store.image(number), &mut image);
+        worker.shelf.pack.unpack(&worker.shelf.store.image(number), &mut image);
         // Behind a state that remembers nothing, nothing is left to come.
         if !remembers || image.last().is_some_and(|w| *w != 0) {
             list.push(*blocked);
@@ -44,7 +44,7 @@ pub(crate) fn first(
     let (me, peers) = (phases.me() as u64, phases.peers());
     let (shelf, mut packed) = (&worker.shelf, Vec::new());
     let meet = |graph: &mut Graph, from: Id, packed: &[u64]| {
-        let number = shelf.store.find(packed);
+        let number = shelf.store.number(packed);
         match number.and_then(|n| places.get(&n)) {
             Some(to) => graph.back.get_mut(*to).into_iter().for_each(|b| b.push(from)),
             None => graph.say.push(from),
@@ -52,7 +52,7 @@ pub(crate) fn first(
     };
     let width = shelf.pack.words();
     for (k, blocked) in (0u64..).zip(&list) {
-        shelf.pack.unpack(shelf.store.image(blocked.number as usize), &mut image);
+        shelf.pack.unpack(&shelf.store.image(blocked.number as usize), &mut image);
         let first = blocked.at == Place::default();
         expander.expand(Here { image: &image, inputs: &inputs, first }, |s| {
             let Some(next) = s.next else { return true };
@@ -75,7 +75,7 @@ pub(crate) fn first(
     let mut bad: Vec<_> = left.collect();
     bad.sort_unstable();
     let mut is_bad = |number: u32| {
-        shelf.pack.unpack(shelf.store.image(number as usize), &mut image);
+        shelf.pack.unpack(&shelf.store.image(number as usize), &mut image);
         remembers || !expander.is_end(&image)
     };
     let own = bad.into_iter().find(|b| is_bad(b.number)).map(|b| vec![b.at.level, b.at.rank]);

@@ -127,13 +127,15 @@ impl<'a> Worker<'a> {
 
     /// Expands states until the phase is full; tells whether the work is to stop.
     fn round(&mut self, phases: &mut Phases<'_>, next: &mut usize, own: &mut Known) -> Result<bool, Lost> {
-        let (mut image, mut inputs, mut scans) = (Vec::new(), Vec::new(), 0);
+        let (mut packed, mut image, mut inputs) = (Vec::new(), Vec::new(), Vec::new());
+        let mut scans = 0;
         let Worker { expander, shelf, .. } = self;
         while scans < SCANS
             && let Some((number, rank)) = self.order.get(*next).copied()
         {
             let at = Place { level: self.level, rank };
-            shelf.pack.unpack(shelf.store.image(number as usize), &mut image);
+            shelf.store.get(number as usize, &mut packed);
+            shelf.pack.unpack(&packed, &mut image);
             let words = shelf.inputs.words();
             let from = (number as usize - self.first) * words;
             shelf.inputs.unpack(self.last.get(from..from + words).unwrap_or(&[]), &mut inputs);
@@ -196,13 +198,14 @@ impl<'a> Worker<'a> {
         let mut level = Level { width: 2 + words.0 + words.1, ..Level::default() };
         level.records.reserve(sorted.len() * level.width);
         self.order.clear();
-        let mut others = 0;
+        let (mut others, mut packed) = (0, Vec::new());
         for ((own, (key, number)), before) in (0u64..).zip(&sorted).zip(&before) {
             others += before;
             let rank = own + others;
             self.order.push((*number, rank));
             level.records.extend([rank, *key]);
-            level.records.extend_from_slice(shelf.store.image(*number as usize));
+            shelf.store.get(*number as usize, &mut packed);
+            level.records.extend_from_slice(&packed);
             let last = (*number - from) as usize * words.1;
             level.records.extend_from_slice(shelf.last.get(last..last + words.1).unwrap_or(&[]));
         }

@@ -68,7 +68,7 @@ fn alone(asked: &Asked, states: usize) -> Vec<Verdict> {
 
 /// True for a search that a bound has ended.
 fn is_bounded(v: &Verdict) -> bool {
-    matches!(v, Verdict::Open(open) if open.reason.starts_with("there are more than"))
+    matches!(v, Verdict::Open(open) if open.reason.is_of_budget())
 }
 
 #[track_caller]

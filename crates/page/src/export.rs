@@ -20,6 +20,8 @@ pub(crate) struct Form {
     word: &'static str,
     title: &'static str,
     kind: &'static str,
+    /// It is read back as a chart.
+    read: bool,
 }
 
 /// An exported chart.
@@ -71,9 +73,10 @@ const LANGUAGES: [(&str, &str, Code); 8] = [
 
 /// All forms, in the order in which they are shown.
 pub(crate) fn forms() -> Vec<Form> {
-    let chart = |f: &g7_exchange::Format| Form { word: f.word, title: f.title, kind: "chart" };
-    let code = |(word, title, _)| Form { word, title, kind: "code" };
-    let picture = Form { word: "svg", title: "SVG", kind: "picture" };
+    let chart =
+        |f: &g7_exchange::Format| Form { word: f.word, title: f.title, kind: "chart", read: f.is_read() };
+    let code = |(word, title, _)| Form { word, title, kind: "code", read: false };
+    let picture = Form { word: "svg", title: "SVG", kind: "picture", read: false };
     FORMATS.iter().filter(|f| f.is_written()).map(chart).chain(LANGUAGES.map(code)).chain([picture]).collect()
 }
 

@@ -83,6 +83,12 @@ impl File {
         Ok(splices)
     }
 
+    /// The text before the last change, if there was one.
+    pub(crate) fn before(&self) -> Option<String> {
+        let splices = self.history.clone().undo()?;
+        spliced(self.text(), &splices)
+    }
+
     fn set_text(&mut self, text: String) {
         self.source = Source::new(&self.source.name, text.into_bytes(), 0);
         self.positions = Arc::new(Positions::new(&self.source.text));

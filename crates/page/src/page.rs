@@ -81,6 +81,11 @@ impl Page {
             Request::Test { file, name } => ok(&testing::test(self.file(&file)?, name.as_deref())?),
             Request::Prove { file, limits } => self.prove(&file, limits),
             Request::ProveWays { file, wish } => ok(&prove::ways(self.file(&file)?, &wish)?),
+            Request::Compare(wish) => {
+                let [a, b] = &wish.files;
+                ok(&prove::compared([self.file(a)?, self.file(b)?], &wish)?)
+            }
+            Request::Before { file } => ok(&serde_json::json!({ "text": self.file(&file)?.before() })),
             Request::Tokens { file, from, to } => ok(&language::tokens::tokens(self.file(&file)?, from, to)),
             Request::Complete { file, at } => ok(&language::complete::complete(self.file(&file)?, at)),
             Request::Hover { file, at } => ok(&language::hover::hover(self.file(&file)?, at)),

@@ -96,6 +96,12 @@ pub(crate) enum Request {
         #[serde(flatten)]
         wish: crate::prove::Wish,
     },
+    /// Compares two files for every sequence of inputs, as far as the limits go.
+    Compare(crate::prove::Both),
+    /// The text before the last change.
+    Before {
+        file: String,
+    },
     Tokens {
         file: String,
         #[serde(default)]

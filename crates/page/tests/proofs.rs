@@ -130,7 +130,8 @@ fn a_conflict_has_its_cures_and_each_of_them_cures() {
         let cures = found["cures"].as_array().expect("cures");
         assert!(cures.iter().all(|c| c["sort"] != "priority"), "iec60848 follows no priority");
         let cure = cures.iter().find(|c| c["sort"] == sort).unwrap_or_else(|| panic!("{sort}: {found:#}"));
-        assert_eq!(cure["with"], json!(["a", "b"]));
+        let with = if sort == "assume" { json!(["assume not (a and b)"]) } else { json!(["a", "b"]) };
+        assert_eq!(cure["with"], with);
         let text = take(&mut page, &cure["splices"]);
         assert!(text.contains(wanted), "{text}");
         let after = prove(&mut page, 1000);
@@ -164,4 +165,104 @@ fn what_the_chart_decides_itself_is_not_assumed_away() {
     assert!(!sorts.contains(&&json!("assume")), "{sorts:?}");
     let no = page.no(json!({ "do": "prove_ways", "file": "a.g7", "hash": "", "question": 0, "run": [] }));
     assert!(no.contains("changed"), "{no}");
+}
+
+/// The assumption that is offered with an answer.
+fn assumption(found: &Value) -> Option<Value> {
+    found["cures"].as_array().expect("cures").iter().find(|c| c["sort"] == "assume").cloned()
+}
+
+#[test]
+fn what_the_inputs_of_a_scan_decide_can_be_assumed_away() {
+    let line = "input go, stop : BOOL\noutput M : BOOL\nchart G {\n  initial step 1\n  step 2\n  step 3 { N M }\n  1 -> 2 when ↑go\n  2 -> 3 when ↑go and not stop\n}\n\nprove never M\n";
+    let alone = line.replace(" and not stop", "");
+    for (chart, claim, wanted) in [
+        (FORK, "prove never X2 and X3", "assume not (a and b)"),
+        (line, "prove never M", "assume not (go and not stop)"),
+        // An input that never came would be no input: it does not come in this situation.
+        (&*alone, "prove never M", "assume not (X2 and go)"),
+    ] {
+        let mut page = Asked::default();
+        page.open(chart);
+        let own = row(&prove(&mut page, 1000), claim);
+        let found = ways(&mut page, &own);
+        let cure = assumption(&found).unwrap_or_else(|| panic!("{found:#}"));
+        assert_eq!(cure["with"], json!([wanted]));
+        let text = take(&mut page, &cure["splices"]);
+        assert!(text.contains(&format!("\n{wanted}\n")), "{text}");
+        assert_eq!(row(&prove(&mut page, 1000), claim)["verdict"], "proved", "{wanted}");
+    }
+}
+
+/// 2 are added in each tick but the first; the plant drives both inputs.
+const TANK: &str = "profile iec61131\nscan 250ms\ninput low, high : BOOL\noutput V, W : BOOL\nchart Fill {\n  initial step 0 { N V }\n  step 1 { N W }\n  0 -> 1 when high\n  1 -> 0 when low\n}\nplant Tank {\n  state level : REAL := 0.0 in 0.0 .. 100.0\n  rate level := 8.0 when V\n  rate level := -8.0 when W\n  drive high := level >= 90.0\n  drive low := level < 2.0\n}\nprove always level <= 80.0 with Tank\n";
+
+#[test]
+fn a_claim_about_chart_and_plant_is_saved_as_a_test_with_the_plant() {
+    let mut page = Asked::default();
+    page.open(TANK);
+    let own = row(&prove(&mut page, 1000), "prove always level");
+    assert_eq!(own["verdict"], "refuted");
+    let found = ways(&mut page, &own);
+    assert_eq!(assumption(&found), None, "the plant gives the inputs");
+    let text = take(&mut page, &found["test"]["splices"]);
+    assert!(text.contains(" with Tank {\n  wait 10.25s\n  expect level <= 80.0\n}"), "{text}");
+    let report = page.ok(json!({ "do": "test", "file": "a.g7" }));
+    assert_eq!((&report["failed"], &report["passed"]), (&json!(1), &json!(0)), "{report:#}");
+}
+
+#[test]
+fn what_no_test_shows_is_said_in_three_languages() {
+    let mut page = Asked::default();
+    page.open("input a, b : BOOL\nchart G {\n  initial step 1\n  initial step 2\n  step 3\n  1 -> 3 when a\n  2 -> 3 when b\n}\n");
+    let twice = row(&prove(&mut page, 1000), "no step is activated");
+    let why = ways(&mut page, &twice)["untested"].clone();
+    let said: Vec<&str> = why.as_array().expect("three").iter().filter_map(Value::as_str).collect();
+    assert_eq!(said.len(), 3);
+    assert!(said[0] != said[1] && said[1] != said[2], "{said:?}");
+}
+
+fn compare(page: &mut Asked, files: [&str; 2], states: usize) -> Value {
+    page.ok(json!({ "do": "compare", "files": files, "profiles": [null, null], "states": states, "mib": 64 }))
+}
+
+#[test]
+fn two_files_are_equal_or_told_apart_by_a_run_for_each() {
+    let mut page = Asked::default();
+    page.open(FORK);
+    let other = |page: &mut Asked, text: &str| {
+        page.ok(json!({ "do": "open", "file": "b.g7", "text": text }));
+    };
+    other(&mut page, &FORK.replace("step 4\n", "step 5\n").replace("4 -> 1", "5 -> 1"));
+    assert_eq!(compare(&mut page, ["a.g7", "b.g7"], 1000)["is"], "equal", "outputs alone are compared");
+    // The output comes with `a` in the first scan, unless `b` comes too.
+    other(&mut page, &FORK.replace("when a\n  1", "when a and not b\n  1"));
+    let found = compare(&mut page, ["a.g7", "b.g7"], 1000);
+    assert_eq!((&found["is"], &found["scans"]), (&json!("apart"), &json!(1)), "{found:#}");
+    assert!(found["reason"][1].as_str().is_some_and(|r| r.contains("la sortie `M`")), "{found:#}");
+    let shown = [0, 1].map(|n| {
+        let file = ["a.g7", "b.g7"][n];
+        let start = json!({ "do": "run_start", "file": file, "run": file, "plant": "none", "moves": found["runs"][n] });
+        page.ok(start)["frame"]["on"].as_array().map(Vec::len)
+    });
+    assert_eq!(shown, [Some(2), Some(1)]);
+    let open = compare(&mut page, ["a.g7", "b.g7"], 0);
+    assert_eq!((&open["is"], &open["more"]), (&json!("open"), &json!(true)), "{open:#}");
+    other(&mut page, &FORK.replace("output M", "output N, M"));
+    assert_eq!(compare(&mut page, ["a.g7", "b.g7"], 1000)["is"], "unlike");
+    other(&mut page, &FORK.replace("when ↑back", "when nothing"));
+    let wrong = compare(&mut page, ["a.g7", "b.g7"], 1000);
+    assert_eq!((&wrong["is"], &wrong["side"]), (&json!("errors"), &json!(1)));
+}
+
+#[test]
+fn the_text_before_the_last_change_can_be_had() {
+    let mut page = Asked::default();
+    page.open(FORK);
+    let before = |page: &mut Asked| page.ok(json!({ "do": "before", "file": "a.g7" }))["text"].clone();
+    assert_eq!(before(&mut page), Value::Null);
+    let splice = json!([{ "from": 0, "to": 0, "insert": "// x\n" }]);
+    take(&mut page, &splice);
+    assert_eq!(before(&mut page), FORK);
+    assert_eq!(page.text(), format!("// x\n{FORK}"), "asking changes nothing");
 }

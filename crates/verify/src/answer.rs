@@ -1,7 +1,7 @@
 //! All layers: the one place that says which there are.
 //!
-//! The explicit search answers small charts at once, timers included; the solver answers charts with
-//! many sequences side by side. They take turns, and each turn allows several times the work of the one
+//! The explicit search answers small charts at once; the search by zones those with times, however long;
+//! the solver answers charts with many sequences side by side. They take turns, and each turn allows several times the work of the one
 //! before. Work is counted in scans and ticks, not in seconds: unless the caller stops it, the
 //! answers depend on the chart alone.
 
@@ -11,6 +11,7 @@ use crate::question::Question;
 use crate::sat::Satisfiability;
 use crate::search::Explicit;
 use crate::verdict::{Verdict, is_open};
+use crate::zones::Zones;
 
 /// Scans of the search in the first turn.
 const SCANS: usize = 200_000;
@@ -25,36 +26,39 @@ pub fn answer(
     answers: &mut [Option<Verdict>],
     budget: &Budget<'_>,
 ) {
-    let mut scans = SCANS;
-    let mut solver = Satisfiability { turns: SOLVER };
-    loop {
-        let before = answers.to_vec();
-        let small = Budget { scans: scans.min(budget.scans), ..*budget };
-        Explicit.answer(model, questions, answers, &small);
-        solver.answer(model, questions, answers, budget);
-        // More work changes nothing where both have come to their end.
-        if !answers.iter().any(is_open) || (budget.stop)() || before == answers {
-            return;
-        }
-        scans = scans.saturating_mul(16);
-        solver.turns += 4;
-    }
+    turns(model, questions, answers, budget, &[&Explicit, &Zones]);
 }
 
-/// Asks the solver alone, until the budget is used up: for a caller that has searched already.
+/// Asks all layers but the explicit search, until the budget is used up: for a caller that has searched already.
 pub fn solve(
     model: &Model<'_>,
     questions: &[Question],
     answers: &mut [Option<Verdict>],
     budget: &Budget<'_>,
 ) {
+    turns(model, questions, answers, budget, &[&Zones]);
+}
+
+/// Lets these searches and the solver take turns.
+fn turns(
+    model: &Model<'_>,
+    questions: &[Question],
+    answers: &mut [Option<Verdict>],
+    budget: &Budget<'_>,
+    searches: &[&dyn Layer],
+) {
+    let mut scans = SCANS;
     let mut solver = Satisfiability { turns: SOLVER };
     loop {
         let before = answers.to_vec();
+        let small = Budget { scans: scans.min(budget.scans), ..*budget };
+        searches.iter().for_each(|layer| layer.answer(model, questions, answers, &small));
         solver.answer(model, questions, answers, budget);
+        // More work changes nothing where all have come to their end.
         if !answers.iter().any(is_open) || (budget.stop)() || before == answers {
             return;
         }
+        scans = scans.saturating_mul(16);
         solver.turns += 4;
     }
 }
@@ -69,6 +73,7 @@ pub fn attempt(
     solve: bool,
 ) {
     Explicit.answer(model, questions, answers, budget);
+    Zones.answer(model, questions, answers, budget);
     if solve {
         Satisfiability { turns: SOLVER }.answer(model, questions, answers, budget);
     }

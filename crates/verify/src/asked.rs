@@ -21,10 +21,22 @@ impl Places {
         }
     }
 
+    fn add(&mut self, places: &[u32]) {
+        places.iter().for_each(|i| self.insert(*i as usize));
+    }
+
     fn join(&mut self, other: &Places) {
         for (w, o) in self.0.iter_mut().zip(&other.0) {
             *w |= o;
         }
+    }
+
+    pub(crate) fn contains(&self, place: usize) -> bool {
+        self.0.get(place / 64).is_some_and(|w| w >> (place % 64) & 1 != 0)
+    }
+
+    fn clear(&mut self) {
+        self.0.fill(0);
     }
 
     pub(crate) fn iter(&self) -> impl Iterator<Item = usize> + '_ {
@@ -37,15 +49,33 @@ impl Places {
 struct Arc {
     from: Vec<u32>,
     to: Vec<u32>,
-    reads: Places,
+    reads: Vec<u32>,
+}
+
+/// Room for the work of [`Asking`], kept from one state to the next.
+#[derive(Default)]
+pub(crate) struct Room {
+    active: Vec<bool>,
+    /// For each arc, how many of the steps before it are not active yet.
+    missing: Vec<u32>,
+    /// Steps to be activated.
+    new: Vec<u32>,
+    /// Arcs whose preceding steps are active.
+    ready: Vec<u32>,
+    next: Vec<u32>,
 }
 
 /// The inputs that each part of a program reads.
 pub(crate) struct Asking {
     count: usize,
     arcs: Vec<Arc>,
+    /// For each step, the arcs behind it.
+    outs: Vec<Vec<u32>>,
+    /// For each arc, the number of steps before it; arcs without any.
+    needs: Vec<u32>,
+    sources: Vec<u32>,
     /// For each step, what is read while it is active, as it becomes so or ceases to be.
-    steps: Vec<Places>,
+    steps: Vec<Vec<u32>>,
     /// For each step, the steps that become active with it, by links or by orders.
     with: Vec<Vec<u32>>,
     /// Read in every scan by code of the chart.
@@ -65,10 +95,17 @@ impl Asking {
         let t = p.tables();
         let count = (t.inputs.end - t.inputs.start) as usize;
         let reads = |subjects: Vec<Subject>| {
-            let mut places = Places::new(count);
+            let mut places: Vec<u32> = Vec::new();
             for s in subjects {
-                p.reads(s).inputs(p).for_each(|a| places.insert((a.0 - t.inputs.start) as usize));
+                places.extend(p.reads(s).inputs(p).map(|a| a.0 - t.inputs.start));
             }
+            places.sort_unstable();
+            places.dedup();
+            places
+        };
+        let all = |list: Vec<u32>| {
+            let mut places = Places::new(count);
+            places.add(&list);
             places
         };
         let mut arcs = Vec::new();
@@ -89,6 +126,16 @@ impl Asking {
                 list.extend(steps(t, rows));
             }
         }
+        let mut outs = vec![Vec::new(); t.steps.len()];
+        for (k, arc) in (0u32..).zip(&mut arcs) {
+            arc.from.sort_unstable();
+            arc.from.dedup();
+            for step in &arc.from {
+                outs.get_mut(*step as usize).into_iter().for_each(|list| list.push(k));
+            }
+        }
+        let needs: Vec<u32> = arcs.iter().map(|a| a.from.len() as u32).collect();
+        let sources = (0u32..).zip(&needs).filter(|(_, n)| **n == 0).map(|(k, _)| k).collect();
         let code = [t.pre, t.services, t.post, t.tail].map(Subject::Code);
         let gates = (0..t.blocks.len() as u32).map(Subject::Gate);
         let bodies = t.blocks.iter().filter(|b| b.action != NONE).map(|b| Subject::Action(b.action));
@@ -96,10 +143,13 @@ impl Asking {
         Asking {
             count,
             arcs,
+            outs,
+            needs,
+            sources,
             steps: (0..t.steps.len() as u32).map(|s| reads(of_step(t, s))).collect(),
             with,
-            always: reads(code.into_iter().chain(gates).chain(bodies).collect()),
-            watched: reads(watches.chain(queries.map(Subject::Code)).collect()),
+            always: all(reads(code.into_iter().chain(gates).chain(bodies).collect())),
+            watched: all(reads(watches.chain(queries.map(Subject::Code)).collect())),
             initial: t.initial.iter().map(|s| s.0).collect(),
             far: t.rules.stable || t.rules.sequential,
             free: t.code.iter().any(|op| matches!(op, Op::Service(_))),
@@ -108,39 +158,85 @@ impl Asking {
 
     /// The inputs that parts of the chart may read in the next scan.
     pub(crate) fn asked(&self, state: &State) -> Places {
-        let mut found = self.always.clone();
-        let mut active = vec![false; self.steps.len()];
-        let mut new: Vec<u32> = state.active().map(|s: StepId| s.0).collect();
-        if !state.is_started() || self.free {
+        let mut found = Places::new(self.count);
+        let steps = state.active().map(|s: StepId| s.0);
+        self.find(steps, state.is_started(), self.far, true, &mut Room::default(), &mut found);
+        found
+    }
+
+    /// The inputs that parts of the chart may have read in a scan that began with these steps and
+    /// cleared these transitions (ranks), and those that are kept or that questions read. For any other
+    /// values of all other inputs the scan would have been the same.
+    pub(crate) fn read(
+        &self,
+        before: &[u32],
+        is_started: bool,
+        cleared: &[u32],
+        room: &mut Room,
+        found: &mut Places,
+    ) {
+        let entered = cleared.iter().filter_map(|r| self.arcs.get(*r as usize)).flat_map(|a| &a.to);
+        self.find(before.iter().chain(entered).copied(), is_started, false, false, room, found);
+        found.join(&self.watched);
+    }
+
+    /// What is read from these steps on. With `follow`, transitions clear whatever their receptivities,
+    /// and with `far` those behind them as well.
+    fn find(
+        &self,
+        steps: impl Iterator<Item = u32>,
+        is_started: bool,
+        far: bool,
+        follow: bool,
+        room: &mut Room,
+        found: &mut Places,
+    ) {
+        let Room { active, missing, new, ready, next } = room;
+        if found.0.len() == self.always.0.len() {
+            found.clear();
+            found.join(&self.always);
+        } else {
+            found.clone_from(&self.always);
+        }
+        active.clear();
+        active.resize(self.steps.len(), false);
+        missing.clone_from(&self.needs);
+        ready.clone_from(&self.sources);
+        new.clear();
+        new.extend(steps);
+        if !is_started || self.free {
             new.extend(&self.initial);
         }
         if self.free {
             new.extend(0..self.steps.len() as u32);
         }
-        let mut fired = vec![false; self.arcs.len()];
-        let mut round = 0;
-        while !new.is_empty() || round == 0 {
+        let mut first = true;
+        loop {
             while let Some(s) = new.pop() {
                 let Some(on) = active.get_mut(s as usize) else { continue };
                 if !std::mem::replace(on, true) {
-                    self.steps.get(s as usize).into_iter().for_each(|p| found.join(p));
+                    self.steps.get(s as usize).into_iter().for_each(|list| found.add(list));
                     new.extend(self.with.get(s as usize).into_iter().flatten());
+                    for arc in self.outs.get(s as usize).into_iter().flatten() {
+                        if let Some(n) = missing.get_mut(*arc as usize) {
+                            *n = n.saturating_sub(1);
+                            ready.extend((*n == 0).then_some(*arc));
+                        }
+                    }
                 }
             }
-            if round > 0 && !self.far {
-                break;
+            if ready.is_empty() || !(first || far) {
+                return;
             }
-            round += 1;
-            let is_active = |s: &u32| active.get(*s as usize).copied().unwrap_or(false);
-            for (arc, fired) in
-                self.arcs.iter().zip(&mut fired).filter(|(a, f)| !**f && a.from.iter().all(is_active))
-            {
-                *fired = true;
-                found.join(&arc.reads);
-                new.extend(&arc.to);
+            first = false;
+            std::mem::swap(ready, next);
+            for arc in next.drain(..).filter_map(|k| self.arcs.get(k as usize)) {
+                found.add(&arc.reads);
+                if follow {
+                    new.extend(&arc.to);
+                }
             }
         }
-        found
     }
 
     /// The same with those that are kept, and those that questions read.
@@ -155,9 +251,22 @@ impl Asking {
         self.count
     }
 
+    /// Shows the steps of each part that reads inputs, with the places of these.
+    pub(crate) fn each(
+        &self,
+        mut show: impl FnMut(&mut dyn Iterator<Item = u32>, &mut dyn Iterator<Item = usize>),
+    ) {
+        for arc in &self.arcs {
+            show(&mut arc.from.iter().chain(&arc.to).copied(), &mut arc.reads.iter().map(|i| *i as usize));
+        }
+        for ((s, reads), with) in (0u32..).zip(&self.steps).zip(&self.with) {
+            show(&mut std::iter::once(s).chain(with.iter().copied()), &mut reads.iter().map(|i| *i as usize));
+        }
+    }
+
     /// The transitions behind a step.
     pub(crate) fn behind(&self, step: StepId) -> usize {
-        self.arcs.iter().filter(|a| a.from.contains(&step.0)).count()
+        self.outs.get(step.0 as usize).map_or(0, Vec::len)
     }
 }
 

@@ -1,8 +1,8 @@
 //! The steps and transitions that take part in what the last scan of a run shows.
 
-use g7_engine::{Program, State, StepId, begin, pass, scan};
+use g7_engine::{Program, State, StepId, scan};
 
-use crate::look::{PASSES, conflict, sides, twice};
+use crate::look::{At, conflict, each_pass, sides, twice};
 use crate::model::Model;
 use crate::question::Claim;
 use crate::verdict::Run;
@@ -62,26 +62,23 @@ fn passes(p: &Program, s: &mut State, inputs: &[u64], now: i64, claim: &Claim) -
         return None;
     }
     let t = p.tables();
-    begin(p, s, inputs, now).ok()?;
-    for _ in 0..PASSES {
-        if *claim == Claim::NoConflict
-            && let Some((a, b)) = conflict(p, s)
-        {
-            let others = sides(t, b).0;
-            return Some(Blame::new(sides(t, a).0.into_iter().filter(|s| others.contains(s)), [a, b]));
-        }
-        let was: Vec<u32> = s.active().map(|s| s.0).collect();
-        let before = s.cleared().len();
-        let changed = pass(p, s).ok()?;
-        let cleared = s.cleared().get(before..).unwrap_or(&[]);
-        if *claim == Claim::NoUnsafe
-            && let Some((step, rank)) = twice(t, &was, cleared)
-        {
-            return Some(Blame::new([step], [rank]));
-        }
-        if !changed || !t.rules.stable {
-            return None;
-        }
-    }
-    None
+    let (mut was, mut found): (Vec<u32>, _) = (Vec::new(), None);
+    each_pass(p, s, inputs, now, |s, at| {
+        found = match (claim, at) {
+            (Claim::NoConflict, At::Ahead) => conflict(p, s).map(|(a, b)| {
+                let others = sides(t, b).0;
+                Blame::new(sides(t, a).0.into_iter().filter(|s| others.contains(s)), [a, b])
+            }),
+            (Claim::NoUnsafe, At::Ahead) => {
+                was = s.active().map(|s| s.0).collect();
+                None
+            }
+            (Claim::NoUnsafe, At::Behind) => {
+                twice(t, &was, s.cleared()).map(|(step, rank)| Blame::new([step], [rank]))
+            }
+            _ => None,
+        };
+        found.is_some()
+    });
+    found
 }

@@ -8,7 +8,7 @@
 
 use g7_engine::{Fault, FaultKind, Program, State, scan};
 
-use crate::asked::{Asking, Places};
+use crate::asked::{Asking, Places, Room};
 use crate::explore::Move;
 use crate::look::{Passes, Scanned, allowed, passes, shows};
 use crate::model::Model;
@@ -16,6 +16,7 @@ use crate::monitor::{IDLE, has_memory, is_of_scans, judge};
 use crate::question::{Claim, Question};
 use crate::scene::Tried;
 use crate::tries::{MOST, Tries, count};
+use crate::values::Values;
 use crate::world::World;
 
 /// Combinations of inputs of a state between two questions whether to stop.
@@ -90,6 +91,8 @@ pub enum Gap {
     Combinations(usize),
     /// The input at this place takes more values than were tried.
     Values(usize),
+    /// The plant drew a random number, of which not all were tried.
+    Chance,
     /// A fault stopped the plant.
     Plant(FaultKind),
 }
@@ -120,6 +123,10 @@ pub struct Expander<'a> {
     model: &'a Model<'a>,
     p: &'a Program,
     asking: Asking,
+    /// The places of the inputs that are free.
+    free: Vec<usize>,
+    /// The initial inputs.
+    initial: Vec<u64>,
     /// The questions that are looked for, with their numbers.
     open: Vec<(usize, &'a Claim)>,
     /// The claim that remembers something.
@@ -136,6 +143,9 @@ pub struct Expander<'a> {
 struct Work {
     places: Vec<usize>,
     tries: Tries,
+    room: Room,
+    /// The inputs that the scan in hand may have read.
+    read: Places,
     given: Vec<u64>,
     active: Vec<u32>,
     m: Move,
@@ -144,10 +154,22 @@ struct Work {
 }
 
 /// The parts of a state that its scans need.
-struct Origin<'s> {
-    own: &'s [u64],
+struct Origin {
     memory: u64,
-    asked: Places,
+    is_started: bool,
+    /// Conflicts and unsafe markings are looked for.
+    conflict: bool,
+    safety: bool,
+}
+
+/// The outcome of a combination of inputs.
+enum Outcome {
+    /// The assumptions do not allow it.
+    Refused,
+    /// A scan was made, and has reported all that it cleared.
+    Made,
+    /// A scan was made, of which less is known.
+    Unknown,
 }
 
 impl<'a> Expander<'a> {
@@ -156,11 +178,13 @@ impl<'a> Expander<'a> {
     pub fn new(model: &'a Model<'a>, questions: &[(usize, &'a Question)]) -> Expander<'a> {
         let p: &Program = &model.compiled.program;
         let mut expander = Expander {
-            tried: Tried::Matter,
+            tried: Tried::Classes,
             rest: false,
             model,
             p,
             asking: Asking::new(p, model.codes()),
+            free: (0..model.inputs.len()).filter(|i| !model.is_driven(*i)).collect(),
+            initial: model.inputs.iter().map(|v| v.tried.first().copied().unwrap_or(0)).collect(),
             open: Vec::new(),
             memory: None,
             stop: None,
@@ -184,6 +208,11 @@ impl<'a> Expander<'a> {
         self.tried = tried;
     }
 
+    /// Only these inputs, by their places, ascending, take other values than their present ones.
+    pub(crate) fn keep_to(&mut self, inputs: &[usize]) {
+        self.free.retain(|i| inputs.binary_search(i).is_ok());
+    }
+
     /// Lets `stop` end an expansion that has many combinations of inputs to try. It is asked often.
     pub fn stop_when(&mut self, stop: &'a (dyn Fn() -> bool + Sync)) {
         self.stop = Some(stop);
@@ -205,8 +234,7 @@ impl<'a> Expander<'a> {
         let mut image = Vec::new();
         World::new(self.model).image(&mut image);
         image.push(IDLE);
-        let initial = self.model.inputs.iter().map(|v| v.tried.first().copied().unwrap_or(0));
-        (image, initial.collect())
+        (image, self.initial.clone())
     }
 
     /// The state behind the start and these scans, which no fault stops: its image and the inputs of
@@ -231,8 +259,7 @@ impl<'a> Expander<'a> {
         self.world.charts.active().all(|step| self.asking.behind(step) == 0)
     }
 
-    /// True if the plant draws random numbers: then its ways are more than those that are tried, and
-    /// nothing is proved.
+    /// True if the plant may draw random numbers: then its ways are more than those that are tried.
     pub fn has_chance(&self) -> bool {
         self.world.has_chance()
     }
@@ -242,31 +269,60 @@ impl<'a> Expander<'a> {
         let (memory, own) = here.image.split_last().map_or((IDLE, &[][..]), |(m, own)| (*m, own));
         let mut work = std::mem::take(&mut self.work);
         self.world.put(own);
-        let from = Origin { own, memory, asked: self.asking.asked(&self.world.charts) };
-        self.find_places(&from.asked, &mut work.places);
+        let wants = |c: &Claim| self.open.iter().any(|(_, open)| *open == c);
+        let from = Origin {
+            memory,
+            is_started: self.world.charts.is_started(),
+            conflict: wants(&Claim::NoConflict),
+            safety: wants(&Claim::NoUnsafe),
+        };
         work.active.clear();
         work.active.extend(self.world.charts.active().map(|s| s.0));
         work.m.wait = if here.first { 0 } else { self.model.period };
         let mut done = Expanded { stuck: true, ..Expanded::default() };
         let is_rest = self.rest && here.first;
-        done.gap = if is_rest { None } else { self.gap(&work.places) };
+        self.find_places(&mut work);
+        if !is_rest {
+            done.gap = self.gap(&work.places);
+        }
         for way in self.world.ways() {
-            self.world.put(own);
+            if way > 0 {
+                self.world.put(own);
+            }
+            let given = if self.tried == Tried::One { &self.initial } else { here.inputs };
             work.given.clear();
-            work.given.extend_from_slice(here.inputs);
-            if let Err(fault) = self.world.tick(work.m.wait, way, &mut work.given) {
+            work.given.extend_from_slice(given);
+            let ticked = self.world.tick(work.m.wait, way, &mut work.given);
+            // Without a draw every way is the first one.
+            if way > 0 && !self.world.drew() {
+                break;
+            }
+            if self.world.drew() {
+                done.gap.get_or_insert(Gap::Chance);
+            }
+            if let Err(fault) = ticked {
                 done.gap = Some(Gap::Plant(fault.kind));
                 done.stuck = false;
                 continue;
             }
-            let places = if is_rest { &[][..] } else { &work.places };
-            work.tries.begin(&self.model.inputs, places, &work.given);
-            let mut made = 0usize;
-            while !done.stopped && work.tries.next(&self.model.inputs, &mut work.m.inputs) {
+            let inputs: &'a [Values] = &self.model.inputs;
+            let lazy = !is_rest && matches!(self.tried, Tried::Classes | Tried::One);
+            if lazy {
+                work.tries.begin_read(&self.free, &work.given);
+            } else {
+                let places = if is_rest { &[][..] } else { &work.places };
+                work.tries.begin(inputs, places, &work.given, false);
+            }
+            let (mut lazy, mut made) = (lazy, 0usize);
+            while !done.stopped && work.tries.next(inputs, &mut work.m.inputs) {
                 made += 1;
                 done.stopped = made.is_multiple_of(PATIENCE) && self.stop.is_some_and(|stop| stop());
-                if !done.stopped {
-                    self.attempt(&from, &mut work, way, &mut done, &mut see);
+                if done.stopped {
+                    break;
+                }
+                let outcome = self.attempt(&from, &mut work, way, &mut done, &mut see);
+                if lazy {
+                    lazy = self.learn(&from, &mut work, &outcome, &mut done);
                 }
             }
         }
@@ -274,32 +330,66 @@ impl<'a> Expander<'a> {
         done
     }
 
-    /// Makes one scan; the plant has made its own before.
+    /// Learns from a scan which inputs can make a difference. If they have too many combinations, those
+    /// in which one of them differs are tried instead; gives false then.
+    fn learn(&self, from: &Origin, work: &mut Work, outcome: &Outcome, done: &mut Expanded) -> bool {
+        let inputs: &[Values] = &self.model.inputs;
+        let Work { room, read, active, tries, places, given, .. } = work;
+        match outcome {
+            // The assumptions have read what they need; no transition was judged.
+            Outcome::Refused => self.asking.read(&[], from.is_started, &[], room, read),
+            Outcome::Made => {
+                self.asking.read(active, from.is_started, self.world.charts.cleared(), room, read);
+            }
+            Outcome::Unknown => *read = self.asking.matter(&self.asking.asked(self.world.base())),
+        }
+        let gap = tries.read(inputs, |i| read.contains(i));
+        done.gap = done.gap.or(gap.map(Gap::Values));
+        if self.tried == Tried::One {
+            places.clear();
+            places.extend(self.free.iter().filter(|i| read.contains(**i)));
+            tries.begin(inputs, places, given, true);
+            // The first of these is the combination that was just made.
+            tries.next(inputs, &mut work.m.inputs);
+            return false;
+        }
+        let Some(count) = tries.too_many(inputs) else { return true };
+        done.gap = Some(Gap::Combinations(count));
+        let all = self.asking.matter(&self.asking.asked(self.world.base()));
+        places.clear();
+        places.extend(self.free.iter().filter(|i| all.contains(**i)));
+        tries.begin(inputs, places, given, true);
+        tries.next(inputs, &mut work.m.inputs);
+        false
+    }
+
+    /// Tries one combination of inputs; the plant has made its scan before.
     fn attempt(
         &mut self,
-        from: &Origin<'_>,
+        from: &Origin,
         work: &mut Work,
         way: u8,
         done: &mut Expanded,
         see: &mut impl FnMut(Step<'_>) -> bool,
-    ) {
-        self.world.put_charts(from.own);
+    ) -> Outcome {
+        self.world.back();
         let now = self.world.charts.now().saturating_add(work.m.wait);
         if !self.model.assume.is_empty() {
-            self.other.put_charts(from.own);
+            self.other.back_to(&self.world);
             if !allowed(self.model, &mut self.other, &work.m, now) {
-                return;
+                return Outcome::Refused;
             }
         }
         done.scans += 1;
         work.shown.clear();
         if std::mem::replace(&mut done.stuck, false) {
-            self.see_asked(&from.asked, &mut work.shown);
+            self.see_asked(&mut work.shown);
         }
-        self.see_passes(from.own, now, work, done);
+        self.see_passes(from, now, work, done);
         let report = scan(self.p, &mut self.world.charts, &work.m.inputs, now);
         let scanned = Scanned { state: &self.world.charts, report };
-        done.cut |= is_cut(self.p, &scanned);
+        let is_cut = is_cut(self.p, &scanned);
+        done.cut |= is_cut;
         let fault = report.err();
         show(&mut self.open, &mut work.shown, fault, |c| shows(self.p, c, &scanned));
         let mut leads_on = self.memory.is_none();
@@ -326,15 +416,21 @@ impl<'a> Expander<'a> {
             state: &mut self.world.charts,
         };
         done.stopped = !see(step);
+        // What was read before a fault is the same in each scan that agrees in it, and so is the fault.
+        if is_cut { Outcome::Unknown } else { Outcome::Made }
     }
 
-    /// The places of the inputs that are tried in a state.
-    fn find_places(&self, asked: &Places, places: &mut Vec<usize>) {
+    /// The places of the inputs that are tried in a state, where that is known before.
+    fn find_places(&self, work: &mut Work) {
+        let Work { places, read, .. } = work;
         places.clear();
-        let free = |i: &usize| !self.model.is_driven(*i);
         match self.tried {
-            Tried::Matter => places.extend(self.asking.matter(asked).iter().filter(free)),
-            Tried::All => places.extend((0..self.asking.count()).filter(free)),
+            Tried::Matter => {
+                *read = self.asking.matter(&self.asking.asked(&self.world.charts));
+                places.extend(self.free.iter().filter(|i| read.contains(**i)));
+            }
+            Tried::All => places.extend_from_slice(&self.free),
+            Tried::Classes | Tried::One => {}
         }
     }
 
@@ -347,26 +443,27 @@ impl<'a> Expander<'a> {
         open.copied().map(Gap::Values)
     }
 
-    fn see_asked(&mut self, asked: &Places, shown: &mut Vec<Shown>) {
-        let first = self.p.tables().inputs.start;
-        let is_asked =
-            |c: &Claim| matches!(c, Claim::Asked(a) if asked.iter().any(|i| i as u32 + first == a.0));
+    fn see_asked(&mut self, shown: &mut Vec<Shown>) {
+        if !self.open.iter().any(|(_, c)| matches!(c, Claim::Asked(_))) {
+            return;
+        }
+        let (asked, first) = (self.asking.asked(self.world.base()), self.p.tables().inputs.start);
+        let is_asked = |c: &Claim| matches!(c, Claim::Asked(a) if asked.contains((a.0 - first) as usize));
         show(&mut self.open, shown, None, is_asked);
     }
 
-    fn see_passes(&mut self, own: &[u64], now: i64, work: &mut Work, done: &mut Expanded) {
-        let wants = |c: &Claim| self.open.iter().any(|(_, open)| *open == c);
-        let (conflict, safety) = (wants(&Claim::NoConflict), wants(&Claim::NoUnsafe));
-        if !conflict && !safety {
+    fn see_passes(&mut self, from: &Origin, now: i64, work: &mut Work, done: &mut Expanded) {
+        if !from.conflict && !from.safety {
             return;
         }
         let inputs = &work.m.inputs;
-        self.other.put_charts(own);
-        let Passes { conflict, unsafe_, cut } = passes(self.p, &mut self.other.charts, inputs, now, conflict);
+        self.other.back_to(&self.world);
+        let Passes { conflict, unsafe_, cut } =
+            passes(self.p, &mut self.other.charts, inputs, now, from.conflict);
         done.cut_passes |= cut;
         if conflict || unsafe_ {
             // A fault in the same scan belongs to the run.
-            self.other.put_charts(own);
+            self.other.back_to(&self.world);
             let fault = scan(self.p, &mut self.other.charts, inputs, now).err();
             show(&mut self.open, &mut work.shown, fault, |c| match c {
                 Claim::NoConflict => conflict,

@@ -106,7 +106,7 @@ pub struct Explorer<'p> {
 impl<'p> Explorer<'p> {
     /// A search that has visited nothing.
     pub fn new(program: &'p Program, limits: Limits) -> Explorer<'p> {
-        Explorer { program, limits, store: Store::new(0), parents: Vec::new(), scans: 0 }
+        Explorer { program, limits, store: Store::new(), parents: Vec::new(), scans: 0 }
     }
 
     /// The number of states visited, the one before the first scan included.
@@ -126,14 +126,15 @@ impl<'p> Explorer<'p> {
         let p = self.program;
         let (mut state, mut image, mut list) = (State::new(p), Vec::new(), Vec::new());
         state.canonical(p, &mut image);
-        self.store = Store::new(image.len());
+        self.store = Store::new();
         self.parents.clear();
         self.scans = 0;
         self.store.insert(&image);
         let none = vec![0; (p.tables().inputs.end - p.tables().inputs.start) as usize];
         let (mut complete, mut queue) = (true, VecDeque::from([0usize]));
         while let Some(at) = queue.pop_front() {
-            put(p, &mut state, self.store.image(at));
+            let own = self.store.image(at);
+            put(p, &mut state, &own);
             let last = at.checked_sub(1).and_then(|i| self.parents.get(i)).map_or(&none, |(_, m)| &m.inputs);
             complete &= moves.moves(p, &state, last, &mut list);
             for m in list.drain(..) {
@@ -141,7 +142,7 @@ impl<'p> Explorer<'p> {
                     return Answer::Open(Bound::Scans);
                 }
                 self.scans += 1;
-                put(p, &mut state, self.store.image(at));
+                put(p, &mut state, &own);
                 let hurry = match self.scan(&mut state, at, &m, &mut look) {
                     End::Found => return Answer::Found(self.run(at, m)),
                     End::Fault => continue,
@@ -215,9 +216,9 @@ impl<'p> Explorer<'p> {
             if !changed || !p.tables().rules.stable {
                 break;
             }
-            if made == PASSES {
+            if made == PASSES.min(p.tables().rules.bound) {
                 let mut whole = s.clone();
-                put(p, &mut whole, self.store.image(at));
+                put(p, &mut whole, &self.store.image(at));
                 scan(p, &mut whole, &m.inputs, now)?;
             }
         }

@@ -3,16 +3,17 @@
 //! # Where this sits
 //!
 //! ```text
-//! model::Document -> ask -> Question, Model -> answer: Layer (search, sat) -> Verdict -> words -> g7 prove, page
+//! model::Document -> ask -> Question, Model -> answer: Layer (search, zones, sat) -> Verdict -> words -> g7 prove, page
 //! rig::Source (with a plant) -> closed -> Question, Model (the same way)
 //!                           two charts      -> compare                    -> Equality -> g7 compare
 //!                           Run             -> blame: the steps and transitions that take part
 //! ```
 //!
 //! `model.rs` has the meaning of a run, `question.rs` that of a claim, `verdict.rs` the
-//! answers. `search.rs` visits all states with `engine::scan`; `asked.rs` tells it which
-//! inputs matter in a state, `values.rs` which values of them. `system` is the chart as a system of
-//! bits, about which `sat` asks a solver. `turns.rs` has both work in turns. [`Explorer::search`] is a
+//! answers, `reason.rs` why there is none. `search.rs` visits all states with `engine::scan`; `asked.rs` tells it which
+//! inputs matter in a state, `values.rs` which values of them. `zones` visits sets of states that
+//! differ in times alone. `system` is the chart as a system of bits, about which `sat` asks a
+//! solver. `answer.rs` has them work in turns. [`Explorer::search`] is a
 //! search by moves that its caller chooses, for tests and tools.
 //!
 //! # Invariants
@@ -36,8 +37,10 @@ mod closed;
 mod compare;
 mod cover;
 mod cubes;
+mod divide;
 mod expand;
 mod explore;
+mod export;
 mod inputs;
 mod layer;
 mod look;
@@ -45,6 +48,8 @@ mod model;
 mod monitor;
 mod outcome;
 mod question;
+mod reason;
+mod rows;
 pub mod sat;
 mod scene;
 mod search;
@@ -54,24 +59,30 @@ mod system;
 mod tries;
 mod values;
 mod verdict;
+mod visit;
 pub mod words;
 mod world;
+mod zones;
 
 pub use answer::{answer, attempt, solve};
 pub use ask::{Asked, ask};
 pub use blame::{Blame, blame};
 pub use closed::{Closed, ask_with};
-pub use compare::{Compare, Difference, Equality, compare};
+pub use compare::{
+    Compare, Difference, Equality, Unlike, compare, compare_by_search, compare_by_solver, compare_once, miter,
+};
 pub use cover::{From, Reached, reach, stuck};
 pub use cubes::Cube;
 pub use expand::{Expanded, Expander, Gap, Here, Shown, Step};
 pub use explore::{Answer, Bound, Explorer, Limits, Moment, Move, Moves, Next};
+pub use export::{Exported, Row, exported};
 pub use inputs::{Inputs, Which};
 pub use layer::{Budget, Layer};
-pub use look::{replay, seen};
+pub use look::{replay, seen, unclear};
 pub use model::{Model, Part};
-pub use outcome::{Outcome, Why, asks_for_traps, halted, stuck_behind, too_large, too_many};
+pub use outcome::{Outcome, asks_for_traps};
 pub use question::{Claim, Query, Question};
+pub use reason::{Part as Unfollowed, Reason};
 pub use sat::Satisfiability;
 pub use scene::Tried;
 pub use search::{Explicit, watch};
@@ -79,3 +90,5 @@ pub use situations::{Edge, Graph, Kind, Node, situations};
 pub use store::Store;
 pub use values::{Values, values};
 pub use verdict::{Certificate, Evidence, Open, Run, Verdict, is_open};
+pub use visit::{Visited, visit};
+pub use zones::Zones;

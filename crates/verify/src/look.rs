@@ -12,6 +12,8 @@ use crate::world::World;
 
 /// Passes of a scan that are looked at.
 pub(crate) const PASSES: u32 = 256;
+/// Passes before a state is saved, to see whether it comes back: most scans have fewer.
+const SAVED: u32 = 8;
 
 /// The sights of the passes of a scan.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -24,28 +26,89 @@ pub(crate) struct Passes {
     pub(crate) cut: bool,
 }
 
+/// The moment of a pass at which it is looked at.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum At {
+    /// Before it.
+    Ahead,
+    /// Behind it: [`State::cleared`] and [`State::ran`] are those of this pass alone.
+    Behind,
+}
+
+/// Makes the passes of the next scan, as many as the engine makes, and shows each until `look` says that
+/// it is enough. A fault ends them; the scan reports it. Gives whether there are more than were made.
+///
+/// An endless search is over when a state has come back, since then all of its passes were seen.
+pub(crate) fn each_pass(
+    p: &Program,
+    s: &mut State,
+    inputs: &[u64],
+    now: i64,
+    mut look: impl FnMut(&State, At) -> bool,
+) -> bool {
+    let rules = &p.tables().rules;
+    if begin(p, s, inputs, now).is_err() {
+        return false;
+    }
+    let mut saved: Vec<u64> = Vec::new();
+    for made in 1..=PASSES.min(rules.bound) {
+        if look(s, At::Ahead) {
+            return false;
+        }
+        s.forget_reports();
+        let Ok(changed) = pass(p, s) else { return false };
+        if look(s, At::Behind) || !changed || !rules.stable || saved == s.image() {
+            return false;
+        }
+        // The distance between saved states doubles, so that one of them is in the cycle, whatever its length.
+        if made >= SAVED && made.is_power_of_two() {
+            saved = s.image().to_vec();
+        }
+    }
+    PASSES < rules.bound
+}
+
 /// Looks at the passes of the next scan. A fault ends the look; the scan reports it.
 pub(crate) fn passes(p: &Program, s: &mut State, inputs: &[u64], now: i64, conflicts: bool) -> Passes {
     let mut seen = Passes::default();
-    let t = p.tables();
-    if begin(p, s, inputs, now).is_err() {
-        return seen;
-    }
-    for _ in 0..PASSES {
-        if conflicts && !seen.conflict {
-            seen.conflict = conflict(p, s).is_some();
+    let mut was: Vec<u32> = Vec::new();
+    seen.cut = each_pass(p, s, inputs, now, |s, at| {
+        match at {
+            At::Ahead => {
+                seen.conflict |= conflicts && !seen.conflict && conflict(p, s).is_some();
+                was.clear();
+                was.extend(s.active().map(|s| s.0));
+            }
+            At::Behind => seen.unsafe_ |= twice(p.tables(), &was, s.cleared()).is_some(),
         }
-        let was: Vec<u32> = s.active().map(|s| s.0).collect();
-        let before = s.cleared().len();
-        let Ok(changed) = pass(p, s) else { return seen };
-        let cleared = s.cleared().get(before..).unwrap_or(&[]);
-        seen.unsafe_ |= twice(t, &was, cleared).is_some();
-        if !changed || !t.rules.stable {
-            return seen;
-        }
-    }
-    seen.cut = true;
+        false
+    });
     seen
+}
+
+/// True if some pass of the next scan shows what a claim about transitions or actions looks for. A scan
+/// of many passes reports only the first of them.
+pub(crate) fn in_some_pass(p: &Program, s: &mut State, inputs: &[u64], now: i64, claim: &Claim) -> bool {
+    let mut found = false;
+    each_pass(p, s, inputs, now, |s, at| {
+        found |= at == At::Behind && happens(p, s, claim);
+        found
+    });
+    found
+}
+
+/// True if the reports of a scan or a pass show it.
+fn happens(p: &Program, s: &State, claim: &Claim) -> bool {
+    match claim {
+        // A step counts too if it was active only within the scan.
+        Claim::Active(step) => s.cleared().iter().any(|r| {
+            let (from, to) = sides(p.tables(), *r);
+            from.contains(&step.0) || to.contains(&step.0)
+        }),
+        Claim::Clears(rank) => s.cleared().contains(rank),
+        Claim::Runs(rank) => s.ran().contains(rank),
+        _ => false,
+    }
 }
 
 /// Two transitions that could clear and share a preceding step, where no written priority
@@ -133,11 +196,30 @@ pub fn replay(model: &Model<'_>, claim: &Claim, run: &Run) -> bool {
                     let place = (a.0 - p.tables().inputs.start) as usize;
                     asking.asked(&before).iter().any(|i| i == place)
                 }
-                _ => shows(p, claim, &Scanned { state: &world.charts, report: done }),
+                _ => {
+                    shows(p, claim, &Scanned { state: &world.charts, report: done })
+                        || in_some_pass(p, &mut before.clone(), &m.inputs, now, claim)
+                }
             };
         }
     }
     if matches!(claim, Claim::LeadsTo { .. }) { has_memory(claim) && memory != IDLE } else { last }
+}
+
+/// The fault of a condition of the claim at the end of a run: the claim has no value there.
+pub fn unclear(model: &Model<'_>, claim: &Claim, run: &Run) -> Option<FaultKind> {
+    let (mut world, mut memory) = (World::new(model), IDLE);
+    for (k, m) in run.moves.iter().enumerate() {
+        let way = run.ways.get(k).copied().unwrap_or(0);
+        world.tick(m.wait, way, &mut m.inputs.clone()).ok()?;
+        let now = world.charts.now().saturating_add(m.wait);
+        scan(&model.compiled.program, &mut world.charts, &m.inputs, now).ok()?;
+        match judge(model, claim, &mut world, memory, m.wait) {
+            Ok(seen) => memory = seen.memory,
+            Err(fault) => return Some(fault.kind),
+        }
+    }
+    None
 }
 
 /// The value of a condition at the end of each scan of a run.
@@ -165,14 +247,9 @@ pub(crate) fn shows(p: &Program, claim: &Claim, scanned: &Scanned<'_>) -> bool {
     let (t, s) = (p.tables(), scanned.state);
     let fault = scanned.report.err().map(|f| f.kind);
     match claim {
-        // A step counts too if it was active only within the scan, as the initial situation may be.
-        Claim::Active(step) => {
-            s.is_active(*step)
-                || t.initial.contains(step)
-                || s.cleared().iter().any(|r| sides(t, *r).1.contains(&step.0))
-        }
-        Claim::Clears(rank) => s.cleared().contains(rank),
-        Claim::Runs(rank) => s.ran().contains(rank),
+        // The initial situation may be left within the first scan.
+        Claim::Active(step) => s.is_active(*step) || t.initial.contains(step) || happens(p, s, claim),
+        Claim::Clears(_) | Claim::Runs(_) => happens(p, s, claim),
         Claim::On(addr) => fault.is_none() && s.word(*addr) != 0,
         Claim::NoInstability => matches!(fault, Some(FaultKind::Unstable { .. } | FaultKind::Bound)),
         Claim::NoOpposedOrders => matches!(fault, Some(FaultKind::Forcing { .. })),

@@ -54,7 +54,7 @@ impl<'c> Model<'c> {
     }
 
     /// True if the plant drives an input, by its place.
-    pub(crate) fn is_driven(&self, place: usize) -> bool {
+    pub fn is_driven(&self, place: usize) -> bool {
         self.plant.is_some_and(|p| p.coupling.to_charts.iter().any(|(_, to)| *to as usize == place))
     }
 }

@@ -8,8 +8,13 @@ use crate::verdict::Open;
 /// Which inputs are tried in a state.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Tried {
-    /// Those that can matter there.
+    /// One of each class: of all combinations that agree in what their scans read, the first one of
+    /// [`Tried::Matter`]. They lead to the same states in the same order.
+    Classes,
+    /// All combinations of those that can matter there.
     Matter,
+    /// At most one differs from its initial value: another model than that of the others, with fewer runs.
+    One,
     /// All, which takes longer and finds no more.
     All,
 }

@@ -7,23 +7,29 @@
 //! something is a shortest one.
 
 mod answers;
+mod parts;
 
 use g7_engine::State;
 
+use self::parts::{divided, jobs};
 use crate::expand::{Expanded, Expander, Here, Step};
 use crate::explore::Move;
 use crate::layer::{Budget, Layer};
 use crate::model::Model;
 use crate::monitor::has_memory;
-use crate::outcome::{halted, more, stuck_behind, too_large, too_many};
+use crate::outcome::asks_for_traps;
 use crate::question::{Claim, Question};
+use crate::reason::Reason;
+use crate::rows::{Key, Rows};
 use crate::scene::{Extent, Look, Scene, Tried, Until};
 use crate::store::Store;
-use crate::verdict::{Open, Verdict, is_open};
-use crate::world::WAYS;
+use crate::verdict::{Verdict, is_open};
 
 /// States, and scans of a state, between two questions whether to stop.
 const PATIENCE: usize = 64;
+
+/// Scans of a search that comes before others.
+const SMALL: usize = 20_000;
 
 /// The explicit search as a layer.
 #[derive(Clone, Copy, Debug, Default)]
@@ -41,16 +47,59 @@ impl Layer for Explicit {
         answers: &mut [Option<Verdict>],
         budget: &Budget<'_>,
     ) {
-        let rows =
-            || questions.iter().enumerate().zip(answers.iter()).filter(|(_, a)| is_open(a)).map(|(q, _)| q);
-        let (alone, together): (Vec<_>, Vec<_>) = rows().partition(|(_, q)| has_memory(&q.claim));
-        let groups = std::iter::once(together).chain(alone.into_iter().map(|q| vec![q]));
-        let found: Vec<(usize, Verdict)> =
-            groups.filter(|g| !g.is_empty()).flat_map(|g| Search::new(model, budget, g).run()).collect();
-        for (i, verdict) in found {
-            if let Some(answer) = answers.get_mut(i) {
-                *answer = Some(verdict);
-            }
+        answer(model, questions, answers, budget, threads());
+    }
+}
+
+/// Searches that may run at a time.
+fn threads() -> usize {
+    if cfg!(target_family = "wasm") { 1 } else { std::thread::available_parallelism().map_or(1, usize::from) }
+}
+
+/// Answers questions with so many searches at a time. A small search comes first: most charts need no
+/// more. Then the chart is divided, if it consists of parts. What is left is searched as far as the budget
+/// allows.
+fn answer(
+    model: &Model<'_>,
+    questions: &[Question],
+    answers: &mut [Option<Verdict>],
+    budget: &Budget<'_>,
+    threads: usize,
+) {
+    let small = Budget { scans: SMALL.min(budget.scans), ..*budget };
+    if !whole(model, questions, answers, &small, threads) {
+        return;
+    }
+    let found = divided(model, &open(questions, answers), budget, threads);
+    give(answers, found);
+    if small.scans < budget.scans {
+        whole(model, questions, answers, budget, threads);
+    }
+}
+
+/// Searches the whole chart for what is open; tells whether more scans would have told more.
+fn whole(
+    model: &Model<'_>,
+    questions: &[Question],
+    answers: &mut [Option<Verdict>],
+    budget: &Budget<'_>,
+    threads: usize,
+) -> bool {
+    let found = parts::run(model, &jobs(&open(questions, answers), None), budget, threads);
+    let short = found.iter().any(|f| f.short);
+    found.into_iter().for_each(|f| give(answers, f.answers));
+    short
+}
+
+/// The questions without an answer, with their numbers.
+fn open<'q>(questions: &'q [Question], answers: &[Option<Verdict>]) -> Vec<(usize, &'q Question)> {
+    questions.iter().enumerate().zip(answers).filter(|(_, a)| is_open(a)).map(|(q, _)| q).collect()
+}
+
+fn give(answers: &mut [Option<Verdict>], found: Vec<(usize, Verdict)>) {
+    for (i, verdict) in found {
+        if let Some(answer) = answers.get_mut(i) {
+            *answer = Some(verdict);
         }
     }
 }
@@ -68,7 +117,7 @@ pub fn watch(
     let mut search = Search::new(model, budget, questions.iter().enumerate().collect());
     search.tried = tried;
     search.look = Some(&mut look);
-    search.run()
+    search.run().0
 }
 
 pub(crate) struct Search<'a> {
@@ -79,11 +128,11 @@ pub(crate) struct Search<'a> {
     /// The search begins behind these scans.
     pub(crate) start: &'a [Move],
     pub(crate) until: Until,
+    /// The places of the only inputs that change.
+    within: Option<Vec<usize>>,
     model: &'a Model<'a>,
     budget: &'a Budget<'a>,
     expander: Option<Expander<'a>>,
-    /// Number of the inputs.
-    count: usize,
     /// Questions without an answer, with their numbers.
     open: Vec<(usize, &'a Question)>,
     answers: Vec<(usize, Verdict)>,
@@ -93,9 +142,15 @@ pub(crate) struct Search<'a> {
     /// For each state: the state before.
     parents: Vec<u32>,
     /// For each state: the inputs of the scan that led there.
-    inputs: Vec<u64>,
+    inputs: Rows,
+    /// Room for a packed row of them.
+    key: Key,
     /// For each state: the way in which the plant ticked there; empty unless it draws.
     ways: Vec<u8>,
+    /// An image and inputs: room for the work.
+    room: (Vec<u64>, Vec<u64>),
+    /// Some question asks for the states that nothing leaves.
+    traps: bool,
     /// For each state that was expanded: some move leads on at once.
     leads_on: Vec<bool>,
     /// Moves of states that none leads on.
@@ -103,7 +158,7 @@ pub(crate) struct Search<'a> {
     scans: usize,
     depth: usize,
     /// Why not all runs were seen.
-    hole: Option<(String, String)>,
+    hole: Option<Reason>,
     /// The first state in which no input satisfies the assumptions.
     pub(crate) stuck: Option<usize>,
     /// Reports of a scan were cut.
@@ -119,22 +174,25 @@ impl<'a> Search<'a> {
         open: Vec<(usize, &'a Question)>,
     ) -> Search<'a> {
         Search {
-            tried: Tried::Matter,
+            tried: Tried::Classes,
             look: None,
             rest: false,
             start: &[],
             until: Until::Answered,
+            within: None,
             model,
             budget,
             expander: None,
-            count: model.inputs.len(),
             memory: open.iter().map(|(_, q)| &q.claim).find(|c| has_memory(c)),
             open,
             answers: Vec::new(),
-            store: Store::new(0),
+            store: Store::new(),
             parents: Vec::new(),
-            inputs: Vec::new(),
+            inputs: Rows::new(),
+            key: Key::new(),
             ways: Vec::new(),
+            room: Default::default(),
+            traps: false,
             leads_on: Vec::new(),
             edges: Vec::new(),
             scans: 0,
@@ -146,31 +204,42 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Searches, and answers all questions.
-    fn run(mut self) -> Vec<(usize, Verdict)> {
+    /// Searches, and answers all questions; gives the number of scans as well.
+    fn run(mut self) -> (Vec<(usize, Verdict)>, usize) {
         self.search();
         if self.hole.is_none() {
             self.traps();
         }
         self.close();
-        self.answers
+        (self.answers, self.scans)
     }
 
     /// Visits all states, or as many as the budget and the questions allow.
     pub(crate) fn search(&mut self) {
+        // Of a chart that is very large, a look at its tables takes longer than there is time.
+        if (self.budget.stop)() {
+            self.hole = Some(Reason::Stopped);
+            return;
+        }
         let mut expander = Expander::new(self.model, &self.open);
-        (expander.tried, expander.rest) = (self.tried, self.rest);
+        expander.tried = match self.tried {
+            // Who looks on is shown all combinations.
+            Tried::Classes if self.look.is_some() => Tried::Matter,
+            tried => tried,
+        };
+        expander.rest = self.rest;
+        if let Some(inputs) = &self.within {
+            expander.keep_to(inputs);
+        }
+        self.traps = self.open.iter().any(|(_, q)| asks_for_traps(&q.claim));
         expander.stop_when(self.budget.stop);
         let (image, inputs) = expander.behind(self.start);
-        self.store = Store::new(image.len());
+        self.store = Store::new();
         self.store.insert(&image);
         self.parents.push(0);
-        self.inputs.extend(inputs);
+        self.inputs.push(&inputs, &mut self.key);
         if expander.has_chance() {
             self.ways.push(0);
-            let reason = format!("the plant's chance is tried in {WAYS} ways at each tick, of more");
-            let help = "a plant without `random()` and without `arrivals` between two times can be proved";
-            self.hole = Some((reason, help.to_owned()));
         }
         let (mut at, mut level) = (0usize, 1usize);
         while at < self.store.len() && self.goes_on() {
@@ -178,8 +247,8 @@ impl<'a> Search<'a> {
                 self.depth += 1;
                 level = self.store.len();
             }
-            if let Some((reason, help)) = self.bound(at) {
-                self.hole = Some((reason, help));
+            if let Some(reason) = self.bound(at) {
+                self.hole = Some(reason);
                 break;
             }
             if !self.expand(at, &mut expander) {
@@ -201,56 +270,65 @@ impl<'a> Search<'a> {
 
     /// How much was seen.
     pub(crate) fn seen(&self) -> Extent {
-        let end = self.outcome();
-        let open = self.hole.clone().map(|(reason, help)| Open {
-            scans: end.depth,
-            states: end.states,
-            reason,
-            help,
-        });
+        let open = self.hole.clone().map(|reason| self.outcome().so_far(reason));
         Extent { states: self.store.len(), scans: self.scans, open }
     }
 
+    /// Bytes in use: for the states, and for the runs that lead to them.
+    pub(crate) fn kept(&self) -> (usize, usize) {
+        (self.store.bytes(), self.parents.len() * 4 + self.ways.len() + self.inputs.bytes())
+    }
+
+    /// The fewest scans that lead to the last state.
+    pub(crate) fn last(&self) -> usize {
+        self.path(self.store.len().saturating_sub(1)).moves.len()
+    }
+
     /// Why the search is to stop here.
-    fn bound(&self, at: usize) -> Option<(String, String)> {
-        let bytes =
-            self.store.bytes() + self.parents.len() * 5 + self.inputs.len() * 8 + self.edges.len() * 8;
+    fn bound(&self, at: usize) -> Option<Reason> {
+        let (states, runs) = self.kept();
+        let bytes = states + runs + self.leads_on.len() + self.edges.len() * 8;
         if self.store.len() > self.budget.states {
-            return Some(too_many(self.budget.states));
+            return Some(Reason::States(self.budget.states));
         }
         if bytes > self.budget.bytes {
-            return Some(too_large(self.budget.bytes));
+            return Some(Reason::Memory(self.budget.bytes >> 20));
         }
         at.is_multiple_of(PATIENCE).then(|| self.stopped()).flatten()
     }
 
     /// Tells that the search is to stop.
-    fn stopped(&self) -> Option<(String, String)> {
+    fn stopped(&self) -> Option<Reason> {
         if self.scans >= self.budget.scans {
-            return Some((format!("more than {} scans are needed", self.budget.scans), more("--time")));
+            return Some(Reason::Scans(self.budget.scans));
         }
-        (self.budget.stop)().then(halted)
+        (self.budget.stop)().then_some(Reason::Stopped)
     }
 
     /// Tries all moves of a state; false if it was stopped meanwhile.
     fn expand(&mut self, at: usize, expander: &mut Expander<'a>) -> bool {
-        let image: Vec<u64> = self.store.image(at).to_vec();
-        let inputs: Vec<u64> = self.inputs_of(at).to_vec();
+        let (mut image, mut inputs) = std::mem::take(&mut self.room);
+        self.store.get(at, &mut image);
+        self.inputs.get(at, &mut inputs);
         let here = Here { image: &image, inputs: &inputs, first: self.is_first(at) };
         let (mut on, mut next) = (false, Vec::new());
         let done = expander.expand(here, |step| {
             on |= step.leads_on;
-            next.extend(self.take(at, step));
+            let to = self.take(at, step);
+            next.extend(to.filter(|_| self.traps && !on));
             self.scans += 1;
             self.scans < self.budget.scans || !self.scans.is_multiple_of(PATIENCE)
         });
+        self.room = (image, inputs);
         self.note(at, &done);
         if done.stopped {
-            self.hole = Some(self.stopped().unwrap_or_else(halted));
+            self.hole = Some(self.stopped().unwrap_or(Reason::Stopped));
             return false;
         }
-        self.leads_on.push(on);
-        if !on {
+        if self.traps {
+            self.leads_on.push(on);
+        }
+        if self.traps && !on {
             next.sort_unstable();
             next.dedup();
             self.edges.extend(next.into_iter().map(|to| (at as u32, to)));
@@ -267,7 +345,7 @@ impl<'a> Search<'a> {
             let number = self.store.len() as u32;
             self.store.find_or_insert(image).unwrap_or_else(|| {
                 self.parents.push(at as u32);
-                self.inputs.extend_from_slice(&step.m.inputs);
+                self.inputs.push(&step.m.inputs, &mut self.key);
                 if !self.ways.is_empty() {
                     self.ways.push(step.way);
                 }
@@ -286,10 +364,10 @@ impl<'a> Search<'a> {
         self.cut |= done.cut;
         self.cut_passes |= done.cut_passes;
         if let Some(gap) = done.gap.filter(|_| self.hole.is_none()) {
-            self.hole = Some(gap.why(self.model));
+            self.hole = Some(gap.reason(self.model));
         }
         if done.stuck && !done.stopped && self.stuck.is_none() {
-            self.hole = Some(stuck_behind(self.depth));
+            self.hole = Some(Reason::NoInput(self.depth));
             self.stuck = Some(at);
         }
     }

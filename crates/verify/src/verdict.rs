@@ -3,6 +3,7 @@
 use g7_engine::Fault;
 
 use crate::explore::Move;
+use crate::reason::Reason;
 
 /// The answer to a question.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -51,6 +52,14 @@ pub enum Certificate {
         /// Number of scans made.
         scans: usize,
     },
+    /// All sets of states were visited, each with any number of times that its clocks may have, by all
+    /// moves that matter.
+    Zones {
+        /// Number of sets.
+        zones: usize,
+        /// Number of scans made.
+        scans: usize,
+    },
     /// An inductive invariant, verified by a checker with a solver of its own.
     Invariant {
         /// Number of its clauses.
@@ -71,8 +80,6 @@ pub struct Open {
     pub scans: usize,
     /// Number of states that were visited.
     pub states: usize,
-    /// The reason, a sentence.
-    pub reason: String,
-    /// The way out, a sentence; empty if nothing is known.
-    pub help: String,
+    /// The reason; `words` has its sentence and the way out.
+    pub reason: Reason,
 }

@@ -1,17 +1,17 @@
 //! Claims, verdicts and what shows them, in words. The command line and the page read the one table
 //! that stands here: each sentence in English, French and Portuguese.
 
+mod open;
+mod row;
+
 use g7_compile::Compiled;
 use g7_model::Nanos;
 
 use crate::question::{Claim, Question};
 use crate::verdict::{Certificate, Evidence, Open, Verdict};
-
-/// A sentence in English, French and Portuguese.
-pub type Said = [String; 3];
-
-/// A row of the table; each `{}` is a place for a name or a number.
-type Row = [&'static str; 3];
+pub use open::{difference, fault, unlike, way_on, why};
+pub use row::Said;
+use row::{Counted, PAIRS, Row, SCANS, STATES, ZONES, count, same, say};
 
 const ACTIVE: Row = ["step {} can be active", "l’étape {} peut être active", "a etapa {} pode estar ativa"];
 const CLEARS: Row =
@@ -70,36 +70,8 @@ const SO_FAR: Row = [
     "nenhuma execução de até {} o decide ({} visitados): {}",
 ];
 
-/// A thing that is counted: one of it, and more.
-type Counted = [Row; 2];
-const SCANS: Counted = [["{} scan", "{} cycle", "{} ciclo"], ["{} scans", "{} cycles", "{} ciclos"]];
-const STATES: Counted = [["{} state", "{} état", "{} estado"], ["{} states", "{} états", "{} estados"]];
 const CLAUSES: Counted =
     [["{} clause", "{} clause", "{} cláusula"], ["{} clauses", "{} clauses", "{} cláusulas"]];
-
-/// A row with its places filled, each with its own language.
-fn say(row: Row, with: &[Said]) -> Said {
-    std::array::from_fn(|i| {
-        let mut parts = row.get(i).copied().unwrap_or_default().split("{}");
-        let mut text = parts.next().unwrap_or_default().to_owned();
-        let filled = with.iter().map(|w| w.get(i).map_or("", String::as_str)).chain(std::iter::repeat(""));
-        for (part, word) in parts.zip(filled) {
-            text.push_str(word);
-            text.push_str(part);
-        }
-        text
-    })
-}
-
-/// A word that is the same in each language, such as a name of the chart.
-fn same(word: &str) -> Said {
-    std::array::from_fn(|_| word.to_owned())
-}
-
-fn count(n: usize, what: Counted) -> Said {
-    let [one, more] = what;
-    say(if n == 1 { one } else { more }, &[same(&n.to_string())])
-}
 
 /// The claim of a question. `written` is the text at its place.
 pub fn claim(written: &str, compiled: &Compiled, question: &Question) -> Said {
@@ -154,32 +126,40 @@ pub fn verdict(verdict: &Verdict) -> Said {
 pub fn reason(verdict: &Verdict, time: Nanos) -> Said {
     match verdict {
         Verdict::Open(Open { scans, states, reason, .. }) => {
-            say(SO_FAR, &[count(*scans, SCANS), count(*states, STATES), same(reason)])
+            say(SO_FAR, &[count(*scans, SCANS), count(*states, STATES), why(reason)])
         }
         Verdict::Proved(e) | Verdict::Refuted(e) => match e {
             Evidence::Run(run) => {
                 let shown = say(RUN, &[count(run.moves.len(), SCANS), same(&time.plain())]);
-                let Some(fault) = run.fault else { return shown };
-                let fault = say(FAULT, &[same(&fault.kind.to_string())]);
+                let Some(stopped) = run.fault else { return shown };
+                let fault = say(FAULT, &[fault(stopped.kind)]);
                 say(["{}{}", "{}{}", "{}{}"], &[shown, fault])
             }
-            Evidence::Certificate(Certificate::Search { states, scans }) => {
-                say(SEARCH, &[count(*states, STATES), count(*scans, SCANS)])
-            }
-            Evidence::Certificate(Certificate::Invariant { clauses }) => {
-                say(INVARIANT, &[count(*clauses, CLAUSES)])
-            }
-            Evidence::Certificate(Certificate::Induction { depth }) => {
-                say(INDUCTION, &[count(*depth, SCANS)])
-            }
+            Evidence::Certificate(c) => certificate(c, STATES),
         },
+    }
+}
+
+/// The proof that two charts are equal, in one line: its states are pairs of states.
+pub fn equal(proof: &Certificate) -> Said {
+    certificate(proof, PAIRS)
+}
+
+fn certificate(proof: &Certificate, of_states: Counted) -> Said {
+    match proof {
+        Certificate::Search { states, scans } => {
+            say(SEARCH, &[count(*states, of_states), count(*scans, SCANS)])
+        }
+        Certificate::Zones { zones, scans } => say(SEARCH, &[count(*zones, ZONES), count(*scans, SCANS)]),
+        Certificate::Invariant { clauses } => say(INVARIANT, &[count(*clauses, CLAUSES)]),
+        Certificate::Induction { depth } => say(INDUCTION, &[count(*depth, SCANS)]),
     }
 }
 
 /// The way out of a claim that fails, or that is not decided; empty where there is none to be told.
 pub fn help(question: &Question, verdict: &Verdict) -> Said {
     match verdict {
-        Verdict::Open(open) => same(&open.help),
+        Verdict::Open(open) => way_on(&open.reason),
         Verdict::Refuted(_) => way_out(&question.claim).map_or_else(Said::default, |row| say(row, &[])),
         Verdict::Proved(_) => Said::default(),
     }
@@ -219,18 +199,4 @@ fn way_out(claim: &Claim) -> Option<Row> {
         ],
         _ => return None,
     })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::{RUN, SCANS, Said, count, same, say};
-
-    #[test]
-    fn places_are_filled_in_each_language() {
-        let said: Said = say(RUN, &[count(1, SCANS), same("0s")]);
-        assert_eq!(said[0], "shown by a run of 1 scan, 0s");
-        assert_eq!(said[1], "montré par une exécution de 1 cycle, 0s");
-        assert_eq!(said[2], "mostrado por uma execução de 1 ciclo, 0s");
-        assert_eq!(count(2, SCANS)[2], "2 ciclos");
-    }
 }

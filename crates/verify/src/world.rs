@@ -25,6 +25,8 @@ struct Beside<'a> {
     chance: Option<Addr>,
     /// The word with which it begins a tick, for each way.
     begins: Vec<u64>,
+    /// The last tick drew a number.
+    drew: bool,
 }
 
 /// The state of the charts and of their plant.
@@ -33,6 +35,8 @@ pub(crate) struct World<'a> {
     p: &'a Program,
     /// The charts.
     pub(crate) charts: State,
+    /// The charts as [`World::put`] left them.
+    base: State,
     plant: Option<Beside<'a>>,
 }
 
@@ -47,9 +51,9 @@ impl<'a> World<'a> {
             let inputs = (rows.start..rows.end).map(|a| state.word(Addr(a))).collect();
             let chance = chance(side);
             let begins = chance.map_or(Vec::new(), |_| (0..WAYS).map(begin_of).collect());
-            Beside { side, state, inputs, chance, begins }
+            Beside { side, state, inputs, chance, begins, drew: false }
         });
-        World { p, charts: State::new(p), plant }
+        World { p, charts: State::new(p), base: State::new(p), plant }
     }
 
     /// These charts, with the plant before its first tick.
@@ -68,6 +72,11 @@ impl<'a> World<'a> {
         self.plant.as_ref().is_some_and(|p| p.chance.is_some())
     }
 
+    /// True if the last tick drew a random number. One that did not is the same in each way.
+    pub(crate) fn drew(&self) -> bool {
+        self.plant.as_ref().is_some_and(|p| p.drew)
+    }
+
     /// Makes an image of it. Equal images have equal futures.
     pub(crate) fn image(&self, image: &mut Vec<u64>) {
         self.charts.canonical(self.p, image);
@@ -80,19 +89,29 @@ impl<'a> World<'a> {
 
     /// Becomes the state of an image that [`World::image`] has made.
     pub(crate) fn put(&mut self, image: &[u64]) {
-        let width = self.charts.image().len();
-        self.put_charts(image);
+        let width = self.base.image().len();
+        let done = self.base.restore(self.p, image.get(..width).unwrap_or(&[]));
+        debug_assert!(done.is_ok(), "{done:?}");
+        self.back();
         if let Some(plant) = &mut self.plant {
             let done = plant.state.restore(&plant.side.compiled.program, image.get(width..).unwrap_or(&[]));
             debug_assert!(done.is_ok(), "{done:?}");
         }
     }
 
-    /// The same for the charts alone.
-    pub(crate) fn put_charts(&mut self, image: &[u64]) {
-        let width = self.charts.image().len();
-        let done = self.charts.restore(self.p, image.get(..width).unwrap_or(&[]));
-        debug_assert!(done.is_ok(), "{done:?}");
+    /// The charts as [`World::put`] left them.
+    pub(crate) fn base(&self) -> &State {
+        &self.base
+    }
+
+    /// The charts are again as [`World::put`] left them.
+    pub(crate) fn back(&mut self) {
+        self.charts.become_as(&self.base);
+    }
+
+    /// The charts are as [`World::put`] left those of another world.
+    pub(crate) fn back_to(&mut self, other: &World<'_>) {
+        self.charts.become_as(&other.base);
     }
 
     /// Lets the plant tick, and puts the inputs that it drives into `inputs`.
@@ -109,15 +128,17 @@ impl<'a> World<'a> {
                 *word = self.charts.word(Addr(outputs.saturating_add(*from)));
             }
         }
+        let begin = plant.begins.get(usize::from(way)).copied().unwrap_or(0);
         if let Some(addr) = plant.chance {
-            let begin = plant.begins.get(usize::from(way)).copied().unwrap_or(0);
             plant.state.set_word(program, addr, begin);
         }
         let now = plant.state.now().saturating_add(wait);
-        scan(program, &mut plant.state, &plant.inputs, now)?;
+        let done = scan(program, &mut plant.state, &plant.inputs, now);
         if let Some(addr) = plant.chance {
+            plant.drew = plant.state.word(addr) != begin;
             plant.state.set_word(program, addr, 0);
         }
+        done?;
         let driven = program.tables().outputs.start;
         for (from, to) in &plant.side.coupling.to_charts {
             if let Some(word) = inputs.get_mut(*to as usize) {

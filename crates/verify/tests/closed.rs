@@ -1,7 +1,7 @@
 //! Charts with their plant: the answers follow from the rules of a tick (the book, "Plants").
 
 use g7_rig::Source;
-use g7_verify::{Budget, Claim, Evidence, Explicit, Layer, Verdict, ask_with, replay};
+use g7_verify::{Budget, Claim, Evidence, Explicit, Layer, Verdict, ask_with, replay, words};
 
 /// A scan each 250 ms; while V is on, 2 are added in each tick, while W is on 2 are taken away.
 const TANK: &str = "\
@@ -42,7 +42,7 @@ fn answers(text: &str, every: bool) -> Vec<(Claim, String)> {
             }
             Verdict::Proved(_) => "P".to_owned(),
             Verdict::Refuted(_) => "R".to_owned(),
-            Verdict::Open(open) => open.reason,
+            Verdict::Open(open) => words::why(&open.reason)[0].clone(),
         };
         (question.claim.clone(), letter)
     };
@@ -134,6 +134,33 @@ prove always colour < 1.0 with Line
     let found = author(text);
     assert_eq!(found[0], "R1");
     assert!(found[1].contains("chance"), "{found:?}");
+}
+
+#[test]
+fn chance_that_is_never_asked_hides_nothing() {
+    let text = "\
+input red : BOOL
+output lamp : BOOL
+chart Show {
+  initial step 0
+  step 1 { N lamp }
+  0 -> 1 when red -> 0 when not red
+}
+plant Line {
+  state mixed : BOOL
+  state count : INT in 0 .. 5
+  state colour : LREAL
+  each {
+    count := count + 1
+    IF mixed and count > 3 THEN colour := random(); END_IF
+  }
+  drive red := colour > 0.8
+}
+prove never lamp with Line
+";
+    assert_eq!(author(text), ["P"]);
+    // Drawn late, it is drawn in each way all the same.
+    assert_eq!(author(&text.replace("mixed : BOOL", "mixed : BOOL := TRUE")), ["R4"]);
 }
 
 #[test]

@@ -7,6 +7,7 @@
 #![forbid(unsafe_code)]
 #![allow(clippy::disallowed_methods, reason = "tests look at the machine that they run on")]
 
+pub mod checkers;
 #[cfg(feature = "crowd")]
 pub mod crowd;
 pub mod faults;
@@ -270,9 +271,25 @@ pub fn load_tools() -> bool {
     found
 }
 
-/// A script of this project that drives a peer.
+/// A script in Python of this project that drives a peer.
 pub fn script(name: &str) -> PathBuf {
     [env!("CARGO_MANIFEST_DIR"), "python", name].iter().collect()
+}
+
+/// Node with a script of this project and the package that it needs, which `make test` installs in the
+/// folder that `G7_PEERS` names; otherwise the skip is counted.
+pub fn node(package: &str, script: &str) -> Option<Command> {
+    let modules = std::env::var_os("G7_PEERS").map(|peers| Path::new(&peers).join("node/node_modules"));
+    let found = modules.filter(|folder| folder.join(package).is_dir());
+    let found = found.filter(|_| quiet(Command::new("node").arg("--version")));
+    let Some(modules) = found else {
+        skip(&format!("Node's {package} missing"));
+        return None;
+    };
+    let file: PathBuf = [env!("CARGO_MANIFEST_DIR"), "node", script].iter().collect();
+    let mut command = Command::new("node");
+    command.arg(file).env("NODE_PATH", modules);
+    Some(command)
 }
 
 /// True if a command starts and succeeds; nothing of what it says is shown.

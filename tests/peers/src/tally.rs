@@ -98,7 +98,7 @@ mod tests {
         let spec = node.replace('#', "ℹ");
         let g7 = "beads: ok\n\n7 passed, 0 failed\n";
         assert_eq!(of(&[CARGO, node, g7], ""), Ok("15 tests passed; skipped: none".into()));
-        let unproved = "7 passed, 0 failed, 2 not proved\n";
+        let unproved = "7 passed, 0 failed, 2 left to g7 prove\n";
         assert_eq!(of(&[unproved], ""), Ok("7 tests passed; skipped: none".into()));
         assert_eq!(of(&[&spec], ""), Ok("5 tests passed; skipped: none".into()));
     }
@@ -121,7 +121,7 @@ mod tests {
         assert!(of(&["error: could not compile\n"], "").is_err());
         assert!(of(&[CARGO, "0 passed, 0 failed\n"], "").is_err());
         assert!(of(&["3 passed, 1 failed\n"], "").is_err());
-        assert!(of(&["3 passed, 1 failed, 2 not proved\n"], "").is_err());
+        assert!(of(&["3 passed, 1 failed, 2 left to g7 prove\n"], "").is_err());
         assert!(of(&["# pass 3\n# cancelled 1\n"], "").is_err());
         assert!(of(&[&CARGO.replacen("0 failed", "1 failed", 1)], "").is_err());
     }

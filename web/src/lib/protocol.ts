@@ -363,6 +363,8 @@ export interface ProofRow {
   blame?: string[];
   /** The run that shows the answer. */
   run?: ProofScan[];
+  /** The ways in which the plant of the run ticked, where it draws random numbers. */
+  chance?: number[];
 }
 
 export interface ProofReport {
@@ -378,7 +380,24 @@ export interface ProofWays {
   cures: { sort: 'exclusive' | 'parallel' | 'priority' | 'assume'; with: string[]; splices: Splice[] }[];
   test?: { title: string; splices: Splice[] };
   /** Why there is no test. */
-  untested?: string;
+  untested?: Said;
+}
+
+/** The answer to a comparison of two charts for every sequence of inputs. */
+export interface ComparedReport {
+  is: 'equal' | 'apart' | 'open' | 'unlike' | 'errors';
+  /** The first difference, what is in the way, or why they cannot be compared. */
+  reason: Said;
+  help: Said;
+  /** More states may decide it. */
+  more: boolean;
+  /** The number of the chart with errors. */
+  side?: number;
+  /** Pairs of states. */
+  states: number;
+  scans: number;
+  /** The run of each chart up to the first difference. */
+  runs?: [ProofScan[], ProofScan[]];
 }
 
 /** A language of logic: Structured Text, Instruction List, Ladder. */
@@ -399,6 +418,8 @@ export interface Form {
   word: string;
   title: string;
   kind: 'chart' | 'code' | 'picture';
+  /** G7 reads it back as a chart. */
+  read: boolean;
 }
 
 export interface OutFile {

@@ -130,6 +130,10 @@ fn conflicts(facts: &Facts<'_>, problems: &mut Vec<Problem>) {
     let mut budget = PAIRS;
     let mut told = BTreeSet::new();
     for step in (0..unit.steps.len() as u32).map(StepId) {
+        // One token at a time: `settle` has found that its branches exclude each other.
+        if facts.group(step).is_some() {
+            continue;
+        }
         let rows = facts.branches(step);
         for (k, b) in rows.iter().enumerate() {
             for a in rows.get(..k).unwrap_or(&[]) {

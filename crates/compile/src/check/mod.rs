@@ -12,9 +12,11 @@
 //! answer are left to the run or to the prover.
 
 mod actions;
+mod clauses;
 mod exclusion;
 mod facts;
 mod forcing;
+mod formula;
 mod loops;
 mod named;
 mod pages;

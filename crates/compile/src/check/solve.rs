@@ -2,85 +2,28 @@
 //!
 //! An expression is split into atoms: a value that the search knows nothing about (a variable, a
 //! call), the interval of a number between the constants that it is compared with, the result of
-//! comparing two numbers. Then values are tried for the atoms until all formulas hold or no values
-//! are left. The values of every run are among those tried, so a formula that fails for all of them
-//! is never true.
+//! comparing two numbers. Formulas and values of the atoms become clauses (`clauses`), and the solver
+//! says whether all formulas can hold together. The values of every run are among those of the atoms,
+//! so a formula that fails for all of them is never true.
+
+#[cfg(test)]
+mod tests;
 
 use std::cmp::Ordering;
 use std::collections::BTreeMap;
 
 use g7_model::Type;
 
+use super::clauses;
 use super::facts::Facts;
+use super::formula::{Atom, Cut, Formula, Part, Sort, Values, holds};
 use super::tree::{Form, has_edge};
 use crate::ir::{BinaryOp, ChartId, Expr, ExprKind, StepId, Value};
 
-/// The largest number of assignments that are tried for one question.
-const TRIES: u32 = 20_000;
 /// The deepest expression that is split into atoms.
 const DEEPEST: u32 = 200;
 /// The largest number of atoms in one question.
-const ATOMS: usize = 200;
-
-/// A row of [`Question::parts`].
-#[derive(Clone, Copy)]
-struct Part(usize);
-
-/// A formula over atoms, which are rows of [`Question::atoms`].
-enum Formula<'e> {
-    Const(bool),
-    /// The atom has one of the values in this mask.
-    Among(usize, Values<'e>),
-    Not(Part),
-    And(Part, Part),
-    Or(Part, Part),
-    Xor(Part, Part),
-    /// At most one of these atoms is true.
-    OneOf(Vec<usize>),
-}
-
-/// The values of an atom that make a comparison true.
-#[derive(Clone, Copy)]
-enum Values<'e> {
-    /// It is true (1).
-    True,
-    /// The number compares in this way with one of its cuts.
-    Side(BinaryOp, Cut<'e>),
-    /// The two numbers compare in this way.
-    Order(BinaryOp),
-}
-
-/// A constant that a value is compared with.
-#[derive(Clone, Copy, PartialEq)]
-enum Cut<'e> {
-    Number(f64),
-    Text(&'e str),
-}
-
-impl Cut<'_> {
-    fn order(&self, other: &Cut<'_>) -> Ordering {
-        match (self, other) {
-            (Cut::Number(a), Cut::Number(b)) => a.total_cmp(b),
-            (Cut::Text(a), Cut::Text(b)) => a.cmp(b),
-            (Cut::Number(_), Cut::Text(_)) => Ordering::Less,
-            (Cut::Text(_), Cut::Number(_)) => Ordering::Greater,
-        }
-    }
-}
-
-enum Sort<'e> {
-    /// False or true.
-    Truth,
-    /// The place of a value among the sorted cuts: 2k below cut k, 2k+1 on it.
-    Place(Type, Vec<Cut<'e>>),
-    /// Less, equal, greater than this value.
-    Relation(&'e Expr),
-}
-
-struct Atom<'e> {
-    sort: Sort<'e>,
-    of: &'e Expr,
-}
+const ATOMS: usize = 500;
 
 /// A question: can all these formulas be true together?
 pub(super) struct Question<'e, 'f> {
@@ -104,7 +47,7 @@ impl<'e, 'f> Question<'e, 'f> {
         self.demand_at(e, value, 0);
     }
 
-    /// Several goals are quicker than one that joins them: see [`Question::given`].
+    /// Several goals are quicker than one that joins them: see [`Question::possible`].
     fn demand_at(&mut self, e: &'e Expr, value: bool, depth: u32) {
         match &e.kind {
             ExprKind::Not(a) if depth < DEEPEST => self.demand_at(a, !value, depth + 1),
@@ -168,94 +111,31 @@ impl<'e, 'f> Question<'e, 'f> {
             return None;
         }
         let mut values = vec![None; self.atoms.len()];
-        for (atom, value) in self.goals.iter().filter_map(|g| self.given(*g)) {
+        let mut all = true;
+        for goal in &self.goals {
+            let Some((atom, value)) = self.given(*goal) else {
+                all = false;
+                continue;
+            };
             let slot = values.get_mut(atom)?;
             if slot.is_some_and(|v| v != value) {
                 return Some(false);
             }
             *slot = Some(value);
         }
-        let mut tries = 0;
-        self.search(&mut values, 0, &mut tries)
+        // Most branches ask for other variables than those beside them: that is seen without clauses.
+        if all { Some(true) } else { clauses::possible(&self.atoms, &self.parts, &self.goals) }
     }
 
-    /// The value that a goal alone gives to an atom, so that no other has to be tried.
-    fn given(&self, goal: Part) -> Option<(usize, usize)> {
+    /// The value that a goal alone gives to an atom.
+    fn given(&self, goal: Part) -> Option<(usize, bool)> {
         match self.parts.get(goal.0)? {
-            Formula::Among(atom, Values::True) => Some((*atom, 1)),
+            Formula::Among(atom, Values::True) => Some((*atom, true)),
             Formula::Not(a) => match self.parts.get(a.0)? {
-                Formula::Among(atom, Values::True) => Some((*atom, 0)),
+                Formula::Among(atom, Values::True) => Some((*atom, false)),
                 _ => None,
             },
             _ => None,
-        }
-    }
-
-    /// Tries values for the atoms from this one on that have none yet.
-    fn search(&self, values: &mut [Option<usize>], from: usize, tries: &mut u32) -> Option<bool> {
-        let mut open = false;
-        for goal in &self.goals {
-            match self.truth(*goal, values) {
-                Some(false) => return Some(false),
-                Some(true) => {}
-                None => open = true,
-            }
-        }
-        let next = (from..values.len()).find(|i| values.get(*i) == Some(&None));
-        let Some((next, atom)) = next.filter(|_| open).and_then(|i| Some((i, self.atoms.get(i)?))) else {
-            return Some(true);
-        };
-        for value in atom.sort.domain() {
-            *tries += 1;
-            if *tries > TRIES {
-                return None;
-            }
-            if let Some(slot) = values.get_mut(next) {
-                *slot = Some(value);
-            }
-            match self.search(values, next + 1, tries) {
-                Some(false) => {}
-                found => return found,
-            }
-        }
-        if let Some(slot) = values.get_mut(next) {
-            *slot = None;
-        }
-        Some(false)
-    }
-
-    /// The value of a formula as far as the values tried so far decide it.
-    fn truth(&self, part: Part, values: &[Option<usize>]) -> Option<bool> {
-        match self.parts.get(part.0)? {
-            Formula::Const(v) => Some(*v),
-            Formula::Not(a) => self.truth(*a, values).map(|v| !v),
-            Formula::And(a, b) => match self.truth(*a, values) {
-                Some(true) => self.truth(*b, values),
-                Some(false) => Some(false),
-                None => self.truth(*b, values).filter(|v| !v),
-            },
-            Formula::Or(a, b) => match self.truth(*a, values) {
-                Some(false) => self.truth(*b, values),
-                Some(true) => Some(true),
-                None => self.truth(*b, values).filter(|v| *v),
-            },
-            Formula::Xor(a, b) => Some(self.truth(*a, values)? != self.truth(*b, values)?),
-            Formula::OneOf(list) => {
-                let on = list.iter().filter(|a| values.get(**a) == Some(&Some(1))).count();
-                let open = list.iter().any(|a| values.get(*a) == Some(&None));
-                if on > 1 { Some(false) } else { (!open).then_some(true) }
-            }
-            Formula::Among(a, which) => {
-                let value = values.get(*a).copied().flatten()?;
-                Some(match (which, self.atoms.get(*a).map(|a| &a.sort)) {
-                    (Values::Side(op, cut), Some(Sort::Place(_, cuts))) => {
-                        let k = cuts.iter().position(|c| c == cut).unwrap_or(0);
-                        holds(*op, value.cmp(&(2 * k + 1)))
-                    }
-                    (Values::Order(op), _) => holds(*op, value.cmp(&1)),
-                    _ => value == 1,
-                })
-            }
         }
     }
 
@@ -401,55 +281,8 @@ fn at_once(t2: Option<&Expr>) -> bool {
     t2.is_none_or(|t| matches!(t.kind, ExprKind::Const(Value::Int(0))))
 }
 
-impl Sort<'_> {
-    /// The values that the atom can have. For a whole number these are the places that hold one.
-    fn domain(&self) -> impl Iterator<Item = usize> {
-        let count = match self {
-            Sort::Truth => 2,
-            Sort::Relation(_) => 3,
-            Sort::Place(_, cuts) => 2 * cuts.len() + 1,
-        };
-        (0..count).filter(|p| match self {
-            Sort::Truth | Sort::Relation(_) => true,
-            Sort::Place(ty, cuts) => is_taken(*ty, cuts, *p),
-        })
-    }
-}
-
-/// True if some value of a type has this place among the cuts.
-fn is_taken(ty: Type, cuts: &[Cut<'_>], place: usize) -> bool {
-    let whole = ty.is_integer() || ty == Type::Time;
-    let (least, most) = ty.bounds().map_or((None, None), |(a, b)| (Some(a as f64), Some(b as f64)));
-    let at = |k: usize| match cuts.get(k) {
-        Some(Cut::Number(x)) => Some(*x),
-        _ => None,
-    };
-    let k = place / 2;
-    if place % 2 == 1 {
-        return at(k).is_none_or(|x| {
-            least.is_none_or(|l| x >= l) && most.is_none_or(|m| x <= m) && (!whole || x.fract() == 0.0)
-        });
-    }
-    // The gap below cut `k`; a whole-number type needs a whole number there.
-    let below = if k == 0 { least.map(|x| x - 1.0) } else { at(k - 1) };
-    let above = if k == cuts.len() { most.map(|x| x + 1.0) } else { at(k) };
-    below.zip(above).is_none_or(|(a, b)| !whole || b.ceil() - a.floor() >= 2.0)
-}
-
 fn compares(op: BinaryOp) -> bool {
     matches!(op, BinaryOp::Eq | BinaryOp::Ne | BinaryOp::Lt | BinaryOp::Le | BinaryOp::Gt | BinaryOp::Ge)
-}
-
-fn holds(op: BinaryOp, order: Ordering) -> bool {
-    match op {
-        BinaryOp::Eq => order.is_eq(),
-        BinaryOp::Ne => order.is_ne(),
-        BinaryOp::Lt => order.is_lt(),
-        BinaryOp::Le => order.is_le(),
-        BinaryOp::Gt => order.is_gt(),
-        BinaryOp::Ge => order.is_ge(),
-        _ => false,
-    }
 }
 
 /// The operator with its operands exchanged.

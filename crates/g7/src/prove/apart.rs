@@ -5,14 +5,14 @@ use std::io::Write;
 
 use g7_model::ProfileName;
 use g7_rig::Source;
-use g7_verify::{Budget, Compare, Difference, Equality};
+use g7_verify::{Budget, Compare, Equality, Unlike, words};
 
 use super::trace::Drawer;
 use crate::cli;
 use crate::failure::{self, Failure};
 use crate::message::talk;
 use crate::report::{self, Tally};
-use crate::{sources, style};
+use crate::{files, sources, style};
 
 /// A chart of a comparison.
 struct Side {
@@ -22,9 +22,18 @@ struct Side {
 }
 
 pub(crate) fn compare(args: &cli::Compare) -> Result<failure::Verdict, Failure> {
-    let sides = sides(args)?;
+    beside(&sides(args)?, args)
+}
+
+/// Compares the outputs of a chart with those of the same chart in another form, as `g7 compare` does.
+pub(crate) fn read_back(before: Source, after: Source) -> Result<failure::Verdict, Failure> {
+    let side = |source: Source| Side { name: source.name.clone(), source, profile: None };
+    beside(&[side(before), side(after)], &cli::Compare::of_outputs())
+}
+
+fn beside(sides: &[Side], args: &cli::Compare) -> Result<failure::Verdict, Failure> {
     let mut compiled = Vec::new();
-    for side in &sides {
+    for side in sides {
         let (charts, found) = if side.source.has_errors() {
             (None, Vec::new())
         } else {
@@ -40,33 +49,33 @@ pub(crate) fn compare(args: &cli::Compare) -> Result<failure::Verdict, Failure> 
     let stop = super::patience::Patience::new()?.within(args.time);
     let bytes = args.memory.saturating_mul(1 << 20);
     let budget = Budget { states: args.states, scans: usize::MAX, bytes, stop: &*stop };
-    let what = Compare { charts: [&a.compiled, &b.compiled], situations: args.situations };
+    let assume = [a.assume.clone(), b.assume.clone()];
+    let assumed = assume.iter().any(|list| !list.is_empty());
+    let what = Compare { charts: [&a.compiled, &b.compiled], assume, situations: args.situations };
+    if let Some(path) = &args.aiger {
+        let system = g7_verify::miter(&what).map_err(|why| unlike(&why))?;
+        files::write(path, &system)?;
+    }
     let mut out = anstream::stdout().lock();
     match g7_verify::compare(&what, &budget) {
-        Equality::Equal { states, scans } => {
+        Equality::Equal(certificate) => {
             let what = if args.situations { "outputs and situations" } else { "outputs" };
-            writeln!(
-                out,
-                "{}equal{:#}: the same {what} for every sequence of inputs",
-                style::GOOD,
-                style::GOOD
-            )?;
-            writeln!(out, "  all {states} pairs of states were visited by {scans} scans")?;
+            let which = if assumed { " that the assumptions of both allow" } else { "" };
+            let good = style::GOOD;
+            writeln!(out, "{good}equal{good:#}: the same {what} for every sequence of inputs{which}")?;
+            let [proof, ..] = words::equal(&certificate);
+            writeln!(out, "  {proof}")?;
             Ok(failure::Verdict::Fine)
         }
         Equality::Apart { moves, what } => {
             let mut drawers = Vec::new();
-            for side in &sides {
+            for side in sides {
                 drawers.extend(Drawer::new(&side.source, side.profile)?);
             }
             let both = <[Drawer; 2]>::try_from(drawers).ok();
             let count = moves.first().map_or(0, Vec::len);
             let scans = if count == 1 { "scan" } else { "scans" };
-            let what = match what {
-                Difference::Output(name) => format!("output `{name}` has two values"),
-                Difference::Step(name) => format!("step {name} is active in one of them only"),
-                Difference::Fault => "a fault stops one of them only, or each has another".to_owned(),
-            };
+            let [what, ..] = words::difference(&what);
             writeln!(out, "{}different{:#}: after {count} {scans} {what}", style::BAD, style::BAD)?;
             for (number, (side, moves)) in (1..).zip(sides.iter().zip(&moves)) {
                 let drawer = both.as_ref().and_then(|b| b.get(number - 1));
@@ -79,19 +88,23 @@ pub(crate) fn compare(args: &cli::Compare) -> Result<failure::Verdict, Failure> 
             Ok(failure::Verdict::Found)
         }
         Equality::Open(open) => {
-            writeln!(out, "{}not decided{:#}: {}", style::WARN, style::WARN, open.reason)?;
+            let ([why, ..], [help, ..]) = (words::why(&open.reason), words::way_on(&open.reason));
+            writeln!(out, "{}not decided{:#}: {why}", style::WARN, style::WARN)?;
             writeln!(
                 out,
                 "  equal for all runs of up to {} scans ({} pairs of states)",
                 open.scans, open.states
             )?;
-            writeln!(out, "  help: {}", open.help)?;
+            writeln!(out, "  help: {help}")?;
             Ok(failure::Verdict::Open)
         }
-        Equality::Unlike(sentence) => {
-            Err(Failure::Usage(format!("these charts cannot be compared: {sentence}")))
-        }
+        Equality::Unlike(why) => Err(unlike(&why)),
     }
+}
+
+fn unlike(why: &Unlike) -> Failure {
+    let [sentence, ..] = words::unlike(why);
+    Failure::Usage(format!("these charts cannot be compared: {sentence}"))
 }
 
 fn sides(args: &cli::Compare) -> Result<Vec<Side>, Failure> {

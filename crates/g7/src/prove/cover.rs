@@ -197,12 +197,7 @@ impl Search<'_> {
 
 /// Why there may be fewer scenarios, if the search for them was stopped.
 fn stopped(budget: &Budget<'_>) -> Option<Open> {
-    let open = || Open {
-        reason: "the search was stopped".to_owned(),
-        help: "allow more with --time".to_owned(),
-        ..Open::default()
-    };
-    (budget.stop)().then(open)
+    (budget.stop)().then(Open::default)
 }
 
 /// All that a test can reach.

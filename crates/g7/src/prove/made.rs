@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use g7_model::{Nanos, ProfileName, PropertyKind};
 use g7_rig::Source;
-use g7_verify::{Asked, Budget, Model, Verdict, is_open, stuck};
+use g7_verify::{Asked, Budget, Model, Verdict, is_open, stuck, words};
 
 use super::patience::Patience;
 use super::{added, cover, save, trace};
@@ -87,7 +87,8 @@ pub(super) fn scenarios(
         talk!("  {title} was left out: `g7 test` shows another run than the search");
     }
     if let Some(open) = made.open {
-        talk!("  some run may reach more, or fewer scenarios do: {}; {}", open.reason, open.help);
+        let ([why, ..], [help, ..]) = (words::why(&open.reason), words::way_on(&open.reason));
+        talk!("  some run may reach more, or fewer scenarios do: {why}; {help}");
     }
     Ok(())
 }
@@ -100,33 +101,38 @@ fn count(n: usize, one: &str, many: &str) -> String {
     format!("{n} {}", if n == 1 { one } else { many })
 }
 
-/// Tells where the assumptions contradict each other: behind some run no input satisfies them, so
-/// what would be proved there would mean nothing. True if that is so.
+/// The error of assumptions that contradict each other: behind some run no input satisfies them, so
+/// what would be proved there would mean nothing.
 pub(super) fn contradiction(
     source: &Source,
     model: &Model<'_>,
     profile: Option<ProfileName>,
     answers: &[Option<Verdict>],
     budget: &Budget<'_>,
-) -> Result<bool, Failure> {
+) -> Result<Option<String>, Failure> {
     if model.assume.is_empty() || !answers.iter().any(is_open) {
-        return Ok(false);
+        return Ok(None);
     }
-    let Some(run) = stuck(model, budget) else { return Ok(false) };
+    let Some(run) = stuck(model, budget) else { return Ok(None) };
     let assumed = source.document.properties().find(|p| matches!(p.kind, PropertyKind::Assume(_)));
     let place = assumed.map_or_else(|| source.name.clone(), |p| source.place(p.at.0));
     let which = if model.assume.len() == 1 { "this assumption" } else { "the assumptions of this file" };
-    let style = style::BAD;
+    let (style, mut text) = (style::BAD, String::new());
     match run.moves.len() {
-        0 => talk!("{place}: {style}error{style:#}: no input satisfies {which}"),
+        0 => text.push_str(&format!("{place}: {style}error{style:#}: no input satisfies {which}\n")),
         n => {
             let scans = count(n, "scan", "scans");
-            talk!("{place}: {style}error{style:#}: behind a run of {scans} no input satisfies {which}");
+            text.push_str(&format!(
+                "{place}: {style}error{style:#}: behind a run of {scans} no input satisfies {which}\n"
+            ));
             if let Some(drawer) = trace::Drawer::new(source, profile)? {
-                drawer.draw(&run.moves, "").0.lines().for_each(|line| talk!("  {line}"));
+                drawer.draw(&run.moves, "").lines().for_each(|line| text.push_str(&format!("  {line}\n")));
             }
         }
     }
-    talk!("  help: weaken it: where no input is left there are no runs, and every claim would hold");
-    Ok(true)
+    let it = if model.assume.len() == 1 { "it" } else { "them" };
+    text.push_str(&format!(
+        "  help: weaken {it}: where no input is left there are no runs, and every claim would hold\n"
+    ));
+    Ok(Some(text))
 }

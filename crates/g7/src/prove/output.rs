@@ -1,88 +1,170 @@
-//! Prints answers, for people, programs and build servers.
+//! Prints answers, for people and programs.
 
 use std::io::Write;
 
-use g7_verify::{Evidence, Verdict, words};
+use g7_verify::{Evidence, Open, Reason, Verdict, words};
 use serde_json::{Value, json};
 
+use super::found::{Answered, Found, LISTED};
 use crate::failure::Failure;
+use crate::message::talk;
 use crate::style;
-use crate::testing::escape;
-
-/// An answered question, ready to be printed.
-pub(crate) struct Answered {
-    /// `path:line:column` of what is asked about.
-    pub(crate) place: String,
-    /// The claim in words.
-    pub(crate) claim: String,
-    /// The author wrote it.
-    pub(crate) own: bool,
-    /// The evidence in one line.
-    pub(crate) reason: String,
-    /// The way out; empty where none is known.
-    pub(crate) help: String,
-    /// The answer.
-    pub(crate) verdict: Verdict,
-    /// The run that shows it, drawn; empty without one.
-    pub(crate) chronogram: String,
-    /// The question by its short name.
-    pub(crate) rule: &'static str,
-    /// The scans of the run, each in words.
-    pub(crate) scans: Vec<String>,
-}
 
 pub(super) fn word(verdict: &Verdict) -> String {
     let [word, ..] = words::verdict(verdict);
     word
 }
 
-/// Prints what is not proved and the author's properties; with `all` every answer.
-pub(super) fn text(list: &[Answered], all: bool) -> Result<(), Failure> {
+/// Prints the answers of a file that are not proved, and all of the author's; with `all` every answer.
+pub(super) fn text(found: &Found, all: bool) -> Result<(), Failure> {
     let mut out = anstream::stdout().lock();
-    for a in list {
+    if let Some(why) = &found.unasked {
+        let style = style::WARN;
+        writeln!(out, "{}: {style}not decided{style:#}: {why}", found.name)?;
+        writeln!(out, "  help: allow more with --time")?;
+    }
+    let mut told: Vec<&Reason> = Vec::new();
+    for a in &found.answers {
         let proved = matches!(a.verdict, Verdict::Proved(_));
         if proved && !a.own && !all {
             continue;
         }
-        let style = match a.verdict {
-            Verdict::Proved(_) => style::GOOD,
-            Verdict::Refuted(_) => style::BAD,
-            Verdict::Open(_) => style::WARN,
-        };
-        writeln!(out, "{}: {style}{}{style:#}: {}", a.place, word(&a.verdict), a.claim)?;
-        if proved && !all {
-            continue;
+        if let Some(open) = open(a)
+            && !all
+        {
+            // All of one reason stand where the first of them does.
+            if told.contains(&&open.reason) {
+                continue;
+            }
+            told.push(&open.reason);
+            let is_like = |b: &&Answered| self::open(b).is_some_and(|o| o.reason == open.reason);
+            let group: Vec<&Answered> = found.answers.iter().filter(is_like).collect();
+            if group.len() > 1 {
+                undecided(&mut out, found, &group)?;
+                continue;
+            }
         }
-        writeln!(out, "  {}", a.reason)?;
-        for line in a.chronogram.lines() {
-            writeln!(out, "  {line}")?;
-        }
-        if !a.help.is_empty() {
-            writeln!(out, "  help: {}", a.help)?;
-        }
+        one(&mut out, a, proved && !all)?;
     }
-    let [proved, refuted, open] = counts(list);
-    writeln!(out, "{proved} proved, {refuted} refuted, {open} not decided")?;
     Ok(())
 }
 
-fn counts(list: &[Answered]) -> [usize; 3] {
-    ["proved", "refuted", "not decided"].map(|w| list.iter().filter(|a| word(&a.verdict) == w).count())
+/// How far a question of every chart is decided that is not decided.
+fn open(a: &Answered) -> Option<&Open> {
+    match &a.verdict {
+        Verdict::Open(open) if !a.own => Some(open),
+        _ => None,
+    }
+}
+
+fn one(out: &mut impl Write, a: &Answered, short: bool) -> Result<(), Failure> {
+    let style = match a.verdict {
+        Verdict::Proved(_) => style::GOOD,
+        Verdict::Refuted(_) => style::BAD,
+        Verdict::Open(_) => style::WARN,
+    };
+    writeln!(out, "{}: {style}{}{style:#}: {}", a.place, word(&a.verdict), a.claim)?;
+    if short {
+        return Ok(());
+    }
+    writeln!(out, "  {}", a.reason)?;
+    for line in a.chronogram.lines() {
+        writeln!(out, "  {line}")?;
+    }
+    if let Some(last) = a.scans.last() {
+        writeln!(out, "  the last scan, {last}")?;
+    }
+    if !a.guilt.is_empty() {
+        writeln!(out, "  {}", a.guilt)?;
+    }
+    if !a.help.is_empty() {
+        writeln!(out, "  help: {}", a.help)?;
+    }
+    Ok(())
+}
+
+/// Prints questions that are not decided for one reason: the first ones with their places.
+fn undecided(out: &mut impl Write, found: &Found, group: &[&Answered]) -> Result<(), Failure> {
+    let Some(first) = group.first() else { return Ok(()) };
+    let style = style::WARN;
+    let known = open(first).and_then(|open| found.more.iter().find(|(reason, _)| *reason == open.reason));
+    let known = known.map(|(_, more)| more);
+    let mut more = known.map(|m| m.hidden.clone()).unwrap_or_default();
+    let listed = group.iter().filter_map(|a| Some((open(a)?.scans, &*a.reason)));
+    let counted = known.and_then(|m| m.least.as_ref()).map(|(scans, words)| (*scans, &**words));
+    let reason = listed.chain(counted).min_by_key(|(scans, _)| *scans).map_or("", |(_, words)| words);
+    let n = group.len() + more.values().sum::<usize>();
+    writeln!(out, "{}: {style}not decided{style:#}: {n} questions", found.name)?;
+    writeln!(out, "  of each: {reason}")?;
+    for a in group.iter().take(LISTED) {
+        let place = a.place.strip_prefix(&found.name).unwrap_or(&a.place).trim_start_matches(':');
+        writeln!(out, "  {place}: {}", a.claim)?;
+    }
+    for a in group.iter().skip(LISTED) {
+        *more.entry(a.rule).or_default() += 1;
+    }
+    if !more.is_empty() {
+        let kinds: Vec<String> = more.iter().map(|(rule, n)| format!("{n} of {rule}")).collect();
+        writeln!(out, "  … and {} (--all lists them)", kinds.join(", "))?;
+    }
+    if !first.help.is_empty() {
+        writeln!(out, "  help: {}", first.help)?;
+    }
+    Ok(())
+}
+
+/// Prints how many answers there are of each kind, and why there are no more.
+pub(super) fn summary(all: &[Found], stopped: Option<&str>) -> Result<(), Failure> {
+    let [proved, refuted, open] = counts(all);
+    let mut out = anstream::stdout().lock();
+    let why = stopped.map(|why| format!("; {why}")).unwrap_or_default();
+    writeln!(out, "{proved} proved, {refuted} refuted, {open} not decided{why}")?;
+    let unasked = all.iter().filter(|f| f.unasked.is_some()).count();
+    if unasked > 0 {
+        writeln!(out, "{unasked} of {} files without an answer", all.len())?;
+    }
+    Ok(())
+}
+
+/// Numbers of answers: proved, refuted, not decided.
+pub(super) fn counts(all: &[Found]) -> [usize; 3] {
+    let mut counts = [0; 3];
+    let answers = all.iter().flat_map(|f| &f.answers);
+    for (place, n) in answers.map(|a| (place(&a.verdict), 1)).chain(all.iter().map(|f| (2, f.hidden()))) {
+        if let Some(count) = counts.get_mut(place) {
+            *count += n;
+        }
+    }
+    counts
+}
+
+fn place(verdict: &Verdict) -> usize {
+    match verdict {
+        Verdict::Proved(_) => 0,
+        Verdict::Refuted(_) => 1,
+        Verdict::Open(_) => 2,
+    }
 }
 
 /// Prints all answers as one JSON object.
-pub(super) fn json(list: &[Answered]) -> Result<(), Failure> {
-    let [proved, refuted, open] = counts(list);
-    let answers: Vec<Value> = list.iter().map(row).collect();
-    let all = json!({ "proved": proved, "refuted": refuted, "not_decided": open, "answers": answers });
+pub(super) fn json(all: &[Found]) -> Result<(), Failure> {
+    let [proved, refuted, open] = counts(all);
+    let answers: Vec<Value> = all.iter().flat_map(|f| &f.answers).map(row).collect();
+    let files: Vec<Value> = all.iter().filter_map(not_asked).collect();
+    let all = json!({
+        "proved": proved, "refuted": refuted, "not_decided": open, "answers": answers, "not_asked": files,
+    });
     writeln!(anstream::stdout().lock(), "{all:#}")?;
     Ok(())
 }
 
-/// Prints each answer as a line of JSON.
-pub(super) fn lines(list: &[Answered]) -> Result<(), Failure> {
+/// Prints each answer of a file as a line of JSON; tells why there is none.
+pub(super) fn lines(found: &Found) -> Result<(), Failure> {
+    if let Some(why) = &found.unasked {
+        talk!("{}: not decided: {why}", found.name);
+    }
     let mut out = anstream::stdout().lock();
-    list.iter().try_for_each(|a| writeln!(out, "{}", row(a)))?;
+    found.answers.iter().try_for_each(|a| writeln!(out, "{}", row(a)))?;
     out.flush()?;
     Ok(())
 }
@@ -96,39 +178,24 @@ fn row(a: &Answered) -> Value {
     if !a.chronogram.is_empty() {
         row["chronogram"] = json!(a.chronogram);
     }
+    if !a.guilt.is_empty() {
+        row["guilt"] = json!(a.guilt);
+    }
     if let Verdict::Proved(Evidence::Run(run)) | Verdict::Refuted(Evidence::Run(run)) = &a.verdict {
         row["run"] = run.moves.iter().map(|m| json!({ "inputs": m.inputs, "wait_ns": m.wait })).collect();
     }
     row
 }
 
-/// A JUnit report: a case for each answer; what is not decided counts as skipped.
-pub(super) fn junit(list: &[Answered]) -> String {
-    let [_, refuted, open] = counts(list);
-    let mut out = format!(
-        "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuite name=\"g7 prove\" tests=\"{}\" failures=\"{refuted}\" \
-         skipped=\"{open}\">\n",
-        list.len()
-    );
-    for a in list {
-        let file = a.place.rsplitn(3, ':').last().unwrap_or_default();
-        out.push_str(&format!("  <testcase classname=\"{}\" name=\"{}\"", escape(file), escape(&a.claim)));
-        let body = format!("{}\n{}", a.reason, a.chronogram);
-        match a.verdict {
-            Verdict::Proved(_) => out.push_str("/>\n"),
-            Verdict::Refuted(_) => out.push_str(&format!(
-                ">\n    <failure message=\"{}: refuted\">{}</failure>\n  </testcase>\n",
-                escape(&a.place),
-                escape(body.trim())
-            )),
-            Verdict::Open(_) => {
-                out.push_str(&format!(
-                    ">\n    <skipped message=\"{}\"/>\n  </testcase>\n",
-                    escape(&a.reason)
-                ));
-            }
-        }
-    }
-    out.push_str("</testsuite>\n");
-    out
+/// A file of which not all was asked, with the reason.
+pub(super) fn not_asked(found: &Found) -> Option<Value> {
+    let reason = trouble(found)?;
+    Some(json!({ "file": found.name, "reason": reason }))
+}
+
+/// Why nothing was asked of a file, or what it was asked means nothing; in plain text.
+pub(super) fn trouble(found: &Found) -> Option<String> {
+    let errors = Some(&found.trouble).filter(|t| !t.is_empty());
+    let text = errors.map(|t| anstream::adapter::strip_str(t).to_string());
+    text.or_else(|| found.unasked.clone())
 }

@@ -7,7 +7,7 @@ use g7_rig::Source;
 use g7_verify::{Asked, Budget, Expander, Model, Verdict, solve};
 use sha2::{Digest, Sha256};
 
-use crate::cli::{Prove, Shared};
+use crate::cli::{Answers, Prove, Shared};
 use crate::failure::Failure;
 use crate::files;
 use crate::message::talk;
@@ -16,6 +16,9 @@ use crate::message::talk;
 pub(super) fn refuse(args: &Prove, paths: &[PathBuf]) -> Result<(), Failure> {
     let shared = &args.shared;
     let usage = |text: &str| Err(Failure::Usage(text.to_owned()));
+    if shared.shard.is_some() && args.format == Answers::Sarif {
+        return usage("--shard prints lines of JSON: a log for code review is one object of all answers");
+    }
     if !is_shared(shared) {
         return match &shared.keep {
             Some(_) => usage("--keep is for a search among processes: give --workers or --hosts too"),
@@ -36,6 +39,13 @@ pub(super) fn refuse(args: &Prove, paths: &[PathBuf]) -> Result<(), Failure> {
 /// True if the search is shared among processes.
 pub(super) fn is_shared(shared: &Shared) -> bool {
     shared.workers.is_some() || shared.hosts.is_some()
+}
+
+impl Shared {
+    /// True for a process of a shared search that has another one print the answers.
+    pub(super) fn is_silent(&self) -> bool {
+        self.process.is_some_and(|me| me > 0)
+    }
 }
 
 /// The addresses of the file of hosts, which must agree with the other options.

@@ -9,7 +9,8 @@ use std::io::Write;
 use g7_verify::{Claim, Verdict};
 use serde_json::{Value, json};
 
-use super::output::{Answered, word};
+use super::found::{Answered, Found};
+use super::output::{trouble, word};
 use crate::failure::Failure;
 
 /// The questions as rules: name, and what is claimed.
@@ -57,13 +58,16 @@ pub(super) fn rule(claim: &Claim) -> &'static str {
 
 /// Prints a log with one run. What is proved is in it with `all` only, since many tools of code
 /// review show every result as a finding.
-pub(super) fn print(list: &[Answered], all: bool) -> Result<(), Failure> {
+pub(super) fn print(found: &[Found], all: bool) -> Result<(), Failure> {
+    let list = || found.iter().flat_map(|f| &f.answers);
     let rules: Vec<Value> =
         RULES.iter().map(|(id, text)| json!({ "id": id, "shortDescription": { "text": text } })).collect();
-    let shown = list.iter().filter(|a| all || !matches!(a.verdict, Verdict::Proved(_)));
+    let shown = list().filter(|a| all || !matches!(a.verdict, Verdict::Proved(_)));
     let results: Vec<Value> = shown.map(result).collect();
     let files: BTreeMap<&str, Value> =
-        list.iter().map(|a| place(&a.place).0).map(|f| (f, json!({ "location": artifact(f) }))).collect();
+        list().map(|a| place(&a.place).0).map(|f| (f, json!({ "location": artifact(f) }))).collect();
+    // A file with errors, or one for which the time was over.
+    let notes: Vec<Value> = found.iter().filter_map(notification).collect();
     let log = json!({
         "$schema": "https://docs.oasis-open.org/sarif/sarif/v2.1.0/os/schemas/sarif-schema-2.1.0.json",
         "version": "2.1.0",
@@ -71,6 +75,9 @@ pub(super) fn print(list: &[Answered], all: bool) -> Result<(), Failure> {
             "tool": { "driver": {
                 "name": "g7 prove", "semanticVersion": env!("CARGO_PKG_VERSION"), "rules": rules,
             } },
+            "invocations": [{
+                "executionSuccessful": notes.is_empty(), "toolExecutionNotifications": notes,
+            }],
             "columnKind": "unicodeCodePoints",
             "artifacts": files.into_values().collect::<Vec<_>>(),
             "results": results,
@@ -80,6 +87,15 @@ pub(super) fn print(list: &[Answered], all: bool) -> Result<(), Failure> {
     Ok(())
 }
 
+fn notification(found: &Found) -> Option<Value> {
+    let level = if found.tally.errors > 0 { "error" } else { "warning" };
+    let text = trouble(found)?;
+    Some(json!({
+        "level": level, "message": { "text": text },
+        "locations": [{ "physicalLocation": { "artifactLocation": artifact(&found.name) } }],
+    }))
+}
+
 fn result(a: &Answered) -> Value {
     let (kind, level) = match a.verdict {
         Verdict::Proved(_) => ("pass", "none"),
@@ -87,6 +103,9 @@ fn result(a: &Answered) -> Value {
         Verdict::Open(_) => ("open", "none"),
     };
     let mut text = format!("{}: {}; {}", word(&a.verdict), a.claim, a.reason);
+    if !a.guilt.is_empty() {
+        text.push_str(&format!("; {}", a.guilt));
+    }
     if !a.help.is_empty() {
         text.push_str(&format!(". Help: {}", a.help));
     }

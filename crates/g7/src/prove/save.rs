@@ -41,8 +41,8 @@ pub(super) fn tests(
         match made {
             Ok(test) if saved.tests.contains(&test) => {}
             Ok(test) if fails(source, &test, profile)? => saved.tests.push(test),
-            Ok(_) => saved.left.push((short(&claim), UNSEEN.to_owned())),
-            Err(reason) => saved.left.push((short(&claim), reason.to_owned())),
+            Ok(_) => saved.left.push((short(&claim), UNSEEN[0].to_owned())),
+            Err([reason, ..]) => saved.left.push((short(&claim), reason.to_owned())),
         }
     }
     Ok(())

@@ -1,7 +1,8 @@
 //! `--shard i/n`: one part of all questions of all files, a line of JSON for each.
 //!
-//! Questions are counted through all files in the order in which `g7 prove` takes them. Every n-th is in a part,
-//! so the parts together are the whole, and each costs about the same.
+//! Every n-th question of a file is in a part, so the parts together are the whole, and each costs about the
+//! same. The count begins with the number of the file among all: whether another file was given up
+//! when its time was over makes no difference, and small files do not all fall to one part.
 
 /// A part of the questions: the i-th of n.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -23,7 +24,7 @@ pub(crate) fn part(text: &str) -> Result<Part, String> {
 }
 
 impl Part {
-    /// True if the question with this number, counted through all files, is in the part.
+    /// True if the question with this number is in the part.
     pub(crate) fn has(self, number: usize) -> bool {
         number % self.of == self.part
     }

@@ -7,8 +7,12 @@ use g7_verify::Move;
 
 use crate::failure::Failure;
 
-/// Columns of a chronogram.
+/// Most columns of a chronogram, least, and most for one scan.
 const COLUMNS: usize = 60;
+const FEW: usize = 12;
+const EACH: usize = 6;
+/// Scans of a chronogram where the columns are too few for all of a run.
+const LAST: usize = 30;
 /// Most lanes of a chronogram.
 const LANES: usize = 16;
 /// The groups of signals, from cause to effect.
@@ -29,9 +33,8 @@ impl Drawer {
         in_words(&self.bench, moves)
     }
 
-    /// The chronogram of a run, and the time of its last scan. What the claim names is in it, whether it
-    /// changes or not.
-    pub(super) fn draw(&self, moves: &[Move], claim: &str) -> (String, Nanos) {
+    /// The chronogram of a run. What the claim names is in it, whether it changes or not.
+    pub(super) fn draw(&self, moves: &[Move], claim: &str) -> String {
         let recording = self.record(moves);
         let mut lanes = self.bench.lanes(&recording);
         let words: Vec<&str> = claim.split(|c: char| !c.is_alphanumeric() && !"_.".contains(c)).collect();
@@ -46,7 +49,7 @@ impl Drawer {
         let group =
             |i: &usize| recording.signals().get(*i).and_then(|s| GROUPS.iter().position(|g| *g == s.group));
         lanes.sort_by_key(group);
-        (self.chronogram(&recording, lanes, moves.len()), recording.end())
+        self.chronogram(&recording, lanes, moves.len())
     }
 
     /// The two runs of a comparison in one chronogram. A signal that takes the same course in both
@@ -99,11 +102,22 @@ impl Drawer {
         recording
     }
 
+    /// The whole run, unless the columns are too few for its changes: then its last scans.
     fn chronogram(&self, recording: &Recording, lanes: Vec<usize>, scans: usize) -> String {
-        let count = i64::try_from(scans).unwrap_or(i64::MAX);
-        let to = Nanos::new(self.bench.period.count().saturating_mul(count.max(1)));
-        let style = Style { columns: COLUMNS, from: Nanos::ZERO, to, until: to };
-        Chronogram::new(recording, lanes, style).to_string()
+        let period = self.bench.period.count();
+        let after = |n: usize| Nanos::new(period.saturating_mul(i64::try_from(n).unwrap_or(i64::MAX)));
+        let scans = scans.max(1);
+        let drawn = |shown: usize| {
+            let columns = shown.saturating_mul(EACH).clamp(FEW, COLUMNS);
+            let (from, to) = (after(scans - shown), after(scans));
+            let style = Style { columns, from, to, until: to };
+            Chronogram::new(recording, lanes.iter().copied(), style).to_string()
+        };
+        let whole = drawn(scans);
+        if scans > LAST && whole.contains('╳') {
+            return format!("the last {LAST} of {scans} scans:\n{}", drawn(LAST));
+        }
+        whole
     }
 }
 

@@ -55,7 +55,7 @@ pub(super) fn summary(out: &mut dyn Write, outcomes: &[Outcome], unproved: usize
     write!(out, "\n{} passed, {failed} failed", outcomes.len() - failed)?;
     match unproved {
         0 => writeln!(out),
-        n => writeln!(out, ", {n} not proved"),
+        n => writeln!(out, ", {n} left to g7 prove"),
     }
 }
 
@@ -144,7 +144,7 @@ pub(super) fn junit(outcomes: &[Outcome]) -> String {
         let mine: Vec<&Outcome> = outcomes.iter().filter(|o| o.file == file).collect();
         let name = escape(file);
         out.push_str(&format!(
-            "  <testsuite name=\"{name}\" tests=\"{}\" failures=\"{}\" time=\"{}\">\n",
+            "  <testsuite name=\"{name}\" tests=\"{}\" failures=\"{}\" errors=\"0\" time=\"{}\">\n",
             mine.len(),
             failed(&mine),
             took(&mine)

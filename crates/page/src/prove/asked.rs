@@ -1,6 +1,7 @@
 //! The questions of a text, with the answers found so far.
 
 use g7_model::Severity;
+use g7_rig::Source;
 use g7_rig::testing::plants;
 use g7_verify::{Asked, Budget, Closed, Model, Verdict, ask, ask_with, attempt};
 use serde::Deserialize;
@@ -13,13 +14,13 @@ use crate::overview::hash;
 #[derive(Clone, Copy, Debug, Deserialize)]
 pub(crate) struct Limits {
     /// Most states kept.
-    states: usize,
+    pub(super) states: usize,
     /// Most memory for them, in MiB.
-    mib: usize,
+    pub(super) mib: usize,
 }
 
 /// Greatest limits, whatever the page asks for.
-const MOST: Limits = Limits { states: 20_000_000, mib: 1024 };
+pub(super) const MOST: Limits = Limits { states: 20_000_000, mib: 1024 };
 
 /// States from which on a search is long enough that a solver may try as well.
 const SOLVED: usize = 100_000;
@@ -66,12 +67,17 @@ pub(crate) fn prove(file: &File, known: Option<Proof>, limits: Limits) -> (Proof
 fn begin(file: &File, hash: String) -> Proof {
     let asked = questions(file);
     let answers = asked.as_ref().map_or_else(Vec::new, |a| vec![None; a.questions.len()]);
-    // Their problems are among those of the file.
-    let closed = |plant: &str| ask_with(&file.source, None, plant, false).ok()?.0;
-    let plants = if asked.is_some() { plants(&file.source.document) } else { Vec::new() };
-    let closed = plants.into_iter().filter_map(closed);
-    let closed = closed.map(|c| (vec![None; c.questions.len()], c)).map(|(a, c)| (c, a)).collect();
+    let closed = if asked.is_some() { closed(&file.source) } else { Vec::new() };
+    let closed =
+        closed.into_iter().map(|c| (vec![None; c.questions.len()], c)).map(|(a, c)| (c, a)).collect();
     Proof { hash, asked, answers, closed }
+}
+
+/// The questions about charts and plants, in the order of their numbers. Their problems are among those
+/// of the file.
+pub(super) fn closed(source: &Source) -> Vec<Closed> {
+    let one = |plant: &str| ask_with(source, None, plant, false).ok()?.0;
+    plants(&source.document).into_iter().filter_map(one).collect()
 }
 
 /// The questions of a file without errors.

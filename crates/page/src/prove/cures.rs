@@ -1,5 +1,5 @@
 //! The cures of a conflict as changes of the text: receptivities that exclude each other, a third
-//! and parallel way, priority; and the assumption that the environment excludes it.
+//! and parallel way, priority.
 //!
 //! A cure is offered only if the changed text has no errors and the run that showed the conflict
 //! does not show it any more.
@@ -11,7 +11,7 @@ use g7_rig::Source;
 use g7_verify::{Claim, Model, Run, ask, blame};
 use serde::Serialize;
 
-use super::place::{Sort, line_end, place};
+use super::place::line_end;
 use crate::file::File;
 use crate::gestures::draft;
 use crate::ids::{self, Thing};
@@ -39,18 +39,26 @@ struct Pair<'a> {
 pub(super) fn cures(file: &File, model: &Model<'_>, run: &Run) -> Vec<Cure> {
     let found = blame(model, &Claim::NoConflict, run);
     let Some(pair) = pair(file, model, &found.transitions) else { return Vec::new() };
-    let inputs = found.transitions.iter().all(|rank| is_of_inputs(model, *rank));
-    let offered = [
-        ("exclusive", pair.exclusive()),
-        ("parallel", pair.parallel()),
-        ("priority", pair.priority()),
-        ("assume", if inputs { Some(pair.assumed()) } else { None }),
-    ];
+    let offered =
+        [("exclusive", pair.exclusive()), ("parallel", pair.parallel()), ("priority", pair.priority())];
     let good = |splices: &Vec<Splice>| cures_it(file, model, run, splices);
     let offered = offered.into_iter().filter_map(|(sort, splices)| Some((sort, splices.filter(good)?)));
-    offered
-        .map(|(sort, splices)| Cure { sort, with: pair.receptivities(), splices: file.outward(&splices) })
-        .collect()
+    offered.map(|(sort, splices)| Cure::new(sort, pair.receptivities(), file.outward(&splices))).collect()
+}
+
+impl Cure {
+    pub(super) fn new(sort: &'static str, with: Vec<String>, splices: Vec<Change>) -> Cure {
+        Cure { sort, with, splices }
+    }
+}
+
+/// The receptivities of the two transitions of a conflict as one condition, if both depend on inputs
+/// of this moment alone, so that the environment can exclude them together.
+pub(super) fn both(file: &File, model: &Model<'_>, run: &Run) -> Option<String> {
+    let found = blame(model, &Claim::NoConflict, run);
+    let pair = pair(file, model, &found.transitions)?;
+    let inputs = found.transitions.iter().all(|rank| is_of_inputs(model, *rank));
+    inputs.then(|| format!("{} and {}", pair.operand(0), pair.operand(1)))
 }
 
 fn pair<'a>(file: &'a File, model: &Model<'_>, ranks: &[u32]) -> Option<Pair<'a>> {
@@ -178,11 +186,6 @@ impl Pair<'_> {
     fn priority(&self) -> Option<Vec<Splice>> {
         let one = |n| self.gesture(&Gesture::Priority { id: self.id(n), n: Some(n as u32 + 1) });
         joined(one(0)?.into_iter().chain(one(1)?))
-    }
-
-    fn assumed(&self) -> Vec<Splice> {
-        let text = format!("assume not ({} and {})", self.operand(0), self.operand(1));
-        vec![place(self.file, Sort::Property, &text)]
     }
 }
 

@@ -2,7 +2,8 @@
 //!
 //! ```text
 //! file -> verify: ask, answer -> Proof -> rows: claims, verdicts and runs as data
-//! file, question, run         -> ways: the edits that a refuted claim offers
+//! file, question, run         -> ways: the edits that a refuted claim offers (cures, assume, saved)
+//! two files                   -> compared: equal, or a run for each of them up to the first difference
 //! ```
 //!
 //! A call searches as far as its budget goes; the next one, with a larger budget, goes on with what
@@ -10,6 +11,8 @@
 //! clock here: the page counts the time.
 
 mod asked;
+mod assume;
+mod compared;
 mod cures;
 mod place;
 mod rows;
@@ -17,4 +20,5 @@ pub mod saved;
 mod ways;
 
 pub(crate) use asked::{Limits, Proof, prove};
+pub(crate) use compared::{Both, compared};
 pub(crate) use ways::{Wish, ways};

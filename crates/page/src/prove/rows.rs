@@ -72,6 +72,9 @@ struct Row {
     /// The run that shows the answer.
     #[serde(skip_serializing_if = "Option::is_none")]
     run: Option<Vec<Scan>>,
+    /// The ways in which its plant ticked, for each scan; empty unless it draws random numbers.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    chance: Vec<u8>,
 }
 
 /// Most scans of a run that comes with a claim that something can be; refuted claims and those of the
@@ -107,7 +110,7 @@ fn row(file: &File, model: &Model<'_>, number: usize, question: &Question, verdi
         reason: words::reason(verdict, time),
         help: match verdict {
             // The panel has a button for it, and no options.
-            Verdict::Open(open) if open.help.contains("--") => Said::default(),
+            Verdict::Open(open) if open.reason.is_of_budget() => Said::default(),
             Verdict::Proved(_) | Verdict::Refuted(_) | Verdict::Open(_) => words::help(question, verdict),
         },
         from,
@@ -118,6 +121,7 @@ fn row(file: &File, model: &Model<'_>, number: usize, question: &Question, verdi
             (Verdict::Refuted(_), Some(run)) => guilty(&file.source.document, model, &question.claim, run),
             _ => Vec::new(),
         },
+        chance: run.map_or_else(Vec::new, |run| run.ways.clone()),
         run: run.map(|run| Scan::list(&run.moves)),
     }
 }

@@ -9,16 +9,46 @@ use g7_rig::testing::script::{Script, activity, expr, join, not, value};
 use g7_rig::{Bench, Source};
 use g7_verify::{Claim, Model, Move, Query, Question, Run};
 
+/// A sentence in English, French and Portuguese.
+pub type Said = [&'static str; 3];
+
 /// Why there is no test of a claim that some run does something.
-pub const NO_RUN: &str = "it says that some run does something, and none does";
+pub const NO_RUN: Said = [
+    "it says that some run does something, and none does",
+    "elle dit qu’une exécution fait quelque chose, et aucune ne le fait",
+    "diz que alguma execução faz algo, e nenhuma o faz",
+];
 /// Why there is no test where a made one does not fail in its last statement.
-pub const UNSEEN: &str = "a test sees the ends of scans, and they do not show it";
-const SETTLED: &str =
-    "a test sees the ends of scans: one of the transitions was cleared, and the other one waits unseen";
-const TWICE: &str = "a test does not see that an active step was activated once more";
-const WRITES: &str = "a test sees the last of the values; `g7 test` notes such a pass in every scenario";
-const CHANCE: &str = "its plant draws random numbers, and no seed draws these";
-const FAULT: &str = "a fault stops the scan that shows it";
+pub const UNSEEN: Said = [
+    "a test sees the ends of scans, and they do not show it",
+    "un essai voit les fins de cycle, et elles ne le montrent pas",
+    "um teste vê os fins de ciclo, e eles não o mostram",
+];
+const SETTLED: Said = [
+    "a test sees the ends of scans: one of the transitions was cleared, and the other one waits unseen",
+    "un essai voit les fins de cycle : une des transitions a été franchie, et l’autre attend sans être vue",
+    "um teste vê os fins de ciclo: uma das transições foi transposta, e a outra espera sem ser vista",
+];
+const TWICE: Said = [
+    "a test does not see that an active step was activated once more",
+    "un essai ne voit pas qu’une étape active a été activée encore une fois",
+    "um teste não vê que uma etapa ativa foi ativada outra vez",
+];
+const WRITES: Said = [
+    "a test sees the last of the values; `g7 test` notes such a pass in every scenario",
+    "un essai voit la dernière des valeurs ; `g7 test` note un tel passage dans tout scénario",
+    "um teste vê o último dos valores; `g7 test` anota tal passagem em cada cenário",
+];
+const CHANCE: Said = [
+    "its plant draws random numbers, and no seed draws these",
+    "sa partie opérative tire des nombres au hasard, et aucune graine ne tire ceux-ci",
+    "a sua instalação tira números ao acaso, e nenhuma semente tira estes",
+];
+const FAULT: Said = [
+    "a fault stops the scan that shows it",
+    "un défaut arrête le cycle qui le montre",
+    "uma falha para o ciclo que o mostra",
+];
 
 /// The title of the test of a claim; the same for the same claim, so that it is replaced.
 pub fn title(claim: &str) -> String {
@@ -83,7 +113,7 @@ pub struct Given<'a> {
 /// # Errors
 ///
 /// A sentence that says why a test cannot show it.
-pub fn of_run(given: &Given<'_>, title: &str) -> Result<Scenario, &'static str> {
+pub fn of_run(given: &Given<'_>, title: &str) -> Result<Scenario, Said> {
     if !given.run.ways.is_empty() {
         return Err(CHANCE);
     }
@@ -91,7 +121,7 @@ pub fn of_run(given: &Given<'_>, title: &str) -> Result<Scenario, &'static str> 
     written(&Given { run, ..*given }, title)
 }
 
-fn written(given: &Given<'_>, title: &str) -> Result<Scenario, &'static str> {
+fn written(given: &Given<'_>, title: &str) -> Result<Scenario, Said> {
     let mut script = Script::new(given.bench);
     let claim = &given.question.claim;
     let faults = matches!(claim, Claim::NoFault | Claim::NoInstability | Claim::NoOpposedOrders);
@@ -120,7 +150,7 @@ fn scans(script: &mut Script<'_>, moves: &[Move]) {
 }
 
 /// A claim of the author.
-fn author(given: &Given<'_>, script: &mut Script<'_>) -> Result<(), &'static str> {
+fn author(given: &Given<'_>, script: &mut Script<'_>) -> Result<(), Said> {
     let (claim, moves) = (&given.question.claim, &given.run.moves);
     let property = given.source.document.properties().find(|p| p.at.0 == given.question.at);
     let property = property.ok_or(UNSEEN)?;
@@ -216,7 +246,7 @@ fn after(given: &Given<'_>, script: &mut Script<'_>, first: usize, within: Nanos
 }
 
 /// From the last situation nothing leads on: the test waits that it changes.
-fn deadlock(given: &Given<'_>, script: &mut Script<'_>) -> Result<(), &'static str> {
+fn deadlock(given: &Given<'_>, script: &mut Script<'_>) -> Result<(), Said> {
     scans(script, &given.run.moves);
     let (state, _) = end(given.model, given.run);
     let symbols = &given.bench.compiled.symbols;
@@ -228,7 +258,7 @@ fn deadlock(given: &Given<'_>, script: &mut Script<'_>) -> Result<(), &'static s
 }
 
 /// Both transitions were cleared: then steps behind both are active.
-fn conflict(given: &Given<'_>, script: &mut Script<'_>) -> Result<(), &'static str> {
+fn conflict(given: &Given<'_>, script: &mut Script<'_>) -> Result<(), Said> {
     scans(script, &given.run.moves);
     let (state, cleared) = end(given.model, given.run);
     let t = given.bench.compiled.program.tables();

@@ -4,12 +4,13 @@ use g7_edit::spliced;
 use g7_engine::{State, scan};
 use g7_host::VirtualClock;
 use g7_model::{Document, Item};
-use g7_rig::Source;
 use g7_rig::testing::{self, Coverage};
+use g7_rig::{Bench, Source};
 use g7_verify::{Claim, Model, Move, Question, Run, words};
 use serde::{Deserialize, Serialize};
 
-use super::asked::questions;
+use super::asked::{closed, questions};
+use super::assume::Refuted;
 use super::cures::{Cure, cures};
 use super::place::{Sort, place};
 use super::saved::{self, Given};
@@ -27,6 +28,9 @@ pub(crate) struct Wish {
     /// The number of the question.
     question: usize,
     run: Vec<Scan>,
+    /// The ways in which the plant ticked.
+    #[serde(default)]
+    chance: Vec<u8>,
 }
 
 /// The ways on from a refuted claim.
@@ -38,7 +42,7 @@ pub(crate) struct Ways {
     test: Option<Added>,
     /// Why there is no test.
     #[serde(skip_serializing_if = "Option::is_none")]
-    untested: Option<String>,
+    untested: Option<saved::Said>,
 }
 
 /// A test with the change that adds it.
@@ -52,22 +56,44 @@ struct Added {
 pub(crate) fn ways(file: &File, wish: &Wish) -> Result<Ways, String> {
     let asked = questions(file).filter(|_| hash(file.text()) == wish.hash);
     let asked = asked.ok_or("the text has changed since: ask again")?;
-    let model = Model::new(&asked.compiled, asked.assume.clone());
-    let Some(question) = asked.questions.get(wish.question) else {
-        let untested = "a plant takes part: `g7 prove --save` writes a test with it".to_owned();
-        return Ok(Ways { cures: Vec::new(), test: None, untested: Some(untested) });
-    };
+    if let Some(question) = asked.questions.get(wish.question) {
+        let model = Model::new(&asked.compiled, asked.assume.clone());
+        let options = g7_rig::Options { plant: Some("none"), ..g7_rig::Options::default() };
+        let bench = g7_rig::build(&file.source, &options).ok().and_then(|(bench, _)| bench);
+        return Ok(found(file, wish, (&model, question), bench.as_ref(), (None, wish.question)));
+    }
+    let mut number = wish.question - asked.questions.len();
+    for (plant, closed) in closed(&file.source).iter().enumerate() {
+        if let Some(question) = closed.questions.get(number) {
+            let (model, place) = (closed.model(), (Some(plant), number));
+            return Ok(found(file, wish, (&model, question), Some(&closed.bench), place));
+        }
+        number -= closed.questions.len();
+    }
+    Err("there is no such question".to_owned())
+}
+
+fn found(
+    file: &File,
+    wish: &Wish,
+    (model, question): (&Model<'_>, &Question),
+    bench: Option<&Bench>,
+    place: (Option<usize>, usize),
+) -> Ways {
     let moves = Scan::moves(&wish.run, model.inputs.len());
-    let run = ended(&model, moves);
-    let cures = match question.claim {
-        Claim::NoConflict => cures(file, &model, &run),
+    let run = Run { ways: wish.chance.clone(), ..ended(model, moves) };
+    let mut cures = match question.claim {
+        Claim::NoConflict => cures(file, model, &run),
         _ => Vec::new(),
     };
-    let (test, untested) = match test(file, &model, question, &run) {
+    if let Some((text, splice)) = (Refuted { file, model, question, run: &run, place }).assumed() {
+        cures.push(Cure::new("assume", vec![text], file.outward(&[splice])));
+    }
+    let (test, untested) = match test(file, model, question, &run, bench) {
         Ok(test) => (Some(test), None),
         Err(why) => (None, Some(why)),
     };
-    Ok(Ways { cures, test, untested })
+    Ways { cures, test, untested }
 }
 
 /// A run with the fault that stops its last scan, if one does.
@@ -86,21 +112,25 @@ fn ended(model: &Model<'_>, moves: Vec<Move>) -> Run {
 }
 
 /// The test of a run, if it fails in its last statement.
-fn test(file: &File, model: &Model<'_>, question: &Question, run: &Run) -> Result<Added, String> {
-    let unseen = || saved::UNSEEN.to_owned();
-    let options = g7_rig::Options { plant: Some("none"), ..g7_rig::Options::default() };
-    let bench = g7_rig::build(&file.source, &options).map_err(|e| e.to_string())?.0.ok_or_else(unseen)?;
+fn test(
+    file: &File,
+    model: &Model<'_>,
+    question: &Question,
+    run: &Run,
+    bench: Option<&Bench>,
+) -> Result<Added, saved::Said> {
+    let bench = bench.ok_or(saved::UNSEEN)?;
     let written = file.text().get(file.source.range(question.at)).unwrap_or_default();
     let [claim, ..] = words::claim(written, model.compiled, question);
-    let given = Given { source: &file.source, bench: &bench, model, question, run };
+    let given = Given { source: &file.source, bench, model, question, run };
     let made = saved::of_run(&given, &fresh(file, saved::title(&claim)))?;
     let title = made.title.to_string();
     let items = vec![Item::Test(made)];
     let printed = g7_syntax::print(&Document { items, ..Document::default() }, None);
     let splice = place(file, Sort::Test, printed.trim());
-    let text = spliced(file.text(), std::slice::from_ref(&splice)).ok_or_else(unseen)?;
+    let text = spliced(file.text(), std::slice::from_ref(&splice)).ok_or(saved::UNSEEN)?;
     if !fails(&file.source.name, text, &title) {
-        return Err(unseen());
+        return Err(saved::UNSEEN);
     }
     Ok(Added { title, splices: file.outward(&[splice]) })
 }

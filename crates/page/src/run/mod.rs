@@ -29,4 +29,4 @@ pub(crate) use running::Run;
 pub(crate) use scans::Scan;
 pub use sent::Show;
 pub(crate) use start::start;
-pub(crate) use wish::Start;
+pub(crate) use wish::{Start, profile};

@@ -54,7 +54,8 @@ pub(super) fn bench(source: &Source, wish: &Start) -> Result<Bench, String> {
     })
 }
 
-fn profile(name: &str) -> Result<ProfileName, String> {
+/// The profile with this name.
+pub(crate) fn profile(name: &str) -> Result<ProfileName, String> {
     let found = ProfileName::ALL.into_iter().find(|p| p.name() == name);
     found.ok_or_else(|| format!("there is no profile `{name}`"))
 }

@@ -1,4 +1,4 @@
-//! Properties of a file: those that nothing has proved yet, and the conditions of those about charts and
+//! Properties of a file: those that are left to the prover, and the conditions of those about charts and
 //! plant together (`prove … with Tank`).
 
 use std::ops::Range;
@@ -9,7 +9,7 @@ use super::{sides, statements};
 use crate::bench::{self, Ask, Bench, Options};
 use crate::{Error, Source};
 
-/// A property that nothing has proved.
+/// A property that is left to the prover.
 pub struct Unproved {
     /// `path:line:column` of it.
     pub place: String,
@@ -17,8 +17,8 @@ pub struct Unproved {
     pub text: String,
 }
 
-/// The properties of a file. Names and types in them are checked with the charts; to prove
-/// them is the work of `verify`.
+/// The properties of a file, without its assumptions: these claim nothing. Names and types in them are
+/// checked with the charts; to prove them is the work of `verify`.
 pub fn unproved(source: &Source) -> Vec<Unproved> {
     let one = |p: &Property| {
         let written = source.text.get(source.range(p.at.0)).unwrap_or_default();
@@ -27,7 +27,8 @@ pub fn unproved(source: &Source) -> Vec<Unproved> {
             text: written.split_whitespace().collect::<Vec<_>>().join(" "),
         }
     };
-    source.document.properties().map(one).collect()
+    let claims = source.document.properties().filter(|p| !matches!(p.kind, PropertyKind::Assume(_)));
+    claims.map(one).collect()
 }
 
 /// The plants with which properties of a document are asked, each once, in the order of the text.

@@ -64,6 +64,8 @@ fn put(out: &mut Vec<u8>, mut value: u32) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::sat::brute::{shortest, system};
+    use g7_peers::checkers::{Abc, Ric3, Said, one_of};
 
     #[test]
     fn a_latch_that_an_input_sets_for_ever() {
@@ -77,6 +79,34 @@ mod tests {
         let mut expected = b"aig 3 1 1 0 1 1 1\n7 4\n4\n5\n".to_vec();
         expected.extend([1, 2]);
         assert_eq!(aiger(&s, &[latch]), expected);
+    }
+
+    /// Other programs read the file, and say of each signal what is said here.
+    #[test]
+    fn other_model_checkers_agree() {
+        let all: Vec<_> = (0..300).map(system).collect();
+        let files: Vec<Vec<u8>> = all.iter().map(|(s, bad)| aiger(s, &[*bad, !*bad])).collect();
+        let wanted = |i: usize| [all[i].1, !all[i].1].map(|bad| shortest(&all[i].0, bad));
+        if let Some(abc) = Abc::find() {
+            for (i, said) in abc.ask(&files, 20).iter().enumerate() {
+                let said: Vec<Option<usize>> = said.iter().map(steps).collect();
+                assert_eq!(said, wanted(i), "seed {i}");
+            }
+        }
+        if let Some(ric3) = Ric3::find() {
+            for (i, file) in files.iter().enumerate().take(40) {
+                let said = [0, 1].map(|k| steps(&ric3.ask(&one_of(file, k), 20)).is_some());
+                assert_eq!(said, wanted(i).map(|steps| steps.is_some()), "seed {i}");
+            }
+        }
+    }
+
+    fn steps(said: &Said) -> Option<usize> {
+        match said {
+            Said::Never => None,
+            Said::Reached(steps) => Some(*steps),
+            Said::Open => panic!("no answer"),
+        }
     }
 
     #[test]

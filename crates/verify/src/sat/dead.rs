@@ -7,9 +7,10 @@
 
 use crate::sat::cnf::{Start, Steps};
 use crate::sat::decide::{Effort, Found, decide};
-use crate::sat::graph::{Graph, Init, Node, Signal, System};
+use crate::sat::graph::{Init, Signal, System};
 use crate::sat::simulate::{Trace, evaluate};
 use crate::sat::solver::{Answer, Batsat, Solver};
+use crate::sat::unrolled::Unrolled;
 
 /// Most vectors of inputs that are tried.
 const MOST: usize = 24;
@@ -34,14 +35,18 @@ pub fn ends(system: &System, effort: &Effort<'_>) -> Ends {
     let mut open = system.clone();
     let kept = open.latch(Init::One);
     let constraints = std::mem::take(&mut open.constraints);
-    let holds = open.graph.all(constraints);
-    let next = open.graph.and(kept, holds);
+    let whole = open.graph.all(constraints);
+    let next = open.graph.and(kept, whole);
     open.set_next(kept, next);
     let mut vectors = vec![vec![false; system.inputs.len()]];
     let mut bad = kept;
     while vectors.len() <= MOST {
         let Some(vector) = vectors.last() else { break };
-        let holds = with_inputs(&mut open.graph, holds, vector);
+        let given = [vector.clone()];
+        let mut unrolled = Unrolled::new(&given);
+        let all = system.constraints.iter();
+        let all: Vec<Signal> = all.map(|c| unrolled.signal(system, &mut open.graph, 0, *c)).collect();
+        let holds = open.graph.all(all);
         bad = open.graph.and(bad, !holds);
         match decide(&open, &[bad], effort).into_iter().next() {
             Some(Found::Never(_)) => return Ends::None,
@@ -56,38 +61,8 @@ pub fn ends(system: &System, effort: &Effort<'_>) -> Ends {
     Ends::Open
 }
 
-/// A function with constants for the inputs.
-fn with_inputs(graph: &mut Graph, root: Signal, inputs: &[bool]) -> Signal {
-    let mut made: Vec<Option<Signal>> = vec![None; root.node() as usize + 1];
-    let mut work = vec![root.node()];
-    let get = |made: &[Option<Signal>], s: Signal| {
-        made.get(s.node() as usize).copied().flatten().map(|m| m.negated_if(s.is_negated()))
-    };
-    while let Some(node) = work.last().copied() {
-        let signal = Signal::of(node, false);
-        let new = match graph.node(signal) {
-            Node::False => Signal::FALSE,
-            Node::Latch(_) => signal,
-            Node::Input(i) => inputs.get(i as usize).copied().unwrap_or(false).into(),
-            Node::And(a, b) => match (get(&made, a), get(&made, b)) {
-                (Some(a), Some(b)) => graph.and(a, b),
-                (x, y) => {
-                    work.extend(x.is_none().then_some(a.node()));
-                    work.extend(y.is_none().then_some(b.node()));
-                    continue;
-                }
-            },
-        };
-        work.pop();
-        if let Some(slot) = made.get_mut(node as usize) {
-            *slot = Some(new);
-        }
-    }
-    get(&made, root).unwrap_or(Signal::FALSE)
-}
-
 /// The latches at the last step of a run.
-fn state(system: &System, trace: &Trace) -> Vec<bool> {
+pub(crate) fn state(system: &System, trace: &Trace) -> Vec<bool> {
     let word = |b: &bool| u64::from(*b);
     let mut latches: Vec<u64> = trace.latches.iter().map(word).collect();
     for inputs in trace.inputs.iter().take(trace.inputs.len().saturating_sub(1)) {

@@ -9,7 +9,9 @@ use crate::sat::bounded::{Bounded, Induction};
 use crate::sat::check::{Checker, certifies_induction};
 use crate::sat::cone::{Cube, cone};
 use crate::sat::graph::{Signal, System};
+use crate::sat::kept::kept;
 use crate::sat::pdr::{Outcome, Pdr};
+use crate::sat::relate::relations;
 use crate::sat::simulate::{Trace, shows};
 
 /// The answer for a signal.
@@ -36,6 +38,8 @@ pub enum Proof {
 const FIRST: u64 = 4_000;
 /// Signals for which a turn has its ticks each; more share what these have.
 const SHARES: u64 = 8;
+/// Most ticks to find out which candidates are never reached.
+const LEARNING: u64 = 1 << 20;
 /// Most steps of an induction.
 const DEEPEST: usize = 32;
 
@@ -52,6 +56,37 @@ pub struct Effort<'b> {
 /// Decides for each of these signals whether a run shows it.
 pub fn decide(system: &System, signals: &[Signal], effort: &Effort<'_>) -> Vec<Found> {
     Decide::new(system, signals, effort).run()
+}
+
+/// The same, with cubes that are thought never to be reached. Those of which one step shows it help the search.
+pub(crate) fn decide_with(
+    system: &System,
+    signals: &[Signal],
+    candidates: &[Cube],
+    effort: &Effort<'_>,
+) -> Vec<Found> {
+    let mut work = Decide::new(system, signals, effort);
+    work.learn(candidates);
+    work.run()
+}
+
+/// The same until a run shows one of them: then it is a shortest one that shows any, and the others stay
+/// open. Begins with relations between latches, which help where the system is two charts side by side;
+/// gives their number, which every proof counts on.
+pub(crate) fn decide_related(
+    system: &System,
+    signals: &[Signal],
+    effort: &Effort<'_>,
+) -> (Vec<Found>, usize) {
+    let mut work = Decide::new(system, signals, effort);
+    work.first = true;
+    let cubes = relations(system, signals, FIRST << effort.turns.min(40), effort);
+    // An invariant by themselves, they hold whatever the signals are.
+    if work.checker.certifies(&cubes, Signal::FALSE) {
+        work.lemmas = cubes;
+    }
+    let count = work.lemmas.len();
+    (work.run(), count)
 }
 
 /// A signal that is not decided.
@@ -76,6 +111,8 @@ struct Decide<'a> {
     checker: Checker<'a>,
     /// Cubes that the checker certified.
     lemmas: Vec<Cube>,
+    /// A run that shows one signal ends the work.
+    first: bool,
 }
 
 impl<'a> Decide<'a> {
@@ -93,6 +130,23 @@ impl<'a> Decide<'a> {
             induction: Induction::new(system, effort.stop),
             checker: Checker::new(system, effort.stop),
             lemmas: Vec::new(),
+            first: false,
+        }
+    }
+
+    /// Certifies those of these cubes that are never reached, and sees what follows from them at once.
+    fn learn(&mut self, candidates: &[Cube]) {
+        let wanted = self.wanted.iter().map(|w| w.signal);
+        let inside = cone(self.system, self.system.constraints.iter().copied().chain(wanted));
+        let is_inside = |c: &&Cube| c.iter().all(|s| inside.get(s.node() as usize) == Some(&true));
+        let cubes: Vec<Cube> = candidates.iter().filter(is_inside).cloned().collect();
+        if cubes.is_empty() || self.effort.turns == 0 {
+            return;
+        }
+        let Some(cubes) = kept(self.system, cubes, LEARNING, self.effort.stop) else { return };
+        if self.checker.certifies(&cubes, Signal::FALSE) {
+            self.lemmas = cubes;
+            self.prove(FIRST);
         }
     }
 
@@ -101,10 +155,13 @@ impl<'a> Decide<'a> {
             let ticks = FIRST << turn.min(40);
             // A search that finds nothing is the longest part of a turn.
             self.search(ticks / 4);
+            if self.is_over() {
+                break;
+            }
             let share = |open: usize| ticks * SHARES / SHARES.max(open as u64);
             self.induce(share(self.open().len()) / 4);
             self.prove(share(self.open().len()));
-            if self.open().is_empty() || (self.effort.stop)() {
+            if self.is_over() {
                 break;
             }
         }
@@ -114,6 +171,12 @@ impl<'a> Decide<'a> {
             answer.unwrap_or_else(|| w.long.map_or(Found::Open(steps), Found::Reached))
         });
         rest.collect()
+    }
+
+    /// True if there is nothing left to do, or no time.
+    fn is_over(&self) -> bool {
+        let reached = || self.answers.iter().any(|a| matches!(a, Some(Found::Reached(_))));
+        self.answers.iter().all(Option::is_some) || self.first && reached() || (self.effort.stop)()
     }
 
     /// The numbers of the signals that are not decided, those that depend on little first.
@@ -143,7 +206,7 @@ impl<'a> Decide<'a> {
         let end = self.bounded.ticks() + ticks;
         // Steps that are decided without a tick grow the solver too.
         let mut left = 1 + ticks / 64;
-        while !wanted.is_empty() && self.bounded.ticks() < end && left > 0 && !(self.effort.stop)() {
+        while !wanted.is_empty() && self.bounded.ticks() < end && left > 0 && !self.is_over() {
             if self.bounded.bytes() > self.effort.bytes / 2 {
                 break;
             }
@@ -223,7 +286,12 @@ impl<'a> Decide<'a> {
                 Outcome::Proved(cubes) => {
                     let signal = w.signal;
                     if self.checker.certifies(&cubes, signal) {
-                        let clauses = cubes.iter().map(|c| c.iter().map(|s| !*s).collect()).collect();
+                        // The lemmas that it was given are a part of the proof.
+                        let inside = cone(system, system.constraints.iter().copied().chain([signal]));
+                        let is_inside =
+                            |c: &&Cube| c.iter().all(|s| inside.get(s.node() as usize) == Some(&true));
+                        let all = cubes.iter().chain(self.lemmas.iter().filter(is_inside));
+                        let clauses = all.map(|c| c.iter().map(|s| !*s).collect()).collect();
                         self.lemmas.extend(cubes);
                         self.answer(i, Found::Never(Proof::Invariant(clauses)));
                     }

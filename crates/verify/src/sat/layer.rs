@@ -9,10 +9,14 @@ use crate::layer::{Budget, Layer};
 use crate::look::replay;
 use crate::model::Model;
 use crate::question::{Claim, Question};
+use crate::reason::Reason;
 use crate::sat::dead::{Ends, ends};
-use crate::sat::decide::{Effort, Found, Proof, decide};
+use crate::sat::decide::{Effort, Found, Proof, decide_with};
 use crate::sat::graph::Signal;
-use crate::system::{Asked, Observed, Translated, system};
+use crate::sat::simulate::Trace;
+use crate::sat::stays::is_trap;
+use crate::sat::traps::{Clauses, Trap, Way, traps};
+use crate::system::{Asked, Follows, Observed, Translated, system};
 use crate::verdict::{Certificate, Evidence, Open, Run, Verdict, is_open};
 
 /// Bounded search, induction and PDR as a layer.
@@ -50,7 +54,7 @@ impl Layer for Satisfiability {
         }
         let translated = system(model, &mine, Observed::Asked);
         let effort = Effort { bytes: budget.bytes, turns: self.turns, stop: budget.stop };
-        let work = Work { model, translated: &translated, effort: &effort };
+        let work = Work { model, translated: &translated, effort: &effort, budget };
         for (i, verdict) in open.iter().zip(work.verdicts(&mine)) {
             if let Some(slot) = answers.get_mut(*i) {
                 *slot = Some(joined(slot.take(), verdict));
@@ -74,12 +78,11 @@ fn joined(old: Option<Verdict>, new: Verdict) -> Verdict {
         (Some(Verdict::Open(old)), Verdict::Open(new)) => {
             // A question that the solver could not be asked keeps the reason of the search.
             let further = if new.scans == 0 { &old } else { &new };
-            let (reason, help) = (further.reason.clone(), further.help.clone());
+            let reason = further.reason.clone();
             Verdict::Open(Open {
                 scans: old.scans.max(new.scans),
                 states: old.states.max(new.states),
                 reason,
-                help,
             })
         }
         (_, new) => new,
@@ -124,6 +127,7 @@ struct Work<'a> {
     model: &'a Model<'a>,
     translated: &'a Translated,
     effort: &'a Effort<'a>,
+    budget: &'a Budget<'a>,
 }
 
 impl Work<'_> {
@@ -132,18 +136,60 @@ impl Work<'_> {
         let mut signals: Vec<Signal> = asked.iter().flat_map(|a| [a.bad, a.unsure]).collect();
         signals.sort_unstable();
         signals.dedup();
-        let found = decide(&self.translated.system, &signals, self.effort);
+        let candidates = &self.translated.exclusive;
+        let found = decide_with(&self.translated.system, &signals, candidates, self.effort);
         let of = |s: Signal| {
             let at = signals.binary_search(&s).ok();
             at.and_then(|at| found.get(at)).unwrap_or(&Found::Open(0))
         };
         let proofs = asked.iter().any(|a| matches!(of(a.bad), Found::Never(_)));
         let ends = if proofs { ends(&self.translated.system, self.effort) } else { Ends::None };
-        let one = |(q, a): (&Question, &Result<Asked, String>)| match a {
-            Ok(a) => self.verdict(&q.claim, a, [of(a.bad), of(a.unsure)], &ends),
-            Err(reason) => open(0, reason.clone(), "this is answered by a search of all states only"),
+        let one = |((q, a), f): ((&Question, &Result<Asked, Reason>), &Option<Follows>)| match (a, f) {
+            (Ok(a), None) => self.verdict(&q.claim, a, [of(a.bad), of(a.unsure)], &ends),
+            // Where runs come to an end without a choice of inputs, nothing is said about what follows.
+            (Ok(a), Some(_)) if ends != Ends::None => {
+                let nothing = Found::Never(Proof::Invariant(Vec::new()));
+                self.verdict(&q.claim, a, [&nothing, &nothing], &ends)
+            }
+            (Ok(a), Some(f)) => match self.follows(&q.claim, a, f) {
+                // A proof counts as one of any other claim does.
+                Ok(clauses) => {
+                    let proof = Found::Never(Proof::Invariant(clauses));
+                    self.verdict(&q.claim, a, [&proof, of(a.unsure)], &ends)
+                }
+                Err(verdict) => verdict,
+            },
+            (Err(reason), _) => open(0, reason.clone()),
         };
-        questions.iter().zip(&self.translated.asked).map(one).collect()
+        let t = self.translated;
+        questions.iter().zip(&t.asked).zip(&t.follows).map(one).collect()
+    }
+
+    /// What can follow each state: the clauses of a proof that it is always what the claim asks for, or
+    /// another verdict.
+    fn follows(&self, claim: &Claim, asked: &Asked, follows: &Follows) -> Result<Clauses, Verdict> {
+        let Follows { waits, goal, may } = *follows;
+        // A value that is not known may be the one that leads on.
+        if let Some(limit) = self.translated.limits(&[waits, may]).first() {
+            return Err(open(0, Reason::Part(limit.part)));
+        }
+        let t = self.translated;
+        let before = |trace: &Trace| {
+            let scans = trace.inputs.len().saturating_sub(1);
+            t.moves(trace.inputs.get(..scans).unwrap_or(&[]))
+        };
+        let mut judge = |trace: &Trace| is_trap(self.model, claim, &before(trace), self.budget);
+        match traps(&t.system, &Trap { waits, goal, may, words: &t.words }, self.effort, &mut judge) {
+            Way::Always(clauses) => Ok(clauses),
+            Way::Trap(trace) => {
+                let run = Run { moves: before(&trace), ..Run::default() };
+                if !replay(self.model, claim, &run) {
+                    return Err(self.limited(asked.bad, run.moves.len()));
+                }
+                Err(Verdict::Refuted(Evidence::Run(run)))
+            }
+            Way::Open(scans) => Err(open(scans, Reason::LeadsOn)),
+        }
     }
 
     /// The answer to a question for which this was found of its signal, and of the one that
@@ -165,47 +211,23 @@ impl Work<'_> {
                     let proof = Evidence::Certificate(certificate(proof));
                     if claim.is_of_some_run() { Verdict::Refuted(proof) } else { Verdict::Proved(proof) }
                 }
-                Ends::Behind(n) => {
-                    let behind = if *n == 0 {
-                        "at the start".to_owned()
-                    } else {
-                        format!("behind a run of {n} scans")
-                    };
-                    let help = "weaken the assumptions: without inputs there are no runs, and every claim would hold";
-                    open(*n, format!("no input satisfies the assumptions {behind}"), help)
-                }
-                Ends::Open => {
-                    let reason = "it is not known whether some input always satisfies the assumptions";
-                    open(0, reason.to_owned(), "let the assumptions depend on inputs alone, or weaken them")
-                }
+                Ends::Behind(n) => open(*n, Reason::NoInput(*n)),
+                Ends::Open => open(0, Reason::Assumptions),
             },
-            [Found::Never(_), Found::Reached(trace)] => {
-                let reason =
-                    "some scan has more passes or loops than are followed, or a condition has no value there";
-                let help = "make every evolution end first, with an edge (`↑a`) or a step that waits";
-                open(trace.inputs.len() - 1, reason.to_owned(), help)
-            }
-            [Found::Never(_), Found::Open(scans)] | [Found::Open(scans), _] => open(
-                *scans,
-                "the search was stopped".to_owned(),
-                "allow more with --time, or assume what the environment keeps",
-            ),
+            [Found::Never(_), Found::Reached(trace)] => open(trace.inputs.len() - 1, Reason::Loops),
+            [Found::Never(_), Found::Open(scans)] | [Found::Open(scans), _] => open(*scans, Reason::Stopped),
         }
     }
 
     /// A run that the engine does not repeat: the system has more runs than the chart.
     fn limited(&self, bad: Signal, scans: usize) -> Verdict {
         let limits = self.translated.limits(&[bad]);
-        let reason = match limits.first() {
-            Some(limit) => format!("{} can be followed by a search of all states only", limit.reason),
-            None => "please report this: the system and the engine do not agree".to_owned(),
-        };
-        open(scans, reason, "compare the number with constants only, or give it a smaller type")
+        open(scans, limits.first().map_or(Reason::NotRepeated, |limit| Reason::Part(limit.part)))
     }
 }
 
-fn open(scans: usize, reason: String, help: &str) -> Verdict {
-    Verdict::Open(Open { scans, states: 0, reason, help: help.to_owned() })
+fn open(scans: usize, reason: Reason) -> Verdict {
+    Verdict::Open(Open { scans, states: 0, reason })
 }
 
 fn certificate(proof: &Proof) -> Certificate {

@@ -5,7 +5,10 @@
 //! ```text
 //! Question -> layer -> crate::system -> graph -> decide -> bounded, pdr -> solver
 //!                                                       -> check (proofs), simulate (runs)
+//!                                   -> kept (what the chart suggests, as far as it holds) -> decide
 //!                                   -> dead (constraints that cannot be kept)
+//!                                   -> traps (what can follow no more), stays (a trap judged by a search)
+//! Compare  -> crate::compare -> joined (two systems as one) -> relate (latches that belong together) -> decide
 //! ```
 //!
 //! # Invariants
@@ -26,14 +29,27 @@ mod dead;
 mod decide;
 mod frames;
 pub mod graph;
+mod joined;
+mod kept;
 mod layer;
 mod pdr;
+mod relate;
 pub mod simulate;
 mod solver;
+mod stays;
+mod traps;
+mod unrolled;
 
 pub use aiger::aiger;
+pub(crate) use cone::Cube;
 pub use dead::{Ends, ends};
+pub(crate) use decide::decide_related;
+#[cfg(test)]
+pub(crate) use decide::decide_with;
 pub use decide::{Effort, Found, Proof, decide};
 pub use graph::{Graph, Init, Latch, Node, Signal, System};
+pub(crate) use joined::{join, mapped};
+#[cfg(test)]
+pub(crate) use kept::kept;
 pub use layer::Satisfiability;
 pub use simulate::{Trace, Values, evaluate, shows};

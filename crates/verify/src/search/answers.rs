@@ -6,6 +6,7 @@ use crate::expand::Shown;
 use crate::explore::Move;
 use crate::monitor::IDLE;
 use crate::outcome::{Outcome, asks_for_traps};
+use crate::reason::Reason;
 use crate::verdict::{Run, Verdict};
 
 impl<'a> Search<'a> {
@@ -22,7 +23,8 @@ impl<'a> Search<'a> {
                 self.show(question, run);
             }
             Shown::Unclear { question, fault } => {
-                self.give(question, self.outcome().unclear(&fault.kind.to_string()));
+                let open = self.outcome().so_far(Reason::Condition(fault.kind));
+                self.give(question, Verdict::Open(open));
             }
         }
     }
@@ -45,11 +47,6 @@ impl<'a> Search<'a> {
         at == 0 && self.start.is_empty()
     }
 
-    /// The inputs of the scan that led to a state.
-    pub(super) fn inputs_of(&self, at: usize) -> &[u64] {
-        self.inputs.get(at * self.count..(at + 1) * self.count).unwrap_or(&[])
-    }
-
     /// The run that leads to a state from the beginning of the search.
     pub(crate) fn path(&self, mut at: usize) -> Run {
         let (mut moves, mut ways) = (Vec::new(), Vec::new());
@@ -57,7 +54,9 @@ impl<'a> Search<'a> {
             ways.extend(self.ways.get(at).copied());
             let before = self.parents.get(at).copied().unwrap_or(0) as usize;
             let wait = if self.is_first(before) { 0 } else { self.model.period };
-            moves.push(Move { inputs: self.inputs_of(at).to_vec(), wait });
+            let mut inputs = Vec::new();
+            self.inputs.get(at, &mut inputs);
+            moves.push(Move { inputs, wait });
             at = before;
         }
         moves.reverse();
@@ -74,7 +73,7 @@ impl<'a> Search<'a> {
         back.sort_unstable();
         let mut good = self.leads_on.clone();
         for (at, on) in good.iter_mut().enumerate() {
-            *on |= self.memory.is_some() && self.store.image(at).last() == Some(&IDLE);
+            *on |= self.memory.is_some() && self.store.last_word(at) == Some(IDLE);
         }
         let mut work: Vec<u32> = (0u32..).zip(&good).filter(|(_, g)| **g).map(|(at, _)| at).collect();
         while let Some(at) = work.pop() {
@@ -88,7 +87,7 @@ impl<'a> Search<'a> {
         }
         let bad: Vec<usize> = good.iter().enumerate().filter(|(_, g)| !**g).map(|(at, _)| at).collect();
         let Some(mut expander) = self.expander.take() else { return };
-        let mut is_end = |at: usize| expander.is_end(self.store.image(at));
+        let mut is_end = |at: usize| expander.is_end(&self.store.image(at));
         if let Some(at) = bad.into_iter().find(|at| self.memory.is_some() || !is_end(*at)) {
             self.show(i, self.path(at));
         }

@@ -16,6 +16,7 @@ use super::word::{self, Word, width};
 use crate::look::sides;
 use crate::monitor::{IDLE, is_of_scans, step};
 use crate::question::{Claim, Query};
+use crate::reason::{Part, Reason};
 use crate::sat::{Init, Signal};
 
 /// A question in the system.
@@ -39,11 +40,13 @@ pub(crate) struct End<'x, 'a> {
     pub(crate) stopped: Signal,
     /// By query: its value, and 1 where it has none.
     known: BTreeMap<u32, (Signal, Signal)>,
+    /// That of [`End::left`], once it is known.
+    left: Option<Signal>,
 }
 
 impl<'x, 'a> End<'x, 'a> {
     pub(crate) fn new(x: &'x mut Exec<'a>, sights: &'x Sights, stopped: Signal) -> End<'x, 'a> {
-        End { x, sights, stopped, known: BTreeMap::new() }
+        End { x, sights, stopped, known: BTreeMap::new(), left: None }
     }
 
     /// The signals of a claim.
@@ -51,27 +54,25 @@ impl<'x, 'a> End<'x, 'a> {
     /// # Errors
     ///
     /// Why the claim cannot be asked of one scan after the other.
-    pub(crate) fn asked(&mut self, claim: &Claim) -> Result<Asked, String> {
+    pub(crate) fn asked(&mut self, claim: &Claim) -> Result<Asked, Reason> {
         let open = self.x.uncovered.clone();
         let open = self.x.g().any(open);
         let stopped = self.stopped;
         if matches!(claim, Claim::LeadsTo { .. } | Claim::NoDeadlock | Claim::Asked(_)) {
-            return Err("it asks what can follow, not what happens in a scan".to_owned());
-        }
-        // In an endless search with a fault, engine and system do not always see the same passes: a chart
-        // of `system/tests/random.rs` (iec60848, seed 1243) shows it. The explicit search answers.
-        if *claim == Claim::NoUnsafe && self.x.model.compiled.program.tables().rules.stable {
-            return Err("under search for stability the passes of a scan are looked at one by one".to_owned());
+            return Err(Reason::Future);
         }
         let (bad, unsure) =
             if is_of_scans(claim) { self.of_scans(claim) } else { (self.shows(claim), Signal::FALSE) };
         let unsure = self.x.g().or(unsure, open);
-        let unsure = if is_within(claim) {
-            let beside = self.x.beside.clone();
-            let beside = self.x.g().any(beside);
-            self.x.g().or(unsure, beside)
-        } else {
-            unsure
+        let beside = self.beside(claim);
+        let unsure = self.x.g().or(unsure, beside);
+        let unsure = match claim {
+            // The situation in which an endless search is left is of the engine's own choice.
+            Claim::Active(_) => {
+                let left = self.left();
+                self.x.g().or(unsure, left)
+            }
+            _ => unsure,
         };
         Ok(Asked { bad: self.x.g().and(bad, !stopped), unsure: self.x.g().and(unsure, !stopped) })
     }
@@ -88,9 +89,14 @@ impl<'x, 'a> End<'x, 'a> {
         match claim {
             Claim::Active(s) if t.initial.contains(s) => Signal::TRUE,
             Claim::Active(s) => {
-                let enters = (0..t.transitions.len() as u32).filter(|r| sides(t, *r).1.contains(&s.0));
-                let mut any: Vec<Signal> = enters.map(clears).collect();
-                any.push(self.flag(What::Step(StepId(s.0))));
+                let meets = |r: &u32| {
+                    let (from, to) = sides(t, *r);
+                    from.contains(&s.0) || to.contains(&s.0)
+                };
+                let mut any: Vec<Signal> =
+                    (0..t.transitions.len() as u32).filter(meets).map(clears).collect();
+                let (on, endless) = (self.flag(What::Step(*s)), self.fault(is_endless));
+                any.push(self.x.g().and(on, !endless));
                 self.x.g().any(any)
             }
             Claim::Clears(rank) => clears(*rank),
@@ -117,6 +123,47 @@ impl<'x, 'a> End<'x, 'a> {
         }
     }
 
+    /// 1 where an endless search has activated a step by something other than a transition: the engine may
+    /// leave it in a pass in which the step is not active. One signal for all steps, since it is rarely 1.
+    fn left(&mut self) -> Signal {
+        if let Some(known) = self.left {
+            return known;
+        }
+        let mut any = Vec::new();
+        for (memory, (was, behind)) in self.sights.active.clone() {
+            if let Some(What::Step(s)) = self.x.e.memory(memory).map(|m| m.what) {
+                let seen = self.shows(&Claim::Active(s));
+                any.push(self.x.g().all([behind, !was, !seen]));
+            }
+        }
+        let (any, endless) = (self.x.g().any(any), self.fault(is_endless));
+        let left = self.x.g().and(any, endless);
+        *self.left.insert(left)
+    }
+
+    /// 1 where passes of an endless search that were not unrolled may show more of what a claim is
+    /// about: the parts of the steps, and what they decide, did not all come back.
+    fn beside(&mut self, claim: &Claim) -> Signal {
+        let (t, e) = (self.x.model.compiled.program.tables(), self.x.e);
+        let step = |s: u32| e.find(What::Step(StepId(s)));
+        let of: Vec<Option<MemoryId>> = match claim {
+            Claim::Active(s) => vec![step(s.0)],
+            // A step that it leaves or enters follows from it.
+            Claim::Clears(rank) => {
+                let (from, to) = sides(t, *rank);
+                vec![from.first().or(to.first()).and_then(|s| step(*s))]
+            }
+            Claim::Runs(rank) => vec![e.find(What::Ran(*rank))],
+            Claim::NoConflict | Claim::NoUnsafe => (0..t.steps.len() as u32).map(step).collect(),
+            _ => return Signal::FALSE,
+        };
+        let open = |m: Option<MemoryId>| {
+            m.and_then(|m| self.sights.beside.get(&m)).copied().unwrap_or(self.sights.partly)
+        };
+        let open: Vec<Signal> = of.into_iter().map(open).collect();
+        self.x.g().any(open)
+    }
+
     fn flag(&mut self, what: What) -> Signal {
         let memory = self.x.e.find(what);
         self.x.holds(memory)
@@ -135,7 +182,7 @@ impl<'x, 'a> End<'x, 'a> {
             Some(Value::Real(bits)) => self.x.g().any(bits),
             // The first word of a text is its length.
             Some(Value::Text(_)) => {
-                let free = self.x.unknown(g7_model::Type::Bool, "the length of a text").whole();
+                let free = self.x.unknown(g7_model::Type::Bool, Part::Length).whole();
                 word::is_true(self.x.g(), &free)
             }
             None => Signal::FALSE,
@@ -270,12 +317,4 @@ pub(crate) fn value_of(x: &mut Exec<'_>, q: Query) -> (Signal, Signal) {
         let holds = x.truth(value);
         (holds, !x.run)
     })
-}
-
-/// True if a claim is about what happens within a scan, in any of its passes.
-fn is_within(claim: &Claim) -> bool {
-    matches!(
-        claim,
-        Claim::Active(_) | Claim::Clears(_) | Claim::Runs(_) | Claim::NoConflict | Claim::NoUnsafe
-    )
 }

@@ -18,6 +18,7 @@ use super::limit::{Limit, Unknown};
 use super::value::{Value, choose};
 use super::word;
 use crate::model::Model;
+use crate::reason::Part;
 use crate::sat::{Graph, Signal, System};
 
 /// Rounds of a loop of which it is not known when it ends.
@@ -43,9 +44,6 @@ pub(crate) struct Exec<'a> {
     pub(crate) faults: Vec<(FaultKind, Span, Signal)>,
     /// A loop goes on, or passes do, beyond what was unrolled.
     pub(crate) uncovered: Vec<Signal>,
-    /// The search for stability does not end because a part comes back: other parts may do more
-    /// in passes that were not unrolled.
-    pub(crate) beside: Vec<Signal>,
     pub(crate) unknown: Vec<Unknown>,
     about: About,
 }
@@ -68,7 +66,6 @@ impl<'a> Exec<'a> {
             inside: Signal::TRUE,
             faults: Vec::new(),
             uncovered: Vec::new(),
-            beside: Vec::new(),
             unknown: Vec::new(),
             about: About::Nothing,
         }
@@ -115,7 +112,7 @@ impl<'a> Exec<'a> {
         self.g().all([path, run, inside])
     }
 
-    pub(crate) fn note_limit(&mut self, reason: &str, bits: &[Signal]) {
+    pub(crate) fn note_limit(&mut self, part: Part, bits: &[Signal]) {
         let symbols = &self.model.compiled.symbols;
         let at = match self.about {
             About::Step(s) => symbols.step_place(s),
@@ -123,7 +120,7 @@ impl<'a> Exec<'a> {
             About::Action(rank) => symbols.actions.get(rank as usize).map_or(Span::default(), |a| a.at),
             About::Nothing | About::Block(_) | About::Watch(_) | About::Order(_) => Span::default(),
         };
-        self.unknown.push(Unknown { limit: Limit { reason: reason.to_owned(), at }, bits: bits.to_vec() });
+        self.unknown.push(Unknown { limit: Limit { part, at }, bits: bits.to_vec() });
     }
 
     /// Statements, one after the other.
@@ -276,14 +273,13 @@ impl<'a> Exec<'a> {
     /// Looks at what something would give, and leaves no trace of it: memories, faults.
     pub(crate) fn glance<T>(&mut self, f: impl FnOnce(&mut Self) -> T) -> T {
         let (run, inside, path, about) = (self.run, self.inside, self.path, self.about);
-        let (faults, uncovered, beside) = (self.faults.len(), self.uncovered.len(), self.beside.len());
+        let (faults, uncovered) = (self.faults.len(), self.uncovered.len());
         self.before.push(BTreeMap::new());
         let value = f(self);
         self.take_back();
         (self.run, self.inside, self.path, self.about) = (run, inside, path, about);
         self.faults.truncate(faults);
         self.uncovered.truncate(uncovered);
-        self.beside.truncate(beside);
         value
     }
 

@@ -8,6 +8,7 @@ use super::exec::Exec;
 use super::range::{bounds, is_whole};
 use super::value::{Value, choose, compare, num, real_bits, same};
 use super::word::{self, Word};
+use crate::reason::Part;
 use crate::sat::Signal;
 
 /// Most bits of two factors together.
@@ -16,7 +17,7 @@ const FACTORS: usize = 80;
 const DIVIDED: [usize; 2] = [66, 34];
 
 /// A value, or why bits do not give it.
-type Made<T> = Result<T, String>;
+type Made<T> = Result<T, Part>;
 
 impl Exec<'_> {
     /// A truth value.
@@ -52,7 +53,7 @@ impl Exec<'_> {
             Expr::Differs(_, a, b) => Value::truth(self.differs(a, b)),
             Expr::Random(seed) => match self.eval(seed).known() {
                 Some(seed) => Value::of_word(Type::Lreal, number::random(seed)),
-                None => self.unknown(Type::Lreal, "a random number"),
+                None => self.unknown(Type::Lreal, Part::Random),
             },
             Expr::Fails(x) => Value::truth(self.operate(x).1),
             Expr::Neg(..) | Expr::Arith(..) | Expr::Convert(..) | Expr::Trunc(..) | Expr::Call(..) => {
@@ -64,13 +65,9 @@ impl Exec<'_> {
     fn compared(&mut self, c: Cmp, a: &Value, b: &Value) -> Signal {
         match (a, b) {
             (Value::Text(Some(a)), Value::Text(Some(b))) => number::ordered(c, Some(a.cmp(b))).into(),
-            (Value::Text(_), _) | (_, Value::Text(_)) => self
-                .unknown(Type::Bool, "a comparison of texts")
-                .whole()
-                .bits()
-                .first()
-                .copied()
-                .unwrap_or(Signal::FALSE),
+            (Value::Text(_), _) | (_, Value::Text(_)) => {
+                self.unknown(Type::Bool, Part::Texts).whole().bits().first().copied().unwrap_or(Signal::FALSE)
+            }
             _ => compare(self.g(), c, a, b),
         }
     }
@@ -127,8 +124,8 @@ impl Exec<'_> {
         match self.operation(e, ty, &args) {
             Ok(done) => done,
             Err(why) => {
-                let value = self.unknown(ty, &why);
-                let fails = self.unknown(Type::Bool, &why).whole();
+                let value = self.unknown(ty, why);
+                let fails = self.unknown(Type::Bool, why).whole();
                 (value, word::is_true(self.g(), &fails))
             }
         }
@@ -163,8 +160,8 @@ impl Exec<'_> {
                 Ok(self.fitted(*to, w.clone(), false))
             }
             (Expr::Call(f, ..), _) => self.function(*f, ty, args),
-            (Expr::Arith(..) | Expr::Neg(..), _) => Err("arithmetic of floating-point numbers".to_owned()),
-            _ => Err("a conversion of a floating-point number or a text".to_owned()),
+            (Expr::Arith(..) | Expr::Neg(..), _) => Err(Part::Floating),
+            _ => Err(Part::Conversion),
         }
     }
 
@@ -195,14 +192,14 @@ impl Exec<'_> {
             }
             Arith::Mul => {
                 if na + nb > FACTORS && a.known().is_none() && b.known().is_none() || na + nb > 110 {
-                    return Err("a product of large numbers".to_owned());
+                    return Err(Part::Product);
                 }
                 let product = word::mul(self.g(), a, b);
                 Ok(self.fitted(ty, product, wraps))
             }
             Arith::Div | Arith::Mod => {
                 if na > DIVIDED[0] || nb > DIVIDED[1] && b.known().is_none() {
-                    return Err("a division of large numbers".to_owned());
+                    return Err(Part::Division);
                 }
                 let by_zero = !word::is_true(self.g(), b);
                 let (q, r) = word::divide(self.g(), a, b);
@@ -259,7 +256,7 @@ impl Exec<'_> {
                 Builtin::Shl | Builtin::Shr | Builtin::Rol | Builtin::Ror,
                 [Value::Whole(v), Value::Whole(by)],
             ) => Ok(self.shifted(f, ty, v, by)),
-            _ => Err(format!("the function {f:?} of numbers that are not constant")),
+            _ => Err(Part::Function(f)),
         }
     }
 
@@ -292,14 +289,14 @@ impl Exec<'_> {
     }
 
     /// A value that bits do not give: any of its type.
-    pub(crate) fn unknown(&mut self, ty: Type, reason: &str) -> Value {
+    pub(crate) fn unknown(&mut self, ty: Type, part: Part) -> Value {
         let n = match ty {
             Type::String(_) => 0,
             Type::Real | Type::Lreal => real_bits(ty),
             _ => ty.elementary().map_or(1, |row| usize::from(row.bits)),
         };
         let bits: Vec<Signal> = (0..n).map(|_| self.system.input()).collect();
-        self.note_limit(reason, &bits);
+        self.note_limit(part, &bits);
         free(ty, bits)
     }
 }

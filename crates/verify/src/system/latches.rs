@@ -46,6 +46,11 @@ impl Latches {
         (Latches(kept), cells)
     }
 
+    /// The latches of each whole number, the lowest bit first.
+    pub(crate) fn words(&self) -> Vec<Vec<Signal>> {
+        self.0.iter().filter(|k| k.latches.len() > 1).map(|k| k.latches.clone()).collect()
+    }
+
     /// Sets what the latches take over to the next scan.
     pub(crate) fn take_over(&self, x: &mut Exec<'_>) {
         for k in &self.0 {

@@ -2,13 +2,13 @@
 
 use g7_model::Span;
 
+use crate::reason::Part;
 use crate::sat::Signal;
 
 /// A part that bits cannot express.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Limit {
-    /// The subject: "arithmetic of floating-point numbers".
-    pub(crate) reason: String,
+    pub(crate) part: Part,
     /// The step, transition or action that it stands in; empty if it is none of these.
     pub(crate) at: Span,
 }

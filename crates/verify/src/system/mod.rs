@@ -4,7 +4,7 @@
 //! Model, Question -> equations::Equations -> range (how many bits a memory needs)
 //!                                         -> latches, moves (state, inputs)
 //!                                         -> scan, exec, expr, word (one scan)
-//!                                         -> claims (what each question looks for) -> Translated
+//!                                         -> claims, traps (what each question looks for) -> Translated
 //! ```
 //!
 //! One step of the system is one scan, as in `model.rs`: the inputs of the step are those of
@@ -31,56 +31,77 @@ mod latches;
 mod limit;
 mod moves;
 mod parts;
+mod places;
 mod range;
 mod scan;
 #[cfg(test)]
 mod tests;
+mod traps;
 mod value;
 mod word;
 
+use std::collections::BTreeSet;
+
 use g7_compile::ir::VarClass;
-use g7_engine::{FaultKind, NONE, StepId, Tables};
+use g7_engine::{Addr, FaultKind, NONE, StepId, Tables};
 use g7_equations::{Equations, MemoryId, Options, What, equations};
 use g7_model::Span;
 
 pub(crate) use claims::Asked;
+pub(crate) use traps::Follows;
 
 use crate::explore::Move;
 use crate::look::sides;
 use crate::model::Model;
 use crate::question::{Claim, Question};
-use crate::sat::{Init, Node, Signal, System};
+use crate::reason::Reason;
+use crate::sat::{Cube, Init, Node, Signal, System};
 use claims::End;
 use exec::Exec;
 use latches::Latches;
 use limit::{Limit, Unknown};
-use moves::Sources;
+use moves::{Source, Sources};
 use range::Ranges;
 use scan::Scan;
-use value::Value;
+pub(crate) use value::{Value, same};
 
 /// How exact the outputs are.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Observed {
     /// As exact as the chart and its questions need.
     Asked,
-    /// All outputs and variables as they are, for a comparison.
+    /// The outputs as they are, for a comparison of two charts.
+    Outputs,
+    /// All outputs and variables as they are, for a comparison with the engine.
+    #[cfg_attr(not(test), expect(dead_code, reason = "it is compared in the tests"))]
     All,
 }
 
 /// A chart as a transition system.
-#[cfg_attr(not(test), expect(dead_code, reason = "what a scan leaves behind is compared in the tests"))]
 pub(crate) struct Translated {
     /// The system. Its list of bad signals is empty.
     pub(crate) system: System,
     /// For each question its signals, or why it cannot be asked in this way.
-    pub(crate) asked: Vec<Result<Asked, String>>,
+    pub(crate) asked: Vec<Result<Asked, Reason>>,
+    /// For each question about what can follow its signals.
+    pub(crate) follows: Vec<Option<Follows>>,
+    /// Latches that make a number together, the lowest bit first.
+    pub(crate) words: Vec<Vec<Signal>>,
     /// The scan has ended without a fault, and no earlier one had any.
     pub(crate) sound: Signal,
+    /// 1 in the scans behind one that a fault has ended.
+    pub(crate) stopped: Signal,
+    /// The faults, each with the signal that it is the one that ends the scan.
+    pub(crate) faults: Vec<(FaultKind, Span, Signal)>,
+    /// The scan has more passes or loops than were unrolled.
+    pub(crate) uncovered: Signal,
     /// The outputs behind the scan, safe ones behind a fault.
-    pub(crate) outputs: Vec<(MemoryId, Vec<Value>)>,
+    pub(crate) outputs: Vec<(MemoryId, Addr, Vec<Value>)>,
+    /// Situations, as a scan begins, that are thought never to be reached: most are two steps of a sequence.
+    pub(crate) exclusive: Vec<Cube>,
     /// Activity of each step behind the scan.
     pub(crate) steps: Vec<Signal>,
+    #[cfg_attr(not(test), expect(dead_code, reason = "it is compared in the tests"))]
     shown: Shown,
     sources: Sources,
     unknown: Vec<Unknown>,
@@ -92,11 +113,14 @@ struct Shown {
     equations: Equations,
     cells: Vec<Vec<Value>>,
     caps: Vec<Option<i128>>,
-    faults: Vec<(FaultKind, Span, Signal)>,
-    uncovered: Signal,
 }
 
 impl Translated {
+    /// The bits of [`System::inputs`] that stand for a word of the chart's inputs, by its place.
+    pub(crate) fn bits(&self, place: usize) -> &[usize] {
+        self.sources.words.get(place).map_or(&[], Source::bits)
+    }
+
     /// The moves of a trace of the system: for each scan the values of [`System::inputs`].
     pub(crate) fn moves(&self, trace: &[Vec<bool>]) -> Vec<Move> {
         self.sources.moves(trace)
@@ -137,6 +161,14 @@ pub(crate) fn system(model: &Model<'_>, questions: &[Question], observed: Observ
     let mut system = System::default();
     let (latches, cells) = Latches::new(&e, &ranges, &mut system);
     let mut sources = Sources::new(model);
+    let known = e.by_meaning();
+    let latch = |what| match cells.get(known.get(&what)?.0 as usize)?.first()? {
+        Value::Whole(w) => {
+            w.bits().first().copied().filter(|b| matches!(system.graph.node(*b), Node::Latch(_)))
+        }
+        Value::Real(_) | Value::Text(_) => None,
+    };
+    let exclusive = exclusive(t, latch);
     let mut x = Exec::new(&e, model, cells, system);
     for (id, m, at) in moves::inputs(&e) {
         let value = sources.memory(model, &mut x.system, m, at);
@@ -147,22 +179,36 @@ pub(crate) fn system(model: &Model<'_>, questions: &[Question], observed: Observ
         let bits = vec![started, Signal::FALSE];
         x.put(dt, vec![Value::Whole(word::Word::of(bits, model.period.into(), 0, 1))]);
     }
+    let before = steps(&mut x);
     let stopped = x.system.latch(Init::Zero);
     let asks = questions.iter().any(|q| q.claim == Claim::NoConflict);
     let rivals = if asks { rivals(t) } else { Vec::new() };
-    let mut scan = Scan::new(&mut x, rivals);
+    let watched = questions.iter().filter_map(|q| match q.claim {
+        Claim::Active(s) => e.find(What::Step(s)),
+        Claim::Runs(rank) => e.find(What::Ran(rank)),
+        _ => None,
+    });
+    let mut scan = Scan::new(&mut x, rivals, watched.collect());
     scan.run(|x| assume(x, model, stopped));
     let sights = scan.sights;
     let mut end = End::new(&mut x, &sights, stopped);
-    let asked = questions.iter().map(|q| end.asked(&q.claim)).collect();
+    let (mut asked, mut follows) = (Vec::new(), Vec::new());
+    for q in questions {
+        let found = traps::follows(&mut end, &q.claim, &before);
+        follows.push(found.map(|(_, f)| f));
+        asked.push(found.map_or_else(|| end.asked(&q.claim), |(a, _)| Ok(a)));
+    }
     latches.take_over(&mut x);
+    let words = latches.words();
     let run = x.run;
     let over = x.g().or(stopped, !run);
     x.system.set_next(stopped, over);
-    let outputs = e.safe.iter().map(|(id, words)| (*id, latches::safe(&mut x, *id, words))).collect();
-    let known = e.by_meaning();
-    let steps =
-        (0..t.steps.len() as u32).map(|s| x.holds(known.get(&What::Step(StepId(s))).copied())).collect();
+    let output = |(id, words): &(MemoryId, Box<[u64]>)| match e.memory(*id)?.what {
+        What::Variable(at) => Some((*id, at, latches::safe(&mut x, *id, words))),
+        _ => None,
+    };
+    let outputs = e.safe.iter().filter_map(output).collect();
+    let steps = steps(&mut x);
     let uncovered = x.uncovered.clone();
     let uncovered = x.g().any(uncovered);
     let sound = x.g().and(run, !stopped);
@@ -170,8 +216,41 @@ pub(crate) fn system(model: &Model<'_>, questions: &[Question], observed: Observ
     let (cells, faults) = (x.cells().to_vec(), x.faults.clone());
     let (system, unknown) = (std::mem::take(&mut x.system), std::mem::take(&mut x.unknown));
     drop(x);
-    let shown = Shown { equations: e, cells, caps, faults, uncovered };
-    Translated { system, asked, sound, outputs, steps, shown, sources, unknown }
+    let shown = Shown { equations: e, cells, caps };
+    Translated {
+        system,
+        asked,
+        follows,
+        words,
+        sound,
+        stopped,
+        faults,
+        uncovered,
+        outputs,
+        exclusive,
+        steps,
+        shown,
+        sources,
+        unknown,
+    }
+}
+
+/// Activity of each step.
+fn steps(x: &mut Exec<'_>) -> Vec<Signal> {
+    let known = x.e.by_meaning();
+    let count = x.model.compiled.program.tables().steps.len() as u32;
+    (0..count).map(|s| x.holds(known.get(&What::Step(StepId(s))).copied())).collect()
+}
+
+/// The pairs of steps of `places.rs`, as a scan begins; and that none of them is active before the first.
+fn exclusive(t: &Tables, latch: impl Fn(What) -> Option<Signal>) -> Vec<Cube> {
+    let step = |s: u32| latch(What::Step(StepId(s)));
+    let cube = |a: Signal, b: Signal| vec![a.min(b), a.max(b)];
+    let pairs = places::exclusive(t);
+    let steps: BTreeSet<u32> = pairs.iter().flat_map(|(a, b)| [*a, *b]).collect();
+    let started = latch(What::Started);
+    let fresh = steps.into_iter().filter_map(|s| Some(cube(!started?, step(s)?)));
+    fresh.chain(pairs.iter().filter_map(|(a, b)| Some(cube(step(*a)?, step(*b)?)))).collect()
 }
 
 /// The assumptions bind the inputs, unless the scan has met a fault before the evolution.
@@ -223,9 +302,10 @@ fn rivals(t: &Tables) -> Vec<(u32, u32)> {
 /// True for memories that are looked at from outside, so that they are kept as they are.
 fn is_observed(model: &Model<'_>, questions: &[Question], observed: Observed, what: What) -> bool {
     let What::Variable(at) = what else { return false };
-    if observed == Observed::All {
-        let class = model.compiled.symbols.variable_at(at).map(|v| v.class);
-        return class.is_some_and(|c| c != VarClass::Const);
+    let class = || model.compiled.symbols.variable_at(at).map(|v| v.class);
+    match observed {
+        Observed::Asked => questions.iter().any(|q| q.claim == Claim::On(at)),
+        Observed::Outputs => class() == Some(VarClass::Output),
+        Observed::All => class().is_some_and(|c| c != VarClass::Const),
     }
-    questions.iter().any(|q| q.claim == Claim::On(at))
 }

@@ -105,6 +105,14 @@ impl Sources {
 }
 
 impl Source {
+    /// The places of its bits in [`System::inputs`].
+    pub(crate) fn bits(&self) -> &[usize] {
+        match self {
+            Source::Choice(bits, _) | Source::Bits(bits, _) => bits,
+            Source::Fixed(_) => &[],
+        }
+    }
+
     fn word(&self, bits: &[bool]) -> u64 {
         let is = |i: &usize| bits.get(*i).copied().unwrap_or(false);
         let number = |list: &[usize]| (0u64..).zip(list).fold(0u64, |v, (k, i)| v | u64::from(is(i)) << k);

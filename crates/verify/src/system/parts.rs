@@ -3,7 +3,8 @@
 //! A pass gives a step a value that depends on some memories, these on others, and so on. The
 //! memories that last among all of them are a part: while inputs and time stand still, its
 //! content behind a pass follows from its content before it. If it comes back to what it was
-//! and was something else in between, it never rests, whatever the rest of the chart does.
+//! and was something else in between, it never rests, whatever the rest of the chart does; and
+//! if it comes back, further passes show nothing of it that was not there before.
 //! That is so only if nothing but an endless search can end the scan: a chart with a fault in
 //! its passes has no parts here.
 
@@ -23,22 +24,29 @@ pub(crate) struct Part {
     pub(crate) steps: usize,
 }
 
-/// The parts, each once.
-pub(crate) fn parts(e: &Equations) -> Vec<Part> {
+/// The parts of the steps and of these memories, and for each of them its part; nothing where there
+/// are too many.
+pub(crate) fn parts(e: &Equations, also: &BTreeSet<MemoryId>) -> (Vec<Part>, BTreeMap<MemoryId, usize>) {
     let mut work = Work { e, reads: BTreeMap::new(), simple: true };
     e.pass.iter().for_each(|s| work.list(&s.body, &BTreeSet::new()));
     if !work.simple {
-        return Vec::new();
+        return Default::default();
     }
     let steps = (0u32..).map(MemoryId).zip(&e.memories).filter(|(_, m)| matches!(m.what, What::Step(_)));
-    let mut found = BTreeSet::new();
-    for (id, _) in steps {
-        found.insert(work.part(id));
-        if found.len() > PARTS {
-            return Vec::new();
+    let (mut list, mut of): (Vec<Part>, BTreeMap<MemoryId, usize>) = Default::default();
+    let mut known = BTreeMap::new();
+    for id in steps.map(|(id, _)| id).chain(also.iter().copied()) {
+        let part = work.part(id);
+        let at = *known.entry(part.clone()).or_insert(list.len());
+        if at == list.len() {
+            list.push(part);
+        }
+        of.insert(id, at);
+        if list.len() > PARTS {
+            return Default::default();
         }
     }
-    found.into_iter().filter(|p| p.memories.len() > 1).collect()
+    (list, of)
 }
 
 struct Work<'a> {

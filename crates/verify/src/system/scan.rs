@@ -31,6 +31,13 @@ pub(crate) struct Sights {
     pub(crate) conflict: Signal,
     /// As [`crate::look::Passes::unsafe_`].
     pub(crate) unsafe_: Signal,
+    /// For each of the watched steps: it was active as the scan began; it is active behind some pass.
+    pub(crate) active: BTreeMap<MemoryId, (Signal, Signal)>,
+    /// The search for stability does not end because a part comes back, and not the whole.
+    pub(crate) partly: Signal,
+    /// Then, for each step and each watched memory: its part may do more in passes that were not
+    /// unrolled.
+    pub(crate) beside: BTreeMap<MemoryId, Signal>,
 }
 
 /// The places of a pass.
@@ -55,11 +62,18 @@ pub(crate) struct Scan<'x, 'a> {
     steps: Vec<Option<MemoryId>>,
     /// Pairs of transitions that must not be clearable together.
     rivals: Vec<(u32, u32)>,
+    /// Memories that some question looks at in each pass: steps, and actions that have run.
+    watched: BTreeSet<MemoryId>,
 }
 
 impl<'x, 'a> Scan<'x, 'a> {
-    /// `rivals` are the pairs of transitions that may be in conflict.
-    pub(crate) fn new(x: &'x mut Exec<'a>, rivals: Vec<(u32, u32)>) -> Scan<'x, 'a> {
+    /// `rivals` are the pairs of transitions that may be in conflict, `watched` steps and notes of actions
+    /// of which some question asks what they are in each pass.
+    pub(crate) fn new(
+        x: &'x mut Exec<'a>,
+        rivals: Vec<(u32, u32)>,
+        watched: BTreeSet<MemoryId>,
+    ) -> Scan<'x, 'a> {
         let (e, t) = (x.e, x.model.compiled.program.tables());
         let known = e.by_meaning();
         let find = |what| known.get(&what).copied();
@@ -87,13 +101,25 @@ impl<'x, 'a> Scan<'x, 'a> {
             chosen: sets(&|w| matches!(w, What::Clearable(_) | What::Clears(_))).1.map_or(0, |i| i + 1),
         };
         let none = Signal::FALSE;
-        let sights = Sights { clears: vec![none; clears.len()], conflict: none, unsafe_: none };
-        Scan { x, sights, places, clears, steps, rivals }
+        let sights = Sights {
+            clears: vec![none; clears.len()],
+            conflict: none,
+            unsafe_: none,
+            active: BTreeMap::new(),
+            partly: none,
+            beside: BTreeMap::new(),
+        };
+        Scan { x, sights, places, clears, steps, rivals, watched }
     }
 
     /// All sections; `opened` is called behind the inputs and before the evolution.
     pub(crate) fn run(&mut self, opened: impl FnOnce(&mut Exec<'a>)) {
         let e = self.x.e;
+        let steps = self.steps.iter().flatten().filter(|s| self.watched.contains(s));
+        for memory in steps.copied().collect::<Vec<_>>() {
+            let was = self.x.holds(Some(memory));
+            self.sights.active.insert(memory, (was, Signal::FALSE));
+        }
         self.sections(&e.begin);
         let first = self.places.opening.min(e.pass.len());
         self.sections(e.pass.get(..first).unwrap_or(&[]));
@@ -112,7 +138,7 @@ impl<'x, 'a> Scan<'x, 'a> {
     /// Passes until none changes anything. A state that comes back within a scan comes back
     /// for ever, and so does that of a part.
     fn search(&mut self, changed: MemoryId, bound: usize) {
-        let parts = parts(self.x.e);
+        let (parts, part_of) = parts(self.x.e, &self.watched);
         let steps = parts.iter().map(|p| p.steps).max().unwrap_or(self.clears.len());
         let most = (2 * steps + 2).clamp(4, PASSES);
         let mut seen = vec![self.x.cells().to_vec()];
@@ -139,11 +165,16 @@ impl<'x, 'a> Scan<'x, 'a> {
             seen.push(self.x.cells().to_vec());
         }
         let on = self.going(changed);
-        let (whole, part) = self.comes_back(&parts, &seen);
-        let again = self.x.g().or(whole, part);
+        let Back { whole, moved, closed } = self.comes_back(&parts, &seen);
+        let again = self.x.g().or(whole, moved);
         let unstable = self.x.g().and(on, again);
-        let beside = self.x.g().and(unstable, !whole);
-        self.x.beside.push(beside);
+        self.sights.partly = self.x.g().and(unstable, !whole);
+        let partly = self.sights.partly;
+        for (memory, part) in part_of {
+            let closed = closed.get(part).copied().unwrap_or(Signal::FALSE);
+            let open = self.x.g().and(partly, !closed);
+            self.sights.beside.insert(memory, open);
+        }
         self.end_search(unstable, FaultKind::Unstable { cycle: 0 });
         let open = self.x.g().and(on, !again);
         if open != Signal::FALSE {
@@ -151,27 +182,29 @@ impl<'x, 'a> Scan<'x, 'a> {
         }
     }
 
-    /// 1 where the last of these states was there before as a whole; and where a part of it was, and
-    /// was something else in between.
-    fn comes_back(&mut self, parts: &[Part], seen: &[Vec<Vec<Value>>]) -> (Signal, Signal) {
-        let Some((last, before)) = seen.split_last() else { return (Signal::FALSE, Signal::FALSE) };
+    /// Compares the last of these states with those before it.
+    fn comes_back(&mut self, parts: &[Part], seen: &[Vec<Vec<Value>>]) -> Back {
+        let Some((last, before)) = seen.split_last() else { return Back::default() };
         let lasting = (0u32..).map(MemoryId).zip(&self.x.e.memories);
         let all: Vec<MemoryId> = lasting
             .filter(|(_, m)| matches!(m.class, Class::Kept | Class::Output))
             .map(|(id, _)| id)
             .collect();
-        let (mut whole, mut again) = (Vec::new(), Vec::new());
+        let (mut whole, mut moved, mut closed) = (Vec::new(), Vec::new(), Vec::new());
         for image in before {
             whole.push(alike(self.x, &all, last, image));
         }
         for part in parts {
+            let mut same = Vec::new();
             for (image, next) in before.iter().zip(seen.iter().skip(1)) {
                 let back = alike(self.x, &part.memories, last, image);
                 let stayed = alike(self.x, &part.memories, image, next);
-                again.push(self.x.g().and(back, !stayed));
+                moved.push(self.x.g().and(back, !stayed));
+                same.push(back);
             }
+            closed.push(self.x.g().any(same));
         }
-        (self.x.g().any(whole), self.x.g().any(again))
+        Back { whole: self.x.g().any(whole), moved: self.x.g().any(moved), closed }
     }
 
     /// 1 where the latest pass has changed something.
@@ -207,6 +240,13 @@ impl<'x, 'a> Scan<'x, 'a> {
         let here = self.x.here();
         let found = self.x.g().and(here, unsafe_);
         self.sights.unsafe_ = self.x.g().or(self.sights.unsafe_, found);
+        let mut active = std::mem::take(&mut self.sights.active);
+        for (memory, (_, behind)) in &mut active {
+            let on = self.x.holds(Some(*memory));
+            let on = self.x.g().and(on, here);
+            *behind = self.x.g().or(*behind, on);
+        }
+        self.sights.active = active;
     }
 
     /// Notes the transitions that clear; gives whether a step is activated while it is active,
@@ -287,6 +327,22 @@ impl<'x, 'a> Scan<'x, 'a> {
         let any = self.x.g().any(pairs);
         let found = self.x.g().and(any, here);
         self.sights.conflict = self.x.g().or(self.sights.conflict, found);
+    }
+}
+
+/// The states of a search that its last state was compared with.
+struct Back {
+    /// 1 where it is one of them as a whole.
+    whole: Signal,
+    /// 1 where some part of it is what it was, and was something else in between.
+    moved: Signal,
+    /// For each part, 1 where it is what it was before.
+    closed: Vec<Signal>,
+}
+
+impl Default for Back {
+    fn default() -> Back {
+        Back { whole: Signal::FALSE, moved: Signal::FALSE, closed: Vec::new() }
     }
 }
 

@@ -67,6 +67,11 @@ impl Word {
         Word { bits, scale, low: low.max(least), high: high.min(most) }
     }
 
+    /// The same number in other signals.
+    pub(crate) fn moved(&self, of: impl Fn(Signal) -> Signal) -> Word {
+        Word { bits: self.bits.iter().map(|s| of(*s)).collect(), ..self.clone() }
+    }
+
     /// The value, if it is a constant.
     pub(crate) fn known(&self) -> Option<i128> {
         Some(number(&self.bits)? * self.scale)

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 
 use clap::ValueEnum;
 use g7_model::{Nanos, ProfileName};
-use g7_verify::{Budget, Kind, Model, ask, situations};
+use g7_verify::{Budget, Kind, Model, ask, situations, words};
 
 use named::Named;
 
@@ -116,7 +116,8 @@ pub(crate) fn graph(args: &Graph) -> Result<Verdict, Failure> {
     Ok(match &graph.open {
         None => Verdict::Fine,
         Some(open) => {
-            talk!("the graph is not complete: {}; {}", open.reason, open.help);
+            let ([why, ..], [help, ..]) = (words::why(&open.reason), words::way_on(&open.reason));
+            talk!("the graph is not complete: {why}; {help}");
             Verdict::Open
         }
     })

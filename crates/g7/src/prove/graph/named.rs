@@ -2,7 +2,7 @@
 
 use g7_compile::symbols::Symbols;
 use g7_engine::Addr;
-use g7_verify::{Cube, Edge, Kind, Node};
+use g7_verify::{Cube, Edge, Kind, Node, words};
 use serde_json::{Value, json};
 
 /// The graph with its words.
@@ -100,7 +100,8 @@ impl Named<'_> {
             "edges": graph.edges.iter().map(edge).collect::<Vec<_>>(),
         });
         if let Some(open) = &graph.open {
-            all["reason"] = json!(open.reason);
+            let [why, ..] = words::why(&open.reason);
+            all["reason"] = json!(why);
         }
         all
     }

@@ -62,10 +62,16 @@ pub(super) enum Datatype {
 impl Datatype {
     pub(super) const LONG: Datatype = Datatype::Whole { bits: 64, signed: true };
 
-    /// The type that carries a variable.
+    /// The type that carries a variable. Only those are used that all hosts read alike: Eclipse Tahu extends
+    /// the sign of Int8 and Int16 to 32 bits, which pysparkplug refuses, and they keep a UInt32 in different
+    /// fields.
     pub(super) fn of(scaling: &Scaling) -> Datatype {
         match (scaling.holds, scaling.kind) {
             (Holds::Bit, _) => Datatype::Boolean,
+            (Holds::Whole { bits: 8 | 16, signed: true }, Kind::Int { .. } | Kind::Time) => {
+                Datatype::Whole { bits: 32, signed: true }
+            }
+            (Holds::Whole { bits: 32, signed: false }, Kind::Int { .. } | Kind::Time) => Datatype::LONG,
             (Holds::Whole { bits, signed }, Kind::Int { .. } | Kind::Time) => {
                 Datatype::Whole { bits, signed }
             }
@@ -100,10 +106,9 @@ impl Datatype {
         };
         match (self, raw) {
             (Datatype::Boolean, Raw::Bit(on)) => Some(Value::Boolean(on)),
-            // Two's complement, of as many bits as the type has.
-            (Datatype::Whole { bits, .. }, Raw::Whole(n)) if bits < 64 => {
-                Some(Value::Int((n as u32) & (u32::MAX >> (32 - u32::from(bits.clamp(1, 32))))))
-            }
+            // Two's complement of 32 bits, as Eclipse Tahu has it: its library for Node does not extend the
+            // sign of a shorter one.
+            (Datatype::Whole { bits, .. }, Raw::Whole(n)) if bits < 64 => Some(Value::Int(n as u32)),
             (Datatype::Whole { .. }, Raw::Whole(n)) => Some(Value::Long(n as u64)),
             (Datatype::Float, raw) => real(raw).map(|x| Value::Float(x as f32)),
             (Datatype::Double, raw) => real(raw).map(Value::Double),
@@ -170,8 +175,8 @@ mod tests {
     #[test]
     fn values_go_both_ways() {
         for (bits, signed, n, value) in [
-            (8, true, -1, Value::Int(0xff)),
-            (16, true, -2, Value::Int(0xfffe)),
+            (8, true, -1, Value::Int(0xffff_ffff)),
+            (16, true, -2, Value::Int(0xffff_fffe)),
             (32, true, -3, Value::Int(0xffff_fffd)),
             (64, true, -4, Value::Long(u64::MAX - 3)),
             (8, false, 255, Value::Int(255)),
@@ -182,7 +187,7 @@ mod tests {
             assert_eq!(datatype.value(Raw::Whole(n)), Some(value), "{datatype:?}");
             assert_eq!(datatype.raw(value), Some(Raw::Whole(n)), "{datatype:?}");
         }
-        assert_eq!(Datatype::Whole { bits: 8, signed: true }.raw(Value::Int(u32::MAX)), Some(Raw::Whole(-1)));
+        assert_eq!(Datatype::Whole { bits: 8, signed: true }.raw(Value::Int(0xff)), Some(Raw::Whole(-1)));
         assert_eq!(Datatype::Boolean.raw(Value::Int(1)), None);
         assert_eq!(Datatype::Double.raw(Value::Boolean(true)), None);
     }

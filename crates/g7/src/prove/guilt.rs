@@ -1,0 +1,42 @@
+//! The steps and transitions that break a claim, named: a conflict is of little use without the two transitions
+//! that are in it.
+
+use g7_verify::{Claim, Model, Run, blame};
+
+/// Most names in one sentence.
+const NAMES: usize = 6;
+
+/// A sentence about the end of a run; empty where the claim itself says all.
+pub(super) fn guilt(model: &Model<'_>, claim: &Claim, run: &Run) -> String {
+    let found = || {
+        let symbols = &model.compiled.symbols;
+        let blame = blame(model, claim, run);
+        let steps = blame.steps.iter().map(|s| symbols.step_name(*s).to_owned());
+        let transitions = blame.transitions.iter().map(|r| symbols.transition_text(*r).to_owned());
+        (listed(steps), listed(transitions))
+    };
+    match claim {
+        Claim::NoConflict => format!("both are clearable at once: {}", found().1),
+        Claim::NoUnsafe => {
+            let (steps, transitions) = found();
+            format!("step {steps} is active already when {transitions} activates it")
+        }
+        Claim::NoDeadlock => format!("nothing leads on from the situation {{{}}}", found().0),
+        Claim::LeadsTo { .. } => format!("the effect can no longer come in the situation {{{}}}", found().0),
+        Claim::NoInstability => match found().1 {
+            none if none.is_empty() => none,
+            transitions => format!("cleared again and again in one scan: {transitions}"),
+        },
+        _ => String::new(),
+    }
+}
+
+fn listed(names: impl Iterator<Item = String>) -> String {
+    let all: Vec<String> = names.collect();
+    let more = all.len().saturating_sub(NAMES);
+    let shown: Vec<&str> = all.iter().take(NAMES).map(String::as_str).collect();
+    match more {
+        0 => shown.join(", "),
+        n => format!("{}, … ({n} more)", shown.join(", ")),
+    }
+}

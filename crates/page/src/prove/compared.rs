@@ -1,0 +1,98 @@
+//! Two files, or one under two profiles, compared for every sequence of inputs, for the panel *Compare*.
+//!
+//! A call compares within its limits; the page calls again with larger ones. It counts the time.
+
+use g7_model::{ProfileName, Severity};
+use g7_verify::words::{self, Said};
+use g7_verify::{Budget, Compare, Equality, Open, ask};
+use serde::{Deserialize, Serialize};
+
+use super::asked::{Limits, MOST};
+use crate::file::File;
+use crate::run::{Scan, profile};
+
+/// The page's request for a comparison.
+#[derive(Debug, Deserialize)]
+pub(crate) struct Both {
+    /// The names of the two files, which may be one.
+    pub(crate) files: [String; 2],
+    /// For each of them the profile, if it is not its own.
+    #[serde(default)]
+    profiles: [Option<String>; 2],
+    /// Situations are compared too.
+    #[serde(default)]
+    situations: bool,
+    #[serde(flatten)]
+    limits: Limits,
+}
+
+/// The answer.
+#[derive(Debug, Default, Serialize)]
+pub(crate) struct Compared {
+    /// `equal`, `apart`, `open`, `unlike`, or `errors`.
+    is: &'static str,
+    /// The reason: the proof, the first difference, what is in the way, why they cannot be compared.
+    reason: Said,
+    /// The way on; empty if none is known.
+    help: Said,
+    /// More states or time may decide it.
+    more: bool,
+    /// The file with errors.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    side: Option<usize>,
+    /// Pairs of states.
+    states: usize,
+    /// Scans of both: all that were made, or those that do not tell them apart.
+    scans: usize,
+    /// The shortest run that tells them apart, for each of them.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    runs: Option<[Vec<Scan>; 2]>,
+}
+
+/// Compares two files within the limits.
+pub(crate) fn compared(files: [&File; 2], wish: &Both) -> Result<Compared, String> {
+    let mut sides = Vec::new();
+    for (side, (file, name)) in files.into_iter().zip(&wish.profiles).enumerate() {
+        let profile: Option<ProfileName> = name.as_deref().map(profile).transpose()?;
+        let wrong = file.problems.iter().any(|p| p.severity() == Severity::Error);
+        match ask(&file.source.document, profile) {
+            (Some(asked), problems) if !wrong && problems.iter().all(|p| p.severity() != Severity::Error) => {
+                sides.push(asked);
+            }
+            _ => return Ok(Compared { is: "errors", side: Some(side), ..Compared::default() }),
+        }
+    }
+    let [a, b] = sides.as_slice() else { return Err("two files are compared".to_owned()) };
+    let budget = Budget {
+        states: wish.limits.states.min(MOST.states),
+        scans: usize::MAX,
+        bytes: wish.limits.mib.min(MOST.mib) << 20,
+        stop: &|| false,
+    };
+    let assume = [a.assume.clone(), b.assume.clone()];
+    let what = Compare { charts: [&a.compiled, &b.compiled], assume, situations: wish.situations };
+    Ok(match g7_verify::compare_once(&what, &budget) {
+        Equality::Equal(proof) => {
+            Compared { is: "equal", reason: words::equal(&proof), ..Compared::default() }
+        }
+        Equality::Apart { moves, what } => Compared {
+            is: "apart",
+            reason: words::difference(&what),
+            scans: moves.first().map_or(0, Vec::len),
+            runs: Some(moves.map(|m| Scan::list(&m))),
+            ..Compared::default()
+        },
+        Equality::Open(Open { scans, states, reason }) => Compared {
+            is: "open",
+            more: reason.is_of_budget(),
+            help: if reason.is_of_budget() { Said::default() } else { words::way_on(&reason) },
+            reason: words::why(&reason),
+            scans,
+            states,
+            ..Compared::default()
+        },
+        Equality::Unlike(why) => {
+            Compared { is: "unlike", reason: words::unlike(&why), ..Compared::default() }
+        }
+    })
+}

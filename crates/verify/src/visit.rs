@@ -1,0 +1,35 @@
+//! All states of a model, counted: for measurements, and to know how large a chart is.
+
+use crate::layer::Budget;
+use crate::model::Model;
+use crate::scene::{Tried, Until};
+use crate::search::Search;
+use crate::verdict::Open;
+
+/// The extent of a search over all states.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Visited {
+    /// Number of states, the one before the first scan included.
+    pub states: usize,
+    /// Scans made.
+    pub scans: usize,
+    /// Fewest scans that lead to the state that is farthest away.
+    pub depth: usize,
+    /// Bytes in which the states are kept and found.
+    pub bytes: usize,
+    /// Bytes for the runs that lead to them: the state before each, and the inputs.
+    pub runs: usize,
+    /// Why not all states were visited.
+    pub open: Option<Open>,
+}
+
+/// Visits all states.
+pub fn visit(model: &Model<'_>, budget: &Budget<'_>, tried: Tried) -> Visited {
+    let mut search = Search::new(model, budget, Vec::new());
+    search.until = Until::Visited;
+    search.tried = tried;
+    search.search();
+    let (bytes, runs) = search.kept();
+    let seen = search.seen();
+    Visited { states: seen.states, scans: seen.scans, depth: search.last(), bytes, runs, open: seen.open }
+}

@@ -1,0 +1,373 @@
+//! Visits the sets of states, breadth first, and answers the questions.
+
+mod traps;
+
+use super::clocks::{Clocks, Moved, Shape};
+use super::graph::{Edge, Graph};
+use super::matrix::{From, Span, Zone};
+use super::sights::{Eye, Sight};
+use super::turns::Turn;
+use super::vectors::vectors;
+use crate::asked::{Asking, Places};
+use crate::explore::Move;
+use crate::layer::Budget;
+use crate::look::{PASSES, replay};
+use crate::model::Model;
+use crate::monitor::{IDLE, has_memory};
+use crate::question::{Claim, Question};
+use crate::reason::Reason;
+use crate::verdict::{Certificate, Evidence, Open, Run, Verdict};
+use crate::world::World;
+
+/// Nodes, and combinations of inputs of a node, between two questions whether to stop.
+const PATIENCE: usize = 64;
+
+pub(super) struct Search<'a> {
+    pub(super) model: &'a Model<'a>,
+    budget: &'a Budget<'a>,
+    pub(super) asking: Asking,
+    /// Questions without an answer, with their numbers.
+    pub(super) open: Vec<(usize, &'a Question)>,
+    answers: Vec<(usize, Verdict)>,
+    clocks: Clocks<'a>,
+    eye: Eye<'a>,
+    pub(super) graph: Graph,
+    /// For each node: the inputs of the scan that led there.
+    inputs: Vec<Vec<u64>>,
+    /// For each node that had its turn, where it leads; empty if no question asks for that.
+    pub(super) turns: Vec<Turn>,
+    asks_for_traps: bool,
+    scans: usize,
+    depth: usize,
+    /// Why not all runs were seen.
+    hole: Option<Reason>,
+    cut: bool,
+    cut_passes: bool,
+}
+
+/// The states of a node that lie between the same bounds at the next scan.
+struct Part {
+    zone: Zone,
+    limits: Vec<Span>,
+}
+
+/// The moves of a part.
+struct Tries<'n> {
+    at: usize,
+    shape: &'n Shape,
+    part: &'n Part,
+    /// Scans of the period that go by before the scan: none before the first one of all.
+    elapse: i64,
+    /// The images with the least and with the greatest values; the other is empty where they are the same.
+    images: [Vec<u64>; 2],
+    asked: Places,
+    tried: bool,
+}
+
+impl<'a> Search<'a> {
+    /// A search for the answers to questions of which at most one remembers something; `None` where there
+    /// are no clocks.
+    pub(super) fn new(
+        model: &'a Model<'a>,
+        budget: &'a Budget<'a>,
+        open: Vec<(usize, &'a Question)>,
+    ) -> Option<Search<'a>> {
+        let mut image = Vec::new();
+        World::new(model).image(&mut image);
+        let memory = open.iter().map(|(_, q)| &q.claim).find(|c| has_memory(c));
+        let clocks = Clocks::new(model, memory.map(|c| (c, image.len())));
+        if clocks.is_empty() {
+            return None;
+        }
+        image.push(IDLE);
+        let graph = Graph::new(&clocks.start(image)?);
+        let initial = model.inputs.iter().map(|v| v.tried.first().copied().unwrap_or(0)).collect();
+        let traps = |c: &Claim| matches!(c, Claim::NoDeadlock | Claim::LeadsTo { .. });
+        Some(Search {
+            model,
+            budget,
+            asking: Asking::new(&model.compiled.program, model.codes()),
+            asks_for_traps: open.iter().any(|(_, q)| traps(&q.claim)),
+            open,
+            answers: Vec::new(),
+            clocks,
+            eye: Eye::new(model, memory),
+            graph,
+            inputs: vec![initial],
+            turns: Vec::new(),
+            scans: 0,
+            depth: 0,
+            hole: None,
+            cut: false,
+            cut_passes: false,
+        })
+    }
+
+    /// Searches, and answers all questions.
+    pub(super) fn run(mut self) -> Vec<(usize, Verdict)> {
+        let (mut at, mut level) = (0usize, 1usize);
+        while at < self.graph.nodes.len() && !self.open.is_empty() {
+            if at == level {
+                self.depth += 1;
+                level = self.graph.nodes.len();
+            }
+            if let Some(hole) = self.bound(at) {
+                self.hole = Some(hole);
+                break;
+            }
+            if !self.expand(at) {
+                break;
+            }
+            at += 1;
+        }
+        self.depth += usize::from(at >= self.graph.nodes.len());
+        if self.hole.is_none() && self.asks_for_traps {
+            self.traps();
+        }
+        self.close();
+        self.answers
+    }
+
+    /// Why the search is to stop here.
+    fn bound(&self, at: usize) -> Option<Reason> {
+        let bytes = self.graph.bytes() + self.graph.nodes.len() * self.model.inputs.len() * 8;
+        if self.graph.nodes.len() > self.budget.states {
+            return Some(Reason::States(self.budget.states));
+        }
+        if bytes > self.budget.bytes {
+            return Some(Reason::Memory(self.budget.bytes >> 20));
+        }
+        at.is_multiple_of(PATIENCE).then(|| self.stopped()).flatten()
+    }
+
+    fn stopped(&self) -> Option<Reason> {
+        if self.scans >= self.budget.scans {
+            return Some(Reason::Scans(self.budget.scans));
+        }
+        (self.budget.stop)().then_some(Reason::Stopped)
+    }
+
+    /// Tries all moves of a node; false if it was stopped meanwhile.
+    fn expand(&mut self, at: usize) -> bool {
+        let mut turn = Turn::default();
+        let Some(node) = self.graph.nodes.get(at).filter(|n| n.covered.is_none()) else {
+            self.turns.push(turn);
+            return true;
+        };
+        let (shape, elapse) = (self.graph.shape(node), i64::from(at != 0));
+        let later = node.zone.later(elapse);
+        for part in self.parts(&shape, &later) {
+            let before = |values: Vec<i64>| values.into_iter().map(|v| v - elapse).collect::<Vec<_>>();
+            let (least, greatest) = (before(part.zone.least()), before(part.zone.greatest()));
+            let mut images = [Vec::new(), Vec::new()];
+            self.clocks.image(&shape, &least, &mut images[0]);
+            if least != greatest {
+                self.clocks.image(&shape, &greatest, &mut images[1]);
+            }
+            self.eye.world.put(&images[0]);
+            let asked = self.asking.asked(&self.eye.world.charts);
+            let mut tries = Tries { at, shape: &shape, part: &part, elapse, images, asked, tried: false };
+            turn.begin_part();
+            if !self.vectors(&mut tries, &mut turn) {
+                return false;
+            }
+        }
+        self.turns.push(if self.asks_for_traps { turn } else { Turn::default() });
+        true
+    }
+
+    /// The parts of a zone, which has gone on to the next scan.
+    fn parts(&self, shape: &Shape, later: &Zone) -> Vec<Part> {
+        let mut parts = vec![Part { zone: later.clone(), limits: Vec::new() }];
+        for clock in 0..later.clocks() {
+            let split = |part: Part| {
+                let intervals = self.clocks.intervals(shape, clock, part.zone.span(clock));
+                intervals.into_iter().filter_map(move |interval| {
+                    let limits = [&part.limits[..], &[interval]].concat();
+                    Some(Part { zone: part.zone.within(&limits)?, limits })
+                })
+            };
+            parts = parts.into_iter().flat_map(split).collect();
+        }
+        parts
+    }
+
+    /// Tries all inputs of a part; false if it was stopped meanwhile.
+    fn vectors(&mut self, tries: &mut Tries<'_>, turn: &mut Turn) -> bool {
+        let places: Vec<usize> = self.asking.matter(&tries.asked).iter().collect();
+        let last = self.inputs.get(tries.at).cloned().unwrap_or_default();
+        let (list, gap) = vectors(self.model, &places, &last);
+        self.hole = self.hole.take().or(gap);
+        for (k, inputs) in list.into_iter().enumerate() {
+            if k.is_multiple_of(PATIENCE)
+                && k > 0
+                && let Some(hole) = self.stopped()
+            {
+                self.hole = Some(hole);
+                return false;
+            }
+            let wait = tries.elapse * self.model.period;
+            if !self.attempt(tries, turn, &Move { inputs, wait }) {
+                return true;
+            }
+        }
+        if !tries.tried {
+            self.hole.get_or_insert(Reason::NoInput(self.depth));
+        }
+        true
+    }
+
+    /// Makes one move of a part; false where no question is left.
+    fn attempt(&mut self, tries: &mut Tries<'_>, turn: &mut Turn, m: &Move) -> bool {
+        let [image, other] = &tries.images;
+        let may = self.eye.allows(image, m);
+        if !other.is_empty() && self.eye.allows(other, m) != may {
+            self.disagree();
+        }
+        if !may {
+            return true;
+        }
+        if !std::mem::replace(&mut tries.tried, true) {
+            self.see_asked(tries, m);
+        }
+        self.scans += 1;
+        let mut after = Vec::new();
+        let sight = self.eye.see(image, m, &self.open, &mut after);
+        let scanned = tries.part.zone.least();
+        let moved =
+            if sight.fault().is_none() { self.clocks.moved(after, tries.shape, &scanned) } else { None };
+        if !other.is_empty() {
+            self.scans += 1;
+            let mut after = Vec::new();
+            let again = self.eye.see(other, m, &self.open, &mut after);
+            let scanned = tries.part.zone.greatest();
+            let same = sight.fault().is_some() || self.clocks.moved(after, tries.shape, &scanned) == moved;
+            if again != sight || !same {
+                self.disagree();
+            }
+        }
+        self.cut |= sight.cut;
+        self.cut_passes |= sight.cut_passes;
+        self.settle(tries, m, &sight);
+        if self.open.is_empty() {
+            return false;
+        }
+        let to = match moved {
+            Some(moved) => Some(self.lead(tries, moved, m)),
+            None if sight.fault().is_none() => {
+                self.disagree();
+                None
+            }
+            None => None,
+        };
+        turn.add(sight.on, to);
+        true
+    }
+
+    /// Notes that a time was read in a way that is not understood.
+    fn disagree(&mut self) {
+        self.hole.get_or_insert(Reason::Times);
+    }
+
+    /// The node behind a move, and whether it is the same one because time has gone on in it.
+    fn lead(&mut self, tries: &Tries<'_>, moved: Moved, m: &Move) -> (u32, bool) {
+        let Moved { shape, to } = moved;
+        let stays = |(i, from): (usize, &From)| *from == From::Old(i);
+        let repeats =
+            tries.elapse > 0 && shape == *tries.shape && !to.is_empty() && to.iter().enumerate().all(stays);
+        let zone = tries.part.zone.moved(&to);
+        let limits = tries.part.limits.clone();
+        // A zone that is not empty is not empty later.
+        let zone = if repeats { zone.ever_later().within(&limits).unwrap_or(zone) } else { zone };
+        let edge = Edge { inputs: m.inputs.clone(), limits, to, repeats };
+        let number = self.graph.add(&shape, zone, Some((tries.at as u32, edge)), tries.at + 1);
+        if number as usize == self.inputs.len() {
+            self.inputs.push(m.inputs.clone());
+        }
+        (number, repeats && number as usize == tries.at)
+    }
+
+    fn see_asked(&mut self, tries: &Tries<'_>, m: &Move) {
+        let first = self.model.compiled.program.tables().inputs.start;
+        let asks = |a: u32| tries.asked.iter().any(|i| i as u32 + first == a);
+        let hits: Vec<usize> = self
+            .open
+            .iter()
+            .filter(|(_, q)| matches!(&q.claim, Claim::Asked(a) if asks(a.0)))
+            .map(|(i, _)| *i)
+            .collect();
+        if !hits.is_empty()
+            && let Some(run) = self.path(tries, m)
+        {
+            hits.into_iter().for_each(|i| self.show(i, &run));
+        }
+    }
+
+    /// Answers the questions of which a scan shows something.
+    fn settle(&mut self, tries: &Tries<'_>, m: &Move, sight: &Sight) {
+        for (i, fault) in &sight.without {
+            self.give(*i, Verdict::Open(self.so_far(Reason::Condition(*fault))));
+        }
+        if sight.hits.is_empty() {
+            return;
+        }
+        let Some(run) = self.path(tries, m) else {
+            self.disagree();
+            return;
+        };
+        let run = Run { fault: sight.fault(), ..run };
+        sight.hits.iter().for_each(|i| self.show(*i, &run));
+    }
+
+    /// A run to a part, with a move of it.
+    fn path(&self, tries: &Tries<'_>, m: &Move) -> Option<Run> {
+        let node = self.graph.nodes.get(tries.at)?;
+        let target = tries.part.zone.later(-tries.elapse).and(&node.zone)?;
+        let mut run = self.graph.run(tries.at as u32, &target, self.model.period)?;
+        run.moves.push(m.clone());
+        Some(run)
+    }
+
+    /// Answers a question with a run, if the run does the same again.
+    pub(super) fn show(&mut self, i: usize, run: &Run) {
+        let Some((_, q)) = self.open.iter().find(|(n, _)| *n == i) else { return };
+        let claim = &q.claim;
+        let verdict = if !replay(self.model, claim, run) {
+            Verdict::Open(self.so_far(Reason::NotRepeated))
+        } else if claim.is_of_some_run() {
+            Verdict::Proved(Evidence::Run(run.clone()))
+        } else {
+            Verdict::Refuted(Evidence::Run(run.clone()))
+        };
+        self.give(i, verdict);
+    }
+
+    pub(super) fn give(&mut self, i: usize, verdict: Verdict) {
+        self.open.retain(|(n, _)| *n != i);
+        self.answers.push((i, verdict));
+    }
+
+    /// Answers what is left over.
+    fn close(&mut self) {
+        let certificate = Certificate::Zones { zones: self.graph.met().count(), scans: self.scans };
+        for (i, q) in std::mem::take(&mut self.open) {
+            let hidden = match &q.claim {
+                Claim::Active(_) | Claim::Clears(_) | Claim::Runs(_) => self.cut.then_some(Reason::Reports),
+                Claim::NoConflict | Claim::NoUnsafe => self.cut_passes.then_some(Reason::Passes(PASSES)),
+                _ => None,
+            };
+            let verdict = match self.hole.clone().or(hidden) {
+                Some(reason) => Verdict::Open(self.so_far(reason)),
+                None if q.claim.is_of_some_run() => {
+                    Verdict::Refuted(Evidence::Certificate(certificate.clone()))
+                }
+                None => Verdict::Proved(Evidence::Certificate(certificate.clone())),
+            };
+            self.answers.push((i, verdict));
+        }
+    }
+
+    pub(super) fn so_far(&self, reason: Reason) -> Open {
+        Open { scans: self.depth, states: self.graph.nodes.len(), reason }
+    }
+}
