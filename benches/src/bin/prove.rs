@@ -83,7 +83,10 @@ fn count(asked: &Asked, o: &Options) {
         each(seen.bytes),
         each(seen.bytes + seen.runs),
         peak(),
-        seen.open.map_or(String::new(), |open| format!(", not all: {:?}", open.reason)),
+        seen.open.map_or(String::new(), |open| {
+            let [why, ..] = g7_verify::words::why(&open.reason);
+            format!(", not all: {why}")
+        }),
     );
 }
 
