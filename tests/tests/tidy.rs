@@ -41,6 +41,8 @@ const ALLOWED: &[Arrows] = &[
         Some(&["syn"]),
     ),
     ("verify", &["g7-model", "g7-engine", "g7-compile", "g7-equations", "g7-rig", "g7-sat"], Some(&[])),
+    // Natively alone: it needs sockets, files and threads.
+    ("hosts", &["g7-engine", "g7-verify"], Some(&["thiserror", "timely_bytes", "timely_communication"])),
     ("host", &["g7-model", "g7-engine"], None),
     ("online", &["g7-model", "g7-engine", "g7-host", "g7-rig"], None),
     ("opcua", &["g7-model", "g7-host", "g7-store", "g7-online"], None),
@@ -74,6 +76,7 @@ const ALLOWED: &[Arrows] = &[
         "g7",
         &[
             "g7-verify",
+            "g7-hosts",
             "g7-model",
             "g7-syntax",
             "g7-exchange",

@@ -297,6 +297,9 @@ Examples:
   g7 prove tank --format sarif > tank.sarif      for code review
   g7 prove tank.g7 --save tank.g7                what is refuted, as tests that fail, in the same file
   g7 prove tank.g7 --tests all.g7                scenarios that reach all of the chart
+  g7 prove tank.g7 --workers 4                   the search shared among four processes
+  g7 prove tank.g7 --hosts hosts.txt --process 0 the same among machines, started on each of them
+  g7 prove tank --shard 2/3 > part2.jsonl        the second third of all questions
 
 {PROOF_CODES}"))]
 pub(crate) struct Prove {
@@ -338,6 +341,34 @@ pub(crate) struct Prove {
     /// For people, for programs or for code review.
     #[arg(long, value_enum, default_value_t = Answers::Text)]
     pub(crate) format: Answers,
+    #[command(flatten)]
+    pub(crate) shared: Shared,
+}
+
+// A proof whose work is shared. A comment of documentation here would take the place of the command's own.
+#[derive(Args, Clone, Debug)]
+pub(crate) struct Shared {
+    /// Share the search over states among so many processes. Without --process all of them are started
+    /// here.
+    #[arg(long, value_name = "NUMBER", value_parser = clap::value_parser!(u16).range(1..=256), conflicts_with_all = ["plant", "tests"])]
+    pub(crate) workers: Option<u16>,
+    /// The addresses of the processes, `host:port`, one a line; without it they are on this machine only.
+    /// They talk without encryption and believe each other: use a network that you trust.
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["plant", "tests"])]
+    pub(crate) hosts: Option<PathBuf>,
+    /// Be the process with this number, from 0, in the file of hosts. Process 0 prints the answers.
+    #[arg(long, value_name = "NUMBER", requires = "hosts")]
+    pub(crate) process: Option<usize>,
+    /// Keep the levels of the search in this folder: a process that is started again goes on from the last
+    /// one.
+    #[arg(long, value_name = "FOLDER")]
+    pub(crate) keep: Option<PathBuf>,
+    /// Answer one part of all questions of all files, as in 2/3, and print a line of JSON for each.
+    #[arg(long, value_name = "I/N", value_parser = crate::prove::part, conflicts_with_all = ["workers", "hosts", "save", "tests", "junit"])]
+    pub(crate) shard: Option<crate::prove::Part>,
+    /// End when the standard input ends: the process that started this one is gone then.
+    #[arg(long, hide = true)]
+    pub(crate) child: bool,
 }
 
 #[derive(Args, Debug)]

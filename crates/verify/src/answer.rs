@@ -26,15 +26,35 @@ pub fn answer(
     answers: &mut [Option<Verdict>],
     budget: &Budget<'_>,
 ) {
+    turns(model, questions, answers, budget, &[&Explicit, &Zones]);
+}
+
+/// Asks all layers but the explicit search, until the budget is used up: for a caller that has searched already.
+pub fn solve(
+    model: &Model<'_>,
+    questions: &[Question],
+    answers: &mut [Option<Verdict>],
+    budget: &Budget<'_>,
+) {
+    turns(model, questions, answers, budget, &[&Zones]);
+}
+
+/// Lets these searches and the solver take turns.
+fn turns(
+    model: &Model<'_>,
+    questions: &[Question],
+    answers: &mut [Option<Verdict>],
+    budget: &Budget<'_>,
+    searches: &[&dyn Layer],
+) {
     let mut scans = SCANS;
     let mut solver = Satisfiability { turns: SOLVER };
     loop {
         let before = answers.to_vec();
         let small = Budget { scans: scans.min(budget.scans), ..*budget };
-        Explicit.answer(model, questions, answers, &small);
-        Zones.answer(model, questions, answers, &small);
+        searches.iter().for_each(|layer| layer.answer(model, questions, answers, &small));
         solver.answer(model, questions, answers, budget);
-        // More work changes nothing where both have come to their end.
+        // More work changes nothing where all have come to their end.
         if !answers.iter().any(is_open) || (budget.stop)() || before == answers {
             return;
         }
@@ -43,7 +63,7 @@ pub fn answer(
     }
 }
 
-/// The same for a caller whose budget cannot stop a solver: a search within the budget, and then, with
+/// As [`answer`], for a caller whose budget cannot stop a solver: a search within the budget, and then, with
 /// `solve`, a short attempt of the solver at what is open.
 pub fn attempt(
     model: &Model<'_>,

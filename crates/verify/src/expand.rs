@@ -203,6 +203,11 @@ impl<'a> Expander<'a> {
         self.memory = self.open.iter().map(|(_, c)| *c).find(|c| has_memory(c));
     }
 
+    /// Tries these inputs from now on.
+    pub fn try_inputs(&mut self, tried: Tried) {
+        self.tried = tried;
+    }
+
     /// Only these inputs, by their places, ascending, take other values than their present ones.
     pub(crate) fn keep_to(&mut self, inputs: &[usize]) {
         self.free.retain(|i| inputs.binary_search(i).is_ok());

@@ -206,6 +206,22 @@ pub fn replay(model: &Model<'_>, claim: &Claim, run: &Run) -> bool {
     if matches!(claim, Claim::LeadsTo { .. }) { has_memory(claim) && memory != IDLE } else { last }
 }
 
+/// The fault of a condition of the claim at the end of a run: the claim has no value there.
+pub fn unclear(model: &Model<'_>, claim: &Claim, run: &Run) -> Option<FaultKind> {
+    let (mut world, mut memory) = (World::new(model), IDLE);
+    for (k, m) in run.moves.iter().enumerate() {
+        let way = run.ways.get(k).copied().unwrap_or(0);
+        world.tick(m.wait, way, &mut m.inputs.clone()).ok()?;
+        let now = world.charts.now().saturating_add(m.wait);
+        scan(&model.compiled.program, &mut world.charts, &m.inputs, now).ok()?;
+        match judge(model, claim, &mut world, memory, m.wait) {
+            Ok(seen) => memory = seen.memory,
+            Err(fault) => return Some(fault.kind),
+        }
+    }
+    None
+}
+
 /// The value of a condition at the end of each scan of a run.
 pub fn seen(model: &Model<'_>, run: &Run, q: Query) -> Vec<bool> {
     let p = &model.compiled.program;

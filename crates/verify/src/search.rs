@@ -9,22 +9,21 @@
 mod answers;
 mod parts;
 
-use g7_engine::{Program, State};
+use g7_engine::State;
 
-use self::answers::asks_for_traps;
 use self::parts::{divided, jobs};
-use crate::expand::{Expanded, Expander, Gap, Here, Step};
+use crate::expand::{Expanded, Expander, Here, Step};
 use crate::explore::Move;
 use crate::layer::{Budget, Layer};
 use crate::model::Model;
 use crate::monitor::has_memory;
+use crate::outcome::asks_for_traps;
 use crate::question::{Claim, Question};
 use crate::reason::Reason;
 use crate::rows::{Key, Rows};
 use crate::scene::{Extent, Look, Scene, Tried, Until};
 use crate::store::Store;
 use crate::verdict::{Verdict, is_open};
-use crate::world::WAYS;
 
 /// States, and scans of a state, between two questions whether to stop.
 const PATIENCE: usize = 64;
@@ -132,7 +131,6 @@ pub(crate) struct Search<'a> {
     /// The places of the only inputs that change.
     within: Option<Vec<usize>>,
     model: &'a Model<'a>,
-    p: &'a Program,
     budget: &'a Budget<'a>,
     expander: Option<Expander<'a>>,
     /// Questions without an answer, with their numbers.
@@ -175,7 +173,6 @@ impl<'a> Search<'a> {
         budget: &'a Budget<'a>,
         open: Vec<(usize, &'a Question)>,
     ) -> Search<'a> {
-        let p: &Program = &model.compiled.program;
         Search {
             tried: Tried::Classes,
             look: None,
@@ -184,7 +181,6 @@ impl<'a> Search<'a> {
             until: Until::Answered,
             within: None,
             model,
-            p,
             budget,
             expander: None,
             memory: open.iter().map(|(_, q)| &q.claim).find(|c| has_memory(c)),
@@ -274,7 +270,7 @@ impl<'a> Search<'a> {
 
     /// How much was seen.
     pub(crate) fn seen(&self) -> Extent {
-        let open = self.hole.clone().map(|reason| self.so_far(reason));
+        let open = self.hole.clone().map(|reason| self.outcome().so_far(reason));
         Extent { states: self.store.len(), scans: self.scans, open }
     }
 
@@ -368,21 +364,11 @@ impl<'a> Search<'a> {
         self.cut |= done.cut;
         self.cut_passes |= done.cut_passes;
         if let Some(gap) = done.gap.filter(|_| self.hole.is_none()) {
-            self.hole = Some(match gap {
-                Gap::Combinations(count) => Reason::Combinations(count),
-                Gap::Values(place) => Reason::Values(self.name(place).to_owned()),
-                Gap::Plant(kind) => Reason::Plant(kind),
-                Gap::Chance => Reason::Chance(WAYS.into()),
-            });
+            self.hole = Some(gap.reason(self.model));
         }
         if done.stuck && !done.stopped && self.stuck.is_none() {
             self.hole = Some(Reason::NoInput(self.depth));
             self.stuck = Some(at);
         }
-    }
-
-    fn name(&self, place: usize) -> &str {
-        let addr = g7_engine::Addr(self.p.tables().inputs.start + place as u32);
-        self.model.compiled.symbols.variable_at(addr).map_or("", |v| &v.name)
     }
 }

@@ -2,8 +2,8 @@
 
 use crate::rows::{Key, Rows, mix};
 
-/// The images stand packed one behind the other; a table of slots finds them.
-pub(crate) struct Store {
+/// A set of images, all of one length. They stand packed one behind the other; a table of slots finds them.
+pub struct Store {
     rows: Rows,
     /// The number of an image in the lower bits, some bits of its hash in those above; or `FREE`. There
     /// are `2^bits` slots, at least a quarter free, so that a number fits into the lower `bits`.
@@ -25,24 +25,32 @@ struct Place {
     tag: u32,
 }
 
+impl Default for Store {
+    fn default() -> Store {
+        Store::new()
+    }
+}
+
 impl Store {
-    pub(crate) fn new() -> Store {
+    /// An empty set.
+    pub fn new() -> Store {
         Store { rows: Rows::new(), slots: vec![FREE; 1 << LEAST], bits: LEAST, key: Key::new() }
     }
 
-    pub(crate) fn len(&self) -> usize {
+    /// The number of images.
+    pub fn len(&self) -> usize {
         self.rows.len()
     }
 
     /// The image with a number; an empty one if there is none.
-    pub(crate) fn image(&self, number: usize) -> Vec<u64> {
+    pub fn image(&self, number: usize) -> Vec<u64> {
         let mut image = Vec::new();
         self.get(number, &mut image);
         image
     }
 
     /// The same in a room that stands.
-    pub(crate) fn get(&self, number: usize, image: &mut Vec<u64>) {
+    pub fn get(&self, number: usize, image: &mut Vec<u64>) {
         self.rows.get(number, image);
     }
 
@@ -59,8 +67,20 @@ impl Store {
         found
     }
 
+    /// True if there is no image.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// The number of an image that is there.
+    pub fn number(&self, image: &[u64]) -> Option<u32> {
+        let mut key = Key::new();
+        let fits = self.rows.pack(image, &mut key);
+        if fits { self.find(&key).err() } else { None }
+    }
+
     /// Bytes in use.
-    pub(crate) fn bytes(&self) -> usize {
+    pub fn bytes(&self) -> usize {
         self.rows.bytes() + self.slots.len() * 4
     }
 
@@ -70,7 +90,7 @@ impl Store {
     }
 
     /// The number of an image that is there; one that is not is added.
-    pub(crate) fn find_or_insert(&mut self, image: &[u64]) -> Option<u32> {
+    pub fn find_or_insert(&mut self, image: &[u64]) -> Option<u32> {
         let mut key = std::mem::take(&mut self.key);
         let found = self.find_or_add(image, &mut key);
         self.key = key;

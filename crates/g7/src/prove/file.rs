@@ -10,15 +10,18 @@ use g7_verify::{Budget, Evidence, Model, Question, Verdict, answer, ask, ask_wit
 use super::found::{Answered, Found};
 use super::made;
 use super::patience::{Patience, Phase, Progress, Share, Stop};
-use super::{guilt, sarif, save, trace};
+use super::{guilt, process, sarif, save, trace};
 use crate::cli::{Answers, Prove};
 use crate::failure::Failure;
+use crate::message::talk;
 use crate::report::{self, Tally};
 use crate::sources;
 
 /// The work on a file.
 pub(super) struct Work {
     pub(super) args: Prove,
+    /// The number of the file among all.
+    pub(super) number: usize,
     pub(super) patience: Patience,
     pub(super) time: Share,
     pub(super) progress: Progress,
@@ -29,7 +32,8 @@ impl Work {
     pub(super) fn prove(&self, path: &Path) -> Result<Found, Failure> {
         self.progress.enter(Phase::Read);
         let source = sources::load(path, 0)?;
-        let mut file = File { source: &source, work: self, drawer: None, found: Found::default() };
+        let mut file =
+            File { source: &source, work: self, drawer: None, asked: self.number, found: Found::default() };
         file.found.name.clone_from(&source.name);
         let problems = file.prove()?;
         let mut found = file.found;
@@ -49,7 +53,8 @@ impl Work {
 
     /// True if each question is to be told, also those that are not decided for one reason.
     fn tells_all(&self) -> bool {
-        self.args.all || self.args.format != Answers::Text || self.args.junit.is_some()
+        let args = &self.args;
+        args.all || args.format != Answers::Text || args.junit.is_some() || args.shared.shard.is_some()
     }
 }
 
@@ -59,6 +64,8 @@ struct File<'a> {
     work: &'a Work,
     /// Made for the first run that is drawn.
     drawer: Option<trace::Drawer>,
+    /// The number of the next question, for those who answer a part of all.
+    asked: usize,
     found: Found,
 }
 
@@ -84,10 +91,23 @@ impl File<'_> {
             let Some(asked) = asked else { return Ok(problems) };
             let model = Model::new(&asked.compiled, asked.assume.clone());
             // The charts alone have no more than their part, so that there is time for those with plants.
-            let answers = self.answer(&model, &asked.questions, None, plants.len() + 1)?;
+            self.work.progress.search(asked.questions.len());
+            let answers = if process::is_shared(&args.shared) {
+                let stop = work.patience.within(work.time.part(plants.len() + 1));
+                let answers = process::answer(args, source, &asked, &model, &work.budget(&stop))?;
+                self.found.is_stopped |= stop() && answers.iter().any(is_open);
+                answers
+            } else {
+                self.search(&model, &asked.questions, plants.len() + 1)
+            };
+            if args.shared.is_silent() {
+                return Ok(problems);
+            }
+            self.tell(&model, &asked.questions, &answers, None)?;
             let stop = work.time.stop();
             let budget = work.budget(&stop);
-            if let Some(text) = made::contradiction(source, &model, profile, &answers, &budget)? {
+            let given: Vec<_> = answers.iter().filter(|a| a.is_some()).cloned().collect();
+            if let Some(text) = made::contradiction(source, &model, profile, &given, &budget)? {
                 self.found.tally.errors += 1;
                 self.found.trouble.push_str(&text);
             }
@@ -104,7 +124,11 @@ impl File<'_> {
             problems.extend(found.into_iter().filter(|p| !problems.contains(p)).collect::<Vec<_>>());
             if let Some(closed) = closed {
                 let model = closed.model();
-                let answers = self.answer(&model, &closed.questions, args.plant.as_deref(), models)?;
+                if process::is_shared(&args.shared) {
+                    talk!("the questions with {plant} are not shared: process 0 answers them alone");
+                }
+                let answers = self.search(&model, &closed.questions, models);
+                self.tell(&model, &closed.questions, &answers, args.plant.as_deref())?;
                 if args.save.is_some() {
                     let answered = (&*closed.questions, &*answers);
                     save::tests(&mut saved, source, &closed.bench, &model, answered, profile)?;
@@ -115,22 +139,38 @@ impl File<'_> {
         Ok(problems)
     }
 
-    /// Answers the questions about a model, the first of so many that are left; those of every chart name
-    /// their plant.
-    fn answer(
+    /// Answers the questions about a model, the first of so many that are left; with `--shard` those of the
+    /// part alone.
+    fn search(&mut self, model: &Model<'_>, questions: &[Question], models: usize) -> Vec<Option<Verdict>> {
+        let (first, shard) = (self.asked, self.work.args.shared.shard);
+        self.asked += questions.len();
+        let is_mine = |k: &usize| shard.is_none_or(|part| part.has(first + k));
+        let mine: Vec<usize> = (0..questions.len()).filter(is_mine).collect();
+        let picked: Vec<Question> = mine.iter().filter_map(|k| questions.get(*k)).cloned().collect();
+        self.work.progress.search(picked.len());
+        let mut found = vec![None; picked.len()];
+        let stop = self.work.patience.within(self.work.time.part(models));
+        if !picked.is_empty() {
+            answer(model, &picked, &mut found, &self.work.budget(&stop));
+        }
+        self.found.is_stopped |= stop() && found.iter().any(is_open);
+        let mut answers = vec![None; questions.len()];
+        for (k, verdict) in mine.into_iter().zip(found) {
+            answers.get_mut(k).into_iter().for_each(|a| a.clone_from(&verdict));
+        }
+        answers
+    }
+
+    /// Puts answers into words; those of every chart name their plant.
+    fn tell(
         &mut self,
         model: &Model<'_>,
         questions: &[Question],
+        answers: &[Option<Verdict>],
         plant: Option<&str>,
-        models: usize,
-    ) -> Result<Vec<Option<Verdict>>, Failure> {
-        self.work.progress.search(questions.len());
-        let mut answers = vec![None; questions.len()];
-        let stop = self.work.patience.within(self.work.time.part(models));
-        answer(model, questions, &mut answers, &self.work.budget(&stop));
-        self.found.is_stopped |= stop() && answers.iter().any(is_open);
+    ) -> Result<(), Failure> {
         self.work.progress.enter(Phase::Tell);
-        for (question, verdict) in questions.iter().zip(&answers) {
+        for (question, verdict) in questions.iter().zip(answers) {
             let Some(verdict) = verdict else { continue };
             if let Verdict::Open(open) = verdict
                 && !question.claim.is_own()
@@ -145,7 +185,7 @@ impl File<'_> {
             }
             self.found.answers.push(one);
         }
-        Ok(answers)
+        Ok(())
     }
 
     fn answered(

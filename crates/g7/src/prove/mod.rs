@@ -12,9 +12,12 @@ mod junit;
 mod made;
 mod output;
 mod patience;
+mod process;
 mod sarif;
 mod save;
+mod shard;
 mod trace;
+mod workers;
 
 use std::path::Path;
 
@@ -22,6 +25,7 @@ use g7_verify::Verdict;
 
 pub(crate) use apart::{compare, read_back};
 pub(crate) use graph::{Graph, graph};
+pub(crate) use shard::{Part, part};
 
 use file::Work;
 use found::Found;
@@ -35,17 +39,32 @@ use crate::message::talk;
 pub(crate) fn prove(args: &Prove) -> Result<failure::Verdict, Failure> {
     let paths = files::all(&args.paths)?;
     made::one_file(args, &paths)?;
+    process::refuse(args, &paths)?;
     let patience = Patience::new()?;
+    let shared = &args.shared;
+    if process::is_shared(shared) && shared.process.is_none() {
+        return workers::run(args, &*patience.pressed());
+    }
+    if shared.child {
+        patience.until_input_ends()?;
+    }
     // The time that a file leaves over is for those behind it.
     let time = patience.share(args.time);
     let mut all = Vec::new();
-    for (path, files) in paths.iter().zip((1..=paths.len()).rev()) {
-        let found = one(path, args, &patience, patience.share(time.part(files)))?;
+    for (number, path) in paths.iter().enumerate() {
+        let share = patience.share(time.part(paths.len() - number));
+        let found = one(path, number, args, &patience, share)?;
+        if shared.is_silent() {
+            // Process 0 has all answers and problems, and prints them.
+            return Ok(failure::Verdict::Fine);
+        }
         if !found.trouble.is_empty() {
             talk!("{}", found.trouble.trim_end());
         }
-        if args.format == Answers::Text {
-            output::text(&found, args.all)?;
+        match args.format {
+            _ if shared.shard.is_some() => output::lines(&found)?,
+            Answers::Text => output::text(&found, args.all)?,
+            Answers::Json | Answers::Sarif => {}
         }
         all.push(found);
     }
@@ -55,6 +74,7 @@ pub(crate) fn prove(args: &Prove) -> Result<failure::Verdict, Failure> {
     };
     let open = all.iter().any(is_open);
     match args.format {
+        _ if shared.shard.is_some() => {}
         Answers::Text => {
             let stopped = all.iter().any(|f| f.is_stopped).then(|| patience.reason(args.time));
             output::summary(&all, stopped.as_deref())?;
@@ -74,8 +94,8 @@ pub(crate) fn prove(args: &Prove) -> Result<failure::Verdict, Failure> {
     })
 }
 
-/// Asks a file all of its questions, as far as the time goes.
-fn one(path: &Path, args: &Prove, patience: &Patience, time: Share) -> Result<Found, Failure> {
+/// Asks a file, with its number in the list, all of its questions, as far as the time goes.
+fn one(path: &Path, number: usize, args: &Prove, patience: &Patience, time: Share) -> Result<Found, Failure> {
     let stop = time.stop();
     let unasked = |why: &str| {
         let unasked = Some(format!("{} {why}", patience.reason(args.time)));
@@ -85,7 +105,8 @@ fn one(path: &Path, args: &Prove, patience: &Patience, time: Share) -> Result<Fo
         return Ok(unasked("before this file was read"));
     }
     let progress = Progress::default();
-    let work = Work { args: args.clone(), patience: patience.clone(), time, progress: progress.clone() };
+    let work =
+        Work { args: args.clone(), number, patience: patience.clone(), time, progress: progress.clone() };
     let (owned, seen) = (path.to_owned(), progress.clone());
     Ok(match Patience::wait(&stop, &progress, move || work.prove(&owned))? {
         Ok(found) => found?,

@@ -7,6 +7,7 @@ use serde_json::{Value, json};
 
 use super::found::{Answered, Found, LISTED};
 use crate::failure::Failure;
+use crate::message::talk;
 use crate::style;
 
 pub(super) fn word(verdict: &Verdict) -> String {
@@ -148,29 +149,42 @@ fn place(verdict: &Verdict) -> usize {
 /// Prints all answers as one JSON object.
 pub(super) fn json(all: &[Found]) -> Result<(), Failure> {
     let [proved, refuted, open] = counts(all);
-    let one = |a: &Answered| -> Value {
-        let mut row = json!({
-            "place": a.place, "claim": a.claim, "own": a.own, "verdict": word(&a.verdict), "reason": a.reason,
-            "help": a.help,
-        });
-        if !a.chronogram.is_empty() {
-            row["chronogram"] = json!(a.chronogram);
-        }
-        if !a.guilt.is_empty() {
-            row["guilt"] = json!(a.guilt);
-        }
-        if let Verdict::Proved(Evidence::Run(run)) | Verdict::Refuted(Evidence::Run(run)) = &a.verdict {
-            row["run"] = run.moves.iter().map(|m| json!({ "inputs": m.inputs, "wait_ns": m.wait })).collect();
-        }
-        row
-    };
-    let answers: Vec<Value> = all.iter().flat_map(|f| &f.answers).map(one).collect();
+    let answers: Vec<Value> = all.iter().flat_map(|f| &f.answers).map(row).collect();
     let files: Vec<Value> = all.iter().filter_map(not_asked).collect();
     let all = json!({
         "proved": proved, "refuted": refuted, "not_decided": open, "answers": answers, "not_asked": files,
     });
     writeln!(anstream::stdout().lock(), "{all:#}")?;
     Ok(())
+}
+
+/// Prints each answer of a file as a line of JSON; tells why there is none.
+pub(super) fn lines(found: &Found) -> Result<(), Failure> {
+    if let Some(why) = &found.unasked {
+        talk!("{}: not decided: {why}", found.name);
+    }
+    let mut out = anstream::stdout().lock();
+    found.answers.iter().try_for_each(|a| writeln!(out, "{}", row(a)))?;
+    out.flush()?;
+    Ok(())
+}
+
+/// An answer as an object.
+fn row(a: &Answered) -> Value {
+    let mut row = json!({
+        "place": a.place, "claim": a.claim, "own": a.own, "verdict": word(&a.verdict), "reason": a.reason,
+        "help": a.help,
+    });
+    if !a.chronogram.is_empty() {
+        row["chronogram"] = json!(a.chronogram);
+    }
+    if !a.guilt.is_empty() {
+        row["guilt"] = json!(a.guilt);
+    }
+    if let Verdict::Proved(Evidence::Run(run)) | Verdict::Refuted(Evidence::Run(run)) = &a.verdict {
+        row["run"] = run.moves.iter().map(|m| json!({ "inputs": m.inputs, "wait_ns": m.wait })).collect();
+    }
+    row
 }
 
 /// A file of which not all was asked, with the reason.

@@ -117,6 +117,24 @@ impl Patience {
         Share { pressed: self.pressed.clone(), clock: Arc::new(Mutex::new(WallClock::default())), time }
     }
 
+    /// True as soon as Ctrl-C was pressed.
+    pub(super) fn pressed(&self) -> Stop {
+        let pressed = self.pressed.clone();
+        Arc::new(move || pressed.load(Ordering::Relaxed))
+    }
+
+    /// Counts the end of the standard input as Ctrl-C.
+    pub(super) fn until_input_ends(&self) -> Result<(), Failure> {
+        let pressed = self.pressed.clone();
+        let watch = move || {
+            // An input that cannot be read has ended too.
+            let _end = std::io::copy(&mut std::io::stdin().lock(), &mut std::io::sink());
+            pressed.store(true, Ordering::Relaxed);
+        };
+        std::thread::Builder::new().spawn(watch).map_err(crate::failure::refused)?;
+        Ok(())
+    }
+
     /// True as soon as this time is over, counted from now, or Ctrl-C was pressed.
     pub(super) fn within(&self, time: Nanos) -> Stop {
         self.share(time).stop()

@@ -4,11 +4,10 @@
 use super::Search;
 use crate::expand::Shown;
 use crate::explore::Move;
-use crate::look::{PASSES, replay};
 use crate::monitor::IDLE;
-use crate::question::Claim;
+use crate::outcome::{Outcome, asks_for_traps};
 use crate::reason::Reason;
-use crate::verdict::{Certificate, Evidence, Open, Run, Verdict};
+use crate::verdict::{Run, Verdict};
 
 impl<'a> Search<'a> {
     /// Answers a question that a scan shows.
@@ -24,7 +23,8 @@ impl<'a> Search<'a> {
                 self.show(question, run);
             }
             Shown::Unclear { question, fault } => {
-                self.give(question, Verdict::Open(self.so_far(Reason::Condition(fault.kind))));
+                let open = self.outcome().so_far(Reason::Condition(fault.kind));
+                self.give(question, Verdict::Open(open));
             }
         }
     }
@@ -33,13 +33,7 @@ impl<'a> Search<'a> {
     fn show(&mut self, i: usize, run: Run) {
         let Some((_, q)) = self.open.iter().find(|(n, _)| *n == i) else { return };
         let claim = &q.claim;
-        let verdict = if !replay(self.model, claim, &run) {
-            Verdict::Open(self.so_far(Reason::NotRepeated))
-        } else if claim.is_of_some_run() {
-            Verdict::Proved(Evidence::Run(run))
-        } else {
-            Verdict::Refuted(Evidence::Run(run))
-        };
+        let verdict = self.outcome().shown(self.model, claim, run);
         self.give(i, verdict);
     }
 
@@ -101,29 +95,21 @@ impl<'a> Search<'a> {
 
     /// Answers what is left over.
     pub(super) fn close(&mut self) {
-        let certificate = Certificate::Search { states: self.store.len(), scans: self.scans };
+        let end = self.outcome();
         for (i, q) in std::mem::take(&mut self.open) {
-            let hidden = match &q.claim {
-                Claim::Active(_) | Claim::Clears(_) | Claim::Runs(_) => self.cut.then_some(Reason::Reports),
-                Claim::NoConflict | Claim::NoUnsafe => self.cut_passes.then_some(Reason::Passes(PASSES)),
-                _ => None,
-            };
-            let verdict = match self.hole.clone().or(hidden) {
-                Some(reason) => Verdict::Open(self.so_far(reason)),
-                None if q.claim.is_of_some_run() => {
-                    Verdict::Refuted(Evidence::Certificate(certificate.clone()))
-                }
-                None => Verdict::Proved(Evidence::Certificate(certificate.clone())),
-            };
-            self.answers.push((i, verdict));
+            self.answers.push((i, end.left_over(&q.claim)));
         }
     }
 
-    pub(super) fn so_far(&self, reason: Reason) -> Open {
-        Open { scans: self.depth, states: self.store.len(), reason }
+    /// How far the search has come.
+    pub(super) fn outcome(&self) -> Outcome {
+        Outcome {
+            states: self.store.len(),
+            scans: self.scans,
+            depth: self.depth,
+            hole: self.hole.clone(),
+            cut: self.cut,
+            cut_passes: self.cut_passes,
+        }
     }
-}
-
-pub(super) fn asks_for_traps(claim: &Claim) -> bool {
-    matches!(claim, Claim::NoDeadlock | Claim::LeadsTo { .. })
 }
