@@ -264,7 +264,7 @@ fn word(v: &Option<Verdict>) -> Option<&'static str> {
     }
 }
 
-/// What the layer that did not answer says: proofs by the solver are asked of a short search, those by the search
+/// The answers of the layer that did not answer first: proofs by the solver are asked of a short search, those by the search
 /// of the solver.
 fn others(model: &Model<'_>, questions: &[Question], answers: &[Option<Verdict>]) -> Vec<Option<Verdict>> {
     let begun = Instant::now();

@@ -38,7 +38,7 @@ pub(crate) struct Level {
     pub(crate) width: usize,
     /// The records.
     pub(crate) records: Vec<u64>,
-    /// What else is known.
+    /// Further things that are known.
     pub(crate) rest: Vec<u64>,
 }
 

@@ -19,7 +19,7 @@ const GREETING: Duration = Duration::from_secs(2);
 /// The time between two looks at who is there.
 const PAUSE: Duration = Duration::from_millis(10);
 
-/// What all processes of a search have in common.
+/// Things that all processes of a search have in common.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Work {
     /// A hash of the program that runs: its version.

@@ -21,7 +21,7 @@ pub struct Place<'p> {
     pub me: usize,
     /// The addresses of all processes, `host:port`.
     pub addresses: &'p [String],
-    /// What they have in common.
+    /// Things that they have in common.
     pub work: Work,
     /// The folder of the levels.
     pub folder: &'p Path,

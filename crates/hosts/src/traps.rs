@@ -95,7 +95,7 @@ fn each(words: &[u64], width: usize, take: &mut dyn FnMut(Id, &[u64])) {
     }
 }
 
-/// What a worker knows of its states that nothing leads on from.
+/// The states of a worker that nothing leads on from, as far as it knows.
 struct Graph {
     good: Vec<bool>,
     /// For each state: the states of which a scan leads there.

@@ -5,11 +5,11 @@
 //! before. Work is counted in scans and ticks, not in seconds: unless the caller stops it, the
 //! answers depend on the chart alone.
 
+use crate::explicit::Explicit;
 use crate::layer::{Budget, Layer};
 use crate::model::Model;
 use crate::question::Question;
 use crate::sat::Satisfiability;
-use crate::search::Explicit;
 use crate::verdict::{Verdict, is_open};
 use crate::zones::Zones;
 

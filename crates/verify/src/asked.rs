@@ -180,7 +180,7 @@ impl Asking {
         found.join(&self.watched);
     }
 
-    /// What is read from these steps on. With `follow`, transitions clear whatever their receptivities,
+    /// The inputs that are read from these steps on. With `follow`, transitions clear whatever their receptivities,
     /// and with `far` those behind them as well.
     fn find(
         &self,

@@ -277,7 +277,7 @@ impl Ties<'_> {
             let (Expr::Read(m) | Expr::Element(m, _)) = e else { return };
             let Some(memory) = equations.memory(*m) else { return };
             match memory.what {
-                // What comes once a scan comes to each part in the same pass.
+                // Code that runs once a scan comes to each part in the same pass.
                 What::Dt | What::Started | What::Opening => {}
                 What::Changed | What::Stepped | What::Work => simple = false,
                 _ if memory.class == Class::Constant => {}

@@ -416,7 +416,7 @@ impl<'a> Expander<'a> {
             state: &mut self.world.charts,
         };
         done.stopped = !see(step);
-        // What was read before a fault is the same in each scan that agrees in it, and so is the fault.
+        // Scans that agree in the inputs read before a fault have the same fault.
         if is_cut { Outcome::Unknown } else { Outcome::Made }
     }
 

@@ -7,14 +7,12 @@
 //! something is a shortest one.
 
 mod answers;
-mod parts;
 
 use g7_engine::State;
 
-use self::parts::{divided, jobs};
 use crate::expand::{Expanded, Expander, Here, Step};
 use crate::explore::Move;
-use crate::layer::{Budget, Layer};
+use crate::layer::Budget;
 use crate::model::Model;
 use crate::monitor::has_memory;
 use crate::outcome::asks_for_traps;
@@ -23,88 +21,12 @@ use crate::reason::Reason;
 use crate::rows::{Key, Rows};
 use crate::scene::{Extent, Look, Scene, Tried, Until};
 use crate::store::Store;
-use crate::verdict::{Verdict, is_open};
+use crate::verdict::Verdict;
 
 /// States, and scans of a state, between two questions whether to stop.
 const PATIENCE: usize = 64;
 
-/// Scans of a search that comes before others.
-const SMALL: usize = 20_000;
-
-/// The explicit search as a layer.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Explicit;
-
-impl Layer for Explicit {
-    fn name(&self) -> &'static str {
-        "search"
-    }
-
-    fn answer(
-        &self,
-        model: &Model<'_>,
-        questions: &[Question],
-        answers: &mut [Option<Verdict>],
-        budget: &Budget<'_>,
-    ) {
-        answer(model, questions, answers, budget, threads());
-    }
-}
-
-/// Searches that may run at a time.
-fn threads() -> usize {
-    if cfg!(target_family = "wasm") { 1 } else { std::thread::available_parallelism().map_or(1, usize::from) }
-}
-
-/// Answers questions with so many searches at a time. A small search comes first: most charts need no
-/// more. Then the chart is divided, if it consists of parts. What is left is searched as far as the budget
-/// allows.
-fn answer(
-    model: &Model<'_>,
-    questions: &[Question],
-    answers: &mut [Option<Verdict>],
-    budget: &Budget<'_>,
-    threads: usize,
-) {
-    let small = Budget { scans: SMALL.min(budget.scans), ..*budget };
-    if !whole(model, questions, answers, &small, threads) {
-        return;
-    }
-    let found = divided(model, &open(questions, answers), budget, threads);
-    give(answers, found);
-    if small.scans < budget.scans {
-        whole(model, questions, answers, budget, threads);
-    }
-}
-
-/// Searches the whole chart for what is open; tells whether more scans would have told more.
-fn whole(
-    model: &Model<'_>,
-    questions: &[Question],
-    answers: &mut [Option<Verdict>],
-    budget: &Budget<'_>,
-    threads: usize,
-) -> bool {
-    let found = parts::run(model, &jobs(&open(questions, answers), None), budget, threads);
-    let short = found.iter().any(|f| f.short);
-    found.into_iter().for_each(|f| give(answers, f.answers));
-    short
-}
-
-/// The questions without an answer, with their numbers.
-fn open<'q>(questions: &'q [Question], answers: &[Option<Verdict>]) -> Vec<(usize, &'q Question)> {
-    questions.iter().enumerate().zip(answers).filter(|(_, a)| is_open(a)).map(|(q, _)| q).collect()
-}
-
-fn give(answers: &mut [Option<Verdict>], found: Vec<(usize, Verdict)>) {
-    for (i, verdict) in found {
-        if let Some(answer) = answers.get_mut(i) {
-            *answer = Some(verdict);
-        }
-    }
-}
-
-/// Answers questions like [`Explicit`], with a choice of the inputs that are tried, and shows
+/// Answers questions like [`crate::Explicit`], with a choice of the inputs that are tried, and shows
 /// each scan: the number of scans before it, and the state behind it. For tests.
 pub fn watch(
     model: &Model<'_>,
@@ -129,7 +51,7 @@ pub(crate) struct Search<'a> {
     pub(crate) start: &'a [Move],
     pub(crate) until: Until,
     /// The places of the only inputs that change.
-    within: Option<Vec<usize>>,
+    pub(crate) within: Option<Vec<usize>>,
     model: &'a Model<'a>,
     budget: &'a Budget<'a>,
     expander: Option<Expander<'a>>,
@@ -205,7 +127,7 @@ impl<'a> Search<'a> {
     }
 
     /// Searches, and answers all questions; gives the number of scans as well.
-    fn run(mut self) -> (Vec<(usize, Verdict)>, usize) {
+    pub(crate) fn run(mut self) -> (Vec<(usize, Verdict)>, usize) {
         self.search();
         if self.hole.is_none() {
             self.traps();

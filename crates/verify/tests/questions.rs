@@ -180,7 +180,7 @@ fn what_leads_nowhere_is_refuted() {
     assert!(found.iter().all(|l| l.starts_with('R')), "{found:?}");
 }
 
-/// What can follow a state: search and solver agree on random charts of each profile.
+/// Claims about all that can follow a state: search and solver agree on random charts of each profile.
 #[test]
 fn search_and_solver_agree_about_what_can_follow() {
     use g7_compile::ir::VarClass::{Input, Output};

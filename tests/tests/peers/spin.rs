@@ -137,7 +137,7 @@ impl Small {
         );
         INPUTS.iter().for_each(|i| text += &format!(" {i} = 0;"));
         (0..count).for_each(|t| text += &format!(" t{t} = 0;"));
-        // What comes behind a fault is alike.
+        // All runs behind a fault are alike.
         text += " if :: dead -> ";
         (0..steps).for_each(|s| text += &format!("s{s} = 0; "));
         INPUTS.iter().for_each(|i| text += &format!("o{i} = 0; "));
@@ -219,7 +219,7 @@ impl Small {
     }
 }
 
-/// What a search met.
+/// The things that a search met.
 #[derive(Debug, Default, PartialEq, Eq)]
 struct Met {
     /// Situations at the ends of scans, step `k` as bit `k`.
@@ -252,7 +252,7 @@ fn told(text: &str) -> Met {
     met
 }
 
-/// What the prover says of the chart.
+/// The answers of the prover for the chart.
 fn proved(small: &Small, asked: &Asked) -> Met {
     let model = Model::new(&asked.compiled, asked.assume.clone());
     let budget = Budget { states: 100_000, scans: usize::MAX, bytes: 256 << 20, stop: &|| false };

@@ -100,7 +100,7 @@ fn made(path: &Path) -> std::io::Result<()> {
 
 impl Drop for Temporary {
     fn drop(&mut self) {
-        // What remains is in a folder that the system clears.
+        // A file that remains is in a folder that the system clears.
         let _left = std::fs::remove_dir_all(&self.0);
     }
 }

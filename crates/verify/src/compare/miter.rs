@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 
 use g7_engine::Addr;
 
-use super::Equality;
+use super::equality::Equality;
 use super::run::class;
 use super::sides::Sides;
 use crate::layer::Budget;

@@ -2,8 +2,8 @@
 
 use g7_engine::{FaultKind, State, StepId, scan};
 
+use super::equality::{Difference, Equality};
 use super::sides::Sides;
-use super::{Difference, Equality};
 use crate::explore::Move;
 use crate::look::allowed;
 use crate::world::World;

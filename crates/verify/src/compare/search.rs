@@ -2,7 +2,7 @@
 
 use g7_engine::{Program, State};
 
-use super::Equality;
+use super::equality::Equality;
 use super::run::End;
 use super::sides::Sides;
 use crate::layer::Budget;

@@ -1,4 +1,4 @@
-//! What belongs together in two charts: inputs, outputs and steps, by name and type.
+//! The things that belong together in two charts: inputs, outputs and steps, by name and type.
 
 use g7_compile::Compiled;
 use g7_compile::ir::VarClass;
@@ -6,7 +6,7 @@ use g7_compile::symbols::Variable;
 use g7_engine::{Addr, Program, StepId};
 use g7_model::Type;
 
-use super::{Compare, Unlike};
+use super::equality::{Compare, Unlike};
 use crate::asked::Asking;
 use crate::explore::Move;
 use crate::model::Model;

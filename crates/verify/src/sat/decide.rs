@@ -80,7 +80,7 @@ pub(crate) fn decide_related(
 ) -> (Vec<Found>, usize) {
     let mut work = Decide::new(system, signals, effort);
     work.first = true;
-    let cubes = relations(system, signals, FIRST << effort.turns.min(40), effort);
+    let cubes = relations(system, signals, FIRST << effort.turns.min(40), effort.stop);
     // An invariant by themselves, they hold whatever the signals are.
     if work.checker.certifies(&cubes, Signal::FALSE) {
         work.lemmas = cubes;
@@ -143,7 +143,7 @@ impl<'a> Decide<'a> {
         if cubes.is_empty() || self.effort.turns == 0 {
             return;
         }
-        let Some(cubes) = kept(self.system, cubes, LEARNING, self.effort.stop) else { return };
+        let Some(cubes) = kept(self.system, &[], cubes, LEARNING, self.effort.stop) else { return };
         if self.checker.certifies(&cubes, Signal::FALSE) {
             self.lemmas = cubes;
             self.prove(FIRST);

@@ -9,10 +9,11 @@ use crate::sat::cone::{Cube, next, touches_start};
 use crate::sat::graph::{Signal, System};
 use crate::sat::solver::{Answer, Batsat, Literal, Solver};
 
-/// Those of the cubes that no run enters, as far as they and one step show it. The caller has them
-/// certified. None if the ticks or the time are used up.
+/// Those of the cubes that no run enters, as far as they, those that are known and one step show it. The
+/// caller has them certified. None if the ticks or the time are used up.
 pub(crate) fn kept(
     system: &System,
+    known: &[Cube],
     mut cubes: Vec<Cube>,
     ticks: u64,
     stop: &(dyn Fn() -> bool + Sync),
@@ -28,7 +29,7 @@ pub(crate) fn kept(
             .iter()
             .map(|cube| cube.iter().map(|s| literal(&mut solver, next(system, *s))).collect())
             .collect();
-        for cube in &cubes {
+        for cube in known.iter().chain(&cubes) {
             let clause: Vec<Literal> = cube.iter().map(|s| !literal(&mut solver, *s)).collect();
             solver.add(&clause);
         }
@@ -83,9 +84,9 @@ mod tests {
         let mut all = right.clone();
         // The first state is in this one; an input enters the next; the last holds only if that one does.
         all.extend([vec![ring[0]], vec![free], vec![behind]]);
-        let found = kept(&s, all, 1 << 30, &|| false);
+        let found = kept(&s, &[], all, 1 << 30, &|| false);
         assert_eq!(found.as_ref(), Some(&right));
         assert!(Checker::new(&s, &|| false).certifies(&right, Signal::FALSE));
-        assert_eq!(kept(&s, right, 0, &|| false), None, "without ticks it says nothing");
+        assert_eq!(kept(&s, &[], right, 0, &|| false), None, "without ticks it says nothing");
     }
 }

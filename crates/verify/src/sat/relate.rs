@@ -10,8 +10,8 @@ use std::collections::BTreeMap;
 
 use crate::sat::cnf::{Start, Steps};
 use crate::sat::cone::{Cube, cone, next};
-use crate::sat::decide::Effort;
 use crate::sat::graph::{Signal, System};
+use crate::sat::kept::kept;
 use crate::sat::simulate::evaluate;
 use crate::sat::solver::{Answer, Batsat, Literal, Solver};
 
@@ -24,19 +24,24 @@ const MOST: usize = 30_000;
 
 /// Cubes that no run reaches, of one or two latches that these signals depend on. They are kept by
 /// each step together; the caller has them certified. Fewer if the ticks or the time are used up.
-pub(crate) fn relations(system: &System, of: &[Signal], ticks: u64, effort: &Effort<'_>) -> Vec<Cube> {
+pub(crate) fn relations(
+    system: &System,
+    of: &[Signal],
+    ticks: u64,
+    stop: &(dyn Fn() -> bool + Sync),
+) -> Vec<Cube> {
     let inside = cone(system, of.iter().chain(&system.constraints).copied());
     let all = system.latches.iter().enumerate();
     let latches: Vec<usize> =
         all.filter(|(_, l)| inside.get(l.signal.node() as usize) == Some(&true)).map(|(i, _)| i).collect();
-    if (effort.stop)() {
+    if stop() {
         return Vec::new();
     }
     let (classes, mut pairs) = candidates(system, &latches, &history(system));
-    // What is equal is kept without the rest; the rest is looked at with the help of it.
-    let mut all = refined(system, classes, ticks, effort).unwrap_or_default();
+    // Equal latches are kept without the other relations; these are looked at with the help of them.
+    let mut all = refined(system, classes, ticks, stop).unwrap_or_default();
     pairs.truncate(MOST);
-    let more = kept(system, &all, pairs, ticks, effort).unwrap_or_default();
+    let more = kept(system, &all, pairs, ticks, stop).unwrap_or_default();
     all.extend(more);
     all
 }
@@ -139,7 +144,7 @@ fn refined(
     system: &System,
     mut classes: Vec<Vec<Signal>>,
     ticks: u64,
-    effort: &Effort<'_>,
+    stop: &(dyn Fn() -> bool + Sync),
 ) -> Option<Vec<Cube>> {
     let mut left = ticks;
     loop {
@@ -150,7 +155,7 @@ fn refined(
                 class.iter().skip(1).flat_map(|s| alike(class.first().copied().unwrap_or(*s), *s))
             })
             .collect();
-        let mut solver = Batsat::new(effort.stop);
+        let mut solver = Batsat::new(stop);
         solver.stop_at(left);
         let mut steps = Steps::new(system, &mut solver, Start::Any, false);
         let mut literal = |solver: &mut Batsat<'_>, s: Signal| steps.literal(system, solver, 0, s);
@@ -200,53 +205,6 @@ fn refined(
     }
 }
 
-/// Those of the cubes that no step enters from outside of all of them and of those that are known. None if
-/// the ticks or the time are used up.
-fn kept(
-    system: &System,
-    known: &[Cube],
-    mut cubes: Vec<Cube>,
-    ticks: u64,
-    effort: &Effort<'_>,
-) -> Option<Vec<Cube>> {
-    let mut left = ticks;
-    loop {
-        let mut solver = Batsat::new(effort.stop);
-        solver.stop_at(left);
-        let mut steps = Steps::new(system, &mut solver, Start::Any, false);
-        let mut literal = |solver: &mut Batsat<'_>, s: Signal| steps.literal(system, solver, 0, s);
-        let behind: Vec<Vec<Literal>> = cubes
-            .iter()
-            .map(|cube| cube.iter().map(|s| literal(&mut solver, next(system, *s))).collect())
-            .collect();
-        for cube in known.iter().chain(&cubes) {
-            let clause: Vec<Literal> = cube.iter().map(|s| !literal(&mut solver, *s)).collect();
-            solver.add(&clause);
-        }
-        let mut lost = vec![false; cubes.len()];
-        for (i, assumed) in behind.iter().enumerate() {
-            if lost.get(i) == Some(&true) {
-                continue;
-            }
-            match solver.solve(assumed) {
-                Answer::Stopped => return None,
-                Answer::No => {}
-                Answer::Yes => {
-                    for (lost, literals) in lost.iter_mut().zip(&behind) {
-                        *lost |= literals.iter().all(|l| solver.value(*l));
-                    }
-                }
-            }
-        }
-        left = left.saturating_sub(solver.ticks());
-        if !lost.contains(&true) {
-            return Some(cubes);
-        }
-        let mut gone = lost.iter();
-        cubes.retain(|_| gone.next() == Some(&false));
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -254,17 +212,13 @@ mod tests {
     use crate::sat::check::Checker;
     use crate::sat::graph::Init;
 
-    fn effort() -> Effort<'static> {
-        Effort { bytes: 1 << 28, turns: 10, stop: &|| false }
-    }
-
     /// Each relation holds in all states that are reached, and the checker agrees.
     #[test]
     fn relations_hold_in_every_state_that_is_reached() {
         let mut count = 0;
         for seed in 0..1500 {
             let (s, bad) = system(seed);
-            let found = relations(&s, &[bad], 1 << 30, &effort());
+            let found = relations(&s, &[bad], 1 << 30, &|| false);
             assert!(Checker::new(&s, &|| false).certifies(&found, Signal::FALSE), "seed {seed}");
             for cube in &found {
                 let mut s = s.clone();
@@ -292,7 +246,7 @@ mod tests {
             rings.push(ring);
         }
         let all: Vec<Signal> = rings.concat();
-        let found = relations(&s, &all, 1 << 30, &effort());
+        let found = relations(&s, &all, 1 << 30, &|| false);
         for i in 0..3 {
             let (a, b) = (rings[0][i], rings[1][i]);
             for cube in [[a, !b], [!a, b]] {

@@ -166,7 +166,7 @@ impl Work<'_> {
                 steps.grow(system, &mut solver);
             }
             let waits = steps.literal(system, &mut solver, step, self.trap.waits);
-            // What waits goes on to wait, if no goal is reached.
+            // A state that waits goes on to wait, if no goal is reached.
             if step == 1 && solver.solve(&[!waits]) != Answer::No {
                 return false;
             }

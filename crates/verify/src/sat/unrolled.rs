@@ -1,4 +1,4 @@
-//! What a system does in its next steps with given inputs, as functions of its latches.
+//! The next steps of a system with given inputs, as functions of its latches.
 
 use crate::sat::graph::{Graph, Node, Signal, System};
 

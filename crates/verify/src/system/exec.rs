@@ -10,7 +10,7 @@
 
 use std::collections::BTreeMap;
 
-use g7_engine::FaultKind;
+use g7_engine::{FaultKind, StepId};
 use g7_equations::{About, Equations, Expr, MemoryId, Stmt, What, expand};
 use g7_model::{Span, Type};
 
@@ -83,6 +83,13 @@ impl<'a> Exec<'a> {
     /// All memories.
     pub(crate) fn cells(&self) -> &[Vec<Value>] {
         &self.cells
+    }
+
+    /// Activity of each step.
+    pub(super) fn steps(&mut self) -> Vec<Signal> {
+        let known = self.e.by_meaning();
+        let count = self.model.compiled.program.tables().steps.len() as u32;
+        (0..count).map(|s| self.holds(known.get(&What::Step(StepId(s))).copied())).collect()
     }
 
     /// A truth value that a memory has.

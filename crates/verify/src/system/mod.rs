@@ -179,7 +179,7 @@ pub(crate) fn system(model: &Model<'_>, questions: &[Question], observed: Observ
         let bits = vec![started, Signal::FALSE];
         x.put(dt, vec![Value::Whole(word::Word::of(bits, model.period.into(), 0, 1))]);
     }
-    let before = steps(&mut x);
+    let before = x.steps();
     let stopped = x.system.latch(Init::Zero);
     let asks = questions.iter().any(|q| q.claim == Claim::NoConflict);
     let rivals = if asks { rivals(t) } else { Vec::new() };
@@ -208,7 +208,7 @@ pub(crate) fn system(model: &Model<'_>, questions: &[Question], observed: Observ
         _ => None,
     };
     let outputs = e.safe.iter().filter_map(output).collect();
-    let steps = steps(&mut x);
+    let steps = x.steps();
     let uncovered = x.uncovered.clone();
     let uncovered = x.g().any(uncovered);
     let sound = x.g().and(run, !stopped);
@@ -233,13 +233,6 @@ pub(crate) fn system(model: &Model<'_>, questions: &[Question], observed: Observ
         sources,
         unknown,
     }
-}
-
-/// Activity of each step.
-fn steps(x: &mut Exec<'_>) -> Vec<Signal> {
-    let known = x.e.by_meaning();
-    let count = x.model.compiled.program.tables().steps.len() as u32;
-    (0..count).map(|s| x.holds(known.get(&What::Step(StepId(s))).copied())).collect()
 }
 
 /// The pairs of steps of `places.rs`, as a scan begins; and that none of them is active before the first.

@@ -223,7 +223,8 @@ mod tests {
             let t = system(&model, &[question], Observed::Asked);
             let bad = t.asked[0].as_ref().expect("it is asked").bad;
             let effort = Effort { bytes: 1 << 28, turns: 12, stop: &|| false };
-            let kept = crate::sat::kept(&t.system, t.exclusive.clone(), 1 << 30, &|| false).expect("time");
+            let kept =
+                crate::sat::kept(&t.system, &[], t.exclusive.clone(), 1 << 30, &|| false).expect("time");
             assert_eq!(
                 kept.len() == t.exclusive.len(),
                 safe,

@@ -37,7 +37,7 @@ pub(crate) fn follows(end: &mut End<'_, '_>, claim: &Claim, before: &[Signal]) -
             let waits = end.x.g().any(waiting.collect::<Vec<_>>());
             let mut changes = end.sights.clears.clone();
             changes.extend(end.x.faults.iter().map(|f| f.2));
-            let now = super::steps(end.x);
+            let now = end.x.steps();
             for (before, now) in before.iter().zip(now) {
                 changes.push(end.x.g().xor(*before, now));
             }

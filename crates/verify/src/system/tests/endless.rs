@@ -3,11 +3,11 @@
 
 use super::charts::same;
 use super::{asked, parsed};
+use crate::explicit::Explicit;
 use crate::layer::{Budget, Layer};
 use crate::model::Model;
 use crate::question::Claim;
 use crate::sat::Satisfiability;
-use crate::search::Explicit;
 use crate::verdict::{Evidence, Verdict};
 
 /// A chart of one ring of `n` steps, all transitions of which ask for `a`.

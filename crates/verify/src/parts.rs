@@ -4,23 +4,23 @@
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use super::Search;
 use crate::divide::{Who, divide};
 use crate::layer::Budget;
 use crate::model::Model;
 use crate::monitor::has_memory;
 use crate::question::Question;
+use crate::search::Search;
 use crate::verdict::{Certificate, Evidence, Verdict};
 
 /// One search.
-pub(super) struct Job<'q> {
-    pub(super) questions: Vec<(usize, &'q Question)>,
+pub(crate) struct Job<'q> {
+    pub(crate) questions: Vec<(usize, &'q Question)>,
     /// The places of the inputs of a part, of a chart that is divided.
-    pub(super) inputs: Option<&'q [usize]>,
+    pub(crate) inputs: Option<&'q [usize]>,
 }
 
 /// The searches for some questions: one for those without a memory, and one for each other.
-pub(super) fn jobs<'q>(questions: &[(usize, &'q Question)], inputs: Option<&'q [usize]>) -> Vec<Job<'q>> {
+pub(crate) fn jobs<'q>(questions: &[(usize, &'q Question)], inputs: Option<&'q [usize]>) -> Vec<Job<'q>> {
     let (alone, together): (Vec<_>, Vec<_>) =
         questions.iter().copied().partition(|(_, q)| has_memory(&q.claim));
     let groups = std::iter::once(together).chain(alone.into_iter().map(|q| vec![q]));
@@ -28,15 +28,15 @@ pub(super) fn jobs<'q>(questions: &[(usize, &'q Question)], inputs: Option<&'q [
 }
 
 /// The result of a search.
-pub(super) struct Found {
+pub(crate) struct Found {
     /// The answers, with the numbers of their questions.
-    pub(super) answers: Vec<(usize, Verdict)>,
+    pub(crate) answers: Vec<(usize, Verdict)>,
     /// It made as many scans as it was allowed.
-    pub(super) short: bool,
+    pub(crate) short: bool,
 }
 
 /// Does all searches, so many at a time, and gives their answers in the order of the jobs.
-pub(super) fn run(model: &Model<'_>, jobs: &[Job<'_>], budget: &Budget<'_>, threads: usize) -> Vec<Found> {
+pub(crate) fn run(model: &Model<'_>, jobs: &[Job<'_>], budget: &Budget<'_>, threads: usize) -> Vec<Found> {
     let threads = threads.clamp(1, jobs.len().max(1));
     // Each has its share of the memory.
     let budget = Budget { bytes: budget.bytes / threads, ..*budget };
@@ -69,7 +69,7 @@ pub(super) fn run(model: &Model<'_>, jobs: &[Job<'_>], budget: &Budget<'_>, thre
 }
 
 /// Answers the questions that the parts of a chart decide, if it can be divided.
-pub(super) fn divided(
+pub(crate) fn divided(
     model: &Model<'_>,
     questions: &[(usize, &Question)],
     budget: &Budget<'_>,
@@ -132,7 +132,7 @@ fn each<'v>(answers: impl Iterator<Item = &'v Verdict>) -> Option<Verdict> {
 mod tests {
     use super::{divided, jobs, run};
     use crate::divide::{Who, divide};
-    use crate::search::answer;
+    use crate::explicit::answer;
     use crate::{Asked, Budget, Evidence, Model, Question, Verdict, ask, replay};
 
     /// Charts with the names and numbers of one side; most of them have something to be found.

@@ -1,0 +1,84 @@
+//! The explicit search as a layer: a small search of the whole chart, then of its parts, then again of the
+//! whole as far as the budget allows.
+
+use crate::layer::{Budget, Layer};
+use crate::model::Model;
+use crate::parts::{divided, jobs, run};
+use crate::question::Question;
+use crate::verdict::{Verdict, is_open};
+
+/// Scans of a search that comes before others.
+const SMALL: usize = 20_000;
+
+/// The explicit search as a layer.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Explicit;
+
+impl Layer for Explicit {
+    fn name(&self) -> &'static str {
+        "search"
+    }
+
+    fn answer(
+        &self,
+        model: &Model<'_>,
+        questions: &[Question],
+        answers: &mut [Option<Verdict>],
+        budget: &Budget<'_>,
+    ) {
+        answer(model, questions, answers, budget, threads());
+    }
+}
+
+/// Searches that may run at a time.
+fn threads() -> usize {
+    if cfg!(target_family = "wasm") { 1 } else { std::thread::available_parallelism().map_or(1, usize::from) }
+}
+
+/// Answers questions with so many searches at a time. A small search comes first: most charts need no
+/// more. Then the chart is divided, if it consists of parts. What is left is searched as far as the budget
+/// allows.
+pub(crate) fn answer(
+    model: &Model<'_>,
+    questions: &[Question],
+    answers: &mut [Option<Verdict>],
+    budget: &Budget<'_>,
+    threads: usize,
+) {
+    let small = Budget { scans: SMALL.min(budget.scans), ..*budget };
+    if !whole(model, questions, answers, &small, threads) {
+        return;
+    }
+    let found = divided(model, &open(questions, answers), budget, threads);
+    give(answers, found);
+    if small.scans < budget.scans {
+        whole(model, questions, answers, budget, threads);
+    }
+}
+
+/// Searches the whole chart for what is open; tells whether more scans would have told more.
+fn whole(
+    model: &Model<'_>,
+    questions: &[Question],
+    answers: &mut [Option<Verdict>],
+    budget: &Budget<'_>,
+    threads: usize,
+) -> bool {
+    let found = run(model, &jobs(&open(questions, answers), None), budget, threads);
+    let short = found.iter().any(|f| f.short);
+    found.into_iter().for_each(|f| give(answers, f.answers));
+    short
+}
+
+/// The questions without an answer, with their numbers.
+fn open<'q>(questions: &'q [Question], answers: &[Option<Verdict>]) -> Vec<(usize, &'q Question)> {
+    questions.iter().enumerate().zip(answers).filter(|(_, a)| is_open(a)).map(|(q, _)| q).collect()
+}
+
+fn give(answers: &mut [Option<Verdict>], found: Vec<(usize, Verdict)>) {
+    for (i, verdict) in found {
+        if let Some(answer) = answers.get_mut(i) {
+            *answer = Some(verdict);
+        }
+    }
+}
