@@ -72,7 +72,8 @@ fn levels(folder: &Path) -> usize {
 #[test]
 fn workers_give_the_answers_of_one_process() {
     let folder = Folder::with(&cells(4));
-    let alone = folder.g7(&["prove", "chart.g7", "--format", "json"]).is(1);
+    let alone = folder.g7(&["prove", "chart.g7", "--format", "json"]);
+    alone.is(1);
     for count in ["1", "3"] {
         let shared = folder.g7(&["prove", "chart.g7", "--format", "json", "--workers", count]);
         assert!(shared.code == 1, "{}", shared.err);
@@ -84,7 +85,8 @@ fn workers_give_the_answers_of_one_process() {
 #[test]
 fn a_process_that_is_killed_and_started_again_changes_no_answer() {
     let folder = Folder::with(&cells(6));
-    let alone = folder.g7(&["prove", "chart.g7", "--format", "json"]).is(1);
+    let alone = folder.g7(&["prove", "chart.g7", "--format", "json"]);
+    alone.is(1);
     hosts(&folder, 2);
     let mut killed = 0;
     for victim in [0, 1] {
@@ -119,7 +121,8 @@ fn parts_together_are_the_whole() {
     folder.write("a.g7", cells(2));
     folder.write("b/b.g7", "profile iec61131\ninput a : BOOL\nchart G {\n  initial step 1\n  step 2\n  1 -> 2 when a\n}\nprove never X2\n");
     folder.write("c.g7", cells(1));
-    let whole = folder.g7(&["prove", ".", "--format", "json"]).is(1);
+    let whole = folder.g7(&["prove", ".", "--format", "json"]);
+    whole.is(1);
     for parts in [1, 2, 5] {
         let mut lines = Vec::new();
         let mut sizes = Vec::new();

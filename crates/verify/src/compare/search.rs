@@ -120,9 +120,11 @@ impl Sides<'_> {
                 scans += 1;
                 match self.step([&mut a, &mut b], &vector, wait) {
                     End::Apart(_) => {
-                        let equality = self.apart(&pairs.path(at, &vector)).unwrap_or_else(|| {
-                            Equality::Open(Open { scans: depth, states, reason: Reason::NotRepeated })
-                        });
+                        let equality = self.apart(&pairs.path(at, &vector)).unwrap_or(Equality::Open(Open {
+                            scans: depth,
+                            states,
+                            reason: Reason::NotRepeated,
+                        }));
                         return Found { equality, hole: hole.is_some() };
                     }
                     End::Alike { goes_on: false } => continue,
