@@ -94,7 +94,9 @@ fn searches<'a>(
         |levels: &Levels, n: usize| levels.read_outcome(n).and_then(|words| Ended::get(&mut Words(&words)));
     // Process 0 prints the answers: those that it has are not searched again.
     let have = (0..groups.len()).take_while(|n| ended(levels, *n).is_some()).count() as u64;
-    let all = Phases::new(wire).share(&[have])?;
+    // One for all searches: it keeps the packets of workers that are a phase ahead.
+    let mut phases = Phases::new(wire);
+    let all = phases.share(&[have])?;
     let done = all.first().and_then(|w| w.first().copied()).unwrap_or(0) as usize;
     for (number, group) in groups.iter().enumerate() {
         let end = match ended(levels, number) {
@@ -103,7 +105,7 @@ fn searches<'a>(
             None if number < done => continue,
             _ => {
                 let task = Task { model, questions: group, budget, tried, number };
-                let end = search(&task, wire, levels)?;
+                let end = search(&task, &mut phases, levels)?;
                 let mut words = Vec::new();
                 end.put(&mut words);
                 levels.keep_outcome(number, &words)?;
@@ -112,7 +114,7 @@ fn searches<'a>(
         };
         // Levels go when all have the outcome.
         if number >= done {
-            Phases::new(wire).share(&[])?;
+            phases.share(&[])?;
         }
         levels.forget(number, 0)?;
         answers.extend(end.answers(model, group, tried));

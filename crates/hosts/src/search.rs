@@ -3,7 +3,7 @@
 use g7_verify::{Gap, Outcome, Reason, asks_for_traps};
 
 use crate::Error;
-use crate::exchange::{Exchange, Lost, Phases};
+use crate::exchange::{Lost, Phases};
 use crate::known::{Hit, Kind, Known};
 use crate::levels::{Level, Levels};
 use crate::task::Task;
@@ -28,12 +28,11 @@ struct Between<'a> {
 /// A worker is lost, or the disk refuses.
 pub(crate) fn search(
     task: &Task<'_, '_>,
-    wire: &mut dyn Exchange,
+    phases: &mut Phases<'_>,
     levels: &mut Levels,
 ) -> Result<Ended, Error> {
-    let mut phases = Phases::new(wire);
     let trap = task.questions.iter().find(|(_, q)| asks_for_traps(&q.claim)).map(|(i, _)| *i as u64);
-    let Between { mut worker, mut known, mut found } = resume(task, trap.is_some(), &mut phases, levels)?;
+    let Between { mut worker, mut known, mut found } = resume(task, trap.is_some(), phases, levels)?;
     let mut halt = None;
     let mut depth = worker.level;
     while found > 0 && halt.is_none() {
@@ -44,17 +43,17 @@ pub(crate) fn search(
         }
         worker.expander.look_for(&open);
         let before = known.states;
-        halt = worker.expand(&mut phases, task.budget, &mut known)?;
+        halt = worker.expand(phases, task.budget, &mut known)?;
         found = known.states - before;
         if halt.is_none() {
             depth += 1;
-            let level = worker.arrange(&mut phases)?;
+            let level = worker.arrange(phases)?;
             keep(task, &worker, levels, level, &known)?;
         }
     }
     let complete = halt.is_none() && known.hole.is_none() && known.stuck.is_none();
     if let Some(question) = trap.filter(|q| complete && !known.hits.contains_key(q))
-        && let Some(at) = traps::first(task, question, &mut worker, &mut phases)?
+        && let Some(at) = traps::first(task, question, &mut worker, phases)?
     {
         known.hit(question, Hit { at, step: 0, kind: Kind::Trap });
     }
@@ -66,7 +65,7 @@ pub(crate) fn search(
         cut: known.cut,
         cut_passes: known.cut_passes,
     };
-    trace(task, outcome, &known, &mut phases, levels)
+    trace(task, outcome, &known, phases, levels)
 }
 
 /// Why not all runs were seen.
