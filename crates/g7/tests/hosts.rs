@@ -13,7 +13,7 @@ use std::time::Duration;
 use common::Folder;
 use serde_json::Value;
 
-/// Cells that run side by side; those of a pair exclude each other.
+/// An even number of cells that run side by side; those of a pair exclude each other.
 fn cells(count: usize) -> String {
     let names = |c| format!("a{c}, b{c}, c{c}");
     let all: Vec<String> = (0..count).map(names).collect();
@@ -25,8 +25,10 @@ fn cells(count: usize) -> String {
              2 -> 3 when b{c} and not C{other}.X3\n  3 -> 1 when c{c}\n}}\n"
         ));
     }
-    text + "prove never C0.X3 and C1.X3 and C2.X3\nprove reachable C0.X3 and C2.X3 and C3.X2\n\
-        prove C0.X2 leads to C0.X3\n"
+    let last = count - 1;
+    text + &format!(
+        "prove never C0.X3 and C1.X3\nprove reachable C0.X3 and C{last}.X2\nprove C0.X2 leads to C0.X3\n"
+    )
 }
 
 /// The answers of a report, each with the number of scans of its run. The reason names how much was searched,
@@ -120,7 +122,7 @@ fn parts_together_are_the_whole() {
     let folder = Folder::new();
     folder.write("a.g7", cells(2));
     folder.write("b/b.g7", "profile iec61131\ninput a : BOOL\nchart G {\n  initial step 1\n  step 2\n  1 -> 2 when a\n}\nprove never X2\n");
-    folder.write("c.g7", cells(1));
+    folder.write("c.g7", cells(2));
     let whole = folder.g7(&["prove", ".", "--format", "json"]);
     whole.is(1);
     for parts in [1, 2, 5] {
@@ -145,7 +147,7 @@ fn parts_together_are_the_whole() {
 #[test]
 fn what_cannot_be_honoured_is_refused() {
     let folder = Folder::with(&cells(2));
-    folder.write("other.g7", cells(1));
+    folder.write("other.g7", cells(2));
     let told = |args: &[&str], word: &str| {
         let ran = folder.g7(&[&["prove"], args].concat());
         assert!(ran.code == 2 && ran.err.contains(word), "{args:?}: {} {}", ran.code, ran.err);
@@ -178,9 +180,10 @@ fn what_cannot_be_honoured_is_refused() {
 fn processes_with_other_charts_do_not_work_together() {
     let folder = Folder::with(&cells(2));
     hosts(&folder, 2);
-    let first = start(&folder, 0, "kept");
+    let mut first = start(&folder, 0, "kept");
     // It has read its chart by the time it keeps a folder.
     while !folder.path("kept/process-0/search").exists() {
+        assert_eq!(first.try_wait().expect("it can be asked"), None, "it waits for the other");
         std::thread::sleep(Duration::from_millis(1));
     }
     folder.write("chart.g7", cells(2).replacen("prove never", "prove always", 1));
