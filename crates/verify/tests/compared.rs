@@ -101,7 +101,8 @@ fn edited(text: &str, seed: u64) -> Option<String> {
     Some(format!("{}{to}{}", &text[..at], &text[at + from.len()..]))
 }
 
-/// `G7_CHARTS` is the number of charts a profile, `G7_SEED` the first of them.
+/// `G7_CHARTS` is the number of charts a profile, `G7_SEED` the first of them. By default there is one chart, of
+/// one profile.
 #[test]
 fn search_and_solver_agree_on_random_charts_and_their_edits() {
     let number = |name: &str, otherwise: u64| {
@@ -117,7 +118,9 @@ fn search_and_solver_agree_on_random_charts_and_their_edits() {
         ProfileName::Jgrafchart,
     ];
     let mut all_done = Count::default();
-    for profile in all {
+    // One chart of each takes a minute.
+    let all = if count > 1 { &all[..] } else { &all[1..2] };
+    for &profile in all {
         let mut done = Count::default();
         for seed in first..first + count {
             let text = sample(seed, profile, 1).expect("a random chart can be read").text;
