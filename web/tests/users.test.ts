@@ -126,6 +126,8 @@ test('users come in by role, see what they lack, and are put out', async () => {
   assert.equal(await log.locator('tbody tr').count(), 3);
   assert.deepEqual(await axe(ana), [], 'the log');
   await button(ana, 'Close').click();
+  // Its header has a list of its own.
+  await log.waitFor({ state: 'detached' });
   for (const [language, word] of [['Français', 'Se déconnecter'], ['Português', 'Terminar sessão'], ['English', 'Log out']] as const) {
     await ana.locator('header select').selectOption({ label: language });
     await button(ana, word).waitFor();
