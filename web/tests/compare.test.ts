@@ -2,7 +2,7 @@
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
 import type { Page } from 'playwright-core';
-import { axe, browser, drawn, open, playground, until, type Site } from './lib';
+import { axe, browser, cells, done, drawn, inputs, openWith, playground, until, type Opened, type Site } from './lib';
 
 /** Two scans lead to step 3. */
 const LINE = `input go : BOOL
@@ -23,9 +23,9 @@ const QUICK = LINE.replace('step 2', 'step 2 { N N }').replace('2 -> 3 when ↑g
 /** The product of counters has more pairs of states than a search visits in a moment. */
 const MANY =
   'profile iec61131\n' +
-  `input ${Array.from({ length: 8 }, (_, i) => `a${i}`).join(', ')} : BOOL\noutput Q : LREAL\nvar x, y : LREAL\n` +
+  `input ${inputs(8)} : BOOL\noutput Q : LREAL\nvar x, y : LREAL\n` +
   'chart S {\n  initial step 0 { N x := x * 1.5 + BOOL_TO_INT(a0) N Q := x }\n  step 1\n  0 -> 1 when a7 and Q < 0.0\n}\n' +
-  Array.from({ length: 7 }, (_, i) => `chart C${i} {\n  initial step 0\n${[1, 2, 3, 4].map((n) => `  step ${n}\n`).join('')}${[0, 1, 2, 3, 4].map((n) => `  ${n} -> ${(n + 1) % 5} when ↑a${i}\n`).join('')}}\n`).join('');
+  cells(7);
 
 let b: Awaited<ReturnType<typeof browser>>;
 let site: Site;
@@ -40,11 +40,8 @@ after(async () => {
   await site?.stop();
 });
 
-type Opened = Page & { errors: string[] };
-
 async function panel(file: string, size?: { width: number; height: number }, prefs: object = {}): Promise<Opened> {
-  const kept = JSON.stringify({ language: 'en', bottomOpen: true, bottom: 360, ...prefs });
-  const page = await open(b, site, file, size, (context) => context.addInitScript((text) => localStorage.getItem('g7-prefs') ?? localStorage.setItem('g7-prefs', text), kept));
+  const page = await openWith(b, site, file, { bottomOpen: true, bottom: 360, ...prefs }, size);
   await page.getByRole('tab', { name: /^Compare$|^Comparer$|^Comparar$/ }).click();
   return page;
 }
@@ -53,11 +50,6 @@ async function panel(file: string, size?: { width: number; height: number }, pre
 async function compare(page: Page, other: string): Promise<void> {
   await page.getByRole('tabpanel').getByRole('combobox').first().selectOption(other);
   await page.getByRole('tabpanel').getByRole('button', { name: /^Compare$|^Comparer$|^Comparar$/ }).click();
-}
-
-async function done(page: Opened): Promise<void> {
-  assert.deepEqual(page.errors, []);
-  await page.context().close();
 }
 
 const state = (page: Page) => page.getByRole('tabpanel').getByRole('status').first();

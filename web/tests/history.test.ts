@@ -2,7 +2,7 @@
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
 import type { Page } from 'playwright-core';
-import { axe, browser, open, until } from './lib';
+import { axe, browser, open, speak, until } from './lib';
 import { Machine } from './machine';
 
 let b: Awaited<ReturnType<typeof browser>>;
@@ -110,7 +110,7 @@ test('the history fits a phone, in three languages, light and dark', async () =>
     assert.deepEqual(await axe(page), [], theme);
   }
   for (const [language, word] of [['Français', 'Historique'], ['Português', 'Histórico']] as const) {
-    await page.locator('header select').selectOption({ label: language });
+    await speak(page, language);
     await page.getByRole('region', { name: word, exact: true }).waitFor();
   }
   await page.context().close();

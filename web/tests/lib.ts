@@ -101,6 +101,9 @@ export async function browser(): Promise<Browser & { done(): Promise<void> }> {
   });
 }
 
+/** A page with the errors that it had. */
+export type Opened = Page & { errors: string[] };
+
 /** Opens a file in a new page; errors in the page make the test fail. */
 export async function open(
   b: Browser,
@@ -108,7 +111,7 @@ export async function open(
   file?: string,
   size = { width: 1280, height: 720 },
   before?: (context: BrowserContext) => Promise<unknown>,
-): Promise<Page & { errors: string[] }> {
+): Promise<Opened> {
   const context = await b.newContext({ viewport: size, locale: 'en-GB', ignoreHTTPSErrors: true });
   await before?.(context);
   const page = await context.newPage();
@@ -121,6 +124,30 @@ export async function open(
   if (file) await page.waitForSelector('.sheet [data-id]', { state: 'attached' });
   return Object.assign(page, { errors });
 }
+
+/** Opens a file with these settings of the user. Those that the page keeps later stay when it is loaded again. */
+export function openWith(b: Browser, site: Site, file: string, prefs: object, size?: { width: number; height: number }): Promise<Opened> {
+  const kept = JSON.stringify({ language: 'en', ...prefs });
+  return open(b, site, file, size, (context) => context.addInitScript((text) => localStorage.getItem('g7-prefs') ?? localStorage.setItem('g7-prefs', text), kept));
+}
+
+/** Ends a page that had no errors. */
+export async function done(page: Opened): Promise<void> {
+  assert.deepEqual(page.errors, []);
+  await page.context().close();
+}
+
+/** Chooses the language of the operator page by the label of its list: the headers of dialogs have lists too. */
+export async function speak(page: Page, language: string): Promise<void> {
+  await page.getByRole('combobox', { name: /^(Language|Langue|Língua)$/ }).selectOption({ label: language });
+}
+
+/** Charts without influence on one another, each with 5 steps and an input of its own, from `a0` on. Together they have 5^count states. */
+export const cells = (count: number): string =>
+  Array.from({ length: count }, (_, i) => `chart C${i} {\n  initial step 0\n${[1, 2, 3, 4].map((n) => `  step ${n}\n`).join('')}${[0, 1, 2, 3, 4].map((n) => `  ${n} -> ${(n + 1) % 5} when ↑a${i}\n`).join('')}}\n`).join('');
+
+/** The names `a0`, `a1` and so on, for a declaration of inputs. */
+export const inputs = (count: number): string => Array.from({ length: count }, (_, i) => `a${i}`).join(', ');
 
 /** The text of the visible file, obtained by a download. */
 export async function textOf(page: Page): Promise<string> {

@@ -5,7 +5,7 @@ import assert from 'node:assert/strict';
 import { mkdirSync, readdirSync, readFileSync, statSync } from 'node:fs';
 import { dirname, join, relative } from 'node:path';
 import type { Browser, Page } from 'playwright-core';
-import { browser, open, playground, type Site } from './lib';
+import { browser, open, openWith, playground, type Site } from './lib';
 import { bench, Machine } from './machine';
 
 const ROOT = new URL('../..', import.meta.url).pathname;
@@ -260,8 +260,7 @@ async function demo(b: Browser): Promise<void> {
 async function proofs(b: Browser): Promise<void> {
   const site = await playground({ 'trolley.g7': FORK });
   try {
-    const kept = JSON.stringify({ language: 'en', theme: 'light', bottomOpen: true, bottom: 330, minimap: false });
-    const page = await open(b, site, 'trolley.g7', { width: 1280, height: 860 }, (c) => c.addInitScript((text) => localStorage.setItem('g7-prefs', text), kept));
+    const page = await openWith(b, site, 'trolley.g7', { theme: 'light', bottomOpen: true, bottom: 330, minimap: false }, { width: 1280, height: 860 });
     await page.getByRole('tab', { name: /^Prove/ }).click();
     await page.getByText('Everything is answered.').waitFor();
     await page.getByRole('button', { name: 'Play the run on the chart: prove never X3 and X4' }).click();
@@ -280,8 +279,7 @@ async function compared(b: Browser): Promise<void> {
   const other = one.replace('when right', 'when right and not left');
   const site = await playground({ 'trolley.g7': one, 'trolley-2.g7': other });
   try {
-    const kept = JSON.stringify({ language: 'en', theme: 'light', bottomOpen: true, bottom: 620, minimap: false, leftOpen: false, rightOpen: false });
-    const page = await open(b, site, 'trolley.g7', { width: 1280, height: 860 }, (c) => c.addInitScript((text) => localStorage.setItem('g7-prefs', text), kept));
+    const page = await openWith(b, site, 'trolley.g7', { theme: 'light', bottomOpen: true, bottom: 620, minimap: false, leftOpen: false, rightOpen: false }, { width: 1280, height: 860 });
     await page.getByRole('tab', { name: /^Compare/ }).click();
     await page.getByRole('tabpanel').getByRole('combobox').first().selectOption('trolley-2.g7');
     await page.getByRole('tabpanel').getByRole('button', { name: 'Compare' }).click();

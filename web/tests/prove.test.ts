@@ -1,8 +1,9 @@
 // Stories of the panel *Prove*: what a chart can never do, seen, played and mended.
 import assert from 'node:assert/strict';
+import { readFileSync } from 'node:fs';
 import { after, before, test } from 'node:test';
 import type { Page } from 'playwright-core';
-import { axe, browser, drawn, open, playground, textOf, until, type Site } from './lib';
+import { axe, browser, cells, done, drawn, inputs, openWith, playground, textOf, until, type Opened, type Site } from './lib';
 
 /** `a` and `b` can open two ways at once; nothing leads to step 4; two scans lead to step 3. */
 const FORK = `input a, b, back : BOOL
@@ -40,30 +41,12 @@ prove never M
 /** Cells that are free of each other: far more states than a quick search visits. */
 const CELLS = 9;
 const MANY =
-  `input ${Array.from({ length: CELLS }, (_, i) => `a${i}`).join(', ')} : BOOL\n` +
-  Array.from({ length: CELLS }, (_, i) => `chart C${i} {\n  initial step 0\n${[1, 2, 3, 4].map((n) => `  step ${n}\n`).join('')}${[0, 1, 2, 3, 4].map((n) => `  ${n} -> ${(n + 1) % 5} when ↑a${i}\n`).join('')}}\n`).join('') +
+  `input ${inputs(CELLS)} : BOOL\n` +
+  cells(CELLS) +
   `prove never ${Array.from({ length: CELLS }, (_, i) => `C${i}.X4`).join(' and ')} and a0 and not a0\n`;
 
 /** The plant gives both inputs; 82 comes 41 scans after the first. */
-const TANK = `profile iec61131
-scan 250ms
-input low, high : BOOL
-output V, W : BOOL
-chart Fill {
-  initial step 0 { N V }
-  step 1 { N W }
-  0 -> 1 when high
-  1 -> 0 when low
-}
-plant Tank {
-  state level : REAL := 0.0 in 0.0 .. 100.0
-  rate level := 8.0 when V
-  rate level := -8.0 when W
-  drive high := level >= 90.0
-  drive low := level < 2.0
-}
-prove always level <= 80.0 with Tank
-`;
+const TANK = readFileSync(new URL('../../crates/page/tests/tank.g7', import.meta.url), 'utf8');
 
 let b: Awaited<ReturnType<typeof browser>>;
 let site: Site;
@@ -78,12 +61,9 @@ after(async () => {
   await site?.stop();
 });
 
-type Opened = Page & { errors: string[] };
-
 /** Opens a file with the panel. */
 async function prove(file: string, size?: { width: number; height: number }, prefs: object = {}): Promise<Opened> {
-  const kept = JSON.stringify({ language: 'en', bottomOpen: true, bottom: 300, ...prefs });
-  const page = await open(b, site, file, size, (context) => context.addInitScript((text) => localStorage.getItem('g7-prefs') ?? localStorage.setItem('g7-prefs', text), kept));
+  const page = await openWith(b, site, file, { bottomOpen: true, bottom: 300, ...prefs }, size);
   await page.getByRole('tab', { name: /^Prove|^Prouver/ }).click();
   return page;
 }
@@ -93,11 +73,6 @@ const answer = (page: Page, claim: string) => page.getByRole('listitem').filter(
 /** Waits until a claim has this answer. */
 async function is(page: Page, claim: string, verdict: string): Promise<void> {
   await answer(page, claim).getByText(`${verdict}:`, { exact: true }).waitFor({ state: 'attached' });
-}
-
-async function done(page: Opened): Promise<void> {
-  assert.deepEqual(page.errors, []);
-  await page.context().close();
 }
 
 /** The names of the active steps of the run. */

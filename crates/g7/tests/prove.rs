@@ -448,27 +448,7 @@ prove never n = 2000000
 #[test]
 fn a_claim_about_chart_and_plant_is_a_test_with_the_plant() {
     // 2 are added in each tick but the first: 82 comes with tick 42, which is 41 scans after the first.
-    let chart = "\
-profile iec61131
-scan 250ms
-input low, high : BOOL
-output V, W : BOOL
-chart Fill {
-  initial step 0 { N V }
-  step 1 { N W }
-  0 -> 1 when high
-  1 -> 0 when low
-}
-plant Tank {
-  state level : REAL := 0.0 in 0.0 .. 100.0
-  rate level := 8.0 when V
-  rate level := -8.0 when W
-  drive high := level >= 90.0
-  drive low := level < 2.0
-}
-prove always level <= 80.0 with Tank
-prove X1 leads to X0 with Tank
-";
+    let chart = concat!(include_str!("../../page/tests/tank.g7"), "prove X1 leads to X0 with Tank\n");
     let (folder, test) = saved(chart, 1);
     assert_eq!(body(&folder), ["wait 10.25s", "expect level <= 80.0"]);
     assert!(folder.read("chart.g7").contains("with Tank\" with Tank {"), "{}", folder.read("chart.g7"));

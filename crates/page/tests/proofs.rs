@@ -195,7 +195,7 @@ fn what_the_inputs_of_a_scan_decide_can_be_assumed_away() {
 }
 
 /// 2 are added in each tick but the first; the plant drives both inputs.
-const TANK: &str = "profile iec61131\nscan 250ms\ninput low, high : BOOL\noutput V, W : BOOL\nchart Fill {\n  initial step 0 { N V }\n  step 1 { N W }\n  0 -> 1 when high\n  1 -> 0 when low\n}\nplant Tank {\n  state level : REAL := 0.0 in 0.0 .. 100.0\n  rate level := 8.0 when V\n  rate level := -8.0 when W\n  drive high := level >= 90.0\n  drive low := level < 2.0\n}\nprove always level <= 80.0 with Tank\n";
+const TANK: &str = include_str!("tank.g7");
 
 #[test]
 fn a_claim_about_chart_and_plant_is_saved_as_a_test_with_the_plant() {
