@@ -104,23 +104,22 @@ class Comparison {
     this.file = this.hash = this.failed = '';
     this.sides = this.answer = this.told = null;
     this.stopped = false;
-    for (const { look, run } of told ?? []) {
-      await page.call({ do: 'run_stop', run: run.name });
-      await page.call({ do: 'close', file: look.file });
-    }
+    await forget(told ?? []);
   }
 
   /** Repeats the runs, up to their last scan. */
   async #repeat(sides: readonly [Side, Side], runs: [ProofScan[], ProofScan[]], mine: () => boolean): Promise<void> {
     const told: Told[] = [];
+    // Names of its own: a comparison that was ended meanwhile may still have to close its files.
+    const folder = `\u0000compared/${this.#turn}`;
     for (const [n, side] of sides.entries()) {
-      const look = await page.call<Look>({ do: 'open', file: `\u0000compared/${n}/${side.name}`, text: side.text });
+      const look = await page.call<Look>({ do: 'open', file: `${folder}/${n}/${side.name}`, text: side.text });
       const started = await page.call<Started>({ do: 'run_start', file: look.file, run: look.file, plant: 'none', profile: side.profile, moves: runs[n] });
       const run = new Run(started, page, false);
       told.push({ side, look, run, lanes: await lanesOf(run) });
     }
     const [left, right] = told;
-    if (!mine() || !left || !right) return;
+    if (!mine() || !left || !right) return forget(told);
     this.scan = Math.max(0, (this.answer?.scans ?? 1) - 1);
     this.told = [left, right];
   }
@@ -142,18 +141,29 @@ class Comparison {
     const walk = ++this.#walk;
     this.playing = true;
     const seen = Math.max(60, Math.min(SEEN, WHOLE / scans));
-    if (this.scan >= scans - 1) await this.seek(0);
-    while (this.scan < scans - 1) {
-      await new Promise((done) => setTimeout(done, seen));
-      if (walk !== this.#walk) return;
-      await this.seek(this.scan + 1);
+    try {
+      if (this.scan >= scans - 1) await this.seek(0);
+      while (this.scan < scans - 1) {
+        await new Promise((done) => setTimeout(done, seen));
+        if (walk !== this.#walk) return;
+        await this.seek(this.scan + 1);
+      }
+    } finally {
+      if (walk === this.#walk) this.playing = false;
     }
-    if (walk === this.#walk) this.playing = false;
   }
 
   pause(): void {
     this.#walk++;
     this.playing = false;
+  }
+}
+
+/** Ends these runs and closes their files. */
+async function forget(told: readonly Told[]): Promise<void> {
+  for (const { look, run } of told) {
+    await page.call({ do: 'run_stop', run: run.name });
+    await page.call({ do: 'close', file: look.file });
   }
 }
 

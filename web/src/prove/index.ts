@@ -1,4 +1,4 @@
-// The panel *Prove*, and what asks its questions while the user types.
+// The panels *Prove* and *Compare*, and the component that asks the questions of *Prove* while the user types.
 import type { Panel } from '../lib/shell.svelte';
 import Compare from './Compare.svelte';
 import Follow from './Follow.svelte';

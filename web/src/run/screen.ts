@@ -1,8 +1,15 @@
 // A canvas in the colours of the page and the resolution of the screen.
+import { MediaQuery } from 'svelte/reactivity';
+import { prefs } from '../lib/prefs.svelte';
 import type { Colours } from './lanes';
 
+const dark = new MediaQuery('prefers-color-scheme: dark');
+
+/** The colours of the theme; other ones as soon as the user or the system changes it. */
+export const themed = (): Colours => (void [prefs.theme, dark.current], colours());
+
 /** The colours of the theme, as a canvas needs them: computed. */
-export function colours(): Colours {
+function colours(): Colours {
   const probe = document.body.appendChild(document.createElement('i'));
   const of = (name: string) => {
     probe.style.color = `var(${name})`;
