@@ -1,5 +1,6 @@
 //! The questions of a text, with the answers found so far.
 
+use g7_edit::{Splice, spliced};
 use g7_model::Severity;
 use g7_rig::Source;
 use g7_rig::testing::plants;
@@ -78,6 +79,14 @@ fn begin(file: &File, hash: String) -> Proof {
 pub(super) fn closed(source: &Source) -> Vec<Closed> {
     let one = |plant: &str| ask_with(source, None, plant, false).ok()?.0;
     plants(&source.document).into_iter().filter_map(one).collect()
+}
+
+/// The text with these changes, and its questions, if it has no errors.
+pub(super) fn changed(file: &File, splices: &[Splice]) -> Option<(Source, Asked)> {
+    let source = Source::new(&file.source.name, spliced(file.text(), splices)?.into_bytes(), 0);
+    let (asked, problems) = ask(&source.document, None);
+    let wrong = source.has_errors() || problems.iter().any(|p| p.severity() == Severity::Error);
+    asked.filter(|_| !wrong).map(|asked| (source, asked))
 }
 
 /// The questions of a file without errors.

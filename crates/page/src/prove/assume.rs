@@ -1,24 +1,22 @@
 //! The assumption that the environment does not do what refutes a claim: the inputs of the last scan of
 //! the run, those on which it depends, do not come together.
 //!
-//! It is offered only if the questions can be asked with it and the run is none of the environment
-//! any more.
+//! It is offered only if the text with it has no errors and the run does not keep it.
 
 use g7_compile::ir::VarClass;
-use g7_edit::{Splice, spliced};
+use g7_edit::Splice;
 use g7_engine::{State, StepId, scan};
-use g7_model::{Severity, Type};
-use g7_rig::Source;
-use g7_verify::{Claim, Model, Move, Question, Run, ask, blame, replay};
+use g7_model::Type;
+use g7_verify::{Claim, Model, Move, Question, Run, blame, replay};
 
-use super::asked::closed;
+use super::asked::{changed, closed};
 use super::cures::both;
 use super::place::{Sort, place};
 use crate::file::File;
 
 /// Most inputs that are looked at; each takes a repetition of the run.
 const MOST: usize = 256;
-/// Most inputs in an assumption that none of them alone prevents the run.
+/// Most inputs in an assumption of several, each of which alone is enough for the run.
 const FEW: usize = 4;
 
 /// A refuted claim.
@@ -51,13 +49,7 @@ impl Refuted<'_> {
 
     /// True if the text with this change has no errors, and the run breaks its assumptions.
     fn excludes(&self, splice: &Splice) -> bool {
-        let file = self.file;
-        let Some(text) = spliced(file.text(), std::slice::from_ref(splice)) else { return false };
-        let source = Source::new(&file.source.name, text.into_bytes(), 0);
-        let (asked, problems) = ask(&source.document, None);
-        if source.has_errors() || problems.iter().any(|p| p.severity() == Severity::Error) {
-            return false;
-        }
+        let Some((source, asked)) = changed(self.file, std::slice::from_ref(splice)) else { return false };
         let (plant, number) = self.place;
         let shows = |model: &Model<'_>, questions: &[Question]| {
             // An assumption is no question: the numbers stay.
@@ -65,7 +57,7 @@ impl Refuted<'_> {
         };
         let shown = match plant {
             Some(plant) => closed(&source).get(plant).and_then(|c| shows(&c.model(), &c.questions)),
-            None => asked.and_then(|a| shows(&Model::new(&a.compiled, a.assume.clone()), &a.questions)),
+            None => shows(&Model::new(&asked.compiled, asked.assume.clone()), &asked.questions),
         };
         shown == Some(false)
     }
@@ -86,7 +78,7 @@ impl Refuted<'_> {
                 let on: Vec<String> = on.map(literal).collect();
                 (!on.is_empty() && on.len() <= FEW).then(|| on.join(" or "))
             }
-            // An input that never comes would be another machine: it does not come in this situation.
+            // Without this input altogether it would be another machine, so it is only excluded in this situation.
             [one] => match self.step() {
                 Some(step) => Some(format!("{step} and {}", literal(one))),
                 None => Some(literal(one)),
@@ -106,13 +98,12 @@ impl Refuted<'_> {
         placed.filter(|(i, _)| !model.is_driven(*i)).take(MOST).collect()
     }
 
-    /// True if the run shows the same with the other value of an input in the last scan.
+    /// True if the run shows the same with the other value of an input in the last scan, also the same fault.
     fn shows_without(&self, place: usize) -> bool {
         let mut run = self.run.clone();
         let word = run.moves.last_mut().and_then(|m: &mut Move| m.inputs.get_mut(place));
         let Some(word) = word else { return true };
         *word = u64::from(*word == 0);
-        // A scan without the fault, or with another one, is another scan.
         replay(self.model, &self.question.claim, &run)
     }
 

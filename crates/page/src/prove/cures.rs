@@ -4,13 +4,13 @@
 //! A cure is offered only if the changed text has no errors and the run that showed the conflict
 //! does not show it any more.
 
-use g7_edit::{Gesture, ItemId, Splice, spliced};
+use g7_edit::{Gesture, ItemId, Splice};
 use g7_engine::Subject;
-use g7_model::{BinaryOp, Chart, Expr, ExprKind, Name, Severity, Transition};
-use g7_rig::Source;
-use g7_verify::{Claim, Model, Run, ask, blame};
+use g7_model::{BinaryOp, Chart, Expr, ExprKind, Name, Transition};
+use g7_verify::{Claim, Model, Run, blame};
 use serde::Serialize;
 
+use super::asked::changed;
 use super::place::line_end;
 use crate::file::File;
 use crate::gestures::draft;
@@ -86,11 +86,7 @@ fn is_of_inputs(model: &Model<'_>, rank: u32) -> bool {
 
 /// True if a changed text has no errors and the run does not show this conflict any more.
 fn cures_it(file: &File, model: &Model<'_>, run: &Run, splices: &[Splice]) -> bool {
-    let Some(text) = spliced(file.text(), splices) else { return false };
-    let source = Source::new(&file.source.name, text.into_bytes(), 0);
-    let (asked, problems) = ask(&source.document, None);
-    let wrong = source.has_errors() || problems.iter().any(|p| p.severity() == Severity::Error);
-    let Some(asked) = asked.filter(|_| !wrong) else { return false };
+    let Some((_, asked)) = changed(file, splices) else { return false };
     let new = Model::new(&asked.compiled, asked.assume.clone());
     if !g7_verify::replay(&new, &Claim::NoConflict, run) {
         return true;
