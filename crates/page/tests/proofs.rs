@@ -234,7 +234,9 @@ fn two_files_are_equal_or_told_apart_by_a_run_for_each() {
         page.ok(json!({ "do": "open", "file": "b.g7", "text": text }));
     };
     other(&mut page, &FORK.replace("step 4\n", "step 5\n").replace("4 -> 1", "5 -> 1"));
-    assert_eq!(compare(&mut page, ["a.g7", "b.g7"], 1000)["is"], "equal", "outputs alone are compared");
+    let equal = compare(&mut page, ["a.g7", "b.g7"], 1000);
+    assert_eq!(equal["is"], "equal", "outputs alone are compared");
+    assert_eq!(equal["assumed"], json!(false));
     // The output comes with `a` in the first scan, unless `b` comes too.
     other(&mut page, &FORK.replace("when a\n  1", "when a and not b\n  1"));
     let found = compare(&mut page, ["a.g7", "b.g7"], 1000);
@@ -246,6 +248,11 @@ fn two_files_are_equal_or_told_apart_by_a_run_for_each() {
         page.ok(start)["frame"]["on"].as_array().map(Vec::len)
     });
     assert_eq!(shown, [Some(2), Some(1)]);
+    // Without `b` no input tells them apart.
+    let without = FORK.replace("when a\n  1", "when a and not b\n  1");
+    other(&mut page, &without.replace("prove reachable M\n", "prove reachable M\nassume not b\n"));
+    let assumed = compare(&mut page, ["a.g7", "b.g7"], 1000);
+    assert_eq!((&assumed["is"], &assumed["assumed"]), (&json!("equal"), &json!(true)), "{assumed:#}");
     other(&mut page, &FORK.replace("output M", "output N, M"));
     assert_eq!(compare(&mut page, ["a.g7", "b.g7"], 1000)["is"], "unlike");
     other(&mut page, &FORK.replace("when ↑back", "when nothing"));

@@ -391,6 +391,8 @@ export interface ComparedReport {
   help: Said;
   /** More states may decide it. */
   more: boolean;
+  /** There are assumptions, which the inputs of both keep. */
+  assumed: boolean;
   /** The number of the chart with errors. */
   side?: number;
   /** Pairs of states. */

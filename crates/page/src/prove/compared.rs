@@ -37,6 +37,8 @@ pub(crate) struct Compared {
     help: Said,
     /// More states or time may decide it.
     more: bool,
+    /// There are assumptions, which the inputs of both keep.
+    assumed: bool,
     /// The file with errors.
     #[serde(skip_serializing_if = "Option::is_none")]
     side: Option<usize>,
@@ -70,10 +72,11 @@ pub(crate) fn compared(files: [&File; 2], wish: &Both) -> Result<Compared, Strin
         stop: &|| false,
     };
     let assume = [a.assume.clone(), b.assume.clone()];
+    let assumed = assume.iter().any(|list| !list.is_empty());
     let what = Compare { charts: [&a.compiled, &b.compiled], assume, situations: wish.situations };
     Ok(match g7_verify::compare_once(&what, &budget) {
         Equality::Equal(proof) => {
-            Compared { is: "equal", reason: words::equal(&proof), ..Compared::default() }
+            Compared { is: "equal", reason: words::equal(&proof), assumed, ..Compared::default() }
         }
         Equality::Apart { moves, what } => Compared {
             is: "apart",
@@ -84,6 +87,7 @@ pub(crate) fn compared(files: [&File; 2], wish: &Both) -> Result<Compared, Strin
         },
         Equality::Open(Open { scans, states, reason }) => Compared {
             is: "open",
+            assumed,
             more: reason.is_of_budget(),
             help: if reason.is_of_budget() { Said::default() } else { words::way_on(&reason) },
             reason: words::why(&reason),

@@ -65,6 +65,7 @@ export const prove = {
   'compare.equalAll': ['Equal: the same outputs and situations for every sequence of inputs ({reason}).', 'Égaux : les mêmes sorties et situations pour toute suite d’entrées ({reason}).', 'Iguais: as mesmas saídas e situações para cada sequência de entradas ({reason}).'],
   'compare.apart': ['Different: in scan {scans} {reason}.', 'Différents : au cycle {scans}, {reason}.', 'Diferentes: no ciclo {scans}, {reason}.'],
   'compare.open': ['Not decided: {reason}. Equal for all runs of up to {scans} scans ({states} pairs of states).', 'Non décidé : {reason}. Égaux pour toute exécution de {scans} cycles au plus ({states} paires d’états).', 'Não decidido: {reason}. Iguais para cada execução de até {scans} ciclos ({states} pares de estados).'],
+  'compare.assumed': ['The inputs keep the assumptions of both.', 'Les entrées respectent les hypothèses des deux.', 'As entradas respeitam as hipóteses de ambos.'],
   'compare.stopped': ['Stopped.', 'Arrêté.', 'Parado.'],
   'compare.unlike': ['These charts cannot be compared: {reason}.', 'Ces grafcets ne peuvent être comparés : {reason}.', 'Estes grafcets não podem ser comparados: {reason}.'],
   'compare.errors': ['{name} has errors: mend them first.', '{name} a des erreurs : corrigez-les d’abord.', '{name} tem erros: corrija-os primeiro.'],
