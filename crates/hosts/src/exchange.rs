@@ -25,7 +25,7 @@ pub trait Exchange {
     /// there is none yet; the caller asks again.
     fn receive(&mut self, wait: bool) -> Option<(usize, Vec<u64>)>;
 
-    /// True if nothing more will come from a worker but what has arrived by now.
+    /// True if a worker sends nothing more: [`Exchange::receive`] still gives its packets that have arrived.
     fn is_gone(&self, peer: usize) -> bool;
 }
 

@@ -93,8 +93,8 @@ impl Known {
 
     /// Joins the findings of another worker, or of another level.
     pub(crate) fn join(&mut self, other: Known) {
-        self.states += other.states;
-        self.scans += other.scans;
+        self.states = self.states.saturating_add(other.states);
+        self.scans = self.scans.saturating_add(other.scans);
         self.cut |= other.cut;
         self.cut_passes |= other.cut_passes;
         self.hole = first(self.hole.take(), other.hole);
@@ -156,5 +156,17 @@ fn first<T: Ord>(a: Option<T>, b: Option<T>) -> Option<T> {
     match (a, b) {
         (Some(a), Some(b)) => Some(a.min(b)),
         (a, b) => a.or(b),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Known;
+
+    #[test]
+    fn numbers_that_another_worker_sends_do_not_overflow() {
+        let mut known = Known { states: 2, scans: 2, ..Known::default() };
+        known.join(Known { states: u64::MAX, scans: u64::MAX, ..Known::default() });
+        assert_eq!((known.states, known.scans), (u64::MAX, u64::MAX));
     }
 }

@@ -7,7 +7,7 @@
 //!
 //! A level is a list of records in the order in which one thread finds its states: the rank in the level,
 //! the key (the rank of the state before, and the number of the scan), the packed image, the packed
-//! inputs. Behind them stands what else was found up to there.
+//! inputs. Behind them stand the findings of all levels up to this one.
 
 use std::fs::{self, File};
 use std::io::{self, BufReader, BufWriter, Read, Seek, SeekFrom, Write};
@@ -25,7 +25,7 @@ const HEAD: usize = 6;
 /// The folder of a process.
 pub(crate) struct Levels {
     folder: PathBuf,
-    /// Says for which search, which process and how many of them the files are.
+    /// The search, the number of this process, and the number of processes: files of another work are refused.
     work: [u64; 3],
     /// The file that is being synchronised.
     sync: Option<JoinHandle<io::Result<()>>>,
@@ -38,7 +38,8 @@ pub(crate) struct Level {
     pub(crate) width: usize,
     /// The records.
     pub(crate) records: Vec<u64>,
-    /// Further things that are known.
+    /// The bits that a packed image keeps, the findings of all levels up to this one, and the ranks of the
+    /// states of the level before that no scan leads on from.
     pub(crate) rest: Vec<u64>,
 }
 
@@ -160,7 +161,8 @@ impl Levels {
         let (mut low, mut high) = (0, count / width.max(1));
         while low < high {
             let middle = low + (high - low) / 2;
-            let [found, key] = words_at::<2>(&mut file, HEAD as u64 + middle * width)?;
+            let [found, key] =
+                words_at::<2>(&mut file, middle.checked_mul(width)?.checked_add(HEAD as u64)?)?;
             match found.cmp(&rank) {
                 std::cmp::Ordering::Equal => return Some(key),
                 std::cmp::Ordering::Less => low = middle + 1,
@@ -202,8 +204,26 @@ fn read_words(path: &Path) -> Option<Vec<u64>> {
 }
 
 fn words_at<const N: usize>(file: &mut File, word: u64) -> Option<[u64; N]> {
-    file.seek(SeekFrom::Start(word * 8)).ok()?;
+    file.seek(SeekFrom::Start(word.checked_mul(8)?)).ok()?;
     let mut bytes = [[0u8; 8]; N];
     file.read_exact(bytes.as_flattened_mut()).ok()?;
     Some(bytes.map(u64::from_le_bytes))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{HEAD, Levels, MAGIC};
+
+    #[test]
+    fn a_head_with_numbers_too_large_gives_no_key() {
+        let folder = std::env::temp_dir().join(format!("g7-levels-{}", std::process::id()));
+        let levels = Levels::open(&folder, 7, 0, 1).unwrap();
+        for (width, count) in [(3, u64::MAX), (u64::MAX / 4, u64::MAX), (1, u64::MAX), (0, u64::MAX)] {
+            let head: [u64; HEAD] = [MAGIC, 7, 0, 0, width, count];
+            levels.write(&levels.level(0, 0), &[&head]).unwrap();
+            assert_eq!(levels.key(0, 0, 5), None);
+            assert_eq!(levels.read(0, 0), None);
+        }
+        std::fs::remove_dir_all(folder).unwrap();
+    }
 }

@@ -16,15 +16,15 @@ const MAGIC: u64 = 0x6737_7072_6F76_6501;
 const WORDS: usize = 6;
 /// How long a greeting may take.
 const GREETING: Duration = Duration::from_secs(2);
-/// The time between two looks at who is there.
+/// The time between two attempts to reach the processes that are missing.
 const PAUSE: Duration = Duration::from_millis(10);
 
-/// Things that all processes of a search have in common.
+/// The hashes by which processes see that they run the same search.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Work {
     /// A hash of the program that runs: its version.
     pub program: u64,
-    /// A hash of what is searched: the chart and the options that decide on answers.
+    /// A hash of the chart and of the options that decide on answers.
     pub task: u64,
 }
 

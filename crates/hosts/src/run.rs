@@ -21,7 +21,7 @@ pub struct Place<'p> {
     pub me: usize,
     /// The addresses of all processes, `host:port`.
     pub addresses: &'p [String],
-    /// Things that they have in common.
+    /// Hashes of the program and of the search: all processes must have the same ones.
     pub work: Work,
     /// The folder of the levels.
     pub folder: &'p Path,

@@ -123,7 +123,8 @@ fn resume<'a>(
         let taken = take_back(task, &mut worker, levels, common as usize);
         let whole = taken.as_ref().map_or(0, |(_, count)| count + 1);
         let all = phases.share(&[whole])?;
-        let counts: Option<u64> = all.iter().map(|w| w.first().and_then(|w| w.checked_sub(1))).sum();
+        let count = |w: &Vec<u64>| w.first().and_then(|w| w.checked_sub(1));
+        let counts = all.iter().try_fold(0u64, |sum, w| sum.checked_add(count(w)?));
         match (taken, counts) {
             (Ok((known, _)), Some(found)) => return Ok(Between { worker, known, found }),
             (Err(bad), _) => levels.forget(task.number, bad)?,

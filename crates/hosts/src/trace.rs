@@ -50,7 +50,7 @@ pub(crate) fn trace(
     for level in (1..=starts.iter().copied().max().unwrap_or(0)).rev() {
         // 1 more than the key, 0 where another worker has the state.
         let key = |(rank, start): (&u64, &u64)| match *start >= level {
-            true => levels.key(task.number, level as usize, *rank).map_or(0, |k| k + 1),
+            true => levels.key(task.number, level as usize, *rank).map_or(0, |k| k.saturating_add(1)),
             false => 0,
         };
         let own: Vec<u64> = ranks.iter().zip(&starts).map(key).collect();

@@ -95,7 +95,7 @@ fn each(words: &[u64], width: usize, take: &mut dyn FnMut(Id, &[u64])) {
     }
 }
 
-/// The states of a worker that nothing leads on from, as far as it knows.
+/// The states of a worker that no scan of their own leads on from, with the scans that lead to them.
 struct Graph {
     good: Vec<bool>,
     /// For each state: the states of which a scan leads there.
@@ -118,7 +118,7 @@ impl Graph {
                 }
             }
             let all = phases.end(&[said], &mut |_, words| come.extend_from_slice(words))?;
-            if all.iter().flatten().sum::<u64>() == 0 {
+            if all.iter().flatten().all(|said| *said == 0) {
                 return Ok(());
             }
             for place in come {

@@ -13,7 +13,7 @@ use crate::words::Words;
 
 /// Scans of a phase: so much is under way between two workers at most.
 const SCANS: usize = 1 << 16;
-/// States between two looks at what has arrived.
+/// After so many states a worker takes the packets that have arrived.
 const LOOK: usize = 256;
 
 /// A state that none of its scans leads on from.
@@ -107,7 +107,7 @@ impl<'a> Worker<'a> {
             let masks: Vec<&[u64]> = all.iter().map(|w| w.get(4..).unwrap_or(&[])).collect();
             self.shelf.settle(&masks)?;
             let any = |k: usize| all.iter().any(|w| w.get(k).is_some_and(|w| *w != 0));
-            let states: u64 = all.iter().filter_map(|w| w.get(3)).sum();
+            let states = all.iter().filter_map(|w| w.get(3)).fold(0u64, |sum, w| sum.saturating_add(*w));
             match () {
                 () if any(1) => break Some(Halt::Stopped),
                 () if states > budget.states as u64 => break Some(Halt::States),
@@ -254,7 +254,9 @@ impl<'a> Worker<'a> {
                 return None;
             }
             self.order.push((store.len() as u32, *head.first()?));
-            store.find_or_insert(&packed);
+            if store.find_or_insert(&packed).is_some() {
+                return None;
+            }
             last.extend_from_slice(given);
         }
         self.advance();
