@@ -53,7 +53,7 @@ pub(crate) fn prove(args: &Prove) -> Result<failure::Verdict, Failure> {
     let mut all = Vec::new();
     for (number, path) in paths.iter().enumerate() {
         let share = patience.share(time.part(paths.len() - number));
-        let found = one(path, number, args, &patience, share)?;
+        let found = one(path, number, args, &patience, [&time, &share])?;
         if shared.is_silent() {
             // Process 0 has all answers and problems, and prints them.
             return Ok(failure::Verdict::Fine);
@@ -76,7 +76,7 @@ pub(crate) fn prove(args: &Prove) -> Result<failure::Verdict, Failure> {
     match args.format {
         _ if shared.shard.is_some() => {}
         Answers::Text => {
-            let stopped = all.iter().any(|f| f.is_stopped).then(|| patience.reason(args.time));
+            let stopped = all.iter().any(|f| f.is_stopped).then(|| patience.reason(&time));
             output::summary(&all, stopped.as_deref())?;
         }
         Answers::Json => output::json(&all)?,
@@ -94,19 +94,31 @@ pub(crate) fn prove(args: &Prove) -> Result<failure::Verdict, Failure> {
     })
 }
 
-/// Asks a file, with its number in the list, all of its questions, as far as the time goes.
-fn one(path: &Path, number: usize, args: &Prove, patience: &Patience, time: Share) -> Result<Found, Failure> {
+/// Asks a file, with its number in the list, all of its questions. `whole` is the time of all files, `time`
+/// the part of this one.
+fn one(
+    path: &Path,
+    number: usize,
+    args: &Prove,
+    patience: &Patience,
+    [whole, time]: [&Share; 2],
+) -> Result<Found, Failure> {
     let stop = time.stop();
     let unasked = |why: &str| {
-        let unasked = Some(format!("{} {why}", patience.reason(args.time)));
+        let unasked = Some(format!("{} {why}", patience.reason(whole)));
         Found { name: path.display().to_string(), unasked, is_stopped: true, ..Found::default() }
     };
     if stop() {
         return Ok(unasked("before this file was read"));
     }
     let progress = Progress::default();
-    let work =
-        Work { args: args.clone(), number, patience: patience.clone(), time, progress: progress.clone() };
+    let work = Work {
+        args: args.clone(),
+        number,
+        patience: patience.clone(),
+        time: time.clone(),
+        progress: progress.clone(),
+    };
     let (owned, seen) = (path.to_owned(), progress.clone());
     Ok(match Patience::wait(&stop, &progress, move || work.prove(&owned))? {
         Ok(found) => found?,

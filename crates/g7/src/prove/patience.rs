@@ -140,12 +140,16 @@ impl Patience {
         self.share(time).stop()
     }
 
-    /// Why a search was stopped that had this time.
-    pub(super) fn reason(&self, time: Nanos) -> String {
+    /// Why a search was stopped: Ctrl-C was pressed, the whole time is over, or the part of it that a file
+    /// has.
+    pub(super) fn reason(&self, whole: &Share) -> String {
+        let time = whole.time.plain();
         if self.pressed.load(Ordering::Relaxed) {
             "stopped by Ctrl-C".to_owned()
+        } else if whole.now() >= whole.time {
+            format!("the time of {time} is over")
         } else {
-            format!("the time of {} is over", time.plain())
+            format!("the part of a file of the time of {time} is over")
         }
     }
 
