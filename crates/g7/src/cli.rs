@@ -389,7 +389,7 @@ pub(crate) struct Compare {
     /// Compare situations as well as outputs.
     #[arg(long)]
     pub(crate) situations: bool,
-    /// Write both charts as one system in the form of AIGER, for other model checkers: its first bad
+    /// Write both charts as one system, an AIGER file for other model checkers: its first bad
     /// signal is 1 where they differ.
     #[arg(long, value_name = "FILE")]
     pub(crate) aiger: Option<PathBuf>,

@@ -25,7 +25,7 @@ const HEAD: usize = 6;
 /// The folder of a process.
 pub(crate) struct Levels {
     folder: PathBuf,
-    /// The search, the number of this process, and the number of processes: files of another work are refused.
+    /// The search, the number of this process, and the number of processes: a file of another search is refused.
     work: [u64; 3],
     /// The file that is being synchronised.
     sync: Option<JoinHandle<io::Result<()>>>,

@@ -98,8 +98,9 @@ pub fn compare_by_solver(what: &Compare<'_>, turns: u32, budget: &Budget<'_>) ->
     }
 }
 
-/// Both charts as one system in the form of AIGER, for other model checkers. The first bad signal is 1 where they
-/// differ; a second one, if there is any, where the system does not know a scan whole.
+/// Writes both charts as one system, a binary AIGER file for other model checkers. Its first bad signal is 1 in a
+/// scan in which the charts differ. A second bad signal, if there is one, is 1 in a scan that has more passes than
+/// the system follows.
 ///
 /// # Errors
 ///

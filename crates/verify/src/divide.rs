@@ -2,7 +2,7 @@
 //! states.
 //!
 //! ```text
-//! equations -> divide -> Division -> search/parts.rs: one search for each part, all other inputs at rest
+//! equations -> divide -> Division -> parts.rs: one search for each part, all other inputs at rest
 //! ```
 //!
 //! Memories of the equations (steps, variables, timers, ...) that a statement reads belong together with

@@ -114,6 +114,15 @@ pub struct Expanded {
     pub cut_passes: bool,
 }
 
+/// The reason why the combinations of the inputs at these places are not all that matter.
+pub(crate) fn gap(inputs: &[Values], places: &[usize]) -> Option<Gap> {
+    if count(inputs, places) > MOST {
+        return Some(Gap::Combinations(places.len()));
+    }
+    let open = places.iter().find(|i| inputs.get(**i).is_some_and(|v| !v.whole));
+    open.copied().map(Gap::Values)
+}
+
 /// Expands states of a model.
 pub struct Expander<'a> {
     /// The inputs that are tried.
@@ -162,8 +171,8 @@ struct Origin {
     safety: bool,
 }
 
-/// The outcome of a combination of inputs.
-enum Outcome {
+/// The end of a try with one combination of inputs.
+enum Trial {
     /// The assumptions do not allow it.
     Refused,
     /// A scan was made, and has reported all that it cleared.
@@ -283,7 +292,7 @@ impl<'a> Expander<'a> {
         let is_rest = self.rest && here.first;
         self.find_places(&mut work);
         if !is_rest {
-            done.gap = self.gap(&work.places);
+            done.gap = gap(&self.model.inputs, &work.places);
         }
         for way in self.world.ways() {
             if way > 0 {
@@ -320,9 +329,9 @@ impl<'a> Expander<'a> {
                 if done.stopped {
                     break;
                 }
-                let outcome = self.attempt(&from, &mut work, way, &mut done, &mut see);
+                let trial = self.attempt(&from, &mut work, way, &mut done, &mut see);
                 if lazy {
-                    lazy = self.learn(&from, &mut work, &outcome, &mut done);
+                    lazy = self.learn(&from, &mut work, &trial, &mut done);
                 }
             }
         }
@@ -332,16 +341,16 @@ impl<'a> Expander<'a> {
 
     /// Learns from a scan which inputs can make a difference. If they have too many combinations, those
     /// in which one of them differs are tried instead; gives false then.
-    fn learn(&self, from: &Origin, work: &mut Work, outcome: &Outcome, done: &mut Expanded) -> bool {
+    fn learn(&self, from: &Origin, work: &mut Work, trial: &Trial, done: &mut Expanded) -> bool {
         let inputs: &[Values] = &self.model.inputs;
         let Work { room, read, active, tries, places, given, .. } = work;
-        match outcome {
+        match trial {
             // The assumptions have read what they need; no transition was judged.
-            Outcome::Refused => self.asking.read(&[], from.is_started, &[], room, read),
-            Outcome::Made => {
+            Trial::Refused => self.asking.read(&[], from.is_started, &[], room, read),
+            Trial::Made => {
                 self.asking.read(active, from.is_started, self.world.charts.cleared(), room, read);
             }
-            Outcome::Unknown => *read = self.asking.matter(&self.asking.asked(self.world.base())),
+            Trial::Unknown => *read = self.asking.matter(&self.asking.asked(self.world.base())),
         }
         let gap = tries.read(inputs, |i| read.contains(i));
         done.gap = done.gap.or(gap.map(Gap::Values));
@@ -371,13 +380,13 @@ impl<'a> Expander<'a> {
         way: u8,
         done: &mut Expanded,
         see: &mut impl FnMut(Step<'_>) -> bool,
-    ) -> Outcome {
+    ) -> Trial {
         self.world.back();
         let now = self.world.charts.now().saturating_add(work.m.wait);
         if !self.model.assume.is_empty() {
             self.other.back_to(&self.world);
             if !allowed(self.model, &mut self.other, &work.m, now) {
-                return Outcome::Refused;
+                return Trial::Refused;
             }
         }
         done.scans += 1;
@@ -417,7 +426,7 @@ impl<'a> Expander<'a> {
         };
         done.stopped = !see(step);
         // Scans that agree in the inputs read before a fault have the same fault.
-        if is_cut { Outcome::Unknown } else { Outcome::Made }
+        if is_cut { Trial::Unknown } else { Trial::Made }
     }
 
     /// The places of the inputs that are tried in a state, where that is known before.
@@ -432,15 +441,6 @@ impl<'a> Expander<'a> {
             Tried::All => places.extend_from_slice(&self.free),
             Tried::Classes | Tried::One => {}
         }
-    }
-
-    /// The reason why the combinations of these inputs are not all that matter.
-    fn gap(&self, places: &[usize]) -> Option<Gap> {
-        if count(&self.model.inputs, places) > MOST {
-            return Some(Gap::Combinations(places.len()));
-        }
-        let open = places.iter().find(|i| self.model.inputs.get(**i).is_some_and(|v| !v.whole));
-        open.copied().map(Gap::Values)
     }
 
     fn see_asked(&mut self, shown: &mut Vec<Shown>) {

@@ -5,6 +5,7 @@ use std::collections::VecDeque;
 use g7_engine::{Fault, Program, State, begin, finish, pass, scan};
 
 use crate::store::Store;
+use crate::world::put;
 
 /// One scan of a run.
 #[derive(Clone, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
@@ -232,10 +233,4 @@ enum End {
     Found,
     Fault,
     Rest { hurry: bool },
-}
-
-/// Makes a state one of the store, which holds images of the program alone.
-fn put(p: &Program, state: &mut State, image: &[u64]) {
-    let done = state.restore(p, image);
-    debug_assert!(done.is_ok(), "{done:?}");
 }

@@ -2,6 +2,7 @@
 
 use crate::model::Model;
 use crate::question::Question;
+use crate::reason::Reason;
 use crate::verdict::Verdict;
 
 /// How much a layer may do.
@@ -15,6 +16,24 @@ pub struct Budget<'b> {
     /// True as soon as the layer is to stop: the time is over, or the user asks for it. It is
     /// asked often, and must be quick.
     pub stop: &'b (dyn Fn() -> bool + Sync),
+}
+
+impl Budget<'_> {
+    /// The reason to stop if there are more states, or more bytes of them, than are allowed.
+    pub(crate) fn full(&self, states: usize, bytes: usize) -> Option<Reason> {
+        if states > self.states {
+            return Some(Reason::States(self.states));
+        }
+        (bytes > self.bytes).then_some(Reason::Memory(self.bytes >> 20))
+    }
+
+    /// The reason to stop if so many scans are enough, or if the caller wants it.
+    pub(crate) fn over(&self, scans: usize) -> Option<Reason> {
+        if scans >= self.scans {
+            return Some(Reason::Scans(self.scans));
+        }
+        (self.stop)().then_some(Reason::Stopped)
+    }
 }
 
 /// A way to answer questions.

@@ -42,14 +42,18 @@ impl Outcome {
         }
     }
 
-    /// The answer to a claim that no run has shown.
+    /// The answer to a claim that no run has shown, where each state was visited by itself.
     pub fn left_over(&self, claim: &Claim) -> Verdict {
+        self.without_run(claim, Certificate::Search { states: self.states, scans: self.scans })
+    }
+
+    /// The answer to a claim that no run has shown; the certificate counts if all runs were seen.
+    pub(crate) fn without_run(&self, claim: &Claim, certificate: Certificate) -> Verdict {
         let hidden = match claim {
             Claim::Active(_) | Claim::Clears(_) | Claim::Runs(_) => self.cut.then_some(Reason::Reports),
             Claim::NoConflict | Claim::NoUnsafe => self.cut_passes.then_some(Reason::Passes(PASSES)),
             _ => None,
         };
-        let certificate = Certificate::Search { states: self.states, scans: self.scans };
         match self.hole.clone().or(hidden) {
             Some(reason) => Verdict::Open(self.so_far(reason)),
             None if claim.is_of_some_run() => Verdict::Refuted(Evidence::Certificate(certificate)),

@@ -98,7 +98,7 @@ pub(crate) struct Rows {
     layouts: u32,
 }
 
-/// A packed row: 64 bits of it in each word.
+/// The bits of one packed row, 64 in each word.
 pub(crate) type Key = Vec<u64>;
 
 impl Rows {

@@ -210,21 +210,13 @@ impl<'a> Search<'a> {
     fn bound(&self, at: usize) -> Option<Reason> {
         let (states, runs) = self.kept();
         let bytes = states + runs + self.leads_on.len() + self.edges.len() * 8;
-        if self.store.len() > self.budget.states {
-            return Some(Reason::States(self.budget.states));
-        }
-        if bytes > self.budget.bytes {
-            return Some(Reason::Memory(self.budget.bytes >> 20));
-        }
-        at.is_multiple_of(PATIENCE).then(|| self.stopped()).flatten()
+        let full = self.budget.full(self.store.len(), bytes);
+        full.or_else(|| at.is_multiple_of(PATIENCE).then(|| self.stopped()).flatten())
     }
 
     /// Tells that the search is to stop.
     fn stopped(&self) -> Option<Reason> {
-        if self.scans >= self.budget.scans {
-            return Some(Reason::Scans(self.budget.scans));
-        }
-        (self.budget.stop)().then_some(Reason::Stopped)
+        self.budget.over(self.scans)
     }
 
     /// Tries all moves of a state; false if it was stopped meanwhile.

@@ -29,13 +29,19 @@ struct Beside<'a> {
     drew: bool,
 }
 
+/// Restores a state from an image of the same program.
+pub(crate) fn put(p: &Program, state: &mut State, image: &[u64]) {
+    let done = state.restore(p, image);
+    debug_assert!(done.is_ok(), "{done:?}");
+}
+
 /// The state of the charts and of their plant.
 #[derive(Clone)]
 pub(crate) struct World<'a> {
     p: &'a Program,
     /// The charts.
     pub(crate) charts: State,
-    /// The charts as [`World::put`] left them.
+    /// The charts of the image that [`World::put`] was given last.
     base: State,
     plant: Option<Beside<'a>>,
 }
@@ -90,26 +96,24 @@ impl<'a> World<'a> {
     /// Becomes the state of an image that [`World::image`] has made.
     pub(crate) fn put(&mut self, image: &[u64]) {
         let width = self.base.image().len();
-        let done = self.base.restore(self.p, image.get(..width).unwrap_or(&[]));
-        debug_assert!(done.is_ok(), "{done:?}");
+        put(self.p, &mut self.base, image.get(..width).unwrap_or(&[]));
         self.back();
         if let Some(plant) = &mut self.plant {
-            let done = plant.state.restore(&plant.side.compiled.program, image.get(width..).unwrap_or(&[]));
-            debug_assert!(done.is_ok(), "{done:?}");
+            put(&plant.side.compiled.program, &mut plant.state, image.get(width..).unwrap_or(&[]));
         }
     }
 
-    /// The charts as [`World::put`] left them.
+    /// The charts of the image that [`World::put`] was given last.
     pub(crate) fn base(&self) -> &State {
         &self.base
     }
 
-    /// The charts are again as [`World::put`] left them.
+    /// Makes the charts again those of the image that [`World::put`] was given last.
     pub(crate) fn back(&mut self) {
         self.charts.become_as(&self.base);
     }
 
-    /// The charts are as [`World::put`] left those of another world.
+    /// Makes the charts those of the image that [`World::put`] of another world was given last.
     pub(crate) fn back_to(&mut self, other: &World<'_>) {
         self.charts.become_as(&other.base);
     }

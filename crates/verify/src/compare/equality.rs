@@ -16,7 +16,7 @@ pub struct Compare<'c> {
     pub situations: bool,
 }
 
-/// The difference that the last scan of a run shows.
+/// The first thing in which the two charts differ at the end of the last scan of a run.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Difference {
     /// An output has two values.

@@ -179,7 +179,7 @@ impl Miter {
         open(trace.inputs.len().saturating_sub(1), reason)
     }
 
-    /// The system in the form of AIGER.
+    /// Writes the system as a binary AIGER file.
     pub(super) fn aiger(&self) -> Vec<u8> {
         let mut whole = self.whole.clone();
         let mut bad = vec![whole.graph.any(self.differ.iter().copied())];

@@ -1,6 +1,6 @@
 //! The search of all pairs of states, breadth first.
 
-use g7_engine::{Program, State};
+use g7_engine::State;
 
 use super::equality::Equality;
 use super::run::End;
@@ -9,7 +9,7 @@ use crate::layer::Budget;
 use crate::reason::Reason;
 use crate::store::Store;
 use crate::verdict::{Certificate, Open};
-use crate::world::World;
+use crate::world::{World, put};
 
 /// Most combinations of inputs that are tried in one state.
 const MOST: usize = 1 << 16;
@@ -83,11 +83,8 @@ impl Sides<'_> {
                 level = pairs.store.len();
             }
             let states = pairs.store.len();
-            if states > budget.states {
-                return open(depth, states, Reason::States(budget.states), hole);
-            }
-            if pairs.bytes() > budget.bytes {
-                return open(depth, states, Reason::Memory(budget.bytes >> 20), hole);
+            if let Some(reason) = budget.full(states, pairs.bytes()) {
+                return open(depth, states, reason, hole);
             }
             if at.is_multiple_of(PATIENCE) && (budget.stop)() {
                 return open(depth, states, Reason::Stopped, hole);
@@ -181,10 +178,4 @@ impl Sides<'_> {
         }
         (list, whole)
     }
-}
-
-/// Makes a state one of the store, which holds images of the program alone.
-fn put(p: &Program, state: &mut State, image: &[u64]) {
-    let done = state.restore(p, image);
-    debug_assert!(done.is_ok(), "{done:?}");
 }

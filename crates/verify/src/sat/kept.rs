@@ -1,4 +1,5 @@
-//! Cubes that are thought never to be reached, and those of them for which that is so.
+//! Candidates for lemmas: cubes that the chart suggests no run reaches. The cubes that one step shows to be
+//! unreachable are kept, the others are dropped.
 //!
 //! A cube that a step enters from outside of all of them is given up, and the others are looked at again,
 //! until all that are left are kept out together (C. Flanagan, K. R. M. Leino, "Houdini, an annotation

@@ -1,5 +1,5 @@
-//! The SAT layer: the questions of a chart that ask what happens in a scan, by its system of
-//! bits.
+//! The SAT layer: answers the questions of a chart by its system of bits, those about one scan and those
+//! about all that can follow.
 
 use g7_engine::{State, scan};
 

@@ -31,7 +31,6 @@ mod sights;
 #[cfg(test)]
 mod tests;
 mod turns;
-mod vectors;
 
 use crate::layer::{Budget, Layer};
 use crate::model::Model;

@@ -1,4 +1,5 @@
-//! Visits the sets of states, breadth first, and answers the questions.
+//! The search by zones: visits the nodes of the graph, which are sets of states, breadth first, and answers
+//! the questions about them.
 
 mod traps;
 
@@ -7,16 +8,17 @@ use super::graph::{Edge, Graph};
 use super::matrix::{From, Span, Zone};
 use super::sights::{Eye, Sight};
 use super::turns::Turn;
-use super::vectors::vectors;
 use crate::asked::{Asking, Places};
+use crate::expand::gap;
 use crate::explore::Move;
 use crate::layer::Budget;
-use crate::look::{PASSES, replay};
 use crate::model::Model;
 use crate::monitor::{IDLE, has_memory};
+use crate::outcome::{Outcome, asks_for_traps};
 use crate::question::{Claim, Question};
 use crate::reason::Reason;
-use crate::verdict::{Certificate, Evidence, Open, Run, Verdict};
+use crate::tries;
+use crate::verdict::{Certificate, Run, Verdict};
 use crate::world::World;
 
 /// Nodes, and combinations of inputs of a node, between two questions whether to stop.
@@ -82,12 +84,11 @@ impl<'a> Search<'a> {
         image.push(IDLE);
         let graph = Graph::new(&clocks.start(image)?);
         let initial = model.inputs.iter().map(|v| v.tried.first().copied().unwrap_or(0)).collect();
-        let traps = |c: &Claim| matches!(c, Claim::NoDeadlock | Claim::LeadsTo { .. });
         Some(Search {
             model,
             budget,
             asking: Asking::new(&model.compiled.program, model.codes()),
-            asks_for_traps: open.iter().any(|(_, q)| traps(&q.claim)),
+            asks_for_traps: open.iter().any(|(_, q)| asks_for_traps(&q.claim)),
             open,
             answers: Vec::new(),
             clocks,
@@ -131,20 +132,12 @@ impl<'a> Search<'a> {
     /// Why the search is to stop here.
     fn bound(&self, at: usize) -> Option<Reason> {
         let bytes = self.graph.bytes() + self.graph.nodes.len() * self.model.inputs.len() * 8;
-        if self.graph.nodes.len() > self.budget.states {
-            return Some(Reason::States(self.budget.states));
-        }
-        if bytes > self.budget.bytes {
-            return Some(Reason::Memory(self.budget.bytes >> 20));
-        }
-        at.is_multiple_of(PATIENCE).then(|| self.stopped()).flatten()
+        let full = self.budget.full(self.graph.nodes.len(), bytes);
+        full.or_else(|| at.is_multiple_of(PATIENCE).then(|| self.stopped()).flatten())
     }
 
     fn stopped(&self) -> Option<Reason> {
-        if self.scans >= self.budget.scans {
-            return Some(Reason::Scans(self.budget.scans));
-        }
-        (self.budget.stop)().then_some(Reason::Stopped)
+        self.budget.over(self.scans)
     }
 
     /// Tries all moves of a node; false if it was stopped meanwhile.
@@ -196,18 +189,22 @@ impl<'a> Search<'a> {
     fn vectors(&mut self, tries: &mut Tries<'_>, turn: &mut Turn) -> bool {
         let places: Vec<usize> = self.asking.matter(&tries.asked).iter().collect();
         let last = self.inputs.get(tries.at).cloned().unwrap_or_default();
-        let (list, gap) = vectors(self.model, &places, &last);
-        self.hole = self.hole.take().or(gap);
-        for (k, inputs) in list.into_iter().enumerate() {
-            if k.is_multiple_of(PATIENCE)
-                && k > 0
+        let all = &self.model.inputs;
+        self.hole = self.hole.take().or(gap(all, &places).map(|gap| gap.reason(self.model)));
+        let mut vectors = tries::Tries::default();
+        vectors.begin(all, &places, &last, false);
+        let mut m = Move { inputs: Vec::new(), wait: tries.elapse * self.model.period };
+        let mut made = 0usize;
+        while vectors.next(all, &mut m.inputs) {
+            if made.is_multiple_of(PATIENCE)
+                && made > 0
                 && let Some(hole) = self.stopped()
             {
                 self.hole = Some(hole);
                 return false;
             }
-            let wait = tries.elapse * self.model.period;
-            if !self.attempt(tries, turn, &Move { inputs, wait }) {
+            made += 1;
+            if !self.attempt(tries, turn, &m) {
                 return true;
             }
         }
@@ -306,7 +303,7 @@ impl<'a> Search<'a> {
     /// Answers the questions of which a scan shows something.
     fn settle(&mut self, tries: &Tries<'_>, m: &Move, sight: &Sight) {
         for (i, fault) in &sight.without {
-            self.give(*i, Verdict::Open(self.so_far(Reason::Condition(*fault))));
+            self.give(*i, Verdict::Open(self.outcome().so_far(Reason::Condition(*fault))));
         }
         if sight.hits.is_empty() {
             return;
@@ -331,14 +328,7 @@ impl<'a> Search<'a> {
     /// Answers a question with a run, if the run does the same again.
     pub(super) fn show(&mut self, i: usize, run: &Run) {
         let Some((_, q)) = self.open.iter().find(|(n, _)| *n == i) else { return };
-        let claim = &q.claim;
-        let verdict = if !replay(self.model, claim, run) {
-            Verdict::Open(self.so_far(Reason::NotRepeated))
-        } else if claim.is_of_some_run() {
-            Verdict::Proved(Evidence::Run(run.clone()))
-        } else {
-            Verdict::Refuted(Evidence::Run(run.clone()))
-        };
+        let verdict = self.outcome().shown(self.model, &q.claim, run.clone());
         self.give(i, verdict);
     }
 
@@ -350,24 +340,21 @@ impl<'a> Search<'a> {
     /// Answers what is left over.
     fn close(&mut self) {
         let certificate = Certificate::Zones { zones: self.graph.met().count(), scans: self.scans };
+        let end = self.outcome();
         for (i, q) in std::mem::take(&mut self.open) {
-            let hidden = match &q.claim {
-                Claim::Active(_) | Claim::Clears(_) | Claim::Runs(_) => self.cut.then_some(Reason::Reports),
-                Claim::NoConflict | Claim::NoUnsafe => self.cut_passes.then_some(Reason::Passes(PASSES)),
-                _ => None,
-            };
-            let verdict = match self.hole.clone().or(hidden) {
-                Some(reason) => Verdict::Open(self.so_far(reason)),
-                None if q.claim.is_of_some_run() => {
-                    Verdict::Refuted(Evidence::Certificate(certificate.clone()))
-                }
-                None => Verdict::Proved(Evidence::Certificate(certificate.clone())),
-            };
-            self.answers.push((i, verdict));
+            self.answers.push((i, end.without_run(&q.claim, certificate.clone())));
         }
     }
 
-    pub(super) fn so_far(&self, reason: Reason) -> Open {
-        Open { scans: self.depth, states: self.graph.nodes.len(), reason }
+    /// How far the search has come; its states are nodes.
+    pub(super) fn outcome(&self) -> Outcome {
+        Outcome {
+            states: self.graph.nodes.len(),
+            scans: self.scans,
+            depth: self.depth,
+            hole: self.hole.clone(),
+            cut: self.cut,
+            cut_passes: self.cut_passes,
+        }
     }
 }

@@ -264,7 +264,7 @@ fn two_times_side_by_side_cost_the_same_however_long() {
     }
 }
 
-/// Examples whose times run for seconds, some of them side by side.
+/// Examples with timers of several seconds, some of which run at the same time.
 #[test]
 fn examples_with_times_are_decided() {
     let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples");

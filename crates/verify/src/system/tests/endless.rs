@@ -92,8 +92,9 @@ fn parts_that_come_back_one_by_one_are_seen_whole() {
     }
 }
 
-/// A transition that waits for two rings at once clears in a pass that is not unrolled. It is left open,
-/// since the part that it depends on has not come back; and the rings' own transitions are not.
+/// Two rings evolve without end; a further transition clears only in a pass in which both rings are at certain
+/// steps. That pass is beyond those that the system unrolls, so the claim about this transition stays open. The
+/// claims about the transitions of each ring are decided.
 #[test]
 fn a_part_that_has_not_come_back_is_left_open() {
     let meet = "chart M {\n  initial step 41\n  step 42\n  41 -> 42 when H.X5 and G.X27\n}\n";

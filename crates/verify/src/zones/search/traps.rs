@@ -39,7 +39,7 @@ impl Search<'_> {
         match node.and_then(|(n, node)| self.graph.run(n as u32, &node.zone, self.model.period)) {
             Some(run) => self.show(i, &run),
             None => {
-                let open = self.so_far(Reason::ManyTimes);
+                let open = self.outcome().so_far(Reason::ManyTimes);
                 self.give(i, Verdict::Open(open));
             }
         }

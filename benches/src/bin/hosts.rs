@@ -1,47 +1,24 @@
 //! How fast do several processes visit the states of a chart of cells, and in how much memory?
 //!
 //! ```text
-//! cells CELLS WORKERS FOLDER
+//! hosts CELLS WORKERS FOLDER
 //! ```
 //!
-//! Cells of five steps, each transition with an input of its own, a resource for each pair; in each scan at
-//! most one input is true. One process is started for each worker; process 0 prints the numbers of states and
+//! The cells are those of `cells.rs`; in each scan at most one input differs from its initial value. One process is started for each worker; process 0 prints the numbers of states and
 //! scans, each its seconds and the most memory that it had (Linux).
 #![allow(clippy::disallowed_methods, reason = "a stopwatch reads the clock")]
 
 use std::process::Command;
 use std::time::Instant;
 
+use g7_benches::cells::cells;
 use g7_hosts::{Place, Work, answer};
 use g7_verify::{Budget, Claim, Model, Question, Tried, ask};
-
-fn cells(count: usize) -> String {
-    let mut text = "profile iec60848\nscan 10ms\n".to_owned();
-    for c in 1..=count {
-        text += &format!("input a{c}, b{c}, c{c}, d{c}, e{c} : BOOL\n");
-    }
-    text += "chart G {\n";
-    for c in 1..=count {
-        let s = |k: usize| c * 10 + k;
-        let pair = 10_000 + c.div_ceil(2);
-        if c % 2 == 1 {
-            text += &format!("  initial step {pair}\n");
-        }
-        text += &format!("  initial step {}\n", s(1));
-        (2..=5).for_each(|k| text += &format!("  step {}\n", s(k)));
-        text += &format!("  {} -> {} when a{c}\n", s(1), s(2));
-        text += &format!("  ({}, {pair}) -> {} when b{c} priority {c}\n", s(2), s(3));
-        text += &format!("  {} -> {} when c{c}\n", s(3), s(4));
-        text += &format!("  {} -> ({}, {pair}) when d{c}\n", s(4), s(5));
-        text += &format!("  {} -> {} when e{c}\n", s(5), s(1));
-    }
-    text + "}\n"
-}
 
 fn main() {
     let args: Vec<String> = std::env::args().skip(1).collect();
     let [count, workers, folder, rest @ ..] = &args[..] else {
-        eprintln!("cells CELLS WORKERS FOLDER");
+        eprintln!("hosts CELLS WORKERS FOLDER");
         std::process::exit(2);
     };
     let workers: usize = workers.parse().expect("a number of workers");
@@ -58,7 +35,7 @@ fn main() {
         println!("{count} cells, {workers} processes: {:.2} s", start.elapsed().as_secs_f64());
         return;
     };
-    let text = cells(count.parse().expect("a number of cells"));
+    let text = cells(count.parse().expect("a number of cells"), "iec60848");
     let (document, problems) = g7_syntax::parse(&text, Default::default());
     assert!(problems.is_empty(), "{problems:?}");
     let asked = ask(&document, None).0.expect("it compiles");
@@ -73,7 +50,7 @@ fn main() {
         work: Work { program: 0, task: 0 },
         folder: folder.as_ref(),
         tell: &|line| eprintln!("{me}: {line}"),
-        tried: Some(Tried::Matter),
+        tried: Some(Tried::One),
     };
     let found = answer(&model, &all, &budget, &place).expect("an answer");
     let seconds = start.elapsed().as_secs_f64();
