@@ -264,8 +264,8 @@ fn word(v: &Option<Verdict>) -> Option<&'static str> {
     }
 }
 
-/// The answers of the layer that did not answer first: proofs by the solver are asked of a short search, those by the search
-/// of the solver.
+/// The answers of the layer that did not answer first: proofs by the solver are asked of a short search, those
+/// by the search of the solver.
 fn others(model: &Model<'_>, questions: &[Question], answers: &[Option<Verdict>]) -> Vec<Option<Verdict>> {
     let begun = Instant::now();
     let stop = || begun.elapsed() > Duration::from_secs(2);

@@ -4,8 +4,9 @@
 //! hosts CELLS WORKERS FOLDER
 //! ```
 //!
-//! The cells are those of `cells.rs`; in each scan at most one input differs from its initial value. One process is started for each worker; process 0 prints the numbers of states and
-//! scans, each its seconds and the most memory that it had (Linux).
+//! The cells are those of `cells.rs`; in each scan at most one input differs from its initial value. One
+//! process is started for each worker; process 0 prints the numbers of states and scans, each its seconds and
+//! the most memory that it had (Linux).
 #![allow(clippy::disallowed_methods, reason = "a stopwatch reads the clock")]
 
 use std::process::Command;

@@ -6,8 +6,8 @@
 //!
 //! `--cells` (10) cells of `cells.rs` under `--profile` (iec60848). `--inputs one` (the default): in each
 //! scan at most one input is true; `free`: any. `--ask` answers the questions
-//! of the file and those that are asked of every chart, with any inputs, instead of counting states. `--text` prints the
-//! chart for other tools and ends.
+//! of the file and those that are asked of every chart, with any inputs, instead of counting states. `--text`
+//! prints the chart for other tools and ends.
 //!
 //! One line for a count: cells, inputs, states, scans, depth, seconds, bytes a state without and
 //! with what the runs need, MB of the process at most (Linux). For `--ask`: seconds, and how many answers

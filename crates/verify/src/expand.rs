@@ -397,7 +397,7 @@ impl<'a> Expander<'a> {
         self.see_passes(from, now, work, done);
         let report = scan(self.p, &mut self.world.charts, &work.m.inputs, now);
         let scanned = Scanned { state: &self.world.charts, report };
-        let is_cut = is_cut(self.p, &scanned);
+        let is_cut = scanned.is_cut(self.p);
         done.cut |= is_cut;
         let fault = report.err();
         show(&mut self.open, &mut work.shown, fault, |c| shows(self.p, c, &scanned));
@@ -510,14 +510,4 @@ fn show(
         shown.extend(is_shown.then_some(Shown::Run { question: *question, fault }));
         !is_shown
     });
-}
-
-/// True if a scan may have cleared or run more than it reports.
-fn is_cut(p: &Program, scanned: &Scanned<'_>) -> bool {
-    let (s, t) = (scanned.state, p.tables());
-    // As much as the reports of a scan have room for.
-    let (most_run, most_cleared) = (t.actions.len() + 64, 2 * t.transitions.len() + 64);
-    let listed = scanned.report.map_or(0, |r| r.cleared as usize);
-    let cleared = s.cleared().len();
-    s.ran().len() >= most_run || cleared < listed || cleared >= most_cleared
 }

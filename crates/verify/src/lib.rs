@@ -3,18 +3,18 @@
 //! # Where this sits
 //!
 //! ```text
-//! model::Document -> ask -> Question, Model -> answer: Layer (search, zones, sat) -> Verdict -> words -> g7 prove, page
+//! model::Document -> ask -> Question, Model -> answer: Layer (search, zones, sat) -> Verdict -> words -> g7 prove
 //! rig::Source (with a plant) -> closed -> Question, Model (the same way)
 //!                           two charts      -> compare                    -> Equality -> g7 compare
 //!                           Run             -> blame: the steps and transitions that take part
 //! ```
 //!
 //! `model.rs` has the meaning of a run, `question.rs` that of a claim, `verdict.rs` the
-//! answers, `reason.rs` why there is none. `search.rs` visits all states with `engine::scan`; `asked.rs` tells it which
-//! inputs matter in a state, `values.rs` which values of them. `zones` visits sets of states that
-//! differ in times alone. `system` is the chart as a system of bits, about which `sat` asks a
-//! solver. `answer.rs` has them work in turns. [`Explorer::search`] is a
-//! search by moves that its caller chooses, for tests and tools.
+//! answers, `reason.rs` why there is none. `search.rs` visits all states with `engine::scan`; `asked.rs` tells
+//! it which inputs matter in a state, `values.rs` which values of them. `zones` visits sets of states that
+//! differ in times alone. `system` is the chart as a system of bits, about which `sat` asks a solver.
+//! `answer.rs` has them work in turns. [`Explorer::search`] is a search by moves that its caller chooses, for
+//! tests and tools.
 //!
 //! # Invariants
 //!

@@ -242,6 +242,18 @@ pub(crate) struct Scanned<'s> {
     pub(crate) report: Result<Report, Fault>,
 }
 
+impl Scanned<'_> {
+    /// True if the scan may have cleared or run more than it reports: its reports are as long as the state has
+    /// room for, or tell of fewer transitions than were cleared.
+    pub(crate) fn is_cut(&self, p: &Program) -> bool {
+        let (s, t) = (self.state, p.tables());
+        let (most_run, most_cleared) = (t.actions.len() + 64, 2 * t.transitions.len() + 64);
+        let all = self.report.map_or(0, |r| r.cleared as usize);
+        let listed = s.cleared().len();
+        s.ran().len() >= most_run || listed < all || listed >= most_cleared
+    }
+}
+
 /// True if a scan shows what the claim is about. For claims that one scan can show as a whole.
 pub(crate) fn shows(p: &Program, claim: &Claim, scanned: &Scanned<'_>) -> bool {
     let (t, s) = (p.tables(), scanned.state);

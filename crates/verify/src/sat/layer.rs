@@ -165,8 +165,8 @@ impl Work<'_> {
         questions.iter().zip(&t.asked).zip(&t.follows).map(one).collect()
     }
 
-    /// The claim about all that can follow each state: the clauses of a proof that it is always what the claim asks for, or
-    /// another verdict.
+    /// The claim about all that can follow each state: the clauses of a proof that it is always what the claim
+    /// asks for, or another verdict.
     fn follows(&self, claim: &Claim, asked: &Asked, follows: &Follows) -> Result<Clauses, Verdict> {
         let Follows { waits, goal, may } = *follows;
         // A value that is not known may be the one that leads on.

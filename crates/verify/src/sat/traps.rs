@@ -150,8 +150,8 @@ impl Work<'_> {
         self.open.graph.all(same)
     }
 
-    /// True if these inputs are always allowed and, held for long, bring each state to rest that waits and does not reach
-    /// the goal: behind a few steps each word only rises or only falls.
+    /// True if these inputs are always allowed and, held for long, bring each state to rest that waits and does
+    /// not reach the goal: behind a few steps each word only rises or only falls.
     fn comes_to_rest(&self, held: &[bool]) -> bool {
         let system = self.system;
         if !self.is_always_allowed(held) {

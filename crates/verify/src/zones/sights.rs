@@ -3,7 +3,7 @@
 //! The states of a set that lie between the same bounds have equal scans. Each scan is made with the
 //! least and with the greatest values of the clocks, and what is seen of both must be the same.
 
-use g7_engine::{Fault, FaultKind, Report, State, StepId, scan};
+use g7_engine::{Fault, FaultKind, Report, StepId, scan};
 
 use crate::explore::Move;
 use crate::look::{Passes, Scanned, allowed, passes, shows};
@@ -85,7 +85,7 @@ impl<'a> Eye<'a> {
             c => shows(p, c, &scanned),
         };
         let hits = open.iter().filter(|(_, q)| is_shown(&q.claim)).map(|(i, _)| *i).collect();
-        let (cut, s) = (is_cut(self.model, &self.world.charts, report), &self.world.charts);
+        let (cut, s) = (scanned.is_cut(p), &self.world.charts);
         let mut sight = Sight {
             report,
             cleared: s.cleared().to_vec(),
@@ -131,13 +131,4 @@ impl<'a> Eye<'a> {
         self.other.put(image);
         passes(&self.model.compiled.program, &mut self.other.charts, &m.inputs, now, conflict)
     }
-}
-
-/// True if a scan may have done more than it reports.
-fn is_cut(model: &Model<'_>, s: &State, report: Result<Report, Fault>) -> bool {
-    let t = model.compiled.program.tables();
-    let (most_run, most_cleared) = (t.actions.len() + 64, 2 * t.transitions.len() + 64);
-    let listed = report.map_or(0, |r| r.cleared as usize);
-    let cleared = s.cleared().len();
-    s.ran().len() >= most_run || cleared < listed || cleared >= most_cleared
 }

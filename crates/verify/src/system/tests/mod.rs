@@ -1,8 +1,8 @@
 //! The system is the engine: both run side by side from the start, 64 runs at once, with
 //! random inputs, and agree on steps, variables, step times, faults and all questions.
 //!
-//! `charts.rs` has charts for one thing each, `endless.rs` searches that never end, `random.rs` random ones, the conformance cases
-//! and the examples, `words.rs` the circuits by themselves.
+//! `charts.rs` has charts for one thing each, `endless.rs` searches that never end, `random.rs` random ones,
+//! the conformance cases and the examples, `words.rs` the circuits by themselves.
 
 mod charts;
 mod endless;

@@ -11,6 +11,7 @@
 
 use super::Search;
 use crate::monitor::IDLE;
+use crate::outcome::asks_for_traps;
 use crate::question::Claim;
 use crate::reason::Reason;
 use crate::verdict::Verdict;
@@ -19,8 +20,7 @@ use crate::zones::turns::Moves;
 impl Search<'_> {
     /// Answers the question that asks for traps.
     pub(super) fn traps(&mut self) {
-        let asks = |c: &Claim| matches!(c, Claim::NoDeadlock | Claim::LeadsTo { .. });
-        let Some((i, q)) = self.open.iter().find(|(_, q)| asks(&q.claim)).copied() else { return };
+        let Some((i, q)) = self.open.iter().find(|(_, q)| asks_for_traps(&q.claim)).copied() else { return };
         let waits_for = matches!(q.claim, Claim::LeadsTo { .. });
         // With a claim that waits, a state in which it waits for nothing is good at once.
         let done: Vec<bool> = (0..self.graph.nodes.len())
