@@ -149,7 +149,7 @@ impl Patience {
         } else if whole.now() >= whole.time {
             format!("the time of {time} is over")
         } else {
-            format!("the part of a file of the time of {time} is over")
+            format!("the file's share of the time of {time} is used up")
         }
     }
 
