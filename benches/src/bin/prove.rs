@@ -1,11 +1,12 @@
 //! How fast does the explicit search visit the states of a chart, and in how much memory?
 //!
 //! ```text
-//! prove [--cells N] [--profile P] [--inputs one|free] [--ask] [--text]
+//! prove [--cells N] [--profile P] [--inputs one|free] [--bits THREADS] [--ask] [--text]
 //! ```
 //!
 //! `--cells` (10) cells of `cells.rs` under `--profile` (iec60848). `--inputs one` (the default): in each
-//! scan at most one input is true; `free`: any. `--ask` answers the questions
+//! scan at most one input is true; `free`: any. `--bits`: the search over the system of bits, by so many
+//! threads, instead of that with the engine. `--ask` answers the questions
 //! of the file and those that are asked of every chart, with any inputs, instead of counting states. `--text`
 //! prints the chart for other tools and ends.
 //!
@@ -18,19 +19,20 @@ use std::time::Instant;
 
 use g7_benches::cells::cells;
 use g7_model::FileId;
-use g7_verify::{Asked, Budget, Explicit, Layer, Model, Tried, Verdict, ask, visit};
+use g7_verify::{Asked, Budget, Explicit, Layer, Model, Tried, Tries, Verdict, ask, visit, visit_bits};
 
 struct Options {
     cells: usize,
     profile: String,
     free: bool,
+    bits: Option<usize>,
     ask: bool,
     text: bool,
 }
 
 fn main() {
     let o = options().unwrap_or_else(|| {
-        eprintln!("prove [--cells N] [--profile P] [--inputs one|free] [--ask] [--text]");
+        eprintln!("prove [--cells N] [--profile P] [--inputs one|free] [--bits THREADS] [--ask] [--text]");
         std::process::exit(2);
     });
     let text = cells(o.cells, &o.profile);
@@ -46,13 +48,21 @@ fn main() {
 }
 
 fn options() -> Option<Options> {
-    let mut o = Options { cells: 10, profile: "iec60848".to_owned(), free: false, ask: false, text: false };
+    let mut o = Options {
+        cells: 10,
+        profile: "iec60848".to_owned(),
+        free: false,
+        bits: None,
+        ask: false,
+        text: false,
+    };
     let mut args = std::env::args().skip(1);
     while let Some(arg) = args.next() {
         match arg.as_str() {
             "--cells" => o.cells = args.next()?.parse().ok()?,
             "--profile" => o.profile = args.next()?,
             "--inputs" => o.free = args.next()? == "free",
+            "--bits" => o.bits = Some(args.next()?.parse().ok()?),
             "--ask" => o.ask = true,
             "--text" => o.text = true,
             _ => return None,
@@ -69,7 +79,13 @@ fn count(asked: &Asked, o: &Options) {
     // The claims need not be looked at: their conditions read no inputs.
     let model = Model::new(&asked.compiled, asked.assume.clone());
     let start = Instant::now();
-    let seen = visit(&model, &budget(), if o.free { Tried::Classes } else { Tried::One });
+    let seen = match o.bits {
+        Some(threads) => {
+            let tries = if o.free { Tries::All } else { Tries::One };
+            visit_bits(&model, &budget(), tries, threads).expect("the cells are bits")
+        }
+        None => visit(&model, &budget(), if o.free { Tried::Classes } else { Tried::One }),
+    };
     let seconds = start.elapsed().as_secs_f64();
     let each = |bytes: usize| bytes as f64 / seen.states.max(1) as f64;
     println!(

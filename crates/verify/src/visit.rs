@@ -2,8 +2,10 @@
 
 use crate::layer::Budget;
 use crate::model::Model;
+use crate::sat::{Tries, wide};
 use crate::scene::{Tried, Until};
 use crate::search::Search;
+use crate::system::{Observed, system};
 use crate::verdict::Open;
 
 /// The extent of a search over all states.
@@ -32,4 +34,19 @@ pub fn visit(model: &Model<'_>, budget: &Budget<'_>, tried: Tried) -> Visited {
     let (bytes, runs) = search.kept();
     let seen = search.seen();
     Visited { states: seen.states, scans: seen.scans, depth: search.last(), bytes, runs, open: seen.open }
+}
+
+/// Visits all states of the chart's system of bits, by so many threads. Nothing where the system cannot be
+/// searched so. The number of scans that lead to the farthest state is counted as [`visit`] does.
+pub fn visit_bits(
+    model: &Model<'_>,
+    budget: &Budget<'_>,
+    tries: Tries,
+    threads: usize,
+) -> Option<Visited> {
+    let translated = system(model, &[], Observed::Asked);
+    let seen = wide(&translated.system, &[], true, tries, budget, threads)?;
+    let open = seen.open.map(|reason| Open { scans: seen.depth, states: seen.states, reason });
+    let [bytes, runs] = seen.bytes;
+    Some(Visited { states: seen.states, scans: seen.scans, depth: seen.depth, bytes, runs, open })
 }

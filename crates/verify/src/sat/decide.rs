@@ -25,13 +25,20 @@ pub enum Found {
     Open(usize),
 }
 
-/// A proof that the checker agreed with.
+/// A proof that the checker agreed with, or that all states were visited.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Proof {
     /// An inductive invariant, with its clauses: in each a signal is 1.
     Invariant(Vec<Vec<Signal>>),
     /// A signal that is 0 at so many steps is 0 at the next, and it is 0 at the first steps.
     Induction(usize),
+    /// All states were visited, and it is 0 in all scans from there.
+    Visited {
+        /// Number of states.
+        states: usize,
+        /// Number of scans made.
+        scans: usize,
+    },
 }
 
 /// Ticks of the first turn.

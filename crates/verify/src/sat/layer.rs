@@ -234,6 +234,7 @@ fn certificate(proof: &Proof) -> Certificate {
     match proof {
         Proof::Invariant(clauses) => Certificate::Invariant { clauses: clauses.len() },
         Proof::Induction(depth) => Certificate::Induction { depth: *depth },
+        Proof::Visited { states, scans } => Certificate::Search { states: *states, scans: *scans },
     }
 }
 

@@ -39,6 +39,7 @@ mod solver;
 mod stays;
 mod traps;
 mod unrolled;
+mod wide;
 
 pub use aiger::aiger;
 pub(crate) use cone::Cube;
@@ -53,3 +54,4 @@ pub(crate) use joined::{join, mapped};
 pub(crate) use kept::kept;
 pub use layer::Satisfiability;
 pub use simulate::{Trace, Values, evaluate, shows};
+pub use wide::{Tries, Wide, wide};
