@@ -45,7 +45,7 @@ pub fn visit_bits(
     threads: usize,
 ) -> Option<Visited> {
     let translated = system(model, &[], Observed::Asked);
-    let seen = wide(&translated.system, &[], true, tries, budget, threads)?;
+    let seen = wide(&translated.system, &[], &translated.passes, true, tries, budget, threads)?;
     let open = seen.open.map(|reason| Open { scans: seen.depth, states: seen.states, reason });
     let [bytes, runs] = seen.bytes;
     Some(Visited { states: seen.states, scans: seen.scans, depth: seen.depth, bytes, runs, open })

@@ -101,6 +101,8 @@ pub(crate) struct Translated {
     pub(crate) exclusive: Vec<Cube>,
     /// Activity of each step behind the scan.
     pub(crate) steps: Vec<Signal>,
+    /// For each pass but the first: the scan makes it.
+    pub(crate) passes: Vec<Signal>,
     #[cfg_attr(not(test), expect(dead_code, reason = "it is compared in the tests"))]
     shown: Shown,
     sources: Sources,
@@ -229,6 +231,7 @@ pub(crate) fn system(model: &Model<'_>, questions: &[Question], observed: Observ
         outputs,
         exclusive,
         steps,
+        passes: sights.passes,
         shown,
         sources,
         unknown,

@@ -35,7 +35,9 @@ pub(crate) struct Sights {
     pub(crate) active: BTreeMap<MemoryId, (Signal, Signal)>,
     /// The search for stability does not end because a part comes back, and not the whole.
     pub(crate) partly: Signal,
-    /// Then, for each step and each watched memory: its part may do more in passes that were not
+    /// For each pass but the first: some scan makes it. Where it is 0, no later pass is made.
+    pub(crate) passes: Vec<Signal>,
+    /// Where `partly` is 1, for each step and each watched memory: its part may do more in passes that were not
     /// unrolled.
     pub(crate) beside: BTreeMap<MemoryId, Signal>,
 }
@@ -107,6 +109,7 @@ impl<'x, 'a> Scan<'x, 'a> {
             unsafe_: none,
             active: BTreeMap::new(),
             partly: none,
+            passes: Vec::new(),
             beside: BTreeMap::new(),
         };
         Scan { x, sights, places, clears, steps, rivals, watched }
@@ -159,6 +162,7 @@ impl<'x, 'a> Scan<'x, 'a> {
             if seen.len() >= most || self.x.system.graph.nodes().len() > NODES {
                 break;
             }
+            self.sights.passes.push(on);
             let outer = self.x.enter(on);
             self.pass(0);
             self.x.leave(on, outer);

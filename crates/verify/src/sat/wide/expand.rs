@@ -13,7 +13,7 @@
 //! becomes all combinations of them; one with more is split at the last of them: the bits of a number come
 //! lowest first, and a comparison is decided by the highest ones.
 
-use super::lanes::{LANES, Lanes, NONE, bit, both, first, gather, spread};
+use super::lanes::{LANES, NONE, bit, both, first, gather, lanes_of, spread};
 use super::program::{Open, Plain, Program};
 
 /// Inputs of which all combinations are tried at once, at most.
@@ -75,9 +75,19 @@ struct Wanted {
     inputs: Option<Vec<u64>>,
 }
 
+/// Scans that wait for a stage.
+#[derive(Default)]
+struct Scans {
+    /// The state of each lane, by its place.
+    state: Vec<u32>,
+    /// Word by word, a list of all lanes: the states, and the inputs.
+    rows: Vec<Vec<u64>>,
+    inputs: Vec<Vec<u64>>,
+}
+
 /// Expands states. It keeps its room from one call to the next.
 pub(super) struct Expander<'p> {
-    program: &'p Program,
+    stages: &'p [Program],
     tries: Tries,
     /// [`TOGETHER`]; tests try fewer.
     together: usize,
@@ -86,15 +96,12 @@ pub(super) struct Expander<'p> {
     words: usize,
     plain: Plain,
     open: Open,
-    waiting: Cubes,
+    /// For each stage, the last of which is the whole program.
+    waiting: Vec<Cubes>,
+    scans: Vec<Scans>,
     ready: Cubes,
-    /// Word by word, each of all lanes: the states and the inputs of the next evaluation.
-    lanes: Vec<u64>,
-    inputs: Vec<u64>,
-    /// The state of each lane, by its place.
-    from: Vec<u32>,
     /// The next states, word by word.
-    next: Vec<u64>,
+    next: Vec<Vec<u64>>,
     /// For each state: some inputs satisfy the constraints.
     fed: Vec<bool>,
     /// For each state: its splits so far.
@@ -103,22 +110,21 @@ pub(super) struct Expander<'p> {
 }
 
 impl<'p> Expander<'p> {
-    pub(super) fn new(program: &'p Program, width: usize, tries: Tries, together: usize) -> Expander<'p> {
-        let words = program.inputs.len() / 64 + 1;
+    pub(super) fn new(stages: &'p [Program], width: usize, tries: Tries, together: usize) -> Expander<'p> {
+        let words = stages.first().map_or(0, |p| p.inputs.len()) / 64 + 1;
+        let scans = || Scans { state: Vec::new(), rows: vec![Vec::new(); width], inputs: vec![Vec::new(); words] };
         Expander {
-            program,
+            stages,
             tries,
             together,
             width,
             words,
             plain: Plain::default(),
             open: Open::default(),
-            waiting: Cubes::default(),
+            waiting: stages.iter().map(|_| Cubes::default()).collect(),
+            scans: stages.iter().map(|_| scans()).collect(),
             ready: Cubes::default(),
-            lanes: vec![0; width * LANES],
-            inputs: vec![0; words * LANES],
-            from: Vec::new(),
-            next: vec![0; width * LANES],
+            next: vec![vec![0; LANES]; width],
             fed: Vec::new(),
             splits: Vec::new(),
             wanted: None,
@@ -128,21 +134,19 @@ impl<'p> Expander<'p> {
     /// Appends all moves of these states, which stand one behind the other.
     pub(super) fn expand(&mut self, states: &[u64], moves: &mut Moves) {
         let count = states.len() / self.width;
-        moves.shown.resize(self.program.asked.len(), None);
+        let asked = self.stages.first().map_or(0, |p| p.asked.len());
+        moves.shown.resize(asked, None);
         self.fed.clear();
         self.fed.resize(count, false);
         self.splits.clear();
         self.splits.resize(count, 0);
-        for state in (0..count as u32).rev() {
-            self.waiting.state.push(state);
-            self.waiting.known.extend(std::iter::repeat_n(0, self.words));
-            self.waiting.value.extend(std::iter::repeat_n(0, self.words));
+        match self.tries {
+            Tries::All => self.split_all(states, moves),
+            Tries::One => self.one_by_one(states, moves),
         }
-        while !self.waiting.state.is_empty() {
-            self.judge(states, moves);
-            self.try_all(states, moves);
+        for stage in 0..self.stages.len() {
+            self.flush(stage, moves);
         }
-        self.flush(moves);
         if let Some(k) = self.fed.iter().position(|fed| !fed) {
             moves.stuck = moves.stuck.or(Some(k as u32));
         }
@@ -155,27 +159,59 @@ impl<'p> Expander<'p> {
         self.wanted.take()?.inputs
     }
 
-    /// Looks at the last cubes that wait, as many as there are lanes: those with few inputs that matter are
-    /// ready, the others are split and wait on.
-    fn judge(&mut self, states: &[u64], moves: &mut Moves) {
-        let (words, count) = (self.words, self.waiting.state.len().min(LANES));
-        let start = self.waiting.state.len() - count;
-        let list: Vec<u32> = self.waiting.state.drain(start..).collect();
-        let known: Vec<u64> = self.waiting.known.drain(start * words..).collect();
-        let value: Vec<u64> = self.waiting.value.drain(start * words..).collect();
+    /// Each input alone, and none.
+    fn one_by_one(&mut self, states: &[u64], moves: &mut Moves) {
+        let count = self.stages.first().map_or(0, |p| p.inputs.len());
+        let mut now = vec![0; self.words];
+        for (state, row) in (0u32..).zip(states.chunks_exact(self.width)) {
+            self.lane(state, row, &now, moves);
+            for place in 0..count {
+                set(&mut now, place, true);
+                self.lane(state, row, &now, moves);
+                set(&mut now, place, false);
+            }
+        }
+    }
+
+    /// All combinations that matter.
+    fn split_all(&mut self, states: &[u64], moves: &mut Moves) {
+        let none = vec![0; self.words];
+        if let Some(waiting) = self.waiting.first_mut() {
+            for state in (0..(states.len() / self.width) as u32).rev() {
+                waiting.push(state, &none, &none);
+            }
+        }
+        // A later stage waits until the earlier ones have nothing more for it, or much.
+        while let Some(stage) = self.next_stage() {
+            self.judge(stage, states, moves);
+            self.try_all(states, moves);
+        }
+    }
+
+    /// The last stage with a block of cubes, or else the first with any.
+    fn next_stage(&self) -> Option<usize> {
+        let full = self.waiting.iter().rposition(|w| w.state.len() >= LANES);
+        full.or_else(|| self.waiting.iter().position(|w| !w.state.is_empty()))
+    }
+
+    /// Looks at the last cubes that wait for a stage, as many as there are lanes: those with few inputs that
+    /// matter are ready, the others are split and wait on.
+    fn judge(&mut self, stage: usize, states: &[u64], moves: &mut Moves) {
+        let (words, width) = (self.words, self.width);
+        let (Some(p), Some(waiting)) = (self.stages.get(stage), self.waiting.get_mut(stage)) else { return };
+        let cubes = waiting.last(words);
+        let count = cubes.state.len();
         let column = |of: &[u64], w: usize| -> Vec<u64> { of.iter().skip(w).step_by(words).copied().collect() };
-        let (p, width) = (self.program, self.width);
         p.evaluate_open(&mut self.open, |latches, inputs| {
             for (w, latches) in latches.chunks_mut(64).enumerate() {
                 let of = |s: &u32| states.get(*s as usize * width + w).copied().unwrap_or(0);
-                let packed: Vec<u64> = list.iter().map(of).collect();
+                let packed: Vec<u64> = cubes.state.iter().map(of).collect();
                 spread(&packed, latches);
             }
             for (w, inputs) in inputs.chunks_mut(64).enumerate() {
-                let mut has = [NONE; 64];
-                let mut is = [NONE; 64];
-                spread(&column(&known, w), &mut has);
-                spread(&column(&value, w), &mut is);
+                let (mut has, mut is) = ([NONE; 64], [NONE; 64]);
+                spread(&column(&cubes.known, w), &mut has);
+                spread(&column(&cubes.value, w), &mut is);
                 for (slot, (has, is)) in inputs.iter_mut().zip(has.iter().zip(&is)) {
                     *slot = [both(*has, *is, |h, v| !h | v), both(*has, *is, |h, v| !h | !v)];
                 }
@@ -186,6 +222,7 @@ impl<'p> Expander<'p> {
         for c in &p.constraints {
             none = both(none, self.open.is_zero(*c), |a, b| a | b);
         }
+        let sure = self.open.is_zero(p.guard);
         let mut needs = vec![0; words * count];
         for w in 0..words {
             let mut packed = vec![0; count];
@@ -193,122 +230,135 @@ impl<'p> Expander<'p> {
             gather(&mut packed, here, |j| self.open.needs(64 * w + j));
             needs.iter_mut().skip(w).step_by(words).zip(packed).for_each(|(to, from)| *to = from);
         }
-        for (k, state) in list.iter().enumerate().filter(|(k, _)| !bit(&none, *k)) {
-            let of = |all: &[u64]| -> Vec<u64> { all.get(k * words..(k + 1) * words).unwrap_or(&[]).to_vec() };
-            let (known, value, needs) = (of(&known), of(&value), of(&needs));
-            let open: u32 = needs.iter().map(|w| w.count_ones()).sum();
-            if self.tries == Tries::One || open as usize <= self.together {
-                self.ready.push(*state, &known, &value);
-                self.ready.needs.extend(needs);
-            } else if !self.may_split(*state) {
-                moves.many = moves.many.or(Some(*state));
-                // It has combinations; whether any of them satisfies the constraints is not asked.
-                self.feed(*state);
-            } else if let Some(place) = highest(&needs) {
-                for one in [true, false] {
-                    let (mut known, mut value) = (known.clone(), value.clone());
-                    set(&mut known, place, true);
-                    set(&mut value, place, one);
-                    self.waiting.push(*state, &known, &value);
-                }
+        let of = |all: &[u64], k: usize| -> Vec<u64> { all.get(k * words..(k + 1) * words).unwrap_or(&[]).to_vec() };
+        for (k, state) in cubes.state.iter().enumerate() {
+            let (known, value) = (of(&cubes.known, k), of(&cubes.value, k));
+            if !bit(&sure, k) {
+                self.waiting.get_mut(stage + 1).into_iter().for_each(|w| w.push(*state, &known, &value));
+            } else if !bit(&none, k) {
+                self.settle(*state, known, value, of(&needs, k), moves);
+            }
+        }
+    }
+
+    /// A cube of which it is known which inputs matter in it.
+    fn settle(&mut self, state: u32, known: Vec<u64>, value: Vec<u64>, needs: Vec<u64>, moves: &mut Moves) {
+        let open: u32 = needs.iter().map(|w| w.count_ones()).sum();
+        if open as usize <= self.together {
+            self.ready.push(state, &known, &value);
+            self.ready.needs.extend(needs);
+        } else if !self.may_split(state) {
+            moves.many = moves.many.or(Some(state));
+            // It has combinations; whether any of them satisfies the constraints is not asked.
+            self.feed(state);
+        } else if let (Some(place), Some(waiting)) = (highest(&needs), self.waiting.first_mut()) {
+            for one in [true, false] {
+                let (mut known, mut value) = (known.clone(), value.clone());
+                set(&mut known, place, true);
+                set(&mut value, place, one);
+                waiting.push(state, &known, &value);
             }
         }
     }
 
     /// Makes lanes of all combinations of the cubes that are ready.
     fn try_all(&mut self, states: &[u64], moves: &mut Moves) {
-        let ready = std::mem::take(&mut self.ready);
+        let mut ready = std::mem::take(&mut self.ready);
         let each = ready.value.chunks_exact(self.words).zip(ready.needs.chunks_exact(self.words));
-        let mut now = Vec::new();
+        let (mut now, mut places) = (Vec::new(), Vec::new());
         for (state, (value, needs)) in ready.state.iter().zip(each) {
             now.clear();
             now.extend_from_slice(value);
-            let places: Vec<usize> = ones(needs).collect();
-            self.lane(states, *state, &now, moves);
-            match self.tries {
-                Tries::One => {
-                    for place in &places {
-                        set(&mut now, *place, true);
-                        self.lane(states, *state, &now, moves);
-                        set(&mut now, *place, false);
-                    }
+            places.clear();
+            places.extend(ones(needs));
+            let start = *state as usize * self.width;
+            let row = states.get(start..start + self.width).unwrap_or(&[]);
+            self.lane(*state, row, &now, moves);
+            // Each combination differs from the one before in one input.
+            for k in 1..1usize << places.len() {
+                if let Some(place) = places.get(k.trailing_zeros() as usize) {
+                    flip(&mut now, *place);
                 }
-                // Each combination differs from the one before in one input.
-                Tries::All => {
-                    for k in 1..1usize << places.len() {
-                        if let Some(place) = places.get(k.trailing_zeros() as usize) {
-                            flip(&mut now, *place);
-                        }
-                        self.lane(states, *state, &now, moves);
-                    }
-                }
+                self.lane(*state, row, &now, moves);
             }
         }
-        self.ready = Cubes {
-            state: cleared(ready.state),
-            known: cleared(ready.known),
-            value: cleared(ready.value),
-            needs: cleared(ready.needs),
-        };
+        ready.clear();
+        self.ready = ready;
     }
 
     /// Takes up one scan; makes all of them once the lanes are full.
-    fn lane(&mut self, states: &[u64], state: u32, inputs: &[u64], moves: &mut Moves) {
-        let lane = self.from.len();
-        let row = states.iter().skip(state as usize * self.width);
-        for (to, word) in self.lanes.iter_mut().skip(lane).step_by(LANES).zip(row) {
-            *to = *word;
-        }
-        for (to, word) in self.inputs.iter_mut().skip(lane).step_by(LANES).zip(inputs) {
-            *to = *word;
-        }
-        self.from.push(state);
-        if self.from.len() == LANES {
-            self.flush(moves);
+    fn lane(&mut self, state: u32, row: &[u64], inputs: &[u64], moves: &mut Moves) {
+        moves.scans += 1;
+        let Some(scans) = self.scans.first_mut() else { return };
+        scans.push(state, row, inputs);
+        if scans.state.len() == LANES {
+            self.flush(0, moves);
         }
     }
 
-    /// Makes the scans of all lanes.
-    fn flush(&mut self, moves: &mut Moves) {
-        let p = self.program;
-        p.evaluate(&mut self.plain, |latches, inputs| {
-            for (bits, packed) in latches.chunks_mut(64).zip(self.lanes.chunks_exact(LANES)) {
-                spread(packed, bits);
+    /// Makes all scans that wait for a stage.
+    fn flush(&mut self, stage: usize, moves: &mut Moves) {
+        let (Some(p), Some(slot)) = (self.stages.get(stage), self.scans.get_mut(stage)) else { return };
+        let mut scans = std::mem::take(slot);
+        let mut plain = std::mem::take(&mut self.plain);
+        let (changed, later) = {
+            p.evaluate(&mut plain, |latches, inputs| {
+                latches.chunks_mut(64).zip(&scans.rows).for_each(|(bits, packed)| spread(packed, bits));
+                inputs.chunks_mut(64).zip(&scans.inputs).for_each(|(bits, packed)| spread(packed, bits));
+            });
+            let here = first(scans.state.len());
+            let later = both(here, plain.get(p.guard), |a, b| a & b);
+            let mut valid = both(here, later, |a, b| a & !b);
+            for c in &p.constraints {
+                valid = both(valid, plain.get(*c), |a, b| a & b);
             }
-            for (bits, packed) in inputs.chunks_mut(64).zip(self.inputs.chunks_exact(LANES)) {
-                spread(packed, bits);
+            for (signal, shown) in p.asked.iter().zip(&mut moves.shown).filter(|(_, s)| s.is_none()) {
+                let seen = both(valid, plain.get(*signal), |a, b| a & b);
+                *shown = lanes_of(&seen).next().map(|lane| (scans.state_of(lane), scans.inputs_of(lane)));
             }
-        });
-        let mut valid = first(self.from.len());
-        for c in &p.constraints {
-            valid = both(valid, self.plain.get(*c), |a, b| a & b);
-        }
-        for (signal, shown) in p.asked.iter().zip(&mut moves.shown).filter(|(_, s)| s.is_none()) {
-            let here = both(valid, self.plain.get(*signal), |a, b| a & b);
-            if let Some(lane) = lowest(&here) {
-                let inputs = self.inputs.iter().skip(lane).step_by(LANES).copied().collect();
-                *shown = Some((self.from.get(lane).copied().unwrap_or(0), inputs));
-            }
-        }
-        for (w, packed) in self.next.chunks_exact_mut(LANES).enumerate() {
-            let here = p.next.get(64 * w..).unwrap_or(&[]);
-            gather(packed, here.len().min(64), |j| here.get(j).map_or(NONE, |code| self.plain.get(*code)));
-        }
-        moves.scans += self.from.len();
-        let from = std::mem::take(&mut self.from);
-        for (lane, state) in from.iter().enumerate() {
-            if !bit(&valid, lane) {
-                continue;
-            }
-            self.feed(*state);
-            self.meet(lane);
-            let next = || self.next.iter().skip(lane).step_by(LANES);
-            if !next().eq(self.lanes.iter().skip(lane).step_by(LANES)) {
-                moves.rows.extend(next());
-                moves.from.push(*state);
+            lanes_of(&valid).for_each(|lane| self.feed(scans.state_of(lane)));
+            let changed = match self.wanted {
+                Some(_) => valid,
+                None => both(valid, plain.moved(p), |a, b| a & b),
+            };
+            (changed, later)
+        };
+        if lanes_of(&changed).next().is_some() {
+            for (w, packed) in self.next.iter_mut().enumerate() {
+                let here = p.next.get(64 * w..).unwrap_or(&[]);
+                gather(packed, here.len().min(64), |j| here.get(j).map_or(NONE, |code| plain.get(*code)));
             }
         }
-        self.from = cleared(from);
+        for lane in lanes_of(&changed) {
+            if let Some(wanted) = self.wanted.as_mut().filter(|w| w.inputs.is_none())
+                && self.next.iter().filter_map(|w| w.get(lane)).eq(&wanted.row)
+            {
+                wanted.inputs = Some(scans.inputs_of(lane));
+            }
+            moves.rows.extend(self.next.iter().filter_map(|w| w.get(lane)));
+            moves.from.push(scans.state_of(lane));
+        }
+        self.plain = plain;
+        for lane in lanes_of(&later) {
+            self.wait(stage + 1, &scans, lane, moves);
+        }
+        scans.clear();
+        self.scans.get_mut(stage).into_iter().for_each(|s| *s = std::mem::take(&mut scans));
+    }
+
+    /// Hands a scan to a later stage.
+    fn wait(&mut self, stage: usize, scans: &Scans, lane: usize, moves: &mut Moves) {
+        let Some(later) = self.scans.get_mut(stage) else { return };
+        later.state.push(scans.state_of(lane));
+        for (to, from) in later.rows.iter_mut().zip(&scans.rows) {
+            to.extend(from.get(lane));
+        }
+        for (to, from) in later.inputs.iter_mut().zip(&scans.inputs) {
+            to.extend(from.get(lane));
+        }
+        if later.state.len() == LANES {
+            self.flush(stage, moves);
+        }
     }
 
     /// Counts a split of a state; false if it has had too many.
@@ -324,14 +374,26 @@ impl<'p> Expander<'p> {
             *fed = true;
         }
     }
+}
 
-    /// Notes the inputs of a lane that leads to the state that is looked for.
-    fn meet(&mut self, lane: usize) {
-        if let Some(wanted) = self.wanted.as_mut().filter(|w| w.inputs.is_none())
-            && self.next.iter().skip(lane).step_by(LANES).eq(&wanted.row)
-        {
-            wanted.inputs = Some(self.inputs.iter().skip(lane).step_by(LANES).copied().collect());
-        }
+impl Scans {
+    fn push(&mut self, state: u32, row: &[u64], inputs: &[u64]) {
+        self.state.push(state);
+        self.rows.iter_mut().zip(row).for_each(|(to, word)| to.push(*word));
+        self.inputs.iter_mut().zip(inputs).for_each(|(to, word)| to.push(*word));
+    }
+
+    fn state_of(&self, lane: usize) -> u32 {
+        self.state.get(lane).copied().unwrap_or(0)
+    }
+
+    fn inputs_of(&self, lane: usize) -> Vec<u64> {
+        self.inputs.iter().filter_map(|w| w.get(lane)).copied().collect()
+    }
+
+    fn clear(&mut self) {
+        self.state.clear();
+        self.rows.iter_mut().chain(&mut self.inputs).for_each(Vec::clear);
     }
 }
 
@@ -341,12 +403,24 @@ impl Cubes {
         self.known.extend_from_slice(known);
         self.value.extend_from_slice(value);
     }
-}
 
-/// The list without its elements, with its room.
-fn cleared<T>(mut list: Vec<T>) -> Vec<T> {
-    list.clear();
-    list
+    /// Takes the last cubes, as many as there are lanes.
+    fn last(&mut self, words: usize) -> Cubes {
+        let start = self.state.len().saturating_sub(LANES);
+        Cubes {
+            state: self.state.split_off(start),
+            known: self.known.split_off(start * words),
+            value: self.value.split_off(start * words),
+            needs: Vec::new(),
+        }
+    }
+
+    fn clear(&mut self) {
+        self.state.clear();
+        self.known.clear();
+        self.value.clear();
+        self.needs.clear();
+    }
 }
 
 fn set(words: &mut [u64], place: usize, value: bool) {
@@ -377,10 +451,4 @@ fn ones(words: &[u64]) -> impl Iterator<Item = usize> {
 fn highest(words: &[u64]) -> Option<usize> {
     let (k, w) = words.iter().enumerate().rfind(|(_, w)| **w != 0)?;
     Some(64 * k + 63 - w.leading_zeros() as usize)
-}
-
-/// The first lane with a 1.
-fn lowest(lanes: &Lanes) -> Option<usize> {
-    let (k, w) = lanes.iter().enumerate().find(|(_, w)| **w != 0)?;
-    Some(64 * k + w.trailing_zeros() as usize)
 }

@@ -41,6 +41,20 @@ pub(super) fn bit(a: &Lanes, lane: usize) -> bool {
     a.get(lane / 64).is_some_and(|w| w >> (lane % 64) & 1 != 0)
 }
 
+/// The patterns that have 1, ascending.
+pub(super) fn lanes_of(a: &Lanes) -> impl Iterator<Item = usize> + use<> {
+    a.iter().copied().enumerate().flat_map(|(k, w)| bits(w).map(move |j| 64 * k + j)).collect::<Vec<_>>().into_iter()
+}
+
+/// The bits of a word that are 1, ascending.
+pub(super) fn bits(mut word: u64) -> impl Iterator<Item = usize> {
+    std::iter::from_fn(move || {
+        let bit = (word != 0).then(|| word.trailing_zeros() as usize)?;
+        word &= word - 1;
+        Some(bit)
+    })
+}
+
 /// 1 in the first `count` lanes.
 pub(super) fn first(count: usize) -> Lanes {
     let mut lanes = NONE;

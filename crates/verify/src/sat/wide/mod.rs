@@ -58,30 +58,34 @@ pub struct Wide {
 }
 
 /// Searches all states. `all`: states are told apart by all latches, not only by those on which the signals
-/// depend, and the search goes on when all signals are shown. Nothing where the system has states that begin
+/// depend, and the search goes on when all signals are shown. Guards are signals of which one that is 0 leaves
+/// little to do: that a scan has a second pass, a third, and so on. Nothing where the system has states that begin
 /// with any value, or too many bits.
 pub fn wide(
     system: &System,
     signals: &[Signal],
+    guards: &[Signal],
     all: bool,
     tries: Tries,
     budget: &Budget<'_>,
     threads: usize,
 ) -> Option<Wide> {
-    wide_with(system, signals, all, tries, budget, threads, TOGETHER)
+    wide_with(system, signals, guards, all, tries, budget, threads, TOGETHER)
 }
 
 /// The same; of `together` inputs at most all combinations are tried at once.
 fn wide_with(
     system: &System,
     signals: &[Signal],
+    guards: &[Signal],
     all: bool,
     tries: Tries,
     budget: &Budget<'_>,
     threads: usize,
     together: usize,
 ) -> Option<Wide> {
-    let program = Program::new(system, signals, all);
+    let stages = Program::stages(system, signals, guards, all);
+    let program = stages.last()?;
     let mut start = vec![0u64; program.latches.len() / 64 + 1];
     for (k, latch) in program.latches.iter().enumerate() {
         let value = system.latches.get(*latch)?.init.value()?;
@@ -90,14 +94,14 @@ fn wide_with(
     if start.len() > WIDEST {
         return None;
     }
-    let mut search = Search::new(&program, &start, tries, threads, together);
+    let mut search = Search::new(&stages, &start, tries, threads, together);
     search.run(budget, all);
-    if search.is_whole() && tries == Tries::All && !is_closed(system, signals, &program, &search) {
+    if search.is_whole() && tries == Tries::All && !is_closed(system, signals, program, &search) {
         search.open = Some(Reason::NotRepeated);
     }
     let whole = search.is_whole();
     let found = signals.iter().enumerate().map(|(k, signal)| {
-        let trace = search.run_to(k).map(|inputs| trace(system, &program, &inputs));
+        let trace = search.run_to(k).map(|inputs| trace(system, program, &inputs));
         match trace.filter(|t| shows(system, t, *signal)) {
             Some(trace) => Found::Reached(trace),
             None if whole && !search.is_shown(k) => {

@@ -4,11 +4,9 @@
 //! Values stand in one list: 0, the inputs, the latches, then each gate behind those that it reads. A code
 //! is the place of a value times 2, and 1 more for its negation.
 
-use std::collections::HashMap;
-
 use super::lanes::{Lanes, NONE, any, both, negated};
 use crate::sat::cone::cone;
-use crate::sat::graph::{Node, Signal, System};
+use crate::sat::graph::{Init, Node, Signal, System};
 
 /// The part of a system that its constraints and some signals depend on.
 pub(super) struct Program {
@@ -24,6 +22,8 @@ pub(super) struct Program {
     pub(super) constraints: Vec<u32>,
     /// Codes of the signals that are asked for.
     pub(super) asked: Vec<u32>,
+    /// The code of the guard: where it is 1, a later stage has the values.
+    pub(super) guard: u32,
 }
 
 /// The values of all places.
@@ -40,43 +40,67 @@ pub(super) struct Open {
 }
 
 impl Program {
-    /// The part on which these signals depend; with `all`, the part on which all latches do.
-    pub(super) fn new(system: &System, asked: &[Signal], all: bool) -> Program {
+    /// The part on which these signals depend, with `all` the part on which all latches do: first as it is
+    /// where the first guard is 0, then where the second is, and so on; the last one as it always is. Guards
+    /// are signals of which one that is 0 leaves little to do.
+    pub(super) fn stages(system: &System, asked: &[Signal], guards: &[Signal], all: bool) -> Vec<Program> {
         let more = system.latches.iter().filter(|_| all).map(|l| l.signal);
         let roots = system.constraints.iter().chain(asked).copied().chain(more);
         let inside = cone(system, roots);
-        let is_in = |s: &Signal| inside.get(s.node() as usize) == Some(&true);
-        let places = |list: &mut dyn Iterator<Item = Signal>| -> Vec<usize> {
-            list.enumerate().filter(|(_, s)| is_in(s)).map(|(place, _)| place).collect()
-        };
-        let inputs = places(&mut system.inputs.iter().copied());
-        let latches = places(&mut system.latches.iter().map(|l| l.signal));
-        let mut codes = HashMap::from([(0, 0)]);
-        let known = inputs.iter().filter_map(|i| system.inputs.get(*i).copied());
-        let known = known.chain(latches.iter().filter_map(|l| system.latches.get(*l)).map(|l| l.signal));
-        for (signal, place) in known.zip(1u32..) {
-            codes.insert(signal.node(), place * 2 + u32::from(signal.is_negated()));
-        }
-        let mut gates = Vec::new();
-        let first = (1 + inputs.len() + latches.len()) as u32;
-        let code = |codes: &HashMap<u32, u32>, s: Signal| {
-            codes.get(&s.node()).copied().unwrap_or(0) ^ u32::from(s.is_negated())
-        };
-        for (number, node) in system.graph.nodes().iter().enumerate() {
-            if let (Node::And(a, b), Some(true)) = (node, inside.get(number)) {
-                gates.push([code(&codes, *a), code(&codes, *b)]);
-                codes.insert(number as u32, (first + gates.len() as u32 - 1) * 2);
+        let whole = Program::new(system, &inside, asked, None);
+        let mut stages: Vec<Program> = Vec::new();
+        let (mut at, mut step) = (0, 1);
+        let guards: Vec<Signal> = guards.iter().copied().filter(|g| g.constant().is_none()).collect();
+        while let Some(guard) = guards.get(at) {
+            let stage = Program::new(system, &inside, asked, Some(*guard));
+            // One that saves little is left out.
+            if stage.gates.len() * 4 < whole.gates.len() * 3 {
+                stages.push(stage);
             }
+            (at, step) = (at + step, at / 2 + 1);
         }
-        let of = |s: &Signal| code(&codes, *s);
-        let next = latches.iter().filter_map(|l| system.latches.get(*l)).map(|l| of(&l.next)).collect();
-        let constraints = system.constraints.iter().map(of).collect();
-        Program { inputs, latches, gates, next, constraints, asked: asked.iter().map(of).collect() }
+        stages.push(whole);
+        stages
     }
 
-    /// The number of gates.
-    pub(super) fn size(&self) -> usize {
-        self.gates.len()
+    fn new(system: &System, inside: &[bool], asked: &[Signal], guard: Option<Signal>) -> Program {
+        let is_in = |s: Signal| inside.get(s.node() as usize) == Some(&true);
+        let mut made = System::default();
+        let mut map = vec![Signal::FALSE; system.graph.nodes().len()];
+        let put = |map: &mut Vec<Signal>, old: Signal, new: Signal| {
+            if let Some(slot) = map.get_mut(old.node() as usize) {
+                *slot = new.negated_if(old.is_negated());
+            }
+        };
+        let (mut inputs, mut latches) = (Vec::new(), Vec::new());
+        for (place, s) in system.inputs.iter().enumerate().filter(|(_, s)| is_in(**s)) {
+            put(&mut map, *s, made.input());
+            inputs.push(place);
+        }
+        for (place, l) in system.latches.iter().enumerate().filter(|(_, l)| is_in(l.signal)) {
+            put(&mut map, l.signal, made.latch(Init::Zero));
+            latches.push(place);
+        }
+        let of = |map: &[Signal], s: Signal| {
+            map.get(s.node() as usize).map_or(Signal::FALSE, |m| m.negated_if(s.is_negated()))
+        };
+        let mut judged = Signal::FALSE;
+        for (number, node) in (0u32..).zip(system.graph.nodes()) {
+            if let (Node::And(a, b), true) = (node, is_in(Signal::of(number, false))) {
+                let new = made.graph.and(of(&map, *a), of(&map, *b));
+                put(&mut map, Signal::of(number, false), new);
+            }
+            if let Some(guard) = guard.filter(|g| g.node() == number) {
+                judged = of(&map, guard);
+                put(&mut map, guard, Signal::FALSE);
+            }
+        }
+        let next = latches.iter().filter_map(|l| system.latches.get(*l)).map(|l| of(&map, l.next)).collect();
+        let list = |list: &[Signal]| -> Vec<Signal> { list.iter().map(|s| of(&map, *s)).collect() };
+        let lists = [next, list(&system.constraints), list(asked), vec![judged]];
+        let (gates, codes) = coded(&made, &lists);
+        let [next, constraints, asked, guard] = codes;
+        Program { inputs, latches, gates, next, constraints, asked, guard: guard.first().copied().unwrap_or(0) }
     }
 
     fn first_gate(&self) -> usize {
@@ -139,11 +163,57 @@ impl Program {
     }
 }
 
+/// The gates on which these signals depend, and the codes of the signals. The inputs and latches are those of
+/// the system, in order.
+fn coded<const N: usize>(system: &System, lists: &[Vec<Signal>; N]) -> (Vec<[u32; 2]>, [Vec<u32>; N]) {
+    let nodes = system.graph.nodes();
+    let mut used = vec![false; nodes.len()];
+    let mark = |used: &mut Vec<bool>, s: Signal| {
+        used.get_mut(s.node() as usize).into_iter().for_each(|u| *u = true);
+    };
+    lists.iter().flatten().for_each(|s| mark(&mut used, *s));
+    for (k, node) in nodes.iter().enumerate().rev() {
+        if let (Node::And(a, b), Some(true)) = (node, used.get(k)) {
+            mark(&mut used, *a);
+            mark(&mut used, *b);
+        }
+    }
+    let mut codes = vec![0u32; nodes.len()];
+    let code = |codes: &[u32], s: Signal| codes.get(s.node() as usize).copied().unwrap_or(0) ^ u32::from(s.is_negated());
+    let mut gates = Vec::new();
+    let first = 1 + system.inputs.len() + system.latches.len();
+    for (k, node) in nodes.iter().enumerate() {
+        let place = match node {
+            Node::False => 0,
+            Node::Input(i) => 1 + *i as usize,
+            Node::Latch(l) => 1 + system.inputs.len() + *l as usize,
+            Node::And(a, b) if used.get(k) == Some(&true) => {
+                gates.push([code(&codes, *a), code(&codes, *b)]);
+                first + gates.len() - 1
+            }
+            Node::And(..) => continue,
+        };
+        codes.get_mut(k).into_iter().for_each(|c| *c = 2 * place as u32);
+    }
+    let of = |list: &Vec<Signal>| list.iter().map(|s| code(&codes, *s)).collect();
+    (gates, lists.each_ref().map(of))
+}
+
 impl Plain {
     /// The values of a code.
     #[inline(always)]
     pub(super) fn get(&self, code: u32) -> Lanes {
         at(&self.0, code)
+    }
+
+    /// Patterns in which some latch changes.
+    pub(super) fn moved(&self, p: &Program) -> Lanes {
+        let mut moved = NONE;
+        for (next, place) in p.next.iter().zip(1 + p.inputs.len() as u32..) {
+            let change = both(self.get(*next), self.get(place * 2), |a, b| a ^ b);
+            moved = both(moved, change, |a, b| a | b);
+        }
+        moved
     }
 }
 

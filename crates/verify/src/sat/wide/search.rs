@@ -38,7 +38,7 @@ struct Sight {
 }
 
 pub(super) struct Search<'p> {
-    program: &'p Program,
+    stages: &'p [Program],
     tries: Tries,
     together: usize,
     shares: Vec<Share>,
@@ -57,13 +57,13 @@ impl<'p> Search<'p> {
     /// A search from one state, by so many threads. `together`: inputs of which all combinations are tried at
     /// once, at most.
     pub(super) fn new(
-        program: &'p Program,
+        stages: &'p [Program],
         start: &[u64],
         tries: Tries,
         threads: usize,
         together: usize,
     ) -> Search<'p> {
-        let share = || Share { set: Set::new(program.latches.len()), parents: Vec::new(), level: 0..0 };
+        let share = || Share { set: Set::new(stages.first().map_or(0, |p| p.latches.len())), parents: Vec::new(), level: 0..0 };
         let mut shares: Vec<Share> = (0..threads.clamp(1, 64)).map(|_| share()).collect();
         let owner = owner(start, shares.len());
         if let Some(share) = shares.get_mut(owner) {
@@ -71,8 +71,8 @@ impl<'p> Search<'p> {
             share.parents.push(FIRST);
             share.level = 0..1;
         }
-        let shown = vec![None; program.asked.len()];
-        Search { program, tries, together, shares, shown, scans: 0, depth: 0, stuck: None, open: None }
+        let shown = vec![None; stages.first().map_or(0, |p| p.asked.len())];
+        Search { stages, tries, together, shares, shown, scans: 0, depth: 0, stuck: None, open: None }
     }
 
     /// The number of states.
@@ -109,7 +109,7 @@ impl<'p> Search<'p> {
 
     fn expander(&self) -> Expander<'p> {
         let width = self.shares.first().map_or(1, |s| s.set.width());
-        Expander::new(self.program, width, self.tries, self.together)
+        Expander::new(self.stages, width, self.tries, self.together)
     }
 
     /// Expands some states of each share, and takes in what they lead to.
