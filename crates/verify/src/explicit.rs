@@ -31,7 +31,7 @@ impl Layer for Explicit {
 }
 
 /// Searches that may run at a time.
-fn threads() -> usize {
+pub(crate) fn threads() -> usize {
     if cfg!(target_family = "wasm") { 1 } else { std::thread::available_parallelism().map_or(1, usize::from) }
 }
 

@@ -4,6 +4,7 @@
 use g7_engine::{State, scan};
 
 use crate::asked::Asking;
+use crate::explicit::threads;
 use crate::explore::Move;
 use crate::layer::{Budget, Layer};
 use crate::look::replay;
@@ -16,10 +17,17 @@ use crate::sat::graph::Signal;
 use crate::sat::simulate::Trace;
 use crate::sat::stays::is_trap;
 use crate::sat::traps::{Clauses, Trap, Way, traps};
+use crate::sat::wide::{Tries, wide};
 use crate::system::{Asked, Follows, Observed, Translated, system};
 use crate::verdict::{Certificate, Evidence, Open, Run, Verdict, is_open};
 
-/// Bounded search, induction and PDR as a layer.
+/// Scans of the search for all states in the turn [`FEWEST`]; each turn more allows twice as many.
+const SCANS: usize = 250_000;
+/// The first turn in which all states are searched for, and the last in which more are than before.
+const FEWEST: u32 = 5;
+const TURNS: u32 = 30;
+
+/// Bounded search, induction and PDR as a layer, and the search for all states where these find nothing.
 #[derive(Clone, Copy, Debug)]
 pub struct Satisfiability {
     /// Most turns, each with twice the work of the one before.
@@ -137,13 +145,19 @@ impl Work<'_> {
         signals.sort_unstable();
         signals.dedup();
         let candidates = &self.translated.exclusive;
-        let found = decide_with(&self.translated.system, &signals, candidates, self.effort);
+        let mut found = decide_with(&self.translated.system, &signals, candidates, self.effort);
+        let seen = self.visit(&signals, &mut found);
         let of = |s: Signal| {
             let at = signals.binary_search(&s).ok();
             at.and_then(|at| found.get(at)).unwrap_or(&Found::Open(0))
         };
         let proofs = asked.iter().any(|a| matches!(of(a.bad), Found::Never(_)));
-        let ends = if proofs { ends(&self.translated.system, self.effort) } else { Ends::None };
+        let ends = match seen {
+            _ if !proofs => Ends::None,
+            // It has found the inputs of each state.
+            Some(ends) if ends != Ends::Open => ends,
+            _ => ends(&self.translated.system, self.effort),
+        };
         let one = |((q, a), f): ((&Question, &Result<Asked, Reason>), &Option<Follows>)| match (a, f) {
             (Ok(a), None) => self.verdict(&q.claim, a, [of(a.bad), of(a.unsure)], &ends),
             // Where runs come to an end without a choice of inputs, nothing is said about what follows.
@@ -163,6 +177,31 @@ impl Work<'_> {
         };
         let t = self.translated;
         questions.iter().zip(&t.asked).zip(&t.follows).map(one).collect()
+    }
+
+    /// Visits all states of what the solver has left open, if they are few enough for the turn. Tells where
+    /// inputs satisfy the assumptions.
+    fn visit(&self, signals: &[Signal], found: &mut [Found]) -> Option<Ends> {
+        let t = self.translated;
+        let turn = self.effort.turns.min(TURNS);
+        let left = self.budget.scans.min(SCANS << turn >> FEWEST);
+        let is_open = |f: &Found| matches!(f, Found::Open(_));
+        let open: Vec<usize> = (0..signals.len()).filter(|i| found.get(*i).is_some_and(is_open)).collect();
+        if open.is_empty() || turn < FEWEST || (self.budget.stop)() {
+            return None;
+        }
+        let wanted: Vec<Signal> = open.iter().filter_map(|i| signals.get(*i)).copied().collect();
+        let budget = Budget { scans: left, ..*self.budget };
+        let seen = wide(&t.system, &wanted, &t.passes, false, Tries::All, &budget, threads())?;
+        for (i, new) in open.into_iter().zip(seen.found) {
+            if let Some(slot) = found.get_mut(i) {
+                *slot = match (&*slot, new) {
+                    (Found::Open(a), Found::Open(b)) => Found::Open(*a.max(&b)),
+                    (_, new) => new,
+                };
+            }
+        }
+        Some(seen.ends)
     }
 
     /// The claim about all that can follow each state: the clauses of a proof that it is always what the claim
