@@ -12,6 +12,10 @@
 //! which a constraint is 0 whatever the open inputs are is left out. A cube in which few inputs matter
 //! becomes all combinations of them; one with more is split at the last of them: the bits of a number come
 //! lowest first, and a comparison is decided by the highest ones.
+//!
+//! All is evaluated by the first stage of the program first. Where its guard is 1, a later stage has the values;
+//! the cube or the scan waits until there are as many as lanes. Where the guard is open, the cube is split at an
+//! input that this stage reads: later passes read other inputs, but only where the earlier ones lead there.
 
 use super::lanes::{LANES, NONE, bit, both, first, gather, lanes_of, spread};
 use super::program::{Open, Plain, Program};
@@ -67,6 +71,14 @@ struct Cubes {
     value: Vec<u64>,
     /// 1 where an input matters. Empty while it is not known.
     needs: Vec<u64>,
+}
+
+/// One of them.
+#[derive(Clone)]
+struct Cube {
+    state: u32,
+    known: Vec<u64>,
+    value: Vec<u64>,
 }
 
 /// A run's target: the inputs that lead from one state to another are looked for.
@@ -140,10 +152,7 @@ impl<'p> Expander<'p> {
         self.fed.resize(count, false);
         self.splits.clear();
         self.splits.resize(count, 0);
-        match self.tries {
-            Tries::All => self.split_all(states, moves),
-            Tries::One => self.one_by_one(states, moves),
-        }
+        self.split_all(states, moves);
         for stage in 0..self.stages.len() {
             self.flush(stage, moves);
         }
@@ -159,26 +168,12 @@ impl<'p> Expander<'p> {
         self.wanted.take()?.inputs
     }
 
-    /// Each input alone, and none.
-    fn one_by_one(&mut self, states: &[u64], moves: &mut Moves) {
-        let count = self.stages.first().map_or(0, |p| p.inputs.len());
-        let mut now = vec![0; self.words];
-        for (state, row) in (0u32..).zip(states.chunks_exact(self.width)) {
-            self.lane(state, row, &now, moves);
-            for place in 0..count {
-                set(&mut now, place, true);
-                self.lane(state, row, &now, moves);
-                set(&mut now, place, false);
-            }
-        }
-    }
-
     /// All combinations that matter.
     fn split_all(&mut self, states: &[u64], moves: &mut Moves) {
         let none = vec![0; self.words];
         if let Some(waiting) = self.waiting.first_mut() {
             for state in (0..(states.len() / self.width) as u32).rev() {
-                waiting.push(state, &none, &none);
+                waiting.push(&Cube { state, known: none.clone(), value: none.clone() });
             }
         }
         // A later stage waits until the earlier ones have nothing more for it, or much.
@@ -222,7 +217,7 @@ impl<'p> Expander<'p> {
         for c in &p.constraints {
             none = both(none, self.open.is_zero(*c), |a, b| a | b);
         }
-        let sure = self.open.is_zero(p.guard);
+        let (sure, later) = (self.open.is_zero(p.guard), self.open.is_zero(p.guard ^ 1));
         let mut needs = vec![0; words * count];
         for w in 0..words {
             let mut packed = vec![0; count];
@@ -232,33 +227,63 @@ impl<'p> Expander<'p> {
         }
         let of = |all: &[u64], k: usize| -> Vec<u64> { all.get(k * words..(k + 1) * words).unwrap_or(&[]).to_vec() };
         for (k, state) in cubes.state.iter().enumerate() {
-            let (known, value) = (of(&cubes.known, k), of(&cubes.value, k));
-            if !bit(&sure, k) {
-                self.waiting.get_mut(stage + 1).into_iter().for_each(|w| w.push(*state, &known, &value));
-            } else if !bit(&none, k) {
-                self.settle(*state, known, value, of(&needs, k), moves);
+            let cube = Cube { state: *state, known: of(&cubes.known, k), value: of(&cubes.value, k) };
+            if bit(&later, k) {
+                self.waiting.get_mut(stage + 1).into_iter().for_each(|w| w.push(&cube));
+            } else if !(bit(&none, k) && (p.is_bound || bit(&sure, k))) {
+                self.settle(stage, cube, of(&needs, k), bit(&sure, k), states, moves);
             }
         }
     }
 
-    /// A cube of which it is known which inputs matter in it.
-    fn settle(&mut self, state: u32, known: Vec<u64>, value: Vec<u64>, needs: Vec<u64>, moves: &mut Moves) {
+    /// A cube of which it is known which inputs matter in it; `sure`: no other ones do.
+    fn settle(
+        &mut self,
+        stage: usize,
+        cube: Cube,
+        needs: Vec<u64>,
+        sure: bool,
+        states: &[u64],
+        moves: &mut Moves,
+    ) {
         let open: u32 = needs.iter().map(|w| w.count_ones()).sum();
-        if open as usize <= self.together {
-            self.ready.push(state, &known, &value);
+        let few = if self.tries == Tries::One { 0 } else { self.together };
+        if sure && open as usize <= few {
+            self.ready.push(&cube);
             self.ready.needs.extend(needs);
-        } else if !self.may_split(state) {
-            moves.many = moves.many.or(Some(state));
+        } else if self.tries == Tries::One {
+            self.each_alone(stage, cube, &needs, states, moves);
+        } else if !self.may_split(cube.state) {
+            moves.many = moves.many.or(Some(cube.state));
             // It has combinations; whether any of them satisfies the constraints is not asked.
-            self.feed(state);
-        } else if let (Some(place), Some(waiting)) = (highest(&needs), self.waiting.first_mut()) {
+            self.feed(cube.state);
+        } else if let (Some(place), Some(waiting)) = (highest(&needs), self.waiting.get_mut(stage)) {
             for one in [true, false] {
-                let (mut known, mut value) = (known.clone(), value.clone());
-                set(&mut known, place, true);
-                set(&mut value, place, one);
-                waiting.push(state, &known, &value);
+                let mut cube = cube.clone();
+                set(&mut cube.known, place, true);
+                set(&mut cube.value, place, one);
+                waiting.push(&cube);
             }
         }
+    }
+
+    /// Each of the inputs that matter alone; then those that matter where all of these are 0.
+    fn each_alone(
+        &mut self,
+        stage: usize,
+        mut cube: Cube,
+        needs: &[u64],
+        states: &[u64],
+        moves: &mut Moves,
+    ) {
+        let row = row_of(states, cube.state, self.width);
+        for place in ones(needs) {
+            set(&mut cube.value, place, true);
+            self.lane(cube.state, row, &cube.value, moves);
+            set(&mut cube.value, place, false);
+            set(&mut cube.known, place, true);
+        }
+        self.waiting.get_mut(stage).into_iter().for_each(|w| w.push(&cube));
     }
 
     /// Makes lanes of all combinations of the cubes that are ready.
@@ -271,8 +296,7 @@ impl<'p> Expander<'p> {
             now.extend_from_slice(value);
             places.clear();
             places.extend(ones(needs));
-            let start = *state as usize * self.width;
-            let row = states.get(start..start + self.width).unwrap_or(&[]);
+            let row = row_of(states, *state, self.width);
             self.lane(*state, row, &now, moves);
             // Each combination differs from the one before in one input.
             for k in 1..1usize << places.len() {
@@ -398,10 +422,10 @@ impl Scans {
 }
 
 impl Cubes {
-    fn push(&mut self, state: u32, known: &[u64], value: &[u64]) {
-        self.state.push(state);
-        self.known.extend_from_slice(known);
-        self.value.extend_from_slice(value);
+    fn push(&mut self, cube: &Cube) {
+        self.state.push(cube.state);
+        self.known.extend_from_slice(&cube.known);
+        self.value.extend_from_slice(&cube.value);
     }
 
     /// Takes the last cubes, as many as there are lanes.
@@ -421,6 +445,11 @@ impl Cubes {
         self.value.clear();
         self.needs.clear();
     }
+}
+
+/// A state by its place in the list.
+fn row_of(states: &[u64], state: u32, width: usize) -> &[u64] {
+    states.get(state as usize * width..(state as usize + 1) * width).unwrap_or(&[])
 }
 
 fn set(words: &mut [u64], place: usize, value: bool) {

@@ -24,6 +24,8 @@ pub(super) struct Program {
     pub(super) asked: Vec<u32>,
     /// The code of the guard: where it is 1, a later stage has the values.
     pub(super) guard: u32,
+    /// The constraints do not depend on the guard.
+    pub(super) is_bound: bool,
 }
 
 /// The values of all places.
@@ -63,7 +65,7 @@ impl Program {
         stages
     }
 
-    fn new(system: &System, inside: &[bool], asked: &[Signal], guard: Option<Signal>) -> Program {
+    fn new(system: &System, inside: &[bool], asked: &[Signal], guard_of: Option<Signal>) -> Program {
         let is_in = |s: Signal| inside.get(s.node() as usize) == Some(&true);
         let mut made = System::default();
         let mut map = vec![Signal::FALSE; system.graph.nodes().len()];
@@ -90,7 +92,7 @@ impl Program {
                 let new = made.graph.and(of(&map, *a), of(&map, *b));
                 put(&mut map, Signal::of(number, false), new);
             }
-            if let Some(guard) = guard.filter(|g| g.node() == number) {
+            if let Some(guard) = guard_of.filter(|g| g.node() == number) {
                 judged = of(&map, guard);
                 put(&mut map, guard, Signal::FALSE);
             }
@@ -100,7 +102,8 @@ impl Program {
         let lists = [next, list(&system.constraints), list(asked), vec![judged]];
         let (gates, codes) = coded(&made, &lists);
         let [next, constraints, asked, guard] = codes;
-        Program { inputs, latches, gates, next, constraints, asked, guard: guard.first().copied().unwrap_or(0) }
+        let is_bound = guard_of.is_none_or(|g| !within(system, &system.constraints, g));
+        Program { inputs, latches, gates, next, constraints, asked, guard: guard.first().copied().unwrap_or(0), is_bound }
     }
 
     fn first_gate(&self) -> usize {
@@ -149,7 +152,7 @@ impl Program {
     pub(super) fn trace(&self, open: &mut Open) {
         open.read.clear();
         open.read.resize(open.may.len(), NONE);
-        for code in self.next.iter().chain(&self.constraints).chain(&self.asked) {
+        for code in self.next.iter().chain(&self.constraints).chain(&self.asked).chain([&self.guard]) {
             mark(&mut open.read, *code, &[u64::MAX; super::lanes::WORDS]);
         }
         let first = self.first_gate();
@@ -161,6 +164,23 @@ impl Program {
             }
         }
     }
+}
+
+/// True if some of these signals reads another in the same step.
+fn within(system: &System, of: &[Signal], read: Signal) -> bool {
+    let mut seen = vec![false; system.graph.nodes().len()];
+    let mut work = of.to_vec();
+    while let Some(s) = work.pop() {
+        if s.node() == read.node() {
+            return true;
+        }
+        if let (Some(slot), Node::And(a, b)) = (seen.get_mut(s.node() as usize), system.graph.node(s))
+            && !std::mem::replace(slot, true)
+        {
+            work.extend([a, b]);
+        }
+    }
+    false
 }
 
 /// The gates on which these signals depend, and the codes of the signals. The inputs and latches are those of
