@@ -74,11 +74,11 @@ struct Cubes {
 }
 
 /// One of them.
-#[derive(Clone)]
-struct Cube {
+#[derive(Clone, Copy)]
+struct Cube<'c> {
     state: u32,
-    known: Vec<u64>,
-    value: Vec<u64>,
+    known: &'c [u64],
+    value: &'c [u64],
 }
 
 /// A run's target: the inputs that lead from one state to another are looked for.
@@ -114,6 +114,8 @@ pub(super) struct Expander<'p> {
     ready: Cubes,
     /// The next states, word by word.
     next: Vec<Vec<u64>>,
+    /// Inputs: room for the work.
+    now: Vec<u64>,
     /// For each state: some inputs satisfy the constraints.
     fed: Vec<bool>,
     /// For each state: its splits so far.
@@ -137,6 +139,7 @@ impl<'p> Expander<'p> {
             scans: stages.iter().map(|_| scans()).collect(),
             ready: Cubes::default(),
             next: vec![vec![0; LANES]; width],
+            now: Vec::new(),
             fed: Vec::new(),
             splits: Vec::new(),
             wanted: None,
@@ -173,7 +176,7 @@ impl<'p> Expander<'p> {
         let none = vec![0; self.words];
         if let Some(waiting) = self.waiting.first_mut() {
             for state in (0..(states.len() / self.width) as u32).rev() {
-                waiting.push(&Cube { state, known: none.clone(), value: none.clone() });
+                waiting.push(Cube { state, known: &none, value: &none });
             }
         }
         // A later stage waits until the earlier ones have nothing more for it, or much.
@@ -225,13 +228,15 @@ impl<'p> Expander<'p> {
             gather(&mut packed, here, |j| self.open.needs(64 * w + j));
             needs.iter_mut().skip(w).step_by(words).zip(packed).for_each(|(to, from)| *to = from);
         }
-        let of = |all: &[u64], k: usize| -> Vec<u64> { all.get(k * words..(k + 1) * words).unwrap_or(&[]).to_vec() };
-        for (k, state) in cubes.state.iter().enumerate() {
-            let cube = Cube { state: *state, known: of(&cubes.known, k), value: of(&cubes.value, k) };
+        let is_bound = p.is_bound;
+        let each = cubes.known.chunks_exact(words).zip(cubes.value.chunks_exact(words));
+        let each = cubes.state.iter().zip(each).zip(needs.chunks_exact(words)).enumerate();
+        for (k, ((state, (known, value)), needs)) in each {
+            let cube = Cube { state: *state, known, value };
             if bit(&later, k) {
-                self.waiting.get_mut(stage + 1).into_iter().for_each(|w| w.push(&cube));
-            } else if !(bit(&none, k) && (p.is_bound || bit(&sure, k))) {
-                self.settle(stage, cube, of(&needs, k), bit(&sure, k), states, moves);
+                self.waiting.get_mut(stage + 1).into_iter().for_each(|w| w.push(cube));
+            } else if !(bit(&none, k) && (is_bound || bit(&sure, k))) {
+                self.settle(stage, cube, needs, bit(&sure, k), states, moves);
             }
         }
     }
@@ -240,8 +245,8 @@ impl<'p> Expander<'p> {
     fn settle(
         &mut self,
         stage: usize,
-        cube: Cube,
-        needs: Vec<u64>,
+        cube: Cube<'_>,
+        needs: &[u64],
         sure: bool,
         states: &[u64],
         moves: &mut Moves,
@@ -249,20 +254,18 @@ impl<'p> Expander<'p> {
         let open: u32 = needs.iter().map(|w| w.count_ones()).sum();
         let few = if self.tries == Tries::One { 0 } else { self.together };
         if sure && open as usize <= few {
-            self.ready.push(&cube);
-            self.ready.needs.extend(needs);
+            self.ready.push(cube);
+            self.ready.needs.extend_from_slice(needs);
         } else if self.tries == Tries::One {
-            self.each_alone(stage, cube, &needs, states, moves);
+            self.each_alone(stage, cube, needs, states, moves);
         } else if !self.may_split(cube.state) {
             moves.many = moves.many.or(Some(cube.state));
             // It has combinations; whether any of them satisfies the constraints is not asked.
             self.feed(cube.state);
-        } else if let (Some(place), Some(waiting)) = (highest(&needs), self.waiting.get_mut(stage)) {
+        } else if let (Some(place), Some(waiting)) = (highest(needs), self.waiting.get_mut(stage)) {
             for one in [true, false] {
-                let mut cube = cube.clone();
-                set(&mut cube.known, place, true);
-                set(&mut cube.value, place, one);
-                waiting.push(&cube);
+                waiting.push(cube);
+                waiting.fix(self.words, place, one);
             }
         }
     }
@@ -271,19 +274,25 @@ impl<'p> Expander<'p> {
     fn each_alone(
         &mut self,
         stage: usize,
-        mut cube: Cube,
+        cube: Cube<'_>,
         needs: &[u64],
         states: &[u64],
         moves: &mut Moves,
     ) {
         let row = row_of(states, cube.state, self.width);
+        let mut now = std::mem::take(&mut self.now);
+        now.clear();
+        now.extend_from_slice(cube.value);
         for place in ones(needs) {
-            set(&mut cube.value, place, true);
-            self.lane(cube.state, row, &cube.value, moves);
-            set(&mut cube.value, place, false);
-            set(&mut cube.known, place, true);
+            set(&mut now, place, true);
+            self.lane(cube.state, row, &now, moves);
+            set(&mut now, place, false);
         }
-        self.waiting.get_mut(stage).into_iter().for_each(|w| w.push(&cube));
+        self.now = now;
+        if let Some(waiting) = self.waiting.get_mut(stage) {
+            waiting.push(cube);
+            ones(needs).for_each(|place| waiting.fix(self.words, place, false));
+        }
     }
 
     /// Makes lanes of all combinations of the cubes that are ready.
@@ -422,10 +431,17 @@ impl Scans {
 }
 
 impl Cubes {
-    fn push(&mut self, cube: &Cube) {
+    fn push(&mut self, cube: Cube<'_>) {
         self.state.push(cube.state);
-        self.known.extend_from_slice(&cube.known);
-        self.value.extend_from_slice(&cube.value);
+        self.known.extend_from_slice(cube.known);
+        self.value.extend_from_slice(cube.value);
+    }
+
+    /// Gives an input of the last cube a value.
+    fn fix(&mut self, words: usize, place: usize, value: bool) {
+        let start = self.value.len().saturating_sub(words);
+        self.known.get_mut(start..).into_iter().for_each(|w| set(w, place, true));
+        self.value.get_mut(start..).into_iter().for_each(|w| set(w, place, value));
     }
 
     /// Takes the last cubes, as many as there are lanes.

@@ -14,19 +14,20 @@ pub(super) const NONE: Lanes = [0; WORDS];
 /// Combines two bits of each pattern.
 #[inline(always)]
 pub(super) fn both(a: Lanes, b: Lanes, of: impl Fn(u64, u64) -> u64) -> Lanes {
-    let mut out = NONE;
-    for ((out, a), b) in out.iter_mut().zip(a).zip(b) {
-        *out = of(a, b);
+    // A loop with a number is the form that becomes vector instructions everywhere.
+    let (mut out, mut k) = (NONE, 0);
+    while k < WORDS {
+        out[k] = of(a[k], b[k]);
+        k += 1;
     }
     out
 }
 
 /// The negation where `negate` is 1, by the low bit of a code.
 #[inline(always)]
-pub(super) fn negated(mut a: Lanes, code: u32) -> Lanes {
+pub(super) fn negated(a: Lanes, code: u32) -> Lanes {
     let mask = 0u64.wrapping_sub(u64::from(code & 1));
-    a.iter_mut().for_each(|w| *w ^= mask);
-    a
+    both(a, NONE, |a, _| a ^ mask)
 }
 
 /// True if some pattern has 1.
@@ -70,13 +71,13 @@ pub(super) fn first(count: usize) -> Lanes {
 pub(super) fn transpose(block: &mut [u64; 64]) {
     let (mut width, mut mask) = (32, 0x0000_0000_FFFF_FFFFu64);
     while width > 0 {
-        for pair in block.chunks_exact_mut(2 * width) {
-            let (low, high) = pair.split_at_mut(width);
-            for (a, b) in low.iter_mut().zip(high) {
-                let moved = (*a >> width ^ *b) & mask;
-                *a ^= moved << width;
-                *b ^= moved;
-            }
+        let mut k = 0;
+        while k < 64 {
+            let moved = (block[k & 63] >> width ^ block[(k + width) & 63]) & mask;
+            block[k & 63] ^= moved << width;
+            block[(k + width) & 63] ^= moved;
+            // The next place whose bit `width` is 0.
+            k = (k + width + 1) & !width;
         }
         width /= 2;
         mask ^= mask << width;

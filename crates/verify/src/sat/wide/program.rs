@@ -257,7 +257,10 @@ impl Open {
 
 #[inline(always)]
 fn at(list: &[Lanes], code: u32) -> Lanes {
-    negated(list.get(code as usize / 2).copied().unwrap_or(NONE), code)
+    match list.get(code as usize / 2) {
+        Some(lanes) => negated(*lanes, code),
+        None => negated(NONE, code),
+    }
 }
 
 #[inline(always)]
