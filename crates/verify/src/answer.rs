@@ -1,7 +1,8 @@
 //! All layers: the one place that says which there are.
 //!
 //! The explicit search answers small charts at once; the search by zones answers charts with times, however
-//! long they are; the solver answers charts with many sequences side by side. They take turns, and each turn
+//! long they are; the solver answers charts with many sequences side by side, and what it leaves open is searched
+//! once more over its own system of bits. They take turns, and each turn
 //! allows several times the work of the turn before. Work is counted in scans and ticks, not in seconds: unless
 //! the caller stops it, the answers depend on the chart alone.
 

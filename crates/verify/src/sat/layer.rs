@@ -21,10 +21,12 @@ use crate::sat::wide::{Tries, wide};
 use crate::system::{Asked, Follows, Observed, Translated, system};
 use crate::verdict::{Certificate, Evidence, Open, Run, Verdict, is_open};
 
-/// Scans of the search for all states in the turn [`FEWEST`]; each turn more allows twice as many.
-const SCANS: usize = 250_000;
+/// Scans of the search for all states in the turn [`FEWEST`], of a system with [`SMALL`] nodes; larger ones have
+/// fewer, and each turn more allows twice as many.
+const SCANS: usize = 2_000_000;
+const SMALL: usize = 1000;
 /// The first turn in which all states are searched for, and the last in which more are than before.
-const FEWEST: u32 = 5;
+const FEWEST: u32 = 9;
 const TURNS: u32 = 30;
 
 /// Bounded search, induction and PDR as a layer, and the search for all states where these find nothing.
@@ -184,7 +186,8 @@ impl Work<'_> {
     fn visit(&self, signals: &[Signal], found: &mut [Found]) -> Option<Ends> {
         let t = self.translated;
         let turn = self.effort.turns.min(TURNS);
-        let left = self.budget.scans.min(SCANS << turn >> FEWEST);
+        let times = t.system.graph.nodes().len() / SMALL + 1;
+        let left = self.budget.scans.min(SCANS << turn >> FEWEST) / times;
         let is_open = |f: &Found| matches!(f, Found::Open(_));
         let open: Vec<usize> = (0..signals.len()).filter(|i| found.get(*i).is_some_and(is_open)).collect();
         if open.is_empty() || turn < FEWEST || (self.budget.stop)() {

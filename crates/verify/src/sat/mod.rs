@@ -7,14 +7,15 @@
 //!                                                       -> check (proofs), simulate (runs)
 //!                                   -> kept (what the chart suggests, as far as it holds) -> decide
 //!                                   -> dead (constraints that cannot be kept)
+//!                                   -> wide (all states, where the solver has found nothing)
 //!                                   -> traps (what can follow no more), stays (a trap judged by a search)
 //! Compare  -> crate::compare -> joined (two systems as one) -> relate (latches that belong together) -> decide
 //! ```
 //!
 //! # Invariants
 //!
-//! - *Never* is said only after the checker agreed, which has a solver of its own; *reached*
-//!   only after the simulator showed it.
+//! - *Never* is said only after the checker agreed, which has a solver of its own, or after all states were
+//!   visited and some of them tried again; *reached* only after the simulator showed it.
 //! - What is found depends on the system and the ticks of the solvers, not on a clock. The
 //!   caller's `stop` ends the work, inside a call of a solver too.
 

@@ -7,6 +7,7 @@
 mod charts;
 mod endless;
 mod random;
+mod wide;
 mod words;
 
 use g7_engine::{Fault, FaultKind, State, StepId, scan};

@@ -11,12 +11,12 @@ use g7_tests::generate::sample;
 use super::{Count, Rng, asked, parsed, side_by_side};
 use crate::system::Observed;
 
-fn number(name: &str, otherwise: u64) -> u64 {
+pub(super) fn number(name: &str, otherwise: u64) -> u64 {
     std::env::var(name).ok().and_then(|v| v.parse().ok()).unwrap_or(otherwise)
 }
 
 /// A random chart with questions and an assumption about its inputs and outputs.
-fn with_questions(text: &str, seed: u64) -> String {
+pub(super) fn with_questions(text: &str, seed: u64) -> String {
     let document = parsed(text);
     let Some(asked) = asked(&document, None) else { return text.to_owned() };
     let mut names = Vec::new();
