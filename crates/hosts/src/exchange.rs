@@ -6,9 +6,15 @@
 //! under way at one time is what one phase sends, however fast a worker is: timely itself never makes
 //! a sender wait.
 
-/// A worker is gone, or its packets are no longer of the kind that was agreed.
+/// Why a phase cannot end.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Lost;
+pub enum Lost {
+    /// A worker is gone, or its packets are no longer of the kind that was agreed.
+    Gone,
+    /// So many bytes of a phase that has not begun have come from the worker with this number: more than this
+    /// process may keep.
+    Ahead(usize, usize),
+}
 
 /// Sends and receives packets. Packets of one worker arrive in the order in which it sent them.
 pub trait Exchange {
@@ -45,12 +51,17 @@ pub(crate) struct Phases<'e> {
     ended: Vec<Option<Vec<u64>>>,
     /// Packets of the next phase, from workers that have ended this one.
     early: Vec<(usize, Vec<u64>)>,
+    /// Words of them, and as many as they may have.
+    kept: usize,
+    room: usize,
 }
 
 impl<'e> Phases<'e> {
-    pub(crate) fn new(wire: &'e mut dyn Exchange) -> Phases<'e> {
+    /// Phases that keep so many bytes of packets that come before their phase.
+    pub(crate) fn new(wire: &'e mut dyn Exchange, bytes: usize) -> Phases<'e> {
         let peers = wire.peers();
-        Phases { wire, open: vec![vec![DATA]; peers], ended: vec![None; peers], early: Vec::new() }
+        let (open, ended) = (vec![vec![DATA]; peers], vec![None; peers]);
+        Phases { wire, open, ended, early: Vec::new(), kept: 0, room: bytes / 8 }
     }
 
     pub(crate) fn me(&self) -> usize {
@@ -82,6 +93,7 @@ impl<'e> Phases<'e> {
 
     /// Looks again at the packets that came before their phase; those that are still early stay.
     fn take_early(&mut self, take: &mut dyn FnMut(usize, &[u64])) -> Result<(), Lost> {
+        self.kept = 0;
         for (from, packet) in std::mem::take(&mut self.early) {
             self.sort(from, packet, take)?;
         }
@@ -114,7 +126,7 @@ impl<'e> Phases<'e> {
             let gone = self.ended.iter().enumerate().any(|(p, e)| e.is_none() && self.wire.is_gone(p));
             match self.wire.receive(true) {
                 Some((from, packet)) => self.sort(from, packet, take)?,
-                None if gone => return Err(Lost),
+                None if gone => return Err(Lost::Gone),
                 None => {}
             }
         }
@@ -133,16 +145,53 @@ impl<'e> Phases<'e> {
         packet: Vec<u64>,
         take: &mut dyn FnMut(usize, &[u64]),
     ) -> Result<(), Lost> {
-        let ended = self.ended.get_mut(from).ok_or(Lost)?;
+        let ended = self.ended.get_mut(from).ok_or(Lost::Gone)?;
         if ended.is_some() {
+            self.kept += packet.len();
+            if self.kept > self.room {
+                return Err(Lost::Ahead(self.kept * 8, from));
+            }
             self.early.push((from, packet));
             return Ok(());
         }
         match packet.split_first() {
             Some((&DATA, words)) => take(from, words),
             Some((&END, words)) => *ended = Some(words.to_vec()),
-            _ => return Err(Lost),
+            _ => return Err(Lost::Gone),
         }
         Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{DATA, END, Exchange, Lost, Phases};
+    use crate::Error;
+    use crate::near::Near;
+
+    /// The first of three workers waits for the third, and the second is a phase ahead.
+    fn ahead(packets: usize, room: usize) -> Result<Vec<Vec<u64>>, Lost> {
+        let mut ends = Near::net(3);
+        let (mut third, mut second) = (ends.pop().expect("three"), ends.pop().expect("three"));
+        let mut first = ends.pop().expect("three");
+        second.send(0, vec![END, 7]);
+        (0..packets).for_each(|_| second.send(0, vec![DATA; 100]));
+        third.send(0, vec![END, 8]);
+        let (mut phases, mut early) = (Phases::new(&mut first, room), 0);
+        let words = phases.share(&[6])?;
+        second.send(0, vec![END]);
+        third.send(0, vec![END]);
+        phases.end(&[], &mut |from, words| early += usize::from(from == 1) * words.len())?;
+        assert_eq!(early, packets * 99, "they belong to the next phase");
+        Ok(words)
+    }
+
+    #[test]
+    fn packets_of_the_next_phase_have_a_bound() {
+        assert_eq!(ahead(10, 8000), Ok(vec![vec![6], vec![7], vec![8]]));
+        let lost = ahead(11, 8000).expect_err("it is too much");
+        assert_eq!(lost, Lost::Ahead(8800, 1));
+        let Error::Usage(told) = Error::from(lost) else { panic!("{lost:?}") };
+        assert!(told.contains("process 1") && told.contains("--memory"), "{told}");
     }
 }

@@ -21,12 +21,19 @@ use crate::meet::plain;
 const MAGIC: u64 = 0x6737_6C65_7665_6C01;
 /// Words before the records of a level.
 const HEAD: usize = 6;
+/// A file is read that has no more bytes than so many times the memory for states: a level alone takes more room
+/// there than in memory.
+const ROOM: u64 = 4;
+/// And no fewer than these.
+const LEAST: u64 = 64 << 20;
 
 /// The folder of a process.
 pub(crate) struct Levels {
     folder: PathBuf,
     /// The search, the number of this process, and the number of processes: a file of another search is refused.
     work: [u64; 3],
+    /// Most bytes of a file that is read.
+    most: u64,
     /// The file that is being synchronised.
     sync: Option<JoinHandle<io::Result<()>>>,
 }
@@ -44,17 +51,25 @@ pub(crate) struct Level {
 }
 
 impl Levels {
-    /// The folder of a process for a search; it is made if it is not there.
+    /// The folder of a process for a search that may keep so many bytes of states; it is made if it is not
+    /// there.
     ///
     /// # Errors
     ///
     /// The folder cannot be made, or it has files of another search.
-    pub(crate) fn open(folder: &Path, task: u64, me: usize, peers: usize) -> Result<Levels, Error> {
+    pub(crate) fn open(
+        folder: &Path,
+        task: u64,
+        me: usize,
+        peers: usize,
+        bytes: usize,
+    ) -> Result<Levels, Error> {
         let folder = folder.join(format!("process-{me}"));
-        let levels = Levels { folder, work: [task, me as u64, peers as u64], sync: None };
+        let most = (bytes as u64).saturating_mul(ROOM).max(LEAST);
+        let levels = Levels { folder, work: [task, me as u64, peers as u64], most, sync: None };
         fs::create_dir_all(&levels.folder).map_err(|e| levels.error(&levels.folder, &e))?;
         let mark = levels.folder.join("search");
-        match read_words(&mark) {
+        match read_words(&mark, levels.most) {
             Some(words) if words != levels.work => Err(Error::Usage(format!(
                 "{} keeps the levels of another search; name another folder, or remove it",
                 folder_name(&levels.folder)
@@ -125,7 +140,7 @@ impl Levels {
 
     /// A level, if it is there and whole.
     pub(crate) fn read(&self, job: usize, number: usize) -> Option<Level> {
-        let words = read_words(&self.level(job, number))?;
+        let words = read_words(&self.level(job, number), self.most)?;
         let (head, body) = words.split_at_checked(HEAD)?;
         let [task, me, _] = self.work;
         let [magic, of, process, level, width, count] = <[u64; HEAD]>::try_from(head).ok()?;
@@ -141,6 +156,26 @@ impl Levels {
     /// The number of levels that are there, one behind the other from the first.
     pub(crate) fn count(&self, job: usize) -> usize {
         (0..).take_while(|n| self.level(job, *n).exists()).count()
+    }
+
+    /// Tells whether so many levels can be read back.
+    ///
+    /// # Errors
+    ///
+    /// One of them is larger than the memory allows. It may be whole, so it is not removed.
+    pub(crate) fn fit(&self, job: usize, count: usize) -> Result<(), Error> {
+        for path in (0..count).map(|n| self.level(job, n)) {
+            let bytes = fs::metadata(&path).map_or(0, |m| m.len());
+            if bytes > self.most {
+                return Err(Error::Usage(format!(
+                    "{} has {} MiB, too much for the memory of this search; give more with --memory, or remove the \
+                     folder",
+                    path.display(),
+                    bytes >> 20
+                )));
+            }
+        }
+        Ok(())
     }
 
     /// Removes the levels from this one on.
@@ -181,7 +216,7 @@ impl Levels {
 
     /// The outcome of a search that has ended.
     pub(crate) fn read_outcome(&self, job: usize) -> Option<Vec<u64>> {
-        read_words(&self.outcome(job))
+        read_words(&self.outcome(job), self.most)
     }
 }
 
@@ -193,10 +228,14 @@ fn mix(hash: u64, word: u64) -> u64 {
     (hash.rotate_left(5) ^ word).wrapping_mul(0x9E37_79B9_7F4A_7C15)
 }
 
-/// The words of a file whose hash is right, without it.
-fn read_words(path: &Path) -> Option<Vec<u64>> {
+/// The words of a file of at most so many bytes whose hash is right, without it.
+fn read_words(path: &Path, most: u64) -> Option<Vec<u64>> {
+    let file = File::open(path).ok()?;
+    if file.metadata().ok()?.len() > most {
+        return None;
+    }
     let mut bytes = Vec::new();
-    BufReader::new(File::open(path).ok()?).read_to_end(&mut bytes).ok()?;
+    BufReader::new(file.take(most)).read_to_end(&mut bytes).ok()?;
     let (words, rest) = bytes.as_chunks();
     let mut words: Vec<u64> = words.iter().map(|b| u64::from_le_bytes(*b)).collect();
     let hash = words.pop()?;
@@ -212,18 +251,36 @@ fn words_at<const N: usize>(file: &mut File, word: u64) -> Option<[u64; N]> {
 
 #[cfg(test)]
 mod tests {
-    use super::{HEAD, Levels, MAGIC};
+    use super::{HEAD, LEAST, Level, Levels, MAGIC};
+    use crate::Error;
 
     #[test]
     fn a_head_with_numbers_too_large_gives_no_key() {
         let folder = std::env::temp_dir().join(format!("g7-levels-{}", std::process::id()));
-        let levels = Levels::open(&folder, 7, 0, 1).unwrap();
+        let levels = Levels::open(&folder, 7, 0, 1, 0).unwrap();
         for (width, count) in [(3, u64::MAX), (u64::MAX / 4, u64::MAX), (1, u64::MAX), (0, u64::MAX)] {
             let head: [u64; HEAD] = [MAGIC, 7, 0, 0, width, count];
             levels.write(&levels.level(0, 0), &[&head]).unwrap();
             assert_eq!(levels.key(0, 0, 5), None);
             assert_eq!(levels.read(0, 0), None);
         }
+        std::fs::remove_dir_all(folder).unwrap();
+    }
+
+    #[test]
+    fn a_level_that_is_too_large_is_refused_and_stays() {
+        let folder = std::env::temp_dir().join(format!("g7-large-{}", std::process::id()));
+        let mut levels = Levels::open(&folder, 7, 0, 1, 0).unwrap();
+        let level = Level { width: 3, records: vec![1; 30], rest: Vec::new() };
+        levels.keep(0, 0, &level).unwrap();
+        assert_eq!((levels.fit(0, 1), levels.read(0, 0)), (Ok(()), Some(level)));
+        let path = levels.level(0, 0);
+        // A hole takes no room on the disk.
+        std::fs::OpenOptions::new().write(true).open(&path).unwrap().set_len(LEAST + 8).unwrap();
+        let Err(Error::Usage(told)) = levels.fit(0, 1) else { panic!("it is too large") };
+        assert!(told.contains("64 MiB") && told.contains("--memory"), "{told}");
+        assert_eq!(levels.read(0, 0), None);
+        assert!(path.exists());
         std::fs::remove_dir_all(folder).unwrap();
     }
 }

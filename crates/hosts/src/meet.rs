@@ -16,6 +16,8 @@ const MAGIC: u64 = 0x6737_7072_6F76_6501;
 const WORDS: usize = 6;
 /// How long a greeting may take.
 const GREETING: Duration = Duration::from_secs(2);
+/// Parts in which it may come, each within its part of that time: one of ours comes as a whole.
+const PARTS: u32 = 4;
 /// The time between two attempts to reach the processes that are missing.
 const PAUSE: Duration = Duration::from_millis(10);
 
@@ -79,7 +81,9 @@ impl Meeting {
                     *place = self.call(k, address)?;
                 }
             }
-            while let Ok((stream, _)) = self.listener.accept() {
+            while !stop()
+                && let Ok((stream, _)) = self.listener.accept()
+            {
                 if let Some((from, stream)) = self.welcome(stream)? {
                     // The newest counts: the one before belongs to a process that is no more.
                     if let Some(place) = found.get_mut(from) {
@@ -164,15 +168,63 @@ fn send(stream: &mut TcpStream, words: [u64; WORDS]) -> io::Result<()> {
 }
 
 fn receive(stream: &mut TcpStream) -> io::Result<[u64; WORDS]> {
-    stream.set_read_timeout(Some(GREETING))?;
-    let mut bytes = [[0u8; 8]; WORDS];
-    stream.read_exact(bytes.as_flattened_mut())?;
-    stream.set_read_timeout(None)?;
-    Ok(bytes.map(u64::from_le_bytes))
+    stream.set_read_timeout(Some(GREETING / PARTS))?;
+    let mut words = [[0u8; 8]; WORDS];
+    let (bytes, mut have) = (words.as_flattened_mut(), 0);
+    for _ in 0..PARTS {
+        match stream.read(bytes.get_mut(have..).unwrap_or(&mut [])) {
+            Ok(0) => return Err(io::ErrorKind::UnexpectedEof.into()),
+            Ok(n) => have += n,
+            // Which of these it is depends on the system.
+            Err(e) if matches!(e.kind(), io::ErrorKind::WouldBlock | io::ErrorKind::TimedOut) => {}
+            Err(e) => return Err(e),
+        }
+        if have == bytes.len() {
+            stream.set_read_timeout(None)?;
+            return Ok(words.map(u64::from_le_bytes));
+        }
+    }
+    Err(io::ErrorKind::TimedOut.into())
 }
 
 /// The message of the system, without its error number.
 pub(crate) fn plain(error: &io::Error) -> String {
     let text = error.to_string();
     text.split(" (os error").next().unwrap_or_default().to_owned()
+}
+
+#[cfg(test)]
+mod tests {
+    use std::io::Write;
+    use std::net::{TcpListener, TcpStream};
+
+    use super::{GREETING, PARTS, WORDS, receive, send};
+
+    fn pair() -> (TcpStream, TcpStream) {
+        let listener = TcpListener::bind("127.0.0.1:0").expect("a port");
+        let there = TcpStream::connect(listener.local_addr().expect("an address")).expect("it listens");
+        (there, listener.accept().expect("it has come").0)
+    }
+
+    #[test]
+    fn a_greeting_comes_within_its_time_or_not_at_all() {
+        let (mut there, mut here) = pair();
+        let words: [u64; WORDS] = std::array::from_fn(|k| k as u64);
+        send(&mut there, words).expect("it is connected");
+        assert_eq!(receive(&mut here).expect("it has come"), words);
+        // A stranger who sends one byte after the other: after a few of them it is no more waited for.
+        let bytes = std::thread::spawn(move || {
+            let mut sent = 0;
+            while sent < 8 * WORDS && there.write_all(&[7]).is_ok() {
+                sent += 1;
+                std::thread::sleep(GREETING / PARTS / 4);
+            }
+            sent
+        });
+        let end = receive(&mut here).map_err(|e| e.kind());
+        assert_eq!(end, Err(std::io::ErrorKind::TimedOut));
+        drop(here);
+        let sent = bytes.join().expect("it does not panic");
+        assert!(sent < 8 * WORDS, "{sent}");
+    }
 }

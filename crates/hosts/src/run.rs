@@ -15,6 +15,10 @@ use crate::trace::Ended;
 use crate::wire::Wire;
 use crate::words::Words;
 
+/// Bytes of packets that may come before their phase, however little memory there is for states: what one phase
+/// sends.
+const LEAST: usize = 64 << 20;
+
 /// The place of a process in a run.
 pub struct Place<'p> {
     /// Its number, from 0.
@@ -44,7 +48,8 @@ pub fn answer(
     budget: &Budget<'_>,
     place: &Place<'_>,
 ) -> Result<Vec<(usize, Verdict)>, Error> {
-    let mut levels = Levels::open(place.folder, place.work.task, place.me, place.addresses.len())?;
+    let mut levels =
+        Levels::open(place.folder, place.work.task, place.me, place.addresses.len(), budget.bytes)?;
     let meeting = Meeting::open(place.me, place.addresses, place.work)?;
     loop {
         let mut wire = Wire::new(place.me, meeting.meet(budget.stop)?)
@@ -72,7 +77,7 @@ pub fn answer_over(
     wire: &mut dyn Exchange,
     folder: &Path,
 ) -> Result<Vec<(usize, Verdict)>, Error> {
-    let mut levels = Levels::open(folder, 0, wire.me(), wire.peers())?;
+    let mut levels = Levels::open(folder, 0, wire.me(), wire.peers(), budget.bytes)?;
     searches(model, questions, budget, tried, wire, &mut levels)
 }
 
@@ -95,7 +100,7 @@ fn searches<'a>(
     // Process 0 prints the answers: those that it has are not searched again.
     let have = (0..groups.len()).take_while(|n| ended(levels, *n).is_some()).count() as u64;
     // One for all searches: it keeps the packets of workers that are a phase ahead.
-    let mut phases = Phases::new(wire);
+    let mut phases = Phases::new(wire, budget.bytes.max(LEAST));
     let all = phases.share(&[have])?;
     let done = all.first().and_then(|w| w.first().copied()).unwrap_or(0) as usize;
     for (number, group) in groups.iter().enumerate() {

@@ -120,6 +120,7 @@ fn resume<'a>(
             keep(task, &worker, levels, level, &known)?;
             return Ok(Between { worker, known, found: 1 });
         }
+        levels.fit(task.number, common as usize)?;
         let taken = take_back(task, &mut worker, levels, common as usize);
         let whole = taken.as_ref().map_or(0, |(_, count)| count + 1);
         let all = phases.share(&[whole])?;
@@ -137,7 +138,7 @@ fn resume<'a>(
 ///
 /// # Errors
 ///
-/// The number of a level that is not whole.
+/// The number of a level that is not whole, or is larger than the memory.
 fn take_back(
     task: &Task<'_, '_>,
     worker: &mut Worker<'_>,
@@ -161,7 +162,14 @@ fn take_back(
 }
 
 impl From<Lost> for Error {
-    fn from(_: Lost) -> Error {
-        Error::Lost
+    fn from(lost: Lost) -> Error {
+        match lost {
+            Lost::Gone => Error::Lost,
+            Lost::Ahead(bytes, from) => Error::Usage(format!(
+                "process {from} is ahead of this one by {} MiB, more than the memory that this one may use; give \
+                 all of them more with --memory",
+                bytes >> 20
+            )),
+        }
     }
 }

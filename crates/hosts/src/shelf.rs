@@ -190,7 +190,7 @@ impl Shelf {
             self.broken |= !self.pack.pack(image, &mut self.image);
             self.admit_own(*key);
         }
-        if self.broken { Err(Lost) } else { Ok(()) }
+        if self.broken { Err(Lost::Gone) } else { Ok(()) }
     }
 
     fn pack_anew(&mut self, old: &Pack) {

@@ -120,7 +120,7 @@ impl<'a> Worker<'a> {
         let mut words = Vec::new();
         own.put(&mut words);
         for words in phases.share(&words)? {
-            known.join(Known::get(&mut Words(&words)).ok_or(Lost)?);
+            known.join(Known::get(&mut Words(&words)).ok_or(Lost::Gone)?);
         }
         Ok(halt)
     }

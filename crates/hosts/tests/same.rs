@@ -234,3 +234,92 @@ fn a_worker_that_is_lost_costs_no_more_than_a_level() {
     }
     assert!(lost > 20, "lost {lost} times");
 }
+
+/// An end that has all packets of a phase of the second worker, and those of its next phase, before it sees the
+/// end of the phase of the third. So packets come early in each phase.
+struct Hasty {
+    end: Near,
+    /// Packets of the third worker that are held back.
+    held: std::collections::VecDeque<Vec<u64>>,
+    /// Phases that the second and the third have ended, as this end has seen it.
+    ended: [usize; 2],
+    /// Packets of the second that came before their phase.
+    early: usize,
+    /// Calls in a row that have waited for nothing.
+    idle: usize,
+}
+
+/// The first word of the packet that ends a phase.
+const END: u64 = 1;
+/// Waits in vain, 50 ms each, before the others count as gone.
+const PATIENCE: usize = 400;
+
+impl Hasty {
+    fn is_held(&self, packet: &[u64]) -> bool {
+        packet.first() == Some(&END) && self.ended[0] < self.ended[1] + 2 && !self.end.is_gone(1)
+    }
+}
+
+impl Exchange for Hasty {
+    fn me(&self) -> usize {
+        self.end.me()
+    }
+
+    fn peers(&self) -> usize {
+        self.end.peers()
+    }
+
+    fn send(&mut self, to: usize, packet: Vec<u64>) {
+        self.end.send(to, packet);
+    }
+
+    fn receive(&mut self, wait: bool) -> Option<(usize, Vec<u64>)> {
+        if self.me() != 0 {
+            return self.end.receive(wait);
+        }
+        if self.held.front().is_none_or(|p| self.is_held(p)) {
+            match self.end.receive(wait) {
+                Some((2, packet)) => self.held.push_back(packet),
+                Some((from, packet)) => {
+                    self.idle = 0;
+                    self.early += usize::from(self.ended[0] > self.ended[1]);
+                    self.ended[0] += usize::from(packet.first() == Some(&END));
+                    return Some((from, packet));
+                }
+                None => self.idle += usize::from(wait),
+            }
+        }
+        let packet = self.held.front().filter(|p| !self.is_held(p)).cloned()?;
+        self.held.pop_front();
+        self.idle = 0;
+        self.ended[1] += usize::from(packet.first() == Some(&END));
+        Some((2, packet))
+    }
+
+    fn is_gone(&self, peer: usize) -> bool {
+        self.idle > PATIENCE || self.held.is_empty() && self.end.is_gone(peer)
+    }
+}
+
+impl Drop for Hasty {
+    fn drop(&mut self) {
+        // Each phase but the last one begins with the packet by which the second ends it.
+        let phases = self.ended[1];
+        assert!(self.me() != 0 || std::thread::panicking() || self.early + 2 > phases && phases > 20);
+    }
+}
+
+/// A worker that goes on to the next search sends packets of it while another one still waits for the end of the
+/// search before: they count there.
+#[test]
+fn a_packet_that_comes_a_phase_early_is_not_lost() {
+    let claims = "prove never C0.X3 and C1.X3\nprove C0.X2 leads to C0.X3\nprove C0.X1 leads to C1.X3\n\
+        prove after C0.X2 until C0.X3 expect not C0.X1\n";
+    let asked = ask(&document(&(cells(2, "iec61131") + claims)), None).0.expect("it compiles");
+    let expected = alone(&asked, STATES);
+    let folder = Folder::new();
+    let hasty = |end: Near| Hasty { end, held: Default::default(), ended: [0, 0], early: 0, idle: 0 };
+    for found in by(&asked, Near::net(3).into_iter().map(hasty).collect(), &folder, STATES) {
+        equal(&expected, found, "packets come early");
+    }
+}

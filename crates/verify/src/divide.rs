@@ -17,7 +17,9 @@
 //!   does not change, without a fault and with all assumptions kept. Then a fault that is met in the
 //!   search of a part is its own.
 //! - Under search for stability a pass that one part needs is made by all. It must change nothing in a
-//!   part that has come to rest: there must be no edge, no timer, and no receptivity that writes.
+//!   part that has come to rest: there must be no edge, no timer, and no receptivity or condition that writes.
+//! - Where one part has no scan without a fault, or none that the assumptions allow, no part goes on. What a
+//!   part can always do, all do only if that is excluded (`parts.rs`).
 //! - Loops of code share the count of their rounds, and limits count the steps of all charts.
 
 use std::collections::{BTreeMap, HashMap};
@@ -115,17 +117,19 @@ fn is_simple(t: &Tables) -> bool {
         )
     };
     let judges = t.transitions.iter().filter_map(|tr| match tr.receptivity {
-        Receptivity::Code(code) => t.code.get(code.start as usize..code.end as usize),
+        Receptivity::Code(code) => Some(code),
         _ => None,
     });
-    let mut codes = judges.flatten();
+    // All that is evaluated in each pass and whose writes count as no change.
+    let asked = judges.chain(t.events.iter().map(|e| e.event)).chain(t.actions.iter().map(|a| a.condition));
+    let mut codes = asked.filter_map(|c| t.code.get(c.start as usize..c.end as usize)).flatten();
     t.counts.is_none()
         && t.limits.is_none()
         && (!t.rules.stable || t.watches.is_empty() && !codes.any(writes))
 }
 
 /// True if the chart comes to rest while all inputs keep their initial values.
-fn comes_to_rest(model: &Model<'_>) -> bool {
+pub(crate) fn comes_to_rest(model: &Model<'_>) -> bool {
     let p = &model.compiled.program;
     let (mut world, mut before, mut image) = (World::new(model), Vec::new(), Vec::new());
     let inputs: Vec<u64> = model.inputs.iter().map(|v| v.tried.first().copied().unwrap_or(0)).collect();
@@ -261,12 +265,18 @@ impl Ties<'_> {
         match self.e.memory(m).map(|m| m.what) {
             // That some part has changed makes a pass for all.
             Some(What::Changed | What::Opening | What::Started) => return,
-            Some(What::Stepped | What::Work) => self.simple = false,
+            Some(What::Work) => self.simple = false,
             _ => {}
         }
-        let mut all = vec![m];
+        let mut all = Vec::new();
         values.iter().for_each(|v| self.reads(v, &mut all));
         all.extend_from_slice(under);
+        if self.e.memory(m).is_some_and(|m| m.what == What::Stepped) {
+            // Without a service, the start alone changes steps before the evolution, in all parts.
+            self.simple &= all.is_empty();
+            return;
+        }
+        all.push(m);
         self.tie_all(&all);
     }
 
@@ -278,8 +288,8 @@ impl Ties<'_> {
             let Some(memory) = equations.memory(*m) else { return };
             match memory.what {
                 // Code that runs once a scan comes to each part in the same pass.
-                What::Dt | What::Started | What::Opening => {}
-                What::Changed | What::Stepped | What::Work => simple = false,
+                What::Dt | What::Started | What::Opening | What::Stepped => {}
+                What::Changed | What::Work => simple = false,
                 _ if memory.class == Class::Constant => {}
                 _ => into.push(*m),
             }
@@ -319,7 +329,10 @@ impl Ties<'_> {
         let rest = parts.len();
         for (m, memory) in all() {
             if matches!(memory.class, Class::Input | Class::Output | Class::Kept)
-                && !matches!(memory.what, What::Dt | What::Started | What::Opening | What::Changed)
+                && !matches!(
+                    memory.what,
+                    What::Dt | What::Started | What::Opening | What::Changed | What::Stepped
+                )
             {
                 parts.entry(self.find(m)).or_insert(rest);
             }
@@ -375,8 +388,20 @@ mod tests {
     #[test]
     fn an_edge_under_search_for_stability_keeps_a_chart_whole() {
         // A pass that the one chart needs ends the edge on which the other waits.
-        assert_eq!(parts(&chart("iec60848", "not ↑b", "")), None);
+        assert_eq!(parts(&chart("iec60848", "not ↑b and b", "")), None);
+        assert!(parts(&chart("iec60848", "b", "")).is_some());
         assert!(parts(&chart("iec61131", "not ↑b and b", "")).is_some());
+    }
+
+    #[test]
+    fn pulses_of_the_start_keep_nothing_together_but_those_of_a_service_do() {
+        let pulses = |profile: &str, pre: &str| {
+            let text = chart(profile, "b", "").replace("{ N q }", "{ P1 q }").replace("{ N r }", "{ P0 r }");
+            parts(&text.replacen("chart G", &format!("{pre}\nchart G"), 1)).map(|(count, _)| count)
+        };
+        assert_eq!(pulses("iec61131", ""), Some(2));
+        assert_eq!(pulses("unity", ""), Some(2));
+        assert_eq!(pulses("unity", "pre { IF a THEN INITCHART(G); END_IF }"), None);
     }
 
     #[test]

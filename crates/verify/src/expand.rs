@@ -12,7 +12,7 @@ use crate::asked::{Asking, Places, Room};
 use crate::explore::Move;
 use crate::look::{Passes, Scanned, allowed, passes, shows};
 use crate::model::Model;
-use crate::monitor::{IDLE, has_memory, is_of_scans, judge};
+use crate::monitor::{IDLE, has_memory, judge_each};
 use crate::question::{Claim, Question};
 use crate::scene::Tried;
 use crate::tries::{MOST, Tries, count};
@@ -475,25 +475,18 @@ impl<'a> Expander<'a> {
 
     /// Judges the claims about the end of a scan; gives what is to be remembered.
     fn judge(&mut self, memory: u64, work: &mut Work) -> u64 {
-        let mut kept = IDLE;
         let Expander { open, model, world, .. } = self;
-        open.retain(|(question, claim)| {
-            if !is_of_scans(claim) {
-                return true;
-            }
-            let question = *question;
-            match judge(model, claim, world, memory, work.m.wait) {
-                Ok(seen) => {
-                    kept = if has_memory(claim) { seen.memory } else { kept };
-                    work.shown.extend(seen.hit.then_some(Shown::Run { question, fault: None }));
-                    !seen.hit
-                }
-                Err(fault) => {
-                    work.shown.push(Shown::Unclear { question, fault });
-                    false
-                }
-            }
+        let Work { shown, m, .. } = work;
+        let before = shown.len();
+        let claims = open.iter().copied();
+        let kept = judge_each(model, claims, world, memory, m.wait, |question, seen| match seen {
+            Ok(hit) => shown.extend(hit.then_some(Shown::Run { question, fault: None })),
+            Err(fault) => shown.push(Shown::Unclear { question, fault }),
         });
+        let new = shown.get(before..).unwrap_or(&[]);
+        if !new.is_empty() {
+            open.retain(|(question, _)| !new.iter().any(|s| s.question() == *question));
+        }
         kept
     }
 }

@@ -8,7 +8,7 @@ use crate::question::Question;
 use crate::verdict::{Verdict, is_open};
 
 /// Scans of a search that comes before others.
-const SMALL: usize = 20_000;
+const SMALL: usize = 2_000;
 
 /// The explicit search as a layer.
 #[derive(Clone, Copy, Debug, Default)]

@@ -1,6 +1,9 @@
 //! The sights of the passes of a scan, and runs repeated with `engine::scan`.
 
-use g7_engine::{Fault, FaultKind, Program, Report, State, Tables, begin, enabled, pass, scan};
+use g7_engine::{
+    Fault, FaultKind, NONE, Program, Report, Rows, State, StepId, Tables, Transition, begin, enabled, pass,
+    scan,
+};
 
 use crate::asked::Asking;
 use crate::explore::Move;
@@ -101,10 +104,10 @@ pub(crate) fn in_some_pass(p: &Program, s: &mut State, inputs: &[u64], now: i64,
 fn happens(p: &Program, s: &State, claim: &Claim) -> bool {
     match claim {
         // A step counts too if it was active only within the scan.
-        Claim::Active(step) => s.cleared().iter().any(|r| {
-            let (from, to) = sides(p.tables(), *r);
-            from.contains(&step.0) || to.contains(&step.0)
-        }),
+        Claim::Active(step) => {
+            let t = p.tables();
+            s.cleared().iter().any(|r| before(t, *r).chain(behind(t, *r)).any(|s| s == step.0))
+        }
         Claim::Clears(rank) => s.cleared().contains(rank),
         Claim::Runs(rank) => s.ran().contains(rank),
         _ => false,
@@ -124,10 +127,7 @@ pub(crate) fn conflict(p: &Program, s: &State) -> Option<(u32, u32)> {
         let follows = !t.rules.multi_token || t.rules.numbered_exclusive;
         follows && priority(a) != priority(b)
     };
-    let meet = |a: u32, b: u32| {
-        let others = sides(t, b).0;
-        sides(t, a).0.iter().any(|s| others.contains(s))
-    };
+    let meet = |a: u32, b: u32| before(t, a).any(|s| before(t, b).any(|other| other == s));
     let mut pairs =
         ready.iter().enumerate().flat_map(|(i, a)| ready.iter().skip(i + 1).map(move |b| (*a, *b)));
     pairs.find(|(a, b)| !chosen(*a, *b) && meet(*a, *b))
@@ -135,19 +135,37 @@ pub(crate) fn conflict(p: &Program, s: &State) -> Option<(u32, u32)> {
 
 /// A step that was activated while active and not left, with a transition that did it.
 pub(crate) fn twice(t: &Tables, was: &[u32], cleared: &[u32]) -> Option<(u32, u32)> {
-    let leaves = |step: u32| cleared.iter().any(|r| sides(t, *r).0.contains(&step));
-    let enters = |step: u32| cleared.iter().copied().find(|r| sides(t, *r).1.contains(&step));
+    let leaves = |step: u32| cleared.iter().any(|r| before(t, *r).any(|s| s == step));
+    let enters = |step: u32| cleared.iter().copied().find(|r| behind(t, *r).any(|s| s == step));
     was.iter().filter(|step| !leaves(**step)).find_map(|step| Some((*step, enters(*step)?)))
 }
 
 /// The steps before and behind a transition.
 pub(crate) fn sides(t: &Tables, rank: u32) -> (Vec<u32>, Vec<u32>) {
-    let Some(tr) = t.transitions.get(rank as usize) else { return Default::default() };
-    let side = |first: u32, more: g7_engine::Rows| {
+    (before(t, rank).collect(), behind(t, rank).collect())
+}
+
+/// The steps before a transition.
+fn before(t: &Tables, rank: u32) -> impl Iterator<Item = u32> + '_ {
+    side(t, rank, |tr| (tr.from, tr.more_from))
+}
+
+/// The steps behind a transition.
+fn behind(t: &Tables, rank: u32) -> impl Iterator<Item = u32> + '_ {
+    side(t, rank, |tr| (tr.to, tr.more_to))
+}
+
+/// The steps of one side. Scans ask for them so often that they are not put into a list.
+fn side(
+    t: &Tables,
+    rank: u32,
+    of: impl Fn(&Transition) -> (StepId, Rows) + 'static,
+) -> impl Iterator<Item = u32> + '_ {
+    let steps = t.transitions.get(rank as usize).map(of).into_iter().flat_map(|(first, more)| {
         let more = t.arcs.get(more.start as usize..more.end as usize).unwrap_or(&[]);
-        std::iter::once(first).filter(|s| *s != g7_engine::NONE).chain(more.iter().map(|s| s.0)).collect()
-    };
-    (side(tr.from.0, tr.more_from), side(tr.to.0, tr.more_to))
+        std::iter::once(first).chain(more.iter().copied())
+    });
+    steps.map(|s| s.0).filter(|s| *s != NONE)
 }
 
 /// True if all assumptions hold for these inputs. The state of the charts is used up.

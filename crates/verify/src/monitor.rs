@@ -47,7 +47,30 @@ pub(crate) fn judge(
     step(claim, memory, wait, |q| world.holds(model, q))
 }
 
-/// The same where `holds` tells the conditions: the one definition of what each claim means.
+/// Judges the end of a scan for each of these claims that is about ends of scans. Shows for each, with its number,
+/// if the scan breaks it, or the fault of a condition; gives what the one with a memory remembers.
+pub(crate) fn judge_each<'c>(
+    model: &Model<'_>,
+    claims: impl Iterator<Item = (usize, &'c Claim)>,
+    world: &mut World<'_>,
+    memory: u64,
+    wait: i64,
+    mut show: impl FnMut(usize, Result<bool, Fault>),
+) -> u64 {
+    let mut kept = IDLE;
+    for (number, claim) in claims.filter(|(_, c)| is_of_scans(c)) {
+        match judge(model, claim, world, memory, wait) {
+            Ok(seen) => {
+                kept = if has_memory(claim) { seen.memory } else { kept };
+                show(number, Ok(seen.hit));
+            }
+            Err(fault) => show(number, Err(fault)),
+        }
+    }
+    kept
+}
+
+/// One claim where `holds` tells the conditions: the one definition of what each claim means.
 ///
 /// # Errors
 ///

@@ -39,7 +39,17 @@ pub fn watch(
     let mut search = Search::new(model, budget, questions.iter().enumerate().collect());
     search.tried = tried;
     search.look = Some(&mut look);
-    search.run().0
+    search.run().answers
+}
+
+/// The end of a search.
+pub(crate) struct Ended {
+    /// The answers, with the numbers of their questions.
+    pub(crate) answers: Vec<(usize, Verdict)>,
+    /// Scans made.
+    pub(crate) scans: usize,
+    /// All states were visited, and each has a scan without a fault that the assumptions allow.
+    pub(crate) goes_on: bool,
 }
 
 pub(crate) struct Search<'a> {
@@ -87,6 +97,10 @@ pub(crate) struct Search<'a> {
     cut: bool,
     /// A scan had more passes than were looked at.
     cut_passes: bool,
+    /// All states were visited.
+    complete: bool,
+    /// Some state has no scan without a fault.
+    ends: bool,
 }
 
 impl<'a> Search<'a> {
@@ -123,17 +137,20 @@ impl<'a> Search<'a> {
             stuck: None,
             cut: false,
             cut_passes: false,
+            complete: false,
+            ends: false,
         }
     }
 
-    /// Searches, and answers all questions; gives the number of scans as well.
-    pub(crate) fn run(mut self) -> (Vec<(usize, Verdict)>, usize) {
+    /// Searches, and answers all questions.
+    pub(crate) fn run(mut self) -> Ended {
         self.search();
         if self.hole.is_none() {
             self.traps();
         }
         self.close();
-        (self.answers, self.scans)
+        let goes_on = self.complete && !self.ends && self.hole.is_none();
+        Ended { answers: self.answers, scans: self.scans, goes_on }
     }
 
     /// Visits all states, or as many as the budget and the questions allow.
@@ -179,6 +196,8 @@ impl<'a> Search<'a> {
             at += 1;
         }
         self.depth += usize::from(at >= self.store.len());
+        // Once all questions are answered, further states are not stored.
+        self.complete = at >= self.store.len() && self.goes_on();
         self.expander = Some(expander);
     }
 
@@ -225,9 +244,10 @@ impl<'a> Search<'a> {
         self.store.get(at, &mut image);
         self.inputs.get(at, &mut inputs);
         let here = Here { image: &image, inputs: &inputs, first: self.is_first(at) };
-        let (mut on, mut next) = (false, Vec::new());
+        let (mut on, mut next, mut ends) = (false, Vec::new(), true);
         let done = expander.expand(here, |step| {
             on |= step.leads_on;
+            ends &= step.next.is_none();
             let to = self.take(at, step);
             next.extend(to.filter(|_| self.traps && !on));
             self.scans += 1;
@@ -239,6 +259,7 @@ impl<'a> Search<'a> {
             self.hole = Some(self.stopped().unwrap_or(Reason::Stopped));
             return false;
         }
+        self.ends |= ends;
         if self.traps {
             self.leads_on.push(on);
         }

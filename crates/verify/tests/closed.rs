@@ -22,6 +22,17 @@ plant Tank {
 }
 ";
 
+/// A lamp that is on while the plant shows red.
+const SHOW: &str = "\
+input red : BOOL
+output lamp : BOOL
+chart Show {
+  initial step 0
+  step 1 { N lamp }
+  0 -> 1 when red -> 0 when not red
+}
+";
+
 /// A letter for each answer to a property, with the number of scans of its run; the reason of what is not decided.
 fn answers(text: &str, every: bool) -> Vec<(Claim, String)> {
     let source = Source::new("chart.g7", text.as_bytes().to_vec(), 0);
@@ -115,14 +126,8 @@ fn an_assumption_against_the_plant_is_told() {
 
 #[test]
 fn chance_is_taken_in_several_ways_and_proves_nothing() {
-    let text = "\
-input red : BOOL
-output lamp : BOOL
-chart Show {
-  initial step 0
-  step 1 { N lamp }
-  0 -> 1 when red -> 0 when not red
-}
+    let text = SHOW.to_owned()
+        + "\
 plant Line {
   state colour : LREAL
   each { colour := random() }
@@ -131,21 +136,15 @@ plant Line {
 prove never lamp with Line
 prove always colour < 1.0 with Line
 ";
-    let found = author(text);
+    let found = author(&text);
     assert_eq!(found[0], "R1");
     assert!(found[1].contains("chance"), "{found:?}");
 }
 
 #[test]
 fn chance_that_is_never_asked_hides_nothing() {
-    let text = "\
-input red : BOOL
-output lamp : BOOL
-chart Show {
-  initial step 0
-  step 1 { N lamp }
-  0 -> 1 when red -> 0 when not red
-}
+    let text = SHOW.to_owned()
+        + "\
 plant Line {
   state mixed : BOOL
   state count : INT in 0 .. 5
@@ -158,7 +157,7 @@ plant Line {
 }
 prove never lamp with Line
 ";
-    assert_eq!(author(text), ["P"]);
+    assert_eq!(author(&text), ["P"]);
     // Drawn late, it is drawn in each way all the same.
     assert_eq!(author(&text.replace("mixed : BOOL", "mixed : BOOL := TRUE")), ["R4"]);
 }

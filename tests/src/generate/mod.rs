@@ -38,6 +38,8 @@ pub struct Weights {
     pub risk: usize,
     /// Documents with PRE, and the same share with POST; in charts a quarter of it.
     pub sections: usize,
+    /// Conditions may have edges and delays.
+    pub moments: bool,
 }
 
 impl Default for Weights {
@@ -53,6 +55,7 @@ impl Default for Weights {
             switches: 25,
             risk: 30,
             sections: 30,
+            moments: true,
         }
     }
 }

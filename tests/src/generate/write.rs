@@ -31,8 +31,8 @@ pub(super) fn document(rng: &mut Rng, profile: ProfileName, weights: &Weights) -
         stable: profile == ProfileName::Iec60848,
         single: matches!(profile, ProfileName::Iec61131 | ProfileName::Unity),
         sight: Sight {
-            edges: true,
-            timers: true,
+            edges: weights.moments,
+            timers: weights.moments,
             risk: if rng.percent(weights.risk) { 25 } else { 0 },
             ..Sight::default()
         },

@@ -76,12 +76,12 @@ impl Sides<'_> {
         let [pa, pb] = self.programs();
         let (mut a, mut b) = (State::new(pa), State::new(pb));
         let assumed = self.models.iter().any(|m| !m.assume.is_empty());
+        let mut worlds = [World::new(&self.models[0]), World::new(&self.models[1])];
         for (k, vector) in vectors.iter().enumerate() {
             let wait = if k == 0 { 0 } else { self.period };
             if assumed {
-                let mut worlds = [World::new(&self.models[0]), World::new(&self.models[1])];
                 for (world, state) in worlds.iter_mut().zip([&a, &b]) {
-                    world.charts = state.clone();
+                    world.charts.become_as(state);
                 }
                 if !self.allowed(&mut worlds, vector, wait) {
                     return None;

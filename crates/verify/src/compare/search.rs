@@ -5,14 +5,15 @@ use g7_engine::State;
 use super::equality::Equality;
 use super::run::End;
 use super::sides::Sides;
+use crate::expand::gap;
 use crate::layer::Budget;
 use crate::reason::Reason;
 use crate::store::Store;
+use crate::tries::Tries;
+use crate::values::Values;
 use crate::verdict::{Certificate, Open};
 use crate::world::{World, put};
 
-/// Most combinations of inputs that are tried in one state.
-const MOST: usize = 1 << 16;
 /// Pairs of states, and scans, between two questions whether to stop.
 const PATIENCE: usize = 64;
 
@@ -70,6 +71,8 @@ impl Sides<'_> {
             Pairs { store: Store::new(), parents: vec![0], inputs: first, count: self.inputs.len() };
         pairs.store.insert(&image);
         let assumed = self.models.iter().any(|m| !m.assume.is_empty());
+        let values: Vec<Values> = self.inputs.iter().map(|i| i.values.clone()).collect();
+        let (mut tries, mut vector) = (Tries::default(), Vec::new());
         let mut worlds = [World::new(&self.models[0]), World::new(&self.models[1])];
         let (mut at, mut level, mut depth, mut scans) = (0usize, 1usize, 0usize, 0usize);
         let mut hole = None;
@@ -93,15 +96,18 @@ impl Sides<'_> {
             let (own, other) = from.split_at(width.min(from.len()));
             put(pa, &mut a, own);
             put(pb, &mut b, other);
-            let (list, whole) = self.vectors([&a, &b], &pairs.vector(at));
-            if !whole {
+            let places = self.matter([&a, &b]);
+            if gap(&values, &places).is_some() {
                 hole = hole.or(Some(depth));
             }
             let wait = if at == 0 { 0 } else { self.period };
             let mut tried = false;
-            for vector in list {
-                if scans >= budget.scans || scans.is_multiple_of(PATIENCE) && (budget.stop)() {
-                    return open(depth, states, Reason::Stopped, hole);
+            tries.begin(&values, &places, &pairs.vector(at), false);
+            while tries.next(&values, &mut vector) {
+                if (scans >= budget.scans || scans.is_multiple_of(PATIENCE))
+                    && let Some(reason) = budget.over(scans)
+                {
+                    return open(depth, states, reason, hole);
                 }
                 if assumed {
                     let [first, second] = &mut worlds;
@@ -147,35 +153,15 @@ impl Sides<'_> {
         }
     }
 
-    /// The inputs that are tried in a pair of states, and whether they are all that matter.
-    fn vectors(&self, states: [&State; 2], last: &[u64]) -> (Vec<Vec<u64>>, bool) {
+    /// The places of the inputs that matter in a pair of states, ascending.
+    fn matter(&self, states: [&State; 2]) -> Vec<usize> {
         let mut matter = vec![false; self.inputs.len()];
         for (side, (asking, state)) in self.asking.iter().zip(states).enumerate() {
-            let places: Vec<usize> = asking.matter(&asking.asked(state)).iter().collect();
+            let places = asking.matter(&asking.asked(state));
             for (input, m) in self.inputs.iter().zip(&mut matter) {
-                *m |= input.places.get(side).copied().flatten().is_some_and(|p| places.contains(&p));
+                *m |= input.places.get(side).copied().flatten().is_some_and(|p| places.contains(p));
             }
         }
-        let mine = || self.inputs.iter().enumerate().zip(&matter).filter(|(_, m)| **m).map(|(i, _)| i);
-        let count = mine().fold(1usize, |n, (_, i)| n.saturating_mul(i.values.tried.len().max(1)));
-        let whole = count <= MOST && mine().all(|(_, i)| i.values.whole);
-        let mut list = vec![last.to_vec()];
-        for (place, input) in mine() {
-            let set = |old: &Vec<u64>, v: u64| {
-                let mut new = old.clone();
-                new.get_mut(place).into_iter().for_each(|w| *w = v);
-                new
-            };
-            if count > MOST {
-                let base = last.to_vec();
-                list.extend(input.values.tried.iter().map(|v| set(&base, *v)));
-            } else {
-                list = list
-                    .iter()
-                    .flat_map(|old| input.values.tried.iter().map(move |v| set(old, *v)))
-                    .collect();
-            }
-        }
-        (list, whole)
+        matter.iter().enumerate().filter(|(_, m)| **m).map(|(i, _)| i).collect()
     }
 }

@@ -87,7 +87,9 @@ impl<'a> Search<'a> {
         }
         let bad: Vec<usize> = good.iter().enumerate().filter(|(_, g)| !**g).map(|(at, _)| at).collect();
         let Some(mut expander) = self.expander.take() else { return };
-        let mut is_end = |at: usize| expander.is_end(&self.store.image(at));
+        // Other parts are only at rest here, so they need not be at an end when this one is.
+        let is_part = self.within.is_some();
+        let mut is_end = |at: usize| !is_part && expander.is_end(&self.store.image(at));
         if let Some(at) = bad.into_iter().find(|at| self.memory.is_some() || !is_end(*at)) {
             self.show(i, self.path(at));
         }

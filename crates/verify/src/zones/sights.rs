@@ -8,7 +8,7 @@ use g7_engine::{Fault, FaultKind, Report, StepId, scan};
 use crate::explore::Move;
 use crate::look::{Passes, Scanned, allowed, passes, shows};
 use crate::model::Model;
-use crate::monitor::{IDLE, has_memory, is_of_scans, judge};
+use crate::monitor::{IDLE, judge_each};
 use crate::question::{Claim, Question};
 use crate::world::World;
 
@@ -109,17 +109,11 @@ impl<'a> Eye<'a> {
 
     /// The claims about the ends of scans; gives what is to be remembered.
     fn judge(&mut self, memory: u64, wait: i64, open: &[(usize, &Question)], sight: &mut Sight) -> u64 {
-        let mut kept = IDLE;
-        for (i, q) in open.iter().filter(|(_, q)| is_of_scans(&q.claim)) {
-            match judge(self.model, &q.claim, &mut self.world, memory, wait) {
-                Ok(seen) => {
-                    sight.hits.extend(seen.hit.then_some(*i));
-                    kept = if has_memory(&q.claim) { seen.memory } else { kept };
-                }
-                Err(fault) => sight.without.push((*i, fault.kind)),
-            }
-        }
-        kept
+        let claims = open.iter().map(|(i, q)| (*i, &q.claim));
+        judge_each(self.model, claims, &mut self.world, memory, wait, |i, seen| match seen {
+            Ok(hit) => sight.hits.extend(hit.then_some(i)),
+            Err(fault) => sight.without.push((i, fault.kind)),
+        })
     }
 
     fn passes(&mut self, image: &[u64], m: &Move, now: i64, open: &[(usize, &Question)]) -> Passes {

@@ -15,6 +15,7 @@ use crate::outcome::asks_for_traps;
 use crate::question::Claim;
 use crate::reason::Reason;
 use crate::verdict::Verdict;
+use crate::world::World;
 use crate::zones::turns::Moves;
 
 impl Search<'_> {
@@ -27,7 +28,8 @@ impl Search<'_> {
             .map(|n| if waits_for { self.graph.image(n).last() == Some(&IDLE) } else { false })
             .collect();
         let good = self.good(&done);
-        let ends = |n: usize| !waits_for && self.is_end(n);
+        let mut world = World::new(self.model);
+        let mut ends = |n: usize| !waits_for && self.is_end(n, &mut world);
         let left: Vec<usize> =
             self.graph.met().filter(|n| good.get(*n) == Some(&false) && !ends(*n)).collect();
         if left.is_empty() {
@@ -98,9 +100,8 @@ impl Search<'_> {
         }
     }
 
-    /// True if no active step has a transition behind it.
-    fn is_end(&self, node: usize) -> bool {
-        let mut world = crate::world::World::new(self.model);
+    /// True if no active step has a transition behind it. `world` is room for the state.
+    fn is_end(&self, node: usize, world: &mut World<'_>) -> bool {
         world.put(&self.graph.image(node));
         world.charts.active().all(|step| self.asking.behind(step) == 0)
     }
