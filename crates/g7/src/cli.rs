@@ -282,10 +282,10 @@ const STATES: usize = 20_000_000;
 
 pub(crate) const PROOF_CODES: &str = "\
 Exit codes:
-  0  everything is proved (of two charts: they are equal)
+  0  everything is proved (of two charts: they are equal); or process 0 of --hosts tells
   1  something is refuted (they differ), or the charts have errors
   2  bad usage, or something outside the chart: no such file, a full disk
-  3  something is not decided";
+  3  nothing is refuted, but something is not decided, or was not asked in time";
 
 #[derive(Args, Clone, Debug)]
 #[command(after_help = format!("\
@@ -338,11 +338,18 @@ pub(crate) struct Prove {
     /// With --save and --tests: replace a file that is there and is not the chart's own.
     #[arg(long)]
     pub(crate) force: bool,
-    /// For people, for programs or for code review.
-    #[arg(long, value_enum, default_value_t = Answers::Text)]
-    pub(crate) format: Answers,
+    /// For people (if nothing is said), for programs or for code review.
+    #[arg(long, value_enum)]
+    pub(crate) format: Option<Answers>,
     #[command(flatten)]
     pub(crate) shared: Shared,
+}
+
+impl Prove {
+    /// The form of the answers; `--shard` has one of its own.
+    pub(crate) fn answers(&self) -> Answers {
+        self.format.unwrap_or(Answers::Text)
+    }
 }
 
 // A proof whose work is shared. A comment of documentation here would take the place of the command's own.

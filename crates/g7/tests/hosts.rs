@@ -65,6 +65,18 @@ fn start(folder: &Folder, number: usize, keep: &str) -> Child {
         .expect("g7 starts")
 }
 
+/// Waits for something that a process does, a minute at most.
+fn until(what: &str, mut is_there: impl FnMut() -> bool) {
+    let came = (0..60_000).any(|_| {
+        let came = is_there();
+        if !came {
+            std::thread::sleep(Duration::from_millis(1));
+        }
+        came
+    });
+    assert!(came, "{what} did not come");
+}
+
 /// Levels of a search that a process has on disk.
 fn levels(folder: &Path) -> usize {
     let list = std::fs::read_dir(folder).into_iter().flatten().flatten();
@@ -96,9 +108,7 @@ fn a_process_that_is_killed_and_started_again_changes_no_answer() {
         let mut all = [start(&folder, 0, &keep), start(&folder, 1, &keep)];
         let own = folder.path(&format!("{keep}/process-{victim}"));
         // With some levels on disk; a search that is over before is no matter.
-        while levels(&own) < 4 && all[victim].try_wait().expect("its state").is_none() {
-            std::thread::sleep(Duration::from_millis(1));
-        }
+        until("4 levels", || levels(&own) >= 4 || all[victim].try_wait().expect("its state").is_some());
         if all[victim].try_wait().expect("its state").is_none() {
             all[victim].kill().expect("it runs");
             killed += 1;
@@ -162,6 +172,7 @@ fn what_cannot_be_honoured_is_refused() {
     told(&["chart.g7", "--process", "0"], "--hosts");
     told(&["chart.g7", "--shard", "3/2"], "I from 1 to N");
     told(&["chart.g7", "--shard", "1/2", "--format", "sarif"], "lines of JSON");
+    told(&["chart.g7", "--shard", "1/2", "--format", "text"], "lines of JSON");
     told(&["chart.g7", "--hosts", "none", "--process", "0"], "none");
     folder.write("hosts", "127.0.0.1:4700\n  10.0.0.5\n");
     told(&["chart.g7", "--hosts", "hosts", "--process", "0"], "hosts:2:3: `10.0.0.5` is no `host:port`");
@@ -182,10 +193,10 @@ fn processes_with_other_charts_do_not_work_together() {
     hosts(&folder, 2);
     let mut first = start(&folder, 0, "kept");
     // It has read its chart by the time it keeps a folder.
-    while !folder.path("kept/process-0/search").exists() {
+    until("its folder", || {
         assert_eq!(first.try_wait().expect("it can be asked"), None, "it waits for the other");
-        std::thread::sleep(Duration::from_millis(1));
-    }
+        folder.path("kept/process-0/search").exists()
+    });
     folder.write("chart.g7", cells(2).replacen("prove never", "prove always", 1));
     let second = start(&folder, 1, "kept");
     for ran in [first, second].map(|c| c.wait_with_output().expect("it ends")) {

@@ -54,7 +54,7 @@ impl Work {
     /// True if each question is to be told, also those that are not decided for one reason.
     fn tells_all(&self) -> bool {
         let args = &self.args;
-        args.all || args.format != Answers::Text || args.junit.is_some() || args.shared.shard.is_some()
+        args.all || args.answers() != Answers::Text || args.junit.is_some() || args.shared.shard.is_some()
     }
 }
 

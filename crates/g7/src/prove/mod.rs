@@ -61,7 +61,7 @@ pub(crate) fn prove(args: &Prove) -> Result<failure::Verdict, Failure> {
         if !found.trouble.is_empty() {
             talk!("{}", found.trouble.trim_end());
         }
-        match args.format {
+        match args.answers() {
             _ if shared.shard.is_some() => output::lines(&found)?,
             Answers::Text => output::text(&found, args.all)?,
             Answers::Json | Answers::Sarif => {}
@@ -73,7 +73,7 @@ pub(crate) fn prove(args: &Prove) -> Result<failure::Verdict, Failure> {
         open || f.hidden() > 0 || f.unasked.is_some()
     };
     let open = all.iter().any(is_open);
-    match args.format {
+    match args.answers() {
         _ if shared.shard.is_some() => {}
         Answers::Text => {
             let stopped = all.iter().any(|f| f.is_stopped).then(|| patience.reason(&time));

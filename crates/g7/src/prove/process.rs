@@ -16,8 +16,14 @@ use crate::message::talk;
 pub(super) fn refuse(args: &Prove, paths: &[PathBuf]) -> Result<(), Failure> {
     let shared = &args.shared;
     let usage = |text: &str| Err(Failure::Usage(text.to_owned()));
-    if shared.shard.is_some() && args.format == Answers::Sarif {
-        return usage("--shard prints lines of JSON: a log for code review is one object of all answers");
+    match args.format.filter(|_| shared.shard.is_some()) {
+        Some(Answers::Sarif) => {
+            return usage("--shard prints lines of JSON: a log for code review is one object of all answers");
+        }
+        Some(Answers::Text) => {
+            return usage("--shard prints lines of JSON, which are put together again: leave --format out");
+        }
+        Some(Answers::Json) | None => {}
     }
     if !is_shared(shared) {
         return match &shared.keep {
