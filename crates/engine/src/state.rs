@@ -110,6 +110,11 @@ impl State {
         self.image.get(at..at + self.var_words as usize).unwrap_or(&[])
     }
 
+    /// The place of the variable area in the image.
+    pub fn first_variable(&self) -> usize {
+        self.vars as usize
+    }
+
     /// A word of the variable area, 0 where there is none.
     pub fn word(&self, addr: Addr) -> u64 {
         if addr.0 >= self.var_words { 0 } else { word(&self.image, (self.vars + addr.0) as usize) }

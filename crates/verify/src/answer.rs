@@ -2,22 +2,28 @@
 //!
 //! The explicit search answers small charts at once; the search by zones answers charts with times, however
 //! long they are; the solver answers charts with many sequences side by side, and what it leaves open is searched
-//! once more over its own system of bits. They take turns, and each turn
+//! once more over its own system of bits. Each search is asked first about the part of a chart that a question
+//! depends on (`slices.rs`, `faults.rs`). They take turns, and each turn
 //! allows several times the work of the turn before. Work is counted in scans and ticks, not in seconds: unless
 //! the caller stops it, the answers depend on the chart alone.
 
-use crate::explicit::Explicit;
+use crate::explicit::{Brief, Explicit};
+use crate::faults::Faults;
 use crate::layer::{Budget, Layer};
 use crate::model::Model;
 use crate::question::Question;
 use crate::sat::Satisfiability;
+use crate::slices::Sliced;
 use crate::verdict::{Verdict, is_open};
 use crate::zones::Zones;
 
 /// Scans of the search in the first turn.
-const SCANS: usize = 200_000;
+const SCANS: usize = 400_000;
 /// Turns of the solver in the first turn: they take a moment.
 const SOLVER: u32 = 5;
+
+/// The searches in their order: small charts need a moment, times are passed at once by zones.
+const SEARCHES: [&dyn Layer; 3] = [&Brief, &Zones, &Explicit];
 
 /// Answers questions with all layers, until the budget is used up. `answers` has an entry for each
 /// question; those that are decided already stay.
@@ -27,7 +33,13 @@ pub fn answer(
     answers: &mut [Option<Verdict>],
     budget: &Budget<'_>,
 ) {
-    turns(model, questions, answers, budget, &[&Explicit, &Zones]);
+    turns(
+        model,
+        questions,
+        answers,
+        budget,
+        &[&Brief, &Sliced(&SEARCHES), &Faults(&SEARCHES), &Zones, &Explicit],
+    );
 }
 
 /// Asks all layers but the explicit search, until the budget is used up: for a caller that has searched already.
@@ -37,7 +49,7 @@ pub fn solve(
     answers: &mut [Option<Verdict>],
     budget: &Budget<'_>,
 ) {
-    turns(model, questions, answers, budget, &[&Zones]);
+    turns(model, questions, answers, budget, &[&Sliced(&SEARCHES), &Faults(&SEARCHES), &Zones]);
 }
 
 /// Lets these searches and the solver take turns.
@@ -73,6 +85,10 @@ pub fn attempt(
     budget: &Budget<'_>,
     solve: bool,
 ) {
+    if solve {
+        let searches: [&dyn Layer; 3] = [&Brief, &Sliced(&SEARCHES), &Faults(&SEARCHES)];
+        searches.iter().for_each(|layer| layer.answer(model, questions, answers, budget));
+    }
     Explicit.answer(model, questions, answers, budget);
     Zones.answer(model, questions, answers, budget);
     if solve {

@@ -7,6 +7,7 @@ use g7_rig::{Bench, Error, Source};
 use crate::ask::{of_every_chart, of_the_author};
 use crate::model::{Model, Part};
 use crate::question::{Query, Question};
+use crate::slices::Slice;
 use crate::values::values;
 
 /// Charts and their plant, with all that is asked of both together.
@@ -32,6 +33,7 @@ impl Closed {
             period: self.bench.period.count().max(1),
             inputs: values(compiled),
             plant: self.bench.plant.as_ref(),
+            slice: Slice::default(),
         }
     }
 }

@@ -30,6 +30,27 @@ impl Layer for Explicit {
     }
 }
 
+/// A short search of the whole chart: enough for most charts.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Brief;
+
+impl Layer for Brief {
+    fn name(&self) -> &'static str {
+        "short search"
+    }
+
+    fn answer(
+        &self,
+        model: &Model<'_>,
+        questions: &[Question],
+        answers: &mut [Option<Verdict>],
+        budget: &Budget<'_>,
+    ) {
+        let small = Budget { scans: SMALL.min(budget.scans), ..*budget };
+        whole(model, questions, answers, &small, threads());
+    }
+}
+
 /// Searches that may run at a time.
 pub(crate) fn threads() -> usize {
     if cfg!(target_family = "wasm") { 1 } else { std::thread::available_parallelism().map_or(1, usize::from) }

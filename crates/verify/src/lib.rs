@@ -12,7 +12,8 @@
 //! `model.rs` has the meaning of a run, `question.rs` that of a claim, `verdict.rs` the
 //! answers, `reason.rs` why there is none. `search.rs` visits all states with `engine::scan`; `asked.rs` tells
 //! it which inputs matter in a state, `values.rs` which values of them. `zones` visits sets of states that
-//! differ in times alone. `system` is the chart as a system of bits, about which `sat` asks a solver.
+//! differ in times alone; `slices.rs` tells both which part of the chart a question depends on, and `faults.rs` asks them
+//! about faults place by place. `system` is the chart as a system of bits, about which `sat` asks a solver.
 //! `answer.rs` has them work in turns. [`Explorer::search`] is a search by moves that its caller chooses, for
 //! tests and tools.
 //!
@@ -42,6 +43,7 @@ mod expand;
 mod explicit;
 mod explore;
 mod export;
+mod faults;
 mod inputs;
 mod layer;
 mod look;
@@ -55,7 +57,9 @@ mod rows;
 pub mod sat;
 mod scene;
 mod search;
+mod sites;
 mod situations;
+mod slices;
 mod store;
 mod system;
 mod tries;

@@ -12,6 +12,7 @@ use g7_engine::Code;
 use g7_rig::PlantSide;
 
 use crate::question::Query;
+use crate::slices::Slice;
 use crate::values::{Values, values};
 
 /// A part of a condition: code of the charts, or of the plant.
@@ -37,6 +38,8 @@ pub struct Model<'c> {
     pub inputs: Vec<Values>,
     /// The plant of a closed loop.
     pub plant: Option<&'c PlantSide>,
+    /// What a search leaves out of a state.
+    pub(crate) slice: Slice,
 }
 
 impl<'c> Model<'c> {
@@ -45,7 +48,28 @@ impl<'c> Model<'c> {
         let conditions = compiled.queries.iter().map(|code| vec![Part { code: *code, of_plant: false }]);
         let conditions = conditions.collect();
         let period = compiled.symbols.cycle.count().max(1);
-        Model { conditions, assume, period, inputs: values(compiled), compiled, plant: None }
+        Model {
+            conditions,
+            assume,
+            period,
+            inputs: values(compiled),
+            compiled,
+            plant: None,
+            slice: Slice::default(),
+        }
+    }
+
+    /// The same model, of whose states a search leaves something out.
+    pub(crate) fn sliced(&self, slice: Slice) -> Model<'c> {
+        Model {
+            compiled: self.compiled,
+            conditions: self.conditions.clone(),
+            assume: self.assume.clone(),
+            period: self.period,
+            inputs: self.inputs.clone(),
+            plant: self.plant,
+            slice,
+        }
     }
 
     /// The codes of all conditions that are evaluated on the charts.

@@ -48,6 +48,8 @@ pub enum Reason {
     ManyTimes,
     /// A run that was found does not show it again in the engine.
     NotRepeated,
+    /// The variable with this name is counted up, and nothing was found that ends it before its type does.
+    Counter(String),
 }
 
 /// A part of a chart that bits cannot express.
@@ -72,6 +74,11 @@ pub enum Part {
 }
 
 impl Reason {
+    /// True if no layer has more to say about the question, however much it may do.
+    pub(crate) fn is_last_word(&self) -> bool {
+        matches!(self, Reason::Counter(_))
+    }
+
     /// True if more states, memory, scans or time may decide the question.
     pub fn is_of_budget(&self) -> bool {
         matches!(self, Reason::Stopped | Reason::States(_) | Reason::Memory(_) | Reason::Scans(_))

@@ -276,6 +276,10 @@ impl<'a> Search<'a> {
         for shown in step.shown {
             self.settle(at, step.m, step.way, shown);
         }
+        if step.fault.is_some() && !self.model.slice.is_whole() {
+            // The chart may go on where its slice does not.
+            self.hole.get_or_insert(Reason::NotRepeated);
+        }
         let to = step.next.filter(|_| self.goes_on()).map(|image| {
             let number = self.store.len() as u32;
             self.store.find_or_insert(image).unwrap_or_else(|| {

@@ -16,9 +16,13 @@ pub enum Verdict {
     Open(Open),
 }
 
-/// True where nothing is decided yet.
+/// True where nothing is decided yet, and more work may decide it.
 pub fn is_open(answer: &Option<Verdict>) -> bool {
-    matches!(answer, None | Some(Verdict::Open(_)))
+    match answer {
+        None => true,
+        Some(Verdict::Open(open)) => !open.reason.is_last_word(),
+        Some(Verdict::Proved(_) | Verdict::Refuted(_)) => false,
+    }
 }
 
 /// The evidence of an answer.

@@ -11,6 +11,7 @@ use g7_rig::PlantSide;
 
 use crate::model::Model;
 use crate::question::Query;
+use crate::slices::Slice;
 
 /// Number of ways in which the search lets a plant with random numbers tick.
 pub(crate) const WAYS: u8 = 8;
@@ -44,6 +45,8 @@ pub(crate) struct World<'a> {
     /// The charts of the image that [`World::put`] was given last.
     base: State,
     plant: Option<Beside<'a>>,
+    /// What is left out of an image.
+    slice: Slice,
 }
 
 impl<'a> World<'a> {
@@ -59,7 +62,7 @@ impl<'a> World<'a> {
             let begins = chance.map_or(Vec::new(), |_| (0..WAYS).map(begin_of).collect());
             Beside { side, state, inputs, chance, begins, drew: false }
         });
-        World { p, charts: State::new(p), base: State::new(p), plant }
+        World { p, charts: State::new(p), base: State::new(p), plant, slice: model.slice.clone() }
     }
 
     /// These charts, with the plant before its first tick.
@@ -86,6 +89,7 @@ impl<'a> World<'a> {
     /// Makes an image of it. Equal images have equal futures.
     pub(crate) fn image(&self, image: &mut Vec<u64>) {
         self.charts.canonical(self.p, image);
+        self.slice.apply(image);
         if let Some(plant) = &self.plant {
             let mut own = Vec::new();
             plant.state.canonical(&plant.side.compiled.program, &mut own);

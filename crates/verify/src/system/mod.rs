@@ -30,9 +30,10 @@ mod expr;
 mod latches;
 mod limit;
 mod moves;
+pub(crate) mod needs;
 mod parts;
 mod places;
-mod range;
+pub(crate) mod range;
 mod scan;
 #[cfg(test)]
 mod tests;

@@ -13,17 +13,18 @@
 //!   observed) is kept as it is.
 //! - Clocks that are read in another way end at [`LONGEST`], since no run lasts so long.
 
-use g7_engine::{Arith, Builtin, Cmp};
+use g7_engine::{Arith, Builtin};
 use g7_equations::{Class, Equations, Expr, MemoryId, Stmt, What, expand};
 use g7_model::Type;
 
+use super::needs::needs;
 use super::word::gcd;
 use crate::model::Model;
 
 /// 146 years in nanoseconds.
-const LONGEST: i128 = 1 << 62;
+pub(super) const LONGEST: i128 = 1 << 62;
 /// Most rounds: a bound that still changes in the last one becomes that of the type.
-const ROUNDS: usize = 6;
+pub(super) const ROUNDS: usize = 6;
 
 /// The values of a memory.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -208,41 +209,24 @@ impl Ranges {
 
     /// How far each memory must be told apart.
     fn cap(&mut self, e: &Equations, observed: impl Fn(What) -> bool) {
-        let mut needs = Needs { e, ranges: self, needs: vec![Some(0); e.memories.len()], moved: true };
-        for (m, need) in e.memories.iter().zip(&mut needs.needs) {
-            if observed(m.what) || !is_whole(m.ty) || m.ty == Type::Bool {
-                *need = None;
-            }
-        }
-        for round in 0..3 * ROUNDS {
-            if !std::mem::replace(&mut needs.moved, false) {
-                break;
-            }
-            let before = needs.needs.clone();
-            each(e, &mut |s| needs.statement(s));
-            for (_, value) in &e.questions {
-                needs.demand(value, None);
-            }
-            if round + 1 == 3 * ROUNDS {
-                let pairs = needs.needs.iter_mut().zip(before);
-                pairs.filter(|(new, old)| **new != *old).for_each(|(new, _)| *new = None);
-            }
-        }
-        if needs.moved {
-            // A need that did not settle is kept as it is.
-            needs.needs.fill(None);
-        }
+        let first = |m: &g7_equations::Memory| {
+            let exact = observed(m.what) || !is_whole(m.ty) || m.ty == Type::Bool;
+            if exact { None } else { Some(0) }
+        };
+        let first = e.memories.iter().map(first).collect();
+        let all: Vec<usize> = (0..e.questions.len()).collect();
+        let needs = needs(e, self, first, &all, true);
         let is_clock = |m: &g7_equations::Memory| {
             matches!(m.what, What::StepScans(_) | What::GroupScans(_))
                 || m.ty == Type::Time && !matches!(m.what, What::Variable(_) | What::Until(_))
         };
-        let caps = e.memories.iter().zip(&needs.needs);
+        let caps = e.memories.iter().zip(&needs);
         self.caps = caps.map(|(m, need)| need.or(is_clock(m).then_some(LONGEST))).collect();
     }
 }
 
 /// Visits all statements.
-fn each(e: &Equations, f: &mut dyn FnMut(&Stmt)) {
+pub(super) fn each(e: &Equations, f: &mut dyn FnMut(&Stmt)) {
     for s in e.sections().flat_map(|s| &s.body).chain(e.questions.iter().flat_map(|q| &q.0)) {
         s.visit(f);
     }
@@ -309,145 +293,5 @@ fn arith(op: Arith, ty: Type, a: Range, b: Range) -> Range {
             Range { low: if a.low >= 0 { 0 } else { -most }, high: most, step: gcd(a.step, b.step) }
         }
         Arith::Pow => whole_type(ty),
-    }
-}
-
-/// The demands of all readers, until they settle.
-struct Needs<'a> {
-    e: &'a Equations,
-    ranges: &'a Ranges,
-    /// For each memory, the value from which on all may act alike; nothing where they differ.
-    needs: Vec<Option<i128>>,
-    moved: bool,
-}
-
-impl Needs<'_> {
-    fn need(&self, m: MemoryId) -> Option<i128> {
-        self.needs.get(m.0 as usize).copied().flatten()
-    }
-
-    fn raise(&mut self, m: MemoryId, need: Option<i128>) {
-        let Some(old) = self.needs.get_mut(m.0 as usize) else { return };
-        let new = old.and_then(|old| need.map(|need| old.max(need)));
-        self.moved |= new != *old;
-        *old = new;
-    }
-
-    fn statement(&mut self, s: &Stmt) {
-        match s {
-            Stmt::Set(m, value) => self.demand(value, self.need(*m)),
-            Stmt::SetElement(m, index, value) => {
-                self.demand(index, None);
-                self.demand(value, self.need(*m));
-            }
-            Stmt::If(condition, ..) => self.demand(condition, None),
-            Stmt::Call(_, memories) => {
-                for (i, m) in memories.iter().enumerate() {
-                    // A timer asks whether its length is over, and shows no time beyond it.
-                    let is_clock = i == 4 && self.e.memory(*m).is_some_and(|m| is_of_clock(self.e, m.what));
-                    let length = memories.get(1).and_then(|m| self.bound(&Expr::Read(*m)));
-                    self.raise(*m, if is_clock { length.map(|l| l.max(0)) } else { None });
-                }
-            }
-            Stmt::Loop(_) | Stmt::Exit | Stmt::Fault(..) | Stmt::About(_) => {}
-        }
-    }
-
-    /// The greatest value of an expression, where it has one short of its type's.
-    fn bound(&self, x: &Expr) -> Option<i128> {
-        let high = self.ranges.range(x).high;
-        (high < LONGEST).then_some(high)
-    }
-
-    /// Values of this expression from `need` on may act alike.
-    fn demand(&mut self, x: &Expr, need: Option<i128>) {
-        match x {
-            Expr::Read(m) => self.raise(*m, need),
-            Expr::Element(m, index) => {
-                self.raise(*m, need);
-                self.demand(index, None);
-            }
-            Expr::Compare(c, _, a, b) => {
-                // At or beyond: the bound itself; beyond: one more.
-                let more = |strict: bool| i128::from(strict);
-                let (left, right) =
-                    (more(!matches!(c, Cmp::Ge | Cmp::Lt)), more(!matches!(c, Cmp::Le | Cmp::Gt)));
-                let (ba, bb) = (self.bound(a), self.bound(b));
-                self.demand(a, bb.map(|v| (v + left).max(0)));
-                self.demand(b, ba.map(|v| (v + right).max(0)));
-            }
-            Expr::Differs(_, a, b) => match (&**a, &**b) {
-                // Within a scan a clock stands still or becomes 0.
-                (Expr::Read(x), Expr::Read(y)) if self.is_clock(*x) && self.is_clock(*y) => {}
-                _ => {
-                    self.demand(a, None);
-                    self.demand(b, None);
-                }
-            },
-            Expr::Call(Builtin::Min, _, list) => {
-                for (i, a) in list.iter().enumerate() {
-                    let others = list.iter().enumerate().filter(|(k, _)| *k != i);
-                    let least = others.filter_map(|(_, o)| self.bound(o)).min();
-                    let need = match (need, least) {
-                        (Some(n), Some(l)) => Some(n.min(l.max(0))),
-                        (n, l) => n.or(l.map(|l| l.max(0))),
-                    };
-                    self.demand(a, need);
-                }
-            }
-            Expr::Call(Builtin::Max, _, list) => list.iter().for_each(|a| self.demand(a, need)),
-            Expr::Call(Builtin::Sel, _, list) => {
-                for (i, a) in list.iter().enumerate() {
-                    self.demand(a, if i == 0 { None } else { need });
-                }
-            }
-            Expr::Convert(Type::Time, Type::Lint, a) => self.demand(a, need),
-            Expr::Arith(Arith::Div, _, a, b) if matches!(**b, Expr::Const(..)) => {
-                let by = self.ranges.range(b).low;
-                self.demand(a, need.filter(|_| by > 0).and_then(|n| n.checked_mul(by)));
-            }
-            Expr::Arith(Arith::Add, Type::Lint | Type::Time, a, b) => {
-                let grows = [a, b].iter().all(|x| self.ranges.range(x).low >= 0);
-                let need = need.filter(|_| grows);
-                self.demand(a, need);
-                self.demand(b, need);
-            }
-            Expr::Const(..) | Expr::Text(_) => {}
-            Expr::Not(a) | Expr::Neg(_, a) | Expr::Convert(_, _, a) | Expr::Trunc(_, _, a) => {
-                self.demand(a, None);
-            }
-            Expr::Random(a) | Expr::Fails(a) => self.demand_exact(a),
-            Expr::And(list) | Expr::Or(list) | Expr::Call(_, _, list) => {
-                list.iter().for_each(|a| self.demand(a, None));
-            }
-            Expr::Xor(a, b) | Expr::Arith(_, _, a, b) => {
-                self.demand(a, None);
-                self.demand(b, None);
-            }
-        }
-    }
-
-    /// All that is read within is kept as it is.
-    fn demand_exact(&mut self, x: &Expr) {
-        let mut found = Vec::new();
-        x.visit(&mut |x| {
-            if let Expr::Read(m) | Expr::Element(m, _) = x {
-                found.push(*m);
-            }
-        });
-        found.into_iter().for_each(|m| self.raise(m, None));
-    }
-
-    fn is_clock(&self, m: MemoryId) -> bool {
-        self.e.memory(m).is_some_and(|m| is_of_clock(self.e, m.what))
-    }
-}
-
-/// The clock of a timer block, or a copy of one that the actions of a pass work on.
-fn is_of_clock(e: &Equations, what: What) -> bool {
-    match what {
-        What::BlockClock(_) => true,
-        What::Own(m) | What::Given(m) | What::Begun(m) => e.memory(m).is_some_and(|m| is_of_clock(e, m.what)),
-        _ => false,
     }
 }

@@ -44,6 +44,14 @@ pub fn why(reason: &Reason) -> Said {
             ],
             &[same(name)],
         ),
+        Reason::Counter(name) => say(
+            [
+                "`{}` is counted up, and nothing was found that ends it; its overflow is too many scans away to be shown",
+                "`{}` est incrémentée, et on n’a rien trouvé qui y mette fin ; son dépassement est à trop de cycles pour être montré",
+                "`{}` é incrementada, e não se encontrou nada que lhe ponha fim; o seu transbordo está a demasiados ciclos para ser mostrado",
+            ],
+            &[same(name)],
+        ),
         Reason::NoInput(scans) => say(
             [
                 "no input satisfies the assumptions {}",
@@ -229,6 +237,11 @@ pub fn way_on(reason: &Reason) -> Said {
             "compare inputs with constants only, or give them smaller types",
             "ne comparez les entrées qu’à des constantes, ou donnez-leur des types plus petits",
             "compare as entradas só com constantes, ou dê-lhes tipos menores",
+        ],
+        Reason::Counter(_) => [
+            "count only below a bound (`if n < 1000`), reset it in time, or give it a wider type",
+            "ne comptez que sous une borne (`if n < 1000`), remettez-la à zéro à temps, ou donnez-lui un type plus grand",
+            "conte só abaixo de um limite (`if n < 1000`), reponha-a a tempo, ou dê-lhe um tipo maior",
         ],
         Reason::NoInput(_) => [
             "weaken the assumptions: without inputs there are no runs, and every claim would hold",
@@ -423,6 +436,7 @@ mod tests {
             Reason::Times,
             Reason::ManyTimes,
             Reason::NotRepeated,
+            Reason::Counter("n".to_owned()),
         ];
         let parts = [Part::Floating, Part::Conversion, Part::Product, Part::Division, Part::Random];
         all.extend(

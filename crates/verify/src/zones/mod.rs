@@ -29,7 +29,7 @@ mod matrix;
 mod search;
 mod sights;
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;
 mod turns;
 
 use crate::layer::{Budget, Layer};

@@ -8,8 +8,8 @@ use super::graph::{Edge, Graph};
 use super::matrix::{From, Span, Zone};
 use super::sights::{Eye, Sight};
 use super::turns::Turn;
-use crate::asked::{Asking, Places};
-use crate::expand::gap;
+use crate::asked::{Asking, Places, Room};
+use crate::expand::Gap;
 use crate::explore::Move;
 use crate::layer::Budget;
 use crate::model::Model;
@@ -28,6 +28,10 @@ pub(super) struct Search<'a> {
     pub(super) model: &'a Model<'a>,
     budget: &'a Budget<'a>,
     pub(super) asking: Asking,
+    /// The places of all inputs.
+    places: Vec<usize>,
+    /// Room to tell what a scan has read.
+    room: (Room, Places),
     /// Questions without an answer, with their numbers.
     pub(super) open: Vec<(usize, &'a Question)>,
     answers: Vec<(usize, Verdict)>,
@@ -63,7 +67,22 @@ struct Tries<'n> {
     /// The images with the least and with the greatest values; the other is empty where they are the same.
     images: [Vec<u64>; 2],
     asked: Places,
+    /// The active steps before the scan.
+    active: Vec<u32>,
+    is_started: bool,
     tried: bool,
+}
+
+/// The end of a try with one combination of inputs.
+enum Trial {
+    /// No question is left.
+    Over,
+    /// The assumptions do not allow it.
+    Refused,
+    /// A scan was made, which cleared these transitions.
+    Made(Vec<u32>),
+    /// A scan was made, of which less is known.
+    Unknown,
 }
 
 impl<'a> Search<'a> {
@@ -88,6 +107,8 @@ impl<'a> Search<'a> {
             model,
             budget,
             asking: Asking::new(&model.compiled.program, model.codes()),
+            places: (0..model.inputs.len()).collect(),
+            room: Default::default(),
             asks_for_traps: open.iter().any(|(_, q)| asks_for_traps(&q.claim)),
             open,
             answers: Vec::new(),
@@ -159,7 +180,11 @@ impl<'a> Search<'a> {
             }
             self.eye.world.put(&images[0]);
             let asked = self.asking.asked(&self.eye.world.charts);
-            let mut tries = Tries { at, shape: &shape, part: &part, elapse, images, asked, tried: false };
+            let charts = &self.eye.world.charts;
+            let (active, is_started) = (charts.active().map(|s| s.0).collect(), charts.is_started());
+            let (shape, part) = (&shape, &part);
+            let mut tries =
+                Tries { at, shape, part, elapse, images, asked, active, is_started, tried: false };
             turn.begin_part();
             if !self.vectors(&mut tries, &mut turn) {
                 return false;
@@ -187,14 +212,12 @@ impl<'a> Search<'a> {
 
     /// Tries all inputs of a part; false if it was stopped meanwhile.
     fn vectors(&mut self, tries: &mut Tries<'_>, turn: &mut Turn) -> bool {
-        let places: Vec<usize> = self.asking.matter(&tries.asked).iter().collect();
         let last = self.inputs.get(tries.at).cloned().unwrap_or_default();
         let all = &self.model.inputs;
-        self.hole = self.hole.take().or(gap(all, &places).map(|gap| gap.reason(self.model)));
         let mut vectors = tries::Tries::default();
-        vectors.begin(all, &places, &last, false);
+        vectors.begin_read(&self.places, &last);
         let mut m = Move { inputs: Vec::new(), wait: tries.elapse * self.model.period };
-        let mut made = 0usize;
+        let (mut made, mut lazy) = (0usize, true);
         while vectors.next(all, &mut m.inputs) {
             if made.is_multiple_of(PATIENCE)
                 && made > 0
@@ -204,9 +227,11 @@ impl<'a> Search<'a> {
                 return false;
             }
             made += 1;
-            if !self.attempt(tries, turn, &m) {
+            let trial = self.attempt(tries, turn, &m);
+            if matches!(trial, Trial::Over) {
                 return true;
             }
+            lazy = lazy && self.learn(tries, &mut vectors, &trial, &last);
         }
         if !tries.tried {
             self.hole.get_or_insert(Reason::NoInput(self.depth));
@@ -214,15 +239,41 @@ impl<'a> Search<'a> {
         true
     }
 
-    /// Makes one move of a part; false where no question is left.
-    fn attempt(&mut self, tries: &mut Tries<'_>, turn: &mut Turn, m: &Move) -> bool {
+    /// Learns from a scan which inputs can make a difference. If they have too many combinations, those
+    /// in which one of them differs are tried instead; gives false then.
+    fn learn(&mut self, tries: &Tries<'_>, vectors: &mut tries::Tries, trial: &Trial, last: &[u64]) -> bool {
+        let inputs = &self.model.inputs;
+        let (room, read) = &mut self.room;
+        match trial {
+            // The assumptions have read what they need; no transition was judged.
+            Trial::Refused => self.asking.read(&[], tries.is_started, &[], room, read),
+            Trial::Made(cleared) => self.asking.read(&tries.active, tries.is_started, cleared, room, read),
+            Trial::Unknown | Trial::Over => *read = self.asking.matter(&tries.asked),
+        }
+        let open = vectors.read(inputs, |i| read.contains(i)).map(Gap::Values);
+        let count = vectors.too_many(inputs);
+        if let Some(gap) = open.or(count.map(Gap::Combinations)) {
+            self.hole.get_or_insert(gap.reason(self.model));
+        }
+        if count.is_none() {
+            return true;
+        }
+        let all: Vec<usize> = self.asking.matter(&tries.asked).iter().collect();
+        vectors.begin(inputs, &all, last, true);
+        // The first of these is the combination that was made before all others.
+        vectors.next(inputs, &mut Vec::new());
+        false
+    }
+
+    /// Makes one move of a part.
+    fn attempt(&mut self, tries: &mut Tries<'_>, turn: &mut Turn, m: &Move) -> Trial {
         let [image, other] = &tries.images;
         let may = self.eye.allows(image, m);
         if !other.is_empty() && self.eye.allows(other, m) != may {
             self.disagree();
         }
         if !may {
-            return true;
+            return Trial::Refused;
         }
         if !std::mem::replace(&mut tries.tried, true) {
             self.see_asked(tries, m);
@@ -243,11 +294,15 @@ impl<'a> Search<'a> {
                 self.disagree();
             }
         }
+        if sight.fault().is_some() && !self.model.slice.is_whole() {
+            // The chart may go on where its slice does not.
+            self.hole.get_or_insert(Reason::NotRepeated);
+        }
         self.cut |= sight.cut;
         self.cut_passes |= sight.cut_passes;
         self.settle(tries, m, &sight);
         if self.open.is_empty() {
-            return false;
+            return Trial::Over;
         }
         let to = match moved {
             Some(moved) => Some(self.lead(tries, moved, m)),
@@ -258,7 +313,7 @@ impl<'a> Search<'a> {
             None => None,
         };
         turn.add(sight.on, to);
-        true
+        if sight.cut { Trial::Unknown } else { Trial::Made(sight.cleared) }
     }
 
     /// Notes that a time was read in a way that is not understood.

@@ -16,7 +16,8 @@ use crate::world::World;
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Sight {
     report: Result<Report, Fault>,
-    cleared: Vec<u32>,
+    /// The transitions that it cleared, by their ranks.
+    pub(super) cleared: Vec<u32>,
     ran: Vec<u32>,
     /// The questions of which it shows something, by their numbers.
     pub(super) hits: Vec<usize>,

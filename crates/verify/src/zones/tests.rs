@@ -16,7 +16,7 @@ use crate::model::Model;
 use crate::question::Claim;
 use crate::verdict::{Certificate, Evidence, Verdict};
 
-const PROFILES: [ProfileName; 5] = [
+pub(crate) const PROFILES: [ProfileName; 5] = [
     ProfileName::Iec60848,
     ProfileName::Iec61131,
     ProfileName::Pl7,
@@ -24,18 +24,18 @@ const PROFILES: [ProfileName; 5] = [
     ProfileName::Jgrafchart,
 ];
 
-fn number(name: &str, otherwise: u64) -> u64 {
+pub(crate) fn number(name: &str, otherwise: u64) -> u64 {
     std::env::var(name).ok().and_then(|v| v.parse().ok()).unwrap_or(otherwise)
 }
 
-fn asked(text: &str, profile: Option<ProfileName>) -> Option<Asked> {
+pub(crate) fn asked(text: &str, profile: Option<ProfileName>) -> Option<Asked> {
     let (document, problems) = g7_syntax::parse(text, FileId(0));
     assert!(problems.is_empty(), "{problems:?}\n{text}");
     let own = document.profile().map(|d| d.name).unwrap_or_default();
     ask(&document, profile.filter(|p| *p != own)).0
 }
 
-fn answers(asked: &Asked, layer: &dyn Layer, scans: usize) -> Vec<Option<Verdict>> {
+pub(crate) fn answers(asked: &Asked, layer: &dyn Layer, scans: usize) -> Vec<Option<Verdict>> {
     let model = Model::new(&asked.compiled, asked.assume.clone());
     let budget = Budget { states: 20_000, scans, bytes: 64 << 20, stop: &|| false };
     let mut answers = vec![None; asked.questions.len()];
@@ -48,7 +48,7 @@ fn answers(asked: &Asked, layer: &dyn Layer, scans: usize) -> Vec<Option<Verdict
     answers
 }
 
-fn letter(v: &Option<Verdict>) -> char {
+pub(crate) fn letter(v: &Option<Verdict>) -> char {
     match v {
         Some(Verdict::Proved(_)) => 'P',
         Some(Verdict::Refuted(_)) => 'R',
@@ -99,7 +99,7 @@ fn compare(asked: &Asked, scans: usize, text: &str, count: &mut Count) {
     }
 }
 
-fn length(v: &Option<Verdict>) -> Option<usize> {
+pub(crate) fn length(v: &Option<Verdict>) -> Option<usize> {
     match v {
         Some(Verdict::Proved(Evidence::Run(r)) | Verdict::Refuted(Evidence::Run(r))) => Some(r.moves.len()),
         _ => None,
@@ -107,7 +107,7 @@ fn length(v: &Option<Verdict>) -> Option<usize> {
 }
 
 /// A random chart with questions about its inputs, outputs and steps.
-fn with_questions(text: &str, seed: u64) -> String {
+pub(crate) fn with_questions(text: &str, seed: u64) -> String {
     let Some(asked) = asked(text, None) else { return text.to_owned() };
     let of = |wanted: VarClass| {
         let all = asked.compiled.symbols.variables.iter();
