@@ -136,7 +136,7 @@ impl Work<'_> {
         let mut signals: Vec<Signal> = asked.iter().flat_map(|a| [a.bad, a.unsure]).collect();
         signals.sort_unstable();
         signals.dedup();
-        let candidates = &self.translated.exclusive;
+        let candidates = &self.translated.candidates;
         let found = decide_with(&self.translated.system, &signals, candidates, self.effort);
         let of = |s: Signal| {
             let at = signals.binary_search(&s).ok();
