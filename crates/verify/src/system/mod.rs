@@ -252,7 +252,10 @@ fn candidates(t: &Tables, latch: impl Fn(What) -> Option<Signal>) -> Vec<Cube> {
         let steps = set.iter().map(|s| Some(!step(*s)?));
         Some(cube(steps.chain([started]).collect::<Option<_>>()?))
     });
-    fresh.chain(left).chain(pairs.iter().filter_map(|(a, b)| Some(cube(vec![step(*a)?, step(*b)?])))).collect()
+    fresh
+        .chain(left)
+        .chain(pairs.iter().filter_map(|(a, b)| Some(cube(vec![step(*a)?, step(*b)?]))))
+        .collect()
 }
 
 /// The assumptions bind the inputs, unless the scan has met a fault before the evolution.
