@@ -196,9 +196,10 @@ bench-check:
 	@$(call debian,valgrind,valgrind)
 	benches/instructions.sh
 
-## the prover beside ABC, rIC3, Spin and Stateright: seconds, memory, ratios (ROWS="timers equivalence" for some)
+## the prover beside ABC, rIC3, Spin, Stateright and LTSmin: answers, seconds, memory, ratios (ROWS="timers equivalence" for some, LIMIT=… seconds for each answer)
 prove-bench: checkers
-	cargo run --release --quiet --manifest-path benches/prove/Cargo.toml --target-dir $(PROVE) --features stateright -- $(ROWS)
+	cargo run --release --quiet --manifest-path benches/prove/Cargo.toml --target-dir $(PROVE) --features stateright -- \
+		$(if $(LIMIT),--limit $(LIMIT)) $(ROWS)
 
 ## every question asked of the examples, the litmus charts and the corpus, as a table (LIMIT=… seconds for each chart)
 prove-table:

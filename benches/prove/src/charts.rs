@@ -4,13 +4,11 @@ use std::fmt::Write as _;
 
 /// Cells of five steps, each transition with an input of its own. Two cells share a resource, which they hold from
 /// their third to their fourth step: 21^(count / 2) situations. Claims that no pair holds it together.
-pub fn cells(count: usize) -> String {
-    let mut text = String::from("profile iec61131\n");
-    for c in 1..=count {
-        let _ = writeln!(text, "input a{c}, b{c}, c{c}, d{c}, e{c} : BOOL\noutput q{c} : BOOL");
-    }
+pub fn cells(count: usize, profile: &str) -> String {
+    let mut text = format!("profile {profile}\n");
+    ports(&mut text, count, &["q"]);
     let _ = writeln!(text, "chart G {{");
-    body(&mut text, count, "");
+    (1..=count).for_each(|c| cell(&mut text, c, c, "q"));
     let _ = writeln!(text, "}}");
     for c in (1..count).step_by(2) {
         let held = |c: usize| format!("(X{0}3 or X{0}4)", c);
@@ -19,23 +17,41 @@ pub fn cells(count: usize) -> String {
     text
 }
 
-/// Steps and transitions of the cells. Steps have the number of their cell before their own.
-fn body(text: &mut String, count: usize, prefix: &str) {
+/// The same cells, written from the last to the first, with other numbers of steps.
+pub fn renumbered(count: usize) -> String {
+    let mut text = String::from("profile iec61131\n");
+    ports(&mut text, count, &["q"]);
+    let _ = writeln!(text, "chart G {{");
+    (1..=count).rev().for_each(|c| cell(&mut text, c, count + c, "q"));
+    let _ = writeln!(text, "}}");
+    text
+}
+
+/// Inputs and outputs of the cells.
+fn ports(text: &mut String, count: usize, outputs: &[&str]) {
     for c in 1..=count {
-        let pair = 1000 + c.div_ceil(2);
-        if c % 2 == 1 {
-            let _ = writeln!(text, "  initial step {pair}");
-        }
-        let _ = writeln!(
-            text,
-            "  initial step {c}1\n  step {c}2\n  step {c}3 {{ N {prefix}q{c} }}\n  step {c}4\n  step {c}5"
-        );
-        let _ = writeln!(text, "  {c}1 -> {c}2 when a{c}");
-        let _ = writeln!(text, "  ({c}2, {pair}) -> {c}3 when b{c} priority {c}");
-        let _ = writeln!(text, "  {c}3 -> {c}4 when c{c}");
-        let _ = writeln!(text, "  {c}4 -> ({c}5, {pair}) when d{c}");
-        let _ = writeln!(text, "  {c}5 -> {c}1 when e{c}");
+        let names: Vec<String> = outputs.iter().map(|q| format!("{q}{c}")).collect();
+        let _ =
+            writeln!(text, "input a{c}, b{c}, c{c}, d{c}, e{c} : BOOL\noutput {} : BOOL", names.join(", "));
     }
+}
+
+/// Steps and transitions of cell `c`, whose steps begin with the number `n`. The cell of an odd number brings the
+/// resource of its pair.
+fn cell(text: &mut String, c: usize, n: usize, q: &str) {
+    let pair = 90_000 + c.div_ceil(2);
+    if c % 2 == 1 {
+        let _ = writeln!(text, "  initial step {pair}");
+    }
+    let _ = writeln!(
+        text,
+        "  initial step {n}1\n  step {n}2\n  step {n}3 {{ N {q}{c} }}\n  step {n}4\n  step {n}5"
+    );
+    let _ = writeln!(text, "  {n}1 -> {n}2 when a{c}");
+    let _ = writeln!(text, "  ({n}2, {pair}) -> {n}3 when b{c} priority {c}");
+    let _ = writeln!(text, "  {n}3 -> {n}4 when c{c}");
+    let _ = writeln!(text, "  {n}4 -> ({n}5, {pair}) when d{c}");
+    let _ = writeln!(text, "  {n}5 -> {n}1 when e{c}");
 }
 
 /// A ring of places, each with a token that moves on when the place before it is free: some token can always move.
@@ -59,17 +75,15 @@ pub fn ring(count: usize) -> String {
     text
 }
 
-/// Two charts of cells side by side with the same inputs: their outputs are equal. The second counts its cells
-/// from the other end.
+/// Two charts of cells in one file, with the same inputs; the second is written from the last cell to the first.
+/// Claims that their outputs are equal.
 pub fn equal(count: usize) -> String {
     let mut text = String::from("profile iec61131\n");
-    for c in 1..=count {
-        let _ = writeln!(text, "input a{c}, b{c}, c{c}, d{c}, e{c} : BOOL\noutput q{c}, pq{c} : BOOL");
-    }
+    ports(&mut text, count, &["q", "pq"]);
     let _ = writeln!(text, "chart G {{");
-    body(&mut text, count, "");
+    (1..=count).for_each(|c| cell(&mut text, c, c, "q"));
     let _ = writeln!(text, "}}\nchart H {{");
-    body(&mut text, count, "p");
+    (1..=count).rev().for_each(|c| cell(&mut text, c, count + c, "pq"));
     let _ = writeln!(text, "}}");
     let same: Vec<String> = (1..=count).map(|c| format!("q{c} = pq{c}")).collect();
     let _ = writeln!(text, "prove always {}", same.join(" and "));
@@ -154,5 +168,22 @@ pub fn promela(count: usize, one: bool) -> String {
         (1..count).step_by(2).map(|c| format!("!({} && {})", held(c), held(c + 1))).collect();
     let _ =
         writeln!(text, "  od\n}}\nactive proctype watch() {{ !({}) -> assert(false) }}", pairs.join(" && "));
+    text
+}
+
+/// The cells as a model of LTSmin in its format ETF, of which a step moves one cell.
+pub fn etf(count: usize) -> String {
+    let pairs = count / 2;
+    let list = |of: &dyn Fn(usize) -> String, n: usize| (1..=n).map(of).collect::<Vec<_>>().join(" ");
+    let names = [list(&|c| format!("p{c}:cell"), count), list(&|r| format!("r{r}:held"), pairs)].join(" ");
+    let mut text = format!("begin state\n{names}\nend state\nbegin edge\nend edge\n");
+    let _ = writeln!(text, "begin init\n{}\nend init", list(&|_| "0".to_owned(), count + pairs));
+    for c in 1..=count {
+        for (from, to, held) in [(0, 1, "*"), (1, 2, "0/1"), (2, 3, "*"), (3, 4, "1/0"), (4, 0, "*")] {
+            let cell = |k| if k == c { format!("{from}/{to}") } else { "*".to_owned() };
+            let pair = |r| if r == c.div_ceil(2) { held } else { "*" }.to_owned();
+            let _ = writeln!(text, "begin trans\n{} {}\nend trans", list(&cell, count), list(&pair, pairs));
+        }
+    }
     text
 }

@@ -1,5 +1,5 @@
 //! Other model checkers, which tests and benches ask what the prover was asked: ABC and rIC3 by AIGER
-//! files, Spin by a model in Promela.
+//! files, Spin by a model in Promela, LTSmin by a table of transitions (ETF).
 //!
 //! Each is tried on a question with a known answer before it is used; one that is missing or fails there is
 //! a counted skip. What they say is one tool's word: a test shows by a run who is right.
@@ -70,7 +70,7 @@ impl Abc {
 }
 
 /// The number of bad signals in the header of an AIGER file.
-fn bad_signals(file: &[u8]) -> usize {
+pub fn bad_signals(file: &[u8]) -> usize {
     let header = file.split(|b| *b == b'\n').next().unwrap_or(&[]);
     let header = String::from_utf8_lossy(header);
     header.split_whitespace().nth(6).and_then(|n| n.parse().ok()).unwrap_or(0)
@@ -233,6 +233,42 @@ fn searched(text: &str) -> Option<Searched> {
     let errors = number(text.split_once("errors: ").map(|(_, rest)| rest))?;
     let states = number(text.lines().find(|l| l.ends_with("states, stored")))?;
     Some(Searched { states, errors, seconds: 0.0, text: text.to_owned() })
+}
+
+/// The sequential tool of LTSmin that reads ETF.
+#[derive(Clone, Debug)]
+pub struct Ltsmin(PathBuf);
+
+impl Ltsmin {
+    /// The program, if it counts the states of a small model; otherwise the skip is counted.
+    pub fn find() -> Option<Ltsmin> {
+        let Some(ltsmin) = in_path("etf2lts-seq").map(Ltsmin) else {
+            skip("LTSmin missing");
+            return None;
+        };
+        let small = "begin state\na:t b:t\nend state\nbegin edge\nend edge\nbegin init\n0 0\nend init\n\
+                     begin trans\n0/1 *\n1/2 *\nend trans\nbegin trans\n2/2 0/1\nend trans\n";
+        if ltsmin.states(small, 10) == Ok(4) {
+            return Some(ltsmin);
+        }
+        skip("LTSmin does not work");
+        None
+    }
+
+    /// The number of states of a model in ETF, all visited in so many seconds.
+    ///
+    /// # Errors
+    ///
+    /// Its output where it does not count all.
+    pub fn states(&self, model: &str, seconds: u32) -> Result<usize, String> {
+        let folder = Scratch::new("ltsmin");
+        std::fs::write(folder.0.join("model.etf"), model).map_err(|e| e.to_string())?;
+        let mut command = Command::new("timeout");
+        let text = run(command.arg(seconds.to_string()).arg(&self.0).arg("model.etf"), &folder.0)?;
+        let line = text.lines().find_map(|l| l.split_once("state space ").map(|(_, rest)| rest));
+        let count = line.and_then(|l| l.split_once(" states")?.0.rsplit(' ').next()?.parse().ok());
+        count.ok_or(text)
+    }
 }
 
 fn run(command: &mut Command, folder: &Path) -> Result<String, String> {

@@ -1,6 +1,7 @@
 //! Bounded search: the first step at which a signal is 1, for many signals at once.
 
 use crate::sat::cnf::{Start, Steps};
+use crate::sat::cone::Cube;
 use crate::sat::frames::Stopped;
 use crate::sat::graph::{Signal, System};
 use crate::sat::simulate::{Trace, evaluate};
@@ -117,8 +118,9 @@ fn last_values(system: &System, trace: &Trace) -> crate::sat::simulate::Values {
     values
 }
 
-/// Induction: a signal that is 0 at so many steps is 0 at the next one, whatever the first
-/// state was. With a bounded search over the same number of steps that is a proof.
+/// Induction: a signal that is 0 at so many steps is 0 at the next one, whatever the first state was, but for
+/// those of which it is known that no run reaches them. With a bounded search over the same number of steps that is
+/// a proof.
 pub(crate) struct Induction<'a> {
     system: &'a System,
     solver: Batsat<'a>,
@@ -135,6 +137,16 @@ impl<'a> Induction<'a> {
     /// Lets the search go on for so many ticks.
     pub(crate) fn allow(&mut self, ticks: u64) {
         self.solver.stop_at(self.solver.ticks() + ticks);
+    }
+
+    /// No run reaches a state in one of these cubes. They are kept by each step, so it is enough that the first state
+    /// is outside.
+    pub(crate) fn exclude(&mut self, cubes: &[Cube]) {
+        for cube in cubes {
+            let outside: Vec<Literal> =
+                cube.iter().map(|s| !self.steps.literal(self.system, &mut self.solver, 0, *s)).collect();
+            self.solver.add(&outside);
+        }
     }
 
     /// True if a signal that is 0 at so many steps is 0 at the next one.
@@ -156,6 +168,7 @@ impl<'a> Induction<'a> {
 mod tests {
     use super::*;
     use crate::sat::brute::{shortest, system};
+    use crate::sat::check::Checker;
     use crate::sat::simulate::shows;
 
     #[test]
@@ -192,10 +205,14 @@ mod tests {
         let keeps: Vec<bool> =
             (1..5).map(|k| induction.keeps(a, k).unwrap_or_else(|_| panic!("nothing stops it"))).collect();
         assert_eq!(keeps, [false, false, true, true]);
-        use crate::sat::check::certifies_induction as certifies;
-        assert!(certifies(&s, a, 3, &|| false));
-        assert!(!certifies(&s, a, 2, &|| false), "not deep enough");
-        assert!(!certifies(&s, a, 0, &|| false));
-        assert!(!certifies(&s, !a, 3, &|| false), "it is 1 at the first step");
+        let checker = Checker::new(&s, &|| false);
+        assert!(checker.certifies_induction(a, 3));
+        assert!(!checker.certifies_induction(a, 2), "not deep enough");
+        assert!(!checker.certifies_induction(a, 0));
+        assert!(!checker.certifies_induction(!a, 3), "it is 1 at the first step");
+        // Without the states in which c is 1, two steps are enough.
+        induction.exclude(&[vec![c]]);
+        assert!(matches!(induction.keeps(a, 1), Ok(false)));
+        assert!(matches!(induction.keeps(a, 2), Ok(true)));
     }
 }

@@ -3,7 +3,7 @@
 //!
 //! Cubes that no run reaches are certified in turn: each list holds at the first step, and is
 //! kept by each step together with those that were certified before. A signal that cannot
-//! be 1 outside of them is never 1.
+//! be 1 outside of them is never 1. An induction begins outside of them.
 
 use crate::sat::cnf::{Start, Steps};
 use crate::sat::cone::{Cube, next, touches_start};
@@ -15,6 +15,8 @@ pub(crate) struct Checker<'a> {
     system: &'a System,
     solver: Batsat<'a>,
     steps: Steps,
+    certified: Vec<Cube>,
+    stop: &'a (dyn Fn() -> bool + Sync),
 }
 
 impl<'a> Checker<'a> {
@@ -22,7 +24,7 @@ impl<'a> Checker<'a> {
     pub(crate) fn new(system: &'a System, stop: &'a (dyn Fn() -> bool + Sync)) -> Checker<'a> {
         let mut solver = Batsat::new(stop);
         let steps = Steps::new(system, &mut solver, Start::Any, true);
-        Checker { system, solver, steps }
+        Checker { system, solver, steps, certified: Vec::new(), stop }
     }
 
     fn literal(&mut self, s: Signal) -> Literal {
@@ -51,34 +53,38 @@ impl<'a> Checker<'a> {
         let bad = self.literal(bad);
         let certified = is_kept && self.solver.solve(&[switch, bad]) == Answer::No;
         self.solver.add(&[switch.negated_if(!certified)]);
+        if certified {
+            self.certified.extend_from_slice(cubes);
+        }
         certified
     }
-}
 
-/// True if a signal is 0 at the first steps, so many of them, and a signal that is 0 at so many
-/// steps is 0 at the next.
-pub(crate) fn certifies_induction(
-    system: &System,
-    bad: Signal,
-    depth: usize,
-    stop: &(dyn Fn() -> bool + Sync),
-) -> bool {
-    let shows = |start: Start| {
-        let mut solver = Batsat::new(stop);
-        let mut steps = Steps::new(system, &mut solver, start, true);
-        let count = if start == Start::First { depth } else { depth + 1 };
-        (1..count).for_each(|_| steps.grow(system, &mut solver));
-        let bad: Vec<Literal> = (0..count).map(|k| steps.literal(system, &mut solver, k, bad)).collect();
-        match bad.split_last() {
-            Some((last, before)) if start == Start::Any => {
-                before.iter().for_each(|l| solver.add(&[!*l]));
-                solver.add(&[*last]);
+    /// True if a signal is 0 at the first steps, so many of them, and a signal that is 0 at so many steps, the first
+    /// of them outside of all cubes that were certified, is 0 at the next.
+    pub(crate) fn certifies_induction(&self, bad: Signal, depth: usize) -> bool {
+        let system = self.system;
+        let shows = |start: Start| {
+            let mut solver = Batsat::new(self.stop);
+            let mut steps = Steps::new(system, &mut solver, start, true);
+            let count = if start == Start::First { depth } else { depth + 1 };
+            (1..count).for_each(|_| steps.grow(system, &mut solver));
+            let bad: Vec<Literal> = (0..count).map(|k| steps.literal(system, &mut solver, k, bad)).collect();
+            match bad.split_last() {
+                Some((last, before)) if start == Start::Any => {
+                    before.iter().for_each(|l| solver.add(&[!*l]));
+                    solver.add(&[*last]);
+                    for cube in &self.certified {
+                        let outside: Vec<Literal> =
+                            cube.iter().map(|s| !steps.literal(system, &mut solver, 0, *s)).collect();
+                        solver.add(&outside);
+                    }
+                }
+                _ => solver.add(&bad),
             }
-            _ => solver.add(&bad),
-        }
-        solver.solve(&[])
-    };
-    depth > 0 && shows(Start::First) == Answer::No && shows(Start::Any) == Answer::No
+            solver.solve(&[])
+        };
+        depth > 0 && shows(Start::First) == Answer::No && shows(Start::Any) == Answer::No
+    }
 }
 
 #[cfg(test)]
@@ -116,6 +122,25 @@ mod tests {
         assert!(!checker.certifies(&[vec![a, b]], one), "it holds, but says nothing of this signal");
         assert!(!checker.certifies(&[], both), "what was refused does not stay");
         assert!(checker.certifies(&[vec![a, b]], both));
+    }
+
+    /// A third bit is 1 behind a step with both: one step does not show that this never happens, unless both are
+    /// known to be never 1 at once.
+    #[test]
+    fn an_induction_begins_outside_of_what_was_certified() {
+        let (mut s, [a, b]) = swap();
+        let c = s.latch(Init::Zero);
+        let both = s.graph.and(a, b);
+        let next = s.graph.or(c, both);
+        s.set_next(c, next);
+        let mut checker = Checker::new(&s, &|| false);
+        assert!(!checker.certifies_induction(c, 1));
+        assert!(!checker.certifies(&[vec![b]], c), "it is refused, so it changes nothing");
+        assert!(!checker.certifies_induction(c, 1));
+        assert!(checker.certifies(&[vec![a, b]], both));
+        assert!(checker.certifies_induction(c, 1));
+        assert!(!checker.certifies_induction(a, 1), "it is 1 at the first step");
+        assert!(!checker.certifies_induction(b, 1), "it becomes 1");
     }
 
     #[test]

@@ -6,7 +6,7 @@
 //! if the simulator repeats it.
 
 use crate::sat::bounded::{Bounded, Induction};
-use crate::sat::check::{Checker, certifies_induction};
+use crate::sat::check::Checker;
 use crate::sat::cone::{Cube, cone};
 use crate::sat::graph::{Signal, System};
 use crate::sat::kept::kept;
@@ -30,7 +30,8 @@ pub enum Found {
 pub enum Proof {
     /// An inductive invariant, with its clauses: in each a signal is 1.
     Invariant(Vec<Vec<Signal>>),
-    /// A signal that is 0 at so many steps is 0 at the next, and it is 0 at the first steps.
+    /// A signal that is 0 at so many steps, the first of them outside of an invariant that was certified before, is 0
+    /// at the next; and it is 0 at the first steps.
     Induction(usize),
     /// All states were visited, and it is 0 in all scans from there.
     Visited {
@@ -47,6 +48,8 @@ const FIRST: u64 = 4_000;
 const SHARES: u64 = 8;
 /// Most ticks to find out which candidates are never reached.
 const LEARNING: u64 = 1 << 20;
+/// The first turn in which candidates of more than two latches are looked at.
+const LATER: u32 = 2;
 /// Most steps of an induction.
 const DEEPEST: usize = 32;
 
@@ -90,7 +93,7 @@ pub(crate) fn decide_related(
     let cubes = relations(system, signals, FIRST << effort.turns.min(40), effort.stop);
     // An invariant by themselves, they hold whatever the signals are.
     if work.checker.certifies(&cubes, Signal::FALSE) {
-        work.lemmas = cubes;
+        work.keep(cubes);
     }
     let count = work.lemmas.len();
     (work.run(), count)
@@ -118,6 +121,8 @@ struct Decide<'a> {
     checker: Checker<'a>,
     /// Cubes that the checker certified.
     lemmas: Vec<Cube>,
+    /// Cubes that are thought never to be reached and were not looked at yet.
+    later: Vec<Cube>,
     /// A run that shows one signal ends the work.
     first: bool,
 }
@@ -137,29 +142,49 @@ impl<'a> Decide<'a> {
             induction: Induction::new(system, effort.stop),
             checker: Checker::new(system, effort.stop),
             lemmas: Vec::new(),
+            later: Vec::new(),
             first: false,
         }
     }
 
-    /// Certifies those of these cubes that are never reached, and sees what follows from them at once.
+    /// Certifies those of these cubes that are never reached, and sees what follows from them at once. Cubes of more
+    /// than two latches are much more work: they wait for a later turn.
     fn learn(&mut self, candidates: &[Cube]) {
         let wanted = self.wanted.iter().map(|w| w.signal);
         let inside = cone(self.system, self.system.constraints.iter().copied().chain(wanted));
         let is_inside = |c: &&Cube| c.iter().all(|s| inside.get(s.node() as usize) == Some(&true));
-        let cubes: Vec<Cube> = candidates.iter().filter(is_inside).cloned().collect();
-        if cubes.is_empty() || self.effort.turns == 0 {
-            return;
-        }
-        let Some(cubes) = kept(self.system, &[], cubes, LEARNING, self.effort.stop) else { return };
-        if self.checker.certifies(&cubes, Signal::FALSE) {
-            self.lemmas = cubes;
+        let cubes = candidates.iter().filter(is_inside).cloned();
+        let (cubes, later): (Vec<Cube>, Vec<Cube>) = cubes.partition(|c| c.len() < 3);
+        self.later = later;
+        if !cubes.is_empty() && self.effort.turns > 0 && self.certify(cubes, LEARNING) {
             self.prove(FIRST);
         }
+    }
+
+    /// Keeps those of these cubes that are never reached. False if the ticks or the time are used up.
+    fn certify(&mut self, cubes: Vec<Cube>, ticks: u64) -> bool {
+        let Some(cubes) = kept(self.system, &self.lemmas, cubes, ticks, self.effort.stop) else {
+            return false;
+        };
+        let certified = self.checker.certifies(&cubes, Signal::FALSE);
+        if certified {
+            self.keep(cubes);
+        }
+        certified
+    }
+
+    /// The checker has certified these cubes.
+    fn keep(&mut self, cubes: Vec<Cube>) {
+        self.induction.exclude(&cubes);
+        self.lemmas.extend(cubes);
     }
 
     fn run(mut self) -> Vec<Found> {
         for turn in 0..self.effort.turns {
             let ticks = FIRST << turn.min(40);
+            if turn >= LATER && !self.later.is_empty() && self.certify(self.later.clone(), ticks / 4) {
+                self.later.clear();
+            }
             // A search that finds nothing is the longest part of a turn.
             self.search(ticks / 4);
             if self.is_over() {
@@ -257,7 +282,7 @@ impl<'a> Decide<'a> {
             };
             for depth in tried + 1..=most {
                 match self.induction.keeps(signal, depth) {
-                    Ok(true) if certifies_induction(self.system, signal, depth, self.effort.stop) => {
+                    Ok(true) if self.checker.certifies_induction(signal, depth) => {
                         self.answer(i, Found::Never(Proof::Induction(depth)));
                         break;
                     }
@@ -299,7 +324,7 @@ impl<'a> Decide<'a> {
                             |c: &&Cube| c.iter().all(|s| inside.get(s.node() as usize) == Some(&true));
                         let all = cubes.iter().chain(self.lemmas.iter().filter(is_inside));
                         let clauses = all.map(|c| c.iter().map(|s| !*s).collect()).collect();
-                        self.lemmas.extend(cubes);
+                        self.keep(cubes);
                         self.answer(i, Found::Never(Proof::Invariant(clauses)));
                     }
                 }

@@ -146,7 +146,7 @@ impl Work<'_> {
         let mut signals: Vec<Signal> = asked.iter().flat_map(|a| [a.bad, a.unsure]).collect();
         signals.sort_unstable();
         signals.dedup();
-        let candidates = &self.translated.exclusive;
+        let candidates = &self.translated.candidates;
         let mut found = decide_with(&self.translated.system, &signals, candidates, self.effort);
         let seen = self.visit(&signals, &mut found);
         let of = |s: Signal| {

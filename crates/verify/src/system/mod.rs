@@ -98,8 +98,8 @@ pub(crate) struct Translated {
     pub(crate) uncovered: Signal,
     /// The outputs behind the scan, safe ones behind a fault.
     pub(crate) outputs: Vec<(MemoryId, Addr, Vec<Value>)>,
-    /// Situations, as a scan begins, that are thought never to be reached: most are two steps of a sequence.
-    pub(crate) exclusive: Vec<Cube>,
+    /// Situations, as a scan begins, that are thought never to be reached: two steps of a sequence, or none.
+    pub(crate) candidates: Vec<Cube>,
     /// Activity of each step behind the scan.
     pub(crate) steps: Vec<Signal>,
     /// For each pass but the first: the scan makes it.
@@ -171,7 +171,7 @@ pub(crate) fn system(model: &Model<'_>, questions: &[Question], observed: Observ
         }
         Value::Real(_) | Value::Text(_) => None,
     };
-    let exclusive = exclusive(t, latch);
+    let candidates = candidates(t, latch);
     let mut x = Exec::new(&e, model, cells, system);
     for (id, m, at) in moves::inputs(&e) {
         let value = sources.memory(model, &mut x.system, m, at);
@@ -230,7 +230,7 @@ pub(crate) fn system(model: &Model<'_>, questions: &[Question], observed: Observ
         faults,
         uncovered,
         outputs,
-        exclusive,
+        candidates,
         steps,
         passes: sights.passes,
         shown,
@@ -239,15 +239,27 @@ pub(crate) fn system(model: &Model<'_>, questions: &[Question], observed: Observ
     }
 }
 
-/// The pairs of steps of `places.rs`, as a scan begins; and that none of them is active before the first.
-fn exclusive(t: &Tables, latch: impl Fn(What) -> Option<Signal>) -> Vec<Cube> {
+/// The sequences of `places.rs`, as a scan begins: two steps of one are not active at once, and from the first scan
+/// on one of them is; none is active before.
+fn candidates(t: &Tables, latch: impl Fn(What) -> Option<Signal>) -> Vec<Cube> {
     let step = |s: u32| latch(What::Step(StepId(s)));
-    let cube = |a: Signal, b: Signal| vec![a.min(b), a.max(b)];
-    let pairs = places::exclusive(t);
+    let cube = |mut signals: Cube| {
+        signals.sort_unstable();
+        signals
+    };
+    let sequences = places::sequences(t);
+    let pairs = places::exclusive(&sequences);
     let steps: BTreeSet<u32> = pairs.iter().flat_map(|(a, b)| [*a, *b]).collect();
     let started = latch(What::Started);
-    let fresh = steps.into_iter().filter_map(|s| Some(cube(!started?, step(s)?)));
-    fresh.chain(pairs.iter().filter_map(|(a, b)| Some(cube(step(*a)?, step(*b)?)))).collect()
+    let fresh = steps.into_iter().filter_map(|s| Some(cube(vec![!started?, step(s)?])));
+    let left = sequences.iter().filter_map(|set| {
+        let steps = set.iter().map(|s| Some(!step(*s)?));
+        Some(cube(steps.chain([started]).collect::<Option<_>>()?))
+    });
+    fresh
+        .chain(left)
+        .chain(pairs.iter().filter_map(|(a, b)| Some(cube(vec![step(*a)?, step(*b)?]))))
+        .collect()
 }
 
 /// The assumptions bind the inputs, unless the scan has met a fault before the evolution.

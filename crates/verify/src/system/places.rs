@@ -1,4 +1,4 @@
-//! Sequences of a chart: sets of steps among which a token moves, so that no two of them are active at
+//! Sequences of a chart: sets of steps among which a token moves, so that one of them is active and no two at
 //! once, if nothing but the transitions changes them and no step is left twice in one pass.
 //!
 //! In the theory of Petri nets these are P-invariants with weights of 0 and 1 and one token (T. Murata,
@@ -19,12 +19,10 @@ const EFFORT: usize = 10_000_000;
 /// Most pairs of steps of all sequences together; the shortest sequences come first.
 const PAIRS: usize = 20_000;
 
-/// Pairs of steps that are thought never to be active at once.
-pub(crate) fn exclusive(t: &Tables) -> BTreeSet<(u32, u32)> {
-    let mut list = sequences(t);
-    list.sort_by_key(Vec::len);
+/// Pairs of steps of these sequences, thought never to be active at once.
+pub(crate) fn exclusive(sequences: &[Vec<u32>]) -> BTreeSet<(u32, u32)> {
     let mut pairs = BTreeSet::new();
-    for set in list {
+    for set in sequences {
         if pairs.len() + set.len() * set.len() / 2 > PAIRS {
             break;
         }
@@ -35,8 +33,9 @@ pub(crate) fn exclusive(t: &Tables) -> BTreeSet<(u32, u32)> {
     pairs
 }
 
-/// Sequences with one initial step at most, each ascending, so many that each step is in one if it can be.
-fn sequences(t: &Tables) -> Vec<Vec<u32>> {
+/// Sequences with one initial step at most, each ascending, so many that each step is in one if it can be. The
+/// shortest come first.
+pub(crate) fn sequences(t: &Tables) -> Vec<Vec<u32>> {
     let net = Net::new(t);
     // Each search takes a mark for each step.
     let mut left = EFFORT / t.steps.len().max(1);
@@ -54,10 +53,9 @@ fn sequences(t: &Tables) -> Vec<Vec<u32>> {
         for s in &set {
             covered.get_mut(*s as usize).into_iter().for_each(|c| *c = true);
         }
-        if set.iter().filter(|s| t.initial.iter().any(|i| i.0 == **s)).count() < 2 {
-            found.push(set);
-        }
+        found.push(set);
     }
+    found.sort_by_key(Vec::len);
     found
 }
 
@@ -67,6 +65,8 @@ struct Net {
     sides: Vec<[Vec<u32>; 2]>,
     /// By step: the transitions that it is before or behind.
     touching: Vec<Vec<u32>>,
+    /// By step: it is an initial one.
+    initial: Vec<bool>,
 }
 
 /// The place of a step in a set that is being made.
@@ -82,6 +82,8 @@ enum Mark {
 struct Attempt {
     marks: Vec<Mark>,
     work: Vec<u32>,
+    /// Initial steps in the set.
+    tokens: usize,
 }
 
 impl Net {
@@ -99,12 +101,17 @@ impl Net {
             }
             all.push([from, to]);
         }
-        Net { sides: all, touching }
+        let mut initial = vec![false; t.steps.len()];
+        for s in t.initial.iter() {
+            initial.get_mut(s.0 as usize).into_iter().for_each(|i| *i = true);
+        }
+        Net { sides: all, touching, initial }
     }
 
-    /// A set with this step that each transition leaves as often as it enters it, once or not at all.
+    /// A set with this step that each transition leaves as often as it enters it, once or not at all, and that has
+    /// one initial step at most.
     fn sequence(&self, step: u32) -> Option<Vec<u32>> {
-        let mut first = Attempt { marks: vec![Mark::Open; self.touching.len()], work: Vec::new() };
+        let mut first = Attempt { marks: vec![Mark::Open; self.touching.len()], work: Vec::new(), tokens: 0 };
         self.take(&mut first, step);
         let mut open = vec![first];
         for _ in 0..TRIES {
@@ -129,6 +136,7 @@ impl Net {
     fn take(&self, attempt: &mut Attempt, step: u32) {
         let Some(mark) = attempt.marks.get_mut(step as usize).filter(|m| **m != Mark::In) else { return };
         *mark = Mark::In;
+        attempt.tokens += usize::from(self.initial.get(step as usize) == Some(&true));
         attempt.work.extend(self.touching.get(step as usize).into_iter().flatten());
     }
 
@@ -136,6 +144,9 @@ impl Net {
     /// complete; else the steps of which one must be added.
     fn complete(&self, attempt: &mut Attempt) -> Option<Vec<u32>> {
         while let Some(rank) = attempt.work.pop() {
+            if attempt.tokens > 1 {
+                return None;
+            }
             let sides = self.sides.get(rank as usize)?;
             let mark = |s: &u32| attempt.marks.get(*s as usize).copied().unwrap_or(Mark::Out);
             let inside = |side: &[u32]| side.iter().filter(|s| mark(s) == Mark::In).count();
@@ -162,7 +173,7 @@ impl Net {
             }
             sides.iter().for_each(|side| self.exclude(attempt, side));
         }
-        Some(Vec::new())
+        (attempt.tokens < 2).then(Vec::new)
     }
 
     /// The other steps of a side of which one is in the set.
@@ -224,23 +235,52 @@ mod tests {
             let bad = t.asked[0].as_ref().expect("it is asked").bad;
             let effort = Effort { bytes: 1 << 28, turns: 12, stop: &|| false };
             let kept =
-                crate::sat::kept(&t.system, &[], t.exclusive.clone(), 1 << 30, &|| false).expect("time");
+                crate::sat::kept(&t.system, &[], t.candidates.clone(), 1 << 30, &|| false).expect("time");
             assert_eq!(
-                kept.len() == t.exclusive.len(),
+                kept.len() == t.candidates.len(),
                 safe,
                 "{profile}: {} of {}",
                 kept.len(),
-                t.exclusive.len()
+                t.candidates.len()
             );
             assert!(kept.len() > 20, "{profile}");
-            let found = crate::sat::decide_with(&t.system, &[bad], &t.exclusive, &effort);
+            let found = crate::sat::decide_with(&t.system, &[bad], &t.candidates, &effort);
             match found.first() {
                 Some(Found::Never(Proof::Invariant(clauses))) => {
-                    assert!(safe && clauses.len() <= t.exclusive.len(), "{profile}: {clauses:?}");
+                    assert!(safe && clauses.len() <= t.candidates.len(), "{profile}: {clauses:?}");
                 }
                 Some(Found::Reached(_)) => assert!(!safe, "{profile}"),
                 other => panic!("{profile}: {other:?}"),
             }
         }
+    }
+
+    /// A ring of places, each with a token that moves on when the place before it is free. Some token can always move,
+    /// since each place is full or free.
+    #[test]
+    fn sequences_that_are_never_left_prove_that_a_token_can_move() {
+        let count = 30;
+        let mut text = String::from("profile iec61131\n");
+        for c in 1..=count {
+            text += &format!("input a{c} : BOOL\n");
+        }
+        text += "chart G {\n";
+        let mut moves = Vec::new();
+        for c in 1..=count {
+            let next = c % count + 1;
+            let (full, free) = if c % 2 == 1 { ("initial ", "") } else { ("", "initial ") };
+            text += &format!("  {full}step {c}1\n  {free}step {c}2\n");
+            text += &format!("  ({c}1, {next}2) -> ({c}2, {next}1) when a{c}\n");
+            moves.push(format!("X{c}1 and X{next}2"));
+        }
+        text += &format!("}}\nprove always {}\n", moves.join(" or "));
+        let asked = asked(&text);
+        let model = Model::new(&asked.compiled, Vec::new());
+        let question = asked.questions.last().cloned().expect("a question");
+        let t = system(&model, &[question], Observed::Asked);
+        let bad = t.asked[0].as_ref().expect("it is asked").bad;
+        let effort = Effort { bytes: 1 << 28, turns: 8, stop: &|| false };
+        let found = crate::sat::decide_with(&t.system, &[bad], &t.candidates, &effort);
+        assert!(matches!(found[..], [Found::Never(_)]), "{found:?}");
     }
 }
