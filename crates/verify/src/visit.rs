@@ -38,12 +38,7 @@ pub fn visit(model: &Model<'_>, budget: &Budget<'_>, tried: Tried) -> Visited {
 
 /// Visits all states of the chart's system of bits, by so many threads. Nothing where the system cannot be
 /// searched so. The number of scans that lead to the farthest state is counted as [`visit`] does.
-pub fn visit_bits(
-    model: &Model<'_>,
-    budget: &Budget<'_>,
-    tries: Tries,
-    threads: usize,
-) -> Option<Visited> {
+pub fn visit_bits(model: &Model<'_>, budget: &Budget<'_>, tries: Tries, threads: usize) -> Option<Visited> {
     let translated = system(model, &[], Observed::Asked);
     let seen = wide(&translated.system, &[], &translated.passes, true, tries, budget, threads)?;
     let open = seen.open.map(|reason| Open { scans: seen.depth, states: seen.states, reason });

@@ -126,7 +126,8 @@ pub(super) struct Expander<'p> {
 impl<'p> Expander<'p> {
     pub(super) fn new(stages: &'p [Program], width: usize, tries: Tries, together: usize) -> Expander<'p> {
         let words = stages.first().map_or(0, |p| p.inputs.len()) / 64 + 1;
-        let scans = || Scans { state: Vec::new(), rows: vec![Vec::new(); width], inputs: vec![Vec::new(); words] };
+        let scans =
+            || Scans { state: Vec::new(), rows: vec![Vec::new(); width], inputs: vec![Vec::new(); words] };
         Expander {
             stages,
             tries,
@@ -199,7 +200,8 @@ impl<'p> Expander<'p> {
         let (Some(p), Some(waiting)) = (self.stages.get(stage), self.waiting.get_mut(stage)) else { return };
         let cubes = waiting.last(words);
         let count = cubes.state.len();
-        let column = |of: &[u64], w: usize| -> Vec<u64> { of.iter().skip(w).step_by(words).copied().collect() };
+        let column =
+            |of: &[u64], w: usize| -> Vec<u64> { of.iter().skip(w).step_by(words).copied().collect() };
         p.evaluate_open(&mut self.open, |latches, inputs| {
             for (w, latches) in latches.chunks_mut(64).enumerate() {
                 let of = |s: &u32| states.get(*s as usize * width + w).copied().unwrap_or(0);
@@ -271,14 +273,7 @@ impl<'p> Expander<'p> {
     }
 
     /// Each of the inputs that matter alone; then those that matter where all of these are 0.
-    fn each_alone(
-        &mut self,
-        stage: usize,
-        cube: Cube<'_>,
-        needs: &[u64],
-        states: &[u64],
-        moves: &mut Moves,
-    ) {
+    fn each_alone(&mut self, stage: usize, cube: Cube<'_>, needs: &[u64], states: &[u64], moves: &mut Moves) {
         let row = row_of(states, cube.state, self.width);
         let mut now = std::mem::take(&mut self.now);
         now.clear();

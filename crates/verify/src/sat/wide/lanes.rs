@@ -44,7 +44,12 @@ pub(super) fn bit(a: &Lanes, lane: usize) -> bool {
 
 /// The patterns that have 1, ascending.
 pub(super) fn lanes_of(a: &Lanes) -> impl Iterator<Item = usize> + use<> {
-    a.iter().copied().enumerate().flat_map(|(k, w)| bits(w).map(move |j| 64 * k + j)).collect::<Vec<_>>().into_iter()
+    a.iter()
+        .copied()
+        .enumerate()
+        .flat_map(|(k, w)| bits(w).map(move |j| 64 * k + j))
+        .collect::<Vec<_>>()
+        .into_iter()
 }
 
 /// The bits of a word that are 1, ascending.

@@ -103,7 +103,16 @@ impl Program {
         let (gates, codes) = coded(&made, &lists);
         let [next, constraints, asked, guard] = codes;
         let is_bound = guard_of.is_none_or(|g| !within(system, &system.constraints, g));
-        Program { inputs, latches, gates, next, constraints, asked, guard: guard.first().copied().unwrap_or(0), is_bound }
+        Program {
+            inputs,
+            latches,
+            gates,
+            next,
+            constraints,
+            asked,
+            guard: guard.first().copied().unwrap_or(0),
+            is_bound,
+        }
     }
 
     fn first_gate(&self) -> usize {
@@ -115,7 +124,9 @@ impl Program {
         let list = &mut values.0;
         list.clear();
         list.resize(self.first_gate(), NONE);
-        if let Some((inputs, latches)) = list.get_mut(1..).and_then(|l| l.split_at_mut_checked(self.inputs.len())) {
+        if let Some((inputs, latches)) =
+            list.get_mut(1..).and_then(|l| l.split_at_mut_checked(self.inputs.len()))
+        {
             set(latches, inputs);
         }
         list.reserve(self.gates.len());
@@ -199,7 +210,9 @@ fn coded<const N: usize>(system: &System, lists: &[Vec<Signal>; N]) -> (Vec<[u32
         }
     }
     let mut codes = vec![0u32; nodes.len()];
-    let code = |codes: &[u32], s: Signal| codes.get(s.node() as usize).copied().unwrap_or(0) ^ u32::from(s.is_negated());
+    let code = |codes: &[u32], s: Signal| {
+        codes.get(s.node() as usize).copied().unwrap_or(0) ^ u32::from(s.is_negated())
+    };
     let mut gates = Vec::new();
     let first = 1 + system.inputs.len() + system.latches.len();
     for (k, node) in nodes.iter().enumerate() {

@@ -63,7 +63,11 @@ impl<'p> Search<'p> {
         threads: usize,
         together: usize,
     ) -> Search<'p> {
-        let share = || Share { set: Set::new(stages.first().map_or(0, |p| p.latches.len())), parents: Vec::new(), level: 0..0 };
+        let share = || Share {
+            set: Set::new(stages.first().map_or(0, |p| p.latches.len())),
+            parents: Vec::new(),
+            level: 0..0,
+        };
         let mut shares: Vec<Share> = (0..threads.clamp(1, 64)).map(|_| share()).collect();
         let owner = owner(start, shares.len());
         if let Some(share) = shares.get_mut(owner) {
@@ -95,7 +99,10 @@ impl<'p> Search<'p> {
             while self.shares.iter().any(|s| !s.level.is_empty()) {
                 self.round(&mut hands);
                 let (states, runs) = self.bytes();
-                self.open = budget.full(self.states(), states + runs).or(budget.over(self.scans)).or(self.open.take());
+                self.open = budget
+                    .full(self.states(), states + runs)
+                    .or(budget.over(self.scans))
+                    .or(self.open.take());
                 if self.open.is_some() || !all && self.shown.iter().all(Option::is_some) {
                     return;
                 }
@@ -121,7 +128,8 @@ impl<'p> Search<'p> {
         let work = self.shares.iter().zip(hands.iter_mut()).enumerate();
         let found: Vec<Found> = if side_by_side {
             std::thread::scope(|scope| {
-                let each = work.map(|(me, (share, hand))| scope.spawn(move || share.expand(me, count, most, hand)));
+                let each =
+                    work.map(|(me, (share, hand))| scope.spawn(move || share.expand(me, count, most, hand)));
                 let each: Vec<_> = each.collect();
                 each.into_iter().filter_map(|t| t.join().ok()).collect()
             })

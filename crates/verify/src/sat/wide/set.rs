@@ -69,7 +69,8 @@ impl Set {
                 *hash = hash_of(row);
                 *seen = self.slots.get(self.place(*hash)).copied().unwrap_or(0);
             }
-            for (k, ((row, hash), seen)) in rows.chunks_exact(self.width).zip(&hashes).zip(&seen).enumerate() {
+            for (k, ((row, hash), seen)) in rows.chunks_exact(self.width).zip(&hashes).zip(&seen).enumerate()
+            {
                 if !self.is_in(*seen, row, *hash) && self.add_one(row, *hash) {
                     new(block * LANES + k);
                 }
@@ -190,7 +191,11 @@ mod tests {
                 let mut new = Vec::new();
                 set.add(&list, |place| new.push(place));
                 for (place, row) in list.chunks(set.width()).enumerate() {
-                    assert_eq!(known.insert(row.to_vec()), new.contains(&place), "{bits} bits, state {place}");
+                    assert_eq!(
+                        known.insert(row.to_vec()),
+                        new.contains(&place),
+                        "{bits} bits, state {place}"
+                    );
                     if new.contains(&place) {
                         order.push(row.to_vec());
                     }

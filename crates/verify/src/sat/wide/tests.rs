@@ -95,15 +95,23 @@ fn runs_are_the_shortest_and_no_state_is_left_out() {
         let (s, bad) = system(seed);
         for (together, threads) in [(0, 1), (6, 1), (1, 3)] {
             let signals = [bad, !bad];
-            let Some(seen) = wide_with(&s, &signals, &[bad], false, Tries::All, &budget(), threads, together) else {
+            let Some(seen) = wide_with(&s, &signals, &[bad], false, Tries::All, &budget(), threads, together)
+            else {
                 let inside = cone(&s, s.constraints.iter().copied().chain(signals));
                 let is_in = |l: &Signal| inside[l.node() as usize];
-                assert!(s.latches.iter().any(|l| is_in(&l.signal) && l.init.value().is_none()), "seed {seed}");
+                assert!(
+                    s.latches.iter().any(|l| is_in(&l.signal) && l.init.value().is_none()),
+                    "seed {seed}"
+                );
                 continue;
             };
             for (signal, found) in signals.iter().zip(&seen.found) {
                 let mine = steps(&s, *signal, found);
-                assert_eq!(mine, shortest(&s, *signal), "seed {seed}, {together} together, {threads} threads");
+                assert_eq!(
+                    mine,
+                    shortest(&s, *signal),
+                    "seed {seed}, {together} together, {threads} threads"
+                );
                 reached += usize::from(mine.is_some());
                 never += usize::from(mine.is_none());
             }
@@ -120,7 +128,8 @@ fn many_inputs_are_split_where_they_matter() {
         let (s, signals) = numbers(seed);
         let (states, first, stuck) = by_hand(&s, &signals);
         for (together, threads) in [(0, 1), (6, 1), (3, 2)] {
-            let w = wide_with(&s, &signals, &signals, true, Tries::All, &budget(), threads, together).expect("it is small");
+            let w = wide_with(&s, &signals, &signals, true, Tries::All, &budget(), threads, together)
+                .expect("it is small");
             assert_eq!(w.states, states, "seed {seed}");
             let mine: Vec<_> = signals.iter().zip(&w.found).map(|(s1, f)| steps(&s, *s1, f)).collect();
             assert_eq!(mine, first, "seed {seed}");
@@ -159,7 +168,9 @@ fn a_budget_that_is_used_up_is_no_proof() {
         s.set_next(*l, next);
         carry = over;
     }
-    let of = |budget: &Budget<'_>| -> Wide { wide(&s, &[carry], &[], false, Tries::All, budget, 2).expect("it is small") };
+    let of = |budget: &Budget<'_>| -> Wide {
+        wide(&s, &[carry], &[], false, Tries::All, budget, 2).expect("it is small")
+    };
     assert_eq!(steps(&s, carry, &of(&budget()).found[0]), Some(1024));
     let few = Budget { states: 100, ..budget() };
     let seen = of(&few);

@@ -44,7 +44,9 @@ fn compare(asked: &Asked, text: &str, agreed: &mut Agreed) {
     let signals = t.asked.iter().flat_map(|a| a.iter().flat_map(|a| [a.bad, a.unsure]));
     let signals: Vec<Signal> = signals.collect::<BTreeSet<_>>().into_iter().collect();
     let threads = 1 + asked.questions.len() % 2;
-    let Some(seen) = wide(&t.system, &signals, &t.passes, false, Tries::All, &budget, threads) else { return };
+    let Some(seen) = wide(&t.system, &signals, &t.passes, false, Tries::All, &budget, threads) else {
+        return;
+    };
     let found = |s: Signal| signals.binary_search(&s).ok().and_then(|at| seen.found.get(at));
     for ((question, signals), (follows, verdict)) in
         asked.questions.iter().zip(&t.asked).zip(t.follows.iter().zip(&answers))
@@ -53,7 +55,9 @@ fn compare(asked: &Asked, text: &str, agreed: &mut Agreed) {
         let (Ok(signals), None, Some(verdict)) = (signals, follows, verdict) else { continue };
         let Some(engine) = of_engine(verdict) else { continue };
         let mine = match (found(signals.bad), found(signals.unsure)) {
-            (Some(Found::Reached(trace)), _) if t.limits(&[signals.bad]).is_empty() => Some(trace.inputs.len()),
+            (Some(Found::Reached(trace)), _) if t.limits(&[signals.bad]).is_empty() => {
+                Some(trace.inputs.len())
+            }
             (Some(Found::Never(_)), Some(Found::Never(_))) if seen.ends == Ends::None => None,
             _ => {
                 agreed.open += 1;
@@ -82,7 +86,11 @@ fn both_searches_agree() {
             }
         }
         println!("{}: {agreed:?}", profile.name());
-        assert!(charts < 4 || agreed.runs > 20 && agreed.runs + agreed.proofs > 40, "{}: {agreed:?}", profile.name());
+        assert!(
+            charts < 4 || agreed.runs > 20 && agreed.runs + agreed.proofs > 40,
+            "{}: {agreed:?}",
+            profile.name()
+        );
     }
 }
 
