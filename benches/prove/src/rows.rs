@@ -13,7 +13,7 @@ pub enum Layers {
     All,
 }
 
-/// What is measured.
+/// The thing that is measured.
 pub enum Task {
     /// All states of so many cells are visited.
     States { cells: usize, tried: Tried },

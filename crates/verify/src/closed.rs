@@ -7,7 +7,7 @@ use g7_rig::{Bench, Error, Source};
 use crate::ask::{of_every_chart, of_the_author};
 use crate::model::{Model, Part};
 use crate::question::{Query, Question};
-use crate::slices::Slice;
+use crate::slice::Slice;
 use crate::values::values;
 
 /// Charts and their plant, with all that is asked of both together.

@@ -59,6 +59,7 @@ mod scene;
 mod search;
 mod sites;
 mod situations;
+mod slice;
 mod slices;
 mod store;
 mod system;

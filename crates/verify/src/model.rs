@@ -12,7 +12,7 @@ use g7_engine::Code;
 use g7_rig::PlantSide;
 
 use crate::question::Query;
-use crate::slices::Slice;
+use crate::slice::Slice;
 use crate::values::{Values, values};
 
 /// A part of a condition: code of the charts, or of the plant.
@@ -38,7 +38,7 @@ pub struct Model<'c> {
     pub inputs: Vec<Values>,
     /// The plant of a closed loop.
     pub plant: Option<&'c PlantSide>,
-    /// What a search leaves out of a state.
+    /// The part of a state that a search leaves out.
     pub(crate) slice: Slice,
 }
 

@@ -32,7 +32,8 @@ use crate::layer::{Budget, Layer};
 use crate::model::Model;
 use crate::question::{Claim, Query, Question};
 use crate::sites::{Site, sites};
-use crate::system::needs::{NOTHING, needs};
+use crate::slice::{Cut, Slice};
+use crate::system::needs::{NOTHING, needs, ranges};
 use crate::system::range::{Ranges, is_whole};
 use crate::verdict::{Evidence, Verdict, is_open};
 
@@ -41,37 +42,6 @@ const LARGE: usize = 2_000;
 
 /// Least scans of the search of a part.
 const LEAST: usize = 40_000;
-
-/// What becomes of the words of an image.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub(crate) struct Slice(Vec<(usize, Cut)>);
-
-/// What becomes of a word.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Cut {
-    /// It has this value.
-    Always(u64),
-    /// It has no greater value than this one.
-    AtMost(i64),
-}
-
-impl Slice {
-    /// True if nothing is left out.
-    pub(crate) fn is_whole(&self) -> bool {
-        self.0.is_empty()
-    }
-
-    /// Leaves out of an image of the charts what does not matter.
-    pub(crate) fn apply(&self, image: &mut [u64]) {
-        for (at, cut) in &self.0 {
-            let Some(word) = image.get_mut(*at) else { continue };
-            *word = match *cut {
-                Cut::Always(v) => v,
-                Cut::AtMost(most) => (*word as i64).min(most) as u64,
-            };
-        }
-    }
-}
 
 /// Layers that are asked each question about the part of the chart that it depends on, where that is not
 /// the whole.
@@ -157,7 +127,7 @@ impl<'a, 'c> Whole<'a, 'c> {
         }
         let options = Options { conflicts: true, runs: true, ..Options::default() };
         let e = equations(model.compiled, options);
-        let ranges = Ranges::new(&e, model, |_| true);
+        let ranges = ranges(&e, model, |_| true);
         let p: &Program = &model.compiled.program;
         let fresh = State::new(p);
         let quiet = e.search.is_none() || edges_help(&e);
@@ -221,7 +191,7 @@ impl<'a, 'c> Whole<'a, 'c> {
         (0u32..).map(MemoryId).zip(&self.e.memories)
     }
 
-    /// What the situation, these memories and these conditions do not depend on.
+    /// All that the situation, these memories and these conditions do not depend on.
     fn cut(&self, roots: &BTreeSet<MemoryId>, queries: &[Query]) -> Slice {
         let is_root = |id: MemoryId, what: What| match what {
             What::Step(_) | What::Clearable(_) | What::Clears(_) | What::Disagree(_) | What::Started => true,

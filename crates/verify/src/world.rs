@@ -11,7 +11,7 @@ use g7_rig::PlantSide;
 
 use crate::model::Model;
 use crate::question::Query;
-use crate::slices::Slice;
+use crate::slice::Slice;
 
 /// Number of ways in which the search lets a plant with random numbers tick.
 pub(crate) const WAYS: u8 = 8;
@@ -45,7 +45,7 @@ pub(crate) struct World<'a> {
     /// The charts of the image that [`World::put`] was given last.
     base: State,
     plant: Option<Beside<'a>>,
-    /// What is left out of an image.
+    /// The part that is left out of an image.
     slice: Slice,
 }
 

@@ -31,7 +31,7 @@ enum Explained {
     ByRun,
     /// Two steps are active together between two passes, and proved never to be so at the end of a scan.
     BetweenPasses,
-    /// What may be by the analysis is proved never to be.
+    /// Something that may be by the analysis is proved never to be.
     ByProof,
 }
 

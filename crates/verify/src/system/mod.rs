@@ -62,7 +62,6 @@ use exec::Exec;
 use latches::Latches;
 use limit::{Limit, Unknown};
 use moves::{Source, Sources};
-use range::Ranges;
 use scan::Scan;
 pub(crate) use value::{Value, same};
 
@@ -160,7 +159,7 @@ fn cone(system: &System, of: &[Signal]) -> Vec<bool> {
 pub(crate) fn system(model: &Model<'_>, questions: &[Question], observed: Observed) -> Translated {
     let e = equations(model.compiled, Options { conflicts: true, runs: true, ..Options::default() });
     let t = model.compiled.program.tables();
-    let ranges = Ranges::new(&e, model, |what| is_observed(model, questions, observed, what));
+    let ranges = needs::ranges(&e, model, |what| is_observed(model, questions, observed, what));
     let mut system = System::default();
     let (latches, cells) = Latches::new(&e, &ranges, &mut system);
     let mut sources = Sources::new(model);

@@ -5,10 +5,11 @@
 //! a fault demands nothing: then a run may go on where the chart would have stopped.
 
 use g7_engine::{Arith, Builtin, Cmp};
-use g7_equations::{Equations, Expr, MemoryId, Stmt, What};
+use g7_equations::{Equations, Expr, Memory, MemoryId, Stmt, What};
 use g7_model::Type;
 
 use super::range::{LONGEST, ROUNDS, Ranges, each, is_whole};
+use crate::model::Model;
 
 /// Nothing reads the memory: all of its values may act alike, those below 0 too.
 pub(crate) const NOTHING: Option<i128> = Some(i128::MIN);
@@ -27,7 +28,7 @@ pub(crate) fn needs(
         if !std::mem::replace(&mut needs.moved, false) {
             break;
         }
-        // What still grows then is told apart as a whole, so that an end comes.
+        // A need that still grows then is told apart as a whole, so that an end comes.
         needs.ends = round > 3 * ROUNDS;
         each(e, &mut |s| needs.statement(s));
         for (_, value) in questions.iter().filter_map(|q| e.questions.get(*q)) {
@@ -37,6 +38,26 @@ pub(crate) fn needs(
     needs.needs
 }
 
+/// The ranges of all memories, with the values from which on those of each act alike. `observed` memories are
+/// told apart as they are.
+pub(crate) fn ranges(e: &Equations, model: &Model<'_>, observed: impl Fn(What) -> bool) -> Ranges {
+    let ranges = Ranges::new(e, model);
+    let first = |m: &Memory| {
+        let exact = observed(m.what) || !is_whole(m.ty) || m.ty == Type::Bool;
+        if exact { None } else { Some(0) }
+    };
+    let first = e.memories.iter().map(first).collect();
+    let all: Vec<usize> = (0..e.questions.len()).collect();
+    let needs = needs(e, &ranges, first, &all, true);
+    let is_clock = |m: &Memory| {
+        matches!(m.what, What::StepScans(_) | What::GroupScans(_))
+            || m.ty == Type::Time && !matches!(m.what, What::Variable(_) | What::Until(_))
+    };
+    let caps = e.memories.iter().zip(&needs);
+    let caps = caps.map(|(m, need)| need.or(is_clock(m).then_some(LONGEST))).collect();
+    ranges.with_caps(caps)
+}
+
 /// The demands of all readers, until they settle.
 struct Needs<'a> {
     e: &'a Equations,
@@ -44,7 +65,7 @@ struct Needs<'a> {
     /// For each memory, the value from which on all may act alike; nothing where they differ.
     needs: Vec<Option<i128>>,
     moved: bool,
-    /// What decides on a fault is read.
+    /// Conditions of faults are read too.
     faults: bool,
     /// A need that is raised becomes that of a memory whose values all differ.
     ends: bool,

@@ -17,7 +17,6 @@ use g7_engine::{Arith, Builtin};
 use g7_equations::{Class, Equations, Expr, MemoryId, Stmt, What, expand};
 use g7_model::Type;
 
-use super::needs::needs;
 use super::word::gcd;
 use crate::model::Model;
 
@@ -81,9 +80,8 @@ pub(crate) struct Ranges {
 }
 
 impl Ranges {
-    /// Those of the memories of equations. `observed` is true for memories that are looked at
-    /// from outside.
-    pub(crate) fn new(e: &Equations, model: &Model<'_>, observed: impl Fn(What) -> bool) -> Ranges {
+    /// Those of the memories of equations, without caps.
+    pub(crate) fn new(e: &Equations, model: &Model<'_>) -> Ranges {
         let first = |m: &g7_equations::Memory| {
             let all = m.init.iter().map(|w| Range::one(number(m.ty, *w)));
             all.reduce(Range::join).unwrap_or(Range::one(0))
@@ -106,7 +104,6 @@ impl Ranges {
             }
         }
         all.settle(e);
-        all.cap(e, observed);
         all
     }
 
@@ -207,21 +204,10 @@ impl Ranges {
         }
     }
 
-    /// How far each memory must be told apart.
-    fn cap(&mut self, e: &Equations, observed: impl Fn(What) -> bool) {
-        let first = |m: &g7_equations::Memory| {
-            let exact = observed(m.what) || !is_whole(m.ty) || m.ty == Type::Bool;
-            if exact { None } else { Some(0) }
-        };
-        let first = e.memories.iter().map(first).collect();
-        let all: Vec<usize> = (0..e.questions.len()).collect();
-        let needs = needs(e, self, first, &all, true);
-        let is_clock = |m: &g7_equations::Memory| {
-            matches!(m.what, What::StepScans(_) | What::GroupScans(_))
-                || m.ty == Type::Time && !matches!(m.what, What::Variable(_) | What::Until(_))
-        };
-        let caps = e.memories.iter().zip(&needs);
-        self.caps = caps.map(|(m, need)| need.or(is_clock(m).then_some(LONGEST))).collect();
+    /// The same, with the values from which on those of each memory act alike.
+    pub(super) fn with_caps(mut self, caps: Vec<Option<i128>>) -> Ranges {
+        self.caps = caps;
+        self
     }
 }
 

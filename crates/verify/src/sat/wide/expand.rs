@@ -34,7 +34,7 @@ pub enum Tries {
     One,
 }
 
-/// What the moves of some states lead to.
+/// The states to which the moves of some states lead.
 #[derive(Default)]
 pub(super) struct Moves {
     /// The next states that differ from the state before, one behind the other.

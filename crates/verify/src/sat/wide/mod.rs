@@ -38,12 +38,12 @@ const SAMPLE: usize = 512;
 /// Most words of a state.
 const WIDEST: usize = 64;
 
-/// What a search has found.
+/// The result of a search.
 #[derive(Clone, Debug)]
 pub struct Wide {
     /// For each signal.
     pub found: Vec<Found>,
-    /// Whether inputs satisfy the constraints in all states.
+    /// States in which no inputs satisfy the constraints in all states.
     pub ends: Ends,
     /// Number of states, the first included.
     pub states: usize,
@@ -74,6 +74,7 @@ pub fn wide(
 }
 
 /// The same; of `together` inputs at most all combinations are tried at once.
+#[allow(clippy::too_many_arguments, reason = "one more than the search that callers see, for tests")]
 fn wide_with(
     system: &System,
     signals: &[Signal],

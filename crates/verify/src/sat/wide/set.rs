@@ -93,7 +93,7 @@ impl Set {
 
     #[inline(always)]
     fn place(&self, hash: u64) -> usize {
-        (u128::from(hash) * self.slots.len() as u128 >> 64) as usize
+        ((u128::from(hash) * self.slots.len() as u128) >> 64) as usize
     }
 
     #[inline(always)]

@@ -1,3 +1,6 @@
+//! The search beside one that tries each combination of inputs by itself, on random systems and on systems with
+//! numbers.
+
 use super::{Tries, Wide, wide, wide_with};
 use crate::layer::Budget;
 use crate::reason::Reason;
