@@ -120,7 +120,7 @@ fn is_simple(t: &Tables) -> bool {
         Receptivity::Code(code) => Some(code),
         _ => None,
     });
-    // All that is evaluated in each pass and whose writes count as no change.
+    // Code that runs in each pass. A pass counts as one without a change even where such code writes a variable.
     let asked = judges.chain(t.events.iter().map(|e| e.event)).chain(t.actions.iter().map(|a| a.condition));
     let mut codes = asked.filter_map(|c| t.code.get(c.start as usize..c.end as usize)).flatten();
     t.counts.is_none()

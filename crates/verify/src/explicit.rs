@@ -1,11 +1,11 @@
 //! The explicit search as a layer: a small search of the whole chart, then of its parts, then again of the
 //! whole as far as the budget allows.
 
-use crate::layer::{Budget, Layer};
+use crate::layer::{Budget, Layer, undecided};
 use crate::model::Model;
 use crate::parts::{divided, jobs, run};
 use crate::question::Question;
-use crate::verdict::{Verdict, is_open};
+use crate::verdict::Verdict;
 
 /// Scans of a search that comes before others.
 const SMALL: usize = 2_000;
@@ -70,7 +70,7 @@ pub(crate) fn answer(
     if !whole(model, questions, answers, &small, threads) {
         return;
     }
-    let found = divided(model, &open(questions, answers), budget, threads);
+    let found = divided(model, &undecided(questions, answers), budget, threads);
     give(answers, found);
     if small.scans < budget.scans {
         whole(model, questions, answers, budget, threads);
@@ -85,15 +85,10 @@ fn whole(
     budget: &Budget<'_>,
     threads: usize,
 ) -> bool {
-    let found = run(model, &jobs(&open(questions, answers), None), budget, threads);
+    let found = run(model, &jobs(&undecided(questions, answers), None), budget, threads);
     let short = found.iter().any(|f| f.short);
     found.into_iter().for_each(|f| give(answers, f.answers));
     short
-}
-
-/// The questions without an answer, with their numbers.
-fn open<'q>(questions: &'q [Question], answers: &[Option<Verdict>]) -> Vec<(usize, &'q Question)> {
-    questions.iter().enumerate().zip(answers).filter(|(_, a)| is_open(a)).map(|(q, _)| q).collect()
 }
 
 fn give(answers: &mut [Option<Verdict>], found: Vec<(usize, Verdict)>) {

@@ -3,7 +3,7 @@
 use crate::model::Model;
 use crate::question::Question;
 use crate::reason::Reason;
-use crate::verdict::Verdict;
+use crate::verdict::{Verdict, is_open};
 
 /// How much a layer may do.
 pub struct Budget<'b> {
@@ -51,4 +51,12 @@ pub trait Layer {
         answers: &mut [Option<Verdict>],
         budget: &Budget<'_>,
     );
+}
+
+/// The questions without an answer, with their numbers.
+pub(crate) fn undecided<'q>(
+    questions: &'q [Question],
+    answers: &[Option<Verdict>],
+) -> Vec<(usize, &'q Question)> {
+    questions.iter().enumerate().zip(answers).filter(|(_, a)| is_open(a)).map(|(q, _)| q).collect()
 }

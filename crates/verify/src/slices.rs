@@ -23,19 +23,19 @@
 #[cfg(test)]
 mod tests;
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use g7_engine::{Addr, Program, State};
 use g7_equations::{Class, Equations, Expr, Memory, MemoryId, Options, Stmt, What, equations};
 
-use crate::layer::{Budget, Layer};
+use crate::layer::{Budget, Layer, undecided};
 use crate::model::Model;
 use crate::question::{Claim, Query, Question};
 use crate::sites::{Site, sites};
 use crate::slice::{Cut, Slice};
 use crate::system::needs::{NOTHING, needs, ranges};
 use crate::system::range::{Ranges, is_whole};
-use crate::verdict::{Evidence, Verdict, is_open};
+use crate::verdict::{Evidence, Verdict};
 
 /// Most steps of a chart whose slices are looked for.
 const LARGE: usize = 2_000;
@@ -59,15 +59,19 @@ impl Layer for Sliced<'_> {
         answers: &mut [Option<Verdict>],
         budget: &Budget<'_>,
     ) {
-        let open: Vec<usize> =
-            (0..questions.len()).filter(|i| answers.get(*i).is_some_and(is_open)).collect();
+        let open = undecided(questions, answers);
         if open.is_empty() || (budget.stop)() {
             return;
         }
         let Some(whole) = Whole::new(model) else { return };
         let mut groups: Vec<(Slice, Vec<usize>)> = Vec::new();
-        for i in open {
-            let Some(slice) = questions.get(i).and_then(|q| whole.slice(&q.claim)) else { continue };
+        let mut known: BTreeMap<Demand, Slice> = BTreeMap::new();
+        for (i, q) in open {
+            if (budget.stop)() {
+                return;
+            }
+            let Some(demand) = whole.demand(&q.claim) else { continue };
+            let slice = known.entry(demand).or_insert_with_key(|d| whole.cut(&d.roots, &d.queries)).clone();
             match groups.iter_mut().find(|(s, _)| *s == slice) {
                 Some((_, list)) => list.push(i),
                 None => groups.push((slice, vec![i])),
@@ -94,6 +98,14 @@ impl Layer for Sliced<'_> {
             }
         }
     }
+}
+
+/// The memories and conditions that a claim asks about, besides the situation. Claims with the same demand have the
+/// same slice.
+#[derive(PartialEq, Eq, PartialOrd, Ord)]
+struct Demand {
+    roots: BTreeSet<MemoryId>,
+    queries: Vec<Query>,
 }
 
 /// True if an answer about a slice is one about the chart.
@@ -135,7 +147,13 @@ impl<'a, 'c> Whole<'a, 'c> {
     }
 
     /// The part of the chart that a claim depends on; `None` where it is about all that changes.
-    pub(crate) fn slice(&self, claim: &Claim) -> Option<Slice> {
+    #[cfg(test)]
+    fn slice(&self, claim: &Claim) -> Option<Slice> {
+        self.demand(claim).map(|d| self.cut(&d.roots, &d.queries))
+    }
+
+    /// The memories and conditions that a claim asks about; `None` where it is about all that changes.
+    fn demand(&self, claim: &Claim) -> Option<Demand> {
         let mut queries: Vec<Query> = self.model.assume.clone();
         let mut roots = BTreeSet::new();
         match claim {
@@ -158,10 +176,10 @@ impl<'a, 'c> Whole<'a, 'c> {
                 let is_note = |(_, m): &(MemoryId, &Memory)| matches!(m.what, What::Conflict(_));
                 roots.extend(self.memories().filter(is_note).map(|(id, _)| id));
             }
-            // A fault is no answer to "leads to", but may end the run that leads on.
+            // A run that leads on may meet a fault, which a slice may not have. `faults.rs` asks for faults.
             Claim::LeadsTo { .. } | Claim::NoFault => return None,
         }
-        Some(self.cut(&roots, &queries))
+        Some(Demand { roots, queries })
     }
 
     /// For each fault of the equations the part of the chart that it depends on, each part once; `None` where

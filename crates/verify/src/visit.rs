@@ -2,7 +2,7 @@
 
 use crate::layer::Budget;
 use crate::model::Model;
-use crate::sat::{Tries, wide};
+use crate::sat::{Tries, Wanted, wide};
 use crate::scene::{Tried, Until};
 use crate::search::Search;
 use crate::system::{Observed, system};
@@ -40,7 +40,8 @@ pub fn visit(model: &Model<'_>, budget: &Budget<'_>, tried: Tried) -> Visited {
 /// searched so. The number of scans that lead to the farthest state is counted as [`visit`] does.
 pub fn visit_bits(model: &Model<'_>, budget: &Budget<'_>, tries: Tries, threads: usize) -> Option<Visited> {
     let translated = system(model, &[], Observed::Asked);
-    let seen = wide(&translated.system, &[], &translated.passes, true, tries, budget, threads)?;
+    let wanted = Wanted { all: true, tries, ..Wanted::of(&[], &translated.passes, threads) };
+    let seen = wide(&translated.system, &wanted, budget)?;
     let open = seen.open.map(|reason| Open { scans: seen.depth, states: seen.states, reason });
     let [bytes, runs] = seen.bytes;
     Some(Visited { states: seen.states, scans: seen.scans, depth: seen.depth, bytes, runs, open })

@@ -6,7 +6,7 @@ use g7_engine::{State, scan};
 use crate::asked::Asking;
 use crate::explicit::threads;
 use crate::explore::Move;
-use crate::layer::{Budget, Layer};
+use crate::layer::{Budget, Layer, undecided};
 use crate::look::replay;
 use crate::model::Model;
 use crate::question::{Claim, Question};
@@ -17,7 +17,7 @@ use crate::sat::graph::Signal;
 use crate::sat::simulate::Trace;
 use crate::sat::stays::is_trap;
 use crate::sat::traps::{Clauses, Trap, Way, traps};
-use crate::sat::wide::{Tries, wide};
+use crate::sat::wide::{Wanted, wide};
 use crate::system::{Asked, Follows, Observed, Translated, system};
 use crate::verdict::{Certificate, Evidence, Open, Run, Verdict, is_open};
 
@@ -55,9 +55,8 @@ impl Layer for Satisfiability {
         answers: &mut [Option<Verdict>],
         budget: &Budget<'_>,
     ) {
-        let open: Vec<usize> =
-            (0..questions.len()).filter(|i| answers.get(*i).is_some_and(is_open)).collect();
-        let mine: Vec<Question> = open.iter().filter_map(|i| questions.get(*i)).cloned().collect();
+        let (open, mine): (Vec<usize>, Vec<Question>) =
+            undecided(questions, answers).into_iter().map(|(i, q)| (i, q.clone())).unzip();
         // A plant is no part of the system of bits.
         if mine.is_empty() || model.plant.is_some() {
             return;
@@ -193,9 +192,10 @@ impl Work<'_> {
         if open.is_empty() || turn < FEWEST || (self.budget.stop)() {
             return None;
         }
-        let wanted: Vec<Signal> = open.iter().filter_map(|i| signals.get(*i)).copied().collect();
+        let signals: Vec<Signal> = open.iter().filter_map(|i| signals.get(*i)).copied().collect();
+        let wanted = Wanted::of(&signals, &t.passes, threads());
         let budget = Budget { scans: left, ..*self.budget };
-        let seen = wide(&t.system, &wanted, &t.passes, false, Tries::All, &budget, threads())?;
+        let seen = wide(&t.system, &wanted, &budget)?;
         for (i, new) in open.into_iter().zip(seen.found) {
             if let Some(slot) = found.get_mut(i) {
                 *slot = match (&*slot, new) {

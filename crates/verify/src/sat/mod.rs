@@ -55,4 +55,5 @@ pub(crate) use joined::{join, mapped};
 pub(crate) use kept::kept;
 pub use layer::Satisfiability;
 pub use simulate::{Trace, Values, evaluate, shows};
-pub use wide::{Tries, Wide, wide};
+pub use wide::Tries;
+pub(crate) use wide::{Wanted, wide};

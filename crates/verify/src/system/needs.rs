@@ -28,7 +28,7 @@ pub(crate) fn needs(
         if !std::mem::replace(&mut needs.moved, false) {
             break;
         }
-        // A need that still grows then is told apart as a whole, so that an end comes.
+        // After so many rounds a need that still grows becomes "all values differ", so that the loop ends.
         needs.ends = round > 3 * ROUNDS;
         each(e, &mut |s| needs.statement(s));
         for (_, value) in questions.iter().filter_map(|q| e.questions.get(*q)) {
@@ -108,7 +108,8 @@ impl Needs<'_> {
         }
     }
 
-    /// True if a statement does something that is read.
+    /// True if some demand is made of a memory that the statement writes, or if it may leave a loop or, where faults
+    /// are read, end the scan.
     fn matters(&self, s: &Stmt) -> bool {
         match s {
             Stmt::Set(m, _) | Stmt::SetElement(m, ..) => self.need(*m) != NOTHING,

@@ -32,11 +32,11 @@ mod sights;
 pub(crate) mod tests;
 mod turns;
 
-use crate::layer::{Budget, Layer};
+use crate::layer::{Budget, Layer, undecided};
 use crate::model::Model;
 use crate::monitor::has_memory;
 use crate::question::Question;
-use crate::verdict::{Verdict, is_open};
+use crate::verdict::Verdict;
 use search::Search;
 
 /// The search by zones as a layer. It leaves charts without times, and those with a plant, to others.
@@ -58,10 +58,8 @@ impl Layer for Zones {
         if model.plant.is_some() {
             return;
         }
-        let open = |a: &Option<Verdict>| is_open(a);
-        let rows =
-            || questions.iter().enumerate().zip(answers.iter()).filter(|(_, a)| open(a)).map(|(q, _)| q);
-        let (alone, together): (Vec<_>, Vec<_>) = rows().partition(|(_, q)| has_memory(&q.claim));
+        let rows = undecided(questions, answers).into_iter();
+        let (alone, together): (Vec<_>, Vec<_>) = rows.partition(|(_, q)| has_memory(&q.claim));
         let groups = std::iter::once(together).chain(alone.into_iter().map(|q| vec![q]));
         let searches = groups.filter(|g| !g.is_empty()).filter_map(|g| Search::new(model, budget, g));
         let found: Vec<(usize, Verdict)> = searches.flat_map(Search::run).collect();

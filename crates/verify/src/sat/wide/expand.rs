@@ -19,20 +19,10 @@
 
 use super::lanes::{LANES, NONE, bit, both, first, gather, lanes_of, spread};
 use super::program::{Open, Plain, Program};
+use super::wanted::Tries;
 
-/// Inputs of which all combinations are tried at once, at most.
-pub(super) const TOGETHER: usize = 6;
 /// Most splits for one state; one that needs more has too many combinations.
 const MOST: u32 = 1 << 12;
-
-/// Which inputs are tried.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Tries {
-    /// All combinations that matter.
-    All,
-    /// At most one input is 1.
-    One,
-}
 
 /// The states to which the moves of some states lead.
 #[derive(Default)]
@@ -45,10 +35,10 @@ pub(super) struct Moves {
     pub(super) scans: usize,
     /// For each signal that is asked for: the place of the first state that shows it, and the inputs.
     pub(super) shown: Vec<Option<(u32, Vec<u64>)>>,
-    /// The place of the first state in which no inputs satisfy the constraints.
-    pub(super) stuck: Option<u32>,
-    /// The place of a state with too many combinations.
-    pub(super) many: Option<u32>,
+    /// Some state has no inputs that satisfy the constraints.
+    pub(super) is_stuck: bool,
+    /// Some state has too many combinations.
+    pub(super) many: bool,
 }
 
 impl Moves {
@@ -56,7 +46,7 @@ impl Moves {
     pub(super) fn clear(&mut self) {
         self.rows.clear();
         self.from.clear();
-        (self.scans, self.stuck, self.many) = (0, None, None);
+        (self.scans, self.is_stuck, self.many) = (0, false, false);
         self.shown.clear();
     }
 }
@@ -81,8 +71,8 @@ struct Cube<'c> {
     value: &'c [u64],
 }
 
-/// A run's target: the inputs that lead from one state to another are looked for.
-struct Wanted {
+/// A state that is looked for behind another one, and the inputs of the scan that leads to it.
+struct Target {
     row: Vec<u64>,
     inputs: Option<Vec<u64>>,
 }
@@ -101,7 +91,7 @@ struct Scans {
 pub(super) struct Expander<'p> {
     stages: &'p [Program],
     tries: Tries,
-    /// [`TOGETHER`]; tests try fewer.
+    /// As in [`super::wanted::Wanted`].
     together: usize,
     /// Words of a state, and of the inputs.
     width: usize,
@@ -118,9 +108,9 @@ pub(super) struct Expander<'p> {
     now: Vec<u64>,
     /// For each state: some inputs satisfy the constraints.
     fed: Vec<bool>,
-    /// For each state: its splits so far.
+    /// For each state: how often one of its cubes was split so far.
     splits: Vec<u32>,
-    wanted: Option<Wanted>,
+    target: Option<Target>,
 }
 
 impl<'p> Expander<'p> {
@@ -143,7 +133,7 @@ impl<'p> Expander<'p> {
             now: Vec::new(),
             fed: Vec::new(),
             splits: Vec::new(),
-            wanted: None,
+            target: None,
         }
     }
 
@@ -160,16 +150,14 @@ impl<'p> Expander<'p> {
         for stage in 0..self.stages.len() {
             self.flush(stage, moves);
         }
-        if let Some(k) = self.fed.iter().position(|fed| !fed) {
-            moves.stuck = moves.stuck.or(Some(k as u32));
-        }
+        moves.is_stuck |= self.fed.contains(&false);
     }
 
     /// The inputs with which one state leads to another.
     pub(super) fn between(&mut self, from: &[u64], to: &[u64]) -> Option<Vec<u64>> {
-        self.wanted = Some(Wanted { row: to.to_vec(), inputs: None });
+        self.target = Some(Target { row: to.to_vec(), inputs: None });
         self.expand(from, &mut Moves::default());
-        self.wanted.take()?.inputs
+        self.target.take()?.inputs
     }
 
     /// All combinations that matter.
@@ -261,7 +249,7 @@ impl<'p> Expander<'p> {
         } else if self.tries == Tries::One {
             self.each_alone(stage, cube, needs, states, moves);
         } else if !self.may_split(cube.state) {
-            moves.many = moves.many.or(Some(cube.state));
+            moves.many = true;
             // It has combinations; whether any of them satisfies the constraints is not asked.
             self.feed(cube.state);
         } else if let (Some(place), Some(waiting)) = (highest(needs), self.waiting.get_mut(stage)) {
@@ -345,7 +333,7 @@ impl<'p> Expander<'p> {
                 *shown = lanes_of(&seen).next().map(|lane| (scans.state_of(lane), scans.inputs_of(lane)));
             }
             lanes_of(&valid).for_each(|lane| self.feed(scans.state_of(lane)));
-            let changed = match self.wanted {
+            let changed = match self.target {
                 Some(_) => valid,
                 None => both(valid, plain.moved(p), |a, b| a & b),
             };
@@ -358,10 +346,10 @@ impl<'p> Expander<'p> {
             }
         }
         for lane in lanes_of(&changed) {
-            if let Some(wanted) = self.wanted.as_mut().filter(|w| w.inputs.is_none())
-                && self.next.iter().filter_map(|w| w.get(lane)).eq(&wanted.row)
+            if let Some(target) = self.target.as_mut().filter(|w| w.inputs.is_none())
+                && self.next.iter().filter_map(|w| w.get(lane)).eq(&target.row)
             {
-                wanted.inputs = Some(scans.inputs_of(lane));
+                target.inputs = Some(scans.inputs_of(lane));
             }
             moves.rows.extend(self.next.iter().filter_map(|w| w.get(lane)));
             moves.from.push(scans.state_of(lane));

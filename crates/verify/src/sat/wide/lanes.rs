@@ -14,7 +14,7 @@ pub(super) const NONE: Lanes = [0; WORDS];
 /// Combines two bits of each pattern.
 #[inline(always)]
 pub(super) fn both(a: Lanes, b: Lanes, of: impl Fn(u64, u64) -> u64) -> Lanes {
-    // A loop with a number is the form that becomes vector instructions everywhere.
+    // The compiler makes vector instructions of a loop over numbers; of iterators over arrays it often does not.
     let (mut out, mut k) = (NONE, 0);
     while k < WORDS {
         out[k] = of(a[k], b[k]);

@@ -3,7 +3,7 @@
 //!
 //! ```text
 //! System, Signals -> program (gates in order) -> expand (inputs that matter, 512 scans at a time: lanes)
-//!                                             -> search (levels, threads) -> set
+//!                                             -> search (levels, threads) -> set -> Wide
 //! ```
 //!
 //! # Invariants
@@ -21,6 +21,7 @@ mod search;
 mod set;
 #[cfg(test)]
 mod tests;
+mod wanted;
 
 use crate::layer::Budget;
 use crate::reason::Reason;
@@ -28,10 +29,10 @@ use crate::sat::dead::Ends;
 use crate::sat::decide::{Found, Proof};
 use crate::sat::graph::{Signal, System};
 use crate::sat::simulate::{Trace, evaluate, shows};
-use expand::TOGETHER;
-pub use expand::Tries;
 use program::Program;
 use search::Search;
+pub use wanted::Tries;
+pub(crate) use wanted::Wanted;
 
 /// States of which moves at random are tried again.
 const SAMPLE: usize = 512;
@@ -40,51 +41,26 @@ const WIDEST: usize = 64;
 
 /// The result of a search.
 #[derive(Clone, Debug)]
-pub struct Wide {
+pub(crate) struct Wide {
     /// For each signal.
-    pub found: Vec<Found>,
+    pub(crate) found: Vec<Found>,
     /// States in which no inputs satisfy the constraints in all states.
-    pub ends: Ends,
+    pub(crate) ends: Ends,
     /// Number of states, the first included.
-    pub states: usize,
+    pub(crate) states: usize,
     /// Number of scans made.
-    pub scans: usize,
+    pub(crate) scans: usize,
     /// Levels that were expanded: fewest steps to the state that is farthest away, and one more.
-    pub depth: usize,
+    pub(crate) depth: usize,
     /// Bytes in which the states are kept and found, and those for the runs.
-    pub bytes: [usize; 2],
+    pub(crate) bytes: [usize; 2],
     /// Why not all states were visited.
-    pub open: Option<Reason>,
+    pub(crate) open: Option<Reason>,
 }
 
-/// Searches all states. `all`: states are told apart by all latches, not only by those on which the signals
-/// depend, and the search goes on when all signals are shown. Guards are signals of which one that is 0 leaves
-/// little to do: that a scan has a second pass, a third, and so on. Nothing where the system has states that begin
-/// with any value, or too many bits.
-pub fn wide(
-    system: &System,
-    signals: &[Signal],
-    guards: &[Signal],
-    all: bool,
-    tries: Tries,
-    budget: &Budget<'_>,
-    threads: usize,
-) -> Option<Wide> {
-    wide_with(system, signals, guards, all, tries, budget, threads, TOGETHER)
-}
-
-/// The same; of `together` inputs at most all combinations are tried at once.
-#[allow(clippy::too_many_arguments, reason = "one more than the search that callers see, for tests")]
-fn wide_with(
-    system: &System,
-    signals: &[Signal],
-    guards: &[Signal],
-    all: bool,
-    tries: Tries,
-    budget: &Budget<'_>,
-    threads: usize,
-    together: usize,
-) -> Option<Wide> {
+/// Searches all states. Nothing where the system has states that begin with any value, or too many bits.
+pub(crate) fn wide(system: &System, wanted: &Wanted<'_>, budget: &Budget<'_>) -> Option<Wide> {
+    let Wanted { signals, guards, all, tries, .. } = *wanted;
     let stages = Program::stages(system, signals, guards, all);
     let program = stages.last()?;
     let mut start = vec![0u64; program.latches.len() / 64 + 1];
@@ -95,7 +71,7 @@ fn wide_with(
     if start.len() > WIDEST {
         return None;
     }
-    let mut search = Search::new(&stages, &start, tries, threads, together);
+    let mut search = Search::new(&stages, &start, wanted);
     search.run(budget, all);
     if search.is_whole() && tries == Tries::All && !is_closed(system, signals, program, &search) {
         search.open = Some(Reason::NotRepeated);

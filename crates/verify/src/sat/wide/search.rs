@@ -1,12 +1,14 @@
 //! The search: level by level, each level by as many threads as there are shares of the set.
 //!
-//! Each share owns the states whose hashes fall to it. In a round each thread expands some states of its
-//! share, then takes in what all threads have found for it. Rounds and levels are barriers, so the set of
+//! The hash of a state says to which share it belongs; each share has a thread. In a round each thread makes the moves
+//! of some states of its share. Then it adds to its share those new states that belong there, whichever thread has
+//! found them. All threads wait for each other at the end of each half of a round. Rounds and levels are barriers, so the set of
 //! states, the levels and the lengths of the runs do not depend on the number of threads.
 
-use super::expand::{Expander, Moves, Tries};
+use super::expand::{Expander, Moves};
 use super::program::Program;
 use super::set::{Set, hash_of};
+use super::wanted::{Tries, Wanted};
 use crate::layer::Budget;
 use crate::reason::Reason;
 
@@ -54,15 +56,9 @@ pub(super) struct Search<'p> {
 }
 
 impl<'p> Search<'p> {
-    /// A search from one state, by so many threads. `together`: inputs of which all combinations are tried at
-    /// once, at most.
-    pub(super) fn new(
-        stages: &'p [Program],
-        start: &[u64],
-        tries: Tries,
-        threads: usize,
-        together: usize,
-    ) -> Search<'p> {
+    /// A search from one state.
+    pub(super) fn new(stages: &'p [Program], start: &[u64], wanted: &Wanted<'_>) -> Search<'p> {
+        let Wanted { tries, threads, together, .. } = *wanted;
         let share = || Share {
             set: Set::new(stages.first().map_or(0, |p| p.latches.len())),
             parents: Vec::new(),
@@ -90,8 +86,8 @@ impl<'p> Search<'p> {
         (sum(|s| s.set.bytes()), sum(|s| 4 * s.parents.capacity()))
     }
 
-    /// Expands level by level until all signals are shown, all states are expanded, or the budget is used up.
-    /// With `all`, signals that are shown do not end it.
+    /// Makes the moves of all states, level by level. Ends when no state is left, when the budget is used up, or, but
+    /// for `all`, when all signals are shown.
     pub(super) fn run(&mut self, budget: &Budget<'_>, all: bool) {
         let mut hands: Vec<Expander<'p>> = self.shares.iter().map(|_| self.expander()).collect();
         while self.shares.iter().any(|s| !s.level.is_empty()) {
@@ -205,7 +201,7 @@ impl<'p> Search<'p> {
 
 /// The moves of some states, each at the share that owns the state behind it.
 struct Found {
-    /// For each share: states, and those before them.
+    /// For each share: the states that belong there, and for each of them the state from which it was found.
     rows: Vec<(Vec<u64>, Vec<Name>)>,
     scans: usize,
     shown: Vec<Option<Sight>>,
@@ -245,8 +241,8 @@ impl Share {
                 let sight = new.take().map(|(last, inputs)| Sight { last: name(last), inputs });
                 *shown = shown.take().or(sight);
             }
-            all.is_stuck |= moves.stuck.is_some();
-            all.many |= moves.many.is_some();
+            all.is_stuck |= moves.is_stuck;
+            all.many |= moves.many;
             start += count;
         }
         all

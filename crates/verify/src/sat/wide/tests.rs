@@ -1,7 +1,7 @@
 //! The search beside one that tries each combination of inputs by itself, on random systems and on systems with
 //! numbers.
 
-use super::{Tries, Wide, wide, wide_with};
+use super::{Tries, Wanted, Wide, wide};
 use crate::layer::Budget;
 use crate::reason::Reason;
 use crate::sat::brute::{Random, shortest, system};
@@ -98,7 +98,8 @@ fn runs_are_the_shortest_and_no_state_is_left_out() {
         let (s, bad) = system(seed);
         for (together, threads) in [(0, 1), (6, 1), (1, 3)] {
             let signals = [bad, !bad];
-            let Some(seen) = wide_with(&s, &signals, &[bad], false, Tries::All, &budget(), threads, together)
+            let Some(seen) =
+                wide(&s, &Wanted { together, ..Wanted::of(&signals, &[bad], threads) }, &budget())
             else {
                 let inside = cone(&s, s.constraints.iter().copied().chain(signals));
                 let is_in = |l: &Signal| inside[l.node() as usize];
@@ -131,8 +132,12 @@ fn many_inputs_are_split_where_they_matter() {
         let (s, signals) = numbers(seed);
         let (states, first, stuck) = by_hand(&s, &signals);
         for (together, threads) in [(0, 1), (6, 1), (3, 2)] {
-            let w = wide_with(&s, &signals, &signals, true, Tries::All, &budget(), threads, together)
-                .expect("it is small");
+            let w = wide(
+                &s,
+                &Wanted { all: true, together, ..Wanted::of(&signals, &signals, threads) },
+                &budget(),
+            )
+            .expect("it is small");
             assert_eq!(w.states, states, "seed {seed}");
             let mine: Vec<_> = signals.iter().zip(&w.found).map(|(s1, f)| steps(&s, *s1, f)).collect();
             assert_eq!(mine, first, "seed {seed}");
@@ -156,7 +161,11 @@ fn at_most_one_input_is_1_if_it_is_asked_for() {
     let l = s.latch(false.into());
     let both = s.graph.and(a, b);
     s.set_next(l, both);
-    let of = |tries| wide(&s, &[l], &[], true, tries, &budget(), 1).expect("it is small").states;
+    let of = |tries| {
+        wide(&s, &Wanted { all: true, tries, ..Wanted::of(&[l], &[], 1) }, &budget())
+            .expect("it is small")
+            .states
+    };
     assert_eq!((of(Tries::All), of(Tries::One)), (2, 1));
 }
 
@@ -172,7 +181,7 @@ fn a_budget_that_is_used_up_is_no_proof() {
         carry = over;
     }
     let of = |budget: &Budget<'_>| -> Wide {
-        wide(&s, &[carry], &[], false, Tries::All, budget, 2).expect("it is small")
+        wide(&s, &Wanted::of(&[carry], &[], 2), budget).expect("it is small")
     };
     assert_eq!(steps(&s, carry, &of(&budget()).found[0]), Some(1024));
     let few = Budget { states: 100, ..budget() };

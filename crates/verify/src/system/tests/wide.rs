@@ -14,7 +14,7 @@ use crate::ask::Asked;
 use crate::explicit::answer;
 use crate::layer::Budget;
 use crate::model::Model;
-use crate::sat::{Ends, Found, Signal, Tries, wide};
+use crate::sat::{Ends, Found, Signal, Wanted, wide};
 use crate::system::{Observed, system};
 use crate::verdict::{Evidence, Verdict};
 
@@ -44,7 +44,7 @@ fn compare(asked: &Asked, text: &str, agreed: &mut Agreed) {
     let signals = t.asked.iter().flat_map(|a| a.iter().flat_map(|a| [a.bad, a.unsure]));
     let signals: Vec<Signal> = signals.collect::<BTreeSet<_>>().into_iter().collect();
     let threads = 1 + asked.questions.len() % 2;
-    let Some(seen) = wide(&t.system, &signals, &t.passes, false, Tries::All, &budget, threads) else {
+    let Some(seen) = wide(&t.system, &Wanted::of(&signals, &t.passes, threads), &budget) else {
         return;
     };
     let found = |s: Signal| signals.binary_search(&s).ok().and_then(|at| seen.found.get(at));
