@@ -1,6 +1,7 @@
 // A browser and a page for the tests: the built page on a server of its own, or `g7 serve`.
 import assert from 'node:assert/strict';
-import { spawn } from 'node:child_process';
+import { spawn, type ChildProcess } from 'node:child_process';
+import { once } from 'node:events';
 import { mkdtempSync, readFileSync, rmSync } from 'node:fs';
 import { readFile } from 'node:fs/promises';
 import { createServer } from 'node:http';
@@ -77,12 +78,21 @@ export async function serve(folder: string, ...more: string[]): Promise<Site> {
     child.once('error', failed);
     child.once('exit', (code) => failed(new Error(`g7 serve ended with ${code}: ${said}`)));
   });
-  const end = (how: NodeJS.Signals) =>
-    new Promise<void>((done) => {
-      child.once('exit', () => done());
-      child.kill(how);
-    });
-  return { url, stop: () => end('SIGTERM'), crash: () => end('SIGKILL') };
+  return { url, stop: async () => void (await ended(child, 'SIGTERM')), crash: async () => void (await ended(child, 'SIGKILL')) };
+}
+
+/** Ends a program; its exit code. One that does not end within 20 s is killed, and the test fails instead of waiting for ever. */
+export async function ended(child: ChildProcess, how: NodeJS.Signals): Promise<number | null> {
+  if (child.exitCode !== null || child.signalCode !== null) return child.exitCode;
+  const exit = once(child, 'exit');
+  child.kill(how);
+  // A frozen program hears the signal only when it goes on.
+  child.kill('SIGCONT');
+  const late = setTimeout(() => child.kill('SIGKILL'), 20_000);
+  const [code, signal] = await exit;
+  clearTimeout(late);
+  if (signal === 'SIGKILL' && how !== 'SIGKILL') assert.fail(`${child.spawnargs.join(' ')} does not end by ${how}`);
+  return code;
 }
 
 /** Debian's Chromium without access to the network. */

@@ -5,7 +5,7 @@ import { mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { createServer } from 'node:net';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
-import { program, STATE } from './lib';
+import { ended, program, STATE } from './lib';
 
 const CHART = `profile iec60848
 input start : BOOL at %I0.0 "start button"
@@ -159,13 +159,6 @@ async function begun(args: string[], cwd: string, from: 'stdout' | 'stderr', wha
   return { child, found };
 }
 
-const ended = (child: ChildProcess, how: NodeJS.Signals) =>
-  new Promise<number | null>((done) => {
-    if (child.exitCode !== null || child.signalCode !== null) return done(child.exitCode);
-    child.once('exit', (code) => done(code));
-    child.kill(how);
-  });
-
 /** The machine, with or without its plant. */
 export class Machine {
   url = '';
@@ -274,13 +267,11 @@ const BENCH = new URL('../../demo/bench.mjs', import.meta.url).pathname;
 /** The bench of `make online-demo`. */
 export async function bench(): Promise<{ url: string; end(): Promise<void> }> {
   const child = spawn('node', [BENCH, program(), '--no-open'], { stdio: ['ignore', 'pipe', 'inherit'], env: { ...process.env, XDG_STATE_HOME: STATE } });
-  const gone = new Promise<void>((done) => child.once('exit', () => done()));
   const url = await new Promise<string>((found) => child.stdout.once('data', (bytes: Buffer) => found(String(bytes).split('\n')[0] ?? '')));
   return {
     url,
     async end() {
-      child.kill('SIGINT');
-      await gone;
+      await ended(child, 'SIGINT');
     },
   };
 }

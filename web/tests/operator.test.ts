@@ -252,6 +252,8 @@ test('a lost connection is seen at once, and no value looks present', async () =
     assert.equal(await page.getByRole('button', { name: /^Force / }).first().isEnabled(), false);
     assert.equal(await page.locator('.live path.on').getAttribute('d'), '', 'no step is drawn as active');
   };
+  // The drawing comes from the server as well, and must be there before the server is silent.
+  await page.locator('.live path.on:not([d=""])').waitFor({ state: 'attached' });
   // The network holds everything back: nothing is closed, nothing comes.
   machine.freeze(true);
   await gone();
