@@ -18,7 +18,7 @@ use crate::sat::simulate::Trace;
 use crate::sat::stays::is_trap;
 use crate::sat::traps::{Clauses, Trap, Way, traps};
 use crate::sat::wide::{Wanted, wide};
-use crate::system::{Asked, Follows, Observed, Translated, system};
+use crate::system::{Asked, Follows, Observed, Translated, system_until};
 use crate::verdict::{Certificate, Evidence, Open, Run, Verdict, is_open};
 
 /// Scans of the search for all states in the turn [`FEWEST`], of a system with [`SMALL`] nodes; larger ones have
@@ -61,7 +61,7 @@ impl Layer for Satisfiability {
         if mine.is_empty() || model.plant.is_some() {
             return;
         }
-        let translated = system(model, &mine, Observed::Asked);
+        let Some(translated) = system_until(model, &mine, Observed::Asked, budget.stop) else { return };
         let effort = Effort { bytes: budget.bytes, turns: self.turns, stop: budget.stop };
         let work = Work { model, translated: &translated, effort: &effort, budget };
         for (i, verdict) in open.iter().zip(work.verdicts(&mine)) {

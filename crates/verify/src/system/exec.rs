@@ -25,6 +25,8 @@ use crate::sat::{Graph, Signal, System};
 const ROUNDS: usize = 64;
 /// Nodes beyond which nothing is unrolled further.
 pub(crate) const NODES: usize = 150_000;
+/// Statements between two questions to the caller if it is to go on.
+const STATEMENTS: u32 = 256;
 
 /// Executes the statements of a scan on signals in place of values.
 pub(crate) struct Exec<'a> {
@@ -46,6 +48,10 @@ pub(crate) struct Exec<'a> {
     pub(crate) uncovered: Vec<Signal>,
     pub(crate) unknown: Vec<Unknown>,
     about: About,
+    /// True as soon as the caller wants no more; the system is then not whole, and of no use.
+    pub(super) stop: &'a (dyn Fn() -> bool + Sync),
+    given_up: bool,
+    statements: u32,
 }
 
 impl<'a> Exec<'a> {
@@ -68,7 +74,20 @@ impl<'a> Exec<'a> {
             uncovered: Vec::new(),
             unknown: Vec::new(),
             about: About::Nothing,
+            stop: &|| false,
+            given_up: false,
+            statements: 0,
         }
+    }
+
+    /// The same, given up as soon as the caller wants no more.
+    pub(super) fn until(self, stop: &'a (dyn Fn() -> bool + Sync)) -> Self {
+        Exec { stop, ..self }
+    }
+
+    /// True once the caller has wanted no more.
+    pub(super) fn given_up(&self) -> bool {
+        self.given_up
     }
 
     pub(crate) fn g(&mut self) -> &mut Graph {
@@ -133,7 +152,9 @@ impl<'a> Exec<'a> {
     /// Statements, one after the other.
     pub(crate) fn all(&mut self, list: &[Stmt]) {
         for s in list {
-            if self.run == Signal::FALSE || self.inside == Signal::FALSE {
+            self.statements = self.statements.wrapping_add(1);
+            self.given_up |= self.statements.is_multiple_of(STATEMENTS) && (self.stop)();
+            if self.given_up || self.run == Signal::FALSE || self.inside == Signal::FALSE {
                 break;
             }
             self.statement(s);

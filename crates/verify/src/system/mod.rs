@@ -157,6 +157,27 @@ fn cone(system: &System, of: &[Signal]) -> Vec<bool> {
 
 /// The system of a chart, with the signals of its questions.
 pub(crate) fn system(model: &Model<'_>, questions: &[Question], observed: Observed) -> Translated {
+    translate(model, questions, observed, &|| false).0
+}
+
+/// The same, or nothing if the caller wants no more before the system is whole.
+pub(crate) fn system_until(
+    model: &Model<'_>,
+    questions: &[Question],
+    observed: Observed,
+    stop: &(dyn Fn() -> bool + Sync),
+) -> Option<Translated> {
+    let (translated, whole) = translate(model, questions, observed, stop);
+    whole.then_some(translated)
+}
+
+/// The system, and true if it is whole: the caller has not wanted to stop.
+fn translate(
+    model: &Model<'_>,
+    questions: &[Question],
+    observed: Observed,
+    stop: &(dyn Fn() -> bool + Sync),
+) -> (Translated, bool) {
     let e = equations(model.compiled, Options { conflicts: true, runs: true, ..Options::default() });
     let t = model.compiled.program.tables();
     let ranges = needs::ranges(&e, model, |what| is_observed(model, questions, observed, what));
@@ -171,7 +192,7 @@ pub(crate) fn system(model: &Model<'_>, questions: &[Question], observed: Observ
         Value::Real(_) | Value::Text(_) => None,
     };
     let candidates = candidates(t, latch);
-    let mut x = Exec::new(&e, model, cells, system);
+    let mut x = Exec::new(&e, model, cells, system).until(stop);
     for (id, m, at) in moves::inputs(&e) {
         let value = sources.memory(model, &mut x.system, m, at);
         x.put(id, value);
@@ -217,9 +238,10 @@ pub(crate) fn system(model: &Model<'_>, questions: &[Question], observed: Observ
     let caps = (0..e.memories.len() as u32).map(|m| ranges.cap_of(MemoryId(m))).collect();
     let (cells, faults) = (x.cells().to_vec(), x.faults.clone());
     let (system, unknown) = (std::mem::take(&mut x.system), std::mem::take(&mut x.unknown));
+    let whole = !x.given_up();
     drop(x);
     let shown = Shown { equations: e, cells, caps };
-    Translated {
+    let translated = Translated {
         system,
         asked,
         follows,
@@ -235,7 +257,8 @@ pub(crate) fn system(model: &Model<'_>, questions: &[Question], observed: Observ
         shown,
         sources,
         unknown,
-    }
+    };
+    (translated, whole)
 }
 
 /// The sequences of `places.rs`, as a scan begins: two steps of one are not active at once, and from the first scan

@@ -8,7 +8,7 @@ use g7_engine::{Arith, Builtin, Cmp};
 use g7_equations::{Equations, Expr, Memory, MemoryId, Stmt, What};
 use g7_model::Type;
 
-use super::range::{LONGEST, ROUNDS, Ranges, each, is_whole};
+use super::range::{LONGEST, ROUNDS, Ranges, all, is_whole};
 use crate::model::Model;
 
 /// Nothing reads the memory: all of its values may act alike, those below 0 too.
@@ -30,7 +30,9 @@ pub(crate) fn needs(
         }
         // After so many rounds a need that still grows becomes "all values differ", so that the loop ends.
         needs.ends = round > 3 * ROUNDS;
-        each(e, &mut |s| needs.statement(s));
+        for s in all(e) {
+            needs.statement(s);
+        }
         for (_, value) in questions.iter().filter_map(|q| e.questions.get(*q)) {
             needs.demand(value, None);
         }
@@ -87,38 +89,59 @@ impl Needs<'_> {
         *old = new;
     }
 
-    fn statement(&mut self, s: &Stmt) {
+    /// Makes the demands of a statement and of all within it. True if some demand is made of a memory that it writes,
+    /// or if it may leave a loop or, where faults are read, end the scan: only then its conditions are read. All in
+    /// one walk, since statements may be nested some hundreds deep.
+    fn statement(&mut self, s: &Stmt) -> bool {
         match s {
-            _ if !self.matters(s) => {}
-            Stmt::Set(m, value) => self.demand(value, self.need(*m)),
-            Stmt::SetElement(m, index, value) => {
-                self.demand(index, None);
-                self.demand(value, self.need(*m));
-            }
-            Stmt::If(condition, ..) => self.demand(condition, None),
-            Stmt::Call(_, memories) => {
-                for (i, m) in memories.iter().enumerate() {
-                    // A timer asks whether its length is over, and shows no time beyond it.
-                    let is_clock = i == 4 && self.e.memory(*m).is_some_and(|m| is_of_clock(self.e, m.what));
-                    let length = memories.get(1).and_then(|m| self.bound(&Expr::Read(*m)));
-                    self.raise(*m, if is_clock { length.map(|l| l.max(0)) } else { None });
+            Stmt::Set(m, value) => {
+                let need = self.need(*m);
+                let matters = need != NOTHING;
+                if matters {
+                    self.demand(value, need);
                 }
+                matters
             }
-            Stmt::Loop(_) | Stmt::Exit | Stmt::Fault(..) | Stmt::About(_) => {}
-        }
-    }
-
-    /// True if some demand is made of a memory that the statement writes, or if it may leave a loop or, where faults
-    /// are read, end the scan.
-    fn matters(&self, s: &Stmt) -> bool {
-        match s {
-            Stmt::Set(m, _) | Stmt::SetElement(m, ..) => self.need(*m) != NOTHING,
-            Stmt::Call(_, memories) => memories.iter().any(|m| self.need(*m) != NOTHING),
-            Stmt::If(_, a, b) => a.iter().chain(b).any(|s| self.matters(s)),
-            Stmt::Loop(body) => body.iter().any(|s| self.matters(s)),
+            Stmt::SetElement(m, index, value) => {
+                let need = self.need(*m);
+                let matters = need != NOTHING;
+                if matters {
+                    self.demand(index, None);
+                    self.demand(value, need);
+                }
+                matters
+            }
+            Stmt::If(condition, then, other) => {
+                let matters = self.statements(then) | self.statements(other);
+                if matters {
+                    self.demand(condition, None);
+                }
+                matters
+            }
+            Stmt::Loop(body) => self.statements(body),
+            Stmt::Call(_, memories) => {
+                let matters = memories.iter().any(|m| self.need(*m) != NOTHING);
+                if matters {
+                    self.call(memories);
+                }
+                matters
+            }
             Stmt::Exit => true,
             Stmt::Fault(..) => self.faults,
             Stmt::About(_) => false,
+        }
+    }
+
+    fn statements(&mut self, list: &[Stmt]) -> bool {
+        list.iter().fold(false, |matters, s| self.statement(s) | matters)
+    }
+
+    fn call(&mut self, memories: &[MemoryId]) {
+        for (i, m) in memories.iter().enumerate() {
+            // A timer asks whether its length is over, and shows no time beyond it.
+            let is_clock = i == 4 && self.e.memory(*m).is_some_and(|m| is_of_clock(self.e, m.what));
+            let length = memories.get(1).and_then(|m| self.bound(&Expr::Read(*m)));
+            self.raise(*m, if is_clock { length.map(|l| l.max(0)) } else { None });
         }
     }
 

@@ -211,11 +211,14 @@ impl Ranges {
     }
 }
 
+/// All statements that stand in no other one.
+pub(super) fn all(e: &Equations) -> impl Iterator<Item = &Stmt> {
+    e.sections().flat_map(|s| &s.body).chain(e.questions.iter().flat_map(|q| &q.0))
+}
+
 /// Visits all statements.
-pub(super) fn each(e: &Equations, f: &mut dyn FnMut(&Stmt)) {
-    for s in e.sections().flat_map(|s| &s.body).chain(e.questions.iter().flat_map(|q| &q.0)) {
-        s.visit(f);
-    }
+fn each(e: &Equations, f: &mut dyn FnMut(&Stmt)) {
+    all(e).for_each(|s| s.visit(f));
 }
 
 fn gather(s: &Stmt, sets: &mut Vec<(MemoryId, Expr)>) {

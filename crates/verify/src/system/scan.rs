@@ -147,14 +147,14 @@ impl<'x, 'a> Scan<'x, 'a> {
         let mut seen = vec![self.x.cells().to_vec()];
         loop {
             let on = self.going(changed);
-            if on == Signal::FALSE {
+            if on == Signal::FALSE || self.x.given_up() {
                 return;
             }
             if seen.len() >= bound {
                 self.end_search(on, FaultKind::Bound);
                 return;
             }
-            if !is_possible(&self.x.system, on) {
+            if !is_possible(&self.x.system, on, self.x.stop) {
                 // It is left to the proof: no state has a further pass.
                 self.x.leave_uncovered(on);
                 return;
@@ -351,11 +351,11 @@ impl Default for Back {
 }
 
 /// False if no state and no inputs make the signal 1.
-fn is_possible(system: &System, s: Signal) -> bool {
+fn is_possible(system: &System, s: Signal, stop: &(dyn Fn() -> bool + Sync)) -> bool {
     let mut any = system.clone();
     for l in &mut any.latches {
         (l.init, l.next) = (Init::Free, l.signal);
     }
-    let effort = Effort { bytes: usize::MAX, turns: 1, stop: &|| false };
+    let effort = Effort { bytes: usize::MAX, turns: 1, stop };
     !matches!(decide(&any, &[s], &effort).first(), Some(Found::Never(_)))
 }

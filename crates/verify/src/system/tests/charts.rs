@@ -10,7 +10,7 @@ use crate::sat::{Signal, System, evaluate};
 use crate::system::exec::Exec;
 use crate::system::value::Value;
 use crate::system::word::Word;
-use crate::system::{Observed, system};
+use crate::system::{Observed, system, system_until};
 
 /// Compares a chart with the engine, observed in both ways.
 pub(super) fn same(text: &str, scans: usize) -> Count {
@@ -32,6 +32,18 @@ fn latches(text: &str) -> usize {
     let asked = asked(&parsed(text), None).unwrap_or_else(|| panic!("{text}"));
     let model = Model::new(&asked.compiled, asked.assume.clone());
     system(&model, &asked.questions, Observed::Asked).system.latches.len()
+}
+
+/// A caller whose time is over gets no part of a system.
+#[test]
+fn a_system_is_given_up() {
+    let steps: String = (1..300).map(|n| format!("  step {n}\n  {} -> {n} when a\n", n - 1)).collect();
+    let asked = asked(&parsed(&format!("input a : BOOL\nchart C {{\n  initial step 0\n{steps}}}\n")), None);
+    let asked = asked.unwrap_or_else(|| panic!("{steps}"));
+    let model = Model::new(&asked.compiled, asked.assume.clone());
+    let until = |stop| system_until(&model, &asked.questions, Observed::Asked, stop);
+    assert!(until(&|| true).is_none());
+    assert!(until(&|| false).is_some());
 }
 
 /// Sums, differences, quotients of each type, with what does not fit and division by 0.
