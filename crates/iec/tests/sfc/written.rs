@@ -247,7 +247,9 @@ const TWINS: &str = "profile iec61131
 output init : BOOL
 chart G {
   initial step Init { N init }
-  step Next
+  action Nothing {}
+  action More { init := TRUE }
+  step Next { N Nothing  N More }
   Init -> Next when init
   Next -> Init when not init
 }

@@ -114,7 +114,8 @@ fn named(action: &NamedAction, writer: &Writer) -> String {
 fn block(name: &str, list: &[Stmt], writer: &Writer) -> String {
     let mut out = format!("  ACTION {name}:\n");
     if list.is_empty() {
-        out.push_str("    ;\n");
+        // matiec loses its place behind an action of `;` alone; the reader takes this for nothing.
+        out.push_str("    IF FALSE THEN RETURN; END_IF;\n");
     }
     writer.statements(list, 2, &mut out);
     out.push_str("  END_ACTION\n");
