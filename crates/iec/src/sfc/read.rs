@@ -172,6 +172,16 @@ fn part(p: &mut Parser, unit: &mut Unit) -> bool {
         "ACTION" => action(p, start),
         _ => return false,
     };
+    if part.is_none() {
+        // The rest of the chart is read without this part.
+        p.skip_to(&PARTS);
+        for word in ["END_STEP", "END_TRANSITION", "END_ACTION"] {
+            if p.eat_word(word) {
+                break;
+            }
+        }
+        p.eat(";");
+    }
     unit.parts.extend(part);
     true
 }
