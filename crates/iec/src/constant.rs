@@ -159,14 +159,29 @@ fn amount(number: &str, unit: i128) -> Result<i128, String> {
 }
 
 /// Removes the quotes and escapes of a string. The second value describes an escape that is not
-/// understood.
+/// understood. `$C3$A4` is one letter: bytes above 127 that together are UTF-8 are read as it,
+/// others as the letters of Latin-1 with these numbers.
 pub fn unquote_st(text: &str) -> (String, Option<String>) {
     let inner = text.strip_prefix('\'').unwrap_or(text);
     let inner = inner.strip_suffix('\'').unwrap_or(inner);
     let mut out = String::with_capacity(inner.len());
     let mut wrong = None;
+    let mut high = Vec::new();
     let mut chars = inner.chars();
     while let Some(c) = chars.next() {
+        let code = if c == '$' { hexadecimal(chars.as_str()) } else { None };
+        if let Some(byte) = code {
+            chars.nth(1);
+            if byte > 127 {
+                high.push(byte);
+                continue;
+            }
+        }
+        letters(&mut high, &mut out);
+        if let Some(byte) = code {
+            out.push(char::from(byte));
+            continue;
+        }
         if c != '$' {
             out.push(c);
             continue;
@@ -177,20 +192,28 @@ pub fn unquote_st(text: &str) -> (String, Option<String>) {
             Some('r' | 'R') => out.push('\r'),
             Some('t' | 'T') => out.push('\t'),
             Some('p' | 'P') => out.push('\u{c}'),
-            Some(high) => {
-                let low = chars.clone().next();
-                match (high.to_digit(16), low.and_then(|c| c.to_digit(16))) {
-                    (Some(h), Some(l)) => {
-                        chars.next();
-                        out.extend(char::from_u32(h * 16 + l));
-                    }
-                    _ => wrong = Some(format!("`${high}` is no escape; a dollar sign is written `$$`")),
-                }
-            }
+            Some(other) => wrong = Some(format!("`${other}` is no escape; a dollar sign is written `$$`")),
             None => wrong = Some("a `$` stands before the end of the text; write `$$`".into()),
         }
     }
+    letters(&mut high, &mut out);
     (out, wrong)
+}
+
+/// The byte of the two hexadecimal digits at the beginning of a text.
+fn hexadecimal(text: &str) -> Option<u8> {
+    let mut digits = text.chars().map(|c| c.to_digit(16));
+    let (first, second) = (digits.next()??, digits.next()??);
+    u8::try_from(first * 16 + second).ok()
+}
+
+/// Adds escaped bytes above 127 as letters.
+fn letters(bytes: &mut Vec<u8>, out: &mut String) {
+    match std::str::from_utf8(bytes) {
+        Ok(text) => out.push_str(text),
+        Err(_) => out.extend(bytes.iter().copied().map(char::from)),
+    }
+    bytes.clear();
 }
 
 /// A string of Structured Text with its quotes.

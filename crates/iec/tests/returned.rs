@@ -35,8 +35,8 @@ const FORMS: [(&str, Write, Read); 2] =
     [("PLCopen XML", plcopen::export, plcopen::import), ("text", sfc::export, sfc::import)];
 
 /// Cases that run otherwise there, which the export tells as a warning: what runs on
-/// clearing runs behind the evolution.
-const OTHERWISE: [&str; 1] = ["side-by-side/order-clearing"];
+/// clearing runs behind the evolution, and in text the initial step stands first.
+const OTHERWISE: [&str; 2] = ["side-by-side/order-clearing", "side-by-side/order-exit-entry"];
 
 /// An event: a scan with new inputs, or a start from the beginning.
 enum Event {

@@ -145,7 +145,7 @@ impl Spots {
         Spots {
             steps: steps().map(|(i, s)| (s.spot, i)).collect(),
             transitions: sheet.transitions.iter().enumerate().rev().map(|(i, t)| (t.spot, i)).collect(),
-            bars: sheet.bars.iter().enumerate().rev().map(|(i, b)| (b.spot, i)).collect(),
+            bars: bars(sheet),
             names: steps().map(|(i, s)| (s.name.to_uppercase(), i)).collect(),
         }
     }
@@ -160,6 +160,22 @@ impl Spots {
             _ => self.bars.get(&spot).copied().map(Node::Bar),
         }
     }
+}
+
+/// The bars by each cell that they span; a link may end at any column. The first cell of a bar goes
+/// before the others of another one.
+fn bars(sheet: &Sheet) -> HashMap<Spot, usize> {
+    let numbered = || sheet.bars.iter().enumerate().rev();
+    let mut left = MOST_CELLS;
+    let mut cells = HashMap::new();
+    for (index, bar) in numbered() {
+        let width = usize::try_from(bar.width).unwrap_or(1).min(left);
+        left -= width;
+        let columns = (bar.spot.0..).take(width);
+        cells.extend(columns.map(|column| ((column, bar.spot.1), index)));
+    }
+    cells.extend(numbered().map(|(index, bar)| (bar.spot, index)));
+    cells
 }
 
 fn place(sheet: &Sheet, node: Node) -> Range<usize> {

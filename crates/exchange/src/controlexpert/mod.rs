@@ -28,7 +28,18 @@ use g7_iec::xml;
 
 /// True if the first element is the root of such a file.
 pub(crate) fn fits(_: &str, root: Option<&str>, _: &[u8]) -> bool {
-    matches!(root, Some("SFCExchangeFile" | "FEFExchangeFile" | "FEXExchangeFile" | "PRGExchangeFile"))
+    let roots = [
+        "SFCExchangeFile",
+        "FEFExchangeFile",
+        "FEXExchangeFile",
+        "PRGExchangeFile",
+        "SFCProgram",
+        "SFCContent",
+        "SFCSource",
+        "chartSource",
+        "networkSFC",
+    ];
+    root.is_some_and(|root| roots.contains(&root))
 }
 
 /// Reads a chart, or an application with charts.
@@ -40,7 +51,7 @@ pub(crate) fn import(bytes: &[u8], file: FileId) -> (Document, Vec<Problem>) {
             let root = tree.root_element();
             let sheets = read::sheets(root, &mut report);
             if sheets.is_empty() {
-                let what = "there is no chart in the file: no `SFCProgram` with a `networkSFC`";
+                let what = "there is no chart in the file: no `networkSFC`";
                 report.say(&codes::NOT_JGRAFCHART, &xml::attr::head(root), what);
                 return Document::default();
             }

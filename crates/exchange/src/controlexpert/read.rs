@@ -127,7 +127,16 @@ pub(super) fn line(node: Option<Node>) -> String {
 /// All charts of a file, including the contents of macro-steps.
 pub(super) fn sheets<'a>(root: Node<'a, 'a>, report: &mut Report) -> Vec<Sheet<'a>> {
     let mut sheets = Vec::new();
-    for program in root.descendants().filter(|n| n.has_tag_name("SFCProgram")) {
+    let mut programs: Vec<Node> = root.descendants().filter(|n| n.has_tag_name("SFCProgram")).collect();
+    if programs.is_empty() {
+        // A part of a file: charts without the program around them.
+        programs.extend(root.descendants().filter(|n| kid(*n, "chartSource").is_some()));
+    }
+    if programs.is_empty() {
+        let networks = root.descendants().filter(|n| n.has_tag_name("networkSFC"));
+        return networks.map(|network| sheet(network, report)).collect();
+    }
+    for program in programs {
         let ident = kid(program, "identProgram");
         let name = ident.and_then(|n| n.attribute("name")).unwrap_or("");
         let mut first = true;

@@ -54,6 +54,7 @@ impl<'a> Builder<'_, 'a> {
     /// The variables of the file or of a chart; the activity of a step needs none.
     fn vars(&self, sheet: Option<usize>) -> impl Iterator<Item = VarDecl> {
         let of = self.plan.vars.iter().enumerate().filter(move |(_, v)| v.sheet == sheet);
+        let of = of.filter(|(number, _)| !self.names.is_timed(*number));
         of.filter_map(|(number, var)| {
             let kind = match var.sort {
                 VarSort::Input => VarKind::Input,

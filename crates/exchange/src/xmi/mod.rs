@@ -14,6 +14,7 @@
 //!   unique.
 //! - `arcs` follows arcs through synchronisations to the steps of a transition.
 //! - `terms` and `actions` turn terms into expressions and action types into actions.
+//! - `timed` knows Booleans that are named like a time operator.
 //! - `nesting` finds the charts of enclosing steps and macro-steps.
 //! - `write` goes the other way.
 //!
@@ -34,6 +35,7 @@ mod nesting;
 mod read;
 mod refs;
 mod terms;
+mod timed;
 mod write;
 
 use g7_model::{Document, FileId, Problem};

@@ -5,10 +5,11 @@
 
 use std::collections::{HashMap, HashSet};
 
-use g7_model::{Expr, ExprKind, Name, Path, Problem, Span, codes};
+use g7_model::{Expr, ExprKind, Literal, Name, Nanos, Path, Problem, Span, Type, codes};
 
-use super::read::{DEFAULT_NAME, Plan, Sheet, StepSort, VarSort};
+use super::read::{DEFAULT_NAME, Plan, Sheet, StepSort, Thing, VarSort};
 use super::refs::Xml;
+use super::timed;
 use g7_iec::nodes::Taken;
 use g7_iec::report::{Report, shown};
 use g7_iec::xml::attr;
@@ -19,6 +20,8 @@ pub(super) struct Names {
     steps: Vec<Vec<String>>,
     labels: Vec<Vec<Option<String>>>,
     vars: Vec<String>,
+    /// The Booleans that stand for a time operator on the activity of a step.
+    timed: HashMap<usize, (Nanos, (usize, usize))>,
     /// The number of steps in all charts with each name.
     uses: HashMap<String, usize>,
     /// The names of the variables of the file and of each chart.
@@ -35,9 +38,10 @@ pub(super) fn give(plan: &Plan, report: &mut Report) -> Names {
         *uses.entry(name.clone()).or_default() += 1;
     }
     let labels = plan.sheets.iter().map(|s| labels(s, report)).collect();
+    let timed = timed(plan, &vars, &steps, report);
     let real = plan.vars.iter().zip(&vars).filter(|(v, _)| v.sort != VarSort::Step);
     let shadows = real.map(|(v, name)| (v.sheet, name.clone())).collect();
-    Names { charts, steps, labels, vars, uses, shadows }
+    Names { charts, steps, labels, vars, timed, uses, shadows }
 }
 
 impl Names {
@@ -55,6 +59,19 @@ impl Names {
 
     pub(super) fn var(&self, var: usize) -> &str {
         self.vars.get(var).map_or("", String::as_str)
+    }
+
+    /// True if a variable stands for a time operator, so that it needs no declaration.
+    pub(super) fn is_timed(&self, var: usize) -> bool {
+        self.timed.contains_key(&var)
+    }
+
+    /// The time operator for which a variable stands, in a text of a chart.
+    pub(super) fn timer(&self, var: usize, from: usize, at: Span) -> Option<Expr> {
+        let (time, step) = self.timed.get(&var)?;
+        let t1 = Expr { kind: ExprKind::Literal(Literal::Time(*time)), at: at.into() };
+        let e = self.activity(*step, from, at);
+        Some(Expr { kind: ExprKind::Timer { t1: Box::new(t1), e: Box::new(e), t2: None }, at: at.into() })
     }
 
     /// The path of a variable in a text of a chart.
@@ -139,22 +156,57 @@ fn variables(plan: &Plan, report: &mut Report) -> Vec<String> {
             report.say(&codes::TWICE, &at, what);
         }
         let name = taken.give(&wanted);
-        if var.sort == VarSort::Input && looks_timed(&name) {
-            let what = format!(
-                "an input is called `{}`; it stays an input, and no time of the chart sets it",
-                shown(&name)
-            );
-            report.say(&codes::DIFFERENT, &at, what);
-        }
         names.push(name);
     }
     names
 }
 
-/// True if a name reads as a time operator, `2s/X202`.
-fn looks_timed(name: &str) -> bool {
-    let (Some(first), Some((head, _))) = (name.chars().next(), name.split_once('/')) else { return false };
-    first.is_ascii_digit() && head.ends_with('s')
+/// The Booleans that are named like a time operator on a step that is there, `2s/X202`. One that an
+/// action writes is a variable nevertheless.
+fn timed(
+    plan: &Plan,
+    vars: &[String],
+    steps: &[Vec<String>],
+    report: &mut Report,
+) -> HashMap<usize, (Nanos, (usize, usize))> {
+    let mut found = HashMap::new();
+    let mut written: Option<HashSet<usize>> = None;
+    for (number, (var, name)) in plan.vars.iter().zip(vars).enumerate() {
+        if var.sort == VarSort::Output || var.ty != Type::Bool {
+            continue;
+        }
+        let Some((time, step)) = timed::parse(name) else { continue };
+        let all = steps.iter().enumerate().flat_map(|(sheet, names)| {
+            names.iter().enumerate().filter(|(_, n)| *n == step).map(move |(i, _)| (sheet, i))
+        });
+        let all: Vec<(usize, usize)> = all.take(2).collect();
+        let set = written.get_or_insert_with(|| set_by_actions(plan)).contains(&number);
+        let what = match all[..] {
+            _ if set => format!("`{}` stays a variable, because an action writes it", shown(name)),
+            [one] => {
+                found.insert(number, (time, one));
+                format!("the Boolean `{}` is read as the time operator that its name says", shown(name))
+            }
+            [] => format!("`{}` stays a variable: there is no step `{}`", shown(name), shown(step)),
+            _ => {
+                format!("`{}` stays a variable: several steps are called `{}`", shown(name), shown(step))
+            }
+        };
+        report.say(&codes::DIFFERENT, &attr::head(var.xml), what);
+    }
+    found
+}
+
+/// The variables that actions write.
+fn set_by_actions(plan: &Plan) -> HashSet<usize> {
+    let targets = plan.actions.iter().flat_map(|a| a.children().filter(|c| c.has_tag_name("variable")));
+    let meant = targets.filter_map(|v| plan.refs.resolve(v.attribute("variableDeclaration")?.trim()).ok());
+    meant
+        .filter_map(|xml| match plan.things.get(&xml.id()) {
+            Some(Thing::Var(number)) => Some(*number),
+            _ => None,
+        })
+        .collect()
 }
 
 fn charts(plan: &Plan, vars: &[String], report: &mut Report) -> Vec<String> {

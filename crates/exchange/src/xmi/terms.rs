@@ -125,6 +125,9 @@ impl<'a> Terms<'_, 'a> {
         };
         let Some(var) = self.plan.vars.get(number) else { return bad(span) };
         if var.sort != VarSort::Step {
+            if let Some(timer) = self.names.timer(number, self.sheet, span) {
+                return timer;
+            }
             let path = self.names.path_of_var(self.plan, number, self.sheet, span);
             return Expr { kind: ExprKind::Path(path), at: span.into() };
         }

@@ -111,3 +111,43 @@ fn what_has_no_counterpart_is_told_with_its_line() {
         assert!(told.iter().any(|t| t == expected), "{expected}\n{told:#?}");
     }
 }
+
+/// Two steps, of which the second enters the joint of the first by a link to its second column.
+const JOINED: &str = r#"<networkSFC>
+<step stepType="initialStep" stepName="A"><objPosition posX="0" posY="0"/></step>
+<transition><objPosition posX="0" posY="1"/><transitionCondition invertLogic="false"><variableName>a</variableName></transitionCondition></transition>
+<altJoint width="2" relativePos="0"><objPosition posX="0" posY="1"/></altJoint>
+<step stepType="step" stepName="B"><objPosition posX="0" posY="2"/></step>
+<step stepType="step" stepName="C"><objPosition posX="5" posY="0"/></step>
+<transition><objPosition posX="5" posY="1"/><transitionCondition invertLogic="false"><variableName>c</variableName></transitionCondition></transition>
+<linkSFC>
+<directedLinkSource objectType="transition"><objPosition posX="5" posY="1"/></directedLinkSource>
+<directedLinkDestination objectType="altJoint"><objPosition posX="1" posY="1"/></directedLinkDestination>
+</linkSFC>
+</networkSFC>"#;
+
+#[test]
+fn a_link_ends_at_any_column_of_a_joint() {
+    let text = text_of(&read("controlexpert", JOINED.as_bytes()).0);
+    for line in ["  A -> B when a", "  C -> B when c"] {
+        assert!(text.lines().any(|l| l == line), "{line}\n{text}");
+    }
+}
+
+#[test]
+fn a_part_of_a_file_is_read_as_the_whole() {
+    let whole = format!(
+        "<SFCExchangeFile><SFCProgram><identProgram name=\"Chart\"/><chartSource>{JOINED}</chartSource></SFCProgram></SFCExchangeFile>"
+    );
+    let wanted = text_of(&read("controlexpert", whole.as_bytes()).0);
+    assert!(wanted.contains("chart Chart {"), "{wanted}");
+    for part in [
+        JOINED.to_string(),
+        format!("<SFCContent><chartSource>{JOINED}</chartSource></SFCContent>"),
+        format!("<SFCContent>{JOINED}</SFCContent>"),
+        format!("<SFCExchangeFile><chartSource>{JOINED}</chartSource></SFCExchangeFile>"),
+        format!("<SFCExchangeFile><SFCSource>{JOINED}</SFCSource></SFCExchangeFile>"),
+    ] {
+        assert_eq!(text_of(&read("controlexpert", part.as_bytes()).0), wanted, "{part}");
+    }
+}

@@ -80,7 +80,10 @@ fn charts_of_the_corpus_come_over_whole() {
         let of_file: Vec<_> = document.items.iter().filter(|i| matches!(i, g7_model::Item::Var(_))).collect();
         let declared = count(&text, "variableDeclarations");
         let of_steps = text.matches(" variableDeclarationType=\"step\"").count();
-        assert_eq!(of_file.len(), declared - of_steps, "{name}");
+        let timed = problems.iter().filter(|p| p.what.contains("read as the time operator")).count();
+        assert_eq!(of_file.len(), declared - of_steps - timed, "{name}");
+        let told = problems.iter().filter(|p| p.what.contains("`2s/X202`")).count();
+        assert_eq!(told, text.matches("name=\"2s/X202\"").count(), "{name}");
         let enclosing = |k: &ActionKind| matches!(k, ActionKind::Order(g7_model::Order::Enclose(_)));
         let actions = steps().flat_map(|s| &s.actions).filter(|a| !enclosing(&a.kind)).count();
         assert_eq!(actions, whole_links(&text), "{name}");
@@ -101,7 +104,9 @@ fn charts_of_the_corpus_go_out_and_come_back() {
         let (document, _) = support::import("xmi", &bytes, FileId(0));
         assert_eq!(printed(&document), document, "{name}");
         let written = support::export("xmi", &document);
-        assert_eq!(written.problems, [], "{name}");
+        // The tool's users write a time operator within a term as a Boolean of its name.
+        let other = |p: &&g7_model::Problem| !p.what.starts_with("a time operator within a term: ");
+        assert_eq!(written.problems.iter().filter(other).count(), 0, "{name}: {:?}", written.problems);
         let (back, problems) = support::import("xmi", written.text.as_bytes(), FileId(0));
         let errors: Vec<_> = problems.iter().filter(|p| p.severity() == Severity::Error).collect();
         assert!(errors.is_empty(), "{name}: {errors:?}");

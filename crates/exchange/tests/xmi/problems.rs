@@ -12,7 +12,7 @@ fn each_fault_is_named_with_its_line() {
         found,
         [
             "G0615 6: a second variable is called `a`; it is renamed",
-            "G0614 7: an input is called `5s/X1`; it stays an input, and no time of the chart sets it",
+            "G0614 7: `5s/X1` stays a variable: several steps are called `1`",
             "G0612 8: `variableDeclarationType` is `state`; it is input, output, internal or step",
             "G0612 9: a variable of the sort `Real`",
             "G0611 9: a variable without a name; it is called `v4`",
@@ -77,4 +77,46 @@ fn each_fault_is_named_with_its_line() {
             "G0605 85: an empty chart is left out",
         ]
     );
+}
+
+/// A chart with the step 5, a Boolean of this name, and one transition that reads it.
+fn with_boolean(name: &str, kind: &str, action: &str) -> (Vec<String>, String) {
+    let text = format!(
+        "<grafcet:Grafcet xmlns:xsi=\"http://www.w3.org/2001/XMLSchema-instance\" xmlns:grafcet=\"g\" xmlns:terms=\"t\">
+<variableDeclarationContainer>
+<variableDeclarations name=\"{name}\"{kind}><sort xsi:type=\"terms:Bool\"/></variableDeclarations>
+</variableDeclarationContainer>
+<partialGrafcets xsi:type=\"grafcet:PartialGrafcet\" name=\"G\">
+<steps xsi:type=\"grafcet:Step\" id=\"5\" initial=\"true\"/>
+<transitions id=\"1\"><term xsi:type=\"terms:Not\"><subterm xsi:type=\"terms:Variable\" variableDeclaration=\"//@variableDeclarationContainer/@variableDeclarations.0\"/></term></transitions>
+<arcs source=\"//@partialGrafcets.0/@steps.0\" target=\"//@partialGrafcets.0/@transitions.0\"/>
+<arcs source=\"//@partialGrafcets.0/@transitions.0\" target=\"//@partialGrafcets.0/@steps.0\"/>
+{action}</partialGrafcets>
+</grafcet:Grafcet>"
+    );
+    let (document, problems) = import(text.as_bytes());
+    (lines(text.as_bytes(), &problems), g7_syntax::print(&document, None))
+}
+
+#[test]
+fn a_boolean_called_like_a_time_operator_is_the_operator_or_a_warning() {
+    let internal = " variableDeclarationType=\"internal\"";
+    let (problems, text) = with_boolean("20ms/X5", internal, "");
+    assert_eq!(problems, ["G0614 3: the Boolean `20ms/X5` is read as the time operator that its name says"]);
+    assert!(text.contains("T1: 5 -> 5 when not (20ms/X5)") && !text.contains("var "), "{text}");
+
+    let (problems, text) = with_boolean("2s/X6", "", "");
+    assert_eq!(problems, ["G0614 3: `2s/X6` stays a variable: there is no step `6`"]);
+    assert!(text.contains("input `2s/X6` : BOOL"), "{text}");
+
+    let action = "<actionTypes xsi:type=\"grafcet:ContinuousAction\"><variable variableDeclaration=\"//@variableDeclarationContainer/@variableDeclarations.0\"/></actionTypes>
+<actionLinks step=\"//@partialGrafcets.0/@steps.0\" actionType=\"//@partialGrafcets.0/@actionTypes.0\"/>
+";
+    let (problems, text) = with_boolean("2s/X5", internal, action);
+    assert_eq!(problems, ["G0614 3: `2s/X5` stays a variable, because an action writes it"]);
+    assert!(text.contains("N `2s/X5`"), "{text}");
+
+    // A speed is no time.
+    let (problems, _) = with_boolean("v m/s", "", "");
+    assert_eq!(problems, Vec::<String>::new());
 }

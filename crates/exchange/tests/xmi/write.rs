@@ -96,3 +96,67 @@ fn what_cannot_be_held_is_a_problem_with_its_place() {
     assert!(back.contains("chart Fill {"), "{back}");
     assert!(back.contains("  initial step 1 { N lamp if ↑a }\n  step 2\n"), "{back}");
 }
+
+#[test]
+fn what_only_plain_steps_can_be_is_refused_for_others() {
+    let (problems, back) = round(
+        "output lamp : BOOL
+         chart G {
+           initial step 1 { force F := {E1} }
+           macro M2 = F { N lamp }
+           enclosing step 3 { enclose H  N lamp }
+           1 -> M2 when XM2
+           M2 -> 3 when F.XE1 or F.X9
+           3 -> 1 when X3
+         }
+         chart H { step 7*  7 -> 7 when TRUE }
+         macrochart F {
+           entry step E1 { N lamp }
+           step 9
+           exit step S1
+           E1 -> 9 when TRUE
+           9 -> S1 when TRUE
+         }",
+    );
+    assert_eq!(
+        problems,
+        [
+            "G0604 3: a forced macro-step, entry or exit step: the meta-model has none",
+            "G0604 4: an action of an enclosing step, macro-step, entry or exit step: the meta-model has none",
+            "G0604 5: an action of an enclosing step, macro-step, entry or exit step: the meta-model has none",
+            "G0604 6: the activity of a macro-step, entry or exit step as a term: the meta-model has none",
+            "G0604 7: the activity of a macro-step, entry or exit step as a term: the meta-model has none",
+            "G0604 12: an action of an enclosing step, macro-step, entry or exit step: the meta-model has none",
+        ]
+    );
+    assert!(back.contains("enclosing step 3 { enclose H }"), "{back}");
+    assert!(back.contains("when X3"), "{back}");
+}
+
+#[test]
+fn a_time_operator_within_a_term_is_a_boolean_of_its_name() {
+    let text = "input a : BOOL
+         chart G {
+           initial step 1
+           step 202
+           1 -> 202 when a
+           202 -> 1 when a and (2s/X202 or 1500ms/X202)
+         }
+         chart H {
+           initial step 1
+           1 -> 1 when a and 2s/G.X1
+         }";
+    let (problems, back) = round(text);
+    let what = "a time operator within a term: the meta-model has none";
+    assert_eq!(
+        problems,
+        [
+            format!("G0614 6: {what}; it is written as a Boolean `2s/X202`"),
+            format!("G0614 6: {what}; it is written as a Boolean `1500ms/X202`"),
+            // Two charts have a step 1, so a reader would not know which of them.
+            "G0604 10: a time operator within a term: the meta-model has none".to_string(),
+        ]
+    );
+    assert!(back.contains("202 -> 1 when a and (2s/X202 or 1.5s/X202)"), "{back}");
+    assert!(!back.contains("input 2s") && !back.contains("`2s/X202`"), "{back}");
+}

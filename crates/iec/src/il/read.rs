@@ -53,7 +53,9 @@ impl Parser<'_> {
             lex::Kind::Word | lex::Kind::Number | lex::Kind::Typed | lex::Kind::Direct | lex::Kind::Str
         );
         let word = self.word();
-        mnemonic(&word).is_some() && (operand || word == "RET") && !self.ahead_is(1, ":=")
+        // `CU count`: a list may begin with an input of a block.
+        let input = is_input(&word) && next.kind == lex::Kind::Word && !next.newline;
+        input || mnemonic(&word).is_some() && (operand || word == "RET") && !self.ahead_is(1, ":=")
     }
 
     /// Reports problems of the translation under the code used for imported files.

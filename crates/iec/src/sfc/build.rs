@@ -221,7 +221,7 @@ impl Builder<'_> {
             Vec::new()
         };
         if unit.is_chart() {
-            items.extend(unit.parts.iter().map(|part| self.part(unit, part)));
+            items.extend(step_first(&unit.parts).map(|part| self.part(unit, part)));
         } else {
             self.lost_actions(unit);
             items.push(ChartItem::Pre(Body::St(block), unit.at.into()));
@@ -382,6 +382,16 @@ impl Builder<'_> {
         let body = Block { locals, statements, at: unit.at.into() };
         Some(Function { name: unit.name.clone(), params, result, body, at: unit.at.into() })
     }
+}
+
+/// The parts of a chart in their order, but for what stands before the first step: it follows that
+/// step. The order of actions among each other, of transitions and of steps is kept. Compilers want
+/// a step first, so a text that is written has one there; this gives the same document for both.
+fn step_first(parts: &[Part]) -> impl Iterator<Item = &Part> {
+    let first = parts.iter().position(|p| matches!(p, Part::Step { .. })).unwrap_or(0);
+    let (before, rest) = parts.split_at(first);
+    let (step, behind) = rest.split_at(rest.len().min(1));
+    step.iter().chain(before).chain(behind)
 }
 
 fn upper(variable: &Variable) -> String {

@@ -1,7 +1,7 @@
 //! Reads the units and configurations of a file.
 
 use g7_model::codes;
-use g7_model::{Expr, ExprKind, Literal, Name, Nanos, Path, Qualifier, Stmt};
+use g7_model::{Expr, ExprKind, Literal, Name, Nanos, Path, Qualifier, Stmt, StmtKind};
 
 use super::unit::{Association, Instance, Part, Source, Task, Transition, Unit, UnitKind};
 use crate::st::{Kind, Parser, elementary};
@@ -172,6 +172,16 @@ fn part(p: &mut Parser, unit: &mut Unit) -> bool {
         "ACTION" => action(p, start),
         _ => return false,
     };
+    if part.is_none() {
+        // The rest of the chart is read without this part.
+        p.skip_to(&PARTS);
+        for word in ["END_STEP", "END_TRANSITION", "END_ACTION"] {
+            if p.eat_word(word) {
+                break;
+            }
+        }
+        p.eat(";");
+    }
     unit.parts.extend(part);
     true
 }
@@ -365,9 +375,21 @@ fn action(p: &mut Parser, start: u32) -> Option<Part> {
     p.bump();
     let name = p.name("the name of an action")?;
     p.eat(":");
-    let body = statements(p);
+    let mut body = statements(p);
+    if is_nothing(&body) {
+        body.clear();
+    }
     close(p, "END_ACTION");
     Some(Part::Action { name, body, at: p.since(start) })
+}
+
+/// True for `IF FALSE THEN RETURN; END_IF;`, with which an empty action is written.
+fn is_nothing(body: &[Stmt]) -> bool {
+    let [Stmt { kind: StmtKind::If(arms, otherwise), .. }] = body else { return false };
+    let [(Expr { kind: ExprKind::Literal(Literal::Bool(false)), .. }, then)] = arms.as_slice() else {
+        return false;
+    };
+    otherwise.is_empty() && matches!(then.as_slice(), [Stmt { kind: StmtKind::Return, .. }])
 }
 
 fn configuration(p: &mut Parser, source: &mut Source) {

@@ -459,8 +459,11 @@ fn real(text: &str) -> String {
     format!("{digits}{point}{power}")
 }
 
+/// A text in ASCII: some compilers refuse letters outside it, and take `(*` within a text for the
+/// beginning of a comment. A letter outside ASCII is written as its bytes in UTF-8.
 fn string(text: &str) -> String {
     let mut out = String::from("'");
+    let mut before = ' ';
     for c in text.chars() {
         match c {
             '$' => out.push_str("$$"),
@@ -468,9 +471,16 @@ fn string(text: &str) -> String {
             '\n' => out.push_str("$N"),
             '\r' => out.push_str("$R"),
             '\t' => out.push_str("$T"),
-            c if u32::from(c) < 32 => out.push_str(&format!("${:02X}", u32::from(c))),
-            c => out.push(c),
+            '*' if before == '(' => out.push_str("$2A"),
+            ' '..='~' => out.push(c),
+            c => {
+                let mut bytes = [0; 4];
+                for byte in c.encode_utf8(&mut bytes).bytes() {
+                    out.push_str(&format!("${byte:02X}"));
+                }
+            }
         }
+        before = c;
     }
     out.push('\'');
     out

@@ -166,7 +166,7 @@ impl<'d> Lower<'d> {
         }
         match (self.program_of(step.0), at.program) {
             (None, _) => self.nothing(span, "a step of a chart that has no counterpart"),
-            (own, here) if own == here => nodes::name(&[self.names.step(step), "X"], span),
+            (own, here) if own == here => self.step_member(step, "X", span),
             _ => {
                 let name = self.mirror(step, span);
                 nodes::name(&[&name], span)
@@ -181,7 +181,15 @@ impl<'d> Lower<'d> {
             self.lost(span, what);
             return nodes::time(Nanos::ZERO, span);
         }
-        nodes::name(&[self.names.step(step), "T"], span)
+        self.step_member(step, "T", span)
+    }
+
+    /// `Fill.X` or `Fill.T`, for which `Fill` has to mean the step alone.
+    fn step_member(&mut self, step: StepKey, member: &str, span: Span) -> Expr {
+        if self.names.is_twin(step) {
+            self.read_twins.insert(step);
+        }
+        nodes::name(&[self.names.step(step), member], span)
     }
 
     /// The value of a section: its condition.

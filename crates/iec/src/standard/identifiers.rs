@@ -20,6 +20,11 @@ pub(super) struct Names {
     /// Named actions and sections.
     parts: HashMap<(Option<usize>, Box<str>), String>,
     functions: HashMap<Box<str>, String>,
+    /// The names of variables and of steps, in upper case.
+    of_vars: HashSet<(Owner, String)>,
+    of_steps: HashSet<(Owner, String)>,
+    /// Steps with the name of a variable.
+    twins: HashSet<StepKey>,
     /// The last number given for each name, so that many equal names do not take quadratic time.
     counts: HashMap<(Owner, String), usize>,
     /// The names of programs that are units of their own.
@@ -41,6 +46,9 @@ impl Names {
             steps: HashMap::new(),
             parts: HashMap::new(),
             functions: HashMap::new(),
+            of_vars: HashSet::new(),
+            of_steps: HashSet::new(),
+            twins: HashSet::new(),
             counts: HashMap::new(),
             units: Taken::default(),
             renamed: Vec::new(),
@@ -104,6 +112,7 @@ impl Names {
 
     pub(super) fn give_var(&mut self, owner: Owner, chart: Option<usize>, name: &Name, prefix: &str) {
         let text = self.give(owner, name, prefix, "");
+        self.of_vars.insert((owner, text.to_ascii_uppercase()));
         self.vars.insert((chart, name.text.clone()), text);
     }
 
@@ -117,13 +126,41 @@ impl Names {
         self.functions.insert(name.text.clone(), text);
     }
 
-    /// Names of steps share one name space with variables.
-    pub(super) fn give_steps(&mut self, owner: Owner, chart: usize, prefix: &str, scopes: &Scopes) {
+    /// Names of steps. A step of which `Fill.X` or `Fill.T` is read shares one name space with
+    /// variables, because `Fill` would be the variable there. Any other step may have the name of a
+    /// variable, if `apart` says that it is not read.
+    pub(super) fn give_steps(
+        &mut self,
+        owner: Owner,
+        chart: usize,
+        prefix: &str,
+        scopes: &Scopes,
+        apart: impl Fn(StepKey) -> bool,
+    ) {
         for (key, step) in scopes.steps_of(chart) {
             let digit = step.name.text.starts_with(|c: char| c.is_ascii_digit());
-            let text = self.give(owner, &step.name, prefix, if digit { "Step" } else { "" });
+            let start = if digit { "Step" } else { "" };
+            let plain = identifier(&format!("{start}{}", step.name.text));
+            let upper = plain.to_ascii_uppercase();
+            let of_var = self.of_vars.contains(&(owner, upper.clone()))
+                || self.of_vars.contains(&(None, upper.clone()));
+            let text = if of_var && apart(key) && !self.of_steps.contains(&(owner, upper)) {
+                self.twins.insert(key);
+                if *plain != *step.name.text {
+                    self.renamed.push((step.name.at.0, step.name.text.clone(), plain.clone()));
+                }
+                plain
+            } else {
+                self.give(owner, &step.name, prefix, start)
+            };
+            self.of_steps.insert((owner, text.to_ascii_uppercase()));
             self.steps.insert(key, text);
         }
+    }
+
+    /// True if a step has the name of a variable.
+    pub(super) fn is_twin(&self, key: StepKey) -> bool {
+        self.twins.contains(&key)
     }
 
     pub(super) fn var(&self, chart: Option<usize>, name: &str) -> Option<&str> {

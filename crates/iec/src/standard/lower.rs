@@ -40,6 +40,9 @@ pub(super) struct Lower<'d> {
     pub(super) shared: HashSet<VarKey<'d>>,
     /// Variables of charts that turned out to be used by other programs.
     pub(super) wanted: HashSet<VarKey<'d>>,
+    /// Steps with the name of a variable of which the activity or time turned out to be read, now
+    /// and before: they cannot keep that name.
+    pub(super) read_twins: HashSet<StepKey>,
     /// The variables that each program writes.
     pub(super) written: BTreeSet<(VarKey<'d>, usize)>,
     /// The variables that each program reads.
@@ -96,7 +99,12 @@ pub(super) enum WatchKind {
 }
 
 impl<'d> Lower<'d> {
-    pub(super) fn new(document: &'d Document, form: Form, shared: HashSet<VarKey<'d>>) -> Lower<'d> {
+    pub(super) fn new(
+        document: &'d Document,
+        form: Form,
+        shared: HashSet<VarKey<'d>>,
+        read_twins: HashSet<StepKey>,
+    ) -> Lower<'d> {
         let scopes = Scopes::new(document);
         let mut lower = Lower {
             document,
@@ -109,6 +117,7 @@ impl<'d> Lower<'d> {
             final_scan: final_scan(document),
             shared,
             wanted: HashSet::new(),
+            read_twins,
             written: BTreeSet::new(),
             read: BTreeSet::new(),
             uses: HashMap::new(),
@@ -242,7 +251,9 @@ impl<'d> Lower<'d> {
                     _ => {}
                 }
             }
-            self.names.give_steps(owner, chart, prefix, &self.scopes);
+            // In a chart that is drawn, tools make a variable of each step.
+            let apart = |key| self.form == Form::Networks && !self.read_twins.contains(&key);
+            self.names.give_steps(owner, chart, prefix, &self.scopes, apart);
         }
     }
 

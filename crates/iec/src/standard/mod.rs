@@ -37,15 +37,17 @@ use lower::Lower;
 /// Rewrites a document; returns it with the problems of what it does not carry.
 pub(crate) fn standard(document: &Document, form: Form) -> (Document, Vec<Problem>) {
     let document = &signs::in_signs(document);
-    // The variables that several programs use become known on the way, so this repeats until no new
-    // one is found.
-    let mut shared = HashSet::new();
+    // The variables that several programs use, and the steps that are read, become known on the way,
+    // so this repeats until no new one is found.
+    let (mut shared, mut read_twins) = (HashSet::new(), HashSet::new());
     loop {
-        let mut lower = Lower::new(document, form, shared);
+        let known = read_twins.len();
+        let mut lower = Lower::new(document, form, shared, read_twins);
         let out = lower.document();
-        if lower.wanted.is_subset(&lower.shared) {
+        if lower.wanted.is_subset(&lower.shared) && lower.read_twins.len() == known {
             return (out, lower.finish());
         }
+        read_twins = std::mem::take(&mut lower.read_twins);
         shared = std::mem::take(&mut lower.shared);
         shared.extend(lower.wanted);
     }

@@ -323,3 +323,44 @@ fn a_list_with_a_loop_is_read_as_one() {
          END_PROGRAM";
     assert_eq!(text, carried(same));
 }
+
+#[test]
+fn a_part_that_cannot_be_read_does_not_block_the_rest() {
+    let text = "PROGRAM P
+VAR a, b : BOOL; END_VAR
+INITIAL_STEP S0: b(N); END_STEP
+STEP 7x: b(N); END_STEP
+STEP S1: END_STEP
+TRANSITION FROM S0 TO S1 := ) a; END_TRANSITION
+ACTION 8y: b := a; END_ACTION
+TRANSITION FROM S1 TO S0 := a; END_TRANSITION
+END_PROGRAM
+";
+    let (document, problems) = import(text);
+    let line = |at: u32| text[..at as usize].matches('\n').count() + 1;
+    let told: std::collections::BTreeSet<usize> = problems.iter().map(|p| line(p.at.start)).collect();
+    assert_eq!(told.into_iter().collect::<Vec<_>>(), [4, 6, 7], "{problems:?}");
+    let chart = document.charts().next().expect("a chart");
+    let steps: Vec<&str> = chart.steps().map(|s| &*s.name.text).collect();
+    assert_eq!((steps, chart.transitions().count()), (vec!["S0", "S1"], 2));
+}
+
+#[test]
+fn a_list_may_begin_with_an_input_of_a_block() {
+    let text = "PROGRAM P
+VAR c : CTU; a, b : BOOL; END_VAR
+INITIAL_STEP S0: Act(N); END_STEP
+ACTION Act:
+  CU c
+  LD a
+  ST b
+END_ACTION
+END_PROGRAM
+";
+    let list = text.replace("  CU c\n", "  LD a\n  ST b\n  CU c\n");
+    let said = |text: &str| import(text).1.into_iter().map(|p| p.what).collect::<Vec<_>>();
+    assert!(!said(text).iter().any(|w| w.starts_with("expected")), "{:?}", said(text));
+    assert_eq!(said(&list), Vec::<String>::new());
+    let back = g7_syntax::print(&import(text).0, None);
+    assert!(back.contains("b := a"), "{back}");
+}

@@ -170,6 +170,105 @@ fn rules_of_another_profile_are_told() {
     assert!(written.problems.iter().any(|p| p.what.contains("evolves by the rules of iec60848")));
 }
 
+/// Steps read before they are written, a step before the initial one, and texts with letters and
+/// comment signs.
+const EARLY: &str = "profile iec61131
+input a : BOOL
+output q : BOOL
+var s : STRING
+chart G {
+  step Before
+  initial step Rest { N { q := Late.X } }
+  Rest -> Before when Late.X or Late.T > 2s
+  action Look { q := Last.X  s := 'ä (* ö *) €' }
+  step Late { N Look }
+  Before -> Late when a
+  step Last
+  Late -> Last when a
+}
+";
+
+#[test]
+fn a_step_stands_before_what_reads_it() {
+    let written = export(&document(EARLY));
+    assert_eq!(written.problems, []);
+    let at = |part: &str| written.text.find(part).unwrap_or_else(|| panic!("{part}: {}", written.text));
+    assert!(at("INITIAL_STEP Rest") < at(" STEP Before"), "{}", written.text);
+    assert!(at(" STEP Late") < at("Late.X"), "{}", written.text);
+    assert!(at(" STEP Last") < at("Last.X"), "{}", written.text);
+    // A transition that reads nothing stays where it is.
+    assert!(at("FROM Before") < at(" STEP Last"), "{}", written.text);
+    let (after, problems) = import(&written.text);
+    assert_eq!(problems, []);
+    // Written again, nothing moves any more.
+    assert_eq!(export(&after).text, written.text);
+}
+
+#[test]
+fn actions_before_the_first_step_are_read_as_behind_it() {
+    let text =
+        |parts: [&str; 3]| format!("PROGRAM P\nVAR q : BOOL; END_VAR\n{}END_PROGRAM\n", parts.concat());
+    let step = "INITIAL_STEP A: Act(N); END_STEP\n";
+    let action = "ACTION Act: q := TRUE; END_ACTION\n";
+    let other = "ACTION Act2: q := FALSE; END_ACTION\n";
+    let (before, _) = import(&text([action, other, step]));
+    let (behind, _) = import(&text([step, action, other]));
+    assert_eq!(g7_syntax::print(&before, None), g7_syntax::print(&behind, None));
+}
+
+#[test]
+fn the_order_is_told_where_the_initial_step_moves_and_acts() {
+    let text = |first: &str| {
+        format!(
+            "profile iec61131\noutput q, r : BOOL\nchart G {{\n step A {{ {first} }}\n initial step B {{ N r }}\n B -> A when q\n}}\n"
+        )
+    };
+    assert_eq!(export(&document(&text("\"nothing\""))).problems, []);
+    let told = export(&document(&text("N q"))).problems;
+    let said: Vec<&str> = told.iter().map(|p| &*p.what).collect();
+    assert!(matches!(said[..], [one] if one.contains("`B` stands before the other steps")), "{said:?}");
+}
+
+#[test]
+fn a_text_is_ascii_and_holds_no_sign_of_a_comment() {
+    let written = export(&document(EARLY));
+    assert!(written.text.contains("s := '$C3$A4 ($2A $C3$B6 *) $E2$82$AC';"), "{}", written.text);
+    let (after, _) = import(&written.text);
+    let back = g7_syntax::print(&after, None);
+    assert!(back.contains("s := 'ä (* ö *) €'"), "{back}");
+    // One byte is a letter of Latin-1, and so are bytes that are no UTF-8.
+    let (after, _) = import("PROGRAM P VAR s : STRING; END_VAR s := '$E4$41$C3$28$24'; END_PROGRAM");
+    let back = g7_syntax::print(&after, None);
+    assert!(back.contains("s := 'äAÃ($$'"), "{back}");
+}
+
+/// A variable and a step with one name, but for the case of a letter.
+const TWINS: &str = "profile iec61131
+output init : BOOL
+chart G {
+  initial step Init { N init }
+  action Nothing {}
+  action More { init := TRUE }
+  step Next { N Nothing  N More }
+  Init -> Next when init
+  Next -> Init when not init
+}
+";
+
+#[test]
+fn a_step_that_is_not_read_may_have_the_name_of_a_variable() {
+    let before = document(TWINS);
+    let written = export(&before);
+    assert_eq!(written.problems, []);
+    let (after, problems) = import(&written.text);
+    assert_eq!(problems, []);
+    assert_eq!(g7_syntax::print(&after, None), g7_syntax::print(&before, None), "{}", written.text);
+    // `Init.X` would be a member of the variable.
+    let written = export(&document(&TWINS.replace("when not init", "when not init and Init.T > 1s")));
+    assert!(written.text.contains("STEP G_Init:") && written.text.contains("G_Init.T"), "{}", written.text);
+    assert!(written.problems.iter().any(|p| p.what.contains("`Init` is called `G_Init` there")));
+}
+
 /// The judgement of matiec on a text.
 fn compile(matiec: &g7_peers::Matiec, text: &str) -> Result<(), String> {
     static CALLS: AtomicUsize = AtomicUsize::new(0);
@@ -188,6 +287,8 @@ fn matiec_takes_what_is_written() {
     for text in [
         PUMP.to_string(),
         BESIDE.to_string(),
+        EARLY.to_string(),
+        TWINS.to_string(),
         g7_syntax::print(&import(&file("press.st")).0, None),
         g7_syntax::print(&import(&file("fork.st")).0, None),
     ] {

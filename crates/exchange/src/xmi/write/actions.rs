@@ -13,6 +13,12 @@ impl<'d> Writer<'d> {
     /// Writes the actions of a step. The enclosed charts were written with the step.
     pub(super) fn actions(&mut self, step: &'d Step, node: Node, web: &mut Web) {
         for action in &step.actions {
+            let without =
+                matches!(action.kind, ActionKind::Order(Order::Enclose(_)) | ActionKind::Comment(_));
+            if !without && !self.look.takes_actions(node) {
+                self.cannot(action.at, "an action of an enclosing step, macro-step, entry or exit step");
+                continue;
+            }
             let place = format!("//@partialGrafcets.{}/@actionTypes.{}", self.sheet, web.actions.len());
             let Some(element) = self.action(action, &place) else { continue };
             web.actions.push(element);
@@ -219,6 +225,10 @@ impl<'d> Writer<'d> {
                     steps.iter().filter_map(|s| self.look.step_node(index, &s.text)).collect();
                 if nodes.len() < steps.len() {
                     self.cannot(at, "a forced step that is not there");
+                }
+                if nodes.iter().any(|n| !self.look.is_initialisable(*n)) {
+                    self.cannot(at, "a forced macro-step, entry or exit step");
+                    return None;
                 }
                 let places: Vec<String> = nodes.into_iter().map(|n| self.look.place(n)).collect();
                 element.set("forcedSteps", &places.join(" "));

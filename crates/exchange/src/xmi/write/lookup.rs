@@ -3,8 +3,10 @@
 use std::collections::{BTreeMap, HashMap, HashSet};
 
 use g7_model::{
-    ActionKind, Chart, Document, Expr, Item, Name, Order, Path, Step, StepKind, Type, VarDecl, VarKind,
+    ActionKind, Chart, Document, Expr, Item, Name, Nanos, Order, Path, Step, StepKind, Type, VarDecl, VarKind,
 };
+
+use crate::xmi::timed;
 
 /// A step: its chart and its number there.
 pub(super) type Node = (usize, usize);
@@ -17,6 +19,15 @@ pub(super) enum Meaning<'d> {
     Const(&'d Expr),
     /// The activity of a step.
     Step(Node),
+}
+
+/// A declaration that is made only because a term uses it.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub(super) enum Asked {
+    /// The activity of a step.
+    Step(Node),
+    /// A time operator on it, as a Boolean of this name.
+    Timed(String),
 }
 
 /// A variable of the file or of a chart.
@@ -38,13 +49,16 @@ pub(super) struct Lookup<'d> {
     /// The number of variables of the file that are written.
     declared: usize,
     /// The steps whose activity a term uses, by the number of the declaration.
-    asked: BTreeMap<usize, Node>,
-    numbers: HashMap<Node, usize>,
+    asked: BTreeMap<usize, Asked>,
+    numbers: HashMap<Asked, usize>,
     enclosing: HashMap<&'d str, Node>,
 }
 
 /// How a step is written.
 struct NodeInfo {
+    /// The feature that holds it.
+    feature: &'static str,
+    enclosing: bool,
     place: String,
     number: String,
     renumbered: bool,
@@ -118,7 +132,8 @@ impl<'d> Lookup<'d> {
                 }
                 next.to_string()
             });
-            infos.push(NodeInfo { place, number, renumbered });
+            let enclosing = step.kind == StepKind::Enclosing;
+            infos.push(NodeInfo { feature, enclosing, place, number, renumbered });
             for action in &step.actions {
                 if let ActionKind::Order(Order::Enclose(inner)) = &action.kind {
                     self.enclosing.entry(&inner.text).or_insert((sheet, index));
@@ -179,18 +194,38 @@ impl<'d> Lookup<'d> {
         inner.collect::<Vec<_>>().join(" ")
     }
 
-    /// The declaration of a step's activity, made at its first use.
-    pub(super) fn ask(&mut self, node: Node) -> String {
+    /// True for what the meta-model calls initialisable: it can be forced, and its activity can be
+    /// used. Macro-steps and the entry and exit steps of expansions cannot.
+    pub(super) fn is_initialisable(&self, node: Node) -> bool {
+        self.info(node).is_some_and(|i| i.feature == "steps")
+    }
+
+    /// True for a step to which an action can be linked.
+    pub(super) fn takes_actions(&self, node: Node) -> bool {
+        self.info(node).is_some_and(|i| i.feature == "steps" && !i.enclosing)
+    }
+
+    /// The name of the Boolean for a time operator on the activity of a step, if the reader finds
+    /// the step by its number.
+    pub(super) fn timed_name(&self, time: Nanos, node: Node) -> Option<String> {
+        let info = self.info(node).filter(|i| i.feature == "steps")?;
+        let same = |i: &&NodeInfo| i.feature == "steps" && i.number == info.number;
+        let alone = self.nodes.iter().flatten().filter(same).count() == 1;
+        let name = timed::name(time, &info.number)?;
+        (alone && !self.vars.contains_key(&(None, &name))).then_some(name)
+    }
+
+    /// A declaration that is made at its first use.
+    pub(super) fn ask(&mut self, asked: Asked) -> String {
         let next = self.declared + self.asked.len();
-        let number = *self.numbers.entry(node).or_insert(next);
-        self.asked.insert(number, node);
+        let number = *self.numbers.entry(asked.clone()).or_insert(next);
+        self.asked.insert(number, asked);
         format!("//@variableDeclarationContainer/@variableDeclarations.{number}")
     }
 
-    /// The steps whose activity is used, in the order of their declarations.
-    pub(super) fn take_asked(&mut self) -> Vec<(Node, String)> {
-        let asked = std::mem::take(&mut self.asked);
-        asked.into_values().map(|node| (node, format!("X{}", self.number(node)))).collect()
+    /// The declarations that were asked for, in their order.
+    pub(super) fn take_asked(&mut self) -> Vec<Asked> {
+        std::mem::take(&mut self.asked).into_values().collect()
     }
 
     /// The meaning of a path in a chart, in the order of the grammar.

@@ -17,7 +17,7 @@ use g7_model::{
 
 use super::build::NAME_NOTE;
 use crate::Written;
-use lookup::{Lookup, Node};
+use lookup::{Asked, Lookup, Node};
 
 /// The namespaces of the project's own files.
 const NAMESPACES: [(&str, &str); 5] = [
@@ -94,10 +94,16 @@ impl<'d> Writer<'d> {
             partials.push(self.chart(chart));
         }
         // The steps whose activity is used are known only after all charts have been written.
-        for (node, name) in self.look.take_asked() {
-            let mut declared = self.declaration(&name, "step", Type::Bool);
-            declared.set("step", &self.look.place(node));
-            container.push(declared);
+        for asked in self.look.take_asked() {
+            container.push(match asked {
+                Asked::Timed(name) => self.declaration(&name, "input", Type::Bool),
+                Asked::Step(node) => {
+                    let name = format!("X{}", self.look.number(node));
+                    let mut declared = self.declaration(&name, "step", Type::Bool);
+                    declared.set("step", &self.look.place(node));
+                    declared
+                }
+            });
         }
         root.push(container);
         root.extend(partials);

@@ -3,7 +3,7 @@
 use g7_model::{BinaryOp, Expr, ExprKind, Literal, Nanos, Type, UnaryOp, codes};
 
 use super::Writer;
-use super::lookup::Meaning;
+use super::lookup::{Asked, Meaning};
 use g7_iec::xml::element::Element;
 
 /// The deepest term that is written; the reader accepts 100 nested elements.
@@ -89,14 +89,14 @@ impl Writer<'_> {
         match &e.kind {
             ExprKind::Literal(value) => self.constant(e, value, tag, place),
             ExprKind::Path(path) => match self.look.path(self.sheet, path) {
-                Some(meaning) => self.meaning(&meaning, tag, place, depth),
+                Some(meaning) => self.meaning(e, &meaning, tag, place, depth),
                 None => {
                     self.cannot(e.at, &format!("what `{}` stands for", path.text()));
                     None
                 }
             },
             ExprKind::Direct(address) => match self.look.direct(address) {
-                Some(meaning) => self.meaning(&meaning, tag, place, depth),
+                Some(meaning) => self.meaning(e, &meaning, tag, place, depth),
                 None => {
                     self.cannot(e.at, &format!("`%{address}`"));
                     None
@@ -104,10 +104,7 @@ impl Writer<'_> {
             },
             ExprKind::Unary(op, inner) => self.unary(e, *op, inner, tag, place, depth),
             ExprKind::Binary(op, a, b) => self.binary(e, *op, (a, b), tag, place, depth),
-            ExprKind::Timer { .. } => {
-                self.cannot(e.at, "a time operator within a term");
-                None
-            }
+            ExprKind::Timer { t1, e: inner, t2 } => self.inner_timer(e, t1, inner, t2.is_some(), tag),
             ExprKind::Call(path, _) => {
                 self.cannot(e.at, &format!("a call of `{}`", path.text()));
                 None
@@ -116,15 +113,58 @@ impl Writer<'_> {
         }
     }
 
-    fn meaning(&mut self, meaning: &Meaning, tag: &'static str, place: &str, depth: usize) -> Option<Term> {
+    fn meaning(
+        &mut self,
+        e: &Expr,
+        meaning: &Meaning,
+        tag: &'static str,
+        place: &str,
+        depth: usize,
+    ) -> Option<Term> {
         match meaning {
             Meaning::Const(value) => self.term(value, tag, place, depth + 1),
             Meaning::Var(reference, ty) => Some(self.variable_term(reference, *ty, tag)),
-            Meaning::Step(node) => {
-                let reference = self.look.ask(*node);
+            Meaning::Step(node) if self.look.is_initialisable(*node) => {
+                let reference = self.look.ask(Asked::Step(*node));
                 Some(self.variable_term(&reference, Type::Bool, tag))
             }
+            Meaning::Step(_) => {
+                self.cannot(e.at, "the activity of a macro-step, entry or exit step as a term");
+                None
+            }
         }
+    }
+
+    /// A time operator within a term. The meta-model has none; on the activity of a step, users of
+    /// it declare a Boolean that is called like the operator.
+    fn inner_timer(
+        &mut self,
+        e: &Expr,
+        t1: &Expr,
+        inner: &Expr,
+        twice: bool,
+        tag: &'static str,
+    ) -> Option<Term> {
+        let step = match &inner.kind {
+            ExprKind::Path(path) => self.look.path(self.sheet, path),
+            _ => None,
+        };
+        let name = match (&t1.kind, step) {
+            (ExprKind::Literal(Literal::Time(time)), Some(Meaning::Step(node))) if !twice => {
+                self.look.timed_name(*time, node)
+            }
+            _ => None,
+        };
+        let Some(name) = name else {
+            self.cannot(e.at, "a time operator within a term");
+            return None;
+        };
+        let what = format!(
+            "a time operator within a term: the meta-model has none; it is written as a Boolean `{name}`"
+        );
+        self.say(&codes::DIFFERENT, e.at, what);
+        let reference = self.look.ask(Asked::Timed(name));
+        Some(self.variable_term(&reference, Type::Bool, tag))
     }
 
     /// `<term xsi:type="terms:Variable" sort=… id=… variableDeclaration=…/>`.

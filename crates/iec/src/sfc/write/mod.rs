@@ -8,7 +8,9 @@ mod chart;
 
 use std::collections::HashSet;
 
-use g7_model::{Body, Chart, ChartItem, Document, Expr, Function, Item, Nanos, Type, VarDecl, VarKind};
+use g7_model::{
+    Body, Chart, ChartItem, Document, Expr, Function, Item, Nanos, Problem, Type, VarDecl, VarKind,
+};
 
 use crate::Written;
 use crate::nodes::Taken;
@@ -24,14 +26,18 @@ struct Program<'d> {
 
 /// Writes a document.
 pub fn export(document: &Document) -> Written {
-    let (document, problems) = standard(document, Form::Networks);
-    let text = Exporter::new(&document).text();
+    let (document, mut problems) = standard(document, Form::Networks);
+    let mut exporter = Exporter::new(&document);
+    let text = exporter.text();
+    problems.append(&mut exporter.problems);
+    problems.sort_by_key(|p| (p.at.start, p.at.end));
     Written { text, problems }
 }
 
 struct Exporter<'d> {
     document: &'d Document,
     taken: Taken,
+    problems: Vec<Problem>,
 }
 
 impl<'d> Exporter<'d> {
@@ -57,7 +63,7 @@ impl<'d> Exporter<'d> {
                 _ => {}
             }
         }
-        Exporter { document, taken }
+        Exporter { document, taken, problems: Vec::new() }
     }
 
     fn text(&mut self) -> String {
@@ -90,6 +96,16 @@ impl<'d> Exporter<'d> {
             }
             for decl in program.chart.into_iter().flat_map(Chart::vars) {
                 decl.names.iter().for_each(|n| declarations.own(decl, &n.text));
+            }
+            if !alone && declarations.sections.is_empty() {
+                // Some compilers refuse a program that declares nothing.
+                let shared = |d: &&VarDecl, n: &g7_model::Name| !local(d, &n.text, &used);
+                let of_decl = |d: &&VarDecl| d.names.iter().any(|n| shared(d, n));
+                if let Some(decl) = globals.iter().copied().find(of_decl)
+                    && let Some(name) = decl.names.iter().find(|n| shared(&decl, n))
+                {
+                    declarations.external(decl, &name.text);
+                }
             }
             let body = if program.body.is_empty() { "  ;\n" } else { &program.body };
             text.push_str(&format!(
