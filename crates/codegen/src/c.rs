@@ -3,6 +3,7 @@
 use std::collections::{HashMap, HashSet};
 use std::fmt::Write as _;
 
+use crate::c_words::{integer, own_name, real};
 use crate::tree::{Arm, Bin, Block, Const, Expr, Field, Function, Known, Module, Stmt, Struct, Ty, Un};
 
 /// The printer of a module, with the meaning of every name.
@@ -240,7 +241,7 @@ impl<'a> Printer<'a> {
     }
 
     fn head(&self, f: &Function) -> String {
-        let name = if f.public { format!("{}_{}", self.prefix, f.name) } else { f.name.clone() };
+        let name = if f.public { format!("{}_{}", self.prefix, f.name) } else { own_name(&f.name) };
         let parameters: Vec<String> = f.parameters.iter().map(|(n, t)| self.declared(t, n)).collect();
         let parameters = if parameters.is_empty() { "void".to_owned() } else { parameters.join(", ") };
         let result = f.result.as_ref().map_or("void".to_owned(), |t| self.ty(t));
@@ -289,7 +290,7 @@ impl<'a> Printer<'a> {
                     (Ty::Array(_, n), from) => {
                         let from = self.expr(from);
                         let _ = writeln!(self.out, "{indent}{declared};");
-                        let head = format!("for (uint32_t i = 0; i < {n}; i++)");
+                        let head = format!("for (uint32_t i = 0U; i < {n}U; i++)");
                         let _ = writeln!(
                             self.out,
                             "{indent}{head} {{\n{indent}    {name}[i] = {from}[i];\n{indent}}}"
@@ -314,7 +315,8 @@ impl<'a> Printer<'a> {
             }
             Stmt::For(name, from, to, body) => {
                 self.scope.insert(name.clone(), Ty::Size);
-                let (from, to) = (self.expr(from), self.expr(to));
+                let counter = Expr::Cast(Box::new(Expr::name(name.as_str())), Ty::Size);
+                let (from, to) = (self.beside(from, &counter, Bin::Lt), self.beside(to, &counter, Bin::Lt));
                 let _ =
                     writeln!(self.out, "{indent}for (uint32_t {name} = {from}; {name} < {to}; {name}++) {{");
                 self.block(body, depth + 1);
@@ -346,13 +348,19 @@ impl<'a> Printer<'a> {
         let ty = self.type_of(to);
         if let (None, Some(Ty::Array(_, n))) = (op, &ty) {
             let (to, value) = (self.expr(to), self.expr(value));
-            let head = format!("for (uint32_t i = 0; i < {n}; i++)");
+            let head = format!("for (uint32_t i = 0U; i < {n}U; i++)");
             let _ = writeln!(self.out, "{indent}{head} {{\n{indent}    {to}[i] = {value}[i];\n{indent}}}");
             return;
         }
-        let value = match &ty {
-            Some(ty) => self.literal(value, ty),
-            None => self.expr(value),
+        let value = match (&ty, op) {
+            // The result is brought back into the type, so it may be worked out unsigned.
+            (Some(Ty::Size | Ty::Int { signed: false, .. }), Some(_))
+                if matches!(value, Expr::Int(_, None)) =>
+            {
+                self.beside(value, to, Bin::BitOr)
+            }
+            (Some(ty), _) => self.literal(value, ty),
+            (None, _) => self.expr(value),
         };
         let to = self.expr(to);
         let small = matches!(ty, Some(Ty::Int { bits: 8 | 16, .. }));
@@ -379,6 +387,11 @@ impl<'a> Printer<'a> {
             [Stmt::If(c, then, other)] => {
                 let _ = write!(self.out, "{indent}}} else ");
                 self.alternative(c, then, other, depth);
+                // Rule 15.7: a chain of questions ends with an else.
+                if other.is_empty() {
+                    self.out.truncate(self.out.trim_end().len());
+                    let _ = writeln!(self.out, " else {{\n{indent}    /* nothing else */\n{indent}}}");
+                }
             }
             _ => {
                 let _ = writeln!(self.out, "{indent}}} else {{");
@@ -443,6 +456,54 @@ impl<'a> Printer<'a> {
         if bare { text } else { format!("({text})") }
     }
 
+    /// An operand. A number beside an unsigned one is unsigned (MISRA C:2012, rule 10.4): where they
+    /// are compared or joined bit by bit, and where they are as wide as an `int` may be, so that
+    /// C gives the same value.
+    fn beside(&self, e: &Expr, other: &Expr, op: Bin) -> String {
+        let keeps = matches!(
+            op,
+            Bin::Eq
+                | Bin::Ne
+                | Bin::Lt
+                | Bin::Le
+                | Bin::Gt
+                | Bin::Ge
+                | Bin::BitAnd
+                | Bin::BitOr
+                | Bin::BitXor
+        );
+        let shifts = matches!(op, Bin::Shl | Bin::Shr);
+        match e {
+            Expr::Int(n, None) if *n >= 0 && *n <= i128::from(u32::MAX) && !shifts => {
+                match self.type_of_value(other) {
+                    Some(Ty::Size | Ty::Int { signed: false, bits: 32 | 64 }) => format!("{n}U"),
+                    Some(Ty::Int { signed: false, .. }) if keeps => format!("{n}U"),
+                    _ => self.within(e, op),
+                }
+            }
+            _ => self.within(e, op),
+        }
+    }
+
+    /// The type of a value, as far as the tree tells it.
+    fn type_of_value(&self, e: &Expr) -> Option<Ty> {
+        match e {
+            Expr::Cast(_, ty) | Expr::Int(_, Some(ty)) => Some(ty.clone()),
+            Expr::Call(f, _) if f != "inv" => self.functions.get(f.as_str())?.result.clone(),
+            Expr::Bin(Bin::BitAnd | Bin::BitOr | Bin::BitXor, a, b) => {
+                self.type_of_value(a).or_else(|| self.type_of_value(b))
+            }
+            Expr::Bin(Bin::Add | Bin::Sub, a, b) => {
+                let wide = |ty: &Ty| matches!(ty, Ty::Size | Ty::Int { bits: 32 | 64, .. });
+                self.type_of_value(a).or_else(|| self.type_of_value(b)).filter(wide)
+            }
+            Expr::Bin(Bin::Shl | Bin::Shr, a, _) => {
+                self.type_of_value(a).filter(|ty| matches!(ty, Ty::Size | Ty::Int { bits: 32 | 64, .. }))
+            }
+            place => self.type_of(place),
+        }
+    }
+
     fn expr(&self, e: &Expr) -> String {
         match e {
             Expr::Int(n, None) => integer(*n, true, 32),
@@ -471,7 +532,10 @@ impl<'a> Printer<'a> {
             Expr::Call(f, args) => self.call(f, args),
             Expr::Un(Un::Not, e) => format!("!{}", self.tight(e)),
             Expr::Un(Un::Neg, e) => format!("-{}", self.tight(e)),
-            Expr::Bin(op, a, b) => format!("{} {} {}", self.within(a, *op), op.text(), self.within(b, *op)),
+            Expr::Bin(op, a, b) => {
+                let (left, right) = (self.beside(a, b, *op), self.beside(b, a, *op));
+                format!("{left} {} {right}", op.text())
+            }
             Expr::Cast(e, ty) => format!("({}){}", self.ty(ty), self.tight(e)),
             Expr::Ref(_, e) => match (&**e, self.type_of(e)) {
                 (_, Some(Ty::Array(..))) => self.expr(e),
@@ -507,40 +571,7 @@ impl<'a> Printer<'a> {
                 None => self.expr(a),
             });
         }
-        let name = if self.offered.contains(f) { format!("{}_{f}", self.prefix) } else { f.to_owned() };
+        let name = if self.offered.contains(f) { format!("{}_{f}", self.prefix) } else { own_name(f) };
         format!("{name}({})", all.join(", "))
-    }
-}
-
-fn integer(n: i128, signed: bool, bits: u8) -> String {
-    if bits == 64 && n == i128::from(i64::MIN) {
-        return "INT64_MIN".into();
-    }
-    if bits == 64 {
-        return format!("{}INT64_C({n})", if signed { "" } else { "U" });
-    }
-    if !signed && bits == 32 {
-        return format!("UINT32_C({n})");
-    }
-    if n > i128::from(i64::MAX) {
-        format!("UINT64_C({n})")
-    } else if n == i128::from(i64::MIN) {
-        "INT64_MIN".into()
-    } else if signed && n == i128::from(i32::MIN) {
-        "INT32_MIN".into()
-    } else if n > i128::from(u32::MAX) || n < i128::from(i32::MIN) {
-        format!("INT64_C({n})")
-    } else {
-        n.to_string()
-    }
-}
-
-fn real(v: f64, text: &str, suffix: &str) -> String {
-    if v.is_nan() {
-        format!("(0.0{suffix} / 0.0{suffix})")
-    } else if v.is_infinite() {
-        format!("({}1.0{suffix} / 0.0{suffix})", if v < 0.0 { "-" } else { "" })
-    } else {
-        format!("{text}{suffix}")
     }
 }

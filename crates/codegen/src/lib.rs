@@ -21,6 +21,7 @@ mod arduino;
 mod body;
 mod build;
 mod c;
+mod c_words;
 mod chart;
 mod facts;
 mod flat;

@@ -55,7 +55,7 @@ enum Words {
     Rust(Code),
     /// Structured Text (IEC 61131-3): Boolean equations with memories.
     #[command(after_help = EXAMPLES)]
-    St(What),
+    St(Plc),
     /// The same equations as Instruction List.
     #[command(after_help = EXAMPLES)]
     Il {
@@ -63,7 +63,7 @@ enum Words {
         #[arg(long, value_enum, default_value_t = IlStyle::Flat)]
         style: IlStyle,
         #[command(flatten)]
-        what: What,
+        what: Plc,
     },
     /// The same equations as Ladder.
     #[command(after_help = EXAMPLES)]
@@ -72,7 +72,7 @@ enum Words {
         #[arg(long, value_enum, default_value_t = LdStyle::Xml)]
         style: LdStyle,
         #[command(flatten)]
-        what: What,
+        what: Plc,
     },
 }
 
@@ -123,6 +123,22 @@ enum LdStyle {
     Drawn,
 }
 
+/// The arguments for the languages of PLCs.
+#[derive(Args, Debug)]
+struct Plc {
+    /// Write comments in ASCII alone, for tools that take no other letters.
+    #[arg(long)]
+    ascii: bool,
+    #[command(flatten)]
+    what: What,
+}
+
+impl Plc {
+    fn print(&self, form: plc::Form, ending: &'static str) -> Result<Verdict, Failure> {
+        controller(Tongue::Plc { form, ending, ascii: self.ascii }, &self.what)
+    }
+}
+
 /// The arguments for all languages.
 #[derive(Args, Debug)]
 struct What {
@@ -148,21 +164,19 @@ pub(crate) fn generate(args: &Gen) -> Result<Verdict, Failure> {
         Words::C(code) => code.print(Language::C),
         Words::Arduino(code) => code.print(Language::Arduino),
         Words::Rust(code) => code.print(Language::Rust),
-        Words::St(what) => controller(Tongue::Plc(plc::Form::St, "st"), what),
-        Words::Il { style: IlStyle::Flat, what } => controller(Tongue::Plc(plc::Form::Il, "il"), what),
-        Words::Il { style: IlStyle::Dolog80, what } => {
-            controller(Tongue::Plc(plc::Form::Dolog80, "il"), what)
-        }
-        Words::Ld { style: LdStyle::Xml, what } => controller(Tongue::Plc(plc::Form::Ld, "xml"), what),
-        Words::Ld { style: LdStyle::Drawn, what } => controller(Tongue::Plc(plc::Form::Drawing, "svg"), what),
+        Words::St(what) => what.print(plc::Form::St, "st"),
+        Words::Il { style: IlStyle::Flat, what } => what.print(plc::Form::Il, "il"),
+        Words::Il { style: IlStyle::Dolog80, what } => what.print(plc::Form::Dolog80, "il"),
+        Words::Ld { style: LdStyle::Xml, what } => what.print(plc::Form::Ld, "xml"),
+        Words::Ld { style: LdStyle::Drawn, what } => what.print(plc::Form::Drawing, "svg"),
     }
 }
 
-/// The language of the output, and the file extension for PLC code.
+/// The language of the output; for PLC code the form, the file extension and the letters.
 #[derive(Clone, Copy)]
 enum Tongue {
     Code(Language, Style),
-    Plc(plc::Form, &'static str),
+    Plc { form: plc::Form, ending: &'static str, ascii: bool },
 }
 
 impl Tongue {
@@ -177,9 +191,12 @@ impl Tongue {
                 let options = Options { language, style, name, source };
                 g7_codegen::print(compiled, &options).map(|p| (p.files, p.problems))
             }
-            Tongue::Plc(form, ending) => {
+            Tongue::Plc { form, ending, ascii } => {
                 let printed = plc::print(compiled, form, name, source)?;
-                let file = File { name: format!("{name}.{ending}"), text: printed.text };
+                let file = File {
+                    name: format!("{name}.{ending}"),
+                    text: if ascii { plc::ascii(&printed.text) } else { printed.text },
+                };
                 Ok((vec![file], printed.problems))
             }
         }

@@ -219,6 +219,8 @@ pub(crate) struct Declared {
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Block {
     pub(crate) name: String,
+    /// Lines that stand as comments before the block.
+    pub(crate) notes: Vec<String>,
     pub(crate) variables: Vec<Declared>,
     /// The statements of a scan. Where a fault can come, each part runs only
     /// while none has.

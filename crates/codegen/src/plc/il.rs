@@ -32,7 +32,8 @@ pub(crate) fn print(e: &Block, set_reset: bool) -> String {
     }
     let body = if p.out.trim().is_empty() { "  LD TRUE\n".to_owned() } else { p.out };
     let variables = p.variables.into_list();
-    let head = declarations(&Block { name: e.name.clone(), variables, ..Block::default() });
+    let head =
+        declarations(&Block { name: e.name.clone(), notes: e.notes.clone(), variables, ..Block::default() });
     format!("{head}{body}  RET\nEND_FUNCTION_BLOCK\n")
 }
 

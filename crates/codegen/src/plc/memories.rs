@@ -4,7 +4,7 @@
 use std::collections::{HashMap, HashSet};
 
 use g7_compile::Compiled;
-use g7_engine::{Addr, INPUTS, StepId};
+use g7_engine::{Addr, INPUTS, StepId, WatchId};
 use g7_equations::{Class, Equations, Memory, MemoryId, Part, What};
 use g7_model::{FbKind, Nanos, Type};
 
@@ -21,6 +21,8 @@ pub(crate) struct Memories {
     /// By memory: its name; none where nothing has to be called.
     names: Vec<String>,
     found: HashMap<What, MemoryId>,
+    /// Words for the expressions of edges and delays.
+    signals: HashMap<WatchId, String>,
     pub(crate) steps: Vec<String>,
     /// Variables of the chart: first word, name, elements.
     pub(crate) shown: Vec<(Addr, String, u32)>,
@@ -69,10 +71,12 @@ impl Memories {
         e: &Equations,
         name: &str,
         calls: &HashSet<MemoryId>,
+        signals: HashMap<WatchId, String>,
     ) -> (String, Memories) {
         let mut m = Memories {
             names: vec![String::new(); e.memories.len()],
             found: e.by_meaning(),
+            signals,
             steps: Vec::new(),
             shown: Vec::new(),
             declared: Vec::new(),
@@ -242,6 +246,18 @@ impl Memories {
         name.trim_start_matches("X_").to_owned()
     }
 
+    /// The words for a watched expression, or its number where it has none.
+    fn watched(&self, w: WatchId) -> String {
+        self.signals.get(&w).cloned().unwrap_or_else(|| (w.0 + 1).to_string())
+    }
+
+    /// Declares a memory for a list that several statements read.
+    pub(crate) fn any(&mut self) -> String {
+        let name = self.given.counted("ANY");
+        self.internal(&name, "BOOL", "one of several");
+        name
+    }
+
     /// A memory that stands for something else.
     fn other(&mut self, c: &Compiled, id: MemoryId, memory: &Memory) {
         let step = |m: &Self, s: StepId| m.of_step(s);
@@ -281,12 +297,12 @@ impl Memories {
             What::GroupWas(g) => ("GW", number(g.0), "was active"),
             What::GroupTime(g) => ("GT", number(g.0), "since it came on"),
             What::GroupScans(g) => ("GN", number(g.0), "scans since it came on"),
-            What::Watched(w) => ("WE", number(w.0), ""),
-            What::WatchedBefore(w) => ("WB", number(w.0), "as the pass before began"),
-            What::Rise(w) => ("RE", number(w.0), "rose"),
-            What::Fall(w) => ("FE", number(w.0), "fell"),
-            What::Timer(w) => ("TM", number(w.0), "a delay"),
-            What::TimerClock(w) => ("WT", number(w.0), "since it changed"),
+            What::Watched(w) => ("WE", self.watched(w), ""),
+            What::WatchedBefore(w) => ("WB", self.watched(w), "as the pass before began"),
+            What::Rise(w) => ("RE", self.watched(w), "rose"),
+            What::Fall(w) => ("FE", self.watched(w), "fell"),
+            What::Timer(w) => ("TM", self.watched(w), "a delay"),
+            What::TimerClock(w) => ("WT", self.watched(w), "since it changed"),
             What::Until(p) => ("UNTIL", p.to_string(), "time until the period is due"),
             What::Due(p) => ("DUE", p.to_string(), "the period is due"),
             What::Receptivity(r) => ("R", self.of_transition(r), "its receptivity"),

@@ -10,6 +10,7 @@
 //! - The equations do what the engine does, scan by scan; the tests run both.
 //! - What a form cannot say is refused with its place, never printed wrong.
 
+mod ascii;
 mod drawn;
 mod form;
 mod il;
@@ -19,11 +20,15 @@ mod memories;
 mod names;
 mod native;
 mod scan;
+mod shared;
+mod signals;
 mod st;
 mod terms;
 mod variables;
 
 use std::collections::HashMap;
+
+pub use ascii::ascii;
 
 use g7_compile::Compiled;
 use g7_engine::{Addr, StepId};

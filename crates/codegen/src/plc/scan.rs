@@ -15,10 +15,16 @@ use g7_model::{Nanos, Problem, Span, Type, codes};
 use super::form::{Block, Ex, St, narrow};
 use super::memories::{Memories, literal};
 use super::native;
+use super::shared;
+use super::signals::signals;
 use crate::spare;
 
-/// Most passes in a scan of the controller; the program's own bound may be less.
-const PASSES: u32 = 10_000;
+/// Passes of a scan that every chart may have, and those that none may have: at 0.1 ms a pass
+/// the latter take 100 ms, which the watchdogs of most controllers allow. The program's own bound may
+/// be less.
+const PASSES: (u32, u32) = (100, 1000);
+/// Passes for each transition, between these two: a search that ends clears few of them twice.
+const PASSES_EACH: u32 = 4;
 /// Elements up to which a table is copied one by one.
 const LONG: u32 = 256;
 
@@ -32,6 +38,8 @@ pub(super) struct Scan<'a> {
     at: Span,
     set_reset: bool,
     faults: bool,
+    /// Comments for the head of the block.
+    notes: Vec<String>,
     pub(super) problems: Vec<Problem>,
 }
 
@@ -50,22 +58,35 @@ pub(super) fn block(
             "arithmetic that overflows is a fault of a run here; a controller goes on as its maker decided";
         Problem::new(&codes::DIFFERENT, at, text)
     });
+    let signals = signals(c, &e);
     let inside = native::native(&mut e);
     spare::spare_for_controllers(&mut e, &inside);
     let calls = first_of_calls(&e);
-    let (name, memories) = Memories::new(c, &e, name, &calls);
+    let (name, memories) = Memories::new(c, &e, name, &calls, signals);
     let at = c.symbols.charts.first().map(|c| c.at).unwrap_or_default();
-    let mut s = Scan { c, e: &e, memories, source, at, set_reset, faults: false, problems: Vec::new() };
+    let mut s = Scan {
+        c,
+        e: &e,
+        memories,
+        source,
+        at,
+        set_reset,
+        faults: false,
+        notes: Vec::new(),
+        problems: Vec::new(),
+    };
     let parts = s.parts();
+    let memories = &mut s.memories;
+    let parts = parts.into_iter().map(|part| shared::once(part, &mut || memories.any())).collect();
     let safe = s.faults.then(|| s.safe());
     if s.faults {
         s.memories.internal("FAULT", "BOOL", "a fault has come: no further scan");
     }
     let mut variables = std::mem::take(&mut s.memories.declared);
     variables.sort_by_key(|v| v.class);
-    let Scan { memories, mut problems, .. } = s;
+    let Scan { memories, notes, mut problems, .. } = s;
     problems.extend(overflow);
-    (Block { name, variables, parts, safe }, memories, problems)
+    (Block { name, notes, variables, parts, safe }, memories, problems)
 }
 
 fn first_of_calls(e: &Equations) -> HashSet<MemoryId> {
@@ -113,7 +134,13 @@ impl Scan<'_> {
         let mut body = vec![St::set("PASSES", Ex::op("+", passes.clone(), Ex::Int(1)))];
         body.extend(self.sections(&e.pass));
         let body = in_parts(without_lone_remarks(body));
-        let most = Ex::op(">=", passes, Ex::Int(bound.min(PASSES).into()));
+        let transitions = u32::try_from(self.c.program.tables().transitions.len()).unwrap_or(u32::MAX);
+        let bound = bound.min(transitions.saturating_mul(PASSES_EACH).clamp(PASSES.0, PASSES.1));
+        self.notes.push(format!(
+            "A scan makes passes until nothing changes, at most {bound}; a scan that needs more is a fault. \
+             The watchdog has to allow for so many."
+        ));
+        let most = Ex::op(">=", passes, Ex::Int(bound.into()));
         let done = Ex::any([Ex::var("FAULT"), changed.clone().not(), most]);
         vec![
             St::Title("The evolution, until nothing changes".into()),

@@ -29,7 +29,11 @@ pub(crate) fn print(e: &Block) -> String {
 
 /// The head of the function block with its variables.
 pub(crate) fn declarations(e: &Block) -> String {
-    let mut out = format!("FUNCTION_BLOCK {}\n", e.name);
+    let mut out = String::new();
+    for note in &e.notes {
+        let _ = writeln!(out, "(* {} *)", plain(note));
+    }
+    let _ = writeln!(out, "FUNCTION_BLOCK {}", e.name);
     let heads = [
         (Class::Input, "VAR_INPUT"),
         (Class::Output, "VAR_OUTPUT"),
@@ -209,9 +213,9 @@ pub(crate) fn expression(e: &Ex) -> String {
         Ex::Not(inner) => format!("NOT {}", within(inner, 9)),
         Ex::Neg(inner) => format!("-{}", within(inner, 9)),
         Ex::And(parts) => list(parts, " AND ", 4),
-        // AND beside OR reads better in brackets only where it is long.
-        Ex::Or(parts) => list(parts, " OR ", 3),
-        Ex::Xor(a, b) => format!("{} XOR {}", within(a, 3), within(b, 3)),
+        // AND beside OR or XOR has brackets, so that nobody has to know which binds closer.
+        Ex::Or(parts) => list(parts, " OR ", 4),
+        Ex::Xor(a, b) => format!("{} XOR {}", within(a, 4), within(b, 4)),
         Ex::Op(sign, a, b) => {
             let t = tightness(e);
             format!("{} {sign} {}", within(a, t), within(b, t + 1))
