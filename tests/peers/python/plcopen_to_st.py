@@ -9,6 +9,7 @@ is in the last line of the standard error.
 """
 
 import builtins
+import contextlib
 import importlib.machinery
 import sys
 import types
@@ -49,7 +50,9 @@ def main(folder, path):
     if result is not None:
         raise SystemExit(f"refused by the reader: {result}")
     errors, warnings = [], []
-    chunks = PLCGenerator.GenerateCurrentProgram(controller, controller.Project, errors, warnings)
+    # OpenPLC's generator says on the standard output what it is doing.
+    with contextlib.redirect_stdout(sys.stderr):
+        chunks = PLCGenerator.GenerateCurrentProgram(controller, controller.Project, errors, warnings)
     for problem in errors:
         print(problem, file=sys.stderr)
     sys.stdout.write("".join(chunk[0] for chunk in chunks))
