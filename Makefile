@@ -30,7 +30,7 @@ PYTHON := $(abspath $(or $(CARGO_TARGET_DIR),target))/python
 NODE := $(PYTHON)/node
 PAGE := $(shell find web/src web/index.html web/public web/*.ts web/*.js web/*.mjs -type f 2>/dev/null)
 
-.PHONY: run view install online-demo deb sbom static test opcua-bench tally-anew peers checkers lint deny wasm web site pictures page-test page-bench bench bench-check prove-bench prove-table online-bench soak faults book blocks fuzz help FORCE
+.PHONY: run view install online-demo deb sbom static test opcua-bench tally-anew peers checkers lint deny wasm web site pictures page-test page-bench bench bench-check prove-bench prove-table interop online-bench soak faults book blocks fuzz help FORCE
 
 ## build G7 and open the editor in the browser on the examples (FOLDER=… for another)
 run: WASM := quick-wasm
@@ -204,6 +204,11 @@ prove-bench: checkers
 ## every question asked of the examples, the litmus charts and the corpus, as a table (LIMIT=… seconds for each chart)
 prove-table:
 	cargo run --profile soak --quiet --package g7-tests --example prove_table -- $(or $(LIMIT),5) examples tests/spec/litmus \
+		$(or $(G7_CORPUS),$(wildcard ../shared/corpus))
+
+## charts written as PLCopen XML, opened by Beremiz and OpenPLC and compiled by matiec, as a table (G7_BEREMIZ=…, G7_XML2ST=… name their folders, iec2c stands in the PATH, Python has lxml)
+interop:
+	cargo run --quiet --package g7-tests --example interop -- examples tests/spec tests/interchange \
 		$(or $(G7_CORPUS),$(wildcard ../shared/corpus))
 
 ## how late scans are beside cyclictest, with no page and with 1000, how long a read of Modbus TCP takes (Linux, as root; rt-tests and stress-ng are installed)

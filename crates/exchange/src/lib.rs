@@ -35,5 +35,6 @@ mod undeclared;
 mod xmi;
 
 pub use g7_iec::Written;
+pub use g7_iec::plcopen::Dialect;
 
 pub use registry::{FORMATS, Format, named, recognise};

@@ -2,6 +2,7 @@
 //!
 //! The command line, the page and the tests use this table; there is no other list.
 
+use g7_iec::plcopen::Dialect;
 use g7_iec::{Written, plcopen, sfc, xml};
 use g7_model::{Document, FileId, Problem};
 
@@ -29,6 +30,7 @@ pub struct Format {
     pub endings: &'static [&'static str],
     reader: Option<(Fits, Read)>,
     writer: Option<Write>,
+    in_dialect: Option<fn(&Document, Dialect) -> Written>,
 }
 
 /// All formats, in the order in which a file is asked.
@@ -40,6 +42,7 @@ pub static FORMATS: [Format; 9] = [
         endings: &["xml"],
         reader: Some((jgrafchart::fits, jgrafchart::import)),
         writer: Some(jgrafchart::export),
+        in_dialect: None,
     },
     // PLCopen TC6 XML and IEC 61131-10 XML; TC6 XML 2.01 is written.
     Format {
@@ -48,6 +51,7 @@ pub static FORMATS: [Format; 9] = [
         endings: &["xml"],
         reader: Some((plcopen::fits, plcopen::import)),
         writer: Some(plcopen::export),
+        in_dialect: Some(plcopen::export_for),
     },
     // EMF/XMI instances of the AGRAFE meta-model of IEC 60848.
     Format {
@@ -56,6 +60,7 @@ pub static FORMATS: [Format; 9] = [
         endings: &["grafcet", "xmi"],
         reader: Some((xmi::fits, xmi::import)),
         writer: Some(xmi::export),
+        in_dialect: None,
     },
     // ClassicLadder 0.7 to 0.9: a project, or its `sequential.csv` alone.
     Format {
@@ -64,6 +69,7 @@ pub static FORMATS: [Format; 9] = [
         endings: &["clp", "clprj"],
         reader: Some((classicladder::fits, classicladder::import)),
         writer: None,
+        in_dialect: None,
     },
     // Control Expert and Unity Pro: a chart (`.XSF`), or an application with charts (`.XEF`).
     Format {
@@ -72,6 +78,7 @@ pub static FORMATS: [Format; 9] = [
         endings: &["xsf", "xef"],
         reader: Some((controlexpert::fits, controlexpert::import)),
         writer: None,
+        in_dialect: None,
     },
     // S7-GRAPH: a block exported by TIA Portal's Openness.
     Format {
@@ -80,6 +87,7 @@ pub static FORMATS: [Format; 9] = [
         endings: &["xml"],
         reader: Some((s7graph::fits, s7graph::import)),
         writer: None,
+        in_dialect: None,
     },
     // Studio 5000 Logix Designer: routines in SFC.
     Format {
@@ -88,6 +96,7 @@ pub static FORMATS: [Format; 9] = [
         endings: &["l5x"],
         reader: Some((l5x::fits, l5x::import)),
         writer: None,
+        in_dialect: None,
     },
     // IEC 61131-3 in text. It is the last one that is read, because it is recognised by the name's
     // ending too.
@@ -97,6 +106,7 @@ pub static FORMATS: [Format; 9] = [
         endings: sfc::ENDINGS,
         reader: Some((sfc::fits, sfc::import)),
         writer: Some(sfc::export),
+        in_dialect: None,
     },
     // A flowchart in the text of Mermaid, for documents.
     Format {
@@ -105,6 +115,7 @@ pub static FORMATS: [Format; 9] = [
         endings: &["mmd"],
         reader: None,
         writer: Some(mermaid::export),
+        in_dialect: None,
     },
 ];
 
@@ -136,6 +147,13 @@ impl Format {
     /// written.
     pub fn write(&self, document: &Document) -> Option<Written> {
         self.writer.map(|write| write(document))
+    }
+}
+
+impl Format {
+    /// Writes a document in a dialect; None if the format has no dialects.
+    pub fn write_in(&self, document: &Document, dialect: Dialect) -> Option<Written> {
+        self.in_dialect.map(|write| write(document, dialect))
     }
 }
 

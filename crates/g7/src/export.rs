@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::ValueEnum;
 use clap::builder::PossibleValue;
-use g7_exchange::{FORMATS, Format};
+use g7_exchange::{Dialect, FORMATS, Format};
 use g7_model::Severity;
 
 use crate::failure::{Failure, Verdict};
@@ -36,6 +36,9 @@ pub(crate) struct Export {
     /// The format, if the name of the output does not tell it.
     #[arg(long, value_enum, value_name = "FORM")]
     to: Option<Form>,
+    /// The tool that is to open a PLCopen file [default: beremiz].
+    #[arg(long, value_enum, value_name = "TOOL")]
+    dialect: Option<Tool>,
     /// The file to write [default: the standard output].
     #[arg(long, short, value_name = "FILE")]
     output: Option<PathBuf>,
@@ -66,6 +69,22 @@ impl ValueEnum for Form {
     }
 }
 
+/// A dialect, as a word of the command line.
+#[derive(Clone, Copy, Debug)]
+struct Tool(Dialect);
+
+impl ValueEnum for Tool {
+    fn value_variants<'a>() -> &'a [Tool] {
+        static ALL: std::sync::LazyLock<Vec<Tool>> =
+            std::sync::LazyLock::new(|| Dialect::ALL.into_iter().map(Tool).collect());
+        &ALL
+    }
+
+    fn to_possible_value(&self) -> Option<PossibleValue> {
+        Some(PossibleValue::new(self.0.word()))
+    }
+}
+
 /// Compares a chart with what was read back.
 pub(crate) type ReadBack = fn(sources::Source, sources::Source) -> Result<Verdict, Failure>;
 
@@ -87,8 +106,13 @@ pub(crate) fn export(args: &Export, read_back: ReadBack) -> Result<Verdict, Fail
         problems.retain(|p| p.severity() == Severity::Error);
         return Ok(found(&source, &problems));
     }
-    let Some(written) = to.write(&source.document) else {
-        return Err(Failure::Usage(format!("{} is not written", to.title)));
+    let written = match args.dialect {
+        Some(tool) => to.write_in(&source.document, tool.0).ok_or_else(|| {
+            Failure::Usage(format!("{} has no dialects; --dialect is for PLCopen XML", to.title))
+        })?,
+        None => to
+            .write(&source.document)
+            .ok_or_else(|| Failure::Usage(format!("{} is not written", to.title)))?,
     };
     let lost = written.problems.iter().any(|p| p.severity() == Severity::Error);
     if !written.problems.is_empty() {

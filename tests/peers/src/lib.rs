@@ -12,6 +12,7 @@ pub mod checkers;
 pub mod crowd;
 pub mod faults;
 pub mod process;
+pub mod projects;
 pub mod tally;
 
 use std::io::Write as _;

@@ -29,6 +29,7 @@ mod build;
 mod chart;
 mod condition;
 mod declare;
+mod dialect;
 mod draft;
 mod flow;
 mod graph;
@@ -57,9 +58,16 @@ pub fn fits(_: &str, root: Option<&str>, bytes: &[u8]) -> bool {
     ["plcopen.org/xml/tc6", "TC65SC65BWG7TF10"].iter().any(|mark| text.contains(mark))
 }
 
-/// Writes a document as a project.
+pub use dialect::Dialect;
+
+/// Writes a document as a project, in the dialect that most tools read.
 pub fn export(document: &Document) -> crate::Written {
-    write::export(document)
+    write::export(document, Dialect::default())
+}
+
+/// Writes a document as a project for one tool.
+pub fn export_for(document: &Document, dialect: Dialect) -> crate::Written {
+    write::export(document, dialect)
 }
 
 /// Reads a project.

@@ -82,6 +82,20 @@ impl Element {
         Element::new(tag).child(inner)
     }
 
+    /// Writes each text of XHTML in a paragraph `xhtml:p`, whose name space this element declares.
+    pub fn in_paragraphs(mut self) -> Element {
+        self.paragraphs();
+        self.with("xmlns:xhtml", "http://www.w3.org/1999/xhtml")
+    }
+
+    fn paragraphs(&mut self) {
+        if self.tag == "xhtml" {
+            self.tag = "xhtml:p".to_string();
+            self.attributes.clear();
+        }
+        self.children.iter_mut().for_each(Element::paragraphs);
+    }
+
     /// Prints the element with two blanks of indentation for each level.
     pub fn print(&self, level: usize, text: &mut String) {
         let blanks = " ".repeat(2 * level);

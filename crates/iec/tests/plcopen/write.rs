@@ -1,14 +1,20 @@
 //! Documents as projects: what TC6 can hold comes back equal.
 
 use crate::support;
+use g7_exchange::Dialect;
 use g7_model::{Document, FileId};
 use roxmltree::Node;
 
 use crate::show::{document, errors, import, text};
 
-/// The project of a document, which must hold all of it.
+/// The project of a document, which must hold all of it, as the standard has it.
 fn written(document: &Document) -> String {
-    let written = support::export("plcopen", document);
+    written_for(document, Dialect::Standard)
+}
+
+fn written_for(document: &Document, dialect: Dialect) -> String {
+    let format = g7_exchange::named("plcopen").expect("a format of the table");
+    let written = format.write_in(document, dialect).expect("it has dialects");
     assert_eq!(errors(&written.problems), Vec::<&str>::new());
     written.text
 }
@@ -116,7 +122,9 @@ fn imported_projects_come_back() {
         let (mut there, _) = import(name);
         // An edge becomes a function block.
         let plain = text(&there).replace("or ↑Lower", "").replace("or rise(Lower)", "");
-        there = document(&plain);
+        // A task always says its interval.
+        let timed = if plain.contains("\nscan ") { "" } else { "scan 10ms\n" };
+        there = document(&format!("{plain}{timed}"));
         assert_eq!(sorted(&again(&there)), sorted(&there), "{name}");
     }
 }
@@ -124,7 +132,7 @@ fn imported_projects_come_back() {
 /// A document as it comes back, without its head.
 fn becomes(there: &str, expected: &str) {
     let back = again(&document(&format!("profile iec61131\n{there}")));
-    let wanted = document(&format!("profile iec61131\n{expected}"));
+    let wanted = document(&format!("profile iec61131\nscan 10ms\n{expected}"));
     assert_eq!(sorted(&back), sorted(&wanted), "{}", text(&back));
 }
 
@@ -340,4 +348,118 @@ fn what_is_written_keeps_to_the_schema() {
         }
     }
     assert!(seen > 100);
+}
+
+/// The elements with a name.
+fn all<'t>(tree: &'t roxmltree::Document<'_>, tag: &str) -> Vec<Node<'t, 't>> {
+    tree.descendants().filter(|n| n.has_tag_name(("http://www.plcopen.org/xml/tc6_0201", tag))).collect()
+}
+
+#[test]
+fn names_of_the_configuration_are_free_and_tasks_have_an_interval() {
+    let there = document(
+        "profile iec61131\ninput a : BOOL at %IX0.0\ninput b : BOOL\noutput q : BOOL at %QX0.0\nvar Res0, G_run : BOOL
+         chart G { initial step Config0 { N q }  step Task1  Config0 -> Task1 when a and b }",
+    );
+    for dialect in Dialect::ALL {
+        let xml = written_for(&there, dialect);
+        let tree = roxmltree::Document::parse(&xml).expect("well formed");
+        let name = |tag| all(&tree, tag)[0].attribute("name").map(str::to_string);
+        assert_eq!(name("configuration").as_deref(), Some("Config0_2"));
+        assert_eq!(name("resource").as_deref(), Some("Res0_2"));
+        assert_eq!(name("task").as_deref(), Some("Task1_2"));
+        assert_eq!(name("pouInstance").as_deref(), Some("G_run_2"));
+        assert_eq!(all(&tree, "task")[0].attribute("interval"), Some("T#10ms"));
+        for list in ["inputVars", "outputVars"].map(|tag| all(&tree, tag)).into_iter().flatten() {
+            assert!(list.children().all(|v| v.attribute("address").is_none()), "{xml}");
+        }
+        let (back, _) = support::import("plcopen", xml.as_bytes(), FileId(1));
+        for line in ["input a : BOOL at %IX0.0", "input b : BOOL", "output q : BOOL at %QX0.0"] {
+            assert!(text(&back).contains(line), "{line} in {}", text(&back));
+        }
+    }
+}
+
+#[test]
+fn text_stands_in_paragraphs_for_beremiz_and_openplc() {
+    let there = document(
+        "profile iec61131\ninput a : BOOL\nvar n : INT
+         chart G { initial step S1 { P1 n := 1 }  step S2  S1 -> S2 when a }",
+    );
+    for dialect in Dialect::ALL {
+        let xml = written_for(&there, dialect);
+        let tree = roxmltree::Document::parse(&xml).expect("well formed");
+        let texts = all(&tree, "ST");
+        assert_eq!(texts.len(), 2, "{xml}");
+        let tag = texts[0].first_element_child().map(|e| (e.tag_name().name(), e.tag_name().namespace()));
+        let wanted = if matches!(dialect, Dialect::Codesys | Dialect::Standard) { "xhtml" } else { "p" };
+        assert_eq!(tag, Some((wanted, Some("http://www.w3.org/1999/xhtml"))), "{xml}");
+        let (back, _) = support::import("plcopen", xml.as_bytes(), FileId(1));
+        assert!(text(&back).contains("P1 n := 1"), "{}", text(&back));
+    }
+}
+
+#[test]
+fn beremiz_has_the_chart_without_macro_steps_and_chained_wires() {
+    let there = document(
+        "profile iec61131\ninput a, b : BOOL
+         chart G {
+           initial step S1
+           step S2  step S3  macro M = Inner  step S4
+           S1 -> (S2, S3) when a
+           S1 -> S2 when b
+           S2 -> S4 when not a
+           (S2, S3) -> M when a and b
+           M -> S1 when a
+           S4 -> S1 when b
+         }
+         macrochart Inner { entry step I  exit step O  I -> O when a }",
+    );
+    let xml = written_for(&there, Dialect::Beremiz);
+    let tree = roxmltree::Document::parse(&xml).expect("well formed");
+    assert!(all(&tree, "macroStep").is_empty(), "{xml}");
+    let tag_of = |id: &str| {
+        let found = tree.descendants().find(|n| n.attribute("localId") == Some(id));
+        found.map_or("none", |n| n.tag_name().name())
+    };
+    let before = |node: Node<'_, '_>| -> Vec<&'static str> {
+        let wires = node.descendants().filter(|n| n.tag_name().name() == "connection");
+        let known = [
+            "step",
+            "transition",
+            "selectionDivergence",
+            "selectionConvergence",
+            "simultaneousDivergence",
+            "simultaneousConvergence",
+        ];
+        wires
+            .filter_map(|w| w.attribute("refLocalId"))
+            .filter_map(|id| known.into_iter().find(|tag| *tag == tag_of(id)))
+            .collect()
+    };
+    let only = |tag: &str, allowed: &[&str]| {
+        for node in all(&tree, tag).into_iter().filter(|n| n.attribute("localId").is_some()) {
+            let found = before(node);
+            assert!(found.iter().all(|f| allowed.contains(f)), "{tag}: {found:?}\n{xml}");
+        }
+    };
+    only("simultaneousConvergence", &["step"]);
+    only("selectionConvergence", &["transition"]);
+    only("simultaneousDivergence", &["transition"]);
+    only("selectionDivergence", &["step"]);
+    only("step", &["transition", "selectionConvergence", "simultaneousDivergence"]);
+    let (back, problems) = support::import("plcopen", xml.as_bytes(), FileId(1));
+    assert_eq!(errors(&problems), Vec::<&str>::new());
+    let back = text(&back);
+    for line in ["(S2, S3) -> I when a and b", "S1 -> (S2, S3) when a", "O -> S1 when a"] {
+        assert!(back.contains(line), "{line} in {back}");
+    }
+}
+
+#[test]
+fn a_chart_without_variables_has_one_for_beremiz() {
+    let there =
+        document("profile iec61131\nchart G { initial step Unused  step S2  Unused -> S2 when TRUE }");
+    assert!(written_for(&there, Dialect::Beremiz).contains("<variable name=\"Unused_2\">"));
+    assert!(!written_for(&there, Dialect::Standard).contains("<variable "));
 }

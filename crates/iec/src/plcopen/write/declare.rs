@@ -27,9 +27,14 @@ type Sort = (&'static str, &'static str, fn(&VarDecl) -> bool);
 
 /// A list of variables of one sort: `inputVars`, …
 pub(super) fn lists(variables: &[&VarDecl], global: bool) -> Vec<Element> {
-    let sorts: [Sort; 5] = [
-        ("inputVars", "Inputs", |v| v.kind == VarKind::Input),
-        ("outputVars", "Outputs", |v| v.kind == VarKind::Output),
+    // Variables with an address are local: the standard has no addresses in the lists of inputs and
+    // outputs of a program.
+    let sorts: [Sort; 6] = [
+        ("inputVars", "Inputs", |v| v.kind == VarKind::Input && v.address.is_none()),
+        ("outputVars", "Outputs", |v| v.kind == VarKind::Output && v.address.is_none()),
+        ("localVars", "Located", |v| {
+            matches!(v.kind, VarKind::Input | VarKind::Output) && v.address.is_some()
+        }),
         ("localVars", "Variables", |v| v.kind == VarKind::Var && !v.retain),
         ("localVars", "Retained", |v| v.kind == VarKind::Var && v.retain),
         ("localVars", "Constants", |v| v.kind == VarKind::Const),

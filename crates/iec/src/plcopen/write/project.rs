@@ -8,6 +8,8 @@ use g7_model::{
 use super::declare::{external, initial, lists, type_of};
 use super::sfc::Sfc;
 use crate::Written;
+use crate::nodes::Taken;
+use crate::plcopen::Dialect;
 use crate::st::{Known, Writer};
 use crate::standard::{Form, standard};
 use crate::xml::element::Element;
@@ -18,13 +20,24 @@ const SCAN: Nanos = Nanos::from_millis(10);
 const MADE: &str = "2026-01-01T00:00:00";
 
 /// Writes a document.
-pub(crate) fn export(document: &Document) -> Written {
-    let (document, mut problems) = standard(document, Form::Charts);
-    let project = Project { document: &document, problems: &mut problems }.element();
+pub(crate) fn export(document: &Document, dialect: Dialect) -> Written {
+    let form = if dialect.is_of_matiec() && has_parts(document) { Form::Networks } else { Form::Charts };
+    let (document, mut problems) = standard(document, form);
+    let mut project = Project { document: &document, problems: &mut problems, dialect }.element();
+    if dialect.is_of_matiec() {
+        project = project.in_paragraphs();
+    }
     let mut text = String::from("<?xml version=\"1.0\" encoding=\"utf-8\"?>\n");
     project.print(0, &mut text);
     problems.sort_by_key(|p| (p.at.start, p.at.end));
     Written { text, problems }
+}
+
+/// True if a document has macro-steps or transition sections.
+fn has_parts(document: &Document) -> bool {
+    let section = |c: &Chart| c.items.iter().any(|i| matches!(i, ChartItem::Section(_)));
+    document.charts().any(|c| c.kind == ChartKind::Expansion || section(c))
+        || document.items.iter().any(|i| matches!(i, Item::Section(_)))
 }
 
 /// A program and the task that runs it.
@@ -36,6 +49,7 @@ struct Program {
 struct Project<'w> {
     document: &'w Document,
     problems: &'w mut Vec<Problem>,
+    dialect: Dialect,
 }
 
 impl<'w> Project<'w> {
@@ -74,8 +88,9 @@ impl<'w> Project<'w> {
             }
         }
         let title = self.charts().next().map_or_else(|| "Project".to_string(), |c| c.name.text.to_string());
-        let resource = self.resource(single, &programs);
-        let configuration = Element::new("configuration").with("name", "Configuration").child(resource);
+        let mut taken = self.taken(&programs);
+        let configuration = Element::new("configuration").with("name", taken.give("Config0"));
+        let configuration = configuration.child(self.resource(single, &programs, &mut taken));
         Element::new("project")
             .with("xmlns", "http://www.plcopen.org/xml/tc6_0201")
             .child(
@@ -94,25 +109,43 @@ impl<'w> Project<'w> {
             .child(Element::new("instances").child(Element::new("configurations").child(configuration)))
     }
 
-    fn resource(&mut self, single: bool, programs: &[Program]) -> Element {
-        let scan = self.document.cycle();
-        // If the document gives no times, the tasks have none either.
-        let timed = scan.is_some() || programs.iter().any(|p| p.every.is_some());
-        let scan = scan.unwrap_or(SCAN);
+    /// The names that nothing else of the project may have: many tools tell no name of a
+    /// configuration from one of a program or a variable.
+    fn taken(&self, programs: &[Program]) -> Taken {
+        let mut taken = Taken::default();
+        let mut take = |name: &g7_model::Name| _ = taken.take(&name.text);
+        for item in &self.document.items {
+            match item {
+                Item::Var(v) => v.names.iter().for_each(&mut take),
+                Item::Function(f) => take(&f.name),
+                Item::Chart(c) => {
+                    c.vars().flat_map(|v| &v.names).for_each(&mut take);
+                    c.steps().for_each(|s| take(&s.name));
+                }
+                _ => {}
+            }
+        }
+        programs.iter().for_each(|p| _ = taken.take(&p.name));
+        taken
+    }
+
+    fn resource(&mut self, single: bool, programs: &[Program], taken: &mut Taken) -> Element {
+        let scan = self.document.cycle().unwrap_or(SCAN);
         let mut intervals: Vec<Nanos> = programs.iter().map(|p| p.every.unwrap_or(scan)).collect();
         intervals.push(scan);
         intervals.sort_unstable();
         intervals.dedup();
-        let mut resource = Element::new("resource").with("name", "Resource");
+        let mut resource = Element::new("resource").with("name", taken.give("Res0"));
         for (priority, interval) in intervals.iter().enumerate() {
-            let mut task = Element::new("task").with("name", format!("Task{}", priority + 1));
-            if timed {
-                task = task.with("interval", format!("{interval:#}"));
-            }
-            task = task.with("priority", priority);
+            let mut task = Element::new("task")
+                .with("name", taken.give(&format!("Task{}", priority + 1)))
+                .with("interval", format!("{interval:#}"))
+                .with("priority", priority);
             for program in programs.iter().filter(|p| p.every.unwrap_or(scan) == *interval) {
-                let instance =
-                    Element::new("pouInstance").with("name", &program.name).with("typeName", &program.name);
+                // An instance is not called like its program, which compilers would take for the type.
+                let instance = Element::new("pouInstance")
+                    .with("name", taken.give(&format!("{}_run", program.name)))
+                    .with("typeName", &program.name);
                 task.push(instance);
             }
             resource.push(task);
@@ -164,6 +197,13 @@ impl<'w> Project<'w> {
         } else {
             interface = interface.children(of_chart).children(external(self.variables()));
         }
+        if self.dialect.is_of_matiec() && chart.vars().chain(self.variables()).next().is_none() {
+            let mut taken = Taken::default();
+            chart.steps().for_each(|s| _ = taken.take(&s.name.text));
+            taken.take(&chart.name.text);
+            let unused = Element::new("variable").with("name", taken.give("Unused"));
+            interface.push(Element::new("localVars").child(unused.child(type_of(g7_model::Type::Bool))));
+        }
         let mut pou =
             Element::new("pou").with("name", &chart.name.text).with("pouType", "program").child(interface);
         let actions: Vec<Element> = self.actions_of(chart).iter().map(|a| action(a, &writer())).collect();
@@ -174,7 +214,14 @@ impl<'w> Project<'w> {
         if !sections.is_empty() {
             pou.push(Element::new("transitions").children(sections));
         }
-        let mut sfc = Sfc { document, chart, writer: writer(), problems: self.problems, next: 0 };
+        let mut sfc = Sfc {
+            document,
+            chart,
+            writer: writer(),
+            problems: self.problems,
+            dialect: self.dialect,
+            next: 0,
+        };
         let body = sfc.body(chart, 0);
         pou.push(Element::new("body").child(body));
         if let Some(comment) = &chart.comment {

@@ -9,6 +9,7 @@ use g7_model::{
 };
 
 use super::place::Places;
+use crate::plcopen::Dialect;
 use crate::st::Writer;
 use crate::xml::element::Element;
 
@@ -23,6 +24,7 @@ pub(super) struct Sfc<'a> {
     pub(super) chart: &'a Chart,
     pub(super) writer: Writer<'a>,
     pub(super) problems: &'a mut Vec<Problem>,
+    pub(super) dialect: Dialect,
     pub(super) next: u64,
 }
 
@@ -37,6 +39,8 @@ struct Drawing<'d> {
     /// The object at which the flow behind each step begins: the step itself or the divergence
     /// behind it.
     out: HashMap<String, Id>,
+    /// The steps themselves.
+    steps: HashMap<String, Id>,
     /// The objects that lead to each step.
     into: HashMap<String, Vec<Id>>,
 }
@@ -54,6 +58,7 @@ impl Sfc<'_> {
             places: Places::of(self.document, chart),
             objects: Vec::new(),
             out: HashMap::new(),
+            steps: HashMap::new(),
             into: HashMap::new(),
         };
         // Identifiers come first, because wires lead forward and backward.
@@ -61,6 +66,7 @@ impl Sfc<'_> {
         let ways: Vec<(Id, &Transition)> = chart.transitions().map(|t| (self.id(), t)).collect();
         for (id, step) in &steps {
             drawing.out.insert(step.name.text.to_string(), *id);
+            drawing.steps.insert(step.name.text.to_string(), *id);
         }
         self.divergences(&mut drawing);
         for (number, (id, transition)) in ways.iter().enumerate() {
@@ -78,8 +84,11 @@ impl Sfc<'_> {
     fn divergences(&mut self, drawing: &mut Drawing) {
         for step in drawing.chart.steps() {
             let name = &step.name.text;
-            let behind =
-                drawing.chart.transitions().filter(|t| t.from.iter().any(|n| n.text == *name)).count();
+            // Beremiz follows no wire from a convergence to a divergence: there a transition behind
+            // several steps is connected to each of them.
+            let joint = |t: &&Transition| self.dialect.is_of_matiec() && t.from.len() > 1;
+            let from_here = |t: &&Transition| t.from.iter().any(|n| n.text == *name);
+            let behind = drawing.chart.transitions().filter(from_here).filter(|t| !joint(t)).count();
             if behind < 2 {
                 continue;
             }
@@ -97,8 +106,9 @@ impl Sfc<'_> {
 
     fn transition(&mut self, drawing: &mut Drawing, number: usize, id: Id, transition: &Transition) {
         let place = drawing.places.transition(number);
-        let from: Vec<Id> =
-            transition.from.iter().filter_map(|n| drawing.out.get(&*n.text).copied()).collect();
+        let own = self.dialect.is_of_matiec() && transition.from.len() > 1;
+        let out = if own { &drawing.steps } else { &drawing.out };
+        let from: Vec<Id> = transition.from.iter().filter_map(|n| out.get(&*n.text).copied()).collect();
         let before = match from.as_slice() {
             [] => None,
             [one] => Some(*one),
@@ -114,7 +124,7 @@ impl Sfc<'_> {
             }
         };
         let mut element = object("transition", id, place, TRANSITION);
-        if let Some(priority) = transition.priority {
+        if let Some(priority) = self.priority(drawing.chart, number, transition) {
             element = element.with("priority", priority);
         }
         element = element
@@ -145,7 +155,11 @@ impl Sfc<'_> {
         let row = drawing.places.step(transition.from.first().map_or("", |n| &n.text)).1;
         for step in transition.to.iter().filter(|_| !transition.from.is_empty()) {
             let place = drawing.places.step(&step.text);
-            if place.1 <= row {
+            let into = |t: &&Transition| t.to.iter().any(|n| n.text == step.text);
+            let several = || drawing.chart.transitions().filter(into).count() > 1;
+            // Nor does Beremiz follow a wire from a divergence to a convergence.
+            let chained = self.dialect.is_of_matiec() && transition.to.len() > 1 && several();
+            if place.1 <= row || chained {
                 if let Some(into) = drawing.into.get_mut(&*step.text) {
                     into.pop();
                 }
@@ -158,6 +172,20 @@ impl Sfc<'_> {
                 );
             }
         }
+    }
+
+    /// The priority of a transition. Beremiz and OpenPLC know the order of branches by priorities
+    /// alone; there they have one where a step before the transition has several.
+    fn priority(&self, chart: &Chart, number: usize, transition: &Transition) -> Option<u32> {
+        let shares =
+            |t: &&Transition| t.from.iter().any(|n| transition.from.iter().any(|m| n.text == m.text));
+        if !self.dialect.is_of_matiec() || chart.transitions().filter(shares).count() < 2 {
+            return transition.priority;
+        }
+        let of = |(i, t): (usize, &Transition)| (t.priority.unwrap_or(u32::MAX), i);
+        let own = (transition.priority.unwrap_or(u32::MAX), number);
+        let rank = chart.transitions().enumerate().map(of).filter(|other| *other < own).count();
+        u32::try_from(rank + 1).ok()
     }
 
     fn condition(&self, transition: &Transition) -> Element {
