@@ -1,5 +1,7 @@
 //! Rungs as PLCopen XML (TC6 2.01): one function block with a Ladder body.
 
+use std::collections::HashMap;
+
 use g7_iec::xml::element::Element;
 use g7_model::FbKind;
 
@@ -16,6 +18,8 @@ const HIGH: usize = 48;
 struct Drawing {
     objects: Vec<Element>,
     next: usize,
+    /// Where each output of an object is: by the object and, for one of several outputs, its name.
+    outs: HashMap<(usize, Option<String>), (usize, usize)>,
 }
 
 /// The whole project.
@@ -112,6 +116,29 @@ pub(crate) fn size(net: &Net) -> (usize, usize) {
     }
 }
 
+/// A network with a contact that is always on before it, where lone contacts and series stand side by side at
+/// the left rail: the generator of Beremiz cannot sort these.
+fn begun(net: &Net) -> Option<Net> {
+    let on = || Net::Contact { name: "TRUE".into(), negated: false };
+    ends(net).is_none().then(|| Net::Series(vec![on(), net.clone()]))
+}
+
+/// The ends of a network at the left rail: true for lone contacts, false for series; nothing for both.
+fn ends(net: &Net) -> Option<bool> {
+    match net {
+        Net::Wire | Net::Contact { .. } => Some(true),
+        Net::Series(list) => match list.split_first() {
+            Some((first, rest)) => ends(first).map(|alone| alone && rest.is_empty()),
+            None => Some(true),
+        },
+        Net::Parallel(list) => {
+            let mut all = list.iter().map(ends);
+            let first = all.next()?;
+            if all.all(|e| e == first) { first } else { None }
+        }
+    }
+}
+
 impl Drawing {
     fn id(&mut self) -> usize {
         self.next += 1;
@@ -128,6 +155,26 @@ impl Drawing {
         self.objects.push(object.on_one_line());
     }
 
+    /// Notes where an output is.
+    fn out(&mut self, object: usize, formal: Option<&str>, place: (usize, usize)) {
+        self.outs.insert((object, formal.map(str::to_owned)), place);
+    }
+
+    /// A line from an output to the input at a place. It has its points from the input on, which some readers
+    /// need in order to find the output.
+    fn connection(&self, from: usize, formal: Option<&str>, to: (usize, usize)) -> Element {
+        let mut link = Element::new("connection").with("refLocalId", from);
+        if let Some(formal) = formal {
+            link.set("formalParameter", formal);
+        }
+        let out = self.outs.get(&(from, formal.map(str::to_owned)));
+        link.children([Some(&to), out].into_iter().flatten().map(|(x, y)| at(*x, *y)))
+    }
+
+    fn links(&self, from: &[usize], to: (usize, usize)) -> Vec<Element> {
+        from.iter().map(|id| self.connection(*id, None, to)).collect()
+    }
+
     /// One rung from `y` on; where it ends.
     fn rung(&mut self, r: &Rung, mut y: usize) -> usize {
         for note in [&r.title, &r.note].into_iter().filter(|n| !n.is_empty()) {
@@ -135,12 +182,15 @@ impl Drawing {
             self.draw(comment.child(at(16, y)).child(Element::new("content").child(paragraph(note))));
             y += 24;
         }
-        let (columns, rows) = size(&r.net);
+        let begun = begun(&r.net);
+        let net = begun.as_ref().unwrap_or(&r.net);
+        let (columns, rows) = size(net);
         let high = rows * HIGH;
         let (rail, left) = self.object("leftPowerRail");
         let out = point_out(8, 16).with("formalParameter", "");
         self.draw(sized(left, high, 8).child(at(16, y)).child(out));
-        let ends = self.net(&r.net, &[rail], 56, y);
+        self.out(rail, None, (24, y + 16));
+        let ends = self.net(net, &[rail], 56, y);
         let x = 56 + columns * WIDE;
         let (last, tall) = match &r.end {
             End::Coil(name, coil) => (self.coil(name, *coil, &ends, x, y), HIGH),
@@ -151,11 +201,13 @@ impl Drawing {
             return y + high.max(tall);
         }
         let right = sized(self.object("rightPowerRail").1, high, 8);
-        let from = match &r.end {
-            End::Coil(..) | End::Return => connection(last),
-            End::Block(_) => connection(last).with("formalParameter", "ENO"),
+        let formal = match &r.end {
+            End::Coil(..) | End::Return => None,
+            End::Block(_) => Some("ENO"),
         };
-        self.draw(right.child(at(x + 3 * WIDE, y)).child(point_in(16, [from])));
+        let place = (x + 3 * WIDE, y);
+        let from = self.connection(last, formal, (place.0, y + 16));
+        self.draw(right.child(at(place.0, y)).child(point_in(16, [from])));
         y + high.max(tall)
     }
 
@@ -166,8 +218,9 @@ impl Drawing {
             Net::Contact { name, negated } => {
                 let (id, contact) = self.object("contact");
                 let contact = sized(contact.with("negated", negated), 16, 24).child(at(x, y));
-                let ports = [point_in(8, links(from)), point_out(24, 8)];
+                let ports = [point_in(8, self.links(from, (x, y + 8))), point_out(24, 8)];
                 self.draw(contact.children(ports).child(Element::with_text("variable", name)));
+                self.out(id, None, (x + 24, y + 8));
                 vec![id]
             }
             Net::Series(list) => {
@@ -195,7 +248,8 @@ impl Drawing {
 
     fn leave(&mut self, from: &[usize], x: usize, y: usize) -> usize {
         let (id, leave) = self.object("return");
-        self.draw(sized(leave, 16, 48).child(at(x, y)).child(point_in(8, links(from))));
+        let links = self.links(from, (x, y + 8));
+        self.draw(sized(leave, 16, 48).child(at(x, y)).child(point_in(8, links)));
         id
     }
 
@@ -207,7 +261,8 @@ impl Drawing {
             Coil::Set => element.set("storage", "set"),
             Coil::Reset => element.set("storage", "reset"),
         }
-        let ports = [point_in(8, links(from)), point_out(24, 8)];
+        let ports = [point_in(8, self.links(from, (x, y + 8))), point_out(24, 8)];
+        self.out(id, None, (x + 24, y + 8));
         let element = sized(element, 16, 24).child(at(x, y)).children(ports);
         self.draw(element.child(Element::with_text("variable", name)));
         id
@@ -215,12 +270,18 @@ impl Drawing {
 
     /// A block with its inputs and output; its number and height.
     fn block(&mut self, b: &Block, from: &[usize], x: usize, y: usize) -> (usize, usize) {
-        let mut inputs = Element::new("inputVariables").child(pin("EN", point_in(8, links(from))));
+        // The block stands behind the column of its operands.
+        let left = x + WIDE;
+        let links = self.links(from, (left, y + 8));
+        let mut inputs = Element::new("inputVariables").child(pin("EN", point_in(8, links)));
         for (i, (formal, operand)) in b.inputs.iter().enumerate() {
             let (id, value) = self.object("inVariable");
-            let value = sized(value, 16, 96).child(at(x, y + 24 * (i + 1))).child(point_out(96, 8));
+            let down = 24 * (i + 1);
+            let value = sized(value, 16, 96).child(at(x, y + down)).child(point_out(96, 8));
             self.draw(value.child(Element::with_text("expression", operand)));
-            inputs.push(pin(formal, point_in(24 * (i + 1) + 8, [connection(id)])));
+            self.out(id, None, (x + 96, y + down + 8));
+            let link = self.connection(id, None, (left, y + down + 8));
+            inputs.push(pin(formal, point_in(down + 8, [link])));
         }
         let (id, block) = self.object("block");
         let mut block = block.with("typeName", &b.ty);
@@ -231,10 +292,12 @@ impl Drawing {
         let mut outputs = Element::new("outputVariables").child(pin("ENO", point_out(96, 8)));
         outputs.extend(b.output.iter().map(|(formal, _)| pin(formal, point_out(96, 32))));
         let ports = [inputs, Element::new("inOutVariables"), outputs];
-        self.draw(sized(block, high, 96).child(at(x + WIDE, y)).children(ports));
+        self.draw(sized(block, high, 96).child(at(left, y)).children(ports));
+        self.out(id, Some("ENO"), (left + 96, y + 8));
         if let Some((formal, to)) = &b.output {
-            let out = sized(self.object("outVariable").1, 16, 96).child(at(x + 2 * WIDE, y + 24));
-            let from = connection(id).with("formalParameter", formal);
+            self.out(id, Some(formal), (left + 96, y + 32));
+            let out = sized(self.object("outVariable").1, 16, 96).child(at(left + WIDE, y + 24));
+            let from = self.connection(id, Some(formal), (left + WIDE, y + 32));
             self.draw(out.child(point_in(8, [from])).child(Element::with_text("expression", to)));
         }
         (id, high)
@@ -262,12 +325,4 @@ fn point_in(y: usize, from: impl IntoIterator<Item = Element>) -> Element {
 
 fn point_out(x: usize, y: usize) -> Element {
     Element::new("connectionPointOut").child(Element::new("relPosition").with("x", x).with("y", y))
-}
-
-fn connection(from: usize) -> Element {
-    Element::new("connection").with("refLocalId", from)
-}
-
-fn links(from: &[usize]) -> Vec<Element> {
-    from.iter().map(|id| connection(*id)).collect()
 }
