@@ -11,102 +11,110 @@ use std::path::{Path, PathBuf};
 
 use g7_codegen::plc;
 use g7_exchange::{Dialect, Format};
-use g7_model::{Document, FileId, Severity};
-use g7_peers::projects::{output, readers};
+use g7_model::{Document, FileId, Problem, Severity};
+use g7_peers::Matiec;
+use g7_peers::projects::{Projects, output, readers};
 use g7_tests::case;
+use g7_tests::generated::cases::Folder;
 
 fn main() {
     let arguments: Vec<PathBuf> = std::env::args_os().skip(1).map(PathBuf::from).collect();
-    let folder = std::env::temp_dir().join(format!("g7-interop-{}", std::process::id()));
-    std::fs::create_dir_all(&folder).unwrap_or_else(|e| panic!("{}: {e}", folder.display()));
-    let charts: Vec<(PathBuf, Document)> =
-        arguments.iter().flat_map(|p| files(p)).filter_map(|p| Some((p.clone(), document(&p)?))).collect();
-    let mut why: BTreeMap<String, (usize, PathBuf)> = BTreeMap::new();
-    let mut note = |who: &str, reason: &str, file: &Path| {
-        why.entry(format!("{who}: {reason}")).or_insert_with(|| (0, file.to_path_buf())).0 += 1;
-    };
+    let charts: Vec<(PathBuf, Document)> = arguments
+        .iter()
+        .flat_map(|p| case::files(p))
+        .filter_map(|p| Some((p.clone(), document(&p)?)))
+        .collect();
+    let folder = Folder::new("interop-table");
+    std::fs::create_dir_all(&folder.0).unwrap_or_else(|e| panic!("{}: {e}", folder.0.display()));
+    let mut table = Table { charts: &charts, folder, matiec: g7_peers::matiec(), why: BTreeMap::new() };
     let plcopen: &Format = g7_exchange::named("plcopen").expect("a format of the table");
-    let matiec = g7_peers::matiec();
     println!("| program | accepted / tried |\n|---|---|");
     for reader in readers() {
         let dialect = if reader.name == "OpenPLC" { Dialect::OpenPlc } else { Dialect::Beremiz };
-        let (mut tried, mut opened, mut compiled) = (0, 0, 0);
-        for (file, document) in &charts {
-            let Some(written) = plcopen.write_in(document, dialect) else { continue };
-            if let Some(lost) = written.problems.iter().find(|p| p.severity() == Severity::Error) {
-                note("refused by G7", &lost.what.chars().take(60).collect::<String>(), file);
-                continue;
-            }
-            tried += 1;
-            let project = folder.join("plc.xml");
-            std::fs::write(&project, &written.text).unwrap_or_else(|e| panic!("{}: {e}", project.display()));
-            let text = match reader.text(&project) {
-                Ok(text) => text,
-                Err(reason) => {
-                    note(reader.name, &reason, file);
-                    continue;
-                }
-            };
-            opened += 1;
-            let Some(matiec) = &matiec else { continue };
-            let program = folder.join("program.st");
-            std::fs::write(&program, text).unwrap_or_else(|e| panic!("{}: {e}", program.display()));
-            match output(&matiec.translate(&folder, "program.st")) {
-                Ok(_) => compiled += 1,
-                Err(reason) => note("matiec", &reason, file),
-            }
-        }
-        println!("| {} | {opened} / {tried} |", reader.name);
-        if matiec.is_some() {
-            println!("| matiec on the text of {} | {compiled} / {opened} |", reader.name);
+        table.rows(&reader, reader.name, |document| {
+            let written = plcopen.write_in(document, dialect)?;
+            let lost = written.problems.iter().find(|p| p.severity() == Severity::Error);
+            Some(lost.map_or(Ok(written.text), |p| Err(format!("refused by G7: {}", p.what))))
+        });
+        if reader.name == "Beremiz" {
+            table.rows(&reader, "Beremiz on Ladder", |document| {
+                let ready = g7_compile::compile(document).0?;
+                let printed = plc::print(&ready, plc::Form::Ld, "chart", "");
+                let why = |lost: Vec<Problem>| lost.first().map_or("no reason".into(), |p| p.what.clone());
+                Some(printed.map(|p| p.text).map_err(|lost| format!("no Ladder: {}", why(lost))))
+            });
         }
     }
-    let (mut tried, mut opened, mut compiled) = (0, 0, 0);
-    let beremiz = readers().into_iter().find(|r| r.name == "Beremiz");
-    for (file, document) in &charts {
-        let (Some(beremiz), Some(ready)) = (&beremiz, g7_compile::compile(document).0) else { continue };
-        let printed = match plc::print(&ready, plc::Form::Ld, "chart", "") {
-            Ok(printed) => printed,
-            Err(lost) => {
-                let what = lost.first().map_or("no reason", |p| &p.what);
-                note("gen ld", &what.chars().take(60).collect::<String>(), file);
-                continue;
-            }
-        };
-        tried += 1;
-        let project = folder.join("ladder.xml");
-        std::fs::write(&project, &printed.text).unwrap_or_else(|e| panic!("{}: {e}", project.display()));
-        let text = match beremiz.text(&project) {
-            Ok(text) => text,
-            Err(reason) => {
-                note("Beremiz on Ladder", &reason, file);
-                continue;
-            }
-        };
-        opened += 1;
-        let Some(matiec) = &matiec else { continue };
-        let program = folder.join("ladder.st");
-        std::fs::write(&program, text).unwrap_or_else(|e| panic!("{}: {e}", program.display()));
-        match output(&matiec.translate(&folder, "ladder.st")) {
-            Ok(_) => compiled += 1,
-            Err(reason) => note("matiec on Ladder", &reason, file),
-        }
-    }
-    println!("| Beremiz on Ladder | {opened} / {tried} |");
-    println!("| matiec on the text of Beremiz for Ladder | {compiled} / {opened} |");
     println!("\n{} charts", charts.len());
-    for (reason, (count, first)) in why {
+    for (reason, (count, first)) in table.why {
         println!("{count:4} {reason} ({})", first.display());
     }
-    let _ = std::fs::remove_dir_all(folder);
 }
 
-/// The files of a folder, at all levels; a file itself.
-fn files(path: &Path) -> Vec<PathBuf> {
-    let Ok(entries) = std::fs::read_dir(path) else { return vec![path.to_path_buf()] };
-    let mut all: Vec<PathBuf> = entries.flatten().map(|e| e.path()).collect();
-    all.sort();
-    all.into_iter().flat_map(|p| files(&p)).collect()
+/// The charts that are tried, and the reasons why some are not taken.
+struct Table<'c> {
+    charts: &'c [(PathBuf, Document)],
+    folder: Folder,
+    matiec: Option<Matiec>,
+    /// By reason: how often, and the first file.
+    why: BTreeMap<String, (usize, PathBuf)>,
+}
+
+impl Table<'_> {
+    fn note(&mut self, reason: &str, file: &Path) {
+        let reason: String = reason.chars().take(100).collect();
+        self.why.entry(reason).or_insert_with(|| (0, file.to_path_buf())).0 += 1;
+    }
+
+    /// Prints two rows: the projects that the reader opens, and of these the ones that matiec compiles. `written`
+    /// gives the project of a chart or the reason why there is none, and nothing for a chart that is left out.
+    fn rows(
+        &mut self,
+        reader: &Projects,
+        name: &str,
+        written: impl Fn(&Document) -> Option<Result<String, String>>,
+    ) {
+        let (mut tried, mut opened, mut compiled) = (0, 0, 0);
+        for (file, document) in self.charts {
+            let text = match written(document) {
+                Some(Ok(text)) => text,
+                Some(Err(reason)) => {
+                    self.note(&reason, file);
+                    continue;
+                }
+                None => continue,
+            };
+            tried += 1;
+            match reader.text(&self.file("plc.xml", &text)) {
+                Ok(program) => {
+                    opened += 1;
+                    compiled += usize::from(self.compiles(&program, file));
+                }
+                Err(reason) => self.note(&format!("{name}: {reason}"), file),
+            }
+        }
+        println!("| {name} | {opened} / {tried} |");
+        if self.matiec.is_some() {
+            println!("| matiec on the text of {name} | {compiled} / {opened} |");
+        }
+    }
+
+    /// True if matiec is there and takes a text.
+    fn compiles(&mut self, program: &str, file: &Path) -> bool {
+        self.file("program.st", program);
+        let Some(matiec) = &self.matiec else { return false };
+        let done = output(&matiec.translate(&self.folder.0, "program.st"));
+        if let Err(reason) = &done {
+            self.note(&format!("matiec: {reason}"), file);
+        }
+        done.is_ok()
+    }
+
+    fn file(&self, name: &str, text: &str) -> PathBuf {
+        let path = self.folder.0.join(name);
+        std::fs::write(&path, text).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
+        path
+    }
 }
 
 /// The document of a file, if it has charts and no errors.

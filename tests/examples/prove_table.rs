@@ -94,7 +94,7 @@ fn main() {
     println!("|---|---|{}---|", "---|".repeat(GROUPS.len()));
     let (mut total, mut seconds, mut wrong, mut charts) = (Counts::default(), 0.0, Vec::new(), 0);
     let (mut refused, mut reasons) = (Vec::new(), BTreeMap::<String, usize>::new());
-    for path in words.flat_map(|p| files(Path::new(&p))) {
+    for path in words.flat_map(|p| case::files(Path::new(&p))) {
         for asked in sources(&path) {
             let rows = std::panic::catch_unwind(AssertUnwindSafe(|| rows(&asked, limit)));
             let rows = rows.unwrap_or_else(|_| {
@@ -141,14 +141,6 @@ fn cells(counts: &Counts) -> String {
     let cell =
         |[p, r, o]: &[usize; 3]| if p + r + o == 0 { "–".to_owned() } else { format!("{p}/{r}/{o}") };
     counts.iter().map(cell).collect::<Vec<_>>().join(" | ")
-}
-
-/// The files at a path, in the order of their names.
-fn files(path: &Path) -> Vec<PathBuf> {
-    let Ok(entries) = std::fs::read_dir(path) else { return vec![path.to_path_buf()] };
-    let mut all: Vec<PathBuf> = entries.flatten().map(|e| e.path()).collect();
-    all.sort();
-    all.into_iter().flat_map(|p| files(&p)).collect()
 }
 
 /// The charts of a file: of a conformance case one for each profile of its traces.

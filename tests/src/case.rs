@@ -1,7 +1,23 @@
 //! Reads a conformance case from its Markdown file; `../spec/README.md` describes the form. A wrong
 //! form is an error of the case and never ignored.
 
+use std::path::{Path, PathBuf};
+
 use g7_model::{Document, Expr, ExprKind, FileId, Literal, ProfileName};
+
+/// The files at a path, at all levels of a folder, in the order of their names.
+pub fn files(path: &Path) -> Vec<PathBuf> {
+    let Ok(entries) = std::fs::read_dir(path) else { return vec![path.to_path_buf()] };
+    let mut all: Vec<PathBuf> = entries.flatten().map(|e| e.path()).collect();
+    all.sort();
+    all.into_iter().flat_map(|p| files(&p)).collect()
+}
+
+/// The conformance cases in a folder.
+pub fn cases(folder: &Path) -> Vec<PathBuf> {
+    let is_case = |p: &PathBuf| p.extension().is_some_and(|e| e == "md") && !p.ends_with("README.md");
+    files(folder).into_iter().filter(is_case).collect()
+}
 
 /// A case: one file.
 #[derive(Debug)]

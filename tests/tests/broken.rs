@@ -4,7 +4,7 @@
 #![allow(clippy::disallowed_methods, reason = "reads the cases")]
 
 use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use g7_engine::Tables;
 use g7_model::ProfileName;
@@ -20,23 +20,10 @@ struct Known {
     case: Case,
 }
 
-fn files(folder: &Path, list: &mut Vec<PathBuf>) {
-    for path in std::fs::read_dir(folder).into_iter().flatten().filter_map(|e| e.ok().map(|e| e.path())) {
-        if path.is_dir() {
-            files(&path, list);
-        } else if path.extension().is_some_and(|e| e == "md") && !path.ends_with("README.md") {
-            list.push(path);
-        }
-    }
-    list.sort();
-}
-
 fn cases() -> Vec<Known> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("spec");
-    let mut list = Vec::new();
-    files(&root, &mut list);
     let mut known = Vec::new();
-    for path in list {
+    for path in case::cases(&root) {
         let title = path.strip_prefix(&root).unwrap_or(&path).with_extension("").display().to_string();
         let text = std::fs::read_to_string(&path).expect("a case can be read");
         let count = case::read(&text).expect("a case has its form").traces.len();

@@ -1,14 +1,15 @@
-//! Projects in PLCopen XML, opened by the generators of Beremiz and OpenPLC where these are found
+//! Projects in PLCopen XML and Ladder, opened by the generators of Beremiz and OpenPLC where these are found
 //! (`g7_peers::projects`). `make interop` tells what matiec compiles of it.
 #![allow(clippy::disallowed_methods, reason = "the test starts other programs")]
 
+use g7_codegen::plc;
 use g7_exchange::Dialect;
 use g7_model::{FileId, Severity};
 use g7_peers::projects::readers;
 use g7_tests::generated::cases::Folder;
 
-/// Shapes that the generators take in one form only: chained divergences, jumps, macro-steps, a chart
-/// without variables, two charts, addresses, blocks.
+/// Charts for which the generators need a form of their own: with chained divergences, jumps, macro-steps, two
+/// charts, addresses, function blocks, and one without variables.
 const CHARTS: [(&str, &str); 4] = [
     (
         "chained",
@@ -66,4 +67,35 @@ fn beremiz_and_openplc_open_projects() {
             assert!(made.contains("INITIAL_STEP"), "{name}: {made}");
         }
     }
+}
+
+/// A lone contact beside a series (`q`), edges, a timer and a sum, which are blocks of Ladder.
+const LADDER: &str = "profile iec61131
+input a : BOOL
+output q : BOOL
+var n : INT
+chart G {
+  initial step 1
+  step 2 { N q  P1 n := n + 1 }
+  step 3 { N q if a }
+  1 -> 2 when ↑a
+  2 -> 3 when 3s/a
+  3 -> 1 when not a
+}
+";
+
+#[test]
+fn beremiz_opens_ladder() {
+    let Some(reader) = readers().into_iter().find(|r| r.name == "Beremiz") else { return };
+    let folder = Folder::new("interop-ladder");
+    std::fs::create_dir_all(&folder.0).expect("a folder");
+    let (document, problems) = g7_syntax::parse(LADDER, FileId(0));
+    assert!(problems.is_empty(), "{problems:?}");
+    let (compiled, problems) = g7_compile::compile(&document);
+    let compiled = compiled.unwrap_or_else(|| panic!("{problems:?}"));
+    let printed = plc::print(&compiled, plc::Form::Ld, "tank", LADDER).unwrap_or_else(|p| panic!("{p:?}"));
+    let project = folder.0.join("tank.xml");
+    std::fs::write(&project, &printed.text).expect("a file");
+    let made = reader.text(&project).unwrap_or_else(|e| panic!("{e}"));
+    assert!(made.contains("FUNCTION_BLOCK tank") && made.contains("TRUE"), "{made}");
 }

@@ -1,5 +1,6 @@
-//! Code for PLCs reads as an engineer writes it: names by signals, brackets, each list once, and a
-//! bound of passes that its head tells. That it does what the engine does is tested in
+//! Printed code for PLCs can be read by an engineer: memories are named by their signals, AND beside OR
+//! has brackets, a list of memories is written once, and the head of the block tells the bound of passes.
+//! That the code does what the engine does is tested in
 //! `tests/tests/plc.rs` and `tests/tests/readback.rs`.
 
 use g7_codegen::plc::{Form, ascii, print};
@@ -7,11 +8,15 @@ use g7_compile::compile;
 use g7_model::FileId;
 
 fn st(text: &str) -> String {
+    printed(text, Form::St)
+}
+
+fn printed(text: &str, form: Form) -> String {
     let (doc, problems) = g7_syntax::parse(text, FileId(0));
     assert!(problems.is_empty(), "{problems:?}");
     let (compiled, problems) = compile(&doc);
     let compiled = compiled.unwrap_or_else(|| panic!("{problems:?}"));
-    print(&compiled, Form::St, "tank", text).unwrap_or_else(|p| panic!("{p:?}")).text
+    print(&compiled, form, "tank", text).unwrap_or_else(|p| panic!("{p:?}")).text
 }
 
 #[test]
@@ -68,4 +73,32 @@ fn comments_can_be_ascii() {
     assert!(!text.is_ascii(), "{text}");
     let text = ascii(&text);
     assert!(text.is_ascii() && text.contains("demarrage") && text.contains("rise of a"), "{text}");
+}
+
+/// Two steps with one output, of which one has a condition.
+const FILL: &str = "profile iec61131
+input a : BOOL
+input b : BOOL
+output q : BOOL
+chart G {
+  initial step 1
+  step 2 { N q }
+  step 3 { N q if a }
+  1 -> 2 when a
+  2 -> 3 when b
+  3 -> 1 when not a
+}
+";
+
+#[test]
+fn lines_of_ladder_have_their_points() {
+    let text = printed(FILL, Form::Ld);
+    let inner = |part: &'static str| move |t: &str| t.split_once(part).map(|(t, _)| t.to_owned());
+    let lines: Vec<String> = text.split("<connection ").skip(1).filter_map(inner("</connection>")).collect();
+    assert!(lines.len() > 10, "{text}");
+    for line in &lines {
+        assert_eq!(line.matches("<position ").count(), 2, "{line}");
+    }
+    // The first line leads from the first rail: it is at (16, 40), and its output at (8, 16) from there.
+    assert!(lines.first().is_some_and(|l| l.ends_with("<position x=\"24\" y=\"56\"/>")), "{text}");
 }

@@ -1,5 +1,5 @@
-//! Printed code: names and texts of the chart, refused constructs, and a sketch
-//! that compiles. That the code does what the engine does is tested in
+//! Printed code: names and texts of the chart, refused constructs, rules of MISRA C:2012 as the addon of cppcheck
+//! finds them, and a sketch that compiles. That the code does what the engine does is tested in
 //! `tests/tests/codegen.rs`.
 #![allow(clippy::disallowed_methods, reason = "the tests start a compiler")]
 
@@ -234,4 +234,49 @@ fn the_sketch_has_the_pins_and_compiles() {
         .expect("g++ starts");
     let _ = std::fs::remove_dir_all(&folder);
     assert!(out.status.success(), "{}", String::from_utf8_lossy(&out.stderr));
+}
+
+/// A chart with edges and inverted conditions.
+const EDGES: &str = "profile iec60848
+input a : BOOL
+input b : BOOL
+output p : BOOL
+chart G {
+  initial step 1
+  step 2 { N p }
+  step 3
+  1 -> 2 when ↑a
+  2 -> 3 when ↓b
+  3 -> 1 when not a
+}
+";
+
+/// Rules that are kept: numbers beside unsigned values, chains that end with `else`, names of the
+/// library.
+const KEPT: [&str; 3] = ["misra-c2012-10.4]", "misra-c2012-15.7]", "misra-c2012-21.2]"];
+
+#[test]
+fn rules_are_kept_as_cppcheck_finds_them() {
+    if !g7_peers::tool("cppcheck") {
+        return;
+    }
+    for style in [Style::Structured, Style::Flat] {
+        let printed = printed_as(EDGES, Language::C, style).expect("it can be printed");
+        let folder = std::env::temp_dir().join(format!("g7-misra-{}-{style:?}", std::process::id()));
+        std::fs::create_dir_all(&folder).expect("a folder");
+        for f in &printed.files {
+            std::fs::write(folder.join(&f.name), &f.text).expect("a file");
+        }
+        let out = Command::new("cppcheck")
+            .args(["--addon=misra", "--std=c99", "--quiet", "tank.c"])
+            .current_dir(&folder)
+            .output();
+        let _ = std::fs::remove_dir_all(&folder);
+        let text = String::from_utf8_lossy(&out.expect("cppcheck starts").stderr).into_owned();
+        // The addon has run: functions with several exits are found.
+        assert!(text.contains("misra-c2012-15.5]"), "{text}");
+        for rule in KEPT {
+            assert!(!text.contains(rule), "{style:?}: {rule}\n{text}");
+        }
+    }
 }

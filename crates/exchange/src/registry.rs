@@ -148,9 +148,7 @@ impl Format {
     pub fn write(&self, document: &Document) -> Option<Written> {
         self.writer.map(|write| write(document))
     }
-}
 
-impl Format {
     /// Writes a document in a dialect; None if the format has no dialects.
     pub fn write_in(&self, document: &Document, dialect: Dialect) -> Option<Written> {
         self.in_dialect.map(|write| write(document, dialect))

@@ -172,7 +172,7 @@ pub(crate) fn generate(args: &Gen) -> Result<Verdict, Failure> {
     }
 }
 
-/// The language of the output; for PLC code the form, the file extension and the letters.
+/// The language of the output. PLC code has a form and a file extension too; `ascii` keeps its comments in ASCII.
 #[derive(Clone, Copy)]
 enum Tongue {
     Code(Language, Style),

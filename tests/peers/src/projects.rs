@@ -9,7 +9,7 @@ use std::process::Command;
 
 use crate::{python, script, skip};
 
-/// The programs: name, the variable that names the folder.
+/// For each program its name and the variable with its folder.
 pub const READERS: [(&str, &str); 2] = [("Beremiz", "G7_BEREMIZ"), ("OpenPLC", "G7_XML2ST")];
 
 /// A program that opens projects.
@@ -21,7 +21,7 @@ pub struct Projects {
     folder: PathBuf,
 }
 
-/// The programs that are there; for each of the others a skip is counted.
+/// The programs that are installed. A skip is counted for each one that is missing.
 pub fn readers() -> Vec<Projects> {
     let all = READERS.into_iter().filter_map(|(name, variable)| {
         let Some(folder) = std::env::var_os(variable).map(PathBuf::from) else {

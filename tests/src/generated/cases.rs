@@ -30,19 +30,6 @@ impl Drop for Folder {
     }
 }
 
-fn files(folder: &Path, found: &mut Vec<PathBuf>) {
-    let Ok(entries) = std::fs::read_dir(folder) else { return };
-    for path in entries.filter_map(|e| e.ok().map(|e| e.path())) {
-        if path.is_dir() {
-            files(&path, found);
-        } else if path.extension().is_some_and(|e| e == "md")
-            && path.file_stem().is_some_and(|s| s != "README")
-        {
-            found.push(path);
-        }
-    }
-}
-
 /// Every conformance case with a trace, as a subject for each profile under which it runs.
 ///
 /// # Errors
@@ -50,11 +37,8 @@ fn files(folder: &Path, found: &mut Vec<PathBuf>) {
 /// A case has a wrong form.
 pub fn spec() -> Result<Vec<Subject>, String> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("spec");
-    let mut all = Vec::new();
-    files(&root, &mut all);
-    all.sort();
     let mut subjects: Vec<Subject> = Vec::new();
-    for file in all {
+    for file in case::cases(&root) {
         let title = file.strip_prefix(&root).unwrap_or(&file).with_extension("").display().to_string();
         add(&mut subjects, &file, &title).map_err(|e| format!("{title}: {e}"))?;
     }

@@ -40,7 +40,7 @@ const SIGNS: &[(&str, &str)] = &[
     ("Æ", "AE"),
 ];
 
-/// The same text in ASCII; a letter that nothing stands for is its number: `U+03A9`.
+/// The same text in ASCII; a letter without a counterpart becomes its number, `U+03A9`.
 pub fn ascii(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     for c in text.chars() {

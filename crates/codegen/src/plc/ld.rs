@@ -18,7 +18,7 @@ const HIGH: usize = 48;
 struct Drawing {
     objects: Vec<Element>,
     next: usize,
-    /// Where each output of an object is: by the object and, for one of several outputs, its name.
+    /// The place of each output, by its object and, if the object has several outputs, by the name of the output.
     outs: HashMap<(usize, Option<String>), (usize, usize)>,
 }
 
@@ -116,14 +116,14 @@ pub(crate) fn size(net: &Net) -> (usize, usize) {
     }
 }
 
-/// A network with a contact that is always on before it, where lone contacts and series stand side by side at
-/// the left rail: the generator of Beremiz cannot sort these.
+/// The network behind a contact that is always on, or nothing if it needs none. The generator of Beremiz fails where
+/// a lone contact and a series stand side by side at the left rail.
 fn begun(net: &Net) -> Option<Net> {
     let on = || Net::Contact { name: "TRUE".into(), negated: false };
     ends(net).is_none().then(|| Net::Series(vec![on(), net.clone()]))
 }
 
-/// The ends of a network at the left rail: true for lone contacts, false for series; nothing for both.
+/// How a network that begins at the left rail ends: true in lone contacts, false in series, None in both.
 fn ends(net: &Net) -> Option<bool> {
     match net {
         Net::Wire | Net::Contact { .. } => Some(true),
@@ -155,13 +155,13 @@ impl Drawing {
         self.objects.push(object.on_one_line());
     }
 
-    /// Notes where an output is.
+    /// Notes the place of an output.
     fn out(&mut self, object: usize, formal: Option<&str>, place: (usize, usize)) {
         self.outs.insert((object, formal.map(str::to_owned)), place);
     }
 
-    /// A line from an output to the input at a place. It has its points from the input on, which some readers
-    /// need in order to find the output.
+    /// A line from an output to the input at `to`, with the points of both, the input first. Beremiz needs the last
+    /// point.
     fn connection(&self, from: usize, formal: Option<&str>, to: (usize, usize)) -> Element {
         let mut link = Element::new("connection").with("refLocalId", from);
         if let Some(formal) = formal {
@@ -325,4 +325,31 @@ fn point_in(y: usize, from: impl IntoIterator<Item = Element>) -> Element {
 
 fn point_out(x: usize, y: usize) -> Element {
     Element::new("connectionPointOut").child(Element::new("relPosition").with("x", x).with("y", y))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_lone_contact_beside_a_series_at_the_rail_has_a_contact_before_it() {
+        let c = |name: &str| Net::Contact { name: name.into(), negated: false };
+        let series = |list: &[Net]| Net::Series(list.to_vec());
+        let parallel = |list: &[Net]| Net::Parallel(list.to_vec());
+        let mixed = parallel(&[c("a"), series(&[c("b"), c("c")])]);
+        let plain = [
+            c("a"),
+            series(&[c("a"), c("b")]),
+            parallel(&[c("a"), c("b")]),
+            parallel(&[series(&[c("a"), c("b")]), series(&[c("c"), c("d")])]),
+            // The rail is not where these two stand side by side.
+            series(&[c("d"), mixed.clone()]),
+        ];
+        for net in plain {
+            assert_eq!(begun(&net), None, "{net:?}");
+        }
+        for net in [mixed.clone(), series(&[mixed.clone(), c("d")]), parallel(&[mixed, c("d")])] {
+            assert_eq!(begun(&net), Some(series(&[c("TRUE"), net.clone()])));
+        }
+    }
 }

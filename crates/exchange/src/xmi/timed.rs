@@ -5,7 +5,7 @@
 
 use g7_model::Nanos;
 
-/// The time and the step of such a name.
+/// The time and the step in such a name; None for any other name.
 pub(super) fn parse(name: &str) -> Option<(Nanos, &str)> {
     let (time, step) = name.split_once("/X")?;
     let (count, unit) = match time.strip_suffix("ms") {
@@ -18,7 +18,7 @@ pub(super) fn parse(name: &str) -> Option<(Nanos, &str)> {
     (!step.is_empty()).then_some((unit * i64::from(count), step))
 }
 
-/// The name for an operator; None for a time that is no whole number of milliseconds.
+/// The name that stands for a time operator; None if its time is not a whole number of milliseconds.
 pub(super) fn name(time: Nanos, step: &str) -> Option<String> {
     let written = |unit, word| {
         let count = i32::try_from(time.whole(unit)?).ok().filter(|n| *n >= 0)?;

@@ -383,7 +383,7 @@ fn action(p: &mut Parser, start: u32) -> Option<Part> {
     Some(Part::Action { name, body, at: p.since(start) })
 }
 
-/// True for `IF FALSE THEN RETURN; END_IF;`, with which an empty action is written.
+/// True for `IF FALSE THEN RETURN; END_IF;`: the exporter writes an empty action so.
 fn is_nothing(body: &[Stmt]) -> bool {
     let [Stmt { kind: StmtKind::If(arms, otherwise), .. }] = body else { return false };
     let [(Expr { kind: ExprKind::Literal(Literal::Bool(false)), .. }, then)] = arms.as_slice() else {

@@ -40,8 +40,8 @@ pub(super) struct Lower<'d> {
     pub(super) shared: HashSet<VarKey<'d>>,
     /// Variables of charts that turned out to be used by other programs.
     pub(super) wanted: HashSet<VarKey<'d>>,
-    /// Steps with the name of a variable of which the activity or time turned out to be read, now
-    /// and before: they cannot keep that name.
+    /// Steps that have the name of a variable and whose activity or time is read, as far as this and earlier
+    /// rounds found them. They need a name of their own.
     pub(super) read_twins: HashSet<StepKey>,
     /// The variables that each program writes.
     pub(super) written: BTreeSet<(VarKey<'d>, usize)>,

@@ -7,7 +7,7 @@ use roxmltree::Node;
 
 use crate::show::{document, errors, import, text};
 
-/// The project of a document, which must hold all of it, as the standard has it.
+/// The project of a document in the dialect `standard`, which must hold all of it.
 fn written(document: &Document) -> String {
     written_for(document, Dialect::Standard)
 }
@@ -122,7 +122,7 @@ fn imported_projects_come_back() {
         let (mut there, _) = import(name);
         // An edge becomes a function block.
         let plain = text(&there).replace("or ↑Lower", "").replace("or rise(Lower)", "");
-        // A task always says its interval.
+        // A written task always has an interval; it is read back as `scan`.
         let timed = if plain.contains("\nscan ") { "" } else { "scan 10ms\n" };
         there = document(&format!("{plain}{timed}"));
         assert_eq!(sorted(&again(&there)), sorted(&there), "{name}");

@@ -170,8 +170,8 @@ fn rules_of_another_profile_are_told() {
     assert!(written.problems.iter().any(|p| p.what.contains("evolves by the rules of iec60848")));
 }
 
-/// Steps read before they are written, a step before the initial one, and texts with letters and
-/// comment signs.
+/// A chart in which texts read a step that is declared later, a step stands before the initial one, and a
+/// string has letters outside ASCII and `(*`.
 const EARLY: &str = "profile iec61131
 input a : BOOL
 output q : BOOL
@@ -236,7 +236,7 @@ fn a_text_is_ascii_and_holds_no_sign_of_a_comment() {
     let (after, _) = import(&written.text);
     let back = g7_syntax::print(&after, None);
     assert!(back.contains("s := 'ä (* ö *) €'"), "{back}");
-    // One byte is a letter of Latin-1, and so are bytes that are no UTF-8.
+    // Bytes that are not UTF-8 are read as letters of Latin-1.
     let (after, _) = import("PROGRAM P VAR s : STRING; END_VAR s := '$E4$41$C3$28$24'; END_PROGRAM");
     let back = g7_syntax::print(&after, None);
     assert!(back.contains("s := 'äAÃ($$'"), "{back}");

@@ -194,8 +194,8 @@ impl<'d> Lookup<'d> {
         inner.collect::<Vec<_>>().join(" ")
     }
 
-    /// True for what the meta-model calls initialisable: it can be forced, and its activity can be
-    /// used. Macro-steps and the entry and exit steps of expansions cannot.
+    /// True for a step that the meta-model calls initialisable: only such a step can be forced, and only its
+    /// activity can be read. Macro-steps and the entry and exit steps of expansions are not initialisable.
     pub(super) fn is_initialisable(&self, node: Node) -> bool {
         self.info(node).is_some_and(|i| i.feature == "steps")
     }

@@ -35,7 +35,7 @@ impl<'d> Exporter<'d> {
         parts.finish()
     }
 
-    /// Tells where it matters that the initial step stands first there.
+    /// Warns if actions change their order because the initial step is written first.
     fn order(&mut self, chart: &Chart) {
         let acts = |s: &Step| s.actions.iter().any(|a| !matches!(a.kind, ActionKind::Comment(_)));
         let mut before = chart.steps().take_while(|s| !s.initial);
@@ -114,7 +114,7 @@ fn named(action: &NamedAction, writer: &Writer) -> String {
 fn block(name: &str, list: &[Stmt], writer: &Writer) -> String {
     let mut out = format!("  ACTION {name}:\n");
     if list.is_empty() {
-        // matiec loses its place behind an action of `;` alone; the reader takes this for nothing.
+        // matiec fails behind an action that is only `;`. Our reader takes this statement for an empty action.
         out.push_str("    IF FALSE THEN RETURN; END_IF;\n");
     }
     writer.statements(list, 2, &mut out);

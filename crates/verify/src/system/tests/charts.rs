@@ -34,7 +34,7 @@ fn latches(text: &str) -> usize {
     system(&model, &asked.questions, Observed::Asked).system.latches.len()
 }
 
-/// A caller whose time is over gets no part of a system.
+/// A caller whose time is over gets no system; one with time gets it whole.
 #[test]
 fn a_system_is_given_up() {
     let steps: String = (1..300).map(|n| format!("  step {n}\n  {} -> {n} when a\n", n - 1)).collect();
