@@ -7,7 +7,7 @@ use g7_verify::Tried;
 
 use crate::charts;
 use crate::own::{Aiger, all, one_word};
-use crate::rows::{Row, Task};
+use crate::rows::{By, Row, Task};
 
 /// The checkers that are here.
 pub struct Others {
@@ -48,7 +48,8 @@ impl Others {
     /// Their answers. None: absent, or not asked.
     pub fn answers(&self, row: &Row, file: Option<&Aiger>) -> [Option<Answer>; NAMES.len()] {
         let states = match row.task {
-            Task::States { cells, tried } => Some((cells, tried == Tried::One)),
+            // A search that visits states one by one is not asked about more than it can hold, and once of each.
+            Task::States { cells, tried, by: By::Sets } if cells <= 11 => Some((cells, tried == Tried::One)),
             _ => None,
         };
         [
@@ -111,7 +112,7 @@ impl Others {
 }
 
 fn visited(cells: usize, states: usize) -> String {
-    if states == all(cells) { "all".to_owned() } else { format!("{states} states") }
+    if states as u128 == all(cells) { "all".to_owned() } else { format!("{states} states") }
 }
 
 /// The word on all questions, from what is said of each signal.

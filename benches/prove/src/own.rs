@@ -4,12 +4,12 @@ use std::time::{Duration, Instant};
 
 use g7_model::FileId;
 use g7_verify::{
-    Asked, Budget, Compare, Equality, Evidence, Layer, Model, Question, Satisfiability, Tried, Verdict,
-    answer, ask, compare, exported, miter, replay, visit,
+    Asked, Budget, Compare, Equality, Evidence, Layer, Model, Question, Satisfiability, Tried, Tries,
+    Verdict, Visited, answer, ask, compare, exported, miter, replay, visit, visit_bits, visit_sets,
 };
 
 use crate::charts;
-use crate::rows::{Layers, Row, Task};
+use crate::rows::{By, Layers, Row, Task};
 
 /// The answer, its seconds and the peak memory of this process, MiB.
 pub fn answered(row: &Row, limit: u32) -> String {
@@ -17,7 +17,7 @@ pub fn answered(row: &Row, limit: u32) -> String {
     let stop = move || begun.elapsed() > Duration::from_secs(limit.into());
     let budget = Budget { states: usize::MAX, scans: usize::MAX, bytes: 8 << 30, stop: &stop };
     let (word, seconds) = match &row.task {
-        Task::States { cells, tried } => states(*cells, *tried, &budget),
+        Task::States { cells, tried, by } => states(*cells, *tried, *by, &budget),
         Task::Claims { text, layers, wants } => claims(text, *layers, *wants, &budget),
         Task::Compare(texts) => beside(texts, &budget),
     };
@@ -32,23 +32,29 @@ fn read(text: &str) -> Asked {
     asked.unwrap_or_else(|| panic!("{problems:?}"))
 }
 
-/// The states that cells have.
-pub fn all(cells: usize) -> usize {
-    21usize.pow(cells as u32 / 2)
+/// The states that cells have: 21 each pair, 5 one that is alone.
+pub fn all(cells: usize) -> u128 {
+    21u128.pow(cells as u32 / 2) * if cells % 2 == 1 { 5 } else { 1 }
 }
 
-fn states(cells: usize, tried: Tried, budget: &Budget<'_>) -> (String, f64) {
+fn states(cells: usize, tried: Tried, by: By, budget: &Budget<'_>) -> (String, f64) {
     let profile = if tried == Tried::One { "iec60848" } else { "iec61131" };
     let asked = read(&charts::cells(cells, profile));
     let model = Model::new(&asked.compiled, asked.assume.clone());
     let begun = Instant::now();
-    let seen = visit(&model, budget, tried);
+    let tries = if tried == Tried::One { Tries::One } else { Tries::All };
+    let whole = |seen: Visited| seen.open.is_none().then_some(seen.states as u128);
+    let seen = match by {
+        By::Engine => whole(visit(&model, budget, tried)),
+        By::Bits(threads) => visit_bits(&model, budget, tries, threads).and_then(whole),
+        By::Sets => visit_sets(&model, budget, tries, 1 << 21).filter(|s| s.is_whole).and_then(|s| s.states),
+    };
     let seconds = begun.elapsed().as_secs_f64();
     // One state more is that before the first scan.
-    let word = match seen.states.wrapping_sub(1) {
-        _ if seen.open.is_some() => "open".to_owned(),
-        n if n == all(cells) => "all".to_owned(),
-        n => format!("WRONG: {n}"),
+    let word = match seen.map(|n| n - 1) {
+        None => "open".to_owned(),
+        Some(n) if n == all(cells) => "all".to_owned(),
+        Some(n) => format!("WRONG: {n}"),
     };
     (word, seconds)
 }

@@ -13,10 +13,21 @@ pub enum Layers {
     All,
 }
 
+/// What visits the states.
+#[derive(Clone, Copy)]
+pub enum By {
+    /// The engine, scan by scan.
+    Engine,
+    /// The system of bits, state by state, by so many threads.
+    Bits(usize),
+    /// The system of bits, as sets.
+    Sets,
+}
+
 /// The thing that is measured.
 pub enum Task {
     /// All states of so many cells are visited.
-    States { cells: usize, tried: Tried },
+    States { cells: usize, tried: Tried, by: By },
     /// Some of the questions of a chart are answered.
     Claims { text: String, layers: Layers, wants: fn(&Claim) -> bool },
     /// Two charts are compared, as `g7 compare` does.
@@ -31,7 +42,7 @@ pub struct Row {
 
 /// All rows, in their order.
 pub fn rows() -> Vec<Row> {
-    let states = |name, cells, tried| Row { name, task: Task::States { cells, tried } };
+    let states = |name, cells, tried, by| Row { name, task: Task::States { cells, tried, by } };
     let claims = |name, text, layers, wants| Row { name, task: Task::Claims { text, layers, wants } };
     let own = |name, text| claims(name, text, Layers::Solver, |c| c.is_own());
     let ends = |name, count, endless| {
@@ -44,10 +55,15 @@ pub fn rows() -> Vec<Row> {
         task: Task::Compare([charts::cells(count, "iec61131"), charts::renumbered(count)]),
     };
     vec![
-        states("states: P = 8, one input at a time", 8, Tried::One),
-        states("states: P = 10, one input at a time", 10, Tried::One),
-        states("states: P = 8, any inputs at once", 8, Tried::Classes),
-        states("states: P = 10, any inputs at once", 10, Tried::Classes),
+        states("states: P = 8, one input at a time", 8, Tried::One, By::Sets),
+        states("states: P = 10, one input at a time", 10, Tried::One, By::Sets),
+        states("states: P = 10, one input at a time, one by one", 10, Tried::One, By::Bits(1)),
+        states("states: P = 10, one input at a time, one by one, 2 threads", 10, Tried::One, By::Bits(2)),
+        states("states: P = 10, one input at a time, by the engine", 10, Tried::One, By::Engine),
+        states("states: P = 11, one input at a time", 11, Tried::One, By::Sets),
+        states("states: P = 8, any inputs at once", 8, Tried::Classes, By::Sets),
+        states("states: P = 10, any inputs at once", 10, Tried::Classes, By::Sets),
+        states("states: P = 50, any inputs at once", 50, Tried::Classes, By::Sets),
         own("mutual exclusion, P = 10", charts::cells(10, "iec61131")),
         own("mutual exclusion, P = 50", charts::cells(50, "iec61131")),
         own("no deadlock, ring of 10", charts::ring(10)),

@@ -129,7 +129,7 @@ fn size(certificate: &Certificate) -> [usize; 2] {
         Certificate::Search { states, scans } | Certificate::Zones { zones: states, scans } => {
             [*states, *scans]
         }
-        Certificate::Invariant { .. } | Certificate::Induction { .. } => [0, 0],
+        Certificate::Invariant { .. } | Certificate::Induction { .. } | Certificate::Diagram { .. } => [0, 0],
     }
 }
 

@@ -98,5 +98,7 @@ pub use situations::{Edge, Graph, Kind, Node, situations};
 pub use store::Store;
 pub use values::{Values, values};
 pub use verdict::{Certificate, Evidence, Open, Run, Verdict, is_open};
+#[cfg(not(target_family = "wasm"))]
+pub use visit::{Sets, visit_sets};
 pub use visit::{Visited, visit, visit_bits};
 pub use zones::Zones;

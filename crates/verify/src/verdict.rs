@@ -64,6 +64,15 @@ pub enum Certificate {
         /// Number of scans made.
         scans: usize,
     },
+    /// The set of all states, made as a decision diagram.
+    Diagram {
+        /// Number of states; nothing where it has more than 128 bits.
+        states: Option<u128>,
+        /// Number of nodes of the diagram.
+        nodes: usize,
+        /// Verified by a checker with a solver of its own. Else states at random did not leave it.
+        checked: bool,
+    },
     /// An inductive invariant, verified by a checker with a solver of its own.
     Invariant {
         /// Number of its clauses.

@@ -2,6 +2,8 @@
 
 use crate::layer::Budget;
 use crate::model::Model;
+#[cfg(not(target_family = "wasm"))]
+use crate::sat::diagram::{Effort, diagram};
 use crate::sat::{Tries, Wanted, wide};
 use crate::scene::{Tried, Until};
 use crate::search::Search;
@@ -45,4 +47,26 @@ pub fn visit_bits(model: &Model<'_>, budget: &Budget<'_>, tries: Tries, threads:
     let open = seen.open.map(|reason| Open { scans: seen.depth, states: seen.states, reason });
     let [bytes, runs] = seen.bytes;
     Some(Visited { states: seen.states, scans: seen.scans, depth: seen.depth, bytes, runs, open })
+}
+
+/// All states of the chart's system of bits, made as sets.
+#[cfg(not(target_family = "wasm"))]
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Sets {
+    /// Number of states, the one before the first scan included; nothing where it has more than 128 bits.
+    pub states: Option<u128>,
+    /// Fewest scans that lead to the state that is farthest away, and one more.
+    pub depth: usize,
+    /// No state is left out.
+    pub is_whole: bool,
+}
+
+/// Makes the set of all states of the chart's system of bits, with diagrams of at most so many nodes. Nothing where
+/// the system cannot be searched so, or needs more nodes.
+#[cfg(not(target_family = "wasm"))]
+pub fn visit_sets(model: &Model<'_>, budget: &Budget<'_>, tries: Tries, nodes: usize) -> Option<Sets> {
+    let t = system(model, &[], Observed::Asked);
+    let wanted = Wanted { all: true, tries, ..Wanted::of(&[], &t.passes, 1) };
+    let seen = diagram(&t.system, &wanted, &t.candidates, Effort { nodes, ticks: 0 }, budget)?;
+    Some(Sets { states: seen.states, depth: seen.depth, is_whole: seen.is_whole })
 }

@@ -11,7 +11,7 @@ use crate::question::{Claim, Question};
 use crate::verdict::{Certificate, Evidence, Open, Verdict};
 pub use open::{difference, fault, unlike, way_on, why};
 pub use row::Said;
-use row::{Counted, PAIRS, Row, SCANS, STATES, ZONES, count, same, say};
+use row::{Counted, NODES, PAIRS, Row, SCANS, STATES, ZONES, count, same, say};
 
 const ACTIVE: Row = ["step {} can be active", "l’étape {} peut être active", "a etapa {} pode estar ativa"];
 const CLEARS: Row =
@@ -59,6 +59,17 @@ const INVARIANT: Row = [
     "un invariant de {}, qui a été vérifié",
     "um invariante de {}, que foi verificado",
 ];
+const DIAGRAM: Row = [
+    "all of {}, a set of {}, which was checked",
+    "la totalité de {}, un ensemble de {}, qui a été vérifié",
+    "a totalidade de {}, um conjunto de {}, que foi verificado",
+];
+const DRAWN: Row = [
+    "all of {}, a set of {}, which states at random did not leave",
+    "la totalité de {}, un ensemble de {}, dont des états au hasard ne sont pas sortis",
+    "a totalidade de {}, um conjunto de {}, do qual estados ao acaso não saíram",
+];
+const COUNTLESS: Row = ["more than 10^38 states", "plus de 10^38 états", "mais de 10^38 estados"];
 const INDUCTION: Row = [
     "induction over {}, which was checked",
     "une récurrence sur {}, qui a été vérifiée",
@@ -151,6 +162,13 @@ fn certificate(proof: &Certificate, of_states: Counted) -> Said {
             say(SEARCH, &[count(*states, of_states), count(*scans, SCANS)])
         }
         Certificate::Zones { zones, scans } => say(SEARCH, &[count(*zones, ZONES), count(*scans, SCANS)]),
+        Certificate::Diagram { states, nodes, checked } => {
+            let states = match states {
+                Some(n) => count(*n, of_states),
+                None => say(COUNTLESS, &[]),
+            };
+            say(if *checked { DIAGRAM } else { DRAWN }, &[states, count(*nodes, NODES)])
+        }
         Certificate::Invariant { clauses } => say(INVARIANT, &[count(*clauses, CLAUSES)]),
         Certificate::Induction { depth } => say(INDUCTION, &[count(*depth, SCANS)]),
     }

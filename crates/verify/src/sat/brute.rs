@@ -104,3 +104,66 @@ pub(crate) fn shortest(s: &System, bad: Signal) -> Option<usize> {
     }
     None
 }
+
+/// A system with more inputs than the search of `wide` tries together: numbers are compared and added up, and the constraint
+/// couples them.
+pub(crate) fn numbers(seed: u64) -> (System, Vec<Signal>) {
+    let mut r = Random(seed);
+    let mut s = System::default();
+    let inputs: Vec<Signal> = (0..10).map(|_| s.input()).collect();
+    let latches: Vec<Signal> = (0..5).map(|_| s.latch(false.into())).collect();
+    let mut above = Signal::FALSE;
+    let most = r.below(1024);
+    // inputs > most, the lowest bit first.
+    for (k, i) in inputs.iter().enumerate() {
+        let same = if most >> k & 1 == 1 { s.graph.and(*i, above) } else { s.graph.or(*i, above) };
+        above = same;
+    }
+    let some = s.graph.xor(inputs[r.below(10)], inputs[r.below(10)]);
+    let (mut carry, step) = (s.graph.and(above, some), latches[r.below(5)]);
+    for l in &latches {
+        let (next, over) = (s.graph.xor(*l, carry), s.graph.and(*l, carry));
+        s.set_next(*l, next);
+        carry = over;
+    }
+    let kept = s.graph.implies(inputs[9], !inputs[r.below(9)]);
+    let more = s.graph.implies(step, inputs[r.below(10)]);
+    s.constraints = vec![kept, more];
+    let all = s.graph.all(latches.iter().copied());
+    let odd = s.graph.all([latches[0], !latches[1], latches[4], above]);
+    (s, vec![all, odd, carry])
+}
+
+/// States that all inputs lead to, each by itself, and the least number of steps to each signal.
+pub(crate) fn by_hand(s: &System, signals: &[Signal]) -> (usize, Vec<Option<usize>>, bool) {
+    let mut seen = BTreeSet::from([0u64]);
+    let (mut level, mut first, mut depth, mut stuck) = (vec![0u64], vec![None; signals.len()], 0, false);
+    while !level.is_empty() {
+        depth += 1;
+        let mut next = Vec::new();
+        for state in level {
+            let latches: Vec<u64> = (0..s.latches.len()).map(|k| 0u64.wrapping_sub(state >> k & 1)).collect();
+            let mut fed = false;
+            for pattern in 0..1u64 << s.inputs.len() {
+                let inputs: Vec<u64> = (0..s.inputs.len()).map(|k| pattern >> k & 1).collect();
+                let values = evaluate(&s.graph, &latches, &inputs);
+                if s.constraints.iter().any(|c| !values.bit(*c)) {
+                    continue;
+                }
+                fed = true;
+                for (signal, first) in signals.iter().zip(&mut first) {
+                    if first.is_none() && values.bit(*signal) {
+                        *first = Some(depth);
+                    }
+                }
+                let to = s.latches.iter().enumerate().map(|(k, l)| u64::from(values.bit(l.next)) << k).sum();
+                if seen.insert(to) {
+                    next.push(to);
+                }
+            }
+            stuck |= !fed;
+        }
+        level = next;
+    }
+    (seen.len(), first, stuck)
+}

@@ -87,6 +87,38 @@ impl<'a> Checker<'a> {
     }
 }
 
+/// True if a set of states, given by the signals that the state is in it and that the one behind the step is, has the
+/// first state, if no step leads out of it, and if in it none of the signals `never` is 1. If the solver was stopped,
+/// by the caller or behind so many ticks, the answer is false.
+pub(crate) fn keeps(
+    system: &System,
+    here: Signal,
+    behind: Signal,
+    never: &[Signal],
+    ticks: u64,
+    stop: &(dyn Fn() -> bool + Sync),
+) -> bool {
+    let solves = |start: Start, signals: &[Signal]| {
+        let mut solver = Batsat::new(stop);
+        solver.stop_at(ticks);
+        let mut steps = Steps::new(system, &mut solver, start, true);
+        let literals: Vec<Literal> =
+            signals.iter().map(|s| steps.literal(system, &mut solver, 0, *s)).collect();
+        if start == Start::Any {
+            let is_here = steps.literal(system, &mut solver, 0, here);
+            solver.add(&[is_here]);
+        }
+        solver.add(&literals);
+        solver.solve(&[])
+    };
+    // A solver that has nothing to decide does not ask whether to stop. A first step for which no inputs satisfy the
+    // constraints is none.
+    !stop()
+        && solves(Start::First, &[!here]) == Answer::No
+        && solves(Start::Any, &[!behind]) == Answer::No
+        && (never.is_empty() || solves(Start::Any, never) == Answer::No)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -141,6 +173,20 @@ mod tests {
         assert!(checker.certifies_induction(c, 1));
         assert!(!checker.certifies_induction(a, 1), "it is 1 at the first step");
         assert!(!checker.certifies_induction(b, 1), "it becomes 1");
+    }
+
+    #[test]
+    fn a_set_of_states_is_kept_or_not() {
+        let (mut s, [a, b]) = swap();
+        let g = &mut s.graph;
+        let (both, one, none) = (g.and(a, b), g.xor(a, b), g.and(!a, !b));
+        let keeps = |here, behind, never: &[Signal]| keeps(&s, here, behind, never, 1 << 20, &|| false);
+        assert!(keeps(one, one, &[both, none]), "the same signal is 1 behind a step");
+        assert!(keeps(Signal::TRUE, Signal::TRUE, &[]));
+        assert!(!keeps(one, one, &[both, a]), "a is 1 in some state of the set");
+        assert!(!keeps(none, none, &[both]), "the first state is not in it");
+        assert!(!keeps(a, b, &[]), "a step leads out of it: a is 1, and behind the step it is what b was");
+        assert!(!super::keeps(&s, one, one, &[both], 1 << 20, &|| true), "the solver was stopped");
     }
 
     #[test]

@@ -40,6 +40,15 @@ pub enum Proof {
         /// Number of scans made.
         scans: usize,
     },
+    /// The set of all states was made as a decision diagram, and it is 0 in all scans from there.
+    Diagram {
+        /// Number of states; nothing where there are more than fit.
+        states: Option<u128>,
+        /// Number of nodes of the diagram.
+        nodes: usize,
+        /// The checker has agreed with the set. Else moves at random did not leave it.
+        checked: bool,
+    },
 }
 
 /// Ticks of the first turn.

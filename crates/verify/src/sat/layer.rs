@@ -13,6 +13,8 @@ use crate::question::{Claim, Question};
 use crate::reason::Reason;
 use crate::sat::dead::{Ends, ends};
 use crate::sat::decide::{Effort, Found, Proof, decide_with};
+#[cfg(not(target_family = "wasm"))]
+use crate::sat::diagram::{Effort as Sets, diagram};
 use crate::sat::graph::Signal;
 use crate::sat::simulate::Trace;
 use crate::sat::stays::is_trap;
@@ -25,6 +27,15 @@ use crate::verdict::{Certificate, Evidence, Open, Run, Verdict, is_open};
 /// fewer, and each turn more allows twice as many.
 const SCANS: usize = 2_000_000;
 const SMALL: usize = 1000;
+/// Nodes of the diagrams of sets of states in the turn [`FEWEST`]; each turn more allows twice as many, up to a bound
+/// that one call of the library keeps within seconds.
+#[cfg(not(target_family = "wasm"))]
+const ROOM: usize = 1 << 18;
+#[cfg(not(target_family = "wasm"))]
+const MOST: usize = 1 << 21;
+/// Ticks in which the solver checks a set, in the turn [`FEWEST`].
+#[cfg(not(target_family = "wasm"))]
+const CHECK: u64 = 1 << 20;
 /// The first turn in which all states are searched for, and the last in which more are than before.
 const FEWEST: u32 = 9;
 const TURNS: u32 = 30;
@@ -132,6 +143,9 @@ fn asks(model: &Model<'_>, claim: &Claim, runs: &[Run]) -> Option<Run> {
     replay(model, claim, &found).then_some(found)
 }
 
+/// A search for all states: what it says of signals, and where inputs satisfy the assumptions.
+type Visit<'a> = fn(&Work<'a>, &[Signal]) -> Option<(Vec<Found>, Ends)>;
+
 struct Work<'a> {
     model: &'a Model<'a>,
     translated: &'a Translated,
@@ -180,31 +194,56 @@ impl Work<'_> {
         questions.iter().zip(&t.asked).zip(&t.follows).map(one).collect()
     }
 
-    /// Visits all states of what the solver has left open, if they are few enough for the turn. Tells where
-    /// inputs satisfy the assumptions.
+    /// Visits all states of what the solver has left open: as sets, and one by one if they are few enough for the
+    /// turn. Tells where inputs satisfy the assumptions.
     fn visit(&self, signals: &[Signal], found: &mut [Found]) -> Option<Ends> {
+        let ways: [Visit<'_>; 2] = [Self::sets, Self::states];
+        let mut known = None;
+        for way in ways {
+            let is_open = |f: &Found| matches!(f, Found::Open(_));
+            let open: Vec<usize> =
+                (0..signals.len()).filter(|i| found.get(*i).is_some_and(is_open)).collect();
+            if open.is_empty() || self.effort.turns < FEWEST || (self.budget.stop)() {
+                break;
+            }
+            let signals: Vec<Signal> = open.iter().filter_map(|i| signals.get(*i)).copied().collect();
+            let Some((new, ends)) = way(self, &signals) else { continue };
+            for (i, new) in open.into_iter().zip(new) {
+                if let Some(slot) = found.get_mut(i) {
+                    *slot = match (&*slot, new) {
+                        (Found::Open(a), Found::Open(b)) => Found::Open(*a.max(&b)),
+                        (_, new) => new,
+                    };
+                }
+            }
+            known = Some(ends).filter(|e| *e != Ends::Open).or(known);
+        }
+        known
+    }
+
+    /// All states as sets. Not in the page, where the library behind it does not run.
+    #[cfg(not(target_family = "wasm"))]
+    fn sets(&self, signals: &[Signal]) -> Option<(Vec<Found>, Ends)> {
         let t = self.translated;
         let turn = self.effort.turns.min(TURNS);
+        let effort = Sets { nodes: (ROOM << turn >> FEWEST).min(MOST), ticks: CHECK << turn >> FEWEST };
+        let wanted = Wanted::of(signals, &t.passes, 1);
+        diagram(&t.system, &wanted, &t.candidates, effort, self.budget).map(|seen| (seen.found, seen.ends))
+    }
+
+    #[cfg(target_family = "wasm")]
+    fn sets(&self, _: &[Signal]) -> Option<(Vec<Found>, Ends)> {
+        None
+    }
+
+    /// All states one by one.
+    fn states(&self, signals: &[Signal]) -> Option<(Vec<Found>, Ends)> {
+        let t = self.translated;
         let times = t.system.graph.nodes().len() / SMALL + 1;
-        let left = self.budget.scans.min(SCANS << turn >> FEWEST) / times;
-        let is_open = |f: &Found| matches!(f, Found::Open(_));
-        let open: Vec<usize> = (0..signals.len()).filter(|i| found.get(*i).is_some_and(is_open)).collect();
-        if open.is_empty() || turn < FEWEST || (self.budget.stop)() {
-            return None;
-        }
-        let signals: Vec<Signal> = open.iter().filter_map(|i| signals.get(*i)).copied().collect();
-        let wanted = Wanted::of(&signals, &t.passes, threads());
+        let left = self.budget.scans.min(SCANS << self.effort.turns.min(TURNS) >> FEWEST) / times;
         let budget = Budget { scans: left, ..*self.budget };
-        let seen = wide(&t.system, &wanted, &budget)?;
-        for (i, new) in open.into_iter().zip(seen.found) {
-            if let Some(slot) = found.get_mut(i) {
-                *slot = match (&*slot, new) {
-                    (Found::Open(a), Found::Open(b)) => Found::Open(*a.max(&b)),
-                    (_, new) => new,
-                };
-            }
-        }
-        Some(seen.ends)
+        let seen = wide(&t.system, &Wanted::of(signals, &t.passes, threads()), &budget)?;
+        Some((seen.found, seen.ends))
     }
 
     /// The claim about all that can follow each state: the clauses of a proof that it is always what the claim
@@ -277,6 +316,9 @@ fn certificate(proof: &Proof) -> Certificate {
         Proof::Invariant(clauses) => Certificate::Invariant { clauses: clauses.len() },
         Proof::Induction(depth) => Certificate::Induction { depth: *depth },
         Proof::Visited { states, scans } => Certificate::Search { states: *states, scans: *scans },
+        Proof::Diagram { states, nodes, checked } => {
+            Certificate::Diagram { states: *states, nodes: *nodes, checked: *checked }
+        }
     }
 }
 

@@ -7,7 +7,8 @@
 //!                                                       -> check (proofs), simulate (runs)
 //!                                   -> kept (what the chart suggests, as far as it holds) -> decide
 //!                                   -> dead (constraints that cannot be kept)
-//!                                   -> wide (all states, where the solver has found nothing)
+//!                                   -> diagram (all states as sets, where the solver has found nothing)
+//!                                   -> wide (all states one by one, where a set is too large)
 //!                                   -> traps (what can follow no more), stays (a trap judged by a search)
 //! Compare  -> crate::compare -> joined (two systems as one) -> relate (latches that belong together) -> decide
 //! ```
@@ -28,6 +29,8 @@ mod cnf;
 mod cone;
 mod dead;
 mod decide;
+#[cfg(not(target_family = "wasm"))]
+pub(crate) mod diagram;
 mod frames;
 pub mod graph;
 mod joined;
@@ -40,7 +43,7 @@ mod solver;
 mod stays;
 mod traps;
 mod unrolled;
-mod wide;
+pub(crate) mod wide;
 
 pub use aiger::aiger;
 pub(crate) use cone::Cube;

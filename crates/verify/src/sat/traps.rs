@@ -79,7 +79,9 @@ pub(crate) fn traps(
         }
         match decide(&work.open, &[work.none], effort).into_iter().next() {
             Some(Found::Never(Proof::Invariant(clauses))) => return Way::Always(clauses),
-            Some(Found::Never(Proof::Induction(_) | Proof::Visited { .. })) => return Way::Always(Vec::new()),
+            Some(Found::Never(Proof::Induction(_) | Proof::Visited { .. } | Proof::Diagram { .. })) => {
+                return Way::Always(Vec::new());
+            }
             Some(Found::Reached(trace)) => {
                 sure = trace.inputs.len() - 1;
                 match work.way(&state(&work.open, &trace)) {

@@ -16,6 +16,7 @@ pub(super) const PAIRS: Counted = [
     ["{} pair of states", "{} paire d’états", "{} par de estados"],
     ["{} pairs of states", "{} paires d’états", "{} pares de estados"],
 ];
+pub(super) const NODES: Counted = [["{} node", "{} nœud", "{} nó"], ["{} nodes", "{} nœuds", "{} nós"]];
 pub(super) const ZONES: Counted = [
     ["{} set of states", "{} ensemble d’états", "{} conjunto de estados"],
     ["{} sets of states", "{} ensembles d’états", "{} conjuntos de estados"],
@@ -40,9 +41,9 @@ pub(super) fn same(word: &str) -> Said {
     std::array::from_fn(|_| word.to_owned())
 }
 
-pub(super) fn count(n: usize, what: Counted) -> Said {
-    let [one, more] = what;
-    say(if n == 1 { one } else { more }, &[same(&n.to_string())])
+pub(super) fn count(n: impl ToString, what: Counted) -> Said {
+    let ([one, more], n) = (what, n.to_string());
+    say(if n == "1" { one } else { more }, &[same(&n)])
 }
 
 #[cfg(test)]

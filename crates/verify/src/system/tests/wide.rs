@@ -1,5 +1,5 @@
-//! The search for all states of the system, beside the search with the engine: the same verdicts, and runs of
-//! the same length.
+//! The searches for all states of the system, one by one and as sets, beside the search with the engine: the same
+//! verdicts, and runs of the same length.
 //!
 //! `G7_CHARTS` is the number of random charts a profile, `G7_SEED` the first.
 
@@ -14,8 +14,10 @@ use crate::ask::Asked;
 use crate::explicit::answer;
 use crate::layer::Budget;
 use crate::model::Model;
+use crate::sat::diagram::{Effort, diagram};
+use crate::sat::wide::Wide;
 use crate::sat::{Ends, Found, Signal, Wanted, wide};
-use crate::system::{Observed, system};
+use crate::system::{Observed, Translated, system};
 use crate::verdict::{Evidence, Verdict};
 
 /// Answers on which both agree: runs, and proofs.
@@ -24,6 +26,30 @@ struct Agreed {
     runs: usize,
     proofs: usize,
     open: usize,
+    /// Signals on which both searches of the system have said the same.
+    sets: usize,
+}
+
+/// The search by sets says of each signal what the one state by state says. Gives the number of signals that both
+/// have decided.
+fn sets_agree(t: &Translated, signals: &[Signal], seen: &Wide, text: &str) -> usize {
+    let budget = Budget { states: 0, scans: 0, bytes: 64 << 20, stop: &|| false };
+    let effort = Effort { nodes: 1 << 16, ticks: 1 << 16 };
+    let wanted = Wanted::of(signals, &t.passes, 1);
+    let Some(sets) = diagram(&t.system, &wanted, &t.candidates, effort, &budget) else { return 0 };
+    let steps = |found: &Found| match found {
+        Found::Reached(trace) => Some(Some(trace.inputs.len())),
+        Found::Never(_) => Some(None),
+        Found::Open(_) => None,
+    };
+    let pairs = seen.found.iter().zip(&sets.found).map(|(a, b)| (steps(a), steps(b)));
+    let both: Vec<_> = pairs.filter(|(a, b)| a.is_some() && b.is_some()).collect();
+    assert!(both.iter().all(|(a, b)| a == b), "{both:?}\n{text}");
+    // One that has found all signals may have ended before.
+    if seen.ends != Ends::Open && sets.ends != Ends::Open {
+        assert_eq!(seen.ends, sets.ends, "{text}");
+    }
+    both.len()
 }
 
 /// The answers of one search as they can be compared: the scans of a run, or none for a proof.
@@ -47,6 +73,7 @@ fn compare(asked: &Asked, text: &str, agreed: &mut Agreed) {
     let Some(seen) = wide(&t.system, &Wanted::of(&signals, &t.passes, threads), &budget) else {
         return;
     };
+    agreed.sets += sets_agree(&t, &signals, &seen, text);
     let found = |s: Signal| signals.binary_search(&s).ok().and_then(|at| seen.found.get(at));
     for ((question, signals), (follows, verdict)) in
         asked.questions.iter().zip(&t.asked).zip(t.follows.iter().zip(&answers))
@@ -87,7 +114,7 @@ fn both_searches_agree() {
         }
         println!("{}: {agreed:?}", profile.name());
         assert!(
-            charts < 4 || agreed.runs > 20 && agreed.runs + agreed.proofs > 40,
+            charts < 4 || agreed.runs > 20 && agreed.runs + agreed.proofs > 40 && agreed.sets > 40,
             "{}: {agreed:?}",
             profile.name()
         );
