@@ -13,7 +13,7 @@ pub enum Layers {
     All,
 }
 
-/// What visits the states.
+/// The search that visits the states.
 #[derive(Clone, Copy)]
 pub enum By {
     /// The engine, scan by scan.

@@ -46,7 +46,7 @@ const SAMPLES: usize = 64;
 /// Bytes for each node of the room, with what is made on the way.
 const EACH: usize = Diagrams::BYTES;
 
-/// What may be done.
+/// How much may be done.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Effort {
     /// Most nodes of diagrams.

@@ -1,6 +1,6 @@
 //! The order of the variables of a diagram, which decides how large it is.
 //!
-//! What is read together stands together. Latch by latch: next comes the one that needs the fewest variables that
+//! Variables that are read together stand together. Latch by latch: next comes the one that needs the fewest variables that
 //! do not stand yet, and of two such ones the one that reads more of those that do. A latch reads what its function
 //! reads where the scan has one pass: through the passes behind it, each reads all.
 
