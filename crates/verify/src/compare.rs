@@ -73,7 +73,11 @@ fn turn(sides: &Sides<'_>, miter: &mut Option<Miter>, turns: u32, budget: &Budge
     if surely || (budget.stop)() {
         return found.equality;
     }
-    let solved = miter.get_or_insert_with(|| Miter::new(sides)).solve(sides, turns, budget);
+    if miter.is_none() {
+        *miter = Miter::until(sides, budget.stop);
+    }
+    let Some(miter) = miter else { return found.equality };
+    let solved = miter.solve(sides, turns, budget);
     match (found.equality, solved) {
         (_, solved @ (Equality::Apart { .. } | Equality::Equal(_))) => solved,
         (found @ Equality::Apart { .. }, _) => found,

@@ -16,7 +16,7 @@ use crate::reason::{Part, Reason};
 use crate::sat::{
     Effort, Ends, Found, Proof, Signal, System, Trace, aiger, decide_related, ends, join, mapped,
 };
-use crate::system::{Observed, Translated, Value, same, system};
+use crate::system::{Observed, Translated, Value, same, system, system_until};
 use crate::verdict::{Certificate, Open};
 
 /// Both charts as one system.
@@ -35,7 +35,18 @@ pub(super) struct Miter {
 
 impl Miter {
     pub(super) fn new(sides: &Sides<'_>) -> Miter {
-        let [a, b] = [&sides.models[0], &sides.models[1]].map(|m| system(m, &[], Observed::Outputs));
+        let [a, b] = &sides.models;
+        Miter::of(sides, [a, b].map(|m| system(m, &[], Observed::Outputs)))
+    }
+
+    /// The same, unless the caller wants no more work before it is made.
+    pub(super) fn until(sides: &Sides<'_>, stop: &(dyn Fn() -> bool + Sync)) -> Option<Miter> {
+        let [a, b] = &sides.models;
+        let made = |model| system_until(model, &[], Observed::Outputs, stop);
+        Some(Miter::of(sides, [made(a)?, made(b)?]))
+    }
+
+    fn of(sides: &Sides<'_>, [a, b]: [Translated; 2]) -> Miter {
         let mut whole = a.system.clone();
         let mut shared = vec![None; b.system.inputs.len()];
         for input in &sides.inputs {
