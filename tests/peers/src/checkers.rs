@@ -135,7 +135,7 @@ impl Ric3 {
 }
 
 /// The words behind the name of rIC3.
-const RIC3: [&str; 2] = ["check", "ic3"];
+const RIC3: [&str; 2] = ["-e", "ic3"];
 
 /// An AIGER file with one bad signal of another.
 ///
