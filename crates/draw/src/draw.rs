@@ -57,11 +57,21 @@ fn drawing(chart: &Chart, places: &[PlaceAt], options: &Options) -> Drawing {
     }
     let placement = layout(chart, &symbols.sizes, places);
     let mut drawing = symbols.put(chart, &placement, Vec::new(), &[]);
-    for note in notes(places) {
+    for note in notes(places).into_iter().map(Item::from) {
         drawing.area = drawing.area.union(&note.area);
         drawing.items.push(note);
     }
     drawing
+}
+
+/// The symbols of a chart on one sheet, as strokes, and where they stand.
+pub(crate) fn inked(document: &Document, chart: &Chart, options: &Options) -> (Placement, Vec<Inked>) {
+    let symbols = Symbols::new(chart, options);
+    let places = places(document, chart);
+    let placement = layout(chart, &symbols.sizes, places);
+    let mut all = symbols.inked(&placement, &[]);
+    all.extend(notes(places));
+    (placement, all)
 }
 
 /// The comments in the layout section of a chart, in the order of the text, with their places.
@@ -76,7 +86,7 @@ fn comments_of(places: &[PlaceAt]) -> impl Iterator<Item = (&str, &PlaceAt)> {
     })
 }
 
-fn notes(places: &[PlaceAt]) -> Vec<Item> {
+fn notes(places: &[PlaceAt]) -> Vec<Inked> {
     (0..)
         .zip(comments_of(places))
         .map(|(comment, (text, p))| {
@@ -129,6 +139,18 @@ impl<'a> Symbols<'a> {
     /// Puts every symbol at its place, after the items that are there already. `pages` holds the page
     /// number of each step if the chart takes several pages.
     fn put(self, chart: &Chart, placement: &Placement, mut items: Vec<Item>, pages: &[u32]) -> Drawing {
+        items.extend(self.inked(placement, pages).into_iter().map(Item::from));
+        let area = items
+            .iter()
+            .map(|i| i.area)
+            .fold(None, |all: Option<Rect>, a| Some(all.map_or(a, |all| all.union(&a))));
+        let area = area.map_or(placement.area, |a| a.union(&placement.area));
+        Drawing { chart: chart.name.text.clone(), area, items }
+    }
+
+    /// Every symbol at its place, in the order of painting.
+    fn inked(self, placement: &Placement, pages: &[u32]) -> Vec<Inked> {
+        let mut items = Vec::new();
         self.links(placement, &mut items);
         let names = Names::new(&self);
         for (index, c) in (0..).zip(&placement.connectors) {
@@ -153,15 +175,10 @@ impl<'a> Symbols<'a> {
             let square = moved(shape.square, *at);
             items.push(item(Part::Step { step: number, square }, shape.picture.moved(*at), s.at.0));
         }
-        let area = items
-            .iter()
-            .map(|i| i.area)
-            .fold(None, |all: Option<Rect>, a| Some(all.map_or(a, |all| all.union(&a))));
-        let area = area.map_or(placement.area, |a| a.union(&placement.area));
-        Drawing { chart: chart.name.text.clone(), area, items }
+        items
     }
 
-    fn links(&self, placement: &Placement, items: &mut Vec<Item>) {
+    fn links(&self, placement: &Placement, items: &mut Vec<Inked>) {
         for (index, l) in (0..).zip(&placement.links) {
             let mut picture = Picture::default();
             let points: Vec<(i32, i32)> = l.points.iter().map(|p| (p.x, p.y)).collect();
@@ -209,7 +226,7 @@ impl Names {
         }
     }
 
-    fn connector(&self, index: u32, c: &Connector, placement: &Placement, pages: &[u32]) -> Item {
+    fn connector(&self, index: u32, c: &Connector, placement: &Placement, pages: &[u32]) -> Inked {
         let named = self.named(c);
         let name = named.and_then(|s| self.steps.get(s as usize)).map_or("", |s| s);
         let page = named.and_then(|s| pages.get(s as usize)).copied();
@@ -244,6 +261,20 @@ fn moved(r: Rect, by: Point) -> Rect {
     Rect { x: r.x + by.x, y: r.y + by.y, ..r }
 }
 
-fn item(part: Part, picture: Picture, at: g7_model::Span) -> Item {
-    Item { part, area: picture.area().unwrap_or_default(), svg: picture.svg(), far: picture.far(), at }
+fn item(part: Part, picture: Picture, at: g7_model::Span) -> Inked {
+    Inked { part, picture, at }
+}
+
+/// A symbol at its place, as strokes.
+pub(crate) struct Inked {
+    pub(crate) part: Part,
+    pub(crate) picture: Picture,
+    at: g7_model::Span,
+}
+
+impl From<Inked> for Item {
+    fn from(inked: Inked) -> Item {
+        let Inked { part, picture, at } = inked;
+        Item { part, area: picture.area().unwrap_or_default(), svg: picture.svg(), far: picture.far(), at }
+    }
 }

@@ -156,7 +156,7 @@ pub(crate) fn stack(lines: &[Line], size: i32) -> (i32, i32) {
 }
 
 impl Ink {
-    fn area(&self) -> Rect {
+    pub(crate) fn area(&self) -> Rect {
         match self {
             Ink::Line(_, points) | Ink::Shape(_, points) => {
                 let boxes = points.iter().map(|p| Rect { x: p.x, y: p.y, w: 0, h: 0 });

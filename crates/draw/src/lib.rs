@@ -16,6 +16,7 @@
 mod chronogram;
 mod draw;
 mod drawing;
+mod drawio;
 mod geometry;
 #[cfg(test)]
 mod geometry_tests;
@@ -33,6 +34,7 @@ mod text;
 pub use chronogram::{Chronogram, Edge, Lane, LaneKind, chronogram_svg};
 pub use draw::{comments, draw, draw_all, measure};
 pub use drawing::{Drawing, Item, Part};
+pub use drawio::{drawio, shapes};
 pub use geometry::{Extent, Point, Rect, U};
 pub use layout::layout;
 pub use options::{Look, Options};

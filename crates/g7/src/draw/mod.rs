@@ -1,4 +1,4 @@
-//! `g7 draw`: charts as pictures, in SVG, PNG or PDF.
+//! `g7 draw`: charts as pictures, in SVG, PNG or PDF, and as files that draw.io edits.
 
 mod paper;
 
@@ -6,8 +6,8 @@ use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 
 use clap::ValueEnum;
-use g7_draw::{Drawing, Look, Options};
-use g7_model::Chart;
+use g7_draw::{Look, Options};
+use g7_model::{Chart, FileId};
 
 use crate::failure::{Failure, Verdict};
 use crate::files;
@@ -23,6 +23,8 @@ Examples:
   g7 draw tank -o pictures/ --as png    a file for each chart
   g7 draw tank > tank.svg               to the standard output
   g7 draw tank -o sfc.svg --look sfc    qualifier boxes, as in IEC 61131-3
+  g7 draw tank -o tank.drawio           a file that draw.io edits
+  g7 draw --shapes -o grafcet.xml       the symbols as a library for draw.io
 
 Exit codes:
   0  fine
@@ -36,7 +38,7 @@ pub(crate) struct Draw {
     /// A .g7 file, a file of another tool, or a folder with a chart.g7.
     #[arg(default_value = ".")]
     file: PathBuf,
-    /// The file to write (.svg, .png or .pdf), or a folder for one file per chart [default: the
+    /// The file to write (.svg, .png, .pdf or .drawio), or a folder for one file per chart [default: the
     /// standard output].
     #[arg(long, short, value_name = "FILE")]
     output: Option<PathBuf>,
@@ -55,6 +57,9 @@ pub(crate) struct Draw {
     /// Draw light on dark.
     #[arg(long)]
     dark: bool,
+    /// Write the symbols of IEC 60848 as a library for draw.io, instead of a chart.
+    #[arg(long, conflicts_with_all = ["file", "charts", "form", "pages", "no_actions", "scale"])]
+    shapes: bool,
     /// Leave out the actions of the steps.
     #[arg(long)]
     no_actions: bool,
@@ -86,7 +91,13 @@ fn scale(text: &str) -> Result<f32, String> {
     }
 }
 
+/// The chart whose symbols are the library.
+const SYMBOLS: &str = include_str!("symbols.g7");
+
 pub(crate) fn draw(args: &Draw) -> Result<Verdict, Failure> {
+    if args.shapes {
+        return shapes(args);
+    }
     let source = sources::load(&files::one(&args.file)?, 0)?;
     if source.has_errors() {
         talk!("{}", report::text(&source, &source.problems).trim_end());
@@ -94,7 +105,52 @@ pub(crate) fn draw(args: &Draw) -> Result<Verdict, Failure> {
         return Ok(Verdict::Found);
     }
     let charts = chosen(args, &source)?;
-    let options = Options {
+    let options = options(args);
+    match &args.output {
+        Some(folder) if is_folder(folder) => each(args, &source, &charts, &options, folder)?,
+        output => {
+            let form = form(args, output.as_deref())?;
+            let bytes = picture(form, &source, &charts, &options, args.scale)?;
+            files::deliver(output.as_deref(), &bytes)?;
+        }
+    }
+    Ok(Verdict::Fine)
+}
+
+/// Charts in a form: as one picture, or each on a page where the form has pages.
+fn picture(
+    form: Form,
+    source: &Source,
+    charts: &[&Chart],
+    options: &Options,
+    scale: f32,
+) -> Result<Vec<u8>, Failure> {
+    let charts = charts.iter().copied();
+    if form == Form::Drawio {
+        if options.pages {
+            let why = "--pages is for pictures; a file of draw.io has a page for each chart";
+            return Err(Failure::Usage(why.to_owned()));
+        }
+        return Ok(g7_draw::drawio(&source.document, charts, options).into_bytes());
+    }
+    let drawings = g7_draw::draw_all(&source.document, charts, options);
+    let svg = match drawings.as_slice() {
+        [one] => g7_draw::svg(one, options),
+        several => g7_draw::sheet(&source.document, several, options),
+    };
+    paper::print(form, svg, scale)
+}
+
+/// The symbols of the standard, as a library for draw.io.
+fn shapes(args: &Draw) -> Result<Verdict, Failure> {
+    let (document, _) = g7_syntax::parse(SYMBOLS, FileId(0));
+    let library = g7_draw::shapes(&document, &options(args));
+    files::deliver(args.output.as_deref(), library.as_bytes())?;
+    Ok(Verdict::Fine)
+}
+
+fn options(args: &Draw) -> Options {
+    Options {
         look: match args.look {
             Manner::Iec60848 => Look::Iec60848,
             Manner::Sfc => Look::Sfc,
@@ -103,21 +159,7 @@ pub(crate) fn draw(args: &Draw) -> Result<Verdict, Failure> {
         pages: args.pages == Some(Pages::Pl7),
         dark: args.dark,
         font: true,
-    };
-    let drawings = g7_draw::draw_all(&source.document, charts, &options);
-    match &args.output {
-        Some(folder) if is_folder(folder) => each(args, &drawings, &options, folder)?,
-        output => {
-            let form = form(args, output.as_deref())?;
-            let svg = match drawings.as_slice() {
-                [one] => g7_draw::svg(one, &options),
-                several => g7_draw::sheet(&source.document, several, &options),
-            };
-            let bytes = paper::print(form, svg, args.scale)?;
-            files::deliver(output.as_deref(), &bytes)?;
-        }
     }
-    Ok(Verdict::Fine)
 }
 
 /// The chosen charts, in the order of the text.
@@ -146,23 +188,30 @@ fn form(args: &Draw, output: Option<&Path>) -> Result<Form, Failure> {
         (None, None) => Ok(Form::Svg),
         (None, Some(path)) => Form::of(path).ok_or_else(|| {
             let name = path.display();
-            Failure::Usage(format!("{name} ends in none of .svg, .png, .pdf; --as says the form"))
+            Failure::Usage(format!("{name} ends in none of .svg, .png, .pdf, .drawio; --as says the form"))
         }),
     }
 }
 
 /// Writes one file per chart into a folder. All pictures are made before the first is written.
-fn each(args: &Draw, drawings: &[Drawing], options: &Options, folder: &Path) -> Result<(), Failure> {
+fn each(
+    args: &Draw,
+    source: &Source,
+    charts: &[&Chart],
+    options: &Options,
+    folder: &Path,
+) -> Result<(), Failure> {
     let form = args.form.unwrap_or(Form::Svg);
     let mut made: Vec<(PathBuf, Vec<u8>)> = Vec::new();
     let mut taken: HashSet<PathBuf> = HashSet::new();
-    for drawing in drawings {
-        let path = folder.join(format!("{}.{}", file_name(&drawing.chart), form.ending()));
+    for chart in charts {
+        let name = &chart.name.text;
+        let path = folder.join(format!("{}.{}", file_name(name), form.ending()));
         if !taken.insert(path.clone()) {
-            let (name, path) = (&drawing.chart, path.display());
+            let path = path.display();
             return Err(Failure::Usage(format!("two charts would go to {path}; draw {name} alone")));
         }
-        made.push((path, paper::print(form, g7_draw::svg(drawing, options), args.scale)?));
+        made.push((path, picture(form, source, &[*chart], options, args.scale)?));
     }
     std::fs::create_dir_all(folder).map_err(|e| Failure::Write(folder.to_path_buf(), e))?;
     made.iter().try_for_each(|(path, bytes)| files::deliver(Some(path), bytes))

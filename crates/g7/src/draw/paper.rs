@@ -17,6 +17,8 @@ pub(super) enum Form {
     Svg,
     Png,
     Pdf,
+    /// A file that draw.io edits, with a page for each chart.
+    Drawio,
 }
 
 impl Form {
@@ -25,19 +27,21 @@ impl Form {
             Form::Svg => "svg",
             Form::Png => "png",
             Form::Pdf => "pdf",
+            Form::Drawio => "drawio",
         }
     }
 
     pub(super) fn of(path: &Path) -> Option<Form> {
         let ending = path.extension()?.to_str()?.to_ascii_lowercase();
-        [Form::Svg, Form::Png, Form::Pdf].into_iter().find(|f| f.ending() == ending)
+        [Form::Svg, Form::Png, Form::Pdf, Form::Drawio].into_iter().find(|f| f.ending() == ending)
     }
 }
 
 /// The bytes of a picture in a format.
 pub(super) fn print(form: Form, svg: String, scale: f32) -> Result<Vec<u8>, Failure> {
     match form {
-        Form::Svg => Ok(svg.into_bytes()),
+        // A file of draw.io is made of the chart, not of its picture.
+        Form::Svg | Form::Drawio => Ok(svg.into_bytes()),
         Form::Png => png(&tree(&svg)?, scale),
         Form::Pdf => pdf(&tree(&svg)?),
     }
