@@ -4,6 +4,7 @@
 mod common;
 
 use common::Folder;
+#[cfg(feature = "s7")]
 use common::talk::{Running, S7};
 
 const CHART: &str = "\
