@@ -90,6 +90,7 @@ impl<'a> Checker<'a> {
 /// True if a set of states, given by the signals that the state is in it and that the one behind the step is, has the
 /// first state, if no step leads out of it, and if in it none of the signals `never` is 1. If the solver was stopped,
 /// by the caller or behind so many ticks, the answer is false.
+#[cfg(not(target_family = "wasm"))]
 pub(crate) fn keeps(
     system: &System,
     here: Signal,
