@@ -52,7 +52,7 @@ impl Model for Cells {
 
 /// The cell's pair holds no resource that it needs.
 fn may(state: &[u8], c: usize) -> bool {
-    let other = state[c ^ 1];
+    let Some(other) = state.get(c ^ 1).copied() else { return true };
     state[c] != 1 || !(other == 2 || other == 3)
 }
 
