@@ -4,7 +4,7 @@
 //! `G7_SCANS=100000` sets the number of random scans for each profile, and runs every case with
 //! every compiler in both styles; otherwise some combinations are left out. The folder with the
 //! code is kept if `G7_KEEP` is set.
-use g7_codegen::{Language, Style};
+use g7_codegen::{Clock, Language, Room, Style};
 use g7_model::ProfileName;
 use g7_tests::generated::cases::{self, Folder};
 use g7_tests::generated::{Subject, c_program, compare, rust_program};
@@ -130,4 +130,97 @@ fn random_unity() {
 #[test]
 fn random_jgrafchart() {
     random_charts(ProfileName::Jgrafchart);
+}
+
+/// The rooms of code for little memory.
+const ROOMS: [Room; 3] = [
+    Room { small: true, clock: Clock::Nanoseconds },
+    Room { small: true, clock: Clock::Microseconds },
+    Room { small: false, clock: Clock::Milliseconds },
+];
+
+/// The subjects, by turns in the rooms; in the next where its times do not fit the clock.
+fn in_little_room(mut subjects: Vec<Subject>) -> Vec<Subject> {
+    let mut k = 0;
+    subjects.retain_mut(|s| {
+        k += 1;
+        (0..ROOMS.len()).any(|i| s.fit(ROOMS[(k + i) % ROOMS.len()]))
+    });
+    subjects
+}
+
+#[test]
+fn cases_in_little_room() {
+    let all = spec();
+    let count = all.len();
+    let subjects = in_little_room(all);
+    println!("{} of {count} cases have times that fit", subjects.len());
+    assert!(subjects.len() * 10 > count * 8, "{} of {count}", subjects.len());
+    agree("little room", "gcc", Style::Structured, &some(&subjects, 0, 2));
+    agree("little room", "clang", Style::Structured, &some(&subjects, 1, 8));
+    let complete =
+        |s: &Subject| s.print(Language::Rust, Style::Structured, "c").is_ok_and(|p| p.problems.is_empty());
+    let rust: Vec<&Subject> = some(&subjects, 0, 4).into_iter().filter(|s| complete(s)).collect();
+    agree("little room", "rustc", Style::Structured, &rust);
+}
+
+#[test]
+fn random_charts_in_little_room() {
+    let profiles = [
+        ProfileName::Iec60848,
+        ProfileName::Iec61131,
+        ProfileName::Pl7,
+        ProfileName::Unity,
+        ProfileName::Jgrafchart,
+    ];
+    let scans = number("G7_SCANS").unwrap_or(1_000) as usize;
+    for profile in profiles {
+        let all = random(profile, scans, (scans / 4).clamp(1, 2_000));
+        let count = all.len();
+        let subjects = in_little_room(all);
+        assert!(subjects.len() * 2 > count, "{}: {} of {count}", profile.name(), subjects.len());
+        agree(&format!("little-{}", profile.name()), "gcc", Style::Structured, &some(&subjects, 0, 1));
+    }
+}
+
+/// The clock begins again at 0 twice, in steps and delays that go on over it; and a step that is
+/// active for longer than the clock can tell does not seem young again.
+#[test]
+fn a_clock_of_32_bits_begins_again() {
+    let text = "profile PROFILE
+input go : BOOL
+output slow, late, pulse : BOOL
+chart C {
+  initial step 1
+  step 2 { N slow if 20d/X2  D 3h late }
+  step 3 { L 2h pulse }
+  1 -> 2 when go
+  2 -> 3 when 5d/X2 and not go
+  3 -> 1 when X3.t >= 10h
+}
+";
+    let mut subjects = Vec::new();
+    for profile in ["iec60848", "iec61131"] {
+        let text = text.replace("PROFILE", profile);
+        let (document, _) = g7_syntax::parse(&text, g7_model::FileId(0));
+        let mut subject = Subject::new(profile, &document, None, &text).unwrap_or_else(|e| panic!("{e}"));
+        let minutes = 90 * 24 * 60 / 7;
+        // Most of the time goes by in step 2: 60 days of the 90, which is more than 32 bits say.
+        let script = (0..minutes).map(|k| {
+            let now = k * 7 * 60 * 1_000_000_000;
+            let day = k * 7 / (24 * 60);
+            let go = matches!(day, 2..=61 | 70..=78);
+            let inputs = [("go".to_owned(), g7_tests::naive::Value::Bool(go))];
+            g7_tests::generate::Event::Scan { now, inputs: inputs.into_iter().collect() }
+        });
+        subject.play(&script.collect()).unwrap_or_else(|e| panic!("{e}"));
+        subjects.push(subject);
+    }
+    let room = Room { small: true, clock: Clock::Milliseconds };
+    for subject in &mut subjects {
+        assert!(subject.fit_whole(room), "the times are whole milliseconds");
+    }
+    let all: Vec<&Subject> = subjects.iter().collect();
+    agree("clock", "gcc", Style::Structured, &all);
+    agree("clock", "rustc", Style::Structured, &all);
 }

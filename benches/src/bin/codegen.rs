@@ -102,7 +102,8 @@ fn ours(folder: &Path, shape: Shape, style: Style, copied: bool) -> Result<Measu
     let (doc, _) = g7_syntax::parse(&text, FileId(0));
     let (compiled, problems) = g7_compile::compile(&doc);
     let compiled = compiled.ok_or_else(|| format!("{problems:?}"))?;
-    let options = Options { language: Language::C, style, name: "chart", source: &text };
+    let options =
+        Options { language: Language::C, style, room: Default::default(), name: "chart", source: &text };
     let printed = g7_codegen::print(&compiled, &options).map_err(|p| format!("{p:?}"))?;
     let io = |e: std::io::Error| e.to_string();
     std::fs::create_dir_all(folder).map_err(io)?;

@@ -82,7 +82,8 @@ impl Ready {
 }
 
 fn code(r: &Ready, language: Language, style: Style) {
-    let options = g7_codegen::Options { language, style, name: "chart", source: &r.text };
+    let options =
+        g7_codegen::Options { language, style, room: Default::default(), name: "chart", source: &r.text };
     drop(black_box(g7_codegen::print(&r.compiled, &options)));
 }
 

@@ -8,6 +8,7 @@ use g7_model::Type;
 
 use crate::build::Gen;
 use crate::c::comment;
+use crate::room::{Clock, Room};
 
 /// The use of a pin.
 struct Pin {
@@ -63,15 +64,38 @@ fn write(p: &Pin) -> String {
     match p.ty {
         Type::Bool => {
             let (on, off) = if p.inverted { ("LOW", "HIGH") } else { ("HIGH", "LOW") };
-            format!("digitalWrite({}, output.{} ? {on} : {off});", p.constant, p.field)
+            format!("digitalWrite({}, state.outputs.{} ? {on} : {off});", p.constant, p.field)
         }
-        _ => format!("analogWrite({}, (int)output.{});", p.constant, p.field),
+        _ => format!("analogWrite({}, (int)state.outputs.{});", p.constant, p.field),
+    }
+}
+
+/// How a sketch tells the time.
+struct Clocked {
+    memory: &'static str,
+    step: &'static str,
+    now: &'static str,
+}
+
+impl Clocked {
+    fn new(room: Room) -> Clocked {
+        match room.clock {
+            Clock::Nanoseconds => Clocked {
+                memory: "static int64_t now_ns;\n",
+                step: "  // millis() starts again at 0 after 49 days; the difference does not mind.\n  \
+                       if (began) { now_ns += (int64_t)(uint32_t)(ms - last_ms) * 1000000; }\n",
+                now: "now_ns",
+            },
+            Clock::Microseconds => Clocked { memory: "", step: "", now: "micros()" },
+            Clock::Milliseconds => Clocked { memory: "", step: "", now: "ms" },
+        }
     }
 }
 
 /// The sketch. Pins that the chart does not name stand in the table at its top
 /// with -1, which leaves them alone.
-pub(crate) fn sketch(g: &Gen<'_>, name: &str) -> String {
+pub(crate) fn sketch(g: &Gen<'_>, name: &str, room: Room) -> String {
+    let clock = Clocked::new(room);
     let (ins, outs) = (pins(g, VarClass::Input), pins(g, VarClass::Output));
     let mut t = format!(
         "// The chart {name}, printed by G7: a sketch round {name}.c and {name}.h, which belong in this folder.\n\n\
@@ -84,9 +108,9 @@ pub(crate) fn sketch(g: &Gen<'_>, name: &str) -> String {
     let _ = write!(
         t,
         "\n// Time between scans in milliseconds; 0 for as often as it goes.\nstatic const unsigned long SCAN_MS = {};\n\n\
-         static {name}_inputs input;\nstatic {name}_outputs output;\nstatic {name}_state state;\n\
-         static uint32_t last_ms;\nstatic int64_t now_ns;\n\nvoid setup() {{\n",
-        (g.c.symbols.cycle.count() / 1_000_000).max(0)
+         static {name}_state state;\nstatic uint32_t last_ms;\nstatic bool began;\n{}\nvoid setup() {{\n",
+        (g.c.symbols.cycle.count() / 1_000_000).max(0),
+        clock.memory
     );
     for p in &ins {
         let mode = if p.inverted { "INPUT_PULLUP" } else { "INPUT" };
@@ -99,17 +123,17 @@ pub(crate) fn sketch(g: &Gen<'_>, name: &str) -> String {
     }
     let _ = write!(
         t,
-        "  {name}_init(&state);\n  last_ms = millis();\n}}\n\nvoid loop() {{\n  const uint32_t ms = millis();\n  \
-         if (ms - last_ms < SCAN_MS && now_ns != 0) {{\n    return;\n  }}\n  \
-         // millis() starts again at 0 after 49 days; the difference does not mind.\n  \
-         now_ns += (int64_t)(uint32_t)(ms - last_ms) * 1000000;\n  last_ms = ms;\n\n"
+        "  {name}_init(&state);\n}}\n\nvoid loop() {{\n  const uint32_t ms = millis();\n  \
+         if (began && ms - last_ms < SCAN_MS) {{\n    return;\n  }}\n{}  began = true;\n  last_ms = ms;\n\n",
+        clock.step
     );
     for p in &ins {
-        let _ = writeln!(t, "  if ({} >= 0) {{ input.{} = {}; }}", p.constant, p.field, read(p));
+        let _ = writeln!(t, "  if ({} >= 0) {{ state.inputs.{} = {}; }}", p.constant, p.field, read(p));
     }
     let _ = write!(
         t,
-        "\n  // After a fault the outputs have their safe values; a reset starts again.\n  (void){name}_scan(&input, &output, &state, now_ns);\n\n"
+        "\n  // After a fault the outputs have their safe values; a reset starts again.\n  (void){name}_scan_in_place(&state, {});\n\n",
+        clock.now
     );
     for p in &outs {
         let _ = writeln!(t, "  if ({} >= 0) {{ {} }}", p.constant, write(p));

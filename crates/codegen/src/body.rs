@@ -56,6 +56,9 @@ pub(crate) trait Places {
         None
     }
 
+    /// Looks at a time that stands in the chart.
+    fn time(&mut self, _nanoseconds: i64) {}
+
     /// Says where the code needs something of a library.
     fn needs(&mut self, needs: Needs);
 
@@ -344,7 +347,12 @@ impl Body<'_> {
             return operations::cast(value, have, n);
         }
         match e {
-            Term::Const(_, v) => literal(n, *v),
+            Term::Const(ty, v) => {
+                if *ty == Type::Time {
+                    self.places.time(*v as i64);
+                }
+                literal(n, *v)
+            }
             Term::Read(m) => match self.places.home(*m) {
                 Home::Local(name) => self.local(*m, name),
                 Home::Number(place, have) => operations::cast(place, have, n),

@@ -1,7 +1,7 @@
 //! From the engine's tables to the tree: what of the runtime a program needs,
 //! and the functions that only it has.
 
-use std::collections::{BTreeMap, HashMap};
+use std::collections::{BTreeMap, BTreeSet, HashMap};
 
 use g7_compile::Compiled;
 use g7_engine::{Addr, Code, NONE, Num, Receptivity, Rows, StepId, Tables};
@@ -10,6 +10,7 @@ use g7_model::{Problem, Span, Type, codes};
 
 use crate::body::{self, Code as Translated};
 use crate::names::{Names, of_transition};
+use crate::room::{self, Room};
 use crate::runtime::{self, Facts};
 use crate::tree::{Arm, Bin, Block, Expr, Function, Module, Numbers, Stmt, Struct, Ty};
 use crate::vars::{Home, Vars, num};
@@ -35,6 +36,10 @@ pub(crate) struct Gen<'a> {
     pub(crate) texts: HashMap<String, String>,
     pub(crate) m: Module,
     pub(crate) facts: Facts,
+    /// How much room the code may take.
+    pub(crate) room: Room,
+    /// Steps whose time the chart reads.
+    pub(crate) timed: BTreeSet<u32>,
     pub(crate) steps: Vec<String>,
     pub(crate) transitions: Vec<String>,
     pub(crate) problems: Vec<Problem>,
@@ -60,7 +65,7 @@ pub(crate) fn memory(field: &str) -> Expr {
 }
 
 impl<'a> Gen<'a> {
-    pub(crate) fn new(c: &'a Compiled, source: &'a str) -> Gen<'a> {
+    pub(crate) fn new(c: &'a Compiled, source: &'a str, room: Room) -> Gen<'a> {
         let t = c.program.tables();
         let mut names = Names::default();
         let vars = Vars::new(&c.symbols, &mut names);
@@ -74,6 +79,8 @@ impl<'a> Gen<'a> {
             texts: HashMap::new(),
             m: Module::default(),
             facts: Facts::default(),
+            room,
+            timed: BTreeSet::new(),
             steps: Vec::new(),
             transitions: Vec::new(),
             problems: Vec::new(),
@@ -82,7 +89,7 @@ impl<'a> Gen<'a> {
             real_text: None,
         };
         g.number();
-        g.facts = crate::facts::of(t);
+        g.facts = crate::facts::of(t, room);
         g
     }
 
@@ -122,6 +129,16 @@ impl<'a> Gen<'a> {
             rows: faults.collect(),
         };
         self.m.numbers = vec![faults, steps, rows];
+    }
+
+    /// Only the steps whose time is read have one.
+    fn few_times(&mut self) {
+        let none = self.timed.len() as u32;
+        let place = |step: u32| self.timed.iter().position(|s| *s == step).map_or(none, |i| i as u32);
+        let places: Vec<u32> = (0..self.t.steps.len() as u32).map(place).collect();
+        self.numbers("TIME_OF", &format!("Where the time of each step stands; {none} for none."), &places);
+        self.facts.timed = self.timed.len();
+        self.facts.has_times = !self.timed.is_empty();
     }
 
     /// Reports a construct that the language of the code cannot say.
@@ -282,10 +299,16 @@ impl<'a> Gen<'a> {
         self.chart();
         self.acts();
         self.limits();
+        if self.room.small {
+            self.few_times();
+        }
         // The smaller structures first: the larger ones consist of them.
         let (structs, functions) = runtime::of(&self.facts);
         self.m.structs.extend(structs);
         self.m.functions.extend(functions);
+        if self.room.small {
+            room::pack(&mut self.m);
+        }
     }
 
     /// The structures that hold the variables.

@@ -3,7 +3,7 @@
 use std::collections::{HashMap, HashSet};
 use std::fmt::Write as _;
 
-use crate::c_words::{integer, own_name, real};
+use crate::c_words::{FLASH, in_flash, integer, own_name, real};
 use crate::tree::{Arm, Bin, Block, Const, Expr, Field, Function, Known, Module, Stmt, Struct, Ty, Un};
 
 /// The printer of a module, with the meaning of every name.
@@ -19,6 +19,8 @@ pub(crate) struct Printer<'a> {
     /// Functions that carry the prefix.
     offered: HashSet<&'a str>,
     functions: HashMap<&'a str, &'a Function>,
+    /// Tables that are read element by element alone: they need no place in RAM.
+    in_flash: HashSet<&'a str>,
     /// Types of the names in the function at hand.
     scope: HashMap<String, Ty>,
     out: String,
@@ -54,6 +56,7 @@ impl<'a> Printer<'a> {
             numbered: module.numbers.iter().flat_map(|n| n.rows.iter().map(|r| r.0.as_str())).collect(),
             offered: module.functions.iter().filter(|f| f.public).map(|f| f.name.as_str()).collect(),
             functions: module.functions.iter().map(|f| (f.name.as_str(), f)).collect(),
+            in_flash: in_flash(module),
             scope: HashMap::new(),
             out: String::new(),
         }
@@ -81,6 +84,9 @@ impl<'a> Printer<'a> {
         for numbers in self.module.numbers.iter().filter(|n| !n.public && !n.rows.is_empty()) {
             self.note(&numbers.note, "");
             self.numbers(&numbers.rows, "");
+        }
+        if !self.in_flash.is_empty() {
+            self.out.push_str(FLASH);
         }
         for c in &self.module.consts {
             self.constant(c);
@@ -185,6 +191,7 @@ impl<'a> Printer<'a> {
     fn constant(&mut self, c: &Const) {
         self.note(&c.note, "");
         let declared = self.declared(&c.ty, &c.name);
+        let flash = if self.in_flash.contains(c.name.as_str()) { "G7_FLASH " } else { "" };
         match &c.value {
             Known::One(e) => {
                 let value = self.literal(e, &c.ty);
@@ -193,7 +200,7 @@ impl<'a> Printer<'a> {
             Known::Many(all) => {
                 let of = if let Ty::Array(of, _) = &c.ty { (**of).clone() } else { c.ty.clone() };
                 let values: Vec<String> = all.iter().map(|e| self.literal(e, &of)).collect();
-                let _ = writeln!(self.out, "static const {declared} = {{");
+                let _ = writeln!(self.out, "static const {flash}{declared} = {{");
                 self.columns(if values.is_empty() { &["0"] } else { &[] });
                 self.columns(&values.iter().map(String::as_str).collect::<Vec<_>>());
                 self.out.push_str("};\n\n");
@@ -201,7 +208,7 @@ impl<'a> Printer<'a> {
             Known::Rows(rows) => {
                 let of = if let Ty::Array(of, _) = &c.ty { (**of).clone() } else { c.ty.clone() };
                 let last = rows.iter().rposition(|r| !r.0.is_empty()).unwrap_or(0);
-                let _ = writeln!(self.out, "static const {declared} = {{");
+                let _ = writeln!(self.out, "static const {flash}{declared} = {{");
                 for (i, (all, note)) in rows.iter().enumerate().filter(|(_, r)| !r.0.is_empty()) {
                     let values: Vec<String> = all.iter().map(|e| self.literal(e, &of)).collect();
                     let comma = if i == last { "" } else { "," };

@@ -1,4 +1,9 @@
-//! Numbers and names as C writes them; used by [`crate::c`] alone.
+//! Numbers and names as C writes them; used by [`crate::c`] alone; and where tables
+//! stand.
+
+use std::collections::{HashMap, HashSet};
+
+use crate::tree::{Expr, Module, Ty};
 
 /// The name of a function of the file's own; one that C's library has is another (rule 21.2).
 pub(crate) fn own_name(name: &str) -> String {
@@ -38,4 +43,37 @@ pub(crate) fn real(v: f64, text: &str, suffix: &str) -> String {
     } else {
         format!("{text}{suffix}")
     }
+}
+
+/// Where tables stand: an AVR would copy them into its RAM else.
+pub(crate) const FLASH: &str = "\
+/* Tables stay in the flash of an AVR; elsewhere constants are there anyway. */
+#ifndef G7_FLASH
+#if defined(__AVR__) && defined(__FLASH)
+#define G7_FLASH __flash
+#else
+#define G7_FLASH
+#endif
+#endif
+
+";
+
+/// Tables of which no address is passed on.
+pub(crate) fn in_flash(module: &Module) -> HashSet<&str> {
+    let tables = module.consts.iter().filter(|c| matches!(c.ty, Ty::Array(..)));
+    let mut found: HashSet<&str> = tables.map(|c| c.name.as_str()).collect();
+    for s in module.functions.iter().flat_map(|f| &f.body) {
+        let (mut names, mut elements) = (HashMap::new(), HashMap::new());
+        s.walk(&mut |e| match e {
+            Expr::Name(n) => *names.entry(n.clone()).or_insert(0) += 1,
+            Expr::Index(of, _) => {
+                if let Expr::Name(n) = &**of {
+                    *elements.entry(n.clone()).or_insert(0) += 1;
+                }
+            }
+            _ => {}
+        });
+        found.retain(|n| names.get(*n).copied().unwrap_or(0) == elements.get(*n).copied().unwrap_or(0));
+    }
+    found
 }

@@ -253,7 +253,7 @@ impl Gen<'_> {
         }
     }
 
-    fn numbers(&mut self, name: &str, note: &str, values: &[u32]) {
+    pub(crate) fn numbers(&mut self, name: &str, note: &str, values: &[u32]) {
         let most = values.iter().copied().max().unwrap_or(0);
         let bits = if most < 256 {
             8

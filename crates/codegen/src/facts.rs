@@ -2,6 +2,7 @@
 
 use g7_engine::{NONE, Op, Service, Tables};
 
+use crate::room::Room;
 use crate::runtime::Facts;
 
 /// Where the inputs of each control block are counted, and how many there are.
@@ -16,7 +17,7 @@ pub(crate) fn counts(t: &Tables) -> (Vec<usize>, usize) {
     (places, at)
 }
 
-pub(crate) fn of(t: &Tables) -> Facts {
+pub(crate) fn of(t: &Tables, room: Room) -> Facts {
     let r = t.rules;
     let lists = t.extras.iter().any(|e| !e.on.is_empty() || !e.off.is_empty());
     let clearing = t.transitions.iter().any(|t| t.on_clearing != NONE);
@@ -64,7 +65,9 @@ pub(crate) fn of(t: &Tables) -> Facts {
         t.contributions.len(),
         t.charts.len(),
     ];
-    let most = most.into_iter().max().unwrap_or(0);
+    let rows = most.into_iter().max().unwrap_or(0);
+    let is_line = !hierarchy && t.orders.is_empty() && !asks(t) && t.transitions.iter().all(single);
+    let most = if room.small && is_line { of_a_line(t) } else { (transitions, steps, steps) };
     Facts {
         stable: r.stable,
         multi: r.multi_token,
@@ -73,6 +76,10 @@ pub(crate) fn of(t: &Tables) -> Facts {
         late: r.late_actions,
         keep: r.keep_step_time,
         scan_clock: r.scan_clock,
+        narrow: room.is_narrow(),
+        has_times: true,
+        few_times: room.small,
+        times_apart: true,
         final_scan: r.final_scan,
         periodic_first: r.periodic_first,
         has_orders: !t.orders.is_empty(),
@@ -119,17 +126,23 @@ pub(crate) fn of(t: &Tables) -> Facts {
         guards_fail: true,
         has_outs: !t.outs.is_empty(),
 
-        row_bits: if most < 250 {
+        row_bits: if rows < 250 {
             8
-        } else if most < 65_000 {
+        } else if rows < 65_000 {
             16
         } else {
             32
         },
+        tick_bits: if room.is_narrow() { 32 } else { 64 },
         steps,
+        timed: steps,
+        tick: room.clock.nanoseconds() as usize,
         words: words(steps),
         top: words(words(steps)),
         transitions,
+        fired: most.0,
+        marked_on: most.1,
+        marked_off: most.2,
         sources: t.sources.len(),
         groups: t.groups.len(),
         group_words: words(t.groups.len()),
@@ -158,6 +171,19 @@ pub(crate) fn of(t: &Tables) -> Facts {
         most_active: t.limits.map_or(0, |l| l.1.active as usize),
         most_enabled: t.limits.map_or(0, |l| l.1.enabled as usize),
     }
+}
+
+/// Most transitions that clear in a pass, steps that are marked on, and off, in a chart whose
+/// transitions have one step on each side: it never has more active steps than initial ones,
+/// where no step is left by several transitions at once.
+fn of_a_line(t: &Tables) -> (usize, usize, usize) {
+    let (steps, transitions) = (t.steps.len(), t.transitions.len());
+    let branches = t.steps.iter().map(|s| (s.out.end - s.out.start) as usize).max().unwrap_or(0);
+    if t.rules.multi_token && branches > 1 {
+        return (transitions, steps, steps);
+    }
+    let active = t.initial.len();
+    (transitions.min(active * branches), active, active)
 }
 
 /// Some service that sets, resets, initialises or clears is called.

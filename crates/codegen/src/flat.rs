@@ -59,6 +59,7 @@ pub(crate) fn flat(g: &mut Gen<'_>) {
         f.phase(name, note, pieces);
     }
     f.structures();
+    f.g.facts.times_apart = false;
     let (structs, functions) = runtime::flat(&f.g.facts);
     f.g.m.structs.extend(structs);
     f.g.m.functions.extend(functions);

@@ -33,21 +33,25 @@ mod places;
 pub mod plc;
 mod prune;
 mod roll;
+mod room;
 mod runtime;
 mod rust;
+mod size;
 mod spare;
 mod tree;
 mod turns;
 mod vars;
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 use g7_compile::Compiled;
 use g7_engine::{Addr, StepId};
 use g7_model::{Problem, Severity, Span, codes};
 
 use build::Gen;
+pub use room::{Clock, Room};
 use runtime::Helpers;
+pub use size::{BOARDS, Board, Sizes};
 use tree::Module;
 
 /// A language that is printed.
@@ -80,6 +84,8 @@ pub struct Options<'a> {
     pub language: Language,
     /// How the evolution is written down.
     pub style: Style,
+    /// How much room it takes; for the structured style.
+    pub room: Room,
     /// The start of file names and public names.
     pub name: &'a str,
     /// The text of the chart, for comments; may be empty.
@@ -104,6 +110,8 @@ pub struct Printed {
     pub problems: Vec<Problem>,
     /// Where the variables and steps went.
     pub places: Places,
+    /// How much memory the C code takes beside its instructions.
+    pub sizes: Sizes,
 }
 
 /// Where what the chart names is in the code.
@@ -112,6 +120,7 @@ pub struct Places {
     variables: HashMap<u32, String>,
     texts: HashMap<u32, u16>,
     steps: Vec<String>,
+    untimed: HashSet<u32>,
 }
 
 impl Places {
@@ -123,6 +132,11 @@ impl Places {
     /// The number of a step, without what public names begin with.
     pub fn step(&self, step: StepId) -> &str {
         self.steps.get(step.0 as usize).map_or("", String::as_str)
+    }
+
+    /// True if the code keeps the time of a step.
+    pub fn has_time(&self, step: StepId) -> bool {
+        !self.untimed.contains(&step.0)
     }
 
     /// Bytes that a text can hold, where there is one.
@@ -137,7 +151,12 @@ impl Places {
 ///
 /// The constructs that the language cannot say, with their places in the chart.
 pub fn print(compiled: &Compiled, options: &Options<'_>) -> Result<Printed, Vec<Problem>> {
-    let mut g = Gen::new(compiled, options.source);
+    let mut g = Gen::new(compiled, options.source, options.room);
+    if options.style == Style::Flat && options.room != Room::default() {
+        let text = "code for little memory is in the structured style alone";
+        return Err(vec![Problem::new(&codes::NOT_CARRIED, Span::default(), text)]);
+    }
+    g.judge_initial_times();
     match options.style {
         Style::Structured => g.structured(),
         Style::Flat => flat::flat(&mut g),
@@ -177,26 +196,34 @@ pub fn print(compiled: &Compiled, options: &Options<'_>) -> Result<Printed, Vec<
     };
     let name = names::letters(options.name).to_lowercase();
     let files = match options.language {
-        Language::C => c_files(&module, &helpers, &name),
+        Language::C => c_files(&module, &helpers, &name, options.room),
         Language::Arduino => {
-            let mut files = c_files(&module, &helpers, &name);
-            files.push(File { name: format!("{name}.ino"), text: arduino::sketch(&g, &name) });
+            let mut files = c_files(&module, &helpers, &name, options.room);
+            files.push(File { name: format!("{name}.ino"), text: arduino::sketch(&g, &name, options.room) });
             files
         }
         Language::Rust => {
             let head = format!(
-                "//! The chart `{name}`, printed by G7. Call [`init`] once, then [`scan`] in each cycle.\n#![forbid(unsafe_code)]\n\
+                "//! The chart `{name}`, printed by G7. Call [`init`] once, then [`scan`] in each cycle.\n{}#![forbid(unsafe_code)]\n\
                  // Writes of a chart that nothing reads stand as they are, and so do brackets.\n\
-                 #![allow(dead_code, unused_assignments, unused_mut, unused_parens)]\n\n"
+                 #![allow(dead_code, unused_assignments, unused_mut, unused_parens)]\n\n",
+                if options.room.is_narrow() {
+                    format!("//! {}\n", options.room.note())
+                } else {
+                    String::new()
+                }
             );
             vec![File { name: format!("{name}.rs"), text: head + &rust::print(&module, &helpers.text) }]
         }
     };
-    Ok(Printed { files, problems, places: places(&g) })
+    Ok(Printed { files, problems, places: places(&g), sizes: size::sizes(&module) })
 }
 
 fn places(g: &Gen<'_>) -> Places {
     let mut places = Places { steps: g.steps.clone(), ..Places::default() };
+    if g.room.small {
+        places.untimed = (0..g.t.steps.len() as u32).filter(|s| !g.timed.contains(s)).collect();
+    }
     for v in &g.c.symbols.variables {
         let Some(slot) = g.vars.slot(v.addr.0) else { continue };
         let home = match slot.home {
@@ -224,11 +251,14 @@ fn places(g: &Gen<'_>) -> Places {
     places
 }
 
-fn c_files(module: &Module, helpers: &Helpers, name: &str) -> Vec<File> {
+fn c_files(module: &Module, helpers: &Helpers, name: &str, room: Room) -> Vec<File> {
     let guard = format!("{}_H", name.to_uppercase());
     let mut header = format!(
         "/* The chart {name}, printed by G7. Call {name}_init once, then {name}_scan in each cycle. */\n"
     );
+    if room.is_narrow() {
+        header += &format!("/* {} */\n", room.note());
+    }
     header += &format!("#ifndef {guard}\n#define {guard}\n\n#include <stdbool.h>\n#include <stdint.h>\n\n");
     header += "#ifdef __cplusplus\nextern \"C\" {\n#endif\n\n";
     header += &c::Printer::new(module, name).header();

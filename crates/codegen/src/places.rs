@@ -86,6 +86,9 @@ impl Places for Gen<'_> {
             |field: &str, w: WatchId| Home::Number(memory(field).at(Expr::size(w.0 as usize)), Num::Bool);
         let scans = self.facts.scan_clock;
         let time = |name: &str, arg: Expr| Home::Number(call(name, arg), Num::I64);
+        if let What::StepTime(step) | What::StepScans(step) = self.what(id) {
+            self.timed.insert(step.0);
+        }
         match self.what(id) {
             What::Variable(_) | What::BlockClock(_) => match self.slot_of(id) {
                 Some((slot, part)) => self.part(&slot, part, slot.place()),
@@ -198,6 +201,10 @@ impl Places for Gen<'_> {
             value: Known::Many(bytes),
         });
         Expr::name(name)
+    }
+
+    fn time(&mut self, nanoseconds: i64) {
+        self.judge_time(nanoseconds);
     }
 
     fn needs(&mut self, needs: Needs) {

@@ -22,6 +22,8 @@ pub(crate) enum Type {
     Size,
     /// A number of a step, a transition, an action.
     Row,
+    /// A time as the clock gives it.
+    Tick,
     Named(&'static str),
     Array(&'static Type, fn(&Facts) -> usize),
     Ref(bool, &'static Type),
@@ -157,6 +159,8 @@ impl Type {
             Type::Int { signed, bits } => Ty::Int { signed, bits },
             Type::Size => Ty::Size,
             Type::Row => Ty::Int { signed: false, bits: facts.row_bits },
+            Type::Tick if facts.tick_bits == 32 => Ty::Int { signed: false, bits: 32 },
+            Type::Tick => Ty::I64,
             Type::Named(name) => Ty::Named(name.to_owned()),
             Type::Array(of, length) => Ty::Array(Box::new(of.with(facts)), length(facts)),
             Type::Ref(mutable, of) => Ty::Ref(mutable, Box::new(of.with(facts))),

@@ -32,7 +32,7 @@ fn printed_as(text: &str, language: Language, style: Style) -> Result<Printed, V
     assert!(problems.is_empty(), "{problems:?}");
     let (compiled, problems) = compile(&doc);
     let compiled = compiled.unwrap_or_else(|| panic!("{problems:?}"));
-    print(&compiled, &Options { language, style, name: "tank", source: text })
+    print(&compiled, &Options { language, style, room: Default::default(), name: "tank", source: text })
 }
 
 fn file(p: &Printed, name: &str) -> String {

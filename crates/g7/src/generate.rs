@@ -4,7 +4,7 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use clap::{Args, Subcommand};
-use g7_codegen::{File, Language, Options, Style, plc};
+use g7_codegen::{BOARDS, Board, Clock, File, Language, Options, Room, Sizes, Style, plc};
 use g7_model::{Problem, ProfileName, Severity};
 
 use crate::failure::{Failure, Verdict};
@@ -18,6 +18,8 @@ Examples:
   g7 gen c tank -o out            out/tank.h and out/tank.c
   g7 gen c tank                   to the standard output, one file behind the other
   g7 gen c tank --style flat      Boolean equations with memories
+  g7 gen c tank --small --time-unit ms
+                                  for little memory; the clock in milliseconds
   g7 gen arduino tank -o tank     a sketch folder: tank.ino with the C code
   g7 gen rust tank -o src         src/tank.rs, a module without the standard library
   g7 gen st tank                  Structured Text: a function block of equations
@@ -82,8 +84,35 @@ struct Code {
     /// How the evolution is written; its behaviour is the same.
     #[arg(long, value_enum, default_value_t = CodeStyle::Structured)]
     style: CodeStyle,
+    /// For little memory: truth values as bits, and a time for those steps alone whose time the chart
+    /// reads. A sketch is always like this.
+    #[arg(long)]
+    small: bool,
+    /// The unit of the clock: `ns` in 64 bits, `us` and `ms` in 32 bits [default: ns; of a sketch ms].
+    #[arg(long, value_enum, value_name = "UNIT")]
+    time_unit: Option<TimeUnit>,
+    /// The board that the code is for; nothing is written where its RAM is too small.
+    #[arg(long, value_parser = board)]
+    board: Option<Board>,
     #[command(flatten)]
     what: What,
+}
+
+/// A board by its name.
+fn board(name: &str) -> Result<Board, String> {
+    let names = BOARDS.map(|b| b.name).join(", ");
+    BOARDS.into_iter().find(|b| b.name == name).ok_or_else(|| format!("the boards are {names}"))
+}
+
+/// Units of the clock.
+#[derive(Clone, Copy, Debug, clap::ValueEnum)]
+enum TimeUnit {
+    /// Nanoseconds in 64 bits.
+    Ns,
+    /// Microseconds in 32 bits; no time is longer than 35 minutes.
+    Us,
+    /// Milliseconds in 32 bits; no time is longer than 24 days.
+    Ms,
 }
 
 /// Styles of C and Rust.
@@ -101,7 +130,19 @@ impl Code {
             CodeStyle::Structured => Style::Structured,
             CodeStyle::Flat => Style::Flat,
         };
-        controller(Tongue::Code(language, style), &self.what)
+        let usual = Room::usual(language, style);
+        let clock = match self.time_unit {
+            None => usual.clock,
+            Some(TimeUnit::Ns) => Clock::Nanoseconds,
+            Some(TimeUnit::Us) => Clock::Microseconds,
+            Some(TimeUnit::Ms) => Clock::Milliseconds,
+        };
+        let room = Room { small: self.small || usual.small, clock };
+        if matches!(style, Style::Flat) && room != Room::default() {
+            let why = "--small and --time-unit are for the structured style";
+            return Err(Failure::Usage(why.to_owned()));
+        }
+        controller(Tongue::Code(language, style, room, self.board), &self.what)
     }
 }
 
@@ -175,7 +216,7 @@ pub(crate) fn generate(args: &Gen) -> Result<Verdict, Failure> {
 /// The language of the output. PLC code has a form and a file extension too; `ascii` keeps its comments in ASCII.
 #[derive(Clone, Copy)]
 enum Tongue {
-    Code(Language, Style),
+    Code(Language, Style, Room, Option<Board>),
     Plc { form: plc::Form, ending: &'static str, ascii: bool },
 }
 
@@ -185,11 +226,13 @@ impl Tongue {
         compiled: &g7_compile::Compiled,
         name: &str,
         source: &str,
-    ) -> Result<(Vec<File>, Vec<Problem>), Vec<Problem>> {
+    ) -> Result<Written, Vec<Problem>> {
         match self {
-            Tongue::Code(language, style) => {
-                let options = Options { language, style, name, source };
-                g7_codegen::print(compiled, &options).map(|p| (p.files, p.problems))
+            Tongue::Code(language, style, room, board) => {
+                let options = Options { language, style, room, name, source };
+                let p = g7_codegen::print(compiled, &options)?;
+                let sizes = (language != Language::Rust).then_some((p.sizes, room, board));
+                Ok(Written { files: p.files, problems: p.problems, sizes })
             }
             Tongue::Plc { form, ending, ascii } => {
                 let printed = plc::print(compiled, form, name, source)?;
@@ -197,10 +240,52 @@ impl Tongue {
                     name: format!("{name}.{ending}"),
                     text: if ascii { plc::ascii(&printed.text) } else { printed.text },
                 };
-                Ok((vec![file], printed.problems))
+                Ok(Written { files: vec![file], problems: printed.problems, sizes: None })
             }
         }
     }
+}
+
+/// What was printed, and the memory that it takes.
+struct Written {
+    files: Vec<File>,
+    problems: Vec<Problem>,
+    sizes: Option<(Sizes, Room, Option<Board>)>,
+}
+
+/// Tells the memory that the code takes. False where a board has less.
+fn tell_sizes(sizes: Sizes, room: Room, board: Option<Board>) -> bool {
+    talk!(
+        "memory: {} bytes of RAM for the state (inputs, outputs and variables included) on an 8-bit AVR, {} on 32 \
+         bits; {} bytes of tables in flash. Not counted: instructions, the stack, the program around",
+        sizes.avr,
+        sizes.wide,
+        sizes.tables
+    );
+    let Some(board) = board else { return true };
+    let (state, left) = (board.state(sizes), board.ram.saturating_sub(board.reserve));
+    if board.holds(sizes) {
+        talk!(
+            "{}: {state} of {left} bytes, with {} left for the stack and the board",
+            board.name,
+            board.reserve
+        );
+        return true;
+    }
+    let way = if room == (Room { small: true, clock: Clock::Milliseconds }) {
+        "split the chart, or take a larger board"
+    } else {
+        "try --small --time-unit ms, or a larger board"
+    };
+    talk!(
+        "{}{}{:#} is too small: the state takes {state} bytes, and {left} of its {} are free beside the stack and the \
+         board; {way}",
+        style::BAD,
+        board.name,
+        style::BAD,
+        board.ram
+    );
+    false
 }
 
 fn controller(tongue: Tongue, what: &What) -> Result<Verdict, Failure> {
@@ -219,9 +304,14 @@ fn controller(tongue: Tongue, what: &What) -> Result<Verdict, Failure> {
     };
     let name = what.name.clone().unwrap_or_else(|| name_of(&path));
     match tongue.print(&compiled, &name, &source.text) {
-        Ok((files, problems)) => {
+        Ok(Written { files, problems, sizes }) => {
             if !problems.is_empty() {
                 found(&source, &problems);
+            }
+            if let Some((sizes, room, board)) = sizes
+                && !tell_sizes(sizes, room, board)
+            {
+                return Ok(Verdict::Found);
             }
             deliver(what, &files)?;
             Ok(Verdict::Fine)

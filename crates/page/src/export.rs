@@ -125,7 +125,13 @@ fn code(file: &File, name: &str, code: Code) -> Result<Out, String> {
     let printed = match code {
         Code::Native(language) => {
             let style = g7_codegen::Style::Structured;
-            let options = g7_codegen::Options { language, style, name, source: file.text() };
+            let options = g7_codegen::Options {
+                language,
+                style,
+                room: g7_codegen::Room::usual(language, style),
+                name,
+                source: file.text(),
+            };
             g7_codegen::print(&compiled, &options).map(|p| {
                 let steps = words(file, symbols, |step| p.places.step(step).to_owned());
                 (p.files.into_iter().map(|f| (f.name, f.text)).collect(), p.problems, steps)

@@ -21,6 +21,31 @@ static int64_t since(int64_t now, int64_t then)
     return (int64_t)((uint64_t)now - (uint64_t)then);
 }
 
+/* Ticks gone by; the clock may pass its end. */
+static uint32_t ticks_gone(uint32_t now, uint32_t then)
+{
+    return now - then;
+}
+
+/* Ticks from an event to now, as far as they tell. */
+static uint32_t ticks_since(uint32_t now, uint32_t then)
+{
+    const uint32_t gone = now - then;
+    return (gone > 0x80000000U) ? 0x80000000U : gone;
+}
+
+/* The event, or the latest that is as long ago as ticks can tell. */
+static uint32_t ticks_held(uint32_t now, uint32_t then)
+{
+    return now - ticks_since(now, then);
+}
+
+/* True if the clock came into another quarter of its range. */
+static bool has_turned(uint32_t now, uint32_t then)
+{
+    return (now >> 30) != (then >> 30);
+}
+
 static bool is_due_after(int64_t now, int64_t start, int64_t time)
 {
     return (start > (INT64_MAX - time)) ? (now == INT64_MAX) : (now >= (start + time));

@@ -9,6 +9,9 @@
 /// A number of a step, a transition, an action: the smallest integer that holds all.
 pub(crate) type Row = u8;
 
+/// A time as the clock gives it: nanoseconds in 64 bits; with [`NARROW`] ticks in 32 bits.
+pub(crate) type Tick = i64;
+
 // How the chart evolves.
 
 /// Passes go on until one changes nothing.
@@ -25,6 +28,14 @@ pub const LATE: bool = false;
 pub const KEEP: bool = false;
 /// Step times count scans.
 pub const SCAN_CLOCK: bool = false;
+/// Times are kept as ticks of 32 bits that begin again at 0.
+pub const NARROW: bool = false;
+/// Some step has a time.
+pub const HAS_TIMES: bool = true;
+/// Only some steps have a time.
+pub const FEW_TIMES: bool = false;
+/// Times of steps stand beside the memory, which a search for stability compares.
+pub const TIMES_APART: bool = true;
 /// A body runs once more in the scan after its last.
 pub const FINAL_SCAN: bool = false;
 /// Actions of each scan run before the control blocks, on the situation before the evolution.
@@ -117,12 +128,22 @@ pub const HAS_OUTS: bool = false;
 
 /// Steps.
 pub const STEPS: usize = 0;
+/// Steps that have a time.
+pub const TIMED: usize = 0;
+/// Nanoseconds of a tick.
+pub const TICK: u32 = 1;
 /// Words of a set of steps.
 pub const WORDS: usize = 1;
 /// Words of a set of those words.
 pub const TOP: usize = 1;
 /// Transitions.
 pub const TRANSITIONS: usize = 0;
+/// Most transitions that can clear in one pass, before priority.
+pub const FIRED: usize = 0;
+/// Most steps that are marked to come on at once.
+pub const MARKED_ON: usize = 0;
+/// Most steps that are marked to go off at once.
+pub const MARKED_OFF: usize = 0;
 /// Transitions without a step before them.
 pub const SOURCES: usize = 0;
 /// Groups of steps.
@@ -187,6 +208,7 @@ pub static TO: [u8; 0] = [];
 pub static TO_AT: [u8; 1] = [0];
 pub static OUT: [u8; 0] = [];
 pub static OUT_AT: [u8; 1] = [0];
+pub static TIME_OF: [u8; 0] = [];
 pub static STEP_CHART: [u8; 0] = [];
 pub static SOURCE: [u8; 0] = [];
 pub static SOURCE_CHART: [u8; 0] = [];

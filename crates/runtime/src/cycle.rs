@@ -35,6 +35,9 @@ pub(crate) fn evolve(s: &mut State) {
                 s.saved_outputs = s.outputs;
                 s.saved_v = s.v;
                 s.saved_m = s.m;
+                if TIMES_APART {
+                    s.renewed = false;
+                }
                 if made > 48 {
                     power += power;
                 }
@@ -46,20 +49,26 @@ pub(crate) fn evolve(s: &mut State) {
 }
 
 pub(crate) fn came_back(s: &State) -> bool {
+    if TIMES_APART && s.renewed {
+        return false;
+    }
     same_memory(&s.m, &s.saved_m)
         && same_variables(&s.v, &s.saved_v)
         && same_outputs(&s.outputs, &s.saved_outputs)
 }
 
 /// True if a scan can be made: no fault has stopped the chart, and time does not go back.
-pub(crate) fn can_scan(s: &State, now: i64) -> bool {
-    s.fault == 0 && (!s.started || now >= s.now)
+pub(crate) fn can_scan(s: &State, now: Tick) -> bool {
+    if NARROW {
+        return s.fault == 0;
+    }
+    s.fault == 0 && (!s.started || now as i64 >= s.now)
 }
 
-/// One scan. `now` never goes back; it is in nanoseconds. Tells a fault by its
+/// One scan. `now` never goes back; it is in the unit of the clock. Tells a fault by its
 /// number, FAULT_NONE where there is none; after a fault the outputs have their
 /// safe values, and no further scan is made before `init` or `restart`.
-pub fn scan(input: &Inputs, out: &mut Outputs, s: &mut State, now: i64) -> u8 {
+pub fn scan(input: &Inputs, out: &mut Outputs, s: &mut State, now: Tick) -> u8 {
     if can_scan(s, now) {
         s.inputs = *input;
     }
@@ -69,11 +78,11 @@ pub fn scan(input: &Inputs, out: &mut Outputs, s: &mut State, now: i64) -> u8 {
 }
 
 /// As `scan`, with the inputs and outputs that stand in the state: of many, none is copied.
-pub fn scan_in_place(s: &mut State, now: i64) -> u8 {
+pub fn scan_in_place(s: &mut State, now: Tick) -> u8 {
     if s.fault != 0 {
         return FAULT_STOPPED;
     }
-    if s.started && now < s.now {
+    if !NARROW && s.started && (now as i64) < s.now {
         s.fault = FAULT_INPUTS;
     } else {
         begin(s, now);

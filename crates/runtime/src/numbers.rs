@@ -18,6 +18,26 @@ pub fn since(now: i64, then: i64) -> i64 {
     now.wrapping_sub(then)
 }
 
+/// Ticks gone by; the clock may pass its end.
+pub fn ticks_gone(now: u32, then: u32) -> u32 {
+    now.wrapping_sub(then)
+}
+
+/// Ticks from an event to now, as far as they tell.
+pub fn ticks_since(now: u32, then: u32) -> u32 {
+    now.wrapping_sub(then).min(0x8000_0000)
+}
+
+/// The event, or the latest that is as long ago as ticks can tell.
+pub fn ticks_held(now: u32, then: u32) -> u32 {
+    now.wrapping_sub(ticks_since(now, then))
+}
+
+/// True if the clock came into another quarter of its range.
+pub fn has_turned(now: u32, then: u32) -> bool {
+    (now >> 30) != (then >> 30)
+}
+
 pub fn is_due_after(now: i64, start: i64, time: i64) -> bool {
     now >= start.saturating_add(time)
 }

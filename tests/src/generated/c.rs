@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use g7_codegen::{Language, Printed, Style};
+use g7_codegen::{Clock, Language, Printed, Style};
 use g7_compile::ir::VarClass;
 use g7_compile::symbols::Variable;
 use g7_engine::StepId;
@@ -121,7 +121,9 @@ fn player(subject: &Subject, printed: &Printed, name: &str) -> String {
          static {name}_outputs out;\n    uint8_t event;\n    memset(&in, 0, sizeof in);\n    \
          while (get(&event, 1) && event) {{\n    \
          if (event == 3) {{ {name}_init(&s); continue; }}\n    if (event == 2) {{ {name}_restart(&s); continue; }}\n    \
-         const int64_t now = (int64_t)word();"
+         const {} now = ({0})((int64_t)word() / {});",
+        if subject.room.clock == Clock::Nanoseconds { "int64_t" } else { "uint32_t" },
+        subject.room.clock.nanoseconds()
     );
     for v in visible(&subject.compiled).filter(|v| v.class == VarClass::Input) {
         let path = printed.places.variable(v.addr).unwrap_or("missing").replacen("inputs.", "in.", 1);

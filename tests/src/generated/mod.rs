@@ -14,7 +14,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use std::process::{Command, Stdio};
 
-use g7_codegen::{Language, Options, Printed, Style};
+use g7_codegen::{Language, Options, Printed, Room, Style};
 use g7_compile::ir::VarClass;
 use g7_compile::symbols::Variable;
 use g7_compile::{Compiled, compile_with};
@@ -43,6 +43,10 @@ pub struct Subject {
     pub expected: Vec<Seen>,
     /// Number of scans without a fault.
     pub sound: usize,
+    /// How much room its code may take.
+    pub room: Room,
+    /// The times of its scans, in nanoseconds.
+    times: Vec<i64>,
 }
 
 /// The result of one scan: the fault, then the words of all variables.
@@ -109,7 +113,16 @@ impl Subject {
             return Err(first.map_or("no program".into(), |p| format!("{} {}", p.code.id, p.what)));
         };
         let (title, text) = (title.to_owned(), text.to_owned());
-        Ok(Subject { title, compiled, text, input: Vec::new(), expected: Vec::new(), sound: 0 })
+        Ok(Subject {
+            title,
+            compiled,
+            text,
+            input: Vec::new(),
+            expected: Vec::new(),
+            sound: 0,
+            room: Room::default(),
+            times: Vec::new(),
+        })
     }
 
     fn fresh(&self) -> State {
@@ -162,6 +175,7 @@ impl Subject {
                 }
             }
             self.input.push(1);
+            self.times.push(now);
             self.input.extend(now.to_le_bytes());
             inputs.iter().for_each(|w| self.input.extend(w.to_le_bytes()));
             let program = &self.compiled.program;
@@ -207,13 +221,42 @@ impl Subject {
         self.play(&script)
     }
 
+    /// Makes it a subject for code that takes this much room: the clock turns in whole units and never back, and
+    /// steps whose time is not read have none. False where its times do not allow that.
+    pub fn fit(&mut self, room: Room) -> bool {
+        let backward = self.times.windows(2).any(|w| matches!(w, [a, b] if b < a));
+        let span = self.times.iter().max().zip(self.times.iter().min()).map_or(0, |(a, b)| a - b);
+        let long = backward || span > room.clock.longest();
+        !long && self.fit_whole(room)
+    }
+
+    /// The same however long it runs: times of steps end at the longest that the clock tells.
+    pub fn fit_whole(&mut self, room: Room) -> bool {
+        let unit = room.clock.nanoseconds();
+        if self.times.iter().any(|t| t % unit != 0) {
+            return false;
+        }
+        self.room = room;
+        let Ok(printed) = self.print(Language::C, Style::Structured, "c") else { return false };
+        let steps = self.compiled.symbols.steps();
+        for seen in self.expected.iter_mut().filter(|s| s.fault == 0) {
+            for step in 0..steps {
+                let longest = if printed.places.has_time(StepId(step)) { room.clock.longest() } else { 0 };
+                if let Some(word) = seen.words.get_mut(2 * step as usize + 1) {
+                    *word = (*word).min(longest as u64);
+                }
+            }
+        }
+        true
+    }
+
     /// Generates the code of the chart.
     ///
     /// # Errors
     ///
     /// The language cannot express the chart.
     pub fn print(&self, language: Language, style: Style, name: &str) -> Result<Printed, String> {
-        let options = Options { language, style, name, source: &self.text };
+        let options = Options { language, style, room: self.room, name, source: &self.text };
         g7_codegen::print(&self.compiled, &options)
             .map_err(|p| p.iter().map(|p| p.what.clone()).collect::<Vec<_>>().join("; "))
     }

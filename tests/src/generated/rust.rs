@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use g7_codegen::{Language, Printed, Style};
+use g7_codegen::{Clock, Language, Printed, Style};
 use g7_compile::ir::VarClass;
 use g7_compile::symbols::Variable;
 use g7_engine::StepId;
@@ -80,7 +80,9 @@ fn player(subject: &Subject, printed: &Printed, name: &str) -> String {
         "fn play_{name}(w: &mut Wires) {{\n    use charts::{name}::*;\n    let mut s = Box::new(State::new());\n    \
          let mut input = Inputs::new();\n    let mut out = Outputs::new();\n    let _ = &mut input;\n    let mut in_place = false;\n    while let Some([event]) = w.get::<1>() {{\n        \
          if event == 0 {{ break; }}\n        if event == 3 {{ init(&mut s); continue; }}\n        \
-         if event == 2 {{ restart(&mut s); continue; }}\n        let now = w.word() as i64;"
+         if event == 2 {{ restart(&mut s); continue; }}\n        let now = (w.word() as i64 / {}) as {};",
+        subject.room.clock.nanoseconds(),
+        if subject.room.clock == Clock::Nanoseconds { "i64" } else { "u32" }
     );
     for v in visible(&subject.compiled).filter(|v| v.class == VarClass::Input) {
         let path = printed.places.variable(v.addr).unwrap_or("missing").replacen("inputs.", "input.", 1);

@@ -50,7 +50,7 @@ impl Chart {
             Err(e) => return wrong(file, e),
         };
         let mut chart = Chart::default();
-        let mut has_row = false;
+        let (mut has_row, mut has_tick) = (false, false);
         for item in items {
             match item {
                 Item::Const(c) => {
@@ -74,10 +74,11 @@ impl Chart {
                     chart.functions.insert(f.sig.ident.to_string());
                 }
                 Item::Type(t) if t.ident == "Row" => has_row = true,
+                Item::Type(t) if t.ident == "Tick" => has_tick = true,
                 _ => return wrong(file, "neither a fact nor a table nor a function"),
             }
         }
-        if has_row { Ok(chart) } else { wrong(file, "no type `Row`") }
+        if has_row && has_tick { Ok(chart) } else { wrong(file, "no type `Row` or `Tick`") }
     }
 
     /// The structure in which `codegen` gives every fact its value.
@@ -85,7 +86,7 @@ impl Chart {
         format!(
             "/// The parts of the runtime that a chart needs, and how much room.\n#[derive(Clone, Debug, Default)]\n\
              pub(crate) struct Facts {{\n    /// Bits of a number of a step, a transition, an action.\n    \
-             pub(crate) row_bits: u8,\n{}}}\n\n",
+             pub(crate) row_bits: u8,\n    /// Bits of a time as the clock gives it.\n    pub(crate) tick_bits: u8,\n{}}}\n\n",
             self.fields
         )
     }

@@ -124,6 +124,7 @@ fn scalar(word: &str) -> String {
         "bool" => "Type::Bool".into(),
         "usize" => "Type::Size".into(),
         "Row" => "Type::Row".into(),
+        "Tick" => "Type::Tick".into(),
         _ => {
             let (first, rest) = word.split_at_checked(1).unwrap_or(("", word));
             match (first, number(rest)) {

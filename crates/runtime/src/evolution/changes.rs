@@ -60,9 +60,8 @@ pub(crate) fn activate(s: &mut State, step: usize) {
     if HAS_COUNTS {
         s.moved += 1;
     }
-    s.m.stamp[step] = clock(s);
-    if SCAN_CLOCK {
-        s.m.age[step] = s.now;
+    if HAS_TIMES {
+        begin_time(s, step);
     }
     if HAS_ON {
         step_on(s, step);
@@ -95,17 +94,8 @@ pub(crate) fn deactivate(s: &mut State, step: usize) {
     if HAS_COUNTS {
         s.moved += 1;
     }
-    if KEEP {
-        s.m.stamp[step] = since(clock(s), s.m.stamp[step]);
-    } else {
-        s.m.stamp[step] = 0;
-    }
-    if SCAN_CLOCK {
-        if KEEP {
-            s.m.age[step] = since(s.now, s.m.age[step]);
-        } else {
-            s.m.age[step] = 0;
-        }
+    if HAS_TIMES {
+        end_time(s, step);
     }
     if HAS_ON {
         step_off(s, step);

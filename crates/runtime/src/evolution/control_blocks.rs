@@ -85,13 +85,13 @@ pub(crate) fn look_early(s: &mut State) {
 /// True if a delay of a block has run off; it starts as its input comes.
 pub(crate) fn delay_done(s: &mut State, i: usize, now: bool, before: bool) -> bool {
     if now && !before {
-        s.m.block_start[i] = s.now;
+        s.m.block_start[i] = s.tick;
     }
     if !now {
         s.m.block_start[i] = 0;
         return false;
     }
-    since(s.now, s.m.block_start[i]) >= s.m.block_time[i]
+    in_nanoseconds(ticks_between(s.tick, s.m.block_start[i])) >= s.m.block_time[i]
 }
 
 /// ACTION_CONTROL (IEC 61131-3:2003, 2.6.4.5). Tells Q (1), whether a body runs (2),

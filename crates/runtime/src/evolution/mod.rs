@@ -9,6 +9,7 @@
 //! comment on a line of its own is printed. What callers of the printed code may use
 //! is `pub`, all else `pub(crate)`.
 #![allow(clippy::needless_range_loop, reason = "it is printed as C, which has no iterators")]
+#![allow(clippy::unnecessary_cast, reason = "a `Tick` of printed code may have 32 bits")]
 #![allow(clippy::implicit_saturating_sub, reason = "it is printed as C, which has no saturating_sub")]
 
 mod changes;
@@ -40,4 +41,4 @@ pub(crate) use watches::*;
 
 use super::chart::*;
 use crate::faults::*;
-use crate::numbers::{inv, is_due_after, low_bit, since};
+use crate::numbers::{has_turned, inv, is_due_after, low_bit, since, ticks_gone, ticks_held, ticks_since};

@@ -58,15 +58,35 @@ pub(crate) fn next_pass(s: &mut State) {
     pass(s);
 }
 
+/// The clock in ticks of 32 bits, which begins again at 0: time goes on by their difference.
+pub(crate) fn set_ticks(s: &mut State, now: Tick, fresh: bool) {
+    if !fresh {
+        s.dt = in_nanoseconds(ticks_gone(now as u32, s.tick as u32) as Tick);
+        s.now += in_nanoseconds(ticks_gone(now as u32, s.tick as u32) as Tick);
+    }
+    let before: u32 = s.tick as u32;
+    s.tick = now;
+    s.scans += 1;
+    // Twice in the range that a time can have.
+    if has_turned(now as u32, before) || (SCAN_CLOCK && has_turned(s.scans as u32, (s.scans - 1) as u32)) {
+        hold_ticks(s);
+    }
+}
+
 /// Inputs, time, edges, PRE, services.
-pub(crate) fn begin(s: &mut State, now: i64) {
+pub(crate) fn begin(s: &mut State, now: Tick) {
     let fresh: bool = !s.started;
     s.dt = 0;
-    if !fresh {
-        s.dt = since(now, s.now);
+    if NARROW {
+        set_ticks(s, now, fresh);
+    } else {
+        if !fresh {
+            s.dt = since(now as i64, s.now);
+        }
+        s.now = now as i64;
+        s.tick = now;
+        s.scans += 1;
     }
-    s.now = now;
-    s.scans += 1;
     s.work = 0;
     if HAS_PERIODS {
         find_due(s, fresh);

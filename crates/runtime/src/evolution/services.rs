@@ -55,19 +55,32 @@ pub(crate) fn carry_out(s: &mut State) {
     commit(s);
 }
 
+pub(crate) fn reset_time(s: &mut State, step: usize) {
+    let at: usize = time_of(step);
+    if FEW_TIMES && at >= TIMED {
+        return;
+    }
+    let mut stamp: Tick = 0;
+    if s.m.x[step] {
+        stamp = ticks(s);
+    }
+    if STABLE && s.stamp[at] != stamp {
+        s.renewed = true;
+    }
+    s.stamp[at] = stamp;
+    if SCAN_CLOCK {
+        s.age[at] = 0;
+        if s.m.x[step] {
+            s.age[at] = s.tick;
+        }
+    }
+}
+
 /// RESET_XIT: all step times are 0.
 pub(crate) fn reset_times(s: &mut State) {
-    for i in 0..STEPS {
-        let active: bool = s.m.x[i];
-        s.m.stamp[i] = 0;
-        if active {
-            s.m.stamp[i] = clock(s);
-        }
-        if SCAN_CLOCK {
-            s.m.age[i] = 0;
-            if active {
-                s.m.age[i] = s.now;
-            }
+    if HAS_TIMES {
+        for i in 0..STEPS {
+            reset_time(s, i);
         }
     }
     if HAS_GROUPS {

@@ -17,7 +17,7 @@ pub(crate) fn timer_runs(s: &mut State, i: usize, now: bool) -> bool {
         s.m.running[i] = s.m.timer[i] != now;
         s.m.start[i] = 0;
         if s.m.running[i] {
-            s.m.start[i] = s.now;
+            s.m.start[i] = s.tick;
         }
     }
     s.m.running[i]
@@ -28,11 +28,19 @@ pub(crate) fn timer_goes(s: &mut State, i: usize, time: i64) {
     if least < 0 {
         least = 0;
     }
-    if is_due_after(s.now, s.m.start[i], least) {
+    if is_over(s, i, least) {
         s.m.running[i] = false;
         s.m.start[i] = 0;
         s.m.timer[i] = s.m.value[i];
     }
+}
+
+/// True if a timer has run for so long.
+pub(crate) fn is_over(s: &State, i: usize, time: i64) -> bool {
+    if NARROW {
+        return in_nanoseconds(ticks_between(s.tick, s.m.start[i])) >= time;
+    }
+    is_due_after(s.now, s.m.start[i] as i64, time)
 }
 
 /// Which periods are due; instants missed are skipped, not queued.

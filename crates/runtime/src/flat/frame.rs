@@ -16,6 +16,7 @@ pub struct State {
     pub now: i64,
     pub dt: i64,
     pub started: bool,
+    pub renewed: bool,
     pub fault: u8,
     /// the pass changed something
     pub changed: bool,
@@ -38,12 +39,12 @@ pub fn step_time(s: &State, step: usize) -> i64 {
 }
 
 /// Time, periods, the first scan.
-pub(crate) fn begin(s: &mut State, now: i64) {
+pub(crate) fn begin(s: &mut State, now: Tick) {
     s.dt = 0;
     if s.started {
-        s.dt = since(now, s.now);
+        s.dt = since(now as i64, s.now);
     }
-    s.now = now;
+    s.now = now as i64;
     sections_before(s);
 }
 

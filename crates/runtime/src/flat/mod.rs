@@ -3,6 +3,8 @@
 //!
 //! `evolution` says which forms of Rust may stand here.
 
+#![allow(clippy::unnecessary_cast, reason = "a `Tick` of printed code may have 32 bits")]
+
 #[path = "../cycle.rs"]
 mod cycle;
 mod frame;

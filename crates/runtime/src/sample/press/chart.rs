@@ -55,7 +55,7 @@ use super::evolution::*;
 use crate::arithmetic::add;
 use crate::function_blocks::{Ton, call_ton};
 
-pub(crate) use crate::chart::Row;
+pub(crate) use crate::chart::{Row, Tick};
 
 /// Safety.1
 pub const STEP_1: usize = 0;
@@ -104,7 +104,11 @@ pub const HAS_ON: bool = true;
 pub const HAS_OUTS: bool = true;
 
 pub const STEPS: usize = 9;
+pub const TIMED: usize = 9;
 pub const TRANSITIONS: usize = 8;
+pub const FIRED: usize = 8;
+pub const MARKED_ON: usize = 9;
+pub const MARKED_OFF: usize = 9;
 pub const GROUPS: usize = 3;
 pub const CHARTS: usize = 3;
 pub const WATCHES: usize = 2;

@@ -8,7 +8,7 @@ pub use crate::chart::*;
 
 use super::evolution::{State, mark_on};
 
-pub(crate) use crate::chart::Row;
+pub(crate) use crate::chart::{Row, Tick};
 
 pub const IDLE: usize = 0;
 pub const FILL: usize = 1;
@@ -20,7 +20,11 @@ pub const ONE_WORD: bool = true;
 pub const HAS_OUTS: bool = true;
 pub const HAS_FOLLOWERS: bool = true;
 pub const STEPS: usize = 2;
+pub const TIMED: usize = 2;
 pub const TRANSITIONS: usize = 2;
+pub const FIRED: usize = 2;
+pub const MARKED_ON: usize = 2;
+pub const MARKED_OFF: usize = 2;
 pub const ENTERED: usize = 5;
 pub const BOUND: u32 = 1000;
 

@@ -30,7 +30,7 @@ pub use crate::chart::*;
 use super::evolution::*;
 use crate::arithmetic::add;
 
-pub(crate) use crate::chart::Row;
+pub(crate) use crate::chart::{Row, Tick};
 
 /// Line.1
 pub const STEP_1: usize = 0;
@@ -55,7 +55,11 @@ pub const HAS_FOLLOWERS: bool = true;
 pub const HAS_OUTS: bool = true;
 
 pub const STEPS: usize = 4;
+pub const TIMED: usize = 4;
 pub const TRANSITIONS: usize = 5;
+pub const FIRED: usize = 5;
+pub const MARKED_ON: usize = 4;
+pub const MARKED_OFF: usize = 4;
 pub const ACTIONS: usize = 2;
 pub const RUNS: usize = 2;
 pub const ENTERED: usize = 9;
