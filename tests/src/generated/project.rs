@@ -27,7 +27,7 @@ pub struct Scan {
     pub inputs: BTreeMap<String, u64>,
 }
 
-/// What is seen after a scan: the words of steps (`S1.X`) and variables, by their names in capital letters.
+/// The state after a scan: the words of steps (`S1.X`) and variables, by their names in capital letters.
 pub type Sight = BTreeMap<String, u64>;
 
 /// Random inputs for a chart. `cycle` is the time of a scan; if `even`, all scans are one cycle apart.
@@ -72,7 +72,7 @@ fn key(name: &str) -> String {
     name.to_uppercase()
 }
 
-/// What the engine shows, scan by scan, until a fault.
+/// The course of the engine, scan by scan, until a fault.
 pub fn of_engine(compiled: &Compiled, scans: &[Scan]) -> Vec<Sight> {
     let program = &compiled.program;
     let table = program.tables().inputs;
@@ -233,24 +233,24 @@ impl Program {
         text += "static void set(uint64_t i, uint64_t w)\n{\n  switch (i) {\n";
         for (i, p) in self.places.iter().enumerate() {
             let c = &p.c;
-            let line = match p.ty.as_str() {
-                "REAL" | "LREAL" => format!("memcpy(&{c}, &w, sizeof {c});"),
-                "TIME" => format!("{c} = to_time(w);"),
-                "STRING" => String::new(),
-                _ => format!("{c} = w;"),
+            let line = match Type::named(&p.ty) {
+                Some(Type::Real | Type::Lreal) => format!("memcpy(&{c}, &w, sizeof {c});"),
+                Some(Type::Time) => format!("{c} = to_time(w);"),
+                Some(Type::String(_)) | None => String::new(),
+                Some(_) => format!("{c} = w;"),
             };
             let _ = writeln!(text, "    case {i}: {line} break;");
         }
         text += "    default: break;\n  }\n}\nstatic void show(void)\n{\n  uint64_t w;\n";
         for p in &self.places {
             let c = &p.c;
-            let line = match p.ty.as_str() {
-                "REAL" | "LREAL" => format!("w = 0; memcpy(&w, &{c}, sizeof {c}); put(w);"),
-                "TIME" => format!("put(of_time({c}));"),
-                "STRING" => "put(0);".to_owned(),
-                "BOOL" => format!("put({c} ? 1 : 0);"),
-                "USINT" | "UINT" | "UDINT" | "ULINT" => format!("put((uint64_t){c});"),
-                _ => format!("put((uint64_t)(int64_t){c});"),
+            let line = match Type::named(&p.ty) {
+                Some(Type::Real | Type::Lreal) => format!("w = 0; memcpy(&w, &{c}, sizeof {c}); put(w);"),
+                Some(Type::Time) => format!("put(of_time({c}));"),
+                Some(Type::String(_)) | None => "put(0);".to_owned(),
+                Some(Type::Bool) => format!("put({c} ? 1 : 0);"),
+                Some(Type::Usint | Type::Uint | Type::Udint | Type::Ulint) => format!("put((uint64_t){c});"),
+                Some(_) => format!("put((uint64_t)(int64_t){c});"),
             };
             let _ = writeln!(text, "  {line}");
         }
@@ -266,7 +266,7 @@ impl Program {
 ///
 /// # Errors
 ///
-/// What the compiler says, or the end of the program.
+/// The compiler refuses the code, or the program fails.
 pub fn of_matiec(folder: &Path, library: &Path, scans: &[Scan]) -> Result<Vec<Sight>, String> {
     let program = Program::read(folder)?;
     let fail = |e: std::io::Error| e.to_string();
