@@ -207,7 +207,7 @@ prove-table:
 	cargo run --profile soak --quiet --package g7-tests --example prove_table -- $(or $(LIMIT),5) examples tests/spec/litmus \
 		$(or $(G7_CORPUS),$(wildcard ../shared/corpus))
 
-## charts written as PLCopen XML, opened by Beremiz and OpenPLC and compiled by matiec, as a table (G7_BEREMIZ=…, G7_XML2ST=… name their folders, iec2c stands in the PATH, Python has lxml)
+## charts written as PLCopen XML, opened by Beremiz and OpenPLC, compiled by matiec and run beside the engine, as a table (G7_BEREMIZ=…, G7_XML2ST=… name their folders, iec2c stands in the PATH, Python has lxml)
 interop:
 	cargo run --quiet --package g7-tests --example interop -- examples tests/spec tests/interchange \
 		$(or $(G7_CORPUS),$(wildcard ../shared/corpus))

@@ -11,11 +11,13 @@ use std::path::{Path, PathBuf};
 
 use g7_codegen::plc;
 use g7_exchange::{Dialect, Format};
-use g7_model::{Document, FileId, Problem, Severity};
+use g7_model::{Document, FileId, Nanos, Problem, ProfileName, Severity};
 use g7_peers::Matiec;
+use g7_peers::mended::mended;
 use g7_peers::projects::{Projects, output, readers};
 use g7_tests::case;
 use g7_tests::generated::cases::Folder;
+use g7_tests::generated::project;
 
 fn main() {
     let arguments: Vec<PathBuf> = std::env::args_os().skip(1).map(PathBuf::from).collect();
@@ -26,18 +28,22 @@ fn main() {
         .collect();
     let folder = Folder::new("interop-table");
     std::fs::create_dir_all(&folder.0).unwrap_or_else(|e| panic!("{}: {e}", folder.0.display()));
-    let mut table = Table { charts: &charts, folder, matiec: g7_peers::matiec(), why: BTreeMap::new() };
+    let matiec = g7_peers::matiec();
+    if let Some(matiec) = &matiec {
+        mended(&matiec.lib.join("C"), &folder.0.join("C")).unwrap_or_else(|e| panic!("{e}"));
+    }
+    let mut table = Table { charts: &charts, folder, matiec, why: BTreeMap::new() };
     let plcopen: &Format = g7_exchange::named("plcopen").expect("a format of the table");
     println!("| program | accepted / tried |\n|---|---|");
     for reader in readers() {
         let dialect = if reader.name == "OpenPLC" { Dialect::OpenPlc } else { Dialect::Beremiz };
-        table.rows(&reader, reader.name, |document| {
+        table.rows(&reader, reader.name, true, |document| {
             let written = plcopen.write_in(document, dialect)?;
             let lost = written.problems.iter().find(|p| p.severity() == Severity::Error);
             Some(lost.map_or(Ok(written.text), |p| Err(format!("refused by G7: {}", p.what))))
         });
-        if reader.name == "Beremiz" {
-            table.rows(&reader, "Beremiz on Ladder", |document| {
+        if reader.name == "Beremiz" && std::env::var_os("G7_NO_LADDER").is_none() {
+            table.rows(&reader, "Beremiz on Ladder", false, |document| {
                 let ready = g7_compile::compile(document).0?;
                 let printed = plc::print(&ready, plc::Form::Ld, "chart", "");
                 let why = |lost: Vec<Problem>| lost.first().map_or("no reason".into(), |p| p.what.clone());
@@ -66,15 +72,17 @@ impl Table<'_> {
         self.why.entry(reason).or_insert_with(|| (0, file.to_path_buf())).0 += 1;
     }
 
-    /// Prints two rows: the projects that the reader opens, and of these the ones that matiec compiles. `written`
+    /// Prints the projects that the reader opens, of these the ones that matiec compiles, and, if they are run, of
+    /// these the ones that do the same as the engine. `written`
     /// gives the project of a chart or the reason why there is none, and nothing for a chart that is left out.
     fn rows(
         &mut self,
         reader: &Projects,
         name: &str,
+        run: bool,
         written: impl Fn(&Document) -> Option<Result<String, String>>,
     ) {
-        let (mut tried, mut opened, mut compiled) = (0, 0, 0);
+        let (mut tried, mut opened, mut compiled, mut alike) = (0, 0, 0, 0);
         for (file, document) in self.charts {
             let text = match written(document) {
                 Some(Ok(text)) => text,
@@ -88,7 +96,14 @@ impl Table<'_> {
             match reader.text(&self.file("plc.xml", &text)) {
                 Ok(program) => {
                     opened += 1;
-                    compiled += usize::from(self.compiles(&program, file));
+                    if self.compiles(&program, file) {
+                        compiled += 1;
+                        match run.then(|| self.runs(document, &text)) {
+                            Some(Ok(())) => alike += 1,
+                            Some(Err(reason)) => self.note(&format!("{name}, run: {reason}"), file),
+                            None => {}
+                        }
+                    }
                 }
                 Err(reason) => self.note(&format!("{name}: {reason}"), file),
             }
@@ -96,18 +111,51 @@ impl Table<'_> {
         println!("| {name} | {opened} / {tried} |");
         if self.matiec.is_some() {
             println!("| matiec on the text of {name} | {compiled} / {opened} |");
+            if run {
+                println!("| its program runs as the engine | {alike} / {compiled} |");
+            }
         }
     }
 
     /// True if matiec is there and takes a text.
     fn compiles(&mut self, program: &str, file: &Path) -> bool {
-        self.file("program.st", program);
         let Some(matiec) = &self.matiec else { return false };
-        let done = output(&matiec.translate(&self.folder.0, "program.st"));
+        let folder = self.folder.0.join("c");
+        let _ = std::fs::remove_dir_all(&folder);
+        std::fs::create_dir_all(&folder).unwrap_or_else(|e| panic!("{}: {e}", folder.display()));
+        self.file("c/program.st", program);
+        let done = output(&matiec.translate(&folder, "program.st"));
         if let Err(reason) = &done {
             self.note(&format!("matiec: {reason}"), file);
         }
         done.is_ok()
+    }
+
+    /// Runs the C program beside the engine: on the text that was written, and on the chart where it has the
+    /// rules of the text.
+    fn runs(&self, document: &Document, text: &str) -> Result<(), String> {
+        let plcopen = g7_exchange::named("plcopen").expect("a format of the table");
+        let (again, _) = plcopen.read(text.as_bytes(), FileId(0)).ok_or("it is not read back")?;
+        let again = g7_compile::compile(&again).0.ok_or("it is not read back")?;
+        let chart = g7_compile::compile(document).0.ok_or("the chart is not compiled")?;
+        let cycle = document.cycle().unwrap_or(Nanos::from_millis(10));
+        let even = document.charts().any(|c| c.every.is_some_and(|e| e != cycle));
+        let scans = project::scans(&chart, 7, 300, cycle.count(), even);
+        let want = project::of_engine(&again, &scans);
+        let got = project::of_matiec(&self.folder.0.join("c"), &self.folder.0.join("C"), &scans)?;
+        let (names, differ) = project::difference(&want, &got);
+        if let Some(differ) = differ {
+            return Err(format!("as the text: {differ}"));
+        }
+        if names == 0 {
+            return Err("no name to compare".into());
+        }
+        if document.profile().is_some_and(|p| p.name == ProfileName::Iec61131) {
+            let want = project::of_engine(&chart, &scans);
+            let differ = project::difference(&want, &got).1;
+            return differ.map_or(Ok(()), |d| Err(format!("as the chart: {d}")));
+        }
+        Ok(())
     }
 
     fn file(&self, name: &str, text: &str) -> PathBuf {

@@ -1,16 +1,56 @@
 //! Projects in PLCopen XML and Ladder, opened by the generators of Beremiz and OpenPLC where these are found
-//! (`g7_peers::projects`). `make interop` tells what matiec compiles of it.
+//! (`g7_peers::projects`), compiled by matiec, and run beside the engine. `make interop` does so with many charts.
 #![allow(clippy::disallowed_methods, reason = "the test starts other programs")]
+
+use std::path::Path;
 
 use g7_codegen::plc;
 use g7_exchange::Dialect;
-use g7_model::{FileId, Severity};
-use g7_peers::projects::readers;
+use g7_model::{Document, FileId, Severity};
+use g7_peers::Matiec;
+use g7_peers::mended::mended;
+use g7_peers::projects::{output, readers};
 use g7_tests::generated::cases::Folder;
+use g7_tests::generated::project;
 
 /// Charts for which the generators need a form of their own: with chained divergences, jumps, macro-steps, two
-/// charts, addresses, function blocks, and one without variables.
-const CHARTS: [(&str, &str); 4] = [
+/// charts, addresses, function blocks, and one without variables; and what matiec does otherwise than the
+/// standard: several steps with one output, pulses of initial steps, bodies that run once more, `R` after `SD`,
+/// and steps that other charts read.
+const CHARTS: [(&str, &str); 6] = [
+    (
+        "conveyor",
+        "input start, stop, part : BOOL
+         output motor, lamp : BOOL
+         var parts : INT
+         chart Conveyor {
+           initial step Rest { P1 parts := 0 }
+           step Run { N motor  N lamp }
+           step Clear { N motor  P0 parts := parts + 1 }
+           Rest -> Run when start and not stop
+           Run -> Clear when part
+           Run -> Rest when stop
+           Clear -> Run when Clear.T >= 500ms
+         }",
+    ),
+    (
+        "qualifiers",
+        "input a, b : BOOL
+         output q, r, s, t, u : BOOL
+         var n, m : INT
+         chart G {
+           initial step A { SD 1s q  SL 2s r  P u  N Count  P0 Last }
+           step B { R q  DS 300ms s  N t  L 200ms u }
+           step C { R s  N t  N Count  P1 n := n + 1 }
+           A -> B when a
+           B -> C when b
+           B -> A when not a
+           C -> A when A.T > 5s or not b
+           action Count { m := m + 1 }
+           action Last { n := n + 10 }
+         }
+         chart H { initial step D { N Own }  step E  D -> E when G.B.X  E -> D when not G.C.X and a  action Own { m := m - 1 } }",
+    ),
     (
         "chained",
         "input a, b : BOOL
@@ -50,6 +90,7 @@ const CHARTS: [(&str, &str); 4] = [
 #[test]
 fn beremiz_and_openplc_open_projects() {
     let readers = readers();
+    let matiec = if readers.is_empty() { None } else { g7_peers::matiec() };
     let folder = Folder::new("interop");
     std::fs::create_dir_all(&folder.0).expect("a folder");
     let plcopen = g7_exchange::named("plcopen").expect("a format of the table");
@@ -65,8 +106,36 @@ fn beremiz_and_openplc_open_projects() {
             std::fs::write(&project, &written.text).expect("a file");
             let made = reader.text(&project).unwrap_or_else(|e| panic!("{} on {name}: {e}", reader.name));
             assert!(made.contains("INITIAL_STEP"), "{name}: {made}");
+            if let Some(matiec) = &matiec {
+                let compared =
+                    alike(matiec, &folder.0, &document, &made).unwrap_or_else(|e| panic!("{name}: {e}"));
+                assert!(compared > 0, "{name}: no name in common");
+            }
         }
     }
+}
+
+/// Compiles a program with matiec and runs it beside the chart; returns how many steps and variables they have
+/// in common.
+fn alike(matiec: &Matiec, folder: &Path, document: &Document, program: &str) -> Result<usize, String> {
+    let (code, library) = (folder.join("c"), folder.join("C"));
+    let _ = std::fs::remove_dir_all(&code);
+    std::fs::create_dir_all(&code).map_err(|e| e.to_string())?;
+    mended(&matiec.lib.join("C"), &library).map_err(|e| e.to_string())?;
+    std::fs::write(code.join("program.st"), program).map_err(|e| e.to_string())?;
+    output(&matiec.translate(&code, "program.st"))?;
+    let chart = g7_compile::compile(document).0.ok_or("the chart is not compiled")?;
+    let mut compared = 0;
+    for seed in 1..4 {
+        let scans = project::scans(&chart, seed, 300, 10_000_000, false);
+        let got = project::of_matiec(&code, &library, &scans)?;
+        let (names, differ) = project::difference(&project::of_engine(&chart, &scans), &got);
+        compared = names;
+        if let Some(differ) = differ {
+            return Err(format!("seed {seed}: {differ}\n{program}"));
+        }
+    }
+    Ok(compared)
 }
 
 /// A lone contact beside a series (`q`), edges, a timer and a sum, which are blocks of Ladder.

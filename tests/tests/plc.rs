@@ -15,6 +15,7 @@ use g7_compile::symbols::Variable;
 use g7_engine::StepId;
 use g7_model::{ProfileName, Type};
 use g7_peers::Matiec;
+use g7_peers::mended::mended;
 use g7_tests::generated::Subject;
 use g7_tests::generated::cases::{self, Folder};
 use g7_tests::generated::plc::{Event, Prints, Seen, difference, played, prints, shown};
@@ -119,43 +120,6 @@ fn run(command: &mut Command) -> Result<Vec<u8>, String> {
 const NOT_IN_MATIEC: [(&str, &str); 1] =
     [("iec61131/real-overflow-is-no-fault", "it refuses a LREAL of 1.0E308: it takes the limits of REAL")];
 
-/// A copy of matiec's C library in which what contradicts IEC 61131-3 is mended. Counters end at PV
-/// and at 0 there; table 36 has them end at PVmax and PVmin. The sum of two TIMEs is wrong where the
-/// parts of a second make exactly one.
-fn mended(matiec: &Matiec, to: &Path) -> std::io::Result<()> {
-    std::fs::create_dir_all(to)?;
-    for entry in std::fs::read_dir(matiec.lib.join("C"))? {
-        let entry = entry?;
-        let text = std::fs::read_to_string(entry.path())?;
-        let text = match entry.file_name().to_str() {
-            Some("iec_std_FB.h") => counters(&text),
-            Some("iec_std_lib.h") => text.replace("tv_nsec > 1000000000", "tv_nsec >= 1000000000"),
-            _ => text,
-        };
-        std::fs::write(to.join(entry.file_name()), text)?;
-    }
-    Ok(())
-}
-
-/// The counters of INT with the limits of INT.
-fn counters(text: &str) -> String {
-    let mut of_int = false;
-    let mut mended = String::new();
-    for line in text.lines() {
-        if line.starts_with("static void ") {
-            of_int = ["CTU_body__(", "CTD_body__(", "CTUD_body__("].iter().any(|name| line.contains(name));
-        }
-        if of_int && line.contains("_T.Q,) && ") {
-            let line = line.replace("CV,) < __GET_VAR(data__->PV,)", "CV,) < 32767");
-            mended += &line.replace("CV,) > 0", "CV,) > -32768");
-        } else {
-            mended += line;
-        }
-        mended.push('\n');
-    }
-    mended
-}
-
 /// Compiles charts with matiec and gcc and compares them with the engine; an error lists the
 /// differences. `library` has the C headers of matiec.
 fn batch(
@@ -246,7 +210,7 @@ fn agrees(name: &str, form: Form, ending: &str, subjects: &[Subject]) -> usize {
     }
     let folder = Folder::new(&format!("plc-{name}"));
     let library = folder.0.join("C");
-    mended(&matiec, &library).unwrap_or_else(|e| panic!("{}: {e}", matiec.lib.display()));
+    mended(&matiec.lib.join("C"), &library).unwrap_or_else(|e| panic!("{}: {e}", matiec.lib.display()));
     for (i, part) in list.chunks(40).enumerate() {
         if let Err(why) = batch(&matiec, &library, &folder.0.join(i.to_string()), ending, part) {
             panic!("{name}: {why}");

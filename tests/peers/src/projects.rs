@@ -1,7 +1,7 @@
 //! Readers of PLCopen XML that other people wrote: the generators of Beremiz and of OpenPLC.
 //!
 //! `G7_BEREMIZ` and `G7_XML2ST` name the folders of their checkouts. Each file is opened by a process
-//! of its own (`python/plcopen_to_st.py`), which is ended after a minute.
+//! of its own (`python/plcopen_to_st.py`), which is ended after half a minute.
 
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
@@ -47,14 +47,14 @@ impl Projects {
     }
 }
 
-/// Runs a command for a minute at most and returns what it prints.
+/// Runs a command for half a minute at most and returns what it prints.
 ///
 /// # Errors
 ///
 /// The last line that it says, if it fails.
 pub fn output(command: &Command) -> Result<Vec<u8>, String> {
     let mut limited = Command::new("timeout");
-    limited.arg("60").arg(command.get_program()).args(command.get_args());
+    limited.arg("30").arg(command.get_program()).args(command.get_args());
     for (name, value) in command.get_envs() {
         limited.env(name, value.unwrap_or(OsStr::new("")));
     }

@@ -8,6 +8,7 @@
 mod c;
 pub mod cases;
 pub mod plc;
+pub mod project;
 mod rust;
 
 use std::collections::BTreeMap;

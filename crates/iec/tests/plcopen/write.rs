@@ -395,7 +395,10 @@ fn text_stands_in_paragraphs_for_beremiz_and_openplc() {
         let wanted = if matches!(dialect, Dialect::Codesys | Dialect::Standard) { "xhtml" } else { "p" };
         assert_eq!(tag, Some((wanted, Some("http://www.w3.org/1999/xhtml"))), "{xml}");
         let (back, _) = support::import("plcopen", xml.as_bytes(), FileId(1));
-        assert!(text(&back).contains("P1 n := 1"), "{}", text(&back));
+        // matiec loses the pulse of an initial step; there it stands in the body of the actions.
+        let own =
+            if dialect == Dialect::Beremiz || dialect == Dialect::OpenPlc { "n := 1" } else { "P1 n := 1" };
+        assert!(text(&back).contains(own), "{}", text(&back));
     }
 }
 

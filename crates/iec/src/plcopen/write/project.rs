@@ -5,6 +5,7 @@ use g7_model::{
     StepKind, VarDecl,
 };
 
+use super::control::control;
 use super::declare::{external, initial, lists, type_of};
 use super::sfc::Sfc;
 use crate::Written;
@@ -22,7 +23,10 @@ const MADE: &str = "2026-01-01T00:00:00";
 /// Writes a document.
 pub(crate) fn export(document: &Document, dialect: Dialect) -> Written {
     let form = if dialect.is_of_matiec() && has_parts(document) { Form::Networks } else { Form::Charts };
-    let (document, mut problems) = standard(document, form);
+    let (mut document, mut problems) = standard(document, form);
+    if dialect.is_of_matiec() {
+        document = control(document, &mut problems);
+    }
     let mut project = Project { document: &document, problems: &mut problems, dialect }.element();
     if dialect.is_of_matiec() {
         project = project.in_paragraphs();
@@ -33,10 +37,12 @@ pub(crate) fn export(document: &Document, dialect: Dialect) -> Written {
     Written { text, problems }
 }
 
-/// True if a document has macro-steps or transition sections.
+/// True if a document has macro-steps, transition sections, or several charts, which evolve together only
+/// in one program.
 fn has_parts(document: &Document) -> bool {
     let section = |c: &Chart| c.items.iter().any(|i| matches!(i, ChartItem::Section(_)));
-    document.charts().any(|c| c.kind == ChartKind::Expansion || section(c))
+    document.charts().count() > 1
+        || document.charts().any(section)
         || document.items.iter().any(|i| matches!(i, Item::Section(_)))
 }
 
