@@ -10,7 +10,8 @@ use g7_model::{Problem, Span, Type, codes};
 
 use crate::body::{self, Code as Translated};
 use crate::names::{Names, of_transition};
-use crate::room::{self, Room};
+use crate::pack;
+use crate::room::Room;
 use crate::runtime::{self, Facts};
 use crate::tree::{Arm, Bin, Block, Expr, Function, Module, Numbers, Stmt, Struct, Ty};
 use crate::vars::{Home, Vars, num};
@@ -139,6 +140,34 @@ impl<'a> Gen<'a> {
         self.numbers("TIME_OF", &format!("Where the time of each step stands; {none} for none."), &places);
         self.facts.timed = self.timed.len();
         self.facts.has_times = !self.timed.is_empty();
+    }
+
+    /// Refuses a time that is longer than the clock can tell.
+    pub(crate) fn judge_time(&mut self, nanoseconds: i64) {
+        let longest = self.room.clock.longest();
+        if nanoseconds <= longest {
+            return;
+        }
+        let text = format!(
+            "a time of {} s does not fit: 32 bits of {} tell {} s; a coarser unit of the clock, or nanoseconds in 64 bits, hold it",
+            nanoseconds / 1_000_000_000,
+            self.room.clock.unit(),
+            longest / 1_000_000_000
+        );
+        if self.problems.iter().all(|p| p.what != text) {
+            self.problems.push(Problem::new(&codes::NOT_CARRIED, self.at, text));
+        }
+    }
+
+    /// The same for the times that variables begin with.
+    pub(crate) fn judge_initial_times(&mut self) {
+        let c = self.c;
+        for v in c.symbols.variables.iter().filter(|v| v.ty == Type::Time) {
+            for word in self.t.init.get(v.addr.0 as usize..(v.addr.0 + v.elements) as usize).unwrap_or(&[]) {
+                self.at = v.at;
+                self.judge_time(*word as i64);
+            }
+        }
     }
 
     /// Reports a construct that the language of the code cannot say.
@@ -307,7 +336,7 @@ impl<'a> Gen<'a> {
         self.m.structs.extend(structs);
         self.m.functions.extend(functions);
         if self.room.small {
-            room::pack(&mut self.m);
+            pack::pack(&mut self.m);
         }
     }
 

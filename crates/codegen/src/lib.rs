@@ -29,6 +29,7 @@ mod frame;
 mod lets;
 mod names;
 mod operations;
+mod pack;
 mod places;
 pub mod plc;
 mod prune;
@@ -75,6 +76,16 @@ pub enum Style {
     /// Boolean equations with memories: the clearing condition of each transition,
     /// then set and reset of each step, then the outputs.
     Flat,
+}
+
+impl Room {
+    /// The usual room: a sketch is for a small board, whose clock counts milliseconds.
+    pub fn usual(language: Language, style: Style) -> Room {
+        if language == Language::Arduino && style == Style::Structured {
+            return Room { small: true, clock: Clock::Milliseconds };
+        }
+        Room::default()
+    }
 }
 
 /// The choice of code to print.

@@ -96,7 +96,7 @@ fn a_compiler_lays_it_out_as_it_was_worked_out() {
                 let seen = symbol(&list, "the_state");
                 if avr {
                     assert_eq!(seen, p.sizes.avr, "chart {k}");
-                    // What begins with a value in RAM: nothing, the tables are in flash.
+                    // Nothing begins with a value in RAM: the tables are in flash.
                     let sections = run("avr-size", &["main.o"]);
                     let data = sections.lines().nth(1).and_then(|l| l.split_whitespace().nth(1));
                     assert_eq!(data, Some("0"), "tables in RAM: {sections}");

@@ -246,7 +246,7 @@ impl Tongue {
     }
 }
 
-/// What was printed, and the memory that it takes.
+/// The printed files, and the memory that the code takes.
 struct Written {
     files: Vec<File>,
     problems: Vec<Problem>,

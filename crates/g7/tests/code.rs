@@ -27,7 +27,7 @@ fn files_bear_the_name_of_the_folder_of_a_chart() {
     assert!(folder.read("out/tank.h").contains("tank_scan("));
     assert!(folder.read("out/tank.c").contains("#include \"tank.h\""));
     folder.g7(&["gen", "arduino", "tank", "-o", "sketch", "--name", "Mill"]).is(0);
-    assert!(folder.read("sketch/mill.ino").contains("mill_scan("));
+    assert!(folder.read("sketch/mill.ino").contains("mill_scan_in_place("));
     folder.g7(&["gen", "rust", "tank", "-o", "src"]).is(0);
     assert!(folder.read("src/tank.rs").contains("pub fn scan("));
 }
@@ -55,11 +55,13 @@ fn what_c_cannot_say_is_a_problem_and_nothing_is_written() {
 }
 
 /// Every language and style: arguments, files in their order, a text that only this style contains.
-const ALL: [(&[&str], &[&str], &str); 12] = [
+const ALL: [(&[&str], &[&str], &str); 14] = [
     (&["c"], &["tank.h", "tank.c"], "receptivity("),
     (&["c", "--style", "structured"], &["tank.h", "tank.c"], "receptivity("),
     (&["c", "--style", "flat"], &["tank.h", "tank.c"], "sections_of_pass("),
-    (&["arduino"], &["tank.h", "tank.c", "tank.ino"], "void loop()"),
+    (&["c", "--small", "--time-unit", "us"], &["tank.h", "tank.c"], "`now` is in microseconds"),
+    (&["arduino"], &["tank.h", "tank.c", "tank.ino"], "_scan_in_place(&state, ms)"),
+    (&["arduino", "--time-unit", "ns"], &["tank.h", "tank.c", "tank.ino"], "_scan_in_place(&state, now_ns)"),
     (&["arduino", "--style", "flat"], &["tank.h", "tank.c", "tank.ino"], "sections_of_pass("),
     (&["rust"], &["tank.rs"], "fn receptivity("),
     (&["rust", "--style", "flat"], &["tank.rs"], "fn sections_of_pass("),
@@ -98,6 +100,9 @@ fn what_is_no_language_and_no_style_is_refused() {
         (&["gen", "il", "--style", "structured"], "structured"),
         (&["gen", "ld", "--style", "flat"], "flat"),
         (&["gen", "st", "--style", "flat"], "--style"),
+        (&["gen", "c", "--style", "flat", "--small"], "structured"),
+        (&["gen", "c", "--board", "due"], "uno, mega, esp32"),
+        (&["gen", "c", "--time-unit", "s"], "ms"),
         (&["gen", "c", "nowhere.g7"], "nowhere.g7"),
         (&["gen", "c", "--profile", "iec"], "iec"),
     ] {
@@ -123,5 +128,33 @@ fn the_bead_sorter_compiles_without_a_warning() {
             let said = String::from_utf8_lossy(&out.stderr);
             assert!(out.status.success() && said.is_empty(), "{compiler}, {style}:\n{said}");
         }
+    }
+}
+
+/// A board with too little RAM: nothing is written, and the way out is told; what fits is.
+#[test]
+fn a_board_that_is_too_small_is_told() {
+    let folder = Folder::new();
+    let mut chart =
+        String::from("profile iec60848\ninput go : BOOL\noutput y : BOOL\nchart C {\n  initial step 0\n");
+    (1..300).for_each(|i| chart += &format!("  step {i} {{ N y }}\n"));
+    (0..300).for_each(|i| chart += &format!("  {i} -> {} when go\n", (i + 1) % 300));
+    folder.write("long/chart.g7", &(chart + "}\n"));
+    let ran = folder.g7(&["gen", "c", "long", "--board", "uno", "-o", "out"]);
+    assert_eq!((ran.code, ran.out.as_str()), (1, ""), "{}", ran.err);
+    assert!(
+        ran.err.contains("uno is too small") && ran.err.contains("--small --time-unit ms"),
+        "{}",
+        ran.err
+    );
+    assert_eq!(folder.names(), ["long"]);
+    for args in [
+        &["c", "--board", "mega"] as &[&str],
+        &["c", "--small", "--board", "uno"],
+        &["arduino", "--board", "uno"],
+    ] {
+        let ran = folder.g7(&[&["gen"], args, &["long", "-o", "out", "--force"]].concat());
+        assert_eq!(ran.code, 0, "{args:?}: {}", ran.err);
+        assert!(ran.err.contains("bytes of RAM for the state"), "{}", ran.err);
     }
 }

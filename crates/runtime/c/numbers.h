@@ -18,7 +18,8 @@ static uint32_t low_bit(uint32_t word)
 /* Time gone by; the clock may pass its end. */
 static int64_t since(int64_t now, int64_t then)
 {
-    return (int64_t)((uint64_t)now - (uint64_t)then);
+    const uint64_t gone = (uint64_t)now - (uint64_t)then;
+    return (int64_t)gone;
 }
 
 /* Ticks gone by; the clock may pass its end. */

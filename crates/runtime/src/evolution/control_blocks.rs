@@ -64,14 +64,16 @@ pub(crate) fn look_early(s: &mut State) {
             if bit(&s.m.blocks, FULL_BLOCK[k] as usize) && (!HAS_PERIODS || s.due[FULL_PERIOD[k] as usize]) {
                 let at: usize = FULL_AT[k] as usize;
                 let p1: bool = s.m.counts[at + 6] != 0;
-                if p1 != ((s.m.inputs_before[k] & 0x40) != 0) {
+                let p1_before: bool = (s.m.inputs_before[k] & 0x40) != 0;
+                if p1 != p1_before {
                     s.m.inputs_before[k] ^= 0x40;
                     if p1 {
                         s.m.flip[k] |= 32;
                     }
                 }
                 let p0: bool = s.m.counts[at + 7] != 0;
-                if p0 != ((s.m.inputs_before[k] & 0x80) != 0) {
+                let p0_before: bool = (s.m.inputs_before[k] & 0x80) != 0;
+                if p0 != p0_before {
                     s.m.inputs_before[k] ^= 0x80;
                     if !p0 {
                         s.m.flip[k] |= 64;
