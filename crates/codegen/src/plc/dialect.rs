@@ -1,5 +1,5 @@
-//! What the languages of controllers differ in, before any of them is printed: the one translation of a chart
-//! ([`super::scan`]) reads it.
+//! The differences of the languages of controllers, before any of them is printed: the one translation of a chart
+//! ([`super::scan`]) reads them.
 
 /// The choices.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -22,7 +22,7 @@ use values::{NOW, Values, type_of};
 ///
 /// # Errors
 ///
-/// What an S7-300 cannot say, at `place`.
+/// Parts that an S7-300 cannot say, at `place`.
 pub(super) fn print(e: &Block, place: Span) -> Result<(String, String), Vec<Problem>> {
     let mut variables = e.variables.clone();
     if let Some(clock) = e.variables.iter().find(|v| v.ty == "TON") {
@@ -67,7 +67,7 @@ fn declarations(e: &Block, variables: &[Declared], cannot: &mut BTreeSet<String>
     let heads: [(&[Class], &str); 3] = [
         (&[Class::Input], "VAR_INPUT"),
         (&[Class::Output], "VAR_OUTPUT"),
-        // What a data block holds outlives a loss of power, unless the block is told otherwise.
+        // The values of a data block outlive a loss of power, unless the block is told otherwise.
         (&[Class::Retain, Class::Internal], "VAR"),
     ];
     for (classes, head) in heads {

@@ -1,6 +1,6 @@
 //! The values of AWL: the result of logic (RLO) for what is Boolean, the first accumulator for numbers.
 //!
-//! What needs a jump, or more than two accumulators, or deeper brackets, is worked out before into a
+//! A value that needs a jump, or more than two accumulators, or deeper brackets, is worked out before, into a
 //! memory.
 
 use std::collections::BTreeSet;

@@ -17,7 +17,7 @@ const WORD: u32 = 32;
 ///
 /// # Errors
 ///
-/// What Logix cannot say, at `place`.
+/// Parts that Logix cannot say, at `place`.
 pub(crate) fn print(e: &Block, place: Span) -> Result<String, Vec<Problem>> {
     let mut refused = Refused::default();
     let mut own = rewrite::block(e, &mut |e| word(e, &mut refused));

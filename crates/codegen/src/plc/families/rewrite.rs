@@ -7,7 +7,7 @@ use g7_model::{Problem, Span, codes};
 
 use crate::plc::form::{Block, Ex, St};
 
-/// What a language cannot say, once each.
+/// The parts that a language cannot say, once each.
 #[derive(Debug, Default)]
 pub(super) struct Refused(BTreeSet<String>);
 

@@ -14,7 +14,7 @@ use crate::plc::st;
 ///
 /// # Errors
 ///
-/// What SCL cannot say, at `place`.
+/// Parts that SCL cannot say, at `place`.
 pub(crate) fn print(e: &Block, place: Span) -> Result<(String, String), Vec<Problem>> {
     let mut refused = Refused::default();
     let own = rewrite::block(e, &mut |e| word(e, &mut refused));

@@ -10,7 +10,7 @@ use crate::plc::st;
 ///
 /// # Errors
 ///
-/// What TwinCAT cannot say, at `place`.
+/// Parts that TwinCAT cannot say, at `place`.
 pub(crate) fn print(e: &Block, place: Span) -> Result<String, Vec<Problem>> {
     let mut refused = Refused::default();
     let own = rewrite::block(e, &mut |e| rewrite::timed(e, &mut refused));

@@ -11,7 +11,7 @@ use crate::plc::st;
 ///
 /// # Errors
 ///
-/// What Control Expert cannot say, at `place`.
+/// Parts that Control Expert cannot say, at `place`.
 pub(crate) fn print(e: &Block, place: Span) -> Result<String, Vec<Problem>> {
     let mut refused = Refused::default();
     let own = rewrite::block(e, &mut |e| word(e, &mut refused));
