@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::process::Command;
 
-use g7_codegen::plc::{Form, Printed};
+use g7_codegen::plc::{Form, Printed, print};
 use g7_compile::ir::VarClass;
 use g7_compile::symbols::Variable;
 use g7_engine::StepId;
@@ -197,4 +197,72 @@ fn programs_of_logix_are_loaded_by_l5x() {
         let tags = r.printed.text.matches("<Tag Name=").count();
         assert_eq!(r.said.parse(), Ok(tags), "{}: {}", r.title, r.said);
     }
+}
+
+/// A chart with a delay, a retained count and addresses.
+const TANK: &str = "profile iec61131
+input start : BOOL at %I0.0 \"push button\"
+output motor : BOOL at %Q0.1
+var count : INT := 3 retain
+chart Tank {
+  initial step 1
+  step 2 { N motor; P1 count := count + 1 }
+  1 -> 2 when start
+  2 -> 1 when 2s/X2
+}
+";
+
+/// The chart in a form: its text, and the file beside it.
+fn tank(form: Form) -> (String, String) {
+    let (doc, problems) = g7_syntax::parse(TANK, g7_model::FileId(0));
+    assert!(problems.is_empty(), "{problems:?}");
+    let compiled = g7_compile::compile(&doc).0.expect("a chart");
+    let printed = print(&compiled, form, "tank", TANK).unwrap_or_else(|e| panic!("{e:?}"));
+    (printed.text, printed.beside.into_iter().map(|(_, text)| text).collect())
+}
+
+fn holds(text: &str, parts: &[&str]) {
+    for part in parts {
+        assert!(text.contains(part), "no `{part}` in\n{text}");
+    }
+}
+
+#[test]
+fn variables_of_scl_are_marked_and_its_tags_have_addresses() {
+    let (text, tags) = tank(Form::Scl);
+    holds(
+        &text,
+        &[
+            "VAR RETAIN\n      count : INT := 3;",
+            "#T_1_to_2 := #X_1 AND #start;",
+            "#CLOCK(IN := TRUE, PT := T#20d);",
+        ],
+    );
+    holds(
+        &text,
+        &[
+            "CLOCK {InstructionName := 'TON_TIME'; LibVersion := '1.0'} : TON_TIME;",
+            "DATA_BLOCK \"tank_data\"",
+        ],
+    );
+    holds(&tags, &["remark=\"push button\" addr=\"%I0.0\">start</Tag>", "addr=\"%Q0.1\">motor</Tag>"]);
+}
+
+#[test]
+fn sections_of_control_expert_have_their_variables() {
+    let (text, _) = tank(Form::Unity);
+    holds(
+        &text,
+        &["<variables name=\"CLOCK\" typeName=\"TON\">", "<variableInit value=\"3\"/>", "task=\"MAST\""],
+    );
+    // Signs of XML in the statements are escaped.
+    holds(&text, &["&gt;= T#2s", "T_1_to_2 := X_1 AND start;"]);
+}
+
+#[test]
+fn symbols_of_awl_have_addresses_in_columns() {
+    let (text, symbols) = tank(Form::Awl);
+    holds(&text, &["DATA_BLOCK DB 1", "count := 3;", "CALL #CLOCK (IN := TRUE, PT := T#20D, ET := #NOW);"]);
+    let row = symbols.lines().find(|row| row.starts_with("126,start ")).expect("a row");
+    assert_eq!((row.len(), row.get(28..50)), (130, Some("I     0.0   BOOL      ")));
 }
